@@ -1,0 +1,44 @@
+//! Depth: shades by distance from the eye, fitted to the scene or by a scale and an offset of your own.
+
+use glam::DVec4;
+
+use super::{Effect, Surface, SurfaceEffect};
+use crate::{
+    params,
+    params::{Color, Flag},
+};
+
+params! {
+    pub struct Depth {
+        /// Colour at the near end, linear.
+        near: Color = [1.0, 0.93, 0.8, 1.0];
+        /// Colour at the far end, linear.
+        far: Color = [0.015, 0.03, 0.07, 1.0];
+        /// Spread the two colours over the depth range of the scene.
+        fit: Flag = 1;
+        /// Without fit: how much of the way to the far colour one metre takes.
+        scale: f32 = 0.2, hard -1e6..=1e6, soft 0.0..=2.0, unit "per m";
+        /// Without fit: where on the way between the colours the eye stands.
+        offset: f32 = 0.0, hard -1e6..=1e6, soft -2.0..=2.0;
+    }
+}
+
+pub const EFFECT: Effect = Effect::surface::<Depth>("depth", "Depth", "shades by distance from the eye");
+
+impl SurfaceEffect for Depth {
+    fn apply(mut s: Surface, p: &Self) -> Surface {
+        let way = if p.fit != 0 {
+            (s.depth_m - s.range_m.x) / (s.range_m.y - s.range_m.x)
+        } else {
+            s.depth_m * f64::from(p.scale) + f64::from(p.offset)
+        };
+        let (near, far) = (vec4(p.near), vec4(p.far));
+        let shade = near + (far - near) * way.clamp(0.0, 1.0);
+        s.color = shade.truncate().extend(s.color.w);
+        s
+    }
+}
+
+fn vec4(c: [f32; 4]) -> DVec4 {
+    DVec4::new(c[0].into(), c[1].into(), c[2].into(), c[3].into())
+}

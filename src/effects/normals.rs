@@ -1,0 +1,24 @@
+//! Normals: colours the surface by the direction it faces, x red, y green, z blue.
+
+use glam::DVec3;
+
+use super::{Effect, Surface, SurfaceEffect};
+use crate::params;
+
+params! {
+    pub struct Normals {
+        /// How much of the base colour is replaced.
+        amount: f32 = 1.0, hard 0.0..=1.0;
+    }
+}
+
+pub const EFFECT: Effect = Effect::surface::<Normals>("normals", "Normals", "colours the surface by the direction it faces");
+
+impl SurfaceEffect for Normals {
+    fn apply(mut s: Surface, p: &Self) -> Surface {
+        let shade = s.normal * 0.5 + DVec3::splat(0.5);
+        let base = s.color.truncate();
+        s.color = (base + (shade - base) * f64::from(p.amount)).extend(s.color.w);
+        s
+    }
+}

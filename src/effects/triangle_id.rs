@@ -1,0 +1,28 @@
+//! Triangle id: gives every triangle a colour of its own.
+
+use glam::DVec3;
+
+use super::{Effect, Surface, SurfaceEffect};
+use crate::{math::hash, params};
+
+params! {
+    pub struct TriangleId {
+        /// How much of the base colour is replaced.
+        amount: f32 = 1.0, hard 0.0..=1.0;
+        /// Another seed, other colours.
+        seed: u32 = 0, soft 0.0..=999.0;
+    }
+}
+
+pub const EFFECT: Effect = Effect::surface::<TriangleId>("triangle_id", "TriangleId", "gives every triangle a colour of its own");
+
+impl SurfaceEffect for TriangleId {
+    fn apply(mut s: Surface, p: &Self) -> Surface {
+        let h = hash(s.owner ^ p.seed.wrapping_mul(0x9e37_79b9));
+        let byte = |shift: u32| f64::from(h >> shift & 255) / 255.0;
+        let shade = DVec3::splat(0.08) + DVec3::new(byte(0), byte(8), byte(16)) * 0.8;
+        let base = s.color.truncate();
+        s.color = (base + (shade - base) * f64::from(p.amount)).extend(s.color.w);
+        s
+    }
+}

@@ -1,0 +1,92 @@
+//! What a renderer produces and a judge compares: integer images, snapped geometry and counters.
+//!
+//! The oracle and the GPU both fill these plain types and never see each other.
+
+/// Owner of a pixel that no triangle covers.
+pub const NO_OWNER: u32 = u32::MAX;
+
+/// Why a projected vertex cannot be rasterized as it is; zero means ready.
+pub mod vertex_flags {
+    /// A coordinate is NaN or infinite: its triangles are dropped and counted.
+    pub const NONFINITE: u32 = 1;
+    /// A coordinate is 2^40 or more: its triangles are dropped and counted.
+    pub const OUT_OF_RANGE: u32 = 2;
+    /// In front of the near plane or behind the eye: its triangles are clipped.
+    pub const NEAR: u32 = 4;
+    /// Beyond the guard band on the left, right, top, bottom: its triangles are clipped.
+    pub const GUARD: [u32; 4] = [8, 16, 32, 64];
+    /// Any reason to drop the triangle.
+    pub const REJECTED: u32 = NONFINITE | OUT_OF_RANGE;
+    /// Any reason to clip the triangle.
+    pub const CLIPPED: u32 = 4 | 8 | 16 | 32 | 64;
+}
+
+/// A vertex after projection and the one snap, as every later stage reads it.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct SnappedVertex {
+    /// Position right and down from the top left corner, units of 1/256 px. Meaningless when `flags` is not 0.
+    pub x: i32,
+    pub y: i32,
+    /// Reversed depth z_c / w_c: 1 on the near plane, 0 at infinity.
+    pub depth: f32,
+    /// 1 / w_c, per metre.
+    pub inv_w: f32,
+    /// [`vertex_flags`].
+    pub flags: u32,
+}
+
+/// One triangle left over from clipping `parent`.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Piece {
+    pub parent: u32,
+    pub corners: [SnappedVertex; 3],
+}
+
+/// Everything the rasterizer proper sees: what stands between the float vertex stage and integer coverage.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Geometry {
+    /// One per vertex of each draw, in draw order (`Draw::first_vertex` indexes it).
+    pub vertices: Vec<SnappedVertex>,
+    /// Fan pieces of clipped triangles; pieces of one parent stand in fan order.
+    pub pieces: Vec<Piece>,
+}
+
+/// Counts of what a frame did not draw, and of what went wrong. All zero in a plain healthy picture.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, serde::Serialize)]
+pub struct Counters {
+    /// Triangles with a NaN or infinite vertex.
+    pub rejected_nonfinite: u32,
+    /// Triangles with a vertex coordinate of 2^40 or more.
+    pub rejected_range: u32,
+    /// Triangles with no area after the snap.
+    pub degenerate: u32,
+    /// Triangles that took the clipping path.
+    pub clipped: u32,
+    /// Clipped pieces that turned over or vanished in the snap, and were dropped.
+    pub fan_folds: u32,
+    /// Queue entries that did not fit; the frame is incomplete unless 0.
+    pub overflow: u32,
+    /// Pixels with a depth but no owner; must be 0.
+    pub orphans: u32,
+}
+
+/// One finished picture with the integers that decided it. Images are row-major, top row first, `width * height` long.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Frame {
+    pub width: u32,
+    pub height: u32,
+    /// Global triangle id per pixel, or [`NO_OWNER`].
+    pub owner: Vec<u32>,
+    /// Depth key per pixel: bits of the reversed depth, larger is nearer, 0 is empty.
+    pub key: Vec<u32>,
+    /// Gamma-encoded sRGB and alpha.
+    pub color: Vec<[u8; 4]>,
+    pub counters: Counters,
+}
+
+impl Frame {
+    /// Number of pixels that have an owner.
+    pub fn covered(&self) -> usize {
+        self.owner.iter().filter(|&&owner| owner != NO_OWNER).count()
+    }
+}

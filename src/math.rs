@@ -1,0 +1,112 @@
+//! Exact little tools: ULP distance, sub-pixel snapping constants, and f64 matrices rounded once to f32.
+//!
+//! Matrices are named by the spaces they join, so that neighbours cancel by eye:
+//! `clip_from_object = clip_from_world * world_from_object`.
+
+use glam::{DMat4, DVec3};
+
+/// Sub-pixel units in one pixel (16.8 fixed point).
+pub const UNITS_PER_PIXEL: i32 = 256;
+
+/// Largest |x| and |y| of a snapped vertex that needs no guard-band clipping, in units of 1/256 px
+/// (32,767.996 px; symmetric, and exact in an f32).
+pub const GUARD_BAND: i32 = 8_388_607;
+
+/// Side of the largest square in which every edge function fits an i32, in units of 1/256 px, rounded down to
+/// whole blocks: 128 px (`EXACT_I32` itself is 181 px; the rest is room for blocks that overhang).
+pub const SMALL_EXTENT: i32 = 128 * UNITS_PER_PIXEL;
+
+/// Distance between two floats in units in the last place; 0 for equal values (also +0 and -0), `u32::MAX` with a NaN.
+pub fn ulp_distance(a: f32, b: f32) -> u32 {
+    if a.is_nan() || b.is_nan() {
+        return u32::MAX;
+    }
+    let ordered = |v: f32| {
+        let bits = v.to_bits() as i32;
+        i64::from(if bits < 0 { i32::MIN.wrapping_sub(bits) } else { bits })
+    };
+    ordered(a).abs_diff(ordered(b)).min(u64::from(u32::MAX)) as u32
+}
+
+/// Columns of a matrix, each entry rounded once from f64 to f32.
+pub fn rounded_columns(m: &DMat4) -> [[f32; 4]; 4] {
+    m.to_cols_array_2d().map(|column| column.map(|v| v as f32))
+}
+
+/// Rigid view matrix (right-handed, looking down -z). `eye` and `target` must differ and `up` must not be parallel
+/// to the view direction; otherwise another up axis is taken, so the result is always finite.
+pub fn view_from_world(eye: DVec3, target: DVec3, up: DVec3) -> DMat4 {
+    let back = (eye - target).try_normalize().unwrap_or(DVec3::Z);
+    let right = [up, DVec3::Y, DVec3::X]
+        .into_iter()
+        .find_map(|up| up.cross(back).try_normalize())
+        .unwrap_or(DVec3::X);
+    let up = back.cross(right);
+    DMat4::from_cols(
+        DVec3::new(right.x, up.x, back.x).extend(0.0),
+        DVec3::new(right.y, up.y, back.y).extend(0.0),
+        DVec3::new(right.z, up.z, back.z).extend(0.0),
+        DVec3::new(-right.dot(eye), -up.dot(eye), -back.dot(eye)).extend(1.0),
+    )
+}
+
+/// Rotation about +y by `radians`, from the pure-Rust maths library, so that every host gives the same bits.
+pub fn rotation_y(radians: f64) -> DMat4 {
+    let (sin, cos) = libm::sincos(radians);
+    DMat4::from_cols(
+        DVec3::new(cos, 0.0, -sin).extend(0.0),
+        DVec3::Y.extend(0.0),
+        DVec3::new(sin, 0.0, cos).extend(0.0),
+        DVec3::ZERO.extend(1.0),
+    )
+}
+
+/// Linear light in [0, 1] to a gamma-encoded sRGB byte (IEC 61966-2-1), ties away from zero.
+pub fn srgb_byte(linear: f64) -> u8 {
+    let c = linear.clamp(0.0, 1.0);
+    let encoded = if c <= 0.003_130_8 { 12.92 * c } else { 1.055 * libm::pow(c, 1.0 / 2.4) - 0.055 };
+    (encoded * 255.0 + 0.5).floor() as u8
+}
+
+/// Integer hash with full avalanche (Ettinger and Wellons, "lowbias32"); a bijection of u32.
+pub fn hash(x: u32) -> u32 {
+    let x = (x ^ (x >> 16)).wrapping_mul(0x7feb_352d);
+    let x = (x ^ (x >> 15)).wrapping_mul(0x846c_a68b);
+    x ^ (x >> 16)
+}
+
+/// A hash as a number in [0, 1) of 24 bits, exact in f32.
+pub fn hash_unit(x: u32) -> f64 {
+    f64::from(hash(x) >> 8) / f64::from(1 << 24)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn ulp_distance_counts_steps_across_zero() {
+        assert_eq!(ulp_distance(1.0, f32::from_bits(1.0f32.to_bits() + 3)), 3);
+        assert_eq!(ulp_distance(0.0, -0.0), 0);
+        assert_eq!(ulp_distance(f32::from_bits(1), -f32::from_bits(1)), 2);
+        assert_eq!(ulp_distance(f32::NAN, 0.0), u32::MAX);
+    }
+
+    #[test]
+    fn view_matrix_stays_finite_when_degenerate() {
+        let same = view_from_world(DVec3::ONE, DVec3::ONE, DVec3::Y);
+        assert!(same.is_finite());
+        let straight_down = view_from_world(DVec3::Y, DVec3::ZERO, DVec3::Y);
+        assert!(straight_down.is_finite() && (straight_down.determinant() - 1.0).abs() < 1e-12);
+    }
+
+    #[test]
+    fn hash_gives_its_published_values() {
+        assert_eq!((hash(1), hash(0xdead_beef)), (0x6889_90c0, 0xe628_c683));
+    }
+
+    #[test]
+    fn srgb_hits_both_ends() {
+        assert_eq!((srgb_byte(0.0), srgb_byte(1.0), srgb_byte(0.214_041_14)), (0, 255, 128));
+    }
+}

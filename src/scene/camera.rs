@@ -1,0 +1,165 @@
+//! Where the picture is taken from: a pose a person can type, and the matrices made from it in f64.
+
+use glam::{DMat4, DVec3, DVec4};
+
+use super::Bounds;
+use crate::math::view_from_world;
+
+/// Smallest near distance that keeps every quotient of the vertex stage finite.
+pub const MIN_NEAR_M: f64 = 1.0 / (1 << 20) as f64;
+
+/// How depth becomes picture.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Projection {
+    /// Vertical field of view in degrees, within (0, 180).
+    Perspective { fov_y_deg: f64 },
+    /// Height of the visible box in metres.
+    Orthographic { height_m: f64 },
+}
+
+/// A pose: right-handed, y up, metres.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Camera {
+    pub eye: DVec3,
+    pub target: DVec3,
+    pub up: DVec3,
+    pub projection: Projection,
+    /// Distance of the near plane in metres, at least [`MIN_NEAR_M`]. Only a perspective clips there.
+    pub near_m: f64,
+}
+
+impl Default for Camera {
+    fn default() -> Self {
+        Self {
+            eye: DVec3::new(0.0, 1.0, 4.0),
+            target: DVec3::ZERO,
+            up: DVec3::Y,
+            projection: Projection::Perspective { fov_y_deg: 45.0 },
+            near_m: 0.01,
+        }
+    }
+}
+
+impl Camera {
+    /// A pose that looks along `direction` and shows the whole of `bounds` with a little air.
+    pub fn framing(bounds: &Bounds, direction: DVec3, aspect: f64) -> Self {
+        let radius = if bounds.radius() > 0.0 { bounds.radius() } else { 1.0 };
+        let fov_y_deg: f64 = 45.0;
+        let half = fov_y_deg.to_radians() * 0.5;
+        let half_x = libm::atan(libm::tan(half) * aspect.clamp(1e-3, 1e3));
+        let distance = radius * 1.02 / libm::sin(half.min(half_x));
+        let direction = direction.try_normalize().unwrap_or(DVec3::NEG_Z);
+        Self {
+            eye: bounds.center() - direction * distance,
+            target: bounds.center(),
+            up: DVec3::Y,
+            projection: Projection::Perspective { fov_y_deg },
+            near_m: (distance * 1e-3).max(MIN_NEAR_M),
+        }
+    }
+
+    /// Unit vector from the eye to the target.
+    pub fn forward(&self) -> DVec3 {
+        (self.target - self.eye).try_normalize().unwrap_or(DVec3::NEG_Z)
+    }
+}
+
+/// A camera meeting a target of pixels and a scene: all that a renderer needs to know about the viewpoint.
+#[derive(Clone, Debug, PartialEq)]
+pub struct View {
+    /// Size of the picture in pixels; either may be 0.
+    pub width: u32,
+    pub height: u32,
+    pub clip_from_world: DMat4,
+    /// Placement of the whole scene (its spin).
+    pub world_from_scene: DMat4,
+    pub eye: DVec3,
+    pub forward: DVec3,
+    /// Metres at depth 1 and at depth 0 of a linear (orthographic) depth; none for a perspective, whose w is metres.
+    pub linear_depth_m: Option<[f64; 2]>,
+    /// Nearest and farthest distance along `forward` of the scene's box, at least `near_m` apart from the eye.
+    pub scene_range_m: [f64; 2],
+    /// Linear RGBA of pixels without an owner.
+    pub background: [f32; 4],
+}
+
+impl View {
+    /// Meets `camera` with a `width` x `height` target and the scene's world-space box (before the spin).
+    pub fn new(camera: &Camera, width: u32, height: u32, bounds: &Bounds, world_from_scene: DMat4, background: [f32; 4]) -> Self {
+        let aspect = if height == 0 || width == 0 { 1.0 } else { f64::from(width) / f64::from(height) };
+        let forward = camera.forward();
+        let distances = bounds.corners().map(|c| (world_from_scene.transform_point3(c) - camera.eye).dot(forward));
+        let (mut nearest, mut farthest) = distances.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(n, f), d| (n.min(*d), f.max(*d)));
+        if bounds.is_empty() || !(nearest.is_finite() && farthest.is_finite()) {
+            (nearest, farthest) = (camera.near_m, camera.near_m + 1.0);
+        }
+        let margin = ((farthest - nearest) * 0.01).max(1e-3 * farthest.abs()).max(1e-6);
+        let (clip_from_view, linear_depth_m) = match camera.projection {
+            Projection::Perspective { fov_y_deg } => {
+                let focal = 1.0 / libm::tan(fov_y_deg.to_radians() * 0.5);
+                (infinite_reverse(focal / aspect, focal, camera.near_m), None)
+            }
+            Projection::Orthographic { height_m } => {
+                let (near, far) = (nearest - margin, farthest + margin);
+                let y = 2.0 / height_m;
+                (orthographic_reverse(y / aspect, y, near, far), Some([near, far]))
+            }
+        };
+        let from = if linear_depth_m.is_none() { nearest.max(camera.near_m) } else { nearest };
+        Self {
+            width,
+            height,
+            clip_from_world: clip_from_view * view_from_world(camera.eye, camera.target, camera.up),
+            world_from_scene,
+            eye: camera.eye,
+            forward,
+            linear_depth_m,
+            scene_range_m: [from, farthest.max(from + margin)],
+            background,
+        }
+    }
+
+    pub fn pixels(&self) -> usize {
+        self.width as usize * self.height as usize
+    }
+}
+
+/// z_c = near, w_c = -z_view: depth is near / w, 1 on the near plane and 0 at infinity.
+fn infinite_reverse(x: f64, y: f64, near: f64) -> DMat4 {
+    DMat4::from_cols(DVec4::X * x, DVec4::Y * y, DVec4::new(0.0, 0.0, 0.0, -1.0), DVec4::new(0.0, 0.0, near, 0.0))
+}
+
+/// Depth falls linearly from 1 at `near` to 0 at `far`; w is 1.
+fn orthographic_reverse(x: f64, y: f64, near: f64, far: f64) -> DMat4 {
+    let depth = 1.0 / (far - near);
+    DMat4::from_cols(DVec4::X * x, DVec4::Y * y, DVec4::Z * depth, DVec4::new(0.0, 0.0, far * depth, 1.0))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn unit_box() -> Bounds {
+        Bounds { min: DVec3::NEG_ONE, max: DVec3::ONE }
+    }
+
+    #[test]
+    fn framing_shows_every_corner_of_the_box() {
+        for (aspect, width, height) in [(2.0, 200, 100), (0.5, 100, 200)] {
+            let camera = Camera::framing(&unit_box(), DVec3::new(-1.0, -0.5, -2.0), aspect);
+            let view = View::new(&camera, width, height, &unit_box(), DMat4::IDENTITY, [0.0; 4]);
+            for corner in unit_box().corners() {
+                let clip = view.clip_from_world * corner.extend(1.0);
+                assert!(clip.x.abs() < clip.w && clip.y.abs() < clip.w && clip.z < clip.w, "{clip}");
+            }
+        }
+    }
+
+    #[test]
+    fn orthographic_depth_runs_from_one_to_zero_through_the_scene() {
+        let camera = Camera { projection: Projection::Orthographic { height_m: 4.0 }, ..Camera::default() };
+        let view = View::new(&camera, 64, 64, &unit_box(), DMat4::IDENTITY, [0.0; 4]);
+        let depths = unit_box().corners().map(|c| (view.clip_from_world * c.extend(1.0)).z);
+        assert!(depths.iter().all(|d| (0.0..=1.0).contains(d)), "{depths:?}");
+    }
+}

@@ -1,0 +1,283 @@
+//! Scenes as plain data: bytes as the file had them, and how to read them.
+//!
+//! Attribute and index bytes are never repacked: an [`Accessor`] says where a value lies, and both the vertex
+//! shader and the oracle pull it from there. What a file lacks (normals) is appended by the loader as more bytes.
+
+pub mod builtin;
+pub mod camera;
+pub mod draw;
+pub mod gltf;
+pub mod needs;
+
+use glam::{DMat4, DVec3};
+
+/// Number format of one attribute component; the discriminant is glTF's `componentType`.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[repr(u32)]
+pub enum Component {
+    I8 = 5120,
+    U8 = 5121,
+    I16 = 5122,
+    U16 = 5123,
+    U32 = 5125,
+    F32 = 5126,
+}
+
+impl Component {
+    /// Size of one component in bytes.
+    pub const fn bytes(self) -> u32 {
+        match self {
+            Self::I8 | Self::U8 => 1,
+            Self::I16 | Self::U16 => 2,
+            Self::U32 | Self::F32 => 4,
+        }
+    }
+}
+
+/// Where the elements of an attribute or index list lie in a byte buffer.
+///
+/// Promised by every constructor of scenes (the glTF loader checks it): `offset` and `stride` are multiples of the
+/// component size, and the last element ends inside the buffer.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Accessor {
+    /// First byte of element 0.
+    pub offset: u32,
+    /// Bytes from one element to the next.
+    pub stride: u32,
+    pub component: Component,
+    /// Components per element, 1 to 4.
+    pub lanes: u32,
+    /// Integers stand for [0, 1] or [-1, 1].
+    pub normalized: bool,
+    /// Number of elements.
+    pub count: u32,
+}
+
+impl Accessor {
+    /// Tightly packed f32 elements that begin at byte `offset`.
+    pub fn packed_f32(offset: usize, lanes: u32, count: usize) -> Self {
+        Self { offset: offset as u32, stride: lanes * 4, component: Component::F32, lanes, normalized: false, count: count as u32 }
+    }
+
+    fn raw<const N: usize>(&self, bytes: &[u8], element: u32, lane: u32) -> [u8; N] {
+        let at = self.offset as usize + element as usize * self.stride as usize + lane as usize * N;
+        bytes[at..at + N].try_into().expect("an accessor lies inside its buffer")
+    }
+
+    /// Bits of an f32 lane, or the exact integer value of an integer lane as f32 bits; not normalized.
+    pub fn f32_bits(&self, bytes: &[u8], element: u32, lane: u32) -> u32 {
+        match self.component {
+            Component::F32 => u32::from_le_bytes(self.raw(bytes, element, lane)),
+            _ => (self.integer(bytes, element, lane) as f32).to_bits(),
+        }
+    }
+
+    /// The integer in a lane (an f32 lane is not an integer and reads as its bits).
+    pub fn integer(&self, bytes: &[u8], element: u32, lane: u32) -> i64 {
+        match self.component {
+            Component::I8 => i8::from_le_bytes(self.raw(bytes, element, lane)).into(),
+            Component::U8 => u8::from_le_bytes(self.raw(bytes, element, lane)).into(),
+            Component::I16 => i16::from_le_bytes(self.raw(bytes, element, lane)).into(),
+            Component::U16 => u16::from_le_bytes(self.raw(bytes, element, lane)).into(),
+            Component::U32 | Component::F32 => u32::from_le_bytes(self.raw(bytes, element, lane)).into(),
+        }
+    }
+
+    /// The value of a lane in f64, normalized where the accessor says so (glTF 2.0, section 3.6.2.2).
+    pub fn value(&self, bytes: &[u8], element: u32, lane: u32) -> f64 {
+        if self.component == Component::F32 {
+            return f32::from_bits(self.f32_bits(bytes, element, lane)).into();
+        }
+        let integer = self.integer(bytes, element, lane) as f64;
+        match (self.normalized, self.component) {
+            (false, _) => integer,
+            (true, Component::I8) => (integer / 127.0).max(-1.0),
+            (true, Component::U8) => integer / 255.0,
+            (true, Component::I16) => (integer / 32767.0).max(-1.0),
+            (true, Component::U16) => integer / 65535.0,
+            (true, _) => integer / 4_294_967_295.0,
+        }
+    }
+}
+
+/// How consecutive corners form triangles.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[repr(u32)]
+pub enum Topology {
+    List = 0,
+    Strip = 1,
+    Fan = 2,
+}
+
+impl Topology {
+    /// Triangles that `corners` corners form.
+    pub const fn triangles(self, corners: u32) -> u32 {
+        match self {
+            Self::List => corners / 3,
+            Self::Strip | Self::Fan => corners.saturating_sub(2),
+        }
+    }
+
+    /// Places of the corners of triangle `t`, in glTF 2.0's order (section 3.7.2.1).
+    pub const fn corners(self, t: u32) -> [u32; 3] {
+        match self {
+            Self::List => [3 * t, 3 * t + 1, 3 * t + 2],
+            Self::Strip => [t, t + 1 + t % 2, t + 2 - t % 2],
+            Self::Fan => [t + 1, t + 2, 0],
+        }
+    }
+}
+
+/// Triangles that share their attributes and their material.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Primitive {
+    /// For people, for instance `mesh "Fox" primitive 0`.
+    pub name: String,
+    pub topology: Topology,
+    /// In `Scene::index_bytes`; none: corners count upwards.
+    pub indices: Option<Accessor>,
+    /// Three lanes. In `Scene::vertex_bytes`, as are the next two.
+    pub positions: Accessor,
+    /// Three lanes, need not be unit vectors.
+    pub normals: Accessor,
+    /// Three or four lanes, linear.
+    pub colors: Option<Accessor>,
+    /// Index into `Scene::materials`.
+    pub material: usize,
+    /// Box of all vertex positions that are finite, in object space.
+    pub bounds: Bounds,
+    /// Length of the longest triangle edge in object space; an upper bound is enough.
+    pub longest_edge: f64,
+}
+
+impl Primitive {
+    pub fn vertex_count(&self) -> u32 {
+        self.positions.count
+    }
+
+    pub fn triangle_count(&self) -> u32 {
+        self.topology.triangles(self.indices.map_or(self.positions.count, |indices| indices.count))
+    }
+
+    /// Vertex indices of triangle `t`.
+    pub fn corners(&self, scene: &Scene, t: u32) -> [u32; 3] {
+        let corners = self.topology.corners(t);
+        match &self.indices {
+            None => corners,
+            Some(indices) => corners.map(|c| indices.integer(&scene.index_bytes, c, 0) as u32),
+        }
+    }
+
+    /// Position of a vertex in object space, as stored.
+    pub fn position(&self, scene: &Scene, vertex: u32) -> [f32; 3] {
+        [0, 1, 2].map(|lane| f32::from_bits(self.positions.f32_bits(&scene.vertex_bytes, vertex, lane)))
+    }
+}
+
+/// Colour of a surface, in linear light.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Material {
+    pub name: String,
+    /// Linear RGBA, each in [0, 1].
+    pub base_color: [f32; 4],
+    /// Draw back faces too, with the normal turned to the viewer.
+    pub double_sided: bool,
+}
+
+impl Default for Material {
+    fn default() -> Self {
+        Self { name: "default".into(), base_color: [1.0; 4], double_sided: false }
+    }
+}
+
+/// A primitive placed in the world.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Instance {
+    /// Index into `Scene::primitives`.
+    pub primitive: usize,
+    pub world_from_object: DMat4,
+}
+
+/// A camera that came with the file.
+#[derive(Clone, Debug, PartialEq)]
+pub struct FileCamera {
+    pub name: String,
+    pub pose: camera::Camera,
+}
+
+/// Axis-aligned box; empty when `min` exceeds `max`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Bounds {
+    pub min: DVec3,
+    pub max: DVec3,
+}
+
+impl Bounds {
+    pub const EMPTY: Self = Self { min: DVec3::INFINITY, max: DVec3::NEG_INFINITY };
+
+    pub fn is_empty(&self) -> bool {
+        !self.min.cmple(self.max).all()
+    }
+
+    pub fn include(&mut self, point: DVec3) {
+        self.min = self.min.min(point);
+        self.max = self.max.max(point);
+    }
+
+    pub fn corners(&self) -> [DVec3; 8] {
+        std::array::from_fn(|i| {
+            let pick = |axis: usize| if i >> axis & 1 == 0 { self.min[axis] } else { self.max[axis] };
+            DVec3::new(pick(0), pick(1), pick(2))
+        })
+    }
+
+    pub fn center(&self) -> DVec3 {
+        if self.is_empty() { DVec3::ZERO } else { (self.min + self.max) * 0.5 }
+    }
+
+    /// Half the diagonal; 0 when empty.
+    pub fn radius(&self) -> f64 {
+        if self.is_empty() { 0.0 } else { (self.max - self.min).length() * 0.5 }
+    }
+}
+
+/// Everything to be drawn. Built by [`gltf::load`] or [`builtin::build`].
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Scene {
+    /// For people: the file's stem, or the builtin's name.
+    pub name: String,
+    /// All attributes; its length is a multiple of 4.
+    pub vertex_bytes: Vec<u8>,
+    /// All index lists; its length is a multiple of 4.
+    pub index_bytes: Vec<u8>,
+    pub primitives: Vec<Primitive>,
+    pub materials: Vec<Material>,
+    pub instances: Vec<Instance>,
+    pub cameras: Vec<FileCamera>,
+    /// What the loader wants the user to know, for instance extensions it ignored.
+    pub notes: Vec<String>,
+}
+
+impl Scene {
+    /// Triangles of all instances together.
+    pub fn triangle_count(&self) -> u64 {
+        self.instances.iter().map(|instance| u64::from(self.primitives[instance.primitive].triangle_count())).sum()
+    }
+
+    /// Vertices of all instances together.
+    pub fn vertex_count(&self) -> u64 {
+        self.instances.iter().map(|instance| u64::from(self.primitives[instance.primitive].vertex_count())).sum()
+    }
+
+    /// Box round all instances, in world space.
+    pub fn bounds(&self) -> Bounds {
+        let mut bounds = Bounds::EMPTY;
+        for instance in &self.instances {
+            let object = self.primitives[instance.primitive].bounds;
+            if !object.is_empty() {
+                object.corners().into_iter().for_each(|c| bounds.include(instance.world_from_object.transform_point3(c)));
+            }
+        }
+        bounds
+    }
+}
