@@ -6,14 +6,16 @@
 //! * [`scene`]: meshes as the file has them, cameras, what a scene requires
 //! * [`params`], [`effects`]: one table per effect, one list of effects, their f64 truth
 //! * [`oracle`]: the exact CPU renderer that judges and blesses
-//! * [`shader`], [`plan`], [`gpu`]: choose, link and run the kernels
+//! * [`gpu`]: the kernels on a device
 //! * [`measure`]: frame against frame, samples of time
-//! * [`session`], [`preset`]: the state of a look, and its file
-//! * [`cli`], [`app`]: the two hands on it
+//! * [`session`]: the state of a look
 
 pub mod effects;
 pub mod frame;
+pub mod gpu;
 pub mod math;
+pub mod measure;
+pub mod oracle;
 pub mod params;
 pub mod scene;
 pub mod session;

@@ -1,0 +1,1 @@
+//! Picture against picture (STUB, helper "oracle" writes it).
