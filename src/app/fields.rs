@@ -94,9 +94,6 @@ pub fn row_ui(ui: &mut Ui, row: &Row, value: &Plain) -> Outcome {
     let mut outcome = Outcome::default();
     let width = ui.available_width();
     let (rect, _) = ui.allocate_exact_size(vec2(width, theme::ROW), Sense::hover());
-    if !ui.is_rect_visible(rect) && !ui.ctx().accessibility_is_on() {
-        return outcome;
-    }
     let split = rect.left() + (width * 0.34).clamp(72.0, 140.0);
     let label_rect = Rect::from_min_max(pos2(rect.left() + BAR_WIDTH + theme::HALF, rect.top()), pos2(split, rect.bottom()));
     let control_rect = Rect::from_min_max(pos2(split + theme::HALF, rect.top()), pos2(rect.right() - RESET_WIDTH, rect.bottom()));
@@ -122,7 +119,7 @@ pub fn row_ui(ui: &mut Ui, row: &Row, value: &Plain) -> Outcome {
 
 /// The label: tooltip, double click to reset, menu.
 fn label_ui(ui: &mut Ui, row: &Row, value: &Plain, rect: Rect) -> Option<Ask> {
-    let response = ui.interact(rect, ui.id().with((&row.path, "label")), Sense::click());
+    let response = ui.interact(rect, egui::Id::unique((&row.path, "label")), Sense::click());
     let color = if row.modified || response.hovered() { theme::TEXT_STRONG } else { theme::TEXT };
     // Bold where the bundled fonts have no bold cut: the same text twice, half a pixel apart.
     let clipped = ui.painter_at(rect.expand(1.0));
@@ -133,7 +130,7 @@ fn label_ui(ui: &mut Ui, row: &Row, value: &Plain, rect: Rect) -> Option<Ask> {
         clipped.text(at + vec2(0.5, 0.0), Align2::LEFT_CENTER, &row.label, font, color);
     }
     let mut ask = response.double_clicked().then(|| Ask::Reset(row.path.clone()));
-    response.widget_info(|| egui::WidgetInfo::labeled(egui::WidgetType::Label, true, &row.label));
+    response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Label, true, &row.label));
     response.context_menu(|ui| {
         let group = row.path.split('.').next().unwrap_or_default();
         for (text, meaning) in [

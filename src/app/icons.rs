@@ -31,7 +31,7 @@ pub fn icon_button(ui: &mut Ui, icon: Icon, name: &str) -> Response {
         let color = if ui.is_enabled() { visuals.fg_stroke.color } else { ui.visuals().weak_text_color() };
         paint(ui.painter(), icon, rect.shrink(side * 0.27), color);
     }
-    response.widget_info(|| egui::WidgetInfo::labeled(egui::WidgetType::Button, ui.is_enabled(), name));
+    response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Button, ui.is_enabled(), name));
     response.on_hover_text(name).on_disabled_hover_text(name)
 }
 
