@@ -58,17 +58,17 @@ fn cut(plane: u32, inside: Corner, outside: Corner) -> Corner {
 fn clip_against(plane: u32, polygon: Polygon, flags: vec4u) -> Polygon {
     var result: Polygon;
     for (var i = 0u; i < polygon.count; i += 1u) {
-        let from = polygon.corners[i];
-        let to = polygon.corners[select(i + 1u, 0u, i + 1u == polygon.count)];
-        let from_outside = is_outside(plane, from, flags);
-        let to_outside = is_outside(plane, to, flags);
-        if !from_outside && result.count < 9u {
-            result.corners[result.count] = from;
+        let here = polygon.corners[i];
+        let next = polygon.corners[select(i + 1u, 0u, i + 1u == polygon.count)];
+        let here_outside = is_outside(plane, here, flags);
+        let next_outside = is_outside(plane, next, flags);
+        if !here_outside && result.count < 9u {
+            result.corners[result.count] = here;
             result.count += 1u;
         }
-        if from_outside != to_outside && result.count < 9u {
-            if from_outside { result.corners[result.count] = cut(plane, to, from); }
-            else { result.corners[result.count] = cut(plane, from, to); }
+        if here_outside != next_outside && result.count < 9u {
+            if here_outside { result.corners[result.count] = cut(plane, next, here); }
+            else { result.corners[result.count] = cut(plane, here, next); }
             result.count += 1u;
         }
     }

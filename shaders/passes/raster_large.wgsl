@@ -1,6 +1,6 @@
 // Raster large: one workgroup per 64x64 tile of a large triangle. Edge functions of 49 bits are rebased once per block of
 // 16x16 pixels to an i32 that keeps every sign: all pixels of a block share their sub-pixel phase, so E = 256 w + r.
-//@ use common/pieces
+//@ use slot/pieces
 //@ use slot/queues
 //@ use common/fixed
 //@ use slot/visibility
@@ -61,9 +61,9 @@ fn raster_large(@builtin(workgroup_id) group: vec3u, @builtin(num_workgroups) gr
         let block = i32(lane / 3u);
         let p = (tile + vec2i(block % 4, block / 4) * 16) * 256 + 128;
         let edge = lane % 3u;
-        let from = select(select(a, c, edge == 1u), b, edge == 0u);
-        let to = select(select(b, a, edge == 1u), c, edge == 0u);
-        rebased[lane] = rebase(fixed_edge(from, to, p), bias[edge]);
+        let begin = select(select(a, c, edge == 1u), b, edge == 0u);
+        let end = select(select(b, a, edge == 1u), c, edge == 0u);
+        rebased[lane] = rebase(fixed_edge(begin, end, p), bias[edge]);
     }
     workgroupBarrier();
     if !is_live { return; }

@@ -24,22 +24,25 @@ fn raster_small(@builtin(workgroup_id) group: vec3u, @builtin(num_workgroups) gr
         return;
     }
 
-    let low = min(min(vertex_at(t.a), vertex_at(t.b)), vertex_at(t.c));
-    let high = max(max(vertex_at(t.a), vertex_at(t.b)), vertex_at(t.c));
-    let extent = max(high.x - low.x, high.y - low.y);
-    let pixels = triangle_pixels(low, high);
-    if any(pixels.zw < pixels.xy) { return; }
-    if extent > SMALL_EXTENT {
-        if IS_FIRST { queues_push_large(id); }
-        return;
-    }
-
-    var area = fixed_small_area(vertex_at(t.a), vertex_at(t.b), vertex_at(t.c));
+    let a = vertex_at(t.a);
+    let b = vertex_at(t.b);
+    let c = vertex_at(t.c);
+    let low = min(min(a, b), c);
+    let high = max(max(a, b), c);
+    let is_large = max(high.x - low.x, high.y - low.y) > SMALL_EXTENT;
+    var area = fixed_small_area(a, b, c);
+    if is_large { area = fixed_sign(fixed_edge(a, b, c)); }
     if area == 0 {
         if IS_FIRST { atomicAdd(&counters.degenerate, 1u); }
         return;
     }
     if !triangle_is_shown(t.draw, area > 0) { return; }
+    let pixels = triangle_pixels(low, high);
+    if any(pixels.zw < pixels.xy) { return; }
+    if is_large {
+        if IS_FIRST { queues_push_large(id); }
+        return;
+    }
 
     let sides = pixels.zw - pixels.xy + 1;
     if sides.x * sides.y > SMALL_SAMPLES || max(sides.x, sides.y) > SMALL_SIDE {
@@ -47,9 +50,9 @@ fn raster_small(@builtin(workgroup_id) group: vec3u, @builtin(num_workgroups) gr
         return;
     }
     if area < 0 {
-        let b = t.b;
+        let swap = t.b;
         t.b = t.c;
-        t.c = b;
+        t.c = swap;
         area = -area;
     }
     walk(coverage_begin(t.a, t.b, t.c, area, pixels.xy), pixels, id);

@@ -1,12 +1,12 @@
 // Tile large: one workgroup per large triangle finds the 64x64 tiles of the picture that it may touch.
-//@ use common/pieces
+//@ use slot/pieces
 //@ use slot/queues
 //@ use common/fixed
 
 // Sign of the biased edge function at its innermost sample of a box of pixels: negative means all outside.
 fn tile_is_outside(a: vec2i, b: vec2i, pixels: vec4i) -> bool {
     let d = b - a;
-    let inner = select(pixels.xy, pixels.zw, vec2<bool>(d.y < 0, d.x > 0));
+    let inner = select(pixels.xy, pixels.zw, vec2<bool>((d.y < 0), (d.x > 0)));
     return fixed_sign(fixed_edge(a, b, inner * 256 + 128)) < fixed_bias(d);
 }
 
@@ -19,13 +19,7 @@ fn tile_large(@builtin(workgroup_id) group: vec3u, @builtin(num_workgroups) grou
     let a = vertex_at(t.a);
     var b = vertex_at(t.b);
     var c = vertex_at(t.c);
-    let sign = fixed_sign(fixed_edge(a, b, c));
-    if sign == 0 {
-        if lane == 0u { atomicAdd(&counters.degenerate, 1u); }
-        return;
-    }
-    if !triangle_is_shown(t.draw, sign > 0) { return; }
-    if sign < 0 {
+    if fixed_sign(fixed_edge(a, b, c)) < 0 {
         let swap = b;
         b = c;
         c = swap;

@@ -170,7 +170,9 @@ impl KernelKey {
             Fetch::Indexed => "indexed",
         };
         let queues = if self.has_queues() { "kept" } else { "none" };
+        let pieces = if self.has_clipping { "kept" } else { "none" };
         let mut slots = vec![
+            ("pieces", format!("slots/pieces/{pieces}")),
             ("fetch", format!("slots/fetch/{fetch}")),
             ("queues", format!("slots/queues/{queues}")),
             ("coverage", "slots/coverage/fixed8".into()),
@@ -199,7 +201,6 @@ impl KernelKey {
             ("F32_NORMALS", flag(self.f32_normals)),
             ("HAS_COLORS", flag(self.has_colors)),
             ("HAS_CLIPPING", flag(self.has_clipping)),
-            ("HAS_PIECES", flag(self.has_clipping)),
             ("HAS_LARGE", flag(self.has_large)),
             ("SMALL_SAMPLES", self.small_samples.into()),
             ("SMALL_SIDE", self.small_side.into()),

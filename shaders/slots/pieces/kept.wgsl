@@ -1,4 +1,4 @@
-// Pieces: what clipping leaves of a triangle, and queue entries that name a piece instead of a triangle.
+// Pieces, kept: what clipping left of triangles; a queue entry may name one instead of a triangle.
 //@ use common/triangle
 
 struct Piece {
@@ -10,13 +10,11 @@ struct Piece {
 
 const PIECES_ENTRY = 0x80000000u;
 
-override HAS_PIECES: bool = false;
-
 @group(0) @binding(9) var<storage, read> pieces: array<Piece>;
 
 // The triangle that a queue entry names.
 fn pieces_load(entry: u32) -> Triangle {
-    if HAS_PIECES && (entry & PIECES_ENTRY) != 0u {
+    if (entry & PIECES_ENTRY) != 0u {
         let piece = pieces[entry & ~PIECES_ENTRY];
         return Triangle(piece.a, piece.b, piece.c, piece.parent.x, piece.parent.y);
     }
