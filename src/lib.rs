@@ -5,10 +5,12 @@
 //! * [`math`], [`frame`]: exact little tools, and the picture with its integers
 //! * [`scene`]: meshes as the file has them, cameras, what a scene requires
 //! * [`params`], [`effects`]: one table per effect, one list of effects, their f64 truth
-//! * [`oracle`]: the exact CPU renderer that judges and blesses
-//! * [`gpu`]: the kernels on a device
+//! * [`shader`], [`plan`], [`gpu`]: choose, link and run the kernels
 //! * [`measure`]: frame against frame, samples of time
+//! * [`oracle`]: the exact CPU renderer that judges and blesses
 //! * [`session`]: the state of a look
+
+#![forbid(unsafe_code)]
 
 pub mod effects;
 pub mod frame;
@@ -17,5 +19,7 @@ pub mod math;
 pub mod measure;
 pub mod oracle;
 pub mod params;
+pub mod plan;
 pub mod scene;
 pub mod session;
+pub mod shader;
