@@ -9,6 +9,7 @@
 //! * [`gpu`]: the kernels on a device
 //! * [`measure`]: frame against frame, samples of time
 //! * [`session`]: the state of a look
+//! * [`preset`]: looks as files, sparse TOML
 
 pub mod effects;
 pub mod frame;
@@ -17,5 +18,6 @@ pub mod math;
 pub mod measure;
 pub mod oracle;
 pub mod params;
+pub mod preset;
 pub mod scene;
 pub mod session;
