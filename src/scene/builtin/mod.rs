@@ -1,0 +1,147 @@
+//! Builtin scenes: meshes from formulas, asked for by a query such as `sphere?triangles=160000`.
+//!
+//! The handsome ones (teapot, sphere, knot, cube-wall) are for looking at; the others put one promise of the
+//! rasterizer under load and bring the camera that does so. All are indexed, finite and the same on every machine.
+
+mod extremes;
+mod mesh;
+mod plates;
+mod query;
+mod shapes;
+mod teapot;
+
+use std::ops::RangeInclusive;
+
+pub use mesh::{Mesh, Ring};
+use query::Values;
+
+use super::Scene;
+
+/// A parameter of a builtin scene.
+#[derive(Clone, Debug)]
+pub struct BuiltinParam {
+    pub name: &'static str,
+    pub doc: &'static str,
+    pub default: f64,
+    pub range: RangeInclusive<f64>,
+    /// Only whole numbers are accepted.
+    pub whole: bool,
+}
+
+/// A builtin scene for listings.
+pub struct Builtin {
+    pub name: &'static str,
+    pub about: &'static str,
+    pub params: &'static [BuiltinParam],
+    build: fn(&Values) -> Result<Scene, BuiltinError>,
+}
+
+/// A query that names no builtin, or a parameter outside its range; one sentence.
+#[derive(Debug, thiserror::Error)]
+#[error("{0}")]
+pub struct BuiltinError(pub String);
+
+/// Most triangles that a builtin makes: their indices and vertices stay below 128 MiB each.
+pub const MAX_TRIANGLES: u64 = 10_000_000;
+
+const fn whole(name: &'static str, doc: &'static str, default: f64, range: RangeInclusive<f64>) -> BuiltinParam {
+    BuiltinParam { name, doc, default, range, whole: true }
+}
+
+const fn real(name: &'static str, doc: &'static str, default: f64, range: RangeInclusive<f64>) -> BuiltinParam {
+    BuiltinParam { name, doc, default, range, whole: false }
+}
+
+const SEED: BuiltinParam = whole("seed", "another seed gives another arrangement", 0.0, 0.0..=4_294_967_295.0);
+
+/// Every builtin scene.
+pub const BUILTINS: &[Builtin] = &[
+    Builtin {
+        name: "teapot",
+        about: "the Utah teapot, tessellated from its Bézier patches",
+        params: &[whole("tess", "segments per side of each of the 32 patches", 16.0, 1.0..=256.0)],
+        build: teapot::build,
+    },
+    Builtin {
+        name: "sphere",
+        about: "a closed sphere with smooth bumps, of as many triangles as asked",
+        params: &[whole("triangles", "number of triangles; odd numbers lose one", 20_000.0, 100.0..=MAX_TRIANGLES as f64)],
+        build: shapes::sphere,
+    },
+    Builtin {
+        name: "knot",
+        about: "a closed trefoil tube in two tones",
+        params: &[whole("tess", "fineness; the tube has 96 * tess^2 triangles", 16.0, 2.0..=256.0)],
+        build: shapes::knot,
+    },
+    Builtin {
+        name: "cube-wall",
+        about: "a wall of coloured cubes, each a placement of its own",
+        params: &[
+            whole("columns", "cubes side by side", 16.0, 1.0..=64.0),
+            whole("rows", "cubes one above another", 10.0, 1.0..=64.0),
+            SEED,
+        ],
+        build: shapes::cube_wall,
+    },
+    Builtin {
+        name: "near",
+        about: "inside a hall of hoops and endless walls that cross the near plane and every side of the guard band",
+        params: &[real("reach", "half the length of the walls in metres", 1e5, 10.0..=1e6)],
+        build: extremes::near,
+    },
+    Builtin {
+        name: "grid",
+        about: "a fold-free plane of jittered cells: every sample is covered exactly once",
+        params: &[
+            real("cell", "side of a cell in pixels", 1.0, 0.1..=64.0),
+            whole("width", "width of the covered picture in pixels", 256.0, 1.0..=16_384.0),
+            whole("height", "height of the covered picture in pixels", 256.0, 1.0..=16_384.0),
+            whole("lattice", "vertices on multiples of 1/lattice px, which forces ties; 0: anywhere", 0.0, 0.0..=256.0),
+            SEED,
+        ],
+        build: plates::grid,
+    },
+    Builtin {
+        name: "fan",
+        about: "triangles round one sample, which exactly one of them owns",
+        params: &[
+            whole("n", "number of triangles", 8.0, 3.0..=100_000.0),
+            real("radius", "radius of the fan in pixels", 100.0, 0.1..=30_000.0),
+            SEED,
+        ],
+        build: plates::fan,
+    },
+    Builtin {
+        name: "sizes",
+        about: "triangles of 1/1000 px to 100,000 px, the smaller in front of the larger",
+        params: &[SEED],
+        build: extremes::sizes,
+    },
+    Builtin {
+        name: "slivers",
+        about: "needles of 1 to 8 units of 1/256 px across, in all directions",
+        params: &[
+            whole("n", "number of needles", 64.0, 1.0..=100_000.0),
+            real("length", "length of a needle in pixels", 120.0, 1.0..=30_000.0),
+        ],
+        build: extremes::slivers,
+    },
+    Builtin {
+        name: "stack",
+        about: "layers that all cover the middle of the picture",
+        params: &[
+            whole("layers", "number of layers", 8.0, 1.0..=1_000_000.0),
+            real("gap", "distance between layers in metres; 0: coplanar, so the smaller id is in front", 0.0, 0.0..=1.0),
+        ],
+        build: extremes::stack,
+    },
+];
+
+/// Builds `name?key=value&key=value`; what is not said has its default.
+pub fn build(query: &str) -> Result<Scene, BuiltinError> {
+    let (builtin, values) = query::parse(query)?;
+    let mut scene = (builtin.build)(&values)?;
+    scene.name = builtin.name.into();
+    Ok(scene)
+}

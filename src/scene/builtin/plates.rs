@@ -1,0 +1,117 @@
+//! Plates: flat meshes measured in pixels, for counting holes and double hits.
+//!
+//! One metre is one pixel: the camera is orthographic and `height_m` high, so the picture must be `height` pixels high
+//! (and `width` wide) for cells to have their size. The middle of the picture is the origin, x to the right, y up, and
+//! with even sizes pixel centres lie on odd multiples of half a metre.
+
+use std::f64::consts::TAU;
+
+use glam::DVec3;
+
+use super::{BuiltinError, MAX_TRIANGLES, Mesh, query::Values, shapes::alone};
+use crate::{
+    math::{UNITS_PER_PIXEL, hash, hash_unit},
+    scene::{
+        FileCamera, Material, Scene,
+        camera::{Camera, Projection},
+    },
+};
+
+/// Height of the picture of the plates that do not ask for another, in pixels.
+pub const PICTURE_PX: f64 = 256.0;
+
+/// A camera that shows one metre as one pixel on a picture `height_px` high, and stands `distance_m` before the origin.
+pub fn pixel_camera(height_px: f64, distance_m: f64) -> FileCamera {
+    let pose = Camera {
+        eye: DVec3::Z * distance_m,
+        target: DVec3::ZERO,
+        up: DVec3::Y,
+        projection: Projection::Orthographic { height_m: height_px },
+        near_m: 0.01,
+    };
+    FileCamera { name: "pixels".into(), pose }
+}
+
+/// The same scale on the plane z = 0, in perspective: w is the same at all vertices.
+fn perspective_camera(height_px: f64) -> FileCamera {
+    let fov_y_deg = 2.0 * libm::atan(0.5).to_degrees();
+    let pose = Camera { projection: Projection::Perspective { fov_y_deg }, ..pixel_camera(height_px, height_px).pose };
+    FileCamera { name: "pixels in perspective".into(), pose }
+}
+
+fn plate_material() -> Material {
+    Material { name: "plate".into(), base_color: [0.8, 0.8, 0.8, 1.0], double_sided: true }
+}
+
+/// A jittered grid that overhangs a `width` x `height` picture on all sides, so each sample is covered exactly once.
+///
+/// Fold-free by construction: if every vertex of a cell of side c moves by at most a in x and in y, the smallest oriented
+/// area is ((c - 2a)^2 - (2a)^2) / 2, positive for a < c/4. The snap (half a unit) and the lattice (half a step) count
+/// into a; the jitter has four fifths of the rest.
+pub fn grid(values: &Values) -> Result<Scene, BuiltinError> {
+    let (cell, seed, lattice) = (values.get("cell"), values.whole("seed"), values.get("lattice"));
+    let (width, height) = (values.get("width"), values.get("height"));
+    let (columns, rows) = ((width / cell).ceil() as u64 + 4, (height / cell).ceil() as u64 + 4);
+    let triangles = 2 * columns * rows;
+    if triangles > MAX_TRIANGLES {
+        return Err(BuiltinError(format!(
+            "grid: cell={cell} on {width}x{height} px makes {triangles} triangles; at most {MAX_TRIANGLES} are built"
+        )));
+    }
+    let lattice_step = if lattice > 0.0 { 1.0 / lattice } else { 0.0 };
+    let slack = 0.25 * cell - 0.5 * lattice_step - 0.5 / f64::from(UNITS_PER_PIXEL);
+    if slack <= 0.0 {
+        return Err(BuiltinError(format!(
+            "grid: lattice={lattice} is too coarse for cell={cell}: cells would fold; lattice must exceed {:.1}",
+            2.1 / cell
+        )));
+    }
+    let mut mesh = Mesh::with_capacity(((columns + 1) * (rows + 1)) as usize, triangles as usize);
+    for row in 0..=rows {
+        for column in 0..=columns {
+            let salt = hash(hash(seed) ^ (row as u32)).wrapping_add(2 * column as u32);
+            let place = |at: u64, count: u64, salt: u32| {
+                let straight = (at as f64 - 0.5 * count as f64) * cell;
+                let moved = straight + 0.8 * slack * (2.0 * hash_unit(salt) - 1.0);
+                if lattice > 0.0 { (moved * lattice).round() / lattice } else { moved }
+            };
+            mesh.vertex(DVec3::new(place(column, columns, salt), place(row, rows, salt + 1), 0.0), DVec3::Z);
+        }
+    }
+    let stride = columns as u32 + 1;
+    for row in 0..rows as u32 {
+        for column in 0..columns as u32 {
+            let (a, b) = (row * stride + column, (row + 1) * stride + column);
+            // Diagonals alternate, so that edges run in all directions.
+            let quad = if (row ^ column) & 1 == 0 { [[a, a + 1, b + 1], [a, b + 1, b]] } else { [[a, a + 1, b], [a + 1, b + 1, b]] };
+            quad.into_iter().for_each(|t| mesh.triangle(t));
+        }
+    }
+    let mut scene = alone(mesh, "grid", plate_material());
+    scene.cameras = vec![pixel_camera(height, 100.0), perspective_camera(height)];
+    Ok(scene)
+}
+
+/// `n` triangles round the sample right of and above the middle of the picture.
+pub fn fan(values: &Values) -> Result<Scene, BuiltinError> {
+    let (n, radius, seed) = (values.whole("n"), values.get("radius"), values.whole("seed"));
+    // Three units of rim per triangle: with less than two the snap could change the order of the rim's vertices.
+    let most = TAU * radius * f64::from(UNITS_PER_PIXEL) / 3.0;
+    if f64::from(n) > most {
+        return Err(BuiltinError(format!("fan: n={n} triangles would fold in the snap at radius={radius}; at most {}", most.floor())));
+    }
+    let mut mesh = Mesh::with_capacity(n as usize + 1, n as usize);
+    let sample = DVec3::new(0.5, 0.5, 0.0);
+    let start = hash_unit(hash(seed));
+    let center = mesh.ring(1, |mesh, _| {
+        mesh.vertex(sample, DVec3::Z);
+    });
+    let rim = mesh.ring(n, |mesh, i| {
+        let (sin, cos) = libm::sincos(TAU * (f64::from(i) + start) / f64::from(n));
+        mesh.vertex(sample + DVec3::new(cos, sin, 0.0) * radius, DVec3::Z);
+    });
+    mesh.band(rim, center);
+    let mut scene = alone(mesh, "fan", plate_material());
+    scene.cameras = vec![pixel_camera(PICTURE_PX, 100.0)];
+    Ok(scene)
+}

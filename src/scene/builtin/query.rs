@@ -1,0 +1,69 @@
+//! Queries: `name?key=value&key=value`, checked against the tables of [`BUILTINS`].
+
+use super::{BUILTINS, Builtin, BuiltinError, BuiltinParam};
+
+/// The value of every parameter of one builtin, within its range.
+pub struct Values {
+    builtin: &'static Builtin,
+    values: Vec<f64>,
+}
+
+impl Values {
+    /// Value of the parameter `name`, which the builtin's table must hold.
+    pub fn get(&self, name: &str) -> f64 {
+        let at = self.builtin.params.iter().position(|param| param.name == name).expect("a builtin asks for parameters of its own table");
+        self.values[at]
+    }
+
+    /// A whole parameter as an integer.
+    pub fn whole(&self, name: &str) -> u32 {
+        self.get(name) as u32
+    }
+}
+
+/// Finds the builtin and checks every value.
+pub fn parse(query: &str) -> Result<(&'static Builtin, Values), BuiltinError> {
+    let (name, pairs) = query.trim().split_once('?').unwrap_or((query.trim(), ""));
+    let builtin = BUILTINS
+        .iter()
+        .find(|builtin| builtin.name == name)
+        .ok_or_else(|| BuiltinError(unknown("there is no builtin scene", name, BUILTINS.iter().map(|b| b.name).collect())))?;
+    let mut values: Vec<Option<f64>> = vec![None; builtin.params.len()];
+    for pair in pairs.split('&').filter(|pair| !pair.is_empty()) {
+        let (key, text) = pair.split_once('=').ok_or_else(|| BuiltinError(format!("{name}: \"{pair}\" is not of the form key=value")))?;
+        let Some(at) = builtin.params.iter().position(|param| param.name == key) else {
+            let known = builtin.params.iter().map(|param| param.name).collect();
+            return Err(BuiltinError(unknown(&format!("{name} has no parameter"), key, known)));
+        };
+        if values[at].replace(checked(name, &builtin.params[at], text)?).is_some() {
+            return Err(BuiltinError(format!("{name}: {key} is given twice")));
+        }
+    }
+    let values = values.iter().zip(builtin.params).map(|(value, param)| value.unwrap_or(param.default)).collect();
+    Ok((builtin, Values { builtin, values }))
+}
+
+fn checked(builtin: &str, param: &BuiltinParam, text: &str) -> Result<f64, BuiltinError> {
+    let kind = if param.whole { "a whole number" } else { "a number" };
+    let (low, high) = (param.range.start(), param.range.end());
+    match text.parse::<f64>() {
+        Ok(value) if value.is_finite() && !(param.whole && value.fract() != 0.0) => {
+            if param.range.contains(&value) {
+                return Ok(value);
+            }
+            Err(BuiltinError(format!("{builtin}: {}={text} lies outside {low}..={high}", param.name)))
+        }
+        _ => Err(BuiltinError(format!("{builtin}: {}={text} must be {kind} in {low}..={high}", param.name))),
+    }
+}
+
+/// One sentence that names what was asked, the nearest known name, and all of them.
+fn unknown(what: &str, asked: &str, known: Vec<&str>) -> String {
+    let near = known.iter().map(|name| (strsim::damerau_levenshtein(name, asked), name)).min();
+    let hint = match near {
+        Some((distance, name)) if distance <= 2.max(name.len() / 3) => format!("; did you mean \"{name}\"?"),
+        _ => String::new(),
+    };
+    let list = if known.is_empty() { "none".into() } else { known.join(", ") };
+    format!("{what} \"{asked}\"{hint} (known: {list})")
+}
