@@ -1,1 +1,123 @@
-//! Picture against picture (STUB, helper "oracle" writes it).
+//! Picture against picture, in integers: no blur, no perceptual metric, no tolerance that is not stated.
+
+/// Offenders that a comparison names at most.
+pub const MAX_OFFENDERS: usize = 16;
+
+/// Difference of two pictures.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct PictureDelta {
+    /// Largest difference of any channel, of 255.
+    pub max_delta: u8,
+    /// Root mean square over all channels, of 255.
+    pub rms: f64,
+    /// Pixels with a channel that differs by more than allowed.
+    pub pixels_beyond: u64,
+    /// The first of them, at most [`MAX_OFFENDERS`].
+    pub offenders: Vec<Offender<[u8; 4]>>,
+}
+
+/// A pixel that two images disagree about.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Offender<T> {
+    /// Place in the image, row-major.
+    pub index: usize,
+    pub a: T,
+    pub b: T,
+}
+
+impl<T> Offender<T> {
+    /// Column and row in an image `width` pixels wide.
+    pub fn place(&self, width: u32) -> [usize; 2] {
+        let width = width.max(1) as usize;
+        [self.index % width, self.index / width]
+    }
+}
+
+/// Compares two pictures of one size; a pixel is beyond when a channel (alpha too) differs by more than `max_channel`.
+///
+/// Pictures of different lengths are different: what one has too many is beyond, with the largest difference.
+pub fn pictures(a: &[[u8; 4]], b: &[[u8; 4]], max_channel: u8) -> PictureDelta {
+    let mut delta = PictureDelta::default();
+    let mut squares = 0u64;
+    for (index, (&a, &b)) in a.iter().zip(b).enumerate() {
+        let channels: [u8; 4] = std::array::from_fn(|c| a[c].abs_diff(b[c]));
+        let largest = channels.into_iter().max().unwrap_or(0);
+        squares += channels.iter().map(|&d| u64::from(d) * u64::from(d)).sum::<u64>();
+        delta.max_delta = delta.max_delta.max(largest);
+        if largest > max_channel {
+            delta.pixels_beyond += 1;
+            if delta.offenders.len() < MAX_OFFENDERS {
+                delta.offenders.push(Offender { index, a, b });
+            }
+        }
+    }
+    let missing = a.len().abs_diff(b.len()) as u64;
+    if missing > 0 {
+        delta.max_delta = u8::MAX;
+        delta.pixels_beyond += missing;
+        squares += missing * 4 * 255 * 255;
+    }
+    let channels = 4 * a.len().max(b.len()).max(1);
+    delta.rms = (squares as f64 / channels as f64).sqrt();
+    delta
+}
+
+/// Difference of two owner images.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct OwnerDelta {
+    /// Pixels with different owners; the surplus of a longer image counts.
+    pub different: u64,
+    /// The first of them, at most [`MAX_OFFENDERS`].
+    pub offenders: Vec<Offender<u32>>,
+}
+
+/// Compares two owner images (or images of depth keys) of one size, exactly.
+pub fn owners(a: &[u32], b: &[u32]) -> OwnerDelta {
+    let offenders = a.iter().zip(b).enumerate().filter(|(_, (a, b))| a != b).map(|(index, (&a, &b))| Offender { index, a, b });
+    let different = offenders.clone().count() + a.len().abs_diff(b.len());
+    OwnerDelta { different: different as u64, offenders: offenders.take(MAX_OFFENDERS).collect() }
+}
+
+/// Differences of two pictures made visible: each channel's difference times `gain`, opaque; black where they agree.
+/// A difference of alpha alone shows as grey.
+pub fn difference_picture(a: &[[u8; 4]], b: &[[u8; 4]], gain: u8) -> Vec<[u8; 4]> {
+    let pixel = |(a, b): (&[u8; 4], &[u8; 4])| {
+        let [red, green, blue, alpha] = std::array::from_fn(|c| a[c].abs_diff(b[c]).saturating_mul(gain));
+        if [red, green, blue] == [0; 3] { [alpha, alpha, alpha, 255] } else { [red, green, blue, 255] }
+    };
+    a.iter().zip(b).map(pixel).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_channel_beyond_its_budget_is_counted_and_named() {
+        let a = vec![[10, 20, 30, 255]; 6];
+        let mut b = a.clone();
+        b[2][1] += 1;
+        b[4][2] -= 2;
+        let delta = pictures(&a, &b, 1);
+        assert_eq!((delta.max_delta, delta.pixels_beyond), (2, 1));
+        assert_eq!(delta.offenders, [Offender { index: 4, a: a[4], b: b[4] }]);
+        assert_eq!(delta.offenders[0].place(3), [1, 1]);
+        assert!((delta.rms - (5.0f64 / 24.0).sqrt()).abs() < 1e-15);
+        assert_eq!(pictures(&a, &b, 2).pixels_beyond, 0);
+    }
+
+    #[test]
+    fn alpha_is_a_channel_and_a_missing_pixel_is_a_difference() {
+        assert_eq!(pictures(&[[1, 2, 3, 255]], &[[1, 2, 3, 250]], 4).pixels_beyond, 1);
+        let short = pictures(&[[0; 4]; 3], &[[0; 4]; 2], 255);
+        assert_eq!((short.max_delta, short.pixels_beyond), (255, 1));
+        assert_eq!(owners(&[1, 2, 3], &[1, 4]).different, 2);
+    }
+
+    #[test]
+    fn difference_picture_is_black_exactly_where_pictures_agree() {
+        let a = [[9, 9, 9, 255], [9, 9, 9, 255], [9, 9, 9, 255]];
+        let b = [[9, 9, 9, 255], [9, 8, 200, 255], [9, 9, 9, 254]];
+        assert_eq!(difference_picture(&a, &b, 16), [[0, 0, 0, 255], [0, 16, 255, 255], [16, 16, 16, 255]]);
+    }
+}

@@ -9,8 +9,10 @@ pub struct Accuracy {
     pub pixels: u64,
     /// Pixels whose owner is wrong outside every named band.
     pub owner_mismatch: u64,
-    /// Pixels that differ from the oracle's own picture only because a vertex snapped one unit apart.
+    /// Pixels that differ from the oracle's own picture only because vertices snapped apart, within their bounds.
     pub explained_by_snap: u64,
+    /// Pixels that differ from the oracle's own picture although the snap does not explain it.
+    pub unexplained: u64,
     /// Pixels where two owners are right: depths closer than the float key's bound.
     pub band_pixels: u64,
     /// Samples that a triangle covers and that were not drawn.
@@ -23,12 +25,69 @@ pub struct Accuracy {
     pub overflow: u64,
     /// Pixels whose depth key lies outside its relative bound.
     pub key_outside_bound: u64,
-    /// Vertices that snapped more than their forward error bound away from the oracle's.
+    /// Vertices of all draws.
+    pub vertices: u64,
+    /// Vertices whose place rounding alone decides; they are not judged.
+    pub ill_conditioned: u64,
+    /// Vertices that snapped more than their forward error bound away from the oracle's, or with other flags.
     pub snap_outside_bound: u64,
+    /// Vertices that snapped more than one unit away, whether their bound allows it or not.
+    pub snap_over_one_unit: u64,
+    /// Vertices whose depth or 1/w lies outside its forward error bound.
+    pub attribute_outside_bound: u64,
     /// Largest distance between a snapped vertex and the oracle's, in units of 1/256 px, among well-conditioned vertices.
     pub max_snap_delta: u32,
+    /// Counters of rejected and degenerate triangles that are not the oracle's.
+    pub counters_wrong: u64,
     /// Largest difference of a colour channel, of 255.
     pub max_colour_delta: u8,
     /// Root mean square over all channels, of 255.
     pub rms_colour_delta: f64,
+}
+
+/// What may differ in a picture that still passes. Everything that is judged as exact has no budget.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Budget {
+    /// Largest difference of a colour channel, of 255.
+    pub max_colour_delta: u8,
+    /// Most pixels in the depth band.
+    pub max_band_pixels: u64,
+    /// Most pixels explained by the snap.
+    pub max_explained: u64,
+}
+
+impl Default for Budget {
+    /// One step of a channel; bands are counted and not capped.
+    fn default() -> Self {
+        Self { max_colour_delta: 1, max_band_pixels: u64::MAX, max_explained: u64::MAX }
+    }
+}
+
+impl Accuracy {
+    /// Passes when nothing exact is wrong and the rest stays within `budget`.
+    ///
+    /// # Errors
+    /// A sentence for everything that fails, separated by semicolons.
+    pub fn within(&self, budget: &Budget) -> Result<(), String> {
+        let most = [
+            (self.owner_mismatch, 0, "pixels have the wrong owner"),
+            (self.holes, 0, "covered samples were not drawn"),
+            (self.double_hits, 0, "samples were drawn more often than they are covered"),
+            (self.orphans, 0, "pixels have a depth but no owner"),
+            (self.overflow, 0, "queue entries were lost"),
+            (self.key_outside_bound, 0, "depth keys lie outside their bound"),
+            (self.snap_outside_bound, 0, "vertices snapped outside their bound"),
+            (self.attribute_outside_bound, 0, "vertices have a depth or 1/w outside its bound"),
+            (self.unexplained, 0, "pixels differ from the oracle's own picture without a reason"),
+            (self.counters_wrong, 0, "counters of rejected or degenerate triangles are wrong"),
+            (self.explained_by_snap, budget.max_explained, "pixels differ because vertices snapped apart"),
+            (self.band_pixels, budget.max_band_pixels, "pixels lie in the depth band"),
+            (self.max_colour_delta.into(), budget.max_colour_delta.into(), "of 255 is the largest colour difference"),
+        ];
+        let sentence = |&(count, limit, what): &(u64, u64, &str)| {
+            (count > limit).then(|| if limit == 0 { format!("{count} {what}") } else { format!("{count} {what} (at most {limit})") })
+        };
+        let sentences: Vec<String> = most.iter().filter_map(sentence).collect();
+        if sentences.is_empty() { Ok(()) } else { Err(sentences.join("; ")) }
+    }
 }

@@ -1,6 +1,49 @@
-//! STUB: helper "oracle" is writing this; signatures hold.
-use crate::{effects::Stack, frame::{Frame, Geometry}, measure::Accuracy, scene::{Scene, camera::View, draw::{Draw, DrawError}}};
-pub struct Verdict { pub accuracy: Accuracy, pub expected: Frame }
-pub fn project(_scene: &Scene, _draws: &[Draw], _view: &View) -> Geometry { unimplemented!() }
-pub fn render(_scene: &Scene, _view: &View, _stack: &Stack) -> Result<Frame, DrawError> { unimplemented!() }
-pub fn judge(_scene: &Scene, _view: &View, _stack: &Stack, _frame: &Frame, _geometry: &Geometry, _layers: Option<&[u32]>) -> Result<Verdict, DrawError> { unimplemented!() }
+//! The oracle: an exact CPU renderer that judges adapters and blesses goldens. It reads like a textbook and hurries nowhere.
+//!
+//! Coverage and ownership are decided in i64 and i128, at every pixel of a triangle's box afresh; projection, clipping,
+//! depth and shading are f64. It shares scene bytes, matrix bits, effect parameters and plain data types with the
+//! renderers it judges, and no line of their code: neither shader text nor planner, no SIMD maths where something is
+//! decided, no platform maths function. Work is parallel by rows and triangles; no result depends on the order of threads.
+//!
+//! [`project`] snaps vertices and clips triangles, [`triangles`] assembles and turns them, [`cover`] finds who owns each
+//! sample, [`shade`] colours it, and [`judge`] holds a frame that an adapter drew against all of that.
+
+mod clip;
+mod coverage;
+mod judge;
+mod project;
+mod surface;
+
+pub use coverage::{Coverage, OrientedTriangle, Sample, cover, depth_bound, owns, triangles};
+pub use judge::{Verdict, judge};
+pub use project::project;
+pub use surface::shade;
+
+use crate::{
+    effects::Stack,
+    frame::{Counters, Frame},
+    scene::{
+        Scene,
+        camera::View,
+        draw::{DrawError, draws},
+    },
+};
+
+/// The true picture of `scene`; empty when `view` has no pixels.
+///
+/// # Errors
+/// When a placement or the number of triangles exceeds what the arithmetic holds.
+pub fn render(scene: &Scene, view: &View, stack: &Stack) -> Result<Frame, DrawError> {
+    let draws = draws(scene, view)?;
+    let geometry = project(scene, &draws, view);
+    let (triangles, counters) = triangles(scene, &draws, &geometry);
+    let coverage = cover(&triangles, view, None);
+    let owner = coverage.owners();
+    let color = shade(scene, &draws, view, stack, &owner, &geometry);
+    Ok(frame(view, &coverage, color, counters))
+}
+
+/// The integers of `coverage` with their colours.
+fn frame(view: &View, coverage: &Coverage, color: Vec<[u8; 4]>, counters: Counters) -> Frame {
+    Frame { width: view.width, height: view.height, owner: coverage.owners(), key: coverage.keys(), color, counters }
+}

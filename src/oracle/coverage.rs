@@ -1,0 +1,302 @@
+//! Who owns each sample: exact integer coverage and the depth that decides between owners.
+//!
+//! A sample on an edge belongs to the side onto which it falls when moved by an infinitesimal step to the right and a far
+//! smaller one down: the top-left rule, stated without a bias. Every pixel of a triangle's box is evaluated afresh.
+
+use rayon::prelude::*;
+
+use super::clip::is_cut;
+use crate::{
+    frame::{Counters, Geometry, NO_OWNER, Piece, SnappedVertex, vertex_flags},
+    math::SMALL_EXTENT,
+    scene::{Scene, camera::View, draw::Draw},
+};
+
+/// A triangle to be drawn, wound clockwise on screen (positive doubled area with y down).
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct OrientedTriangle {
+    /// Global triangle id; a piece has its parent's.
+    pub id: u32,
+    pub corners: [SnappedVertex; 3],
+}
+
+/// What lies on the sample of one pixel.
+///
+/// A float depth key may lie anywhere in the interval [low, high] round the f64 depth: its relative bound
+/// ([`depth_bound`]), cut to the depths of the triangle's corners, to which every renderer clamps.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Sample {
+    /// Nearest triangle, the smaller id at equal keys; [`NO_OWNER`] without one.
+    pub owner: u32,
+    /// Bits of the owner's depth rounded to f32, at least 1; 0 without an owner.
+    pub key: u32,
+    /// Drawn triangles and pieces that cover the sample, in front or behind.
+    pub layers: u32,
+    /// Interval of the owner's depth.
+    pub interval: [f64; 2],
+    /// Largest high end among the other owners.
+    pub rival: f64,
+    /// Largest low end of all: what reaches less far is certainly hidden.
+    pub floor: f64,
+    /// Interval of the owner that somebody claims for this pixel, if it covers the sample.
+    pub claimed: Option<[f64; 2]>,
+}
+
+impl Sample {
+    const EMPTY: Self = Self {
+        owner: NO_OWNER,
+        key: 0,
+        layers: 0,
+        interval: [f64::NEG_INFINITY; 2],
+        rival: f64::NEG_INFINITY,
+        floor: f64::NEG_INFINITY,
+        claimed: None,
+    };
+
+    /// Do two owners lie so close that a float key may prefer either?
+    pub fn is_band(&self) -> bool {
+        self.layers > 1 && self.rival > self.interval[0]
+    }
+
+    /// May the claimed owner be in front? It must cover the sample and reach past whatever certainly does.
+    pub fn claim_is_possible(&self) -> bool {
+        self.claimed.is_some_and(|[_, high]| high >= self.floor)
+    }
+
+    fn add(&mut self, id: u32, depth: f64, interval: [f64; 2], claim: u32) {
+        self.layers += 1;
+        self.floor = self.floor.max(interval[0]);
+        if id == claim {
+            self.claimed = Some(interval);
+        }
+        let key = depth_key(depth);
+        let wins = key > self.key || key == self.key && id < self.owner;
+        let loser = if wins { self.interval[1] } else { interval[1] };
+        if id != self.owner {
+            self.rival = self.rival.max(loser);
+        }
+        if wins {
+            (self.owner, self.key, self.interval) = (id, key, interval);
+        }
+    }
+}
+
+/// One [`Sample`] per pixel, row-major, top row first.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Coverage {
+    pub samples: Vec<Sample>,
+}
+
+impl Coverage {
+    pub fn owners(&self) -> Vec<u32> {
+        self.samples.iter().map(|sample| sample.owner).collect()
+    }
+
+    pub fn keys(&self) -> Vec<u32> {
+        self.samples.iter().map(|sample| sample.key).collect()
+    }
+
+    pub fn layers(&self) -> Vec<u32> {
+        self.samples.iter().map(|sample| sample.layers).collect()
+    }
+}
+
+/// Twice the area of a snapped triangle; positive when it runs clockwise on screen.
+pub(super) fn doubled_area([a, b, c]: &[SnappedVertex; 3]) -> i64 {
+    edge(a, b, i64::from(c.x), i64::from(c.y))
+}
+
+/// Twice the area of (a, b, point): positive on the inner side of an edge of a clockwise triangle.
+fn edge(a: &SnappedVertex, b: &SnappedVertex, x: i64, y: i64) -> i64 {
+    let [ax, ay, bx, by] = [a.x, a.y, b.x, b.y].map(i64::from);
+    (bx - ax) * (y - ay) - (by - ay) * (x - ax)
+}
+
+/// Draw with triangle `id`; draws without triangles have none. None when there is no such triangle.
+pub(super) fn draw_of<'a>(scene: &Scene, draws: &'a [Draw], id: u32) -> Option<&'a Draw> {
+    let draw = &draws[..draws.partition_point(|draw| draw.first_triangle <= id)].last()?;
+    (id - draw.first_triangle < scene.primitives[draw.primitive].triangle_count()).then_some(draw)
+}
+
+/// Corner records of triangle `id` of `draw`, in the order of the file.
+pub(super) fn corner_records(scene: &Scene, draw: &Draw, geometry: &Geometry, id: u32) -> [SnappedVertex; 3] {
+    let corners = scene.primitives[draw.primitive].corners(scene, id - draw.first_triangle);
+    corners.map(|corner| geometry.vertices[(draw.first_vertex + corner) as usize])
+}
+
+/// The triangles and pieces to be drawn, with a count of those that are not.
+///
+/// Decided from the records alone. Cut parents are replaced by their pieces; a piece that has no area or runs against
+/// the sum of its parent's pieces is a fold.
+pub fn triangles(scene: &Scene, draws: &[Draw], geometry: &Geometry) -> (Vec<OrientedTriangle>, Counters) {
+    const CHUNK: u32 = 1 << 16;
+    let mut pieces: Vec<&Piece> = geometry.pieces.iter().collect();
+    pieces.sort_by_key(|piece| piece.parent);
+    let mut drawn = Vec::new();
+    let mut counters = Counters::default();
+    for draw in draws {
+        let ids = draw.first_triangle..draw.first_triangle + scene.primitives[draw.primitive].triangle_count();
+        let starts: Vec<u32> = ids.clone().step_by(CHUNK as usize).collect();
+        let chunk = |start: u32| {
+            let mut assembly = Assembly { scene, draw, geometry, pieces: &pieces, drawn: Vec::new(), counters: Counters::default() };
+            (start..ids.end.min(start.saturating_add(CHUNK))).for_each(|id| assembly.triangle(id));
+            (assembly.drawn, assembly.counters)
+        };
+        for (triangles, counts) in starts.into_par_iter().map(chunk).collect::<Vec<_>>() {
+            drawn.extend(triangles);
+            counters.rejected_nonfinite += counts.rejected_nonfinite;
+            counters.rejected_range += counts.rejected_range;
+            counters.degenerate += counts.degenerate;
+            counters.clipped += counts.clipped;
+            counters.fan_folds += counts.fan_folds;
+        }
+    }
+    (drawn, counters)
+}
+
+/// Assembly of a run of triangles of one draw.
+struct Assembly<'a> {
+    scene: &'a Scene,
+    draw: &'a Draw,
+    geometry: &'a Geometry,
+    /// Sorted by parent.
+    pieces: &'a [&'a Piece],
+    drawn: Vec<OrientedTriangle>,
+    counters: Counters,
+}
+
+impl Assembly<'_> {
+    fn triangle(&mut self, id: u32) {
+        let corners = corner_records(self.scene, self.draw, self.geometry, id);
+        let flags = corners.map(|corner| corner.flags);
+        let any = flags[0] | flags[1] | flags[2];
+        if any & vertex_flags::NONFINITE != 0 {
+            self.counters.rejected_nonfinite += 1;
+        } else if any & vertex_flags::OUT_OF_RANGE != 0 {
+            self.counters.rejected_range += 1;
+        } else if is_cut(flags) {
+            self.counters.clipped += 1;
+            self.fan(id);
+        } else if any == 0 {
+            match doubled_area(&corners) {
+                0 => self.counters.degenerate += 1,
+                area => self.oriented(id, corners, area),
+            }
+        }
+    }
+
+    fn fan(&mut self, parent: u32) {
+        let from = self.pieces.partition_point(|piece| piece.parent < parent);
+        let fan = self.pieces[from..].iter().take_while(|piece| piece.parent == parent);
+        let areas: Vec<_> = fan.map(|piece| (piece.corners, doubled_area(&piece.corners))).collect();
+        let facing = areas.iter().map(|(_, area)| area).sum::<i64>().signum();
+        for (corners, area) in areas {
+            if area == 0 || area.signum() != facing {
+                self.counters.fan_folds += 1;
+            } else {
+                self.oriented(parent, corners, area);
+            }
+        }
+    }
+
+    /// Keeps a triangle unless it shows the back of a single-sided material, turned clockwise.
+    fn oriented(&mut self, id: u32, mut corners: [SnappedVertex; 3], area: i64) {
+        let material = &self.scene.materials[self.scene.primitives[self.draw.primitive].material];
+        if is_back(area, self.draw) && !material.double_sided {
+            return;
+        }
+        if area < 0 {
+            corners.swap(1, 2);
+        }
+        self.drawn.push(OrientedTriangle { id, corners });
+    }
+}
+
+/// The front of a glTF triangle runs counterclockwise on screen, unless its placement mirrors it.
+pub(super) fn is_back(area: i64, draw: &Draw) -> bool {
+    (area > 0) != draw.mirrored
+}
+
+/// Finds what lies on every sample of `view`; `claims`, if given, names an owner per pixel to be examined.
+pub fn cover(triangles: &[OrientedTriangle], view: &View, claims: Option<&[u32]>) -> Coverage {
+    const ROWS: usize = 8;
+    let (width, height) = (view.width as usize, view.height as usize);
+    let mut samples = vec![Sample::EMPTY; width * height];
+    if samples.is_empty() {
+        return Coverage { samples };
+    }
+    let mut bands = vec![Vec::new(); height.div_ceil(ROWS)];
+    for triangle in triangles {
+        let (_, rows) = triangle.bounds(view);
+        if !rows.is_empty() {
+            bands[rows.start / ROWS..=(rows.end - 1) / ROWS].iter_mut().for_each(|band| band.push(triangle));
+        }
+    }
+    samples.par_chunks_mut(ROWS * width).zip(bands).enumerate().for_each(|(band, (samples, triangles))| {
+        let first_row = band * ROWS;
+        for triangle in triangles {
+            let (columns, rows) = triangle.bounds(view);
+            for y in rows.start.max(first_row)..rows.end.min(first_row + ROWS) {
+                for x in columns.clone() {
+                    let Some((depth, interval)) = triangle.at(x, y) else { continue };
+                    let claim = claims.map_or(NO_OWNER, |claims| claims[y * width + x]);
+                    samples[(y - first_row) * width + x].add(triangle.id, depth, interval, claim);
+                }
+            }
+        }
+    });
+    Coverage { samples }
+}
+
+impl OrientedTriangle {
+    /// Columns and rows of the pixels whose samples may be covered, within the view.
+    fn bounds(&self, view: &View) -> (std::ops::Range<usize>, std::ops::Range<usize>) {
+        // Pixel k has its sample at 256 k + 128.
+        let range = |at: [i32; 3], pixels: u32| {
+            let [low, high] = [at[0].min(at[1]).min(at[2]), at[0].max(at[1]).max(at[2])].map(i64::from);
+            let first = (low + 127).div_euclid(256).max(0);
+            let end = ((high - 128).div_euclid(256) + 1).min(i64::from(pixels));
+            first as usize..end.max(first) as usize
+        };
+        (range(self.corners.map(|c| c.x), view.width), range(self.corners.map(|c| c.y), view.height))
+    }
+
+    /// Depth of this triangle at the centre of a pixel, with the interval of float keys; none when it is not covered.
+    fn at(&self, x: usize, y: usize) -> Option<(f64, [f64; 2])> {
+        let [a, b, c] = &self.corners;
+        let (px, py) = (256 * x as i64 + 128, 256 * y as i64 + 128);
+        let opposite = [(b, c), (c, a), (a, b)];
+        let weights = opposite.map(|(from, to)| edge(from, to, px, py));
+        let inside = |i: usize| owns(weights[i], opposite[i].1.x - opposite[i].0.x, opposite[i].1.y - opposite[i].0.y);
+        (inside(0) && inside(1) && inside(2)).then(|| self.depth(weights))
+    }
+
+    /// Depth is linear on screen: corner depths weighted by the doubled areas of the opposite parts, clamped to them.
+    fn depth(&self, weights: [i64; 3]) -> (f64, [f64; 2]) {
+        let z = self.corners.map(|corner| f64::from(corner.depth));
+        let (low, high) = (z[0].min(z[1]).min(z[2]), z[0].max(z[1]).max(z[2]));
+        let [e0, e1, e2] = weights.map(|e| e as f64);
+        let depth = ((e0 * z[0] + e1 * z[1] + e2 * z[2]) / (e0 + e1 + e2)).max(low).min(high);
+        let slack = depth.abs() * depth_bound(&self.corners);
+        (depth, [(depth - slack).max(low), (depth + slack).min(high)])
+    }
+}
+
+/// Is a sample on the inner side of a directed edge (dx, dy), of which it is `e` away (doubled area, units of 1/256 px)?
+///
+/// It is moved by 2^-30 to the right and 2^-60 down, which no integer distance can outweigh: |e| < 2^63, |dx|, |dy| < 2^29.
+pub fn owns(e: i64, dx: i32, dy: i32) -> bool {
+    (i128::from(e) << 60) - (i128::from(dy) << 30) + i128::from(dx) > 0
+}
+
+/// Relative bound of a float depth key against the true depth: 8 or 12 steps of 2^-23, by the extent of the triangle.
+pub fn depth_bound(corners: &[SnappedVertex; 3]) -> f64 {
+    let extent = |at: [i32; 3]| at[0].max(at[1]).max(at[2]) - at[0].min(at[1]).min(at[2]);
+    let is_small = extent(corners.map(|c| c.x)) <= SMALL_EXTENT && extent(corners.map(|c| c.y)) <= SMALL_EXTENT;
+    (if is_small { 8.0 } else { 12.0 }) / f64::from(1 << 23)
+}
+
+/// Bits of a depth rounded to f32, which order as the depths do; at least 1, because 0 is an empty pixel.
+fn depth_key(depth: f64) -> u32 {
+    if depth > 0.0 { (depth as f32).to_bits().max(1) } else { 1 }
+}

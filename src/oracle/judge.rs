@@ -1,0 +1,320 @@
+//! The judgement: an adapter's frame held against the oracle, stage by stage, each stage from the adapter's own input.
+//!
+//! Vertices are judged from the matrix bits with a forward error bound, coverage and owners from the adapter's snapped
+//! vertices and pieces, colours from the adapter's owners; so one fault is counted once, where it happened. Last, the whole
+//! picture is held against the oracle's own, where only what a snapped vertex explains may differ.
+
+use rayon::prelude::*;
+
+use super::{
+    coverage::{Coverage, Sample, corner_records, cover, draw_of, triangles},
+    frame,
+    project::{clip_position, half_size, object_position, project},
+    surface::shade,
+};
+use crate::{
+    effects::Stack,
+    frame::{Counters, Frame, Geometry, NO_OWNER, SnappedVertex, vertex_flags},
+    math::GUARD_BAND,
+    measure::{Accuracy, compare},
+    scene::{
+        Scene,
+        camera::View,
+        draw::{Draw, DrawError, draws},
+    },
+};
+
+/// Relative spacing of f32.
+const ULP: f64 = 1.0 / (1 << 23) as f64;
+
+/// How far an adapter is from the truth.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Verdict {
+    pub accuracy: Accuracy,
+    /// What the oracle makes of the adapter's geometry.
+    pub expected: Frame,
+}
+
+/// Judges `frame`, which an adapter drew of `scene` through `geometry`, with the number of hits per sample in `layers`
+/// where it counts them. Images have the size of `view`, and `geometry` has a record per vertex of every draw.
+///
+/// # Errors
+/// When a placement or the number of triangles exceeds what the arithmetic holds.
+///
+/// # Panics
+/// When an image or the geometry has another size than the view and the scene say.
+pub fn judge(
+    scene: &Scene,
+    view: &View,
+    stack: &Stack,
+    adapter: &Frame,
+    geometry: &Geometry,
+    layers: Option<&[u32]>,
+) -> Result<Verdict, DrawError> {
+    let draws = draws(scene, view)?;
+    assert_eq!([adapter.owner.len(), adapter.key.len(), adapter.color.len()], [view.pixels(); 3], "the frame has another size");
+    assert_eq!(geometry.vertices.len() as u64, scene.vertex_count(), "the geometry is of another scene");
+
+    let (given, counters) = triangles(scene, &draws, geometry);
+    let coverage = cover(&given, view, Some(&adapter.owner));
+    let colors = shade(scene, &draws, view, stack, &adapter.owner, geometry);
+    let own = project(scene, &draws, view);
+    let vertices = vertex_faults(scene, &draws, view, geometry, &own);
+
+    let mut accuracy = Accuracy { pixels: view.pixels() as u64, ..Default::default() };
+    judge_samples(&mut accuracy, &coverage, adapter, layers);
+    judge_colors(&mut accuracy, &colors, adapter);
+    judge_counters(&mut accuracy, &counters, adapter);
+    judge_vertices(&mut accuracy, &vertices);
+    Whole { scene, draws: &draws, view, own: &own, vertices: &vertices }.judge(&mut accuracy, &coverage, adapter);
+
+    let owners = coverage.owners();
+    let colors = if owners == adapter.owner { colors } else { shade(scene, &draws, view, stack, &owners, geometry) };
+    Ok(Verdict { accuracy, expected: frame(view, &coverage, colors, counters) })
+}
+
+/// Is the adapter's owner right, exactly or as one of the two answers of the depth band?
+fn owner_is_right(sample: &Sample, owner: u32) -> bool {
+    owner == sample.owner || sample.is_band() && sample.claim_is_possible()
+}
+
+fn judge_samples(accuracy: &mut Accuracy, coverage: &Coverage, adapter: &Frame, layers: Option<&[u32]>) {
+    for (i, sample) in coverage.samples.iter().enumerate() {
+        let (owner, key) = (adapter.owner[i], adapter.key[i]);
+        let hits = layers.map_or(u32::from(owner != NO_OWNER), |layers| layers[i]);
+        let truth = if layers.is_some() { sample.layers } else { sample.layers.min(1) };
+        accuracy.holes += u64::from(truth.saturating_sub(hits));
+        accuracy.double_hits += u64::from(hits.saturating_sub(truth));
+        accuracy.band_pixels += u64::from(sample.is_band());
+        accuracy.owner_mismatch += u64::from(!owner_is_right(sample, owner));
+        accuracy.orphans += u64::from(owner == NO_OWNER && key != 0);
+        accuracy.key_outside_bound += u64::from(owner != NO_OWNER && !sample.claimed.is_some_and(|bound| key_fits(key, bound)));
+    }
+}
+
+/// Does a float key lie in the interval? A depth too small for a normal f32 has the least key, 1.
+fn key_fits(key: u32, [low, high]: [f64; 2]) -> bool {
+    let depth = f64::from(f32::from_bits(key));
+    (low..=high).contains(&depth) && key != 0 || key == 1 && low < f64::from(f32::MIN_POSITIVE)
+}
+
+fn judge_colors(accuracy: &mut Accuracy, expected: &[[u8; 4]], adapter: &Frame) {
+    let delta = compare::pictures(expected, &adapter.color, 0);
+    accuracy.max_colour_delta = delta.max_delta;
+    accuracy.rms_colour_delta = delta.rms;
+}
+
+fn judge_counters(accuracy: &mut Accuracy, truth: &Counters, adapter: &Frame) {
+    let counted = |c: &Counters| [c.rejected_nonfinite, c.rejected_range, c.degenerate];
+    accuracy.counters_wrong = counted(truth).iter().zip(counted(&adapter.counters)).filter(|(a, b)| *a != b).count() as u64;
+    accuracy.overflow = adapter.counters.overflow.into();
+    accuracy.orphans = accuracy.orphans.max(adapter.counters.orphans.into());
+}
+
+/// What the judgement of one vertex found.
+#[derive(Clone, Copy, Default)]
+struct VertexFault {
+    /// Rounding may have moved it anywhere, or to the other side of a plane: counted, not judged.
+    is_ill_conditioned: bool,
+    /// Larger of the two distances, in units of 1/256 px.
+    delta: u32,
+    snap_is_outside: bool,
+    attribute_is_outside: bool,
+}
+
+fn judge_vertices(accuracy: &mut Accuracy, faults: &[VertexFault]) {
+    for fault in faults {
+        accuracy.vertices += 1;
+        accuracy.ill_conditioned += u64::from(fault.is_ill_conditioned);
+        accuracy.snap_outside_bound += u64::from(fault.snap_is_outside);
+        accuracy.attribute_outside_bound += u64::from(fault.attribute_is_outside);
+        accuracy.snap_over_one_unit += u64::from(fault.delta > 1);
+        accuracy.max_snap_delta = accuracy.max_snap_delta.max(fault.delta);
+    }
+}
+
+fn vertex_faults(scene: &Scene, draws: &[Draw], view: &View, adapter: &Geometry, own: &Geometry) -> Vec<VertexFault> {
+    let of_draw = |draw: &Draw| {
+        let count = scene.primitives[draw.primitive].vertex_count();
+        let fault = |vertex| {
+            let at = (draw.first_vertex + vertex) as usize;
+            vertex_fault(scene, draw, view, vertex, &adapter.vertices[at], &own.vertices[at])
+        };
+        (0..count).into_par_iter().map(fault).collect::<Vec<_>>()
+    };
+    draws.iter().flat_map(of_draw).collect()
+}
+
+/// Holds one record against the truth by a forward error bound that covers every rounding, order and fusion WGSL allows.
+fn vertex_fault(scene: &Scene, draw: &Draw, view: &View, vertex: u32, adapter: &SnappedVertex, own: &SnappedVertex) -> VertexFault {
+    let Ok(object) = object_position(scene, &scene.primitives[draw.primitive], vertex) else {
+        let is_nonfinite = |v: &SnappedVertex| v.flags & vertex_flags::NONFINITE != 0;
+        let is_rejected_alike = adapter.flags & vertex_flags::REJECTED != 0 && is_nonfinite(adapter) == is_nonfinite(own);
+        return VertexFault { snap_is_outside: !is_rejected_alike, ..Default::default() };
+    };
+    let clip = clip_position(scene, draw, vertex).expect("the position has passed the gate");
+    // Sums of magnitudes of each row: rounding errors are proportional to them, however much cancels.
+    let magnitude = |row: usize| {
+        let m = |column: usize| f64::from(draw.clip_from_object[column][row]).abs();
+        m(0) * object[0].abs() + m(1) * object[1].abs() + m(2) * object[2].abs() + m(3)
+    };
+    let [sx, sy, sz, sw] = [0, 1, 2, 3].map(magnitude);
+    let (w, wobble) = (clip.w.abs(), 4.0 * ULP * sw);
+    if wobble > w / 16.0 || (clip.w - clip.z).abs() <= 4.0 * ULP * (sz + sw) && adapter.flags != own.flags {
+        return VertexFault { is_ill_conditioned: true, ..Default::default() };
+    }
+    let [half_x, half_y] = half_size(view).map(f64::from);
+    let bound = |half: f64, s: f64, c: f64| {
+        let bound = ULP * half * (4.0 * s / w + (4.0 * sw / w + 4.5) * (c / w).abs());
+        if bound < 1.0 { 1.0 } else { (1.0 + bound).floor() }
+    };
+    let (bound_x, bound_y) = (bound(half_x, sx, clip.x), bound(half_y, sy, clip.y));
+    if adapter.flags != own.flags {
+        let is_near_guard = |at: i32, bound: f64| f64::from(at.abs().abs_diff(GUARD_BAND)) <= bound + 1.0;
+        let differs = adapter.flags ^ own.flags;
+        let [left, right, top, bottom] = vertex_flags::GUARD;
+        let x_explains = differs & (left | right) == 0 || is_near_guard(own.x, bound_x);
+        let y_explains = differs & (top | bottom) == 0 || is_near_guard(own.y, bound_y);
+        let is_explained = differs & (vertex_flags::REJECTED | vertex_flags::NEAR) == 0 && x_explains && y_explains;
+        return VertexFault { is_ill_conditioned: is_explained, snap_is_outside: !is_explained, ..Default::default() };
+    }
+    if own.flags & vertex_flags::NEAR != 0 {
+        return VertexFault::default();
+    }
+    let w_error = 5.0 * ULP * sw / w + 4.5 * ULP;
+    let depth_error = 5.0 * ULP * sz / w + (clip.z / w).abs() * w_error + f64::from(f32::MIN_POSITIVE);
+    let attribute_is_outside =
+        !((f64::from(adapter.inv_w) * clip.w - 1.0).abs() <= w_error && (f64::from(adapter.depth) - clip.z / clip.w).abs() <= depth_error);
+    if own.flags != 0 {
+        return VertexFault { attribute_is_outside, ..Default::default() };
+    }
+    let (dx, dy) = (adapter.x.abs_diff(own.x), adapter.y.abs_diff(own.y));
+    let snap_is_outside = f64::from(dx) > bound_x || f64::from(dy) > bound_y;
+    VertexFault { is_ill_conditioned: false, delta: dx.max(dy), snap_is_outside, attribute_is_outside }
+}
+
+/// The adapter's picture against the oracle's own, from the matrix bits on.
+struct Whole<'a> {
+    scene: &'a Scene,
+    draws: &'a [Draw],
+    view: &'a View,
+    own: &'a Geometry,
+    vertices: &'a [VertexFault],
+}
+
+impl Whole<'_> {
+    fn judge(&self, accuracy: &mut Accuracy, coverage: &Coverage, adapter: &Frame) {
+        let (triangles, _) = triangles(self.scene, self.draws, self.own);
+        let own = cover(&triangles, self.view, Some(&adapter.owner));
+        for (pixel, (truth, sample)) in own.samples.iter().zip(&coverage.samples).enumerate() {
+            let owner = adapter.owner[pixel];
+            // An owner that is wrong even for the adapter's own geometry has been counted as such.
+            if owner_is_right(truth, owner) || !owner_is_right(sample, owner) {
+                continue;
+            }
+            if self.snap_explains(truth.owner, owner, pixel) {
+                accuracy.explained_by_snap += 1;
+            } else {
+                accuracy.unexplained += 1;
+            }
+        }
+    }
+
+    /// May two owners change places at a pixel because vertices moved? Either an outline passed over the sample, or the
+    /// two surfaces cross there.
+    fn snap_explains(&self, a: u32, b: u32, pixel: usize) -> bool {
+        let at = Place::of(self.view, pixel);
+        let outlines: Vec<Outline> = [a, b].into_iter().filter_map(|owner| self.outline(owner)).collect();
+        if outlines.iter().any(|outline| outline.may_pass(&at)) {
+            return true;
+        }
+        let depths: Option<Vec<[f64; 2]>> = outlines.iter().map(|outline| outline.depths(&at)).collect();
+        matches!(depths.as_deref(), Some([a, b]) if a[0] <= b[1] && b[0] <= a[1])
+    }
+
+    /// Where an owner is drawn and how far that may move: as far as its corners did, or a pixel where it is cut.
+    fn outline(&self, owner: u32) -> Option<Outline> {
+        let draw = draw_of(self.scene, self.draws, owner)?;
+        let records = corner_records(self.scene, draw, self.own, owner);
+        let corners = self.scene.primitives[draw.primitive].corners(self.scene, owner - draw.first_triangle);
+        let faults = corners.map(|corner| self.vertices[(draw.first_vertex + corner) as usize]);
+        let is_whole = records.iter().all(|record| record.flags == 0);
+        let moved = f64::from(faults.iter().map(|fault| fault.delta).max().unwrap_or(0));
+        let reach = match faults.iter().any(|fault| fault.is_ill_conditioned) {
+            true => f64::INFINITY,
+            false if is_whole => 1.5 * moved,
+            false => 256.0,
+        };
+        // Own pieces stand sorted by parent.
+        let pieces = &self.own.pieces;
+        let cut = &pieces[pieces.partition_point(|p| p.parent < owner)..pieces.partition_point(|p| p.parent <= owner)];
+        Some(Outline { triangles: if is_whole { vec![records] } else { cut.iter().map(|piece| piece.corners).collect() }, reach })
+    }
+}
+
+/// One owner on the screen: itself, or its pieces.
+struct Outline {
+    triangles: Vec<[SnappedVertex; 3]>,
+    /// How far an edge may have moved, in units of 1/256 px; more than the distance of its ends in either axis.
+    reach: f64,
+}
+
+impl Outline {
+    fn may_pass(&self, at: &Place) -> bool {
+        self.reach == f64::INFINITY || self.reach > 0.0 && self.triangles.iter().any(|corners| at.border(corners) <= self.reach)
+    }
+
+    /// Depths that the surface may have at a sample; none more than a pixel away from it.
+    fn depths(&self, at: &Place) -> Option<[f64; 2]> {
+        let each = self.triangles.iter().filter_map(|corners| at.depths(corners, self.reach.clamp(2.0, 256.0)));
+        each.reduce(|a, b| [a[0].min(b[0]), a[1].max(b[1])])
+    }
+}
+
+/// The sample of a pixel, in units of 1/256 px.
+struct Place {
+    x: f64,
+    y: f64,
+}
+
+impl Place {
+    fn of(view: &View, pixel: usize) -> Self {
+        let width = view.width as usize;
+        let unit = |k: usize| (256 * k + 128) as f64;
+        Self { x: unit(pixel % width), y: unit(pixel / width) }
+    }
+
+    /// Distance to the segment between two corners.
+    fn distance(&self, from: &SnappedVertex, to: &SnappedVertex) -> f64 {
+        let (dx, dy) = (f64::from(to.x) - f64::from(from.x), f64::from(to.y) - f64::from(from.y));
+        let (px, py) = (self.x - f64::from(from.x), self.y - f64::from(from.y));
+        let length = dx * dx + dy * dy;
+        let t = if length > 0.0 { ((px * dx + py * dy) / length).clamp(0.0, 1.0) } else { 0.0 };
+        libm::hypot(px - t * dx, py - t * dy)
+    }
+
+    /// Distance to the nearest edge of a triangle.
+    fn border(&self, [a, b, c]: &[SnappedVertex; 3]) -> f64 {
+        self.distance(a, b).min(self.distance(b, c)).min(self.distance(c, a))
+    }
+
+    /// Depth of the plane through three corners here, give or take `reach` units of movement and the error of a float
+    /// key; none where the triangle is more than a pixel away.
+    fn depths(&self, corners: &[SnappedVertex; 3], reach: f64) -> Option<[f64; 2]> {
+        let [a, b, c] = corners.map(|v| [f64::from(v.x), f64::from(v.y), f64::from(v.depth)]);
+        let edge = |p: [f64; 3], q: [f64; 3]| (q[0] - p[0]) * (self.y - p[1]) - (q[1] - p[1]) * (self.x - p[0]);
+        let weights = [edge(b, c), edge(c, a), edge(a, b)];
+        let area: f64 = weights.iter().sum();
+        let covers = weights.iter().all(|weight| weight * area >= 0.0);
+        if area == 0.0 || !covers && self.border(corners) > 256.0 {
+            return None;
+        }
+        let (u, v) = ([b[0] - a[0], b[1] - a[1], b[2] - a[2]], [c[0] - a[0], c[1] - a[1], c[2] - a[2]]);
+        let slope_x = (u[2] * v[1] - v[2] * u[1]) / area;
+        let slope_y = (v[2] * u[0] - u[2] * v[0]) / area;
+        let (low, high) = (a[2].min(b[2]).min(c[2]), a[2].max(b[2]).max(c[2]));
+        let depth = a[2] + slope_x * (self.x - a[0]) + slope_y * (self.y - a[1]);
+        let slack = reach * (slope_x.abs() + slope_y.abs()) + 64.0 * ULP * depth.abs();
+        Some([(depth - slack).max(low).min(high), (depth + slack).min(high).max(low)])
+    }
+}

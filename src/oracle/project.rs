@@ -1,0 +1,101 @@
+//! Vertex stage in f64: positions gated by their bits, projected, and snapped once to 1/256 px.
+
+use rayon::prelude::*;
+
+use super::clip;
+use crate::{
+    frame::{Geometry, SnappedVertex, vertex_flags},
+    math::GUARD_BAND,
+    scene::{Accessor, Component, Primitive, Scene, camera::View, draw::Draw},
+};
+
+/// Homogeneous clip-space position (WebGPU: y up, z from 0 to w, reversed).
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Clip {
+    pub x: f64,
+    pub y: f64,
+    pub z: f64,
+    pub w: f64,
+}
+
+/// Everything between the stored scene and integer coverage: one record per vertex of each draw, and the pieces of
+/// every triangle that the near plane or the guard band cuts, folded ones included.
+pub fn project(scene: &Scene, draws: &[Draw], view: &View) -> Geometry {
+    let snapped = |draw: &Draw, vertex| match clip_position(scene, draw, vertex) {
+        Ok(position) => snap(&position, view),
+        Err(flags) => SnappedVertex { flags, ..Default::default() },
+    };
+    let vertices: Vec<SnappedVertex> = draws
+        .iter()
+        .flat_map(|draw| {
+            let count = scene.primitives[draw.primitive].vertex_count();
+            (0..count).into_par_iter().map(|vertex| snapped(draw, vertex)).collect::<Vec<_>>()
+        })
+        .collect();
+    let pieces = draws.iter().flat_map(|draw| clip::pieces(scene, draw, view, &vertices)).collect();
+    Geometry { vertices, pieces }
+}
+
+/// Value of an f32 by its bits: subnormals are 0; NaN, infinities and magnitudes of 2^40 or more are refused with the
+/// flag that says why.
+pub(super) fn gate(bits: u32) -> Result<f64, u32> {
+    match bits >> 23 & 255 {
+        255 => Err(vertex_flags::NONFINITE),
+        167.. => Err(vertex_flags::OUT_OF_RANGE),
+        0 => Ok(0.0),
+        _ => Ok(f32::from_bits(bits).into()),
+    }
+}
+
+/// A lane of any attribute through the [`gate`]; integers always pass.
+pub(super) fn gated_lane(bytes: &[u8], accessor: &Accessor, element: u32, lane: u32) -> Result<f64, u32> {
+    match accessor.component {
+        Component::F32 => gate(accessor.f32_bits(bytes, element, lane)),
+        _ => Ok(accessor.value(bytes, element, lane)),
+    }
+}
+
+/// Position in object space, or the flags of all lanes that were refused.
+pub(super) fn object_position(scene: &Scene, primitive: &Primitive, vertex: u32) -> Result<[f64; 3], u32> {
+    let lanes = [0, 1, 2].map(|lane| gated_lane(&scene.vertex_bytes, &primitive.positions, vertex, lane));
+    match lanes {
+        [Ok(x), Ok(y), Ok(z)] => Ok([x, y, z]),
+        refused => Err(refused.iter().filter_map(|lane| lane.err()).fold(0, |all, flag| all | flag)),
+    }
+}
+
+/// Clip-space position of a vertex of `draw`, from the bits of its rounded matrix.
+pub(super) fn clip_position(scene: &Scene, draw: &Draw, vertex: u32) -> Result<Clip, u32> {
+    let [x, y, z] = object_position(scene, &scene.primitives[draw.primitive], vertex)?;
+    let row = |r: usize| {
+        let [a, b, c, d] = [0, 1, 2, 3].map(|column| f64::from(draw.clip_from_object[column][r]));
+        a * x + b * y + c * z + d
+    };
+    Ok(Clip { x: row(0), y: row(1), z: row(2), w: row(3) })
+}
+
+/// The record of a vertex: flags alone in front of the near plane, otherwise position, depth and 1/w.
+///
+/// The rounding is relative to the centre of the picture and to even, so mirror images snap to mirror images.
+pub(super) fn snap(position: &Clip, view: &View) -> SnappedVertex {
+    if position.z <= position.w && position.w > 0.0 {
+        snap_inside(position, view)
+    } else {
+        SnappedVertex { flags: vertex_flags::NEAR, ..Default::default() }
+    }
+}
+
+/// The record of a position that the near plane keeps.
+pub(super) fn snap_inside(&Clip { x, y, z, w }: &Clip, view: &View) -> SnappedVertex {
+    let [half_x, half_y] = half_size(view);
+    let offset = |ndc: f64, half: i32| (ndc * f64::from(half)).round_ties_even().clamp(-16_777_216.0, 16_777_216.0) as i32;
+    let (x, y) = (half_x + offset(x / w, half_x), half_y - offset(y / w, half_y));
+    let beyond = [x < -GUARD_BAND, x > GUARD_BAND, y < -GUARD_BAND, y > GUARD_BAND];
+    let flags = (0..4).filter(|&side| beyond[side]).fold(0, |flags, side| flags | vertex_flags::GUARD[side]);
+    SnappedVertex { x, y, depth: (z / w) as f32, inv_w: (1.0 / w) as f32, flags }
+}
+
+/// Half the picture in units of 1/256 px: the place of its centre, and units per unit of NDC.
+pub(super) fn half_size(view: &View) -> [i32; 2] {
+    [view.width, view.height].map(|pixels| 128 * pixels as i32)
+}

@@ -1,0 +1,238 @@
+//! Shading in f64: what the sample of an owner knows about its surface, the effects, and the bytes of the picture.
+
+use glam::{DMat3, DVec2, DVec3, DVec4};
+use rayon::prelude::*;
+
+use super::{
+    coverage::{corner_records, doubled_area, draw_of, is_back},
+    project::{clip_position, gated_lane, object_position},
+};
+use crate::{
+    effects::{Stack, Surface},
+    frame::{Geometry, SnappedVertex, vertex_flags},
+    math::srgb_byte,
+    scene::{Accessor, Scene, camera::View, draw::Draw},
+};
+
+/// Below this squared length, at unit scale, a vector has no direction.
+const DEGENERATE: f64 = 1e-12;
+
+/// Colours of all pixels, given who owns them. Row-major, gamma-encoded; the background where nobody does.
+///
+/// `geometry` supplies the snapped corners that carry the weights; owners that were cut are weighted in clip space.
+pub fn shade(scene: &Scene, draws: &[Draw], view: &View, stack: &Stack, owners: &[u32], geometry: &Geometry) -> Vec<[u8; 4]> {
+    let background = encoded(DVec4::from_array(view.background.map(f64::from)));
+    let width = view.width.max(1) as usize;
+    let row = |(y, owners): (usize, &[u32])| {
+        let mut triangle: Option<Triangle> = None;
+        let pixel = |(x, &owner): (usize, &u32)| {
+            if triangle.as_ref().is_none_or(|triangle| triangle.owner != owner) {
+                triangle = draw_of(scene, draws, owner).and_then(|draw| Triangle::new(scene, draw, view, geometry, owner));
+            }
+            match &triangle {
+                Some(triangle) => encoded(stack.shade(triangle.surface(view, x, y)).color),
+                None => background,
+            }
+        };
+        owners.iter().enumerate().map(pixel).collect::<Vec<_>>()
+    };
+    owners.par_chunks(width).enumerate().flat_map_iter(row).collect()
+}
+
+/// Linear RGBA as sRGB bytes; alpha is not gamma-encoded.
+fn encoded(color: DVec4) -> [u8; 4] {
+    let alpha = (255.0 * color.w.clamp(0.0, 1.0) + 0.5).floor() as u8;
+    [srgb_byte(color.x), srgb_byte(color.y), srgb_byte(color.z), alpha]
+}
+
+/// How a triangle's corners share a sample.
+enum Weights {
+    /// Snapped corners, x and y in units of 1/256 px, with 1/w: perspective-correct from screen-space areas.
+    Snapped([DVec3; 3]),
+    /// Cross products of the other two corners' (x, y, w) in clip space, which weigh a sample even where w <= 0
+    /// (Olano and Greer 1997).
+    Homogeneous([DVec3; 3]),
+}
+
+/// All that does not change from sample to sample.
+struct Triangle {
+    owner: u32,
+    weights: Weights,
+    positions: [DVec3; 3],
+    colors: [DVec4; 3],
+    /// In object space; none when a corner has no finite normal.
+    normals: Option<[DVec3; 3]>,
+    /// Takes object normals to the world's, of any length; turned over for a back face.
+    world_from_normal: DMat3,
+    /// Unit, world space; none when the triangle has no plane.
+    flat_normal: Option<DVec3>,
+    depths_m: [f64; 3],
+    /// None where it lies behind the eye: then each sample takes its own place.
+    center_screen: Option<DVec2>,
+}
+
+impl Triangle {
+    /// None for a triangle with a rejected corner, which owns nothing.
+    fn new(scene: &Scene, draw: &Draw, view: &View, geometry: &Geometry, owner: u32) -> Option<Self> {
+        let primitive = &scene.primitives[draw.primitive];
+        let material = &scene.materials[primitive.material];
+        let corners = primitive.corners(scene, owner - draw.first_triangle);
+        let [Ok(a), Ok(b), Ok(c)] = corners.map(|corner| object_position(scene, primitive, corner)) else { return None };
+        let object = [a, b, c].map(DVec3::from_array);
+
+        let records = corner_records(scene, draw, geometry, owner);
+        let is_cut = records.iter().any(|record| record.flags & vertex_flags::CLIPPED != 0);
+        let screen = if is_cut { Screen::cut(scene, draw, view, corners) } else { Screen::snapped(&records, draw, view) };
+
+        let base = DVec4::from_array(material.base_color.map(f64::from));
+        let color = |corner| base * primitive.colors.map_or(DVec4::ONE, |colors| color(scene, &colors, corner));
+        let [n0, n1, n2] = corners.map(|corner| normal(scene, &primitive.normals, corner));
+        let side = if material.double_sided && screen.is_back { -1.0 } else { 1.0 };
+        let world_from_normal = inverse_transpose(DMat3::from_mat4(draw.world_from_object)) * side;
+        Some(Self {
+            owner,
+            weights: screen.weights,
+            positions: object.map(|position| draw.world_from_object.transform_point3(position)),
+            colors: corners.map(color),
+            normals: n0.zip(n1).zip(n2).map(|((n0, n1), n2)| [n0, n1, n2]),
+            world_from_normal,
+            flat_normal: plane_normal(object).and_then(|normal| (world_from_normal * normal).try_normalize()),
+            depths_m: screen.depths_m,
+            center_screen: screen.center,
+        })
+    }
+
+    /// The surface at the centre of a pixel.
+    fn surface(&self, view: &View, x: usize, y: usize) -> Surface {
+        let pixel = DVec2::new(x as f64 + 0.5, y as f64 + 0.5);
+        let screen = pixel / DVec2::new(view.width.into(), view.height.into());
+        let weights = self.weights.at(pixel, screen);
+        let position = mixed(weights, self.positions);
+        let toward_eye = match view.linear_depth_m {
+            Some(_) => -view.forward,
+            None => (view.eye - position).try_normalize().unwrap_or(-view.forward),
+        };
+        let smooth = self.normals.and_then(|normals| self.smooth_normal(weights, normals));
+        let normal = smooth.or(self.flat_normal).unwrap_or(toward_eye);
+        Surface {
+            color: mixed(weights, self.colors),
+            position,
+            normal,
+            flat_normal: self.flat_normal.unwrap_or(normal),
+            view: toward_eye,
+            center: self.positions.iter().sum::<DVec3>() / 3.0,
+            center_screen: self.center_screen.unwrap_or(screen),
+            screen,
+            depth_m: mixed(weights, self.depths_m),
+            flat_depth_m: self.depths_m.iter().sum::<f64>() / 3.0,
+            range_m: DVec2::from_array(view.scene_range_m),
+            owner: self.owner,
+        }
+    }
+
+    /// Interpolated in object space; none when the corner normals cancel out.
+    fn smooth_normal(&self, weights: [f64; 3], normals: [DVec3; 3]) -> Option<DVec3> {
+        let largest = normals.iter().map(|normal| normal.abs().max_element()).fold(0.0, f64::max);
+        let normal = mixed(weights, normals) / largest;
+        // A division by zero fails the comparison, too.
+        if normal.length_squared() >= DEGENERATE { (self.world_from_normal * normal).try_normalize() } else { None }
+    }
+}
+
+/// What a triangle's place on the screen determines.
+struct Screen {
+    weights: Weights,
+    is_back: bool,
+    depths_m: [f64; 3],
+    center: Option<DVec2>,
+}
+
+impl Screen {
+    fn snapped(records: &[SnappedVertex; 3], draw: &Draw, view: &View) -> Self {
+        let size = DVec2::new(view.width.into(), view.height.into()) * 256.0;
+        let places = records.map(|r| DVec2::new(r.x.into(), r.y.into()) / size);
+        let w = records.map(|r| 1.0 / f64::from(r.inv_w));
+        let depth_m = |i: usize| linear_depth(view, f64::from(records[i].depth)).unwrap_or(w[i]);
+        Self {
+            weights: Weights::Snapped(records.map(|r| DVec3::new(r.x.into(), r.y.into(), r.inv_w.into()))),
+            is_back: is_back(doubled_area(records), draw),
+            depths_m: [0, 1, 2].map(depth_m),
+            center: Some((places[0] * w[0] + places[1] * w[1] + places[2] * w[2]) / (w[0] + w[1] + w[2])),
+        }
+    }
+
+    fn cut(scene: &Scene, draw: &Draw, view: &View, corners: [u32; 3]) -> Self {
+        let clip = corners.map(|corner| clip_position(scene, draw, corner).expect("positions have passed the gate"));
+        let v = clip.map(|p| DVec3::new(p.x, p.y, p.w));
+        let sum = v[0] + v[1] + v[2];
+        let rows = [v[1].cross(v[2]), v[2].cross(v[0]), v[0].cross(v[1])];
+        // y points up in clip space: a negative determinant runs clockwise on screen.
+        let is_clockwise = v[0].dot(rows[0]) < 0.0;
+        Self {
+            weights: Weights::Homogeneous(rows),
+            is_back: is_clockwise != draw.mirrored,
+            depths_m: clip.map(|p| linear_depth(view, p.z / p.w).unwrap_or(p.w)),
+            center: (sum.z > 0.0).then(|| DVec2::new(0.5 + 0.5 * sum.x / sum.z, 0.5 - 0.5 * sum.y / sum.z)),
+        }
+    }
+}
+
+/// Metres of an orthographic depth; none in a perspective.
+fn linear_depth(view: &View, depth: f64) -> Option<f64> {
+    view.linear_depth_m.map(|[near, far]| far + depth * (near - far))
+}
+
+impl Weights {
+    /// Shares of the corners at a pixel's centre, summing to 1; equal shares where the triangle has no extent.
+    fn at(&self, pixel: DVec2, screen: DVec2) -> [f64; 3] {
+        let shares = match self {
+            Self::Snapped(corners) => {
+                let p = pixel * 256.0;
+                let [a, b, c] = corners.map(|corner| corner.truncate() - p);
+                let [ia, ib, ic] = corners.map(|corner| corner.z);
+                [b.perp_dot(c) * ia, c.perp_dot(a) * ib, a.perp_dot(b) * ic]
+            }
+            Self::Homogeneous(rows) => {
+                let p = DVec3::new(2.0 * screen.x - 1.0, 1.0 - 2.0 * screen.y, 1.0);
+                rows.map(|row| p.dot(row))
+            }
+        };
+        let sum: f64 = shares.iter().sum();
+        let weights = shares.map(|share| share / sum);
+        if weights.iter().all(|weight| weight.is_finite()) { weights } else { [1.0 / 3.0; 3] }
+    }
+}
+
+fn mixed<T: std::ops::Mul<f64, Output = T> + std::ops::Add<Output = T>>(weights: [f64; 3], [a, b, c]: [T; 3]) -> T {
+    a * weights[0] + b * weights[1] + c * weights[2]
+}
+
+/// Linear RGBA of a vertex; a lane that is not finite or not there counts 1.
+fn color(scene: &Scene, colors: &Accessor, vertex: u32) -> DVec4 {
+    let lane = |lane: u32| {
+        if lane < colors.lanes { gated_lane(&scene.vertex_bytes, colors, vertex, lane).unwrap_or(1.0) } else { 1.0 }
+    };
+    DVec4::new(lane(0), lane(1), lane(2), lane(3))
+}
+
+/// Normal of a vertex in object space; none when a lane is not finite.
+fn normal(scene: &Scene, normals: &Accessor, vertex: u32) -> Option<DVec3> {
+    let lane = |lane: u32| gated_lane(&scene.vertex_bytes, normals, vertex, lane).ok();
+    Some(DVec3::new(lane(0)?, lane(1)?, lane(2)?))
+}
+
+/// Normal of the plane through three points, counterclockwise outward, of any length; none for a needle or a point.
+fn plane_normal([a, b, c]: [DVec3; 3]) -> Option<DVec3> {
+    let [u, v] = [b - a, c - a].map(|edge| edge / edge.abs().max_element());
+    let normal = u.cross(v);
+    // False for NaN, which an edge of no length makes.
+    (normal.length_squared() >= DEGENERATE).then_some(normal)
+}
+
+/// What takes normals where `m` takes points, up to a positive factor: cofactors, turned over when `m` mirrors.
+fn inverse_transpose(m: DMat3) -> DMat3 {
+    let cofactors = DMat3::from_cols(m.y_axis.cross(m.z_axis), m.z_axis.cross(m.x_axis), m.x_axis.cross(m.y_axis));
+    let largest = cofactors.to_cols_array().into_iter().fold(0.0, |largest: f64, entry| largest.max(entry.abs()));
+    let scale = if largest > 0.0 { 1.0 / largest } else { 0.0 };
+    cofactors * if m.determinant() < 0.0 { -scale } else { scale }
+}
