@@ -9,9 +9,13 @@
 //! * [`measure`]: frame against frame, samples of time
 //! * [`oracle`]: the exact CPU renderer that judges and blesses
 //! * [`session`]: the state of a look
+//! * [`preset`]: looks as files, sparse TOML
+//! * `app`: the window (feature `gui`)
 
 #![forbid(unsafe_code)]
 
+#[cfg(feature = "gui")]
+pub mod app;
 pub mod effects;
 pub mod frame;
 pub mod gpu;
@@ -20,6 +24,7 @@ pub mod measure;
 pub mod oracle;
 pub mod params;
 pub mod plan;
+pub mod preset;
 pub mod scene;
 pub mod session;
 pub mod shader;
