@@ -616,6 +616,9 @@ fn picture_without_pixels_is_empty() {
         let view = View::new(&Camera::default(), size[0], size[1], &scene.bounds(), DMat4::IDENTITY, [0.0; 4]);
         let frame = render(&scene, &view, &all_effects()).unwrap();
         assert_eq!(([frame.width, frame.height], frame.owner.len(), frame.color.len()), (size, 0, 0));
+        // An adapter dispatches nothing, and so has no geometry either.
+        let verdict = judge(&scene, &view, &all_effects(), &frame, &Geometry::default(), None).unwrap();
+        assert_eq!((verdict.accuracy, verdict.expected), (Accuracy::default(), frame));
     }
 }
 
@@ -799,10 +802,10 @@ impl Adapter {
             Frame { width: view.width, height: view.height, owner: vec![NO_OWNER; pixels], key: vec![0; pixels], ..Default::default() };
         let mut layers = vec![0; pixels];
         for triangle in drawn.iter().filter(|triangle| Some(triangle.id) != self.lost) {
-            for pixel in 0..pixels {
+            for (pixel, layers) in layers.iter_mut().enumerate() {
                 let (x, y) = (256 * (pixel % width) as i64 + self.sample, 256 * (pixel / width) as i64 + self.sample);
                 let Some(key) = self.hit(triangle, x, y) else { continue };
-                layers[pixel] += 1;
+                *layers += 1;
                 let tie = if self.larger_id_wins { triangle.id > frame.owner[pixel] } else { triangle.id < frame.owner[pixel] };
                 if key > frame.key[pixel] || key == frame.key[pixel] && tie {
                     (frame.key[pixel], frame.owner[pixel]) = (key, triangle.id);
