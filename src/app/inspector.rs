@@ -273,7 +273,7 @@ impl App {
     }
 
     fn kernel_ui(&self, ui: &mut Ui) {
-        let Some(Explanation { key, passes, buffers, omitted }) = self.screen.explanation() else {
+        let Some(Explanation { key, passes, buffers, reasons, omitted }) = self.screen.explanation() else {
             ui.label(theme::weak("The kernel is known with the first frame."));
             return;
         };
@@ -291,12 +291,15 @@ impl App {
                 ui.label(theme::weak(bytes_text(buffer.bytes)));
             });
         }
-        if !omitted.is_empty() {
-            ui.add_space(theme::HALF);
-            ui.label(theme::weak("left out"));
-        }
-        for note in omitted {
-            ui.label(RichText::new(&note.name).monospace().color(theme::TEXT_WEAK)).on_hover_text(&note.why);
+        for (title, notes) in [("chosen because", reasons), ("left out because", omitted)] {
+            if !notes.is_empty() {
+                ui.add_space(theme::HALF);
+                ui.label(theme::heading(title));
+            }
+            for note in notes {
+                ui.label(RichText::new(&note.name).monospace());
+                ui.label(theme::weak(&note.why));
+            }
         }
     }
 }

@@ -172,7 +172,9 @@ impl Screen {
             }
             return Ok(());
         };
-        self.waiting_since_s = None;
+        if !self.renderer.is_pending() {
+            self.waiting_since_s = None;
+        }
         let again = report.redraw && self.redraws < MAX_REDRAWS;
         self.report = Some(report);
         match self.drawn.clone() {
