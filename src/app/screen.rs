@@ -39,7 +39,6 @@ pub struct Screen {
     pub gpu: Arc<Gpu>,
     renderer: Renderer,
     window: egui_wgpu::RenderState,
-    uploaded: Option<Arc<Scene>>,
     picture: Option<Picture>,
     drawn: Option<Inputs>,
     /// Inputs that could not be drawn; not tried again until they change.
@@ -48,6 +47,8 @@ pub struct Screen {
     explanation: Option<Explanation>,
     waiting_since_s: Option<f64>,
     redraws: u32,
+    /// The newest frame compiled pipelines: its time says nothing, so one more is drawn for the figures.
+    cold: bool,
     draws: u64,
 }
 
@@ -64,7 +65,6 @@ impl Screen {
             renderer: Renderer::new(gpu.clone()),
             gpu,
             window,
-            uploaded: None,
             picture: None,
             drawn: None,
             refused: None,
@@ -72,6 +72,7 @@ impl Screen {
             explanation: None,
             waiting_since_s: None,
             redraws: 0,
+            cold: false,
             draws: 0,
         }
     }
@@ -121,7 +122,9 @@ impl Screen {
     }
 
     fn draw(&mut self, inputs: &Inputs, now_s: f64) -> Result<(), RenderError> {
+        let compiled = self.renderer.compiled();
         let drawn = self.dispatch(inputs);
+        self.cold = self.renderer.compiled() > compiled;
         if drawn.is_err() {
             self.refused = Some(inputs.clone());
             return drawn;
@@ -129,18 +132,14 @@ impl Screen {
         self.refused = None;
         self.drawn = Some(inputs.clone());
         self.draws += 1;
-        self.waiting_since_s = Some(now_s);
+        self.waiting_since_s = self.renderer.is_pending().then_some(now_s);
         self.explanation = Some(self.renderer.explain());
         self.register([inputs.view.width, inputs.view.height]);
         Ok(())
     }
 
     fn dispatch(&mut self, Inputs { scene, view, stack, accuracy }: &Inputs) -> Result<(), RenderError> {
-        if !self.uploaded.as_ref().is_some_and(|uploaded| Arc::ptr_eq(uploaded, scene)) {
-            self.uploaded = None;
-            self.renderer.set_scene(scene)?;
-            self.uploaded = Some(scene.clone());
-        }
+        self.renderer.set_scene(scene)?;
         self.renderer.draw(view, stack, accuracy)
     }
 
@@ -172,11 +171,12 @@ impl Screen {
             }
             return Ok(());
         };
-        if !self.renderer.is_pending() {
-            self.waiting_since_s = None;
-        }
-        let again = report.redraw && self.redraws < MAX_REDRAWS;
+        let again = (report.redraw || self.cold) && self.redraws < MAX_REDRAWS;
         self.report = Some(report);
+        if self.renderer.is_pending() {
+            return Ok(());
+        }
+        self.waiting_since_s = None;
         match self.drawn.clone() {
             Some(inputs) if again => {
                 self.redraws += 1;

@@ -34,7 +34,7 @@ pub struct Options {
 }
 
 /// The look of a window that was asked for nothing.
-const FIRST_LOOK: &str = "lambert";
+const FIRST_LOOK: &str = "teapot";
 
 /// Lost devices after which nobody tries again.
 const MAX_LOSSES: u32 = 2;
