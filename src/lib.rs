@@ -10,7 +10,12 @@
 //! * [`measure`]: frame against frame, samples of time
 //! * [`session`]: the state of a look
 //! * [`preset`]: looks as files, sparse TOML
+//! * [`cli`]: every subcommand; never opens a window of its own
+//! * `app`: the window (feature `gui`)
 
+#[cfg(feature = "gui")]
+pub mod app;
+pub mod cli;
 pub mod effects;
 pub mod frame;
 pub mod gpu;
