@@ -10,12 +10,14 @@
 //! * [`oracle`]: the exact CPU renderer that judges and blesses
 //! * [`session`]: the state of a look
 //! * [`preset`]: looks as files, sparse TOML
+//! * [`cli`]: every subcommand; never opens a window of its own
 //! * `app`: the window (feature `gui`)
 
 #![forbid(unsafe_code)]
 
 #[cfg(feature = "gui")]
 pub mod app;
+pub mod cli;
 pub mod effects;
 pub mod frame;
 pub mod gpu;

@@ -4,14 +4,11 @@ use std::path::{Path, PathBuf};
 
 use include_dir::{Dir, include_dir};
 
-use super::{Look, PresetError, form::did_you_mean, load, look_from_png, parse_file, read_capped, stem};
+use super::{Look, PresetError, form::did_you_mean, load, look_from_png, parse_file, read_capped, shot::MAX_FILE_BYTES, stem};
 use crate::session::SceneSource;
 
 /// The looks that travel inside the binary.
 pub static BUILTIN_DIR: Dir<'static> = include_dir!("$CARGO_MANIFEST_DIR/presets");
-
-/// Longest picture that is searched for a look, bytes.
-const MAX_PNG_BYTES: u64 = 1 << 28;
 
 /// Where a look was found, in order of precedence.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, serde::Serialize)]
@@ -94,7 +91,7 @@ pub fn open(what: &str, chosen: Option<&Path>) -> Result<Look, PresetError> {
         return load(path);
     }
     if has_extension(path, "png") {
-        let look = look_from_png(&read_capped(path, MAX_PNG_BYTES)?, what)?;
+        let look = look_from_png(&read_capped(path, MAX_FILE_BYTES)?, what)?;
         return Ok(Look { id: stem(path), path: Some(path.to_owned()), read_only: true, ..look });
     }
     if has_extension(path, "glb") || has_extension(path, "gltf") {

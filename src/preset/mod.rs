@@ -25,7 +25,7 @@ use toml_edit::{DocumentMut, Value};
 pub use error::{Place, PresetError};
 pub use gallery::{BUILTIN_DIR, GalleryEntry, Origin, gallery, open, user_folder};
 pub use share::{from_line, to_line};
-pub use shot::{Provenance, look_from_png, png_bytes, png_with_look};
+pub use shot::{Provenance, look_from_png, png_bytes, png_pixels, png_with_look};
 
 use crate::{
     effects::{EFFECTS, Effect},

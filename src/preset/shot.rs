@@ -1,11 +1,14 @@
 //! Shots: PNG pictures that say which look, version, adapter and driver made them, and give the look back.
 
-use std::io::Cursor;
+use std::{io::Cursor, path::Path};
 
-use super::{Look, PresetError, parse_file, read::MAX_BYTES, to_toml};
+use super::{Look, PresetError, parse_file, read::MAX_BYTES, read_capped, to_toml};
 use crate::frame::Frame;
 
 const LOOK: &str = "rasterlab look";
+
+/// Longest PNG that is read, bytes.
+pub const MAX_FILE_BYTES: u64 = 1 << 28;
 
 /// Who made a picture.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
@@ -49,6 +52,20 @@ fn encode(color: &[[u8; 4]], [width, height]: [u32; 2], texts: &[(&str, &str)]) 
     writer.write_image_data(bytemuck::cast_slice(color)).map_err(|e| failed(e.to_string()))?;
     writer.finish().map_err(|e| failed(e.to_string()))?;
     Ok(bytes)
+}
+
+/// Pixels of any PNG as row-major RGBA, with width and height; at most 16,384 pixels a side.
+pub fn png_pixels(path: &Path) -> Result<(Vec<[u8; 4]>, [u32; 2]), PresetError> {
+    let failed = |reason: String| PresetError::Read { file: path.display().to_string(), reason };
+    let bytes = read_capped(path, MAX_FILE_BYTES)?;
+    let mut reader = image::ImageReader::with_format(Cursor::new(bytes), image::ImageFormat::Png);
+    let mut limits = image::Limits::default();
+    (limits.max_image_width, limits.max_image_height) = (Some(16_384), Some(16_384));
+    limits.max_alloc = Some(2 << 30);
+    reader.limits(limits);
+    let picture = reader.decode().map_err(|e| failed(e.to_string()))?.into_rgba8();
+    let size = [picture.width(), picture.height()];
+    Ok((bytemuck::pod_collect_to_vec(picture.as_raw()), size))
 }
 
 /// The look inside a picture of ours; `file` is its name for people.
