@@ -474,7 +474,7 @@ impl App {
 impl eframe::App for App {
     fn logic(&mut self, ctx: &egui::Context, _: &mut eframe::Frame) {
         self.collect(ctx);
-        if self.screen.gpu.is_lost() {
+        if self.screen.is_lost() {
             self.rescue(ctx);
         }
         if let Some(error) = self.screen.gpu.take_error() {

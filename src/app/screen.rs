@@ -77,6 +77,12 @@ impl Screen {
         }
     }
 
+    /// Has the device been lost? Asks it, since nothing else would while nothing is drawn.
+    pub fn is_lost(&self) -> bool {
+        let _ = self.gpu.device.poll(wgpu::PollType::Poll);
+        self.gpu.is_lost()
+    }
+
     /// Number of frames dispatched so far.
     pub fn draws(&self) -> u64 {
         self.draws
