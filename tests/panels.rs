@@ -283,13 +283,40 @@ fn saving_writes_a_file_that_loads_equal() {
     drag(&mut lab, view.center(), view.center() + vec2(33.0, 12.0));
     assert!(lab.state().look().is_modified());
     press(&mut lab, Modifiers::COMMAND, Key::S); // Built in, so this asks for a name.
-    click(&mut lab, Role::Button, "Save");
+    press(&mut lab, Modifiers::NONE, Key::Enter);
     let path = folder.path().join("my-teapot.toml");
     let loaded = preset::load(&path).unwrap_or_else(|error| panic!("{error}\n{}", lab.state().log_text()));
     assert_eq!(loaded.session, lab.state().look().session);
     assert!(loaded.warnings.is_empty() && !lab.state().look().is_modified());
     assert_eq!(lab.state().look().id, "my-teapot");
     assert_eq!(lab.query_all_by_label("Look Teapot").count(), 2, "the gallery shows the new look beside the built-in one");
+}
+
+#[test]
+fn an_exported_picture_carries_its_look() {
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    let Some(mut lab) = lab("facet-sweep") else { return };
+    let path = folder.path().join("shot"); // The extension is added.
+    press(&mut lab, Modifiers::NONE, Key::F12);
+    let field = lab.get_by_role_and_label(Role::TextInput, "Path");
+    field.focus();
+    lab.step();
+    lab.key_press_modifiers(Modifiers::COMMAND, Key::A);
+    lab.event(egui::Event::Text(path.to_string_lossy().into_owned()));
+    lab.run_steps(3);
+    lab.get_by_role_and_label(Role::Button, "Save").click();
+    let path = path.with_extension("png");
+    let patience = Instant::now() + Duration::from_secs(60);
+    while !path.exists() {
+        lab.step();
+        assert!(Instant::now() < patience, "{}", lab.state().log_text());
+        std::thread::sleep(Duration::from_millis(10));
+    }
+    let png = std::fs::read(&path).expect("the picture");
+    assert_eq!(preset::look_from_png(&png, "shot.png").expect("a look inside").session, lab.state().look().session);
+    let view = lab.get_by_label("Picture").rect();
+    let decoded = image::load_from_memory(&png).expect("a PNG");
+    assert_eq!([decoded.width(), decoded.height()], [view.width().round() as u32, view.height().round() as u32]);
 }
 
 #[test]

@@ -162,7 +162,8 @@ impl App {
     pub(super) fn dialog_ui(&mut self, ctx: &egui::Context) {
         let Some(dialog) = &mut self.dialog else { return };
         let mut chosen = None;
-        let modal = egui::Modal::new(egui::Id::unique("dialog")).show(ctx, |ui| {
+        let frame = egui::Frame::window(&ctx.global_style()).inner_margin(16.0);
+        let modal = egui::Modal::new(egui::Id::unique("dialog")).frame(frame).show(ctx, |ui| {
             ui.set_width(460.0);
             chosen = match dialog {
                 Dialog::Path { purpose, text, size, replace, browsing, error } => {
@@ -271,10 +272,10 @@ fn path_ui(
     ui.label(theme::weak(purpose.hint()));
     ui.add_space(theme::HALF);
     let field = ui.add(egui::TextEdit::singleline(text).hint_text("Path").desired_width(f32::INFINITY)).accessible_name("Path");
-    if ui.memory(|memory| memory.focused().is_none()) {
+    let entered = field.lost_focus() && ui.input(|i| i.key_pressed(egui::Key::Enter));
+    if !entered && ui.memory(|memory| memory.focused().is_none()) {
         field.request_focus();
     }
-    let entered = field.lost_focus() && ui.input(|i| i.key_pressed(egui::Key::Enter));
     if purpose == Purpose::Export {
         ui.horizontal(|ui| {
             ui.label("Size");

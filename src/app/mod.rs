@@ -3,6 +3,7 @@
 //!
 //! Slow work happens in [`jobs`]; the window waits for no thread and for no device.
 
+mod blit;
 mod dialogs;
 mod fields;
 mod history;
@@ -150,7 +151,7 @@ impl App {
         Ok(Self {
             shelf: Shelf::new(options.presets_dir.as_deref()),
             files: HashMap::from([(FileId::of(&look), look.clone())]),
-            screen: Screen::new(window, gpu),
+            screen: Screen::new(&window, gpu),
             jobs: Jobs::new(cc.egui_ctx.clone()),
             panels: Panels { left: true, right: true, log: false, cheat_sheet: false, search: String::new() },
             options,
@@ -465,8 +466,7 @@ impl App {
             self.inspector_ui(ui);
         });
         self.panels.right = right;
-        let frame = egui::Frame::new().fill(theme::VIEW);
-        let view = egui::CentralPanel::default().frame(frame).show(ui, |ui| self.viewport_ui(ui)).response.rect;
+        let view = egui::CentralPanel::no_frame().show(ui, |ui| self.viewport_ui(ui)).response.rect;
         self.log.toasts_ui(ui.ctx(), view, self.now_s);
     }
 }
@@ -482,8 +482,9 @@ impl eframe::App for App {
         }
     }
 
-    fn ui(&mut self, ui: &mut egui::Ui, _: &mut eframe::Frame) {
+    fn ui(&mut self, ui: &mut egui::Ui, frame: &mut eframe::Frame) {
         let ctx = ui.ctx().clone();
+        start::tune(frame, &self.screen.gpu);
         let (now_s, pressed, held) = ctx.input(|i| (i.time, i.pointer.any_pressed(), i.pointer.any_down()));
         self.now_s = now_s;
         if pressed {
@@ -506,6 +507,6 @@ impl eframe::App for App {
     }
 
     fn clear_color(&self, _: &egui::Visuals) -> [f32; 4] {
-        theme::VIEW.to_normalized_gamma_f32()
+        theme::PANEL.to_normalized_gamma_f32()
     }
 }

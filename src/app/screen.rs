@@ -3,8 +3,9 @@
 
 use std::sync::Arc;
 
-use eframe::{egui, egui_wgpu, wgpu};
+use eframe::{egui_wgpu, wgpu};
 
+use super::blit::{Blit, Blitter};
 use crate::{
     effects::Stack,
     gpu::{Explanation, Gpu, RenderError, Renderer, Report},
@@ -38,7 +39,7 @@ const PATIENCE_S: f64 = 10.0;
 pub struct Screen {
     pub gpu: Arc<Gpu>,
     renderer: Renderer,
-    window: egui_wgpu::RenderState,
+    blitter: Blitter,
     picture: Option<Picture>,
     drawn: Option<Inputs>,
     /// Inputs that could not be drawn; not tried again until they change.
@@ -54,17 +55,17 @@ pub struct Screen {
 
 /// What the window shows.
 struct Picture {
-    id: egui::TextureId,
+    blit: Blit,
     view: wgpu::TextureView,
     size: [u32; 2],
 }
 
 impl Screen {
-    pub fn new(window: egui_wgpu::RenderState, gpu: Arc<Gpu>) -> Self {
+    pub fn new(window: &egui_wgpu::RenderState, gpu: Arc<Gpu>) -> Self {
         Self {
             renderer: Renderer::new(gpu.clone()),
             gpu,
-            window,
+            blitter: Blitter::new(window),
             picture: None,
             drawn: None,
             refused: None,
@@ -89,8 +90,8 @@ impl Screen {
     }
 
     /// The newest picture and its size in pixels.
-    pub fn picture(&self) -> Option<(egui::TextureId, [u32; 2])> {
-        self.picture.as_ref().map(|picture| (picture.id, picture.size))
+    pub fn picture(&self) -> Option<(&Blit, [u32; 2])> {
+        self.picture.as_ref().map(|picture| (&picture.blit, picture.size))
     }
 
     /// What the newest picture was made from.
@@ -156,16 +157,8 @@ impl Screen {
             picture.size = size;
             return;
         }
-        let mut window = self.window.renderer.write();
-        let (device, nearest) = (&self.window.device, wgpu::FilterMode::Nearest);
-        let id = match &self.picture {
-            Some(Picture { id, .. }) => {
-                window.update_egui_texture_from_wgpu_texture(device, view, nearest, *id);
-                *id
-            }
-            None => window.register_native_texture(device, view, nearest),
-        };
-        self.picture = Some(Picture { id, view: view.clone(), size });
+        let blit = self.blitter.blit(&self.gpu.device, view);
+        self.picture = Some(Picture { blit, view: view.clone(), size });
     }
 
     /// Collects figures without waiting; draws again when a queue had overflowed and has grown.
@@ -189,14 +182,6 @@ impl Screen {
                 self.draw(&inputs, now_s)
             }
             _ => Ok(()),
-        }
-    }
-}
-
-impl Drop for Screen {
-    fn drop(&mut self) {
-        if let Some(Picture { id, .. }) = &self.picture {
-            self.window.renderer.write().free_texture(id);
         }
     }
 }

@@ -122,6 +122,17 @@ pub fn adopt(cc: &eframe::CreationContext<'_>) -> anyhow::Result<(egui_wgpu::Ren
     Ok((window, gpu))
 }
 
+/// Presents without waiting for the display on a software adapter: it is slower than any display. Waiting would also
+/// start a thread in the driver that reads X11 events away from the window, which then sleeps through them (seen with
+/// lavapipe of Mesa 22.3: a window that no hand could wake).
+pub(super) fn tune(frame: &mut eframe::Frame, gpu: &Gpu) {
+    if gpu.summary.software
+        && let Some(config) = frame.wgpu_surface_config()
+    {
+        frame.set_wgpu_surface_config(egui_wgpu::SurfaceConfig { present_mode: wgpu::PresentMode::AutoNoVsync, ..config });
+    }
+}
+
 /// The look to begin with. One that cannot be opened is reported, and the teapot stands in.
 pub(super) fn first_look(options: &Options, log: &mut Log) -> Look {
     let folder = options.presets_dir.as_deref();

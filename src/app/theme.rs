@@ -114,9 +114,10 @@ pub fn weak(text: impl Into<String>) -> RichText {
     RichText::new(text).color(TEXT_WEAK)
 }
 
-/// Frame of a side panel.
+/// Frame of a side panel. It has no ground: the window is cleared to [`PANEL`], and on a software adapter every pixel
+/// painted twice is felt.
 pub fn panel_frame() -> egui::Frame {
-    egui::Frame::new().fill(PANEL).inner_margin(Margin::symmetric(12, 10))
+    egui::Frame::new().inner_margin(Margin::symmetric(12, 10))
 }
 
 /// Frame of the bars at the top and bottom.

@@ -1,6 +1,6 @@
 //! Viewport: the picture, and the hand on the camera.
 
-use eframe::egui::{self, Align2, Color32, FontId, PointerButton, Pos2, Rect, RichText, Sense, Ui, Vec2, pos2, vec2};
+use eframe::egui::{self, Align2, Color32, FontId, PointerButton, Rect, RichText, Sense, Ui, Vec2, pos2, vec2};
 
 use super::{
     App, Level,
@@ -181,7 +181,7 @@ impl App {
         let Some(ms) = self.screen.report().and_then(|report| report.gpu_ms) else {
             return if self.screen.gpu.summary.software { 2 } else { 1 };
         };
-        let (_, [width, height]) = self.screen.picture().unwrap_or((egui::TextureId::default(), full));
+        let [width, height] = self.screen.picture().map_or(full, |(_, size)| size);
         let pixels = |w: u32, h: u32| f64::from(w.max(1)) * f64::from(h.max(1));
         // The share that does not shrink with the picture is unknown, so half is taken to shrink.
         let scale = 0.5 + 0.5 * pixels(full[0], full[1]) / pixels(width, height);
@@ -195,14 +195,19 @@ impl App {
     /// The newest picture; what stands where there is none.
     fn picture_ui(&self, ui: &Ui, rect: Rect) {
         let painter = ui.painter_at(rect);
-        if let Some((id, [width, height])) = self.screen.picture().filter(|(_, size)| size.iter().all(|&side| side > 0)) {
+        if let Some((blit, [width, height])) = self.screen.picture().filter(|(_, size)| size.iter().all(|&side| side > 0)) {
             // Its own shape, so that a last good picture from before a resize is not stretched.
             let scale = (rect.width() / width as f32).min(rect.height() / height as f32);
             let size = vec2(width as f32, height as f32) * scale;
-            let at = if (size - rect.size()).abs().max_elem() < 4.0 { rect } else { Rect::from_center_size(rect.center(), size) };
-            painter.image(id, at, Rect::from_min_max(Pos2::ZERO, pos2(1.0, 1.0)), Color32::WHITE);
+            let fits = (size - rect.size()).abs().max_elem() < 4.0;
+            let at = if fits { rect } else { Rect::from_center_size(rect.center(), size) };
+            if !fits {
+                painter.rect_filled(rect, 0.0, theme::VIEW);
+            }
+            painter.add(blit.shape(at));
             return;
         }
+        painter.rect_filled(rect, 0.0, theme::VIEW);
         let (title, detail) = if self.stage.failed.is_some() {
             ("This scene cannot be shown", "The log says why. Choose another one on the left, or drop a .glb here.")
         } else if self.motion.wanted.as_ref().is_some_and(|inputs| self.screen.is_refused(inputs)) {
