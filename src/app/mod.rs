@@ -224,9 +224,9 @@ impl App {
         self.log.tell(level, text, self.now_s);
     }
 
-    /// Has the look changes that its file has not?
+    /// Has the look changes that would be lost? A look without a file has none until it is touched.
     fn is_modified(&self) -> bool {
-        self.look.is_modified()
+        self.files.get(&FileId::of(&self.look)).is_none_or(|as_opened| as_opened.session != self.look.session)
     }
 
     /// The stack without muted effects.
