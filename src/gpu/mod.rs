@@ -37,6 +37,7 @@ use crate::{
     shader::{
         glue::uniform_bytes,
         key::{KernelKey, Pass, Phase, Visibility},
+        library::Library,
         link::LinkError,
         reflect::ShaderError,
     },
@@ -123,7 +124,7 @@ impl Renderer {
         let timer = Timer::new(&gpu);
         Self {
             gpu,
-            pipelines: Pipelines::default(),
+            pipelines: Pipelines::new(Library::from_env()),
             buffers: Buffers::default(),
             timer,
             scene: None,

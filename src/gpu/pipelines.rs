@@ -27,7 +27,6 @@ struct Identity {
 }
 
 /// The cache.
-#[derive(Default)]
 pub struct Pipelines {
     library: Library,
     known: HashMap<(KernelKey, Pass), Arc<Pipeline>>,
@@ -35,6 +34,10 @@ pub struct Pipelines {
 }
 
 impl Pipelines {
+    pub fn new(library: Library) -> Self {
+        Self { library, known: HashMap::new(), built: HashMap::new() }
+    }
+
     /// Number of pipelines compiled so far.
     pub fn compiled(&self) -> usize {
         self.built.len()
