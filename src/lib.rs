@@ -13,6 +13,8 @@
 //! * [`cli`]: every subcommand; never opens a window of its own
 //! * `app`: the window (feature `gui`)
 
+#![forbid(unsafe_code)]
+
 #[cfg(feature = "gui")]
 pub mod app;
 pub mod cli;
