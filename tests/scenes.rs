@@ -95,7 +95,7 @@ fn every_builtin_is_finite_and_indexes_its_own_vertices() {
     for builtin in BUILTINS {
         let scene = scene(builtin.name);
         assert_eq!(scene.name, builtin.name);
-        assert!(!scene.instances.is_empty() && scene.vertex_bytes.len() % 4 == 0 && scene.index_bytes.len() % 4 == 0);
+        assert!(!scene.instances.is_empty() && scene.vertex_bytes.len().is_multiple_of(4) && scene.index_bytes.len().is_multiple_of(4));
         for primitive in &scene.primitives {
             assert!(primitive.material < scene.materials.len());
             for vertex in 0..primitive.vertex_count() {
@@ -232,15 +232,10 @@ fn grid_covers_every_sample_exactly_once() {
         ("grid?cell=0.1&width=64&height=40", 64, 40),
         ("grid?cell=0.4&width=128&height=128", 128, 128),
         ("grid?width=255&height=129", 255, 129),
-        ("grid?cell=1&lattice=2.0&cell=1", 0, 0),
         ("grid?cell=3&lattice=2", 256, 256),
         ("grid?cell=1&lattice=16", 256, 256),
         ("grid?cell=40", 256, 256),
     ] {
-        if width == 0 {
-            assert!(builtin::build(query).is_err());
-            continue;
-        }
         let hits = hits(&snapped(&scene(query), width, height), width.into(), height.into());
         let wrong = hits.iter().filter(|&&n| n != 1).count();
         assert_eq!(wrong, 0, "{query}: {wrong} samples are not covered exactly once");

@@ -1,0 +1,431 @@
+//! Meshes: primitives with their bytes, placed by the nodes that show them.
+
+use std::{
+    collections::{BTreeSet, HashMap},
+    ops::Range,
+};
+
+use glam::{DMat4, DVec3};
+use gltf::json::{
+    self,
+    mesh::{Mode, Semantic},
+    validation::Checked,
+};
+
+use super::{
+    LoadError, ReadFile,
+    buffers::Buffers,
+    called, container, limits,
+    nodes::{Tree, node_name},
+    quoted,
+    skin::{Influences, Pose, bent_normal},
+};
+use crate::scene::{Accessor, Bounds, Component, Instance, Material, Primitive, Scene, Topology};
+
+/// The whole file as a scene.
+pub fn scene(bytes: &[u8], read: &mut ReadFile) -> Result<Scene, LoadError> {
+    let (json, binary) = container::split(bytes)?;
+    let root = container::root(json)?;
+    let buffers = Buffers::read(&root, binary, read)?;
+    check_images(&buffers)?;
+    let tree = Tree::walk(&root)?;
+    let mut loader = Loader::new(&buffers, &tree);
+    for &node in &tree.shown {
+        loader.place(node)?;
+    }
+    let Loader { mut scene, notes, .. } = loader;
+    scene.notes = notes.into_iter().chain(omissions(&root)).collect();
+    if scene.instances.is_empty() {
+        scene.notes.push("nothing to draw: the scene shows no triangles".into());
+    }
+    scene.cameras = tree.cameras(&root, &scene.bounds(), &mut scene.notes);
+    scene.notes.truncate(limits::NOTES);
+    Ok(scene)
+}
+
+/// Images are not decoded yet; what they point at must exist all the same.
+fn check_images(buffers: &Buffers) -> Result<(), LoadError> {
+    for (index, image) in buffers.root.images.iter().enumerate() {
+        let place = |error: LoadError| error.within(called("image", index, image.name.as_deref()));
+        match (image.buffer_view, &image.uri) {
+            (Some(view), _) => drop(buffers.view(view.value()).map_err(place)?),
+            (None, None) => return Err(place(LoadError::new("has neither a URI nor a bufferView"))),
+            (None, Some(_)) => {}
+        }
+    }
+    Ok(())
+}
+
+/// What the file has and the picture lacks.
+fn omissions(root: &json::Root) -> Vec<String> {
+    let mut notes: Vec<String> = root.extensions_used.iter().map(|name| format!("extension {} is ignored", quoted(name))).collect();
+    let pbr = |material: &json::Material| material.pbr_metallic_roughness.base_color_texture.is_some();
+    let any = [
+        (root.materials.iter().any(pbr), "textures are not drawn yet, only base colour factors"),
+        (
+            root.materials.iter().any(|m| m.alpha_mode != Checked::Valid(json::material::AlphaMode::Opaque)),
+            "alpha is ignored: all surfaces are opaque",
+        ),
+        (!root.animations.is_empty(), "animations are not played yet"),
+        (root.meshes.iter().flat_map(|mesh| &mesh.primitives).any(|p| p.targets.is_some()), "morph targets are not applied yet"),
+    ];
+    notes.extend(any.into_iter().filter(|(is_there, _)| *is_there).map(|(_, note)| note.to_owned()));
+    notes
+}
+
+struct Loader<'a> {
+    buffers: &'a Buffers<'a>,
+    tree: &'a Tree,
+    scene: Scene,
+    notes: BTreeSet<String>,
+    /// Where a view or a materialised accessor lies in the scene's bytes.
+    vertex_places: HashMap<Source, u32>,
+    index_places: HashMap<Source, u32>,
+    /// What each primitive of the scene was read from.
+    origins: Vec<&'a json::mesh::Primitive>,
+    /// Primitives of a mesh, once it was met.
+    meshes: HashMap<usize, Range<usize>>,
+    poses: HashMap<usize, Pose>,
+    default_material: Option<usize>,
+    vertices: u64,
+    triangles: u64,
+}
+
+/// Bytes that several primitives may share.
+#[derive(Clone, Copy, PartialEq, Eq, Hash)]
+enum Source {
+    View(usize),
+    Accessor(usize),
+}
+
+impl<'a> Loader<'a> {
+    fn new(buffers: &'a Buffers<'a>, tree: &'a Tree) -> Self {
+        let materials = buffers.root.materials.iter().enumerate().map(|(i, m)| material(i, m)).collect();
+        Self {
+            buffers,
+            tree,
+            scene: Scene { materials, ..Scene::default() },
+            notes: BTreeSet::new(),
+            vertex_places: HashMap::new(),
+            index_places: HashMap::new(),
+            origins: Vec::new(),
+            meshes: HashMap::new(),
+            poses: HashMap::new(),
+            default_material: None,
+            vertices: 0,
+            triangles: 0,
+        }
+    }
+
+    /// Adds the instances of one node.
+    fn place(&mut self, node: usize) -> Result<(), LoadError> {
+        let about = &self.buffers.root.nodes[node];
+        let Some(mesh) = about.mesh.map(|mesh| mesh.value()) else { return Ok(()) };
+        let range = self.mesh(mesh)?;
+        if self.scene.instances.len() + range.len() > limits::INSTANCES {
+            return Err(
+                LoadError::new(format!("more than {} primitives are placed", limits::INSTANCES)).within(node_name(self.buffers.root, node))
+            );
+        }
+        match about.skin {
+            Some(skin) => self.place_skinned(range, skin.value()),
+            None => {
+                let world_from_object = self.tree.world_from_node[node];
+                self.scene.instances.extend(range.map(|primitive| Instance { primitive, world_from_object }));
+                Ok(())
+            }
+        }
+    }
+
+    /// A skinned mesh ignores its node: the joints place it.
+    fn place_skinned(&mut self, range: Range<usize>, skin: usize) -> Result<(), LoadError> {
+        let pose = match self.poses.remove(&skin) {
+            Some(pose) => pose,
+            None => Pose::at_rest(self.buffers, self.tree, skin)?,
+        };
+        self.notes.insert("skin: shown in bind pose".into());
+        for primitive in range {
+            let (name, count) = (self.scene.primitives[primitive].name.clone(), self.scene.primitives[primitive].vertex_count());
+            let place = |error: LoadError| error.within(&name);
+            self.budget_vertices(count.into()).map_err(place)?;
+            let influences = self.influences(primitive, &pose).map_err(place)?;
+            let instance = match pose.common() {
+                Some(world_from_object) => Instance { primitive, world_from_object },
+                None => {
+                    Instance { primitive: self.bent(primitive, &pose, &influences).map_err(place)?, world_from_object: DMat4::IDENTITY }
+                }
+            };
+            self.scene.instances.push(instance);
+        }
+        self.poses.insert(skin, pose);
+        Ok(())
+    }
+
+    fn influences(&self, primitive: usize, pose: &Pose) -> Result<Influences, LoadError> {
+        let find = |semantic: Semantic| self.origins[primitive].attributes.get(&Checked::Valid(semantic)).map(|accessor| accessor.value());
+        let (Some(joints), Some(weights)) = (find(Semantic::Joints(0)), find(Semantic::Weights(0))) else {
+            return Err(LoadError::new("is placed by a skin, but lacks JOINTS_0 or WEIGHTS_0"));
+        };
+        let count = self.scene.primitives[primitive].vertex_count();
+        Influences::read(self.buffers, [joints, weights], count, pose.world_from_mesh.len())
+    }
+
+    /// A copy of a primitive with every vertex where its joints hold it, in world space.
+    fn bent(&mut self, primitive: usize, pose: &Pose, influences: &Influences) -> Result<usize, LoadError> {
+        let mut bent = self.scene.primitives[primitive].clone();
+        let (mut positions, mut normals) = (Vec::<[f32; 3]>::new(), Vec::<[f32; 3]>::new());
+        for vertex in 0..bent.vertex_count() {
+            let matrix = pose.world_from_vertex(influences.at(vertex));
+            let read =
+                |accessor: &Accessor| DVec3::from_array([0, 1, 2].map(|lane| accessor.value(&self.scene.vertex_bytes, vertex, lane)));
+            positions.push(matrix.transform_point3(read(&bent.positions)).as_vec3().into());
+            normals.push(bent_normal(&matrix, read(&bent.normals)).normalize_or(DVec3::Y).as_vec3().into());
+        }
+        bent.positions = self.append_vectors(&positions)?;
+        bent.normals = self.append_vectors(&normals)?;
+        measure(&self.scene, &mut bent).map_err(|error| error.within("bent by its skin"))?;
+        self.scene.primitives.push(bent);
+        self.origins.push(self.origins[primitive]);
+        Ok(self.scene.primitives.len() - 1)
+    }
+
+    /// The primitives of a mesh; loads it when it is met for the first time.
+    fn mesh(&mut self, mesh: usize) -> Result<Range<usize>, LoadError> {
+        if let Some(range) = self.meshes.get(&mesh) {
+            return Ok(range.clone());
+        }
+        let first = self.scene.primitives.len();
+        for (index, primitive) in self.buffers.root.meshes[mesh].primitives.iter().enumerate() {
+            let name = primitive_name(self.buffers.root, mesh, index);
+            let topology = match primitive.mode {
+                Checked::Valid(Mode::Triangles) => Topology::List,
+                Checked::Valid(Mode::TriangleStrip) => Topology::Strip,
+                Checked::Valid(Mode::TriangleFan) => Topology::Fan,
+                _ => {
+                    self.notes.insert(format!("{name} is left out: points and lines are not drawn"));
+                    continue;
+                }
+            };
+            self.primitive(&name, topology, primitive).map_err(|LoadError(reason)| LoadError(format!("{name}{reason}")))?;
+        }
+        let range = first..self.scene.primitives.len();
+        self.meshes.insert(mesh, range.clone());
+        Ok(range)
+    }
+
+    /// Loads one primitive. Reasons of errors begin with ` ATTRIBUTE: ` or `: `, to follow the primitive's name.
+    fn primitive(&mut self, name: &str, topology: Topology, about: &'a json::mesh::Primitive) -> Result<(), LoadError> {
+        let attribute = |semantic: Semantic| about.attributes.get(&Checked::Valid(semantic)).map(|accessor| accessor.value());
+        let at = |place: &'static str| move |error: LoadError| LoadError(format!(" {place}: {error}"));
+        let plain = |error: LoadError| LoadError(format!(": {error}"));
+        let positions = attribute(Semantic::Positions).ok_or_else(|| plain(LoadError::new("has no POSITION")))?;
+        let count = self.buffers.layout(positions).map_err(at("POSITION"))?.accessor.count;
+        self.budget_vertices(count.into()).map_err(at("POSITION"))?;
+        let positions = self.attribute(positions, count, &[3], FLOAT).map_err(at("POSITION"))?;
+        let normals = attribute(Semantic::Normals).map(|a| self.attribute(a, count, &[3], FLOAT).map_err(at("NORMAL"))).transpose()?;
+        let colors = attribute(Semantic::Colors(0)).map(|a| self.attribute(a, count, &[3, 4], COLOR).map_err(at("COLOR_0"))).transpose()?;
+        let indices = about.indices.map(|a| self.indices(a.value()).map_err(at("indices"))).transpose()?;
+        let corners = indices.map_or(count, |indices| indices.count);
+        self.budget_triangles(topology, corners).map_err(if indices.is_some() { at("indices") } else { at("POSITION") })?;
+
+        let mut primitive = Primitive {
+            name: name.into(),
+            topology,
+            indices,
+            positions,
+            normals: normals.unwrap_or(positions),
+            colors,
+            material: self.material(about),
+            bounds: Bounds::EMPTY,
+            longest_edge: 0.0,
+        };
+        check_indices(&self.scene, &primitive).map_err(at("indices"))?;
+        measure(&self.scene, &mut primitive).map_err(at("POSITION"))?;
+        if normals.is_none() {
+            let smooth = smooth_normals(&self.scene, &primitive);
+            primitive.normals = self.append_vectors(&smooth).map_err(at("NORMAL"))?;
+        } else {
+            check_finite(&self.scene, &primitive.normals).map_err(at("NORMAL"))?;
+        }
+        if let Some(colors) = &primitive.colors {
+            check_finite(&self.scene, colors).map_err(at("COLOR_0"))?;
+        }
+        self.scene.primitives.push(primitive);
+        self.origins.push(about);
+        Ok(())
+    }
+
+    fn material(&mut self, about: &json::mesh::Primitive) -> usize {
+        let materials = &mut self.scene.materials;
+        about.material.map(|material| material.value()).unwrap_or_else(|| {
+            *self.default_material.get_or_insert_with(|| {
+                materials.push(Material::default());
+                materials.len() - 1
+            })
+        })
+    }
+
+    fn budget_vertices(&mut self, more: u64) -> Result<(), LoadError> {
+        self.vertices += more;
+        if self.vertices > limits::VERTICES {
+            return Err(LoadError::new(format!("brings the model to {} vertices; at most {} are read", self.vertices, limits::VERTICES)));
+        }
+        Ok(())
+    }
+
+    fn budget_triangles(&mut self, topology: Topology, corners: u32) -> Result<(), LoadError> {
+        let (fits, wanted) = match topology {
+            Topology::List => (corners.is_multiple_of(3), "a multiple of 3"),
+            Topology::Strip | Topology::Fan => (corners >= 3, "at least 3"),
+        };
+        if !fits {
+            return Err(LoadError::new(format!("{corners} corners make no triangles; their number must be {wanted}")));
+        }
+        self.triangles += u64::from(topology.triangles(corners));
+        if self.triangles > limits::TRIANGLES {
+            return Err(LoadError::new(format!(
+                "brings the model to {} triangles; at most {} are read",
+                self.triangles,
+                limits::TRIANGLES
+            )));
+        }
+        Ok(())
+    }
+
+    /// Takes over an attribute of `count` vertices if its type is among those allowed.
+    fn attribute(&mut self, index: usize, count: u32, lanes: &[u32], kinds: &[(Component, bool)]) -> Result<Accessor, LoadError> {
+        let layout = self.buffers.layout(index)?;
+        let accessor = layout.accessor;
+        if !lanes.contains(&accessor.lanes) || !kinds.contains(&(accessor.component, accessor.normalized)) {
+            return Err(LoadError::new(format!("accessor {index} has a type that glTF does not allow here ({})", type_name(&accessor))));
+        }
+        if accessor.count != count {
+            return Err(LoadError::new(format!("accessor {index} has {} elements for {count} vertices", accessor.count)));
+        }
+        take_over(self.buffers, index, &mut self.vertex_places, &mut self.scene.vertex_bytes)
+    }
+
+    fn indices(&mut self, index: usize) -> Result<Accessor, LoadError> {
+        let accessor = self.buffers.layout(index)?.accessor;
+        let is_index =
+            matches!(accessor.component, Component::U8 | Component::U16 | Component::U32) && accessor.lanes == 1 && !accessor.normalized;
+        if !is_index {
+            return Err(LoadError::new(format!("accessor {index} has a type that glTF does not allow here ({})", type_name(&accessor))));
+        }
+        if accessor.stride != accessor.component.bytes() {
+            return Err(LoadError::new(format!("accessor {index} has a byteStride, which indices must not have")));
+        }
+        take_over(self.buffers, index, &mut self.index_places, &mut self.scene.index_bytes)
+    }
+
+    fn append_vectors(&mut self, vectors: &[[f32; 3]]) -> Result<Accessor, LoadError> {
+        let offset = append(&mut self.scene.vertex_bytes, bytemuck::cast_slice(vectors))?;
+        Ok(Accessor::packed_f32(offset as usize, 3, vectors.len()))
+    }
+}
+
+const FLOAT: &[(Component, bool)] = &[(Component::F32, false)];
+const COLOR: &[(Component, bool)] = &[(Component::F32, false), (Component::U8, true), (Component::U16, true)];
+
+fn type_name(accessor: &Accessor) -> String {
+    let normalized = if accessor.normalized { " normalized" } else { "" };
+    format!("{} x {:?}{normalized}", accessor.lanes, accessor.component)
+}
+
+fn primitive_name(root: &json::Root, mesh: usize, primitive: usize) -> String {
+    format!("{} primitive {primitive}", called("mesh", mesh, root.meshes[mesh].name.as_deref()))
+}
+
+fn material(index: usize, about: &json::Material) -> Material {
+    Material {
+        name: about.name.clone().unwrap_or_else(|| format!("material {index}")),
+        base_color: about.pbr_metallic_roughness.base_color_factor.0.map(|channel| channel.clamp(0.0, 1.0)),
+        double_sided: about.double_sided,
+    }
+}
+
+/// Copies the view of an accessor (or its sparse elements) unless that was done before.
+fn take_over(buffers: &Buffers, index: usize, places: &mut HashMap<Source, u32>, bytes: &mut Vec<u8>) -> Result<Accessor, LoadError> {
+    let layout = buffers.layout(index)?;
+    let accessor = layout.accessor;
+    let (source, placed) = match layout.view {
+        Some(view) if !layout.is_sparse => (Source::View(view), accessor),
+        _ => (Source::Accessor(index), Accessor { offset: 0, stride: accessor.component.bytes() * accessor.lanes, ..accessor }),
+    };
+    let start = match places.get(&source) {
+        Some(&start) => start,
+        None => {
+            let start = match source {
+                Source::View(view) => append(bytes, buffers.view(view)?)?,
+                Source::Accessor(_) => append(bytes, &buffers.materialized(index, &layout)?)?,
+            };
+            places.insert(source, start);
+            start
+        }
+    };
+    Ok(Accessor { offset: start + placed.offset, ..placed })
+}
+
+/// Appends at a multiple of 4 bytes and pads to one; returns where.
+fn append(bytes: &mut Vec<u8>, more: &[u8]) -> Result<u32, LoadError> {
+    let total = bytes.len() as u64 + more.len().next_multiple_of(4) as u64;
+    if total > limits::BINDING_BYTES {
+        return Err(LoadError::new(format!("brings the model to {total} bytes in one buffer; at most {} fit", limits::BINDING_BYTES)));
+    }
+    let start = bytes.len() as u32;
+    bytes.extend_from_slice(more);
+    bytes.resize(total as usize, 0);
+    Ok(start)
+}
+
+fn check_finite(scene: &Scene, accessor: &Accessor) -> Result<(), LoadError> {
+    let value = |vertex, lane| accessor.value(&scene.vertex_bytes, vertex, lane);
+    match (0..accessor.count).find(|&vertex| (0..accessor.lanes).any(|lane| !value(vertex, lane).is_finite())) {
+        Some(vertex) => Err(LoadError::new(format!("vertex {vertex} is not finite"))),
+        None => Ok(()),
+    }
+}
+
+fn check_indices(scene: &Scene, primitive: &Primitive) -> Result<(), LoadError> {
+    let Some(indices) = &primitive.indices else { return Ok(()) };
+    let count = primitive.vertex_count();
+    let beyond = |corner: &u32| indices.integer(&scene.index_bytes, *corner, 0) >= i64::from(count);
+    match (0..indices.count).find(beyond) {
+        Some(corner) => {
+            let index = indices.integer(&scene.index_bytes, corner, 0);
+            Err(LoadError::new(format!("corner {corner} names vertex {index} of {count}")))
+        }
+        None => Ok(()),
+    }
+}
+
+/// Fills in bounds and longest edge; refuses positions that are not finite.
+fn measure(scene: &Scene, primitive: &mut Primitive) -> Result<(), LoadError> {
+    check_finite(scene, &primitive.positions)?;
+    let at = |vertex: u32| DVec3::from(primitive.position(scene, vertex).map(f64::from));
+    let mut bounds = Bounds::EMPTY;
+    (0..primitive.vertex_count()).for_each(|vertex| bounds.include(at(vertex)));
+    let mut longest: f64 = 0.0;
+    for t in 0..primitive.triangle_count() {
+        let [a, b, c] = primitive.corners(scene, t).map(at);
+        longest = longest.max(a.distance_squared(b)).max(b.distance_squared(c)).max(c.distance_squared(a));
+    }
+    (primitive.bounds, primitive.longest_edge) = (bounds, longest.sqrt());
+    Ok(())
+}
+
+/// Normals of a primitive that has none: the mean of the adjoining faces, weighted by area.
+///
+/// glTF asks for flat normals here. Vertices that triangles do not share (no indices) get just those; shared ones would
+/// have to be split first, so they are smoothed instead, and the file's bytes stay as they are.
+fn smooth_normals(scene: &Scene, primitive: &Primitive) -> Vec<[f32; 3]> {
+    let at = |vertex: u32| DVec3::from(primitive.position(scene, vertex).map(f64::from));
+    let mut sums = vec![DVec3::ZERO; primitive.vertex_count() as usize];
+    for t in 0..primitive.triangle_count() {
+        let corners = primitive.corners(scene, t);
+        let [a, b, c] = corners.map(at);
+        let twice_area = (b - a).cross(c - a);
+        corners.into_iter().for_each(|corner| sums[corner as usize] += twice_area);
+    }
+    sums.into_iter().map(|sum| sum.normalize_or(DVec3::Y).as_vec3().into()).collect()
+}
