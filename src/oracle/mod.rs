@@ -35,12 +35,20 @@ use crate::{
 /// When a placement or the number of triangles exceeds what the arithmetic holds.
 pub fn render(scene: &Scene, view: &View, stack: &Stack) -> Result<Frame, DrawError> {
     let draws = draws(scene, view)?;
+    if view.pixels() == 0 {
+        return Ok(empty(view));
+    }
     let geometry = project(scene, &draws, view);
     let (triangles, counters) = triangles(scene, &draws, &geometry);
     let coverage = cover(&triangles, view, None);
     let owner = coverage.owners();
     let color = shade(scene, &draws, view, stack, &owner, &geometry);
     Ok(frame(view, &coverage, color, counters))
+}
+
+/// The picture of a view without pixels: nothing was drawn, so nothing was counted.
+fn empty(view: &View) -> Frame {
+    Frame { width: view.width, height: view.height, ..Default::default() }
 }
 
 /// The integers of `coverage` with their colours.

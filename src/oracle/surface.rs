@@ -88,7 +88,7 @@ impl Triangle {
         let color = |corner| base * primitive.colors.map_or(DVec4::ONE, |colors| color(scene, &colors, corner));
         let [n0, n1, n2] = corners.map(|corner| normal(scene, &primitive.normals, corner));
         let side = if material.double_sided && screen.is_back { -1.0 } else { 1.0 };
-        let world_from_normal = inverse_transpose(DMat3::from_mat4(draw.world_from_object)) * side;
+        let world_from_normal = inverse_transpose(DMat3::from_mat4(draw.world_from_object), draw.mirrored) * side;
         Some(Self {
             owner,
             weights: screen.weights,
@@ -229,10 +229,10 @@ fn plane_normal([a, b, c]: [DVec3; 3]) -> Option<DVec3> {
     (normal.length_squared() >= DEGENERATE).then_some(normal)
 }
 
-/// What takes normals where `m` takes points, up to a positive factor: cofactors, turned over when `m` mirrors.
-fn inverse_transpose(m: DMat3) -> DMat3 {
+/// What takes normals where `m` takes points, up to a positive factor: cofactors, turned over by a mirror.
+fn inverse_transpose(m: DMat3, mirrored: bool) -> DMat3 {
     let cofactors = DMat3::from_cols(m.y_axis.cross(m.z_axis), m.z_axis.cross(m.x_axis), m.x_axis.cross(m.y_axis));
     let largest = cofactors.to_cols_array().into_iter().fold(0.0, |largest: f64, entry| largest.max(entry.abs()));
     let scale = if largest > 0.0 { 1.0 / largest } else { 0.0 };
-    cofactors * if m.determinant() < 0.0 { -scale } else { scale }
+    cofactors * if mirrored { -scale } else { scale }
 }
