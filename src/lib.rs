@@ -9,9 +9,15 @@
 //! * [`measure`]: frame against frame, samples of time
 //! * [`oracle`]: the exact CPU renderer that judges and blesses
 //! * [`session`]: the state of a look
+//! * [`preset`]: looks as files, sparse TOML
+//! * [`cli`]: every subcommand; never opens a window of its own
+//! * `app`: the window (feature `gui`)
 
 #![forbid(unsafe_code)]
 
+#[cfg(feature = "gui")]
+pub mod app;
+pub mod cli;
 pub mod effects;
 pub mod frame;
 pub mod gpu;
@@ -20,6 +26,7 @@ pub mod measure;
 pub mod oracle;
 pub mod params;
 pub mod plan;
+pub mod preset;
 pub mod scene;
 pub mod session;
 pub mod shader;

@@ -1,0 +1,51 @@
+//! `adapters`: what could draw here. Always ends with `cpu`.
+
+use serde_json::{Value, json};
+
+use super::{
+    args::Common,
+    fault::{Exit, Fault},
+    painter::{adapter_json, usable_rungs},
+    streams::{Streams, table},
+};
+use crate::gpu::device;
+
+pub fn run(_: &Common, streams: &mut Streams) -> Result<Exit, Fault> {
+    let adapters = device::list();
+    if streams.json {
+        let mut results: Vec<Value> = adapters
+            .iter()
+            .map(|(summary, caps)| {
+                let mut object = adapter_json(summary, caps);
+                object["rungs"] = usable_rungs(caps).iter().map(|rung| rung.name()).collect();
+                object["limits"] = json!(caps);
+                object
+            })
+            .collect();
+        results.push(json!({ "name": "cpu", "backend": "cpu", "software": true, "class": "oracle", "rungs": [] }));
+        streams.object("adapters", Value::Null, results)?;
+        return Ok(Exit::Done);
+    }
+    let head = ["ADAPTER", "BACKEND", "DRIVER", "CLASS", "RUNGS", "BINDING", "TIMESTAMPS", "KIND"];
+    let mut rows = vec![head.map(str::to_owned).to_vec()];
+    rows.extend(adapters.iter().map(|(summary, caps)| {
+        let rungs: Vec<_> = usable_rungs(caps).iter().map(|rung| rung.name()).collect();
+        vec![
+            summary.name.clone(),
+            summary.backend.clone(),
+            summary.driver.clone(),
+            caps.class().into(),
+            rungs.join(" "),
+            format!("{} MiB", caps.max_storage_binding_bytes >> 20),
+            if caps.timestamps { "yes" } else { "no" }.into(),
+            if summary.software { "software" } else { "hardware" }.into(),
+        ]
+    }));
+    let cpu = ["cpu", "cpu", "built in", "oracle", "exact", "-", "no", "software"];
+    rows.push(cpu.map(str::to_owned).to_vec());
+    streams.text(&table(&rows))?;
+    if adapters.is_empty() {
+        streams.note("no GPU adapter was found; --adapter cpu draws with the built-in oracle");
+    }
+    Ok(Exit::Done)
+}

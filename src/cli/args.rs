@@ -1,0 +1,253 @@
+//! What can be typed.
+
+use std::path::PathBuf;
+
+use clap::{Args, Parser, Subcommand, ValueEnum};
+
+/// An effects lab around a compute-shader rasterizer, judged by an exact oracle.
+#[derive(Parser, Debug)]
+#[command(name = "rasterlab", version, about, long_about = LONG)]
+pub struct Cli {
+    /// A look, a model (.glb, .gltf) or a picture of ours to open in the window
+    #[arg(value_name = "LOOK|MODEL|SHOT.png")]
+    pub open: Option<String>,
+    #[command(flatten)]
+    pub common: Common,
+    #[command(subcommand)]
+    pub command: Option<Command>,
+}
+
+const LONG: &str = "An effects lab around a compute-shader rasterizer, judged by an exact oracle.\n\n\
+    Without a command the window opens. A LOOK is an id of the gallery (rasterlab list), a .toml file, a .glb or .gltf \
+    model, a PNG saved by rasterlab, builtin:QUERY, or - for TOML from stdin.\n\n\
+    Exit codes: 0 done; 1 a comparison, check, promised accuracy or dry run failed; 2 usage, or a file that cannot be \
+    read or written; 3 no suitable adapter; 4 the device was lost.";
+
+/// Flags that every command has.
+#[derive(Args, Debug, Default)]
+pub struct Common {
+    /// Part of an adapter's name, or cpu for the built-in oracle [env: RASTERLAB_ADAPTER]
+    #[arg(long, global = true, value_name = "NAME")]
+    pub adapter: Option<String>,
+    /// Folder of looks that comes before all others [env: RASTERLAB_PRESETS]
+    #[arg(long, global = true, value_name = "DIR")]
+    pub presets: Option<PathBuf>,
+    /// Change a key of the look, e.g. facet.amount=.5; an effect's name alone enables it
+    #[arg(long, global = true, value_name = "PATH[=VALUE]")]
+    pub set: Vec<String>,
+    /// Put a key back to its default; an effect's name takes it out
+    #[arg(long, global = true, value_name = "PATH")]
+    pub unset: Vec<String>,
+    /// Print one JSON object
+    #[arg(long, global = true)]
+    pub json: bool,
+    /// No progress, no notes
+    #[arg(long, short, global = true)]
+    pub quiet: bool,
+    /// Unknown keys in a look are errors
+    #[arg(long, global = true)]
+    pub strict: bool,
+    /// Overwrite existing files
+    #[arg(long, global = true)]
+    pub force: bool,
+}
+
+impl Common {
+    /// `--presets`, or what the environment says.
+    pub fn presets_dir(&self) -> Option<PathBuf> {
+        self.presets.clone().or_else(|| std::env::var_os("RASTERLAB_PRESETS").filter(|dir| !dir.is_empty()).map(PathBuf::from))
+    }
+
+    /// `--adapter`, or what the environment says.
+    pub fn adapter_name(&self) -> Option<String> {
+        self.adapter.clone().or_else(|| std::env::var("RASTERLAB_ADAPTER").ok().filter(|name| !name.is_empty()))
+    }
+}
+
+#[derive(Subcommand, Debug)]
+pub enum Command {
+    /// Looks, builtin scenes, effects and their parameters with ranges
+    List(List),
+    /// Every adapter with backend, driver, limits and usable rungs
+    Adapters,
+    /// One picture of each look
+    Render(Render),
+    /// Each look on the adapter against the oracle, all buffers
+    Verify(Verify),
+    /// Two pictures or looks against each other
+    Compare(Compare),
+    /// Passes, buffers, and the reason for each
+    Explain(Explain),
+    /// Redraw goldens with the oracle
+    Bless(Bless),
+    /// Milliseconds beside error, rung by rung
+    Bench(Bench),
+    /// Validate looks; with --render also against their goldens
+    Check(Check),
+    /// Print a completion script
+    Completions { shell: clap_complete::Shell },
+}
+
+impl Command {
+    pub fn name(&self) -> &'static str {
+        match self {
+            Self::List(_) => "list",
+            Self::Adapters => "adapters",
+            Self::Render(_) => "render",
+            Self::Verify(_) => "verify",
+            Self::Compare(_) => "compare",
+            Self::Explain(_) => "explain",
+            Self::Bless(_) => "bless",
+            Self::Bench(_) => "bench",
+            Self::Check(_) => "check",
+            Self::Completions { .. } => "completions",
+        }
+    }
+}
+
+#[derive(Args, Debug)]
+pub struct List {
+    /// Only effects
+    #[arg(long)]
+    pub effects: bool,
+    /// Only looks
+    #[arg(long)]
+    pub looks: bool,
+    /// Only builtin scenes
+    #[arg(long)]
+    pub scenes: bool,
+}
+
+#[derive(Args, Debug)]
+pub struct Render {
+    #[arg(required = true, value_name = "LOOK")]
+    pub looks: Vec<String>,
+    /// Where to; - for stdout. Knows {preset} {effect} {n} {n:3} {adapter} {tier}
+    #[arg(short, long, value_name = "FILE", default_value = "{preset}.png")]
+    pub output: String,
+    /// Size in pixels, e.g. 1920x1080
+    #[arg(long, value_name = "WxH", value_parser = size)]
+    pub size: Option<[u32; 2]>,
+    /// Time of the picture in seconds
+    #[arg(long, value_name = "S", allow_negative_numbers = true)]
+    pub time: Option<f64>,
+    /// Named tolerance: draft, fast, precise, reference
+    #[arg(long, value_name = "T")]
+    pub tier: Option<String>,
+    /// Leave look, version, adapter and driver out of the PNG
+    #[arg(long)]
+    pub bare: bool,
+}
+
+#[derive(Args, Debug)]
+pub struct Verify {
+    /// Looks; without any, every look of the gallery that has a golden
+    #[arg(value_name = "LOOK")]
+    pub looks: Vec<String>,
+    /// Draw so many frames, which must be equal to the bit
+    #[arg(long, default_value_t = 1, value_parser = clap::value_parser!(u32).range(1..=10_000))]
+    pub frames: u32,
+    /// Size in pixels instead of the look's own
+    #[arg(long, value_name = "WxH", value_parser = size)]
+    pub size: Option<[u32; 2]>,
+    /// Folder for pictures: expected, actual and difference side by side
+    #[arg(short, long, value_name = "DIR")]
+    pub output: Option<PathBuf>,
+}
+
+#[derive(Args, Debug)]
+pub struct Compare {
+    /// A PNG or a look
+    pub a: String,
+    /// A PNG or a look
+    pub b: String,
+    /// Picture of the differences
+    #[arg(short, long, value_name = "FILE")]
+    pub output: Option<String>,
+    /// Largest difference of a channel that passes, of 255
+    #[arg(long, default_value_t = 1)]
+    pub max_channel: u8,
+    /// Pixels beyond it that pass
+    #[arg(long, default_value_t = 0)]
+    pub max_pixels: u64,
+    /// Pixels with another owner that pass, between looks
+    #[arg(long, default_value_t = 0)]
+    pub max_wrong_owner: u64,
+    /// Size in pixels of looks instead of their own
+    #[arg(long, value_name = "WxH", value_parser = size)]
+    pub size: Option<[u32; 2]>,
+}
+
+#[derive(Args, Debug)]
+pub struct Explain {
+    pub look: String,
+    /// Size in pixels instead of the look's own
+    #[arg(long, value_name = "WxH", value_parser = size)]
+    pub size: Option<[u32; 2]>,
+}
+
+#[derive(Args, Debug)]
+pub struct Bless {
+    /// Looks of the preset folder, or effects whose first look is to be made
+    #[arg(value_name = "LOOK|EFFECT")]
+    pub names: Vec<String>,
+    /// Every look that has a [test] table
+    #[arg(long, conflicts_with = "names")]
+    pub all: bool,
+    /// Change nothing; exit 1 if any golden would change
+    #[arg(long)]
+    pub dry_run: bool,
+    /// Folder of the goldens
+    #[arg(long, value_name = "DIR", default_value = "tests/snapshots")]
+    pub snapshots: PathBuf,
+}
+
+#[derive(Args, Debug)]
+pub struct Bench {
+    /// Looks; without any, daylight on each --scene
+    #[arg(value_name = "LOOK")]
+    pub looks: Vec<String>,
+    /// A builtin scene by query or a model file, instead of the look's own; may be repeated
+    #[arg(long, value_name = "SCENE")]
+    pub scene: Vec<String>,
+    /// Size in pixels of every row
+    #[arg(long, value_name = "WxH", value_parser = size, default_value = "1920x1080")]
+    pub size: [u32; 2],
+    /// Timed frames per row
+    #[arg(long, default_value_t = 30, value_parser = clap::value_parser!(u32).range(1..=100_000))]
+    pub samples: u32,
+    #[arg(long, value_enum, default_value_t = Format::Table)]
+    pub format: Format,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum Format {
+    Table,
+    Json,
+    Csv,
+    Md,
+}
+
+#[derive(Args, Debug)]
+pub struct Check {
+    /// Looks; without any, the whole gallery
+    #[arg(value_name = "FILE")]
+    pub files: Vec<String>,
+    /// Also draw each on the adapter and compare it with its golden
+    #[arg(long)]
+    pub render: bool,
+    /// One self-contained HTML file with all pictures
+    #[arg(long, value_name = "FILE", requires = "render")]
+    pub report: Option<String>,
+    /// Folder of the goldens
+    #[arg(long, value_name = "DIR", default_value = "tests/snapshots")]
+    pub snapshots: PathBuf,
+}
+
+/// `1920x1080`.
+fn size(text: &str) -> Result<[u32; 2], String> {
+    let wrong = || format!("a size is WIDTHxHEIGHT, each 0 to 16384, for instance 1920x1080; {text:?} is not");
+    let (width, height) = text.split_once(['x', 'X']).ok_or_else(wrong)?;
+    let side = |side: &str| side.parse().ok().filter(|side| *side <= 16_384).ok_or_else(wrong);
+    Ok([side(width)?, side(height)?])
+}

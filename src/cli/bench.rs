@@ -1,0 +1,130 @@
+//! `bench`: milliseconds beside error, one row per scene and rung. No row has a time without an error.
+
+use std::sync::Arc;
+
+use serde_json::Value;
+
+use super::{
+    args::{Bench, Common, Format},
+    fault::{Exit, Fault},
+    open,
+    painter::{Painter, scene_of},
+    streams::{Streams, table},
+};
+use crate::{
+    gpu::bench::{BenchOptions, BenchRow, bench},
+    measure::{Accuracy, Budget},
+    oracle,
+    preset::Look,
+    scene::Scene,
+    session::SceneSource,
+};
+
+pub fn run(common: &Common, args: &Bench, streams: &mut Streams) -> Result<Exit, Fault> {
+    let subjects = subjects(common, args)?;
+    let painter = Painter::open(common, streams)?;
+    let Painter::Gpu(_, gpu) = &painter else {
+        return Err(Fault::usage("the oracle judges and is never ranked; bench needs a GPU adapter"));
+    };
+    let options = BenchOptions { size: args.size, samples: args.samples as usize };
+    let bar = streams.progress(0);
+    let mut rows = Vec::new();
+    for (look, scene) in &subjects {
+        let session = &look.session;
+        let view = session.view(scene, args.size);
+        let judge = |frame: &_, geometry: &_, layers: Option<&[u32]>| -> Accuracy {
+            let verdict = oracle::judge(scene, &view, &session.stack, frame, geometry, layers);
+            verdict.expect("a scene that was drawn can be judged").accuracy
+        };
+        let mut progress = |what: &str, done: usize, all: usize| {
+            bar.set_length(all as u64);
+            bar.set_position(done as u64);
+            bar.set_message(what.to_owned());
+        };
+        rows.extend(bench(gpu, session, scene, &look.id, &options, &mut progress, &judge)?);
+    }
+    bar.finish_and_clear();
+    let format = if streams.json { Format::Json } else { args.format };
+    match format {
+        Format::Json => {
+            let results = rows.iter().map(serde_json::to_value).collect::<Result<Vec<Value>, _>>().map_err(Fault::usage)?;
+            streams.object("bench", painter.json(), results)?;
+        }
+        Format::Table => streams.text(&table(&lines(&rows)))?,
+        Format::Csv => streams.text(&csv(&lines(&rows)))?,
+        Format::Md => streams.text(&markdown(&lines(&rows)))?,
+    }
+    let [width, height] = args.size;
+    streams.note(&format!("{width}x{height} pixels; clocks are not locked; GPU time by timestamps where the adapter has them"));
+    rows.iter().filter_map(|row| row.note.as_ref()).for_each(|note| streams.note(note));
+    let broken: Vec<_> = rows.iter().filter_map(|row| Some((row, row.error.within(&Budget::default()).err()?))).collect();
+    broken.iter().for_each(|(row, why)| streams.note(&format!("{} on {}: {why}", row.scene, row.rung)));
+    Ok(Exit::failed_if(!broken.is_empty()))
+}
+
+/// Looks with their scenes: each named look on its own scene, or on each `--scene`.
+fn subjects(common: &Common, args: &Bench) -> Result<Vec<(Look, Arc<Scene>)>, Fault> {
+    let named = args.looks.iter().map(|what| open(common, what)).collect::<Result<Vec<_>, _>>()?;
+    let mut looks = Vec::new();
+    for scene in &args.scene {
+        let mut plain = open(common, &if is_model(scene) { scene.clone() } else { format!("builtin:{scene}") })?;
+        if named.is_empty() {
+            plain.id.clone_from(scene);
+            looks.push(plain);
+            continue;
+        }
+        looks.extend(named.iter().map(|look| {
+            let mut look = look.clone();
+            look.id = format!("{} on {scene}", look.id);
+            look.session.scene = plain.session.scene.clone();
+            // The camera of a look was placed for its own scene.
+            look.session.camera = None;
+            look
+        }));
+    }
+    if args.scene.is_empty() {
+        looks = if named.is_empty() { vec![Look::of_scene("teapot", SceneSource::Builtin("teapot".into()))] } else { named };
+    }
+    looks.into_iter().map(|look| Ok((look.clone(), scene_of(&look)?))).collect()
+}
+
+fn is_model(scene: &str) -> bool {
+    let lower = scene.to_lowercase();
+    lower.ends_with(".glb") || lower.ends_with(".gltf")
+}
+
+fn lines(rows: &[BenchRow]) -> Vec<Vec<String>> {
+    let head = ["SCENE", "TRIANGLES", "RUNG", "MS P50", "MS P95", "N", "OWNER", "SNAP", "HOLES", "DOUBLE", "MAX", "RMS", "ADAPTER"];
+    let mut lines = vec![head.map(str::to_owned).to_vec()];
+    let ms = |ms: Option<f64>| ms.map_or_else(|| "not measured".into(), |ms| format!("{ms:.3}"));
+    lines.extend(rows.iter().map(|row| {
+        let e = &row.error;
+        vec![
+            row.scene.clone(),
+            row.triangles.to_string(),
+            row.rung.clone(),
+            ms(row.ms_p50),
+            ms(row.ms_p95),
+            row.samples.to_string(),
+            e.owner_mismatch.to_string(),
+            e.explained_by_snap.to_string(),
+            e.holes.to_string(),
+            e.double_hits.to_string(),
+            e.max_colour_delta.to_string(),
+            format!("{:.4}", e.rms_colour_delta),
+            row.adapter.clone(),
+        ]
+    }));
+    lines
+}
+
+fn csv(lines: &[Vec<String>]) -> String {
+    let cell = |text: &String| if text.contains([',', '"', '\n']) { format!("\"{}\"", text.replace('"', "\"\"")) } else { text.clone() };
+    lines.iter().map(|line| format!("{}\n", line.iter().map(cell).collect::<Vec<_>>().join(","))).collect()
+}
+
+fn markdown(lines: &[Vec<String>]) -> String {
+    let row = |line: &Vec<String>| format!("| {} |\n", line.join(" | "));
+    let rule = format!("|{}\n", "---|".repeat(lines[0].len()));
+    lines.iter().enumerate().map(|(i, line)| if i == 0 { row(line) + &rule } else { row(line) }).collect()
+}

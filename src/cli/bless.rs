@@ -1,0 +1,145 @@
+//! `bless`: redraws goldens with the oracle and says what changes. Nothing else may make a golden.
+
+use std::path::{Path, PathBuf};
+
+use serde_json::{Value, json};
+
+use super::{
+    args::{Bless, Common},
+    fault::{Exit, Fault},
+    files,
+    golden::{self, Golden},
+    painter::scene_of,
+    streams::Streams,
+};
+use crate::{
+    effects::Effect,
+    measure::compare::pictures,
+    preset::{self, Look},
+    session::{Output, Session, Test},
+};
+
+pub fn run(common: &Common, args: &Bless, streams: &mut Streams) -> Result<Exit, Fault> {
+    if common.adapter.is_some() {
+        return Err(Fault::usage("goldens come from the oracle alone; bless takes no --adapter"));
+    }
+    if !(common.set.is_empty() && common.unset.is_empty()) {
+        return Err(Fault::usage("a golden is of the look as it stands in its file; bless takes no --set"));
+    }
+    let folder = common.presets_dir().unwrap_or_else(|| PathBuf::from("presets"));
+    let looks = looks(args, &folder, streams)?;
+    let bar = streams.progress(looks.len() as u64);
+    let (mut results, mut changed) = (Vec::new(), false);
+    for (look, is_new) in looks {
+        bar.set_message(look.id.clone());
+        let golden = golden::draw(&look, &*scene_of(&look)?)?;
+        let change = change(&golden, &args.snapshots, &look.id);
+        changed |= is_new || change["changes"] == json!(true);
+        if !streams.json {
+            streams.text(&format!("{}{}\n", line(&look.id, &change), if is_new { " (its first look is made, too)" } else { "" }))?;
+        }
+        if !args.dry_run {
+            store(look, is_new, &golden, args, &folder, change["changes"] == json!(true))?;
+        }
+        results.push(change);
+        bar.inc(1);
+    }
+    bar.finish_and_clear();
+    if streams.json {
+        streams.object("bless", json!({ "name": "cpu", "class": "oracle" }), results)?;
+    }
+    Ok(Exit::failed_if(args.dry_run && changed))
+}
+
+/// The looks to bless, each with whether it is yet to be made.
+fn looks(args: &Bless, folder: &Path, streams: &Streams) -> Result<Vec<(Look, bool)>, Fault> {
+    if !args.all && args.names.is_empty() {
+        return Err(Fault::usage("name looks or effects, or say --all"));
+    }
+    if !args.all {
+        return args.names.iter().map(|name| named(name, folder)).collect();
+    }
+    let entries = std::fs::read_dir(folder).map_err(|e| Fault::from(e).during(format!("{} cannot be read", folder.display())))?;
+    let mut files: Vec<PathBuf> =
+        entries.flatten().map(|entry| entry.path()).filter(|path| path.extension().is_some_and(|e| e == "toml")).collect();
+    files.sort();
+    let looks = files.iter().map(|file| Ok(preset::load(file)?.strict()?)).collect::<Result<Vec<_>, Fault>>()?;
+    let (tested, bare): (Vec<_>, Vec<_>) = looks.into_iter().partition(|look| look.session.test.is_some());
+    bare.iter().for_each(|look| streams.note(&format!("{}: has no [test] table, so no golden", look.id)));
+    Ok(tested.into_iter().map(|look| (look, false)).collect())
+}
+
+fn named(name: &str, folder: &Path) -> Result<(Look, bool), Fault> {
+    let file = folder.join(format!("{name}.toml"));
+    if file.exists() {
+        return Ok((preset::load(&file)?.strict()?, false));
+    }
+    if let Some(effect) = Effect::find(name) {
+        return Ok((first_look(effect), true));
+    }
+    Err(Fault::usage(format!("{} is not there, and {name} is no effect", file.display())))
+}
+
+/// The canonical look of a new effect: on the teapot, with its defaults.
+fn first_look(effect: &'static Effect) -> Look {
+    let mut session = Session {
+        name: effect.name.replace('_', " "),
+        about: effect.about.into(),
+        tags: vec!["canonical".into()],
+        output: Output { size: golden::MAX_SIZE, ..Output::default() },
+        test: Some(Test::default()),
+        ..Session::default()
+    };
+    session.stack.enable(effect);
+    Look::new(effect.name, session)
+}
+
+fn store(mut look: Look, is_new: bool, golden: &Golden, args: &Bless, folder: &Path, changes: bool) -> Result<(), Fault> {
+    if is_new {
+        let path = folder.join(format!("{}.toml", look.id));
+        preset::save(&mut look, &path)?;
+    }
+    if changes {
+        std::fs::create_dir_all(&args.snapshots)?;
+        let [png, sidecar] = golden::paths(&args.snapshots, &look.id);
+        files::write(&png, &golden.png)?;
+        files::write(&sidecar, golden.sidecar.as_bytes())?;
+    }
+    Ok(())
+}
+
+/// What blessing would change, with old and new counts.
+fn change(golden: &Golden, snapshots: &Path, id: &str) -> Value {
+    let [png, sidecar] = golden::paths(snapshots, id);
+    let old_sidecar = std::fs::read_to_string(&sidecar).unwrap_or_default();
+    let old: Value = serde_json::from_str(&old_sidecar).unwrap_or_default();
+    let size = [golden.frame.width, golden.frame.height];
+    // A golden that cannot be read counts as absent.
+    let old_picture = preset::png_pixels(&png).ok();
+    let delta = old_picture.as_ref().filter(|(_, old_size)| *old_size == size).map(|(color, _)| pictures(color, &golden.frame.color, 0));
+    let same = delta.as_ref().is_some_and(|delta| delta.pixels_beyond == 0) && old_sidecar == golden.sidecar;
+    json!({
+        "look": id, "changes": !same, "is_new": old_picture.is_none(),
+        "pixels": golden.frame.color.len(),
+        "pixels_changed": delta.as_ref().map(|delta| delta.pixels_beyond),
+        "max_colour_delta": delta.as_ref().map(|delta| delta.max_delta),
+        "covered_old": old["covered"], "covered_new": golden.frame.covered(),
+        "bytes": golden.png.len(),
+    })
+}
+
+fn line(id: &str, change: &Value) -> String {
+    if change["changes"] == json!(false) {
+        return format!("{id}: unchanged, {} of {} pixels covered", change["covered_new"], change["pixels"]);
+    }
+    if change["is_new"] == json!(true) {
+        return format!("{id}: new, {} of {} pixels covered, {} bytes", change["covered_new"], change["pixels"], change["bytes"]);
+    }
+    let [old, new] = [&change["covered_old"], &change["covered_new"]];
+    match (&change["pixels_changed"], &change["max_colour_delta"]) {
+        (Value::Null, _) => format!("{id}: another size; covered {old} -> {new}"),
+        (pixels, delta) => {
+            format!("{id}: {pixels} of {} pixels change, at most by {delta} of 255; covered {old} -> {new}", change["pixels"])
+        }
+    }
+}

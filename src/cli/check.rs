@@ -1,0 +1,137 @@
+//! `check`: validates looks, and with `--render` holds the adapter's pictures against the goldens.
+
+use std::path::Path;
+
+use serde_json::{Value, json};
+
+use super::{
+    args::{Check, Common},
+    fault::{Exit, Fault},
+    files::{self, Names},
+    gallery_name, golden, open,
+    painter::{Painter, scene_of},
+    report,
+    streams::Streams,
+};
+use crate::{
+    measure::compare::{PictureDelta, pictures},
+    preset::{self, Look, PresetError},
+};
+
+/// What became of one look.
+pub struct Finding {
+    pub look: String,
+    pub exit: Exit,
+    /// One sentence each; empty when all is well.
+    pub faults: Vec<String>,
+    pub warnings: Vec<String>,
+    pub place: Option<preset::Place>,
+    pub drawn: Option<Drawn>,
+}
+
+/// A picture beside its golden.
+pub struct Drawn {
+    pub size: [u32; 2],
+    pub expected: Vec<[u8; 4]>,
+    pub actual: Vec<[u8; 4]>,
+    pub delta: PictureDelta,
+}
+
+pub fn run(common: &Common, args: &Check, streams: &mut Streams) -> Result<Exit, Fault> {
+    let files = if args.files.is_empty() {
+        preset::gallery(common.presets_dir().as_deref()).iter().map(gallery_name).collect()
+    } else {
+        args.files.clone()
+    };
+    let mut painter = if args.render { Some(Painter::open(common, streams)?) } else { None };
+    let bar = streams.progress(files.len() as u64);
+    let mut findings = Vec::new();
+    for file in &files {
+        bar.set_message(file.clone());
+        findings.push(check(common, args, file, painter.as_mut()));
+        bar.inc(1);
+    }
+    bar.finish_and_clear();
+    if let Some(report) = &args.report {
+        let path = files::target(report, &Names { preset: "report".into(), ..Names::default() }, common.force)?;
+        let adapter = painter.as_ref().map_or("none", Painter::name);
+        files::write(&path, report::html(&findings, adapter)?.as_bytes())?;
+    }
+    let adapter = painter.as_ref().map_or(Value::Null, Painter::json);
+    if streams.json {
+        streams.object("check", adapter, findings.iter().map(json_finding).collect())?;
+    } else {
+        streams.text(&findings.iter().map(text).collect::<String>())?;
+    }
+    findings.iter().flat_map(|finding| &finding.warnings).for_each(|warning| streams.note(&format!("warning: {warning}")));
+    Ok(findings.iter().fold(Exit::Done, |exit, finding| exit.and(finding.exit)))
+}
+
+fn check(common: &Common, args: &Check, file: &str, painter: Option<&mut Painter>) -> Finding {
+    let id = Path::new(file).file_stem().map_or_else(|| file.to_owned(), |stem| stem.to_string_lossy().into_owned());
+    let mut finding = Finding { look: id, exit: Exit::Done, faults: Vec::new(), warnings: Vec::new(), place: None, drawn: None };
+    let outcome = open(common, file).and_then(|look| {
+        finding.warnings.clone_from(&look.warnings);
+        let scene = scene_of(&look)?;
+        painter.map(|painter| drawn(args, &look, &scene, painter)).transpose()
+    });
+    match outcome {
+        Ok(Some((drawn, faults))) => {
+            finding.exit = Exit::failed_if(!faults.is_empty());
+            (finding.faults, finding.drawn) = (faults, drawn);
+        }
+        Ok(None) => {}
+        Err(fault) => {
+            finding.place = fault.error.downcast_ref::<PresetError>().and_then(PresetError::place);
+            (finding.exit, finding.faults) = (fault.exit, vec![fault.sentence()]);
+        }
+    }
+    finding
+}
+
+type Comparison = (Option<Drawn>, Vec<String>);
+
+fn drawn(args: &Check, look: &Look, scene: &std::sync::Arc<crate::scene::Scene>, painter: &mut Painter) -> Result<Comparison, Fault> {
+    let Some(test) = &look.session.test else { return Ok((None, Vec::new())) };
+    let frame = painter.frame(&look.session, scene)?;
+    let size = [frame.width, frame.height];
+    let [png, _] = golden::paths(&args.snapshots, &look.id);
+    if !png.exists() {
+        return Ok((None, vec![format!("{} is missing; rasterlab bless {} draws it", png.display(), look.id)]));
+    }
+    let (expected, golden_size) = preset::png_pixels(&png)?;
+    if golden_size != size {
+        return Ok((None, vec![format!("{} has another size than the look", png.display())]));
+    }
+    let delta = pictures(&expected, &frame.color, test.max_channel);
+    let mut faults = Vec::new();
+    if delta.pixels_beyond > u64::from(test.max_pixels) {
+        faults.push(format!(
+            "{} pixels differ from the golden by more than {} of 255, the worst by {}; {} are allowed",
+            delta.pixels_beyond, test.max_channel, delta.max_delta, test.max_pixels
+        ));
+    }
+    Ok((Some(Drawn { size, expected, actual: frame.color, delta }), faults))
+}
+
+fn text(finding: &Finding) -> String {
+    match (&finding.faults[..], &finding.drawn) {
+        ([], Some(drawn)) => format!("ok    {}: largest difference {} of 255\n", finding.look, drawn.delta.max_delta),
+        ([], None) => format!("ok    {}\n", finding.look),
+        (faults, _) => faults.iter().map(|fault| format!("FAIL  {}: {fault}\n", finding.look)).collect(),
+    }
+}
+
+fn json_finding(finding: &Finding) -> Value {
+    let place = finding.place.clone().unwrap_or_default();
+    let error = |message: &String| {
+        let file = if place.file.is_empty() { Value::Null } else { json!(place.file) };
+        json!({ "code": finding.exit as u8, "message": message, "file": file, "line": place.line })
+    };
+    json!({
+        "look": finding.look, "ok": finding.faults.is_empty(), "warnings": finding.warnings,
+        "errors": finding.faults.iter().map(error).collect::<Vec<_>>(),
+        "max_colour_delta": finding.drawn.as_ref().map(|drawn| drawn.delta.max_delta),
+        "pixels_beyond": finding.drawn.as_ref().map(|drawn| drawn.delta.pixels_beyond),
+    })
+}

@@ -1,0 +1,113 @@
+//! Exit codes, and errors that know theirs.
+
+use std::process::ExitCode;
+
+use crate::{
+    gpu::{RenderError, device::OpenError},
+    preset::{PresetError, SceneError},
+    scene::draw::DrawError,
+};
+
+/// How a run ended.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[repr(u8)]
+pub enum Exit {
+    Done = 0,
+    /// A comparison, check, promised accuracy or dry run failed.
+    Failed = 1,
+    /// Usage, including files that cannot be read, parsed or written.
+    Usage = 2,
+    /// No adapter, or none that can do what is asked.
+    NoAdapter = 3,
+    DeviceLost = 4,
+}
+
+impl From<Exit> for ExitCode {
+    fn from(exit: Exit) -> Self {
+        Self::from(exit as u8)
+    }
+}
+
+impl Exit {
+    /// The first failure wins.
+    pub fn and(self, next: Self) -> Self {
+        if self == Self::Done { next } else { self }
+    }
+
+    pub fn failed_if(failed: bool) -> Self {
+        if failed { Self::Failed } else { Self::Done }
+    }
+}
+
+/// An error with the exit code it leads to.
+#[derive(Debug)]
+pub struct Fault {
+    pub exit: Exit,
+    pub error: anyhow::Error,
+}
+
+impl Fault {
+    pub fn usage(sentence: impl std::fmt::Display) -> Self {
+        Self { exit: Exit::Usage, error: anyhow::anyhow!("{sentence}") }
+    }
+
+    /// Why the window did not open: no adapter, a lost device, or something in its way.
+    pub fn window(error: anyhow::Error) -> Self {
+        let exit = match (error.downcast_ref::<OpenError>(), error.downcast_ref::<RenderError>()) {
+            (Some(open), _) => exit_of_open(open),
+            (_, Some(render)) => exit_of_render(render),
+            _ => Exit::Usage,
+        };
+        Self { exit, error }
+    }
+
+    /// Says what was being done.
+    pub fn during(self, what: impl std::fmt::Display + Send + Sync + 'static) -> Self {
+        Self { exit: self.exit, error: self.error.context(what) }
+    }
+
+    /// The whole chain in one line.
+    pub fn sentence(&self) -> String {
+        format!("{:#}", self.error)
+    }
+
+    pub fn is_closed_pipe(&self) -> bool {
+        self.error.downcast_ref::<std::io::Error>().is_some_and(|e| e.kind() == std::io::ErrorKind::BrokenPipe)
+    }
+}
+
+fn exit_of_open(error: &OpenError) -> Exit {
+    if matches!(error, OpenError::Ambiguous { .. }) { Exit::Usage } else { Exit::NoAdapter }
+}
+
+fn exit_of_render(error: &RenderError) -> Exit {
+    match error {
+        error if error.is_lost() => Exit::DeviceLost,
+        error if error.is_unsupported() => Exit::NoAdapter,
+        _ => Exit::Usage,
+    }
+}
+
+impl From<OpenError> for Fault {
+    fn from(error: OpenError) -> Self {
+        Self { exit: exit_of_open(&error), error: error.into() }
+    }
+}
+
+impl From<RenderError> for Fault {
+    fn from(error: RenderError) -> Self {
+        Self { exit: exit_of_render(&error), error: error.into() }
+    }
+}
+
+macro_rules! usage_faults {
+    ($($error:ty),*) => {$(
+        impl From<$error> for Fault {
+            fn from(error: $error) -> Self {
+                Self { exit: Exit::Usage, error: error.into() }
+            }
+        }
+    )*};
+}
+
+usage_faults![PresetError, SceneError, DrawError, std::io::Error];

@@ -1,0 +1,147 @@
+//! Files that commands write: names from templates, nothing overwritten unasked.
+
+use std::{
+    io::Read as _,
+    path::{Path, PathBuf},
+};
+
+use super::fault::Fault;
+use crate::preset;
+
+/// Longest text taken from stdin, bytes.
+const MAX_STDIN: u64 = 1 << 20;
+
+/// What a template may name.
+#[derive(Clone, Debug, Default)]
+pub struct Names {
+    pub preset: String,
+    pub effect: String,
+    pub adapter: String,
+    pub tier: String,
+}
+
+/// All of stdin as text.
+pub fn stdin_text() -> Result<String, Fault> {
+    let mut bytes = Vec::new();
+    std::io::stdin().lock().take(MAX_STDIN + 1).read_to_end(&mut bytes)?;
+    if bytes.len() as u64 > MAX_STDIN {
+        return Err(Fault::usage("stdin: a look is at most 1 MiB"));
+    }
+    String::from_utf8(bytes).map_err(|_| Fault::usage("stdin: a look is UTF-8 text"))
+}
+
+/// The file that `template` means: the first free number for `{n}`, and otherwise a name that is free or may be overwritten.
+pub fn target(template: &str, names: &Names, force: bool) -> Result<PathBuf, Fault> {
+    if has_number(template)? {
+        // Counting up is bounded so that a full disk of pictures ends in a sentence.
+        for n in 1..1_000_000 {
+            let path = PathBuf::from(expand(template, names, n)?);
+            if !path.exists() {
+                return Ok(path);
+            }
+        }
+        return Err(Fault::usage(format!("{template}: no number is free")));
+    }
+    let path = PathBuf::from(expand(template, names, 0)?);
+    if path.exists() && !force {
+        return Err(Fault::usage(format!("{} exists; --force overwrites it, or name it with {{n}}", path.display())));
+    }
+    Ok(path)
+}
+
+/// Writes whole or not at all.
+pub fn write(path: &Path, bytes: &[u8]) -> Result<(), Fault> {
+    Ok(preset::write_atomically(path, bytes)?)
+}
+
+/// Does the template count by itself?
+pub fn has_number(template: &str) -> Result<bool, Fault> {
+    Ok(pieces(template)?.iter().any(|piece| matches!(piece, Piece::Place { name: "n", .. })))
+}
+
+/// Does the template name the look?
+pub fn has_preset(template: &str) -> Result<bool, Fault> {
+    Ok(pieces(template)?.iter().any(|piece| matches!(piece, Piece::Place { name: "preset", .. })))
+}
+
+enum Piece<'a> {
+    Text(String),
+    Place { name: &'a str, width: usize },
+}
+
+fn expand(template: &str, names: &Names, n: usize) -> Result<String, Fault> {
+    let text = |piece: Piece<'_>| match piece {
+        Piece::Text(text) => text,
+        Piece::Place { name: "preset", .. } => safe(&names.preset),
+        Piece::Place { name: "effect", .. } => safe(&names.effect),
+        Piece::Place { name: "adapter", .. } => safe(&names.adapter),
+        Piece::Place { name: "tier", .. } => safe(&names.tier),
+        Piece::Place { width, .. } => format!("{n:0width$}"),
+    };
+    Ok(pieces(template)?.into_iter().map(text).collect())
+}
+
+/// A name without anything that a path could take for a folder.
+fn safe(name: &str) -> String {
+    let kept: String = name.chars().map(|c| if c.is_alphanumeric() || "-_.+".contains(c) { c } else { '-' }).collect();
+    kept.trim_matches(['-', '.']).to_owned()
+}
+
+fn pieces(template: &str) -> Result<Vec<Piece<'_>>, Fault> {
+    let (mut pieces, mut rest) = (Vec::new(), template);
+    while let Some(at) = rest.find(['{', '}']) {
+        let (before, from) = rest.split_at(at);
+        pieces.push(Piece::Text(before.to_owned()));
+        if from.starts_with("{{") || from.starts_with("}}") {
+            pieces.push(Piece::Text(from[..1].to_owned()));
+            rest = &from[2..];
+            continue;
+        }
+        let wrong = || {
+            Fault::usage(format!(
+                "{template}: {{preset}}, {{effect}}, {{n}}, {{n:3}}, {{adapter}} and {{tier}} can be filled in; double a brace to write it"
+            ))
+        };
+        let (place, after) = from.strip_prefix('{').and_then(|from| from.split_once('}')).ok_or_else(wrong)?;
+        let (name, width) = place.split_once(':').unwrap_or((place, "0"));
+        let width = width.parse().ok().filter(|width| *width <= 9).ok_or_else(wrong)?;
+        if !["preset", "effect", "adapter", "tier", "n"].contains(&name) || (width > 0 && name != "n") {
+            return Err(wrong());
+        }
+        pieces.push(Piece::Place { name, width });
+        rest = after;
+    }
+    pieces.push(Piece::Text(rest.to_owned()));
+    Ok(pieces)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn names() -> Names {
+        Names { preset: "facet".into(), effect: "facet+lambert".into(), adapter: "llvmpipe (LLVM 15/256)".into(), tier: "fast".into() }
+    }
+
+    #[test]
+    fn templates_are_filled_in() {
+        let filled = |template| expand(template, &names(), 7).unwrap();
+        assert_eq!(filled("{preset}_{n:3}.png"), "facet_007.png");
+        assert_eq!(filled("{{{tier}}}-{n}-{effect}"), "{fast}-7-facet+lambert");
+        assert_eq!(filled("{adapter}.png"), "llvmpipe--LLVM-15-256.png");
+        for wrong in ["{frame}", "{preset", "a}b", "{tier:3}", "{n:x}"] {
+            assert!(expand(wrong, &names(), 0).is_err(), "{wrong}");
+        }
+    }
+
+    #[test]
+    fn nothing_is_overwritten_unasked() {
+        let folder = tempfile::tempdir().unwrap();
+        let at = |name: &str| folder.path().join(name).to_string_lossy().into_owned();
+        std::fs::write(at("a.png"), "x").unwrap();
+        std::fs::write(at("b_1.png"), "x").unwrap();
+        assert!(target(&at("a.png"), &names(), false).is_err());
+        assert_eq!(target(&at("a.png"), &names(), true).unwrap(), PathBuf::from(at("a.png")));
+        assert_eq!(target(&at("b_{n}.png"), &names(), false).unwrap(), PathBuf::from(at("b_2.png")));
+    }
+}

@@ -1,0 +1,150 @@
+//! Goldens: the oracle's stored picture of a look, and a sidecar that says what it was drawn from.
+//!
+//! Only the oracle makes them; any adapter may be held against them.
+
+use std::path::{Path, PathBuf};
+
+use serde_json::{Value, json};
+
+use super::fault::Fault;
+use crate::{
+    frame::Frame,
+    oracle,
+    preset::{self, Look},
+    scene::Scene,
+    session::Session,
+};
+
+/// Largest golden, pixels.
+pub const MAX_SIZE: [u32; 2] = [320, 240];
+/// Largest golden, bytes.
+pub const MAX_BYTES: usize = 64 << 10;
+
+/// A look drawn by the oracle, as it is stored.
+pub struct Golden {
+    pub frame: Frame,
+    pub png: Vec<u8>,
+    pub sidecar: String,
+}
+
+/// Draws the golden of `look`.
+///
+/// # Errors
+/// A look without `[test]` has none; a golden is at most 320x240 pixels and 64 KiB.
+pub fn draw(look: &Look, scene: &Scene) -> Result<Golden, Fault> {
+    let session = &look.session;
+    let [width, height] = session.output.size;
+    if session.test.is_none() {
+        return Err(Fault::usage(format!("{}: a look without a [test] table has no golden", look.id)));
+    }
+    if width > MAX_SIZE[0] || height > MAX_SIZE[1] {
+        return Err(Fault::usage(format!("{}: output.size {width}x{height} is larger than a golden may be, 320x240", look.id)));
+    }
+    let frame = oracle::render(scene, &session.view(scene, session.output.size), &session.stack)?;
+    let png = preset::png_bytes(&frame.color, session.output.size)?;
+    if png.len() > MAX_BYTES {
+        return Err(Fault::usage(format!("{}: its picture takes {} bytes; a golden is at most {MAX_BYTES}", look.id, png.len())));
+    }
+    let sidecar = format!("{:#}\n", sidecar(look, scene, &frame));
+    Ok(Golden { frame, png, sidecar })
+}
+
+/// Where the picture and the sidecar of a look are kept.
+pub fn paths(snapshots: &Path, id: &str) -> [PathBuf; 2] {
+    [snapshots.join(format!("{id}.png")), snapshots.join(format!("{id}.json"))]
+}
+
+fn sidecar(look: &Look, scene: &Scene, frame: &Frame) -> Value {
+    let words = |words: &[u32]| hex(Fnv::new().words(words));
+    json!({
+        "schema": 1,
+        "look": look.id,
+        "look_hash": hex(look_hash(&look.session)),
+        "scene_hash": hex(scene_hash(scene)),
+        "oracle": env!("CARGO_PKG_VERSION"),
+        "size": [frame.width, frame.height],
+        "covered": frame.covered(),
+        "counters": frame.counters,
+        "digests": { "owner": words(&frame.owner), "key": words(&frame.key) },
+    })
+}
+
+/// Hash of all that decides the picture: not of names, comments and budgets.
+pub fn look_hash(session: &Session) -> Fnv {
+    let picture = Session { name: String::new(), about: String::new(), tags: Vec::new(), test: None, ..session.clone() };
+    Fnv::new().bytes(preset::to_toml(&Look::new("", picture)).as_bytes())
+}
+
+/// Hash of a scene's bytes, accessors, materials and placements.
+pub fn scene_hash(scene: &Scene) -> Fnv {
+    let mut hash = Fnv::new().bytes(&scene.vertex_bytes).bytes(&scene.index_bytes);
+    for primitive in &scene.primitives {
+        let mut accessor = |a: &crate::scene::Accessor| {
+            let words = [a.offset, a.stride, a.component as u32, a.lanes, a.normalized.into(), a.count];
+            hash = hash.words(&words);
+        };
+        [Some(&primitive.positions), Some(&primitive.normals), primitive.colors.as_ref(), primitive.indices.as_ref()]
+            .into_iter()
+            .flatten()
+            .for_each(&mut accessor);
+        hash = hash.words(&[primitive.topology as u32, primitive.material as u32]);
+    }
+    for material in &scene.materials {
+        hash = hash.words(&material.base_color.map(f32::to_bits)).words(&[material.double_sided.into()]);
+    }
+    for instance in &scene.instances {
+        hash = hash.words(&[instance.primitive as u32]);
+        hash = instance.world_from_object.to_cols_array().iter().fold(hash, |hash, v| hash.bytes(&v.to_bits().to_le_bytes()));
+    }
+    hash
+}
+
+fn hex(hash: Fnv) -> String {
+    format!("{:016x}", hash.0)
+}
+
+/// FNV-1a of 64 bits (Fowler, Noll and Vo): against accidents, not against malice.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Fnv(pub u64);
+
+impl Fnv {
+    pub fn new() -> Self {
+        Self(0xcbf2_9ce4_8422_2325)
+    }
+
+    pub fn bytes(self, bytes: &[u8]) -> Self {
+        Self(bytes.iter().fold(self.0, |hash, &byte| (hash ^ u64::from(byte)).wrapping_mul(0x0000_0100_0000_01b3)))
+    }
+
+    /// Little-endian.
+    pub fn words(self, words: &[u32]) -> Self {
+        words.iter().fold(self, |hash, word| hash.bytes(&word.to_le_bytes()))
+    }
+}
+
+impl Default for Fnv {
+    fn default() -> Self {
+        Self::new()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_hash_gives_its_published_values() {
+        let hash = |text: &str| Fnv::new().bytes(text.as_bytes()).0;
+        assert_eq!([hash(""), hash("a"), hash("foobar")], [0xcbf2_9ce4_8422_2325, 0xaf63_dc4c_8601_ec8c, 0x8594_4171_f739_67e8]);
+    }
+
+    #[test]
+    fn a_name_does_not_change_the_hash_and_a_colour_does() {
+        let plain = Session::default();
+        let named = Session { name: "x".into(), ..plain.clone() };
+        let mut tinted = plain.clone();
+        tinted.output.background[0] += 0.001;
+        assert_eq!(look_hash(&plain), look_hash(&named));
+        assert_ne!(look_hash(&plain), look_hash(&tinted));
+    }
+}

@@ -1,0 +1,142 @@
+//! The command line: every subcommand over the same core as the window. None of them opens a window or touches a surface.
+//!
+//! stdout carries data only, stderr everything else; the exit code says what happened ([`Exit`]).
+
+mod adapters;
+mod args;
+mod bench;
+mod bless;
+mod check;
+mod compare;
+mod explain;
+mod fault;
+mod files;
+pub mod golden;
+mod list;
+mod painter;
+mod render;
+mod report;
+mod streams;
+mod verify;
+
+use std::io::{self, Write as _};
+
+use clap::CommandFactory as _;
+use serde_json::{Value, json};
+
+pub use args::{Cli, Command};
+pub use fault::{Exit, Fault};
+use streams::Streams;
+
+use crate::preset::{self, Look, PresetError};
+
+/// Runs what was asked. Errors are for [`complain`].
+pub fn run(cli: &Cli) -> Result<Exit, Fault> {
+    let mut streams = Streams::new(cli.common.quiet, cli.common.json);
+    let result = dispatch(cli, &mut streams).and_then(|exit| streams.finish().map(|()| exit).map_err(Fault::from));
+    match result {
+        // The reader of a pipe has seen enough.
+        Err(fault) if fault.is_closed_pipe() => Ok(Exit::Done),
+        result => result,
+    }
+}
+
+fn dispatch(cli: &Cli, streams: &mut Streams) -> Result<Exit, Fault> {
+    if let (Some(look), Some(_)) = (&cli.open, &cli.command) {
+        return Err(Fault::usage(format!("{look:?} stands before a command; a look without a command opens the window")));
+    }
+    match &cli.command {
+        None => window(cli),
+        Some(Command::List(args)) => list::run(&cli.common, args, streams),
+        Some(Command::Adapters) => adapters::run(&cli.common, streams),
+        Some(Command::Render(args)) => render::run(&cli.common, args, streams),
+        Some(Command::Verify(args)) => verify::run(&cli.common, args, streams),
+        Some(Command::Compare(args)) => compare::run(&cli.common, args, streams),
+        Some(Command::Explain(args)) => explain::run(&cli.common, args, streams),
+        Some(Command::Bless(args)) => bless::run(&cli.common, args, streams),
+        Some(Command::Bench(args)) => bench::run(&cli.common, args, streams),
+        Some(Command::Check(args)) => check::run(&cli.common, args, streams),
+        Some(Command::Completions { shell }) => {
+            let mut script = Vec::new();
+            clap_complete::generate(*shell, &mut Cli::command(), "rasterlab", &mut script);
+            streams.bytes(&script)?;
+            Ok(Exit::Done)
+        }
+    }
+}
+
+#[cfg(feature = "gui")]
+fn window(cli: &Cli) -> Result<Exit, Fault> {
+    if let Some(what) = &cli.open {
+        // Said here, where a person reads it, rather than in a window that opens and shows nothing.
+        open(&cli.common, what)?;
+    }
+    let adapter = match painter::wanted(&cli.common) {
+        painter::Wanted::Cpu => {
+            return Err(Fault::usage("the window needs a GPU adapter; --adapter cpu serves render, verify, compare and check"));
+        }
+        painter::Wanted::Gpu(choice) => choice,
+    };
+    let options = crate::app::Options { open: cli.open.clone(), adapter, presets_dir: cli.common.presets_dir() };
+    crate::app::run(options).map_err(Fault::window)?;
+    Ok(Exit::Done)
+}
+
+#[cfg(not(feature = "gui"))]
+fn window(_: &Cli) -> Result<Exit, Fault> {
+    Err(Fault::usage("this build has no window; rasterlab --help lists the commands"))
+}
+
+/// Opens what a person named and applies `--unset`, then `--set`, in that order.
+fn open(common: &args::Common, what: &str) -> Result<Look, Fault> {
+    let mut look = if what == "-" {
+        preset::parse_file(&files::stdin_text()?, "stdin", "stdin")?
+    } else {
+        preset::open(what, common.presets_dir().as_deref())?
+    };
+    if common.strict {
+        look = look.strict()?;
+    }
+    for path in &common.unset {
+        preset::unset(&mut look, path)?;
+    }
+    for set in &common.set {
+        let (path, value) = set.split_once('=').unwrap_or((set, ""));
+        preset::set(&mut look, path.trim(), value)?;
+    }
+    Ok(look)
+}
+
+/// Every gallery look that has a golden, or those that were named.
+fn looks(common: &args::Common, names: &[String], streams: &Streams) -> Result<Vec<Look>, Fault> {
+    let looks: Vec<Look> = if names.is_empty() {
+        let entries = preset::gallery(common.presets_dir().as_deref());
+        let looks = entries.iter().map(|entry| open(common, &gallery_name(entry))).collect::<Result<Vec<_>, _>>()?;
+        looks.into_iter().filter(|look| look.session.test.is_some()).collect()
+    } else {
+        names.iter().map(|name| open(common, name)).collect::<Result<_, _>>()?
+    };
+    looks.iter().flat_map(|look| &look.warnings).for_each(|warning| streams.note(warning));
+    Ok(looks)
+}
+
+/// The path of a look on disk, so that a file wins over whatever else has its name.
+fn gallery_name(entry: &preset::GalleryEntry) -> String {
+    entry.path.as_ref().map_or_else(|| entry.id.clone(), |path| path.to_string_lossy().into_owned())
+}
+
+/// Says what went wrong: the error chain on stderr, one sentence per level, and as JSON on stdout where that was asked for.
+pub fn complain(cli: &Cli, fault: &Fault) {
+    // A reader who has gone away needs no error.
+    for (depth, cause) in fault.error.chain().enumerate() {
+        let _ = writeln!(io::stderr(), "{}{cause}", if depth == 0 { "error: " } else { "  because " });
+    }
+    if cli.common.json {
+        let place = fault.error.downcast_ref::<PresetError>().and_then(PresetError::place).unwrap_or_default();
+        let file = if place.file.is_empty() { Value::Null } else { json!(place.file) };
+        let error = json!({ "code": fault.exit as u8, "message": fault.sentence(), "file": file, "line": place.line });
+        let command = cli.command.as_ref().map(Command::name);
+        let object = json!({ "schema": 1, "command": command, "adapter": null, "results": [], "errors": [error] });
+        let _ = Streams::new(true, true).text(&format!("{object:#}\n"));
+    }
+}

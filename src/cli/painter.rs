@@ -1,0 +1,151 @@
+//! Painter: whoever draws, an adapter or the oracle, behind one door.
+
+use std::sync::Arc;
+
+use serde_json::{Value, json};
+
+use super::{args::Common, fault::Fault, streams::Streams};
+use crate::{
+    frame::{Frame, Geometry},
+    gpu::{
+        Capture, Gpu, Renderer,
+        device::{AdapterChoice, AdapterSummary, Caps},
+    },
+    oracle,
+    preset::{self, Look, Provenance},
+    scene::{Scene, draw::draws},
+    session::{Session, Visibility},
+};
+
+/// Which painter was asked for.
+pub enum Wanted {
+    Cpu,
+    Gpu(AdapterChoice),
+}
+
+/// What `--adapter` or the environment says; `cpu` is reserved.
+pub fn wanted(common: &Common) -> Wanted {
+    match common.adapter_name() {
+        Some(name) if name.eq_ignore_ascii_case("cpu") => Wanted::Cpu,
+        Some(name) => Wanted::Gpu(AdapterChoice::Named(name)),
+        None => Wanted::Gpu(AdapterChoice::Any),
+    }
+}
+
+/// Draws looks.
+pub enum Painter {
+    /// The built-in oracle; needs no driver.
+    Cpu,
+    Gpu(Box<Renderer>, Arc<Gpu>),
+}
+
+impl Painter {
+    /// Opens what was asked for and says on stderr what it is. Nothing falls back unasked.
+    pub fn open(common: &Common, streams: &Streams) -> Result<Self, Fault> {
+        let painter = match wanted(common) {
+            Wanted::Cpu => Self::Cpu,
+            Wanted::Gpu(choice) => {
+                let gpu = Gpu::open(&choice)?;
+                Self::Gpu(Box::new(Renderer::new(gpu.clone())), gpu)
+            }
+        };
+        streams.note(&format!("adapter: {}", painter.describe()));
+        Ok(painter)
+    }
+
+    fn describe(&self) -> String {
+        match self {
+            Self::Cpu => "cpu (the built-in oracle)".into(),
+            Self::Gpu(_, gpu) => describe(&gpu.summary, &gpu.caps),
+        }
+    }
+
+    /// Name of the adapter, or `cpu`.
+    pub fn name(&self) -> &str {
+        match self {
+            Self::Cpu => "cpu",
+            Self::Gpu(_, gpu) => &gpu.summary.name,
+        }
+    }
+
+    /// What a saved picture says about who made it.
+    pub fn provenance(&self) -> Provenance {
+        let driver = match self {
+            Self::Cpu => format!("oracle {}", env!("CARGO_PKG_VERSION")),
+            Self::Gpu(_, gpu) => format!("{} ({})", gpu.summary.driver, gpu.summary.backend),
+        };
+        Provenance { adapter: self.name().into(), driver }
+    }
+
+    /// The `adapter` of a JSON object.
+    pub fn json(&self) -> Value {
+        match self {
+            Self::Cpu => {
+                json!({ "name": "cpu", "backend": "cpu", "driver": self.provenance().driver, "software": true, "class": "oracle" })
+            }
+            Self::Gpu(_, gpu) => adapter_json(&gpu.summary, &gpu.caps),
+        }
+    }
+
+    /// `native-int64`, `portable` or `oracle`.
+    pub fn class(&self) -> &'static str {
+        match self {
+            Self::Cpu => "oracle",
+            Self::Gpu(_, gpu) => gpu.caps.class(),
+        }
+    }
+
+    /// Visibility rungs this painter can draw `session` with: the pinned one, or all that the adapter has.
+    pub fn rungs(&self, session: &Session) -> Vec<Option<Visibility>> {
+        match (self, session.accuracy.visibility) {
+            (Self::Cpu, _) => vec![None],
+            (_, Some(pinned)) => vec![Some(pinned)],
+            (Self::Gpu(_, gpu), None) => usable_rungs(&gpu.caps).into_iter().map(Some).collect(),
+        }
+    }
+
+    /// The picture of `session`.
+    pub fn frame(&mut self, session: &Session, scene: &Arc<Scene>) -> Result<Frame, Fault> {
+        match self {
+            Self::Cpu => Ok(oracle::render(scene, &session.view(scene, session.output.size), &session.stack)?),
+            Self::Gpu(..) => Ok(self.capture(session, scene)?.frame),
+        }
+    }
+
+    /// The picture with everything that a judge needs.
+    pub fn capture(&mut self, session: &Session, scene: &Arc<Scene>) -> Result<Capture, Fault> {
+        let view = session.view(scene, session.output.size);
+        match self {
+            Self::Cpu => {
+                let geometry: Geometry = oracle::project(scene, &draws(scene, &view)?, &view);
+                Ok(Capture { frame: oracle::render(scene, &view, &session.stack)?, geometry, layers: None })
+            }
+            Self::Gpu(renderer, _) => {
+                renderer.set_scene(scene)?;
+                Ok(renderer.capture(&view, &session.stack, &session.accuracy)?)
+            }
+        }
+    }
+}
+
+/// Rungs that an adapter of these capabilities has.
+pub fn usable_rungs(caps: &Caps) -> Vec<Visibility> {
+    Visibility::ALL.into_iter().filter(|rung| *rung != Visibility::Packed64 || caps.int64_atomics).collect()
+}
+
+pub fn describe(summary: &AdapterSummary, caps: &Caps) -> String {
+    let software = if summary.software { ", software: its times say nothing about a graphics card" } else { "" };
+    format!("{} ({}, {}, {}{software})", summary.name, summary.backend, summary.driver, caps.class())
+}
+
+pub fn adapter_json(summary: &AdapterSummary, caps: &Caps) -> Value {
+    json!({
+        "name": summary.name, "backend": summary.backend, "driver": summary.driver,
+        "software": summary.software, "class": caps.class(),
+    })
+}
+
+/// The scene of a look.
+pub fn scene_of(look: &Look) -> Result<Arc<Scene>, Fault> {
+    preset::load_scene(&look.session, look.path.as_deref()).map_err(|e| Fault::from(e).during(format!("look {}", look.id)))
+}

@@ -1,0 +1,101 @@
+//! The three streams: data to stdout, everything else to stderr, progress only on a terminal.
+
+use std::io::{self, BufWriter, IsTerminal as _, StdoutLock, Write as _};
+
+use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
+use serde_json::{Value, json};
+
+/// Where output goes. stdout is locked and buffered; a closed pipe comes back as an error and never as a panic.
+pub struct Streams {
+    out: BufWriter<StdoutLock<'static>>,
+    quiet: bool,
+    /// stdout carries one JSON object.
+    pub json: bool,
+}
+
+impl Streams {
+    pub fn new(quiet: bool, json: bool) -> Self {
+        Self { out: BufWriter::new(io::stdout().lock()), quiet, json }
+    }
+
+    /// Data.
+    pub fn bytes(&mut self, bytes: &[u8]) -> io::Result<()> {
+        self.out.write_all(bytes)
+    }
+
+    pub fn text(&mut self, text: &str) -> io::Result<()> {
+        self.bytes(text.as_bytes())
+    }
+
+    /// The one object of `--json`.
+    pub fn object(&mut self, command: &str, adapter: Value, results: Vec<Value>) -> io::Result<()> {
+        let object = json!({ "schema": 1, "command": command, "adapter": adapter, "results": results });
+        self.text(&format!("{object:#}\n"))
+    }
+
+    /// A remark for people, on stderr.
+    pub fn note(&self, text: &str) {
+        if !self.quiet {
+            // Nobody is left to be told that stderr is closed.
+            let _ = writeln!(io::stderr(), "{text}");
+        }
+    }
+
+    /// A bar of `steps` on stderr that vanishes when it is done; invisible off a terminal, with `--quiet` or on a dumb terminal.
+    pub fn progress(&self, steps: u64) -> ProgressBar {
+        let dumb = std::env::var_os("TERM").is_some_and(|term| term == "dumb");
+        if self.quiet || dumb || !io::stderr().is_terminal() {
+            return ProgressBar::hidden();
+        }
+        let style = ProgressStyle::with_template("{bar:32} {pos}/{len} {msg}").unwrap_or_else(|_| ProgressStyle::default_bar());
+        ProgressBar::with_draw_target(Some(steps), ProgressDrawTarget::stderr()).with_style(style)
+    }
+
+    pub fn finish(&mut self) -> io::Result<()> {
+        self.out.flush()
+    }
+}
+
+/// Rows in aligned columns; the first row is the head. Numbers stand to the right.
+pub fn table(rows: &[Vec<String>]) -> String {
+    let columns = rows.iter().map(Vec::len).max().unwrap_or(0);
+    let cell = |row: &[String], column: usize| row.get(column).cloned().unwrap_or_default();
+    let width = |column| rows.iter().map(|row| cell(row, column).chars().count()).max().unwrap_or(0);
+    let widths: Vec<usize> = (0..columns).map(width).collect();
+    let is_number = |text: &str| text.is_empty() || text == "-" || text.starts_with(|c: char| c.is_ascii_digit());
+    let right: Vec<bool> = (0..columns).map(|column| rows.len() > 1 && rows[1..].iter().all(|row| is_number(&cell(row, column)))).collect();
+    let line = |row: &Vec<String>| {
+        let cells = (0..columns).map(|c| {
+            let (text, width) = (cell(row, c), widths[c]);
+            if right[c] { format!("{text:>width$}") } else { format!("{text:<width$}") }
+        });
+        format!("{}\n", cells.collect::<Vec<_>>().join("  ").trim_end())
+    };
+    rows.iter().map(line).collect()
+}
+
+/// A float for JSON, which has no words for what is not finite.
+pub fn number(value: f64) -> Value {
+    match value {
+        v if v.is_nan() => json!("NaN"),
+        v if v == f64::INFINITY => json!("inf"),
+        v if v == f64::NEG_INFINITY => json!("-inf"),
+        v => json!(v),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn numbers_stand_right_and_words_left() {
+        let row = |cells: [&str; 2]| cells.map(str::to_owned).to_vec();
+        assert_eq!(table(&[row(["look", "px"]), row(["a", "10"]), row(["facet", "9"])]), "look   px\na      10\nfacet   9\n");
+    }
+
+    #[test]
+    fn json_never_says_null_for_a_number() {
+        assert_eq!([number(f64::NAN), number(f64::NEG_INFINITY), number(0.5)], [json!("NaN"), json!("-inf"), json!(0.5)]);
+    }
+}

@@ -1,0 +1,114 @@
+//! Gallery: every look there is. Folders are searched in order and the first look of an id wins.
+
+use std::path::{Path, PathBuf};
+
+use include_dir::{Dir, include_dir};
+
+use super::{Look, PresetError, form::did_you_mean, load, look_from_png, parse_file, read_capped, shot::MAX_FILE_BYTES, stem};
+use crate::session::SceneSource;
+
+/// The looks that travel inside the binary.
+pub static BUILTIN_DIR: Dir<'static> = include_dir!("$CARGO_MANIFEST_DIR/presets");
+
+/// Where a look was found, in order of precedence.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, serde::Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Origin {
+    /// `--presets DIR`.
+    Chosen,
+    /// `presets/` beside the program.
+    Beside,
+    /// The user's own folder.
+    User,
+    /// Inside the program.
+    Builtin,
+}
+
+/// A look of the gallery, or why it cannot be one.
+#[derive(Clone, Debug)]
+pub struct GalleryEntry {
+    pub id: String,
+    pub origin: Origin,
+    /// None when built in.
+    pub path: Option<PathBuf>,
+    pub look: Result<Look, PresetError>,
+    /// Where looks of the same id were passed over.
+    pub shadows: Vec<Origin>,
+}
+
+/// Every look, sorted by id.
+pub fn gallery(chosen: Option<&Path>) -> Vec<GalleryEntry> {
+    let beside = std::env::current_exe().ok().and_then(|exe| Some(exe.parent()?.join("presets")));
+    let folders = [(Origin::Chosen, chosen.map(Path::to_owned)), (Origin::Beside, beside), (Origin::User, user_folder())];
+    let mut entries: Vec<GalleryEntry> = Vec::new();
+    let on_disk = folders.into_iter().filter_map(|(origin, folder)| Some((origin, folder?)));
+    for entry in on_disk.flat_map(|(origin, folder)| folder_entries(origin, &folder)).chain(builtin_entries()) {
+        match entries.iter_mut().find(|winner| winner.id == entry.id) {
+            Some(winner) => winner.shadows.push(entry.origin),
+            None => entries.push(entry),
+        }
+    }
+    entries.sort_by(|a, b| a.id.cmp(&b.id));
+    entries
+}
+
+fn folder_entries(origin: Origin, folder: &Path) -> Vec<GalleryEntry> {
+    let files = std::fs::read_dir(folder).into_iter().flatten().flatten().map(|entry| entry.path());
+    let looks = files.filter(|path| has_extension(path, "toml") && path.is_file());
+    looks.map(|path| GalleryEntry { id: stem(&path), origin, look: load(&path), path: Some(path), shadows: Vec::new() }).collect()
+}
+
+fn builtin_entries() -> impl Iterator<Item = GalleryEntry> {
+    BUILTIN_DIR.files().filter(|file| has_extension(file.path(), "toml")).map(|file| {
+        let (id, name) = (stem(file.path()), format!("presets/{}", file.path().display()));
+        let text = file.contents_utf8().unwrap_or_default();
+        let look = parse_file(text, &id, &name).map(|look| Look { read_only: true, ..look });
+        GalleryEntry { id, origin: Origin::Builtin, path: None, look, shadows: Vec::new() }
+    })
+}
+
+/// Where a person's own looks are kept: `rasterlab/presets` in the system's place for configuration.
+pub fn user_folder() -> Option<PathBuf> {
+    let variable = |name: &str| std::env::var_os(name).map(PathBuf::from).filter(|path| path.is_absolute());
+    let config = if cfg!(windows) {
+        variable("APPDATA")
+    } else if cfg!(target_os = "macos") {
+        std::env::home_dir().map(|home| home.join("Library/Application Support"))
+    } else {
+        variable("XDG_CONFIG_HOME").or_else(|| std::env::home_dir().map(|home| home.join(".config")))
+    };
+    Some(config?.join("rasterlab/presets"))
+}
+
+/// Opens whatever a person may name: a look of the gallery, a `.toml` file, a picture of ours, a model, or `builtin:QUERY`.
+pub fn open(what: &str, chosen: Option<&Path>) -> Result<Look, PresetError> {
+    if let Some(query) = what.strip_prefix("builtin:") {
+        let name = query.split('?').next().unwrap_or(query);
+        return Ok(Look::of_scene(name, SceneSource::Builtin(query.into())));
+    }
+    let path = Path::new(what);
+    if has_extension(path, "toml") {
+        return load(path);
+    }
+    if has_extension(path, "png") {
+        let look = look_from_png(&read_capped(path, MAX_FILE_BYTES)?, what)?;
+        return Ok(Look { id: stem(path), path: Some(path.to_owned()), read_only: true, ..look });
+    }
+    if has_extension(path, "glb") || has_extension(path, "gltf") {
+        let absolute = std::path::absolute(path).map_err(|e| PresetError::Read { file: what.into(), reason: e.to_string() })?;
+        return Ok(Look::of_scene(&stem(path), SceneSource::File(absolute)));
+    }
+    let entries = gallery(chosen);
+    match entries.iter().position(|entry| entry.id == what) {
+        Some(at) => entries.into_iter().nth(at).expect("its place was just found").look,
+        None => {
+            let hint = did_you_mean(what, entries.iter().map(|entry| entry.id.as_str()));
+            let hint = if hint.is_empty() { "; rasterlab list shows all of them".into() } else { hint };
+            Err(PresetError::NoLook { what: what.into(), hint })
+        }
+    }
+}
+
+fn has_extension(path: &Path, wanted: &str) -> bool {
+    path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case(wanted))
+}

@@ -1,0 +1,512 @@
+//! Promise: looks survive a round trip to the bit, keep what they do not understand, and refuse what would do harm.
+
+use std::path::{Path, PathBuf};
+
+use proptest::prelude::*;
+use rasterlab::{
+    effects::{EFFECTS, Effect},
+    params::Kind,
+    preset::{self, Look, PresetError},
+    scene::camera::{Camera, MIN_NEAR_M, Projection},
+    session::{Accuracy, Clock, Output, SceneSource, Session, Test, Tier, Visibility},
+};
+
+fn parse(text: &str) -> Look {
+    preset::parse(text, "look").unwrap_or_else(|error| panic!("{error}"))
+}
+
+fn refusal(text: &str) -> String {
+    match preset::parse(text, "look") {
+        Err(error) => error.to_string(),
+        Ok(_) => panic!("this should have been refused:\n{text}"),
+    }
+}
+
+/// Everything in a session as bits and words, so that -0.0 and 0.0 differ.
+fn bits(session: &Session) -> String {
+    format!("{session:?}")
+}
+
+fn look_files() -> Vec<PathBuf> {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("presets");
+    let files = std::fs::read_dir(folder).expect("presets/ is there").map(|entry| entry.unwrap().path());
+    files.filter(|path| path.extension().is_some_and(|e| e == "toml")).collect()
+}
+
+#[test]
+fn the_example_of_every_section_is_read() {
+    let look = parse(
+        r##"#:schema ./schema.json
+schema = 1
+name = "Ink on glass"
+about = "Half facets"
+tags = ["stylised", "stack"]
+stack = ["lambert", "facet"]
+
+[scene]
+builtin = "cube-wall"
+spin_deg_per_s = 30.0
+
+[camera]
+eye = [3.0, 2, 5.0]
+target = [0.0, 0.5, 0.0]
+fov_y_deg = 60
+
+[clock]
+time_s = 1.25
+
+[effects.facet]
+amount = 0.8
+pattern = "radial"
+center = [1, 2, 3]
+
+[effects.lambert]
+sun = [0.5, 0.25, 1, 1]
+
+[accuracy]
+tier = "fast"
+visibility = "packed64"
+
+[output]
+size = [64, 48]
+background = [0.02, 0.02, 0.03, 1.0]
+
+[test]
+max_channel = 2
+why = "because"
+"##,
+    );
+    let s = &look.session;
+    assert_eq!(look.warnings, Vec::<String>::new());
+    assert_eq!((s.name.as_str(), s.tags.len(), s.spin_deg_per_s, s.clock.time_s), ("Ink on glass", 2, 30.0, 1.25));
+    assert_eq!(s.stack.0.iter().map(|e| e.effect.name).collect::<Vec<_>>(), ["lambert", "facet"]);
+    let facet = s.stack.get("facet").unwrap();
+    let value = |name: &str| facet.effect.field(name).unwrap().get(&facet.words);
+    assert_eq!((value("amount"), value("pattern"), value("center")), (vec![f64::from(0.8f32)], vec![2.0], vec![1.0, 2.0, 3.0]));
+    assert_eq!(s.camera.unwrap().projection, Projection::Perspective { fov_y_deg: 60.0 });
+    assert_eq!(s.accuracy, Accuracy { tier: Tier::Fast, visibility: Some(Visibility::Packed64) });
+    assert_eq!(s.output.size, [64, 48]);
+    assert_eq!(s.test.as_ref().unwrap().max_channel, 2);
+}
+
+#[test]
+fn an_unmodified_look_is_written_byte_for_byte() {
+    let odd = "# mine\nschema=1\nname  =  'odd'   # spaced\n[effects]\n lambert = { sun = [1,1.0,0.50,1e0] } # inline\n\n[output]\nsize=[ 0x10, 1_0 ]\nx-own = 2024-01-01\n";
+    assert_eq!(preset::to_toml(&parse(odd)), odd);
+    for path in look_files() {
+        let text = std::fs::read_to_string(&path).unwrap();
+        assert_eq!(preset::to_toml(&preset::load(&path).unwrap()), text, "{}", path.display());
+    }
+}
+
+#[test]
+fn comments_and_unknown_keys_survive_a_change() {
+    let text = "# head\nschema = 1\n# why\nfuture = { a = 1 }\n\n[camera] # pose\neye = [1.0, 2.0, 3.0] # high\nup = [0.0, 1.0, 0.5]\n\n[effects.facet]\n# half\namount = 0.5 # of the way\n\n[effects.later]\nx = 1\n# tail\n";
+    let mut look = parse(text);
+    preset::set(&mut look, "facet.amount", ".25").unwrap();
+    preset::set(&mut look, "camera.eye", "[1, 2, 4]").unwrap();
+    preset::unset(&mut look, "camera.up").unwrap();
+    let written = preset::to_toml(&look);
+    let wanted =
+        text.replace("amount = 0.5 #", "amount = 0.25 #").replace("3.0] # high", "4.0] # high").replace("up = [0.0, 1.0, 0.5]\n", "");
+    assert_eq!(written, wanted);
+    preset::unset(&mut look, "facet.amount").unwrap();
+    assert!(preset::to_toml(&look).contains("# half\namount = 1.0 # of the way"), "a commented line is kept with its default");
+}
+
+#[test]
+fn only_differences_from_defaults_are_written() {
+    let mut look = Look::new("new", Session::default());
+    assert_eq!(preset::to_toml(&look), "schema = 1\n");
+    preset::set(&mut look, "facet", "").unwrap();
+    preset::set(&mut look, "lambert.headlight", "0.2").unwrap();
+    preset::set(&mut look, "accuracy.tier", "draft").unwrap();
+    preset::set(&mut look, "camera", "").unwrap();
+    assert_eq!(
+        preset::to_toml(&look),
+        "schema = 1\n\n[camera]\n\n[effects.facet]\n\n[effects.lambert]\nheadlight = 0.2\n\n[accuracy]\ntier = \"draft\"\n"
+    );
+    for path in ["effects.lambert.headlight", "accuracy", "camera", "facet", "lambert"] {
+        preset::unset(&mut look, path).unwrap();
+    }
+    assert_eq!(preset::to_toml(&look), "schema = 1\n");
+}
+
+#[test]
+fn the_stack_key_is_written_only_where_order_is_unusual() {
+    let mut look = parse("schema = 1\n[effects.facet]\n[effects.lambert]\n");
+    look.session.stack.0.reverse();
+    let written = preset::to_toml(&look);
+    assert!(written.contains("stack = [\"lambert\", \"facet\"]"), "{written}");
+    let mut again = parse(&written);
+    assert_eq!(again.session, look.session);
+    again.session.stack.0.reverse();
+    assert!(!preset::to_toml(&again).contains("stack"));
+    preset::set(&mut look, "stack", "[\"facet\", \"lambert\"]").unwrap();
+    assert!(look.session.stack.is_canonical());
+}
+
+#[test]
+fn the_stack_key_names_each_enabled_effect_exactly_once() {
+    let with = |stack: &str| format!("schema = 1\nstack = {stack}\n[effects.facet]\n[effects.lambert]\n");
+    assert_eq!(refusal(&with("[\"facet\"]")), "look.toml:2: stack leaves out lambert, which is enabled");
+    assert_eq!(refusal(&with("[\"facet\", \"lambert\", \"facet\"]")), "look.toml:2: stack names facet twice");
+    assert!(refusal(&with("[\"facet\", \"lambert\", \"depth\"]")).contains("names depth, which is not enabled"));
+    assert!(refusal(&with("[\"fascet\", \"lambert\"]")).contains("did you mean \"facet\"?"));
+    assert!(refusal(&with("\"facet\"")).contains("must be a list of effect names"));
+}
+
+#[test]
+fn errors_name_line_key_value_and_range() {
+    let cases = [
+        ("schema = 1\n[effects.facet]\namount = -1\n", "look.toml:3: effects.facet.amount -1 lies outside 0..=1"),
+        (
+            "schema = 1\n[effects.facet]\namount = 1e39\n",
+            "look.toml:3: effects.facet.amount 1e39 is too large for a 32-bit float, which ends at 3.4028235e38",
+        ),
+        ("schema = 1\n[effects.facet]\namount = nan\n", "look.toml:3: effects.facet.amount nan is not a finite number"),
+        ("schema = 1\n[effects.facet]\nseed = 1.5\n", "look.toml:3: effects.facet.seed 1.5 must be a whole number"),
+        ("schema = 1\n[effects.facet]\nseed = -1\n", "look.toml:3: effects.facet.seed -1 lies outside 0..=4294967295"),
+        (
+            "schema = 1\n[effects.facet]\npattern = \"radail\"\n",
+            "look.toml:3: effects.facet.pattern \"radail\" is not one of uniform, sweep, radial, random; did you mean \"radial\"?",
+        ),
+        (
+            "schema = 1\n[effects.facet]\ncenter = [1, 2]\n",
+            "look.toml:3: effects.facet.center must be a list of 3 numbers, not a list of 2",
+        ),
+        ("schema = 1\n[effects.depth]\nfit = 1\n", "look.toml:3: effects.depth.fit must be true or false, not a number"),
+        ("schema = 1\n[output]\nsize = [16385, 1]\n", "look.toml:3: output.size 16385 lies outside 0..=16384"),
+        ("schema = 1\n[camera]\nfov_y_deg = 180\n", "look.toml:3: camera.fov_y_deg 180 lies outside 1..=179"),
+        ("schema = 1\n[camera]\neye = [0, inf, 0]\n", "look.toml:3: camera.eye inf is not a finite number"),
+        ("schema = 1\n[camera]\neye = [0, 1e10, 0]\n", "look.toml:3: camera.eye 1e10 lies outside -1e9..=1e9"),
+        ("schema = 1\n[accuracy]\ntier = 3\n", "look.toml:3: accuracy.tier must be one of draft, fast, precise, reference, not a number"),
+        ("schema = 1\n[test]\nmax_pixels = 9\n", "look.toml:2: test.why must say why the budget is above the default"),
+        ("schema = 1\nname = \"\\u001b[31m\"\n", "look.toml:2: name contains the control character '\\u{1b}'"),
+        ("schema = 1\neffects = 3\n", "look.toml:2: effects must be a table, written [effects]"),
+        ("schema = 1\neffects.facet = true\n", "look.toml:2: effects.facet must be a table, written [effects.facet]"),
+        ("schema = 1\n[[camera]]\n", "look.toml:2: camera must be a table, written [camera]"),
+        ("schema = 0\n", "look.toml:1: schema must be a whole number from 1 up"),
+        ("schema = 1\n[scene]\npath = \"https://example.org/a.glb\"\n", "look.toml:3: scene.path must be a file, not an address"),
+        ("schema = 1\n[scene]\npath = \"a.glb\"\nbuiltin = \"knot\"\n", "look.toml:3: scene.path and scene.builtin exclude each other"),
+    ];
+    for (text, wanted) in cases {
+        assert_eq!(refusal(text), wanted);
+    }
+}
+
+#[test]
+fn a_syntax_error_names_its_line() {
+    for (text, line) in [("schema = 1\nname = \n", 2), ("schema = 1\n\n[effects.facet\n", 3), ("schema = 1\nschema = 1\n", 2)] {
+        let message = refusal(text);
+        assert!(message.starts_with(&format!("look.toml:{line}: ")), "{message}");
+        assert!(!message.contains('\n'), "{message}");
+    }
+}
+
+#[test]
+fn unknown_keys_warn_with_a_suggestion_and_strictness_refuses_them() {
+    let look = parse("schema = 1\nnmae = 1\n[effects.fascet]\n[effects.lambert]\nsnu = 1\n[camera]\nfov = 3\n[otuput]\n");
+    let warnings = look.warnings.join("\n");
+    for wanted in [
+        "look.toml:2: unknown key nmae; did you mean \"name\"?",
+        "look.toml:3: unknown key effects.fascet; did you mean \"facet\"?",
+        "look.toml:5: unknown key effects.lambert.snu; did you mean \"sun\"?",
+        "look.toml:7: unknown key camera.fov",
+        "look.toml:8: unknown key otuput; did you mean \"output\"?",
+    ] {
+        assert!(warnings.contains(wanted), "{wanted:?} is not among\n{warnings}");
+    }
+    assert!(matches!(look.strict(), Err(PresetError::Strict(warnings)) if warnings.len() == 5));
+    assert!(parse("name = \"x\"").warnings[0].contains("schema is missing"));
+}
+
+#[test]
+fn a_newer_schema_opens_read_only_and_is_never_written() {
+    let mut look = parse("schema = 99\nname = \"new\"\n");
+    assert!(look.read_only && look.warnings[0].contains("schema 99 is newer"));
+    look.session.name = "changed".into();
+    let folder = tempfile::tempdir().unwrap();
+    let target = folder.path().join("copy.toml");
+    assert!(matches!(preset::save(&mut look, &target), Err(PresetError::ReadOnly { .. })));
+    assert!(!target.exists());
+}
+
+#[test]
+fn saving_is_atomic_and_leaves_an_unmodified_file_alone() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("mine.toml");
+    let mut look = Look::new("new", Session::default());
+    preset::save(&mut look, &path).unwrap();
+    assert_eq!((look.id.as_str(), look.path.as_deref()), ("mine", Some(path.as_path())));
+    let stamp = |path: &Path| std::fs::metadata(path).unwrap().modified().unwrap();
+    let before = stamp(&path);
+    std::thread::sleep(std::time::Duration::from_millis(20));
+    preset::save(&mut look, &path).unwrap();
+    assert_eq!(stamp(&path), before, "an unmodified look was rewritten");
+    preset::set(&mut look, "name", "Changed").unwrap();
+    preset::save(&mut look, &path).unwrap();
+    assert_eq!(preset::load(&path).unwrap().session.name, "Changed");
+    let names: Vec<_> = std::fs::read_dir(folder.path()).unwrap().map(|e| e.unwrap().file_name()).collect();
+    assert_eq!(names, ["mine.toml"], "no temporary file is left behind");
+}
+
+#[test]
+fn a_failed_save_keeps_the_old_file_and_the_unsaved_state() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("kept.toml");
+    let mut look = Look::new("new", Session { name: "old".into(), ..Session::default() });
+    preset::save(&mut look, &path).unwrap();
+    let mut permissions = std::fs::metadata(&path).unwrap().permissions();
+    permissions.set_readonly(true);
+    std::fs::set_permissions(&path, permissions).unwrap();
+    look.session.name = "new".into();
+    assert!(matches!(preset::save(&mut look, &path), Err(PresetError::Write { .. })));
+    assert!(look.is_modified());
+    assert_eq!(preset::load(&path).unwrap().session.name, "old");
+    assert!(matches!(preset::save(&mut look, &folder.path().join("no/such/folder.toml")), Err(PresetError::Write { .. })));
+}
+
+#[test]
+fn saving_elsewhere_keeps_the_way_to_the_model() {
+    let folder = tempfile::tempdir().unwrap();
+    let (looks, deeper) = (folder.path().join("looks"), folder.path().join("looks/a/b"));
+    std::fs::create_dir_all(&deeper).unwrap();
+    let model = folder.path().join("scenes/fox.glb");
+    let mut look = Look::of_scene("fox", SceneSource::File(model));
+    preset::save(&mut look, &looks.join("fox.toml")).unwrap();
+    assert_eq!(look.session.scene, SceneSource::File("../scenes/fox.glb".into()));
+    preset::save(&mut look, &deeper.join("fox.toml")).unwrap();
+    assert_eq!(look.session.scene, SceneSource::File("../../../scenes/fox.glb".into()));
+    let absent = preset::load_scene(&look.session, look.path.as_deref()).unwrap_err().to_string();
+    assert!(absent.contains("fox.glb, which is not there"), "{absent}");
+}
+
+#[test]
+fn set_obeys_the_rules_of_files() {
+    let mut look = Look::new("new", Session::default());
+    for (path, value, wanted) in [
+        ("facet.amount", "2", "--set facet.amount=2: facet.amount 2 lies outside 0..=1"),
+        ("facet.amount", "inf", "facet.amount inf is not a finite number"),
+        ("facet.amuont", "1", "facet.amuont is unknown; did you mean \"amount\"?"),
+        ("fascet.amount", "1", "did you mean \"facet.amount\"?"),
+        ("output.size", "[1]", "output.size must be a list of 2 numbers"),
+        ("facet", "1", "facet takes no value"),
+        ("stack", "[\"facet\"]", "stack names facet, which is not enabled"),
+    ] {
+        let error = preset::set(&mut look, path, value).unwrap_err().to_string();
+        assert!(error.contains(wanted), "{error}");
+    }
+    assert_eq!(look.session, Session::default(), "a refused value changes nothing");
+    for (path, value) in [
+        ("effects.facet.pattern", "random"),
+        ("depth.fit", "false"),
+        ("name", "42"),
+        ("scene.builtin", "teapot?tess=16"),
+        ("tags", "[\"a\"]"),
+    ] {
+        preset::set(&mut look, path, value).unwrap_or_else(|e| panic!("{e}"));
+    }
+    assert_eq!((look.session.name.as_str(), look.session.stack.0.len()), ("42", 2));
+    assert_eq!(look.session.scene, SceneSource::Builtin("teapot?tess=16".into()));
+    preset::set(&mut look, "camera.orthographic_height_m", "3").unwrap();
+    preset::unset(&mut look, "camera.orthographic_height_m").unwrap();
+    assert_eq!(look.session.camera, Some(Camera::default()));
+}
+
+#[test]
+fn hostile_text_is_refused_without_harm() {
+    let deep = format!("schema = 1\nx = {}{}\n", "[".repeat(100_000), "]".repeat(100_000));
+    let long = format!("schema = 1\nname = \"{}\"\n", "x".repeat(2 << 20));
+    let wide = format!("schema = 1\ntags = [{}]\n", "\"t\",".repeat(1000));
+    let huge = "schema = 1\n[effects.facet]\nseed = 99999999999999999999\n".to_owned();
+    for text in [deep, long, wide, huge, "\u{0}".into(), "schema = [1]".into(), "=".into(), "[]".into()] {
+        assert!(preset::parse(&text, "hostile").is_err());
+    }
+    let folder = tempfile::tempdir().unwrap();
+    let binary = folder.path().join("binary.toml");
+    std::fs::write(&binary, [0xff, 0xfe, 0x00]).unwrap();
+    assert!(preset::load(&binary).unwrap_err().to_string().contains("not UTF-8"));
+}
+
+#[test]
+fn a_shared_line_gives_the_look_back() {
+    let mut look = parse("schema = 1\nname = \"Tinte ✒\"\n[effects.facet]\namount = 0.1\n# kept\n");
+    look.session.clock.time_s = 0.1;
+    let line = preset::to_line(&look);
+    assert!(line.starts_with("rasterlab1:") && !line.contains('\n'));
+    let (head, tail) = line.split_at(30);
+    let back = preset::from_line(&format!("  {head}\n{tail} ")).unwrap();
+    assert_eq!(bits(&back.session), bits(&look.session));
+    assert!(preset::to_toml(&back).contains("# kept"));
+}
+
+#[test]
+fn hostile_shared_lines_are_refused() {
+    use std::io::Write as _;
+    let pack = |bytes: &[u8]| {
+        let mut deflate = flate2::write::DeflateEncoder::new(Vec::new(), flate2::Compression::best());
+        deflate.write_all(bytes).unwrap();
+        use base64::Engine as _;
+        format!("rasterlab1:{}", base64::engine::general_purpose::STANDARD.encode(deflate.finish().unwrap()))
+    };
+    let bomb = preset::from_line(&pack(&vec![b' '; 64 << 20])).unwrap_err().to_string();
+    assert!(bomb.contains("more than 1 MiB"), "{bomb}");
+    for path in ["../secret.glb", "/etc/passwd", "a/../../b.glb", "C:\\x.glb", "..\\x.glb"] {
+        let line = pack(format!("schema = 1\n[scene]\npath = '{path}'\n").as_bytes());
+        let error = preset::from_line(&line).unwrap_err().to_string();
+        assert!(error.contains("leaves the look's own folder"), "{path}: {error}");
+    }
+    for line in ["", "rasterlab2:AAAA", "rasterlab1:", "rasterlab1:!!", "rasterlab1:AAAA"] {
+        assert!(preset::from_line(line).is_err() || line == "rasterlab1:", "{line}");
+    }
+}
+
+#[test]
+fn a_saved_picture_gives_its_look_back_and_a_bare_one_says_so() {
+    let look = parse("schema = 1\nname = \"Tinte ✒\"\n[effects.facet]\namount = 0.1\n");
+    let frame = rasterlab::frame::Frame { width: 2, height: 1, color: vec![[1, 2, 3, 255], [4, 5, 6, 255]], ..Default::default() };
+    let provenance = preset::Provenance { adapter: "cpu".into(), driver: "none".into() };
+    let png = preset::png_with_look(&frame, &look, &provenance).unwrap();
+    let back = preset::look_from_png(&png, "shot.png").unwrap();
+    assert_eq!(back.session, look.session);
+    let bare = preset::png_bytes(&frame.color, [2, 1]).unwrap();
+    assert!(preset::look_from_png(&bare, "bare.png").unwrap_err().to_string().contains("bare"));
+    assert!(preset::look_from_png(b"no png", "x.png").is_err());
+    assert!(preset::png_bytes(&[], [0, 1]).is_err());
+}
+
+#[test]
+fn schema_json_is_up_to_date() {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("presets/schema.json");
+    if std::env::var_os("UPDATE_SNAPSHOTS").is_some() {
+        std::fs::write(&path, preset::schema::text()).unwrap();
+    }
+    let stored = std::fs::read_to_string(&path).unwrap_or_default();
+    assert!(
+        stored == preset::schema::text(),
+        "presets/schema.json is stale; UPDATE_SNAPSHOTS=1 cargo test --release --test presets writes it"
+    );
+}
+
+fn finite_f32() -> impl Strategy<Value = f32> {
+    any::<u32>().prop_map(f32::from_bits).prop_filter("finite", |v| v.is_finite())
+}
+
+/// Any value that a key of this range may have, with a taste for its ends.
+fn within(low: f64, high: f64) -> impl Strategy<Value = f64> {
+    prop_oneof![Just(low), Just(high), low..=high, Just(0.0f64.clamp(low, high)), Just((-0.0f64).max(low))]
+}
+
+fn any_effect() -> impl Strategy<Value = (usize, u64)> {
+    (0..EFFECTS.len(), any::<u64>())
+}
+
+/// Fills every field with values drawn from its hard range.
+fn filled(effect: &'static Effect, seed: u64) -> Vec<u32> {
+    let mut words = (effect.defaults)();
+    let mut state = seed as u32;
+    for field in effect.fields {
+        let lanes: Vec<f64> = (0..field.kind.lanes())
+            .map(|_| {
+                state = rasterlab::math::hash(state.wrapping_add(0x9e37_79b9));
+                let [low, high] = field.hard;
+                let value = low + (high - low) * f64::from(state) / f64::from(u32::MAX);
+                match field.kind {
+                    Kind::F32 | Kind::Color | Kind::Point if state % 7 == 0 && (low..=high).contains(&-0.0) => -0.0,
+                    Kind::F32 | Kind::Color | Kind::Point => f64::from(value as f32).clamp(low, high),
+                    _ => value.round(),
+                }
+            })
+            .collect();
+        field.set(&mut words, &lanes).unwrap();
+    }
+    words
+}
+
+prop_compose! {
+    fn any_camera()(
+        eye in prop::array::uniform3(within(-1e9, 1e9)),
+        target in prop::array::uniform3(within(-1e9, 1e9)),
+        up in prop::array::uniform3(within(-1e9, 1e9)),
+        fov in prop::option::of(within(1.0, 179.0)),
+        height in within(1e-6, 1e9),
+        near_m in within(MIN_NEAR_M, 1e6),
+    ) -> Camera {
+        let projection = fov.map_or(Projection::Orthographic { height_m: height }, |fov_y_deg| Projection::Perspective { fov_y_deg });
+        Camera { eye: eye.into(), target: target.into(), up: up.into(), projection, near_m }
+    }
+}
+
+prop_compose! {
+    fn any_session()(
+        texts in prop::array::uniform3("[^\\p{Cc}]{0,40}"),
+        tags in prop::collection::vec("[a-z \"\\\\#']{0,12}", 0..4),
+        scene in prop_oneof![Just(SceneSource::Builtin("knot?tess=8".into())), Just(SceneSource::File("a b/fox.glb".into())), Just(Session::default().scene)],
+        spin_deg_per_s in within(-1e6, 1e6),
+        camera in prop::option::of(any_camera()),
+        time_s in within(-1e9, 1e9),
+        effects in prop::collection::vec(any_effect(), 0..6),
+        reversed in any::<bool>(),
+        tier in 0..4usize,
+        visibility in prop::option::of(0..2usize),
+        size in prop::array::uniform2(0..=16_384u32),
+        background in prop::array::uniform4(0.0..=1.0f32),
+        test in prop::option::of((any::<u8>(), any::<u32>())),
+    ) -> Session {
+        let [name, about, why] = texts;
+        let mut stack = rasterlab::effects::Stack::default();
+        for (index, seed) in effects {
+            stack.enable(EFFECTS[index]).words = filled(EFFECTS[index], seed);
+        }
+        if reversed {
+            stack.0.reverse();
+        }
+        Session {
+            name, about, tags, scene, spin_deg_per_s, camera,
+            clock: Clock { time_s },
+            stack,
+            accuracy: Accuracy { tier: Tier::ALL[tier], visibility: visibility.map(|i| Visibility::ALL[i]) },
+            output: Output { size, background },
+            test: test.map(|(max_channel, max_pixels)| Test { max_channel, max_pixels, why: format!("because {why}") }),
+        }
+    }
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig { cases: 300, failure_persistence: None, ..ProptestConfig::default() })]
+
+    #[test]
+    fn a_round_trip_keeps_every_bit(session in any_session()) {
+        let text = preset::to_toml(&Look::new("any", session.clone()));
+        let back = preset::parse(&text, "any").map_err(|e| TestCaseError::fail(format!("{e}\n{text}")))?;
+        prop_assert_eq!(bits(&back.session), bits(&session), "{}", text);
+        prop_assert!(back.warnings.is_empty(), "{:?}", back.warnings);
+        prop_assert_eq!(preset::to_toml(&back), text);
+    }
+
+    #[test]
+    fn any_session_can_be_patched_into_any_other(before in any_session(), after in any_session()) {
+        let mut look = parse(&preset::to_toml(&Look::new("any", before)));
+        look.session = after.clone();
+        let text = preset::to_toml(&look);
+        let back = preset::parse(&text, "any").map_err(|e| TestCaseError::fail(format!("{e}\n{text}")))?;
+        prop_assert_eq!(bits(&back.session), bits(&after), "{}", text);
+    }
+
+    #[test]
+    fn a_parameter_survives_whatever_its_bits(value in finite_f32()) {
+        let written = format!("schema = 1\n[effects.facet]\namount = {value:?}\n");
+        match preset::parse(&written, "any") {
+            Ok(look) => prop_assert_eq!(look.session.stack.get("facet").unwrap().effect.field("amount").unwrap().get(&look.session.stack.0[0].words)[0].to_bits(), f64::from(value).to_bits()),
+            Err(error) => prop_assert!(!(0.0..=1.0).contains(&value), "{error}"),
+        }
+    }
+
+    #[test]
+    fn no_text_panics(text in "\\PC{0,200}") {
+        let _ = preset::parse(&text, "any");
+        let _ = preset::from_line(&text);
+        let _ = preset::look_from_png(text.as_bytes(), "any");
+    }
+}
