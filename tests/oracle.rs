@@ -1184,6 +1184,17 @@ fn vertices_one_unit_apart_are_explained_and_counted() {
     assert!(accuracy.within(&Budget { max_explained: 0, ..Default::default() }).is_err());
 }
 
+#[test]
+fn crossing_line_that_moves_with_the_snap_is_explained() {
+    let right = 65.0 + 1.0 / 256.0;
+    let sheets = [[0.0, -70.0, 0.25], [0.0, 140.0, 0.25], [right, 0.0, 0.75], [0.0, -70.0, 0.75], [0.0, 140.0, 0.75], [right, 0.0, 0.25]];
+    let fixture = (scene(&[(sheet(&sheets), DMat4::IDENTITY)]), flat_view(64, 16));
+    // The sheets cross half a unit to the right of the samples of column 32, then half a unit to the left.
+    let shift = |geometry: &mut Geometry| geometry.vertices.iter_mut().for_each(|vertex| vertex.x -= 1);
+    let accuracy = judged(&fixture, &Adapter::default(), shift, |_, _| {});
+    assert_eq!((accuracy.explained_by_snap, accuracy.unexplained, accuracy.owner_mismatch), (16, 0, 0), "{accuracy:?}");
+}
+
 /// A vertex stage in f32, with fused and unfused sums and a division that is a little off, as WGSL allows.
 fn single_precision(scene: &Scene, view: &View, geometry: &mut Geometry, dice: &mut Dice) {
     for draw in draws(scene, view).unwrap() {
