@@ -107,6 +107,6 @@ mod tests {
 
     #[test]
     fn srgb_hits_both_ends() {
-        assert_eq!((srgb_byte(0.0), srgb_byte(1.0), srgb_byte(0.214_041_14)), (0, 255, 128));
+        assert_eq!((srgb_byte(0.0), srgb_byte(1.0), srgb_byte(0.215_860_5)), (0, 255, 128));
     }
 }

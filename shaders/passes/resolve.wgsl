@@ -67,13 +67,18 @@ fn place_clipped(t: Triangle, at: vec3u, pixel: vec2u) -> Place {
     return Place(share / sum, select(linear, vec3f(a.w, b.w, c.w), frame.eye.w != 0.0), center, is_clockwise);
 }
 
-fn normal_of(draw: u32, vertex: u32) -> vec3f {
+// A stored normal; w is 0 where a lane is NaN, infinite or beyond 2^40, told by its bits.
+fn normal_of(draw: u32, vertex: u32) -> vec4f {
     let byte = draws[draw].normal_offset + vertex * draws[draw].normal_stride;
+    var bits: vec3u;
     if F32_NORMALS {
         let word = byte / 4u;
-        return bitcast<vec3f>(vec3u(vertex_bytes[word], vertex_bytes[word + 1u], vertex_bytes[word + 2u]));
+        bits = vec3u(vertex_bytes[word], vertex_bytes[word + 1u], vertex_bytes[word + 2u]);
+    } else {
+        bits = pull_bits3(draws[draw].normal_format, byte);
     }
-    return pull_vec3(draws[draw].normal_format, byte);
+    let gate = vertex_gate(bits);
+    return vec4f(vertex_position(bits, gate), select(0.0, 1.0, gate == 0u));
 }
 
 fn color_of(draw: u32, vertex: u32) -> vec4f {
@@ -102,6 +107,15 @@ fn plane_normal(a: vec3f, b: vec3f, c: vec3f) -> vec3f {
     if !(long > 0.0 && wide > 0.0) { return vec3f(0.0); }
     let normal = cross(ab / long, ac / wide);
     return select(vec3f(0.0), normal, dot(normal, normal) >= 1e-12);
+}
+
+// Interpolated normal in object space; zero where a corner has none or the corners cancel.
+fn smooth_normal(a: vec4f, b: vec4f, c: vec4f, k: vec3f) -> vec3f {
+    let longest = max(max(abs(a.xyz), abs(b.xyz)), abs(c.xyz));
+    let scale = max(max(longest.x, longest.y), longest.z);
+    if a.w * b.w * c.w == 0.0 || scale == 0.0 { return vec3f(0.0); }
+    let sum = (a.xyz * k.x + b.xyz * k.y + c.xyz * k.z) / scale;
+    return select(vec3f(0.0), sum, dot(sum, sum) >= 1e-12);
 }
 
 fn surface_at(id: u32, pixel: vec2u) -> Surface {
@@ -135,8 +149,10 @@ fn surface_at(id: u32, pixel: vec2u) -> Surface {
 
     let flags = draws[t.draw].flags;
     let is_mirrored = (flags & DRAW_MIRRORED) != 0u;
-    let smooth_sum = normal_of(t.draw, at.x) * k.x + normal_of(t.draw, at.y) * k.y + normal_of(t.draw, at.z) * k.z;
-    s.normal = direction((normal_from_object * vec4f(smooth_sum, 0.0)).xyz);
+    let na = normal_of(t.draw, at.x);
+    let nb = normal_of(t.draw, at.y);
+    let nc = normal_of(t.draw, at.z);
+    s.normal = direction((normal_from_object * vec4f(smooth_normal(na, nb, nc, k), 0.0)).xyz);
     s.flat_normal = direction((normal_from_object * vec4f(plane_normal(a, b, c), 0.0)).xyz);
     let has_smooth = any(s.normal != vec3f(0.0));
     let has_flat = any(s.flat_normal != vec3f(0.0));

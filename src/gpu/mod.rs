@@ -193,7 +193,7 @@ impl Renderer {
         self.clear(&mut encoder, &["counters", "depth_keys", "owners", "depth_owner"]);
         self.record(&mut encoder, &plan.key, &passes, view)?;
         self.present(&mut encoder, view);
-        let pending = Pending::stage(&self.gpu, &mut encoder, self.buffers.get("counters"), self.timer.as_ref());
+        let pending = Pending::stage(&self.gpu, &mut encoder, Some(self.buffers.get("counters")), self.timer.as_ref());
         self.gpu.queue.submit([encoder.finish()]);
         self.pending.push_back(pending.begin());
         self.last = Some(plan);

@@ -29,14 +29,16 @@ const COUNTER_BYTES: u64 = 64;
 
 impl Pending {
     /// Records the copies that end a frame.
-    pub fn stage(gpu: &Gpu, encoder: &mut wgpu::CommandEncoder, counters: &wgpu::Buffer, timer: Option<&Timer>) -> Self {
+    pub fn stage(gpu: &Gpu, encoder: &mut wgpu::CommandEncoder, counters: Option<&wgpu::Buffer>, timer: Option<&Timer>) -> Self {
         let staging = gpu.device.create_buffer(&wgpu::BufferDescriptor {
             label: Some("figures"),
             size: COUNTER_BYTES + Timer::BYTES,
             usage: wgpu::BufferUsages::MAP_READ | wgpu::BufferUsages::COPY_DST,
             mapped_at_creation: false,
         });
-        encoder.copy_buffer_to_buffer(counters, 0, &staging, 0, COUNTER_BYTES);
+        if let Some(counters) = counters {
+            encoder.copy_buffer_to_buffer(counters, 0, &staging, 0, COUNTER_BYTES);
+        }
         if let Some(timer) = timer {
             timer.end(encoder, &staging, COUNTER_BYTES);
         }
