@@ -25,7 +25,7 @@ const MAY_KNOW: &[(&str, &[&str])] = &[
 ];
 
 /// Longest source file, lines. A longer one stands here with its reason.
-const LONGEST: usize = 400;
+const LONGEST: usize = 450;
 const LONG_FOR_A_REASON: &[(&str, &str)] = &[];
 
 /// Crates that only some rooms may name.
