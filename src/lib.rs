@@ -5,9 +5,9 @@
 //! * [`math`], [`frame`]: exact little tools, and the picture with its integers
 //! * [`scene`]: meshes as the file has them, cameras, what a scene requires
 //! * [`params`], [`effects`]: one table per effect, one list of effects, their f64 truth
-//! * [`oracle`]: the exact CPU renderer that judges and blesses
-//! * [`gpu`]: the kernels on a device
+//! * [`shader`], [`plan`], [`gpu`]: choose, link and run the kernels
 //! * [`measure`]: frame against frame, samples of time
+//! * [`oracle`]: the exact CPU renderer that judges and blesses
 //! * [`session`]: the state of a look
 //! * [`preset`]: looks as files, sparse TOML
 //! * [`cli`]: every subcommand; never opens a window of its own
@@ -25,6 +25,8 @@ pub mod math;
 pub mod measure;
 pub mod oracle;
 pub mod params;
+pub mod plan;
 pub mod preset;
 pub mod scene;
 pub mod session;
+pub mod shader;

@@ -6,6 +6,10 @@ use std::path::PathBuf;
 
 use glam::{DMat4, DVec3};
 
+pub use crate::{
+    plan::{Accuracy, Tier},
+    shader::key::Visibility,
+};
 use crate::{
     effects::Stack,
     math::rotation_y,
@@ -28,57 +32,6 @@ pub enum SceneSource {
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Clock {
     pub time_s: f64,
-}
-
-/// Where depth and owner meet on the GPU; the rungs that this version has.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub enum Visibility {
-    /// Portable: a depth pass, then an owner pass.
-    Split32,
-    /// One 64-bit atomic per sample.
-    Packed64,
-}
-
-impl Visibility {
-    pub const ALL: [Self; 2] = [Self::Split32, Self::Packed64];
-
-    pub const fn name(self) -> &'static str {
-        match self {
-            Self::Split32 => "split32",
-            Self::Packed64 => "packed64",
-        }
-    }
-}
-
-/// Named tolerances; the planner turns them into rungs.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum Tier {
-    Draft,
-    Fast,
-    #[default]
-    Precise,
-    Reference,
-}
-
-impl Tier {
-    pub const ALL: [Self; 4] = [Self::Draft, Self::Fast, Self::Precise, Self::Reference];
-
-    pub const fn name(self) -> &'static str {
-        match self {
-            Self::Draft => "draft",
-            Self::Fast => "fast",
-            Self::Precise => "precise",
-            Self::Reference => "reference",
-        }
-    }
-}
-
-/// How exact the picture must be.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Accuracy {
-    pub tier: Tier,
-    /// A pinned rung beats the tier.
-    pub visibility: Option<Visibility>,
 }
 
 /// The picture to be made.

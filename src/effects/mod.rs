@@ -110,6 +110,14 @@ impl PartialEq for Effect {
     }
 }
 
+impl Eq for Effect {}
+
+impl std::hash::Hash for Effect {
+    fn hash<H: std::hash::Hasher>(&self, state: &mut H) {
+        self.name.hash(state);
+    }
+}
+
 /// The f64 side of an effect on the surface hook.
 pub trait SurfaceEffect: Params {
     fn apply(surface: Surface, params: &Self) -> Surface;

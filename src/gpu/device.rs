@@ -1,6 +1,11 @@
-//! Adapters and devices: what is there, what it can do, and one function that opens it for window, command line and tests.
+//! Adapters and devices: what is there, what it can do, and one way to open it for window, command line and tests.
 
-use std::sync::{Arc, atomic::{AtomicBool, Ordering}};
+use std::sync::{
+    Arc, Mutex,
+    atomic::{AtomicBool, Ordering},
+};
+
+pub use crate::plan::Caps;
 
 /// Which adapter a person asked for.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -23,26 +28,6 @@ pub struct AdapterSummary {
     pub software: bool,
 }
 
-/// What an adapter can do for us.
-#[derive(Clone, Debug, PartialEq, serde::Serialize)]
-pub struct Caps {
-    /// 64-bit atomic maximum on storage buffers: the `packed64` rung.
-    pub int64_atomics: bool,
-    /// GPU timestamps.
-    pub timestamps: bool,
-    pub max_storage_binding_bytes: u64,
-    pub max_buffer_bytes: u64,
-    pub max_texture_side: u32,
-    pub software: bool,
-}
-
-impl Caps {
-    /// `native-int64` or `portable`.
-    pub fn class(&self) -> &'static str {
-        if self.int64_atomics { "native-int64" } else { "portable" }
-    }
-}
-
 /// Why no device could be had.
 #[derive(Debug, thiserror::Error)]
 pub enum OpenError {
@@ -63,19 +48,150 @@ pub struct Gpu {
     pub summary: AdapterSummary,
     pub caps: Caps,
     lost: Arc<AtomicBool>,
+    /// First error that no scope caught.
+    error: Arc<Mutex<Option<String>>>,
+}
+
+/// The back ends that run our compute shaders.
+pub const BACKENDS: wgpu::Backends = wgpu::Backends::VULKAN.union(wgpu::Backends::METAL).union(wgpu::Backends::DX12);
+
+fn instance() -> wgpu::Instance {
+    let mut descriptor = wgpu::InstanceDescriptor::new_without_display_handle_from_env();
+    descriptor.backends &= BACKENDS;
+    wgpu::Instance::new(descriptor)
+}
+
+fn adapters() -> Vec<wgpu::Adapter> {
+    let mut adapters = pollster::block_on(instance().enumerate_adapters(BACKENDS));
+    adapters.sort_by_key(|adapter| match adapter.get_info().device_type {
+        wgpu::DeviceType::DiscreteGpu => 0,
+        wgpu::DeviceType::IntegratedGpu => 1,
+        wgpu::DeviceType::VirtualGpu => 2,
+        wgpu::DeviceType::Other => 3,
+        wgpu::DeviceType::Cpu => 4,
+    });
+    adapters
+}
+
+/// Every adapter with what it can do, best first.
+pub fn list() -> Vec<(AdapterSummary, Caps)> {
+    adapters().iter().map(|adapter| (summary(adapter), caps(adapter))).collect()
+}
+
+/// Index in `names` (best first) of the adapter that `choice` means.
+pub fn choose(choice: &AdapterChoice, names: &[String]) -> Result<usize, OpenError> {
+    let there = || names.join(", ");
+    let AdapterChoice::Named(wanted) = choice else {
+        return if names.is_empty() { Err(OpenError::None) } else { Ok(0) };
+    };
+    let needle = wanted.to_lowercase();
+    let matching: Vec<usize> = (0..names.len()).filter(|&i| names[i].to_lowercase().contains(&needle)).collect();
+    match matching[..] {
+        [] if names.is_empty() => Err(OpenError::None),
+        [] => Err(OpenError::NoMatch { wanted: wanted.clone(), there: there() }),
+        [one] => Ok(one),
+        [first, ..] if names[first].to_lowercase() == needle => Ok(first),
+        _ => Err(OpenError::Ambiguous { wanted: wanted.clone(), there: there() }),
+    }
+}
+
+/// An adapter as shown to people.
+pub fn summary(adapter: &wgpu::Adapter) -> AdapterSummary {
+    let info = adapter.get_info();
+    AdapterSummary {
+        name: info.name,
+        backend: info.backend.to_string(),
+        driver: [info.driver, info.driver_info].into_iter().filter(|s| !s.is_empty()).collect::<Vec<_>>().join(" "),
+        software: info.device_type == wgpu::DeviceType::Cpu,
+    }
+}
+
+fn wanted_features(adapter: &wgpu::Adapter) -> wgpu::Features {
+    // The smaller of the two 64-bit sets, so that tests prove it is enough.
+    let int64 = wgpu::Features::SHADER_INT64 | wgpu::Features::SHADER_INT64_ATOMIC_MIN_MAX;
+    let there = adapter.features();
+    let int64 = if there.contains(int64) { int64 } else { wgpu::Features::empty() };
+    int64 | (there & wgpu::Features::TIMESTAMP_QUERY)
+}
+
+fn caps(adapter: &wgpu::Adapter) -> Caps {
+    let (features, limits) = (wanted_features(adapter), wanted_limits(adapter));
+    Caps {
+        int64_atomics: features.contains(wgpu::Features::SHADER_INT64_ATOMIC_MIN_MAX),
+        timestamps: features.contains(wgpu::Features::TIMESTAMP_QUERY),
+        max_storage_binding_bytes: limits.max_storage_buffer_binding_size,
+        max_buffer_bytes: limits.max_buffer_size,
+        max_texture_side: limits.max_texture_dimension_2d,
+        software: adapter.get_info().device_type == wgpu::DeviceType::Cpu,
+    }
+}
+
+fn wanted_limits(adapter: &wgpu::Adapter) -> wgpu::Limits {
+    let there = adapter.limits();
+    wgpu::Limits {
+        max_storage_buffer_binding_size: there.max_storage_buffer_binding_size,
+        max_buffer_size: there.max_buffer_size,
+        max_texture_dimension_2d: there.max_texture_dimension_2d.min(16_384),
+        ..wgpu::Limits::default()
+    }
 }
 
 impl Gpu {
+    /// Opens an adapter without a window; waits for it.
+    pub fn open(choice: &AdapterChoice) -> Result<Arc<Self>, OpenError> {
+        let adapters = adapters();
+        let names: Vec<String> = adapters.iter().map(|adapter| adapter.get_info().name).collect();
+        let adapter = &adapters[choose(choice, &names)?];
+        let (device, queue) = pollster::block_on(adapter.request_device(&Self::descriptor(adapter)))
+            .map_err(|error| OpenError::Device { adapter: adapter.get_info().name, reason: error.to_string() })?;
+        Ok(Self::adopt(adapter, device, queue))
+    }
+
+    /// What we ask of an adapter: all that helps of what it has, and no more.
+    pub fn descriptor(adapter: &wgpu::Adapter) -> wgpu::DeviceDescriptor<'static> {
+        wgpu::DeviceDescriptor {
+            label: Some("rasterlab"),
+            required_features: wanted_features(adapter),
+            required_limits: wanted_limits(adapter),
+            ..Default::default()
+        }
+    }
+
+    /// Takes over a device made from [`Self::descriptor`], for instance the window's.
+    pub fn adopt(adapter: &wgpu::Adapter, device: wgpu::Device, queue: wgpu::Queue) -> Arc<Self> {
+        let lost = Arc::new(AtomicBool::new(false));
+        let error = Arc::new(Mutex::new(None));
+        let flag = lost.clone();
+        device.set_device_lost_callback(move |_, _| flag.store(true, Ordering::Relaxed));
+        let slot = error.clone();
+        device.on_uncaptured_error(Arc::new(move |e: wgpu::Error| {
+            slot.lock().unwrap_or_else(|p| p.into_inner()).get_or_insert(e.to_string());
+        }));
+        Arc::new(Self { device, queue, summary: summary(adapter), caps: caps(adapter), lost, error })
+    }
+
     /// Has the device been lost? Then everything made from it is dead.
     pub fn is_lost(&self) -> bool {
         self.lost.load(Ordering::Relaxed)
     }
+
+    /// The first error that nobody caught since the last call; it means that we erred.
+    pub fn take_error(&self) -> Option<String> {
+        self.error.lock().unwrap_or_else(|p| p.into_inner()).take()
+    }
 }
 
-/// Every adapter with what it can do (STUB).
-pub fn list() -> Vec<(AdapterSummary, Caps)> { vec![] }
-impl Gpu {
-    pub fn open(_choice: &AdapterChoice) -> Result<Arc<Gpu>, OpenError> { Err(OpenError::None) }
-    pub fn descriptor(_adapter: &wgpu::Adapter) -> wgpu::DeviceDescriptor<'static> { wgpu::DeviceDescriptor::default() }
-    pub fn adopt(_adapter: &wgpu::Adapter, _device: wgpu::Device, _queue: wgpu::Queue) -> Arc<Gpu> { unimplemented!() }
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn choosing_by_name_is_exact_about_what_is_there() {
+        let names = ["NVIDIA H200".to_owned(), "llvmpipe (LLVM 15)".to_owned(), "llvmpipe".to_owned()];
+        let named = |n: &str| choose(&AdapterChoice::Named(n.into()), &names);
+        assert_eq!(named("h200").unwrap(), 0);
+        assert!(matches!(named("pipe"), Err(OpenError::Ambiguous { .. })));
+        assert!(matches!(named("swift"), Err(OpenError::NoMatch { .. })));
+        assert!(matches!(choose(&AdapterChoice::Any, &[]), Err(OpenError::None)));
+    }
 }

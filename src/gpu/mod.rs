@@ -1,39 +1,420 @@
-//! STUB: the lead is writing this; signatures hold.
+//! The kernels on a device: [`Renderer`] records a frame as a straight list of passes and reads it back.
+
 pub mod bench;
+pub mod buffers;
 pub mod device;
-use std::sync::Arc;
+pub mod hardware;
+pub mod naive;
+pub mod pipelines;
+pub mod readback;
+pub mod timer;
+pub mod uniforms;
+
+use std::{collections::VecDeque, sync::Arc};
+
+pub use buffers::BufferNote;
 pub use device::Gpu;
-use crate::{effects::Stack, frame::{Counters, Frame, Geometry}, scene::{Scene, camera::View}, session::Accuracy};
+pub use readback::Capture;
+
+use self::{
+    buffers::Buffers,
+    pipelines::Pipelines,
+    readback::Pending,
+    timer::{Detail, Timer},
+    uniforms::{Capacities, CounterRecord, DrawRecord, FrameUniform, color_stride},
+};
+pub use crate::plan::Note;
+use crate::{
+    effects::Stack,
+    frame::Counters,
+    plan::{Accuracy, Lacking, Plan, plan},
+    scene::{
+        Scene,
+        camera::View,
+        draw::{DrawError, draws},
+        needs::Needs,
+    },
+    shader::{
+        glue::uniform_bytes,
+        key::{KernelKey, Pass, Phase, Visibility},
+        library::Library,
+        link::LinkError,
+        reflect::ShaderError,
+    },
+};
+
+/// Why a picture could not be drawn.
 #[derive(Debug, thiserror::Error)]
 pub enum RenderError {
-    #[error("{0}")]
-    Unsupported(String),
+    #[error(transparent)]
+    Draw(#[from] DrawError),
+    #[error(transparent)]
+    Lacking(#[from] Lacking),
+    #[error("the buffer {buffer} would take {bytes} bytes; this adapter binds at most {limit}")]
+    TooLarge { buffer: &'static str, bytes: u64, limit: u64 },
+    #[error("the picture is {width} x {height}; this adapter's textures end at {limit} pixels a side")]
+    TooWide { width: u32, height: u32, limit: u32 },
+    #[error("no memory for the buffer {buffer} of {bytes} bytes")]
+    OutOfMemory { buffer: &'static str, bytes: u64 },
     #[error("the device was lost")]
     Lost,
+    #[error("no scene has been set")]
+    NoScene,
     #[error(transparent)]
-    Draw(#[from] crate::scene::draw::DrawError),
+    Link(#[from] LinkError),
+    #[error(transparent)]
+    Shader(#[from] ShaderError),
+    #[error("the pipeline {label} was refused: {reason}")]
+    Pipeline { label: String, reason: String },
+    #[error("the queues still overflow after growing eight times; {0} entries were lost")]
+    Overflow(u32),
 }
+
 impl RenderError {
-    pub fn is_unsupported(&self) -> bool { matches!(self, Self::Unsupported(_)) }
-    pub fn is_lost(&self) -> bool { matches!(self, Self::Lost) }
+    /// A pinned rung or a size that this adapter lacks.
+    pub fn is_unsupported(&self) -> bool {
+        matches!(self, Self::Lacking(_) | Self::TooLarge { .. } | Self::TooWide { .. } | Self::OutOfMemory { .. })
+    }
+
+    pub fn is_lost(&self) -> bool {
+        matches!(self, Self::Lost)
+    }
 }
+
+/// Figures of a finished frame.
 #[derive(Clone, Debug, Default)]
-pub struct Report { pub gpu_ms: Option<f64>, pub passes: Vec<(String, f64)>, pub counters: Counters, pub redraw: bool }
-#[derive(Clone, Debug)]
-pub struct Capture { pub frame: Frame, pub geometry: Geometry, pub layers: Option<Vec<u32>> }
-#[derive(Clone, Debug, serde::Serialize)]
-pub struct Note { pub name: String, pub why: String }
-#[derive(Clone, Debug, serde::Serialize)]
-pub struct BufferNote { pub name: String, pub bytes: u64, pub why: String }
-#[derive(Clone, Debug, serde::Serialize)]
-pub struct Explanation { pub key: String, pub passes: Vec<Note>, pub buffers: Vec<BufferNote>, pub omitted: Vec<Note> }
-pub struct Renderer { _gpu: Arc<Gpu> }
-impl Renderer {
-    pub fn new(gpu: Arc<Gpu>) -> Self { Self { _gpu: gpu } }
-    pub fn set_scene(&mut self, _scene: &Arc<Scene>) -> Result<(), RenderError> { Err(RenderError::Unsupported("stub".into())) }
-    pub fn draw(&mut self, _view: &View, _stack: &Stack, _accuracy: &Accuracy) -> Result<(), RenderError> { Err(RenderError::Unsupported("stub".into())) }
-    pub fn texture_view(&self) -> Option<&wgpu::TextureView> { None }
-    pub fn report(&mut self) -> Option<Report> { None }
-    pub fn capture(&mut self, _view: &View, _stack: &Stack, _accuracy: &Accuracy) -> Result<Capture, RenderError> { Err(RenderError::Unsupported("stub".into())) }
-    pub fn explain(&self) -> Explanation { Explanation { key: String::new(), passes: vec![], buffers: vec![], omitted: vec![] } }
+pub struct Report {
+    /// Whole frame, clears included; none where the adapter has no timestamps.
+    pub gpu_ms: Option<f64>,
+    pub passes: Vec<(String, f64)>,
+    pub counters: Counters,
+    /// A queue overflowed and has grown: the picture is incomplete, draw it again.
+    pub redraw: bool,
 }
+
+/// Which passes and buffers exist for the last picture, and why.
+#[derive(Clone, Debug, serde::Serialize)]
+pub struct Explanation {
+    pub key: String,
+    pub passes: Vec<Note>,
+    pub buffers: Vec<BufferNote>,
+    pub reasons: Vec<Note>,
+    pub omitted: Vec<Note>,
+}
+
+/// Draws scenes on one device.
+pub struct Renderer {
+    gpu: Arc<Gpu>,
+    pipelines: Pipelines,
+    buffers: Buffers,
+    timer: Option<Timer>,
+    scene: Option<Arc<Scene>>,
+    capacities: Capacities,
+    /// A proof from bounds failed: queues and clipping are kept from now on.
+    distrust: bool,
+    target: Option<(wgpu::Texture, wgpu::TextureView)>,
+    last: Option<Plan>,
+    pending: VecDeque<Pending>,
+}
+
+const STORAGE: wgpu::BufferUsages = wgpu::BufferUsages::STORAGE;
+
+impl Renderer {
+    pub fn new(gpu: Arc<Gpu>) -> Self {
+        let timer = Timer::new(&gpu);
+        Self {
+            gpu,
+            pipelines: Pipelines::new(Library::from_env()),
+            buffers: Buffers::default(),
+            timer,
+            scene: None,
+            capacities: Capacities::default(),
+            distrust: false,
+            target: None,
+            last: None,
+            pending: VecDeque::new(),
+        }
+    }
+
+    pub fn gpu(&self) -> &Arc<Gpu> {
+        &self.gpu
+    }
+
+    /// Pipelines compiled so far; a switch back to a known key adds none.
+    pub fn compiled(&self) -> usize {
+        self.pipelines.compiled()
+    }
+
+    /// Uploads a scene's bytes as they are. The one in place stays when the new one does not fit.
+    pub fn set_scene(&mut self, scene: &Arc<Scene>) -> Result<(), RenderError> {
+        if self.scene.as_ref().is_some_and(|current| Arc::ptr_eq(current, scene)) {
+            return Ok(());
+        }
+        let limit = self.gpu.caps.max_storage_binding_bytes.min(self.gpu.caps.max_buffer_bytes);
+        let vertices = 16 * scene.vertex_count();
+        for (buffer, bytes) in
+            [("vertex_bytes", scene.vertex_bytes.len() as u64), ("index_bytes", scene.index_bytes.len() as u64), ("vertices", vertices)]
+        {
+            if bytes > limit {
+                return Err(RenderError::TooLarge { buffer, bytes, limit });
+            }
+        }
+        self.buffers.keep(|name| !matches!(name, "vertex_bytes" | "index_bytes" | "vertices"));
+        self.buffers.fill(&self.gpu, "vertex_bytes", &scene.vertex_bytes, STORAGE | wgpu::BufferUsages::VERTEX, "attributes as the file has them")?;
+        if !scene.index_bytes.is_empty() {
+            self.buffers.fill(&self.gpu, "index_bytes", &scene.index_bytes, STORAGE | wgpu::BufferUsages::INDEX, "index lists as the file has them")?;
+        }
+        self.capacities = first_capacities(scene);
+        self.distrust = false;
+        self.scene = Some(scene.clone());
+        Ok(())
+    }
+
+    /// Records and submits one frame; never waits. A picture of 0 pixels dispatches nothing.
+    pub fn draw(&mut self, view: &View, stack: &Stack, accuracy: &Accuracy) -> Result<(), RenderError> {
+        self.draw_timed(view, stack, accuracy, Detail::Passes)
+    }
+
+    pub(crate) fn draw_timed(&mut self, view: &View, stack: &Stack, accuracy: &Accuracy, detail: Detail) -> Result<(), RenderError> {
+        if self.gpu.is_lost() {
+            return Err(RenderError::Lost);
+        }
+        let plan = self.prepare(view, stack, accuracy)?;
+        if view.pixels() == 0 {
+            self.target = None;
+            return Ok(());
+        }
+        let mut passes = plan.key.passes(plan.key.phases());
+        passes.push(Pass::Resolve);
+        let mut encoder = self.gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor { label: Some("frame") });
+        if let Some(timer) = &mut self.timer {
+            timer.begin(&mut encoder, detail);
+        }
+        self.clear(&mut encoder, &["counters", "depth_keys", "owners", "depth_owner"]);
+        self.record(&mut encoder, &plan.key, &passes, view)?;
+        self.present(&mut encoder, view);
+        let pending = Pending::stage(&self.gpu, &mut encoder, self.buffers.get("counters"), self.timer.as_ref());
+        self.gpu.queue.submit([encoder.finish()]);
+        self.pending.push_back(pending.begin());
+        self.last = Some(plan);
+        Ok(())
+    }
+
+    /// The finished picture: Rgba8Unorm with gamma-encoded bytes; none before the first draw and for 0 pixels.
+    pub fn texture_view(&self) -> Option<&wgpu::TextureView> {
+        self.target.as_ref().map(|(_, view)| view)
+    }
+
+    /// Figures of the newest finished frame, or none yet; does not wait.
+    pub fn report(&mut self) -> Option<Report> {
+        let _ = self.gpu.device.poll(wgpu::PollType::Poll);
+        let mut newest = None;
+        while self.pending.front().is_some_and(Pending::is_ready) {
+            let finished = self.pending.pop_front().expect("a front was just seen");
+            newest = Some(finished);
+        }
+        newest.and_then(|finished| self.digest(finished))
+    }
+
+    /// Waits for every frame in flight and returns the newest one's figures.
+    pub fn finish(&mut self) -> Result<Report, RenderError> {
+        buffers::wait(&self.gpu)?;
+        let finished = self.pending.drain(..).next_back().ok_or(RenderError::NoScene)?;
+        self.digest(finished).ok_or(RenderError::Lost)
+    }
+
+    fn digest(&mut self, finished: Pending) -> Option<Report> {
+        let (record, times) = finished.read(self.timer.as_ref())?;
+        let key = &self.last.as_ref()?.key;
+        let recorded = recorded_capacities(key, &self.capacities);
+        let counters = record.counters(&recorded);
+        let mut redraw = false;
+        if counters.overflow > 0 {
+            let is_proof_wrong = record.clip > 0 && !key.has_clipping || record.medium > 0 && !key.has_medium || record.large > 0 && !key.has_large;
+            self.distrust |= is_proof_wrong;
+            redraw = self.capacities.grow(&record) || is_proof_wrong;
+        }
+        Some(Report { gpu_ms: times.total_ms, passes: times.passes, counters, redraw })
+    }
+
+    /// What exists for the last picture, and why.
+    pub fn explain(&self) -> Explanation {
+        let Some(plan) = &self.last else {
+            return Explanation { key: "nothing drawn yet".into(), passes: Vec::new(), buffers: self.buffers.notes(), reasons: Vec::new(), omitted: Vec::new() };
+        };
+        let mut passes = plan.key.passes(plan.key.phases());
+        passes.push(Pass::Resolve);
+        Explanation {
+            key: plan.key.to_string(),
+            passes: passes.iter().map(|pass| Note { name: pass.label(), why: pass_purpose(*pass).into() }).collect(),
+            buffers: self.buffers.notes(),
+            reasons: plan.reasons.clone(),
+            omitted: plan.omitted.clone(),
+        }
+    }
+
+    /// Plans the picture and makes its buffers hold what the passes will read.
+    fn prepare(&mut self, view: &View, stack: &Stack, accuracy: &Accuracy) -> Result<Plan, RenderError> {
+        let scene = self.scene.clone().ok_or(RenderError::NoScene)?;
+        let (gpu, buffers) = (&self.gpu, &mut self.buffers);
+        let limit = gpu.caps.max_texture_side;
+        if view.width.max(view.height) > limit {
+            return Err(RenderError::TooWide { width: view.width, height: view.height, limit });
+        }
+        let draws = draws(&scene, view)?;
+        let mut needs = Needs::of(&scene, &draws, view);
+        if self.distrust {
+            (needs.clipping, needs.largest_px) = (true, f64::INFINITY);
+        }
+        let plan = plan(&needs, stack, &gpu.caps, accuracy)?;
+        let key = &plan.key;
+        let recorded = recorded_capacities(key, &self.capacities);
+
+        let records: Vec<DrawRecord> = draws.iter().map(|draw| DrawRecord::new(draw, &scene)).collect();
+        let uniform = FrameUniform::new(view, &scene, draws.len(), &recorded);
+        let parameters = uniform_bytes(&stack.0);
+        buffers.keep(|name| match name {
+            "queues" | "args" => key.has_queues(),
+            "pieces" => key.has_clipping,
+            "effects" => !parameters.is_empty(),
+            "depth_keys" | "owners" => key.visibility == Visibility::Split32,
+            "depth_owner" => key.visibility == Visibility::Packed64,
+            "layers" => false,
+            _ => true,
+        });
+        buffers.fill(gpu, "frame", bytemuck::bytes_of(&uniform), wgpu::BufferUsages::UNIFORM, "size, viewpoint, capacities")?;
+        buffers.fill(gpu, "draws", bytemuck::cast_slice(&records), STORAGE, "matrices and attribute places, one record per instance")?;
+        if !parameters.is_empty() {
+            buffers.fill(gpu, "effects", &parameters, wgpu::BufferUsages::UNIFORM, "parameters of the stack")?;
+        }
+        buffers.ensure(gpu, "vertices", 16 * scene.vertex_count(), STORAGE, "projected vertices, 16 bytes each")?;
+        buffers.ensure(gpu, "counters", 64, STORAGE, "queue demand and what was not drawn")?;
+        if key.has_queues() {
+            buffers.ensure(gpu, "queues", 4 * recorded.queue_words(), STORAGE, "triangles waiting for clip, medium, large and tile kernels")?;
+            buffers.ensure(gpu, "args", 48, STORAGE | wgpu::BufferUsages::INDIRECT, "dispatch sizes written on the GPU")?;
+        }
+        if key.has_clipping {
+            buffers.ensure(gpu, "pieces", 64 * u64::from(recorded.pieces), STORAGE, "what clipping leaves of a triangle")?;
+        }
+        let pixels = view.pixels() as u64;
+        match key.visibility {
+            Visibility::Split32 => {
+                buffers.ensure(gpu, "depth_keys", 4 * pixels, STORAGE, "nearest depth key per pixel, 4 bytes")?;
+                buffers.ensure(gpu, "owners", 4 * pixels, STORAGE, "owner per pixel, 4 bytes")?;
+            }
+            Visibility::Packed64 => {
+                buffers.ensure(gpu, "depth_owner", 8 * pixels, STORAGE, "depth key and owner per pixel, 8 bytes")?;
+            }
+        }
+        buffers.ensure(gpu, "color", 4 * u64::from(color_stride(view.width)) * u64::from(view.height), STORAGE, "the picture, 4 bytes per pixel")?;
+        Ok(plan)
+    }
+
+    fn clear(&self, encoder: &mut wgpu::CommandEncoder, names: &[&str]) {
+        for name in names.iter().filter(|name| self.buffers.has(name)) {
+            encoder.clear_buffer(self.buffers.get(name), 0, None);
+        }
+    }
+
+    /// The straight list of passes.
+    fn record(&mut self, encoder: &mut wgpu::CommandEncoder, key: &KernelKey, passes: &[Pass], view: &View) -> Result<(), RenderError> {
+        let scene = self.scene.as_ref().ok_or(RenderError::NoScene)?;
+        let (vertices, triangles) = (scene.vertex_count() as u32, scene.triangle_count() as u32);
+        for (i, &pass) in passes.iter().enumerate() {
+            let pipeline = self.pipelines.get(&self.gpu, key, pass)?;
+            let is_last = i + 1 == passes.len();
+            let timestamp_writes = self.timer.as_mut().and_then(|timer| timer.compute(&pipeline.label, is_last));
+            let mut recorded = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor { label: Some(&pipeline.label), timestamp_writes });
+            pipeline.bind(&self.gpu, &mut recorded, |name| self.buffers.get(name));
+            match dispatch(pass, vertices, triangles, view) {
+                Dispatch::Direct([x, y]) => recorded.dispatch_workgroups(x, y, 1),
+                Dispatch::Indirect(offset) => recorded.dispatch_workgroups_indirect(self.buffers.get("args"), offset),
+            }
+        }
+        Ok(())
+    }
+
+    /// Copies the colour buffer into the texture that a window shows.
+    fn present(&mut self, encoder: &mut wgpu::CommandEncoder, view: &View) {
+        let size = wgpu::Extent3d { width: view.width, height: view.height, depth_or_array_layers: 1 };
+        if self.target.as_ref().is_none_or(|(texture, _)| texture.size() != size) {
+            let texture = self.gpu.device.create_texture(&wgpu::TextureDescriptor {
+                label: Some("picture"),
+                size,
+                mip_level_count: 1,
+                sample_count: 1,
+                dimension: wgpu::TextureDimension::D2,
+                format: wgpu::TextureFormat::Rgba8Unorm,
+                usage: wgpu::TextureUsages::COPY_DST | wgpu::TextureUsages::TEXTURE_BINDING,
+                view_formats: &[],
+            });
+            let texture_view = texture.create_view(&Default::default());
+            self.target = Some((texture, texture_view));
+        }
+        let Some((texture, _)) = &self.target else { return };
+        let layout = wgpu::TexelCopyBufferLayout { offset: 0, bytes_per_row: Some(4 * color_stride(view.width)), rows_per_image: None };
+        let source = wgpu::TexelCopyBufferInfo { buffer: self.buffers.get("color"), layout };
+        encoder.copy_buffer_to_texture(source, texture.as_image_copy(), size);
+    }
+}
+
+/// How many workgroups a pass takes.
+enum Dispatch {
+    Direct([u32; 2]),
+    /// Byte offset in the argument buffer.
+    Indirect(u64),
+}
+
+fn dispatch(pass: Pass, vertices: u32, triangles: u32, view: &View) -> Dispatch {
+    match pass {
+        Pass::Project => Dispatch::Direct(folded(vertices.div_ceil(64))),
+        Pass::RasterSmall(_) => Dispatch::Direct(folded(triangles.div_ceil(64))),
+        Pass::Args => Dispatch::Direct([1, 1]),
+        Pass::Clip => Dispatch::Indirect(0),
+        Pass::RasterMedium(_) => Dispatch::Indirect(12),
+        Pass::TileLarge => Dispatch::Indirect(24),
+        Pass::RasterLarge(_) => Dispatch::Indirect(36),
+        Pass::Resolve => Dispatch::Direct([view.width.div_ceil(8), view.height.div_ceil(8)]),
+    }
+}
+
+/// Folds more than 65,535 workgroups into two dimensions; the kernel guards the tail.
+pub(crate) fn folded(groups: u32) -> [u32; 2] {
+    [groups.min(65_535), groups.div_ceil(65_535)]
+}
+
+fn pass_purpose(pass: Pass) -> &'static str {
+    match pass {
+        Pass::Project => "pulls, transforms and snaps every vertex once",
+        Pass::RasterSmall(Phase::Owner) => "visits the small triangles again for the owner of each nearest key",
+        Pass::RasterSmall(_) => "culls and classifies every triangle, draws the small ones on the spot",
+        Pass::Args => "turns queue demand into dispatch sizes",
+        Pass::Clip => "cuts triangles at the near plane and the guard band",
+        Pass::TileLarge => "finds the tiles of each large triangle",
+        Pass::RasterMedium(_) => "one workgroup per triangle of up to 128 px",
+        Pass::RasterLarge(_) => "one workgroup per 64 x 64 tile of a large triangle",
+        Pass::Resolve => "shades every pixel once",
+    }
+}
+
+/// Capacities of the queues that this key's passes have; 0 where a pass is left out.
+fn recorded_capacities(key: &KernelKey, all: &Capacities) -> Capacities {
+    let kept = |is_there: bool, capacity: u32| if is_there { capacity } else { 0 };
+    Capacities {
+        clip: kept(key.has_clipping, all.clip),
+        pieces: kept(key.has_clipping, all.pieces),
+        medium: kept(key.has_medium, all.medium),
+        large: kept(key.has_large, all.large),
+        tiles: kept(key.has_large, all.tiles),
+    }
+}
+
+/// Room for an ordinary picture of the scene; demand beyond it grows the queues and draws again.
+fn first_capacities(scene: &Scene) -> Capacities {
+    let triangles = scene.triangle_count().min(u64::from(u32::MAX)) as u32;
+    let room = |most: u32| triangles.clamp(16, most).next_power_of_two();
+    Capacities { clip: room(4096), pieces: 2 * room(4096), medium: room(65_536), large: room(16_384), tiles: 16 * room(4096) }
+}
+
+/// What a frame counted, before it is read as [`Counters`].
+pub(crate) type Demand = CounterRecord;

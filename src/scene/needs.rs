@@ -1,1 +1,83 @@
-//! What a scene, seen from here, requires of the kernels: the planner leaves out whatever is not needed.
+//! What a scene, seen from here, requires of the kernels; the planner leaves out whatever is not needed.
+//!
+//! Bounds are conservative: they may ask for a path that stays idle, never leave one out that a triangle takes.
+
+use glam::{DMat4, DVec4};
+
+use super::{Component, Primitive, Scene, Topology, camera::View, draw::Draw};
+use crate::math::{GUARD_BAND, UNITS_PER_PIXEL};
+
+/// See the module's first line.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Needs {
+    pub triangles: u64,
+    pub vertices: u64,
+    pub draws: usize,
+    /// Some primitive has indices.
+    pub indexed: bool,
+    /// All indices are u32.
+    pub wide_indices: bool,
+    /// Strips or fans occur.
+    pub topologies: bool,
+    /// Positions are all f32.
+    pub f32_positions: bool,
+    /// Normals are all f32.
+    pub f32_normals: bool,
+    pub colors: bool,
+    /// Some vertex may lie before the near plane or beyond the guard band.
+    pub clipping: bool,
+    /// No triangle is wider or higher than this, in pixels; infinite where clipping is needed.
+    pub largest_px: f64,
+}
+
+impl Needs {
+    /// Reads `scene` as `view` sees it through `draws`.
+    pub fn of(scene: &Scene, draws: &[Draw], view: &View) -> Self {
+        let drawn = || draws.iter().map(|draw| &scene.primitives[draw.primitive]);
+        let all_f32 = |pick: fn(&Primitive) -> Component| drawn().all(|p| pick(p) == Component::F32);
+        let largest_px = draws.iter().map(|draw| largest_px(&scene.primitives[draw.primitive], draw, view)).fold(0.0, f64::max);
+        Self {
+            triangles: scene.triangle_count(),
+            vertices: scene.vertex_count(),
+            draws: draws.len(),
+            indexed: drawn().any(|p| p.indices.is_some()),
+            wide_indices: drawn().all(|p| p.indices.is_some_and(|i| i.component == Component::U32 && i.stride == 4)),
+            topologies: drawn().any(|p| p.topology != Topology::List),
+            f32_positions: all_f32(|p| p.positions.component),
+            f32_normals: all_f32(|p| p.normals.component),
+            colors: drawn().any(|p| p.colors.is_some()),
+            clipping: largest_px.is_infinite(),
+            largest_px,
+        }
+    }
+}
+
+/// Upper bound of the extent of a draw's triangles in pixels; infinite if one may need clipping.
+///
+/// On a segment of object-space length l, clip x changes by at most |row 0| l and w by |row 3| l, hence x/w by at most
+/// (|row 0| + max|x/w| |row 3|) l / min w. Both extrema of the box are at its corners while w stays positive.
+fn largest_px(primitive: &Primitive, draw: &Draw, view: &View) -> f64 {
+    if primitive.bounds.is_empty() {
+        return 0.0;
+    }
+    let clip_from_object = DMat4::from_cols_array_2d(&draw.clip_from_object.map(|column| column.map(f64::from)));
+    let corners = primitive.bounds.corners().map(|corner| clip_from_object * corner.extend(1.0));
+    let slack = 1.0 + 1e-4;
+    let is_before_near = |c: &DVec4| c.w <= 0.0 || c.z * slack > c.w && view.linear_depth_m.is_none();
+    if corners.iter().any(is_before_near) {
+        return f64::INFINITY;
+    }
+    let min_w = corners.iter().fold(f64::INFINITY, |min, c| min.min(c.w));
+    let linear_row = |i: usize| clip_from_object.row(i).truncate().length();
+    [(0, view.width), (1, view.height)]
+        .map(|(axis, pixels)| {
+            let reach = corners.iter().fold(0.0, |max: f64, c| max.max((c[axis] / c.w).abs()));
+            let half = f64::from(pixels) * 0.5;
+            if (reach + 1.0) * half * f64::from(UNITS_PER_PIXEL) * slack > f64::from(GUARD_BAND) {
+                return f64::INFINITY;
+            }
+            (linear_row(axis) + reach * linear_row(3)) * primitive.longest_edge / min_w * half * slack + 1.0 / 128.0
+        })
+        .into_iter()
+        .fold(0.0, f64::max)
+}

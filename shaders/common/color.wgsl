@@ -1,0 +1,13 @@
+// Colour: linear light to gamma-encoded bytes (IEC 61966-2-1).
+
+fn color_encode(linear: vec3f) -> vec3f {
+    let c = clamp(linear, vec3f(0.0), vec3f(1.0));
+    let curve = 1.055 * pow(c, vec3f(1.0 / 2.4)) - 0.055;
+    return select(curve, 12.92 * c, c <= vec3f(0.0031308));
+}
+
+// Red in the lowest byte, as Rgba8Unorm lies in memory.
+fn color_pack(encoded: vec4f) -> u32 {
+    let bytes = vec4u(clamp(encoded, vec4f(0.0), vec4f(1.0)) * 255.0 + 0.5);
+    return bytes.r | (bytes.g << 8u) | (bytes.b << 16u) | (bytes.a << 24u);
+}

@@ -1,0 +1,16 @@
+// Counters: demand of every queue, and what a frame did not draw. Twin of `gpu::uniforms::CounterRecord`.
+
+struct Counters {
+    clip: atomic<u32>,
+    medium: atomic<u32>,
+    large: atomic<u32>,
+    tiles: atomic<u32>,
+    pieces: atomic<u32>,
+    rejected_nonfinite: atomic<u32>,
+    rejected_range: atomic<u32>,
+    degenerate: atomic<u32>,
+    fan_folds: atomic<u32>,
+    orphans: atomic<u32>,
+}
+
+@group(0) @binding(7) var<storage, read_write> counters: Counters;

@@ -1,0 +1,64 @@
+// Fixed-point edge functions, exact. Positions are 16.8; y points down; triangles are turned clockwise on screen first.
+// Small: both extents at most 128 px, so an edge function fits an i32 whatever wraps on the way.
+// Large: 64-bit products from 16-bit limbs, rebased to i32 per block of 16x16 pixels.
+
+struct Wide { hi: u32, lo: u32 }
+
+// a * b for |a|, |b| <= 2^24.
+fn fixed_mul(a: i32, b: i32) -> Wide {
+    let x = u32(abs(a));
+    let y = u32(abs(b));
+    let xl = x & 0xffffu;
+    let xh = x >> 16u;
+    let yl = y & 0xffffu;
+    let yh = y >> 16u;
+    let ll = xl * yl;
+    let lh = xl * yh;
+    let hl = xh * yl;
+    let middle = (ll >> 16u) + (lh & 0xffffu) + (hl & 0xffffu);
+    var lo = (ll & 0xffffu) | (middle << 16u);
+    var hi = xh * yh + (lh >> 16u) + (hl >> 16u) + (middle >> 16u);
+    if (a < 0) != (b < 0) {
+        lo = ~lo + 1u;
+        hi = ~hi + select(0u, 1u, lo == 0u);
+    }
+    return Wide(hi, lo);
+}
+
+fn fixed_sub(a: Wide, b: Wide) -> Wide {
+    return Wide(a.hi - b.hi - select(0u, 1u, a.lo < b.lo), a.lo - b.lo);
+}
+
+// Twice the signed area of (a, b, p), or the edge function of a -> b at p.
+fn fixed_edge(a: vec2i, b: vec2i, p: vec2i) -> Wide {
+    let d = b - a;
+    return fixed_sub(fixed_mul(d.x, p.y - a.y), fixed_mul(d.y, p.x - a.x));
+}
+
+fn fixed_sign(v: Wide) -> i32 {
+    if bitcast<i32>(v.hi) < 0 { return -1; }
+    return select(0, 1, (v.hi | v.lo) != 0u);
+}
+
+// Nearest float but for two roundings.
+fn fixed_to_f32(v: Wide) -> f32 {
+    let is_negative = bitcast<i32>(v.hi) < 0;
+    var hi = v.hi;
+    var lo = v.lo;
+    if is_negative {
+        lo = ~lo + 1u;
+        hi = ~hi + select(0u, 1u, lo == 0u);
+    }
+    let magnitude = f32(hi) * 4294967296.0 + f32(lo);
+    return select(magnitude, -magnitude, is_negative);
+}
+
+// Top-left rule for a clockwise triangle, y down: 0 where the edge owns the samples on it, else 1.
+fn fixed_bias(d: vec2i) -> i32 {
+    return select(1, 0, d.y < 0 || (d.y == 0 && d.x > 0));
+}
+
+// Twice the signed area in i32: exact up to 181 px of extent.
+fn fixed_small_area(a: vec2i, b: vec2i, c: vec2i) -> i32 {
+    return (b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x);
+}

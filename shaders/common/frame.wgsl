@@ -1,0 +1,30 @@
+// The frame uniform: one picture's size, viewpoint and capacities. Twin of `gpu::uniforms::FrameUniform`.
+
+struct Frame {
+    background: vec4f,       // already gamma-encoded
+    eye: vec4f,              // world space; w is 1 for a perspective, 0 where all rays are parallel
+    forward: vec4f,          // unit, world space
+    center: vec2f,           // half the picture in units of 1/256 px: 128 W, 128 H
+    range_m: vec2f,          // depth of the nearest and farthest corner of the scene's box
+    linear_depth_m: vec2f,   // metres at depth 1 and 0; only where eye.w is 0
+    size: vec2u,             // pixels
+    stride: u32,             // pixels from one row of the colour buffer to the next
+    vertex_count: u32,
+    triangle_count: u32,
+    draw_count: u32,
+    clip_capacity: u32,      // entries that fit each queue
+    piece_capacity: u32,
+    medium_capacity: u32,
+    large_capacity: u32,
+    tile_capacity: u32,
+    medium_first: u32,       // first word of each queue in `queues`; clip begins at 0
+    large_first: u32,
+    tile_first: u32,
+}
+
+@group(0) @binding(0) var<uniform> frame: Frame;
+
+// Index of this invocation in a dispatch that was folded to two dimensions.
+fn frame_invocation(group: vec3u, groups: vec3u, lane: u32, lanes: u32) -> u32 {
+    return (group.y * groups.x + group.x) * lanes + lane;
+}

@@ -1,0 +1,16 @@
+// What the rasterizer knows about a visible sample. Twin of `effects::Surface`, where each member is explained.
+
+struct Surface {
+    color: vec4f,
+    position: vec3f,
+    normal: vec3f,
+    flat_normal: vec3f,
+    view: vec3f,
+    center: vec3f,
+    center_screen: vec2f,
+    screen: vec2f,
+    depth_m: f32,
+    flat_depth_m: f32,
+    range_m: vec2f,
+    owner: u32,
+}

@@ -1,0 +1,52 @@
+// The projected vertex, 16 bytes: X<<8 | flags, Y<<8, bits of depth, bits of 1/w. Twin of `frame::SnappedVertex`.
+
+const VERTEX_NONFINITE = 1u;
+const VERTEX_OUT_OF_RANGE = 2u;
+const VERTEX_NEAR = 4u;
+const VERTEX_LEFT = 8u;
+const VERTEX_RIGHT = 16u;
+const VERTEX_TOP = 32u;
+const VERTEX_BOTTOM = 64u;
+const VERTEX_REJECTED = 3u;
+const VERTEX_CLIPPED = 124u;
+
+const VERTEX_GUARD_BAND = 8388607;
+
+// Clip space from the stored position: rejected coordinates come as 0, subnormal ones are 0.
+fn vertex_gate(bits: vec3u) -> u32 {
+    let exponents = (bits >> vec3u(23u)) & vec3u(255u);
+    let nonfinite = any(exponents == vec3u(255u));
+    let beyond = any(exponents >= vec3u(167u));
+    return select(select(0u, VERTEX_OUT_OF_RANGE, beyond), VERTEX_NONFINITE, nonfinite);
+}
+
+fn vertex_position(bits: vec3u, flags: u32) -> vec3f {
+    let is_zero = (bits & vec3u(0x7f800000u)) == vec3u(0u);
+    return select(bitcast<vec3f>(bits), vec3f(0.0), is_zero | vec3<bool>((flags & VERTEX_REJECTED) != 0u));
+}
+
+// Snaps a clip-space point in front of the near plane: the one place where floats become positions.
+// `center` is half the picture in units of 1/256 px, so the viewport shift is an exact integer.
+fn vertex_snap(clip: vec4f, inv_w: f32, center: vec2f) -> vec2i {
+    let limit = vec2f(16777216.0);
+    let scaled = clamp(round(clip.xy * inv_w * center), -limit, limit);
+    return vec2i(center) + vec2i(scaled) * vec2i(1, -1);
+}
+
+// Outcodes against the guard band.
+fn vertex_guard(at: vec2i) -> u32 {
+    return select(0u, VERTEX_LEFT, at.x < -VERTEX_GUARD_BAND)
+        | select(0u, VERTEX_RIGHT, at.x > VERTEX_GUARD_BAND)
+        | select(0u, VERTEX_TOP, at.y < -VERTEX_GUARD_BAND)
+        | select(0u, VERTEX_BOTTOM, at.y > VERTEX_GUARD_BAND);
+}
+
+fn vertex_pack(at: vec2i, depth: f32, inv_w: f32, flags: u32) -> vec4u {
+    let unready = (flags & (VERTEX_LEFT | VERTEX_RIGHT | VERTEX_TOP | VERTEX_BOTTOM)) != 0u;
+    let kept = select(at, vec2i(0), unready);
+    return vec4u((bitcast<u32>(kept.x) << 8u) | flags, bitcast<u32>(kept.y) << 8u, bitcast<u32>(depth), bitcast<u32>(inv_w));
+}
+
+fn vertex_at(record: vec4u) -> vec2i {
+    return bitcast<vec2i>(record.xy) >> vec2u(8u);
+}

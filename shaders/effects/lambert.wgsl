@@ -1,0 +1,22 @@
+// Lambert: diffuse light from a sun, a sky above and ground below, and a lamp at the eye.
+//@ use common/surface
+
+struct Lambert {
+    sun: vec4f,
+    sky: vec4f,
+    ground: vec4f,
+    toward: vec4f,
+    headlight: f32,
+}
+
+fn lambert(surface: Surface, p: Lambert) -> Surface {
+    var s = surface;
+    let squared = dot(p.toward.xyz, p.toward.xyz);
+    let toward = select(vec3f(0.0, 1.0, 0.0), p.toward.xyz / sqrt(squared), squared > 0.0);
+    let sun = max(dot(s.normal, toward), 0.0);
+    let lamp = max(dot(s.normal, s.view), 0.0) * p.headlight;
+    let up = 0.5 + 0.5 * s.normal.y;
+    let light = p.sun.rgb * sun + p.ground.rgb + (p.sky.rgb - p.ground.rgb) * up + vec3f(lamp);
+    s.color = vec4f(s.color.rgb * light, s.color.a);
+    return s;
+}

@@ -1,0 +1,26 @@
+// Args: turns the demand of every queue into dispatch sizes, folded to two dimensions past 65,535 workgroups.
+//@ use common/frame
+//@ use common/counters
+
+struct Dispatch { x: u32, y: u32, z: u32 }
+
+struct Args {
+    clip: Dispatch,
+    medium: Dispatch,
+    large: Dispatch,
+    tiles: Dispatch,
+}
+
+@group(0) @binding(10) var<storage, read_write> args: Args;
+
+fn fold(groups: u32) -> Dispatch {
+    return Dispatch(min(groups, 65535u), (groups + 65534u) / 65535u, 1u);
+}
+
+@compute @workgroup_size(1)
+fn args_write() {
+    args.clip = fold((min(atomicLoad(&counters.clip), frame.clip_capacity) + 63u) / 64u);
+    args.medium = fold(min(atomicLoad(&counters.medium), frame.medium_capacity));
+    args.large = fold(min(atomicLoad(&counters.large), frame.large_capacity));
+    args.tiles = fold(min(atomicLoad(&counters.tiles), frame.tile_capacity));
+}

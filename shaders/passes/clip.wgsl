@@ -1,0 +1,141 @@
+// Clip: cuts triangles at the near plane and the guard band (Sutherland and Hodgman 1974), in clip space, and queues the
+// pieces by size. An edge is always cut from its inside to its outside end, so both neighbours get the same bits, and a
+// cut coordinate is set, not computed.
+//@ use common/triangle
+//@ use common/transform
+//@ use slot/queues
+//@ use common/fixed
+
+struct Piece {
+    a: vec4u,
+    b: vec4u,
+    c: vec4u,
+    parent: vec4u,
+}
+
+@group(0) @binding(9) var<storage, read_write> pieces: array<Piece>;
+
+const CLIP_ENTRY = 0x80000000u;
+const CLIP_SMALL_EXTENT = 32768;
+
+// A corner of the polygon: where it is, which of its coordinates a plane has fixed, and the original vertex it is.
+struct Corner {
+    clip: vec4f,
+    fixed: u32,   // VERTEX_NEAR, VERTEX_LEFT ... of the planes it was put on
+    source: u32,  // 0, 1, 2: a corner of the triangle; 3: a cut
+}
+
+struct Polygon {
+    corners: array<Corner, 9>,
+    count: u32,
+}
+
+// Signed distance to a plane, positive inside; the guard planes are where X or Y is +-32,767.996 px.
+fn distance(plane: u32, v: vec4f) -> f32 {
+    let guard = f32(VERTEX_GUARD_BAND);
+    let center = frame.center;
+    switch plane {
+        case VERTEX_NEAR: { return v.w - v.z; }
+        case VERTEX_LEFT: { return v.x * center.x + (guard + center.x) * v.w; }
+        case VERTEX_RIGHT: { return (guard - center.x) * v.w - v.x * center.x; }
+        case VERTEX_TOP: { return (guard + center.y) * v.w - v.y * center.y; }
+        default: { return (guard - center.y) * v.w + v.y * center.y; }
+    }
+}
+
+fn is_outside(plane: u32, corner: Corner, flags: vec4u) -> bool {
+    if corner.source < 3u { return (flags[corner.source] & plane) != 0u; }
+    return (corner.fixed & plane) == 0u && distance(plane, corner.clip) < 0.0;
+}
+
+fn cut(plane: u32, inside: Corner, outside: Corner) -> Corner {
+    let near = distance(plane, inside.clip);
+    let far = distance(plane, outside.clip);
+    let t = clamp(near / (near - far), 0.0, 1.0);
+    return Corner(inside.clip + (outside.clip - inside.clip) * t, plane | (inside.fixed & outside.fixed), 3u);
+}
+
+fn clip_against(plane: u32, polygon: Polygon, flags: vec4u) -> Polygon {
+    var result: Polygon;
+    for (var i = 0u; i < polygon.count; i += 1u) {
+        let here = polygon.corners[i];
+        let next = polygon.corners[select(i + 1u, 0u, i + 1u == polygon.count)];
+        let here_outside = is_outside(plane, here, flags);
+        let next_outside = is_outside(plane, next, flags);
+        if !here_outside && result.count < 9u {
+            result.corners[result.count] = here;
+            result.count += 1u;
+        }
+        if here_outside != next_outside && result.count < 9u {
+            if here_outside { result.corners[result.count] = cut(plane, next, here); }
+            else { result.corners[result.count] = cut(plane, here, next); }
+            result.count += 1u;
+        }
+    }
+    return result;
+}
+
+// The record of a corner: an original vertex keeps its own bits.
+fn record(corner: Corner, t: Triangle) -> vec4u {
+    if corner.source == 0u { return t.a; }
+    if corner.source == 1u { return t.b; }
+    if corner.source == 2u { return t.c; }
+    let inv_w = 1.0 / max(corner.clip.w, 1e-30);
+    var at = clamp(vertex_snap(corner.clip, inv_w, frame.center), vec2i(-VERTEX_GUARD_BAND), vec2i(VERTEX_GUARD_BAND));
+    if (corner.fixed & VERTEX_LEFT) != 0u { at.x = -VERTEX_GUARD_BAND; }
+    if (corner.fixed & VERTEX_RIGHT) != 0u { at.x = VERTEX_GUARD_BAND; }
+    if (corner.fixed & VERTEX_TOP) != 0u { at.y = -VERTEX_GUARD_BAND; }
+    if (corner.fixed & VERTEX_BOTTOM) != 0u { at.y = VERTEX_GUARD_BAND; }
+    let depth = select(clamp(corner.clip.z * inv_w, 0.0, 1.0), 1.0, (corner.fixed & VERTEX_NEAR) != 0u);
+    return vertex_pack(at, depth, inv_w, 0u);
+}
+
+// Queues a fan of the polygon. A piece that turned over in the snap, against the polygon as a whole, is dropped and counted.
+fn emit(polygon: Polygon, t: Triangle) {
+    var records: array<vec4u, 9>;
+    for (var i = 0u; i < polygon.count; i += 1u) { records[i] = record(polygon.corners[i], t); }
+    var whole = 0.0;
+    for (var i = 1u; i + 1u < polygon.count; i += 1u) {
+        whole += fixed_to_f32(fixed_edge(vertex_at(records[0]), vertex_at(records[i]), vertex_at(records[i + 1u])));
+    }
+    for (var i = 1u; i + 1u < polygon.count; i += 1u) {
+        let a = vertex_at(records[0]);
+        let b = vertex_at(records[i]);
+        let c = vertex_at(records[i + 1u]);
+        let sign = fixed_sign(fixed_edge(a, b, c));
+        if sign == 0 || (sign > 0) != (whole > 0.0) {
+            atomicAdd(&counters.fan_folds, 1u);
+            continue;
+        }
+        if !triangle_is_shown(t.draw, sign > 0) { continue; }
+        let slot = atomicAdd(&counters.pieces, 1u);
+        if slot >= frame.piece_capacity { continue; }
+        pieces[slot] = Piece(records[0], records[i], records[i + 1u], vec4u(t.id, t.draw, i, 0u));
+        let low = min(min(a, b), c);
+        let high = max(max(a, b), c);
+        let pixels = triangle_pixels(low, high);
+        if any(pixels.zw < pixels.xy) { continue; }
+        if max(high.x - low.x, high.y - low.y) > CLIP_SMALL_EXTENT { queues_push_large(CLIP_ENTRY | slot); }
+        else { queues_push_medium(CLIP_ENTRY | slot); }
+    }
+}
+
+@compute @workgroup_size(64)
+fn clip(@builtin(workgroup_id) group: vec3u, @builtin(num_workgroups) groups: vec3u, @builtin(local_invocation_index) lane: u32) {
+    let slot = frame_invocation(group, groups, lane, 64u);
+    if slot >= min(atomicLoad(&counters.clip), frame.clip_capacity) { return; }
+    let t = triangle_load(queues[slot]);
+    let at = triangle_vertices(t.draw, t.id - draws[t.draw].first_triangle);
+    let flags = vec4u(t.a.x, t.b.x, t.c.x, 0u);
+    var polygon: Polygon;
+    polygon.corners[0] = Corner(transform_vertex(t.draw, at.x), 0u, 0u);
+    polygon.corners[1] = Corner(transform_vertex(t.draw, at.y), 0u, 1u);
+    polygon.corners[2] = Corner(transform_vertex(t.draw, at.z), 0u, 2u);
+    polygon.count = 3u;
+    polygon = clip_against(VERTEX_NEAR, polygon, flags);
+    polygon = clip_against(VERTEX_LEFT, polygon, flags);
+    polygon = clip_against(VERTEX_RIGHT, polygon, flags);
+    polygon = clip_against(VERTEX_TOP, polygon, flags);
+    polygon = clip_against(VERTEX_BOTTOM, polygon, flags);
+    if polygon.count >= 3u { emit(polygon, t); }
+}

@@ -1,0 +1,94 @@
+// Raster small: every triangle is fetched, culled and classified by one invocation; the small are drawn on the spot,
+// the others wait in a queue for a kernel of their size. Classifying and drawing the small share one fetch.
+//@ use common/triangle
+//@ use slot/queues
+//@ use slot/coverage
+//@ use slot/visibility
+
+// Most candidate samples, and most pixels per side, that one invocation walks; chosen by the adapter's caps.
+override SMALL_SAMPLES: i32 = 128;
+override SMALL_SIDE: i32 = 64;
+// The first of several passes over the triangles fills the queues and counts.
+override IS_FIRST: bool = true;
+
+const SMALL_EXTENT = 32768; // 128 px
+
+@compute @workgroup_size(64)
+fn raster_small(@builtin(workgroup_id) group: vec3u, @builtin(num_workgroups) groups: vec3u, @builtin(local_invocation_index) lane: u32) {
+    let id = frame_invocation(group, groups, lane, 64u);
+    if id >= frame.triangle_count { return; }
+    var t = triangle_load(id);
+    let any_flag = (t.a.x | t.b.x | t.c.x) & 255u;
+    if any_flag != 0u {
+        if IS_FIRST { unready(t, any_flag); }
+        return;
+    }
+
+    let a = vertex_at(t.a);
+    let b = vertex_at(t.b);
+    let c = vertex_at(t.c);
+    let low = min(min(a, b), c);
+    let high = max(max(a, b), c);
+    let is_large = max(high.x - low.x, high.y - low.y) > SMALL_EXTENT;
+    var area = fixed_small_area(a, b, c);
+    if is_large { area = fixed_sign(fixed_edge(a, b, c)); }
+    if area == 0 {
+        if IS_FIRST { atomicAdd(&counters.degenerate, 1u); }
+        return;
+    }
+    if !triangle_is_shown(t.draw, area > 0) { return; }
+    let pixels = triangle_pixels(low, high);
+    if any(pixels.zw < pixels.xy) { return; }
+    if is_large {
+        if IS_FIRST { queues_push_large(id); }
+        return;
+    }
+
+    let sides = pixels.zw - pixels.xy + 1;
+    if sides.x * sides.y > SMALL_SAMPLES || max(sides.x, sides.y) > SMALL_SIDE {
+        if IS_FIRST { queues_push_medium(id); }
+        return;
+    }
+    if area < 0 {
+        let swap = t.b;
+        t.b = t.c;
+        t.c = swap;
+        area = -area;
+    }
+    walk(coverage_begin(t.a, t.b, t.c, area, pixels.xy), pixels, id);
+}
+
+// One flat loop over the box, so that neighbouring invocations stay together whatever their boxes' shapes.
+fn walk(coverage: Coverage, pixels: vec4i, id: u32) {
+    let width = pixels.z - pixels.x + 1;
+    let count = width * (pixels.w - pixels.y + 1);
+    var row = coverage.row;
+    var edges = row;
+    var pixel = u32(pixels.y) * frame.size.x + u32(pixels.x);
+    var x = 0;
+    for (var i = 0; i < count; i += 1) {
+        if coverage_contains(edges) {
+            visibility_write(pixel, coverage_key(coverage, edges), id);
+        }
+        x += 1;
+        edges += coverage.step_x;
+        pixel += 1u;
+        if x == width {
+            x = 0;
+            row += coverage.step_y;
+            edges = row;
+            pixel += frame.size.x - u32(width);
+        }
+    }
+}
+
+// A corner was rejected, or lies in front of the near plane or beyond the guard band.
+fn unready(t: Triangle, any_flag: u32) {
+    if (any_flag & VERTEX_NONFINITE) != 0u {
+        atomicAdd(&counters.rejected_nonfinite, 1u);
+    } else if (any_flag & VERTEX_OUT_OF_RANGE) != 0u {
+        atomicAdd(&counters.rejected_range, 1u);
+    } else if (t.a.x & t.b.x & t.c.x & VERTEX_CLIPPED) == 0u {
+        queues_push_clip(t.id);
+    }
+}

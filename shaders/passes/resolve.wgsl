@@ -1,0 +1,166 @@
+// Resolve: one visit per pixel. Takes the owner, rebuilds its surface at the sample from the snapped corners, runs the
+// surface effects, and writes gamma-encoded bytes.
+//@ use common/triangle
+//@ use common/transform
+//@ use common/fixed
+//@ use common/color
+//@ use common/surface
+//@ use common/counters
+//@ use slot/owner
+//@ use glue
+
+@group(0) @binding(11) var<storage, read_write> color: array<u32>;
+
+override F32_NORMALS: bool = false;
+override HAS_COLORS: bool = false;
+override HAS_CLIPPING: bool = false;
+override HAS_LARGE: bool = true;
+
+// Where a sample lies in its triangle.
+struct Place {
+    weights: vec3f,       // perspective-correct, sum 1
+    corner_depths: vec3f, // metres along the viewing direction
+    center_screen: vec2f,
+    is_clockwise: bool,
+}
+
+// Edge functions at the sample from the snapped corners; signs cancel in the quotient, so no corners are exchanged.
+fn place_whole(t: Triangle, pixel: vec2u) -> Place {
+    let a = vertex_at(t.a);
+    let b = vertex_at(t.b);
+    let c = vertex_at(t.c);
+    let p = vec2i(pixel) * 256 + 128;
+    let low = min(min(a, b), c);
+    let high = max(max(a, b), c);
+    var e: vec3f;
+    if HAS_LARGE && max(high.x - low.x, high.y - low.y) > 32768 {
+        e = vec3f(fixed_to_f32(fixed_edge(b, c, p)), fixed_to_f32(fixed_edge(c, a, p)), fixed_to_f32(fixed_edge(a, b, p)));
+    } else {
+        e = vec3f(f32(fixed_small_area(b, c, p)), f32(fixed_small_area(c, a, p)), f32(fixed_small_area(a, b, p)));
+    }
+    let inv_w = bitcast<vec3f>(vec3u(t.a.w, t.b.w, t.c.w));
+    let share = e * inv_w;
+    let sum = share.x + share.y + share.z;
+    let weights = share / sum;
+    let w = 1.0 / inv_w;
+    let linear = bitcast<vec3f>(vec3u(t.a.z, t.b.z, t.c.z)) * (frame.linear_depth_m.x - frame.linear_depth_m.y) + frame.linear_depth_m.y;
+    let center = (vec2f(a) * w.x + vec2f(b) * w.y + vec2f(c) * w.z) / ((w.x + w.y + w.z) * 2.0 * frame.center);
+    return Place(weights, select(linear, w, frame.eye.w != 0.0), center, e.x + e.y + e.z > 0.0);
+}
+
+// A clipped triangle has no snapped corners: homogeneous barycentrics (Olano and Greer 1997).
+fn place_clipped(t: Triangle, at: vec3u, pixel: vec2u) -> Place {
+    let a = transform_vertex(t.draw, at.x);
+    let b = transform_vertex(t.draw, at.y);
+    let c = transform_vertex(t.draw, at.z);
+    let sample = (vec2f(pixel) + 0.5) / vec2f(frame.size);
+    let p = vec3f(sample.x * 2.0 - 1.0, 1.0 - sample.y * 2.0, 1.0);
+    let share = vec3f(dot(p, cross(b.xyw, c.xyw)), dot(p, cross(c.xyw, a.xyw)), dot(p, cross(a.xyw, b.xyw)));
+    let sum = share.x + share.y + share.z;
+    let z = vec3f(a.z, b.z, c.z);
+    let linear = z * (frame.linear_depth_m.x - frame.linear_depth_m.y) + frame.linear_depth_m.y;
+    let w = a.w + b.w + c.w;
+    let ndc = (a.xy + b.xy + c.xy) / select(1.0, w, w > 0.0);
+    let center = select(sample, vec2f(0.5 + 0.5 * ndc.x, 0.5 - 0.5 * ndc.y), w > 0.0);
+    // Counter-clockwise in clip space, y up, is a positive determinant.
+    let is_clockwise = dot(a.xyw, cross(b.xyw, c.xyw)) < 0.0;
+    return Place(share / sum, select(linear, vec3f(a.w, b.w, c.w), frame.eye.w != 0.0), center, is_clockwise);
+}
+
+fn normal_of(draw: u32, vertex: u32) -> vec3f {
+    let byte = draws[draw].normal_offset + vertex * draws[draw].normal_stride;
+    if F32_NORMALS {
+        let word = byte / 4u;
+        return bitcast<vec3f>(vec3u(vertex_bytes[word], vertex_bytes[word + 1u], vertex_bytes[word + 2u]));
+    }
+    return pull_vec3(draws[draw].normal_format, byte);
+}
+
+fn color_of(draw: u32, vertex: u32) -> vec4f {
+    let format = draws[draw].color_format;
+    if !HAS_COLORS || format == 0u { return vec4f(1.0); }
+    let byte = draws[draw].color_offset + vertex * draws[draw].color_stride;
+    let rgb = pull_vec3(format, byte);
+    let alpha = select(1.0, pull_lane(format, byte + 3u * pull_bytes(format)), (format >> 8u) == 4u);
+    return select(vec4f(1.0), vec4f(rgb, alpha), pull_is_finite(rgb) && pull_is_finite(vec3f(alpha)));
+}
+
+// Direction of `v`, whatever its length; zero where it has none.
+fn direction(v: vec3f) -> vec3f {
+    let scale = max(max(abs(v.x), abs(v.y)), abs(v.z));
+    if !(scale > 0.0) || !pull_is_finite(v) { return vec3f(0.0); }
+    let scaled = v / scale;
+    return scaled / length(scaled);
+}
+
+// Direction of the plane's normal in object space; zero for a sliver whose edges are parallel to within 1e-6.
+fn plane_normal(a: vec3f, b: vec3f, c: vec3f) -> vec3f {
+    let ab = b - a;
+    let ac = c - a;
+    let long = max(max(abs(ab.x), abs(ab.y)), abs(ab.z));
+    let wide = max(max(abs(ac.x), abs(ac.y)), abs(ac.z));
+    if !(long > 0.0 && wide > 0.0) { return vec3f(0.0); }
+    let normal = cross(ab / long, ac / wide);
+    return select(vec3f(0.0), normal, dot(normal, normal) >= 1e-12);
+}
+
+fn surface_at(id: u32, pixel: vec2u) -> Surface {
+    let t = triangle_load(id);
+    let at = triangle_vertices(t.draw, id - draws[t.draw].first_triangle);
+    var place: Place;
+    if HAS_CLIPPING && ((t.a.x | t.b.x | t.c.x) & VERTEX_CLIPPED) != 0u {
+        place = place_clipped(t, at, pixel);
+    } else {
+        place = place_whole(t, pixel);
+    }
+    let k = place.weights;
+    let a = vertex_position(transform_bits(t.draw, at.x), 0u);
+    let b = vertex_position(transform_bits(t.draw, at.y), 0u);
+    let c = vertex_position(transform_bits(t.draw, at.z), 0u);
+    let world_from_object = draws[t.draw].world_from_object;
+    let normal_from_object = draws[t.draw].normal_from_object;
+
+    var s: Surface;
+    s.owner = id;
+    s.position = (world_from_object * vec4f(a * k.x + b * k.y + c * k.z, 1.0)).xyz;
+    s.center = (world_from_object * vec4f((a + b + c) / 3.0, 1.0)).xyz;
+    s.center_screen = place.center_screen;
+    s.screen = (vec2f(pixel) + 0.5) / vec2f(frame.size);
+    s.view = select(-frame.forward.xyz, direction(frame.eye.xyz - s.position), frame.eye.w != 0.0);
+    s.depth_m = dot(k, place.corner_depths);
+    s.flat_depth_m = dot(place.corner_depths, vec3f(1.0 / 3.0));
+    s.range_m = frame.range_m;
+    s.color = draws[t.draw].base_color
+        * (color_of(t.draw, at.x) * k.x + color_of(t.draw, at.y) * k.y + color_of(t.draw, at.z) * k.z);
+
+    let flags = draws[t.draw].flags;
+    let is_mirrored = (flags & DRAW_MIRRORED) != 0u;
+    let smooth_sum = normal_of(t.draw, at.x) * k.x + normal_of(t.draw, at.y) * k.y + normal_of(t.draw, at.z) * k.z;
+    s.normal = direction((normal_from_object * vec4f(smooth_sum, 0.0)).xyz);
+    s.flat_normal = direction((normal_from_object * vec4f(plane_normal(a, b, c), 0.0)).xyz);
+    let has_smooth = any(s.normal != vec3f(0.0));
+    let has_flat = any(s.flat_normal != vec3f(0.0));
+    if !has_flat { s.flat_normal = select(s.view, s.normal, has_smooth); }
+    if !has_smooth { s.normal = s.flat_normal; }
+    let is_back = place.is_clockwise != is_mirrored;
+    if is_back && (has_smooth || has_flat) {
+        s.normal = -s.normal;
+        s.flat_normal = -s.flat_normal;
+    }
+    return s;
+}
+
+@compute @workgroup_size(8, 8)
+fn resolve(@builtin(global_invocation_id) at: vec3u) {
+    let pixel = at.xy;
+    if any(pixel >= frame.size) { return; }
+    let found = owner_load(pixel.y * frame.size.x + pixel.x);
+    var encoded = frame.background;
+    if found.x != 0u {
+        let shaded = glue_surface(surface_at(~found.x, pixel));
+        encoded = vec4f(color_encode(shaded.color.rgb), shaded.color.a);
+    } else if found.y != 0u {
+        atomicAdd(&counters.orphans, 1u);
+    }
+    color[pixel.y * frame.stride + pixel.x] = color_pack(encoded);
+}

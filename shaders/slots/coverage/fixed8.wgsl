@@ -1,0 +1,46 @@
+// Coverage fixed8: exact 16.8 top-left edges in i32, for triangles of at most 128 px extent. The default rung.
+//@ use common/fixed
+//@ use common/vertex
+
+struct Coverage {
+    row: vec3i,       // biased edge functions at the current row's first sample
+    step_x: vec3i,    // change per pixel to the right
+    step_y: vec3i,    // change per pixel down
+    bias: vec3i,
+    depth: vec3f,     // corner depths over the doubled area
+    range: vec2f,     // smallest and largest corner depth
+}
+
+// Sets up at the centre of pixel `first`. Corners must be clockwise on screen; `area` is twice their area, > 0.
+fn coverage_begin(a: vec4u, b: vec4u, c: vec4u, area: i32, first: vec2i) -> Coverage {
+    let pa = vertex_at(a);
+    let pb = vertex_at(b);
+    let pc = vertex_at(c);
+    let p = first * 256 + 128;
+    let dx = vec3i(pc.x - pb.x, pa.x - pc.x, pb.x - pa.x);
+    let dy = vec3i(pc.y - pb.y, pa.y - pc.y, pb.y - pa.y);
+    let bias = vec3i(
+        fixed_bias(vec2i(dx.x, dy.x)), fixed_bias(vec2i(dx.y, dy.y)), fixed_bias(vec2i(dx.z, dy.z)));
+    let from_x = vec3i(p.x - pb.x, p.x - pc.x, p.x - pa.x);
+    let from_y = vec3i(p.y - pb.y, p.y - pc.y, p.y - pa.y);
+    let z = bitcast<vec3f>(vec3u(a.z, b.z, c.z));
+    var coverage: Coverage;
+    coverage.row = dx * from_y - dy * from_x - bias;
+    coverage.step_x = -dy * 256;
+    coverage.step_y = dx * 256;
+    coverage.bias = bias;
+    coverage.depth = z * (1.0 / f32(area));
+    coverage.range = vec2f(min(min(z.x, z.y), z.z), max(max(z.x, z.y), z.z));
+    return coverage;
+}
+
+fn coverage_contains(edges: vec3i) -> bool {
+    return (edges.x | edges.y | edges.z) >= 0;
+}
+
+// Depth key at a covered sample: bits of the reversed depth, at least 1.
+fn coverage_key(coverage: Coverage, edges: vec3i) -> u32 {
+    let weights = vec3f(edges + coverage.bias);
+    let z = weights.x * coverage.depth.x + weights.y * coverage.depth.y + weights.z * coverage.depth.z;
+    return max(bitcast<u32>(clamp(z, coverage.range.x, coverage.range.y)), 1u);
+}

@@ -1,0 +1,9 @@
+// Owner of a finished pixel, from the two buffers of split32.
+
+@group(0) @binding(5) var<storage, read> depth_keys: array<u32>;
+@group(0) @binding(6) var<storage, read> owners: array<u32>;
+
+// x: complemented id, 0 where empty. y: depth key.
+fn owner_load(pixel: u32) -> vec2u {
+    return vec2u(owners[pixel], depth_keys[pixel]);
+}

@@ -1,0 +1,22 @@
+// Pieces, kept: what clipping left of triangles; a queue entry may name one instead of a triangle.
+//@ use common/triangle
+
+struct Piece {
+    a: vec4u,
+    b: vec4u,
+    c: vec4u,
+    parent: vec4u, // id of the clipped triangle, its draw, 0, 0
+}
+
+const PIECES_ENTRY = 0x80000000u;
+
+@group(0) @binding(9) var<storage, read> pieces: array<Piece>;
+
+// The triangle that a queue entry names.
+fn pieces_load(entry: u32) -> Triangle {
+    if (entry & PIECES_ENTRY) != 0u {
+        let piece = pieces[entry & ~PIECES_ENTRY];
+        return Triangle(piece.a, piece.b, piece.c, piece.parent.x, piece.parent.y);
+    }
+    return triangle_load(entry);
+}

@@ -1,0 +1,151 @@
+//! Pipelines by key: built once, kept; a switch back to a known key compiles nothing.
+
+use std::{collections::HashMap, sync::Arc};
+
+use super::{Gpu, RenderError};
+use crate::shader::{
+    key::{KernelKey, Pass},
+    library::Library,
+    link,
+    reflect::{self, Binding, BindingKind},
+};
+
+/// A compute pipeline that knows its buffers by name.
+pub struct Pipeline {
+    pub label: String,
+    pipeline: wgpu::ComputePipeline,
+    layout: wgpu::BindGroupLayout,
+    bindings: Vec<Binding>,
+}
+
+/// What tells one pipeline from another: its text and its constants.
+#[derive(Clone, PartialEq, Eq, Hash)]
+struct Identity {
+    text: String,
+    entry: String,
+    constants: Vec<(String, u64)>,
+}
+
+/// The cache.
+pub struct Pipelines {
+    library: Library,
+    known: HashMap<(KernelKey, Pass), Arc<Pipeline>>,
+    built: HashMap<Identity, Arc<Pipeline>>,
+}
+
+impl Pipelines {
+    pub fn new(library: Library) -> Self {
+        Self { library, known: HashMap::new(), built: HashMap::new() }
+    }
+
+    /// Number of pipelines compiled so far.
+    pub fn compiled(&self) -> usize {
+        self.built.len()
+    }
+
+    /// The pipeline of a pass; compiles it at first use.
+    pub fn get(&mut self, gpu: &Gpu, key: &KernelKey, pass: Pass) -> Result<Arc<Pipeline>, RenderError> {
+        if let Some(pipeline) = self.known.get(&(key.clone(), pass)) {
+            return Ok(pipeline.clone());
+        }
+        let root = format!("passes/{}", pass.stem());
+        let constants = key.constants(pass);
+        let pipeline = self.build(gpu, &root, &pass.label(), pass.entry(), key, &key.slots(pass), &constants)?;
+        self.known.insert((key.clone(), pass), pipeline.clone());
+        Ok(pipeline)
+    }
+
+    /// The pipeline of an entry point of `shaders/<root>.wgsl`.
+    #[allow(clippy::too_many_arguments, reason = "the two callers name every argument's value on the spot")]
+    pub fn build(
+        &mut self,
+        gpu: &Gpu,
+        root: &str,
+        label: &str,
+        entry: &str,
+        key: &KernelKey,
+        slots: &[(&str, String)],
+        constants: &[(&str, f64)],
+    ) -> Result<Arc<Pipeline>, RenderError> {
+        let linked = link::link(&self.library, root, key, slots)?;
+        let reflected = reflect::reflect(&linked, gpu.caps.int64_atomics)?;
+        let constants: Vec<(&str, f64)> = constants.iter().copied().filter(|(name, _)| reflected.has_override(name)).collect();
+        let identity = Identity {
+            text: linked.text.clone(),
+            entry: entry.to_owned(),
+            constants: constants.iter().map(|(name, value)| ((*name).to_owned(), value.to_bits())).collect(),
+        };
+        if let Some(pipeline) = self.built.get(&identity) {
+            return Ok(pipeline.clone());
+        }
+        let pipeline = Arc::new(compile(gpu, label, entry, linked.text, reflected.bindings(entry), &constants)?);
+        self.built.insert(identity, pipeline.clone());
+        Ok(pipeline)
+    }
+}
+
+fn compile(
+    gpu: &Gpu,
+    label: &str,
+    entry: &str,
+    text: String,
+    bindings: Vec<Binding>,
+    constants: &[(&str, f64)],
+) -> Result<Pipeline, RenderError> {
+    let scope = gpu.device.push_error_scope(wgpu::ErrorFilter::Validation);
+    let module = gpu
+        .device
+        .create_shader_module(wgpu::ShaderModuleDescriptor { label: Some(label), source: wgpu::ShaderSource::Wgsl(text.into()) });
+    let entries: Vec<_> = bindings.iter().map(|binding| layout_entry(binding, wgpu::ShaderStages::COMPUTE)).collect();
+    let layout = gpu.device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor { label: Some(label), entries: &entries });
+    let pipeline_layout = gpu.device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
+        label: Some(label),
+        bind_group_layouts: &[Some(&layout)],
+        ..Default::default()
+    });
+    let pipeline = gpu.device.create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
+        label: Some(label),
+        layout: Some(&pipeline_layout),
+        module: &module,
+        entry_point: Some(entry),
+        // Our kernels write all workgroup memory before they read it.
+        compilation_options: wgpu::PipelineCompilationOptions { constants, zero_initialize_workgroup_memory: false },
+        cache: None,
+    });
+    match pollster::block_on(scope.pop()) {
+        Some(error) => Err(RenderError::Pipeline { label: label.to_owned(), reason: error.to_string() }),
+        None => Ok(Pipeline { label: label.to_owned(), pipeline, layout, bindings }),
+    }
+}
+
+/// The layout entry of a reflected binding.
+pub fn layout_entry(binding: &Binding, visibility: wgpu::ShaderStages) -> wgpu::BindGroupLayoutEntry {
+    let ty = match binding.kind {
+        BindingKind::Uniform => wgpu::BufferBindingType::Uniform,
+        BindingKind::Storage { read_only } => wgpu::BufferBindingType::Storage { read_only },
+    };
+    wgpu::BindGroupLayoutEntry {
+        binding: binding.index,
+        visibility,
+        ty: wgpu::BindingType::Buffer { ty, has_dynamic_offset: false, min_binding_size: None },
+        count: None,
+    }
+}
+
+impl Pipeline {
+    /// Binds buffers by the names that the shader gives them, and sets the pipeline.
+    pub fn bind<'a>(&self, gpu: &Gpu, pass: &mut wgpu::ComputePass<'_>, buffer: impl Fn(&str) -> &'a wgpu::Buffer) {
+        let entries: Vec<_> = self
+            .bindings
+            .iter()
+            .map(|binding| wgpu::BindGroupEntry { binding: binding.index, resource: buffer(&binding.name).as_entire_binding() })
+            .collect();
+        let group = gpu.device.create_bind_group(&wgpu::BindGroupDescriptor {
+            label: Some(&self.label),
+            layout: &self.layout,
+            entries: &entries,
+        });
+        pass.set_pipeline(&self.pipeline);
+        pass.set_bind_group(0, &group, &[]);
+    }
+}

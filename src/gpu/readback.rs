@@ -1,0 +1,180 @@
+//! From the device back to plain data: the counters of every frame a little later, whole pictures on demand.
+
+use std::sync::{
+    Arc,
+    atomic::{AtomicBool, Ordering},
+};
+
+use super::{
+    Demand, Gpu, RenderError, Renderer, STORAGE, buffers,
+    timer::{Timer, Times},
+    uniforms::color_stride,
+};
+use crate::{
+    effects::Stack,
+    frame::{Counters, Frame, Geometry, Piece, SnappedVertex},
+    plan::Accuracy,
+    scene::camera::View,
+    shader::key::{KernelKey, Phase, Visibility},
+};
+
+/// Counters and stamps of a frame in flight.
+pub struct Pending {
+    staging: wgpu::Buffer,
+    labels: Vec<String>,
+    ready: Arc<AtomicBool>,
+}
+
+const COUNTER_BYTES: u64 = 64;
+
+impl Pending {
+    /// Records the copies that end a frame.
+    pub fn stage(gpu: &Gpu, encoder: &mut wgpu::CommandEncoder, counters: &wgpu::Buffer, timer: Option<&Timer>) -> Self {
+        let staging = gpu.device.create_buffer(&wgpu::BufferDescriptor {
+            label: Some("figures"),
+            size: COUNTER_BYTES + Timer::BYTES,
+            usage: wgpu::BufferUsages::MAP_READ | wgpu::BufferUsages::COPY_DST,
+            mapped_at_creation: false,
+        });
+        encoder.copy_buffer_to_buffer(counters, 0, &staging, 0, COUNTER_BYTES);
+        if let Some(timer) = timer {
+            timer.end(encoder, &staging, COUNTER_BYTES);
+        }
+        Self { staging, labels: timer.map(Timer::labels).unwrap_or_default(), ready: Arc::default() }
+    }
+
+    /// After the submit: asks for the bytes.
+    pub fn begin(self) -> Self {
+        let ready = self.ready.clone();
+        self.staging.map_async(wgpu::MapMode::Read, .., move |result| ready.store(result.is_ok(), Ordering::Release));
+        self
+    }
+
+    pub fn is_ready(&self) -> bool {
+        self.ready.load(Ordering::Acquire)
+    }
+
+    /// None when the device was lost under it.
+    pub fn read(&self, timer: Option<&Timer>) -> Option<(Demand, Times)> {
+        let bytes = self.staging.get_mapped_range(..).ok()?;
+        let demand = bytemuck::pod_read_unaligned(&bytes[..size_of::<Demand>()]);
+        let times = timer.map(|timer| timer.times(&bytes[COUNTER_BYTES as usize..], &self.labels)).unwrap_or_default();
+        Some((demand, times))
+    }
+}
+
+/// A picture with the integers that decided it.
+#[derive(Clone, Debug)]
+pub struct Capture {
+    pub frame: Frame,
+    pub geometry: Geometry,
+    /// Layers per pixel, each covered sample counted before the depth test.
+    pub layers: Option<Vec<u32>>,
+}
+
+impl Renderer {
+    /// Draws, waits, draws again with larger queues while one overflows, and reads everything back.
+    pub fn capture(&mut self, view: &View, stack: &Stack, accuracy: &Accuracy) -> Result<Capture, RenderError> {
+        let counters = self.draw_whole(view, stack, accuracy)?;
+        if view.pixels() == 0 {
+            let frame = Frame { width: view.width, height: view.height, ..Frame::default() };
+            return Ok(Capture { frame, geometry: Geometry::default(), layers: Some(Vec::new()) });
+        }
+        let key = self.last.as_ref().ok_or(RenderError::NoScene)?.key.clone();
+        let (owner, depth) = self.read_visibility(&key, view)?;
+        let color = self.read_color(view)?;
+        let geometry = self.read_geometry(&key)?;
+        let frame = Frame { width: view.width, height: view.height, owner, key: depth, color, counters };
+        let layers = self.count_layers(&key, view)?;
+        Ok(Capture { frame, geometry, layers: Some(layers) })
+    }
+
+    /// Draws until no queue overflows.
+    pub fn draw_whole(&mut self, view: &View, stack: &Stack, accuracy: &Accuracy) -> Result<Counters, RenderError> {
+        let mut lost = 0;
+        for _ in 0..8 {
+            self.draw(view, stack, accuracy)?;
+            if view.pixels() == 0 {
+                return Ok(Counters::default());
+            }
+            let report = self.finish()?;
+            if !report.redraw {
+                return Ok(report.counters);
+            }
+            lost = report.counters.overflow;
+        }
+        Err(RenderError::Overflow(lost))
+    }
+
+    fn words(&self, name: &str, count: u64) -> Result<Vec<u32>, RenderError> {
+        let bytes = buffers::read(&self.gpu, self.buffers.get(name), 4 * count)?;
+        Ok(bytemuck::pod_collect_to_vec(&bytes))
+    }
+
+    /// Owner and key images.
+    fn read_visibility(&self, key: &KernelKey, view: &View) -> Result<(Vec<u32>, Vec<u32>), RenderError> {
+        let pixels = view.pixels() as u64;
+        Ok(match key.visibility {
+            Visibility::Split32 => {
+                let owners = self.words("owners", pixels)?;
+                (owners.iter().map(|word| !word).collect(), self.words("depth_keys", pixels)?)
+            }
+            Visibility::Packed64 => {
+                let words = self.words("depth_owner", 2 * pixels)?;
+                words.chunks_exact(2).map(|pair| (!pair[0], pair[1])).unzip()
+            }
+        })
+    }
+
+    fn read_color(&self, view: &View) -> Result<Vec<[u8; 4]>, RenderError> {
+        let stride = color_stride(view.width) as usize;
+        let words = self.words("color", stride as u64 * u64::from(view.height))?;
+        let row = |row: &[u32]| row[..view.width as usize].iter().map(|word| word.to_le_bytes()).collect::<Vec<_>>();
+        Ok(words.chunks_exact(stride).flat_map(row).collect())
+    }
+
+    fn read_geometry(&self, key: &KernelKey) -> Result<Geometry, RenderError> {
+        let scene = self.scene.as_ref().ok_or(RenderError::NoScene)?;
+        let words = self.words("vertices", 4 * scene.vertex_count())?;
+        let vertices = words.chunks_exact(4).map(vertex).collect();
+        let mut pieces = Vec::new();
+        if key.has_clipping {
+            let count = self.words("counters", 16)?[4].min(self.capacities.pieces);
+            let words = self.words("pieces", 16 * u64::from(count))?;
+            // Pieces land in the order of the scheduler; parent and place in the fan put them in ours.
+            let mut found: Vec<(u32, u32, Piece)> = words
+                .chunks_exact(16)
+                .map(|w| (w[12], w[14], Piece { parent: w[12], corners: [vertex(&w[0..4]), vertex(&w[4..8]), vertex(&w[8..12])] }))
+                .collect();
+            found.sort_by_key(|(parent, place, _)| (*parent, *place));
+            pieces = found.into_iter().map(|(_, _, piece)| piece).collect();
+        }
+        Ok(Geometry { vertices, pieces })
+    }
+
+    /// Runs the raster passes once more into a counter per pixel.
+    fn count_layers(&mut self, key: &KernelKey, view: &View) -> Result<Vec<u32>, RenderError> {
+        let pixels = view.pixels() as u64;
+        self.buffers.ensure(&self.gpu, "layers", 4 * pixels, STORAGE, "layers per pixel, only while verifying")?;
+        let mut encoder = self.gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor { label: Some("count") });
+        self.clear(&mut encoder, &["counters", "layers"]);
+        let timer = self.timer.take();
+        let recorded = self.record(&mut encoder, key, &key.passes(&[Phase::Count]), view);
+        self.timer = timer;
+        recorded?;
+        self.gpu.queue.submit([encoder.finish()]);
+        let layers = self.words("layers", pixels);
+        self.buffers.keep(|name| name != "layers");
+        layers
+    }
+}
+
+fn vertex(words: &[u32]) -> SnappedVertex {
+    SnappedVertex {
+        x: words[0] as i32 >> 8,
+        y: words[1] as i32 >> 8,
+        depth: f32::from_bits(words[2]),
+        inv_w: f32::from_bits(words[3]),
+        flags: words[0] & 255,
+    }
+}

@@ -1,0 +1,239 @@
+//! Twins of the WGSL structs that are filled from Rust: same members, same order, compared by naga in `tests/layout.rs`.
+
+use glam::DMat3;
+
+use crate::{
+    frame::Counters,
+    math::{rounded_columns, srgb_byte},
+    scene::{Accessor, Scene, camera::View, draw::Draw},
+};
+
+/// Name and byte offset of every member, for the layout test.
+pub trait Twin {
+    /// Name of the WGSL struct.
+    const WGSL: &'static str;
+    const MEMBERS: &'static [(&'static str, usize)];
+}
+
+macro_rules! twin {
+    ($(#[$meta:meta])* pub struct $name:ident = $wgsl:literal { $(pub $member:ident : $ty:ty,)* }) => {
+        $(#[$meta])*
+        #[derive(Clone, Copy, Debug, Default, PartialEq, bytemuck::Pod, bytemuck::Zeroable)]
+        #[repr(C)]
+        pub struct $name { $(pub $member: $ty,)* }
+
+        impl Twin for $name {
+            const WGSL: &'static str = $wgsl;
+            const MEMBERS: &'static [(&'static str, usize)] = &[$((stringify!($member), std::mem::offset_of!($name, $member))),*];
+        }
+    };
+}
+
+twin! {
+    /// One picture: size, viewpoint, capacities. Each member is explained in `shaders/common/frame.wgsl`.
+    pub struct FrameUniform = "Frame" {
+        pub background: [f32; 4],
+        pub eye: [f32; 4],
+        pub forward: [f32; 4],
+        pub center: [f32; 2],
+        pub range_m: [f32; 2],
+        pub linear_depth_m: [f32; 2],
+        pub size: [u32; 2],
+        pub stride: u32,
+        pub vertex_count: u32,
+        pub triangle_count: u32,
+        pub draw_count: u32,
+        pub clip_capacity: u32,
+        pub piece_capacity: u32,
+        pub medium_capacity: u32,
+        pub large_capacity: u32,
+        pub tile_capacity: u32,
+        pub medium_first: u32,
+        pub large_first: u32,
+        pub tile_first: u32,
+    }
+}
+
+twin! {
+    /// One draw. Each member is explained in `shaders/common/draws.wgsl`.
+    pub struct DrawRecord = "Draw" {
+        pub clip_from_object: [[f32; 4]; 4],
+        pub world_from_object: [[f32; 4]; 4],
+        pub normal_from_object: [[f32; 4]; 4],
+        pub base_color: [f32; 4],
+        pub first_vertex: u32,
+        pub vertex_count: u32,
+        pub first_triangle: u32,
+        pub flags: u32,
+        pub topology: u32,
+        pub index_offset: u32,
+        pub index_format: u32,
+        pub position_offset: u32,
+        pub position_stride: u32,
+        pub position_format: u32,
+        pub normal_offset: u32,
+        pub normal_stride: u32,
+        pub normal_format: u32,
+        pub color_offset: u32,
+        pub color_stride: u32,
+        pub color_format: u32,
+    }
+}
+
+twin! {
+    /// Demand of the queues and what was not drawn. Each member is explained in `shaders/common/counters.wgsl`.
+    pub struct CounterRecord = "Counters" {
+        pub clip: u32,
+        pub medium: u32,
+        pub large: u32,
+        pub tiles: u32,
+        pub pieces: u32,
+        pub rejected_nonfinite: u32,
+        pub rejected_range: u32,
+        pub degenerate: u32,
+        pub fan_folds: u32,
+        pub orphans: u32,
+    }
+}
+
+/// Entries that fit each queue.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Capacities {
+    pub clip: u32,
+    pub pieces: u32,
+    pub medium: u32,
+    pub large: u32,
+    pub tiles: u32,
+}
+
+impl Capacities {
+    /// Words of the queue buffer: clip, medium and large one word an entry, tiles two.
+    pub fn queue_words(&self) -> u64 {
+        u64::from(self.clip) + u64::from(self.medium) + u64::from(self.large) + 2 * u64::from(self.tiles)
+    }
+
+    /// Grows whatever the demand exceeded, by powers of two; true if anything grew.
+    pub fn grow(&mut self, demand: &CounterRecord) -> bool {
+        let pairs = [
+            (&mut self.clip, demand.clip),
+            (&mut self.pieces, demand.pieces),
+            (&mut self.medium, demand.medium),
+            (&mut self.large, demand.large),
+            (&mut self.tiles, demand.tiles),
+        ];
+        let mut grew = false;
+        for (capacity, demand) in pairs {
+            if demand > *capacity {
+                *capacity = demand.checked_next_power_of_two().unwrap_or(u32::MAX);
+                grew = true;
+            }
+        }
+        grew
+    }
+}
+
+/// Pixels from one row of the colour buffer to the next: rows begin at multiples of 256 bytes, as texture copies demand.
+pub fn color_stride(width: u32) -> u32 {
+    width.next_multiple_of(64)
+}
+
+impl FrameUniform {
+    pub fn new(view: &View, scene: &Scene, draw_count: usize, capacities: &Capacities) -> Self {
+        let is_perspective = view.linear_depth_m.is_none();
+        let [r, g, b, alpha] = view.background;
+        let encoded = [r, g, b].map(|c| f32::from(srgb_byte(f64::from(c))) / 255.0);
+        let wide = |v: glam::DVec3, w: f32| [v.x as f32, v.y as f32, v.z as f32, w];
+        Self {
+            background: [encoded[0], encoded[1], encoded[2], alpha],
+            eye: wide(view.eye, f32::from(u8::from(is_perspective))),
+            forward: wide(view.forward, 0.0),
+            center: [128.0 * view.width as f32, 128.0 * view.height as f32],
+            range_m: view.scene_range_m.map(|d| d as f32),
+            linear_depth_m: view.linear_depth_m.unwrap_or_default().map(|d| d as f32),
+            size: [view.width, view.height],
+            stride: color_stride(view.width),
+            vertex_count: scene.vertex_count() as u32,
+            triangle_count: scene.triangle_count() as u32,
+            draw_count: draw_count as u32,
+            clip_capacity: capacities.clip,
+            piece_capacity: capacities.pieces,
+            medium_capacity: capacities.medium,
+            large_capacity: capacities.large,
+            tile_capacity: capacities.tiles,
+            medium_first: capacities.clip,
+            large_first: capacities.clip + capacities.medium,
+            tile_first: capacities.clip + capacities.medium + capacities.large,
+        }
+    }
+}
+
+/// Component type in bits 0 to 2, normalized in bit 3 (`shaders/common/pull.wgsl`), lanes from bit 8.
+fn format_word(accessor: &Accessor) -> u32 {
+    (accessor.component as u32 - 5120) | u32::from(accessor.normalized) << 3 | accessor.lanes << 8
+}
+
+impl DrawRecord {
+    pub fn new(draw: &Draw, scene: &Scene) -> Self {
+        let primitive = &scene.primitives[draw.primitive];
+        let material = &scene.materials[primitive.material];
+        let color = primitive.colors.as_ref();
+        Self {
+            clip_from_object: draw.clip_from_object,
+            world_from_object: rounded_columns(&draw.world_from_object),
+            normal_from_object: normal_from_object(draw),
+            base_color: material.base_color,
+            first_vertex: draw.first_vertex,
+            vertex_count: primitive.vertex_count(),
+            first_triangle: draw.first_triangle,
+            flags: u32::from(material.double_sided) | u32::from(draw.mirrored) << 1,
+            topology: primitive.topology as u32,
+            index_offset: primitive.indices.map_or(0, |i| i.offset),
+            index_format: primitive.indices.map_or(0, |i| i.component.bytes()),
+            position_offset: primitive.positions.offset,
+            position_stride: primitive.positions.stride,
+            position_format: format_word(&primitive.positions),
+            normal_offset: primitive.normals.offset,
+            normal_stride: primitive.normals.stride,
+            normal_format: format_word(&primitive.normals),
+            color_offset: color.map_or(0, |c| c.offset),
+            color_stride: color.map_or(0, |c| c.stride),
+            color_format: color.map_or(0, format_word),
+        }
+    }
+}
+
+/// Cofactors of the placement, in the direction of its inverse transpose, scaled so that the largest entry is 1.
+fn normal_from_object(draw: &Draw) -> [[f32; 4]; 4] {
+    let m = DMat3::from_mat4(draw.world_from_object);
+    let mut cofactors = DMat3::from_cols(m.y_axis.cross(m.z_axis), m.z_axis.cross(m.x_axis), m.x_axis.cross(m.y_axis));
+    if draw.mirrored {
+        cofactors *= -1.0;
+    }
+    let largest = cofactors.to_cols_array().iter().fold(0.0, |max: f64, v| max.max(v.abs()));
+    if largest > 0.0 {
+        cofactors *= 1.0 / largest;
+    }
+    rounded_columns(&glam::DMat4::from_mat3(cofactors))
+}
+
+impl CounterRecord {
+    /// As the rest of the program counts; `overflow` is demand beyond `capacities`.
+    pub fn counters(&self, capacities: &Capacities) -> Counters {
+        let beyond = [
+            self.clip.saturating_sub(capacities.clip),
+            self.pieces.saturating_sub(capacities.pieces),
+            self.medium.saturating_sub(capacities.medium),
+            self.large.saturating_sub(capacities.large),
+            self.tiles.saturating_sub(capacities.tiles),
+        ];
+        Counters {
+            rejected_nonfinite: self.rejected_nonfinite,
+            rejected_range: self.rejected_range,
+            degenerate: self.degenerate,
+            clipped: self.clip,
+            fan_folds: self.fan_folds,
+            overflow: beyond.iter().fold(0, |sum: u32, b| sum.saturating_add(*b)),
+            orphans: self.orphans,
+        }
+    }
+}

@@ -1,0 +1,150 @@
+//! The planner: the cheapest kernel that the scene, the stack and the tolerance allow on this adapter, and why.
+
+use crate::{
+    effects::{Enabled, Stack},
+    scene::needs::Needs,
+    shader::key::{Fetch, KernelKey, Visibility},
+};
+
+/// What an adapter can do for us.
+#[derive(Clone, Debug, PartialEq, serde::Serialize)]
+pub struct Caps {
+    /// 64-bit atomic maximum on storage buffers: the `packed64` rung.
+    pub int64_atomics: bool,
+    /// GPU timestamps.
+    pub timestamps: bool,
+    pub max_storage_binding_bytes: u64,
+    pub max_buffer_bytes: u64,
+    pub max_texture_side: u32,
+    /// Runs on the CPU: pictures are right, times say nothing about a graphics card.
+    pub software: bool,
+}
+
+impl Caps {
+    /// `native-int64` or `portable`.
+    pub fn class(&self) -> &'static str {
+        if self.int64_atomics { "native-int64" } else { "portable" }
+    }
+
+    /// Most candidate samples one invocation walks, and most pixels per side. On a GPU a whole workgroup takes over
+    /// early, since one slow lane holds up its neighbours; a CPU adapter runs lanes in turn and gains nothing by it.
+    pub fn small_limits(&self) -> (u32, u32) {
+        if self.software { (128 * 128, 128) } else { (64, 32) }
+    }
+}
+
+/// Named tolerances.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Tier {
+    Draft,
+    Fast,
+    #[default]
+    Precise,
+    Reference,
+}
+
+impl Tier {
+    pub const ALL: [Self; 4] = [Self::Draft, Self::Fast, Self::Precise, Self::Reference];
+
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Draft => "draft",
+            Self::Fast => "fast",
+            Self::Precise => "precise",
+            Self::Reference => "reference",
+        }
+    }
+}
+
+/// How exact the picture must be.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Accuracy {
+    pub tier: Tier,
+    /// A pinned rung beats the tier.
+    pub visibility: Option<Visibility>,
+}
+
+/// A rung that was asked for by name and that this adapter lacks.
+#[derive(Debug, thiserror::Error)]
+#[error("visibility packed64 needs 64-bit atomics, which this adapter lacks; use split32 or leave it out")]
+pub struct Lacking;
+
+/// One line of reasoning: what was chosen or left out, and why.
+#[derive(Clone, Debug, PartialEq, serde::Serialize)]
+pub struct Note {
+    pub name: String,
+    pub why: String,
+}
+
+/// A kernel key with its reasons.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Plan {
+    pub key: KernelKey,
+    /// Why each part of the key is as it is.
+    pub reasons: Vec<Note>,
+    /// What this picture does without.
+    pub omitted: Vec<Note>,
+}
+
+/// Chooses the kernel.
+pub fn plan(needs: &Needs, stack: &Stack, caps: &Caps, accuracy: &Accuracy) -> Result<Plan, Lacking> {
+    let visibility = match accuracy.visibility {
+        Some(Visibility::Packed64) if !caps.int64_atomics => return Err(Lacking),
+        Some(pinned) => pinned,
+        None if caps.int64_atomics => Visibility::Packed64,
+        None => Visibility::Split32,
+    };
+    let (small_samples, small_side) = caps.small_limits();
+    // A box of n px touches at most n + 1 sample columns.
+    let widest = needs.largest_px.floor() + 1.0;
+    let has_medium = needs.clipping || widest > f64::from(small_side) || widest * widest > f64::from(small_samples);
+    let has_large = needs.largest_px >= 128.0;
+    let key = KernelKey {
+        fetch: if needs.indexed { Fetch::Indexed } else { Fetch::Direct },
+        visibility,
+        effects: stack.0.iter().map(|Enabled { effect, .. }| *effect).collect(),
+        has_clipping: needs.clipping,
+        has_medium,
+        has_large,
+        single_draw: needs.draws == 1,
+        only_lists: !needs.topologies,
+        wide_indices: needs.wide_indices,
+        f32_positions: needs.f32_positions,
+        f32_normals: needs.f32_normals,
+        has_colors: needs.colors,
+        small_samples,
+        small_side,
+        early_load: caps.software,
+    };
+    let (reasons, omitted) = explain(needs, caps, accuracy, &key);
+    Ok(Plan { key, reasons, omitted })
+}
+
+fn note(name: &str, why: impl Into<String>) -> Note {
+    Note { name: name.into(), why: why.into() }
+}
+
+fn explain(needs: &Needs, caps: &Caps, accuracy: &Accuracy, key: &KernelKey) -> (Vec<Note>, Vec<Note>) {
+    let pinned = accuracy.visibility.map(|_| "pinned by the look");
+    let chosen = match key.visibility {
+        Visibility::Packed64 => "the adapter has 64-bit atomics: one pass decides depth and owner, nothing is lost",
+        Visibility::Split32 => "the adapter has no 64-bit atomics: depth first, then the owner; nothing is lost",
+    };
+    let bound = if needs.clipping { "clipping leaves it open".into() } else { format!("no triangle exceeds {:.1} px", needs.largest_px) };
+    let reasons = vec![
+        note("visibility", pinned.unwrap_or(chosen)),
+        note("coverage", "fixed8: exact 16.8 top-left edges, holes and double hits are impossible"),
+        note("fetch", if needs.indexed { "the scene has index lists" } else { "no primitive has indices" }),
+        note("small", format!("one invocation walks up to {} samples: {}", key.small_samples, if caps.software { "a CPU adapter runs lanes in turn" } else { "a workgroup takes over early on a GPU" })),
+    ];
+    let parts = [
+        ("clip", key.has_clipping, "the scene's box lies behind the near plane and inside the guard band".to_owned()),
+        ("raster_medium", key.has_medium, bound.clone()),
+        ("tile_large, raster_large", key.has_large, bound),
+        ("index fetch", needs.indexed, "no primitive has indices".into()),
+        ("vertex colours", needs.colors, "no primitive has them".into()),
+        ("effects uniform", !key.effects.is_empty(), "the stack is empty".into()),
+    ];
+    let omitted = parts.into_iter().filter(|(_, is_there, _)| !is_there).map(|(name, _, why)| note(name, why)).collect();
+    (reasons, omitted)
+}

@@ -1,0 +1,230 @@
+//! The kernel key: everything that decides which shader text runs and with which constants. Equal keys, equal pipelines.
+
+use std::fmt;
+
+use crate::effects::Effect;
+
+/// Where depth and owner meet.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Visibility {
+    /// Portable: a depth pass, then an owner pass.
+    Split32,
+    /// One 64-bit atomic per sample.
+    Packed64,
+}
+
+impl Visibility {
+    pub const ALL: [Self; 2] = [Self::Split32, Self::Packed64];
+
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Split32 => "split32",
+            Self::Packed64 => "packed64",
+        }
+    }
+}
+
+/// How corners find their vertices.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Fetch {
+    Direct,
+    Indexed,
+}
+
+/// One entry point of the frame; the name is the file's stem in `shaders/passes` plus, for a repeated one, its phase.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Pass {
+    Project,
+    RasterSmall(Phase),
+    Args,
+    Clip,
+    TileLarge,
+    RasterMedium(Phase),
+    RasterLarge(Phase),
+    Resolve,
+}
+
+/// What a raster pass writes.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Phase {
+    /// Key and owner at once.
+    Packed,
+    /// The nearest key.
+    Depth,
+    /// The owner of the nearest key.
+    Owner,
+    /// Layers per pixel, for the judge.
+    Count,
+}
+
+impl Pass {
+    /// Stem of the file in `shaders/passes`.
+    pub const fn stem(self) -> &'static str {
+        match self {
+            Self::Project => "project",
+            Self::RasterSmall(_) => "raster_small",
+            Self::Args => "args",
+            Self::Clip => "clip",
+            Self::TileLarge => "tile_large",
+            Self::RasterMedium(_) => "raster_medium",
+            Self::RasterLarge(_) => "raster_large",
+            Self::Resolve => "resolve",
+        }
+    }
+
+    /// The entry point in that file.
+    pub const fn entry(self) -> &'static str {
+        match self {
+            Self::Args => "args_write",
+            other => other.stem(),
+        }
+    }
+
+    pub const fn phase(self) -> Option<Phase> {
+        match self {
+            Self::RasterSmall(phase) | Self::RasterMedium(phase) | Self::RasterLarge(phase) => Some(phase),
+            _ => None,
+        }
+    }
+
+    /// Label for profilers and tables.
+    pub fn label(self) -> String {
+        match self.phase() {
+            Some(Phase::Depth) => format!("{} depth", self.stem()),
+            Some(Phase::Owner) => format!("{} owner", self.stem()),
+            Some(Phase::Count) => format!("{} count", self.stem()),
+            Some(Phase::Packed) | None => self.stem().into(),
+        }
+    }
+}
+
+/// See the module's first line.
+#[derive(Clone, Debug, PartialEq, Eq, Hash)]
+pub struct KernelKey {
+    pub fetch: Fetch,
+    pub visibility: Visibility,
+    /// Effects in stack order.
+    pub effects: Vec<&'static Effect>,
+    /// Some triangle may need clipping.
+    pub has_clipping: bool,
+    /// Some triangle may be wider than one invocation's share.
+    pub has_medium: bool,
+    /// Some triangle may exceed 128 px.
+    pub has_large: bool,
+    pub single_draw: bool,
+    pub only_lists: bool,
+    pub wide_indices: bool,
+    pub f32_positions: bool,
+    pub f32_normals: bool,
+    pub has_colors: bool,
+    /// Most candidate samples that one invocation walks.
+    pub small_samples: u32,
+    /// Most pixels per side of such a box.
+    pub small_side: u32,
+    /// Load before the depth atomic.
+    pub early_load: bool,
+}
+
+impl KernelKey {
+    /// Are there queues at all?
+    pub const fn has_queues(&self) -> bool {
+        self.has_clipping || self.has_medium || self.has_large
+    }
+
+    /// The raster phases of one frame, in order.
+    pub const fn phases(&self) -> &'static [Phase] {
+        match self.visibility {
+            Visibility::Split32 => &[Phase::Depth, Phase::Owner],
+            Visibility::Packed64 => &[Phase::Packed],
+        }
+    }
+
+    /// Passes of one frame with the given raster phases, in the order in which they are recorded.
+    pub fn passes(&self, phases: &[Phase]) -> Vec<Pass> {
+        let mut passes = vec![Pass::Project];
+        for (i, &phase) in phases.iter().enumerate() {
+            passes.push(Pass::RasterSmall(phase));
+            if i == 0 && self.has_clipping {
+                passes.extend([Pass::Args, Pass::Clip]);
+            }
+            if i == 0 && self.has_queues() {
+                passes.push(Pass::Args);
+            }
+            if i == 0 && self.has_large {
+                passes.extend([Pass::TileLarge, Pass::Args]);
+            }
+            if self.has_medium {
+                passes.push(Pass::RasterMedium(phase));
+            }
+            if self.has_large {
+                passes.push(Pass::RasterLarge(phase));
+            }
+        }
+        passes
+    }
+
+    /// File of each slot for a pass.
+    pub fn slots(&self, pass: Pass) -> Vec<(&'static str, String)> {
+        let fetch = match self.fetch {
+            Fetch::Direct => "direct",
+            Fetch::Indexed => "indexed",
+        };
+        let queues = if self.has_queues() { "kept" } else { "none" };
+        let pieces = if self.has_clipping { "kept" } else { "none" };
+        let mut slots = vec![
+            ("pieces", format!("slots/pieces/{pieces}")),
+            ("fetch", format!("slots/fetch/{fetch}")),
+            ("queues", format!("slots/queues/{queues}")),
+            ("coverage", "slots/coverage/fixed8".into()),
+            ("owner", format!("slots/owner/{}", self.visibility.name())),
+        ];
+        if let Some(phase) = pass.phase() {
+            let file = match phase {
+                Phase::Packed => "packed64",
+                Phase::Depth => "split32_depth",
+                Phase::Owner => "split32_owner",
+                Phase::Count => "count",
+            };
+            slots.push(("visibility", format!("slots/visibility/{file}")));
+        }
+        slots
+    }
+
+    /// Values of the overrides; those that a pass does not declare are left out by the pipeline builder.
+    pub fn constants(&self, pass: Pass) -> Vec<(&'static str, f64)> {
+        let flag = |value: bool| f64::from(u8::from(value));
+        vec![
+            ("SINGLE_DRAW", flag(self.single_draw)),
+            ("ONLY_LISTS", flag(self.only_lists)),
+            ("WIDE_INDICES", flag(self.wide_indices)),
+            ("F32_POSITIONS", flag(self.f32_positions)),
+            ("F32_NORMALS", flag(self.f32_normals)),
+            ("HAS_COLORS", flag(self.has_colors)),
+            ("HAS_CLIPPING", flag(self.has_clipping)),
+            ("HAS_LARGE", flag(self.has_large)),
+            ("SMALL_SAMPLES", self.small_samples.into()),
+            ("SMALL_SIDE", self.small_side.into()),
+            ("EARLY_LOAD", flag(self.early_load)),
+            ("IS_FIRST", flag(!matches!(pass.phase(), Some(Phase::Owner)))),
+        ]
+    }
+}
+
+impl fmt::Display for KernelKey {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let fetch = match self.fetch {
+            Fetch::Direct => "direct",
+            Fetch::Indexed => "indexed",
+        };
+        write!(f, "raster[fetch={fetch} coverage=fixed8 visibility={} small={}", self.visibility.name(), self.small_samples)?;
+        for (name, is_on) in [("clip", self.has_clipping), ("medium", self.has_medium), ("large", self.has_large), ("colors", self.has_colors)] {
+            if is_on {
+                write!(f, " {name}")?;
+            }
+        }
+        for effect in &self.effects {
+            write!(f, " +{}", effect.name)?;
+        }
+        f.write_str("]")
+    }
+}

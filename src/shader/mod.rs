@@ -1,0 +1,10 @@
+//! Shaders as text: the library of files, the linker, the generated glue, the kernel key and what naga says of it all.
+//! Names no GPU.
+
+pub mod glue;
+pub mod key;
+pub mod library;
+pub mod link;
+pub mod reflect;
+
+pub use key::{Fetch, KernelKey, Pass};

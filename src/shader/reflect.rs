@@ -1,0 +1,124 @@
+//! What naga says of a module: errors with a file and a line, bindings by name, struct layouts.
+
+use naga::{
+    AddressSpace, Module, StorageAccess, TypeInner,
+    valid::{Capabilities, ModuleInfo, ValidationFlags, Validator},
+};
+
+use super::link::Linked;
+
+/// A module that naga read and validated.
+pub struct Reflected {
+    pub module: Module,
+    pub info: ModuleInfo,
+}
+
+/// What a resource of an entry point is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum BindingKind {
+    Uniform,
+    Storage { read_only: bool },
+}
+
+/// One resource that an entry point really uses.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Binding {
+    pub name: String,
+    pub index: u32,
+    pub kind: BindingKind,
+}
+
+/// A member of a WGSL struct.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Member {
+    pub name: String,
+    pub offset: usize,
+    /// The type as WGSL writes it, for instance `vec4<f32>`.
+    pub kind: String,
+}
+
+/// Shader text that naga refuses; the first line begins with file and line.
+#[derive(Debug, thiserror::Error)]
+#[error("{origin}: {message}")]
+pub struct ShaderError {
+    pub origin: String,
+    pub message: String,
+}
+
+/// Reads and validates a linked module; 64-bit atomics only where `int64` says so.
+pub fn reflect(linked: &Linked, int64: bool) -> Result<Reflected, ShaderError> {
+    let module = naga::front::wgsl::parse_str(&linked.text).map_err(|error| {
+        let line = error.location(&linked.text).map_or(1, |l| l.line_number);
+        ShaderError { origin: linked.origin(line), message: error.emit_to_string(&linked.text) }
+    })?;
+    let mut capabilities = Capabilities::default();
+    if int64 {
+        capabilities |= Capabilities::SHADER_INT64 | Capabilities::SHADER_INT64_ATOMIC_MIN_MAX;
+    }
+    let info = Validator::new(ValidationFlags::all(), capabilities).validate(&module).map_err(|error| {
+        let line = error.location(&linked.text).map_or(1, |l| l.line_number);
+        ShaderError { origin: linked.origin(line), message: error.emit_to_string(&linked.text) }
+    })?;
+    Ok(Reflected { module, info })
+}
+
+impl Reflected {
+    /// Resources that `entry` uses, by binding number.
+    pub fn bindings(&self, entry: &str) -> Vec<Binding> {
+        let Some(index) = self.module.entry_points.iter().position(|e| e.name == entry) else { return Vec::new() };
+        let uses = self.info.get_entry_point(index);
+        let mut bindings: Vec<_> = self
+            .module
+            .global_variables
+            .iter()
+            .filter(|(handle, _)| !uses[*handle].is_empty())
+            .filter_map(|(_, variable)| {
+                let kind = match variable.space {
+                    AddressSpace::Uniform => BindingKind::Uniform,
+                    AddressSpace::Storage { access } => BindingKind::Storage { read_only: !access.contains(StorageAccess::STORE) },
+                    _ => return None,
+                };
+                Some(Binding { name: variable.name.clone()?, index: variable.binding.as_ref()?.binding, kind })
+            })
+            .collect();
+        bindings.sort_by_key(|binding| binding.index);
+        bindings
+    }
+
+    /// Does the module declare this override?
+    pub fn has_override(&self, name: &str) -> bool {
+        self.module.overrides.iter().any(|(_, o)| o.name.as_deref() == Some(name))
+    }
+
+    /// Size in bytes and members of a struct.
+    pub fn layout(&self, name: &str) -> Option<(usize, Vec<Member>)> {
+        let (_, ty) = self.module.types.iter().find(|(_, ty)| ty.name.as_deref() == Some(name))?;
+        let TypeInner::Struct { members, span } = &ty.inner else { return None };
+        let member = |m: &naga::StructMember| Member {
+            name: m.name.clone().unwrap_or_default(),
+            offset: m.offset as usize,
+            kind: kind_name(&self.module, m.ty),
+        };
+        Some((*span as usize, members.iter().map(member).collect()))
+    }
+}
+
+fn scalar_name(scalar: naga::Scalar) -> String {
+    let letter = match scalar.kind {
+        naga::ScalarKind::Float => "f",
+        naga::ScalarKind::Sint => "i",
+        naga::ScalarKind::Uint => "u",
+        _ => "?",
+    };
+    format!("{letter}{}", scalar.width * 8)
+}
+
+fn kind_name(module: &Module, ty: naga::Handle<naga::Type>) -> String {
+    match &module.types[ty].inner {
+        TypeInner::Scalar(scalar) | TypeInner::Atomic(scalar) => scalar_name(*scalar),
+        TypeInner::Vector { size, scalar } => format!("vec{}<{}>", *size as u8, scalar_name(*scalar)),
+        TypeInner::Matrix { columns, rows, scalar } => format!("mat{}x{}<{}>", *columns as u8, *rows as u8, scalar_name(*scalar)),
+        TypeInner::Struct { .. } => module.types[ty].name.clone().unwrap_or_default(),
+        _ => "?".into(),
+    }
+}

@@ -1,0 +1,82 @@
+//! Promise: every struct shared by Rust and WGSL agrees by name, order, kind and offset. Needs no adapter.
+
+use rasterlab::{
+    effects::{EFFECTS, Effect},
+    gpu::uniforms::{CounterRecord, DrawRecord, FrameUniform, Twin},
+    shader::{
+        Fetch, KernelKey, Pass,
+        key::{Phase, Visibility},
+        library::Library,
+        link,
+        reflect::{self, Reflected},
+    },
+};
+
+fn reflected(pass: Pass, effects: Vec<&'static Effect>) -> Reflected {
+    let key = KernelKey {
+        fetch: Fetch::Indexed,
+        visibility: Visibility::Split32,
+        effects,
+        has_clipping: true,
+        has_medium: true,
+        has_large: true,
+        single_draw: false,
+        only_lists: false,
+        wide_indices: false,
+        f32_positions: false,
+        f32_normals: false,
+        has_colors: true,
+        small_samples: 64,
+        small_side: 32,
+        early_load: false,
+    };
+    let linked = link::link(&Library::Embedded, &format!("passes/{}", pass.stem()), &key, &key.slots(pass)).expect("links");
+    reflect::reflect(&linked, false).expect("validates")
+}
+
+fn check_twin<T: Twin>(reflected: &Reflected) {
+    let (span, members) = reflected.layout(T::WGSL).unwrap_or_else(|| panic!("no WGSL struct {}", T::WGSL));
+    let wgsl: Vec<_> = members.iter().map(|m| (m.name.as_str(), m.offset)).collect();
+    assert_eq!(wgsl, T::MEMBERS, "{}: WGSL on the left, Rust on the right", T::WGSL);
+    assert!(span.abs_diff(size_of::<T>()) < 16, "{}: WGSL spans {span} bytes, Rust {}", T::WGSL, size_of::<T>());
+}
+
+#[test]
+fn uniforms_and_records_agree() {
+    let small = reflected(Pass::RasterSmall(Phase::Depth), vec![]);
+    check_twin::<FrameUniform>(&small);
+    check_twin::<DrawRecord>(&small);
+    check_twin::<CounterRecord>(&small);
+}
+
+#[test]
+fn arrays_of_records_have_one_stride() {
+    let (span, _) = reflected(Pass::Project, vec![]).layout("Draw").expect("there");
+    assert_eq!(span, size_of::<DrawRecord>());
+}
+
+#[test]
+fn every_effect_has_the_same_fields_on_both_sides() {
+    for effect in EFFECTS {
+        let reflected = reflected(Pass::Resolve, vec![effect]);
+        let (_, members) = reflected.layout(effect.wgsl_struct).unwrap_or_else(|| panic!("no WGSL struct {}", effect.wgsl_struct));
+        let wgsl: Vec<_> = members.iter().map(|m| (m.name.as_str(), m.offset, m.kind.as_str())).collect();
+        let rust: Vec<_> = effect.fields.iter().map(|f| (f.name, f.offset, f.kind.wgsl())).collect();
+        assert_eq!(wgsl, rust, "{}: WGSL on the left, Rust on the right", effect.name);
+        let words = (effect.defaults)();
+        let last = effect.fields.last().expect("an effect has fields");
+        assert_eq!(words.len() * 4, last.offset + last.kind.words() * 4, "{}: padding at the end", effect.name);
+    }
+}
+
+#[test]
+fn defaults_lie_inside_their_hard_ranges() {
+    for effect in EFFECTS {
+        let mut words = (effect.defaults)();
+        for field in effect.fields {
+            let values = field.get(&words);
+            field.set(&mut words, &values).unwrap_or_else(|error| panic!("{}: {error}", effect.name));
+            assert!(field.soft[0] >= field.hard[0] && field.soft[1] <= field.hard[1], "{}.{}: soft range beyond hard", effect.name, field.name);
+        }
+    }
+}

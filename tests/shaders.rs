@@ -1,0 +1,115 @@
+//! Promise: every slot choice, with no effect, each, all and every pair of effects, links and validates, with 64-bit
+//! atomics only where a rung asks for them, within eight storage buffers. Needs no adapter.
+
+use rasterlab::{
+    effects::{EFFECTS, Effect},
+    shader::{
+        Fetch, KernelKey, Pass,
+        key::{Phase, Visibility},
+        library::Library,
+        link::{self, Linked},
+        reflect::{self, BindingKind},
+    },
+};
+
+fn key(fetch: Fetch, visibility: Visibility, has_queues: bool, effects: Vec<&'static Effect>) -> KernelKey {
+    KernelKey {
+        fetch,
+        visibility,
+        effects,
+        has_clipping: has_queues,
+        has_medium: has_queues,
+        has_large: has_queues,
+        single_draw: false,
+        only_lists: false,
+        wide_indices: false,
+        f32_positions: false,
+        f32_normals: false,
+        has_colors: true,
+        small_samples: 64,
+        small_side: 32,
+        early_load: true,
+    }
+}
+
+fn all_passes(key: &KernelKey) -> Vec<Pass> {
+    let mut passes = key.passes(key.phases());
+    passes.extend(key.passes(&[Phase::Count]));
+    passes.push(Pass::Resolve);
+    passes
+}
+
+fn linked(key: &KernelKey, pass: Pass) -> Linked {
+    link::link(&Library::Embedded, &format!("passes/{}", pass.stem()), key, &key.slots(pass)).expect("every file is there")
+}
+
+/// Validates one pass and returns the number of storage buffers it binds.
+fn validate(key: &KernelKey, pass: Pass) -> usize {
+    let int64 = pass.phase() == Some(Phase::Packed);
+    let linked = linked(key, pass);
+    let reflected = reflect::reflect(&linked, int64).unwrap_or_else(|error| panic!("{} of {key}: {error}", pass.label()));
+    let bindings = reflected.bindings(pass.entry());
+    assert!(!bindings.is_empty(), "{} has no entry point {}", pass.stem(), pass.entry());
+    bindings.iter().filter(|b| matches!(b.kind, BindingKind::Storage { .. })).count()
+}
+
+#[test]
+fn every_slot_choice_links_and_validates_within_eight_storage_buffers() {
+    for fetch in [Fetch::Direct, Fetch::Indexed] {
+        for visibility in Visibility::ALL {
+            for has_queues in [false, true] {
+                let key = key(fetch, visibility, has_queues, vec![]);
+                for pass in all_passes(&key) {
+                    let storage = validate(&key, pass);
+                    assert!(storage <= 8, "{} binds {storage} storage buffers", pass.label());
+                }
+            }
+        }
+    }
+}
+
+#[test]
+fn every_effect_alone_in_pairs_and_all_together_validates() {
+    let mut stacks: Vec<Vec<&'static Effect>> = vec![vec![], EFFECTS.to_vec()];
+    for a in EFFECTS {
+        stacks.push(vec![a]);
+        stacks.extend(EFFECTS.iter().filter(|b| *b != a).map(|b| vec![*a, *b]));
+    }
+    for effects in stacks {
+        validate(&key(Fetch::Indexed, Visibility::Split32, true, effects), Pass::Resolve);
+    }
+}
+
+#[test]
+fn an_empty_stack_leaves_no_trace_of_effects() {
+    let key = key(Fetch::Direct, Visibility::Split32, false, vec![]);
+    let linked = linked(&key, Pass::Resolve);
+    let reflected = reflect::reflect(&linked, false).expect("valid");
+    assert!(reflected.bindings("resolve").iter().all(|b| b.name != "effects"));
+    assert!(!linked.text.contains("struct Effects"));
+}
+
+#[test]
+fn portable_sources_hold_no_enable_and_no_requires() {
+    let key = key(Fetch::Indexed, Visibility::Split32, true, EFFECTS.to_vec());
+    for pass in all_passes(&key) {
+        let text = linked(&key, pass).text;
+        let bad = text.lines().find(|l| l.starts_with("enable ") || l.starts_with("requires ") || l.contains("u64"));
+        assert_eq!(bad, None, "{}", pass.label());
+    }
+}
+
+#[test]
+fn an_error_names_the_file_and_line_a_person_wrote() {
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    let shaders = folder.path();
+    for below in ["passes", "effects"] {
+        std::fs::create_dir(shaders.join(below)).expect("a folder");
+    }
+    std::fs::write(shaders.join("passes/project.wgsl"), "//@ use effects/wrong\n@compute @workgroup_size(1)\nfn project() { wrong(); }\n").expect("written");
+    std::fs::write(shaders.join("effects/wrong.wgsl"), "// A mistake\nfn wrong() { let x: u32 = 1.5; }\n").expect("written");
+    let key = key(Fetch::Direct, Visibility::Split32, false, vec![]);
+    let linked = link::link(&Library::Folder(shaders.into()), "passes/project", &key, &[]).expect("links");
+    let Err(error) = reflect::reflect(&linked, false) else { panic!("a wrong type was accepted") };
+    assert!(error.to_string().starts_with("shaders/effects/wrong.wgsl:2:"), "{error}");
+}
