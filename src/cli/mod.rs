@@ -70,7 +70,7 @@ fn dispatch(common: &Common, command: &Command, streams: &mut Streams) -> Result
 fn window(cli: &Cli) -> Result<Exit, Fault> {
     if let Some(what) = &cli.open {
         // Said here, where a person reads it, rather than in a window that opens and shows nothing.
-        open(&cli.common, what)?;
+        open(&cli.common, what).map_err(|fault| perhaps_a_command(fault, what))?;
     }
     let adapter = match painter::wanted(&cli.common) {
         painter::Wanted::Cpu => {
@@ -81,6 +81,15 @@ fn window(cli: &Cli) -> Result<Exit, Fault> {
     let options = crate::app::Options { open: cli.open.clone(), adapter, presets_dir: cli.common.presets_dir() };
     crate::app::run(options).map_err(Fault::window)?;
     Ok(Exit::Done)
+}
+
+/// What is no look may be a command with a slip of the finger.
+#[cfg(feature = "gui")]
+fn perhaps_a_command(fault: Fault, what: &str) -> Fault {
+    let names: Vec<String> = Cli::command().get_subcommands().map(|command| command.get_name().to_owned()).collect();
+    let hint = preset::form::did_you_mean(what, names.iter().map(String::as_str));
+    let is_unknown = matches!(fault.error.downcast_ref(), Some(PresetError::NoLook { .. }));
+    if hint.is_empty() || !is_unknown { fault } else { Fault::usage(format!("there is no look and no command {what:?}{hint}")) }
 }
 
 #[cfg(not(feature = "gui"))]
