@@ -14,18 +14,18 @@ const MAY_KNOW: &[(&str, &[&str])] = &[
     ("scene", &["math"]),
     ("params", &[]),
     ("effects", &["math", "params", "scene"]),
-    ("session", &["effects", "math", "params", "scene"]),
     ("shader", &["effects", "math", "params", "scene"]),
-    ("plan", &["effects", "math", "params", "scene", "session", "shader"]),
+    ("plan", &["effects", "math", "params", "scene", "shader"]),
+    ("session", &["effects", "math", "params", "plan", "scene", "shader"]),
     ("oracle", &["effects", "frame", "math", "measure", "params", "scene"]),
     ("gpu", &["effects", "frame", "math", "measure", "params", "plan", "scene", "session", "shader"]),
-    ("preset", &["effects", "frame", "math", "params", "scene", "session"]),
+    ("preset", &["effects", "frame", "math", "params", "plan", "scene", "session", "shader"]),
     ("cli", &["app", "effects", "frame", "gpu", "math", "measure", "oracle", "params", "plan", "preset", "scene", "session", "shader"]),
     ("app", &["effects", "frame", "gpu", "math", "measure", "oracle", "params", "plan", "preset", "scene", "session", "shader"]),
 ];
 
 /// Longest source file, lines. A longer one stands here with its reason.
-const LONGEST: usize = 400;
+const LONGEST: usize = 450;
 const LONG_FOR_A_REASON: &[(&str, &str)] = &[];
 
 /// Crates that only some rooms may name.

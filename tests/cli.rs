@@ -131,6 +131,14 @@ fn errors_suggest_what_was_meant() {
 }
 
 #[test]
+#[cfg(feature = "gui")]
+fn a_mistyped_command_is_named_and_opens_no_window() {
+    let run = run(&["verfy"]);
+    assert_eq!(run.code, 2);
+    assert!(run.err.contains("did you mean \"verify\"?"), "{}", run.err);
+}
+
+#[test]
 fn an_unknown_adapter_exits_with_3_and_points_to_cpu() {
     let run = run(&["render", "facet", "--adapter", "no such adapter"]);
     assert_eq!((run.code, run.out.as_str()), (3, ""), "{}", run.err);
