@@ -114,6 +114,7 @@ pub fn plan(needs: &Needs, stack: &Stack, caps: &Caps, accuracy: &Accuracy) -> R
         has_colors: needs.colors,
         small_samples,
         small_side,
+        listed_tiles: caps.software,
         early_load: caps.software,
     };
     let (reasons, omitted) = explain(needs, caps, accuracy, &key);

@@ -28,6 +28,7 @@ fn reflected(pass: Pass, effects: Vec<&'static Effect>) -> Reflected {
         has_colors: true,
         small_samples: 64,
         small_side: 32,
+        listed_tiles: true,
         early_load: false,
     };
     let linked = link::link(&Library::Embedded, &format!("passes/{}", pass.stem()), &key, &key.slots(pass)).expect("links");

@@ -28,14 +28,14 @@ fn key(fetch: Fetch, visibility: Visibility, has_queues: bool, effects: Vec<&'st
         has_colors: true,
         small_samples: 64,
         small_side: 32,
+        listed_tiles: has_queues,
         early_load: true,
     }
 }
 
 fn all_passes(key: &KernelKey) -> Vec<Pass> {
-    let mut passes = key.passes(key.phases());
+    let mut passes = key.frame();
     passes.extend(key.passes(&[Phase::Count]));
-    passes.push(Pass::Resolve);
     passes
 }
 

@@ -4,17 +4,19 @@
 //@ use common/transform
 //@ use common/fixed
 //@ use common/color
+//@ use common/picture
 //@ use common/surface
 //@ use common/counters
 //@ use slot/owner
+//@ use slot/pixels
 //@ use glue
-
-@group(0) @binding(11) var<storage, read_write> color: array<u32>;
 
 override F32_NORMALS: bool = false;
 override HAS_COLORS: bool = false;
 override HAS_CLIPPING: bool = false;
-override HAS_LARGE: bool = true;
+// Empty pixels are computed too, with the first triangle, and thrown away: a CPU adapter executes both sides of every
+// branch anyway, and loads what all lanes share only once outside of branches.
+override IS_STRAIGHT: bool = false;
 
 // Where a sample lies in its triangle.
 struct Place {
@@ -30,14 +32,7 @@ fn place_whole(t: Triangle, pixel: vec2u) -> Place {
     let b = vertex_at(t.b);
     let c = vertex_at(t.c);
     let p = vec2i(pixel) * 256 + 128;
-    let low = min(min(a, b), c);
-    let high = max(max(a, b), c);
-    var e: vec3f;
-    if HAS_LARGE && max(high.x - low.x, high.y - low.y) > 32768 {
-        e = vec3f(fixed_to_f32(fixed_edge(b, c, p)), fixed_to_f32(fixed_edge(c, a, p)), fixed_to_f32(fixed_edge(a, b, p)));
-    } else {
-        e = vec3f(f32(fixed_small_area(b, c, p)), f32(fixed_small_area(c, a, p)), f32(fixed_small_area(a, b, p)));
-    }
+    let e = vec3f(fixed_weight(b, c, p), fixed_weight(c, a, p), fixed_weight(a, b, p));
     let inv_w = bitcast<vec3f>(vec3u(t.a.w, t.b.w, t.c.w));
     let share = e * inv_w;
     let sum = share.x + share.y + share.z;
@@ -167,16 +162,19 @@ fn surface_at(id: u32, pixel: vec2u) -> Surface {
 }
 
 @compute @workgroup_size(8, 8)
-fn resolve(@builtin(global_invocation_id) at: vec3u) {
-    let pixel = at.xy;
-    if any(pixel >= frame.size) { return; }
+fn resolve(@builtin(workgroup_id) group: vec3u, @builtin(num_workgroups) groups: vec3u, @builtin(local_invocation_id) local: vec3u) {
+    let at = pixels_of(group, groups, local.xy);
+    let is_inside = all(at < frame.size);
+    let pixel = min(at, frame.size - 1u);
     let found = owner_load(pixel.y * frame.size.x + pixel.x);
+    let is_owned = found.x != 0u;
     var encoded = frame.background;
-    if found.x != 0u {
-        let shaded = glue_surface(surface_at(~found.x, pixel));
-        encoded = vec4f(color_encode(shaded.color.rgb), shaded.color.a);
-    } else if found.y != 0u {
-        atomicAdd(&counters.orphans, 1u);
+    if IS_STRAIGHT || (is_inside && is_owned) {
+        let shaded = glue_surface(surface_at(select(0u, ~found.x, is_owned), pixel));
+        encoded = select(encoded, vec4f(color_encode(shaded.color.rgb), shaded.color.a), is_owned);
     }
-    color[pixel.y * frame.stride + pixel.x] = color_pack(encoded);
+    if is_inside {
+        color[pixel.y * frame.stride + pixel.x] = color_pack(encoded);
+        if !is_owned && found.y != 0u { atomicAdd(&counters.orphans, 1u); }
+    }
 }

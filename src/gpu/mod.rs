@@ -184,13 +184,12 @@ impl Renderer {
             self.target = None;
             return Ok(());
         }
-        let mut passes = plan.key.passes(plan.key.phases());
-        passes.push(Pass::Resolve);
+        let passes = plan.key.frame();
         let mut encoder = self.gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor { label: Some("frame") });
         if let Some(timer) = &mut self.timer {
             timer.begin(&mut encoder, detail);
         }
-        self.clear(&mut encoder, &["counters", "depth_keys", "owners", "depth_owner"]);
+        self.clear(&mut encoder, &["counters", "depth_keys", "owners", "depth_owner", "marks"]);
         self.record(&mut encoder, &plan.key, &passes, view)?;
         self.present(&mut encoder, view);
         let pending = Pending::stage(&self.gpu, &mut encoder, Some(self.buffers.get("counters")), self.timer.as_ref());
@@ -242,8 +241,7 @@ impl Renderer {
         let Some(plan) = &self.last else {
             return Explanation { key: "nothing drawn yet".into(), passes: Vec::new(), buffers: self.buffers.notes(), reasons: Vec::new(), omitted: Vec::new() };
         };
-        let mut passes = plan.key.passes(plan.key.phases());
-        passes.push(Pass::Resolve);
+        let passes = plan.key.frame();
         Explanation {
             key: plan.key.to_string(),
             passes: passes.iter().map(|pass| Note { name: pass.label(), why: pass_purpose(*pass).into() }).collect(),
@@ -274,7 +272,9 @@ impl Renderer {
         let uniform = FrameUniform::new(view, &scene, draws.len(), &recorded);
         let parameters = uniform_bytes(&stack.0);
         buffers.keep(|name| match name {
-            "queues" | "args" => key.has_queues(),
+            "queues" => key.has_queues(),
+            "args" => key.has_queues() || key.listed_tiles,
+            "marks" => key.listed_tiles,
             "pieces" => key.has_clipping,
             "effects" => !parameters.is_empty(),
             "depth_keys" | "owners" => key.visibility == Visibility::Split32,
@@ -291,7 +291,9 @@ impl Renderer {
         buffers.ensure(gpu, "counters", 64, STORAGE, "queue demand and what was not drawn")?;
         if key.has_queues() {
             buffers.ensure(gpu, "queues", 4 * recorded.queue_words(), STORAGE, "triangles waiting for clip, medium, large and tile kernels")?;
-            buffers.ensure(gpu, "args", 48, STORAGE | wgpu::BufferUsages::INDIRECT, "dispatch sizes written on the GPU")?;
+        }
+        if key.has_queues() || key.listed_tiles {
+            buffers.ensure(gpu, "args", 60, STORAGE | wgpu::BufferUsages::INDIRECT, "dispatch sizes written on the GPU")?;
         }
         if key.has_clipping {
             buffers.ensure(gpu, "pieces", 64 * u64::from(recorded.pieces), STORAGE, "what clipping leaves of a triangle")?;
@@ -306,7 +308,12 @@ impl Renderer {
                 buffers.ensure(gpu, "depth_owner", 8 * pixels, STORAGE, "depth key and owner per pixel, 8 bytes")?;
             }
         }
-        buffers.ensure(gpu, "color", 4 * u64::from(color_stride(view.width)) * u64::from(view.height), STORAGE, "the picture, 4 bytes per pixel")?;
+        let tiles = if key.listed_tiles { u64::from(view.width.div_ceil(8)) * u64::from(view.height.div_ceil(8)) } else { 0 };
+        let picture = 4 * u64::from(color_stride(view.width)) * u64::from(view.height);
+        buffers.ensure(gpu, "color", picture + 4 * tiles, STORAGE, "the picture, 4 bytes per pixel, and the list of tiles to resolve")?;
+        if key.listed_tiles {
+            buffers.ensure(gpu, "marks", 4 * tiles, STORAGE, "which 8 x 8 tiles the resolve must visit")?;
+        }
         Ok(plan)
     }
 
@@ -326,7 +333,7 @@ impl Renderer {
             let timestamp_writes = self.timer.as_mut().and_then(|timer| timer.compute(&pipeline.label, is_last));
             let mut recorded = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor { label: Some(&pipeline.label), timestamp_writes });
             pipeline.bind(&self.gpu, &mut recorded, |name| self.buffers.get(name));
-            match dispatch(pass, vertices, triangles, view) {
+            match dispatch(pass, vertices, triangles, view, key.listed_tiles) {
                 Dispatch::Direct([x, y]) => recorded.dispatch_workgroups(x, y, 1),
                 Dispatch::Indirect(offset) => recorded.dispatch_workgroups_indirect(self.buffers.get("args"), offset),
             }
@@ -365,7 +372,7 @@ enum Dispatch {
     Indirect(u64),
 }
 
-fn dispatch(pass: Pass, vertices: u32, triangles: u32, view: &View) -> Dispatch {
+fn dispatch(pass: Pass, vertices: u32, triangles: u32, view: &View, listed_tiles: bool) -> Dispatch {
     match pass {
         Pass::Project => Dispatch::Direct(folded(vertices.div_ceil(64))),
         Pass::RasterSmall(_) => Dispatch::Direct(folded(triangles.div_ceil(64))),
@@ -374,6 +381,8 @@ fn dispatch(pass: Pass, vertices: u32, triangles: u32, view: &View) -> Dispatch 
         Pass::RasterMedium(_) => Dispatch::Indirect(12),
         Pass::TileLarge => Dispatch::Indirect(24),
         Pass::RasterLarge(_) => Dispatch::Indirect(36),
+        Pass::ListTiles => Dispatch::Direct(folded((view.width.div_ceil(8) * view.height.div_ceil(8)).div_ceil(64))),
+        Pass::Resolve if listed_tiles => Dispatch::Indirect(48),
         Pass::Resolve => Dispatch::Direct([view.width.div_ceil(8), view.height.div_ceil(8)]),
     }
 }
@@ -393,6 +402,7 @@ fn pass_purpose(pass: Pass) -> &'static str {
         Pass::TileLarge => "finds the tiles of each large triangle",
         Pass::RasterMedium(_) => "one workgroup per triangle of up to 128 px",
         Pass::RasterLarge(_) => "one workgroup per 64 x 64 tile of a large triangle",
+        Pass::ListTiles => "gathers the tiles that hold something",
         Pass::Resolve => "shades every pixel once",
     }
 }

@@ -93,6 +93,7 @@ twin! {
         pub degenerate: u32,
         pub fan_folds: u32,
         pub orphans: u32,
+        pub marked_tiles: u32,
     }
 }
 

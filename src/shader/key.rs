@@ -41,6 +41,7 @@ pub enum Pass {
     TileLarge,
     RasterMedium(Phase),
     RasterLarge(Phase),
+    ListTiles,
     Resolve,
 }
 
@@ -68,6 +69,7 @@ impl Pass {
             Self::TileLarge => "tile_large",
             Self::RasterMedium(_) => "raster_medium",
             Self::RasterLarge(_) => "raster_large",
+            Self::ListTiles => "list_tiles",
             Self::Resolve => "resolve",
         }
     }
@@ -121,6 +123,8 @@ pub struct KernelKey {
     pub small_samples: u32,
     /// Most pixels per side of such a box.
     pub small_side: u32,
+    /// The resolve visits only tiles that a triangle's box touches, without branches.
+    pub listed_tiles: bool,
     /// Load before the depth atomic.
     pub early_load: bool,
 }
@@ -139,7 +143,17 @@ impl KernelKey {
         }
     }
 
-    /// Passes of one frame with the given raster phases, in the order in which they are recorded.
+    /// Every pass of one picture, in the order in which they are recorded.
+    pub fn frame(&self) -> Vec<Pass> {
+        let mut passes = self.passes(self.phases());
+        if self.listed_tiles {
+            passes.extend([Pass::ListTiles, Pass::Args]);
+        }
+        passes.push(Pass::Resolve);
+        passes
+    }
+
+    /// Passes up to the last of the given raster phases.
     pub fn passes(&self, phases: &[Phase]) -> Vec<Pass> {
         let mut passes = vec![Pass::Project];
         for (i, &phase) in phases.iter().enumerate() {
@@ -170,11 +184,16 @@ impl KernelKey {
             Fetch::Indexed => "indexed",
         };
         let queues = if self.has_queues() { "kept" } else { "none" };
+        let is_marking = self.listed_tiles && !matches!(pass.phase(), Some(Phase::Owner | Phase::Count));
+        let marks = if is_marking { "kept" } else { "none" };
+        let pixels = if self.listed_tiles { "listed" } else { "all" };
         let pieces = if self.has_clipping { "kept" } else { "none" };
         let mut slots = vec![
             ("pieces", format!("slots/pieces/{pieces}")),
             ("fetch", format!("slots/fetch/{fetch}")),
             ("queues", format!("slots/queues/{queues}")),
+            ("marks", format!("slots/marks/{marks}")),
+            ("pixels", format!("slots/pixels/{pixels}")),
             ("coverage", "slots/coverage/fixed8".into()),
             ("owner", format!("slots/owner/{}", self.visibility.name())),
         ];
@@ -201,7 +220,7 @@ impl KernelKey {
             ("F32_NORMALS", flag(self.f32_normals)),
             ("HAS_COLORS", flag(self.has_colors)),
             ("HAS_CLIPPING", flag(self.has_clipping)),
-            ("HAS_LARGE", flag(self.has_large)),
+            ("IS_STRAIGHT", flag(self.listed_tiles)),
             ("SMALL_SAMPLES", self.small_samples.into()),
             ("SMALL_SIDE", self.small_side.into()),
             ("EARLY_LOAD", flag(self.early_load)),
