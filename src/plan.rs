@@ -3,7 +3,11 @@
 use crate::{
     effects::{Enabled, Stack},
     scene::needs::Needs,
-    shader::key::{Fetch, KernelKey, Visibility},
+    shader::{
+        glue::reads,
+        key::{Fetch, KernelKey, Visibility},
+        library::Library,
+    },
 };
 
 /// What an adapter can do for us.
@@ -99,6 +103,9 @@ pub fn plan(needs: &Needs, stack: &Stack, caps: &Caps, accuracy: &Accuracy) -> R
     let widest = needs.largest_px.floor() + 1.0;
     let has_medium = needs.clipping || widest > f64::from(small_side) || widest * widest > f64::from(small_samples);
     let has_large = needs.largest_px >= 128.0;
+    let planes = ["flat_normal", "flat_depth_m", "center"];
+    let reads_planes = stack.0.iter().any(|enabled| planes.iter().any(|member| reads(&Library::Embedded, enabled.effect, member)));
+    let has_planes = reads_planes || !needs.sound_normals;
     let key = KernelKey {
         fetch: if needs.indexed { Fetch::Indexed } else { Fetch::Direct },
         visibility,
@@ -112,6 +119,8 @@ pub fn plan(needs: &Needs, stack: &Stack, caps: &Caps, accuracy: &Accuracy) -> R
         f32_positions: needs.f32_positions,
         f32_normals: needs.f32_normals,
         has_colors: needs.colors,
+        has_planes,
+        perspective: needs.perspective,
         small_samples,
         small_side,
         listed_tiles: caps.software,
@@ -136,13 +145,21 @@ fn explain(needs: &Needs, caps: &Caps, accuracy: &Accuracy, key: &KernelKey) -> 
         note("visibility", pinned.unwrap_or(chosen)),
         note("coverage", "fixed8: exact 16.8 top-left edges, holes and double hits are impossible"),
         note("fetch", if needs.indexed { "the scene has index lists" } else { "no primitive has indices" }),
-        note("small", format!("one invocation walks up to {} samples: {}", key.small_samples, if caps.software { "a CPU adapter runs lanes in turn" } else { "a workgroup takes over early on a GPU" })),
+        note(
+            "small",
+            format!(
+                "one invocation walks up to {} samples: {}",
+                key.small_samples,
+                if caps.software { "a CPU adapter runs lanes in turn" } else { "a workgroup takes over early on a GPU" }
+            ),
+        ),
     ];
     let parts = [
         ("clip", key.has_clipping, "the scene's box lies behind the near plane and inside the guard band".to_owned()),
         ("raster_medium", key.has_medium, bound.clone()),
         ("tile_large, raster_large", key.has_large, bound),
         ("index fetch", needs.indexed, "no primitive has indices".into()),
+        ("plane normals and centres", key.has_planes, "no effect reads them and no normal needs a substitute".into()),
         ("vertex colours", needs.colors, "no primitive has them".into()),
         ("effects uniform", !key.effects.is_empty(), "the stack is empty".into()),
     ];

@@ -69,6 +69,7 @@ fn scene(meshes: &[(Mesh, DMat4)]) -> Scene {
             material: i,
             bounds,
             longest_edge: 2.0 * bounds.radius(),
+            sound_normals: false,
         });
         scene.materials.push(Material { double_sided: mesh.double_sided, ..Default::default() });
         scene.instances.push(Instance { primitive: i, world_from_object: *world_from_object });
@@ -123,6 +124,7 @@ fn still_life(size: [u32; 2]) -> (Scene, View) {
 fn flat_view(width: u32, height: u32) -> View {
     let (w, h) = (f64::from(width), f64::from(height));
     View {
+        ndc_axes: [DVec3::X, DVec3::Y],
         width,
         height,
         clip_from_world: DMat4::from_cols(DVec4::X * 2.0 / w, DVec4::Y * -2.0 / h, DVec4::Z, DVec4::new(-1.0, 1.0, 0.0, 1.0)),

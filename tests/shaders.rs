@@ -26,6 +26,8 @@ fn key(fetch: Fetch, visibility: Visibility, has_queues: bool, effects: Vec<&'st
         f32_positions: false,
         f32_normals: false,
         has_colors: true,
+        has_planes: true,
+        perspective: true,
         small_samples: 64,
         small_side: 32,
         listed_tiles: has_queues,
@@ -106,7 +108,8 @@ fn an_error_names_the_file_and_line_a_person_wrote() {
     for below in ["passes", "effects"] {
         std::fs::create_dir(shaders.join(below)).expect("a folder");
     }
-    std::fs::write(shaders.join("passes/project.wgsl"), "//@ use effects/wrong\n@compute @workgroup_size(1)\nfn project() { wrong(); }\n").expect("written");
+    std::fs::write(shaders.join("passes/project.wgsl"), "//@ use effects/wrong\n@compute @workgroup_size(1)\nfn project() { wrong(); }\n")
+        .expect("written");
     std::fs::write(shaders.join("effects/wrong.wgsl"), "// A mistake\nfn wrong() { let x: u32 = 1.5; }\n").expect("written");
     let key = key(Fetch::Direct, Visibility::Split32, false, vec![]);
     let linked = link::link(&Library::Folder(shaders.into()), "passes/project", &key, &[]).expect("links");

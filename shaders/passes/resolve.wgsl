@@ -14,6 +14,8 @@
 override F32_NORMALS: bool = false;
 override HAS_COLORS: bool = false;
 override HAS_CLIPPING: bool = false;
+override HAS_PLANES: bool = true;
+override IS_PERSPECTIVE: bool = true;
 // Empty pixels are computed too, with the first triangle, and thrown away: a CPU adapter executes both sides of every
 // branch anyway, and loads what all lanes share only once outside of branches.
 override IS_STRAIGHT: bool = false;
@@ -36,11 +38,16 @@ fn place_whole(t: Triangle, pixel: vec2u) -> Place {
     let inv_w = bitcast<vec3f>(vec3u(t.a.w, t.b.w, t.c.w));
     let share = e * inv_w;
     let sum = share.x + share.y + share.z;
-    let weights = share / sum;
     let w = 1.0 / inv_w;
-    let linear = bitcast<vec3f>(vec3u(t.a.z, t.b.z, t.c.z)) * (frame.linear_depth_m.x - frame.linear_depth_m.y) + frame.linear_depth_m.y;
+    var depths = w;
+    if !IS_PERSPECTIVE { depths = linear_depths(bitcast<vec3f>(vec3u(t.a.z, t.b.z, t.c.z))); }
     let center = (vec2f(a) * w.x + vec2f(b) * w.y + vec2f(c) * w.z) / ((w.x + w.y + w.z) * 2.0 * frame.center);
-    return Place(weights, select(linear, w, frame.eye.w != 0.0), center, e.x + e.y + e.z > 0.0);
+    return Place(share / sum, depths, center, e.x + e.y + e.z > 0.0);
+}
+
+// Metres of an orthographic depth.
+fn linear_depths(z: vec3f) -> vec3f {
+    return z * (frame.linear_depth_m.x - frame.linear_depth_m.y) + frame.linear_depth_m.y;
 }
 
 // A clipped triangle has no snapped corners: homogeneous barycentrics (Olano and Greer 1997).
@@ -52,14 +59,14 @@ fn place_clipped(t: Triangle, at: vec3u, pixel: vec2u) -> Place {
     let p = vec3f(sample.x * 2.0 - 1.0, 1.0 - sample.y * 2.0, 1.0);
     let share = vec3f(dot(p, cross(b.xyw, c.xyw)), dot(p, cross(c.xyw, a.xyw)), dot(p, cross(a.xyw, b.xyw)));
     let sum = share.x + share.y + share.z;
-    let z = vec3f(a.z, b.z, c.z);
-    let linear = z * (frame.linear_depth_m.x - frame.linear_depth_m.y) + frame.linear_depth_m.y;
+    var depths = vec3f(a.w, b.w, c.w);
+    if !IS_PERSPECTIVE { depths = linear_depths(vec3f(a.z, b.z, c.z)); }
     let w = a.w + b.w + c.w;
     let ndc = (a.xy + b.xy + c.xy) / select(1.0, w, w > 0.0);
     let center = select(sample, vec2f(0.5 + 0.5 * ndc.x, 0.5 - 0.5 * ndc.y), w > 0.0);
     // Counter-clockwise in clip space, y up, is a positive determinant.
     let is_clockwise = dot(a.xyw, cross(b.xyw, c.xyw)) < 0.0;
-    return Place(share / sum, select(linear, vec3f(a.w, b.w, c.w), frame.eye.w != 0.0), center, is_clockwise);
+    return Place(share / sum, depths, center, is_clockwise);
 }
 
 // A stored normal; w is 0 where a lane is NaN, infinite or beyond 2^40, told by its bits.
@@ -123,38 +130,48 @@ fn surface_at(id: u32, pixel: vec2u) -> Surface {
         place = place_whole(t, pixel);
     }
     let k = place.weights;
-    let a = vertex_position(transform_bits(t.draw, at.x), 0u);
-    let b = vertex_position(transform_bits(t.draw, at.y), 0u);
-    let c = vertex_position(transform_bits(t.draw, at.z), 0u);
-    let world_from_object = draws[t.draw].world_from_object;
     let normal_from_object = draws[t.draw].normal_from_object;
 
     var s: Surface;
     s.owner = id;
-    s.position = (world_from_object * vec4f(a * k.x + b * k.y + c * k.z, 1.0)).xyz;
-    s.center = (world_from_object * vec4f((a + b + c) / 3.0, 1.0)).xyz;
     s.center_screen = place.center_screen;
     s.screen = (vec2f(pixel) + 0.5) / vec2f(frame.size);
-    s.view = select(-frame.forward.xyz, direction(frame.eye.xyz - s.position), frame.eye.w != 0.0);
     s.depth_m = dot(k, place.corner_depths);
     s.flat_depth_m = dot(place.corner_depths, vec3f(1.0 / 3.0));
     s.range_m = frame.range_m;
+    // The sample lies on the ray of its pixel, so depth alone tells where.
+    let ndc = vec2f(s.screen.x * 2.0 - 1.0, 1.0 - s.screen.y * 2.0);
+    let aside = frame.ndc_x.xyz * ndc.x + frame.ndc_y.xyz * ndc.y;
+    if IS_PERSPECTIVE {
+        let ray = frame.forward.xyz + aside;
+        s.position = frame.eye.xyz + ray * s.depth_m;
+        s.view = -normalize(ray);
+    } else {
+        s.position = frame.eye.xyz + aside + frame.forward.xyz * s.depth_m;
+        s.view = -frame.forward.xyz;
+    }
     s.color = draws[t.draw].base_color
         * (color_of(t.draw, at.x) * k.x + color_of(t.draw, at.y) * k.y + color_of(t.draw, at.z) * k.z);
 
-    let flags = draws[t.draw].flags;
-    let is_mirrored = (flags & DRAW_MIRRORED) != 0u;
-    let na = normal_of(t.draw, at.x);
-    let nb = normal_of(t.draw, at.y);
-    let nc = normal_of(t.draw, at.z);
-    s.normal = direction((normal_from_object * vec4f(smooth_normal(na, nb, nc, k), 0.0)).xyz);
-    s.flat_normal = direction((normal_from_object * vec4f(plane_normal(a, b, c), 0.0)).xyz);
-    let has_smooth = any(s.normal != vec3f(0.0));
-    let has_flat = any(s.flat_normal != vec3f(0.0));
-    if !has_flat { s.flat_normal = select(s.view, s.normal, has_smooth); }
-    if !has_smooth { s.normal = s.flat_normal; }
-    let is_back = place.is_clockwise != is_mirrored;
-    if is_back && (has_smooth || has_flat) {
+    let smooth_sum = smooth_normal(normal_of(t.draw, at.x), normal_of(t.draw, at.y), normal_of(t.draw, at.z), k);
+    s.normal = direction((normal_from_object * vec4f(smooth_sum, 0.0)).xyz);
+    s.flat_normal = s.normal;
+    s.center = s.position;
+    var has_direction = true;
+    if HAS_PLANES {
+        let a = vertex_position(transform_bits(t.draw, at.x), 0u);
+        let b = vertex_position(transform_bits(t.draw, at.y), 0u);
+        let c = vertex_position(transform_bits(t.draw, at.z), 0u);
+        s.center = (draws[t.draw].world_from_object * vec4f((a + b + c) / 3.0, 1.0)).xyz;
+        s.flat_normal = direction((normal_from_object * vec4f(plane_normal(a, b, c), 0.0)).xyz);
+        let has_smooth = any(s.normal != vec3f(0.0));
+        let has_flat = any(s.flat_normal != vec3f(0.0));
+        has_direction = has_smooth || has_flat;
+        if !has_flat { s.flat_normal = select(s.view, s.normal, has_smooth); }
+        if !has_smooth { s.normal = s.flat_normal; }
+    }
+    let is_mirrored = (draws[t.draw].flags & DRAW_MIRRORED) != 0u;
+    if has_direction && place.is_clockwise != is_mirrored {
         s.normal = -s.normal;
         s.flat_normal = -s.flat_normal;
     }

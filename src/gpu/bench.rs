@@ -284,7 +284,9 @@ impl Entry {
 
     fn finish(self, row: &dyn Fn(String, ErrorFigures, Option<String>) -> BenchRow) -> BenchRow {
         let note = match self.contender {
-            Contender::Naive(Viewport::AsWritten, _) => Some("naive draws one quadrant of the view, as its author wrote it; holes are not comparable".into()),
+            Contender::Naive(Viewport::AsWritten, _) => {
+                Some("naive draws one quadrant of the view, as its author wrote it; holes are not comparable".into())
+            }
             _ if self.invalid > 0 => Some(format!("{}: {} samples had no valid timestamps", self.contender.rung(), self.invalid)),
             _ => None,
         };

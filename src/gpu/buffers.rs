@@ -27,7 +27,14 @@ pub struct Buffers {
 impl Buffers {
     /// Makes `name` at least `bytes` long (and at least 16); true if it was made anew and so holds zeros.
     /// A buffer four times too large is made smaller.
-    pub fn ensure(&mut self, gpu: &Gpu, name: &'static str, bytes: u64, usage: wgpu::BufferUsages, why: &'static str) -> Result<bool, RenderError> {
+    pub fn ensure(
+        &mut self,
+        gpu: &Gpu,
+        name: &'static str,
+        bytes: u64,
+        usage: wgpu::BufferUsages,
+        why: &'static str,
+    ) -> Result<bool, RenderError> {
         let bytes = bytes.max(16).next_multiple_of(16);
         if let Some(held) = self.held.get_mut(name)
             && (bytes..=bytes.saturating_mul(4)).contains(&held.bytes)
@@ -51,7 +58,14 @@ impl Buffers {
     }
 
     /// Makes `name` and fills its beginning.
-    pub fn fill(&mut self, gpu: &Gpu, name: &'static str, data: &[u8], usage: wgpu::BufferUsages, why: &'static str) -> Result<(), RenderError> {
+    pub fn fill(
+        &mut self,
+        gpu: &Gpu,
+        name: &'static str,
+        data: &[u8],
+        usage: wgpu::BufferUsages,
+        why: &'static str,
+    ) -> Result<(), RenderError> {
         self.ensure(gpu, name, data.len() as u64, usage, why)?;
         gpu.queue.write_buffer(self.get(name), 0, data);
         Ok(())

@@ -55,7 +55,8 @@ impl Hardware {
             .iter()
             .map(|binding| wgpu::BindGroupEntry { binding: binding.index, resource: buffers.get(&binding.name).as_entire_binding() })
             .collect();
-        let group = gpu.device.create_bind_group(&wgpu::BindGroupDescriptor { label: Some("hardware"), layout: &layout, entries: &entries });
+        let group =
+            gpu.device.create_bind_group(&wgpu::BindGroupDescriptor { label: Some("hardware"), layout: &layout, entries: &entries });
         let target = |format, usage| {
             gpu.device.create_texture(&wgpu::TextureDescriptor {
                 label: Some("hardware"),

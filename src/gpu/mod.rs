@@ -27,6 +27,7 @@ pub use crate::plan::Note;
 use crate::{
     effects::Stack,
     frame::Counters,
+    math::srgb_byte,
     plan::{Accuracy, Lacking, Plan, plan},
     scene::{
         Scene,
@@ -160,9 +161,21 @@ impl Renderer {
             }
         }
         self.buffers.keep(|name| !matches!(name, "vertex_bytes" | "index_bytes" | "vertices"));
-        self.buffers.fill(&self.gpu, "vertex_bytes", &scene.vertex_bytes, STORAGE | wgpu::BufferUsages::VERTEX, "attributes as the file has them")?;
+        self.buffers.fill(
+            &self.gpu,
+            "vertex_bytes",
+            &scene.vertex_bytes,
+            STORAGE | wgpu::BufferUsages::VERTEX,
+            "attributes as the file has them",
+        )?;
         if !scene.index_bytes.is_empty() {
-            self.buffers.fill(&self.gpu, "index_bytes", &scene.index_bytes, STORAGE | wgpu::BufferUsages::INDEX, "index lists as the file has them")?;
+            self.buffers.fill(
+                &self.gpu,
+                "index_bytes",
+                &scene.index_bytes,
+                STORAGE | wgpu::BufferUsages::INDEX,
+                "index lists as the file has them",
+            )?;
         }
         self.capacities = first_capacities(scene);
         self.distrust = false;
@@ -190,6 +203,9 @@ impl Renderer {
             timer.begin(&mut encoder, detail);
         }
         self.clear(&mut encoder, &["counters", "depth_keys", "owners", "depth_owner", "marks"]);
+        if plan.key.listed_tiles {
+            self.fill_background(&mut encoder, view);
+        }
         self.record(&mut encoder, &plan.key, &passes, view)?;
         self.present(&mut encoder, view);
         let pending = Pending::stage(&self.gpu, &mut encoder, Some(self.buffers.get("counters")), self.timer.as_ref());
@@ -229,7 +245,8 @@ impl Renderer {
         let counters = record.counters(&recorded);
         let mut redraw = false;
         if counters.overflow > 0 {
-            let is_proof_wrong = record.clip > 0 && !key.has_clipping || record.medium > 0 && !key.has_medium || record.large > 0 && !key.has_large;
+            let is_proof_wrong =
+                record.clip > 0 && !key.has_clipping || record.medium > 0 && !key.has_medium || record.large > 0 && !key.has_large;
             self.distrust |= is_proof_wrong;
             redraw = self.capacities.grow(&record) || is_proof_wrong;
         }
@@ -239,7 +256,13 @@ impl Renderer {
     /// What exists for the last picture, and why.
     pub fn explain(&self) -> Explanation {
         let Some(plan) = &self.last else {
-            return Explanation { key: "nothing drawn yet".into(), passes: Vec::new(), buffers: self.buffers.notes(), reasons: Vec::new(), omitted: Vec::new() };
+            return Explanation {
+                key: "nothing drawn yet".into(),
+                passes: Vec::new(),
+                buffers: self.buffers.notes(),
+                reasons: Vec::new(),
+                omitted: Vec::new(),
+            };
         };
         let passes = plan.key.frame();
         Explanation {
@@ -274,7 +297,7 @@ impl Renderer {
         buffers.keep(|name| match name {
             "queues" => key.has_queues(),
             "args" => key.has_queues() || key.listed_tiles,
-            "marks" => key.listed_tiles,
+            "marks" | "background" => key.listed_tiles,
             "pieces" => key.has_clipping,
             "effects" => !parameters.is_empty(),
             "depth_keys" | "owners" => key.visibility == Visibility::Split32,
@@ -290,7 +313,13 @@ impl Renderer {
         buffers.ensure(gpu, "vertices", 16 * scene.vertex_count(), STORAGE, "projected vertices, 16 bytes each")?;
         buffers.ensure(gpu, "counters", 64, STORAGE, "queue demand and what was not drawn")?;
         if key.has_queues() {
-            buffers.ensure(gpu, "queues", 4 * recorded.queue_words(), STORAGE, "triangles waiting for clip, medium, large and tile kernels")?;
+            buffers.ensure(
+                gpu,
+                "queues",
+                4 * recorded.queue_words(),
+                STORAGE,
+                "triangles waiting for clip, medium, large and tile kernels",
+            )?;
         }
         if key.has_queues() || key.listed_tiles {
             buffers.ensure(gpu, "args", 60, STORAGE | wgpu::BufferUsages::INDIRECT, "dispatch sizes written on the GPU")?;
@@ -313,8 +342,20 @@ impl Renderer {
         buffers.ensure(gpu, "color", picture + 4 * tiles, STORAGE, "the picture, 4 bytes per pixel, and the list of tiles to resolve")?;
         if key.listed_tiles {
             buffers.ensure(gpu, "marks", 4 * tiles, STORAGE, "which 8 x 8 tiles the resolve must visit")?;
+            let rows = background_word(view).repeat((color_stride(view.width) * BACKGROUND_ROWS) as usize);
+            buffers.fill(gpu, "background", &rows, STORAGE, "a few rows of background, copied all over the picture first")?;
         }
         Ok(plan)
+    }
+
+    /// Copies rows of background over the picture, for resolves that leave empty tiles alone.
+    fn fill_background(&self, encoder: &mut wgpu::CommandEncoder, view: &View) {
+        let (from, to) = (self.buffers.get("background"), self.buffers.get("color"));
+        let row = 4 * u64::from(color_stride(view.width));
+        for first in (0..view.height).step_by(BACKGROUND_ROWS as usize) {
+            let rows = BACKGROUND_ROWS.min(view.height - first);
+            encoder.copy_buffer_to_buffer(from, 0, to, row * u64::from(first), row * u64::from(rows));
+        }
     }
 
     fn clear(&self, encoder: &mut wgpu::CommandEncoder, names: &[&str]) {
@@ -363,6 +404,15 @@ impl Renderer {
         let source = wgpu::TexelCopyBufferInfo { buffer: self.buffers.get("color"), layout };
         encoder.copy_buffer_to_texture(source, texture.as_image_copy(), size);
     }
+}
+
+/// Rows that the background buffer holds.
+const BACKGROUND_ROWS: u32 = 32;
+
+/// The background as the resolve would pack it.
+fn background_word(view: &View) -> [u8; 4] {
+    let [r, g, b, alpha] = view.background.map(f64::from);
+    [srgb_byte(r), srgb_byte(g), srgb_byte(b), (alpha.clamp(0.0, 1.0) * 255.0 + 0.5) as u8]
 }
 
 /// How many workgroups a pass takes.

@@ -75,6 +75,8 @@ pub struct View {
     pub world_from_scene: DMat4,
     pub eye: DVec3,
     pub forward: DVec3,
+    /// What one unit of normalized device x and y is in the world: per metre of depth for a perspective, else as it is.
+    pub ndc_axes: [DVec3; 2],
     /// Metres at depth 1 and at depth 0 of a linear (orthographic) depth; none for a perspective, whose w is metres.
     pub linear_depth_m: Option<[f64; 2]>,
     /// Nearest and farthest distance along `forward` of the scene's box, at least `near_m` apart from the eye.
@@ -105,14 +107,18 @@ impl View {
                 (orthographic_reverse(y / aspect, y, near, far), Some([near, far]))
             }
         };
+        let clip_from_world = clip_from_view * view_from_world(camera.eye, camera.target, camera.up);
+        // A row of the matrix is an axis times its scale, so the inverse axis is the row over its squared length.
+        let ndc_axes = [0, 1].map(|i| clip_from_world.row(i).truncate()).map(|row| row / row.length_squared());
         let from = if linear_depth_m.is_none() { nearest.max(camera.near_m) } else { nearest };
         Self {
             width,
             height,
-            clip_from_world: clip_from_view * view_from_world(camera.eye, camera.target, camera.up),
+            clip_from_world,
             world_from_scene,
             eye: camera.eye,
             forward,
+            ndc_axes,
             linear_depth_m,
             scene_range_m: [from, farthest.max(from + margin)],
             background,

@@ -119,6 +119,10 @@ pub struct KernelKey {
     pub f32_positions: bool,
     pub f32_normals: bool,
     pub has_colors: bool,
+    /// The resolve computes plane normals and triangle centres: an effect reads them, or a normal may need a substitute.
+    pub has_planes: bool,
+    /// w is metres; else depth is linear and w is 1.
+    pub perspective: bool,
     /// Most candidate samples that one invocation walks.
     pub small_samples: u32,
     /// Most pixels per side of such a box.
@@ -219,6 +223,8 @@ impl KernelKey {
             ("F32_POSITIONS", flag(self.f32_positions)),
             ("F32_NORMALS", flag(self.f32_normals)),
             ("HAS_COLORS", flag(self.has_colors)),
+            ("HAS_PLANES", flag(self.has_planes)),
+            ("IS_PERSPECTIVE", flag(self.perspective)),
             ("HAS_CLIPPING", flag(self.has_clipping)),
             ("IS_STRAIGHT", flag(self.listed_tiles)),
             ("SMALL_SAMPLES", self.small_samples.into()),
@@ -236,7 +242,14 @@ impl fmt::Display for KernelKey {
             Fetch::Indexed => "indexed",
         };
         write!(f, "raster[fetch={fetch} coverage=fixed8 visibility={} small={}", self.visibility.name(), self.small_samples)?;
-        for (name, is_on) in [("clip", self.has_clipping), ("medium", self.has_medium), ("large", self.has_large), ("colors", self.has_colors)] {
+        for (name, is_on) in [
+            ("clip", self.has_clipping),
+            ("medium", self.has_medium),
+            ("large", self.has_large),
+            ("colors", self.has_colors),
+            ("planes", self.has_planes),
+            ("orthographic", !self.perspective),
+        ] {
             if is_on {
                 write!(f, " {name}")?;
             }
