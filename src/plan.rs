@@ -33,7 +33,7 @@ impl Caps {
     /// Most candidate samples one invocation walks, and most pixels per side. On a GPU a whole workgroup takes over
     /// early, since one slow lane holds up its neighbours; a CPU adapter runs lanes in turn and gains nothing by it.
     pub fn small_limits(&self) -> (u32, u32) {
-        if self.software { (128 * 128, 128) } else { (64, 32) }
+        if self.software { (128 * 128, 128) } else { (32, 32) }
     }
 }
 
@@ -124,6 +124,7 @@ pub fn plan(needs: &Needs, stack: &Stack, caps: &Caps, accuracy: &Accuracy) -> R
         small_samples,
         small_side,
         listed_tiles: caps.software,
+        list_group: if caps.software { 64 } else { 256 },
         early_load: caps.software,
     };
     let (reasons, omitted) = explain(needs, caps, accuracy, &key);

@@ -31,6 +31,7 @@ fn reflected(pass: Pass, effects: Vec<&'static Effect>) -> Reflected {
         small_samples: 64,
         small_side: 32,
         listed_tiles: true,
+        list_group: 64,
         early_load: false,
     };
     let linked = link::link(&Library::Embedded, &format!("passes/{}", pass.stem()), &key, &key.slots(pass)).expect("links");

@@ -31,6 +31,7 @@ fn key(fetch: Fetch, visibility: Visibility, has_queues: bool, effects: Vec<&'st
         small_samples: 64,
         small_side: 32,
         listed_tiles: has_queues,
+        list_group: 64,
         early_load: true,
     }
 }
@@ -60,10 +61,12 @@ fn every_slot_choice_links_and_validates_within_eight_storage_buffers() {
     for fetch in [Fetch::Direct, Fetch::Indexed] {
         for visibility in Visibility::ALL {
             for has_queues in [false, true] {
-                let key = key(fetch, visibility, has_queues, vec![]);
-                for pass in all_passes(&key) {
-                    let storage = validate(&key, pass);
-                    assert!(storage <= 8, "{} binds {storage} storage buffers", pass.label());
+                for single_draw in [false, true] {
+                    let key = KernelKey { single_draw, ..key(fetch, visibility, has_queues, vec![]) };
+                    for pass in all_passes(&key) {
+                        let storage = validate(&key, pass);
+                        assert!(storage <= 8, "{} binds {storage} storage buffers", pass.label());
+                    }
                 }
             }
         }

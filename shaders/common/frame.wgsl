@@ -26,6 +26,11 @@ struct Frame {
 
 @group(0) @binding(0) var<uniform> frame: Frame;
 
+// Invocations in a workgroup of the passes that run over lists; larger groups are launched faster on a GPU.
+override LIST_GROUP: u32 = 64u;
+// Side of the square of pixels that a workgroup of the resolve visits.
+override TILE_SIDE: u32 = 8u;
+
 // Index of this invocation in a dispatch that was folded to two dimensions.
 fn frame_invocation(group: vec3u, groups: vec3u, lane: u32, lanes: u32) -> u32 {
     return (group.y * groups.x + group.x) * lanes + lane;

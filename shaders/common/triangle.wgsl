@@ -1,4 +1,5 @@
 // Triangles as the rasterizer meets them: three projected corners, by id or as a piece left over from clipping.
+//@ use common/frame
 //@ use common/draws
 //@ use common/vertex
 //@ use slot/fetch

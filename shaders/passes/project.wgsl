@@ -4,10 +4,10 @@
 
 @group(0) @binding(4) var<storage, read_write> vertices: array<vec4u>;
 
-@compute @workgroup_size(64)
+@compute @workgroup_size(LIST_GROUP)
 fn project(@builtin(workgroup_id) group: vec3u, @builtin(num_workgroups) groups: vec3u, @builtin(local_invocation_index) lane: u32) {
     // No early return: what all lanes load alike is then loaded once, even where branches are lane masks.
-    let invocation = frame_invocation(group, groups, lane, 64u);
+    let invocation = frame_invocation(group, groups, lane, LIST_GROUP);
     let id = min(invocation, frame.vertex_count - 1u);
     let draw = draws_of_vertex(id);
     let bits = transform_bits(draw, id - draws[draw].first_vertex);

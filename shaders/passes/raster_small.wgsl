@@ -14,10 +14,10 @@ override IS_FIRST: bool = true;
 
 const SMALL_EXTENT = 32768; // 128 px
 
-@compute @workgroup_size(64)
+@compute @workgroup_size(LIST_GROUP)
 fn raster_small(@builtin(workgroup_id) group: vec3u, @builtin(num_workgroups) groups: vec3u, @builtin(local_invocation_index) lane: u32) {
     // Loads come before the first branch: what all lanes load alike is then loaded once, even where branches are masks.
-    let id = frame_invocation(group, groups, lane, 64u);
+    let id = frame_invocation(group, groups, lane, LIST_GROUP);
     var t = triangle_load(min(id, frame.triangle_count - 1u));
     let draw_flags = draws[t.draw].flags;
     if id >= frame.triangle_count { return; }

@@ -178,7 +178,7 @@ fn surface_at(id: u32, pixel: vec2u) -> Surface {
     return s;
 }
 
-@compute @workgroup_size(8, 8)
+@compute @workgroup_size(TILE_SIDE, TILE_SIDE)
 fn resolve(@builtin(workgroup_id) group: vec3u, @builtin(num_workgroups) groups: vec3u, @builtin(local_invocation_id) local: vec3u) {
     let at = pixels_of(group, groups, local.xy);
     let is_inside = all(at < frame.size);

@@ -306,7 +306,13 @@ impl Renderer {
             _ => true,
         });
         buffers.fill(gpu, "frame", bytemuck::bytes_of(&uniform), wgpu::BufferUsages::UNIFORM, "size, viewpoint, capacities")?;
-        buffers.fill(gpu, "draws", bytemuck::cast_slice(&records), STORAGE, "matrices and attribute places, one record per instance")?;
+        buffers.fill(
+            gpu,
+            "draws",
+            bytemuck::cast_slice(&records),
+            STORAGE | wgpu::BufferUsages::UNIFORM,
+            "matrices and attribute places, one record per instance",
+        )?;
         if !parameters.is_empty() {
             buffers.fill(gpu, "effects", &parameters, wgpu::BufferUsages::UNIFORM, "parameters of the stack")?;
         }
@@ -374,7 +380,7 @@ impl Renderer {
             let timestamp_writes = self.timer.as_mut().and_then(|timer| timer.compute(&pipeline.label, is_last));
             let mut recorded = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor { label: Some(&pipeline.label), timestamp_writes });
             pipeline.bind(&self.gpu, &mut recorded, |name| self.buffers.get(name));
-            match dispatch(pass, vertices, triangles, view, key.listed_tiles) {
+            match dispatch(pass, vertices, triangles, view, key) {
                 Dispatch::Direct([x, y]) => recorded.dispatch_workgroups(x, y, 1),
                 Dispatch::Indirect(offset) => recorded.dispatch_workgroups_indirect(self.buffers.get("args"), offset),
             }
@@ -422,18 +428,18 @@ enum Dispatch {
     Indirect(u64),
 }
 
-fn dispatch(pass: Pass, vertices: u32, triangles: u32, view: &View, listed_tiles: bool) -> Dispatch {
+fn dispatch(pass: Pass, vertices: u32, triangles: u32, view: &View, key: &KernelKey) -> Dispatch {
     match pass {
-        Pass::Project => Dispatch::Direct(folded(vertices.div_ceil(64))),
-        Pass::RasterSmall(_) => Dispatch::Direct(folded(triangles.div_ceil(64))),
+        Pass::Project => Dispatch::Direct(folded(vertices.div_ceil(key.list_group))),
+        Pass::RasterSmall(_) => Dispatch::Direct(folded(triangles.div_ceil(key.list_group))),
         Pass::Args => Dispatch::Direct([1, 1]),
         Pass::Clip => Dispatch::Indirect(0),
         Pass::RasterMedium(_) => Dispatch::Indirect(12),
         Pass::TileLarge => Dispatch::Indirect(24),
         Pass::RasterLarge(_) => Dispatch::Indirect(36),
         Pass::ListTiles => Dispatch::Direct(folded((view.width.div_ceil(8) * view.height.div_ceil(8)).div_ceil(64))),
-        Pass::Resolve if listed_tiles => Dispatch::Indirect(48),
-        Pass::Resolve => Dispatch::Direct([view.width.div_ceil(8), view.height.div_ceil(8)]),
+        Pass::Resolve if key.listed_tiles => Dispatch::Indirect(48),
+        Pass::Resolve => Dispatch::Direct([view.width.div_ceil(key.tile_side()), view.height.div_ceil(key.tile_side())]),
     }
 }
 

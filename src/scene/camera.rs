@@ -41,14 +41,19 @@ impl Default for Camera {
 }
 
 impl Camera {
-    /// A pose that looks along `direction` and shows the whole of `bounds` with a little air.
+    /// The nearest pose that looks along `direction` at the middle of `bounds` and shows all of it with a little air.
     pub fn framing(bounds: &Bounds, direction: DVec3, aspect: f64) -> Self {
-        let radius = if bounds.radius() > 0.0 { bounds.radius() } else { 1.0 };
         let fov_y_deg: f64 = 45.0;
-        let half = fov_y_deg.to_radians() * 0.5;
-        let half_x = libm::atan(libm::tan(half) * aspect.clamp(1e-3, 1e3));
-        let distance = radius * 1.02 / libm::sin(half.min(half_x));
+        let tan_y = libm::tan(fov_y_deg.to_radians() * 0.5) * 0.92;
+        let tan_x = tan_y * aspect.clamp(1e-3, 1e3);
         let direction = direction.try_normalize().unwrap_or(DVec3::NEG_Z);
+        let turned = view_from_world(DVec3::ZERO, direction, DVec3::Y);
+        let needed = |corner: DVec3| {
+            let p = turned.transform_vector3(corner - bounds.center());
+            p.z + (p.x.abs() / tan_x).max(p.y.abs() / tan_y)
+        };
+        let shown = bounds.corners().map(needed).into_iter().fold(0.0, f64::max);
+        let distance = if bounds.is_empty() || shown <= 0.0 { 2.5 } else { shown };
         Self {
             eye: bounds.center() - direction * distance,
             target: bounds.center(),

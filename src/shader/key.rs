@@ -129,6 +129,8 @@ pub struct KernelKey {
     pub small_side: u32,
     /// The resolve visits only tiles that a triangle's box touches, without branches.
     pub listed_tiles: bool,
+    /// Invocations in a workgroup of the passes over vertices and triangles.
+    pub list_group: u32,
     /// Load before the depth atomic.
     pub early_load: bool,
 }
@@ -137,6 +139,11 @@ impl KernelKey {
     /// Are there queues at all?
     pub const fn has_queues(&self) -> bool {
         self.has_clipping || self.has_medium || self.has_large
+    }
+
+    /// Side of the pixel square that a workgroup of the resolve visits; listed tiles are the small ones that are marked.
+    pub const fn tile_side(&self) -> u32 {
+        if self.listed_tiles { 8 } else { 16 }
     }
 
     /// The raster phases of one frame, in order.
@@ -194,6 +201,7 @@ impl KernelKey {
         let pieces = if self.has_clipping { "kept" } else { "none" };
         let mut slots = vec![
             ("pieces", format!("slots/pieces/{pieces}")),
+            ("draws", format!("slots/draws/{}", if self.single_draw { "one" } else { "many" })),
             ("fetch", format!("slots/fetch/{fetch}")),
             ("queues", format!("slots/queues/{queues}")),
             ("marks", format!("slots/marks/{marks}")),
@@ -217,7 +225,6 @@ impl KernelKey {
     pub fn constants(&self, pass: Pass) -> Vec<(&'static str, f64)> {
         let flag = |value: bool| f64::from(u8::from(value));
         vec![
-            ("SINGLE_DRAW", flag(self.single_draw)),
             ("ONLY_LISTS", flag(self.only_lists)),
             ("WIDE_INDICES", flag(self.wide_indices)),
             ("F32_POSITIONS", flag(self.f32_positions)),
@@ -227,6 +234,8 @@ impl KernelKey {
             ("IS_PERSPECTIVE", flag(self.perspective)),
             ("HAS_CLIPPING", flag(self.has_clipping)),
             ("IS_STRAIGHT", flag(self.listed_tiles)),
+            ("LIST_GROUP", self.list_group.into()),
+            ("TILE_SIDE", self.tile_side().into()),
             ("SMALL_SAMPLES", self.small_samples.into()),
             ("SMALL_SIDE", self.small_side.into()),
             ("EARLY_LOAD", flag(self.early_load)),
