@@ -1,18 +1,512 @@
-//! The window (being written).
+//! The lab's window: looks and scenes on the left, the picture in the middle, every parameter on the right, the log
+//! below. All of it edits one [`Look`]; what is drawn follows from that and from nothing else.
+//!
+//! Slow work happens in [`jobs`]; the window waits for no thread and for no device.
 
-use std::path::PathBuf;
+mod blit;
+mod dialogs;
+mod fields;
+mod history;
+mod icons;
+mod inspector;
+mod jobs;
+mod log;
+mod orbit;
+mod presets;
+mod screen;
+mod shortcuts;
+mod start;
+mod theme;
+mod topbar;
+mod viewport;
 
-use crate::gpu::device::AdapterChoice;
+use std::{
+    collections::{BTreeSet, HashMap, VecDeque},
+    path::PathBuf,
+    sync::Arc,
+};
 
-/// What the command line tells the window.
-pub struct Options {
-    /// A look, model or picture, as `preset::open` takes it.
-    pub open: Option<String>,
-    pub adapter: AdapterChoice,
-    pub presets_dir: Option<PathBuf>,
+use eframe::egui;
+
+pub use history::History;
+pub use log::Level;
+pub use start::{Options, adopt, run, wgpu_setup};
+
+use crate::{
+    effects::Stack,
+    gpu::Gpu,
+    measure::Accuracy,
+    preset::{self, Look},
+    scene::Scene,
+    session::Session,
+};
+use dialogs::Dialog;
+use fields::Ask;
+use jobs::{Done, Jobs, SceneKey};
+use log::Log;
+use presets::Shelf;
+use screen::{Inputs, Screen};
+use start::Ending;
+use viewport::Motion;
+
+/// Which file a look is, as undo remembers it.
+#[derive(Clone, Debug, PartialEq, Eq, Hash)]
+struct FileId {
+    id: String,
+    path: Option<PathBuf>,
 }
 
-/// Opens the window and returns when it is closed.
-pub fn run(_options: Options) -> anyhow::Result<()> {
-    anyhow::bail!("not yet")
+impl FileId {
+    fn of(look: &Look) -> Self {
+        Self { id: look.id.clone(), path: look.path.clone() }
+    }
+}
+
+/// All that undo takes back.
+#[derive(Clone, Debug, PartialEq)]
+struct Moment {
+    file: FileId,
+    session: Session,
+}
+
+/// The scene that is shown, and the one that is on its way.
+#[derive(Default)]
+struct Stage {
+    shown: Option<(SceneKey, Arc<Scene>)>,
+    loading: Option<SceneKey>,
+    failed: Option<SceneKey>,
+    /// Scenes to go back to without waiting.
+    recent: VecDeque<(SceneKey, Arc<Scene>)>,
+}
+
+const RECENT_SCENES: usize = 4;
+
+/// How wrong a picture was found to be.
+struct Verdict {
+    of: Inputs,
+    accuracy: Accuracy,
+}
+
+/// Which panels are open.
+struct Panels {
+    left: bool,
+    right: bool,
+    log: bool,
+    cheat_sheet: bool,
+    search: String,
+}
+
+/// Time that runs on top of the look's own; no part of the look, so undo does not see it.
+#[derive(Default)]
+struct Playback {
+    playing: bool,
+    offset_s: f64,
+}
+
+/// The whole window.
+pub struct App {
+    options: Options,
+    ending: Ending,
+    look: Look,
+    /// Every look of this run as its file has it.
+    files: HashMap<FileId, Look>,
+    history: History<Moment>,
+    stage: Stage,
+    screen: Screen,
+    jobs: Jobs,
+    shelf: Shelf,
+    log: Log,
+    /// Effects whose eye is shut: a viewing aid, no part of the look.
+    muted: BTreeSet<&'static str>,
+    verdict: Option<Verdict>,
+    verifying: bool,
+    dialog: Option<Dialog>,
+    panels: Panels,
+    playback: Playback,
+    motion: Motion,
+    /// Path and value of the row under the pointer.
+    hovered_row: Option<(String, String)>,
+    /// Where the next paste goes, when a menu asked for it.
+    paste_into: Option<String>,
+    seed: u32,
+    title: String,
+    may_quit: bool,
+    now_s: f64,
+}
+
+impl App {
+    /// The window's contents on a device made with [`wgpu_setup`].
+    pub fn new(cc: &eframe::CreationContext<'_>, options: Options) -> anyhow::Result<Self> {
+        Self::with_ending(cc, options, Ending::default())
+    }
+
+    fn with_ending(cc: &eframe::CreationContext<'_>, options: Options, ending: Ending) -> anyhow::Result<Self> {
+        theme::apply(&cc.egui_ctx);
+        let (window, gpu) = start::adopt(cc)?;
+        let mut log = Log::default();
+        let look = start::first_look(&options, &mut log);
+        let history = History::new(Moment { file: FileId::of(&look), session: look.session.clone() });
+        let summary = &gpu.summary;
+        log.add(Level::Info, format!("adapter: {}, {}, {}", summary.name, summary.backend, summary.driver));
+        Ok(Self {
+            shelf: Shelf::new(options.presets_dir.as_deref()),
+            files: HashMap::from([(FileId::of(&look), look.clone())]),
+            screen: Screen::new(&window, gpu),
+            jobs: Jobs::new(cc.egui_ctx.clone()),
+            panels: Panels { left: true, right: true, log: false, cheat_sheet: false, search: String::new() },
+            options,
+            ending,
+            look,
+            history,
+            log,
+            stage: Stage::default(),
+            muted: BTreeSet::new(),
+            verdict: None,
+            verifying: false,
+            dialog: None,
+            playback: Playback::default(),
+            motion: Motion::default(),
+            hovered_row: None,
+            paste_into: None,
+            seed: 0,
+            title: String::new(),
+            may_quit: false,
+            now_s: 0.0,
+        })
+    }
+
+    /// The look as it stands.
+    pub fn look(&self) -> &Look {
+        &self.look
+    }
+
+    /// For tests: the look to be changed as a hand would change it.
+    pub fn session_mut(&mut self) -> &mut Session {
+        &mut self.look.session
+    }
+
+    /// Frames dispatched so far: stays where it is while nothing changes.
+    pub fn draws(&self) -> u64 {
+        self.screen.draws()
+    }
+
+    /// Steps that undo can take back.
+    pub fn undo_steps(&self) -> usize {
+        self.history.steps()
+    }
+
+    /// Is there a picture of the look as it stands, with nothing still on its way?
+    pub fn is_settled(&self) -> bool {
+        let scene = self.stage.loading.is_none() && self.stage.shown.is_some();
+        scene && !self.screen.is_waiting() && !self.verifying && !self.shelf.is_busy()
+    }
+
+    /// Is there a picture at all?
+    pub fn has_picture(&self) -> bool {
+        self.screen.picture().is_some()
+    }
+
+    /// The measured error of the picture as it stands.
+    pub fn accuracy(&self) -> Option<&Accuracy> {
+        self.verdict.as_ref().filter(|verdict| self.screen.drawn() == Some(&verdict.of)).map(|verdict| &verdict.accuracy)
+    }
+
+    /// The log as text.
+    pub fn log_text(&self) -> String {
+        self.log.to_text()
+    }
+
+    pub fn gpu(&self) -> &Arc<Gpu> {
+        &self.screen.gpu
+    }
+
+    fn tell(&mut self, level: Level, text: impl Into<String>) {
+        self.log.tell(level, text, self.now_s);
+    }
+
+    /// Has the look changes that its file has not?
+    fn is_modified(&self) -> bool {
+        self.look.is_modified()
+    }
+
+    /// The stack without muted effects.
+    fn visible_stack(&self) -> Stack {
+        let mut stack = self.look.session.stack.clone();
+        stack.0.retain(|enabled| !self.muted.contains(enabled.effect.name));
+        stack
+    }
+
+    /// The session at the time that is shown.
+    fn shown_session(&self) -> Session {
+        let mut session = self.look.session.clone();
+        session.clock.time_s += self.playback.offset_s;
+        session
+    }
+
+    /// Makes `look` the open one, as a step of its own.
+    fn open_look(&mut self, look: Look) {
+        self.history.close();
+        for warning in &look.warnings {
+            self.log.add(Level::Warning, warning.clone());
+        }
+        self.files.insert(FileId::of(&look), look.clone());
+        self.muted.clear();
+        self.playback = Playback::default();
+        self.look = look;
+        self.observe(false);
+        self.history.close();
+    }
+
+    /// Opens whatever a person may name or drop.
+    fn open(&mut self, what: &str) {
+        match preset::open(what, self.options.presets_dir.as_deref()) {
+            Ok(look) => {
+                let title = look.title().to_owned();
+                self.open_look(look);
+                self.tell(Level::Info, format!("Opened {title}"));
+            }
+            Err(error) => self.tell(Level::Error, error.to_string()),
+        }
+    }
+
+    fn observe(&mut self, held: bool) {
+        let Look { id, path, session, .. } = &self.look;
+        self.history.observe(&Moment { file: FileId { id: id.clone(), path: path.clone() }, session: session.clone() }, self.now_s, held);
+    }
+
+    fn restore(&mut self, moment: Option<Moment>, what: &str) {
+        let Some(Moment { file, session }) = moment else {
+            return self.tell(Level::Info, format!("Nothing to {what}"));
+        };
+        if FileId::of(&self.look) != file {
+            if let Some(look) = self.files.get(&file) {
+                self.look = look.clone();
+            }
+            self.tell(Level::Info, format!("Back to {}", if session.name.is_empty() { &file.id } else { &session.name }));
+        }
+        self.look.session = session;
+    }
+
+    /// Carries out what a person asked of a row.
+    fn answer(&mut self, ctx: &egui::Context, ask: Ask) {
+        self.history.close();
+        let outcome = match ask {
+            Ask::Reset(path) => preset::unset(&mut self.look, &path).map_err(|e| e.to_string()),
+            Ask::ResetGroup(group) => self.reset_group(&group),
+            Ask::Copy(text) => {
+                ctx.copy_text(text.clone());
+                self.tell(Level::Info, format!("Copied {text}"));
+                Ok(())
+            }
+            Ask::Paste(path) => {
+                self.paste_into = Some(path);
+                ctx.send_viewport_cmd(egui::ViewportCommand::RequestPaste);
+                Ok(())
+            }
+        };
+        if let Err(error) = outcome {
+            self.tell(Level::Error, error);
+        }
+    }
+
+    fn reset_group(&mut self, group: &str) -> Result<(), String> {
+        match crate::effects::Effect::find(group) {
+            Some(effect) => {
+                if let Some(enabled) = self.look.session.stack.get_mut(group) {
+                    enabled.words = (effect.defaults)();
+                }
+                Ok(())
+            }
+            None => preset::unset(&mut self.look, group).map_err(|e| e.to_string()),
+        }
+    }
+
+    /// Text from the clipboard: a value for a row, or a look.
+    fn paste(&mut self, text: &str) {
+        self.history.close();
+        let row = self.paste_into.take().or_else(|| self.hovered_row.as_ref().map(|(path, _)| path.clone()));
+        let is_look = text.trim_start().starts_with("rasterlab1:");
+        match row {
+            Some(path) if !is_look => match preset::set(&mut self.look, &path, text.trim()) {
+                Ok(()) => self.tell(Level::Info, format!("{path} = {}", text.trim())),
+                Err(error) => self.tell(Level::Error, error.to_string()),
+            },
+            _ => match preset::from_line(text) {
+                Ok(look) => {
+                    self.open_look(look);
+                    self.tell(Level::Info, "Pasted a look");
+                }
+                Err(error) => self.tell(Level::Error, error.to_string()),
+            },
+        }
+    }
+
+    /// Takes in what threads have finished.
+    fn collect(&mut self, ctx: &egui::Context) {
+        while let Some(done) = self.jobs.next() {
+            match done {
+                Done::Scene(key, scene) => self.scene_arrived(key, scene),
+                Done::Verdict(inputs, accuracy) => self.verdict_arrived(*inputs, accuracy),
+                Done::Thumbnail(id, image) => self.shelf.thumbnail_arrived(ctx, id, image),
+                Done::Shot(path, Ok(())) => self.tell(Level::Info, format!("Saved {}", path.display())),
+                Done::Shot(_, Err(error)) => self.tell(Level::Error, error),
+                Done::Path(purpose, path) => self.path_arrived(purpose, path),
+            }
+        }
+    }
+
+    fn scene_arrived(&mut self, key: SceneKey, scene: Result<Arc<Scene>, String>) {
+        if self.stage.loading.as_ref() == Some(&key) {
+            self.stage.loading = None;
+        }
+        match scene {
+            Ok(scene) => {
+                for note in &scene.notes {
+                    self.log.add(Level::Warning, format!("{}: {note}", scene.name));
+                }
+                self.stage.recent.push_front((key, scene));
+                self.stage.recent.truncate(RECENT_SCENES);
+            }
+            Err(error) => {
+                self.tell(Level::Error, error);
+                self.stage.failed = Some(key);
+            }
+        }
+    }
+
+    fn verdict_arrived(&mut self, of: Inputs, accuracy: Result<Accuracy, String>) {
+        self.verifying = false;
+        match accuracy {
+            Ok(accuracy) => {
+                self.log.add(Level::Info, format!("verified {}: {}", self.look.title(), topbar::error_text(&accuracy)));
+                self.verdict = Some(Verdict { of, accuracy });
+            }
+            Err(error) => self.tell(Level::Error, error),
+        }
+    }
+
+    /// Brings the scene of the look on stage, or asks for it.
+    fn set_stage(&mut self) {
+        let key = SceneKey::of(&self.look.session, self.look.path.as_ref());
+        let Stage { shown, loading, failed, recent } = &mut self.stage;
+        if shown.as_ref().is_some_and(|(shown, _)| *shown == key) {
+            *failed = None;
+            return;
+        }
+        if let Some(found) = recent.iter().find(|(recent, _)| *recent == key) {
+            *shown = Some(found.clone());
+            *failed = None;
+        } else if loading.as_ref() != Some(&key) && failed.as_ref() != Some(&key) {
+            *loading = Some(key.clone());
+            self.jobs.load_scene(key);
+        }
+    }
+
+    /// Lets the oracle judge the picture that is shown.
+    fn verify(&mut self) {
+        if let Some(inputs) = self.motion.wanted.clone().filter(|_| !self.verifying) {
+            self.verifying = true;
+            self.jobs.verify(self.screen.gpu.clone(), inputs);
+        }
+    }
+
+    /// Saves the look for a new start of the window, once.
+    fn rescue(&mut self, ctx: &egui::Context) {
+        if self.ending.is_lost() {
+            return;
+        }
+        let saved = start::write_recovery(&self.look);
+        eprintln!("rasterlab: the graphics device was lost; {saved}");
+        self.ending.lose();
+        self.may_quit = true;
+        ctx.send_viewport_cmd(egui::ViewportCommand::Close);
+    }
+
+    /// Files dropped on the window.
+    fn take_drops(&mut self, ctx: &egui::Context) {
+        let dropped = ctx.input(|i| i.raw.dropped_files.iter().map(|file| file.path().to_owned()).collect::<Vec<_>>());
+        for path in dropped {
+            self.open(&path.to_string_lossy());
+        }
+    }
+
+    fn update_title(&mut self, ctx: &egui::Context) {
+        let title = format!("{}{} - rasterlab", if self.is_modified() { "• " } else { "" }, self.look.title());
+        if title != self.title {
+            ctx.send_viewport_cmd(egui::ViewportCommand::Title(title.clone()));
+            self.title = title;
+        }
+    }
+
+    /// Asks before unsaved work is closed.
+    fn guard_close(&mut self, ctx: &egui::Context) {
+        if ctx.input(|i| i.viewport().close_requested()) && self.is_modified() && !self.may_quit {
+            ctx.send_viewport_cmd(egui::ViewportCommand::CancelClose);
+            self.dialog = Some(Dialog::Unsaved);
+        }
+    }
+
+    fn panels_ui(&mut self, ui: &mut egui::Ui) {
+        egui::Panel::top("top").frame(theme::bar_frame()).show_separator_line(false).show(ui, |ui| self.topbar_ui(ui));
+        let mut log = self.panels.log;
+        egui::Panel::bottom("log").frame(theme::panel_frame()).resizable(true).default_size(150.0).min_size(72.0).show_collapsible(
+            ui,
+            &mut log,
+            |ui| self.log.panel_ui(ui),
+        );
+        self.panels.log = log;
+        let mut left = self.panels.left;
+        egui::Panel::left("left").frame(theme::panel_frame()).default_size(264.0).size_range(200.0..=420.0).show_collapsible(ui, &mut left, |ui| {
+            self.left_ui(ui);
+        });
+        self.panels.left = left;
+        let mut right = self.panels.right;
+        let frame = theme::panel_frame();
+        egui::Panel::right("right").frame(frame).default_size(328.0).size_range(272.0..=520.0).show_collapsible(ui, &mut right, |ui| {
+            self.inspector_ui(ui);
+        });
+        self.panels.right = right;
+        let view = egui::CentralPanel::no_frame().show(ui, |ui| self.viewport_ui(ui)).response.rect;
+        self.log.toasts_ui(ui.ctx(), view, self.now_s);
+    }
+}
+
+impl eframe::App for App {
+    fn logic(&mut self, ctx: &egui::Context, _: &mut eframe::Frame) {
+        self.collect(ctx);
+        if self.screen.is_lost() {
+            self.rescue(ctx);
+        }
+        if let Some(error) = self.screen.gpu.take_error() {
+            self.log.add(Level::Error, format!("the graphics driver refused something, which is our mistake: {error}"));
+        }
+    }
+
+    fn ui(&mut self, ui: &mut egui::Ui, frame: &mut eframe::Frame) {
+        let ctx = ui.ctx().clone();
+        start::tune(frame, &self.screen.gpu);
+        let (now_s, pressed, held) = ctx.input(|i| (i.time, i.pointer.any_pressed(), i.pointer.any_down()));
+        self.now_s = now_s;
+        if pressed {
+            self.history.close(); // What follows is another gesture.
+        }
+        self.take_drops(&ctx);
+        self.take_keys(&ctx);
+        self.hovered_row = None;
+        self.set_stage();
+        self.panels_ui(ui);
+        self.dialog_ui(&ctx);
+        self.cheat_sheet_ui(&ctx);
+        self.feed_thumbnails();
+        self.observe(held);
+        if let Some(wake_s) = self.history.wake_in_s(now_s).filter(|_| !held) {
+            ctx.request_repaint_after_secs(wake_s as f32 + 0.01);
+        }
+        self.guard_close(&ctx);
+        self.update_title(&ctx);
+    }
+
+    fn clear_color(&self, _: &egui::Visuals) -> [f32; 4] {
+        theme::PANEL.to_normalized_gamma_f32()
+    }
 }

@@ -231,6 +231,11 @@ impl Renderer {
         newest.and_then(|finished| self.digest(finished))
     }
 
+    /// Are figures of a submitted frame still to come?
+    pub fn is_pending(&self) -> bool {
+        !self.pending.is_empty()
+    }
+
     /// Waits for every frame in flight and returns the newest one's figures.
     pub fn finish(&mut self) -> Result<Report, RenderError> {
         buffers::wait(&self.gpu)?;

@@ -1,0 +1,295 @@
+//! Rows of the inspector: a label and the control that its form asks for. One function serves every key of a look and
+//! every parameter of every effect.
+
+use eframe::egui::{self, Align, Align2, Color32, DragValue, Rect, RichText, Sense, Slider, SliderClamping, Ui, UiBuilder, pos2, vec2};
+
+use super::{
+    icons::{Icon, icon_button},
+    theme,
+};
+use crate::{
+    effects::Effect,
+    params::Field,
+    preset::{
+        form::{Form, Plain},
+        keys::Key,
+    },
+};
+
+/// What a row shows and what it edits.
+pub struct Row {
+    /// `facet.amount`: path for copy, paste and reset, and the accessible name of its control.
+    pub path: String,
+    pub label: String,
+    pub doc: &'static str,
+    pub unit: &'static str,
+    pub form: Form,
+    /// What a slider spans; without it there is a number alone.
+    pub soft: Option<[f64; 2]>,
+    pub log: bool,
+    /// Differs from its default.
+    pub modified: bool,
+}
+
+impl Row {
+    /// The row of an effect's parameter.
+    pub fn of_field(effect: &Effect, field: &Field, words: &[u32]) -> Self {
+        Self {
+            path: format!("{}.{}", effect.name, field.name),
+            label: label(field.name, field.unit),
+            doc: field.doc,
+            unit: field.unit,
+            form: Form::of(field),
+            soft: Some(field.soft),
+            log: field.log,
+            modified: !field.same(words, &(effect.defaults)()),
+        }
+    }
+
+    /// The row of one of a look's own keys.
+    pub fn of_key(key: &Key, unit: &'static str, soft: Option<[f64; 2]>, modified: bool) -> Self {
+        let label = label(key.name, unit);
+        Self { path: key.path(), label, doc: key.doc, unit, form: key.form, soft, log: false, modified }
+    }
+
+    /// The value as TOML, as copied and pasted.
+    pub fn written(&self, value: &Plain) -> String {
+        self.form.write(value).to_string().trim().to_owned()
+    }
+}
+
+/// `radius_m` in metres is a `radius`; the unit stands behind the number.
+fn label(name: &str, unit: &str) -> String {
+    let stem = [("m", "_m"), ("°", "_deg"), ("°/s", "_deg_per_s"), ("s", "_s")].iter().find(|(u, _)| *u == unit);
+    stem.and_then(|(_, suffix)| name.strip_suffix(suffix)).unwrap_or(name).replace('_', " ")
+}
+
+/// What a person asked of a row besides changing its value.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Ask {
+    Reset(String),
+    /// Reset everything that shares the part before the dot.
+    ResetGroup(String),
+    /// Put this text on the clipboard.
+    Copy(String),
+    /// Paste into this path.
+    Paste(String),
+}
+
+/// What came of a row in this frame.
+#[derive(Default)]
+pub struct Outcome {
+    pub value: Option<Plain>,
+    pub ask: Option<Ask>,
+    /// The pointer is on this row: Ctrl+C and Ctrl+V mean its value.
+    pub hovered: bool,
+}
+
+const BAR_WIDTH: f32 = 3.0;
+const RESET_WIDTH: f32 = 22.0;
+const NUMBER_WIDTH: f32 = 66.0;
+
+/// Shows `row` with `value`; the outcome holds what changed.
+pub fn row_ui(ui: &mut Ui, row: &Row, value: &Plain) -> Outcome {
+    let mut outcome = Outcome::default();
+    let width = ui.available_width();
+    let (rect, _) = ui.allocate_exact_size(vec2(width, theme::ROW), Sense::hover());
+    let split = rect.left() + (width * 0.34).clamp(72.0, 140.0);
+    let label_rect = Rect::from_min_max(pos2(rect.left() + BAR_WIDTH + theme::HALF, rect.top()), pos2(split, rect.bottom()));
+    let control_rect = Rect::from_min_max(pos2(split + theme::HALF, rect.top()), pos2(rect.right() - RESET_WIDTH, rect.bottom()));
+    let reset_rect = Rect::from_min_max(pos2(rect.right() - RESET_WIDTH, rect.top()), rect.max);
+    if row.modified {
+        let bar = Rect::from_min_size(rect.min + vec2(0.0, 4.0), vec2(BAR_WIDTH, rect.height() - 8.0));
+        ui.painter().rect_filled(bar, 1.5, theme::ACCENT);
+    }
+    outcome.ask = label_ui(ui, row, value, label_rect);
+    let layout = egui::Layout::left_to_right(Align::Center);
+    let mut control = ui.new_child(UiBuilder::new().id_salt(&row.path).max_rect(control_rect).layout(layout));
+    control.spacing_mut().item_spacing.x = 6.0;
+    outcome.value = control_ui(&mut control, row, value);
+    if row.modified {
+        let mut reset = ui.new_child(UiBuilder::new().id_salt((&row.path, "reset")).max_rect(reset_rect).layout(layout));
+        if icon_button(&mut reset, Icon::Reset, &format!("Reset {}", row.path)).clicked() {
+            outcome.ask = Some(Ask::Reset(row.path.clone()));
+        }
+    }
+    outcome.hovered = ui.rect_contains_pointer(rect);
+    outcome
+}
+
+/// The label: tooltip, double click to reset, menu.
+fn label_ui(ui: &mut Ui, row: &Row, value: &Plain, rect: Rect) -> Option<Ask> {
+    let response = ui.interact(rect, egui::Id::unique((&row.path, "label")), Sense::click());
+    let color = if row.modified || response.hovered() { theme::TEXT_STRONG } else { theme::TEXT };
+    // Bold where the bundled fonts have no bold cut: the same text twice, half a pixel apart.
+    let clipped = ui.painter_at(rect.expand(1.0));
+    let font = egui::TextStyle::Body.resolve(ui.style());
+    let at = pos2(rect.left(), rect.center().y);
+    clipped.text(at, Align2::LEFT_CENTER, &row.label, font.clone(), color);
+    if row.modified {
+        clipped.text(at + vec2(0.5, 0.0), Align2::LEFT_CENTER, &row.label, font, color);
+    }
+    let mut ask = response.double_clicked().then(|| Ask::Reset(row.path.clone()));
+    response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Label, true, &row.label));
+    response.context_menu(|ui| {
+        let group = row.path.split('.').next().unwrap_or_default();
+        for (text, meaning) in [
+            ("Reset".to_owned(), Ask::Reset(row.path.clone())),
+            (format!("Reset all of {group}"), Ask::ResetGroup(group.into())),
+            ("Copy value".to_owned(), Ask::Copy(row.written(value))),
+            ("Paste value".to_owned(), Ask::Paste(row.path.clone())),
+        ] {
+            if ui.button(text).clicked() {
+                ask = Some(meaning);
+                ui.close();
+            }
+        }
+    });
+    response.on_hover_ui(|ui| {
+        ui.label(RichText::new(row.doc).color(theme::TEXT_STRONG));
+        ui.label(theme::weak(format!("{}   {}{}", row.path, row.form.allowed(), spaced(row.unit))));
+    });
+    ask
+}
+
+fn spaced(unit: &str) -> String {
+    if unit.is_empty() { String::new() } else { format!(" {unit}") }
+}
+
+fn control_ui(ui: &mut Ui, row: &Row, value: &Plain) -> Option<Plain> {
+    match (row.form, value) {
+        (Form::Flag, Plain::Numbers(lanes)) => {
+            let mut on = lanes[0] != 0.0;
+            let changed = ui.checkbox(&mut on, "").accessible_name(&row.path).changed();
+            changed.then(|| Plain::number(on))
+        }
+        (Form::Word(words), Plain::Numbers(lanes)) => word_ui(ui, row, words, lanes[0] as usize),
+        (Form::Numbers { lanes: 4, .. }, Plain::Numbers(lanes)) => color_ui(ui, row, lanes),
+        (Form::Numbers { lanes: 1, .. }, Plain::Numbers(lanes)) => number_ui(ui, row, lanes[0]),
+        (Form::Numbers { .. }, Plain::Numbers(lanes)) => lanes_ui(ui, row, lanes),
+        (Form::Text { longest }, Plain::Text(text)) => {
+            let mut text = text.clone();
+            let edit = egui::TextEdit::singleline(&mut text).char_limit(longest).desired_width(ui.available_width());
+            ui.add(edit).accessible_name(&row.path).changed().then_some(Plain::Text(text))
+        }
+        _ => None, // Lists of texts are edited in the file.
+    }
+}
+
+fn word_ui(ui: &mut Ui, row: &Row, words: &[&str], chosen: usize) -> Option<Plain> {
+    let mut now = chosen;
+    egui::ComboBox::from_id_salt(&row.path)
+        .selected_text(words.get(chosen).copied().unwrap_or_default())
+        .width(ui.available_width())
+        .show_ui(ui, |ui| {
+            for (index, word) in words.iter().enumerate() {
+                ui.selectable_value(&mut now, index, *word);
+            }
+        })
+        .response
+        .accessible_name(&row.path);
+    (now != chosen).then(|| Plain::number(now as u32))
+}
+
+fn color_ui(ui: &mut Ui, row: &Row, lanes: &[f64]) -> Option<Plain> {
+    let mut color: [f32; 4] = std::array::from_fn(|i| lanes[i] as f32);
+    ui.spacing_mut().interact_size.x = 44.0;
+    let response = ui.color_edit_button_rgba_unmultiplied(&mut color).accessible_name(&row.path).on_hover_text("Choose the colour");
+    let [r, g, b, a] = egui::Rgba::from_rgba_unmultiplied(color[0], color[1], color[2], color[3]).to_srgba_unmultiplied();
+    let alpha = if a == 255 { String::new() } else { format!(" {:.0}%", f64::from(a) / 2.55) };
+    ui.label(RichText::new(format!("#{r:02x}{g:02x}{b:02x}{alpha}")).monospace().color(theme::TEXT_WEAK));
+    // The picker's arithmetic may leave the unit range by a bit.
+    response.changed().then(|| Plain::Numbers(color.map(|c| f64::from(if c.is_finite() { c.clamp(0.0, 1.0) } else { 0.0 })).to_vec()))
+}
+
+/// One number: a slider over the soft range, and a field that takes the hard one.
+fn number_ui(ui: &mut Ui, row: &Row, value: f64) -> Option<Plain> {
+    let Form::Numbers { low, high, precision, .. } = row.form else { return None };
+    let whole = precision == crate::preset::form::Precision::Whole;
+    let mut now = value;
+    if let Some([from, to]) = row.soft {
+        ui.spacing_mut().slider_width = (ui.available_width() - NUMBER_WIDTH - 6.0).max(24.0);
+        now = slider_ui(ui, row, value, [from, to], whole);
+    }
+    let speed = row.soft.map_or_else(|| value.abs().max(1.0) * 0.01, |[from, to]| (to - from) / 300.0);
+    let mut drag = DragValue::new(&mut now).range(low..=high).speed(if whole { speed.max(0.05) } else { speed }).update_while_editing(false);
+    drag = if whole { drag.fixed_decimals(0) } else { drag.max_decimals(decimals(row.soft)) };
+    if !row.unit.is_empty() {
+        drag = drag.suffix(spaced(row.unit));
+    }
+    let width = if row.soft.is_some() { NUMBER_WIDTH } else { ui.available_width().min(120.0) };
+    ui.add_sized([width, theme::ROW - 4.0], drag).accessible_name(format!("{} value", row.path));
+    let now = if whole { now.round() } else { now };
+    (now != value && now.is_finite()).then(|| Plain::number(now.clamp(low, high)))
+}
+
+/// Decimals worth showing for a soft range.
+fn decimals(soft: Option<[f64; 2]>) -> usize {
+    let span = soft.map_or(1.0, |[from, to]| (to - from).abs());
+    if span >= 100.0 { 1 } else if span >= 10.0 { 2 } else { 3 }
+}
+
+/// The slider; Shift moves it a tenth as far.
+fn slider_ui(ui: &mut Ui, row: &Row, value: f64, [from, to]: [f64; 2], whole: bool) -> f64 {
+    let (mut now, fine) = (value, ui.input(|i| i.modifiers.shift));
+    let rail = ui.spacing().slider_width;
+    let set = |wanted: Option<f64>| {
+        if let Some(wanted) = wanted {
+            now = wanted;
+        }
+        now
+    };
+    let mut slider = Slider::from_get_set(from..=to, set).show_value(false).clamping(SliderClamping::Edits);
+    slider = if whole { slider.step_by(1.0) } else { slider };
+    slider = if row.log { slider.logarithmic(true).smallest_positive(from.abs().max(1e-6)) } else { slider };
+    let response = ui.add(slider).accessible_name(&row.path);
+    if !(fine && response.dragged()) {
+        return now;
+    }
+    let part = f64::from(response.drag_delta().x / rail.max(1.0)) * 0.1;
+    let moved = if row.log && value > 0.0 && from > 0.0 { value * (to / from).powf(part) } else { value + (to - from) * part };
+    if whole { value } else { moved.clamp(from.min(value), to.max(value)) }
+}
+
+/// Two or three numbers side by side.
+fn lanes_ui(ui: &mut Ui, row: &Row, lanes: &[f64]) -> Option<Plain> {
+    let Form::Numbers { low, high, precision, .. } = row.form else { return None };
+    let whole = precision == crate::preset::form::Precision::Whole;
+    let mut now = lanes.to_vec();
+    let width = (ui.available_width() - 6.0 * (lanes.len() - 1) as f32) / lanes.len() as f32;
+    let names = if whole { ["width", "height", ""] } else { ["x", "y", "z"] };
+    for (lane, name) in now.iter_mut().zip(names) {
+        let speed = if whole { 1.0 } else { row.soft.map_or_else(|| lane.abs().max(0.5) * 0.01, |[from, to]| (to - from) / 300.0) };
+        let drag = DragValue::new(lane).range(low..=high).speed(speed).max_decimals(if whole { 0 } else { 3 }).update_while_editing(false);
+        ui.add_sized([width, theme::ROW - 4.0], drag).accessible_name(format!("{}.{name}", row.path)).on_hover_text(name);
+    }
+    let changed = now != lanes && now.iter().all(|lane| lane.is_finite());
+    changed.then(|| Plain::Numbers(now.iter().map(|lane| if whole { lane.round() } else { *lane }).collect()))
+}
+
+/// A dot of `color` in front of a line, for states.
+pub fn dot(ui: &mut Ui, color: Color32) {
+    let (rect, _) = ui.allocate_exact_size(vec2(8.0, theme::ROW - 8.0), Sense::hover());
+    ui.painter().circle_filled(rect.center(), 3.5, color);
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::effects::EFFECTS;
+
+    #[test]
+    fn a_unit_is_not_said_twice() {
+        assert_eq!(label("radius_m", "m"), "radius");
+        assert_eq!(label("spin_deg_per_s", "°/s"), "spin");
+        assert_eq!(label("along_x", ""), "along x");
+    }
+
+    #[test]
+    fn no_row_of_an_effect_with_defaults_is_marked_as_modified() {
+        for effect in EFFECTS {
+            let words = (effect.defaults)();
+            assert!(effect.fields.iter().all(|field| !Row::of_field(effect, field, &words).modified), "{}", effect.name);
+        }
+    }
+}

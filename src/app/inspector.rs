@@ -1,0 +1,355 @@
+//! Inspector: every value of the look in folders, straight from the tables that presets and the command line use.
+
+use eframe::egui::{self, RichText, Ui};
+
+use super::{
+    App,
+    fields::{Row, row_ui},
+    icons::{Icon, icon_button},
+    theme, topbar,
+};
+use crate::{
+    effects::{EFFECTS, Effect},
+    gpu::Explanation,
+    preset::{
+        form::Plain,
+        keys::{KEYS, Key, Section},
+    },
+    session::{Tier, Visibility},
+};
+
+/// How a key of the look is shown: its unit, and what its slider spans.
+const SHOWN: &[(&str, &str, Option<[f64; 2]>)] = &[
+    ("scene.spin_deg_per_s", "°/s", Some([-180.0, 180.0])),
+    ("camera.eye", "m", None),
+    ("camera.target", "m", None),
+    ("camera.fov_y_deg", "°", Some([10.0, 120.0])),
+    ("camera.orthographic_height_m", "m", None),
+    ("camera.near_m", "m", None),
+    ("clock.time_s", "s", Some([0.0, 12.0])),
+    ("output.size", "", None),
+    ("output.background", "", None),
+    ("accuracy.tier", "", None),
+    ("accuracy.visibility", "", None),
+];
+
+impl App {
+    pub(super) fn inspector_ui(&mut self, ui: &mut Ui) {
+        egui::ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
+            ui.spacing_mut().item_spacing.y = 2.0;
+            self.effects_ui(ui);
+            self.keys_folder(ui, "Scene", true, &["scene.spin_deg_per_s", "output.background"]);
+            self.camera_ui(ui);
+            self.clock_ui(ui);
+            self.accuracy_ui(ui);
+            folder(ui, "Timing", true, |ui| self.timing_ui(ui));
+            folder(ui, "Kernel", false, |ui| self.kernel_ui(ui));
+            self.keys_folder(ui, "Look", false, &["name", "about", "output.size"]);
+            ui.add_space(16.0);
+        });
+    }
+
+    /// The stack in order, then every effect that is not in it.
+    fn effects_ui(&mut self, ui: &mut Ui) {
+        ui.horizontal(|ui| {
+            ui.label(theme::heading("Effects"));
+            ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
+                if icon_button(ui, Icon::Dice, "Randomize effects (R)").clicked() {
+                    self.perform(ui.ctx(), super::shortcuts::Action::Randomize);
+                }
+            });
+        });
+        let stack: Vec<&'static Effect> = self.look.session.stack.0.iter().map(|enabled| enabled.effect).collect();
+        if stack.is_empty() {
+            ui.label(theme::weak("No effect is on, so the picture shows plain base colours. Switch one on below."));
+            ui.add_space(theme::HALF);
+        }
+        for (place, effect) in stack.iter().enumerate() {
+            self.enabled_effect_ui(ui, effect, place, stack.len());
+        }
+        ui.add_space(theme::HALF);
+        for effect in EFFECTS.iter().copied().filter(|effect| !stack.contains(effect)) {
+            ui.horizontal(|ui| {
+                ui.set_min_height(theme::ROW);
+                ui.add_space(theme::GAP);
+                let mut on = false;
+                if ui.checkbox(&mut on, shown_name(effect)).on_hover_text(effect.about).accessible_name(effect.name).clicked() {
+                    self.look.session.stack.enable(effect);
+                }
+            });
+        }
+        ui.add_space(theme::GAP);
+    }
+
+    fn enabled_effect_ui(&mut self, ui: &mut Ui, effect: &'static Effect, place: usize, count: usize) {
+        let frame = egui::Frame::new().fill(theme::BAR).corner_radius(6.0).inner_margin(egui::Margin { left: 8, right: 4, top: 3, bottom: 5 });
+        frame.show(ui, |ui| {
+            ui.set_min_width(ui.available_width());
+            self.effect_header_ui(ui, effect, place, count);
+            let Some(enabled) = self.look.session.stack.get(effect.name) else { return };
+            let mut words = enabled.words.clone();
+            ui.add_enabled_ui(!self.muted.contains(effect.name), |ui| self.effect_rows_ui(ui, effect, &mut words));
+            if let Some(enabled) = self.look.session.stack.get_mut(effect.name) {
+                enabled.words = words;
+            }
+        });
+        ui.add_space(theme::HALF);
+    }
+
+    fn effect_header_ui(&mut self, ui: &mut Ui, effect: &'static Effect, place: usize, count: usize) {
+        ui.horizontal(|ui| {
+            ui.set_min_height(theme::ROW);
+            let mut on = true;
+            let title = RichText::new(shown_name(effect)).strong().color(theme::TEXT_STRONG);
+            if ui.checkbox(&mut on, title).on_hover_text(effect.about).accessible_name(effect.name).clicked() {
+                self.look.session.stack.disable(effect.name);
+                self.muted.remove(effect.name);
+            }
+            ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
+                ui.spacing_mut().item_spacing.x = 0.0;
+                let muted = self.muted.contains(effect.name);
+                let (icon, verb) = if muted { (Icon::EyeShut, "Show") } else { (Icon::Eye, "Mute") };
+                if icon_button(ui, icon, &format!("{verb} {}", effect.name)).clicked() && !self.muted.remove(effect.name) {
+                    self.muted.insert(effect.name);
+                }
+                for (icon, verb, to) in [(Icon::Down, "later", place + 1), (Icon::Up, "earlier", place.wrapping_sub(1))] {
+                    let button = ui.add_enabled_ui(to < count, |ui| icon_button(ui, icon, &format!("Apply {} {verb}", effect.name)));
+                    if button.inner.clicked() {
+                        self.look.session.stack.0.swap(place, to);
+                    }
+                }
+            });
+        });
+    }
+
+    fn effect_rows_ui(&mut self, ui: &mut Ui, effect: &'static Effect, words: &mut [u32]) {
+        for field in effect.fields {
+            if !field.is_shown(effect.fields, words) {
+                continue;
+            }
+            let row = Row::of_field(effect, field, words);
+            let value = Plain::Numbers(field.get(words));
+            let outcome = row_ui(ui, &row, &value);
+            if outcome.hovered {
+                self.hovered_row = Some((row.path.clone(), row.written(&value)));
+            }
+            if let Some(Plain::Numbers(lanes)) = outcome.value
+                && let Err(error) = field.set(words, &lanes)
+            {
+                self.log.add(super::Level::Error, format!("{}.{error}", effect.name));
+            }
+            if let Some(ask) = outcome.ask {
+                // Resets act on the look, so what this frame changed goes there first and is then read back.
+                self.put_words(effect, words);
+                self.answer(ui.ctx(), ask);
+                if let Some(enabled) = self.look.session.stack.get(effect.name) {
+                    words.copy_from_slice(&enabled.words);
+                }
+            }
+        }
+    }
+
+    fn put_words(&mut self, effect: &Effect, words: &[u32]) {
+        if let Some(enabled) = self.look.session.stack.get_mut(effect.name) {
+            enabled.words = words.to_vec();
+        }
+    }
+
+    /// A folder with rows for keys of the look.
+    fn keys_folder(&mut self, ui: &mut Ui, title: &str, open: bool, paths: &[&str]) {
+        folder(ui, title, open, |ui| paths.iter().for_each(|path| self.key_ui(ui, path)));
+    }
+
+    fn key_ui(&mut self, ui: &mut Ui, path: &str) {
+        let Some(key) = Key::find(path) else { return };
+        let session = &self.look.session;
+        let Some(value) = (key.get)(session) else { return };
+        let (unit, soft) = SHOWN.iter().find(|(shown, ..)| *shown == path).map_or(("", None), |&(_, unit, soft)| (unit, soft));
+        let row = Row::of_key(key, unit, soft, key_is_modified(key, session, &value));
+        let outcome = row_ui(ui, &row, &value);
+        if outcome.hovered {
+            self.hovered_row = Some((row.path.clone(), row.written(&value)));
+        }
+        if let Some(value) = outcome.value {
+            (key.set)(&mut self.look.session, value);
+        }
+        if let Some(ask) = outcome.ask {
+            self.answer(ui.ctx(), ask);
+        }
+    }
+
+    fn camera_ui(&mut self, ui: &mut Ui) {
+        folder(ui, "Camera", false, |ui| {
+            if self.look.session.camera.is_none() {
+                ui.label(theme::weak("Frames the whole scene by itself. Move the picture, or pin the pose to type numbers."));
+                if ui.button("Pin the pose").clicked() {
+                    self.move_camera(|_| {});
+                }
+                return;
+            }
+            KEYS.iter().filter(|key| key.section == "camera" && key.name != "up").for_each(|key| self.key_ui(ui, &key.path()));
+            ui.horizontal(|ui| {
+                if ui.button("Frame scene").clicked() {
+                    self.frame_scene();
+                }
+                if ui.button("Back to automatic").on_hover_text("Forget the pose: the look frames its scene by itself").clicked() {
+                    self.look.session.camera = None;
+                }
+            });
+        });
+    }
+
+    fn clock_ui(&mut self, ui: &mut Ui) {
+        folder(ui, "Clock", false, |ui| {
+            self.key_ui(ui, "clock.time_s");
+            ui.horizontal(|ui| {
+                let text = if self.playback.playing { "Pause" } else { "Play" };
+                if ui.button(text).on_hover_text("Space; a look moves when it has a spin").clicked() {
+                    self.perform(ui.ctx(), super::shortcuts::Action::Play);
+                }
+                if self.playback.offset_s != 0.0 {
+                    if ui.button("Keep this time").on_hover_text("Make the time that is shown the look's own").clicked() {
+                        self.look.session.clock.time_s += std::mem::take(&mut self.playback.offset_s);
+                    }
+                    if ui.button("Rewind").clicked() {
+                        self.playback = super::Playback::default();
+                    }
+                }
+            });
+        });
+    }
+
+    fn accuracy_ui(&mut self, ui: &mut Ui) {
+        folder(ui, "Accuracy", true, |ui| {
+            self.key_ui(ui, "accuracy.tier");
+            let int64 = self.screen.gpu.caps.int64_atomics;
+            ui.add_enabled_ui(int64, |ui| self.key_ui(ui, "accuracy.visibility"));
+            if !int64 {
+                ui.label(theme::weak(format!("This adapter has no 64-bit atomics, so every tier uses {}.", Visibility::ALL[0].name())));
+            }
+            if self.look.session.accuracy.tier == Tier::Reference {
+                ui.label(theme::weak("Reference asks for the most exact rung on every axis."));
+            }
+        });
+    }
+
+    /// What the newest frame cost, pass by pass, beside its error.
+    fn timing_ui(&self, ui: &mut Ui) {
+        let Some(report) = self.screen.report() else {
+            ui.label(theme::weak("Figures appear with the first frame."));
+            return;
+        };
+        let frame = report.gpu_ms.map_or_else(|| "no timer on this adapter".into(), |ms| format!("{ms:.3} ms"));
+        let error = self.accuracy().map_or_else(|| "not measured".into(), topbar::error_text);
+        egui::Grid::new("timing").num_columns(2).spacing([16.0, 4.0]).min_col_width(96.0).show(ui, |ui| {
+            let mut line = |name: &str, value: &str, strong: bool| {
+                ui.label(if strong { RichText::new(name).color(theme::TEXT_STRONG) } else { RichText::new(name).color(theme::TEXT_WEAK) });
+                ui.label(RichText::new(value).monospace().color(if strong { theme::TEXT_STRONG } else { theme::TEXT }));
+                ui.end_row();
+            };
+            line("frame", &frame, true);
+            line("error", &error, true);
+            for (name, ms) in &report.passes {
+                line(name, &format!("{ms:.3} ms"), false);
+            }
+            let c = &report.counters;
+            for (name, count) in [
+                ("non-finite", c.rejected_nonfinite),
+                ("out of range", c.rejected_range),
+                ("no area", c.degenerate),
+                ("clipped", c.clipped),
+                ("fan folds", c.fan_folds),
+                ("overflow", c.overflow),
+                ("orphans", c.orphans),
+            ] {
+                if count != 0 {
+                    line(name, &count.to_string(), false);
+                }
+            }
+        });
+        if self.screen.gpu.summary.software {
+            ui.label(RichText::new("Times of a software adapter rank nothing but themselves.").color(theme::AMBER));
+        }
+    }
+
+    fn kernel_ui(&self, ui: &mut Ui) {
+        let Some(Explanation { key, passes, buffers, reasons, omitted }) = self.screen.explanation() else {
+            ui.label(theme::weak("The kernel is known with the first frame."));
+            return;
+        };
+        ui.label(RichText::new(key).monospace().color(theme::TEXT_STRONG));
+        let bytes: u64 = buffers.iter().map(|buffer| buffer.bytes).sum();
+        ui.add_space(theme::HALF);
+        ui.label(theme::weak(format!("{} passes, {} buffers of {} in all", passes.len(), buffers.len(), bytes_text(bytes))));
+        for pass in passes {
+            ui.label(RichText::new(&pass.name).monospace()).on_hover_text(&pass.why);
+        }
+        ui.add_space(theme::HALF);
+        for buffer in buffers {
+            ui.horizontal(|ui| {
+                ui.label(RichText::new(&buffer.name).monospace()).on_hover_text(&buffer.why);
+                ui.label(theme::weak(bytes_text(buffer.bytes)));
+            });
+        }
+        for (title, notes) in [("chosen because", reasons), ("left out because", omitted)] {
+            if !notes.is_empty() {
+                ui.add_space(theme::HALF);
+                ui.label(theme::heading(title));
+            }
+            for note in notes {
+                ui.label(RichText::new(&note.name).monospace());
+                ui.label(theme::weak(&note.why));
+            }
+        }
+    }
+}
+
+/// Does `key` say something else than a look that leaves it out?
+fn key_is_modified(key: &Key, session: &crate::session::Session, value: &Plain) -> bool {
+    let baseline = Section::baseline(session);
+    (key.get)(&baseline).as_ref() != Some(value)
+}
+
+/// `triangle_id` as people read it.
+fn shown_name(effect: &Effect) -> String {
+    let mut name = effect.name.replace('_', " ");
+    if let Some(first) = name.get_mut(..1) {
+        first.make_ascii_uppercase();
+    }
+    name
+}
+
+fn folder(ui: &mut Ui, title: &str, open: bool, contents: impl FnOnce(&mut Ui)) {
+    egui::CollapsingHeader::new(theme::heading(title)).default_open(open).show_unindented(ui, |ui| {
+        ui.add_space(2.0);
+        contents(ui);
+        ui.add_space(theme::GAP);
+    });
+}
+
+/// `1.5 MiB`.
+pub fn bytes_text(bytes: u64) -> String {
+    match bytes {
+        0..1024 => format!("{bytes} B"),
+        1024..1_048_576 => format!("{:.1} KiB", bytes as f64 / 1024.0),
+        _ => format!("{:.1} MiB", bytes as f64 / 1_048_576.0),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_shown_key_exists() {
+        for (path, ..) in SHOWN {
+            assert!(Key::find(path).is_some(), "{path}");
+        }
+    }
+
+    #[test]
+    fn effects_read_as_words() {
+        let names: Vec<_> = EFFECTS.iter().map(|effect| shown_name(effect)).collect();
+        assert!(names.contains(&"Triangle id".to_owned()), "{names:?}");
+    }
+}

@@ -1,0 +1,163 @@
+//! Work that would make the window stutter, on threads of its own: loading scenes, judging pictures, drawing
+//! thumbnails, saving shots, waiting for file dialogs.
+
+use std::{
+    path::PathBuf,
+    sync::{Arc, mpsc},
+};
+
+use eframe::egui;
+
+use super::{dialogs::Purpose, screen::Inputs};
+use crate::{
+    gpu::{Gpu, Renderer},
+    measure::Accuracy,
+    oracle,
+    preset::{self, Look, Provenance},
+    scene::Scene,
+    session::{SceneSource, Session},
+};
+
+/// What names a scene: its source, and the look it is relative to.
+#[derive(Clone, Debug, PartialEq)]
+pub struct SceneKey {
+    pub source: SceneSource,
+    pub look_path: Option<PathBuf>,
+}
+
+impl SceneKey {
+    pub fn of(session: &Session, look_path: Option<&PathBuf>) -> Self {
+        // A builtin is the same wherever the look lies.
+        let look_path = if matches!(session.scene, SceneSource::File(_)) { look_path.cloned() } else { None };
+        Self { source: session.scene.clone(), look_path }
+    }
+}
+
+/// Finished work. Errors are sentences for people.
+pub enum Done {
+    Scene(SceneKey, Result<Arc<Scene>, String>),
+    Verdict(Box<Inputs>, Result<Accuracy, String>),
+    Thumbnail(String, Option<egui::ColorImage>),
+    Shot(PathBuf, Result<(), String>),
+    /// A path from the system's file dialog; none when it was cancelled or could not be shown.
+    Path(Purpose, Option<PathBuf>),
+}
+
+/// Threads at work, and where their results arrive.
+pub struct Jobs {
+    ctx: egui::Context,
+    sender: mpsc::Sender<Done>,
+    receiver: mpsc::Receiver<Done>,
+}
+
+impl Jobs {
+    pub fn new(ctx: egui::Context) -> Self {
+        let (sender, receiver) = mpsc::channel();
+        Self { ctx, sender, receiver }
+    }
+
+    /// The next finished piece of work, if any.
+    pub fn next(&self) -> Option<Done> {
+        self.receiver.try_recv().ok()
+    }
+
+    fn spawn(&self, name: &str, work: impl FnOnce() -> Done + Send + 'static) {
+        let (sender, ctx) = (self.sender.clone(), self.ctx.clone());
+        let started = std::thread::Builder::new().name(name.into()).spawn(move || {
+            // The window may be gone by now; then nobody wants to know.
+            if sender.send(work()).is_ok() {
+                ctx.request_repaint();
+            }
+        });
+        if let Err(error) = started {
+            eprintln!("rasterlab: no thread for {name}: {error}");
+        }
+    }
+
+    pub fn load_scene(&self, key: SceneKey) {
+        self.spawn("scene", move || {
+            let session = Session { scene: key.source.clone(), ..Session::default() };
+            let scene = caught("loading the scene", || preset::load_scene(&session, key.look_path.as_deref()).map_err(|e| e.to_string()));
+            Done::Scene(key, scene)
+        });
+    }
+
+    /// Draws `inputs` once more with a renderer of its own, reads everything back and lets the oracle judge it.
+    pub fn verify(&self, gpu: Arc<Gpu>, inputs: Inputs) {
+        self.spawn("verify", move || {
+            let verdict = caught("judging the picture", || verify(gpu, &inputs));
+            Done::Verdict(Box::new(inputs), verdict)
+        });
+    }
+
+    /// Draws the picture of a look with the oracle, which needs no device and so disturbs none.
+    pub fn thumbnail(&self, look: Look) {
+        self.spawn("thumbnail", move || {
+            let image = caught("drawing a thumbnail", || thumbnail(&look).ok_or_else(String::new));
+            Done::Thumbnail(look.id, image.ok())
+        });
+    }
+
+    /// Draws `inputs`, and writes a PNG that carries the look.
+    pub fn shot(&self, gpu: Arc<Gpu>, inputs: Inputs, look: Look, path: PathBuf) {
+        self.spawn("shot", move || {
+            let saved = caught("saving the picture", || shot(gpu, &inputs, &look, &path));
+            Done::Shot(path, saved)
+        });
+    }
+
+    /// Shows the system's file dialog.
+    pub fn ask_path(&self, purpose: Purpose, start: PathBuf) {
+        let mut dialog = rfd::AsyncFileDialog::new();
+        if let Some(folder) = start.parent().filter(|folder| folder.is_dir()) {
+            dialog = dialog.set_directory(folder);
+        }
+        let name = start.file_name().map(|name| name.to_string_lossy().into_owned()).unwrap_or_default();
+        for (label, extensions) in purpose.filters() {
+            dialog = dialog.add_filter(*label, extensions);
+        }
+        let chosen: std::pin::Pin<Box<dyn Future<Output = Option<rfd::FileHandle>> + Send>> = match purpose {
+            Purpose::Open => Box::pin(dialog.pick_file()),
+            Purpose::SaveAs | Purpose::Export => Box::pin(dialog.set_file_name(name).save_file()),
+        };
+        self.spawn("file dialog", move || Done::Path(purpose, pollster::block_on(chosen).map(|file| file.path().to_owned())));
+    }
+}
+
+/// Runs `work`; a panic becomes its error, so that no button stays grey for ever.
+fn caught<T>(what: &str, work: impl FnOnce() -> Result<T, String>) -> Result<T, String> {
+    std::panic::catch_unwind(std::panic::AssertUnwindSafe(work)).unwrap_or_else(|_| Err(format!("{what} failed inside the program; the terminal says where")))
+}
+
+fn verify(gpu: Arc<Gpu>, Inputs { scene, view, stack, accuracy }: &Inputs) -> Result<Accuracy, String> {
+    let mut renderer = Renderer::new(gpu);
+    renderer.set_scene(scene).map_err(|e| e.to_string())?;
+    let capture = renderer.capture(view, stack, accuracy).map_err(|e| e.to_string())?;
+    let verdict = oracle::judge(scene, view, stack, &capture.frame, &capture.geometry, capture.layers.as_deref());
+    verdict.map(|verdict| verdict.accuracy).map_err(|e| e.to_string())
+}
+
+/// Size of a thumbnail in pixels; shown at half of it.
+pub const THUMBNAIL: [u32; 2] = [144, 108];
+
+/// More triangles than this are not worth a thumbnail's time.
+const THUMBNAIL_TRIANGLES: u64 = 400_000;
+
+fn thumbnail(look: &Look) -> Option<egui::ColorImage> {
+    let scene = preset::load_scene(&look.session, look.path.as_deref()).ok()?;
+    if scene.triangle_count() > THUMBNAIL_TRIANGLES {
+        return None;
+    }
+    let frame = oracle::render(&scene, &look.session.view(&scene, THUMBNAIL), &look.session.stack).ok()?;
+    let bytes: Vec<u8> = frame.color.concat();
+    Some(egui::ColorImage::from_rgba_unmultiplied([frame.width as usize, frame.height as usize], &bytes))
+}
+
+fn shot(gpu: Arc<Gpu>, Inputs { scene, view, stack, accuracy }: &Inputs, look: &Look, path: &std::path::Path) -> Result<(), String> {
+    let provenance = Provenance { adapter: gpu.summary.name.clone(), driver: gpu.summary.driver.clone() };
+    let mut renderer = Renderer::new(gpu);
+    renderer.set_scene(scene).map_err(|e| e.to_string())?;
+    let capture = renderer.capture(view, stack, accuracy).map_err(|e| e.to_string())?;
+    let png = preset::png_with_look(&capture.frame, look, &provenance).map_err(|e| e.to_string())?;
+    preset::write_atomically(path, &png).map_err(|e| e.to_string())
+}

@@ -1,0 +1,189 @@
+//! Moving a camera by hand. Pure functions of a pose; every result is finite whatever the hand does.
+
+use glam::DVec3;
+
+use crate::scene::{
+    Bounds,
+    camera::{Camera, MIN_NEAR_M, Projection},
+};
+
+/// Bounds of the distance between eye and target, metres: what keeps poses clear of the arithmetic's gate at 2^40.
+const DISTANCE_M: [f64; 2] = [1e-5, 1e8];
+
+/// Farthest a target may be panned from the origin, metres.
+const REACH_M: f64 = 1e8;
+
+/// Closest the direction of view comes to straight up or down, radians; beyond it, left and right would swap.
+const POLE_RAD: f64 = 1e-3;
+
+/// Directions of the numbered views: where the camera looks.
+pub const FRONT: DVec3 = DVec3::NEG_Z;
+pub const SIDE: DVec3 = DVec3::NEG_X;
+pub const TOP: DVec3 = DVec3::NEG_Y;
+
+fn distance(camera: &Camera) -> f64 {
+    let distance = (camera.eye - camera.target).length();
+    if distance.is_finite() { distance.clamp(DISTANCE_M[0], DISTANCE_M[1]) } else { 1.0 }
+}
+
+/// Right and up of the picture, unit vectors.
+fn axes(camera: &Camera) -> (DVec3, DVec3) {
+    let forward = camera.forward();
+    let right = [camera.up, DVec3::Y, DVec3::X].into_iter().find_map(|up| forward.cross(up).try_normalize()).unwrap_or(DVec3::X);
+    (right, right.cross(forward))
+}
+
+/// `forward` turned by angles about +y and up, kept off the poles.
+fn turned(forward: DVec3, yaw_rad: f64, pitch_rad: f64) -> DVec3 {
+    let limit = std::f64::consts::FRAC_PI_2 - POLE_RAD;
+    let yaw = if forward.x == 0.0 && forward.z == 0.0 { yaw_rad } else { forward.x.atan2(-forward.z) + yaw_rad };
+    let pitch = (forward.y.clamp(-1.0, 1.0).asin() + pitch_rad).clamp(-limit, limit);
+    DVec3::new(yaw.sin() * pitch.cos(), pitch.sin(), -yaw.cos() * pitch.cos())
+}
+
+/// Turns the eye round the target: the picture follows the hand right and down.
+pub fn orbit(camera: &mut Camera, right_rad: f64, down_rad: f64) {
+    let distance = distance(camera);
+    camera.up = DVec3::Y;
+    camera.eye = camera.target - turned(camera.forward(), right_rad, -down_rad) * distance;
+}
+
+/// Turns the view round the eye.
+pub fn turn(camera: &mut Camera, right_rad: f64, down_rad: f64) {
+    let distance = distance(camera);
+    camera.up = DVec3::Y;
+    camera.target = camera.eye + turned(camera.forward(), right_rad, -down_rad) * distance;
+}
+
+/// Shifts the picture by `right` and `down`, in heights of the picture.
+pub fn pan(camera: &mut Camera, right: f64, down: f64) {
+    let height_m = match camera.projection {
+        Projection::Perspective { fov_y_deg } => 2.0 * distance(camera) * (fov_y_deg.to_radians() * 0.5).tan(),
+        Projection::Orthographic { height_m } => height_m,
+    };
+    let (x, y) = axes(camera);
+    shift(camera, (y * down - x * right) * height_m);
+}
+
+/// Moves eye and target together by metres right, up and forward.
+pub fn fly(camera: &mut Camera, right_m: f64, up_m: f64, forward_m: f64) {
+    let (x, y) = axes(camera);
+    shift(camera, x * right_m + y * up_m + camera.forward() * forward_m);
+}
+
+fn shift(camera: &mut Camera, by: DVec3) {
+    let target = camera.target + by;
+    if target.is_finite() && target.abs().max_element() <= REACH_M {
+        camera.target = target;
+        camera.eye += by;
+    }
+}
+
+/// Scales the distance to the target (and the height of an orthographic view); below 1 comes closer.
+pub fn zoom(camera: &mut Camera, factor: f64) {
+    let factor = if factor.is_finite() { factor.clamp(0.1, 10.0) } else { 1.0 };
+    let to = (distance(camera) * factor).clamp(DISTANCE_M[0], DISTANCE_M[1]);
+    camera.eye = camera.target - camera.forward() * to;
+    // Else the near plane would swallow what the eye comes close to.
+    camera.near_m = camera.near_m.min(to * 0.05).max(MIN_NEAR_M);
+    if let Projection::Orthographic { height_m } = &mut camera.projection {
+        *height_m = (*height_m * factor).clamp(DISTANCE_M[0], DISTANCE_M[1]);
+    }
+}
+
+/// Looks at the target along `direction` from the same distance.
+pub fn look_along(camera: &mut Camera, direction: DVec3) {
+    let distance = distance(camera);
+    camera.up = if direction.y.abs() > 0.999 { DVec3::NEG_Z } else { DVec3::Y };
+    camera.eye = camera.target - direction * distance;
+}
+
+/// Changes between perspective and orthographic, keeping the size of what stands at the target.
+pub fn toggle_orthographic(camera: &mut Camera) {
+    let distance = distance(camera);
+    camera.projection = match camera.projection {
+        Projection::Perspective { fov_y_deg } => {
+            Projection::Orthographic { height_m: 2.0 * distance * (fov_y_deg.to_radians() * 0.5).tan() }
+        }
+        Projection::Orthographic { height_m } => {
+            let fov_y_deg: f64 = 45.0;
+            let away = height_m * 0.5 / (fov_y_deg.to_radians() * 0.5).tan();
+            camera.eye = camera.target - camera.forward() * away.clamp(DISTANCE_M[0], DISTANCE_M[1]);
+            camera.near_m = camera.near_m.min(away * 0.05).max(MIN_NEAR_M);
+            Projection::Perspective { fov_y_deg }
+        }
+    };
+}
+
+/// The pose with the same direction and projection that shows the whole of `bounds`.
+pub fn framing(camera: &Camera, bounds: &Bounds, aspect: f64) -> Camera {
+    let mut framed = Camera::framing(bounds, camera.forward(), aspect);
+    framed.up = camera.up;
+    if matches!(camera.projection, Projection::Orthographic { .. }) {
+        let radius = if bounds.radius() > 0.0 { bounds.radius() } else { 1.0 };
+        framed.projection = Projection::Orthographic { height_m: 2.1 * radius / aspect.clamp(1e-3, 1.0) };
+    }
+    framed
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn camera() -> Camera {
+        Camera { eye: DVec3::new(1.0, 2.0, 5.0), target: DVec3::new(0.0, 0.5, 0.0), ..Camera::default() }
+    }
+
+    #[test]
+    fn orbit_keeps_distance_and_target() {
+        let mut moved = camera();
+        orbit(&mut moved, 0.7, -0.4);
+        assert_eq!(moved.target, camera().target);
+        assert!((distance(&moved) - distance(&camera())).abs() < 1e-12);
+        orbit(&mut moved, -0.7, 0.4);
+        assert!((moved.eye - camera().eye).length() < 1e-12);
+    }
+
+    #[test]
+    fn orbit_stops_at_the_poles() {
+        let mut moved = camera();
+        orbit(&mut moved, 0.0, 100.0);
+        assert!(moved.forward().y < -0.999_99 && moved.eye.is_finite());
+        let (right, _) = axes(&moved);
+        assert!((right.y).abs() < 1e-9 && right.is_finite());
+    }
+
+    #[test]
+    fn pan_carries_a_point_at_the_target_along_with_the_hand() {
+        let mut moved = camera();
+        pan(&mut moved, 0.5, 0.0);
+        let (right, _) = axes(&camera());
+        let height = 2.0 * distance(&camera()) * 22.5f64.to_radians().tan();
+        assert!(((camera().target - moved.target).dot(right) - height * 0.5).abs() < 1e-12);
+    }
+
+    #[test]
+    fn zoom_out_and_in_for_ever_stays_finite() {
+        let mut moved = camera();
+        for factor in [9.0, 0.11] {
+            (0..500).for_each(|_| zoom(&mut moved, factor));
+            assert!(moved.eye.is_finite() && moved.near_m >= MIN_NEAR_M && distance(&moved) > 0.0, "{moved:?}");
+        }
+    }
+
+    #[test]
+    fn orthographic_and_back_is_the_same_pose() {
+        let mut moved = camera();
+        toggle_orthographic(&mut moved);
+        toggle_orthographic(&mut moved);
+        assert!((moved.eye - camera().eye).length() < 1e-9 && moved.projection == camera().projection);
+    }
+
+    #[test]
+    fn top_view_is_not_degenerate() {
+        let mut moved = camera();
+        look_along(&mut moved, TOP);
+        let (right, up) = axes(&moved);
+        assert!((right - DVec3::X).length() < 1e-12 && (up - DVec3::NEG_Z).length() < 1e-12);
+    }
+}

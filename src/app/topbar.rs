@@ -1,0 +1,172 @@
+//! The bar at the top: menus, which look is open, which adapter draws it, what that costs and how wrong it is.
+
+use eframe::egui::{self, Align, Color32, Layout, RichText, Sense, Ui, vec2};
+
+use super::{
+    App,
+    fields::dot,
+    icons::{Icon, icon_button},
+    shortcuts::Action,
+    theme,
+};
+use crate::measure::Accuracy;
+
+impl App {
+    pub(super) fn topbar_ui(&mut self, ui: &mut Ui) {
+        ui.horizontal(|ui| {
+            ui.set_min_height(28.0);
+            self.menus_ui(ui);
+            ui.add_space(theme::HALF);
+            self.name_ui(ui);
+            ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
+                self.badge_ui(ui);
+                ui.separator();
+                self.cost_ui(ui);
+            });
+        });
+    }
+
+    fn menus_ui(&mut self, ui: &mut Ui) {
+        use Action as A;
+        let menus: [(&str, &[Option<A>]); 3] = [
+            ("File", &[Some(A::Open), None, Some(A::Save), Some(A::SaveAs), Some(A::Export), None, Some(A::CopyLook), Some(A::PasteLook), None, Some(A::Quit)]),
+            ("Edit", &[Some(A::Undo), Some(A::Redo), None, Some(A::Randomize)]),
+            (
+                "View",
+                &[
+                    Some(A::Frame),
+                    Some(A::Front),
+                    Some(A::Side),
+                    Some(A::Top),
+                    Some(A::Orthographic),
+                    None,
+                    Some(A::Panels),
+                    Some(A::Log),
+                    None,
+                    Some(A::CheatSheet),
+                ],
+            ),
+        ];
+        ui.spacing_mut().item_spacing.x = 2.0;
+        for (title, actions) in menus {
+            let chosen = ui.menu_button(title, |ui| menu_ui(ui, actions)).inner.flatten();
+            if let Some(action) = chosen {
+                self.perform(ui.ctx(), action);
+            }
+        }
+        ui.add_space(theme::HALF);
+        for (icon, action, able) in
+            [(Icon::Left, A::PreviousLook, true), (Icon::Right, A::NextLook, true), (Icon::Reset, A::Undo, self.history.can_undo())]
+        {
+            let name = format!("{} ({})", action.about(), action.keys_text());
+            if ui.add_enabled_ui(able, |ui| icon_button(ui, icon, &name)).inner.clicked() {
+                self.perform(ui.ctx(), action);
+            }
+        }
+    }
+
+    /// Name of the look, with a dot while it has changes that no file has.
+    fn name_ui(&mut self, ui: &mut Ui) {
+        ui.spacing_mut().item_spacing.x = 6.0;
+        let name = RichText::new(self.look.title()).color(theme::TEXT_STRONG).strong();
+        let place = match (&self.look.path, self.look.read_only) {
+            (Some(path), _) => path.display().to_string(),
+            (None, true) => "built in: Save asks for a name".into(),
+            (None, false) => "not saved yet".into(),
+        };
+        ui.add(egui::Label::new(name).truncate().sense(Sense::hover())).on_hover_text(place);
+        if self.is_modified() {
+            dot(ui, theme::ACCENT);
+            ui.label(theme::weak("unsaved"));
+        }
+    }
+
+    /// Adapter, in amber with a plain sentence when it is software.
+    fn badge_ui(&self, ui: &mut Ui) {
+        let summary = &self.screen.gpu.summary;
+        let color = if summary.software { theme::AMBER } else { theme::GREEN };
+        let name = summary.name.split('(').next().unwrap_or_default().trim();
+        let text = if summary.software { format!("{name} · software") } else { name.to_owned() };
+        let response = ui.add(egui::Label::new(RichText::new(text).color(if summary.software { theme::AMBER } else { theme::TEXT })).truncate());
+        response.on_hover_ui(|ui| {
+            ui.label(RichText::new(&summary.name).color(theme::TEXT_STRONG));
+            ui.label(format!("{} · {}", summary.backend, summary.driver));
+            ui.label(theme::weak(format!("class {}", self.screen.gpu.caps.class())));
+            if summary.software {
+                ui.label(
+                    RichText::new("A software adapter: the pictures are right, the times say nothing about a graphics card.").color(theme::AMBER),
+                );
+            }
+        });
+        dot(ui, color);
+    }
+
+    /// Cost and error, always side by side.
+    fn cost_ui(&mut self, ui: &mut Ui) {
+        ui.spacing_mut().item_spacing.x = 6.0;
+        let (color, error, hint) = self.error_line();
+        let busy = self.verifying;
+        let verify = ui.add_enabled(!busy && self.motion.wanted.is_some(), egui::Button::new(if busy { "Verifying" } else { "Verify" }));
+        if verify.on_hover_text("Let the exact CPU oracle judge this picture (V)").clicked() {
+            self.verify();
+        }
+        if busy {
+            ui.add(egui::Spinner::new().size(14.0));
+        }
+        ui.label(RichText::new(error).color(color)).on_hover_text(hint);
+        ui.label(theme::weak("·"));
+        let report = self.screen.report();
+        let time = match report.map(|report| report.gpu_ms) {
+            Some(Some(ms)) => format!("{ms:.2} ms GPU"),
+            Some(None) => "no GPU timer".into(),
+            None => "not timed".into(),
+        };
+        ui.label(RichText::new(time).color(theme::TEXT_STRONG)).on_hover_text("Time of the newest frame on the device; passes are listed under Timing");
+    }
+
+    /// The error of the picture that is shown, as far as it was measured.
+    fn error_line(&self) -> (Color32, String, String) {
+        let Some(verdict) = &self.verdict else {
+            return (theme::TEXT_WEAK, "error not measured".into(), "Verify compares every pixel with the oracle".into());
+        };
+        let text = error_text(&verdict.accuracy);
+        let detail = details(&verdict.accuracy);
+        if self.motion.wanted.as_ref() != Some(&verdict.of) {
+            return (theme::AMBER, format!("{text} · stale"), format!("Measured on an earlier picture. {detail}"));
+        }
+        let a = &verdict.accuracy;
+        let wrong = a.owner_mismatch + a.holes + a.double_hits + a.orphans + a.overflow;
+        (if wrong == 0 { theme::GREEN } else { theme::RED }, text, detail)
+    }
+}
+
+/// One menu's rows; none is a separator.
+fn menu_ui(ui: &mut Ui, actions: &[Option<Action>]) -> Option<Action> {
+    let mut chosen = None;
+    ui.set_min_width(220.0);
+    for action in actions {
+        let Some(action) = action else {
+            ui.separator();
+            continue;
+        };
+        let button = egui::Button::new(action.about()).shortcut_text(action.keys_text()).min_size(vec2(208.0, theme::ROW));
+        if ui.add(button).clicked() {
+            chosen = Some(*action);
+            ui.close();
+        }
+    }
+    chosen
+}
+
+/// The error in a few words: `0 wrong owners, max Δ 1`.
+pub fn error_text(accuracy: &Accuracy) -> String {
+    let owners = accuracy.owner_mismatch;
+    format!("{owners} wrong {}, max Δ {}", if owners == 1 { "owner" } else { "owners" }, accuracy.max_colour_delta)
+}
+
+fn details(a: &Accuracy) -> String {
+    format!(
+        "{} pixels against the oracle: {} wrong owners, {} explained by a snap of one unit, {} in a depth tie, {} holes, {} drawn twice; colour max Δ {} and RMS {:.3} of 255",
+        a.pixels, a.owner_mismatch, a.explained_by_snap, a.band_pixels, a.holes, a.double_hits, a.max_colour_delta, a.rms_colour_delta
+    )
+}

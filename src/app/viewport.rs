@@ -1,0 +1,283 @@
+//! Viewport: the picture, and the hand on the camera.
+
+use eframe::egui::{self, Align2, Color32, FontId, PointerButton, Rect, RichText, Sense, Ui, Vec2, pos2, vec2};
+
+use super::{
+    App, Level,
+    icons::{Icon, icon_button},
+    orbit,
+    screen::Inputs,
+    theme,
+};
+use crate::scene::camera::{Camera, Projection};
+
+/// What moves in the picture, and what should be drawn.
+#[derive(Default)]
+pub struct Motion {
+    /// The picture as asked for, at full size.
+    pub wanted: Option<Inputs>,
+    /// When a hand last changed the picture.
+    last_s: f64,
+    /// Full pixels per drawn pixel, along a side.
+    pub divisor: u32,
+    /// Size of the view, points.
+    pub aspect: f64,
+}
+
+/// After this long without motion the picture is drawn at full size, seconds.
+const REST_S: f64 = 0.2;
+
+/// A frame that takes longer makes moving pictures coarser, milliseconds.
+const SMOOTH_MS: f64 = 28.0;
+
+/// Radians that a drag over one point turns the camera by.
+const TURN_PER_POINT: f64 = 0.008;
+
+/// How much closer one point of wheel comes.
+const ZOOM_PER_POINT: f64 = 0.0022;
+
+/// Share of the scene's radius that flying covers in a second.
+const FLY_PER_S: f64 = 0.9;
+
+impl App {
+    pub(super) fn viewport_ui(&mut self, ui: &mut Ui) {
+        let rect = ui.available_rect_before_wrap();
+        let response = ui.allocate_rect(rect, Sense::click_and_drag());
+        response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Image, true, "Picture"));
+        self.motion.aspect = f64::from(rect.width().max(1.0)) / f64::from(rect.height().max(1.0));
+        self.play(ui.ctx());
+        let moved = self.navigate(ui, &response);
+        self.draw(ui, rect, moved);
+        self.picture_ui(ui, rect);
+        self.overlay_ui(ui, rect);
+    }
+
+    /// Pose of the camera as it is shown, to be moved.
+    fn pose(&self) -> Option<Camera> {
+        let (_, scene) = self.stage.shown.as_ref()?;
+        Some(self.look.session.camera_for(scene, self.motion.aspect))
+    }
+
+    /// Moves the camera of the look.
+    pub(super) fn move_camera(&mut self, change: impl FnOnce(&mut Camera)) {
+        if let Some(mut camera) = self.pose() {
+            change(&mut camera);
+            let finite = camera.eye.is_finite() && camera.target.is_finite() && camera.up.is_finite();
+            if finite {
+                self.look.session.camera = Some(camera);
+            }
+        }
+    }
+
+    /// Shows the whole scene from where the camera looks now.
+    pub(super) fn frame_scene(&mut self) {
+        let Some((_, scene)) = &self.stage.shown else { return };
+        let session = self.shown_session();
+        // The spin carries the box along.
+        let turn = session.view(scene, [1, 1]).world_from_scene;
+        let mut bounds = crate::scene::Bounds::EMPTY;
+        let corners = if scene.bounds().is_empty() { None } else { Some(scene.bounds().corners()) };
+        corners.into_iter().flatten().for_each(|corner| bounds.include(turn.transform_point3(corner)));
+        let aspect = self.motion.aspect;
+        self.move_camera(|camera| *camera = orbit::framing(camera, &bounds, aspect));
+    }
+
+    /// Moves the camera by pointer, wheel and fly keys; true while a hand is at it.
+    fn navigate(&mut self, ui: &Ui, response: &egui::Response) -> bool {
+        let before = self.look.session.camera;
+        let drag = response.drag_delta();
+        let (right, down) = (f64::from(drag.x), f64::from(drag.y));
+        let height = f64::from(response.rect.height().max(1.0));
+        let shift = ui.input(|i| i.modifiers.shift);
+        if drag != Vec2::ZERO {
+            let pans = response.dragged_by(PointerButton::Middle) || (response.dragged_by(PointerButton::Primary) && shift);
+            if pans {
+                self.move_camera(|c| orbit::pan(c, right / height, down / height));
+            } else if response.dragged_by(PointerButton::Primary) {
+                self.move_camera(|c| orbit::orbit(c, right * TURN_PER_POINT, down * TURN_PER_POINT));
+            } else if response.dragged_by(PointerButton::Secondary) {
+                self.move_camera(|c| orbit::turn(c, right * TURN_PER_POINT * 0.5, down * TURN_PER_POINT * 0.5));
+            }
+        }
+        if response.dragged_by(PointerButton::Secondary) || (response.is_pointer_button_down_on() && ui.input(|i| i.pointer.secondary_down())) {
+            self.fly(ui);
+        }
+        if response.contains_pointer() && !ui.ctx().any_popup_open() {
+            let (scroll, pinch) = ui.input(|i| (f64::from(i.smooth_scroll_delta().y), f64::from(i.zoom_delta())));
+            if scroll != 0.0 || pinch != 1.0 {
+                self.move_camera(|c| orbit::zoom(c, (-scroll * ZOOM_PER_POINT).exp() / pinch.clamp(0.2, 5.0)));
+            }
+        }
+        if response.double_clicked() {
+            self.frame_scene();
+        }
+        self.look.session.camera != before
+    }
+
+    /// W A S D Q E, while the right button is held.
+    fn fly(&mut self, ui: &Ui) {
+        use egui::Key;
+        let axis = |plus: Key, minus: Key| ui.input(|i| f64::from(u8::from(i.key_down(plus))) - f64::from(u8::from(i.key_down(minus))));
+        let (x, y, z) = (axis(Key::D, Key::A), axis(Key::E, Key::Q), axis(Key::W, Key::S));
+        if (x, y, z) == (0.0, 0.0, 0.0) {
+            return;
+        }
+        let radius = self.stage.shown.as_ref().map_or(1.0, |(_, scene)| scene.bounds().radius()).max(1e-3);
+        let step = radius * FLY_PER_S * f64::from(ui.input(|i| i.stable_dt)).min(0.1);
+        self.move_camera(|c| orbit::fly(c, x * step, y * step, z * step));
+        ui.ctx().request_repaint();
+    }
+
+    /// Lets time run.
+    fn play(&mut self, ctx: &egui::Context) {
+        if self.playback.playing {
+            self.playback.offset_s += f64::from(ctx.input(|i| i.stable_dt)).min(0.25);
+            ctx.request_repaint();
+        }
+    }
+
+    /// Draws what the look asks for, coarser while a hand moves it on a slow adapter.
+    fn draw(&mut self, ui: &Ui, rect: Rect, camera_moved: bool) {
+        let ctx = ui.ctx().clone();
+        let now_s = self.now_s;
+        if let Err(error) = self.screen.poll(now_s) {
+            self.log.add(Level::Error, error.to_string());
+        }
+        let Some((_, scene)) = self.stage.shown.clone() else { return };
+        let full = (rect.size() * ctx.pixels_per_point()).round();
+        let most = self.screen.gpu.caps.max_texture_side;
+        let full = [full.x, full.y].map(|side| (side.max(0.0) as u32).min(most));
+        let (session, stack) = (self.shown_session(), self.visible_stack());
+        let inputs_at = |size: [u32; 2]| Inputs {
+            scene: scene.clone(),
+            view: session.view(&scene, size),
+            stack: stack.clone(),
+            accuracy: session.accuracy,
+        };
+        let wanted = inputs_at(full);
+        let held = ctx.input(|i| i.pointer.any_down());
+        let changed = self.motion.wanted.as_ref().is_some_and(|before| *before != wanted);
+        if camera_moved || self.playback.playing || (changed && held) {
+            self.motion.last_s = now_s;
+        }
+        let moving = self.motion.wanted.is_some() && now_s - self.motion.last_s < REST_S && self.motion.last_s > 0.0;
+        let divisor = if moving { self.coarseness(full) } else { 1 };
+        if divisor > 1 {
+            ctx.request_repaint_after_secs((REST_S - (now_s - self.motion.last_s)) as f32 + 0.01);
+        }
+        let inputs = if divisor > 1 { inputs_at(full.map(|side| side.div_ceil(divisor))) } else { wanted.clone() };
+        self.motion.divisor = divisor;
+        self.motion.wanted = Some(wanted);
+        if let Err(error) = self.screen.show(&inputs, now_s) {
+            self.log.tell(Level::Error, error.to_string(), now_s);
+        }
+        if self.screen.is_waiting() {
+            ctx.request_repaint_after_secs(0.015);
+        }
+    }
+
+    /// By how much a moving picture must be smaller to stay smooth, from what the last one took.
+    fn coarseness(&self, full: [u32; 2]) -> u32 {
+        let Some(ms) = self.screen.report().and_then(|report| report.gpu_ms) else {
+            return if self.screen.gpu.summary.software { 2 } else { 1 };
+        };
+        let [width, height] = self.screen.picture().map_or(full, |(_, size)| size);
+        let pixels = |w: u32, h: u32| f64::from(w.max(1)) * f64::from(h.max(1));
+        // The share that does not shrink with the picture is unknown, so half is taken to shrink.
+        let scale = 0.5 + 0.5 * pixels(full[0], full[1]) / pixels(width, height);
+        match ms * scale {
+            ms if ms <= SMOOTH_MS => 1,
+            ms if ms <= 4.0 * SMOOTH_MS => 2,
+            _ => 3,
+        }
+    }
+
+    /// The newest picture; what stands where there is none.
+    fn picture_ui(&self, ui: &Ui, rect: Rect) {
+        let painter = ui.painter_at(rect);
+        if let Some((blit, [width, height])) = self.screen.picture().filter(|(_, size)| size.iter().all(|&side| side > 0)) {
+            // Its own shape, so that a last good picture from before a resize is not stretched.
+            let scale = (rect.width() / width as f32).min(rect.height() / height as f32);
+            let size = vec2(width as f32, height as f32) * scale;
+            let fits = (size - rect.size()).abs().max_elem() < 4.0;
+            let at = if fits { rect } else { Rect::from_center_size(rect.center(), size) };
+            if !fits {
+                painter.rect_filled(rect, 0.0, theme::VIEW);
+            }
+            painter.add(blit.shape(at));
+            return;
+        }
+        painter.rect_filled(rect, 0.0, theme::VIEW);
+        let (title, detail) = if self.stage.failed.is_some() {
+            ("This scene cannot be shown", "The log says why. Choose another one on the left, or drop a .glb here.")
+        } else if self.motion.wanted.as_ref().is_some_and(|inputs| self.screen.is_refused(inputs)) {
+            ("This picture cannot be drawn", "The log says why.")
+        } else {
+            ("Loading the scene", "Large ones take a moment.")
+        };
+        painter.text(rect.center() - vec2(0.0, 12.0), Align2::CENTER_CENTER, title, FontId::proportional(17.0), theme::TEXT);
+        painter.text(rect.center() + vec2(0.0, 12.0), Align2::CENTER_CENTER, detail, FontId::proportional(13.0), theme::TEXT_WEAK);
+    }
+
+    /// Chips over the picture: state on the left, views on the right, a hint while a file hovers.
+    fn overlay_ui(&mut self, ui: &mut Ui, rect: Rect) {
+        let corner = Rect::from_min_max(rect.min + vec2(12.0, 10.0), rect.max);
+        let mut left = ui.new_child(egui::UiBuilder::new().id_salt("state").max_rect(corner).layout(egui::Layout::left_to_right(egui::Align::TOP)));
+        for (color, text) in self.states() {
+            theme::toast_frame(theme::LINE)
+                .inner_margin(egui::Margin::symmetric(8, 4))
+                .show(&mut left, |ui| ui.label(RichText::new(text).size(12.0).color(color)));
+        }
+        let corner = Rect::from_min_max(pos2(rect.right() - 220.0, rect.top() + 8.0), pos2(rect.right() - 10.0, rect.top() + 36.0));
+        let layout = egui::Layout::right_to_left(egui::Align::Center);
+        let mut right = ui.new_child(egui::UiBuilder::new().id_salt("views").max_rect(corner).layout(layout));
+        right.spacing_mut().item_spacing.x = 2.0;
+        self.views_ui(&mut right);
+        if ui.ctx().input(|i| !i.raw.hovered_files.is_empty()) {
+            ui.painter().rect(rect.shrink(8.0), 8.0, theme::ACCENT_GROUND.gamma_multiply(0.5), (2.0, theme::ACCENT), egui::StrokeKind::Inside);
+            ui.painter().text(rect.center(), Align2::CENTER_CENTER, "Drop to open", FontId::proportional(20.0), theme::TEXT_STRONG);
+        }
+    }
+
+    /// What is unusual about the picture just now.
+    fn states(&self) -> Vec<(Color32, String)> {
+        let mut states = Vec::new();
+        if self.stage.loading.is_some() && self.screen.picture().is_some() {
+            states.push((theme::TEXT, "loading the scene".into()));
+        }
+        if self.stage.failed.is_some() && self.screen.picture().is_some() {
+            states.push((theme::RED, "last good picture: the scene cannot be shown".into()));
+        } else if self.motion.wanted.as_ref().is_some_and(|inputs| self.screen.is_refused(inputs)) && self.screen.picture().is_some() {
+            states.push((theme::RED, "last good picture: this one cannot be drawn".into()));
+        }
+        if self.motion.divisor > 1 {
+            states.push((theme::TEXT_WEAK, format!("1/{} resolution while moving", self.motion.divisor)));
+        }
+        if !self.muted.is_empty() {
+            let names: Vec<_> = self.muted.iter().copied().collect();
+            states.push((theme::AMBER, format!("muted: {}", names.join(", "))));
+        }
+        if self.playback.offset_s != 0.0 {
+            states.push((theme::TEXT_WEAK, format!("time {:.2} s", self.look.session.clock.time_s + self.playback.offset_s)));
+        }
+        states
+    }
+
+    fn views_ui(&mut self, ui: &mut Ui) {
+        let orthographic = self.pose().is_some_and(|camera| matches!(camera.projection, Projection::Orthographic { .. }));
+        if icon_button(ui, Icon::Frame, "Frame the scene (Home)").clicked() {
+            self.frame_scene();
+        }
+        let text = if orthographic { "Ortho" } else { "Persp" };
+        if ui.small_button(text).on_hover_text("Perspective or orthographic (5)").accessible_name("Orthographic").clicked() {
+            self.move_camera(orbit::toggle_orthographic);
+        }
+        for (text, name, key, direction) in
+            [("Top", "Top view", 7, orbit::TOP), ("Side", "Side view", 3, orbit::SIDE), ("Front", "Front view", 1, orbit::FRONT)]
+        {
+            if ui.small_button(text).on_hover_text(format!("{name} ({key})")).accessible_name(name).clicked() {
+                self.move_camera(|camera| orbit::look_along(camera, direction));
+            }
+        }
+    }
+}

@@ -1,0 +1,446 @@
+//! The whole window in a harness, on the real adapter: every widget has a name, a drag is one undo step, nothing is
+//! drawn while nothing changes, and what is shown is what the oracle says.
+#![cfg(feature = "gui")]
+
+mod common;
+
+use std::{
+    path::Path,
+    time::{Duration, Instant},
+};
+
+use eframe::egui::{self, Key, Modifiers, Pos2, Rect, Role, vec2};
+use egui_kittest::{Harness, Node, kittest::Queryable as _};
+use rasterlab::{
+    app::{App, Options, wgpu_setup},
+    gpu::device::AdapterChoice,
+    oracle,
+    preset::{self, form::Plain},
+    session::SceneSource,
+};
+
+type Lab = Harness<'static, App>;
+
+/// A window of 1280 x 800 that shows `open`, with its first picture drawn.
+fn lab_in(open: &str, presets_dir: Option<&Path>) -> Option<Lab> {
+    common::gpu()?; // Fails with one sentence when there is none.
+    let adapter = std::env::var("RASTERLAB_ADAPTER").map_or(AdapterChoice::Any, AdapterChoice::Named);
+    let options = Options { open: Some(open.into()), adapter, presets_dir: presets_dir.map(Path::to_owned) };
+    let mut lab = Harness::builder()
+        .with_size([1280.0, 800.0])
+        .with_render_cursor(false)
+        .wgpu_setup(wgpu_setup(&options.adapter))
+        .build_eframe(|cc| App::new(cc, options).unwrap_or_else(|error| panic!("{error:#}")));
+    settle(&mut lab);
+    Some(lab)
+}
+
+fn lab(open: &str) -> Option<Lab> {
+    lab_in(open, None)
+}
+
+/// Steps until pictures, figures and thumbnails have arrived, and then until every gesture is closed.
+fn settle(lab: &mut Lab) {
+    let patience = Instant::now() + Duration::from_secs(120);
+    loop {
+        lab.step();
+        if lab.state().is_settled() {
+            break;
+        }
+        assert!(Instant::now() < patience, "the window does not come to rest\n{}", lab.state().log_text());
+        std::thread::sleep(Duration::from_millis(5));
+    }
+    lab.run_steps(3);
+    lab.check_accessibility();
+}
+
+/// Drags from one place to another in several moves, as a hand does.
+fn drag(lab: &mut Lab, from: Pos2, to: Pos2) {
+    lab.hover_at(from);
+    lab.step();
+    lab.drag_at(from);
+    lab.step();
+    for i in 1..=8 {
+        lab.hover_at(from + (to - from) * (i as f32 / 8.0));
+        lab.step();
+    }
+    lab.drop_at(to);
+    lab.step();
+    settle(lab);
+}
+
+fn slider<'a>(lab: &'a Lab, path: &'a str) -> Node<'a> {
+    lab.get_by_role_and_label(Role::Slider, path)
+}
+
+fn has_slider(lab: &Lab, path: &str) -> bool {
+    lab.query_by_role_and_label(Role::Slider, path).is_some()
+}
+
+fn press(lab: &mut Lab, modifiers: Modifiers, key: Key) {
+    lab.key_press_modifiers(modifiers, key);
+    lab.run_steps(4);
+    settle(lab);
+}
+
+fn undo(lab: &mut Lab) {
+    press(lab, Modifiers::COMMAND, Key::Z);
+}
+
+fn click(lab: &mut Lab, role: Role, label: &str) {
+    lab.get_by_role_and_label(role, label).click();
+    lab.run_steps(3);
+    settle(lab);
+}
+
+/// A parameter of an enabled effect.
+fn value(lab: &Lab, effect: &str, field: &str) -> Vec<f64> {
+    let enabled = lab.state().look().session.stack.get(effect).unwrap_or_else(|| panic!("{effect} is not enabled"));
+    enabled.effect.field(field).expect("a field of the effect").get(&enabled.words)
+}
+
+#[test]
+fn every_widget_of_every_folder_and_dialog_has_a_name() {
+    let Some(mut lab) = lab("facet-sweep") else { return };
+    for folder in ["Camera", "Clock", "Kernel", "Look"] {
+        lab.get_by_label(folder).click();
+        lab.run_steps(2);
+    }
+    lab.check_accessibility();
+    for tab in ["Scene", "Looks"] {
+        click(&mut lab, Role::Button, tab);
+    }
+    for (modifiers, key) in
+        [(Modifiers::NONE, Key::F1), (Modifiers::NONE, Key::L), (Modifiers::COMMAND, Key::O), (Modifiers::NONE, Key::F12)]
+    {
+        press(&mut lab, modifiers, key);
+        press(&mut lab, Modifiers::NONE, Key::Escape);
+    }
+}
+
+#[test]
+fn a_slider_drag_is_one_undo_step() {
+    let Some(mut lab) = lab("lambert") else { return };
+    let before = value(&lab, "lambert", "headlight");
+    let rail = slider(&lab, "lambert.headlight").rect();
+    drag(&mut lab, rail.left_center() + vec2(14.0, 0.0), rail.right_center() - vec2(10.0, 0.0));
+    let after = value(&lab, "lambert", "headlight");
+    assert!(after[0] > before[0] + 0.2, "{before:?} {after:?}");
+    assert_eq!(lab.state().undo_steps(), 1);
+    undo(&mut lab);
+    assert_eq!((value(&lab, "lambert", "headlight"), lab.state().undo_steps()), (before, 0));
+    press(&mut lab, Modifiers::COMMAND | Modifiers::SHIFT, Key::Z);
+    assert_eq!(value(&lab, "lambert", "headlight"), after);
+}
+
+#[test]
+fn orbiting_is_one_undo_step_and_gives_the_look_a_camera() {
+    let Some(mut lab) = lab("lambert") else { return };
+    let before = lab.state().look().session.camera;
+    let view = lab.get_by_label("Picture").rect();
+    drag(&mut lab, view.center(), view.center() + vec2(120.0, 40.0));
+    let after = lab.state().look().session.camera;
+    assert!(after.is_some() && after != before);
+    assert_eq!(lab.state().undo_steps(), 1);
+    undo(&mut lab);
+    assert_eq!(lab.state().look().session.camera, before);
+}
+
+#[test]
+fn a_wheel_burst_is_one_undo_step() {
+    let Some(mut lab) = lab("lambert") else { return };
+    let view = lab.get_by_label("Picture").rect();
+    lab.hover_at(view.center());
+    lab.step();
+    for _ in 0..4 {
+        lab.event(egui::Event::MouseWheel {
+            unit: egui::MouseWheelUnit::Point,
+            delta: vec2(0.0, 30.0),
+            phase: egui::TouchPhase::Move,
+            source: egui::MouseWheelSource::Wheel,
+            modifiers: Modifiers::NONE,
+        });
+        lab.step();
+    }
+    lab.run_steps(4);
+    settle(&mut lab);
+    assert_eq!(lab.state().undo_steps(), 1);
+    assert!(lab.state().look().session.camera.is_some());
+}
+
+#[test]
+fn undo_of_a_look_brings_its_name_back() {
+    let Some(mut lab) = lab("lambert") else { return };
+    let (id, session) = (lab.state().look().id.clone(), lab.state().look().session.clone());
+    click(&mut lab, Role::Button, "Look Cut knot");
+    assert_eq!(lab.state().look().id, "facet-knot");
+    assert_eq!(lab.state().undo_steps(), 1);
+    undo(&mut lab);
+    assert_eq!((&lab.state().look().id, &lab.state().look().session), (&id, &session));
+    assert!(!lab.state().look().is_modified());
+}
+
+#[test]
+fn brackets_walk_through_the_gallery() {
+    let Some(mut lab) = lab("lambert") else { return };
+    press(&mut lab, Modifiers::NONE, Key::CloseBracket);
+    assert_eq!(lab.state().look().id, "normals");
+    press(&mut lab, Modifiers::NONE, Key::OpenBracket);
+    press(&mut lab, Modifiers::NONE, Key::OpenBracket);
+    assert_eq!(lab.state().look().id, "facet-sweep");
+}
+
+#[test]
+fn enabling_an_effect_shows_its_sliders_and_disabling_hides_them() {
+    let Some(mut lab) = lab("lambert") else { return };
+    assert!(!has_slider(&lab, "facet.amount"));
+    click(&mut lab, Role::CheckBox, "facet");
+    assert!(has_slider(&lab, "facet.amount"));
+    assert!(!has_slider(&lab, "facet.radius_m"), "only the radial pattern has a radius");
+    assert_eq!(lab.state().undo_steps(), 1);
+    click(&mut lab, Role::CheckBox, "facet");
+    assert!(!has_slider(&lab, "facet.amount"));
+}
+
+#[test]
+fn a_changed_value_has_a_reset_button_that_leads_to_its_default() {
+    let Some(mut lab) = lab("lambert") else { return };
+    assert!(lab.query_by_label("Reset lambert.headlight").is_none());
+    let default = value(&lab, "lambert", "headlight");
+    let rail = slider(&lab, "lambert.headlight").rect();
+    drag(&mut lab, rail.left_center() + vec2(14.0, 0.0), rail.center());
+    assert_ne!(value(&lab, "lambert", "headlight"), default);
+    click(&mut lab, Role::Button, "Reset lambert.headlight");
+    assert_eq!(value(&lab, "lambert", "headlight"), default);
+    assert!(lab.query_by_label("Reset lambert.headlight").is_none());
+}
+
+#[test]
+fn muting_changes_the_picture_and_not_the_look() {
+    let Some(mut lab) = lab("lambert") else { return };
+    let (session, draws) = (lab.state().look().session.clone(), lab.state().draws());
+    click(&mut lab, Role::Button, "Mute lambert");
+    assert!(lab.state().draws() > draws);
+    assert_eq!(lab.state().look().session, session);
+    assert_eq!(lab.state().undo_steps(), 0);
+}
+
+#[test]
+fn an_idle_window_neither_draws_nor_asks_to_be_shown_again() {
+    let Some(mut lab) = lab("lambert") else { return };
+    let draws = lab.state().draws();
+    // The pointer may move over the picture and the panels: nothing changes by it.
+    for to in [Pos2::new(640.0, 400.0), Pos2::new(660.0, 420.0), Pos2::new(1100.0, 300.0), Pos2::new(100.0, 300.0)] {
+        lab.hover_at(to);
+        lab.step();
+    }
+    lab.remove_cursor();
+    lab.run_steps(8);
+    assert_eq!(lab.state().draws(), draws);
+    let delay = lab.output().viewport_output[&egui::ViewportId::ROOT].repaint_delay;
+    assert_eq!(delay, Duration::MAX, "{:?}", lab.ctx.repaint_causes());
+}
+
+#[test]
+fn a_scene_that_cannot_be_loaded_keeps_the_last_picture_and_is_reported_once() {
+    let Some(mut lab) = lab("lambert") else { return };
+    let draws = lab.state().draws();
+    lab.state_mut().session_mut().scene = SceneSource::Builtin("no-such-scene".into());
+    lab.run_steps(3);
+    settle(&mut lab);
+    lab.run_steps(10);
+    assert!(lab.state().has_picture());
+    assert_eq!(lab.state().draws(), draws);
+    let log = lab.state().log_text();
+    let reports: Vec<_> = log.lines().filter(|line| line.contains("no-such-scene")).collect();
+    assert!(matches!(reports[..], [one] if !one.contains('×')), "{log}");
+    undo(&mut lab);
+    assert_eq!(lab.state().look().session.scene, preset::open("lambert", None).unwrap().session.scene);
+}
+
+#[test]
+fn a_picture_that_cannot_be_drawn_keeps_the_last_one_and_is_reported_once() {
+    let Some(mut lab) = lab("lambert") else { return };
+    let before = picture(&mut lab);
+    lab.state_mut().session_mut().camera = Some(rasterlab::scene::camera::Camera { eye: glam::DVec3::splat(1e13), ..Default::default() });
+    lab.run_steps(10);
+    let log = lab.state().log_text();
+    assert_eq!(log.lines().filter(|line| line.starts_with("error")).count(), 1, "{log}");
+    assert!(log.lines().all(|line| !line.contains('×')), "{log}");
+    let after = picture(&mut lab);
+    let below = |image: &image::RgbaImage| image::imageops::crop_imm(image, 0, 48, image.width(), image.height() - 120).to_image();
+    assert!(below(&before) == below(&after), "the last good picture went away");
+}
+
+#[test]
+fn saving_writes_a_file_that_loads_equal() {
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    let Some(mut lab) = lab_in("teapot", Some(folder.path())) else { return };
+    click(&mut lab, Role::CheckBox, "facet");
+    let rail = slider(&lab, "facet.amount").rect();
+    drag(&mut lab, rail.right_center() - vec2(8.0, 0.0), rail.center());
+    let view = lab.get_by_label("Picture").rect();
+    drag(&mut lab, view.center(), view.center() + vec2(33.0, 12.0));
+    assert!(lab.state().look().is_modified());
+    press(&mut lab, Modifiers::COMMAND, Key::S); // Built in, so this asks for a name.
+    press(&mut lab, Modifiers::NONE, Key::Enter);
+    let path = folder.path().join("my-teapot.toml");
+    let loaded = preset::load(&path).unwrap_or_else(|error| panic!("{error}\n{}", lab.state().log_text()));
+    assert_eq!(loaded.session, lab.state().look().session);
+    assert!(loaded.warnings.is_empty() && !lab.state().look().is_modified());
+    assert_eq!(lab.state().look().id, "my-teapot");
+    assert_eq!(lab.query_all_by_label("Look Teapot").count(), 2, "the gallery shows the new look beside the built-in one");
+}
+
+#[test]
+fn an_exported_picture_carries_its_look() {
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    let Some(mut lab) = lab("facet-sweep") else { return };
+    let path = folder.path().join("shot"); // The extension is added.
+    press(&mut lab, Modifiers::NONE, Key::F12);
+    let field = lab.get_by_role_and_label(Role::TextInput, "Path");
+    field.focus();
+    lab.step();
+    lab.key_press_modifiers(Modifiers::COMMAND, Key::A);
+    lab.event(egui::Event::Text(path.to_string_lossy().into_owned()));
+    lab.run_steps(3);
+    lab.get_by_role_and_label(Role::Button, "Save").click();
+    let path = path.with_extension("png");
+    let patience = Instant::now() + Duration::from_secs(60);
+    while !path.exists() {
+        lab.step();
+        assert!(Instant::now() < patience, "{}", lab.state().log_text());
+        std::thread::sleep(Duration::from_millis(10));
+    }
+    let png = std::fs::read(&path).expect("the picture");
+    assert_eq!(preset::look_from_png(&png, "shot.png").expect("a look inside").session, lab.state().look().session);
+    let view = lab.get_by_label("Picture").rect();
+    let decoded = image::load_from_memory(&png).expect("a PNG");
+    assert_eq!([decoded.width(), decoded.height()], [view.width().round() as u32, view.height().round() as u32]);
+}
+
+#[test]
+fn undo_after_saving_is_an_unsaved_change_again() {
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    let path = folder.path().join("mine.toml");
+    let mut look = preset::open("lambert", None).expect("a built-in look");
+    preset::save(&mut look, &path).expect("a file");
+    let Some(mut lab) = lab_in(&path.to_string_lossy(), Some(folder.path())) else { return };
+    click(&mut lab, Role::CheckBox, "facet");
+    press(&mut lab, Modifiers::COMMAND, Key::S);
+    assert!(!lab.state().look().is_modified());
+    undo(&mut lab);
+    assert!(lab.state().look().is_modified(), "the file has the facets, the look has not");
+    press(&mut lab, Modifiers::COMMAND, Key::S);
+    assert!(preset::load(&path).expect("a look").session.stack.get("facet").is_none());
+}
+
+#[test]
+fn the_window_shows_the_picture_of_the_oracle() {
+    let Some(mut lab) = lab("facet-sweep") else { return };
+    let shown = picture(&mut lab);
+    let session = lab.state().look().session.clone();
+    let scene = preset::load_scene(&session, None).expect("a built-in scene");
+    let view = session.view(&scene, [shown.width(), shown.height()]);
+    let expected = oracle::render(&scene, &view, &session.stack).expect("a picture");
+    // The buttons lie over the top of it.
+    let pairs = shown.pixels().zip(&expected.color).skip((shown.width() * 48) as usize);
+    let wrong = pairs.filter(|(a, b)| a.0.iter().zip(*b).any(|(a, b)| a.abs_diff(*b) > 1)).count();
+    // A vertex may snap one unit apart; that moves a few edge pixels and no more.
+    assert!(wrong <= 24, "{wrong} of {} pixels differ by more than 1", expected.color.len());
+    assert!(expected.covered() > 20_000);
+}
+
+#[test]
+fn verify_measures_the_picture_and_a_change_makes_the_figure_stale() {
+    let Some(mut lab) = lab("facet-sweep") else { return };
+    assert!(lab.query_by_label("error not measured").is_some());
+    click(&mut lab, Role::Button, "Verify");
+    let accuracy = lab.state().accuracy().cloned().expect("a verdict on the picture as it is shown");
+    assert_eq!((accuracy.owner_mismatch, accuracy.holes, accuracy.double_hits), (0, 0, 0));
+    assert!(accuracy.pixels > 100_000 && accuracy.max_colour_delta <= 2, "{accuracy:?}");
+    assert!(lab.query_all_by_label_contains("0 wrong owners").count() > 0);
+    click(&mut lab, Role::Button, "Top view");
+    assert!(lab.state().accuracy().is_none());
+    assert!(lab.query_by_label_contains("stale").is_some());
+}
+
+#[test]
+fn typing_a_number_does_not_trigger_shortcuts() {
+    let Some(mut lab) = lab("lambert") else { return };
+    let camera = lab.state().look().session.camera;
+    let field = lab.get_by_label("lambert.headlight value");
+    field.click();
+    lab.run_steps(2);
+    for text in ["0", ".", "7"] {
+        lab.event(egui::Event::Text(text.into()));
+        lab.key_press(if text == "7" { Key::Num7 } else { Key::Num0 });
+        lab.step();
+    }
+    lab.key_press(Key::Enter);
+    lab.run_steps(3);
+    settle(&mut lab);
+    assert_eq!(lab.state().look().session.camera, camera, "7 is the key of the top view");
+    assert_eq!(value(&lab, "lambert", "headlight"), [f64::from(0.7f32)]);
+}
+
+#[test]
+fn randomize_stays_within_soft_ranges_and_is_one_undo_step() {
+    let Some(mut lab) = lab("facet-sweep") else { return };
+    let before = lab.state().look().session.clone();
+    press(&mut lab, Modifiers::NONE, Key::R);
+    let after = lab.state().look().session.clone();
+    assert_ne!(before.stack, after.stack);
+    assert!(lab.state().log_text().contains("seed 1"));
+    for enabled in &after.stack.0 {
+        for field in enabled.effect.fields {
+            let Plain::Numbers(lanes) = Plain::Numbers(field.get(&enabled.words)) else { unreachable!() };
+            assert!(lanes.iter().all(|lane| (field.soft[0]..=field.soft[1]).contains(lane)), "{}.{}", enabled.effect.name, field.name);
+        }
+    }
+    undo(&mut lab);
+    assert_eq!(lab.state().look().session, before);
+}
+
+/// The pixels of the view, as the window shows them.
+fn picture(lab: &mut Lab) -> image::RgbaImage {
+    let Rect { min, max } = lab.get_by_label("Picture").rect();
+    let window = lab.render().expect("a rendered window");
+    let [x, y, width, height] = [min.x, min.y, max.x - min.x, max.y - min.y].map(|v| v.round() as u32);
+    image::imageops::crop_imm(&window, x, y, width, height).to_image()
+}
+
+/// Run by the next test in a process of its own, whose environment says where a rescued look goes.
+#[test]
+#[ignore = "run by a_lost_device_rescues_the_look_and_closes_the_window"]
+fn child_that_loses_its_device() {
+    let mut lab = lab("facet-sweep").expect("the parent has an adapter");
+    lab.state_mut().session_mut().spin_deg_per_s = 12.5;
+    lab.state().gpu().device.destroy();
+    let commands: Vec<_> = (0..20)
+        .flat_map(|_| {
+            lab.step();
+            lab.output().viewport_output[&egui::ViewportId::ROOT].commands.clone()
+        })
+        .collect();
+    assert!(commands.contains(&egui::ViewportCommand::Close), "{commands:?}");
+}
+
+#[test]
+fn a_lost_device_rescues_the_look_and_closes_the_window() {
+    if common::gpu().is_none() {
+        return;
+    }
+    let home = tempfile::tempdir().expect("a temporary folder");
+    let child = std::process::Command::new(std::env::current_exe().expect("this test"))
+        .args(["--exact", "child_that_loses_its_device", "--ignored"])
+        .env("XDG_CONFIG_HOME", home.path())
+        .env("HOME", home.path())
+        .output()
+        .expect("the child starts");
+    let said = String::from_utf8_lossy(&child.stdout).into_owned() + &String::from_utf8_lossy(&child.stderr);
+    assert!(child.status.success(), "{said}");
+    let folder = if cfg!(target_os = "macos") { "Library/Application Support/rasterlab" } else { "rasterlab" };
+    let rescued = preset::load(&home.path().join(folder).join("recovery.toml")).unwrap_or_else(|error| panic!("{error}\n{said}"));
+    assert_eq!(rescued.session.spin_deg_per_s, 12.5);
+}

@@ -1,0 +1,234 @@
+//! A real window on a display of its own (Xvfb): it opens, draws, follows a hand, saves a look and closes.
+#![cfg(all(feature = "gui", target_os = "linux"))]
+
+use std::{
+    io::{BufRead as _, BufReader},
+    path::{Path, PathBuf},
+    process::{Child, Command, ExitStatus, Stdio},
+    time::{Duration, Instant},
+};
+
+use rasterlab::preset;
+use x11rb::{
+    connection::Connection as _,
+    protocol::{
+        xproto::{
+            BUTTON_PRESS_EVENT, BUTTON_RELEASE_EVENT, ClientMessageEvent, ConnectionExt as _, EventMask, ImageFormat, InputFocus,
+            KEY_PRESS_EVENT, KEY_RELEASE_EVENT, MOTION_NOTIFY_EVENT, Window,
+        },
+        xtest::ConnectionExt as _,
+    },
+    rust_connection::RustConnection,
+};
+
+const SIZE: [u16; 2] = [1280, 800];
+
+/// How long anything may take before the test gives up: a software adapter compiles kernels on a busy machine.
+const PATIENCE: Duration = Duration::from_secs(120);
+
+/// A process that does not outlive its test.
+struct Owned(Child);
+
+impl Drop for Owned {
+    fn drop(&mut self) {
+        let _ = self.0.kill();
+        let _ = self.0.wait();
+    }
+}
+
+/// A display without a monitor, and a client on it.
+struct Display {
+    x: RustConnection,
+    root: Window,
+    name: String,
+    _server: Owned,
+}
+
+impl Display {
+    fn open() -> Self {
+        let [width, height] = SIZE;
+        let server = Command::new("Xvfb")
+            .args(["-displayfd", "1", "-nolisten", "tcp", "-screen", "0", &format!("{width}x{height}x24")])
+            .stdout(Stdio::piped())
+            .stderr(Stdio::null())
+            .spawn();
+        let mut server = Owned(server.expect("Xvfb cannot be started; install it (Debian: apt-get install xvfb)"));
+        let mut number = String::new();
+        BufReader::new(server.0.stdout.take().expect("a pipe")).read_line(&mut number).expect("Xvfb says its display");
+        let name = format!(":{}", number.trim());
+        let (x, screen) = RustConnection::connect(Some(&name)).unwrap_or_else(|error| panic!("display {name}: {error}"));
+        let root = x.setup().roots[screen].root;
+        Self { x, root, name, _server: server }
+    }
+
+    /// The screen's pixels, rows from the top, `[r, g, b]`.
+    fn screenshot(&self) -> Vec<[u8; 3]> {
+        let [width, height] = SIZE;
+        let image = self.x.get_image(ImageFormat::Z_PIXMAP, self.root, 0, 0, width, height, !0).expect("a request").reply().expect("a screenshot");
+        image.data.chunks_exact(4).map(|p| [p[2], p[1], p[0]]).collect()
+    }
+
+    /// The part where the picture is, between the panels.
+    fn view(&self) -> Vec<[u8; 3]> {
+        let shot = self.screenshot();
+        let width = usize::from(SIZE[0]);
+        (90..usize::from(SIZE[1]) - 90).flat_map(|y| shot[y * width + 290..y * width + 920].to_vec()).collect()
+    }
+
+    fn fake(&self, kind: u8, detail: u8, [x, y]: [i16; 2]) {
+        self.x.xtest_fake_input(kind, detail, 0, self.root, x, y, 0).expect("a request").check().expect("fake input");
+        std::thread::sleep(Duration::from_millis(30));
+    }
+
+    fn drag(&self, from: [i16; 2], by: [i16; 2]) {
+        self.fake(MOTION_NOTIFY_EVENT, 0, from);
+        self.fake(BUTTON_PRESS_EVENT, 1, [0, 0]);
+        for step in 1..=10 {
+            self.fake(MOTION_NOTIFY_EVENT, 0, [from[0] + by[0] * step / 10, from[1] + by[1] * step / 10]);
+        }
+        self.fake(BUTTON_RELEASE_EVENT, 1, [0, 0]);
+    }
+
+    /// Presses keys together, by X keysyms, and lets them go.
+    fn press(&self, keysyms: &[u32]) {
+        let codes: Vec<u8> = keysyms.iter().map(|&keysym| self.keycode(keysym)).collect();
+        codes.iter().for_each(|&code| self.fake(KEY_PRESS_EVENT, code, [0, 0]));
+        codes.iter().rev().for_each(|&code| self.fake(KEY_RELEASE_EVENT, code, [0, 0]));
+    }
+
+    fn keycode(&self, keysym: u32) -> u8 {
+        let setup = self.x.setup();
+        let (low, high) = (setup.min_keycode, setup.max_keycode);
+        let map = self.x.get_keyboard_mapping(low, high - low + 1).expect("a request").reply().expect("a keyboard map");
+        let place = map.keysyms.chunks(map.keysyms_per_keycode.into()).position(|symbols| symbols.contains(&keysym));
+        low + place.unwrap_or_else(|| panic!("no key for keysym {keysym:#x}")) as u8
+    }
+
+    /// The lab's window.
+    fn window(&self) -> Window {
+        let children = self.x.query_tree(self.root).expect("a request").reply().expect("the window tree").children;
+        let viewable = |w: &Window| {
+            let size = self.x.get_geometry(*w).ok().and_then(|cookie| cookie.reply().ok());
+            size.is_some_and(|size| size.width > 600)
+        };
+        *children.iter().find(|w| viewable(w)).expect("the lab's window")
+    }
+
+    /// Gives the keyboard to the window, as a window manager would.
+    fn focus(&self) {
+        let window = self.window();
+        self.x.set_input_focus(InputFocus::POINTER_ROOT, window, x11rb::CURRENT_TIME).expect("a request").check().expect("the focus");
+    }
+
+    /// What a window manager sends when its close button is pressed.
+    fn ask_to_close(&self) {
+        let atom = |name: &str| self.x.intern_atom(false, name.as_bytes()).expect("a request").reply().expect("an atom").atom;
+        let window = self.window();
+        let event = ClientMessageEvent::new(32, window, atom("WM_PROTOCOLS"), [atom("WM_DELETE_WINDOW"), x11rb::CURRENT_TIME, 0, 0, 0]);
+        self.x.send_event(false, window, EventMask::NO_EVENT, event).expect("a request").check().expect("the event is sent");
+    }
+}
+
+/// The lab on `display`, at home in `home`.
+fn start(display: &Display, home: &Path, arguments: &[&str]) -> Owned {
+    let lab = Command::new(env!("CARGO_BIN_EXE_rasterlab"))
+        .args(arguments)
+        .current_dir(home)
+        .env("DISPLAY", &display.name)
+        .env_remove("WAYLAND_DISPLAY")
+        .env("HOME", home)
+        .env("XDG_CONFIG_HOME", home.join(".config"))
+        .env("XDG_RUNTIME_DIR", home)
+        .spawn();
+    Owned(lab.expect("the binary starts"))
+}
+
+/// Waits until `reached`, or says what did not happen.
+fn wait_for(what: &str, lab: &mut Owned, mut reached: impl FnMut() -> bool) {
+    let patience = Instant::now() + PATIENCE;
+    while !reached() {
+        if let Some(status) = lab.0.try_wait().expect("a child of ours") {
+            panic!("the lab ended with {status} before {what}");
+        }
+        assert!(Instant::now() < patience, "{what}: it did not happen within {} s", PATIENCE.as_secs());
+        std::thread::sleep(Duration::from_millis(100));
+    }
+}
+
+fn wait_for_exit(lab: &mut Owned) -> ExitStatus {
+    let patience = Instant::now() + PATIENCE;
+    loop {
+        if let Some(status) = lab.0.try_wait().expect("a child of ours") {
+            return status;
+        }
+        assert!(Instant::now() < patience, "the lab did not end");
+        std::thread::sleep(Duration::from_millis(50));
+    }
+}
+
+/// Pixels that differ clearly from the most frequent colour.
+fn drawn(view: &[[u8; 3]]) -> usize {
+    let mut counts = std::collections::HashMap::new();
+    view.iter().for_each(|pixel| *counts.entry(*pixel).or_insert(0usize) += 1);
+    let Some((background, _)) = counts.into_iter().max_by_key(|(_, count)| *count) else { return 0 };
+    view.iter().filter(|pixel| pixel.iter().zip(background).any(|(a, b)| a.abs_diff(b) > 24)).count()
+}
+
+const CONTROL: u32 = 0xffe3;
+const RETURN: u32 = 0xff0d;
+
+fn is_skipped() -> bool {
+    let skipped = std::env::var("RASTERLAB_GPU").as_deref() == Ok("skip");
+    if skipped {
+        eprintln!("RASTERLAB_GPU=skip: the window test is left out");
+    }
+    skipped
+}
+
+#[test]
+fn a_real_window_opens_draws_follows_the_hand_saves_and_closes() {
+    if is_skipped() {
+        return;
+    }
+    let home = tempfile::tempdir().expect("a temporary folder");
+    let display = Display::open();
+    let mut lab = start(&display, home.path(), &["facet-knot"]);
+    wait_for("the picture appeared", &mut lab, || drawn(&display.view()) > 5_000);
+
+    let before = display.view();
+    display.drag([600, 400], [120, 50]);
+    wait_for("the picture followed the hand", &mut lab, || {
+        let after = display.view();
+        before.iter().zip(&after).filter(|(a, b)| a != b).count() > 5_000 && drawn(&after) > 5_000
+    });
+
+    display.focus();
+    let saved: PathBuf = home.path().join(".config/rasterlab/presets/my-facet-knot.toml");
+    display.press(&[CONTROL, u32::from(b's')]);
+    std::thread::sleep(Duration::from_millis(500));
+    wait_for("the look was saved", &mut lab, || {
+        display.press(&[RETURN]);
+        saved.exists()
+    });
+    let look = preset::load(&saved).expect("the saved look loads");
+    assert!(look.session.camera.is_some() && look.warnings.is_empty());
+    let built_in = preset::open("facet-knot", None).expect("a built-in look").session;
+    assert_eq!(look.session.stack, built_in.stack);
+    assert_ne!(look.session.camera, built_in.camera);
+
+    display.press(&[CONTROL, u32::from(b'q')]);
+    assert!(wait_for_exit(&mut lab).success(), "the lab closes with status 0");
+}
+
+#[test]
+fn a_window_closes_when_its_frame_is_closed() {
+    if is_skipped() {
+        return;
+    }
+    let home = tempfile::tempdir().expect("a temporary folder");
+    let display = Display::open();
+    let mut lab = start(&display, home.path(), &["builtin:cube-wall"]);
+    wait_for("the picture appeared", &mut lab, || drawn(&display.view()) > 5_000);
+    display.ask_to_close();
+    assert!(wait_for_exit(&mut lab).success(), "the lab closes with status 0");
+}
