@@ -3,6 +3,8 @@
 pub mod bench;
 pub mod buffers;
 pub mod device;
+mod dispatch;
+mod explain;
 pub mod hardware;
 pub mod naive;
 pub mod pipelines;
@@ -14,10 +16,12 @@ use std::{collections::VecDeque, sync::Arc};
 
 pub use buffers::BufferNote;
 pub use device::Gpu;
+pub use explain::Explanation;
 pub use readback::Capture;
 
 use self::{
     buffers::Buffers,
+    dispatch::{Dispatch, dispatch},
     pipelines::Pipelines,
     readback::Pending,
     timer::{Detail, Timer},
@@ -37,7 +41,7 @@ use crate::{
     },
     shader::{
         glue::uniform_bytes,
-        key::{KernelKey, Pass, Phase, Visibility},
+        key::{KernelKey, Pass, Visibility},
         library::Library,
         link::LinkError,
         reflect::ShaderError,
@@ -91,16 +95,6 @@ pub struct Report {
     pub counters: Counters,
     /// A queue overflowed and has grown: the picture is incomplete, draw it again.
     pub redraw: bool,
-}
-
-/// Which passes and buffers exist for the last picture, and why.
-#[derive(Clone, Debug, serde::Serialize)]
-pub struct Explanation {
-    pub key: String,
-    pub passes: Vec<Note>,
-    pub buffers: Vec<BufferNote>,
-    pub reasons: Vec<Note>,
-    pub omitted: Vec<Note>,
 }
 
 /// Draws scenes on one device.
@@ -253,27 +247,6 @@ impl Renderer {
         Some(Report { gpu_ms: times.total_ms, passes: times.passes, counters, redraw })
     }
 
-    /// What exists for the last picture, and why.
-    pub fn explain(&self) -> Explanation {
-        let Some(plan) = &self.last else {
-            return Explanation {
-                key: "nothing drawn yet".into(),
-                passes: Vec::new(),
-                buffers: self.buffers.notes(),
-                reasons: Vec::new(),
-                omitted: Vec::new(),
-            };
-        };
-        let passes = plan.key.frame();
-        Explanation {
-            key: plan.key.to_string(),
-            passes: passes.iter().map(|pass| Note { name: pass.label(), why: pass_purpose(*pass).into() }).collect(),
-            buffers: self.buffers.notes(),
-            reasons: plan.reasons.clone(),
-            omitted: plan.omitted.clone(),
-        }
-    }
-
     /// Plans the picture and makes its buffers hold what the passes will read.
     fn prepare(&mut self, view: &View, stack: &Stack, accuracy: &Accuracy) -> Result<Plan, RenderError> {
         let scene = self.scene.clone().ok_or(RenderError::NoScene)?;
@@ -413,48 +386,6 @@ const BACKGROUND_ROWS: u32 = 32;
 fn background_word(view: &View) -> [u8; 4] {
     let [r, g, b, alpha] = view.background.map(f64::from);
     [srgb_byte(r), srgb_byte(g), srgb_byte(b), (alpha.clamp(0.0, 1.0) * 255.0 + 0.5) as u8]
-}
-
-/// How many workgroups a pass takes.
-enum Dispatch {
-    Direct([u32; 2]),
-    /// Byte offset in the argument buffer.
-    Indirect(u64),
-}
-
-fn dispatch(pass: Pass, vertices: u32, triangles: u32, view: &View, listed_tiles: bool) -> Dispatch {
-    match pass {
-        Pass::Project => Dispatch::Direct(folded(vertices.div_ceil(64))),
-        Pass::RasterSmall(_) => Dispatch::Direct(folded(triangles.div_ceil(64))),
-        Pass::Args => Dispatch::Direct([1, 1]),
-        Pass::Clip => Dispatch::Indirect(0),
-        Pass::RasterMedium(_) => Dispatch::Indirect(12),
-        Pass::TileLarge => Dispatch::Indirect(24),
-        Pass::RasterLarge(_) => Dispatch::Indirect(36),
-        Pass::ListTiles => Dispatch::Direct(folded((view.width.div_ceil(8) * view.height.div_ceil(8)).div_ceil(64))),
-        Pass::Resolve if listed_tiles => Dispatch::Indirect(48),
-        Pass::Resolve => Dispatch::Direct([view.width.div_ceil(8), view.height.div_ceil(8)]),
-    }
-}
-
-/// Folds more than 65,535 workgroups into two dimensions; the kernel guards the tail.
-pub(crate) fn folded(groups: u32) -> [u32; 2] {
-    [groups.min(65_535), groups.div_ceil(65_535)]
-}
-
-fn pass_purpose(pass: Pass) -> &'static str {
-    match pass {
-        Pass::Project => "pulls, transforms and snaps every vertex once",
-        Pass::RasterSmall(Phase::Owner) => "visits the small triangles again for the owner of each nearest key",
-        Pass::RasterSmall(_) => "culls and classifies every triangle, draws the small ones on the spot",
-        Pass::Args => "turns queue demand into dispatch sizes",
-        Pass::Clip => "cuts triangles at the near plane and the guard band",
-        Pass::TileLarge => "finds the tiles of each large triangle",
-        Pass::RasterMedium(_) => "one workgroup per triangle of up to 128 px",
-        Pass::RasterLarge(_) => "one workgroup per 64 x 64 tile of a large triangle",
-        Pass::ListTiles => "gathers the tiles that hold something",
-        Pass::Resolve => "shades every pixel once",
-    }
 }
 
 /// Capacities of the queues that this key's passes have; 0 where a pass is left out.

@@ -7,7 +7,7 @@ use glam::DMat4;
 use super::{
     Gpu, RenderError,
     buffers::Buffers,
-    folded,
+    dispatch::folded,
     pipelines::{Pipeline, Pipelines},
     timer::Timer,
     uniforms::color_stride,
