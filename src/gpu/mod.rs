@@ -32,7 +32,7 @@ use crate::{
     effects::Stack,
     frame::Counters,
     math::srgb_byte,
-    plan::{Accuracy, Lacking, Plan, plan},
+    plan::{Accuracy, Lacking, Plan, Tuning, plan},
     scene::{
         Scene,
         camera::View,
@@ -104,6 +104,7 @@ pub struct Renderer {
     buffers: Buffers,
     timer: Option<Timer>,
     scene: Option<Arc<Scene>>,
+    tuning: Tuning,
     capacities: Capacities,
     /// A proof from bounds failed: queues and clipping are kept from now on.
     distrust: bool,
@@ -116,10 +117,16 @@ const STORAGE: wgpu::BufferUsages = wgpu::BufferUsages::STORAGE;
 
 impl Renderer {
     pub fn new(gpu: Arc<Gpu>) -> Self {
+        Self::with_library(gpu, Library::from_env())
+    }
+
+    /// A renderer whose shaders come from `library`.
+    pub fn with_library(gpu: Arc<Gpu>, library: Library) -> Self {
         let timer = Timer::new(&gpu);
         Self {
+            tuning: gpu.caps.tuning(),
             gpu,
-            pipelines: Pipelines::new(Library::from_env()),
+            pipelines: Pipelines::new(library),
             buffers: Buffers::default(),
             timer,
             scene: None,
@@ -133,6 +140,26 @@ impl Renderer {
 
     pub fn gpu(&self) -> &Arc<Gpu> {
         &self.gpu
+    }
+
+    /// Shares out work in another way than suits the adapter, from the next picture on.
+    pub fn set_tuning(&mut self, tuning: Tuning) {
+        self.tuning = tuning;
+    }
+
+    /// Room for so many queue entries in the next picture of the scene that is set; too few grow and are drawn again.
+    pub fn set_capacities(&mut self, capacities: Capacities) {
+        self.capacities = capacities;
+    }
+
+    /// Room in the queues by now.
+    pub fn capacities(&self) -> Capacities {
+        self.capacities
+    }
+
+    /// Key of the last picture's kernel.
+    pub fn key(&self) -> Option<&KernelKey> {
+        self.last.as_ref().map(|plan| &plan.key)
     }
 
     /// Pipelines compiled so far; a switch back to a known key adds none.
@@ -260,7 +287,7 @@ impl Renderer {
         if self.distrust {
             (needs.clipping, needs.largest_px) = (true, f64::INFINITY);
         }
-        let plan = plan(&needs, stack, &gpu.caps, accuracy)?;
+        let plan = plan(&needs, stack, &gpu.caps, &self.tuning, accuracy)?;
         let key = &plan.key;
         let recorded = recorded_capacities(key, &self.capacities);
 
