@@ -158,7 +158,7 @@ impl Lab<'_> {
         for viewport in [Viewport::AsWritten, Viewport::Folded] {
             match Naive::new(self.gpu, scene, &self.view, &key, viewport) {
                 Ok(naive) => {
-                    let picture = self.naive_picture(&naive)?;
+                    let picture = naive.picture(self.gpu)?;
                     entries.push(Entry::new(Contender::Naive(viewport, Box::new(naive)), picture_error(&picture, &expected)));
                 }
                 Err(error) if error.is_unsupported() => missing.push(("naive".into(), error.to_string())),
@@ -205,13 +205,6 @@ impl Lab<'_> {
         pending.read(self.timer.as_ref()).map(|(_, times)| times).ok_or(RenderError::Lost)
     }
 
-    fn naive_picture(&self, naive: &Naive) -> Result<Vec<[u8; 4]>, RenderError> {
-        let mut encoder = self.gpu.device.create_command_encoder(&Default::default());
-        naive.record(self.gpu, &mut encoder, None);
-        self.gpu.queue.submit([encoder.finish()]);
-        self.read_picture(naive.color())
-    }
-
     fn hardware_picture(&self, hardware: &Hardware) -> Result<Vec<[u8; 4]>, RenderError> {
         let buffer = self.gpu.device.create_buffer(&wgpu::BufferDescriptor {
             label: Some("hardware picture"),
@@ -223,18 +216,11 @@ impl Lab<'_> {
         hardware.record(&mut encoder, None);
         hardware.copy_color(&mut encoder, &buffer);
         self.gpu.queue.submit([encoder.finish()]);
-        self.read_picture(&buffer)
+        buffers::read_picture(self.gpu, &buffer, [self.view.width, self.view.height])
     }
 
     fn picture_bytes(&self) -> u64 {
         4 * u64::from(color_stride(self.view.width)) * u64::from(self.view.height)
-    }
-
-    fn read_picture(&self, buffer: &wgpu::Buffer) -> Result<Vec<[u8; 4]>, RenderError> {
-        let bytes = buffers::read(self.gpu, buffer, self.picture_bytes())?;
-        let row = 4 * color_stride(self.view.width) as usize;
-        let pixels = |row: &[u8]| bytemuck::pod_collect_to_vec::<u8, [u8; 4]>(&row[..4 * self.view.width as usize]);
-        Ok(bytes.chunks_exact(row).flat_map(pixels).collect())
     }
 }
 

@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use super::{Gpu, RenderError};
+use super::{Gpu, RenderError, uniforms::color_stride};
 
 /// One buffer of the picture, for `explain`.
 #[derive(Clone, Debug, PartialEq, serde::Serialize)]
@@ -109,6 +109,14 @@ pub fn read(gpu: &Gpu, buffer: &wgpu::Buffer, bytes: u64) -> Result<Vec<u8>, Ren
     encoder.copy_buffer_to_buffer(buffer, 0, &staging, 0, bytes);
     gpu.queue.submit([encoder.finish()]);
     read_staging(gpu, &staging)
+}
+
+/// Copies back a picture whose rows stand `color_stride` apart, row-major.
+pub fn read_picture(gpu: &Gpu, buffer: &wgpu::Buffer, [width, height]: [u32; 2]) -> Result<Vec<[u8; 4]>, RenderError> {
+    let row = 4 * color_stride(width) as usize;
+    let bytes = read(gpu, buffer, row as u64 * u64::from(height))?;
+    let pixels = |row: &[u8]| bytemuck::pod_collect_to_vec::<u8, [u8; 4]>(&row[..4 * width as usize]);
+    Ok(bytes.chunks_exact(row.max(1)).flat_map(pixels).collect())
 }
 
 /// Waits for a mappable buffer and reads all of it.

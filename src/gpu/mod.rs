@@ -3,6 +3,8 @@
 pub mod bench;
 pub mod buffers;
 pub mod device;
+mod dispatch;
+mod explain;
 pub mod hardware;
 pub mod naive;
 pub mod pipelines;
@@ -14,10 +16,12 @@ use std::{collections::VecDeque, sync::Arc};
 
 pub use buffers::BufferNote;
 pub use device::Gpu;
+pub use explain::Explanation;
 pub use readback::Capture;
 
 use self::{
     buffers::Buffers,
+    dispatch::{Dispatch, dispatch},
     pipelines::Pipelines,
     readback::Pending,
     timer::{Detail, Timer},
@@ -28,7 +32,7 @@ use crate::{
     effects::Stack,
     frame::Counters,
     math::srgb_byte,
-    plan::{Accuracy, Lacking, Plan, plan},
+    plan::{Accuracy, Lacking, Plan, Tuning, plan},
     scene::{
         Scene,
         camera::View,
@@ -37,7 +41,7 @@ use crate::{
     },
     shader::{
         glue::uniform_bytes,
-        key::{KernelKey, Pass, Phase, Visibility},
+        key::{KernelKey, Pass, Visibility},
         library::Library,
         link::LinkError,
         reflect::ShaderError,
@@ -93,16 +97,6 @@ pub struct Report {
     pub redraw: bool,
 }
 
-/// Which passes and buffers exist for the last picture, and why.
-#[derive(Clone, Debug, serde::Serialize)]
-pub struct Explanation {
-    pub key: String,
-    pub passes: Vec<Note>,
-    pub buffers: Vec<BufferNote>,
-    pub reasons: Vec<Note>,
-    pub omitted: Vec<Note>,
-}
-
 /// Draws scenes on one device.
 pub struct Renderer {
     gpu: Arc<Gpu>,
@@ -110,6 +104,7 @@ pub struct Renderer {
     buffers: Buffers,
     timer: Option<Timer>,
     scene: Option<Arc<Scene>>,
+    tuning: Tuning,
     capacities: Capacities,
     /// A proof from bounds failed: queues and clipping are kept from now on.
     distrust: bool,
@@ -122,10 +117,16 @@ const STORAGE: wgpu::BufferUsages = wgpu::BufferUsages::STORAGE;
 
 impl Renderer {
     pub fn new(gpu: Arc<Gpu>) -> Self {
+        Self::with_library(gpu, Library::from_env())
+    }
+
+    /// A renderer whose shaders come from `library`.
+    pub fn with_library(gpu: Arc<Gpu>, library: Library) -> Self {
         let timer = Timer::new(&gpu);
         Self {
+            tuning: gpu.caps.tuning(),
             gpu,
-            pipelines: Pipelines::new(Library::from_env()),
+            pipelines: Pipelines::new(library),
             buffers: Buffers::default(),
             timer,
             scene: None,
@@ -139,6 +140,26 @@ impl Renderer {
 
     pub fn gpu(&self) -> &Arc<Gpu> {
         &self.gpu
+    }
+
+    /// Shares out work in another way than suits the adapter, from the next picture on.
+    pub fn set_tuning(&mut self, tuning: Tuning) {
+        self.tuning = tuning;
+    }
+
+    /// Room for so many queue entries in the next picture of the scene that is set; too few grow and are drawn again.
+    pub fn set_capacities(&mut self, capacities: Capacities) {
+        self.capacities = capacities;
+    }
+
+    /// Room in the queues by now.
+    pub fn capacities(&self) -> Capacities {
+        self.capacities
+    }
+
+    /// Key of the last picture's kernel.
+    pub fn key(&self) -> Option<&KernelKey> {
+        self.last.as_ref().map(|plan| &plan.key)
     }
 
     /// Pipelines compiled so far; a switch back to a known key adds none.
@@ -258,27 +279,6 @@ impl Renderer {
         Some(Report { gpu_ms: times.total_ms, passes: times.passes, counters, redraw })
     }
 
-    /// What exists for the last picture, and why.
-    pub fn explain(&self) -> Explanation {
-        let Some(plan) = &self.last else {
-            return Explanation {
-                key: "nothing drawn yet".into(),
-                passes: Vec::new(),
-                buffers: self.buffers.notes(),
-                reasons: Vec::new(),
-                omitted: Vec::new(),
-            };
-        };
-        let passes = plan.key.frame();
-        Explanation {
-            key: plan.key.to_string(),
-            passes: passes.iter().map(|pass| Note { name: pass.label(), why: pass_purpose(*pass).into() }).collect(),
-            buffers: self.buffers.notes(),
-            reasons: plan.reasons.clone(),
-            omitted: plan.omitted.clone(),
-        }
-    }
-
     /// Plans the picture and makes its buffers hold what the passes will read.
     fn prepare(&mut self, view: &View, stack: &Stack, accuracy: &Accuracy) -> Result<Plan, RenderError> {
         let scene = self.scene.clone().ok_or(RenderError::NoScene)?;
@@ -292,7 +292,7 @@ impl Renderer {
         if self.distrust {
             (needs.clipping, needs.largest_px) = (true, f64::INFINITY);
         }
-        let plan = plan(&needs, stack, &gpu.caps, accuracy)?;
+        let plan = plan(&needs, stack, &gpu.caps, &self.tuning, accuracy)?;
         let key = &plan.key;
         let recorded = recorded_capacities(key, &self.capacities);
 
@@ -424,48 +424,6 @@ const BACKGROUND_ROWS: u32 = 32;
 fn background_word(view: &View) -> [u8; 4] {
     let [r, g, b, alpha] = view.background.map(f64::from);
     [srgb_byte(r), srgb_byte(g), srgb_byte(b), (alpha.clamp(0.0, 1.0) * 255.0 + 0.5) as u8]
-}
-
-/// How many workgroups a pass takes.
-enum Dispatch {
-    Direct([u32; 2]),
-    /// Byte offset in the argument buffer.
-    Indirect(u64),
-}
-
-fn dispatch(pass: Pass, vertices: u32, triangles: u32, view: &View, key: &KernelKey) -> Dispatch {
-    match pass {
-        Pass::Project => Dispatch::Direct(folded(vertices.div_ceil(key.list_group))),
-        Pass::RasterSmall(_) => Dispatch::Direct(folded(triangles.div_ceil(key.list_group))),
-        Pass::Args => Dispatch::Direct([1, 1]),
-        Pass::Clip => Dispatch::Indirect(0),
-        Pass::RasterMedium(_) => Dispatch::Indirect(12),
-        Pass::TileLarge => Dispatch::Indirect(24),
-        Pass::RasterLarge(_) => Dispatch::Indirect(36),
-        Pass::ListTiles => Dispatch::Direct(folded((view.width.div_ceil(8) * view.height.div_ceil(8)).div_ceil(64))),
-        Pass::Resolve if key.listed_tiles => Dispatch::Indirect(48),
-        Pass::Resolve => Dispatch::Direct([view.width.div_ceil(key.tile_side()), view.height.div_ceil(key.tile_side())]),
-    }
-}
-
-/// Folds more than 65,535 workgroups into two dimensions; the kernel guards the tail.
-pub(crate) fn folded(groups: u32) -> [u32; 2] {
-    [groups.min(65_535), groups.div_ceil(65_535)]
-}
-
-fn pass_purpose(pass: Pass) -> &'static str {
-    match pass {
-        Pass::Project => "pulls, transforms and snaps every vertex once",
-        Pass::RasterSmall(Phase::Owner) => "visits the small triangles again for the owner of each nearest key",
-        Pass::RasterSmall(_) => "culls and classifies every triangle, draws the small ones on the spot",
-        Pass::Args => "turns queue demand into dispatch sizes",
-        Pass::Clip => "cuts triangles at the near plane and the guard band",
-        Pass::TileLarge => "finds the tiles of each large triangle",
-        Pass::RasterMedium(_) => "one workgroup per triangle of up to 128 px",
-        Pass::RasterLarge(_) => "one workgroup per 64 x 64 tile of a large triangle",
-        Pass::ListTiles => "gathers the tiles that hold something",
-        Pass::Resolve => "shades every pixel once",
-    }
 }
 
 /// Capacities of the queues that this key's passes have; 0 where a pass is left out.

@@ -6,8 +6,8 @@ use glam::DMat4;
 
 use super::{
     Gpu, RenderError,
-    buffers::Buffers,
-    folded,
+    buffers::{self, Buffers},
+    dispatch::folded,
     pipelines::{Pipeline, Pipelines},
     timer::Timer,
     uniforms::color_stride,
@@ -38,6 +38,7 @@ struct NaiveUniform {
 
 /// The exhibit, set up for one scene and view.
 pub struct Naive {
+    size: [u32; 2],
     buffers: Buffers,
     passes: Vec<(Arc<Pipeline>, [u32; 2])>,
 }
@@ -70,7 +71,7 @@ impl Naive {
             (build("naive_raster")?, folded((uniform.corner_count / 3).div_ceil(256))),
             (build("naive_resolve")?, [view.width.div_ceil(8), view.height.div_ceil(8)]),
         ];
-        Ok(Self { buffers, passes })
+        Ok(Self { size: uniform.size, buffers, passes })
     }
 
     /// Records one frame.
@@ -82,6 +83,14 @@ impl Naive {
             pipeline.bind(gpu, &mut pass, |name| self.buffers.get(name));
             pass.dispatch_workgroups(*x, *y, 1);
         }
+    }
+
+    /// Draws once and waits for the picture, row-major; alpha is 0 where nothing was drawn.
+    pub fn picture(&self, gpu: &Gpu) -> Result<Vec<[u8; 4]>, RenderError> {
+        let mut encoder = gpu.device.create_command_encoder(&Default::default());
+        self.record(gpu, &mut encoder, None);
+        gpu.queue.submit([encoder.finish()]);
+        buffers::read_picture(gpu, self.color(), self.size)
     }
 
     /// The picture's buffer, rows `color_stride` apart; alpha is 0 where nothing was drawn.

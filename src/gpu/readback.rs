@@ -8,7 +8,6 @@ use std::sync::{
 use super::{
     Demand, Gpu, RenderError, Renderer, STORAGE, buffers,
     timer::{Timer, Times},
-    uniforms::color_stride,
 };
 use crate::{
     effects::Stack,
@@ -129,10 +128,7 @@ impl Renderer {
     }
 
     fn read_color(&self, view: &View) -> Result<Vec<[u8; 4]>, RenderError> {
-        let stride = color_stride(view.width) as usize;
-        let words = self.words("color", stride as u64 * u64::from(view.height))?;
-        let row = |row: &[u32]| row[..view.width as usize].iter().map(|word| word.to_le_bytes()).collect::<Vec<_>>();
-        Ok(words.chunks_exact(stride).flat_map(row).collect())
+        buffers::read_picture(&self.gpu, self.buffers.get("color"), [view.width, view.height])
     }
 
     fn read_geometry(&self, key: &KernelKey) -> Result<Geometry, RenderError> {

@@ -56,6 +56,22 @@ impl Needs {
             largest_px,
         }
     }
+
+    /// As if the scene might hold anything its bytes allow: nothing that depends on bounds or formats can be left out.
+    pub fn everything(&self) -> Self {
+        Self {
+            draws: self.draws.max(2),
+            wide_indices: false,
+            topologies: true,
+            f32_positions: false,
+            f32_normals: false,
+            colors: true,
+            sound_normals: false,
+            clipping: true,
+            largest_px: f64::INFINITY,
+            ..self.clone()
+        }
+    }
 }
 
 /// Upper bound of the extent of a draw's triangles in pixels; infinite if one may need clipping.
