@@ -1,5 +1,6 @@
-//! A new look in `presets/` is embedded by the next build.
+//! A new file in `presets/` or `shaders/` is embedded by the next build.
 
 fn main() {
     println!("cargo:rerun-if-changed=presets");
+    println!("cargo:rerun-if-changed=shaders");
 }

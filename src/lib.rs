@@ -4,7 +4,7 @@
 //!
 //! * [`math`], [`frame`]: exact little tools, and the picture with its integers
 //! * [`scene`]: meshes as the file has them, cameras, what a scene requires
-//! * [`params`], [`effects`]: one table per effect, one list of effects, their f64 truth
+//! * [`params`](mod@params), [`effects`]: one table per effect, one list of effects, their f64 truth
 //! * [`shader`], [`plan`], [`gpu`]: choose, link and run the kernels
 //! * [`measure`]: frame against frame, samples of time
 //! * [`oracle`]: the exact CPU renderer that judges and blesses

@@ -3,7 +3,11 @@
 use crate::{
     effects::{Enabled, Stack},
     scene::needs::Needs,
-    shader::key::{Fetch, KernelKey, Visibility},
+    shader::{
+        glue::reads,
+        key::{Fetch, KernelKey, Visibility},
+        library::Library,
+    },
 };
 
 /// What an adapter can do for us.
@@ -26,11 +30,31 @@ impl Caps {
         if self.int64_atomics { "native-int64" } else { "portable" }
     }
 
-    /// Most candidate samples one invocation walks, and most pixels per side. On a GPU a whole workgroup takes over
-    /// early, since one slow lane holds up its neighbours; a CPU adapter runs lanes in turn and gains nothing by it.
-    pub fn small_limits(&self) -> (u32, u32) {
-        if self.software { (128 * 128, 128) } else { (64, 32) }
+    /// How work is shared out on this adapter. On a GPU a whole workgroup takes over early, since one slow lane holds up
+    /// its neighbours; a CPU adapter runs lanes in turn, executes both sides of every branch, and gains nothing by it.
+    pub fn tuning(&self) -> Tuning {
+        let (small_samples, small_side) = if self.software { (128 * 128, 128) } else { (32, 32) };
+        let list_group = if self.software { 64 } else { 256 };
+        Tuning { small_samples, small_side, list_group, listed_tiles: self.software, early_load: self.software, specialized: true }
     }
+}
+
+/// How the kernels share out their work: a matter of speed alone, which no picture may show. [`Caps::tuning`] knows what
+/// suits an adapter; benches and tests try others.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Tuning {
+    /// Most candidate samples that one invocation walks, at least 1.
+    pub small_samples: u32,
+    /// Most pixels per side of such a box, 1 to 128.
+    pub small_side: u32,
+    /// Invocations in a workgroup of the passes over vertices and triangles, 1 to 256.
+    pub list_group: u32,
+    /// The resolve visits only tiles that a triangle's box touches, without branches.
+    pub listed_tiles: bool,
+    /// Load before the depth atomic (split32 alone).
+    pub early_load: bool,
+    /// Leave out what the scene does not need; else keep every path and every branch.
+    pub specialized: bool,
 }
 
 /// Named tolerances.
@@ -87,18 +111,25 @@ pub struct Plan {
 }
 
 /// Chooses the kernel.
-pub fn plan(needs: &Needs, stack: &Stack, caps: &Caps, accuracy: &Accuracy) -> Result<Plan, Lacking> {
+///
+/// # Errors
+/// When the look pins a rung that the adapter lacks.
+pub fn plan(needs: &Needs, stack: &Stack, caps: &Caps, tuning: &Tuning, accuracy: &Accuracy) -> Result<Plan, Lacking> {
+    let needs = &if tuning.specialized { needs.clone() } else { needs.everything() };
     let visibility = match accuracy.visibility {
         Some(Visibility::Packed64) if !caps.int64_atomics => return Err(Lacking),
         Some(pinned) => pinned,
         None if caps.int64_atomics => Visibility::Packed64,
         None => Visibility::Split32,
     };
-    let (small_samples, small_side) = caps.small_limits();
+    let (small_samples, small_side) = (tuning.small_samples.max(1), tuning.small_side.clamp(1, 128));
     // A box of n px touches at most n + 1 sample columns.
     let widest = needs.largest_px.floor() + 1.0;
     let has_medium = needs.clipping || widest > f64::from(small_side) || widest * widest > f64::from(small_samples);
     let has_large = needs.largest_px >= 128.0;
+    let planes = ["flat_normal", "flat_depth_m", "center"];
+    let reads_planes = stack.0.iter().any(|enabled| planes.iter().any(|member| reads(&Library::Embedded, enabled.effect, member)));
+    let has_planes = reads_planes || !needs.sound_normals;
     let key = KernelKey {
         fetch: if needs.indexed { Fetch::Indexed } else { Fetch::Direct },
         visibility,
@@ -112,11 +143,15 @@ pub fn plan(needs: &Needs, stack: &Stack, caps: &Caps, accuracy: &Accuracy) -> R
         f32_positions: needs.f32_positions,
         f32_normals: needs.f32_normals,
         has_colors: needs.colors,
+        has_planes,
+        perspective: needs.perspective,
         small_samples,
         small_side,
-        early_load: caps.software,
+        listed_tiles: tuning.listed_tiles,
+        list_group: tuning.list_group,
+        early_load: tuning.early_load,
     };
-    let (reasons, omitted) = explain(needs, caps, accuracy, &key);
+    let (reasons, omitted) = explain(needs, tuning == &caps.tuning(), caps, accuracy, &key);
     Ok(Plan { key, reasons, omitted })
 }
 
@@ -124,7 +159,7 @@ fn note(name: &str, why: impl Into<String>) -> Note {
     Note { name: name.into(), why: why.into() }
 }
 
-fn explain(needs: &Needs, caps: &Caps, accuracy: &Accuracy, key: &KernelKey) -> (Vec<Note>, Vec<Note>) {
+fn explain(needs: &Needs, is_usual: bool, caps: &Caps, accuracy: &Accuracy, key: &KernelKey) -> (Vec<Note>, Vec<Note>) {
     let pinned = accuracy.visibility.map(|_| "pinned by the look");
     let chosen = match key.visibility {
         Visibility::Packed64 => "the adapter has 64-bit atomics: one pass decides depth and owner, nothing is lost",
@@ -135,13 +170,25 @@ fn explain(needs: &Needs, caps: &Caps, accuracy: &Accuracy, key: &KernelKey) -> 
         note("visibility", pinned.unwrap_or(chosen)),
         note("coverage", "fixed8: exact 16.8 top-left edges, holes and double hits are impossible"),
         note("fetch", if needs.indexed { "the scene has index lists" } else { "no primitive has indices" }),
-        note("small", format!("one invocation walks up to {} samples: {}", key.small_samples, if caps.software { "a CPU adapter runs lanes in turn" } else { "a workgroup takes over early on a GPU" })),
+        note(
+            "small",
+            format!(
+                "one invocation walks up to {} samples: {}",
+                key.small_samples,
+                match (is_usual, caps.software) {
+                    (false, _) => "as the tuning asks",
+                    (true, true) => "a CPU adapter runs lanes in turn",
+                    (true, false) => "a workgroup takes over early on a GPU",
+                }
+            ),
+        ),
     ];
     let parts = [
         ("clip", key.has_clipping, "the scene's box lies behind the near plane and inside the guard band".to_owned()),
         ("raster_medium", key.has_medium, bound.clone()),
         ("tile_large, raster_large", key.has_large, bound),
         ("index fetch", needs.indexed, "no primitive has indices".into()),
+        ("plane normals and centres", key.has_planes, "no effect reads them and no normal needs a substitute".into()),
         ("vertex colours", needs.colors, "no primitive has them".into()),
         ("effects uniform", !key.effects.is_empty(), "the stack is empty".into()),
     ];

@@ -6,10 +6,6 @@ use std::path::PathBuf;
 
 use glam::{DMat4, DVec3};
 
-pub use crate::{
-    plan::{Accuracy, Tier},
-    shader::key::Visibility,
-};
 use crate::{
     effects::Stack,
     math::rotation_y,
@@ -17,6 +13,10 @@ use crate::{
         Scene,
         camera::{Camera, View},
     },
+};
+pub use crate::{
+    plan::{Accuracy, Tier},
+    shader::key::Visibility,
 };
 
 /// Which scene a look shows.
@@ -109,7 +109,9 @@ pub const FRAMING_DIRECTION: DVec3 = DVec3::new(-0.45, -0.42, -1.0);
 impl Session {
     /// The camera of the look, or the pose that frames `scene`.
     pub fn camera_for(&self, scene: &Scene, aspect: f64) -> Camera {
-        self.camera.or_else(|| scene.cameras.first().map(|c| c.pose)).unwrap_or_else(|| Camera::framing(&scene.bounds(), FRAMING_DIRECTION, aspect))
+        self.camera
+            .or_else(|| scene.cameras.first().map(|c| c.pose))
+            .unwrap_or_else(|| Camera::framing(&scene.bounds(), FRAMING_DIRECTION, aspect))
     }
 
     /// The view of `scene` on a target of `size` pixels.

@@ -30,7 +30,8 @@ fn every_builtin_scene_is_within_tolerance_on_every_rung() {
             let (capture, verdict) = judged(&mut renderer, &scene, &view, &stack(&["facet", "lambert"]), &pinned(rung));
             eprintln!("{query} {}: {:?} {:?}", rung.name(), verdict.accuracy, capture.frame.counters);
             let a = &verdict.accuracy;
-            let is_exact = a.owner_mismatch + a.holes + a.double_hits + a.orphans + a.overflow + a.key_outside_bound + a.snap_outside_bound == 0;
+            let is_exact =
+                a.owner_mismatch + a.holes + a.double_hits + a.orphans + a.overflow + a.key_outside_bound + a.snap_outside_bound == 0;
             if !is_exact || a.max_colour_delta > 1 {
                 failures.push(format!("{query} {}", rung.name()));
             }

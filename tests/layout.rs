@@ -26,8 +26,12 @@ fn reflected(pass: Pass, effects: Vec<&'static Effect>) -> Reflected {
         f32_positions: false,
         f32_normals: false,
         has_colors: true,
+        has_planes: true,
+        perspective: true,
         small_samples: 64,
         small_side: 32,
+        listed_tiles: true,
+        list_group: 64,
         early_load: false,
     };
     let linked = link::link(&Library::Embedded, &format!("passes/{}", pass.stem()), &key, &key.slots(pass)).expect("links");
@@ -76,7 +80,12 @@ fn defaults_lie_inside_their_hard_ranges() {
         for field in effect.fields {
             let values = field.get(&words);
             field.set(&mut words, &values).unwrap_or_else(|error| panic!("{}: {error}", effect.name));
-            assert!(field.soft[0] >= field.hard[0] && field.soft[1] <= field.hard[1], "{}.{}: soft range beyond hard", effect.name, field.name);
+            assert!(
+                field.soft[0] >= field.hard[0] && field.soft[1] <= field.hard[1],
+                "{}.{}: soft range beyond hard",
+                effect.name,
+                field.name
+            );
         }
     }
 }

@@ -69,6 +69,7 @@ fn scene(meshes: &[(Mesh, DMat4)]) -> Scene {
             material: i,
             bounds,
             longest_edge: 2.0 * bounds.radius(),
+            sound_normals: false,
         });
         scene.materials.push(Material { double_sided: mesh.double_sided, ..Default::default() });
         scene.instances.push(Instance { primitive: i, world_from_object: *world_from_object });
@@ -123,6 +124,7 @@ fn still_life(size: [u32; 2]) -> (Scene, View) {
 fn flat_view(width: u32, height: u32) -> View {
     let (w, h) = (f64::from(width), f64::from(height));
     View {
+        ndc_axes: [DVec3::X, DVec3::Y],
         width,
         height,
         clip_from_world: DMat4::from_cols(DVec4::X * 2.0 / w, DVec4::Y * -2.0 / h, DVec4::Z, DVec4::new(-1.0, 1.0, 0.0, 1.0)),
@@ -516,6 +518,45 @@ fn mesh_through_the_guard_band_has_no_cracks() {
     }
 }
 
+/// One long edge runs through the picture and ends beyond a side of the guard band; it must still run where it ran.
+#[test]
+fn edges_cut_by_the_guard_band_keep_their_course() {
+    let view = flat_view(64, 64);
+    let center = DVec3::new(32.3, 31.7, 0.5);
+    for step in 0..64 {
+        let (sin, cos) = libm::sincos(f64::from(step) * std::f64::consts::TAU / 64.0 + 0.01);
+        let (along, across) = (DVec3::new(cos, sin, 0.0), DVec3::new(-sin, cos, 0.0));
+        let corners = [center - along * 2e4, center + along * 3e5, center + across * 3e5].map(|p| p.as_vec3().to_array());
+        let (layers, counters) = covered(&scene(&[(sheet(&corners), DMat4::IDENTITY)]), &view);
+        assert_eq!(counters.clipped, 1);
+        for (pixel, hits) in layers.into_iter().enumerate() {
+            let sample = DVec3::new((pixel % 64) as f64 + 0.5, (pixel / 64) as f64 + 0.5, 0.5);
+            let inside = (sample - center).dot(across);
+            // Half a unit of snap at either end, and f32 corners at 3e5 px.
+            assert!(inside.abs() < 0.04 || hits == u32::from(inside > 0.0), "step {step}, pixel {pixel}");
+        }
+    }
+}
+
+#[test]
+fn folded_pieces_are_dropped_and_counted() {
+    let corners = [[0.0, 0.0, 0.5], [16.0, 0.0, 0.5], [40_000.0, 40_000.0, 0.5]];
+    let (scene, view) = (scene(&[(sheet(&corners), DMat4::IDENTITY)]), flat_view(16, 16));
+    let draws = draws(&scene, &view).unwrap();
+    let mut geometry = project(&scene, &draws, &view);
+    let fan = geometry.pieces.clone();
+    assert!(!fan.is_empty());
+    let whole = triangles(&scene, &draws, &geometry).0.len();
+    let mut folded = Piece { parent: 0, corners: [at(0, 0, 0.5), at(600, 0, 0.5), at(0, 600, 0.5)] };
+    if area(fan[0].corners.map(|c| [c.x, c.y])) > 0 {
+        folded.corners.swap(1, 2);
+    }
+    let line = Piece { parent: 0, corners: [at(0, 0, 0.5), at(600, 600, 0.5), at(900, 900, 0.5)] };
+    geometry.pieces.extend([folded, line]);
+    let (drawn, counters) = triangles(&scene, &draws, &geometry);
+    assert_eq!((drawn.len(), counters.fan_folds, counters.clipped), (whole, 2, 1));
+}
+
 #[test]
 fn pieces_stay_inside_the_guard_band_with_planes_set_exactly() {
     let view = square_perspective(64, 64, 0.5);
@@ -745,6 +786,98 @@ fn cut_ground_is_shaded_as_its_rays_say() {
         let delta = (0..4).map(|c| plain.color[pixel][c].abs_diff(expected[c])).max().unwrap();
         assert!(delta <= 1, "pixel {pixel}: {:?} for {expected:?}", plain.color[pixel]);
         assert!(depth.color[pixel][0].abs_diff(metres) <= 1, "pixel {pixel}: {:?} for {metres}", depth.color[pixel]);
+    }
+}
+
+/// Whole triangles: weights are perspective-correct from the snapped corners.
+#[test]
+fn whole_ground_is_shaded_as_its_rays_say() {
+    let mut mesh = ground(2.0, -1.0);
+    mesh.colors = mesh.positions.iter().map(|p| [0.5 + p[0] / 4.0, 0.5 + p[2] / 4.0, 0.25, 1.0]).collect();
+    let scene = scene(&[(mesh, DMat4::IDENTITY)]);
+    let camera = Camera { eye: DVec3::new(0.2, -0.4, 2.6), target: DVec3::NEG_Y, ..Default::default() };
+    let view = View::new(&camera, 256, 192, &scene.bounds(), DMat4::IDENTITY, [0.0; 4]);
+    let frame = render(&scene, &view, &Stack::default()).unwrap();
+    assert_eq!((frame.counters.clipped, frame.covered() > 4000), (0, true));
+    let world_from_clip = view.clip_from_world.inverse();
+    for pixel in (0..frame.owner.len()).filter(|&pixel| frame.owner[pixel] != NO_OWNER) {
+        let (x, y) = (((pixel % 256) as f64 + 0.5) / 128.0 - 1.0, 1.0 - ((pixel / 256) as f64 + 0.5) / 96.0);
+        let through = world_from_clip * DVec4::new(x, y, 1.0, 1.0);
+        let ray = through.truncate() / through.w - view.eye;
+        let hit = view.eye + ray * ((-1.0 - view.eye.y) / ray.y);
+        let byte = rasterlab::math::srgb_byte;
+        let expected = [byte(0.5 + hit.x / 4.0), byte(0.5 + hit.z / 4.0), byte(0.25), 255];
+        // Corners snap by half a unit, which dark bytes feel.
+        let delta = (0..4).map(|c| frame.color[pixel][c].abs_diff(expected[c])).max().unwrap();
+        assert!(delta <= 3, "pixel {pixel}: {:?} for {expected:?}", frame.color[pixel]);
+    }
+}
+
+/// Sets a parameter by its name.
+fn set(stack: &mut Stack, effect: &str, field: &str, bits: u32) {
+    let enabled = stack.enable(Effect::find(effect).expect("a listed effect"));
+    enabled.words[enabled.effect.field(field).expect("a field").offset / 4] = bits;
+}
+
+/// Shades by depth alone, black at the eye and white at `far_m`.
+fn by_depth(far_m: f32) -> Stack {
+    let mut stack = only("depth", &[(0, 0.0), (1, 0.0), (2, 0.0), (4, 1.0), (5, 1.0), (6, 1.0)]);
+    set(&mut stack, "depth", "fit", 0);
+    set(&mut stack, "depth", "scale", (1.0 / far_m).to_bits());
+    stack
+}
+
+#[test]
+fn flat_shading_is_one_value_per_triangle() {
+    let scene = scene(&[(sphere(10), DMat4::from_scale(DVec3::new(1.0, 1.3, 0.8)))]);
+    let camera = Camera { eye: DVec3::new(0.4, 0.8, 3.0), near_m: 0.1, ..Default::default() };
+    let view = View::new(&camera, 96, 96, &scene.bounds(), DMat4::IDENTITY, [0.0; 4]);
+    let object = |owner: u32| {
+        let primitive = &scene.primitives[0];
+        let place = scene.instances[0].world_from_object;
+        primitive.corners(&scene, owner).map(|v| place.transform_point3(DVec3::from_array(primitive.position(&scene, v).map(f64::from))))
+    };
+    for (mut stack, truth) in [
+        (only("normals", &[]), &(|[a, b, c]: [DVec3; 3]| normal_bytes((b - a).cross(c - a).normalize())) as &dyn Fn([DVec3; 3]) -> [u8; 4]),
+        (by_depth(5.0), &|corners| {
+            let mean = corners.map(|p| (p - view.eye).dot(view.forward)).iter().sum::<f64>() / 3.0;
+            let byte = rasterlab::math::srgb_byte(mean / 5.0);
+            [byte, byte, byte, 255]
+        }),
+    ] {
+        stack.enable(Effect::find("facet").unwrap());
+        let frame = render(&scene, &view, &stack).unwrap();
+        assert!(frame.covered() > 2000);
+        for (owner, color) in frame.owner.iter().zip(&frame.color).filter(|(owner, _)| **owner != NO_OWNER) {
+            let expected = truth(object(*owner));
+            assert!((0..4).all(|c| color[c].abs_diff(expected[c]) <= 1), "{owner}: {color:?} for {expected:?}");
+        }
+    }
+}
+
+#[test]
+fn cut_ground_faces_the_viewer_and_knows_its_centre() {
+    let scene = scene(&[(ground(8.0, -1.0), DMat4::IDENTITY)]);
+    for (eye_y, up) in [(0.5, DVec3::Y), (-2.5, DVec3::NEG_Y)] {
+        let camera = Camera { eye: DVec3::new(0.3, eye_y, 5.0), target: DVec3::new(0.0, -1.0, 0.0), ..Default::default() };
+        let view = View::new(&camera, 40, 30, &scene.bounds(), DMat4::IDENTITY, [0.0; 4]);
+        let frame = render(&scene, &view, &only("normals", &[])).unwrap();
+        let mut owned = frame.owner.iter().zip(&frame.color).filter(|(owner, _)| **owner != NO_OWNER);
+        assert!(frame.counters.clipped == 2 && owned.all(|(_, color)| *color == normal_bytes(up)));
+        // Both triangles have their centre on the ground's side of the picture; a sweep from there makes them flat.
+        for (along_y, flat) in [(up.y as f32, false), (-up.y as f32, true)] {
+            let mut stack = by_depth(20.0);
+            for (field, value) in [("along_x", 0.0), ("along_y", along_y), ("front", 0.5), ("width", 0.001)] {
+                set(&mut stack, "facet", field, f32::to_bits(value));
+            }
+            set(&mut stack, "facet", "pattern", 1);
+            let frame = render(&scene, &view, &stack).unwrap();
+            let seen = if up.y > 0.0 { 29 * 40 + 20 } else { 20 };
+            assert_ne!(frame.owner[seen], NO_OWNER);
+            let mut colors: Vec<_> = (0..1200).filter(|&i| frame.owner[i] == frame.owner[seen]).map(|i| frame.color[i]).collect();
+            colors.dedup();
+            assert_eq!(colors.len() == 1, flat, "eye {eye_y}, along {along_y}: {} colours", colors.len());
+        }
     }
 }
 
@@ -995,6 +1128,35 @@ fn wrong_depth_key_is_caught() {
 }
 
 #[test]
+fn either_owner_is_right_in_the_depth_band_and_nowhere_else() {
+    let sheets = [[0.0, -70.0, 0.25], [0.0, 140.0, 0.25], [65.0, 0.0, 0.75], [0.0, -70.0, 0.75], [0.0, 140.0, 0.75], [65.0, 0.0, 0.25]];
+    let fixture = (scene(&[(sheet(&sheets), DMat4::IDENTITY)]), flat_view(64, 16));
+    let other = |x: usize| {
+        judged(
+            &fixture,
+            &Adapter::default(),
+            |_| {},
+            |frame, _| {
+                for owner in frame.owner.iter_mut().skip(x).step_by(64) {
+                    *owner = 1 - *owner;
+                }
+                let (scene, view) = &fixture;
+                let draws = draws(scene, view).unwrap();
+                frame.color = shade(scene, &draws, view, &all_effects(), &frame.owner, &project(scene, &draws, view));
+            },
+        )
+    };
+    // The sheets cross at x = 32.5, on the samples of column 32.
+    let columns: Vec<usize> = (0..64).filter(|&x| other(x).owner_mismatch == 0).collect();
+    let coverage = {
+        let draws = draws(&fixture.0, &fixture.1).unwrap();
+        cover(&triangles(&fixture.0, &draws, &project(&fixture.0, &draws, &fixture.1)).0, &fixture.1, None)
+    };
+    let band: Vec<usize> = (0..64).filter(|&x| coverage.samples[x].is_band()).collect();
+    assert_eq!((columns, band), (vec![32], vec![32]));
+}
+
+#[test]
 fn affine_weights_are_caught() {
     let scene = scene(&[(ground(2.0, -1.0), DMat4::IDENTITY)]);
     let camera = Camera { eye: DVec3::new(0.0, -0.5, 2.5), target: DVec3::NEG_Y, ..Default::default() };
@@ -1022,6 +1184,17 @@ fn vertices_one_unit_apart_are_explained_and_counted() {
     assert_eq!(accuracy.within(&Budget::default()), Ok(()), "{accuracy:?}");
     assert!(accuracy.explained_by_snap > 0 && accuracy.max_snap_delta == 1, "{accuracy:?}");
     assert!(accuracy.within(&Budget { max_explained: 0, ..Default::default() }).is_err());
+}
+
+#[test]
+fn crossing_line_that_moves_with_the_snap_is_explained() {
+    let right = 65.0 + 1.0 / 256.0;
+    let sheets = [[0.0, -70.0, 0.25], [0.0, 140.0, 0.25], [right, 0.0, 0.75], [0.0, -70.0, 0.75], [0.0, 140.0, 0.75], [right, 0.0, 0.25]];
+    let fixture = (scene(&[(sheet(&sheets), DMat4::IDENTITY)]), flat_view(64, 16));
+    // The sheets cross half a unit to the right of the samples of column 32, then half a unit to the left.
+    let shift = |geometry: &mut Geometry| geometry.vertices.iter_mut().for_each(|vertex| vertex.x -= 1);
+    let accuracy = judged(&fixture, &Adapter::default(), shift, |_, _| {});
+    assert_eq!((accuracy.explained_by_snap, accuracy.unexplained, accuracy.owner_mismatch), (16, 0, 0), "{accuracy:?}");
 }
 
 /// A vertex stage in f32, with fused and unfused sums and a division that is a little off, as WGSL allows.

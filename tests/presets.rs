@@ -413,7 +413,7 @@ fn filled(effect: &'static Effect, seed: u64) -> Vec<u32> {
                 let [low, high] = field.hard;
                 let value = low + (high - low) * f64::from(state) / f64::from(u32::MAX);
                 match field.kind {
-                    Kind::F32 | Kind::Color | Kind::Point if state % 7 == 0 && (low..=high).contains(&-0.0) => -0.0,
+                    Kind::F32 | Kind::Color | Kind::Point if state.is_multiple_of(7) && (low..=high).contains(&-0.0) => -0.0,
                     Kind::F32 | Kind::Color | Kind::Point => f64::from(value as f32).clamp(low, high),
                     _ => value.round(),
                 }

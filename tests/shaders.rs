@@ -26,16 +26,19 @@ fn key(fetch: Fetch, visibility: Visibility, has_queues: bool, effects: Vec<&'st
         f32_positions: false,
         f32_normals: false,
         has_colors: true,
+        has_planes: true,
+        perspective: true,
         small_samples: 64,
         small_side: 32,
+        listed_tiles: has_queues,
+        list_group: 64,
         early_load: true,
     }
 }
 
 fn all_passes(key: &KernelKey) -> Vec<Pass> {
-    let mut passes = key.passes(key.phases());
+    let mut passes = key.frame();
     passes.extend(key.passes(&[Phase::Count]));
-    passes.push(Pass::Resolve);
     passes
 }
 
@@ -58,10 +61,12 @@ fn every_slot_choice_links_and_validates_within_eight_storage_buffers() {
     for fetch in [Fetch::Direct, Fetch::Indexed] {
         for visibility in Visibility::ALL {
             for has_queues in [false, true] {
-                let key = key(fetch, visibility, has_queues, vec![]);
-                for pass in all_passes(&key) {
-                    let storage = validate(&key, pass);
-                    assert!(storage <= 8, "{} binds {storage} storage buffers", pass.label());
+                for single_draw in [false, true] {
+                    let key = KernelKey { single_draw, ..key(fetch, visibility, has_queues, vec![]) };
+                    for pass in all_passes(&key) {
+                        let storage = validate(&key, pass);
+                        assert!(storage <= 8, "{} binds {storage} storage buffers", pass.label());
+                    }
                 }
             }
         }
@@ -106,7 +111,8 @@ fn an_error_names_the_file_and_line_a_person_wrote() {
     for below in ["passes", "effects"] {
         std::fs::create_dir(shaders.join(below)).expect("a folder");
     }
-    std::fs::write(shaders.join("passes/project.wgsl"), "//@ use effects/wrong\n@compute @workgroup_size(1)\nfn project() { wrong(); }\n").expect("written");
+    std::fs::write(shaders.join("passes/project.wgsl"), "//@ use effects/wrong\n@compute @workgroup_size(1)\nfn project() { wrong(); }\n")
+        .expect("written");
     std::fs::write(shaders.join("effects/wrong.wgsl"), "// A mistake\nfn wrong() { let x: u32 = 1.5; }\n").expect("written");
     let key = key(Fetch::Direct, Visibility::Split32, false, vec![]);
     let linked = link::link(&Library::Folder(shaders.into()), "passes/project", &key, &[]).expect("links");

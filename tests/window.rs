@@ -64,7 +64,8 @@ impl Display {
     /// The screen's pixels, rows from the top, `[r, g, b]`.
     fn screenshot(&self) -> Vec<[u8; 3]> {
         let [width, height] = SIZE;
-        let image = self.x.get_image(ImageFormat::Z_PIXMAP, self.root, 0, 0, width, height, !0).expect("a request").reply().expect("a screenshot");
+        let image =
+            self.x.get_image(ImageFormat::Z_PIXMAP, self.root, 0, 0, width, height, !0).expect("a request").reply().expect("a screenshot");
         image.data.chunks_exact(4).map(|p| [p[2], p[1], p[0]]).collect()
     }
 

@@ -11,6 +11,7 @@ struct Counters {
     degenerate: atomic<u32>,
     fan_folds: atomic<u32>,
     orphans: atomic<u32>,
+    marked_tiles: atomic<u32>,
 }
 
 @group(0) @binding(7) var<storage, read_write> counters: Counters;

@@ -53,6 +53,21 @@ fn fixed_to_f32(v: Wide) -> f32 {
     return select(magnitude, -magnitude, is_negative);
 }
 
+// Edge function of a -> b at p as a float, within two roundings, for |differences| <= 2^24: products of 12-bit halves are
+// exact in i32, and carrying leaves a low part of 24 bits, so nothing cancels.
+fn fixed_weight(a: vec2i, b: vec2i, p: vec2i) -> f32 {
+    let d = b - a;
+    let e = p - a;
+    let dh = d >> vec2u(12u);
+    let eh = e >> vec2u(12u);
+    let dl = d & vec2i(4095);
+    let el = e & vec2i(4095);
+    let lo = dl.x * el.y - dl.y * el.x;
+    let mid = dh.x * el.y + dl.x * eh.y - dh.y * el.x - dl.y * eh.x + (lo >> 12u);
+    let hi = dh.x * eh.y - dh.y * eh.x + (mid >> 12u);
+    return f32(hi) * 16777216.0 + f32(((mid & 4095) << 12u) | (lo & 4095));
+}
+
 // Top-left rule for a clockwise triangle, y down: 0 where the edge owns the samples on it, else 1.
 fn fixed_bias(d: vec2i) -> i32 {
     return select(1, 0, d.y < 0 || (d.y == 0 && d.x > 0));

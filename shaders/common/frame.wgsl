@@ -4,6 +4,8 @@ struct Frame {
     background: vec4f,       // already gamma-encoded
     eye: vec4f,              // world space; w is 1 for a perspective, 0 where all rays are parallel
     forward: vec4f,          // unit, world space
+    ndc_x: vec4f,            // what one unit of normalized device x is in the world, per metre of depth for a perspective
+    ndc_y: vec4f,
     center: vec2f,           // half the picture in units of 1/256 px: 128 W, 128 H
     range_m: vec2f,          // depth of the nearest and farthest corner of the scene's box
     linear_depth_m: vec2f,   // metres at depth 1 and 0; only where eye.w is 0
@@ -23,6 +25,11 @@ struct Frame {
 }
 
 @group(0) @binding(0) var<uniform> frame: Frame;
+
+// Invocations in a workgroup of the passes that run over lists; larger groups are launched faster on a GPU.
+override LIST_GROUP: u32 = 64u;
+// Side of the square of pixels that a workgroup of the resolve visits.
+override TILE_SIDE: u32 = 8u;
 
 // Index of this invocation in a dispatch that was folded to two dimensions.
 fn frame_invocation(group: vec3u, groups: vec3u, lane: u32, lanes: u32) -> u32 {

@@ -1,4 +1,5 @@
 // Triangles as the rasterizer meets them: three projected corners, by id or as a piece left over from clipping.
+//@ use common/frame
 //@ use common/draws
 //@ use common/vertex
 //@ use slot/fetch
@@ -36,9 +37,8 @@ fn triangle_load(id: u32) -> Triangle {
     return Triangle(vertices[first + at.x], vertices[first + at.y], vertices[first + at.z], id, draw);
 }
 
-// Is a triangle of this orientation drawn at all? Clockwise on screen (area > 0) is the back of a glTF triangle.
-fn triangle_is_shown(draw: u32, is_clockwise: bool) -> bool {
-    let flags = draws[draw].flags;
+// Is a triangle of this orientation drawn at all, by the flags of its draw? Clockwise on screen (area > 0) is the back of a glTF triangle.
+fn triangle_is_shown(flags: u32, is_clockwise: bool) -> bool {
     let is_back = is_clockwise != ((flags & DRAW_MIRRORED) != 0u);
     return (flags & DRAW_DOUBLE_SIDED) != 0u || !is_back;
 }

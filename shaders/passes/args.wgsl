@@ -9,6 +9,7 @@ struct Args {
     medium: Dispatch,
     large: Dispatch,
     tiles: Dispatch,
+    resolve: Dispatch,
 }
 
 @group(0) @binding(10) var<storage, read_write> args: Args;
@@ -23,4 +24,5 @@ fn args_write() {
     args.medium = fold(min(atomicLoad(&counters.medium), frame.medium_capacity));
     args.large = fold(min(atomicLoad(&counters.large), frame.large_capacity));
     args.tiles = fold(min(atomicLoad(&counters.tiles), frame.tile_capacity));
+    args.resolve = fold(atomicLoad(&counters.marked_tiles));
 }

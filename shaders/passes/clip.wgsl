@@ -107,7 +107,7 @@ fn emit(polygon: Polygon, t: Triangle) {
             atomicAdd(&counters.fan_folds, 1u);
             continue;
         }
-        if !triangle_is_shown(t.draw, sign > 0) { continue; }
+        if !triangle_is_shown(draws[t.draw].flags, sign > 0) { continue; }
         let slot = atomicAdd(&counters.pieces, 1u);
         if slot >= frame.piece_capacity { continue; }
         pieces[slot] = Piece(records[0], records[i], records[i + 1u], vec4u(t.id, t.draw, i, 0u));

@@ -3,6 +3,7 @@
 //@ use slot/queues
 //@ use slot/coverage
 //@ use slot/visibility
+//@ use slot/marks
 
 @compute @workgroup_size(64)
 fn raster_medium(@builtin(workgroup_id) group: vec3u, @builtin(num_workgroups) groups: vec3u, @builtin(local_invocation_index) lane: u32) {
@@ -20,6 +21,7 @@ fn raster_medium(@builtin(workgroup_id) group: vec3u, @builtin(num_workgroups) g
         area = -area;
     }
 
+    if lane == 0u { marks_box(pixels); }
     let mine = vec2i(vec2u(lane % 8u, lane / 8u));
     let coverage = coverage_begin(t.a, t.b, t.c, area, pixels.xy + mine);
     var row = coverage.row;

@@ -4,6 +4,7 @@
 //@ use slot/queues
 //@ use slot/coverage
 //@ use slot/visibility
+//@ use slot/marks
 
 // Most candidate samples, and most pixels per side, that one invocation walks; chosen by the adapter's caps.
 override SMALL_SAMPLES: i32 = 128;
@@ -13,11 +14,13 @@ override IS_FIRST: bool = true;
 
 const SMALL_EXTENT = 32768; // 128 px
 
-@compute @workgroup_size(64)
+@compute @workgroup_size(LIST_GROUP)
 fn raster_small(@builtin(workgroup_id) group: vec3u, @builtin(num_workgroups) groups: vec3u, @builtin(local_invocation_index) lane: u32) {
-    let id = frame_invocation(group, groups, lane, 64u);
+    // Loads come before the first branch: what all lanes load alike is then loaded once, even where branches are masks.
+    let id = frame_invocation(group, groups, lane, LIST_GROUP);
+    var t = triangle_load(min(id, frame.triangle_count - 1u));
+    let draw_flags = draws[t.draw].flags;
     if id >= frame.triangle_count { return; }
-    var t = triangle_load(id);
     let any_flag = (t.a.x | t.b.x | t.c.x) & 255u;
     if any_flag != 0u {
         if IS_FIRST { unready(t, any_flag); }
@@ -36,7 +39,7 @@ fn raster_small(@builtin(workgroup_id) group: vec3u, @builtin(num_workgroups) gr
         if IS_FIRST { atomicAdd(&counters.degenerate, 1u); }
         return;
     }
-    if !triangle_is_shown(t.draw, area > 0) { return; }
+    if !triangle_is_shown(draw_flags, area > 0) { return; }
     let pixels = triangle_pixels(low, high);
     if any(pixels.zw < pixels.xy) { return; }
     if is_large {
@@ -55,6 +58,7 @@ fn raster_small(@builtin(workgroup_id) group: vec3u, @builtin(num_workgroups) gr
         t.c = swap;
         area = -area;
     }
+    marks_box(pixels);
     walk(coverage_begin(t.a, t.b, t.c, area, pixels.xy), pixels, id);
 }
 

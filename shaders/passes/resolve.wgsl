@@ -4,17 +4,21 @@
 //@ use common/transform
 //@ use common/fixed
 //@ use common/color
+//@ use common/picture
 //@ use common/surface
 //@ use common/counters
 //@ use slot/owner
+//@ use slot/pixels
 //@ use glue
-
-@group(0) @binding(11) var<storage, read_write> color: array<u32>;
 
 override F32_NORMALS: bool = false;
 override HAS_COLORS: bool = false;
 override HAS_CLIPPING: bool = false;
-override HAS_LARGE: bool = true;
+override HAS_PLANES: bool = true;
+override IS_PERSPECTIVE: bool = true;
+// Empty pixels are computed too, with the first triangle, and thrown away: a CPU adapter executes both sides of every
+// branch anyway, and loads what all lanes share only once outside of branches.
+override IS_STRAIGHT: bool = false;
 
 // Where a sample lies in its triangle.
 struct Place {
@@ -30,22 +34,20 @@ fn place_whole(t: Triangle, pixel: vec2u) -> Place {
     let b = vertex_at(t.b);
     let c = vertex_at(t.c);
     let p = vec2i(pixel) * 256 + 128;
-    let low = min(min(a, b), c);
-    let high = max(max(a, b), c);
-    var e: vec3f;
-    if HAS_LARGE && max(high.x - low.x, high.y - low.y) > 32768 {
-        e = vec3f(fixed_to_f32(fixed_edge(b, c, p)), fixed_to_f32(fixed_edge(c, a, p)), fixed_to_f32(fixed_edge(a, b, p)));
-    } else {
-        e = vec3f(f32(fixed_small_area(b, c, p)), f32(fixed_small_area(c, a, p)), f32(fixed_small_area(a, b, p)));
-    }
+    let e = vec3f(fixed_weight(b, c, p), fixed_weight(c, a, p), fixed_weight(a, b, p));
     let inv_w = bitcast<vec3f>(vec3u(t.a.w, t.b.w, t.c.w));
     let share = e * inv_w;
     let sum = share.x + share.y + share.z;
-    let weights = share / sum;
     let w = 1.0 / inv_w;
-    let linear = bitcast<vec3f>(vec3u(t.a.z, t.b.z, t.c.z)) * (frame.linear_depth_m.x - frame.linear_depth_m.y) + frame.linear_depth_m.y;
+    var depths = w;
+    if !IS_PERSPECTIVE { depths = linear_depths(bitcast<vec3f>(vec3u(t.a.z, t.b.z, t.c.z))); }
     let center = (vec2f(a) * w.x + vec2f(b) * w.y + vec2f(c) * w.z) / ((w.x + w.y + w.z) * 2.0 * frame.center);
-    return Place(weights, select(linear, w, frame.eye.w != 0.0), center, e.x + e.y + e.z > 0.0);
+    return Place(share / sum, depths, center, e.x + e.y + e.z > 0.0);
+}
+
+// Metres of an orthographic depth.
+fn linear_depths(z: vec3f) -> vec3f {
+    return z * (frame.linear_depth_m.x - frame.linear_depth_m.y) + frame.linear_depth_m.y;
 }
 
 // A clipped triangle has no snapped corners: homogeneous barycentrics (Olano and Greer 1997).
@@ -57,23 +59,28 @@ fn place_clipped(t: Triangle, at: vec3u, pixel: vec2u) -> Place {
     let p = vec3f(sample.x * 2.0 - 1.0, 1.0 - sample.y * 2.0, 1.0);
     let share = vec3f(dot(p, cross(b.xyw, c.xyw)), dot(p, cross(c.xyw, a.xyw)), dot(p, cross(a.xyw, b.xyw)));
     let sum = share.x + share.y + share.z;
-    let z = vec3f(a.z, b.z, c.z);
-    let linear = z * (frame.linear_depth_m.x - frame.linear_depth_m.y) + frame.linear_depth_m.y;
+    var depths = vec3f(a.w, b.w, c.w);
+    if !IS_PERSPECTIVE { depths = linear_depths(vec3f(a.z, b.z, c.z)); }
     let w = a.w + b.w + c.w;
     let ndc = (a.xy + b.xy + c.xy) / select(1.0, w, w > 0.0);
     let center = select(sample, vec2f(0.5 + 0.5 * ndc.x, 0.5 - 0.5 * ndc.y), w > 0.0);
     // Counter-clockwise in clip space, y up, is a positive determinant.
     let is_clockwise = dot(a.xyw, cross(b.xyw, c.xyw)) < 0.0;
-    return Place(share / sum, select(linear, vec3f(a.w, b.w, c.w), frame.eye.w != 0.0), center, is_clockwise);
+    return Place(share / sum, depths, center, is_clockwise);
 }
 
-fn normal_of(draw: u32, vertex: u32) -> vec3f {
+// A stored normal; w is 0 where a lane is NaN, infinite or beyond 2^40, told by its bits.
+fn normal_of(draw: u32, vertex: u32) -> vec4f {
     let byte = draws[draw].normal_offset + vertex * draws[draw].normal_stride;
+    var bits: vec3u;
     if F32_NORMALS {
         let word = byte / 4u;
-        return bitcast<vec3f>(vec3u(vertex_bytes[word], vertex_bytes[word + 1u], vertex_bytes[word + 2u]));
+        bits = vec3u(vertex_bytes[word], vertex_bytes[word + 1u], vertex_bytes[word + 2u]);
+    } else {
+        bits = pull_bits3(draws[draw].normal_format, byte);
     }
-    return pull_vec3(draws[draw].normal_format, byte);
+    let gate = vertex_gate(bits);
+    return vec4f(vertex_position(bits, gate), select(0.0, 1.0, gate == 0u));
 }
 
 fn color_of(draw: u32, vertex: u32) -> vec4f {
@@ -104,6 +111,15 @@ fn plane_normal(a: vec3f, b: vec3f, c: vec3f) -> vec3f {
     return select(vec3f(0.0), normal, dot(normal, normal) >= 1e-12);
 }
 
+// Interpolated normal in object space; zero where a corner has none or the corners cancel.
+fn smooth_normal(a: vec4f, b: vec4f, c: vec4f, k: vec3f) -> vec3f {
+    let longest = max(max(abs(a.xyz), abs(b.xyz)), abs(c.xyz));
+    let scale = max(max(longest.x, longest.y), longest.z);
+    if a.w * b.w * c.w == 0.0 || scale == 0.0 { return vec3f(0.0); }
+    let sum = (a.xyz * k.x + b.xyz * k.y + c.xyz * k.z) / scale;
+    return select(vec3f(0.0), sum, dot(sum, sum) >= 1e-12);
+}
+
 fn surface_at(id: u32, pixel: vec2u) -> Surface {
     let t = triangle_load(id);
     let at = triangle_vertices(t.draw, id - draws[t.draw].first_triangle);
@@ -114,53 +130,68 @@ fn surface_at(id: u32, pixel: vec2u) -> Surface {
         place = place_whole(t, pixel);
     }
     let k = place.weights;
-    let a = vertex_position(transform_bits(t.draw, at.x), 0u);
-    let b = vertex_position(transform_bits(t.draw, at.y), 0u);
-    let c = vertex_position(transform_bits(t.draw, at.z), 0u);
-    let world_from_object = draws[t.draw].world_from_object;
     let normal_from_object = draws[t.draw].normal_from_object;
 
     var s: Surface;
     s.owner = id;
-    s.position = (world_from_object * vec4f(a * k.x + b * k.y + c * k.z, 1.0)).xyz;
-    s.center = (world_from_object * vec4f((a + b + c) / 3.0, 1.0)).xyz;
     s.center_screen = place.center_screen;
     s.screen = (vec2f(pixel) + 0.5) / vec2f(frame.size);
-    s.view = select(-frame.forward.xyz, direction(frame.eye.xyz - s.position), frame.eye.w != 0.0);
     s.depth_m = dot(k, place.corner_depths);
     s.flat_depth_m = dot(place.corner_depths, vec3f(1.0 / 3.0));
     s.range_m = frame.range_m;
+    // The sample lies on the ray of its pixel, so depth alone tells where.
+    let ndc = vec2f(s.screen.x * 2.0 - 1.0, 1.0 - s.screen.y * 2.0);
+    let aside = frame.ndc_x.xyz * ndc.x + frame.ndc_y.xyz * ndc.y;
+    if IS_PERSPECTIVE {
+        let ray = frame.forward.xyz + aside;
+        s.position = frame.eye.xyz + ray * s.depth_m;
+        s.view = -normalize(ray);
+    } else {
+        s.position = frame.eye.xyz + aside + frame.forward.xyz * s.depth_m;
+        s.view = -frame.forward.xyz;
+    }
     s.color = draws[t.draw].base_color
         * (color_of(t.draw, at.x) * k.x + color_of(t.draw, at.y) * k.y + color_of(t.draw, at.z) * k.z);
 
-    let flags = draws[t.draw].flags;
-    let is_mirrored = (flags & DRAW_MIRRORED) != 0u;
-    let smooth_sum = normal_of(t.draw, at.x) * k.x + normal_of(t.draw, at.y) * k.y + normal_of(t.draw, at.z) * k.z;
+    let smooth_sum = smooth_normal(normal_of(t.draw, at.x), normal_of(t.draw, at.y), normal_of(t.draw, at.z), k);
     s.normal = direction((normal_from_object * vec4f(smooth_sum, 0.0)).xyz);
-    s.flat_normal = direction((normal_from_object * vec4f(plane_normal(a, b, c), 0.0)).xyz);
-    let has_smooth = any(s.normal != vec3f(0.0));
-    let has_flat = any(s.flat_normal != vec3f(0.0));
-    if !has_flat { s.flat_normal = select(s.view, s.normal, has_smooth); }
-    if !has_smooth { s.normal = s.flat_normal; }
-    let is_back = place.is_clockwise != is_mirrored;
-    if is_back && (has_smooth || has_flat) {
+    s.flat_normal = s.normal;
+    s.center = s.position;
+    var has_direction = true;
+    if HAS_PLANES {
+        let a = vertex_position(transform_bits(t.draw, at.x), 0u);
+        let b = vertex_position(transform_bits(t.draw, at.y), 0u);
+        let c = vertex_position(transform_bits(t.draw, at.z), 0u);
+        s.center = (draws[t.draw].world_from_object * vec4f((a + b + c) / 3.0, 1.0)).xyz;
+        s.flat_normal = direction((normal_from_object * vec4f(plane_normal(a, b, c), 0.0)).xyz);
+        let has_smooth = any(s.normal != vec3f(0.0));
+        let has_flat = any(s.flat_normal != vec3f(0.0));
+        has_direction = has_smooth || has_flat;
+        if !has_flat { s.flat_normal = select(s.view, s.normal, has_smooth); }
+        if !has_smooth { s.normal = s.flat_normal; }
+    }
+    let is_mirrored = (draws[t.draw].flags & DRAW_MIRRORED) != 0u;
+    if has_direction && place.is_clockwise != is_mirrored {
         s.normal = -s.normal;
         s.flat_normal = -s.flat_normal;
     }
     return s;
 }
 
-@compute @workgroup_size(8, 8)
-fn resolve(@builtin(global_invocation_id) at: vec3u) {
-    let pixel = at.xy;
-    if any(pixel >= frame.size) { return; }
+@compute @workgroup_size(TILE_SIDE, TILE_SIDE)
+fn resolve(@builtin(workgroup_id) group: vec3u, @builtin(num_workgroups) groups: vec3u, @builtin(local_invocation_id) local: vec3u) {
+    let at = pixels_of(group, groups, local.xy);
+    let is_inside = all(at < frame.size);
+    let pixel = min(at, frame.size - 1u);
     let found = owner_load(pixel.y * frame.size.x + pixel.x);
+    let is_owned = found.x != 0u;
     var encoded = frame.background;
-    if found.x != 0u {
-        let shaded = glue_surface(surface_at(~found.x, pixel));
-        encoded = vec4f(color_encode(shaded.color.rgb), shaded.color.a);
-    } else if found.y != 0u {
-        atomicAdd(&counters.orphans, 1u);
+    if IS_STRAIGHT || (is_inside && is_owned) {
+        let shaded = glue_surface(surface_at(select(0u, ~found.x, is_owned), pixel));
+        encoded = select(encoded, vec4f(color_encode(shaded.color.rgb), shaded.color.a), is_owned);
     }
-    color[pixel.y * frame.stride + pixel.x] = color_pack(encoded);
+    if is_inside {
+        color[pixel.y * frame.stride + pixel.x] = color_pack(encoded);
+        if !is_owned && found.y != 0u { atomicAdd(&counters.orphans, 1u); }
+    }
 }

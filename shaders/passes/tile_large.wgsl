@@ -2,6 +2,7 @@
 //@ use slot/pieces
 //@ use slot/queues
 //@ use common/fixed
+//@ use slot/marks
 
 // Sign of the biased edge function at its innermost sample of a box of pixels: negative means all outside.
 fn tile_is_outside(a: vec2i, b: vec2i, pixels: vec4i) -> bool {
@@ -33,6 +34,7 @@ fn tile_large(@builtin(workgroup_id) group: vec3u, @builtin(num_workgroups) grou
         let box = vec4i(max(tile * 64, pixels.xy), min(tile * 64 + 63, pixels.zw));
         if !(tile_is_outside(a, b, box) || tile_is_outside(b, c, box) || tile_is_outside(c, a, box)) {
             queues_push_tile(entry, vec2u(tile));
+            marks_box(box);
         }
     }
 }

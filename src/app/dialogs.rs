@@ -303,7 +303,11 @@ fn muted_ui(ui: &mut Ui, muted: &[&str]) -> Option<Choice> {
     ui.label(RichText::new("Some effects are muted").size(15.0).color(theme::TEXT_STRONG).strong());
     ui.label(format!("{} cannot be seen now. Muting is a viewing aid and is not saved.", muted.join(", ")));
     ui.add_space(theme::HALF);
-    let options = [("Save with them on", Choice::KeepMuted, true), ("Remove them and save", Choice::DropMuted, false), ("Cancel", Choice::Cancel, false)];
+    let options = [
+        ("Save with them on", Choice::KeepMuted, true),
+        ("Remove them and save", Choice::DropMuted, false),
+        ("Cancel", Choice::Cancel, false),
+    ];
     buttons(ui, &options, |_| None)
 }
 

@@ -212,7 +212,8 @@ fn number_ui(ui: &mut Ui, row: &Row, value: f64) -> Option<Plain> {
         now = slider_ui(ui, row, value, [from, to], whole);
     }
     let speed = row.soft.map_or_else(|| value.abs().max(1.0) * 0.01, |[from, to]| (to - from) / 300.0);
-    let mut drag = DragValue::new(&mut now).range(low..=high).speed(if whole { speed.max(0.05) } else { speed }).update_while_editing(false);
+    let mut drag =
+        DragValue::new(&mut now).range(low..=high).speed(if whole { speed.max(0.05) } else { speed }).update_while_editing(false);
     drag = if whole { drag.fixed_decimals(0) } else { drag.max_decimals(decimals(row.soft)) };
     if !row.unit.is_empty() {
         drag = drag.suffix(spaced(row.unit));
@@ -226,7 +227,13 @@ fn number_ui(ui: &mut Ui, row: &Row, value: f64) -> Option<Plain> {
 /// Decimals worth showing for a soft range.
 fn decimals(soft: Option<[f64; 2]>) -> usize {
     let span = soft.map_or(1.0, |[from, to]| (to - from).abs());
-    if span >= 100.0 { 1 } else if span >= 10.0 { 2 } else { 3 }
+    if span >= 100.0 {
+        1
+    } else if span >= 10.0 {
+        2
+    } else {
+        3
+    }
 }
 
 /// The slider; Shift moves it a tenth as far.

@@ -44,7 +44,12 @@ pub fn paint(painter: &egui::Painter, icon: Icon, rect: Rect, color: Color32) {
     };
     match icon {
         Icon::Eye | Icon::EyeShut => {
-            let lid = |up: f32| (0..=10).map(|i| i as f32 / 10.0).map(|x| at(x * 1.2 - 0.1, 0.5 - up * (x * std::f32::consts::PI).sin())).collect::<Vec<_>>();
+            let lid = |up: f32| {
+                (0..=10)
+                    .map(|i| i as f32 / 10.0)
+                    .map(|x| at(x * 1.2 - 0.1, 0.5 - up * (x * std::f32::consts::PI).sin()))
+                    .collect::<Vec<_>>()
+            };
             line(&lid(0.4));
             line(&lid(-0.4));
             if icon == Icon::Eye {

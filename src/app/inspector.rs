@@ -82,7 +82,8 @@ impl App {
     }
 
     fn enabled_effect_ui(&mut self, ui: &mut Ui, effect: &'static Effect, place: usize, count: usize) {
-        let frame = egui::Frame::new().fill(theme::BAR).corner_radius(6.0).inner_margin(egui::Margin { left: 8, right: 4, top: 3, bottom: 5 });
+        let frame =
+            egui::Frame::new().fill(theme::BAR).corner_radius(6.0).inner_margin(egui::Margin { left: 8, right: 4, top: 3, bottom: 5 });
         frame.show(ui, |ui| {
             ui.set_min_width(ui.available_width());
             self.effect_header_ui(ui, effect, place, count);

@@ -126,7 +126,8 @@ impl Jobs {
 
 /// Runs `work`; a panic becomes its error, so that no button stays grey for ever.
 fn caught<T>(what: &str, work: impl FnOnce() -> Result<T, String>) -> Result<T, String> {
-    std::panic::catch_unwind(std::panic::AssertUnwindSafe(work)).unwrap_or_else(|_| Err(format!("{what} failed inside the program; the terminal says where")))
+    std::panic::catch_unwind(std::panic::AssertUnwindSafe(work))
+        .unwrap_or_else(|_| Err(format!("{what} failed inside the program; the terminal says where")))
 }
 
 fn verify(gpu: Arc<Gpu>, Inputs { scene, view, stack, accuracy }: &Inputs) -> Result<Accuracy, String> {

@@ -456,9 +456,13 @@ impl App {
         );
         self.panels.log = log;
         let mut left = self.panels.left;
-        egui::Panel::left("left").frame(theme::panel_frame()).default_size(264.0).size_range(200.0..=420.0).show_collapsible(ui, &mut left, |ui| {
-            self.left_ui(ui);
-        });
+        egui::Panel::left("left").frame(theme::panel_frame()).default_size(264.0).size_range(200.0..=420.0).show_collapsible(
+            ui,
+            &mut left,
+            |ui| {
+                self.left_ui(ui);
+            },
+        );
         self.panels.left = left;
         let mut right = self.panels.right;
         let frame = theme::panel_frame();

@@ -230,7 +230,8 @@ fn look_row(ui: &mut Ui, entry: &GalleryEntry, picture: Option<&egui::TextureHan
     if is_modified {
         painter.circle_filled(text.min + vec2(title.size().x + 8.0, 10.0), 3.0, theme::ACCENT);
     }
-    let mut job = egui::text::LayoutJob::single_section(about.clone(), egui::TextFormat::simple(FontId::proportional(11.5), weak_on(is_open)));
+    let mut job =
+        egui::text::LayoutJob::single_section(about.clone(), egui::TextFormat::simple(FontId::proportional(11.5), weak_on(is_open)));
     job.wrap = egui::text::TextWrapping { max_width: text.width(), max_rows: 2, break_anywhere: false, overflow_character: Some('…') };
     painter.galley(text.min + vec2(0.0, 20.0), painter.layout_job(job), theme::TEXT_WEAK);
     if entry.look.is_err() && picture.is_none() {
@@ -287,14 +288,16 @@ fn params_ui(ui: &mut Ui, builtin: &Builtin, query: &str) -> Option<String> {
 
 /// The value of every parameter in `query`; the default where it says nothing readable.
 fn values_of(builtin: &Builtin, query: &str) -> Vec<f64> {
-    let pairs: HashMap<&str, &str> = query.split_once('?').map_or("", |(_, pairs)| pairs).split('&').filter_map(|pair| pair.split_once('=')).collect();
+    let pairs: HashMap<&str, &str> =
+        query.split_once('?').map_or("", |(_, pairs)| pairs).split('&').filter_map(|pair| pair.split_once('=')).collect();
     builtin.params.iter().map(|param| pairs.get(param.name).and_then(|text| text.parse().ok()).unwrap_or(param.default)).collect()
 }
 
 /// The query that says what differs from the defaults.
 fn written(builtin: &Builtin, values: &[f64]) -> String {
     let changed = builtin.params.iter().zip(values).filter(|(param, value)| param.default != **value);
-    let pairs: Vec<String> = changed.map(|(param, value)| format!("{}={}", param.name, if param.whole { value.round() } else { *value })).collect();
+    let pairs: Vec<String> =
+        changed.map(|(param, value)| format!("{}={}", param.name, if param.whole { value.round() } else { *value })).collect();
     if pairs.is_empty() { builtin.name.into() } else { format!("{}?{}", builtin.name, pairs.join("&")) }
 }
 

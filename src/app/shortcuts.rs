@@ -227,7 +227,8 @@ impl App {
             .pivot(egui::Align2::CENTER_CENTER)
             .default_pos(area.center())
             .show(ctx, |ui| {
-                let search = egui::TextEdit::singleline(&mut self.panels.search).hint_text("Search actions and keys").desired_width(f32::INFINITY);
+                let search =
+                    egui::TextEdit::singleline(&mut self.panels.search).hint_text("Search actions and keys").desired_width(f32::INFINITY);
                 ui.add(search);
                 ui.add_space(theme::HALF);
                 egui::ScrollArea::vertical().max_height((area.height() - 220.0).max(160.0)).show(ui, |ui| self.cheat_rows_ui(ui));
@@ -245,7 +246,8 @@ impl App {
             (*about, if keys.is_empty() { action.keys_text() } else { keys }, self.current_value(*action))
         });
         let pointer = POINTER.iter().map(|(about, how)| (*about, (*how).to_owned(), None));
-        let rows: Vec<_> = keys.chain(pointer).filter(|(about, how, _)| format!("{about} {how}").to_lowercase().contains(&wanted)).collect();
+        let rows: Vec<_> =
+            keys.chain(pointer).filter(|(about, how, _)| format!("{about} {how}").to_lowercase().contains(&wanted)).collect();
         if rows.is_empty() {
             ui.label(theme::weak("No action has these words."));
         }
@@ -275,7 +277,8 @@ impl App {
 /// One draw per lane, from the seed and the parameter's own name, so that another order gives the same values.
 fn randomize_words(effect: &Effect, words: &mut [u32], seed: u32) {
     for field in effect.fields {
-        let salt = effect.name.bytes().chain(field.name.bytes()).fold(seed.wrapping_mul(0x9e37_79b9), |h, b| h.rotate_left(5) ^ u32::from(b));
+        let salt =
+            effect.name.bytes().chain(field.name.bytes()).fold(seed.wrapping_mul(0x9e37_79b9), |h, b| h.rotate_left(5) ^ u32::from(b));
         let [from, to] = field.soft;
         let values: Vec<f64> = (0..field.kind.lanes() as u32)
             .map(|lane| {

@@ -29,7 +29,21 @@ impl App {
     fn menus_ui(&mut self, ui: &mut Ui) {
         use Action as A;
         let menus: [(&str, &[Option<A>]); 3] = [
-            ("File", &[Some(A::Open), None, Some(A::Save), Some(A::SaveAs), Some(A::Export), None, Some(A::CopyLook), Some(A::PasteLook), None, Some(A::Quit)]),
+            (
+                "File",
+                &[
+                    Some(A::Open),
+                    None,
+                    Some(A::Save),
+                    Some(A::SaveAs),
+                    Some(A::Export),
+                    None,
+                    Some(A::CopyLook),
+                    Some(A::PasteLook),
+                    None,
+                    Some(A::Quit),
+                ],
+            ),
             ("Edit", &[Some(A::Undo), Some(A::Redo), None, Some(A::Randomize)]),
             (
                 "View",
@@ -87,14 +101,16 @@ impl App {
         let color = if summary.software { theme::AMBER } else { theme::GREEN };
         let name = summary.name.split('(').next().unwrap_or_default().trim();
         let text = if summary.software { format!("{name} · software") } else { name.to_owned() };
-        let response = ui.add(egui::Label::new(RichText::new(text).color(if summary.software { theme::AMBER } else { theme::TEXT })).truncate());
+        let response =
+            ui.add(egui::Label::new(RichText::new(text).color(if summary.software { theme::AMBER } else { theme::TEXT })).truncate());
         response.on_hover_ui(|ui| {
             ui.label(RichText::new(&summary.name).color(theme::TEXT_STRONG));
             ui.label(format!("{} · {}", summary.backend, summary.driver));
             ui.label(theme::weak(format!("class {}", self.screen.gpu.caps.class())));
             if summary.software {
                 ui.label(
-                    RichText::new("A software adapter: the pictures are right, the times say nothing about a graphics card.").color(theme::AMBER),
+                    RichText::new("A software adapter: the pictures are right, the times say nothing about a graphics card.")
+                        .color(theme::AMBER),
                 );
             }
         });
@@ -121,7 +137,8 @@ impl App {
             Some(None) => "no GPU timer".into(),
             None => "not timed".into(),
         };
-        ui.label(RichText::new(time).color(theme::TEXT_STRONG)).on_hover_text("Time of the newest frame on the device; passes are listed under Timing");
+        ui.label(RichText::new(time).color(theme::TEXT_STRONG))
+            .on_hover_text("Time of the newest frame on the device; passes are listed under Timing");
     }
 
     /// The error of the picture that is shown, as far as it was measured.

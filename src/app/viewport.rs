@@ -99,7 +99,9 @@ impl App {
                 self.move_camera(|c| orbit::turn(c, right * TURN_PER_POINT * 0.5, down * TURN_PER_POINT * 0.5));
             }
         }
-        if response.dragged_by(PointerButton::Secondary) || (response.is_pointer_button_down_on() && ui.input(|i| i.pointer.secondary_down())) {
+        if response.dragged_by(PointerButton::Secondary)
+            || (response.is_pointer_button_down_on() && ui.input(|i| i.pointer.secondary_down()))
+        {
             self.fly(ui);
         }
         if response.contains_pointer() && !ui.ctx().any_popup_open() {
@@ -222,7 +224,8 @@ impl App {
     /// Chips over the picture: state on the left, views on the right, a hint while a file hovers.
     fn overlay_ui(&mut self, ui: &mut Ui, rect: Rect) {
         let corner = Rect::from_min_max(rect.min + vec2(12.0, 10.0), rect.max);
-        let mut left = ui.new_child(egui::UiBuilder::new().id_salt("state").max_rect(corner).layout(egui::Layout::left_to_right(egui::Align::TOP)));
+        let mut left =
+            ui.new_child(egui::UiBuilder::new().id_salt("state").max_rect(corner).layout(egui::Layout::left_to_right(egui::Align::TOP)));
         for (color, text) in self.states() {
             theme::toast_frame(theme::LINE)
                 .inner_margin(egui::Margin::symmetric(8, 4))
@@ -234,7 +237,13 @@ impl App {
         right.spacing_mut().item_spacing.x = 2.0;
         self.views_ui(&mut right);
         if ui.ctx().input(|i| !i.raw.hovered_files.is_empty()) {
-            ui.painter().rect(rect.shrink(8.0), 8.0, theme::ACCENT_GROUND.gamma_multiply(0.5), (2.0, theme::ACCENT), egui::StrokeKind::Inside);
+            ui.painter().rect(
+                rect.shrink(8.0),
+                8.0,
+                theme::ACCENT_GROUND.gamma_multiply(0.5),
+                (2.0, theme::ACCENT),
+                egui::StrokeKind::Inside,
+            );
             ui.painter().text(rect.center(), Align2::CENTER_CENTER, "Drop to open", FontId::proportional(20.0), theme::TEXT_STRONG);
         }
     }

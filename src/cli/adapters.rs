@@ -3,14 +3,13 @@
 use serde_json::{Value, json};
 
 use super::{
-    args::Common,
     fault::{Exit, Fault},
     painter::{adapter_json, usable_rungs},
     streams::{Streams, table},
 };
 use crate::gpu::device;
 
-pub fn run(_: &Common, streams: &mut Streams) -> Result<Exit, Fault> {
+pub fn run(streams: &mut Streams) -> Result<Exit, Fault> {
     let adapters = device::list();
     if streams.json {
         let mut results: Vec<Value> = adapters

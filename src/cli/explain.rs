@@ -46,10 +46,16 @@ pub fn run(common: &Common, args: &Explain, streams: &mut Streams) -> Result<Exi
     Ok(Exit::Done)
 }
 
+/// Lowest and highest corner of the scene's box; none when it is empty.
+fn corners(scene: &Scene) -> Option<[[f64; 3]; 2]> {
+    let bounds = scene.bounds();
+    (!bounds.is_empty()).then(|| [bounds.min.to_array(), bounds.max.to_array()])
+}
+
 fn scene_json(scene: &Scene) -> Value {
     json!({
         "name": scene.name, "triangles": scene.triangle_count(), "vertices": scene.vertex_count(),
-        "instances": scene.instances.len(), "notes": scene.notes,
+        "instances": scene.instances.len(), "box_m": corners(scene), "notes": scene.notes,
     })
 }
 
@@ -60,11 +66,12 @@ fn effects_json(stack: &Stack) -> Vec<Value> {
 fn text(id: &str, scene: &Scene, stack: &Stack, plan: Option<&Explanation>) -> String {
     let effects: Vec<_> = stack.0.iter().map(|enabled| format!("{} ({})", enabled.effect.name, enabled.effect.hook.name())).collect();
     let mut text = format!(
-        "look     {id}\nscene    {}: {} triangles, {} vertices, {} instances\neffects  {}\n",
+        "look     {id}\nscene    {}: {} triangles, {} vertices, {} instances\nbox      {}\neffects  {}\n",
         scene.name,
         scene.triangle_count(),
         scene.vertex_count(),
         scene.instances.len(),
+        corners(scene).map_or_else(|| "empty".into(), |[min, max]| format!("{min:.3?} to {max:.3?} m")),
         if effects.is_empty() { "none".into() } else { effects.join(", ") },
     );
     let Some(plan) = plan else { return text };

@@ -24,6 +24,7 @@ use std::io::{self, Write as _};
 use clap::CommandFactory as _;
 use serde_json::{Value, json};
 
+use args::Common;
 pub use args::{Cli, Command};
 pub use fault::{Exit, Fault};
 use streams::Streams;
@@ -32,8 +33,12 @@ use crate::preset::{self, Look, PresetError};
 
 /// Runs what was asked. Errors are for [`complain`].
 pub fn run(cli: &Cli) -> Result<Exit, Fault> {
+    let Some(command) = &cli.command else { return window(cli) };
+    if let Some(look) = &cli.open {
+        return Err(Fault::usage(format!("{look:?} stands before a command; a look without a command opens the window")));
+    }
     let mut streams = Streams::new(cli.common.quiet, cli.common.json);
-    let result = dispatch(cli, &mut streams).and_then(|exit| streams.finish().map(|()| exit).map_err(Fault::from));
+    let result = dispatch(&cli.common, command, &mut streams).and_then(|exit| streams.finish().map(|()| exit).map_err(Fault::from));
     match result {
         // The reader of a pipe has seen enough.
         Err(fault) if fault.is_closed_pipe() => Ok(Exit::Done),
@@ -41,22 +46,18 @@ pub fn run(cli: &Cli) -> Result<Exit, Fault> {
     }
 }
 
-fn dispatch(cli: &Cli, streams: &mut Streams) -> Result<Exit, Fault> {
-    if let (Some(look), Some(_)) = (&cli.open, &cli.command) {
-        return Err(Fault::usage(format!("{look:?} stands before a command; a look without a command opens the window")));
-    }
-    match &cli.command {
-        None => window(cli),
-        Some(Command::List(args)) => list::run(&cli.common, args, streams),
-        Some(Command::Adapters) => adapters::run(&cli.common, streams),
-        Some(Command::Render(args)) => render::run(&cli.common, args, streams),
-        Some(Command::Verify(args)) => verify::run(&cli.common, args, streams),
-        Some(Command::Compare(args)) => compare::run(&cli.common, args, streams),
-        Some(Command::Explain(args)) => explain::run(&cli.common, args, streams),
-        Some(Command::Bless(args)) => bless::run(&cli.common, args, streams),
-        Some(Command::Bench(args)) => bench::run(&cli.common, args, streams),
-        Some(Command::Check(args)) => check::run(&cli.common, args, streams),
-        Some(Command::Completions { shell }) => {
+fn dispatch(common: &Common, command: &Command, streams: &mut Streams) -> Result<Exit, Fault> {
+    match command {
+        Command::List(args) => list::run(common, args, streams),
+        Command::Adapters => adapters::run(streams),
+        Command::Render(args) => render::run(common, args, streams),
+        Command::Verify(args) => verify::run(common, args, streams),
+        Command::Compare(args) => compare::run(common, args, streams),
+        Command::Explain(args) => explain::run(common, args, streams),
+        Command::Bless(args) => bless::run(common, args, streams),
+        Command::Bench(args) => bench::run(common, args, streams),
+        Command::Check(args) => check::run(common, args, streams),
+        Command::Completions { shell } => {
             let mut script = Vec::new();
             clap_complete::generate(*shell, &mut Cli::command(), "rasterlab", &mut script);
             streams.bytes(&script)?;
@@ -69,7 +70,7 @@ fn dispatch(cli: &Cli, streams: &mut Streams) -> Result<Exit, Fault> {
 fn window(cli: &Cli) -> Result<Exit, Fault> {
     if let Some(what) = &cli.open {
         // Said here, where a person reads it, rather than in a window that opens and shows nothing.
-        open(&cli.common, what)?;
+        open(&cli.common, what).map_err(|fault| perhaps_a_command(fault, what))?;
     }
     let adapter = match painter::wanted(&cli.common) {
         painter::Wanted::Cpu => {
@@ -82,13 +83,22 @@ fn window(cli: &Cli) -> Result<Exit, Fault> {
     Ok(Exit::Done)
 }
 
+/// What is no look may be a command with a slip of the finger.
+#[cfg(feature = "gui")]
+fn perhaps_a_command(fault: Fault, what: &str) -> Fault {
+    let names: Vec<String> = Cli::command().get_subcommands().map(|command| command.get_name().to_owned()).collect();
+    let hint = preset::form::did_you_mean(what, names.iter().map(String::as_str));
+    let is_unknown = matches!(fault.error.downcast_ref(), Some(PresetError::NoLook { .. }));
+    if hint.is_empty() || !is_unknown { fault } else { Fault::usage(format!("there is no look and no command {what:?}{hint}")) }
+}
+
 #[cfg(not(feature = "gui"))]
 fn window(_: &Cli) -> Result<Exit, Fault> {
     Err(Fault::usage("this build has no window; rasterlab --help lists the commands"))
 }
 
 /// Opens what a person named and applies `--unset`, then `--set`, in that order.
-fn open(common: &args::Common, what: &str) -> Result<Look, Fault> {
+fn open(common: &Common, what: &str) -> Result<Look, Fault> {
     let mut look = if what == "-" {
         preset::parse_file(&files::stdin_text()?, "stdin", "stdin")?
     } else {
@@ -108,7 +118,7 @@ fn open(common: &args::Common, what: &str) -> Result<Look, Fault> {
 }
 
 /// Every gallery look that has a golden, or those that were named.
-fn looks(common: &args::Common, names: &[String], streams: &Streams) -> Result<Vec<Look>, Fault> {
+fn looks(common: &Common, names: &[String], streams: &Streams) -> Result<Vec<Look>, Fault> {
     let looks: Vec<Look> = if names.is_empty() {
         let entries = preset::gallery(common.presets_dir().as_deref());
         let looks = entries.iter().map(|entry| open(common, &gallery_name(entry))).collect::<Result<Vec<_>, _>>()?;

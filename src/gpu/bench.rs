@@ -1,10 +1,292 @@
-//! STUB: the lead is writing this; signatures hold.
+//! Milliseconds beside error: our rungs and two baselines, interleaved in one run on one adapter.
+
 use std::sync::Arc;
-use super::{Gpu, RenderError};
-use crate::{measure, scene::Scene, session::Session};
-pub struct BenchOptions { pub size: [u32; 2], pub samples: usize }
+
+use super::{
+    Gpu, RenderError, Renderer, buffers,
+    hardware::Hardware,
+    naive::{Naive, Viewport},
+    readback::Pending,
+    timer::{Detail, Timer, Times},
+    uniforms::color_stride,
+};
+use crate::{
+    frame::{Frame, Geometry, NO_OWNER},
+    measure::{ErrorFigures, Verdict, compare, timing},
+    plan::Accuracy,
+    scene::{Scene, camera::View},
+    session::Session,
+    shader::key::Visibility,
+};
+
+/// What to measure.
+#[derive(Clone, Copy, Debug)]
+pub struct BenchOptions {
+    pub size: [u32; 2],
+    /// Whole-frame samples per row; a third as many frames more are timed pass by pass.
+    pub samples: usize,
+}
+
+/// GPU time of one pass.
 #[derive(Clone, Debug, serde::Serialize)]
-pub struct PassTime { pub name: String, pub ms_p50: f64, pub ms_p95: f64 }
+pub struct PassTime {
+    pub name: String,
+    pub ms_p50: f64,
+    pub ms_p95: f64,
+}
+
+/// One rung on one scene.
 #[derive(Clone, Debug, serde::Serialize)]
-pub struct BenchRow { pub scene: String, pub triangles: u64, pub rung: String, pub adapter: String, pub ms_p50: Option<f64>, pub ms_p95: Option<f64>, pub samples: usize, pub passes: Vec<PassTime>, pub error: measure::Accuracy, pub note: Option<String> }
-pub fn bench(_gpu: &Arc<Gpu>, _session: &Session, _scene: &Arc<Scene>, _scene_name: &str, _options: &BenchOptions, _progress: &mut dyn FnMut(&str, usize, usize), _judge: &dyn Fn(&crate::frame::Frame, &crate::frame::Geometry, Option<&[u32]>) -> measure::Accuracy) -> Result<Vec<BenchRow>, RenderError> { Ok(vec![]) }
+pub struct BenchRow {
+    pub scene: String,
+    pub triangles: u64,
+    pub rung: String,
+    pub adapter: String,
+    /// Whole frame, clears and resolve included; none without timestamps or where the row could not run.
+    pub ms_p50: Option<f64>,
+    pub ms_p95: Option<f64>,
+    /// Valid samples.
+    pub samples: usize,
+    pub passes: Vec<PassTime>,
+    pub error: ErrorFigures,
+    /// A rung of ours, which promises exactness; a baseline promises nothing.
+    pub is_promised: bool,
+    /// What a reader must know of this row.
+    pub note: Option<String>,
+}
+
+/// Judges a picture of ours against the oracle, and hands over the oracle's own.
+pub type Judge<'a> = &'a dyn Fn(&Frame, &Geometry, Option<&[u32]>) -> Verdict;
+
+/// Something that draws the scene.
+enum Contender {
+    Ours(Visibility, Box<Renderer>),
+    Naive(Viewport, Box<Naive>),
+    Hardware(Box<Hardware>),
+}
+
+impl Contender {
+    fn rung(&self) -> String {
+        match self {
+            Self::Ours(visibility, _) => visibility.name().into(),
+            Self::Naive(Viewport::AsWritten, _) => "naive".into(),
+            Self::Naive(Viewport::Folded, _) => "naive, viewport mended".into(),
+            Self::Hardware(_) => "hardware".into(),
+        }
+    }
+}
+
+/// A contender with what has been measured of it.
+struct Entry {
+    contender: Contender,
+    error: ErrorFigures,
+    whole: Vec<f64>,
+    invalid: usize,
+    passes: Vec<(String, Vec<f64>)>,
+}
+
+struct Lab<'a> {
+    gpu: &'a Arc<Gpu>,
+    session: &'a Session,
+    view: View,
+    timer: Option<Timer>,
+}
+
+/// Measures every rung that the adapter has, and the baselines. Rows keep their order whatever the figures.
+pub fn bench(
+    gpu: &Arc<Gpu>,
+    session: &Session,
+    scene: &Arc<Scene>,
+    scene_name: &str,
+    options: &BenchOptions,
+    progress: &mut dyn FnMut(&str, usize, usize),
+    judge: Judge,
+) -> Result<Vec<BenchRow>, RenderError> {
+    let view = session.view(scene, options.size);
+    let mut lab = Lab { gpu, session, view, timer: Timer::new(gpu) };
+    let (mut entries, missing) = lab.line_up(scene, judge)?;
+    let rounds = options.samples + options.samples / 3;
+    let all = rounds * entries.len();
+    const WARM_UP: usize = 3;
+    for round in 0..rounds + WARM_UP {
+        let detail = if round < options.samples + WARM_UP { Detail::Whole } else { Detail::Passes };
+        for (i, entry) in entries.iter_mut().enumerate() {
+            let times = lab.sample(&mut entry.contender, detail)?;
+            if round >= WARM_UP {
+                entry.keep(times, detail);
+                progress(&entry.contender.rung(), (round - WARM_UP) * all / rounds + i + 1, all);
+            }
+        }
+    }
+    let row = |rung: String, error: ErrorFigures, note: Option<String>| BenchRow {
+        scene: scene_name.into(),
+        triangles: scene.triangle_count(),
+        rung,
+        adapter: gpu.summary.name.clone(),
+        ms_p50: None,
+        ms_p95: None,
+        samples: 0,
+        passes: Vec::new(),
+        error,
+        is_promised: false,
+        note,
+    };
+    let mut rows: Vec<BenchRow> = entries.into_iter().map(|entry| entry.finish(&row)).collect();
+    rows.extend(missing.into_iter().map(|(rung, why)| row(rung, ErrorFigures::default(), Some(format!("{scene_name}: {why}")))));
+    Ok(rows)
+}
+
+impl Lab<'_> {
+    /// Sets up every contender and measures its error. Second: rows that cannot run, and why.
+    #[allow(clippy::type_complexity, reason = "a pair of lists, named in the line above")]
+    fn line_up(&mut self, scene: &Arc<Scene>, judge: Judge) -> Result<(Vec<Entry>, Vec<(String, String)>), RenderError> {
+        let (mut entries, mut missing) = (Vec::new(), Vec::new());
+        let mut expected = None;
+        for visibility in Visibility::ALL {
+            let mut renderer = Renderer::new(self.gpu.clone());
+            renderer.set_scene(scene)?;
+            if visibility == Visibility::Packed64 && !self.gpu.caps.int64_atomics {
+                missing.push((visibility.name().into(), "packed64 needs 64-bit atomics, which this adapter lacks".into()));
+                continue;
+            }
+            let capture = renderer.capture(&self.view, &self.session.stack, &pinned(visibility))?;
+            let verdict = judge(&capture.frame, &capture.geometry, capture.layers.as_deref());
+            entries.push(Entry::new(Contender::Ours(visibility, Box::new(renderer)), (&verdict.accuracy).into()));
+            expected = Some(verdict.expected);
+        }
+        let (Some(expected), Some(key)) = (expected, self.first_key(&entries)) else { return Ok((entries, missing)) };
+        for viewport in [Viewport::AsWritten, Viewport::Folded] {
+            match Naive::new(self.gpu, scene, &self.view, &key, viewport) {
+                Ok(naive) => {
+                    let picture = naive.picture(self.gpu)?;
+                    entries.push(Entry::new(Contender::Naive(viewport, Box::new(naive)), picture_error(&picture, &expected)));
+                }
+                Err(error) if error.is_unsupported() => missing.push(("naive".into(), error.to_string())),
+                Err(error) => return Err(error),
+            }
+        }
+        match Hardware::new(self.gpu, scene, &self.view, &self.session.stack, &key)? {
+            Ok(hardware) => {
+                let picture = self.hardware_picture(&hardware)?;
+                entries.push(Entry::new(Contender::Hardware(Box::new(hardware)), picture_error(&picture, &expected)));
+            }
+            Err(why) => missing.push(("hardware".into(), why)),
+        }
+        Ok((entries, missing))
+    }
+
+    fn first_key(&self, entries: &[Entry]) -> Option<crate::shader::KernelKey> {
+        entries.iter().find_map(|entry| match &entry.contender {
+            Contender::Ours(_, renderer) => renderer.last.as_ref().map(|plan| plan.key.clone()),
+            _ => None,
+        })
+    }
+
+    /// Draws once and waits.
+    fn sample(&mut self, contender: &mut Contender, detail: Detail) -> Result<Times, RenderError> {
+        if let Contender::Ours(visibility, renderer) = contender {
+            renderer.draw_timed(&self.view, &self.session.stack, &pinned(*visibility), detail)?;
+            let report = renderer.finish()?;
+            return Ok(Times { total_ms: report.gpu_ms, passes: report.passes });
+        }
+        let mut encoder = self.gpu.device.create_command_encoder(&Default::default());
+        if let Some(timer) = &mut self.timer {
+            timer.begin(&mut encoder, detail);
+        }
+        match contender {
+            Contender::Naive(_, naive) => naive.record(self.gpu, &mut encoder, self.timer.as_mut()),
+            Contender::Hardware(hardware) => hardware.record(&mut encoder, self.timer.as_mut()),
+            Contender::Ours(..) => {}
+        }
+        let pending = Pending::stage(self.gpu, &mut encoder, None, self.timer.as_ref());
+        self.gpu.queue.submit([encoder.finish()]);
+        let pending = pending.begin();
+        buffers::wait(self.gpu)?;
+        pending.read(self.timer.as_ref()).map(|(_, times)| times).ok_or(RenderError::Lost)
+    }
+
+    fn hardware_picture(&self, hardware: &Hardware) -> Result<Vec<[u8; 4]>, RenderError> {
+        let buffer = self.gpu.device.create_buffer(&wgpu::BufferDescriptor {
+            label: Some("hardware picture"),
+            size: self.picture_bytes(),
+            usage: wgpu::BufferUsages::COPY_DST | wgpu::BufferUsages::COPY_SRC,
+            mapped_at_creation: false,
+        });
+        let mut encoder = self.gpu.device.create_command_encoder(&Default::default());
+        hardware.record(&mut encoder, None);
+        hardware.copy_color(&mut encoder, &buffer);
+        self.gpu.queue.submit([encoder.finish()]);
+        buffers::read_picture(self.gpu, &buffer, [self.view.width, self.view.height])
+    }
+
+    fn picture_bytes(&self) -> u64 {
+        4 * u64::from(color_stride(self.view.width)) * u64::from(self.view.height)
+    }
+}
+
+fn pinned(visibility: Visibility) -> Accuracy {
+    Accuracy { visibility: Some(visibility), ..Accuracy::default() }
+}
+
+/// Error of a picture that has no owners: where it shows something it should not or the reverse, and how far off it is.
+fn picture_error(picture: &[[u8; 4]], expected: &Frame) -> ErrorFigures {
+    let is_drawn = |i: usize| picture[i][3] != 0;
+    let is_owned = |i: usize| expected.owner[i] != NO_OWNER;
+    let count = |wrong: &dyn Fn(usize) -> bool| (0..picture.len()).filter(|&i| wrong(i)).count() as u64;
+    // Only pixels that both drew: a hole is counted as one, not as a colour.
+    let both: Vec<usize> = (0..picture.len()).filter(|&i| is_drawn(i) && is_owned(i)).collect();
+    let opaque = |c: [u8; 4]| [c[0], c[1], c[2], 255];
+    let ours: Vec<_> = both.iter().map(|&i| opaque(picture[i])).collect();
+    let theirs: Vec<_> = both.iter().map(|&i| opaque(expected.color[i])).collect();
+    let delta = compare::pictures(&ours, &theirs, 1);
+    ErrorFigures {
+        holes: Some(count(&|i| is_owned(i) && !is_drawn(i))),
+        extra: Some(count(&|i| is_drawn(i) && !is_owned(i))),
+        max_colour_delta: Some(delta.max_delta),
+        rms_colour_delta: Some(delta.rms),
+        ..ErrorFigures::default()
+    }
+}
+
+impl Entry {
+    fn new(contender: Contender, error: ErrorFigures) -> Self {
+        Self { contender, error, whole: Vec::new(), invalid: 0, passes: Vec::new() }
+    }
+
+    fn keep(&mut self, times: Times, detail: Detail) {
+        match (detail, times.total_ms) {
+            (Detail::Whole, Some(ms)) => self.whole.push(ms),
+            (Detail::Whole, None) => self.invalid += 1,
+            (Detail::Passes, _) => {
+                for (name, ms) in times.passes {
+                    match self.passes.iter_mut().find(|(known, _)| *known == name) {
+                        Some((_, samples)) => samples.push(ms),
+                        None => self.passes.push((name, vec![ms])),
+                    }
+                }
+            }
+        }
+    }
+
+    fn finish(self, row: &dyn Fn(String, ErrorFigures, Option<String>) -> BenchRow) -> BenchRow {
+        let note = match self.contender {
+            Contender::Naive(Viewport::AsWritten, _) => {
+                Some("naive draws one quadrant of the view, as its author wrote it; holes are not comparable".into())
+            }
+            _ if self.invalid > 0 => Some(format!("{}: {} samples had no valid timestamps", self.contender.rung(), self.invalid)),
+            _ => None,
+        };
+        let percentile = |samples: &[f64], p| timing::percentile(samples, p);
+        let pass = |(name, samples): (String, Vec<f64>)| {
+            Some(PassTime { name, ms_p50: percentile(&samples, 0.5)?, ms_p95: percentile(&samples, 0.95)? })
+        };
+        BenchRow {
+            ms_p50: percentile(&self.whole, 0.5),
+            ms_p95: percentile(&self.whole, 0.95),
+            samples: self.whole.len(),
+            is_promised: matches!(self.contender, Contender::Ours(..)),
+            passes: self.passes.into_iter().filter_map(pass).collect(),
+            ..row(self.contender.rung(), self.error, note)
+        }
+    }
+}

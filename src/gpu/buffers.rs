@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use super::{Gpu, RenderError};
+use super::{Gpu, RenderError, uniforms::color_stride};
 
 /// One buffer of the picture, for `explain`.
 #[derive(Clone, Debug, PartialEq, serde::Serialize)]
@@ -27,7 +27,14 @@ pub struct Buffers {
 impl Buffers {
     /// Makes `name` at least `bytes` long (and at least 16); true if it was made anew and so holds zeros.
     /// A buffer four times too large is made smaller.
-    pub fn ensure(&mut self, gpu: &Gpu, name: &'static str, bytes: u64, usage: wgpu::BufferUsages, why: &'static str) -> Result<bool, RenderError> {
+    pub fn ensure(
+        &mut self,
+        gpu: &Gpu,
+        name: &'static str,
+        bytes: u64,
+        usage: wgpu::BufferUsages,
+        why: &'static str,
+    ) -> Result<bool, RenderError> {
         let bytes = bytes.max(16).next_multiple_of(16);
         if let Some(held) = self.held.get_mut(name)
             && (bytes..=bytes.saturating_mul(4)).contains(&held.bytes)
@@ -51,7 +58,14 @@ impl Buffers {
     }
 
     /// Makes `name` and fills its beginning.
-    pub fn fill(&mut self, gpu: &Gpu, name: &'static str, data: &[u8], usage: wgpu::BufferUsages, why: &'static str) -> Result<(), RenderError> {
+    pub fn fill(
+        &mut self,
+        gpu: &Gpu,
+        name: &'static str,
+        data: &[u8],
+        usage: wgpu::BufferUsages,
+        why: &'static str,
+    ) -> Result<(), RenderError> {
         self.ensure(gpu, name, data.len() as u64, usage, why)?;
         gpu.queue.write_buffer(self.get(name), 0, data);
         Ok(())
@@ -95,6 +109,14 @@ pub fn read(gpu: &Gpu, buffer: &wgpu::Buffer, bytes: u64) -> Result<Vec<u8>, Ren
     encoder.copy_buffer_to_buffer(buffer, 0, &staging, 0, bytes);
     gpu.queue.submit([encoder.finish()]);
     read_staging(gpu, &staging)
+}
+
+/// Copies back a picture whose rows stand `color_stride` apart, row-major.
+pub fn read_picture(gpu: &Gpu, buffer: &wgpu::Buffer, [width, height]: [u32; 2]) -> Result<Vec<[u8; 4]>, RenderError> {
+    let row = 4 * color_stride(width) as usize;
+    let bytes = read(gpu, buffer, row as u64 * u64::from(height))?;
+    let pixels = |row: &[u8]| bytemuck::pod_collect_to_vec::<u8, [u8; 4]>(&row[..4 * width as usize]);
+    Ok(bytes.chunks_exact(row.max(1)).flat_map(pixels).collect())
 }
 
 /// Waits for a mappable buffer and reads all of it.

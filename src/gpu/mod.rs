@@ -3,6 +3,8 @@
 pub mod bench;
 pub mod buffers;
 pub mod device;
+mod dispatch;
+mod explain;
 pub mod hardware;
 pub mod naive;
 pub mod pipelines;
@@ -14,10 +16,12 @@ use std::{collections::VecDeque, sync::Arc};
 
 pub use buffers::BufferNote;
 pub use device::Gpu;
+pub use explain::Explanation;
 pub use readback::Capture;
 
 use self::{
     buffers::Buffers,
+    dispatch::{Dispatch, dispatch},
     pipelines::Pipelines,
     readback::Pending,
     timer::{Detail, Timer},
@@ -27,7 +31,8 @@ pub use crate::plan::Note;
 use crate::{
     effects::Stack,
     frame::Counters,
-    plan::{Accuracy, Lacking, Plan, plan},
+    math::srgb_byte,
+    plan::{Accuracy, Lacking, Plan, Tuning, plan},
     scene::{
         Scene,
         camera::View,
@@ -36,7 +41,8 @@ use crate::{
     },
     shader::{
         glue::uniform_bytes,
-        key::{KernelKey, Pass, Phase, Visibility},
+        key::{KernelKey, Pass, Visibility},
+        library::Library,
         link::LinkError,
         reflect::ShaderError,
     },
@@ -91,16 +97,6 @@ pub struct Report {
     pub redraw: bool,
 }
 
-/// Which passes and buffers exist for the last picture, and why.
-#[derive(Clone, Debug, serde::Serialize)]
-pub struct Explanation {
-    pub key: String,
-    pub passes: Vec<Note>,
-    pub buffers: Vec<BufferNote>,
-    pub reasons: Vec<Note>,
-    pub omitted: Vec<Note>,
-}
-
 /// Draws scenes on one device.
 pub struct Renderer {
     gpu: Arc<Gpu>,
@@ -108,6 +104,7 @@ pub struct Renderer {
     buffers: Buffers,
     timer: Option<Timer>,
     scene: Option<Arc<Scene>>,
+    tuning: Tuning,
     capacities: Capacities,
     /// A proof from bounds failed: queues and clipping are kept from now on.
     distrust: bool,
@@ -120,10 +117,16 @@ const STORAGE: wgpu::BufferUsages = wgpu::BufferUsages::STORAGE;
 
 impl Renderer {
     pub fn new(gpu: Arc<Gpu>) -> Self {
+        Self::with_library(gpu, Library::from_env())
+    }
+
+    /// A renderer whose shaders come from `library`.
+    pub fn with_library(gpu: Arc<Gpu>, library: Library) -> Self {
         let timer = Timer::new(&gpu);
         Self {
+            tuning: gpu.caps.tuning(),
             gpu,
-            pipelines: Pipelines::default(),
+            pipelines: Pipelines::new(library),
             buffers: Buffers::default(),
             timer,
             scene: None,
@@ -137,6 +140,26 @@ impl Renderer {
 
     pub fn gpu(&self) -> &Arc<Gpu> {
         &self.gpu
+    }
+
+    /// Shares out work in another way than suits the adapter, from the next picture on.
+    pub fn set_tuning(&mut self, tuning: Tuning) {
+        self.tuning = tuning;
+    }
+
+    /// Room for so many queue entries in the next picture of the scene that is set; too few grow and are drawn again.
+    pub fn set_capacities(&mut self, capacities: Capacities) {
+        self.capacities = capacities;
+    }
+
+    /// Room in the queues by now.
+    pub fn capacities(&self) -> Capacities {
+        self.capacities
+    }
+
+    /// Key of the last picture's kernel.
+    pub fn key(&self) -> Option<&KernelKey> {
+        self.last.as_ref().map(|plan| &plan.key)
     }
 
     /// Pipelines compiled so far; a switch back to a known key adds none.
@@ -159,9 +182,21 @@ impl Renderer {
             }
         }
         self.buffers.keep(|name| !matches!(name, "vertex_bytes" | "index_bytes" | "vertices"));
-        self.buffers.fill(&self.gpu, "vertex_bytes", &scene.vertex_bytes, STORAGE | wgpu::BufferUsages::VERTEX, "attributes as the file has them")?;
+        self.buffers.fill(
+            &self.gpu,
+            "vertex_bytes",
+            &scene.vertex_bytes,
+            STORAGE | wgpu::BufferUsages::VERTEX,
+            "attributes as the file has them",
+        )?;
         if !scene.index_bytes.is_empty() {
-            self.buffers.fill(&self.gpu, "index_bytes", &scene.index_bytes, STORAGE | wgpu::BufferUsages::INDEX, "index lists as the file has them")?;
+            self.buffers.fill(
+                &self.gpu,
+                "index_bytes",
+                &scene.index_bytes,
+                STORAGE | wgpu::BufferUsages::INDEX,
+                "index lists as the file has them",
+            )?;
         }
         self.capacities = first_capacities(scene);
         self.distrust = false;
@@ -183,16 +218,18 @@ impl Renderer {
             self.target = None;
             return Ok(());
         }
-        let mut passes = plan.key.passes(plan.key.phases());
-        passes.push(Pass::Resolve);
+        let passes = plan.key.frame();
         let mut encoder = self.gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor { label: Some("frame") });
         if let Some(timer) = &mut self.timer {
             timer.begin(&mut encoder, detail);
         }
-        self.clear(&mut encoder, &["counters", "depth_keys", "owners", "depth_owner"]);
+        self.clear(&mut encoder, &["counters", "depth_keys", "owners", "depth_owner", "marks"]);
+        if plan.key.listed_tiles {
+            self.fill_background(&mut encoder, view);
+        }
         self.record(&mut encoder, &plan.key, &passes, view)?;
         self.present(&mut encoder, view);
-        let pending = Pending::stage(&self.gpu, &mut encoder, self.buffers.get("counters"), self.timer.as_ref());
+        let pending = Pending::stage(&self.gpu, &mut encoder, Some(self.buffers.get("counters")), self.timer.as_ref());
         self.gpu.queue.submit([encoder.finish()]);
         self.pending.push_back(pending.begin());
         self.last = Some(plan);
@@ -234,27 +271,12 @@ impl Renderer {
         let counters = record.counters(&recorded);
         let mut redraw = false;
         if counters.overflow > 0 {
-            let is_proof_wrong = record.clip > 0 && !key.has_clipping || record.medium > 0 && !key.has_medium || record.large > 0 && !key.has_large;
+            let is_proof_wrong =
+                record.clip > 0 && !key.has_clipping || record.medium > 0 && !key.has_medium || record.large > 0 && !key.has_large;
             self.distrust |= is_proof_wrong;
             redraw = self.capacities.grow(&record) || is_proof_wrong;
         }
         Some(Report { gpu_ms: times.total_ms, passes: times.passes, counters, redraw })
-    }
-
-    /// What exists for the last picture, and why.
-    pub fn explain(&self) -> Explanation {
-        let Some(plan) = &self.last else {
-            return Explanation { key: "nothing drawn yet".into(), passes: Vec::new(), buffers: self.buffers.notes(), reasons: Vec::new(), omitted: Vec::new() };
-        };
-        let mut passes = plan.key.passes(plan.key.phases());
-        passes.push(Pass::Resolve);
-        Explanation {
-            key: plan.key.to_string(),
-            passes: passes.iter().map(|pass| Note { name: pass.label(), why: pass_purpose(*pass).into() }).collect(),
-            buffers: self.buffers.notes(),
-            reasons: plan.reasons.clone(),
-            omitted: plan.omitted.clone(),
-        }
     }
 
     /// Plans the picture and makes its buffers hold what the passes will read.
@@ -270,7 +292,7 @@ impl Renderer {
         if self.distrust {
             (needs.clipping, needs.largest_px) = (true, f64::INFINITY);
         }
-        let plan = plan(&needs, stack, &gpu.caps, accuracy)?;
+        let plan = plan(&needs, stack, &gpu.caps, &self.tuning, accuracy)?;
         let key = &plan.key;
         let recorded = recorded_capacities(key, &self.capacities);
 
@@ -278,7 +300,9 @@ impl Renderer {
         let uniform = FrameUniform::new(view, &scene, draws.len(), &recorded);
         let parameters = uniform_bytes(&stack.0);
         buffers.keep(|name| match name {
-            "queues" | "args" => key.has_queues(),
+            "queues" => key.has_queues(),
+            "args" => key.has_queues() || key.listed_tiles,
+            "marks" | "background" => key.listed_tiles,
             "pieces" => key.has_clipping,
             "effects" => !parameters.is_empty(),
             "depth_keys" | "owners" => key.visibility == Visibility::Split32,
@@ -287,15 +311,29 @@ impl Renderer {
             _ => true,
         });
         buffers.fill(gpu, "frame", bytemuck::bytes_of(&uniform), wgpu::BufferUsages::UNIFORM, "size, viewpoint, capacities")?;
-        buffers.fill(gpu, "draws", bytemuck::cast_slice(&records), STORAGE, "matrices and attribute places, one record per instance")?;
+        buffers.fill(
+            gpu,
+            "draws",
+            bytemuck::cast_slice(&records),
+            STORAGE | wgpu::BufferUsages::UNIFORM,
+            "matrices and attribute places, one record per instance",
+        )?;
         if !parameters.is_empty() {
             buffers.fill(gpu, "effects", &parameters, wgpu::BufferUsages::UNIFORM, "parameters of the stack")?;
         }
         buffers.ensure(gpu, "vertices", 16 * scene.vertex_count(), STORAGE, "projected vertices, 16 bytes each")?;
         buffers.ensure(gpu, "counters", 64, STORAGE, "queue demand and what was not drawn")?;
         if key.has_queues() {
-            buffers.ensure(gpu, "queues", 4 * recorded.queue_words(), STORAGE, "triangles waiting for clip, medium, large and tile kernels")?;
-            buffers.ensure(gpu, "args", 48, STORAGE | wgpu::BufferUsages::INDIRECT, "dispatch sizes written on the GPU")?;
+            buffers.ensure(
+                gpu,
+                "queues",
+                4 * recorded.queue_words(),
+                STORAGE,
+                "triangles waiting for clip, medium, large and tile kernels",
+            )?;
+        }
+        if key.has_queues() || key.listed_tiles {
+            buffers.ensure(gpu, "args", 60, STORAGE | wgpu::BufferUsages::INDIRECT, "dispatch sizes written on the GPU")?;
         }
         if key.has_clipping {
             buffers.ensure(gpu, "pieces", 64 * u64::from(recorded.pieces), STORAGE, "what clipping leaves of a triangle")?;
@@ -310,8 +348,25 @@ impl Renderer {
                 buffers.ensure(gpu, "depth_owner", 8 * pixels, STORAGE, "depth key and owner per pixel, 8 bytes")?;
             }
         }
-        buffers.ensure(gpu, "color", 4 * u64::from(color_stride(view.width)) * u64::from(view.height), STORAGE, "the picture, 4 bytes per pixel")?;
+        let tiles = if key.listed_tiles { u64::from(view.width.div_ceil(8)) * u64::from(view.height.div_ceil(8)) } else { 0 };
+        let picture = 4 * u64::from(color_stride(view.width)) * u64::from(view.height);
+        buffers.ensure(gpu, "color", picture + 4 * tiles, STORAGE, "the picture, 4 bytes per pixel, and the list of tiles to resolve")?;
+        if key.listed_tiles {
+            buffers.ensure(gpu, "marks", 4 * tiles, STORAGE, "which 8 x 8 tiles the resolve must visit")?;
+            let rows = background_word(view).repeat((color_stride(view.width) * BACKGROUND_ROWS) as usize);
+            buffers.fill(gpu, "background", &rows, STORAGE, "a few rows of background, copied all over the picture first")?;
+        }
         Ok(plan)
+    }
+
+    /// Copies rows of background over the picture, for resolves that leave empty tiles alone.
+    fn fill_background(&self, encoder: &mut wgpu::CommandEncoder, view: &View) {
+        let (from, to) = (self.buffers.get("background"), self.buffers.get("color"));
+        let row = 4 * u64::from(color_stride(view.width));
+        for first in (0..view.height).step_by(BACKGROUND_ROWS as usize) {
+            let rows = BACKGROUND_ROWS.min(view.height - first);
+            encoder.copy_buffer_to_buffer(from, 0, to, row * u64::from(first), row * u64::from(rows));
+        }
     }
 
     fn clear(&self, encoder: &mut wgpu::CommandEncoder, names: &[&str]) {
@@ -330,7 +385,7 @@ impl Renderer {
             let timestamp_writes = self.timer.as_mut().and_then(|timer| timer.compute(&pipeline.label, is_last));
             let mut recorded = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor { label: Some(&pipeline.label), timestamp_writes });
             pipeline.bind(&self.gpu, &mut recorded, |name| self.buffers.get(name));
-            match dispatch(pass, vertices, triangles, view) {
+            match dispatch(pass, vertices, triangles, view, key) {
                 Dispatch::Direct([x, y]) => recorded.dispatch_workgroups(x, y, 1),
                 Dispatch::Indirect(offset) => recorded.dispatch_workgroups_indirect(self.buffers.get("args"), offset),
             }
@@ -362,43 +417,13 @@ impl Renderer {
     }
 }
 
-/// How many workgroups a pass takes.
-enum Dispatch {
-    Direct([u32; 2]),
-    /// Byte offset in the argument buffer.
-    Indirect(u64),
-}
+/// Rows that the background buffer holds.
+const BACKGROUND_ROWS: u32 = 32;
 
-fn dispatch(pass: Pass, vertices: u32, triangles: u32, view: &View) -> Dispatch {
-    match pass {
-        Pass::Project => Dispatch::Direct(folded(vertices.div_ceil(64))),
-        Pass::RasterSmall(_) => Dispatch::Direct(folded(triangles.div_ceil(64))),
-        Pass::Args => Dispatch::Direct([1, 1]),
-        Pass::Clip => Dispatch::Indirect(0),
-        Pass::RasterMedium(_) => Dispatch::Indirect(12),
-        Pass::TileLarge => Dispatch::Indirect(24),
-        Pass::RasterLarge(_) => Dispatch::Indirect(36),
-        Pass::Resolve => Dispatch::Direct([view.width.div_ceil(8), view.height.div_ceil(8)]),
-    }
-}
-
-/// Folds more than 65,535 workgroups into two dimensions; the kernel guards the tail.
-pub(crate) fn folded(groups: u32) -> [u32; 2] {
-    [groups.min(65_535), groups.div_ceil(65_535)]
-}
-
-fn pass_purpose(pass: Pass) -> &'static str {
-    match pass {
-        Pass::Project => "pulls, transforms and snaps every vertex once",
-        Pass::RasterSmall(Phase::Owner) => "visits the small triangles again for the owner of each nearest key",
-        Pass::RasterSmall(_) => "culls and classifies every triangle, draws the small ones on the spot",
-        Pass::Args => "turns queue demand into dispatch sizes",
-        Pass::Clip => "cuts triangles at the near plane and the guard band",
-        Pass::TileLarge => "finds the tiles of each large triangle",
-        Pass::RasterMedium(_) => "one workgroup per triangle of up to 128 px",
-        Pass::RasterLarge(_) => "one workgroup per 64 x 64 tile of a large triangle",
-        Pass::Resolve => "shades every pixel once",
-    }
+/// The background as the resolve would pack it.
+fn background_word(view: &View) -> [u8; 4] {
+    let [r, g, b, alpha] = view.background.map(f64::from);
+    [srgb_byte(r), srgb_byte(g), srgb_byte(b), (alpha.clamp(0.0, 1.0) * 255.0 + 0.5) as u8]
 }
 
 /// Capacities of the queues that this key's passes have; 0 where a pass is left out.

@@ -1,1 +1,114 @@
-//! (being written)
+//! The naive baseline: the beginner's compute rasterizer that many start from, kept as a yardstick with its defects.
+
+use std::sync::Arc;
+
+use glam::DMat4;
+
+use super::{
+    Gpu, RenderError,
+    buffers::{self, Buffers},
+    dispatch::folded,
+    pipelines::{Pipeline, Pipelines},
+    timer::Timer,
+    uniforms::color_stride,
+};
+use crate::{
+    math::rounded_columns,
+    scene::{Scene, camera::View, draw::draws},
+    shader::{key::KernelKey, library::Library},
+};
+
+/// Whether the picture lies where the others' do.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Viewport {
+    /// As its author wrote it: one quadrant of clip space fills the picture.
+    AsWritten,
+    /// The missing half is folded into the matrix, so that holes can be counted pixel by pixel.
+    Folded,
+}
+
+#[derive(Clone, Copy, bytemuck::Pod, bytemuck::Zeroable)]
+#[repr(C)]
+struct NaiveUniform {
+    clip_from_object: [[f32; 4]; 4],
+    size: [u32; 2],
+    corner_count: u32,
+    stride: u32,
+}
+
+/// The exhibit, set up for one scene and view.
+pub struct Naive {
+    size: [u32; 2],
+    buffers: Buffers,
+    passes: Vec<(Arc<Pipeline>, [u32; 2])>,
+}
+
+impl Naive {
+    /// De-indexes the whole scene into world space, as the original does with its one mesh.
+    pub fn new(gpu: &Gpu, scene: &Scene, view: &View, key: &KernelKey, viewport: Viewport) -> Result<Self, RenderError> {
+        let corners = world_corners(scene, view)?;
+        let half = match viewport {
+            Viewport::AsWritten => DMat4::IDENTITY,
+            // x' = (x + w) / 2 and y' = (w - y) / 2, so that x'/w runs from 0 to 1, downwards.
+            Viewport::Folded => DMat4::from_cols_array(&[0.5, 0., 0., 0., 0., -0.5, 0., 0., 0., 0., 1., 0., 0.5, 0.5, 0., 1.]),
+        };
+        let uniform = NaiveUniform {
+            clip_from_object: rounded_columns(&(half * view.clip_from_world)),
+            size: [view.width, view.height],
+            corner_count: (corners.len() / 3) as u32,
+            stride: color_stride(view.width),
+        };
+        let (storage, pixels) = (wgpu::BufferUsages::STORAGE, view.pixels() as u64);
+        let mut buffers = Buffers::default();
+        buffers.fill(gpu, "naive", bytemuck::bytes_of(&uniform), wgpu::BufferUsages::UNIFORM, "matrix and size")?;
+        buffers.fill(gpu, "corners", bytemuck::cast_slice(&corners), storage, "de-indexed positions")?;
+        buffers.ensure(gpu, "channels", 12 * pixels, storage, "three minima per pixel")?;
+        buffers.ensure(gpu, "color", 4 * u64::from(uniform.stride) * u64::from(view.height), storage, "the picture")?;
+        let mut pipelines = Pipelines::new(Library::from_env());
+        let mut build = |entry: &str| pipelines.build(gpu, "baselines/naive", entry, entry, key, &[], &[]);
+        let passes = vec![
+            (build("naive_clear")?, folded((3 * view.width * view.height).div_ceil(256))),
+            (build("naive_raster")?, folded((uniform.corner_count / 3).div_ceil(256))),
+            (build("naive_resolve")?, [view.width.div_ceil(8), view.height.div_ceil(8)]),
+        ];
+        Ok(Self { size: uniform.size, buffers, passes })
+    }
+
+    /// Records one frame.
+    pub fn record(&self, gpu: &Gpu, encoder: &mut wgpu::CommandEncoder, mut timer: Option<&mut Timer>) {
+        for (i, (pipeline, [x, y])) in self.passes.iter().enumerate() {
+            let is_last = i + 1 == self.passes.len();
+            let timestamp_writes = timer.as_mut().and_then(|timer| timer.compute(&pipeline.label, is_last));
+            let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor { label: Some(&pipeline.label), timestamp_writes });
+            pipeline.bind(gpu, &mut pass, |name| self.buffers.get(name));
+            pass.dispatch_workgroups(*x, *y, 1);
+        }
+    }
+
+    /// Draws once and waits for the picture, row-major; alpha is 0 where nothing was drawn.
+    pub fn picture(&self, gpu: &Gpu) -> Result<Vec<[u8; 4]>, RenderError> {
+        let mut encoder = gpu.device.create_command_encoder(&Default::default());
+        self.record(gpu, &mut encoder, None);
+        gpu.queue.submit([encoder.finish()]);
+        buffers::read_picture(gpu, self.color(), self.size)
+    }
+
+    /// The picture's buffer, rows `color_stride` apart; alpha is 0 where nothing was drawn.
+    pub fn color(&self) -> &wgpu::Buffer {
+        self.buffers.get("color")
+    }
+}
+
+fn world_corners(scene: &Scene, view: &View) -> Result<Vec<f32>, RenderError> {
+    let mut corners = Vec::new();
+    for draw in draws(scene, view)? {
+        let primitive = &scene.primitives[draw.primitive];
+        for triangle in 0..primitive.triangle_count() {
+            for vertex in primitive.corners(scene, triangle) {
+                let position = glam::Vec3::from(primitive.position(scene, vertex)).as_dvec3();
+                corners.extend(draw.world_from_object.transform_point3(position).as_vec3().to_array());
+            }
+        }
+    }
+    Ok(corners)
+}

@@ -27,7 +27,6 @@ struct Identity {
 }
 
 /// The cache.
-#[derive(Default)]
 pub struct Pipelines {
     library: Library,
     known: HashMap<(KernelKey, Pass), Arc<Pipeline>>,
@@ -35,6 +34,10 @@ pub struct Pipelines {
 }
 
 impl Pipelines {
+    pub fn new(library: Library) -> Self {
+        Self { library, known: HashMap::new(), built: HashMap::new() }
+    }
+
     /// Number of pipelines compiled so far.
     pub fn compiled(&self) -> usize {
         self.built.len()
@@ -90,9 +93,8 @@ fn compile(
     constants: &[(&str, f64)],
 ) -> Result<Pipeline, RenderError> {
     let scope = gpu.device.push_error_scope(wgpu::ErrorFilter::Validation);
-    let module = gpu
-        .device
-        .create_shader_module(wgpu::ShaderModuleDescriptor { label: Some(label), source: wgpu::ShaderSource::Wgsl(text.into()) });
+    let module =
+        gpu.device.create_shader_module(wgpu::ShaderModuleDescriptor { label: Some(label), source: wgpu::ShaderSource::Wgsl(text.into()) });
     let entries: Vec<_> = bindings.iter().map(|binding| layout_entry(binding, wgpu::ShaderStages::COMPUTE)).collect();
     let layout = gpu.device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor { label: Some(label), entries: &entries });
     let pipeline_layout = gpu.device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
@@ -137,11 +139,8 @@ impl Pipeline {
             .iter()
             .map(|binding| wgpu::BindGroupEntry { binding: binding.index, resource: buffer(&binding.name).as_entire_binding() })
             .collect();
-        let group = gpu.device.create_bind_group(&wgpu::BindGroupDescriptor {
-            label: Some(&self.label),
-            layout: &self.layout,
-            entries: &entries,
-        });
+        let group =
+            gpu.device.create_bind_group(&wgpu::BindGroupDescriptor { label: Some(&self.label), layout: &self.layout, entries: &entries });
         pass.set_pipeline(&self.pipeline);
         pass.set_bind_group(0, &group, &[]);
     }

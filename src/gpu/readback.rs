@@ -8,7 +8,6 @@ use std::sync::{
 use super::{
     Demand, Gpu, RenderError, Renderer, STORAGE, buffers,
     timer::{Timer, Times},
-    uniforms::color_stride,
 };
 use crate::{
     effects::Stack,
@@ -29,14 +28,16 @@ const COUNTER_BYTES: u64 = 64;
 
 impl Pending {
     /// Records the copies that end a frame.
-    pub fn stage(gpu: &Gpu, encoder: &mut wgpu::CommandEncoder, counters: &wgpu::Buffer, timer: Option<&Timer>) -> Self {
+    pub fn stage(gpu: &Gpu, encoder: &mut wgpu::CommandEncoder, counters: Option<&wgpu::Buffer>, timer: Option<&Timer>) -> Self {
         let staging = gpu.device.create_buffer(&wgpu::BufferDescriptor {
             label: Some("figures"),
             size: COUNTER_BYTES + Timer::BYTES,
             usage: wgpu::BufferUsages::MAP_READ | wgpu::BufferUsages::COPY_DST,
             mapped_at_creation: false,
         });
-        encoder.copy_buffer_to_buffer(counters, 0, &staging, 0, COUNTER_BYTES);
+        if let Some(counters) = counters {
+            encoder.copy_buffer_to_buffer(counters, 0, &staging, 0, COUNTER_BYTES);
+        }
         if let Some(timer) = timer {
             timer.end(encoder, &staging, COUNTER_BYTES);
         }
@@ -127,10 +128,7 @@ impl Renderer {
     }
 
     fn read_color(&self, view: &View) -> Result<Vec<[u8; 4]>, RenderError> {
-        let stride = color_stride(view.width) as usize;
-        let words = self.words("color", stride as u64 * u64::from(view.height))?;
-        let row = |row: &[u32]| row[..view.width as usize].iter().map(|word| word.to_le_bytes()).collect::<Vec<_>>();
-        Ok(words.chunks_exact(stride).flat_map(row).collect())
+        buffers::read_picture(&self.gpu, self.buffers.get("color"), [view.width, view.height])
     }
 
     fn read_geometry(&self, key: &KernelKey) -> Result<Geometry, RenderError> {

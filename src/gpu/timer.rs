@@ -60,22 +60,23 @@ impl Timer {
         let timestamp_writes = Some(wgpu::ComputePassTimestampWrites {
             query_set: &self.queries,
             beginning_of_pass_write_index: Some(0),
-            end_of_pass_write_index: None,
+            end_of_pass_write_index: Some(1),
         });
         encoder.begin_compute_pass(&wgpu::ComputePassDescriptor { label: Some("begin"), timestamp_writes });
     }
 
-    /// Indices of the stamps of the next span, labelled.
+    /// Indices of the stamps of the next span, labelled. A pass's two stamps must be neighbours: wgpu resets the whole
+    /// range between them, and a stamp that was reset makes some drivers wait for ever.
     fn span(&mut self, label: &str, is_last: bool) -> Option<(Option<u32>, Option<u32>)> {
         let slot = self.labels.len() as u32;
         if self.detail == Detail::Whole {
-            return is_last.then_some((None, Some(1)));
+            return is_last.then_some((None, Some(2)));
         }
         if slot >= MAX_SPANS {
             return None;
         }
         self.labels.push(label.to_owned());
-        Some((Some(2 * slot), Some(if is_last { 1 } else { 2 * slot + 1 })))
+        Some((Some(2 * slot), Some(2 * slot + 1)))
     }
 
     /// Stamps for a compute pass.
@@ -100,8 +101,10 @@ impl Timer {
 
     /// Ends the frame: the stamps go to `staging` at `offset`.
     pub fn end(&self, encoder: &mut wgpu::CommandEncoder, staging: &wgpu::Buffer, offset: u64) {
-        encoder.resolve_query_set(&self.queries, 0..2 * MAX_SPANS, &self.resolved, 0);
-        encoder.copy_buffer_to_buffer(&self.resolved, 0, staging, offset, Self::BYTES);
+        // Only stamps that were written: some drivers wait for the others for ever.
+        let written = if self.detail == Detail::Whole { 3 } else { 2 * self.labels.len() as u32 };
+        encoder.resolve_query_set(&self.queries, 0..written, &self.resolved, 0);
+        encoder.copy_buffer_to_buffer(&self.resolved, 0, staging, offset, u64::from(written) * 8);
     }
 
     /// Labels of the spans recorded since [`Self::begin`], for [`Self::times`].
@@ -116,16 +119,12 @@ impl Timer {
             let (begin, end) = (stamps[from], stamps[to]);
             (begin != 0 && end > begin).then(|| (end - begin) as f64 * self.period_ns * 1e-6)
         };
-        let last = labels.len().saturating_sub(1);
         let passes = labels.iter().enumerate().filter_map(|(i, label)| {
-            let (from, to) = match i {
-                0 if last == 0 => return None,
-                0 => (0, 2),
-                _ if i == last => (2 * i, 1),
-                _ => (2 * i, 2 * i + 1),
-            };
+            // The clears lie between the empty first pass and the first that works.
+            let (from, to) = if i == 0 { (0, 2) } else { (2 * i, 2 * i + 1) };
             Some((label.clone(), span(from, to)?))
         });
-        Times { total_ms: span(0, 1), passes: passes.collect() }
+        let end = if labels.is_empty() { 2 } else { 2 * labels.len() - 1 };
+        Times { total_ms: span(0, end), passes: passes.collect() }
     }
 }

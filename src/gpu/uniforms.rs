@@ -35,6 +35,8 @@ twin! {
         pub background: [f32; 4],
         pub eye: [f32; 4],
         pub forward: [f32; 4],
+        pub ndc_x: [f32; 4],
+        pub ndc_y: [f32; 4],
         pub center: [f32; 2],
         pub range_m: [f32; 2],
         pub linear_depth_m: [f32; 2],
@@ -93,6 +95,7 @@ twin! {
         pub degenerate: u32,
         pub fan_folds: u32,
         pub orphans: u32,
+        pub marked_tiles: u32,
     }
 }
 
@@ -147,6 +150,8 @@ impl FrameUniform {
             background: [encoded[0], encoded[1], encoded[2], alpha],
             eye: wide(view.eye, f32::from(u8::from(is_perspective))),
             forward: wide(view.forward, 0.0),
+            ndc_x: wide(view.ndc_axes[0], 0.0),
+            ndc_y: wide(view.ndc_axes[1], 0.0),
             center: [128.0 * view.width as f32, 128.0 * view.height as f32],
             range_m: view.scene_range_m.map(|d| d as f32),
             linear_depth_m: view.linear_depth_m.unwrap_or_default().map(|d| d as f32),

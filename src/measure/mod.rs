@@ -1,6 +1,7 @@
 //! Measures of error and of time. Nothing here returns a time without an error beside it.
 
 pub mod compare;
+pub mod timing;
 
 /// How wrong a picture is, against the oracle. Counts are pixels unless they say otherwise.
 #[derive(Clone, Debug, Default, PartialEq, serde::Serialize)]
@@ -43,6 +44,55 @@ pub struct Accuracy {
     pub max_colour_delta: u8,
     /// Root mean square over all channels, of 255.
     pub rms_colour_delta: f64,
+}
+
+/// Error as a bench row states it; none reads "not measured", never 0.
+#[derive(Clone, Debug, Default, PartialEq, serde::Serialize)]
+pub struct ErrorFigures {
+    pub owner_mismatch: Option<u64>,
+    pub explained_by_snap: Option<u64>,
+    pub holes: Option<u64>,
+    pub double_hits: Option<u64>,
+    /// Pixels drawn where the oracle has none.
+    pub extra: Option<u64>,
+    pub orphans: Option<u64>,
+    pub overflow: Option<u64>,
+    /// Of 255; where both drew.
+    pub max_colour_delta: Option<u8>,
+    /// Of 255; where both drew.
+    pub rms_colour_delta: Option<f64>,
+}
+
+impl From<&Accuracy> for ErrorFigures {
+    fn from(a: &Accuracy) -> Self {
+        Self {
+            owner_mismatch: Some(a.owner_mismatch),
+            explained_by_snap: Some(a.explained_by_snap),
+            holes: Some(a.holes),
+            double_hits: Some(a.double_hits),
+            extra: None,
+            orphans: Some(a.orphans),
+            overflow: Some(a.overflow),
+            max_colour_delta: Some(a.max_colour_delta),
+            rms_colour_delta: Some(a.rms_colour_delta),
+        }
+    }
+}
+
+impl ErrorFigures {
+    /// Is everything measured and exact, and the colour within one step?
+    pub fn keeps_the_promise(&self) -> bool {
+        let exact = [self.owner_mismatch, self.holes, self.double_hits, self.orphans, self.overflow];
+        exact.iter().all(|count| *count == Some(0)) && self.max_colour_delta.is_some_and(|delta| delta <= 1)
+    }
+}
+
+/// What a judge says of a picture.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Verdict {
+    pub accuracy: Accuracy,
+    /// What the oracle draws from the same snapped vertices.
+    pub expected: crate::frame::Frame,
 }
 
 /// What may differ in a picture that still passes. Everything that is judged as exact has no budget.

@@ -16,7 +16,7 @@ use crate::{
     effects::Stack,
     frame::{Counters, Frame, Geometry, NO_OWNER, SnappedVertex, vertex_flags},
     math::GUARD_BAND,
-    measure::{Accuracy, compare},
+    measure::{Accuracy, Verdict, compare},
     scene::{
         Scene,
         camera::View,
@@ -26,14 +26,6 @@ use crate::{
 
 /// Relative spacing of f32.
 const ULP: f64 = 1.0 / (1 << 23) as f64;
-
-/// How far an adapter is from the truth.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Verdict {
-    pub accuracy: Accuracy,
-    /// What the oracle makes of the adapter's geometry.
-    pub expected: Frame,
-}
 
 /// Judges `frame`, which an adapter drew of `scene` through `geometry`, with the number of hits per sample in `layers`
 /// where it counts them. Images have the size of `view`, and `geometry` has a record per vertex of every draw.

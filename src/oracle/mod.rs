@@ -15,7 +15,7 @@ mod project;
 mod surface;
 
 pub use coverage::{Coverage, OrientedTriangle, Sample, cover, depth_bound, owns, triangles};
-pub use judge::{Verdict, judge};
+pub use judge::judge;
 pub use project::project;
 pub use surface::shade;
 

@@ -41,14 +41,19 @@ impl Default for Camera {
 }
 
 impl Camera {
-    /// A pose that looks along `direction` and shows the whole of `bounds` with a little air.
+    /// The nearest pose that looks along `direction` at the middle of `bounds` and shows all of it with a little air.
     pub fn framing(bounds: &Bounds, direction: DVec3, aspect: f64) -> Self {
-        let radius = if bounds.radius() > 0.0 { bounds.radius() } else { 1.0 };
         let fov_y_deg: f64 = 45.0;
-        let half = fov_y_deg.to_radians() * 0.5;
-        let half_x = libm::atan(libm::tan(half) * aspect.clamp(1e-3, 1e3));
-        let distance = radius * 1.02 / libm::sin(half.min(half_x));
+        let tan_y = libm::tan(fov_y_deg.to_radians() * 0.5) * 0.92;
+        let tan_x = tan_y * aspect.clamp(1e-3, 1e3);
         let direction = direction.try_normalize().unwrap_or(DVec3::NEG_Z);
+        let turned = view_from_world(DVec3::ZERO, direction, DVec3::Y);
+        let needed = |corner: DVec3| {
+            let p = turned.transform_vector3(corner - bounds.center());
+            p.z + (p.x.abs() / tan_x).max(p.y.abs() / tan_y)
+        };
+        let shown = bounds.corners().map(needed).into_iter().fold(0.0, f64::max);
+        let distance = if bounds.is_empty() || shown <= 0.0 { 2.5 } else { shown };
         Self {
             eye: bounds.center() - direction * distance,
             target: bounds.center(),
@@ -75,6 +80,8 @@ pub struct View {
     pub world_from_scene: DMat4,
     pub eye: DVec3,
     pub forward: DVec3,
+    /// What one unit of normalized device x and y is in the world: per metre of depth for a perspective, else as it is.
+    pub ndc_axes: [DVec3; 2],
     /// Metres at depth 1 and at depth 0 of a linear (orthographic) depth; none for a perspective, whose w is metres.
     pub linear_depth_m: Option<[f64; 2]>,
     /// Nearest and farthest distance along `forward` of the scene's box, at least `near_m` apart from the eye.
@@ -105,14 +112,18 @@ impl View {
                 (orthographic_reverse(y / aspect, y, near, far), Some([near, far]))
             }
         };
+        let clip_from_world = clip_from_view * view_from_world(camera.eye, camera.target, camera.up);
+        // A row of the matrix is an axis times its scale, so the inverse axis is the row over its squared length.
+        let ndc_axes = [0, 1].map(|i| clip_from_world.row(i).truncate()).map(|row| row / row.length_squared());
         let from = if linear_depth_m.is_none() { nearest.max(camera.near_m) } else { nearest };
         Self {
             width,
             height,
-            clip_from_world: clip_from_view * view_from_world(camera.eye, camera.target, camera.up),
+            clip_from_world,
             world_from_scene,
             eye: camera.eye,
             forward,
+            ndc_axes,
             linear_depth_m,
             scene_range_m: [from, farthest.max(from + margin)],
             background,

@@ -148,6 +148,8 @@ pub struct Primitive {
     pub bounds: Bounds,
     /// Length of the longest triangle edge in object space; an upper bound is enough.
     pub longest_edge: f64,
+    /// No mixture of a triangle's corner normals is near zero ([`Primitive::normals_agree`]); false is always right.
+    pub sound_normals: bool,
 }
 
 impl Primitive {
@@ -166,6 +168,17 @@ impl Primitive {
             None => corners,
             Some(indices) => corners.map(|c| indices.integer(&scene.index_bytes, c, 0) as u32),
         }
+    }
+
+    /// Are all normals finite, of a length between 1/2 and 2, and within 90 degrees of each other at every triangle?
+    /// Then their mixtures are at least a quarter long and never need a substitute.
+    pub fn normals_agree(&self, scene: &Scene) -> bool {
+        let normal = |vertex: u32| DVec3::from([0, 1, 2].map(|lane| self.normals.value(&scene.vertex_bytes, vertex, lane)));
+        let is_sound = |n: DVec3| (0.25..=4.0).contains(&n.length_squared());
+        (0..self.triangle_count()).all(|t| {
+            let [a, b, c] = self.corners(scene, t).map(normal);
+            is_sound(a) && is_sound(b) && is_sound(c) && a.dot(b) >= 0.0 && b.dot(c) >= 0.0 && c.dot(a) >= 0.0
+        })
     }
 
     /// Position of a vertex in object space, as stored.

@@ -24,6 +24,10 @@ pub struct Needs {
     /// Normals are all f32.
     pub f32_normals: bool,
     pub colors: bool,
+    /// No interpolated normal ever needs a substitute.
+    pub sound_normals: bool,
+    /// w is metres; else depth is linear and w is 1.
+    pub perspective: bool,
     /// Some vertex may lie before the near plane or beyond the guard band.
     pub clipping: bool,
     /// No triangle is wider or higher than this, in pixels; infinite where clipping is needed.
@@ -46,8 +50,26 @@ impl Needs {
             f32_positions: all_f32(|p| p.positions.component),
             f32_normals: all_f32(|p| p.normals.component),
             colors: drawn().any(|p| p.colors.is_some()),
+            sound_normals: drawn().all(|p| p.sound_normals),
+            perspective: view.linear_depth_m.is_none(),
             clipping: largest_px.is_infinite(),
             largest_px,
+        }
+    }
+
+    /// As if the scene might hold anything its bytes allow: nothing that depends on bounds or formats can be left out.
+    pub fn everything(&self) -> Self {
+        Self {
+            draws: self.draws.max(2),
+            wide_indices: false,
+            topologies: true,
+            f32_positions: false,
+            f32_normals: false,
+            colors: true,
+            sound_normals: false,
+            clipping: true,
+            largest_px: f64::INFINITY,
+            ..self.clone()
         }
     }
 }

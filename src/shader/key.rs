@@ -41,6 +41,7 @@ pub enum Pass {
     TileLarge,
     RasterMedium(Phase),
     RasterLarge(Phase),
+    ListTiles,
     Resolve,
 }
 
@@ -68,6 +69,7 @@ impl Pass {
             Self::TileLarge => "tile_large",
             Self::RasterMedium(_) => "raster_medium",
             Self::RasterLarge(_) => "raster_large",
+            Self::ListTiles => "list_tiles",
             Self::Resolve => "resolve",
         }
     }
@@ -117,10 +119,18 @@ pub struct KernelKey {
     pub f32_positions: bool,
     pub f32_normals: bool,
     pub has_colors: bool,
+    /// The resolve computes plane normals and triangle centres: an effect reads them, or a normal may need a substitute.
+    pub has_planes: bool,
+    /// w is metres; else depth is linear and w is 1.
+    pub perspective: bool,
     /// Most candidate samples that one invocation walks.
     pub small_samples: u32,
     /// Most pixels per side of such a box.
     pub small_side: u32,
+    /// The resolve visits only tiles that a triangle's box touches, without branches.
+    pub listed_tiles: bool,
+    /// Invocations in a workgroup of the passes over vertices and triangles.
+    pub list_group: u32,
     /// Load before the depth atomic.
     pub early_load: bool,
 }
@@ -131,6 +141,11 @@ impl KernelKey {
         self.has_clipping || self.has_medium || self.has_large
     }
 
+    /// Side of the pixel square that a workgroup of the resolve visits; listed tiles are the small ones that are marked.
+    pub const fn tile_side(&self) -> u32 {
+        if self.listed_tiles { 8 } else { 16 }
+    }
+
     /// The raster phases of one frame, in order.
     pub const fn phases(&self) -> &'static [Phase] {
         match self.visibility {
@@ -139,7 +154,17 @@ impl KernelKey {
         }
     }
 
-    /// Passes of one frame with the given raster phases, in the order in which they are recorded.
+    /// Every pass of one picture, in the order in which they are recorded.
+    pub fn frame(&self) -> Vec<Pass> {
+        let mut passes = self.passes(self.phases());
+        if self.listed_tiles {
+            passes.extend([Pass::ListTiles, Pass::Args]);
+        }
+        passes.push(Pass::Resolve);
+        passes
+    }
+
+    /// Passes up to the last of the given raster phases.
     pub fn passes(&self, phases: &[Phase]) -> Vec<Pass> {
         let mut passes = vec![Pass::Project];
         for (i, &phase) in phases.iter().enumerate() {
@@ -170,11 +195,17 @@ impl KernelKey {
             Fetch::Indexed => "indexed",
         };
         let queues = if self.has_queues() { "kept" } else { "none" };
+        let is_marking = self.listed_tiles && !matches!(pass.phase(), Some(Phase::Owner | Phase::Count));
+        let marks = if is_marking { "kept" } else { "none" };
+        let pixels = if self.listed_tiles { "listed" } else { "all" };
         let pieces = if self.has_clipping { "kept" } else { "none" };
         let mut slots = vec![
             ("pieces", format!("slots/pieces/{pieces}")),
+            ("draws", format!("slots/draws/{}", if self.single_draw { "one" } else { "many" })),
             ("fetch", format!("slots/fetch/{fetch}")),
             ("queues", format!("slots/queues/{queues}")),
+            ("marks", format!("slots/marks/{marks}")),
+            ("pixels", format!("slots/pixels/{pixels}")),
             ("coverage", "slots/coverage/fixed8".into()),
             ("owner", format!("slots/owner/{}", self.visibility.name())),
         ];
@@ -194,14 +225,17 @@ impl KernelKey {
     pub fn constants(&self, pass: Pass) -> Vec<(&'static str, f64)> {
         let flag = |value: bool| f64::from(u8::from(value));
         vec![
-            ("SINGLE_DRAW", flag(self.single_draw)),
             ("ONLY_LISTS", flag(self.only_lists)),
             ("WIDE_INDICES", flag(self.wide_indices)),
             ("F32_POSITIONS", flag(self.f32_positions)),
             ("F32_NORMALS", flag(self.f32_normals)),
             ("HAS_COLORS", flag(self.has_colors)),
+            ("HAS_PLANES", flag(self.has_planes)),
+            ("IS_PERSPECTIVE", flag(self.perspective)),
             ("HAS_CLIPPING", flag(self.has_clipping)),
-            ("HAS_LARGE", flag(self.has_large)),
+            ("IS_STRAIGHT", flag(self.listed_tiles)),
+            ("LIST_GROUP", self.list_group.into()),
+            ("TILE_SIDE", self.tile_side().into()),
             ("SMALL_SAMPLES", self.small_samples.into()),
             ("SMALL_SIDE", self.small_side.into()),
             ("EARLY_LOAD", flag(self.early_load)),
@@ -217,7 +251,14 @@ impl fmt::Display for KernelKey {
             Fetch::Indexed => "indexed",
         };
         write!(f, "raster[fetch={fetch} coverage=fixed8 visibility={} small={}", self.visibility.name(), self.small_samples)?;
-        for (name, is_on) in [("clip", self.has_clipping), ("medium", self.has_medium), ("large", self.has_large), ("colors", self.has_colors)] {
+        for (name, is_on) in [
+            ("clip", self.has_clipping),
+            ("medium", self.has_medium),
+            ("large", self.has_large),
+            ("colors", self.has_colors),
+            ("planes", self.has_planes),
+            ("orthographic", !self.perspective),
+        ] {
             if is_on {
                 write!(f, " {name}")?;
             }

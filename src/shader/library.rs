@@ -17,6 +17,11 @@ pub enum Library {
 }
 
 impl Library {
+    /// The folder named by `RASTERLAB_SHADERS`, for whoever edits shaders; else the embedded files.
+    pub fn from_env() -> Self {
+        std::env::var_os("RASTERLAB_SHADERS").map_or(Self::Embedded, |folder| Self::Folder(folder.into()))
+    }
+
     /// Text of `name` (a path below `shaders`, without `.wgsl`), if there is such a file.
     pub fn text(&self, name: &str) -> Option<Cow<'static, str>> {
         match self {

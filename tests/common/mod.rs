@@ -6,7 +6,8 @@ use std::sync::{Arc, Mutex, MutexGuard, OnceLock};
 use rasterlab::{
     effects::{Effect, Stack},
     gpu::{Capture, Gpu, Renderer, device::AdapterChoice},
-    oracle::{self, Verdict},
+    measure::Verdict,
+    oracle,
     plan::Accuracy,
     scene::{Scene, builtin, camera::View},
     session::{SceneSource, Session},

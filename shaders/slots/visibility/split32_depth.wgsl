@@ -6,8 +6,6 @@
 override EARLY_LOAD: bool = false;
 
 fn visibility_write(pixel: u32, key: u32, id: u32) {
-    if EARLY_LOAD {
-        if atomicLoad(&depth_keys[pixel]) >= key { return; }
-    }
-    atomicMax(&depth_keys[pixel], key);
+    let is_hopeless = EARLY_LOAD && atomicLoad(&depth_keys[pixel]) >= key;
+    if !is_hopeless { atomicMax(&depth_keys[pixel], key); }
 }

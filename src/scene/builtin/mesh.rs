@@ -131,8 +131,11 @@ impl Mesh {
             material,
             bounds,
             longest_edge,
+            sound_normals: false,
         });
-        scene.primitives.len() - 1
+        let index = scene.primitives.len() - 1;
+        scene.primitives[index].sound_normals = scene.primitives[index].normals_agree(scene);
+        index
     }
 }
 

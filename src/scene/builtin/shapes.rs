@@ -12,10 +12,10 @@ use crate::{
 
 /// Waves of the bumpy sphere: direction times frequency, and amplitude.
 const WAVES: [(DVec3, f64, f64); 4] = [
-    (DVec3::new(3.1, 1.7, -2.2), 0.4, 0.052),
-    (DVec3::new(-2.4, 4.3, 1.9), 1.3, 0.043),
-    (DVec3::new(5.6, -1.8, 5.1), 2.1, 0.024),
-    (DVec3::new(-6.7, -7.9, 6.1), 0.7, 0.014),
+    (DVec3::new(3.1, 1.7, -2.2), 0.4, 0.055),
+    (DVec3::new(-2.4, 4.3, 1.9), 1.3, 0.05),
+    (DVec3::new(5.6, -1.8, 5.1), 2.1, 0.032),
+    (DVec3::new(-6.7, -7.9, 8.1), 0.7, 0.021),
 ];
 
 /// A closed sphere of radius about 1 with as many triangles as asked (an even number), near to right-angled before the bumps.

@@ -238,6 +238,7 @@ impl<'a> Loader<'a> {
             material: self.material(about),
             bounds: Bounds::EMPTY,
             longest_edge: 0.0,
+            sound_normals: false,
         };
         check_indices(&self.scene, &primitive).map_err(at("indices"))?;
         measure(&self.scene, &mut primitive).map_err(at("POSITION"))?;
@@ -247,6 +248,7 @@ impl<'a> Loader<'a> {
         } else {
             check_finite(&self.scene, &primitive.normals).map_err(at("NORMAL"))?;
         }
+        primitive.sound_normals = primitive.normals_agree(&self.scene);
         if let Some(colors) = &primitive.colors {
             check_finite(&self.scene, colors).map_err(at("COLOR_0"))?;
         }

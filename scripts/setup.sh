@@ -1,0 +1,87 @@
+#!/bin/sh
+# Installs what building, drawing and testing need on Debian and Ubuntu: only what is missing, and it says what.
+# The second run does nothing.
+#
+#   sh scripts/setup.sh                 all that cargo run and cargo test need
+#   sh scripts/setup.sh --swiftshader   and Chromium, whose libvk_swiftshader.so is a second Vulkan driver for the tests
+set -eu
+
+swiftshader=no
+for argument in "$@"; do
+    case "$argument" in
+        --swiftshader) swiftshader=yes ;;
+        *)
+            echo "usage: sh scripts/setup.sh [--swiftshader]" >&2
+            exit 2
+            ;;
+    esac
+done
+
+# A name matched by a pattern that matches nothing stays the pattern itself.
+exists() {
+    for path in "$@"; do
+        if [ -e "$path" ]; then return 0; fi
+    done
+    return 1
+}
+
+# The loader that every Vulkan program opens.
+packages="libvulkan1"
+
+# A driver that runs on the CPU, unless a GPU and a driver are both here.
+if ! exists /dev/nvidia0 /dev/dri/renderD* || ! exists /usr/share/vulkan/icd.d/*.json /etc/vulkan/icd.d/*.json; then
+    packages="$packages mesa-vulkan-drivers"
+fi
+
+# What a window opens at run time: X11 and keyboards.
+packages="$packages libx11-6 libx11-xcb1 libxcursor1 libxi6 libxrandr2 libxkbcommon0 libxkbcommon-x11-0"
+
+# A screen for the window test where there is none, and models for the loader's tests.
+packages="$packages xvfb xauth assimp-testmodels"
+
+# The linker that Rust calls.
+if ! command -v cc >/dev/null 2>&1; then
+    packages="$packages gcc libc6-dev"
+fi
+
+if [ "$swiftshader" = yes ]; then
+    packages="$packages chromium"
+fi
+
+if ! command -v cargo >/dev/null 2>&1; then
+    echo "setup: cargo is missing; https://rustup.rs installs Rust, of which 1.95 or newer is needed" >&2
+    exit 1
+fi
+
+if ! command -v apt-get >/dev/null 2>&1; then
+    echo "setup: no apt-get here, so nothing was installed. On Debian these would be needed:"
+    echo "setup:   $packages"
+    exit 0
+fi
+
+missing=""
+for package in $packages; do
+    status=$(dpkg-query -W -f='${db:Status-Status}' "$package" 2>/dev/null || true)
+    if [ "$status" != installed ]; then missing="$missing $package"; fi
+done
+
+if [ -z "$missing" ]; then
+    echo "setup: nothing is missing"
+    exit 0
+fi
+
+as_root=""
+if [ "$(id -u)" != 0 ]; then
+    if ! command -v sudo >/dev/null 2>&1; then
+        echo "setup: not root and no sudo; please install:$missing" >&2
+        exit 1
+    fi
+    as_root="sudo"
+fi
+
+echo "setup: installing$missing"
+$as_root apt-get update -q
+# $missing is a list of words.
+# shellcheck disable=SC2086
+$as_root env DEBIAN_FRONTEND=noninteractive apt-get install -y -q --no-install-recommends $missing
+echo "setup: done"

@@ -1,0 +1,34 @@
+//! Dispatch: how many workgroups each pass of a frame takes, or where on the device that stands.
+
+use crate::{
+    scene::camera::View,
+    shader::key::{KernelKey, Pass},
+};
+
+/// How many workgroups a pass takes.
+pub enum Dispatch {
+    Direct([u32; 2]),
+    /// Byte offset in the argument buffer.
+    Indirect(u64),
+}
+
+/// Workgroups of `pass`.
+pub fn dispatch(pass: Pass, vertices: u32, triangles: u32, view: &View, key: &KernelKey) -> Dispatch {
+    match pass {
+        Pass::Project => Dispatch::Direct(folded(vertices.div_ceil(key.list_group))),
+        Pass::RasterSmall(_) => Dispatch::Direct(folded(triangles.div_ceil(key.list_group))),
+        Pass::Args => Dispatch::Direct([1, 1]),
+        Pass::Clip => Dispatch::Indirect(0),
+        Pass::RasterMedium(_) => Dispatch::Indirect(12),
+        Pass::TileLarge => Dispatch::Indirect(24),
+        Pass::RasterLarge(_) => Dispatch::Indirect(36),
+        Pass::ListTiles => Dispatch::Direct(folded((view.width.div_ceil(8) * view.height.div_ceil(8)).div_ceil(64))),
+        Pass::Resolve if key.listed_tiles => Dispatch::Indirect(48),
+        Pass::Resolve => Dispatch::Direct([view.width.div_ceil(key.tile_side()), view.height.div_ceil(key.tile_side())]),
+    }
+}
+
+/// Folds more than 65,535 workgroups into two dimensions; the kernel guards the tail.
+pub fn folded(groups: u32) -> [u32; 2] {
+    [groups.min(65_535), groups.div_ceil(65_535)]
+}

@@ -1,0 +1,52 @@
+//! Explanation: which passes and buffers the last picture has, which it does without, and why.
+
+use super::{BufferNote, Note, Renderer};
+use crate::shader::key::{Pass, Phase};
+
+/// Which passes and buffers exist for the last picture, and why.
+#[derive(Clone, Debug, serde::Serialize)]
+pub struct Explanation {
+    pub key: String,
+    pub passes: Vec<Note>,
+    pub buffers: Vec<BufferNote>,
+    pub reasons: Vec<Note>,
+    pub omitted: Vec<Note>,
+}
+
+impl Renderer {
+    /// What exists for the last picture, and why.
+    pub fn explain(&self) -> Explanation {
+        let Some(plan) = &self.last else {
+            return Explanation {
+                key: "nothing drawn yet".into(),
+                passes: Vec::new(),
+                buffers: self.buffers.notes(),
+                reasons: Vec::new(),
+                omitted: Vec::new(),
+            };
+        };
+        let passes = plan.key.frame();
+        Explanation {
+            key: plan.key.to_string(),
+            passes: passes.iter().map(|pass| Note { name: pass.label(), why: pass_purpose(*pass).into() }).collect(),
+            buffers: self.buffers.notes(),
+            reasons: plan.reasons.clone(),
+            omitted: plan.omitted.clone(),
+        }
+    }
+}
+
+fn pass_purpose(pass: Pass) -> &'static str {
+    match pass {
+        Pass::Project => "pulls, transforms and snaps every vertex once",
+        Pass::RasterSmall(Phase::Owner) => "visits the small triangles again for the owner of each nearest key",
+        Pass::RasterSmall(_) => "culls and classifies every triangle, draws the small ones on the spot",
+        Pass::Args => "turns queue demand into dispatch sizes",
+        Pass::Clip => "cuts triangles at the near plane and the guard band",
+        Pass::TileLarge => "finds the tiles of each large triangle",
+        Pass::RasterMedium(_) => "one workgroup per triangle of up to 128 px",
+        Pass::RasterLarge(_) => "one workgroup per 64 x 64 tile of a large triangle",
+        Pass::ListTiles => "gathers the tiles that hold something",
+        Pass::Resolve => "shades every pixel once",
+    }
+}

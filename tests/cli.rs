@@ -1,0 +1,340 @@
+//! Promise: stdout carries data only, exit codes mean what they say, nothing is overwritten unasked, a closed pipe is no error.
+
+use std::{
+    fs,
+    io::{Read as _, Write as _},
+    path::Path,
+    process::{Command, Output, Stdio},
+};
+
+use serde_json::Value;
+
+/// The program in a clean world: no environment of ours, no looks of the person's own.
+fn command(folder: &Path) -> Command {
+    let mut command = Command::new(env!("CARGO_BIN_EXE_rasterlab"));
+    command.current_dir(folder).env_remove("RASTERLAB_ADAPTER").env_remove("RASTERLAB_PRESETS");
+    command.env("XDG_CONFIG_HOME", folder.join("config")).env("APPDATA", folder.join("config")).env("HOME", folder);
+    command
+}
+
+struct Run {
+    code: i32,
+    out: String,
+    err: String,
+    bytes: Vec<u8>,
+}
+
+fn finished(output: Output) -> Run {
+    Run {
+        code: output.status.code().expect("the program ends by itself"),
+        out: String::from_utf8_lossy(&output.stdout).into_owned(),
+        err: String::from_utf8_lossy(&output.stderr).into_owned(),
+        bytes: output.stdout,
+    }
+}
+
+fn run_in(folder: &Path, args: &[&str]) -> Run {
+    finished(command(folder).args(args).stdin(Stdio::null()).output().expect("the program starts"))
+}
+
+fn run(args: &[&str]) -> Run {
+    let folder = tempfile::tempdir().unwrap();
+    run_in(folder.path(), args)
+}
+
+fn piped(folder: &Path, args: &[&str], text: &str) -> Run {
+    let mut child = command(folder).args(args).stdin(Stdio::piped()).stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap();
+    child.stdin.take().unwrap().write_all(text.as_bytes()).unwrap();
+    finished(child.wait_with_output().unwrap())
+}
+
+fn json(run: &Run) -> Value {
+    let object: Value = serde_json::from_str(&run.out).unwrap_or_else(|e| panic!("stdout is not one JSON object: {e}\n{}", run.out));
+    assert_eq!(object["schema"], 1);
+    object
+}
+
+#[test]
+fn list_shows_looks_effects_and_ranges_on_stdout_alone() {
+    let list = run(&["list"]);
+    assert_eq!((list.code, list.err.as_str()), (0, ""));
+    for wanted in ["facet-sweep", "Half cut", "facet.amount", "0..=1", "uniform | sweep | radial | random", "teapot", "?tess", "built in"] {
+        assert!(list.out.contains(wanted), "{wanted:?} is missing in\n{}", list.out);
+    }
+    let effects = run(&["list", "--effects"]).out;
+    assert!(effects.contains("lambert.sun") && !effects.contains("Half cut"));
+}
+
+#[test]
+fn list_as_json_has_every_look_and_effect() {
+    let object = json(&run(&["list", "--json"]));
+    assert_eq!(object["command"], "list");
+    let of_kind = |kind: &str| {
+        object["results"].as_array().unwrap().iter().filter(|r| r["kind"] == kind).map(|r| r["id"].clone()).collect::<Vec<_>>()
+    };
+    for effect in rasterlab::effects::EFFECTS {
+        assert!(of_kind("effect").contains(&effect.name.into()) && of_kind("look").contains(&effect.name.into()));
+    }
+    let looks = object["results"].as_array().unwrap().iter().filter(|r| r["kind"] == "look");
+    looks.for_each(|look| assert_eq!(look["warnings"], Value::Array(vec![])));
+}
+
+#[test]
+fn list_shows_which_look_shadows_which() {
+    let folder = tempfile::tempdir().unwrap();
+    fs::write(folder.path().join("facet.toml"), "schema = 1\nname = \"Mine\"\n").unwrap();
+    let list = run_in(folder.path(), &["list", "--looks", "--presets", "."]);
+    assert!(list.out.contains("--presets, shadows built in"), "{}", list.out);
+}
+
+#[test]
+fn adapters_always_end_with_cpu() {
+    let adapters = run(&["adapters"]);
+    assert_eq!(adapters.code, 0);
+    assert!(adapters.out.lines().last().unwrap().starts_with("cpu "), "{}", adapters.out);
+    let object = json(&run(&["adapters", "--json"]));
+    assert_eq!(object["results"].as_array().unwrap().last().unwrap()["name"], "cpu");
+}
+
+#[test]
+fn usage_errors_exit_with_2_and_leave_stdout_empty() {
+    let cases: [&[&str]; 16] = [
+        &["--no-such-flag"],
+        &["render"],
+        &["render", "fascet", "--adapter", "cpu"],
+        &["render", "facet", "--adapter", "cpu", "--size", "10"],
+        &["render", "facet", "--adapter", "cpu", "--size", "20000x1"],
+        &["render", "facet", "--adapter", "cpu", "--set", "facet.amount=2"],
+        &["render", "facet", "--adapter", "cpu", "--set", "facet.amuont=1"],
+        &["render", "facet", "--adapter", "cpu", "--tier", "sloppy"],
+        &["render", "facet", "--adapter", "cpu", "-o", "{frame}.png"],
+        &["render", "facet", "depth", "--adapter", "cpu", "-o", "one.png"],
+        &["render", "absent.toml", "--adapter", "cpu"],
+        &["render", "builtin:no-such-scene", "--adapter", "cpu"],
+        &["verify", "facet", "--adapter", "cpu", "--frames", "0"],
+        &["bench", "--adapter", "cpu"],
+        &["bless", "facet", "--adapter", "cpu"],
+        &["facet", "list"],
+    ];
+    for args in cases {
+        let run = run(args);
+        assert_eq!((run.code, run.out.as_str()), (2, ""), "{args:?}\n{}", run.err);
+        assert!(run.err.contains("error: "), "{args:?} says nothing: {}", run.err);
+    }
+}
+
+#[test]
+fn errors_suggest_what_was_meant() {
+    assert!(run(&["render", "fascet", "--adapter", "cpu"]).err.contains("did you mean \"facet\"?"));
+    assert!(run(&["render", "facet", "--adapter", "cpu", "--set", "facet.amuont=1"]).err.contains("did you mean \"amount\"?"));
+    assert!(run(&["render", "facet", "--adapter", "cpu", "--set", "facet.amount=2"]).err.contains("lies outside 0..=1"));
+}
+
+#[test]
+#[cfg(feature = "gui")]
+fn a_mistyped_command_is_named_and_opens_no_window() {
+    let run = run(&["verfy"]);
+    assert_eq!(run.code, 2);
+    assert!(run.err.contains("did you mean \"verify\"?"), "{}", run.err);
+}
+
+#[test]
+fn an_unknown_adapter_exits_with_3_and_points_to_cpu() {
+    let run = run(&["render", "facet", "--adapter", "no such adapter"]);
+    assert_eq!((run.code, run.out.as_str()), (3, ""), "{}", run.err);
+    assert!(run.err.contains("adapter"), "{}", run.err);
+}
+
+#[test]
+fn errors_as_json_have_code_message_file_and_line() {
+    let folder = tempfile::tempdir().unwrap();
+    fs::write(folder.path().join("bad.toml"), "schema = 1\n\n[effects.facet]\namount = 3\n").unwrap();
+    let run = run_in(folder.path(), &["render", "bad.toml", "--adapter", "cpu", "--json"]);
+    let error = &json(&run)["errors"][0];
+    assert_eq!((run.code, &error["code"], &error["file"], &error["line"]), (2, &2.into(), &"bad.toml".into(), &4.into()));
+    assert!(error["message"].as_str().unwrap().contains("amount 3 lies outside 0..=1"));
+}
+
+#[test]
+fn render_on_the_cpu_writes_a_picture_that_restores_its_look() {
+    let folder = tempfile::tempdir().unwrap();
+    let first = run_in(
+        folder.path(),
+        &["render", "facet", "--adapter", "cpu", "--size", "48x36", "--set", "facet.amount=.25", "-o", "{preset}_{n:2}.png"],
+    );
+    assert_eq!((first.code, first.out.as_str()), (0, "facet_01.png\n"), "{}", first.err);
+    assert!(first.err.contains("adapter: cpu"));
+    let again = run_in(folder.path(), &["render", "facet_01.png", "--adapter", "cpu", "--json", "-o", "b.png"]);
+    assert_eq!(again.code, 0, "{}", again.err);
+    let result = &json(&again)["results"][0];
+    assert_eq!(result["size"], serde_json::json!([48, 36]));
+    assert!(result["covered"].as_u64().unwrap() > 100);
+    let same = run_in(folder.path(), &["compare", "facet_01.png", "b.png", "--max-channel", "0"]);
+    assert_eq!(same.code, 0, "{}", same.out);
+}
+
+#[test]
+fn the_same_look_gives_the_same_bytes() {
+    let args = ["render", "facet-random", "--adapter", "cpu", "--size", "40x30", "-o", "-", "--quiet"];
+    let (a, b) = (run(&args), run(&args));
+    assert_eq!((a.code, a.err.as_str()), (0, ""));
+    assert!(a.bytes.starts_with(b"\x89PNG") && a.bytes == b.bytes);
+}
+
+#[test]
+fn a_bare_picture_carries_no_text() {
+    let bare = run(&["render", "facet", "--adapter", "cpu", "--size", "16x16", "--bare", "-o", "-"]);
+    let full = run(&["render", "facet", "--adapter", "cpu", "--size", "16x16", "-o", "-"]);
+    let has_text = |bytes: &[u8]| bytes.windows(4).any(|chunk| chunk == b"iTXt");
+    assert_eq!((has_text(&bare.bytes), has_text(&full.bytes)), (false, true));
+}
+
+#[test]
+fn a_look_comes_from_stdin() {
+    let folder = tempfile::tempdir().unwrap();
+    let text = "schema = 1\n[scene]\nbuiltin = \"knot?tess=3\"\n[effects.normals]\n[output]\nsize = [20, 10]\n";
+    let run = piped(folder.path(), &["render", "-", "--adapter", "cpu", "-o", "-"], text);
+    assert_eq!(run.code, 0, "{}", run.err);
+    assert_eq!(&run.bytes[16..24], [0, 0, 0, 20, 0, 0, 0, 10]);
+    let wrong = piped(folder.path(), &["render", "-", "--adapter", "cpu"], "schema = 1\nnmae = 1\n=\n");
+    assert!(wrong.code == 2 && wrong.err.contains("stdin:3:"), "{}", wrong.err);
+}
+
+#[test]
+fn nothing_is_overwritten_without_force() {
+    let folder = tempfile::tempdir().unwrap();
+    let target = folder.path().join("a.png");
+    fs::write(&target, "precious").unwrap();
+    let args = ["render", "lambert", "--adapter", "cpu", "--size", "8x8", "-o", "a.png"];
+    let refused = run_in(folder.path(), &args);
+    assert_eq!(refused.code, 2);
+    assert!(refused.err.contains("a.png exists; --force overwrites it"), "{}", refused.err);
+    assert_eq!(fs::read(&target).unwrap(), b"precious");
+    assert_eq!(run_in(folder.path(), &[&args[..], &["--force"]].concat()).code, 0);
+    assert!(fs::read(&target).unwrap().starts_with(b"\x89PNG"));
+}
+
+#[test]
+fn a_closed_pipe_ends_quietly() {
+    let folder = tempfile::tempdir().unwrap();
+    for args in [&["list", "--json"][..], &["completions", "bash"], &["render", "facet", "--adapter", "cpu", "-o", "-"]] {
+        let mut child = command(folder.path()).args(args).stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap();
+        drop(child.stdout.take());
+        let mut err = String::new();
+        child.stderr.take().unwrap().read_to_string(&mut err).unwrap();
+        assert_eq!(child.wait().unwrap().code(), Some(0), "{args:?}: {err}");
+        assert!(!err.contains("panicked") && !err.contains("error"), "{args:?}: {err}");
+    }
+}
+
+#[test]
+fn the_oracle_agrees_with_itself() {
+    let verify = run(&["verify", "facet-radial", "depth", "--adapter", "cpu", "--size", "64x48", "--frames", "2", "--json"]);
+    assert_eq!(verify.code, 0, "{}", verify.err);
+    let object = json(&verify);
+    assert_eq!(object["results"].as_array().unwrap().len(), 2);
+    for row in object["results"].as_array().unwrap() {
+        for figure in ["owner_mismatch", "explained_by_snap", "holes", "double_hits", "orphans", "overflow", "max_colour_delta"] {
+            assert_eq!(row[figure], 0, "{figure} of {row}");
+        }
+        assert_eq!((&row["rms_colour_delta"], &row["ok"], &row["class"]), (&0.0.into(), &true.into(), &"oracle".into()));
+    }
+}
+
+#[test]
+fn compare_exits_with_1_beyond_the_budget_and_0_within() {
+    let folder = tempfile::tempdir().unwrap();
+    let compare =
+        |extra: &[&str]| run_in(folder.path(), &[&["compare", "facet", "teapot", "--adapter", "cpu", "--size", "64x48"], extra].concat());
+    let over = compare(&["-o", "diff.png"]);
+    assert_eq!(over.code, 1);
+    assert!(over.out.contains("FAIL") && folder.path().join("diff.png").exists());
+    assert_eq!(compare(&["--max-channel", "255", "--max-wrong-owner", "99999"]).code, 0);
+    assert_eq!(compare(&["--max-pixels", "99999"]).code, 1, "owners have a budget of their own");
+    assert_eq!(run(&["compare", "facet", "facet", "--adapter", "cpu", "--size", "32x32"]).code, 0);
+}
+
+#[test]
+fn check_finds_every_bad_look_and_lists_all() {
+    let folder = tempfile::tempdir().unwrap();
+    let write = |name: &str, text: &str| fs::write(folder.path().join(name), text).unwrap();
+    write("good.toml", "schema = 1\n[effects.lambert]\n");
+    write("typo.toml", "schema = 1\n[effects.lambert]\nsnu = 1\n");
+    write("range.toml", "schema = 1\n[effects.facet]\namount = 7\n");
+    write("lost.toml", "schema = 1\n[scene]\npath = \"../absent.glb\"\n");
+    let loose = run_in(folder.path(), &["check", "good.toml", "typo.toml"]);
+    assert_eq!(loose.code, 0, "{}", loose.out);
+    assert!(loose.err.contains("typo.toml:3: unknown key effects.lambert.snu; did you mean \"sun\"?"), "{}", loose.err);
+    let strict = run_in(folder.path(), &["check", "--strict", "good.toml", "typo.toml", "range.toml", "lost.toml"]);
+    assert_eq!(strict.code, 2);
+    for wanted in ["ok    good", "FAIL  typo", "range.toml:3: effects.facet.amount 7 lies outside 0..=1", "absent.glb, which is not there"]
+    {
+        assert!(strict.out.contains(wanted), "{wanted:?} is missing in\n{}", strict.out);
+    }
+}
+
+#[test]
+fn bless_draws_what_check_then_accepts() {
+    let folder = tempfile::tempdir().unwrap();
+    fs::create_dir(folder.path().join("presets")).unwrap();
+    let look = "schema = 1\n[scene]\nbuiltin = \"knot?tess=3\"\n[effects.facet]\n[effects.lambert]\n[output]\nsize = [64, 48]\n[test]\n";
+    fs::write(folder.path().join("presets/mine.toml"), look).unwrap();
+    let go = |args: &[&str]| run_in(folder.path(), args);
+    let check = ["check", "presets/mine.toml", "--render", "--adapter", "cpu"];
+    let missing = go(&check);
+    assert!(missing.code == 1 && missing.out.contains("mine.png is missing"), "{}", missing.out);
+    assert_eq!(go(&["bless", "--all", "--dry-run"]).code, 1);
+    assert!(!folder.path().join("tests").exists(), "a dry run writes nothing");
+    let first = go(&["bless", "--all"]);
+    assert!(first.code == 0 && first.out.contains("mine: new"), "{}{}", first.out, first.err);
+    assert_eq!(go(&["bless", "--all", "--dry-run"]).code, 0);
+    let passed = go(&[&check[..], &["--report", "r.html"]].concat());
+    assert_eq!(passed.code, 0, "{}", passed.out);
+    let report = fs::read_to_string(folder.path().join("r.html")).unwrap();
+    assert!(report.contains("data:image/png;base64,") && !report.contains("{{"));
+    fs::write(folder.path().join("presets/mine.toml"), look.replace("[effects.facet]\n", "[effects.facet]\namount = 0.2\n")).unwrap();
+    let changed = go(&check);
+    assert!(changed.code == 1 && changed.out.contains("pixels differ from the golden"), "{}", changed.out);
+    assert!(go(&["bless", "mine"]).out.contains("pixels change, at most by"));
+}
+
+#[test]
+fn blessing_an_effect_without_a_look_makes_its_first() {
+    let folder = tempfile::tempdir().unwrap();
+    fs::create_dir(folder.path().join("presets")).unwrap();
+    let blessed = run_in(folder.path(), &["bless", "normals"]);
+    assert_eq!(blessed.code, 0, "{}", blessed.err);
+    let look = rasterlab::preset::load(&folder.path().join("presets/normals.toml")).unwrap().strict().unwrap();
+    assert!(look.session.stack.get("normals").is_some() && look.session.test.is_some());
+    assert!(folder.path().join("tests/snapshots/normals.png").exists() && folder.path().join("tests/snapshots/normals.json").exists());
+    assert_eq!(run_in(folder.path(), &["bless", "no-such-effect"]).code, 2);
+}
+
+#[test]
+fn explain_tells_a_look_without_an_adapter() {
+    let explained = run(&["explain", "facet", "--adapter", "cpu"]);
+    assert_eq!(explained.code, 0, "{}", explained.err);
+    assert!(explained.out.contains("facet (surface), lambert (surface)"), "{}", explained.out);
+}
+
+#[test]
+fn a_picture_of_no_pixels_is_a_sentence() {
+    let run = run(&["render", "facet", "--adapter", "cpu", "--size", "0x10"]);
+    assert!(run.code == 2 && run.err.contains("PNG cannot hold it"), "{}", run.err);
+}
+
+#[test]
+fn completions_name_every_command() {
+    let script = run(&["completions", "bash"]).out;
+    for name in ["list", "adapters", "render", "verify", "compare", "explain", "bless", "bench", "check", "completions"] {
+        assert!(script.contains(name), "{name}");
+    }
+}
+
+#[test]
+fn help_and_version_go_to_stdout() {
+    let version = run(&["--version"]);
+    assert_eq!((version.code, version.out.trim()), (0, concat!("rasterlab ", env!("CARGO_PKG_VERSION"))));
+    assert!(run(&["render", "--help"]).out.contains("--bare"));
+    assert!(run(&["--help"]).out.contains("Exit codes: 0 done"));
+}

@@ -1,0 +1,154 @@
+//! Promise: every effect has its quartet (two sources, a look, a golden), every look loads strictly, and no snapshot is orphaned.
+
+use std::{
+    collections::BTreeSet,
+    fs,
+    path::{Path, PathBuf},
+};
+
+use rasterlab::{
+    effects::EFFECTS,
+    preset::{
+        self, BUILTIN_DIR, Look,
+        keys::{KEYS, SECTIONS},
+    },
+};
+
+fn root() -> &'static Path {
+    Path::new(env!("CARGO_MANIFEST_DIR"))
+}
+
+/// Stems of the files in `folder` that end in `.extension`.
+fn stems(folder: &str, extension: &str) -> BTreeSet<String> {
+    let entries = fs::read_dir(root().join(folder)).unwrap_or_else(|e| panic!("{folder}: {e}"));
+    let paths = entries.map(|entry| entry.expect("a folder can be read").path());
+    paths
+        .filter(|path| path.extension().is_some_and(|e| e == extension))
+        .filter_map(|path| Some(path.file_stem()?.to_string_lossy().into_owned()))
+        .collect()
+}
+
+fn looks() -> Vec<Look> {
+    let path = |stem: &String| -> PathBuf { root().join("presets").join(format!("{stem}.toml")) };
+    stems("presets", "toml").iter().map(|stem| preset::load(&path(stem)).unwrap_or_else(|e| panic!("{e}"))).collect()
+}
+
+fn effects() -> BTreeSet<String> {
+    EFFECTS.iter().map(|effect| effect.name.to_owned()).collect()
+}
+
+#[test]
+fn every_effect_has_both_its_sources_and_no_source_lacks_its_effect() {
+    let mut rust = stems("src/effects", "rs");
+    rust.remove("mod");
+    assert_eq!(rust, effects(), "src/effects against the list of effects");
+    assert_eq!(stems("shaders/effects", "wgsl"), effects(), "shaders/effects against the list of effects");
+}
+
+#[test]
+fn twins_open_with_the_same_sentence() {
+    for effect in effects() {
+        let opening = |file: String, mark: &str| {
+            let text = fs::read_to_string(root().join(&file)).unwrap_or_else(|e| panic!("{file}: {e}"));
+            let line = text.lines().find(|line| line.starts_with(mark)).unwrap_or_else(|| panic!("{file} has no opening sentence"));
+            line.trim_start_matches(mark).trim().to_owned()
+        };
+        let (rust, wgsl) = (opening(format!("src/effects/{effect}.rs"), "//!"), opening(format!("shaders/effects/{effect}.wgsl"), "// "));
+        assert_eq!(rust, wgsl, "{effect}");
+    }
+}
+
+#[test]
+fn every_effect_has_a_canonical_look_that_enables_it() {
+    let looks = looks();
+    for effect in effects() {
+        let look = looks
+            .iter()
+            .find(|look| look.id == effect)
+            .unwrap_or_else(|| panic!("presets/{effect}.toml is missing; rasterlab bless {effect}"));
+        assert!(look.session.stack.get(&effect).is_some(), "presets/{effect}.toml does not enable {effect}");
+    }
+}
+
+#[test]
+fn every_look_loads_strictly_and_has_a_name_a_sentence_tags_and_a_test() {
+    for look in looks() {
+        assert_eq!(look.warnings, Vec::<String>::new(), "{}", look.id);
+        let session = &look.session;
+        assert!(!session.name.is_empty() && !session.about.is_empty() && !session.tags.is_empty(), "{} lacks name, about or tags", look.id);
+        assert!(session.test.is_some(), "{} has no [test] table", look.id);
+        let [width, height] = session.output.size;
+        assert!(width <= 320 && height <= 240, "{}: a golden is at most 320x240", look.id);
+    }
+}
+
+#[test]
+fn every_look_finds_its_scene() {
+    for look in looks() {
+        let scene = preset::load_scene(&look.session, look.path.as_deref()).unwrap_or_else(|e| panic!("{}: {e}", look.id));
+        assert!(scene.triangle_count() > 0, "{} shows nothing", look.id);
+    }
+}
+
+#[test]
+fn names_of_looks_are_unique() {
+    let looks = looks();
+    let names: BTreeSet<&str> = looks.iter().map(|look| look.session.name.as_str()).collect();
+    assert_eq!(names.len(), looks.len());
+}
+
+#[test]
+fn the_program_carries_every_look_of_the_folder() {
+    let embedded: BTreeSet<String> = BUILTIN_DIR
+        .files()
+        .filter(|file| file.path().extension().is_some_and(|e| e == "toml"))
+        .filter_map(|file| Some(file.path().file_stem()?.to_string_lossy().into_owned()))
+        .collect();
+    assert_eq!(embedded, stems("presets", "toml"));
+    for file in BUILTIN_DIR.files() {
+        let on_disk = fs::read(root().join("presets").join(file.path())).expect("the folder has it");
+        assert!(on_disk == file.contents(), "{} is stale in the program", file.path().display());
+    }
+}
+
+#[test]
+fn no_effect_is_named_like_a_section_or_key() {
+    for effect in effects() {
+        assert!(SECTIONS.iter().all(|section| section.name != effect), "{effect}");
+        assert!(KEYS.iter().all(|key| key.path() != effect), "{effect}");
+        assert!(!["schema", "stack", "effects"].contains(&effect.as_str()));
+    }
+}
+
+#[test]
+fn every_golden_has_its_look_and_sidecar_and_every_tested_look_its_golden() {
+    let tested: BTreeSet<String> = looks().into_iter().filter(|look| look.session.test.is_some()).map(|look| look.id).collect();
+    let transient = |stem: &String| [".new", ".diff", ".old"].iter().any(|end| stem.ends_with(end));
+    let pictures: BTreeSet<String> = stems("tests/snapshots", "png").into_iter().filter(|stem| !transient(stem)).collect();
+    assert_eq!(pictures, tested, "tests/snapshots/*.png against looks with [test]; rasterlab bless --all draws what is missing");
+    assert_eq!(stems("tests/snapshots", "json"), tested, "tests/snapshots/*.json against looks with [test]");
+    for stem in pictures {
+        let bytes = fs::metadata(root().join(format!("tests/snapshots/{stem}.png"))).expect("it was just listed").len();
+        assert!(bytes <= 64 << 10, "{stem}.png has {bytes} bytes; a golden is at most 64 KiB");
+    }
+}
+
+#[test]
+fn parameters_are_documented_and_their_ranges_nest() {
+    for effect in EFFECTS {
+        let defaults = (effect.defaults)();
+        for field in effect.fields {
+            let name = format!("{}.{}", effect.name, field.name);
+            assert!(field.doc.trim().ends_with(['.', '?']), "{name}: its sentence does not end");
+            let ([low, high], [soft_low, soft_high]) = (field.hard, field.soft);
+            assert!(
+                low <= soft_low && soft_low < soft_high && soft_high <= high,
+                "{name}: soft {:?} is not inside hard {:?}",
+                field.soft,
+                field.hard
+            );
+            assert!(!field.log || soft_low > 0.0, "{name}: a slider in decades begins above 0");
+            assert!(field.get(&defaults).iter().all(|lane| (low..=high).contains(lane)), "{name}: its default is outside its hard range");
+        }
+    }
+}
