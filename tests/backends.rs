@@ -35,7 +35,8 @@ fn hall() -> (Arc<Scene>, View) {
 }
 
 /// Small triangles walk alone, middling ones get a workgroup, as on a GPU.
-const GRAPHICS_CARD: Tuning = Tuning { small_samples: 64, small_side: 32, listed_tiles: false, early_load: false, specialized: true };
+const GRAPHICS_CARD: Tuning =
+    Tuning { small_samples: 32, small_side: 32, list_group: 256, listed_tiles: false, early_load: false, specialized: true };
 
 fn is_drawn_by(renderer: &Renderer, stems: &[&str]) {
     let passes = renderer.key().expect("something was drawn").frame();
