@@ -137,6 +137,7 @@ pub fn exact(
 pub fn tunings() -> [Tuning; 4] {
     [(1, 1, false), (64, 32, true), (64, 32, false), (128 * 128, 128, true)].map(|(small_samples, small_side, listed_tiles)| Tuning {
         small_samples,
+        list_group: if small_samples == 64 { 256 } else { 64 },
         small_side,
         listed_tiles,
         early_load: listed_tiles,
