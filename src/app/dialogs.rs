@@ -239,10 +239,9 @@ impl App {
         let (Some((_, scene)), Some(wanted)) = (&self.stage.shown, &self.motion.wanted) else {
             return self.tell(Level::Error, "There is no picture to export yet");
         };
-        let session = self.shown_session();
-        let inputs = super::Inputs { view: session.view(scene, size), ..wanted.clone() };
+        let inputs = super::Inputs { view: self.view_at(scene, size), ..wanted.clone() };
         let mut look = self.look.clone();
-        look.session = session;
+        look.session = self.shown_session();
         self.jobs.shot(self.screen.gpu.clone(), inputs, look, path);
     }
 }

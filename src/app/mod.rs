@@ -5,6 +5,7 @@
 
 mod blit;
 mod dialogs;
+mod edit;
 mod fields;
 mod history;
 mod icons;
@@ -36,8 +37,8 @@ use crate::{
     effects::Stack,
     gpu::Gpu,
     measure::Accuracy,
-    preset::{self, Look},
-    scene::Scene,
+    preset::Look,
+    scene::{Scene, camera::View},
     session::Session,
 };
 use dialogs::Dialog;
@@ -216,6 +217,11 @@ impl App {
         self.log.to_text()
     }
 
+    /// The view that a picture of `size` pixels shows; none while there is no scene.
+    pub fn view(&self, size: [u32; 2]) -> Option<View> {
+        self.stage.shown.as_ref().map(|(_, scene)| self.view_at(scene, size))
+    }
+
     pub fn gpu(&self) -> &Arc<Gpu> {
         &self.screen.gpu
     }
@@ -241,104 +247,6 @@ impl App {
         let mut session = self.look.session.clone();
         session.clock.time_s += self.playback.offset_s;
         session
-    }
-
-    /// Makes `look` the open one, as a step of its own.
-    fn open_look(&mut self, look: Look) {
-        self.history.close();
-        for warning in &look.warnings {
-            self.log.add(Level::Warning, warning.clone());
-        }
-        self.files.insert(FileId::of(&look), look.clone());
-        self.muted.clear();
-        self.playback = Playback::default();
-        self.look = look;
-        self.observe(false);
-        self.history.close();
-    }
-
-    /// Opens whatever a person may name or drop.
-    fn open(&mut self, what: &str) {
-        match preset::open(what, self.options.presets_dir.as_deref()) {
-            Ok(look) => {
-                let title = look.title().to_owned();
-                self.open_look(look);
-                self.tell(Level::Info, format!("Opened {title}"));
-            }
-            Err(error) => self.tell(Level::Error, error.to_string()),
-        }
-    }
-
-    fn observe(&mut self, held: bool) {
-        let Look { id, path, session, .. } = &self.look;
-        self.history.observe(&Moment { file: FileId { id: id.clone(), path: path.clone() }, session: session.clone() }, self.now_s, held);
-    }
-
-    fn restore(&mut self, moment: Option<Moment>, what: &str) {
-        let Some(Moment { file, session }) = moment else {
-            return self.tell(Level::Info, format!("Nothing to {what}"));
-        };
-        if FileId::of(&self.look) != file {
-            if let Some(look) = self.files.get(&file) {
-                self.look = look.clone();
-            }
-            self.tell(Level::Info, format!("Back to {}", if session.name.is_empty() { &file.id } else { &session.name }));
-        }
-        self.look.session = session;
-    }
-
-    /// Carries out what a person asked of a row.
-    fn answer(&mut self, ctx: &egui::Context, ask: Ask) {
-        self.history.close();
-        let outcome = match ask {
-            Ask::Reset(path) => preset::unset(&mut self.look, &path).map_err(|e| e.to_string()),
-            Ask::ResetGroup(group) => self.reset_group(&group),
-            Ask::Copy(text) => {
-                ctx.copy_text(text.clone());
-                self.tell(Level::Info, format!("Copied {text}"));
-                Ok(())
-            }
-            Ask::Paste(path) => {
-                self.paste_into = Some(path);
-                ctx.send_viewport_cmd(egui::ViewportCommand::RequestPaste);
-                Ok(())
-            }
-        };
-        if let Err(error) = outcome {
-            self.tell(Level::Error, error);
-        }
-    }
-
-    fn reset_group(&mut self, group: &str) -> Result<(), String> {
-        match crate::effects::Effect::find(group) {
-            Some(effect) => {
-                if let Some(enabled) = self.look.session.stack.get_mut(group) {
-                    enabled.words = (effect.defaults)();
-                }
-                Ok(())
-            }
-            None => preset::unset(&mut self.look, group).map_err(|e| e.to_string()),
-        }
-    }
-
-    /// Text from the clipboard: a value for a row, or a look.
-    fn paste(&mut self, text: &str) {
-        self.history.close();
-        let row = self.paste_into.take().or_else(|| self.hovered_row.as_ref().map(|(path, _)| path.clone()));
-        let is_look = text.trim_start().starts_with("rasterlab1:");
-        match row {
-            Some(path) if !is_look => match preset::set(&mut self.look, &path, text.trim()) {
-                Ok(()) => self.tell(Level::Info, format!("{path} = {}", text.trim())),
-                Err(error) => self.tell(Level::Error, error.to_string()),
-            },
-            _ => match preset::from_line(text) {
-                Ok(look) => {
-                    self.open_look(look);
-                    self.tell(Level::Info, "Pasted a look");
-                }
-                Err(error) => self.tell(Level::Error, error.to_string()),
-            },
-        }
     }
 
     /// Takes in what threads have finished.

@@ -73,8 +73,8 @@ const THUMBNAIL_POINTS: egui::Vec2 = vec2(jobs::THUMBNAIL[0] as f32 / 2.0, jobs:
 impl App {
     /// Keeps one thumbnail in the making.
     pub(super) fn feed_thumbnails(&mut self) {
-        // The scene comes first: both want the same cores.
-        if self.shelf.drawing.is_some() || self.stage.loading.is_some() {
+        // The picture and its figures come first: all want the same cores.
+        if self.shelf.drawing.is_some() || self.stage.loading.is_some() || self.screen.is_waiting() {
             return;
         }
         let Some(id) = self.shelf.queue.pop_front() else { return };
@@ -266,7 +266,10 @@ fn params_ui(ui: &mut Ui, builtin: &Builtin, query: &str) -> Option<String> {
         ui.label(theme::weak(builtin.about));
         for (param, value) in builtin.params.iter().zip(&mut values) {
             ui.horizontal(|ui| {
-                ui.add_sized([84.0, theme::ROW - 4.0], egui::Label::new(param.name)).on_hover_text(param.doc);
+                let (label, response) = ui.allocate_exact_size(vec2(84.0, theme::ROW - 4.0), Sense::hover());
+                response.on_hover_text(param.doc);
+                let font = egui::TextStyle::Body.resolve(ui.style());
+                ui.painter_at(label).text(label.left_center(), Align2::LEFT_CENTER, param.name, font, theme::TEXT);
                 let speed = if param.whole { value.abs().max(10.0) * 0.02 } else { value.abs().max(0.1) * 0.02 };
                 // A scene is costly, so a drag shows its number and the scene is built on release.
                 let id = egui::Id::unique((builtin.name, param.name));

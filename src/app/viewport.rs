@@ -9,7 +9,10 @@ use super::{
     screen::Inputs,
     theme,
 };
-use crate::scene::camera::{Camera, Projection};
+use crate::scene::{
+    Scene,
+    camera::{Camera, Projection, View},
+};
 
 /// What moves in the picture, and what should be drawn.
 #[derive(Default)]
@@ -20,8 +23,12 @@ pub struct Motion {
     last_s: f64,
     /// Full pixels per drawn pixel, along a side.
     pub divisor: u32,
-    /// Size of the view, points.
-    pub aspect: f64,
+    /// How much more than the look's own frame the window shows, at least 1.
+    widening: f64,
+}
+
+fn aspect([width, height]: [u32; 2]) -> f64 {
+    f64::from(width.max(1)) / f64::from(height.max(1))
 }
 
 /// After this long without motion the picture is drawn at full size, seconds.
@@ -44,18 +51,43 @@ impl App {
         let rect = ui.available_rect_before_wrap();
         let response = ui.allocate_rect(rect, Sense::click_and_drag());
         response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Image, true, "Picture"));
-        self.motion.aspect = f64::from(rect.width().max(1.0)) / f64::from(rect.height().max(1.0));
+        let pixels = (rect.size() * ui.pixels_per_point()).round();
+        let most = self.screen.gpu.caps.max_texture_side;
+        let size = [pixels.x, pixels.y].map(|side| (side.max(0.0) as u32).min(most));
+        self.motion.widening = self.widening(size);
         self.play(ui.ctx());
         let moved = self.navigate(ui, &response);
-        self.draw(ui, rect, moved);
+        self.draw(ui.ctx(), size, moved);
         self.picture_ui(ui, rect);
         self.overlay_ui(ui, rect);
     }
 
-    /// Pose of the camera as it is shown, to be moved.
+    /// Pose of the camera, to be moved.
     fn pose(&self) -> Option<Camera> {
         let (_, scene) = self.stage.shown.as_ref()?;
-        Some(self.look.session.camera_for(scene, self.motion.aspect))
+        Some(self.look.session.camera_for(scene, aspect(self.look.session.output.size)))
+    }
+
+    /// How much taller than the look's frame a picture of `size` must be for the frame's width to fit.
+    fn widening(&self, size: [u32; 2]) -> f64 {
+        (aspect(self.look.session.output.size) / aspect(size)).max(1.0)
+    }
+
+    /// The look as a picture of `size` shows it: the whole of the look's own frame, and more where the shapes differ.
+    pub(super) fn view_at(&self, scene: &Scene, size: [u32; 2]) -> View {
+        let mut session = self.shown_session();
+        let widening = self.widening(size);
+        let mut camera = session.camera_for(scene, aspect(session.output.size));
+        if widening > 1.0 {
+            match &mut camera.projection {
+                Projection::Perspective { fov_y_deg } => {
+                    *fov_y_deg = 2.0 * ((fov_y_deg.to_radians() * 0.5).tan() * widening).atan().to_degrees();
+                }
+                Projection::Orthographic { height_m } => *height_m *= widening,
+            }
+        }
+        session.camera = Some(camera);
+        session.view(scene, size)
     }
 
     /// Moves the camera of the look.
@@ -78,7 +110,7 @@ impl App {
         let mut bounds = crate::scene::Bounds::EMPTY;
         let corners = if scene.bounds().is_empty() { None } else { Some(scene.bounds().corners()) };
         corners.into_iter().flatten().for_each(|corner| bounds.include(turn.transform_point3(corner)));
-        let aspect = self.motion.aspect;
+        let aspect = aspect(session.output.size);
         self.move_camera(|camera| *camera = orbit::framing(camera, &bounds, aspect));
     }
 
@@ -87,7 +119,7 @@ impl App {
         let before = self.look.session.camera;
         let drag = response.drag_delta();
         let (right, down) = (f64::from(drag.x), f64::from(drag.y));
-        let height = f64::from(response.rect.height().max(1.0));
+        let height = f64::from(response.rect.height().max(1.0)) / self.motion.widening;
         let shift = ui.input(|i| i.modifiers.shift);
         if drag != Vec2::ZERO {
             let pans = response.dragged_by(PointerButton::Middle) || (response.dragged_by(PointerButton::Primary) && shift);
@@ -139,24 +171,14 @@ impl App {
     }
 
     /// Draws what the look asks for, coarser while a hand moves it on a slow adapter.
-    fn draw(&mut self, ui: &Ui, rect: Rect, camera_moved: bool) {
-        let ctx = ui.ctx().clone();
+    fn draw(&mut self, ctx: &egui::Context, full: [u32; 2], camera_moved: bool) {
         let now_s = self.now_s;
         if let Err(error) = self.screen.poll(now_s) {
             self.log.add(Level::Error, error.to_string());
         }
         let Some((_, scene)) = self.stage.shown.clone() else { return };
-        let full = (rect.size() * ctx.pixels_per_point()).round();
-        let most = self.screen.gpu.caps.max_texture_side;
-        let full = [full.x, full.y].map(|side| (side.max(0.0) as u32).min(most));
-        let (session, stack) = (self.shown_session(), self.visible_stack());
-        let inputs_at = |size: [u32; 2]| Inputs {
-            scene: scene.clone(),
-            view: session.view(&scene, size),
-            stack: stack.clone(),
-            accuracy: session.accuracy,
-        };
-        let wanted = inputs_at(full);
+        let (stack, accuracy) = (self.visible_stack(), self.look.session.accuracy);
+        let wanted = Inputs { view: self.view_at(&scene, full), scene, stack, accuracy };
         let held = ctx.input(|i| i.pointer.any_down());
         let changed = self.motion.wanted.as_ref().is_some_and(|before| *before != wanted);
         if camera_moved || self.playback.playing || (changed && held) {
@@ -167,7 +189,11 @@ impl App {
         if divisor > 1 {
             ctx.request_repaint_after_secs((REST_S - (now_s - self.motion.last_s)) as f32 + 0.01);
         }
-        let inputs = if divisor > 1 { inputs_at(full.map(|side| side.div_ceil(divisor))) } else { wanted.clone() };
+        let mut inputs = wanted.clone();
+        if divisor > 1 {
+            // The same frustum on fewer pixels, so that nothing jumps when the motion ends.
+            (inputs.view.width, inputs.view.height) = (full[0].div_ceil(divisor), full[1].div_ceil(divisor));
+        }
         self.motion.divisor = divisor;
         self.motion.wanted = Some(wanted);
         if let Err(error) = self.screen.show(&inputs, now_s) {
