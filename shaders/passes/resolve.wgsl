@@ -14,7 +14,9 @@
 override F32_NORMALS: bool = false;
 override HAS_COLORS: bool = false;
 override HAS_CLIPPING: bool = false;
+// Plane normals and centres are computed; without them every corner normal is known to be sound.
 override HAS_PLANES: bool = true;
+override HAS_LARGE: bool = true;
 override IS_PERSPECTIVE: bool = true;
 // Empty pixels are computed too, with the first triangle, and thrown away: a CPU adapter executes both sides of every
 // branch anyway, and loads what all lanes share only once outside of branches.
@@ -23,7 +25,8 @@ override IS_STRAIGHT: bool = false;
 // Where a sample lies in its triangle.
 struct Place {
     weights: vec3f,       // perspective-correct, sum 1
-    corner_depths: vec3f, // metres along the viewing direction
+    depth: f32,           // metres along the viewing direction
+    corner_depths: vec3f, // the same, of the corners
     center_screen: vec2f,
     is_clockwise: bool,
 }
@@ -34,7 +37,8 @@ fn place_whole(t: Triangle, pixel: vec2u) -> Place {
     let b = vertex_at(t.b);
     let c = vertex_at(t.c);
     let p = vec2i(pixel) * 256 + 128;
-    let e = vec3f(fixed_weight(b, c, p), fixed_weight(c, a, p), fixed_weight(a, b, p));
+    var e = vec3f(vec3i(fixed_small_area(b, c, p), fixed_small_area(c, a, p), fixed_small_area(a, b, p)));
+    if HAS_LARGE { e = vec3f(fixed_weight(b, c, p), fixed_weight(c, a, p), fixed_weight(a, b, p)); }
     let inv_w = bitcast<vec3f>(vec3u(t.a.w, t.b.w, t.c.w));
     let share = e * inv_w;
     let sum = share.x + share.y + share.z;
@@ -42,7 +46,10 @@ fn place_whole(t: Triangle, pixel: vec2u) -> Place {
     var depths = w;
     if !IS_PERSPECTIVE { depths = linear_depths(bitcast<vec3f>(vec3u(t.a.z, t.b.z, t.c.z))); }
     let center = (vec2f(a) * w.x + vec2f(b) * w.y + vec2f(c) * w.z) / ((w.x + w.y + w.z) * 2.0 * frame.center);
-    return Place(share / sum, depths, center, e.x + e.y + e.z > 0.0);
+    let doubled_area = e.x + e.y + e.z;
+    let weights = share / sum;
+    let depth = select(dot(weights, depths), doubled_area / sum, IS_PERSPECTIVE);
+    return Place(weights, depth, depths, center, doubled_area > 0.0);
 }
 
 // Metres of an orthographic depth.
@@ -66,19 +73,21 @@ fn place_clipped(t: Triangle, at: vec3u, pixel: vec2u) -> Place {
     let center = select(sample, vec2f(0.5 + 0.5 * ndc.x, 0.5 - 0.5 * ndc.y), w > 0.0);
     // Counter-clockwise in clip space, y up, is a positive determinant.
     let is_clockwise = dot(a.xyw, cross(b.xyw, c.xyw)) < 0.0;
-    return Place(share / sum, depths, center, is_clockwise);
+    return Place(share / sum, dot(share / sum, depths), depths, center, is_clockwise);
 }
 
-// A stored normal; w is 0 where a lane is NaN, infinite or beyond 2^40, told by its bits.
-fn normal_of(draw: u32, vertex: u32) -> vec4f {
+// A stored normal, as bits.
+fn normal_bits(draw: u32, vertex: u32) -> vec3u {
     let byte = draws[draw].normal_offset + vertex * draws[draw].normal_stride;
-    var bits: vec3u;
     if F32_NORMALS {
         let word = byte / 4u;
-        bits = vec3u(vertex_bytes[word], vertex_bytes[word + 1u], vertex_bytes[word + 2u]);
-    } else {
-        bits = pull_bits3(draws[draw].normal_format, byte);
+        return vec3u(vertex_bytes[word], vertex_bytes[word + 1u], vertex_bytes[word + 2u]);
     }
+    return pull_bits3(draws[draw].normal_format, byte);
+}
+
+// A normal from its bits; w is 0 where a lane is NaN, infinite or beyond 2^40.
+fn gated(bits: vec3u) -> vec4f {
     let gate = vertex_gate(bits);
     return vec4f(vertex_position(bits, gate), select(0.0, 1.0, gate == 0u));
 }
@@ -136,7 +145,7 @@ fn surface_at(id: u32, pixel: vec2u) -> Surface {
     s.owner = id;
     s.center_screen = place.center_screen;
     s.screen = (vec2f(pixel) + 0.5) / vec2f(frame.size);
-    s.depth_m = dot(k, place.corner_depths);
+    s.depth_m = place.depth;
     s.flat_depth_m = dot(place.corner_depths, vec3f(1.0 / 3.0));
     s.range_m = frame.range_m;
     // The sample lies on the ray of its pixel, so depth alone tells where.
@@ -153,12 +162,17 @@ fn surface_at(id: u32, pixel: vec2u) -> Surface {
     s.color = draws[t.draw].base_color
         * (color_of(t.draw, at.x) * k.x + color_of(t.draw, at.y) * k.y + color_of(t.draw, at.z) * k.z);
 
-    let smooth_sum = smooth_normal(normal_of(t.draw, at.x), normal_of(t.draw, at.y), normal_of(t.draw, at.z), k);
-    s.normal = direction((normal_from_object * vec4f(smooth_sum, 0.0)).xyz);
-    s.flat_normal = s.normal;
+    let na = normal_bits(t.draw, at.x);
+    let nb = normal_bits(t.draw, at.y);
+    let nc = normal_bits(t.draw, at.z);
     s.center = s.position;
     var has_direction = true;
-    if HAS_PLANES {
+    if !HAS_PLANES {
+        let sum = bitcast<vec3f>(na) * k.x + bitcast<vec3f>(nb) * k.y + bitcast<vec3f>(nc) * k.z;
+        s.normal = normalize((normal_from_object * vec4f(sum, 0.0)).xyz);
+        s.flat_normal = s.normal;
+    } else {
+        s.normal = direction((normal_from_object * vec4f(smooth_normal(gated(na), gated(nb), gated(nc), k), 0.0)).xyz);
         let a = vertex_position(transform_bits(t.draw, at.x), 0u);
         let b = vertex_position(transform_bits(t.draw, at.y), 0u);
         let c = vertex_position(transform_bits(t.draw, at.z), 0u);

@@ -2,7 +2,7 @@
 //!
 //! Bounds are conservative: they may ask for a path that stays idle, never leave one out that a triangle takes.
 
-use glam::{DMat4, DVec4};
+use glam::{DMat3, DMat4, DVec4};
 
 use super::{Component, Primitive, Scene, Topology, camera::View, draw::Draw};
 use crate::math::{GUARD_BAND, UNITS_PER_PIXEL};
@@ -50,7 +50,7 @@ impl Needs {
             f32_positions: all_f32(|p| p.positions.component),
             f32_normals: all_f32(|p| p.normals.component),
             colors: drawn().any(|p| p.colors.is_some()),
-            sound_normals: drawn().all(|p| p.sound_normals),
+            sound_normals: drawn().all(|p| p.sound_normals) && draws.iter().all(keeps_normals),
             perspective: view.linear_depth_m.is_none(),
             clipping: largest_px.is_infinite(),
             largest_px,
@@ -72,6 +72,13 @@ impl Needs {
             ..self.clone()
         }
     }
+}
+
+/// Is the placement far enough from singular that a normal keeps a direction?
+fn keeps_normals(draw: &Draw) -> bool {
+    let m = DMat3::from_mat4(draw.world_from_object);
+    let largest = m.to_cols_array().iter().fold(0.0, |max: f64, v| max.max(v.abs()));
+    largest > 0.0 && (m * (1.0 / largest)).determinant().abs() > 1e-9
 }
 
 /// Upper bound of the extent of a draw's triangles in pixels; infinite if one may need clipping.

@@ -232,6 +232,7 @@ impl KernelKey {
             ("HAS_COLORS", flag(self.has_colors)),
             ("HAS_PLANES", flag(self.has_planes)),
             ("IS_PERSPECTIVE", flag(self.perspective)),
+            ("HAS_LARGE", flag(self.has_large)),
             ("HAS_CLIPPING", flag(self.has_clipping)),
             ("IS_STRAIGHT", flag(self.listed_tiles)),
             ("LIST_GROUP", self.list_group.into()),
