@@ -103,7 +103,7 @@ mod tests {
             history.observe(&state, *clock, true);
             last = state;
         }
-        *clock += REST_S + 0.01;
+        *clock += REST_S + 0.001;
         history.observe(&last, *clock, false);
     }
 

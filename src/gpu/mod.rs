@@ -4,10 +4,12 @@ pub mod bench;
 pub mod buffers;
 pub mod device;
 mod dispatch;
+pub mod error;
 mod explain;
 pub mod hardware;
 pub mod naive;
 pub mod pipelines;
+mod prepare;
 pub mod readback;
 pub mod timer;
 pub mod uniforms;
@@ -16,6 +18,7 @@ use std::{collections::VecDeque, sync::Arc};
 
 pub use buffers::BufferNote;
 pub use device::Gpu;
+pub use error::RenderError;
 pub use explain::Explanation;
 pub use readback::Capture;
 
@@ -23,68 +26,22 @@ use self::{
     buffers::Buffers,
     dispatch::{Dispatch, dispatch},
     pipelines::Pipelines,
+    prepare::{BACKGROUND_ROWS, first_capacities, recorded_capacities},
     readback::Pending,
     timer::{Detail, Timer},
-    uniforms::{Capacities, CounterRecord, DrawRecord, FrameUniform, color_stride},
+    uniforms::{Capacities, CounterRecord, color_stride},
 };
 pub use crate::plan::Note;
 use crate::{
     effects::Stack,
     frame::Counters,
-    math::srgb_byte,
-    plan::{Accuracy, Lacking, Plan, Tuning, plan},
-    scene::{
-        Scene,
-        camera::View,
-        draw::{DrawError, draws},
-        needs::Needs,
-    },
+    plan::{Accuracy, Plan, Tuning},
+    scene::{Scene, camera::View},
     shader::{
-        glue::uniform_bytes,
-        key::{KernelKey, Pass, Visibility},
+        key::{KernelKey, Pass},
         library::Library,
-        link::LinkError,
-        reflect::ShaderError,
     },
 };
-
-/// Why a picture could not be drawn.
-#[derive(Debug, thiserror::Error)]
-pub enum RenderError {
-    #[error(transparent)]
-    Draw(#[from] DrawError),
-    #[error(transparent)]
-    Lacking(#[from] Lacking),
-    #[error("the buffer {buffer} would take {bytes} bytes; this adapter binds at most {limit}")]
-    TooLarge { buffer: &'static str, bytes: u64, limit: u64 },
-    #[error("the picture is {width} x {height}; this adapter's textures end at {limit} pixels a side")]
-    TooWide { width: u32, height: u32, limit: u32 },
-    #[error("no memory for the buffer {buffer} of {bytes} bytes")]
-    OutOfMemory { buffer: &'static str, bytes: u64 },
-    #[error("the device was lost")]
-    Lost,
-    #[error("no scene has been set")]
-    NoScene,
-    #[error(transparent)]
-    Link(#[from] LinkError),
-    #[error(transparent)]
-    Shader(#[from] ShaderError),
-    #[error("the pipeline {label} was refused: {reason}")]
-    Pipeline { label: String, reason: String },
-    #[error("the queues still overflow after growing eight times; {0} entries were lost")]
-    Overflow(u32),
-}
-
-impl RenderError {
-    /// A pinned rung or a size that this adapter lacks.
-    pub fn is_unsupported(&self) -> bool {
-        matches!(self, Self::Lacking(_) | Self::TooLarge { .. } | Self::TooWide { .. } | Self::OutOfMemory { .. })
-    }
-
-    pub fn is_lost(&self) -> bool {
-        matches!(self, Self::Lost)
-    }
-}
 
 /// Figures of a finished frame.
 #[derive(Clone, Debug, Default)]
@@ -279,86 +236,6 @@ impl Renderer {
         Some(Report { gpu_ms: times.total_ms, passes: times.passes, counters, redraw })
     }
 
-    /// Plans the picture and makes its buffers hold what the passes will read.
-    fn prepare(&mut self, view: &View, stack: &Stack, accuracy: &Accuracy) -> Result<Plan, RenderError> {
-        let scene = self.scene.clone().ok_or(RenderError::NoScene)?;
-        let (gpu, buffers) = (&self.gpu, &mut self.buffers);
-        let limit = gpu.caps.max_texture_side;
-        if view.width.max(view.height) > limit {
-            return Err(RenderError::TooWide { width: view.width, height: view.height, limit });
-        }
-        let draws = draws(&scene, view)?;
-        let mut needs = Needs::of(&scene, &draws, view);
-        if self.distrust {
-            (needs.clipping, needs.largest_px) = (true, f64::INFINITY);
-        }
-        let plan = plan(&needs, stack, &gpu.caps, &self.tuning, accuracy)?;
-        let key = &plan.key;
-        let recorded = recorded_capacities(key, &self.capacities);
-
-        let records: Vec<DrawRecord> = draws.iter().map(|draw| DrawRecord::new(draw, &scene)).collect();
-        let uniform = FrameUniform::new(view, &scene, draws.len(), &recorded);
-        let parameters = uniform_bytes(&stack.0);
-        buffers.keep(|name| match name {
-            "queues" => key.has_queues(),
-            "args" => key.has_queues() || key.listed_tiles,
-            "marks" | "background" => key.listed_tiles,
-            "pieces" => key.has_clipping,
-            "effects" => !parameters.is_empty(),
-            "depth_keys" | "owners" => key.visibility == Visibility::Split32,
-            "depth_owner" => key.visibility == Visibility::Packed64,
-            "layers" => false,
-            _ => true,
-        });
-        buffers.fill(gpu, "frame", bytemuck::bytes_of(&uniform), wgpu::BufferUsages::UNIFORM, "size, viewpoint, capacities")?;
-        buffers.fill(
-            gpu,
-            "draws",
-            bytemuck::cast_slice(&records),
-            STORAGE | wgpu::BufferUsages::UNIFORM,
-            "matrices and attribute places, one record per instance",
-        )?;
-        if !parameters.is_empty() {
-            buffers.fill(gpu, "effects", &parameters, wgpu::BufferUsages::UNIFORM, "parameters of the stack")?;
-        }
-        buffers.ensure(gpu, "vertices", 16 * scene.vertex_count(), STORAGE, "projected vertices, 16 bytes each")?;
-        buffers.ensure(gpu, "counters", 64, STORAGE, "queue demand and what was not drawn")?;
-        if key.has_queues() {
-            buffers.ensure(
-                gpu,
-                "queues",
-                4 * recorded.queue_words(),
-                STORAGE,
-                "triangles waiting for clip, medium, large and tile kernels",
-            )?;
-        }
-        if key.has_queues() || key.listed_tiles {
-            buffers.ensure(gpu, "args", 60, STORAGE | wgpu::BufferUsages::INDIRECT, "dispatch sizes written on the GPU")?;
-        }
-        if key.has_clipping {
-            buffers.ensure(gpu, "pieces", 64 * u64::from(recorded.pieces), STORAGE, "what clipping leaves of a triangle")?;
-        }
-        let pixels = view.pixels() as u64;
-        match key.visibility {
-            Visibility::Split32 => {
-                buffers.ensure(gpu, "depth_keys", 4 * pixels, STORAGE, "nearest depth key per pixel, 4 bytes")?;
-                buffers.ensure(gpu, "owners", 4 * pixels, STORAGE, "owner per pixel, 4 bytes")?;
-            }
-            Visibility::Packed64 => {
-                buffers.ensure(gpu, "depth_owner", 8 * pixels, STORAGE, "depth key and owner per pixel, 8 bytes")?;
-            }
-        }
-        let tiles = if key.listed_tiles { u64::from(view.width.div_ceil(8)) * u64::from(view.height.div_ceil(8)) } else { 0 };
-        let picture = 4 * u64::from(color_stride(view.width)) * u64::from(view.height);
-        buffers.ensure(gpu, "color", picture + 4 * tiles, STORAGE, "the picture, 4 bytes per pixel, and the list of tiles to resolve")?;
-        if key.listed_tiles {
-            buffers.ensure(gpu, "marks", 4 * tiles, STORAGE, "which 8 x 8 tiles the resolve must visit")?;
-            let rows = background_word(view).repeat((color_stride(view.width) * BACKGROUND_ROWS) as usize);
-            buffers.fill(gpu, "background", &rows, STORAGE, "a few rows of background, copied all over the picture first")?;
-        }
-        Ok(plan)
-    }
-
     /// Copies rows of background over the picture, for resolves that leave empty tiles alone.
     fn fill_background(&self, encoder: &mut wgpu::CommandEncoder, view: &View) {
         let (from, to) = (self.buffers.get("background"), self.buffers.get("color"));
@@ -415,34 +292,6 @@ impl Renderer {
         let source = wgpu::TexelCopyBufferInfo { buffer: self.buffers.get("color"), layout };
         encoder.copy_buffer_to_texture(source, texture.as_image_copy(), size);
     }
-}
-
-/// Rows that the background buffer holds.
-const BACKGROUND_ROWS: u32 = 32;
-
-/// The background as the resolve would pack it.
-fn background_word(view: &View) -> [u8; 4] {
-    let [r, g, b, alpha] = view.background.map(f64::from);
-    [srgb_byte(r), srgb_byte(g), srgb_byte(b), (alpha.clamp(0.0, 1.0) * 255.0 + 0.5) as u8]
-}
-
-/// Capacities of the queues that this key's passes have; 0 where a pass is left out.
-fn recorded_capacities(key: &KernelKey, all: &Capacities) -> Capacities {
-    let kept = |is_there: bool, capacity: u32| if is_there { capacity } else { 0 };
-    Capacities {
-        clip: kept(key.has_clipping, all.clip),
-        pieces: kept(key.has_clipping, all.pieces),
-        medium: kept(key.has_medium, all.medium),
-        large: kept(key.has_large, all.large),
-        tiles: kept(key.has_large, all.tiles),
-    }
-}
-
-/// Room for an ordinary picture of the scene; demand beyond it grows the queues and draws again.
-fn first_capacities(scene: &Scene) -> Capacities {
-    let triangles = scene.triangle_count().min(u64::from(u32::MAX)) as u32;
-    let room = |most: u32| triangles.clamp(16, most).next_power_of_two();
-    Capacities { clip: room(4096), pieces: 2 * room(4096), medium: room(65_536), large: room(16_384), tiles: 16 * room(4096) }
 }
 
 /// What a frame counted, before it is read as [`Counters`].

@@ -1,0 +1,45 @@
+//! Errors of drawing, each one sentence.
+
+use crate::{
+    plan::Lacking,
+    scene::draw::DrawError,
+    shader::{link::LinkError, reflect::ShaderError},
+};
+
+/// Why a picture could not be drawn.
+#[derive(Debug, thiserror::Error)]
+pub enum RenderError {
+    #[error(transparent)]
+    Draw(#[from] DrawError),
+    #[error(transparent)]
+    Lacking(#[from] Lacking),
+    #[error("the buffer {buffer} would take {bytes} bytes; this adapter binds at most {limit}")]
+    TooLarge { buffer: &'static str, bytes: u64, limit: u64 },
+    #[error("the picture is {width} x {height}; this adapter's textures end at {limit} pixels a side")]
+    TooWide { width: u32, height: u32, limit: u32 },
+    #[error("no memory for the buffer {buffer} of {bytes} bytes")]
+    OutOfMemory { buffer: &'static str, bytes: u64 },
+    #[error("the device was lost")]
+    Lost,
+    #[error("no scene has been set")]
+    NoScene,
+    #[error(transparent)]
+    Link(#[from] LinkError),
+    #[error(transparent)]
+    Shader(#[from] ShaderError),
+    #[error("the pipeline {label} was refused: {reason}")]
+    Pipeline { label: String, reason: String },
+    #[error("the queues still overflow after growing eight times; {0} entries were lost")]
+    Overflow(u32),
+}
+
+impl RenderError {
+    /// A pinned rung or a size that this adapter lacks.
+    pub fn is_unsupported(&self) -> bool {
+        matches!(self, Self::Lacking(_) | Self::TooLarge { .. } | Self::TooWide { .. } | Self::OutOfMemory { .. })
+    }
+
+    pub fn is_lost(&self) -> bool {
+        matches!(self, Self::Lost)
+    }
+}

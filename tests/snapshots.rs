@@ -1,0 +1,329 @@
+//! Promise: every look with a `[test]` table looks like its golden, and goldens are the oracle's. Needs an adapter for
+//! the pictures alone.
+//!
+//! `UPDATE_SNAPSHOTS=1` redraws the goldens of failing looks, `UPDATE_SNAPSHOTS=force` all of them: always by the
+//! oracle, with the code of `rasterlab bless`, so an adapter that is wrong stays wrong.
+
+mod common;
+
+use std::{
+    collections::BTreeSet,
+    fs,
+    path::{Path, PathBuf},
+};
+
+use common::*;
+use rasterlab::{
+    cli::golden::{self, Golden},
+    frame::{Frame, NO_OWNER},
+    measure::compare::{difference_picture, owners, pictures},
+    oracle,
+    preset::{self, Look},
+    scene::Scene,
+    session::Session,
+};
+
+type Picture = Vec<[u8; 4]>;
+
+fn root() -> &'static Path {
+    Path::new(env!("CARGO_MANIFEST_DIR"))
+}
+
+fn snapshots() -> PathBuf {
+    root().join("tests/snapshots")
+}
+
+/// Looks that have a golden, by id.
+fn looks() -> Vec<Look> {
+    let folder = fs::read_dir(root().join("presets")).expect("presets/ can be read");
+    let mut files: Vec<PathBuf> = folder
+        .map(|entry| entry.expect("presets/ can be read").path())
+        .filter(|path| path.extension().is_some_and(|e| e == "toml"))
+        .collect();
+    files.sort();
+    let looks = files.iter().map(|file| preset::load(file).unwrap_or_else(|error| panic!("{error}")));
+    looks.filter(|look| look.session.test.is_some()).collect()
+}
+
+fn look(id: &str) -> Look {
+    looks().into_iter().find(|look| look.id == id).unwrap_or_else(|| panic!("no look {id}"))
+}
+
+fn scene_of(look: &Look) -> std::sync::Arc<Scene> {
+    preset::load_scene(&look.session, look.path.as_deref()).unwrap_or_else(|error| panic!("{}: {error}", look.id))
+}
+
+/// The comparator: what is wrong with a picture of `session`, held against its golden; integers and the look's budget.
+fn complaint(session: &Session, actual: &Picture, golden: &Picture) -> Option<String> {
+    let budget = session.test.as_ref().expect("a look with a golden");
+    let delta = pictures(actual, golden, budget.max_channel);
+    if delta.pixels_beyond <= u64::from(budget.max_pixels) {
+        return None;
+    }
+    let first = delta.offenders.first().map(|o| format!(", first at {:?}: {:?} for {:?}", o.place(session.output.size[0]), o.a, o.b));
+    Some(format!(
+        "{} pixels differ by more than {} of 255 (at most {} may), largest {}{}",
+        delta.pixels_beyond,
+        budget.max_channel,
+        budget.max_pixels,
+        delta.max_delta,
+        first.unwrap_or_default()
+    ))
+}
+
+/// A snapshot on disk with what a failure leaves beside it.
+struct Shelf {
+    folder: PathBuf,
+    id: String,
+}
+
+impl Shelf {
+    fn path(&self, end: &str) -> PathBuf {
+        self.folder.join(format!("{}{end}", self.id))
+    }
+
+    fn leave(&self, end: &str, picture: &Picture, size: [u32; 2]) {
+        fs::write(self.path(end), preset::png_bytes(picture, size).expect("a PNG")).expect("the snapshots folder can be written");
+    }
+
+    /// Removes what an earlier failure or update left.
+    fn tidy(&self) {
+        [".new.png", ".diff.png", ".old.png"].iter().for_each(|end| drop(fs::remove_file(self.path(end))));
+    }
+
+    /// Stores the oracle's picture as the golden; an earlier one is kept as `.old.png`.
+    fn bless(&self, golden: &Golden) {
+        let [picture, sidecar] = golden::paths(&self.folder, &self.id);
+        if picture.exists() {
+            fs::rename(&picture, self.path(".old.png")).expect("the golden can be moved");
+        }
+        fs::write(picture, &golden.png).and_then(|()| fs::write(sidecar, &golden.sidecar)).expect("the golden can be written");
+    }
+
+    /// Compares, and leaves `.new.png` and `.diff.png` or takes them away.
+    fn check(&self, session: &Session, actual: &Picture) -> Result<(), String> {
+        let size = session.output.size;
+        let [path, _] = golden::paths(&self.folder, &self.id);
+        if !path.exists() {
+            self.leave(".new.png", actual, size);
+            return Err(format!("{}: there is no golden; rasterlab bless {} draws one", self.id, self.id));
+        }
+        let complaint = match preset::png_pixels(&path) {
+            Err(error) => Some(error.to_string()),
+            Ok((_, golden_size)) if golden_size != size => Some(format!("the golden is {golden_size:?}, the look {size:?}")),
+            Ok((golden, _)) => complaint(session, actual, &golden).inspect(|_| {
+                self.leave(".diff.png", &difference_picture(&golden, actual, 16), size);
+            }),
+        };
+        match complaint {
+            None => {
+                self.tidy();
+                Ok(())
+            }
+            Some(complaint) => {
+                self.leave(".new.png", actual, size);
+                Err(format!("{}: {complaint}", self.id))
+            }
+        }
+    }
+}
+
+#[test]
+fn every_look_matches_its_golden_on_every_rung() {
+    let Some(mut renderer) = renderer() else { return };
+    let update = std::env::var("UPDATE_SNAPSHOTS").unwrap_or_default();
+    let mut failures = Vec::new();
+    for look in looks() {
+        let session = &look.session;
+        let shelf = Shelf { folder: snapshots(), id: look.id.clone() };
+        let scene = scene_of(&look);
+        if update == "force" {
+            shelf.bless(&golden::draw(&look, &scene).expect("the oracle draws every look"));
+        }
+        let view = session.view(&scene, session.output.size);
+        for rung in session.accuracy.visibility.map_or_else(|| rungs(&renderer), |pinned| vec![pinned]) {
+            let actual = captured(&mut renderer, &scene, &view, &session.stack, &pinned(rung)).frame.color;
+            let mut outcome = shelf.check(session, &actual);
+            if outcome.is_err() && update == "1" {
+                shelf.bless(&golden::draw(&look, &scene).expect("the oracle draws every look"));
+                outcome = shelf.check(session, &actual);
+            }
+            if let Err(why) = outcome {
+                // Another rung that passes would take the pictures of this failure away.
+                failures.push(format!("{} {why}", rung.name()));
+                break;
+            }
+        }
+    }
+    assert!(failures.is_empty(), "{}", failures.join("\n"));
+}
+
+#[test]
+fn blessing_everything_again_changes_nothing() {
+    let mut changes = Vec::new();
+    for look in looks() {
+        let golden = golden::draw(&look, &scene_of(&look)).expect("the oracle draws every look");
+        let [picture, sidecar] = golden::paths(&snapshots(), &look.id);
+        let (stored, _) = preset::png_pixels(&picture).unwrap_or_else(|error| panic!("{error}"));
+        if stored != golden.frame.color {
+            changes.push(format!("{}: the picture", look.id));
+        }
+        if fs::read_to_string(&sidecar).ok().as_ref() != Some(&golden.sidecar) {
+            changes.push(format!("{}: the sidecar", look.id));
+        }
+    }
+    assert_eq!(changes, Vec::<String>::new(), "`rasterlab bless --all --dry-run` says more");
+}
+
+#[test]
+fn every_file_among_the_snapshots_belongs_to_a_look() {
+    let tested: BTreeSet<String> = looks().into_iter().map(|look| look.id).collect();
+    let dead: Vec<String> = fs::read_dir(snapshots())
+        .expect("the snapshots folder can be read")
+        .map(|entry| entry.expect("the snapshots folder can be read").file_name().to_string_lossy().into_owned())
+        .filter(|name| {
+            let ends = [".new.png", ".diff.png", ".old.png", ".png", ".json"];
+            !ends.iter().any(|end| name.strip_suffix(end).is_some_and(|id| tested.contains(id)))
+        })
+        .collect();
+    assert_eq!(dead, Vec::<String>::new());
+}
+
+// ---------------------------------------------------------------- the comparator itself
+
+#[test]
+fn a_failure_leaves_its_pictures_and_a_pass_takes_them_away() {
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    let look = look("facet-knot");
+    let golden = golden::draw(&look, &scene_of(&look)).expect("the oracle draws every look");
+    let shelf = Shelf { folder: folder.path().to_owned(), id: look.id.clone() };
+    let there = |end: &str| shelf.path(end).exists();
+
+    assert!(shelf.check(&look.session, &golden.frame.color).is_err_and(|why| why.contains("no golden")));
+    assert!(there(".new.png") && !there(".png"), "a missing golden fails, leaves the picture, and is not made");
+
+    shelf.bless(&golden);
+    assert!(shelf.check(&look.session, &golden.frame.color).is_ok());
+    assert!(!there(".new.png"));
+
+    let mut wrong = golden.frame.color.clone();
+    wrong[77] = [255, 0, 255, 255];
+    let why = shelf.check(&look.session, &wrong).expect_err("one wrong pixel");
+    assert!(why.contains("1 pixels differ by more than 1 of 255 (at most 0 may)") && why.contains("[77, 0]"), "{why}");
+    let (left, _) = preset::png_pixels(&shelf.path(".new.png")).expect("the wrong picture");
+    let (diff, _) = preset::png_pixels(&shelf.path(".diff.png")).expect("the difference");
+    assert_eq!(left, wrong);
+    assert_eq!(diff.iter().filter(|pixel| **pixel != [0, 0, 0, 255]).count(), 1);
+
+    assert!(shelf.check(&look.session, &golden.frame.color).is_ok());
+    assert!(!there(".new.png") && !there(".diff.png") && there(".png") && there(".json"));
+
+    shelf.bless(&golden);
+    assert!(there(".old.png"), "an update keeps what was there");
+}
+
+fn drawn(session: &Session, scene: &Scene) -> Frame {
+    oracle::render(scene, &session.view(scene, session.output.size), &session.stack).expect("the oracle draws every look")
+}
+
+/// The scene without one of its triangles, which then has no area; other ids stay.
+fn without(scene: &Scene, triangle: u32) -> Scene {
+    let mut scene = scene.clone();
+    let indices = scene.primitives[0].indices.expect("builtins are indexed");
+    let at = (indices.offset + 3 * triangle * indices.stride) as usize;
+    let first: Vec<u8> = scene.index_bytes[at..at + 4].to_vec();
+    scene.index_bytes[at + 4..at + 8].copy_from_slice(&first);
+    scene
+}
+
+/// The owner with the most, or the fewest, pixels.
+fn owner_by_size(frame: &Frame, pick_most: bool) -> u32 {
+    let mut counts = std::collections::BTreeMap::<u32, i64>::new();
+    frame.owner.iter().filter(|&&owner| owner != NO_OWNER).for_each(|&owner| *counts.entry(owner).or_default() += 1);
+    let sign = if pick_most { 1 } else { -1 };
+    counts.into_iter().max_by_key(|(_, count)| sign * count).expect("something is drawn").0
+}
+
+#[test]
+fn mutants_of_every_golden_are_caught() {
+    for look in looks() {
+        let session = &look.session;
+        let frame = drawn(session, &scene_of(&look));
+        let caught = |mutant: Picture| complaint(session, &mutant, &frame.color).is_some();
+        assert!(!caught(frame.color.clone()), "{}: the golden itself", look.id);
+
+        let width = session.output.size[0] as usize;
+        let rows = |shift: fn(&mut [[u8; 4]])| {
+            let mut picture = frame.color.clone();
+            picture.chunks_exact_mut(width).for_each(shift);
+            picture
+        };
+        assert!(caught(rows(|row| row.rotate_right(1))), "{}: one pixel to the right", look.id);
+        assert!(caught(rows(|row| row.rotate_left(1))), "{}: one pixel to the left", look.id);
+        let mut down = frame.color.clone();
+        down.rotate_right(width);
+        assert!(caught(down), "{}: one pixel down", look.id);
+
+        let brighter = frame.color.iter().map(|&[r, g, b, a]| [r.saturating_add(2), g.saturating_add(2), b.saturating_add(2), a]).collect();
+        assert!(caught(brighter), "{}: two steps brighter", look.id);
+        let mut doubled = frame.color.clone();
+        let edge = (1..doubled.len()).find(|&i| frame.owner[i] == NO_OWNER && frame.owner[i - 1] != NO_OWNER).expect("an edge");
+        doubled[edge] = doubled[edge - 1];
+        assert!(caught(doubled), "{}: a pixel of the edge is doubled", look.id);
+    }
+}
+
+#[test]
+fn a_missing_triangle_is_caught_even_the_least_one() {
+    for id in ["facet-knot", "triangle_id", "facet-radial"] {
+        let look = look(id);
+        let scene = scene_of(&look);
+        let whole = drawn(&look.session, &scene);
+        for owner in [owner_by_size(&whole, true), owner_by_size(&whole, false)] {
+            let lacking = drawn(&look.session, &without(&scene, owner));
+            assert!(!lacking.owner.contains(&owner) && lacking.counters.degenerate == whole.counters.degenerate + 1);
+            assert!(owners(&lacking.owner, &whole.owner).different > 0, "{id}: owners without {owner}");
+            assert!(complaint(&look.session, &lacking.color, &whole.color).is_some(), "{id}: the picture without {owner}");
+        }
+    }
+}
+
+#[test]
+fn exchanged_owners_a_wrong_seed_and_a_reversed_stack_are_caught() {
+    let look = look("triangle_id");
+    let scene = scene_of(&look);
+    let view = look.session.view(&scene, look.session.output.size);
+    let whole = drawn(&look.session, &scene);
+    let (a, b) = (owner_by_size(&whole, true), owner_by_size(&whole, false));
+    let exchanged: Vec<u32> = whole
+        .owner
+        .iter()
+        .map(|&o| {
+            if o == a {
+                b
+            } else if o == b {
+                a
+            } else {
+                o
+            }
+        })
+        .collect();
+    let draws = rasterlab::scene::draw::draws(&scene, &view).expect("a look fits");
+    let colors = oracle::shade(&scene, &draws, &view, &look.session.stack, &exchanged, &oracle::project(&scene, &draws, &view));
+    let changed = whole.owner.iter().filter(|&&o| o == a || o == b).count() as u64;
+    assert_eq!(owners(&exchanged, &whole.owner).different, changed);
+    assert!(complaint(&look.session, &colors, &whole.color).is_some(), "exchanged owners");
+
+    let mut seeded = look.session.clone();
+    let effect = seeded.stack.get_mut("triangle_id").expect("the look's own effect");
+    let seed = effect.effect.field("seed").expect("a seed");
+    let lanes = seed.get(&effect.words);
+    seed.set(&mut effect.words, &[lanes[0] + 1.0]).expect("another seed");
+    assert!(complaint(&look.session, &drawn(&seeded, &scene).color, &whole.color).is_some(), "a wrong seed");
+
+    let look = looks().into_iter().find(|look| look.session.stack.0.len() > 1).expect("a look with a stack");
+    let (scene, mut reversed) = (scene_of(&look), look.session.clone());
+    reversed.stack.0.reverse();
+    let (there, back) = (drawn(&look.session, &scene), drawn(&reversed, &scene));
+    assert!(complaint(&look.session, &back.color, &there.color).is_some(), "{}: a reversed stack", look.id);
+}
