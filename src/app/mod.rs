@@ -31,7 +31,7 @@ use eframe::egui;
 
 pub use history::History;
 pub use log::Level;
-pub use start::{Options, adopt, run, wgpu_setup};
+pub use start::{DeviceLost, Options, adopt, run, wgpu_setup};
 
 use crate::{
     effects::Stack,
@@ -395,6 +395,9 @@ impl eframe::App for App {
     }
 
     fn ui(&mut self, ui: &mut egui::Ui, frame: &mut eframe::Frame) {
+        if self.ending.is_lost() {
+            return; // The toolkit panics when it has something to paint on a dead device.
+        }
         let ctx = ui.ctx().clone();
         start::tune(frame, &self.screen.gpu);
         let (now_s, pressed, held) = ctx.input(|i| (i.time, i.pointer.any_pressed(), i.pointer.any_down()));

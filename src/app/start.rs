@@ -74,7 +74,15 @@ pub fn run(options: Options) -> anyhow::Result<()> {
         options.open = recovery_path().filter(|path| path.exists()).map(|path| path.to_string_lossy().into_owned());
     }
     let place = recovery_path().map_or_else(String::new, |path| format!("; the look is in {}", path.display()));
-    anyhow::bail!("the graphics device was lost {} times, so the window stays closed{place}", MAX_LOSSES + 1)
+    Err(DeviceLost { times: MAX_LOSSES + 1, place }.into())
+}
+
+/// The end of a window whose device was lost again and again (exit status 4 of the command line).
+#[derive(Debug, thiserror::Error)]
+#[error("the graphics device was lost {times} times, so the window stays closed{place}")]
+pub struct DeviceLost {
+    times: u32,
+    place: String,
 }
 
 fn native_options(adapter: &AdapterChoice) -> eframe::NativeOptions {
