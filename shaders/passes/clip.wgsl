@@ -51,8 +51,13 @@ fn is_outside(plane: u32, corner: Corner, flags: vec4u) -> bool {
 fn cut(plane: u32, inside: Corner, outside: Corner) -> Corner {
     let near = distance(plane, inside.clip);
     let far = distance(plane, outside.clip);
-    let t = clamp(near / (near - far), 0.0, 1.0);
-    return Corner(inside.clip + (outside.clip - inside.clip) * t, plane | (inside.fixed & outside.fixed), 3u);
+    // Two ends that rounding puts alike near a plane have no quotient.
+    let t = select(0.0, clamp(near / (near - far), 0.0, 1.0), near > far);
+    let way = outside.clip - inside.clip;
+    var clip = inside.clip + way * t;
+    // On the near plane w is z, and whichever changes less along the edge is the more exact.
+    if plane == VERTEX_NEAR && abs(way.z) < abs(way.w) { clip.w = clip.z; }
+    return Corner(clip, plane | (inside.fixed & outside.fixed), 3u);
 }
 
 fn clip_against(plane: u32, polygon: Polygon, flags: vec4u) -> Polygon {

@@ -64,16 +64,19 @@ fn place_clipped(t: Triangle, at: vec3u, pixel: vec2u) -> Place {
     let c = transform_vertex(t.draw, at.z);
     let sample = (vec2f(pixel) + 0.5) / vec2f(frame.size);
     let p = vec3f(sample.x * 2.0 - 1.0, 1.0 - sample.y * 2.0, 1.0);
-    let share = vec3f(dot(p, cross(b.xyw, c.xyw)), dot(p, cross(c.xyw, a.xyw)), dot(p, cross(a.xyw, b.xyw)));
+    // Counter-clockwise in clip space, y up, is a positive determinant, which all shares inside take their sign from. A
+    // snapped piece may own a sample a hair outside; there a share is held at zero, or their sum vanishes at a horizon.
+    let is_clockwise = dot(a.xyw, cross(b.xyw, c.xyw)) < 0.0;
+    let signed = vec3f(dot(p, cross(b.xyw, c.xyw)), dot(p, cross(c.xyw, a.xyw)), dot(p, cross(a.xyw, b.xyw)));
+    let share = max(select(signed, -signed, is_clockwise), vec3f(0.0));
     let sum = share.x + share.y + share.z;
+    let weights = select(vec3f(1.0 / 3.0), share / select(1.0, sum, sum > 0.0), sum > 0.0);
     var depths = vec3f(a.w, b.w, c.w);
     if !IS_PERSPECTIVE { depths = linear_depths(vec3f(a.z, b.z, c.z)); }
     let w = a.w + b.w + c.w;
     let ndc = (a.xy + b.xy + c.xy) / select(1.0, w, w > 0.0);
     let center = select(sample, vec2f(0.5 + 0.5 * ndc.x, 0.5 - 0.5 * ndc.y), w > 0.0);
-    // Counter-clockwise in clip space, y up, is a positive determinant.
-    let is_clockwise = dot(a.xyw, cross(b.xyw, c.xyw)) < 0.0;
-    return Place(share / sum, dot(share / sum, depths), depths, center, is_clockwise);
+    return Place(weights, dot(weights, depths), depths, center, is_clockwise);
 }
 
 // A stored normal, as bits.

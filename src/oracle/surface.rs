@@ -50,7 +50,7 @@ enum Weights {
     /// Snapped corners, x and y in units of 1/256 px, with 1/w: perspective-correct from screen-space areas.
     Snapped([DVec3; 3]),
     /// Cross products of the other two corners' (x, y, w) in clip space, which weigh a sample even where w <= 0
-    /// (Olano and Greer 1997).
+    /// (Olano and Greer 1997); turned so that they are positive inside.
     Homogeneous([DVec3; 3]),
 }
 
@@ -169,7 +169,7 @@ impl Screen {
         // y points up in clip space: a negative determinant runs clockwise on screen.
         let is_clockwise = v[0].dot(rows[0]) < 0.0;
         Self {
-            weights: Weights::Homogeneous(rows),
+            weights: Weights::Homogeneous(if is_clockwise { rows.map(|row| -row) } else { rows }),
             is_back: is_clockwise != draw.mirrored,
             depths_m: clip.map(|p| linear_depth(view, p.z / p.w).unwrap_or(p.w)),
             center: (sum.z > 0.0).then(|| DVec2::new(0.5 + 0.5 * sum.x / sum.z, 0.5 - 0.5 * sum.y / sum.z)),
@@ -194,7 +194,8 @@ impl Weights {
             }
             Self::Homogeneous(rows) => {
                 let p = DVec3::new(2.0 * screen.x - 1.0, 1.0 - 2.0 * screen.y, 1.0);
-                rows.map(|row| p.dot(row))
+                // A snapped piece may own a sample a hair outside, where near a horizon the sum would vanish.
+                rows.map(|row| p.dot(row).max(0.0))
             }
         };
         let sum: f64 = shares.iter().sum();

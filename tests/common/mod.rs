@@ -108,12 +108,12 @@ pub fn captured(renderer: &mut Renderer, scene: &Arc<Scene>, view: &View, stack:
     capture
 }
 
-/// Largest share of pixels that may lie in the depth band, where two owners are right.
+/// Largest share of pixels that may lie in the depth band, where two owners are right; 16 pixels are always allowed.
 pub const BAND_SHARE: f64 = 0.01;
 
 /// Nothing exact is wrong, colours are within one step, and the band is small.
 pub fn exactness(errors: &Errors) -> Result<(), String> {
-    errors.within(&Budget { max_band_pixels: (errors.pixels as f64 * BAND_SHARE).ceil() as u64, ..Budget::default() })
+    errors.within(&Budget { max_band_pixels: ((errors.pixels as f64 * BAND_SHARE) as u64).max(16), ..Budget::default() })
 }
 
 /// Draws, judges and insists on [`exactness`]; `what` names the case.
@@ -143,6 +143,48 @@ pub fn tunings() -> [Tuning; 4] {
         early_load: listed_tiles,
         specialized: true,
     })
+}
+
+// ---------------------------------------------------------------- near misses
+
+/// `g`, `x` and `y` with a x + b y = g, the greatest common divisor up to its sign.
+fn bezout(a: i64, b: i64) -> (i64, i64, i64) {
+    if b == 0 {
+        return (a, 1, 0);
+    }
+    let (g, x, y) = bezout(b, a % b);
+    (g, y, x - a / b * y)
+}
+
+/// A flat triangle, units of 1/256 px, up to `extent` to a side. One edge passes a sample of a picture of `size` pixels
+/// as closely as its direction allows: on it, or one step of the edge function (for most, 1) to either side.
+pub fn near_miss(dice: &mut Dice, extent: i32, size: [i32; 2]) -> [[i32; 2]; 3] {
+    let sample = size.map(|side| i64::from(256 * dice.between(0, side) + 128));
+    // A third of the edges have lattice points inside, which can lie on the sample.
+    let factor = if dice.roll() % 3 == 0 { dice.between(2, 30) } else { 1 };
+    let reach = (extent / factor).max(2);
+    let mut side = || i64::from(factor * dice.between(-reach + 1, reach));
+    let (dx, dy) = match (side(), side()) {
+        (0, 0) => (i64::from(factor), i64::from(factor)),
+        d => d,
+    };
+    // From the edge's first end to the sample: dx fy - dy fx is -g, 0 or g.
+    let (g, x, y) = bezout(dx, dy);
+    let t = i64::from(dice.between(-1, 2));
+    let (fx, fy) = (-t * y, t * x);
+    let g = g.abs();
+    let along = (i128::from(fx * dx + fy * dy) * i128::from(g)).div_euclid(i128::from(dx * dx + dy * dy)) as i64;
+    let place = i64::from(dice.between(0, i32::try_from(g.min(1 << 30)).expect("a small number"))) - along;
+    let (fx, fy) = (fx + place * (dx / g), fy + place * (dy / g));
+    let a = [sample[0] - fx, sample[1] - fy];
+    let b = [a[0] + dx, a[1] + dy];
+    let mut third = |axis: usize| {
+        let (low, high) = (a[axis].min(b[axis]), a[axis].max(b[axis]));
+        let slack = (i64::from(extent) - (high - low)).max(0) as i32;
+        low - i64::from(dice.between(0, slack + 1)) + i64::from(dice.between(0, extent + 1))
+    };
+    let c = [third(0), third(1)];
+    [a, b, c].map(|corner| corner.map(|at| at.clamp(-8_388_607, 8_388_607) as i32))
 }
 
 // ---------------------------------------------------------------- hand-made scenes and views
