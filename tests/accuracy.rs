@@ -342,7 +342,8 @@ fn mutants() -> Vec<Mutant> {
 }
 
 /// Like a graphics card, so that every kernel has its share.
-const GRAPHICS_CARD: Tuning = Tuning { small_samples: 64, small_side: 32, listed_tiles: false, early_load: true, specialized: true };
+const GRAPHICS_CARD: Tuning =
+    Tuning { small_samples: 64, small_side: 32, list_group: 256, listed_tiles: false, early_load: true, specialized: true };
 
 fn copy_shaders(from: &Path, to: &Path) {
     fs::create_dir_all(to).expect("a folder for shaders");
