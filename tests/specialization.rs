@@ -1,0 +1,171 @@
+//! Promise: what the planner leaves out does not show, is not allocated and is not compiled again. Needs an adapter.
+
+mod common;
+
+use std::{path::Path, sync::Arc};
+
+use common::*;
+use rasterlab::{
+    effects::Stack,
+    frame::Frame,
+    gpu::{Explanation, Renderer},
+    measure::compare,
+    plan::Tuning,
+    preset,
+    scene::{Scene, camera::View},
+    shader::key::Visibility,
+};
+
+/// Every builtin scene on every rung, and every look on one: the resolve of its effects hardly knows the rung.
+fn pictures(rungs: &[Visibility]) -> Vec<(String, Arc<Scene>, View, Stack, Visibility)> {
+    let mut pictures = Vec::new();
+    for query in SCENES {
+        let scene = scene(query);
+        let view = view(&scene, [200, 150]);
+        let stack = stack(&["depth", "lambert"]);
+        pictures.extend(rungs.iter().map(|&rung| ((*query).to_owned(), scene.clone(), view.clone(), stack.clone(), rung)));
+    }
+    let looks = Path::new(env!("CARGO_MANIFEST_DIR")).join("presets");
+    for entry in std::fs::read_dir(looks).expect("presets/ can be read") {
+        let path = entry.expect("presets/ can be read").path();
+        if path.extension().is_some_and(|e| e == "toml") {
+            let look = preset::load(&path).unwrap_or_else(|error| panic!("{error}"));
+            let scene = preset::load_scene(&look.session, look.path.as_deref()).unwrap_or_else(|error| panic!("{}: {error}", look.id));
+            let view = look.session.view(&scene, look.session.output.size);
+            pictures.push((look.id.clone(), scene, view, look.session.stack, rungs[0]));
+        }
+    }
+    pictures
+}
+
+fn assert_same(a: &Frame, b: &Frame, what: &str) {
+    for (image, a, b) in [("owners", &a.owner, &b.owner), ("keys", &a.key, &b.key)] {
+        let delta = compare::owners(a, b);
+        assert_eq!(delta.different, 0, "{what}: {image} differ, first {:?}", delta.offenders.first());
+    }
+    let colors = compare::pictures(&a.color, &b.color, 0);
+    assert_eq!(colors.pixels_beyond, 0, "{what}: colours differ, first {:?}", colors.offenders.first());
+}
+
+#[test]
+fn the_planned_kernel_and_the_one_that_leaves_nothing_out_draw_the_same() {
+    let Some(mut renderer) = renderer() else { return };
+    let usual = renderer.gpu().caps.tuning();
+    // Thresholds of a GPU, so that medium triangles occur.
+    let planned_tuning = Tuning { small_samples: 64, small_side: 32, ..usual };
+    let mut spared = 0;
+    for (what, scene, view, stack, rung) in pictures(&rungs(&renderer)) {
+        let [(planned, key), (maximal, everything)] = [true, false].map(|specialized| {
+            renderer.set_tuning(Tuning { specialized, ..planned_tuning });
+            let capture = captured(&mut renderer, &scene, &view, &stack, &pinned(rung));
+            (capture, renderer.key().expect("something was drawn").clone())
+        });
+        let k = &everything;
+        assert!(k.has_clipping && k.has_medium && k.has_large && k.has_planes && k.has_colors, "{k}");
+        assert!(!(k.single_draw || k.only_lists || k.wide_indices || k.f32_positions || k.f32_normals), "{k:?}");
+        assert_ne!(key, everything, "{what}: the planner spares nothing");
+        spared += u32::from(!key.has_queues());
+        assert_same(&planned.frame, &maximal.frame, &format!("{what} {}", rung.name()));
+        assert_eq!(planned.layers, maximal.layers, "{what}: layers");
+        assert_eq!(planned.geometry, maximal.geometry, "{what}: geometry");
+        assert_eq!(planned.frame.counters, maximal.frame.counters, "{what}: counters");
+    }
+    assert!(spared > 0, "no picture does without queues");
+}
+
+/// What a renderer of its own makes for one picture.
+fn explained(query: &str, size: [u32; 2], rung: Visibility, tuning: Tuning) -> Option<(Explanation, Arc<Scene>, View)> {
+    let mut renderer = Renderer::new(gpu()?);
+    renderer.set_tuning(tuning);
+    let scene = scene(query);
+    let view = view(&scene, size);
+    renderer.set_scene(&scene).expect("a builtin fits");
+    renderer.draw_whole(&view, &stack(&["lambert"]), &pinned(rung)).expect("a builtin is drawn");
+    Some((renderer.explain(), scene, view))
+}
+
+fn names(explanation: &Explanation) -> (Vec<&str>, Vec<&str>) {
+    let passes = explanation.passes.iter().map(|pass| pass.name.as_str()).collect();
+    let buffers = explanation.buffers.iter().map(|buffer| buffer.name.as_str()).collect();
+    (passes, buffers)
+}
+
+#[test]
+fn a_scene_of_small_triangles_has_no_queues_arguments_or_pieces() {
+    let tuning = Tuning { small_samples: 64, small_side: 32, listed_tiles: false, early_load: false, specialized: true };
+    let explained = |query, tuning| explained(query, [320, 240], Visibility::Split32, tuning);
+    let Some((small, ..)) = explained("sphere?triangles=20000", tuning) else { return };
+    let (passes, buffers) = names(&small);
+    assert_eq!(passes, ["project", "raster_small depth", "raster_small owner", "resolve"]);
+    for spared in ["queues", "args", "pieces", "marks", "background", "layers", "depth_owner"] {
+        assert!(!buffers.contains(&spared), "{spared} exists: {buffers:?}");
+    }
+    for (part, why) in [("clip", "near plane"), ("raster_medium", "px"), ("tile_large, raster_large", "px")] {
+        let note = small.omitted.iter().find(|note| note.name == part).unwrap_or_else(|| panic!("{part} is not listed as left out"));
+        assert!(note.why.contains(why), "{part}: {}", note.why);
+    }
+
+    // The same scene with nothing spared, and the hall, which needs everything.
+    for (query, tuning) in [("sphere?triangles=20000", Tuning { specialized: false, ..tuning }), ("near", tuning)] {
+        let (all, ..) = explained(query, tuning).expect("there was an adapter");
+        let (passes, buffers) = names(&all);
+        for pass in ["clip", "args", "tile_large", "raster_medium depth", "raster_large owner"] {
+            assert!(passes.contains(&pass), "{query}: no {pass} in {passes:?}");
+        }
+        for buffer in ["queues", "args", "pieces"] {
+            assert!(buffers.contains(&buffer), "{query}: no {buffer} in {buffers:?}");
+        }
+    }
+
+    let (listed, ..) = explained("sphere?triangles=20000", Tuning { listed_tiles: true, ..tuning }).expect("there was an adapter");
+    let (passes, buffers) = names(&listed);
+    assert!(passes.contains(&"list_tiles") && buffers.contains(&"marks") && buffers.contains(&"args") && !buffers.contains(&"queues"));
+}
+
+#[test]
+fn vertices_and_pixels_take_sixteen_bytes_at_most() {
+    let Some(gpu) = gpu() else { return };
+    for rung in Visibility::ALL.into_iter().filter(|rung| *rung == Visibility::Split32 || gpu.caps.int64_atomics) {
+        let (explanation, scene, view) =
+            explained("sphere?triangles=20000", [1280, 720], rung, gpu.caps.tuning()).expect("there is an adapter");
+        let bytes = |name: &str| explanation.buffers.iter().find(|buffer| buffer.name == name).map_or(0, |buffer| buffer.bytes);
+        let per_vertex = bytes("vertices") as f64 / scene.vertex_count() as f64;
+        assert!((12.0..=16.01).contains(&per_vertex), "{per_vertex} bytes per projected vertex");
+        let picture: u64 = ["depth_keys", "owners", "depth_owner", "color"].map(bytes).iter().sum();
+        let per_pixel = picture as f64 / view.pixels() as f64;
+        assert!((12.0..=16.0).contains(&per_pixel), "{per_pixel} bytes per pixel on {}", rung.name());
+        assert!(
+            explanation.buffers.iter().all(|buffer| !buffer.why.is_empty()) && explanation.passes.iter().all(|pass| !pass.why.is_empty())
+        );
+    }
+}
+
+#[test]
+fn a_known_key_compiles_nothing() {
+    let Some(gpu) = gpu() else { return };
+    let mut renderer = Renderer::new(gpu);
+    let scenes = [scene("teapot?tess=4"), scene("near"), scene("cube-wall")];
+    let stacks = [stack(&[]), stack(&["lambert"]), stack(&["facet", "normals"])];
+    let round = |renderer: &mut Renderer| {
+        for scene in &scenes {
+            for stack in &stacks {
+                for rung in rungs(renderer) {
+                    captured(renderer, scene, &view(scene, [64, 48]), stack, &pinned(rung));
+                }
+            }
+        }
+        renderer.compiled()
+    };
+    let first = round(&mut renderer);
+    assert!(first > 0);
+    assert_eq!(round(&mut renderer), first, "pipelines were compiled again");
+
+    // A slider touches bytes alone; another size, too.
+    let mut turned = stack(&["lambert"]);
+    let effect = turned.get_mut("lambert").expect("just enabled");
+    let field = effect.effect.field("headlight").expect("lambert has a headlight");
+    field.set(&mut effect.words, &[0.5]).expect("within its range");
+    captured(&mut renderer, &scenes[0], &view(&scenes[0], [64, 48]), &turned, &pinned(Visibility::Split32));
+    captured(&mut renderer, &scenes[0], &view(&scenes[0], [80, 61]), &turned, &pinned(Visibility::Split32));
+    assert_eq!(renderer.compiled(), first, "a slider or a size compiled something");
+}
