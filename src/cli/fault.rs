@@ -53,6 +53,10 @@ impl Fault {
 
     /// Why the window did not open: no adapter, a lost device, or something in its way.
     pub fn window(error: anyhow::Error) -> Self {
+        #[cfg(feature = "gui")]
+        if error.downcast_ref::<crate::app::DeviceLost>().is_some() {
+            return Self { exit: Exit::DeviceLost, error };
+        }
         let exit = match (error.downcast_ref::<OpenError>(), error.downcast_ref::<RenderError>()) {
             (Some(open), _) => exit_of_open(open),
             (_, Some(render)) => exit_of_render(render),
