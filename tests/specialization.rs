@@ -43,8 +43,9 @@ fn assert_same(a: &Frame, b: &Frame, what: &str) {
         let delta = compare::owners(a, b);
         assert_eq!(delta.different, 0, "{what}: {image} differ, first {:?}", delta.offenders.first());
     }
-    let colors = compare::pictures(&a.color, &b.color, 0);
-    assert_eq!(colors.pixels_beyond, 0, "{what}: colours differ, first {:?}", colors.offenders.first());
+    // What decides is equal to the bit. Shading may round otherwise where a guard or a wide product is left out.
+    let colors = compare::pictures(&a.color, &b.color, 1);
+    assert_eq!(colors.pixels_beyond, 0, "{what}: colours differ by more than a step, first {:?}", colors.offenders.first());
 }
 
 #[test]
