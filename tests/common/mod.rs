@@ -161,7 +161,7 @@ fn bezout(a: i64, b: i64) -> (i64, i64, i64) {
 pub fn near_miss(dice: &mut Dice, extent: i32, size: [i32; 2]) -> [[i32; 2]; 3] {
     let sample = size.map(|side| i64::from(256 * dice.between(0, side) + 128));
     // A third of the edges have lattice points inside, which can lie on the sample.
-    let factor = if dice.roll() % 3 == 0 { dice.between(2, 30) } else { 1 };
+    let factor = if dice.roll().is_multiple_of(3) { dice.between(2, 30) } else { 1 };
     let reach = (extent / factor).max(2);
     let mut side = || i64::from(factor * dice.between(-reach + 1, reach));
     let (dx, dy) = match (side(), side()) {
