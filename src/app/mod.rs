@@ -1,7 +1,7 @@
 //! The lab's window: looks and scenes on the left, the picture in the middle, every parameter on the right, the log
 //! below. All of it edits one [`Look`]; what is drawn follows from that and from nothing else.
 //!
-//! Slow work happens in [`jobs`]; the window waits for no thread and for no device.
+//! Slow work happens in `jobs`; the window waits for no thread and for no device.
 
 mod blit;
 mod dialogs;
