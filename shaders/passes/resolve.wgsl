@@ -95,13 +95,16 @@ fn gated(bits: vec3u) -> vec4f {
     return vec4f(vertex_position(bits, gate), select(0.0, 1.0, gate == 0u));
 }
 
+// White where a lane is NaN, infinite or beyond 2^40.
 fn color_of(draw: u32, vertex: u32) -> vec4f {
     let format = draws[draw].color_format;
     if !HAS_COLORS || format == 0u { return vec4f(1.0); }
     let byte = draws[draw].color_offset + vertex * draws[draw].color_stride;
     let rgb = pull_vec3(format, byte);
     let alpha = select(1.0, pull_lane(format, byte + 3u * pull_bytes(format)), (format >> 8u) == 4u);
-    return select(vec4f(1.0), vec4f(rgb, alpha), pull_is_finite(rgb) && pull_is_finite(vec3f(alpha)));
+    let bits = bitcast<vec4u>(vec4f(rgb, alpha));
+    let gate = vertex_gate(bits.rgb) | vertex_gate(bits.aaa);
+    return select(vec4f(1.0), vec4f(vertex_position(bits.rgb, gate), vertex_position(bits.aaa, gate).x), gate == 0u);
 }
 
 // Direction of `v`, whatever its length; zero where it has none.

@@ -104,9 +104,10 @@ impl Renderer {
         self.tuning = tuning;
     }
 
-    /// Room for so many queue entries in the next picture of the scene that is set; too few grow and are drawn again.
+    /// Room for so many queue entries, at least 1 of each, in the next picture of the scene that is set; too few grow and
+    /// are drawn again.
     pub fn set_capacities(&mut self, capacities: Capacities) {
-        self.capacities = capacities;
+        self.capacities = capacities.at_least_one();
     }
 
     /// Room in the queues by now.

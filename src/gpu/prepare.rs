@@ -33,7 +33,9 @@ impl Renderer {
         let key = &plan.key;
         let recorded = recorded_capacities(key, &self.capacities);
 
-        let records: Vec<DrawRecord> = draws.iter().map(|draw| DrawRecord::new(draw, &scene)).collect();
+        let mut records: Vec<DrawRecord> = draws.iter().map(|draw| DrawRecord::new(draw, &scene)).collect();
+        // A binding holds an element at least, even where nothing is to be drawn.
+        records.resize(draws.len().max(1), DrawRecord::default());
         let uniform = FrameUniform::new(view, &scene, draws.len(), &recorded);
         let parameters = uniform_bytes(&stack.0);
         buffers.keep(|name| match name {

@@ -115,6 +115,13 @@ impl Capacities {
         u64::from(self.clip) + u64::from(self.medium) + u64::from(self.large) + 2 * u64::from(self.tiles)
     }
 
+    /// Room for an entry everywhere: no binding may be empty.
+    pub fn at_least_one(self) -> Self {
+        let Self { clip, pieces, medium, large, tiles } = self;
+        let [clip, pieces, medium, large, tiles] = [clip, pieces, medium, large, tiles].map(|capacity| capacity.max(1));
+        Self { clip, pieces, medium, large, tiles }
+    }
+
     /// Grows whatever the demand exceeded, by powers of two; true if anything grew.
     pub fn grow(&mut self, demand: &CounterRecord) -> bool {
         let pairs = [

@@ -208,12 +208,13 @@ fn mixed<T: std::ops::Mul<f64, Output = T> + std::ops::Add<Output = T>>(weights:
     a * weights[0] + b * weights[1] + c * weights[2]
 }
 
-/// Linear RGBA of a vertex; a lane that is not finite or not there counts 1.
+/// Linear RGBA of a vertex, opaque where it has three lanes; white when a lane is refused.
 fn color(scene: &Scene, colors: &Accessor, vertex: u32) -> DVec4 {
-    let lane = |lane: u32| {
-        if lane < colors.lanes { gated_lane(&scene.vertex_bytes, colors, vertex, lane).unwrap_or(1.0) } else { 1.0 }
-    };
-    DVec4::new(lane(0), lane(1), lane(2), lane(3))
+    let lane = |lane: u32| if lane < colors.lanes { gated_lane(&scene.vertex_bytes, colors, vertex, lane) } else { Ok(1.0) };
+    match [0, 1, 2, 3].map(lane) {
+        [Ok(r), Ok(g), Ok(b), Ok(a)] => DVec4::new(r, g, b, a),
+        _ => DVec4::ONE,
+    }
 }
 
 /// Normal of a vertex in object space; none when a lane is not finite.
