@@ -1,7 +1,7 @@
 //! The planner: the cheapest kernel that the scene, the stack and the tolerance allow on this adapter, and why.
 
 use crate::{
-    effects::{Enabled, Stack},
+    effects::{Conflict, Enabled, Stack},
     scene::needs::Needs,
     shader::{
         glue::reads,
@@ -88,10 +88,15 @@ pub struct Accuracy {
     pub visibility: Option<Visibility>,
 }
 
-/// A rung that was asked for by name and that this adapter lacks.
+/// Why no kernel draws this stack here.
 #[derive(Debug, thiserror::Error)]
-#[error("visibility packed64 needs 64-bit atomics, which this adapter lacks; use split32 or leave it out")]
-pub struct Lacking;
+pub enum PlanError {
+    /// A rung that was asked for by name.
+    #[error("visibility packed64 needs 64-bit atomics, which this adapter lacks; use split32 or leave it out")]
+    Lacking,
+    #[error(transparent)]
+    Conflict(#[from] Conflict),
+}
 
 /// One line of reasoning: what was chosen or left out, and why.
 #[derive(Clone, Debug, PartialEq, serde::Serialize)]
@@ -113,11 +118,12 @@ pub struct Plan {
 /// Chooses the kernel.
 ///
 /// # Errors
-/// When the look pins a rung that the adapter lacks.
-pub fn plan(needs: &Needs, stack: &Stack, caps: &Caps, tuning: &Tuning, accuracy: &Accuracy) -> Result<Plan, Lacking> {
+/// When the look pins a rung that the adapter lacks, or two effects take one slot.
+pub fn plan(needs: &Needs, stack: &Stack, caps: &Caps, tuning: &Tuning, accuracy: &Accuracy) -> Result<Plan, PlanError> {
+    stack.check()?;
     let needs = &if tuning.specialized { needs.clone() } else { needs.everything() };
     let visibility = match accuracy.visibility {
-        Some(Visibility::Packed64) if !caps.int64_atomics => return Err(Lacking),
+        Some(Visibility::Packed64) if !caps.int64_atomics => return Err(PlanError::Lacking),
         Some(pinned) => pinned,
         None if caps.int64_atomics => Visibility::Packed64,
         None => Visibility::Split32,

@@ -13,27 +13,7 @@ use rasterlab::{
 };
 
 fn reflected(pass: Pass, effects: Vec<&'static Effect>) -> Reflected {
-    let key = KernelKey {
-        fetch: Fetch::Indexed,
-        visibility: Visibility::Split32,
-        effects,
-        has_clipping: true,
-        has_medium: true,
-        has_large: true,
-        single_draw: false,
-        only_lists: false,
-        wide_indices: false,
-        f32_positions: false,
-        f32_normals: false,
-        has_colors: true,
-        has_planes: true,
-        perspective: true,
-        small_samples: 64,
-        small_side: 32,
-        listed_tiles: true,
-        list_group: 64,
-        early_load: false,
-    };
+    let key = KernelKey::whole(Fetch::Indexed, Visibility::Split32, effects);
     let linked = link::link(&Library::Embedded, &format!("passes/{}", pass.stem()), &key, &key.slots(pass)).expect("links");
     reflect::reflect(&linked, false).expect("validates")
 }

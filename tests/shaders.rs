@@ -14,25 +14,11 @@ use rasterlab::{
 
 fn key(fetch: Fetch, visibility: Visibility, has_queues: bool, effects: Vec<&'static Effect>) -> KernelKey {
     KernelKey {
-        fetch,
-        visibility,
-        effects,
         has_clipping: has_queues,
         has_medium: has_queues,
         has_large: has_queues,
-        single_draw: false,
-        only_lists: false,
-        wide_indices: false,
-        f32_positions: false,
-        f32_normals: false,
-        has_colors: true,
-        has_planes: true,
-        perspective: true,
-        small_samples: 64,
-        small_side: 32,
         listed_tiles: has_queues,
-        list_group: 64,
-        early_load: true,
+        ..KernelKey::whole(fetch, visibility, effects)
     }
 }
 

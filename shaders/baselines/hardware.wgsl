@@ -3,7 +3,7 @@
 //@ use common/draws
 //@ use common/surface
 //@ use common/color
-//@ use glue
+//@ use glue/surface
 
 struct Varyings {
     @builtin(position) at: vec4f,

@@ -9,8 +9,11 @@ struct Surface {
     center: vec3f,
     center_screen: vec2f,
     screen: vec2f,
+    shares: vec3f,
+    edge_px: vec3f,
     depth_m: f32,
     flat_depth_m: f32,
     range_m: vec2f,
     owner: u32,
+    rank: f32,
 }

@@ -2,6 +2,7 @@
 // surface effects, and writes gamma-encoded bytes.
 //@ use common/triangle
 //@ use common/transform
+//@ use common/center
 //@ use common/fixed
 //@ use common/color
 //@ use common/picture
@@ -9,7 +10,7 @@
 //@ use common/counters
 //@ use slot/owner
 //@ use slot/pixels
-//@ use glue
+//@ use glue/surface
 
 override F32_NORMALS: bool = false;
 override HAS_COLORS: bool = false;
@@ -28,6 +29,8 @@ struct Place {
     depth: f32,           // metres along the viewing direction
     corner_depths: vec3f, // the same, of the corners
     center_screen: vec2f,
+    shares: vec3f,        // as `Surface`
+    edge_px: vec3f,
     is_clockwise: bool,
 }
 
@@ -45,11 +48,11 @@ fn place_whole(t: Triangle, pixel: vec2u) -> Place {
     let w = 1.0 / inv_w;
     var depths = w;
     if !IS_PERSPECTIVE { depths = linear_depths(bitcast<vec3f>(vec3u(t.a.z, t.b.z, t.c.z))); }
-    let center = (vec2f(a) * w.x + vec2f(b) * w.y + vec2f(c) * w.z) / ((w.x + w.y + w.z) * 2.0 * frame.center);
     let doubled_area = e.x + e.y + e.z;
     let weights = share / sum;
     let depth = select(dot(weights, depths), doubled_area / sum, IS_PERSPECTIVE);
-    return Place(weights, depth, depths, center, doubled_area > 0.0);
+    let lengths = vec3f(length(vec2f(c - b)), length(vec2f(a - c)), length(vec2f(b - a)));
+    return Place(weights, depth, depths, center_whole(t), e / doubled_area, abs(e) / (256.0 * lengths), doubled_area > 0.0);
 }
 
 // Metres of an orthographic depth.
@@ -67,16 +70,17 @@ fn place_clipped(t: Triangle, at: vec3u, pixel: vec2u) -> Place {
     // Counter-clockwise in clip space, y up, is a positive determinant, which all shares inside take their sign from. A
     // snapped piece may own a sample a hair outside; there a share is held at zero, or their sum vanishes at a horizon.
     let is_clockwise = dot(a.xyw, cross(b.xyw, c.xyw)) < 0.0;
-    let signed = vec3f(dot(p, cross(b.xyw, c.xyw)), dot(p, cross(c.xyw, a.xyw)), dot(p, cross(a.xyw, b.xyw)));
+    let lines = mat3x3f(cross(b.xyw, c.xyw), cross(c.xyw, a.xyw), cross(a.xyw, b.xyw));
+    let signed = p * lines;
     let share = max(select(signed, -signed, is_clockwise), vec3f(0.0));
     let sum = share.x + share.y + share.z;
     let weights = select(vec3f(1.0 / 3.0), share / select(1.0, sum, sum > 0.0), sum > 0.0);
     var depths = vec3f(a.w, b.w, c.w);
     if !IS_PERSPECTIVE { depths = linear_depths(vec3f(a.z, b.z, c.z)); }
-    let w = a.w + b.w + c.w;
-    let ndc = (a.xy + b.xy + c.xy) / select(1.0, w, w > 0.0);
-    let center = select(sample, vec2f(0.5 + 0.5 * ndc.x, 0.5 - 0.5 * ndc.y), w > 0.0);
-    return Place(weights, dot(weights, depths), depths, center, is_clockwise);
+    let steps = 2.0 / vec2f(frame.size);
+    let slopes = vec3f(length(lines[0].xy * steps), length(lines[1].xy * steps), length(lines[2].xy * steps));
+    let edge_px = abs(signed) / max(slopes, vec3f(1e-30));
+    return Place(weights, dot(weights, depths), depths, center_clipped(a, b, c, sample), weights, edge_px, is_clockwise);
 }
 
 // A stored normal, as bits.
@@ -151,6 +155,8 @@ fn surface_at(id: u32, pixel: vec2u) -> Surface {
     s.owner = id;
     s.center_screen = place.center_screen;
     s.screen = (vec2f(pixel) + 0.5) / vec2f(frame.size);
+    s.shares = place.shares;
+    s.edge_px = place.edge_px;
     s.depth_m = place.depth;
     s.flat_depth_m = dot(place.corner_depths, vec3f(1.0 / 3.0));
     s.range_m = frame.range_m;
@@ -182,7 +188,7 @@ fn surface_at(id: u32, pixel: vec2u) -> Surface {
         let a = vertex_position(transform_bits(t.draw, at.x), 0u);
         let b = vertex_position(transform_bits(t.draw, at.y), 0u);
         let c = vertex_position(transform_bits(t.draw, at.z), 0u);
-        s.center = (draws[t.draw].world_from_object * vec4f((a + b + c) / 3.0, 1.0)).xyz;
+        s.center = center_world(t.draw, at);
         s.flat_normal = direction((normal_from_object * vec4f(plane_normal(a, b, c), 0.0)).xyz);
         let has_smooth = any(s.normal != vec3f(0.0));
         let has_flat = any(s.flat_normal != vec3f(0.0));

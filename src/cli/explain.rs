@@ -60,11 +60,11 @@ fn scene_json(scene: &Scene) -> Value {
 }
 
 fn effects_json(stack: &Stack) -> Vec<Value> {
-    stack.0.iter().map(|enabled| json!({ "effect": enabled.effect.name, "hook": enabled.effect.hook.name() })).collect()
+    stack.0.iter().map(|enabled| json!({ "effect": enabled.effect.name, "hook": enabled.effect.hooks.names() })).collect()
 }
 
 fn text(id: &str, scene: &Scene, stack: &Stack, plan: Option<&Explanation>) -> String {
-    let effects: Vec<_> = stack.0.iter().map(|enabled| format!("{} ({})", enabled.effect.name, enabled.effect.hook.name())).collect();
+    let effects: Vec<_> = stack.0.iter().map(|enabled| format!("{} ({})", enabled.effect.name, enabled.effect.hooks.names())).collect();
     let mut text = format!(
         "look     {id}\nscene    {}: {} triangles, {} vertices, {} instances\nbox      {}\neffects  {}\n",
         scene.name,

@@ -76,7 +76,7 @@ fn effects_text(effects: &[&Effect]) -> String {
             String::new(),
             String::new(),
             String::new(),
-            format!("{} ({} hook)", effect.about, effect.hook.name()),
+            format!("{} ({} hook)", effect.about, effect.hooks.names()),
         ]);
         let defaults = (effect.defaults)();
         rows.extend(effect.fields.iter().map(|field| {
@@ -136,5 +136,5 @@ fn effect_json(effect: &Effect) -> Value {
         })
     };
     let parameters: Vec<Value> = effect.fields.iter().map(parameter).collect();
-    json!({ "kind": "effect", "id": effect.name, "about": effect.about, "hook": effect.hook.name(), "parameters": parameters })
+    json!({ "kind": "effect", "id": effect.name, "about": effect.about, "hook": effect.hooks.names(), "parameters": parameters })
 }

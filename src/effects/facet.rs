@@ -2,24 +2,13 @@
 //!
 //! The blend is one number per triangle, taken at its centre. At 0 and 1 the pure values come through to the bit.
 
-use glam::DVec3;
+use glam::{DVec2, DVec3};
 
-use super::{Effect, Surface, SurfaceEffect};
-use crate::{choice, math::hash_unit, params, params::Point};
-
-choice! {
-    /// How the blend is spread over the triangles.
-    pub enum Pattern {
-        /// All alike.
-        Uniform = "uniform",
-        /// A front that crosses the picture.
-        Sweep = "sweep",
-        /// A front that grows round a point.
-        Radial = "radial",
-        /// Each at its own time.
-        Random = "random",
-    }
-}
+use super::{
+    Effect, Surface, SurfaceEffect,
+    hooks::{Front, Pattern},
+};
+use crate::{params, params::Point};
 
 params! {
     pub struct Facet {
@@ -51,7 +40,7 @@ pub const EFFECT: Effect =
 
 impl SurfaceEffect for Facet {
     fn apply(mut s: Surface, p: &Self) -> Surface {
-        let t = f64::from(p.amount) * reached(&s, p);
+        let t = f64::from(p.amount) * p.travelling().reached(s.center, s.center_screen, s.owner);
         if t <= 0.0 {
             return s;
         }
@@ -62,22 +51,17 @@ impl SurfaceEffect for Facet {
     }
 }
 
-/// How far the front has passed the triangle: 0 untouched, 1 behind it.
-fn reached(s: &Surface, p: &Facet) -> f64 {
-    let (front, width) = (f64::from(p.front), f64::from(p.width));
-    let passed = |place: f64| ((front * (1.0 + width) - place) / width).clamp(0.0, 1.0);
-    match Pattern::of(p.pattern) {
-        Pattern::Uniform => 1.0,
-        Pattern::Sweep => {
-            let (x, y) = (f64::from(p.along_x), f64::from(p.along_y));
-            let reach = (x.abs() + y.abs()).max(1e-3);
-            passed(0.5 + ((s.center_screen.x - 0.5) * x + (s.center_screen.y - 0.5) * y) / reach)
+impl Facet {
+    fn travelling(&self) -> Front {
+        Front {
+            pattern: Pattern::of(self.pattern),
+            progress: self.front.into(),
+            width: self.width.into(),
+            along: DVec2::new(self.along_x.into(), self.along_y.into()),
+            center: DVec3::new(self.center[0].into(), self.center[1].into(), self.center[2].into()),
+            radius_m: self.radius_m.into(),
+            width_m: self.width_m.into(),
+            seed: self.seed,
         }
-        Pattern::Radial => {
-            let center = DVec3::new(p.center[0].into(), p.center[1].into(), p.center[2].into());
-            let (radius, width) = (f64::from(p.radius_m), f64::from(p.width_m));
-            ((radius - (s.center - center).length()) / width + 0.5).clamp(0.0, 1.0)
-        }
-        Pattern::Random => passed(hash_unit(s.owner ^ p.seed.wrapping_mul(0x9e37_79b9))),
     }
 }

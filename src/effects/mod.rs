@@ -2,9 +2,12 @@
 //! in a file of the same name. Panel, preset keys, `--set`, uniform bytes, layout test, golden and bench row are
 //! loops over [`EFFECTS`].
 
-use glam::{DVec2, DVec3, DVec4};
-
 use crate::params::{Field, Params};
+
+pub mod hooks;
+
+use hooks::{Hooks, ImageEffect, Picture, Pixel, SampleEffect, SampleHook, Slot, VertexEffect, VertexHook};
+pub use hooks::{Surface, SurfaceEffect};
 
 /// THE list. Adding an effect is its two files and one word here.
 macro_rules! effects {
@@ -17,58 +20,13 @@ macro_rules! effects {
 
 effects![facet, triangle_id, normals, depth, lambert];
 
-/// What the rasterizer knows about a visible sample; a surface effect changes it and passes it on.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Surface {
-    /// Linear RGBA so far; begins as the material's base colour times the vertex colour.
-    pub color: DVec4,
-    /// World space, metres.
-    pub position: DVec3,
-    /// Unit, towards the viewer's side: interpolated, then whatever earlier effects made of it.
-    pub normal: DVec3,
-    /// Unit normal of the triangle's plane, towards the same side.
-    pub flat_normal: DVec3,
-    /// Unit vector from the sample to the eye.
-    pub view: DVec3,
-    /// Mean of the triangle's corners, world space.
-    pub center: DVec3,
-    /// Where that mean stands in the picture: 0 left and top, 1 right and bottom.
-    pub center_screen: DVec2,
-    /// Where the sample stands in the picture.
-    pub screen: DVec2,
-    /// Distance from the eye along the viewing direction, metres.
-    pub depth_m: f64,
-    /// Mean of `depth_m` over the triangle's corners.
-    pub flat_depth_m: f64,
-    /// Nearest and farthest `depth_m` of the scene's box.
-    pub range_m: DVec2,
-    /// Global triangle id.
-    pub owner: u32,
-}
-
-/// Where in the pipeline an effect acts, with its f64 function over its parameter words.
-#[derive(Clone, Copy)]
-pub enum Hook {
-    /// What colour is it?
-    Surface(fn(Surface, &[u32]) -> Surface),
-}
-
-impl Hook {
-    /// The hook's name in listings and in WGSL.
-    pub const fn name(self) -> &'static str {
-        match self {
-            Self::Surface(_) => "surface",
-        }
-    }
-}
-
 /// One entry of the catalogue.
 pub struct Effect {
     /// File stem, WGSL function, uniform member, preset table, `--set` prefix.
     pub name: &'static str,
     /// One line for listings and tooltips.
     pub about: &'static str,
-    pub hook: Hook,
+    pub hooks: Hooks,
     pub fields: &'static [Field],
     /// Parameter words with every default.
     pub defaults: fn() -> Vec<u32>,
@@ -77,9 +35,53 @@ pub struct Effect {
 }
 
 impl Effect {
-    /// An effect on the surface hook.
+    /// An effect with parameters `P` and no hook yet.
+    pub const fn new<P: Params>(name: &'static str, wgsl_struct: &'static str, about: &'static str) -> Self {
+        Self { name, about, hooks: Hooks::NONE, fields: P::FIELDS, defaults: defaults::<P>, wgsl_struct }
+    }
+
+    /// An effect on the surface hook alone.
     pub const fn surface<P: SurfaceEffect>(name: &'static str, wgsl_struct: &'static str, about: &'static str) -> Self {
-        Self { name, about, hook: Hook::Surface(apply_surface::<P>), fields: P::FIELDS, defaults: defaults::<P>, wgsl_struct }
+        Self::new::<P>(name, wgsl_struct, about).on_surface::<P>()
+    }
+
+    /// The same effect, also on the surface hook.
+    pub const fn on_surface<P: SurfaceEffect>(mut self) -> Self {
+        self.hooks.surface = Some(|surface, words| P::apply(surface, &read(words)));
+        self
+    }
+
+    /// The same effect, also on the vertex hook.
+    pub const fn on_vertex<P: VertexEffect>(mut self) -> Self {
+        self.hooks.vertex = Some(VertexHook {
+            needs_triangle: P::NEEDS_TRIANGLE,
+            moved: |vertex, words| P::moved(vertex, &read(words)),
+            slack_m: |vertex, words| P::slack_m(vertex, &read(words)),
+        });
+        self
+    }
+
+    /// The same effect, also on the sample hook.
+    pub const fn on_sample<P: SampleEffect>(mut self) -> Self {
+        self.hooks.sample = Some(SampleHook {
+            decides: P::DECIDES,
+            decide_slack: P::DECIDE_SLACK,
+            decide: |facts, words, first| P::decide(facts, &read(words), first),
+            is_drawn: |sample, words| P::is_drawn(sample, &read(words)),
+        });
+        self
+    }
+
+    /// The same effect, also on the image hook.
+    pub const fn on_image<P: ImageEffect>(mut self) -> Self {
+        self.hooks.image = Some(|pixel: Pixel, picture: &Picture, words: &[u32]| P::finish(pixel, picture, &read(words)));
+        self
+    }
+
+    /// The same effect, also in a slot of the rasterizer.
+    pub const fn in_slot(mut self, slot: Slot) -> Self {
+        self.hooks.slot = Some(slot);
+        self
     }
 
     /// The effect called `name`.
@@ -118,13 +120,9 @@ impl std::hash::Hash for Effect {
     }
 }
 
-/// The f64 side of an effect on the surface hook.
-pub trait SurfaceEffect: Params {
-    fn apply(surface: Surface, params: &Self) -> Surface;
-}
-
-fn apply_surface<P: SurfaceEffect>(surface: Surface, words: &[u32]) -> Surface {
-    P::apply(surface, &bytemuck::pod_read_unaligned(bytemuck::cast_slice(words)))
+/// Parameter words as the struct they were made from.
+fn read<P: Params>(words: &[u32]) -> P {
+    bytemuck::pod_read_unaligned(bytemuck::cast_slice(words))
 }
 
 fn defaults<P: Params>() -> Vec<u32> {
@@ -182,8 +180,59 @@ impl Stack {
 
     /// Applies every surface effect in order.
     pub fn shade(&self, surface: Surface) -> Surface {
-        self.0.iter().fold(surface, |surface, enabled| match enabled.effect.hook {
-            Hook::Surface(apply) => apply(surface, &enabled.words),
-        })
+        self.each(|hooks| hooks.surface).fold(surface, |surface, (apply, words)| apply(surface, words))
     }
+
+    /// Moves a vertex by every vertex effect in order.
+    pub fn moved(&self, vertex: hooks::Vertex) -> hooks::Vertex {
+        self.each(|hooks| hooks.vertex).fold(vertex, |vertex, (hook, words)| (hook.moved)(vertex, words))
+    }
+
+    /// Finishes a pixel by every image effect in order.
+    pub fn finish(&self, pixel: Pixel, picture: &Picture) -> Pixel {
+        self.each(|hooks| hooks.image).fold(pixel, |pixel, (finish, words)| finish(pixel, picture, words))
+    }
+
+    /// Effects with a certain hook, in order: the hook and the parameter words.
+    pub fn each<H>(&self, hook: impl Fn(&Hooks) -> Option<H>) -> impl Iterator<Item = (H, &[u32])> {
+        self.0.iter().filter_map(move |enabled| Some((hook(&enabled.effect.hooks)?, enabled.words.as_slice())))
+    }
+
+    /// Does an effect move vertices?
+    pub fn moves(&self) -> bool {
+        self.each(|hooks| hooks.vertex).next().is_some()
+    }
+
+    /// Does an effect move corners by their triangle, so that triangles share none?
+    pub fn parts_corners(&self) -> bool {
+        self.each(|hooks| hooks.vertex).any(|(hook, _)| hook.needs_triangle)
+    }
+
+    /// The effect in a slot of the rasterizer.
+    pub fn in_slot(&self, slot: Slot) -> Option<&Enabled> {
+        self.0.iter().find(|enabled| enabled.effect.hooks.slot == Some(slot))
+    }
+
+    /// Checks that no two effects take one slot.
+    ///
+    /// # Errors
+    /// Names the first two that do.
+    pub fn check(&self) -> Result<(), Conflict> {
+        for slot in Slot::ALL {
+            let mut takers = self.0.iter().map(|enabled| enabled.effect).filter(|effect| effect.hooks.slot == Some(slot));
+            if let (Some(first), Some(second)) = (takers.next(), takers.next()) {
+                return Err(Conflict { slot: slot.name(), first: first.name, second: second.name });
+            }
+        }
+        Ok(())
+    }
+}
+
+/// Two effects that take one slot of the rasterizer.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("{first} and {second} both take the {slot} slot of the rasterizer; switch one of them off")]
+pub struct Conflict {
+    pub slot: &'static str,
+    pub first: &'static str,
+    pub second: &'static str,
 }

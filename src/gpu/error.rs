@@ -1,7 +1,7 @@
 //! Errors of drawing, each one sentence.
 
 use crate::{
-    plan::Lacking,
+    plan::PlanError,
     scene::draw::DrawError,
     shader::{link::LinkError, reflect::ShaderError},
 };
@@ -12,7 +12,7 @@ pub enum RenderError {
     #[error(transparent)]
     Draw(#[from] DrawError),
     #[error(transparent)]
-    Lacking(#[from] Lacking),
+    Plan(#[from] PlanError),
     #[error("the buffer {buffer} would take {bytes} bytes; this adapter binds at most {limit}")]
     TooLarge { buffer: &'static str, bytes: u64, limit: u64 },
     #[error("the picture is {width} x {height}; this adapter's textures end at {limit} pixels a side")]
@@ -36,7 +36,7 @@ pub enum RenderError {
 impl RenderError {
     /// A pinned rung or a size that this adapter lacks.
     pub fn is_unsupported(&self) -> bool {
-        matches!(self, Self::Lacking(_) | Self::TooLarge { .. } | Self::TooWide { .. } | Self::OutOfMemory { .. })
+        matches!(self, Self::Plan(PlanError::Lacking) | Self::TooLarge { .. } | Self::TooWide { .. } | Self::OutOfMemory { .. })
     }
 
     pub fn is_lost(&self) -> bool {

@@ -107,6 +107,7 @@ impl Triangle {
         let pixel = DVec2::new(x as f64 + 0.5, y as f64 + 0.5);
         let screen = pixel / DVec2::new(view.width.into(), view.height.into());
         let weights = self.weights.at(pixel, screen);
+        let (shares, edge_px) = self.weights.on_screen(pixel, screen, view);
         let position = mixed(weights, self.positions);
         let toward_eye = match view.linear_depth_m {
             Some(_) => -view.forward,
@@ -123,10 +124,14 @@ impl Triangle {
             center: self.positions.iter().sum::<DVec3>() / 3.0,
             center_screen: self.center_screen.unwrap_or(screen),
             screen,
+            shares,
+            edge_px,
             depth_m: mixed(weights, self.depths_m),
             flat_depth_m: self.depths_m.iter().sum::<f64>() / 3.0,
             range_m: DVec2::from_array(view.scene_range_m),
             owner: self.owner,
+            rank: 0.0,
+            nudge: 0.0,
         }
     }
 
@@ -201,6 +206,28 @@ impl Weights {
         let sum: f64 = shares.iter().sum();
         let weights = shares.map(|share| share / sum);
         if weights.iter().all(|weight| weight.is_finite()) { weights } else { [1.0 / 3.0; 3] }
+    }
+
+    /// Shares of the corners on the screen (on its plane, of a triangle that was cut), and the distances of a pixel's
+    /// centre from the edges opposite the corners, pixels.
+    fn on_screen(&self, pixel: DVec2, screen: DVec2, view: &View) -> (DVec3, DVec3) {
+        match self {
+            Self::Snapped(corners) => {
+                let p = pixel * 256.0;
+                let [a, b, c] = corners.map(|corner| corner.truncate());
+                let areas = [(b, c), (c, a), (a, b)].map(|(from, to)| (from - p).perp_dot(to - p));
+                let lengths = [(b, c), (c, a), (a, b)].map(|(from, to)| (to - from).length());
+                let sum: f64 = areas.iter().sum();
+                let edge_px = [0, 1, 2].map(|k| areas[k].abs() / (256.0 * lengths[k]));
+                (DVec3::from_array(areas) / sum, DVec3::from_array(edge_px))
+            }
+            Self::Homogeneous(rows) => {
+                let p = DVec3::new(2.0 * screen.x - 1.0, 1.0 - 2.0 * screen.y, 1.0);
+                let steps = DVec2::new(2.0 / f64::from(view.width), 2.0 / f64::from(view.height));
+                let edge_px = rows.map(|row| p.dot(row).abs() / (row.truncate() * steps).length().max(1e-30));
+                (DVec3::from_array(self.at(pixel, screen)), DVec3::from_array(edge_px))
+            }
+        }
     }
 }
 

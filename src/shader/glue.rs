@@ -11,7 +11,7 @@ use crate::{
 /// Bytes from the start of one effect's parameters to the next are a multiple of this (WGSL, uniform address space).
 const MEMBER_ALIGN: usize = 16;
 
-/// The generated text for the enabled effects, in order. With none there is no struct and no binding.
+/// Constants and the `Effects` struct for the enabled effects, in order. With none there is no struct and no binding.
 pub fn glue(effects: &[&'static Effect]) -> String {
     let mut text = String::new();
     for effect in effects {
@@ -31,12 +31,86 @@ pub fn glue(effects: &[&'static Effect]) -> String {
         }
         text.push_str("}\n@group(0) @binding(12) var<uniform> effects: Effects;\n");
     }
-    text.push_str("fn glue_surface(surface: Surface) -> Surface {\n    var s = surface;\n");
-    for effect in effects {
-        writeln!(text, "    s = {0}(s, effects.{0});", effect.name).expect("writing to a string");
-    }
-    text.push_str("    return s;\n}\n");
     text
+}
+
+/// A hook as the kernels call it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Chain {
+    Vertex,
+    Sample,
+    /// What the sample effects settle per triangle.
+    Decide,
+    Surface,
+    Image,
+}
+
+impl Chain {
+    pub const ALL: [Self; 5] = [Self::Vertex, Self::Sample, Self::Decide, Self::Surface, Self::Image];
+
+    /// Name in `//@ use glue/NAME` and in the names of WGSL functions.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Vertex => "vertex",
+            Self::Sample => "sample",
+            Self::Decide => "decide",
+            Self::Surface => "surface",
+            Self::Image => "image",
+        }
+    }
+
+    /// Is the effect a link of this chain?
+    fn has(self, effect: &Effect) -> bool {
+        let hooks = &effect.hooks;
+        match self {
+            Self::Vertex => hooks.vertex.is_some(),
+            Self::Sample => hooks.sample.is_some(),
+            Self::Decide => hooks.sample.is_some_and(|hook| hook.decides),
+            Self::Surface => hooks.surface.is_some(),
+            Self::Image => hooks.image.is_some(),
+        }
+    }
+
+    /// The effect's WGSL function: `<stem>` for an effect of one function, else `<stem>_<hook>`.
+    fn function(self, effect: &Effect) -> String {
+        let functions = Self::ALL.iter().filter(|chain| chain.has(effect)).count();
+        if functions == 1 { effect.name.into() } else { format!("{}_{}", effect.name, self.name()) }
+    }
+
+    /// The generated function `glue_<hook>` that calls every link in stack order.
+    pub fn text(self, effects: &[&'static Effect]) -> String {
+        let links: Vec<(String, &str)> =
+            effects.iter().filter(|effect| self.has(effect)).map(|effect| (self.function(effect), effect.name)).collect();
+        let mut text = String::new();
+        let (head, tail) = match self {
+            Self::Vertex => ("fn glue_vertex(vertex: Vertex) -> Vertex {\n    var v = vertex;\n", "    return v;\n}\n"),
+            Self::Sample => ("fn glue_sample(sample: Sample, entry: u32) -> bool {\n    var s = sample;\n", "    return true;\n}\n"),
+            Self::Decide => ("fn glue_decide(facts: Facts, entry: u32) {\n", "}\n"),
+            Self::Surface => ("fn glue_surface(surface: Surface) -> Surface {\n    var s = surface;\n", "    return s;\n}\n"),
+            Self::Image => ("fn glue_image(pixel: Pixel) -> Pixel {\n    var q = pixel;\n", "    return q;\n}\n"),
+        };
+        text.push_str(head);
+        let decided: Vec<&str> = effects.iter().filter(|effect| Self::Decide.has(effect)).map(|effect| effect.name).collect();
+        let place = |name: &str| decided.iter().position(|other| *other == name);
+        for (function, name) in links {
+            let line = match self {
+                Self::Vertex => format!("    v = {function}(v, effects.{name});"),
+                Self::Surface => format!("    s = {function}(s, effects.{name});"),
+                Self::Image => format!("    q = {function}(q, effects.{name});"),
+                Self::Sample => {
+                    let load = place(name).map_or(String::new(), |place| format!("    s.decided = decisions_load(entry, {place}u);\n"));
+                    format!("{load}    if !{function}(s, effects.{name}) {{ return false; }}")
+                }
+                Self::Decide => {
+                    let place = place(name).expect("a link of this chain decides");
+                    format!("    decisions_store(entry, {place}u, {function}(facts, effects.{name}));")
+                }
+            };
+            writeln!(text, "{line}").expect("writing to a string");
+        }
+        text.push_str(tail);
+        text
+    }
 }
 
 /// Does the effect's WGSL read this member of the surface?

@@ -136,6 +136,31 @@ pub struct KernelKey {
 }
 
 impl KernelKey {
+    /// A key that leaves nothing out, for a stack on a portable adapter: where every path of the text is wanted.
+    pub fn whole(fetch: Fetch, visibility: Visibility, effects: Vec<&'static Effect>) -> Self {
+        Self {
+            fetch,
+            visibility,
+            effects,
+            has_clipping: true,
+            has_medium: true,
+            has_large: true,
+            single_draw: false,
+            only_lists: false,
+            wide_indices: false,
+            f32_positions: false,
+            f32_normals: false,
+            has_colors: true,
+            has_planes: true,
+            perspective: true,
+            small_samples: 64,
+            small_side: 32,
+            listed_tiles: true,
+            list_group: 64,
+            early_load: true,
+        }
+    }
+
     /// Are there queues at all?
     pub const fn has_queues(&self) -> bool {
         self.has_clipping || self.has_medium || self.has_large

@@ -2,9 +2,13 @@
 //! which files are taken; there is no preprocessor.
 //!
 //! `//@ use common/frame` takes a file, `//@ use slot/coverage` the file that the kernel key chose for that slot, and
-//! `//@ use glue` the effects of the stack with their call chain.
+//! `//@ use glue/surface` the effects of the stack with their call chain on that hook.
 
-use super::{glue, key::KernelKey, library::Library};
+use super::{
+    glue::{self, Chain},
+    key::KernelKey,
+    library::Library,
+};
 
 /// A linked module with the way back to its files.
 #[derive(Clone, Debug)]
@@ -57,8 +61,10 @@ impl Linker<'_> {
         self.append(name, &text);
         for used in text.lines().filter_map(|line| line.strip_prefix("//@ use ")).map(str::trim) {
             match used.strip_prefix("slot/") {
-                None if used == "glue" => self.take_glue(name)?,
-                None => self.take(used, name)?,
+                None => match Chain::ALL.into_iter().find(|chain| used.strip_prefix("glue/") == Some(chain.name())) {
+                    Some(chain) => self.take_glue(chain, name)?,
+                    None => self.take(used, name)?,
+                },
                 Some(slot) => {
                     let chosen = self.slots.iter().find(|(name, _)| *name == slot).map(|(_, file)| file.clone());
                     let file = chosen.ok_or_else(|| LinkError::EmptySlot { user: name.into(), slot: slot.into() })?;
@@ -69,11 +75,20 @@ impl Linker<'_> {
         Ok(())
     }
 
-    fn take_glue(&mut self, user: &str) -> Result<(), LinkError> {
-        for effect in &self.key.effects {
-            self.take(&format!("effects/{}", effect.name), user)?;
+    /// The effects of the stack, once, and the chain of one hook.
+    fn take_glue(&mut self, chain: Chain, user: &str) -> Result<(), LinkError> {
+        const GLUE: &str = "glue (generated)";
+        let chain_name = format!("glue of {} (generated)", chain.name());
+        if self.linked.files.iter().any(|(taken, _)| *taken == chain_name) {
+            return Ok(());
         }
-        self.append("glue (generated)", &glue::glue(&self.key.effects));
+        if !self.linked.files.iter().any(|(taken, _)| taken == GLUE) {
+            self.append(GLUE, &glue::glue(&self.key.effects));
+            for effect in &self.key.effects {
+                self.take(&format!("effects/{}", effect.name), user)?;
+            }
+        }
+        self.append(&chain_name, &chain.text(&self.key.effects));
         Ok(())
     }
 

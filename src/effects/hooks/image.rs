@@ -1,0 +1,48 @@
+//! The image hook: finish the pixel.
+
+use glam::DVec4;
+
+use crate::params::Params;
+
+/// A finished pixel of the picture; an image effect changes its colour and passes it on.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Pixel {
+    /// Linear RGBA so far.
+    pub color: DVec4,
+    pub x: u32,
+    pub y: u32,
+    /// As [`super::Surface::nudge`].
+    pub nudge: f64,
+}
+
+/// What an image effect may look up: the integers of the whole picture, row-major.
+pub struct Picture<'a> {
+    pub width: u32,
+    pub height: u32,
+    /// Global triangle id per pixel, [`crate::frame::NO_OWNER`] without one.
+    pub owners: &'a [u32],
+    /// Depth key per pixel, 0 without an owner.
+    pub keys: &'a [u32],
+    /// First triangle of every draw, rising.
+    pub draws: &'a [u32],
+    /// The picture before this one, gamma-encoded; none for the first.
+    pub previous: Option<&'a [[u8; 4]]>,
+    /// Linear RGBA where nothing is.
+    pub background: DVec4,
+}
+
+impl Picture<'_> {
+    /// Owner, depth key and draw of a pixel; those of the nearest pixel of the picture when it lies outside.
+    pub fn at(&self, x: i64, y: i64) -> (u32, u32, u32) {
+        let x = x.clamp(0, i64::from(self.width) - 1) as usize;
+        let y = y.clamp(0, i64::from(self.height) - 1) as usize;
+        let owner = self.owners[y * self.width as usize + x];
+        let draw = self.draws.partition_point(|&first| first <= owner) as u32;
+        (owner, self.keys[y * self.width as usize + x], draw)
+    }
+}
+
+/// The f64 side of an effect on the image hook.
+pub trait ImageEffect: Params {
+    fn finish(pixel: Pixel, picture: &Picture, params: &Self) -> Pixel;
+}

@@ -1,0 +1,47 @@
+//! Hooks: where in the pipeline an effect acts. The same signatures in WGSL and here, where they are f64 or integers.
+
+mod front;
+mod image;
+mod sample;
+mod slot;
+mod surface;
+mod vertex;
+
+pub use front::{Front, Pattern};
+pub use image::{ImageEffect, Picture, Pixel};
+pub use sample::{Facts, Sample, SampleEffect, SampleHook};
+pub use slot::Slot;
+pub use surface::{Surface, SurfaceEffect};
+pub use vertex::{Vertex, VertexEffect, VertexHook};
+
+/// Every hook of one effect, each with its function over the parameter words.
+#[derive(Clone, Copy)]
+pub struct Hooks {
+    /// Where is it?
+    pub vertex: Option<VertexHook>,
+    /// Is this sample drawn?
+    pub sample: Option<SampleHook>,
+    /// What colour is it?
+    pub surface: Option<fn(Surface, &[u32]) -> Surface>,
+    /// Finish the pixel.
+    pub image: Option<fn(Pixel, &Picture, &[u32]) -> Pixel>,
+    /// The part of the rasterizer that the effect replaces.
+    pub slot: Option<Slot>,
+}
+
+impl Hooks {
+    pub const NONE: Self = Self { vertex: None, sample: None, surface: None, image: None, slot: None };
+
+    /// Names for listings: `sample + surface`.
+    pub fn names(&self) -> String {
+        let hooks = [
+            (self.slot.is_some(), self.slot.map_or("", Slot::name)),
+            (self.vertex.is_some(), "vertex"),
+            (self.sample.is_some(), "sample"),
+            (self.surface.is_some(), "surface"),
+            (self.image.is_some(), "image"),
+        ];
+        let names: Vec<&str> = hooks.iter().filter(|(is_there, _)| *is_there).map(|(_, name)| *name).collect();
+        names.join(" + ")
+    }
+}

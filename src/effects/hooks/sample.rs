@@ -1,0 +1,90 @@
+//! The sample hook: is this sample drawn? Integers alone decide, so that every pass, rung and adapter says the same.
+//!
+//! What a decision takes from floats (a front in the world, say) is settled once per triangle, stored, and read by all:
+//! [`SampleEffect::decide`].
+
+use glam::{DVec2, DVec3};
+
+use crate::params::Params;
+
+/// What is known of a triangle, or of a piece that clipping left of one, when an effect decides about it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Facts {
+    /// Global triangle id; a piece has its parent's.
+    pub triangle: u32,
+    /// Snapped corners, units of 1/256 px, in the order of the file or of the fan.
+    pub corners: [[i32; 2]; 3],
+    /// Bit k: the edge opposite corner k is an edge of the whole triangle, not a cut.
+    pub outline: u32,
+    /// Width and height of the picture, pixels.
+    pub size: [u32; 2],
+    /// Mean of the whole triangle's corners, world space.
+    pub center: DVec3,
+    /// Where that mean stands in the picture, 0 to 1; the middle where it lies behind the eye.
+    pub center_screen: DVec2,
+}
+
+impl Facts {
+    /// Twice the area, units of 1/256 px squared.
+    pub fn doubled_area(&self) -> u64 {
+        let [[ax, ay], [bx, by], [cx, cy]] = self.corners.map(|corner| corner.map(i64::from));
+        ((bx - ax) * (cy - ay) - (by - ay) * (cx - ax)).unsigned_abs()
+    }
+
+    /// Bits that every doubled area of this triangle is shifted by, so that it fits 31 bits.
+    pub fn shift(&self) -> u32 {
+        (64 - self.doubled_area().leading_zeros()).saturating_sub(31)
+    }
+
+    /// Squared length of the edge opposite corner `k`.
+    pub fn squared_length(&self, k: usize) -> u64 {
+        let ([ax, ay], [bx, by]) = (self.corners[(k + 1) % 3], self.corners[(k + 2) % 3]);
+        let (dx, dy) = (u64::from(ax.abs_diff(bx)), u64::from(ay.abs_diff(by)));
+        dx * dx + dy * dy
+    }
+}
+
+/// A covered sample before any depth test.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Sample {
+    pub x: u32,
+    pub y: u32,
+    /// Global triangle id; a piece has its parent's.
+    pub triangle: u32,
+    /// Doubled area of the part opposite each corner, shifted down by [`Facts::shift`].
+    pub parts: [u32; 3],
+    /// What the effect decided about the triangle.
+    pub decided: [u32; 4],
+}
+
+impl Sample {
+    /// Sum of the parts, at least 1.
+    pub fn whole(&self) -> u32 {
+        self.parts.iter().sum::<u32>().max(1)
+    }
+}
+
+/// A sample effect's functions over its parameter words.
+#[derive(Clone, Copy)]
+pub struct SampleHook {
+    /// It settles something per triangle.
+    pub decides: bool,
+    /// Bound of the error of an f32 twin in the first word of a decision.
+    pub decide_slack: u32,
+    pub decide: fn(&Facts, &[u32], Option<u32>) -> [u32; 4],
+    pub is_drawn: fn(&Sample, &[u32]) -> bool,
+}
+
+/// The integer side of an effect on the sample hook.
+pub trait SampleEffect: Params {
+    /// Samples read `decided`.
+    const DECIDES: bool;
+    /// Bound of the error of an f32 twin in the first word of a decision; the other words are exact, given the first.
+    const DECIDE_SLACK: u32 = 0;
+
+    /// Settles what the samples of a triangle are held against. Only the first word may come from floats; where `first`
+    /// is given it is that word, and the others follow from it.
+    fn decide(facts: &Facts, params: &Self, first: Option<u32>) -> [u32; 4];
+
+    fn is_drawn(sample: &Sample, params: &Self) -> bool;
+}

@@ -1,0 +1,25 @@
+//! Slots: parts of the rasterizer that an effect replaces. One effect to a slot.
+
+/// See the module's first line.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Slot {
+    /// Which samples a triangle covers.
+    Coverage,
+    /// How many samples are drawn, and in which order they count.
+    Order,
+    /// What becomes of the samples of one pixel.
+    Visibility,
+}
+
+impl Slot {
+    pub const ALL: [Self; 3] = [Self::Coverage, Self::Order, Self::Visibility];
+
+    /// Name for listings and messages.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Coverage => "coverage",
+            Self::Order => "order",
+            Self::Visibility => "visibility",
+        }
+    }
+}
