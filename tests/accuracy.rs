@@ -268,7 +268,7 @@ fn mutants() -> Vec<Mutant> {
         ),
         mutant("sample at the pixel corner", "slots/coverage/fixed8", "first * 256 + 128", "first * 256", ties(), OWNERS),
         mutant("sample at the pixel corner of large triangles", "passes/raster_large", "* 16) * 256 + 128", "* 16) * 256", sizes(), OWNERS),
-        mutant("affine weights", "passes/resolve", "let share = e * inv_w;", "let share = e;", receding(), COLORS),
+        mutant("affine weights", "common/shade", "let share = e * inv_w;", "let share = e;", receding(), COLORS),
         mutant(
             "the larger id wins ties",
             "slots/visibility/split32_owner",
