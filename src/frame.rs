@@ -40,6 +40,8 @@ pub struct SnappedVertex {
 pub struct Piece {
     pub parent: u32,
     pub corners: [SnappedVertex; 3],
+    /// Bit k: the edge opposite corner k lies on an edge of the parent, not on a cut or inside.
+    pub outline: u32,
 }
 
 /// Everything the rasterizer proper sees: what stands between the float vertex stage and integer coverage.
@@ -49,6 +51,8 @@ pub struct Geometry {
     pub vertices: Vec<SnappedVertex>,
     /// Fan pieces of clipped triangles; pieces of one parent stand in fan order.
     pub pieces: Vec<Piece>,
+    /// What sample effects settled: for every triangle by id, then for every piece, one entry per effect that decides.
+    pub decisions: Vec<[u32; 4]>,
 }
 
 /// Counts of what a frame did not draw, and of what went wrong. All zero in a plain healthy picture.

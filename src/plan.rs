@@ -5,7 +5,7 @@ use crate::{
     scene::needs::Needs,
     shader::{
         glue::reads,
-        key::{Fetch, KernelKey, Visibility},
+        key::{Fetch, KernelKey, Visibility, deciding},
         library::Library,
     },
 };
@@ -136,10 +136,13 @@ pub fn plan(needs: &Needs, stack: &Stack, caps: &Caps, tuning: &Tuning, accuracy
     let planes = ["flat_normal", "flat_depth_m", "center"];
     let reads_planes = stack.0.iter().any(|enabled| planes.iter().any(|member| reads(&Library::Embedded, enabled.effect, member)));
     let has_planes = reads_planes || !needs.sound_normals;
+    let effects: Vec<_> = stack.0.iter().map(|Enabled { effect, .. }| *effect).collect();
     let key = KernelKey {
         fetch: if needs.indexed { Fetch::Indexed } else { Fetch::Direct },
         visibility,
-        effects: stack.0.iter().map(|Enabled { effect, .. }| *effect).collect(),
+        has_samples: effects.iter().any(|effect| effect.hooks.sample.is_some()),
+        decisions: deciding(&effects),
+        effects,
         has_clipping: needs.clipping,
         has_medium,
         has_large,
@@ -196,6 +199,8 @@ fn explain(needs: &Needs, is_usual: bool, caps: &Caps, accuracy: &Accuracy, key:
         ("index fetch", needs.indexed, "no primitive has indices".into()),
         ("plane normals and centres", key.has_planes, "no effect reads them and no normal needs a substitute".into()),
         ("vertex colours", needs.colors, "no primitive has them".into()),
+        ("decide", key.decisions > 0, "no effect settles anything per triangle".into()),
+        ("sample effects", key.has_samples, "no effect leaves samples out".into()),
         ("effects uniform", !key.effects.is_empty(), "the stack is empty".into()),
     ];
     let omitted = parts.into_iter().filter(|(_, is_there, _)| !is_there).map(|(name, _, why)| note(name, why)).collect();

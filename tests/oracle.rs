@@ -196,7 +196,7 @@ fn triangle(id: u32, mut points: [[i32; 2]; 3], depth: f32) -> Option<OrientedTr
     if area < 0 {
         points.swap(1, 2);
     }
-    (area != 0).then(|| OrientedTriangle { id, corners: points.map(|[x, y]| at(x, y, depth)) })
+    (area != 0).then(|| OrientedTriangle::clockwise(id, points.map(|[x, y]| at(x, y, depth))))
 }
 
 fn layers(triangles: &[OrientedTriangle], width: u32, height: u32) -> Vec<u32> {
@@ -453,7 +453,7 @@ fn depth_at_a_vertex_is_the_vertex_depth_and_never_leaves_the_corners() {
     for z in depths {
         // The top left corner owns its sample, and the other samples lie between the corners.
         let corners = [at(128, 128, z[0]), at(128 + 2048, 128, z[1]), at(128 + 256, 128 + 2048, z[2])];
-        let coverage = cover(&[OrientedTriangle { id: 0, corners }], &flat_view(9, 9), None);
+        let coverage = cover(&[OrientedTriangle::clockwise(0, corners)], &flat_view(9, 9), None);
         assert_eq!(coverage.samples[0].key, z[0].to_bits());
         let (low, high) = (z[0].min(z[1]).min(z[2]), z[0].max(z[1]).max(z[2]));
         let keys = coverage.samples.iter().filter(|sample| sample.layers == 1).map(|sample| sample.key);
@@ -484,7 +484,7 @@ fn depth_of_zero_still_has_a_key() {
 
 #[test]
 fn crossing_surfaces_are_ambiguous_only_where_they_cross() {
-    let slope = |id, left, right| OrientedTriangle { id, corners: [at(0, -9000, left), at(65 * 256, 0, right), at(0, 30_000, left)] };
+    let slope = |id, left, right| OrientedTriangle::clockwise(id, [at(0, -9000, left), at(65 * 256, 0, right), at(0, 30_000, left)]);
     let coverage = cover(&[slope(0, 0.25, 0.75), slope(1, 0.75, 0.25)], &flat_view(65, 16), None);
     let band: Vec<usize> = (0..coverage.samples.len()).filter(|&i| coverage.samples[i].is_band()).map(|i| i % 65).collect();
     assert!(!band.is_empty() && band.iter().all(|&x| x == 32), "{band:?}");
@@ -547,11 +547,11 @@ fn folded_pieces_are_dropped_and_counted() {
     let fan = geometry.pieces.clone();
     assert!(!fan.is_empty());
     let whole = triangles(&scene, &draws, &geometry).0.len();
-    let mut folded = Piece { parent: 0, corners: [at(0, 0, 0.5), at(600, 0, 0.5), at(0, 600, 0.5)] };
+    let mut folded = Piece { parent: 0, corners: [at(0, 0, 0.5), at(600, 0, 0.5), at(0, 600, 0.5)], outline: 7 };
     if area(fan[0].corners.map(|c| [c.x, c.y])) > 0 {
         folded.corners.swap(1, 2);
     }
-    let line = Piece { parent: 0, corners: [at(0, 0, 0.5), at(600, 600, 0.5), at(900, 900, 0.5)] };
+    let line = Piece { parent: 0, corners: [at(0, 0, 0.5), at(600, 600, 0.5), at(900, 900, 0.5)], outline: 7 };
     geometry.pieces.extend([folded, line]);
     let (drawn, counters) = triangles(&scene, &draws, &geometry);
     assert_eq!((drawn.len(), counters.fan_folds, counters.clipped), (whole, 2, 1));

@@ -4,10 +4,8 @@
 
 struct Wide { hi: u32, lo: u32 }
 
-// a * b for |a|, |b| <= 2^24.
-fn fixed_mul(a: i32, b: i32) -> Wide {
-    let x = u32(abs(a));
-    let y = u32(abs(b));
+// a * b of unsigned words, from 16-bit limbs.
+fn fixed_umul(x: u32, y: u32) -> Wide {
     let xl = x & 0xffffu;
     let xh = x >> 16u;
     let yl = y & 0xffffu;
@@ -16,13 +14,24 @@ fn fixed_mul(a: i32, b: i32) -> Wide {
     let lh = xl * yh;
     let hl = xh * yl;
     let middle = (ll >> 16u) + (lh & 0xffffu) + (hl & 0xffffu);
-    var lo = (ll & 0xffffu) | (middle << 16u);
-    var hi = xh * yh + (lh >> 16u) + (hl >> 16u) + (middle >> 16u);
-    if (a < 0) != (b < 0) {
-        lo = ~lo + 1u;
-        hi = ~hi + select(0u, 1u, lo == 0u);
-    }
-    return Wide(hi, lo);
+    return Wide(xh * yh + (lh >> 16u) + (hl >> 16u) + (middle >> 16u), (ll & 0xffffu) | (middle << 16u));
+}
+
+fn fixed_negate(v: Wide) -> Wide {
+    let lo = ~v.lo + 1u;
+    return Wide(~v.hi + select(0u, 1u, lo == 0u), lo);
+}
+
+// a * b for |a|, |b| <= 2^24.
+fn fixed_mul(a: i32, b: i32) -> Wide {
+    let product = fixed_umul(u32(abs(a)), u32(abs(b)));
+    if (a < 0) != (b < 0) { return fixed_negate(product); }
+    return product;
+}
+
+fn fixed_add(a: Wide, b: Wide) -> Wide {
+    let lo = a.lo + b.lo;
+    return Wide(a.hi + b.hi + select(0u, 1u, lo < a.lo), lo);
 }
 
 fn fixed_sub(a: Wide, b: Wide) -> Wide {
@@ -40,17 +49,39 @@ fn fixed_sign(v: Wide) -> i32 {
     return select(0, 1, (v.hi | v.lo) != 0u);
 }
 
+fn fixed_abs(v: Wide) -> Wide {
+    if bitcast<i32>(v.hi) < 0 { return fixed_negate(v); }
+    return v;
+}
+
+// Of unsigned words: a < b.
+fn fixed_is_less(a: Wide, b: Wide) -> bool {
+    return a.hi < b.hi || (a.hi == b.hi && a.lo < b.lo);
+}
+
+// Bits that an unsigned value is shifted down by so that it fits 31 bits.
+fn fixed_shift(v: Wide) -> u32 {
+    return select(33u - countLeadingZeros(v.hi), v.lo >> 31u, v.hi == 0u);
+}
+
+// v >> shift for shift < 32, where the result fits a word.
+fn fixed_down(v: Wide, shift: u32) -> u32 {
+    return (v.lo >> shift) | select(v.hi << (32u - max(shift, 1u)), 0u, shift == 0u);
+}
+
+// Largest integer whose square is at most v < 2^52: a float guesses, integers correct it.
+fn fixed_root(v: Wide) -> u32 {
+    var root = u32(sqrt(fixed_to_f32(v)));
+    for (var i = 0u; i < 32u && fixed_is_less(v, fixed_umul(root, root)); i += 1u) { root -= 1u; }
+    for (var i = 0u; i < 32u && !fixed_is_less(v, fixed_umul(root + 1u, root + 1u)); i += 1u) { root += 1u; }
+    return root;
+}
+
 // Nearest float but for two roundings.
 fn fixed_to_f32(v: Wide) -> f32 {
-    let is_negative = bitcast<i32>(v.hi) < 0;
-    var hi = v.hi;
-    var lo = v.lo;
-    if is_negative {
-        lo = ~lo + 1u;
-        hi = ~hi + select(0u, 1u, lo == 0u);
-    }
-    let magnitude = f32(hi) * 4294967296.0 + f32(lo);
-    return select(magnitude, -magnitude, is_negative);
+    let size = fixed_abs(v);
+    let magnitude = f32(size.hi) * 4294967296.0 + f32(size.lo);
+    return select(magnitude, -magnitude, bitcast<i32>(v.hi) < 0);
 }
 
 // Edge function of a -> b at p as a float, within two roundings, for |differences| <= 2^24: products of 12-bit halves are

@@ -3,8 +3,7 @@
 //@ use common/draws
 //@ use common/vertex
 //@ use slot/fetch
-
-@group(0) @binding(4) var<storage, read> vertices: array<vec4u>;
+//@ use slot/records
 
 override ONLY_LISTS: bool = false;
 
@@ -28,13 +27,15 @@ struct Triangle {
     c: vec4u,
     id: u32,
     draw: u32,
+    entry: u32,    // its place among all triangles and, behind them, pieces
+    outline: u32,  // bit k: the edge opposite corner k is no cut
 }
 
 fn triangle_load(id: u32) -> Triangle {
     let draw = draws_of_triangle(id);
     let first = draws[draw].first_vertex;
     let at = triangle_vertices(draw, id - draws[draw].first_triangle);
-    return Triangle(vertices[first + at.x], vertices[first + at.y], vertices[first + at.z], id, draw);
+    return Triangle(vertices[first + at.x], vertices[first + at.y], vertices[first + at.z], id, draw, id, 7u);
 }
 
 // Is a triangle of this orientation drawn at all, by the flags of its draw? Clockwise on screen (area > 0) is the back of a glTF triangle.

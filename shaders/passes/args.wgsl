@@ -10,6 +10,7 @@ struct Args {
     large: Dispatch,
     tiles: Dispatch,
     resolve: Dispatch,
+    pieces: Dispatch,
 }
 
 @group(0) @binding(10) var<storage, read_write> args: Args;
@@ -24,5 +25,6 @@ fn args_write() {
     args.medium = fold(min(atomicLoad(&counters.medium), frame.medium_capacity));
     args.large = fold(min(atomicLoad(&counters.large), frame.large_capacity));
     args.tiles = fold(min(atomicLoad(&counters.tiles), frame.tile_capacity));
+    args.pieces = fold((min(atomicLoad(&counters.pieces), frame.piece_capacity) + LIST_GROUP - 1u) / LIST_GROUP);
     args.resolve = fold(atomicLoad(&counters.marked_tiles));
 }

@@ -10,7 +10,7 @@ struct Piece {
     a: vec4u,
     b: vec4u,
     c: vec4u,
-    parent: vec4u,
+    parent: vec4u, // id of the triangle, its draw, place in the fan, outline as in `Triangle`
 }
 
 @group(0) @binding(9) var<storage, read_write> pieces: array<Piece>;
@@ -23,6 +23,7 @@ struct Corner {
     clip: vec4f,
     fixed: u32,   // VERTEX_NEAR, VERTEX_LEFT ... of the planes it was put on
     source: u32,  // 0, 1, 2: a corner of the triangle; 3: a cut
+    is_edge: bool, // the polygon's edge that begins here lies on an edge of the triangle, not on a plane
 }
 
 struct Polygon {
@@ -57,7 +58,7 @@ fn cut(plane: u32, inside: Corner, outside: Corner) -> Corner {
     var clip = inside.clip + way * t;
     // On the near plane w is z, and whichever changes less along the edge is the more exact.
     if plane == VERTEX_NEAR && abs(way.z) < abs(way.w) { clip.w = clip.z; }
-    return Corner(clip, plane | (inside.fixed & outside.fixed), 3u);
+    return Corner(clip, plane | (inside.fixed & outside.fixed), 3u, false);
 }
 
 fn clip_against(plane: u32, polygon: Polygon, flags: vec4u) -> Polygon {
@@ -74,6 +75,8 @@ fn clip_against(plane: u32, polygon: Polygon, flags: vec4u) -> Polygon {
         if here_outside != next_outside && result.count < 9u {
             if here_outside { result.corners[result.count] = cut(plane, next, here); }
             else { result.corners[result.count] = cut(plane, here, next); }
+            // Where the outline comes back inside it goes on along the same edge.
+            result.corners[result.count].is_edge = here_outside && here.is_edge;
             result.count += 1u;
         }
     }
@@ -115,7 +118,10 @@ fn emit(polygon: Polygon, t: Triangle) {
         if !triangle_is_shown(draws[t.draw].flags, sign > 0) { continue; }
         let slot = atomicAdd(&counters.pieces, 1u);
         if slot >= frame.piece_capacity { continue; }
-        pieces[slot] = Piece(records[0], records[i], records[i + 1u], vec4u(t.id, t.draw, i, 0u));
+        let is_first = i == 1u && polygon.corners[0].is_edge;
+        let is_last = i + 2u == polygon.count && polygon.corners[i + 1u].is_edge;
+        let outline = select(0u, 1u, polygon.corners[i].is_edge) | select(0u, 2u, is_last) | select(0u, 4u, is_first);
+        pieces[slot] = Piece(records[0], records[i], records[i + 1u], vec4u(t.id, t.draw, i, outline));
         let low = min(min(a, b), c);
         let high = max(max(a, b), c);
         let pixels = triangle_pixels(low, high);
@@ -133,9 +139,9 @@ fn clip(@builtin(workgroup_id) group: vec3u, @builtin(num_workgroups) groups: ve
     let at = triangle_vertices(t.draw, t.id - draws[t.draw].first_triangle);
     let flags = vec4u(t.a.x, t.b.x, t.c.x, 0u);
     var polygon: Polygon;
-    polygon.corners[0] = Corner(transform_vertex(t.draw, at.x), 0u, 0u);
-    polygon.corners[1] = Corner(transform_vertex(t.draw, at.y), 0u, 1u);
-    polygon.corners[2] = Corner(transform_vertex(t.draw, at.z), 0u, 2u);
+    polygon.corners[0] = Corner(transform_vertex(t.draw, at.x), 0u, 0u, true);
+    polygon.corners[1] = Corner(transform_vertex(t.draw, at.y), 0u, 1u, true);
+    polygon.corners[2] = Corner(transform_vertex(t.draw, at.z), 0u, 2u, true);
     polygon.count = 3u;
     // Near, left, right, top, bottom. A loop, since five copies of the polygon take a CPU adapter's compiler seconds.
     for (var plane = VERTEX_NEAR; plane <= VERTEX_BOTTOM; plane <<= 1u) {

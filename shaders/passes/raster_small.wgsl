@@ -3,6 +3,7 @@
 //@ use common/triangle
 //@ use slot/queues
 //@ use slot/coverage
+//@ use slot/samples
 //@ use slot/visibility
 //@ use slot/marks
 
@@ -18,7 +19,7 @@ const SMALL_EXTENT = 32768; // 128 px
 fn raster_small(@builtin(workgroup_id) group: vec3u, @builtin(num_workgroups) groups: vec3u, @builtin(local_invocation_index) lane: u32) {
     // Loads come before the first branch: what all lanes load alike is then loaded once, even where branches are masks.
     let id = frame_invocation(group, groups, lane, LIST_GROUP);
-    var t = triangle_load(min(id, frame.triangle_count - 1u));
+    let t = triangle_load(min(id, frame.triangle_count - 1u));
     let draw_flags = draws[t.draw].flags;
     if id >= frame.triangle_count { return; }
     let any_flag = (t.a.x | t.b.x | t.c.x) & 255u;
@@ -52,33 +53,31 @@ fn raster_small(@builtin(workgroup_id) group: vec3u, @builtin(num_workgroups) gr
         if IS_FIRST { queues_push_medium(id); }
         return;
     }
-    if area < 0 {
-        let swap = t.b;
-        t.b = t.c;
-        t.c = swap;
-        area = -area;
-    }
     marks_box(pixels);
-    walk(coverage_begin(t.a, t.b, t.c, area, pixels.xy), pixels, id);
+    let is_turned = area < 0;
+    let coverage = coverage_begin(t.a, select(t.b, t.c, is_turned), select(t.c, t.b, is_turned), abs(area), pixels.xy);
+    walk(coverage, pixels, t);
 }
 
 // One flat loop over the box, so that neighbouring invocations stay together whatever their boxes' shapes.
-fn walk(coverage: Coverage, pixels: vec4i, id: u32) {
+fn walk(coverage: Coverage, pixels: vec4i, t: Triangle) {
     let width = pixels.z - pixels.x + 1;
     let count = width * (pixels.w - pixels.y + 1);
     var row = coverage.row;
     var edges = row;
     var pixel = u32(pixels.y) * frame.size.x + u32(pixels.x);
     var x = 0;
+    var y = pixels.y;
     for (var i = 0; i < count; i += 1) {
-        if coverage_contains(edges) {
-            visibility_write(pixel, coverage_key(coverage, edges), id);
+        if coverage_contains(edges) && samples_is_drawn(t, vec2u(vec2i(pixels.x + x, y))) {
+            visibility_write(pixel, coverage_key(coverage, edges), t.id);
         }
         x += 1;
         edges += coverage.step_x;
         pixel += 1u;
         if x == width {
             x = 0;
+            y += 1;
             row += coverage.step_y;
             edges = row;
             pixel += frame.size.x - u32(width);

@@ -18,7 +18,7 @@ macro_rules! effects {
     };
 }
 
-effects![facet, triangle_id, normals, depth, lambert];
+effects![dissolve, stipple, facet, triangle_id, normals, depth, lambert, wireframe];
 
 /// One entry of the catalogue.
 pub struct Effect {
@@ -65,7 +65,7 @@ impl Effect {
     pub const fn on_sample<P: SampleEffect>(mut self) -> Self {
         self.hooks.sample = Some(SampleHook {
             decides: P::DECIDES,
-            decide_slack: P::DECIDE_SLACK,
+            slack: |facts, words| P::slack(facts, &read(words)),
             decide: |facts, words, first| P::decide(facts, &read(words), first),
             is_drawn: |sample, words| P::is_drawn(sample, &read(words)),
         });

@@ -2,7 +2,7 @@
 
 use crate::{
     scene::camera::View,
-    shader::key::{KernelKey, Pass},
+    shader::key::{Entries, KernelKey, Pass},
 };
 
 /// How many workgroups a pass takes.
@@ -17,6 +17,8 @@ pub fn dispatch(pass: Pass, vertices: u32, triangles: u32, view: &View, key: &Ke
     match pass {
         Pass::Project => Dispatch::Direct(folded(vertices.div_ceil(key.list_group))),
         Pass::RasterSmall(_) => Dispatch::Direct(folded(triangles.div_ceil(key.list_group))),
+        Pass::Decide(Entries::Triangles) => Dispatch::Direct(folded(triangles.div_ceil(key.list_group))),
+        Pass::Decide(Entries::Pieces) => Dispatch::Indirect(60),
         Pass::Args => Dispatch::Direct([1, 1]),
         Pass::Clip => Dispatch::Indirect(0),
         Pass::RasterMedium(_) => Dispatch::Indirect(12),

@@ -1,7 +1,7 @@
 //! Explanation: which passes and buffers the last picture has, which it does without, and why.
 
 use super::{BufferNote, Note, Renderer};
-use crate::shader::key::{Pass, Phase};
+use crate::shader::key::{Entries, Pass, Phase};
 
 /// Which passes and buffers exist for the last picture, and why.
 #[derive(Clone, Debug, serde::Serialize)]
@@ -41,6 +41,8 @@ fn pass_purpose(pass: Pass) -> &'static str {
         Pass::Project => "pulls, transforms and snaps every vertex once",
         Pass::RasterSmall(Phase::Owner) => "visits the small triangles again for the owner of each nearest key",
         Pass::RasterSmall(_) => "culls and classifies every triangle, draws the small ones on the spot",
+        Pass::Decide(Entries::Triangles) => "settles once per triangle what sample effects hold against",
+        Pass::Decide(Entries::Pieces) => "settles the same for the pieces that clipping left",
         Pass::Args => "turns queue demand into dispatch sizes",
         Pass::Clip => "cuts triangles at the near plane and the guard band",
         Pass::TileLarge => "finds the tiles of each large triangle",

@@ -60,7 +60,13 @@ impl Renderer {
         if !parameters.is_empty() {
             buffers.fill(gpu, "effects", &parameters, wgpu::BufferUsages::UNIFORM, "parameters of the stack")?;
         }
-        buffers.ensure(gpu, "vertices", 16 * scene.vertex_count(), STORAGE, "projected vertices, 16 bytes each")?;
+        let decisions = u64::from(key.decisions) * (scene.triangle_count() + u64::from(recorded.pieces));
+        let why = if decisions > 0 {
+            "projected vertices, then what sample effects decided, 16 bytes each"
+        } else {
+            "projected vertices, 16 bytes each"
+        };
+        buffers.ensure(gpu, "vertices", 16 * (scene.vertex_count() + decisions), STORAGE, why)?;
         buffers.ensure(gpu, "counters", 64, STORAGE, "queue demand and what was not drawn")?;
         if key.has_queues() {
             buffers.ensure(
@@ -72,7 +78,7 @@ impl Renderer {
             )?;
         }
         if key.has_queues() || key.listed_tiles {
-            buffers.ensure(gpu, "args", 60, STORAGE | wgpu::BufferUsages::INDIRECT, "dispatch sizes written on the GPU")?;
+            buffers.ensure(gpu, "args", 72, STORAGE | wgpu::BufferUsages::INDIRECT, "dispatch sizes written on the GPU")?;
         }
         if key.has_clipping {
             buffers.ensure(gpu, "pieces", 64 * u64::from(recorded.pieces), STORAGE, "what clipping leaves of a triangle")?;

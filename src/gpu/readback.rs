@@ -133,21 +133,26 @@ impl Renderer {
 
     fn read_geometry(&self, key: &KernelKey) -> Result<Geometry, RenderError> {
         let scene = self.scene.as_ref().ok_or(RenderError::NoScene)?;
-        let words = self.words("vertices", 4 * scene.vertex_count())?;
-        let vertices = words.chunks_exact(4).map(vertex).collect();
+        let (vertices, triangles) = (scene.vertex_count(), scene.triangle_count() as usize);
         let mut pieces = Vec::new();
         if key.has_clipping {
             let count = self.words("counters", 16)?[4].min(self.capacities.pieces);
             let words = self.words("pieces", 16 * u64::from(count))?;
+            pieces = words.chunks_exact(16).enumerate().map(|(slot, words)| (slot, words[14], piece(words))).collect();
             // Pieces land in the order of the scheduler; parent and place in the fan put them in ours.
-            let mut found: Vec<(u32, u32, Piece)> = words
-                .chunks_exact(16)
-                .map(|w| (w[12], w[14], Piece { parent: w[12], corners: [vertex(&w[0..4]), vertex(&w[4..8]), vertex(&w[8..12])] }))
-                .collect();
-            found.sort_by_key(|(parent, place, _)| (*parent, *place));
-            pieces = found.into_iter().map(|(_, _, piece)| piece).collect();
+            pieces.sort_by_key(|(_, place, piece): &(usize, u32, Piece)| (piece.parent, *place));
         }
-        Ok(Geometry { vertices, pieces })
+        let deciding = key.decisions as usize;
+        let entries = if deciding > 0 { triangles + pieces.len() } else { 0 };
+        let words = self.words("vertices", 4 * (vertices + (deciding * entries) as u64))?;
+        let (records, decided) = words.split_at(4 * vertices as usize);
+        let of_entry = |entry: usize| &decided[4 * deciding * entry..4 * deciding * (entry + 1)];
+        let order = (0..triangles).chain(pieces.iter().map(|(slot, _, _)| triangles + slot)).take(entries);
+        Ok(Geometry {
+            vertices: records.chunks_exact(4).map(vertex).collect(),
+            decisions: order.flat_map(|entry| of_entry(entry).chunks_exact(4).map(|w| [w[0], w[1], w[2], w[3]])).collect(),
+            pieces: pieces.into_iter().map(|(_, _, piece)| piece).collect(),
+        })
     }
 
     /// Runs the raster passes once more into a counter per pixel.
@@ -165,6 +170,11 @@ impl Renderer {
         self.buffers.keep(|name| name != "layers");
         layers
     }
+}
+
+fn piece(words: &[u32]) -> Piece {
+    let corners = [&words[0..4], &words[4..8], &words[8..12]].map(vertex);
+    Piece { parent: words[12], corners, outline: words[15] }
 }
 
 fn vertex(words: &[u32]) -> SnappedVertex {

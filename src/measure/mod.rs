@@ -38,6 +38,8 @@ pub struct Accuracy {
     pub attribute_outside_bound: u64,
     /// Largest distance between a snapped vertex and the oracle's, in units of 1/256 px, among well-conditioned vertices.
     pub max_snap_delta: u32,
+    /// Decisions of sample effects beyond their bound, or that do not follow from their first word.
+    pub decisions_wrong: u64,
     /// Counters of rejected and degenerate triangles that are not the oracle's.
     pub counters_wrong: u64,
     /// Largest difference of a colour channel, of 255.
@@ -129,6 +131,7 @@ impl Accuracy {
             (self.snap_outside_bound, 0, "vertices snapped outside their bound"),
             (self.attribute_outside_bound, 0, "vertices have a depth or 1/w outside its bound"),
             (self.unexplained, 0, "pixels differ from the oracle's own picture without a reason"),
+            (self.decisions_wrong, 0, "decisions of sample effects are wrong"),
             (self.counters_wrong, 0, "counters of rejected or degenerate triangles are wrong"),
             (self.explained_by_snap, budget.max_explained, "pixels differ because vertices snapped apart"),
             (self.band_pixels, budget.max_band_pixels, "pixels lie in the depth band"),

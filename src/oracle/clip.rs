@@ -34,11 +34,18 @@ pub(super) fn pieces(scene: &Scene, draw: &Draw, view: &View, vertices: &[Snappe
         }
         let corner = |i: usize| {
             let clip = clip_position(scene, draw, indices[i]).expect("a cut triangle has no rejected corner");
-            Corner { clip, on: 0, record: Some(records[i]) }
+            Corner { clip, on: 0, record: Some(records[i]), leads_along_edge: true }
         };
-        let polygon: Vec<SnappedVertex> = clipped([0, 1, 2].map(corner), view).iter().map(|corner| corner.snapped(view)).collect();
-        let fan = polygon.windows(2).skip(1);
-        fan.map(|pair| Piece { parent: draw.first_triangle + t, corners: [polygon[0], pair[0], pair[1]] }).collect()
+        let polygon: Vec<(SnappedVertex, bool)> =
+            clipped([0, 1, 2].map(corner), view).iter().map(|corner| (corner.snapped(view), corner.leads_along_edge)).collect();
+        let piece = |i: usize| {
+            let [(a, a_leads), (b, b_leads), (c, c_leads)] = [polygon[0], polygon[i], polygon[i + 1]];
+            // Inside the polygon run the diagonals of the fan.
+            let outline = [b_leads, i + 2 == polygon.len() && c_leads, i == 1 && a_leads];
+            let outline = (0..3).fold(0, |bits, k| bits | u32::from(outline[k]) << k);
+            Piece { parent: draw.first_triangle + t, corners: [a, b, c], outline }
+        };
+        (1..polygon.len().saturating_sub(1)).map(piece).collect()
     };
     (0..primitive.triangle_count()).into_par_iter().flat_map_iter(cut).collect()
 }
@@ -50,6 +57,8 @@ struct Corner {
     on: u32,
     /// The vertex itself; none for a corner that clipping made.
     record: Option<SnappedVertex>,
+    /// The polygon's edge that begins here lies on an edge of the triangle, not on a plane.
+    leads_along_edge: bool,
 }
 
 fn clipped(triangle: [Corner; 3], view: &View) -> Vec<Corner> {
@@ -63,7 +72,8 @@ fn clipped(triangle: [Corner; 3], view: &View) -> Vec<Corner> {
             }
             match (a_inside, b_inside) {
                 (true, false) => kept.push(a.cut(b, plane, view)),
-                (false, true) => kept.push(b.cut(a, plane, view)),
+                // Coming back inside, the outline goes on along the same edge.
+                (false, true) => kept.push(Corner { leads_along_edge: a.leads_along_edge, ..b.cut(a, plane, view) }),
                 _ => {}
             }
         }
@@ -91,7 +101,7 @@ impl Corner {
         if on & vertex_flags::NEAR != 0 {
             clip.z = clip.w;
         }
-        Self { clip, on, record: None }
+        Self { clip, on, record: None, leads_along_edge: false }
     }
 
     /// The record of this corner of a clipped polygon, inside the guard band and ready to be drawn.

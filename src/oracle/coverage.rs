@@ -5,7 +5,7 @@
 
 use rayon::prelude::*;
 
-use super::clip::is_cut;
+use super::{clip::is_cut, rules::Rules};
 use crate::{
     frame::{Counters, Geometry, NO_OWNER, Piece, SnappedVertex, vertex_flags},
     math::SMALL_EXTENT,
@@ -18,6 +18,17 @@ pub struct OrientedTriangle {
     /// Global triangle id; a piece has its parent's.
     pub id: u32,
     pub corners: [SnappedVertex; 3],
+    /// Place among all triangles and, behind them, pieces.
+    pub entry: usize,
+    /// The last two corners were exchanged to wind it clockwise.
+    pub is_turned: bool,
+}
+
+impl OrientedTriangle {
+    /// A whole triangle whose corners run clockwise as they are.
+    pub fn clockwise(id: u32, corners: [SnappedVertex; 3]) -> Self {
+        Self { id, corners, entry: id as usize, is_turned: false }
+    }
 }
 
 /// What lies on the sample of one pixel.
@@ -130,15 +141,16 @@ pub(super) fn corner_records(scene: &Scene, draw: &Draw, geometry: &Geometry, id
 /// the sum of its parent's pieces is a fold.
 pub fn triangles(scene: &Scene, draws: &[Draw], geometry: &Geometry) -> (Vec<OrientedTriangle>, Counters) {
     const CHUNK: u32 = 1 << 16;
-    let mut pieces: Vec<&Piece> = geometry.pieces.iter().collect();
-    pieces.sort_by_key(|piece| piece.parent);
+    let mut pieces: Vec<(usize, &Piece)> = geometry.pieces.iter().enumerate().collect();
+    pieces.sort_by_key(|(_, piece)| piece.parent);
+    let whole = scene.triangle_count() as usize;
     let mut drawn = Vec::new();
     let mut counters = Counters::default();
     for draw in draws {
         let ids = draw.first_triangle..draw.first_triangle + scene.primitives[draw.primitive].triangle_count();
         let starts: Vec<u32> = ids.clone().step_by(CHUNK as usize).collect();
         let chunk = |start: u32| {
-            let mut assembly = Assembly { scene, draw, geometry, pieces: &pieces, drawn: Vec::new(), counters: Counters::default() };
+            let mut assembly = Assembly { scene, draw, geometry, pieces: &pieces, whole, drawn: Vec::new(), counters: Counters::default() };
             (start..ids.end.min(start.saturating_add(CHUNK))).for_each(|id| assembly.triangle(id));
             (assembly.drawn, assembly.counters)
         };
@@ -159,8 +171,10 @@ struct Assembly<'a> {
     scene: &'a Scene,
     draw: &'a Draw,
     geometry: &'a Geometry,
-    /// Sorted by parent.
-    pieces: &'a [&'a Piece],
+    /// Sorted by parent, each with its place in the geometry.
+    pieces: &'a [(usize, &'a Piece)],
+    /// Triangles of the scene, before the pieces among the entries.
+    whole: usize,
     drawn: Vec<OrientedTriangle>,
     counters: Counters,
 }
@@ -180,27 +194,27 @@ impl Assembly<'_> {
         } else if any == 0 {
             match doubled_area(&corners) {
                 0 => self.counters.degenerate += 1,
-                area => self.oriented(id, corners, area),
+                area => self.oriented(id, id as usize, corners, area),
             }
         }
     }
 
     fn fan(&mut self, parent: u32) {
-        let from = self.pieces.partition_point(|piece| piece.parent < parent);
-        let fan = self.pieces[from..].iter().take_while(|piece| piece.parent == parent);
-        let areas: Vec<_> = fan.map(|piece| (piece.corners, doubled_area(&piece.corners))).collect();
-        let facing = areas.iter().map(|(_, area)| area).sum::<i64>().signum();
-        for (corners, area) in areas {
+        let from = self.pieces.partition_point(|(_, piece)| piece.parent < parent);
+        let fan = self.pieces[from..].iter().take_while(|(_, piece)| piece.parent == parent);
+        let areas: Vec<_> = fan.map(|(place, piece)| (self.whole + place, piece.corners, doubled_area(&piece.corners))).collect();
+        let facing = areas.iter().map(|(_, _, area)| area).sum::<i64>().signum();
+        for (entry, corners, area) in areas {
             if area == 0 || area.signum() != facing {
                 self.counters.fan_folds += 1;
             } else {
-                self.oriented(parent, corners, area);
+                self.oriented(parent, entry, corners, area);
             }
         }
     }
 
     /// Keeps a triangle unless it shows the back of a single-sided material, turned clockwise.
-    fn oriented(&mut self, id: u32, mut corners: [SnappedVertex; 3], area: i64) {
+    fn oriented(&mut self, id: u32, entry: usize, mut corners: [SnappedVertex; 3], area: i64) {
         let material = &self.scene.materials[self.scene.primitives[self.draw.primitive].material];
         if is_back(area, self.draw) && !material.double_sided {
             return;
@@ -208,7 +222,7 @@ impl Assembly<'_> {
         if area < 0 {
             corners.swap(1, 2);
         }
-        self.drawn.push(OrientedTriangle { id, corners });
+        self.drawn.push(OrientedTriangle { id, corners, entry, is_turned: area < 0 });
     }
 }
 
@@ -219,6 +233,11 @@ pub(super) fn is_back(area: i64, draw: &Draw) -> bool {
 
 /// Finds what lies on every sample of `view`; `claims`, if given, names an owner per pixel to be examined.
 pub fn cover(triangles: &[OrientedTriangle], view: &View, claims: Option<&[u32]>) -> Coverage {
+    cover_by(&Rules::default(), triangles, view, claims)
+}
+
+/// The same, where `rules` may leave samples out.
+pub fn cover_by(rules: &Rules, triangles: &[OrientedTriangle], view: &View, claims: Option<&[u32]>) -> Coverage {
     const ROWS: usize = 8;
     let (width, height) = (view.width as usize, view.height as usize);
     let mut samples = vec![Sample::EMPTY; width * height];
@@ -238,7 +257,7 @@ pub fn cover(triangles: &[OrientedTriangle], view: &View, claims: Option<&[u32]>
             let (columns, rows) = triangle.bounds(view);
             for y in rows.start.max(first_row)..rows.end.min(first_row + ROWS) {
                 for x in columns.clone() {
-                    let Some((depth, interval)) = triangle.at(x, y) else { continue };
+                    let Some((depth, interval)) = triangle.at(x, y, rules) else { continue };
                     let claim = claims.map_or(NO_OWNER, |claims| claims[y * width + x]);
                     samples[(y - first_row) * width + x].add(triangle.id, depth, interval, claim);
                 }
@@ -250,7 +269,7 @@ pub fn cover(triangles: &[OrientedTriangle], view: &View, claims: Option<&[u32]>
 
 impl OrientedTriangle {
     /// Columns and rows of the pixels whose samples may be covered, within the view.
-    fn bounds(&self, view: &View) -> (std::ops::Range<usize>, std::ops::Range<usize>) {
+    pub(super) fn bounds(&self, view: &View) -> (std::ops::Range<usize>, std::ops::Range<usize>) {
         // Pixel k has its sample at 256 k + 128.
         let range = |at: [i32; 3], pixels: u32| {
             let [low, high] = [at[0].min(at[1]).min(at[2]), at[0].max(at[1]).max(at[2])].map(i64::from);
@@ -261,14 +280,14 @@ impl OrientedTriangle {
         (range(self.corners.map(|c| c.x), view.width), range(self.corners.map(|c| c.y), view.height))
     }
 
-    /// Depth of this triangle at the centre of a pixel, with the interval of float keys; none when it is not covered.
-    fn at(&self, x: usize, y: usize) -> Option<(f64, [f64; 2])> {
+    /// Depth of this triangle at the centre of a pixel, with the interval of float keys; none when nothing is drawn there.
+    pub(super) fn at(&self, x: usize, y: usize, rules: &Rules) -> Option<(f64, [f64; 2])> {
         let [a, b, c] = &self.corners;
         let (px, py) = (256 * x as i64 + 128, 256 * y as i64 + 128);
         let opposite = [(b, c), (c, a), (a, b)];
         let weights = opposite.map(|(from, to)| edge(from, to, px, py));
         let inside = |i: usize| owns(weights[i], opposite[i].1.x - opposite[i].0.x, opposite[i].1.y - opposite[i].0.y);
-        (inside(0) && inside(1) && inside(2)).then(|| self.depth(weights))
+        (inside(0) && inside(1) && inside(2) && rules.is_drawn(self, x as u32, y as u32, weights)).then(|| self.depth(weights))
     }
 
     /// Depth is linear on screen: corner depths weighted by the doubled areas of the opposite parts, clamped to them.

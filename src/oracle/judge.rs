@@ -7,9 +7,11 @@
 use rayon::prelude::*;
 
 use super::{
-    coverage::{Coverage, Sample, corner_records, cover, draw_of, triangles},
+    coverage::{Coverage, Sample, corner_records, cover_by, draw_of, triangles},
+    decide::{decide, wrong},
     empty, frame,
     project::{clip_position, half_size, object_position, project},
+    rules::Rules,
     surface::shade,
 };
 use crate::{
@@ -51,9 +53,10 @@ pub fn judge(
     assert_eq!(geometry.vertices.len() as u64, scene.vertex_count(), "the geometry is of another scene");
 
     let (given, counters) = triangles(scene, &draws, geometry);
-    let coverage = cover(&given, view, Some(&adapter.owner));
+    let coverage = cover_by(&Rules::of(stack, geometry), &given, view, Some(&adapter.owner));
     let colors = shade(scene, &draws, view, stack, &adapter.owner, geometry);
-    let own = project(scene, &draws, view);
+    let mut own = project(scene, &draws, view);
+    own.decisions = decide(scene, &draws, view, stack, &own);
     let vertices = vertex_faults(scene, &draws, view, geometry, &own);
 
     let mut accuracy = Accuracy { pixels: view.pixels() as u64, ..Default::default() };
@@ -61,7 +64,8 @@ pub fn judge(
     judge_colors(&mut accuracy, &colors, adapter);
     judge_counters(&mut accuracy, &counters, adapter);
     judge_vertices(&mut accuracy, &vertices);
-    Whole { scene, draws: &draws, view, own: &own, vertices: &vertices }.judge(&mut accuracy, &coverage, adapter);
+    accuracy.decisions_wrong = wrong(scene, &draws, view, stack, geometry);
+    Whole { scene, draws: &draws, view, stack, own: &own, adapter: geometry, vertices: &vertices }.judge(&mut accuracy, &coverage, adapter);
 
     let owners = coverage.owners();
     let colors = if owners == adapter.owner { colors } else { shade(scene, &draws, view, stack, &owners, geometry) };
@@ -193,14 +197,16 @@ struct Whole<'a> {
     scene: &'a Scene,
     draws: &'a [Draw],
     view: &'a View,
+    stack: &'a Stack,
     own: &'a Geometry,
+    adapter: &'a Geometry,
     vertices: &'a [VertexFault],
 }
 
 impl Whole<'_> {
     fn judge(&self, accuracy: &mut Accuracy, coverage: &Coverage, adapter: &Frame) {
         let (triangles, _) = triangles(self.scene, self.draws, self.own);
-        let own = cover(&triangles, self.view, Some(&adapter.owner));
+        let own = cover_by(&Rules::of(self.stack, self.own), &triangles, self.view, Some(&adapter.owner));
         for (pixel, (truth, sample)) in own.samples.iter().zip(&coverage.samples).enumerate() {
             let owner = adapter.owner[pixel];
             // An owner that is wrong even for the adapter's own geometry has been counted as such.
@@ -223,8 +229,21 @@ impl Whole<'_> {
         if outlines.iter().any(|outline| outline.may_pass(&at)) {
             return true;
         }
+        // Sample effects measure inside of triangles: there a moved corner or another decision may tell otherwise.
+        let tells = |owner: u32| self.outline(owner).is_some_and(|outline| outline.reach > 0.0) || self.decides_otherwise(owner);
+        if self.stack.each(|hooks| hooks.sample).next().is_some() && [a, b].into_iter().any(tells) {
+            return true;
+        }
         let depths: Option<Vec<[f64; 2]>> = outlines.iter().map(|outline| outline.depths(&at)).collect();
         matches!(depths.as_deref(), Some([a, b]) if a[0] <= b[1] && b[0] <= a[1])
+    }
+
+    /// Did sample effects settle something else about this triangle than the oracle does?
+    fn decides_otherwise(&self, owner: u32) -> bool {
+        let deciding = self.stack.each(|hooks| hooks.sample.filter(|hook| hook.decides)).count();
+        let of =
+            |geometry: &Geometry| geometry.decisions.get(owner as usize * deciding..(owner as usize + 1) * deciding).map(<[_]>::to_vec);
+        of(self.adapter) != of(self.own)
     }
 
     /// Where an owner is drawn and how far that may move: as far as its corners did, or a pixel where it is cut.

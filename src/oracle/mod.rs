@@ -5,18 +5,22 @@
 //! renderers it judges, and no line of their code: neither shader text nor planner, no SIMD maths where something is
 //! decided, no platform maths function. Work is parallel by rows and triangles; no result depends on the order of threads.
 //!
-//! [`project`] snaps vertices and clips triangles, [`triangles`] assembles and turns them, [`cover`] finds who owns each
-//! sample, [`shade`] colours it, and [`judge`] holds a frame that an adapter drew against all of that.
+//! [`project`] snaps vertices and clips triangles, [`triangles`] assembles and turns them, [`decide`] settles what sample
+//! effects hold against, [`cover_by`] finds who owns each sample, [`shade`] colours it, and [`judge`] holds a frame that an adapter drew against all of that.
 
 mod clip;
 mod coverage;
+mod decide;
 mod judge;
 mod project;
+mod rules;
 mod surface;
 
-pub use coverage::{Coverage, OrientedTriangle, Sample, cover, depth_bound, owns, triangles};
+pub use coverage::{Coverage, OrientedTriangle, Sample, cover, cover_by, depth_bound, owns, triangles};
+pub use decide::decide;
 pub use judge::judge;
 pub use project::project;
+pub use rules::Rules;
 pub use surface::shade;
 
 use crate::{
@@ -38,9 +42,10 @@ pub fn render(scene: &Scene, view: &View, stack: &Stack) -> Result<Frame, DrawEr
     if view.pixels() == 0 {
         return Ok(empty(view));
     }
-    let geometry = project(scene, &draws, view);
+    let mut geometry = project(scene, &draws, view);
+    geometry.decisions = decide(scene, &draws, view, stack, &geometry);
     let (triangles, counters) = triangles(scene, &draws, &geometry);
-    let coverage = cover(&triangles, view, None);
+    let coverage = cover_by(&Rules::of(stack, &geometry), &triangles, view, None);
     let owner = coverage.owners();
     let color = shade(scene, &draws, view, stack, &owner, &geometry);
     Ok(frame(view, &coverage, color, counters))

@@ -33,7 +33,7 @@ pub fn project(scene: &Scene, draws: &[Draw], view: &View) -> Geometry {
         })
         .collect();
     let pieces = draws.iter().flat_map(|draw| clip::pieces(scene, draw, view, &vertices)).collect();
-    Geometry { vertices, pieces }
+    Geometry { vertices, pieces, decisions: Vec::new() }
 }
 
 /// Value of an f32 by its bits: subnormals are 0; NaN, infinities and magnitudes of 2^40 or more are refused with the

@@ -144,6 +144,13 @@ impl Triangle {
     }
 }
 
+/// Where the middle of a whole triangle stands in the picture, from 0 to 1; the middle of the picture where it lies behind the eye.
+pub(super) fn center_screen(scene: &Scene, draw: &Draw, view: &View, records: &[SnappedVertex; 3], corners: [u32; 3]) -> DVec2 {
+    let is_cut = records.iter().any(|record| record.flags & vertex_flags::CLIPPED != 0);
+    let screen = if is_cut { Screen::cut(scene, draw, view, corners) } else { Screen::snapped(records, draw, view) };
+    screen.center.unwrap_or(DVec2::splat(0.5))
+}
+
 /// What a triangle's place on the screen determines.
 struct Screen {
     weights: Weights,

@@ -35,6 +35,8 @@ pub enum Fetch {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Pass {
     Project,
+    /// What sample effects settle about triangles, or about pieces.
+    Decide(Entries),
     RasterSmall(Phase),
     Args,
     Clip,
@@ -43,6 +45,13 @@ pub enum Pass {
     RasterLarge(Phase),
     ListTiles,
     Resolve,
+}
+
+/// Over what a pass runs.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Entries {
+    Triangles,
+    Pieces,
 }
 
 /// What a raster pass writes.
@@ -63,6 +72,7 @@ impl Pass {
     pub const fn stem(self) -> &'static str {
         match self {
             Self::Project => "project",
+            Self::Decide(_) => "decide",
             Self::RasterSmall(_) => "raster_small",
             Self::Args => "args",
             Self::Clip => "clip",
@@ -91,6 +101,9 @@ impl Pass {
 
     /// Label for profilers and tables.
     pub fn label(self) -> String {
+        if self == Self::Decide(Entries::Pieces) {
+            return "decide pieces".into();
+        }
         match self.phase() {
             Some(Phase::Depth) => format!("{} depth", self.stem()),
             Some(Phase::Owner) => format!("{} owner", self.stem()),
@@ -107,6 +120,10 @@ pub struct KernelKey {
     pub visibility: Visibility,
     /// Effects in stack order.
     pub effects: Vec<&'static Effect>,
+    /// A sample effect may leave samples out.
+    pub has_samples: bool,
+    /// Sample effects that settle something per triangle.
+    pub decisions: u32,
     /// Some triangle may need clipping.
     pub has_clipping: bool,
     /// Some triangle may be wider than one invocation's share.
@@ -135,12 +152,19 @@ pub struct KernelKey {
     pub early_load: bool,
 }
 
+/// Effects that settle something per triangle.
+pub fn deciding(effects: &[&'static Effect]) -> u32 {
+    effects.iter().filter(|effect| effect.hooks.sample.is_some_and(|hook| hook.decides)).count() as u32
+}
+
 impl KernelKey {
     /// A key that leaves nothing out, for a stack on a portable adapter: where every path of the text is wanted.
     pub fn whole(fetch: Fetch, visibility: Visibility, effects: Vec<&'static Effect>) -> Self {
         Self {
             fetch,
             visibility,
+            has_samples: effects.iter().any(|effect| effect.hooks.sample.is_some()),
+            decisions: deciding(&effects),
             effects,
             has_clipping: true,
             has_medium: true,
@@ -192,6 +216,9 @@ impl KernelKey {
     /// Passes up to the last of the given raster phases.
     pub fn passes(&self, phases: &[Phase]) -> Vec<Pass> {
         let mut passes = vec![Pass::Project];
+        if self.decisions > 0 {
+            passes.push(Pass::Decide(Entries::Triangles));
+        }
         for (i, &phase) in phases.iter().enumerate() {
             passes.push(Pass::RasterSmall(phase));
             if i == 0 && self.has_clipping {
@@ -199,6 +226,9 @@ impl KernelKey {
             }
             if i == 0 && self.has_queues() {
                 passes.push(Pass::Args);
+            }
+            if i == 0 && self.has_clipping && self.decisions > 0 {
+                passes.push(Pass::Decide(Entries::Pieces));
             }
             if i == 0 && self.has_large {
                 passes.extend([Pass::TileLarge, Pass::Args]);
@@ -226,6 +256,8 @@ impl KernelKey {
         let pieces = if self.has_clipping { "kept" } else { "none" };
         let mut slots = vec![
             ("pieces", format!("slots/pieces/{pieces}")),
+            ("records", format!("slots/records/{}", if matches!(pass, Pass::Decide(_)) { "write" } else { "read" })),
+            ("samples", format!("slots/samples/{}", if self.has_samples { "hooked" } else { "all" })),
             ("draws", format!("slots/draws/{}", if self.single_draw { "one" } else { "many" })),
             ("fetch", format!("slots/fetch/{fetch}")),
             ("queues", format!("slots/queues/{queues}")),
@@ -260,6 +292,8 @@ impl KernelKey {
             ("HAS_LARGE", flag(self.has_large)),
             ("HAS_CLIPPING", flag(self.has_clipping)),
             ("IS_STRAIGHT", flag(self.listed_tiles)),
+            ("IS_PIECES", flag(pass == Pass::Decide(Entries::Pieces))),
+            ("DECISIONS", self.decisions.into()),
             ("LIST_GROUP", self.list_group.into()),
             ("TILE_SIDE", self.tile_side().into()),
             ("SMALL_SAMPLES", self.small_samples.into()),

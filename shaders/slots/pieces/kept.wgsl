@@ -5,7 +5,7 @@ struct Piece {
     a: vec4u,
     b: vec4u,
     c: vec4u,
-    parent: vec4u, // id of the clipped triangle, its draw, 0, 0
+    parent: vec4u, // id of the clipped triangle, its draw, place in the fan, outline as in `Triangle`
 }
 
 const PIECES_ENTRY = 0x80000000u;
@@ -16,7 +16,8 @@ const PIECES_ENTRY = 0x80000000u;
 fn pieces_load(entry: u32) -> Triangle {
     if (entry & PIECES_ENTRY) != 0u {
         let piece = pieces[entry & ~PIECES_ENTRY];
-        return Triangle(piece.a, piece.b, piece.c, piece.parent.x, piece.parent.y);
+        let slot = entry & ~PIECES_ENTRY;
+        return Triangle(piece.a, piece.b, piece.c, piece.parent.x, piece.parent.y, frame.triangle_count + slot, piece.parent.w);
     }
     return triangle_load(entry);
 }

@@ -2,6 +2,7 @@
 
 use glam::{DVec2, DVec3};
 
+use super::Facts;
 use crate::{choice, math::hash_unit};
 
 choice! {
@@ -48,6 +49,27 @@ impl Front {
             }
             Pattern::Radial => ((self.radius_m - (center - self.center).length()) / self.width_m + 0.5).clamp(0.0, 1.0),
             Pattern::Random => passed(hash_unit(triangle ^ self.seed.wrapping_mul(0x9e37_79b9))),
+        }
+    }
+
+    /// Bound of the error of [`Front::reached`] in f32, whatever rounding, order and fusion WGSL allows.
+    pub fn slack(&self, facts: &Facts) -> f64 {
+        let ulp = f64::from(f32::EPSILON);
+        let passing = |place_slack: f64| (place_slack + 8.0 * ulp * (1.0 + self.width)) / self.width;
+        match self.pattern {
+            Pattern::Uniform => 0.0,
+            // Shares of the picture: a few operations on numbers up to the largest corner's place.
+            Pattern::Sweep => {
+                let reach = facts.corners.as_flattened().iter().map(|at| f64::from(*at).abs()).fold(0.0, f64::max);
+                let shortest = f64::from(facts.size[0].min(facts.size[1]).max(1));
+                passing(24.0 * ulp * (1.0 + reach / (256.0 * shortest)))
+            }
+            Pattern::Radial => {
+                let away = (facts.center - self.center).length();
+                let distance = 2.0 * facts.center_slack_m + 8.0 * ulp * (away + self.center.abs().max_element());
+                (distance + 4.0 * ulp * self.radius_m) / self.width_m + 4.0 * ulp
+            }
+            Pattern::Random => passing(0.0),
         }
     }
 }

@@ -20,6 +20,8 @@ pub struct Facts {
     pub size: [u32; 2],
     /// Mean of the whole triangle's corners, world space.
     pub center: DVec3,
+    /// Bound of its error in f32 along any axis, metres.
+    pub center_slack_m: f64,
     /// Where that mean stands in the picture, 0 to 1; the middle where it lies behind the eye.
     pub center_screen: DVec2,
 }
@@ -29,6 +31,30 @@ impl Facts {
     pub fn doubled_area(&self) -> u64 {
         let [[ax, ay], [bx, by], [cx, cy]] = self.corners.map(|corner| corner.map(i64::from));
         ((bx - ax) * (cy - ay) - (by - ay) * (cx - ax)).unsigned_abs()
+    }
+
+    /// Samples that the triangle owns in the picture, row by row, each afresh.
+    pub fn samples(&self) -> impl Iterator<Item = [u32; 2]> {
+        let axis = |k: usize| self.corners.map(|corner| i64::from(corner[k]));
+        let range = |k: usize| {
+            let [low, high] = [axis(k).into_iter().min(), axis(k).into_iter().max()].map(|end| end.expect("three corners"));
+            (low - 128).div_euclid(256).max(0)..((high - 128).div_euclid(256) + 1).min(self.size[k].into())
+        };
+        let columns = range(0);
+        range(1).flat_map(move |y| columns.clone().map(move |x| [x, y])).filter(|&[x, y]| self.owns(x, y)).map(|at| at.map(|k| k as u32))
+    }
+
+    /// Top-left rule at the sample of a pixel: each edge function with the sample moved a hair right and less down.
+    fn owns(&self, x: i64, y: i64) -> bool {
+        let [a, b, c] = self.corners.map(|corner| corner.map(i128::from));
+        let (px, py) = (i128::from(256 * x + 128), i128::from(256 * y + 128));
+        let nudged = |[ax, ay]: [i128; 2], [bx, by]: [i128; 2]| {
+            let (dx, dy) = (bx - ax, by - ay);
+            ((dx * (py - ay) - dy * (px - ax)) << 60) - (dy << 30) + dx
+        };
+        let signs = [nudged(b, c), nudged(c, a), nudged(a, b)].map(i128::signum);
+        // Clockwise all are positive, counterclockwise all negative: a tie is broken alike for both sides of an edge.
+        signs == [1; 3] || signs == [-1; 3]
     }
 
     /// Bits that every doubled area of this triangle is shifted by, so that it fits 31 bits.
@@ -70,7 +96,7 @@ pub struct SampleHook {
     /// It settles something per triangle.
     pub decides: bool,
     /// Bound of the error of an f32 twin in the first word of a decision.
-    pub decide_slack: u32,
+    pub slack: fn(&Facts, &[u32]) -> f64,
     pub decide: fn(&Facts, &[u32], Option<u32>) -> [u32; 4],
     pub is_drawn: fn(&Sample, &[u32]) -> bool,
 }
@@ -79,8 +105,11 @@ pub struct SampleHook {
 pub trait SampleEffect: Params {
     /// Samples read `decided`.
     const DECIDES: bool;
+
     /// Bound of the error of an f32 twin in the first word of a decision; the other words are exact, given the first.
-    const DECIDE_SLACK: u32 = 0;
+    fn slack(_: &Facts, _: &Self) -> f64 {
+        0.0
+    }
 
     /// Settles what the samples of a triangle are held against. Only the first word may come from floats; where `first`
     /// is given it is that word, and the others follow from it.

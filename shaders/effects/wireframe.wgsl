@@ -1,0 +1,43 @@
+// Wireframe: draws the edges of triangles at a constant width in pixels.
+//@ use common/surface
+//@ use common/sample
+//@ use common/fixed
+
+struct Wireframe {
+    ink: vec4f,
+    paper: vec4f,
+    width_px: f32,
+    hidden: u32,
+}
+
+// How near the edge opposite each corner a sample must be, less one; 0 never. Of an edge's width each triangle draws half.
+fn wireframe_decide(t: Facts, p: Wireframe) -> vec4u {
+    let half_width = u32(round(p.width_px * 128.0));
+    let shift = fixed_shift(fixed_abs(fixed_edge(t.a, t.b, t.c)));
+    return vec4u(
+        select(0u, wireframe_reach(t.c - t.b, half_width, shift), (t.outline & 1u) != 0u),
+        select(0u, wireframe_reach(t.a - t.c, half_width, shift), (t.outline & 2u) != 0u),
+        select(0u, wireframe_reach(t.b - t.a, half_width, shift), (t.outline & 4u) != 0u), 0u);
+}
+
+fn wireframe_reach(edge: vec2i, half_width: u32, shift: u32) -> u32 {
+    let squared = fixed_add(fixed_mul(edge.x, edge.x), fixed_mul(edge.y, edge.y));
+    let reach = fixed_umul(fixed_root(squared), half_width);
+    // A reach beyond 31 bits is beyond every part.
+    return select(fixed_down(reach, shift), 0x7fffffffu, fixed_shift(reach) > shift) + 1u;
+}
+
+fn wireframe_sample(s: Sample, p: Wireframe) -> bool {
+    return p.hidden == WIREFRAME_HIDDEN_REMOVED || any(s.parts < s.decided.xyz);
+}
+
+fn wireframe_surface(surface: Surface, p: Wireframe) -> Surface {
+    var s = surface;
+    let distance = min(min(s.edge_px.x, s.edge_px.y), s.edge_px.z);
+    // Where the faces are drawn too, the line ends softly, over one pixel.
+    var line = 1.0;
+    if p.hidden == WIREFRAME_HIDDEN_REMOVED { line = clamp(0.5 * p.width_px + 0.5 - distance, 0.0, 1.0); }
+    let face = mix(s.color.rgb, p.paper.rgb, p.paper.a);
+    s.color = vec4f(mix(face, mix(s.color.rgb, p.ink.rgb, p.ink.a), line), s.color.a);
+    return s;
+}

@@ -1,0 +1,37 @@
+// Decide: settles, once per triangle or piece, the integers that sample effects hold their samples against. What comes
+// from floats is rounded here and nowhere else, so that no two passes can differ about it.
+//@ use common/center
+//@ use common/counters
+//@ use common/sample
+//@ use slot/pieces
+//@ use glue/decide
+
+// The pieces that clipping left, instead of the triangles.
+override IS_PIECES: bool = false;
+override DECISIONS: u32 = 1u;
+
+fn decisions_store(entry: u32, place: u32, words: vec4u) {
+    vertices[frame.vertex_count + entry * DECISIONS + place] = words;
+}
+
+@compute @workgroup_size(LIST_GROUP)
+fn decide(@builtin(workgroup_id) group: vec3u, @builtin(num_workgroups) groups: vec3u, @builtin(local_invocation_index) lane: u32) {
+    let index = frame_invocation(group, groups, lane, LIST_GROUP);
+    var count = frame.triangle_count;
+    if IS_PIECES { count = min(atomicLoad(&counters.pieces), frame.piece_capacity); }
+    if index >= count { return; }
+    let t = pieces_load(index | select(0u, 0x80000000u, IS_PIECES));
+    let at = triangle_vertices(t.draw, t.id - draws[t.draw].first_triangle);
+    var center_screen: vec2f;
+    if IS_PIECES {
+        let a = transform_vertex(t.draw, at.x);
+        let b = transform_vertex(t.draw, at.y);
+        let c = transform_vertex(t.draw, at.z);
+        center_screen = center_clipped(a, b, c, vec2f(0.5));
+    } else {
+        if ((t.a.x | t.b.x | t.c.x) & 255u) != 0u { return; }
+        center_screen = center_whole(t);
+    }
+    let center = center_world(t.draw, at);
+    glue_decide(Facts(t.id, vertex_at(t.a), vertex_at(t.b), vertex_at(t.c), t.outline, frame.size, center, center_screen), t.entry);
+}

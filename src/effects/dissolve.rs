@@ -1,0 +1,170 @@
+//! Dissolve: fills every triangle to a share of its area, exactly that share, and lets a front of it travel over the model.
+//!
+//! Sweeps are of equal area: from an edge the filled part reaches 1 - √(1 - p) of the height, from a corner or the
+//! centroid √p of the way, so that p per cent mean p per cent. Integers decide, sample by sample.
+
+use glam::{DVec2, DVec3, DVec4};
+
+use super::{
+    Effect, Surface, SurfaceEffect,
+    hooks::{Facts, Front, Pattern, Sample, SampleEffect},
+};
+use crate::{
+    choice,
+    math::hash,
+    params,
+    params::{Color, Point},
+};
+
+choice! {
+    /// How a triangle fills.
+    pub enum Mode {
+        /// From the edge opposite the corner.
+        Edge = "edge",
+        /// From the corner.
+        Corner = "corner",
+        /// From the middle.
+        Centroid = "centroid",
+        /// Row by row, left to right.
+        Scanline = "scanline",
+        /// Pixel by pixel, at random.
+        Hash = "hash",
+    }
+}
+
+params! {
+    pub struct Dissolve {
+        /// Colour of the glowing rim, its strength in the last lane.
+        rim: Color = [1.0, 0.45, 0.1, 0.0];
+        /// Centre of the radial front, world space.
+        center: Point = [0.0, 0.0, 0.0, 0.0], soft -3.0..=3.0, unit "m", when ("pattern", &["radial"]);
+        /// Share of a triangle that stays: 0 nothing, 1 everything; behind the front where there is one.
+        fill: f32 = 0.5, hard 0.0..=1.0;
+        /// How a triangle fills.
+        mode: Mode = Mode::Corner as u32;
+        /// Which of the three corners the sweep is about.
+        corner: u32 = 0, hard 0.0..=2.0, when ("mode", &["edge", "corner"]);
+        /// Width of the glowing rim, as a share of the way.
+        rim_width: f32 = 0.25, hard 0.001..=10.0, soft 0.01..=1.0, log true;
+        /// How the dissolve is spread over the triangles.
+        pattern: Pattern = Pattern::Uniform as u32;
+        /// Progress of the front: 0 before the first triangle, 1 past the last.
+        front: f32 = 0.5, hard 0.0..=1.0, when ("pattern", &["sweep", "random"]);
+        /// Softness of the front, as a share of its way.
+        width: f32 = 0.25, hard 0.001..=100.0, soft 0.001..=2.0, log true, when ("pattern", &["sweep", "random"]);
+        /// Direction of the sweep in the picture: part to the right.
+        along_x: f32 = 1.0, hard -1.0..=1.0, when ("pattern", &["sweep"]);
+        /// Direction of the sweep in the picture: part downwards.
+        along_y: f32 = 0.0, hard -1.0..=1.0, when ("pattern", &["sweep"]);
+        /// Distance of the front from the centre.
+        radius_m: f32 = 1.0, hard 0.0..=1e6, soft 0.0..=5.0, unit "m", when ("pattern", &["radial"]);
+        /// Thickness of the front.
+        width_m: f32 = 0.5, hard 0.001..=1e6, soft 0.01..=5.0, unit "m", log true, when ("pattern", &["radial"]);
+        /// Seed of the random times and pixels.
+        seed: u32 = 0, soft 0.0..=999.0;
+    }
+}
+
+pub const EFFECT: Effect =
+    Effect::new::<Dissolve>("dissolve", "Dissolve", "fills every triangle to a share of its area").on_sample::<Dissolve>().on_surface::<Dissolve>();
+
+/// All of a triangle, in the units of a share.
+const ONE: u32 = 1 << 24;
+/// In the third word of a decision: the hash tells.
+const BY_HASH: u32 = 1;
+
+impl Dissolve {
+    fn fill_of(&self, center: DVec3, center_screen: DVec2, triangle: u32) -> f64 {
+        if Pattern::of(self.pattern) == Pattern::Uniform {
+            return self.fill.into();
+        }
+        1.0 - (1.0 - f64::from(self.fill)) * self.travelling().reached(center, center_screen, triangle)
+    }
+
+    fn travelling(&self) -> Front {
+        Front {
+            pattern: Pattern::of(self.pattern),
+            progress: self.front.into(),
+            width: self.width.into(),
+            along: DVec2::new(self.along_x.into(), self.along_y.into()),
+            center: DVec3::new(self.center[0].into(), self.center[1].into(), self.center[2].into()),
+            radius_m: self.radius_m.into(),
+            width_m: self.width_m.into(),
+            seed: self.seed,
+        }
+    }
+}
+
+/// round(√(share / 2^24) · 2^16); 65,537, which every way is short of, where the share is all.
+fn root(share: u32) -> u32 {
+    if share >= ONE {
+        return 65_537;
+    }
+    let n = share << 8;
+    let root = n.isqrt();
+    root + u32::from(n - root * root > root)
+}
+
+impl SampleEffect for Dissolve {
+    const DECIDES: bool = true;
+
+    fn slack(facts: &Facts, p: &Self) -> f64 {
+        if Pattern::of(p.pattern) == Pattern::Uniform { 0.0 } else { p.travelling().slack(facts) * f64::from(ONE) + 2.0 }
+    }
+
+    fn decide(facts: &Facts, p: &Self, first: Option<u32>) -> [u32; 4] {
+        let fill = p.fill_of(facts.center, facts.center_screen, facts.triangle).clamp(0.0, 1.0);
+        let share = first.unwrap_or((fill * f64::from(ONE)).round_ties_even() as u32);
+        let mode = Mode::of(p.mode);
+        let samples = if mode == Mode::Hash { 0 } else { facts.samples().take(if mode == Mode::Scanline { usize::MAX } else { 2 }).count() };
+        if samples < 2 {
+            return [share, 0, BY_HASH, 0];
+        }
+        let threshold = match mode {
+            Mode::Edge if share == ONE => 65_537,
+            Mode::Edge => 65_536 - root(ONE - share).min(65_536),
+            Mode::Corner | Mode::Centroid => root(share),
+            Mode::Scanline => {
+                let wanted = (u64::from(share) * samples as u64 + (1 << 23)) >> 24;
+                facts.samples().nth(wanted as usize).map_or(u32::MAX, |[x, y]| y << 16 | x)
+            }
+            Mode::Hash => unreachable!("it took the hash"),
+        };
+        [share, threshold, 0, 0]
+    }
+
+    fn is_drawn(s: &Sample, p: &Self) -> bool {
+        let pixel = s.y << 16 | s.x;
+        let [share, threshold, kind, _] = s.decided;
+        if kind == BY_HASH {
+            return hash(hash(s.triangle ^ p.seed) ^ pixel) >> 8 < share;
+        }
+        let (whole, part) = (s.whole(), s.parts[p.corner.min(2) as usize]);
+        let way = match Mode::of(p.mode) {
+            Mode::Edge => part,
+            Mode::Corner => whole.wrapping_sub(part),
+            Mode::Centroid => whole.wrapping_sub(s.parts.iter().min().expect("three parts") * 3),
+            Mode::Scanline | Mode::Hash => return pixel < threshold,
+        };
+        u64::from(way) << 16 < u64::from(threshold) * u64::from(whole)
+    }
+}
+
+impl SurfaceEffect for Dissolve {
+    /// A rim that glows where the triangle is about to go.
+    fn apply(mut s: Surface, p: &Self) -> Surface {
+        let fill = p.fill_of(s.center, s.center_screen, s.owner).clamp(0.0, 1.0);
+        let part = s.shares[p.corner.min(2) as usize];
+        let (way, end) = match Mode::of(p.mode) {
+            Mode::Edge => (part, 1.0 - (1.0 - fill).sqrt()),
+            Mode::Corner => (1.0 - part, fill.sqrt()),
+            Mode::Centroid => (1.0 - 3.0 * s.shares.min_element(), fill.sqrt()),
+            Mode::Scanline | Mode::Hash => (0.0, fill),
+        };
+        // The rim is born as the triangle starts to go, so a whole one has none.
+        let near = (1.0 - (end - way) / f64::from(p.rim_width)).clamp(0.0, 1.0) * (8.0 * (1.0 - fill)).min(1.0);
+        let [red, green, blue, strength] = p.rim.map(f64::from);
+        s.color += DVec4::new(red, green, blue, 0.0) * (strength * near * near);
+        s
+    }
+}

@@ -1,0 +1,109 @@
+//! Decisions: what sample effects settle once per triangle and per piece, and the judgement of an adapter's.
+
+use glam::DVec3;
+use rayon::prelude::*;
+
+use super::{
+    coverage::{corner_records, doubled_area, draw_of},
+    project::object_position,
+    surface::center_screen,
+};
+use crate::{
+    effects::{
+        Stack,
+        hooks::{Facts, SampleHook},
+    },
+    frame::{Geometry, SnappedVertex},
+    scene::{Scene, camera::View, draw::Draw},
+};
+
+/// Relative spacing of f32.
+const ULP: f64 = f32::EPSILON as f64;
+
+/// What every deciding effect of `stack` settles: for all triangles of `geometry`, then for all its pieces. Zeros where
+/// nothing is drawn: corners that are not ready, no area.
+pub fn decide(scene: &Scene, draws: &[Draw], view: &View, stack: &Stack, geometry: &Geometry) -> Vec<[u32; 4]> {
+    let effects = deciding(stack);
+    if effects.is_empty() {
+        return Vec::new();
+    }
+    let settle = |facts: Option<Facts>| {
+        let one = |(hook, words): &(SampleHook, &[u32])| facts.as_ref().map_or([0; 4], |facts| (hook.decide)(facts, words, None));
+        effects.iter().map(one).collect::<Vec<_>>()
+    };
+    entries(scene, draws, view, geometry).flat_map_iter(settle).collect()
+}
+
+/// Decisions that are not what the rules say: a first word beyond its bound, or another that does not follow from it.
+pub(super) fn wrong(scene: &Scene, draws: &[Draw], view: &View, stack: &Stack, geometry: &Geometry) -> u64 {
+    let effects = deciding(stack);
+    if effects.is_empty() {
+        return 0;
+    }
+    let whole = scene.triangle_count() as usize;
+    assert_eq!(geometry.decisions.len(), effects.len() * (whole + geometry.pieces.len()), "the decisions are of another scene");
+    let is_wrong = |facts: &Facts, (hook, words): &(SampleHook, &[u32]), given: [u32; 4]| {
+        let truth = (hook.decide)(facts, words, None);
+        let is_near = f64::from(truth[0].abs_diff(given[0])) <= (hook.slack)(facts, words);
+        !is_near || (hook.decide)(facts, words, Some(given[0])) != given
+    };
+    let faults = |(facts, given): (Option<Facts>, &[[u32; 4]])| {
+        let Some(facts) = facts else { return 0 };
+        effects.iter().zip(given).filter(|(effect, given)| is_wrong(&facts, effect, **given)).count() as u64
+    };
+    entries(scene, draws, view, geometry).zip(geometry.decisions.par_chunks(effects.len())).map(faults).sum()
+}
+
+fn deciding(stack: &Stack) -> Vec<(SampleHook, &[u32])> {
+    stack.each(|hooks| hooks.sample.filter(|hook| hook.decides)).collect()
+}
+
+/// Facts of all triangles, then of all pieces; none where nothing is drawn.
+fn entries<'a>(
+    scene: &'a Scene,
+    draws: &'a [Draw],
+    view: &'a View,
+    geometry: &'a Geometry,
+) -> impl IndexedParallelIterator<Item = Option<Facts>> + 'a {
+    let whole = move |id: u32| {
+        let draw = draw_of(scene, draws, id)?;
+        let records = corner_records(scene, draw, geometry, id);
+        let is_drawn = records.iter().all(|record| record.flags == 0) && doubled_area(&records) != 0;
+        is_drawn.then(|| facts(scene, draw, view, geometry, id, &records, 7)).flatten()
+    };
+    let pieces = move |piece: &crate::frame::Piece| {
+        let draw = draw_of(scene, draws, piece.parent)?;
+        let is_drawn = doubled_area(&piece.corners) != 0;
+        is_drawn.then(|| facts(scene, draw, view, geometry, piece.parent, &piece.corners, piece.outline)).flatten()
+    };
+    (0..scene.triangle_count() as u32).into_par_iter().map(whole).chain(geometry.pieces.par_iter().map(pieces))
+}
+
+fn facts(
+    scene: &Scene,
+    draw: &Draw,
+    view: &View,
+    geometry: &Geometry,
+    id: u32,
+    corners: &[SnappedVertex; 3],
+    outline: u32,
+) -> Option<Facts> {
+    let primitive = &scene.primitives[draw.primitive];
+    let vertices = primitive.corners(scene, id - draw.first_triangle);
+    let [Ok(a), Ok(b), Ok(c)] = vertices.map(|vertex| object_position(scene, primitive, vertex)) else { return None };
+    let object = [a, b, c].map(DVec3::from_array);
+    let world = object.map(|position| draw.world_from_object.transform_point3(position));
+    // Rounding errors are proportional to the sums of magnitudes, however much cancels.
+    let m = draw.world_from_object;
+    let reach = object.map(|p| m.x_axis.abs() * p.x.abs() + m.y_axis.abs() * p.y.abs() + m.z_axis.abs() * p.z.abs() + m.w_axis.abs());
+    let reach = reach.iter().fold(0.0, |most: f64, axis| most.max(axis.truncate().max_element()));
+    Some(Facts {
+        triangle: id,
+        corners: corners.map(|corner| [corner.x, corner.y]),
+        outline,
+        size: [view.width, view.height],
+        center: world.iter().sum::<DVec3>() / 3.0,
+        center_slack_m: 8.0 * ULP * reach,
+        center_screen: center_screen(scene, draw, view, &corner_records(scene, draw, geometry, id), vertices),
+    })
+}
