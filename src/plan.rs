@@ -5,7 +5,7 @@ use crate::{
     scene::needs::Needs,
     shader::{
         glue::reads,
-        key::{Fetch, KernelKey, Visibility, deciding},
+        key::{Fetch, KernelKey, Order, Visibility, deciding},
         library::Library,
     },
 };
@@ -140,6 +140,7 @@ pub fn plan(needs: &Needs, stack: &Stack, caps: &Caps, tuning: &Tuning, accuracy
     let key = KernelKey {
         fetch: if needs.indexed { Fetch::Indexed } else { Fetch::Direct },
         visibility,
+        order: Order::of(stack),
         has_samples: effects.iter().any(|effect| effect.hooks.sample.is_some()),
         decisions: deciding(&effects),
         effects,
@@ -200,6 +201,7 @@ fn explain(needs: &Needs, is_usual: bool, caps: &Caps, accuracy: &Accuracy, key:
         ("plane normals and centres", key.has_planes, "no effect reads them and no normal needs a substitute".into()),
         ("vertex colours", needs.colors, "no primitive has them".into()),
         ("decide", key.decisions > 0, "no effect settles anything per triangle".into()),
+        ("draw order", key.order != Order::Free, "every sample is drawn".into()),
         ("sample effects", key.has_samples, "no effect leaves samples out".into()),
         ("effects uniform", !key.effects.is_empty(), "the stack is empty".into()),
     ];

@@ -12,6 +12,8 @@ struct Counters {
     fan_folds: atomic<u32>,
     orphans: atomic<u32>,
     marked_tiles: atomic<u32>,
+    tickets: atomic<u32>,
+    tickets_again: atomic<u32>,
 }
 
 @group(0) @binding(7) var<storage, read_write> counters: Counters;

@@ -22,6 +22,7 @@ struct Frame {
     medium_first: u32,       // first word of each queue in `queues`; clip begins at 0
     large_first: u32,
     tile_first: u32,
+    first_rank: u32,         // record at which ranks of triangles begin, behind vertices and decisions
 }
 
 @group(0) @binding(0) var<uniform> frame: Frame;

@@ -5,6 +5,7 @@
 //@ use common/center
 //@ use common/fixed
 //@ use common/surface
+//@ use slot/ranks
 
 override F32_NORMALS: bool = false;
 override HAS_COLORS: bool = false;
@@ -144,6 +145,7 @@ fn shade_surface(id: u32, pixel: vec2u) -> Surface {
 
     var s: Surface;
     s.owner = id;
+    s.rank = ranks_of(id);
     s.center_screen = place.center_screen;
     s.screen = (vec2f(pixel) + 0.5) / vec2f(frame.size);
     s.shares = place.shares;

@@ -3,7 +3,7 @@
 //@ use slot/pieces
 //@ use slot/queues
 //@ use common/fixed
-//@ use slot/samples
+//@ use common/gate
 //@ use slot/visibility
 
 const LARGE_SATURATED = 1073741824; // 2^30
@@ -87,7 +87,7 @@ fn raster_large(@builtin(workgroup_id) group: vec3u, @builtin(num_workgroups) gr
             let step = dx * offset.y - dy * offset.x;
             let w = q + step;
             let is_inside = (w.x | w.y | w.z) >= 0 && all(at >= pixels.xy) && all(at <= pixels.zw);
-            if is_inside && samples_is_drawn(t, vec2u(at)) {
+            if is_inside && is_drawn(t, vec2u(at), u32(at.y) * frame.size.x + u32(at.x)) {
                 let value = weight(e0, step.x, bias.x) * depth.x + weight(e1, step.y, bias.y) * depth.y + weight(e2, step.z, bias.z) * depth.z;
                 let key = max(bitcast<u32>(clamp(value, range.x, range.y)), 1u);
                 visibility_write(u32(at.y) * frame.size.x + u32(at.x), key, t.id);

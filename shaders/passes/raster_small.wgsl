@@ -3,7 +3,7 @@
 //@ use common/triangle
 //@ use slot/queues
 //@ use slot/coverage
-//@ use slot/samples
+//@ use common/gate
 //@ use slot/visibility
 //@ use slot/marks
 
@@ -69,7 +69,7 @@ fn walk(coverage: Coverage, pixels: vec4i, t: Triangle) {
     var x = 0;
     var y = pixels.y;
     for (var i = 0; i < count; i += 1) {
-        if coverage_contains(edges) && samples_is_drawn(t, vec2u(vec2i(pixels.x + x, y))) {
+        if coverage_contains(edges) && is_drawn(t, vec2u(vec2i(pixels.x + x, y)), pixel) {
             visibility_write(pixel, coverage_key(coverage, edges), t.id);
         }
         x += 1;

@@ -18,7 +18,7 @@ macro_rules! effects {
     };
 }
 
-effects![dissolve, stipple, facet, triangle_id, normals, depth, lambert, wireframe];
+effects![draw_order, dissolve, stipple, facet, triangle_id, normals, depth, lambert, wireframe];
 
 /// One entry of the catalogue.
 pub struct Effect {

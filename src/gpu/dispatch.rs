@@ -19,6 +19,8 @@ pub fn dispatch(pass: Pass, vertices: u32, triangles: u32, view: &View, key: &Ke
         Pass::RasterSmall(_) => Dispatch::Direct(folded(triangles.div_ceil(key.list_group))),
         Pass::Decide(Entries::Triangles) => Dispatch::Direct(folded(triangles.div_ceil(key.list_group))),
         Pass::Decide(Entries::Pieces) => Dispatch::Indirect(60),
+        Pass::OrderSums | Pass::OrderRanks => Dispatch::Direct(folded(triangles.div_ceil(1024))),
+        Pass::OrderLimit | Pass::OrderCut => Dispatch::Direct([1, 1]),
         Pass::Args => Dispatch::Direct([1, 1]),
         Pass::Clip => Dispatch::Indirect(0),
         Pass::RasterMedium(_) => Dispatch::Indirect(12),

@@ -39,10 +39,16 @@ impl Renderer {
 fn pass_purpose(pass: Pass) -> &'static str {
     match pass {
         Pass::Project => "pulls, transforms and snaps every vertex once",
+        Pass::RasterSmall(Phase::Tally) => "culls and classifies every triangle, counts the samples of the small ones",
+        Pass::RasterSmall(Phase::Straddle) => "marks the samples of the triangle in which the drawing stops",
         Pass::RasterSmall(Phase::Owner) => "visits the small triangles again for the owner of each nearest key",
         Pass::RasterSmall(_) => "culls and classifies every triangle, draws the small ones on the spot",
         Pass::Decide(Entries::Triangles) => "settles once per triangle what sample effects hold against",
         Pass::Decide(Entries::Pieces) => "settles the same for the pieces that clipping left",
+        Pass::OrderSums => "adds up the samples of every 1,024 triangles",
+        Pass::OrderLimit => "finds how many samples there are, how many to draw, and in which triangle that number is reached",
+        Pass::OrderRanks => "tells which share of all samples comes before each triangle",
+        Pass::OrderCut => "finds the pixel at which the drawing stops",
         Pass::Args => "turns queue demand into dispatch sizes",
         Pass::Clip => "cuts triangles at the near plane and the guard band",
         Pass::TileLarge => "finds the tiles of each large triangle",

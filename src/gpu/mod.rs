@@ -181,7 +181,7 @@ impl Renderer {
         if let Some(timer) = &mut self.timer {
             timer.begin(&mut encoder, detail);
         }
-        self.clear(&mut encoder, &["counters", "depth_keys", "owners", "depth_owner", "marks"]);
+        self.clear(&mut encoder, &["counters", "depth_keys", "owners", "depth_owner", "marks", "counts", "hits"]);
         if plan.key.listed_tiles {
             self.fill_background(&mut encoder, view);
         }

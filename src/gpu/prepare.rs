@@ -2,7 +2,7 @@
 
 use super::{
     RenderError, Renderer, STORAGE,
-    uniforms::{Capacities, DrawRecord, FrameUniform, color_stride},
+    uniforms::{Capacities, DrawRecord, FrameUniform, OrderRecord, color_stride},
 };
 use crate::{
     effects::Stack,
@@ -11,7 +11,7 @@ use crate::{
     scene::{Scene, camera::View, draw::draws, needs::Needs},
     shader::{
         glue::uniform_bytes,
-        key::{KernelKey, Visibility},
+        key::{KernelKey, Order, Visibility},
     },
 };
 
@@ -36,7 +36,10 @@ impl Renderer {
         let mut records: Vec<DrawRecord> = draws.iter().map(|draw| DrawRecord::new(draw, &scene)).collect();
         // A binding holds an element at least, even where nothing is to be drawn.
         records.resize(draws.len().max(1), DrawRecord::default());
-        let uniform = FrameUniform::new(view, &scene, draws.len(), &recorded);
+        let triangles = scene.triangle_count();
+        let decisions = u64::from(key.decisions) * (triangles + u64::from(recorded.pieces));
+        let first_rank = scene.vertex_count() + decisions;
+        let uniform = FrameUniform::new(view, &scene, draws.len(), &recorded, first_rank as u32);
         let parameters = uniform_bytes(&stack.0);
         buffers.keep(|name| match name {
             "queues" => key.has_queues(),
@@ -46,6 +49,8 @@ impl Renderer {
             "effects" => !parameters.is_empty(),
             "depth_keys" | "owners" => key.visibility == Visibility::Split32,
             "depth_owner" => key.visibility == Visibility::Packed64,
+            "order" | "counts" | "sums" => key.order != Order::Free,
+            "hits" => key.order == Order::Submission,
             "layers" => false,
             _ => true,
         });
@@ -60,13 +65,21 @@ impl Renderer {
         if !parameters.is_empty() {
             buffers.fill(gpu, "effects", &parameters, wgpu::BufferUsages::UNIFORM, "parameters of the stack")?;
         }
-        let decisions = u64::from(key.decisions) * (scene.triangle_count() + u64::from(recorded.pieces));
-        let why = if decisions > 0 {
-            "projected vertices, then what sample effects decided, 16 bytes each"
-        } else {
-            "projected vertices, 16 bytes each"
+        let ranks = if key.order == Order::Free { 0 } else { triangles.div_ceil(4) };
+        let why = match decisions + ranks {
+            0 => "projected vertices, 16 bytes each",
+            _ => "projected vertices, what sample effects decided, ranks of triangles; 16 bytes a record",
         };
-        buffers.ensure(gpu, "vertices", 16 * (scene.vertex_count() + decisions), STORAGE, why)?;
+        buffers.ensure(gpu, "vertices", 16 * (first_rank + ranks), STORAGE, why)?;
+        if key.order != Order::Free {
+            let usage = STORAGE | wgpu::BufferUsages::UNIFORM;
+            buffers.ensure(gpu, "order", size_of::<OrderRecord>() as u64, usage, "where the drawing stops")?;
+            buffers.ensure(gpu, "counts", 4 * triangles, STORAGE, "samples per triangle")?;
+            buffers.ensure(gpu, "sums", 8 * triangles.div_ceil(1024), STORAGE, "samples before every block of 1,024 triangles")?;
+        }
+        if key.order == Order::Submission {
+            buffers.ensure(gpu, "hits", (view.pixels() as u64).div_ceil(32) * 4, STORAGE, "samples of one triangle, a bit per pixel")?;
+        }
         buffers.ensure(gpu, "counters", 64, STORAGE, "queue demand and what was not drawn")?;
         if key.has_queues() {
             buffers.ensure(

@@ -160,9 +160,9 @@ impl Renderer {
         let pixels = view.pixels() as u64;
         self.buffers.ensure(&self.gpu, "layers", 4 * pixels, STORAGE, "layers per pixel, only while verifying")?;
         let mut encoder = self.gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor { label: Some("count") });
-        self.clear(&mut encoder, &["counters", "layers"]);
+        self.clear(&mut encoder, &["counters", "layers", "counts", "hits"]);
         let timer = self.timer.take();
-        let recorded = self.record(&mut encoder, key, &key.passes(&[Phase::Count]), view);
+        let recorded = self.record(&mut encoder, key, &key.passes(&[key.lead(), &[Phase::Count]].concat()), view);
         self.timer = timer;
         recorded?;
         self.gpu.queue.submit([encoder.finish()]);

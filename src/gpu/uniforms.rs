@@ -53,6 +53,7 @@ twin! {
         pub medium_first: u32,
         pub large_first: u32,
         pub tile_first: u32,
+        pub first_rank: u32,
     }
 }
 
@@ -96,6 +97,26 @@ twin! {
         pub fan_folds: u32,
         pub orphans: u32,
         pub marked_tiles: u32,
+        pub tickets: u32,
+        pub tickets_again: u32,
+    }
+}
+
+twin! {
+    /// Where the drawing stops. Each member is explained in `shaders/common/order.wgsl`.
+    pub struct OrderRecord = "Order" {
+        pub straddler: u32,
+        pub cut: u32,
+        pub limit_hi: u32,
+        pub limit_lo: u32,
+        pub total_hi: u32,
+        pub total_lo: u32,
+        pub before_hi: u32,
+        pub before_lo: u32,
+        pub drawn_hi: u32,
+        pub drawn_lo: u32,
+        pub spare_0: u32,
+        pub spare_1: u32,
     }
 }
 
@@ -148,7 +169,7 @@ pub fn color_stride(width: u32) -> u32 {
 }
 
 impl FrameUniform {
-    pub fn new(view: &View, scene: &Scene, draw_count: usize, capacities: &Capacities) -> Self {
+    pub fn new(view: &View, scene: &Scene, draw_count: usize, capacities: &Capacities, first_rank: u32) -> Self {
         let is_perspective = view.linear_depth_m.is_none();
         let [r, g, b, alpha] = view.background;
         let encoded = [r, g, b].map(|c| f32::from(srgb_byte(f64::from(c))) / 255.0);
@@ -175,6 +196,7 @@ impl FrameUniform {
             medium_first: capacities.clip,
             large_first: capacities.clip + capacities.medium,
             tile_first: capacities.clip + capacities.medium + capacities.large,
+            first_rank,
         }
     }
 }

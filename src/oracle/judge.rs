@@ -9,7 +9,7 @@ use rayon::prelude::*;
 use super::{
     coverage::{Coverage, Sample, corner_records, cover_by, draw_of, triangles},
     decide::{decide, wrong},
-    empty, frame,
+    empty, frame, order,
     project::{clip_position, half_size, object_position, project},
     rules::Rules,
     surface::shade,
@@ -53,19 +53,30 @@ pub fn judge(
     assert_eq!(geometry.vertices.len() as u64, scene.vertex_count(), "the geometry is of another scene");
 
     let (given, counters) = triangles(scene, &draws, geometry);
-    let coverage = cover_by(&Rules::of(stack, geometry), &given, view, Some(&adapter.owner));
+    // Where the hardware chooses among samples, everything that is covered may be drawn.
+    let is_free = order::is_free(stack);
+    let rules = Rules::of(stack, geometry);
+    let rules = if is_free { rules } else { rules.ordered(stack, &given, view) };
+    let coverage = cover_by(&rules, &given, view, Some(&adapter.owner));
     let colors = shade(scene, &draws, view, stack, &adapter.owner, geometry);
     let mut own = project(scene, &draws, view);
     own.decisions = decide(scene, &draws, view, stack, &own);
     let vertices = vertex_faults(scene, &draws, view, geometry, &own);
 
     let mut accuracy = Accuracy { pixels: view.pixels() as u64, ..Default::default() };
-    judge_samples(&mut accuracy, &coverage, adapter, layers);
+    match order::cut(stack, &rules, &given, view) {
+        Some(cut) if is_free => judge_choice(&mut accuracy, &coverage, adapter, layers, cut.limit),
+        _ => judge_samples(&mut accuracy, &coverage, adapter, layers),
+    }
     judge_colors(&mut accuracy, &colors, adapter);
     judge_counters(&mut accuracy, &counters, adapter);
     judge_vertices(&mut accuracy, &vertices);
     accuracy.decisions_wrong = wrong(scene, &draws, view, stack, geometry);
-    Whole { scene, draws: &draws, view, stack, own: &own, adapter: geometry, vertices: &vertices }.judge(&mut accuracy, &coverage, adapter);
+    Whole { scene, draws: &draws, view, stack, own: &own, adapter: geometry, cut: rules.cut(), vertices: &vertices }.judge(
+        &mut accuracy,
+        &coverage,
+        adapter,
+    );
 
     let owners = coverage.owners();
     let colors = if owners == adapter.owner { colors } else { shade(scene, &draws, view, stack, &owners, geometry) };
@@ -89,6 +100,19 @@ fn judge_samples(accuracy: &mut Accuracy, coverage: &Coverage, adapter: &Frame, 
         accuracy.orphans += u64::from(owner == NO_OWNER && key != 0);
         accuracy.key_outside_bound += u64::from(sample.claimed.is_some_and(|bound| !key_fits(key, bound)));
     }
+}
+
+/// Where the hardware chooses: an owner must cover its sample, and as many samples are drawn as the limit says.
+fn judge_choice(accuracy: &mut Accuracy, coverage: &Coverage, adapter: &Frame, layers: Option<&[u32]>, limit: u64) {
+    for (i, sample) in coverage.samples.iter().enumerate() {
+        let (owner, key) = (adapter.owner[i], adapter.key[i]);
+        accuracy.double_hits += layers.map_or(0, |layers| u64::from(layers[i].saturating_sub(sample.layers)));
+        accuracy.owner_mismatch += u64::from(owner != NO_OWNER && sample.claimed.is_none());
+        accuracy.orphans += u64::from(owner == NO_OWNER && key != 0);
+        accuracy.key_outside_bound += u64::from(sample.claimed.is_some_and(|bound| !key_fits(key, bound)));
+    }
+    let drawn: Option<u64> = layers.map(|layers| layers.iter().map(|&count| u64::from(count)).sum());
+    accuracy.holes += drawn.map_or(0, |drawn| drawn.abs_diff(limit));
 }
 
 /// Does a float key lie in the interval? A depth too small for a normal f32 has the least key, 1.
@@ -200,20 +224,32 @@ struct Whole<'a> {
     stack: &'a Stack,
     own: &'a Geometry,
     adapter: &'a Geometry,
+    /// Where the adapter's draw order stops.
+    cut: Option<order::Cut>,
     vertices: &'a [VertexFault],
 }
 
 impl Whole<'_> {
     fn judge(&self, accuracy: &mut Accuracy, coverage: &Coverage, adapter: &Frame) {
         let (triangles, _) = triangles(self.scene, self.draws, self.own);
-        let own = cover_by(&Rules::of(self.stack, self.own), &triangles, self.view, Some(&adapter.owner));
+        if order::is_free(self.stack) {
+            return;
+        }
+        let rules = Rules::of(self.stack, self.own).ordered(self.stack, &triangles, self.view);
+        let own = cover_by(&rules, &triangles, self.view, Some(&adapter.owner));
+        // A sample more or less before it moves the place where a draw order stops.
+        let stops = [self.cut, rules.cut()].map(|cut| cut.map(|cut| cut.straddler));
+        let is_near_stop = |owner: u32| match stops {
+            [Some(a), Some(b)] if self.cut != rules.cut() => (a.min(b)..=a.max(b)).contains(&owner),
+            _ => false,
+        };
         for (pixel, (truth, sample)) in own.samples.iter().zip(&coverage.samples).enumerate() {
             let owner = adapter.owner[pixel];
             // An owner that is wrong even for the adapter's own geometry has been counted as such.
             if owner_is_right(truth, owner) || !owner_is_right(sample, owner) {
                 continue;
             }
-            if self.snap_explains(truth.owner, owner, pixel) {
+            if is_near_stop(owner) || is_near_stop(truth.owner) || self.snap_explains(truth.owner, owner, pixel) {
                 accuracy.explained_by_snap += 1;
             } else {
                 accuracy.unexplained += 1;

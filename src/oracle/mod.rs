@@ -12,6 +12,7 @@ mod clip;
 mod coverage;
 mod decide;
 mod judge;
+mod order;
 mod project;
 mod rules;
 mod surface;
@@ -19,6 +20,7 @@ mod surface;
 pub use coverage::{Coverage, OrientedTriangle, Sample, cover, cover_by, depth_bound, owns, triangles};
 pub use decide::decide;
 pub use judge::judge;
+pub use order::Cut;
 pub use project::project;
 pub use rules::Rules;
 pub use surface::shade;
@@ -45,7 +47,7 @@ pub fn render(scene: &Scene, view: &View, stack: &Stack) -> Result<Frame, DrawEr
     let mut geometry = project(scene, &draws, view);
     geometry.decisions = decide(scene, &draws, view, stack, &geometry);
     let (triangles, counters) = triangles(scene, &draws, &geometry);
-    let coverage = cover_by(&Rules::of(stack, &geometry), &triangles, view, None);
+    let coverage = cover_by(&Rules::of(stack, &geometry).ordered(stack, &triangles, view), &triangles, view, None);
     let owner = coverage.owners();
     let color = shade(scene, &draws, view, stack, &owner, &geometry);
     Ok(frame(view, &coverage, color, counters))

@@ -1,12 +1,16 @@
 //! Rules: which covered samples are drawn, by the sample effects of the stack. Integers alone.
 
-use super::coverage::OrientedTriangle;
+use super::{
+    coverage::OrientedTriangle,
+    order::{self, Cut},
+};
 use crate::{
     effects::{
         Stack,
         hooks::{Sample, SampleHook},
     },
     frame::Geometry,
+    scene::camera::View,
 };
 
 /// The sample effects of a stack with what they settled per triangle.
@@ -16,6 +20,8 @@ pub struct Rules<'a> {
     decisions: &'a [[u32; 4]],
     /// Effects that decide, and so decisions per entry.
     deciding: usize,
+    /// Where a draw order stops, in a picture so many pixels wide.
+    cut: Option<(Cut, u32)>,
 }
 
 struct Link<'a> {
@@ -37,11 +43,30 @@ impl<'a> Rules<'a> {
                 Link { hook, words, place }
             })
             .collect();
-        Self { effects, decisions: &geometry.decisions, deciding }
+        Self { effects, decisions: &geometry.decisions, deciding, cut: None }
+    }
+
+    /// The same, up to where the draw order of `stack` stops the drawing of these triangles.
+    pub fn ordered(mut self, stack: &Stack, triangles: &[OrientedTriangle], view: &View) -> Self {
+        self.cut = order::cut(stack, &self, triangles, view).map(|cut| (cut, view.width));
+        self
+    }
+
+    /// Where a draw order stops.
+    pub fn cut(&self) -> Option<Cut> {
+        self.cut.map(|(cut, _)| cut)
+    }
+
+    fn is_in_order(&self, id: u32, x: u32, y: u32) -> bool {
+        self.cut
+            .is_none_or(|(cut, width)| id < cut.straddler || id == cut.straddler && (y as usize * width as usize + x as usize) < cut.pixel)
     }
 
     /// Is a covered sample drawn? `weights` are the doubled areas opposite the corners of the oriented triangle.
     pub(super) fn is_drawn(&self, triangle: &OrientedTriangle, x: u32, y: u32, weights: [i64; 3]) -> bool {
+        if !self.is_in_order(triangle.id, x, y) {
+            return false;
+        }
         if self.effects.is_empty() {
             return true;
         }

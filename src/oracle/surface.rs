@@ -5,6 +5,7 @@ use rayon::prelude::*;
 
 use super::{
     coverage::{corner_records, doubled_area, draw_of, is_back},
+    order::ranks,
     project::{clip_position, gated_lane, object_position},
 };
 use crate::{
@@ -23,6 +24,7 @@ const DEGENERATE: f64 = 1e-12;
 pub fn shade(scene: &Scene, draws: &[Draw], view: &View, stack: &Stack, owners: &[u32], geometry: &Geometry) -> Vec<[u8; 4]> {
     let background = encoded(DVec4::from_array(view.background.map(f64::from)));
     let width = view.width.max(1) as usize;
+    let ranks = ranks(scene, draws, view, stack, geometry);
     let row = |(y, owners): (usize, &[u32])| {
         let mut triangle: Option<Triangle> = None;
         let pixel = |(x, &owner): (usize, &u32)| {
@@ -30,7 +32,10 @@ pub fn shade(scene: &Scene, draws: &[Draw], view: &View, stack: &Stack, owners: 
                 triangle = draw_of(scene, draws, owner).and_then(|draw| Triangle::new(scene, draw, view, geometry, owner));
             }
             match &triangle {
-                Some(triangle) => encoded(stack.shade(triangle.surface(view, x, y)).color),
+                Some(triangle) => {
+                    let rank = ranks.get(owner as usize).copied().unwrap_or(0.0);
+                    encoded(stack.shade(Surface { rank, ..triangle.surface(view, x, y) }).color)
+                }
                 None => background,
             }
         };

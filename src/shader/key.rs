@@ -2,7 +2,11 @@
 
 use std::fmt;
 
-use crate::effects::Effect;
+use crate::effects::{
+    Effect, Stack,
+    draw_order::{DrawOrder, Mode},
+    hooks::Slot,
+};
 
 /// Where depth and owner meet.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -37,6 +41,14 @@ pub enum Pass {
     Project,
     /// What sample effects settle about triangles, or about pieces.
     Decide(Entries),
+    /// Samples of every block of triangles.
+    OrderSums,
+    /// In which triangle the limit falls.
+    OrderLimit,
+    /// Which share of all samples comes before each triangle.
+    OrderRanks,
+    /// At which pixel of that triangle the drawing stops.
+    OrderCut,
     RasterSmall(Phase),
     Args,
     Clip,
@@ -65,6 +77,31 @@ pub enum Phase {
     Owner,
     /// Layers per pixel, for the judge.
     Count,
+    /// Samples per triangle.
+    Tally,
+    /// The samples of the triangle in which the drawing stops.
+    Straddle,
+}
+
+/// Which samples are drawn, if not all.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Order {
+    Free,
+    /// The first ones in the order of triangles.
+    Submission,
+    /// The first that the hardware comes to.
+    Scheduler,
+}
+
+impl Order {
+    /// The order that a stack keeps.
+    pub fn of(stack: &Stack) -> Self {
+        match stack.in_slot(Slot::Order).map(|enabled| bytemuck::pod_read_unaligned::<DrawOrder>(bytemuck::cast_slice(&enabled.words))) {
+            None => Self::Free,
+            Some(order) if Mode::of(order.mode) == Mode::Scheduler => Self::Scheduler,
+            Some(_) => Self::Submission,
+        }
+    }
 }
 
 impl Pass {
@@ -73,6 +110,10 @@ impl Pass {
         match self {
             Self::Project => "project",
             Self::Decide(_) => "decide",
+            Self::OrderSums => "order_sums",
+            Self::OrderLimit => "order_limit",
+            Self::OrderRanks => "order_ranks",
+            Self::OrderCut => "order_cut",
             Self::RasterSmall(_) => "raster_small",
             Self::Args => "args",
             Self::Clip => "clip",
@@ -108,6 +149,8 @@ impl Pass {
             Some(Phase::Depth) => format!("{} depth", self.stem()),
             Some(Phase::Owner) => format!("{} owner", self.stem()),
             Some(Phase::Count) => format!("{} count", self.stem()),
+            Some(Phase::Tally) => format!("{} tally", self.stem()),
+            Some(Phase::Straddle) => format!("{} straddle", self.stem()),
             Some(Phase::Packed) | None => self.stem().into(),
         }
     }
@@ -120,6 +163,8 @@ pub struct KernelKey {
     pub visibility: Visibility,
     /// Effects in stack order.
     pub effects: Vec<&'static Effect>,
+    /// Which samples are drawn.
+    pub order: Order,
     /// A sample effect may leave samples out.
     pub has_samples: bool,
     /// Sample effects that settle something per triangle.
@@ -163,6 +208,7 @@ impl KernelKey {
         Self {
             fetch,
             visibility,
+            order: Order::Free,
             has_samples: effects.iter().any(|effect| effect.hooks.sample.is_some()),
             decisions: deciding(&effects),
             effects,
@@ -195,17 +241,27 @@ impl KernelKey {
         if self.listed_tiles { 8 } else { 16 }
     }
 
+    /// Raster phases that find out where the drawing stops, before anything is drawn.
+    pub const fn lead(&self) -> &'static [Phase] {
+        match self.order {
+            Order::Free => &[],
+            Order::Submission => &[Phase::Tally, Phase::Straddle],
+            Order::Scheduler => &[Phase::Tally],
+        }
+    }
+
     /// The raster phases of one frame, in order.
-    pub const fn phases(&self) -> &'static [Phase] {
-        match self.visibility {
+    pub fn phases(&self) -> Vec<Phase> {
+        let draw: &[Phase] = match self.visibility {
             Visibility::Split32 => &[Phase::Depth, Phase::Owner],
             Visibility::Packed64 => &[Phase::Packed],
-        }
+        };
+        [self.lead(), draw].concat()
     }
 
     /// Every pass of one picture, in the order in which they are recorded.
     pub fn frame(&self) -> Vec<Pass> {
-        let mut passes = self.passes(self.phases());
+        let mut passes = self.passes(&self.phases());
         if self.listed_tiles {
             passes.extend([Pass::ListTiles, Pass::Args]);
         }
@@ -239,6 +295,11 @@ impl KernelKey {
             if self.has_large {
                 passes.push(Pass::RasterLarge(phase));
             }
+            match phase {
+                Phase::Tally => passes.extend([Pass::OrderSums, Pass::OrderLimit, Pass::OrderRanks]),
+                Phase::Straddle => passes.push(Pass::OrderCut),
+                _ => {}
+            }
         }
         passes
     }
@@ -250,13 +311,15 @@ impl KernelKey {
             Fetch::Indexed => "indexed",
         };
         let queues = if self.has_queues() { "kept" } else { "none" };
-        let is_marking = self.listed_tiles && !matches!(pass.phase(), Some(Phase::Owner | Phase::Count));
+        let is_marking = self.listed_tiles && !matches!(pass.phase(), Some(Phase::Owner | Phase::Count | Phase::Tally | Phase::Straddle));
         let marks = if is_marking { "kept" } else { "none" };
         let pixels = if self.listed_tiles { "listed" } else { "all" };
         let pieces = if self.has_clipping { "kept" } else { "none" };
         let mut slots = vec![
             ("pieces", format!("slots/pieces/{pieces}")),
-            ("records", format!("slots/records/{}", if matches!(pass, Pass::Decide(_)) { "write" } else { "read" })),
+            ("records", format!("slots/records/{}", if matches!(pass, Pass::Decide(_) | Pass::OrderRanks) { "write" } else { "read" })),
+            ("order", format!("slots/order/{}", self.order_file(pass))),
+            ("ranks", format!("slots/ranks/{}", if self.order == Order::Free { "none" } else { "kept" })),
             ("samples", format!("slots/samples/{}", if self.has_samples { "hooked" } else { "all" })),
             ("draws", format!("slots/draws/{}", if self.single_draw { "one" } else { "many" })),
             ("fetch", format!("slots/fetch/{fetch}")),
@@ -272,10 +335,30 @@ impl KernelKey {
                 Phase::Depth => "split32_depth",
                 Phase::Owner => "split32_owner",
                 Phase::Count => "count",
+                Phase::Tally => "tally",
+                Phase::Straddle => "straddle",
             };
             slots.push(("visibility", format!("slots/visibility/{file}")));
         }
         slots
+    }
+
+    /// The file of the order slot: tickets are drawn once, where depth is decided, and counts count everything.
+    fn order_file(&self, pass: Pass) -> &'static str {
+        match (self.order, pass.phase()) {
+            (_, Some(Phase::Straddle)) => "straddler",
+            (Order::Free, _) | (_, Some(Phase::Tally)) | (Order::Scheduler, Some(Phase::Owner)) => "free",
+            (Order::Submission, _) => "submission",
+            (Order::Scheduler, _) => "scheduler",
+        }
+    }
+
+    /// Does this pass come upon every triangle first, and so fill the queues and count?
+    fn is_first(&self, pass: Pass) -> bool {
+        match self.lead().first() {
+            Some(&first) => pass.phase() == Some(first),
+            None => !matches!(pass.phase(), Some(Phase::Owner)),
+        }
     }
 
     /// Values of the overrides; those that a pass does not declare are left out by the pipeline builder.
@@ -299,7 +382,7 @@ impl KernelKey {
             ("SMALL_SAMPLES", self.small_samples.into()),
             ("SMALL_SIDE", self.small_side.into()),
             ("EARLY_LOAD", flag(self.early_load)),
-            ("IS_FIRST", flag(!matches!(pass.phase(), Some(Phase::Owner)))),
+            ("IS_FIRST", flag(self.is_first(pass))),
         ]
     }
 }
@@ -322,6 +405,11 @@ impl fmt::Display for KernelKey {
             if is_on {
                 write!(f, " {name}")?;
             }
+        }
+        match self.order {
+            Order::Free => {}
+            Order::Submission => f.write_str(" order=submission")?,
+            Order::Scheduler => f.write_str(" order=scheduler")?,
         }
         for effect in &self.effects {
             write!(f, " +{}", effect.name)?;

@@ -1,0 +1,8 @@
+// Gate: is a covered sample drawn? The sample effects say first, then the order counts what they left.
+//@ use common/triangle
+//@ use slot/samples
+//@ use slot/order
+
+fn is_drawn(t: Triangle, at: vec2u, pixel: u32) -> bool {
+    return samples_is_drawn(t, at) && order_is_drawn(t, pixel);
+}

@@ -1,0 +1,18 @@
+// Draw order: stops the picture after a number of samples, so that one sees the order in which it is drawn.
+//@ use common/surface
+
+struct DrawOrder {
+    first: vec4f,
+    last: vec4f,
+    mode: u32,
+    unit: u32,
+    limit: u32,
+    share: f32,
+}
+
+fn draw_order(surface: Surface, p: DrawOrder) -> Surface {
+    var s = surface;
+    let heat = mix(p.first, p.last, s.rank);
+    s.color = vec4f(mix(s.color.rgb, heat.rgb, heat.a), s.color.a);
+    return s;
+}

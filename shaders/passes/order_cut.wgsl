@@ -1,0 +1,50 @@
+// Order cut: at which pixel the drawing stops within the triangle that straddles the limit.
+//@ use common/frame
+//@ use common/fixed
+//@ use common/order
+
+@group(0) @binding(5) var<storage, read> hits: array<u32>;
+@group(0) @binding(14) var<storage, read_write> order: Order;
+
+var<workgroup> before: array<u32, 256>;
+
+@compute @workgroup_size(256)
+fn order_cut(@builtin(local_invocation_index) lane: u32) {
+    let words = (frame.size.x * frame.size.y + 31u) / 32u;
+    let share = (words + 255u) / 256u;
+    let first = min(lane * share, words);
+    let last = min(first + share, words);
+    var sum = 0u;
+    for (var i = first; i < last; i += 1u) { sum += countOneBits(hits[i]); }
+    before[lane] = sum;
+    workgroupBarrier();
+    if lane == 0u {
+        sum = 0u;
+        for (var i = 0u; i < 256u; i += 1u) {
+            let here = before[i];
+            before[i] = sum;
+            sum += here;
+        }
+        // Nobody straddles: all is drawn, or nothing is there.
+        if order.straddler == frame.triangle_count {
+            order.cut = 0u;
+            order.drawn_hi = order.before_hi;
+            order.drawn_lo = order.before_lo;
+        }
+    }
+    workgroupBarrier();
+    let rest = order.limit_lo - order.before_lo;
+    sum = before[lane];
+    for (var i = first; i < last; i += 1u) {
+        let here = countOneBits(hits[i]);
+        if sum <= rest && rest < sum + here {
+            var bits = hits[i];
+            for (var skip = sum; skip < rest; skip += 1u) { bits &= bits - 1u; }
+            order.cut = i * 32u + countTrailingZeros(bits);
+            let drawn = fixed_add(Wide(order.before_hi, order.before_lo), Wide(0u, rest));
+            order.drawn_hi = drawn.hi;
+            order.drawn_lo = drawn.lo;
+        }
+        sum += here;
+    }
+}

@@ -1,0 +1,74 @@
+//! Draw order: stops the picture after a number of samples, so that one sees the order in which it is drawn.
+//!
+//! Covered samples count before any depth test, overdraw included. In submission order the first of them are drawn,
+//! triangle by triangle and row by row: the same ones on every adapter. In the scheduler's order each sample draws a
+//! ticket; how many are drawn is exact, which ones is the hardware's own affair.
+
+use glam::DVec4;
+
+use super::{Effect, Surface, SurfaceEffect, hooks::Slot};
+use crate::{choice, params, params::Color};
+
+choice! {
+    /// Whose order counts.
+    pub enum Mode {
+        /// That of the triangles; repeatable.
+        Submission = "submission",
+        /// That in which the hardware comes to them; never quite the same.
+        Scheduler = "scheduler",
+    }
+}
+
+choice! {
+    /// How the limit is given.
+    pub enum Unit {
+        /// A share of all samples.
+        Share = "share",
+        /// A number of samples.
+        Count = "count",
+    }
+}
+
+params! {
+    pub struct DrawOrder {
+        /// Colour of what is drawn first; the last lane is its share against the surface's own.
+        first: Color = [0.05, 0.1, 0.5, 0.0];
+        /// Colour of what is drawn last; the last lane is its share against the surface's own.
+        last: Color = [1.0, 0.35, 0.05, 0.0];
+        /// Whose order counts.
+        mode: Mode = Mode::Submission as u32;
+        /// How the limit is given.
+        unit: Unit = Unit::Share as u32;
+        /// Samples to draw.
+        limit: u32 = 20000, soft 0.0..=200000.0, when ("unit", &["count"]);
+        /// Share of all samples to draw.
+        share: f32 = 0.5, hard 0.0..=1.0, when ("unit", &["share"]);
+    }
+}
+
+pub const EFFECT: Effect = Effect::new::<DrawOrder>("draw_order", "DrawOrder", "stops the picture after a number of samples")
+    .in_slot(Slot::Order)
+    .on_surface::<DrawOrder>();
+
+impl DrawOrder {
+    /// Samples to draw of `total`.
+    pub fn limit_of(&self, total: u64) -> u64 {
+        match Unit::of(self.unit) {
+            Unit::Count => total.min(self.limit.into()),
+            Unit::Share => {
+                let share = (f64::from(self.share) * f64::from(1 << 24)).round_ties_even() as u128;
+                ((u128::from(total) * share + (1 << 23)) >> 24) as u64
+            }
+        }
+    }
+}
+
+impl SurfaceEffect for DrawOrder {
+    /// Heat by rank: which share of all samples came before the triangle.
+    fn apply(mut s: Surface, p: &Self) -> Surface {
+        let [first, last] = [p.first, p.last].map(|color| DVec4::from_array(color.map(f64::from)));
+        let heat = first.lerp(last, s.rank);
+        s.color = s.color.truncate().lerp(heat.truncate(), heat.w).extend(s.color.w);
+        s
+    }
+}
