@@ -1,7 +1,7 @@
 //! The planner: the cheapest kernel that the scene, the stack and the tolerance allow on this adapter, and why.
 
 use crate::{
-    effects::{Conflict, Enabled, Stack},
+    effects::{Conflict, Enabled, Stack, hooks::Shape},
     scene::needs::Needs,
     shader::{
         glue::reads,
@@ -121,7 +121,13 @@ pub struct Plan {
 /// When the look pins a rung that the adapter lacks, or two effects take one slot.
 pub fn plan(needs: &Needs, stack: &Stack, caps: &Caps, tuning: &Tuning, accuracy: &Accuracy) -> Result<Plan, PlanError> {
     stack.check()?;
-    let needs = &if tuning.specialized { needs.clone() } else { needs.everything() };
+    let shape = stack.shape();
+    let mut needs = if tuning.specialized { needs.clone() } else { needs.everything() };
+    if shape == Shape::Points {
+        // Discs are small, and triangles that would be clipped show none.
+        (needs.clipping, needs.largest_px) = (false, 0.0);
+    }
+    let needs = &needs;
     let visibility = match accuracy.visibility {
         Some(Visibility::Packed64) if !caps.int64_atomics => return Err(PlanError::Lacking),
         Some(pinned) => pinned,
@@ -140,6 +146,7 @@ pub fn plan(needs: &Needs, stack: &Stack, caps: &Caps, tuning: &Tuning, accuracy
     let key = KernelKey {
         fetch: if needs.indexed { Fetch::Indexed } else { Fetch::Direct },
         visibility,
+        shape,
         order: Order::of(stack),
         has_samples: effects.iter().any(|effect| effect.hooks.sample.is_some()),
         decisions: deciding(&effects),
@@ -178,7 +185,14 @@ fn explain(needs: &Needs, is_usual: bool, caps: &Caps, accuracy: &Accuracy, key:
     let bound = if needs.clipping { "clipping leaves it open".into() } else { format!("no triangle exceeds {:.1} px", needs.largest_px) };
     let reasons = vec![
         note("visibility", pinned.unwrap_or(chosen)),
-        note("coverage", "fixed8: exact 16.8 top-left edges, holes and double hits are impossible"),
+        note(
+            "coverage",
+            match key.shape {
+                Shape::Triangles => "fixed8: exact 16.8 top-left edges, holes and double hits are impossible",
+                Shape::Boxes => "boxes: an effect fills the bounding boxes",
+                Shape::Points => "points: an effect draws corners as discs",
+            },
+        ),
         note("fetch", if needs.indexed { "the scene has index lists" } else { "no primitive has indices" }),
         note(
             "small",

@@ -22,6 +22,7 @@ struct Frame {
     medium_first: u32,       // first word of each queue in `queues`; clip begins at 0
     large_first: u32,
     tile_first: u32,
+    point_radius: u32,       // units of 1/256 px; only where corners are drawn as discs
     first_rank: u32,         // record at which ranks of triangles begin, behind vertices and decisions
 }
 

@@ -4,6 +4,8 @@
 //@ use common/transform
 //@ use common/center
 //@ use common/fixed
+//@ use common/shape
+//@ use common/points
 //@ use common/surface
 //@ use slot/ranks
 
@@ -34,6 +36,7 @@ fn place_whole(t: Triangle, pixel: vec2u) -> Place {
     let p = vec2i(pixel) * 256 + 128;
     var e = vec3f(vec3i(fixed_small_area(b, c, p), fixed_small_area(c, a, p), fixed_small_area(a, b, p)));
     if HAS_LARGE { e = vec3f(fixed_weight(b, c, p), fixed_weight(c, a, p), fixed_weight(a, b, p)); }
+    e = place_held(e, t, p);
     let inv_w = bitcast<vec3f>(vec3u(t.a.w, t.b.w, t.c.w));
     let share = e * inv_w;
     let sum = share.x + share.y + share.z;
@@ -45,6 +48,15 @@ fn place_whole(t: Triangle, pixel: vec2u) -> Place {
     let depth = select(dot(weights, depths), doubled_area / sum, IS_PERSPECTIVE);
     let lengths = vec3f(length(vec2f(c - b)), length(vec2f(a - c)), length(vec2f(b - a)));
     return Place(weights, depth, depths, center_whole(t), e / doubled_area, abs(e) / (256.0 * lengths), doubled_area > 0.0);
+}
+
+// Edge functions of a sample that need not lie in its triangle: in a box none turns negative, a disc is its corner's.
+fn place_held(e: vec3f, t: Triangle, p: vec2i) -> vec3f {
+    if SHAPE == SHAPE_TRIANGLES { return e; }
+    let turn = sign(e.x + e.y + e.z);
+    if SHAPE == SHAPE_BOXES { return max(e * turn, vec3f(0.0)) * turn; }
+    let corner = points_corner(t.a, t.b, t.c, p);
+    return turn * vec3f(vec3<bool>(corner == 0u, corner == 1u, corner == 2u));
 }
 
 // Metres of an orthographic depth.

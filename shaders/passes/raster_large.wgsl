@@ -3,6 +3,7 @@
 //@ use slot/pieces
 //@ use slot/queues
 //@ use common/fixed
+//@ use common/shape
 //@ use common/gate
 //@ use slot/visibility
 
@@ -80,16 +81,16 @@ fn raster_large(@builtin(workgroup_id) group: vec3u, @builtin(num_workgroups) gr
         let e2 = rebased[block * 3 + 2];
         let q = vec3i(e0.q, e1.q, e2.q);
         // An edge is largest 15 pixels along its own inward direction.
-        if any(q + 15 * (max(dx, vec3i(0)) + max(-dy, vec3i(0))) < vec3i(0)) { continue; }
+        if SHAPE != SHAPE_BOXES && any(q + 15 * (max(dx, vec3i(0)) + max(-dy, vec3i(0))) < vec3i(0)) { continue; }
         for (var i = 0; i < 4; i += 1) {
             let offset = mine + vec2i(0, 4 * i);
             let at = origin + offset;
             let step = dx * offset.y - dy * offset.x;
             let w = q + step;
-            let is_inside = (w.x | w.y | w.z) >= 0 && all(at >= pixels.xy) && all(at <= pixels.zw);
+            let is_inside = (SHAPE == SHAPE_BOXES || (w.x | w.y | w.z) >= 0) && all(at >= pixels.xy) && all(at <= pixels.zw);
             if is_inside && is_drawn(t, vec2u(at), u32(at.y) * frame.size.x + u32(at.x)) {
                 let value = weight(e0, step.x, bias.x) * depth.x + weight(e1, step.y, bias.y) * depth.y + weight(e2, step.z, bias.z) * depth.z;
-                let key = max(bitcast<u32>(clamp(value, range.x, range.y)), 1u);
+                let key = max(bitcast<u32>(select(clamp(value, range.x, range.y), range.y, SHAPE == SHAPE_BOXES)), 1u);
                 visibility_write(u32(at.y) * frame.size.x + u32(at.x), key, t.id);
             }
         }

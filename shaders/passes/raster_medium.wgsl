@@ -1,5 +1,6 @@
 // Raster medium: one workgroup per triangle of at most 128 px extent; its 64 lanes are an 8x8 block that visits the box.
 //@ use slot/pieces
+//@ use common/fixed
 //@ use slot/queues
 //@ use slot/coverage
 //@ use common/gate

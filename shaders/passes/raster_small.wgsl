@@ -1,6 +1,8 @@
 // Raster small: every triangle is fetched, culled and classified by one invocation; the small are drawn on the spot,
 // the others wait in a queue for a kernel of their size. Classifying and drawing the small share one fetch.
 //@ use common/triangle
+//@ use common/fixed
+//@ use common/reject
 //@ use slot/queues
 //@ use slot/coverage
 //@ use common/gate
@@ -87,11 +89,5 @@ fn walk(coverage: Coverage, pixels: vec4i, t: Triangle) {
 
 // A corner was rejected, or lies in front of the near plane or beyond the guard band.
 fn unready(t: Triangle, any_flag: u32) {
-    if (any_flag & VERTEX_NONFINITE) != 0u {
-        atomicAdd(&counters.rejected_nonfinite, 1u);
-    } else if (any_flag & VERTEX_OUT_OF_RANGE) != 0u {
-        atomicAdd(&counters.rejected_range, 1u);
-    } else if (t.a.x & t.b.x & t.c.x & VERTEX_CLIPPED) == 0u {
-        queues_push_clip(t.id);
-    }
+    if !reject_count(any_flag) && (t.a.x & t.b.x & t.c.x & VERTEX_CLIPPED) == 0u { queues_push_clip(t.id); }
 }

@@ -2,6 +2,7 @@
 //@ use slot/pieces
 //@ use slot/queues
 //@ use common/fixed
+//@ use common/shape
 //@ use slot/marks
 
 // Sign of the biased edge function at its innermost sample of a box of pixels: negative means all outside.
@@ -32,7 +33,7 @@ fn tile_large(@builtin(workgroup_id) group: vec3u, @builtin(num_workgroups) grou
     for (var i = i32(lane); i < tiles.x * tiles.y; i += 64) {
         let tile = first + vec2i(i % tiles.x, i / tiles.x);
         let box = vec4i(max(tile * 64, pixels.xy), min(tile * 64 + 63, pixels.zw));
-        if !(tile_is_outside(a, b, box) || tile_is_outside(b, c, box) || tile_is_outside(c, a, box)) {
+        if SHAPE == SHAPE_BOXES || !(tile_is_outside(a, b, box) || tile_is_outside(b, c, box) || tile_is_outside(c, a, box)) {
             queues_push_tile(entry, vec2u(tile));
             marks_box(box);
         }

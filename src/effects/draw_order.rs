@@ -6,7 +6,7 @@
 
 use glam::DVec4;
 
-use super::{Effect, Surface, SurfaceEffect, hooks::Slot};
+use super::{Effect, Surface, SurfaceEffect, hooks::Slot, read};
 use crate::{choice, params, params::Color};
 
 choice! {
@@ -48,7 +48,8 @@ params! {
 
 pub const EFFECT: Effect = Effect::new::<DrawOrder>("draw_order", "DrawOrder", "stops the picture after a number of samples")
     .in_slot(Slot::Order)
-    .on_surface::<DrawOrder>();
+    .on_surface::<DrawOrder>()
+    .repeatable_if(|words| Mode::of(read::<DrawOrder>(words).mode) == Mode::Submission);
 
 impl DrawOrder {
     /// Samples to draw of `total`.

@@ -6,7 +6,7 @@ use crate::params::{Field, Params};
 
 pub mod hooks;
 
-use hooks::{Hooks, ImageEffect, Picture, Pixel, SampleEffect, SampleHook, Slot, VertexEffect, VertexHook};
+use hooks::{Hooks, ImageEffect, Picture, Pixel, SampleEffect, SampleHook, Shape, Slot, VertexEffect, VertexHook};
 pub use hooks::{Surface, SurfaceEffect};
 
 /// THE list. Adding an effect is its two files and one word here.
@@ -18,7 +18,7 @@ macro_rules! effects {
     };
 }
 
-effects![draw_order, dissolve, stipple, facet, triangle_id, normals, depth, lambert, wireframe];
+effects![boxes, points, draw_order, dissolve, stipple, facet, triangle_id, normals, depth, lambert, wireframe];
 
 /// One entry of the catalogue.
 pub struct Effect {
@@ -32,12 +32,14 @@ pub struct Effect {
     pub defaults: fn() -> Vec<u32>,
     /// Name of the WGSL struct.
     pub wgsl_struct: &'static str,
+    /// Does every frame come out the same with these parameter words?
+    pub is_repeatable: fn(&[u32]) -> bool,
 }
 
 impl Effect {
     /// An effect with parameters `P` and no hook yet.
     pub const fn new<P: Params>(name: &'static str, wgsl_struct: &'static str, about: &'static str) -> Self {
-        Self { name, about, hooks: Hooks::NONE, fields: P::FIELDS, defaults: defaults::<P>, wgsl_struct }
+        Self { name, about, hooks: Hooks::NONE, fields: P::FIELDS, defaults: defaults::<P>, wgsl_struct, is_repeatable: |_| true }
     }
 
     /// An effect on the surface hook alone.
@@ -84,6 +86,12 @@ impl Effect {
         self
     }
 
+    /// The same effect, which leaves something to the hardware's own order unless `is_repeatable` says otherwise.
+    pub const fn repeatable_if(mut self, is_repeatable: fn(&[u32]) -> bool) -> Self {
+        self.is_repeatable = is_repeatable;
+        self
+    }
+
     /// The effect called `name`.
     pub fn find(name: &str) -> Option<&'static Self> {
         EFFECTS.iter().copied().find(|effect| effect.name == name)
@@ -121,7 +129,7 @@ impl std::hash::Hash for Effect {
 }
 
 /// Parameter words as the struct they were made from.
-fn read<P: Params>(words: &[u32]) -> P {
+pub fn read<P: Params>(words: &[u32]) -> P {
     bytemuck::pod_read_unaligned(bytemuck::cast_slice(words))
 }
 
@@ -211,6 +219,30 @@ impl Stack {
     /// The effect in a slot of the rasterizer.
     pub fn in_slot(&self, slot: Slot) -> Option<&Enabled> {
         self.0.iter().find(|enabled| enabled.effect.hooks.slot == Some(slot))
+    }
+
+    /// What triangles cover in this stack.
+    pub fn shape(&self) -> Shape {
+        match self.in_slot(Slot::Coverage) {
+            None => Shape::Triangles,
+            Some(enabled) if enabled.effect == &points::EFFECT => Shape::Points,
+            Some(_) => Shape::Boxes,
+        }
+    }
+
+    /// Radius of discs about corners, units of 1/256 px; 0 without them.
+    pub fn point_radius(&self) -> u32 {
+        self.get(points::EFFECT.name).map_or(0, |enabled| read::<points::Points>(&enabled.words).radius())
+    }
+
+    /// The draw order that the stack keeps.
+    pub fn draw_order(&self) -> Option<draw_order::DrawOrder> {
+        self.in_slot(Slot::Order).map(|enabled| read(&enabled.words))
+    }
+
+    /// Is every picture of this stack the same, to the bit, on one adapter?
+    pub fn is_repeatable(&self) -> bool {
+        self.0.iter().all(|enabled| (enabled.effect.is_repeatable)(&enabled.words))
     }
 
     /// Checks that no two effects take one slot.

@@ -16,7 +16,7 @@ pub enum Dispatch {
 pub fn dispatch(pass: Pass, vertices: u32, triangles: u32, view: &View, key: &KernelKey) -> Dispatch {
     match pass {
         Pass::Project => Dispatch::Direct(folded(vertices.div_ceil(key.list_group))),
-        Pass::RasterSmall(_) => Dispatch::Direct(folded(triangles.div_ceil(key.list_group))),
+        Pass::RasterSmall(_) | Pass::RasterPoints(_) => Dispatch::Direct(folded(triangles.div_ceil(key.list_group))),
         Pass::Decide(Entries::Triangles) => Dispatch::Direct(folded(triangles.div_ceil(key.list_group))),
         Pass::Decide(Entries::Pieces) => Dispatch::Indirect(60),
         Pass::OrderSums | Pass::OrderRanks => Dispatch::Direct(folded(triangles.div_ceil(1024))),

@@ -49,6 +49,7 @@ fn pass_purpose(pass: Pass) -> &'static str {
         Pass::OrderLimit => "finds how many samples there are, how many to draw, and in which triangle that number is reached",
         Pass::OrderRanks => "tells which share of all samples comes before each triangle",
         Pass::OrderCut => "finds the pixel at which the drawing stops",
+        Pass::RasterPoints(_) => "draws the corners of every shown triangle as discs",
         Pass::Args => "turns queue demand into dispatch sizes",
         Pass::Clip => "cuts triangles at the near plane and the guard band",
         Pass::TileLarge => "finds the tiles of each large triangle",

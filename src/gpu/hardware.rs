@@ -40,7 +40,7 @@ impl Hardware {
         }
         let draws = draws(scene, view)?;
         let records: Vec<DrawRecord> = draws.iter().map(|draw| DrawRecord::new(draw, scene)).collect();
-        let uniform = FrameUniform::new(view, scene, draws.len(), &Capacities::default(), 0);
+        let uniform = FrameUniform::new(view, scene, draws.len(), &Capacities::default());
         let parameters = uniform_bytes(&stack.0);
         let storage = wgpu::BufferUsages::STORAGE;
         let mut buffers = Buffers::default();

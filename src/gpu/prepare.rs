@@ -39,7 +39,11 @@ impl Renderer {
         let triangles = scene.triangle_count();
         let decisions = u64::from(key.decisions) * (triangles + u64::from(recorded.pieces));
         let first_rank = scene.vertex_count() + decisions;
-        let uniform = FrameUniform::new(view, &scene, draws.len(), &recorded, first_rank as u32);
+        let uniform = FrameUniform {
+            point_radius: stack.point_radius(),
+            first_rank: first_rank as u32,
+            ..FrameUniform::new(view, &scene, draws.len(), &recorded)
+        };
         let parameters = uniform_bytes(&stack.0);
         buffers.keep(|name| match name {
             "queues" => key.has_queues(),

@@ -53,6 +53,7 @@ twin! {
         pub medium_first: u32,
         pub large_first: u32,
         pub tile_first: u32,
+        pub point_radius: u32,
         pub first_rank: u32,
     }
 }
@@ -169,7 +170,7 @@ pub fn color_stride(width: u32) -> u32 {
 }
 
 impl FrameUniform {
-    pub fn new(view: &View, scene: &Scene, draw_count: usize, capacities: &Capacities, first_rank: u32) -> Self {
+    pub fn new(view: &View, scene: &Scene, draw_count: usize, capacities: &Capacities) -> Self {
         let is_perspective = view.linear_depth_m.is_none();
         let [r, g, b, alpha] = view.background;
         let encoded = [r, g, b].map(|c| f32::from(srgb_byte(f64::from(c))) / 255.0);
@@ -196,7 +197,8 @@ impl FrameUniform {
             medium_first: capacities.clip,
             large_first: capacities.clip + capacities.medium,
             tile_first: capacities.clip + capacities.medium + capacities.large,
-            first_rank,
+            point_radius: 0,
+            first_rank: 0,
         }
     }
 }

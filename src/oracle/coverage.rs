@@ -3,10 +3,13 @@
 //! A sample on an edge belongs to the side onto which it falls when moved by an infinitesimal step to the right and a far
 //! smaller one down: the top-left rule, stated without a bias. Every pixel of a triangle's box is evaluated afresh.
 
+use std::ops::Range;
+
 use rayon::prelude::*;
 
 use super::{clip::is_cut, rules::Rules};
 use crate::{
+    effects::hooks::Shape,
     frame::{Counters, Geometry, NO_OWNER, Piece, SnappedVertex, vertex_flags},
     math::SMALL_EXTENT,
     scene::{Scene, camera::View, draw::Draw},
@@ -246,7 +249,7 @@ pub fn cover_by(rules: &Rules, triangles: &[OrientedTriangle], view: &View, clai
     }
     let mut bands = vec![Vec::new(); height.div_ceil(ROWS)];
     for triangle in triangles {
-        let (_, rows) = triangle.bounds(view);
+        let (_, rows) = triangle.bounds(view, rules);
         if !rows.is_empty() {
             bands[rows.start / ROWS..=(rows.end - 1) / ROWS].iter_mut().for_each(|band| band.push(triangle));
         }
@@ -254,7 +257,7 @@ pub fn cover_by(rules: &Rules, triangles: &[OrientedTriangle], view: &View, clai
     samples.par_chunks_mut(ROWS * width).zip(bands).enumerate().for_each(|(band, (samples, triangles))| {
         let first_row = band * ROWS;
         for triangle in triangles {
-            let (columns, rows) = triangle.bounds(view);
+            let (columns, rows) = triangle.bounds(view, rules);
             for y in rows.start.max(first_row)..rows.end.min(first_row + ROWS) {
                 for x in columns.clone() {
                     let Some((depth, interval)) = triangle.at(x, y, rules) else { continue };
@@ -268,13 +271,16 @@ pub fn cover_by(rules: &Rules, triangles: &[OrientedTriangle], view: &View, clai
 }
 
 impl OrientedTriangle {
-    /// Columns and rows of the pixels whose samples may be covered, within the view.
-    pub(super) fn bounds(&self, view: &View) -> (std::ops::Range<usize>, std::ops::Range<usize>) {
+    /// Columns and rows of the pixels whose samples may be covered, within the view; none for a piece where corners are drawn.
+    pub(super) fn bounds(&self, view: &View, rules: &Rules) -> (Range<usize>, Range<usize>) {
+        if rules.shape == Shape::Points && self.entry != self.id as usize {
+            return (0..0, 0..0);
+        }
         // Pixel k has its sample at 256 k + 128.
         let range = |at: [i32; 3], pixels: u32| {
             let [low, high] = [at[0].min(at[1]).min(at[2]), at[0].max(at[1]).max(at[2])].map(i64::from);
-            let first = (low + 127).div_euclid(256).max(0);
-            let end = ((high - 128).div_euclid(256) + 1).min(i64::from(pixels));
+            let first = (low - rules.radius + 127).div_euclid(256).max(0);
+            let end = ((high + rules.radius - 128).div_euclid(256) + 1).min(i64::from(pixels));
             first as usize..end.max(first) as usize
         };
         (range(self.corners.map(|c| c.x), view.width), range(self.corners.map(|c| c.y), view.height))
@@ -286,8 +292,33 @@ impl OrientedTriangle {
         let (px, py) = (256 * x as i64 + 128, 256 * y as i64 + 128);
         let opposite = [(b, c), (c, a), (a, b)];
         let weights = opposite.map(|(from, to)| edge(from, to, px, py));
-        let inside = |i: usize| owns(weights[i], opposite[i].1.x - opposite[i].0.x, opposite[i].1.y - opposite[i].0.y);
-        (inside(0) && inside(1) && inside(2) && rules.is_drawn(self, x as u32, y as u32, weights)).then(|| self.depth(weights))
+        let exact = |depth: f32| (f64::from(depth), [f64::from(depth); 2]);
+        let found = match rules.shape {
+            Shape::Triangles => {
+                let inside = |i: usize| owns(weights[i], opposite[i].1.x - opposite[i].0.x, opposite[i].1.y - opposite[i].0.y);
+                (inside(0) && inside(1) && inside(2)).then(|| self.depth(weights))?
+            }
+            Shape::Boxes => self.fills_box(px, py).then(|| exact(self.corners.iter().fold(0.0, |nearest, c| c.depth.max(nearest))))?,
+            Shape::Points => exact(self.corners[self.corner_under(px, py, rules.radius)?].depth),
+        };
+        rules.is_drawn(self, x as u32, y as u32, weights).then_some(found)
+    }
+
+    /// Is a point in the bounding box, left and top borders with it, right and bottom ones without?
+    fn fills_box(&self, x: i64, y: i64) -> bool {
+        let within = |at: [i32; 3], p: i64| at.iter().any(|&k| i64::from(k) <= p) && at.iter().any(|&k| p < i64::from(k));
+        within(self.corners.map(|c| c.x), x) && within(self.corners.map(|c| c.y), y)
+    }
+
+    /// The nearest corner whose disc contains a point; of equally near ones the first in the order of the file.
+    pub(super) fn corner_under(&self, x: i64, y: i64, radius: i64) -> Option<usize> {
+        let contains = |corner: &SnappedVertex| {
+            let (dx, dy) = (x - i64::from(corner.x), y - i64::from(corner.y));
+            dx * dx + dy * dy <= radius * radius
+        };
+        let in_file_order = if self.is_turned { [0, 2, 1] } else { [0, 1, 2] };
+        let under = in_file_order.into_iter().filter(|&k| contains(&self.corners[k]));
+        under.reduce(|nearest, k| if self.corners[k].depth > self.corners[nearest].depth { k } else { nearest })
     }
 
     /// Depth is linear on screen: corner depths weighted by the doubled areas of the opposite parts, clamped to them.

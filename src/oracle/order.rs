@@ -7,11 +7,7 @@ use super::{
     rules::Rules,
 };
 use crate::{
-    effects::{
-        Stack,
-        draw_order::{DrawOrder, Mode},
-        hooks::Slot,
-    },
+    effects::{Stack, draw_order::Mode},
     frame::Geometry,
     scene::{Scene, camera::View, draw::Draw},
 };
@@ -28,20 +24,14 @@ pub struct Cut {
     pub total: u64,
 }
 
-/// The draw order of a stack, if it keeps one.
-pub fn draw_order(stack: &Stack) -> Option<DrawOrder> {
-    let enabled = stack.in_slot(Slot::Order)?;
-    Some(bytemuck::pod_read_unaligned(bytemuck::cast_slice(&enabled.words)))
-}
-
 /// May the adapter choose which samples it draws?
 pub fn is_free(stack: &Stack) -> bool {
-    draw_order(stack).is_some_and(|order| Mode::of(order.mode) == Mode::Scheduler)
+    stack.draw_order().is_some_and(|order| Mode::of(order.mode) == Mode::Scheduler)
 }
 
 /// Where the order of a stack stops the drawing of `drawn` triangles; none without an order.
 pub fn cut(stack: &Stack, rules: &Rules, drawn: &[OrientedTriangle], view: &View) -> Option<Cut> {
-    let order = draw_order(stack)?;
+    let order = stack.draw_order()?;
     let counts = counts(rules, drawn, view);
     let total = counts.iter().map(|(_, count)| count).sum();
     let limit = order.limit_of(total);
@@ -59,7 +49,7 @@ pub fn cut(stack: &Stack, rules: &Rules, drawn: &[OrientedTriangle], view: &View
 
 /// For every triangle of the scene, the share of all samples that come before it; empty where no order is kept.
 pub fn ranks(scene: &Scene, draws: &[Draw], view: &View, stack: &Stack, geometry: &Geometry) -> Vec<f64> {
-    if draw_order(stack).is_none() {
+    if stack.draw_order().is_none() {
         return Vec::new();
     }
     let (drawn, _) = triangles(scene, draws, geometry);
@@ -90,7 +80,7 @@ fn counts(rules: &Rules, drawn: &[OrientedTriangle], view: &View) -> Vec<(u32, u
 
 /// Pixels whose samples a triangle draws.
 fn samples<'a>(rules: &'a Rules, triangle: &'a OrientedTriangle, view: &View) -> impl Iterator<Item = usize> + 'a {
-    let (columns, rows) = triangle.bounds(view);
+    let (columns, rows) = triangle.bounds(view, rules);
     let width = view.width as usize;
     rows.flat_map(move |y| columns.clone().filter(move |&x| triangle.at(x, y, rules).is_some()).map(move |x| y * width + x))
 }

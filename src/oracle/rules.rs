@@ -7,7 +7,7 @@ use super::{
 use crate::{
     effects::{
         Stack,
-        hooks::{Sample, SampleHook},
+        hooks::{Sample, SampleHook, Shape},
     },
     frame::Geometry,
     scene::camera::View,
@@ -20,6 +20,10 @@ pub struct Rules<'a> {
     decisions: &'a [[u32; 4]],
     /// Effects that decide, and so decisions per entry.
     deciding: usize,
+    /// What triangles cover.
+    pub(super) shape: Shape,
+    /// Radius of discs about corners, units of 1/256 px.
+    pub(super) radius: i64,
     /// Where a draw order stops, in a picture so many pixels wide.
     cut: Option<(Cut, u32)>,
 }
@@ -43,7 +47,7 @@ impl<'a> Rules<'a> {
                 Link { hook, words, place }
             })
             .collect();
-        Self { effects, decisions: &geometry.decisions, deciding, cut: None }
+        Self { effects, decisions: &geometry.decisions, deciding, shape: stack.shape(), radius: stack.point_radius().into(), cut: None }
     }
 
     /// The same, up to where the draw order of `stack` stops the drawing of these triangles.

@@ -4,12 +4,12 @@ use glam::{DMat3, DVec2, DVec3, DVec4};
 use rayon::prelude::*;
 
 use super::{
-    coverage::{corner_records, doubled_area, draw_of, is_back},
+    coverage::{OrientedTriangle, corner_records, doubled_area, draw_of, is_back},
     order::ranks,
     project::{clip_position, gated_lane, object_position},
 };
 use crate::{
-    effects::{Stack, Surface},
+    effects::{Stack, Surface, hooks::Shape},
     frame::{Geometry, SnappedVertex, vertex_flags},
     math::srgb_byte,
     scene::{Accessor, Scene, camera::View, draw::Draw},
@@ -29,7 +29,7 @@ pub fn shade(scene: &Scene, draws: &[Draw], view: &View, stack: &Stack, owners: 
         let mut triangle: Option<Triangle> = None;
         let pixel = |(x, &owner): (usize, &u32)| {
             if triangle.as_ref().is_none_or(|triangle| triangle.owner != owner) {
-                triangle = draw_of(scene, draws, owner).and_then(|draw| Triangle::new(scene, draw, view, geometry, owner));
+                triangle = draw_of(scene, draws, owner).and_then(|draw| Triangle::new(scene, draw, view, stack, geometry, owner));
             }
             match &triangle {
                 Some(triangle) => {
@@ -74,11 +74,14 @@ struct Triangle {
     depths_m: [f64; 3],
     /// None where it lies behind the eye: then each sample takes its own place.
     center_screen: Option<DVec2>,
+    shape: Shape,
+    /// Where corners are drawn: their records, and the radius of their discs in units of 1/256 px.
+    disc: Option<([SnappedVertex; 3], i64)>,
 }
 
 impl Triangle {
     /// None for a triangle with a rejected corner, which owns nothing.
-    fn new(scene: &Scene, draw: &Draw, view: &View, geometry: &Geometry, owner: u32) -> Option<Self> {
+    fn new(scene: &Scene, draw: &Draw, view: &View, stack: &Stack, geometry: &Geometry, owner: u32) -> Option<Self> {
         let primitive = &scene.primitives[draw.primitive];
         let material = &scene.materials[primitive.material];
         let corners = primitive.corners(scene, owner - draw.first_triangle);
@@ -104,6 +107,8 @@ impl Triangle {
             flat_normal: plane_normal(object).and_then(|normal| (world_from_normal * normal).try_normalize()),
             depths_m: screen.depths_m,
             center_screen: screen.center,
+            shape: stack.shape(),
+            disc: (stack.shape() == Shape::Points).then_some((records, stack.point_radius().into())),
         })
     }
 
@@ -111,9 +116,18 @@ impl Triangle {
     fn surface(&self, view: &View, x: usize, y: usize) -> Surface {
         let pixel = DVec2::new(x as f64 + 0.5, y as f64 + 0.5);
         let screen = pixel / DVec2::new(view.width.into(), view.height.into());
-        let weights = self.weights.at(pixel, screen);
-        let (shares, edge_px) = self.weights.on_screen(pixel, screen, view);
-        let position = mixed(weights, self.positions);
+        let corner = self.disc.and_then(|(records, radius)| {
+            let at = pixel * 256.0;
+            OrientedTriangle::clockwise(self.owner, records).corner_under(at.x as i64, at.y as i64, radius)
+        });
+        let weights = self.weights.at(pixel, screen, self.shape, corner);
+        let (shares, edge_px) = self.weights.on_screen(pixel, screen, view, self.shape, corner);
+        let depth_m = mixed(weights, self.depths_m);
+        // Beyond the triangle only the ray of the pixel says where.
+        let position = match self.shape {
+            Shape::Triangles => mixed(weights, self.positions),
+            Shape::Boxes | Shape::Points => on_ray(view, screen, depth_m),
+        };
         let toward_eye = match view.linear_depth_m {
             Some(_) => -view.forward,
             None => (view.eye - position).try_normalize().unwrap_or(-view.forward),
@@ -131,7 +145,7 @@ impl Triangle {
             screen,
             shares,
             edge_px,
-            depth_m: mixed(weights, self.depths_m),
+            depth_m,
             flat_depth_m: self.depths_m.iter().sum::<f64>() / 3.0,
             range_m: DVec2::from_array(view.scene_range_m),
             owner: self.owner,
@@ -200,14 +214,13 @@ fn linear_depth(view: &View, depth: f64) -> Option<f64> {
 }
 
 impl Weights {
-    /// Shares of the corners at a pixel's centre, summing to 1; equal shares where the triangle has no extent.
-    fn at(&self, pixel: DVec2, screen: DVec2) -> [f64; 3] {
+    /// Shares of the corners at a pixel's centre, summing to 1; equal shares where the triangle has no extent. In a box no
+    /// share turns negative, and a disc is all its `corner`'s.
+    fn at(&self, pixel: DVec2, screen: DVec2, shape: Shape, corner: Option<usize>) -> [f64; 3] {
         let shares = match self {
             Self::Snapped(corners) => {
-                let p = pixel * 256.0;
-                let [a, b, c] = corners.map(|corner| corner.truncate() - p);
-                let [ia, ib, ic] = corners.map(|corner| corner.z);
-                [b.perp_dot(c) * ia, c.perp_dot(a) * ib, a.perp_dot(b) * ic]
+                let areas = areas(corners, pixel, shape, corner);
+                [0, 1, 2].map(|k| areas[k] * corners[k].z)
             }
             Self::Homogeneous(rows) => {
                 let p = DVec3::new(2.0 * screen.x - 1.0, 1.0 - 2.0 * screen.y, 1.0);
@@ -222,24 +235,45 @@ impl Weights {
 
     /// Shares of the corners on the screen (on its plane, of a triangle that was cut), and the distances of a pixel's
     /// centre from the edges opposite the corners, pixels.
-    fn on_screen(&self, pixel: DVec2, screen: DVec2, view: &View) -> (DVec3, DVec3) {
+    fn on_screen(&self, pixel: DVec2, screen: DVec2, view: &View, shape: Shape, corner: Option<usize>) -> (DVec3, DVec3) {
         match self {
             Self::Snapped(corners) => {
-                let p = pixel * 256.0;
                 let [a, b, c] = corners.map(|corner| corner.truncate());
-                let areas = [(b, c), (c, a), (a, b)].map(|(from, to)| (from - p).perp_dot(to - p));
+                let areas = areas(corners, pixel, shape, corner);
                 let lengths = [(b, c), (c, a), (a, b)].map(|(from, to)| (to - from).length());
                 let sum: f64 = areas.iter().sum();
-                let edge_px = [0, 1, 2].map(|k| areas[k].abs() / (256.0 * lengths[k]));
+                let edge_px = [0, 1, 2].map(|k| areas[k] / (256.0 * lengths[k]));
                 (DVec3::from_array(areas) / sum, DVec3::from_array(edge_px))
             }
             Self::Homogeneous(rows) => {
                 let p = DVec3::new(2.0 * screen.x - 1.0, 1.0 - 2.0 * screen.y, 1.0);
                 let steps = DVec2::new(2.0 / f64::from(view.width), 2.0 / f64::from(view.height));
                 let edge_px = rows.map(|row| p.dot(row).abs() / (row.truncate() * steps).length().max(1e-30));
-                (DVec3::from_array(self.at(pixel, screen)), DVec3::from_array(edge_px))
+                (DVec3::from_array(self.at(pixel, screen, shape, corner)), DVec3::from_array(edge_px))
             }
         }
+    }
+}
+
+/// Doubled areas opposite the corners at a pixel's centre, positive inside whichever way the triangle runs.
+fn areas(corners: &[DVec3; 3], pixel: DVec2, shape: Shape, corner: Option<usize>) -> [f64; 3] {
+    let p = pixel * 256.0;
+    let [a, b, c] = corners.map(|corner| corner.truncate() - p);
+    let areas = [b.perp_dot(c), c.perp_dot(a), a.perp_dot(b)];
+    let turn = areas.iter().sum::<f64>().signum();
+    match (shape, corner) {
+        (Shape::Points, Some(corner)) => [0, 1, 2].map(|k| f64::from(u8::from(k == corner))),
+        (Shape::Boxes, _) => areas.map(|area| (area * turn).max(0.0)),
+        _ => areas.map(|area| area * turn),
+    }
+}
+
+/// The point of the ray through a place of the picture at a depth along the viewing direction.
+fn on_ray(view: &View, screen: DVec2, depth_m: f64) -> DVec3 {
+    let aside = view.ndc_axes[0] * (2.0 * screen.x - 1.0) + view.ndc_axes[1] * (1.0 - 2.0 * screen.y);
+    match view.linear_depth_m {
+        None => view.eye + (view.forward + aside) * depth_m,
+        Some(_) => view.eye + aside + view.forward * depth_m,
     }
 }
 

@@ -2,11 +2,7 @@
 
 use std::fmt;
 
-use crate::effects::{
-    Effect, Stack,
-    draw_order::{DrawOrder, Mode},
-    hooks::Slot,
-};
+use crate::effects::{Effect, Stack, draw_order::Mode, hooks::Shape};
 
 /// Where depth and owner meet.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -50,6 +46,8 @@ pub enum Pass {
     /// At which pixel of that triangle the drawing stops.
     OrderCut,
     RasterSmall(Phase),
+    /// Corners as discs, instead of the triangles.
+    RasterPoints(Phase),
     Args,
     Clip,
     TileLarge,
@@ -96,10 +94,10 @@ pub enum Order {
 impl Order {
     /// The order that a stack keeps.
     pub fn of(stack: &Stack) -> Self {
-        match stack.in_slot(Slot::Order).map(|enabled| bytemuck::pod_read_unaligned::<DrawOrder>(bytemuck::cast_slice(&enabled.words))) {
+        match stack.draw_order().map(|order| Mode::of(order.mode)) {
             None => Self::Free,
-            Some(order) if Mode::of(order.mode) == Mode::Scheduler => Self::Scheduler,
-            Some(_) => Self::Submission,
+            Some(Mode::Submission) => Self::Submission,
+            Some(Mode::Scheduler) => Self::Scheduler,
         }
     }
 }
@@ -115,6 +113,7 @@ impl Pass {
             Self::OrderRanks => "order_ranks",
             Self::OrderCut => "order_cut",
             Self::RasterSmall(_) => "raster_small",
+            Self::RasterPoints(_) => "raster_points",
             Self::Args => "args",
             Self::Clip => "clip",
             Self::TileLarge => "tile_large",
@@ -135,7 +134,7 @@ impl Pass {
 
     pub const fn phase(self) -> Option<Phase> {
         match self {
-            Self::RasterSmall(phase) | Self::RasterMedium(phase) | Self::RasterLarge(phase) => Some(phase),
+            Self::RasterSmall(phase) | Self::RasterPoints(phase) | Self::RasterMedium(phase) | Self::RasterLarge(phase) => Some(phase),
             _ => None,
         }
     }
@@ -163,6 +162,8 @@ pub struct KernelKey {
     pub visibility: Visibility,
     /// Effects in stack order.
     pub effects: Vec<&'static Effect>,
+    /// What a triangle covers.
+    pub shape: Shape,
     /// Which samples are drawn.
     pub order: Order,
     /// A sample effect may leave samples out.
@@ -208,6 +209,7 @@ impl KernelKey {
         Self {
             fetch,
             visibility,
+            shape: Shape::Triangles,
             order: Order::Free,
             has_samples: effects.iter().any(|effect| effect.hooks.sample.is_some()),
             decisions: deciding(&effects),
@@ -276,7 +278,7 @@ impl KernelKey {
             passes.push(Pass::Decide(Entries::Triangles));
         }
         for (i, &phase) in phases.iter().enumerate() {
-            passes.push(Pass::RasterSmall(phase));
+            passes.push(if self.shape == Shape::Points { Pass::RasterPoints(phase) } else { Pass::RasterSmall(phase) });
             if i == 0 && self.has_clipping {
                 passes.extend([Pass::Args, Pass::Clip]);
             }
@@ -326,7 +328,7 @@ impl KernelKey {
             ("queues", format!("slots/queues/{queues}")),
             ("marks", format!("slots/marks/{marks}")),
             ("pixels", format!("slots/pixels/{pixels}")),
-            ("coverage", "slots/coverage/fixed8".into()),
+            ("coverage", format!("slots/coverage/{}", if self.shape == Shape::Boxes { "boxes" } else { "fixed8" })),
             ("owner", format!("slots/owner/{}", self.visibility.name())),
         ];
         if let Some(phase) = pass.phase() {
@@ -377,6 +379,7 @@ impl KernelKey {
             ("IS_STRAIGHT", flag(self.listed_tiles)),
             ("IS_PIECES", flag(pass == Pass::Decide(Entries::Pieces))),
             ("DECISIONS", self.decisions.into()),
+            ("SHAPE", (self.shape as u32).into()),
             ("LIST_GROUP", self.list_group.into()),
             ("TILE_SIDE", self.tile_side().into()),
             ("SMALL_SAMPLES", self.small_samples.into()),
@@ -405,6 +408,11 @@ impl fmt::Display for KernelKey {
             if is_on {
                 write!(f, " {name}")?;
             }
+        }
+        match self.shape {
+            Shape::Triangles => {}
+            Shape::Boxes => f.write_str(" shape=boxes")?,
+            Shape::Points => f.write_str(" shape=points")?,
         }
         match self.order {
             Order::Free => {}

@@ -23,3 +23,15 @@ impl Slot {
         }
     }
 }
+
+/// What a triangle covers.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+pub enum Shape {
+    /// Its own samples, by the top-left rule.
+    #[default]
+    Triangles,
+    /// Those of its bounding box.
+    Boxes,
+    /// Discs about its corners.
+    Points,
+}

@@ -1,0 +1,14 @@
+// Boxes: fills the whole bounding box of every triangle, as a rasterizer without its inside test would.
+//@ use common/surface
+
+struct Boxes {
+    tint: vec4f,
+}
+
+fn boxes(surface: Surface, p: Boxes) -> Surface {
+    var s = surface;
+    // Beyond the triangle at least one share is held at zero.
+    let is_beyond = min(min(s.shares.x, s.shares.y), s.shares.z) <= 0.0;
+    if is_beyond { s.color = vec4f(mix(s.color.rgb, p.tint.rgb, p.tint.a), s.color.a); }
+    return s;
+}

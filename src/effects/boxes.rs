@@ -1,0 +1,30 @@
+//! Boxes: fills the whole bounding box of every triangle, as a rasterizer without its inside test would.
+//!
+//! The box lies at the depth of the triangle's nearest corner, so that boxes hide each other one by one. Beyond the
+//! triangle its surface goes on as it is on the nearest edge.
+
+use glam::DVec3;
+
+use super::{Effect, Surface, SurfaceEffect, hooks::Slot};
+use crate::{params, params::Color};
+
+params! {
+    pub struct Boxes {
+        /// Colour of what lies beyond the triangle; the last lane is its share against the surface's own.
+        tint: Color = [1.0, 0.2, 0.1, 0.0];
+    }
+}
+
+pub const EFFECT: Effect =
+    Effect::new::<Boxes>("boxes", "Boxes", "fills the whole bounding box of every triangle").in_slot(Slot::Coverage).on_surface::<Boxes>();
+
+impl SurfaceEffect for Boxes {
+    fn apply(mut s: Surface, p: &Self) -> Surface {
+        // Beyond the triangle at least one share is held at zero.
+        if s.shares.min_element() <= 0.0 {
+            let [red, green, blue, share] = p.tint.map(f64::from);
+            s.color = s.color.truncate().lerp(DVec3::new(red, green, blue), share).extend(s.color.w);
+        }
+        s
+    }
+}

@@ -1,0 +1,23 @@
+//! Points: draws the corners of triangles as discs instead of the triangles.
+//!
+//! Integers decide: a sample belongs to a disc when its squared distance from the snapped corner is at most the squared
+//! radius. Corners of triangles that would have to be clipped are not drawn.
+
+use super::{Effect, hooks::Slot};
+use crate::params;
+
+params! {
+    pub struct Points {
+        /// Diameter of the discs.
+        size_px: f32 = 3.0, hard 0.0..=64.0, soft 0.5..=16.0, unit "px";
+    }
+}
+
+pub const EFFECT: Effect = Effect::new::<Points>("points", "Points", "draws the corners of triangles as discs").in_slot(Slot::Coverage);
+
+impl Points {
+    /// Radius in units of 1/256 px.
+    pub fn radius(&self) -> u32 {
+        (f64::from(self.size_px) * 128.0).round_ties_even() as u32
+    }
+}
