@@ -19,7 +19,7 @@ use rasterlab::{
         Scene,
         camera::{Camera, Projection, View},
     },
-    shader::{key::Visibility, library::Library},
+    shader::key::Visibility,
 };
 
 #[test]
@@ -345,38 +345,17 @@ fn mutants() -> Vec<Mutant> {
 const GRAPHICS_CARD: Tuning =
     Tuning { small_samples: 64, small_side: 32, list_group: 256, listed_tiles: false, early_load: true, specialized: true };
 
-fn copy_shaders(from: &Path, to: &Path) {
-    fs::create_dir_all(to).expect("a folder for shaders");
-    for entry in fs::read_dir(from).expect("shaders/ can be read") {
-        let path = entry.expect("shaders/ can be read").path();
-        let target = to.join(path.file_name().expect("a name"));
-        if path.is_dir() {
-            copy_shaders(&path, &target);
-        } else {
-            fs::copy(&path, target).expect("a shader is copied");
-        }
-    }
-}
-
 #[test]
 fn kernels_with_a_mistake_are_caught() {
     let Some(mut healthy) = renderer() else { return };
     healthy.set_tuning(GRAPHICS_CARD);
-    let shaders = Path::new(env!("CARGO_MANIFEST_DIR")).join("shaders");
-    let folder = tempfile::tempdir().expect("a temporary folder");
     let mut failures = Vec::new();
-    for (i, mutant) in mutants().into_iter().enumerate() {
+    for mutant in mutants() {
         let Mutant { what, scene, view, rung, shown_by: (figure, shown_by), .. } = &mutant;
         exact(&mut healthy, scene, view, &stack(&[]), &pinned(*rung), &format!("without the mistake: {what}"));
 
-        let library = folder.path().join(i.to_string());
-        copy_shaders(&shaders, &library);
-        let file = library.join(format!("{}.wgsl", mutant.file));
-        let text = fs::read_to_string(&file).expect("a shader is text");
-        assert_eq!(text.matches(mutant.from).count(), 1, "{what}: {:?} is not once in {}", mutant.from, mutant.file);
-        fs::write(&file, text.replace(mutant.from, mutant.to)).expect("a shader is written");
-
-        let mut wrong = Renderer::with_library(healthy.gpu().clone(), Library::Folder(library));
+        let library = mutated(mutant.file, mutant.from, mutant.to);
+        let mut wrong = Renderer::with_library(healthy.gpu().clone(), library.shaders());
         wrong.set_tuning(GRAPHICS_CARD);
         let (_, verdict) = judged(&mut wrong, scene, view, &stack(&[]), &pinned(*rung));
         eprintln!("{what}: {}", exactness(&verdict.accuracy).err().unwrap_or_default());

@@ -1,7 +1,11 @@
 //! What GPU tests share: the adapter (never silently missing), scenes by query, pictures with their verdict.
 #![allow(dead_code, reason = "each test file uses its own part")]
 
-use std::sync::{Arc, Mutex, MutexGuard, OnceLock};
+use std::{
+    fs,
+    path::Path,
+    sync::{Arc, Mutex, MutexGuard, OnceLock},
+};
 
 use glam::{DMat4, DVec3, DVec4};
 use rasterlab::{
@@ -17,7 +21,7 @@ use rasterlab::{
         draw::draws,
     },
     session::{SceneSource, Session},
-    shader::key::Visibility,
+    shader::{key::Visibility, library::Library},
 };
 
 /// A scene of every builtin: together they take each path through the kernels.
@@ -143,6 +147,41 @@ pub fn tunings() -> [Tuning; 4] {
         early_load: listed_tiles,
         specialized: true,
     })
+}
+
+// ---------------------------------------------------------------- mutants
+
+/// Shaders with one mistake, in a folder that lasts as long as this.
+pub struct Mutated(tempfile::TempDir);
+
+impl Mutated {
+    pub fn shaders(&self) -> Library {
+        Library::Folder(self.0.path().into())
+    }
+}
+
+/// The project's shaders with `from`, which stands in `file` exactly once, replaced by `to`.
+pub fn mutated(file: &str, from: &str, to: &str) -> Mutated {
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    copy_folder(&Path::new(env!("CARGO_MANIFEST_DIR")).join("shaders"), folder.path());
+    let path = folder.path().join(format!("{file}.wgsl"));
+    let text = fs::read_to_string(&path).unwrap_or_else(|error| panic!("{file}: {error}"));
+    assert_eq!(text.matches(from).count(), 1, "{from:?} is not once in {file}");
+    fs::write(&path, text.replace(from, to)).expect("a shader is written");
+    Mutated(folder)
+}
+
+fn copy_folder(from: &Path, to: &Path) {
+    fs::create_dir_all(to).expect("a folder for shaders");
+    for entry in fs::read_dir(from).expect("shaders/ can be read") {
+        let path = entry.expect("shaders/ can be read").path();
+        let target = to.join(path.file_name().expect("a name"));
+        if path.is_dir() {
+            copy_folder(&path, &target);
+        } else {
+            fs::copy(&path, target).expect("a shader is copied");
+        }
+    }
 }
 
 // ---------------------------------------------------------------- near misses
