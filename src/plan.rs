@@ -121,7 +121,9 @@ pub struct Plan {
 /// When the look pins a rung that the adapter lacks, or two effects take one slot.
 pub fn plan(needs: &Needs, stack: &Stack, caps: &Caps, tuning: &Tuning, accuracy: &Accuracy) -> Result<Plan, PlanError> {
     stack.check()?;
-    let needs = &if tuning.specialized { needs.clone() } else { needs.everything() };
+    let needs = if tuning.specialized { needs.clone() } else { needs.everything() };
+    // Bounds of the scene say nothing of where effects move it, nor its normals of how they turn them.
+    let needs = &if stack.moves() { Needs { clipping: true, largest_px: f64::INFINITY, sound_normals: false, ..needs } } else { needs };
     let visibility = match accuracy.visibility {
         Some(Visibility::Packed64) if !caps.int64_atomics => return Err(PlanError::Lacking),
         Some(pinned) => pinned,
@@ -172,7 +174,7 @@ fn explain(needs: &Needs, is_usual: bool, caps: &Caps, accuracy: &Accuracy, key:
         Visibility::Split32 => "the adapter has no 64-bit atomics: depth first, then the owner; nothing is lost",
     };
     let bound = if needs.clipping { "clipping leaves it open".into() } else { format!("no triangle exceeds {:.1} px", needs.largest_px) };
-    let reasons = vec![
+    let mut reasons = vec![
         note("visibility", pinned.unwrap_or(chosen)),
         note("coverage", "fixed8: exact 16.8 top-left edges, holes and double hits are impossible"),
         note("fetch", if needs.indexed { "the scene has index lists" } else { "no primitive has indices" }),
@@ -189,7 +191,14 @@ fn explain(needs: &Needs, is_usual: bool, caps: &Caps, accuracy: &Accuracy, key:
             ),
         ),
     ];
+    if key.moves() {
+        let why = if key.parts_corners() { "triangles part, three projected records each" } else { "triangles keep sharing vertices" };
+        let movers: Vec<_> = key.effects.iter().filter(|effect| effect.hooks.vertex.is_some()).map(|effect| effect.name).collect();
+        reasons.push(note("movement", format!("vertices are moved by {}: {why}", movers.join(", "))));
+    }
     let parts = [
+        ("vertex effects", key.moves(), "no effect of the stack moves a vertex".to_owned()),
+        ("corners of their own", key.parts_corners(), "no effect parts triangles, so neighbours share projected vertices".into()),
         ("clip", key.has_clipping, "the scene's box lies behind the near plane and inside the guard band".to_owned()),
         ("raster_medium", key.has_medium, bound.clone()),
         ("tile_large, raster_large", key.has_large, bound),

@@ -18,7 +18,7 @@ macro_rules! effects {
     };
 }
 
-effects![facet, triangle_id, normals, depth, lambert];
+effects![explode, inflate, wobble, facet, triangle_id, normals, depth, lambert];
 
 /// One entry of the catalogue.
 pub struct Effect {
@@ -56,7 +56,7 @@ impl Effect {
         self.hooks.vertex = Some(VertexHook {
             needs_triangle: P::NEEDS_TRIANGLE,
             moved: |vertex, words| P::moved(vertex, &read(words)),
-            slack_m: |vertex, words| P::slack_m(vertex, &read(words)),
+            slack: |vertex, slack, words| P::slack(vertex, slack, &read(words)),
         });
         self
     }
@@ -186,6 +186,14 @@ impl Stack {
     /// Moves a vertex by every vertex effect in order.
     pub fn moved(&self, vertex: hooks::Vertex) -> hooks::Vertex {
         self.each(|hooks| hooks.vertex).fold(vertex, |vertex, (hook, words)| (hook.moved)(vertex, words))
+    }
+
+    /// How far an f32 twin of [`Stack::moved`] may err, given the slack of what it starts from.
+    pub fn slack(&self, vertex: hooks::Vertex, slack: hooks::Slack) -> hooks::Slack {
+        let each = self.each(|hooks| hooks.vertex);
+        each.fold((vertex, slack), |(vertex, slack), (hook, words)| {
+            ((hook.moved)(vertex, words), (hook.slack)(&vertex, slack, words))
+        }).1
     }
 
     /// Finishes a pixel by every image effect in order.

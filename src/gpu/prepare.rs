@@ -36,7 +36,8 @@ impl Renderer {
         let mut records: Vec<DrawRecord> = draws.iter().map(|draw| DrawRecord::new(draw, &scene)).collect();
         // A binding holds an element at least, even where nothing is to be drawn.
         records.resize(draws.len().max(1), DrawRecord::default());
-        let uniform = FrameUniform::new(view, &scene, draws.len(), &recorded);
+        let vertex_records = record_count(key, &scene);
+        let uniform = FrameUniform { vertex_count: vertex_records as u32, ..FrameUniform::new(view, &scene, draws.len(), &recorded) };
         let parameters = uniform_bytes(&stack.0);
         buffers.keep(|name| match name {
             "queues" => key.has_queues(),
@@ -60,7 +61,7 @@ impl Renderer {
         if !parameters.is_empty() {
             buffers.fill(gpu, "effects", &parameters, wgpu::BufferUsages::UNIFORM, "parameters of the stack")?;
         }
-        buffers.ensure(gpu, "vertices", 16 * scene.vertex_count(), STORAGE, "projected vertices, 16 bytes each")?;
+        buffers.ensure(gpu, "vertices", 16 * vertex_records, STORAGE, "projected vertices, 16 bytes each")?;
         buffers.ensure(gpu, "counters", 64, STORAGE, "queue demand and what was not drawn")?;
         if key.has_queues() {
             buffers.ensure(
@@ -97,6 +98,11 @@ impl Renderer {
         }
         Ok(plan)
     }
+}
+
+/// Projected records of a picture: one per vertex of each draw, or three per triangle where effects part them.
+pub fn record_count(key: &KernelKey, scene: &Scene) -> u64 {
+    if key.parts_corners() { 3 * scene.triangle_count() } else { scene.vertex_count() }
 }
 
 /// Rows that the background buffer holds.

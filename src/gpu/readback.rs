@@ -7,6 +7,7 @@ use std::sync::{
 
 use super::{
     Demand, Gpu, RenderError, Renderer, STORAGE, buffers,
+    prepare::record_count,
     timer::{Timer, Times},
 };
 use crate::{
@@ -133,7 +134,7 @@ impl Renderer {
 
     fn read_geometry(&self, key: &KernelKey) -> Result<Geometry, RenderError> {
         let scene = self.scene.as_ref().ok_or(RenderError::NoScene)?;
-        let words = self.words("vertices", 4 * scene.vertex_count())?;
+        let words = self.words("vertices", 4 * record_count(key, scene))?;
         let vertices = words.chunks_exact(4).map(vertex).collect();
         let mut pieces = Vec::new();
         if key.has_clipping {
@@ -147,7 +148,7 @@ impl Renderer {
             found.sort_by_key(|(parent, place, _)| (*parent, *place));
             pieces = found.into_iter().map(|(_, _, piece)| piece).collect();
         }
-        Ok(Geometry { vertices, pieces })
+        Ok(Geometry { vertices, pieces, has_own_corners: key.parts_corners() })
     }
 
     /// Runs the raster passes once more into a counter per pixel.

@@ -5,18 +5,19 @@
 //! renderers it judges, and no line of their code: neither shader text nor planner, no SIMD maths where something is
 //! decided, no platform maths function. Work is parallel by rows and triangles; no result depends on the order of threads.
 //!
-//! [`project`] snaps vertices and clips triangles, [`triangles`] assembles and turns them, [`cover`] finds who owns each
+//! [`project_moved`] moves and snaps vertices and clips triangles, [`triangles`] assembles and turns them, [`cover`] finds who owns each
 //! sample, [`shade`] colours it, and [`judge`] holds a frame that an adapter drew against all of that.
 
 mod clip;
 mod coverage;
 mod judge;
+mod moved;
 mod project;
 mod surface;
 
 pub use coverage::{Coverage, OrientedTriangle, Sample, cover, depth_bound, owns, triangles};
 pub use judge::judge;
-pub use project::project;
+pub use project::{project, project_moved};
 pub use surface::shade;
 
 use crate::{
@@ -38,7 +39,7 @@ pub fn render(scene: &Scene, view: &View, stack: &Stack) -> Result<Frame, DrawEr
     if view.pixels() == 0 {
         return Ok(empty(view));
     }
-    let geometry = project(scene, &draws, view);
+    let geometry = project_moved(scene, &draws, view, stack);
     let (triangles, counters) = triangles(scene, &draws, &geometry);
     let coverage = cover(&triangles, view, None);
     let owner = coverage.owners();
