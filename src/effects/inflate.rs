@@ -16,7 +16,8 @@ params! {
 }
 
 pub const EFFECT: Effect =
-    Effect::new::<Inflate>("inflate", "Inflate", "moves every vertex along its own normal: the model swells or shrinks").on_vertex::<Inflate>();
+    Effect::new::<Inflate>("inflate", "Inflate", "moves every vertex along its own normal: the model swells or shrinks")
+        .on_vertex::<Inflate>();
 
 impl VertexEffect for Inflate {
     const NEEDS_TRIANGLE: bool = false;

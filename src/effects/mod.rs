@@ -191,9 +191,7 @@ impl Stack {
     /// How far an f32 twin of [`Stack::moved`] may err, given the slack of what it starts from.
     pub fn slack(&self, vertex: hooks::Vertex, slack: hooks::Slack) -> hooks::Slack {
         let each = self.each(|hooks| hooks.vertex);
-        each.fold((vertex, slack), |(vertex, slack), (hook, words)| {
-            ((hook.moved)(vertex, words), (hook.slack)(&vertex, slack, words))
-        }).1
+        each.fold((vertex, slack), |(vertex, slack), (hook, words)| ((hook.moved)(vertex, words), (hook.slack)(&vertex, slack, words))).1
     }
 
     /// Finishes a pixel by every image effect in order.

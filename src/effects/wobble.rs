@@ -31,8 +31,7 @@ params! {
     }
 }
 
-pub const EFFECT: Effect =
-    Effect::new::<Wobble>("wobble", "Wobble", "a wave runs through the model and sways it").on_vertex::<Wobble>();
+pub const EFFECT: Effect = Effect::new::<Wobble>("wobble", "Wobble", "a wave runs through the model and sways it").on_vertex::<Wobble>();
 
 /// Below this squared length a turned normal has no direction and stays as it was.
 const DEGENERATE: f64 = 1e-12;

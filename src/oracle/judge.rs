@@ -10,7 +10,7 @@ use super::{
     coverage::{Coverage, Sample, corner_places, corner_records, cover, draw_of, triangles},
     empty, frame,
     moved::{Corner, Mover},
-    project::{half_size, project_moved},
+    project::{Clip, half_size, project_moved},
     surface::shade,
 };
 use crate::{
@@ -130,14 +130,7 @@ fn judge_vertices(accuracy: &mut Accuracy, faults: &[VertexFault]) {
     }
 }
 
-fn vertex_faults(
-    scene: &Scene,
-    draws: &[Draw],
-    view: &View,
-    stack: &Stack,
-    adapter: &Geometry,
-    own: &Geometry,
-) -> Vec<VertexFault> {
+fn vertex_faults(scene: &Scene, draws: &[Draw], view: &View, stack: &Stack, adapter: &Geometry, own: &Geometry) -> Vec<VertexFault> {
     let of_draw = |draw: &Draw| {
         let mover = Mover::new(scene, draw, view, stack);
         let fault = |(i, corner)| {
@@ -149,6 +142,25 @@ fn vertex_faults(
     draws.iter().flat_map(of_draw).collect()
 }
 
+/// How far a float renderer may place every record from [`project_moved`], in units of 1/256 px and before it rounds; none
+/// where rounding may move it anywhere.
+pub fn snap_bounds(scene: &Scene, draws: &[Draw], view: &View, stack: &Stack) -> Vec<Option<[f64; 2]>> {
+    let of_draw = |draw: &Draw| {
+        let mover = Mover::new(scene, draw, view, stack);
+        let bound = |corner| snap_bound(&mover.clip(corner).ok()?, mover.clip_errors(corner).1, view);
+        mover.corners().into_iter().map(bound).collect::<Vec<_>>()
+    };
+    draws.iter().flat_map(of_draw).collect()
+}
+
+/// Bound of a snapped position, given those of its clip coordinates; none where w is not known to a sixteenth.
+fn snap_bound(clip: &Clip, [ex, ey, _, ew]: [f64; 4], view: &View) -> Option<[f64; 2]> {
+    let w = clip.w.abs();
+    let [half_x, half_y] = half_size(view).map(f64::from);
+    let bound = |half: f64, e: f64, c: f64| half * (e / w + (ew / w + 4.5 * ULP) * (c / w).abs());
+    (ew <= w / 16.0).then(|| [bound(half_x, ex, clip.x), bound(half_y, ey, clip.y)])
+}
+
 /// Holds one record against the truth by a forward error bound that covers every rounding, order and fusion WGSL allows.
 fn vertex_fault(mover: &Mover, view: &View, corner: Corner, adapter: &SnappedVertex, own: &SnappedVertex) -> VertexFault {
     let Ok(clip) = mover.clip(corner) else {
@@ -156,17 +168,16 @@ fn vertex_fault(mover: &Mover, view: &View, corner: Corner, adapter: &SnappedVer
         let is_rejected_alike = adapter.flags & vertex_flags::REJECTED != 0 && is_nonfinite(adapter) == is_nonfinite(own);
         return VertexFault { snap_is_outside: !is_rejected_alike, ..Default::default() };
     };
-    let ([_, _, sz, sw], [ex, ey, ez, ew]) = mover.clip_errors(corner);
+    let ([_, _, sz, sw], errors) = mover.clip_errors(corner);
+    let [_, _, ez, ew] = errors;
     let w = clip.w.abs();
-    if ew > w / 16.0 || (clip.w - clip.z).abs() <= ez + ew && adapter.flags != own.flags {
+    let Some(bounds) = snap_bound(&clip, errors, view) else {
+        return VertexFault { is_ill_conditioned: true, ..Default::default() };
+    };
+    if (clip.w - clip.z).abs() <= ez + ew && adapter.flags != own.flags {
         return VertexFault { is_ill_conditioned: true, ..Default::default() };
     }
-    let [half_x, half_y] = half_size(view).map(f64::from);
-    let bound = |half: f64, e: f64, c: f64| {
-        let bound = half * (e / w + (ew / w + 4.5 * ULP) * (c / w).abs());
-        if bound < 1.0 { 1.0 } else { (1.0 + bound).floor() }
-    };
-    let (bound_x, bound_y) = (bound(half_x, ex, clip.x), bound(half_y, ey, clip.y));
+    let [bound_x, bound_y] = bounds.map(|bound| if bound < 1.0 { 1.0 } else { (1.0 + bound).floor() });
     if adapter.flags != own.flags {
         let is_near_guard = |at: i32, bound: f64| f64::from(at.abs().abs_diff(GUARD_BAND)) <= bound + 1.0;
         let differs = adapter.flags ^ own.flags;

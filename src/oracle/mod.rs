@@ -16,7 +16,7 @@ mod project;
 mod surface;
 
 pub use coverage::{Coverage, OrientedTriangle, Sample, cover, depth_bound, owns, triangles};
-pub use judge::judge;
+pub use judge::{judge, snap_bounds};
 pub use project::{project, project_moved};
 pub use surface::shade;
 

@@ -12,7 +12,11 @@ use crate::{
         hooks::{ROUNDING, Slack, Vertex},
     },
     math::rounded_columns,
-    scene::{Scene, camera::View, draw::{Draw, MAX_MAGNITUDE}},
+    scene::{
+        Scene,
+        camera::View,
+        draw::{Draw, MAX_MAGNITUDE},
+    },
 };
 
 /// A corner of a draw's triangle, both counted within the draw. Where triangles share vertices, any triangle will do.

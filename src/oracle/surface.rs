@@ -28,7 +28,8 @@ pub fn shade(scene: &Scene, draws: &[Draw], view: &View, stack: &Stack, owners: 
         let mut triangle: Option<Triangle> = None;
         let pixel = |(x, &owner): (usize, &u32)| {
             if triangle.as_ref().is_none_or(|triangle| triangle.owner != owner) {
-                triangle = draw_of(scene, draws, owner).and_then(|draw| Triangle::new(&Mover::new(scene, draw, view, stack), scene, view, geometry, owner));
+                triangle = draw_of(scene, draws, owner)
+                    .and_then(|draw| Triangle::new(&Mover::new(scene, draw, view, stack), scene, view, geometry, owner));
             }
             match &triangle {
                 Some(triangle) => encoded(stack.shade(triangle.surface(view, x, y)).color),
