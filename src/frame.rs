@@ -47,8 +47,11 @@ pub struct Piece {
 /// Everything the rasterizer proper sees: what stands between the float vertex stage and integer coverage.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Geometry {
-    /// One per vertex of each draw, in draw order (`Draw::first_vertex` indexes it).
+    /// One per vertex of each draw, in draw order (`Draw::first_vertex` indexes it); or, with `has_own_corners`, three per
+    /// triangle in order of their ids.
     pub vertices: Vec<SnappedVertex>,
+    /// Effects part the triangles, so that they share no vertices.
+    pub has_own_corners: bool,
     /// Fan pieces of clipped triangles; pieces of one parent stand in fan order.
     pub pieces: Vec<Piece>,
     /// What sample effects settled: for every triangle by id, then for every piece, one entry per effect that decides.

@@ -77,6 +77,20 @@ pub fn hash_unit(x: u32) -> f64 {
     f64::from(hash(x) >> 8) / f64::from(1 << 24)
 }
 
+/// Sine of an angle in turns, which are reduced first, so that whole turns cost no precision.
+pub fn sin_turns(turns: f64) -> f64 {
+    libm::sin((turns - turns.round()) * std::f64::consts::TAU)
+}
+
+/// Cosine of an angle in turns.
+pub fn cos_turns(turns: f64) -> f64 {
+    libm::cos((turns - turns.round()) * std::f64::consts::TAU)
+}
+
+/// Bound of the error of `shaders/common/sine.wgsl`, given its argument: the polynomial's 3.4e-9 (Remez, degree 9 on a
+/// quarter turn) and ten roundings of terms whose magnitudes sum to 2.4.
+pub const SINE_SLACK: f64 = 24.0 / (1 << 23) as f64;
+
 #[cfg(test)]
 mod tests {
     use super::*;

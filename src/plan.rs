@@ -123,6 +123,10 @@ pub fn plan(needs: &Needs, stack: &Stack, caps: &Caps, tuning: &Tuning, accuracy
     stack.check()?;
     let shape = stack.shape();
     let mut needs = if tuning.specialized { needs.clone() } else { needs.everything() };
+    if stack.moves() {
+        // Bounds of the scene say nothing of where effects move it, nor its normals of how they turn them.
+        needs = Needs { clipping: true, largest_px: f64::INFINITY, sound_normals: false, ..needs };
+    }
     if shape == Shape::Points {
         // Discs are small, and triangles that would be clipped show none.
         (needs.clipping, needs.largest_px) = (false, 0.0);
@@ -183,7 +187,7 @@ fn explain(needs: &Needs, is_usual: bool, caps: &Caps, accuracy: &Accuracy, key:
         Visibility::Split32 => "the adapter has no 64-bit atomics: depth first, then the owner; nothing is lost",
     };
     let bound = if needs.clipping { "clipping leaves it open".into() } else { format!("no triangle exceeds {:.1} px", needs.largest_px) };
-    let reasons = vec![
+    let mut reasons = vec![
         note("visibility", pinned.unwrap_or(chosen)),
         note(
             "coverage",
@@ -207,7 +211,14 @@ fn explain(needs: &Needs, is_usual: bool, caps: &Caps, accuracy: &Accuracy, key:
             ),
         ),
     ];
+    if key.moves() {
+        let why = if key.parts_corners() { "triangles part, three projected records each" } else { "triangles keep sharing vertices" };
+        let movers: Vec<_> = key.effects.iter().filter(|effect| effect.hooks.vertex.is_some()).map(|effect| effect.name).collect();
+        reasons.push(note("movement", format!("vertices are moved by {}: {why}", movers.join(", "))));
+    }
     let parts = [
+        ("vertex effects", key.moves(), "no effect of the stack moves a vertex".to_owned()),
+        ("corners of their own", key.parts_corners(), "no effect parts triangles, so neighbours share projected vertices".into()),
         ("clip", key.has_clipping, "the scene's box lies behind the near plane and inside the guard band".to_owned()),
         ("raster_medium", key.has_medium, bound.clone()),
         ("tile_large, raster_large", key.has_large, bound),

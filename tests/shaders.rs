@@ -67,7 +67,11 @@ fn every_effect_alone_in_pairs_and_all_together_validates() {
         stacks.extend(EFFECTS.iter().filter(|b| *b != a).map(|b| vec![*a, *b]));
     }
     for effects in stacks {
-        validate(&key(Fetch::Indexed, Visibility::Split32, true, effects), Pass::Resolve);
+        let key = key(Fetch::Indexed, Visibility::Split32, true, effects);
+        for pass in all_passes(&key) {
+            let storage = validate(&key, pass);
+            assert!(storage <= 8, "{} of {key} binds {storage} storage buffers", pass.label());
+        }
     }
 }
 
@@ -78,6 +82,32 @@ fn an_empty_stack_leaves_no_trace_of_effects() {
     let reflected = reflect::reflect(&linked, false).expect("valid");
     assert!(reflected.bindings("resolve").iter().all(|b| b.name != "effects"));
     assert!(!linked.text.contains("struct Effects"));
+}
+
+#[test]
+fn a_stack_that_moves_nothing_leaves_no_trace_of_movement() {
+    for effects in [vec![], EFFECTS.iter().copied().filter(|effect| effect.hooks.vertex.is_none()).collect()] {
+        let key = key(Fetch::Indexed, Visibility::Split32, true, effects);
+        assert!(!key.to_string().contains("moved"), "{key}");
+        for pass in all_passes(&key) {
+            let text = linked(&key, pass).text;
+            for trace in ["struct Vertex", "glue_vertex", "movement_corner"] {
+                assert!(!text.contains(trace), "{}: {trace}", pass.label());
+            }
+        }
+    }
+}
+
+#[test]
+fn triangles_that_stay_together_share_their_vertices() {
+    let effect = |name: &str| Effect::find(name).expect("a listed effect");
+    for (name, has_own_corners) in [("inflate", false), ("wobble", false), ("explode", true)] {
+        let key = key(Fetch::Indexed, Visibility::Split32, true, vec![effect(name)]);
+        assert!(key.moves() && key.parts_corners() == has_own_corners, "{name}");
+        let project = linked(&key, Pass::Project);
+        let reads_indices = reflect::reflect(&project, false).expect("valid").bindings("project").iter().any(|b| b.name == "index_bytes");
+        assert_eq!(reads_indices, has_own_corners, "{name}: the projection looks up triangles only where it must");
+    }
 }
 
 #[test]

@@ -4,12 +4,13 @@
 //@ use common/transform
 //@ use common/center
 //@ use common/fixed
-//@ use common/shape
+//@ use common/normal
+//@ use common/reach
 //@ use common/points
 //@ use common/surface
+//@ use slot/shape
 //@ use slot/ranks
 
-override F32_NORMALS: bool = false;
 override HAS_COLORS: bool = false;
 override HAS_CLIPPING: bool = false;
 // Plane normals and centres are computed; without them every corner normal is known to be sound.
@@ -47,7 +48,7 @@ fn place_whole(t: Triangle, pixel: vec2u) -> Place {
     let weights = share / sum;
     let depth = select(dot(weights, depths), doubled_area / sum, IS_PERSPECTIVE);
     let lengths = vec3f(length(vec2f(c - b)), length(vec2f(a - c)), length(vec2f(b - a)));
-    return Place(weights, depth, depths, center_whole(t), e / doubled_area, abs(e) / (256.0 * lengths), doubled_area > 0.0);
+    return Place(weights, depth, depths, center_whole(t.a, t.b, t.c), e / doubled_area, abs(e) / (256.0 * lengths), doubled_area > 0.0);
 }
 
 // Edge functions of a sample that need not lie in its triangle: in a box none turns negative, a disc is its corner's.
@@ -66,9 +67,9 @@ fn linear_depths(z: vec3f) -> vec3f {
 
 // A clipped triangle has no snapped corners: homogeneous barycentrics (Olano and Greer 1997).
 fn place_clipped(t: Triangle, at: vec3u, pixel: vec2u) -> Place {
-    let a = transform_vertex(t.draw, at.x);
-    let b = transform_vertex(t.draw, at.y);
-    let c = transform_vertex(t.draw, at.z);
+    let a = transform_vertex(t.draw, at.x, t.id);
+    let b = transform_vertex(t.draw, at.y, t.id);
+    let c = transform_vertex(t.draw, at.z, t.id);
     let sample = (vec2f(pixel) + 0.5) / vec2f(frame.size);
     let p = vec3f(sample.x * 2.0 - 1.0, 1.0 - sample.y * 2.0, 1.0);
     // Counter-clockwise in clip space, y up, is a positive determinant, which all shares inside take their sign from. A
@@ -87,22 +88,6 @@ fn place_clipped(t: Triangle, at: vec3u, pixel: vec2u) -> Place {
     return Place(weights, dot(weights, depths), depths, center_clipped(a, b, c, sample), weights, edge_px, is_clockwise);
 }
 
-// A stored normal, as bits.
-fn normal_bits(draw: u32, vertex: u32) -> vec3u {
-    let byte = draws[draw].normal_offset + vertex * draws[draw].normal_stride;
-    if F32_NORMALS {
-        let word = byte / 4u;
-        return vec3u(vertex_bytes[word], vertex_bytes[word + 1u], vertex_bytes[word + 2u]);
-    }
-    return pull_bits3(draws[draw].normal_format, byte);
-}
-
-// A normal from its bits; w is 0 where a lane is NaN, infinite or beyond 2^40.
-fn gated(bits: vec3u) -> vec4f {
-    let gate = vertex_gate(bits);
-    return vec4f(vertex_position(bits, gate), select(0.0, 1.0, gate == 0u));
-}
-
 // White where a lane is NaN, infinite or beyond 2^40.
 fn color_of(draw: u32, vertex: u32) -> vec4f {
     let format = draws[draw].color_format;
@@ -113,34 +98,6 @@ fn color_of(draw: u32, vertex: u32) -> vec4f {
     let bits = bitcast<vec4u>(vec4f(rgb, alpha));
     let gate = vertex_gate(bits.rgb) | vertex_gate(bits.aaa);
     return select(vec4f(1.0), vec4f(vertex_position(bits.rgb, gate), vertex_position(bits.aaa, gate).x), gate == 0u);
-}
-
-// Direction of `v`, whatever its length; zero where it has none.
-fn direction(v: vec3f) -> vec3f {
-    let scale = max(max(abs(v.x), abs(v.y)), abs(v.z));
-    if !(scale > 0.0) || !pull_is_finite(v) { return vec3f(0.0); }
-    let scaled = v / scale;
-    return scaled / length(scaled);
-}
-
-// Direction of the plane's normal in object space; zero for a sliver whose edges are parallel to within 1e-6.
-fn plane_normal(a: vec3f, b: vec3f, c: vec3f) -> vec3f {
-    let ab = b - a;
-    let ac = c - a;
-    let long = max(max(abs(ab.x), abs(ab.y)), abs(ab.z));
-    let wide = max(max(abs(ac.x), abs(ac.y)), abs(ac.z));
-    if !(long > 0.0 && wide > 0.0) { return vec3f(0.0); }
-    let normal = cross(ab / long, ac / wide);
-    return select(vec3f(0.0), normal, dot(normal, normal) >= 1e-12);
-}
-
-// Interpolated normal in object space; zero where a corner has none or the corners cancel.
-fn smooth_normal(a: vec4f, b: vec4f, c: vec4f, k: vec3f) -> vec3f {
-    let longest = max(max(abs(a.xyz), abs(b.xyz)), abs(c.xyz));
-    let scale = max(max(longest.x, longest.y), longest.z);
-    if a.w * b.w * c.w == 0.0 || scale == 0.0 { return vec3f(0.0); }
-    let sum = (a.xyz * k.x + b.xyz * k.y + c.xyz * k.z) / scale;
-    return select(vec3f(0.0), sum, dot(sum, sum) >= 1e-12);
 }
 
 fn shade_surface(id: u32, pixel: vec2u) -> Surface {
@@ -189,12 +146,13 @@ fn shade_surface(id: u32, pixel: vec2u) -> Surface {
         s.normal = normalize((normal_from_object * vec4f(sum, 0.0)).xyz);
         s.flat_normal = s.normal;
     } else {
-        s.normal = direction((normal_from_object * vec4f(smooth_normal(gated(na), gated(nb), gated(nc), k), 0.0)).xyz);
+        s.normal = normal_direction((normal_from_object * vec4f(normal_mixed(normal_gated(na), normal_gated(nb), normal_gated(nc), k), 0.0)).xyz);
         let a = vertex_position(transform_bits(t.draw, at.x), 0u);
         let b = vertex_position(transform_bits(t.draw, at.y), 0u);
         let c = vertex_position(transform_bits(t.draw, at.z), 0u);
         s.center = center_world(t.draw, at);
-        s.flat_normal = direction((normal_from_object * vec4f(plane_normal(a, b, c), 0.0)).xyz);
+        s.flat_normal = normal_direction((normal_from_object * vec4f(normal_of_plane(a, b, c), 0.0)).xyz);
+        s = shape_of(s, t.draw, at, k);
         let has_smooth = any(s.normal != vec3f(0.0));
         let has_flat = any(s.flat_normal != vec3f(0.0));
         has_direction = has_smooth || has_flat;

@@ -2,6 +2,7 @@
 //@ use common/draws
 //@ use common/pull
 //@ use common/vertex
+//@ use slot/movement
 
 // Every draw's positions are f32, as glTF's core demands.
 override F32_POSITIONS: bool = false;
@@ -20,7 +21,7 @@ fn transform_clip(draw: u32, p: vec3f) -> vec4f {
     return m[0] * p.x + m[1] * p.y + m[2] * p.z + m[3];
 }
 
-// Clip-space position of a vertex whose record was not rejected.
-fn transform_vertex(draw: u32, vertex: u32) -> vec4f {
-    return transform_clip(draw, vertex_position(transform_bits(draw, vertex), 0u));
+// Clip-space position of a corner whose record was not rejected, as the effects leave it; `id` is its triangle.
+fn transform_vertex(draw: u32, vertex: u32, id: u32) -> vec4f {
+    return movement_clip(draw, vertex, id, vertex_position(transform_bits(draw, vertex), 0u));
 }

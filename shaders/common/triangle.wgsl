@@ -2,24 +2,9 @@
 //@ use common/frame
 //@ use common/draws
 //@ use common/vertex
-//@ use slot/fetch
+//@ use common/topology
+//@ use slot/corners
 //@ use slot/records
-
-override ONLY_LISTS: bool = false;
-
-const TOPOLOGY_STRIP = 1u;
-const TOPOLOGY_FAN = 2u;
-
-// Vertices within the draw of the corners of its triangle `t`, in glTF's order.
-fn triangle_vertices(draw: u32, t: u32) -> vec3u {
-    var places = vec3u(3u * t, 3u * t + 1u, 3u * t + 2u);
-    if !ONLY_LISTS {
-        let topology = draws[draw].topology;
-        if topology == TOPOLOGY_STRIP { places = vec3u(t, t + 1u + (t & 1u), t + 2u - (t & 1u)); }
-        if topology == TOPOLOGY_FAN { places = vec3u(t + 1u, t + 2u, 0u); }
-    }
-    return vec3u(fetch_vertex(draw, places.x), fetch_vertex(draw, places.y), fetch_vertex(draw, places.z));
-}
 
 struct Triangle {
     a: vec4u,
@@ -33,9 +18,8 @@ struct Triangle {
 
 fn triangle_load(id: u32) -> Triangle {
     let draw = draws_of_triangle(id);
-    let first = draws[draw].first_vertex;
-    let at = triangle_vertices(draw, id - draws[draw].first_triangle);
-    return Triangle(vertices[first + at.x], vertices[first + at.y], vertices[first + at.z], id, draw, id, 7u);
+    let at = corners_of(draw, id);
+    return Triangle(vertices[at.x], vertices[at.y], vertices[at.z], id, draw, id, 7u);
 }
 
 // Is a triangle of this orientation drawn at all, by the flags of its draw? Clockwise on screen (area > 0) is the back of a glTF triangle.

@@ -139,9 +139,9 @@ fn clip(@builtin(workgroup_id) group: vec3u, @builtin(num_workgroups) groups: ve
     let at = triangle_vertices(t.draw, t.id - draws[t.draw].first_triangle);
     let flags = vec4u(t.a.x, t.b.x, t.c.x, 0u);
     var polygon: Polygon;
-    polygon.corners[0] = Corner(transform_vertex(t.draw, at.x), 0u, 0u, true);
-    polygon.corners[1] = Corner(transform_vertex(t.draw, at.y), 0u, 1u, true);
-    polygon.corners[2] = Corner(transform_vertex(t.draw, at.z), 0u, 2u, true);
+    polygon.corners[0] = Corner(transform_vertex(t.draw, at.x, t.id), 0u, 0u, true);
+    polygon.corners[1] = Corner(transform_vertex(t.draw, at.y, t.id), 0u, 1u, true);
+    polygon.corners[2] = Corner(transform_vertex(t.draw, at.z, t.id), 0u, 2u, true);
     polygon.count = 3u;
     // Near, left, right, top, bottom. A loop, since five copies of the polygon take a CPU adapter's compiler seconds.
     for (var plane = VERTEX_NEAR; plane <= VERTEX_BOTTOM; plane <<= 1u) {

@@ -24,13 +24,13 @@ fn decide(@builtin(workgroup_id) group: vec3u, @builtin(num_workgroups) groups: 
     let at = triangle_vertices(t.draw, t.id - draws[t.draw].first_triangle);
     var center_screen: vec2f;
     if IS_PIECES {
-        let a = transform_vertex(t.draw, at.x);
-        let b = transform_vertex(t.draw, at.y);
-        let c = transform_vertex(t.draw, at.z);
+        let a = transform_vertex(t.draw, at.x, t.id);
+        let b = transform_vertex(t.draw, at.y, t.id);
+        let c = transform_vertex(t.draw, at.z, t.id);
         center_screen = center_clipped(a, b, c, vec2f(0.5));
     } else {
         if ((t.a.x | t.b.x | t.c.x) & 255u) != 0u { return; }
-        center_screen = center_whole(t);
+        center_screen = center_whole(t.a, t.b, t.c);
     }
     let center = center_world(t.draw, at);
     glue_decide(Facts(t.id, vertex_at(t.a), vertex_at(t.b), vertex_at(t.c), t.outline, frame.size, center, center_screen), t.entry);

@@ -1,6 +1,8 @@
 // Project: pulls every vertex, transforms it, tells what lies before the near plane, snaps it once, and keeps 16 bytes.
+// Where effects part the triangles, that is every corner of every triangle.
 //@ use common/frame
 //@ use common/transform
+//@ use slot/sources
 
 @group(0) @binding(4) var<storage, read_write> vertices: array<vec4u>;
 
@@ -9,10 +11,10 @@ fn project(@builtin(workgroup_id) group: vec3u, @builtin(num_workgroups) groups:
     // No early return: what all lanes load alike is then loaded once, even where branches are lane masks.
     let invocation = frame_invocation(group, groups, lane, LIST_GROUP);
     let id = min(invocation, frame.vertex_count - 1u);
-    let draw = draws_of_vertex(id);
-    let bits = transform_bits(draw, id - draws[draw].first_vertex);
+    let source = sources_of(id);
+    let bits = transform_bits(source.draw, source.vertex);
     let gate = vertex_gate(bits);
-    let clip = transform_clip(draw, vertex_position(bits, gate));
+    let clip = movement_clip(source.draw, source.vertex, source.triangle, vertex_position(bits, gate));
 
     let is_near = clip.z <= clip.w && clip.w > 0.0;
     let inv_w = 1.0 / select(1.0, clip.w, is_near);

@@ -3,7 +3,7 @@
 //@ use slot/pieces
 //@ use slot/queues
 //@ use common/fixed
-//@ use common/shape
+//@ use common/reach
 //@ use common/gate
 //@ use slot/visibility
 

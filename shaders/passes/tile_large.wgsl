@@ -2,7 +2,7 @@
 //@ use slot/pieces
 //@ use slot/queues
 //@ use common/fixed
-//@ use common/shape
+//@ use common/reach
 //@ use slot/marks
 
 // Sign of the biased edge function at its innermost sample of a box of pixels: negative means all outside.

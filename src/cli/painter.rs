@@ -117,7 +117,7 @@ impl Painter {
         let view = session.view(scene, session.output.size);
         match self {
             Self::Cpu => {
-                let geometry: Geometry = oracle::project(scene, &draws(scene, &view)?, &view);
+                let geometry: Geometry = oracle::project_moved(scene, &draws(scene, &view)?, &view, &session.stack);
                 Ok(Capture { frame: oracle::render(scene, &view, &session.stack)?, geometry, layers: None })
             }
             Self::Gpu(renderer, _) => {

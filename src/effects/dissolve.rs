@@ -109,7 +109,11 @@ impl SampleEffect for Dissolve {
     const DECIDES: bool = true;
 
     fn slack(facts: &Facts, p: &Self) -> f64 {
-        if Pattern::of(p.pattern) == Pattern::Uniform { 0.0 } else { p.travelling().slack(facts) * f64::from(ONE) + 2.0 }
+        if Pattern::of(p.pattern) == Pattern::Uniform {
+            return 0.0;
+        }
+        let slack = p.travelling().slack(facts.center, facts.center_screen, facts.triangle, &facts.slack());
+        slack * f64::from(ONE) + 2.0
     }
 
     fn decide(facts: &Facts, p: &Self, first: Option<u32>) -> [u32; 4] {

@@ -18,7 +18,7 @@ macro_rules! effects {
     };
 }
 
-effects![boxes, points, draw_order, dissolve, stipple, facet, triangle_id, normals, depth, lambert, wireframe];
+effects![boxes, points, draw_order, explode, inflate, wobble, dissolve, stipple, facet, triangle_id, normals, depth, lambert, wireframe];
 
 /// One entry of the catalogue.
 pub struct Effect {
@@ -58,7 +58,7 @@ impl Effect {
         self.hooks.vertex = Some(VertexHook {
             needs_triangle: P::NEEDS_TRIANGLE,
             moved: |vertex, words| P::moved(vertex, &read(words)),
-            slack_m: |vertex, words| P::slack_m(vertex, &read(words)),
+            slack: |vertex, slack, words| P::slack(vertex, slack, &read(words)),
         });
         self
     }
@@ -194,6 +194,12 @@ impl Stack {
     /// Moves a vertex by every vertex effect in order.
     pub fn moved(&self, vertex: hooks::Vertex) -> hooks::Vertex {
         self.each(|hooks| hooks.vertex).fold(vertex, |vertex, (hook, words)| (hook.moved)(vertex, words))
+    }
+
+    /// How far an f32 twin of [`Stack::moved`] may err, given the slack of what it starts from.
+    pub fn slack(&self, vertex: hooks::Vertex, slack: hooks::Slack) -> hooks::Slack {
+        let each = self.each(|hooks| hooks.vertex);
+        each.fold((vertex, slack), |(vertex, slack), (hook, words)| ((hook.moved)(vertex, words), (hook.slack)(&vertex, slack, words))).1
     }
 
     /// Finishes a pixel by every image effect in order.

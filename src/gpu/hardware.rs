@@ -33,6 +33,9 @@ impl Hardware {
         if let Some(reason) = scene.primitives.iter().find_map(obstacle) {
             return Ok(Err(reason));
         }
+        if stack.moves() {
+            return Ok(Err("an effect moves vertices, which it does not".into()));
+        }
         let strides = |p: &Primitive| (p.positions.stride, p.normals.stride, scene.materials[p.material].double_sided);
         let Some(first) = scene.primitives.first() else { return Ok(Err("the scene is empty".into())) };
         if scene.primitives.iter().any(|p| strides(p) != strides(first)) {

@@ -26,7 +26,7 @@ use self::{
     buffers::Buffers,
     dispatch::{Dispatch, dispatch},
     pipelines::Pipelines,
-    prepare::{BACKGROUND_ROWS, first_capacities, recorded_capacities},
+    prepare::{BACKGROUND_ROWS, first_capacities, record_count, recorded_capacities},
     readback::Pending,
     timer::{Detail, Timer},
     uniforms::{Capacities, CounterRecord, color_stride},
@@ -256,7 +256,7 @@ impl Renderer {
     /// The straight list of passes.
     fn record(&mut self, encoder: &mut wgpu::CommandEncoder, key: &KernelKey, passes: &[Pass], view: &View) -> Result<(), RenderError> {
         let scene = self.scene.as_ref().ok_or(RenderError::NoScene)?;
-        let (vertices, triangles) = (scene.vertex_count() as u32, scene.triangle_count() as u32);
+        let (vertices, triangles) = (record_count(key, scene) as u32, scene.triangle_count() as u32);
         for (i, &pass) in passes.iter().enumerate() {
             let pipeline = self.pipelines.get(&self.gpu, key, pass)?;
             let is_last = i + 1 == passes.len();

@@ -36,10 +36,11 @@ impl Renderer {
         let mut records: Vec<DrawRecord> = draws.iter().map(|draw| DrawRecord::new(draw, &scene)).collect();
         // A binding holds an element at least, even where nothing is to be drawn.
         records.resize(draws.len().max(1), DrawRecord::default());
-        let triangles = scene.triangle_count();
+        let (triangles, vertex_records) = (scene.triangle_count(), record_count(key, &scene));
         let decisions = u64::from(key.decisions) * (triangles + u64::from(recorded.pieces));
-        let first_rank = scene.vertex_count() + decisions;
+        let first_rank = vertex_records + decisions;
         let uniform = FrameUniform {
+            vertex_count: vertex_records as u32,
             point_radius: stack.point_radius(),
             first_rank: first_rank as u32,
             ..FrameUniform::new(view, &scene, draws.len(), &recorded)
@@ -120,6 +121,11 @@ impl Renderer {
         }
         Ok(plan)
     }
+}
+
+/// Projected records of a picture: one per vertex of each draw, or three per triangle where effects part them.
+pub fn record_count(key: &KernelKey, scene: &Scene) -> u64 {
+    if key.parts_corners() { 3 * scene.triangle_count() } else { scene.vertex_count() }
 }
 
 /// Rows that the background buffer holds.

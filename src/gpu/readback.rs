@@ -7,6 +7,7 @@ use std::sync::{
 
 use super::{
     Demand, Gpu, RenderError, Renderer, STORAGE, buffers,
+    prepare::record_count,
     timer::{Timer, Times},
 };
 use crate::{
@@ -133,7 +134,7 @@ impl Renderer {
 
     fn read_geometry(&self, key: &KernelKey) -> Result<Geometry, RenderError> {
         let scene = self.scene.as_ref().ok_or(RenderError::NoScene)?;
-        let (vertices, triangles) = (scene.vertex_count(), scene.triangle_count() as usize);
+        let (vertices, triangles) = (record_count(key, scene), scene.triangle_count() as usize);
         let mut pieces = Vec::new();
         if key.has_clipping {
             let count = self.words("counters", 16)?[4].min(self.capacities.pieces);
@@ -152,6 +153,7 @@ impl Renderer {
             vertices: records.chunks_exact(4).map(vertex).collect(),
             decisions: order.flat_map(|entry| of_entry(entry).chunks_exact(4).map(|w| [w[0], w[1], w[2], w[3]])).collect(),
             pieces: pieces.into_iter().map(|(_, _, piece)| piece).collect(),
+            has_own_corners: key.parts_corners(),
         })
     }
 

@@ -5,11 +5,15 @@
 
 use rayon::prelude::*;
 
-use super::project::{Clip, clip_position, half_size, snap_inside};
+use super::{
+    coverage::corner_records,
+    moved::{self, Mover},
+    project::{Clip, half_size, snap_inside},
+};
 use crate::{
-    frame::{Piece, SnappedVertex, vertex_flags},
+    frame::{Geometry, Piece, SnappedVertex, vertex_flags},
     math::GUARD_BAND,
-    scene::{Scene, camera::View, draw::Draw},
+    scene::{Scene, camera::View},
 };
 
 /// The planes in the order of clipping, each by its vertex flag.
@@ -23,17 +27,18 @@ pub(super) fn is_cut(flags: [u32; 3]) -> bool {
     any & vertex_flags::REJECTED == 0 && any & vertex_flags::CLIPPED != 0 && all & vertex_flags::CLIPPED == 0
 }
 
-/// Pieces of all cut triangles of `draw`, in triangle order, each triangle as a fan from its first remaining corner.
-pub(super) fn pieces(scene: &Scene, draw: &Draw, view: &View, vertices: &[SnappedVertex]) -> Vec<Piece> {
+/// Pieces of all cut triangles of a draw, in triangle order, each triangle as a fan from its first remaining corner.
+pub(super) fn pieces(scene: &Scene, mover: &Mover, view: &View, geometry: &Geometry) -> Vec<Piece> {
+    let draw = mover.draw;
     let primitive = &scene.primitives[draw.primitive];
     let cut = |t: u32| {
-        let indices = primitive.corners(scene, t);
-        let records = indices.map(|i| vertices[(draw.first_vertex + i) as usize]);
+        let records = corner_records(scene, draw, geometry, draw.first_triangle + t);
         if !is_cut(records.map(|r| r.flags)) {
             return Vec::new();
         }
+        let indices = primitive.corners(scene, t);
         let corner = |i: usize| {
-            let clip = clip_position(scene, draw, indices[i]).expect("a cut triangle has no rejected corner");
+            let clip = mover.clip(moved::Corner { vertex: indices[i], triangle: t }).expect("a cut triangle has no rejected corner");
             Corner { clip, on: 0, record: Some(records[i]), leads_along_edge: true }
         };
         let polygon: Vec<(SnappedVertex, bool)> =

@@ -134,8 +134,16 @@ pub(super) fn draw_of<'a>(scene: &Scene, draws: &'a [Draw], id: u32) -> Option<&
 
 /// Corner records of triangle `id` of `draw`, in the order of the file.
 pub(super) fn corner_records(scene: &Scene, draw: &Draw, geometry: &Geometry, id: u32) -> [SnappedVertex; 3] {
+    corner_places(scene, draw, geometry, id).map(|at| geometry.vertices[at])
+}
+
+/// Where the corner records of triangle `id` of `draw` stand.
+pub(super) fn corner_places(scene: &Scene, draw: &Draw, geometry: &Geometry, id: u32) -> [usize; 3] {
+    if geometry.has_own_corners {
+        return [0, 1, 2].map(|k| 3 * id as usize + k);
+    }
     let corners = scene.primitives[draw.primitive].corners(scene, id - draw.first_triangle);
-    corners.map(|corner| geometry.vertices[(draw.first_vertex + corner) as usize])
+    corners.map(|corner| (draw.first_vertex + corner) as usize)
 }
 
 /// The triangles and pieces to be drawn, with a count of those that are not.

@@ -5,6 +5,7 @@ use rayon::prelude::*;
 
 use super::{
     coverage::{corner_records, doubled_area, draw_of},
+    moved::{Corner, Mover},
     project::object_position,
     surface::center_screen,
 };
@@ -31,7 +32,7 @@ pub fn decide(scene: &Scene, draws: &[Draw], view: &View, stack: &Stack, geometr
         let one = |(hook, words): &(SampleHook, &[u32])| facts.as_ref().map_or([0; 4], |facts| (hook.decide)(facts, words, None));
         effects.iter().map(one).collect::<Vec<_>>()
     };
-    entries(scene, draws, view, geometry).flat_map_iter(settle).collect()
+    entries(scene, draws, view, stack, geometry).flat_map_iter(settle).collect()
 }
 
 /// Decisions that are not what the rules say: a first word beyond its bound, or another that does not follow from it.
@@ -51,7 +52,7 @@ pub(super) fn wrong(scene: &Scene, draws: &[Draw], view: &View, stack: &Stack, g
         let Some(facts) = facts else { return 0 };
         effects.iter().zip(given).filter(|(effect, given)| is_wrong(&facts, effect, **given)).count() as u64
     };
-    entries(scene, draws, view, geometry).zip(geometry.decisions.par_chunks(effects.len())).map(faults).sum()
+    entries(scene, draws, view, stack, geometry).zip(geometry.decisions.par_chunks(effects.len())).map(faults).sum()
 }
 
 fn deciding(stack: &Stack) -> Vec<(SampleHook, &[u32])> {
@@ -63,35 +64,40 @@ fn entries<'a>(
     scene: &'a Scene,
     draws: &'a [Draw],
     view: &'a View,
+    stack: &'a Stack,
     geometry: &'a Geometry,
 ) -> impl IndexedParallelIterator<Item = Option<Facts>> + 'a {
     let whole = move |id: u32| {
         let draw = draw_of(scene, draws, id)?;
         let records = corner_records(scene, draw, geometry, id);
         let is_drawn = records.iter().all(|record| record.flags == 0) && doubled_area(&records) != 0;
-        is_drawn.then(|| facts(scene, draw, view, geometry, id, &records, 7)).flatten()
+        is_drawn.then(|| facts(&Mover::new(scene, draw, view, stack), scene, view, geometry, id, &records, 7)).flatten()
     };
     let pieces = move |piece: &crate::frame::Piece| {
         let draw = draw_of(scene, draws, piece.parent)?;
         let is_drawn = doubled_area(&piece.corners) != 0;
-        is_drawn.then(|| facts(scene, draw, view, geometry, piece.parent, &piece.corners, piece.outline)).flatten()
+        is_drawn
+            .then(|| facts(&Mover::new(scene, draw, view, stack), scene, view, geometry, piece.parent, &piece.corners, piece.outline))
+            .flatten()
     };
     (0..scene.triangle_count() as u32).into_par_iter().map(whole).chain(geometry.pieces.par_iter().map(pieces))
 }
 
 fn facts(
+    mover: &Mover,
     scene: &Scene,
-    draw: &Draw,
     view: &View,
     geometry: &Geometry,
     id: u32,
     corners: &[SnappedVertex; 3],
     outline: u32,
 ) -> Option<Facts> {
+    let draw = mover.draw;
     let primitive = &scene.primitives[draw.primitive];
     let vertices = primitive.corners(scene, id - draw.first_triangle);
     let [Ok(a), Ok(b), Ok(c)] = vertices.map(|vertex| object_position(scene, primitive, vertex)) else { return None };
     let object = [a, b, c].map(DVec3::from_array);
+    let places = vertices.map(|vertex| Corner { vertex, triangle: id - draw.first_triangle });
     let world = object.map(|position| draw.world_from_object.transform_point3(position));
     // Rounding errors are proportional to the sums of magnitudes, however much cancels.
     let m = draw.world_from_object;
@@ -104,6 +110,6 @@ fn facts(
         size: [view.width, view.height],
         center: world.iter().sum::<DVec3>() / 3.0,
         center_slack_m: 8.0 * ULP * reach,
-        center_screen: center_screen(scene, draw, view, &corner_records(scene, draw, geometry, id), vertices),
+        center_screen: center_screen(mover, view, &corner_records(scene, draw, geometry, id), places),
     })
 }

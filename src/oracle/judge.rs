@@ -7,10 +7,12 @@
 use rayon::prelude::*;
 
 use super::{
-    coverage::{Coverage, Sample, corner_records, cover_by, draw_of, triangles},
+    coverage::{Coverage, Sample, corner_places, corner_records, cover_by, draw_of, triangles},
     decide::{decide, wrong},
-    empty, frame, order,
-    project::{clip_position, half_size, object_position, project},
+    empty, frame,
+    moved::{Corner, Mover},
+    order,
+    project::{Clip, half_size, project_moved},
     rules::Rules,
     surface::shade,
 };
@@ -50,7 +52,10 @@ pub fn judge(
         return Ok(Verdict { accuracy: Accuracy::default(), expected: empty(view) });
     }
     assert_eq!([adapter.owner.len(), adapter.key.len(), adapter.color.len()], [view.pixels(); 3], "the frame has another size");
-    assert_eq!(geometry.vertices.len() as u64, scene.vertex_count(), "the geometry is of another scene");
+    let mut own = project_moved(scene, &draws, view, stack);
+    own.decisions = decide(scene, &draws, view, stack, &own);
+    let records = |geometry: &Geometry| (geometry.vertices.len(), geometry.has_own_corners);
+    assert_eq!(records(geometry), records(&own), "the geometry is of another scene or stack");
 
     let (given, counters) = triangles(scene, &draws, geometry);
     // Where the hardware chooses among samples, everything that is covered may be drawn.
@@ -59,9 +64,7 @@ pub fn judge(
     let rules = if is_free { rules } else { rules.ordered(stack, &given, view) };
     let coverage = cover_by(&rules, &given, view, Some(&adapter.owner));
     let colors = shade(scene, &draws, view, stack, &adapter.owner, geometry);
-    let mut own = project(scene, &draws, view);
-    own.decisions = decide(scene, &draws, view, stack, &own);
-    let vertices = vertex_faults(scene, &draws, view, geometry, &own);
+    let vertices = vertex_faults(scene, &draws, view, stack, geometry, &own);
 
     let mut accuracy = Accuracy { pixels: view.pixels() as u64, ..Default::default() };
     match order::cut(stack, &rules, &given, view) {
@@ -156,42 +159,54 @@ fn judge_vertices(accuracy: &mut Accuracy, faults: &[VertexFault]) {
     }
 }
 
-fn vertex_faults(scene: &Scene, draws: &[Draw], view: &View, adapter: &Geometry, own: &Geometry) -> Vec<VertexFault> {
+fn vertex_faults(scene: &Scene, draws: &[Draw], view: &View, stack: &Stack, adapter: &Geometry, own: &Geometry) -> Vec<VertexFault> {
     let of_draw = |draw: &Draw| {
-        let count = scene.primitives[draw.primitive].vertex_count();
-        let fault = |vertex| {
-            let at = (draw.first_vertex + vertex) as usize;
-            vertex_fault(scene, draw, view, vertex, &adapter.vertices[at], &own.vertices[at])
+        let mover = Mover::new(scene, draw, view, stack);
+        let fault = |(i, corner)| {
+            let at = mover.first_record() + i;
+            vertex_fault(&mover, view, corner, &adapter.vertices[at], &own.vertices[at])
         };
-        (0..count).into_par_iter().map(fault).collect::<Vec<_>>()
+        mover.corners().into_par_iter().enumerate().map(fault).collect::<Vec<_>>()
     };
     draws.iter().flat_map(of_draw).collect()
 }
 
+/// How far a float renderer may place every record from [`project_moved`], in units of 1/256 px and before it rounds; none
+/// where rounding may move it anywhere.
+pub fn snap_bounds(scene: &Scene, draws: &[Draw], view: &View, stack: &Stack) -> Vec<Option<[f64; 2]>> {
+    let of_draw = |draw: &Draw| {
+        let mover = Mover::new(scene, draw, view, stack);
+        let bound = |corner| snap_bound(&mover.clip(corner).ok()?, mover.clip_errors(corner).1, view);
+        mover.corners().into_iter().map(bound).collect::<Vec<_>>()
+    };
+    draws.iter().flat_map(of_draw).collect()
+}
+
+/// Bound of a snapped position, given those of its clip coordinates; none where w is not known to a sixteenth.
+fn snap_bound(clip: &Clip, [ex, ey, _, ew]: [f64; 4], view: &View) -> Option<[f64; 2]> {
+    let w = clip.w.abs();
+    let [half_x, half_y] = half_size(view).map(f64::from);
+    let bound = |half: f64, e: f64, c: f64| half * (e / w + (ew / w + 4.5 * ULP) * (c / w).abs());
+    (ew <= w / 16.0).then(|| [bound(half_x, ex, clip.x), bound(half_y, ey, clip.y)])
+}
+
 /// Holds one record against the truth by a forward error bound that covers every rounding, order and fusion WGSL allows.
-fn vertex_fault(scene: &Scene, draw: &Draw, view: &View, vertex: u32, adapter: &SnappedVertex, own: &SnappedVertex) -> VertexFault {
-    let Ok(object) = object_position(scene, &scene.primitives[draw.primitive], vertex) else {
+fn vertex_fault(mover: &Mover, view: &View, corner: Corner, adapter: &SnappedVertex, own: &SnappedVertex) -> VertexFault {
+    let Ok(clip) = mover.clip(corner) else {
         let is_nonfinite = |v: &SnappedVertex| v.flags & vertex_flags::NONFINITE != 0;
         let is_rejected_alike = adapter.flags & vertex_flags::REJECTED != 0 && is_nonfinite(adapter) == is_nonfinite(own);
         return VertexFault { snap_is_outside: !is_rejected_alike, ..Default::default() };
     };
-    let clip = clip_position(scene, draw, vertex).expect("the position has passed the gate");
-    // Sums of magnitudes of each row: rounding errors are proportional to them, however much cancels.
-    let magnitude = |row: usize| {
-        let m = |column: usize| f64::from(draw.clip_from_object[column][row]).abs();
-        m(0) * object[0].abs() + m(1) * object[1].abs() + m(2) * object[2].abs() + m(3)
+    let ([_, _, sz, sw], errors) = mover.clip_errors(corner);
+    let [_, _, ez, ew] = errors;
+    let w = clip.w.abs();
+    let Some(bounds) = snap_bound(&clip, errors, view) else {
+        return VertexFault { is_ill_conditioned: true, ..Default::default() };
     };
-    let [sx, sy, sz, sw] = [0, 1, 2, 3].map(magnitude);
-    let (w, wobble) = (clip.w.abs(), 4.0 * ULP * sw);
-    if wobble > w / 16.0 || (clip.w - clip.z).abs() <= 4.0 * ULP * (sz + sw) && adapter.flags != own.flags {
+    if (clip.w - clip.z).abs() <= ez + ew && adapter.flags != own.flags {
         return VertexFault { is_ill_conditioned: true, ..Default::default() };
     }
-    let [half_x, half_y] = half_size(view).map(f64::from);
-    let bound = |half: f64, s: f64, c: f64| {
-        let bound = ULP * half * (4.0 * s / w + (4.0 * sw / w + 4.5) * (c / w).abs());
-        if bound < 1.0 { 1.0 } else { (1.0 + bound).floor() }
-    };
-    let (bound_x, bound_y) = (bound(half_x, sx, clip.x), bound(half_y, sy, clip.y));
+    let [bound_x, bound_y] = bounds.map(|bound| if bound < 1.0 { 1.0 } else { (1.0 + bound).floor() });
     if adapter.flags != own.flags {
         let is_near_guard = |at: i32, bound: f64| f64::from(at.abs().abs_diff(GUARD_BAND)) <= bound + 1.0;
         let differs = adapter.flags ^ own.flags;
@@ -204,8 +219,8 @@ fn vertex_fault(scene: &Scene, draw: &Draw, view: &View, vertex: u32, adapter: &
     if own.flags & vertex_flags::NEAR != 0 {
         return VertexFault::default();
     }
-    let w_error = 5.0 * ULP * sw / w + 4.5 * ULP;
-    let depth_error = 5.0 * ULP * sz / w + (clip.z / w).abs() * w_error + f64::from(f32::MIN_POSITIVE);
+    let w_error = (ew + ULP * sw) / w + 4.5 * ULP;
+    let depth_error = (ez + ULP * sz) / w + (clip.z / w).abs() * w_error + f64::from(f32::MIN_POSITIVE);
     let attribute_is_outside =
         !((f64::from(adapter.inv_w) * clip.w - 1.0).abs() <= w_error && (f64::from(adapter.depth) - clip.z / clip.w).abs() <= depth_error);
     if own.flags != 0 {
@@ -286,8 +301,7 @@ impl Whole<'_> {
     fn outline(&self, owner: u32) -> Option<Outline> {
         let draw = draw_of(self.scene, self.draws, owner)?;
         let records = corner_records(self.scene, draw, self.own, owner);
-        let corners = self.scene.primitives[draw.primitive].corners(self.scene, owner - draw.first_triangle);
-        let faults = corners.map(|corner| self.vertices[(draw.first_vertex + corner) as usize]);
+        let faults = corner_places(self.scene, draw, self.own, owner).map(|at| self.vertices[at]);
         let is_whole = records.iter().all(|record| record.flags == 0);
         let moved = f64::from(faults.iter().map(|fault| fault.delta).max().unwrap_or(0));
         let reach = match faults.iter().any(|fault| fault.is_ill_conditioned) {

@@ -5,13 +5,15 @@
 //! renderers it judges, and no line of their code: neither shader text nor planner, no SIMD maths where something is
 //! decided, no platform maths function. Work is parallel by rows and triangles; no result depends on the order of threads.
 //!
-//! [`project`] snaps vertices and clips triangles, [`triangles`] assembles and turns them, [`decide`] settles what sample
-//! effects hold against, [`cover_by`] finds who owns each sample, [`shade`] colours it, and [`judge`] holds a frame that an adapter drew against all of that.
+//! [`project_moved`] moves and snaps vertices and clips triangles, [`triangles`] assembles and turns them, [`decide`]
+//! settles what sample effects hold against, [`cover_by`] finds who owns each sample, [`shade`] colours it, and [`judge`]
+//! holds a frame that an adapter drew against all of that.
 
 mod clip;
 mod coverage;
 mod decide;
 mod judge;
+mod moved;
 mod order;
 mod project;
 mod rules;
@@ -19,9 +21,9 @@ mod surface;
 
 pub use coverage::{Coverage, OrientedTriangle, Sample, cover, cover_by, depth_bound, owns, triangles};
 pub use decide::decide;
-pub use judge::judge;
+pub use judge::{judge, snap_bounds};
 pub use order::Cut;
-pub use project::project;
+pub use project::{project, project_moved};
 pub use rules::Rules;
 pub use surface::shade;
 
@@ -44,7 +46,7 @@ pub fn render(scene: &Scene, view: &View, stack: &Stack) -> Result<Frame, DrawEr
     if view.pixels() == 0 {
         return Ok(empty(view));
     }
-    let mut geometry = project(scene, &draws, view);
+    let mut geometry = project_moved(scene, &draws, view, stack);
     geometry.decisions = decide(scene, &draws, view, stack, &geometry);
     let (triangles, counters) = triangles(scene, &draws, &geometry);
     let coverage = cover_by(&Rules::of(stack, &geometry).ordered(stack, &triangles, view), &triangles, view, None);

@@ -2,8 +2,9 @@
 
 use rayon::prelude::*;
 
-use super::clip;
+use super::{clip, moved::Mover};
 use crate::{
+    effects::Stack,
     frame::{Geometry, SnappedVertex, vertex_flags},
     math::GUARD_BAND,
     scene::{Accessor, Component, Primitive, Scene, camera::View, draw::Draw},
@@ -18,22 +19,27 @@ pub(super) struct Clip {
     pub w: f64,
 }
 
-/// Everything between the stored scene and integer coverage: one record per vertex of each draw, and the pieces of
-/// every triangle that the near plane or the guard band cuts, folded ones included.
+/// [`project_moved`] with no effect that moves anything.
 pub fn project(scene: &Scene, draws: &[Draw], view: &View) -> Geometry {
-    let snapped = |draw: &Draw, vertex| match clip_position(scene, draw, vertex) {
-        Ok(position) => snap(&position, view),
-        Err(flags) => SnappedVertex { flags, ..Default::default() },
+    project_moved(scene, draws, view, &Stack::default())
+}
+
+/// Everything between the stored scene and integer coverage: one record per vertex of each draw, or three per triangle
+/// where the stack parts them, and the pieces of every triangle that the near plane or the guard band cuts, folded ones
+/// included.
+pub fn project_moved(scene: &Scene, draws: &[Draw], view: &View, stack: &Stack) -> Geometry {
+    let movers: Vec<Mover> = draws.iter().map(|draw| Mover::new(scene, draw, view, stack)).collect();
+    let snapped = |mover: &Mover| {
+        let snapped = |corner| match mover.clip(corner) {
+            Ok(position) => snap(&position, view),
+            Err(flags) => SnappedVertex { flags, ..Default::default() },
+        };
+        mover.corners().into_par_iter().map(snapped).collect::<Vec<_>>()
     };
-    let vertices: Vec<SnappedVertex> = draws
-        .iter()
-        .flat_map(|draw| {
-            let count = scene.primitives[draw.primitive].vertex_count();
-            (0..count).into_par_iter().map(|vertex| snapped(draw, vertex)).collect::<Vec<_>>()
-        })
-        .collect();
-    let pieces = draws.iter().flat_map(|draw| clip::pieces(scene, draw, view, &vertices)).collect();
-    Geometry { vertices, pieces, decisions: Vec::new() }
+    let vertices = movers.iter().flat_map(snapped).collect();
+    let mut geometry = Geometry { vertices, has_own_corners: stack.parts_corners(), ..Geometry::default() };
+    geometry.pieces = movers.iter().flat_map(|mover| clip::pieces(scene, mover, view, &geometry)).collect();
+    geometry
 }
 
 /// Value of an f32 by its bits: subnormals are 0; NaN, infinities and magnitudes of 2^40 or more are refused with the
@@ -64,7 +70,7 @@ pub(super) fn object_position(scene: &Scene, primitive: &Primitive, vertex: u32)
     }
 }
 
-/// Clip-space position of a vertex of `draw`, from the bits of its rounded matrix.
+/// Clip-space position of a vertex of `draw` before any effect, from the bits of its rounded matrix.
 pub(super) fn clip_position(scene: &Scene, draw: &Draw, vertex: u32) -> Result<Clip, u32> {
     let [x, y, z] = object_position(scene, &scene.primitives[draw.primitive], vertex)?;
     let row = |r: usize| {

@@ -5,8 +5,9 @@ use rayon::prelude::*;
 
 use super::{
     coverage::{OrientedTriangle, corner_records, doubled_area, draw_of, is_back},
+    moved::{Corner, Mover},
     order::ranks,
-    project::{clip_position, gated_lane, object_position},
+    project::{gated_lane, object_position},
 };
 use crate::{
     effects::{Stack, Surface, hooks::Shape},
@@ -16,7 +17,7 @@ use crate::{
 };
 
 /// Below this squared length, at unit scale, a vector has no direction.
-const DEGENERATE: f64 = 1e-12;
+pub(super) const DEGENERATE: f64 = 1e-12;
 
 /// Colours of all pixels, given who owns them. Row-major, gamma-encoded; the background where nobody does.
 ///
@@ -29,7 +30,8 @@ pub fn shade(scene: &Scene, draws: &[Draw], view: &View, stack: &Stack, owners: 
         let mut triangle: Option<Triangle> = None;
         let pixel = |(x, &owner): (usize, &u32)| {
             if triangle.as_ref().is_none_or(|triangle| triangle.owner != owner) {
-                triangle = draw_of(scene, draws, owner).and_then(|draw| Triangle::new(scene, draw, view, stack, geometry, owner));
+                triangle = draw_of(scene, draws, owner)
+                    .and_then(|draw| Triangle::new(&Mover::new(scene, draw, view, stack), scene, view, geometry, owner));
             }
             match &triangle {
                 Some(triangle) => {
@@ -64,6 +66,8 @@ struct Triangle {
     owner: u32,
     weights: Weights,
     positions: [DVec3; 3],
+    /// Mean of the corners before any vertex effect.
+    center: DVec3,
     colors: [DVec4; 3],
     /// In object space; none when a corner has no finite normal.
     normals: Option<[DVec3; 3]>,
@@ -81,7 +85,8 @@ struct Triangle {
 
 impl Triangle {
     /// None for a triangle with a rejected corner, which owns nothing.
-    fn new(scene: &Scene, draw: &Draw, view: &View, stack: &Stack, geometry: &Geometry, owner: u32) -> Option<Self> {
+    fn new(mover: &Mover, scene: &Scene, view: &View, geometry: &Geometry, owner: u32) -> Option<Self> {
+        let draw = mover.draw;
         let primitive = &scene.primitives[draw.primitive];
         let material = &scene.materials[primitive.material];
         let corners = primitive.corners(scene, owner - draw.first_triangle);
@@ -90,16 +95,18 @@ impl Triangle {
 
         let records = corner_records(scene, draw, geometry, owner);
         let is_cut = records.iter().any(|record| record.flags & vertex_flags::CLIPPED != 0);
-        let screen = if is_cut { Screen::cut(scene, draw, view, corners) } else { Screen::snapped(&records, draw, view) };
+        let places = corners.map(|vertex| Corner { vertex, triangle: owner - draw.first_triangle });
+        let screen = if is_cut { Screen::cut(mover, view, places) } else { Screen::snapped(&records, draw, view) };
 
         let base = DVec4::from_array(material.base_color.map(f64::from));
         let color = |corner| base * primitive.colors.map_or(DVec4::ONE, |colors| color(scene, &colors, corner));
         let [n0, n1, n2] = corners.map(|corner| normal(scene, &primitive.normals, corner));
         let side = if material.double_sided && screen.is_back { -1.0 } else { 1.0 };
         let world_from_normal = inverse_transpose(DMat3::from_mat4(draw.world_from_object), draw.mirrored) * side;
-        Some(Self {
+        let mut triangle = Self {
             owner,
             weights: screen.weights,
+            center: draw.world_from_object.transform_point3(object.iter().sum::<DVec3>() / 3.0),
             positions: object.map(|position| draw.world_from_object.transform_point3(position)),
             colors: corners.map(color),
             normals: n0.zip(n1).zip(n2).map(|((n0, n1), n2)| [n0, n1, n2]),
@@ -107,9 +114,34 @@ impl Triangle {
             flat_normal: plane_normal(object).and_then(|normal| (world_from_normal * normal).try_normalize()),
             depths_m: screen.depths_m,
             center_screen: screen.center,
-            shape: stack.shape(),
-            disc: (stack.shape() == Shape::Points).then_some((records, stack.point_radius().into())),
-        })
+            shape: mover.stack.shape(),
+            disc: (mover.stack.shape() == Shape::Points).then_some((records, mover.stack.point_radius().into())),
+        };
+        if mover.moves {
+            triangle.follow(mover, places, side);
+        }
+        Some(triangle)
+    }
+
+    /// Takes positions and normals to where the vertex effects move the corners; `side` turns normals to the viewer. The
+    /// centre stays where it was, so that fronts of several effects meet.
+    ///
+    /// A triangle that is only carried along keeps its plane, and normals that no effect turns stay what they were.
+    fn follow(&mut self, mover: &Mover, corners: [Corner; 3], side: f64) {
+        let moved = corners.map(|corner| mover.moved(corner));
+        for (position, vertex) in self.positions.iter_mut().zip(&moved) {
+            *position += vertex.offset;
+        }
+        if moved.iter().any(|vertex| vertex.offset != moved[0].offset) {
+            let side = if mover.draw.mirrored { -side } else { side };
+            self.flat_normal = plane_normal(self.positions).and_then(|normal| (normal * side).try_normalize());
+        }
+        let is_turned = moved.iter().zip(corners).any(|(vertex, corner)| vertex.normal != mover.still(corner).normal);
+        if is_turned && self.normals.is_some() {
+            // Turned normals keep the lengths by which the file weighs them.
+            self.normals = Some([0, 1, 2].map(|k| moved[k].normal * mover.world_normal(corners[k].vertex).length()));
+            self.world_from_normal = DMat3::from_diagonal(DVec3::splat(side));
+        }
     }
 
     /// The surface at the centre of a pixel.
@@ -140,7 +172,7 @@ impl Triangle {
             normal,
             flat_normal: self.flat_normal.unwrap_or(normal),
             view: toward_eye,
-            center: self.positions.iter().sum::<DVec3>() / 3.0,
+            center: self.center,
             center_screen: self.center_screen.unwrap_or(screen),
             screen,
             shares,
@@ -163,10 +195,11 @@ impl Triangle {
     }
 }
 
-/// Where the middle of a whole triangle stands in the picture, from 0 to 1; the middle of the picture where it lies behind the eye.
-pub(super) fn center_screen(scene: &Scene, draw: &Draw, view: &View, records: &[SnappedVertex; 3], corners: [u32; 3]) -> DVec2 {
+/// Where the middle of a triangle of the mover's draw stands in the picture, from 0 to 1; the middle of the picture where
+/// it lies behind the eye.
+pub(super) fn center_screen(mover: &Mover, view: &View, records: &[SnappedVertex; 3], corners: [Corner; 3]) -> DVec2 {
     let is_cut = records.iter().any(|record| record.flags & vertex_flags::CLIPPED != 0);
-    let screen = if is_cut { Screen::cut(scene, draw, view, corners) } else { Screen::snapped(records, draw, view) };
+    let screen = if is_cut { Screen::cut(mover, view, corners) } else { Screen::snapped(records, mover.draw, view) };
     screen.center.unwrap_or(DVec2::splat(0.5))
 }
 
@@ -192,8 +225,8 @@ impl Screen {
         }
     }
 
-    fn cut(scene: &Scene, draw: &Draw, view: &View, corners: [u32; 3]) -> Self {
-        let clip = corners.map(|corner| clip_position(scene, draw, corner).expect("positions have passed the gate"));
+    fn cut(mover: &Mover, view: &View, corners: [Corner; 3]) -> Self {
+        let clip = corners.map(|corner| mover.clip(corner).expect("positions have passed the gate"));
         let v = clip.map(|p| DVec3::new(p.x, p.y, p.w));
         let sum = v[0] + v[1] + v[2];
         let rows = [v[1].cross(v[2]), v[2].cross(v[0]), v[0].cross(v[1])];
@@ -201,7 +234,7 @@ impl Screen {
         let is_clockwise = v[0].dot(rows[0]) < 0.0;
         Self {
             weights: Weights::Homogeneous(if is_clockwise { rows.map(|row| -row) } else { rows }),
-            is_back: is_clockwise != draw.mirrored,
+            is_back: is_clockwise != mover.draw.mirrored,
             depths_m: clip.map(|p| linear_depth(view, p.z / p.w).unwrap_or(p.w)),
             center: (sum.z > 0.0).then(|| DVec2::new(0.5 + 0.5 * sum.x / sum.z, 0.5 - 0.5 * sum.y / sum.z)),
         }
@@ -297,7 +330,7 @@ fn normal(scene: &Scene, normals: &Accessor, vertex: u32) -> Option<DVec3> {
 }
 
 /// Normal of the plane through three points, counterclockwise outward, of any length; none for a needle or a point.
-fn plane_normal([a, b, c]: [DVec3; 3]) -> Option<DVec3> {
+pub(super) fn plane_normal([a, b, c]: [DVec3; 3]) -> Option<DVec3> {
     let [u, v] = [b - a, c - a].map(|edge| edge / edge.abs().max_element());
     let normal = u.cross(v);
     // False for NaN, which an edge of no length makes.
@@ -305,7 +338,7 @@ fn plane_normal([a, b, c]: [DVec3; 3]) -> Option<DVec3> {
 }
 
 /// What takes normals where `m` takes points, up to a positive factor: cofactors, turned over by a mirror.
-fn inverse_transpose(m: DMat3, mirrored: bool) -> DMat3 {
+pub(super) fn inverse_transpose(m: DMat3, mirrored: bool) -> DMat3 {
     let cofactors = DMat3::from_cols(m.y_axis.cross(m.z_axis), m.z_axis.cross(m.x_axis), m.x_axis.cross(m.y_axis));
     let largest = cofactors.to_cols_array().into_iter().fold(0.0, |largest: f64, entry| largest.max(entry.abs()));
     let scale = if largest > 0.0 { 1.0 / largest } else { 0.0 };

@@ -49,6 +49,7 @@ pub fn draws(scene: &Scene, view: &View) -> Result<Vec<Draw>, DrawError> {
         let world_from_object = view.world_from_scene * instance.world_from_object;
         let clip_from_object = rounded_columns(&(view.clip_from_world * world_from_object));
         let entries = clip_from_object.iter().flatten().map(|&v| f64::from(v)).chain(world_from_object.to_cols_array());
+        let entries = entries.chain(view.clip_from_world.to_cols_array());
         if let Some(value) = entries.into_iter().find(|v| !v.is_finite() || v.abs() >= MAX_MAGNITUDE) {
             return Err(DrawError::Matrix { instance: primitive.name.clone(), value });
         }

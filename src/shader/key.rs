@@ -233,6 +233,16 @@ impl KernelKey {
         }
     }
 
+    /// Does an effect move vertices?
+    pub fn moves(&self) -> bool {
+        self.effects.iter().any(|effect| effect.hooks.vertex.is_some())
+    }
+
+    /// Does an effect move corners by their triangle, so that every triangle has three projected records to itself?
+    pub fn parts_corners(&self) -> bool {
+        self.effects.iter().any(|effect| effect.hooks.vertex.is_some_and(|hook| hook.needs_triangle))
+    }
+
     /// Are there queues at all?
     pub const fn has_queues(&self) -> bool {
         self.has_clipping || self.has_medium || self.has_large
@@ -317,7 +327,18 @@ impl KernelKey {
         let marks = if is_marking { "kept" } else { "none" };
         let pixels = if self.listed_tiles { "listed" } else { "all" };
         let pieces = if self.has_clipping { "kept" } else { "none" };
+        let records = if self.parts_corners() { "own" } else { "shared" };
+        let movement = match (self.moves(), self.parts_corners()) {
+            (false, _) => "none",
+            (true, false) => "vertices",
+            (true, true) => "triangles",
+        };
+        let shape = if self.moves() { "moved" } else { "still" };
         let mut slots = vec![
+            ("corners", format!("slots/corners/{records}")),
+            ("sources", format!("slots/sources/{records}")),
+            ("movement", format!("slots/movement/{movement}")),
+            ("shape", format!("slots/shape/{shape}")),
             ("pieces", format!("slots/pieces/{pieces}")),
             ("records", format!("slots/records/{}", if matches!(pass, Pass::Decide(_) | Pass::OrderRanks) { "write" } else { "read" })),
             ("order", format!("slots/order/{}", self.order_file(pass))),
@@ -403,6 +424,8 @@ impl fmt::Display for KernelKey {
             ("large", self.has_large),
             ("colors", self.has_colors),
             ("planes", self.has_planes),
+            ("moved", self.moves()),
+            ("parted", self.parts_corners()),
             ("orthographic", !self.perspective),
         ] {
             if is_on {

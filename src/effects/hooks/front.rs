@@ -2,7 +2,7 @@
 
 use glam::{DVec2, DVec3};
 
-use super::Facts;
+use super::{ROUNDING, Slack};
 use crate::{choice, math::hash_unit};
 
 choice! {
@@ -40,36 +40,44 @@ pub struct Front {
 impl Front {
     /// How far the front has passed a triangle: 0 untouched, 1 behind it.
     pub fn reached(&self, center: DVec3, center_screen: DVec2, triangle: u32) -> f64 {
-        let passed = |place: f64| ((self.progress * (1.0 + self.width) - place) / self.width).clamp(0.0, 1.0);
+        self.passed(center, center_screen, triangle).clamp(0.0, 1.0)
+    }
+
+    /// The same in thicknesses of the front, below 0 before it and above 1 behind it.
+    fn passed(&self, center: DVec3, center_screen: DVec2, triangle: u32) -> f64 {
+        let passed = |place: f64| (self.progress * (1.0 + self.width) - place) / self.width;
         match self.pattern {
             Pattern::Uniform => 1.0,
-            Pattern::Sweep => {
-                let reach = (self.along.x.abs() + self.along.y.abs()).max(1e-3);
-                passed(0.5 + (center_screen - 0.5).dot(self.along) / reach)
-            }
-            Pattern::Radial => ((self.radius_m - (center - self.center).length()) / self.width_m + 0.5).clamp(0.0, 1.0),
+            Pattern::Sweep => passed(0.5 + (center_screen - 0.5).dot(self.along) / self.reach()),
+            Pattern::Radial => (self.radius_m - (center - self.center).length()) / self.width_m + 0.5,
             Pattern::Random => passed(hash_unit(triangle ^ self.seed.wrapping_mul(0x9e37_79b9))),
         }
     }
 
-    /// Bound of the error of [`Front::reached`] in f32, whatever rounding, order and fusion WGSL allows.
-    pub fn slack(&self, facts: &Facts) -> f64 {
-        let ulp = f64::from(f32::EPSILON);
-        let passing = |place_slack: f64| (place_slack + 8.0 * ulp * (1.0 + self.width)) / self.width;
-        match self.pattern {
-            Pattern::Uniform => 0.0,
-            // Shares of the picture: a few operations on numbers up to the largest corner's place.
+    /// Length of the sweep's way over the picture.
+    fn reach(&self) -> f64 {
+        (self.along.x.abs() + self.along.y.abs()).max(1e-3)
+    }
+
+    /// Bound of the error of an f32 twin of [`Front::reached`]: first-order roundings, each of the terms it concerns.
+    pub fn slack(&self, center: DVec3, center_screen: DVec2, triangle: u32, given: &Slack) -> f64 {
+        let passed = self.passed(center, center_screen, triangle);
+        let progress = 3.0 * ROUNDING * self.progress * (1.0 + self.width);
+        let slack = match self.pattern {
+            Pattern::Uniform => return 0.0,
             Pattern::Sweep => {
-                let reach = facts.corners.as_flattened().iter().map(|at| f64::from(*at).abs()).fold(0.0, f64::max);
-                let shortest = f64::from(facts.size[0].min(facts.size[1]).max(1));
-                passing(24.0 * ulp * (1.0 + reach / (256.0 * shortest)))
+                let share = self.along.abs() / self.reach();
+                let way = share.dot((center_screen - 0.5).abs());
+                let place = (share.x + share.y) * given.center_screen + ROUNDING * (1.0 + 8.0 * way);
+                (progress + place) / self.width
             }
             Pattern::Radial => {
-                let away = (facts.center - self.center).length();
-                let distance = 2.0 * facts.center_slack_m + 8.0 * ulp * (away + self.center.abs().max_element());
-                (distance + 4.0 * ulp * self.radius_m) / self.width_m + 4.0 * ulp
+                let distance = (center - self.center).length();
+                (2.0 * given.center_m + ROUNDING * (8.0 * distance + self.radius_m)) / self.width_m
             }
-            Pattern::Random => passing(0.0),
-        }
+            Pattern::Random => progress / self.width,
+        } + 4.0 * ROUNDING * (passed.abs() + 1.0);
+        // Away from the front both ends are exact.
+        if passed + slack < 0.0 || passed - slack > 1.0 { 0.0 } else { slack.min(1.0) }
     }
 }

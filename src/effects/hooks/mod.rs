@@ -12,7 +12,7 @@ pub use image::{ImageEffect, Picture, Pixel};
 pub use sample::{Facts, Sample, SampleEffect, SampleHook};
 pub use slot::{Shape, Slot};
 pub use surface::{Surface, SurfaceEffect};
-pub use vertex::{Vertex, VertexEffect, VertexHook};
+pub use vertex::{ROUNDING, Slack, Vertex, VertexEffect, VertexHook};
 
 /// Every hook of one effect, each with its function over the parameter words.
 #[derive(Clone, Copy)]

@@ -5,6 +5,7 @@
 
 use glam::{DVec2, DVec3};
 
+use super::{ROUNDING, Slack};
 use crate::params::Params;
 
 /// What is known of a triangle, or of a piece that clipping left of one, when an effect decides about it.
@@ -31,6 +32,15 @@ impl Facts {
     pub fn doubled_area(&self) -> u64 {
         let [[ax, ay], [bx, by], [cx, cy]] = self.corners.map(|corner| corner.map(i64::from));
         ((bx - ax) * (cy - ay) - (by - ay) * (cx - ax)).unsigned_abs()
+    }
+
+    /// How far an f32 twin's centre may be from the truth, in the world and in the picture.
+    pub fn slack(&self) -> Slack {
+        // A few operations on numbers up to the largest corner's place, as shares of the picture.
+        let reach = self.corners.as_flattened().iter().map(|at| f64::from(*at).abs()).fold(0.0, f64::max);
+        let shortest = f64::from(self.size[0].min(self.size[1]).max(1));
+        let center_screen = 24.0 * ROUNDING * (1.0 + reach / (256.0 * shortest));
+        Slack { center_m: self.center_slack_m, center_screen, ..Slack::default() }
     }
 
     /// Samples that the triangle owns in the picture, row by row, each afresh.

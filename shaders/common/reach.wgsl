@@ -1,4 +1,4 @@
-// Shape: what a triangle covers, where an effect says otherwise than its own samples.
+// Reach: what a triangle covers, where an effect says otherwise than its own samples.
 
 override SHAPE: u32 = 0u;
 

@@ -1,0 +1,43 @@
+// Explode: triangles fly out along their own normals, turning about them and shrinking as they go.
+//@ use common/moved
+//@ use common/front
+//@ use common/sine
+
+struct Explode {
+    center: vec4f,
+    amount_m: f32,
+    scatter: f32,
+    spin_turns: f32,
+    shrink: f32,
+    pattern: u32,
+    front: f32,
+    width: f32,
+    along_x: f32,
+    along_y: f32,
+    radius_m: f32,
+    width_m: f32,
+    seed: u32,
+}
+
+fn explode(vertex: Vertex, p: Explode) -> Vertex {
+    var v = vertex;
+    let front = Front(p.pattern, p.front, p.width, vec2f(p.along_x, p.along_y), p.center.xyz, p.radius_m, p.width_m, p.seed);
+    let reached = front_reached(front, v.center, v.center_screen, v.triangle);
+    let share = reached * (1.0 - p.scatter * hash_unit(v.triangle ^ (p.seed * 0x85ebca6bu)));
+    let sine = sine_turns(p.spin_turns * share);
+    let half_sine = sine_turns(p.spin_turns * share * 0.5);
+    let versine = 2.0 * half_sine * half_sine; // 1 - cosine, without a difference
+    let n = v.flat_normal;
+
+    let arm = v.position + v.offset - v.center;
+    let turn = explode_turn(n, arm, sine, versine);
+    v.offset += n * (p.amount_m * share) + turn - (arm + turn) * (p.shrink * share);
+    v.normal += explode_turn(n, v.normal, sine, versine);
+    return v;
+}
+
+// What a turn about the unit axis `n` adds to `r` (Rodrigues).
+fn explode_turn(n: vec3f, r: vec3f, sine: f32, versine: f32) -> vec3f {
+    let across = cross(n, r);
+    return across * sine + cross(n, across) * versine;
+}

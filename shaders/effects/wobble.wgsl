@@ -1,0 +1,33 @@
+// Wobble: a wave runs through the model and sways it, normals and all.
+//@ use common/moved
+//@ use common/sine
+
+struct Wobble {
+    toward: vec4f,
+    sway: vec4f,
+    amplitude_m: f32,
+    wavelength_m: f32,
+    phase_turns: f32,
+}
+
+fn wobble(vertex: Vertex, p: Wobble) -> Vertex {
+    var v = vertex;
+    let toward = wobble_unit(p.toward.xyz, vec3f(0.0, 1.0, 0.0));
+    let sway = wobble_unit(p.sway.xyz, vec3f(1.0, 0.0, 0.0));
+    let turns = dot(v.position + v.offset, toward) / p.wavelength_m - p.phase_turns;
+    v.offset += sway * (p.amplitude_m * sine_turns(turns));
+
+    // The displacement changes along `toward` by `slope`; normals go with the cofactors of its Jacobian, 1 + slope sway toward'.
+    let slope = 6.28318531 * (p.amplitude_m / p.wavelength_m) * cosine_turns(turns);
+    let turned = v.normal + (v.normal * dot(sway, toward) - toward * dot(sway, v.normal)) * slope;
+    let squared = dot(turned, turned);
+    if slope != 0.0 && squared > 1e-12 { v.normal = turned / sqrt(squared); }
+    return v;
+}
+
+// Direction of `v`; `otherwise` where it has none.
+fn wobble_unit(v: vec3f, otherwise: vec3f) -> vec3f {
+    let largest = max(max(abs(v.x), abs(v.y)), abs(v.z));
+    if !(largest > 0.0) { return otherwise; }
+    return v / largest / length(v / largest);
+}

@@ -1,0 +1,36 @@
+// Shape, moved: normals of a triangle whose corners the vertex effects have moved.
+//@ use common/surface
+//@ use common/movement
+//@ use slot/movement
+
+// Normals before they are turned to the viewer's side. What no effect touches keeps its bits: the plane of a triangle that
+// is only carried along, and the interpolated normal where no corner's is turned.
+fn shape_of(surface: Surface, draw: u32, at: vec3u, weights: vec3f) -> Surface {
+    var s = surface;
+    let pa = vertex_position(transform_bits(draw, at.x), 0u);
+    let pb = vertex_position(transform_bits(draw, at.y), 0u);
+    let pc = vertex_position(transform_bits(draw, at.z), 0u);
+    let a = movement_corner(draw, at.x, s.owner, pa);
+    let b = movement_corner(draw, at.y, s.owner, pb);
+    let c = movement_corner(draw, at.z, s.owner, pc);
+    if any(a.offset != b.offset) || any(a.offset != c.offset) {
+        let m = draws[draw].world_from_object;
+        let ab = (m * vec4f(pb - pa, 0.0)).xyz + (b.offset - a.offset);
+        let ac = (m * vec4f(pc - pa, 0.0)).xyz + (c.offset - a.offset);
+        let plane = normal_direction(normal_of_plane(vec3f(0.0), ab, ac));
+        s.flat_normal = select(plane, -plane, (draws[draw].flags & DRAW_MIRRORED) != 0u);
+    }
+
+    let na = movement_normal(draw, at.x);
+    let nb = movement_normal(draw, at.y);
+    let nc = movement_normal(draw, at.z);
+    let is_turned = any(a.normal != normal_direction(na)) || any(b.normal != normal_direction(nb)) || any(c.normal != normal_direction(nc));
+    if is_turned {
+        // Turned normals keep the lengths by which the file weighs them.
+        s.normal = normal_direction(normal_mixed(
+            vec4f(a.normal * length(na), normal_gated(normal_bits(draw, at.x)).w),
+            vec4f(b.normal * length(nb), normal_gated(normal_bits(draw, at.y)).w),
+            vec4f(c.normal * length(nc), normal_gated(normal_bits(draw, at.z)).w), weights));
+    }
+    return s;
+}

@@ -1,0 +1,143 @@
+//! Explode: triangles fly out along their own normals, turning about them and shrinking as they go.
+//!
+//! A triangle that neither turns nor shrinks is carried along as a whole; one that only turns keeps its area.
+
+use glam::{DVec2, DVec3};
+
+use super::{
+    Effect,
+    hooks::{Front, Pattern, ROUNDING, Slack, Vertex, VertexEffect},
+};
+use crate::{
+    math::{SINE_SLACK, hash_unit, sin_turns},
+    params,
+    params::Point,
+};
+
+params! {
+    pub struct Explode {
+        /// Centre of the radial front, world space.
+        center: Point = [0.0, 0.0, 0.0, 0.0], soft -3.0..=3.0, unit "m", when ("pattern", &["radial"]);
+        /// How far a triangle flies along its normal; negative: inwards.
+        amount_m: f32 = 0.3, hard -1e3..=1e3, soft -1.0..=2.0, unit "m";
+        /// How unlike the triangles fly: at 0 all alike, at 1 some not at all.
+        scatter: f32 = 0.0, hard 0.0..=1.0;
+        /// Turns that a triangle makes about its normal on its way.
+        spin_turns: f32 = 0.0, hard -100.0..=100.0, soft -1.0..=1.0, unit "turns";
+        /// Share of its size that a triangle loses on its way.
+        shrink: f32 = 0.0, hard 0.0..=1.0;
+        /// How the blast is spread over the triangles.
+        pattern: Pattern = Pattern::Uniform as u32;
+        /// Progress of the front: 0 before the first triangle, 1 past the last.
+        front: f32 = 0.5, hard 0.0..=1.0, when ("pattern", &["sweep", "random"]);
+        /// Softness of the front, as a share of its way.
+        width: f32 = 0.5, hard 0.001..=100.0, soft 0.001..=2.0, log true, when ("pattern", &["sweep", "random"]);
+        /// Direction of the sweep in the picture: part to the right.
+        along_x: f32 = 1.0, hard -1.0..=1.0, when ("pattern", &["sweep"]);
+        /// Direction of the sweep in the picture: part downwards.
+        along_y: f32 = 0.0, hard -1.0..=1.0, when ("pattern", &["sweep"]);
+        /// Distance of the front from the centre.
+        radius_m: f32 = 1.0, hard 0.0..=1e6, soft 0.0..=5.0, unit "m", when ("pattern", &["radial"]);
+        /// Thickness of the front.
+        width_m: f32 = 0.5, hard 0.001..=1e6, soft 0.01..=5.0, unit "m", log true, when ("pattern", &["radial"]);
+        /// Seed of scatter and random times.
+        seed: u32 = 1, soft 0.0..=999.0;
+    }
+}
+
+pub const EFFECT: Effect =
+    Effect::new::<Explode>("explode", "Explode", "triangles fly out along their own normals, turn and shrink").on_vertex::<Explode>();
+
+impl VertexEffect for Explode {
+    const NEEDS_TRIANGLE: bool = true;
+
+    fn moved(mut v: Vertex, p: &Self) -> Vertex {
+        let share = p.share(&v);
+        let spin = Spin::of(f64::from(p.spin_turns) * share);
+        let arm = v.position + v.offset - v.center;
+        let turn = spin.added(v.flat_normal, arm);
+        v.offset += v.flat_normal * (f64::from(p.amount_m) * share) + turn - (arm + turn) * (f64::from(p.shrink) * share);
+        v.normal += spin.added(v.flat_normal, v.normal);
+        v
+    }
+
+    fn slack(v: &Vertex, mut slack: Slack, p: &Self) -> Slack {
+        let [amount, turns, shrink] = [p.amount_m, p.spin_turns, p.shrink].map(|f| f64::from(f).abs());
+        if amount == 0.0 && turns == 0.0 && shrink == 0.0 {
+            return slack;
+        }
+        let share = p.share(v);
+        let share_slack = p.travelling().slack(v.center, v.center_screen, v.triangle, &slack) + 4.0 * ROUNDING * share;
+        let spin = Spin::of(turns * share);
+        let (sine, versine) = spin.slack(turns * (share_slack + ROUNDING * share));
+        // Per axis; lengths of three such are less than twice as long.
+        let lanes = v.position.abs() + v.offset.abs() + v.center.abs();
+        let arm_slack = slack.position_m + slack.offset_m + slack.center_m + 2.0 * ROUNDING * lanes.max_element();
+        let arm = (v.position + v.offset - v.center).length();
+        let turn_slack = |r: f64, r_slack: f64| {
+            let most = spin.sine.abs() + sine + spin.versine + versine;
+            r * (sine + versine) + most * (2.0 * r_slack + r * (4.0 * slack.flat_normal + 10.0 * ROUNDING))
+        };
+        let (turn, turn_slack_m) = (arm * (spin.sine.abs() + spin.versine), turn_slack(arm, arm_slack));
+        let flight = amount * (share * (slack.flat_normal + 4.0 * ROUNDING) + share_slack);
+        let loss = shrink * (share * (arm_slack + turn_slack_m + 4.0 * ROUNDING * (arm + turn)) + share_slack * (arm + turn));
+        let sums = 3.0 * ROUNDING * (v.offset.abs().max_element() + amount * share + turn + shrink * share * (arm + turn));
+        slack.offset_m += flight + turn_slack_m + loss + sums;
+        if turns > 0.0 {
+            slack.normal += turn_slack(1.0, slack.normal) + ROUNDING;
+        }
+        slack
+    }
+}
+
+/// A turn about an axis, as Rodrigues' formula needs it.
+struct Spin {
+    turns: f64,
+    sine: f64,
+    /// 1 - cosine, from the sine of half the angle.
+    versine: f64,
+}
+
+impl Spin {
+    fn of(turns: f64) -> Self {
+        let half = sin_turns(turns * 0.5);
+        Self { turns, sine: sin_turns(turns), versine: 2.0 * half * half }
+    }
+
+    /// What the turn about the unit axis `n` adds to `r`.
+    fn added(&self, n: DVec3, r: DVec3) -> DVec3 {
+        let across = n.cross(r);
+        across * self.sine + n.cross(across) * self.versine
+    }
+
+    /// Bounds of the errors of sine and versine in f32, given that of the angle in turns; none without a turn.
+    fn slack(&self, turns: f64) -> (f64, f64) {
+        if self.turns == 0.0 && turns == 0.0 {
+            return (0.0, 0.0);
+        }
+        let sine = std::f64::consts::TAU * turns + SINE_SLACK;
+        let half = 0.5 * std::f64::consts::TAU * turns + SINE_SLACK;
+        (sine.min(2.0), (4.0 * half + 3.0 * ROUNDING).min(2.0))
+    }
+}
+
+impl Explode {
+    /// How much of its way a triangle has gone.
+    fn share(&self, v: &Vertex) -> f64 {
+        let reached = self.travelling().reached(v.center, v.center_screen, v.triangle);
+        reached * (1.0 - f64::from(self.scatter) * hash_unit(v.triangle ^ self.seed.wrapping_mul(0x85eb_ca6b)))
+    }
+
+    fn travelling(&self) -> Front {
+        Front {
+            pattern: Pattern::of(self.pattern),
+            progress: self.front.into(),
+            width: self.width.into(),
+            along: DVec2::new(self.along_x.into(), self.along_y.into()),
+            center: DVec3::new(self.center[0].into(), self.center[1].into(), self.center[2].into()),
+            radius_m: self.radius_m.into(),
+            width_m: self.width_m.into(),
+            seed: self.seed,
+        }
+    }
+}

@@ -1,0 +1,104 @@
+//! Wobble: a wave runs through the model and sways it, normals and all.
+//!
+//! The displacement is u(x) = sway A sin(2π (toward·x / λ - phase)), its Jacobian I + slope sway towardᵀ, and a normal goes
+//! with the cofactors of that: n (1 + slope sway·toward) - toward slope (sway·n). The phase is given in turns and kept
+//! within one, so a wave that has run for a day is as exact as a new one.
+
+use glam::DVec3;
+
+use super::{
+    Effect,
+    hooks::{ROUNDING, Slack, Vertex, VertexEffect},
+};
+use crate::{
+    math::{SINE_SLACK, cos_turns, sin_turns},
+    params,
+    params::Point,
+};
+
+params! {
+    pub struct Wobble {
+        /// Direction in which the wave runs, of any length.
+        toward: Point = [0.0, 1.0, 0.0, 0.0], hard -1e3..=1e3, soft -1.0..=1.0;
+        /// Direction in which it sways the model, of any length.
+        sway: Point = [1.0, 0.0, 0.0, 0.0], hard -1e3..=1e3, soft -1.0..=1.0;
+        /// How far it sways to either side.
+        amplitude_m: f32 = 0.08, hard 0.0..=1e3, soft 0.0..=0.5, unit "m";
+        /// Distance from one crest to the next.
+        wavelength_m: f32 = 1.0, hard 0.001..=1e6, soft 0.05..=10.0, unit "m", log true;
+        /// How far the wave has run, turns of one wavelength; 1 is 0 again.
+        phase_turns: f32 = 0.0, hard 0.0..=1.0, unit "turns";
+    }
+}
+
+pub const EFFECT: Effect = Effect::new::<Wobble>("wobble", "Wobble", "a wave runs through the model and sways it").on_vertex::<Wobble>();
+
+/// Below this squared length a turned normal has no direction and stays as it was.
+const DEGENERATE: f64 = 1e-12;
+
+/// The wave at one vertex.
+struct Wave {
+    toward: DVec3,
+    sway: DVec3,
+    amplitude: f64,
+    /// Distance along `toward`, wavelengths.
+    distance: f64,
+    turns: f64,
+    /// Change of the displacement along `toward`.
+    slope: f64,
+    /// The normal after the turn, of any length.
+    turned: DVec3,
+}
+
+impl Wave {
+    fn at(v: &Vertex, p: &Wobble) -> Self {
+        let (toward, sway) = (unit(p.toward, DVec3::Y), unit(p.sway, DVec3::X));
+        let (amplitude, wavelength) = (f64::from(p.amplitude_m), f64::from(p.wavelength_m));
+        let distance = (v.position + v.offset).dot(toward) / wavelength;
+        let turns = distance - f64::from(p.phase_turns);
+        let slope = std::f64::consts::TAU * amplitude / wavelength * cos_turns(turns);
+        let turned = v.normal * (1.0 + slope * sway.dot(toward)) - toward * (slope * sway.dot(v.normal));
+        Self { toward, sway, amplitude, distance, turns, slope, turned }
+    }
+}
+
+impl VertexEffect for Wobble {
+    const NEEDS_TRIANGLE: bool = false;
+
+    fn moved(mut v: Vertex, p: &Self) -> Vertex {
+        let wave = Wave::at(&v, p);
+        v.offset += wave.sway * (wave.amplitude * sin_turns(wave.turns));
+        if wave.slope != 0.0 && wave.turned.length_squared() > DEGENERATE {
+            v.normal = wave.turned.normalize();
+        }
+        v
+    }
+
+    fn slack(v: &Vertex, mut slack: Slack, p: &Self) -> Slack {
+        let wave = Wave::at(v, p);
+        if wave.amplitude == 0.0 {
+            return slack;
+        }
+        let (place, toward) = (v.position + v.offset, wave.toward.abs());
+        let wavelength = f64::from(p.wavelength_m);
+        let given = slack.position_m + slack.offset_m + ROUNDING * place.abs().max_element();
+        // A unit vector errs by ten roundings, the sum of products by four.
+        let along = given * toward.element_sum() + 14.0 * ROUNDING * toward.dot(place.abs());
+        let turns = along / wavelength + ROUNDING * (4.0 * wave.distance.abs() + f64::from(p.phase_turns));
+        let sine = (std::f64::consts::TAU * turns + SINE_SLACK).min(2.0);
+        slack.offset_m += wave.amplitude * (sine + 14.0 * ROUNDING) + ROUNDING * v.offset.abs().max_element();
+
+        let steepest = std::f64::consts::TAU * wave.amplitude / wavelength;
+        let slope = steepest * (sine + 2.0 * ROUNDING + 6.0 * ROUNDING);
+        let turned = 2.0 * slack.normal * (1.0 + 2.0 * wave.slope.abs()) + 2.0 * slope + ROUNDING * (4.0 + 40.0 * wave.slope.abs());
+        let length = wave.turned.length();
+        slack.normal = if turned < 0.5 * length { turned / (length - turned) + 10.0 * ROUNDING } else { 2.0 };
+        slack
+    }
+}
+
+/// Direction of a parameter; `otherwise` where it has none. Lanes below the normal floats are 0, as on a GPU.
+fn unit(point: [f32; 4], otherwise: DVec3) -> DVec3 {
+    let lane = |k: usize| if point[k].is_normal() { f64::from(point[k]) } else { 0.0 };
+    DVec3::new(lane(0), lane(1), lane(2)).try_normalize().unwrap_or(otherwise)
+}

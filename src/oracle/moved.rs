@@ -1,0 +1,250 @@
+//! Corners as the vertex effects leave them, in f64, and how far a float renderer may be from that.
+
+use glam::{DMat3, DVec2, DVec3};
+
+use super::{
+    project::{Clip, clip_position, gated_lane, object_position},
+    surface::{DEGENERATE, inverse_transpose, plane_normal},
+};
+use crate::{
+    effects::{
+        Stack,
+        hooks::{ROUNDING, Slack, Vertex},
+    },
+    math::rounded_columns,
+    scene::{
+        Scene,
+        camera::View,
+        draw::{Draw, MAX_MAGNITUDE},
+    },
+};
+
+/// A corner of a draw's triangle, both counted within the draw. Where triangles share vertices, any triangle will do.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Corner {
+    pub vertex: u32,
+    pub triangle: u32,
+}
+
+/// Places the corners of one draw.
+pub(super) struct Mover<'a> {
+    scene: &'a Scene,
+    pub draw: &'a Draw,
+    pub stack: &'a Stack,
+    pub moves: bool,
+    /// Every triangle has three records to itself.
+    has_own_corners: bool,
+    /// Rounded once, so that every judge starts from these bits.
+    clip_from_world: [[f64; 4]; 4],
+    world_from_normal: DMat3,
+}
+
+impl<'a> Mover<'a> {
+    pub fn new(scene: &'a Scene, draw: &'a Draw, view: &'a View, stack: &'a Stack) -> Self {
+        Self {
+            scene,
+            draw,
+            stack,
+            moves: stack.moves(),
+            has_own_corners: stack.parts_corners(),
+            clip_from_world: rounded_columns(&view.clip_from_world).map(|column| column.map(f64::from)),
+            world_from_normal: inverse_transpose(DMat3::from_mat4(draw.world_from_object), draw.mirrored),
+        }
+    }
+
+    /// The corner of every record of this draw, in order.
+    pub fn corners(&self) -> Vec<Corner> {
+        let primitive = &self.scene.primitives[self.draw.primitive];
+        if !self.has_own_corners {
+            return (0..primitive.vertex_count()).map(|vertex| Corner { vertex, triangle: 0 }).collect();
+        }
+        let corners = |triangle| primitive.corners(self.scene, triangle).map(|vertex| Corner { vertex, triangle });
+        (0..primitive.triangle_count()).flat_map(corners).collect()
+    }
+
+    /// Place of this draw's first record in the geometry.
+    pub fn first_record(&self) -> usize {
+        if self.has_own_corners { 3 * self.draw.first_triangle as usize } else { self.draw.first_vertex as usize }
+    }
+
+    /// Position in clip space after all effects, or why it was refused.
+    pub fn clip(&self, corner: Corner) -> Result<Clip, u32> {
+        let still = clip_position(self.scene, self.draw, corner.vertex)?;
+        if !self.moves {
+            return Ok(still);
+        }
+        let o = self.moved(corner).offset;
+        let row = |r: usize| [0, 1, 2].map(|axis| self.clip_from_world[axis][r] * o[axis]).iter().sum::<f64>();
+        Ok(Clip { x: still.x + row(0), y: still.y + row(1), z: still.z + row(2), w: still.w + row(3) })
+    }
+
+    /// What the effects make of a corner; its movement is held below 2^40 m, as every coordinate is.
+    pub fn moved(&self, corner: Corner) -> Vertex {
+        let mut vertex = self.stack.moved(self.still(corner));
+        vertex.offset = held(vertex.offset);
+        vertex
+    }
+
+    /// A corner before any effect.
+    pub fn still(&self, corner: Corner) -> Vertex {
+        let object = self.place(corner.vertex);
+        let position = held(self.draw.world_from_object.transform_point3(object));
+        let normal = direction(self.world_from_normal * self.normal(corner.vertex));
+        let nowhere = (DVec3::ZERO, position, DVec2::ZERO, 0);
+        let (flat_normal, center, center_screen, triangle) = if self.has_own_corners { self.triangle(corner) } else { nowhere };
+        Vertex { position, offset: DVec3::ZERO, normal, flat_normal, center, center_screen, triangle }
+    }
+
+    /// Normal, centre, its place in the picture, and id of a corner's triangle.
+    fn triangle(&self, corner: Corner) -> (DVec3, DVec3, DVec2, u32) {
+        let corners = self.triangle_places(corner);
+        let flat_normal = plane_normal(corners).map_or(DVec3::ZERO, |normal| direction(self.world_from_normal * normal));
+        let middle = corners.iter().sum::<DVec3>() / 3.0;
+        let [x, y, _, w] = self.clip_rows(middle, false);
+        let screen = if w > 0.0 { DVec2::new(0.5 + 0.5 * x / w, 0.5 - 0.5 * y / w) } else { DVec2::splat(0.5) };
+        let center = held(self.draw.world_from_object.transform_point3(middle));
+        (flat_normal, center, screen, self.draw.first_triangle + corner.triangle)
+    }
+
+    /// The three corners of a corner's triangle in object space.
+    fn triangle_places(&self, corner: Corner) -> [DVec3; 3] {
+        let primitive = &self.scene.primitives[self.draw.primitive];
+        primitive.corners(self.scene, corner.triangle).map(|vertex| self.place(vertex))
+    }
+
+    /// A vertex in object space; the origin where a lane is refused.
+    fn place(&self, vertex: u32) -> DVec3 {
+        let object = object_position(self.scene, &self.scene.primitives[self.draw.primitive], vertex);
+        DVec3::from_array(object.unwrap_or_default())
+    }
+
+    /// A stored normal; zero where a lane is refused.
+    fn normal(&self, vertex: u32) -> DVec3 {
+        let normals = &self.scene.primitives[self.draw.primitive].normals;
+        let lane = |lane: u32| gated_lane(&self.scene.vertex_bytes, normals, vertex, lane);
+        match [0, 1, 2].map(lane) {
+            [Ok(x), Ok(y), Ok(z)] => DVec3::new(x, y, z),
+            _ => DVec3::ZERO,
+        }
+    }
+
+    /// The stored normal in the world, of any length.
+    pub fn world_normal(&self, vertex: u32) -> DVec3 {
+        self.world_from_normal * self.normal(vertex)
+    }
+
+    /// Rows of the clip matrix times a point, or the sums of the magnitudes of their terms.
+    fn clip_rows(&self, p: DVec3, magnitudes: bool) -> [f64; 4] {
+        let sign = |v: f64| if magnitudes { v.abs() } else { v };
+        [0, 1, 2, 3].map(|r| {
+            let m = |column: usize| f64::from(self.draw.clip_from_object[column][r]);
+            sign(m(0) * p.x) + sign(m(1) * p.y) + sign(m(2) * p.z) + sign(m(3))
+        })
+    }
+}
+
+/// Errors of a float renderer.
+impl Mover<'_> {
+    /// Sums of magnitudes of the terms of each clip coordinate, and bounds of their errors: rounding errors are
+    /// proportional to the terms, however much cancels, and what the effects err by comes on top.
+    pub fn clip_errors(&self, corner: Corner) -> ([f64; 4], [f64; 4]) {
+        let mut sums = self.clip_rows(self.place(corner.vertex), true);
+        let (slack, offset) = if self.moves { self.offset_slack(corner) } else { (0.0, DVec3::ZERO) };
+        if slack == 0.0 && offset == DVec3::ZERO {
+            return (sums, sums.map(|sum| 4.0 * ROUNDING * sum));
+        }
+        let errors = [0, 1, 2, 3].map(|r| {
+            let row = [0, 1, 2].map(|axis| self.clip_from_world[axis][r].abs());
+            sums[r] += row[0] * offset.x.abs() + row[1] * offset.y.abs() + row[2] * offset.z.abs();
+            // Seven products, in whatever order they are added; a sixteenth for what is of second order in the quotient.
+            (7.0 * ROUNDING * sums[r] + slack * (row[0] + row[1] + row[2])) * (16.0 / 15.0)
+        });
+        (sums, errors)
+    }
+
+    fn offset_slack(&self, corner: Corner) -> (f64, DVec3) {
+        let still = self.still(corner);
+        (self.stack.slack(still, self.still_slack(corner)).offset_m, self.stack.moved(still).offset)
+    }
+
+    /// How far a corner of a float renderer may be from [`Mover::still`].
+    fn still_slack(&self, corner: Corner) -> Slack {
+        let m = self.draw.world_from_object;
+        let magnitude = |p: DVec3| {
+            let terms = m.x_axis.abs() * p.x.abs() + m.y_axis.abs() * p.y.abs() + m.z_axis.abs() * p.z.abs() + m.w_axis.abs();
+            terms.truncate().max_element()
+        };
+        // The matrix is rounded, then four products are added.
+        let position_m = 5.0 * ROUNDING * magnitude(self.place(corner.vertex));
+        let stored = self.normal(corner.vertex);
+        let normal = self.direction_slack(stored, DVec3::ZERO);
+        if !self.has_own_corners {
+            return Slack { position_m, normal, center_m: position_m, ..Slack::default() };
+        }
+        let corners = self.triangle_places(corner);
+        let middle = corners.iter().map(|c| c.abs()).sum::<DVec3>() / 3.0;
+        let center_screen = self.screen_slack(corners.iter().sum::<DVec3>() / 3.0, middle);
+        Slack {
+            position_m,
+            normal,
+            center_m: 10.0 * ROUNDING * magnitude(middle),
+            center_screen,
+            flat_normal: self.plane_slack(corners),
+            offset_m: 0.0,
+        }
+    }
+
+    /// Error of the direction of a normal that is taken to the world, itself known to within `given`.
+    fn direction_slack(&self, normal: DVec3, given: DVec3) -> f64 {
+        let n = self.world_from_normal;
+        let spread = |v: DVec3| n.x_axis.abs() * v.x + n.y_axis.abs() * v.y + n.z_axis.abs() * v.z;
+        let error = spread(given) + 4.0 * ROUNDING * spread(normal.abs());
+        if error == DVec3::ZERO {
+            return 0.0;
+        }
+        let (length, error) = ((n * normal).length(), error.length() + 4.0 * f64::from(f32::MIN_POSITIVE));
+        if error < 0.5 * length { error / (length - error) + 10.0 * ROUNDING } else { 2.0 }
+    }
+
+    /// Error of the direction of a triangle's plane: large for needles, 2 where even its being a plane is in doubt.
+    fn plane_slack(&self, [a, b, c]: [DVec3; 3]) -> f64 {
+        let (ab, ac) = (b - a, c - a);
+        let (long, wide) = (ab.abs().max_element(), ac.abs().max_element());
+        if long == 0.0 || wide == 0.0 {
+            return 0.0;
+        }
+        if long.min(wide) < 1e-36 {
+            return 2.0;
+        }
+        let (u, v) = (ab / long, ac / wide);
+        let term = |i: usize, j: usize| (u[i] * v[j]).abs() + (u[j] * v[i]).abs();
+        let error = 9.0 * ROUNDING * DVec3::new(term(1, 2), term(2, 0), term(0, 1));
+        let (normal, length) = (u.cross(v), u.cross(v).length());
+        let doubt = 2.0 * length * error.length() + error.length_squared() + 8.0 * ROUNDING * length * length;
+        match length * length - DEGENERATE {
+            over if over.abs() <= doubt => 2.0,
+            over if over < 0.0 => 0.0,
+            _ => self.direction_slack(normal, error),
+        }
+    }
+
+    /// Error of the place of a triangle's middle in the picture; beyond all bounds where it may lie behind the eye.
+    fn screen_slack(&self, middle: DVec3, magnitudes: DVec3) -> f64 {
+        let ([x, y, _, w], [sx, sy, _, sw]) = (self.clip_rows(middle, false), self.clip_rows(magnitudes, true));
+        let error_w = 10.0 * ROUNDING * sw;
+        if w.abs() <= error_w {
+            return f64::INFINITY;
+        }
+        let error = |c: f64, s: f64| (10.0 * ROUNDING * s + (error_w + 6.0 * ROUNDING * w.abs()) * (c / w).abs()) / (w.abs() - error_w);
+        if w < 0.0 { 0.0 } else { 0.5 * error(x, sx).max(error(y, sy)) + 2.0 * ROUNDING }
+    }
+}
+
+fn direction(v: DVec3) -> DVec3 {
+    v.try_normalize().unwrap_or(DVec3::ZERO)
+}
+
+/// Held within ±2^40 m per axis, so that no later product overflows a float.
+fn held(v: DVec3) -> DVec3 {
+    v.clamp(DVec3::splat(-MAX_MAGNITUDE), DVec3::splat(MAX_MAGNITUDE))
+}

@@ -1,0 +1,412 @@
+//! Promise: effects that move vertices are exact within the bound they state, on every rung, and change nothing at all
+//! when they move nothing. Needs an adapter for all but what the oracle says of itself.
+
+mod common;
+
+use std::{fs, path::Path};
+
+use common::*;
+use glam::{DMat3, DVec2, DVec3};
+use rasterlab::{
+    effects::{
+        Effect, Stack,
+        hooks::{Slack, Vertex},
+    },
+    gpu::Renderer,
+    math::hash_unit,
+    oracle,
+    params::Kind,
+    plan::Tuning,
+    scene::{
+        Scene,
+        camera::{Camera, Projection},
+        draw::draws,
+    },
+    shader::{key::Visibility, library::Library},
+};
+
+const MOVING: [&str; 3] = ["explode", "inflate", "wobble"];
+
+fn set(stack: &mut Stack, effect: &str, field: &str, values: &[f64]) {
+    let enabled = stack.get_mut(effect).unwrap_or_else(|| panic!("{effect} is on"));
+    let field = enabled.effect.field(field).unwrap_or_else(|| panic!("{effect} has {field}"));
+    field.set(&mut enabled.words, values).unwrap_or_else(|error| panic!("{effect}: {error}"));
+}
+
+/// An effect with lengths that suit a scene of this size, and everything it can do switched on.
+fn suited(effect: &str, scene: &Scene) -> Stack {
+    let size = scene.bounds().radius();
+    let step = size.min(20.0);
+    let mut stack = stack(&[effect]);
+    match effect {
+        "explode" => {
+            set(&mut stack, effect, "amount_m", &[0.15 * step]);
+            set(&mut stack, effect, "scatter", &[0.5]);
+            set(&mut stack, effect, "spin_turns", &[0.3]);
+            set(&mut stack, effect, "shrink", &[0.25]);
+        }
+        "inflate" => set(&mut stack, effect, "amount_m", &[0.05 * step]),
+        _ => {
+            set(&mut stack, effect, "toward", &[0.3, 1.0, 0.2]);
+            set(&mut stack, effect, "sway", &[1.0, 0.2, 0.4]);
+            set(&mut stack, effect, "amplitude_m", &[0.05 * step]);
+            set(&mut stack, effect, "wavelength_m", &[0.7 * size]);
+            set(&mut stack, effect, "phase_turns", &[0.3]);
+        }
+    }
+    stack
+}
+
+/// The same with every length and turn at 0: an effect that moves nothing.
+fn resting(effect: &str, scene: &Scene) -> Stack {
+    let mut stack = suited(effect, scene);
+    for field in ["amount_m", "spin_turns", "shrink", "amplitude_m"] {
+        if stack.get(effect).is_some_and(|enabled| enabled.effect.field(field).is_some()) {
+            set(&mut stack, effect, field, &[0.0]);
+        }
+    }
+    stack
+}
+
+fn lit(mut stack: Stack) -> Stack {
+    stack.enable(Effect::find("lambert").expect("there is light"));
+    stack
+}
+
+#[test]
+fn every_builtin_scene_is_exact_under_every_moving_effect() {
+    let Some(mut renderer) = renderer() else { return };
+    let ways: Vec<(Visibility, Tuning)> = rungs(&renderer).into_iter().flat_map(|rung| tunings().map(|tuning| (rung, tuning))).collect();
+    let (mut failures, mut turn) = (Vec::new(), 0);
+    for query in SCENES {
+        let scene = scene(query);
+        let view = view(&scene, [320, 240]);
+        // Small scenes take every way through the kernels, large ones the next in turn.
+        let count = if scene.triangle_count() <= 5000 { ways.len() } else { 1 };
+        for effect in MOVING {
+            let stack = lit(suited(effect, &scene));
+            for (rung, tuning) in ways.iter().cycle().skip(turn).take(count) {
+                renderer.set_tuning(*tuning);
+                let (_, verdict) = judged(&mut renderer, &scene, &view, &stack, &pinned(*rung));
+                let what = format!("{query} {effect} {} small={}", rung.name(), tuning.small_samples);
+                failures.extend(exactness(&verdict.accuracy).err().map(|faults| format!("{what}: {faults}")));
+                let ill = verdict.accuracy.ill_conditioned;
+                if ill * 100 > verdict.accuracy.vertices {
+                    failures.push(format!("{what}: {ill} of {} corners are not judged", verdict.accuracy.vertices));
+                }
+            }
+            turn += 1;
+        }
+    }
+    assert!(failures.is_empty(), "{}", failures.join("\n"));
+}
+
+#[test]
+fn all_moving_effects_together_are_exact_far_from_the_origin_inside_and_in_parallel_rays() {
+    let Some(mut renderer) = renderer() else { return };
+    let mut far = Scene::clone(&scene("knot?tess=6"));
+    let offset = DVec3::new(1e4, -2e4, 1e4);
+    far.instances[0].world_from_object = glam::DMat4::from_translation(offset) * glam::DMat4::from_scale(DVec3::new(-1.0, 1.5, 0.5));
+    let near = Camera { eye: offset + DVec3::new(1.0, 1.0, 4.0), target: offset, ..Camera::default() };
+    let flat = Camera { projection: Projection::Orthographic { height_m: 3.0 }, ..Camera::default() };
+    let inside = Camera { eye: DVec3::new(0.2, -0.1, 0.3), target: DVec3::X, near_m: 0.05, ..Camera::default() };
+    let cases = [
+        ("mirrored far away", std::sync::Arc::new(far), near),
+        ("orthographic", scene("teapot?tess=5"), flat),
+        ("inside the mesh", scene("sphere?triangles=3000"), inside),
+    ];
+    for (what, scene, camera) in cases {
+        let view = seen(&scene, &camera, [200, 150]);
+        let mut stack = lit(stack(&MOVING));
+        set(&mut stack, "explode", "amount_m", &[0.1]);
+        for (pattern, name) in ["uniform", "sweep", "radial", "random"].iter().enumerate() {
+            set(&mut stack, "explode", "pattern", &[pattern as f64]);
+            for rung in rungs(&renderer) {
+                exact(&mut renderer, &scene, &view, &stack, &pinned(rung), &format!("{what}, {name}, {}", rung.name()));
+            }
+        }
+    }
+}
+
+#[test]
+fn an_effect_that_moves_nothing_changes_nothing() {
+    for query in ["teapot?tess=4", "cube-wall", "near", "slivers"] {
+        let scene = scene(query);
+        let view = view(&scene, [160, 120]);
+        let none = oracle::render(&scene, &view, &lit(Stack::default())).expect("a builtin fits");
+        for effect in MOVING {
+            let resting = oracle::render(&scene, &view, &lit(resting(effect, &scene))).expect("a builtin fits");
+            assert_eq!((&resting.owner, &resting.key, &resting.color), (&none.owner, &none.key, &none.color), "{query} {effect}");
+        }
+    }
+    let Some(mut renderer) = renderer() else { return };
+    let usual = renderer.gpu().caps.tuning();
+    for query in ["teapot?tess=4", "cube-wall", "near", "slivers"] {
+        let scene = scene(query);
+        let view = view(&scene, [160, 120]);
+        // With nothing left out, so that no shorter way round a sum rounds otherwise.
+        renderer.set_tuning(Tuning { specialized: false, ..usual });
+        let none = captured(&mut renderer, &scene, &view, &lit(Stack::default()), &pinned(Visibility::Split32));
+        for effect in MOVING {
+            let resting = captured(&mut renderer, &scene, &view, &lit(resting(effect, &scene)), &pinned(Visibility::Split32));
+            assert_eq!(resting.frame, none.frame, "{query} {effect}");
+        }
+    }
+}
+
+/// Shares of its stated bound that an adapter uses, seen through a telescope, where a unit is a fraction of a micrometre.
+#[test]
+fn stated_bounds_hold_under_a_telescope_and_are_not_idle() {
+    let Some(mut renderer) = renderer() else { return };
+    let scene = scene("sphere?triangles=3000");
+    let camera = Camera {
+        eye: DVec3::new(0.9, 0.8, 3.0),
+        target: DVec3::new(0.2, 0.2, 0.9),
+        projection: Projection::Perspective { fov_y_deg: 0.4 },
+        ..Camera::default()
+    };
+    let view = seen(&scene, &camera, [512, 512]);
+    let draws = draws(&scene, &view).expect("a builtin fits");
+    for effect in MOVING {
+        let stack = suited(effect, &scene);
+        let (capture, _) = exact(&mut renderer, &scene, &view, &stack, &pinned(Visibility::Split32), effect);
+        let truth = oracle::project_moved(&scene, &draws, &view, &stack);
+        let bounds = oracle::snap_bounds(&scene, &draws, &view, &stack);
+        let (mut largest, mut median) = (0.0f64, Vec::new());
+        for ((found, own), bound) in capture.geometry.vertices.iter().zip(&truth.vertices).zip(bounds) {
+            let (0, 0, Some([x, y])) = (found.flags, own.flags, bound) else { continue };
+            let share = (f64::from(found.x.abs_diff(own.x)) / (1.0 + x)).max(f64::from(found.y.abs_diff(own.y)) / (1.0 + y));
+            largest = largest.max(share);
+            median.push(x);
+        }
+        median.sort_by(f64::total_cmp);
+        let middle = median[median.len() / 2];
+        eprintln!("{effect}: {} corners, median bound {middle:.1} units, largest share used {largest:.3}", median.len());
+        assert!(middle > 4.0, "{effect}: the telescope shows nothing, {middle} units");
+        assert!((0.01..=1.0).contains(&largest), "{effect}: {largest} of the bound");
+    }
+}
+
+/// Any value of a field's hard range: its ends, its middle, by decades or evenly.
+fn any_value(dice: &mut Dice, field: &rasterlab::params::Field) -> Vec<f64> {
+    let [low, high] = field.hard;
+    let mut lane = || {
+        let value = match dice.between(0, 6) {
+            0 => low,
+            1 => high,
+            2 => 0.0f64.clamp(low, high),
+            3 | 4 => {
+                let decade = libm::pow(10.0, dice.real(-4.0, 3.0));
+                if dice.roll().is_multiple_of(2) { decade } else { -decade }
+            }
+            _ => dice.real(low, high),
+        };
+        let value = f64::from(value.clamp(low, high) as f32).clamp(low, high);
+        if matches!(field.kind, Kind::F32 | Kind::Point | Kind::Color) { value } else { value.trunc().clamp(low, high) }
+    };
+    (0..field.kind.lanes()).map(|_| lane()).collect()
+}
+
+#[test]
+fn any_parameters_within_the_hard_ranges_are_drawn_exactly() {
+    let Some(mut renderer) = renderer() else { return };
+    let mut dice = Dice(7);
+    let scenes = ["sphere?triangles=300", "teapot?tess=2", "near"].map(scene);
+    for case in 0..90 {
+        let scene = &scenes[case % scenes.len()];
+        let view = view(scene, [96, 72]);
+        let mut stack = stack(&MOVING[case / 3 % 3..][..1]);
+        if case % 10 == 9 {
+            stack = common::stack(&MOVING);
+        }
+        for enabled in &mut stack.0 {
+            for field in enabled.effect.fields {
+                let values = any_value(&mut dice, field);
+                field.set(&mut enabled.words, &values).unwrap_or_else(|error| panic!("{error}"));
+            }
+        }
+        let what = format!("case {case}, {}: {stack:?}", scene.name);
+        let (capture, verdict) = judged(&mut renderer, scene, &view, &stack, &Default::default());
+        let sound = capture.geometry.vertices.iter().all(|v| v.depth.is_finite() && v.inv_w.is_finite());
+        assert!(sound, "{what}: a corner is no number");
+        if let Err(faults) = exactness(&verdict.accuracy) {
+            panic!("{what}: {faults}");
+        }
+    }
+}
+
+// ---------------------------------------------------------------- what the effects promise of themselves
+
+fn vertex(dice: &mut Dice) -> Vertex {
+    let mut point = |reach: f64| DVec3::new(dice.real(-reach, reach), dice.real(-reach, reach), dice.real(-reach, reach));
+    let (position, normal, flat_normal, arm) = (point(2.0), point(1.0).normalize(), point(1.0).normalize(), point(0.1));
+    Vertex {
+        position,
+        offset: DVec3::ZERO,
+        normal,
+        flat_normal,
+        center: position - arm,
+        center_screen: DVec2::new(0.4, 0.6),
+        triangle: dice.roll() >> 8,
+    }
+}
+
+#[test]
+fn a_wobbling_normal_is_the_numerical_derivative_of_the_place() {
+    let mut dice = Dice(3);
+    for case in 0..200 {
+        let mut stack = stack(&["wobble"]);
+        set(&mut stack, "wobble", "toward", &[dice.real(-1.0, 1.0), dice.real(-1.0, 1.0), dice.real(-1.0, 1.0)]);
+        set(&mut stack, "wobble", "sway", &[dice.real(-1.0, 1.0), dice.real(-1.0, 1.0), dice.real(-1.0, 1.0)]);
+        set(&mut stack, "wobble", "amplitude_m", &[dice.real(0.0, 0.4)]);
+        set(&mut stack, "wobble", "wavelength_m", &[dice.real(0.5, 3.0)]);
+        let here = vertex(&mut dice);
+        let place = |p: DVec3| {
+            let moved = stack.moved(Vertex { position: p, ..here });
+            moved.position + moved.offset
+        };
+        let step = 1e-5;
+        let along = |axis: DVec3| (place(here.position + axis * step) - place(here.position - axis * step)) / (2.0 * step);
+        let jacobian = DMat3::from_cols(along(DVec3::X), along(DVec3::Y), along(DVec3::Z));
+        let [x, y, z] = [jacobian.x_axis, jacobian.y_axis, jacobian.z_axis];
+        let expected = (DMat3::from_cols(y.cross(z), z.cross(x), x.cross(y)) * here.normal).normalize();
+        let found = stack.moved(here).normal;
+        assert!(found.distance(expected) < 1e-6, "case {case}: {found} for {expected}");
+    }
+}
+
+#[test]
+fn exploding_and_turning_keeps_every_triangle_and_its_area() {
+    let scene = scene("sphere?triangles=300");
+    let view = view(&scene, [200, 150]);
+    let mut stack = stack(&["explode"]);
+    set(&mut stack, "explode", "amount_m", &[0.4]);
+    set(&mut stack, "explode", "spin_turns", &[0.37]);
+    set(&mut stack, "explode", "scatter", &[0.6]);
+    let draws = draws(&scene, &view).expect("a builtin fits");
+    let geometry = oracle::project_moved(&scene, &draws, &view, &stack);
+    assert_eq!(geometry.vertices.len() as u64, 3 * scene.triangle_count());
+    assert!(geometry.has_own_corners);
+
+    let primitive = &scene.primitives[0];
+    for t in 0..primitive.triangle_count() {
+        let places = primitive.corners(&scene, t).map(|v| DVec3::from(primitive.position(&scene, v).map(f64::from)));
+        let center = places.iter().sum::<DVec3>() / 3.0;
+        let normal = (places[1] - places[0]).cross(places[2] - places[0]);
+        let moved = places.map(|position| {
+            let corner = Vertex {
+                position,
+                offset: DVec3::ZERO,
+                normal: normal.normalize(),
+                flat_normal: normal.normalize(),
+                center,
+                center_screen: DVec2::splat(0.5),
+                triangle: t,
+            };
+            position + stack.moved(corner).offset
+        });
+        let turned = (moved[1] - moved[0]).cross(moved[2] - moved[0]);
+        assert!(turned.distance(normal) < 1e-12 * normal.length().max(1e-3), "triangle {t}: its plane or its area changed");
+        let flight = moved.iter().sum::<DVec3>() / 3.0 - center;
+        let expected = 0.4 * (1.0 - f64::from(0.6f32) * hash_unit(t ^ 0x85eb_ca6b));
+        assert!((flight.length() - expected).abs() < 1e-6 && flight.dot(normal) > 0.0, "triangle {t} flew {flight}");
+    }
+}
+
+#[test]
+fn a_bound_grows_with_what_an_effect_is_given_and_with_what_it_does() {
+    let mut dice = Dice(11);
+    let given = Slack { position_m: 1e-7, offset_m: 0.0, normal: 1e-7, flat_normal: 1e-7, center_m: 1e-7, center_screen: 1e-7 };
+    let coarser = Slack { position_m: 1e-5, offset_m: 1e-6, normal: 1e-5, flat_normal: 1e-5, center_m: 1e-5, center_screen: 1e-5 };
+    for effect in MOVING {
+        let moving = suited(effect, &scene("sphere?triangles=200"));
+        let still = resting(effect, &scene("sphere?triangles=200"));
+        for _ in 0..100 {
+            let here = vertex(&mut dice);
+            assert_eq!(still.slack(here, given), given, "{effect} at rest");
+            assert_eq!(still.moved(here), here, "{effect} at rest");
+            let (fine, coarse) = (moving.slack(here, given), moving.slack(here, coarser));
+            assert!(fine.offset_m > 0.0 && fine.offset_m < 1e-5, "{effect}: {}", fine.offset_m);
+            assert!(coarse.offset_m > fine.offset_m && coarse.normal >= fine.normal, "{effect}");
+        }
+    }
+}
+
+// ---------------------------------------------------------------- mutants
+
+#[test]
+fn kernels_that_move_wrongly_are_caught() {
+    let Some(mut healthy) = renderer() else { return };
+    let shaders = Path::new(env!("CARGO_MANIFEST_DIR")).join("shaders");
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    let mutants = [
+        (
+            "a wave turns normals the wrong way",
+            "wobble",
+            "effects/wobble",
+            "- toward * dot(sway, v.normal)",
+            "+ toward * dot(sway, v.normal)",
+        ),
+        (
+            "corners take their neighbour's record",
+            "explode",
+            "slots/corners/own",
+            "return 3u * id + vec3u(0u, 1u, 2u);",
+            "return 3u * id + vec3u(0u, 1u, 3u);",
+        ),
+        (
+            "movement is forgotten where triangles are clipped",
+            "explode",
+            "common/transform",
+            "return movement_clip(draw, vertex, id, vertex_position(transform_bits(draw, vertex), 0u));",
+            "return transform_clip(draw, vertex_position(transform_bits(draw, vertex), 0u));",
+        ),
+        (
+            "the plane stays behind",
+            "wobble",
+            "slots/shape/moved",
+            "s.flat_normal = select(plane, -plane,",
+            "let unused = select(plane, -plane,",
+        ),
+        ("a sine of half the accuracy", "wobble", "common/sine", "y * 39.5367061", "y * 39.2"),
+    ];
+    let mut failures = Vec::new();
+    for (i, (what, effect, file, from, to)) in mutants.into_iter().enumerate() {
+        let scene = scene(if file == "common/transform" { "near" } else { "sphere?triangles=200" });
+        let view = view(&scene, [160, 120]);
+        let mut stack = lit(suited(effect, &scene));
+        if file == "slots/shape/moved" {
+            stack.enable(Effect::find("facet").expect("there are facets"));
+        }
+        if effect == "wobble" {
+            set(&mut stack, effect, "amplitude_m", &[if file == "common/sine" { 500.0 } else { 0.15 }]);
+        }
+        exact(&mut healthy, &scene, &view, &stack, &pinned(Visibility::Split32), &format!("without the mistake: {what}"));
+        let library = folder.path().join(i.to_string());
+        copy_shaders(&shaders, &library);
+        let path = library.join(format!("{file}.wgsl"));
+        let text = fs::read_to_string(&path).expect("a shader is text");
+        assert_eq!(text.matches(from).count(), 1, "{what}: {from:?} is not once in {file}");
+        fs::write(&path, text.replace(from, to)).expect("a shader is written");
+        let mut wrong = Renderer::with_library(healthy.gpu().clone(), Library::Folder(library));
+        let (_, verdict) = judged(&mut wrong, &scene, &view, &stack, &pinned(Visibility::Split32));
+        match exactness(&verdict.accuracy) {
+            Ok(()) => failures.push(what),
+            Err(faults) => eprintln!("{what}: {faults}"),
+        }
+    }
+    assert_eq!(failures, Vec::<&str>::new(), "not caught");
+}
+
+fn copy_shaders(from: &Path, to: &Path) {
+    fs::create_dir_all(to).expect("a folder for shaders");
+    for entry in fs::read_dir(from).expect("shaders/ can be read") {
+        let path = entry.expect("shaders/ can be read").path();
+        let target = to.join(path.file_name().expect("a name"));
+        if path.is_dir() {
+            copy_shaders(&path, &target);
+        } else {
+            fs::copy(&path, target).expect("a shader is copied");
+        }
+    }
+}
