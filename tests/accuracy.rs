@@ -53,7 +53,7 @@ fn every_look_is_within_tolerance_on_every_rung() {
         let view = look.session.view(&scene, look.session.output.size);
         for rung in rungs(&renderer) {
             let what = format!("{} {}", look.id, rung.name());
-            exact(&mut renderer, &scene, &view, &look.session.stack, &pinned(rung), &what);
+            exact(&mut renderer, &scene, &view, &look.session.posed_stack(), &pinned(rung), &what);
         }
         count += 1;
     }

@@ -181,6 +181,208 @@ fn the_same_look_gives_the_same_bytes() {
     assert!(a.bytes.starts_with(b"\x89PNG") && a.bytes == b.bytes);
 }
 
+/// A look that turns while a front crosses it.
+const MOVING: &str = "schema = 1\n[scene]\nbuiltin = \"knot?tess=3\"\nspin_deg_per_s = 90.0\n[clock]\nrange_s = [0.0, 1.0]\n\
+    [effects.facet]\n[effects.lambert]\n[animation.facet]\namount = [{ time_s = 0.0, value = 0.0 }, { time_s = 1.0, value = 1.0 }]\n\
+    [output]\nsize = [24, 18]\n";
+
+/// A folder with the moving look as `move.toml`.
+fn studio() -> tempfile::TempDir {
+    let folder = tempfile::tempdir().unwrap();
+    fs::write(folder.path().join("move.toml"), MOVING).unwrap();
+    folder
+}
+
+/// Draws eight frames a second into `f_{frame:3}.png`.
+fn sequence(folder: &Path, extra: &[&str]) -> Run {
+    let args = ["sequence", "move.toml", "-o", "f_{frame:3}.png", "--fps", "8", "--adapter", "cpu"];
+    run_in(folder, &[&args[..], extra].concat())
+}
+
+fn frames(folder: &Path) -> Vec<(String, Vec<u8>)> {
+    let files = fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().file_name().to_string_lossy().into_owned());
+    let mut names: Vec<String> = files.filter(|name| name.ends_with(".png")).collect();
+    names.sort();
+    names.into_iter().map(|name| (name.clone(), fs::read(folder.join(&name)).unwrap())).collect()
+}
+
+#[test]
+fn a_sequence_is_the_same_bytes_every_time_and_moves() {
+    let (a, b) = (studio(), studio());
+    let first = sequence(a.path(), &[]);
+    assert_eq!(first.code, 0, "{}", first.err);
+    assert!(first.err.contains("8 frames drawn, 0 kept"), "{}", first.err);
+    assert_eq!(first.out, (0..8).map(|i| format!("f_{i:03}.png\n")).collect::<String>());
+    assert_eq!(sequence(b.path(), &[]).code, 0);
+    let drawn = frames(a.path());
+    assert_eq!(drawn, frames(b.path()));
+    assert!(drawn.windows(2).all(|pair| pair[0].1 != pair[1].1));
+    // A frame is the picture that render draws at its time, and gives that look back.
+    let path = a.path().join("f_003.png");
+    let alone = run_in(a.path(), &["render", "move.toml", "--time", "0.375", "-o", "alone.png", "--adapter", "cpu"]);
+    assert_eq!(alone.code, 0, "{}", alone.err);
+    let [of_sequence, of_render] = [path.clone(), a.path().join("alone.png")].map(|path| rasterlab::preset::png_pixels(&path).unwrap());
+    assert_eq!(of_sequence, of_render);
+    let look = rasterlab::preset::look_from_png(&fs::read(path).unwrap(), "f").unwrap();
+    assert_eq!(look.session.clock.time_s, 0.375);
+    assert_eq!(look.session.animation.tracks().len(), 1);
+}
+
+#[test]
+fn a_sequence_goes_on_where_it_stopped() {
+    let folder = studio();
+    sequence(folder.path(), &[]);
+    let whole = frames(folder.path());
+    let stamp = |i: usize| fs::metadata(folder.path().join(&whole[i].0)).unwrap().modified().unwrap();
+    let before: Vec<_> = (0..8).map(stamp).collect();
+    fs::remove_file(folder.path().join("f_002.png")).unwrap();
+    let bytes = &whole[5].1;
+    fs::write(folder.path().join("f_005.png"), &bytes[..bytes.len() / 2]).unwrap(); // As no interruption of ours leaves it.
+    let again = sequence(folder.path(), &["--json"]);
+    assert!(again.err.contains("2 frames drawn, 6 kept"), "{}", again.err);
+    let kept: Vec<bool> = json(&again)["results"].as_array().unwrap().iter().map(|row| row["kept"].as_bool().unwrap()).collect();
+    assert_eq!(kept, [true, true, false, true, true, false, true, true]);
+    assert_eq!(frames(folder.path()), whole);
+    for i in (0..8).filter(|i| ![2, 5].contains(i)) {
+        assert_eq!(stamp(i), before[i], "frame {i} was written again");
+    }
+    let hidden =
+        fs::read_dir(folder.path()).unwrap().filter(|entry| entry.as_ref().unwrap().file_name().to_string_lossy().starts_with('.'));
+    assert_eq!(hidden.count(), 0, "nothing unfinished is left behind");
+}
+
+#[test]
+fn machines_share_a_sequence_by_ranges() {
+    let (whole, shared) = (studio(), studio());
+    sequence(whole.path(), &[]);
+    assert!(sequence(shared.path(), &["--frames", "5.."]).err.contains("3 frames drawn, 0 kept of 5..8 of 8"));
+    assert!(sequence(shared.path(), &["--frames", "0..5"]).err.contains("5 frames drawn"));
+    assert_eq!(frames(shared.path()), frames(whole.path()));
+    assert!(sequence(shared.path(), &[]).err.contains("0 frames drawn, 8 kept"));
+}
+
+#[test]
+fn a_film_shows_the_frames() {
+    let folder = studio();
+    let drawn = sequence(folder.path(), &["--apng", "film.apng"]);
+    assert_eq!(drawn.code, 0, "{}", drawn.err);
+    let bytes = fs::read(folder.path().join("film.apng")).unwrap();
+    let mut film = png::Decoder::new(std::io::Cursor::new(&bytes)).read_info().unwrap();
+    let control = *film.info().animation_control().expect("an animated PNG");
+    assert_eq!((control.num_frames, control.num_plays), (8, 0), "it loops as the look does");
+    for i in 0..8 {
+        let mut pixels = vec![0; film.output_buffer_size().unwrap()];
+        film.next_frame(&mut pixels).unwrap();
+        let control = film.info().frame_control().unwrap();
+        assert_eq!((control.delay_num, control.delay_den), (1, 8));
+        let (frame, _) = rasterlab::preset::png_pixels(&folder.path().join(format!("f_{i:03}.png"))).unwrap();
+        assert_eq!(pixels, frame.concat(), "frame {i}");
+    }
+    assert!(rasterlab::preset::look_from_png(&bytes, "film").is_ok());
+    // From kept frames, and without any files, the same film comes out.
+    fs::remove_file(folder.path().join("film.apng")).unwrap();
+    assert!(sequence(folder.path(), &["--apng", "film.apng"]).err.contains("0 frames drawn, 8 kept"));
+    let alone = studio();
+    let args = ["sequence", "move.toml", "--apng", "film.apng", "--fps", "8", "--adapter", "cpu"];
+    assert_eq!(run_in(alone.path(), &args).code, 0);
+    for other in [&folder, &alone] {
+        assert!(fs::read(other.path().join("film.apng")).unwrap() == bytes);
+    }
+    assert!(run_in(alone.path(), &args).err.contains("0 frames drawn"), "a finished film is kept");
+    let other = run_in(alone.path(), &[&args[..], &["--fps", "4"][..]].concat().into_iter().filter(|a| *a != "8").collect::<Vec<_>>());
+    assert!(other.code == 2, "{}", other.err);
+}
+
+#[test]
+fn frames_of_another_look_are_overwritten_with_force_alone() {
+    let folder = studio();
+    sequence(folder.path(), &[]);
+    let changed = ["--set", "lambert.headlight=0.5"];
+    let refused = sequence(folder.path(), &changed);
+    assert_eq!(refused.code, 2);
+    assert!(refused.err.contains("f_000.png exists and is no frame of this look, and so do 7 more; --force overwrites"), "{}", refused.err);
+    let forced = sequence(folder.path(), &[&changed[..], &["--force"]].concat());
+    assert!(forced.err.contains("8 frames drawn, 0 kept"), "{}", forced.err);
+    fs::remove_file(folder.path().join("f_000.png")).unwrap();
+    let resumed = sequence(folder.path(), &[&changed[..], &["--force"]].concat());
+    assert!(resumed.err.contains("1 frame drawn, 7 kept"), "force draws no finished frame again: {}", resumed.err);
+    fs::write(folder.path().join("f_000.png"), "precious").unwrap();
+    assert_eq!(sequence(folder.path(), &changed).code, 2);
+    // What decides no picture makes no frame stale.
+    fs::remove_file(folder.path().join("f_000.png")).unwrap();
+    let renamed = sequence(folder.path(), &[&changed[..], &["--set", "name=Other"]].concat());
+    assert!(renamed.err.contains("1 frame drawn, 7 kept"), "{}", renamed.err);
+}
+
+#[test]
+fn a_sequence_that_cannot_be_is_one_sentence() {
+    let cases: [(&[&str], &str); 12] = [
+        (&["--from", "2", "--to", "1"], "--to 1 must come after --from 2"),
+        (&["--to", "inf"], "--to inf lies outside -1e9..=1e9"),
+        (&["--fps", "0"], "--fps 0 lies outside 0.001..=1000"),
+        (&["--fps", "nan"], "--fps NaN lies outside"),
+        (&["--to", "1e6", "--fps", "1000"], "are too many; at most 1000000"),
+        (&["--frames", "3..3"], "hold no frame"),
+        (&["--frames", "3"], "frames are A..B"),
+        (&["--frames", "0..9"], "--frames 0..9 lies outside 0..8, the frames from 0 to 1 s at 8 a second"),
+        (&["-o", "f.png"], "8 frames need {frame} in the name"),
+        (&["-o", "f_{n}.png"], "frames are numbered with {frame}"),
+        (&["-o", "-"], "--apng FILE makes it one"),
+        (&["--size", "0x4"], "PNG cannot hold it"),
+    ];
+    for (args, wanted) in cases {
+        let folder = studio();
+        let mut all = vec!["sequence", "move.toml", "--adapter", "cpu"];
+        if args[0] != "-o" {
+            all.extend(["-o", "f_{frame}.png"]);
+        }
+        if !args.contains(&"--fps") {
+            all.extend(["--fps", "8"]);
+        }
+        let run = run_in(folder.path(), &[&all[..], args].concat());
+        assert_eq!((run.code, run.out.as_str()), (2, ""), "{args:?}");
+        assert!(run.err.contains(wanted), "{args:?}: {}", run.err);
+        assert_eq!(frames(folder.path()), [], "{args:?}");
+    }
+    assert_eq!(run(&["sequence", "facet", "--adapter", "cpu"]).code, 2, "frames must go somewhere");
+}
+
+#[test]
+#[cfg(unix)]
+fn an_interrupted_sequence_leaves_whole_files_alone() {
+    let folder = studio();
+    let args = ["sequence", "move.toml", "-o", "f_{frame:3}.png", "--fps", "500", "--adapter", "cpu"];
+    let mut child = command(folder.path()).args(args).stdout(Stdio::null()).stderr(Stdio::null()).spawn().unwrap();
+    let patience = std::time::Instant::now();
+    while frames(folder.path()).len() < 3 && patience.elapsed().as_secs() < 60 {
+        std::thread::sleep(std::time::Duration::from_millis(2));
+    }
+    child.kill().unwrap();
+    child.wait().unwrap();
+    let left = frames(folder.path());
+    assert!((3..500).contains(&left.len()), "{}", left.len());
+    for (name, bytes) in left {
+        assert!(image::load_from_memory(&bytes).is_ok() && bytes.ends_with(b"IEND\xae\x42\x60\x82"), "{name}");
+    }
+}
+
+#[test]
+fn every_command_draws_the_look_at_its_time() {
+    let folder = studio();
+    let held = MOVING.split("[animation").next().unwrap().to_owned() + "[output]\nsize = [24, 18]\n";
+    fs::write(folder.path().join("held.toml"), held.replace("[effects.facet]\n", "[effects.facet]\namount = 0.5\n")).unwrap();
+    let at = ["--set", "clock.time_s=0.5", "--adapter", "cpu"];
+    let same = run_in(folder.path(), &[&["compare", "move.toml", "held.toml", "--max-channel", "0"], &at[..]].concat());
+    assert_eq!(same.code, 0, "{}", same.out);
+    for look in ["move.toml", "held.toml"] {
+        let out = format!("{look}.png");
+        assert_eq!(run_in(folder.path(), &[&["render", look, "--bare", "-o", &out], &at[..]].concat()).code, 0);
+        assert_eq!(run_in(folder.path(), &[&["verify", look], &at[..]].concat()).code, 0, "{look}");
+    }
+    let [moving, held] = ["move.toml.png", "held.toml.png"].map(|name| fs::read(folder.path().join(name)).unwrap());
+    assert!(moving == held);
+}
+
 #[test]
 fn a_bare_picture_carries_no_text() {
     let bare = run(&["render", "facet", "--adapter", "cpu", "--size", "16x16", "--bare", "-o", "-"]);
@@ -326,7 +528,7 @@ fn a_picture_of_no_pixels_is_a_sentence() {
 #[test]
 fn completions_name_every_command() {
     let script = run(&["completions", "bash"]).out;
-    for name in ["list", "adapters", "render", "verify", "compare", "explain", "bless", "bench", "check", "completions"] {
+    for name in ["list", "adapters", "render", "sequence", "verify", "compare", "explain", "bless", "bench", "check", "completions"] {
         assert!(script.contains(name), "{name}");
     }
 }

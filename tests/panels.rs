@@ -342,7 +342,7 @@ fn the_window_shows_the_picture_of_the_oracle() {
     let session = lab.state().look().session.clone();
     let scene = preset::load_scene(&session, None).expect("a built-in scene");
     let view = lab.state().view([shown.width(), shown.height()]).expect("a scene on stage");
-    let expected = oracle::render(&scene, &view, &session.stack).expect("a picture");
+    let expected = oracle::render(&scene, &view, &session.posed_stack()).expect("a picture");
     // The buttons lie over the top of it.
     let pairs = shown.pixels().zip(&expected.color).skip((shown.width() * 48) as usize);
     let wrong = pairs.filter(|(a, b)| a.0.iter().zip(*b).any(|(a, b)| a.abs_diff(*b) > 1)).count();

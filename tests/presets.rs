@@ -8,7 +8,10 @@ use rasterlab::{
     params::Kind,
     preset::{self, Look, PresetError},
     scene::camera::{Camera, MIN_NEAR_M, Projection},
-    session::{Accuracy, Clock, Output, SceneSource, Session, Test, Tier, Visibility},
+    session::{
+        Accuracy, Animation, Clock, Output, SceneSource, Session, Test, Tier, Visibility,
+        animation::{Easing, Keyframe, MAX_KEYS, Track, steps},
+    },
 };
 
 fn parse(text: &str) -> Look {
@@ -54,6 +57,16 @@ fov_y_deg = 60
 
 [clock]
 time_s = 1.25
+range_s = [0, 2.5]
+loops = false
+speed = 0.5
+
+[animation.facet]
+amount = [
+    { time_s = 2, value = 1, easing = "linear" },
+    { time_s = 0.0, value = 0.0 },
+]
+seed = [{ time_s = 1.0, value = 7 }]
 
 [effects.facet]
 amount = 0.8
@@ -84,6 +97,17 @@ why = "because"
     let value = |name: &str| facet.effect.field(name).unwrap().get(&facet.words);
     assert_eq!((value("amount"), value("pattern"), value("center")), (vec![f64::from(0.8f32)], vec![2.0], vec![1.0, 2.0, 3.0]));
     assert_eq!(s.camera.unwrap().projection, Projection::Perspective { fov_y_deg: 60.0 });
+    assert_eq!(s.clock, Clock { time_s: 1.25, range_s: [0.0, 2.5], loops: false, speed: 0.5 });
+    let amount = s.animation.get("facet", "amount").unwrap();
+    assert_eq!(
+        amount.keys().iter().map(|key| (key.time_s, key.easing)).collect::<Vec<_>>(),
+        [(0.0, Easing::Smooth), (2.0, Easing::Linear)]
+    );
+    assert_eq!(s.animation.get("facet", "seed").unwrap().keys()[0].easing, Easing::Hold);
+    // 0.625 of the way in time, by the smoothstep.
+    let posed = s.posed_stack().get("facet").unwrap().words.clone();
+    assert_eq!(facet.effect.field("amount").unwrap().get(&posed), [f64::from((0.625f64 * 0.625 * (3.0 - 1.25)) as f32)]);
+    assert_eq!(facet.effect.field("seed").unwrap().get(&posed), [7.0]);
     assert_eq!(s.accuracy, Accuracy { tier: Tier::Fast, visibility: Some(Visibility::Packed64) });
     assert_eq!(s.output.size, [64, 48]);
     assert_eq!(s.test.as_ref().unwrap().max_channel, 2);
@@ -192,6 +216,124 @@ fn errors_name_line_key_value_and_range() {
     ];
     for (text, wanted) in cases {
         assert_eq!(refusal(text), wanted);
+    }
+}
+
+#[test]
+fn keys_that_cannot_be_are_refused_by_name() {
+    let with = |keys: &str| format!("schema = 1\n[effects.facet]\n[animation.facet]\namount = {keys}\n");
+    let many = format!("[{}]", (0..=MAX_KEYS).map(|i| format!("{{ time_s = {i}, value = 0 }}")).collect::<Vec<_>>().join(", "));
+    for (text, wanted) in [
+        (with("[{ time_s = 0, value = 2 }]"), "look.toml:4: animation.facet.amount key 1: value 2 lies outside 0..=1"),
+        (with("[{ time_s = 0, value = nan }]"), "look.toml:4: animation.facet.amount key 1: value nan is not a finite number"),
+        (with("[{ time_s = 0, value = 1e-46 }]"), "value 1e-46 is too small for a 32-bit float"),
+        (with("[{ time_s = 2e9, value = 0 }]"), "key 1: time_s 2e9 lies outside -1e9..=1e9"),
+        (
+            with("[{ time_s = 0, value = 0 },\n { time_s = -0.0, value = 1 }]"),
+            "look.toml:5: animation.facet.amount key 2: time_s -0 has a key already",
+        ),
+        (
+            with("[{ time_s = 0, value = 0, easing = \"smoth\" }]"),
+            "\"smoth\" is not one of hold, linear, smooth, in, out; did you mean \"smooth\"?",
+        ),
+        (with("[{ time_s = 0 }]"), "look.toml:4: animation.facet.amount key 1 must have time_s and value"),
+        (with("[{}]"), "animation.facet.amount key 1 must have time_s and value"),
+        (with("[]"), "look.toml:4: animation.facet.amount must be a list of 1 to 256 keys"),
+        (with(&many), "must be a list of 1 to 256 keys"),
+        (with("[0.5]"), "must be a list of 1 to 256 keys"),
+        (with("3"), "must be a list of 1 to 256 keys"),
+        (
+            "schema = 1\n[effects.facet]\n[animation.facet]\nseed = [{ time_s = 0, value = 1, easing = \"linear\" }]\n".into(),
+            "key 1: easing linear cannot be",
+        ),
+        (
+            "schema = 1\n[effects.facet]\n[animation.facet]\ncenter = [{ time_s = 0, value = 1 }]\n".into(),
+            "value must be a list of 3 numbers",
+        ),
+        ("schema = 1\nanimation = 3\n".into(), "look.toml:2: animation must be a table, written [animation]"),
+        ("schema = 1\n[animation]\nfacet = 3\n".into(), "look.toml:3: animation.facet must be a table, written [animation.facet]"),
+        ("schema = 1\n[clock]\nrange_s = [2, 2]\n".into(), "look.toml:3: clock.range_s must rise, but 2 is not before 2"),
+        ("schema = 1\n[clock]\nspeed = 0\n".into(), "look.toml:3: clock.speed 0 lies outside 0.01..=100"),
+    ] {
+        let said = refusal(&text);
+        assert!(said.contains(wanted), "{said}");
+    }
+}
+
+#[test]
+fn keys_of_what_is_not_there_warn_and_stay() {
+    let text = "schema = 1\n[animation.facet]\namount = [{ time_s = 0, value = 1, note = 3 }]\namuont = []\n[animation.fascet]\nx = 1\n";
+    let look = parse(text);
+    let warnings = look.warnings.join("\n");
+    for wanted in [
+        "look.toml:2: animation.facet moves nothing; add [effects.facet]",
+        "look.toml:3: unknown key animation.facet.amount key 1: note",
+        "look.toml:4: unknown key animation.facet.amuont; did you mean \"amount\"?",
+        "look.toml:5: unknown key animation.fascet; did you mean \"facet\"?",
+    ] {
+        assert!(warnings.contains(wanted), "{wanted:?} is not among\n{warnings}");
+    }
+    assert!(look.session.posed_stack().0.is_empty());
+    assert_eq!(preset::to_toml(&look), text);
+}
+
+#[test]
+fn tables_and_inline_tables_say_the_same_keys() {
+    let inline =
+        parse("schema = 1\n[effects.facet]\n[animation]\nfacet.amount = [{ time_s = 0, value = 0.5 }, { time_s = 1, value = 1 }]\n");
+    let tables = "schema = 1\n[effects.facet]\n[[animation.facet.amount]]\ntime_s = 0\nvalue = 0.5\n[[animation.facet.amount]]\ntime_s = 1\nvalue = 1\n";
+    let mut tables = parse(tables);
+    assert_eq!(inline.session, tables.session);
+    let track = tables.session.animation.get_mut("facet", "amount").unwrap();
+    track.move_key(1, 2.0);
+    assert_eq!(parse(&preset::to_toml(&tables)).session, tables.session);
+}
+
+#[test]
+fn keys_are_written_one_a_line_and_comments_stay_with_theirs() {
+    let mut look = parse("schema = 1\n[effects.facet]\n");
+    let keys = [(0.0, 0.0, Easing::Smooth), (1.5, 0.1, Easing::Linear)];
+    let keys = keys.map(|(time_s, value, easing)| Keyframe { time_s, value: vec![value], easing }).to_vec();
+    let facet = Effect::find("facet").unwrap();
+    look.session.animation.put(Track::new(facet, facet.field("amount").unwrap(), keys).unwrap());
+    let written = preset::to_toml(&look);
+    let wanted = "schema = 1\n[effects.facet]\n\n[animation.facet]\namount = [\n    { time_s = 0.0, value = 0.0 },\n    { time_s = 1.5, value = 0.1, easing = \"linear\" },\n]\n";
+    assert_eq!(written, wanted);
+    let mut look = parse(&written.replace("    { time_s = 1.5, value = 0.1", "    # the end\n    { time_s = 1.50, value = 0.10, mine = 7"));
+    let track = look.session.animation.get_mut("facet", "amount").unwrap();
+    track.move_key(0, 0.25);
+    track.set_easing(1, Easing::Out);
+    let written = preset::to_toml(&look);
+    assert!(written.contains("{ time_s = 0.25, value = 0.0 }"), "{written}");
+    assert!(written.contains("# the end\n    { time_s = 1.50, value = 0.10, mine = 7, easing = \"out\" }"), "{written}");
+    preset::unset(&mut look, "animation").unwrap();
+    assert!(!preset::to_toml(&look).contains("animation"), "{}", preset::to_toml(&look));
+}
+
+#[test]
+fn set_animates_and_a_value_set_by_hand_holds_still() {
+    let mut look = Look::new("new", Session::default());
+    preset::set(&mut look, "animation.facet.amount", "[{ time_s = 0, value = 0 }, { time_s = 1, value = 1 }]").unwrap();
+    preset::set(&mut look, "clock.range_s", "[1, 2]").unwrap();
+    assert!(look.session.is_moving() && look.session.stack.get("facet").is_some());
+    assert_eq!(parse(&preset::to_toml(&look)).session, look.session);
+    for (path, value, wanted) in [
+        ("animation.facet.amount", "[{ time_s = 0, value = 9 }]", "key 1: value 9 lies outside 0..=1"),
+        ("animation.facet.amount", "[", "--set animation.facet.amount=["),
+        ("animation.facet", "1", "animation.facet takes no value"),
+        ("animation.facet.amuont", "[]", "did you mean \"amount\"?"),
+        ("animation.camera.eye", "[]", "is unknown; parameters of effects can be animated"),
+        ("clock.range_s", "[2, 1]", "clock.range_s must rise"),
+    ] {
+        let error = preset::set(&mut look, path, value).unwrap_err().to_string();
+        assert!(error.contains(wanted) && !error.contains('\n'), "{error}");
+    }
+    preset::set(&mut look, "facet.amount", "0.5").unwrap();
+    assert!(look.session.animation.is_empty() && !look.session.is_moving());
+    for unset in ["animation.facet.amount", "animation.facet", "animation", "facet.amount", "facet"] {
+        preset::set(&mut look, "animation.facet.amount", "[{ time_s = 0, value = 0 }]").unwrap();
+        preset::unset(&mut look, unset).unwrap();
+        assert!(look.session.animation.is_empty(), "{unset}");
     }
 }
 
@@ -439,13 +581,49 @@ prop_compose! {
 }
 
 prop_compose! {
+    fn any_clock()(time_s in within(-1e9, 1e9), from in within(-1e9, 0.0), to in within(1e-3, 1e9), loops in any::<bool>(), speed in within(0.01, 100.0)) -> Clock {
+        Clock { time_s, range_s: [from, to], loops, speed }
+    }
+}
+
+/// Times, seeds of values, and easings.
+fn any_keys() -> impl Strategy<Value = Vec<(f64, u64, usize)>> {
+    prop::collection::vec((within(-1e9, 1e9), any::<u64>(), 0..Easing::ALL.len()), 1..6)
+}
+
+/// Keys on parameters of the enabled effects.
+fn animated(
+    stack: &rasterlab::effects::Stack,
+    tracks: Vec<(prop::sample::Index, prop::sample::Index, Vec<(f64, u64, usize)>)>,
+) -> Animation {
+    let mut animation = Animation::default();
+    for (effect, field, keys) in tracks.into_iter().filter(|_| !stack.0.is_empty()) {
+        let effect = stack.0[effect.index(stack.0.len())].effect;
+        if effect.fields.is_empty() {
+            continue;
+        }
+        let field = &effect.fields[field.index(effect.fields.len())];
+        let mut frames: Vec<Keyframe> = Vec::new();
+        for (time_s, seed, easing) in keys {
+            let easing = if steps(field) { Easing::Hold } else { Easing::ALL[easing] };
+            if !frames.iter().any(|frame| frame.time_s == time_s) {
+                frames.push(Keyframe { time_s, value: field.get(&filled(effect, seed)), easing });
+            }
+        }
+        animation.put(Track::new(effect, field, frames).expect("sound keys"));
+    }
+    animation
+}
+
+prop_compose! {
     fn any_session()(
         texts in prop::array::uniform3("[^\\p{Cc}]{0,40}"),
         tags in prop::collection::vec("[a-z \"\\\\#']{0,12}", 0..4),
         scene in prop_oneof![Just(SceneSource::Builtin("knot?tess=8".into())), Just(SceneSource::File("a b/fox.glb".into())), Just(Session::default().scene)],
         spin_deg_per_s in within(-1e6, 1e6),
         camera in prop::option::of(any_camera()),
-        time_s in within(-1e9, 1e9),
+        clock in any_clock(),
+        tracks in prop::collection::vec((any::<prop::sample::Index>(), any::<prop::sample::Index>(), any_keys()), 0..5),
         effects in prop::collection::vec(any_effect(), 0..6),
         reversed in any::<bool>(),
         tier in 0..4usize,
@@ -464,7 +642,8 @@ prop_compose! {
         }
         Session {
             name, about, tags, scene, spin_deg_per_s, camera,
-            clock: Clock { time_s },
+            clock,
+            animation: animated(&stack, tracks),
             stack,
             accuracy: Accuracy { tier: Tier::ALL[tier], visibility: visibility.map(|i| Visibility::ALL[i]) },
             output: Output { size, background },
@@ -492,6 +671,18 @@ proptest! {
         let text = preset::to_toml(&look);
         let back = preset::parse(&text, "any").map_err(|e| TestCaseError::fail(format!("{e}\n{text}")))?;
         prop_assert_eq!(bits(&back.session), bits(&after), "{}", text);
+    }
+
+    #[test]
+    fn whatever_the_time_every_value_stays_inside_its_hard_range(session in any_session(), time_s in any::<f64>()) {
+        for enabled in session.stack_at(time_s).0 {
+            for field in enabled.effect.fields {
+                let [low, high] = field.hard.map(|bound| bound as f32);
+                let lanes = field.get(&enabled.words);
+                let inside = |lane: &f64| !matches!(field.kind, Kind::F32 | Kind::Color | Kind::Point) || (low..=high).contains(&(*lane as f32));
+                prop_assert!(lanes.iter().all(inside), "{}.{} {lanes:?}", enabled.effect.name, field.name);
+            }
+        }
     }
 
     #[test]

@@ -142,7 +142,7 @@ fn every_look_matches_its_golden_on_every_rung() {
         }
         let view = session.view(&scene, session.output.size);
         for rung in session.accuracy.visibility.map_or_else(|| rungs(&renderer), |pinned| vec![pinned]) {
-            let actual = captured(&mut renderer, &scene, &view, &session.stack, &pinned(rung)).frame.color;
+            let actual = captured(&mut renderer, &scene, &view, &session.posed_stack(), &pinned(rung)).frame.color;
             let mut outcome = shelf.check(session, &actual);
             if outcome.is_err() && update == "1" {
                 shelf.bless(&golden::draw(&look, &scene).expect("the oracle draws every look"));
@@ -223,7 +223,7 @@ fn a_failure_leaves_its_pictures_and_a_pass_takes_them_away() {
 }
 
 fn drawn(session: &Session, scene: &Scene) -> Frame {
-    oracle::render(scene, &session.view(scene, session.output.size), &session.stack).expect("the oracle draws every look")
+    oracle::render(scene, &session.view(scene, session.output.size), &session.posed_stack()).expect("the oracle draws every look")
 }
 
 /// The scene without one of its triangles, which then has no area; other ids stay.
@@ -309,7 +309,7 @@ fn exchanged_owners_a_wrong_seed_and_a_reversed_stack_are_caught() {
         })
         .collect();
     let draws = rasterlab::scene::draw::draws(&scene, &view).expect("a look fits");
-    let colors = oracle::shade(&scene, &draws, &view, &look.session.stack, &exchanged, &oracle::project(&scene, &draws, &view));
+    let colors = oracle::shade(&scene, &draws, &view, &look.session.posed_stack(), &exchanged, &oracle::project(&scene, &draws, &view));
     let changed = whole.owner.iter().filter(|&&o| o == a || o == b).count() as u64;
     assert_eq!(owners(&exchanged, &whole.owner).different, changed);
     assert!(complaint(&look.session, &colors, &whole.color).is_some(), "exchanged owners");

@@ -195,7 +195,7 @@ impl App {
             (choice @ (Choice::KeepMuted | Choice::DropMuted), Some(Dialog::Muted { path })) => {
                 if choice == Choice::DropMuted {
                     let muted = std::mem::take(&mut self.muted);
-                    muted.into_iter().for_each(|name| self.look.session.stack.disable(name));
+                    muted.into_iter().for_each(|name| self.look.session.disable(name));
                 }
                 self.write_look(&path);
             }

@@ -1,8 +1,10 @@
 //! Edits of the look as a whole: opening, undo, resets, copy and paste. Each is a step of its own.
 
+use std::path::PathBuf;
+
 use eframe::egui;
 
-use super::{App, FileId, Level, Moment, Playback, fields::Ask};
+use super::{App, FileId, Level, Moment, Playback, Timeline, fields::Ask};
 use crate::{
     effects::Effect,
     preset::{self, Look},
@@ -18,6 +20,7 @@ impl App {
         self.files.insert(FileId::of(&look), look.clone());
         self.muted.clear();
         self.playback = Playback::default();
+        self.timeline = Timeline::default();
         self.look = look;
         self.observe(false);
         self.history.close();
@@ -32,6 +35,23 @@ impl App {
                 self.tell(Level::Info, format!("Opened {title}"));
             }
             Err(error) => self.tell(Level::Error, error.to_string()),
+        }
+    }
+
+    /// Files dropped on the window. One is opened: a look before a model before a picture, so that a model comes with
+    /// whatever lies beside it.
+    pub(super) fn take_drops(&mut self, ctx: &egui::Context) {
+        let mut dropped = ctx.input(|i| i.raw.dropped_files.iter().map(|file| file.path().to_owned()).collect::<Vec<_>>());
+        let rank = |path: &PathBuf| {
+            let extension = path.extension().map(|extension| extension.to_ascii_lowercase());
+            ["toml", "glb", "gltf", "png"].iter().position(|known| extension.as_ref().is_some_and(|e| e == known)).unwrap_or(usize::MAX)
+        };
+        dropped.sort_by_key(rank);
+        let Some(first) = dropped.first() else { return };
+        self.open(&first.to_string_lossy());
+        if dropped.len() > 1 {
+            let name = first.file_name().unwrap_or_default().to_string_lossy().into_owned();
+            self.tell(Level::Info, format!("{} files were dropped and one is opened at a time: {name}", dropped.len()));
         }
     }
 
@@ -59,6 +79,10 @@ impl App {
         let outcome = match ask {
             Ask::Reset(path) => preset::unset(&mut self.look, &path).map_err(|e| e.to_string()),
             Ask::ResetGroup(group) => self.reset_group(&group),
+            Ask::Key(path) => {
+                self.toggle_key(&path);
+                Ok(())
+            }
             Ask::Copy(text) => {
                 ctx.copy_text(text.clone());
                 self.tell(Level::Info, format!("Copied {text}"));
@@ -78,6 +102,7 @@ impl App {
     pub(super) fn reset_group(&mut self, group: &str) -> Result<(), String> {
         match Effect::find(group) {
             Some(effect) => {
+                self.look.session.animation.remove_effect(group);
                 if let Some(enabled) = self.look.session.stack.get_mut(group) {
                     enabled.words = (effect.defaults)();
                 }
@@ -93,7 +118,7 @@ impl App {
         let row = self.paste_into.take().or_else(|| self.hovered_row.as_ref().map(|(path, _)| path.clone()));
         let is_look = text.trim_start().starts_with("rasterlab1:");
         match row {
-            Some(path) if !is_look => match preset::set(&mut self.look, &path, text.trim()) {
+            Some(path) if !is_look => match self.put_text(&path, text.trim()) {
                 Ok(()) => self.tell(Level::Info, format!("{path} = {}", text.trim())),
                 Err(error) => self.tell(Level::Error, error.to_string()),
             },

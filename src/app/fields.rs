@@ -4,7 +4,8 @@
 use eframe::egui::{self, Align, Align2, Color32, DragValue, Rect, RichText, Sense, Slider, SliderClamping, Ui, UiBuilder, pos2, vec2};
 
 use super::{
-    icons::{Icon, icon_button},
+    icons::{Icon, icon_button, key_button},
+    keying::Keying,
     theme,
 };
 use crate::{
@@ -29,6 +30,8 @@ pub struct Row {
     pub log: bool,
     /// Differs from its default.
     pub modified: bool,
+    /// Whether it has keys; none for what cannot be animated.
+    pub keying: Option<Keying>,
 }
 
 impl Row {
@@ -43,13 +46,19 @@ impl Row {
             soft: Some(field.soft),
             log: field.log,
             modified: !field.same(words, &(effect.defaults)()),
+            keying: None,
         }
+    }
+
+    /// The row of a parameter that can be animated. Keys are a difference from the default, whatever they say.
+    pub fn keyed(self, keying: Keying) -> Self {
+        Self { modified: self.modified || keying != Keying::Still, keying: Some(keying), ..self }
     }
 
     /// The row of one of a look's own keys.
     pub fn of_key(key: &Key, unit: &'static str, soft: Option<[f64; 2]>, modified: bool) -> Self {
         let label = label(key.name, unit);
-        Self { path: key.path(), label, doc: key.doc, unit, form: key.form, soft, log: false, modified }
+        Self { path: key.path(), label, doc: key.doc, unit, form: key.form, soft, log: false, modified, keying: None }
     }
 
     /// The value as TOML, as copied and pasted.
@@ -74,6 +83,8 @@ pub enum Ask {
     Copy(String),
     /// Paste into this path.
     Paste(String),
+    /// Set or remove a key of this parameter at the time that is shown.
+    Key(String),
 }
 
 /// What came of a row in this frame.
@@ -87,6 +98,7 @@ pub struct Outcome {
 
 const BAR_WIDTH: f32 = 3.0;
 const RESET_WIDTH: f32 = 22.0;
+const KEY_WIDTH: f32 = 18.0;
 const NUMBER_WIDTH: f32 = 66.0;
 
 /// Shows `row` with `value`; the outcome holds what changed.
@@ -96,7 +108,9 @@ pub fn row_ui(ui: &mut Ui, row: &Row, value: &Plain) -> Outcome {
     let (rect, _) = ui.allocate_exact_size(vec2(width, theme::ROW), Sense::hover());
     let split = rect.left() + (width * 0.34).clamp(72.0, 140.0);
     let label_rect = Rect::from_min_max(pos2(rect.left() + BAR_WIDTH + theme::HALF, rect.top()), pos2(split, rect.bottom()));
-    let control_rect = Rect::from_min_max(pos2(split + theme::HALF, rect.top()), pos2(rect.right() - RESET_WIDTH, rect.bottom()));
+    let buttons = RESET_WIDTH + if row.keying.is_some() { KEY_WIDTH } else { 0.0 };
+    let control_rect = Rect::from_min_max(pos2(split + theme::HALF, rect.top()), pos2(rect.right() - buttons, rect.bottom()));
+    let key_rect = Rect::from_min_max(pos2(rect.right() - buttons, rect.top()), pos2(rect.right() - RESET_WIDTH, rect.bottom()));
     let reset_rect = Rect::from_min_max(pos2(rect.right() - RESET_WIDTH, rect.top()), rect.max);
     if row.modified {
         let bar = Rect::from_min_size(rect.min + vec2(0.0, 4.0), vec2(BAR_WIDTH, rect.height() - 8.0));
@@ -112,6 +126,11 @@ pub fn row_ui(ui: &mut Ui, row: &Row, value: &Plain) -> Outcome {
         if icon_button(&mut reset, Icon::Reset, &format!("Reset {}", row.path)).clicked() {
             outcome.ask = Some(Ask::Reset(row.path.clone()));
         }
+    }
+    if let Some(keying) = row.keying
+        && key_button(ui, key_rect, keying, &row.path).clicked()
+    {
+        outcome.ask = Some(Ask::Key(row.path.clone()));
     }
     outcome.hovered = ui.rect_contains_pointer(rect);
     outcome
@@ -264,7 +283,11 @@ fn lanes_ui(ui: &mut Ui, row: &Row, lanes: &[f64]) -> Option<Plain> {
     let whole = precision == crate::preset::form::Precision::Whole;
     let mut now = lanes.to_vec();
     let width = (ui.available_width() - 6.0 * (lanes.len() - 1) as f32) / lanes.len() as f32;
-    let names = if whole { ["width", "height", ""] } else { ["x", "y", "z"] };
+    let names = match lanes.len() {
+        2 if whole => ["width", "height", ""],
+        2 => ["begin", "end", ""],
+        _ => ["x", "y", "z"],
+    };
     for (lane, name) in now.iter_mut().zip(names) {
         let speed = if whole { 1.0 } else { row.soft.map_or_else(|| lane.abs().max(0.5) * 0.01, |[from, to]| (to - from) / 300.0) };
         let drag = DragValue::new(lane).range(low..=high).speed(speed).max_decimals(if whole { 0 } else { 3 }).update_while_editing(false);

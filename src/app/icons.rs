@@ -1,6 +1,8 @@
 //! The few icons the lab needs, drawn with lines, so that no font decides how they look.
 
-use eframe::egui::{self, Color32, Pos2, Rect, Response, Sense, Stroke, Ui, pos2, vec2};
+use eframe::egui::{self, Color32, Pos2, Rect, Response, Sense, Shape, Stroke, Ui, pos2, vec2};
+
+use super::{keying::Keying, theme};
 
 /// What an icon shows.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -17,10 +19,36 @@ pub enum Icon {
     /// Four corners of a frame.
     Frame,
     Dice,
+    Play,
+    Pause,
+    /// A triangle that points back, to a bar.
+    ToStart,
+    StepBack,
+    StepForward,
+    /// Two arrows round a track.
+    Loop,
 }
 
 /// A square button without a frame; `name` is its tooltip and its accessible name.
 pub fn icon_button(ui: &mut Ui, icon: Icon, name: &str) -> Response {
+    let response =
+        bare_button(
+            ui,
+            icon,
+            |ui, response| if ui.is_enabled() { ui.style().interact(response).fg_stroke.color } else { ui.visuals().weak_text_color() },
+        );
+    response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Button, ui.is_enabled(), name));
+    response.on_hover_text(name).on_disabled_hover_text(name)
+}
+
+/// A button that is on or off.
+pub fn toggle_button(ui: &mut Ui, icon: Icon, on: bool, name: &str) -> Response {
+    let response = bare_button(ui, icon, |_, _| if on { theme::ACCENT } else { theme::TEXT_WEAK });
+    response.widget_info(|| egui::WidgetInfo::selected(egui::Role::CheckBox, true, on, name));
+    response
+}
+
+fn bare_button(ui: &mut Ui, icon: Icon, color: impl FnOnce(&Ui, &Response) -> Color32) -> Response {
     let side = ui.spacing().interact_size.y;
     let (rect, response) = ui.allocate_exact_size(vec2(side, side), Sense::click());
     if ui.is_rect_visible(rect) {
@@ -28,11 +56,32 @@ pub fn icon_button(ui: &mut Ui, icon: Icon, name: &str) -> Response {
         if response.hovered() || response.has_focus() {
             ui.painter().rect(rect.shrink(1.0), 4.0, visuals.weak_bg_fill, visuals.bg_stroke, egui::StrokeKind::Inside);
         }
-        let color = if ui.is_enabled() { visuals.fg_stroke.color } else { ui.visuals().weak_text_color() };
-        paint(ui.painter(), icon, rect.shrink(side * 0.27), color);
+        paint(ui.painter(), icon, rect.shrink(side * 0.27), color(ui, &response));
     }
-    response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Button, ui.is_enabled(), name));
-    response.on_hover_text(name).on_disabled_hover_text(name)
+    response
+}
+
+/// The diamond beside a value: an outline where nothing is animated, in the accent where it is, filled on a key.
+pub fn key_button(ui: &mut Ui, rect: Rect, keying: Keying, path: &str) -> Response {
+    let response = ui.interact(rect, egui::Id::unique((path, "key")), Sense::click());
+    let (name, hint) = match keying {
+        Keying::Still => (format!("Animate {path}"), "Animate: set a first key here, at the time that is shown"),
+        Keying::Between => (format!("Key {path}"), "Set a key at the time that is shown; changing the value does so too"),
+        Keying::OnKey => (format!("Remove key of {path}"), "Remove the key at this time"),
+    };
+    let near = response.hovered() || response.has_focus();
+    let color = match (keying, near && ui.is_enabled()) {
+        (Keying::Still, false) => theme::TEXT_WEAK.gamma_multiply(0.7),
+        (Keying::Still, true) => theme::TEXT_STRONG,
+        (_, false) => theme::ACCENT,
+        (_, true) => theme::TEXT_STRONG,
+    };
+    let r = if near { 5.5 } else { 4.5 };
+    let points = [(0.0, -r), (r, 0.0), (0.0, r), (-r, 0.0)].map(|(x, y)| rect.center() + vec2(x, y)).to_vec();
+    let fill = if keying == Keying::OnKey { color } else { Color32::TRANSPARENT };
+    ui.painter().add(Shape::convex_polygon(points, fill, Stroke::new(1.3, color)));
+    response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Button, ui.is_enabled(), &name));
+    response.on_hover_text(hint)
 }
 
 /// Draws `icon` into `rect`.
@@ -41,6 +90,9 @@ pub fn paint(painter: &egui::Painter, icon: Icon, rect: Rect, color: Color32) {
     let at = |x: f32, y: f32| pos2(rect.left() + x * rect.width(), rect.top() + y * rect.height());
     let line = |points: &[Pos2]| {
         painter.line(points.to_vec(), stroke);
+    };
+    let fill = |points: &[Pos2]| {
+        painter.add(Shape::convex_polygon(points.to_vec(), color, Stroke::NONE));
     };
     match icon {
         Icon::Eye | Icon::EyeShut => {
@@ -80,6 +132,29 @@ pub fn paint(painter: &egui::Painter, icon: Icon, rect: Rect, color: Color32) {
                 let inward = |v: f32| if v == 0.0 { 0.3 } else { 0.7 };
                 line(&[at(inward(x), y), at(x, y), at(x, inward(y))]);
             }
+        }
+        Icon::Play => fill(&[at(0.12, -0.05), at(1.05, 0.5), at(0.12, 1.05)]),
+        Icon::Pause => {
+            fill(&[at(0.08, 0.0), at(0.38, 0.0), at(0.38, 1.0), at(0.08, 1.0)]);
+            fill(&[at(0.62, 0.0), at(0.92, 0.0), at(0.92, 1.0), at(0.62, 1.0)]);
+        }
+        Icon::ToStart => {
+            line(&[at(0.05, 0.0), at(0.05, 1.0)]);
+            fill(&[at(1.0, 0.0), at(0.25, 0.5), at(1.0, 1.0)]);
+        }
+        Icon::StepBack => {
+            line(&[at(0.95, 0.05), at(0.95, 0.95)]);
+            line(&[at(0.65, 0.05), at(0.1, 0.5), at(0.65, 0.95)]);
+        }
+        Icon::StepForward => {
+            line(&[at(0.05, 0.05), at(0.05, 0.95)]);
+            line(&[at(0.35, 0.05), at(0.9, 0.5), at(0.35, 0.95)]);
+        }
+        Icon::Loop => {
+            line(&[at(-0.1, 0.55), at(-0.1, 0.2), at(1.0, 0.2)]);
+            line(&[at(0.75, -0.05), at(1.02, 0.2), at(0.75, 0.45)]);
+            line(&[at(1.1, 0.45), at(1.1, 0.8), at(0.0, 0.8)]);
+            line(&[at(0.25, 0.55), at(-0.02, 0.8), at(0.25, 1.05)]);
         }
         Icon::Dice => {
             painter.rect_stroke(rect, 2.0, stroke, egui::StrokeKind::Middle);

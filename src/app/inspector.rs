@@ -27,6 +27,9 @@ const SHOWN: &[(&str, &str, Option<[f64; 2]>)] = &[
     ("camera.orthographic_height_m", "m", None),
     ("camera.near_m", "m", None),
     ("clock.time_s", "s", Some([0.0, 12.0])),
+    ("clock.range_s", "s", None),
+    ("clock.loops", "", None),
+    ("clock.speed", "", None),
     ("output.size", "", None),
     ("output.background", "", None),
     ("accuracy.tier", "", None),
@@ -87,12 +90,7 @@ impl App {
         frame.show(ui, |ui| {
             ui.set_min_width(ui.available_width());
             self.effect_header_ui(ui, effect, place, count);
-            let Some(enabled) = self.look.session.stack.get(effect.name) else { return };
-            let mut words = enabled.words.clone();
-            ui.add_enabled_ui(!self.muted.contains(effect.name), |ui| self.effect_rows_ui(ui, effect, &mut words));
-            if let Some(enabled) = self.look.session.stack.get_mut(effect.name) {
-                enabled.words = words;
-            }
+            ui.add_enabled_ui(!self.muted.contains(effect.name), |ui| self.effect_rows_ui(ui, effect));
         });
         ui.add_space(theme::HALF);
     }
@@ -103,7 +101,7 @@ impl App {
             let mut on = true;
             let title = RichText::new(shown_name(effect)).strong().color(theme::TEXT_STRONG);
             if ui.checkbox(&mut on, title).on_hover_text(effect.about).accessible_name(effect.name).clicked() {
-                self.look.session.stack.disable(effect.name);
+                self.look.session.disable(effect.name);
                 self.muted.remove(effect.name);
             }
             ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
@@ -123,36 +121,25 @@ impl App {
         });
     }
 
-    fn effect_rows_ui(&mut self, ui: &mut Ui, effect: &'static Effect, words: &mut [u32]) {
+    fn effect_rows_ui(&mut self, ui: &mut Ui, effect: &'static Effect) {
         for field in effect.fields {
-            if !field.is_shown(effect.fields, words) {
+            // Read anew for every row: a reset changes more than its own.
+            let Some(words) = self.shown_words(effect) else { return };
+            if !field.is_shown(effect.fields, &words) {
                 continue;
             }
-            let row = Row::of_field(effect, field, words);
-            let value = Plain::Numbers(field.get(words));
+            let row = Row::of_field(effect, field, &words).keyed(self.keying(effect, field));
+            let value = Plain::Numbers(field.get(&words));
             let outcome = row_ui(ui, &row, &value);
             if outcome.hovered {
                 self.hovered_row = Some((row.path.clone(), row.written(&value)));
             }
-            if let Some(Plain::Numbers(lanes)) = outcome.value
-                && let Err(error) = field.set(words, &lanes)
-            {
-                self.log.add(super::Level::Error, format!("{}.{error}", effect.name));
+            if let Some(Plain::Numbers(lanes)) = outcome.value {
+                self.put_value(effect, field, lanes);
             }
             if let Some(ask) = outcome.ask {
-                // Resets act on the look, so what this frame changed goes there first and is then read back.
-                self.put_words(effect, words);
                 self.answer(ui.ctx(), ask);
-                if let Some(enabled) = self.look.session.stack.get(effect.name) {
-                    words.copy_from_slice(&enabled.words);
-                }
             }
-        }
-    }
-
-    fn put_words(&mut self, effect: &Effect, words: &[u32]) {
-        if let Some(enabled) = self.look.session.stack.get_mut(effect.name) {
-            enabled.words = words.to_vec();
         }
     }
 
@@ -171,7 +158,7 @@ impl App {
         if outcome.hovered {
             self.hovered_row = Some((row.path.clone(), row.written(&value)));
         }
-        if let Some(value) = outcome.value {
+        if let Some(value) = outcome.value.filter(|value| key.check(value).is_ok()) {
             (key.set)(&mut self.look.session, value);
         }
         if let Some(ask) = outcome.ask {
@@ -201,23 +188,11 @@ impl App {
     }
 
     fn clock_ui(&mut self, ui: &mut Ui) {
-        folder(ui, "Clock", false, |ui| {
-            self.key_ui(ui, "clock.time_s");
-            ui.horizontal(|ui| {
-                let text = if self.playback.playing { "Pause" } else { "Play" };
-                if ui.button(text).on_hover_text("Space; a look moves when it has a spin").clicked() {
-                    self.perform(ui.ctx(), super::shortcuts::Action::Play);
-                }
-                if self.playback.offset_s != 0.0 {
-                    if ui.button("Keep this time").on_hover_text("Make the time that is shown the look's own").clicked() {
-                        self.look.session.clock.time_s += std::mem::take(&mut self.playback.offset_s);
-                    }
-                    if ui.button("Rewind").clicked() {
-                        self.playback = super::Playback::default();
-                    }
-                }
-            });
-        });
+        let before_s = self.look.session.clock.time_s;
+        self.keys_folder(ui, "Clock", false, &["clock.time_s", "clock.range_s", "clock.loops", "clock.speed"]);
+        if self.look.session.clock.time_s != before_s {
+            self.show_own_time();
+        }
     }
 
     fn accuracy_ui(&mut self, ui: &mut Ui) {

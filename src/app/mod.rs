@@ -11,13 +11,16 @@ mod history;
 mod icons;
 mod inspector;
 mod jobs;
+mod keying;
 mod log;
 mod orbit;
+mod playback;
 mod presets;
 mod screen;
 mod shortcuts;
 mod start;
 mod theme;
+mod timeline;
 mod topbar;
 mod viewport;
 
@@ -34,7 +37,6 @@ pub use log::Level;
 pub use start::{DeviceLost, Options, adopt, run, wgpu_setup};
 
 use crate::{
-    effects::Stack,
     gpu::Gpu,
     measure::Accuracy,
     preset::Look,
@@ -45,9 +47,11 @@ use dialogs::Dialog;
 use fields::Ask;
 use jobs::{Done, Jobs, SceneKey};
 use log::Log;
+use playback::Playback;
 use presets::Shelf;
 use screen::{Inputs, Screen};
 use start::Ending;
+use timeline::Timeline;
 use viewport::Motion;
 
 /// Which file a look is, as undo remembers it.
@@ -92,16 +96,10 @@ struct Verdict {
 struct Panels {
     left: bool,
     right: bool,
+    timeline: bool,
     log: bool,
     cheat_sheet: bool,
     search: String,
-}
-
-/// Time that runs on top of the look's own; no part of the look, so undo does not see it.
-#[derive(Default)]
-struct Playback {
-    playing: bool,
-    offset_s: f64,
 }
 
 /// The whole window.
@@ -124,6 +122,7 @@ pub struct App {
     dialog: Option<Dialog>,
     panels: Panels,
     playback: Playback,
+    timeline: Timeline,
     motion: Motion,
     /// Path and value of the row under the pointer.
     hovered_row: Option<(String, String)>,
@@ -154,7 +153,7 @@ impl App {
             files: HashMap::from([(FileId::of(&look), look.clone())]),
             screen: Screen::new(&window, gpu),
             jobs: Jobs::new(cc.egui_ctx.clone()),
-            panels: Panels { left: true, right: true, log: false, cheat_sheet: false, search: String::new() },
+            panels: Panels { left: true, right: true, timeline: true, log: false, cheat_sheet: false, search: String::new() },
             options,
             ending,
             look,
@@ -166,6 +165,7 @@ impl App {
             verifying: false,
             dialog: None,
             playback: Playback::default(),
+            timeline: Timeline::default(),
             motion: Motion::default(),
             hovered_row: None,
             paste_into: None,
@@ -233,20 +233,6 @@ impl App {
     /// Has the look changes that would be lost? A look without a file has none until it is touched.
     fn is_modified(&self) -> bool {
         self.files.get(&FileId::of(&self.look)).is_none_or(|as_opened| as_opened.session != self.look.session)
-    }
-
-    /// The stack without muted effects.
-    fn visible_stack(&self) -> Stack {
-        let mut stack = self.look.session.stack.clone();
-        stack.0.retain(|enabled| !self.muted.contains(enabled.effect.name));
-        stack
-    }
-
-    /// The session at the time that is shown.
-    fn shown_session(&self) -> Session {
-        let mut session = self.look.session.clone();
-        session.clock.time_s += self.playback.offset_s;
-        session
     }
 
     /// Takes in what threads have finished.
@@ -330,14 +316,6 @@ impl App {
         ctx.send_viewport_cmd(egui::ViewportCommand::Close);
     }
 
-    /// Files dropped on the window.
-    fn take_drops(&mut self, ctx: &egui::Context) {
-        let dropped = ctx.input(|i| i.raw.dropped_files.iter().map(|file| file.path().to_owned()).collect::<Vec<_>>());
-        for path in dropped {
-            self.open(&path.to_string_lossy());
-        }
-    }
-
     fn update_title(&mut self, ctx: &egui::Context) {
         let title = format!("{}{} - rasterlab", if self.is_modified() { "• " } else { "" }, self.look.title());
         if title != self.title {
@@ -356,6 +334,14 @@ impl App {
 
     fn panels_ui(&mut self, ui: &mut egui::Ui) {
         egui::Panel::top("top").frame(theme::bar_frame()).show_separator_line(false).show(ui, |ui| self.topbar_ui(ui));
+        let mut timeline = self.panels.timeline;
+        let height = self.timeline_height();
+        egui::Panel::bottom("timeline").frame(theme::bar_frame()).exact_size(height).resizable(false).drag_to_open(false).show_collapsible(
+            ui,
+            &mut timeline,
+            |ui| self.timeline_ui(ui),
+        );
+        self.panels.timeline = timeline;
         let mut log = self.panels.log;
         egui::Panel::bottom("log").frame(theme::panel_frame()).resizable(true).default_size(150.0).min_size(72.0).show_collapsible(
             ui,
@@ -408,6 +394,7 @@ impl eframe::App for App {
         self.take_drops(&ctx);
         self.take_keys(&ctx);
         self.hovered_row = None;
+        self.play(&ctx);
         self.set_stage();
         self.panels_ui(ui);
         self.dialog_ui(&ctx);

@@ -28,8 +28,11 @@ pub enum Action {
     Play,
     StepBack,
     StepForward,
+    Rewind,
+    RemoveKey,
     Verify,
     Panels,
+    Timeline,
     Log,
     CheatSheet,
 }
@@ -67,8 +70,11 @@ const TABLE: &[(Action, &str, &[KeyboardShortcut])] = &[
     (Action::Play, "Play or pause", &[plain(Key::Space)]),
     (Action::StepBack, "Step back 1/30 s", &[plain(Key::Comma)]),
     (Action::StepForward, "Step forward 1/30 s", &[plain(Key::Period)]),
+    (Action::Rewind, "Back to the start", &[plain(Key::Num0)]),
+    (Action::RemoveKey, "Remove the selected key", &[plain(Key::Delete), plain(Key::Backspace)]),
     (Action::Verify, "Verify against the oracle", &[plain(Key::V)]),
     (Action::Panels, "Hide or show panels", &[plain(Key::F11)]),
+    (Action::Timeline, "Hide or show the timeline", &[plain(Key::T)]),
     (Action::Log, "Hide or show the log", &[plain(Key::L)]),
     (Action::CheatSheet, "Cheat sheet", &[plain(Key::F1), plain(Key::Questionmark)]),
 ];
@@ -81,13 +87,13 @@ const POINTER: &[(&str, &str)] = &[
     ("Look around and fly", "right drag, with W A S D Q E"),
     ("Frame the scene", "double click"),
     ("Reset a value", "double click its label"),
+    ("Animate a value", "click the ◇ beside it, at two times"),
+    ("Scrub", "drag on the timeline's ruler"),
+    ("Move a key", "drag its mark, with Shift off the grid"),
     ("Fine slider", "Shift + drag"),
     ("Copy or paste a value", "Ctrl+C, Ctrl+V over its row"),
     ("Copy or paste the look", "Ctrl+C, Ctrl+V elsewhere"),
 ];
-
-/// A step in time, seconds.
-const STEP_S: f64 = 1.0 / 30.0;
 
 impl Action {
     fn entry(self) -> &'static (Self, &'static str, &'static [KeyboardShortcut]) {
@@ -183,23 +189,18 @@ impl App {
             Action::Top => self.move_camera(|c| orbit::look_along(c, orbit::TOP)),
             Action::Orthographic => self.move_camera(orbit::toggle_orthographic),
             Action::Play => self.play_or_pause(),
-            Action::StepBack => self.playback.offset_s -= STEP_S,
-            Action::StepForward => self.playback.offset_s += STEP_S,
+            Action::StepBack => self.step_time(-1.0),
+            Action::StepForward => self.step_time(1.0),
+            Action::Rewind => self.rewind(),
+            Action::RemoveKey => self.remove_selected_key(),
             Action::Verify => self.verify(),
             Action::Panels => {
-                let shown = self.panels.left || self.panels.right;
-                (self.panels.left, self.panels.right) = (!shown, !shown);
+                let shown = self.panels.left || self.panels.right || self.panels.timeline;
+                (self.panels.left, self.panels.right, self.panels.timeline) = (!shown, !shown, !shown);
             }
+            Action::Timeline => self.panels.timeline = !self.panels.timeline,
             Action::Log => self.panels.log = !self.panels.log,
             Action::CheatSheet => self.panels.cheat_sheet = !self.panels.cheat_sheet,
-        }
-    }
-
-    fn play_or_pause(&mut self) {
-        self.playback.playing = !self.playback.playing;
-        if self.playback.playing && self.look.session.spin_deg_per_s == 0.0 {
-            self.playback.playing = false;
-            self.tell(Level::Info, "Nothing moves in this look: give it a spin under Scene");
         }
     }
 
@@ -268,6 +269,7 @@ impl App {
             Action::Save => Some(if self.is_modified() { "unsaved".into() } else { "saved".into() }),
             Action::Play => Some(if self.playback.playing { "playing".into() } else { "paused".into() }),
             Action::Randomize => Some(format!("seed {}", self.seed)),
+            Action::Timeline => Some(if self.panels.timeline { "shown".into() } else { "hidden".into() }),
             Action::Log => Some(if self.panels.log { "shown".into() } else { "hidden".into() }),
             _ => None,
         }

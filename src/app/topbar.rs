@@ -28,7 +28,7 @@ impl App {
 
     fn menus_ui(&mut self, ui: &mut Ui) {
         use Action as A;
-        let menus: [(&str, &[Option<A>]); 3] = [
+        let menus: [(&str, &[Option<A>]); 4] = [
             (
                 "File",
                 &[
@@ -45,6 +45,7 @@ impl App {
                 ],
             ),
             ("Edit", &[Some(A::Undo), Some(A::Redo), None, Some(A::Randomize)]),
+            ("Time", &[Some(A::Play), Some(A::StepBack), Some(A::StepForward), Some(A::Rewind), None, Some(A::RemoveKey)]),
             (
                 "View",
                 &[
@@ -55,6 +56,7 @@ impl App {
                     Some(A::Orthographic),
                     None,
                     Some(A::Panels),
+                    Some(A::Timeline),
                     Some(A::Log),
                     None,
                     Some(A::CheatSheet),

@@ -5,6 +5,7 @@ use eframe::egui::{self, Align2, Color32, FontId, PointerButton, Rect, RichText,
 use super::{
     App, Level,
     icons::{Icon, icon_button},
+    jobs::SceneKey,
     orbit,
     screen::Inputs,
     theme,
@@ -55,7 +56,6 @@ impl App {
         let most = self.screen.gpu.caps.max_texture_side;
         let size = [pixels.x, pixels.y].map(|side| (side.max(0.0) as u32).min(most));
         self.motion.widening = self.widening(size);
-        self.play(ui.ctx());
         let moved = self.navigate(ui, &response);
         self.draw(ui.ctx(), size, moved);
         self.picture_ui(ui, rect);
@@ -162,21 +162,16 @@ impl App {
         ui.ctx().request_repaint();
     }
 
-    /// Lets time run.
-    fn play(&mut self, ctx: &egui::Context) {
-        if self.playback.playing {
-            self.playback.offset_s += f64::from(ctx.input(|i| i.stable_dt)).min(0.25);
-            ctx.request_repaint();
-        }
-    }
-
     /// Draws what the look asks for, coarser while a hand moves it on a slow adapter.
     fn draw(&mut self, ctx: &egui::Context, full: [u32; 2], camera_moved: bool) {
         let now_s = self.now_s;
         if let Err(error) = self.screen.poll(now_s) {
             self.log.add(Level::Error, error.to_string());
         }
-        let Some((_, scene)) = self.stage.shown.clone() else { return };
+        let Some((key, scene)) = self.stage.shown.clone() else { return };
+        if key != SceneKey::of(&self.look.session, self.look.path.as_ref()) {
+            return; // Another look's scene in the light of this one would be a picture of neither.
+        }
         let (stack, accuracy) = (self.visible_stack(), self.look.session.accuracy);
         let wanted = Inputs { view: self.view_at(&scene, full), scene, stack, accuracy };
         let held = ctx.input(|i| i.pointer.any_down());
@@ -292,8 +287,8 @@ impl App {
             let names: Vec<_> = self.muted.iter().copied().collect();
             states.push((theme::AMBER, format!("muted: {}", names.join(", "))));
         }
-        if self.playback.offset_s != 0.0 {
-            states.push((theme::TEXT_WEAK, format!("time {:.2} s", self.look.session.clock.time_s + self.playback.offset_s)));
+        if self.is_off_its_time() && !self.panels.timeline {
+            states.push((theme::TEXT_WEAK, format!("time {:.2} s", self.shown_time_s())));
         }
         states
     }

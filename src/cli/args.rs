@@ -72,6 +72,8 @@ pub enum Command {
     Adapters,
     /// One picture of each look
     Render(Render),
+    /// A moving look, frame by frame; finished frames are not drawn again
+    Sequence(Sequence),
     /// Each look on the adapter against the oracle, all buffers
     Verify(Verify),
     /// Two pictures or looks against each other
@@ -94,6 +96,7 @@ impl Command {
             Self::List(_) => "list",
             Self::Adapters => "adapters",
             Self::Render(_) => "render",
+            Self::Sequence(_) => "sequence",
             Self::Verify(_) => "verify",
             Self::Compare(_) => "compare",
             Self::Explain(_) => "explain",
@@ -137,6 +140,36 @@ pub struct Render {
     /// Leave look, version, adapter and driver out of the PNG
     #[arg(long)]
     pub bare: bool,
+}
+
+#[derive(Args, Debug)]
+pub struct Sequence {
+    #[arg(value_name = "LOOK")]
+    pub look: String,
+    /// A file per frame, e.g. 'frame_{frame:4}.png'. Knows {preset} {effect} {frame} {frame:4} {adapter} {tier}
+    #[arg(short, long, value_name = "FILE", required_unless_present = "apng")]
+    pub output: Option<String>,
+    /// All frames in one animated PNG
+    #[arg(long, value_name = "FILE")]
+    pub apng: Option<PathBuf>,
+    /// Time of frame 0 in seconds; without it the look's own range begins
+    #[arg(long, value_name = "S", allow_negative_numbers = true)]
+    pub from: Option<f64>,
+    /// Time at which the film is over, which is not drawn: it is the first moment of the next round
+    #[arg(long, value_name = "S", allow_negative_numbers = true)]
+    pub to: Option<f64>,
+    /// Frames in a second of film
+    #[arg(long, value_name = "N", default_value_t = 30.0)]
+    pub fps: f64,
+    /// Only these frames, B not among them: the share of one machine of many
+    #[arg(long, value_name = "A..B", value_parser = frames)]
+    pub frames: Option<[Option<u32>; 2]>,
+    /// Size in pixels, e.g. 1920x1080
+    #[arg(long, value_name = "WxH", value_parser = size)]
+    pub size: Option<[u32; 2]>,
+    /// Named tolerance: draft, fast, precise, reference
+    #[arg(long, value_name = "T")]
+    pub tier: Option<String>,
 }
 
 #[derive(Args, Debug)]
@@ -242,6 +275,17 @@ pub struct Check {
     /// Folder of the goldens
     #[arg(long, value_name = "DIR", default_value = "tests/snapshots")]
     pub snapshots: PathBuf,
+}
+
+/// `30..60`, `..60`, `30..`.
+fn frames(text: &str) -> Result<[Option<u32>; 2], String> {
+    let wrong = || format!("frames are A..B, A.. or ..B with whole numbers, B not among them, for instance 0..60; {text:?} is not");
+    let (from, to) = text.split_once("..").ok_or_else(wrong)?;
+    let end = |end: &str| if end.is_empty() { Ok(None) } else { end.parse().map(Some).map_err(|_| wrong()) };
+    match [end(from)?, end(to)?] {
+        [Some(from), Some(to)] if from >= to => Err(format!("frames {text} hold no frame: {from} is not before {to}")),
+        ends => Ok(ends),
+    }
 }
 
 /// `1920x1080`.

@@ -29,7 +29,7 @@ pub fn run(common: &Common, args: &Bench, streams: &mut Streams) -> Result<Exit,
     let bar = streams.progress(0);
     let mut rows = Vec::new();
     for (look, scene) in &subjects {
-        let session = &look.session;
+        let session = &look.session.posed();
         let view = session.view(scene, args.size);
         let judge = |frame: &_, geometry: &_, layers: Option<&[u32]>| {
             oracle::judge(scene, &view, &session.stack, frame, geometry, layers).expect("a scene that was drawn can be judged")

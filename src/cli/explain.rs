@@ -28,7 +28,7 @@ pub fn run(common: &Common, args: &Explain, streams: &mut Streams) -> Result<Exi
         Some(Painter::Gpu(mut renderer, gpu)) => {
             renderer.set_scene(&scene)?;
             let session = &look.session;
-            renderer.draw(&session.view(&scene, session.output.size), &session.stack, &session.accuracy)?;
+            renderer.draw(&session.view(&scene, session.output.size), &session.posed_stack(), &session.accuracy)?;
             (Painter::Gpu(Box::new(crate::gpu::Renderer::new(gpu.clone())), gpu).json(), Some(renderer.explain()))
         }
         Some(painter) => (painter.json(), None),

@@ -18,6 +18,8 @@ pub struct Names {
     pub effect: String,
     pub adapter: String,
     pub tier: String,
+    /// Number of a frame, where there are frames.
+    pub frame: Option<u32>,
 }
 
 /// All of stdin as text.
@@ -49,6 +51,16 @@ pub fn target(template: &str, names: &Names, force: bool) -> Result<PathBuf, Fau
     Ok(path)
 }
 
+/// The file of a frame of a sequence, taken or not.
+pub fn frame_path(template: &str, names: &Names) -> Result<PathBuf, Fault> {
+    Ok(PathBuf::from(expand(template, names, 0)?))
+}
+
+/// Does the template name the frame?
+pub fn has_frame(template: &str) -> Result<bool, Fault> {
+    Ok(pieces(template)?.iter().any(|piece| matches!(piece, Piece::Place { name: "frame", .. })))
+}
+
 /// Writes whole or not at all.
 pub fn write(path: &Path, bytes: &[u8]) -> Result<(), Fault> {
     Ok(preset::write_atomically(path, bytes)?)
@@ -70,15 +82,20 @@ enum Piece<'a> {
 }
 
 fn expand(template: &str, names: &Names, n: usize) -> Result<String, Fault> {
+    let pieces = pieces(template)?;
+    if names.frame.is_none() && has_frame(template)? {
+        return Err(Fault::usage(format!("{template}: only sequence has frames, and so {{frame}}")));
+    }
     let text = |piece: Piece<'_>| match piece {
         Piece::Text(text) => text,
+        Piece::Place { name: "frame", width } => format!("{:0width$}", names.frame.unwrap_or_default()),
         Piece::Place { name: "preset", .. } => safe(&names.preset),
         Piece::Place { name: "effect", .. } => safe(&names.effect),
         Piece::Place { name: "adapter", .. } => safe(&names.adapter),
         Piece::Place { name: "tier", .. } => safe(&names.tier),
         Piece::Place { width, .. } => format!("{n:0width$}"),
     };
-    Ok(pieces(template)?.into_iter().map(text).collect())
+    Ok(pieces.into_iter().map(text).collect())
 }
 
 /// A name without anything that a path could take for a folder.
@@ -99,13 +116,13 @@ fn pieces(template: &str) -> Result<Vec<Piece<'_>>, Fault> {
         }
         let wrong = || {
             Fault::usage(format!(
-                "{template}: {{preset}}, {{effect}}, {{n}}, {{n:3}}, {{adapter}} and {{tier}} can be filled in; double a brace to write it"
+                "{template}: {{preset}}, {{effect}}, {{n}}, {{n:3}}, {{frame:4}}, {{adapter}} and {{tier}} can be filled in; double a brace to write it"
             ))
         };
         let (place, after) = from.strip_prefix('{').and_then(|from| from.split_once('}')).ok_or_else(wrong)?;
         let (name, width) = place.split_once(':').unwrap_or((place, "0"));
         let width = width.parse().ok().filter(|width| *width <= 9).ok_or_else(wrong)?;
-        if !["preset", "effect", "adapter", "tier", "n"].contains(&name) || (width > 0 && name != "n") {
+        if !["preset", "effect", "adapter", "tier", "n", "frame"].contains(&name) || (width > 0 && !["n", "frame"].contains(&name)) {
             return Err(wrong());
         }
         pieces.push(Piece::Place { name, width });
@@ -120,7 +137,13 @@ mod tests {
     use super::*;
 
     fn names() -> Names {
-        Names { preset: "facet".into(), effect: "facet+lambert".into(), adapter: "llvmpipe (LLVM 15/256)".into(), tier: "fast".into() }
+        Names {
+            preset: "facet".into(),
+            effect: "facet+lambert".into(),
+            adapter: "llvmpipe (LLVM 15/256)".into(),
+            tier: "fast".into(),
+            frame: None,
+        }
     }
 
     #[test]
@@ -129,6 +152,8 @@ mod tests {
         assert_eq!(filled("{preset}_{n:3}.png"), "facet_007.png");
         assert_eq!(filled("{{{tier}}}-{n}-{effect}"), "{fast}-7-facet+lambert");
         assert_eq!(filled("{adapter}.png"), "llvmpipe--LLVM-15-256.png");
+        let seventh = Names { frame: Some(7), ..names() };
+        assert_eq!(expand("{preset}/{frame:4}-{frame}.png", &seventh, 0).unwrap(), "facet/0007-7.png");
         for wrong in ["{frame}", "{preset", "a}b", "{tier:3}", "{n:x}"] {
             assert!(expand(wrong, &names(), 0).is_err(), "{wrong}");
         }

@@ -12,7 +12,7 @@ use crate::{
     oracle,
     preset::{self, Look},
     scene::Scene,
-    session::Session,
+    session::{Clock, Session},
 };
 
 /// Largest golden, pixels.
@@ -40,7 +40,7 @@ pub fn draw(look: &Look, scene: &Scene) -> Result<Golden, Fault> {
     if width > MAX_SIZE[0] || height > MAX_SIZE[1] {
         return Err(Fault::usage(format!("{}: output.size {width}x{height} is larger than a golden may be, 320x240", look.id)));
     }
-    let frame = oracle::render(scene, &session.view(scene, session.output.size), &session.stack)?;
+    let frame = oracle::render(scene, &session.view(scene, session.output.size), &session.posed_stack())?;
     let png = preset::png_bytes(&frame.color, session.output.size)?;
     if png.len() > MAX_BYTES {
         return Err(Fault::usage(format!("{}: its picture takes {} bytes; a golden is at most {MAX_BYTES}", look.id, png.len())));
@@ -69,9 +69,10 @@ fn sidecar(look: &Look, scene: &Scene, frame: &Frame) -> Value {
     })
 }
 
-/// Hash of all that decides the picture: not of names, comments and budgets.
+/// Hash of all that decides the picture: not of names, comments, budgets, or what happens at another time.
 pub fn look_hash(session: &Session) -> Fnv {
-    let picture = Session { name: String::new(), about: String::new(), tags: Vec::new(), test: None, ..session.clone() };
+    let clock = Clock { time_s: session.clock.time_s, ..Clock::default() };
+    let picture = Session { name: String::new(), about: String::new(), tags: Vec::new(), test: None, clock, ..session.posed() };
     Fnv::new().bytes(preset::to_toml(&Look::new("", picture)).as_bytes())
 }
 
@@ -99,7 +100,7 @@ pub fn scene_hash(scene: &Scene) -> Fnv {
     hash
 }
 
-fn hex(hash: Fnv) -> String {
+pub fn hex(hash: Fnv) -> String {
     format!("{:016x}", hash.0)
 }
 

@@ -16,6 +16,7 @@ mod list;
 mod painter;
 mod render;
 mod report;
+mod sequence;
 mod streams;
 mod verify;
 
@@ -51,6 +52,7 @@ fn dispatch(common: &Common, command: &Command, streams: &mut Streams) -> Result
         Command::List(args) => list::run(common, args, streams),
         Command::Adapters => adapters::run(streams),
         Command::Render(args) => render::run(common, args, streams),
+        Command::Sequence(args) => sequence::run(common, args, streams),
         Command::Verify(args) => verify::run(common, args, streams),
         Command::Compare(args) => compare::run(common, args, streams),
         Command::Explain(args) => explain::run(common, args, streams),

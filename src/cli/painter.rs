@@ -107,22 +107,22 @@ impl Painter {
     /// The picture of `session`.
     pub fn frame(&mut self, session: &Session, scene: &Arc<Scene>) -> Result<Frame, Fault> {
         match self {
-            Self::Cpu => Ok(oracle::render(scene, &session.view(scene, session.output.size), &session.stack)?),
+            Self::Cpu => Ok(oracle::render(scene, &session.view(scene, session.output.size), &session.posed_stack())?),
             Self::Gpu(..) => Ok(self.capture(session, scene)?.frame),
         }
     }
 
     /// The picture with everything that a judge needs.
     pub fn capture(&mut self, session: &Session, scene: &Arc<Scene>) -> Result<Capture, Fault> {
-        let view = session.view(scene, session.output.size);
+        let (view, stack) = (session.view(scene, session.output.size), session.posed_stack());
         match self {
             Self::Cpu => {
-                let geometry: Geometry = oracle::project_moved(scene, &draws(scene, &view)?, &view, &session.stack);
-                Ok(Capture { frame: oracle::render(scene, &view, &session.stack)?, geometry, layers: None })
+                let geometry: Geometry = oracle::project_moved(scene, &draws(scene, &view)?, &view, &stack);
+                Ok(Capture { frame: oracle::render(scene, &view, &stack)?, geometry, layers: None })
             }
             Self::Gpu(renderer, _) => {
                 renderer.set_scene(scene)?;
-                Ok(renderer.capture(&view, &session.stack, &session.accuracy)?)
+                Ok(renderer.capture(&view, &stack, &session.accuracy)?)
             }
         }
     }

@@ -76,12 +76,13 @@ fn look(common: &Common, args: &Render, what: &str) -> Result<Look, Fault> {
     Ok(look)
 }
 
-fn names(look: &Look, painter: &Painter) -> Names {
+pub fn names(look: &Look, painter: &Painter) -> Names {
     let effects: Vec<_> = look.session.stack.0.iter().map(|enabled| enabled.effect.name).collect();
     Names {
         preset: look.id.clone(),
         effect: if effects.is_empty() { "plain".into() } else { effects.join("+") },
         adapter: painter.name().into(),
         tier: look.session.accuracy.tier.name().into(),
+        frame: None,
     }
 }

@@ -47,7 +47,8 @@ impl Streams {
         if self.quiet || dumb || !io::stderr().is_terminal() {
             return ProgressBar::hidden();
         }
-        let style = ProgressStyle::with_template("{bar:32} {pos}/{len} {msg}").unwrap_or_else(|_| ProgressStyle::default_bar());
+        let style =
+            ProgressStyle::with_template("{bar:32} {pos}/{len}  {eta} left  {msg}").unwrap_or_else(|_| ProgressStyle::default_bar());
         ProgressBar::with_draw_target(Some(steps), ProgressDrawTarget::stderr()).with_style(style)
     }
 

@@ -63,14 +63,14 @@ fn verify(common: &Common, args: &Verify, look: &Look, painter: &mut Painter) ->
     let mut session = look.session.clone();
     session.output.size = args.size.unwrap_or(session.output.size);
     let scene = scene_of(look)?;
-    let view = session.view(&scene, session.output.size);
+    let (view, stack) = (session.view(&scene, session.output.size), session.posed_stack());
     let budget = session.test.clone().unwrap_or_default();
     let (mut rows, mut first): (Vec<Row>, Option<(&str, Frame)>) = (Vec::new(), None);
     for rung in painter.rungs(&session) {
         let pinned = Session { accuracy: crate::session::Accuracy { visibility: rung, ..session.accuracy }, ..session.clone() };
         let name = rung.map_or("exact", Visibility::name);
         let capture = painter.capture(&pinned, &scene)?;
-        let verdict = oracle::judge(&scene, &view, &session.stack, &capture.frame, &capture.geometry, capture.layers.as_deref())?;
+        let verdict = oracle::judge(&scene, &view, &stack, &capture.frame, &capture.geometry, capture.layers.as_deref())?;
         let pixels_beyond = pictures(&capture.frame.color, &verdict.expected.color, budget.max_channel).pixels_beyond;
         let mut failures = failures(&verdict.accuracy, &budget, pixels_beyond);
         for repeat in 1..args.frames {

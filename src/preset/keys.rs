@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use glam::DVec3;
 
-use super::form::{Form, Plain, Precision};
+use super::form::{Form, Plain, Precision, brief};
 use crate::{
     scene::camera::{Camera, MIN_NEAR_M, Projection},
     session::{SceneSource, Session, Test, Tier, Visibility},
@@ -19,6 +19,8 @@ pub struct Key {
     pub form: Form,
     /// Key of the same section that says the same thing another way.
     pub rival: Option<&'static str>,
+    /// What its lanes must be to one another; the error completes a sentence that begins with the key.
+    pub rule: Option<fn(&Plain) -> Result<(), String>>,
     /// None where the key does not apply to this session.
     pub get: fn(&Session) -> Option<Plain>,
     /// Takes a value that has this key's form.
@@ -40,6 +42,11 @@ impl Key {
     pub fn within(section: &str, name: &str) -> Option<&'static Self> {
         KEYS.iter().find(|key| key.section == section && key.name == name)
     }
+
+    /// Does a value of this key's form obey its rule?
+    pub fn check(&self, plain: &Plain) -> Result<(), String> {
+        self.rule.map_or(Ok(()), |rule| rule(plain))
+    }
 }
 
 /// A table of a look. An optional one means something by being there.
@@ -53,7 +60,7 @@ pub struct Section {
 pub const SECTIONS: &[Section] = &[
     Section { name: "scene", doc: "What is shown", is_there: None },
     Section { name: "camera", doc: "Where it is seen from; without it the whole scene is framed", is_there: Some(|s| s.camera.is_some()) },
-    Section { name: "clock", doc: "The time of the picture", is_there: None },
+    Section { name: "clock", doc: "The time of the picture, and what the timeline spans", is_there: None },
     Section { name: "accuracy", doc: "How exact the picture must be", is_there: None },
     Section { name: "output", doc: "The picture to be made", is_there: None },
     Section { name: "test", doc: "What a golden may differ by; a look without it has none", is_there: Some(|s| s.test.is_some()) },
@@ -94,7 +101,11 @@ type Get = fn(&Session) -> Option<Plain>;
 type Set = fn(&mut Session, Plain);
 
 const fn key(section: &'static str, name: &'static str, form: Form, doc: &'static str, get: Get, set: Set) -> Key {
-    Key { section, name, doc, form, rival: None, get, set }
+    Key { section, name, doc, form, rival: None, rule: None, get, set }
+}
+
+const fn ruled(key: Key, rule: fn(&Plain) -> Result<(), String>) -> Key {
+    Key { rule: Some(rule), ..key }
 }
 
 const fn rivals(key: Key, rival: &'static str) -> Key {
@@ -203,6 +214,33 @@ pub const KEYS: &[Key] = &[
         |s| Some(Plain::number(s.clock.time_s)),
         |s, v| s.clock.time_s = v.first(),
     ),
+    ruled(
+        key(
+            "clock",
+            "range_s",
+            Form::Numbers { lanes: 2, low: -1e9, high: 1e9, precision: Precision::Double },
+            "What the timeline spans and a sequence draws: begin and end, which belongs to the next round",
+            |s| Some(Plain::Numbers(s.clock.range_s.to_vec())),
+            |s, v| s.clock.range_s = v.lanes(),
+        ),
+        rises,
+    ),
+    key(
+        "clock",
+        "loops",
+        Form::Flag,
+        "After the end of the range comes its beginning",
+        |s| Some(Plain::number(s.clock.loops)),
+        |s, v| s.clock.loops = v.first() != 0.0,
+    ),
+    key(
+        "clock",
+        "speed",
+        Form::number(0.01, 100.0),
+        "Seconds of the look that pass in one second of film",
+        |s| Some(Plain::number(s.clock.speed)),
+        |s, v| s.clock.speed = v.first(),
+    ),
     key(
         "accuracy",
         "tier",
@@ -260,6 +298,11 @@ pub const KEYS: &[Key] = &[
         |s, v| tested(s).why = v.into_text(),
     ),
 ];
+
+fn rises(range: &Plain) -> Result<(), String> {
+    let [from, to] = range.lanes();
+    if from < to { Ok(()) } else { Err(format!("must rise, but {} is not before {}", brief(from), brief(to))) }
+}
 
 fn camera(session: &Session, get: impl Fn(&Camera) -> Plain) -> Option<Plain> {
     session.camera.as_ref().map(get)

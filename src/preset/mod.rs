@@ -3,11 +3,14 @@
 //! Presence of `[effects.NAME]` enables an effect; `stack` is only order. Comments and unknown keys are kept and
 //! written back. Every value is finite and inside its hard range after loading, or the file is refused with a line.
 
+mod animation;
+mod atomic;
 mod error;
 pub mod form;
 mod gallery;
 pub mod keys;
 pub mod migrate;
+mod path;
 mod read;
 pub mod schema;
 mod share;
@@ -20,21 +23,21 @@ use std::{
     sync::Arc,
 };
 
-use toml_edit::{DocumentMut, Value};
+use toml_edit::DocumentMut;
 
+pub use atomic::{AtomicFile, sweep};
 pub use error::{Place, PresetError};
 pub use gallery::{BUILTIN_DIR, GalleryEntry, Origin, gallery, open, user_folder};
+pub use path::{set, unset};
 pub use share::{from_line, to_line};
-pub use shot::{Provenance, look_from_png, png_bytes, png_pixels, png_with_look};
+pub use shot::{Film, Provenance, Reel, Standing, look_from_png, png_bytes, png_of_sequence, png_pixels, png_with_look, standing};
 
 use crate::{
-    effects::{EFFECTS, Effect},
     params::Field,
     scene::{self, Scene},
     session::{SceneSource, Session},
 };
-use form::{Form, Plain, did_you_mean};
-use keys::{KEYS, Key, Section};
+use form::Plain;
 
 /// An open look: a session with the file it came from.
 #[derive(Clone, Debug)]
@@ -166,25 +169,9 @@ pub fn save(look: &mut Look, path: &Path) -> Result<(), PresetError> {
 
 /// Writes beside `path`, then renames, so that a reader sees the old file or the new one.
 pub fn write_atomically(path: &Path, bytes: &[u8]) -> Result<(), PresetError> {
-    let failed = |reason: String| PresetError::Write { file: path.display().to_string(), reason };
-    // Through a link, so that the link stays one.
-    let target = path.canonicalize().unwrap_or_else(|_| path.to_owned());
-    let there = std::fs::metadata(&target).ok();
-    if there.as_ref().is_some_and(|m| m.permissions().readonly()) {
-        return Err(failed("the file is read-only".into()));
-    }
-    let folder = target.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
-    let mut builder = tempfile::Builder::new();
-    builder.prefix(".rasterlab-");
-    #[cfg(unix)]
-    builder.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o666));
-    let mut file = builder.tempfile_in(folder).map_err(|e| failed(e.to_string()))?;
-    file.write_all(bytes).and_then(|()| file.as_file().sync_all()).map_err(|e| failed(e.to_string()))?;
-    if let Some(there) = there {
-        std::fs::set_permissions(file.path(), there.permissions()).map_err(|e| failed(e.to_string()))?;
-    }
-    file.persist(&target).map_err(|e| failed(e.error.to_string()))?;
-    Ok(())
+    let mut file = AtomicFile::create(path)?;
+    file.write_all(bytes).map_err(|e| file.failed(e))?;
+    file.commit()
 }
 
 /// Where a model lies, for a look at `look_path` (or in the current folder).
@@ -253,121 +240,4 @@ fn get(field: &Field, words: &[u32]) -> Plain {
 fn put(field: &Field, words: &mut [u32], plain: &Plain) -> Result<(), String> {
     let Plain::Numbers(lanes) = plain else { unreachable!("parameters are numbers") };
     field.set(words, lanes).map_err(|e| e.to_string().trim_start_matches(field.name).trim_start().to_owned())
-}
-
-/// Where a `--set` or `--unset` path leads.
-enum Target {
-    Effect(&'static Effect),
-    Field(&'static Effect, &'static Field),
-    Key(&'static Key),
-    Section(&'static Section),
-    Stack,
-}
-
-fn target(path: &str) -> Result<Target, String> {
-    if path == "stack" {
-        return Ok(Target::Stack);
-    }
-    if let Some(key) = Key::find(path) {
-        return Ok(Target::Key(key));
-    }
-    if let Some(section) = Section::find(path) {
-        return Ok(Target::Section(section));
-    }
-    let short = path.strip_prefix("effects.").unwrap_or(path);
-    let (name, field) = short.split_once('.').map_or((short, None), |(name, field)| (name, Some(field)));
-    match (Effect::find(name), field) {
-        (Some(effect), None) => Ok(Target::Effect(effect)),
-        (Some(effect), Some(field)) => match effect.field(field) {
-            Some(field) => Ok(Target::Field(effect, field)),
-            None => Err(format!("is unknown{}", did_you_mean(field, effect.fields.iter().map(|field| field.name)))),
-        },
-        (None, _) => {
-            let keys = KEYS.iter().map(Key::path);
-            let fields = EFFECTS.iter().flat_map(|e| e.fields.iter().map(move |f| format!("{}.{}", e.name, f.name)));
-            let known: Vec<String> = keys.chain(fields).chain(EFFECTS.iter().map(|e| e.name.to_owned())).collect();
-            Err(format!("is unknown{}", did_you_mean(short, known.iter().map(String::as_str))))
-        }
-    }
-}
-
-/// A value as typed on a command line: TOML, or a number such as `.4`, or a bare word.
-fn typed(value: &str) -> Value {
-    let value = value.trim();
-    value.parse().unwrap_or_else(|_| match value.parse::<f64>() {
-        Ok(number) if number.is_finite() => number.into(),
-        _ => value.into(),
-    })
-}
-
-/// Changes one key, as `--set path=value` does: `effects.` is optional, setting a parameter enables its effect, and an
-/// effect or section with an empty value is enabled with defaults. Same ranges and errors as in a file.
-pub fn set(look: &mut Look, path: &str, value: &str) -> Result<(), PresetError> {
-    let written = if value.is_empty() { format!("--set {path}") } else { format!("--set {path}={value}") };
-    let wrong = |reason: String| PresetError::value(Place { file: written.clone(), line: None }, path, reason);
-    let session = &mut look.session;
-    match target(path).map_err(wrong)? {
-        Target::Effect(effect) if value.is_empty() => drop(session.stack.enable(effect)),
-        Target::Section(section) if value.is_empty() => section.enter(session),
-        Target::Effect(_) | Target::Section(_) => return Err(wrong("takes no value; name one of its keys".into())),
-        Target::Field(effect, field) => {
-            let plain = read::read_value(&Form::of(field), &typed(value)).map_err(wrong)?;
-            put(field, &mut session.stack.enable(effect).words, &plain).map_err(wrong)?;
-        }
-        Target::Key(key) => {
-            // A name that looks like a number is still a name.
-            let value =
-                Some(typed(value)).filter(|typed| typed.is_str() || !matches!(key.form, Form::Text { .. })).unwrap_or_else(|| value.into());
-            let plain = read::read_value(&key.form, &value).map_err(wrong)?;
-            (key.set)(session, plain);
-        }
-        Target::Stack => {
-            // The reader knows the rules of this key, so it goes the way of a file.
-            let mut text: DocumentMut = to_toml(look).parse().map_err(|e: toml_edit::TomlError| wrong(e.message().into()))?;
-            text.insert("stack", toml_edit::Item::Value(typed(value)));
-            let reread = parse_file(&text.to_string(), &look.id, &written).map_err(|error| match error {
-                PresetError::Value { key, reason, .. } => PresetError::value(Place { file: written.clone(), line: None }, key, reason),
-                other => other,
-            })?;
-            look.session.stack = reread.session.stack;
-        }
-    }
-    Ok(())
-}
-
-/// Puts one key back to its default, as `--unset path` does; an effect or section is taken out.
-pub fn unset(look: &mut Look, path: &str) -> Result<(), PresetError> {
-    let place = Place { file: format!("--unset {path}"), line: None };
-    let session = &mut look.session;
-    match target(path).map_err(|reason| PresetError::value(place, path, reason))? {
-        Target::Effect(effect) => session.stack.disable(effect.name),
-        Target::Field(effect, field) => {
-            if let Some(enabled) = session.stack.get_mut(effect.name) {
-                field.copy(&(effect.defaults)(), &mut enabled.words);
-            }
-        }
-        Target::Key(key) => reset(session, key),
-        Target::Section(section) => match section.name {
-            "camera" => session.camera = None,
-            "test" => session.test = None,
-            name => KEYS.iter().filter(|key| key.section == name).for_each(|key| reset(session, key)),
-        },
-        Target::Stack => session.stack.0.sort_by_key(|enabled| enabled.effect.rank()),
-    }
-    Ok(())
-}
-
-/// Gives `key` its default; one that has none hands over to its rival.
-fn reset(session: &mut Session, key: &Key) {
-    if (key.get)(session).is_none() {
-        return;
-    }
-    let baseline = Section::baseline(session);
-    let rival = key.rival.and_then(|name| Key::within(key.section, name));
-    for key in [Some(key), rival].into_iter().flatten() {
-        if let Some(default) = (key.get)(&baseline) {
-            (key.set)(session, default);
-            return;
-        }
-    }
 }

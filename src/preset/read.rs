@@ -71,16 +71,16 @@ fn raw(value: &Value, text: Option<&str>) -> String {
     written.map_or_else(|| value.to_string().trim().to_owned(), str::to_owned)
 }
 
-struct Reader<'a> {
+pub(super) struct Reader<'a> {
     file: &'a str,
     /// What spans point into; none after a migration.
     text: Option<&'a str>,
-    warnings: Vec<String>,
+    pub(super) warnings: Vec<String>,
 }
 
 impl Reader<'_> {
     /// Where the key `name` stands, or the table itself when it has no such key.
-    fn at(&self, table: &dyn TableLike, name: &str) -> Place {
+    pub(super) fn at(&self, table: &dyn TableLike, name: &str) -> Place {
         let span = table.get_key_value(name).and_then(|(key, item)| key.span().or_else(|| item.span()));
         let line = self.text.zip(span).map(|(text, span)| line_of(text, span.start));
         Place { file: self.file.into(), line }
@@ -117,13 +117,16 @@ impl Reader<'_> {
         if let Some(effects) = self.table(root, "", "effects")? {
             self.effects(effects, &mut session.stack)?;
         }
+        if let Some(effects) = self.table(root, "", "animation")? {
+            self.animation(effects, &mut session)?;
+        }
         self.order(root, &mut session.stack)?;
         self.budget(root, session.test.as_ref())?;
         Ok(session)
     }
 
     /// The table called `name`, if it is there.
-    fn table<'t>(&self, parent: &'t dyn TableLike, prefix: &str, name: &str) -> Result<Option<&'t dyn TableLike>, PresetError> {
+    pub(super) fn table<'t>(&self, parent: &'t dyn TableLike, prefix: &str, name: &str) -> Result<Option<&'t dyn TableLike>, PresetError> {
         let Some(item) = parent.get(name) else { return Ok(None) };
         let path = format!("{prefix}{name}");
         let reason = format!("must be a table, written [{path}]");
@@ -135,9 +138,10 @@ impl Reader<'_> {
         let prefix = if section.is_empty() { String::new() } else { format!("{section}.") };
         for (name, item) in table.iter() {
             let Some(key) = Key::within(section, name) else {
-                if !(section.is_empty() && (matches!(name, "schema" | "stack" | "effects") || Section::find(name).is_some())) {
+                if !(section.is_empty() && (matches!(name, "schema" | "stack" | "effects" | "animation") || Section::find(name).is_some()))
+                {
                     let known = KEYS.iter().filter(|key| key.section == section).map(|key| key.name);
-                    let tables = SECTIONS.iter().map(|s| s.name).chain(["stack", "effects"]).filter(|_| section.is_empty());
+                    let tables = SECTIONS.iter().map(|s| s.name).chain(["stack", "effects", "animation"]).filter(|_| section.is_empty());
                     self.unknown(table, &prefix, name, known.chain(tables));
                 }
                 continue;
@@ -147,6 +151,7 @@ impl Reader<'_> {
                 return Err(PresetError::value(self.at(table, name), key.path(), reason));
             }
             let plain = self.value(table, &prefix, name, item, &key.form)?;
+            key.check(&plain).map_err(|reason| PresetError::value(self.at(table, name), key.path(), reason))?;
             if key.name == "path" && plain.clone().into_text().contains("://") {
                 return Err(PresetError::value(self.at(table, name), key.path(), "must be a file, not an address"));
             }
@@ -155,7 +160,14 @@ impl Reader<'_> {
         Ok(())
     }
 
-    fn value(&self, table: &dyn TableLike, prefix: &str, name: &str, item: &Item, form: &Form) -> Result<super::form::Plain, PresetError> {
+    pub(super) fn value(
+        &self,
+        table: &dyn TableLike,
+        prefix: &str,
+        name: &str,
+        item: &Item,
+        form: &Form,
+    ) -> Result<super::form::Plain, PresetError> {
         let read = match item.as_value() {
             Some(value) => form.read(value, &|value| raw(value, self.text)),
             None => Err("must be a value, not a table".into()),
@@ -163,7 +175,7 @@ impl Reader<'_> {
         read.map_err(|reason| PresetError::value(self.at(table, name), format!("{prefix}{name}"), reason))
     }
 
-    fn unknown<'k>(&mut self, table: &dyn TableLike, prefix: &str, name: &str, known: impl Iterator<Item = &'k str>) {
+    pub(super) fn unknown<'k>(&mut self, table: &dyn TableLike, prefix: &str, name: &str, known: impl Iterator<Item = &'k str>) {
         let hint = did_you_mean(name, known);
         self.warnings.push(format!("{}: unknown key {prefix}{name}{hint}", self.at(table, name)));
     }

@@ -3,13 +3,14 @@
 use serde_json::{Map, Value, json};
 
 use super::{
+    animation::entry_forms,
     form::{Form, Plain, Precision},
     keys::{KEYS, SECTIONS},
     migrate,
 };
 use crate::{
     effects::{EFFECTS, Effect},
-    session::Session,
+    session::{Session, animation::MAX_KEYS},
 };
 
 /// The whole schema. `presets/schema.json` is this, and a test fails when it is stale.
@@ -31,6 +32,9 @@ pub fn schema() -> Value {
     let effects: Map<String, Value> = EFFECTS.iter().map(|effect| (effect.name.to_owned(), effect_schema(effect))).collect();
     let doc = "Presence of a table enables the effect";
     properties.insert("effects".into(), json!({ "type": "object", "description": doc, "properties": effects }));
+    let animation: Map<String, Value> = EFFECTS.iter().map(|effect| (effect.name.to_owned(), animation_schema(effect))).collect();
+    let doc = "Parameters that follow the clock, as lists of keys";
+    properties.insert("animation".into(), json!({ "type": "object", "description": doc, "properties": animation }));
     json!({
         "$schema": "https://json-schema.org/draft/2020-12/schema",
         "title": "rasterlab look",
@@ -59,6 +63,15 @@ fn effect_schema(effect: &Effect) -> Value {
     };
     let properties: Map<String, Value> = effect.fields.iter().map(field).collect();
     json!({ "type": "object", "description": effect.about, "properties": properties })
+}
+
+fn animation_schema(effect: &Effect) -> Value {
+    let track = |field: &crate::params::Field| {
+        let entry = entry_forms(field).map(|(name, form, doc)| (name.to_owned(), form_schema(&form, doc, None)));
+        let keys = json!({ "type": "object", "required": ["time_s", "value"], "properties": Map::from_iter(entry) });
+        (field.name.to_owned(), json!({ "type": "array", "minItems": 1, "maxItems": MAX_KEYS, "items": keys }))
+    };
+    json!({ "type": "object", "properties": effect.fields.iter().map(track).collect::<Map<String, Value>>() })
 }
 
 fn form_schema(form: &Form, doc: &str, default: Option<Plain>) -> Value {

@@ -23,6 +23,7 @@ pub fn patch(document: &mut DocumentMut, saved: &Session, now: &Session) {
     for section in SECTIONS {
         if section.name == "accuracy" {
             patch_effects(root, &saved.stack, &now.stack);
+            super::animation::patch(root, &saved.animation, &now.animation);
         }
         match section.is_there.map(|there| (there(saved), there(now))) {
             Some((_, false)) => drop(root.remove(section.name)),

@@ -1,0 +1,237 @@
+//! Timeline: the clock at hand. Play, step, scrub, loop and speed; below it the keys of every animated parameter.
+
+mod ruler;
+mod tracks;
+
+use eframe::egui::{self, Align, DragValue, Layout, Rect, Response, RichText, Ui, pos2, vec2};
+
+use super::{
+    App,
+    icons::{Icon, icon_button, toggle_button},
+    keying::KeyId,
+    shortcuts::Action,
+    theme,
+};
+use crate::{
+    preset::{
+        form::{Form, Plain},
+        keys::Key,
+    },
+    session::animation::{Easing, Track, steps},
+};
+use ruler::Span;
+
+/// Width of the column with names and values.
+const GUTTER: f32 = 236.0;
+const RULER: f32 = 22.0;
+const TRACK: f32 = 24.0;
+/// Height of a track whose curve is shown.
+const OPEN_TRACK: f32 = 84.0;
+/// Most of the window's height that tracks take before they scroll.
+const MOST_TRACKS: f32 = 172.0;
+const TRANSPORT: f32 = 28.0;
+
+/// What the panel remembers; no part of the look.
+#[derive(Default)]
+pub struct Timeline {
+    pub selected: Option<KeyId>,
+    /// Tracks whose curve is shown, by path.
+    open: std::collections::BTreeSet<String>,
+    /// What is shown from left to right, seconds. Stands still while a button is down, or a drag would move its own ground.
+    span_s: Option<[f64; 2]>,
+    /// Where the key that is being dragged stood at first.
+    grabbed_s: Option<f64>,
+}
+
+impl App {
+    /// Height of the whole panel.
+    pub(super) fn timeline_height(&self) -> f32 {
+        let heights = self.animated().iter().map(|track| self.track_height(track)).sum::<f32>();
+        let tracks = if heights == 0.0 { TRACK } else { heights.min(MOST_TRACKS) };
+        12.0 + TRANSPORT + RULER + tracks + 2.0 * theme::HALF
+    }
+
+    /// Tracks of the enabled effects.
+    fn animated(&self) -> Vec<Track> {
+        let session = &self.look.session;
+        session.animation.tracks().iter().filter(|track| session.stack.get(track.effect().name).is_some()).cloned().collect()
+    }
+
+    fn track_height(&self, track: &Track) -> f32 {
+        if self.timeline.open.contains(&track.path()) { OPEN_TRACK } else { TRACK }
+    }
+
+    pub(super) fn timeline_ui(&mut self, ui: &mut Ui) {
+        ui.spacing_mut().item_spacing.y = theme::HALF;
+        self.timeline.selected = self.timeline.selected.filter(|key| self.find_key(*key).is_some());
+        ui.horizontal(|ui| {
+            ui.set_height(TRANSPORT);
+            self.transport_ui(ui);
+            self.time_ui(ui);
+            ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
+                self.range_ui(ui);
+                ui.with_layout(Layout::left_to_right(Align::Center), |ui| self.selection_ui(ui));
+            });
+        });
+        let tracks = self.animated();
+        if self.timeline.span_s.is_none() || !ui.input(|i| i.pointer.any_down()) {
+            self.timeline.span_s = Some(ruler::extent(self.look.session.clock.range_s, &tracks));
+        }
+        let (rect, _) = ui.allocate_exact_size(vec2(ui.available_width(), RULER), egui::Sense::hover());
+        let left = rect.left() + GUTTER.min(rect.width() * 0.4);
+        let rail = Rect::from_min_max(pos2(left, rect.top()), rect.max);
+        let span = Span::new(self.timeline.span_s.unwrap_or([0.0, 1.0]), rail.shrink2(vec2(10.0, 0.0)));
+        self.ruler_ui(ui, rail, &span);
+        let below = ui.available_rect_before_wrap();
+        if tracks.is_empty() {
+            self.hint_ui(ui);
+        } else {
+            ui.spacing_mut().item_spacing.y = 0.0;
+            let scroll = egui::ScrollArea::vertical().id_salt("tracks").auto_shrink(false).max_height(MOST_TRACKS);
+            scroll.show(ui, |ui| tracks.iter().for_each(|track| self.track_ui(ui, track, &span)));
+        }
+        self.hand_ui(ui, rail.union(Rect::from_min_max(pos2(left, below.top()), below.max)), &span);
+    }
+
+    /// What to do where nothing is animated.
+    fn hint_ui(&self, ui: &mut Ui) {
+        let text = if self.look.session.stack.0.is_empty() {
+            "Nothing is animated. Switch an effect on at the right; the ◇ beside each of its values sets a key at this time."
+        } else {
+            "Nothing is animated. The ◇ beside a value sets a key at this time; go to another time, change the value, and it moves."
+        };
+        ui.add(egui::Label::new(theme::weak(text)).truncate());
+    }
+
+    /// Back, step, play, step, loop, speed.
+    fn transport_ui(&mut self, ui: &mut Ui) {
+        ui.spacing_mut().item_spacing.x = 2.0;
+        let play = if self.playback.playing { Icon::Pause } else { Icon::Play };
+        for (icon, action) in [
+            (Icon::ToStart, Action::Rewind),
+            (Icon::StepBack, Action::StepBack),
+            (play, Action::Play),
+            (Icon::StepForward, Action::StepForward),
+        ] {
+            let keys = action.keys_text();
+            let keys = if keys.is_empty() { keys } else { format!(" ({keys})") };
+            if icon_button(ui, icon, &format!("{}{keys}", action.about())).clicked() {
+                self.perform(ui.ctx(), action);
+            }
+        }
+        let loops = self.look.session.clock.loops;
+        let hint = if loops { "Loop: on; after the end comes the beginning" } else { "Loop: off; play stops at the end" };
+        if toggle_button(ui, Icon::Loop, loops, "Loop").on_hover_text(hint).clicked() {
+            self.look.session.clock.loops = !loops;
+        }
+        ui.add_space(theme::HALF);
+        self.clock_value(ui, "clock.speed", 0, |drag| drag.speed(0.01).max_decimals(2).suffix(" ×"));
+        ui.add_space(theme::GAP);
+    }
+
+    /// The time that is shown, to be typed or dragged; and what leads back to the look's own.
+    fn time_ui(&mut self, ui: &mut Ui) {
+        let mut now_s = self.shown_time_s();
+        let drag = DragValue::new(&mut now_s).speed(0.01).fixed_decimals(3).suffix(" s").update_while_editing(false);
+        let response = ui.add_sized([96.0, theme::ROW], drag).accessible_name("Time").on_hover_text("The time that is shown");
+        if response.changed() {
+            self.show_time(now_s);
+        }
+        if self.is_off_its_time() {
+            ui.spacing_mut().item_spacing.x = 2.0;
+            let own = format!("{:.3} s", self.look.session.clock.time_s);
+            if ui.small_button("Keep").on_hover_text("Make this the look's own time, which pictures and goldens show").clicked() {
+                self.keep_time();
+            }
+            if ui.small_button("Back").on_hover_text(format!("Show the look's own time, {own}")).clicked() {
+                self.playback.playing = false;
+                self.show_own_time();
+            }
+        }
+    }
+
+    /// From and to, at the right end.
+    fn range_ui(&mut self, ui: &mut Ui) {
+        ui.spacing_mut().item_spacing.x = 6.0;
+        for (lane, word) in [(1, "to"), (0, "from")] {
+            self.clock_value(ui, "clock.range_s", lane, |drag| drag.speed(0.02).max_decimals(3).suffix(" s"));
+            ui.label(theme::weak(word));
+        }
+    }
+
+    /// One number of a key of the clock; what its rule refuses is not taken.
+    fn clock_value(&mut self, ui: &mut Ui, path: &str, lane: usize, look: impl FnOnce(DragValue<'_>) -> DragValue<'_>) {
+        let Some(key) = Key::find(path) else { return };
+        let (Some(Plain::Numbers(mut lanes)), Form::Numbers { low, high, .. }) = ((key.get)(&self.look.session), key.form) else { return };
+        let name = match (lanes.len(), lane) {
+            (1, _) => key.path(),
+            (_, 0) => format!("{} begin", key.path()),
+            _ => format!("{} end", key.path()),
+        };
+        let drag = look(DragValue::new(&mut lanes[lane]).range(low..=high).update_while_editing(false));
+        let response = ui.add_sized([72.0, theme::ROW - 2.0], drag).accessible_name(name).on_hover_text(key.doc);
+        let plain = Plain::Numbers(lanes);
+        if response.changed() && key.check(&plain).is_ok() {
+            (key.set)(&mut self.look.session, plain);
+        }
+    }
+
+    fn find_key(&self, key: KeyId) -> Option<(&Track, usize)> {
+        let track = self.look.session.animation.get(key.effect.name, key.field)?;
+        Some((track, track.at(key.time_s)?))
+    }
+
+    /// Time and easing of the selected key.
+    fn selection_ui(&mut self, ui: &mut Ui) {
+        let Some(key) = self.timeline.selected else { return };
+        let Some((easing, is_stepped)) = self.find_key(key).map(|(track, index)| (track.keys()[index].easing, steps(track.field()))) else {
+            return;
+        };
+        ui.spacing_mut().item_spacing.x = 6.0;
+        ui.separator();
+        ui.add(egui::Label::new(RichText::new(key.path()).color(theme::TEXT_STRONG)).truncate());
+        let mut time_s = key.time_s;
+        let drag = DragValue::new(&mut time_s).speed(0.01).max_decimals(3).suffix(" s").update_while_editing(false);
+        let response = ui.add_sized([72.0, theme::ROW - 2.0], drag).accessible_name("Key time").on_hover_text("When this key is");
+        if response.changed() {
+            self.move_selected(time_s);
+        }
+        let mut chosen = easing;
+        ui.add_enabled_ui(!is_stepped, |ui| {
+            egui::ComboBox::from_id_salt("easing")
+                .selected_text(easing.name())
+                .width(74.0)
+                .show_ui(ui, |ui| Easing::ALL.iter().for_each(|easing| drop(ui.selectable_value(&mut chosen, *easing, easing.name()))))
+                .response
+                .accessible_name("Key easing")
+                .on_hover_text("The way to the next key")
+                .on_disabled_hover_text("A value without fractions holds until its next key");
+        });
+        if chosen != easing {
+            self.ease_key(key, chosen);
+        }
+        if icon_button(ui, Icon::Cross, "Remove the key (Delete)").clicked() {
+            self.perform(ui.ctx(), Action::RemoveKey);
+        }
+    }
+
+    /// Moves the selected key and stays on it.
+    fn move_selected(&mut self, time_s: f64) {
+        if let Some(key) = self.timeline.selected {
+            let time_s = self.move_key(key, time_s);
+            self.timeline.selected = Some(KeyId { time_s, ..key });
+        }
+    }
+
+    pub(super) fn remove_selected_key(&mut self) {
+        match self.timeline.selected.take() {
+            Some(key) => self.remove_key(key),
+            None => self.tell(super::Level::Info, "No key is selected: click one on the timeline first"),
+        }
+    }
+}
+
+/// A name for people who do not see the widget.
+fn named(response: &Response, role: egui::Role, name: &str) {
+    response.widget_info(|| egui::WidgetInfo::labeled(role, true, name));
+}

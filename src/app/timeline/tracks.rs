@@ -1,0 +1,243 @@
+//! Tracks: a row per animated parameter, with a mark per key that can be dragged in time. An open row shows its curve.
+
+use eframe::egui::{self, Align, Align2, Color32, FontId, Layout, Pos2, Rect, Sense, Shape, Stroke, Ui, UiBuilder, pos2, vec2};
+
+use super::{
+    super::{
+        icons::{Icon, icon_button},
+        playback::STEP_S,
+        theme,
+    },
+    KeyId, named,
+    ruler::Span,
+};
+use crate::{
+    app::App,
+    params::Kind,
+    preset::form::{Form, Plain, brief},
+    session::animation::{Easing, Keyframe, Track, steps},
+};
+
+/// Half of a mark's width, points.
+const MARK: f32 = 5.5;
+
+/// Curves are drawn point by point this far apart.
+const CURVE_POINTS: f32 = 2.0;
+
+/// What was asked of a mark.
+enum MarkAsk {
+    Ease(Easing),
+    Remove,
+}
+
+impl App {
+    pub(super) fn track_ui(&mut self, ui: &mut Ui, track: &Track, span: &Span) {
+        let path = track.path();
+        let is_open = self.timeline.open.contains(&path);
+        let (rect, _) = ui.allocate_exact_size(vec2(ui.available_width(), self.track_height(track)), Sense::hover());
+        if !ui.is_rect_visible(rect) {
+            return;
+        }
+        ui.painter().hline(rect.x_range(), rect.top() + 0.5, (1.0, theme::LINE));
+        let left = span.rect().left() - 10.0;
+        self.gutter_ui(ui, track, Rect::from_min_max(rect.min, pos2(left - theme::GAP, rect.bottom())), is_open);
+        let lane = Rect::from_min_max(pos2(left, rect.top()), rect.max);
+        let curve = is_open.then(|| Curve::of(track, lane.shrink2(vec2(0.0, 12.0))));
+        match &curve {
+            Some(curve) => curve.paint(ui, track, span),
+            None => bars(ui, track, span, lane),
+        }
+        for index in 0..track.keys().len() {
+            let key = &track.keys()[index];
+            let y = curve.as_ref().map_or(lane.center().y, |curve| curve.y(key.value[0]));
+            self.mark_ui(ui, track, index, pos2(span.x(key.time_s), y), span);
+        }
+    }
+
+    /// Name and value of a track, and the button that opens its curve.
+    fn gutter_ui(&mut self, ui: &mut Ui, track: &Track, rect: Rect, is_open: bool) {
+        let path = track.path();
+        let top = Rect::from_min_size(rect.min, vec2(rect.width(), super::TRACK));
+        let mut row = ui.new_child(UiBuilder::new().id_salt((&path, "gutter")).max_rect(top).layout(Layout::left_to_right(Align::Center)));
+        row.spacing_mut().item_spacing.x = 2.0;
+        let (icon, verb) = if is_open { (Icon::Down, "Close") } else { (Icon::Right, "Show") };
+        if icon_button(&mut row, icon, &format!("{verb} the curve of {path}")).clicked() && !self.timeline.open.remove(&path) {
+            self.timeline.open.insert(path.clone());
+        }
+        let value = value_text(track, self.shown_time_s());
+        let painter = ui.painter_at(top);
+        let (font, y) = (FontId::proportional(13.0), top.center().y);
+        let shown = painter.text(pos2(top.right(), y), Align2::RIGHT_CENTER, value, FontId::monospace(11.5), theme::TEXT_WEAK);
+        let name = Rect::from_min_max(pos2(row.cursor().left() + theme::HALF, top.top()), pos2(shown.left() - 6.0, top.bottom()));
+        ui.painter_at(name).text(pos2(name.left(), y), Align2::LEFT_CENTER, &path, font, theme::TEXT);
+        if is_open && let Some([low, high]) = Curve::of(track, rect).shown_range() {
+            let font = FontId::proportional(11.0);
+            painter_text(ui, rect, pos2(rect.right(), rect.top() + super::TRACK + 10.0), &brief(high), &font);
+            painter_text(ui, rect, pos2(rect.right(), rect.bottom() - 12.0), &brief(low), &font);
+        }
+    }
+
+    /// One key: click selects it and goes there, a drag moves it, the menu eases and removes it.
+    fn mark_ui(&mut self, ui: &mut Ui, track: &Track, index: usize, at: Pos2, span: &Span) {
+        let key = &track.keys()[index];
+        let id = KeyId { effect: track.effect(), field: track.field().name, time_s: key.time_s };
+        let hit = Rect::from_center_size(at, vec2(2.0 * MARK + 4.0, 2.0 * MARK + 8.0));
+        let response = ui.interact(hit, egui::Id::unique((track.path(), "mark", index)), Sense::click_and_drag());
+        named(&response, egui::Role::Button, &format!("Key {} {:.3} s", track.path(), key.time_s));
+        let is_selected = self.timeline.selected == Some(id);
+        paint_mark(ui, at, key.easing, is_selected, response.hovered() || response.dragged() || response.has_focus());
+        if response.clicked() {
+            self.timeline.selected = Some(id);
+            self.playback.playing = false;
+            self.show_time(key.time_s);
+        }
+        if response.drag_started_by(egui::PointerButton::Primary) {
+            (self.timeline.selected, self.timeline.grabbed_s) = (Some(id), Some(key.time_s));
+        }
+        if response.dragged_by(egui::PointerButton::Primary) {
+            self.drag_mark(ui, track.keys(), index, span);
+        }
+        let mut ask = None;
+        response.context_menu(|ui| ask = menu_ui(ui, track, key));
+        match ask {
+            Some(MarkAsk::Ease(easing)) => {
+                self.history.close();
+                self.timeline.selected = Some(id);
+                self.ease_key(id, easing);
+            }
+            Some(MarkAsk::Remove) => {
+                self.history.close();
+                self.remove_key(id);
+            }
+            None => {}
+        }
+        response.on_hover_ui(|ui| {
+            ui.label(format!("{} = {}", track.path(), value_text(track, key.time_s)));
+            ui.label(theme::weak(format!("{:.3} s, {} to the next key", key.time_s, key.easing.name())));
+            ui.label(theme::weak("Click to go there, drag to move, right click for more"));
+        });
+    }
+
+    /// Follows the pointer between the neighbours, on the grid of frames unless Shift is down.
+    fn drag_mark(&mut self, ui: &Ui, keys: &[Keyframe], index: usize, span: &Span) {
+        let (origin, now, free) = ui.input(|i| (i.pointer.press_origin(), i.pointer.interact_pos(), i.modifiers.shift));
+        let (Some(grabbed_s), Some(origin), Some(now)) = (self.timeline.grabbed_s, origin, now) else { return };
+        let wanted_s = grabbed_s + f64::from(now.x - origin.x) * span.seconds_per_point();
+        let [from_s, _] = self.look.session.clock.range_s;
+        let snapped_s = if free { wanted_s } else { from_s + ((wanted_s - from_s) / STEP_S).round() * STEP_S };
+        let room = |neighbour: Option<&Keyframe>, aside_s: f64, edge_s: f64| neighbour.map_or(edge_s, |key| key.time_s + aside_s);
+        let low = room(index.checked_sub(1).map(|i| &keys[i]), 1e-3, span.from_s());
+        let high = room(keys.get(index + 1), -1e-3, span.to_s());
+        if low <= high {
+            self.move_selected(snapped_s.clamp(low, high));
+        }
+    }
+}
+
+fn painter_text(ui: &Ui, clip: Rect, at: Pos2, text: &str, font: &FontId) {
+    ui.painter_at(clip).text(at, Align2::RIGHT_CENTER, text, font.clone(), theme::TEXT_WEAK);
+}
+
+fn menu_ui(ui: &mut Ui, track: &Track, key: &Keyframe) -> Option<MarkAsk> {
+    let mut ask = None;
+    ui.set_min_width(140.0);
+    ui.label(theme::weak("To the next key"));
+    ui.add_enabled_ui(!steps(track.field()), |ui| {
+        for easing in Easing::ALL {
+            if ui.radio(easing == key.easing, easing.name()).clicked() {
+                ask = Some(MarkAsk::Ease(easing));
+                ui.close();
+            }
+        }
+    });
+    ui.separator();
+    if ui.button("Remove the key").clicked() {
+        ask = Some(MarkAsk::Remove);
+        ui.close();
+    }
+    ask
+}
+
+/// The value at a time, as short as it can be read.
+fn value_text(track: &Track, time_s: f64) -> String {
+    let value = track.value_at(time_s);
+    match track.field().kind {
+        Kind::Color => {
+            let [r, g, b, a] = std::array::from_fn(|lane| value.get(lane).map_or(0.0, |v| *v as f32));
+            let [r, g, b, _] = egui::Rgba::from_rgba_unmultiplied(r, g, b, a).to_srgba_unmultiplied();
+            format!("#{r:02x}{g:02x}{b:02x}")
+        }
+        Kind::Bool | Kind::Choice(_) => {
+            Form::of(track.field()).write(&Plain::Numbers(value)).to_string().trim().trim_matches('"').to_owned()
+        }
+        Kind::U32 | Kind::I32 => format!("{:.0}", value[0]),
+        Kind::F32 | Kind::Point => value.iter().map(|lane| format!("{lane:.3}")).collect::<Vec<_>>().join(" "),
+    }
+}
+
+/// A diamond; a square where the value jumps.
+fn paint_mark(ui: &Ui, at: Pos2, easing: Easing, is_selected: bool, is_near: bool) {
+    let fill = if is_selected { theme::TEXT_STRONG } else { theme::ACCENT };
+    let r = if is_near { MARK + 1.0 } else { MARK };
+    let edge = Stroke::new(1.5, theme::BAR);
+    let shape = match easing {
+        Easing::Hold => {
+            Shape::convex_polygon([(-r, -r), (r, -r), (r, r), (-r, r)].map(|(x, y)| at + vec2(x, y) * 0.75).to_vec(), fill, edge)
+        }
+        _ => Shape::convex_polygon([(0.0, -r), (r, 0.0), (0.0, r), (-r, 0.0)].map(|(x, y)| at + vec2(x, y)).to_vec(), fill, edge),
+    };
+    ui.painter().add(shape);
+}
+
+/// A line from the first key to the last, brighter where the value moves.
+fn bars(ui: &Ui, track: &Track, span: &Span, lane: Rect) {
+    let painter = ui.painter_at(lane);
+    for pair in track.keys().windows(2) {
+        let moves = pair[0].value != pair[1].value && pair[0].easing != Easing::Hold;
+        let color = if moves { theme::ACCENT.gamma_multiply(0.6) } else { theme::RAISED_HOVER };
+        painter.hline(span.x(pair[0].time_s)..=span.x(pair[1].time_s), lane.center().y, (if moves { 2.0 } else { 1.0 }, color));
+    }
+}
+
+/// How values become heights.
+struct Curve {
+    low: f64,
+    high: f64,
+    rect: Rect,
+}
+
+impl Curve {
+    /// Just as high as the values of the keys: all easings stay between them.
+    fn of(track: &Track, rect: Rect) -> Self {
+        let values = track.keys().iter().flat_map(|key| &key.value);
+        let (low, high) = values.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), v| (low.min(*v), high.max(*v)));
+        Self { low, high, rect }
+    }
+
+    fn shown_range(&self) -> Option<[f64; 2]> {
+        (self.low < self.high).then_some([self.low, self.high].map(|v| (v * 1e4).round() / 1e4))
+    }
+
+    fn y(&self, value: f64) -> f32 {
+        let share = if self.low < self.high { (value - self.low) / (self.high - self.low) } else { 0.5 };
+        self.rect.bottom() - (share as f32) * self.rect.height()
+    }
+
+    fn paint(&self, ui: &Ui, track: &Track, span: &Span) {
+        let painter = ui.painter_at(self.rect.expand2(vec2(0.0, 12.0)));
+        let rail = span.rect();
+        let count = (rail.width() / CURVE_POINTS).ceil() as usize;
+        let xs: Vec<f32> = (0..=count).map(|i| (rail.left() + i as f32 * CURVE_POINTS).min(rail.right())).collect();
+        let values: Vec<Vec<f64>> = xs.iter().map(|x| track.value_at(span.time_s(*x))).collect();
+        let lanes = if track.field().kind == Kind::Color { 3 } else { track.field().kind.lanes() };
+        for lane in 0..lanes {
+            let points = xs.iter().zip(&values).map(|(x, value)| pos2(*x, self.y(value[lane]))).collect();
+            painter.add(Shape::line(points, Stroke::new(1.5, lane_color(lane, lanes))));
+        }
+    }
+}
+
+/// x y z and r g b are told apart; a single number has the accent.
+fn lane_color(lane: usize, lanes: usize) -> Color32 {
+    if lanes == 1 { theme::ACCENT.gamma_multiply(0.7) } else { [theme::RED, theme::GREEN, theme::ACCENT][lane.min(2)].gamma_multiply(0.8) }
+}

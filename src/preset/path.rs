@@ -1,0 +1,173 @@
+//! Paths: one key of a look by its name, as `--set`, `--unset`, copied values and resets mean it.
+
+use toml_edit::{DocumentMut, Item, Value};
+
+use super::{
+    Look, Place, PresetError,
+    form::{Form, did_you_mean},
+    keys::{KEYS, Key, Section},
+    migrate, parse_file, put, read, to_toml,
+};
+use crate::{
+    effects::{EFFECTS, Effect},
+    params::Field,
+    session::{Animation, Session, animation::Track},
+};
+
+/// Where a `--set` or `--unset` path leads.
+enum Target {
+    Effect(&'static Effect),
+    Field(&'static Effect, &'static Field),
+    Key(&'static Key),
+    Section(&'static Section),
+    Stack,
+    /// Every track, those of an effect, or one.
+    Animation(Option<&'static Effect>, Option<&'static Field>),
+}
+
+fn target(path: &str) -> Result<Target, String> {
+    if path == "stack" {
+        return Ok(Target::Stack);
+    }
+    if let Some(key) = Key::find(path) {
+        return Ok(Target::Key(key));
+    }
+    if let Some(section) = Section::find(path) {
+        return Ok(Target::Section(section));
+    }
+    if path == "animation" {
+        return Ok(Target::Animation(None, None));
+    }
+    if let Some(rest) = path.strip_prefix("animation.") {
+        return match target(rest)? {
+            Target::Effect(effect) => Ok(Target::Animation(Some(effect), None)),
+            Target::Field(effect, field) => Ok(Target::Animation(Some(effect), Some(field))),
+            _ => Err("is unknown; parameters of effects can be animated".into()),
+        };
+    }
+    let short = path.strip_prefix("effects.").unwrap_or(path);
+    let (name, field) = short.split_once('.').map_or((short, None), |(name, field)| (name, Some(field)));
+    match (Effect::find(name), field) {
+        (Some(effect), None) => Ok(Target::Effect(effect)),
+        (Some(effect), Some(field)) => match effect.field(field) {
+            Some(field) => Ok(Target::Field(effect, field)),
+            None => Err(format!("is unknown{}", did_you_mean(field, effect.fields.iter().map(|field| field.name)))),
+        },
+        (None, _) => {
+            let keys = KEYS.iter().map(Key::path);
+            let fields = EFFECTS.iter().flat_map(|e| e.fields.iter().map(move |f| format!("{}.{}", e.name, f.name)));
+            let known: Vec<String> = keys.chain(fields).chain(EFFECTS.iter().map(|e| e.name.to_owned())).collect();
+            Err(format!("is unknown{}", did_you_mean(short, known.iter().map(String::as_str))))
+        }
+    }
+}
+
+/// A value as typed on a command line: TOML, or a number such as `.4`, or a bare word.
+fn typed(value: &str) -> Value {
+    let value = value.trim();
+    value.parse().unwrap_or_else(|_| match value.parse::<f64>() {
+        Ok(number) if number.is_finite() => number.into(),
+        _ => value.into(),
+    })
+}
+
+/// Changes one key, as `--set path=value` does: `effects.` is optional, setting a parameter enables its effect, and an
+/// effect or section with an empty value is enabled with defaults. A parameter that was animated holds still from then
+/// on. Same ranges and errors as in a file.
+pub fn set(look: &mut Look, path: &str, value: &str) -> Result<(), PresetError> {
+    let written = if value.is_empty() { format!("--set {path}") } else { format!("--set {path}={value}") };
+    let wrong = |reason: String| PresetError::value(Place { file: written.clone(), line: None }, path, reason);
+    let session = &mut look.session;
+    match target(path).map_err(wrong)? {
+        Target::Effect(effect) if value.is_empty() => drop(session.stack.enable(effect)),
+        Target::Section(section) if value.is_empty() => section.enter(session),
+        Target::Effect(_) | Target::Section(_) => return Err(wrong("takes no value; name one of its keys".into())),
+        Target::Field(effect, field) => {
+            let plain = read::read_value(&Form::of(field), &typed(value)).map_err(wrong)?;
+            put(field, &mut session.stack.enable(effect).words, &plain).map_err(wrong)?;
+            session.animation.remove(effect.name, field.name);
+        }
+        Target::Animation(Some(effect), Some(field)) => {
+            let track = track(effect, field, value, &written)?;
+            session.stack.enable(effect);
+            session.animation.put(track);
+        }
+        Target::Animation(..) => return Err(wrong("takes no value; name a parameter, for instance animation.facet.amount".into())),
+        Target::Key(key) => {
+            // A name that looks like a number is still a name.
+            let value =
+                Some(typed(value)).filter(|typed| typed.is_str() || !matches!(key.form, Form::Text { .. })).unwrap_or_else(|| value.into());
+            let plain = read::read_value(&key.form, &value).map_err(wrong)?;
+            key.check(&plain).map_err(wrong)?;
+            (key.set)(session, plain);
+        }
+        Target::Stack => {
+            // The reader knows the rules of this key, so it goes the way of a file.
+            let mut text: DocumentMut = to_toml(look).parse().map_err(|e: toml_edit::TomlError| wrong(e.message().into()))?;
+            text.insert("stack", Item::Value(typed(value)));
+            let reread = parse_file(&text.to_string(), &look.id, &written).map_err(|error| typed_at(error, &written))?;
+            look.session.stack = reread.session.stack;
+        }
+    }
+    Ok(())
+}
+
+/// Reads a list of keys the way of a file, which knows its rules.
+fn track(effect: &'static Effect, field: &'static Field, value: &str, written: &str) -> Result<Track, PresetError> {
+    let text = format!("schema = {}\n[animation.{}]\n{} = {value}\n", migrate::CURRENT, effect.name, field.name);
+    let look = parse_file(&text, "set", written).map_err(|error| typed_at(error, written))?;
+    let path = format!("animation.{}.{}", effect.name, field.name);
+    let found = look.session.animation.get(effect.name, field.name).cloned();
+    found.ok_or_else(|| PresetError::value(Place { file: written.into(), line: None }, path, "must be a list of keys"))
+}
+
+/// The error without the line of a text that nobody wrote.
+fn typed_at(error: PresetError, written: &str) -> PresetError {
+    let at = Place { file: written.into(), line: None };
+    match error {
+        PresetError::Value { key, reason, .. } => PresetError::Value { at, key, reason },
+        PresetError::Syntax { reason, .. } => PresetError::Syntax { at, reason },
+        other => other,
+    }
+}
+
+/// Puts one key back to its default, as `--unset path` does; an effect or section is taken out, with what moves it.
+pub fn unset(look: &mut Look, path: &str) -> Result<(), PresetError> {
+    let place = Place { file: format!("--unset {path}"), line: None };
+    let session = &mut look.session;
+    match target(path).map_err(|reason| PresetError::value(place, path, reason))? {
+        Target::Effect(effect) => session.disable(effect.name),
+        Target::Animation(None, _) => session.animation = Animation::default(),
+        Target::Animation(Some(effect), None) => session.animation.remove_effect(effect.name),
+        Target::Animation(Some(effect), Some(field)) => session.animation.remove(effect.name, field.name),
+        Target::Field(effect, field) => {
+            session.animation.remove(effect.name, field.name);
+            if let Some(enabled) = session.stack.get_mut(effect.name) {
+                field.copy(&(effect.defaults)(), &mut enabled.words);
+            }
+        }
+        Target::Key(key) => reset(session, key),
+        Target::Section(section) => match section.name {
+            "camera" => session.camera = None,
+            "test" => session.test = None,
+            name => KEYS.iter().filter(|key| key.section == name).for_each(|key| reset(session, key)),
+        },
+        Target::Stack => session.stack.0.sort_by_key(|enabled| enabled.effect.rank()),
+    }
+    Ok(())
+}
+
+/// Gives `key` its default; one that has none hands over to its rival.
+fn reset(session: &mut Session, key: &Key) {
+    if (key.get)(session).is_none() {
+        return;
+    }
+    let baseline = Section::baseline(session);
+    let rival = key.rival.and_then(|name| Key::within(key.section, name));
+    for key in [Some(key), rival].into_iter().flatten() {
+        if let Some(default) = (key.get)(&baseline) {
+            (key.set)(session, default);
+            return;
+        }
+    }
+}

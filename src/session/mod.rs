@@ -1,0 +1,226 @@
+//! Session: everything a look says, as plain data that is always finite, and the view it describes.
+//!
+//! `Clone + PartialEq`, so undo is a list of sessions. Playback, window layout and overlays live elsewhere.
+//! What is drawn is [`Session::posed_stack`], never the stack itself, which keyed parameters leave behind.
+
+pub mod animation;
+
+use std::path::PathBuf;
+
+use glam::{DMat4, DVec3};
+
+use crate::{
+    effects::Stack,
+    math::rotation_y,
+    scene::{
+        Scene,
+        camera::{Camera, View},
+    },
+};
+pub use animation::Animation;
+
+pub use crate::{
+    plan::{Accuracy, Tier},
+    shader::key::Visibility,
+};
+
+/// Which scene a look shows.
+#[derive(Clone, Debug, PartialEq)]
+pub enum SceneSource {
+    /// A procedural scene by its query, for instance `teapot?tess=16`.
+    Builtin(String),
+    /// A model file; relative paths are relative to the look's own folder.
+    File(PathBuf),
+}
+
+/// The time of a look.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Clock {
+    /// The moment that a picture shows.
+    pub time_s: f64,
+    /// What the timeline spans and a sequence draws: from the first, up to and without the second, which is later.
+    pub range_s: [f64; 2],
+    /// After the end of the range comes its beginning.
+    pub loops: bool,
+    /// Seconds of the look that pass in one second of film, above 0.
+    pub speed: f64,
+}
+
+impl Default for Clock {
+    fn default() -> Self {
+        Self { time_s: 0.0, range_s: [0.0, 4.0], loops: true, speed: 1.0 }
+    }
+}
+
+impl Clock {
+    /// Where the clock stands `passed_s` seconds of film after it stood at `time_s`, and whether it goes on from there.
+    /// A moment outside the range runs into it from the side it is on.
+    pub fn after(&self, time_s: f64, passed_s: f64) -> (f64, bool) {
+        let [from_s, to_s] = self.range_s;
+        let next_s = time_s + passed_s * self.speed;
+        if next_s < to_s {
+            return (next_s, true);
+        }
+        if !self.loops {
+            return (to_s, false);
+        }
+        // The remainder of a tiny negative number may round up to the whole range.
+        let wrapped_s = from_s + (next_s - from_s).rem_euclid(to_s - from_s);
+        (if wrapped_s < to_s { wrapped_s } else { from_s }, true)
+    }
+}
+
+/// The picture to be made.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Output {
+    /// Width and height in pixels, each 0 to 16,384.
+    pub size: [u32; 2],
+    /// Linear RGBA.
+    pub background: [f32; 4],
+}
+
+impl Default for Output {
+    fn default() -> Self {
+        Self { size: [320, 240], background: [0.012, 0.014, 0.02, 1.0] }
+    }
+}
+
+/// What a golden of this look may differ by; a look without it has no golden.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Test {
+    /// Largest difference of a channel of 255.
+    pub max_channel: u8,
+    /// Pixels that may differ by more.
+    pub max_pixels: u32,
+    /// Why a budget above the default is needed.
+    pub why: String,
+}
+
+impl Default for Test {
+    fn default() -> Self {
+        Self { max_channel: 1, max_pixels: 0, why: String::new() }
+    }
+}
+
+/// A look.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Session {
+    /// Shown; the file stem is the id.
+    pub name: String,
+    pub about: String,
+    pub tags: Vec<String>,
+    pub scene: SceneSource,
+    /// Turns the whole scene about +y.
+    pub spin_deg_per_s: f64,
+    /// None: framed so that the whole scene shows.
+    pub camera: Option<Camera>,
+    pub clock: Clock,
+    /// The effects with the values that no key moves.
+    pub stack: Stack,
+    /// What moves with the clock.
+    pub animation: Animation,
+    pub accuracy: Accuracy,
+    pub output: Output,
+    pub test: Option<Test>,
+}
+
+impl Default for Session {
+    fn default() -> Self {
+        Self {
+            name: String::new(),
+            about: String::new(),
+            tags: Vec::new(),
+            scene: SceneSource::Builtin("teapot".into()),
+            spin_deg_per_s: 0.0,
+            camera: None,
+            clock: Clock::default(),
+            stack: Stack::default(),
+            animation: Animation::default(),
+            accuracy: Accuracy::default(),
+            output: Output::default(),
+            test: None,
+        }
+    }
+}
+
+/// Where a look without a camera stands: in front, a little to the right and above.
+pub const FRAMING_DIRECTION: DVec3 = DVec3::new(-0.45, -0.42, -1.0);
+
+impl Session {
+    /// The stack at the time of the clock: what is drawn.
+    pub fn posed_stack(&self) -> Stack {
+        self.stack_at(self.clock.time_s)
+    }
+
+    /// The stack at another time.
+    pub fn stack_at(&self, time_s: f64) -> Stack {
+        self.animation.pose(&self.stack, time_s)
+    }
+
+    /// The look with its values as they stand at its time, and nothing that moves them: the same picture.
+    pub fn posed(&self) -> Self {
+        Self { stack: self.posed_stack(), animation: Animation::default(), ..self.clone() }
+    }
+
+    /// Does the picture depend on the time?
+    pub fn is_moving(&self) -> bool {
+        let keyed = self.animation.tracks().iter().any(|t| t.keys().len() > 1 && self.stack.get(t.effect().name).is_some());
+        keyed || self.spin_deg_per_s != 0.0
+    }
+
+    /// Takes an effect out, with all that moves it.
+    pub fn disable(&mut self, effect: &str) {
+        self.stack.disable(effect);
+        self.animation.remove_effect(effect);
+    }
+
+    /// The camera of the look, or the pose that frames `scene`.
+    pub fn camera_for(&self, scene: &Scene, aspect: f64) -> Camera {
+        self.camera
+            .or_else(|| scene.cameras.first().map(|c| c.pose))
+            .unwrap_or_else(|| Camera::framing(&scene.bounds(), FRAMING_DIRECTION, aspect))
+    }
+
+    /// The view of `scene` on a target of `size` pixels.
+    pub fn view(&self, scene: &Scene, [width, height]: [u32; 2]) -> View {
+        let aspect = f64::from(width.max(1)) / f64::from(height.max(1));
+        // Reduced before the trigonometry, so that a day of spinning costs no precision.
+        let turns = self.spin_deg_per_s * self.clock.time_s / 360.0;
+        let spin = if turns == 0.0 { DMat4::IDENTITY } else { rotation_y(turns.fract() * std::f64::consts::TAU) };
+        View::new(&self.camera_for(scene, aspect), width, height, &scene.bounds(), spin, self.output.background)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_looping_clock_stays_in_its_range_and_the_other_stops_at_its_end() {
+        let clock = Clock { range_s: [1.0, 3.0], speed: 2.0, ..Clock::default() };
+        assert_eq!(clock.after(1.0, 0.5), (2.0, true));
+        assert_eq!(clock.after(2.5, 0.5), (1.5, true));
+        assert_eq!(clock.after(-4.0, 0.5), (-3.0, true), "it runs into the range");
+        assert_eq!(clock.after(1e9, 1e-9).1, true);
+        let once = Clock { loops: false, ..clock };
+        assert_eq!(once.after(2.5, 0.5), (3.0, false));
+        for start in 0..10_000 {
+            let (time_s, goes_on) = clock.after(f64::from(start) * 0.377, 1.0 / 60.0);
+            assert!(goes_on && (1.0..3.0).contains(&time_s) || f64::from(start) * 0.377 < 1.0, "{start}: {time_s}");
+        }
+    }
+
+    #[test]
+    fn a_day_of_play_costs_no_precision() {
+        let session = Session { spin_deg_per_s: 90.0, ..Session::default() };
+        let scene = crate::scene::builtin::build("teapot?tess=2").expect("a scene");
+        let turn = |time_s: f64| {
+            let session = Session { clock: Clock { time_s, ..Clock::default() }, ..session.clone() };
+            session.view(&scene, [8, 8]).world_from_scene
+        };
+        let (fresh, late) = (turn(0.37), turn(86_400.0 + 0.37));
+        let error = fresh.to_cols_array().iter().zip(late.to_cols_array()).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
+        // A millionth of a period is an angle of 6e-6.
+        assert!(error < 1e-9, "{error}");
+    }
+}
