@@ -99,6 +99,321 @@ fn value(lab: &Lab, effect: &str, field: &str) -> Vec<f64> {
     enabled.effect.field(field).expect("a field of the effect").get(&enabled.words)
 }
 
+/// The lab with `text` as its look.
+fn lab_of(folder: &Path, text: &str) -> Option<Lab> {
+    let path = folder.join("mine.toml");
+    std::fs::write(&path, text).expect("a file");
+    lab(&path.to_string_lossy())
+}
+
+/// A look whose facets rise and fall, and jump.
+const MOVING: &str = "schema = 1\n[scene]\nbuiltin = \"knot?tess=4\"\n[effects.facet]\n[effects.lambert]\n[animation.facet]\n\
+    amount = [{ time_s = 0.0, value = 0.0 }, { time_s = 1.0, value = 1.0 }, { time_s = 3.0, value = 0.25 }]\n\
+    pattern = [{ time_s = 0.5, value = \"sweep\" }, { time_s = 2.0, value = \"uniform\" }]\n\
+    [animation.lambert]\nsun = [{ time_s = 0.0, value = [1, 1, 1, 1] }, { time_s = 4.0, value = [1, 0, 0, 1] }]\n";
+
+/// A parameter of an enabled effect, at the time that is shown.
+fn shown(lab: &Lab, effect: &str, field: &str) -> Vec<f64> {
+    let stack = lab.state().look().session.stack_at(lab.state().shown_time_s());
+    let enabled = stack.get(effect).unwrap_or_else(|| panic!("{effect} is not enabled"));
+    enabled.effect.field(field).expect("a field of the effect").get(&enabled.words)
+}
+
+fn key_times(lab: &Lab, effect: &str, field: &str) -> Vec<f64> {
+    let track = lab.state().look().session.animation.get(effect, field);
+    track.map_or(Vec::new(), |track| track.keys().iter().map(|key| key.time_s).collect())
+}
+
+/// Drags the hand of the clock to a share of the ruler.
+fn scrub(lab: &mut Lab, from: f32, to: f32) {
+    let ruler = lab.get_by_role_and_label(Role::Slider, "Timeline").rect();
+    let at = |share: f32| Pos2::new(ruler.left() + share * ruler.width(), ruler.center().y);
+    drag(lab, at(from), at(to));
+}
+
+#[test]
+fn a_keyed_value_follows_the_clock_and_a_change_at_a_time_is_a_key() {
+    let Some(mut lab) = lab("lambert") else { return };
+    let first = value(&lab, "lambert", "headlight");
+    click(&mut lab, Role::Button, "Animate lambert.headlight");
+    assert_eq!(key_times(&lab, "lambert", "headlight"), [0.0]);
+    let draws = lab.state().draws();
+    scrub(&mut lab, 0.2, 0.5);
+    let later_s = lab.state().shown_time_s();
+    assert!((later_s - 2.0).abs() < 0.05, "{later_s}");
+    assert_eq!(lab.state().draws(), draws, "one key alone moves nothing, and nothing is drawn");
+    let rail = slider(&lab, "lambert.headlight").rect();
+    drag(&mut lab, rail.left_center() + vec2(14.0, 0.0), rail.right_center() - vec2(10.0, 0.0));
+    assert_eq!(key_times(&lab, "lambert", "headlight"), [0.0, later_s]);
+    let last = shown(&lab, "lambert", "headlight");
+    assert!(last[0] > first[0] + 0.2, "{first:?} {last:?}");
+    assert_eq!(value(&lab, "lambert", "headlight"), first, "the value without keys stays");
+    assert_eq!(lab.state().undo_steps(), 2, "scrubbing is none, and a drag that makes a key is one");
+    let draws = lab.state().draws();
+    scrub(&mut lab, 0.5, 0.3);
+    let between = shown(&lab, "lambert", "headlight");
+    assert!(first[0] < between[0] && between[0] < last[0], "{first:?} {between:?} {last:?}");
+    assert!(lab.state().draws() > draws);
+    let field = lab.get_by_label("lambert.headlight value").value().expect("a number");
+    assert!((field.parse::<f64>().expect("a number") - between[0]).abs() < 1e-3, "the slider shows {field} and not {between:?}");
+    undo(&mut lab);
+    assert_eq!(key_times(&lab, "lambert", "headlight"), [0.0]);
+    press(&mut lab, Modifiers::COMMAND | Modifiers::SHIFT, Key::Z);
+    assert_eq!(key_times(&lab, "lambert", "headlight"), [0.0, later_s]);
+}
+
+#[test]
+fn removing_the_last_key_leaves_its_value() {
+    let Some(mut lab) = lab("lambert") else { return };
+    scrub(&mut lab, 0.1, 0.25);
+    click(&mut lab, Role::Button, "Animate lambert.headlight");
+    let rail = slider(&lab, "lambert.headlight").rect();
+    drag(&mut lab, rail.left_center() + vec2(14.0, 0.0), rail.center());
+    let keyed = shown(&lab, "lambert", "headlight");
+    click(&mut lab, Role::Button, "Remove key of lambert.headlight");
+    assert!(key_times(&lab, "lambert", "headlight").is_empty());
+    assert_eq!(value(&lab, "lambert", "headlight"), keyed);
+    assert!(lab.query_by_label("Animate lambert.headlight").is_some());
+}
+
+#[test]
+fn a_reset_of_an_animated_value_takes_its_keys() {
+    let Some(mut lab) = lab("lambert") else { return };
+    let default = value(&lab, "lambert", "headlight");
+    click(&mut lab, Role::Button, "Animate lambert.headlight");
+    click(&mut lab, Role::Button, "Reset lambert.headlight");
+    assert!(lab.state().look().session.animation.is_empty());
+    assert_eq!(value(&lab, "lambert", "headlight"), default);
+    undo(&mut lab);
+    assert_eq!(key_times(&lab, "lambert", "headlight"), [0.0]);
+}
+
+#[test]
+fn dragging_a_mark_moves_its_key_in_one_undo_step() {
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    let Some(mut lab) = lab_of(folder.path(), MOVING) else { return };
+    let mark = lab.get_by_role_and_label(Role::Button, "Key facet.amount 1.000 s").rect().center();
+    drag(&mut lab, mark, mark + vec2(120.0, 2.0));
+    let times = key_times(&lab, "facet", "amount");
+    assert!(times.len() == 3 && times[1] > 1.3 && times[1] < 3.0, "{times:?}");
+    assert!(((times[1] * 30.0).round() / 30.0 - times[1]).abs() < 1e-9, "{times:?} are not on the grid of frames");
+    assert_eq!(lab.state().undo_steps(), 1);
+    undo(&mut lab);
+    assert_eq!((key_times(&lab, "facet", "amount"), lab.state().undo_steps()), (vec![0.0, 1.0, 3.0], 0));
+    // It never passes its neighbours, however far the hand goes.
+    drag(&mut lab, mark, mark + vec2(900.0, 0.0));
+    let times = key_times(&lab, "facet", "amount");
+    assert!(times[1] > 2.9 && times[1] < 3.0, "{times:?}");
+}
+
+#[test]
+fn a_selected_key_is_eased_and_removed() {
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    let Some(mut lab) = lab_of(folder.path(), MOVING) else { return };
+    click(&mut lab, Role::Button, "Key facet.amount 1.000 s");
+    assert_eq!(lab.state().shown_time_s(), 1.0, "a click goes there");
+    click(&mut lab, Role::ComboBox, "Key easing");
+    click(&mut lab, Role::Button, "linear");
+    let easing = |lab: &Lab| lab.state().look().session.animation.get("facet", "amount").expect("a track").keys()[1].easing;
+    assert_eq!(easing(&lab), rasterlab::session::animation::Easing::Linear);
+    press(&mut lab, Modifiers::NONE, Key::Delete);
+    assert_eq!(key_times(&lab, "facet", "amount"), [0.0, 3.0]);
+    assert_eq!(lab.state().undo_steps(), 2);
+    undo(&mut lab);
+    undo(&mut lab);
+    assert_eq!(easing(&lab), rasterlab::session::animation::Easing::Smooth);
+}
+
+#[test]
+fn play_runs_loops_and_pauses() {
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    let text = format!("{MOVING}[clock]\ntime_s = 0.5\nrange_s = [0.25, 1.25]\n");
+    let Some(mut lab) = lab_of(folder.path(), &text) else { return };
+    let session = lab.state().look().session.clone();
+    let draws = lab.state().draws();
+    lab.key_press(Key::Space);
+    let mut times = Vec::new();
+    for _ in 0..60 {
+        lab.step();
+        times.push(lab.state().shown_time_s());
+    }
+    assert!(times.iter().all(|time_s| (0.25..1.25).contains(time_s)), "{times:?}");
+    assert!(times.windows(2).any(|pair| pair[1] > pair[0]) && times.windows(2).any(|pair| pair[1] < pair[0]), "{times:?}");
+    assert!(lab.state().draws() > draws + 5);
+    press(&mut lab, Modifiers::NONE, Key::Space);
+    let (paused_s, draws) = (lab.state().shown_time_s(), lab.state().draws());
+    lab.run_steps(10);
+    assert_eq!((lab.state().shown_time_s(), lab.state().draws()), (paused_s, draws));
+    assert_eq!(lab.output().viewport_output[&egui::ViewportId::ROOT].repaint_delay, Duration::MAX, "{:?}", lab.ctx.repaint_causes());
+    assert_eq!((&lab.state().look().session, lab.state().undo_steps()), (&session, 0), "playing changes no look");
+}
+
+#[test]
+fn play_without_loop_stops_at_the_end() {
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    let Some(mut lab) = lab_of(folder.path(), &format!("{MOVING}[clock]\nrange_s = [0.0, 0.5]\n")) else { return };
+    click(&mut lab, Role::CheckBox, "Loop");
+    assert_eq!(lab.state().undo_steps(), 1, "whether a look loops belongs to it");
+    lab.key_press(Key::Space);
+    lab.run_steps(20);
+    settle(&mut lab);
+    assert_eq!(lab.state().shown_time_s(), 0.5);
+    lab.run_steps(5);
+    assert_eq!(lab.state().shown_time_s(), 0.5);
+}
+
+#[test]
+fn time_is_stepped_by_frames_and_kept_on_request() {
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    let Some(mut lab) = lab_of(folder.path(), MOVING) else { return };
+    for (key, wanted) in [(Key::Period, 1.0), (Key::Period, 2.0), (Key::Comma, 1.0), (Key::Comma, 0.0), (Key::Comma, -1.0)] {
+        press(&mut lab, Modifiers::NONE, key);
+        assert!((lab.state().shown_time_s() - wanted / 30.0).abs() < 1e-9, "{} s", lab.state().shown_time_s());
+    }
+    scrub(&mut lab, 0.1, 0.5);
+    assert_eq!((lab.state().look().session.clock.time_s, lab.state().undo_steps()), (0.0, 0));
+    let time_s = lab.state().shown_time_s();
+    click(&mut lab, Role::Button, "Keep");
+    assert_eq!((lab.state().look().session.clock.time_s, lab.state().undo_steps()), (time_s, 1));
+    press(&mut lab, Modifiers::NONE, Key::Num0);
+    assert_eq!(lab.state().shown_time_s(), 0.0);
+}
+
+#[test]
+fn the_window_shows_the_picture_of_the_moment() {
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    let Some(mut lab) = lab_of(folder.path(), MOVING) else { return };
+    scrub(&mut lab, 0.1, 0.6);
+    lab.remove_cursor();
+    settle(&mut lab);
+    let seen = picture(&mut lab);
+    let mut session = lab.state().look().session.clone();
+    session.clock.time_s = lab.state().shown_time_s();
+    let scene = preset::load_scene(&session, None).expect("a built-in scene");
+    let view = lab.state().view([seen.width(), seen.height()]).expect("a scene on stage");
+    let expected = oracle::render(&scene, &view, &session.posed_stack()).expect("a picture");
+    let pairs = seen.pixels().zip(&expected.color).skip((seen.width() * 48) as usize);
+    let wrong = pairs.filter(|(a, b)| a.0.iter().zip(*b).any(|(a, b)| a.abs_diff(*b) > 1)).count();
+    assert!(wrong <= 24, "{wrong} of {} pixels differ by more than 1", expected.color.len());
+}
+
+/// A file that hovers no more.
+#[derive(Debug)]
+struct Dropped(std::path::PathBuf);
+
+impl egui::DroppedFile for Dropped {
+    fn path(&self) -> &Path {
+        &self.0
+    }
+
+    fn bytes(&self) -> Result<Vec<u8>, String> {
+        std::fs::read(&self.0).map_err(|error| error.to_string())
+    }
+}
+
+fn drop_files(lab: &mut Lab, paths: &[&Path]) {
+    let files = paths.iter().map(|path| std::sync::Arc::new(Dropped(path.to_path_buf())) as egui::DroppedFileHandle);
+    lab.input_mut().dropped_files.extend(files);
+    lab.run_steps(3);
+    settle(lab);
+}
+
+/// A model of one triangle, as small as a .glb can be.
+fn tiny_glb() -> Vec<u8> {
+    let mut json = r#"{"asset":{"version":"2.0"},"scene":0,"scenes":[{"nodes":[0]}],"nodes":[{"mesh":0}],
+        "meshes":[{"primitives":[{"attributes":{"POSITION":0}}]}],"buffers":[{"byteLength":36}],"bufferViews":[{"buffer":0,"byteLength":36}],
+        "accessors":[{"bufferView":0,"componentType":5126,"count":3,"type":"VEC3","min":[0,0,0],"max":[1,1,0]}]}"#
+        .to_owned();
+    json.extend(std::iter::repeat_n(' ', json.len().next_multiple_of(4) - json.len()));
+    let corners: Vec<u8> = [0.0f32, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0, 0.0].iter().flat_map(|v| v.to_le_bytes()).collect();
+    let mut bytes = b"glTF\x02\0\0\0".to_vec();
+    bytes.extend((12 + 8 + json.len() as u32 + 8 + corners.len() as u32).to_le_bytes());
+    for (kind, chunk) in [(b"JSON", json.as_bytes()), (b"BIN\0", &corners)] {
+        bytes.extend((chunk.len() as u32).to_le_bytes());
+        bytes.extend(kind);
+        bytes.extend(chunk);
+    }
+    bytes
+}
+
+#[test]
+fn a_dropped_model_is_shown_and_undo_brings_the_look_back() {
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    let model = folder.path().join("tri.glb");
+    std::fs::write(&model, tiny_glb()).expect("a file");
+    let Some(mut lab) = lab("lambert") else { return };
+    let draws = lab.state().draws();
+    drop_files(&mut lab, &[&model]);
+    assert_eq!(lab.state().look().session.scene, SceneSource::File(model.clone()));
+    assert_eq!(lab.state().look().title(), "tri");
+    assert!(lab.state().draws() > draws);
+    let seen = picture(&mut lab);
+    let background = *seen.get_pixel(seen.width() / 2, seen.height() - 20);
+    let triangle = seen.pixels().filter(|pixel| **pixel != background).count();
+    assert!(triangle > 10_000, "only {triangle} pixels show a triangle");
+    assert!(!lab.state().log_text().contains("error"), "{}", lab.state().log_text());
+    undo(&mut lab);
+    assert_eq!(lab.state().look().id, "lambert");
+}
+
+#[test]
+fn a_dropped_file_that_is_malformed_keeps_the_picture_and_is_one_sentence() {
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    let Some(mut lab) = lab("lambert") else { return };
+    let before = picture(&mut lab);
+    let write = |name: &str, bytes: &[u8]| {
+        let path = folder.path().join(name);
+        std::fs::write(&path, bytes).expect("a file");
+        path
+    };
+    let glb = tiny_glb();
+    let files = [
+        write("cut.glb", &glb[..glb.len() - 9]),
+        write("text.glb", b"no model at all"),
+        write("bad.toml", b"schema = 1\n[effects.facet]\namount = 7\n"),
+        write("bare.png", &preset::png_bytes(&[[0; 4]], [1, 1]).expect("a picture")),
+        write("notes.txt", b"hello"),
+        folder.path().join("absent.glb"),
+    ];
+    for path in files {
+        let (draws, errors) = (lab.state().draws(), error_lines(&lab));
+        drop_files(&mut lab, &[&path]);
+        let said = error_lines(&lab);
+        let name = path.file_name().expect("a name").to_string_lossy().into_owned();
+        assert_eq!(said.len(), errors.len() + 1, "{name}: {said:?}");
+        assert!(said.last().is_some_and(|line| line.contains(&name)), "{name}: {said:?}");
+        assert_eq!(lab.state().draws(), draws, "{name}");
+    }
+    let below = |image: &image::RgbaImage| image::imageops::crop_imm(image, 0, 48, image.width(), image.height() / 2).to_image();
+    assert!(below(&before) == below(&picture(&mut lab)), "the last good picture went away");
+}
+
+fn error_lines(lab: &Lab) -> Vec<String> {
+    lab.state().log_text().lines().filter(|line| line.starts_with("error")).map(str::to_owned).collect()
+}
+
+#[test]
+fn dropped_looks_and_pictures_of_ours_are_opened() {
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    let Some(mut lab) = lab("lambert") else { return };
+    let toml = folder.path().join("moving.toml");
+    std::fs::write(&toml, MOVING).expect("a file");
+    drop_files(&mut lab, &[&toml]);
+    assert_eq!((lab.state().look().id.as_str(), lab.state().look().session.animation.tracks().len()), ("moving", 3));
+    let png = folder.path().join("shot.png");
+    let look = preset::open("facet-knot", None).expect("a built-in look");
+    let frame = rasterlab::frame::Frame { width: 1, height: 1, color: vec![[9; 4]], ..Default::default() };
+    std::fs::write(&png, preset::png_with_look(&frame, &look, &preset::Provenance::default()).expect("a picture")).expect("a file");
+    drop_files(&mut lab, &[&png]);
+    assert_eq!(lab.state().look().session, look.session);
+    // A model with its textures, and a look among others: one is opened, and that is said.
+    drop_files(&mut lab, &[&png, Path::new("/nowhere/readme.txt"), &toml]);
+    assert_eq!(lab.state().look().id, "moving");
+    assert!(lab.state().log_text().contains("3 files were dropped and one is opened at a time: moving.toml"));
+    assert_eq!(error_lines(&lab), [""; 0]);
+    assert_eq!(lab.state().undo_steps(), 3);
+}
+
 #[test]
 fn every_widget_of_every_folder_and_dialog_has_a_name() {
     let Some(mut lab) = lab("facet-sweep") else { return };
@@ -110,6 +425,13 @@ fn every_widget_of_every_folder_and_dialog_has_a_name() {
     for tab in ["Scene", "Looks"] {
         click(&mut lab, Role::Button, tab);
     }
+    for row in ["Animate facet.front", "Animate lambert.sun", "Show the curve of facet.front", "Key facet.front 0.000 s"] {
+        click(&mut lab, Role::Button, row);
+    }
+    lab.get_by_label("Key facet.front 0.000 s").click_secondary();
+    lab.run_steps(3);
+    settle(&mut lab);
+    press(&mut lab, Modifiers::NONE, Key::Escape);
     for (modifiers, key) in
         [(Modifiers::NONE, Key::F1), (Modifiers::NONE, Key::L), (Modifiers::COMMAND, Key::O), (Modifiers::NONE, Key::F12)]
     {

@@ -282,7 +282,8 @@ fn lanes_ui(ui: &mut Ui, row: &Row, lanes: &[f64]) -> Option<Plain> {
     let Form::Numbers { low, high, precision, .. } = row.form else { return None };
     let whole = precision == crate::preset::form::Precision::Whole;
     let mut now = lanes.to_vec();
-    let width = (ui.available_width() - 6.0 * (lanes.len() - 1) as f32) / lanes.len() as f32;
+    (ui.spacing_mut().item_spacing.x, ui.spacing_mut().button_padding.x) = (4.0, 3.0);
+    let width = (ui.available_width() - 4.0 * (lanes.len() - 1) as f32) / lanes.len() as f32;
     let names = match lanes.len() {
         2 if whole => ["width", "height", ""],
         2 => ["begin", "end", ""],

@@ -76,12 +76,16 @@ pub fn key_button(ui: &mut Ui, rect: Rect, keying: Keying, path: &str) -> Respon
         (_, false) => theme::ACCENT,
         (_, true) => theme::TEXT_STRONG,
     };
-    let r = if near { 5.5 } else { 4.5 };
-    let points = [(0.0, -r), (r, 0.0), (0.0, r), (-r, 0.0)].map(|(x, y)| rect.center() + vec2(x, y)).to_vec();
     let fill = if keying == Keying::OnKey { color } else { Color32::TRANSPARENT };
-    ui.painter().add(Shape::convex_polygon(points, fill, Stroke::new(1.3, color)));
+    paint_diamond(ui.painter(), rect.center(), if near { 5.5 } else { 4.5 }, fill, color);
     response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Button, ui.is_enabled(), &name));
     response.on_hover_text(hint)
+}
+
+/// The sign of a key, `r` points to its corners.
+pub fn paint_diamond(painter: &egui::Painter, at: Pos2, r: f32, fill: Color32, edge: Color32) {
+    let points = [(0.0, -r), (r, 0.0), (0.0, r), (-r, 0.0)].map(|(x, y)| at + vec2(x, y)).to_vec();
+    painter.add(Shape::convex_polygon(points, fill, Stroke::new(1.3, edge)));
 }
 
 /// Draws `icon` into `rect`.

@@ -360,7 +360,7 @@ impl App {
         self.panels.left = left;
         let mut right = self.panels.right;
         let frame = theme::panel_frame();
-        egui::Panel::right("right").frame(frame).default_size(328.0).size_range(272.0..=520.0).show_collapsible(ui, &mut right, |ui| {
+        egui::Panel::right("right").frame(frame).default_size(344.0).size_range(272.0..=520.0).show_collapsible(ui, &mut right, |ui| {
             self.inspector_ui(ui);
         });
         self.panels.right = right;

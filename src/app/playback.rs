@@ -74,7 +74,7 @@ impl App {
             self.show_time(clock.range_s[0]); // From the end there is no way on.
         }
         if self.playback.playing && !self.look.session.is_moving() {
-            self.tell(Level::Info, "Nothing moves in this look yet: key a value twice (◇), or give the scene a spin");
+            self.tell(Level::Info, "Nothing moves in this look yet: key a value at two times, or give the scene a spin");
         }
     }
 

@@ -87,7 +87,7 @@ const POINTER: &[(&str, &str)] = &[
     ("Look around and fly", "right drag, with W A S D Q E"),
     ("Frame the scene", "double click"),
     ("Reset a value", "double click its label"),
-    ("Animate a value", "click the ◇ beside it, at two times"),
+    ("Animate a value", "click the diamond beside it, at two times"),
     ("Scrub", "drag on the timeline's ruler"),
     ("Move a key", "drag its mark, with Shift off the grid"),
     ("Fine slider", "Shift + drag"),

@@ -3,11 +3,11 @@
 mod ruler;
 mod tracks;
 
-use eframe::egui::{self, Align, DragValue, Layout, Rect, Response, RichText, Ui, pos2, vec2};
+use eframe::egui::{self, Align, DragValue, Layout, Rect, RichText, Ui, pos2, vec2};
 
 use super::{
     App,
-    icons::{Icon, icon_button, toggle_button},
+    icons::{Icon, icon_button, paint_diamond, toggle_button},
     keying::KeyId,
     shortcuts::Action,
     theme,
@@ -48,7 +48,8 @@ impl App {
     pub(super) fn timeline_height(&self) -> f32 {
         let heights = self.animated().iter().map(|track| self.track_height(track)).sum::<f32>();
         let tracks = if heights == 0.0 { TRACK } else { heights.min(MOST_TRACKS) };
-        12.0 + TRANSPORT + RULER + tracks + 2.0 * theme::HALF
+        // Margins, the line above, and the gaps between the three.
+        12.0 + 1.0 + TRANSPORT + RULER + tracks + 2.0 * theme::HALF
     }
 
     /// Tracks of the enabled effects.
@@ -87,20 +88,32 @@ impl App {
             self.hint_ui(ui);
         } else {
             ui.spacing_mut().item_spacing.y = 0.0;
-            let scroll = egui::ScrollArea::vertical().id_salt("tracks").auto_shrink(false).max_height(MOST_TRACKS);
+            let scroll = egui::ScrollArea::vertical()
+                .id_salt("tracks")
+                .auto_shrink([false, true])
+                .min_scrolled_height(TRACK)
+                .max_height(MOST_TRACKS);
             scroll.show(ui, |ui| tracks.iter().for_each(|track| self.track_ui(ui, track, &span)));
         }
-        self.hand_ui(ui, rail.union(Rect::from_min_max(pos2(left, below.top()), below.max)), &span);
+        let under = if tracks.is_empty() { rail } else { Rect::from_min_max(pos2(left, below.top()), below.max) };
+        self.hand_ui(ui, rail.union(under), &span);
     }
 
     /// What to do where nothing is animated.
     fn hint_ui(&self, ui: &mut Ui) {
-        let text = if self.look.session.stack.0.is_empty() {
-            "Nothing is animated. Switch an effect on at the right; the ◇ beside each of its values sets a key at this time."
+        let (before, after) = if self.look.session.stack.0.is_empty() {
+            ("Nothing is animated. Switch an effect on at the right; the", "beside each of its values sets a key at this time.")
         } else {
-            "Nothing is animated. The ◇ beside a value sets a key at this time; go to another time, change the value, and it moves."
+            ("Nothing is animated. The", "beside a value sets a key at this time. Go to another time, change the value, and it moves.")
         };
-        ui.add(egui::Label::new(theme::weak(text)).truncate());
+        ui.horizontal(|ui| {
+            ui.set_height(TRACK);
+            ui.spacing_mut().item_spacing.x = 6.0;
+            ui.label(theme::weak(before));
+            let (rect, _) = ui.allocate_exact_size(vec2(10.0, TRACK), egui::Sense::hover());
+            paint_diamond(ui.painter(), rect.center(), 4.5, egui::Color32::TRANSPARENT, theme::TEXT);
+            ui.add(egui::Label::new(theme::weak(after)).truncate());
+        });
     }
 
     /// Back, step, play, step, loop, speed.
@@ -229,9 +242,4 @@ impl App {
             None => self.tell(super::Level::Info, "No key is selected: click one on the timeline first"),
         }
     }
-}
-
-/// A name for people who do not see the widget.
-fn named(response: &Response, role: egui::Role, name: &str) {
-    response.widget_info(|| egui::WidgetInfo::labeled(role, true, name));
 }

@@ -2,7 +2,7 @@
 
 use eframe::egui::{self, Align2, FontId, Rect, Sense, Shape, Stroke, Ui, pos2, vec2};
 
-use super::{super::theme, named};
+use super::super::theme;
 use crate::{app::App, session::animation::Track};
 
 /// Least distance of labelled ticks, points.
@@ -62,7 +62,7 @@ fn round_step(least: f64) -> f64 {
 impl App {
     pub(super) fn ruler_ui(&mut self, ui: &mut Ui, rail: Rect, span: &Span) {
         let response = ui.interact(rail, egui::Id::unique("ruler"), Sense::click_and_drag());
-        named(&response, egui::Role::Slider, "Timeline");
+        response.widget_info(|| egui::WidgetInfo::slider(true, self.shown_time_s(), "Timeline"));
         if let Some(at) = response.interact_pointer_pos().filter(|_| response.is_pointer_button_down_on() || response.clicked()) {
             let time_s = span.time_s(at.x.clamp(span.rect().left(), span.rect().right()));
             self.show_time((time_s * 1000.0).round() / 1000.0);

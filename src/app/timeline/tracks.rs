@@ -8,7 +8,7 @@ use super::{
         playback::STEP_S,
         theme,
     },
-    KeyId, named,
+    KeyId,
     ruler::Span,
 };
 use crate::{
@@ -83,7 +83,7 @@ impl App {
         let id = KeyId { effect: track.effect(), field: track.field().name, time_s: key.time_s };
         let hit = Rect::from_center_size(at, vec2(2.0 * MARK + 4.0, 2.0 * MARK + 8.0));
         let response = ui.interact(hit, egui::Id::unique((track.path(), "mark", index)), Sense::click_and_drag());
-        named(&response, egui::Role::Button, &format!("Key {} {:.3} s", track.path(), key.time_s));
+        response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Button, true, format!("Key {} {:.3} s", track.path(), key.time_s)));
         let is_selected = self.timeline.selected == Some(id);
         paint_mark(ui, at, key.easing, is_selected, response.hovered() || response.dragged() || response.has_focus());
         if response.clicked() {
