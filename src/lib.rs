@@ -8,7 +8,7 @@
 //! * [`shader`], [`plan`], [`gpu`]: choose, link and run the kernels
 //! * [`measure`]: frame against frame, samples of time
 //! * [`oracle`]: the exact CPU renderer that judges and blesses
-//! * [`session`]: the state of a look
+//! * [`session`]: the state of a look, and what moves with its clock
 //! * [`preset`]: looks as files, sparse TOML
 //! * [`cli`]: every subcommand; never opens a window of its own
 //! * `app`: the window (feature `gui`)

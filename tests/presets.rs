@@ -586,16 +586,15 @@ prop_compose! {
     }
 }
 
-/// Times, seeds of values, and easings.
-fn any_keys() -> impl Strategy<Value = Vec<(f64, u64, usize)>> {
+/// Time, seed of the value, easing.
+type AnyKey = (f64, u64, usize);
+
+fn any_keys() -> impl Strategy<Value = Vec<AnyKey>> {
     prop::collection::vec((within(-1e9, 1e9), any::<u64>(), 0..Easing::ALL.len()), 1..6)
 }
 
 /// Keys on parameters of the enabled effects.
-fn animated(
-    stack: &rasterlab::effects::Stack,
-    tracks: Vec<(prop::sample::Index, prop::sample::Index, Vec<(f64, u64, usize)>)>,
-) -> Animation {
+fn animated(stack: &rasterlab::effects::Stack, tracks: Vec<(prop::sample::Index, prop::sample::Index, Vec<AnyKey>)>) -> Animation {
     let mut animation = Animation::default();
     for (effect, field, keys) in tracks.into_iter().filter(|_| !stack.0.is_empty()) {
         let effect = stack.0[effect.index(stack.0.len())].effect;

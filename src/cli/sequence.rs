@@ -29,8 +29,8 @@ use crate::{
     session::{SceneSource, Session, animation::MAX_TIME_S},
 };
 
-/// Most frames of a film: nine hours at 30 a second.
-const MAX_FRAMES: u32 = 1_000_000;
+/// Most frames of a film: almost an hour at 30 a second.
+const MAX_FRAMES: u32 = 100_000;
 
 /// Most frames in a second; APNG counts thousandths.
 const MAX_FPS: f64 = 1000.0;
@@ -94,7 +94,6 @@ impl Schedule {
 /// A frame to be drawn, or kept.
 struct Shot {
     frame: u32,
-    look: Look,
     mark: String,
     path: Option<PathBuf>,
     /// A finished picture is there.
@@ -117,7 +116,8 @@ pub fn run(common: &Common, args: &Sequence, streams: &mut Streams) -> Result<Ex
         shots.iter_mut().filter(|shot| shot.path.is_none()).for_each(|shot| shot.kept = true);
     }
     let kept = shots.iter().filter(|shot| shot.kept).count();
-    draw(&shots, &scene, &mut painter, &mut film, streams)?;
+    let of = |shot: &Shot| at(&look, &schedule, shot.frame);
+    draw(&shots, &of, look.session.output.size, &scene, &mut painter, &mut film, streams)?;
     if let Some(film) = film {
         film.finish()?;
     }
@@ -163,15 +163,20 @@ fn check_template(args: &Sequence, schedule: &Schedule) -> Result<(), Fault> {
 }
 
 fn shots(args: &Sequence, look: &Look, scene: &Scene, schedule: &Schedule, painter: &Painter) -> Result<Vec<Shot>, Fault> {
-    let scene = scene_hash(scene);
+    let (scene, names) = (scene_hash(scene), render::names(look, painter));
     let shot = |frame| {
-        let mut look = look.clone();
-        look.session.clock.time_s = schedule.time_s(frame);
-        let names = Names { frame: Some(frame), ..render::names(&look, painter) };
+        let names = Names { frame: Some(frame), ..names.clone() };
         let path = args.output.as_ref().map(|template| files::frame_path(template, &names)).transpose()?;
-        Ok(Shot { frame, mark: mark(&look.session, scene), look, path, kept: false })
+        Ok(Shot { frame, mark: mark(&at(look, schedule, frame).session, scene), path, kept: false })
     };
-    schedule.frames.clone().map(shot).collect()
+    schedule.frames.clone().into_par_iter().map(shot).collect()
+}
+
+/// The look as a frame shows it.
+fn at(look: &Look, schedule: &Schedule, frame: u32) -> Look {
+    let mut look = look.clone();
+    look.session.clock.time_s = schedule.time_s(frame);
+    look
 }
 
 /// All that decides the picture but who draws it: the look at its time, the scene's bytes, and this program.
@@ -257,21 +262,28 @@ fn delay(fps: f64) -> [u16; 2] {
 }
 
 /// Draws what is not kept, a batch at a time: drawing is one after the other on one device, packing is not.
-fn draw(shots: &[Shot], scene: &Arc<Scene>, painter: &mut Painter, film: &mut Option<Film>, streams: &Streams) -> Result<(), Fault> {
+fn draw(
+    shots: &[Shot],
+    look_of: &(impl Fn(&Shot) -> Look + Sync),
+    size: [u32; 2],
+    scene: &Arc<Scene>,
+    painter: &mut Painter,
+    film: &mut Option<Film>,
+    streams: &Streams,
+) -> Result<(), Fault> {
     let bar = streams.progress(shots.len() as u64);
     let provenance = painter.provenance();
-    let size = shots.first().map_or([1; 2], |shot| shot.look.session.output.size);
     let frame_bytes = 4 * u64::from(size[0]) * u64::from(size[1]);
     let batch = (BATCH_BYTES / frame_bytes.max(1)).clamp(1, rayon::current_num_threads() as u64) as usize;
     for shots in shots.chunks(batch) {
         let mut drawn: Vec<Option<Frame>> = Vec::new();
         for shot in shots {
             bar.set_message(shot.path.as_ref().map_or_else(|| format!("frame {}", shot.frame), |path| path.display().to_string()));
-            drawn.push(if !shot.kept { Some(painter.frame(&shot.look.session, scene)?) } else { None });
+            drawn.push(if !shot.kept { Some(painter.frame(&look_of(shot).session, scene)?) } else { None });
             bar.inc(1);
         }
         shots.par_iter().zip(&drawn).try_for_each(|(shot, frame)| match (&shot.path, frame) {
-            (Some(path), Some(frame)) => files::write(path, &preset::png_of_sequence(frame, &shot.look, &provenance, &shot.mark)?),
+            (Some(path), Some(frame)) => files::write(path, &preset::png_of_sequence(frame, &look_of(shot), &provenance, &shot.mark)?),
             _ => Ok(()),
         })?;
         let Some(film) = film.as_mut() else { continue };

@@ -19,8 +19,8 @@ pub struct Key {
     pub form: Form,
     /// Key of the same section that says the same thing another way.
     pub rival: Option<&'static str>,
-    /// What its lanes must be to one another; the error completes a sentence that begins with the key.
-    pub rule: Option<fn(&Plain) -> Result<(), String>>,
+    /// What its lanes must be to one another.
+    pub rule: Option<Rule>,
     /// None where the key does not apply to this session.
     pub get: fn(&Session) -> Option<Plain>,
     /// Takes a value that has this key's form.
@@ -97,6 +97,8 @@ const TIERS: &[&str] = &[Tier::ALL[0].name(), Tier::ALL[1].name(), Tier::ALL[2].
 /// The first leaves the choice to the planner.
 const VISIBILITIES: &[&str] = &["planned", Visibility::ALL[0].name(), Visibility::ALL[1].name()];
 
+/// Whether a value may be; the error completes a sentence that begins with its key.
+pub type Rule = fn(&Plain) -> Result<(), String>;
 type Get = fn(&Session) -> Option<Plain>;
 type Set = fn(&mut Session, Plain);
 
@@ -104,7 +106,7 @@ const fn key(section: &'static str, name: &'static str, form: Form, doc: &'stati
     Key { section, name, doc, form, rival: None, rule: None, get, set }
 }
 
-const fn ruled(key: Key, rule: fn(&Plain) -> Result<(), String>) -> Key {
+const fn ruled(key: Key, rule: Rule) -> Key {
     Key { rule: Some(rule), ..key }
 }
 

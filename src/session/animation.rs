@@ -20,9 +20,7 @@ pub const MAX_TIME_S: f64 = 1e9;
 /// How a value goes from its key to the next.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Easing {
-    /// Stays, then jumps.
     Hold,
-    /// At one speed.
     Linear,
     /// Starts and ends at rest: 3 s² - 2 s³, the smoothstep.
     #[default]
@@ -44,6 +42,17 @@ impl Easing {
             Self::Smooth => "smooth",
             Self::In => "in",
             Self::Out => "out",
+        }
+    }
+
+    /// In words.
+    pub const fn about(self) -> &'static str {
+        match self {
+            Self::Hold => "stays, then jumps",
+            Self::Linear => "at one speed",
+            Self::Smooth => "starts slowly and ends slowly",
+            Self::In => "starts slowly",
+            Self::Out => "ends slowly",
         }
     }
 
@@ -238,7 +247,10 @@ fn checked(effect: &Effect, field: &Field, key: Keyframe) -> Result<Keyframe, Ke
     let mut words = (effect.defaults)();
     let [low, high] = field.hard;
     // What a parameter holds may lie beyond a decimal bound by its rounding; that is no fault of the key.
-    let inside = |lane: &f64| if (*lane as f32) == (lane.clamp(low, high) as f32) { lane.clamp(low, high) } else { *lane };
+    let inside = |lane: &f64| {
+        let is_rounding = !steps(field) && (*lane as f32) == (lane.clamp(low, high) as f32);
+        if is_rounding { lane.clamp(low, high) } else { *lane }
+    };
     field.set(&mut words, &value.iter().map(inside).collect::<Vec<_>>())?;
     Ok(Keyframe { time_s, value: field.get(&words), easing })
 }

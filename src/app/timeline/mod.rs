@@ -214,7 +214,11 @@ impl App {
             egui::ComboBox::from_id_salt("easing")
                 .selected_text(easing.name())
                 .width(74.0)
-                .show_ui(ui, |ui| Easing::ALL.iter().for_each(|easing| drop(ui.selectable_value(&mut chosen, *easing, easing.name()))))
+                .show_ui(ui, |ui| {
+                    for easing in Easing::ALL {
+                        ui.selectable_value(&mut chosen, easing, easing.name()).on_hover_text(easing.about());
+                    }
+                })
                 .response
                 .accessible_name("Key easing")
                 .on_hover_text("The way to the next key")

@@ -34,12 +34,9 @@ impl Span {
         (self.to_s - self.from_s) / f64::from(self.rect.width().max(1.0))
     }
 
-    pub fn from_s(&self) -> f64 {
-        self.from_s
-    }
-
-    pub fn to_s(&self) -> f64 {
-        self.to_s
+    /// First and last moment.
+    pub fn ends_s(&self) -> [f64; 2] {
+        [self.from_s, self.to_s]
     }
 
     pub fn rect(&self) -> Rect {
@@ -98,8 +95,9 @@ impl App {
 fn ticks(painter: &egui::Painter, rail: Rect, span: &Span) {
     let step = round_step(f64::from(TICK_POINTS) * span.seconds_per_point());
     let decimals = (-step.log10().floor()).clamp(0.0, 6.0) as usize;
-    let first = (span.from_s() / step - 1e-9).ceil();
-    let count = ((span.to_s() - span.from_s()) / step + 1e-9).floor() as u32;
+    let [from_s, to_s] = span.ends_s();
+    let first = (from_s / step - 1e-9).ceil();
+    let count = ((to_s - from_s) / step + 1e-9).floor() as u32;
     for i in 0..=count.min(200) {
         let time_s = (first + f64::from(i)) * step;
         let x = span.x(time_s);

@@ -71,9 +71,8 @@ impl App {
         let name = Rect::from_min_max(pos2(row.cursor().left() + theme::HALF, top.top()), pos2(shown.left() - 6.0, top.bottom()));
         ui.painter_at(name).text(pos2(name.left(), y), Align2::LEFT_CENTER, &path, font, theme::TEXT);
         if is_open && let Some([low, high]) = Curve::of(track, rect).shown_range() {
-            let font = FontId::proportional(11.0);
-            painter_text(ui, rect, pos2(rect.right(), rect.top() + super::TRACK + 10.0), &brief(high), &font);
-            painter_text(ui, rect, pos2(rect.right(), rect.bottom() - 12.0), &brief(low), &font);
+            let (at, text) = (pos2(name.left(), y + 18.0), format!("{} to {}", brief(low), brief(high)));
+            ui.painter_at(rect).text(at, Align2::LEFT_CENTER, text, FontId::proportional(11.5), theme::TEXT_WEAK);
         }
     }
 
@@ -113,7 +112,7 @@ impl App {
         }
         response.on_hover_ui(|ui| {
             ui.label(format!("{} = {}", track.path(), value_text(track, key.time_s)));
-            ui.label(theme::weak(format!("{:.3} s, {} to the next key", key.time_s, key.easing.name())));
+            ui.label(theme::weak(format!("{:.3} s, then {}: {}", key.time_s, key.easing.name(), key.easing.about())));
             ui.label(theme::weak("Click to go there, drag to move, right click for more"));
         });
     }
@@ -126,16 +125,13 @@ impl App {
         let [from_s, _] = self.look.session.clock.range_s;
         let snapped_s = if free { wanted_s } else { from_s + ((wanted_s - from_s) / STEP_S).round() * STEP_S };
         let room = |neighbour: Option<&Keyframe>, aside_s: f64, edge_s: f64| neighbour.map_or(edge_s, |key| key.time_s + aside_s);
-        let low = room(index.checked_sub(1).map(|i| &keys[i]), 1e-3, span.from_s());
-        let high = room(keys.get(index + 1), -1e-3, span.to_s());
+        let [first_s, last_s] = span.ends_s();
+        let low = room(index.checked_sub(1).map(|i| &keys[i]), 1e-3, first_s);
+        let high = room(keys.get(index + 1), -1e-3, last_s);
         if low <= high {
             self.move_selected(snapped_s.clamp(low, high));
         }
     }
-}
-
-fn painter_text(ui: &Ui, clip: Rect, at: Pos2, text: &str, font: &FontId) {
-    ui.painter_at(clip).text(at, Align2::RIGHT_CENTER, text, font.clone(), theme::TEXT_WEAK);
 }
 
 fn menu_ui(ui: &mut Ui, track: &Track, key: &Keyframe) -> Option<MarkAsk> {
@@ -144,7 +140,7 @@ fn menu_ui(ui: &mut Ui, track: &Track, key: &Keyframe) -> Option<MarkAsk> {
     ui.label(theme::weak("To the next key"));
     ui.add_enabled_ui(!steps(track.field()), |ui| {
         for easing in Easing::ALL {
-            if ui.radio(easing == key.easing, easing.name()).clicked() {
+            if ui.radio(easing == key.easing, easing.name()).on_hover_text(easing.about()).clicked() {
                 ask = Some(MarkAsk::Ease(easing));
                 ui.close();
             }
