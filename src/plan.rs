@@ -164,7 +164,7 @@ pub fn plan(needs: &Needs, stack: &Stack, caps: &Caps, tuning: &Tuning, accuracy
         perspective: needs.perspective,
         small_samples,
         small_side,
-        listed_tiles: tuning.listed_tiles,
+        listed_tiles: tuning.listed_tiles && !stack.finishes(),
         list_group: tuning.list_group,
         early_load: tuning.early_load,
     };
@@ -183,7 +183,7 @@ fn explain(needs: &Needs, is_usual: bool, caps: &Caps, accuracy: &Accuracy, key:
         Visibility::Split32 => "the adapter has no 64-bit atomics: depth first, then the owner; nothing is lost",
     };
     let bound = if needs.clipping { "clipping leaves it open".into() } else { format!("no triangle exceeds {:.1} px", needs.largest_px) };
-    let reasons = vec![
+    let mut reasons = vec![
         note("visibility", pinned.unwrap_or(chosen)),
         note(
             "coverage",
@@ -207,6 +207,9 @@ fn explain(needs: &Needs, is_usual: bool, caps: &Caps, accuracy: &Accuracy, key:
             ),
         ),
     ];
+    if key.has_image() {
+        reasons.push(note("finish", "an image effect finishes every pixel, empty ones too, so no tile is skipped"));
+    }
     let parts = [
         ("clip", key.has_clipping, "the scene's box lies behind the near plane and inside the guard band".to_owned()),
         ("raster_medium", key.has_medium, bound.clone()),
@@ -217,6 +220,7 @@ fn explain(needs: &Needs, is_usual: bool, caps: &Caps, accuracy: &Accuracy, key:
         ("decide", key.decisions > 0, "no effect settles anything per triangle".into()),
         ("draw order", key.order != Order::Free, "every sample is drawn".into()),
         ("sample effects", key.has_samples, "no effect leaves samples out".into()),
+        ("image hook", key.has_image(), "no effect of the stack finishes pixels".into()),
         ("effects uniform", !key.effects.is_empty(), "the stack is empty".into()),
     ];
     let omitted = parts.into_iter().filter(|(_, is_there, _)| !is_there).map(|(name, _, why)| note(name, why)).collect();

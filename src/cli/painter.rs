@@ -107,22 +107,25 @@ impl Painter {
     /// The picture of `session`.
     pub fn frame(&mut self, session: &Session, scene: &Arc<Scene>) -> Result<Frame, Fault> {
         match self {
-            Self::Cpu => Ok(oracle::render(scene, &session.view(scene, session.output.size), &session.stack)?),
+            Self::Cpu => Ok(oracle::render_last(scene, &session.moments(scene, session.output.size))?),
             Self::Gpu(..) => Ok(self.capture(session, scene)?.frame),
         }
     }
 
     /// The picture with everything that a judge needs.
     pub fn capture(&mut self, session: &Session, scene: &Arc<Scene>) -> Result<Capture, Fault> {
-        let view = session.view(scene, session.output.size);
+        let moments = session.moments(scene, session.output.size);
         match self {
             Self::Cpu => {
-                let geometry: Geometry = oracle::project(scene, &draws(scene, &view)?, &view);
-                Ok(Capture { frame: oracle::render(scene, &view, &session.stack)?, geometry, layers: None })
+                let ((view, stack), before) = moments.split_last().expect("a look shows a moment");
+                let previous = if before.is_empty() { None } else { Some(oracle::render_last(scene, before)?.color) };
+                let frame = oracle::render_after(scene, view, stack, previous.as_deref())?;
+                let geometry: Geometry = oracle::project(scene, &draws(scene, view)?, view);
+                Ok(Capture { frame, geometry, layers: None, previous })
             }
             Self::Gpu(renderer, _) => {
                 renderer.set_scene(scene)?;
-                Ok(renderer.capture(&view, &session.stack, &session.accuracy)?)
+                Ok(renderer.capture_last(&moments, &session.accuracy)?)
             }
         }
     }
