@@ -13,6 +13,11 @@ struct Pixel {
     y: u32,
 }
 
+// Does the pixel lie in the picture?
+fn image_has(x: i32, y: i32) -> bool {
+    return all(vec2i(x, y) >= vec2i(0)) && all(vec2i(x, y) < vec2i(frame.size));
+}
+
 // Owner, depth key and draw of a pixel; those of the nearest pixel of the picture when it lies outside.
 fn image_at(x: i32, y: i32) -> vec3u {
     let at = vec2u(clamp(vec2i(x, y), vec2i(0), vec2i(frame.size) - 1));

@@ -30,6 +30,7 @@ fn outline(pixel: Pixel, p: Outline) -> Pixel {
 
 // Does a line run at a pixel because of another? Each is owner, key and draw.
 fn outline_is_edge(p: Outline, at: vec2i, here: vec3u, step: vec2i) -> bool {
+    if !image_has(at.x + step.x, at.y + step.y) { return false; }
     let there = image_at(at.x + step.x, at.y + step.y);
     let is_empty = here.x == IMAGE_NO_OWNER;
     if is_empty || there.x == IMAGE_NO_OWNER {
@@ -41,7 +42,7 @@ fn outline_is_edge(p: Outline, at: vec2i, here: vec3u, step: vec2i) -> bool {
         let is_behind = here.y < there.y || (here.y == there.y && here.z > there.z);
         return p.objects != 0u && (p.side == OUTLINE_SIDE_BOTH || is_behind == (p.side == OUTLINE_SIDE_OUTSIDE));
     }
-    if p.depth == 0u { return false; }
+    if p.depth == 0u || !image_has(at.x - step.x, at.y - step.y) { return false; }
     let beyond = image_at(at.x - step.x, at.y - step.y);
     if beyond.z != here.z || beyond.x == IMAGE_NO_OWNER { return false; }
     // What bends away from a straight slope; a slope alone is no jump. Keys end at the bits of 1.0: it fits.

@@ -124,7 +124,16 @@ fn text(rows: &[Row], class: &str) -> String {
     let mut lines = vec![head.map(str::to_owned).to_vec()];
     lines.extend(rows.iter().map(|row| {
         let a = &row.accuracy;
-        let counts = [a.owner_mismatch, a.explained_by_snap, a.holes, a.double_hits, a.orphans, a.overflow, a.step_band_pixels, a.max_colour_delta.into()];
+        let counts = [
+            a.owner_mismatch,
+            a.explained_by_snap,
+            a.holes,
+            a.double_hits,
+            a.orphans,
+            a.overflow,
+            a.step_band_pixels,
+            a.max_colour_delta.into(),
+        ];
         let mut line = vec![row.look.clone(), row.rung.into(), class.into()];
         line.extend(counts.map(|count| count.to_string()));
         line.extend([format!("{:.4}", a.rms_colour_delta), if row.failures.is_empty() { "ok" } else { "FAIL" }.into()]);

@@ -48,9 +48,8 @@ params! {
     }
 }
 
-pub const EFFECT: Effect = Effect::new::<Dither>("dither", "Dither", "ordered dithering, so that few levels look like many")
-    .on_image::<Dither>()
-    .in_steps();
+pub const EFFECT: Effect =
+    Effect::new::<Dither>("dither", "Dither", "ordered dithering, so that few levels look like many").on_image::<Dither>().in_steps();
 
 impl ImageEffect for Dither {
     fn finish(mut pixel: Pixel, _: &Picture, p: &Self) -> Pixel {

@@ -55,7 +55,7 @@ impl SurfaceEffect for Hatch {
         let base = s.color.truncate().max(DVec3::ZERO);
         let tone = luminance(base).sqrt().min(1.0) + s.nudge;
         let (dark, bright) = (f64::from(p.dark), f64::from(p.bright));
-        let darkness = 1.0 - ((tone - dark) / (bright - dark).max(0.05)).clamp(0.0, 1.0);
+        let darkness = 1.0 - ((tone - dark) / (bright - dark).max(0.2)).clamp(0.0, 1.0);
         let mut bare = 1.0;
         for layer in 0..p.layers {
             let share = (darkness * f64::from(p.layers) - f64::from(layer)).clamp(0.0, 1.0) * f64::from(p.width);
@@ -64,7 +64,10 @@ impl SurfaceEffect for Hatch {
         let paper = rgb(p.paper);
         let hue = if base.max_element() > 1e-6 { base / base.max_element() } else { DVec3::ONE };
         let paper = paper + (paper * hue - paper) * f64::from(p.tint);
-        s.color = (rgb(p.ink) + (paper - rgb(p.ink)) * bare).extend(s.color.w);
+        // Mixed as the eye sees it, as the tone was taken: in linear light a trace of paper would outshine the ink.
+        let (ink, paper) = (rgb(p.ink).map(f64::sqrt), paper.map(f64::sqrt));
+        let mixed = ink + (paper - ink) * bare;
+        s.color = (mixed * mixed).extend(s.color.w);
         s
     }
 }
@@ -78,15 +81,18 @@ impl Hatch {
             Lie::Screen => ((s.pixel.y * along.x - s.pixel.x * along.y) / f64::from(self.spacing_px), f64::from(self.spacing_px)),
             Lie::Surface => {
                 let across = DVec3::new(-along.y, along.x, if layer < 2 { 0.0 } else { 1.0 }).normalize();
-                // How the planes' distance changes from pixel to pixel; held where the surface lies along the planes or is
-                // seen edge-on.
+                // How far the planes' distance changes from pixel to pixel; held where the surface lies along the planes or
+                // is seen edge-on, and where f32 has no finer places in the world.
                 let change = across - s.normal * (across.dot(s.view) / s.normal.dot(s.view).max(0.1));
-                let per_px = s.pixel_m * change.length().max(0.2);
+                let per_px = (s.pixel_m * change.length().max(0.4)).max(1.5e-4 * (s.position.length() + s.depth_m));
                 (s.position.dot(across) / f64::from(self.spacing_m), f64::from(self.spacing_m) / per_px)
             }
         };
-        let distance = (place - place.floor() - 0.5).abs() * spacing_px + s.nudge;
+        // A place on a surface errs by some thousandths of a pixel.
+        let distance = (place - place.floor() - 0.5).abs() * spacing_px + 64.0 * s.nudge;
         let half = 0.5 * share * spacing_px;
-        ((distance + 0.5).min(half) - (distance - 0.5).max(-half)).clamp(0.0, 1.0)
+        let covered = ((distance + 0.5).min(half) - (distance - 0.5).max(-half)).clamp(0.0, 1.0);
+        // Lines that no pixel can tell apart become their mean.
+        share + (covered - share) * (spacing_px - 1.0).clamp(0.0, 1.0)
     }
 }

@@ -56,7 +56,8 @@ impl ImageEffect for Outline {
         let is_line = (-reach..=reach).any(|dy| {
             (-reach..=reach).any(|dx| {
                 (1..=reach * reach).contains(&(dx * dx + dy * dy))
-                    && p.is_edge(here, picture.at(x + dx, y + dy), || picture.at(x - dx, y - dy))
+                    && picture.has(x + dx, y + dy)
+                    && p.is_edge(here, picture.at(x + dx, y + dy), || picture.has(x - dx, y - dy).then(|| picture.at(x - dx, y - dy)))
             })
         });
         if is_line {
@@ -69,7 +70,7 @@ impl ImageEffect for Outline {
 
 impl Outline {
     /// Does a line run at a pixel because of another, whose opposite lies `beyond`? Each is owner, key and draw.
-    fn is_edge(&self, here: (u32, u32, u32), there: (u32, u32, u32), beyond: impl Fn() -> (u32, u32, u32)) -> bool {
+    fn is_edge(&self, here: (u32, u32, u32), there: (u32, u32, u32), beyond: impl Fn() -> Option<(u32, u32, u32)>) -> bool {
         let side = Side::of(self.side);
         if here.0 == NO_OWNER || there.0 == NO_OWNER {
             let is_right_side = side == Side::Both || (here.0 == NO_OWNER) == (side == Side::Outside);
@@ -80,10 +81,7 @@ impl Outline {
             let is_behind = (here.1, there.2) < (there.1, here.2);
             return self.objects != 0 && (side == Side::Both || is_behind == (side == Side::Outside));
         }
-        let beyond = if self.depth != 0 { beyond() } else { return false };
-        if beyond.2 != here.2 || beyond.0 == NO_OWNER {
-            return false;
-        }
+        let Some(beyond) = beyond().filter(|beyond| self.depth != 0 && beyond.0 != NO_OWNER && beyond.2 == here.2) else { return false };
         // What bends away from a straight slope; a slope alone is no jump.
         let bend = i64::from(there.1) + i64::from(beyond.1) - 2 * i64::from(here.1);
         let jump = (f64::from(self.jump) * f64::from(1 << 23)) as i64;

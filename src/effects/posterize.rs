@@ -27,9 +27,8 @@ params! {
     }
 }
 
-pub const EFFECT: Effect = Effect::new::<Posterize>("posterize", "Posterize", "few levels of colour, evenly spaced to the eye")
-    .on_image::<Posterize>()
-    .in_steps();
+pub const EFFECT: Effect =
+    Effect::new::<Posterize>("posterize", "Posterize", "few levels of colour, evenly spaced to the eye").on_image::<Posterize>().in_steps();
 
 impl ImageEffect for Posterize {
     fn finish(mut pixel: Pixel, _: &Picture, p: &Self) -> Pixel {

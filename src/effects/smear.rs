@@ -23,8 +23,8 @@ params! {
     }
 }
 
-pub const EFFECT: Effect = Effect::new::<Smear>("smear", "Smear", "where nothing is drawn the picture before stays, and fades")
-    .on_image::<Smear>();
+pub const EFFECT: Effect =
+    Effect::new::<Smear>("smear", "Smear", "where nothing is drawn the picture before stays, and fades").on_image::<Smear>();
 
 impl ImageEffect for Smear {
     const READS_PREVIOUS: bool = true;

@@ -16,7 +16,7 @@ params! {
         /// Number of flat tones.
         steps: u32 = 3, hard 1.0..=16.0, soft 1.0..=8.0;
         /// Width of the edge between two tones, as a share of a step.
-        softness: f32 = 0.12, hard 0.02..=1.0;
+        softness: f32 = 0.12, hard 0.05..=1.0;
         /// Tone of the darkest step, as the eye sees it.
         shadow: f32 = 0.3, hard 0.0..=1.0;
         /// Tone of the brightest step.
@@ -26,8 +26,7 @@ params! {
     }
 }
 
-pub const EFFECT: Effect =
-    Effect::surface::<Toon>("toon", "Toon", "light in a few flat steps with soft edges, and a rim").in_steps();
+pub const EFFECT: Effect = Effect::surface::<Toon>("toon", "Toon", "light in a few flat steps with soft edges, and a rim").in_steps();
 
 impl SurfaceEffect for Toon {
     fn apply(mut s: Surface, p: &Self) -> Surface {

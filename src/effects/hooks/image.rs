@@ -32,6 +32,11 @@ pub struct Picture<'a> {
 }
 
 impl Picture<'_> {
+    /// Does the pixel lie in the picture?
+    pub fn has(&self, x: i64, y: i64) -> bool {
+        (0..i64::from(self.width)).contains(&x) && (0..i64::from(self.height)).contains(&y)
+    }
+
     /// Owner, depth key and draw of a pixel; those of the nearest pixel of the picture when it lies outside.
     pub fn at(&self, x: i64, y: i64) -> (u32, u32, u32) {
         let x = x.clamp(0, i64::from(self.width) - 1) as usize;
