@@ -58,11 +58,15 @@ pub fn rotation_y(radians: f64) -> DMat4 {
     )
 }
 
-/// Linear light in [0, 1] to a gamma-encoded sRGB byte (IEC 61966-2-1), ties away from zero.
-pub fn srgb_byte(linear: f64) -> u8 {
+/// Linear light, clamped to [0, 1], gamma-encoded (IEC 61966-2-1).
+pub fn srgb(linear: f64) -> f64 {
     let c = linear.clamp(0.0, 1.0);
-    let encoded = if c <= 0.003_130_8 { 12.92 * c } else { 1.055 * libm::pow(c, 1.0 / 2.4) - 0.055 };
-    (encoded * 255.0 + 0.5).floor() as u8
+    if c <= 0.003_130_8 { 12.92 * c } else { 1.055 * libm::pow(c, 1.0 / 2.4) - 0.055 }
+}
+
+/// Linear light in [0, 1] to a gamma-encoded sRGB byte, ties away from zero.
+pub fn srgb_byte(linear: f64) -> u8 {
+    (srgb(linear) * 255.0 + 0.5).floor() as u8
 }
 
 /// Integer hash with full avalanche (Ettinger and Wellons, "lowbias32"); a bijection of u32.

@@ -168,7 +168,7 @@ pub fn plan(needs: &Needs, stack: &Stack, caps: &Caps, tuning: &Tuning, accuracy
         perspective: needs.perspective,
         small_samples,
         small_side,
-        listed_tiles: tuning.listed_tiles,
+        listed_tiles: tuning.listed_tiles && !stack.finishes(),
         list_group: tuning.list_group,
         early_load: tuning.early_load,
     };
@@ -216,6 +216,9 @@ fn explain(needs: &Needs, is_usual: bool, caps: &Caps, accuracy: &Accuracy, key:
         let movers: Vec<_> = key.effects.iter().filter(|effect| effect.hooks.vertex.is_some()).map(|effect| effect.name).collect();
         reasons.push(note("movement", format!("vertices are moved by {}: {why}", movers.join(", "))));
     }
+    if key.has_image() {
+        reasons.push(note("finish", "an image effect finishes every pixel, empty ones too, so no tile is skipped"));
+    }
     let parts = [
         ("vertex effects", key.moves(), "no effect of the stack moves a vertex".to_owned()),
         ("corners of their own", key.parts_corners(), "no effect parts triangles, so neighbours share projected vertices".into()),
@@ -228,6 +231,7 @@ fn explain(needs: &Needs, is_usual: bool, caps: &Caps, accuracy: &Accuracy, key:
         ("decide", key.decisions > 0, "no effect settles anything per triangle".into()),
         ("draw order", key.order != Order::Free, "every sample is drawn".into()),
         ("sample effects", key.has_samples, "no effect leaves samples out".into()),
+        ("image hook", key.has_image(), "no effect of the stack finishes pixels".into()),
         ("effects uniform", !key.effects.is_empty(), "the stack is empty".into()),
     ];
     let omitted = parts.into_iter().filter(|(_, is_there, _)| !is_there).map(|(name, _, why)| note(name, why)).collect();

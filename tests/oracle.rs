@@ -8,7 +8,7 @@ use rasterlab::{
     frame::{Counters, Frame, Geometry, NO_OWNER, Piece, SnappedVertex, vertex_flags},
     math::{GUARD_BAND, SMALL_EXTENT, hash},
     measure::{Accuracy, Budget},
-    oracle::{OrientedTriangle, cover, judge, owns, project, render, shade, triangles},
+    oracle::{OrientedTriangle, Seen, cover, judge, owns, project, render, shade, triangles},
     scene::{
         Accessor, Bounds, Instance, Material, Primitive, Scene, Topology,
         camera::{Camera, MIN_NEAR_M, Projection, View},
@@ -149,6 +149,11 @@ fn all_effects() -> Stack {
         stack.enable(Effect::find(name).expect("a listed effect")).words = (Effect::find(name).unwrap().defaults)();
     }
     stack
+}
+
+/// What a picture is coloured from.
+fn seen(frame: &Frame) -> Seen<'_> {
+    Seen { owners: &frame.owner, keys: &frame.key, previous: None }
 }
 
 /// Numbers that look random and are the same on every run.
@@ -946,7 +951,7 @@ impl Adapter {
                 }
             }
         }
-        frame.color = shade(scene, &draws, view, stack, &frame.owner, geometry);
+        frame.color = shade(scene, &draws, view, stack, &seen(&frame), geometry);
         frame.counters = counters;
         (frame, layers)
     }
@@ -1143,7 +1148,7 @@ fn either_owner_is_right_in_the_depth_band_and_nowhere_else() {
                 }
                 let (scene, view) = &fixture;
                 let draws = draws(scene, view).unwrap();
-                frame.color = shade(scene, &draws, view, &all_effects(), &frame.owner, &project(scene, &draws, view));
+                frame.color = shade(scene, &draws, view, &all_effects(), &seen(frame), &project(scene, &draws, view));
             },
         )
     };
@@ -1168,7 +1173,7 @@ fn affine_weights_are_caught() {
     let (mut frame, layers) = Adapter::default().draw(&scene, &view, &stack, &geometry);
     let mut affine = geometry.clone();
     affine.vertices.iter_mut().for_each(|vertex| vertex.inv_w = 0.25);
-    frame.color = shade(&scene, &draws, &view, &stack, &frame.owner, &affine);
+    frame.color = shade(&scene, &draws, &view, &stack, &seen(&frame), &affine);
     let accuracy = judge(&scene, &view, &stack, &frame, &geometry, Some(&layers)).unwrap().accuracy;
     assert!(geometry.pieces.is_empty() && accuracy.owner_mismatch == 0 && accuracy.max_colour_delta > 20, "{accuracy:?}");
 }

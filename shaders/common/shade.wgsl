@@ -116,10 +116,12 @@ fn shade_surface(id: u32, pixel: vec2u) -> Surface {
     s.owner = id;
     s.rank = ranks_of(id);
     s.center_screen = place.center_screen;
-    s.screen = (vec2f(pixel) + 0.5) / vec2f(frame.size);
+    s.pixel = vec2f(pixel) + 0.5;
+    s.screen = s.pixel / vec2f(frame.size);
     s.shares = place.shares;
     s.edge_px = place.edge_px;
     s.depth_m = place.depth;
+    s.pixel_m = length(frame.ndc_y.xyz) * 2.0 / f32(frame.size.y) * select(1.0, place.depth, IS_PERSPECTIVE);
     s.flat_depth_m = dot(place.corner_depths, vec3f(1.0 / 3.0));
     s.range_m = frame.range_m;
     // The sample lies on the ray of its pixel, so depth alone tells where.

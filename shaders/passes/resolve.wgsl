@@ -6,6 +6,7 @@
 //@ use common/counters
 //@ use slot/owner
 //@ use slot/pixels
+//@ use slot/finish
 //@ use glue/surface
 
 // Empty pixels are computed too, with the first triangle, and thrown away: a CPU adapter executes both sides of every
@@ -25,7 +26,7 @@ fn resolve(@builtin(workgroup_id) group: vec3u, @builtin(num_workgroups) groups:
         encoded = select(encoded, vec4f(color_encode(shaded.color.rgb), shaded.color.a), is_owned);
     }
     if is_inside {
-        color[pixel.y * frame.stride + pixel.x] = color_pack(encoded);
+        color[pixel.y * frame.stride + pixel.x] = color_pack(finish(pixel, encoded));
         if !is_owned && found.y != 0u { atomicAdd(&counters.orphans, 1u); }
     }
 }

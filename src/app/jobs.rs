@@ -149,7 +149,7 @@ fn thumbnail(look: &Look) -> Option<egui::ColorImage> {
     if scene.triangle_count() > THUMBNAIL_TRIANGLES {
         return None;
     }
-    let frame = oracle::render(&scene, &look.session.view(&scene, THUMBNAIL), &look.session.posed_stack()).ok()?;
+    let frame = oracle::render_last(&scene, &look.session.moments(&scene, THUMBNAIL)).ok()?;
     let bytes: Vec<u8> = frame.color.concat();
     Some(egui::ColorImage::from_rgba_unmultiplied([frame.width as usize, frame.height as usize], &bytes))
 }

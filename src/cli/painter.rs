@@ -107,22 +107,25 @@ impl Painter {
     /// The picture of `session`.
     pub fn frame(&mut self, session: &Session, scene: &Arc<Scene>) -> Result<Frame, Fault> {
         match self {
-            Self::Cpu => Ok(oracle::render(scene, &session.view(scene, session.output.size), &session.posed_stack())?),
+            Self::Cpu => Ok(oracle::render_last(scene, &session.moments(scene, session.output.size))?),
             Self::Gpu(..) => Ok(self.capture(session, scene)?.frame),
         }
     }
 
     /// The picture with everything that a judge needs.
     pub fn capture(&mut self, session: &Session, scene: &Arc<Scene>) -> Result<Capture, Fault> {
-        let (view, stack) = (session.view(scene, session.output.size), session.posed_stack());
+        let moments = session.moments(scene, session.output.size);
         match self {
             Self::Cpu => {
-                let geometry: Geometry = oracle::project_moved(scene, &draws(scene, &view)?, &view, &stack);
-                Ok(Capture { frame: oracle::render(scene, &view, &stack)?, geometry, layers: None })
+                let ((view, stack), before) = moments.split_last().expect("a look shows a moment");
+                let previous = if before.is_empty() { None } else { Some(oracle::render_last(scene, before)?.color) };
+                let frame = oracle::render_after(scene, view, stack, previous.as_deref())?;
+                let geometry: Geometry = oracle::project_moved(scene, &draws(scene, view)?, view, stack);
+                Ok(Capture { frame, geometry, layers: None, previous })
             }
             Self::Gpu(renderer, _) => {
                 renderer.set_scene(scene)?;
-                Ok(renderer.capture(&view, &stack, &session.accuracy)?)
+                Ok(renderer.capture_last(&moments, &session.accuracy)?)
             }
         }
     }

@@ -70,7 +70,9 @@ fn verify(common: &Common, args: &Verify, look: &Look, painter: &mut Painter) ->
         let pinned = Session { accuracy: crate::session::Accuracy { visibility: rung, ..session.accuracy }, ..session.clone() };
         let name = rung.map_or("exact", Visibility::name);
         let capture = painter.capture(&pinned, &scene)?;
-        let verdict = oracle::judge(&scene, &view, &stack, &capture.frame, &capture.geometry, capture.layers.as_deref())?;
+        let layers = capture.layers.as_deref();
+        let previous = capture.previous.as_deref();
+        let verdict = oracle::judge_after(&scene, &view, &stack, &capture.frame, &capture.geometry, layers, previous)?;
         let pixels_beyond = pictures(&capture.frame.color, &verdict.expected.color, budget.max_channel).pixels_beyond;
         let mut failures = failures(&verdict.accuracy, &budget, pixels_beyond);
         for repeat in 1..args.frames {
@@ -118,11 +120,20 @@ fn triptych(folder: &Path, name: &str, expected: &Frame, actual: &Frame, force: 
 }
 
 fn text(rows: &[Row], class: &str) -> String {
-    let head = ["LOOK", "RUNG", "CLASS", "OWNER", "SNAP", "HOLES", "DOUBLE", "ORPHANS", "OVERFLOW", "MAX", "RMS", "VERDICT"];
+    let head = ["LOOK", "RUNG", "CLASS", "OWNER", "SNAP", "HOLES", "DOUBLE", "ORPHANS", "OVERFLOW", "STEPS", "MAX", "RMS", "VERDICT"];
     let mut lines = vec![head.map(str::to_owned).to_vec()];
     lines.extend(rows.iter().map(|row| {
         let a = &row.accuracy;
-        let counts = [a.owner_mismatch, a.explained_by_snap, a.holes, a.double_hits, a.orphans, a.overflow, a.max_colour_delta.into()];
+        let counts = [
+            a.owner_mismatch,
+            a.explained_by_snap,
+            a.holes,
+            a.double_hits,
+            a.orphans,
+            a.overflow,
+            a.step_band_pixels,
+            a.max_colour_delta.into(),
+        ];
         let mut line = vec![row.look.clone(), row.rung.into(), class.into()];
         line.extend(counts.map(|count| count.to_string()));
         line.extend([format!("{:.4}", a.rms_colour_delta), if row.failures.is_empty() { "ok" } else { "FAIL" }.into()]);

@@ -6,7 +6,7 @@ use crate::params::{Field, Params};
 
 pub mod hooks;
 
-use hooks::{Hooks, ImageEffect, Picture, Pixel, SampleEffect, SampleHook, Shape, Slot, VertexEffect, VertexHook};
+use hooks::{Hooks, ImageEffect, ImageHook, Picture, Pixel, SampleEffect, SampleHook, Shape, Slot, VertexEffect, VertexHook};
 pub use hooks::{Surface, SurfaceEffect};
 
 /// THE list. Adding an effect is its two files and one word here.
@@ -18,7 +18,29 @@ macro_rules! effects {
     };
 }
 
-effects![boxes, points, draw_order, explode, inflate, wobble, dissolve, stipple, facet, triangle_id, normals, depth, lambert, wireframe];
+effects![
+    boxes,
+    points,
+    draw_order,
+    explode,
+    inflate,
+    wobble,
+    dissolve,
+    stipple,
+    facet,
+    triangle_id,
+    normals,
+    depth,
+    lambert,
+    toon,
+    hatch,
+    wireframe,
+    fog,
+    posterize,
+    smear,
+    outline,
+    dither
+];
 
 /// One entry of the catalogue.
 pub struct Effect {
@@ -76,7 +98,14 @@ impl Effect {
 
     /// The same effect, also on the image hook.
     pub const fn on_image<P: ImageEffect>(mut self) -> Self {
-        self.hooks.image = Some(|pixel: Pixel, picture: &Picture, words: &[u32]| P::finish(pixel, picture, &read(words)));
+        self.hooks.image =
+            Some(ImageHook { reads_previous: P::READS_PREVIOUS, finish: |pixel, picture, words| P::finish(pixel, picture, &read(words)) });
+        self
+    }
+
+    /// The same effect, with steps in its colour: a judge then accepts either side of a step that is very near.
+    pub const fn in_steps(mut self) -> Self {
+        self.hooks.has_steps = true;
         self
     }
 
@@ -204,7 +233,22 @@ impl Stack {
 
     /// Finishes a pixel by every image effect in order.
     pub fn finish(&self, pixel: Pixel, picture: &Picture) -> Pixel {
-        self.each(|hooks| hooks.image).fold(pixel, |pixel, (finish, words)| finish(pixel, picture, words))
+        self.each(|hooks| hooks.image).fold(pixel, |pixel, (hook, words)| (hook.finish)(pixel, picture, words))
+    }
+
+    /// Does an effect finish pixels?
+    pub fn finishes(&self) -> bool {
+        self.each(|hooks| hooks.image).next().is_some()
+    }
+
+    /// Does an effect read the picture before this one?
+    pub fn reads_previous(&self) -> bool {
+        self.each(|hooks| hooks.image).any(|(hook, _)| hook.reads_previous)
+    }
+
+    /// Does an effect's colour have steps?
+    pub fn has_steps(&self) -> bool {
+        self.0.iter().any(|enabled| enabled.effect.hooks.has_steps)
     }
 
     /// Effects with a certain hook, in order: the hook and the parameter words.

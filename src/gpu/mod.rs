@@ -67,6 +67,8 @@ pub struct Renderer {
     distrust: bool,
     target: Option<(wgpu::Texture, wgpu::TextureView)>,
     last: Option<Plan>,
+    /// What the colour buffer shows, where an effect will read it as the picture before; none: nothing of use.
+    past: Option<(View, Stack)>,
     pending: VecDeque<Pending>,
 }
 
@@ -91,6 +93,7 @@ impl Renderer {
             distrust: false,
             target: None,
             last: None,
+            past: None,
             pending: VecDeque::new(),
         }
     }
@@ -158,6 +161,7 @@ impl Renderer {
         }
         self.capacities = first_capacities(scene);
         self.distrust = false;
+        self.past = None;
         self.scene = Some(scene.clone());
         Ok(())
     }
@@ -185,6 +189,7 @@ impl Renderer {
         if plan.key.listed_tiles {
             self.fill_background(&mut encoder, view);
         }
+        self.keep_previous(&mut encoder, &plan.key, view, stack);
         self.record(&mut encoder, &plan.key, &passes, view)?;
         self.present(&mut encoder, view);
         let pending = Pending::stage(&self.gpu, &mut encoder, Some(self.buffers.get("counters")), self.timer.as_ref());
@@ -237,7 +242,35 @@ impl Renderer {
         Some(Report { gpu_ms: times.total_ms, passes: times.passes, counters, redraw })
     }
 
-    /// Copies rows of background over the picture, for resolves that leave empty tiles alone.
+    /// Begins anew: the next picture stands after nothing but background.
+    pub fn forget(&mut self) {
+        self.past = None;
+    }
+
+    /// Makes the colour buffer hold the picture before this one where an effect reads it, and a copy that outlives the
+    /// resolve. A picture that is drawn again stands after the same one as before.
+    fn keep_previous(&mut self, encoder: &mut wgpu::CommandEncoder, key: &KernelKey, view: &View, stack: &Stack) {
+        if !key.reads_previous() {
+            self.past = None;
+            return;
+        }
+        let now = (view.clone(), stack.clone());
+        let bytes = 4 * u64::from(color_stride(view.width)) * u64::from(view.height);
+        match &self.past {
+            Some(past) if *past == now => {
+                encoder.copy_buffer_to_buffer(self.buffers.get("previous"), 0, self.buffers.get("color"), 0, bytes);
+            }
+            past => {
+                if past.as_ref().is_none_or(|(past, _)| [past.width, past.height] != [view.width, view.height]) {
+                    self.fill_background(encoder, view);
+                }
+                encoder.copy_buffer_to_buffer(self.buffers.get("color"), 0, self.buffers.get("previous"), 0, bytes);
+            }
+        }
+        self.past = Some(now);
+    }
+
+    /// Copies rows of background over the picture, for resolves that leave empty tiles alone, or what they come after.
     fn fill_background(&self, encoder: &mut wgpu::CommandEncoder, view: &View) {
         let (from, to) = (self.buffers.get("background"), self.buffers.get("color"));
         let row = 4 * u64::from(color_stride(view.width));

@@ -49,7 +49,9 @@ impl Renderer {
         buffers.keep(|name| match name {
             "queues" => key.has_queues(),
             "args" => key.has_queues() || key.listed_tiles,
-            "marks" | "background" => key.listed_tiles,
+            "marks" => key.listed_tiles,
+            "background" => key.listed_tiles || key.reads_previous(),
+            "previous" => key.reads_previous(),
             "pieces" => key.has_clipping,
             "effects" => !parameters.is_empty(),
             "depth_keys" | "owners" => key.visibility == Visibility::Split32,
@@ -116,6 +118,11 @@ impl Renderer {
         buffers.ensure(gpu, "color", picture + 4 * tiles, STORAGE, "the picture, 4 bytes per pixel, and the list of tiles to resolve")?;
         if key.listed_tiles {
             buffers.ensure(gpu, "marks", 4 * tiles, STORAGE, "which 8 x 8 tiles the resolve must visit")?;
+        }
+        if key.reads_previous() {
+            buffers.ensure(gpu, "previous", picture, STORAGE, "the picture before this one, which an effect keeps")?;
+        }
+        if key.listed_tiles || key.reads_previous() {
             let rows = background_word(view).repeat((color_stride(view.width) * BACKGROUND_ROWS) as usize);
             buffers.fill(gpu, "background", &rows, STORAGE, "a few rows of background, copied all over the picture first")?;
         }

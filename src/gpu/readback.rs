@@ -72,15 +72,37 @@ pub struct Capture {
     pub geometry: Geometry,
     /// Layers per pixel, each covered sample counted before the depth test.
     pub layers: Option<Vec<u32>>,
+    /// The picture before this one, where an effect reads it.
+    pub previous: Option<Vec<[u8; 4]>>,
 }
 
 impl Renderer {
-    /// Draws, waits, draws again with larger queues while one overflows, and reads everything back.
+    /// The last of `moments`, drawn after those before it, as [`Self::capture`] does.
+    ///
+    /// # Panics
+    /// Without a moment.
+    pub fn capture_last(&mut self, moments: &[(View, Stack)], accuracy: &Accuracy) -> Result<Capture, RenderError> {
+        let ((view, stack), before) = moments.split_last().expect("a picture shows a moment");
+        self.forget();
+        for (view, stack) in before {
+            self.draw_whole(view, stack, accuracy)?;
+        }
+        self.capture_next(view, stack, accuracy)
+    }
+
+    /// Draws a picture that stands after none, waits, draws again with larger queues while one overflows, and reads
+    /// everything back.
     pub fn capture(&mut self, view: &View, stack: &Stack, accuracy: &Accuracy) -> Result<Capture, RenderError> {
+        self.forget();
+        self.capture_next(view, stack, accuracy)
+    }
+
+    /// The same of a picture that stands after the last one.
+    pub fn capture_next(&mut self, view: &View, stack: &Stack, accuracy: &Accuracy) -> Result<Capture, RenderError> {
         let counters = self.draw_whole(view, stack, accuracy)?;
         if view.pixels() == 0 {
             let frame = Frame { width: view.width, height: view.height, ..Frame::default() };
-            return Ok(Capture { frame, geometry: Geometry::default(), layers: Some(Vec::new()) });
+            return Ok(Capture { frame, geometry: Geometry::default(), layers: Some(Vec::new()), previous: None });
         }
         let key = self.last.as_ref().ok_or(RenderError::NoScene)?.key.clone();
         let (owner, depth) = self.read_visibility(&key, view)?;
@@ -88,7 +110,12 @@ impl Renderer {
         let geometry = self.read_geometry(&key)?;
         let frame = Frame { width: view.width, height: view.height, owner, key: depth, color, counters };
         let layers = self.count_layers(&key, view)?;
-        Ok(Capture { frame, geometry, layers: Some(layers) })
+        let previous = if key.reads_previous() {
+            Some(buffers::read_picture(&self.gpu, self.buffers.get("previous"), [view.width, view.height])?)
+        } else {
+            None
+        };
+        Ok(Capture { frame, geometry, layers: Some(layers), previous })
     }
 
     /// Draws until no queue overflows.

@@ -16,6 +16,8 @@ pub struct Accuracy {
     pub unexplained: u64,
     /// Pixels where two owners are right: depths closer than the float key's bound.
     pub band_pixels: u64,
+    /// Pixels where either side of a step of colour is right: so near that f32 and f64 may fall apart.
+    pub step_band_pixels: u64,
     /// Samples that a triangle covers and that were not drawn.
     pub holes: u64,
     /// Samples that were drawn more often than they are covered.
@@ -42,9 +44,9 @@ pub struct Accuracy {
     pub decisions_wrong: u64,
     /// Counters of rejected and degenerate triangles that are not the oracle's.
     pub counters_wrong: u64,
-    /// Largest difference of a colour channel, of 255.
+    /// Largest difference of a colour channel from the nearest right answer, of 255.
     pub max_colour_delta: u8,
-    /// Root mean square over all channels, of 255.
+    /// Root mean square of that over all channels, of 255.
     pub rms_colour_delta: f64,
 }
 
@@ -93,12 +95,14 @@ impl ErrorFigures {
 #[derive(Clone, Debug, PartialEq)]
 pub struct Verdict {
     pub accuracy: Accuracy,
-    /// What the oracle draws from the same snapped vertices.
+    /// What the oracle draws from the same snapped vertices; in the step band, the right answer nearest to the picture.
     pub expected: crate::frame::Frame,
+    /// Which pixels lie in the step band; empty for a look without steps.
+    pub step_band: Vec<bool>,
 }
 
 /// What may differ in a picture that still passes. Everything that is judged as exact has no budget.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Budget {
     /// Largest difference of a colour channel, of 255.
     pub max_colour_delta: u8,
@@ -106,12 +110,14 @@ pub struct Budget {
     pub max_band_pixels: u64,
     /// Most pixels explained by the snap.
     pub max_explained: u64,
+    /// Largest share of the pixels that may lie in the band of colour steps.
+    pub max_step_share: f64,
 }
 
 impl Default for Budget {
-    /// One step of a channel; bands are counted and not capped.
+    /// One step of a channel; a small share of pixels near colour steps; other bands are counted and not capped.
     fn default() -> Self {
-        Self { max_colour_delta: 1, max_band_pixels: u64::MAX, max_explained: u64::MAX }
+        Self { max_colour_delta: 1, max_band_pixels: u64::MAX, max_explained: u64::MAX, max_step_share: 0.03 }
     }
 }
 
@@ -135,6 +141,7 @@ impl Accuracy {
             (self.counters_wrong, 0, "counters of rejected or degenerate triangles are wrong"),
             (self.explained_by_snap, budget.max_explained, "pixels differ because vertices snapped apart"),
             (self.band_pixels, budget.max_band_pixels, "pixels lie in the depth band"),
+            (self.step_band_pixels, (self.pixels as f64 * budget.max_step_share) as u64, "pixels lie in the band of colour steps"),
             (self.max_colour_delta.into(), budget.max_colour_delta.into(), "of 255 is the largest colour difference"),
         ];
         let sentence = |&(count, limit, what): &(u64, u64, &str)| {

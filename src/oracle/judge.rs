@@ -9,12 +9,14 @@ use rayon::prelude::*;
 use super::{
     coverage::{Coverage, Sample, corner_places, corner_records, cover_by, draw_of, triangles},
     decide::{decide, wrong},
-    empty, frame,
+    empty,
+    finish::Seen,
+    frame,
     moved::{Corner, Mover},
     order,
     project::{Clip, half_size, project_moved},
     rules::Rules,
-    surface::shade,
+    steps::Answers,
 };
 use crate::{
     effects::Stack,
@@ -31,14 +33,10 @@ use crate::{
 /// Relative spacing of f32.
 const ULP: f64 = 1.0 / (1 << 23) as f64;
 
-/// Judges `frame`, which an adapter drew of `scene` through `geometry`, with the number of hits per sample in `layers`
-/// where it counts them. Images have the size of `view`, and `geometry` has a record per vertex of every draw.
+/// Judges `frame`, the first picture of its kind, as [`judge_after`] does.
 ///
 /// # Errors
-/// When a placement or the number of triangles exceeds what the arithmetic holds.
-///
-/// # Panics
-/// When an image or the geometry has another size than the view and the scene say.
+/// As [`judge_after`].
 pub fn judge(
     scene: &Scene,
     view: &View,
@@ -47,9 +45,30 @@ pub fn judge(
     geometry: &Geometry,
     layers: Option<&[u32]>,
 ) -> Result<Verdict, DrawError> {
+    judge_after(scene, view, stack, adapter, geometry, layers, None)
+}
+
+/// Judges `frame`, which an adapter drew of `scene` through `geometry`, with the number of hits per sample in `layers`
+/// where it counts them, and `previous` the adapter's own picture before it. Images have the size of `view`, and `geometry`
+/// has a record per vertex of every draw.
+///
+/// # Errors
+/// When a placement or the number of triangles exceeds what the arithmetic holds.
+///
+/// # Panics
+/// When an image or the geometry has another size than the view and the scene say.
+pub fn judge_after(
+    scene: &Scene,
+    view: &View,
+    stack: &Stack,
+    adapter: &Frame,
+    geometry: &Geometry,
+    layers: Option<&[u32]>,
+    previous: Option<&[[u8; 4]]>,
+) -> Result<Verdict, DrawError> {
     let draws = draws(scene, view)?;
     if view.pixels() == 0 {
-        return Ok(Verdict { accuracy: Accuracy::default(), expected: empty(view) });
+        return Ok(Verdict { accuracy: Accuracy::default(), expected: empty(view), step_band: Vec::new() });
     }
     assert_eq!([adapter.owner.len(), adapter.key.len(), adapter.color.len()], [view.pixels(); 3], "the frame has another size");
     let mut own = project_moved(scene, &draws, view, stack);
@@ -63,7 +82,10 @@ pub fn judge(
     let rules = Rules::of(stack, geometry);
     let rules = if is_free { rules } else { rules.ordered(stack, &given, view) };
     let coverage = cover_by(&rules, &given, view, Some(&adapter.owner));
-    let colors = shade(scene, &draws, view, stack, &adapter.owner, geometry);
+    let seen = Seen { owners: &adapter.owner, keys: &adapter.key, previous };
+    let answers = Answers::of(scene, &draws, view, stack, &seen, geometry);
+    let colors = answers.nearest(&adapter.color);
+    let step_band = answers.band();
     let vertices = vertex_faults(scene, &draws, view, stack, geometry, &own);
 
     let mut accuracy = Accuracy { pixels: view.pixels() as u64, ..Default::default() };
@@ -72,6 +94,7 @@ pub fn judge(
         _ => judge_samples(&mut accuracy, &coverage, adapter, layers),
     }
     judge_colors(&mut accuracy, &colors, adapter);
+    accuracy.step_band_pixels = step_band.iter().filter(|is_band| **is_band).count() as u64;
     judge_counters(&mut accuracy, &counters, adapter);
     judge_vertices(&mut accuracy, &vertices);
     accuracy.decisions_wrong = wrong(scene, &draws, view, stack, geometry);
@@ -82,8 +105,13 @@ pub fn judge(
     );
 
     let owners = coverage.owners();
-    let colors = if owners == adapter.owner { colors } else { shade(scene, &draws, view, stack, &owners, geometry) };
-    Ok(Verdict { accuracy, expected: frame(view, &coverage, colors, counters) })
+    let colors = if owners == adapter.owner {
+        colors
+    } else {
+        let seen = Seen { owners: &owners, keys: &coverage.keys(), previous };
+        Answers::of(scene, &draws, view, stack, &seen, geometry).nearest(&adapter.color)
+    };
+    Ok(Verdict { accuracy, expected: frame(view, &coverage, colors, counters), step_band })
 }
 
 /// Is the adapter's owner right, exactly or as one of the two answers of the depth band?

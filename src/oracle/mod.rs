@@ -12,20 +12,22 @@
 mod clip;
 mod coverage;
 mod decide;
+mod finish;
 mod judge;
 mod moved;
 mod order;
 mod project;
 mod rules;
+mod steps;
 mod surface;
 
 pub use coverage::{Coverage, OrientedTriangle, Sample, cover, cover_by, depth_bound, owns, triangles};
 pub use decide::decide;
-pub use judge::{judge, snap_bounds};
+pub use finish::{Seen, shade};
+pub use judge::{judge, judge_after, snap_bounds};
 pub use order::Cut;
 pub use project::{project, project_moved};
 pub use rules::Rules;
-pub use surface::shade;
 
 use crate::{
     effects::Stack,
@@ -37,11 +39,19 @@ use crate::{
     },
 };
 
-/// The true picture of `scene`; empty when `view` has no pixels.
+/// The true picture of `scene`, the first of its kind; empty when `view` has no pixels.
 ///
 /// # Errors
 /// When a placement or the number of triangles exceeds what the arithmetic holds.
 pub fn render(scene: &Scene, view: &View, stack: &Stack) -> Result<Frame, DrawError> {
+    render_after(scene, view, stack, None)
+}
+
+/// The true picture of `scene` that follows `previous`, a picture of the same size.
+///
+/// # Errors
+/// As [`render`].
+pub fn render_after(scene: &Scene, view: &View, stack: &Stack, previous: Option<&[[u8; 4]]>) -> Result<Frame, DrawError> {
     let draws = draws(scene, view)?;
     if view.pixels() == 0 {
         return Ok(empty(view));
@@ -50,9 +60,24 @@ pub fn render(scene: &Scene, view: &View, stack: &Stack) -> Result<Frame, DrawEr
     geometry.decisions = decide(scene, &draws, view, stack, &geometry);
     let (triangles, counters) = triangles(scene, &draws, &geometry);
     let coverage = cover_by(&Rules::of(stack, &geometry).ordered(stack, &triangles, view), &triangles, view, None);
-    let owner = coverage.owners();
-    let color = shade(scene, &draws, view, stack, &owner, &geometry);
+    let seen = Seen { owners: &coverage.owners(), keys: &coverage.keys(), previous };
+    let color = shade(scene, &draws, view, stack, &seen, &geometry);
     Ok(frame(view, &coverage, color, counters))
+}
+
+/// The true picture of the last of `moments`, drawn after those before it, all of one size.
+///
+/// # Errors
+/// As [`render`].
+///
+/// # Panics
+/// Without a moment.
+pub fn render_last(scene: &Scene, moments: &[(View, Stack)]) -> Result<Frame, DrawError> {
+    let mut last: Option<Frame> = None;
+    for (view, stack) in moments {
+        last = Some(render_after(scene, view, stack, last.as_ref().map(|frame| frame.color.as_slice()))?);
+    }
+    Ok(last.expect("a picture shows a moment"))
 }
 
 /// The picture of a view without pixels: nothing was drawn, so nothing was counted.

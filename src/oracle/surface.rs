@@ -1,4 +1,4 @@
-//! Shading in f64: what the sample of an owner knows about its surface, the effects, and the bytes of the picture.
+//! Shading in f64: what the sample of an owner knows about its surface, and the effects on it.
 
 use glam::{DMat3, DVec2, DVec3, DVec4};
 use rayon::prelude::*;
@@ -12,18 +12,26 @@ use super::{
 use crate::{
     effects::{Stack, Surface, hooks::Shape},
     frame::{Geometry, SnappedVertex, vertex_flags},
-    math::srgb_byte,
+    math::srgb,
     scene::{Accessor, Scene, camera::View, draw::Draw},
 };
 
 /// Below this squared length, at unit scale, a vector has no direction.
 pub(super) const DEGENERATE: f64 = 1e-12;
 
-/// Colours of all pixels, given who owns them. Row-major, gamma-encoded; the background where nobody does.
+/// Surface colours of all pixels, given who owns them, with every step of colour moved by `nudge`. Row-major,
+/// gamma-encoded; `background` where nobody does.
 ///
 /// `geometry` supplies the snapped corners that carry the weights; owners that were cut are weighted in clip space.
-pub fn shade(scene: &Scene, draws: &[Draw], view: &View, stack: &Stack, owners: &[u32], geometry: &Geometry) -> Vec<[u8; 4]> {
-    let background = encoded(DVec4::from_array(view.background.map(f64::from)));
+pub fn surfaces(
+    scene: &Scene,
+    draws: &[Draw],
+    view: &View,
+    stack: &Stack,
+    (owners, background): (&[u32], DVec4),
+    geometry: &Geometry,
+    nudge: f64,
+) -> Vec<DVec4> {
     let width = view.width.max(1) as usize;
     let ranks = ranks(scene, draws, view, stack, geometry);
     let row = |(y, owners): (usize, &[u32])| {
@@ -36,7 +44,7 @@ pub fn shade(scene: &Scene, draws: &[Draw], view: &View, stack: &Stack, owners: 
             match &triangle {
                 Some(triangle) => {
                     let rank = ranks.get(owner as usize).copied().unwrap_or(0.0);
-                    encoded(stack.shade(Surface { rank, ..triangle.surface(view, x, y) }).color)
+                    encoded(stack.shade(Surface { rank, nudge, ..triangle.surface(view, x, y) }).color)
                 }
                 None => background,
             }
@@ -46,10 +54,9 @@ pub fn shade(scene: &Scene, draws: &[Draw], view: &View, stack: &Stack, owners: 
     owners.par_chunks(width).enumerate().flat_map_iter(row).collect()
 }
 
-/// Linear RGBA as sRGB bytes; alpha is not gamma-encoded.
-fn encoded(color: DVec4) -> [u8; 4] {
-    let alpha = (255.0 * color.w.clamp(0.0, 1.0) + 0.5).floor() as u8;
-    [srgb_byte(color.x), srgb_byte(color.y), srgb_byte(color.z), alpha]
+/// Linear RGBA as sRGB, each 0 to 1; alpha is not gamma-encoded.
+fn encoded(color: DVec4) -> DVec4 {
+    DVec4::new(srgb(color.x), srgb(color.y), srgb(color.z), color.w.clamp(0.0, 1.0))
 }
 
 /// How a triangle's corners share a sample.
@@ -164,6 +171,7 @@ impl Triangle {
             Some(_) => -view.forward,
             None => (view.eye - position).try_normalize().unwrap_or(-view.forward),
         };
+        let depth_m = mixed(weights, self.depths_m);
         let smooth = self.normals.and_then(|normals| self.smooth_normal(weights, normals));
         let normal = smooth.or(self.flat_normal).unwrap_or(toward_eye);
         Surface {
@@ -175,9 +183,11 @@ impl Triangle {
             center: self.center,
             center_screen: self.center_screen.unwrap_or(screen),
             screen,
+            pixel,
             shares,
             edge_px,
             depth_m,
+            pixel_m: view.ndc_axes[1].length() * 2.0 / f64::from(view.height) * if view.linear_depth_m.is_some() { 1.0 } else { depth_m },
             flat_depth_m: self.depths_m.iter().sum::<f64>() / 3.0,
             range_m: DVec2::from_array(view.scene_range_m),
             owner: self.owner,

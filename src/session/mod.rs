@@ -10,7 +10,7 @@ use std::path::PathBuf;
 use glam::{DMat4, DVec3};
 
 use crate::{
-    effects::Stack,
+    effects::{Stack, smear::Smear},
     math::rotation_y,
     scene::{
         Scene,
@@ -179,6 +179,18 @@ impl Session {
         self.camera
             .or_else(|| scene.cameras.first().map(|c| c.pose))
             .unwrap_or_else(|| Camera::framing(&scene.bounds(), FRAMING_DIRECTION, aspect))
+    }
+
+    /// What the pictures show that lead up to this one, each a view and a stack, and last this one itself: more than one
+    /// where an effect keeps the picture before.
+    pub fn moments(&self, scene: &Scene, size: [u32; 2]) -> Vec<(View, Stack)> {
+        let (frames, step_s) = Smear::of(&self.posed_stack()).map_or((0, 0.0), |smear| (smear.frames, f64::from(smear.step_s)));
+        let moment = |before: u32| {
+            let clock = Clock { time_s: self.clock.time_s - f64::from(before) * step_s, ..self.clock };
+            let then = Self { clock, ..self.clone() };
+            (then.view(scene, size), then.posed_stack())
+        };
+        (0..=frames).rev().map(moment).collect()
     }
 
     /// The view of `scene` on a target of `size` pixels.

@@ -248,6 +248,16 @@ impl KernelKey {
         self.has_clipping || self.has_medium || self.has_large
     }
 
+    /// Does an effect finish pixels? Then the resolve visits all of them, empty ones too.
+    pub fn has_image(&self) -> bool {
+        self.effects.iter().any(|effect| effect.hooks.image.is_some())
+    }
+
+    /// Does an effect read the picture before this one?
+    pub fn reads_previous(&self) -> bool {
+        self.effects.iter().any(|effect| effect.hooks.image.is_some_and(|hook| hook.reads_previous))
+    }
+
     /// Side of the pixel square that a workgroup of the resolve visits; listed tiles are the small ones that are marked.
     pub const fn tile_side(&self) -> u32 {
         if self.listed_tiles { 8 } else { 16 }
@@ -334,6 +344,7 @@ impl KernelKey {
             (true, true) => "triangles",
         };
         let shape = if self.moves() { "moved" } else { "still" };
+        let finish = if self.has_image() { "image" } else { "none" };
         let mut slots = vec![
             ("corners", format!("slots/corners/{records}")),
             ("sources", format!("slots/sources/{records}")),
@@ -351,6 +362,7 @@ impl KernelKey {
             ("pixels", format!("slots/pixels/{pixels}")),
             ("coverage", format!("slots/coverage/{}", if self.shape == Shape::Boxes { "boxes" } else { "fixed8" })),
             ("owner", format!("slots/owner/{}", self.visibility.name())),
+            ("finish", format!("slots/finish/{finish}")),
         ];
         if let Some(phase) = pass.phase() {
             let file = match phase {
@@ -426,6 +438,7 @@ impl fmt::Display for KernelKey {
             ("planes", self.has_planes),
             ("moved", self.moves()),
             ("parted", self.parts_corners()),
+            ("image", self.has_image()),
             ("orthographic", !self.perspective),
         ] {
             if is_on {

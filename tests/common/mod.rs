@@ -97,7 +97,8 @@ pub fn view(scene: &Scene, size: [u32; 2]) -> View {
 /// Draws and judges.
 pub fn judged(renderer: &mut Renderer, scene: &Arc<Scene>, view: &View, stack: &Stack, accuracy: &Accuracy) -> (Capture, Verdict) {
     let capture = captured(renderer, scene, view, stack, accuracy);
-    let verdict = oracle::judge(scene, view, stack, &capture.frame, &capture.geometry, capture.layers.as_deref())
+    let (layers, previous) = (capture.layers.as_deref(), capture.previous.as_deref());
+    let verdict = oracle::judge_after(scene, view, stack, &capture.frame, &capture.geometry, layers, previous)
         .unwrap_or_else(|error| panic!("{}: {error}", scene.name));
     (capture, verdict)
 }
@@ -110,6 +111,18 @@ pub fn captured(renderer: &mut Renderer, scene: &Arc<Scene>, view: &View, stack:
         panic!("{}: the device says {error}", scene.name);
     }
     capture
+}
+
+/// The picture of a look, after those that lead up to it, with its verdict.
+pub fn judged_look(renderer: &mut Renderer, scene: &Arc<Scene>, session: &Session, accuracy: &Accuracy) -> (Capture, Verdict) {
+    let moments = session.moments(scene, session.output.size);
+    renderer.set_scene(scene).unwrap_or_else(|error| panic!("{}: {error}", scene.name));
+    let capture = renderer.capture_last(&moments, accuracy).unwrap_or_else(|error| panic!("{}: {error}", scene.name));
+    let (view, stack) = moments.last().expect("a look shows a moment");
+    let (layers, previous) = (capture.layers.as_deref(), capture.previous.as_deref());
+    let verdict = oracle::judge_after(scene, view, stack, &capture.frame, &capture.geometry, layers, previous)
+        .unwrap_or_else(|error| panic!("{}: {error}", scene.name));
+    (capture, verdict)
 }
 
 /// Largest share of pixels that may lie in the depth band, where two owners are right; 16 pixels are always allowed.

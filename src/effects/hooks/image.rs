@@ -7,7 +7,7 @@ use crate::params::Params;
 /// A finished pixel of the picture; an image effect changes its colour and passes it on.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Pixel {
-    /// Linear RGBA so far.
+    /// Gamma-encoded RGBA so far, each 0 to 1: what the picture will hold, before it is rounded to bytes.
     pub color: DVec4,
     pub x: u32,
     pub y: u32,
@@ -27,11 +27,16 @@ pub struct Picture<'a> {
     pub draws: &'a [u32],
     /// The picture before this one, gamma-encoded; none for the first.
     pub previous: Option<&'a [[u8; 4]]>,
-    /// Linear RGBA where nothing is.
+    /// Gamma-encoded RGBA where nothing is; its colour is that of whole bytes.
     pub background: DVec4,
 }
 
 impl Picture<'_> {
+    /// Does the pixel lie in the picture?
+    pub fn has(&self, x: i64, y: i64) -> bool {
+        (0..i64::from(self.width)).contains(&x) && (0..i64::from(self.height)).contains(&y)
+    }
+
     /// Owner, depth key and draw of a pixel; those of the nearest pixel of the picture when it lies outside.
     pub fn at(&self, x: i64, y: i64) -> (u32, u32, u32) {
         let x = x.clamp(0, i64::from(self.width) - 1) as usize;
@@ -42,7 +47,17 @@ impl Picture<'_> {
     }
 }
 
+/// An image effect's function over its parameter words.
+#[derive(Clone, Copy)]
+pub struct ImageHook {
+    pub reads_previous: bool,
+    pub finish: fn(Pixel, &Picture, &[u32]) -> Pixel,
+}
+
 /// The f64 side of an effect on the image hook.
 pub trait ImageEffect: Params {
+    /// It reads [`Picture::previous`], so the picture before must be kept.
+    const READS_PREVIOUS: bool = false;
+
     fn finish(pixel: Pixel, picture: &Picture, params: &Self) -> Pixel;
 }

@@ -5,10 +5,11 @@ mod image;
 mod sample;
 mod slot;
 mod surface;
+pub mod tone;
 mod vertex;
 
 pub use front::{Front, Pattern};
-pub use image::{ImageEffect, Picture, Pixel};
+pub use image::{ImageEffect, ImageHook, Picture, Pixel};
 pub use sample::{Facts, Sample, SampleEffect, SampleHook};
 pub use slot::{Shape, Slot};
 pub use surface::{Surface, SurfaceEffect};
@@ -24,13 +25,15 @@ pub struct Hooks {
     /// What colour is it?
     pub surface: Option<fn(Surface, &[u32]) -> Surface>,
     /// Finish the pixel.
-    pub image: Option<fn(Pixel, &Picture, &[u32]) -> Pixel>,
+    pub image: Option<ImageHook>,
     /// The part of the rasterizer that the effect replaces.
     pub slot: Option<Slot>,
+    /// Its colour has steps, decided on a value plus [`Surface::nudge`].
+    pub has_steps: bool,
 }
 
 impl Hooks {
-    pub const NONE: Self = Self { vertex: None, sample: None, surface: None, image: None, slot: None };
+    pub const NONE: Self = Self { vertex: None, sample: None, surface: None, image: None, slot: None, has_steps: false };
 
     /// Names for listings: `sample + surface`.
     pub fn names(&self) -> String {

@@ -23,6 +23,8 @@ pub struct Surface {
     pub center_screen: DVec2,
     /// Where the sample stands in the picture.
     pub screen: DVec2,
+    /// The same in pixels, right and down.
+    pub pixel: DVec2,
     /// Shares of the three corners at the sample, measured on the screen: 1 at the corner, 0 on the opposite edge. Of a
     /// triangle that was clipped, measured on its plane.
     pub shares: DVec3,
@@ -30,6 +32,8 @@ pub struct Surface {
     pub edge_px: DVec3,
     /// Distance from the eye along the viewing direction, metres.
     pub depth_m: f64,
+    /// Side of a pixel at the sample's depth, metres, across the view.
+    pub pixel_m: f64,
     /// Mean of `depth_m` over the triangle's corners.
     pub flat_depth_m: f64,
     /// Nearest and farthest `depth_m` of the scene's box.

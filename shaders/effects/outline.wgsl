@@ -1,0 +1,56 @@
+// Outline: lines where the picture's integers change: at silhouettes, between objects, at steps of depth.
+//@ use common/image
+//@ use common/color
+
+struct Outline {
+    color: vec4f,
+    width_px: u32,
+    side: u32,
+    silhouette: u32,
+    objects: u32,
+    depth: u32,
+    jump: f32,
+}
+
+fn outline(pixel: Pixel, p: Outline) -> Pixel {
+    var q = pixel;
+    let at = vec2i(vec2u(q.x, q.y));
+    let here = image_at(at.x, at.y);
+    let reach = i32(p.width_px);
+    var is_line = false;
+    for (var dy = -reach; dy <= reach && !is_line; dy += 1) {
+        for (var dx = -reach; dx <= reach && !is_line; dx += 1) {
+            let squared = dx * dx + dy * dy;
+            if squared >= 1 && squared <= reach * reach { is_line = outline_is_edge(p, at, here, vec2i(dx, dy)); }
+        }
+    }
+    if is_line { q.color += (vec4f(color_encode(p.color.rgb), 1.0) - q.color) * p.color.a; }
+    return q;
+}
+
+// Does a line run at a pixel because of another? Each is owner, key and draw.
+fn outline_is_edge(p: Outline, at: vec2i, here: vec3u, step: vec2i) -> bool {
+    if !image_has(at.x + step.x, at.y + step.y) { return false; }
+    let there = image_at(at.x + step.x, at.y + step.y);
+    let is_empty = here.x == IMAGE_NO_OWNER;
+    if is_empty || there.x == IMAGE_NO_OWNER {
+        let is_right_side = p.side == OUTLINE_SIDE_BOTH || is_empty == (p.side == OUTLINE_SIDE_OUTSIDE);
+        return p.silhouette != 0u && here.x != there.x && is_right_side;
+    }
+    if here.z != there.z {
+        // Equal keys: the later object counts as behind.
+        let is_behind = here.y < there.y || (here.y == there.y && here.z > there.z);
+        return p.objects != 0u && (p.side == OUTLINE_SIDE_BOTH || is_behind == (p.side == OUTLINE_SIDE_OUTSIDE));
+    }
+    if p.depth == 0u || !image_has(at.x - step.x, at.y - step.y) { return false; }
+    let beyond = image_at(at.x - step.x, at.y - step.y);
+    if beyond.z != here.z || beyond.x == IMAGE_NO_OWNER { return false; }
+    // What bends away from a straight slope; a slope alone is no jump. Keys end at the bits of 1.0: it fits.
+    let bend = i32(there.y) + i32(beyond.y) - 2 * i32(here.y);
+    let jump = i32(p.jump * 8388608.0);
+    switch p.side {
+        case OUTLINE_SIDE_OUTSIDE: { return bend > jump; }
+        case OUTLINE_SIDE_INSIDE: { return bend < -jump; }
+        default: { return abs(bend) > jump; }
+    }
+}

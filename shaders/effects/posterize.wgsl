@@ -1,0 +1,21 @@
+// Posterize: few levels of colour, evenly spaced to the eye.
+//@ use common/image
+
+struct Posterize {
+    by: u32,
+    levels: u32,
+    amount: f32,
+}
+
+fn posterize(pixel: Pixel, p: Posterize) -> Pixel {
+    var q = pixel;
+    let last = f32(p.levels - 1u);
+    let base = q.color.rgb;
+    var flat = clamp(floor(base * last + 0.5) / last, vec3f(0.0), vec3f(1.0));
+    if p.by == POSTERIZE_BY_BRIGHTNESS {
+        let brightest = max(max(base.r, base.g), base.b);
+        flat = base * (clamp(floor(brightest * last + 0.5) / last, 0.0, 1.0) / max(brightest, 1e-6));
+    }
+    q.color = vec4f(base + (flat - base) * p.amount, q.color.a);
+    return q;
+}

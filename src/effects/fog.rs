@@ -1,0 +1,36 @@
+//! Fog: blends towards a colour with distance (Beer–Lambert).
+//!
+//! What is left of the surface's own light is exp(-density · way), where the way is the depth beyond the start, and
+//! thinner above a level.
+
+use super::{Effect, Surface, SurfaceEffect, hooks::tone::rgb};
+use crate::{params, params::Color};
+
+params! {
+    pub struct Fog {
+        /// Colour of the fog, linear.
+        color: Color = [0.36, 0.44, 0.55, 1.0];
+        /// Extinction: how much one metre takes away.
+        density: f32 = 0.35, hard 0.0..=1e4, soft 0.0..=2.0, unit "per m";
+        /// Depth at which the fog begins.
+        start_m: f32 = 3.0, hard 0.0..=1e6, soft 0.0..=20.0, unit "m";
+        /// How fast the fog thins out above the level; 0 is as thick everywhere.
+        falloff: f32 = 0.0, hard 0.0..=1e3, soft 0.0..=4.0, unit "per m";
+        /// Height up to which the fog is whole, world space.
+        level_m: f32 = 0.0, hard -1e6..=1e6, soft -3.0..=3.0, unit "m";
+    }
+}
+
+pub const EFFECT: Effect = Effect::surface::<Fog>("fog", "Fog", "blends towards a colour with distance");
+
+impl SurfaceEffect for Fog {
+    fn apply(mut s: Surface, p: &Self) -> Surface {
+        let above = (s.position.y - f64::from(p.level_m)).max(0.0);
+        let thickness = f64::from(p.density) * libm::exp(-above * f64::from(p.falloff));
+        let way = (s.depth_m - f64::from(p.start_m)).max(0.0);
+        let share = 1.0 - libm::exp(-thickness * way);
+        let base = s.color.truncate();
+        s.color = (base + (rgb(p.color) - base) * share).extend(s.color.w);
+        s
+    }
+}

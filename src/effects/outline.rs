@@ -1,0 +1,94 @@
+//! Outline: lines where the picture's integers change: at silhouettes, between objects, at steps of depth.
+//!
+//! Owners and depth keys alone decide, so a line is the same on every adapter that has the same keys. The bits of a float
+//! are a logarithm in straight pieces: a relative step of depth is a difference of keys.
+
+use super::{
+    Effect,
+    hooks::{ImageEffect, Picture, Pixel, tone::encoded},
+};
+use crate::{
+    choice,
+    frame::NO_OWNER,
+    params,
+    params::{Color, Flag},
+};
+
+choice! {
+    /// Which side of an edge the line lies on.
+    pub enum Side {
+        /// The farther: round what is in front.
+        Outside = "outside",
+        /// The nearer: within what is in front.
+        Inside = "inside",
+        /// Both, twice as wide.
+        Both = "both",
+    }
+}
+
+params! {
+    pub struct Outline {
+        /// Colour of the line, linear; its alpha is the strength.
+        color: Color = [0.004, 0.004, 0.008, 1.0];
+        /// Width of the line.
+        width_px: u32 = 2, hard 1.0..=8.0, unit "px";
+        /// Which side of an edge the line lies on.
+        side: Side = Side::Outside as u32;
+        /// Lines between what is drawn and the background.
+        silhouette: Flag = 1;
+        /// Lines between objects.
+        objects: Flag = 1;
+        /// Lines where the depth jumps within an object.
+        depth: Flag = 1;
+        /// The least jump that counts, as a share of the distance.
+        jump: f32 = 0.05, hard 0.0001..=1.0, soft 0.001..=0.5, log true;
+    }
+}
+
+pub const EFFECT: Effect =
+    Effect::new::<Outline>("outline", "Outline", "lines at silhouettes, between objects and at steps of depth").on_image::<Outline>();
+
+impl ImageEffect for Outline {
+    fn finish(mut pixel: Pixel, picture: &Picture, p: &Self) -> Pixel {
+        let (x, y) = (i64::from(pixel.x), i64::from(pixel.y));
+        let here = picture.at(x, y);
+        let reach = i64::from(p.width_px);
+        let is_line = (-reach..=reach).any(|dy| {
+            (-reach..=reach).any(|dx| {
+                (1..=reach * reach).contains(&(dx * dx + dy * dy))
+                    && picture.has(x + dx, y + dy)
+                    && p.is_edge(here, picture.at(x + dx, y + dy), || picture.has(x - dx, y - dy).then(|| picture.at(x - dx, y - dy)))
+            })
+        });
+        if is_line {
+            let (ink, strength) = (encoded(p.color), f64::from(p.color[3]));
+            pixel.color += (ink.truncate().extend(1.0) - pixel.color) * strength;
+        }
+        pixel
+    }
+}
+
+impl Outline {
+    /// Does a line run at a pixel because of another, whose opposite lies `beyond`? Each is owner, key and draw.
+    fn is_edge(&self, here: (u32, u32, u32), there: (u32, u32, u32), beyond: impl Fn() -> Option<(u32, u32, u32)>) -> bool {
+        let side = Side::of(self.side);
+        if here.0 == NO_OWNER || there.0 == NO_OWNER {
+            let is_right_side = side == Side::Both || (here.0 == NO_OWNER) == (side == Side::Outside);
+            return self.silhouette != 0 && here.0 != there.0 && is_right_side;
+        }
+        if here.2 != there.2 {
+            // Equal keys: the later object counts as behind.
+            let is_behind = (here.1, there.2) < (there.1, here.2);
+            return self.objects != 0 && (side == Side::Both || is_behind == (side == Side::Outside));
+        }
+        let Some(beyond) = beyond().filter(|beyond| self.depth != 0 && beyond.0 != NO_OWNER && beyond.2 == here.2) else { return false };
+        // What bends away from a straight slope; a slope alone is no jump.
+        let bend = i64::from(there.1) + i64::from(beyond.1) - 2 * i64::from(here.1);
+        let jump = (f64::from(self.jump) * f64::from(1 << 23)) as i64;
+        match side {
+            Side::Outside => bend > jump,
+            Side::Inside => bend < -jump,
+            Side::Both => bend.abs() > jump,
+        }
+    }
+}

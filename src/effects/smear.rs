@@ -1,0 +1,56 @@
+//! Smear: where nothing is drawn the picture before stays, and fades towards the background.
+//!
+//! Whole bytes fade by whole steps, so that a trail is the same on every adapter. A picture of its own stands after
+//! `frames` earlier ones, `step_s` apart, the first of which stands after nothing but background; a window that lets time
+//! run keeps the pictures that it showed.
+
+use glam::DVec4;
+
+use super::{
+    Effect,
+    hooks::{ImageEffect, Picture, Pixel},
+};
+use crate::{frame::NO_OWNER, params};
+
+params! {
+    pub struct Smear {
+        /// How much of the way to the background a trail goes from one picture to the next: 1 leaves none, 0 never ends.
+        fade: f32 = 0.12, hard 0.0..=1.0, soft 0.0..=0.5;
+        /// Earlier pictures that a single one is drawn after.
+        frames: u32 = 12, hard 0.0..=32.0;
+        /// Time from one of them to the next.
+        step_s: f32 = 0.04, hard 0.0..=60.0, soft 0.01..=0.5, unit "s";
+    }
+}
+
+pub const EFFECT: Effect =
+    Effect::new::<Smear>("smear", "Smear", "where nothing is drawn the picture before stays, and fades").on_image::<Smear>();
+
+impl ImageEffect for Smear {
+    const READS_PREVIOUS: bool = true;
+
+    fn finish(mut pixel: Pixel, picture: &Picture, p: &Self) -> Pixel {
+        let (owner, ..) = picture.at(pixel.x.into(), pixel.y.into());
+        if owner != NO_OWNER {
+            return pixel;
+        }
+        let background = picture.background.to_array().map(|c| (255.0 * c + 0.5).floor() as i64);
+        let place = pixel.y as usize * picture.width as usize + pixel.x as usize;
+        let previous = picture.previous.map_or(background, |previous| previous[place].map(i64::from));
+        // In units of 2^-16; a trail that fades at all takes a step at least, so it comes to its end.
+        let share = (f64::from(p.fade) * 65536.0) as i64;
+        let faded = |c: usize| {
+            let gap = background[c] - previous[c];
+            previous[c] + gap.signum() * ((gap.abs() * share + 65535) >> 16)
+        };
+        pixel.color = DVec4::from_array([0, 1, 2, 3].map(|c| faded(c) as f64 / 255.0));
+        pixel
+    }
+}
+
+impl Smear {
+    /// The smear of a stack with it.
+    pub fn of(stack: &super::Stack) -> Option<Self> {
+        stack.get(EFFECT.name).map(|enabled| super::read(&enabled.words))
+    }
+}

@@ -1,0 +1,72 @@
+//! From surface colours to the bytes of the picture: the image effects, and the one rounding.
+
+use glam::DVec4;
+use rayon::prelude::*;
+
+use super::surface::surfaces;
+use crate::{
+    effects::{
+        Stack,
+        hooks::{Picture, Pixel},
+    },
+    frame::Geometry,
+    math::srgb_byte,
+    scene::{Scene, camera::View, draw::Draw},
+};
+
+/// The integers that a picture is coloured from, row-major.
+#[derive(Clone, Copy, Debug)]
+pub struct Seen<'a> {
+    /// Global triangle id per pixel, [`crate::frame::NO_OWNER`] without one.
+    pub owners: &'a [u32],
+    /// Depth key per pixel, 0 without an owner.
+    pub keys: &'a [u32],
+    /// The picture before this one; none for the first.
+    pub previous: Option<&'a [[u8; 4]]>,
+}
+
+/// Bytes of all pixels, given who owns them. Row-major, gamma-encoded.
+pub fn shade(scene: &Scene, draws: &[Draw], view: &View, stack: &Stack, seen: &Seen, geometry: &Geometry) -> Vec<[u8; 4]> {
+    shade_nudged(scene, draws, view, stack, seen, geometry, 0.0)
+}
+
+/// The same, with every step of colour moved by `nudge`.
+pub(super) fn shade_nudged(
+    scene: &Scene,
+    draws: &[Draw],
+    view: &View,
+    stack: &Stack,
+    seen: &Seen,
+    geometry: &Geometry,
+    nudge: f64,
+) -> Vec<[u8; 4]> {
+    let background = background(view);
+    let colors = surfaces(scene, draws, view, stack, (seen.owners, background), geometry, nudge);
+    let first: Vec<u32> = draws.iter().map(|draw| draw.first_triangle).collect();
+    let picture = Picture {
+        width: view.width,
+        height: view.height,
+        owners: seen.owners,
+        keys: seen.keys,
+        draws: &first,
+        previous: seen.previous,
+        background,
+    };
+    let finished = |(i, color): (usize, DVec4)| {
+        let pixel = Pixel { color, x: i as u32 % view.width, y: i as u32 / view.width, nudge };
+        bytes(if stack.finishes() { stack.finish(pixel, &picture).color } else { color })
+    };
+    colors.into_par_iter().enumerate().map(finished).collect()
+}
+
+/// The background, gamma-encoded and rounded as a picture holds it.
+fn background(view: &View) -> DVec4 {
+    let [r, g, b, alpha] = view.background.map(f64::from);
+    let [r, g, b] = [r, g, b].map(|c| f64::from(srgb_byte(c)) / 255.0);
+    DVec4::new(r, g, b, alpha.clamp(0.0, 1.0))
+}
+
+/// Rounds to bytes, halves away from zero.
+fn bytes(color: DVec4) -> [u8; 4] {
+    color.to_array().map(|c| (255.0 * c.clamp(0.0, 1.0) + 0.5).floor() as u8)
+}

@@ -1,0 +1,44 @@
+//! Steps of colour: a value that lies on one in f64 may lie on its other side in f32, and then either answer is right.
+//!
+//! An effect decides a step on a value plus a nudge, so shading with a small nudge to either side finds out which pixels
+//! lie so near. They are the band: derived without a look at the result, counted, and capped by whoever has a budget.
+
+use super::finish::{Seen, shade_nudged};
+use crate::{
+    effects::Stack,
+    frame::Geometry,
+    scene::{Scene, camera::View, draw::Draw},
+};
+
+/// How far from a step a value may lie for both sides to be right; values are about 1 at most. 2^-15: a shade is some
+/// 2^7 operations that err by 2^-23 each, if all err alike, and the rest is room for `pow` and cancelled weights.
+pub const NUDGE: f64 = 1.0 / (1 << 15) as f64;
+
+/// The right pictures: one, or with steps three.
+pub struct Answers(Vec<Vec<[u8; 4]>>);
+
+impl Answers {
+    pub fn of(scene: &Scene, draws: &[Draw], view: &View, stack: &Stack, seen: &Seen, geometry: &Geometry) -> Self {
+        let nudges: &[f64] = if stack.has_steps() { &[0.0, -NUDGE, NUDGE] } else { &[0.0] };
+        Self(nudges.iter().map(|&nudge| shade_nudged(scene, draws, view, stack, seen, geometry, nudge)).collect())
+    }
+
+    /// Of every channel, the right answer that is nearest to the adapter's.
+    pub fn nearest(&self, adapter: &[[u8; 4]]) -> Vec<[u8; 4]> {
+        let channel = |i: usize, c: usize| {
+            let answers = self.0.iter().map(|answer| answer[i][c]);
+            answers.min_by_key(|answer| answer.abs_diff(adapter[i][c])).expect("there is an answer")
+        };
+        (0..adapter.len()).map(|i| [0, 1, 2, 3].map(|c| channel(i, c))).collect()
+    }
+
+    /// Which pixels have answers more than a step of 255 apart; empty where none can.
+    pub fn band(&self) -> Vec<bool> {
+        let [middle, others @ ..] = self.0.as_slice() else { return Vec::new() };
+        if others.is_empty() {
+            return Vec::new();
+        }
+        let differs = |i: usize| others.iter().any(|other| (0..4).any(|c| other[i][c].abs_diff(middle[i][c]) > 1));
+        (0..middle.len()).map(differs).collect()
+    }
+}
