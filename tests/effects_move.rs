@@ -3,7 +3,7 @@
 
 mod common;
 
-use std::{fs, path::Path};
+use std::{fs, path::Path, sync::Arc};
 
 use common::*;
 use glam::{DMat3, DVec2, DVec3};
@@ -14,12 +14,13 @@ use rasterlab::{
     },
     gpu::Renderer,
     math::hash_unit,
+    measure::Budget,
     oracle,
     params::Kind,
     plan::Tuning,
     scene::{
         Scene,
-        camera::{Camera, Projection},
+        camera::{Camera, Projection, View},
         draw::draws,
     },
     shader::{key::Visibility, library::Library},
@@ -82,7 +83,7 @@ fn every_builtin_scene_is_exact_under_every_moving_effect() {
         let scene = scene(query);
         let view = view(&scene, [320, 240]);
         // Small scenes take every way through the kernels, large ones the next in turn.
-        let count = if scene.triangle_count() <= 5000 { ways.len() } else { 1 };
+        let count = if scene.triangle_count() <= 3000 { ways.len() } else { 1 };
         for effect in MOVING {
             let stack = lit(suited(effect, &scene));
             for (rung, tuning) in ways.iter().cycle().skip(turn).take(count) {
@@ -111,7 +112,7 @@ fn all_moving_effects_together_are_exact_far_from_the_origin_inside_and_in_paral
     let flat = Camera { projection: Projection::Orthographic { height_m: 3.0 }, ..Camera::default() };
     let inside = Camera { eye: DVec3::new(0.2, -0.1, 0.3), target: DVec3::X, near_m: 0.05, ..Camera::default() };
     let cases = [
-        ("mirrored far away", std::sync::Arc::new(far), near),
+        ("mirrored far away", Arc::new(far), near),
         ("orthographic", scene("teapot?tess=5"), flat),
         ("inside the mesh", scene("sphere?triangles=3000"), inside),
     ];
@@ -154,10 +155,8 @@ fn an_effect_that_moves_nothing_changes_nothing() {
     }
 }
 
-/// Shares of its stated bound that an adapter uses, seen through a telescope, where a unit is a fraction of a micrometre.
-#[test]
-fn stated_bounds_hold_under_a_telescope_and_are_not_idle() {
-    let Some(mut renderer) = renderer() else { return };
+/// A few corners of a pebble, so close that a unit is a fraction of a micrometre.
+fn telescope() -> (Arc<Scene>, View) {
     let scene = scene("sphere?triangles=3000");
     let camera = Camera {
         eye: DVec3::new(0.9, 0.8, 3.0),
@@ -166,6 +165,14 @@ fn stated_bounds_hold_under_a_telescope_and_are_not_idle() {
         ..Camera::default()
     };
     let view = seen(&scene, &camera, [512, 512]);
+    (scene, view)
+}
+
+/// Shares of its stated bound that an adapter uses, seen through a telescope.
+#[test]
+fn stated_bounds_hold_under_a_telescope_and_are_not_idle() {
+    let Some(mut renderer) = renderer() else { return };
+    let (scene, view) = telescope();
     let draws = draws(&scene, &view).expect("a builtin fits");
     for effect in MOVING {
         let stack = suited(effect, &scene);
@@ -212,7 +219,7 @@ fn any_parameters_within_the_hard_ranges_are_drawn_exactly() {
     let Some(mut renderer) = renderer() else { return };
     let mut dice = Dice(7);
     let scenes = ["sphere?triangles=300", "teapot?tess=2", "near"].map(scene);
-    for case in 0..90 {
+    for case in 0..72 {
         let scene = &scenes[case % scenes.len()];
         let view = view(scene, [96, 72]);
         let mut stack = stack(&MOVING[case / 3 % 3..][..1]);
@@ -229,7 +236,7 @@ fn any_parameters_within_the_hard_ranges_are_drawn_exactly() {
         let (capture, verdict) = judged(&mut renderer, scene, &view, &stack, &Default::default());
         let sound = capture.geometry.vertices.iter().all(|v| v.depth.is_finite() && v.inv_w.is_finite());
         assert!(sound, "{what}: a corner is no number");
-        if let Err(faults) = exactness(&verdict.accuracy) {
+        if let Err(faults) = verdict.accuracy.within(&Budget::default()) {
             panic!("{what}: {faults}");
         }
     }
@@ -246,6 +253,7 @@ fn vertex(dice: &mut Dice) -> Vertex {
         normal,
         flat_normal,
         center: position - arm,
+        arm,
         center_screen: DVec2::new(0.4, 0.6),
         triangle: dice.roll() >> 8,
     }
@@ -300,6 +308,7 @@ fn exploding_and_turning_keeps_every_triangle_and_its_area() {
                 normal: normal.normalize(),
                 flat_normal: normal.normalize(),
                 center,
+                arm: position - center,
                 center_screen: DVec2::splat(0.5),
                 triangle: t,
             };
@@ -316,8 +325,10 @@ fn exploding_and_turning_keeps_every_triangle_and_its_area() {
 #[test]
 fn a_bound_grows_with_what_an_effect_is_given_and_with_what_it_does() {
     let mut dice = Dice(11);
-    let given = Slack { position_m: 1e-7, offset_m: 0.0, normal: 1e-7, flat_normal: 1e-7, center_m: 1e-7, center_screen: 1e-7 };
-    let coarser = Slack { position_m: 1e-5, offset_m: 1e-6, normal: 1e-5, flat_normal: 1e-5, center_m: 1e-5, center_screen: 1e-5 };
+    let given =
+        Slack { position_m: 1e-7, offset_m: 0.0, normal: 1e-7, flat_normal: 1e-7, center_m: 1e-7, arm_m: 1e-8, center_screen: 1e-7 };
+    let coarser =
+        Slack { position_m: 1e-5, offset_m: 1e-6, normal: 1e-5, flat_normal: 1e-5, center_m: 1e-5, arm_m: 1e-5, center_screen: 1e-5 };
     for effect in MOVING {
         let moving = suited(effect, &scene("sphere?triangles=200"));
         let still = resting(effect, &scene("sphere?triangles=200"));
@@ -326,13 +337,19 @@ fn a_bound_grows_with_what_an_effect_is_given_and_with_what_it_does() {
             assert_eq!(still.slack(here, given), given, "{effect} at rest");
             assert_eq!(still.moved(here), here, "{effect} at rest");
             let (fine, coarse) = (moving.slack(here, given), moving.slack(here, coarser));
-            assert!(fine.offset_m > 0.0 && fine.offset_m < 1e-5, "{effect}: {}", fine.offset_m);
+            assert!(fine.offset_m > 0.0 && fine.offset_m < 2e-5, "{effect}: {}", fine.offset_m);
             assert!(coarse.offset_m > fine.offset_m && coarse.normal >= fine.normal, "{effect}");
         }
     }
 }
 
 // ---------------------------------------------------------------- mutants
+
+fn still_life(query: &str) -> (Arc<Scene>, View) {
+    let scene = scene(query);
+    let view = view(&scene, [160, 120]);
+    (scene, view)
+}
 
 #[test]
 fn kernels_that_move_wrongly_are_caught() {
@@ -368,18 +385,21 @@ fn kernels_that_move_wrongly_are_caught() {
             "s.flat_normal = select(plane, -plane,",
             "let unused = select(plane, -plane,",
         ),
-        ("a sine of half the accuracy", "wobble", "common/sine", "y * 39.5367061", "y * 39.2"),
+        ("the last term of the sine is halved", "wobble", "common/sine", "y * 39.5367061", "y * 20.0"),
     ];
     let mut failures = Vec::new();
     for (i, (what, effect, file, from, to)) in mutants.into_iter().enumerate() {
-        let scene = scene(if file == "common/transform" { "near" } else { "sphere?triangles=200" });
-        let view = view(&scene, [160, 120]);
+        let (scene, view) = match file {
+            "common/sine" => telescope(),
+            "common/transform" => still_life("near"),
+            _ => still_life("sphere?triangles=200"),
+        };
         let mut stack = lit(suited(effect, &scene));
         if file == "slots/shape/moved" {
             stack.enable(Effect::find("facet").expect("there are facets"));
         }
         if effect == "wobble" {
-            set(&mut stack, effect, "amplitude_m", &[if file == "common/sine" { 500.0 } else { 0.15 }]);
+            set(&mut stack, effect, "amplitude_m", &[0.15]);
         }
         exact(&mut healthy, &scene, &view, &stack, &pinned(Visibility::Split32), &format!("without the mistake: {what}"));
         let library = folder.path().join(i.to_string());

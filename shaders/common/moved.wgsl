@@ -6,6 +6,7 @@ struct Vertex {
     normal: vec3f,
     flat_normal: vec3f,
     center: vec3f,
+    arm: vec3f,
     center_screen: vec2f,
     triangle: u32,
 }

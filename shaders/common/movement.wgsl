@@ -31,5 +31,7 @@ fn movement_normal(draw: u32, vertex: u32) -> vec3f {
 fn movement_clip(draw: u32, vertex: u32, id: u32, p: vec3f) -> vec4f {
     let offset = movement_held(movement_corner(draw, vertex, id, p).offset);
     let m = frame.clip_from_world;
-    return transform_clip(draw, p) + (m[0] * offset.x + m[1] * offset.y + m[2] * offset.z);
+    let clip = transform_clip(draw, p) + (m[0] * offset.x + m[1] * offset.y + m[2] * offset.z);
+    // What passes the far plane of parallel rays is held on it: depths below 0 are none.
+    return vec4f(clip.xy, max(clip.z, 0.0), clip.w);
 }

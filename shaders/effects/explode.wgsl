@@ -29,7 +29,7 @@ fn explode(vertex: Vertex, p: Explode) -> Vertex {
     let versine = 2.0 * half_sine * half_sine; // 1 - cosine, without a difference
     let n = v.flat_normal;
 
-    let arm = v.position + v.offset - v.center;
+    let arm = v.arm + v.offset;
     let turn = explode_turn(n, arm, sine, versine);
     v.offset += n * (p.amount_m * share) + turn - (arm + turn) * (p.shrink * share);
     v.normal += explode_turn(n, v.normal, sine, versine);

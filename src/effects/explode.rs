@@ -54,7 +54,7 @@ impl VertexEffect for Explode {
     fn moved(mut v: Vertex, p: &Self) -> Vertex {
         let share = p.share(&v);
         let spin = Spin::of(f64::from(p.spin_turns) * share);
-        let arm = v.position + v.offset - v.center;
+        let arm = v.arm + v.offset;
         let turn = spin.added(v.flat_normal, arm);
         v.offset += v.flat_normal * (f64::from(p.amount_m) * share) + turn - (arm + turn) * (f64::from(p.shrink) * share);
         v.normal += spin.added(v.flat_normal, v.normal);
@@ -71,9 +71,8 @@ impl VertexEffect for Explode {
         let spin = Spin::of(turns * share);
         let (sine, versine) = spin.slack(turns * (share_slack + ROUNDING * share));
         // Per axis; lengths of three such are less than twice as long.
-        let lanes = v.position.abs() + v.offset.abs() + v.center.abs();
-        let arm_slack = slack.position_m + slack.offset_m + slack.center_m + 2.0 * ROUNDING * lanes.max_element();
-        let arm = (v.position + v.offset - v.center).length();
+        let arm_slack = slack.arm_m + slack.offset_m + ROUNDING * (v.arm.abs() + v.offset.abs()).max_element();
+        let arm = (v.arm + v.offset).length();
         let turn_slack = |r: f64, r_slack: f64| {
             let most = spin.sine.abs() + sine + spin.versine + versine;
             r * (sine + versine) + most * (2.0 * r_slack + r * (4.0 * slack.flat_normal + 10.0 * ROUNDING))
@@ -87,6 +86,12 @@ impl VertexEffect for Explode {
             slack.normal += turn_slack(1.0, slack.normal) + ROUNDING;
         }
         slack
+    }
+
+    fn reach_m(radius_m: f64, p: &Self) -> f64 {
+        let turned = if p.spin_turns == 0.0 { 0.0 } else { 2.0 };
+        // No corner is farther from its triangle's centre than the model is wide.
+        f64::from(p.amount_m).abs() + (turned + f64::from(p.shrink)) * 2.0 * radius_m
     }
 }
 
@@ -117,7 +122,8 @@ impl Spin {
         }
         let sine = std::f64::consts::TAU * turns + SINE_SLACK;
         let half = 0.5 * std::f64::consts::TAU * turns + SINE_SLACK;
-        (sine.min(2.0), (4.0 * half + 3.0 * ROUNDING).min(2.0))
+        let versine = 4.0 * (0.5 * self.versine).sqrt() * half + 2.0 * half * half + 3.0 * ROUNDING * self.versine;
+        (sine.min(2.0), versine.min(2.0))
     }
 }
 

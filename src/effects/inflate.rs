@@ -34,4 +34,8 @@ impl VertexEffect for Inflate {
         }
         slack
     }
+
+    fn reach_m(_: f64, p: &Self) -> f64 {
+        f64::from(p.amount_m).abs()
+    }
 }

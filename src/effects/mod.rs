@@ -81,6 +81,7 @@ impl Effect {
             needs_triangle: P::NEEDS_TRIANGLE,
             moved: |vertex, words| P::moved(vertex, &read(words)),
             slack: |vertex, slack, words| P::slack(vertex, slack, &read(words)),
+            reach_m: |radius_m, words| P::reach_m(radius_m, &read(words)),
         });
         self
     }
@@ -229,6 +230,11 @@ impl Stack {
     pub fn slack(&self, vertex: hooks::Vertex, slack: hooks::Slack) -> hooks::Slack {
         let each = self.each(|hooks| hooks.vertex);
         each.fold((vertex, slack), |(vertex, slack), (hook, words)| ((hook.moved)(vertex, words), (hook.slack)(&vertex, slack, words))).1
+    }
+
+    /// How far a vertex of a model of this radius may move.
+    pub fn reach_m(&self, radius_m: f64) -> f64 {
+        self.each(|hooks| hooks.vertex).fold(0.0, |reach, (hook, words)| reach + (hook.reach_m)(radius_m + reach, words))
     }
 
     /// Finishes a pixel by every image effect in order.

@@ -95,6 +95,10 @@ impl VertexEffect for Wobble {
         slack.normal = if turned < 0.5 * length { turned / (length - turned) + 10.0 * ROUNDING } else { 2.0 };
         slack
     }
+
+    fn reach_m(_: f64, p: &Self) -> f64 {
+        p.amplitude_m.into()
+    }
 }
 
 /// Direction of a parameter; `otherwise` where it has none. Lanes below the normal floats are 0, as on a GPU.

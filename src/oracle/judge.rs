@@ -174,6 +174,8 @@ struct VertexFault {
     delta: u32,
     snap_is_outside: bool,
     attribute_is_outside: bool,
+    /// How far the outline of a cut triangle may move because effects err at this corner, in units of 1/256 px.
+    wander: f64,
 }
 
 fn judge_vertices(accuracy: &mut Accuracy, faults: &[VertexFault]) {
@@ -244,19 +246,23 @@ fn vertex_fault(mover: &Mover, view: &View, corner: Corner, adapter: &SnappedVer
         let is_explained = differs & (vertex_flags::REJECTED | vertex_flags::NEAR) == 0 && x_explains && y_explains;
         return VertexFault { is_ill_conditioned: is_explained, snap_is_outside: !is_explained, ..Default::default() };
     }
+    let wander = || {
+        let nearest = if view.linear_depth_m.is_some() { 1.0 } else { clip.z.abs() };
+        mover.wander(corner, nearest) * half_size(view).map(f64::from).into_iter().fold(0.0, f64::max)
+    };
     if own.flags & vertex_flags::NEAR != 0 {
-        return VertexFault::default();
+        return VertexFault { wander: wander(), ..Default::default() };
     }
     let w_error = (ew + ULP * sw) / w + 4.5 * ULP;
     let depth_error = (ez + ULP * sz) / w + (clip.z / w).abs() * w_error + f64::from(f32::MIN_POSITIVE);
     let attribute_is_outside =
         !((f64::from(adapter.inv_w) * clip.w - 1.0).abs() <= w_error && (f64::from(adapter.depth) - clip.z / clip.w).abs() <= depth_error);
     if own.flags != 0 {
-        return VertexFault { attribute_is_outside, ..Default::default() };
+        return VertexFault { attribute_is_outside, wander: wander(), ..Default::default() };
     }
     let (dx, dy) = (adapter.x.abs_diff(own.x), adapter.y.abs_diff(own.y));
     let snap_is_outside = f64::from(dx) > bound_x || f64::from(dy) > bound_y;
-    VertexFault { is_ill_conditioned: false, delta: dx.max(dy), snap_is_outside, attribute_is_outside }
+    VertexFault { delta: dx.max(dy), snap_is_outside, attribute_is_outside, ..Default::default() }
 }
 
 /// The adapter's picture against the oracle's own, from the matrix bits on.
@@ -325,7 +331,8 @@ impl Whole<'_> {
         of(self.adapter) != of(self.own)
     }
 
-    /// Where an owner is drawn and how far that may move: as far as its corners did, or a pixel where it is cut.
+    /// Where an owner is drawn and how far that may move: as far as its corners did, or a pixel where it is cut and what
+    /// effects err by at its corners.
     fn outline(&self, owner: u32) -> Option<Outline> {
         let draw = draw_of(self.scene, self.draws, owner)?;
         let records = corner_records(self.scene, draw, self.own, owner);
@@ -335,7 +342,7 @@ impl Whole<'_> {
         let reach = match faults.iter().any(|fault| fault.is_ill_conditioned) {
             true => f64::INFINITY,
             false if is_whole => 1.5 * moved,
-            false => 256.0,
+            false => faults.iter().map(|fault| 1.5 * fault.wander).fold(256.0, f64::max),
         };
         // Own pieces stand sorted by parent.
         let pieces = &self.own.pieces;

@@ -75,7 +75,8 @@ impl<'a> Mover<'a> {
         }
         let o = self.moved(corner).offset;
         let row = |r: usize| [0, 1, 2].map(|axis| self.clip_from_world[axis][r] * o[axis]).iter().sum::<f64>();
-        Ok(Clip { x: still.x + row(0), y: still.y + row(1), z: still.z + row(2), w: still.w + row(3) })
+        // What passes the far plane of parallel rays is held on it: depths below 0 are none.
+        Ok(Clip { x: still.x + row(0), y: still.y + row(1), z: (still.z + row(2)).max(0.0), w: still.w + row(3) })
     }
 
     /// What the effects make of a corner; its movement is held below 2^40 m, as every coordinate is.
@@ -90,20 +91,32 @@ impl<'a> Mover<'a> {
         let object = self.place(corner.vertex);
         let position = held(self.draw.world_from_object.transform_point3(object));
         let normal = direction(self.world_from_normal * self.normal(corner.vertex));
-        let nowhere = (DVec3::ZERO, position, DVec2::ZERO, 0);
-        let (flat_normal, center, center_screen, triangle) = if self.has_own_corners { self.triangle(corner) } else { nowhere };
-        Vertex { position, offset: DVec3::ZERO, normal, flat_normal, center, center_screen, triangle }
+        let alone = Vertex {
+            position,
+            offset: DVec3::ZERO,
+            normal,
+            flat_normal: DVec3::ZERO,
+            center: position,
+            arm: DVec3::ZERO,
+            center_screen: DVec2::ZERO,
+            triangle: 0,
+        };
+        if self.has_own_corners { self.with_triangle(alone, corner, object) } else { alone }
     }
 
-    /// Normal, centre, its place in the picture, and id of a corner's triangle.
-    fn triangle(&self, corner: Corner) -> (DVec3, DVec3, DVec2, u32) {
+    /// Adds what effects may know of a corner's triangle.
+    fn with_triangle(&self, alone: Vertex, corner: Corner, object: DVec3) -> Vertex {
         let corners = self.triangle_places(corner);
-        let flat_normal = plane_normal(corners).map_or(DVec3::ZERO, |normal| direction(self.world_from_normal * normal));
         let middle = corners.iter().sum::<DVec3>() / 3.0;
         let [x, y, _, w] = self.clip_rows(middle, false);
-        let screen = if w > 0.0 { DVec2::new(0.5 + 0.5 * x / w, 0.5 - 0.5 * y / w) } else { DVec2::splat(0.5) };
-        let center = held(self.draw.world_from_object.transform_point3(middle));
-        (flat_normal, center, screen, self.draw.first_triangle + corner.triangle)
+        Vertex {
+            flat_normal: plane_normal(corners).map_or(DVec3::ZERO, |normal| direction(self.world_from_normal * normal)),
+            center: held(self.draw.world_from_object.transform_point3(middle)),
+            arm: self.draw.world_from_object.transform_vector3(object - middle),
+            center_screen: if w > 0.0 { DVec2::new(0.5 + 0.5 * x / w, 0.5 - 0.5 * y / w) } else { DVec2::splat(0.5) },
+            triangle: self.draw.first_triangle + corner.triangle,
+            ..alone
+        }
     }
 
     /// The three corners of a corner's triangle in object space.
@@ -162,6 +175,15 @@ impl Mover<'_> {
         (sums, errors)
     }
 
+    /// How far what the effects err by may carry a corner over the picture where it is cut, at depth `w`: in half pictures.
+    pub fn wander(&self, corner: Corner, w: f64) -> f64 {
+        if !self.moves {
+            return 0.0;
+        }
+        let row = |r: usize| [0, 1, 2].map(|axis| self.clip_from_world[axis][r].abs()).iter().sum::<f64>();
+        self.offset_slack(corner).0 * (row(0).max(row(1)) + row(3)) / w
+    }
+
     fn offset_slack(&self, corner: Corner) -> (f64, DVec3) {
         let still = self.still(corner);
         (self.stack.slack(still, self.still_slack(corner)).offset_m, self.stack.moved(still).offset)
@@ -171,11 +193,12 @@ impl Mover<'_> {
     fn still_slack(&self, corner: Corner) -> Slack {
         let m = self.draw.world_from_object;
         let magnitude = |p: DVec3| {
-            let terms = m.x_axis.abs() * p.x.abs() + m.y_axis.abs() * p.y.abs() + m.z_axis.abs() * p.z.abs() + m.w_axis.abs();
-            terms.truncate().max_element()
+            let terms = m.x_axis.abs() * p.x.abs() + m.y_axis.abs() * p.y.abs() + m.z_axis.abs() * p.z.abs();
+            terms.truncate()
         };
+        let place = |p: DVec3| (magnitude(p) + m.w_axis.abs().truncate()).max_element();
         // The matrix is rounded, then four products are added.
-        let position_m = 5.0 * ROUNDING * magnitude(self.place(corner.vertex));
+        let position_m = 5.0 * ROUNDING * place(self.place(corner.vertex));
         let stored = self.normal(corner.vertex);
         let normal = self.direction_slack(stored, DVec3::ZERO);
         if !self.has_own_corners {
@@ -183,11 +206,14 @@ impl Mover<'_> {
         }
         let corners = self.triangle_places(corner);
         let middle = corners.iter().map(|c| c.abs()).sum::<DVec3>() / 3.0;
+        let here = self.place(corner.vertex);
+        let edges = corners.iter().map(|c| (here - c).abs()).sum::<DVec3>() / 3.0;
         let center_screen = self.screen_slack(corners.iter().sum::<DVec3>() / 3.0, middle);
         Slack {
             position_m,
             normal,
-            center_m: 10.0 * ROUNDING * magnitude(middle),
+            center_m: 10.0 * ROUNDING * place(middle),
+            arm_m: 12.0 * ROUNDING * magnitude(edges).max_element(),
             center_screen,
             flat_normal: self.plane_slack(corners),
             offset_m: 0.0,

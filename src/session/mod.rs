@@ -193,13 +193,18 @@ impl Session {
         (0..=frames).rev().map(moment).collect()
     }
 
-    /// The view of `scene` on a target of `size` pixels.
+    /// The view of `scene` on a target of `size` pixels, its depths ranging as far as the effects may move anything.
     pub fn view(&self, scene: &Scene, [width, height]: [u32; 2]) -> View {
         let aspect = f64::from(width.max(1)) / f64::from(height.max(1));
         // Reduced before the trigonometry, so that a day of spinning costs no precision.
         let turns = self.spin_deg_per_s * self.clock.time_s / 360.0;
         let spin = if turns == 0.0 { DMat4::IDENTITY } else { rotation_y(turns.fract() * std::f64::consts::TAU) };
-        View::new(&self.camera_for(scene, aspect), width, height, &scene.bounds(), spin, self.output.background)
+        let mut bounds = scene.bounds();
+        if !bounds.is_empty() {
+            let reach_m = self.posed_stack().reach_m(bounds.radius());
+            (bounds.min, bounds.max) = (bounds.min - reach_m, bounds.max + reach_m);
+        }
+        View::new(&self.camera_for(scene, aspect), width, height, &bounds, spin, self.output.background)
     }
 }
 

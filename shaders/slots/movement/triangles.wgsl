@@ -13,6 +13,7 @@ fn movement_corner(draw: u32, vertex: u32, id: u32, p: vec3f) -> Vertex {
     let plane = draws[draw].normal_from_object * vec4f(normal_of_plane(a, b, c), 0.0);
     v.flat_normal = normal_direction(plane.xyz);
     v.center = movement_held(center_of(draw, a, b, c));
+    v.arm = (draws[draw].world_from_object * vec4f(((p - a) + (p - b) + (p - c)) / 3.0, 0.0)).xyz;
     let middle = transform_clip(draw, (a + b + c) / 3.0);
     v.center_screen = center_clipped(middle, middle, middle, vec2f(0.5));
     v.triangle = id;

@@ -19,6 +19,9 @@ pub struct Vertex {
     pub flat_normal: DVec3,
     /// Mean of the triangle's corners before any vertex effect; the position itself where nobody asks for triangles.
     pub center: DVec3,
+    /// From the centre to the position, metres: a difference taken in the model, so that a place far from the origin costs
+    /// it nothing.
+    pub arm: DVec3,
     /// Where that mean stands in the picture, 0 to 1; the middle where it lies behind the eye. Zero where nobody asks for
     /// triangles.
     pub center_screen: DVec2,
@@ -34,6 +37,7 @@ pub struct Slack {
     pub normal: f64,
     pub flat_normal: f64,
     pub center_m: f64,
+    pub arm_m: f64,
     pub center_screen: f64,
 }
 
@@ -47,11 +51,12 @@ pub struct VertexHook {
     pub needs_triangle: bool,
     pub moved: fn(Vertex, &[u32]) -> Vertex,
     pub slack: fn(&Vertex, Slack, &[u32]) -> Slack,
+    pub reach_m: fn(f64, &[u32]) -> f64,
 }
 
 /// The f64 side of an effect on the vertex hook.
 pub trait VertexEffect: Params {
-    /// It reads `flat_normal`, `center`, `center_screen` or `triangle`.
+    /// It reads `flat_normal`, `center`, `arm`, `center_screen` or `triangle`.
     const NEEDS_TRIANGLE: bool;
 
     /// Changes `offset` and `normal` alone.
@@ -60,4 +65,7 @@ pub trait VertexEffect: Params {
     /// Slack of what an f32 twin makes of `vertex`, whatever rounding, order and fusion WGSL allows, where `slack` is that
     /// of what it is given. Parameters that move nothing add nothing.
     fn slack(vertex: &Vertex, slack: Slack, params: &Self) -> Slack;
+
+    /// How far it moves a vertex of a model of this radius at most.
+    fn reach_m(radius_m: f64, params: &Self) -> f64;
 }
