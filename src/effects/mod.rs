@@ -6,7 +6,7 @@ use crate::params::{Field, Params};
 
 pub mod hooks;
 
-use hooks::{Hooks, ImageEffect, Picture, Pixel, SampleEffect, SampleHook, Shape, Slot, VertexEffect, VertexHook};
+use hooks::{Hooks, ImageEffect, Layers, Picture, Pixel, SampleEffect, SampleHook, Shape, Slot, VertexEffect, VertexHook};
 pub use hooks::{Surface, SurfaceEffect};
 
 /// THE list. Adding an effect is its two files and one word here.
@@ -18,7 +18,25 @@ macro_rules! effects {
     };
 }
 
-effects![boxes, points, draw_order, explode, inflate, wobble, dissolve, stipple, facet, triangle_id, normals, depth, lambert, wireframe];
+effects![
+    boxes,
+    points,
+    draw_order,
+    explode,
+    inflate,
+    wobble,
+    dissolve,
+    stipple,
+    facet,
+    triangle_id,
+    normals,
+    depth,
+    lambert,
+    wireframe,
+    xray,
+    overdraw,
+    race
+];
 
 /// One entry of the catalogue.
 pub struct Effect {
@@ -249,6 +267,26 @@ impl Stack {
     /// Is every picture of this stack the same, to the bit, on one adapter?
     pub fn is_repeatable(&self) -> bool {
         self.0.iter().all(|enabled| (enabled.effect.is_repeatable)(&enabled.words))
+    }
+
+    /// Parameters of the effect called `name`, if it is on; `P` must be its own.
+    pub fn params<P: Params>(&self, name: &str) -> Option<P> {
+        self.get(name).map(|enabled| read(&enabled.words))
+    }
+
+    /// What becomes of the samples of a pixel in a scene of so many triangles; none: the nearest is shown.
+    pub fn layers(&self, triangles: u64) -> Option<Layers> {
+        let Enabled { effect, words } = self.in_slot(Slot::Visibility)?;
+        Some(match effect.name {
+            "xray" => Layers::Xray { bits: read::<xray::Xray>(words).first_bits(triangles) },
+            "overdraw" => Layers::Overdraw,
+            _ => Layers::Race,
+        })
+    }
+
+    /// Do the triangles of a pixel race for it?
+    pub fn is_racing(&self) -> bool {
+        self.get(race::EFFECT.name).is_some()
     }
 
     /// Checks that no two effects take one slot.

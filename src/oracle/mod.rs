@@ -13,6 +13,7 @@ mod clip;
 mod coverage;
 mod decide;
 mod judge;
+mod layers;
 mod moved;
 mod order;
 mod project;
@@ -27,6 +28,7 @@ pub use project::{project, project_moved};
 pub use rules::Rules;
 pub use surface::shade;
 
+use self::layers::{Scenery, layered};
 use crate::{
     effects::Stack,
     frame::{Counters, Frame},
@@ -49,10 +51,17 @@ pub fn render(scene: &Scene, view: &View, stack: &Stack) -> Result<Frame, DrawEr
     let mut geometry = project_moved(scene, &draws, view, stack);
     geometry.decisions = decide(scene, &draws, view, stack, &geometry);
     let (triangles, counters) = triangles(scene, &draws, &geometry);
-    let coverage = cover_by(&Rules::of(stack, &geometry).ordered(stack, &triangles, view), &triangles, view, None);
+    let rules = Rules::of(stack, &geometry).ordered(stack, &triangles, view);
+    let coverage = cover_by(&rules, &triangles, view, None);
     let owner = coverage.owners();
-    let color = shade(scene, &draws, view, stack, &owner, &geometry);
-    Ok(frame(view, &coverage, color, counters))
+    let keys = coverage.keys();
+    let scenery =
+        Scenery { scene, draws: &draws, view, geometry: &geometry, rules: &rules, triangles: &triangles, owners: &owner, keys: &keys };
+    let (color, counted) = match layered(&scenery, &coverage, stack) {
+        Some(layered) => (layered.colors, layered.counted),
+        None => (shade(scene, &draws, view, stack, &owner, &geometry), Vec::new()),
+    };
+    Ok(frame(view, &coverage, color, counted, counters))
 }
 
 /// The picture of a view without pixels: nothing was drawn, so nothing was counted.
@@ -61,6 +70,6 @@ fn empty(view: &View) -> Frame {
 }
 
 /// The integers of `coverage` with their colours.
-fn frame(view: &View, coverage: &Coverage, color: Vec<[u8; 4]>, counters: Counters) -> Frame {
-    Frame { width: view.width, height: view.height, owner: coverage.owners(), key: coverage.keys(), color, counters }
+fn frame(view: &View, coverage: &Coverage, color: Vec<[u8; 4]>, counted: Vec<u32>, counters: Counters) -> Frame {
+    Frame { width: view.width, height: view.height, owner: coverage.owners(), key: coverage.keys(), color, counted, counters }
 }

@@ -47,7 +47,7 @@ pub fn shade(scene: &Scene, draws: &[Draw], view: &View, stack: &Stack, owners: 
 }
 
 /// Linear RGBA as sRGB bytes; alpha is not gamma-encoded.
-fn encoded(color: DVec4) -> [u8; 4] {
+pub(super) fn encoded(color: DVec4) -> [u8; 4] {
     let alpha = (255.0 * color.w.clamp(0.0, 1.0) + 0.5).floor() as u8;
     [srgb_byte(color.x), srgb_byte(color.y), srgb_byte(color.z), alpha]
 }
@@ -62,7 +62,7 @@ enum Weights {
 }
 
 /// All that does not change from sample to sample.
-struct Triangle {
+pub(super) struct Triangle {
     owner: u32,
     weights: Weights,
     positions: [DVec3; 3],
@@ -85,7 +85,7 @@ struct Triangle {
 
 impl Triangle {
     /// None for a triangle with a rejected corner, which owns nothing.
-    fn new(mover: &Mover, scene: &Scene, view: &View, geometry: &Geometry, owner: u32) -> Option<Self> {
+    pub fn new(mover: &Mover, scene: &Scene, view: &View, geometry: &Geometry, owner: u32) -> Option<Self> {
         let draw = mover.draw;
         let primitive = &scene.primitives[draw.primitive];
         let material = &scene.materials[primitive.material];
@@ -145,7 +145,7 @@ impl Triangle {
     }
 
     /// The surface at the centre of a pixel.
-    fn surface(&self, view: &View, x: usize, y: usize) -> Surface {
+    pub fn surface(&self, view: &View, x: usize, y: usize) -> Surface {
         let pixel = DVec2::new(x as f64 + 0.5, y as f64 + 0.5);
         let screen = pixel / DVec2::new(view.width.into(), view.height.into());
         let corner = self.disc.and_then(|(records, radius)| {
