@@ -3,6 +3,7 @@
 //@ use common/frame
 //@ use common/color
 //@ use slot/owner
+//@ use common/surface
 //@ use glue/surface
 
 // Bits per channel in the sums.

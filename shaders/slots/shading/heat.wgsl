@@ -1,6 +1,7 @@
 // Shading, heat: a pixel shows how many layers it has.
 //@ use common/frame
 //@ use common/color
+//@ use common/surface
 //@ use glue/surface
 
 @group(0) @binding(15) var<storage, read> layers: array<u32>;

@@ -1,4 +1,5 @@
 // Visibility race: look, compare, store, without atomics, as a beginner's kernel does it. Whoever stores last stays.
+//@ use common/surface
 //@ use glue/surface
 
 @group(0) @binding(5) var<storage, read_write> depth_owner: array<u32>;
