@@ -106,6 +106,7 @@ impl Painter {
 
     /// The picture of `session`.
     pub fn frame(&mut self, session: &Session, scene: &Arc<Scene>) -> Result<Frame, Fault> {
+        session.stack.check()?;
         match self {
             Self::Cpu => Ok(oracle::render(scene, &session.view(scene, session.output.size), &session.posed_stack())?),
             Self::Gpu(..) => Ok(self.capture(session, scene)?.frame),
@@ -114,6 +115,7 @@ impl Painter {
 
     /// The picture with everything that a judge needs.
     pub fn capture(&mut self, session: &Session, scene: &Arc<Scene>) -> Result<Capture, Fault> {
+        session.stack.check()?;
         let (view, stack) = (session.view(scene, session.output.size), session.posed_stack());
         match self {
             Self::Cpu => {

@@ -289,6 +289,13 @@ impl Stack {
         self.get(race::EFFECT.name).is_some()
     }
 
+    /// What stands against switching `effect` on: another one in its slot.
+    pub fn rival(&self, effect: &Effect) -> Option<Conflict> {
+        let slot = effect.hooks.slot?;
+        let first = self.in_slot(slot).map(|enabled| enabled.effect).filter(|first| *first != effect)?;
+        Some(Conflict { slot: slot.name(), first: first.name, second: effect.name })
+    }
+
     /// Checks that no two effects take one slot.
     ///
     /// # Errors
