@@ -251,8 +251,9 @@ impl Renderer {
             Some(Layers::Xray { bits }) => xray::fewer(bits),
             _ => None,
         };
-        self.full = bits.and_then(|bits| self.last_picture.clone().map(|(view, stack)| (view, stack, bits)));
-        self.full.is_some()
+        let Some((bits, (view, stack))) = bits.zip(self.last_picture.clone()) else { return false };
+        self.full = Some((view, stack, bits));
+        true
     }
 
     /// Copies rows of background over the picture, for resolves that leave empty tiles alone.
