@@ -75,6 +75,13 @@ pub struct Counters {
     pub overflow: u32,
     /// Pixels with a depth but no owner; must be 0.
     pub orphans: u32,
+    /// Pixels with more layers than the x-ray's sums hold; their averages are wrong unless 0.
+    #[serde(skip_serializing_if = "is_zero")]
+    pub full_pixels: u32,
+}
+
+fn is_zero(count: &u32) -> bool {
+    *count == 0
 }
 
 /// One finished picture with the integers that decided it. Images are row-major, top row first, `width * height` long.
@@ -88,6 +95,8 @@ pub struct Frame {
     pub key: Vec<u32>,
     /// Gamma-encoded sRGB and alpha.
     pub color: Vec<[u8; 4]>,
+    /// What an effect in the visibility slot added up per pixel: weights of layers, or their number. Empty without one.
+    pub counted: Vec<u32>,
     pub counters: Counters,
 }
 

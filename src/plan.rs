@@ -1,7 +1,11 @@
 //! The planner: the cheapest kernel that the scene, the stack and the tolerance allow on this adapter, and why.
 
 use crate::{
-    effects::{Conflict, Enabled, Stack, hooks::Shape},
+    effects::{
+        Conflict, Enabled, Stack,
+        hooks::{Layers, Shape},
+        xray,
+    },
     scene::needs::Needs,
     shader::{
         glue::reads,
@@ -132,7 +136,10 @@ pub fn plan(needs: &Needs, stack: &Stack, caps: &Caps, tuning: &Tuning, accuracy
         (needs.clipping, needs.largest_px) = (false, 0.0);
     }
     let needs = &needs;
+    let layers = stack.layers(needs.triangles);
     let visibility = match accuracy.visibility {
+        // Plain stores need no 64-bit atomics; key and owner stand side by side, as packed64 has them.
+        _ if layers == Some(Layers::Race) => Visibility::Packed64,
         Some(Visibility::Packed64) if !caps.int64_atomics => return Err(PlanError::Lacking),
         Some(pinned) => pinned,
         None if caps.int64_atomics => Visibility::Packed64,
@@ -150,6 +157,7 @@ pub fn plan(needs: &Needs, stack: &Stack, caps: &Caps, tuning: &Tuning, accuracy
     let key = KernelKey {
         fetch: if needs.indexed { Fetch::Indexed } else { Fetch::Direct },
         visibility,
+        layers,
         shape,
         order: Order::of(stack),
         has_samples: effects.iter().any(|effect| effect.hooks.sample.is_some()),
@@ -186,9 +194,13 @@ fn explain(needs: &Needs, is_usual: bool, caps: &Caps, accuracy: &Accuracy, key:
         Visibility::Packed64 => "the adapter has 64-bit atomics: one pass decides depth and owner, nothing is lost",
         Visibility::Split32 => "the adapter has no 64-bit atomics: depth first, then the owner; nothing is lost",
     };
+    let chosen = match key.layers {
+        Some(Layers::Race) => "the effect race takes the slot: one pass of plain loads and stores, and what is lost is lost",
+        _ => pinned.unwrap_or(chosen),
+    };
     let bound = if needs.clipping { "clipping leaves it open".into() } else { format!("no triangle exceeds {:.1} px", needs.largest_px) };
     let mut reasons = vec![
-        note("visibility", pinned.unwrap_or(chosen)),
+        note("visibility", chosen),
         note(
             "coverage",
             match key.shape {
@@ -219,6 +231,7 @@ fn explain(needs: &Needs, is_usual: bool, caps: &Caps, accuracy: &Accuracy, key:
     if key.has_image() {
         reasons.push(note("finish", "an image effect finishes every pixel, empty ones too, so no tile is skipped"));
     }
+    reasons.extend(layers_note(needs, key));
     let parts = [
         ("vertex effects", key.moves(), "no effect of the stack moves a vertex".to_owned()),
         ("corners of their own", key.parts_corners(), "no effect parts triangles, so neighbours share projected vertices".into()),
@@ -236,4 +249,19 @@ fn explain(needs: &Needs, is_usual: bool, caps: &Caps, accuracy: &Accuracy, key:
     ];
     let omitted = parts.into_iter().filter(|(_, is_there, _)| !is_there).map(|(name, _, why)| note(name, why)).collect();
     (reasons, omitted)
+}
+
+/// Why the samples of a pixel are added up or counted, and in how many bits.
+fn layers_note(needs: &Needs, key: &KernelKey) -> Option<Note> {
+    Some(match key.layers? {
+        Layers::Xray { bits } => {
+            let most = xray::capacity(bits);
+            note(
+                "layers",
+                format!("xray: sums of {bits} bits a channel hold {most} full weights; the scene has {} triangles", needs.triangles),
+            )
+        }
+        Layers::Overdraw => note("layers", "overdraw: one more raster pass counts every covered sample"),
+        Layers::Race => note("layers", "race: the picture depends on chance, so it is not reproducible"),
+    })
 }

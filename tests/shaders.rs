@@ -2,7 +2,7 @@
 //! atomics only where a rung asks for them, within eight storage buffers. Needs no adapter.
 
 use rasterlab::{
-    effects::{EFFECTS, Effect},
+    effects::{EFFECTS, Effect, hooks::Slot},
     shader::{
         Fetch, KernelKey, Pass,
         key::{Phase, Visibility},
@@ -28,6 +28,16 @@ fn all_passes(key: &KernelKey) -> Vec<Pass> {
     passes
 }
 
+/// Nothing, and each effect in the visibility slot alone and together with effects on other hooks.
+fn slot_stacks() -> Vec<Vec<&'static Effect>> {
+    let mut stacks = vec![vec![]];
+    for effect in EFFECTS.iter().copied().filter(|effect| effect.hooks.slot == Some(Slot::Visibility)) {
+        let others = EFFECTS.iter().copied().filter(|other| other.hooks.slot.is_none());
+        stacks.extend([vec![effect], others.chain([effect]).collect()]);
+    }
+    stacks
+}
+
 fn linked(key: &KernelKey, pass: Pass) -> Linked {
     link::link(&Library::Embedded, &format!("passes/{}", pass.stem()), key, &key.slots(pass)).expect("every file is there")
 }
@@ -48,10 +58,13 @@ fn every_slot_choice_links_and_validates_within_eight_storage_buffers() {
         for visibility in Visibility::ALL {
             for has_queues in [false, true] {
                 for single_draw in [false, true] {
-                    let key = KernelKey { single_draw, ..key(fetch, visibility, has_queues, vec![]) };
-                    for pass in all_passes(&key) {
-                        let storage = validate(&key, pass);
-                        assert!(storage <= 8, "{} binds {storage} storage buffers", pass.label());
+                    let is_fullest = has_queues && !single_draw;
+                    for effects in if is_fullest { slot_stacks() } else { vec![vec![]] } {
+                        let key = KernelKey { single_draw, ..key(fetch, visibility, has_queues, effects) };
+                        for pass in all_passes(&key) {
+                            let storage = validate(&key, pass);
+                            assert!(storage <= 8, "{} of {key} binds {storage} storage buffers", pass.label());
+                        }
                     }
                 }
             }

@@ -33,7 +33,9 @@ fn pictures(rungs: &[Visibility]) -> Vec<(String, Arc<Scene>, View, Stack, Visib
             let look = preset::load(&path).unwrap_or_else(|error| panic!("{error}"));
             let scene = preset::load_scene(&look.session, look.path.as_deref()).unwrap_or_else(|error| panic!("{}: {error}", look.id));
             let view = look.session.view(&scene, look.session.output.size);
-            pictures.push((look.id.clone(), scene, view, look.session.posed_stack(), rungs[0]));
+            if look.session.stack.is_repeatable() {
+                pictures.push((look.id.clone(), scene, view, look.session.posed_stack(), rungs[0]));
+            }
         }
     }
     pictures

@@ -6,6 +6,12 @@ fn color_encode(linear: vec3f) -> vec3f {
     return select(curve, 12.92 * c, c <= vec3f(0.0031308));
 }
 
+// The way back.
+fn color_decode(encoded: vec3f) -> vec3f {
+    let curve = pow((encoded + 0.055) / 1.055, vec3f(2.4));
+    return select(curve, encoded / 12.92, encoded <= vec3f(0.04045));
+}
+
 // Red in the lowest byte, as Rgba8Unorm lies in memory.
 fn color_pack(encoded: vec4f) -> u32 {
     let bytes = vec4u(clamp(encoded, vec4f(0.0), vec4f(1.0)) * 255.0 + 0.5);

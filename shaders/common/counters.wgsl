@@ -14,6 +14,7 @@ struct Counters {
     marked_tiles: atomic<u32>,
     tickets: atomic<u32>,
     tickets_again: atomic<u32>,
+    full_pixels: atomic<u32>,    // pixels with more layers than the sums hold
 }
 
 @group(0) @binding(7) var<storage, read_write> counters: Counters;

@@ -1,13 +1,11 @@
-// Resolve: one visit per pixel. Takes the owner, rebuilds its surface at the sample, runs the surface effects, and writes
-// gamma-encoded bytes.
-//@ use common/shade
+// Resolve: one visit per pixel. Shades it, by its owner or by all its layers, and writes gamma-encoded bytes.
 //@ use common/color
 //@ use common/picture
 //@ use common/counters
 //@ use slot/owner
 //@ use slot/pixels
 //@ use slot/finish
-//@ use glue/surface
+//@ use slot/shading
 
 // Empty pixels are computed too, with the first triangle, and thrown away: a CPU adapter executes both sides of every
 // branch anyway, and loads what all lanes share only once outside of branches.
@@ -22,8 +20,8 @@ fn resolve(@builtin(workgroup_id) group: vec3u, @builtin(num_workgroups) groups:
     let is_owned = found.x != 0u;
     var encoded = frame.background;
     if IS_STRAIGHT || (is_inside && is_owned) {
-        let shaded = glue_surface(shade_surface(select(0u, ~found.x, is_owned), pixel));
-        encoded = select(encoded, vec4f(color_encode(shaded.color.rgb), shaded.color.a), is_owned);
+        let shaded = shading_color(select(0u, ~found.x, is_owned), pixel);
+        encoded = select(encoded, vec4f(color_encode(shaded.rgb), shaded.a), is_owned);
     }
     if is_inside {
         color[pixel.y * frame.stride + pixel.x] = color_pack(finish(pixel, encoded));

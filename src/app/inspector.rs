@@ -76,7 +76,21 @@ impl App {
                 ui.set_min_height(theme::ROW);
                 ui.add_space(theme::GAP);
                 let mut on = false;
-                if ui.checkbox(&mut on, shown_name(effect)).on_hover_text(effect.about).accessible_name(effect.name).clicked() {
+                let clicked = ui.checkbox(&mut on, shown_name(effect)).on_hover_text(effect.about).accessible_name(effect.name).clicked();
+                let Some(conflict) = self.look.session.stack.rival(effect) else {
+                    if clicked {
+                        self.look.session.stack.enable(effect);
+                    }
+                    return;
+                };
+                if clicked {
+                    self.log.tell(super::Level::Warning, conflict.to_string(), self.now_s);
+                }
+                let (name, other) = (effect.name, conflict.first);
+                let instead = ui.small_button(format!("instead of {other}")).accessible_name(&format!("{name} instead of {other}"));
+                if instead.on_hover_text(format!("Switch {other} off and {name} on")).clicked() {
+                    self.look.session.disable(other);
+                    self.muted.remove(other);
                     self.look.session.stack.enable(effect);
                 }
             });

@@ -12,6 +12,7 @@ mod icons;
 mod inspector;
 mod jobs;
 mod keying;
+mod legend;
 mod log;
 mod orbit;
 mod playback;

@@ -180,7 +180,8 @@ fn menu_ui(ui: &mut Ui, actions: &[Option<Action>]) -> Option<Action> {
 /// The error in a few words: `0 wrong owners, max Δ 1`.
 pub fn error_text(accuracy: &Accuracy) -> String {
     let owners = accuracy.owner_mismatch;
-    format!("{owners} wrong {}, max Δ {}", if owners == 1 { "owner" } else { "owners" }, accuracy.max_colour_delta)
+    let race = if accuracy.race_pixels > 0 { format!(", {} lost to the race", accuracy.race_pixels) } else { String::new() };
+    format!("{owners} wrong {}{race}, max Δ {}", if owners == 1 { "owner" } else { "owners" }, accuracy.max_colour_delta)
 }
 
 fn details(a: &Accuracy) -> String {

@@ -6,7 +6,7 @@ use super::{
     App, Level,
     icons::{Icon, icon_button},
     jobs::SceneKey,
-    orbit,
+    legend, orbit,
     screen::Inputs,
     theme,
 };
@@ -60,6 +60,9 @@ impl App {
         self.draw(ui.ctx(), size, moved);
         self.picture_ui(ui, rect);
         self.overlay_ui(ui, rect);
+        if let Some(params) = self.visible_stack().params("overdraw") {
+            legend::heat_ui(ui, rect, &params);
+        }
     }
 
     /// Pose of the camera, to be moved.
@@ -286,6 +289,13 @@ impl App {
         if !self.muted.is_empty() {
             let names: Vec<_> = self.muted.iter().copied().collect();
             states.push((theme::AMBER, format!("muted: {}", names.join(", "))));
+        }
+        let full = self.screen.report().map_or(0, |report| report.counters.full_pixels);
+        if full > 0 {
+            states.push((theme::RED, format!("x-ray overflow: {full} pixels have more layers than its sums hold")));
+        }
+        if !self.visible_stack().is_repeatable() {
+            states.push((theme::AMBER, "not reproducible: every frame may differ".into()));
         }
         if self.is_off_its_time() && !self.panels.timeline {
             states.push((theme::TEXT_WEAK, format!("time {:.2} s", self.shown_time_s())));

@@ -3,6 +3,7 @@
 use std::process::ExitCode;
 
 use crate::{
+    effects::Conflict,
     gpu::{RenderError, device::OpenError},
     preset::{PresetError, SceneError},
     scene::draw::DrawError,
@@ -114,4 +115,4 @@ macro_rules! usage_faults {
     )*};
 }
 
-usage_faults![PresetError, SceneError, DrawError, std::io::Error];
+usage_faults![PresetError, SceneError, DrawError, Conflict, std::io::Error];

@@ -40,6 +40,7 @@ pub fn draw(look: &Look, scene: &Scene) -> Result<Golden, Fault> {
     if width > MAX_SIZE[0] || height > MAX_SIZE[1] {
         return Err(Fault::usage(format!("{}: output.size {width}x{height} is larger than a golden may be, 320x240", look.id)));
     }
+    session.stack.check()?;
     let frame = oracle::render_last(scene, &session.moments(scene, session.output.size))?;
     let png = preset::png_bytes(&frame.color, session.output.size)?;
     if png.len() > MAX_BYTES {

@@ -106,6 +106,7 @@ impl Painter {
 
     /// The picture of `session`.
     pub fn frame(&mut self, session: &Session, scene: &Arc<Scene>) -> Result<Frame, Fault> {
+        session.stack.check()?;
         match self {
             Self::Cpu => Ok(oracle::render_last(scene, &session.moments(scene, session.output.size))?),
             Self::Gpu(..) => Ok(self.capture(session, scene)?.frame),
@@ -114,6 +115,7 @@ impl Painter {
 
     /// The picture with everything that a judge needs.
     pub fn capture(&mut self, session: &Session, scene: &Arc<Scene>) -> Result<Capture, Fault> {
+        session.stack.check()?;
         let moments = session.moments(scene, session.output.size);
         match self {
             Self::Cpu => {

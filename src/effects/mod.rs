@@ -6,7 +6,7 @@ use crate::params::{Field, Params};
 
 pub mod hooks;
 
-use hooks::{Hooks, ImageEffect, ImageHook, Picture, Pixel, SampleEffect, SampleHook, Shape, Slot, VertexEffect, VertexHook};
+use hooks::{Hooks, ImageEffect, ImageHook, Layers, Picture, Pixel, SampleEffect, SampleHook, Shape, Slot, VertexEffect, VertexHook};
 pub use hooks::{Surface, SurfaceEffect};
 
 /// THE list. Adding an effect is its two files and one word here.
@@ -36,6 +36,9 @@ effects![
     hatch,
     wireframe,
     fog,
+    xray,
+    overdraw,
+    race,
     posterize,
     smear,
     outline,
@@ -299,6 +302,33 @@ impl Stack {
     /// Is every picture of this stack the same, to the bit, on one adapter?
     pub fn is_repeatable(&self) -> bool {
         self.0.iter().all(|enabled| (enabled.effect.is_repeatable)(&enabled.words))
+    }
+
+    /// Parameters of the effect called `name`, if it is on; `P` must be its own.
+    pub fn params<P: Params>(&self, name: &str) -> Option<P> {
+        self.get(name).map(|enabled| read(&enabled.words))
+    }
+
+    /// What becomes of the samples of a pixel in a scene of so many triangles; none: the nearest is shown.
+    pub fn layers(&self, triangles: u64) -> Option<Layers> {
+        let Enabled { effect, words } = self.in_slot(Slot::Visibility)?;
+        Some(match effect.name {
+            "xray" => Layers::Xray { bits: read::<xray::Xray>(words).first_bits(triangles) },
+            "overdraw" => Layers::Overdraw,
+            _ => Layers::Race,
+        })
+    }
+
+    /// Do the triangles of a pixel race for it?
+    pub fn is_racing(&self) -> bool {
+        self.get(race::EFFECT.name).is_some()
+    }
+
+    /// What stands against switching `effect` on: another one in its slot.
+    pub fn rival(&self, effect: &Effect) -> Option<Conflict> {
+        let slot = effect.hooks.slot?;
+        let first = self.in_slot(slot).map(|enabled| enabled.effect).filter(|first| *first != effect)?;
+        Some(Conflict { slot: slot.name(), first: first.name, second: effect.name })
     }
 
     /// Checks that no two effects take one slot.

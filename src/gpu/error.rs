@@ -29,8 +29,13 @@ pub enum RenderError {
     Shader(#[from] ShaderError),
     #[error("the pipeline {label} was refused: {reason}")]
     Pipeline { label: String, reason: String },
-    #[error("the queues still overflow after growing eight times; {0} entries were lost")]
+    #[error("the queues still overflow after growing ten times; {0} entries were lost")]
     Overflow(u32),
+    #[error(
+        "{0} pixels have more layers than the x-ray's sums hold even with 8 bits a channel; narrow its window, give all layers equal \
+         weight, or show fewer"
+    )]
+    FullSums(u32),
 }
 
 impl RenderError {

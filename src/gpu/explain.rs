@@ -42,6 +42,8 @@ fn pass_purpose(pass: Pass) -> &'static str {
         Pass::RasterSmall(Phase::Tally) => "culls and classifies every triangle, counts the samples of the small ones",
         Pass::RasterSmall(Phase::Straddle) => "marks the samples of the triangle in which the drawing stops",
         Pass::RasterSmall(Phase::Owner) => "visits the small triangles again for the owner of each nearest key",
+        Pass::RasterSmall(Phase::Sum) => "visits the small triangles again and adds every layer's colour",
+        Pass::RasterSmall(Phase::Count) => "visits the small triangles again and counts layers",
         Pass::RasterSmall(_) => "culls and classifies every triangle, draws the small ones on the spot",
         Pass::Decide(Entries::Triangles) => "settles once per triangle what sample effects hold against",
         Pass::Decide(Entries::Pieces) => "settles the same for the pieces that clipping left",

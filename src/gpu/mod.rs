@@ -33,7 +33,7 @@ use self::{
 };
 pub use crate::plan::Note;
 use crate::{
-    effects::Stack,
+    effects::{Stack, hooks::Layers, xray},
     frame::Counters,
     plan::{Accuracy, Plan, Tuning},
     scene::{Scene, camera::View},
@@ -69,6 +69,9 @@ pub struct Renderer {
     last: Option<Plan>,
     /// What the colour buffer shows, where an effect will read it as the picture before; none: nothing of use.
     past: Option<(View, Stack)>,
+    last_picture: Option<(View, Stack)>,
+    /// The last picture whose sums of layers overflowed, and the bits per channel that it gets instead.
+    full: Option<(View, Stack, u32)>,
     pending: VecDeque<Pending>,
 }
 
@@ -94,6 +97,8 @@ impl Renderer {
             target: None,
             last: None,
             past: None,
+            last_picture: None,
+            full: None,
             pending: VecDeque::new(),
         }
     }
@@ -162,6 +167,7 @@ impl Renderer {
         self.capacities = first_capacities(scene);
         self.distrust = false;
         self.past = None;
+        self.full = None;
         self.scene = Some(scene.clone());
         Ok(())
     }
@@ -185,7 +191,7 @@ impl Renderer {
         if let Some(timer) = &mut self.timer {
             timer.begin(&mut encoder, detail);
         }
-        self.clear(&mut encoder, &["counters", "depth_keys", "owners", "depth_owner", "marks", "counts", "hits"]);
+        self.clear(&mut encoder, &["counters", "depth_keys", "owners", "depth_owner", "layers", "marks", "counts", "hits"]);
         if plan.key.listed_tiles {
             self.fill_background(&mut encoder, view);
         }
@@ -196,6 +202,7 @@ impl Renderer {
         self.gpu.queue.submit([encoder.finish()]);
         self.pending.push_back(pending.begin());
         self.last = Some(plan);
+        self.last_picture = Some((view.clone(), stack.clone()));
         Ok(())
     }
 
@@ -239,6 +246,7 @@ impl Renderer {
             self.distrust |= is_proof_wrong;
             redraw = self.capacities.grow(&record) || is_proof_wrong;
         }
+        redraw |= counters.full_pixels > 0 && self.pending.is_empty() && self.take_fewer_bits();
         Some(Report { gpu_ms: times.total_ms, passes: times.passes, counters, redraw })
     }
 
@@ -268,6 +276,17 @@ impl Renderer {
             }
         }
         self.past = Some(now);
+    }
+
+    /// The last picture's sums overflowed: next time it gets the next smaller number of bits, if there is one.
+    fn take_fewer_bits(&mut self) -> bool {
+        let bits = match self.key().and_then(|key| key.layers) {
+            Some(Layers::Xray { bits }) => xray::fewer(bits),
+            _ => None,
+        };
+        let Some((bits, (view, stack))) = bits.zip(self.last_picture.clone()) else { return false };
+        self.full = Some((view, stack, bits));
+        true
     }
 
     /// Copies rows of background over the picture, for resolves that leave empty tiles alone, or what they come after.

@@ -5,7 +5,7 @@ use super::{
     uniforms::{Capacities, DrawRecord, FrameUniform, OrderRecord, color_stride},
 };
 use crate::{
-    effects::Stack,
+    effects::{Stack, hooks::Layers},
     math::srgb_byte,
     plan::{Accuracy, Plan, plan},
     scene::{Scene, camera::View, draw::draws, needs::Needs},
@@ -29,7 +29,12 @@ impl Renderer {
         if self.distrust {
             (needs.clipping, needs.largest_px) = (true, f64::INFINITY);
         }
-        let plan = plan(&needs, stack, &gpu.caps, &self.tuning, accuracy)?;
+        let mut plan = plan(&needs, stack, &gpu.caps, &self.tuning, accuracy)?;
+        if let (Some(Layers::Xray { bits }), Some((full_view, full_stack, fewer))) = (&mut plan.key.layers, &self.full)
+            && (full_view, full_stack) == (view, stack)
+        {
+            *bits = (*bits).min(*fewer);
+        }
         let key = &plan.key;
         let recorded = recorded_capacities(key, &self.capacities);
 
@@ -58,7 +63,7 @@ impl Renderer {
             "depth_owner" => key.visibility == Visibility::Packed64,
             "order" | "counts" | "sums" => key.order != Order::Free,
             "hits" => key.order == Order::Submission,
-            "layers" => false,
+            "layers" => key.layers == Some(Layers::Overdraw),
             _ => true,
         });
         buffers.fill(gpu, "frame", bytemuck::bytes_of(&uniform), wgpu::BufferUsages::UNIFORM, "size, viewpoint, capacities")?;
@@ -104,13 +109,26 @@ impl Renderer {
             buffers.ensure(gpu, "pieces", 64 * u64::from(recorded.pieces), STORAGE, "what clipping leaves of a triangle")?;
         }
         let pixels = view.pixels() as u64;
+        let (sums, why) = match key.layers {
+            Some(Layers::Xray { .. }) => (
+                16 * pixels,
+                [
+                    "nearest depth key per pixel, 4 bytes, and behind them the sums of its layers, 16 bytes",
+                    "depth key and owner per pixel, 8 bytes, and behind them the sums of its layers, 16 bytes",
+                ],
+            ),
+            _ => (0, ["nearest depth key per pixel, 4 bytes", "depth key and owner per pixel, 8 bytes"]),
+        };
+        if key.layers == Some(Layers::Overdraw) {
+            buffers.ensure(gpu, "layers", 4 * pixels, STORAGE, "layers per pixel, 4 bytes")?;
+        }
         match key.visibility {
             Visibility::Split32 => {
-                buffers.ensure(gpu, "depth_keys", 4 * pixels, STORAGE, "nearest depth key per pixel, 4 bytes")?;
+                buffers.ensure(gpu, "depth_keys", 4 * pixels + sums, STORAGE, why[0])?;
                 buffers.ensure(gpu, "owners", 4 * pixels, STORAGE, "owner per pixel, 4 bytes")?;
             }
             Visibility::Packed64 => {
-                buffers.ensure(gpu, "depth_owner", 8 * pixels, STORAGE, "depth key and owner per pixel, 8 bytes")?;
+                buffers.ensure(gpu, "depth_owner", 8 * pixels + sums, STORAGE, why[1])?;
             }
         }
         let tiles = if key.listed_tiles { u64::from(view.width.div_ceil(8)) * u64::from(view.height.div_ceil(8)) } else { 0 };

@@ -11,7 +11,7 @@ use super::{
     timer::{Timer, Times},
 };
 use crate::{
-    effects::Stack,
+    effects::{Stack, hooks::Layers},
     frame::{Counters, Frame, Geometry, Piece, SnappedVertex},
     plan::Accuracy,
     scene::camera::View,
@@ -108,25 +108,29 @@ impl Renderer {
         let (owner, depth) = self.read_visibility(&key, view)?;
         let color = self.read_color(view)?;
         let geometry = self.read_geometry(&key)?;
-        let frame = Frame { width: view.width, height: view.height, owner, key: depth, color, counters };
-        let layers = self.count_layers(&key, view)?;
+        let counted = self.read_counted(&key, view)?;
         let previous = if key.reads_previous() {
             Some(buffers::read_picture(&self.gpu, self.buffers.get("previous"), [view.width, view.height])?)
         } else {
             None
         };
+        let layers = if key.layers == Some(Layers::Overdraw) { counted.clone() } else { self.count_layers(&key, view)? };
+        let frame = Frame { width: view.width, height: view.height, owner, key: depth, color, counted, counters };
         Ok(Capture { frame, geometry, layers: Some(layers), previous })
     }
 
-    /// Draws until no queue overflows.
+    /// Draws until no queue overflows and no sum of layers.
     pub fn draw_whole(&mut self, view: &View, stack: &Stack, accuracy: &Accuracy) -> Result<Counters, RenderError> {
         let mut lost = 0;
-        for _ in 0..8 {
+        for _ in 0..11 {
             self.draw(view, stack, accuracy)?;
             if view.pixels() == 0 {
                 return Ok(Counters::default());
             }
             let report = self.finish()?;
+            if !report.redraw && report.counters.full_pixels > 0 {
+                return Err(RenderError::FullSums(report.counters.full_pixels));
+            }
             if !report.redraw {
                 return Ok(report.counters);
             }
@@ -153,6 +157,19 @@ impl Renderer {
                 words.chunks_exact(2).map(|pair| (!pair[0], pair[1])).unzip()
             }
         })
+    }
+
+    /// Weights or layers per pixel, as the effect in the visibility slot has them.
+    fn read_counted(&self, key: &KernelKey, view: &View) -> Result<Vec<u32>, RenderError> {
+        let pixels = view.pixels() as u64;
+        let (buffer, first) = match (key.layers, key.visibility) {
+            (Some(Layers::Xray { .. }), Visibility::Split32) => ("depth_keys", pixels),
+            (Some(Layers::Xray { .. }), Visibility::Packed64) => ("depth_owner", 2 * pixels),
+            (Some(Layers::Overdraw), _) => return self.words("layers", pixels),
+            (Some(Layers::Race) | None, _) => return Ok(Vec::new()),
+        };
+        let words = self.words(buffer, first + 4 * pixels)?;
+        Ok(words[first as usize..].chunks_exact(4).map(|sums| sums[3]).collect())
     }
 
     fn read_color(&self, view: &View) -> Result<Vec<[u8; 4]>, RenderError> {

@@ -101,6 +101,7 @@ twin! {
         pub marked_tiles: u32,
         pub tickets: u32,
         pub tickets_again: u32,
+        pub full_pixels: u32,
     }
 }
 
@@ -272,6 +273,7 @@ impl CounterRecord {
             fan_folds: self.fan_folds,
             overflow: beyond.iter().fold(0, |sum: u32, b| sum.saturating_add(*b)),
             orphans: self.orphans,
+            full_pixels: self.full_pixels,
         }
     }
 }

@@ -42,6 +42,12 @@ pub struct Accuracy {
     pub max_snap_delta: u32,
     /// Decisions of sample effects beyond their bound, or that do not follow from their first word.
     pub decisions_wrong: u64,
+    /// Pixels whose number of layers, or sum of their weights, is wrong.
+    pub counts_wrong: u64,
+    /// Pixels of layers where several colours are right, because a weight or the depth window is at the edge of a step.
+    pub open_pixels: u64,
+    /// Pixels where a race lost the nearest triangle; only the effect that shows this has any.
+    pub race_pixels: u64,
     /// Counters of rejected and degenerate triangles that are not the oracle's.
     pub counters_wrong: u64,
     /// Largest difference of a colour channel from the nearest right answer, of 255.
@@ -138,6 +144,7 @@ impl Accuracy {
             (self.attribute_outside_bound, 0, "vertices have a depth or 1/w outside its bound"),
             (self.unexplained, 0, "pixels differ from the oracle's own picture without a reason"),
             (self.decisions_wrong, 0, "decisions of sample effects are wrong"),
+            (self.counts_wrong, 0, "pixels have a wrong number of layers, or a wrong sum of weights"),
             (self.counters_wrong, 0, "counters of rejected or degenerate triangles are wrong"),
             (self.explained_by_snap, budget.max_explained, "pixels differ because vertices snapped apart"),
             (self.band_pixels, budget.max_band_pixels, "pixels lie in the depth band"),

@@ -249,33 +249,59 @@ pub fn cover(triangles: &[OrientedTriangle], view: &View, claims: Option<&[u32]>
 
 /// The same, where `rules` may leave samples out.
 pub fn cover_by(rules: &Rules, triangles: &[OrientedTriangle], view: &View, claims: Option<&[u32]>) -> Coverage {
+    let mut samples = vec![Sample::EMPTY; view.pixels()];
+    scatter(rules, triangles, view, &mut samples, |triangle| {
+        move |sample: &mut Sample, x: usize, y: usize, Hit { depth, interval }: Hit| {
+            let claim = claims.map_or(NO_OWNER, |claims| claims[y * view.width as usize + x]);
+            sample.add(triangle.id, depth, interval, claim);
+        }
+    });
+    Coverage { samples }
+}
+
+/// Where a triangle meets a sample: its depth, and the interval of float keys.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Hit {
+    pub depth: f64,
+    pub interval: [f64; 2],
+}
+
+/// Visits every drawn sample of `view`, triangle by triangle, with the cell of its pixel; `visitor` makes a visit of each
+/// triangle. Parallel by bands of rows, so a triangle may be visited more than once, each sample by one visit alone.
+pub(super) fn scatter<'a, T: Send, V: FnMut(&mut T, usize, usize, Hit)>(
+    rules: &Rules,
+    triangles: &'a [OrientedTriangle],
+    view: &View,
+    cells: &mut [T],
+    visitor: impl Fn(&'a OrientedTriangle) -> V + Sync,
+) {
     const ROWS: usize = 8;
     let (width, height) = (view.width as usize, view.height as usize);
-    let mut samples = vec![Sample::EMPTY; width * height];
-    if samples.is_empty() {
-        return Coverage { samples };
+    if cells.is_empty() {
+        return;
     }
     let mut bands = vec![Vec::new(); height.div_ceil(ROWS)];
     for triangle in triangles {
         let (_, rows) = triangle.bounds(view, rules);
         if !rows.is_empty() {
-            bands[rows.start / ROWS..=(rows.end - 1) / ROWS].iter_mut().for_each(|band| band.push(triangle));
+            bands[rows.start / ROWS..=(rows.end - 1) / ROWS]
+                .iter_mut()
+                .for_each(|band: &mut Vec<&'a OrientedTriangle>| band.push(triangle));
         }
     }
-    samples.par_chunks_mut(ROWS * width).zip(bands).enumerate().for_each(|(band, (samples, triangles))| {
+    cells.par_chunks_mut(ROWS * width).zip(bands).enumerate().for_each(|(band, (cells, triangles))| {
         let first_row = band * ROWS;
         for triangle in triangles {
             let (columns, rows) = triangle.bounds(view, rules);
+            let mut visit = visitor(triangle);
             for y in rows.start.max(first_row)..rows.end.min(first_row + ROWS) {
                 for x in columns.clone() {
                     let Some((depth, interval)) = triangle.at(x, y, rules) else { continue };
-                    let claim = claims.map_or(NO_OWNER, |claims| claims[y * width + x]);
-                    samples[(y - first_row) * width + x].add(triangle.id, depth, interval, claim);
+                    visit(&mut cells[(y - first_row) * width + x], x, y, Hit { depth, interval });
                 }
             }
         }
     });
-    Coverage { samples }
 }
 
 impl OrientedTriangle {

@@ -42,6 +42,11 @@ pub(super) fn shade_nudged(
 ) -> Vec<[u8; 4]> {
     let background = background(view);
     let colors = surfaces(scene, draws, view, stack, (seen.owners, background), geometry, nudge);
+    finish_all(draws, view, stack, seen, &colors, nudge)
+}
+
+/// Bytes of a picture from its gamma-encoded colours, through the image effects, with every step moved by `nudge`.
+pub(super) fn finish_all(draws: &[Draw], view: &View, stack: &Stack, seen: &Seen, colors: &[DVec4], nudge: f64) -> Vec<[u8; 4]> {
     let first: Vec<u32> = draws.iter().map(|draw| draw.first_triangle).collect();
     let picture = Picture {
         width: view.width,
@@ -50,17 +55,17 @@ pub(super) fn shade_nudged(
         keys: seen.keys,
         draws: &first,
         previous: seen.previous,
-        background,
+        background: background(view),
     };
-    let finished = |(i, color): (usize, DVec4)| {
+    let finished = |(i, &color): (usize, &DVec4)| {
         let pixel = Pixel { color, x: i as u32 % view.width, y: i as u32 / view.width, nudge };
         bytes(if stack.finishes() { stack.finish(pixel, &picture).color } else { color })
     };
-    colors.into_par_iter().enumerate().map(finished).collect()
+    colors.par_iter().enumerate().map(finished).collect()
 }
 
 /// The background, gamma-encoded and rounded as a picture holds it.
-fn background(view: &View) -> DVec4 {
+pub(super) fn background(view: &View) -> DVec4 {
     let [r, g, b, alpha] = view.background.map(f64::from);
     let [r, g, b] = [r, g, b].map(|c| f64::from(srgb_byte(c)) / 255.0);
     DVec4::new(r, g, b, alpha.clamp(0.0, 1.0))

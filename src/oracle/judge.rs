@@ -12,6 +12,7 @@ use super::{
     empty,
     finish::Seen,
     frame,
+    layers::{Layered, Scenery, layered},
     moved::{Corner, Mover},
     order,
     project::{Clip, half_size, project_moved},
@@ -83,16 +84,28 @@ pub fn judge_after(
     let rules = if is_free { rules } else { rules.ordered(stack, &given, view) };
     let coverage = cover_by(&rules, &given, view, Some(&adapter.owner));
     let seen = Seen { owners: &adapter.owner, keys: &adapter.key, previous };
-    let answers = Answers::of(scene, &draws, view, stack, &seen, geometry);
-    let colors = answers.nearest(&adapter.color);
+    let scenery =
+        Scenery { scene, draws: &draws, view, geometry, rules: &rules, triangles: &given, owners: &adapter.owner, keys: &adapter.key };
+    let layered = layered(&scenery, &coverage, stack);
+    let answers = match &layered {
+        Some(layered) => Answers::between(&draws, view, stack, &seen, layered),
+        None => Answers::of(scene, &draws, view, stack, &seen, geometry),
+    };
     let step_band = answers.band();
     let vertices = vertex_faults(scene, &draws, view, stack, geometry, &own);
 
     let mut accuracy = Accuracy { pixels: view.pixels() as u64, ..Default::default() };
     match order::cut(stack, &rules, &given, view) {
         Some(cut) if is_free => judge_choice(&mut accuracy, &coverage, adapter, layers, cut.limit),
-        _ => judge_samples(&mut accuracy, &coverage, adapter, layers),
+        _ => judge_samples(&mut accuracy, &coverage, adapter, layers, stack.is_racing()),
     }
+    if let Some(layered) = &layered
+        && !is_free
+    {
+        judge_layers(&mut accuracy, layered, adapter);
+    }
+    // Which layers it chose, only the hardware knows.
+    let colors = if is_free && layered.is_some() { adapter.color.clone() } else { answers.nearest(&adapter.color) };
     judge_colors(&mut accuracy, &colors, adapter);
     accuracy.step_band_pixels = step_band.iter().filter(|is_band| **is_band).count() as u64;
     judge_counters(&mut accuracy, &counters, adapter);
@@ -105,13 +118,15 @@ pub fn judge_after(
     );
 
     let owners = coverage.owners();
-    let colors = if owners == adapter.owner {
-        colors
-    } else {
-        let seen = Seen { owners: &owners, keys: &coverage.keys(), previous };
-        Answers::of(scene, &draws, view, stack, &seen, geometry).nearest(&adapter.color)
+    let (colors, counted) = match layered {
+        Some(layered) => (answers.middle(), layered.counted),
+        None if owners == adapter.owner => (colors, Vec::new()),
+        None => {
+            let seen = Seen { owners: &owners, keys: &coverage.keys(), previous };
+            (Answers::of(scene, &draws, view, stack, &seen, geometry).nearest(&adapter.color), Vec::new())
+        }
     };
-    Ok(Verdict { accuracy, expected: frame(view, &coverage, colors, counters), step_band })
+    Ok(Verdict { accuracy, expected: frame(view, &coverage, colors, counted, counters), step_band })
 }
 
 /// Is the adapter's owner right, exactly or as one of the two answers of the depth band?
@@ -119,7 +134,7 @@ fn owner_is_right(sample: &Sample, owner: u32) -> bool {
     owner == sample.owner || sample.is_band() && sample.claim_is_possible()
 }
 
-fn judge_samples(accuracy: &mut Accuracy, coverage: &Coverage, adapter: &Frame, layers: Option<&[u32]>) {
+fn judge_samples(accuracy: &mut Accuracy, coverage: &Coverage, adapter: &Frame, layers: Option<&[u32]>, is_racing: bool) {
     for (i, sample) in coverage.samples.iter().enumerate() {
         let (owner, key) = (adapter.owner[i], adapter.key[i]);
         let hits = layers.map_or(u32::from(owner != NO_OWNER), |layers| layers[i]);
@@ -127,9 +142,12 @@ fn judge_samples(accuracy: &mut Accuracy, coverage: &Coverage, adapter: &Frame, 
         accuracy.holes += u64::from(truth.saturating_sub(hits));
         accuracy.double_hits += u64::from(hits.saturating_sub(truth));
         accuracy.band_pixels += u64::from(sample.is_band());
-        accuracy.owner_mismatch += u64::from(!owner_is_right(sample, owner));
         accuracy.orphans += u64::from(owner == NO_OWNER && key != 0);
-        accuracy.key_outside_bound += u64::from(sample.claimed.is_some_and(|bound| !key_fits(key, bound)));
+        // Where layers race, any that covers the sample may win, and the key may be another's.
+        let is_contested = is_racing && sample.layers > 1 && sample.claimed.is_some();
+        accuracy.race_pixels += u64::from(is_contested && !owner_is_right(sample, owner));
+        accuracy.owner_mismatch += u64::from(!is_contested && !owner_is_right(sample, owner));
+        accuracy.key_outside_bound += u64::from(!is_contested && sample.claimed.is_some_and(|bound| !key_fits(key, bound)));
     }
 }
 
@@ -152,6 +170,15 @@ fn key_fits(key: u32, [low, high]: [f64; 2]) -> bool {
     (low..=high).contains(&depth) && key != 0 || key == 1 && low < f64::from(f32::MIN_POSITIVE)
 }
 
+/// Judges counts of layers.
+fn judge_layers(accuracy: &mut Accuracy, truth: &Layered, adapter: &Frame) {
+    assert_eq!(adapter.counted.len(), truth.counted.len(), "the counts have another size");
+    let is_wrong = |(count, [least, most]): &(&u32, &[u64; 2])| !(*least..=*most).contains(&u64::from(**count));
+    accuracy.counts_wrong = adapter.counted.iter().zip(&truth.count_bounds).filter(is_wrong).count() as u64;
+    accuracy.overflow += u64::from(adapter.counters.full_pixels);
+    accuracy.open_pixels = truth.bounds.iter().filter(|[least, most]| least != most).count() as u64;
+}
+
 fn judge_colors(accuracy: &mut Accuracy, expected: &[[u8; 4]], adapter: &Frame) {
     let delta = compare::pictures(expected, &adapter.color, 0);
     accuracy.max_colour_delta = delta.max_delta;
@@ -161,7 +188,7 @@ fn judge_colors(accuracy: &mut Accuracy, expected: &[[u8; 4]], adapter: &Frame) 
 fn judge_counters(accuracy: &mut Accuracy, truth: &Counters, adapter: &Frame) {
     let counted = |c: &Counters| [c.rejected_nonfinite, c.rejected_range, c.degenerate];
     accuracy.counters_wrong = counted(truth).iter().zip(counted(&adapter.counters)).filter(|(a, b)| *a != b).count() as u64;
-    accuracy.overflow = adapter.counters.overflow.into();
+    accuracy.overflow += u64::from(adapter.counters.overflow);
     accuracy.orphans = accuracy.orphans.max(adapter.counters.orphans.into());
 }
 

@@ -14,6 +14,7 @@ mod coverage;
 mod decide;
 mod finish;
 mod judge;
+mod layers;
 mod moved;
 mod order;
 mod project;
@@ -29,6 +30,10 @@ pub use order::Cut;
 pub use project::{project, project_moved};
 pub use rules::Rules;
 
+use self::{
+    finish::finish_all,
+    layers::{Scenery, layered},
+};
 use crate::{
     effects::Stack,
     frame::{Counters, Frame},
@@ -59,10 +64,16 @@ pub fn render_after(scene: &Scene, view: &View, stack: &Stack, previous: Option<
     let mut geometry = project_moved(scene, &draws, view, stack);
     geometry.decisions = decide(scene, &draws, view, stack, &geometry);
     let (triangles, counters) = triangles(scene, &draws, &geometry);
-    let coverage = cover_by(&Rules::of(stack, &geometry).ordered(stack, &triangles, view), &triangles, view, None);
-    let seen = Seen { owners: &coverage.owners(), keys: &coverage.keys(), previous };
-    let color = shade(scene, &draws, view, stack, &seen, &geometry);
-    Ok(frame(view, &coverage, color, counters))
+    let rules = Rules::of(stack, &geometry).ordered(stack, &triangles, view);
+    let coverage = cover_by(&rules, &triangles, view, None);
+    let (owners, keys) = (&coverage.owners(), &coverage.keys());
+    let seen = Seen { owners, keys, previous };
+    let scenery = Scenery { scene, draws: &draws, view, geometry: &geometry, rules: &rules, triangles: &triangles, owners, keys };
+    let (color, counted) = match layered(&scenery, &coverage, stack) {
+        Some(layered) => (finish_all(&draws, view, stack, &seen, &layered.colors, 0.0), layered.counted),
+        None => (shade(scene, &draws, view, stack, &seen, &geometry), Vec::new()),
+    };
+    Ok(frame(view, &coverage, color, counted, counters))
 }
 
 /// The true picture of the last of `moments`, drawn after those before it, all of one size.
@@ -86,6 +97,6 @@ fn empty(view: &View) -> Frame {
 }
 
 /// The integers of `coverage` with their colours.
-fn frame(view: &View, coverage: &Coverage, color: Vec<[u8; 4]>, counters: Counters) -> Frame {
-    Frame { width: view.width, height: view.height, owner: coverage.owners(), key: coverage.keys(), color, counters }
+fn frame(view: &View, coverage: &Coverage, color: Vec<[u8; 4]>, counted: Vec<u32>, counters: Counters) -> Frame {
+    Frame { width: view.width, height: view.height, owner: coverage.owners(), key: coverage.keys(), color, counted, counters }
 }

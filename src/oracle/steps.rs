@@ -3,7 +3,10 @@
 //! An effect decides a step on a value plus a nudge, so shading with a small nudge to either side finds out which pixels
 //! lie so near. They are the band: derived without a look at the result, counted, and capped by whoever has a budget.
 
-use super::finish::{Seen, shade_nudged};
+use super::{
+    finish::{Seen, finish_all, shade_nudged},
+    layers::Layered,
+};
 use crate::{
     effects::Stack,
     frame::Geometry,
@@ -15,18 +18,39 @@ use crate::{
 pub const NUDGE: f64 = 1.0 / (1 << 15) as f64;
 
 /// The right pictures: one, or with steps three.
-pub struct Answers(Vec<Vec<[u8; 4]>>);
+pub struct Answers {
+    pictures: Vec<Vec<[u8; 4]>>,
+    /// Whatever lies between them is right too.
+    is_span: bool,
+}
 
 impl Answers {
     pub fn of(scene: &Scene, draws: &[Draw], view: &View, stack: &Stack, seen: &Seen, geometry: &Geometry) -> Self {
-        let nudges: &[f64] = if stack.has_steps() { &[0.0, -NUDGE, NUDGE] } else { &[0.0] };
-        Self(nudges.iter().map(|&nudge| shade_nudged(scene, draws, view, stack, seen, geometry, nudge)).collect())
+        let shaded = |&nudge: &f64| shade_nudged(scene, draws, view, stack, seen, geometry, nudge);
+        Self { pictures: nudges(stack).iter().map(shaded).collect(), is_span: false }
+    }
+
+    /// What lies between the least and the most that a picture of layers may show.
+    pub fn between(draws: &[Draw], view: &View, stack: &Stack, seen: &Seen, layered: &Layered) -> Self {
+        let ends = [0, 1].map(|end| layered.bounds.iter().map(|bounds| bounds[end]).collect::<Vec<_>>());
+        let finished =
+            |&nudge: &f64| [&layered.colors, &ends[0], &ends[1]].map(|colors| finish_all(draws, view, stack, seen, colors, nudge));
+        Self { pictures: nudges(stack).iter().flat_map(finished).collect(), is_span: true }
+    }
+
+    /// The picture as f64 has it.
+    pub fn middle(&self) -> Vec<[u8; 4]> {
+        self.pictures[0].clone()
     }
 
     /// Of every channel, the right answer that is nearest to the adapter's.
     pub fn nearest(&self, adapter: &[[u8; 4]]) -> Vec<[u8; 4]> {
         let channel = |i: usize, c: usize| {
-            let answers = self.0.iter().map(|answer| answer[i][c]);
+            let answers = self.pictures.iter().map(|answer| answer[i][c]);
+            if self.is_span {
+                let (least, most) = answers.fold((u8::MAX, u8::MIN), |(least, most), answer| (least.min(answer), most.max(answer)));
+                return adapter[i][c].clamp(least, most);
+            }
             answers.min_by_key(|answer| answer.abs_diff(adapter[i][c])).expect("there is an answer")
         };
         (0..adapter.len()).map(|i| [0, 1, 2, 3].map(|c| channel(i, c))).collect()
@@ -34,11 +58,16 @@ impl Answers {
 
     /// Which pixels have answers more than a step of 255 apart; empty where none can.
     pub fn band(&self) -> Vec<bool> {
-        let [middle, others @ ..] = self.0.as_slice() else { return Vec::new() };
+        let [middle, others @ ..] = self.pictures.as_slice() else { return Vec::new() };
         if others.is_empty() {
             return Vec::new();
         }
         let differs = |i: usize| others.iter().any(|other| (0..4).any(|c| other[i][c].abs_diff(middle[i][c]) > 1));
         (0..middle.len()).map(differs).collect()
     }
+}
+
+/// How far steps are moved, nothing first.
+pub(super) fn nudges(stack: &Stack) -> &'static [f64] {
+    if stack.has_steps() { &[0.0, -NUDGE, NUDGE] } else { &[0.0] }
 }

@@ -55,7 +55,7 @@ pub fn surfaces(
 }
 
 /// Linear RGBA as sRGB, each 0 to 1; alpha is not gamma-encoded.
-fn encoded(color: DVec4) -> DVec4 {
+pub(super) fn encoded(color: DVec4) -> DVec4 {
     DVec4::new(srgb(color.x), srgb(color.y), srgb(color.z), color.w.clamp(0.0, 1.0))
 }
 
@@ -69,7 +69,7 @@ enum Weights {
 }
 
 /// All that does not change from sample to sample.
-struct Triangle {
+pub(super) struct Triangle {
     owner: u32,
     weights: Weights,
     positions: [DVec3; 3],
@@ -92,7 +92,7 @@ struct Triangle {
 
 impl Triangle {
     /// None for a triangle with a rejected corner, which owns nothing.
-    fn new(mover: &Mover, scene: &Scene, view: &View, geometry: &Geometry, owner: u32) -> Option<Self> {
+    pub fn new(mover: &Mover, scene: &Scene, view: &View, geometry: &Geometry, owner: u32) -> Option<Self> {
         let draw = mover.draw;
         let primitive = &scene.primitives[draw.primitive];
         let material = &scene.materials[primitive.material];
@@ -152,7 +152,7 @@ impl Triangle {
     }
 
     /// The surface at the centre of a pixel.
-    fn surface(&self, view: &View, x: usize, y: usize) -> Surface {
+    pub fn surface(&self, view: &View, x: usize, y: usize) -> Surface {
         let pixel = DVec2::new(x as f64 + 0.5, y as f64 + 0.5);
         let screen = pixel / DVec2::new(view.width.into(), view.height.into());
         let corner = self.disc.and_then(|(records, radius)| {

@@ -78,7 +78,13 @@ pub fn set(look: &mut Look, path: &str, value: &str) -> Result<(), PresetError> 
     let written = if value.is_empty() { format!("--set {path}") } else { format!("--set {path}={value}") };
     let wrong = |reason: String| PresetError::value(Place { file: written.clone(), line: None }, path, reason);
     let session = &mut look.session;
-    match target(path).map_err(wrong)? {
+    let target = target(path).map_err(wrong)?;
+    if let Target::Effect(effect) | Target::Field(effect, _) | Target::Animation(Some(effect), _) = target
+        && let Some(conflict) = session.stack.rival(effect)
+    {
+        return Err(PresetError::value(Place { file: written, line: None }, "effects", conflict.to_string()));
+    }
+    match target {
         Target::Effect(effect) if value.is_empty() => drop(session.stack.enable(effect)),
         Target::Section(section) if value.is_empty() => section.enter(session),
         Target::Effect(_) | Target::Section(_) => return Err(wrong("takes no value; name one of its keys".into())),

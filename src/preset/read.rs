@@ -9,7 +9,7 @@ use super::{
     migrate,
 };
 use crate::{
-    effects::{EFFECTS, Effect, Enabled, Stack},
+    effects::{Conflict, EFFECTS, Effect, Enabled, Stack},
     session::{Session, Test},
 };
 
@@ -116,6 +116,8 @@ impl Reader<'_> {
         }
         if let Some(effects) = self.table(root, "", "effects")? {
             self.effects(effects, &mut session.stack)?;
+            let conflict = |conflict: Conflict| PresetError::value(self.at(effects, conflict.second), "effects", conflict.to_string());
+            session.stack.check().map_err(conflict)?;
         }
         if let Some(effects) = self.table(root, "", "animation")? {
             self.animation(effects, &mut session)?;

@@ -2,7 +2,11 @@
 
 use std::fmt;
 
-use crate::effects::{Effect, Stack, draw_order::Mode, hooks::Shape};
+use crate::effects::{
+    Effect, Enabled, Stack,
+    draw_order::Mode,
+    hooks::{Layers, Shape},
+};
 
 /// Where depth and owner meet.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -73,8 +77,12 @@ pub enum Phase {
     Depth,
     /// The owner of the nearest key.
     Owner,
-    /// Layers per pixel, for the judge.
+    /// Layers per pixel: for the heat map, and for the judge.
     Count,
+    /// Weighted colours of all layers.
+    Sum,
+    /// Key and owner without atomics.
+    Race,
     /// Samples per triangle.
     Tally,
     /// The samples of the triangle in which the drawing stops.
@@ -150,6 +158,8 @@ impl Pass {
             Some(Phase::Count) => format!("{} count", self.stem()),
             Some(Phase::Tally) => format!("{} tally", self.stem()),
             Some(Phase::Straddle) => format!("{} straddle", self.stem()),
+            Some(Phase::Sum) => format!("{} sum", self.stem()),
+            Some(Phase::Race) => format!("{} race", self.stem()),
             Some(Phase::Packed) | None => self.stem().into(),
         }
     }
@@ -160,6 +170,8 @@ impl Pass {
 pub struct KernelKey {
     pub fetch: Fetch,
     pub visibility: Visibility,
+    /// What an effect makes of the samples of a pixel; without one the nearest is shown.
+    pub layers: Option<Layers>,
     /// Effects in stack order.
     pub effects: Vec<&'static Effect>,
     /// What a triangle covers.
@@ -209,6 +221,7 @@ impl KernelKey {
         Self {
             fetch,
             visibility,
+            layers: Stack(effects.iter().map(|effect| Enabled::new(effect)).collect()).layers(u64::MAX),
             shape: Shape::Triangles,
             order: Order::Free,
             has_samples: effects.iter().any(|effect| effect.hooks.sample.is_some()),
@@ -274,11 +287,17 @@ impl KernelKey {
 
     /// The raster phases of one frame, in order.
     pub fn phases(&self) -> Vec<Phase> {
-        let draw: &[Phase] = match self.visibility {
-            Visibility::Split32 => &[Phase::Depth, Phase::Owner],
-            Visibility::Packed64 => &[Phase::Packed],
+        let nearest: &[Phase] = match (self.layers, self.visibility) {
+            (Some(Layers::Race), _) => &[Phase::Race],
+            (_, Visibility::Split32) => &[Phase::Depth, Phase::Owner],
+            (_, Visibility::Packed64) => &[Phase::Packed],
         };
-        [self.lead(), draw].concat()
+        let layers: &[Phase] = match self.layers {
+            Some(Layers::Xray { .. }) => &[Phase::Sum],
+            Some(Layers::Overdraw) => &[Phase::Count],
+            Some(Layers::Race) | None => &[],
+        };
+        [self.lead(), nearest, layers].concat()
     }
 
     /// Every pass of one picture, in the order in which they are recorded.
@@ -333,7 +352,8 @@ impl KernelKey {
             Fetch::Indexed => "indexed",
         };
         let queues = if self.has_queues() { "kept" } else { "none" };
-        let is_marking = self.listed_tiles && !matches!(pass.phase(), Some(Phase::Owner | Phase::Count | Phase::Tally | Phase::Straddle));
+        let is_marking =
+            self.listed_tiles && !matches!(pass.phase(), Some(Phase::Owner | Phase::Count | Phase::Sum | Phase::Tally | Phase::Straddle));
         let marks = if is_marking { "kept" } else { "none" };
         let pixels = if self.listed_tiles { "listed" } else { "all" };
         let pieces = if self.has_clipping { "kept" } else { "none" };
@@ -345,6 +365,11 @@ impl KernelKey {
         };
         let shape = if self.moves() { "moved" } else { "still" };
         let finish = if self.has_image() { "image" } else { "none" };
+        let shading = match self.layers {
+            Some(Layers::Xray { .. }) => "average",
+            Some(Layers::Overdraw) => "heat",
+            Some(Layers::Race) | None => "owner",
+        };
         let mut slots = vec![
             ("corners", format!("slots/corners/{records}")),
             ("sources", format!("slots/sources/{records}")),
@@ -363,6 +388,8 @@ impl KernelKey {
             ("coverage", format!("slots/coverage/{}", if self.shape == Shape::Boxes { "boxes" } else { "fixed8" })),
             ("owner", format!("slots/owner/{}", self.visibility.name())),
             ("finish", format!("slots/finish/{finish}")),
+            ("sums", format!("slots/sums/{}", self.visibility.name())),
+            ("shading", format!("slots/shading/{shading}")),
         ];
         if let Some(phase) = pass.phase() {
             let file = match phase {
@@ -372,6 +399,8 @@ impl KernelKey {
                 Phase::Count => "count",
                 Phase::Tally => "tally",
                 Phase::Straddle => "straddle",
+                Phase::Sum => "sum",
+                Phase::Race => "race",
             };
             slots.push(("visibility", format!("slots/visibility/{file}")));
         }
@@ -392,7 +421,17 @@ impl KernelKey {
     fn is_first(&self, pass: Pass) -> bool {
         match self.lead().first() {
             Some(&first) => pass.phase() == Some(first),
-            None => !matches!(pass.phase(), Some(Phase::Owner)),
+            None => pass.phase() != Some(Phase::Owner) && !self.is_again(pass),
+        }
+    }
+
+    /// Does this pass visit all layers of a frame that has found the nearest before? The judge counts in a frame of its own,
+    /// unless the picture itself shows the count.
+    fn is_again(&self, pass: Pass) -> bool {
+        match pass.phase() {
+            Some(Phase::Sum) => true,
+            Some(Phase::Count) => self.layers == Some(Layers::Overdraw),
+            _ => false,
         }
     }
 
@@ -419,6 +458,8 @@ impl KernelKey {
             ("SMALL_SIDE", self.small_side.into()),
             ("EARLY_LOAD", flag(self.early_load)),
             ("IS_FIRST", flag(self.is_first(pass))),
+            ("IS_AGAIN", flag(self.is_again(pass))),
+            ("SUM_BITS", if let Some(Layers::Xray { bits }) = self.layers { bits.into() } else { 0.0 }),
         ]
     }
 }
@@ -429,7 +470,13 @@ impl fmt::Display for KernelKey {
             Fetch::Direct => "direct",
             Fetch::Indexed => "indexed",
         };
-        write!(f, "raster[fetch={fetch} coverage=fixed8 visibility={} small={}", self.visibility.name(), self.small_samples)?;
+        let visibility = if self.layers == Some(Layers::Race) { "race" } else { self.visibility.name() };
+        write!(f, "raster[fetch={fetch} coverage=fixed8 visibility={visibility} small={}", self.small_samples)?;
+        match self.layers {
+            Some(Layers::Xray { bits }) => write!(f, " layers=xray/{bits}")?,
+            Some(Layers::Overdraw) => write!(f, " layers=overdraw")?,
+            Some(Layers::Race) | None => {}
+        }
         for (name, is_on) in [
             ("clip", self.has_clipping),
             ("medium", self.has_medium),

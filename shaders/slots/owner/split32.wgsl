@@ -7,3 +7,8 @@
 fn owner_load(pixel: u32) -> vec2u {
     return vec2u(owners[pixel], depth_keys[pixel]);
 }
+
+// A word of what stands behind the last pixel.
+fn owner_beyond(word: u32) -> u32 {
+    return depth_keys[frame.size.x * frame.size.y + word];
+}

@@ -1,6 +1,7 @@
-// Visibility count: layers per pixel before any depth test; the proof that every sample is drawn exactly once.
+// Visibility count: layers per pixel before any depth test: the heat map, and the proof that every sample is drawn exactly
+// once.
 
-@group(0) @binding(5) var<storage, read_write> layers: array<atomic<u32>>;
+@group(0) @binding(15) var<storage, read_write> layers: array<atomic<u32>>;
 
 fn visibility_write(pixel: u32, key: u32, id: u32) {
     atomicAdd(&layers[pixel], 1u);

@@ -11,7 +11,7 @@ mod vertex;
 pub use front::{Front, Pattern};
 pub use image::{ImageEffect, ImageHook, Picture, Pixel};
 pub use sample::{Facts, Sample, SampleEffect, SampleHook};
-pub use slot::{Shape, Slot};
+pub use slot::{Layers, Shape, Slot};
 pub use surface::{Surface, SurfaceEffect};
 pub use vertex::{ROUNDING, Slack, Vertex, VertexEffect, VertexHook};
 

@@ -35,3 +35,24 @@ pub enum Shape {
     /// Discs about its corners.
     Points,
 }
+
+/// What the effect in [`Slot::Visibility`] makes of the samples of a pixel.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Layers {
+    /// Their average, in sums of so many bits per channel.
+    Xray { bits: u32 },
+    /// Their number.
+    Overdraw,
+    /// The nearest, if nobody interferes.
+    Race,
+}
+
+impl Layers {
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Xray { .. } => "xray",
+            Self::Overdraw => "overdraw",
+            Self::Race => "race",
+        }
+    }
+}

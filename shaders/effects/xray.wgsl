@@ -1,0 +1,55 @@
+// X-ray: the average of all layers on a pixel instead of the nearest, in linear light and in whole numbers.
+//@ use common/surface
+
+struct Xray {
+    reach: u32,
+    window: u32,
+    weight: u32,
+    opacity: f32,
+    bits: u32,
+}
+
+// Weight of a layer: 1 where all count alike, else 1 to 255.
+fn xray_weight(s: Surface, p: Xray) -> u32 {
+    let facing = abs(dot(s.normal, s.view));
+    var share = facing;
+    switch p.weight {
+        case XRAY_WEIGHT_EQUAL: { return 1u; }
+        case XRAY_WEIGHT_GRAZING: { share = 1.0 - facing; }
+        case XRAY_WEIGHT_NEAR: { share = (s.range_m.y - s.depth_m) / (s.range_m.y - s.range_m.x); }
+        default: {}
+    }
+    return u32(clamp(share * 255.0, 1.0, 255.0) + 0.5);
+}
+
+// Least depth key that counts behind a front; integers alone, so that both twins give the same.
+fn xray_threshold(front: u32, is_perspective: bool, p: Xray) -> u32 {
+    if p.reach == XRAY_REACH_ALL { return 1u; }
+    if !is_perspective {
+        let step = u32(bitcast<f32>(front) * 1048576.0);
+        let window = (p.window << 20u) / 1000u;
+        return max(bitcast<u32>(f32(step - min(step, window)) * 0.00000095367431640625), 1u);
+    }
+    // The significand times a factor of 16 bits, in two parts, so that nothing exceeds 32 bits.
+    let exponent = front >> 23u;
+    let significand = (front & 0x7fffffu) | 0x800000u;
+    let factor = 65536000u / (1000u + p.window);
+    let scaled = ((significand >> 12u) * factor + (((significand & 0xfffu) * factor) >> 12u)) >> 4u;
+    let shift = countLeadingZeros(scaled) - 8u;
+    if exponent <= shift { return 1u; }
+    return ((exponent - shift) << 23u) | ((scaled << shift) & 0x7fffffu);
+}
+
+// Sum over count, to the nearest whole number, halves up.
+fn xray_average(sum: u32, count: u32) -> u32 {
+    let whole = max(count, 1u);
+    return sum / whole + select(0u, 1u, 2u * (sum % whole) >= whole);
+}
+
+// The average over the background, as dense as its layers are many.
+fn xray_seen(average: vec3f, background: vec4f, weight: u32, p: Xray) -> vec4f {
+    let unit = select(255.0, 1.0, p.weight == XRAY_WEIGHT_EQUAL);
+    let through = 1.0 - p.opacity;
+    let clear = select(0.0, exp2(log2(max(through, 1e-30)) * (f32(weight) / unit)), through > 0.0 || weight == 0u);
+    return vec4f(average + (background.rgb - average) * clear, 1.0 + (background.a - 1.0) * clear);
+}

@@ -1,0 +1,13 @@
+// Visibility race: look, compare, store, without atomics, as a beginner's kernel does it. Whoever stores last stays.
+//@ use common/surface
+//@ use glue/surface
+
+@group(0) @binding(5) var<storage, read_write> depth_owner: array<u32>;
+
+fn visibility_write(pixel: u32, key: u32, id: u32) {
+    let is_nearer = depth_owner[2u * pixel + 1u] < key;
+    if is_nearer && race_dawdle(key, effects.race) {
+        depth_owner[2u * pixel + 1u] = key;
+        depth_owner[2u * pixel] = ~id;
+    }
+}

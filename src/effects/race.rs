@@ -1,0 +1,19 @@
+//! Race: what goes wrong without atomics, live: load the depth, compare, store depth and owner, and hope.
+//!
+//! Two invocations that meet on a pixel both see the old depth, and whoever stores last stays, near or far. The true
+//! picture is the one without the race; the oracle draws that, and the judge counts the pixels that were lost.
+
+use super::{Effect, hooks::Slot};
+use crate::params;
+
+params! {
+    pub struct Race {
+        /// Rounds of idle work between the look at the depth and the store: the longer the gap, the more is lost.
+        delay: u32 = 0, hard 0.0..=1000.0, soft 0.0..=100.0;
+    }
+}
+
+pub const EFFECT: Effect =
+    Effect::new::<Race>("race", "Race", "stores depth and owner without atomics: wrong, and not twice the same")
+        .in_slot(Slot::Visibility)
+        .repeatable_if(|_| false);

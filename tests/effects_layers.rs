@@ -1,0 +1,507 @@
+//! Promise: x-ray, overdraw and race do what they say with all the samples of a pixel: sums that no order shows, counts that
+//! are exact, overflow that is never silent, and a race that loses no more than it may. Needs an adapter but for the first.
+
+mod common;
+
+use std::{fs, path::Path, sync::Arc};
+
+use common::*;
+use glam::DVec3;
+use rasterlab::{
+    effects::{
+        Effect, Stack,
+        hooks::Layers,
+        xray::{self, Xray},
+    },
+    gpu::{RenderError, Renderer},
+    math::srgb_byte,
+    measure::Accuracy as Errors,
+    oracle,
+    plan::{Accuracy, Tuning},
+    preset,
+    scene::{Scene, camera::View},
+    shader::{key::Visibility, library::Library},
+};
+
+/// A stack of effects with values: `"xray.weight=facing"`, or a name alone.
+fn with(values: &[&str]) -> Stack {
+    let mut look = preset::parse("schema = 1\n", "test").expect("an empty look");
+    for value in values {
+        let (path, value) = value.split_once('=').unwrap_or((value, ""));
+        preset::set(&mut look, path, value).unwrap_or_else(|error| panic!("{error}"));
+    }
+    look.session.stack
+}
+
+/// Triangles all over a picture of `side` pixels, each in colours, normals and depths of its own.
+fn soup(seed: u32, count: usize, side: i32, darkest: f64) -> Vec<[([f32; 3], [f32; 3], [f32; 4]); 3]> {
+    let mut dice = Dice(seed);
+    let corner = |dice: &mut Dice| {
+        let at = [dice.between(-2000, 256 * side + 2000), dice.between(-2000, 256 * side + 2000)];
+        let position = [at[0] as f32 / 256.0, at[1] as f32 / 256.0, dice.real(0.05, 0.95) as f32];
+        let normal = DVec3::new(dice.real(-1.0, 1.0), dice.real(-1.0, 1.0), dice.real(-1.0, 1.0)).normalize_or(DVec3::Z);
+        let mut channel = || (darkest * dice.real(0.02, 1.0)) as f32;
+        (position, normal.as_vec3().to_array(), [channel(), channel(), channel(), 1.0])
+    };
+    (0..count).map(|_| [corner(&mut dice), corner(&mut dice), corner(&mut dice)]).collect()
+}
+
+fn scene_from(triangles: &[[([f32; 3], [f32; 3], [f32; 4]); 3]]) -> Arc<Scene> {
+    let corners = || triangles.iter().flatten();
+    hand_made(&[Part {
+        positions: corners().map(|corner| corner.0).collect(),
+        normals: corners().map(|corner| corner.1).collect(),
+        colors: corners().map(|corner| corner.2).collect(),
+        ..Part::default()
+    }])
+}
+
+/// `count` layers that cover every pixel, half of them of one colour and half of another, from six vertices.
+fn pile(count: u32) -> Arc<Scene> {
+    let corners = |depth: f32| [[-4.0, -4.0, depth], [40.0, -4.0, depth], [-4.0, 40.0, depth]];
+    let colors = [[1.0, 0.0, 0.25, 1.0], [0.0, 1.0, 0.25, 1.0]];
+    hand_made(&[Part {
+        positions: [corners(0.5), corners(0.25)].concat(),
+        colors: colors.iter().flat_map(|color| [*color; 3]).collect(),
+        indices: (0..count).flat_map(|layer| [0, 1, 2].map(|corner| 3 * (layer % 2) + corner)).collect(),
+        ..Part::default()
+    }])
+}
+
+fn shuffled<T>(dice: &mut Dice, mut list: Vec<T>) -> Vec<T> {
+    for last in (1..list.len()).rev() {
+        let other = dice.between(0, last as i32 + 1) as usize;
+        list.swap(last, other);
+    }
+    list
+}
+
+// ---------------------------------------------------------------- two in one slot
+
+#[test]
+fn two_effects_in_one_slot_are_refused_in_one_sentence_that_names_both() {
+    let sentence = "xray and overdraw both take the visibility slot of the rasterizer; switch one of them off";
+    let text = "schema = 1\n[effects.overdraw]\nfull = 4\n[effects.xray]\n";
+    let error = preset::parse(text, "both").expect_err("two effects in one slot").to_string();
+    assert_eq!(error, format!("both.toml:2: effects {sentence}"));
+
+    let mut look = preset::parse("schema = 1\n[effects.xray]\n", "one").expect("one effect");
+    for (path, value) in [("overdraw", ""), ("overdraw.full", "4")] {
+        let error = preset::set(&mut look, path, value).expect_err("a second effect").to_string();
+        assert!(error.starts_with(&format!("--set {path}")) && error.ends_with(&format!("effects {sentence}")), "{error}");
+    }
+    assert!(look.session.stack.get("overdraw").is_none(), "nothing was switched on");
+    preset::unset(&mut look, "xray").expect("it is on");
+    preset::set(&mut look, "overdraw", "").expect("now the slot is free");
+
+    let error = stack(&["xray", "race"]).check().expect_err("two effects in one slot").to_string();
+    assert_eq!(error, "xray and race both take the visibility slot of the rasterizer; switch one of them off");
+}
+
+// ---------------------------------------------------------------- x-ray
+
+#[test]
+fn the_average_is_bit_equal_in_any_order_on_every_run_rung_and_tuning() {
+    let Some(mut renderer) = renderer() else { return };
+    let triangles = soup(1, 300, 64, 1.0);
+    let view = pixel_view(64, 64);
+    for stack in [with(&["xray"]), with(&["lambert", "xray.weight=facing"])] {
+        let draw = |renderer: &mut Renderer, scene: &Arc<Scene>, rung| {
+            let frame = captured(renderer, scene, &view, &stack, &pinned(rung)).frame;
+            (frame.color, frame.counted)
+        };
+        let scene = scene_from(&triangles);
+        let first = draw(&mut renderer, &scene, Visibility::Split32);
+        assert!(first.1.iter().filter(|&&weight| weight > 20).count() > 1000, "many layers");
+        for run in 0..20 {
+            assert!(draw(&mut renderer, &scene, Visibility::Split32) == first, "run {run}");
+        }
+        let mut dice = Dice(7);
+        let usual = renderer.gpu().caps.tuning();
+        for rung in rungs(&renderer) {
+            for tuning in tunings() {
+                renderer.set_tuning(tuning);
+                let scene = scene_from(&shuffled(&mut dice, triangles.clone()));
+                assert!(draw(&mut renderer, &scene, rung) == first, "shuffled, {} {tuning:?}", rung.name());
+            }
+        }
+        renderer.set_tuning(usual);
+    }
+}
+
+/// What a pile of layers shows.
+fn pile_color(count: u32) -> [u8; 4] {
+    let (red, all) = (f64::from(count.div_ceil(2)), f64::from(count));
+    [srgb_byte(red / all), srgb_byte(1.0 - red / all), srgb_byte(0.25), 255]
+}
+
+#[test]
+fn any_number_of_layers_gives_the_right_average_with_fewer_bits_where_it_must() {
+    let Some(mut renderer) = renderer() else { return };
+    let view = pixel_view(2, 2);
+    let cases = [
+        (257, "auto", 16),
+        (258, "auto", 16),
+        (258, "8", 8),
+        (65_537, "auto", 16),
+        (65_537, "16", 16),
+        (65_538, "auto", 12),
+        (65_538, "16", 12),
+        (65_538, "10", 10),
+        (1_000_000, "auto", 12),
+        (1_000_000, "16", 12),
+        (1_048_833, "auto", 10),
+    ];
+    for (count, bits, taken) in cases {
+        let scene = pile(count);
+        let stack = with(&[&format!("xray.bits=\"{bits}\"")]);
+        let what = format!("{count} layers from {bits} bits");
+        let (capture, verdict) = exact(&mut renderer, &scene, &view, &stack, &Accuracy::default(), &what);
+        assert_eq!(renderer.key().and_then(|key| key.layers), Some(Layers::Xray { bits: taken }), "{what}");
+        assert_eq!((capture.frame.counted, capture.frame.counters.full_pixels), (vec![count; 4], 0), "{what}");
+        let expected = pile_color(count);
+        let near = |color: &[u8; 4]| color.iter().zip(expected).all(|(a, b)| a.abs_diff(b) <= 1);
+        // Steps of eight bits in linear light are coarser than bytes.
+        assert!(taken == 8 || capture.frame.color.iter().chain(&verdict.expected.color).all(near), "{what}: {:?}", capture.frame.color);
+    }
+}
+
+#[test]
+fn more_layers_than_any_sum_holds_are_a_sentence_and_a_mark_never_silent() {
+    let Some(mut renderer) = renderer() else { return };
+    let view = pixel_view(2, 2);
+    let count = xray::capacity(8) / xray::FULL_WEIGHT + 2;
+    let scene = pile(count);
+    let stack = with(&["xray.weight=facing"]);
+    renderer.set_scene(&scene).expect("it fits");
+    match renderer.capture(&view, &stack, &Accuracy::default()) {
+        Err(error @ RenderError::FullSums(4)) => {
+            let text = error.to_string();
+            assert!(text.starts_with("4 pixels have more layers than the x-ray's sums hold even with 8 bits"), "{text}");
+        }
+        other => panic!("{:?} of {count} layers", other.map(|capture| capture.frame.color)),
+    }
+    // Asynchronously, as a window draws: with 8 bits it is over, and the figures say so.
+    renderer.draw(&view, &stack, &Accuracy::default()).expect("a frame");
+    let report = renderer.finish().expect("figures");
+    assert_eq!((report.counters.full_pixels, report.redraw), (4, false));
+    // One layer fewer than too many is right.
+    let scene = pile(count - 2);
+    let (capture, _) = exact(&mut renderer, &scene, &view, &stack, &Accuracy::default(), "as many as fit");
+    assert_eq!(capture.frame.counted, vec![(count - 2) * xray::FULL_WEIGHT; 4]);
+}
+
+#[test]
+fn windows_weights_and_opacities_are_the_oracles() {
+    let Some(mut renderer) = renderer() else { return };
+    let flat = (scene_from(&soup(3, 120, 48, 0.6)), pixel_view(48, 48));
+    let knot = scene("knot?tess=6");
+    let deep = (knot.clone(), view(&knot, [120, 90]));
+    let hall = scene("near");
+    let cut = (hall.clone(), view(&hall, [96, 72]));
+    let windows =
+        ["xray.reach=all", "xray.reach=window,xray.window=0", "xray.reach=window,xray.window=30", "xray.reach=window,xray.window=500"];
+    for weight in ["equal", "facing", "grazing", "near"] {
+        for (i, window) in windows.iter().enumerate() {
+            let weight = format!("xray.weight={weight}");
+            let mut values = vec!["lambert", weight.as_str(), ["xray.opacity=1", "xray.opacity=0.3"][i % 2]];
+            values.extend(window.split(','));
+            let stack = with(&values);
+            for (what, (scene, view)) in [("soup", &flat), ("knot", &deep), ("hall", &cut)] {
+                for rung in rungs(&renderer) {
+                    let what = format!("{what} {} {values:?}", rung.name());
+                    let (_, verdict) = exact(&mut renderer, scene, view, &stack, &pinned(rung), &what);
+                    let a = &verdict.accuracy;
+                    assert!(a.open_pixels <= a.pixels / 10, "{what}: {} of {} pixels are open", a.open_pixels, a.pixels);
+                }
+            }
+        }
+    }
+    // A window of nothing is the front alone, whatever lies behind.
+    let (scene, view) = &deep;
+    let bare = captured(&mut renderer, scene, view, &with(&["normals"]), &Accuracy::default()).frame;
+    let front = captured(&mut renderer, scene, view, &with(&["normals", "xray.reach=window", "xray.window=0"]), &Accuracy::default()).frame;
+    assert_eq!(front.owner, bare.owner);
+    let delta = rasterlab::measure::compare::pictures(&front.color, &bare.color, 1);
+    assert!(delta.pixels_beyond < 8, "{} pixels", delta.pixels_beyond);
+}
+
+#[test]
+fn every_builtin_scene_is_exact_in_layers() {
+    let Some(mut renderer) = renderer() else { return };
+    let rungs = rungs(&renderer);
+    for (i, query) in SCENES.iter().enumerate() {
+        let scene = scene(query);
+        let view = view(&scene, [160, 120]);
+        for (j, stack) in
+            [with(&["facet", "lambert", "xray"]), with(&["xray.weight=grazing"]), with(&["overdraw.scale=log"])].iter().enumerate()
+        {
+            let rung = rungs[(i + j) % rungs.len()];
+            let what = format!("{query} {} {:?}", rung.name(), stack.0.last().map(|enabled| enabled.effect));
+            let (capture, verdict) = exact(&mut renderer, &scene, &view, stack, &pinned(rung), &what);
+            let is_weighted = stack.params::<Xray>("xray").is_some_and(|xray| xray.unit() > 1);
+            if !is_weighted {
+                assert_eq!(
+                    Some(&capture.frame.counted),
+                    capture.layers.as_ref(),
+                    "{what}: what the picture shows and what the judge counts"
+                );
+                assert_eq!(capture.frame.counted, verdict.expected.counted, "{what}");
+            }
+        }
+    }
+}
+
+#[test]
+fn layers_are_averaged_among_the_samples_that_other_effects_leave() {
+    let Some(mut renderer) = renderer() else { return };
+    let scene = scene("knot?tess=6");
+    let view = view(&scene, [120, 90]);
+    let rungs = rungs(&renderer);
+    for (i, others) in [&["dissolve"][..], &["stipple"], &["wireframe"], &["boxes"], &["points"], &["draw_order"]].iter().enumerate() {
+        for (j, last) in ["xray", "overdraw", "race"].into_iter().enumerate() {
+            let stack = stack(&[*others, &["lambert", last][..]].concat());
+            let rung = rungs[(i + j) % rungs.len()];
+            exact(&mut renderer, &scene, &view, &stack, &pinned(rung), &format!("{others:?} {last} {}", rung.name()));
+        }
+    }
+}
+
+// ---------------------------------------------------------------- race
+
+#[test]
+fn a_race_is_exact_where_one_layer_covers_and_elsewhere_a_covering_triangle_wins() {
+    let Some(mut renderer) = renderer() else { return };
+    let lonely = scene("grid?cell=1");
+    let view_of = |scene: &Arc<Scene>| view(scene, [160, 120]);
+    let (capture, verdict) = exact(&mut renderer, &lonely, &view_of(&lonely), &stack(&["race"]), &Accuracy::default(), "one layer");
+    let alone = captured(&mut renderer, &lonely, &view_of(&lonely), &stack(&[]), &Accuracy::default()).frame;
+    assert_eq!((verdict.accuracy.race_pixels, &capture.frame.owner), (0, &alone.owner));
+
+    let crowded = scene_from(&soup(5, 400, 64, 1.0));
+    let view = pixel_view(64, 64);
+    for tuning in tunings() {
+        renderer.set_tuning(tuning);
+        for delay in [0, 50] {
+            let stack = with(&["race", &format!("race.delay={delay}")]);
+            let (_, verdict) = exact(&mut renderer, &crowded, &view, &stack, &Accuracy::default(), &format!("{tuning:?}"));
+            eprintln!("delay {delay}, {tuning:?}: {} of {} pixels lost", verdict.accuracy.race_pixels, verdict.accuracy.pixels);
+        }
+    }
+}
+
+#[test]
+fn the_judge_counts_what_a_race_lost_and_refuses_what_it_cannot_lose() {
+    let Some(mut renderer) = renderer() else { return };
+    let scene = scene_from(&soup(5, 60, 32, 1.0));
+    let (view, plain, racing) = (pixel_view(32, 32), stack(&[]), stack(&["race"]));
+    let capture = captured(&mut renderer, &scene, &view, &plain, &Accuracy::default());
+    let judge = |frame: &rasterlab::frame::Frame, stack: &Stack| {
+        oracle::judge(&scene, &view, stack, frame, &capture.geometry, capture.layers.as_deref()).expect("it fits").accuracy
+    };
+    // Another triangle of the same pixel: what is drawn once the owner is gone.
+    let pixel = capture.layers.as_ref().expect("counted").iter().position(|&layers| layers > 3).expect("a crowded pixel");
+    let covering: Vec<u32> = (0..60)
+        .filter(|&id| id != capture.frame.owner[pixel])
+        .filter(|&id| {
+            let mut claim = capture.frame.owner.clone();
+            claim[pixel] = id;
+            let frame = rasterlab::frame::Frame { owner: claim, ..capture.frame.clone() };
+            judge(&frame, &racing).owner_mismatch == 0
+        })
+        .collect();
+    let layers = capture.layers.as_ref().expect("counted")[pixel];
+    assert_eq!(covering.len() as u32, layers - 1, "the others that cover the sample, and none that does not");
+    let mut lost = capture.frame.clone();
+    lost.owner[pixel] = covering[0];
+    assert_eq!((judge(&lost, &racing).race_pixels, judge(&lost, &racing).owner_mismatch), (1, 0));
+    assert_eq!((judge(&lost, &plain).race_pixels, judge(&lost, &plain).owner_mismatch), (0, 1), "nobody else may lose");
+}
+
+// ---------------------------------------------------------------- work that is not there
+
+#[test]
+fn without_these_effects_there_is_no_pass_no_buffer_and_no_text_of_theirs() {
+    let Some(gpu) = gpu() else { return };
+    let scene = scene("sphere?triangles=5000");
+    let view = view(&scene, [64, 48]);
+    let explained = |names: &[&str], rung| {
+        let mut renderer = Renderer::new(gpu.clone());
+        renderer.set_scene(&scene).expect("a builtin fits");
+        renderer.draw_whole(&view, &stack(names), &pinned(rung)).expect("a builtin is drawn");
+        renderer.explain()
+    };
+    let pixels = view.pixels() as u64;
+    let rung = Visibility::Split32;
+    let plain = explained(&["lambert"], rung);
+    let bytes =
+        |explanation: &rasterlab::gpu::Explanation, name: &str| explanation.buffers.iter().find(|b| b.name == name).map(|b| b.bytes);
+    let passes = |explanation: &rasterlab::gpu::Explanation| explanation.passes.iter().map(|pass| pass.name.clone()).collect::<Vec<_>>();
+    assert!(passes(&plain).iter().all(|pass| !["sum", "count", "race"].iter().any(|phase| pass.ends_with(phase))), "{:?}", passes(&plain));
+    assert_eq!((bytes(&plain, "layers"), bytes(&plain, "depth_keys")), (None, Some(4 * pixels)));
+    assert!(plain.reasons.iter().all(|note| note.name != "layers"));
+
+    let sums = explained(&["lambert", "xray"], rung);
+    assert!(passes(&sums).contains(&"raster_small sum".to_owned()) && sums.key.contains("layers=xray/16"), "{}", sums.key);
+    assert_eq!((bytes(&sums, "layers"), bytes(&sums, "depth_keys")), (None, Some(20 * pixels)), "16 bytes per pixel more");
+    let heat = explained(&["lambert", "overdraw"], rung);
+    assert!(passes(&heat).contains(&"raster_small count".to_owned()) && heat.key.contains("layers=overdraw"));
+    assert_eq!(bytes(&heat, "layers"), Some(4 * pixels));
+    let race = explained(&["lambert", "race"], rung);
+    assert_eq!(passes(&race).iter().filter(|pass| pass.starts_with("raster")).collect::<Vec<_>>(), ["raster_small race"]);
+    assert!(race.key.contains("visibility=race") && bytes(&race, "depth_keys").is_none());
+}
+
+// ---------------------------------------------------------------- mutants
+
+type Figure = (&'static str, fn(&Errors) -> u64);
+
+const COUNTS: Figure = ("counts_wrong", |e| e.counts_wrong);
+const COLORS: Figure = ("max_colour_delta", |e| u64::from(e.max_colour_delta.saturating_sub(1)));
+const OWNERS: Figure = ("owner_mismatch", |e| e.owner_mismatch);
+
+struct Mutant {
+    what: &'static str,
+    file: &'static str,
+    from: &'static str,
+    to: &'static str,
+    stack: Stack,
+    shown_by: Figure,
+}
+
+fn mutants() -> Vec<Mutant> {
+    let mutant = |what, file, from, to, values: &[&str], shown_by| Mutant { what, file, from, to, stack: with(values), shown_by };
+    vec![
+        mutant(
+            "sums of 8 bits",
+            "slots/visibility/sum",
+            "* f32(whole))) * weight",
+            "* 255.0)) * (whole / 255u) * weight",
+            &["xray"],
+            COLORS,
+        ),
+        mutant(
+            "count 1 for a merged group",
+            "slots/visibility/sum",
+            "let before = sums_add(pixel, 3u, weight);",
+            "let before = sums_add(pixel, 3u, select(weight, 0u, id % 32u == 31u));",
+            &["xray"],
+            COUNTS,
+        ),
+        mutant(
+            "rounding dropped",
+            "effects/xray",
+            "return sum / whole + select(0u, 1u, 2u * (sum % whole) >= whole);",
+            "return sum / whole;",
+            &["xray.bits=\"8\""],
+            COLORS,
+        ),
+        mutant(
+            "window off by one",
+            "slots/visibility/sum",
+            "if key < xray_threshold",
+            "if key <= xray_threshold",
+            &["xray.reach=window", "xray.window=0"],
+            COUNTS,
+        ),
+        mutant(
+            "window of a thousandth more",
+            "effects/xray",
+            "let window = (p.window << 20u) / 1000u;",
+            "let window = ((p.window + 1u) << 20u) / 1000u;",
+            &["xray.reach=window", "xray.window=100"],
+            COUNTS,
+        ),
+        mutant(
+            "weights of 7 bits",
+            "effects/xray",
+            "clamp(share * 255.0, 1.0, 255.0)",
+            "2.0 * clamp(share * 127.0, 1.0, 127.0)",
+            &["xray.weight=facing"],
+            COUNTS,
+        ),
+        mutant(
+            "gamma before the sum",
+            "slots/visibility/sum",
+            "clamp(surface.color.rgb, vec3f(0.0), vec3f(1.0))",
+            "pow(clamp(surface.color.rgb, vec3f(0.0), vec3f(1.0)), vec3f(0.45))",
+            &["xray"],
+            COLORS,
+        ),
+        mutant(
+            "a layer is counted twice",
+            "slots/visibility/count",
+            "atomicAdd(&layers[pixel], 1u);",
+            "atomicAdd(&layers[pixel], select(1u, 2u, id == 7u));",
+            &["overdraw"],
+            COUNTS,
+        ),
+        mutant(
+            "heat one stop too warm",
+            "effects/overdraw",
+            "p.palette * 9u + first]",
+            "p.palette * 9u + first + 1u]",
+            &["overdraw"],
+            COLORS,
+        ),
+        mutant(
+            "a race that stores another's owner",
+            "slots/visibility/race",
+            "depth_owner[2u * pixel] = ~id;",
+            "depth_owner[2u * pixel] = ~(id + 1u);",
+            &["race"],
+            OWNERS,
+        ),
+    ]
+}
+
+fn copy_shaders(from: &Path, to: &Path) {
+    fs::create_dir_all(to).expect("a folder for shaders");
+    for entry in fs::read_dir(from).expect("shaders/ can be read") {
+        let path = entry.expect("shaders/ can be read").path();
+        let target = to.join(path.file_name().expect("a name"));
+        if path.is_dir() {
+            copy_shaders(&path, &target);
+        } else {
+            fs::copy(&path, target).expect("a shader is copied");
+        }
+    }
+}
+
+#[test]
+fn layers_with_a_mistake_are_caught() {
+    let Some(mut healthy) = renderer() else { return };
+    let shaders = Path::new(env!("CARGO_MANIFEST_DIR")).join("shaders");
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    // Dark, because steps of linear light are widest there.
+    let (scene, view): (Arc<Scene>, View) = (scene_from(&soup(11, 60, 48, 0.08)), pixel_view(48, 48));
+    let tuning = Tuning { specialized: true, ..healthy.gpu().caps.tuning() };
+    let mut failures = Vec::new();
+    for (i, Mutant { what, file, from, to, stack, shown_by: (figure, shown_by) }) in mutants().into_iter().enumerate() {
+        exact(&mut healthy, &scene, &view, &stack, &pinned(Visibility::Split32), &format!("without the mistake: {what}"));
+        let library = folder.path().join(i.to_string());
+        copy_shaders(&shaders, &library);
+        let path = library.join(format!("{file}.wgsl"));
+        let text = fs::read_to_string(&path).expect("a shader is text");
+        assert_eq!(text.matches(from).count(), 1, "{what}: {from:?} is not once in {file}");
+        fs::write(&path, text.replace(from, to)).expect("a shader is written");
+
+        let mut wrong = Renderer::with_library(healthy.gpu().clone(), Library::Folder(library));
+        wrong.set_tuning(tuning);
+        let (_, verdict) = judged(&mut wrong, &scene, &view, &stack, &pinned(Visibility::Split32));
+        eprintln!("{what}: {}", exactness(&verdict.accuracy).err().unwrap_or_default());
+        if exactness(&verdict.accuracy).is_ok() || shown_by(&verdict.accuracy) == 0 {
+            failures.push(format!("{what} does not show in {figure}: {:?}", verdict.accuracy));
+        }
+    }
+    assert!(failures.is_empty(), "{}", failures.join("\n"));
+}
+
+#[test]
+fn every_effect_of_the_slot_is_known_to_the_planner() {
+    let of = |name: &str| stack(&[name]).layers(1000);
+    let slot = |effect: &&&Effect| effect.hooks.slot == Some(rasterlab::effects::hooks::Slot::Visibility);
+    for effect in rasterlab::effects::EFFECTS.iter().filter(slot) {
+        assert_eq!(of(effect.name).map(Layers::name), Some(effect.name));
+    }
+}
