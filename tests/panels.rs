@@ -494,6 +494,8 @@ fn a_wheel_burst_is_one_undo_step() {
 fn undo_of_a_look_brings_its_name_back() {
     let Some(mut lab) = lab("lambert") else { return };
     let (id, session) = (lab.state().look().id.clone(), lab.state().look().session.clone());
+    lab.get_by_label("Look Cut knot").scroll_to_me();
+    lab.run_steps(20);
     click(&mut lab, Role::Button, "Look Cut knot");
     assert_eq!(lab.state().look().id, "facet-knot");
     assert_eq!(lab.state().undo_steps(), 1);
@@ -505,11 +507,13 @@ fn undo_of_a_look_brings_its_name_back() {
 #[test]
 fn brackets_walk_through_the_gallery() {
     let Some(mut lab) = lab("lambert") else { return };
+    let ids: Vec<String> = preset::gallery(None).into_iter().map(|entry| entry.id).collect();
+    let here = ids.iter().position(|id| id == "lambert").expect("a look of the gallery");
     press(&mut lab, Modifiers::NONE, Key::CloseBracket);
-    assert_eq!(lab.state().look().id, "normals");
+    assert_eq!(lab.state().look().id, ids[here + 1]);
     press(&mut lab, Modifiers::NONE, Key::OpenBracket);
     press(&mut lab, Modifiers::NONE, Key::OpenBracket);
-    assert_eq!(lab.state().look().id, "facet-sweep");
+    assert_eq!(lab.state().look().id, ids[here - 1]);
 }
 
 #[test]
@@ -739,13 +743,16 @@ fn child_that_loses_its_device() {
     let mut lab = lab("facet-sweep").expect("the parent has an adapter");
     lab.state_mut().session_mut().spin_deg_per_s = 12.5;
     lab.state().gpu().device.destroy();
-    let commands: Vec<_> = (0..20)
-        .flat_map(|_| {
-            lab.step();
-            lab.output().viewport_output[&egui::ViewportId::ROOT].commands.clone()
-        })
-        .collect();
-    assert!(commands.contains(&egui::ViewportCommand::Close), "{commands:?}");
+    // The driver says so in its own time.
+    let patience = Instant::now() + Duration::from_secs(60);
+    loop {
+        lab.step();
+        if lab.output().viewport_output[&egui::ViewportId::ROOT].commands.contains(&egui::ViewportCommand::Close) {
+            break;
+        }
+        assert!(Instant::now() < patience, "the window does not close\n{}", lab.state().log_text());
+        std::thread::sleep(Duration::from_millis(5));
+    }
 }
 
 #[test]
