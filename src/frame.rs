@@ -84,6 +84,17 @@ fn is_zero(count: &u32) -> bool {
     *count == 0
 }
 
+/// What a draw order let through.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, serde::Serialize)]
+pub struct OrderFigures {
+    /// Samples drawn.
+    pub drawn: u64,
+    /// Samples that should have been drawn.
+    pub limit: u64,
+    /// Samples that there are.
+    pub covered: u64,
+}
+
 /// One finished picture with the integers that decided it. Images are row-major, top row first, `width * height` long.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Frame {

@@ -7,6 +7,7 @@ use std::{
 };
 
 use rasterlab::{
+    cli::gallery,
     effects::EFFECTS,
     preset::{
         self, BUILTIN_DIR, Look,
@@ -131,6 +132,13 @@ fn every_golden_has_its_look_and_sidecar_and_every_tested_look_its_golden() {
         let bytes = fs::metadata(root().join(format!("tests/snapshots/{stem}.png"))).expect("it was just listed").len();
         assert!(bytes <= 64 << 10, "{stem}.png has {bytes} bytes; a golden is at most 64 KiB");
     }
+}
+
+#[test]
+fn the_gallery_of_the_readme_is_what_the_command_writes() {
+    let readme = fs::read_to_string(root().join("README.md")).expect("there is a README");
+    let new = gallery::replaced(&readme, &gallery::table()).expect("the README has a gallery");
+    assert!(new == readme, "the gallery is stale: rasterlab gallery --into README.md");
 }
 
 #[test]

@@ -11,6 +11,7 @@ use super::{
 use crate::{
     effects::{EFFECTS, Effect},
     gpu::Explanation,
+    params::{Field, Kind},
     preset::{
         form::Plain,
         keys::{KEYS, Key, Section},
@@ -154,7 +155,23 @@ impl App {
             if let Some(ask) = outcome.ask {
                 self.answer(ui.ctx(), ask);
             }
+            if field.kind == Kind::Point {
+                self.pick_ui(ui, effect, field);
+            }
         }
+    }
+
+    /// Lets the next click on the model give a point.
+    fn pick_ui(&mut self, ui: &mut Ui, effect: &'static Effect, field: &'static Field) {
+        let is_picking = self.picking == Some((effect, field));
+        ui.horizontal(|ui| {
+            ui.add_space(theme::GAP);
+            let button = ui.selectable_label(is_picking, if is_picking { "Click on the model" } else { "Pick on the model" });
+            let button = button.on_hover_text("The next click in the picture sets this point");
+            if button.accessible_name(&format!("Pick {}.{}", effect.name, field.name)).clicked() {
+                self.picking = if is_picking { None } else { Some((effect, field)) };
+            }
+        });
     }
 
     /// A folder with rows for keys of the look.

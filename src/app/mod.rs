@@ -38,8 +38,10 @@ pub use log::Level;
 pub use start::{DeviceLost, Options, adopt, run, wgpu_setup};
 
 use crate::{
+    effects::Effect,
     gpu::Gpu,
     measure::Accuracy,
+    params::Field,
     preset::Look,
     scene::{Scene, camera::View},
     session::Session,
@@ -118,6 +120,8 @@ pub struct App {
     log: Log,
     /// Effects whose eye is shut: a viewing aid, no part of the look.
     muted: BTreeSet<&'static str>,
+    /// The point of an effect that the next click on the model gives.
+    picking: Option<(&'static Effect, &'static Field)>,
     verdict: Option<Verdict>,
     verifying: bool,
     dialog: Option<Dialog>,
@@ -162,6 +166,7 @@ impl App {
             log,
             stage: Stage::default(),
             muted: BTreeSet::new(),
+            picking: None,
             verdict: None,
             verifying: false,
             dialog: None,

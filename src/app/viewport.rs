@@ -13,7 +13,9 @@ use super::{
 use crate::scene::{
     Scene,
     camera::{Camera, Projection, View},
+    pick,
 };
+use glam::DVec2;
 
 /// What moves in the picture, and what should be drawn.
 #[derive(Default)]
@@ -57,11 +59,33 @@ impl App {
         let size = [pixels.x, pixels.y].map(|side| (side.max(0.0) as u32).min(most));
         self.motion.widening = self.widening(size);
         let moved = self.navigate(ui, &response);
+        self.pick_under(&response);
         self.draw(ui.ctx(), size, moved);
         self.picture_ui(ui, rect);
         self.overlay_ui(ui, rect);
         if let Some(params) = self.visible_stack().params("overdraw") {
             legend::heat_ui(ui, rect, &params);
+        }
+    }
+
+    /// Where a point of an effect is being chosen, a click on the model gives it.
+    fn pick_under(&mut self, response: &egui::Response) {
+        let Some((effect, field)) = self.picking else { return };
+        if response.ctx.input(|i| i.key_pressed(egui::Key::Escape)) {
+            self.picking = None;
+        }
+        let Some((at, (_, scene))) = response.interact_pointer_pos().filter(|_| response.clicked()).zip(self.stage.shown.clone()) else {
+            return;
+        };
+        let place = (at - response.rect.min) / response.rect.size();
+        let size = response.rect.size().round();
+        let view = self.view_at(&scene, [size.x.max(1.0) as u32, size.y.max(1.0) as u32]);
+        match pick::pick(&scene, &view, DVec2::new(place.x.into(), place.y.into())) {
+            Some(point) => {
+                self.picking = None;
+                self.put_value(effect, field, point.to_array().to_vec());
+            }
+            None => self.log.tell(Level::Info, "There is nothing under this click; the point stays where it was.", self.now_s),
         }
     }
 
@@ -293,6 +317,14 @@ impl App {
         let full = self.screen.report().map_or(0, |report| report.counters.full_pixels);
         if full > 0 {
             states.push((theme::RED, format!("x-ray overflow: {full} pixels have more layers than its sums hold")));
+        }
+        if let Some(order) = self.screen.report().and_then(|report| report.order) {
+            let over = order.drawn.saturating_sub(order.limit);
+            let share = 100.0 * order.drawn as f64 / order.covered.max(1) as f64;
+            states.push((theme::TEXT, format!("drew {} of {} samples ({share:.1} %), {over} too many", order.drawn, order.covered)));
+        }
+        if self.picking.is_some() {
+            states.push((theme::ACCENT, "click a point of the model (Esc: never mind)".into()));
         }
         if !self.visible_stack().is_repeatable() {
             states.push((theme::AMBER, "not reproducible: every frame may differ".into()));

@@ -84,6 +84,8 @@ pub enum Command {
     Bless(Bless),
     /// Milliseconds beside error, rung by rung
     Bench(Bench),
+    /// The README's gallery: every effect with its pictures, as Markdown
+    Gallery(Gallery),
     /// Validate looks; with --render also against their goldens
     Check(Check),
     /// Print a completion script
@@ -102,10 +104,18 @@ impl Command {
             Self::Explain(_) => "explain",
             Self::Bless(_) => "bless",
             Self::Bench(_) => "bench",
+            Self::Gallery(_) => "gallery",
             Self::Check(_) => "check",
             Self::Completions { .. } => "completions",
         }
     }
+}
+
+#[derive(Args, Debug)]
+pub struct Gallery {
+    /// Writes it between the marks of this file instead of to stdout
+    #[arg(long, value_name = "FILE")]
+    pub into: Option<PathBuf>,
 }
 
 #[derive(Args, Debug)]
@@ -243,6 +253,9 @@ pub struct Bench {
     /// A builtin scene by query or a model file, instead of the look's own; may be repeated
     #[arg(long, value_name = "SCENE")]
     pub scene: Vec<String>,
+    /// What every effect costs: each alone, with the values of its canonical look, beside none
+    #[arg(long)]
+    pub effects: bool,
     /// Size in pixels of every row
     #[arg(long, value_name = "WxH", value_parser = size, default_value = "1920x1080")]
     pub size: [u32; 2],

@@ -12,7 +12,11 @@ use super::{
     streams::{Streams, table},
 };
 use crate::{
-    gpu::bench::{BenchOptions, BenchRow, bench},
+    effects::{EFFECTS, Enabled, Stack},
+    gpu::{
+        Capture,
+        bench::{BenchOptions, BenchRow, bench, bench_stacks},
+    },
     oracle,
     preset::Look,
     scene::Scene,
@@ -31,15 +35,20 @@ pub fn run(common: &Common, args: &Bench, streams: &mut Streams) -> Result<Exit,
     for (look, scene) in &subjects {
         let session = &look.session.posed();
         let view = session.view(scene, args.size);
-        let judge = |frame: &_, geometry: &_, layers: Option<&[u32]>| {
-            oracle::judge(scene, &view, &session.stack, frame, geometry, layers).expect("a scene that was drawn can be judged")
+        let judge = |stack: &Stack, capture: &Capture| {
+            let (layers, previous) = (capture.layers.as_deref(), capture.previous.as_deref());
+            oracle::judge_after(scene, &view, stack, &capture.frame, &capture.geometry, layers, previous)
+                .expect("a scene that was drawn can be judged")
         };
         let mut progress = |what: &str, done: usize, all: usize| {
             bar.set_length(all as u64);
             bar.set_position(done as u64);
             bar.set_message(what.to_owned());
         };
-        rows.extend(bench(gpu, session, scene, &look.id, &options, &mut progress, &judge)?);
+        rows.extend(match args.effects {
+            true => bench_stacks(gpu, session, scene, &each_effect(common)?, &options, &mut progress, &judge)?,
+            false => bench(gpu, session, scene, &look.id, &options, &mut progress, &judge)?,
+        });
     }
     bar.finish_and_clear();
     let format = if streams.json { Format::Json } else { args.format };
@@ -58,6 +67,17 @@ pub fn run(common: &Common, args: &Bench, streams: &mut Streams) -> Result<Exit,
     let broken: Vec<_> = rows.iter().filter(|row| row.is_promised && !row.error.keeps_the_promise()).collect();
     broken.iter().for_each(|row| streams.note(&format!("{} on {}: the error exceeds the promise", row.scene, row.rung)));
     Ok(Exit::failed_if(!broken.is_empty()))
+}
+
+/// No effect at all, and every effect alone with the values of its canonical look.
+fn each_effect(common: &Common) -> Result<Vec<(String, Stack)>, Fault> {
+    let mut stacks = vec![("no effect".to_owned(), Stack::default())];
+    for effect in EFFECTS {
+        let look = open(common, effect.name)?;
+        let enabled = look.session.posed_stack().get(effect.name).cloned().unwrap_or_else(|| Enabled::new(effect));
+        stacks.push((format!("+{}", effect.name), Stack(vec![enabled])));
+    }
+    Ok(stacks)
 }
 
 /// Looks with their scenes: each named look on its own scene, or on each `--scene`.

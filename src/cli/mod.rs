@@ -11,6 +11,7 @@ mod compare;
 mod explain;
 mod fault;
 mod files;
+pub mod gallery;
 pub mod golden;
 mod list;
 mod painter;
@@ -58,6 +59,7 @@ fn dispatch(common: &Common, command: &Command, streams: &mut Streams) -> Result
         Command::Explain(args) => explain::run(common, args, streams),
         Command::Bless(args) => bless::run(common, args, streams),
         Command::Bench(args) => bench::run(common, args, streams),
+        Command::Gallery(args) => gallery::run(args, streams),
         Command::Check(args) => check::run(common, args, streams),
         Command::Completions { shell } => {
             let mut script = Vec::new();

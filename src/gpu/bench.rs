@@ -6,12 +6,13 @@ use super::{
     Gpu, RenderError, Renderer, buffers,
     hardware::Hardware,
     naive::{Naive, Viewport},
-    readback::Pending,
+    readback::{Capture, Pending},
     timer::{Detail, Timer, Times},
     uniforms::color_stride,
 };
 use crate::{
-    frame::{Frame, Geometry, NO_OWNER},
+    effects::Stack,
+    frame::{Frame, NO_OWNER},
     measure::{ErrorFigures, Verdict, compare, timing},
     plan::Accuracy,
     scene::{Scene, camera::View},
@@ -56,11 +57,13 @@ pub struct BenchRow {
 }
 
 /// Judges a picture of ours against the oracle, and hands over the oracle's own.
-pub type Judge<'a> = &'a dyn Fn(&Frame, &Geometry, Option<&[u32]>) -> Verdict;
+pub type Judge<'a> = &'a dyn Fn(&Stack, &Capture) -> Verdict;
 
 /// Something that draws the scene.
 enum Contender {
     Ours(Visibility, Box<Renderer>),
+    /// A stack of its own, on the planned rung.
+    Stacked(String, Box<(Stack, Renderer)>),
     Naive(Viewport, Box<Naive>),
     Hardware(Box<Hardware>),
 }
@@ -69,6 +72,7 @@ impl Contender {
     fn rung(&self) -> String {
         match self {
             Self::Ours(visibility, _) => visibility.name().into(),
+            Self::Stacked(name, _) => name.clone(),
             Self::Naive(Viewport::AsWritten, _) => "naive".into(),
             Self::Naive(Viewport::Folded, _) => "naive, viewport mended".into(),
             Self::Hardware(_) => "hardware".into(),
@@ -102,38 +106,78 @@ pub fn bench(
     progress: &mut dyn FnMut(&str, usize, usize),
     judge: Judge,
 ) -> Result<Vec<BenchRow>, RenderError> {
-    let view = session.view(scene, options.size);
-    let mut lab = Lab { gpu, session, view, timer: Timer::new(gpu) };
-    let (mut entries, missing) = lab.line_up(scene, judge)?;
-    let rounds = options.samples + options.samples / 3;
-    let all = rounds * entries.len();
-    const WARM_UP: usize = 3;
-    for round in 0..rounds + WARM_UP {
-        let detail = if round < options.samples + WARM_UP { Detail::Whole } else { Detail::Passes };
-        for (i, entry) in entries.iter_mut().enumerate() {
-            let times = lab.sample(&mut entry.contender, detail)?;
-            if round >= WARM_UP {
-                entry.keep(times, detail);
-                progress(&entry.contender.rung(), (round - WARM_UP) * all / rounds + i + 1, all);
+    let mut lab = Lab::new(gpu, session, scene, options);
+    let (entries, missing) = lab.line_up(scene, judge)?;
+    lab.measure(scene, scene_name, entries, missing, options.samples, progress)
+}
+
+/// Measures stacks by name on one scene and camera, interleaved, each on the planned rung.
+pub fn bench_stacks(
+    gpu: &Arc<Gpu>,
+    session: &Session,
+    scene: &Arc<Scene>,
+    stacks: &[(String, Stack)],
+    options: &BenchOptions,
+    progress: &mut dyn FnMut(&str, usize, usize),
+    judge: Judge,
+) -> Result<Vec<BenchRow>, RenderError> {
+    let mut lab = Lab::new(gpu, session, scene, options);
+    let mut entries = Vec::new();
+    for (name, stack) in stacks {
+        let mut renderer = Renderer::new(gpu.clone());
+        renderer.set_scene(scene)?;
+        let verdict = judge(stack, &renderer.capture(&lab.view, stack, &Accuracy::default())?);
+        let contender = Contender::Stacked(name.clone(), Box::new((stack.clone(), renderer)));
+        entries.push(Entry::new(contender, (&verdict.accuracy).into()));
+    }
+    lab.measure(scene, &scene.name, entries, Vec::new(), options.samples, progress)
+}
+
+impl<'a> Lab<'a> {
+    fn new(gpu: &'a Arc<Gpu>, session: &'a Session, scene: &Scene, options: &BenchOptions) -> Self {
+        Self { gpu, session, view: session.view(scene, options.size), timer: Timer::new(gpu) }
+    }
+
+    /// Draws all contenders in turn, round after round: whole frames first, then pass by pass.
+    fn measure(
+        &mut self,
+        scene: &Scene,
+        scene_name: &str,
+        mut entries: Vec<Entry>,
+        missing: Vec<(String, String)>,
+        samples: usize,
+        progress: &mut dyn FnMut(&str, usize, usize),
+    ) -> Result<Vec<BenchRow>, RenderError> {
+        const WARM_UP: usize = 3;
+        let rounds = samples + samples / 3;
+        let all = rounds * entries.len();
+        for round in 0..rounds + WARM_UP {
+            let detail = if round < samples + WARM_UP { Detail::Whole } else { Detail::Passes };
+            for (i, entry) in entries.iter_mut().enumerate() {
+                let times = self.sample(&mut entry.contender, detail)?;
+                if round >= WARM_UP {
+                    entry.keep(times, detail);
+                    progress(&entry.contender.rung(), (round - WARM_UP) * all / rounds + i + 1, all);
+                }
             }
         }
+        let row = |rung: String, error: ErrorFigures, note: Option<String>| BenchRow {
+            scene: scene_name.into(),
+            triangles: scene.triangle_count(),
+            rung,
+            adapter: self.gpu.summary.name.clone(),
+            ms_p50: None,
+            ms_p95: None,
+            samples: 0,
+            passes: Vec::new(),
+            error,
+            is_promised: false,
+            note,
+        };
+        let mut rows: Vec<BenchRow> = entries.into_iter().map(|entry| entry.finish(&row)).collect();
+        rows.extend(missing.into_iter().map(|(rung, why)| row(rung, ErrorFigures::default(), Some(format!("{scene_name}: {why}")))));
+        Ok(rows)
     }
-    let row = |rung: String, error: ErrorFigures, note: Option<String>| BenchRow {
-        scene: scene_name.into(),
-        triangles: scene.triangle_count(),
-        rung,
-        adapter: gpu.summary.name.clone(),
-        ms_p50: None,
-        ms_p95: None,
-        samples: 0,
-        passes: Vec::new(),
-        error,
-        is_promised: false,
-        note,
-    };
-    let mut rows: Vec<BenchRow> = entries.into_iter().map(|entry| entry.finish(&row)).collect();
-    rows.extend(missing.into_iter().map(|(rung, why)| row(rung, ErrorFigures::default(), Some(format!("{scene_name}: {why}")))));
-    Ok(rows)
 }
 
 impl Lab<'_> {
@@ -150,7 +194,7 @@ impl Lab<'_> {
                 continue;
             }
             let capture = renderer.capture(&self.view, &self.session.stack, &pinned(visibility))?;
-            let verdict = judge(&capture.frame, &capture.geometry, capture.layers.as_deref());
+            let verdict = judge(&self.session.stack, &capture);
             entries.push(Entry::new(Contender::Ours(visibility, Box::new(renderer)), (&verdict.accuracy).into()));
             expected = Some(verdict.expected);
         }
@@ -184,8 +228,13 @@ impl Lab<'_> {
 
     /// Draws once and waits.
     fn sample(&mut self, contender: &mut Contender, detail: Detail) -> Result<Times, RenderError> {
-        if let Contender::Ours(visibility, renderer) = contender {
-            renderer.draw_timed(&self.view, &self.session.stack, &pinned(*visibility), detail)?;
+        let ours = match contender {
+            Contender::Ours(visibility, renderer) => Some((renderer.as_mut(), &self.session.stack, pinned(*visibility))),
+            Contender::Stacked(_, own) => Some((&mut own.1, &own.0, Accuracy::default())),
+            _ => None,
+        };
+        if let Some((renderer, stack, accuracy)) = ours {
+            renderer.draw_timed(&self.view, stack, &accuracy, detail)?;
             let report = renderer.finish()?;
             return Ok(Times { total_ms: report.gpu_ms, passes: report.passes });
         }
@@ -196,13 +245,13 @@ impl Lab<'_> {
         match contender {
             Contender::Naive(_, naive) => naive.record(self.gpu, &mut encoder, self.timer.as_mut()),
             Contender::Hardware(hardware) => hardware.record(&mut encoder, self.timer.as_mut()),
-            Contender::Ours(..) => {}
+            Contender::Ours(..) | Contender::Stacked(..) => {}
         }
-        let pending = Pending::stage(self.gpu, &mut encoder, None, self.timer.as_ref());
+        let pending = Pending::stage(self.gpu, &mut encoder, [None; 2], self.timer.as_ref());
         self.gpu.queue.submit([encoder.finish()]);
         let pending = pending.begin();
         buffers::wait(self.gpu)?;
-        pending.read(self.timer.as_ref()).map(|(_, times)| times).ok_or(RenderError::Lost)
+        pending.read(self.timer.as_ref()).map(|(_, _, times)| times).ok_or(RenderError::Lost)
     }
 
     fn hardware_picture(&self, hardware: &Hardware) -> Result<Vec<[u8; 4]>, RenderError> {
@@ -284,7 +333,7 @@ impl Entry {
             ms_p50: percentile(&self.whole, 0.5),
             ms_p95: percentile(&self.whole, 0.95),
             samples: self.whole.len(),
-            is_promised: matches!(self.contender, Contender::Ours(..)),
+            is_promised: matches!(self.contender, Contender::Ours(..) | Contender::Stacked(..)),
             passes: self.passes.into_iter().filter_map(pass).collect(),
             ..row(self.contender.rung(), self.error, note)
         }

@@ -34,11 +34,11 @@ use self::{
 pub use crate::plan::Note;
 use crate::{
     effects::{Stack, hooks::Layers, xray},
-    frame::Counters,
+    frame::{Counters, OrderFigures},
     plan::{Accuracy, Plan, Tuning},
     scene::{Scene, camera::View},
     shader::{
-        key::{KernelKey, Pass},
+        key::{KernelKey, Order, Pass},
         library::Library,
     },
 };
@@ -50,6 +50,8 @@ pub struct Report {
     pub gpu_ms: Option<f64>,
     pub passes: Vec<(String, f64)>,
     pub counters: Counters,
+    /// What a draw order let through, where one is kept.
+    pub order: Option<OrderFigures>,
     /// A queue overflowed and has grown: the picture is incomplete, draw it again.
     pub redraw: bool,
 }
@@ -198,7 +200,8 @@ impl Renderer {
         self.keep_previous(&mut encoder, &plan.key, view, stack);
         self.record(&mut encoder, &plan.key, &passes, view)?;
         self.present(&mut encoder, view);
-        let pending = Pending::stage(&self.gpu, &mut encoder, Some(self.buffers.get("counters")), self.timer.as_ref());
+        let order = self.buffers.has("order").then(|| self.buffers.get("order"));
+        let pending = Pending::stage(&self.gpu, &mut encoder, [Some(self.buffers.get("counters")), order], self.timer.as_ref());
         self.gpu.queue.submit([encoder.finish()]);
         self.pending.push_back(pending.begin());
         self.last = Some(plan);
@@ -235,7 +238,7 @@ impl Renderer {
     }
 
     fn digest(&mut self, finished: Pending) -> Option<Report> {
-        let (record, times) = finished.read(self.timer.as_ref())?;
+        let (record, order, times) = finished.read(self.timer.as_ref())?;
         let key = &self.last.as_ref()?.key;
         let recorded = recorded_capacities(key, &self.capacities);
         let counters = record.counters(&recorded);
@@ -247,7 +250,9 @@ impl Renderer {
             redraw = self.capacities.grow(&record) || is_proof_wrong;
         }
         redraw |= counters.full_pixels > 0 && self.pending.is_empty() && self.take_fewer_bits();
-        Some(Report { gpu_ms: times.total_ms, passes: times.passes, counters, redraw })
+        let key = &self.last.as_ref()?.key;
+        let order = (key.order != Order::Free).then(|| order.figures(key.order == Order::Scheduler, record.tickets));
+        Some(Report { gpu_ms: times.total_ms, passes: times.passes, counters, order, redraw })
     }
 
     /// Begins anew: the next picture stands after nothing but background.

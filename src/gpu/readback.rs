@@ -9,6 +9,7 @@ use super::{
     Demand, Gpu, RenderError, Renderer, STORAGE, buffers,
     prepare::record_count,
     timer::{Timer, Times},
+    uniforms::OrderRecord,
 };
 use crate::{
     effects::{Stack, hooks::Layers},
@@ -26,21 +27,31 @@ pub struct Pending {
 }
 
 const COUNTER_BYTES: u64 = 64;
+const ORDER_BYTES: u64 = size_of::<OrderRecord>() as u64;
+const FIGURE_BYTES: u64 = COUNTER_BYTES + ORDER_BYTES;
 
 impl Pending {
     /// Records the copies that end a frame.
-    pub fn stage(gpu: &Gpu, encoder: &mut wgpu::CommandEncoder, counters: Option<&wgpu::Buffer>, timer: Option<&Timer>) -> Self {
+    pub fn stage(
+        gpu: &Gpu,
+        encoder: &mut wgpu::CommandEncoder,
+        [counters, order]: [Option<&wgpu::Buffer>; 2],
+        timer: Option<&Timer>,
+    ) -> Self {
         let staging = gpu.device.create_buffer(&wgpu::BufferDescriptor {
             label: Some("figures"),
-            size: COUNTER_BYTES + Timer::BYTES,
+            size: FIGURE_BYTES + Timer::BYTES,
             usage: wgpu::BufferUsages::MAP_READ | wgpu::BufferUsages::COPY_DST,
             mapped_at_creation: false,
         });
         if let Some(counters) = counters {
             encoder.copy_buffer_to_buffer(counters, 0, &staging, 0, COUNTER_BYTES);
         }
+        if let Some(order) = order {
+            encoder.copy_buffer_to_buffer(order, 0, &staging, COUNTER_BYTES, ORDER_BYTES);
+        }
         if let Some(timer) = timer {
-            timer.end(encoder, &staging, COUNTER_BYTES);
+            timer.end(encoder, &staging, FIGURE_BYTES);
         }
         Self { staging, labels: timer.map(Timer::labels).unwrap_or_default(), ready: Arc::default() }
     }
@@ -57,11 +68,12 @@ impl Pending {
     }
 
     /// None when the device was lost under it.
-    pub fn read(&self, timer: Option<&Timer>) -> Option<(Demand, Times)> {
+    pub fn read(&self, timer: Option<&Timer>) -> Option<(Demand, OrderRecord, Times)> {
         let bytes = self.staging.get_mapped_range(..).ok()?;
         let demand = bytemuck::pod_read_unaligned(&bytes[..size_of::<Demand>()]);
-        let times = timer.map(|timer| timer.times(&bytes[COUNTER_BYTES as usize..], &self.labels)).unwrap_or_default();
-        Some((demand, times))
+        let times = timer.map(|timer| timer.times(&bytes[FIGURE_BYTES as usize..], &self.labels)).unwrap_or_default();
+        let order = bytemuck::pod_read_unaligned(&bytes[COUNTER_BYTES as usize..FIGURE_BYTES as usize]);
+        Some((demand, order, times))
     }
 }
 

@@ -3,7 +3,7 @@
 use glam::DMat3;
 
 use crate::{
-    frame::Counters,
+    frame::{Counters, OrderFigures},
     math::{rounded_columns, srgb_byte},
     scene::{Accessor, Scene, camera::View, draw::Draw},
 };
@@ -120,6 +120,16 @@ twin! {
         pub drawn_lo: u32,
         pub spare_0: u32,
         pub spare_1: u32,
+    }
+}
+
+impl OrderRecord {
+    /// As the rest of the program says it; `tickets` tells how many samples asked where the hardware chose.
+    pub fn figures(&self, is_chosen: bool, tickets: u32) -> OrderFigures {
+        let wide = |hi: u32, lo: u32| u64::from(hi) << 32 | u64::from(lo);
+        let limit = wide(self.limit_hi, self.limit_lo);
+        let drawn = if is_chosen { limit.min(tickets.into()) } else { wide(self.drawn_hi, self.drawn_lo) };
+        OrderFigures { drawn, limit, covered: wide(self.total_hi, self.total_lo) }
     }
 }
 

@@ -58,7 +58,7 @@ impl Kind {
 }
 
 /// One parameter: all that any surface of the program needs to know about it.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Field {
     /// Stable name: preset key, WGSL member, `--set` path. Renaming needs a migration.
     pub name: &'static str,

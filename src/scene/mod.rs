@@ -8,6 +8,7 @@ pub mod camera;
 pub mod draw;
 pub mod gltf;
 pub mod needs;
+pub mod pick;
 
 use glam::{DMat4, DVec3};
 
