@@ -8,9 +8,7 @@ use super::{
     hooks::{ImageEffect, Picture, Pixel, tone::encoded},
 };
 use crate::{
-    choice,
-    frame::NO_OWNER,
-    params,
+    choice, params,
     params::{Color, Flag},
 };
 
@@ -48,6 +46,9 @@ params! {
 pub const EFFECT: Effect =
     Effect::new::<Outline>("outline", "Outline", "lines at silhouettes, between objects and at steps of depth").on_image::<Outline>();
 
+/// Owner, depth key and draw of a pixel.
+type Seen = (Option<u32>, u32, u32);
+
 impl ImageEffect for Outline {
     fn finish(mut pixel: Pixel, picture: &Picture, p: &Self) -> Pixel {
         let (x, y) = (i64::from(pixel.x), i64::from(pixel.y));
@@ -69,11 +70,11 @@ impl ImageEffect for Outline {
 }
 
 impl Outline {
-    /// Does a line run at a pixel because of another, whose opposite lies `beyond`? Each is owner, key and draw.
-    fn is_edge(&self, here: (u32, u32, u32), there: (u32, u32, u32), beyond: impl Fn() -> Option<(u32, u32, u32)>) -> bool {
+    /// Does a line run at a pixel because of another, whose opposite lies `beyond`?
+    fn is_edge(&self, here: Seen, there: Seen, beyond: impl Fn() -> Option<Seen>) -> bool {
         let side = Side::of(self.side);
-        if here.0 == NO_OWNER || there.0 == NO_OWNER {
-            let is_right_side = side == Side::Both || (here.0 == NO_OWNER) == (side == Side::Outside);
+        if here.0.is_none() || there.0.is_none() {
+            let is_right_side = side == Side::Both || here.0.is_none() == (side == Side::Outside);
             return self.silhouette != 0 && here.0 != there.0 && is_right_side;
         }
         if here.2 != there.2 {
@@ -81,7 +82,7 @@ impl Outline {
             let is_behind = (here.1, there.2) < (there.1, here.2);
             return self.objects != 0 && (side == Side::Both || is_behind == (side == Side::Outside));
         }
-        let Some(beyond) = beyond().filter(|beyond| self.depth != 0 && beyond.0 != NO_OWNER && beyond.2 == here.2) else { return false };
+        let Some(beyond) = beyond().filter(|beyond| self.depth != 0 && beyond.0.is_some() && beyond.2 == here.2) else { return false };
         // What bends away from a straight slope; a slope alone is no jump.
         let bend = i64::from(there.1) + i64::from(beyond.1) - 2 * i64::from(here.1);
         let jump = (f64::from(self.jump) * f64::from(1 << 23)) as i64;

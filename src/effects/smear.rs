@@ -10,7 +10,7 @@ use super::{
     Effect,
     hooks::{ImageEffect, Picture, Pixel},
 };
-use crate::{frame::NO_OWNER, params};
+use crate::params;
 
 params! {
     pub struct Smear {
@@ -31,7 +31,7 @@ impl ImageEffect for Smear {
 
     fn finish(mut pixel: Pixel, picture: &Picture, p: &Self) -> Pixel {
         let (owner, ..) = picture.at(pixel.x.into(), pixel.y.into());
-        if owner != NO_OWNER {
+        if owner.is_some() {
             return pixel;
         }
         let background = picture.background.to_array().map(|c| (255.0 * c + 0.5).floor() as i64);

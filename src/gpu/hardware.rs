@@ -152,7 +152,12 @@ fn call(p: &Primitive, instance: u32) -> Call {
 type Built = (wgpu::RenderPipeline, wgpu::BindGroupLayout, Vec<reflect::Binding>);
 
 fn pipeline(gpu: &Gpu, key: &KernelKey, (position_stride, normal_stride, double_sided): (u32, u32, bool)) -> Result<Built, RenderError> {
-    let linked = link::link(&Library::from_env(), "baselines/hardware", key, &[("draws", "slots/draws/many".into())])?;
+    let linked = link::link(
+        &Library::from_env(),
+        "baselines/hardware",
+        key,
+        &[("draws", "slots/draws/many".into()), ("image", "slots/image/none".into())],
+    )?;
     let reflected = reflect::reflect(&linked, gpu.caps.int64_atomics)?;
     let mut bindings = reflected.bindings("hardware_vertex");
     bindings.extend(reflected.bindings("hardware_fragment"));

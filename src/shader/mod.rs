@@ -6,5 +6,6 @@ pub mod key;
 pub mod library;
 pub mod link;
 pub mod reflect;
+mod slots;
 
 pub use key::{Fetch, KernelKey, Pass};

@@ -1,0 +1,79 @@
+//! Slots: which file of `shaders/slots` fills each part that a pass leaves open.
+
+use super::key::{Fetch, KernelKey, Order, Pass, Phase};
+use crate::effects::hooks::{Layers, Shape};
+
+impl KernelKey {
+    /// File of each slot for a pass.
+    pub fn slots(&self, pass: Pass) -> Vec<(&'static str, String)> {
+        let fetch = match self.fetch {
+            Fetch::Direct => "direct",
+            Fetch::Indexed => "indexed",
+        };
+        let queues = if self.has_queues() { "kept" } else { "none" };
+        let is_marking =
+            self.listed_tiles && !matches!(pass.phase(), Some(Phase::Owner | Phase::Count | Phase::Sum | Phase::Tally | Phase::Straddle));
+        let marks = if is_marking { "kept" } else { "none" };
+        let pixels = if self.listed_tiles { "listed" } else { "all" };
+        let pieces = if self.has_clipping { "kept" } else { "none" };
+        let records = if self.parts_corners() { "own" } else { "shared" };
+        let movement = match (self.moves(), self.parts_corners()) {
+            (false, _) => "none",
+            (true, false) => "vertices",
+            (true, true) => "triangles",
+        };
+        let shape = if self.moves() { "moved" } else { "still" };
+        let finish = if self.has_image() { "image" } else { "none" };
+        let shading = match self.layers {
+            Some(Layers::Xray { .. }) => "average",
+            Some(Layers::Overdraw) => "heat",
+            Some(Layers::Race) | None => "owner",
+        };
+        let mut slots = vec![
+            ("corners", format!("slots/corners/{records}")),
+            ("sources", format!("slots/sources/{records}")),
+            ("movement", format!("slots/movement/{movement}")),
+            ("shape", format!("slots/shape/{shape}")),
+            ("pieces", format!("slots/pieces/{pieces}")),
+            ("records", format!("slots/records/{}", if matches!(pass, Pass::Decide(_) | Pass::OrderRanks) { "write" } else { "read" })),
+            ("order", format!("slots/order/{}", self.order_file(pass))),
+            ("ranks", format!("slots/ranks/{}", if self.order == Order::Free { "none" } else { "kept" })),
+            ("samples", format!("slots/samples/{}", if self.has_samples { "hooked" } else { "all" })),
+            ("draws", format!("slots/draws/{}", if self.single_draw { "one" } else { "many" })),
+            ("fetch", format!("slots/fetch/{fetch}")),
+            ("queues", format!("slots/queues/{queues}")),
+            ("marks", format!("slots/marks/{marks}")),
+            ("pixels", format!("slots/pixels/{pixels}")),
+            ("coverage", format!("slots/coverage/{}", if self.shape == Shape::Boxes { "boxes" } else { "fixed8" })),
+            ("owner", format!("slots/owner/{}", self.visibility.name())),
+            ("finish", format!("slots/finish/{finish}")),
+            ("image", format!("slots/image/{}", if pass == Pass::Resolve { "seen" } else { "none" })),
+            ("sums", format!("slots/sums/{}", self.visibility.name())),
+            ("shading", format!("slots/shading/{shading}")),
+        ];
+        if let Some(phase) = pass.phase() {
+            let file = match phase {
+                Phase::Packed => "packed64",
+                Phase::Depth => "split32_depth",
+                Phase::Owner => "split32_owner",
+                Phase::Count => "count",
+                Phase::Tally => "tally",
+                Phase::Straddle => "straddle",
+                Phase::Sum => "sum",
+                Phase::Race => "race",
+            };
+            slots.push(("visibility", format!("slots/visibility/{file}")));
+        }
+        slots
+    }
+
+    /// The file of the order slot: tickets are drawn once, where depth is decided, and counts count everything.
+    fn order_file(&self, pass: Pass) -> &'static str {
+        match (self.order, pass.phase()) {
+            (_, Some(Phase::Straddle)) => "straddler",
+            (Order::Free, _) | (_, Some(Phase::Tally)) | (Order::Scheduler, Some(Phase::Owner)) => "free",
+            (Order::Submission, _) => "submission",
+            (Order::Scheduler, _) => "scheduler",
+        }
+    }
+}
