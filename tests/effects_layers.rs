@@ -282,7 +282,7 @@ fn a_race_is_exact_where_one_layer_covers_and_elsewhere_a_covering_triangle_wins
     let view = pixel_view(64, 64);
     for tuning in tunings() {
         renderer.set_tuning(tuning);
-        for delay in [0, 50] {
+        for delay in [0, 4] {
             let stack = with(&["race", &format!("race.delay={delay}")]);
             let (_, verdict) = exact(&mut renderer, &crowded, &view, &stack, &Accuracy::default(), &format!("{tuning:?}"));
             eprintln!("delay {delay}, {tuning:?}: {} of {} pixels lost", verdict.accuracy.race_pixels, verdict.accuracy.pixels);
