@@ -8,8 +8,8 @@ use crate::params;
 
 params! {
     pub struct Race {
-        /// Rounds of idle work between the look at the depth and the store: the longer the gap, the more is lost.
-        delay: u32 = 0, hard 0.0..=1000.0, soft 0.0..=100.0;
+        /// Idle work between the look at the depth and the store, each step twice the one before: the longer, the more is lost.
+        delay: u32 = 0, hard 0.0..=4.0;
     }
 }
 

@@ -5,6 +5,7 @@ pub mod glue;
 pub mod key;
 pub mod library;
 pub mod link;
+mod pass;
 pub mod reflect;
 mod slots;
 

@@ -1,0 +1,110 @@
+//! Passes: the entry points of a frame, and what each raster pass writes.
+
+/// One entry point of the frame; the name is the file's stem in `shaders/passes` plus, for a repeated one, its phase.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Pass {
+    Project,
+    /// What sample effects settle about triangles, or about pieces.
+    Decide(Entries),
+    /// Samples of every block of triangles.
+    OrderSums,
+    /// In which triangle the limit falls.
+    OrderLimit,
+    /// Which share of all samples comes before each triangle.
+    OrderRanks,
+    /// At which pixel of that triangle the drawing stops.
+    OrderCut,
+    RasterSmall(Phase),
+    /// Corners as discs, instead of the triangles.
+    RasterPoints(Phase),
+    Args,
+    Clip,
+    TileLarge,
+    RasterMedium(Phase),
+    RasterLarge(Phase),
+    ListTiles,
+    Resolve,
+}
+
+/// Over what a pass runs.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Entries {
+    Triangles,
+    Pieces,
+}
+
+/// What a raster pass writes.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Phase {
+    /// Key and owner at once.
+    Packed,
+    /// The nearest key.
+    Depth,
+    /// The owner of the nearest key.
+    Owner,
+    /// Layers per pixel: for the heat map, and for the judge.
+    Count,
+    /// Weighted colours of all layers.
+    Sum,
+    /// Key and owner without atomics.
+    Race,
+    /// Samples per triangle.
+    Tally,
+    /// The samples of the triangle in which the drawing stops.
+    Straddle,
+}
+
+impl Pass {
+    /// Stem of the file in `shaders/passes`.
+    pub const fn stem(self) -> &'static str {
+        match self {
+            Self::Project => "project",
+            Self::Decide(_) => "decide",
+            Self::OrderSums => "order_sums",
+            Self::OrderLimit => "order_limit",
+            Self::OrderRanks => "order_ranks",
+            Self::OrderCut => "order_cut",
+            Self::RasterSmall(_) => "raster_small",
+            Self::RasterPoints(_) => "raster_points",
+            Self::Args => "args",
+            Self::Clip => "clip",
+            Self::TileLarge => "tile_large",
+            Self::RasterMedium(_) => "raster_medium",
+            Self::RasterLarge(_) => "raster_large",
+            Self::ListTiles => "list_tiles",
+            Self::Resolve => "resolve",
+        }
+    }
+
+    /// The entry point in that file.
+    pub const fn entry(self) -> &'static str {
+        match self {
+            Self::Args => "args_write",
+            other => other.stem(),
+        }
+    }
+
+    pub const fn phase(self) -> Option<Phase> {
+        match self {
+            Self::RasterSmall(phase) | Self::RasterPoints(phase) | Self::RasterMedium(phase) | Self::RasterLarge(phase) => Some(phase),
+            _ => None,
+        }
+    }
+
+    /// Label for profilers and tables.
+    pub fn label(self) -> String {
+        if self == Self::Decide(Entries::Pieces) {
+            return "decide pieces".into();
+        }
+        match self.phase() {
+            Some(Phase::Depth) => format!("{} depth", self.stem()),
+            Some(Phase::Owner) => format!("{} owner", self.stem()),
+            Some(Phase::Count) => format!("{} count", self.stem()),
+            Some(Phase::Tally) => format!("{} tally", self.stem()),
+            Some(Phase::Straddle) => format!("{} straddle", self.stem()),
+            Some(Phase::Sum) => format!("{} sum", self.stem()),
+            Some(Phase::Race) => format!("{} race", self.stem()),
+            Some(Phase::Packed) | None => self.stem().into(),
+        }
+    }
+}
