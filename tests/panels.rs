@@ -773,3 +773,18 @@ fn a_lost_device_rescues_the_look_and_closes_the_window() {
     let rescued = preset::load(&home.path().join(folder).join("recovery.toml")).unwrap_or_else(|error| panic!("{error}\n{said}"));
     assert_eq!(rescued.session.spin_deg_per_s, 12.5);
 }
+
+#[test]
+fn a_second_effect_in_a_slot_says_so_and_offers_to_take_its_place() {
+    let Some(mut lab) = lab("xray") else { return };
+    let has = |lab: &Lab, name: &str| lab.state().look().session.stack.get(name).is_some();
+    click(&mut lab, Role::CheckBox, "overdraw");
+    assert!(has(&lab, "xray") && !has(&lab, "overdraw"), "nothing was switched");
+    let sentence = "xray and overdraw both take the visibility slot of the rasterizer; switch one of them off";
+    assert!(lab.state().log_text().contains(sentence), "{}", lab.state().log_text());
+    click(&mut lab, Role::Button, "overdraw instead of xray");
+    assert!(!has(&lab, "xray") && has(&lab, "overdraw"));
+    assert!(slider(&lab, "overdraw.full").rect().width() > 0.0);
+    undo(&mut lab);
+    assert!(has(&lab, "xray") && !has(&lab, "overdraw"), "one step");
+}

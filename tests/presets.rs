@@ -634,7 +634,10 @@ prop_compose! {
         let [name, about, why] = texts;
         let mut stack = rasterlab::effects::Stack::default();
         for (index, seed) in effects {
-            stack.enable(EFFECTS[index]).words = filled(EFFECTS[index], seed);
+            // Two effects in one slot are no session.
+            if stack.rival(EFFECTS[index]).is_none() {
+                stack.enable(EFFECTS[index]).words = filled(EFFECTS[index], seed);
+            }
         }
         if reversed {
             stack.0.reverse();

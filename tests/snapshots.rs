@@ -267,6 +267,9 @@ fn mutants_of_every_golden_are_caught() {
         let frame = drawn(session, &scene_of(&look));
         let caught = |mutant: Picture| complaint(session, &mutant, &frame.color).is_some();
         assert!(!caught(frame.color.clone()), "{}: the golden itself", look.id);
+        if !session.stack.is_repeatable() {
+            continue; // What chance decides has a budget that hides smaller faults.
+        }
 
         let width = session.output.size[0] as usize;
         let rows = |shift: fn(&mut [[u8; 4]])| {
@@ -286,7 +289,9 @@ fn mutants_of_every_golden_are_caught() {
         let shows = |i: usize| pictures(&doubled[i..=i], &doubled[i - 1..i], 1).pixels_beyond > 0;
         let is_edge = |i: usize| (frame.owner[i] == NO_OWNER) != (frame.owner[i - 1] == NO_OWNER) && shows(i);
         // Of some looks a line or a fog hides many of them.
-        let edge = (1..doubled.len()).find(|&i| is_edge(i)).expect("an edge");
+        let is_seam = |i: usize| frame.owner[i] != frame.owner[i - 1] && shows(i);
+        let all = || 1..doubled.len();
+        let edge = all().find(|&i| is_edge(i)).or_else(|| all().find(|&i| is_seam(i))).expect("an edge, or a seam where nothing is empty");
         doubled[edge] = doubled[edge - 1];
         let is_strict = session.test.as_ref().is_some_and(|test| test.max_pixels == 0);
         assert!(!is_strict || caught(doubled), "{}: a pixel of the edge is doubled", look.id);
