@@ -33,8 +33,11 @@ fn with(values: &[&str]) -> Stack {
     look.session.stack
 }
 
+/// Position, normal, colour.
+type Corner = ([f32; 3], [f32; 3], [f32; 4]);
+
 /// Triangles all over a picture of `side` pixels, each in colours, normals and depths of its own.
-fn soup(seed: u32, count: usize, side: i32, darkest: f64) -> Vec<[([f32; 3], [f32; 3], [f32; 4]); 3]> {
+fn soup(seed: u32, count: usize, side: i32, darkest: f64) -> Vec<[Corner; 3]> {
     let mut dice = Dice(seed);
     let corner = |dice: &mut Dice| {
         let at = [dice.between(-2000, 256 * side + 2000), dice.between(-2000, 256 * side + 2000)];
@@ -46,7 +49,7 @@ fn soup(seed: u32, count: usize, side: i32, darkest: f64) -> Vec<[([f32; 3], [f3
     (0..count).map(|_| [corner(&mut dice), corner(&mut dice), corner(&mut dice)]).collect()
 }
 
-fn scene_from(triangles: &[[([f32; 3], [f32; 3], [f32; 4]); 3]]) -> Arc<Scene> {
+fn scene_from(triangles: &[[Corner; 3]]) -> Arc<Scene> {
     let corners = || triangles.iter().flatten();
     hand_made(&[Part {
         positions: corners().map(|corner| corner.0).collect(),

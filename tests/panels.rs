@@ -88,6 +88,9 @@ fn undo(lab: &mut Lab) {
 }
 
 fn click(lab: &mut Lab, role: Role, label: &str) {
+    // A long panel shows it only after scrolling.
+    lab.get_by_role_and_label(role, label).scroll_to_me();
+    lab.run_steps(3);
     lab.get_by_role_and_label(role, label).click();
     lab.run_steps(3);
     settle(lab);

@@ -15,7 +15,7 @@ use rasterlab::{
 };
 
 /// Stacks that every run draws.
-const STACKS: u32 = 40;
+const STACKS: u32 = 20;
 
 /// A legal value for a field: its ends now and then, else anything the slider spans.
 fn value(dice: &mut Dice, field: &Field) -> Vec<f64> {

@@ -88,7 +88,7 @@ impl App {
                     self.log.tell(super::Level::Warning, conflict.to_string(), self.now_s);
                 }
                 let (name, other) = (effect.name, conflict.first);
-                let instead = ui.small_button(format!("instead of {other}")).accessible_name(&format!("{name} instead of {other}"));
+                let instead = ui.small_button(format!("instead of {other}")).accessible_name(format!("{name} instead of {other}"));
                 if instead.on_hover_text(format!("Switch {other} off and {name} on")).clicked() {
                     self.look.session.disable(other);
                     self.muted.remove(other);
@@ -168,7 +168,7 @@ impl App {
             ui.add_space(theme::GAP);
             let button = ui.selectable_label(is_picking, if is_picking { "Click on the model" } else { "Pick on the model" });
             let button = button.on_hover_text("The next click in the picture sets this point");
-            if button.accessible_name(&format!("Pick {}.{}", effect.name, field.name)).clicked() {
+            if button.accessible_name(format!("Pick {}.{}", effect.name, field.name)).clicked() {
                 self.picking = if is_picking { None } else { Some((effect, field)) };
             }
         });

@@ -122,7 +122,7 @@ impl Xray {
         }
         let exponent = front >> 23;
         let significand = u64::from(front & 0x7f_ffff | 0x80_0000);
-        let scaled = (significand * u64::from(65_536_000 / (1000 + self.window)) >> 16) as u32;
+        let scaled = ((significand * u64::from(65_536_000 / (1000 + self.window))) >> 16) as u32;
         let shift = scaled.leading_zeros() - 8;
         if exponent <= shift { 1 } else { ((exponent - shift) << 23) | ((scaled << shift) & 0x7f_ffff) }
     }

@@ -72,6 +72,6 @@ pub(super) fn background(view: &View) -> DVec4 {
 }
 
 /// Rounds to bytes, halves away from zero.
-fn bytes(color: DVec4) -> [u8; 4] {
+pub(super) fn bytes(color: DVec4) -> [u8; 4] {
     color.to_array().map(|c| (255.0 * c.clamp(0.0, 1.0) + 0.5).floor() as u8)
 }

@@ -10,7 +10,7 @@ use super::{
     coverage::{Coverage, Sample, corner_places, corner_records, cover_by, draw_of, triangles},
     decide::{decide, wrong},
     empty,
-    finish::Seen,
+    finish::{Seen, bytes},
     frame,
     layers::{Layered, Scenery, layered},
     moved::{Corner, Mover},
@@ -176,7 +176,7 @@ fn judge_layers(accuracy: &mut Accuracy, truth: &Layered, adapter: &Frame) {
     let is_wrong = |(count, [least, most]): &(&u32, &[u64; 2])| !(*least..=*most).contains(&u64::from(**count));
     accuracy.counts_wrong = adapter.counted.iter().zip(&truth.count_bounds).filter(is_wrong).count() as u64;
     accuracy.overflow += u64::from(adapter.counters.full_pixels);
-    accuracy.open_pixels = truth.bounds.iter().filter(|[least, most]| least != most).count() as u64;
+    accuracy.open_pixels = truth.bounds.iter().filter(|ends| bytes(ends[0]) != bytes(ends[1])).count() as u64;
 }
 
 fn judge_colors(accuracy: &mut Accuracy, expected: &[[u8; 4]], adapter: &Frame) {

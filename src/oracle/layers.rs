@@ -141,7 +141,14 @@ fn tallies(scenery: &Scenery, stack: &Stack, params: &Xray, bits: u32) -> Vec<Ta
             let ends = nudged.fold([shaded.color.truncate(); 2], |[least, most], color| [least.min(color), most.max(color)]);
             let weight = params.weight_of(&shaded);
             let counts = [is_front || hit.depth >= least, is_front || low >= least];
-            tally.add(shaded.color.truncate(), ends, weight, params.unit() > 1, bits, counts);
+            // On what clipping left, f32 places a sample only to some 2^-16 of its distance.
+            let is_piece = triangle.entry != triangle.id as usize;
+            let slack = match (params.unit() > 1, is_piece) {
+                (false, _) => 0.0,
+                (true, false) => WEIGHT_SLACK,
+                (true, true) => 8.0 * WEIGHT_SLACK,
+            };
+            tally.add(shaded.color.truncate(), ends, weight, slack, bits, counts);
         }
     });
     tallies
@@ -150,10 +157,10 @@ fn tallies(scenery: &Scenery, stack: &Stack, params: &Xray, bits: u32) -> Vec<Ta
 impl Tally {
     /// Adds a layer, whose colour lies between `ends`; `counts` says whether it lies inside the window, and whether that
     /// is certain.
-    fn add(&mut self, color: DVec3, ends: [DVec3; 2], weight: f64, is_weighted: bool, bits: u32, [counts, is_certain]: [bool; 2]) {
+    fn add(&mut self, color: DVec3, ends: [DVec3; 2], weight: f64, slack: f64, bits: u32, [counts, is_certain]: [bool; 2]) {
         let whole = f64::from((1u32 << bits) - 1);
         let rounded = |color: DVec3, slack: f64| color.to_array().map(|c| ((c + slack).clamp(0.0, 1.0) * whole + 0.5).floor() as u64);
-        let slack = if is_weighted { WEIGHT_SLACK * f64::from(xray::FULL_WEIGHT) } else { 0.0 };
+        let slack = slack * f64::from(xray::FULL_WEIGHT);
         let [weight, low, high] = [0.0, -slack, slack].map(|nudge| (weight + nudge + 0.5).floor().max(1.0) as u64);
         let (exact, least, most) = (rounded(color, 0.0), rounded(ends[0], -COLOR_SLACK), rounded(ends[1], COLOR_SLACK));
         if counts {

@@ -8,7 +8,7 @@ use super::{
     layers::Layered,
 };
 use crate::{
-    effects::Stack,
+    effects::{Stack, hooks::Slot},
     frame::Geometry,
     scene::{Scene, camera::View, draw::Draw},
 };
@@ -56,9 +56,12 @@ impl Answers {
         (0..adapter.len()).map(|i| [0, 1, 2, 3].map(|c| channel(i, c))).collect()
     }
 
-    /// Which pixels have answers more than a step of 255 apart; empty where none can.
+    /// Which pixels have answers more than a step of 255 apart because of a step of colour; empty where none can.
     pub fn band(&self) -> Vec<bool> {
-        let [middle, others @ ..] = self.pictures.as_slice() else { return Vec::new() };
+        // Of a span, the middles of what it goes through.
+        let stride = if self.is_span { 3 } else { 1 };
+        let answers: Vec<_> = self.pictures.iter().step_by(stride).collect();
+        let [middle, others @ ..] = answers.as_slice() else { return Vec::new() };
         if others.is_empty() {
             return Vec::new();
         }
@@ -69,5 +72,11 @@ impl Answers {
 
 /// How far steps are moved, nothing first.
 pub(super) fn nudges(stack: &Stack) -> &'static [f64] {
-    if stack.has_steps() { &[0.0, -NUDGE, NUDGE] } else { &[0.0] }
+    // A picture of layers is summed in linear light, and gamma is 13 times as steep where it is dark, before it meets a step.
+    const FAR: f64 = 32.0 * NUDGE;
+    match (stack.has_steps(), stack.in_slot(Slot::Visibility)) {
+        (false, _) => &[0.0],
+        (true, None) => &[0.0, -NUDGE, NUDGE],
+        (true, Some(_)) => &[0.0, -FAR, FAR],
+    }
 }
