@@ -494,7 +494,7 @@ fn case_17_what_has_no_area_is_counted_and_not_drawn() {
     let view = pixel_view(32, 32);
     let points = vec![[1.0, 1.0, 0.5], [30.0, 2.0, 0.5], [3.0, 30.0, 0.5], [15.5, 1.5, 0.5], [1.0, 1.0, 0.9]];
     let none = Part { positions: points.clone(), indices: vec![0, 0, 0, 0, 1, 1, 0, 1, 3, 0, 4, 1, 2, 0, 2], ..Part::default() };
-    let capture = everywhere(&mut renderer, &hand_made(&[none.clone()]), &view, "degenerate");
+    let capture = everywhere(&mut renderer, &hand_made(std::slice::from_ref(&none)), &view, "degenerate");
     assert_eq!((capture.frame.covered(), capture.frame.counters.degenerate), (0, 5));
 
     // Far larger than a class of its own, and still a line; a speck that the snap makes a point.
@@ -603,7 +603,10 @@ fn case_18_more_workgroups_than_one_dimension_holds_indirectly() {
 }
 
 /// Each queue alone, with the demand that is known for it.
-fn demands() -> Vec<(&'static str, Capacities, Arc<Scene>, fn(&mut Capacities) -> &mut u32)> {
+/// What a demand is called, what it comes to, the scene that makes it, and the capacity that must hold it.
+type Demand = (&'static str, Capacities, Arc<Scene>, fn(&mut Capacities) -> &mut u32);
+
+fn demands() -> Vec<Demand> {
     let ample = Capacities { clip: 4096, pieces: 4096, medium: 4096, large: 4096, tiles: 4096 };
     let n = 40;
     let many = |triangle: [[i32; 2]; 3]| {
