@@ -58,6 +58,11 @@ pub fn rotation_y(radians: f64) -> DMat4 {
     )
 }
 
+/// A gamma-encoded value, 0 to 1, as linear light (IEC 61966-2-1).
+pub fn linear_light(encoded: f64) -> f64 {
+    if encoded <= 0.040_45 { encoded / 12.92 } else { libm::pow((encoded + 0.055) / 1.055, 2.4) }
+}
+
 /// Linear light, clamped to [0, 1], gamma-encoded (IEC 61966-2-1).
 pub fn srgb(linear: f64) -> f64 {
     let c = linear.clamp(0.0, 1.0);

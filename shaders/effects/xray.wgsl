@@ -46,10 +46,20 @@ fn xray_average(sum: u32, count: u32) -> u32 {
     return sum / whole + select(0u, 1u, 2u * (sum % whole) >= whole);
 }
 
+// through to the power of weight / unit: whole powers by squaring, since drivers' logarithms are coarse.
+fn xray_clear(through: f32, weight: u32, unit: u32) -> f32 {
+    let rest = weight % unit;
+    var clear = select(1.0, exp2(log2(max(through, 1e-30)) * f32(rest) / f32(unit)), rest > 0u);
+    var power = through;
+    for (var bits = weight / unit; bits > 0u; bits >>= 1u) {
+        if (bits & 1u) != 0u { clear *= power; }
+        power *= power;
+    }
+    return select(clear, 0.0, through <= 0.0 && weight > 0u);
+}
+
 // The average over the background, as dense as its layers are many.
 fn xray_seen(average: vec3f, background: vec4f, weight: u32, p: Xray) -> vec4f {
-    let unit = select(255.0, 1.0, p.weight == XRAY_WEIGHT_EQUAL);
-    let through = 1.0 - p.opacity;
-    let clear = select(0.0, exp2(log2(max(through, 1e-30)) * (f32(weight) / unit)), through > 0.0 || weight == 0u);
+    let clear = xray_clear(1.0 - p.opacity, weight, select(255u, 1u, p.weight == XRAY_WEIGHT_EQUAL));
     return vec4f(average + (background.rgb - average) * clear, 1.0 + (background.a - 1.0) * clear);
 }

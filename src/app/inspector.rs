@@ -155,7 +155,8 @@ impl App {
             if let Some(ask) = outcome.ask {
                 self.answer(ui.ctx(), ask);
             }
-            if field.kind == Kind::Point {
+            // Directions are points without a unit.
+            if field.kind == Kind::Point && field.unit == "m" {
                 self.pick_ui(ui, effect, field);
             }
         }

@@ -18,6 +18,7 @@ use super::{
 use crate::{
     effects::{Stack, Surface, hooks::Layers, overdraw::Overdraw, xray, xray::Xray},
     frame::Geometry,
+    math::linear_light,
     scene::{Scene, camera::View, draw::Draw},
 };
 
@@ -99,8 +100,10 @@ fn averaged(scenery: &Scenery, stack: &Stack, params: &Xray, bits: u32) -> Layer
         return averaged(scenery, stack, params, fewer);
     }
     let whole = f64::from((1u32 << bits) - 1);
-    let background = DVec4::from_array(scenery.view.background.map(f64::from));
     let nothing = finish::background(scenery.view);
+    // What shines through is the background as pictures hold it, in whole bytes.
+    let [red, green, blue] = [nothing.x, nothing.y, nothing.z].map(linear_light);
+    let background = DVec4::new(red, green, blue, nothing.w);
     let mut layered = Layered { colors: Vec::new(), bounds: Vec::new(), counted: Vec::new(), count_bounds: Vec::new() };
     for tally in &tallies {
         let color = if tally.weight == 0 { nothing } else { tally.color(params, background, whole) };

@@ -73,7 +73,7 @@ impl Answers {
 /// How far steps are moved, nothing first.
 pub(super) fn nudges(stack: &Stack) -> &'static [f64] {
     // A picture of layers is summed in linear light, and gamma is 13 times as steep where it is dark, before it meets a step.
-    const FAR: f64 = 32.0 * NUDGE;
+    const FAR: f64 = 4.0 * NUDGE;
     match (stack.has_steps(), stack.in_slot(Slot::Visibility)) {
         (false, _) => &[0.0],
         (true, None) => &[0.0, -NUDGE, NUDGE],
