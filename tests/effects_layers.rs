@@ -3,7 +3,7 @@
 
 mod common;
 
-use std::{fs, path::Path, sync::Arc};
+use std::sync::Arc;
 
 use common::*;
 use glam::DVec3;
@@ -20,7 +20,7 @@ use rasterlab::{
     plan::{Accuracy, Tuning},
     preset,
     scene::{Scene, camera::View},
-    shader::{key::Visibility, library::Library},
+    shader::key::Visibility,
 };
 
 /// A stack of effects with values: `"xray.weight=facing"`, or a name alone.
@@ -458,38 +458,17 @@ fn mutants() -> Vec<Mutant> {
     ]
 }
 
-fn copy_shaders(from: &Path, to: &Path) {
-    fs::create_dir_all(to).expect("a folder for shaders");
-    for entry in fs::read_dir(from).expect("shaders/ can be read") {
-        let path = entry.expect("shaders/ can be read").path();
-        let target = to.join(path.file_name().expect("a name"));
-        if path.is_dir() {
-            copy_shaders(&path, &target);
-        } else {
-            fs::copy(&path, target).expect("a shader is copied");
-        }
-    }
-}
-
 #[test]
 fn layers_with_a_mistake_are_caught() {
     let Some(mut healthy) = renderer() else { return };
-    let shaders = Path::new(env!("CARGO_MANIFEST_DIR")).join("shaders");
-    let folder = tempfile::tempdir().expect("a temporary folder");
     // Dark, because steps of linear light are widest there.
     let (scene, view): (Arc<Scene>, View) = (scene_from(&soup(11, 60, 48, 0.08)), pixel_view(48, 48));
     let tuning = Tuning { specialized: true, ..healthy.gpu().caps.tuning() };
     let mut failures = Vec::new();
-    for (i, Mutant { what, file, from, to, stack, shown_by: (figure, shown_by) }) in mutants().into_iter().enumerate() {
+    for Mutant { what, file, from, to, stack, shown_by: (figure, shown_by) } in mutants() {
         exact(&mut healthy, &scene, &view, &stack, &pinned(Visibility::Split32), &format!("without the mistake: {what}"));
-        let library = folder.path().join(i.to_string());
-        copy_shaders(&shaders, &library);
-        let path = library.join(format!("{file}.wgsl"));
-        let text = fs::read_to_string(&path).expect("a shader is text");
-        assert_eq!(text.matches(from).count(), 1, "{what}: {from:?} is not once in {file}");
-        fs::write(&path, text.replace(from, to)).expect("a shader is written");
-
-        let mut wrong = Renderer::with_library(healthy.gpu().clone(), Library::Folder(library));
+        let library = mutated(file, from, to);
+        let mut wrong = Renderer::with_library(healthy.gpu().clone(), library.shaders());
         wrong.set_tuning(tuning);
         let (_, verdict) = judged(&mut wrong, &scene, &view, &stack, &pinned(Visibility::Split32));
         eprintln!("{what}: {}", exactness(&verdict.accuracy).err().unwrap_or_default());

@@ -3,7 +3,7 @@
 
 mod common;
 
-use std::{fs, path::Path, sync::Arc};
+use std::sync::Arc;
 
 use common::*;
 use glam::{DMat3, DVec2, DVec3};
@@ -23,7 +23,7 @@ use rasterlab::{
         camera::{Camera, Projection, View},
         draw::draws,
     },
-    shader::{key::Visibility, library::Library},
+    shader::key::Visibility,
 };
 
 const MOVING: [&str; 3] = ["explode", "inflate", "wobble"];
@@ -354,8 +354,6 @@ fn still_life(query: &str) -> (Arc<Scene>, View) {
 #[test]
 fn kernels_that_move_wrongly_are_caught() {
     let Some(mut healthy) = renderer() else { return };
-    let shaders = Path::new(env!("CARGO_MANIFEST_DIR")).join("shaders");
-    let folder = tempfile::tempdir().expect("a temporary folder");
     let mutants = [
         (
             "a wave turns normals the wrong way",
@@ -388,7 +386,7 @@ fn kernels_that_move_wrongly_are_caught() {
         ("the last term of the sine is halved", "wobble", "common/sine", "y * 39.5367061", "y * 20.0"),
     ];
     let mut failures = Vec::new();
-    for (i, (what, effect, file, from, to)) in mutants.into_iter().enumerate() {
+    for (what, effect, file, from, to) in mutants {
         let (scene, view) = match file {
             "common/sine" => telescope(),
             "common/transform" => still_life("near"),
@@ -402,13 +400,8 @@ fn kernels_that_move_wrongly_are_caught() {
             set(&mut stack, effect, "amplitude_m", &[0.15]);
         }
         exact(&mut healthy, &scene, &view, &stack, &pinned(Visibility::Split32), &format!("without the mistake: {what}"));
-        let library = folder.path().join(i.to_string());
-        copy_shaders(&shaders, &library);
-        let path = library.join(format!("{file}.wgsl"));
-        let text = fs::read_to_string(&path).expect("a shader is text");
-        assert_eq!(text.matches(from).count(), 1, "{what}: {from:?} is not once in {file}");
-        fs::write(&path, text.replace(from, to)).expect("a shader is written");
-        let mut wrong = Renderer::with_library(healthy.gpu().clone(), Library::Folder(library));
+        let library = mutated(file, from, to);
+        let mut wrong = Renderer::with_library(healthy.gpu().clone(), library.shaders());
         let (_, verdict) = judged(&mut wrong, &scene, &view, &stack, &pinned(Visibility::Split32));
         match exactness(&verdict.accuracy) {
             Ok(()) => failures.push(what),
@@ -416,17 +409,4 @@ fn kernels_that_move_wrongly_are_caught() {
         }
     }
     assert_eq!(failures, Vec::<&str>::new(), "not caught");
-}
-
-fn copy_shaders(from: &Path, to: &Path) {
-    fs::create_dir_all(to).expect("a folder for shaders");
-    for entry in fs::read_dir(from).expect("shaders/ can be read") {
-        let path = entry.expect("shaders/ can be read").path();
-        let target = to.join(path.file_name().expect("a name"));
-        if path.is_dir() {
-            copy_shaders(&path, &target);
-        } else {
-            fs::copy(&path, target).expect("a shader is copied");
-        }
-    }
 }

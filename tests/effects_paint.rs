@@ -3,7 +3,7 @@
 
 mod common;
 
-use std::{fs, path::Path, sync::Arc};
+use std::sync::Arc;
 
 use common::*;
 use glam::{DVec2, DVec3, DVec4};
@@ -19,7 +19,7 @@ use rasterlab::{
     params::Kind,
     scene::{Scene, camera::View},
     session::{Clock, SceneSource, Session},
-    shader::{key::Visibility, library::Library},
+    shader::key::Visibility,
 };
 
 const PAINT: [&str; 7] = ["toon", "hatch", "fog", "posterize", "smear", "outline", "dither"];
@@ -419,24 +419,10 @@ fn another_size_or_scene_begins_without_a_trail_and_drawing_again_adds_none() {
 
 // ---------------------------------------------------------------- mutants
 
-fn copy_shaders(from: &Path, to: &Path) {
-    fs::create_dir_all(to).expect("a folder for shaders");
-    for entry in fs::read_dir(from).expect("shaders/ can be read") {
-        let path = entry.expect("shaders/ can be read").path();
-        let target = to.join(path.file_name().expect("a name"));
-        if path.is_dir() {
-            copy_shaders(&path, &target);
-        } else {
-            fs::copy(&path, target).expect("a shader is copied");
-        }
-    }
-}
-
 #[test]
 fn effects_with_a_mistake_are_caught() {
     let Some(healthy) = renderer() else { return };
     let gpu = healthy.gpu().clone();
-    let folder = tempfile::tempdir().expect("a temporary folder");
     let scene = scene("knot?tess=10");
     let view = view(&scene, SIZE);
     let coarse = |name: &'static str| if matches!(name, "posterize" | "dither") { (name, "levels", 4.0) } else { (name, "", 0.0) };
@@ -450,14 +436,9 @@ fn effects_with_a_mistake_are_caught() {
         ("outline", "bend > jump", "bend > jump / 2"),
         ("smear", "share + 65535", "share * 2 + 65535"),
     ];
-    for (i, (name, from, to)) in mutants.into_iter().enumerate() {
-        let library = folder.path().join(i.to_string());
-        copy_shaders(&Path::new(env!("CARGO_MANIFEST_DIR")).join("shaders"), &library);
-        let file = library.join(format!("effects/{name}.wgsl"));
-        let text = fs::read_to_string(&file).expect("a shader is text");
-        assert_eq!(text.matches(from).count(), 1, "{from:?} is not once in {name}");
-        fs::write(&file, text.replace(from, to)).expect("a shader is written");
-        let mut wrong = Renderer::with_library(gpu.clone(), Library::Folder(library));
+    for (name, from, to) in mutants {
+        let library = mutated(&format!("effects/{name}"), from, to);
+        let mut wrong = Renderer::with_library(gpu.clone(), library.shaders());
         let stack = with(&[("lambert", "", 0.0), coarse(name)]);
         let (_, verdict) = if name == "smear" {
             judged_look(&mut wrong, &scene, &spinning(0.2), &pinned(Visibility::Split32))

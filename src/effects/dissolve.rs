@@ -7,7 +7,7 @@ use glam::{DVec2, DVec3, DVec4};
 
 use super::{
     Effect, Surface, SurfaceEffect,
-    hooks::{Facts, Front, Pattern, Sample, SampleEffect},
+    hooks::{Facts, Front, Pattern, Sample, SampleEffect, front_of},
 };
 use crate::{
     choice,
@@ -82,16 +82,7 @@ impl Dissolve {
     }
 
     fn travelling(&self) -> Front {
-        Front {
-            pattern: Pattern::of(self.pattern),
-            progress: self.front.into(),
-            width: self.width.into(),
-            along: DVec2::new(self.along_x.into(), self.along_y.into()),
-            center: DVec3::new(self.center[0].into(), self.center[1].into(), self.center[2].into()),
-            radius_m: self.radius_m.into(),
-            width_m: self.width_m.into(),
-            seed: self.seed,
-        }
+        front_of!(self)
     }
 }
 

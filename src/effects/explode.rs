@@ -2,11 +2,11 @@
 //!
 //! A triangle that neither turns nor shrinks is carried along as a whole; one that only turns keeps its area.
 
-use glam::{DVec2, DVec3};
+use glam::DVec3;
 
 use super::{
     Effect,
-    hooks::{Front, Pattern, ROUNDING, Slack, Vertex, VertexEffect},
+    hooks::{Front, Pattern, ROUNDING, front_of, Slack, Vertex, VertexEffect},
 };
 use crate::{
     math::{SINE_SLACK, hash_unit, sin_turns},
@@ -135,15 +135,6 @@ impl Explode {
     }
 
     fn travelling(&self) -> Front {
-        Front {
-            pattern: Pattern::of(self.pattern),
-            progress: self.front.into(),
-            width: self.width.into(),
-            along: DVec2::new(self.along_x.into(), self.along_y.into()),
-            center: DVec3::new(self.center[0].into(), self.center[1].into(), self.center[2].into()),
-            radius_m: self.radius_m.into(),
-            width_m: self.width_m.into(),
-            seed: self.seed,
-        }
+        front_of!(self)
     }
 }

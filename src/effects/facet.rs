@@ -2,11 +2,9 @@
 //!
 //! The blend is one number per triangle, taken at its centre. At 0 and 1 the pure values come through to the bit.
 
-use glam::{DVec2, DVec3};
-
 use super::{
     Effect, Surface, SurfaceEffect,
-    hooks::{Front, Pattern},
+    hooks::{Front, Pattern, front_of},
 };
 use crate::{params, params::Point};
 
@@ -53,15 +51,6 @@ impl SurfaceEffect for Facet {
 
 impl Facet {
     fn travelling(&self) -> Front {
-        Front {
-            pattern: Pattern::of(self.pattern),
-            progress: self.front.into(),
-            width: self.width.into(),
-            along: DVec2::new(self.along_x.into(), self.along_y.into()),
-            center: DVec3::new(self.center[0].into(), self.center[1].into(), self.center[2].into()),
-            radius_m: self.radius_m.into(),
-            width_m: self.width_m.into(),
-            seed: self.seed,
-        }
+        front_of!(self)
     }
 }

@@ -95,8 +95,8 @@ pub fn judge_after(
     let vertices = vertex_faults(scene, &draws, view, stack, geometry, &own);
 
     let mut accuracy = Accuracy { pixels: view.pixels() as u64, ..Default::default() };
-    match order::cut(stack, &rules, &given, view) {
-        Some(cut) if is_free => judge_choice(&mut accuracy, &coverage, adapter, layers, cut.limit),
+    match is_free.then(|| order::cut(stack, &rules, &given, view)).flatten() {
+        Some(cut) => judge_choice(&mut accuracy, &coverage, adapter, layers, cut.limit),
         _ => judge_samples(&mut accuracy, &coverage, adapter, layers, stack.is_racing()),
     }
     if let Some(layered) = &layered

@@ -81,3 +81,20 @@ impl Front {
         if passed + slack < 0.0 || passed - slack > 1.0 { 0.0 } else { slack.min(1.0) }
     }
 }
+
+/// The [`Front`] of a parameter struct that names its fields as all such effects do.
+macro_rules! front_of {
+    ($p:expr) => {
+        $crate::effects::hooks::Front {
+            pattern: $crate::effects::hooks::Pattern::of($p.pattern),
+            progress: $p.front.into(),
+            width: $p.width.into(),
+            along: glam::DVec2::new($p.along_x.into(), $p.along_y.into()),
+            center: glam::DVec3::new($p.center[0].into(), $p.center[1].into(), $p.center[2].into()),
+            radius_m: $p.radius_m.into(),
+            width_m: $p.width_m.into(),
+            seed: $p.seed,
+        }
+    };
+}
+pub(crate) use front_of;

@@ -8,6 +8,7 @@ mod surface;
 pub mod tone;
 mod vertex;
 
+pub(crate) use front::front_of;
 pub use front::{Front, Pattern};
 pub use image::{ImageEffect, ImageHook, Picture, Pixel};
 pub use sample::{Facts, Sample, SampleEffect, SampleHook};
