@@ -3,6 +3,7 @@
 //! Modules in dependency order; `tests/architecture.rs` holds the arrows.
 //!
 //! * [`math`], [`frame`]: exact little tools, and the picture with its integers
+//! * [`ladder`]: every axis on which speed is traded for accuracy, and its rungs
 //! * [`scene`]: meshes as the file has them, cameras, what a scene requires
 //! * [`params`](mod@params), [`effects`]: one table per effect, one list of effects, their f64 truth
 //! * [`shader`], [`plan`], [`gpu`]: choose, link and run the kernels
@@ -21,6 +22,7 @@ pub mod cli;
 pub mod effects;
 pub mod frame;
 pub mod gpu;
+pub mod ladder;
 pub mod math;
 pub mod measure;
 pub mod oracle;

@@ -12,6 +12,7 @@ use rasterlab::{
         Renderer,
         naive::{Naive, Viewport},
     },
+    ladder::Visibility,
     measure::Accuracy as Errors,
     plan::Tuning,
     preset,
@@ -19,7 +20,6 @@ use rasterlab::{
         Scene,
         camera::{Camera, Projection, View},
     },
-    shader::key::Visibility,
 };
 
 #[test]

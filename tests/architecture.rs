@@ -11,17 +11,24 @@ const MAY_KNOW: &[(&str, &[&str])] = &[
     ("math", &[]),
     ("frame", &["math"]),
     ("measure", &["frame", "math"]),
+    ("ladder", &[]),
     ("scene", &["math"]),
     ("params", &[]),
     ("effects", &["math", "params", "scene"]),
-    ("shader", &["effects", "math", "params", "scene"]),
-    ("plan", &["effects", "math", "params", "scene", "shader"]),
-    ("session", &["effects", "math", "params", "plan", "scene", "shader"]),
+    ("shader", &["effects", "ladder", "math", "params", "scene"]),
+    ("plan", &["effects", "ladder", "math", "params", "scene", "shader"]),
+    ("session", &["effects", "ladder", "math", "params", "plan", "scene", "shader"]),
     ("oracle", &["effects", "frame", "math", "measure", "params", "scene"]),
-    ("gpu", &["effects", "frame", "math", "measure", "params", "plan", "scene", "session", "shader"]),
-    ("preset", &["effects", "frame", "math", "params", "plan", "scene", "session", "shader"]),
-    ("cli", &["app", "effects", "frame", "gpu", "math", "measure", "oracle", "params", "plan", "preset", "scene", "session", "shader"]),
-    ("app", &["effects", "frame", "gpu", "math", "measure", "oracle", "params", "plan", "preset", "scene", "session", "shader"]),
+    ("gpu", &["effects", "frame", "ladder", "math", "measure", "params", "plan", "scene", "session", "shader"]),
+    ("preset", &["effects", "frame", "ladder", "math", "params", "plan", "scene", "session", "shader"]),
+    (
+        "cli",
+        &[
+            "app", "effects", "frame", "gpu", "ladder", "math", "measure", "oracle", "params", "plan", "preset", "scene", "session",
+            "shader",
+        ],
+    ),
+    ("app", &["effects", "frame", "gpu", "ladder", "math", "measure", "oracle", "params", "plan", "preset", "scene", "session", "shader"]),
 ];
 
 /// Longest source file, lines. A longer one stands here with its reason.

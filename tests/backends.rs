@@ -9,10 +9,10 @@ use common::*;
 use rasterlab::{
     frame::{Frame, NO_OWNER},
     gpu::{Capture, Renderer},
+    ladder::Visibility,
     measure::compare,
     plan::Tuning,
     scene::{Scene, builtin::BUILTINS, camera::View},
-    shader::key::Visibility,
 };
 
 const SIZE: [u32; 2] = [256, 192];
@@ -65,7 +65,7 @@ fn split32_and_packed64_give_the_same_owners_and_keys() {
         for tuning in [renderer.gpu().caps.tuning(), GRAPHICS_CARD] {
             renderer.set_tuning(tuning);
             let [split, packed] =
-                Visibility::ALL.map(|rung| captured(&mut renderer, &scene, &view, &stack(&["facet", "lambert"]), &pinned(rung)));
+                Visibility::EXACT.map(|rung| captured(&mut renderer, &scene, &view, &stack(&["facet", "lambert"]), &pinned(rung)));
             assert!(split.frame.covered() > 0, "{query} shows nothing");
             assert_same(&split.frame, &packed.frame, query);
             assert_eq!(split.geometry, packed.geometry, "{query}: geometry");

@@ -14,13 +14,13 @@ use rasterlab::{
         xray::{self, Xray},
     },
     gpu::{RenderError, Renderer},
+    ladder::Visibility,
     math::srgb_byte,
     measure::Accuracy as Errors,
     oracle,
     plan::{Accuracy, Tuning},
     preset,
     scene::{Scene, camera::View},
-    shader::key::Visibility,
 };
 
 /// A stack of effects with values: `"xray.weight=facing"`, or a name alone.

@@ -13,6 +13,7 @@ use rasterlab::{
         hooks::{Slack, Vertex},
     },
     gpu::Renderer,
+    ladder::Visibility,
     math::hash_unit,
     measure::Budget,
     oracle,
@@ -23,7 +24,6 @@ use rasterlab::{
         camera::{Camera, Projection, View},
         draw::draws,
     },
-    shader::key::Visibility,
 };
 
 const MOVING: [&str; 3] = ["explode", "inflate", "wobble"];

@@ -14,12 +14,12 @@ use rasterlab::{
     },
     frame::{Frame, NO_OWNER},
     gpu::Renderer,
+    ladder::Visibility,
     measure::{Budget, compare::pictures},
     oracle,
     params::Kind,
     scene::{Scene, camera::View},
     session::{Clock, SceneSource, Session},
-    shader::key::Visibility,
 };
 
 const PAINT: [&str; 7] = ["toon", "hatch", "fog", "posterize", "smear", "outline", "dither"];

@@ -401,7 +401,7 @@ fn kernels_with_a_mistake_are_caught() {
     let view = view(&scene, [128, 96]);
     let mut failures = Vec::new();
     for (what, file, from, to, stack) in mutants {
-        let rung = pinned(rasterlab::shader::key::Visibility::Split32);
+        let rung = pinned(rasterlab::ladder::Visibility::Split32);
         exact(&mut healthy, &scene, &view, &stack, &rung, &format!("without the mistake: {what}"));
         let library = mutated(file, from, to);
         let mut wrong = rasterlab::gpu::Renderer::with_library(healthy.gpu().clone(), library.shaders());

@@ -11,6 +11,7 @@ use rasterlab::{
     effects::Stack,
     frame::{NO_OWNER, vertex_flags},
     gpu::{Capture, RenderError, Renderer, uniforms::Capacities},
+    ladder::Visibility,
     math::GUARD_BAND,
     measure::compare,
     plan::Tuning,
@@ -18,7 +19,6 @@ use rasterlab::{
         Scene,
         camera::{Camera, Projection, View},
     },
-    shader::key::Visibility,
 };
 
 /// Draws on every rung with work shared out as on a graphics card, and on the last rung as the adapter likes it and with

@@ -3,9 +3,10 @@
 use rasterlab::{
     effects::{EFFECTS, Effect},
     gpu::uniforms::{CounterRecord, DrawRecord, FrameUniform, Twin},
+    ladder::Visibility,
     shader::{
         Fetch, KernelKey, Pass,
-        key::{Phase, Visibility},
+        key::Phase,
         library::Library,
         link,
         reflect::{self, Reflected},

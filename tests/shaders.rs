@@ -3,9 +3,10 @@
 
 use rasterlab::{
     effects::{EFFECTS, Effect, hooks::Slot},
+    ladder::Visibility,
     shader::{
         Fetch, KernelKey, Pass,
-        key::{Phase, Visibility},
+        key::Phase,
         library::Library,
         link::{self, Linked},
         reflect::{self, BindingKind},
@@ -55,7 +56,7 @@ fn validate(key: &KernelKey, pass: Pass) -> usize {
 #[test]
 fn every_slot_choice_links_and_validates_within_eight_storage_buffers() {
     for fetch in [Fetch::Direct, Fetch::Indexed] {
-        for visibility in Visibility::ALL {
+        for visibility in Visibility::EXACT {
             for has_queues in [false, true] {
                 for single_draw in [false, true] {
                     let is_fullest = has_queues && !single_draw;

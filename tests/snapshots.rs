@@ -20,7 +20,7 @@ use rasterlab::{
     oracle,
     preset::{self, Look},
     scene::Scene,
-    session::Session,
+    session::{Session, Visibility},
 };
 
 type Picture = Vec<[u8; 4]>;
@@ -150,7 +150,7 @@ fn every_look_matches_its_golden_on_every_rung() {
             shelf.bless(&golden::draw(&look, &scene).expect("the oracle draws every look"));
         }
         let view = session.view(&scene, session.output.size);
-        for rung in session.accuracy.visibility.map_or_else(|| rungs(&renderer), |pinned| vec![pinned]) {
+        for rung in session.accuracy.pins.rung::<Visibility>().map_or_else(|| rungs(&renderer), |pinned| vec![pinned]) {
             // Steps of colour leave some pixels two right answers; which, and that one of them was met, is the judge's word.
             let (actual, band) = if session.stack.has_steps() || session.stack.reads_previous() {
                 let (capture, verdict) = judged_look(&mut renderer, &scene, session, &pinned(rung));

@@ -11,12 +11,13 @@ use super::{
 use crate::{
     effects::{EFFECTS, Effect},
     gpu::Explanation,
+    ladder::AXES,
     params::{Field, Kind},
     preset::{
         form::Plain,
         keys::{KEYS, Key, Section},
     },
-    session::{Tier, Visibility},
+    session::Tier,
 };
 
 /// How a key of the look is shown: its unit, and what its slider spans.
@@ -34,7 +35,6 @@ const SHOWN: &[(&str, &str, Option<[f64; 2]>)] = &[
     ("output.size", "", None),
     ("output.background", "", None),
     ("accuracy.tier", "", None),
-    ("accuracy.visibility", "", None),
 ];
 
 impl App {
@@ -230,11 +230,7 @@ impl App {
     fn accuracy_ui(&mut self, ui: &mut Ui) {
         folder(ui, "Accuracy", true, |ui| {
             self.key_ui(ui, "accuracy.tier");
-            let int64 = self.screen.gpu.caps.int64_atomics;
-            ui.add_enabled_ui(int64, |ui| self.key_ui(ui, "accuracy.visibility"));
-            if !int64 {
-                ui.label(theme::weak(format!("This adapter has no 64-bit atomics, so every tier uses {}.", Visibility::ALL[0].name())));
-            }
+            AXES.iter().for_each(|axis| self.key_ui(ui, &format!("accuracy.{}", axis.name)));
             if self.look.session.accuracy.tier == Tier::Reference {
                 ui.label(theme::weak("Reference asks for the most exact rung on every axis."));
             }

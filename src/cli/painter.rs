@@ -97,7 +97,7 @@ impl Painter {
 
     /// Visibility rungs this painter can draw `session` with: the pinned one, or all that the adapter has.
     pub fn rungs(&self, session: &Session) -> Vec<Option<Visibility>> {
-        match (self, session.accuracy.visibility) {
+        match (self, session.accuracy.pins.rung::<Visibility>()) {
             (Self::Cpu, _) => vec![None],
             (_, Some(pinned)) => vec![Some(pinned)],
             (Self::Gpu(_, gpu), None) => usable_rungs(&gpu.caps).into_iter().map(Some).collect(),
@@ -135,7 +135,7 @@ impl Painter {
 
 /// Rungs that an adapter of these capabilities has.
 pub fn usable_rungs(caps: &Caps) -> Vec<Visibility> {
-    Visibility::ALL.into_iter().filter(|rung| *rung != Visibility::Packed64 || caps.int64_atomics).collect()
+    Visibility::EXACT.into_iter().filter(|rung| *rung != Visibility::Packed64 || caps.int64_atomics).collect()
 }
 
 pub fn describe(summary: &AdapterSummary, caps: &Caps) -> String {

@@ -20,7 +20,7 @@ use crate::{
     },
     oracle,
     preset::{self, Look},
-    session::{Session, Test, Visibility},
+    session::{Test, Visibility},
 };
 
 /// One look on one rung.
@@ -73,7 +73,8 @@ fn verify(common: &Common, args: &Verify, look: &Look, painter: &mut Painter) ->
     let budget = session.test.clone().unwrap_or_default();
     let (mut rows, mut first): (Vec<Row>, Option<(&str, Frame)>) = (Vec::new(), None);
     for rung in painter.rungs(&session) {
-        let pinned = Session { accuracy: crate::session::Accuracy { visibility: rung, ..session.accuracy }, ..session.clone() };
+        let mut pinned = session.clone();
+        pinned.accuracy.pins = rung.map_or(session.accuracy.pins, |rung| session.accuracy.pins.with(rung));
         let name = rung.map_or("exact", Visibility::name);
         let capture = painter.capture(&pinned, &scene)?;
         let layers = capture.layers.as_deref();

@@ -13,11 +13,11 @@ use super::{
 use crate::{
     effects::Stack,
     frame::{Frame, NO_OWNER},
+    ladder::{Pins, Visibility},
     measure::{ErrorFigures, Verdict, compare, timing},
     plan::Accuracy,
     scene::{Scene, camera::View},
     session::Session,
-    shader::key::Visibility,
 };
 
 /// What to measure.
@@ -186,7 +186,7 @@ impl Lab<'_> {
     fn line_up(&mut self, scene: &Arc<Scene>, judge: Judge) -> Result<(Vec<Entry>, Vec<(String, String)>), RenderError> {
         let (mut entries, mut missing) = (Vec::new(), Vec::new());
         let mut expected = None;
-        for visibility in Visibility::ALL {
+        for &visibility in Visibility::ALL {
             let mut renderer = Renderer::new(self.gpu.clone());
             renderer.set_scene(scene)?;
             if visibility == Visibility::Packed64 && !self.gpu.caps.int64_atomics {
@@ -274,7 +274,7 @@ impl Lab<'_> {
 }
 
 fn pinned(visibility: Visibility) -> Accuracy {
-    Accuracy { visibility: Some(visibility), ..Accuracy::default() }
+    Accuracy { pins: Pins::of(visibility), ..Accuracy::default() }
 }
 
 /// Error of a picture that has no owners: where it shows something it should not or the reverse, and how far off it is.

@@ -6,12 +6,13 @@ use super::{
 };
 use crate::{
     effects::{Stack, hooks::Layers},
+    ladder::Visibility,
     math::srgb_byte,
     plan::{Accuracy, Plan, plan},
     scene::{Scene, camera::View, draw::draws, needs::Needs},
     shader::{
         glue::uniform_bytes,
-        key::{KernelKey, Order, Visibility},
+        key::{KernelKey, Order},
     },
 };
 
@@ -59,8 +60,8 @@ impl Renderer {
             "previous" => key.reads_previous(),
             "pieces" => key.has_clipping,
             "effects" => !parameters.is_empty(),
-            "depth_keys" | "owners" => key.visibility == Visibility::Split32,
-            "depth_owner" => key.visibility == Visibility::Packed64,
+            "depth_keys" | "owners" => key.rungs.visibility == Visibility::Split32,
+            "depth_owner" => key.rungs.visibility == Visibility::Packed64,
             "order" | "counts" | "sums" => key.order != Order::Free,
             "hits" => key.order == Order::Submission,
             "layers" => key.layers == Some(Layers::Overdraw),
@@ -122,7 +123,7 @@ impl Renderer {
         if key.layers == Some(Layers::Overdraw) {
             buffers.ensure(gpu, "layers", 4 * pixels, STORAGE, "layers per pixel, 4 bytes")?;
         }
-        match key.visibility {
+        match key.rungs.visibility {
             Visibility::Split32 => {
                 buffers.ensure(gpu, "depth_keys", 4 * pixels + sums, STORAGE, why[0])?;
                 buffers.ensure(gpu, "owners", 4 * pixels, STORAGE, "owner per pixel, 4 bytes")?;

@@ -14,9 +14,10 @@ use super::{
 use crate::{
     effects::{Stack, hooks::Layers},
     frame::{Counters, Frame, Geometry, Piece, SnappedVertex},
+    ladder::Visibility,
     plan::Accuracy,
     scene::camera::View,
-    shader::key::{KernelKey, Phase, Visibility},
+    shader::key::{KernelKey, Phase},
 };
 
 /// Counters and stamps of a frame in flight.
@@ -159,7 +160,7 @@ impl Renderer {
     /// Owner and key images.
     fn read_visibility(&self, key: &KernelKey, view: &View) -> Result<(Vec<u32>, Vec<u32>), RenderError> {
         let pixels = view.pixels() as u64;
-        Ok(match key.visibility {
+        Ok(match key.rungs.visibility {
             Visibility::Split32 => {
                 let owners = self.words("owners", pixels)?;
                 (owners.iter().map(|word| !word).collect(), self.words("depth_keys", pixels)?)
@@ -174,7 +175,7 @@ impl Renderer {
     /// Weights or layers per pixel, as the effect in the visibility slot has them.
     fn read_counted(&self, key: &KernelKey, view: &View) -> Result<Vec<u32>, RenderError> {
         let pixels = view.pixels() as u64;
-        let (buffer, first) = match (key.layers, key.visibility) {
+        let (buffer, first) = match (key.layers, key.rungs.visibility) {
             (Some(Layers::Xray { .. }), Visibility::Split32) => ("depth_keys", pixels),
             (Some(Layers::Xray { .. }), Visibility::Packed64) => ("depth_owner", 2 * pixels),
             (Some(Layers::Overdraw), _) => return self.words("layers", pixels),

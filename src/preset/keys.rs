@@ -6,8 +6,9 @@ use glam::DVec3;
 
 use super::form::{Form, Plain, Precision, brief};
 use crate::{
+    ladder::{AXES, Checks, Clipping, Counting, Coverage, Depth, Parameters, Perspective, Rung, Vertex, Visibility},
     scene::camera::{Camera, MIN_NEAR_M, Projection},
-    session::{SceneSource, Session, Test, Tier, Visibility},
+    session::{SceneSource, Session, Test, Tier},
 };
 
 /// One key of a look.
@@ -94,8 +95,6 @@ const LINE: Form = Form::Text { longest: 200 };
 const PARAGRAPH: Form = Form::Text { longest: 2000 };
 const POINT: Form = Form::Numbers { lanes: 3, low: -FARTHEST_M, high: FARTHEST_M, precision: Precision::Double };
 const TIERS: &[&str] = &[Tier::ALL[0].name(), Tier::ALL[1].name(), Tier::ALL[2].name(), Tier::ALL[3].name()];
-/// The first leaves the choice to the planner.
-const VISIBILITIES: &[&str] = &["planned", Visibility::ALL[0].name(), Visibility::ALL[1].name()];
 
 /// Whether a value may be; the error completes a sentence that begins with its key.
 pub type Rule = fn(&Plain) -> Result<(), String>;
@@ -112,6 +111,20 @@ const fn ruled(key: Key, rule: Rule) -> Key {
 
 const fn rivals(key: Key, rival: &'static str) -> Key {
     Key { rival: Some(rival), ..key }
+}
+
+/// The key that pins an axis of the ladder; its first word leaves the choice to the planner.
+const fn pin<R: Rung>() -> Key {
+    let axis = &AXES[R::AXIS];
+    key("accuracy", axis.name, Form::Word(axis.choices), axis.about, pinned::<R>, set_pin::<R>)
+}
+
+fn pinned<R: Rung>(session: &Session) -> Option<Plain> {
+    Some(Plain::number(session.accuracy.pins.get(&AXES[R::AXIS]).map_or(0, |place| 1 + place as u32)))
+}
+
+fn set_pin<R: Rung>(session: &mut Session, plain: Plain) {
+    session.accuracy.pins.set(&AXES[R::AXIS], (plain.first() as usize).checked_sub(1));
 }
 
 /// Every key besides `schema`, `stack` and the effects, in the order in which they are written.
@@ -251,14 +264,15 @@ pub const KEYS: &[Key] = &[
         |s| Some(Plain::number(s.accuracy.tier as u32)),
         |s, v| s.accuracy.tier = Tier::ALL[v.first() as usize],
     ),
-    key(
-        "accuracy",
-        "visibility",
-        Form::Word(VISIBILITIES),
-        "Pins where depth and owner meet; beats the tier",
-        |s| Some(Plain::number(s.accuracy.visibility.map_or(0, |v| 1 + v as u32))),
-        |s, v| s.accuracy.visibility = (v.first() as usize).checked_sub(1).map(|index| Visibility::ALL[index]),
-    ),
+    pin::<Coverage>(),
+    pin::<Vertex>(),
+    pin::<Depth>(),
+    pin::<Visibility>(),
+    pin::<Perspective>(),
+    pin::<Clipping>(),
+    pin::<Counting>(),
+    pin::<Parameters>(),
+    pin::<Checks>(),
     key(
         "output",
         "size",
@@ -320,4 +334,16 @@ fn tested(session: &mut Session) -> &mut Test {
 
 fn point(p: DVec3) -> Plain {
     Plain::Numbers(p.to_array().to_vec())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_axis_of_the_ladder_has_a_key() {
+        let keys: Vec<&str> =
+            KEYS.iter().filter(|key| matches!(key.form, Form::Word(words) if words[0] == "planned")).map(|key| key.name).collect();
+        assert_eq!(keys, AXES.iter().map(|axis| axis.name).collect::<Vec<_>>());
+    }
 }

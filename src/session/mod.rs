@@ -20,8 +20,8 @@ use crate::{
 pub use animation::Animation;
 
 pub use crate::{
+    ladder::{Pins, Visibility},
     plan::{Accuracy, Tier},
-    shader::key::Visibility,
 };
 
 /// Which scene a look shows.

@@ -2,33 +2,16 @@
 
 use std::fmt;
 
-use crate::effects::{
-    Effect, Enabled, Stack,
-    draw_order::Mode,
-    hooks::{Layers, Shape},
+use crate::{
+    effects::{
+        Effect, Enabled, Stack,
+        draw_order::Mode,
+        hooks::{Layers, Shape},
+    },
+    ladder::{Rungs, Visibility},
 };
 
 pub use super::pass::{Entries, Pass, Phase};
-
-/// Where depth and owner meet.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub enum Visibility {
-    /// Portable: a depth pass, then an owner pass.
-    Split32,
-    /// One 64-bit atomic per sample.
-    Packed64,
-}
-
-impl Visibility {
-    pub const ALL: [Self; 2] = [Self::Split32, Self::Packed64];
-
-    pub const fn name(self) -> &'static str {
-        match self {
-            Self::Split32 => "split32",
-            Self::Packed64 => "packed64",
-        }
-    }
-}
 
 /// How corners find their vertices.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -62,7 +45,8 @@ impl Order {
 #[derive(Clone, Debug, PartialEq, Eq, Hash)]
 pub struct KernelKey {
     pub fetch: Fetch,
-    pub visibility: Visibility,
+    /// A rung on every axis of the ladder.
+    pub rungs: Rungs,
     /// What an effect makes of the samples of a pixel; without one the nearest is shown.
     pub layers: Option<Layers>,
     /// Effects in stack order.
@@ -113,7 +97,7 @@ impl KernelKey {
     pub fn whole(fetch: Fetch, visibility: Visibility, effects: Vec<&'static Effect>) -> Self {
         Self {
             fetch,
-            visibility,
+            rungs: Rungs { visibility, ..Rungs::default() },
             layers: Stack(effects.iter().map(|effect| Enabled::new(effect)).collect()).layers(u64::MAX),
             shape: Shape::Triangles,
             order: Order::Free,
@@ -180,7 +164,7 @@ impl KernelKey {
 
     /// The raster phases of one frame, in order.
     pub fn phases(&self) -> Vec<Phase> {
-        let nearest: &[Phase] = match (self.layers, self.visibility) {
+        let nearest: &[Phase] = match (self.layers, self.rungs.visibility) {
             (Some(Layers::Race), _) => &[Phase::Race],
             (_, Visibility::Split32) => &[Phase::Depth, Phase::Owner],
             (_, Visibility::Packed64) => &[Phase::Packed],
@@ -291,8 +275,12 @@ impl fmt::Display for KernelKey {
             Fetch::Direct => "direct",
             Fetch::Indexed => "indexed",
         };
-        let visibility = if self.layers == Some(Layers::Race) { "race" } else { self.visibility.name() };
-        write!(f, "raster[fetch={fetch} coverage=fixed8 visibility={visibility} small={}", self.small_samples)?;
+        let visibility = if self.layers == Some(Layers::Race) { "race" } else { self.rungs.visibility.name() };
+        let coverage = self.rungs.coverage.name();
+        write!(f, "raster[fetch={fetch} coverage={coverage} visibility={visibility} small={}", self.small_samples)?;
+        for (axis, word) in self.rungs.unusual().filter(|(axis, _)| !matches!(axis.name, "coverage" | "visibility")) {
+            write!(f, " {}={word}", axis.name)?;
+        }
         match self.layers {
             Some(Layers::Xray { bits }) => write!(f, " layers=xray/{bits}")?,
             Some(Layers::Overdraw) => write!(f, " layers=overdraw")?,

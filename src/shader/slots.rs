@@ -45,10 +45,10 @@ impl KernelKey {
             ("marks", format!("slots/marks/{marks}")),
             ("pixels", format!("slots/pixels/{pixels}")),
             ("coverage", format!("slots/coverage/{}", if self.shape == Shape::Boxes { "boxes" } else { "fixed8" })),
-            ("owner", format!("slots/owner/{}", self.visibility.name())),
+            ("owner", format!("slots/owner/{}", self.rungs.visibility.name())),
             ("finish", format!("slots/finish/{finish}")),
             ("image", format!("slots/image/{}", if pass == Pass::Resolve { "seen" } else { "none" })),
-            ("sums", format!("slots/sums/{}", self.visibility.name())),
+            ("sums", format!("slots/sums/{}", self.rungs.visibility.name())),
             ("shading", format!("slots/shading/{shading}")),
         ];
         if let Some(phase) = pass.phase() {

@@ -11,6 +11,7 @@ use glam::{DMat4, DVec3, DVec4};
 use rasterlab::{
     effects::{Effect, Stack},
     gpu::{Capture, Gpu, Renderer, device::AdapterChoice},
+    ladder::{Pins, Visibility},
     math::hash,
     measure::{Accuracy as Errors, Budget, Verdict},
     oracle,
@@ -21,7 +22,7 @@ use rasterlab::{
         draw::draws,
     },
     session::{SceneSource, Session},
-    shader::{key::Visibility, library::Library},
+    shader::library::Library,
 };
 
 /// A scene of every builtin: together they take each path through the kernels.
@@ -69,11 +70,11 @@ pub fn renderer() -> Option<MutexGuard<'static, Renderer>> {
 
 /// The visibility rungs that the adapter has.
 pub fn rungs(renderer: &Renderer) -> Vec<Visibility> {
-    Visibility::ALL.into_iter().filter(|v| *v == Visibility::Split32 || renderer.gpu().caps.int64_atomics).collect()
+    Visibility::EXACT.into_iter().filter(|v| *v == Visibility::Split32 || renderer.gpu().caps.int64_atomics).collect()
 }
 
 pub fn pinned(visibility: Visibility) -> Accuracy {
-    Accuracy { visibility: Some(visibility), ..Accuracy::default() }
+    Accuracy { pins: Pins::of(visibility), ..Accuracy::default() }
 }
 
 pub fn scene(query: &str) -> Arc<Scene> {

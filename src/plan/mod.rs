@@ -6,10 +6,11 @@ use crate::{
         hooks::{Layers, Shape},
         xray,
     },
+    ladder::{Pins, Rungs, Visibility},
     scene::needs::Needs,
     shader::{
         glue::reads,
-        key::{Fetch, KernelKey, Order, Visibility, deciding},
+        key::{Fetch, KernelKey, Order, deciding},
         library::Library,
     },
 };
@@ -88,8 +89,8 @@ impl Tier {
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Accuracy {
     pub tier: Tier,
-    /// A pinned rung beats the tier.
-    pub visibility: Option<Visibility>,
+    /// Pinned rungs beat the tier.
+    pub pins: Pins,
 }
 
 /// Why no kernel draws this stack here.
@@ -137,14 +138,14 @@ pub fn plan(needs: &Needs, stack: &Stack, caps: &Caps, tuning: &Tuning, accuracy
     }
     let needs = &needs;
     let layers = stack.layers(needs.triangles);
-    let visibility = match accuracy.visibility {
+    let mut rungs = Rungs { visibility: if caps.int64_atomics { Visibility::Packed64 } else { Visibility::Split32 }, ..Rungs::default() };
+    accuracy.pins.apply(&mut rungs);
+    if layers == Some(Layers::Race) {
         // Plain stores need no 64-bit atomics; key and owner stand side by side, as packed64 has them.
-        _ if layers == Some(Layers::Race) => Visibility::Packed64,
-        Some(Visibility::Packed64) if !caps.int64_atomics => return Err(PlanError::Lacking),
-        Some(pinned) => pinned,
-        None if caps.int64_atomics => Visibility::Packed64,
-        None => Visibility::Split32,
-    };
+        rungs.visibility = Visibility::Packed64;
+    } else if rungs.visibility == Visibility::Packed64 && !caps.int64_atomics {
+        return Err(PlanError::Lacking);
+    }
     let (small_samples, small_side) = (tuning.small_samples.max(1), tuning.small_side.clamp(1, 128));
     // A box of n px touches at most n + 1 sample columns.
     let widest = needs.largest_px.floor() + 1.0;
@@ -156,7 +157,7 @@ pub fn plan(needs: &Needs, stack: &Stack, caps: &Caps, tuning: &Tuning, accuracy
     let effects: Vec<_> = stack.0.iter().map(|Enabled { effect, .. }| *effect).collect();
     let key = KernelKey {
         fetch: if needs.indexed { Fetch::Indexed } else { Fetch::Direct },
-        visibility,
+        rungs,
         layers,
         shape,
         order: Order::of(stack),
@@ -189,8 +190,8 @@ fn note(name: &str, why: impl Into<String>) -> Note {
 }
 
 fn explain(needs: &Needs, is_usual: bool, caps: &Caps, accuracy: &Accuracy, key: &KernelKey) -> (Vec<Note>, Vec<Note>) {
-    let pinned = accuracy.visibility.map(|_| "pinned by the look");
-    let chosen = match key.visibility {
+    let pinned = accuracy.pins.rung::<Visibility>().map(|_| "pinned by the look");
+    let chosen = match key.rungs.visibility {
         Visibility::Packed64 => "the adapter has 64-bit atomics: one pass decides depth and owner, nothing is lost",
         Visibility::Split32 => "the adapter has no 64-bit atomics: depth first, then the owner; nothing is lost",
     };

@@ -1,0 +1,289 @@
+//! The accuracy ladder: every axis on which a picture trades speed for accuracy, and its rungs, from fast to accurate.
+//!
+//! A rung is a file behind a slot of the kernels, or an override where only arithmetic changes. One list, [`AXES`], drives
+//! keys of looks, panels, benches and tests; which rung is cheapest within a tolerance is the planner's affair.
+
+/// One rung of an axis, known by its type.
+pub trait Rung: Copy {
+    /// Place of the axis in [`AXES`].
+    const AXIS: usize;
+    /// Place of the rung on its axis.
+    fn place(self) -> usize;
+    /// The rung at a place that [`Rung::place`] gave.
+    fn at(place: usize) -> Self;
+}
+
+/// An axis: its name, what it decides, and its rungs.
+#[derive(Debug)]
+pub struct Axis {
+    /// Key in looks: `accuracy.<name>`.
+    pub name: &'static str,
+    pub about: &'static str,
+    /// The rungs' words, fast ones first.
+    pub words: &'static [&'static str],
+    /// What a look may say: "planned", or a rung's word.
+    pub choices: &'static [&'static str],
+    /// What each rung does, in the same order.
+    pub abouts: &'static [&'static str],
+    /// Place of the rung that is taken unless something speaks for another.
+    pub usual: usize,
+    get: fn(&Rungs) -> usize,
+    set: fn(&mut Rungs, usize),
+}
+
+impl Axis {
+    /// Place of the axis in [`AXES`].
+    pub fn index(&self) -> usize {
+        AXES.iter().position(|axis| axis.name == self.name).expect("an axis of the list")
+    }
+
+    pub fn find(name: &str) -> Option<&'static Self> {
+        AXES.iter().find(|axis| axis.name == name)
+    }
+}
+
+macro_rules! ladder {
+    ($($(#[doc = $about:literal])+ $axis:ident: $name:ident = $key:literal, usual $usual:ident {
+        $($(#[doc = $rung_about:literal])+ $rung:ident = $word:literal,)+
+    })+) => {
+        $(
+            $(#[doc = $about])+
+            #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+            pub enum $name { $($(#[doc = $rung_about])+ $rung,)+ }
+
+            impl $name {
+                pub const ALL: &'static [Self] = &[$(Self::$rung),+];
+
+                pub const fn name(self) -> &'static str {
+                    match self { $(Self::$rung => $word),+ }
+                }
+            }
+
+            impl Default for $name {
+                fn default() -> Self { Self::$usual }
+            }
+
+            impl Rung for $name {
+                const AXIS: usize = Place::$name as usize;
+                fn place(self) -> usize { self as usize }
+                fn at(place: usize) -> Self { Self::ALL[place] }
+            }
+        )+
+
+        /// Places of the axes.
+        enum Place { $($name),+ }
+
+        /// A rung on every axis.
+        #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+        pub struct Rungs { $($(#[doc = $about])+ pub $axis: $name,)+ }
+
+        /// Every axis, in the order in which people read about them.
+        pub const AXES: &[Axis] = &[$(Axis {
+            name: $key,
+            about: concat!($($about),+),
+            words: &[$($word),+],
+            choices: &["planned", $($word),+],
+            abouts: &[$(concat!($($rung_about),+)),+],
+            usual: $name::$usual as usize,
+            get: |rungs| rungs.$axis as usize,
+            set: |rungs, place| rungs.$axis = $name::ALL[place],
+        }),+];
+    };
+}
+
+ladder! {
+    /// How it is decided which samples a triangle covers.
+    coverage: Coverage = "coverage", usual Fixed8 {
+        /// Edges in f32, every edge inclusive: samples on a shared edge are drawn twice.
+        Float = "float",
+        /// Edges in f32 with the top-left rule: rounding leaves holes and doubles.
+        FloatTopLeft = "float-top-left",
+        /// Exact edges between corners on 1/16 px.
+        Fixed4 = "fixed4",
+        /// Exact edges between corners on 1/256 px.
+        Fixed8 = "fixed8",
+        /// Exact edges between corners on 1/4096 px, in pictures of at most 2,047 px a side.
+        Fixed12 = "fixed12",
+    }
+    /// How vertices come to their place in the picture.
+    vertex: Vertex = "vertex", usual Snapped {
+        /// Floats, with the viewport's shift in floats too, then snapped.
+        Viewport = "viewport",
+        /// Floats relative to the centre of the picture, snapped once.
+        Snapped = "snapped",
+    }
+    /// What a depth is compared by.
+    depth: Depth = "depth", usual Reversed {
+        /// 16 bits, evenly spaced in normalized device depth.
+        Ndc16 = "ndc16",
+        /// 16 bits, evenly spaced in the (piecewise linear) logarithm of depth.
+        Log16 = "log16",
+        /// 24 bits of the same.
+        Log24 = "log24",
+        /// All 32 bits of a float that is 0 at the near plane, as most pictures had it for decades.
+        Standard = "standard",
+        /// All 32 bits of a float that is 1 at the near plane and 0 far away.
+        Reversed = "reversed",
+    }
+    /// Where depth and owner of a pixel meet.
+    visibility: Visibility = "visibility", usual Packed64 {
+        /// Portable: a depth pass, then an owner pass.
+        Split32 = "split32",
+        /// One 64-bit atomic per sample.
+        Packed64 = "packed64",
+    }
+    /// How attributes run across a triangle.
+    perspective: Perspective = "perspective", usual Exact {
+        /// Linear on the screen, as if every corner were equally far.
+        Affine = "affine",
+        /// Divided by w at every sample.
+        Exact = "exact",
+    }
+    /// What becomes of triangles that reach before the near plane or beyond the guard band.
+    clipping: Clipping = "clipping", usual Exact {
+        /// They are left out.
+        Drop = "drop",
+        /// Those that reach before the near plane are left out, the others are cut.
+        Near = "near",
+        /// They are cut, and what lies inside is drawn.
+        Exact = "exact",
+    }
+    /// How a draw order counts samples.
+    counting: Counting = "counting", usual Prefix {
+        /// Load, test, add, as a beginner's kernel does it: it overshoots.
+        Racy = "racy",
+        /// Prefix sums, or one ticket for each sample: exact.
+        Prefix = "prefix",
+    }
+    /// How the effects' parameters reach the kernels.
+    parameters: Parameters = "parameters", usual Uniform {
+        /// As constants in the text: a new text for every value.
+        Baked = "baked",
+        /// In a uniform buffer.
+        Uniform = "uniform",
+    }
+    /// Whether the compiler adds checks to our kernels.
+    checks: Checks = "checks", usual Checked {
+        /// None: loops and indices are trusted.
+        Trusted = "trusted",
+        /// Loops are bounded, indices clamped.
+        Checked = "checked",
+    }
+}
+
+impl Visibility {
+    /// The rungs that lose nothing.
+    pub const EXACT: [Self; 2] = [Self::Split32, Self::Packed64];
+}
+
+impl Coverage {
+    /// Bits of the fraction of a snapped position, in pixels.
+    pub const fn subpixel_bits(self) -> u32 {
+        match self {
+            Self::Fixed4 => 4,
+            Self::Fixed12 => 12,
+            Self::Float | Self::FloatTopLeft | Self::Fixed8 => 8,
+        }
+    }
+
+    pub const fn is_float(self) -> bool {
+        matches!(self, Self::Float | Self::FloatTopLeft)
+    }
+}
+
+impl Rungs {
+    /// The rung of an axis, by its place.
+    pub fn get(&self, axis: &Axis) -> usize {
+        (axis.get)(self)
+    }
+
+    /// Takes a rung by its place, which must be one of the axis.
+    pub fn set(&mut self, axis: &Axis, place: usize) {
+        (axis.set)(self, place);
+    }
+
+    /// Axes that are not on their usual rung, with the word they are on.
+    pub fn unusual(&self) -> impl Iterator<Item = (&'static Axis, &'static str)> + use<> {
+        let rungs = *self;
+        AXES.iter()
+            .map(move |axis| (axis, rungs.get(axis)))
+            .filter(|(axis, place)| *place != axis.usual)
+            .map(|(axis, place)| (axis, axis.words[place]))
+    }
+}
+
+/// Rungs that a look pins: they beat its tier.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+pub struct Pins([Option<u8>; AXES.len()]);
+
+impl Pins {
+    /// No axis pinned but the one of this rung.
+    pub fn of<R: Rung>(rung: R) -> Self {
+        Self::default().with(rung)
+    }
+
+    #[must_use]
+    pub fn with<R: Rung>(mut self, rung: R) -> Self {
+        self.0[R::AXIS] = Some(rung.place() as u8);
+        self
+    }
+
+    /// The pinned rung of a type.
+    pub fn rung<R: Rung>(&self) -> Option<R> {
+        self.0[R::AXIS].map(|place| R::at(place.into()))
+    }
+
+    /// Place of the pinned rung of an axis.
+    pub fn get(&self, axis: &Axis) -> Option<usize> {
+        self.0[axis.index()].map(usize::from)
+    }
+
+    /// Pins an axis to the rung at a place, or frees it.
+    pub fn set(&mut self, axis: &Axis, place: Option<usize>) {
+        self.0[axis.index()] = place.filter(|place| *place < axis.words.len()).map(|place| place as u8);
+    }
+
+    /// Puts every pinned axis of `rungs` on its pin.
+    pub fn apply(&self, rungs: &mut Rungs) {
+        for (axis, pin) in AXES.iter().zip(self.0) {
+            if let Some(place) = pin {
+                rungs.set(axis, place.into());
+            }
+        }
+    }
+
+    /// `coverage=float depth=log16`, or nothing.
+    pub fn words(&self) -> String {
+        let pinned = AXES.iter().zip(self.0).filter_map(|(axis, pin)| Some(format!("{}={}", axis.name, axis.words[usize::from(pin?)])));
+        pinned.collect::<Vec<_>>().join(" ")
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_axis_reads_back_what_it_is_set_to() {
+        for axis in AXES {
+            assert_eq!((axis.words.len(), axis.usual), (axis.abouts.len(), Rungs::default().get(axis)), "{}", axis.name);
+            for place in 0..axis.words.len() {
+                let (mut rungs, mut pins) = (Rungs::default(), Pins::default());
+                pins.set(axis, Some(place));
+                pins.apply(&mut rungs);
+                assert_eq!((rungs.get(axis), pins.get(axis)), (place, Some(place)), "{}", axis.name);
+                assert_eq!(rungs.unusual().count(), usize::from(place != axis.usual), "{}", axis.name);
+            }
+        }
+    }
+
+    #[test]
+    fn pins_know_rungs_by_type() {
+        let pins = Pins::of(Depth::Log16).with(Visibility::Split32);
+        assert_eq!(
+            (pins.rung::<Depth>(), pins.rung::<Visibility>(), pins.rung::<Coverage>()),
+            (Some(Depth::Log16), Some(Visibility::Split32), None)
+        );
+        assert_eq!(pins.words(), "depth=log16 visibility=split32");
+    }
+}
