@@ -2,6 +2,8 @@
 //!
 //! The oracle and the GPU both fill these plain types and never see each other.
 
+use crate::math::SUBPIXEL_BITS;
+
 /// Owner of a pixel that no triangle covers.
 pub const NO_OWNER: u32 = u32::MAX;
 
@@ -24,7 +26,7 @@ pub mod vertex_flags {
 /// A vertex after projection and the one snap, as every later stage reads it.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct SnappedVertex {
-    /// Position right and down from the top left corner, units of 1/256 px. Meaningless when `flags` is not 0.
+    /// Position right and down from the top left corner, in units: 1/256 px unless the geometry says otherwise. Meaningless when `flags` is not 0.
     pub x: i32,
     pub y: i32,
     /// Reversed depth z_c / w_c: 1 on the near plane, 0 at infinity.
@@ -45,7 +47,7 @@ pub struct Piece {
 }
 
 /// Everything the rasterizer proper sees: what stands between the float vertex stage and integer coverage.
-#[derive(Clone, Debug, Default, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Geometry {
     /// One per vertex of each draw, in draw order (`Draw::first_vertex` indexes it); or, with `has_own_corners`, three per
     /// triangle in order of their ids.
@@ -56,6 +58,15 @@ pub struct Geometry {
     pub pieces: Vec<Piece>,
     /// What sample effects settled: for every triangle by id, then for every piece, one entry per effect that decides.
     pub decisions: Vec<[u32; 4]>,
+    /// Positions are in units of 2^-bits px.
+    pub subpixel_bits: u32,
+}
+
+impl Default for Geometry {
+    fn default() -> Self {
+        let (vertices, pieces, decisions) = (Vec::new(), Vec::new(), Vec::new());
+        Self { vertices, has_own_corners: false, pieces, decisions, subpixel_bits: SUBPIXEL_BITS }
+    }
 }
 
 /// Counts of what a frame did not draw, and of what went wrong. All zero in a plain healthy picture.
@@ -71,6 +82,9 @@ pub struct Counters {
     pub clipped: u32,
     /// Clipped pieces that turned over or vanished in the snap, and were dropped.
     pub fan_folds: u32,
+    /// Triangles left out because they would have to be clipped, where the look asks for that.
+    #[serde(skip_serializing_if = "is_zero")]
+    pub dropped: u32,
     /// Queue entries that did not fit; the frame is incomplete unless 0.
     pub overflow: u32,
     /// Pixels with a depth but no owner; must be 0.

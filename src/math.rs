@@ -5,8 +5,11 @@
 
 use glam::{DMat4, DVec3};
 
-/// Sub-pixel units in one pixel (16.8 fixed point).
-pub const UNITS_PER_PIXEL: i32 = 256;
+/// Bits of the fraction of a snapped position unless a rung says otherwise (16.8 fixed point).
+pub const SUBPIXEL_BITS: u32 = 8;
+
+/// Sub-pixel units in one pixel of that kind.
+pub const UNITS_PER_PIXEL: i32 = 1 << SUBPIXEL_BITS;
 
 /// Largest |x| and |y| of a snapped vertex that needs no guard-band clipping, in units of 1/256 px
 /// (32,767.996 px; symmetric, and exact in an f32).

@@ -3,10 +3,10 @@
 
 use rasterlab::{
     effects::{EFFECTS, Effect, hooks::Slot},
-    ladder::Visibility,
+    ladder::{AXES, Parameters, Visibility},
     shader::{
         Fetch, KernelKey, Pass,
-        key::Phase,
+        key::{Order, Phase},
         library::Library,
         link::{self, Linked},
         reflect::{self, BindingKind},
@@ -67,6 +67,30 @@ fn every_slot_choice_links_and_validates_within_eight_storage_buffers() {
                             assert!(storage <= 8, "{} of {key} binds {storage} storage buffers", pass.label());
                         }
                     }
+                }
+            }
+        }
+    }
+}
+
+/// Every rung of every axis, alone and with the effects that meddle with the same slots.
+#[test]
+fn every_rung_of_the_ladder_links_and_validates() {
+    let effect = |name| Effect::find(name).expect("an effect");
+    let stacks =
+        [vec![], vec![effect("overdraw"), effect("outline")], vec![effect("dissolve"), effect("draw_order")], vec![effect("xray")]];
+    for axis in AXES {
+        for place in 0..axis.words.len() {
+            for effects in &stacks {
+                let mut key = key(Fetch::Indexed, Visibility::Split32, true, effects.clone());
+                key.rungs.set(axis, place);
+                key.order = if effects.contains(&effect("draw_order")) { Order::Submission } else { Order::Free };
+                if key.rungs.parameters == Parameters::Baked {
+                    key.baked = effects.iter().map(|effect| (effect.defaults)()).collect();
+                }
+                for pass in all_passes(&key) {
+                    let storage = validate(&key, pass);
+                    assert!(storage <= 8, "{} of {key} binds {storage} storage buffers", pass.label());
                 }
             }
         }

@@ -15,6 +15,7 @@ struct Counters {
     tickets: atomic<u32>,
     tickets_again: atomic<u32>,
     full_pixels: atomic<u32>,    // pixels with more layers than the sums hold
+    dropped: atomic<u32>,        // triangles left out that would have to be clipped
 }
 
 @group(0) @binding(7) var<storage, read_write> counters: Counters;

@@ -1,5 +1,5 @@
-// Fixed-point edge functions, exact. Positions are 16.8; y points down; triangles are turned clockwise on screen first.
-// Small: both extents at most 128 px, so an edge function fits an i32 whatever wraps on the way.
+// Fixed-point edge functions, exact. Positions are whole units (16.8 as a rule); y points down; triangles are turned clockwise on screen first.
+// Small: both extents at most 32,768 units, 128 px as a rule, so an edge function fits an i32 whatever wraps on the way.
 // Large: 64-bit products from 16-bit limbs, rebased to i32 per block of 16x16 pixels.
 
 struct Wide { hi: u32, lo: u32 }

@@ -4,6 +4,7 @@
 //@ use common/transform
 //@ use common/center
 //@ use common/fixed
+//@ use common/grid
 //@ use common/normal
 //@ use common/reach
 //@ use common/points
@@ -17,6 +18,8 @@ override HAS_CLIPPING: bool = false;
 override HAS_PLANES: bool = true;
 override HAS_LARGE: bool = true;
 override IS_PERSPECTIVE: bool = true;
+// Attributes run linearly across the screen, as if all corners were equally far.
+override IS_AFFINE: bool = false;
 
 // Where a sample lies in its triangle.
 struct Place {
@@ -34,21 +37,21 @@ fn place_whole(t: Triangle, pixel: vec2u) -> Place {
     let a = vertex_at(t.a);
     let b = vertex_at(t.b);
     let c = vertex_at(t.c);
-    let p = vec2i(pixel) * 256 + 128;
+    let p = grid_sample(vec2i(pixel));
     var e = vec3f(vec3i(fixed_small_area(b, c, p), fixed_small_area(c, a, p), fixed_small_area(a, b, p)));
     if HAS_LARGE { e = vec3f(fixed_weight(b, c, p), fixed_weight(c, a, p), fixed_weight(a, b, p)); }
     e = place_held(e, t, p);
     let inv_w = bitcast<vec3f>(vec3u(t.a.w, t.b.w, t.c.w));
-    let share = e * inv_w;
+    let share = select(e * inv_w, e, IS_AFFINE);
     let sum = share.x + share.y + share.z;
     let w = 1.0 / inv_w;
     var depths = w;
     if !IS_PERSPECTIVE { depths = linear_depths(bitcast<vec3f>(vec3u(t.a.z, t.b.z, t.c.z))); }
     let doubled_area = e.x + e.y + e.z;
     let weights = share / sum;
-    let depth = select(dot(weights, depths), doubled_area / sum, IS_PERSPECTIVE);
+    let depth = select(dot(weights, depths), doubled_area / sum, IS_PERSPECTIVE && !IS_AFFINE);
     let lengths = vec3f(length(vec2f(c - b)), length(vec2f(a - c)), length(vec2f(b - a)));
-    return Place(weights, depth, depths, center_whole(t.a, t.b, t.c), e / doubled_area, abs(e) / (256.0 * lengths), doubled_area > 0.0);
+    return Place(weights, depth, depths, center_whole(t.a, t.b, t.c), e / doubled_area, abs(e) / (f32(grid_unit()) * lengths), doubled_area > 0.0);
 }
 
 // Edge functions of a sample that need not lie in its triangle: in a box none turns negative, a disc is its corner's.

@@ -1,9 +1,10 @@
 // Spans: which samples of a pixel row a triangle owns, exactly, at every size. A float guesses, integers correct it.
 //@ use common/fixed
+//@ use common/grid
 
 // Is the sample of a pixel on the inner side of the directed edge of a clockwise triangle?
 fn spans_is_inside(begin: vec2i, end: vec2i, pixel: vec2i) -> bool {
-    return fixed_sign(fixed_edge(begin, end, pixel * 256 + 128)) >= fixed_bias(end - begin);
+    return fixed_sign(fixed_edge(begin, end, grid_sample(pixel))) >= fixed_bias(end - begin);
 }
 
 // Part of the pixels first.x to first.y (inclusive) of row y on the inner side of an edge; empty where x > y.
@@ -11,9 +12,9 @@ fn spans_cut(begin: vec2i, end: vec2i, y: i32, span: vec2i) -> vec2i {
     let dy = end.y - begin.y;
     if span.x > span.y { return span; }
     if dy == 0 { return select(vec2i(1, 0), span, spans_is_inside(begin, end, vec2i(span.x, y))); }
-    // Along a row the edge function changes by 256 dy per pixel: where is it zero?
-    let e = fixed_to_f32(fixed_edge(begin, end, vec2i(span.x, y) * 256 + 128));
-    var x = span.x + i32(clamp(e / (256.0 * f32(dy)), -1.0, f32(span.y - span.x) + 1.0));
+    // Along a row the edge function changes by a unit of dy per pixel: where is it zero?
+    let e = fixed_to_f32(fixed_edge(begin, end, grid_sample(vec2i(span.x, y))));
+    var x = span.x + i32(clamp(e / (f32(grid_unit()) * f32(dy)), -1.0, f32(span.y - span.x) + 1.0));
     if dy < 0 {
         for (var i = 0; i < 4 && x <= span.y && !spans_is_inside(begin, end, vec2i(x, y)); i += 1) { x += 1; }
         for (var i = 0; i < 4 && x > span.x && spans_is_inside(begin, end, vec2i(x - 1, y)); i += 1) { x -= 1; }

@@ -1,5 +1,6 @@
 // Triangles as the rasterizer meets them: three projected corners, by id or as a piece left over from clipping.
 //@ use common/frame
+//@ use common/grid
 //@ use common/draws
 //@ use common/vertex
 //@ use common/topology
@@ -28,9 +29,9 @@ fn triangle_is_shown(flags: u32, is_clockwise: bool) -> bool {
     return (flags & DRAW_DOUBLE_SIDED) != 0u || !is_back;
 }
 
-// First and last candidate pixel of a box in 16.8, clamped to the picture; empty where a last precedes a first.
+// First and last candidate pixel of a box in units, clamped to the picture; empty where a last precedes a first.
 fn triangle_pixels(low: vec2i, high: vec2i) -> vec4i {
-    let first = max((low + 127) >> vec2u(8u), vec2i(0));
-    let last = min((high - 129) >> vec2u(8u), vec2i(frame.size) - 1);
+    let first = max(grid_first(low), vec2i(0));
+    let last = min(grid_last(high), vec2i(frame.size) - 1);
     return vec4i(first, last);
 }

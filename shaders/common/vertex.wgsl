@@ -12,6 +12,9 @@ const VERTEX_CLIPPED = 124u;
 
 const VERTEX_GUARD_BAND = 8388607;
 
+// The viewport's shift happens in floats, before the snap.
+override FLOAT_VIEWPORT: bool = false;
+
 // Clip space from the stored position: rejected coordinates come as 0, subnormal ones are 0.
 fn vertex_gate(bits: vec3u) -> u32 {
     let exponents = (bits >> vec3u(23u)) & vec3u(255u);
@@ -26,9 +29,10 @@ fn vertex_position(bits: vec3u, flags: u32) -> vec3f {
 }
 
 // Snaps a clip-space point in front of the near plane: the one place where floats become positions.
-// `center` is half the picture in units of 1/256 px, so the viewport shift is an exact integer.
+// `center` is half the picture in units, so the viewport shift is an exact integer; the cheaper rung shifts in floats.
 fn vertex_snap(clip: vec4f, inv_w: f32, center: vec2f) -> vec2i {
     let limit = vec2f(16777216.0);
+    if FLOAT_VIEWPORT { return vec2i(clamp(round((clip.xy * inv_w * vec2f(0.5, -0.5) + 0.5) * (2.0 * center)), -limit, limit)); }
     let scaled = clamp(round(clip.xy * inv_w * center), -limit, limit);
     return vec2i(center) + vec2i(scaled) * vec2i(1, -1);
 }

@@ -26,7 +26,7 @@ fn raster_medium(@builtin(workgroup_id) group: vec3u, @builtin(num_workgroups) g
     for (var y = pixels.y + mine.y; y <= pixels.w; y += 8) {
         var edges = row;
         for (var x = pixels.x + mine.x; x <= pixels.z; x += 8) {
-            if coverage_contains(edges) && is_drawn(t, vec2u(vec2i(x, y)), u32(y) * frame.size.x + u32(x)) {
+            if coverage_contains(coverage, edges) && is_drawn(t, vec2u(vec2i(x, y)), u32(y) * frame.size.x + u32(x)) {
                 visibility_write(u32(y) * frame.size.x + u32(x), coverage_key(coverage, edges), t.id);
             }
             edges += coverage.step_x * 8;

@@ -15,7 +15,9 @@ override SMALL_SIDE: i32 = 64;
 // The first of several passes over the triangles fills the queues and counts.
 override IS_FIRST: bool = true;
 
-const SMALL_EXTENT = 32768; // 128 px
+const SMALL_EXTENT = 32768; // units: 128 px as a rule
+// Corner flags that leave a triangle out instead of sending it to the clipper.
+override DROPPED_FLAGS: u32 = 0u;
 
 @compute @workgroup_size(LIST_GROUP)
 fn raster_small(@builtin(workgroup_id) group: vec3u, @builtin(num_workgroups) groups: vec3u, @builtin(local_invocation_index) lane: u32) {
@@ -71,7 +73,7 @@ fn walk(coverage: Coverage, pixels: vec4i, t: Triangle) {
     var x = 0;
     var y = pixels.y;
     for (var i = 0; i < count; i += 1) {
-        if coverage_contains(edges) && is_drawn(t, vec2u(vec2i(pixels.x + x, y)), pixel) {
+        if coverage_contains(coverage, edges) && is_drawn(t, vec2u(vec2i(pixels.x + x, y)), pixel) {
             visibility_write(pixel, coverage_key(coverage, edges), t.id);
         }
         x += 1;
@@ -89,5 +91,10 @@ fn walk(coverage: Coverage, pixels: vec4i, t: Triangle) {
 
 // A corner was rejected, or lies in front of the near plane or beyond the guard band.
 fn unready(t: Triangle, any_flag: u32) {
-    if !reject_count(any_flag) && (t.a.x & t.b.x & t.c.x & VERTEX_CLIPPED) == 0u { queues_push_clip(t.id); }
+    if reject_count(any_flag) { return; }
+    if (any_flag & DROPPED_FLAGS) != 0u {
+        atomicAdd(&counters.dropped, 1u);
+        return;
+    }
+    if (t.a.x & t.b.x & t.c.x & VERTEX_CLIPPED) == 0u { queues_push_clip(t.id); }
 }

@@ -9,7 +9,7 @@
 fn tile_is_outside(a: vec2i, b: vec2i, pixels: vec4i) -> bool {
     let d = b - a;
     let inner = select(pixels.xy, pixels.zw, vec2<bool>((d.y < 0), (d.x > 0)));
-    return fixed_sign(fixed_edge(a, b, inner * 256 + 128)) < fixed_bias(d);
+    return fixed_sign(fixed_edge(a, b, grid_sample(inner))) < fixed_bias(d);
 }
 
 @compute @workgroup_size(64)

@@ -256,6 +256,9 @@ pub struct Bench {
     /// What every effect costs: each alone, with the values of its canonical look, beside none
     #[arg(long)]
     pub effects: bool,
+    /// Axes of the accuracy ladder, by commas: every combination of their rungs, milliseconds beside error
+    #[arg(long, value_name = "AXES", value_delimiter = ',', conflicts_with = "effects")]
+    pub axes: Vec<String>,
     /// Size in pixels of every row
     #[arg(long, value_name = "WxH", value_parser = size, default_value = "1920x1080")]
     pub size: [u32; 2],

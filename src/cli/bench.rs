@@ -10,6 +10,7 @@ use super::{
     open,
     painter::{Painter, scene_of},
     streams::{Streams, table},
+    trade,
 };
 use crate::{
     effects::{EFFECTS, Enabled, Stack},
@@ -24,6 +25,9 @@ use crate::{
 };
 
 pub fn run(common: &Common, args: &Bench, streams: &mut Streams) -> Result<Exit, Fault> {
+    if !args.axes.is_empty() {
+        return trade::run(common, args, streams);
+    }
     let subjects = subjects(common, args)?;
     let painter = Painter::open(common, streams)?;
     let Painter::Gpu(_, gpu) = &painter else {
@@ -51,22 +55,32 @@ pub fn run(common: &Common, args: &Bench, streams: &mut Streams) -> Result<Exit,
         });
     }
     bar.finish_and_clear();
-    let format = if streams.json { Format::Json } else { args.format };
-    match format {
-        Format::Json => {
-            let results = rows.iter().map(serde_json::to_value).collect::<Result<Vec<Value>, _>>().map_err(Fault::usage)?;
-            streams.object("bench", painter.json(), results)?;
-        }
-        Format::Table => streams.text(&table(&lines(&rows)))?,
-        Format::Csv => streams.text(&csv(&lines(&rows)))?,
-        Format::Md => streams.text(&markdown(&lines(&rows)))?,
-    }
-    let [width, height] = args.size;
-    streams.note(&format!("{width}x{height} pixels; clocks are not locked; GPU time by timestamps where the adapter has them"));
+    let results = || rows.iter().map(serde_json::to_value).collect::<Result<Vec<Value>, _>>().map_err(Fault::usage);
+    present(args, streams, &painter, &lines(&rows), results)?;
     rows.iter().filter_map(|row| row.note.as_ref()).for_each(|note| streams.note(note));
     let broken: Vec<_> = rows.iter().filter(|row| row.is_promised && !row.error.keeps_the_promise()).collect();
     broken.iter().for_each(|row| streams.note(&format!("{} on {}: the error exceeds the promise", row.scene, row.rung)));
     Ok(Exit::failed_if(!broken.is_empty()))
+}
+
+/// Rows in the format that was asked for, and how they were measured.
+pub fn present(
+    args: &Bench,
+    streams: &mut Streams,
+    painter: &Painter,
+    lines: &[Vec<String>],
+    results: impl FnOnce() -> Result<Vec<Value>, Fault>,
+) -> Result<(), Fault> {
+    let format = if streams.json { Format::Json } else { args.format };
+    match format {
+        Format::Json => streams.object("bench", painter.json(), results()?)?,
+        Format::Table => streams.text(&table(lines))?,
+        Format::Csv => streams.text(&csv(lines))?,
+        Format::Md => streams.text(&markdown(lines))?,
+    }
+    let [width, height] = args.size;
+    streams.note(&format!("{width}x{height} pixels; clocks are not locked; GPU time by timestamps where the adapter has them"));
+    Ok(())
 }
 
 /// No effect at all, and every effect alone with the values of its canonical look.
@@ -81,7 +95,7 @@ fn each_effect(common: &Common) -> Result<Vec<(String, Stack)>, Fault> {
 }
 
 /// Looks with their scenes: each named look on its own scene, or on each `--scene`.
-fn subjects(common: &Common, args: &Bench) -> Result<Vec<(Look, Arc<Scene>)>, Fault> {
+pub fn subjects(common: &Common, args: &Bench) -> Result<Vec<(Look, Arc<Scene>)>, Fault> {
     let named = args.looks.iter().map(|what| open(common, what)).collect::<Result<Vec<_>, _>>()?;
     let mut looks = Vec::new();
     for scene in &args.scene {

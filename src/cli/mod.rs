@@ -19,6 +19,7 @@ mod render;
 mod report;
 mod sequence;
 mod streams;
+pub mod trade;
 mod verify;
 
 use std::io::{self, Write as _};

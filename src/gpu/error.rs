@@ -19,6 +19,8 @@ pub enum RenderError {
     TooWide { width: u32, height: u32, limit: u32 },
     #[error("no memory for the buffer {buffer} of {bytes} bytes")]
     OutOfMemory { buffer: &'static str, bytes: u64 },
+    #[error("checks trusted is for the shaders inside this program, not for those of a folder; use checked")]
+    Untrusted,
     #[error("the device was lost")]
     Lost,
     #[error("no scene has been set")]
@@ -39,9 +41,10 @@ pub enum RenderError {
 }
 
 impl RenderError {
-    /// A pinned rung or a size that this adapter lacks.
+    /// A pinned rung that this look or adapter lacks, or a size.
     pub fn is_unsupported(&self) -> bool {
-        matches!(self, Self::Plan(PlanError::Lacking) | Self::TooLarge { .. } | Self::TooWide { .. } | Self::OutOfMemory { .. })
+        matches!(self, Self::Plan(error) if !matches!(error, PlanError::Conflict(_)))
+            || matches!(self, Self::Untrusted | Self::TooLarge { .. } | Self::TooWide { .. } | Self::OutOfMemory { .. })
     }
 
     pub fn is_lost(&self) -> bool {

@@ -12,6 +12,7 @@ pub mod pipelines;
 mod prepare;
 pub mod readback;
 pub mod timer;
+pub mod trade;
 pub mod uniforms;
 
 use std::{collections::VecDeque, sync::Arc};

@@ -3,11 +3,14 @@
 use std::{collections::HashMap, sync::Arc};
 
 use super::{Gpu, RenderError};
-use crate::shader::{
-    key::{KernelKey, Pass},
-    library::Library,
-    link,
-    reflect::{self, Binding, BindingKind},
+use crate::{
+    ladder::Checks,
+    shader::{
+        key::{KernelKey, Pass},
+        library::Library,
+        link,
+        reflect::{self, Binding, BindingKind},
+    },
 };
 
 /// A compute pipeline that knows its buffers by name.
@@ -24,6 +27,7 @@ struct Identity {
     text: String,
     entry: String,
     constants: Vec<(String, u64)>,
+    is_trusted: bool,
 }
 
 /// The cache.
@@ -67,6 +71,10 @@ impl Pipelines {
         slots: &[(&str, String)],
         constants: &[(&str, f64)],
     ) -> Result<Arc<Pipeline>, RenderError> {
+        let is_trusted = key.rungs.checks == Checks::Trusted;
+        if is_trusted && !matches!(self.library, Library::Embedded) {
+            return Err(RenderError::Untrusted);
+        }
         let linked = link::link(&self.library, root, key, slots)?;
         let reflected = reflect::reflect(&linked, gpu.caps.int64_atomics)?;
         let constants: Vec<(&str, f64)> = constants.iter().copied().filter(|(name, _)| reflected.has_override(name)).collect();
@@ -74,14 +82,23 @@ impl Pipelines {
             text: linked.text.clone(),
             entry: entry.to_owned(),
             constants: constants.iter().map(|(name, value)| ((*name).to_owned(), value.to_bits())).collect(),
+            is_trusted,
         };
         if let Some(pipeline) = self.built.get(&identity) {
             return Ok(pipeline.clone());
         }
-        let pipeline = Arc::new(compile(gpu, label, entry, linked.text, reflected.bindings(entry), &constants)?);
+        let pipeline = Arc::new(compile(gpu, label, entry, linked.text, identity.is_trusted, reflected.bindings(entry), &constants)?);
         self.built.insert(identity, pipeline.clone());
         Ok(pipeline)
     }
+}
+
+/// A module without the compiler's own checks.
+#[allow(unsafe_code, reason = "the rung `trusted`: only for the shaders inside this program, and only where a look pins it")]
+fn trusted(gpu: &Gpu, descriptor: wgpu::ShaderModuleDescriptor<'_>) -> wgpu::ShaderModule {
+    // SAFETY: every loop of the embedded kernels has a constant or counted bound, and every index is held inside its buffer
+    // by the kernel itself; the checked rung draws the same pictures (tests/ladder.rs).
+    unsafe { gpu.device.create_shader_module_trusted(descriptor, wgpu::ShaderRuntimeChecks::unchecked()) }
 }
 
 fn compile(
@@ -89,12 +106,13 @@ fn compile(
     label: &str,
     entry: &str,
     text: String,
+    is_trusted: bool,
     bindings: Vec<Binding>,
     constants: &[(&str, f64)],
 ) -> Result<Pipeline, RenderError> {
     let scope = gpu.device.push_error_scope(wgpu::ErrorFilter::Validation);
-    let module =
-        gpu.device.create_shader_module(wgpu::ShaderModuleDescriptor { label: Some(label), source: wgpu::ShaderSource::Wgsl(text.into()) });
+    let descriptor = wgpu::ShaderModuleDescriptor { label: Some(label), source: wgpu::ShaderSource::Wgsl(text.into()) };
+    let module = if is_trusted { trusted(gpu, descriptor) } else { gpu.device.create_shader_module(descriptor) };
     let entries: Vec<_> = bindings.iter().map(|binding| layout_entry(binding, wgpu::ShaderStages::COMPUTE)).collect();
     let layout = gpu.device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor { label: Some(label), entries: &entries });
     let pipeline_layout = gpu.device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {

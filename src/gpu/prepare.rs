@@ -7,7 +7,7 @@ use super::{
 use crate::{
     effects::{Stack, hooks::Layers},
     ladder::Visibility,
-    math::srgb_byte,
+    math::{SUBPIXEL_BITS, srgb_byte},
     plan::{Accuracy, Plan, plan},
     scene::{Scene, camera::View, draw::draws, needs::Needs},
     shader::{
@@ -26,11 +26,19 @@ impl Renderer {
             return Err(RenderError::TooWide { width: view.width, height: view.height, limit });
         }
         let draws = draws(&scene, view)?;
-        let mut needs = Needs::of(&scene, &draws, view);
-        if self.distrust {
-            (needs.clipping, needs.largest_px) = (true, f64::INFINITY);
+        let planned = |view: &View| {
+            let mut needs = Needs::of(&scene, &draws, view);
+            if self.distrust {
+                (needs.clipping, needs.largest_px) = (true, f64::INFINITY);
+            }
+            plan(&needs, stack, &gpu.caps, &self.tuning, accuracy)
+        };
+        let mut plan = planned(view)?;
+        // Another grid has its guard band elsewhere, so its needs are its own.
+        let view = &View { subpixel_bits: plan.key.rungs.coverage.subpixel_bits(), ..view.clone() };
+        if view.subpixel_bits != SUBPIXEL_BITS {
+            plan = planned(view)?;
         }
-        let mut plan = plan(&needs, stack, &gpu.caps, &self.tuning, accuracy)?;
         if let (Some(Layers::Xray { bits }), Some((full_view, full_stack, fewer))) = (&mut plan.key.layers, &self.full)
             && (full_view, full_stack) == (view, stack)
         {
@@ -52,6 +60,7 @@ impl Renderer {
             ..FrameUniform::new(view, &scene, draws.len(), &recorded)
         };
         let parameters = uniform_bytes(&stack.0);
+        let has_uniform = !parameters.is_empty() && key.baked.is_empty();
         buffers.keep(|name| match name {
             "queues" => key.has_queues(),
             "args" => key.has_queues() || key.listed_tiles,
@@ -59,7 +68,7 @@ impl Renderer {
             "background" => key.listed_tiles || key.reads_previous(),
             "previous" => key.reads_previous(),
             "pieces" => key.has_clipping,
-            "effects" => !parameters.is_empty(),
+            "effects" => has_uniform,
             "depth_keys" | "owners" => key.rungs.visibility == Visibility::Split32,
             "depth_owner" => key.rungs.visibility == Visibility::Packed64,
             "order" | "counts" | "sums" => key.order != Order::Free,
@@ -75,7 +84,7 @@ impl Renderer {
             STORAGE | wgpu::BufferUsages::UNIFORM,
             "matrices and attribute places, one record per instance",
         )?;
-        if !parameters.is_empty() {
+        if has_uniform {
             buffers.fill(gpu, "effects", &parameters, wgpu::BufferUsages::UNIFORM, "parameters of the stack")?;
         }
         let ranks = if key.order == Order::Free { 0 } else { triangles.div_ceil(4) };

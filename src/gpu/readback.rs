@@ -211,6 +211,7 @@ impl Renderer {
             decisions: order.flat_map(|entry| of_entry(entry).chunks_exact(4).map(|w| [w[0], w[1], w[2], w[3]])).collect(),
             pieces: pieces.into_iter().map(|(_, _, piece)| piece).collect(),
             has_own_corners: key.parts_corners(),
+            subpixel_bits: key.rungs.coverage.subpixel_bits(),
         })
     }
 

@@ -102,6 +102,7 @@ twin! {
         pub tickets: u32,
         pub tickets_again: u32,
         pub full_pixels: u32,
+        pub dropped: u32,
     }
 }
 
@@ -194,7 +195,7 @@ impl FrameUniform {
             ndc_x: wide(view.ndc_axes[0], 0.0),
             ndc_y: wide(view.ndc_axes[1], 0.0),
             clip_from_world: rounded_columns(&view.clip_from_world),
-            center: [128.0 * view.width as f32, 128.0 * view.height as f32],
+            center: [view.width, view.height].map(|pixels| (pixels as i32 * view.units_per_pixel() / 2) as f32),
             range_m: view.scene_range_m.map(|d| d as f32),
             linear_depth_m: view.linear_depth_m.unwrap_or_default().map(|d| d as f32),
             size: [view.width, view.height],
@@ -284,6 +285,7 @@ impl CounterRecord {
             overflow: beyond.iter().fold(0, |sum: u32, b| sum.saturating_add(*b)),
             orphans: self.orphans,
             full_pixels: self.full_pixels,
+            dropped: self.dropped,
         }
     }
 }

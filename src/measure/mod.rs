@@ -10,6 +10,8 @@ pub struct Accuracy {
     pub pixels: u64,
     /// Pixels whose owner is wrong outside every named band.
     pub owner_mismatch: u64,
+    /// Of those, pixels whose owner covers the sample but is not the nearest that does.
+    pub wrong_winners: u64,
     /// Pixels that differ from the oracle's own picture only because vertices snapped apart, within their bounds.
     pub explained_by_snap: u64,
     /// Pixels that differ from the oracle's own picture although the snap does not explain it.

@@ -10,9 +10,26 @@ pub fn percentile(samples: &[f64], p: f64) -> Option<f64> {
     Some(low + (high - low) * place.fract())
 }
 
+/// Samples more than five (scaled) median absolute deviations from the median.
+pub fn outliers(samples: &[f64]) -> usize {
+    // The MAD of a normal distribution is its deviation over this.
+    const NORMAL: f64 = 1.4826;
+    let Some(median) = percentile(samples, 0.5) else { return 0 };
+    let distances: Vec<f64> = samples.iter().map(|sample| (sample - median).abs()).collect();
+    let mad = percentile(&distances, 0.5).unwrap_or(0.0) * NORMAL;
+    distances.iter().filter(|distance| **distance > 5.0 * mad && mad > 0.0).count()
+}
+
 #[cfg(test)]
 mod tests {
-    use super::percentile;
+    use super::{outliers, percentile};
+
+    #[test]
+    fn outliers_are_those_far_from_most() {
+        assert_eq!(outliers(&[1.0, 1.1, 0.9, 1.05, 0.95, 9.0]), 1);
+        assert_eq!(outliers(&[1.0; 8]), 0);
+        assert_eq!(outliers(&[]), 0);
+    }
 
     #[test]
     fn percentiles_interpolate_and_ignore_order() {

@@ -310,11 +310,12 @@ impl OrientedTriangle {
         if rules.shape == Shape::Points && self.entry != self.id as usize {
             return (0..0, 0..0);
         }
-        // Pixel k has its sample at 256 k + 128.
+        // Pixel k has its sample in its middle.
+        let unit = rules.unit;
         let range = |at: [i32; 3], pixels: u32| {
             let [low, high] = [at[0].min(at[1]).min(at[2]), at[0].max(at[1]).max(at[2])].map(i64::from);
-            let first = (low - rules.radius + 127).div_euclid(256).max(0);
-            let end = ((high + rules.radius - 128).div_euclid(256) + 1).min(i64::from(pixels));
+            let first = (low - rules.radius + unit / 2 - 1).div_euclid(unit).max(0);
+            let end = ((high + rules.radius - unit / 2).div_euclid(unit) + 1).min(i64::from(pixels));
             first as usize..end.max(first) as usize
         };
         (range(self.corners.map(|c| c.x), view.width), range(self.corners.map(|c| c.y), view.height))
@@ -323,7 +324,7 @@ impl OrientedTriangle {
     /// Depth of this triangle at the centre of a pixel, with the interval of float keys; none when nothing is drawn there.
     pub(super) fn at(&self, x: usize, y: usize, rules: &Rules) -> Option<(f64, [f64; 2])> {
         let [a, b, c] = &self.corners;
-        let (px, py) = (256 * x as i64 + 128, 256 * y as i64 + 128);
+        let [px, py] = [x, y].map(|k| rules.unit * k as i64 + rules.unit / 2);
         let opposite = [(b, c), (c, a), (a, b)];
         let weights = opposite.map(|(from, to)| edge(from, to, px, py));
         let exact = |depth: f32| (f64::from(depth), [f64::from(depth); 2]);
@@ -366,7 +367,7 @@ impl OrientedTriangle {
     }
 }
 
-/// Is a sample on the inner side of a directed edge (dx, dy), of which it is `e` away (doubled area, units of 1/256 px)?
+/// Is a sample on the inner side of a directed edge (dx, dy), of which it is `e` away (doubled area, in units)?
 ///
 /// It is moved by 2^-30 to the right and 2^-60 down, which no integer distance can outweigh: |e| < 2^63, |dx|, |dy| < 2^29.
 pub fn owns(e: i64, dx: i32, dy: i32) -> bool {

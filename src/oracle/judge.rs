@@ -7,7 +7,7 @@
 use rayon::prelude::*;
 
 use super::{
-    coverage::{Coverage, Sample, corner_places, corner_records, cover_by, draw_of, triangles},
+    coverage::{Coverage, Sample, cover_by, triangles},
     decide::{decide, wrong},
     empty,
     finish::{Seen, bytes},
@@ -18,6 +18,7 @@ use super::{
     project::{Clip, half_size, project_moved},
     rules::Rules,
     steps::Answers,
+    whole::Whole,
 };
 use crate::{
     effects::Stack,
@@ -32,7 +33,7 @@ use crate::{
 };
 
 /// Relative spacing of f32.
-const ULP: f64 = 1.0 / (1 << 23) as f64;
+pub(super) const ULP: f64 = 1.0 / (1 << 23) as f64;
 
 /// Judges `frame`, the first picture of its kind, as [`judge_after`] does.
 ///
@@ -67,6 +68,8 @@ pub fn judge_after(
     layers: Option<&[u32]>,
     previous: Option<&[[u8; 4]]>,
 ) -> Result<Verdict, DrawError> {
+    // The adapter's grid is a promise of its rung, not a fault.
+    let view = &View { subpixel_bits: geometry.subpixel_bits, ..view.clone() };
     let draws = draws(scene, view)?;
     if view.pixels() == 0 {
         return Ok(Verdict { accuracy: Accuracy::default(), expected: empty(view), step_band: Vec::new() });
@@ -130,7 +133,7 @@ pub fn judge_after(
 }
 
 /// Is the adapter's owner right, exactly or as one of the two answers of the depth band?
-fn owner_is_right(sample: &Sample, owner: u32) -> bool {
+pub(super) fn owner_is_right(sample: &Sample, owner: u32) -> bool {
     owner == sample.owner || sample.is_band() && sample.claim_is_possible()
 }
 
@@ -146,7 +149,9 @@ fn judge_samples(accuracy: &mut Accuracy, coverage: &Coverage, adapter: &Frame, 
         // Where layers race, any that covers the sample may win, and the key may be another's.
         let is_contested = is_racing && sample.layers > 1 && sample.claimed.is_some();
         accuracy.race_pixels += u64::from(is_contested && !owner_is_right(sample, owner));
-        accuracy.owner_mismatch += u64::from(!is_contested && !owner_is_right(sample, owner));
+        let is_wrong = !is_contested && !owner_is_right(sample, owner);
+        accuracy.owner_mismatch += u64::from(is_wrong);
+        accuracy.wrong_winners += u64::from(is_wrong && sample.claimed.is_some());
         accuracy.key_outside_bound += u64::from(!is_contested && sample.claimed.is_some_and(|bound| !key_fits(key, bound)));
     }
 }
@@ -194,15 +199,15 @@ fn judge_counters(accuracy: &mut Accuracy, truth: &Counters, adapter: &Frame) {
 
 /// What the judgement of one vertex found.
 #[derive(Clone, Copy, Default)]
-struct VertexFault {
+pub(super) struct VertexFault {
     /// Rounding may have moved it anywhere, or to the other side of a plane: counted, not judged.
-    is_ill_conditioned: bool,
-    /// Larger of the two distances, in units of 1/256 px.
-    delta: u32,
-    snap_is_outside: bool,
-    attribute_is_outside: bool,
-    /// How far the outline of a cut triangle may move because effects err at this corner, in units of 1/256 px.
-    wander: f64,
+    pub is_ill_conditioned: bool,
+    /// Larger of the two distances, in units.
+    pub delta: u32,
+    pub snap_is_outside: bool,
+    pub attribute_is_outside: bool,
+    /// How far the outline of a cut triangle may move because effects err at this corner, in units.
+    pub wander: f64,
 }
 
 fn judge_vertices(accuracy: &mut Accuracy, faults: &[VertexFault]) {
@@ -228,7 +233,7 @@ fn vertex_faults(scene: &Scene, draws: &[Draw], view: &View, stack: &Stack, adap
     draws.iter().flat_map(of_draw).collect()
 }
 
-/// How far a float renderer may place every record from [`project_moved`], in units of 1/256 px and before it rounds; none
+/// How far a float renderer may place every record from [`project_moved`], in units and before it rounds; none
 /// where rounding may move it anywhere.
 pub fn snap_bounds(scene: &Scene, draws: &[Draw], view: &View, stack: &Stack) -> Vec<Option<[f64; 2]>> {
     let of_draw = |draw: &Draw| {
@@ -290,157 +295,4 @@ fn vertex_fault(mover: &Mover, view: &View, corner: Corner, adapter: &SnappedVer
     let (dx, dy) = (adapter.x.abs_diff(own.x), adapter.y.abs_diff(own.y));
     let snap_is_outside = f64::from(dx) > bound_x || f64::from(dy) > bound_y;
     VertexFault { delta: dx.max(dy), snap_is_outside, attribute_is_outside, ..Default::default() }
-}
-
-/// The adapter's picture against the oracle's own, from the matrix bits on.
-struct Whole<'a> {
-    scene: &'a Scene,
-    draws: &'a [Draw],
-    view: &'a View,
-    stack: &'a Stack,
-    own: &'a Geometry,
-    adapter: &'a Geometry,
-    /// Where the adapter's draw order stops.
-    cut: Option<order::Cut>,
-    vertices: &'a [VertexFault],
-}
-
-impl Whole<'_> {
-    fn judge(&self, accuracy: &mut Accuracy, coverage: &Coverage, adapter: &Frame) {
-        let (triangles, _) = triangles(self.scene, self.draws, self.own);
-        if order::is_free(self.stack) {
-            return;
-        }
-        let rules = Rules::of(self.stack, self.own).ordered(self.stack, &triangles, self.view);
-        let own = cover_by(&rules, &triangles, self.view, Some(&adapter.owner));
-        // A sample more or less before it moves the place where a draw order stops.
-        let stops = [self.cut, rules.cut()].map(|cut| cut.map(|cut| cut.straddler));
-        let is_near_stop = |owner: u32| match stops {
-            [Some(a), Some(b)] if self.cut != rules.cut() => (a.min(b)..=a.max(b)).contains(&owner),
-            _ => false,
-        };
-        for (pixel, (truth, sample)) in own.samples.iter().zip(&coverage.samples).enumerate() {
-            let owner = adapter.owner[pixel];
-            // An owner that is wrong even for the adapter's own geometry has been counted as such.
-            if owner_is_right(truth, owner) || !owner_is_right(sample, owner) {
-                continue;
-            }
-            if is_near_stop(owner) || is_near_stop(truth.owner) || self.snap_explains(truth.owner, owner, pixel) {
-                accuracy.explained_by_snap += 1;
-            } else {
-                accuracy.unexplained += 1;
-            }
-        }
-    }
-
-    /// May two owners change places at a pixel because vertices moved? Either an outline passed over the sample, or the
-    /// two surfaces cross there.
-    fn snap_explains(&self, a: u32, b: u32, pixel: usize) -> bool {
-        let at = Place::of(self.view, pixel);
-        let outlines: Vec<Outline> = [a, b].into_iter().filter_map(|owner| self.outline(owner)).collect();
-        if outlines.iter().any(|outline| outline.may_pass(&at)) {
-            return true;
-        }
-        // Sample effects measure inside of triangles: there a moved corner or another decision may tell otherwise.
-        let tells = |owner: u32| self.outline(owner).is_some_and(|outline| outline.reach > 0.0) || self.decides_otherwise(owner);
-        if self.stack.each(|hooks| hooks.sample).next().is_some() && [a, b].into_iter().any(tells) {
-            return true;
-        }
-        let depths: Option<Vec<[f64; 2]>> = outlines.iter().map(|outline| outline.depths(&at)).collect();
-        matches!(depths.as_deref(), Some([a, b]) if a[0] <= b[1] && b[0] <= a[1])
-    }
-
-    /// Did sample effects settle something else about this triangle than the oracle does?
-    fn decides_otherwise(&self, owner: u32) -> bool {
-        let deciding = self.stack.each(|hooks| hooks.sample.filter(|hook| hook.decides)).count();
-        let of =
-            |geometry: &Geometry| geometry.decisions.get(owner as usize * deciding..(owner as usize + 1) * deciding).map(<[_]>::to_vec);
-        of(self.adapter) != of(self.own)
-    }
-
-    /// Where an owner is drawn and how far that may move: as far as its corners did, or a pixel where it is cut and what
-    /// effects err by at its corners.
-    fn outline(&self, owner: u32) -> Option<Outline> {
-        let draw = draw_of(self.scene, self.draws, owner)?;
-        let records = corner_records(self.scene, draw, self.own, owner);
-        let faults = corner_places(self.scene, draw, self.own, owner).map(|at| self.vertices[at]);
-        let is_whole = records.iter().all(|record| record.flags == 0);
-        let moved = f64::from(faults.iter().map(|fault| fault.delta).max().unwrap_or(0));
-        let reach = match faults.iter().any(|fault| fault.is_ill_conditioned) {
-            true => f64::INFINITY,
-            false if is_whole => 1.5 * moved,
-            false => faults.iter().map(|fault| 1.5 * fault.wander).fold(256.0, f64::max),
-        };
-        // Own pieces stand sorted by parent.
-        let pieces = &self.own.pieces;
-        let cut = &pieces[pieces.partition_point(|p| p.parent < owner)..pieces.partition_point(|p| p.parent <= owner)];
-        Some(Outline { triangles: if is_whole { vec![records] } else { cut.iter().map(|piece| piece.corners).collect() }, reach })
-    }
-}
-
-/// One owner on the screen: itself, or its pieces.
-struct Outline {
-    triangles: Vec<[SnappedVertex; 3]>,
-    /// How far an edge may have moved, in units of 1/256 px; more than the distance of its ends in either axis.
-    reach: f64,
-}
-
-impl Outline {
-    fn may_pass(&self, at: &Place) -> bool {
-        self.reach == f64::INFINITY || self.reach > 0.0 && self.triangles.iter().any(|corners| at.border(corners) <= self.reach)
-    }
-
-    /// Depths that the surface may have at a sample; none more than a pixel away from it.
-    fn depths(&self, at: &Place) -> Option<[f64; 2]> {
-        let each = self.triangles.iter().filter_map(|corners| at.depths(corners, self.reach.clamp(2.0, 256.0)));
-        each.reduce(|a, b| [a[0].min(b[0]), a[1].max(b[1])])
-    }
-}
-
-/// The sample of a pixel, in units of 1/256 px.
-struct Place {
-    x: f64,
-    y: f64,
-}
-
-impl Place {
-    fn of(view: &View, pixel: usize) -> Self {
-        let width = view.width as usize;
-        let unit = |k: usize| (256 * k + 128) as f64;
-        Self { x: unit(pixel % width), y: unit(pixel / width) }
-    }
-
-    /// Distance to the segment between two corners.
-    fn distance(&self, from: &SnappedVertex, to: &SnappedVertex) -> f64 {
-        let (dx, dy) = (f64::from(to.x) - f64::from(from.x), f64::from(to.y) - f64::from(from.y));
-        let (px, py) = (self.x - f64::from(from.x), self.y - f64::from(from.y));
-        let length = dx * dx + dy * dy;
-        let t = if length > 0.0 { ((px * dx + py * dy) / length).clamp(0.0, 1.0) } else { 0.0 };
-        libm::hypot(px - t * dx, py - t * dy)
-    }
-
-    /// Distance to the nearest edge of a triangle.
-    fn border(&self, [a, b, c]: &[SnappedVertex; 3]) -> f64 {
-        self.distance(a, b).min(self.distance(b, c)).min(self.distance(c, a))
-    }
-
-    /// Depth of the plane through three corners here, give or take `reach` units of movement and the error of a float
-    /// key; none where the triangle is more than a pixel away.
-    fn depths(&self, corners: &[SnappedVertex; 3], reach: f64) -> Option<[f64; 2]> {
-        let [a, b, c] = corners.map(|v| [f64::from(v.x), f64::from(v.y), f64::from(v.depth)]);
-        let edge = |p: [f64; 3], q: [f64; 3]| (q[0] - p[0]) * (self.y - p[1]) - (q[1] - p[1]) * (self.x - p[0]);
-        let weights = [edge(b, c), edge(c, a), edge(a, b)];
-        let area: f64 = weights.iter().sum();
-        let covers = weights.iter().all(|weight| weight * area >= 0.0);
-        if area == 0.0 || !covers && self.border(corners) > 256.0 {
-            return None;
-        }
-        let (u, v) = ([b[0] - a[0], b[1] - a[1], b[2] - a[2]], [c[0] - a[0], c[1] - a[1], c[2] - a[2]]);
-        let slope_x = (u[2] * v[1] - v[2] * u[1]) / area;
-        let slope_y = (v[2] * u[0] - u[2] * v[0]) / area;
-        let (low, high) = (a[2].min(b[2]).min(c[2]), a[2].max(b[2]).max(c[2]));
-        let depth = a[2] + slope_x * (self.x - a[0]) + slope_y * (self.y - a[1]);
-        let slack = reach * (slope_x.abs() + slope_y.abs()) + 64.0 * ULP * depth.abs();
-        Some([(depth - slack).max(low).min(high), (depth + slack).min(high).max(low)])
-    }
 }

@@ -21,6 +21,7 @@ mod project;
 mod rules;
 mod steps;
 mod surface;
+mod whole;
 
 pub use coverage::{Coverage, OrientedTriangle, Sample, cover, cover_by, depth_bound, owns, triangles};
 pub use decide::decide;
@@ -37,6 +38,7 @@ use self::{
 use crate::{
     effects::Stack,
     frame::{Counters, Frame},
+    math::{GUARD_BAND, SUBPIXEL_BITS},
     scene::{
         Scene,
         camera::View,
@@ -50,6 +52,24 @@ use crate::{
 /// When a placement or the number of triangles exceeds what the arithmetic holds.
 pub fn render(scene: &Scene, view: &View, stack: &Stack) -> Result<Frame, DrawError> {
     render_after(scene, view, stack, None)
+}
+
+/// Most bits of the fraction with which every pixel of `view` lies inside the guard band, at most 12: the finest grid on
+/// which the oracle draws it.
+pub fn finest_bits(view: &View) -> u32 {
+    let side = i64::from(view.width.max(view.height)).max(1);
+    (SUBPIXEL_BITS..=12).rev().find(|bits| side << bits <= i64::from(GUARD_BAND)).unwrap_or(SUBPIXEL_BITS)
+}
+
+/// The true picture on the finest grid that holds it: what snapping to any coarser one is measured against.
+///
+/// # Errors
+/// As [`render`].
+pub fn render_finest(scene: &Scene, view: &View, stack: &Stack) -> Result<Frame, DrawError> {
+    // Sample effects measure triangles in 1/256 px.
+    let subpixel_bits =
+        if stack.each(|hooks| hooks.sample).next().is_some() || stack.point_radius() > 0 { SUBPIXEL_BITS } else { finest_bits(view) };
+    render(scene, &View { subpixel_bits, ..view.clone() }, stack)
 }
 
 /// The true picture of `scene` that follows `previous`, a picture of the same size.

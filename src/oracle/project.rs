@@ -37,7 +37,8 @@ pub fn project_moved(scene: &Scene, draws: &[Draw], view: &View, stack: &Stack) 
         mover.corners().into_par_iter().map(snapped).collect::<Vec<_>>()
     };
     let vertices = movers.iter().flat_map(snapped).collect();
-    let mut geometry = Geometry { vertices, has_own_corners: stack.parts_corners(), ..Geometry::default() };
+    let mut geometry =
+        Geometry { vertices, has_own_corners: stack.parts_corners(), subpixel_bits: view.subpixel_bits, ..Geometry::default() };
     geometry.pieces = movers.iter().flat_map(|mover| clip::pieces(scene, mover, view, &geometry)).collect();
     geometry
 }
@@ -101,7 +102,7 @@ pub(super) fn snap_inside(&Clip { x, y, z, w }: &Clip, view: &View) -> SnappedVe
     SnappedVertex { x, y, depth: (z / w) as f32, inv_w: (1.0 / w) as f32, flags }
 }
 
-/// Half the picture in units of 1/256 px: the place of its centre, and units per unit of NDC.
+/// Half the picture in units: the place of its centre, and units per unit of NDC.
 pub(super) fn half_size(view: &View) -> [i32; 2] {
-    [view.width, view.height].map(|pixels| 128 * pixels as i32)
+    [view.width, view.height].map(|pixels| view.units_per_pixel() / 2 * pixels as i32)
 }

@@ -10,11 +10,11 @@ use crate::{
         hooks::{Sample, SampleHook, Shape},
     },
     frame::Geometry,
+    math::UNITS_PER_PIXEL,
     scene::camera::View,
 };
 
 /// The sample effects of a stack with what they settled per triangle.
-#[derive(Default)]
 pub struct Rules<'a> {
     effects: Vec<Link<'a>>,
     decisions: &'a [[u32; 4]],
@@ -22,8 +22,10 @@ pub struct Rules<'a> {
     deciding: usize,
     /// What triangles cover.
     pub(super) shape: Shape,
-    /// Radius of discs about corners, units of 1/256 px.
+    /// Radius of discs about corners, in units.
     pub(super) radius: i64,
+    /// Units in a pixel.
+    pub(super) unit: i64,
     /// Where a draw order stops, in a picture so many pixels wide.
     cut: Option<(Cut, u32)>,
 }
@@ -33,6 +35,13 @@ struct Link<'a> {
     words: &'a [u32],
     /// Place among the effects that decide.
     place: Option<usize>,
+}
+
+impl Default for Rules<'_> {
+    fn default() -> Self {
+        let unit = UNITS_PER_PIXEL.into();
+        Self { effects: Vec::new(), decisions: &[], deciding: 0, shape: Shape::default(), radius: 0, unit, cut: None }
+    }
 }
 
 impl<'a> Rules<'a> {
@@ -47,7 +56,15 @@ impl<'a> Rules<'a> {
                 Link { hook, words, place }
             })
             .collect();
-        Self { effects, decisions: &geometry.decisions, deciding, shape: stack.shape(), radius: stack.point_radius().into(), cut: None }
+        Self {
+            effects,
+            decisions: &geometry.decisions,
+            deciding,
+            shape: stack.shape(),
+            radius: stack.point_radius().into(),
+            unit: 1 << geometry.subpixel_bits,
+            cut: None,
+        }
     }
 
     /// The same, up to where the draw order of `stack` stops the drawing of these triangles.

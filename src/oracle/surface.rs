@@ -61,7 +61,7 @@ pub(super) fn encoded(color: DVec4) -> DVec4 {
 
 /// How a triangle's corners share a sample.
 enum Weights {
-    /// Snapped corners, x and y in units of 1/256 px, with 1/w: perspective-correct from screen-space areas.
+    /// Snapped corners, x and y in pixels, with 1/w: perspective-correct from screen-space areas.
     Snapped([DVec3; 3]),
     /// Cross products of the other two corners' (x, y, w) in clip space, which weigh a sample even where w <= 0
     /// (Olano and Greer 1997); turned so that they are positive inside.
@@ -86,7 +86,7 @@ pub(super) struct Triangle {
     /// None where it lies behind the eye: then each sample takes its own place.
     center_screen: Option<DVec2>,
     shape: Shape,
-    /// Where corners are drawn: their records, and the radius of their discs in units of 1/256 px.
+    /// Where corners are drawn: their records, and the radius of their discs in units.
     disc: Option<([SnappedVertex; 3], i64)>,
 }
 
@@ -156,7 +156,7 @@ impl Triangle {
         let pixel = DVec2::new(x as f64 + 0.5, y as f64 + 0.5);
         let screen = pixel / DVec2::new(view.width.into(), view.height.into());
         let corner = self.disc.and_then(|(records, radius)| {
-            let at = pixel * 256.0;
+            let at = pixel * f64::from(view.units_per_pixel());
             OrientedTriangle::clockwise(self.owner, records).corner_under(at.x as i64, at.y as i64, radius)
         });
         let weights = self.weights.at(pixel, screen, self.shape, corner);
@@ -223,12 +223,13 @@ struct Screen {
 
 impl Screen {
     fn snapped(records: &[SnappedVertex; 3], draw: &Draw, view: &View) -> Self {
-        let size = DVec2::new(view.width.into(), view.height.into()) * 256.0;
-        let places = records.map(|r| DVec2::new(r.x.into(), r.y.into()) / size);
+        let (size, unit) = (DVec2::new(view.width.into(), view.height.into()), f64::from(view.units_per_pixel()));
+        let pixels = records.map(|r| DVec2::new(r.x.into(), r.y.into()) / unit);
+        let places = pixels.map(|at| at / size);
         let w = records.map(|r| 1.0 / f64::from(r.inv_w));
         let depth_m = |i: usize| linear_depth(view, f64::from(records[i].depth)).unwrap_or(w[i]);
         Self {
-            weights: Weights::Snapped(records.map(|r| DVec3::new(r.x.into(), r.y.into(), r.inv_w.into()))),
+            weights: Weights::Snapped([0, 1, 2].map(|k| pixels[k].extend(records[k].inv_w.into()))),
             is_back: is_back(doubled_area(records), draw),
             depths_m: [0, 1, 2].map(depth_m),
             center: Some((places[0] * w[0] + places[1] * w[1] + places[2] * w[2]) / (w[0] + w[1] + w[2])),
@@ -285,7 +286,7 @@ impl Weights {
                 let areas = areas(corners, pixel, shape, corner);
                 let lengths = [(b, c), (c, a), (a, b)].map(|(from, to)| (to - from).length());
                 let sum: f64 = areas.iter().sum();
-                let edge_px = [0, 1, 2].map(|k| areas[k] / (256.0 * lengths[k]));
+                let edge_px = [0, 1, 2].map(|k| areas[k] / lengths[k]);
                 (DVec3::from_array(areas) / sum, DVec3::from_array(edge_px))
             }
             Self::Homogeneous(rows) => {
@@ -300,8 +301,7 @@ impl Weights {
 
 /// Doubled areas opposite the corners at a pixel's centre, positive inside whichever way the triangle runs.
 fn areas(corners: &[DVec3; 3], pixel: DVec2, shape: Shape, corner: Option<usize>) -> [f64; 3] {
-    let p = pixel * 256.0;
-    let [a, b, c] = corners.map(|corner| corner.truncate() - p);
+    let [a, b, c] = corners.map(|corner| corner.truncate() - pixel);
     let areas = [b.perp_dot(c), c.perp_dot(a), a.perp_dot(b)];
     let turn = areas.iter().sum::<f64>().signum();
     match (shape, corner) {

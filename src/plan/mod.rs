@@ -1,12 +1,13 @@
 //! The planner: the cheapest kernel that the scene, the stack and the tolerance allow on this adapter, and why.
 
+mod explain;
+mod rungs;
+
+use self::explain::explain;
 use crate::{
-    effects::{
-        Conflict, Enabled, Stack,
-        hooks::{Layers, Shape},
-        xray,
-    },
-    ladder::{Pins, Rungs, Visibility},
+    effects::{Conflict, Enabled, Stack, hooks::Shape},
+    ladder::{Clipping, Parameters, Pins},
+    math::SMALL_EXTENT,
     scene::needs::Needs,
     shader::{
         glue::reads,
@@ -99,6 +100,12 @@ pub enum PlanError {
     /// A rung that was asked for by name.
     #[error("visibility packed64 needs 64-bit atomics, which this adapter lacks; use split32 or leave it out")]
     Lacking,
+    #[error("coverage {rung} cannot draw the effect {effect}, which measures triangles in 1/256 px; use fixed8, float or float-top-left")]
+    Grid { rung: &'static str, effect: &'static str },
+    #[error("coverage fixed12 holds pictures of at most 2047 px a side, and this one has {}x{}; use fixed8", size[0], size[1])]
+    Wide { size: [u32; 2] },
+    #[error("depth {rung} keeps no distances, so xray cannot count within a window; use reversed, or reach = \"all\"")]
+    Window { rung: &'static str },
     #[error(transparent)]
     Conflict(#[from] Conflict),
 }
@@ -138,25 +145,25 @@ pub fn plan(needs: &Needs, stack: &Stack, caps: &Caps, tuning: &Tuning, accuracy
     }
     let needs = &needs;
     let layers = stack.layers(needs.triangles);
-    let mut rungs = Rungs { visibility: if caps.int64_atomics { Visibility::Packed64 } else { Visibility::Split32 }, ..Rungs::default() };
-    accuracy.pins.apply(&mut rungs);
-    if layers == Some(Layers::Race) {
-        // Plain stores need no 64-bit atomics; key and owner stand side by side, as packed64 has them.
-        rungs.visibility = Visibility::Packed64;
-    } else if rungs.visibility == Visibility::Packed64 && !caps.int64_atomics {
-        return Err(PlanError::Lacking);
-    }
+    let rungs = rungs::choose(needs, stack, caps, accuracy, layers)?;
+    // Whoever drops what would have to be clipped needs no clipper; what is left may still be wide.
+    let has_clipping = needs.clipping && rungs.clipping != Clipping::Drop;
     let (small_samples, small_side) = (tuning.small_samples.max(1), tuning.small_side.clamp(1, 128));
     // A box of n px touches at most n + 1 sample columns.
     let widest = needs.largest_px.floor() + 1.0;
-    let has_medium = needs.clipping || widest > f64::from(small_side) || widest * widest > f64::from(small_samples);
-    let has_large = needs.largest_px >= 128.0;
+    let has_medium = has_clipping || widest > f64::from(small_side) || widest * widest > f64::from(small_samples);
+    let has_large = needs.largest_px >= f64::from(SMALL_EXTENT >> rungs.coverage.subpixel_bits());
     let planes = ["flat_normal", "flat_depth_m", "center"];
     let reads_planes = stack.0.iter().any(|enabled| planes.iter().any(|member| reads(&Library::Embedded, enabled.effect, member)));
     let has_planes = reads_planes || !needs.sound_normals;
     let effects: Vec<_> = stack.0.iter().map(|Enabled { effect, .. }| *effect).collect();
     let key = KernelKey {
         fetch: if needs.indexed { Fetch::Indexed } else { Fetch::Direct },
+        baked: if rungs.parameters == Parameters::Baked {
+            stack.0.iter().map(|enabled| enabled.words.clone()).collect()
+        } else {
+            Vec::new()
+        },
         rungs,
         layers,
         shape,
@@ -164,7 +171,7 @@ pub fn plan(needs: &Needs, stack: &Stack, caps: &Caps, tuning: &Tuning, accuracy
         has_samples: effects.iter().any(|effect| effect.hooks.sample.is_some()),
         decisions: deciding(&effects),
         effects,
-        has_clipping: needs.clipping,
+        has_clipping,
         has_medium,
         has_large,
         single_draw: needs.draws == 1,
@@ -183,86 +190,4 @@ pub fn plan(needs: &Needs, stack: &Stack, caps: &Caps, tuning: &Tuning, accuracy
     };
     let (reasons, omitted) = explain(needs, tuning == &caps.tuning(), caps, accuracy, &key);
     Ok(Plan { key, reasons, omitted })
-}
-
-fn note(name: &str, why: impl Into<String>) -> Note {
-    Note { name: name.into(), why: why.into() }
-}
-
-fn explain(needs: &Needs, is_usual: bool, caps: &Caps, accuracy: &Accuracy, key: &KernelKey) -> (Vec<Note>, Vec<Note>) {
-    let pinned = accuracy.pins.rung::<Visibility>().map(|_| "pinned by the look");
-    let chosen = match key.rungs.visibility {
-        Visibility::Packed64 => "the adapter has 64-bit atomics: one pass decides depth and owner, nothing is lost",
-        Visibility::Split32 => "the adapter has no 64-bit atomics: depth first, then the owner; nothing is lost",
-    };
-    let chosen = match key.layers {
-        Some(Layers::Race) => "the effect race takes the slot: one pass of plain loads and stores, and what is lost is lost",
-        _ => pinned.unwrap_or(chosen),
-    };
-    let bound = if needs.clipping { "clipping leaves it open".into() } else { format!("no triangle exceeds {:.1} px", needs.largest_px) };
-    let mut reasons = vec![
-        note("visibility", chosen),
-        note(
-            "coverage",
-            match key.shape {
-                Shape::Triangles => "fixed8: exact 16.8 top-left edges, holes and double hits are impossible",
-                Shape::Boxes => "boxes: an effect fills the bounding boxes",
-                Shape::Points => "points: an effect draws corners as discs",
-            },
-        ),
-        note("fetch", if needs.indexed { "the scene has index lists" } else { "no primitive has indices" }),
-        note(
-            "small",
-            format!(
-                "one invocation walks up to {} samples: {}",
-                key.small_samples,
-                match (is_usual, caps.software) {
-                    (false, _) => "as the tuning asks",
-                    (true, true) => "a CPU adapter runs lanes in turn",
-                    (true, false) => "a workgroup takes over early on a GPU",
-                }
-            ),
-        ),
-    ];
-    if key.moves() {
-        let why = if key.parts_corners() { "triangles part, three projected records each" } else { "triangles keep sharing vertices" };
-        let movers: Vec<_> = key.effects.iter().filter(|effect| effect.hooks.vertex.is_some()).map(|effect| effect.name).collect();
-        reasons.push(note("movement", format!("vertices are moved by {}: {why}", movers.join(", "))));
-    }
-    if key.has_image() {
-        reasons.push(note("finish", "an image effect finishes every pixel, empty ones too, so no tile is skipped"));
-    }
-    reasons.extend(layers_note(needs, key));
-    let parts = [
-        ("vertex effects", key.moves(), "no effect of the stack moves a vertex".to_owned()),
-        ("corners of their own", key.parts_corners(), "no effect parts triangles, so neighbours share projected vertices".into()),
-        ("clip", key.has_clipping, "the scene's box lies behind the near plane and inside the guard band".to_owned()),
-        ("raster_medium", key.has_medium, bound.clone()),
-        ("tile_large, raster_large", key.has_large, bound),
-        ("index fetch", needs.indexed, "no primitive has indices".into()),
-        ("plane normals and centres", key.has_planes, "no effect reads them and no normal needs a substitute".into()),
-        ("vertex colours", needs.colors, "no primitive has them".into()),
-        ("decide", key.decisions > 0, "no effect settles anything per triangle".into()),
-        ("draw order", key.order != Order::Free, "every sample is drawn".into()),
-        ("sample effects", key.has_samples, "no effect leaves samples out".into()),
-        ("image hook", key.has_image(), "no effect of the stack finishes pixels".into()),
-        ("effects uniform", !key.effects.is_empty(), "the stack is empty".into()),
-    ];
-    let omitted = parts.into_iter().filter(|(_, is_there, _)| !is_there).map(|(name, _, why)| note(name, why)).collect();
-    (reasons, omitted)
-}
-
-/// Why the samples of a pixel are added up or counted, and in how many bits.
-fn layers_note(needs: &Needs, key: &KernelKey) -> Option<Note> {
-    Some(match key.layers? {
-        Layers::Xray { bits } => {
-            let most = xray::capacity(bits);
-            note(
-                "layers",
-                format!("xray: sums of {bits} bits a channel hold {most} full weights; the scene has {} triangles", needs.triangles),
-            )
-        }
-        Layers::Overdraw => note("layers", "overdraw: one more raster pass counts every covered sample"),
-        Layers::Race => note("layers", "race: the picture depends on chance, so it is not reproducible"),
-    })
 }

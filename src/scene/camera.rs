@@ -3,7 +3,7 @@
 use glam::{DMat4, DVec3, DVec4};
 
 use super::Bounds;
-use crate::math::view_from_world;
+use crate::math::{SUBPIXEL_BITS, view_from_world};
 
 /// Smallest near distance that keeps every quotient of the vertex stage finite.
 pub const MIN_NEAR_M: f64 = 1.0 / (1 << 20) as f64;
@@ -88,6 +88,8 @@ pub struct View {
     pub scene_range_m: [f64; 2],
     /// Linear RGBA of pixels without an owner.
     pub background: [f32; 4],
+    /// Vertices snap to 2^-bits px: 4, 8 as a rule, or 12.
+    pub subpixel_bits: u32,
 }
 
 impl View {
@@ -127,7 +129,13 @@ impl View {
             linear_depth_m,
             scene_range_m: [from, farthest.max(from + margin)],
             background,
+            subpixel_bits: SUBPIXEL_BITS,
         }
+    }
+
+    /// Units of snapped positions in a pixel.
+    pub const fn units_per_pixel(&self) -> i32 {
+        1 << self.subpixel_bits
     }
 
     pub fn pixels(&self) -> usize {

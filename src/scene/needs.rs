@@ -5,11 +5,13 @@
 use glam::{DMat3, DMat4, DVec4};
 
 use super::{Component, Primitive, Scene, Topology, camera::View, draw::Draw};
-use crate::math::{GUARD_BAND, UNITS_PER_PIXEL};
+use crate::math::GUARD_BAND;
 
 /// See the module's first line.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Needs {
+    /// Pixels of the picture.
+    pub size: [u32; 2],
     pub triangles: u64,
     pub vertices: u64,
     pub draws: usize,
@@ -41,6 +43,7 @@ impl Needs {
         let all_f32 = |pick: fn(&Primitive) -> Component| drawn().all(|p| pick(p) == Component::F32);
         let largest_px = draws.iter().map(|draw| largest_px(&scene.primitives[draw.primitive], draw, view)).fold(0.0, f64::max);
         Self {
+            size: [view.width, view.height],
             triangles: scene.triangle_count(),
             vertices: scene.vertex_count(),
             draws: draws.len(),
@@ -102,7 +105,7 @@ fn largest_px(primitive: &Primitive, draw: &Draw, view: &View) -> f64 {
         .map(|(axis, pixels)| {
             let reach = corners.iter().fold(0.0, |max: f64, c| max.max((c[axis] / c.w).abs()));
             let half = f64::from(pixels) * 0.5;
-            if (reach + 1.0) * half * f64::from(UNITS_PER_PIXEL) * slack > f64::from(GUARD_BAND) {
+            if (reach + 1.0) * half * f64::from(view.units_per_pixel()) * slack > f64::from(GUARD_BAND) {
                 return f64::INFINITY;
             }
             (linear_row(axis) + reach * linear_row(3)) * primitive.longest_edge / min_w * half * slack + 1.0 / 128.0

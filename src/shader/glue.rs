@@ -4,15 +4,16 @@ use std::fmt::Write;
 
 use crate::{
     effects::{Effect, Enabled},
-    params::Kind,
+    params::{Field, Kind},
     shader::library::Library,
 };
 
 /// Bytes from the start of one effect's parameters to the next are a multiple of this (WGSL, uniform address space).
 const MEMBER_ALIGN: usize = 16;
 
-/// Constants and the `Effects` struct for the enabled effects, in order. With none there is no struct and no binding.
-pub fn glue(effects: &[&'static Effect]) -> String {
+/// Constants and the `Effects` struct for the enabled effects, in order. With none there is no struct and no binding; with
+/// `baked` parameters there is a constant instead of a binding.
+pub fn glue(effects: &[&'static Effect], baked: &[Vec<u32>]) -> String {
     let mut text = String::new();
     for effect in effects {
         for field in effect.fields {
@@ -29,9 +30,30 @@ pub fn glue(effects: &[&'static Effect]) -> String {
         for effect in effects {
             writeln!(text, "    @align({MEMBER_ALIGN}) {}: {},", effect.name, effect.wgsl_struct).expect("writing to a string");
         }
-        text.push_str("}\n@group(0) @binding(12) var<uniform> effects: Effects;\n");
+        text.push_str("}\n");
+        if baked.is_empty() {
+            text.push_str("@group(0) @binding(12) var<uniform> effects: Effects;\n");
+        } else {
+            let values: Vec<String> = effects.iter().zip(baked).map(|(effect, words)| constructor(effect, words)).collect();
+            writeln!(text, "const effects = Effects({});", values.join(", ")).expect("writing to a string");
+        }
     }
     text
+}
+
+/// An effect's parameters as a constant expression: every number as the shortest decimal that is exactly itself.
+fn constructor(effect: &Effect, words: &[u32]) -> String {
+    let literal = |kind: Kind, word: u32| match kind {
+        Kind::F32 | Kind::Color | Kind::Point => format!("{:?}f", f32::from_bits(word)),
+        Kind::I32 => format!("i32({})", word as i32),
+        Kind::U32 | Kind::Bool | Kind::Choice(_) => format!("{word}u"),
+    };
+    let member = |field: &Field| {
+        let lanes: Vec<String> = words[field.offset / 4..][..field.kind.words()].iter().map(|&word| literal(field.kind, word)).collect();
+        if lanes.len() == 1 { lanes[0].clone() } else { format!("vec4f({})", lanes.join(", ")) }
+    };
+    let members: Vec<String> = effect.fields.iter().map(member).collect();
+    format!("{}({})", effect.wgsl_struct, members.join(", "))
 }
 
 /// A hook as the kernels call it.

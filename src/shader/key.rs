@@ -8,7 +8,8 @@ use crate::{
         draw_order::Mode,
         hooks::{Layers, Shape},
     },
-    ladder::{Rungs, Visibility},
+    frame::vertex_flags,
+    ladder::{Clipping, Coverage, Perspective, Rungs, Vertex, Visibility},
 };
 
 pub use super::pass::{Entries, Pass, Phase};
@@ -51,6 +52,8 @@ pub struct KernelKey {
     pub layers: Option<Layers>,
     /// Effects in stack order.
     pub effects: Vec<&'static Effect>,
+    /// Parameters of each that stand in the text; empty where a uniform brings them.
+    pub baked: Vec<Vec<u32>>,
     /// What a triangle covers.
     pub shape: Shape,
     /// Which samples are drawn.
@@ -104,6 +107,7 @@ impl KernelKey {
             has_samples: effects.iter().any(|effect| effect.hooks.sample.is_some()),
             decisions: deciding(&effects),
             effects,
+            baked: Vec::new(),
             has_clipping: true,
             has_medium: true,
             has_large: true,
@@ -146,6 +150,15 @@ impl KernelKey {
     /// Does an effect read the picture before this one?
     pub fn reads_previous(&self) -> bool {
         self.effects.iter().any(|effect| effect.hooks.image.is_some_and(|hook| hook.reads_previous))
+    }
+
+    /// Flags of a corner for which a triangle is left out instead of clipped.
+    const fn dropped_flags(&self) -> u32 {
+        match self.rungs.clipping {
+            Clipping::Drop => vertex_flags::CLIPPED,
+            Clipping::Near => vertex_flags::NEAR,
+            Clipping::Exact => 0,
+        }
     }
 
     /// Side of the pixel square that a workgroup of the resolve visits; listed tiles are the small ones that are marked.
@@ -253,6 +266,11 @@ impl KernelKey {
             ("IS_PERSPECTIVE", flag(self.perspective)),
             ("HAS_LARGE", flag(self.has_large)),
             ("HAS_CLIPPING", flag(self.has_clipping)),
+            ("IS_AFFINE", flag(self.rungs.perspective == Perspective::Affine)),
+            ("IS_TOP_LEFT", flag(self.rungs.coverage != Coverage::Float)),
+            ("FLOAT_VIEWPORT", flag(self.rungs.vertex == Vertex::Viewport)),
+            ("SUBPIXEL_BITS", self.rungs.coverage.subpixel_bits().into()),
+            ("DROPPED_FLAGS", self.dropped_flags().into()),
             ("IS_STRAIGHT", flag(self.listed_tiles)),
             ("IS_PIECES", flag(pass == Pass::Decide(Entries::Pieces))),
             ("DECISIONS", self.decisions.into()),

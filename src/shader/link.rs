@@ -83,7 +83,7 @@ impl Linker<'_> {
             return Ok(());
         }
         if !self.linked.files.iter().any(|(taken, _)| taken == GLUE) {
-            self.append(GLUE, &glue::glue(&self.key.effects));
+            self.append(GLUE, &glue::glue(&self.key.effects, &self.key.baked));
             for effect in &self.key.effects {
                 self.take(&format!("effects/{}", effect.name), user)?;
             }

@@ -1,7 +1,10 @@
 //! Slots: which file of `shaders/slots` fills each part that a pass leaves open.
 
 use super::key::{Fetch, KernelKey, Order, Pass, Phase};
-use crate::effects::hooks::{Layers, Shape};
+use crate::{
+    effects::hooks::{Layers, Shape},
+    ladder::Counting,
+};
 
 impl KernelKey {
     /// File of each slot for a pass.
@@ -29,6 +32,11 @@ impl KernelKey {
             Some(Layers::Overdraw) => "heat",
             Some(Layers::Race) | None => "owner",
         };
+        let coverage = match self.shape {
+            Shape::Boxes => "boxes",
+            _ if self.rungs.coverage.is_float() => "float",
+            _ => "fixed",
+        };
         let mut slots = vec![
             ("corners", format!("slots/corners/{records}")),
             ("sources", format!("slots/sources/{records}")),
@@ -44,7 +52,9 @@ impl KernelKey {
             ("queues", format!("slots/queues/{queues}")),
             ("marks", format!("slots/marks/{marks}")),
             ("pixels", format!("slots/pixels/{pixels}")),
-            ("coverage", format!("slots/coverage/{}", if self.shape == Shape::Boxes { "boxes" } else { "fixed8" })),
+            ("coverage", format!("slots/coverage/{coverage}")),
+            ("blocks", format!("slots/blocks/{}", if self.rungs.coverage.is_float() { "float" } else { "rebased" })),
+            ("depth", format!("slots/depth/{}", self.rungs.depth.name())),
             ("owner", format!("slots/owner/{}", self.rungs.visibility.name())),
             ("finish", format!("slots/finish/{finish}")),
             ("image", format!("slots/image/{}", if pass == Pass::Resolve { "seen" } else { "none" })),
@@ -72,6 +82,7 @@ impl KernelKey {
         match (self.order, pass.phase()) {
             (_, Some(Phase::Straddle)) => "straddler",
             (Order::Free, _) | (_, Some(Phase::Tally)) | (Order::Scheduler, Some(Phase::Owner)) => "free",
+            _ if self.rungs.counting == Counting::Racy => "racy",
             (Order::Submission, _) => "submission",
             (Order::Scheduler, _) => "scheduler",
         }

@@ -1,6 +1,7 @@
 // Coverage boxes: every sample of a triangle's bounding box, at the depth of its nearest corner; an inner loop without its
 // inside test. Left and top borders belong to the box, right and bottom ones do not.
 //@ use common/vertex
+//@ use slot/depth
 
 struct Coverage {
     row: vec3i,
@@ -10,10 +11,10 @@ struct Coverage {
 }
 
 fn coverage_begin(a: vec4u, b: vec4u, c: vec4u, area: i32, first: vec2i) -> Coverage {
-    return Coverage(vec3i(0), vec3i(0), vec3i(0), max(max(max(a.z, b.z), c.z), 1u));
+    return Coverage(vec3i(0), vec3i(0), vec3i(0), depth_key(bitcast<f32>(max(max(a.z, b.z), c.z))));
 }
 
-fn coverage_contains(edges: vec3i) -> bool {
+fn coverage_contains(coverage: Coverage, edges: vec3i) -> bool {
     return true;
 }
 

@@ -16,7 +16,7 @@ fn samples_is_drawn(t: Triangle, at: vec2u) -> bool {
     let a = vertex_at(t.a);
     let b = vertex_at(t.b);
     let c = vertex_at(t.c);
-    let p = vec2i(at) * 256 + 128;
+    let p = grid_sample(vec2i(at));
     let sides = max(max(a, b), c) - min(min(a, b), c);
     var parts: vec3u;
     if max(sides.x, sides.y) <= 32768 {

@@ -1,6 +1,8 @@
-// Coverage fixed8: exact 16.8 top-left edges in i32, for triangles of at most 128 px extent. The default rung.
+// Coverage, fixed: exact top-left edges between snapped corners in i32, for triangles of at most 32,768 units of extent.
 //@ use common/fixed
+//@ use common/grid
 //@ use common/vertex
+//@ use slot/depth
 
 struct Coverage {
     row: vec3i,       // biased edge functions at the current row's first sample
@@ -16,7 +18,7 @@ fn coverage_begin(a: vec4u, b: vec4u, c: vec4u, area: i32, first: vec2i) -> Cove
     let pa = vertex_at(a);
     let pb = vertex_at(b);
     let pc = vertex_at(c);
-    let p = first * 256 + 128;
+    let p = grid_sample(first);
     let dx = vec3i(pc.x - pb.x, pa.x - pc.x, pb.x - pa.x);
     let dy = vec3i(pc.y - pb.y, pa.y - pc.y, pb.y - pa.y);
     let bias = vec3i(
@@ -26,21 +28,21 @@ fn coverage_begin(a: vec4u, b: vec4u, c: vec4u, area: i32, first: vec2i) -> Cove
     let z = bitcast<vec3f>(vec3u(a.z, b.z, c.z));
     var coverage: Coverage;
     coverage.row = dx * from_y - dy * from_x - bias;
-    coverage.step_x = -dy * 256;
-    coverage.step_y = dx * 256;
+    coverage.step_x = -dy * grid_unit();
+    coverage.step_y = dx * grid_unit();
     coverage.bias = bias;
     coverage.depth = z * (1.0 / f32(area));
     coverage.range = vec2f(min(min(z.x, z.y), z.z), max(max(z.x, z.y), z.z));
     return coverage;
 }
 
-fn coverage_contains(edges: vec3i) -> bool {
+fn coverage_contains(coverage: Coverage, edges: vec3i) -> bool {
     return (edges.x | edges.y | edges.z) >= 0;
 }
 
-// Depth key at a covered sample: bits of the reversed depth, at least 1.
+// Depth key at a covered sample, at least 1.
 fn coverage_key(coverage: Coverage, edges: vec3i) -> u32 {
     let weights = vec3f(edges + coverage.bias);
     let z = weights.x * coverage.depth.x + weights.y * coverage.depth.y + weights.z * coverage.depth.z;
-    return max(bitcast<u32>(clamp(z, coverage.range.x, coverage.range.y)), 1u);
+    return depth_key(clamp(z, coverage.range.x, coverage.range.y));
 }

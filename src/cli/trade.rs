@@ -1,0 +1,153 @@
+//! `bench --axes`: every combination of rungs on chosen axes of the accuracy ladder, milliseconds beside error.
+
+use std::sync::Arc;
+
+use serde_json::Value;
+
+use super::{
+    args::Bench,
+    bench::{present, subjects},
+    fault::{Exit, Fault},
+    painter::Painter,
+    streams::Streams,
+};
+use crate::{
+    effects::Stack,
+    frame::Frame,
+    gpu::{
+        Capture,
+        trade::{TradeOptions, TradeRow, Truth, trade},
+    },
+    ladder::{AXES, Axis},
+    measure::Verdict,
+    oracle,
+    preset::form::did_you_mean,
+    scene::{Scene, camera::View},
+};
+
+/// The oracle as the bench knows it: one picture, on the finest grid, and a judge.
+pub struct Oracle {
+    scene: Arc<Scene>,
+    view: View,
+    stack: Stack,
+    picture: Frame,
+}
+
+impl Oracle {
+    /// Draws the true picture, which takes its time.
+    ///
+    /// # Errors
+    /// When a placement or the number of triangles exceeds what the arithmetic holds.
+    pub fn new(scene: &Arc<Scene>, view: View, stack: Stack) -> Result<Self, crate::scene::draw::DrawError> {
+        let picture = oracle::render_finest(scene, &view, &stack)?;
+        Ok(Self { scene: scene.clone(), view, stack, picture })
+    }
+}
+
+impl Truth for Oracle {
+    fn picture(&self) -> &Frame {
+        &self.picture
+    }
+
+    fn judge(&self, capture: &Capture) -> Verdict {
+        let Self { scene, view, stack, .. } = self;
+        let (layers, previous) = (capture.layers.as_deref(), capture.previous.as_deref());
+        oracle::judge_after(scene, view, stack, &capture.frame, &capture.geometry, layers, previous)
+            .expect("a scene that was drawn can be judged")
+    }
+}
+
+pub fn run(common: &super::args::Common, args: &Bench, streams: &mut Streams) -> Result<Exit, Fault> {
+    let axes = axes(&args.axes)?;
+    let options = TradeOptions { size: args.size, samples: args.samples as usize, axes };
+    let subjects = subjects(common, args)?;
+    let painter = Painter::open(common, streams)?;
+    let Painter::Gpu(_, gpu) = &painter else {
+        return Err(Fault::usage("the oracle judges and is never ranked; bench needs a GPU adapter"));
+    };
+    let bar = streams.progress(0);
+    let mut rows = Vec::new();
+    for (look, scene) in &subjects {
+        let session = &look.session.posed();
+        bar.set_message("the oracle draws");
+        let truth = Oracle::new(scene, session.view(scene, args.size), session.stack.clone())?;
+        let mut progress = |what: &str, done: usize, all: usize| {
+            bar.set_length(all as u64);
+            bar.set_position(done as u64);
+            bar.set_message(what.to_owned());
+            true
+        };
+        rows.extend(trade(gpu, session, scene, &look.id, &options, &truth, &mut progress)?);
+    }
+    bar.finish_and_clear();
+    let results = || rows.iter().map(serde_json::to_value).collect::<Result<Vec<Value>, _>>().map_err(Fault::usage);
+    present(args, streams, &painter, &lines(&rows), results)?;
+    rows.iter().filter(|row| row.error.is_none()).for_each(|row| {
+        streams.note(&format!("{} {}: {}", row.scene, row.rungs, row.note.as_deref().unwrap_or("not drawn")));
+    });
+    Ok(Exit::Done)
+}
+
+/// The axes of these names.
+fn axes(names: &[String]) -> Result<Vec<&'static Axis>, Fault> {
+    let find = |name: &String| {
+        Axis::find(name).ok_or_else(|| {
+            let known: Vec<&str> = AXES.iter().map(|axis| axis.name).collect();
+            Fault::usage(format!("no axis is called {name:?}; there are {}{}", known.join(", "), did_you_mean(name, known.iter().copied())))
+        })
+    };
+    let mut axes: Vec<&'static Axis> = Vec::new();
+    for axis in names.iter().map(find) {
+        let axis = axis?;
+        if !axes.iter().any(|known| known.name == axis.name) {
+            axes.push(axis);
+        }
+    }
+    Ok(axes)
+}
+
+fn lines(rows: &[TradeRow]) -> Vec<Vec<String>> {
+    let head = [
+        "SCENE",
+        "TRIANGLES",
+        "RUNGS",
+        "MS P50",
+        "MS P95",
+        "N",
+        "OUTLIERS",
+        "WRONG PPM",
+        "HOLES/MPX",
+        "DOUBLE/MPX",
+        "DEPTH PPM",
+        "MAX",
+        "RMS",
+        "CHANGED",
+        "MIB",
+        "GAIN",
+    ];
+    let mut lines = vec![head.map(str::to_owned).to_vec()];
+    let not_measured = || "not measured".to_owned();
+    let ms = |ms: Option<f64>| ms.map_or_else(not_measured, |ms| format!("{ms:.4}"));
+    lines.extend(rows.iter().map(|row| {
+        let figure = |figure: &dyn Fn(&crate::gpu::trade::TradeError) -> String| row.error.as_ref().map_or_else(not_measured, figure);
+        vec![
+            row.scene.clone(),
+            row.triangles.to_string(),
+            row.rungs.clone(),
+            ms(row.ms_p50),
+            ms(row.ms_p95),
+            row.samples.to_string(),
+            row.outliers.to_string(),
+            figure(&|e| format!("{:.1}", e.wrong_ppm)),
+            figure(&|e| format!("{:.1}", e.holes_per_mpx)),
+            figure(&|e| format!("{:.1}", e.double_hits_per_mpx)),
+            figure(&|e| format!("{:.1}", e.wrong_depth_ppm)),
+            figure(&|e| e.max_colour_delta.to_string()),
+            figure(&|e| format!("{:.4}", e.rms_colour_delta)),
+            figure(&|e| e.changed_pixels.to_string()),
+            format!("{:.1}", row.bytes as f64 / f64::from(1 << 20)),
+            if row.is_beaten { "no gain" } else { "-" }.into(),
+        ]
+    }));
+    lines
+}

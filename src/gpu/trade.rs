@@ -1,0 +1,302 @@
+//! The trade: milliseconds beside error for every combination of rungs on chosen axes, interleaved in one run on one adapter.
+
+use std::sync::Arc;
+
+use super::{Capture, Gpu, RenderError, Renderer, timer::Detail};
+use crate::{
+    frame::Frame,
+    ladder::{AXES, Axis, Pins},
+    measure::{Verdict, compare, timing},
+    plan::Accuracy,
+    scene::{Scene, camera::View},
+    session::Session,
+};
+
+/// What to measure.
+#[derive(Clone, Debug)]
+pub struct TradeOptions {
+    pub size: [u32; 2],
+    /// Timed frames per combination.
+    pub samples: usize,
+    /// Axes to walk; the others stay where the look has them.
+    pub axes: Vec<&'static Axis>,
+}
+
+/// Error of a combination. None reads "not measured", never 0.
+#[derive(Clone, Copy, Debug, Default, PartialEq, serde::Serialize)]
+pub struct TradeError {
+    /// Pixels with another owner than in the oracle's picture on its finest grid, per million.
+    pub wrong_ppm: f64,
+    /// Samples that a triangle covers, given its snapped corners, and that were not drawn, per million pixels.
+    pub holes_per_mpx: f64,
+    /// Samples drawn more often than they are covered, per million pixels.
+    pub double_hits_per_mpx: f64,
+    /// Pixels whose owner covers them but is not the nearest, per million.
+    pub wrong_depth_ppm: f64,
+    /// Largest difference of a colour channel from the oracle's picture, of 255.
+    pub max_colour_delta: u8,
+    pub rms_colour_delta: f64,
+    /// Pixels that differ between two equal frames.
+    pub changed_pixels: u64,
+    pub overflow: u64,
+    pub orphans: u64,
+}
+
+/// One combination of rungs.
+#[derive(Clone, Debug, serde::Serialize)]
+pub struct TradeRow {
+    pub scene: String,
+    pub triangles: u64,
+    pub adapter: String,
+    pub size: [u32; 2],
+    /// `coverage=fixed8 depth=log16`, the chosen axes alone.
+    pub rungs: String,
+    #[serde(skip)]
+    pub pins: Pins,
+    /// Whole frame by timestamps; none without them or where the combination cannot be drawn.
+    pub ms_p50: Option<f64>,
+    pub ms_p95: Option<f64>,
+    /// Valid samples.
+    pub samples: usize,
+    /// Samples whose timestamps were impossible.
+    pub invalid: usize,
+    /// Samples far from the median (more than 5 MAD); they are kept.
+    pub outliers: usize,
+    pub error: Option<TradeError>,
+    /// Buffers of the frame.
+    pub bytes: u64,
+    /// Another row is at least as right and at least as quick.
+    pub is_beaten: bool,
+    /// Why it could not be drawn, or what beats it.
+    pub note: Option<String>,
+}
+
+/// Who knows the truth: the oracle, which this room never sees.
+pub trait Truth {
+    /// The picture on the finest grid that holds it.
+    fn picture(&self) -> &Frame;
+    /// The judgement of what an adapter drew.
+    fn judge(&self, capture: &Capture) -> Verdict;
+}
+
+/// A combination with what has been measured of it.
+struct Entry {
+    pins: Pins,
+    renderer: Renderer,
+    error: TradeError,
+    bytes: u64,
+    ms: Vec<f64>,
+    invalid: usize,
+}
+
+/// Measures every combination of rungs on the chosen axes. `progress` gets what is going on, steps done and all steps, and
+/// answers whether to go on; stopped early, what has been timed so far is returned.
+///
+/// # Errors
+/// When the device is lost or the scene does not fit. What a combination cannot draw becomes its row's note.
+pub fn trade(
+    gpu: &Arc<Gpu>,
+    session: &Session,
+    scene: &Arc<Scene>,
+    scene_name: &str,
+    options: &TradeOptions,
+    truth: &dyn Truth,
+    progress: &mut dyn FnMut(&str, usize, usize) -> bool,
+) -> Result<Vec<TradeRow>, RenderError> {
+    const WARM_UP: usize = 3;
+    let view = session.view(scene, options.size);
+    let combinations = combinations(session.accuracy.pins, &options.axes);
+    let rounds = options.samples + WARM_UP;
+    let steps = combinations.len() * (1 + rounds);
+    let (mut entries, mut lacking) = (Vec::new(), Vec::new());
+    let mut is_wanted = true;
+    for (i, &pins) in combinations.iter().enumerate() {
+        is_wanted = is_wanted && progress(&words(&pins, &options.axes), i * (1 + rounds), steps);
+        if !is_wanted {
+            break;
+        }
+        match Entry::new(gpu, session, scene, &view, pins, truth) {
+            Ok(entry) => entries.push(entry),
+            Err(error) if error.is_unsupported() => lacking.push((pins, error.to_string())),
+            Err(error) => return Err(error),
+        }
+    }
+    for round in 0..rounds {
+        for entry in &mut entries {
+            is_wanted = is_wanted && progress(&words(&entry.pins, &options.axes), combinations.len() * (1 + round), steps);
+            if !is_wanted {
+                break;
+            }
+            entry.sample(session, &view, round >= WARM_UP)?;
+        }
+    }
+    let row = |pins: Pins| TradeRow {
+        scene: scene_name.into(),
+        triangles: scene.triangle_count(),
+        adapter: gpu.summary.name.clone(),
+        size: options.size,
+        rungs: words(&pins, &options.axes),
+        pins,
+        ms_p50: None,
+        ms_p95: None,
+        samples: 0,
+        invalid: 0,
+        outliers: 0,
+        error: None,
+        bytes: 0,
+        is_beaten: false,
+        note: None,
+    };
+    let mut rows: Vec<TradeRow> = entries.into_iter().map(|entry| entry.finish(&row)).collect();
+    mark_beaten(&mut rows);
+    rows.extend(lacking.into_iter().map(|(pins, why)| TradeRow { note: Some(why), ..row(pins) }));
+    Ok(rows)
+}
+
+/// Every combination of rungs on `axes`, the first axis changing slowest.
+fn combinations(pins: Pins, axes: &[&'static Axis]) -> Vec<Pins> {
+    axes.iter().fold(vec![pins], |all, axis| {
+        let with = |pins: &Pins, place: usize| {
+            let mut pins = *pins;
+            pins.set(axis, Some(place));
+            pins
+        };
+        all.iter().flat_map(|pins| (0..axis.words.len()).map(move |place| with(pins, place))).collect()
+    })
+}
+
+/// The rungs of a combination on the chosen axes.
+fn words(pins: &Pins, axes: &[&'static Axis]) -> String {
+    let mut chosen = Pins::default();
+    axes.iter().for_each(|axis| chosen.set(axis, pins.get(axis)));
+    if AXES.iter().all(|axis| chosen.get(axis).is_none()) { "as planned".into() } else { chosen.words() }
+}
+
+impl Entry {
+    /// Draws twice and measures the error.
+    fn new(gpu: &Arc<Gpu>, session: &Session, scene: &Arc<Scene>, view: &View, pins: Pins, truth: &dyn Truth) -> Result<Self, RenderError> {
+        let mut renderer = Renderer::new(gpu.clone());
+        renderer.set_scene(scene)?;
+        let accuracy = Accuracy { pins, ..session.accuracy };
+        let first = renderer.capture(view, &session.stack, &accuracy)?;
+        let second = renderer.capture(view, &session.stack, &accuracy)?;
+        let bytes = renderer.explain().buffers.iter().map(|buffer| buffer.bytes).sum();
+        let error = TradeError::of(&first, &second.frame, &truth.judge(&first), truth.picture());
+        Ok(Self { pins, renderer, error, bytes, ms: Vec::new(), invalid: 0 })
+    }
+
+    /// Draws once and waits.
+    fn sample(&mut self, session: &Session, view: &View, is_kept: bool) -> Result<(), RenderError> {
+        let accuracy = Accuracy { pins: self.pins, ..session.accuracy };
+        self.renderer.draw_timed(view, &session.stack, &accuracy, Detail::Whole)?;
+        match self.renderer.finish()?.gpu_ms {
+            Some(ms) if is_kept => self.ms.push(ms),
+            None if is_kept => self.invalid += 1,
+            _ => {}
+        }
+        Ok(())
+    }
+
+    fn finish(self, row: &dyn Fn(Pins) -> TradeRow) -> TradeRow {
+        TradeRow {
+            ms_p50: timing::percentile(&self.ms, 0.5),
+            ms_p95: timing::percentile(&self.ms, 0.95),
+            samples: self.ms.len(),
+            invalid: self.invalid,
+            outliers: timing::outliers(&self.ms),
+            error: Some(self.error),
+            bytes: self.bytes,
+            ..row(self.pins)
+        }
+    }
+}
+
+impl TradeError {
+    fn of(capture: &Capture, again: &Frame, verdict: &Verdict, truth: &Frame) -> Self {
+        let frame = &capture.frame;
+        let pixels = (frame.owner.len() as f64).max(1.0);
+        let per_million = |count: u64| count as f64 * 1e6 / pixels;
+        let colors = compare::pictures(&frame.color, &truth.color, 0);
+        let differs = |i: &usize| frame.owner[*i] != again.owner[*i] || frame.color[*i] != again.color[*i];
+        let a = &verdict.accuracy;
+        Self {
+            wrong_ppm: per_million(compare::owners(&frame.owner, &truth.owner).different),
+            holes_per_mpx: per_million(a.holes),
+            double_hits_per_mpx: per_million(a.double_hits),
+            wrong_depth_ppm: per_million(a.wrong_winners),
+            max_colour_delta: colors.max_delta,
+            rms_colour_delta: colors.rms,
+            changed_pixels: (0..frame.owner.len()).filter(differs).count() as u64,
+            overflow: a.overflow,
+            orphans: a.orphans,
+        }
+    }
+
+    /// Is nothing of it larger than in `other`?
+    pub fn is_at_most(&self, other: &Self) -> bool {
+        let figures = |e: &Self| {
+            let counts = [e.changed_pixels, e.overflow, e.orphans].map(|count| count as f64);
+            let shares = [e.wrong_ppm, e.holes_per_mpx, e.double_hits_per_mpx, e.wrong_depth_ppm, e.rms_colour_delta];
+            [shares.to_vec(), counts.to_vec(), vec![e.max_colour_delta.into()]].concat()
+        };
+        figures(self).iter().zip(figures(other)).all(|(a, b)| *a <= b)
+    }
+}
+
+/// Marks rows that another row makes pointless: as right or better, and quicker, or as quick and better.
+fn mark_beaten(rows: &mut [TradeRow]) {
+    let beats = |a: &TradeRow, b: &TradeRow| {
+        let (Some(ea), Some(eb), Some(ta), Some(tb)) = (a.error, b.error, a.ms_p50, b.ms_p50) else { return false };
+        ea.is_at_most(&eb) && ta <= tb && (ta < tb || !eb.is_at_most(&ea))
+    };
+    let beaten: Vec<Option<String>> = rows
+        .iter()
+        .map(|row| {
+            let better = rows.iter().filter(|other| beats(other, row));
+            better.min_by(|a, b| a.ms_p50.unwrap_or(f64::MAX).total_cmp(&b.ms_p50.unwrap_or(f64::MAX))).map(|other| other.rungs.clone())
+        })
+        .collect();
+    for (row, better) in rows.iter_mut().zip(beaten) {
+        row.is_beaten = better.is_some();
+        row.note = better.map(|better| format!("no gain: {better} is as right and not slower"));
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::ladder::{Coverage, Depth, Rung};
+
+    #[test]
+    fn combinations_are_the_product_and_keep_other_pins() {
+        let axes = [&AXES[Coverage::AXIS], &AXES[Depth::AXIS]];
+        let all = combinations(Pins::of(crate::ladder::Visibility::Split32), &axes);
+        assert_eq!(all.len(), Coverage::ALL.len() * Depth::ALL.len());
+        assert!(all.iter().all(|pins| pins.rung() == Some(crate::ladder::Visibility::Split32)));
+        assert_eq!(words(&all[0], &axes), format!("coverage={} depth={}", Coverage::ALL[0].name(), Depth::ALL[0].name()));
+    }
+
+    #[test]
+    fn a_row_is_beaten_only_by_one_that_is_nowhere_worse() {
+        let row = |ms: f64, wrong_ppm: f64| TradeRow {
+            scene: String::new(),
+            triangles: 0,
+            adapter: String::new(),
+            size: [1, 1],
+            rungs: format!("{ms}"),
+            pins: Pins::default(),
+            ms_p50: Some(ms),
+            ms_p95: Some(ms),
+            samples: 1,
+            invalid: 0,
+            outliers: 0,
+            error: Some(TradeError { wrong_ppm, ..TradeError::default() }),
+            bytes: 0,
+            is_beaten: false,
+            note: None,
+        };
+        let mut rows = [row(1.0, 5.0), row(2.0, 1.0), row(3.0, 1.0), row(3.0, 0.0)];
+        mark_beaten(&mut rows);
+        assert_eq!(rows.map(|row| row.is_beaten), [false, false, true, false]);
+    }
+}

@@ -1,0 +1,94 @@
+//! Explanation: why each part of a kernel key is as it is, and what a picture does without.
+
+use super::{Accuracy, Caps, Note};
+use crate::{
+    effects::{
+        hooks::{Layers, Shape},
+        xray,
+    },
+    ladder::Visibility,
+    scene::needs::Needs,
+    shader::key::{KernelKey, Order},
+};
+
+pub(super) fn note(name: &str, why: impl Into<String>) -> Note {
+    Note { name: name.into(), why: why.into() }
+}
+
+pub(super) fn explain(needs: &Needs, is_usual: bool, caps: &Caps, accuracy: &Accuracy, key: &KernelKey) -> (Vec<Note>, Vec<Note>) {
+    let pinned = accuracy.pins.rung::<Visibility>().map(|_| "pinned by the look");
+    let chosen = match key.rungs.visibility {
+        Visibility::Packed64 => "the adapter has 64-bit atomics: one pass decides depth and owner, nothing is lost",
+        Visibility::Split32 => "the adapter has no 64-bit atomics: depth first, then the owner; nothing is lost",
+    };
+    let chosen = match key.layers {
+        Some(Layers::Race) => "the effect race takes the slot: one pass of plain loads and stores, and what is lost is lost",
+        _ => pinned.unwrap_or(chosen),
+    };
+    let bound = if needs.clipping { "clipping leaves it open".into() } else { format!("no triangle exceeds {:.1} px", needs.largest_px) };
+    let mut reasons = vec![
+        note("visibility", chosen),
+        note(
+            "coverage",
+            match key.shape {
+                Shape::Triangles => "fixed8: exact 16.8 top-left edges, holes and double hits are impossible",
+                Shape::Boxes => "boxes: an effect fills the bounding boxes",
+                Shape::Points => "points: an effect draws corners as discs",
+            },
+        ),
+        note("fetch", if needs.indexed { "the scene has index lists" } else { "no primitive has indices" }),
+        note(
+            "small",
+            format!(
+                "one invocation walks up to {} samples: {}",
+                key.small_samples,
+                match (is_usual, caps.software) {
+                    (false, _) => "as the tuning asks",
+                    (true, true) => "a CPU adapter runs lanes in turn",
+                    (true, false) => "a workgroup takes over early on a GPU",
+                }
+            ),
+        ),
+    ];
+    if key.moves() {
+        let why = if key.parts_corners() { "triangles part, three projected records each" } else { "triangles keep sharing vertices" };
+        let movers: Vec<_> = key.effects.iter().filter(|effect| effect.hooks.vertex.is_some()).map(|effect| effect.name).collect();
+        reasons.push(note("movement", format!("vertices are moved by {}: {why}", movers.join(", "))));
+    }
+    if key.has_image() {
+        reasons.push(note("finish", "an image effect finishes every pixel, empty ones too, so no tile is skipped"));
+    }
+    reasons.extend(layers_note(needs, key));
+    let parts = [
+        ("vertex effects", key.moves(), "no effect of the stack moves a vertex".to_owned()),
+        ("corners of their own", key.parts_corners(), "no effect parts triangles, so neighbours share projected vertices".into()),
+        ("clip", key.has_clipping, "the scene's box lies behind the near plane and inside the guard band".to_owned()),
+        ("raster_medium", key.has_medium, bound.clone()),
+        ("tile_large, raster_large", key.has_large, bound),
+        ("index fetch", needs.indexed, "no primitive has indices".into()),
+        ("plane normals and centres", key.has_planes, "no effect reads them and no normal needs a substitute".into()),
+        ("vertex colours", needs.colors, "no primitive has them".into()),
+        ("decide", key.decisions > 0, "no effect settles anything per triangle".into()),
+        ("draw order", key.order != Order::Free, "every sample is drawn".into()),
+        ("sample effects", key.has_samples, "no effect leaves samples out".into()),
+        ("image hook", key.has_image(), "no effect of the stack finishes pixels".into()),
+        ("effects uniform", !key.effects.is_empty(), "the stack is empty".into()),
+    ];
+    let omitted = parts.into_iter().filter(|(_, is_there, _)| !is_there).map(|(name, _, why)| note(name, why)).collect();
+    (reasons, omitted)
+}
+
+/// Why the samples of a pixel are added up or counted, and in how many bits.
+fn layers_note(needs: &Needs, key: &KernelKey) -> Option<Note> {
+    Some(match key.layers? {
+        Layers::Xray { bits } => {
+            let most = xray::capacity(bits);
+            note(
+                "layers",
+                format!("xray: sums of {bits} bits a channel hold {most} full weights; the scene has {} triangles", needs.triangles),
+            )
+        }
+        Layers::Overdraw => note("layers", "overdraw: one more raster pass counts every covered sample"),
+        Layers::Race => note("layers", "race: the picture depends on chance, so it is not reproducible"),
+    })
+}

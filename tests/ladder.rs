@@ -1,0 +1,214 @@
+//! Promise: every rung of the accuracy ladder draws, errs as it says, and no more; those that promise exactness keep it.
+//! Needs an adapter.
+
+mod common;
+
+use common::*;
+use rasterlab::{
+    gpu::{RenderError, Renderer},
+    ladder::{AXES, Checks, Clipping, Counting, Coverage, Depth, Parameters, Perspective, Pins, Vertex},
+    measure::{Verdict, compare},
+    oracle,
+    plan::{Accuracy, PlanError},
+    scene::{Scene, camera::View},
+};
+
+fn on(pins: Pins) -> Accuracy {
+    Accuracy { pins, ..Accuracy::default() }
+}
+
+fn verdict(renderer: &mut Renderer, query: &str, size: [u32; 2], pins: Pins) -> (rasterlab::gpu::Capture, Verdict) {
+    let scene = scene(query);
+    let view = view(&scene, size);
+    judged(renderer, &scene, &view, &stack(&["lambert"]), &on(pins))
+}
+
+/// Pixels whose owner is not that of the oracle's picture on its finest grid.
+fn wrong_pixels(renderer: &mut Renderer, scene: &std::sync::Arc<Scene>, view: &View, pins: Pins) -> u64 {
+    let truth = oracle::render_finest(scene, view, &stack(&[])).expect("a scene that fits");
+    let capture = captured(renderer, scene, view, &stack(&[]), &on(pins));
+    compare::owners(&capture.frame.owner, &truth.owner).different
+}
+
+#[test]
+fn every_rung_draws_every_scene_or_says_why_not() {
+    let Some(mut renderer) = renderer() else { return };
+    for query in ["teapot?tess=8", "sphere?triangles=5000", "cube-wall", "sizes", "near", "stack"] {
+        let scene = scene(query);
+        let view = view(&scene, [160, 120]);
+        let exact = captured(&mut renderer, &scene, &view, &stack(&["lambert"]), &Accuracy::default());
+        for axis in AXES {
+            for place in 0..axis.words.len() {
+                let mut pins = Pins::default();
+                pins.set(axis, Some(place));
+                renderer.set_scene(&scene).unwrap();
+                match renderer.capture(&view, &stack(&["lambert"]), &on(pins)) {
+                    Ok(capture) => {
+                        let different = compare::owners(&capture.frame.owner, &exact.frame.owner).different;
+                        let share = different as f64 / view.pixels() as f64;
+                        // Dropping what would be clipped may leave nothing of a scene that is all before the near plane.
+                        let most = if axis.name == "clipping" { 1.0 } else { 0.1 };
+                        assert!(share <= most, "{query} on {}: {:.1} % of the owners differ", pins.words(), 100.0 * share);
+                    }
+                    Err(error) => assert!(error.is_unsupported() && !error.to_string().is_empty(), "{query} on {}: {error}", pins.words()),
+                }
+                assert_eq!(renderer.gpu().take_error(), None, "{query} on {}", pins.words());
+            }
+        }
+    }
+}
+
+#[test]
+fn exact_grids_are_exact_given_their_own_corners() {
+    let Some(mut renderer) = renderer() else { return };
+    for query in ["teapot?tess=8", "sphere?triangles=200", "cube-wall", "grid?cell=1", "grid?cell=0.4", "sizes", "slivers", "near"] {
+        for coverage in [Coverage::Fixed4, Coverage::Fixed8, Coverage::Fixed12] {
+            for visibility in rungs(&renderer) {
+                let (_, verdict) = verdict(&mut renderer, query, [200, 150], Pins::of(coverage).with(visibility));
+                let a = &verdict.accuracy;
+                let faults = [a.owner_mismatch, a.holes, a.double_hits, a.orphans, a.overflow, a.key_outside_bound, a.snap_outside_bound];
+                assert_eq!(faults, [0; 7], "{query} on {} {}: {a:?}", coverage.name(), visibility.name());
+                assert!(a.max_colour_delta <= 1, "{query} on {}: {a:?}", coverage.name());
+            }
+        }
+    }
+}
+
+#[test]
+fn a_finer_grid_is_nearer_the_truth() {
+    let Some(mut renderer) = renderer() else { return };
+    let scene = scene("sphere?triangles=20000");
+    let view = view(&scene, [320, 240]);
+    let [coarse, usual, fine] =
+        [Coverage::Fixed4, Coverage::Fixed8, Coverage::Fixed12].map(|rung| wrong_pixels(&mut renderer, &scene, &view, Pins::of(rung)));
+    assert!(coarse > 4 * usual && usual > 4 * fine.max(1), "wrong pixels: {coarse} {usual} {fine}");
+}
+
+#[test]
+fn float_edges_leave_doubles_and_the_top_left_rule_mends_most() {
+    let Some(mut renderer) = renderer() else { return };
+    // Corners on 1/2 px: every other sample lies on an edge.
+    let query = "grid?cell=4&lattice=2&width=256&height=256";
+    let errors = |renderer: &mut Renderer, rung: Coverage| {
+        let accuracy = verdict(renderer, query, [256, 256], Pins::of(rung)).1.accuracy;
+        (accuracy.holes, accuracy.double_hits)
+    };
+    let [float, top_left, fixed] = [Coverage::Float, Coverage::FloatTopLeft, Coverage::Fixed8].map(|rung| errors(&mut renderer, rung));
+    assert_eq!((fixed, top_left), ((0, 0), (0, 0)));
+    assert!(float.1 > 2000, "{float:?}: every sample on an edge is drawn twice");
+}
+
+#[test]
+fn few_bits_of_depth_confuse_layers_that_lie_close() {
+    let Some(mut renderer) = renderer() else { return };
+    // A stack of plates, far away for its near plane.
+    let scene = scene("stack");
+    let near = view(&scene, [96, 96]);
+    let mut camera = rasterlab::scene::camera::Camera::framing(&scene.bounds(), glam::DVec3::NEG_Z, 1.0);
+    camera.near_m *= 1e-2;
+    let view = View { subpixel_bits: near.subpixel_bits, ..seen(&scene, &camera, [96, 96]) };
+    let wrong: Vec<u64> = [Depth::Ndc16, Depth::Log16, Depth::Log24, Depth::Reversed]
+        .map(|depth| judged(&mut renderer, &scene, &view, &stack(&[]), &on(Pins::of(depth))).1.accuracy.wrong_winners)
+        .to_vec();
+    assert!(wrong[0] >= wrong[1] && wrong[1] >= wrong[2] && wrong[3] == 0, "wrong winners: {wrong:?}");
+    assert!(wrong[0] > 0, "16 bits in device depth tell all plates apart: {wrong:?}");
+}
+
+#[test]
+fn affine_attributes_bend_where_a_triangle_runs_into_depth() {
+    let Some(mut renderer) = renderer() else { return };
+    let scene = scene("cube-wall");
+    let view = view(&scene, [200, 150]);
+    let depth = |renderer: &mut Renderer, rung: Perspective| captured(renderer, &scene, &view, &stack(&["depth"]), &on(Pins::of(rung)));
+    let (exact, affine) = (depth(&mut renderer, Perspective::Exact), depth(&mut renderer, Perspective::Affine));
+    assert_eq!(exact.frame.owner, affine.frame.owner, "perspective decides nothing");
+    assert!(compare::pictures(&exact.frame.color, &affine.frame.color, 0).max_delta > 0);
+}
+
+#[test]
+fn what_is_dropped_instead_of_clipped_is_counted_and_missing() {
+    let Some(mut renderer) = renderer() else { return };
+    let scene = scene("near");
+    let view = view(&scene, [160, 120]);
+    let covered = |renderer: &mut Renderer, rung: Clipping| {
+        let capture = captured(renderer, &scene, &view, &stack(&[]), &on(Pins::of(rung)));
+        (capture.frame.covered(), capture.frame.counters.dropped)
+    };
+    let [drop, near, exact] = [Clipping::Drop, Clipping::Near, Clipping::Exact].map(|rung| covered(&mut renderer, rung));
+    assert!(drop.0 <= near.0 && near.0 < exact.0, "{drop:?} {near:?} {exact:?}");
+    assert!(drop.1 >= near.1 && near.1 > 0 && exact.1 == 0, "{drop:?} {near:?} {exact:?}");
+}
+
+#[test]
+fn racy_counting_draws_no_fewer_samples_and_prefix_sums_draw_exactly() {
+    let Some(mut renderer) = renderer() else { return };
+    let scene = scene("sphere?triangles=5000");
+    let view = view(&scene, [160, 120]);
+    let mut drawn = |rung: Counting| {
+        renderer.set_scene(&scene).unwrap();
+        renderer.draw(&view, &stack(&["draw_order"]), &on(Pins::of(rung))).unwrap();
+        let order = renderer.finish().unwrap().order.expect("a draw order is kept");
+        (order.drawn, order.limit)
+    };
+    let (prefix, racy) = (drawn(Counting::Prefix), drawn(Counting::Racy));
+    assert_eq!(prefix.0, prefix.1);
+    assert!(racy.0 >= racy.1, "{racy:?}");
+}
+
+#[test]
+fn baked_parameters_and_trusted_shaders_change_no_pixel() {
+    let Some(mut renderer) = renderer() else { return };
+    let scene = scene("teapot?tess=8");
+    let view = view(&scene, [160, 120]);
+    let stack = stack(&["dissolve", "facet", "fog", "toon", "outline"]);
+    let usual = captured(&mut renderer, &scene, &view, &stack, &Accuracy::default());
+    for pins in [Pins::of(Parameters::Baked), Pins::of(Checks::Trusted)] {
+        let other = captured(&mut renderer, &scene, &view, &stack, &on(pins));
+        assert_eq!(usual.frame.owner, other.frame.owner, "{}", pins.words());
+        assert!(compare::pictures(&usual.frame.color, &other.frame.color, 1).pixels_beyond == 0, "{}", pins.words());
+    }
+}
+
+#[test]
+fn baking_leaves_the_uniform_out() {
+    let Some(mut renderer) = renderer() else { return };
+    let scene = scene("teapot?tess=8");
+    let view = view(&scene, [64, 48]);
+    let buffers = |renderer: &mut Renderer, pins: Pins| {
+        captured(renderer, &scene, &view, &stack(&["fog"]), &on(pins));
+        renderer.explain().buffers.iter().map(|buffer| buffer.name.clone()).collect::<Vec<_>>()
+    };
+    assert!(buffers(&mut renderer, Pins::default()).contains(&"effects".to_owned()));
+    assert!(!buffers(&mut renderer, Pins::of(Parameters::Baked)).contains(&"effects".to_owned()));
+}
+
+#[test]
+fn a_float_viewport_moves_few_owners() {
+    let Some(mut renderer) = renderer() else { return };
+    let scene = scene("sphere?triangles=20000");
+    let view = view(&scene, [320, 240]);
+    let [viewport, snapped] = [Vertex::Viewport, Vertex::Snapped].map(|rung| wrong_pixels(&mut renderer, &scene, &view, Pins::of(rung)));
+    assert!(viewport <= 2 * snapped + 20, "{viewport} against {snapped}");
+}
+
+#[test]
+fn what_no_kernel_can_draw_is_one_sentence() {
+    let Some(mut renderer) = renderer() else { return };
+    let scene = scene("teapot?tess=8");
+    renderer.set_scene(&scene).unwrap();
+    let mut refused = |size: [u32; 2], names: &[&str], pins: Pins| {
+        let view = view(&scene, size);
+        renderer.capture(&view, &stack(names), &on(pins)).err().expect("it cannot be drawn")
+    };
+    let coarse = refused([64, 48], &["dissolve"], Pins::of(Coverage::Fixed4));
+    assert!(matches!(coarse, RenderError::Plan(PlanError::Grid { effect: "dissolve", .. })), "{coarse}");
+    let wide = refused([2048, 16], &[], Pins::of(Coverage::Fixed12));
+    assert_eq!(wide.to_string(), "coverage fixed12 holds pictures of at most 2047 px a side, and this one has 2048x16; use fixed8");
+}
+
+#[test]
+fn the_finest_grid_fits_the_picture() {
+    let scene = scene("teapot?tess=2");
+    let bits = |size| oracle::finest_bits(&view(&scene, size));
+    assert_eq!([bits([320, 240]), bits([2047, 2047]), bits([2048, 16]), bits([4096, 16]), bits([16_384, 16])], [12, 12, 11, 10, 8]);
+}
