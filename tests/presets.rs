@@ -108,7 +108,7 @@ why = "because"
     let posed = s.posed_stack().get("facet").unwrap().words.clone();
     assert_eq!(facet.effect.field("amount").unwrap().get(&posed), [f64::from((0.625f64 * 0.625 * (3.0 - 1.25)) as f32)]);
     assert_eq!(facet.effect.field("seed").unwrap().get(&posed), [7.0]);
-    assert_eq!(s.accuracy, Accuracy { tier: Tier::Fast, pins: Pins::of(Visibility::Packed64) });
+    assert_eq!(s.accuracy, Accuracy { tier: Tier::Fast, pins: Pins::of(Visibility::Packed64), ..Accuracy::default() });
     assert_eq!(s.output.size, [64, 48]);
     assert_eq!(s.test.as_ref().unwrap().max_channel, 2);
 }
@@ -647,7 +647,7 @@ prop_compose! {
             clock,
             animation: animated(&stack, tracks),
             stack,
-            accuracy: Accuracy { tier: Tier::ALL[tier], pins: visibility.map_or(Pins::default(), |i| Pins::of(Visibility::EXACT[i])) },
+            accuracy: Accuracy { tier: Tier::ALL[tier], pins: visibility.map_or(Pins::default(), |i| Pins::of(Visibility::EXACT[i])), ..Accuracy::default() },
             output: Output { size, background },
             test: test.map(|(max_channel, max_pixels)| Test { max_channel, max_pixels, why: format!("because {why}") }),
         }

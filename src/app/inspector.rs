@@ -277,7 +277,7 @@ impl App {
     }
 
     fn kernel_ui(&self, ui: &mut Ui) {
-        let Some(Explanation { key, passes, buffers, reasons, omitted }) = self.screen.explanation() else {
+        let Some(Explanation { key, passes, buffers, reasons, omitted, .. }) = self.screen.explanation() else {
             ui.label(theme::weak("The kernel is known with the first frame."));
             return;
         };

@@ -9,7 +9,15 @@ use super::{
     painter::{Painter, scene_of},
     streams::{Streams, table},
 };
-use crate::{effects::Stack, gpu::Explanation, scene::Scene};
+use crate::{
+    effects::Stack,
+    frame::Frame,
+    gpu::Explanation,
+    measure::compare,
+    oracle,
+    plan::{Tolerance, predict::Prediction},
+    scene::{Scene, camera::View},
+};
 
 pub fn run(common: &Common, args: &Explain, streams: &mut Streams) -> Result<Exit, Fault> {
     let mut look = open(common, &args.look)?;
@@ -24,11 +32,14 @@ pub fn run(common: &Common, args: &Explain, streams: &mut Streams) -> Result<Exi
         }
         Err(fault) => return Err(fault),
     };
+    let mut check = None;
     let (adapter, plan) = match painter {
         Some(Painter::Gpu(mut renderer, gpu)) => {
             renderer.set_scene(&scene)?;
             let session = &look.session;
-            renderer.draw(&session.view(&scene, session.output.size), &session.posed_stack(), &session.accuracy)?;
+            let (view, stack) = (session.view(&scene, session.output.size), session.posed_stack());
+            let capture = renderer.capture(&view, &stack, &session.accuracy)?;
+            check = checked(&scene, &view, &stack, &capture.frame, &renderer.explain())?;
             (Painter::Gpu(Box::new(crate::gpu::Renderer::new(gpu.clone())), gpu).json(), Some(renderer.explain()))
         }
         Some(painter) => (painter.json(), None),
@@ -37,14 +48,50 @@ pub fn run(common: &Common, args: &Explain, streams: &mut Streams) -> Result<Exi
     if streams.json {
         let result = json!({
             "look": look.id, "scene": scene_json(&scene), "size": look.session.output.size,
-            "effects": effects_json(&look.session.stack), "plan": plan,
+            "effects": effects_json(&look.session.stack), "plan": plan, "check": check,
         });
         streams.object("explain", adapter, vec![result])?;
     } else {
-        streams.text(&text(&look.id, &scene, &look.session.stack, plan.as_ref()))?;
+        streams.text(&text(&look.id, &scene, &look.session.stack, plan.as_ref(), check.as_ref()))?;
     }
-    Ok(Exit::Done)
+    Ok(Exit::failed_if(check.is_some_and(|check| !check.is_kept)))
 }
+
+/// The prediction held against the picture.
+#[derive(serde::Serialize)]
+struct Check {
+    predicted: Prediction,
+    tolerance: Tolerance,
+    /// Pixels with another owner than in the oracle's picture, per million, without those that only the snap explains.
+    wrong_ppm: f64,
+    /// The picture stays within the tolerance.
+    is_kept: bool,
+    /// And within what was predicted.
+    is_foreseen: bool,
+}
+
+/// Measures what the plan predicted; none for a picture without pixels or one that chance makes.
+fn checked(scene: &Scene, view: &View, stack: &Stack, frame: &Frame, plan: &Explanation) -> Result<Option<Check>, Fault> {
+    let (Some(predicted), Some(tolerance)) = (plan.prediction, plan.tolerance) else { return Ok(None) };
+    if view.pixels() == 0 || !stack.is_repeatable() {
+        return Ok(None);
+    }
+    let truth = oracle::render(scene, view, stack)?;
+    let wrong_ppm = compare::owners(&frame.owner, &truth.owner).different as f64 * 1e6 / view.pixels() as f64;
+    // Corners snap one unit apart where f32 and f64 round differently: that much no rung promises.
+    let snap_ppm = SNAP_PPM.max(4e6 / view.pixels() as f64);
+    let is_within = |limit: f64| wrong_ppm <= limit + snap_ppm;
+    Ok(Some(Check {
+        predicted,
+        tolerance,
+        wrong_ppm,
+        is_kept: is_within(tolerance.wrong_ppm.max(predicted.wrong_ppm)),
+        is_foreseen: is_within(predicted.wrong_ppm),
+    }))
+}
+
+/// Pixels per million whose owner the last bit of a corner's place may decide.
+const SNAP_PPM: f64 = 100.0;
 
 /// Lowest and highest corner of the scene's box; none when it is empty.
 fn corners(scene: &Scene) -> Option<[[f64; 3]; 2]> {
@@ -63,7 +110,7 @@ fn effects_json(stack: &Stack) -> Vec<Value> {
     stack.0.iter().map(|enabled| json!({ "effect": enabled.effect.name, "hook": enabled.effect.hooks.names() })).collect()
 }
 
-fn text(id: &str, scene: &Scene, stack: &Stack, plan: Option<&Explanation>) -> String {
+fn text(id: &str, scene: &Scene, stack: &Stack, plan: Option<&Explanation>, check: Option<&Check>) -> String {
     let effects: Vec<_> = stack.0.iter().map(|enabled| format!("{} ({})", enabled.effect.name, enabled.effect.hooks.names())).collect();
     let mut text = format!(
         "look     {id}\nscene    {}: {} triangles, {} vertices, {} instances\nbox      {}\neffects  {}\n",
@@ -83,6 +130,18 @@ fn text(id: &str, scene: &Scene, stack: &Stack, plan: Option<&Explanation>) -> S
     let notes = |notes: &[crate::gpu::Note]| notes.iter().map(|n| vec![n.name.clone(), String::new(), n.why.clone()]).collect();
     let buffers: Vec<_> = plan.buffers.iter().map(|b| vec![b.name.clone(), b.bytes.to_string(), b.why.clone()]).collect();
     let total: u64 = plan.buffers.iter().map(|b| b.bytes).sum();
+    if let Some(check) = check {
+        let verdict = match (check.is_kept, check.is_foreseen) {
+            (true, true) => "as foreseen",
+            (true, false) => "more than predicted",
+            (false, _) => "BEYOND THE TOLERANCE",
+        };
+        text += &format!(
+            "error    predicted at most {:.0} ppm of the owners, measured {:.0}, allowed {:.0}: {verdict}\n",
+            check.predicted.wrong_ppm, check.wrong_ppm, check.tolerance.wrong_ppm
+        );
+    }
+    text += &rows(["CHOICE", "", "WHY"], notes(&plan.reasons));
     text += &rows(["PASS", "", "WHY"], notes(&plan.passes));
     text += &rows(["BUFFER", "BYTES", "WHY"], buffers);
     text += &format!("{total} bytes in all\n");

@@ -1,7 +1,10 @@
 //! Explanation: which passes and buffers the last picture has, which it does without, and why.
 
 use super::{BufferNote, Note, Renderer};
-use crate::shader::key::{Entries, Pass, Phase};
+use crate::{
+    plan::{Tolerance, predict::Prediction},
+    shader::key::{Entries, Pass, Phase},
+};
 
 /// Which passes and buffers exist for the last picture, and why.
 #[derive(Clone, Debug, serde::Serialize)]
@@ -11,6 +14,9 @@ pub struct Explanation {
     pub buffers: Vec<BufferNote>,
     pub reasons: Vec<Note>,
     pub omitted: Vec<Note>,
+    /// What the rungs are predicted to err by, and what they may.
+    pub prediction: Option<Prediction>,
+    pub tolerance: Option<Tolerance>,
 }
 
 impl Renderer {
@@ -23,6 +29,8 @@ impl Renderer {
                 buffers: self.buffers.notes(),
                 reasons: Vec::new(),
                 omitted: Vec::new(),
+                prediction: None,
+                tolerance: None,
             };
         };
         let passes = plan.key.frame();
@@ -32,6 +40,8 @@ impl Renderer {
             buffers: self.buffers.notes(),
             reasons: plan.reasons.clone(),
             omitted: plan.omitted.clone(),
+            prediction: Some(plan.prediction),
+            tolerance: Some(plan.tolerance),
         }
     }
 }

@@ -1,12 +1,11 @@
 //! Explanation: why each part of a kernel key is as it is, and what a picture does without.
 
-use super::{Accuracy, Caps, Note};
+use super::{Caps, Note};
 use crate::{
     effects::{
         hooks::{Layers, Shape},
         xray,
     },
-    ladder::Visibility,
     scene::needs::Needs,
     shader::key::{KernelKey, Order},
 };
@@ -15,27 +14,18 @@ pub(super) fn note(name: &str, why: impl Into<String>) -> Note {
     Note { name: name.into(), why: why.into() }
 }
 
-pub(super) fn explain(needs: &Needs, is_usual: bool, caps: &Caps, accuracy: &Accuracy, key: &KernelKey) -> (Vec<Note>, Vec<Note>) {
-    let pinned = accuracy.pins.rung::<Visibility>().map(|_| "pinned by the look");
-    let chosen = match key.rungs.visibility {
-        Visibility::Packed64 => "the adapter has 64-bit atomics: one pass decides depth and owner, nothing is lost",
-        Visibility::Split32 => "the adapter has no 64-bit atomics: depth first, then the owner; nothing is lost",
-    };
-    let chosen = match key.layers {
-        Some(Layers::Race) => "the effect race takes the slot: one pass of plain loads and stores, and what is lost is lost",
-        _ => pinned.unwrap_or(chosen),
-    };
+pub(super) fn explain(needs: &Needs, is_usual: bool, caps: &Caps, key: &KernelKey) -> (Vec<Note>, Vec<Note>) {
     let bound = if needs.clipping { "clipping leaves it open".into() } else { format!("no triangle exceeds {:.1} px", needs.largest_px) };
-    let mut reasons = vec![
-        note("visibility", chosen),
-        note(
-            "coverage",
-            match key.shape {
-                Shape::Triangles => "fixed8: exact 16.8 top-left edges, holes and double hits are impossible",
-                Shape::Boxes => "boxes: an effect fills the bounding boxes",
-                Shape::Points => "points: an effect draws corners as discs",
-            },
-        ),
+    let mut reasons = Vec::new();
+    match (key.shape, key.layers) {
+        (Shape::Boxes, _) => reasons.push(note("shape", "boxes: an effect fills the bounding boxes")),
+        (Shape::Points, _) => reasons.push(note("shape", "points: an effect draws corners as discs")),
+        (_, Some(Layers::Race)) => {
+            reasons.push(note("visibility", "the effect race takes the slot: one pass of plain loads and stores, and what is lost is lost"))
+        }
+        _ => {}
+    }
+    reasons.extend([
         note("fetch", if needs.indexed { "the scene has index lists" } else { "no primitive has indices" }),
         note(
             "small",
@@ -49,7 +39,7 @@ pub(super) fn explain(needs: &Needs, is_usual: bool, caps: &Caps, accuracy: &Acc
                 }
             ),
         ),
-    ];
+    ]);
     if key.moves() {
         let why = if key.parts_corners() { "triangles part, three projected records each" } else { "triangles keep sharing vertices" };
         let movers: Vec<_> = key.effects.iter().filter(|effect| effect.hooks.vertex.is_some()).map(|effect| effect.name).collect();

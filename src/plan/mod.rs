@@ -1,12 +1,14 @@
 //! The planner: the cheapest kernel that the scene, the stack and the tolerance allow on this adapter, and why.
 
+mod costs;
 mod explain;
+pub mod predict;
 mod rungs;
 
-use self::explain::explain;
+use self::{explain::explain, predict::Prediction, rungs::Choice};
 use crate::{
     effects::{Conflict, Enabled, Stack, hooks::Shape},
-    ladder::{Clipping, Parameters, Pins},
+    ladder::{Clipping, Parameters, Pins, Rungs},
     math::SMALL_EXTENT,
     scene::needs::Needs,
     shader::{
@@ -66,10 +68,14 @@ pub struct Tuning {
 /// Named tolerances.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Tier {
+    /// For looking around.
     Draft,
+    /// Wrong where nobody looks.
     Fast,
+    /// Exact given the snapped corners.
     #[default]
     Precise,
+    /// The most exact rung on every axis.
     Reference,
 }
 
@@ -84,6 +90,36 @@ impl Tier {
             Self::Reference => "reference",
         }
     }
+
+    /// What the name stands for.
+    pub const fn tolerance(self) -> Tolerance {
+        match self {
+            Self::Draft => Tolerance { wrong_ppm: 20_000.0, channel: 48 },
+            Self::Fast => Tolerance { wrong_ppm: 1000.0, channel: 6 },
+            Self::Precise | Self::Reference => Tolerance { wrong_ppm: 0.0, channel: 1 },
+        }
+    }
+
+    /// The rungs that are left only for a gain within the tolerance.
+    fn base(self) -> Rungs {
+        Rungs::default()
+    }
+}
+
+/// How far a picture may be off the oracle's.
+#[derive(Clone, Copy, Debug, PartialEq, serde::Serialize)]
+pub struct Tolerance {
+    /// Pixels with another owner, per million.
+    pub wrong_ppm: f64,
+    /// Difference of a colour channel, of 255.
+    pub channel: u8,
+}
+
+impl Tolerance {
+    /// Does a prediction stay within it?
+    pub fn holds(&self, prediction: &Prediction) -> bool {
+        prediction.wrong_ppm <= self.wrong_ppm && prediction.channel <= self.channel.into()
+    }
 }
 
 /// How exact the picture must be.
@@ -92,6 +128,18 @@ pub struct Accuracy {
     pub tier: Tier,
     /// Pinned rungs beat the tier.
     pub pins: Pins,
+    /// Another tolerance than the tier's, pixels with the wrong owner per million.
+    pub wrong_ppm: Option<f64>,
+    /// Another tolerance than the tier's, difference of a colour channel of 255.
+    pub channel: Option<u8>,
+}
+
+impl Accuracy {
+    /// The tier's tolerance, or what the look says instead.
+    pub fn tolerance(&self) -> Tolerance {
+        let named = self.tier.tolerance();
+        Tolerance { wrong_ppm: self.wrong_ppm.unwrap_or(named.wrong_ppm), channel: self.channel.unwrap_or(named.channel) }
+    }
 }
 
 /// Why no kernel draws this stack here.
@@ -125,6 +173,10 @@ pub struct Plan {
     pub reasons: Vec<Note>,
     /// What this picture does without.
     pub omitted: Vec<Note>,
+    /// What the rungs are predicted to err by, against the oracle's picture.
+    pub prediction: Prediction,
+    /// What they may err by.
+    pub tolerance: Tolerance,
 }
 
 /// Chooses the kernel.
@@ -145,7 +197,7 @@ pub fn plan(needs: &Needs, stack: &Stack, caps: &Caps, tuning: &Tuning, accuracy
     }
     let needs = &needs;
     let layers = stack.layers(needs.triangles);
-    let rungs = rungs::choose(needs, stack, caps, accuracy, layers)?;
+    let Choice { rungs, reasons: mut reasons_of_rungs, prediction } = rungs::choose(needs, stack, caps, accuracy, layers)?;
     // Whoever drops what would have to be clipped needs no clipper; what is left may still be wide.
     let has_clipping = needs.clipping && rungs.clipping != Clipping::Drop;
     let (small_samples, small_side) = (tuning.small_samples.max(1), tuning.small_side.clamp(1, 128));
@@ -188,6 +240,7 @@ pub fn plan(needs: &Needs, stack: &Stack, caps: &Caps, tuning: &Tuning, accuracy
         list_group: tuning.list_group,
         early_load: tuning.early_load,
     };
-    let (reasons, omitted) = explain(needs, tuning == &caps.tuning(), caps, accuracy, &key);
-    Ok(Plan { key, reasons, omitted })
+    let (reasons, omitted) = explain(needs, tuning == &caps.tuning(), caps, &key);
+    reasons_of_rungs.extend(reasons);
+    Ok(Plan { key, reasons: reasons_of_rungs, omitted, prediction, tolerance: accuracy.tolerance() })
 }

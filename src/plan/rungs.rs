@@ -1,6 +1,10 @@
 //! Rungs: which one is taken on every axis of the ladder, and what no kernel can draw.
 
-use super::{Accuracy, Caps, PlanError};
+use super::{
+    Accuracy, Caps, Note, PlanError, costs,
+    explain::note,
+    predict::{Prediction, predict, predict_all},
+};
 use crate::{
     effects::{
         Effect, Stack,
@@ -8,7 +12,7 @@ use crate::{
         points, read,
         xray::{Reach, Xray},
     },
-    ladder::{Coverage, Depth, Rungs, Visibility},
+    ladder::{AXES, Coverage, Depth, Rungs, Visibility},
     math::SUBPIXEL_BITS,
     scene::needs::Needs,
 };
@@ -16,15 +20,63 @@ use crate::{
 /// Largest side of a picture whose pixels all lie inside the guard band of 1/4096 px.
 const FIXED12_SIDE: u32 = 2047;
 
-/// The rungs of a picture: pins first, then what the tier asks.
-pub(super) fn choose(needs: &Needs, stack: &Stack, caps: &Caps, accuracy: &Accuracy, layers: Option<Layers>) -> Result<Rungs, PlanError> {
+/// The rungs of a picture, why each is taken, and what they are predicted to err by.
+pub(super) struct Choice {
+    pub rungs: Rungs,
+    pub reasons: Vec<Note>,
+    pub prediction: Prediction,
+}
+
+/// Chooses a rung on every axis: pins first, then whatever saves time and still fits the tolerance.
+pub(super) fn choose(needs: &Needs, stack: &Stack, caps: &Caps, accuracy: &Accuracy, layers: Option<Layers>) -> Result<Choice, PlanError> {
     let visibility = if caps.int64_atomics { Visibility::Packed64 } else { Visibility::Split32 };
-    let mut rungs = Rungs { visibility, ..Rungs::default() };
+    let mut rungs = Rungs { visibility, ..accuracy.tier.base() };
     accuracy.pins.apply(&mut rungs);
     if layers == Some(Layers::Race) {
         // Plain stores need no 64-bit atomics; key and owner stand side by side, as packed64 has them.
         rungs.visibility = Visibility::Packed64;
-    } else if rungs.visibility == Visibility::Packed64 && !caps.int64_atomics {
+    }
+    let mut reasons = Vec::new();
+    let (mut prediction, tolerance) = (predict_all(&rungs, needs), accuracy.tolerance());
+    for (i, axis) in AXES.iter().enumerate() {
+        if accuracy.pins.get(axis).is_some() {
+            reasons.push(note(axis.name, format!("{}: pinned by the look", axis.words[rungs.get(axis)])));
+            continue;
+        }
+        let mut cheaper: Vec<usize> = (0..axis.words.len()).filter(|&place| costs::saves(axis, place, rungs.get(axis), caps)).collect();
+        cheaper.sort_by(|a, b| costs::of(axis, *a, caps).total_cmp(&costs::of(axis, *b, caps)));
+        let fits = |place: &usize| {
+            let mut tried = rungs;
+            tried.set(axis, *place);
+            check(&tried, needs, stack, caps).is_ok() && tolerance.holds(&predict_all(&tried, needs))
+        };
+        if let Some(place) = cheaper.into_iter().find(fits) {
+            rungs.set(axis, place);
+            prediction = predict_all(&rungs, needs);
+            let (word, share, own) = (axis.words[place], costs::of(axis, place, caps), predict(i, place, needs));
+            let why = format!(
+                "{word}: {share:.2} of the usual time, predicted to err by {:.0} of {:.0} ppm, {:.1} of {} in colour",
+                own.wrong_ppm, tolerance.wrong_ppm, own.channel, tolerance.channel
+            );
+            reasons.push(note(axis.name, why));
+        } else {
+            let usual = axis.abouts[rungs.get(axis)].trim().trim_end_matches('.');
+            reasons.push(note(axis.name, format!("{}: {}", axis.words[rungs.get(axis)], lowered(usual))));
+        }
+    }
+    check(&rungs, needs, stack, caps)?;
+    Ok(Choice { rungs, reasons, prediction })
+}
+
+/// A sentence as it goes on behind a colon.
+fn lowered(sentence: &str) -> String {
+    let mut letters = sentence.chars();
+    letters.next().map_or_else(String::new, |first| first.to_lowercase().chain(letters).collect())
+}
+
+/// What no kernel can draw.
+fn check(rungs: &Rungs, needs: &Needs, stack: &Stack, caps: &Caps) -> Result<(), PlanError> {
+    if rungs.visibility == Visibility::Packed64 && !caps.int64_atomics && !stack.is_racing() {
         return Err(PlanError::Lacking);
     }
     if rungs.coverage.subpixel_bits() != SUBPIXEL_BITS
@@ -38,7 +90,7 @@ pub(super) fn choose(needs: &Needs, stack: &Stack, caps: &Caps, accuracy: &Accur
     if rungs.depth != Depth::Reversed && has_window(stack) {
         return Err(PlanError::Window { rung: rungs.depth.name() });
     }
-    Ok(rungs)
+    Ok(())
 }
 
 /// An effect whose integers are in units of 1/256 px.

@@ -168,6 +168,12 @@ fn reset(session: &mut Session, key: &Key) {
     if (key.get)(session).is_none() {
         return;
     }
+    match (key.section, key.name) {
+        // Without a tolerance of its own a look has its tier's.
+        ("accuracy", "wrong_ppm") => return session.accuracy.wrong_ppm = None,
+        ("accuracy", "channel") => return session.accuracy.channel = None,
+        _ => {}
+    }
     let baseline = Section::baseline(session);
     let rival = key.rival.and_then(|name| Key::within(key.section, name));
     for key in [Some(key), rival].into_iter().flatten() {

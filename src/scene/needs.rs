@@ -34,6 +34,14 @@ pub struct Needs {
     pub clipping: bool,
     /// No triangle is wider or higher than this, in pixels; infinite where clipping is needed.
     pub largest_px: f64,
+    /// Side of a triangle if all were alike and the scene covered its box on the screen twice; an estimate.
+    pub typical_px: f64,
+    /// Distances of the nearest and farthest corner of the scene's box along the viewing direction.
+    pub depth_m: [f64; 2],
+    /// Distance of the near plane, where there is one.
+    pub near_m: f64,
+    /// Largest ratio of w between the corners of one triangle.
+    pub w_ratio: f64,
 }
 
 impl Needs {
@@ -57,7 +65,21 @@ impl Needs {
             perspective: view.linear_depth_m.is_none(),
             clipping: largest_px.is_infinite(),
             largest_px,
+            typical_px: typical_px(scene, draws, view),
+            depth_m: view.scene_range_m,
+            near_m: view.clip_from_world.w_axis.z.abs(),
+            w_ratio: w_ratio(largest_px, view),
         }
+    }
+
+    /// Metres that one unit of the depth buffer spans at a distance.
+    pub fn per_depth_m(&self, at_m: f64) -> f64 {
+        if self.perspective { at_m * at_m / self.near_m.max(f64::MIN_POSITIVE) } else { self.depth_m[1] - self.depth_m[0] }
+    }
+
+    /// Metres that a depth twice as far spans from a distance on: what a logarithm divides evenly.
+    pub fn relative_m(&self, at_m: f64) -> f64 {
+        if self.perspective { at_m } else { self.depth_m[1] - self.depth_m[0] }
     }
 
     /// As if the scene might hold anything its bytes allow: nothing that depends on bounds or formats can be left out.
@@ -75,6 +97,34 @@ impl Needs {
             ..self.clone()
         }
     }
+}
+
+/// Corners of a box in normalized device coordinates, those in front of the eye, held to the picture.
+fn seen_corners(primitive: &Primitive, draw: &Draw) -> Vec<[f64; 2]> {
+    let clip_from_object = DMat4::from_cols_array_2d(&draw.clip_from_object.map(|column| column.map(f64::from)));
+    let corners = primitive.bounds.corners().map(|corner| clip_from_object * corner.extend(1.0));
+    corners.iter().filter(|c| c.w > 0.0).map(|c| [c.x / c.w, c.y / c.w].map(|ndc| ndc.clamp(-1.0, 1.0))).collect()
+}
+
+/// See [`Needs::typical_px`].
+fn typical_px(scene: &Scene, draws: &[Draw], view: &View) -> f64 {
+    let area_of = |draw: &Draw| {
+        let corners = seen_corners(&scene.primitives[draw.primitive], draw);
+        let extent = |axis: usize| {
+            let (low, high) = corners.iter().fold((1.0f64, -1.0f64), |(low, high), c| (low.min(c[axis]), high.max(c[axis])));
+            (high - low).max(0.0) * 0.5
+        };
+        extent(0) * f64::from(view.width) * extent(1) * f64::from(view.height)
+    };
+    let area: f64 = draws.iter().map(area_of).sum();
+    // Front and back cover the box; an equilateral triangle of side s has 0.433 s^2.
+    (2.0 * area / (0.433 * scene.triangle_count().max(1) as f64)).sqrt()
+}
+
+/// A triangle of so many pixels that lies along the viewing direction, as near as the scene comes.
+fn w_ratio(largest_px: f64, view: &View) -> f64 {
+    let pixel = view.ndc_axes[1].length() * 2.0 / f64::from(view.height.max(1));
+    1.0 + largest_px * pixel * 1.5
 }
 
 /// Is the placement far enough from singular that a normal keeps a direction?

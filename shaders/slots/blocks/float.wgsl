@@ -12,8 +12,8 @@ struct BlockEdge {
 
 fn blocks_edge(begin: vec2i, end: vec2i, p: vec2i, bias: i32) -> BlockEdge {
     let d = vec2f(end) - vec2f(begin);
-    let from = vec2f(p) - vec2f(begin);
-    return BlockEdge(d.x * from.y - d.y * from.x, select(0.0, 1e-30, IS_TOP_LEFT && bias == 1));
+    let away = vec2f(p) - vec2f(begin);
+    return BlockEdge(d.x * away.y - d.y * away.x, select(0.0, 1e-30, IS_TOP_LEFT && bias == 1));
 }
 
 // Are all three edges on their inner side, `step` from the block's first pixel?
