@@ -27,7 +27,7 @@ fn everywhere_with(renderer: &mut Renderer, scene: &Arc<Scene>, view: &View, sta
     let usual = renderer.gpu().caps.tuning();
     let [crowded, _, card, _] = tunings();
     let rungs = rungs(renderer);
-    let last = *rungs.last().expect("a rung");
+    let last = quick_rung(renderer);
     let ways = rungs.iter().map(|&rung| (rung, card)).chain([(last, crowded), (last, usual)]);
     let mut first: Option<Capture> = None;
     for (rung, tuning) in ways {
@@ -310,7 +310,7 @@ fn case_11_a_camera_passes_through_a_surface() {
     shell.materials[0].double_sided = true;
     let ground = hand_made(&[sheet(vec![[-50.0, -0.5, -50.0], [-50.0, -0.5, 50.0], [50.0, -0.5, 50.0]])]);
     let shell = Arc::new(shell);
-    let rung = *rungs(&renderer).last().expect("a rung");
+    let rung = quick_rung(&renderer);
     let (mut cut, mut worst) = (0, 0);
     for step in 0..1000 {
         let way = f64::from(step) / 1000.0;
@@ -550,7 +550,7 @@ fn assert_dots(capture: &Capture, count: u32, times: u32, what: &str) {
 #[test]
 fn case_18_more_workgroups_than_one_dimension_holds_directly() {
     let Some(mut renderer) = renderer() else { return };
-    let rung = *rungs(&renderer).last().expect("a rung");
+    let rung = quick_rung(&renderer);
     // 64 triangles, or vertices, to a group: 65,535, 65,536 and 65,537 groups, the last one with a single lane at work.
     for groups in [65_535u32, 65_536, 65_537] {
         let triangles = 64 * (groups - 1) + 1;
@@ -570,7 +570,7 @@ fn case_18_more_workgroups_than_one_dimension_holds_directly() {
 #[test]
 fn case_18_more_workgroups_than_one_dimension_holds_indirectly() {
     let Some(mut renderer) = renderer() else { return };
-    let rung = *rungs(&renderer).last().expect("a rung");
+    let rung = quick_rung(&renderer);
     let [crowded, _, card, _] = tunings();
     // Medium triangles: one group each.
     for demand in [65_535u32, 65_536, 65_537] {
@@ -702,7 +702,7 @@ fn case_20_odd_and_very_wide_pictures() {
 fn case_23_random_triangles_that_pass_samples_as_closely_as_they_can() {
     let Some(mut renderer) = renderer() else { return };
     let chosen = std::env::var("RASTERLAB_SEED").ok().map(|seed| seed.parse::<u32>().expect("RASTERLAB_SEED is a whole number"));
-    let rung = *rungs(&renderer).last().expect("a rung");
+    let rung = quick_rung(&renderer);
     // Extent in units, triangles in a picture, pictures: a million triangles altogether.
     for (extent, count, pictures) in [
         (300, 120_000, 5),
@@ -770,7 +770,7 @@ fn case_24_a_mirrored_placement_shows_the_same_faces() {
 fn case_27_a_million_triangles_and_a_thousand_full_screen_ones() {
     let Some(mut renderer) = renderer() else { return };
     let sphere = scene("sphere?triangles=1000000");
-    let rung = *rungs(&renderer).last().expect("a rung");
+    let rung = quick_rung(&renderer);
     let sphere_view = view(&sphere, [256, 192]);
     let (capture, _) = exact(&mut renderer, &sphere, &sphere_view, &stack(&["lambert"]), &pinned(rung), "a million triangles");
     assert!(capture.frame.covered() > 7000, "{}", capture.frame.covered());

@@ -16,14 +16,17 @@ pub(super) fn note(name: &str, why: impl Into<String>) -> Note {
 }
 
 pub(super) fn explain(needs: &Needs, is_usual: bool, caps: &Caps, accuracy: &Accuracy, key: &KernelKey) -> (Vec<Note>, Vec<Note>) {
-    let pinned = accuracy.pins.rung::<Visibility>().map(|_| "pinned by the look");
     let chosen = match key.rungs.visibility {
+        Visibility::Packed64 | Visibility::Split32 if accuracy.pins.rung::<Visibility>().is_some() => "pinned by the look",
         Visibility::Packed64 => "the adapter has 64-bit atomics: one pass decides depth and owner, nothing is lost",
         Visibility::Split32 => "the adapter has no 64-bit atomics: depth first, then the owner; nothing is lost",
+        Visibility::Tiled => "pinned by the look: lists of triangles per tile, and an invocation that owns its pixel; nothing is lost",
+        Visibility::Packed32 => "pinned by the look: depth and owner share 32 bits: what the id needs, the depth loses",
+        Visibility::Race => "pinned by the look: plain loads and stores, and what is lost is lost",
     };
     let chosen = match key.layers {
         Some(Layers::Race) => "the effect race takes the slot: one pass of plain loads and stores, and what is lost is lost",
-        _ => pinned.unwrap_or(chosen),
+        _ => chosen,
     };
     let bound = if needs.clipping { "clipping leaves it open".into() } else { format!("no triangle exceeds {:.1} px", needs.largest_px) };
     let mut reasons = vec![

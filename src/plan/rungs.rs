@@ -16,16 +16,20 @@ use crate::{
 /// Largest side of a picture whose pixels all lie inside the guard band of 1/4096 px.
 const FIXED12_SIDE: u32 = 2047;
 
+/// Most triangles whose ids leave packed32 eight bits for depth.
+const PACKED32_TRIANGLES: u64 = (1 << 24) - 1;
+
 /// The rungs of a picture: pins first, then what the tier asks.
 pub(super) fn choose(needs: &Needs, stack: &Stack, caps: &Caps, accuracy: &Accuracy, layers: Option<Layers>) -> Result<Rungs, PlanError> {
     let visibility = if caps.int64_atomics { Visibility::Packed64 } else { Visibility::Split32 };
     let mut rungs = Rungs { visibility, ..Rungs::default() };
     accuracy.pins.apply(&mut rungs);
     if layers == Some(Layers::Race) {
-        // Plain stores need no 64-bit atomics; key and owner stand side by side, as packed64 has them.
-        rungs.visibility = Visibility::Packed64;
-    } else if rungs.visibility == Visibility::Packed64 && !caps.int64_atomics {
+        rungs.visibility = Visibility::Race;
+    } else if !rungs.visibility.is_there(caps.int64_atomics) {
         return Err(PlanError::Lacking);
+    } else if rungs.visibility == Visibility::Packed32 && needs.triangles > PACKED32_TRIANGLES {
+        return Err(PlanError::Crowded { triangles: needs.triangles });
     }
     if rungs.coverage.subpixel_bits() != SUBPIXEL_BITS
         && let Some(effect) = measures(stack)
