@@ -592,7 +592,11 @@ fn case_18_more_workgroups_than_one_dimension_holds_indirectly() {
     renderer.set_scene(&scene).expect("it fits");
     renderer.set_capacities(Capacities { large: 65_600, tiles: 65_600, ..Capacities::default() });
     exact(&mut renderer, &scene, &pixel_view(64, 64), &stack(&[]), &pinned(rung), "65,600 large triangles");
-    assert_eq!(renderer.capacities(), Capacities { clip: 1, pieces: 1, medium: 1, large: 65_600, tiles: 65_600 }, "demand was as foreseen");
+    assert_eq!(
+        renderer.capacities(),
+        Capacities { clip: 1, pieces: 1, medium: 1, large: 65_600, tiles: 65_600, bins: 1 },
+        "demand was as foreseen"
+    );
     // Tiles of the resolve: 66,048 of 8 x 8 pixels.
     let [a, b, c, d] = [[0, 0], [2048 * 256, 0], [2048 * 256, 2064 * 256], [0, 2064 * 256]];
     renderer.set_tuning(Tuning { listed_tiles: true, ..card });
@@ -607,7 +611,7 @@ fn case_18_more_workgroups_than_one_dimension_holds_indirectly() {
 type Demand = (&'static str, Capacities, Arc<Scene>, fn(&mut Capacities) -> &mut u32);
 
 fn demands() -> Vec<Demand> {
-    let ample = Capacities { clip: 4096, pieces: 4096, medium: 4096, large: 4096, tiles: 4096 };
+    let ample = Capacities { clip: 4096, pieces: 4096, medium: 4096, large: 4096, tiles: 4096, bins: 65_536 };
     let n = 40;
     let many = |triangle: [[i32; 2]; 3]| {
         let moved = |i: i32| (triangle.map(|[x, y]| [x, y + 97 * i]), 0.2 + 0.01 * i as f32);
@@ -624,7 +628,9 @@ fn demands() -> Vec<Demand> {
         ("medium", Capacities { medium: demand, ..ample }, small, |c| &mut c.medium),
         ("large", Capacities { large: demand, ..ample }, large.clone(), |c| &mut c.large),
         // A picture of 128 x 128 has four tiles.
-        ("tiles", Capacities { tiles: 4 * demand, ..ample }, large, |c| &mut c.tiles),
+        ("tiles", Capacities { tiles: 4 * demand, ..ample }, large.clone(), |c| &mut c.tiles),
+        // And 64 of the tiles that have lists.
+        ("bins", Capacities { bins: 64 * demand, ..ample }, large, |c| &mut c.bins),
     ]
 }
 
@@ -634,7 +640,8 @@ fn case_19_queues_hold_their_demand_exactly_and_grow_beyond() {
     let view = pixel_view(128, 128);
     renderer.set_tuning(tunings()[0]);
     for rung in rungs(&renderer) {
-        for (queue, exactly, scene, field) in demands() {
+        let has = |queue: &str| queue != if rung == Visibility::Tiled { "tiles" } else { "bins" };
+        for (queue, exactly, scene, field) in demands().into_iter().filter(|(queue, ..)| has(queue)) {
             let demand = *field(&mut exactly.clone());
             for capacity in [demand, demand - 1, demand / 10, 1] {
                 let what = format!("{queue} {}: demand {demand}, capacity {capacity}", rung.name());
