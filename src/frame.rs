@@ -118,6 +118,8 @@ pub struct Frame {
     pub owner: Vec<u32>,
     /// Depth key per pixel: bits of the reversed depth, larger is nearer, 0 is empty.
     pub key: Vec<u32>,
+    /// Keys are cut short, or another sample's, where the look asks for that; they promise nothing and are not judged.
+    pub keys_are_rough: bool,
     /// Gamma-encoded sRGB and alpha.
     pub color: Vec<[u8; 4]>,
     /// What an effect in the visibility slot added up per pixel: weights of layers, or their number. Empty without one.

@@ -127,10 +127,16 @@ ladder! {
     }
     /// Where depth and owner of a pixel meet.
     visibility: Visibility = "visibility", usual Packed64 {
+        /// Plain loads and stores: samples that meet on a pixel lose each other.
+        Race = "race",
+        /// One 32-bit atomic per sample, for as much of the depth as the id leaves room for.
+        Packed32 = "packed32",
         /// Portable: a depth pass, then an owner pass.
         Split32 = "split32",
         /// One 64-bit atomic per sample.
         Packed64 = "packed64",
+        /// Portable: lists of triangles per tile, and an invocation that owns its pixel, without atomics on pixels.
+        Tiled = "tiled",
     }
     /// How attributes run across a triangle.
     perspective: Perspective = "perspective", usual Exact {
@@ -173,7 +179,17 @@ ladder! {
 
 impl Visibility {
     /// The rungs that lose nothing.
-    pub const EXACT: [Self; 2] = [Self::Split32, Self::Packed64];
+    pub const EXACT: [Self; 3] = [Self::Split32, Self::Packed64, Self::Tiled];
+
+    /// Does it lose nothing?
+    pub fn is_exact(self) -> bool {
+        Self::EXACT.contains(&self)
+    }
+
+    /// Does an adapter with or without 64-bit atomics have it?
+    pub fn is_there(self, int64_atomics: bool) -> bool {
+        self != Self::Packed64 || int64_atomics
+    }
 }
 
 impl Coverage {

@@ -64,7 +64,7 @@ fn every_look_is_within_tolerance_on_every_rung() {
 fn every_size_of_picture_is_within_tolerance() {
     let Some(mut renderer) = renderer() else { return };
     let [knot, hall, sphere] = ["knot?tess=6", "near", "sphere?triangles=20000"].map(scene);
-    let rung = *rungs(&renderer).last().expect("a rung");
+    let rung = quick_rung(&renderer);
     let sizes = [[1, 1], [2, 1], [7, 9], [3, 200], [200, 3], [63, 65], [321, 243]];
     let cases = sizes.into_iter().flat_map(|size| [(&knot, size), (&hall, size)]).chain([(&sphere, [1920, 1080])]);
     for (scene, size) in cases {

@@ -8,11 +8,12 @@ use std::sync::Arc;
 use common::*;
 use rasterlab::{
     frame::{Frame, NO_OWNER},
-    gpu::{Capture, Renderer},
+    gpu::{Capture, Renderer, uniforms::Capacities},
     ladder::Visibility,
     measure::compare,
+    oracle,
     plan::Tuning,
-    scene::{Scene, builtin::BUILTINS, camera::View},
+    scene::{Scene, builtin::BUILTINS, camera::View, draw::draws},
 };
 
 const SIZE: [u32; 2] = [256, 192];
@@ -38,6 +39,9 @@ fn hall() -> (Arc<Scene>, View) {
 const GRAPHICS_CARD: Tuning =
     Tuning { small_samples: 32, small_side: 32, list_group: 256, listed_tiles: false, early_load: false, specialized: true };
 
+/// What only the tiled rung has.
+const TILED: &[&str] = &["bin_queued", "bin_scan", "raster_tiles"];
+
 fn is_drawn_by(renderer: &Renderer, stems: &[&str]) {
     let passes = renderer.key().expect("something was drawn").frame();
     for stem in stems {
@@ -53,25 +57,133 @@ fn the_scenes_of_these_tests_include_every_builtin() {
 }
 
 #[test]
-fn split32_and_packed64_give_the_same_owners_and_keys() {
+fn every_exact_backend_gives_the_same_owners_and_keys() {
     let Some(mut renderer) = renderer() else { return };
-    if !renderer.gpu().caps.int64_atomics {
-        eprintln!("NOT RUN: this adapter has no 64-bit atomics, so there is no packed64 to compare split32 with");
-        return;
+    let rungs = rungs(&renderer);
+    if !rungs.contains(&Visibility::Packed64) {
+        eprintln!("NOT RUN: this adapter has no 64-bit atomics, so there is no packed64 to compare with");
     }
     for query in SCENES {
         let scene = scene(query);
         let view = view(&scene, SIZE);
         for tuning in [renderer.gpu().caps.tuning(), GRAPHICS_CARD] {
             renderer.set_tuning(tuning);
-            let [split, packed] =
-                Visibility::EXACT.map(|rung| captured(&mut renderer, &scene, &view, &stack(&["facet", "lambert"]), &pinned(rung)));
+            let mut draw = |rung| captured(&mut renderer, &scene, &view, &stack(&["facet", "lambert"]), &pinned(rung));
+            let split = draw(Visibility::Split32);
             assert!(split.frame.covered() > 0, "{query} shows nothing");
-            assert_same(&split.frame, &packed.frame, query);
-            assert_eq!(split.geometry, packed.geometry, "{query}: geometry");
-            assert_eq!(split.layers, packed.layers, "{query}: layers");
+            for &rung in &rungs[1..] {
+                let other = draw(rung);
+                let what = format!("{query} {}", rung.name());
+                assert_same(&other.frame, &split.frame, &what);
+                assert_eq!(other.geometry, split.geometry, "{what}: geometry");
+                assert_eq!(other.layers, split.layers, "{what}: layers");
+            }
         }
     }
+}
+
+/// A float key as packed32 keeps it among so many triangles: all depths below 2^-31 are one, and the bits that the id needs
+/// are cut off below.
+fn cut_key(key: u32, triangles: u64) -> u32 {
+    const LEAST: u32 = 0x3000_0000;
+    let id_bits = 64 - triangles.leading_zeros();
+    let lost = (28 + id_bits).saturating_sub(32);
+    if key == 0 { 0 } else { LEAST + ((key.max(LEAST) - LEAST) >> lost << lost) }
+}
+
+#[test]
+fn packed32_loses_depth_and_nothing_else() {
+    let Some(mut renderer) = renderer() else { return };
+    let mut lost = 0;
+    for query in SCENES {
+        let scene = scene(query);
+        let view = view(&scene, SIZE);
+        let truth = captured(&mut renderer, &scene, &view, &stack(&[]), &pinned(Visibility::Split32)).frame;
+        let (capture, verdict) = judged(&mut renderer, &scene, &view, &stack(&[]), &pinned(Visibility::Packed32));
+        let (frame, errors) = (&capture.frame, &verdict.accuracy);
+        assert_eq!([errors.holes, errors.double_hits, errors.orphans], [0; 3], "{query}");
+        assert_eq!(errors.owner_mismatch, errors.wrong_winners, "{query}: an owner does not cover its pixel");
+        let cut: Vec<u32> = truth.key.iter().map(|&key| cut_key(key, scene.triangle_count())).collect();
+        let keys = compare::owners(&frame.key, &cut);
+        assert_eq!(keys.different, 0, "{query}: keys, first {:?}", keys.offenders.first());
+        // Another owner than the nearest is one that a step of the key cannot tell from it: as deep when cut, and smaller.
+        let (draws, geometry) = (draws(&scene, &view).expect("a builtin fits"), &capture.geometry);
+        let (triangles, _) = oracle::triangles(&scene, &draws, geometry);
+        let claimed = oracle::cover(&triangles, &view, Some(&frame.owner));
+        for (pixel, sample) in claimed.samples.iter().enumerate() {
+            if frame.owner[pixel] != truth.owner[pixel] {
+                let [_, high] = sample.claimed.unwrap_or_else(|| panic!("{query}: pixel {pixel}"));
+                assert!(high >= f64::from(f32::from_bits(cut[pixel])), "{query}: pixel {pixel} shows what is farther by a step");
+                assert!(frame.owner[pixel] < truth.owner[pixel], "{query}: pixel {pixel} shows the larger id");
+                lost += 1;
+            }
+        }
+    }
+    assert!(lost > 0, "no scene is so dense that the cut shows");
+}
+
+#[test]
+fn a_race_may_lose_the_nearest_and_nothing_else() {
+    let Some(mut renderer) = renderer() else { return };
+    for query in ["sphere?triangles=5000", "stack?layers=40", "near", "sizes"] {
+        let scene = scene(query);
+        let view = view(&scene, SIZE);
+        let truth = captured(&mut renderer, &scene, &view, &stack(&[]), &pinned(Visibility::Split32));
+        let (capture, verdict) = judged(&mut renderer, &scene, &view, &stack(&[]), &pinned(Visibility::Race));
+        let errors = &verdict.accuracy;
+        assert_eq!([errors.holes, errors.double_hits, errors.orphans], [0; 3], "{query}");
+        assert_eq!(errors.owner_mismatch, errors.wrong_winners, "{query}: an owner does not cover its pixel");
+        let layers = capture.layers.as_deref().expect("layers are counted");
+        for pixel in (0..layers.len()).filter(|&pixel| layers[pixel] < 2) {
+            let [here, there] = [&capture.frame, &truth.frame].map(|frame| (frame.owner[pixel], frame.key[pixel]));
+            assert_eq!(here, there, "{query}: pixel {pixel} has no rival");
+        }
+    }
+}
+
+#[test]
+fn all_layers_are_the_same_on_every_rung() {
+    let Some(mut renderer) = renderer() else { return };
+    for (query, effect) in [("knot?tess=24", "xray"), ("near", "xray"), ("near", "overdraw"), ("sizes", "overdraw")] {
+        let scene = scene(query);
+        let view = view(&scene, SIZE);
+        let truth = captured(&mut renderer, &scene, &view, &stack(&[effect]), &pinned(Visibility::Split32));
+        let has_int64 = renderer.gpu().caps.int64_atomics;
+        for rung in Visibility::ALL.iter().filter(|rung| rung.is_there(has_int64)) {
+            let capture = captured(&mut renderer, &scene, &view, &stack(&[effect]), &pinned(*rung));
+            let what = format!("{effect} of {query} on {}", rung.name());
+            assert!(capture.frame.counted == truth.frame.counted, "{what}: counts");
+            assert!(capture.frame.color == truth.frame.color, "{what}: colours");
+        }
+    }
+}
+
+/// Lists of tiles that are exactly as long as they must be, and shorter: then they grow, and nothing is missing.
+#[test]
+fn lists_of_tiles_hold_their_demand_to_the_last_entry() {
+    let Some(mut renderer) = renderer() else { return };
+    let (scene, view) = hall();
+    let truth = captured(&mut renderer, &scene, &view, &stack(&[]), &pinned(Visibility::Split32)).frame;
+    let tiled = |renderer: &mut Renderer, bins: u32| {
+        renderer.set_scene(&scene).expect("a builtin fits");
+        let room = renderer.capacities();
+        renderer.set_capacities(Capacities { bins, ..room });
+        renderer.draw(&view, &stack(&[]), &pinned(Visibility::Tiled)).expect("drawn");
+        let report = renderer.finish().expect("finished");
+        (report, captured(renderer, &scene, &view, &stack(&[]), &pinned(Visibility::Tiled)).frame)
+    };
+    let (report, _) = tiled(&mut renderer, 1);
+    let demand = report.counters.overflow + 1;
+    assert!(demand > 1000 && report.redraw, "{report:?}");
+    for bins in [demand, demand - 1, demand / 10, 1] {
+        let (report, frame) = tiled(&mut renderer, bins);
+        assert_eq!((report.counters.overflow, report.redraw), (demand - bins, bins < demand), "room for {bins} of {demand}");
+        assert_same(&frame, &truth, &format!("room for {bins} of {demand}"));
+    }
+    let library = mutated("passes/raster_tiles", "vec2u(frame.bin_capacity)", "vec2u(frame.bin_capacity - 1u)");
+    let mut wrong = Renderer::with_library(renderer.gpu().clone(), library.shaders());
+    let (_, frame) = tiled(&mut wrong, demand);
+    assert_ne!(compare::owners(&frame.owner, &truth.owner).different + compare::owners(&frame.key, &truth.key).different, 0);
 }
 
 #[test]
@@ -92,7 +204,8 @@ fn a_hundred_frames_are_equal_to_the_bit() {
             assert_eq!(again.layers, first.layers, "{what}: layers");
             assert_eq!(again.frame.counters, first.frame.counters, "{what}: counters");
         }
-        is_drawn_by(&renderer, &["project", "raster_small", "args", "clip", "tile_large", "raster_medium", "raster_large", "resolve"]);
+        is_drawn_by(&renderer, &["project", "raster_small", "args", "clip", "resolve"]);
+        is_drawn_by(&renderer, if rung == Visibility::Tiled { TILED } else { &["tile_large", "raster_medium", "raster_large"] });
     }
 }
 
@@ -187,4 +300,57 @@ fn the_early_load_does_not_show() {
         });
         assert_same(&with.frame, &without.frame, query);
     }
+}
+
+/// Mistakes in the tiled kernels that a picture must show: file, what stands there, what stands there instead, scene.
+const TILED_MUTANTS: &[[&str; 5]] = &[
+    ["a tile is forgotten", "common/bins", "pixels.zw / 16 - first + 1", "max(pixels.zw / 16 - first, vec2i(1))", "sphere?triangles=200"],
+    ["a tile is given up too soon", "common/bins", "(d.y < 0), (d.x > 0)", "(d.y > 0), (d.x < 0)", "sphere?triangles=200"],
+    [
+        "the same of large triangles",
+        "common/bins",
+        "fixed_edge(a, b, inner)) < fixed_bias(d)",
+        "fixed_edge(a, b, inner)) < 1 + fixed_bias(d)",
+        "sizes",
+    ],
+    ["the larger id wins ties", "passes/raster_tiles", "sample.x > nearest.x", "sample.x < nearest.x", "stack?layers=5"],
+    ["the farther one wins", "passes/raster_tiles", "sample.y > nearest.y", "nearest.y == 0u", "near"],
+    [
+        "the last of a list is left out",
+        "passes/raster_tiles",
+        "list = min(vec2u(begin, bins[tile])",
+        "list = min(vec2u(begin, max(bins[tile], 1u) - 1u)",
+        "near",
+    ],
+    ["a list begins at its neighbour's", "passes/raster_tiles", "bins[max(tile, 1u) - 1u], 0u", "bins[tile], 0u", "near"],
+    ["the last column of a box is left out", "common/cells", "(box.z << 8u)", "((max(box.z, 1u) - 1u) << 8u)", "sphere?triangles=200"],
+    [
+        "edges of large triangles from elsewhere",
+        "slots/cells/all",
+        "let p = grid_sample(first);",
+        "let p = grid_sample(first + 1);",
+        "sizes",
+    ],
+];
+
+#[test]
+fn tiles_with_a_mistake_are_caught() {
+    let Some(mut renderer) = renderer() else { return };
+    renderer.set_tuning(GRAPHICS_CARD);
+    let mut failures = Vec::new();
+    for [what, file, from, to, query] in TILED_MUTANTS {
+        let scene = scene(query);
+        let view = view(&scene, SIZE);
+        let truth = captured(&mut renderer, &scene, &view, &stack(&[]), &pinned(Visibility::Split32)).frame;
+        let library = mutated(file, from, to);
+        let mut wrong = Renderer::with_library(renderer.gpu().clone(), library.shaders());
+        wrong.set_tuning(Tuning { specialized: false, ..GRAPHICS_CARD });
+        let frame = captured(&mut wrong, &scene, &view, &stack(&[]), &pinned(Visibility::Tiled)).frame;
+        let [owners, keys] = [(&frame.owner, &truth.owner), (&frame.key, &truth.key)].map(|(a, b)| compare::owners(a, b).different);
+        eprintln!("{what}: {owners} owners, {keys} keys differ");
+        if owners + keys == 0 {
+            failures.push(*what);
+        }
+    }
+    assert!(failures.is_empty(), "these do not show: {failures:?}");
 }

@@ -2,7 +2,10 @@
 //! atomics only where a rung asks for them, within eight storage buffers. Needs no adapter.
 
 use rasterlab::{
-    effects::{EFFECTS, Effect, hooks::Slot},
+    effects::{
+        EFFECTS, Effect,
+        hooks::{Shape, Slot},
+    },
     ladder::{AXES, Parameters, Visibility},
     shader::{
         Fetch, KernelKey, Pass,
@@ -67,6 +70,23 @@ fn every_slot_choice_links_and_validates_within_eight_storage_buffers() {
                             assert!(storage <= 8, "{} of {key} binds {storage} storage buffers", pass.label());
                         }
                     }
+                }
+            }
+        }
+    }
+}
+
+/// The kernel with the most slots of all: what a tile looks at differs by shape, what it asks by order and by effects.
+#[test]
+fn tiles_validate_within_eight_storage_buffers_for_every_shape_and_order() {
+    for shape in [Shape::Triangles, Shape::Boxes, Shape::Points] {
+        for order in [Order::Free, Order::Submission, Order::Scheduler] {
+            for has_large in [false, true] {
+                let effects = ["dissolve", "draw_order", "xray"].map(|name| Effect::find(name).expect("a listed effect")).to_vec();
+                let key = KernelKey { shape, order, has_large, ..key(Fetch::Indexed, Visibility::Tiled, true, effects) };
+                for pass in all_passes(&key) {
+                    let storage = validate(&key, pass);
+                    assert!(storage <= 8, "{} of {key} binds {storage} storage buffers", pass.label());
                 }
             }
         }

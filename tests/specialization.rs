@@ -140,7 +140,7 @@ fn a_scene_of_small_triangles_has_no_queues_arguments_or_pieces() {
 #[test]
 fn vertices_and_pixels_take_sixteen_bytes_at_most() {
     let Some(gpu) = gpu() else { return };
-    for rung in Visibility::EXACT.into_iter().filter(|rung| *rung == Visibility::Split32 || gpu.caps.int64_atomics) {
+    for rung in Visibility::EXACT.into_iter().filter(|rung| rung.is_there(gpu.caps.int64_atomics)) {
         let (explanation, scene, view) =
             explained("sphere?triangles=20000", [1280, 720], rung, gpu.caps.tuning()).expect("there is an adapter");
         let bytes = |name: &str| explanation.buffers.iter().find(|buffer| buffer.name == name).map_or(0, |buffer| buffer.bytes);

@@ -14,6 +14,7 @@ struct Counters {
     marked_tiles: atomic<u32>,
     tickets: atomic<u32>,
     tickets_again: atomic<u32>,
+    bins: atomic<u32>,           // entries of the lists of all tiles
     full_pixels: atomic<u32>,    // pixels with more layers than the sums hold
     dropped: atomic<u32>,        // triangles left out that would have to be clipped
 }

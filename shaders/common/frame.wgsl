@@ -20,6 +20,7 @@ struct Frame {
     medium_capacity: u32,
     large_capacity: u32,
     tile_capacity: u32,
+    bin_capacity: u32,       // entries of the lists of all tiles
     medium_first: u32,       // first word of each queue in `queues`; clip begins at 0
     large_first: u32,
     tile_first: u32,

@@ -1,6 +1,7 @@
 // Points: discs about the corners of a triangle, `frame.point_radius` units in radius. A sample under several of them is
 // drawn once, as the nearest corner's, and of equally near ones the first's.
 //@ use common/frame
+//@ use common/grid
 //@ use common/vertex
 
 // Is the sample at p, which lies in the box of the disc, in the disc?
@@ -19,4 +20,11 @@ fn points_corner(a: vec4u, b: vec4u, c: vec4u, p: vec2i) -> u32 {
     if points_contain(b, p) && (corner == 3u || b.z > depth) { corner = 1u; depth = b.z; }
     if points_contain(c, p) && (corner == 3u || c.z > depth) { corner = 2u; }
     return corner;
+}
+
+// First and last candidate pixel of a disc; empty where a last precedes a first.
+fn points_pixels(corner: vec4u) -> vec4i {
+    let at = vertex_at(corner);
+    let r = i32(frame.point_radius);
+    return vec4i(max(grid_first(at - r), vec2i(0)), min(grid_last(at + r + 1), vec2i(frame.size) - 1));
 }

@@ -1,13 +1,10 @@
-// Raster small: every triangle is fetched, culled and classified by one invocation; the small are drawn on the spot,
-// the others wait in a queue for a kernel of their size. Classifying and drawing the small share one fetch.
+// Raster small: every triangle is fetched, culled and classified by one invocation; the small are drawn on the spot, or put
+// on the lists of the tiles that they touch; the others wait in a queue for a kernel of their size. Classifying and drawing the small share one fetch.
 //@ use common/triangle
 //@ use common/fixed
 //@ use common/reject
 //@ use slot/queues
-//@ use slot/coverage
-//@ use common/gate
-//@ use slot/visibility
-//@ use slot/marks
+//@ use slot/walk
 
 // Most candidate samples, and most pixels per side, that one invocation walks; chosen by the adapter's caps.
 override SMALL_SAMPLES: i32 = 128;
@@ -57,36 +54,7 @@ fn raster_small(@builtin(workgroup_id) group: vec3u, @builtin(num_workgroups) gr
         if IS_FIRST { queues_push_medium(id); }
         return;
     }
-    marks_box(pixels);
-    let is_turned = area < 0;
-    let coverage = coverage_begin(t.a, select(t.b, t.c, is_turned), select(t.c, t.b, is_turned), abs(area), pixels.xy);
-    walk(coverage, pixels, t);
-}
-
-// One flat loop over the box, so that neighbouring invocations stay together whatever their boxes' shapes.
-fn walk(coverage: Coverage, pixels: vec4i, t: Triangle) {
-    let width = pixels.z - pixels.x + 1;
-    let count = width * (pixels.w - pixels.y + 1);
-    var row = coverage.row;
-    var edges = row;
-    var pixel = u32(pixels.y) * frame.size.x + u32(pixels.x);
-    var x = 0;
-    var y = pixels.y;
-    for (var i = 0; i < count; i += 1) {
-        if coverage_contains(coverage, edges) && is_drawn(t, vec2u(vec2i(pixels.x + x, y)), pixel) {
-            visibility_write(pixel, coverage_key(coverage, edges), t.id);
-        }
-        x += 1;
-        edges += coverage.step_x;
-        pixel += 1u;
-        if x == width {
-            x = 0;
-            y += 1;
-            row += coverage.step_y;
-            edges = row;
-            pixel += frame.size.x - u32(width);
-        }
-    }
+    walk(t, area, pixels);
 }
 
 // A corner was rejected, or lies in front of the near plane or beyond the guard band.

@@ -135,7 +135,7 @@ impl Painter {
 
 /// Rungs that an adapter of these capabilities has.
 pub fn usable_rungs(caps: &Caps) -> Vec<Visibility> {
-    Visibility::EXACT.into_iter().filter(|rung| *rung != Visibility::Packed64 || caps.int64_atomics).collect()
+    Visibility::EXACT.into_iter().filter(|rung| rung.is_there(caps.int64_atomics)).collect()
 }
 
 pub fn describe(summary: &AdapterSummary, caps: &Caps) -> String {

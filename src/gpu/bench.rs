@@ -189,7 +189,7 @@ impl Lab<'_> {
         for &visibility in Visibility::ALL {
             let mut renderer = Renderer::new(self.gpu.clone());
             renderer.set_scene(scene)?;
-            if visibility == Visibility::Packed64 && !self.gpu.caps.int64_atomics {
+            if !visibility.is_there(self.gpu.caps.int64_atomics) {
                 missing.push((visibility.name().into(), "packed64 needs 64-bit atomics, which this adapter lacks".into()));
                 continue;
             }
@@ -333,7 +333,11 @@ impl Entry {
             ms_p50: percentile(&self.whole, 0.5),
             ms_p95: percentile(&self.whole, 0.95),
             samples: self.whole.len(),
-            is_promised: matches!(self.contender, Contender::Ours(..) | Contender::Stacked(..)),
+            is_promised: match &self.contender {
+                Contender::Ours(visibility, _) => visibility.is_exact(),
+                Contender::Stacked(..) => true,
+                Contender::Naive(..) | Contender::Hardware(_) => false,
+            },
             passes: self.passes.into_iter().filter_map(pass).collect(),
             ..row(self.contender.rung(), self.error, note)
         }

@@ -27,7 +27,7 @@ use self::{
     buffers::Buffers,
     dispatch::{Dispatch, dispatch},
     pipelines::Pipelines,
-    prepare::{BACKGROUND_ROWS, first_capacities, record_count, recorded_capacities},
+    prepare::{BACKGROUND_ROWS, bin_heads, first_capacities, record_count, recorded_capacities},
     readback::Pending,
     timer::{Detail, Timer},
     uniforms::{Capacities, CounterRecord, color_stride},
@@ -194,7 +194,10 @@ impl Renderer {
         if let Some(timer) = &mut self.timer {
             timer.begin(&mut encoder, detail);
         }
-        self.clear(&mut encoder, &["counters", "depth_keys", "owners", "depth_owner", "layers", "marks", "counts", "hits"]);
+        self.clear(&mut encoder, &["counters", "depth_keys", "owners", "depth_owner", "packed", "layers", "marks", "counts", "hits"]);
+        if self.buffers.has("bins") {
+            encoder.clear_buffer(self.buffers.get("bins"), 0, Some(4 * bin_heads(view)));
+        }
         if plan.key.listed_tiles {
             self.fill_background(&mut encoder, view);
         }

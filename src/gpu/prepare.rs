@@ -12,7 +12,7 @@ use crate::{
     scene::{Scene, camera::View, draw::draws, needs::Needs},
     shader::{
         glue::uniform_bytes,
-        key::{KernelKey, Order},
+        key::{KernelKey, Layout, Order},
     },
 };
 
@@ -69,8 +69,10 @@ impl Renderer {
             "previous" => key.reads_previous(),
             "pieces" => key.has_clipping,
             "effects" => has_uniform,
-            "depth_keys" | "owners" => key.rungs.visibility == Visibility::Split32,
-            "depth_owner" => key.rungs.visibility == Visibility::Packed64,
+            "depth_keys" | "owners" => key.layout() == Layout::Split,
+            "depth_owner" => key.layout() == Layout::Pairs,
+            "packed" => key.layout() == Layout::Word,
+            "bins" => key.rungs.visibility == Visibility::Tiled,
             "order" | "counts" | "sums" => key.order != Order::Free,
             "hits" => key.order == Order::Submission,
             "layers" => key.layers == Some(Layers::Overdraw),
@@ -125,21 +127,36 @@ impl Renderer {
                 [
                     "nearest depth key per pixel, 4 bytes, and behind them the sums of its layers, 16 bytes",
                     "depth key and owner per pixel, 8 bytes, and behind them the sums of its layers, 16 bytes",
+                    "part of the depth key and owner per pixel, 4 bytes, and behind them the sums of its layers, 16 bytes",
                 ],
             ),
-            _ => (0, ["nearest depth key per pixel, 4 bytes", "depth key and owner per pixel, 8 bytes"]),
+            _ => (
+                0,
+                [
+                    "nearest depth key per pixel, 4 bytes",
+                    "depth key and owner per pixel, 8 bytes",
+                    "part of the depth key and owner per pixel, 4 bytes",
+                ],
+            ),
         };
         if key.layers == Some(Layers::Overdraw) {
             buffers.ensure(gpu, "layers", 4 * pixels, STORAGE, "layers per pixel, 4 bytes")?;
         }
-        match key.rungs.visibility {
-            Visibility::Split32 => {
+        match key.layout() {
+            Layout::Split => {
                 buffers.ensure(gpu, "depth_keys", 4 * pixels + sums, STORAGE, why[0])?;
                 buffers.ensure(gpu, "owners", 4 * pixels, STORAGE, "owner per pixel, 4 bytes")?;
             }
-            Visibility::Packed64 => {
+            Layout::Pairs => {
                 buffers.ensure(gpu, "depth_owner", 8 * pixels + sums, STORAGE, why[1])?;
             }
+            Layout::Word => {
+                buffers.ensure(gpu, "packed", 4 * pixels + sums, STORAGE, why[2])?;
+            }
+        }
+        if key.rungs.visibility == Visibility::Tiled {
+            let words = bin_heads(view) + u64::from(recorded.bins);
+            buffers.ensure(gpu, "bins", 4 * words, STORAGE, "which triangles each tile of 16 x 16 pixels has to look at")?;
         }
         let tiles = if key.listed_tiles { u64::from(view.width.div_ceil(8)) * u64::from(view.height.div_ceil(8)) } else { 0 };
         let picture = 4 * u64::from(color_stride(view.width)) * u64::from(view.height);
@@ -172,6 +189,11 @@ fn background_word(view: &View) -> [u8; 4] {
     [srgb_byte(r), srgb_byte(g), srgb_byte(b), (alpha.clamp(0.0, 1.0) * 255.0 + 0.5) as u8]
 }
 
+/// Tiles of 16 x 16 pixels: so many words stand before the lists of triangles.
+pub fn bin_heads(view: &View) -> u64 {
+    u64::from(view.width.div_ceil(16)) * u64::from(view.height.div_ceil(16))
+}
+
 /// Capacities of the queues that this key's passes have; 0 where a pass is left out.
 pub fn recorded_capacities(key: &KernelKey, all: &Capacities) -> Capacities {
     let kept = |is_there: bool, capacity: u32| if is_there { capacity } else { 0 };
@@ -181,6 +203,7 @@ pub fn recorded_capacities(key: &KernelKey, all: &Capacities) -> Capacities {
         medium: kept(key.has_medium, all.medium),
         large: kept(key.has_large, all.large),
         tiles: kept(key.has_large, all.tiles),
+        bins: kept(key.rungs.visibility == Visibility::Tiled, all.bins),
     }
 }
 
@@ -188,5 +211,12 @@ pub fn recorded_capacities(key: &KernelKey, all: &Capacities) -> Capacities {
 pub fn first_capacities(scene: &Scene) -> Capacities {
     let triangles = scene.triangle_count().min(u64::from(u32::MAX)) as u32;
     let room = |most: u32| triangles.clamp(16, most).next_power_of_two();
-    Capacities { clip: room(4096), pieces: 2 * room(4096), medium: room(65_536), large: room(16_384), tiles: 16 * room(4096) }
+    Capacities {
+        clip: room(4096),
+        pieces: 2 * room(4096),
+        medium: room(65_536),
+        large: room(16_384),
+        tiles: 16 * room(4096),
+        bins: 4 * triangles.clamp(1024, 1 << 20),
+    }
 }

@@ -14,10 +14,9 @@ use super::{
 use crate::{
     effects::{Stack, hooks::Layers},
     frame::{Counters, Frame, Geometry, Piece, SnappedVertex},
-    ladder::Visibility,
     plan::Accuracy,
     scene::camera::View,
-    shader::key::{KernelKey, Phase},
+    shader::key::{KernelKey, Layout, Phase},
 };
 
 /// Counters and stamps of a frame in flight.
@@ -128,7 +127,8 @@ impl Renderer {
             None
         };
         let layers = if key.layers == Some(Layers::Overdraw) { counted.clone() } else { self.count_layers(&key, view)? };
-        let frame = Frame { width: view.width, height: view.height, owner, key: depth, color, counted, counters };
+        let keys_are_rough = !key.rungs.visibility.is_exact();
+        let frame = Frame { width: view.width, height: view.height, owner, key: depth, color, counted, counters, keys_are_rough };
         Ok(Capture { frame, geometry, layers: Some(layers), previous })
     }
 
@@ -160,12 +160,13 @@ impl Renderer {
     /// Owner and key images.
     fn read_visibility(&self, key: &KernelKey, view: &View) -> Result<(Vec<u32>, Vec<u32>), RenderError> {
         let pixels = view.pixels() as u64;
-        Ok(match key.rungs.visibility {
-            Visibility::Split32 => {
+        Ok(match key.layout() {
+            Layout::Split => {
                 let owners = self.words("owners", pixels)?;
                 (owners.iter().map(|word| !word).collect(), self.words("depth_keys", pixels)?)
             }
-            Visibility::Packed64 => {
+            Layout::Word => self.words("packed", pixels)?.iter().map(|&word| key.unpacked(word)).unzip(),
+            Layout::Pairs => {
                 let words = self.words("depth_owner", 2 * pixels)?;
                 words.chunks_exact(2).map(|pair| (!pair[0], pair[1])).unzip()
             }
@@ -175,9 +176,10 @@ impl Renderer {
     /// Weights or layers per pixel, as the effect in the visibility slot has them.
     fn read_counted(&self, key: &KernelKey, view: &View) -> Result<Vec<u32>, RenderError> {
         let pixels = view.pixels() as u64;
-        let (buffer, first) = match (key.layers, key.rungs.visibility) {
-            (Some(Layers::Xray { .. }), Visibility::Split32) => ("depth_keys", pixels),
-            (Some(Layers::Xray { .. }), Visibility::Packed64) => ("depth_owner", 2 * pixels),
+        let (buffer, first) = match (key.layers, key.layout()) {
+            (Some(Layers::Xray { .. }), Layout::Split) => ("depth_keys", pixels),
+            (Some(Layers::Xray { .. }), Layout::Word) => ("packed", pixels),
+            (Some(Layers::Xray { .. }), Layout::Pairs) => ("depth_owner", 2 * pixels),
             (Some(Layers::Overdraw), _) => return self.words("layers", pixels),
             (Some(Layers::Race) | None, _) => return Ok(Vec::new()),
         };

@@ -51,6 +51,7 @@ twin! {
         pub medium_capacity: u32,
         pub large_capacity: u32,
         pub tile_capacity: u32,
+        pub bin_capacity: u32,
         pub medium_first: u32,
         pub large_first: u32,
         pub tile_first: u32,
@@ -101,6 +102,7 @@ twin! {
         pub marked_tiles: u32,
         pub tickets: u32,
         pub tickets_again: u32,
+        pub bins: u32,
         pub full_pixels: u32,
         pub dropped: u32,
     }
@@ -142,6 +144,8 @@ pub struct Capacities {
     pub medium: u32,
     pub large: u32,
     pub tiles: u32,
+    /// Entries on the lists of all tiles of a picture that is drawn tile by tile.
+    pub bins: u32,
 }
 
 impl Capacities {
@@ -152,12 +156,12 @@ impl Capacities {
 
     /// Room for an entry everywhere: no binding may be empty.
     pub fn at_least_one(self) -> Self {
-        let Self { clip, pieces, medium, large, tiles } = self;
-        let [clip, pieces, medium, large, tiles] = [clip, pieces, medium, large, tiles].map(|capacity| capacity.max(1));
-        Self { clip, pieces, medium, large, tiles }
+        let Self { clip, pieces, medium, large, tiles, bins } = self;
+        let [clip, pieces, medium, large, tiles, bins] = [clip, pieces, medium, large, tiles, bins].map(|capacity| capacity.max(1));
+        Self { clip, pieces, medium, large, tiles, bins }
     }
 
-    /// Grows whatever the demand exceeded, by powers of two; true if anything grew.
+    /// Grows whatever the demand exceeded, by powers of two, the lists of tiles by a quarter; true if anything grew.
     pub fn grow(&mut self, demand: &CounterRecord) -> bool {
         let pairs = [
             (&mut self.clip, demand.clip),
@@ -172,6 +176,10 @@ impl Capacities {
                 *capacity = demand.checked_next_power_of_two().unwrap_or(u32::MAX);
                 grew = true;
             }
+        }
+        if demand.bins > self.bins {
+            self.bins = demand.bins.saturating_add(demand.bins / 4);
+            grew = true;
         }
         grew
     }
@@ -208,6 +216,7 @@ impl FrameUniform {
             medium_capacity: capacities.medium,
             large_capacity: capacities.large,
             tile_capacity: capacities.tiles,
+            bin_capacity: capacities.bins,
             medium_first: capacities.clip,
             large_first: capacities.clip + capacities.medium,
             tile_first: capacities.clip + capacities.medium + capacities.large,
@@ -275,6 +284,7 @@ impl CounterRecord {
             self.medium.saturating_sub(capacities.medium),
             self.large.saturating_sub(capacities.large),
             self.tiles.saturating_sub(capacities.tiles),
+            self.bins.saturating_sub(capacities.bins),
         ];
         Counters {
             rejected_nonfinite: self.rejected_nonfinite,

@@ -152,7 +152,8 @@ fn judge_samples(accuracy: &mut Accuracy, coverage: &Coverage, adapter: &Frame, 
         let is_wrong = !is_contested && !owner_is_right(sample, owner);
         accuracy.owner_mismatch += u64::from(is_wrong);
         accuracy.wrong_winners += u64::from(is_wrong && sample.claimed.is_some());
-        accuracy.key_outside_bound += u64::from(!is_contested && sample.claimed.is_some_and(|bound| !key_fits(key, bound)));
+        let is_judged = !is_contested && !adapter.keys_are_rough;
+        accuracy.key_outside_bound += u64::from(is_judged && sample.claimed.is_some_and(|bound| !key_fits(key, bound)));
     }
 }
 
@@ -163,7 +164,7 @@ fn judge_choice(accuracy: &mut Accuracy, coverage: &Coverage, adapter: &Frame, l
         accuracy.double_hits += layers.map_or(0, |layers| u64::from(layers[i].saturating_sub(sample.layers)));
         accuracy.owner_mismatch += u64::from(owner != NO_OWNER && sample.claimed.is_none());
         accuracy.orphans += u64::from(owner == NO_OWNER && key != 0);
-        accuracy.key_outside_bound += u64::from(sample.claimed.is_some_and(|bound| !key_fits(key, bound)));
+        accuracy.key_outside_bound += u64::from(!adapter.keys_are_rough && sample.claimed.is_some_and(|bound| !key_fits(key, bound)));
     }
     let drawn: Option<u64> = layers.map(|layers| layers.iter().map(|&count| u64::from(count)).sum());
     accuracy.holes += drawn.map_or(0, |drawn| drawn.abs_diff(limit));

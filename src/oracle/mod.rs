@@ -118,5 +118,6 @@ fn empty(view: &View) -> Frame {
 
 /// The integers of `coverage` with their colours.
 fn frame(view: &View, coverage: &Coverage, color: Vec<[u8; 4]>, counted: Vec<u32>, counters: Counters) -> Frame {
-    Frame { width: view.width, height: view.height, owner: coverage.owners(), key: coverage.keys(), color, counted, counters }
+    let (owner, key) = (coverage.owners(), coverage.keys());
+    Frame { width: view.width, height: view.height, owner, key, color, counted, counters, ..Frame::default() }
 }

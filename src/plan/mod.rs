@@ -8,7 +8,7 @@ mod rungs;
 use self::{explain::explain, predict::Prediction, rungs::Choice};
 use crate::{
     effects::{Conflict, Enabled, Stack, hooks::Shape},
-    ladder::{Clipping, Parameters, Pins, Rungs},
+    ladder::{Clipping, Parameters, Pins, Rungs, Visibility},
     math::SMALL_EXTENT,
     scene::needs::Needs,
     shader::{
@@ -148,6 +148,8 @@ pub enum PlanError {
     /// A rung that was asked for by name.
     #[error("visibility packed64 needs 64-bit atomics, which this adapter lacks; use split32 or leave it out")]
     Lacking,
+    #[error("visibility packed32 keeps triangle and depth in 32 bits, at most 2^24 triangles, and this scene has {triangles}; use split32")]
+    Crowded { triangles: u64 },
     #[error("coverage {rung} cannot draw the effect {effect}, which measures triangles in 1/256 px; use fixed8, float or float-top-left")]
     Grid { rung: &'static str, effect: &'static str },
     #[error("coverage fixed12 holds pictures of at most 2047 px a side, and this one has {}x{}; use fixed8", size[0], size[1])]
@@ -177,6 +179,11 @@ pub struct Plan {
     pub prediction: Prediction,
     /// What they may err by.
     pub tolerance: Tolerance,
+}
+
+/// Bits that tell so many triangles apart, and each from nothing.
+const fn bit_length(triangles: u64) -> u32 {
+    64 - (triangles | 1).leading_zeros()
 }
 
 /// Chooses the kernel.
@@ -239,6 +246,7 @@ pub fn plan(needs: &Needs, stack: &Stack, caps: &Caps, tuning: &Tuning, accuracy
         listed_tiles: tuning.listed_tiles && !stack.finishes(),
         list_group: tuning.list_group,
         early_load: tuning.early_load,
+        id_bits: if rungs.visibility == Visibility::Packed32 { bit_length(needs.triangles) } else { 0 },
     };
     let (reasons, omitted) = explain(needs, tuning == &caps.tuning(), caps, &key);
     reasons_of_rungs.extend(reasons);

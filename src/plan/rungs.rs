@@ -20,6 +20,9 @@ use crate::{
 /// Largest side of a picture whose pixels all lie inside the guard band of 1/4096 px.
 const FIXED12_SIDE: u32 = 2047;
 
+/// Most triangles whose ids leave packed32 eight bits for depth.
+const PACKED32_TRIANGLES: u64 = (1 << 24) - 1;
+
 /// The rungs of a picture, why each is taken, and what they are predicted to err by.
 pub(super) struct Choice {
     pub rungs: Rungs,
@@ -33,8 +36,7 @@ pub(super) fn choose(needs: &Needs, stack: &Stack, caps: &Caps, accuracy: &Accur
     let mut rungs = Rungs { visibility, ..accuracy.tier.base() };
     accuracy.pins.apply(&mut rungs);
     if layers == Some(Layers::Race) {
-        // Plain stores need no 64-bit atomics; key and owner stand side by side, as packed64 has them.
-        rungs.visibility = Visibility::Packed64;
+        rungs.visibility = Visibility::Race;
     }
     let mut reasons = Vec::new();
     let (mut prediction, tolerance) = (predict_all(&rungs, needs), accuracy.tolerance());
@@ -76,8 +78,11 @@ fn lowered(sentence: &str) -> String {
 
 /// What no kernel can draw.
 fn check(rungs: &Rungs, needs: &Needs, stack: &Stack, caps: &Caps) -> Result<(), PlanError> {
-    if rungs.visibility == Visibility::Packed64 && !caps.int64_atomics && !stack.is_racing() {
+    if !rungs.visibility.is_there(caps.int64_atomics) {
         return Err(PlanError::Lacking);
+    }
+    if rungs.visibility == Visibility::Packed32 && needs.triangles > PACKED32_TRIANGLES {
+        return Err(PlanError::Crowded { triangles: needs.triangles });
     }
     if rungs.coverage.subpixel_bits() != SUBPIXEL_BITS
         && let Some(effect) = measures(stack)

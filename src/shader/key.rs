@@ -8,8 +8,8 @@ use crate::{
         draw_order::Mode,
         hooks::{Layers, Shape},
     },
-    frame::vertex_flags,
-    ladder::{Clipping, Coverage, Perspective, Rungs, Vertex, Visibility},
+    frame::{NO_OWNER, vertex_flags},
+    ladder::{Clipping, Coverage, Depth, Perspective, Rungs, Vertex, Visibility},
 };
 
 pub use super::pass::{Entries, Pass, Phase};
@@ -19,6 +19,17 @@ pub use super::pass::{Entries, Pass, Phase};
 pub enum Fetch {
     Direct,
     Indexed,
+}
+
+/// How depth and owner of the pixels lie in memory.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Layout {
+    /// A buffer of keys and one of complemented owners.
+    Split,
+    /// One word for both.
+    Word,
+    /// Complemented owner and key side by side.
+    Pairs,
 }
 
 /// Which samples are drawn, if not all.
@@ -88,6 +99,8 @@ pub struct KernelKey {
     pub list_group: u32,
     /// Load before the depth atomic.
     pub early_load: bool,
+    /// Bits of a triangle's id where it shares a word with its depth, else 0.
+    pub id_bits: u32,
 }
 
 /// Effects that settle something per triangle.
@@ -124,6 +137,7 @@ impl KernelKey {
             listed_tiles: true,
             list_group: 64,
             early_load: true,
+            id_bits: if visibility == Visibility::Packed32 { 24 } else { 0 },
         }
     }
 
@@ -175,12 +189,40 @@ impl KernelKey {
         }
     }
 
+    pub const fn layout(&self) -> Layout {
+        match self.rungs.visibility {
+            Visibility::Split32 => Layout::Split,
+            Visibility::Packed32 => Layout::Word,
+            Visibility::Race | Visibility::Packed64 | Visibility::Tiled => Layout::Pairs,
+        }
+    }
+
+    /// Bits of a depth key that shares a word with an owner, before it is cut, and the least key that counts: two far
+    /// depths below 2^-31 are one.
+    const fn key_span(&self) -> (u32, u32) {
+        match self.rungs.depth {
+            Depth::Ndc16 | Depth::Log16 => (16, 0),
+            Depth::Log24 => (24, 0),
+            Depth::Standard => (30, 0),
+            Depth::Reversed => (28, 0x3000_0000),
+        }
+    }
+
+    /// Owner and key of a pixel from the word in which they share the bits, as `shaders/common/packed.wgsl` has them.
+    pub fn unpacked(&self, word: u32) -> (u32, u32) {
+        let (bits, least) = self.key_span();
+        let loss = (bits + self.id_bits).saturating_sub(32);
+        if word == 0 { (NO_OWNER, 0) } else { (!word & ((1 << self.id_bits) - 1), (((word >> self.id_bits) << loss) + least).max(1)) }
+    }
+
     /// The raster phases of one frame, in order.
     pub fn phases(&self) -> Vec<Phase> {
         let nearest: &[Phase] = match (self.layers, self.rungs.visibility) {
-            (Some(Layers::Race), _) => &[Phase::Race],
+            (Some(Layers::Race), _) | (_, Visibility::Race) => &[Phase::Race],
+            (_, Visibility::Packed32) => &[Phase::Packed32],
             (_, Visibility::Split32) => &[Phase::Depth, Phase::Owner],
             (_, Visibility::Packed64) => &[Phase::Packed],
+            (_, Visibility::Tiled) => &[Phase::BinCount, Phase::BinFill, Phase::Tiles],
         };
         let layers: &[Phase] = match self.layers {
             Some(Layers::Xray { .. }) => &[Phase::Sum],
@@ -206,7 +248,12 @@ impl KernelKey {
         if self.decisions > 0 {
             passes.push(Pass::Decide(Entries::Triangles));
         }
+        let has_walks = phases.iter().any(|phase| !phase.is_tiled());
         for (i, &phase) in phases.iter().enumerate() {
+            if phase == Phase::Tiles {
+                passes.push(Pass::RasterTiles);
+                continue;
+            }
             passes.push(if self.shape == Shape::Points { Pass::RasterPoints(phase) } else { Pass::RasterSmall(phase) });
             if i == 0 && self.has_clipping {
                 passes.extend([Pass::Args, Pass::Clip]);
@@ -217,18 +264,19 @@ impl KernelKey {
             if i == 0 && self.has_clipping && self.decisions > 0 {
                 passes.push(Pass::Decide(Entries::Pieces));
             }
-            if i == 0 && self.has_large {
+            if i == 0 && self.has_large && has_walks {
                 passes.extend([Pass::TileLarge, Pass::Args]);
             }
             if self.has_medium {
-                passes.push(Pass::RasterMedium(phase));
+                passes.push(if phase.is_bin() { Pass::BinMedium(phase) } else { Pass::RasterMedium(phase) });
             }
             if self.has_large {
-                passes.push(Pass::RasterLarge(phase));
+                passes.push(if phase.is_bin() { Pass::BinLarge(phase) } else { Pass::RasterLarge(phase) });
             }
             match phase {
                 Phase::Tally => passes.extend([Pass::OrderSums, Pass::OrderLimit, Pass::OrderRanks]),
                 Phase::Straddle => passes.push(Pass::OrderCut),
+                Phase::BinCount => passes.push(Pass::BinScan),
                 _ => {}
             }
         }
@@ -239,7 +287,7 @@ impl KernelKey {
     fn is_first(&self, pass: Pass) -> bool {
         match self.lead().first() {
             Some(&first) => pass.phase() == Some(first),
-            None => pass.phase() != Some(Phase::Owner) && !self.is_again(pass),
+            None => !matches!(pass.phase(), Some(Phase::Owner | Phase::BinFill)) && !self.is_again(pass),
         }
     }
 
@@ -280,6 +328,11 @@ impl KernelKey {
             ("SMALL_SAMPLES", self.small_samples.into()),
             ("SMALL_SIDE", self.small_side.into()),
             ("EARLY_LOAD", flag(self.early_load)),
+            ("ID_BITS", self.id_bits.into()),
+            ("KEY_BITS", self.key_span().0.into()),
+            ("KEY_LEAST", self.key_span().1.into()),
+            ("IS_LARGE", flag(matches!(pass, Pass::BinLarge(_)))),
+            ("IS_TICKETED", flag(self.order == Order::Scheduler)),
             ("IS_FIRST", flag(self.is_first(pass))),
             ("IS_AGAIN", flag(self.is_again(pass))),
             ("SUM_BITS", if let Some(Layers::Xray { bits }) = self.layers { bits.into() } else { 0.0 }),
@@ -293,7 +346,10 @@ impl fmt::Display for KernelKey {
             Fetch::Direct => "direct",
             Fetch::Indexed => "indexed",
         };
-        let visibility = if self.layers == Some(Layers::Race) { "race" } else { self.rungs.visibility.name() };
+        let visibility = match self.rungs.visibility {
+            Visibility::Packed32 => format!("packed32/{}", self.id_bits),
+            other => other.name().into(),
+        };
         let coverage = self.rungs.coverage.name();
         write!(f, "raster[fetch={fetch} coverage={coverage} visibility={visibility} small={}", self.small_samples)?;
         for (axis, word) in self.rungs.unusual().filter(|(axis, _)| !matches!(axis.name, "coverage" | "visibility")) {

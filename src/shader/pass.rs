@@ -22,6 +22,14 @@ pub enum Pass {
     TileLarge,
     RasterMedium(Phase),
     RasterLarge(Phase),
+    /// Lists of the tiles that medium triangles touch.
+    BinMedium(Phase),
+    /// The same of large ones.
+    BinLarge(Phase),
+    /// Where the list of each tile begins.
+    BinScan,
+    /// Every tile by itself, from its list.
+    RasterTiles,
     ListTiles,
     Resolve,
 }
@@ -38,6 +46,8 @@ pub enum Entries {
 pub enum Phase {
     /// Key and owner at once.
     Packed,
+    /// Owner and what fits of the key, in one word.
+    Packed32,
     /// The nearest key.
     Depth,
     /// The owner of the nearest key.
@@ -52,6 +62,24 @@ pub enum Phase {
     Tally,
     /// The samples of the triangle in which the drawing stops.
     Straddle,
+    /// How many triangles each tile has to look at.
+    BinCount,
+    /// Which ones.
+    BinFill,
+    /// Key and owner, tile by tile.
+    Tiles,
+}
+
+impl Phase {
+    /// Does it put triangles on lists instead of visiting their samples?
+    pub const fn is_bin(self) -> bool {
+        matches!(self, Self::BinCount | Self::BinFill)
+    }
+
+    /// Is it one of the three that together find owners tile by tile?
+    pub const fn is_tiled(self) -> bool {
+        self.is_bin() || matches!(self, Self::Tiles)
+    }
 }
 
 impl Pass {
@@ -71,6 +99,9 @@ impl Pass {
             Self::TileLarge => "tile_large",
             Self::RasterMedium(_) => "raster_medium",
             Self::RasterLarge(_) => "raster_large",
+            Self::BinMedium(_) | Self::BinLarge(_) => "bin_queued",
+            Self::BinScan => "bin_scan",
+            Self::RasterTiles => "raster_tiles",
             Self::ListTiles => "list_tiles",
             Self::Resolve => "resolve",
         }
@@ -87,6 +118,8 @@ impl Pass {
     pub const fn phase(self) -> Option<Phase> {
         match self {
             Self::RasterSmall(phase) | Self::RasterPoints(phase) | Self::RasterMedium(phase) | Self::RasterLarge(phase) => Some(phase),
+            Self::BinMedium(phase) | Self::BinLarge(phase) => Some(phase),
+            Self::RasterTiles => Some(Phase::Tiles),
             _ => None,
         }
     }
@@ -96,7 +129,14 @@ impl Pass {
         if self == Self::Decide(Entries::Pieces) {
             return "decide pieces".into();
         }
+        let stem = match self {
+            Self::BinMedium(_) => "bin_medium",
+            Self::BinLarge(_) => "bin_large",
+            _ => self.stem(),
+        };
         match self.phase() {
+            Some(Phase::BinCount) => format!("{stem} count tiles"),
+            Some(Phase::BinFill) => format!("{stem} list tiles"),
             Some(Phase::Depth) => format!("{} depth", self.stem()),
             Some(Phase::Owner) => format!("{} owner", self.stem()),
             Some(Phase::Count) => format!("{} count", self.stem()),
@@ -104,7 +144,7 @@ impl Pass {
             Some(Phase::Straddle) => format!("{} straddle", self.stem()),
             Some(Phase::Sum) => format!("{} sum", self.stem()),
             Some(Phase::Race) => format!("{} race", self.stem()),
-            Some(Phase::Packed) | None => self.stem().into(),
+            Some(Phase::Packed | Phase::Packed32 | Phase::Tiles) | None => self.stem().into(),
         }
     }
 }

@@ -1,6 +1,6 @@
 //! Slots: which file of `shaders/slots` fills each part that a pass leaves open.
 
-use super::key::{Fetch, KernelKey, Order, Pass, Phase};
+use super::key::{Fetch, KernelKey, Layout, Order, Pass, Phase};
 use crate::{
     effects::hooks::{Layers, Shape},
     ladder::Counting,
@@ -37,6 +37,18 @@ impl KernelKey {
             _ if self.rungs.coverage.is_float() => "float",
             _ => "fixed",
         };
+        let layout = match self.layout() {
+            Layout::Split => "split32",
+            Layout::Word => "packed32",
+            Layout::Pairs => "packed64",
+        };
+        let is_bin = pass.phase().is_some_and(Phase::is_bin);
+        let cells = match self.shape {
+            Shape::Points => "points",
+            Shape::Triangles if self.has_large => "all",
+            Shape::Triangles | Shape::Boxes => "small",
+        };
+        let walk = if is_bin { "tiles" } else { "samples" };
         let mut slots = vec![
             ("corners", format!("slots/corners/{records}")),
             ("sources", format!("slots/sources/{records}")),
@@ -55,15 +67,21 @@ impl KernelKey {
             ("coverage", format!("slots/coverage/{coverage}")),
             ("blocks", format!("slots/blocks/{}", if self.rungs.coverage.is_float() { "float" } else { "rebased" })),
             ("depth", format!("slots/depth/{}", self.rungs.depth.name())),
-            ("owner", format!("slots/owner/{}", self.rungs.visibility.name())),
+            ("owner", format!("slots/owner/{layout}")),
             ("finish", format!("slots/finish/{finish}")),
             ("image", format!("slots/image/{}", if pass == Pass::Resolve { "seen" } else { "none" })),
-            ("sums", format!("slots/sums/{}", self.rungs.visibility.name())),
+            ("sums", format!("slots/sums/{layout}")),
+            ("walk", format!("slots/walk/{walk}")),
+            ("discs", format!("slots/discs/{walk}")),
+            ("bins", format!("slots/bins/{}", if pass.phase() == Some(Phase::BinFill) { "fill" } else { "count" })),
+            ("cells", format!("slots/cells/{cells}")),
+            ("delay", format!("slots/delay/{}", if self.layers == Some(Layers::Race) { "raced" } else { "none" })),
             ("shading", format!("slots/shading/{shading}")),
         ];
         if let Some(phase) = pass.phase() {
             let file = match phase {
                 Phase::Packed => "packed64",
+                Phase::Packed32 => "packed32",
                 Phase::Depth => "split32_depth",
                 Phase::Owner => "split32_owner",
                 Phase::Count => "count",
@@ -71,6 +89,7 @@ impl KernelKey {
                 Phase::Straddle => "straddle",
                 Phase::Sum => "sum",
                 Phase::Race => "race",
+                Phase::BinCount | Phase::BinFill | Phase::Tiles => return slots,
             };
             slots.push(("visibility", format!("slots/visibility/{file}")));
         }

@@ -70,7 +70,12 @@ pub fn renderer() -> Option<MutexGuard<'static, Renderer>> {
 
 /// The visibility rungs that the adapter has.
 pub fn rungs(renderer: &Renderer) -> Vec<Visibility> {
-    Visibility::EXACT.into_iter().filter(|v| *v == Visibility::Split32 || renderer.gpu().caps.int64_atomics).collect()
+    Visibility::EXACT.into_iter().filter(|v| v.is_there(renderer.gpu().caps.int64_atomics)).collect()
+}
+
+/// The exact rung that a CPU adapter is quickest on, for what takes long.
+pub fn quick_rung(renderer: &Renderer) -> Visibility {
+    if renderer.gpu().caps.int64_atomics { Visibility::Packed64 } else { Visibility::Split32 }
 }
 
 pub fn pinned(visibility: Visibility) -> Accuracy {

@@ -14,6 +14,11 @@ fn coverage_begin(a: vec4u, b: vec4u, c: vec4u, area: i32, first: vec2i) -> Cove
     return Coverage(vec3i(0), vec3i(0), vec3i(0), depth_key(bitcast<f32>(max(max(a.z, b.z), c.z))));
 }
 
+// What is stepped, so many pixels right and down of the first.
+fn coverage_at(coverage: Coverage, offset: vec2i) -> vec3i {
+    return vec3i(0);
+}
+
 fn coverage_contains(coverage: Coverage, edges: vec3i) -> bool {
     return true;
 }

@@ -38,6 +38,11 @@ fn coverage_begin(a: vec4u, b: vec4u, c: vec4u, area: i32, first: vec2i) -> Cove
     return coverage;
 }
 
+// What is stepped, so many pixels right and down of the first.
+fn coverage_at(coverage: Coverage, offset: vec2i) -> vec3f {
+    return coverage.row + coverage.step_x * f32(offset.x) + coverage.step_y * f32(offset.y);
+}
+
 fn coverage_contains(coverage: Coverage, edges: vec3f) -> bool {
     return all(edges >= coverage.least);
 }

@@ -1,12 +1,11 @@
 // Visibility race: look, compare, store, without atomics, as a beginner's kernel does it. Whoever stores last stays.
-//@ use common/surface
-//@ use glue/surface
+//@ use slot/delay
 
 @group(0) @binding(5) var<storage, read_write> depth_owner: array<u32>;
 
 fn visibility_write(pixel: u32, key: u32, id: u32) {
     let is_nearer = depth_owner[2u * pixel + 1u] < key;
-    if is_nearer && race_dawdle(key, effects.race) {
+    if is_nearer && delay_passes(key) {
         depth_owner[2u * pixel + 1u] = key;
         depth_owner[2u * pixel] = ~id;
     }

@@ -1,0 +1,27 @@
+// Discs, samples: draws the corners of a triangle on the spot.
+//@ use common/points
+//@ use slot/depth
+//@ use common/gate
+//@ use slot/visibility
+//@ use slot/marks
+
+fn discs_draw(t: Triangle) {
+    discs_corner(t, t.a, 0u);
+    discs_corner(t, t.b, 1u);
+    discs_corner(t, t.c, 2u);
+}
+
+// The samples of one disc that belong to its corner.
+fn discs_corner(t: Triangle, corner: vec4u, place: u32) {
+    let pixels = points_pixels(corner);
+    if any(pixels.zw < pixels.xy) { return; }
+    marks_box(pixels);
+    for (var y = pixels.y; y <= pixels.w; y += 1) {
+        for (var x = pixels.x; x <= pixels.z; x += 1) {
+            let pixel = u32(y) * frame.size.x + u32(x);
+            if points_corner(t.a, t.b, t.c, grid_sample(vec2i(x, y))) == place && is_drawn(t, vec2u(vec2i(x, y)), pixel) {
+                visibility_write(pixel, depth_key(bitcast<f32>(corner.z)), t.id);
+            }
+        }
+    }
+}
