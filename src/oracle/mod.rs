@@ -13,6 +13,7 @@ mod clip;
 mod coverage;
 mod decide;
 mod finish;
+pub mod flushed;
 mod judge;
 mod layers;
 mod moved;
