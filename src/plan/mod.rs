@@ -106,6 +106,10 @@ pub enum PlanError {
     Wide { size: [u32; 2] },
     #[error("depth {rung} keeps no distances, so xray cannot count within a window; use reversed, or reach = \"all\"")]
     Window { rung: &'static str },
+    #[error("vertex strict holds where integers decide, but {what}; take it out, or another rung")]
+    Floats { what: String },
+    #[error("depth integer divides exact edges, which coverage {rung} does not have; use fixed8")]
+    Inexact { rung: &'static str },
     #[error(transparent)]
     Conflict(#[from] Conflict),
 }
@@ -134,6 +138,7 @@ pub struct Plan {
 pub fn plan(needs: &Needs, stack: &Stack, caps: &Caps, tuning: &Tuning, accuracy: &Accuracy) -> Result<Plan, PlanError> {
     stack.check()?;
     let shape = stack.shape();
+    let f32_positions = needs.f32_positions;
     let mut needs = if tuning.specialized { needs.clone() } else { needs.everything() };
     if stack.moves() {
         // Bounds of the scene say nothing of where effects move it, nor its normals of how they turn them.
@@ -145,7 +150,7 @@ pub fn plan(needs: &Needs, stack: &Stack, caps: &Caps, tuning: &Tuning, accuracy
     }
     let needs = &needs;
     let layers = stack.layers(needs.triangles);
-    let rungs = rungs::choose(needs, stack, caps, accuracy, layers)?;
+    let rungs = rungs::choose(needs, f32_positions, stack, caps, accuracy, layers)?;
     // Whoever drops what would have to be clipped needs no clipper; what is left may still be wide.
     let has_clipping = needs.clipping && rungs.clipping != Clipping::Drop;
     let (small_samples, small_side) = (tuning.small_samples.max(1), tuning.small_side.clamp(1, 128));

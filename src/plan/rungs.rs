@@ -3,12 +3,12 @@
 use super::{Accuracy, Caps, PlanError};
 use crate::{
     effects::{
-        Effect, Stack,
+        Effect, Enabled, Stack,
         hooks::Layers,
         points, read,
         xray::{Reach, Xray},
     },
-    ladder::{Coverage, Depth, Rungs, Visibility},
+    ladder::{Coverage, Depth, Rungs, Vertex, Visibility},
     math::SUBPIXEL_BITS,
     scene::needs::Needs,
 };
@@ -17,7 +17,7 @@ use crate::{
 const FIXED12_SIDE: u32 = 2047;
 
 /// The rungs of a picture: pins first, then what the tier asks.
-pub(super) fn choose(needs: &Needs, stack: &Stack, caps: &Caps, accuracy: &Accuracy, layers: Option<Layers>) -> Result<Rungs, PlanError> {
+pub(super) fn choose(needs: &Needs, f32_positions: bool, stack: &Stack, caps: &Caps, accuracy: &Accuracy, layers: Option<Layers>) -> Result<Rungs, PlanError> {
     let visibility = if caps.int64_atomics { Visibility::Packed64 } else { Visibility::Split32 };
     let mut rungs = Rungs { visibility, ..Rungs::default() };
     accuracy.pins.apply(&mut rungs);
@@ -35,7 +35,15 @@ pub(super) fn choose(needs: &Needs, stack: &Stack, caps: &Caps, accuracy: &Accur
     if rungs.coverage == Coverage::Fixed12 && needs.size.iter().any(|side| *side > FIXED12_SIDE) {
         return Err(PlanError::Wide { size: needs.size });
     }
-    if rungs.depth != Depth::Reversed && has_window(stack) {
+    if rungs.depth == Depth::Integer && rungs.coverage.is_float() {
+        return Err(PlanError::Inexact { rung: rungs.coverage.name() });
+    }
+    if rungs.vertex == Vertex::Strict
+        && let Some(what) = floats(stack, f32_positions)
+    {
+        return Err(PlanError::Floats { what });
+    }
+    if !matches!(rungs.depth, Depth::Reversed | Depth::Integer) && has_window(stack) {
         return Err(PlanError::Window { rung: rungs.depth.name() });
     }
     Ok(rungs)
@@ -50,4 +58,20 @@ fn measures(stack: &Stack) -> Option<&'static str> {
 /// Does an x-ray hold depths against a window?
 fn has_window(stack: &Stack) -> bool {
     stack.get("xray").is_some_and(|enabled| Reach::of(read::<Xray>(&enabled.words).reach) == Reach::Window)
+}
+
+/// What in a picture hangs on floats even behind a strict vertex stage, if anything.
+fn floats(stack: &Stack, f32_positions: bool) -> Option<String> {
+    let reason = |Enabled { effect, words }: &Enabled| {
+        let is_from_floats = effect.hooks.sample.is_some_and(|hook| hook.decides && (hook.is_from_floats)(words));
+        let why = match () {
+            () if effect.hooks.vertex.is_some() => "moves vertices in floats",
+            () if is_from_floats => "lets a front travel in floats",
+            () if !(effect.is_repeatable)(words) => "leaves its picture to chance",
+            () => return None,
+        };
+        Some(format!("the effect {} {why}", effect.name))
+    };
+    let positions = || (!f32_positions).then(|| "a mesh of the scene has positions that are not f32".to_owned());
+    stack.0.iter().find_map(reason).or_else(positions)
 }
