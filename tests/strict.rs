@@ -376,10 +376,15 @@ fn a_strict_picture_with_one_mistake_differs_from_the_list() {
             "soft_multiply(soft_multiply(clip.x, inv_w), center.x)",
             "soft_multiply(soft_multiply(clip.x, center.x), inv_w)",
         ),
-        ("small keys from biased edges", "slots/coverage/fixed8", "edges + coverage.bias", "edges"),
-        ("large keys from biased edges", "slots/keys/integer", "return Rebased(q, e);", "return Rebased(q, biased);"),
+        ("small keys from biased edges", "slots/coverage/fixed", "edges + coverage.bias", "edges"),
+        (
+            "large keys from biased edges",
+            "slots/block_keys/integer",
+            "fixed_edge(begin, end, p);",
+            "fixed_sub(fixed_edge(begin, end, p), Wide(0u, u32(fixed_bias(end - begin))));",
+        ),
         ("the float's guess is taken", "slots/keys/integer", "select(0u, 1u, left < 0)", "0u"),
-        ("the cut goes outside in", "passes/clip", "cut(plane, here, next)", "cut(plane, next, here)"),
+        ("the cut goes outside in", "passes/clip", "cut(plane, inside, outside)", "cut(plane, outside, inside)"),
     ] {
         let mutant = mutated(file, from, to);
         let mut wrong = Renderer::with_library(healthy.gpu().clone(), mutant.shaders());
@@ -397,7 +402,7 @@ fn what_floats_decide_is_refused_by_name() {
     let accuracy = Accuracy { pins: Pins::of(Vertex::Strict), ..Accuracy::default() };
     for name in ["explode", "inflate", "wobble", "race"] {
         let error = renderer.draw(&view, &stack(&["lambert", name]), &accuracy).expect_err(name).to_string();
-        assert!(error.starts_with("vertex strict: the effect ") && error.contains(name), "{error}");
+        assert!(error.starts_with("vertex strict ") && error.contains(&format!("the effect {name} ")), "{error}");
     }
     renderer.draw(&view, &stack(&["dissolve", "lambert", "xray"]), &accuracy).expect("integers decide here");
 }

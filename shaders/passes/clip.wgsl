@@ -42,18 +42,22 @@ fn cut(plane: u32, inside: Corner, outside: Corner) -> Corner {
 
 fn clip_against(plane: u32, polygon: Polygon, flags: vec4u) -> Polygon {
     var result: Polygon;
+    var next_outside = is_outside(plane, polygon.corners[0], flags);
     for (var i = 0u; i < polygon.count; i += 1u) {
         let here = polygon.corners[i];
         let next = polygon.corners[select(i + 1u, 0u, i + 1u == polygon.count)];
-        let here_outside = is_outside(plane, here, flags);
-        let next_outside = is_outside(plane, next, flags);
+        let here_outside = next_outside;
+        next_outside = is_outside(plane, next, flags);
         if !here_outside && result.count < 9u {
             result.corners[result.count] = here;
             result.count += 1u;
         }
         if here_outside != next_outside && result.count < 9u {
-            if here_outside { result.corners[result.count] = cut(plane, next, here); }
-            else { result.corners[result.count] = cut(plane, here, next); }
+            // One call: arithmetic in integers is long, and compilers copy it to every caller.
+            var inside = here;
+            var outside = next;
+            if here_outside { inside = next; outside = here; }
+            result.corners[result.count] = cut(plane, inside, outside);
             // Where the outline comes back inside it goes on along the same edge.
             result.corners[result.count].is_edge = here_outside && here.is_edge;
             result.count += 1u;

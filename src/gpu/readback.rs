@@ -13,8 +13,8 @@ use super::{
 };
 use crate::{
     effects::{Stack, hooks::Layers},
-    frame::{Counters, Frame, Geometry, Piece, SnappedVertex},
-    ladder::Visibility,
+    frame::{Counters, Exactness, Frame, Geometry, Piece, SnappedVertex},
+    ladder::{Depth, Vertex, Visibility},
     plan::Accuracy,
     scene::camera::View,
     shader::key::{KernelKey, Phase},

@@ -17,7 +17,14 @@ use crate::{
 const FIXED12_SIDE: u32 = 2047;
 
 /// The rungs of a picture: pins first, then what the tier asks.
-pub(super) fn choose(needs: &Needs, f32_positions: bool, stack: &Stack, caps: &Caps, accuracy: &Accuracy, layers: Option<Layers>) -> Result<Rungs, PlanError> {
+pub(super) fn choose(
+    needs: &Needs,
+    f32_positions: bool,
+    stack: &Stack,
+    caps: &Caps,
+    accuracy: &Accuracy,
+    layers: Option<Layers>,
+) -> Result<Rungs, PlanError> {
     let visibility = if caps.int64_atomics { Visibility::Packed64 } else { Visibility::Split32 };
     let mut rungs = Rungs { visibility, ..Rungs::default() };
     accuracy.pins.apply(&mut rungs);
