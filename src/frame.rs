@@ -46,6 +46,15 @@ pub struct Piece {
     pub outline: u32,
 }
 
+/// What of a picture comes from integer arithmetic alone, so that it is the same on every adapter.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Exactness {
+    /// Vertex records and pieces, from the bits of positions and matrices on.
+    pub vertices: bool,
+    /// Depth keys, given the records.
+    pub keys: bool,
+}
+
 /// Everything the rasterizer proper sees: what stands between the float vertex stage and integer coverage.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Geometry {
@@ -60,12 +69,14 @@ pub struct Geometry {
     pub decisions: Vec<[u32; 4]>,
     /// Positions are in units of 2^-bits px.
     pub subpixel_bits: u32,
+    /// What its maker promises about it, and about the keys of a frame drawn through it.
+    pub exact: Exactness,
 }
 
 impl Default for Geometry {
     fn default() -> Self {
         let (vertices, pieces, decisions) = (Vec::new(), Vec::new(), Vec::new());
-        Self { vertices, has_own_corners: false, pieces, decisions, subpixel_bits: SUBPIXEL_BITS }
+        Self { vertices, has_own_corners: false, pieces, decisions, subpixel_bits: SUBPIXEL_BITS, exact: Exactness::default() }
     }
 }
 

@@ -111,6 +111,8 @@ ladder! {
         Viewport = "viewport",
         /// Floats relative to the centre of the picture, snapped once.
         Snapped = "snapped",
+        /// The same in integer arithmetic: the same bits on every adapter and on the CPU.
+        Strict = "strict",
     }
     /// What a depth is compared by.
     depth: Depth = "depth", usual Reversed {
@@ -124,6 +126,8 @@ ladder! {
         Standard = "standard",
         /// All 32 bits of a float that is 1 at the near plane and 0 far away.
         Reversed = "reversed",
+        /// The same from a quotient of integers: the same bits wherever the corners are the same.
+        Integer = "integer",
     }
     /// Where depth and owner of a pixel meet.
     visibility: Visibility = "visibility", usual Packed64 {

@@ -84,6 +84,12 @@ pub fn hash(x: u32) -> u32 {
     x ^ (x >> 16)
 }
 
+/// FNV-1a, 64 bits, of the bytes of words, the lowest first (Fowler, Noll and Vo).
+pub fn fnv1a(words: &[u32]) -> u64 {
+    let bytes = words.iter().flat_map(|word| word.to_le_bytes());
+    bytes.fold(0xcbf2_9ce4_8422_2325, |hash, byte| (hash ^ u64::from(byte)).wrapping_mul(0x0100_0000_01b3))
+}
+
 /// A hash as a number in [0, 1) of 24 bits, exact in f32.
 pub fn hash_unit(x: u32) -> f64 {
     f64::from(hash(x) >> 8) / f64::from(1 << 24)
@@ -126,6 +132,7 @@ mod tests {
     #[test]
     fn hash_gives_its_published_values() {
         assert_eq!((hash(1), hash(0xdead_beef)), (0x6889_90c0, 0xe628_c683));
+        assert_eq!((fnv1a(&[]), fnv1a(&[u32::from_le_bytes(*b"foob")])), (0xcbf2_9ce4_8422_2325, 0x3f5d_3f6f_9f10_aa6a));
     }
 
     #[test]

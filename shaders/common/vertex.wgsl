@@ -45,10 +45,28 @@ fn vertex_guard(at: vec2i) -> u32 {
         | select(0u, VERTEX_BOTTOM, at.y > VERTEX_GUARD_BAND);
 }
 
-fn vertex_pack(at: vec2i, depth: f32, inv_w: f32, flags: u32) -> vec4u {
+// Depth and 1/w as bits.
+fn vertex_pack(at: vec2i, depth: u32, inv_w: u32, flags: u32) -> vec4u {
     let unready = (flags & (VERTEX_LEFT | VERTEX_RIGHT | VERTEX_TOP | VERTEX_BOTTOM)) != 0u;
     let kept = select(at, vec2i(0), unready);
-    return vec4u((bitcast<u32>(kept.x) << 8u) | flags, bitcast<u32>(kept.y) << 8u, bitcast<u32>(depth), bitcast<u32>(inv_w));
+    return vec4u((bitcast<u32>(kept.x) << 8u) | flags, bitcast<u32>(kept.y) << 8u, depth, inv_w);
+}
+
+// The record of a vertex: flags alone where it was rejected or is not near-inside.
+fn vertex_record(gate: u32, is_near: bool, at: vec2i, depth: u32, inv_w: u32) -> vec4u {
+    let flags = select(gate, select(VERTEX_NEAR, vertex_guard(at), is_near), gate == 0u);
+    let is_known = gate == 0u && is_near;
+    return vertex_pack(select(vec2i(0), at, is_known), select(0u, depth, is_known), select(0u, inv_w, is_known), flags);
+}
+
+// Where a corner that was cut off lies: inside the guard band, and on the planes that it was put on.
+fn vertex_held(at: vec2i, planes: u32) -> vec2i {
+    var held = clamp(at, vec2i(-VERTEX_GUARD_BAND), vec2i(VERTEX_GUARD_BAND));
+    if (planes & VERTEX_LEFT) != 0u { held.x = -VERTEX_GUARD_BAND; }
+    if (planes & VERTEX_RIGHT) != 0u { held.x = VERTEX_GUARD_BAND; }
+    if (planes & VERTEX_TOP) != 0u { held.y = -VERTEX_GUARD_BAND; }
+    if (planes & VERTEX_BOTTOM) != 0u { held.y = VERTEX_GUARD_BAND; }
+    return held;
 }
 
 fn vertex_at(record: vec4u) -> vec2i {

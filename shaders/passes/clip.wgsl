@@ -2,7 +2,7 @@
 // pieces by size. An edge is always cut from its inside to its outside end, so both neighbours get the same bits, and a
 // cut coordinate is set, not computed.
 //@ use common/triangle
-//@ use common/transform
+//@ use slot/projection
 //@ use slot/queues
 //@ use common/fixed
 
@@ -20,7 +20,7 @@ const CLIP_SMALL_EXTENT = 32768;
 
 // A corner of the polygon: where it is, which of its coordinates a plane has fixed, and the original vertex it is.
 struct Corner {
-    clip: vec4f,
+    clip: Position,
     fixed: u32,   // VERTEX_NEAR, VERTEX_LEFT ... of the planes it was put on
     source: u32,  // 0, 1, 2: a corner of the triangle; 3: a cut
     is_edge: bool, // the polygon's edge that begins here lies on an edge of the triangle, not on a plane
@@ -31,50 +31,33 @@ struct Polygon {
     count: u32,
 }
 
-// Signed distance to a plane, positive inside; the guard planes are where X or Y is +-32,767.996 px.
-fn distance(plane: u32, v: vec4f) -> f32 {
-    let guard = f32(VERTEX_GUARD_BAND);
-    let center = frame.center;
-    switch plane {
-        case VERTEX_NEAR: { return v.w - v.z; }
-        case VERTEX_LEFT: { return v.x * center.x + (guard + center.x) * v.w; }
-        case VERTEX_RIGHT: { return (guard - center.x) * v.w - v.x * center.x; }
-        case VERTEX_TOP: { return (guard + center.y) * v.w - v.y * center.y; }
-        default: { return (guard - center.y) * v.w + v.y * center.y; }
-    }
-}
-
 fn is_outside(plane: u32, corner: Corner, flags: vec4u) -> bool {
     if corner.source < 3u { return (flags[corner.source] & plane) != 0u; }
-    return (corner.fixed & plane) == 0u && distance(plane, corner.clip) < 0.0;
+    return (corner.fixed & plane) == 0u && projection_is_beyond(plane, corner.clip);
 }
 
 fn cut(plane: u32, inside: Corner, outside: Corner) -> Corner {
-    let near = distance(plane, inside.clip);
-    let far = distance(plane, outside.clip);
-    // Two ends that rounding puts alike near a plane have no quotient.
-    let t = select(0.0, clamp(near / (near - far), 0.0, 1.0), near > far);
-    let way = outside.clip - inside.clip;
-    var clip = inside.clip + way * t;
-    // On the near plane w is z, and whichever changes less along the edge is the more exact.
-    if plane == VERTEX_NEAR && abs(way.z) < abs(way.w) { clip.w = clip.z; }
-    return Corner(clip, plane | (inside.fixed & outside.fixed), 3u, false);
+    return Corner(projection_cut(plane, inside.clip, outside.clip), plane | (inside.fixed & outside.fixed), 3u, false);
 }
 
 fn clip_against(plane: u32, polygon: Polygon, flags: vec4u) -> Polygon {
     var result: Polygon;
+    var next_outside = is_outside(plane, polygon.corners[0], flags);
     for (var i = 0u; i < polygon.count; i += 1u) {
         let here = polygon.corners[i];
         let next = polygon.corners[select(i + 1u, 0u, i + 1u == polygon.count)];
-        let here_outside = is_outside(plane, here, flags);
-        let next_outside = is_outside(plane, next, flags);
+        let here_outside = next_outside;
+        next_outside = is_outside(plane, next, flags);
         if !here_outside && result.count < 9u {
             result.corners[result.count] = here;
             result.count += 1u;
         }
         if here_outside != next_outside && result.count < 9u {
-            if here_outside { result.corners[result.count] = cut(plane, next, here); }
-            else { result.corners[result.count] = cut(plane, here, next); }
+            // One call: arithmetic in integers is long, and compilers copy it to every caller.
+            var inside = here;
+            var outside = next;
+            if here_outside { inside = next; outside = here; }
+            result.corners[result.count] = cut(plane, inside, outside);
             // Where the outline comes back inside it goes on along the same edge.
             result.corners[result.count].is_edge = here_outside && here.is_edge;
             result.count += 1u;
@@ -88,30 +71,23 @@ fn record(corner: Corner, t: Triangle) -> vec4u {
     if corner.source == 0u { return t.a; }
     if corner.source == 1u { return t.b; }
     if corner.source == 2u { return t.c; }
-    let inv_w = 1.0 / max(corner.clip.w, 1e-30);
-    var at = clamp(vertex_snap(corner.clip, inv_w, frame.center), vec2i(-VERTEX_GUARD_BAND), vec2i(VERTEX_GUARD_BAND));
-    if (corner.fixed & VERTEX_LEFT) != 0u { at.x = -VERTEX_GUARD_BAND; }
-    if (corner.fixed & VERTEX_RIGHT) != 0u { at.x = VERTEX_GUARD_BAND; }
-    if (corner.fixed & VERTEX_TOP) != 0u { at.y = -VERTEX_GUARD_BAND; }
-    if (corner.fixed & VERTEX_BOTTOM) != 0u { at.y = VERTEX_GUARD_BAND; }
-    let depth = select(clamp(corner.clip.z * inv_w, 0.0, 1.0), 1.0, (corner.fixed & VERTEX_NEAR) != 0u);
-    return vertex_pack(at, depth, inv_w, 0u);
+    return projection_cut_record(corner.clip, corner.fixed);
 }
 
 // Queues a fan of the polygon. A piece that turned over in the snap, against the polygon as a whole, is dropped and counted.
 fn emit(polygon: Polygon, t: Triangle) {
     var records: array<vec4u, 9>;
     for (var i = 0u; i < polygon.count; i += 1u) { records[i] = record(polygon.corners[i], t); }
-    var whole = 0.0;
+    var whole = Wide(0u, 0u);
     for (var i = 1u; i + 1u < polygon.count; i += 1u) {
-        whole += fixed_to_f32(fixed_edge(vertex_at(records[0]), vertex_at(records[i]), vertex_at(records[i + 1u])));
+        whole = fixed_add(whole, fixed_edge(vertex_at(records[0]), vertex_at(records[i]), vertex_at(records[i + 1u])));
     }
     for (var i = 1u; i + 1u < polygon.count; i += 1u) {
         let a = vertex_at(records[0]);
         let b = vertex_at(records[i]);
         let c = vertex_at(records[i + 1u]);
         let sign = fixed_sign(fixed_edge(a, b, c));
-        if sign == 0 || (sign > 0) != (whole > 0.0) {
+        if sign == 0 || sign != fixed_sign(whole) {
             atomicAdd(&counters.fan_folds, 1u);
             continue;
         }
@@ -139,9 +115,9 @@ fn clip(@builtin(workgroup_id) group: vec3u, @builtin(num_workgroups) groups: ve
     let at = triangle_vertices(t.draw, t.id - draws[t.draw].first_triangle);
     let flags = vec4u(t.a.x, t.b.x, t.c.x, 0u);
     var polygon: Polygon;
-    polygon.corners[0] = Corner(transform_vertex(t.draw, at.x, t.id), 0u, 0u, true);
-    polygon.corners[1] = Corner(transform_vertex(t.draw, at.y, t.id), 0u, 1u, true);
-    polygon.corners[2] = Corner(transform_vertex(t.draw, at.z, t.id), 0u, 2u, true);
+    polygon.corners[0] = Corner(projection_corner(t.draw, at.x, t.id), 0u, 0u, true);
+    polygon.corners[1] = Corner(projection_corner(t.draw, at.y, t.id), 0u, 1u, true);
+    polygon.corners[2] = Corner(projection_corner(t.draw, at.z, t.id), 0u, 2u, true);
     polygon.count = 3u;
     // Near, left, right, top, bottom. A loop, since five copies of the polygon take a CPU adapter's compiler seconds.
     for (var plane = VERTEX_NEAR; plane <= VERTEX_BOTTOM; plane <<= 1u) {

@@ -4,6 +4,7 @@
 //@ use common/fixed
 //@ use common/reach
 //@ use slot/blocks
+//@ use slot/block_keys
 //@ use slot/depth
 //@ use common/gate
 //@ use slot/visibility
@@ -22,7 +23,7 @@ fn raster_large(@builtin(workgroup_id) group: vec3u, @builtin(num_workgroups) gr
     let a = vertex_at(t.a);
     var b = vertex_at(t.b);
     var c = vertex_at(t.c);
-    var z = bitcast<vec3f>(vec3u(t.a.z, t.b.z, t.c.z));
+    var z = vec3u(t.a.z, t.b.z, t.c.z);
     var area = fixed_edge(a, b, c);
     if fixed_sign(area) < 0 {
         let swap = b;
@@ -43,13 +44,14 @@ fn raster_large(@builtin(workgroup_id) group: vec3u, @builtin(num_workgroups) gr
         let begin = select(select(a, c, edge == 1u), b, edge == 0u);
         let end = select(select(b, a, edge == 1u), c, edge == 0u);
         blocks[lane] = blocks_edge(begin, end, p, bias[edge]);
+        block_keys_edge(lane, begin, end, p);
     }
     workgroupBarrier();
     if !is_live { return; }
 
     let pixels = triangle_pixels(min(min(a, b), c), max(max(a, b), c));
-    let depth = z * (1.0 / fixed_to_f32(area));
-    let range = vec2f(min(min(z.x, z.y), z.z), max(max(z.x, z.y), z.z));
+    let keys = keys_begin_wide(z, area);
+    let nearest = depth_key(bitcast<f32>(max(max(z.x, z.y), z.z)));
     let mine = vec2i(vec2u(lane % 16u, lane / 16u));
     for (var block = 0; block < 16; block += 1) {
         let origin = tile + vec2i(block % 4, block / 4) * 16;
@@ -64,9 +66,8 @@ fn raster_large(@builtin(workgroup_id) group: vec3u, @builtin(num_workgroups) gr
             let step = dx * offset.y - dy * offset.x;
             let is_inside = (SHAPE == SHAPE_BOXES || blocks_contain(e0, e1, e2, step)) && all(at >= pixels.xy) && all(at <= pixels.zw);
             if is_inside && is_drawn(t, vec2u(at), u32(at.y) * frame.size.x + u32(at.x)) {
-                let value = blocks_weight(e0, step.x, bias.x) * depth.x + blocks_weight(e1, step.y, bias.y) * depth.y
-                    + blocks_weight(e2, step.z, bias.z) * depth.z;
-                let key = depth_key(select(clamp(value, range.x, range.y), range.y, SHAPE == SHAPE_BOXES));
+                var key = nearest;
+                if SHAPE != SHAPE_BOXES { key = block_keys_of(keys, u32(block) * 3u, e0, e1, e2, step, bias); }
                 visibility_write(u32(at.y) * frame.size.x + u32(at.x), key, t.id);
             }
         }

@@ -144,7 +144,7 @@ pub struct Render {
     /// Time of the picture in seconds
     #[arg(long, value_name = "S", allow_negative_numbers = true)]
     pub time: Option<f64>,
-    /// Named tolerance: draft, fast, precise, reference
+    /// Named tolerance: draft, fast, precise, reference, strict
     #[arg(long, value_name = "T")]
     pub tier: Option<String>,
     /// Leave look, version, adapter and driver out of the PNG
@@ -177,7 +177,7 @@ pub struct Sequence {
     /// Size in pixels, e.g. 1920x1080
     #[arg(long, value_name = "WxH", value_parser = size)]
     pub size: Option<[u32; 2]>,
-    /// Named tolerance: draft, fast, precise, reference
+    /// Named tolerance: draft, fast, precise, reference, strict
     #[arg(long, value_name = "T")]
     pub tier: Option<String>,
 }

@@ -107,6 +107,10 @@ impl SampleEffect for Dissolve {
         slack * f64::from(ONE) + 2.0
     }
 
+    fn is_from_floats(p: &Self) -> bool {
+        Pattern::of(p.pattern) != Pattern::Uniform
+    }
+
     fn decide(facts: &Facts, p: &Self, first: Option<u32>) -> [u32; 4] {
         let fill = p.fill_of(facts.center, facts.center_screen, facts.triangle).clamp(0.0, 1.0);
         let share = first.unwrap_or((fill * f64::from(ONE)).round_ties_even() as u32);

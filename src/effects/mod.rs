@@ -94,6 +94,7 @@ impl Effect {
         self.hooks.sample = Some(SampleHook {
             decides: P::DECIDES,
             slack: |facts, words| P::slack(facts, &read(words)),
+            is_from_floats: |words| P::is_from_floats(&read(words)),
             decide: |facts, words, first| P::decide(facts, &read(words), first),
             is_drawn: |sample, words| P::is_drawn(sample, &read(words)),
         });

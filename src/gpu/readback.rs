@@ -13,7 +13,8 @@ use super::{
 };
 use crate::{
     effects::{Stack, hooks::Layers},
-    frame::{Counters, Frame, Geometry, Piece, SnappedVertex},
+    frame::{Counters, Exactness, Frame, Geometry, Piece, SnappedVertex},
+    ladder::{Depth, Vertex},
     plan::Accuracy,
     scene::camera::View,
     shader::key::{KernelKey, Layout, Phase},
@@ -214,6 +215,7 @@ impl Renderer {
             pieces: pieces.into_iter().map(|(_, _, piece)| piece).collect(),
             has_own_corners: key.parts_corners(),
             subpixel_bits: key.rungs.coverage.subpixel_bits(),
+            exact: Exactness { vertices: key.rungs.vertex == Vertex::Strict, keys: key.rungs.depth == Depth::Integer },
         })
     }
 

@@ -1,4 +1,4 @@
-//! Clipping in homogeneous space in f64 (Sutherland and Hodgman 1974): near plane, then the four sides of the guard band.
+//! Clipping in homogeneous space (Sutherland and Hodgman 1974): near plane, then the four sides of the guard band.
 //!
 //! Every cut edge is interpolated from its inside to its outside end, so neighbours that share it find the same point,
 //! and the coordinate that a plane fixes is set, not computed.
@@ -7,13 +7,13 @@ use rayon::prelude::*;
 
 use super::{
     coverage::corner_records,
-    moved::{self, Mover},
+    moved,
     project::{Clip, half_size, snap_inside},
 };
 use crate::{
     frame::{Geometry, Piece, SnappedVertex, vertex_flags},
     math::GUARD_BAND,
-    scene::{Scene, camera::View},
+    scene::{Scene, camera::View, draw::Draw},
 };
 
 /// The planes in the order of clipping, each by its vertex flag.
@@ -27,9 +27,27 @@ pub(super) fn is_cut(flags: [u32; 3]) -> bool {
     any & vertex_flags::REJECTED == 0 && any & vertex_flags::CLIPPED != 0 && all & vertex_flags::CLIPPED == 0
 }
 
-/// Pieces of all cut triangles of a draw, in triangle order, each triangle as a fan from its first remaining corner.
-pub(super) fn pieces(scene: &Scene, mover: &Mover, view: &View, geometry: &Geometry) -> Vec<Piece> {
-    let draw = mover.draw;
+/// A point in clip space, in one arithmetic or another.
+pub(super) trait Point: Copy + Send + Sync {
+    /// Is it on the inner side of `plane`, or on it?
+    fn is_inside(&self, plane: u32, view: &View) -> bool;
+
+    /// Where the edge from this inside point to `outside` meets `plane`; `on` has the flags of all planes there.
+    fn cut(&self, outside: &Self, plane: u32, on: u32, view: &View) -> Self;
+
+    /// Record of a point that planes with the flags `on` made, but for the coordinates that these fix.
+    fn snapped(&self, on: u32, view: &View) -> SnappedVertex;
+}
+
+/// Pieces of all cut triangles of a draw, in triangle order, each triangle as a fan from its first remaining corner; `clip`
+/// places a corner.
+pub(super) fn pieces<P: Point>(
+    scene: &Scene,
+    draw: &Draw,
+    view: &View,
+    geometry: &Geometry,
+    clip: impl Fn(moved::Corner) -> P + Sync,
+) -> Vec<Piece> {
     let primitive = &scene.primitives[draw.primitive];
     let cut = |t: u32| {
         let records = corner_records(scene, draw, geometry, draw.first_triangle + t);
@@ -37,9 +55,11 @@ pub(super) fn pieces(scene: &Scene, mover: &Mover, view: &View, geometry: &Geome
             return Vec::new();
         }
         let indices = primitive.corners(scene, t);
-        let corner = |i: usize| {
-            let clip = mover.clip(moved::Corner { vertex: indices[i], triangle: t }).expect("a cut triangle has no rejected corner");
-            Corner { clip, on: 0, record: Some(records[i]), leads_along_edge: true }
+        let corner = |i: usize| Corner {
+            clip: clip(moved::Corner { vertex: indices[i], triangle: t }),
+            on: 0,
+            record: Some(records[i]),
+            leads_along_edge: true,
         };
         let polygon: Vec<(SnappedVertex, bool)> =
             clipped([0, 1, 2].map(corner), view).iter().map(|corner| (corner.snapped(view), corner.leads_along_edge)).collect();
@@ -56,8 +76,8 @@ pub(super) fn pieces(scene: &Scene, mover: &Mover, view: &View, geometry: &Geome
 }
 
 #[derive(Clone, Copy)]
-struct Corner {
-    clip: Clip,
+struct Corner<P> {
+    clip: P,
     /// Flags of the planes that this corner was cut by and so lies on exactly.
     on: u32,
     /// The vertex itself; none for a corner that clipping made.
@@ -66,7 +86,7 @@ struct Corner {
     leads_along_edge: bool,
 }
 
-fn clipped(triangle: [Corner; 3], view: &View) -> Vec<Corner> {
+fn clipped<P: Point>(triangle: [Corner<P>; 3], view: &View) -> Vec<Corner<P>> {
     PLANES.into_iter().fold(triangle.to_vec(), |polygon, plane| {
         let mut kept = Vec::with_capacity(polygon.len() + 1);
         for (i, a) in polygon.iter().enumerate() {
@@ -86,27 +106,19 @@ fn clipped(triangle: [Corner; 3], view: &View) -> Vec<Corner> {
     })
 }
 
-impl Corner {
+impl<P: Point> Corner<P> {
     /// Vertices go by their flags, which every triangle at the vertex shares.
     fn is_inside(&self, plane: u32, view: &View) -> bool {
         match self.record {
             Some(record) => record.flags & plane == 0,
-            None => self.on & plane != 0 || distance(&self.clip, plane, view) >= 0.0,
+            None => self.on & plane != 0 || self.clip.is_inside(plane, view),
         }
     }
 
     /// Where the edge from this inside corner to `outside` meets `plane`.
     fn cut(&self, outside: &Self, plane: u32, view: &View) -> Self {
-        let (from, to) = (distance(&self.clip, plane, view), distance(&outside.clip, plane, view));
-        let t = if from > to { (from / (from - to)).clamp(0.0, 1.0) } else { 0.0 };
-        let mix = |a: f64, b: f64| a + t * (b - a);
-        let (a, b) = (&self.clip, &outside.clip);
-        let mut clip = Clip { x: mix(a.x, b.x), y: mix(a.y, b.y), z: mix(a.z, b.z), w: mix(a.w, b.w) };
         let on = self.on & outside.on | plane;
-        if on & vertex_flags::NEAR != 0 {
-            clip.z = clip.w;
-        }
-        Self { clip, on, record: None, leads_along_edge: false }
+        Self { clip: self.clip.cut(&outside.clip, plane, on, view), on, record: None, leads_along_edge: false }
     }
 
     /// The record of this corner of a clipped polygon, inside the guard band and ready to be drawn.
@@ -114,7 +126,7 @@ impl Corner {
         if let Some(record) = self.record {
             return record;
         }
-        let mut v = snap_inside(&self.clip, view);
+        let mut v = self.clip.snapped(self.on, view);
         let [left, right, top, bottom] = vertex_flags::GUARD.map(|side| self.on & side != 0);
         let place = |at: i32, low: bool, high: bool| match (low, high) {
             (true, _) => -GUARD_BAND,
@@ -123,6 +135,27 @@ impl Corner {
         };
         (v.x, v.y, v.flags) = (place(v.x, left, right), place(v.y, top, bottom), 0);
         v
+    }
+}
+
+impl Point for Clip {
+    fn is_inside(&self, plane: u32, view: &View) -> bool {
+        distance(self, plane, view) >= 0.0
+    }
+
+    fn cut(&self, outside: &Self, plane: u32, on: u32, view: &View) -> Self {
+        let (from, to) = (distance(self, plane, view), distance(outside, plane, view));
+        let t = if from > to { (from / (from - to)).clamp(0.0, 1.0) } else { 0.0 };
+        let mix = |a: f64, b: f64| a + t * (b - a);
+        let mut clip = Self { x: mix(self.x, outside.x), y: mix(self.y, outside.y), z: mix(self.z, outside.z), w: mix(self.w, outside.w) };
+        if on & vertex_flags::NEAR != 0 {
+            clip.z = clip.w;
+        }
+        clip
+    }
+
+    fn snapped(&self, _on: u32, view: &View) -> SnappedVertex {
+        snap_inside(self, view)
     }
 }
 

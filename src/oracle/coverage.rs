@@ -7,7 +7,7 @@ use std::ops::Range;
 
 use rayon::prelude::*;
 
-use super::{clip::is_cut, rules::Rules};
+use super::{clip::is_cut, rules::Rules, strict::integer_key};
 use crate::{
     effects::hooks::Shape,
     frame::{Counters, Geometry, NO_OWNER, Piece, SnappedVertex, vertex_flags},
@@ -331,7 +331,11 @@ impl OrientedTriangle {
         let found = match rules.shape {
             Shape::Triangles => {
                 let inside = |i: usize| owns(weights[i], opposite[i].1.x - opposite[i].0.x, opposite[i].1.y - opposite[i].0.y);
-                (inside(0) && inside(1) && inside(2)).then(|| self.depth(weights))?
+                let is_inside = inside(0) && inside(1) && inside(2);
+                let depths = self.corners.map(|corner| corner.depth);
+                // A key reads as a float that has it for bits.
+                let integer = || exact(f32::from_bits(integer_key(depths, weights)));
+                is_inside.then(|| if rules.integer_keys { integer() } else { self.depth(weights) })?
             }
             Shape::Boxes => self.fills_box(px, py).then(|| exact(self.corners.iter().fold(0.0, |nearest, c| c.depth.max(nearest))))?,
             Shape::Points => exact(self.corners[self.corner_under(px, py, rules.radius)?].depth),

@@ -15,7 +15,7 @@ use super::{
     layers::{Layered, Scenery, layered},
     moved::{Corner, Mover},
     order,
-    project::{Clip, half_size, project_moved},
+    project::{Clip, half_size, project_as},
     rules::Rules,
     steps::Answers,
     whole::Whole,
@@ -75,7 +75,7 @@ pub fn judge_after(
         return Ok(Verdict { accuracy: Accuracy::default(), expected: empty(view), step_band: Vec::new() });
     }
     assert_eq!([adapter.owner.len(), adapter.key.len(), adapter.color.len()], [view.pixels(); 3], "the frame has another size");
-    let mut own = project_moved(scene, &draws, view, stack);
+    let mut own = project_as(geometry.exact, scene, &draws, view, stack);
     own.decisions = decide(scene, &draws, view, stack, &own);
     let records = |geometry: &Geometry| (geometry.vertices.len(), geometry.has_own_corners);
     assert_eq!(records(geometry), records(&own), "the geometry is of another scene or stack");
@@ -95,7 +95,10 @@ pub fn judge_after(
         None => Answers::of(scene, &draws, view, stack, &seen, geometry),
     };
     let step_band = answers.band();
-    let vertices = vertex_faults(scene, &draws, view, stack, geometry, &own);
+    let vertices = match geometry.exact.vertices {
+        true => geometry.vertices.iter().zip(&own.vertices).map(|(adapter, own)| strict_fault(adapter, own)).collect(),
+        false => vertex_faults(scene, &draws, view, stack, geometry, &own),
+    };
 
     let mut accuracy = Accuracy { pixels: view.pixels() as u64, ..Default::default() };
     match is_free.then(|| order::cut(stack, &rules, &given, view)).flatten() {
@@ -232,6 +235,14 @@ fn vertex_faults(scene: &Scene, draws: &[Draw], view: &View, stack: &Stack, adap
         mover.corners().into_par_iter().enumerate().map(fault).collect::<Vec<_>>()
     };
     draws.iter().flat_map(of_draw).collect()
+}
+
+/// Holds one record against its twin, bit by bit.
+fn strict_fault(adapter: &SnappedVertex, own: &SnappedVertex) -> VertexFault {
+    let bits = |v: &SnappedVertex| [v.depth.to_bits(), v.inv_w.to_bits()];
+    let delta = if own.flags == 0 { adapter.x.abs_diff(own.x).max(adapter.y.abs_diff(own.y)) } else { 0 };
+    let snap_is_outside = adapter.flags != own.flags || delta > 0;
+    VertexFault { delta, snap_is_outside, attribute_is_outside: bits(adapter) != bits(own), ..Default::default() }
 }
 
 /// How far a float renderer may place every record from [`project_moved`], in units and before it rounds; none

@@ -5,7 +5,7 @@
 //! renderers it judges, and no line of their code: neither shader text nor planner, no SIMD maths where something is
 //! decided, no platform maths function. Work is parallel by rows and triangles; no result depends on the order of threads.
 //!
-//! [`project_moved`] moves and snaps vertices and clips triangles, [`triangles`] assembles and turns them, [`decide`]
+//! [`project_moved`] moves and snaps vertices and clips triangles ([`project_strict`] in f32, to the bit), [`triangles`] assembles and turns them, [`decide`]
 //! settles what sample effects hold against, [`cover_by`] finds who owns each sample, [`shade`] colours it, and [`judge`]
 //! holds a frame that an adapter drew against all of that.
 
@@ -13,6 +13,7 @@ mod clip;
 mod coverage;
 mod decide;
 mod finish;
+pub mod flushed;
 mod judge;
 mod layers;
 mod moved;
@@ -20,6 +21,7 @@ mod order;
 mod project;
 mod rules;
 mod steps;
+mod strict;
 mod surface;
 mod whole;
 
@@ -30,6 +32,7 @@ pub use judge::{judge, judge_after, snap_bounds};
 pub use order::Cut;
 pub use project::{project, project_moved};
 pub use rules::Rules;
+pub use strict::{project_strict, strict_frame};
 
 use self::{
     finish::finish_all,

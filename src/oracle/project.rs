@@ -2,10 +2,10 @@
 
 use rayon::prelude::*;
 
-use super::{clip, moved::Mover};
+use super::{clip, moved::Mover, strict::project_strict};
 use crate::{
     effects::Stack,
-    frame::{Geometry, SnappedVertex, vertex_flags},
+    frame::{Exactness, Geometry, SnappedVertex, vertex_flags},
     math::GUARD_BAND,
     scene::{Accessor, Component, Primitive, Scene, camera::View, draw::Draw},
 };
@@ -39,8 +39,17 @@ pub fn project_moved(scene: &Scene, draws: &[Draw], view: &View, stack: &Stack) 
     let vertices = movers.iter().flat_map(snapped).collect();
     let mut geometry =
         Geometry { vertices, has_own_corners: stack.parts_corners(), subpixel_bits: view.subpixel_bits, ..Geometry::default() };
-    geometry.pieces = movers.iter().flat_map(|mover| clip::pieces(scene, mover, view, &geometry)).collect();
+    let pieces = |mover: &Mover| {
+        clip::pieces(scene, mover.draw, view, &geometry, |corner| mover.clip(corner).expect("a cut triangle has no rejected corner"))
+    };
+    geometry.pieces = movers.iter().flat_map(pieces).collect();
     geometry
+}
+
+/// The geometry that one with such promises is held against.
+pub(super) fn project_as(exact: Exactness, scene: &Scene, draws: &[Draw], view: &View, stack: &Stack) -> Geometry {
+    let geometry = if exact.vertices { project_strict(scene, draws, view) } else { project_moved(scene, draws, view, stack) };
+    Geometry { exact, ..geometry }
 }
 
 /// Value of an f32 by its bits: subnormals are 0; NaN, infinities and magnitudes of 2^40 or more are refused with the
@@ -96,10 +105,14 @@ pub(super) fn snap(position: &Clip, view: &View) -> SnappedVertex {
 pub(super) fn snap_inside(&Clip { x, y, z, w }: &Clip, view: &View) -> SnappedVertex {
     let [half_x, half_y] = half_size(view);
     let offset = |ndc: f64, half: i32| (ndc * f64::from(half)).round_ties_even().clamp(-16_777_216.0, 16_777_216.0) as i32;
-    let (x, y) = (half_x + offset(x / w, half_x), half_y - offset(y / w, half_y));
+    placed(half_x + offset(x / w, half_x), half_y - offset(y / w, half_y), (z / w) as f32, (1.0 / w) as f32)
+}
+
+/// A record with its guard flags.
+pub(super) fn placed(x: i32, y: i32, depth: f32, inv_w: f32) -> SnappedVertex {
     let beyond = [x < -GUARD_BAND, x > GUARD_BAND, y < -GUARD_BAND, y > GUARD_BAND];
     let flags = (0..4).filter(|&side| beyond[side]).fold(0, |flags, side| flags | vertex_flags::GUARD[side]);
-    SnappedVertex { x, y, depth: (z / w) as f32, inv_w: (1.0 / w) as f32, flags }
+    SnappedVertex { x, y, depth, inv_w, flags }
 }
 
 /// Half the picture in units: the place of its centre, and units per unit of NDC.

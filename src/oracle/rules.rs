@@ -26,6 +26,8 @@ pub struct Rules<'a> {
     pub(super) radius: i64,
     /// Units in a pixel.
     pub(super) unit: i64,
+    /// Depth keys are quotients of integers.
+    pub(super) integer_keys: bool,
     /// Where a draw order stops, in a picture so many pixels wide.
     cut: Option<(Cut, u32)>,
 }
@@ -40,7 +42,7 @@ struct Link<'a> {
 impl Default for Rules<'_> {
     fn default() -> Self {
         let unit = UNITS_PER_PIXEL.into();
-        Self { effects: Vec::new(), decisions: &[], deciding: 0, shape: Shape::default(), radius: 0, unit, cut: None }
+        Self { effects: Vec::new(), decisions: &[], deciding: 0, shape: Shape::default(), radius: 0, unit, integer_keys: false, cut: None }
     }
 }
 
@@ -63,6 +65,7 @@ impl<'a> Rules<'a> {
             shape: stack.shape(),
             radius: stack.point_radius().into(),
             unit: 1 << geometry.subpixel_bits,
+            integer_keys: geometry.exact.keys,
             cut: None,
         }
     }

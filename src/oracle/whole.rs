@@ -8,7 +8,7 @@ use super::{
 };
 use crate::{
     effects::Stack,
-    frame::{Frame, Geometry, SnappedVertex},
+    frame::{Exactness, Frame, Geometry, SnappedVertex},
     measure::Accuracy,
     scene::{Scene, camera::View, draw::Draw},
 };
@@ -42,16 +42,23 @@ impl Whole<'_> {
         };
         for (pixel, (truth, sample)) in own.samples.iter().zip(&coverage.samples).enumerate() {
             let owner = adapter.owner[pixel];
+            let is_right = owner_is_right(truth, owner) && (!self.is_strict() || adapter.key[pixel] == truth.key);
             // An owner that is wrong even for the adapter's own geometry has been counted as such.
-            if owner_is_right(truth, owner) || !owner_is_right(sample, owner) {
+            if is_right || !owner_is_right(sample, owner) {
                 continue;
             }
-            if is_near_stop(owner) || is_near_stop(truth.owner) || self.snap_explains(truth.owner, owner, pixel) {
+            let may_move = || is_near_stop(owner) || is_near_stop(truth.owner) || self.snap_explains(truth.owner, owner, pixel);
+            if !self.is_strict() && may_move() {
                 accuracy.explained_by_snap += 1;
             } else {
                 accuracy.unexplained += 1;
             }
         }
+    }
+
+    /// Records and keys are the same everywhere, so there is nothing to explain.
+    fn is_strict(&self) -> bool {
+        self.own.exact == Exactness { vertices: true, keys: true }
     }
 
     /// May two owners change places at a pixel because vertices moved? Either an outline passed over the sample, or the

@@ -8,7 +8,7 @@ mod rungs;
 use self::{explain::explain, predict::Prediction, rungs::Choice};
 use crate::{
     effects::{Conflict, Enabled, Stack, hooks::Shape},
-    ladder::{Clipping, Parameters, Pins, Rungs, Visibility},
+    ladder::{Clipping, Depth, Parameters, Pins, Rungs, Vertex, Visibility},
     math::SMALL_EXTENT,
     scene::needs::Needs,
     shader::{
@@ -75,12 +75,14 @@ pub enum Tier {
     /// Exact given the snapped corners.
     #[default]
     Precise,
-    /// The most exact rung on every axis.
+    /// Depths in integers too: no two answers are right.
     Reference,
+    /// The same bits of owners and depths on every adapter and on the CPU.
+    Strict,
 }
 
 impl Tier {
-    pub const ALL: [Self; 4] = [Self::Draft, Self::Fast, Self::Precise, Self::Reference];
+    pub const ALL: [Self; 5] = [Self::Draft, Self::Fast, Self::Precise, Self::Reference, Self::Strict];
 
     pub const fn name(self) -> &'static str {
         match self {
@@ -88,6 +90,7 @@ impl Tier {
             Self::Fast => "fast",
             Self::Precise => "precise",
             Self::Reference => "reference",
+            Self::Strict => "strict",
         }
     }
 
@@ -96,13 +99,17 @@ impl Tier {
         match self {
             Self::Draft => Tolerance { wrong_ppm: 20_000.0, channel: 48 },
             Self::Fast => Tolerance { wrong_ppm: 1000.0, channel: 6 },
-            Self::Precise | Self::Reference => Tolerance { wrong_ppm: 0.0, channel: 1 },
+            Self::Precise | Self::Reference | Self::Strict => Tolerance { wrong_ppm: 0.0, channel: 1 },
         }
     }
 
     /// The rungs that are left only for a gain within the tolerance.
     fn base(self) -> Rungs {
-        Rungs::default()
+        match self {
+            Self::Draft | Self::Fast | Self::Precise => Rungs::default(),
+            Self::Reference => Rungs { depth: Depth::Integer, ..Rungs::default() },
+            Self::Strict => Rungs { depth: Depth::Integer, vertex: Vertex::Strict, ..Rungs::default() },
+        }
     }
 }
 
@@ -156,6 +163,10 @@ pub enum PlanError {
     Wide { size: [u32; 2] },
     #[error("depth {rung} keeps no distances, so xray cannot count within a window; use reversed, or reach = \"all\"")]
     Window { rung: &'static str },
+    #[error("vertex strict holds where integers decide, but {what}; take it out, or another rung")]
+    Floats { what: String },
+    #[error("depth integer divides exact edges, which coverage {rung} does not have; use fixed8")]
+    Inexact { rung: &'static str },
     #[error(transparent)]
     Conflict(#[from] Conflict),
 }
@@ -193,6 +204,7 @@ const fn bit_length(triangles: u64) -> u32 {
 pub fn plan(needs: &Needs, stack: &Stack, caps: &Caps, tuning: &Tuning, accuracy: &Accuracy) -> Result<Plan, PlanError> {
     stack.check()?;
     let shape = stack.shape();
+    let f32_positions = needs.f32_positions;
     let mut needs = if tuning.specialized { needs.clone() } else { needs.everything() };
     if stack.moves() {
         // Bounds of the scene say nothing of where effects move it, nor its normals of how they turn them.
@@ -204,7 +216,7 @@ pub fn plan(needs: &Needs, stack: &Stack, caps: &Caps, tuning: &Tuning, accuracy
     }
     let needs = &needs;
     let layers = stack.layers(needs.triangles);
-    let Choice { rungs, reasons: mut reasons_of_rungs, prediction } = rungs::choose(needs, stack, caps, accuracy, layers)?;
+    let Choice { rungs, reasons: mut reasons_of_rungs, prediction } = rungs::choose(needs, f32_positions, stack, caps, accuracy, layers)?;
     // Whoever drops what would have to be clipped needs no clipper; what is left may still be wide.
     let has_clipping = needs.clipping && rungs.clipping != Clipping::Drop;
     let (small_samples, small_side) = (tuning.small_samples.max(1), tuning.small_side.clamp(1, 128));

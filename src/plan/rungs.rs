@@ -7,12 +7,12 @@ use super::{
 };
 use crate::{
     effects::{
-        Effect, Stack,
+        Effect, Enabled, Stack,
         hooks::Layers,
         points, read,
         xray::{Reach, Xray},
     },
-    ladder::{AXES, Coverage, Depth, Rungs, Visibility},
+    ladder::{AXES, Coverage, Depth, Rungs, Vertex, Visibility},
     math::SUBPIXEL_BITS,
     scene::needs::Needs,
 };
@@ -31,7 +31,14 @@ pub(super) struct Choice {
 }
 
 /// Chooses a rung on every axis: pins first, then whatever saves time and still fits the tolerance.
-pub(super) fn choose(needs: &Needs, stack: &Stack, caps: &Caps, accuracy: &Accuracy, layers: Option<Layers>) -> Result<Choice, PlanError> {
+pub(super) fn choose(
+    needs: &Needs,
+    f32_positions: bool,
+    stack: &Stack,
+    caps: &Caps,
+    accuracy: &Accuracy,
+    layers: Option<Layers>,
+) -> Result<Choice, PlanError> {
     let visibility = if caps.int64_atomics { Visibility::Packed64 } else { Visibility::Split32 };
     let mut rungs = Rungs { visibility, ..accuracy.tier.base() };
     accuracy.pins.apply(&mut rungs);
@@ -50,7 +57,7 @@ pub(super) fn choose(needs: &Needs, stack: &Stack, caps: &Caps, accuracy: &Accur
         let fits = |place: &usize| {
             let mut tried = rungs;
             tried.set(axis, *place);
-            check(&tried, needs, stack, caps).is_ok() && tolerance.holds(&predict_all(&tried, needs))
+            check(&tried, needs, f32_positions, stack, caps).is_ok() && tolerance.holds(&predict_all(&tried, needs))
         };
         if let Some(place) = cheaper.into_iter().find(fits) {
             rungs.set(axis, place);
@@ -66,7 +73,7 @@ pub(super) fn choose(needs: &Needs, stack: &Stack, caps: &Caps, accuracy: &Accur
             reasons.push(note(axis.name, format!("{}: {}", axis.words[rungs.get(axis)], lowered(usual))));
         }
     }
-    check(&rungs, needs, stack, caps)?;
+    check(&rungs, needs, f32_positions, stack, caps)?;
     Ok(Choice { rungs, reasons, prediction })
 }
 
@@ -77,7 +84,7 @@ fn lowered(sentence: &str) -> String {
 }
 
 /// What no kernel can draw.
-fn check(rungs: &Rungs, needs: &Needs, stack: &Stack, caps: &Caps) -> Result<(), PlanError> {
+fn check(rungs: &Rungs, needs: &Needs, f32_positions: bool, stack: &Stack, caps: &Caps) -> Result<(), PlanError> {
     if !rungs.visibility.is_there(caps.int64_atomics) {
         return Err(PlanError::Lacking);
     }
@@ -92,7 +99,15 @@ fn check(rungs: &Rungs, needs: &Needs, stack: &Stack, caps: &Caps) -> Result<(),
     if rungs.coverage == Coverage::Fixed12 && needs.size.iter().any(|side| *side > FIXED12_SIDE) {
         return Err(PlanError::Wide { size: needs.size });
     }
-    if rungs.depth != Depth::Reversed && has_window(stack) {
+    if rungs.depth == Depth::Integer && rungs.coverage.is_float() {
+        return Err(PlanError::Inexact { rung: rungs.coverage.name() });
+    }
+    if rungs.vertex == Vertex::Strict
+        && let Some(what) = floats(stack, f32_positions)
+    {
+        return Err(PlanError::Floats { what });
+    }
+    if !matches!(rungs.depth, Depth::Reversed | Depth::Integer) && has_window(stack) {
         return Err(PlanError::Window { rung: rungs.depth.name() });
     }
     Ok(())
@@ -107,4 +122,20 @@ fn measures(stack: &Stack) -> Option<&'static str> {
 /// Does an x-ray hold depths against a window?
 fn has_window(stack: &Stack) -> bool {
     stack.get("xray").is_some_and(|enabled| Reach::of(read::<Xray>(&enabled.words).reach) == Reach::Window)
+}
+
+/// What in a picture hangs on floats even behind a strict vertex stage, if anything.
+fn floats(stack: &Stack, f32_positions: bool) -> Option<String> {
+    let reason = |Enabled { effect, words }: &Enabled| {
+        let is_from_floats = effect.hooks.sample.is_some_and(|hook| hook.decides && (hook.is_from_floats)(words));
+        let why = match () {
+            () if effect.hooks.vertex.is_some() => "moves vertices in floats",
+            () if is_from_floats => "lets a front travel in floats",
+            () if !(effect.is_repeatable)(words) => "leaves its picture to chance",
+            () => return None,
+        };
+        Some(format!("the effect {} {why}", effect.name))
+    };
+    let positions = || (!f32_positions).then(|| "a mesh of the scene has positions that are not f32".to_owned());
+    stack.0.iter().find_map(reason).or_else(positions)
 }

@@ -94,7 +94,7 @@ const FARTHEST_M: f64 = 1e9;
 const LINE: Form = Form::Text { longest: 200 };
 const PARAGRAPH: Form = Form::Text { longest: 2000 };
 const POINT: Form = Form::Numbers { lanes: 3, low: -FARTHEST_M, high: FARTHEST_M, precision: Precision::Double };
-const TIERS: &[&str] = &[Tier::ALL[0].name(), Tier::ALL[1].name(), Tier::ALL[2].name(), Tier::ALL[3].name()];
+const TIERS: &[&str] = &[Tier::ALL[0].name(), Tier::ALL[1].name(), Tier::ALL[2].name(), Tier::ALL[3].name(), Tier::ALL[4].name()];
 
 /// Whether a value may be; the error completes a sentence that begins with its key.
 pub type Rule = fn(&Plain) -> Result<(), String>;

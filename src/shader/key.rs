@@ -204,7 +204,7 @@ impl KernelKey {
             Depth::Ndc16 | Depth::Log16 => (16, 0),
             Depth::Log24 => (24, 0),
             Depth::Standard => (30, 0),
-            Depth::Reversed => (28, 0x3000_0000),
+            Depth::Reversed | Depth::Integer => (28, 0x3000_0000),
         }
     }
 

@@ -3,7 +3,7 @@
 use super::key::{Fetch, KernelKey, Layout, Order, Pass, Phase};
 use crate::{
     effects::hooks::{Layers, Shape},
-    ladder::Counting,
+    ladder::{Counting, Depth, Vertex},
 };
 
 impl KernelKey {
@@ -49,6 +49,7 @@ impl KernelKey {
             Shape::Triangles | Shape::Boxes => "small",
         };
         let walk = if is_bin { "tiles" } else { "samples" };
+        let keys = if self.rungs.depth == Depth::Integer { "integer" } else { "float" };
         let mut slots = vec![
             ("corners", format!("slots/corners/{records}")),
             ("sources", format!("slots/sources/{records}")),
@@ -66,6 +67,10 @@ impl KernelKey {
             ("pixels", format!("slots/pixels/{pixels}")),
             ("coverage", format!("slots/coverage/{coverage}")),
             ("blocks", format!("slots/blocks/{}", if self.rungs.coverage.is_float() { "float" } else { "rebased" })),
+            ("projection", format!("slots/projection/{}", if self.rungs.vertex == Vertex::Strict { "strict" } else { "float" })),
+            ("keys", format!("slots/keys/{keys}")),
+            ("block_keys", format!("slots/block_keys/{keys}")),
+            ("cell_keys", format!("slots/cell_keys/{keys}")),
             ("depth", format!("slots/depth/{}", self.rungs.depth.name())),
             ("owner", format!("slots/owner/{layout}")),
             ("finish", format!("slots/finish/{finish}")),

@@ -5,7 +5,7 @@
 //@ use common/grid
 //@ use slot/coverage
 //@ use slot/blocks
-//@ use slot/depth
+//@ use slot/cell_keys
 
 const CELLS_BATCH = 32u;
 const CELLS_SMALL_EXTENT = 32768;
@@ -19,8 +19,7 @@ struct Cell {
     dx: vec3i,
     dy: vec3i,
     bias: vec3i,
-    depth: vec3f,     // corner depths over the doubled area
-    range: vec2f,     // smallest and largest corner depth
+    keys: CellKeys,
 }
 
 fn cells_reach(t: Triangle, first: vec2i) -> u32 {
@@ -43,7 +42,7 @@ fn cells_begin(t: Triangle, first: vec2i) -> Cell {
         return cell;
     }
     cell.is_large = 1u;
-    var z = bitcast<vec3f>(vec3u(t.a.z, t.b.z, t.c.z));
+    var z = vec3u(t.a.z, t.b.z, t.c.z);
     var area = fixed_edge(a, b, c);
     if fixed_sign(area) < 0 {
         let swap = b;
@@ -62,8 +61,7 @@ fn cells_begin(t: Triangle, first: vec2i) -> Cell {
     cell.dx = dx;
     cell.dy = dy;
     cell.bias = bias;
-    cell.depth = z * (1.0 / fixed_to_f32(area));
-    cell.range = vec2f(min(min(z.x, z.y), z.z), max(max(z.x, z.y), z.z));
+    cell.keys = cell_keys_begin(keys_begin_wide(z, area), a, b, c, p);
     return cell;
 }
 
@@ -71,10 +69,10 @@ fn cells_begin(t: Triangle, first: vec2i) -> Cell {
 fn cells_key(cell: Cell, at: vec2i, offset: vec2i) -> u32 {
     if cell.is_large != 0u {
         let step = cell.dx * offset.y - cell.dy * offset.x;
-        let value = blocks_weight(cell.e0, step.x, cell.bias.x) * cell.depth.x + blocks_weight(cell.e1, step.y, cell.bias.y) * cell.depth.y
-            + blocks_weight(cell.e2, step.z, cell.bias.z) * cell.depth.z;
-        return select(0u, depth_key(clamp(value, cell.range.x, cell.range.y)), blocks_contain(cell.e0, cell.e1, cell.e2, step));
+        if !blocks_contain(cell.e0, cell.e1, cell.e2, step) { return 0u; }
+        return cell_keys_of(cell.keys, cell.e0, cell.e1, cell.e2, step, cell.bias);
     }
     let edges = coverage_at(cell.coverage, offset);
-    return select(0u, coverage_key(cell.coverage, edges), coverage_contains(cell.coverage, edges));
+    if !coverage_contains(cell.coverage, edges) { return 0u; }
+    return coverage_key(cell.coverage, edges);
 }

@@ -23,5 +23,6 @@ fn cells_begin(t: Triangle, first: vec2i) -> Cell {
 // Key at a pixel, `offset` from the tile's first; 0 where the triangle does not cover it.
 fn cells_key(cell: Cell, at: vec2i, offset: vec2i) -> u32 {
     let edges = coverage_at(cell.coverage, offset);
-    return select(0u, coverage_key(cell.coverage, edges), coverage_contains(cell.coverage, edges));
+    if !coverage_contains(cell.coverage, edges) { return 0u; }
+    return coverage_key(cell.coverage, edges);
 }

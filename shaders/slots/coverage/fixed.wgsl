@@ -2,15 +2,14 @@
 //@ use common/fixed
 //@ use common/grid
 //@ use common/vertex
-//@ use slot/depth
+//@ use slot/keys
 
 struct Coverage {
     row: vec3i,       // biased edge functions at the current row's first sample
     step_x: vec3i,    // change per pixel to the right
     step_y: vec3i,    // change per pixel down
     bias: vec3i,
-    depth: vec3f,     // corner depths over the doubled area
-    range: vec2f,     // smallest and largest corner depth
+    keys: Keys,
 }
 
 // Sets up at the centre of pixel `first`. Corners must be clockwise on screen; `area` is twice their area, > 0.
@@ -25,14 +24,12 @@ fn coverage_begin(a: vec4u, b: vec4u, c: vec4u, area: i32, first: vec2i) -> Cove
         fixed_bias(vec2i(dx.x, dy.x)), fixed_bias(vec2i(dx.y, dy.y)), fixed_bias(vec2i(dx.z, dy.z)));
     let from_x = vec3i(p.x - pb.x, p.x - pc.x, p.x - pa.x);
     let from_y = vec3i(p.y - pb.y, p.y - pc.y, p.y - pa.y);
-    let z = bitcast<vec3f>(vec3u(a.z, b.z, c.z));
     var coverage: Coverage;
     coverage.row = dx * from_y - dy * from_x - bias;
     coverage.step_x = -dy * grid_unit();
     coverage.step_y = dx * grid_unit();
     coverage.bias = bias;
-    coverage.depth = z * (1.0 / f32(area));
-    coverage.range = vec2f(min(min(z.x, z.y), z.z), max(max(z.x, z.y), z.z));
+    coverage.keys = keys_begin(vec3u(a.z, b.z, c.z), area);
     return coverage;
 }
 
@@ -47,7 +44,5 @@ fn coverage_contains(coverage: Coverage, edges: vec3i) -> bool {
 
 // Depth key at a covered sample, at least 1.
 fn coverage_key(coverage: Coverage, edges: vec3i) -> u32 {
-    let weights = vec3f(edges + coverage.bias);
-    let z = weights.x * coverage.depth.x + weights.y * coverage.depth.y + weights.z * coverage.depth.z;
-    return depth_key(clamp(z, coverage.range.x, coverage.range.y));
+    return keys_of(coverage.keys, edges + coverage.bias);
 }

@@ -107,6 +107,8 @@ pub struct SampleHook {
     pub decides: bool,
     /// Bound of the error of an f32 twin in the first word of a decision.
     pub slack: fn(&Facts, &[u32]) -> f64,
+    /// What is settled is rounded from floats that differ from one adapter to the next.
+    pub is_from_floats: fn(&[u32]) -> bool,
     pub decide: fn(&Facts, &[u32], Option<u32>) -> [u32; 4],
     pub is_drawn: fn(&Sample, &[u32]) -> bool,
 }
@@ -119,6 +121,11 @@ pub trait SampleEffect: Params {
     /// Bound of the error of an f32 twin in the first word of a decision; the other words are exact, given the first.
     fn slack(_: &Facts, _: &Self) -> f64 {
         0.0
+    }
+
+    /// Is anything of it rounded from floats that differ from one adapter to the next?
+    fn is_from_floats(_: &Self) -> bool {
+        false
     }
 
     /// Settles what the samples of a triangle are held against. Only the first word may come from floats; where `first`
