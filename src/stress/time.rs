@@ -45,9 +45,9 @@ pub const CASES: &[Case] = &[
 
 fn a_hundred_frames(lab: &mut Lab) -> Result<(), Halt> {
     let hall = lab.scene("near")?;
-    let view = lab.view(&hall, [160, 120]);
-    for (rung, tuning) in lab.rungs().into_iter().flat_map(|rung| [(rung, tunings()[0]), (rung, tunings()[2])]).collect::<Vec<_>>() {
-        lab.renderer.set_tuning(tuning);
+    let view = lab.view(&hall, [80, 60]);
+    lab.renderer.set_tuning(tunings()[2]);
+    for rung in lab.rungs() {
         for stack in [stack(&["facet", "lambert"]), stack(&["lambert", "xray"])] {
             let mut first: Option<Capture> = None;
             for frame in 1..=100 {
