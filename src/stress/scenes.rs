@@ -107,6 +107,7 @@ pub fn pixel_view(width: u32, height: u32) -> View {
         linear_depth_m: Some([0.0, 1.0]),
         scene_range_m: [0.0, 1.0],
         background: [0.0; 4],
+        subpixel_bits: 8,
     }
 }
 
