@@ -60,7 +60,8 @@ pub fn run(common: &Common, args: &Stress, streams: &mut Streams) -> Result<Exit
         remarks(&reports).iter().try_for_each(|remark| streams.text(&format!("{remark}\n")))?;
     }
     let seconds = reports.iter().map(|report| report.ms).sum::<f64>() / 1e3;
-    streams.note(&format!("{} cases in {seconds:.1} s, {failed} failed", reports.len()));
+    let cases = if reports.len() == 1 { "case" } else { "cases" };
+    streams.note(&format!("{} {cases} in {seconds:.1} s, {failed} failed", reports.len()));
     Ok(Exit::failed_if(failed > 0))
 }
 

@@ -40,7 +40,8 @@ fn set(stack: &mut Stack, effect: &'static Effect, field: &Field, end: usize) ->
 
 /// Draws and judges; steps of colour may lie anywhere.
 fn judged(lab: &mut Lab, stack: &Stack, turn: usize, what: &str) -> Result<(), Halt> {
-    let query = ["sphere?triangles=200", "near", "cube-wall", "grid?cell=0.4"][turn % 4];
+    // Few triangles: discs and boxes at their largest cover the picture once for each of them.
+    let query = ["sphere?triangles=200", "near", "cube-wall", "grid?cell=0.4&width=8&height=8"][turn % 4];
     let scene = lab.scene(query)?;
     let what = format!("{what}, {query}");
     let (capture, verdict) = lab.judged(&scene, &lab.view(&scene, [64, 48]), stack, &Accuracy::default(), &what)?;
