@@ -145,10 +145,10 @@ const MUTANTS: &[(&str, &str, &str, &str, &str)] = &[
         "d3d-four-triangles",
     ),
     ("one pixel to the right", "common/vertex", "return vec2i(center) +", "return vec2i(256, 0) + vec2i(center) +", "d3d-snap"),
-    ("sample at the pixel corner", "slots/coverage/fixed8", "first * 256 + 128", "first * 256", "sizes"),
+    ("sample at the pixel corner", "slots/coverage/fixed", "let p = grid_sample(first);", "let p = first * grid_unit();", "sizes"),
     (
         "float edges",
-        "slots/coverage/fixed8",
+        "slots/coverage/fixed",
         "coverage.row = dx * from_y - dy * from_x - bias;",
         "coverage.row = vec3i(vec3f(dx) * vec3f(from_y)) - vec3i(vec3f(dy) * vec3f(from_x)) - bias;",
         "near-misses",
@@ -162,7 +162,7 @@ const MUTANTS: &[(&str, &str, &str, &str, &str)] = &[
         "if i == 1u { continue; }\n        let slot = atomicAdd(&counters.pieces, 1u);",
         "guard-band",
     ),
-    ("depth of another corner", "slots/coverage/fixed8", "weights.z * coverage.depth.z", "weights.z * coverage.depth.y", "w-ratios"),
+    ("depth of another corner", "slots/coverage/fixed", "weights.z * coverage.depth.z", "weights.z * coverage.depth.y", "w-ratios"),
     (
         "the larger id wins ties",
         "slots/visibility/split32_owner",
@@ -182,7 +182,7 @@ const MUTANTS: &[(&str, &str, &str, &str, &str)] = &[
         "workgroups-indirect",
     ),
     (
-        "rounding of the average dropped",
+        "averages are lost",
         "effects/xray",
         "return sum / whole + select(0u, 1u, 2u * (sum % whole) >= whole);",
         "return 0u;",
