@@ -10,6 +10,7 @@
 //! * [`measure`]: frame against frame, samples of time
 //! * [`oracle`]: the exact CPU renderer that judges and blesses
 //! * [`session`]: the state of a look, and what moves with its clock
+//! * [`stress`]: the table of extreme cases, each drawn and judged
 //! * [`preset`]: looks as files, sparse TOML
 //! * [`cli`]: every subcommand; never opens a window of its own
 //! * `app`: the window (feature `gui`)
@@ -33,3 +34,4 @@ pub mod preset;
 pub mod scene;
 pub mod session;
 pub mod shader;
+pub mod stress;

@@ -21,14 +21,21 @@ const MAY_KNOW: &[(&str, &[&str])] = &[
     ("oracle", &["effects", "frame", "math", "measure", "params", "scene"]),
     ("gpu", &["effects", "frame", "ladder", "math", "measure", "params", "plan", "scene", "session", "shader"]),
     ("preset", &["effects", "frame", "ladder", "math", "params", "plan", "scene", "session", "shader"]),
+    ("stress", &["effects", "frame", "gpu", "ladder", "math", "measure", "oracle", "params", "plan", "scene", "session"]),
     (
         "cli",
         &[
             "app", "effects", "frame", "gpu", "ladder", "math", "measure", "oracle", "params", "plan", "preset", "scene", "session",
-            "shader",
+            "shader", "stress",
         ],
     ),
-    ("app", &["effects", "frame", "gpu", "ladder", "math", "measure", "oracle", "params", "plan", "preset", "scene", "session", "shader"]),
+    (
+        "app",
+        &[
+            "effects", "frame", "gpu", "ladder", "math", "measure", "oracle", "params", "plan", "preset", "scene", "session", "shader",
+            "stress",
+        ],
+    ),
 ];
 
 /// Longest source file, lines. A longer one stands here with its reason.

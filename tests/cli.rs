@@ -98,7 +98,7 @@ fn adapters_always_end_with_cpu() {
 
 #[test]
 fn usage_errors_exit_with_2_and_leave_stdout_empty() {
-    let cases: [&[&str]; 16] = [
+    let cases: [&[&str]; 18] = [
         &["--no-such-flag"],
         &["render"],
         &["render", "fascet", "--adapter", "cpu"],
@@ -113,6 +113,8 @@ fn usage_errors_exit_with_2_and_leave_stdout_empty() {
         &["render", "builtin:no-such-scene", "--adapter", "cpu"],
         &["verify", "facet", "--adapter", "cpu", "--frames", "0"],
         &["bench", "--adapter", "cpu"],
+        &["stress", "--adapter", "cpu"],
+        &["stress", "--filter", "no-such-case"],
         &["bless", "facet", "--adapter", "cpu"],
         &["facet", "list"],
     ];
@@ -510,6 +512,42 @@ fn blessing_an_effect_without_a_look_makes_its_first() {
     assert!(look.session.stack.get("normals").is_some() && look.session.test.is_some());
     assert!(folder.path().join("tests/snapshots/normals.png").exists() && folder.path().join("tests/snapshots/normals.json").exists());
     assert_eq!(run_in(folder.path(), &["bless", "no-such-effect"]).code, 2);
+}
+
+#[test]
+fn stress_lists_its_cases_without_an_adapter() {
+    let list = run(&["stress", "--list"]);
+    assert_eq!((list.code, list.err.as_str()), (0, ""));
+    let lines: Vec<_> = list.out.lines().collect();
+    assert!(lines[0].starts_with("CASE  NAME") && lines[0].contains("EXPECTED"), "{}", lines[0]);
+    assert_eq!(lines.len(), 1 + rasterlab::stress::cases().len());
+    let one = run(&["stress", "--list", "--filter", "32"]).out;
+    assert!(one.lines().count() == 2 && one.contains("hardware-cross-check"), "{one}");
+}
+
+#[test]
+fn stress_says_what_it_expected_and_what_became_of_it() {
+    if std::env::var("RASTERLAB_GPU").as_deref() == Ok("skip") {
+        eprintln!("RASTERLAB_GPU=skip: GPU tests are left out");
+        return;
+    }
+    let table = run(&["stress", "--filter", "d3d-rectangle"]);
+    assert_eq!(table.code, 0, "{}", table.err);
+    let lines: Vec<_> = table.out.lines().map(|line| line.split_whitespace().collect::<Vec<_>>()).collect();
+    assert_eq!(lines[0], ["CASE", "NAME", "EXPECTED", "OUTCOME", "PICTURES", "TRIANGLES", "MS"]);
+    assert_eq!(lines[1][..4], ["3", "d3d-rectangle", "exact", "passed"]);
+    assert!(table.err.contains("adapter: ") && table.err.contains("1 case in ") && table.err.contains("0 failed"), "{}", table.err);
+
+    let refused = run(&["stress", "--filter", "too-wide", "--json", "--quiet", "--seed", "7"]);
+    assert_eq!(refused.code, 0, "{}", refused.err);
+    let object = json(&refused);
+    assert_eq!(object["command"], "stress");
+    assert!(object["adapter"]["name"].is_string());
+    let result = &object["results"][0];
+    assert_eq!((&result["number"], &result["name"]), (&20.into(), &"too-wide-a-target".into()));
+    assert_eq!(result["outcome"], "refused as stated");
+    assert!(result["why"].as_str().is_some_and(|why| why.contains("textures end at")), "{result}");
+    assert!(result["ms"].as_f64().is_some_and(|ms| ms > 0.0) && result["seed"].is_null() && result["notes"].is_array(), "{result}");
 }
 
 #[test]

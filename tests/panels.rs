@@ -791,3 +791,38 @@ fn a_second_effect_in_a_slot_says_so_and_offers_to_take_its_place() {
     undo(&mut lab);
     assert!(has(&lab, "xray") && !has(&lab, "overdraw"), "one step");
 }
+
+#[test]
+fn the_extremes_run_beside_the_window_and_can_be_stopped() {
+    let Some(mut lab) = lab("facet") else { return };
+    click(&mut lab, Role::Button, "View");
+    click(&mut lab, Role::Button, "Run the extremes…");
+    let run = |lab: &mut Lab, cases: &str, button: &str| {
+        lab.get_by_label("Cases").focus();
+        lab.run_steps(2);
+        press(lab, Modifiers::COMMAND, Key::A);
+        lab.get_by_label("Cases").type_text(cases);
+        lab.run_steps(3);
+        click(lab, Role::Button, button);
+    };
+    let until = |lab: &mut Lab, what: &str, is_there: &dyn Fn(&Lab) -> bool| {
+        let patience = Instant::now() + Duration::from_secs(120);
+        while !is_there(lab) {
+            assert!(Instant::now() < patience, "{what} never comes\n{}", lab.state().log_text());
+            lab.step();
+            std::thread::sleep(Duration::from_millis(5));
+        }
+    };
+    let draws = lab.state().draws();
+    run(&mut lab, "d3d-rectangle", "Run 1 case");
+    until(&mut lab, "the end", &|lab| lab.state().log_text().contains("The extremes: 1 case: 1 passed"));
+    lab.run_steps(3);
+    assert!(lab.query_by_label("d3d-rectangle").is_some() && lab.query_by_label("passed").is_some());
+    assert_eq!(lab.state().draws(), draws, "the picture is not drawn again for it");
+    lab.check_accessibility();
+
+    run(&mut lab, "near-plane-sweep", "Run 1 case");
+    until(&mut lab, "the first picture", &|lab| lab.query_by_label_contains("near-plane-sweep: step").is_some());
+    click(&mut lab, Role::Button, "Stop the extremes");
+    until(&mut lab, "the end", &|lab| lab.state().log_text().contains("The extremes: 1 case: 1 stopped"));
+}

@@ -6,6 +6,7 @@
 mod blit;
 mod dialogs;
 mod edit;
+mod extremes;
 mod fields;
 mod history;
 mod icons;
@@ -47,6 +48,7 @@ use crate::{
     session::Session,
 };
 use dialogs::Dialog;
+use extremes::Extremes;
 use fields::Ask;
 use jobs::{Done, Jobs, SceneKey};
 use log::Log;
@@ -125,6 +127,7 @@ pub struct App {
     verdict: Option<Verdict>,
     verifying: bool,
     dialog: Option<Dialog>,
+    extremes: Extremes,
     panels: Panels,
     playback: Playback,
     timeline: Timeline,
@@ -170,6 +173,7 @@ impl App {
             verdict: None,
             verifying: false,
             dialog: None,
+            extremes: Extremes::default(),
             playback: Playback::default(),
             timeline: Timeline::default(),
             motion: Motion::default(),
@@ -405,6 +409,7 @@ impl eframe::App for App {
         self.panels_ui(ui);
         self.dialog_ui(&ctx);
         self.cheat_sheet_ui(&ctx);
+        self.extremes_ui(&ctx);
         self.feed_thumbnails();
         self.observe(held);
         if let Some(wake_s) = self.history.wake_in_s(now_s).filter(|_| !held) {

@@ -31,6 +31,7 @@ pub enum Action {
     Rewind,
     RemoveKey,
     Verify,
+    Extremes,
     Panels,
     Timeline,
     Log,
@@ -73,6 +74,7 @@ const TABLE: &[(Action, &str, &[KeyboardShortcut])] = &[
     (Action::Rewind, "Back to the start", &[plain(Key::Num0)]),
     (Action::RemoveKey, "Remove the selected key", &[plain(Key::Delete), plain(Key::Backspace)]),
     (Action::Verify, "Verify against the oracle", &[plain(Key::V)]),
+    (Action::Extremes, "Run the extremes…", &[]),
     (Action::Panels, "Hide or show panels", &[plain(Key::F11)]),
     (Action::Timeline, "Hide or show the timeline", &[plain(Key::T)]),
     (Action::Log, "Hide or show the log", &[plain(Key::L)]),
@@ -194,6 +196,7 @@ impl App {
             Action::Rewind => self.rewind(),
             Action::RemoveKey => self.remove_selected_key(),
             Action::Verify => self.verify(),
+            Action::Extremes => self.extremes.toggle(),
             Action::Panels => {
                 let shown = self.panels.left || self.panels.right || self.panels.timeline;
                 (self.panels.left, self.panels.right, self.panels.timeline) = (!shown, !shown, !shown);

@@ -59,6 +59,7 @@ impl App {
                     Some(A::Timeline),
                     Some(A::Log),
                     None,
+                    Some(A::Extremes),
                     Some(A::CheatSheet),
                 ],
             ),

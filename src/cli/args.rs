@@ -20,8 +20,8 @@ pub struct Cli {
 const LONG: &str = "An effects lab around a compute-shader rasterizer, judged by an exact oracle.\n\n\
     Without a command the window opens. A LOOK is an id of the gallery (rasterlab list), a .toml file, a .glb or .gltf \
     model, a PNG saved by rasterlab, builtin:QUERY, or - for TOML from stdin.\n\n\
-    Exit codes: 0 done; 1 a comparison, check, promised accuracy or dry run failed; 2 usage, or a file that cannot be \
-    read or written; 3 no suitable adapter; 4 the device was lost.";
+    Exit codes: 0 done; 1 a comparison, check, stress case, promised accuracy or dry run failed; 2 usage, or a file that \
+    cannot be read or written; 3 no suitable adapter; 4 the device was lost.";
 
 /// Flags that every command has.
 #[derive(Args, Debug, Default)]
@@ -84,6 +84,8 @@ pub enum Command {
     Bless(Bless),
     /// Milliseconds beside error, rung by rung
     Bench(Bench),
+    /// The table of extreme cases, each against its expectation
+    Stress(Stress),
     /// The README's gallery: every effect with its pictures, as Markdown
     Gallery(Gallery),
     /// Validate looks; with --render also against their goldens
@@ -104,6 +106,7 @@ impl Command {
             Self::Explain(_) => "explain",
             Self::Bless(_) => "bless",
             Self::Bench(_) => "bench",
+            Self::Stress(_) => "stress",
             Self::Gallery(_) => "gallery",
             Self::Check(_) => "check",
             Self::Completions { .. } => "completions",
@@ -267,6 +270,19 @@ pub struct Bench {
     pub samples: u32,
     #[arg(long, value_enum, default_value_t = Format::Table)]
     pub format: Format,
+}
+
+#[derive(Args, Debug)]
+pub struct Stress {
+    /// Only cases of this number, or whose name contains this
+    #[arg(long, value_name = "F")]
+    pub filter: Option<String>,
+    /// Seed of every case that throws dice
+    #[arg(long, value_name = "N", default_value_t = 0)]
+    pub seed: u32,
+    /// Draw nothing; show the cases
+    #[arg(long)]
+    pub list: bool,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]

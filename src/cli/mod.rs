@@ -19,6 +19,7 @@ mod render;
 mod report;
 mod sequence;
 mod streams;
+mod stress;
 pub mod trade;
 mod verify;
 
@@ -60,6 +61,7 @@ fn dispatch(common: &Common, command: &Command, streams: &mut Streams) -> Result
         Command::Explain(args) => explain::run(common, args, streams),
         Command::Bless(args) => bless::run(common, args, streams),
         Command::Bench(args) => bench::run(common, args, streams),
+        Command::Stress(args) => stress::run(common, args, streams),
         Command::Gallery(args) => gallery::run(args, streams),
         Command::Check(args) => check::run(common, args, streams),
         Command::Completions { shell } => {

@@ -7,6 +7,7 @@ mod dispatch;
 pub mod error;
 mod explain;
 pub mod hardware;
+mod hardware_owners;
 pub mod naive;
 pub mod pipelines;
 mod prepare;

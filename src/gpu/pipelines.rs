@@ -42,6 +42,11 @@ impl Pipelines {
         Self { library, known: HashMap::new(), built: HashMap::new() }
     }
 
+    /// Where the shaders come from.
+    pub fn library(&self) -> &Library {
+        &self.library
+    }
+
     /// Number of pipelines compiled so far.
     pub fn compiled(&self) -> usize {
         self.built.len()

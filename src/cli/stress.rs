@@ -1,0 +1,113 @@
+//! `stress`: the table of extreme cases on the adapter, each against its expectation.
+
+use serde_json::{Value, json};
+
+use super::{
+    args::{Common, Stress},
+    fault::{Exit, Fault},
+    painter::Painter,
+    streams::{Streams, table},
+};
+use crate::{
+    gpu::Renderer,
+    stress::{Outcome, Report, chosen},
+};
+
+pub fn run(common: &Common, args: &Stress, streams: &mut Streams) -> Result<Exit, Fault> {
+    let cases = chosen(args.filter.as_deref());
+    if cases.is_empty() {
+        let filter = args.filter.as_deref().unwrap_or_default();
+        return Err(Fault::usage(format!("no case has the number or the name {filter:?}; rasterlab stress --list shows all")));
+    }
+    if args.list {
+        let mut rows = vec![["CASE", "NAME", "EXPECTED", "WHAT"].map(str::to_owned).to_vec()];
+        rows.extend(
+            cases.iter().map(|case| vec![case.number.to_string(), case.name.into(), case.expectation.to_string(), case.about.into()]),
+        );
+        streams.text(&table(&rows))?;
+        return Ok(Exit::Done);
+    }
+    let mut painter = Painter::open(common, streams)?;
+    let Painter::Gpu(renderer, gpu) = &mut painter else {
+        return Err(Fault::usage("the oracle judges and is never stressed; stress needs a GPU adapter"));
+    };
+    let bar = streams.progress(cases.len() as u64);
+    let mut reports = Vec::new();
+    for case in &cases {
+        let report = case.run(renderer, args.seed, &|what| {
+            bar.set_message(format!("{}: {what}", case.name));
+            true
+        });
+        bar.inc(1);
+        if gpu.is_lost() {
+            bar.finish_and_clear();
+            streams.note(&line(&report));
+            return Err(crate::gpu::RenderError::Lost.into());
+        }
+        if report.outcome.is_failure() {
+            // What a failure leaves in queues and caches is nobody's to trust.
+            **renderer = Renderer::new(gpu.clone());
+            bar.suspend(|| streams.note(&line(&report)));
+        }
+        reports.push(report);
+    }
+    bar.finish_and_clear();
+    let failed = reports.iter().filter(|report| report.outcome.is_failure()).count();
+    if streams.json {
+        streams.object("stress", painter.json(), reports.iter().map(result).collect())?;
+    } else {
+        streams.text(&table(&rows(&reports)))?;
+        remarks(&reports).iter().try_for_each(|remark| streams.text(&format!("{remark}\n")))?;
+    }
+    let seconds = reports.iter().map(|report| report.ms).sum::<f64>() / 1e3;
+    let cases = if reports.len() == 1 { "case" } else { "cases" };
+    streams.note(&format!("{} {cases} in {seconds:.1} s, {failed} failed", reports.len()));
+    Ok(Exit::failed_if(failed > 0))
+}
+
+/// A failure in one line, with what draws it again.
+fn line(report: &Report) -> String {
+    let Report { number, name, outcome, seed, .. } = report;
+    let seed = seed.map(|seed| format!(" (again with: rasterlab stress --filter {name} --seed {seed})")).unwrap_or_default();
+    format!("case {number}, {name}: {}{seed}", outcome.why().unwrap_or(outcome.word()))
+}
+
+fn rows(reports: &[Report]) -> Vec<Vec<String>> {
+    let mut rows = vec![["CASE", "NAME", "EXPECTED", "OUTCOME", "PICTURES", "TRIANGLES", "MS"].map(str::to_owned).to_vec()];
+    rows.extend(reports.iter().map(|report| {
+        vec![
+            report.number.to_string(),
+            report.name.into(),
+            report.expectation.to_string(),
+            report.outcome.word().into(),
+            report.counts.pictures.to_string(),
+            report.counts.triangles.to_string(),
+            format!("{:.0}", report.ms),
+        ]
+    }));
+    rows
+}
+
+/// What the table has no room for: failures first, then what was left out, refused or noted.
+fn remarks(reports: &[Report]) -> Vec<String> {
+    let (failed, others): (Vec<_>, Vec<_>) = reports.iter().partition(|report| report.outcome.is_failure());
+    let of = |report: &&Report| {
+        let why = match &report.outcome {
+            Outcome::Failed(_) => Some(format!("FAILED {}", line(report))),
+            Outcome::LeftOut(why) => Some(format!("{} {}: left out: {why}", report.number, report.name)),
+            Outcome::Refused(why) => Some(format!("{} {}: refused: {why}", report.number, report.name)),
+            Outcome::Passed | Outcome::Stopped => None,
+        };
+        let notes = report.notes.iter().map(|note| format!("{} {}: {note}", report.number, report.name));
+        why.into_iter().chain(notes).collect::<Vec<_>>()
+    };
+    failed.iter().chain(&others).flat_map(of).collect()
+}
+
+fn result(report: &Report) -> Value {
+    json!({
+        "number": report.number, "name": report.name, "about": report.about, "expectation": report.expectation.to_string(),
+        "outcome": report.outcome.word().to_lowercase(), "why": report.outcome.why(), "notes": report.notes, "seed": report.seed,
+        "ms": report.ms, "pictures": report.counts.pictures, "pixels": report.counts.pixels, "triangles": report.counts.triangles,
+    })
+}

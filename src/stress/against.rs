@@ -1,0 +1,106 @@
+//! Against the adapter's own rasterizer: the same snapped positions through its render pipeline.
+
+use super::{
+    Case, Expectation, Halt, Lab,
+    aim::near_miss,
+    hold,
+    scenes::{hand_made, pixel_view, units},
+};
+use crate::frame::NO_OWNER;
+
+pub const CASES: &[Case] = &[Case {
+    number: 32,
+    name: "hardware-cross-check",
+    about: "the same snapped positions through the render pipeline, samples on an edge masked: the same owners",
+    expectation: Expectation::Exact,
+    run: hardware_cross_check,
+}];
+
+const SIDE: u32 = 64;
+
+/// A flat triangle in units of 1/256 px with its depth.
+type Flat = ([[i32; 2]; 3], f32);
+
+/// The witness's picture: exact up to its own snap, since a picture of a power of two loses no bit on the way.
+fn witness(lab: &Lab, triangles: &[Flat]) -> Result<Vec<u32>, Halt> {
+    let half = 128.0 * SIDE as f32;
+    let place = |[x, y]: [i32; 2], depth: f32| [x as f32 / half - 1.0, 1.0 - y as f32 / half, depth];
+    let corners: Vec<_> = triangles.iter().flat_map(|(corners, depth)| corners.map(|corner| place(corner, *depth))).collect();
+    Ok(lab.renderer.hardware_owners([SIDE, SIDE], &corners)?)
+}
+
+/// Units to which the witness snaps: 1 where edges one unit from a sample are told apart, else 16, since Vulkan asks for no
+/// more than 4 bits below the pixel.
+fn witness_grid(lab: &Lab) -> Result<i32, Halt> {
+    let sample = 256 * 32 + 128;
+    let mut bars = Vec::new();
+    // A bar to a row, which ends or begins so many units from the sample.
+    for (row, from_sample) in (-8..=8).enumerate() {
+        for (half, [left, right]) in [[1024, sample + from_sample], [sample + from_sample, 15_360]].into_iter().enumerate() {
+            let top = 256 * (2 * row as i32 + half as i32);
+            let [a, b, c, d] = [[left, top], [right, top], [right, top + 256], [left, top + 256]];
+            bars.extend([([a, b, c], 0.5), ([a, c, d], 0.5)]);
+        }
+    }
+    let owners = witness(lab, &bars)?;
+    let is_fine = (-8..=8).enumerate().all(|(row, from_sample)| {
+        let drawn = [0, 1].map(|half| owners[(2 * row + half) * SIDE as usize + 32] != NO_OWNER);
+        // Its left end is in, its right end is out.
+        drawn == [from_sample > 0, from_sample <= 0]
+    });
+    Ok(if is_fine { 1 } else { 16 })
+}
+
+/// Samples on an edge or a corner of a triangle, where a render pipeline may do as it likes: all it must cover lies inside.
+fn mask(triangles: &[Flat]) -> Vec<bool> {
+    let mut masked = vec![false; (SIDE * SIDE) as usize];
+    for (corners, _) in triangles {
+        let [a, b, c] = corners.map(|corner| corner.map(i64::from));
+        for pixel in 0..i64::from(SIDE * SIDE) {
+            let p = [pixel % i64::from(SIDE), pixel / i64::from(SIDE)].map(|k| 256 * k + 128);
+            let edge = |from: [i64; 2], to: [i64; 2]| (to[0] - from[0]) * (p[1] - from[1]) - (to[1] - from[1]) * (p[0] - from[0]);
+            let edges = [edge(a, b), edge(b, c), edge(c, a)];
+            let is_touched = edges.iter().all(|e| *e >= 0) || edges.iter().all(|e| *e <= 0);
+            masked[pixel as usize] |= is_touched && edges.contains(&0);
+        }
+    }
+    masked
+}
+
+fn hardware_cross_check(lab: &mut Lab) -> Result<(), Halt> {
+    let grid = witness_grid(lab)?;
+    let view = pixel_view(SIDE, SIDE);
+    let side = 256 * SIDE as i32;
+    let (mut masked_samples, mut samples) = (0, 0);
+    for (extent, count) in [(700, 1000), (3000, 600), (9000, 200), (16_384, 60)] {
+        for picture in 0..4u32 {
+            let mut dice = lab.dice(extent as u32 ^ picture.wrapping_mul(0x27d4_eb2f));
+            let mut flat = |i: usize| loop {
+                // Inside the picture: what a pipeline clips it also moves.
+                let corners = near_miss(&mut dice, extent, [SIDE as i32; 2]).map(|corner| corner.map(|v| (v + grid / 2) / grid * grid));
+                if corners.as_flattened().iter().all(|v| (0..=side).contains(v)) {
+                    return (corners, (i + 1) as f32 / 1024.0);
+                }
+            };
+            let triangles: Vec<Flat> = (0..count).map(&mut flat).collect();
+            let what = format!("extent {extent} units, picture {picture}");
+            let ours = lab.everywhere(&hand_made(&[units(&triangles)]), &view, &what)?;
+            let theirs = witness(lab, &triangles)?;
+            let masked = mask(&triangles);
+            masked_samples += masked.iter().filter(|is_masked| **is_masked).count();
+            samples += masked.len();
+            let pixels = ours.frame.owner.iter().zip(&theirs).zip(&masked).enumerate();
+            let wrong: Vec<_> = pixels.filter(|(_, ((a, b), is_masked))| a != b && !**is_masked).map(|(i, (pair, _))| (i, pair)).collect();
+            hold!(
+                wrong.is_empty(),
+                "{what}: {} pixels outside the mask have another owner in the render pipeline, first (pixel, (ours, theirs)) {:?}",
+                wrong.len(),
+                wrong[0]
+            );
+            hold!(theirs.iter().any(|owner| *owner != NO_OWNER), "{what}: the render pipeline drew nothing");
+        }
+    }
+    hold!(masked_samples > 0 && masked_samples < samples / 2, "{masked_samples} of {samples} samples are masked");
+    lab.note(format!("{masked_samples} of {samples} samples lie on an edge and are masked; positions on 1/{} px", 256 / grid));
+    Ok(())
+}

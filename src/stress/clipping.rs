@@ -1,0 +1,121 @@
+//! Clipping: the guard band, w at and around zero, and the near plane on its way through a surface.
+
+use std::sync::Arc;
+
+use glam::DVec3;
+
+use super::{
+    Case, Expectation, Halt, Lab, hold,
+    lab::once,
+    pinned,
+    scenes::{hand_made, pixel_view, seen, sheet, square_perspective, units},
+    stack,
+};
+use crate::{
+    math::GUARD_BAND,
+    scene::{Scene, camera::Camera},
+};
+
+pub const CASES: &[Case] = &[
+    Case {
+        number: 9,
+        name: "guard-band",
+        about: "vertices at its end and one unit beyond, in all combinations: exact inside, no crack beyond",
+        expectation: Expectation::Exact,
+        run: guard_band,
+    },
+    Case {
+        number: 10,
+        name: "w-around-zero",
+        about: "w of 0, +-1e-30, near and its neighbours, mixed signs in a triangle: exact given the clipped pieces",
+        expectation: Expectation::Exact,
+        run: w_around_zero,
+    },
+    Case {
+        number: 11,
+        name: "near-plane-sweep",
+        about: "a thousand steps of the near plane through a closed shell and the ground under it",
+        expectation: Expectation::Bounded("pixels along a cut may be the neighbour's, at most one row of 48"),
+        run: near_plane_sweep,
+    },
+];
+
+fn guard_band(lab: &mut Lab) -> Result<(), Halt> {
+    let view = pixel_view(16, 16);
+    let center = [2125, 1971];
+    let rung = pinned(lab.quick_rung());
+    let (mut whole, mut cut) = (0, 0);
+    // Each coordinate of four corners at the end of the guard band or one unit beyond.
+    for beyond in 0..256 {
+        let corner = |i: usize, [x, y]: [i32; 2]| {
+            let reach = |axis: usize| GUARD_BAND + (beyond >> (2 * i + axis) & 1);
+            [x * reach(0), y * reach(1)]
+        };
+        let [a, b, c, d] = [corner(0, [-1, -1]), corner(1, [1, -1]), corner(2, [1, 1]), corner(3, [-1, 1])];
+        let faces = [[center, a, b], [center, b, c], [center, c, d], [center, d, a]];
+        let scene = hand_made(&[units(&faces.map(|face| (face, 0.5)))]);
+        let what = format!("corners beyond: {beyond:08b}");
+        let capture = match beyond {
+            // All inside, one corner beyond in either axis, all beyond: on every rung.
+            0 | 1 | 2 | 255 => lab.everywhere(&scene, &view, &what)?,
+            _ => lab.exact(&scene, &view, &stack(&[]), &rung, &what)?.0,
+        };
+        once(&capture, &what)?;
+        for (vertex, [x, y]) in capture.geometry.vertices.iter().zip(faces.as_flattened()) {
+            let is_inside = x.abs().max(y.abs()) <= GUARD_BAND;
+            hold!((vertex.flags == 0) == is_inside, "{what}: {x}, {y} has the flags {}", vertex.flags);
+            hold!(!is_inside || (vertex.x, vertex.y) == (*x, *y), "{what}: {vertex:?} for {x}, {y}");
+        }
+        let counters = capture.frame.counters;
+        (whole, cut) = (whole + 4 - counters.clipped, cut + counters.clipped);
+    }
+    hold!(whole >= 4 * 16 && cut > 512, "{whole} triangles whole, {cut} cut");
+    Ok(())
+}
+
+fn w_around_zero(lab: &mut Lab) -> Result<(), Halt> {
+    let near = 1.0f32 / 128.0;
+    let step = |v: f32, by: i32| f32::from_bits(v.to_bits().wrapping_add_signed(by));
+    let depths = [0.0, 1e-30, -1e-30, near, step(near, 1), step(near, -1), 1.0, -1.0, 0.5, 1e3, -1e3];
+    for round in 1..=6 {
+        let mut dice = lab.dice(round);
+        let mut corner = || {
+            let w = depths[dice.between(0, depths.len() as i32) as usize];
+            let spread = if w.abs() > 1.0 { 900.0 } else { 2.0 };
+            [dice.real(-spread, spread) as f32, dice.real(-spread, spread) as f32, -w]
+        };
+        let positions: Vec<_> = (0..180).map(|_| corner()).collect();
+        let view = square_perspective(64, 64, near.into());
+        let what = format!("round {round}");
+        let capture = lab.everywhere(&hand_made(&[sheet(positions)]), &view, &what)?;
+        let counters = capture.frame.counters;
+        hold!(counters.clipped > 20 && capture.frame.covered() > 2000, "{what}: {counters:?}");
+        let wild = capture.geometry.vertices.iter().find(|v| !(v.depth.is_finite() && v.inv_w.is_finite() && v.inv_w <= 129.0));
+        hold!(wild.is_none(), "{what}: {wild:?}");
+    }
+    Ok(())
+}
+
+fn near_plane_sweep(lab: &mut Lab) -> Result<(), Halt> {
+    let mut shell = Scene::clone(&*lab.scene("sphere?triangles=300")?);
+    shell.materials[0].double_sided = true;
+    let ground = hand_made(&[sheet(vec![[-50.0, -0.5, -50.0], [-50.0, -0.5, 50.0], [50.0, -0.5, 50.0]])]);
+    let shell = Arc::new(shell);
+    let rung = pinned(lab.quick_rung());
+    let (mut cut, mut worst) = (0, 0);
+    for step in 0..1000 {
+        let way = f64::from(step) / 1000.0;
+        let scene = if step % 4 == 0 { &ground } else { &shell };
+        let eye = DVec3::new(0.3 - 0.4 * way, 0.9 - 1.6 * way, 1.7 - 1.4 * way);
+        let camera = Camera { eye, target: DVec3::new(0.1, -0.2, -1.0), near_m: 0.1, ..Camera::default() };
+        let view = seen(scene, &camera, [48, 32]);
+        let (capture, verdict) = lab.exact(scene, &view, &stack(&["depth"]), &rung, &format!("step {step}"))?;
+        cut += u32::from(capture.frame.counters.clipped > 0);
+        worst = worst.max(verdict.accuracy.explained_by_snap);
+    }
+    hold!(cut > 300, "{cut} pictures were clipped");
+    // Clipped outlines may move by less than a pixel: at most a row along the longest cut.
+    hold!(worst <= 48, "{worst} pixels differ from the oracle's own picture");
+    lab.note(format!("at most {worst} pixels of a picture differ from the oracle's own along a cut"));
+    Ok(())
+}

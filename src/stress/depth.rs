@@ -1,0 +1,97 @@
+//! Depth: nine decades of it, layers one key apart, and w ratios within a triangle.
+
+use std::collections::BTreeSet;
+
+use super::{
+    Case, Expectation, Halt, Lab, hold,
+    lab::equal,
+    scenes::{Part, hand_made, pixel_view, quad, sheet, square_perspective, turned, units},
+    stack,
+};
+use crate::frame::NO_OWNER;
+
+pub const CASES: &[Case] = &[
+    Case {
+        number: 13,
+        name: "depth-range",
+        about: "pairs a thousandth apart over eleven decades of depth: the nearer of each wins",
+        expectation: Expectation::Exact,
+        run: depth_range,
+    },
+    Case {
+        number: 15,
+        name: "coplanar-layers",
+        about: "layers one key apart, and equal ones: the nearest wins, equal keys go to the smaller id",
+        expectation: Expectation::Exact,
+        run: coplanar_layers,
+    },
+    Case {
+        number: 28,
+        name: "w-ratios",
+        about: "w of 1 to 2, 10, 1,000 and 10^6 in one triangle: attributes and depth of every sample",
+        expectation: Expectation::Bounded("depth within its stated relative error, colours within one step of 255"),
+        run: w_ratios,
+    },
+];
+
+fn depth_range(lab: &mut Lab) -> Result<(), Halt> {
+    for near in [1e-3, 1e-5] {
+        let view = square_perspective(64, 64, near);
+        let mut positions = Vec::new();
+        // The farther, the larger on screen; pairs a thousandth apart, the farther one first.
+        for decade in 0..11 {
+            for nearer in [1.001, 1.0] {
+                let w = near * 1.5 * libm::pow(10.0, f64::from(decade)) * nearer;
+                positions.extend(quad(turned([0.0, 0.0], 0.1 + 0.1 * f64::from(decade), 0.3 * f64::from(decade)), [w; 4], false));
+            }
+        }
+        let what = format!("near plane at {near:e}");
+        let capture = lab.everywhere_with(&hand_made(&[sheet(positions)]), &view, &stack(&["depth"]), &what)?;
+        let seen: BTreeSet<u32> = capture.frame.owner.iter().copied().filter(|&o| o != NO_OWNER).collect();
+        hold!(seen.iter().all(|owner| owner % 4 >= 2), "{what}: the farther of a pair shows among {seen:?}");
+        hold!(seen.len() >= 20, "{what}: {} triangles show", seen.len());
+    }
+    Ok(())
+}
+
+fn coplanar_layers(lab: &mut Lab) -> Result<(), Halt> {
+    let view = pixel_view(64, 64);
+    let mut dice = lab.dice(5);
+    // Full-screen layers in no order, one float after another: small triangles, and one that is large.
+    for (what, corners) in [("small", [[0, 0], [24 * 256, 0], [0, 24 * 256]]), ("large", [[-60_000, -90_000], [90_000, 0], [0, 90_000]])] {
+        let mut steps: Vec<u32> = (0..40).chain(10..20).collect();
+        dice.shuffle(&mut steps);
+        let layers: Vec<_> = steps.iter().map(|step| (corners, f32::from_bits(0.5f32.to_bits() + step))).collect();
+        let capture = lab.everywhere(&hand_made(&[units(&layers)]), &view, &format!("{what} layers"))?;
+        let nearest = steps.iter().position(|&step| step == 39).unwrap_or_default();
+        let mut owners: Vec<u32> = capture.frame.owner.iter().copied().filter(|&o| o != NO_OWNER).collect();
+        owners.dedup();
+        equal(&owners, &vec![nearest as u32], &format!("{what} layers: owners"))?;
+        let top = 0.5f32.to_bits() + 39;
+        hold!(capture.frame.key.iter().all(|&key| key == 0 || key == top), "{what} layers: a depth key is not the nearest's");
+
+        // The nearest twice more: equal keys go to the smaller id.
+        let again: Vec<_> = layers.iter().chain([&layers[nearest]; 2]).copied().collect();
+        let equals = lab.everywhere(&hand_made(&[units(&again)]), &view, &format!("equal {what} layers"))?;
+        hold!(equals.frame.owner == capture.frame.owner, "equal {what} layers: a larger id wins");
+    }
+    Ok(())
+}
+
+fn w_ratios(lab: &mut Lab) -> Result<(), Halt> {
+    for ratio in [2.0, 10.0, 1e3, 1e6f64] {
+        let (w, mid) = (1.0f64, ratio.sqrt());
+        let corners = [([-0.95, -0.9], w), ([0.95, -0.7], ratio), ([0.1, 0.95], mid)];
+        let positions = corners.map(|([x, y], w)| [x * w, y * w, -w].map(|v| v as f32)).to_vec();
+        let colors = vec![[1.0, 0.0, 0.0, 1.0], [0.0, 1.0, 0.0, 0.5], [0.0, 0.0, 1.0, 0.0]];
+        let normals = vec![[1.0, 0.0, 0.1], [0.0, 1.0, 0.1], [-1.0, 0.2, 0.5]];
+        let scene = hand_made(&[Part { positions, normals, colors, ..Part::default() }]);
+        for effects in [&[][..], &["normals"], &["depth"]] {
+            let view = square_perspective(160, 160, 1.0 / 1024.0);
+            let what = format!("ratio {ratio}, {effects:?}");
+            let capture = lab.everywhere_with(&scene, &view, &stack(effects), &what)?;
+            hold!(capture.frame.covered() > 5000, "{what}: {} pixels", capture.frame.covered());
+        }
+    }
+    Ok(())
+}

@@ -1,0 +1,221 @@
+//! Effects at their limits: layers without number, shares next to nothing and next to all, limits at both ends.
+
+use std::sync::Arc;
+
+use super::{
+    Case, Expectation, Halt, Lab, hold,
+    lab::{equal, layers},
+    pinned,
+    scenes::{Part, hand_made, pixel_view, units},
+};
+use crate::{
+    effects::{Effect, Stack, dissolve::Mode, draw_order, hooks::Layers},
+    math::srgb_byte,
+    plan::Accuracy,
+    scene::Scene,
+};
+
+pub const CASES: &[Case] = &[
+    Case {
+        number: 16,
+        name: "layers-on-one-pixel",
+        about: "257, 258, 65,537, 65,538, 10^6 and 1,048,833 layers: the average is right, with fewer bits where it must",
+        expectation: Expectation::Exact,
+        run: layers_on_one_pixel,
+    },
+    Case {
+        number: 25,
+        name: "fill",
+        about: "shares of 0, 2^-24, 1/2, 1 - 2^-24 and 1 of large and sub-pixel triangles: exact sets, each within the next",
+        expectation: Expectation::Exact,
+        run: fill,
+    },
+    Case {
+        number: 25,
+        name: "fill-that-is-no-number",
+        about: "a share of NaN, below 0, above 1",
+        expectation: Expectation::Refused("a sentence with the field and its range"),
+        run: fill_that_is_no_number,
+    },
+    Case {
+        number: 26,
+        name: "draw-limit",
+        about: "limits of 0, 1, all but one, all, one more and 2^32 - 1 samples, in both orders",
+        expectation: Expectation::Exact,
+        run: draw_limit,
+    },
+    Case {
+        number: 26,
+        name: "more-than-2-to-the-32-samples",
+        about: "a draw order over more samples than a word counts",
+        expectation: Expectation::Exact,
+        run: more_than_a_word,
+    },
+];
+
+/// Sets a field of an effect, which it switches on.
+fn set(stack: &mut Stack, effect: &str, field: &str, value: f64) -> Result<(), Halt> {
+    let effect = Effect::find(effect).ok_or_else(|| Halt::Failed(format!("there is no effect {effect}")))?;
+    let about = effect.field(field).ok_or_else(|| Halt::Failed(format!("{} has no field {field}", effect.name)))?;
+    about.set(&mut stack.enable(effect).words, &[value]).map_err(|error| Halt::Failed(format!("{}: {error}", effect.name)))
+}
+
+/// A stack of one effect with some of its fields set.
+fn only(effect: &str, fields: &[(&str, f64)]) -> Result<Stack, Halt> {
+    let mut stack = Stack::default();
+    fields.iter().try_for_each(|(field, value)| set(&mut stack, effect, field, *value))?;
+    Ok(stack)
+}
+
+/// `count` layers that cover every pixel, half of them of one colour and half of another, from six vertices.
+fn pile(count: u32) -> Arc<Scene> {
+    let corners = |depth: f32| [[-4.0, -4.0, depth], [40.0, -4.0, depth], [-4.0, 40.0, depth]];
+    let colors = [[1.0, 0.0, 0.25, 1.0], [0.0, 1.0, 0.25, 1.0]];
+    hand_made(&[Part {
+        positions: [corners(0.5), corners(0.25)].concat(),
+        colors: colors.iter().flat_map(|color| [*color; 3]).collect(),
+        indices: (0..count).flat_map(|layer| [0, 1, 2].map(|corner| 3 * (layer % 2) + corner)).collect(),
+        ..Part::default()
+    }])
+}
+
+fn layers_on_one_pixel(lab: &mut Lab) -> Result<(), Halt> {
+    let view = pixel_view(2, 2);
+    // Layers, the choice of bits (auto, 16, 12, 10, 8), and the bits that they come to.
+    for (count, choice, taken) in [
+        (257, 0, 16),
+        (258, 0, 16),
+        (258, 4, 8),
+        (65_537, 0, 16),
+        (65_537, 1, 16),
+        (65_538, 0, 12),
+        (65_538, 1, 12),
+        (65_538, 3, 10),
+        (1_000_000, 0, 12),
+        (1_000_000, 1, 12),
+        (1_048_833, 0, 10),
+    ] {
+        let (scene, stack) = (pile(count), only("xray", &[("bits", f64::from(choice))])?);
+        // A million layers take a CPU adapter seconds.
+        for rung in if count < 1_000_000 { lab.rungs() } else { vec![lab.quick_rung()] } {
+            let what = format!("{count} layers in {taken} bits on {}", rung.name());
+            let (capture, _) = lab.exact(&scene, &view, &stack, &pinned(rung), &what)?;
+            let found = lab.renderer.key().and_then(|key| key.layers);
+            equal(&found, &Some(Layers::Xray { bits: taken }), &format!("{what}: kernel"))?;
+            equal(&capture.frame.counted, &vec![count; 4], &format!("{what}: layers of each pixel"))?;
+            equal(&capture.frame.counters.full_pixels, &0, &format!("{what}: pixels that overflowed"))?;
+            let red = f64::from(count.div_ceil(2)) / f64::from(count);
+            let wanted = [srgb_byte(red), srgb_byte(1.0 - red), srgb_byte(0.25), 255];
+            let is_near = |color: &[u8; 4]| color.iter().zip(wanted).all(|(a, b)| a.abs_diff(b) <= 1);
+            // Steps of eight bits in linear light are coarser than bytes.
+            hold!(taken == 8 || capture.frame.color.iter().all(is_near), "{what}: {:?}, not {wanted:?}", capture.frame.color);
+        }
+    }
+    Ok(())
+}
+
+fn fill(lab: &mut Lab) -> Result<(), Halt> {
+    lab.free_the_band();
+    let least = f64::from(f32::from_bits(0x3380_0000)); // 2^-24
+    let fills = [0.0, least, 0.5, 1.0 - least, 1.0];
+    for query in ["sphere?triangles=200", "grid?cell=0.4&width=48&height=48", "near"] {
+        let scene = lab.scene(query)?;
+        let view = lab.view(&scene, [64, 48]);
+        let (whole, _) = lab.exact(&scene, &view, &Stack::default(), &Accuracy::default(), query)?;
+        for mode in [Mode::Edge, Mode::Corner, Mode::Centroid, Mode::Scanline, Mode::Hash] {
+            let mut before: Option<Vec<u32>> = None;
+            for (i, fill) in fills.into_iter().enumerate() {
+                let stack = only("dissolve", &[("mode", f64::from(mode as u32)), ("fill", fill)])?;
+                let what = format!("{query} filled to {fill} by {mode:?}");
+                let capture = if i == 2 {
+                    lab.everywhere_with(&scene, &view, &stack, &what)?
+                } else {
+                    lab.exact(&scene, &view, &stack, &Accuracy::default(), &what)?.0
+                };
+                let now = layers(&capture).to_vec();
+                if let Some(before) = &before {
+                    hold!(before.iter().zip(&now).all(|(a, b)| a <= b), "{what}: a sample of a smaller share is missing");
+                }
+                before = Some(now);
+                hold!(fill > 0.0 || capture.frame.covered() == 0, "{what}: {} pixels are drawn", capture.frame.covered());
+                hold!(fill < 1.0 || layers(&capture) == layers(&whole), "{what}: not all is drawn");
+            }
+        }
+    }
+    Ok(())
+}
+
+fn fill_that_is_no_number(lab: &mut Lab) -> Result<(), Halt> {
+    for value in [f64::NAN, -1e-30, 1.0 + f64::EPSILON, f64::INFINITY, f64::NEG_INFINITY] {
+        match only("dissolve", &[("fill", value)]) {
+            Err(Halt::Failed(sentence)) => {
+                hold!(sentence.contains("fill") && sentence.contains("0..=1"), "{value}: {sentence}");
+                lab.refused(sentence);
+            }
+            other => return Err(Halt::Failed(format!("a share of {value} was taken: {other:?}"))),
+        }
+    }
+    Ok(())
+}
+
+fn sum(layers: &[u32]) -> u64 {
+    layers.iter().map(|&count| u64::from(count)).sum()
+}
+
+fn draw_limit(lab: &mut Lab) -> Result<(), Halt> {
+    lab.free_the_band();
+    let count = f64::from(draw_order::Unit::Count as u32);
+    for query in ["sphere?triangles=200", "near", "stack?layers=5"] {
+        let scene = lab.scene(query)?;
+        let view = lab.view(&scene, [48, 40]);
+        let (whole, _) = lab.exact(&scene, &view, &Stack::default(), &Accuracy::default(), query)?;
+        let total = sum(layers(&whole));
+        let limits = [0, 1, total / 2, total / 2 + 1, total - 1, total, total + 1, u64::from(u32::MAX)];
+        for rung in lab.rungs() {
+            let mut before: Option<Vec<u32>> = None;
+            for limit in limits {
+                for mode in [draw_order::Mode::Submission, draw_order::Mode::Scheduler] {
+                    let stack = only("draw_order", &[("mode", f64::from(mode as u32)), ("unit", count), ("limit", limit as f64)])?;
+                    let what = format!("{query}: {limit} of {total} samples by {mode:?} on {}", rung.name());
+                    let (capture, _) = lab.exact(&scene, &view, &stack, &pinned(rung), &what)?;
+                    equal(&sum(layers(&capture)), &limit.min(total), &format!("{what}: samples drawn"))?;
+                    if mode == draw_order::Mode::Submission {
+                        let now = layers(&capture).to_vec();
+                        let grows = before.is_none_or(|before| before.iter().zip(&now).all(|(a, b)| a <= b));
+                        hold!(grows, "{what}: a sample of a smaller limit is missing");
+                        before = Some(now);
+                    }
+                }
+            }
+        }
+    }
+    Ok(())
+}
+
+fn more_than_a_word(lab: &mut Lab) -> Result<(), Halt> {
+    if lab.renderer.gpu().caps.software {
+        return Err(Halt::LeftOut("2^32 samples take a software adapter minutes".into()));
+    }
+    let (side, times) = (4096u32, 260);
+    let total = u64::from(side) * u64::from(side) * times;
+    hold!(total > u64::from(u32::MAX), "{total} samples are too few");
+    let far = 8_388_607;
+    let scene = hand_made(&[units(&(0..times).map(|i| ([[0, 0], [far, 0], [0, far]], 1e-3 * (i + 1) as f32)).collect::<Vec<_>>())]);
+    let view = pixel_view(side, side);
+    let share = f64::from(draw_order::Unit::Share as u32);
+    // All but one part in 2^24 is a limit beyond a word, too.
+    for (what, fields, limit) in [
+        ("a count", vec![("unit", 1.0), ("limit", 1e6)], 1_000_000),
+        ("2^32 - 1", vec![("unit", 1.0), ("limit", f64::from(u32::MAX))], u64::from(u32::MAX)),
+        ("all", vec![("unit", share), ("share", 1.0)], total),
+    ] {
+        let stack = only("draw_order", &fields)?;
+        lab.step(&scene, &view, what)?;
+        lab.renderer.set_scene(&scene)?;
+        lab.renderer.draw_whole(&view, &stack, &Accuracy::default())?;
+        lab.renderer.draw(&view, &stack, &Accuracy::default())?;
+        let order = lab.renderer.finish()?.order.unwrap_or_default();
+        equal(&[order.covered, order.limit, order.drawn], &[total, limit, limit], &format!("{what}: samples covered, asked for, drawn"))?;
+    }
+    Ok(())
+}

@@ -1,0 +1,96 @@
+//! Parameters at both hard ends: one by one, all of an effect together, and with every effect on.
+
+use super::{Case, Expectation, Halt, Lab, hold};
+use crate::{
+    effects::{EFFECTS, Effect, Stack, hooks::Slot},
+    measure::Budget,
+    params::{Field, Kind},
+    plan::Accuracy,
+};
+
+pub const CASES: &[Case] = &[
+    Case {
+        number: 31,
+        name: "parameters-at-their-ends",
+        about: "every parameter of every effect at the least and the greatest value that it takes",
+        expectation: Expectation::Bounded("integers exact; colours within one step of 255 but for steps of colour"),
+        run: parameters_at_their_ends,
+    },
+    Case {
+        number: 31,
+        name: "every-effect-at-once",
+        about: "as many effects as the slots let stand together, all parameters at one end",
+        expectation: Expectation::Bounded("integers exact; colours within one step of 255 but for steps of colour"),
+        run: every_effect_at_once,
+    },
+];
+
+/// The ends of what a field takes, as its own type holds them.
+fn ends(field: &Field) -> [f64; 2] {
+    match field.kind {
+        Kind::F32 | Kind::Color | Kind::Point => field.hard.map(|end| f64::from(end as f32).clamp(field.hard[0], field.hard[1])),
+        _ => field.hard,
+    }
+}
+
+fn set(stack: &mut Stack, effect: &'static Effect, field: &Field, end: usize) -> Result<(), Halt> {
+    let values = vec![ends(field)[end]; field.kind.lanes()];
+    field.set(&mut stack.enable(effect).words, &values).map_err(|error| Halt::Failed(format!("{}: {error}", effect.name)))
+}
+
+/// Draws and judges; steps of colour may lie anywhere.
+fn judged(lab: &mut Lab, stack: &Stack, turn: usize, what: &str) -> Result<(), Halt> {
+    // Few triangles: discs and boxes at their largest cover the picture once for each of them.
+    let query = ["sphere?triangles=200", "near", "cube-wall", "grid?cell=0.4&width=8&height=8"][turn % 4];
+    let scene = lab.scene(query)?;
+    let what = format!("{what}, {query}");
+    let (capture, verdict) = lab.judged(&scene, &lab.view(&scene, [64, 48]), stack, &Accuracy::default(), &what)?;
+    let sound = capture.geometry.vertices.iter().all(|v| v.depth.is_finite() && v.inv_w.is_finite());
+    hold!(sound, "{what}: a vertex is no number");
+    verdict.accuracy.within(&Budget { max_step_share: 1.0, ..Budget::default() }).map_err(|why| Halt::Failed(format!("{what}: {why}")))
+}
+
+fn parameters_at_their_ends(lab: &mut Lab) -> Result<(), Halt> {
+    let mut turn = 0;
+    for effect in EFFECTS {
+        for (end, word) in [(0, "least"), (1, "greatest")] {
+            for field in effect.fields {
+                let mut stack = Stack::default();
+                set(&mut stack, effect, field, end)?;
+                let what = format!("{}.{} at its {word}, {}", effect.name, field.name, ends(field)[end]);
+                judged(lab, &stack, turn, &what)?;
+                turn += 1;
+            }
+            let mut stack = Stack::default();
+            stack.enable(effect);
+            effect.fields.iter().try_for_each(|field| set(&mut stack, effect, field, end))?;
+            judged(lab, &stack, turn, &format!("all of {} at its {word}", effect.name))?;
+            turn += 1;
+        }
+    }
+    Ok(())
+}
+
+fn every_effect_at_once(lab: &mut Lab) -> Result<(), Halt> {
+    // Those of one slot take turns.
+    let most = Slot::ALL.iter().map(|slot| EFFECTS.iter().filter(|effect| effect.hooks.slot == Some(*slot)).count()).max().unwrap_or(1);
+    for choice in 0..most {
+        for end in [None, Some(0), Some(1)] {
+            let mut stack = Stack::default();
+            for effect in EFFECTS {
+                let rivals: Vec<_> = EFFECTS.iter().filter(|e| e.hooks.slot.is_some() && e.hooks.slot == effect.hooks.slot).collect();
+                if !rivals.is_empty() && rivals[choice % rivals.len()] != effect {
+                    continue;
+                }
+                stack.enable(effect);
+                if let Some(end) = end {
+                    effect.fields.iter().try_for_each(|field| set(&mut stack, effect, field, end))?;
+                }
+            }
+            let names: Vec<_> = stack.0.iter().filter(|e| e.effect.hooks.slot.is_some()).map(|e| e.effect.name).collect();
+            let at = ["as they come", "at their least", "at their greatest"][end.map_or(0, |end| end + 1)];
+            judged(lab, &stack, choice, &format!("all effects {at}, in the slots {}", names.join(" and ")))?;
+        }
+    }
+    Ok(())
+}

@@ -1,0 +1,202 @@
+//! Published fixtures of fill rules: answers that share no code with us.
+
+use super::{
+    Case, Expectation, Halt, Lab, hold,
+    lab::{equal, exactness, layers, once},
+    pinned,
+    scenes::{hand_made, pixel_view, quad, sheet, square_perspective, turned, units},
+    stack,
+};
+use crate::{frame::NO_OWNER, ladder::Visibility};
+
+pub const CASES: &[Case] = &[
+    Case {
+        number: 1,
+        name: "rotated-quads",
+        about: "4 x 4 turned quads, in one winding or both, with a w for each corner: no sample is drawn twice",
+        expectation: Expectation::Exact,
+        run: rotated_quads,
+    },
+    Case {
+        number: 1,
+        name: "clipped-quads",
+        about: "a quad that reaches out of the picture or covers it, at 15 angles: no sample twice, none missing",
+        expectation: Expectation::Exact,
+        run: clipped_quads,
+    },
+    Case {
+        number: 1,
+        name: "quads-past-the-guard-band",
+        about: "the covering quad grown to 10^8 times the picture: exact given the clipped pieces, and no crack",
+        expectation: Expectation::Exact,
+        run: vast_quads,
+    },
+    Case {
+        number: 2,
+        name: "fan-about-a-sample",
+        about: "sub-pixel triangles round one sample: exactly one hit",
+        expectation: Expectation::Exact,
+        run: fan_about_a_sample,
+    },
+    Case {
+        number: 3,
+        name: "d3d-rectangle",
+        about: "the rectangle (0, 0) to (5, 5) of two triangles: 15 and 10 pixels",
+        expectation: Expectation::Exact,
+        run: d3d_rectangle,
+    },
+    Case {
+        number: 3,
+        name: "d3d-four-triangles",
+        about: "a rectangle of four triangles, off the samples and on them: the same eight pixels, each once",
+        expectation: Expectation::Exact,
+        run: d3d_four_triangles,
+    },
+    Case {
+        number: 3,
+        name: "d3d-snap",
+        about: "positions half-way between two units go to the even one",
+        expectation: Expectation::Exact,
+        run: d3d_snap,
+    },
+];
+
+/// The quads of `FillRuleTestInstance` in the Vulkan CTS (KhronosGroup/VK-GL-CTS,
+/// external/vulkancts/modules/vulkan/rasterization/vktRasterizationTests.cpp): 4 x 4 centres, half a side of 0.15, 32 angles
+/// over a quarter turn in two pictures of 256 x 256. Its `basic` winds the two triangles of a quad against each other,
+/// its `reversed` alike; `projected` gives each corner a w from 0.1 to 4.
+fn rotated_quads(lab: &mut Lab) -> Result<(), Halt> {
+    let view = square_perspective(256, 256, 1.0 / 128.0);
+    let mut dice = lab.dice(0xabcd);
+    for (kind, order) in [("basic", [0, 1, 2, 2, 0, 3]), ("reversed", [0, 1, 2, 0, 2, 3]), ("projected", [0, 1, 2, 2, 0, 3])] {
+        for iteration in 0..2 {
+            let mut corners = Vec::new();
+            for place in 0..16 {
+                let center = [place % 4, place / 4].map(|k| (f64::from(k) + 0.5) / 2.0 - 1.0);
+                let angle = f64::from(16 * iteration + place) / 32.0 * std::f64::consts::FRAC_PI_2;
+                // Corners lie half a side along both axes: the square root of two times it away, half a quarter turn on.
+                let square = turned(center, 0.15 * std::f64::consts::SQRT_2, angle - std::f64::consts::FRAC_PI_4);
+                let w = square.map(|_| if kind == "projected" { dice.real(0.1, 4.0) } else { 1.0 });
+                corners.extend(order.map(|i| [square[i][0] * w[i], square[i][1] * w[i], -w[i]].map(|v| v as f32)));
+            }
+            let what = format!("{kind}, picture {}", iteration + 1);
+            let capture = lab.everywhere(&hand_made(&[sheet(corners)]), &view, &what)?;
+            hold!(layers(&capture).iter().all(|&hits| hits <= 1), "{what}: a sample is drawn twice");
+            // A square of 0.3 to a side fills 38.4 x 38.4 of 256 x 256 pixels, its outline at most 4 x 55 of them.
+            let covered = capture.frame.covered();
+            hold!((16 * 1420..16 * 1530).contains(&covered), "{what}: {covered} pixels, where 16 x 1,474.6 are near");
+        }
+    }
+    Ok(())
+}
+
+/// The same source's `clipped_partial` and `clipped_full`: pictures of 64 x 64, 15 angles from none to a quarter turn, half a
+/// side of 1 about (0.5, 0.5) and of 2 about the middle.
+fn clipped_quads(lab: &mut Lab) -> Result<(), Halt> {
+    let view = square_perspective(64, 64, 1.0 / 128.0);
+    for (kind, center, half) in [("partial", [0.5, 0.5], 1.0), ("full", [0.0, 0.0], 2.0)] {
+        for iteration in 0..15 {
+            let angle = f64::from(iteration) / 14.0 * std::f64::consts::FRAC_PI_2;
+            let square = turned(center, half * std::f64::consts::SQRT_2, angle - std::f64::consts::FRAC_PI_4);
+            let what = format!("{kind}, angle {} of 15", iteration + 1);
+            let scene = hand_made(&[sheet(quad(square, [1.0; 4], false))]);
+            let capture = lab.everywhere(&scene, &view, &what)?;
+            hold!(layers(&capture).iter().all(|&hits| hits <= 1), "{what}: a sample is drawn twice");
+            if kind == "full" {
+                once(&capture, &what)?;
+            }
+        }
+    }
+    Ok(())
+}
+
+fn vast_quads(lab: &mut Lab) -> Result<(), Halt> {
+    let view = square_perspective(96, 64, 1.0 / 128.0);
+    for turn in 0..15 {
+        let angle = f64::from(turn) * std::f64::consts::FRAC_PI_2 / 15.0;
+        // Beyond every corner, then far past the guard band.
+        for half in [2.5, 40.0, 1e5, 1e8] {
+            let part = sheet(quad(turned([0.1, -0.2], half, angle), [1.0, 0.7, 2.0, 1.3], turn % 2 == 0));
+            let what = format!("turn {turn}, half {half:e}");
+            let (capture, mut verdict) = lab.judged(&hand_made(&[part]), &view, &stack(&[]), &pinned(Visibility::Split32), &what)?;
+            if half > 1e6 {
+                // Cuts of f32 coordinates of 10^8 lie whole pixels apart: exact given the clipped pieces, and without a crack.
+                hold!(capture.frame.counters.clipped == 2 && !capture.geometry.pieces.is_empty(), "{what}: nothing was clipped");
+                verdict.accuracy.unexplained = 0;
+            }
+            exactness(&verdict.accuracy).map_err(|faults| Halt::Failed(format!("{what}: {faults}")))?;
+            once(&capture, &what)?;
+        }
+    }
+    Ok(())
+}
+
+/// After piglit's fans of triangles that meet in a point of the sample grid.
+fn fan_about_a_sample(lab: &mut Lab) -> Result<(), Halt> {
+    for n in [3, 5, 8, 13, 40] {
+        for seed in 0..3 {
+            let what = format!("{n} triangles, seed {seed}");
+            let fan = lab.scene(&format!("fan?n={n}&radius=0.3&seed={seed}"))?;
+            for (size, hits) in [([64, 64], 0), ([256, 256], 1)] {
+                // A picture of another size shows the fan beside the sample.
+                let capture = lab.everywhere(&fan, &lab.view(&fan, size), &what)?;
+                equal(&layers(&capture).iter().sum::<u32>(), &hits, &format!("{what}, {size:?}: hits"))?;
+            }
+        }
+    }
+    Ok(())
+}
+
+/// Direct3D's documents, "Rasterization Rules": the first triangle gets 15 pixels and the second 10, because the edge they
+/// share is a left edge of the first. Their samples lie at whole numbers, ours half a pixel further; both are drawn.
+fn d3d_rectangle(lab: &mut Lab) -> Result<(), Halt> {
+    for shift in [0, 128] {
+        let [a, b, c, d] = [[0, 0], [5, 0], [5, 5], [0, 5]].map(|corner| corner.map(|v| 256 * v + shift));
+        for (first, second) in [([a, b, c], [d, a, c]), ([c, b, a], [a, d, c])] {
+            let what = format!("{first:?} and {second:?}");
+            let scene = hand_made(&[units(&[(first, 0.5), (second, 0.5)])]);
+            let capture = lab.everywhere(&scene, &pixel_view(8, 8), &what)?;
+            let count = |owner| capture.frame.owner.iter().filter(|&&o| o == owner).count();
+            equal(&[count(0), count(1), count(NO_OWNER)], &[15, 10, 39], &format!("{what}: pixels of each, and of none"))?;
+            hold!(layers(&capture).iter().all(|&hits| hits <= 1), "{what}: a sample is drawn twice");
+        }
+    }
+    Ok(())
+}
+
+/// From the same page: the rectangle (0.5, 0.5) to (2.5, 4.5), four triangles about its centre, needs no rule, since all its
+/// samples lie inside of triangles. Moved by half a pixel most of them lie on edges; the same pixels are affected.
+fn d3d_four_triangles(lab: &mut Lab) -> Result<(), Halt> {
+    let mut covered = Vec::new();
+    for (what, [left, top]) in [("off the samples", [128, 128]), ("on the samples", [256, 256])] {
+        // Our samples lie half a pixel further than theirs.
+        let at = |x: i32, y: i32| [left + 128 + x, top + 128 + y];
+        let [a, b, c, d, middle] = [at(0, 0), at(512, 0), at(512, 1024), at(0, 1024), at(256, 512)];
+        let faces = [[a, b, middle], [b, c, middle], [c, d, middle], [d, a, middle]];
+        let scene = hand_made(&[units(&faces.map(|face| (face, 0.5)))]);
+        let capture = lab.everywhere(&scene, &pixel_view(8, 8), what)?;
+        hold!(layers(&capture).iter().all(|&hits| hits <= 1), "{what}: a sample is drawn twice");
+        covered.push(layers(&capture).to_vec());
+    }
+    let pixels: Vec<usize> = (0..64).filter(|&pixel| covered[0][pixel] == 1).collect();
+    equal(&pixels, &[9, 10, 17, 18, 25, 26, 33, 34].to_vec(), "the pixels of the rectangle")?;
+    equal(&covered[1], &covered[0], "the rectangle moved onto the samples")
+}
+
+/// Direct3D 11.3 functional specification, "coordinate snapping": 16.8 fixed point, to the nearest and ties to even.
+fn d3d_snap(lab: &mut Lab) -> Result<(), Halt> {
+    let ties: Vec<i32> = (-6..6).chain([2047, 2048, 8190, 16_381, 32_766]).collect();
+    // Halves of units, exact in f32 and through the matrix.
+    let half = |unit: i32| (unit as f32 + 0.5) / 256.0;
+    let even = |unit: i32| if unit % 2 == 0 { unit } else { unit + 1 };
+    let corners: Vec<[f32; 3]> =
+        ties.iter().flat_map(|&k| [[half(k), half(k), 0.5], [40.0 + half(k), 3.0, 0.5], [3.0, 40.0 + half(k), 0.5]]).collect();
+    let scene = hand_made(&[sheet(corners)]);
+    let capture = lab.everywhere(&scene, &pixel_view(128, 128), "ties of the snap")?;
+    for (vertex, tie) in capture.geometry.vertices.as_chunks::<3>().0.iter().zip(ties) {
+        let found = [[vertex[0].x, vertex[0].y], [vertex[1].x, vertex[1].y], [vertex[2].x, vertex[2].y]];
+        let wanted = [[even(tie); 2], [40 * 256 + even(tie), 3 * 256], [3 * 256, 40 * 256 + even(tie)]];
+        equal(&found, &wanted, &format!("{tie} and a half units"))?;
+    }
+    Ok(())
+}

@@ -1,0 +1,252 @@
+//! Queues: more workgroups than a dimension holds, queues that are exactly full or overflow, and great numbers of triangles.
+
+use std::sync::Arc;
+
+use glam::{DMat4, DVec3};
+
+use super::{
+    Case, Expectation, Halt, Lab, hold,
+    lab::{equal, layers},
+    pinned,
+    scenes::{Part, hand_made, pixel_view, units},
+    stack, tunings,
+};
+use crate::{
+    frame::vertex_flags,
+    gpu::{Capture, uniforms::Capacities},
+    ladder::Visibility,
+    plan::Tuning,
+    scene::{Scene, camera::View},
+};
+
+pub const CASES: &[Case] = &[
+    Case {
+        number: 18,
+        name: "workgroups-direct",
+        about: "65,535 to 65,537 groups of triangles and of vertices, dispatched directly: the full picture",
+        expectation: Expectation::Exact,
+        run: workgroups_direct,
+    },
+    Case {
+        number: 18,
+        name: "workgroups-indirect",
+        about: "as many medium and large triangles and tiles, whose dispatch the adapter sizes itself",
+        expectation: Expectation::Exact,
+        run: workgroups_indirect,
+    },
+    Case {
+        number: 19,
+        name: "queues",
+        about: "each queue with room for its demand n, for n - 1 and for n / 10: counted, grown, drawn again, exact",
+        expectation: Expectation::Exact,
+        run: queues,
+    },
+    Case {
+        number: 27,
+        name: "a-million-triangles",
+        about: "a sphere of a million triangles against the oracle",
+        expectation: Expectation::Exact,
+        run: a_million_triangles,
+    },
+    Case {
+        number: 27,
+        name: "ten-million-triangles",
+        about: "ten million tiny triangles, whose owners and hits can be counted",
+        expectation: Expectation::Exact,
+        run: ten_million_triangles,
+    },
+    Case {
+        number: 27,
+        name: "a-thousand-full-screen-triangles",
+        about: "far larger than the picture, each of them over all of it",
+        expectation: Expectation::Exact,
+        run: full_screen_triangles,
+    },
+];
+
+/// Tiny triangles one after another over the pixels of a row, one hit each, all of them `times` over, later ones nearer.
+fn dots(indexed: bool, count: u32, times: u32) -> (Arc<Scene>, View) {
+    let corner = |i: u32, c: usize| {
+        let (x, y) = ((i % 64) as f32, (i / 64 % 64) as f32);
+        [[x + 0.25, y + 0.25, 0.0], [x + 0.75, y + 0.5, 0.0], [x + 0.25, y + 0.75, 0.0]][c]
+    };
+    let distinct = if indexed { 4096.min(count) } else { count };
+    let part = Part {
+        positions: (0..distinct).flat_map(|i| [0, 1, 2].map(|c| corner(i, c))).collect(),
+        indices: if indexed { (0..count).flat_map(|i| [0, 1, 2].map(|c| 3 * (i % distinct) + c)).collect() } else { vec![] },
+        placements: (0..times).map(|i| DMat4::from_translation(DVec3::Z * f64::from(i + 1) / f64::from(times + 1))).collect(),
+        ..Part::default()
+    };
+    (hand_made(&[part]), pixel_view(64, 64))
+}
+
+/// Hits of each pixel, and its owner: the last of those with the last placement's depth has the smallest id there.
+fn counted(capture: &Capture, count: u32, times: u32, what: &str) -> Result<(), Halt> {
+    let rounds = |pixel: u32| (count - pixel).div_ceil(4096);
+    for pixel in 0..4096.min(count) {
+        let found = (layers(capture)[pixel as usize], capture.frame.owner[pixel as usize]);
+        equal(&found, &(times * rounds(pixel), (times - 1) * count + pixel), &format!("{what}: hits and owner of pixel {pixel}"))?;
+    }
+    Ok(())
+}
+
+fn workgroups_direct(lab: &mut Lab) -> Result<(), Halt> {
+    let rung = pinned(lab.quick_rung());
+    // 64 triangles, or vertices, to a group: 65,535, 65,536 and 65,537 groups, the last one with a single lane at work.
+    for groups in [65_535u32, 65_536, 65_537] {
+        let triangles = 64 * (groups - 1) + 1;
+        // Three placements divide none of these evenly, so the list itself is as long as it must be.
+        let (scene, view) = dots(true, triangles, 1);
+        let what = format!("{groups} groups of triangles");
+        let capture = lab.captured(&scene, &view, &stack(&[]), &rung, &what)?;
+        counted(&capture, triangles, 1, &what)?;
+    }
+    let (count, times) = (66_666, 21);
+    hold!(3 * count * times > 64 * 65_535, "too few vertices");
+    let (scene, view) = dots(false, count, times);
+    let what = "65,626 groups of vertices";
+    let capture = lab.captured(&scene, &view, &stack(&[]), &rung, what)?;
+    counted(&capture, count, times, what)
+}
+
+fn workgroups_indirect(lab: &mut Lab) -> Result<(), Halt> {
+    let rung = pinned(lab.quick_rung());
+    let [crowded, _, card, _] = tunings();
+    // Medium triangles: one group each.
+    for demand in [65_535u32, 65_536, 65_537] {
+        let corners = |i: u32| {
+            let [x, y] = [i % 21, i / 21 % 21].map(|k| 768 * k as i32);
+            [[x, y], [x + 600, y], [x, y + 600]]
+        };
+        let triangles: Vec<_> = (0..demand).map(|i| (corners(i), 0.25 + 1e-6 * i as f32)).collect();
+        let scene = hand_made(&[units(&triangles)]);
+        lab.renderer.set_tuning(crowded);
+        let what = format!("{demand} medium triangles");
+        lab.exact(&scene, &pixel_view(64, 64), &stack(&[]), &rung, &what)?;
+        hold!(lab.renderer.capacities().medium >= demand, "{what}: {:?}", lab.renderer.capacities());
+    }
+    // Large triangles and their tiles: one group each, one tile to a triangle; with room from the start, since it takes time.
+    let needle = |i: i32| [[-20_000 - i % 7, i % 16_000], [40_000, i % 16_000 + 3], [40_000, i % 16_000 + 600]];
+    let triangles: Vec<_> = (0..65_600).map(|i| (needle(i), 0.25 + 1e-6 * i as f32)).collect();
+    let scene = hand_made(&[units(&triangles)]);
+    lab.renderer.set_tuning(card);
+    lab.renderer.set_scene(&scene)?;
+    lab.renderer.set_capacities(Capacities { large: 65_600, tiles: 65_600, ..Capacities::default() });
+    lab.exact(&scene, &pixel_view(64, 64), &stack(&[]), &rung, "65,600 large triangles")?;
+    let foreseen = Capacities { clip: 1, pieces: 1, medium: 1, large: 65_600, tiles: 65_600, bins: 1 };
+    equal(&lab.renderer.capacities(), &foreseen, "65,600 large triangles: room in the queues")?;
+    // Tiles of the resolve: 66,048 of 8 x 8 pixels.
+    let [a, b, c, d] = [[0, 0], [2048 * 256, 0], [2048 * 256, 2064 * 256], [0, 2064 * 256]];
+    lab.renderer.set_tuning(Tuning { listed_tiles: true, ..card });
+    let scene = hand_made(&[units(&[([a, b, c], 0.5), ([a, c, d], 0.5)])]);
+    let view = pixel_view(2048, 2064);
+    let what = "66,048 tiles of the picture";
+    let (capture, _) = lab.exact(&scene, &view, &stack(&["triangle_id"]), &pinned(Visibility::Split32), what)?;
+    equal(&capture.frame.covered(), &(2048 * 2064), &format!("{what}: pixels"))
+}
+
+/// What a demand is called, what it comes to, the scene that makes it, and the capacity that must hold it.
+type Demand = (&'static str, Capacities, Arc<Scene>, fn(&mut Capacities) -> &mut u32);
+
+/// Each queue alone, with the demand that is known for it.
+fn demands() -> Vec<Demand> {
+    let ample = Capacities { clip: 4096, pieces: 4096, medium: 4096, large: 4096, tiles: 4096, bins: 65_536 };
+    let n = 40;
+    let many = |triangle: [[i32; 2]; 3]| {
+        let moved = |i: i32| (triangle.map(|[x, y]| [x, y + 97 * i]), 0.2 + 0.01 * i as f32);
+        hand_made(&[units(&(0..n).map(moved).collect::<Vec<_>>())])
+    };
+    let demand = n as u32;
+    // One corner beyond the guard band leaves a quad of two pieces, both on screen.
+    let cut = many([[9_000_000, 300], [200, 9000], [300, 200]]);
+    let small = many([[300, 300], [9000, 400], [400, 9000]]);
+    let large = many([[-3000, -3000], [90_000, 4000], [4000, 90_000]]);
+    vec![
+        ("clip", Capacities { clip: demand, ..ample }, cut.clone(), |c| &mut c.clip),
+        ("pieces", Capacities { pieces: 2 * demand, ..ample }, cut, |c| &mut c.pieces),
+        ("medium", Capacities { medium: demand, ..ample }, small, |c| &mut c.medium),
+        ("large", Capacities { large: demand, ..ample }, large.clone(), |c| &mut c.large),
+        // A picture of 128 x 128 has four tiles.
+        ("tiles", Capacities { tiles: 4 * demand, ..ample }, large.clone(), |c| &mut c.tiles),
+        // And 64 of the tiles that have lists.
+        ("bins", Capacities { bins: 64 * demand, ..ample }, large, |c| &mut c.bins),
+    ]
+}
+
+fn queues(lab: &mut Lab) -> Result<(), Halt> {
+    let view = pixel_view(128, 128);
+    lab.renderer.set_tuning(tunings()[0]);
+    for rung in lab.rungs() {
+        // A tiled picture has lists, the others tiles of large triangles.
+        let has = |queue: &str| queue != if rung == Visibility::Tiled { "tiles" } else { "bins" };
+        for (queue, exactly, scene, field) in demands().into_iter().filter(|(queue, ..)| has(queue)) {
+            let demand = *field(&mut exactly.clone());
+            for capacity in [demand, demand - 1, demand / 10, 1] {
+                let what = format!("{queue} on {}: demand {demand}, room for {capacity}", rung.name());
+                let mut capacities = exactly;
+                *field(&mut capacities) = capacity;
+                lab.renderer.set_scene(&scene)?;
+                lab.renderer.set_capacities(capacities);
+                lab.renderer.draw(&view, &stack(&[]), &pinned(rung))?;
+                let report = lab.renderer.finish()?;
+                equal(&report.counters.overflow, &(demand - capacity), &format!("{what}: entries lost"))?;
+                equal(&report.redraw, &(capacity < demand), &format!("{what}: drawn again"))?;
+                lab.exact(&scene, &view, &stack(&[]), &pinned(rung), &what)?;
+                hold!(*field(&mut lab.renderer.capacities()) >= demand, "{what}: it has not grown");
+            }
+        }
+    }
+    Ok(())
+}
+
+fn a_million_triangles(lab: &mut Lab) -> Result<(), Halt> {
+    let sphere = lab.scene("sphere?triangles=1000000")?;
+    let view = lab.view(&sphere, [256, 192]);
+    let mut first: Option<Capture> = None;
+    for rung in lab.rungs() {
+        let what = format!("a million triangles on {}", rung.name());
+        let capture = match &first {
+            None => lab.exact(&sphere, &view, &stack(&["lambert"]), &pinned(rung), &what)?.0,
+            Some(_) => lab.captured(&sphere, &view, &stack(&["lambert"]), &pinned(rung), &what)?,
+        };
+        hold!(capture.frame.covered() > 7000, "{what}: {} pixels", capture.frame.covered());
+        match &first {
+            None => first = Some(capture),
+            Some(first) => super::lab::same(&capture, first, &what)?,
+        }
+    }
+    Ok(())
+}
+
+fn ten_million_triangles(lab: &mut Lab) -> Result<(), Halt> {
+    let count = 10_000_000;
+    let caps = &lab.renderer.gpu().caps;
+    let room = caps.max_storage_binding_bytes.min(caps.max_buffer_bytes);
+    if room < 12 * u64::from(count) {
+        return Err(Halt::LeftOut(format!("their index list takes {} bytes, and this adapter binds {room}", 12 * count)));
+    }
+    let (scene, view) = dots(true, count, 1);
+    for rung in lab.rungs() {
+        let what = format!("ten million triangles on {}", rung.name());
+        let capture = lab.captured(&scene, &view, &stack(&[]), &pinned(rung), &what)?;
+        counted(&capture, count, 1, &what)?;
+    }
+    Ok(())
+}
+
+fn full_screen_triangles(lab: &mut Lab) -> Result<(), Halt> {
+    let mut dice = lab.dice(3);
+    let mut far = || dice.between(60_000, 8_000_000);
+    let triangles: Vec<_> =
+        (0..1000).map(|i| ([[-far(), -far()], [2 * far() / 2 + 40_000, -far()], [64 * 256, 8_388_607]], 1e-3 * (i % 997) as f32)).collect();
+    let scene = hand_made(&[units(&triangles)]);
+    lab.renderer.set_tuning(tunings()[2]);
+    for rung in lab.rungs() {
+        let what = format!("a thousand full-screen triangles on {}", rung.name());
+        let (capture, _) = lab.exact(&scene, &pixel_view(128, 64), &stack(&[]), &pinned(rung), &what)?;
+        hold!(layers(&capture).iter().all(|&hits| hits > 900), "{what}: a pixel with fewer than 900 layers");
+        let cut = capture.geometry.vertices.iter().any(|vertex| vertex.flags & vertex_flags::CLIPPED != 0);
+        hold!(!cut, "{what}: one was clipped");
+    }
+    Ok(())
+}

@@ -1,0 +1,181 @@
+//! Hand-made scenes, and views in which every coordinate is known: what the cases, and tests of the renderer, draw.
+
+use std::sync::Arc;
+
+use glam::{DMat4, DVec3, DVec4};
+
+use crate::{
+    math::hash,
+    oracle,
+    scene::{
+        Accessor, Bounds, Component, Instance, Material, Primitive, Scene, Topology,
+        camera::{Camera, View},
+        draw::{DrawError, draws},
+    },
+};
+
+/// Triangles in their own bytes; everything a hand-made scene needs.
+#[derive(Clone)]
+pub struct Part {
+    pub positions: Vec<[f32; 3]>,
+    /// Empty: (0, 0, 1) everywhere.
+    pub normals: Vec<[f32; 3]>,
+    /// Empty: none.
+    pub colors: Vec<[f32; 4]>,
+    /// Empty: corners count upwards.
+    pub indices: Vec<u32>,
+    pub double_sided: bool,
+    pub placements: Vec<DMat4>,
+}
+
+impl Default for Part {
+    fn default() -> Self {
+        let placements = vec![DMat4::IDENTITY];
+        Self { positions: vec![], normals: vec![], colors: vec![], indices: vec![], double_sided: true, placements }
+    }
+}
+
+/// Loose triangles that show both sides.
+pub fn sheet(positions: Vec<[f32; 3]>) -> Part {
+    Part { positions, ..Part::default() }
+}
+
+/// Loose triangles from units of 1/256 px and one depth each; exact on a [`pixel_view`] up to the guard band.
+pub fn units(triangles: &[([[i32; 2]; 3], f32)]) -> Part {
+    let place = |[x, y]: [i32; 2], depth: f32| [x as f32 / 256.0, y as f32 / 256.0, depth];
+    sheet(triangles.iter().flat_map(|(corners, depth)| corners.map(|corner| place(corner, *depth))).collect())
+}
+
+/// A scene of these parts.
+pub fn hand_made(parts: &[Part]) -> Arc<Scene> {
+    let mut scene = Scene { name: "hand-made".into(), ..Scene::default() };
+    for (i, part) in parts.iter().enumerate() {
+        let mut push = |lanes: u32, values: &[f32]| {
+            let offset = scene.vertex_bytes.len();
+            scene.vertex_bytes.extend(values.iter().flat_map(|v| v.to_le_bytes()));
+            Accessor::packed_f32(offset, lanes, values.len() / lanes as usize)
+        };
+        let positions = push(3, part.positions.as_flattened());
+        let normals = if part.normals.is_empty() { vec![[0.0, 0.0, 1.0]; part.positions.len()] } else { part.normals.clone() };
+        let normals = push(3, normals.as_flattened());
+        let colors = (!part.colors.is_empty()).then(|| push(4, part.colors.as_flattened()));
+        let indices = (!part.indices.is_empty()).then(|| {
+            let (offset, count) = (scene.index_bytes.len() as u32, part.indices.len() as u32);
+            scene.index_bytes.extend(part.indices.iter().flat_map(|i| i.to_le_bytes()));
+            Accessor { offset, stride: 4, component: Component::U32, lanes: 1, normalized: false, count }
+        });
+        let mut bounds = Bounds::EMPTY;
+        let finite = part.positions.iter().filter(|p| p.iter().all(|v| v.is_finite()));
+        finite.for_each(|p| bounds.include(DVec3::from_array(p.map(f64::from))));
+        let corner = |place: usize| {
+            let vertex = part.indices.get(place).map_or(place, |&i| i as usize);
+            DVec3::from_array(part.positions[vertex].map(f64::from))
+        };
+        let corners = if part.indices.is_empty() { part.positions.len() } else { part.indices.len() };
+        let edges = (0..corners / 3).flat_map(|t| [(0, 1), (1, 2), (2, 0)].map(|(a, b)| corner(3 * t + a).distance(corner(3 * t + b))));
+        let longest_edge = edges.filter(|edge| edge.is_finite()).fold(0.0, f64::max);
+        let material = scene.materials.len();
+        scene.materials.push(Material { double_sided: part.double_sided, ..Material::default() });
+        scene.primitives.push(Primitive {
+            name: format!("part {i}"),
+            topology: Topology::List,
+            indices,
+            positions,
+            normals,
+            colors,
+            material,
+            bounds,
+            longest_edge,
+            sound_normals: false,
+        });
+        scene.instances.extend(part.placements.iter().map(|&world_from_object| Instance { primitive: i, world_from_object }));
+    }
+    Arc::new(scene)
+}
+
+/// Positions are pixels right and down, z is the depth itself: larger is nearer. Exact where sides are powers of two.
+pub fn pixel_view(width: u32, height: u32) -> View {
+    let (w, h) = (f64::from(width), f64::from(height));
+    View {
+        width,
+        height,
+        clip_from_world: DMat4::from_cols(DVec4::X * 2.0 / w, DVec4::Y * -2.0 / h, DVec4::Z, DVec4::new(-1.0, 1.0, 0.0, 1.0)),
+        world_from_scene: DMat4::IDENTITY,
+        eye: DVec3::new(w / 2.0, h / 2.0, 1.0),
+        forward: DVec3::NEG_Z,
+        ndc_axes: [DVec3::X * w / 2.0, DVec3::NEG_Y * h / 2.0],
+        linear_depth_m: Some([0.0, 1.0]),
+        scene_range_m: [0.0, 1.0],
+        background: [0.0; 4],
+        subpixel_bits: 8,
+    }
+}
+
+/// A perspective in which (x w, y w, -w) lands on (x, y) in normalized device coordinates.
+pub fn square_perspective(width: u32, height: u32, near: f64) -> View {
+    View {
+        clip_from_world: DMat4::from_cols(DVec4::X, DVec4::Y, DVec4::new(0.0, 0.0, 0.0, -1.0), DVec4::new(0.0, 0.0, near, 0.0)),
+        eye: DVec3::ZERO,
+        ndc_axes: [DVec3::X, DVec3::Y],
+        linear_depth_m: None,
+        scene_range_m: [near, near + 10.0],
+        ..pixel_view(width, height)
+    }
+}
+
+/// What `camera` sees of `scene`.
+pub fn seen(scene: &Scene, camera: &Camera, [width, height]: [u32; 2]) -> View {
+    View::new(camera, width, height, &scene.bounds(), DMat4::IDENTITY, [0.01, 0.02, 0.03, 1.0])
+}
+
+/// What the oracle makes of a scene all by itself: the truth that an adapter has not touched.
+///
+/// # Errors
+/// When a placement or the number of triangles exceeds what the arithmetic holds.
+pub fn truth(scene: &Scene, view: &View) -> Result<oracle::Coverage, DrawError> {
+    let draws = draws(scene, view)?;
+    let (triangles, _) = oracle::triangles(scene, &draws, &oracle::project(scene, &draws, view));
+    Ok(oracle::cover(&triangles, view, None))
+}
+
+/// Four corners of a square, turned.
+pub fn turned(center: [f64; 2], half: f64, angle: f64) -> [[f64; 2]; 4] {
+    [0.0, 1.0, 2.0, 3.0].map(|quarter| {
+        let (sin, cos) = libm::sincos(angle + quarter * std::f64::consts::FRAC_PI_2);
+        [center[0] + half * cos, center[1] + half * sin]
+    })
+}
+
+/// A quad through four corners in normalized device coordinates with a w for each, wound one way or the other.
+pub fn quad(corners: [[f64; 2]; 4], w: [f64; 4], reversed: bool) -> Vec<[f32; 3]> {
+    let place = |i: usize| [corners[i][0] * w[i], corners[i][1] * w[i], -w[i]].map(|v| v as f32);
+    let order: [usize; 6] = if reversed { [0, 2, 1, 2, 0, 3] } else { [0, 1, 2, 2, 3, 0] };
+    order.map(place).to_vec()
+}
+
+/// Numbers that look random and are the same on every run.
+pub struct Dice(pub u32);
+
+impl Dice {
+    pub fn roll(&mut self) -> u32 {
+        self.0 = self.0.wrapping_add(0x9e37_79b9);
+        hash(self.0)
+    }
+
+    /// From `low` up to but without `high`.
+    pub fn between(&mut self, low: i32, high: i32) -> i32 {
+        low + ((u64::from(self.roll()) * u64::from(high.abs_diff(low))) >> 32) as i32
+    }
+
+    /// From `low` up to but without `high`.
+    pub fn real(&mut self, low: f64, high: f64) -> f64 {
+        low + (high - low) * f64::from(self.roll()) / 4_294_967_296.0
+    }
+
+    /// Leaves the same things in another order.
+    pub fn shuffle<T>(&mut self, list: &mut [T]) {
+        for last in (1..list.len()).rev() {
+            list.swap(last, self.between(0, last as i32 + 1) as usize);
+        }
+    }
+}

@@ -1,0 +1,118 @@
+//! Skins of files that nobody vouches for: drawn as the loader takes them, or refused in a sentence.
+
+use std::sync::Arc;
+
+use serde_json::json;
+
+use super::{Case, Expectation, Halt, Lab, hold, stack};
+use crate::scene::gltf;
+
+pub const CASES: &[Case] = &[
+    Case {
+        number: 30,
+        name: "skins-that-are-taken",
+        about: "weights of zero and of other sums than 1, rotations of other lengths than 1",
+        expectation: Expectation::Bounded("finite vertices, and the picture exact; else a sentence of the loader"),
+        run: skins_that_are_taken,
+    },
+    Case {
+        number: 30,
+        name: "skins-that-cannot-be",
+        about: "joints that do not exist; weights that are negative or no numbers",
+        expectation: Expectation::Refused("a sentence of the loader with the attribute and the vertex"),
+        run: skins_that_cannot_be,
+    },
+];
+
+struct Skin {
+    joints: [u8; 4],
+    weights: [f32; 4],
+    /// Of the second joint.
+    rotation: [f64; 4],
+}
+
+const SOUND: Skin = Skin { joints: [0, 1, 0, 0], weights: [0.5, 0.5, 0.0, 0.0], rotation: [0.0, 0.0, 0.0, 1.0] };
+
+/// Four triangles about a point, held by two joints.
+fn model(skin: &Skin) -> Result<crate::scene::Scene, gltf::LoadError> {
+    let positions: [[f32; 3]; 5] = [[-1.0, -1.0, 0.0], [1.0, -1.0, 0.0], [1.0, 1.0, 0.0], [-1.0, 1.0, 0.0], [0.0, 0.0, 0.5]];
+    let indices = [[0u16, 1, 4], [1, 2, 4], [2, 3, 4], [3, 0, 4]];
+    let mut bytes: Vec<u8> = positions.iter().flatten().flat_map(|v| v.to_le_bytes()).collect();
+    // Only the vertex in the middle is in trouble.
+    bytes.extend((0..5).flat_map(|i| if i == 4 { skin.joints } else { SOUND.joints }));
+    bytes.extend((0..5).flat_map(|i| if i == 4 { skin.weights } else { SOUND.weights }).flat_map(f32::to_le_bytes));
+    bytes.extend(indices.as_flattened().iter().flat_map(|v| v.to_le_bytes()));
+    let document = json!({
+        "asset": { "version": "2.0" },
+        "scene": 0,
+        "scenes": [{ "nodes": [0, 1] }],
+        "nodes": [
+            { "mesh": 0, "skin": 0 },
+            { "children": [2] },
+            { "rotation": skin.rotation, "translation": [0.0, 0.1, 0.0] }
+        ],
+        "skins": [{ "joints": [1, 2] }],
+        "meshes": [{ "primitives": [{ "attributes": { "POSITION": 0, "JOINTS_0": 1, "WEIGHTS_0": 2 }, "indices": 3 }] }],
+        "accessors": [
+            { "bufferView": 0, "componentType": 5126, "count": 5, "type": "VEC3", "min": [-1.0, -1.0, 0.0], "max": [1.0, 1.0, 0.5] },
+            { "bufferView": 1, "componentType": 5121, "count": 5, "type": "VEC4" },
+            { "bufferView": 2, "componentType": 5126, "count": 5, "type": "VEC4" },
+            { "bufferView": 3, "componentType": 5123, "count": 12, "type": "SCALAR" }
+        ],
+        "bufferViews": [
+            { "buffer": 0, "byteOffset": 0, "byteLength": 60 },
+            { "buffer": 0, "byteOffset": 60, "byteLength": 20 },
+            { "buffer": 0, "byteOffset": 80, "byteLength": 80 },
+            { "buffer": 0, "byteOffset": 160, "byteLength": 24 }
+        ],
+        "buffers": [{ "uri": "skin.bin", "byteLength": 184 }]
+    });
+    gltf::parse(document.to_string().as_bytes(), &mut |_, _| Ok(bytes.clone()))
+}
+
+fn skins_that_are_taken(lab: &mut Lab) -> Result<(), Halt> {
+    let skins = [
+        ("a sound skin", SOUND),
+        ("weights of zero", Skin { weights: [0.0; 4], ..SOUND }),
+        ("weights of the sum 3", Skin { weights: [2.0, 1.0, 0.0, 0.0], ..SOUND }),
+        ("weights of 1e-30", Skin { weights: [1e-30, 1e-30, 0.0, 0.0], ..SOUND }),
+        ("a rotation of length 3", Skin { rotation: [0.0, 0.0, 3.0, 0.0], ..SOUND }),
+        ("a rotation of length 0", Skin { rotation: [0.0; 4], ..SOUND }),
+    ];
+    for (i, (what, skin)) in skins.into_iter().enumerate() {
+        match model(&skin) {
+            Ok(scene) => {
+                let bounds = scene.bounds();
+                hold!(bounds.min.is_finite() && bounds.max.is_finite(), "{what}: vertices of {bounds:?}");
+                let view = lab.view(&scene, [64, 48]);
+                let capture = lab.everywhere_with(&Arc::new(scene), &view, &stack(&["lambert"]), what)?;
+                // Where a rotation that is none takes the vertex in the middle is nobody's to say.
+                hold!(capture.frame.covered() > 300 || i > 3, "{what}: {} pixels", capture.frame.covered());
+            }
+            Err(error) => {
+                hold!(i > 0, "{what} is refused: {error}");
+                lab.note(format!("{what}: {error}"));
+            }
+        }
+    }
+    Ok(())
+}
+
+fn skins_that_cannot_be(lab: &mut Lab) -> Result<(), Halt> {
+    for (what, skin, word) in [
+        ("a joint out of range", Skin { joints: [0, 2, 0, 0], ..SOUND }, "joint 2"),
+        ("the last joint that a byte names", Skin { joints: [255; 4], ..SOUND }, "joint 255"),
+        ("a weight of NaN", Skin { weights: [f32::NAN, 1.0, 0.0, 0.0], ..SOUND }, "weight"),
+        ("an infinite weight", Skin { weights: [f32::INFINITY, 1.0, 0.0, 0.0], ..SOUND }, "weight"),
+        ("a negative weight", Skin { weights: [-0.5, 1.5, 0.0, 0.0], ..SOUND }, "weight"),
+    ] {
+        match model(&skin) {
+            Err(error) => {
+                hold!(error.to_string().contains(word), "{what}: {error}");
+                lab.refused(error);
+            }
+            Ok(_) => return Err(Halt::Failed(format!("{what} was taken"))),
+        }
+    }
+    Ok(())
+}

@@ -1,0 +1,237 @@
+//! Targets: pictures without pixels, of one pixel, of odd sides and of the widest, pictures that change their size, and a
+//! device that is lost.
+
+use std::time::{Duration, Instant};
+
+use super::{
+    Case, Expectation, Halt, Lab, captured, hold,
+    lab::{equal, same},
+    pinned,
+    scenes::{Part, hand_made, pixel_view},
+    stack,
+};
+use crate::{
+    effects::{Stack, hooks::Layers},
+    gpu::{Gpu, RenderError, Renderer, device::AdapterChoice},
+    plan::Accuracy,
+};
+
+pub const CASES: &[Case] = &[
+    Case {
+        number: 20,
+        name: "without-pixels",
+        about: "0 x 0, 0 x 64 and 64 x 0 pixels: nothing is dispatched, and the next picture is whole",
+        expectation: Expectation::Exact,
+        run: without_pixels,
+    },
+    Case {
+        number: 20,
+        name: "odd-targets",
+        about: "1 x 1, 1 x 97, 97 x 1, 9 x 7, 65 x 63 and 129 x 127 pixels",
+        expectation: Expectation::Exact,
+        run: odd_targets,
+    },
+    Case {
+        number: 20,
+        name: "wide-targets",
+        about: "8,192 and, where the adapter's textures reach that far, 16,384 pixels to a side",
+        expectation: Expectation::Exact,
+        run: wide_targets,
+    },
+    Case {
+        number: 20,
+        name: "too-wide-a-target",
+        about: "a pixel more than the adapter's textures hold",
+        expectation: Expectation::Refused("a sentence with the size and the adapter's limit"),
+        run: too_wide_a_target,
+    },
+    Case {
+        number: 20,
+        name: "xray-at-5k",
+        about: "sums of layers for 5,120 x 2,880 pixels, 16 bytes each",
+        expectation: Expectation::Exact,
+        run: xray_at_5k,
+    },
+    Case {
+        number: 20,
+        name: "more-than-a-binding",
+        about: "sums of layers for more pixels than one binding holds",
+        expectation: Expectation::Refused("a sentence with the buffer, its bytes and the adapter's limit"),
+        run: more_than_a_binding,
+    },
+    Case {
+        number: 21,
+        name: "resized",
+        about: "a hundred sizes, one after another: no pixel of an earlier picture is left",
+        expectation: Expectation::Exact,
+        run: resized,
+    },
+    Case {
+        number: 21,
+        name: "device-lost",
+        about: "a device that is destroyed between two pictures; another one draws the same state",
+        expectation: Expectation::Refused("a sentence that says so, and nothing else is lost"),
+        run: device_lost,
+    },
+];
+
+fn without_pixels(lab: &mut Lab) -> Result<(), Halt> {
+    let hall = lab.scene("near")?;
+    for size in [[0, 0], [0, 64], [64, 0]] {
+        let what = format!("{size:?} pixels");
+        let capture = lab.captured(&hall, &lab.view(&hall, size), &stack(&["lambert"]), &Accuracy::default(), &what)?;
+        equal(&[capture.frame.width, capture.frame.height], &size, &what)?;
+        hold!(capture.frame.owner.is_empty() && capture.frame.color.is_empty(), "{what}: it has pixels");
+        hold!(lab.renderer.texture_view().is_none(), "{what}: there is a picture");
+        lab.exact(&hall, &lab.view(&hall, [33, 17]), &stack(&["lambert"]), &Accuracy::default(), "the next picture")?;
+        hold!(lab.renderer.texture_view().is_some(), "after {what} there is no picture");
+    }
+    Ok(())
+}
+
+fn odd_targets(lab: &mut Lab) -> Result<(), Halt> {
+    let hall = lab.scene("near")?;
+    for size in [[1, 1], [1, 97], [97, 1], [9, 7], [65, 63], [129, 127]] {
+        lab.everywhere_with(&hall, &lab.view(&hall, size), &stack(&["lambert"]), &format!("{size:?} pixels"))?;
+    }
+    Ok(())
+}
+
+fn wide_targets(lab: &mut Lab) -> Result<(), Halt> {
+    let most = lab.renderer.gpu().caps.max_texture_side;
+    hold!(most >= 8192, "WebGPU promises 8,192 pixels to a side, this adapter has {most}");
+    let teapot = lab.scene("teapot?tess=4")?;
+    for side in [8192, 16_384] {
+        if side > most {
+            lab.note(format!("left out: {side} pixels to a side; this adapter's textures end at {most}"));
+            continue;
+        }
+        for size in [[side, 6], [6, side]] {
+            lab.exact(&teapot, &lab.view(&teapot, size), &stack(&["lambert"]), &Accuracy::default(), &format!("{size:?} pixels"))?;
+        }
+    }
+    Ok(())
+}
+
+fn too_wide_a_target(lab: &mut Lab) -> Result<(), Halt> {
+    let most = lab.renderer.gpu().caps.max_texture_side;
+    let teapot = lab.scene("teapot?tess=4")?;
+    for size in [[most + 1, 6], [6, most + 1], [u32::MAX, u32::MAX]] {
+        let view = pixel_view(size[0], size[1]);
+        lab.renderer.set_scene(&teapot)?;
+        let what = format!("{} x {} pixels", size[0], size[1]);
+        match lab.renderer.draw(&view, &stack(&[]), &Accuracy::default()) {
+            Err(error @ RenderError::TooWide { .. }) => {
+                let text = error.to_string();
+                let says = text.contains(&format!("{} x {}", size[0], size[1])) && text.contains(&most.to_string());
+                hold!(says && error.is_unsupported(), "{what}: {text}");
+                lab.refused(text);
+            }
+            Err(error) => return Err(Halt::Failed(format!("{what}: {error}"))),
+            Ok(()) => return Err(Halt::Failed(format!("{what} were drawn, and {most} are the most to a side"))),
+        }
+    }
+    Ok(())
+}
+
+/// Two layers over everything, of two colours.
+fn veils() -> Part {
+    let corners = |depth: f32| [[-16.0, -16.0, depth], [40_000.0, -16.0, depth], [-16.0, 40_000.0, depth]];
+    let colors = [[1.0, 0.0, 0.25, 1.0], [0.0, 1.0, 0.25, 1.0]];
+    Part {
+        positions: [corners(0.5), corners(0.25)].concat(),
+        colors: colors.iter().flat_map(|color| [*color; 3]).collect(),
+        ..Part::default()
+    }
+}
+
+fn xray_at_5k(lab: &mut Lab) -> Result<(), Halt> {
+    let (scene, accuracy) = (hand_made(&[veils()]), pinned(lab.quick_rung()));
+    let (stack, [width, height]) = (stack(&["xray"]), [5120u32, 2880]);
+    let bytes = 24 * u64::from(width) * u64::from(height);
+    let caps = &lab.renderer.gpu().caps;
+    let room = caps.max_storage_binding_bytes.min(caps.max_buffer_bytes);
+    if room < bytes {
+        return Err(Halt::LeftOut(format!("its sums take {bytes} bytes in one binding, and this adapter binds {room}")));
+    }
+    // Judged where it is small, the same to the bit where it is large: every pixel shows the same two layers.
+    let (small, _) = lab.exact(&scene, &pixel_view(64, 36), &stack, &accuracy, "64 x 36 pixels")?;
+    let (color, count) = (small.frame.color[0], small.frame.counted[0]);
+    hold!(small.frame.color.iter().all(|c| *c == color), "the veils are not even");
+    let what = "5,120 x 2,880 pixels";
+    let large = lab.captured(&scene, &pixel_view(width, height), &stack, &accuracy, what)?;
+    let odd = large.frame.color.iter().zip(&large.frame.counted).filter(|found| *found != (&color, &count)).count();
+    equal(&odd, &0, &format!("{what}: pixels that show something else"))?;
+    equal(&large.frame.covered(), &(width as usize * height as usize), &format!("{what}: pixels covered"))
+}
+
+fn more_than_a_binding(lab: &mut Lab) -> Result<(), Halt> {
+    let caps = &lab.renderer.gpu().caps;
+    let (room, most) = (caps.max_storage_binding_bytes.min(caps.max_buffer_bytes), caps.max_texture_side);
+    let (scene, stack) = (hand_made(&[veils()]), stack(&["xray"]));
+    if room >= 24 * u64::from(most) * u64::from(most) {
+        return Err(Halt::LeftOut(format!("this adapter binds {room} bytes, which is room for any picture of {most} x {most} pixels")));
+    }
+    lab.renderer.set_scene(&scene)?;
+    match lab.renderer.draw(&pixel_view(most, most), &stack, &Accuracy::default()) {
+        Err(error @ RenderError::TooLarge { .. }) => {
+            let text = error.to_string();
+            hold!(error.is_unsupported() && text.contains(&room.to_string()), "{text}");
+            lab.refused(text);
+            // What was there before still works.
+            lab.renderer.set_scene(&scene)?;
+            lab.exact(&scene, &pixel_view(64, 36), &stack, &Accuracy::default(), "the next picture")?;
+            hold!(matches!(lab.renderer.key().and_then(|key| key.layers), Some(Layers::Xray { .. })), "the effect is gone");
+            Ok(())
+        }
+        Err(error) => Err(Halt::Failed(format!("{most} x {most} pixels: {error}"))),
+        Ok(()) => Err(Halt::Failed(format!("{most} x {most} pixels were drawn, and {room} bytes are the most in a binding"))),
+    }
+}
+
+fn resized(lab: &mut Lab) -> Result<(), Halt> {
+    lab.free_the_band();
+    let mut dice = lab.dice(21);
+    let hall = lab.scene("near")?;
+    let stacks = [stack(&["lambert"]), stack(&["xray"]), stack(&["lambert", "outline"]), Stack::default()];
+    let rungs = lab.rungs();
+    for picture in 0..100 {
+        let size = [dice.between(1, 160), dice.between(1, 120)].map(|side| side as u32);
+        let rung = rungs[picture % rungs.len()];
+        let what = format!("picture {picture} of {size:?} pixels on {}", rung.name());
+        lab.exact(&hall, &lab.view(&hall, size), &stacks[picture % stacks.len()], &pinned(rung), &what)?;
+    }
+    Ok(())
+}
+
+/// How long a driver may take to say that its device is gone.
+const PATIENCE: Duration = Duration::from_secs(20);
+
+fn device_lost(lab: &mut Lab) -> Result<(), Halt> {
+    let name = lab.renderer.gpu().summary.name.clone();
+    let gpu = Gpu::open(&AdapterChoice::Named(name)).map_err(|error| Halt::Failed(format!("a second device: {error}")))?;
+    let hall = lab.scene("near")?;
+    let (view, stack, accuracy) = (lab.view(&hall, [96, 64]), stack(&["lambert"]), Accuracy::default());
+    let mut renderer = Renderer::new(gpu.clone());
+    let before = captured(&mut renderer, &hall, &view, &stack, &accuracy)?;
+    gpu.device.destroy();
+    let began = Instant::now();
+    let error = loop {
+        lab.step(&hall, &view, "a lost device")?;
+        match renderer.draw(&view, &stack, &accuracy).and_then(|()| renderer.finish().map(|_| ())) {
+            Err(error) if error.is_lost() => break error,
+            _ if began.elapsed() > PATIENCE => return Err(Halt::Failed("the renderer never says that its device is gone".into())),
+            _ => std::thread::sleep(Duration::from_millis(5)),
+        }
+    };
+    hold!(gpu.is_lost(), "the device does not know that it is lost");
+    let again = renderer.capture(&view, &stack, &accuracy);
+    hold!(again.is_err_and(|error| error.is_lost()), "a lost device draws");
+    drop(renderer);
+    // Scene, viewpoint and stack are not the device's: another one shows the same picture, to the bit.
+    let after = lab.captured(&hall, &view, &stack, &accuracy, "the same on another device")?;
+    same(&after, &before, "the same on another device")?;
+    hold!(after.frame.color == before.frame.color, "another device shows other colours");
+    lab.refused(error);
+    Ok(())
+}

@@ -1,0 +1,159 @@
+//! Time: the same picture over and over, the same triangles in another order, and a clock that has run for a day.
+
+use std::sync::Arc;
+
+use super::{
+    Case, Expectation, Halt, Lab, hold,
+    lab::{equal, same},
+    pinned, stack, tunings,
+};
+use crate::{
+    effects::{Effect, Enabled, Stack},
+    frame::NO_OWNER,
+    gpu::Capture,
+    measure::compare,
+    scene::Scene,
+    session::{
+        Animation, Clock, Session,
+        animation::{Easing, Keyframe, Track},
+    },
+};
+
+pub const CASES: &[Case] = &[
+    Case {
+        number: 22,
+        name: "a-hundred-frames",
+        about: "the same picture a hundred times: every buffer equal to the bit",
+        expectation: Expectation::Exact,
+        run: a_hundred_frames,
+    },
+    Case {
+        number: 22,
+        name: "shuffled-triangles",
+        about: "triangles in another order, taking their ids along: the same picture to the bit",
+        expectation: Expectation::Exact,
+        run: shuffled_triangles,
+    },
+    Case {
+        number: 29,
+        name: "a-day-later",
+        about: "spin, keyframes and a looping clock after 24 hours",
+        expectation: Expectation::Bounded("the phase differs by at most a millionth of a period"),
+        run: a_day_later,
+    },
+];
+
+fn a_hundred_frames(lab: &mut Lab) -> Result<(), Halt> {
+    let hall = lab.scene("near")?;
+    let view = lab.view(&hall, [80, 60]);
+    lab.renderer.set_tuning(tunings()[2]);
+    for rung in lab.rungs() {
+        for stack in [stack(&["facet", "lambert"]), stack(&["lambert", "xray"])] {
+            let mut first: Option<Capture> = None;
+            for frame in 1..=100 {
+                let what = format!("frame {frame} on {}", rung.name());
+                let capture = lab.captured(&hall, &view, &stack, &pinned(rung), &what)?;
+                let Some(first) = &first else {
+                    hold!(!capture.geometry.pieces.is_empty(), "nothing was clipped");
+                    first = Some(capture);
+                    continue;
+                };
+                same(&capture, first, &what)?;
+                hold!(capture.frame == first.frame && capture.geometry == first.geometry, "{what} differs from the first");
+            }
+        }
+    }
+    Ok(())
+}
+
+/// The same triangles in another order, and for each its place in the order before.
+fn shuffled(scene: &Scene, order: &[u32]) -> Arc<Scene> {
+    let mut scene = scene.clone();
+    let triangles: Vec<[u8; 12]> = scene.index_bytes.as_chunks().0.to_vec();
+    scene.index_bytes = order.iter().flat_map(|&t| triangles[t as usize]).collect();
+    Arc::new(scene)
+}
+
+fn shuffled_triangles(lab: &mut Lab) -> Result<(), Halt> {
+    lab.renderer.set_tuning(tunings()[2]);
+    for query in ["sphere?triangles=5000", "knot?tess=6", "grid?cell=1", "sizes"] {
+        let still = lab.scene(query)?;
+        let is_one_list = still.instances.len() == 1 && still.primitives[0].indices.is_some_and(|i| i.stride == 4 && i.offset == 0);
+        hold!(is_one_list, "{query}: it is not one list of 32-bit indices");
+        let view = lab.view(&still, [192, 144]);
+        for rung in lab.rungs() {
+            let what = format!("{query} on {}", rung.name());
+            let (before, _) = lab.exact(&still, &view, &stack(&[]), &pinned(rung), &what)?;
+            for round in 1..=3 {
+                let what = format!("{what}, shuffle {round}");
+                let mut order: Vec<u32> = (0..still.triangle_count() as u32).collect();
+                lab.dice(round).shuffle(&mut order);
+                let mut after = lab.captured(&shuffled(&still, &order), &view, &stack(&[]), &pinned(rung), &what)?;
+                for owner in after.frame.owner.iter_mut().filter(|owner| **owner != NO_OWNER) {
+                    *owner = order[*owner as usize];
+                }
+                same(&after, &before, &what)?;
+                hold!(after.frame.color == before.frame.color, "{what}: colours differ");
+            }
+        }
+    }
+    Ok(())
+}
+
+/// Seconds of a day.
+const DAY_S: f64 = 86_400.0;
+
+/// Most of a period that a phase may be off.
+const PHASE: f64 = 1e-6;
+
+fn a_day_later(lab: &mut Lab) -> Result<(), Halt> {
+    let knot = lab.scene("knot?tess=4")?;
+    let facet = Effect::find("facet").ok_or_else(|| Halt::Failed("no effect facet".into()))?;
+    let amount = facet.field("amount").ok_or_else(|| Halt::Failed("no field facet.amount".into()))?;
+    let key = |time_s: f64, value: f64| Keyframe { time_s, value: vec![value], easing: Easing::Linear };
+    let sentence = |error: crate::session::animation::KeyError| Halt::Failed(error.to_string());
+    // A ramp of a second that begins a day after the start, and spin of a quarter turn a second.
+    let looks = |late_s: f64| -> Result<Session, Halt> {
+        let mut animation = Animation::default();
+        animation.put(Track::new(facet, amount, vec![key(late_s, 0.0), key(late_s + 1.0, 1.0)]).map_err(sentence)?);
+        Ok(Session {
+            spin_deg_per_s: 90.0,
+            stack: Stack(vec![Enabled::new(facet)]),
+            animation,
+            clock: Clock { time_s: late_s + 0.37, ..Clock::default() },
+            ..Session::default()
+        })
+    };
+    let (fresh, late) = (looks(0.0)?, looks(DAY_S)?);
+    let angle = |session: &Session| {
+        let x = session.view(&knot, [8, 8]).world_from_scene.x_axis;
+        libm::atan2(-x.z, x.x) / std::f64::consts::TAU
+    };
+    let off = (angle(&late) - angle(&fresh)).abs();
+    hold!(off <= PHASE, "the spin is {off:e} of a turn off");
+    let value = |session: &Session| amount.get(&session.posed_stack().0[0].words)[0];
+    let ramp = (value(&late) - value(&fresh)).abs();
+    hold!(ramp <= PHASE && (value(&fresh) - 0.37).abs() <= PHASE, "the keyed value is {ramp:e} of its way off");
+
+    // A looping clock, frame by frame for a day at 60 frames a second.
+    let clock = Clock { range_s: [0.0, 4.0], ..Clock::default() };
+    let (mut time_s, frames) = (0.0, 60 * DAY_S as u32);
+    for _ in 0..frames {
+        time_s = clock.after(time_s, 1.0 / 60.0).0;
+    }
+    // A day is a whole number of rounds.
+    let phase = (time_s / 4.0).min(1.0 - time_s / 4.0).abs();
+    hold!(phase <= PHASE, "after {frames} frames the clock is {phase:e} of a round off");
+
+    let mut drawn = Vec::new();
+    for (what, session) in [("at the start", &fresh), ("a day later", &late)] {
+        let view = session.view(&knot, [96, 72]);
+        drawn.push(lab.everywhere_with(&knot, &view, &session.posed_stack(), what)?);
+    }
+    let changed = compare::owners(&drawn[1].frame.owner, &drawn[0].frame.owner).different;
+    let vertices = drawn[0].geometry.vertices.iter().zip(&drawn[1].geometry.vertices);
+    let moved = vertices.map(|(a, b)| a.x.abs_diff(b.x).max(a.y.abs_diff(b.y))).max().unwrap_or(0);
+    hold!(moved <= 1, "a vertex is {moved} units of 1/256 px off");
+    lab.note(format!("spin off by {off:.1e} of a turn, clock by {phase:.1e} of a round, {changed} pixels of another owner"));
+    equal(&drawn[0].frame.counters, &drawn[1].frame.counters, "counters a day later")
+}

@@ -1,0 +1,200 @@
+//! Values: what is no number, what has no area, and scales at both ends.
+
+use std::sync::Arc;
+
+use glam::{DMat4, DVec3};
+
+use super::{
+    Case, Expectation, Halt, Lab, hold,
+    lab::equal,
+    scenes::{Part, hand_made, pixel_view, seen, sheet, units},
+    stack,
+};
+use crate::{
+    frame::NO_OWNER,
+    scene::{
+        Scene,
+        camera::{Camera, Projection},
+    },
+};
+
+pub const CASES: &[Case] = &[
+    Case {
+        number: 12,
+        name: "positions-that-are-no-numbers",
+        about: "NaN, infinities, FLT_MAX and subnormals in every coordinate: rejected by bits and counted, the rest exact",
+        expectation: Expectation::Exact,
+        run: bad_positions,
+    },
+    Case {
+        number: 12,
+        name: "attributes-that-are-no-numbers",
+        about: "the same in normals and colours: finite ones take their place",
+        expectation: Expectation::Exact,
+        run: bad_attributes,
+    },
+    Case {
+        number: 14,
+        name: "scales-and-offsets",
+        about: "models at 10^4 to 10^8 units from the origin, scaled by 10^-6 to 10^6",
+        expectation: Expectation::Bounded("vertices within the forward error of f32; exact given the snapped vertices"),
+        run: scales_and_offsets,
+    },
+    Case {
+        number: 17,
+        name: "without-area",
+        about: "zero area, repeated vertices and indices, empty meshes, no meshes: counted, not drawn",
+        expectation: Expectation::Exact,
+        run: without_area,
+    },
+    Case {
+        number: 24,
+        name: "mirrored",
+        about: "negative determinants, single- and double-sided: facing as glTF says",
+        expectation: Expectation::Exact,
+        run: mirrored,
+    },
+];
+
+fn bad_positions(lab: &mut Lab) -> Result<(), Halt> {
+    let view = pixel_view(64, 64);
+    let good = [[4.0, 4.0, 0.25], [60.0, 8.0, 0.5], [8.0, 60.0, 0.75f32]];
+    let huge = (1u64 << 40) as f32;
+    let bad = [f32::NAN, -f32::NAN, f32::from_bits(0x7f80_0001), f32::INFINITY, f32::NEG_INFINITY, f32::MAX, -f32::MAX, huge, -huge];
+    let (mut positions, mut nonfinite, mut range) = (good.to_vec(), 0, 0);
+    for value in bad {
+        for place in 0..9 {
+            let mut corners = good.map(|p| [p[0], p[1], 0.9]);
+            corners[place / 3][place % 3] = value;
+            positions.extend(corners);
+            if value.is_finite() { range += 1 } else { nonfinite += 1 }
+        }
+    }
+    let good_too = good.map(|[x, y, z]| [64.0 - x, y, z]);
+    positions.extend(good_too);
+    let last = positions.len() as u32 / 3 - 1;
+    let capture = lab.everywhere(&hand_made(&[sheet(positions)]), &view, "bad positions")?;
+    let counters = capture.frame.counters;
+    let counted = (counters.rejected_nonfinite, counters.rejected_range, counters.degenerate);
+    equal(&counted, &(nonfinite, range, 0), "triangles rejected as not finite, as out of range, as without area")?;
+    hold!(capture.frame.owner.iter().all(|&owner| [0, last, NO_OWNER].contains(&owner)), "a rejected triangle owns a pixel");
+    let alone = hand_made(&[sheet([good, good_too].concat())]);
+    let truth = lab.everywhere(&alone, &view, "good positions alone")?;
+    hold!(capture.frame.key == truth.frame.key, "a rejected triangle leaves a trace in the depth keys");
+
+    // The largest that pass the gate are clipped; what is subnormal is 0.
+    let below = f32::from_bits(huge.to_bits() - 1);
+    let vast = hand_made(&[sheet(vec![[-below, -below, 0.5], [below, -below, 0.5], [0.0, below, 0.5]])]);
+    let capture = lab.everywhere(&vast, &view, "just below 2^40")?;
+    equal(&capture.frame.covered(), &(64 * 64), "pixels of a triangle just below 2^40")?;
+    let with = |zero: f32| hand_made(&[sheet(vec![[zero, zero, 0.5], [50.0, zero, zero], [zero, 50.0, 0.25]])]);
+    let zero = lab.everywhere(&with(0.0), &view, "zero")?;
+    let subnormal = lab.everywhere(&with(f32::from_bits(0x007f_ffff)), &view, "subnormal")?;
+    hold!(zero.frame == subnormal.frame && zero.geometry == subnormal.geometry, "a subnormal is not 0");
+    Ok(())
+}
+
+fn bad_attributes(lab: &mut Lab) -> Result<(), Halt> {
+    let bad = [f32::NAN, f32::INFINITY, f32::NEG_INFINITY, f32::MAX, -f32::MAX, 1e-40, -1e-40, 0.0, 1e20, -3.0];
+    let (mut positions, mut normals, mut colors) = (vec![], vec![], vec![]);
+    for (i, value) in bad.into_iter().enumerate() {
+        for lane in 0..4 {
+            let (x, y) = (6.0 * i as f32 + 1.0, 10.0 * lane as f32 + 1.0);
+            for (corner, [dx, dy]) in [[0.0, 0.0], [5.0, 0.0], [0.0, 9.0]].into_iter().enumerate() {
+                let (mut normal, mut color) = ([0.3, 0.2, 0.9], [0.9, 0.5, 0.2, 1.0f32]);
+                if corner == lane % 3 {
+                    color[lane] = value;
+                    if lane < 3 { normal[lane] = value } else { normal = [value; 3] }
+                }
+                positions.push([x + dx, y + dy, 0.5]);
+                normals.push(normal);
+                colors.push(color);
+            }
+        }
+    }
+    let both = |normals: &[[f32; 3]], colors: &[[f32; 4]]| {
+        hand_made(&[Part { positions: positions.clone(), normals: normals.to_vec(), colors: colors.to_vec(), ..Part::default() }])
+    };
+    for (what, scene) in [("normals", both(&normals, &[])), ("colours", both(&[], &colors)), ("both", both(&normals, &colors))] {
+        for effects in [&["lambert"][..], &["normals"], &["facet", "lambert"]] {
+            let what = format!("bad {what} under {}", effects.join(" and "));
+            let capture = lab.everywhere_with(&scene, &pixel_view(64, 64), &stack(effects), &what)?;
+            hold!(capture.frame.covered() > 700, "{what}: {} pixels", capture.frame.covered());
+        }
+    }
+    Ok(())
+}
+
+fn scales_and_offsets(lab: &mut Lab) -> Result<(), Halt> {
+    let knot = lab.scene("knot?tess=4")?;
+    for (offset, scale) in [(0.0, 1e-6), (0.0, 1e-3), (0.0, 1e6), (1e4, 1.0), (1e5, 1.0), (1e6, 1.0), (1e7, 1.0), (1e8, 1.0), (1e8, 1e6)] {
+        let mut placed = Scene::clone(&knot);
+        let at = DVec3::new(offset, -offset, 0.5 * offset);
+        placed.instances[0].world_from_object = DMat4::from_translation(at) * DMat4::from_scale(DVec3::splat(scale));
+        let camera = Camera { eye: at + DVec3::new(1.0, 1.0, 4.0) * scale, target: at, near_m: scale.max(1e-6), ..Camera::default() };
+        let view = seen(&placed, &camera, [96, 72]);
+        let what = format!("offset {offset:e}, scale {scale:e}");
+        let capture = lab.everywhere_with(&Arc::new(placed), &view, &stack(&["depth", "lambert"]), &what)?;
+        hold!(capture.frame.covered() > 1500, "{what}: {} pixels", capture.frame.covered());
+    }
+    Ok(())
+}
+
+fn without_area(lab: &mut Lab) -> Result<(), Halt> {
+    let view = pixel_view(32, 32);
+    let points = vec![[1.0, 1.0, 0.5], [30.0, 2.0, 0.5], [3.0, 30.0, 0.5], [15.5, 1.5, 0.5], [1.0, 1.0, 0.9]];
+    let none = Part { positions: points.clone(), indices: vec![0, 0, 0, 0, 1, 1, 0, 1, 3, 0, 4, 1, 2, 0, 2], ..Part::default() };
+    let capture = lab.everywhere(&hand_made(std::slice::from_ref(&none)), &view, "repeated indices")?;
+    equal(&(capture.frame.covered(), capture.frame.counters.degenerate), &(0, 5), "pixels and triangles without area")?;
+
+    // Far larger than a class of its own, and still a line; a speck that the snap makes a point.
+    let line = units(&[([[-8_000_000, -8_000_000], [0, 0], [8_000_000, 8_000_000]], 0.5)]);
+    let speck = sheet(vec![[9.5, 9.5, 0.5], [9.5001, 9.5, 0.5], [9.5, 9.5001, 0.5]]);
+    let capture = lab.everywhere(&hand_made(&[none, line, speck]), &view, "lines and specks")?;
+    equal(&(capture.frame.covered(), capture.frame.counters.degenerate), &(0, 7), "pixels and triangles without area")?;
+
+    // Meshes without triangles, without vertices, alone and among others; a scene without meshes.
+    let empty = Part { positions: vec![[1.0, 1.0, 0.5]; 2], ..Part::default() };
+    let nothing = Part::default();
+    let whole = sheet(points[..3].to_vec());
+    for (parts, covered) in [
+        (vec![], false),
+        (vec![nothing.clone()], false),
+        (vec![empty.clone()], false),
+        (vec![empty.clone(), nothing.clone(), empty.clone()], false),
+        (vec![empty.clone(), nothing.clone(), whole.clone(), empty.clone()], true),
+        (vec![nothing, whole, empty], true),
+    ] {
+        let what = format!("{} meshes, {} of triangles", parts.len(), u32::from(covered));
+        let capture = lab.everywhere(&hand_made(&parts), &view, &what)?;
+        equal(&(capture.frame.covered() > 0), &covered, &format!("{what}: anything drawn"))?;
+        equal(&capture.frame.counters, &Default::default(), &what)?;
+    }
+    Ok(())
+}
+
+fn mirrored(lab: &mut Lab) -> Result<(), Halt> {
+    let camera = Camera { eye: DVec3::Z * 4.0, projection: Projection::Orthographic { height_m: 2.6 }, ..Camera::default() };
+    for double_sided in [false, true] {
+        let mut plain = Scene::clone(&*lab.scene("sphere?triangles=900")?);
+        plain.materials[0].double_sided = double_sided;
+        let mut drawn = |scale: DVec3| {
+            let mut scene = plain.clone();
+            scene.instances[0].world_from_object = DMat4::from_scale(scale);
+            let view = seen(&scene, &camera, [128, 96]);
+            lab.everywhere_with(&Arc::new(scene), &view, &stack(&["lambert"]), &format!("scale {scale}, double-sided {double_sided}"))
+        };
+        let straight = drawn(DVec3::ONE)?;
+        // Mirrored left to right the same triangles show, but for samples on edges, which have a left and a right.
+        let left_right = drawn(DVec3::new(-1.0, 1.0, 1.0))?;
+        let rows = straight.frame.owner.chunks_exact(128).flat_map(|row| row.iter().rev());
+        let different = rows.zip(&left_right.frame.owner).filter(|(a, b)| a != b).count();
+        hold!(different <= 8, "mirrored left to right, {different} pixels show another triangle");
+        // Mirrored front to back its other side shows, from outside again.
+        let turned = drawn(DVec3::new(1.0, 1.0, -1.0))?;
+        let shared = turned.frame.owner.iter().filter(|&o| *o != NO_OWNER && straight.frame.owner.contains(o)).count();
+        hold!(shared < turned.frame.covered() / 10, "mirrored front to back, {shared} pixels show the front");
+        hold!(turned.frame.covered() > 3000, "{} pixels", turned.frame.covered());
+    }
+    Ok(())
+}
