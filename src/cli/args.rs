@@ -262,6 +262,10 @@ pub struct Bench {
     /// Axes of the accuracy ladder, by commas: every combination of their rungs, milliseconds beside error
     #[arg(long, value_name = "AXES", value_delimiter = ',', conflicts_with = "effects")]
     pub axes: Vec<String>,
+    /// With --axes: every rung alone beside the look as it is planned, instead of every combination; a row per rung, a pair of
+    /// columns per scene
+    #[arg(long, requires = "axes")]
+    pub each: bool,
     /// Size in pixels of every row
     #[arg(long, value_name = "WxH", value_parser = size, default_value = "1920x1080")]
     pub size: [u32; 2],

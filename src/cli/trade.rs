@@ -16,7 +16,7 @@ use crate::{
     frame::Frame,
     gpu::{
         Capture,
-        trade::{TradeOptions, TradeRow, Truth, trade},
+        trade::{AS_PLANNED, TradeOptions, TradeRow, Truth, trade},
     },
     ladder::{AXES, Axis},
     measure::Verdict,
@@ -59,7 +59,7 @@ impl Truth for Oracle {
 
 pub fn run(common: &super::args::Common, args: &Bench, streams: &mut Streams) -> Result<Exit, Fault> {
     let axes = axes(&args.axes)?;
-    let options = TradeOptions { size: args.size, samples: args.samples as usize, axes };
+    let options = TradeOptions { size: args.size, samples: args.samples as usize, axes, is_each_alone: args.each };
     let subjects = subjects(common, args)?;
     let painter = Painter::open(common, streams)?;
     let Painter::Gpu(_, gpu) = &painter else {
@@ -81,7 +81,8 @@ pub fn run(common: &super::args::Common, args: &Bench, streams: &mut Streams) ->
     }
     bar.finish_and_clear();
     let results = || rows.iter().map(serde_json::to_value).collect::<Result<Vec<Value>, _>>().map_err(Fault::usage);
-    present(args, streams, &painter, &lines(&rows), results)?;
+    let table = if args.each { prices(&rows) } else { lines(&rows) };
+    present(args, streams, &painter, &table, results)?;
     rows.iter().filter(|row| row.error.is_none()).for_each(|row| {
         streams.note(&format!("{} {}: {}", row.scene, row.rungs, row.note.as_deref().unwrap_or("not drawn")));
     });
@@ -104,6 +105,40 @@ fn axes(names: &[String]) -> Result<Vec<&'static Axis>, Fault> {
         }
     }
     Ok(axes)
+}
+
+/// A row per rung: for every scene the time with its ratio to the planned one, and the error.
+fn prices(rows: &[TradeRow]) -> Vec<Vec<String>> {
+    let mut scenes: Vec<(&str, u64)> = rows.iter().map(|row| (row.scene.as_str(), row.triangles)).collect();
+    scenes.dedup();
+    let mut rungs: Vec<&str> = Vec::new();
+    rows.iter().for_each(|row| {
+        if !rungs.contains(&row.rungs.as_str()) {
+            rungs.push(&row.rungs);
+        }
+    });
+    let row_of = |scene: &str, rungs: &str| rows.iter().find(|row| row.scene == scene && row.rungs == rungs);
+    let head = scenes
+        .iter()
+        .flat_map(|(_, triangles)| [format!("{triangles} TRIANGLES, MS"), "X".into(), "WRONG PPM".into(), "HOLES+DOUBLES".into()]);
+    let mut table = vec![std::iter::once("RUNG".to_owned()).chain(head).collect::<Vec<_>>()];
+    for rung in rungs {
+        let cells = scenes.iter().flat_map(|(scene, _)| {
+            let missing = || ["-".to_owned(), "-".into(), "-".into(), "-".into()];
+            let (Some(row), Some(usual)) = (row_of(scene, rung), row_of(scene, AS_PLANNED)) else { return missing() };
+            let (Some(ms), Some(error)) = (row.ms_p50, row.error) else { return missing() };
+            let ratio = usual.ms_p50.map_or_else(|| "-".into(), |usual| format!("{:.2}", ms / usual));
+            let samples = (error.holes_per_mpx + error.double_hits_per_mpx) * f64::from(row.size[0]) * f64::from(row.size[1]) / 1e6;
+            [
+                if ms < 10.0 { format!("{ms:.4}") } else { format!("{ms:.1}") },
+                ratio,
+                format!("{:.0}", error.wrong_ppm),
+                format!("{samples:.0}"),
+            ]
+        });
+        table.push(std::iter::once(rung.to_owned()).chain(cells).collect());
+    }
+    table
 }
 
 fn lines(rows: &[TradeRow]) -> Vec<Vec<String>> {

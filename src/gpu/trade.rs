@@ -20,6 +20,8 @@ pub struct TradeOptions {
     pub samples: usize,
     /// Axes to walk; the others stay where the look has them.
     pub axes: Vec<&'static Axis>,
+    /// Every rung alone beside the look as it is planned, instead of every combination.
+    pub is_each_alone: bool,
 }
 
 /// Error of a combination. None reads "not measured", never 0.
@@ -105,7 +107,8 @@ pub fn trade(
 ) -> Result<Vec<TradeRow>, RenderError> {
     const WARM_UP: usize = 3;
     let view = session.view(scene, options.size);
-    let combinations = combinations(session.accuracy.pins, &options.axes);
+    let pins = session.accuracy.pins;
+    let combinations = if options.is_each_alone { each_alone(pins, &options.axes) } else { combinations(pins, &options.axes) };
     let rounds = options.samples + WARM_UP;
     let steps = combinations.len() * (1 + rounds);
     let (mut entries, mut lacking) = (Vec::new(), Vec::new());
@@ -165,11 +168,20 @@ fn combinations(pins: Pins, axes: &[&'static Axis]) -> Vec<Pins> {
     })
 }
 
+/// The look as it is planned, then every rung of every axis alone.
+fn each_alone(pins: Pins, axes: &[&'static Axis]) -> Vec<Pins> {
+    let rungs = axes.iter().flat_map(|axis| combinations(pins, &[*axis]));
+    std::iter::once(pins).chain(rungs).collect()
+}
+
+/// What the combination for which nothing is pinned is called.
+pub const AS_PLANNED: &str = "as planned";
+
 /// The rungs of a combination on the chosen axes.
 fn words(pins: &Pins, axes: &[&'static Axis]) -> String {
     let mut chosen = Pins::default();
     axes.iter().for_each(|axis| chosen.set(axis, pins.get(axis)));
-    if AXES.iter().all(|axis| chosen.get(axis).is_none()) { "as planned".into() } else { chosen.words() }
+    if AXES.iter().all(|axis| chosen.get(axis).is_none()) { AS_PLANNED.into() } else { chosen.words() }
 }
 
 impl Entry {
