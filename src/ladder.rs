@@ -165,6 +165,15 @@ ladder! {
         /// Prefix sums, or one ticket for each sample: exact.
         Prefix = "prefix",
     }
+    /// How an x-ray adds up the layers of a pixel.
+    sums: Sums = "sums", usual Four32 {
+        /// Two words of two halves, channels of 8 bits: up to 257 layers that count alike.
+        Packed16 = "packed16",
+        /// Three words, channels of 8 bits: up to 4,095 layers that count alike.
+        Three8 = "three8",
+        /// Four words, channels of 8 to 16 bits: as many layers as the bits leave room for, with weights.
+        Four32 = "four32",
+    }
     /// How the effects' parameters reach the kernels.
     parameters: Parameters = "parameters", usual Uniform {
         /// As constants in the text: a new text for every value.
@@ -193,6 +202,26 @@ impl Visibility {
     /// Does an adapter with or without 64-bit atomics have it?
     pub fn is_there(self, int64_atomics: bool) -> bool {
         self != Self::Packed64 || int64_atomics
+    }
+}
+
+impl Sums {
+    /// Words per pixel.
+    pub const fn words(self) -> u32 {
+        match self {
+            Self::Packed16 => 2,
+            Self::Three8 => 3,
+            Self::Four32 => 4,
+        }
+    }
+
+    /// Layers that fit where they count alike, if that is a matter of the rung alone.
+    pub const fn capacity(self) -> Option<u64> {
+        match self {
+            Self::Packed16 => Some(257),
+            Self::Three8 => Some(4095),
+            Self::Four32 => None,
+        }
     }
 }
 

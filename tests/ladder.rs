@@ -6,7 +6,7 @@ mod common;
 use common::*;
 use rasterlab::{
     gpu::{RenderError, Renderer},
-    ladder::{AXES, Checks, Clipping, Counting, Coverage, Depth, Parameters, Perspective, Pins, Vertex},
+    ladder::{AXES, Checks, Clipping, Counting, Coverage, Depth, Parameters, Perspective, Pins, Sums, Vertex},
     measure::{Verdict, compare},
     oracle,
     plan::{Accuracy, PlanError},
@@ -149,6 +149,31 @@ fn racy_counting_draws_no_fewer_samples_and_prefix_sums_draw_exactly() {
     let (prefix, racy) = (drawn(Counting::Prefix), drawn(Counting::Racy));
     assert_eq!(prefix.0, prefix.1);
     assert!(racy.0 >= racy.1, "{racy:?}");
+}
+
+#[test]
+fn narrow_sums_of_layers_err_by_steps_of_8_bits_and_say_when_they_are_full() {
+    let Some(mut renderer) = renderer() else { return };
+    let xray = stack(&["xray", "lambert"]);
+    let scene = scene("knot?tess=8");
+    let view = view(&scene, [120, 90]);
+    let wide = captured(&mut renderer, &scene, &view, &xray, &Accuracy::default()).frame;
+    for sums in [Sums::Packed16, Sums::Three8] {
+        for visibility in rungs(&renderer) {
+            let pins = Pins::of(sums).with(visibility);
+            let narrow = captured(&mut renderer, &scene, &view, &xray, &on(pins)).frame;
+            assert_eq!(narrow.counted, wide.counted, "{}: layers", pins.words());
+            let delta = compare::pictures(&narrow.color, &wide.color, 8);
+            assert!(delta.max_delta > 0 && delta.pixels_beyond == 0, "{}: {delta:?}", pins.words());
+        }
+    }
+    // 300 sheets behind one another are more than 257, and fewer than 4,095.
+    let sheets: Vec<_> = (0..300).map(|i| ([[0, 0], [64 * 256, 0], [0, 64 * 256]], 0.1 + 0.001 * i as f32)).collect();
+    let deep = hand_made(&[units(&sheets)]);
+    let view = pixel_view(16, 16);
+    captured(&mut renderer, &deep, &view, &xray, &on(Pins::of(Sums::Three8)));
+    let full = renderer.capture(&view, &xray, &on(Pins::of(Sums::Packed16))).err().expect("257 layers fit");
+    assert!(matches!(full, RenderError::FullSums(256)), "{full}");
 }
 
 #[test]

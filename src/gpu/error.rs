@@ -35,7 +35,7 @@ pub enum RenderError {
     Overflow(u32),
     #[error(
         "{0} pixels have more layers than the x-ray's sums hold even with 8 bits a channel; narrow its window, give all layers equal \
-         weight, or show fewer"
+         weight, show fewer, or take sums four32"
     )]
     FullSums(u32),
 }

@@ -123,11 +123,11 @@ impl Renderer {
         let pixels = view.pixels() as u64;
         let (sums, why) = match key.layers {
             Some(Layers::Xray { .. }) => (
-                16 * pixels,
+                4 * u64::from(key.rungs.sums.words()) * pixels,
                 [
-                    "nearest depth key per pixel, 4 bytes, and behind them the sums of its layers, 16 bytes",
-                    "depth key and owner per pixel, 8 bytes, and behind them the sums of its layers, 16 bytes",
-                    "part of the depth key and owner per pixel, 4 bytes, and behind them the sums of its layers, 16 bytes",
+                    "nearest depth key per pixel, 4 bytes, and behind them the sums of its layers",
+                    "depth key and owner per pixel, 8 bytes, and behind them the sums of its layers",
+                    "part of the depth key and owner per pixel, 4 bytes, and behind them the sums of its layers",
                 ],
             ),
             _ => (

@@ -14,7 +14,7 @@ use super::{
 use crate::{
     effects::{Stack, hooks::Layers},
     frame::{Counters, Exactness, Frame, Geometry, Piece, SnappedVertex},
-    ladder::{Depth, Vertex},
+    ladder::{Depth, Sums, Vertex},
     plan::Accuracy,
     scene::camera::View,
     shader::key::{KernelKey, Layout, Phase},
@@ -184,8 +184,14 @@ impl Renderer {
             (Some(Layers::Overdraw), _) => return self.words("layers", pixels),
             (Some(Layers::Race) | None, _) => return Ok(Vec::new()),
         };
-        let words = self.words(buffer, first + 4 * pixels)?;
-        Ok(words[first as usize..].chunks_exact(4).map(|sums| sums[3]).collect())
+        let (sums, all) = (key.rungs.sums, key.rungs.sums.words() as usize);
+        let words = self.words(buffer, first + all as u64 * pixels)?;
+        let weight = |words: &[u32]| match sums {
+            Sums::Packed16 => words[1] >> 16,
+            Sums::Three8 => words[0] >> 20,
+            Sums::Four32 => words[3],
+        };
+        Ok(words[first as usize..].chunks_exact(all).map(weight).collect())
     }
 
     fn read_color(&self, view: &View) -> Result<Vec<[u8; 4]>, RenderError> {

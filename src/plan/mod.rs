@@ -7,7 +7,10 @@ mod rungs;
 
 use self::{explain::explain, predict::Prediction, rungs::Choice};
 use crate::{
-    effects::{Conflict, Enabled, Stack, hooks::Shape},
+    effects::{
+        Conflict, Enabled, Stack,
+        hooks::{Layers, Shape},
+    },
     ladder::{Clipping, Depth, Parameters, Pins, Rungs, Vertex, Visibility},
     math::SMALL_EXTENT,
     scene::needs::Needs,
@@ -159,6 +162,8 @@ pub enum PlanError {
     Crowded { triangles: u64 },
     #[error("coverage {rung} cannot draw the effect {effect}, which measures triangles in 1/256 px; use fixed8, float or float-top-left")]
     Grid { rung: &'static str, effect: &'static str },
+    #[error("sums {rung} counts all layers alike, and this xray weighs them; use four32, or weight = \"equal\"")]
+    Weights { rung: &'static str },
     #[error("coverage fixed12 holds pictures of at most 2047 px a side, and this one has {}x{}; use fixed8", size[0], size[1])]
     Wide { size: [u32; 2] },
     #[error("depth {rung} keeps no distances, so xray cannot count within a window; use reversed, or reach = \"all\"")]
@@ -215,8 +220,11 @@ pub fn plan(needs: &Needs, stack: &Stack, caps: &Caps, tuning: &Tuning, accuracy
         (needs.clipping, needs.largest_px) = (false, 0.0);
     }
     let needs = &needs;
-    let layers = stack.layers(needs.triangles);
+    let mut layers = stack.layers(needs.triangles);
     let Choice { rungs, reasons: mut reasons_of_rungs, prediction } = rungs::choose(needs, f32_positions, stack, caps, accuracy, layers)?;
+    if let (Some(Layers::Xray { bits }), Some(_)) = (&mut layers, rungs.sums.capacity()) {
+        *bits = 8;
+    }
     // Whoever drops what would have to be clipped needs no clipper; what is left may still be wide.
     let has_clipping = needs.clipping && rungs.clipping != Clipping::Drop;
     let (small_samples, small_side) = (tuning.small_samples.max(1), tuning.small_side.clamp(1, 128));

@@ -2,7 +2,7 @@
 //! not; what was measured is held against them and a wrong prediction is shown.
 
 use crate::{
-    ladder::{AXES, Clipping, Coverage, Depth, Perspective, Rung, Rungs, Vertex},
+    ladder::{AXES, Clipping, Coverage, Depth, Perspective, Rung, Rungs, Sums, Vertex},
     scene::needs::Needs,
 };
 
@@ -35,6 +35,7 @@ pub fn predict(axis: usize, place: usize, needs: &Needs) -> Prediction {
         Depth::AXIS => depth(Depth::at(place), needs),
         Perspective::AXIS => perspective(Perspective::at(place), needs),
         Clipping::AXIS => clipping(Clipping::at(place), needs),
+        Sums::AXIS => sums(Sums::at(place), needs),
         _ => Prediction::default(),
     }
 }
@@ -97,6 +98,16 @@ fn perspective(rung: Perspective, needs: &Needs) -> Prediction {
         Perspective::Affine if !needs.perspective => Prediction::default(),
         // An attribute errs by at most (sqrt(ratio) - 1) / (sqrt(ratio) + 1) of its span within a triangle.
         Perspective::Affine => Prediction { wrong_ppm: 0.0, channel: 255.0 * ((ratio.sqrt() - 1.0) / (ratio.sqrt() + 1.0)).min(1.0) },
+    }
+}
+
+fn sums(rung: Sums, needs: &Needs) -> Prediction {
+    match rung.capacity() {
+        None => Prediction::default(),
+        // More layers than triangles there are not.
+        Some(capacity) if needs.triangles > capacity => Prediction { wrong_ppm: 0.0, channel: f64::INFINITY },
+        // Half a step of 8 bits of linear light, where its curve is steepest.
+        Some(_) => Prediction { wrong_ppm: 0.0, channel: 0.5 * 12.92 },
     }
 }
 

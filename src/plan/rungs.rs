@@ -12,7 +12,7 @@ use crate::{
         points, read,
         xray::{Reach, Xray},
     },
-    ladder::{AXES, Coverage, Depth, Rungs, Vertex, Visibility},
+    ladder::{AXES, Coverage, Depth, Rungs, Sums, Vertex, Visibility},
     math::SUBPIXEL_BITS,
     scene::needs::Needs,
 };
@@ -107,6 +107,9 @@ fn check(rungs: &Rungs, needs: &Needs, f32_positions: bool, stack: &Stack, caps:
     {
         return Err(PlanError::Floats { what });
     }
+    if rungs.sums != Sums::Four32 && xray(stack).is_some_and(|xray| xray.unit() != 1) {
+        return Err(PlanError::Weights { rung: rungs.sums.name() });
+    }
     if !matches!(rungs.depth, Depth::Reversed | Depth::Integer) && has_window(stack) {
         return Err(PlanError::Window { rung: rungs.depth.name() });
     }
@@ -121,7 +124,11 @@ fn measures(stack: &Stack) -> Option<&'static str> {
 
 /// Does an x-ray hold depths against a window?
 fn has_window(stack: &Stack) -> bool {
-    stack.get("xray").is_some_and(|enabled| Reach::of(read::<Xray>(&enabled.words).reach) == Reach::Window)
+    xray(stack).is_some_and(|xray| Reach::of(xray.reach) == Reach::Window)
+}
+
+fn xray(stack: &Stack) -> Option<Xray> {
+    stack.get("xray").map(|enabled| read::<Xray>(&enabled.words))
 }
 
 /// What in a picture hangs on floats even behind a strict vertex stage, if anything.

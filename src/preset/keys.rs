@@ -6,7 +6,7 @@ use glam::DVec3;
 
 use super::form::{Form, Plain, Precision, brief};
 use crate::{
-    ladder::{AXES, Checks, Clipping, Counting, Coverage, Depth, Parameters, Perspective, Rung, Vertex, Visibility},
+    ladder::{AXES, Checks, Clipping, Counting, Coverage, Depth, Parameters, Perspective, Rung, Sums, Vertex, Visibility},
     scene::camera::{Camera, MIN_NEAR_M, Projection},
     session::{SceneSource, Session, Test, Tier},
 };
@@ -287,6 +287,7 @@ pub const KEYS: &[Key] = &[
     pin::<Perspective>(),
     pin::<Clipping>(),
     pin::<Counting>(),
+    pin::<Sums>(),
     pin::<Parameters>(),
     pin::<Checks>(),
     key(

@@ -335,6 +335,7 @@ impl KernelKey {
             ("IS_TICKETED", flag(self.order == Order::Scheduler)),
             ("IS_FIRST", flag(self.is_first(pass))),
             ("IS_AGAIN", flag(self.is_again(pass))),
+            ("SUM_WORDS", self.rungs.sums.words().into()),
             ("SUM_BITS", if let Some(Layers::Xray { bits }) = self.layers { bits.into() } else { 0.0 }),
         ]
     }

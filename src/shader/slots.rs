@@ -82,6 +82,8 @@ impl KernelKey {
             ("cells", format!("slots/cells/{cells}")),
             ("delay", format!("slots/delay/{}", if self.layers == Some(Layers::Race) { "raced" } else { "none" })),
             ("shading", format!("slots/shading/{shading}")),
+            ("totals", format!("slots/totals/{}", self.rungs.sums.name())),
+            ("average", format!("slots/average/{}", self.rungs.sums.name())),
         ];
         if let Some(phase) = pass.phase() {
             let file = match phase {

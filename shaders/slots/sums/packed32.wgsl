@@ -1,6 +1,9 @@
-// Sums of packed32: four words per pixel behind those of depth and owner.
+// Sums of packed32: the words of each pixel behind those of depth and owner.
 //@ use common/frame
 //@ use common/packed
+
+// Words per pixel.
+override SUM_WORDS: u32 = 4u;
 
 @group(0) @binding(5) var<storage, read_write> packed: array<atomic<u32>>;
 
@@ -11,5 +14,5 @@ fn sums_front(pixel: u32) -> u32 {
 
 // Adds to word `lane` of a pixel and returns what it was.
 fn sums_add(pixel: u32, lane: u32, value: u32) -> u32 {
-    return atomicAdd(&packed[frame.size.x * frame.size.y + 4u * pixel + lane], value);
+    return atomicAdd(&packed[frame.size.x * frame.size.y + SUM_WORDS * pixel + lane], value);
 }

@@ -1,5 +1,8 @@
-// Sums of packed64: four words per pixel behind the words of depth and owner, which are read as their halves.
+// Sums of packed64: the words of each pixel behind the words of depth and owner, which are read as their halves.
 //@ use common/frame
+
+// Words per pixel.
+override SUM_WORDS: u32 = 4u;
 
 @group(0) @binding(5) var<storage, read_write> depth_owner: array<atomic<u32>>;
 
@@ -10,5 +13,5 @@ fn sums_front(pixel: u32) -> u32 {
 
 // Adds to word `lane` of a pixel and returns what it was.
 fn sums_add(pixel: u32, lane: u32, value: u32) -> u32 {
-    return atomicAdd(&depth_owner[2u * frame.size.x * frame.size.y + 4u * pixel + lane], value);
+    return atomicAdd(&depth_owner[2u * frame.size.x * frame.size.y + SUM_WORDS * pixel + lane], value);
 }
