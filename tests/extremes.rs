@@ -162,7 +162,7 @@ const MUTANTS: &[(&str, &str, &str, &str, &str)] = &[
         "if i == 1u { continue; }\n        let slot = atomicAdd(&counters.pieces, 1u);",
         "guard-band",
     ),
-    ("depth of another corner", "slots/coverage/fixed", "weights.z * coverage.depth.z", "weights.z * coverage.depth.y", "w-ratios"),
+    ("depth of another corner", "slots/keys/float", "weights.z * keys.depth.z", "weights.z * keys.depth.y", "scales-and-offsets"),
     (
         "the larger id wins ties",
         "slots/visibility/split32_owner",

@@ -192,7 +192,8 @@ fn said(panic: &(dyn std::any::Any + Send)) -> &str {
 /// Ends a case with a sentence unless the condition holds.
 macro_rules! hold {
     ($condition:expr, $($sentence:tt)+) => {
-        if !$condition {
+        let holds: bool = $condition;
+        if !holds {
             return Err($crate::stress::Halt::Failed(format!($($sentence)+)));
         }
     };

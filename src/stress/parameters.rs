@@ -51,21 +51,19 @@ fn judged(lab: &mut Lab, stack: &Stack, turn: usize, what: &str) -> Result<(), H
 }
 
 fn parameters_at_their_ends(lab: &mut Lab) -> Result<(), Halt> {
-    let mut turn = 0;
-    for effect in EFFECTS {
+    // One scene for each effect: kernels are made once for all its pictures.
+    for (turn, effect) in EFFECTS.iter().enumerate() {
         for (end, word) in [(0, "least"), (1, "greatest")] {
             for field in effect.fields {
                 let mut stack = Stack::default();
                 set(&mut stack, effect, field, end)?;
                 let what = format!("{}.{} at its {word}, {}", effect.name, field.name, ends(field)[end]);
                 judged(lab, &stack, turn, &what)?;
-                turn += 1;
             }
             let mut stack = Stack::default();
             stack.enable(effect);
             effect.fields.iter().try_for_each(|field| set(&mut stack, effect, field, end))?;
             judged(lab, &stack, turn, &format!("all of {} at its {word}", effect.name))?;
-            turn += 1;
         }
     }
     Ok(())
