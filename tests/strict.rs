@@ -293,9 +293,10 @@ fn the_oracle_finds_the_hashes_of_the_list() {
     assert_eq!(text, HASHES, "the oracle on the left, the list on the right; UPDATE_SNAPSHOTS=1 writes it");
 }
 
-/// Every way to share out work, and every rung, if not each with each.
-fn ways(renderer: &Renderer) -> Vec<(Tuning, Visibility)> {
-    tunings().into_iter().zip(rungs(renderer).into_iter().cycle()).collect()
+/// Nearly every triangle by a workgroup of its own on one rung, as the adapter likes it on the other.
+fn ways(renderer: &Renderer) -> [(Tuning, Visibility); 2] {
+    let rungs = rungs(renderer);
+    [(tunings()[0], rungs[0]), (renderer.gpu().caps.tuning(), rungs[rungs.len() - 1])]
 }
 
 /// How a picture that `renderer` draws differs from its line in the list, if it does.
@@ -359,37 +360,40 @@ fn a_strict_picture_with_one_mistake_differs_from_the_list() {
     let Some(healthy) = renderer() else { return };
     let pictures = pictures();
     let way = (Tuning { small_samples: 64, small_side: 32, ..healthy.gpu().caps.tuning() }, Visibility::Split32);
-    for (what, file, from, to) in [
-        ("one bit is rounded up", "common/soft", "+ 127u + (kept & 1u)", "+ 128u"),
-        ("sums drop what is shifted out", "common/soft", "| select(0u, 1u, is_lossy)", ""),
-        ("division drops its remainder", "common/soft", "| select(0u, 1u, rest != 0u)", ""),
-        ("truncation in place of rounding", "common/soft", "(1u << behind) - 1u + is_odd", "0u"),
+    for (what, name, file, from, to) in [
+        ("one bit is rounded up", "teapot?tess=8", "common/soft", "+ 127u + (kept & 1u)", "+ 128u"),
+        ("sums drop what is shifted out", "teapot?tess=8", "common/soft", "| select(0u, 1u, is_lossy)", ""),
+        ("division drops its remainder", "teapot?tess=8", "common/soft", "| select(0u, 1u, rest != 0u)", ""),
+        ("truncation in place of rounding", "teapot?tess=8", "common/soft", "(1u << behind) - 1u + is_odd", "0u"),
         (
             "another order of the sum",
+            "teapot?tess=8",
             "slots/projection/strict",
             "soft_add(soft_add(sum, soft_multiply(row.z, p.z)), row.w)",
             "soft_add(soft_add(sum, row.w), soft_multiply(row.z, p.z))",
         ),
         (
             "another order of the product",
+            "teapot?tess=8",
             "slots/projection/strict",
             "soft_multiply(soft_multiply(clip.x, inv_w), center.x)",
             "soft_multiply(soft_multiply(clip.x, center.x), inv_w)",
         ),
-        ("small keys from biased edges", "slots/coverage/fixed", "edges + coverage.bias", "edges"),
+        ("small keys from biased edges", "teapot?tess=8", "slots/coverage/fixed", "edges + coverage.bias", "edges"),
         (
             "large keys from biased edges",
+            "direct",
             "slots/block_keys/integer",
             "fixed_edge(begin, end, p);",
             "fixed_sub(fixed_edge(begin, end, p), Wide(0u, u32(fixed_bias(end - begin))));",
         ),
-        ("the float's guess is taken", "slots/keys/integer", "select(0u, 1u, left < 0)", "0u"),
-        ("the cut goes outside in", "passes/clip", "cut(plane, inside, outside)", "cut(plane, outside, inside)"),
+        ("the float's guess is taken", "teapot?tess=8", "slots/keys/integer", "select(0u, 1u, left < 0)", "0u"),
+        ("the cut goes outside in", "direct", "passes/clip", "cut(plane, inside, outside)", "cut(plane, outside, inside)"),
     ] {
         let mutant = mutated(file, from, to);
         let mut wrong = Renderer::with_library(healthy.gpu().clone(), mutant.shaders());
-        let differs = pictures.iter().zip(HASHES.lines()).any(|(picture, line)| stray(&mut wrong, picture, line, way).is_some());
-        assert!(differs, "{what}: no picture differs");
+        let (picture, line) = pictures.iter().zip(HASHES.lines()).find(|(picture, _)| picture.name == name).expect("a listed picture");
+        assert!(stray(&mut wrong, picture, line, way).is_some(), "{what}: {name} does not differ");
     }
 }
 

@@ -115,9 +115,9 @@ fn clip(@builtin(workgroup_id) group: vec3u, @builtin(num_workgroups) groups: ve
     let at = triangle_vertices(t.draw, t.id - draws[t.draw].first_triangle);
     let flags = vec4u(t.a.x, t.b.x, t.c.x, 0u);
     var polygon: Polygon;
-    polygon.corners[0] = Corner(projection_corner(t.draw, at.x, t.id), 0u, 0u, true);
-    polygon.corners[1] = Corner(projection_corner(t.draw, at.y, t.id), 0u, 1u, true);
-    polygon.corners[2] = Corner(projection_corner(t.draw, at.z, t.id), 0u, 2u, true);
+    for (var k = 0u; k < 3u; k += 1u) {
+        polygon.corners[k] = Corner(projection_corner(t.draw, at[k], t.id), 0u, k, true);
+    }
     polygon.count = 3u;
     // Near, left, right, top, bottom. A loop, since five copies of the polygon take a CPU adapter's compiler seconds.
     for (var plane = VERTEX_NEAR; plane <= VERTEX_BOTTOM; plane <<= 1u) {
