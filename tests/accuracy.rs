@@ -13,7 +13,7 @@ use rasterlab::{
         naive::{Naive, Viewport},
     },
     ladder::Visibility,
-    measure::Accuracy as Errors,
+    measure::{Accuracy as Errors, Verdict, faults::Fault},
     plan::Tuning,
     preset,
     scene::{
@@ -359,6 +359,18 @@ fn mutants() -> Vec<Mutant> {
 const GRAPHICS_CARD: Tuning =
     Tuning { small_samples: 64, small_side: 32, list_group: 256, listed_tiles: false, early_load: true, specialized: true };
 
+/// The map of faults shows what the counts count: as many wrong owners, holes and doubles just where there are any, and the
+/// largest difference of colour.
+fn map_agrees(verdict: &Verdict) -> Result<(), String> {
+    let (a, map) = (&verdict.accuracy, &verdict.faults);
+    let owners = map.count(Fault::Owner) == a.owner_mismatch && map.count(Fault::Depth) == a.wrong_winners;
+    let coverage = (map.count(Fault::Hole) > 0) == (a.holes > 0) && (map.count(Fault::Double) > 0) == (a.double_hits > 0);
+    let ties = map.count(Fault::Tie) == a.band_pixels;
+    let colours = map.colour.iter().max().copied().unwrap_or(0) >= a.max_colour_delta;
+    let marks = Fault::ALL.map(|fault| map.count(fault));
+    if owners && coverage && ties && colours { Ok(()) } else { Err(format!("the map has {marks:?} and the counts say {a:?}")) }
+}
+
 #[test]
 fn kernels_with_a_mistake_are_caught() {
     let Some(mut healthy) = renderer() else { return };
@@ -375,6 +387,9 @@ fn kernels_with_a_mistake_are_caught() {
         eprintln!("{what}: {}", exactness(&verdict.accuracy).err().unwrap_or_default());
         if exactness(&verdict.accuracy).is_ok() || shown_by(&verdict.accuracy) == 0 {
             failures.push(format!("{what} does not show in {figure}: {:?}", verdict.accuracy));
+        }
+        if let Err(sentence) = map_agrees(&verdict) {
+            failures.push(format!("{what}: {sentence}"));
         }
     }
     assert!(failures.is_empty(), "{}", failures.join("\n"));

@@ -14,6 +14,7 @@ use egui_kittest::{Harness, Node, kittest::Queryable as _};
 use rasterlab::{
     app::{App, Options, wgpu_setup},
     gpu::device::AdapterChoice,
+    ladder::Depth,
     oracle,
     preset::{self, form::Plain},
     session::SceneSource,
@@ -825,4 +826,171 @@ fn the_extremes_run_beside_the_window_and_can_be_stopped() {
     until(&mut lab, "the first picture", &|lab| lab.query_by_label_contains("near-plane-sweep: step").is_some());
     click(&mut lab, Role::Button, "Stop the extremes");
     until(&mut lab, "the end", &|lab| lab.state().log_text().contains("The extremes: 1 case: 1 stopped"));
+
+/// Switches an overlay on in its folder of the inspector.
+fn show_overlay(lab: &mut Lab, name: &str) {
+    if lab.query_by_role_and_label(Role::CheckBox, &format!("Overlay {name}")).is_none() {
+        lab.get_by_label("Overlays").scroll_to_me();
+        lab.run_steps(3);
+        lab.get_by_label("Overlays").click();
+        lab.run_steps(8);
+    }
+    click(lab, Role::CheckBox, &format!("Overlay {name}"));
+}
+
+/// The middle of the picture, clear of everything that lies over its borders.
+fn middle(lab: &mut Lab) -> image::RgbaImage {
+    lab.remove_cursor();
+    lab.run_steps(2);
+    let whole = picture(lab);
+    image::imageops::crop_imm(&whole, 0, 48, whole.width(), whole.height() - 208).to_image()
+}
+
+#[test]
+fn overlays_are_laid_over_the_picture_and_counted_in_a_legend() {
+    let Some(mut lab) = lab("facet-sweep") else { return };
+    let (plain, draws) = (middle(&mut lab), lab.state().draws());
+    show_overlay(&mut lab, "triangle edges");
+    let edges = middle(&mut lab);
+    assert!(edges != plain, "the edges are to be seen");
+    assert!(lab.state().accuracy().is_some(), "the picture was judged without being asked to");
+    assert!(lab.query_by_label_contains("triangle edges: ").is_some(), "the legend counts them");
+    show_overlay(&mut lab, "owner ids");
+    let both = middle(&mut lab);
+    assert!(both != edges);
+    show_overlay(&mut lab, "triangle edges");
+    let owners = middle(&mut lab);
+    assert!(owners != both && owners != plain, "any subset shows");
+    press(&mut lab, Modifiers::NONE, Key::O);
+    assert!(middle(&mut lab) == plain, "the key hides them all");
+    press(&mut lab, Modifiers::NONE, Key::O);
+    assert!(middle(&mut lab) == owners, "and brings back what was shown");
+    assert_eq!((lab.state().draws(), lab.state().undo_steps()), (draws, 0), "overlays draw no frame and are no part of the look");
+}
+
+#[test]
+fn the_legend_says_that_nothing_is_wrong_where_nothing_is() {
+    let Some(mut lab) = lab("facet-sweep") else { return };
+    show_overlay(&mut lab, "wrong owner");
+    show_overlay(&mut lab, "holes");
+    let pixels = lab.state().accuracy().expect("a verdict").pixels;
+    let sentence = format!("nothing is wrong: 0 of {},{:03} pixels", pixels / 1000, pixels % 1000);
+    assert!((1000..1_000_000).contains(&pixels) && lab.query_by_label(&sentence).is_some(), "{sentence}");
+    // Another picture is judged anew, as soon as it rests.
+    click(&mut lab, Role::Button, "Top view");
+    assert!(lab.state().accuracy().is_some());
+    assert!(lab.query_by_label_contains("nothing is wrong: 0 of ").is_some());
+}
+
+#[test]
+fn the_wipe_shows_the_reference_on_its_left_and_is_dragged() {
+    let Some(mut lab) = lab("facet-sweep") else { return };
+    let alone = middle(&mut lab);
+    let (draws, session) = (lab.state().draws(), lab.state().look().session.clone());
+    assert!(lab.query_by_label("Wipe divider").is_none());
+    press(&mut lab, Modifiers::SHIFT, Key::Backslash);
+    assert_eq!(lab.state().wipe_split(), Some(0.5));
+    // The reference of an exact picture is that picture.
+    let wiped = middle(&mut lab);
+    let differing = |a: &image::RgbaImage, b: &image::RgbaImage| a.pixels().zip(b.pixels()).filter(|(a, b)| a != b).count();
+    let divider = 28 * alone.height() as usize;
+    assert!(differing(&alone, &wiped) <= divider, "{} pixels differ", differing(&alone, &wiped));
+    assert_eq!(lab.query_all_by_label("error not measured").count(), 3, "in the bar and under both sides");
+    // A kept look stays as it was while the live one changes.
+    click(&mut lab, Role::Button, "Keep B");
+    click(&mut lab, Role::Button, "Mute facet");
+    let muted = middle(&mut lab);
+    let (width, height) = alone.dimensions();
+    let part = |image: &image::RgbaImage, from: u32, to: u32| image::imageops::crop_imm(image, from, 0, to - from, height).to_image();
+    assert!(differing(&part(&muted, 0, width / 2 - 20), &part(&alone, 0, width / 2 - 20)) == 0, "A changed");
+    assert!(differing(&part(&muted, width / 2 + 20, width), &part(&alone, width / 2 + 20, width)) > 1000, "B did not");
+    let knob = lab.get_by_role_and_label(Role::Slider, "Wipe divider").rect().center();
+    drag(&mut lab, knob, knob - vec2(0.25 * width as f32, 0.0));
+    let split = lab.state().wipe_split().expect("a wipe");
+    assert!((split - 0.25).abs() < 0.02, "{split}");
+    let further = middle(&mut lab);
+    assert!(differing(&part(&further, width / 4 + 20, width / 2 - 20), &part(&muted, width / 4 + 20, width / 2 - 20)) > 100);
+    assert_eq!(lab.state().look().session, session, "comparing changes no look");
+    assert!(lab.state().draws() > draws);
+    click(&mut lab, Role::Button, "Close the comparison");
+    assert_eq!(lab.state().wipe_split(), None);
+    assert!(lab.query_by_label("Wipe divider").is_none());
+}
+
+#[test]
+fn a_key_flips_between_a_and_b_and_both_sides_are_measured() {
+    let Some(mut lab) = lab("facet-sweep") else { return };
+    press(&mut lab, Modifiers::SHIFT, Key::Backslash);
+    click(&mut lab, Role::Button, "Keep B");
+    click(&mut lab, Role::Button, "Mute facet");
+    let wiped = middle(&mut lab);
+    press(&mut lab, Modifiers::NONE, Key::Backslash);
+    let a = middle(&mut lab);
+    press(&mut lab, Modifiers::NONE, Key::Backslash);
+    let b = middle(&mut lab);
+    assert!(a != b && a != wiped && b != wiped);
+    press(&mut lab, Modifiers::NONE, Key::Backslash);
+    assert!(middle(&mut lab) == a);
+    press(&mut lab, Modifiers::SHIFT, Key::Backslash);
+    press(&mut lab, Modifiers::NONE, Key::V);
+    assert_eq!(lab.query_all_by_label("error not measured").count(), 0);
+    assert!(lab.query_all_by_label_contains("0 wrong owners").count() >= 3, "in the bar and under both sides");
+}
+
+fn pinned_depth(lab: &Lab) -> Option<Depth> {
+    lab.state().look().session.accuracy.pins.rung()
+}
+
+#[test]
+fn a_measured_combination_is_a_point_and_a_click_on_it_switches_the_look_in_one_step() {
+    let Some(mut lab) = lab("facet-sweep") else { return };
+    press(&mut lab, Modifiers::NONE, Key::M);
+    assert!(lab.query_by_label_contains("Nothing is measured yet").is_some());
+    // The rungs of depth cost about the same, so that a slow adapter is done in time.
+    for axis in ["coverage", "depth"] {
+        lab.get_by_role_and_label(Role::CheckBox, &format!("Measure {axis}")).click();
+        lab.run_steps(2);
+    }
+    assert!(lab.query_by_label("5 combinations").is_some());
+    click(&mut lab, Role::Button, "Measure");
+    assert_eq!(lab.state().trade_points(), Depth::ALL.len(), "{}", lab.state().log_text());
+    assert_eq!((pinned_depth(&lab), lab.state().undo_steps()), (None, 0), "measuring changes no look");
+    click(&mut lab, Role::Button, "Point depth=log16");
+    assert_eq!((pinned_depth(&lab), lab.state().undo_steps()), (Some(Depth::Log16), 1));
+    undo(&mut lab);
+    assert_eq!((pinned_depth(&lab), lab.state().undo_steps()), (None, 0));
+    // The table does what the plot does.
+    click(&mut lab, Role::Button, "Use depth=ndc16");
+    assert_eq!((pinned_depth(&lab), lab.state().undo_steps()), (Some(Depth::Ndc16), 1));
+    // Under another metric the points stay the same.
+    click(&mut lab, Role::Button, "holes and doubles");
+    assert!(lab.query_by_label("Point depth=log16").is_some());
+    lab.get_by_role_and_label(Role::Button, "Copy as CSV").click();
+    lab.step();
+    let copied = lab.output().platform_output.commands.iter().find_map(|command| match command {
+        egui::OutputCommand::CopyText(text) => Some(text.clone()),
+        _ => None,
+    });
+    let copied = copied.expect("a table on the clipboard");
+    assert!(copied.starts_with("depth,ms p50,ms p95,samples,wrong pixels ppm,") && copied.lines().count() == 6, "{copied}");
+    // Another camera makes another picture, and the figures are not about that one.
+    assert!(lab.query_by_label_contains("stale: ").is_none());
+    click(&mut lab, Role::Button, "Top view");
+    assert!(lab.query_by_label_contains("stale: ").is_some());
+}
+
+#[test]
+fn a_measurement_is_cancelled_and_leaves_nothing_behind() {
+    let Some(mut lab) = lab("facet-sweep") else { return };
+    press(&mut lab, Modifiers::NONE, Key::M);
+    lab.get_by_role_and_label(Role::CheckBox, "Measure depth").click();
+    lab.run_steps(2);
+    lab.get_by_role_and_label(Role::Button, "Measure").click();
+    lab.run_steps(2);
+    assert!(!lab.state().is_settled() && lab.query_by_role_and_label(Role::Button, "Measure").is_none());
+    lab.get_by_role_and_label(Role::Button, "Cancel").click();
+    lab.run_steps(2);
+    settle(&mut lab);
+    assert_eq!((lab.state().trade_points(), error_lines(&lab).len()), (0, 0));
+    assert!(lab.query_by_role_and_label(Role::Button, "Measure").is_some());
 }

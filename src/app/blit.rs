@@ -27,6 +27,7 @@ fn texel(in: Corner) -> @location(0) vec4f {
 }";
 
 /// The pipeline, made once per window.
+#[derive(Clone)]
 pub struct Blitter {
     pipeline: wgpu::RenderPipeline,
 }

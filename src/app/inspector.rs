@@ -46,6 +46,7 @@ impl App {
             self.camera_ui(ui);
             self.clock_ui(ui);
             self.accuracy_ui(ui);
+            folder(ui, "Overlays", false, |ui| self.overlays_ui(ui));
             folder(ui, "Timing", true, |ui| self.timing_ui(ui));
             folder(ui, "Kernel", false, |ui| self.kernel_ui(ui));
             self.keys_folder(ui, "Look", false, &["name", "about", "output.size"]);

@@ -8,10 +8,14 @@ use std::{
 
 use eframe::egui;
 
-use super::{dialogs::Purpose, screen::Inputs};
+use super::{
+    dialogs::Purpose,
+    overlays::Findings,
+    screen::Inputs,
+    trade::{self, Point, Progress, Question},
+};
 use crate::{
     gpu::{Gpu, Renderer},
-    measure::Accuracy,
     oracle,
     preset::{self, Look, Provenance},
     scene::Scene,
@@ -36,7 +40,9 @@ impl SceneKey {
 /// Finished work. Errors are sentences for people.
 pub enum Done {
     Scene(SceneKey, Result<Arc<Scene>, String>),
-    Verdict(Box<Inputs>, Result<Accuracy, String>),
+    Verdict(Box<Inputs>, Result<Box<Findings>, String>),
+    /// Combinations of rungs, measured.
+    Trade(Result<Vec<Point>, String>),
     Thumbnail(String, Option<egui::ColorImage>),
     Shot(PathBuf, Result<(), String>),
     /// A path from the system's file dialog; none when it was cancelled or could not be shown.
@@ -90,6 +96,11 @@ impl Jobs {
         });
     }
 
+    /// Measures combinations of rungs on a device of its own, so that neither disturbs the other's figures for long.
+    pub fn measure(&self, adapter: String, scene: Arc<Scene>, question: Question, progress: Arc<Progress>) {
+        self.spawn("trade", move || Done::Trade(caught("measuring the trade", || trade::measure(adapter, &scene, &question, &progress))));
+    }
+
     /// Draws the picture of a look with the oracle, which needs no device and so disturbs none.
     pub fn thumbnail(&self, look: Look) {
         self.spawn("thumbnail", move || {
@@ -130,12 +141,15 @@ fn caught<T>(what: &str, work: impl FnOnce() -> Result<T, String>) -> Result<T, 
         .unwrap_or_else(|_| Err(format!("{what} failed inside the program; the terminal says where")))
 }
 
-fn verify(gpu: Arc<Gpu>, Inputs { scene, view, stack, accuracy }: &Inputs) -> Result<Accuracy, String> {
+fn verify(gpu: Arc<Gpu>, Inputs { scene, view, stack, accuracy }: &Inputs) -> Result<Box<Findings>, String> {
     let mut renderer = Renderer::new(gpu);
     renderer.set_scene(scene).map_err(|e| e.to_string())?;
     let capture = renderer.capture(view, stack, accuracy).map_err(|e| e.to_string())?;
-    let verdict = oracle::judge(scene, view, stack, &capture.frame, &capture.geometry, capture.layers.as_deref());
-    verdict.map(|verdict| verdict.accuracy).map_err(|e| e.to_string())
+    let (layers, previous) = (capture.layers.as_deref(), capture.previous.as_deref());
+    let verdict = oracle::judge_after(scene, view, stack, &capture.frame, &capture.geometry, layers, previous);
+    let truth =
+        if stack.is_repeatable() { Some(oracle::render_finest(scene, view, stack).map_err(|e| e.to_string())?.owner) } else { None };
+    verdict.map(|verdict| Box::new(Findings::new(capture, verdict, truth))).map_err(|e| e.to_string())
 }
 
 /// Size of a thumbnail in pixels; shown at half of it.

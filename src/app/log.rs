@@ -79,9 +79,10 @@ impl Log {
     /// Adds a message and shows it for a while: the outcome of what the user just did.
     pub fn tell(&mut self, level: Level, text: impl Into<String>, now_s: f64) {
         let text = text.into();
-        self.toasts.retain(|toast| toast.text != text);
+        let shown = first_line(&text);
+        self.toasts.retain(|toast| toast.text != shown);
         let stay_s = if level == Level::Error { ERROR_TOAST_S } else { TOAST_S };
-        self.toasts.push(Toast { level, text: text.clone(), until_s: now_s + stay_s });
+        self.toasts.push(Toast { level, text: shown, until_s: now_s + stay_s });
         self.add(level, text);
     }
 
@@ -137,6 +138,14 @@ impl Log {
     }
 }
 
+/// What a toast says of a message of several lines, such as a shader's error with its snippet.
+pub fn first_line(text: &str) -> String {
+    match text.split_once('\n') {
+        Some((first, _)) => format!("{} (more in the log)", first.trim_end()),
+        None => text.to_owned(),
+    }
+}
+
 /// ` ×3`, or nothing for a single time.
 fn times(count: u32) -> String {
     if count > 1 { format!(" ×{count}") } else { String::new() }
@@ -153,6 +162,14 @@ mod tests {
         log.add(Level::Info, "opened");
         log.add(Level::Error, "no such file");
         assert_eq!(log.to_text(), "info: opened\nerror: no such file ×2\n");
+    }
+
+    #[test]
+    fn a_toast_has_one_line_and_the_log_has_them_all() {
+        let mut log = Log::default();
+        log.tell(Level::Error, "shader error: no such word\n  ┌─ fog.wgsl:3:9", 0.0);
+        assert_eq!(log.toasts[0].text, "shader error: no such word (more in the log)");
+        assert!(log.to_text().contains("fog.wgsl:3:9"));
     }
 
     #[test]

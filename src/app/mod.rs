@@ -4,6 +4,7 @@
 //! Slow work happens in `jobs`; the window waits for no thread and for no device.
 
 mod blit;
+mod compare;
 mod dialogs;
 mod edit;
 mod extremes;
@@ -16,6 +17,7 @@ mod keying;
 mod legend;
 mod log;
 mod orbit;
+mod overlays;
 mod playback;
 mod presets;
 mod screen;
@@ -24,6 +26,8 @@ mod start;
 mod theme;
 mod timeline;
 mod topbar;
+mod trade;
+mod verdict;
 mod viewport;
 
 use std::{
@@ -41,22 +45,25 @@ pub use start::{DeviceLost, Options, adopt, run, wgpu_setup};
 use crate::{
     effects::Effect,
     gpu::Gpu,
-    measure::Accuracy,
     params::Field,
     preset::Look,
     scene::{Scene, camera::View},
     session::Session,
 };
+use compare::Compare;
 use dialogs::Dialog;
 use extremes::Extremes;
 use fields::Ask;
 use jobs::{Done, Jobs, SceneKey};
 use log::Log;
+use overlays::Overlays;
 use playback::Playback;
 use presets::Shelf;
 use screen::{Inputs, Screen};
 use start::Ending;
 use timeline::Timeline;
+use trade::Trade;
+use verdict::Verdict;
 use viewport::Motion;
 
 /// Which file a look is, as undo remembers it.
@@ -91,17 +98,12 @@ struct Stage {
 
 const RECENT_SCENES: usize = 4;
 
-/// How wrong a picture was found to be.
-struct Verdict {
-    of: Inputs,
-    accuracy: Accuracy,
-}
-
 /// Which panels are open.
 struct Panels {
     left: bool,
     right: bool,
     timeline: bool,
+    trade: bool,
     log: bool,
     cheat_sheet: bool,
     search: String,
@@ -125,7 +127,11 @@ pub struct App {
     /// The point of an effect that the next click on the model gives.
     picking: Option<(&'static Effect, &'static Field)>,
     verdict: Option<Verdict>,
-    verifying: bool,
+    /// Judgements under way.
+    verifying: u32,
+    overlays: Overlays,
+    compare: Compare,
+    trade: Trade,
     dialog: Option<Dialog>,
     extremes: Extremes,
     panels: Panels,
@@ -161,7 +167,7 @@ impl App {
             files: HashMap::from([(FileId::of(&look), look.clone())]),
             screen: Screen::new(&window, gpu),
             jobs: Jobs::new(cc.egui_ctx.clone()),
-            panels: Panels { left: true, right: true, timeline: true, log: false, cheat_sheet: false, search: String::new() },
+            panels: Panels { left: true, right: true, timeline: true, trade: false, log: false, cheat_sheet: false, search: String::new() },
             options,
             ending,
             look,
@@ -171,7 +177,10 @@ impl App {
             muted: BTreeSet::new(),
             picking: None,
             verdict: None,
-            verifying: false,
+            verifying: 0,
+            overlays: Overlays::default(),
+            compare: Compare::default(),
+            trade: Trade::default(),
             dialog: None,
             extremes: Extremes::default(),
             playback: Playback::default(),
@@ -209,17 +218,13 @@ impl App {
     /// Is there a picture of the look as it stands, with nothing still on its way?
     pub fn is_settled(&self) -> bool {
         let scene = self.stage.loading.is_none() && self.stage.shown.is_some();
-        scene && !self.screen.is_waiting() && !self.verifying && !self.shelf.is_busy()
+        let judged = self.verifying == 0 && self.overlays_are_settled();
+        scene && !self.screen.is_waiting() && !self.compare.is_waiting() && judged && !self.trade.is_measuring() && !self.shelf.is_busy()
     }
 
     /// Is there a picture at all?
     pub fn has_picture(&self) -> bool {
         self.screen.picture().is_some()
-    }
-
-    /// The measured error of the picture as it stands.
-    pub fn accuracy(&self) -> Option<&Accuracy> {
-        self.verdict.as_ref().filter(|verdict| self.screen.drawn() == Some(&verdict.of)).map(|verdict| &verdict.accuracy)
     }
 
     /// The log as text.
@@ -250,7 +255,12 @@ impl App {
         while let Some(done) = self.jobs.next() {
             match done {
                 Done::Scene(key, scene) => self.scene_arrived(key, scene),
-                Done::Verdict(inputs, accuracy) => self.verdict_arrived(*inputs, accuracy),
+                Done::Verdict(inputs, findings) => self.verdict_arrived(*inputs, findings),
+                Done::Trade(points) => {
+                    if let Some(error) = self.trade.arrived(points) {
+                        self.log.add(Level::Error, error);
+                    }
+                }
                 Done::Thumbnail(id, image) => self.shelf.thumbnail_arrived(ctx, id, image),
                 Done::Shot(path, Ok(())) => self.tell(Level::Info, format!("Saved {}", path.display())),
                 Done::Shot(_, Err(error)) => self.tell(Level::Error, error),
@@ -278,17 +288,6 @@ impl App {
         }
     }
 
-    fn verdict_arrived(&mut self, of: Inputs, accuracy: Result<Accuracy, String>) {
-        self.verifying = false;
-        match accuracy {
-            Ok(accuracy) => {
-                self.log.add(Level::Info, format!("verified {}: {}", self.look.title(), topbar::error_text(&accuracy)));
-                self.verdict = Some(Verdict { of, accuracy });
-            }
-            Err(error) => self.tell(Level::Error, error),
-        }
-    }
-
     /// Brings the scene of the look on stage, or asks for it.
     fn set_stage(&mut self) {
         let key = SceneKey::of(&self.look.session, self.look.path.as_ref());
@@ -303,14 +302,6 @@ impl App {
         } else if loading.as_ref() != Some(&key) && failed.as_ref() != Some(&key) {
             *loading = Some(key.clone());
             self.jobs.load_scene(key);
-        }
-    }
-
-    /// Lets the oracle judge the picture that is shown.
-    fn verify(&mut self) {
-        if let Some(inputs) = self.motion.wanted.clone().filter(|_| !self.verifying) {
-            self.verifying = true;
-            self.jobs.verify(self.screen.gpu.clone(), inputs);
         }
     }
 
@@ -352,6 +343,14 @@ impl App {
             |ui| self.timeline_ui(ui),
         );
         self.panels.timeline = timeline;
+        let mut trade = self.panels.trade;
+        egui::Panel::bottom("trade").frame(theme::panel_frame()).resizable(true).default_size(304.0).min_size(190.0).show_collapsible(
+            ui,
+            &mut trade,
+            |ui| self.trade_ui(ui),
+        );
+        // The panel has a button of its own to close it.
+        self.panels.trade &= trade;
         let mut log = self.panels.log;
         egui::Panel::bottom("log").frame(theme::panel_frame()).resizable(true).default_size(150.0).min_size(72.0).show_collapsible(
             ui,

@@ -9,6 +9,7 @@ use super::blit::{Blit, Blitter};
 use crate::{
     effects::Stack,
     gpu::{Explanation, Gpu, RenderError, Renderer, Report},
+    ladder::Rungs,
     scene::{Scene, camera::View},
     session::Accuracy,
 };
@@ -62,10 +63,14 @@ struct Picture {
 
 impl Screen {
     pub fn new(window: &egui_wgpu::RenderState, gpu: Arc<Gpu>) -> Self {
+        Self::with(gpu, Blitter::new(window))
+    }
+
+    fn with(gpu: Arc<Gpu>, blitter: Blitter) -> Self {
         Self {
             renderer: Renderer::new(gpu.clone()),
             gpu,
-            blitter: Blitter::new(window),
+            blitter,
             picture: None,
             drawn: None,
             refused: None,
@@ -76,6 +81,12 @@ impl Screen {
             cold: false,
             draws: 0,
         }
+    }
+
+    /// Another screen on the same device, for another picture in the same window.
+    pub fn sibling(&self) -> Self {
+        let Self { gpu, blitter, .. } = self;
+        Self::with(gpu.clone(), blitter.clone())
     }
 
     /// Has the device been lost? Asks it, since nothing else would while nothing is drawn.
@@ -102,6 +113,11 @@ impl Screen {
     /// Figures of the newest finished frame.
     pub fn report(&self) -> Option<&Report> {
         self.report.as_ref()
+    }
+
+    /// The rungs of the newest picture's kernel.
+    pub fn rungs(&self) -> Option<Rungs> {
+        self.renderer.key().map(|key| key.rungs)
     }
 
     /// What the newest picture ran, and why.

@@ -32,6 +32,10 @@ pub enum Action {
     RemoveKey,
     Verify,
     Extremes,
+    Overlays,
+    Wipe,
+    FlipAb,
+    Trade,
     Panels,
     Timeline,
     Log,
@@ -43,6 +47,10 @@ const COMMAND_SHIFT: Modifiers = Modifiers { shift: true, ..Modifiers::COMMAND }
 
 const fn plain(key: Key) -> KeyboardShortcut {
     KeyboardShortcut::new(Modifiers::NONE, key)
+}
+
+const fn shift(key: Key) -> KeyboardShortcut {
+    KeyboardShortcut::new(Modifiers::SHIFT, key)
 }
 
 const fn command(key: Key) -> KeyboardShortcut {
@@ -75,6 +83,10 @@ const TABLE: &[(Action, &str, &[KeyboardShortcut])] = &[
     (Action::RemoveKey, "Remove the selected key", &[plain(Key::Delete), plain(Key::Backspace)]),
     (Action::Verify, "Verify against the oracle", &[plain(Key::V)]),
     (Action::Extremes, "Run the extremes…", &[]),
+    (Action::Overlays, "Hide or show overlays", &[plain(Key::O)]),
+    (Action::Wipe, "Wipe between the reference and this look", &[shift(Key::Backslash), plain(Key::Pipe)]),
+    (Action::FlipAb, "Flip between the reference and this look", &[plain(Key::Backslash)]),
+    (Action::Trade, "Hide or show the trade of speed for accuracy", &[plain(Key::M)]),
     (Action::Panels, "Hide or show panels", &[plain(Key::F11)]),
     (Action::Timeline, "Hide or show the timeline", &[plain(Key::T)]),
     (Action::Log, "Hide or show the log", &[plain(Key::L)]),
@@ -197,11 +209,15 @@ impl App {
             Action::RemoveKey => self.remove_selected_key(),
             Action::Verify => self.verify(),
             Action::Extremes => self.extremes.toggle(),
+            Action::Overlays => self.overlays.toggle(),
+            Action::Wipe => self.compare.toggle_wipe(),
+            Action::FlipAb => self.compare.flip(),
             Action::Panels => {
                 let shown = self.panels.left || self.panels.right || self.panels.timeline;
                 (self.panels.left, self.panels.right, self.panels.timeline) = (!shown, !shown, !shown);
             }
             Action::Timeline => self.panels.timeline = !self.panels.timeline,
+            Action::Trade => self.panels.trade = !self.panels.trade,
             Action::Log => self.panels.log = !self.panels.log,
             Action::CheatSheet => self.panels.cheat_sheet = !self.panels.cheat_sheet,
         }
@@ -273,6 +289,8 @@ impl App {
             Action::Play => Some(if self.playback.playing { "playing".into() } else { "paused".into() }),
             Action::Randomize => Some(format!("seed {}", self.seed)),
             Action::Timeline => Some(if self.panels.timeline { "shown".into() } else { "hidden".into() }),
+            Action::Overlays => Some(if self.overlays.is_any() { "shown".into() } else { "hidden".into() }),
+            Action::Trade => Some(if self.panels.trade { "shown".into() } else { "hidden".into() }),
             Action::Log => Some(if self.panels.log { "shown".into() } else { "hidden".into() }),
             _ => None,
         }

@@ -3,13 +3,14 @@
 use eframe::egui::{self, Align, Color32, Layout, RichText, Sense, Ui, vec2};
 
 use super::{
-    App,
+    App, Verdict,
     fields::dot,
     icons::{Icon, icon_button},
+    screen::Inputs,
     shortcuts::Action,
     theme,
 };
-use crate::measure::Accuracy;
+use crate::{gpu::Report, measure::Accuracy};
 
 impl App {
     pub(super) fn topbar_ui(&mut self, ui: &mut Ui) {
@@ -55,8 +56,14 @@ impl App {
                     Some(A::Top),
                     Some(A::Orthographic),
                     None,
+                    Some(A::Verify),
+                    Some(A::Overlays),
+                    Some(A::Wipe),
+                    Some(A::FlipAb),
+                    None,
                     Some(A::Panels),
                     Some(A::Timeline),
+                    Some(A::Trade),
                     Some(A::Log),
                     None,
                     Some(A::Extremes),
@@ -123,8 +130,8 @@ impl App {
     /// Cost and error, always side by side.
     fn cost_ui(&mut self, ui: &mut Ui) {
         ui.spacing_mut().item_spacing.x = 6.0;
-        let (color, error, hint) = self.error_line();
-        let busy = self.verifying;
+        let (color, error, hint) = error_line(self.verdict.as_ref(), self.motion.wanted.as_ref());
+        let busy = self.verifying > 0;
         let verify = ui.add_enabled(!busy && self.motion.wanted.is_some(), egui::Button::new(if busy { "Verifying" } else { "Verify" }));
         if verify.on_hover_text("Let the exact CPU oracle judge this picture (V)").clicked() {
             self.verify();
@@ -134,30 +141,45 @@ impl App {
         }
         ui.label(RichText::new(error).color(color)).on_hover_text(hint);
         ui.label(theme::weak("·"));
-        let report = self.screen.report();
-        let time = match report.map(|report| report.gpu_ms) {
-            Some(Some(ms)) => format!("{ms:.2} ms GPU"),
-            Some(None) => "no GPU timer".into(),
-            None => "not timed".into(),
-        };
-        ui.label(RichText::new(time).color(theme::TEXT_STRONG))
+        ui.label(RichText::new(time_text(self.screen.report())).color(theme::TEXT_STRONG))
             .on_hover_text("Time of the newest frame on the device; passes are listed under Timing");
+        self.pins_ui(ui);
     }
 
-    /// The error of the picture that is shown, as far as it was measured.
-    fn error_line(&self) -> (Color32, String, String) {
-        let Some(verdict) = &self.verdict else {
-            return (theme::TEXT_WEAK, "error not measured".into(), "Verify compares every pixel with the oracle".into());
+    /// Rungs that the look pins, beside what they cost.
+    fn pins_ui(&self, ui: &mut Ui) {
+        let words = self.look.session.accuracy.pins.words();
+        let text = match words.split(' ').count() {
+            _ if words.is_empty() => return,
+            1 => words.clone(),
+            many => format!("{many} rungs pinned"),
         };
-        let text = error_text(&verdict.accuracy);
-        let detail = details(&verdict.accuracy);
-        if self.motion.wanted.as_ref() != Some(&verdict.of) {
-            return (theme::AMBER, format!("{text} · stale"), format!("Measured on an earlier picture. {detail}"));
-        }
-        let a = &verdict.accuracy;
-        let wrong = a.owner_mismatch + a.holes + a.double_hits + a.orphans + a.overflow;
-        (if wrong == 0 { theme::GREEN } else { theme::RED }, text, detail)
+        ui.label(theme::weak("·"));
+        ui.label(RichText::new(text).size(12.0).color(theme::ACCENT)).on_hover_text(words.replace(' ', "\n"));
     }
+}
+
+/// What a frame took on the device.
+pub fn time_text(report: Option<&Report>) -> String {
+    match report.map(|report| report.gpu_ms) {
+        Some(Some(ms)) => format!("{ms:.2} ms GPU"),
+        Some(None) => "no GPU timer".into(),
+        None => "not timed".into(),
+    }
+}
+
+/// The error of the picture `shown`, as far as it was measured, with its colour and its details.
+pub fn error_line(verdict: Option<&Verdict>, shown: Option<&Inputs>) -> (Color32, String, String) {
+    let Some(Verdict { of, findings }) = verdict else {
+        return (theme::TEXT_WEAK, "error not measured".into(), "Verify compares every pixel with the oracle".into());
+    };
+    let a = &findings.accuracy;
+    let (text, detail) = (error_text(a), details(a));
+    if shown != Some(of) {
+        return (theme::AMBER, format!("{text} · stale"), format!("Measured on an earlier picture. {detail}"));
+    }
+    let wrong = a.owner_mismatch + a.holes + a.double_hits + a.orphans + a.overflow;
+    (if wrong == 0 { theme::GREEN } else { theme::RED }, text, detail)
 }
 
 /// One menu's rows; none is a separator.

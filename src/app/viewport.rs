@@ -8,12 +8,16 @@ use super::{
     jobs::SceneKey,
     legend, orbit,
     screen::Inputs,
+    shortcuts::Action,
     theme,
 };
-use crate::scene::{
-    Scene,
-    camera::{Camera, Projection, View},
-    pick,
+use crate::{
+    scene::{
+        Scene,
+        camera::{Camera, Projection, View},
+        pick,
+    },
+    session::Session,
 };
 use glam::DVec2;
 
@@ -28,6 +32,22 @@ pub struct Motion {
     pub divisor: u32,
     /// How much more than the look's own frame the window shows, at least 1.
     widening: f64,
+}
+
+impl Motion {
+    /// Seconds until the picture counts as resting; none when it does.
+    pub fn rest_in_s(&self, now_s: f64) -> Option<f64> {
+        let rest_s = REST_S - (now_s - self.last_s);
+        (self.last_s > 0.0 && rest_s > 0.0).then_some(rest_s)
+    }
+}
+
+/// Where a picture goes: all of `rect`, or its own shape in the middle, so that one from before a resize is not stretched.
+pub fn fitted(rect: Rect, [width, height]: [u32; 2]) -> Rect {
+    let scale = (rect.width() / width as f32).min(rect.height() / height as f32);
+    let size = vec2(width as f32, height as f32) * scale;
+    let fits = (size - rect.size()).abs().max_elem() < 4.0;
+    if fits { rect } else { Rect::from_center_size(rect.center(), size) }
 }
 
 fn aspect([width, height]: [u32; 2]) -> f64 {
@@ -61,10 +81,13 @@ impl App {
         let moved = self.navigate(ui, &response);
         self.pick_under(&response);
         self.draw(ui.ctx(), size, moved);
-        self.picture_ui(ui, rect);
+        self.feed_overlays(ui.ctx());
+        let at = self.picture_ui(ui, rect);
+        let below = self.compare_ui(ui, rect, at);
         self.overlay_ui(ui, rect);
+        let below = self.overlay_legend_ui(ui, below, at);
         if let Some(params) = self.visible_stack().params("overdraw") {
-            legend::heat_ui(ui, rect, &params);
+            legend::heat_ui(ui, below, &params);
         }
     }
 
@@ -102,7 +125,11 @@ impl App {
 
     /// The look as a picture of `size` shows it: the whole of the look's own frame, and more where the shapes differ.
     pub(super) fn view_at(&self, scene: &Scene, size: [u32; 2]) -> View {
-        let mut session = self.shown_session();
+        self.view_of(self.shown_session(), scene, size)
+    }
+
+    /// The same of another session.
+    pub(super) fn view_of(&self, mut session: Session, scene: &Scene, size: [u32; 2]) -> View {
         let widening = self.widening(size);
         let mut camera = session.camera_for(scene, aspect(session.output.size));
         if widening > 1.0 {
@@ -206,10 +233,10 @@ impl App {
         if camera_moved || self.playback.playing || (changed && held) {
             self.motion.last_s = now_s;
         }
-        let moving = self.motion.wanted.is_some() && now_s - self.motion.last_s < REST_S && self.motion.last_s > 0.0;
+        let moving = self.motion.wanted.is_some() && self.motion.rest_in_s(now_s).is_some();
         let divisor = if moving { self.coarseness(full) } else { 1 };
         if divisor > 1 {
-            ctx.request_repaint_after_secs((REST_S - (now_s - self.motion.last_s)) as f32 + 0.01);
+            ctx.request_repaint_after_secs(self.motion.rest_in_s(now_s).unwrap_or(0.0) as f32 + 0.01);
         }
         let mut inputs = wanted.clone();
         if divisor > 1 {
@@ -221,14 +248,15 @@ impl App {
         if let Err(error) = self.screen.show(&inputs, now_s) {
             self.log.tell(Level::Error, error.to_string(), now_s);
         }
-        if self.screen.is_waiting() {
+        self.draw_reference(&inputs, full);
+        if self.screen.is_waiting() || self.compare.is_waiting() {
             ctx.request_repaint_after_secs(0.015);
         }
     }
 
     /// By how much a moving picture must be smaller to stay smooth, from what the last one took.
     fn coarseness(&self, full: [u32; 2]) -> u32 {
-        let Some(ms) = self.screen.report().and_then(|report| report.gpu_ms) else {
+        let Some(ms) = self.screen.report().and_then(|report| report.gpu_ms).map(|ms| ms + self.compare.ms()) else {
             return if self.screen.gpu.summary.software { 2 } else { 1 };
         };
         let [width, height] = self.screen.picture().map_or(full, |(_, size)| size);
@@ -242,20 +270,16 @@ impl App {
         }
     }
 
-    /// The newest picture; what stands where there is none.
-    fn picture_ui(&self, ui: &Ui, rect: Rect) {
+    /// The newest picture, and where it is; what stands where there is none.
+    fn picture_ui(&self, ui: &Ui, rect: Rect) -> Rect {
         let painter = ui.painter_at(rect);
-        if let Some((blit, [width, height])) = self.screen.picture().filter(|(_, size)| size.iter().all(|&side| side > 0)) {
-            // Its own shape, so that a last good picture from before a resize is not stretched.
-            let scale = (rect.width() / width as f32).min(rect.height() / height as f32);
-            let size = vec2(width as f32, height as f32) * scale;
-            let fits = (size - rect.size()).abs().max_elem() < 4.0;
-            let at = if fits { rect } else { Rect::from_center_size(rect.center(), size) };
-            if !fits {
+        if let Some((blit, size)) = self.screen.picture().filter(|(_, size)| size.iter().all(|&side| side > 0)) {
+            let at = fitted(rect, size);
+            if at != rect {
                 painter.rect_filled(rect, 0.0, theme::VIEW);
             }
             painter.add(blit.shape(at));
-            return;
+            return at;
         }
         painter.rect_filled(rect, 0.0, theme::VIEW);
         let (title, detail) = if self.stage.failed.is_some() {
@@ -267,6 +291,7 @@ impl App {
         };
         painter.text(rect.center() - vec2(0.0, 12.0), Align2::CENTER_CENTER, title, FontId::proportional(17.0), theme::TEXT);
         painter.text(rect.center() + vec2(0.0, 12.0), Align2::CENTER_CENTER, detail, FontId::proportional(13.0), theme::TEXT_WEAK);
+        rect
     }
 
     /// Chips over the picture: state on the left, views on the right, a hint while a file hovers.
@@ -279,7 +304,7 @@ impl App {
                 .inner_margin(egui::Margin::symmetric(8, 4))
                 .show(&mut left, |ui| ui.label(RichText::new(text).size(12.0).color(color)));
         }
-        let corner = Rect::from_min_max(pos2(rect.right() - 220.0, rect.top() + 8.0), pos2(rect.right() - 10.0, rect.top() + 36.0));
+        let corner = Rect::from_min_max(pos2(rect.right() - 320.0, rect.top() + 8.0), pos2(rect.right() - 10.0, rect.top() + 36.0));
         let layout = egui::Layout::right_to_left(egui::Align::Center);
         let mut right = ui.new_child(egui::UiBuilder::new().id_salt("views").max_rect(corner).layout(layout));
         right.spacing_mut().item_spacing.x = 2.0;
@@ -349,6 +374,15 @@ impl App {
         {
             if ui.small_button(text).on_hover_text(format!("{name} ({key})")).accessible_name(name).clicked() {
                 self.move_camera(|camera| orbit::look_along(camera, direction));
+            }
+        }
+        ui.add_space(theme::GAP);
+        for (text, on, action) in [("Overlays", self.overlays.is_any(), Action::Overlays), ("Wipe", self.compare.is_wiping(), Action::Wipe)]
+        {
+            let button = egui::Button::new(text).small().selected(on);
+            let hint = format!("{} ({})", action.about(), action.keys_text());
+            if ui.add(button).on_hover_text(hint).accessible_name(action.about()).clicked() {
+                self.perform(ui.ctx(), action);
             }
         }
     }

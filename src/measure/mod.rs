@@ -1,6 +1,7 @@
 //! Measures of error and of time. Nothing here returns a time without an error beside it.
 
 pub mod compare;
+pub mod faults;
 pub mod timing;
 
 /// How wrong a picture is, against the oracle. Counts are pixels unless they say otherwise.
@@ -100,13 +101,15 @@ impl ErrorFigures {
 }
 
 /// What a judge says of a picture.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct Verdict {
     pub accuracy: Accuracy,
     /// What the oracle draws from the same snapped vertices; in the step band, the right answer nearest to the picture.
     pub expected: crate::frame::Frame,
     /// Which pixels lie in the step band; empty for a look without steps.
     pub step_band: Vec<bool>,
+    /// Where it is wrong.
+    pub faults: faults::Faults,
 }
 
 /// What may differ in a picture that still passes. Everything that is judged as exact has no budget.

@@ -10,6 +10,7 @@ use super::{
     coverage::{Coverage, Sample, cover_by, triangles},
     decide::{decide, wrong},
     empty,
+    faults::{Manner, faults},
     finish::{Seen, bytes},
     frame,
     layers::{Layered, Scenery, layered},
@@ -72,7 +73,7 @@ pub fn judge_after(
     let view = &View { subpixel_bits: geometry.subpixel_bits, ..view.clone() };
     let draws = draws(scene, view)?;
     if view.pixels() == 0 {
-        return Ok(Verdict { accuracy: Accuracy::default(), expected: empty(view), step_band: Vec::new() });
+        return Ok(Verdict { expected: empty(view), ..Verdict::default() });
     }
     assert_eq!([adapter.owner.len(), adapter.key.len(), adapter.color.len()], [view.pixels(); 3], "the frame has another size");
     let mut own = project_as(geometry.exact, scene, &draws, view, stack);
@@ -101,7 +102,8 @@ pub fn judge_after(
     };
 
     let mut accuracy = Accuracy { pixels: view.pixels() as u64, ..Default::default() };
-    match is_free.then(|| order::cut(stack, &rules, &given, view)).flatten() {
+    let cut = is_free.then(|| order::cut(stack, &rules, &given, view)).flatten();
+    match cut {
         Some(cut) => judge_choice(&mut accuracy, &coverage, adapter, layers, cut.limit),
         _ => judge_samples(&mut accuracy, &coverage, adapter, layers, stack.is_racing()),
     }
@@ -113,6 +115,8 @@ pub fn judge_after(
     // Which layers it chose, only the hardware knows.
     let colors = if is_free && layered.is_some() { adapter.color.clone() } else { answers.nearest(&adapter.color) };
     judge_colors(&mut accuracy, &colors, adapter);
+    let manner = Manner { is_racing: stack.is_racing(), is_chosen: cut.is_some() };
+    let mut faults = faults((scene, &draws, geometry), &coverage, adapter, layers, &colors, manner);
     accuracy.step_band_pixels = step_band.iter().filter(|is_band| **is_band).count() as u64;
     judge_counters(&mut accuracy, &counters, adapter);
     judge_vertices(&mut accuracy, &vertices);
@@ -132,7 +136,8 @@ pub fn judge_after(
             (Answers::of(scene, &draws, view, stack, &seen, geometry).nearest(&adapter.color), Vec::new())
         }
     };
-    Ok(Verdict { accuracy, expected: frame(view, &coverage, colors, counted, counters), step_band })
+    faults.recolour(&adapter.color, &colors);
+    Ok(Verdict { accuracy, expected: frame(view, &coverage, colors, counted, counters), step_band, faults })
 }
 
 /// Is the adapter's owner right, exactly or as one of the two answers of the depth band?

@@ -12,6 +12,7 @@
 mod clip;
 mod coverage;
 mod decide;
+mod faults;
 mod finish;
 pub mod flushed;
 mod judge;

@@ -1,0 +1,74 @@
+//! Paint: what was found in a picture, as one transparent image of a texel per pixel.
+
+use eframe::egui::{Color32, ColorImage};
+use rayon::prelude::*;
+
+use super::{Findings, Overlay};
+use crate::{effects::overdraw::Overdraw, frame::NO_OWNER, math::hash, measure::faults::Fault};
+
+/// How much of the picture is left under faults, so that a single wrong pixel is seen: of 255.
+const DIMMED: u8 = 96;
+
+/// Pixels with a fault that rings are drawn round, at most; more are seen without.
+pub const MOST_RINGS: usize = 48;
+
+/// Overlays from the lowest to the topmost, blended in this order whatever the order they were switched on in.
+pub fn image(found: &Findings, shown: &[Overlay], gain: u8) -> ColorImage {
+    let [width, height] = found.size.map(|side| side as usize);
+    let is_opaque = |overlay: &&Overlay| matches!(overlay, Overlay::Owners | Overlay::Layers);
+    let dims = shown.iter().any(|overlay| overlay.is_fault() && found.count(*overlay) > 0) && !shown.iter().any(|o| is_opaque(&o));
+    let ground = if dims { Color32::from_black_alpha(255 - DIMMED) } else { Color32::TRANSPARENT };
+    let heat = Overdraw::default();
+    let texel = |i: usize| {
+        let layers = Overlay::ALL.iter().filter(|overlay| shown.contains(overlay));
+        layers.filter_map(|overlay| color(found, *overlay, i, gain, &heat)).fold(ground, Color32::blend)
+    };
+    ColorImage::new([width, height], (0..width * height).into_par_iter().map(texel).collect())
+}
+
+/// What one overlay paints on pixel `i`.
+fn color(found: &Findings, overlay: Overlay, i: usize, gain: u8, heat: &Overdraw) -> Option<Color32> {
+    let has = |fault: Fault| found.faults.has(i, fault);
+    match overlay {
+        Overlay::Owners => (found.owners[i] != NO_OWNER).then(|| owner_color(found.owners[i])),
+        Overlay::Layers => (found.layers[i] > 0).then(|| layers_color(heat, found.layers[i])),
+        Overlay::Colour => {
+            let delta = found.faults.colour[i].saturating_mul(gain);
+            (delta > 0).then(|| overlay.color().gamma_multiply(f32::from(delta) / 255.0))
+        }
+        Overlay::Edges => found.is_edge(i).then(|| overlay.color()),
+        Overlay::Truth => found.is_untrue(i).then(|| overlay.color()),
+        Overlay::Ties => has(Fault::Tie).then(|| overlay.color()),
+        Overlay::Doubles => has(Fault::Double).then(|| overlay.color()),
+        Overlay::Holes => has(Fault::Hole).then(|| overlay.color()),
+        Overlay::Owner => has(Fault::Owner).then(|| overlay.color()),
+        Overlay::Depth => has(Fault::Depth).then(|| overlay.color()),
+        Overlay::Unsound => has(Fault::Unsound).then(|| overlay.color()),
+    }
+}
+
+/// A colour for every triangle, bright enough to be told from its neighbours.
+fn owner_color(owner: u32) -> Color32 {
+    let h = hash(owner);
+    let channel = |shift: u32| 40 + ((h >> shift & 255) * 3 / 4) as u8;
+    Color32::from_rgb(channel(0), channel(8), channel(16))
+}
+
+pub fn layers_color(heat: &Overdraw, layers: u32) -> Color32 {
+    let [r, g, b] = heat.color(heat.heat(layers)).to_array().map(|v| (v * 255.0 + 0.5) as u8);
+    Color32::from_rgb(r, g, b)
+}
+
+/// Places of the pixels that rings lead the eye to: faults so few that one would search for them.
+pub fn rings(found: &Findings, shown: &[Overlay]) -> Vec<(usize, Color32)> {
+    let mut rings = Vec::new();
+    for overlay in shown.iter().filter(|overlay| found.count(**overlay) as usize <= MOST_RINGS) {
+        let is_there = |&i: &usize| match overlay.fault() {
+            Some(fault) => found.faults.has(i, fault),
+            None if *overlay == Overlay::Truth => found.is_untrue(i),
+            None => *overlay == Overlay::Colour && found.faults.colour[i] > 0,
+        };
+        rings.extend((0..found.faults.pixels()).filter(is_there).map(|i| (i, overlay.color())));
+    }
+    rings
+}

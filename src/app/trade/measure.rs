@@ -1,0 +1,88 @@
+//! The job behind the panel: the bench over combinations of rungs, with the oracle as its judge.
+
+use std::sync::Arc;
+
+use super::{Metric, Point, Progress, Question, SAMPLES};
+use crate::{
+    effects::Stack,
+    frame::Frame,
+    gpu::{
+        Capture, Gpu,
+        device::AdapterChoice,
+        trade::{TradeOptions, TradeRow, Truth, trade},
+    },
+    ladder::{Axis, Pins},
+    measure::Verdict,
+    oracle,
+    scene::{Scene, camera::View},
+};
+
+/// The oracle as the bench knows it.
+struct Oracle<'a> {
+    scene: &'a Scene,
+    view: View,
+    stack: &'a Stack,
+    picture: Frame,
+}
+
+impl Truth for Oracle<'_> {
+    fn picture(&self) -> &Frame {
+        &self.picture
+    }
+
+    fn judge(&self, capture: &Capture) -> Verdict {
+        let Self { scene, view, stack, .. } = self;
+        let (layers, previous) = (capture.layers.as_deref(), capture.previous.as_deref());
+        oracle::judge_after(scene, view, stack, &capture.frame, &capture.geometry, layers, previous)
+            .expect("a scene that was drawn can be judged")
+    }
+}
+
+/// Measures every combination, on a device of its own.
+///
+/// # Errors
+/// In a sentence for people.
+pub fn measure(adapter: String, scene: &Arc<Scene>, question: &Question, progress: &Progress) -> Result<Vec<Point>, String> {
+    let Question { session, size, axes, title } = question;
+    progress.tell(0, 1, "the true picture");
+    let gpu = Gpu::open(&AdapterChoice::Named(adapter)).map_err(|e| e.to_string())?;
+    let view = session.view(scene, *size);
+    let picture = oracle::render_finest(scene, &view, &session.stack).map_err(|e| e.to_string())?;
+    let truth = Oracle { scene, view, stack: &session.stack, picture };
+    let options = TradeOptions { size: *size, samples: SAMPLES, axes: axes.clone() };
+    let mut tell = |what: &str, done: usize, all: usize| progress.tell(done, all, what);
+    let rows = trade(&gpu, session, scene, title, &options, &truth, &mut tell).map_err(|e| e.to_string())?;
+    Ok(rows.into_iter().map(|row| point(row, axes)).collect())
+}
+
+fn point(row: TradeRow, axes: &[&'static Axis]) -> Point {
+    let mut pins = Pins::default();
+    axes.iter().for_each(|axis| pins.set(axis, row.pins.get(axis)));
+    let errors = Metric::ALL.map(|metric| {
+        let error = row.error.as_ref()?;
+        Some(match metric {
+            Metric::Wrong => error.wrong_ppm,
+            Metric::Colour => error.max_colour_delta.into(),
+            Metric::Coverage => error.holes_per_mpx + error.double_hits_per_mpx,
+        })
+    });
+    let more = row.error.iter().flat_map(|error| {
+        [
+            ("wrong depth winners ppm", error.wrong_depth_ppm),
+            ("colour RMS of 255", error.rms_colour_delta),
+            ("pixels that change between equal frames", error.changed_pixels as f64),
+            ("queue entries lost", error.overflow as f64),
+            ("orphans", error.orphans as f64),
+            ("buffers MiB", row.bytes as f64 / 1_048_576.0),
+        ]
+    });
+    Point {
+        pins,
+        ms: row.ms_p50.zip(row.ms_p95).map(|(p50, p95)| [p50, p95]),
+        samples: row.samples,
+        errors,
+        more: more.collect(),
+        is_idle: row.is_beaten,
+        note: row.note,
+    }
+}
