@@ -49,7 +49,7 @@ pub fn measure(adapter: String, scene: &Arc<Scene>, question: &Question, progres
     let view = session.view(scene, *size);
     let picture = oracle::render_finest(scene, &view, &session.stack).map_err(|e| e.to_string())?;
     let truth = Oracle { scene, view, stack: &session.stack, picture };
-    let options = TradeOptions { size: *size, samples: SAMPLES, axes: axes.clone() };
+    let options = TradeOptions { size: *size, samples: SAMPLES, axes: axes.clone(), is_each_alone: false };
     let mut tell = |what: &str, done: usize, all: usize| progress.tell(done, all, what);
     let rows = trade(&gpu, session, scene, title, &options, &truth, &mut tell).map_err(|e| e.to_string())?;
     Ok(rows.into_iter().map(|row| point(row, axes)).collect())
