@@ -826,6 +826,7 @@ fn the_extremes_run_beside_the_window_and_can_be_stopped() {
     until(&mut lab, "the first picture", &|lab| lab.query_by_label_contains("near-plane-sweep: step").is_some());
     click(&mut lab, Role::Button, "Stop the extremes");
     until(&mut lab, "the end", &|lab| lab.state().log_text().contains("The extremes: 1 case: 1 stopped"));
+}
 
 /// Switches an overlay on in its folder of the inspector.
 fn show_overlay(lab: &mut Lab, name: &str) {
