@@ -61,6 +61,8 @@ fn list_shows_looks_effects_and_ranges_on_stdout_alone() {
     for wanted in ["facet-sweep", "Half cut", "facet.amount", "0..=1", "uniform | sweep | radial | random", "teapot", "?tess", "built in"] {
         assert!(list.out.contains(wanted), "{wanted:?} is missing in\n{}", list.out);
     }
+    let axes = run(&["list", "--axes"]).out;
+    assert!(axes.contains("accuracy.coverage") && axes.contains("float-top-left") && !axes.contains("lambert.sun"));
     let effects = run(&["list", "--effects"]).out;
     assert!(effects.contains("lambert.sun") && !effects.contains("Half cut"));
 }

@@ -129,6 +129,9 @@ pub struct List {
     /// Only looks
     #[arg(long)]
     pub looks: bool,
+    /// Only the accuracy ladder: axes with their rungs, from fast to accurate
+    #[arg(long)]
+    pub axes: bool,
     /// Only builtin scenes
     #[arg(long)]
     pub scenes: bool,

@@ -1,4 +1,4 @@
-//! `list`: looks, builtin scenes, effects and every parameter with its range.
+//! `list`: looks, builtin scenes, effects with every parameter and its range, and the accuracy ladder.
 
 use serde_json::{Value, json};
 
@@ -9,25 +9,27 @@ use super::{
 };
 use crate::{
     effects::{EFFECTS, Effect},
+    ladder::{AXES, Axis},
     params::Field,
     preset::{self, GalleryEntry, form::Form, gallery},
     scene::builtin::BUILTINS,
 };
 
 pub fn run(common: &Common, args: &List, streams: &mut Streams) -> Result<Exit, Fault> {
-    let all = !(args.effects || args.looks || args.scenes);
+    let all = !(args.effects || args.looks || args.scenes || args.axes);
     let entries = if all || args.looks { gallery(common.presets_dir().as_deref()) } else { Vec::new() };
     let effects = if all || args.effects { EFFECTS } else { &[] };
     let scenes = if all || args.scenes { BUILTINS } else { &[] };
+    let axes = if all || args.axes { AXES } else { &[] };
     if streams.json {
         let looks = entries.iter().map(look_json);
         let effects = effects.iter().map(|effect| effect_json(effect));
         let scenes = scenes
             .iter()
             .map(|scene| json!({ "kind": "scene", "id": scene.name, "about": scene.about, "parameters": scene_parameters(scene.params) }));
-        streams.object("list", Value::Null, looks.chain(effects).chain(scenes).collect())?;
+        streams.object("list", Value::Null, looks.chain(effects).chain(scenes).chain(axes.iter().map(axis_json)).collect())?;
     } else {
-        let parts = [looks_text(&entries), effects_text(effects), scenes_text(scenes)];
+        let parts = [looks_text(&entries), effects_text(effects), scenes_text(scenes), axes_text(axes)];
         streams.text(&parts.into_iter().filter(|part| !part.is_empty()).collect::<Vec<_>>().join("\n"))?;
     }
     entries.iter().filter_map(|entry| entry.look.as_ref().err()).for_each(|error| streams.note(&format!("warning: {error}")));
@@ -105,6 +107,24 @@ fn scenes_text(scenes: &[crate::scene::builtin::Builtin]) -> String {
         }));
     }
     table(&rows)
+}
+
+fn axes_text(axes: &[Axis]) -> String {
+    if axes.is_empty() {
+        return String::new();
+    }
+    let mut rows = vec![["AXIS", "USUAL", "WHAT"].map(str::to_owned).to_vec()];
+    for axis in axes {
+        rows.push(vec![format!("accuracy.{}", axis.name), axis.words[axis.usual].into(), axis.about.trim().into()]);
+        rows.extend(axis.words.iter().zip(axis.abouts).map(|(word, about)| vec![format!("  {word}"), String::new(), about.trim().into()]));
+    }
+    table(&rows)
+}
+
+fn axis_json(axis: &Axis) -> Value {
+    let rungs: Vec<Value> =
+        axis.words.iter().zip(axis.abouts).map(|(word, about)| json!({ "name": word, "about": about.trim() })).collect();
+    json!({ "kind": "axis", "id": axis.name, "about": axis.about.trim(), "usual": axis.words[axis.usual], "rungs": rungs })
 }
 
 fn look_json(entry: &GalleryEntry) -> Value {
