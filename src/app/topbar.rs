@@ -192,7 +192,7 @@ fn menu_ui(ui: &mut Ui, actions: &[Option<Action>]) -> Option<Action> {
             continue;
         };
         let button = egui::Button::new(action.about()).shortcut_text(action.keys_text()).min_size(vec2(208.0, theme::ROW));
-        if ui.add(button).clicked() {
+        if ui.add(button).accessible_name(action.about()).clicked() {
             chosen = Some(*action);
             ui.close();
         }

@@ -192,7 +192,7 @@ impl Findings {
     fn is_edge(&self, i: usize) -> bool {
         let width = self.size[0].max(1) as usize;
         let differs = |j: usize| self.owners.get(j).is_some_and(|owner| *owner != self.owners[i]);
-        (i + 1) % width != 0 && differs(i + 1) || differs(i + width)
+        !(i + 1).is_multiple_of(width) && differs(i + 1) || differs(i + width)
     }
 }
 
