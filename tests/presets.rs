@@ -204,7 +204,10 @@ fn errors_name_line_key_value_and_range() {
         ("schema = 1\n[camera]\nfov_y_deg = 180\n", "look.toml:3: camera.fov_y_deg 180 lies outside 1..=179"),
         ("schema = 1\n[camera]\neye = [0, inf, 0]\n", "look.toml:3: camera.eye inf is not a finite number"),
         ("schema = 1\n[camera]\neye = [0, 1e10, 0]\n", "look.toml:3: camera.eye 1e10 lies outside -1e9..=1e9"),
-        ("schema = 1\n[accuracy]\ntier = 3\n", "look.toml:3: accuracy.tier must be one of draft, fast, precise, reference, strict, not a number"),
+        (
+            "schema = 1\n[accuracy]\ntier = 3\n",
+            "look.toml:3: accuracy.tier must be one of draft, fast, precise, reference, strict, not a number",
+        ),
         ("schema = 1\n[test]\nmax_pixels = 9\n", "look.toml:2: test.why must say why the budget is above the default"),
         ("schema = 1\nname = \"\\u001b[31m\"\n", "look.toml:2: name contains the control character '\\u{1b}'"),
         ("schema = 1\neffects = 3\n", "look.toml:2: effects must be a table, written [effects]"),

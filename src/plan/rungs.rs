@@ -52,8 +52,9 @@ pub(super) fn choose(
             reasons.push(note(axis.name, format!("{}: pinned by the look", axis.words[rungs.get(axis)])));
             continue;
         }
-        let mut cheaper: Vec<usize> = (0..axis.words.len()).filter(|&place| costs::saves(axis, place, rungs.get(axis), caps)).collect();
-        cheaper.sort_by(|a, b| costs::of(axis, *a, caps).total_cmp(&costs::of(axis, *b, caps)));
+        let mut cheaper: Vec<usize> =
+            (0..axis.words.len()).filter(|&place| costs::saves(axis, place, rungs.get(axis), needs, caps)).collect();
+        cheaper.sort_by(|a, b| costs::of(axis, *a, needs, caps).total_cmp(&costs::of(axis, *b, needs, caps)));
         let fits = |place: &usize| {
             let mut tried = rungs;
             tried.set(axis, *place);
@@ -62,7 +63,7 @@ pub(super) fn choose(
         if let Some(place) = cheaper.into_iter().find(fits) {
             rungs.set(axis, place);
             prediction = predict_all(&rungs, needs);
-            let (word, share, own) = (axis.words[place], costs::of(axis, place, caps), predict(i, place, needs));
+            let (word, share, own) = (axis.words[place], costs::of(axis, place, needs, caps), predict(i, place, needs));
             let why = format!(
                 "{word}: {share:.2} of the usual time, predicted to err by {:.0} of {:.0} ppm, {:.1} of {} in colour",
                 own.wrong_ppm, tolerance.wrong_ppm, own.channel, tolerance.channel
