@@ -1050,6 +1050,12 @@ fn a_small_file_cannot_ask_for_much() {
     placed.json["nodes"] = vec![json!({ "mesh": 0 }); limits::INSTANCES + 1].into();
     placed.json["scenes"] = json!([{ "nodes": (0..=limits::INSTANCES).collect::<Vec<_>>() }]);
     placed.refused("node 65536: more than 65536 primitives are placed");
+    let mut soft = morphed().with("/meshes/0/primitives/0/targets", json!(vec![json!({}); 256])).without("/meshes/0/weights");
+    soft.json["nodes"] = vec![json!({ "mesh": 0 }); 15_626].into();
+    soft.refused("node 15625: brings the nodes to 4000256 morph weights; at most 4000000 are read");
+    let mut jointed = skinned(0.0).without("/skins/0/inverseBindMatrices");
+    jointed.json["skins"] = vec![json!({ "joints": vec![1; 256] }); 3_907].into();
+    jointed.refused("the skins have 1000192 joints; at most 1000000 are read");
     let objects = format!("{{\"asset\":{{\"version\":\"2.0\"}},\"nodes\":[{}{{}}]}}", "{},".repeat(limits::JSON_OBJECTS));
     let error = gltf::parse(objects.as_bytes(), &mut |_, _| unreachable!()).unwrap_err();
     assert_eq!(error.to_string(), "JSON has 1000003 objects; at most 1000000 are read");

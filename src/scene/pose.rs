@@ -116,7 +116,7 @@ pub fn reach(scene: &Scene) -> Bounds {
     const MOST_NODES: usize = 1_000_000;
     const MOST_VERTICES: usize = 2_000_000;
     // A file with thousands of clips over thousands of nodes is framed by the first of them.
-    let most = (MOST_NODES / (MOMENTS * scene.rig.nodes.len().max(1))).max(1);
+    let most = (MOST_NODES / (MOMENTS * (scene.rig.nodes.len() + scene.instances.len()).max(1))).max(1);
     let moment = |clip: usize, moment: usize| Motion {
         clip: Some(clip),
         time_s: scene.rig.clips[clip].duration_s * (moment as f64 + 0.5) / MOMENTS as f64,

@@ -47,8 +47,12 @@ pub mod limits {
     pub const NODE_DEPTH: usize = 256;
     /// Joints of a skin.
     pub const JOINTS: usize = 256;
+    /// Joints of all skins.
+    pub const ALL_JOINTS: usize = 1_000_000;
     /// Morph targets of a mesh.
     pub const SHAPES: usize = 256;
+    /// Morph weights of all nodes.
+    pub const WEIGHTS: usize = 4_000_000;
     /// Channels of all clips.
     pub const CHANNELS: usize = 262_144;
     /// Key times and values of all clips.

@@ -61,14 +61,21 @@ impl Tree {
     /// The nodes as a rig has them.
     pub fn rig_nodes(&self, root: &json::Root) -> Result<Vec<Node>, LoadError> {
         let parents = parents(root)?;
+        let mut weights_in_all = 0;
         let node = |&index: &usize| {
             let node = &root.nodes[index];
             let place = |error: LoadError| error.within(node_name(root, index));
+            let weights = soft::weights(root, node).map_err(place)?;
+            weights_in_all += weights.len();
+            if weights_in_all > limits::WEIGHTS {
+                let reason = format!("brings the nodes to {weights_in_all} morph weights; at most {} are read", limits::WEIGHTS);
+                return Err(place(LoadError::new(reason)));
+            }
             Ok(Node {
                 name: node_name(root, index),
                 parent: parents[index].map(|parent| self.place_of[parent]),
                 rest: local(node).map_err(place)?,
-                weights: soft::weights(root, node).map_err(place)?,
+                weights,
             })
         };
         self.order.iter().map(node).collect()

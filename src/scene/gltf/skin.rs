@@ -8,6 +8,10 @@ use crate::scene::{Accessor, Bounds, Component, Scene, rig::Influences, rig::Ski
 
 /// Every skin of the file.
 pub fn skins(buffers: &Buffers, tree: &Tree) -> Result<Vec<Skin>, LoadError> {
+    let joints: usize = buffers.root.skins.iter().map(|skin| skin.joints.len()).sum();
+    if joints > limits::ALL_JOINTS {
+        return Err(LoadError::new(format!("the skins have {joints} joints; at most {} are read", limits::ALL_JOINTS)));
+    }
     let skin = |(index, skin): (usize, &json::Skin)| {
         let name = called("skin", index, skin.name.as_deref());
         read(buffers, tree, skin).map_err(|error| error.within(&name)).map(|skin| Skin { name, ..skin })
