@@ -293,8 +293,8 @@ impl Turn {
             // Half a turn apart, either way round is as short, and rounding chooses.
             is_torn |= share > 0.0 && along.abs() < 8.0 * ROUNDING;
             let signed = if along < 0.0 { -share } else { share };
-            real = real + quaternion(held.real) * signed;
-            dual = dual + quaternion(held.dual) * signed;
+            real += quaternion(held.real) * signed;
+            dual += quaternion(held.dual) * signed;
             dual_magnitude += quaternion(held.dual).length() * share;
         }
         let length = real.length();
