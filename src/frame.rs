@@ -63,6 +63,8 @@ pub struct Geometry {
     pub vertices: Vec<SnappedVertex>,
     /// Effects part the triangles, so that they share no vertices.
     pub has_own_corners: bool,
+    /// Position and normal, in object space, of every vertex of the draws that bend, in draw order.
+    pub bent: Vec<[f32; 6]>,
     /// Fan pieces of clipped triangles; pieces of one parent stand in fan order.
     pub pieces: Vec<Piece>,
     /// What sample effects settled: for every triangle by id, then for every piece, one entry per effect that decides.
@@ -75,8 +77,9 @@ pub struct Geometry {
 
 impl Default for Geometry {
     fn default() -> Self {
-        let (vertices, pieces, decisions) = (Vec::new(), Vec::new(), Vec::new());
-        Self { vertices, has_own_corners: false, pieces, decisions, subpixel_bits: SUBPIXEL_BITS, exact: Exactness::default() }
+        let (vertices, bent, pieces, decisions) = (Vec::new(), Vec::new(), Vec::new(), Vec::new());
+        let (subpixel_bits, exact) = (SUBPIXEL_BITS, Exactness::default());
+        Self { vertices, has_own_corners: false, bent, pieces, decisions, subpixel_bits, exact }
     }
 }
 

@@ -114,6 +114,13 @@ ladder! {
         /// The same in integer arithmetic: the same bits on every adapter and on the CPU.
         Strict = "strict",
     }
+    /// How joints hold the vertices of a skin together.
+    skinning: Skinning = "skinning", usual Linear {
+        /// The mean of their matrices, as glTF has it: where they twist or bend apart, volume is lost.
+        Linear = "linear",
+        /// The mean of their motions as dual quaternions: lengths are kept, and nearly all of the volume.
+        Dual = "dual",
+    }
     /// What a depth is compared by.
     depth: Depth = "depth", usual Reversed {
         /// 16 bits, evenly spaced in normalized device depth.

@@ -12,7 +12,7 @@ const MAY_KNOW: &[(&str, &[&str])] = &[
     ("frame", &["math"]),
     ("measure", &["frame", "math"]),
     ("ladder", &[]),
-    ("scene", &["math"]),
+    ("scene", &["ladder", "math"]),
     ("params", &[]),
     ("effects", &["math", "params", "scene"]),
     ("shader", &["effects", "frame", "ladder", "math", "params", "scene"]),

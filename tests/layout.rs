@@ -2,6 +2,7 @@
 
 use rasterlab::{
     effects::{EFFECTS, Effect},
+    gpu::bends::{BendRecord, ShapeRecord},
     gpu::uniforms::{CounterRecord, DrawRecord, FrameUniform, Twin},
     ladder::Visibility,
     shader::{
@@ -32,6 +33,9 @@ fn uniforms_and_records_agree() {
     check_twin::<FrameUniform>(&small);
     check_twin::<DrawRecord>(&small);
     check_twin::<CounterRecord>(&small);
+    let skin = reflected(Pass::Skin, vec![]);
+    check_twin::<BendRecord>(&skin);
+    check_twin::<ShapeRecord>(&skin);
 }
 
 #[test]

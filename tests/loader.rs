@@ -15,6 +15,7 @@ use rasterlab::{
         Scene,
         camera::Projection,
         gltf::{self, LoadError, limits},
+        pose::{Motion, Pose},
     },
 };
 use serde_json::{Value, json};
@@ -176,14 +177,28 @@ fn square() -> Vec<[[f64; 3]; 3]> {
     [[0, 1, 2], [0, 2, 3]].map(|t| t.map(|c: usize| SQUARE[c].map(f64::from))).into()
 }
 
-/// Everything that later stages take for granted: each accessor can be read to its end.
+/// Everything that later stages take for granted: each accessor can be read to its end, and every pose is finite.
 fn assert_sound(scene: &Scene) {
+    if !scene.rig.is_empty() {
+        let clips = (0..scene.rig.clips.len()).map(Some).chain([None]);
+        for (clip, time_s) in clips.flat_map(|clip| [0.0, 0.7, 1e9, -3.5].map(|time_s| (clip, time_s))) {
+            let pose = Pose::at(scene, &Motion { clip, time_s, ..Motion::default() });
+            assert!(
+                (0..scene.instances.len())
+                    .all(|i| !pose.place(i).is_nan() && pose.bend(i).is_none_or(|b| b.weights.iter().all(|w| w.is_finite())))
+            );
+        }
+        assert!(scene.rig.nodes.iter().enumerate().all(|(i, node)| node.parent.is_none_or(|parent| parent < i)));
+    }
     assert!(scene.vertex_bytes.len().is_multiple_of(4) && scene.index_bytes.len().is_multiple_of(4));
     assert!(scene.instances.iter().all(|i| i.primitive < scene.primitives.len() && i.world_from_object.is_finite()));
     for primitive in &scene.primitives {
         assert!(primitive.material < scene.materials.len());
+        let softness = &primitive.softness;
+        let shapes = softness.shapes.iter().flat_map(|shape| [shape.positions, shape.normals]);
+        let held = softness.influences.iter().flat_map(|set| [Some(set.joints), Some(set.weights)]);
         let attributes = [Some(primitive.positions), Some(primitive.normals), primitive.colors];
-        for accessor in attributes.iter().flatten() {
+        for accessor in attributes.into_iter().chain(shapes).chain(held).flatten() {
             assert_eq!(accessor.count, primitive.vertex_count());
             assert!(accessor.offset % accessor.component.bytes() == 0 && accessor.stride % accessor.component.bytes() == 0);
             for vertex in 0..accessor.count {
@@ -431,18 +446,187 @@ fn skinned(tilt: f64) -> Model {
         .with("/meshes/0/primitives/0/attributes/WEIGHTS_0", json!(weights))
 }
 
+/// Corners of every triangle as a moment of a clip places and bends them.
+fn posed(scene: &Scene, clip: Option<usize>, time_s: f64) -> Vec<[[f64; 3]; 3]> {
+    let pose = Pose::at(scene, &Motion { clip, time_s, ..Motion::default() });
+    let mut triangles = Vec::new();
+    for (index, instance) in scene.instances.iter().enumerate() {
+        let primitive = &scene.primitives[instance.primitive];
+        let corner = |vertex| {
+            let object = match pose.bend(index) {
+                Some(bend) => bend.position(scene, primitive, vertex),
+                None => primitive.position(scene, vertex).map(f64::from).into(),
+            };
+            pose.place(index).transform_point3(object).to_array()
+        };
+        triangles.extend((0..primitive.triangle_count()).map(|t| primitive.corners(scene, t).map(corner)));
+    }
+    triangles
+}
+
 #[test]
 fn a_skin_at_rest_places_its_mesh_by_the_joints_alone() {
     let scene = skinned(0.0).scene();
-    assert_eq!(triangles(&scene)[0], [[3.0, 0.0, 0.0], [4.0, 0.0, 0.0], [4.0, 1.0, 0.0]]);
+    assert_eq!(posed(&scene, None, 0.0)[0], [[3.0, 0.0, 0.0], [4.0, 0.0, 0.0], [4.0, 1.0, 0.0]]);
     assert_eq!(scene.primitives.len(), 1, "the file's bytes are drawn");
-    assert!(scene.notes.iter().any(|note| note == "skin: shown in bind pose"));
+    assert_eq!((scene.bounds().min, scene.bounds().max), (DVec3::new(3.0, 0.0, 0.0), DVec3::new(4.0, 1.0, 0.0)));
 }
 
 #[test]
 fn a_skin_that_stands_otherwise_than_bound_bends_its_mesh() {
     let scene = skinned(8.0).scene();
-    assert_eq!(triangles(&scene)[0], [[3.0, 0.0, 0.0], [4.0, 0.0, 8.0], [4.0, 1.0, 4.0]], "weights are normalised, and blend");
+    assert_eq!(posed(&scene, None, 0.0)[0], [[3.0, 0.0, 0.0], [4.0, 0.0, 8.0], [4.0, 1.0, 4.0]], "weights are normalised, and blend");
+    assert!(scene.notes.iter().any(|note| note.contains("1 vertices have weights that do not sum to 1")), "{:?}", scene.notes);
+}
+
+#[test]
+fn a_vertex_without_weight_is_held_by_its_first_joint_and_said_to_be() {
+    let mut model = skinned(8.0);
+    let joints = model.accessor(&[1, 0, 0, 0].repeat(4), U8, "VEC4", 4);
+    let weights = model.floats("VEC4", &[0.0; 16]);
+    let model = model
+        .with("/meshes/0/primitives/0/attributes/JOINTS_0", json!(joints))
+        .with("/meshes/0/primitives/0/attributes/WEIGHTS_0", json!(weights));
+    let scene = model.scene();
+    assert_eq!(posed(&scene, None, 0.0)[0][0], [3.0, 0.0, 8.0]);
+    assert!(scene.notes.iter().any(|note| note.contains("4 vertices have no weight; their first joint holds them")), "{:?}", scene.notes);
+}
+
+#[test]
+fn eight_joints_hold_a_vertex_in_any_width() {
+    let narrow = skinned(8.0);
+    let mut wide = narrow.clone();
+    let joints = wide.shorts("VEC4", &[0; 16]);
+    let more = wide.accessor(&[1; 16], U8, "VEC4", 4);
+    let weights = wide.shorts("VEC4", &[13_107, 0, 0, 0].repeat(4));
+    let others = wide.accessor(&[51, 51, 51, 51].repeat(4), U8, "VEC4", 4);
+    for accessor in [weights, others] {
+        wide.json["accessors"][accessor]["normalized"] = json!(true);
+    }
+    let set = |model: Model, name: &str, accessor: usize| model.with(&format!("/meshes/0/primitives/0/attributes/{name}"), json!(accessor));
+    let wide = set(set(set(set(wide, "JOINTS_0", joints), "WEIGHTS_0", weights), "JOINTS_1", more), "WEIGHTS_1", others);
+    let scene = wide.scene();
+    assert_eq!(scene.primitives[0].softness.influences.len(), 2);
+    // A fifth of the first joint, four fifths of the second.
+    let [_, _, z] = posed(&scene, None, 0.0)[0][0];
+    assert!((z - 0.8 * 8.0).abs() < 1e-12, "{z}");
+    wide.without("/meshes/0/primitives/0/attributes/WEIGHTS_1").refused("lacks JOINTS_1 or WEIGHTS_1");
+}
+
+/// A square under a node that a clip named "Move" moves: keys at 1 and 3 s.
+fn clip(path: &str, interpolation: &str, kind: &str, values: &[f32]) -> Model {
+    let mut model = Model::square();
+    let input = model.floats("SCALAR", &[1.0, 3.0]);
+    let output = model.floats(kind, values);
+    model.with("/nodes", json!([{ "children": [1], "translation": [10, 0, 0] }, { "mesh": 0, "name": "Part" }])).with(
+        "/animations",
+        json!([{
+            "name": "Move", "channels": [{ "sampler": 0, "target": { "node": 1, "path": path } }],
+            "samplers": [{ "input": input, "output": output, "interpolation": interpolation }],
+        }]),
+    )
+}
+
+#[test]
+fn clips_move_nodes_and_all_that_hangs_on_them() {
+    let values = [0.0, 0.0, 0.0, 0.0, 4.0, 8.0];
+    let scene = clip("translation", "LINEAR", "VEC3", &values).scene();
+    assert_eq!((scene.rig.clips[0].name.as_str(), scene.rig.clips[0].duration_s), ("Move", 3.0));
+    let corner = |scene: &Scene, time_s: f64| posed(scene, scene.rig.clip("Move"), time_s)[0][0];
+    assert_eq!([0.0, 1.5, 3.0].map(|t| corner(&scene, t)), [[10.0, 0.0, 0.0], [10.0, 1.0, 2.0], [10.0, 4.0, 8.0]]);
+    assert_eq!(corner(&scene, 4.5), corner(&scene, 1.5), "a clip goes round");
+    assert_eq!(posed(&scene, None, 2.0), triangles(&scene), "at rest the file's placements hold");
+    let step = clip("translation", "STEP", "VEC3", &values).scene();
+    assert_eq!(corner(&step, 2.9), [10.0, 0.0, 0.0]);
+    let tangents = [[9.0; 3], [0.0; 3], [0.0, 2.0, 0.0], [0.0, -2.0, 0.0], [0.0, 4.0, 8.0], [9.0; 3]].concat();
+    let cubic = clip("translation", "CUBICSPLINE", "VEC3", &tangents).scene();
+    // Half way of a cubic Hermite curve over 2 s: (a + b) / 2 + 2 (out - in) / 8.
+    assert_eq!(corner(&cubic, 2.0), [10.0, 3.0, 4.0]);
+}
+
+#[test]
+fn rotations_are_slerped_and_taken_by_their_direction() {
+    let root = FRAC_1_SQRT_2 as f32;
+    let scene = clip("rotation", "LINEAR", "VEC4", &[0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 2.0 * root, 2.0 * root]).scene();
+    assert!(scene.notes.iter().any(|note| note == "1 rotation keys are no unit quaternions; they are taken by their direction"));
+    // A third of a quarter turn about z takes (1, 0, 0) to (cos 30°, sin 30°, 0).
+    let [x, y, _] = posed(&scene, Some(0), 1.0 + 2.0 / 3.0)[0][1];
+    assert!((x - 10.0 - 0.75f64.sqrt()).abs() < 1e-7 && (y - 0.5).abs() < 1e-7, "{x} {y}");
+}
+
+#[test]
+fn clips_blend_joint_by_joint() {
+    let mut model = clip("translation", "LINEAR", "VEC3", &[0.0, 0.0, 0.0, 0.0, 0.0, 8.0]);
+    let mut second = model.json["animations"][0].clone();
+    second["name"] = json!("Still");
+    second["samplers"][0]["output"] = json!(model.floats("VEC3", &[0.0, 2.0, 0.0, 0.0, 2.0, 0.0]));
+    model.push("animations", second);
+    let scene = model.scene();
+    let pose = Pose::at(&scene, &Motion { clip: Some(0), other: Some(1), blend: 0.25, time_s: 2.0, ..Motion::default() });
+    assert_eq!(pose.place(0).w_axis.truncate(), DVec3::new(10.0, 0.5, 3.0));
+}
+
+/// A square with two morph targets, the second sparse, and weights for them.
+fn morphed() -> Model {
+    let mut model = Model::square();
+    let first = model.floats("VEC3", &[[0.0, 0.0, 1.0]; 4].concat());
+    let turned = model.floats("VEC3", &[[1.0, 0.0, 0.0]; 4].concat());
+    let (at, values) = (model.view(&[2]), model.view(&le_floats(&[0.0, 5.0, 0.0])));
+    let second = model.push(
+        "accessors",
+        json!({ "componentType": F32, "type": "VEC3", "count": 4, "min": [0, 0, 0], "max": [0, 5, 0],
+            "sparse": { "count": 1, "indices": { "bufferView": at, "componentType": U8 }, "values": { "bufferView": values } } }),
+    );
+    model
+        .with("/meshes/0/primitives/0/targets", json!([{ "POSITION": first, "NORMAL": turned }, { "POSITION": second }]))
+        .with("/meshes/0/weights", json!([0.5, 1.0]))
+}
+
+#[test]
+fn morph_targets_are_mixed_by_the_weights_of_node_mesh_and_clip() {
+    let scene = morphed().scene();
+    assert_eq!(posed(&scene, None, 0.0)[0], [[0.0, 0.0, 0.5], [1.0, 0.0, 0.5], [1.0, 6.0, 0.5]]);
+    assert_eq!(posed(&morphed().with("/nodes/0/weights", json!([0.0, 0.0])).scene(), None, 0.0), square());
+    let mut moving = morphed();
+    let input = moving.floats("SCALAR", &[0.0, 2.0]);
+    let output = moving.floats("SCALAR", &[0.0, 0.0, 1.0, -1.0]);
+    let moving = moving.with(
+        "/animations",
+        json!([{ "channels": [{ "sampler": 0, "target": { "node": 0, "path": "weights" } }], "samplers": [{ "input": input, "output": output }] }]),
+    );
+    let scene = moving.scene();
+    assert_eq!(scene.rig.clips[0].name, "clip 0");
+    assert_eq!(posed(&scene, Some(0), 1.0)[0], [[0.0, 0.0, 0.5], [1.0, 0.0, 0.5], [1.0, -1.5, 0.5]]);
+    moving
+        .clone()
+        .with("/animations/0/channels/0/target/node", json!(0))
+        .with("/accessors/6/count", json!(3))
+        .refused("clip 0 channel 0: weights of node 0: output: has 3 elements; its keys ask for 4");
+    moving.without("/meshes/0/primitives/0/targets").without("/meshes/0/weights").refused("the node shows no mesh with morph targets");
+}
+
+#[test]
+fn small_integers_are_places_when_the_file_says_that_it_is_quantized() {
+    let mut model = Model::square();
+    let places = model.accessor(&[0, 0, 0, 0, 127, 0, 0, 0, 127, 127, 0, 0, 0, 127, 0, 0], 5120, "VEC3", 4);
+    let view = model.json["accessors"][places]["bufferView"].as_u64().unwrap();
+    let normals = model.accessor(&[0, 0, 127, 0].repeat(4), 5120, "VEC3", 4);
+    let below = model.json["accessors"][normals]["bufferView"].as_u64().unwrap();
+    let model = model
+        .with(&format!("/bufferViews/{view}/byteStride"), json!(4))
+        .with(&format!("/bufferViews/{below}/byteStride"), json!(4))
+        .with(&format!("/accessors/{normals}/normalized"), json!(true))
+        .with("/meshes/0/primitives/0/attributes", json!({ "POSITION": places, "NORMAL": normals }))
+        .with("/nodes/0/scale", json!([1.0 / 127.0, 1.0 / 127.0, 1.0]));
+    model.refused("POSITION: accessor 2 has a type that glTF does not allow here");
+    let model =
+        model.with("/extensionsUsed", json!(["KHR_mesh_quantization"])).with("/extensionsRequired", json!(["KHR_mesh_quantization"]));
+    let scene = model.scene();
+    assert!(scene.notes.is_empty(), "{:?}", scene.notes);
+    let [_, _, [x, y, _]] = triangles(&scene)[0];
+    assert!((x - 1.0).abs() < 1e-6 && (y - 1.0).abs() < 1e-6);
+    let normalized = model.with(&format!("/accessors/{places}/normalized"), json!(true)).with("/nodes/0/scale", json!([1, 1, 1])).scene();
+    assert_eq!(triangles(&normalized), square());
 }
 
 #[test]
@@ -612,7 +796,10 @@ fn versions_and_extensions_are_named() {
     Model::square()
         .with("/extensionsRequired", json!(["KHR_draco_mesh_compression"]))
         .refused("requires the extension \"KHR_draco_mesh_compression\", which is not supported: export the model without compression");
-    Model::square().with("/extensionsRequired", json!(["KHR_mesh_quantization"])).refused("export the model without quantization");
+    Model::square()
+        .with("/extensionsRequired", json!(["EXT_meshopt_compression"]))
+        .refused("requires the extension \"EXT_meshopt_compression\", which is not supported: export the model without compression");
+    Model::square().with("/extensionsRequired", json!(["KHR_mesh_quantization"])).scene();
     for accepted in
         ["KHR_lights_punctual", "KHR_materials_unlit", "KHR_materials_ior", "KHR_materials_emissive_strength", "KHR_texture_transform"]
     {
@@ -787,9 +974,69 @@ fn skins_must_fit_their_meshes() {
     skinned(0.0).with("/accessors/3/componentType", json!(5120)).refused(&format!("{place}JOINTS_0: is not VEC4"));
     skinned(0.0).with("/accessors/4/count", json!(3)).refused(&format!("{place}WEIGHTS_0: has 3 elements for 4 vertices"));
     skinned(0.0).without("/meshes/0/primitives/0/attributes/WEIGHTS_0").refused("lacks JOINTS_0 or WEIGHTS_0");
+    let mut flat = skinned(0.0);
+    let inverse = flat.floats("MAT4", &[f32::NAN; 32]);
+    flat.with("/skins/0/inverseBindMatrices", json!(inverse)).refused("skin 0: inverseBindMatrices: matrix 0 is not finite");
     let mut negative = skinned(0.0);
     let weights = negative.floats("VEC4", &[-1.0; 16]);
     negative.with("/meshes/0/primitives/0/attributes/WEIGHTS_0", json!(weights)).refused("WEIGHTS_0: vertex 0 has the weight -1");
+}
+
+fn keys(values: [f32; 2], output: &[f32]) -> Model {
+    let mut model = clip("translation", "LINEAR", "VEC3", output);
+    let input = model.floats("SCALAR", &values);
+    model.with("/animations/0/samplers/0/input", json!(input))
+}
+
+const CHANNEL: &str = "clip \"Move\" channel 0: translation of node \"Part\": ";
+
+#[test]
+fn key_values_that_are_not_finite_are_refused() {
+    for bad in [f32::NAN, f32::INFINITY] {
+        keys([1.0, 3.0], &[0.0, 0.0, 0.0, 0.0, bad, 0.0]).refused(&format!("{CHANNEL}output: key 1 has the value {bad}"));
+    }
+    clip("rotation", "LINEAR", "VEC4", &[0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0])
+        .refused("clip \"Move\" channel 0: rotation of node \"Part\": output: key 1 is no quaternion with a direction");
+}
+
+#[test]
+fn key_times_that_do_not_rise_are_refused() {
+    keys([1.0, 1.0], &[0.0; 6]).refused(&format!("{CHANNEL}input: times must rise, but key 1 at 1 s follows 1 s"));
+    keys([2.0, 1.0], &[0.0; 6]).refused(&format!("{CHANNEL}input: times must rise, but key 1 at 1 s follows 2 s"));
+    keys([-1.0, 1.0], &[0.0; 6]).refused(&format!("{CHANNEL}input: key 0 lies at -1 s"));
+    keys([f32::NAN, 1.0], &[0.0; 6]).refused(&format!("{CHANNEL}input: key 0 lies at NaN s"));
+    keys([1.0, f32::INFINITY], &[0.0; 6]).refused(&format!("{CHANNEL}input: key 1 lies at inf s"));
+}
+
+#[test]
+fn channels_must_fit_their_nodes_and_their_keys() {
+    keys([1.0, 3.0], &[0.0; 9]).refused(&format!("{CHANNEL}output: has 3 elements; its keys ask for 2"));
+    clip("translation", "CUBICSPLINE", "VEC3", &[0.0; 6]).refused(&format!("{CHANNEL}output: has 2 elements; its keys ask for 6"));
+    clip("translation", "LINEAR", "VEC4", &[0.0; 8]).refused(&format!("{CHANNEL}output: has a type that glTF does not allow here"));
+    let good = clip("translation", "LINEAR", "VEC3", &[0.0; 6]);
+    good.clone().with("/animations/0/samplers/0/input", json!(0)).refused(&format!("{CHANNEL}input: is not SCALAR of FLOAT"));
+    good.clone()
+        .with("/nodes/1/matrix", json!([1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1]))
+        .refused(&format!("{CHANNEL}the node has a matrix, which no clip may move"));
+    let twice = json!([{ "sampler": 0, "target": { "node": 1, "path": "translation" } }, { "sampler": 0, "target": { "node": 1, "path": "translation" } }]);
+    good.clone().with("/animations/0/channels", twice).refused("clip \"Move\" channel 1: its node has another channel of translation");
+    good.with("/animations/0/channels/0/target/node", json!(7)).refused("clip \"Move\" channel 0: moves node 7, which does not exist");
+}
+
+#[test]
+fn morph_targets_must_fit_their_mesh() {
+    let place = "mesh \"X\" primitive 0 target 0 POSITION: ";
+    morphed().with("/accessors/2/count", json!(3)).refused(&format!("{place}accessor 2 has 3 elements for 4 vertices"));
+    morphed().with("/accessors/2/componentType", json!(U32)).refused(&format!("{place}accessor 2 has a type"));
+    morphed().with("/meshes/0/weights", json!([1.0])).refused("node 0: has 1 weights for 2 morph targets");
+    let mut nan = morphed();
+    let bad = nan.floats("VEC3", &[f32::NAN; 12]);
+    nan.with("/meshes/0/primitives/0/targets/0/POSITION", json!(bad)).refused(&format!("{place}vertex 0 is not finite"));
+    let mut uneven = morphed();
+    uneven.primitive(json!({ "attributes": { "POSITION": 0 }, "indices": 1 }));
+    uneven.refused("node 0: primitives of its mesh have 0 and 2 morph targets");
+    let many = morphed().with("/meshes/0/primitives/0/targets", json!(vec![json!({ "POSITION": 2 }); limits::SHAPES + 1]));
+    many.without("/meshes/0/weights").refused("its mesh has 257 morph targets; at most 256 are read");
 }
 
 #[test]
@@ -803,6 +1050,12 @@ fn a_small_file_cannot_ask_for_much() {
     placed.json["nodes"] = vec![json!({ "mesh": 0 }); limits::INSTANCES + 1].into();
     placed.json["scenes"] = json!([{ "nodes": (0..=limits::INSTANCES).collect::<Vec<_>>() }]);
     placed.refused("node 65536: more than 65536 primitives are placed");
+    let mut soft = morphed().with("/meshes/0/primitives/0/targets", json!(vec![json!({}); 256])).without("/meshes/0/weights");
+    soft.json["nodes"] = vec![json!({ "mesh": 0 }); 15_626].into();
+    soft.refused("node 15625: brings the nodes to 4000256 morph weights; at most 4000000 are read");
+    let mut jointed = skinned(0.0).without("/skins/0/inverseBindMatrices");
+    jointed.json["skins"] = vec![json!({ "joints": vec![1; 256] }); 3_907].into();
+    jointed.refused("the skins have 1000192 joints; at most 1000000 are read");
     let objects = format!("{{\"asset\":{{\"version\":\"2.0\"}},\"nodes\":[{}{{}}]}}", "{},".repeat(limits::JSON_OBJECTS));
     let error = gltf::parse(objects.as_bytes(), &mut |_, _| unreachable!()).unwrap_err();
     assert_eq!(error.to_string(), "JSON has 1000003 objects; at most 1000000 are read");
@@ -824,7 +1077,21 @@ fn everything() -> Model {
     let values = model.view(&le_floats(&[5.0, 6.0, 7.0, 8.0, 9.0, 10.0]));
     let colors = model.accessor(&[9; 16], U8, "VEC4", 4);
     model.json["accessors"][colors]["normalized"] = json!(true);
-    model.primitive(json!({ "attributes": { "POSITION": 0, "COLOR_0": colors, "JOINTS_0": 3, "WEIGHTS_0": 4 }, "mode": 5 }));
+    let target = json!([{ "POSITION": 0, "NORMAL": 0 }]);
+    model.json["meshes"][0]["primitives"][0]["targets"] = target.clone();
+    model.primitive(
+        json!({ "attributes": { "POSITION": 0, "COLOR_0": colors, "JOINTS_0": 3, "WEIGHTS_0": 4 }, "mode": 5, "targets": target }),
+    );
+    let times = model.floats("SCALAR", &[0.0, 0.5, 2.0]);
+    let turns = model.floats("VEC4", &[0.0, 0.0, 0.0, 1.0].repeat(9));
+    let weights = model.floats("SCALAR", &[0.0, 1.0, 0.5]);
+    model = model.with(
+        "/animations",
+        json!([{
+            "channels": [{ "sampler": 0, "target": { "node": 2, "path": "rotation" } }, { "sampler": 1, "target": { "node": 0, "path": "weights" } }],
+            "samplers": [{ "input": times, "output": turns, "interpolation": "CUBICSPLINE" }, { "input": times, "output": weights }],
+        }]),
+    );
     model
         .with(
             "/accessors/0/sparse",

@@ -70,9 +70,10 @@ fn scene(meshes: &[(Mesh, DMat4)]) -> Scene {
             bounds,
             longest_edge: 2.0 * bounds.radius(),
             sound_normals: false,
+            softness: Default::default(),
         });
         scene.materials.push(Material { double_sided: mesh.double_sided, ..Default::default() });
-        scene.instances.push(Instance { primitive: i, world_from_object: *world_from_object });
+        scene.instances.push(Instance::fixed(i, *world_from_object));
     }
     scene
 }
@@ -135,6 +136,7 @@ fn flat_view(width: u32, height: u32) -> View {
         scene_range_m: [0.0, 1.0],
         background: [0.0; 4],
         subpixel_bits: 8,
+        pose: None,
     }
 }
 

@@ -998,3 +998,33 @@ fn a_measurement_is_cancelled_and_leaves_nothing_behind() {
     assert_eq!((lab.state().trade_points(), error_lines(&lab).len()), (0, 0));
     assert!(lab.query_by_role_and_label(Role::Button, "Measure").is_some());
 }
+
+#[test]
+fn clips_are_chosen_held_and_blended_in_their_folder() {
+    let Some(mut lab) = lab("builtin:tentacle?tess=3") else { return };
+    let play = |lab: &Lab| lab.state().look().session.play.clone();
+    let choose = |lab: &mut Lab, menu: &str, entry: &str| {
+        click(lab, Role::ComboBox, menu);
+        lab.get_by_role_and_label(Role::Button, entry).click();
+        lab.run_steps(4);
+        settle(lab);
+    };
+    assert_eq!(play(&lab).clip, "");
+    assert!(lab.query_by_label("Hold the clip").is_none(), "at rest there is nothing to hold");
+    choose(&mut lab, "scene.clip", "Twist");
+    assert_eq!(play(&lab).clip, "Twist");
+    assert!(lab.state().look().session.is_moving());
+    choose(&mut lab, "scene.clip_b", "Sway");
+    assert_eq!(play(&lab).other, "Sway");
+    assert!(has_slider(&lab, "scene.blend"));
+    click(&mut lab, Role::CheckBox, "Hold the clip");
+    assert!(play(&lab).pose_s.is_some() && has_slider(&lab, "scene.pose_s"));
+    undo(&mut lab);
+    assert_eq!((play(&lab).pose_s, play(&lab).other.as_str()), (None, "Sway"));
+
+    // The picture follows, and is what the oracle says.
+    let before = lab.state().draws();
+    lab.state_mut().session_mut().play.pose_s = Some(1.0);
+    settle(&mut lab);
+    assert!(lab.state().draws() > before);
+}

@@ -9,7 +9,7 @@ use rasterlab::{
     preset::{self, Look, PresetError},
     scene::camera::{Camera, MIN_NEAR_M, Projection},
     session::{
-        Accuracy, Animation, Clock, Output, Pins, SceneSource, Session, Test, Tier, Visibility,
+        Accuracy, Animation, Clock, Output, Pins, Play, SceneSource, Session, Test, Tier, Visibility,
         animation::{Easing, Keyframe, MAX_KEYS, Track, steps},
     },
 };
@@ -618,11 +618,24 @@ fn animated(stack: &rasterlab::effects::Stack, tracks: Vec<(prop::sample::Index,
 }
 
 prop_compose! {
+    fn any_play()(
+        names in prop::array::uniform2("[^\\p{Cc}]{0,20}"),
+        speed in within(-100.0, 100.0),
+        pose_s in prop::option::of(within(0.0, 1e9)),
+        blend in within(0.0, 1.0),
+    ) -> Play {
+        let [clip, other] = names;
+        Play { clip, speed, pose_s, other, blend }
+    }
+}
+
+prop_compose! {
     fn any_session()(
         texts in prop::array::uniform3("[^\\p{Cc}]{0,40}"),
         tags in prop::collection::vec("[a-z \"\\\\#']{0,12}", 0..4),
         scene in prop_oneof![Just(SceneSource::Builtin("knot?tess=8".into())), Just(SceneSource::File("a b/fox.glb".into())), Just(Session::default().scene)],
         spin_deg_per_s in within(-1e6, 1e6),
+        play in any_play(),
         camera in prop::option::of(any_camera()),
         clock in any_clock(),
         tracks in prop::collection::vec((any::<prop::sample::Index>(), any::<prop::sample::Index>(), any_keys()), 0..5),
@@ -646,7 +659,7 @@ prop_compose! {
             stack.0.reverse();
         }
         Session {
-            name, about, tags, scene, spin_deg_per_s, camera,
+            name, about, tags, scene, spin_deg_per_s, play, camera,
             clock,
             animation: animated(&stack, tracks),
             stack,

@@ -112,7 +112,7 @@ fn a_scene_of_small_triangles_has_no_queues_arguments_or_pieces() {
     let Some((small, ..)) = explained("sphere?triangles=20000", tuning) else { return };
     let (passes, buffers) = names(&small);
     assert_eq!(passes, ["project", "raster_small depth", "raster_small owner", "resolve"]);
-    for spared in ["queues", "args", "pieces", "marks", "background", "layers", "depth_owner"] {
+    for spared in ["queues", "args", "pieces", "marks", "background", "layers", "depth_owner", "bends", "joints", "shapes"] {
         assert!(!buffers.contains(&spared), "{spared} exists: {buffers:?}");
     }
     for (part, why) in [("clip", "near plane"), ("raster_medium", "px"), ("tile_large, raster_large", "px")] {
@@ -135,6 +135,29 @@ fn a_scene_of_small_triangles_has_no_queues_arguments_or_pieces() {
     let (listed, ..) = explained("sphere?triangles=20000", Tuning { listed_tiles: true, ..tuning }).expect("there was an adapter");
     let (passes, buffers) = names(&listed);
     assert!(passes.contains(&"list_tiles") && buffers.contains(&"marks") && buffers.contains(&"args") && !buffers.contains(&"queues"));
+}
+
+#[test]
+fn only_a_scene_that_bends_has_the_pass_and_only_the_buffers_that_it_needs() {
+    let Some(gpu) = gpu() else { return };
+    let tuning = gpu.caps.tuning();
+    let explained = |query| explained(query, [160, 120], Visibility::Split32, tuning).expect("there is an adapter").0;
+    let still = explained("teapot?tess=4");
+    let (passes, buffers) = names(&still);
+    assert!(
+        !passes.contains(&"skin") && !["bends", "joints", "shapes"].iter().any(|name| buffers.contains(name)),
+        "{passes:?} {buffers:?}"
+    );
+    assert!(still.omitted.iter().any(|note| note.name == "skin" && note.why.contains("no mesh has joints or morph weights")));
+    let bytes = |explanation: &Explanation| explanation.buffers.iter().find(|buffer| buffer.name == "vertex_bytes").map_or(0, |b| b.bytes);
+    assert!(bytes(&still) < scene("teapot?tess=4").vertex_bytes.len() as u64 + 16, "a rigid mesh has no room for bent vertices");
+
+    // At rest its shape has no weight, so nothing is mixed.
+    let bent = explained("tentacle?tess=2");
+    let (passes, buffers) = names(&bent);
+    assert_eq!(passes[..2], ["skin", "project"]);
+    assert!(buffers.contains(&"bends") && buffers.contains(&"joints") && !buffers.contains(&"shapes"), "{buffers:?}");
+    assert!(bent.reasons.iter().any(|note| note.name == "skinning" && note.why.starts_with("linear: ")));
 }
 
 #[test]

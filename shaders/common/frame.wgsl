@@ -26,6 +26,7 @@ struct Frame {
     tile_first: u32,
     point_radius: u32,       // units of 1/256 px; only where corners are drawn as discs
     first_rank: u32,         // record at which ranks of triangles begin, behind vertices and decisions
+    bend_count: u32,         // draws that bend
 }
 
 @group(0) @binding(0) var<uniform> frame: Frame;

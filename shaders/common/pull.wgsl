@@ -1,7 +1,6 @@
 // Pulls attribute lanes straight from the bytes of the file, by offset, stride and component type.
 // Format word: component type - 5120 in bits 0..2 (glTF's numbers), normalized in bit 3.
-
-@group(0) @binding(2) var<storage, read> vertex_bytes: array<u32>;
+//@ use slot/bytes
 
 const PULL_I8 = 0u;
 const PULL_U8 = 1u;

@@ -23,6 +23,8 @@ use crate::{
 /// How a key of the look is shown: its unit, and what its slider spans.
 const SHOWN: &[(&str, &str, Option<[f64; 2]>)] = &[
     ("scene.spin_deg_per_s", "°/s", Some([-180.0, 180.0])),
+    ("scene.clip_speed", "", Some([-2.0, 2.0])),
+    ("scene.blend", "", Some([0.0, 1.0])),
     ("camera.eye", "m", None),
     ("camera.target", "m", None),
     ("camera.fov_y_deg", "°", Some([10.0, 120.0])),
@@ -43,6 +45,7 @@ impl App {
             ui.spacing_mut().item_spacing.y = 2.0;
             self.effects_ui(ui);
             self.keys_folder(ui, "Scene", true, &["scene.spin_deg_per_s", "output.background"]);
+            self.clips_ui(ui);
             self.camera_ui(ui);
             self.clock_ui(ui);
             self.accuracy_ui(ui);
@@ -181,7 +184,7 @@ impl App {
         folder(ui, title, open, |ui| paths.iter().for_each(|path| self.key_ui(ui, path)));
     }
 
-    fn key_ui(&mut self, ui: &mut Ui, path: &str) {
+    pub(super) fn key_ui(&mut self, ui: &mut Ui, path: &str) {
         let Some(key) = Key::find(path) else { return };
         let session = &self.look.session;
         let Some(value) = (key.get)(session) else { return };
@@ -324,7 +327,7 @@ fn shown_name(effect: &Effect) -> String {
     name
 }
 
-fn folder(ui: &mut Ui, title: &str, open: bool, contents: impl FnOnce(&mut Ui)) {
+pub(super) fn folder(ui: &mut Ui, title: &str, open: bool, contents: impl FnOnce(&mut Ui)) {
     egui::CollapsingHeader::new(theme::heading(title)).default_open(open).show_unindented(ui, |ui| {
         ui.add_space(2.0);
         contents(ui);

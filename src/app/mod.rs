@@ -4,6 +4,7 @@
 //! Slow work happens in `jobs`; the window waits for no thread and for no device.
 
 mod blit;
+mod clips;
 mod compare;
 mod dialogs;
 mod edit;

@@ -128,12 +128,18 @@ fn is_model(scene: &str) -> bool {
 fn lines(rows: &[BenchRow]) -> Vec<Vec<String>> {
     let head = ["SCENE", "TRIANGLES", "RUNG", "MS P50", "MS P95", "N", "OWNER", "SNAP", "HOLES", "DOUBLE", "MAX", "RMS", "ADAPTER"];
     let mut lines = vec![head.map(str::to_owned).to_vec()];
+    // Only where something bends is there a column for how well.
+    let bends = rows.iter().any(|row| row.error.max_bend_px.is_some());
+    let before_adapter = head.len() - 1;
+    if bends {
+        lines[0].insert(before_adapter, "BEND PX".into());
+    }
     let not_measured = || "not measured".to_owned();
     let ms = |ms: Option<f64>| ms.map_or_else(not_measured, |ms| format!("{ms:.3}"));
     let count = |count: Option<u64>| count.map_or_else(not_measured, |count| count.to_string());
     lines.extend(rows.iter().map(|row| {
         let e = &row.error;
-        vec![
+        let mut line = vec![
             row.scene.clone(),
             row.triangles.to_string(),
             row.rung.clone(),
@@ -147,7 +153,11 @@ fn lines(rows: &[BenchRow]) -> Vec<Vec<String>> {
             count(e.max_colour_delta.map(u64::from)),
             e.rms_colour_delta.map_or_else(not_measured, |rms| format!("{rms:.4}")),
             row.adapter.clone(),
-        ]
+        ];
+        if bends {
+            line.insert(before_adapter, e.max_bend_px.map_or_else(not_measured, |px| format!("{px:.5}")));
+        }
+        line
     }));
     lines
 }

@@ -89,6 +89,9 @@ pub fn scene_hash(scene: &Scene) -> Fnv {
             .into_iter()
             .flatten()
             .for_each(&mut accessor);
+        let softness = &primitive.softness;
+        softness.influences.iter().for_each(|set| [set.joints, set.weights].iter().for_each(&mut accessor));
+        softness.shapes.iter().for_each(|shape| shape.positions.iter().chain(&shape.normals).for_each(&mut accessor));
         hash = hash.words(&[primitive.topology as u32, primitive.material as u32]);
     }
     for material in &scene.materials {
@@ -98,7 +101,29 @@ pub fn scene_hash(scene: &Scene) -> Fnv {
         hash = hash.words(&[instance.primitive as u32]);
         hash = instance.world_from_object.to_cols_array().iter().fold(hash, |hash, v| hash.bytes(&v.to_bits().to_le_bytes()));
     }
-    hash
+    if scene.rig.is_empty() { hash } else { rig_hash(hash, scene) }
+}
+
+/// What moves: nodes, skins, clips, and whom instances follow. Names decide nothing but the names of clips.
+fn rig_hash(mut hash: Fnv, scene: &Scene) -> Fnv {
+    let matrix = |hash: Fnv, m: &glam::DMat4| m.to_cols_array().iter().fold(hash, |hash, v| hash.bytes(&v.to_bits().to_le_bytes()));
+    let floats = |hash: Fnv, values: &[f32]| values.iter().fold(hash, |hash, v| hash.words(&[v.to_bits()]));
+    let place = |place: Option<usize>| place.map_or(u32::MAX, |place| place as u32);
+    for node in &scene.rig.nodes {
+        hash = floats(matrix(hash.words(&[place(node.parent)]), &node.rest.matrix()), &node.weights);
+    }
+    for skin in &scene.rig.skins {
+        hash = skin.joints.iter().fold(hash, |hash, &joint| hash.words(&[joint as u32]));
+        hash = skin.joint_from_mesh.iter().fold(hash, matrix);
+    }
+    for sampler in &scene.rig.samplers {
+        hash = floats(floats(hash.words(&[sampler.interpolation as u32, sampler.lanes as u32]), &sampler.times), &sampler.values);
+    }
+    for clip in &scene.rig.clips {
+        hash = hash.bytes(clip.name.as_bytes());
+        hash = clip.channels.iter().fold(hash, |hash, c| hash.words(&[c.node as u32, c.property as u32, c.sampler as u32]));
+    }
+    scene.instances.iter().fold(hash, |hash, instance| hash.words(&[place(instance.node), place(instance.skin)]))
 }
 
 pub fn hex(hash: Fnv) -> String {

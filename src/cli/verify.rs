@@ -14,13 +14,15 @@ use super::{
 };
 use crate::{
     frame::Frame,
+    ladder::Skinning,
     measure::{
         Accuracy, Budget,
         compare::{difference_picture, owners, pictures},
     },
     oracle,
     preset::{self, Look},
-    session::{Test, Visibility},
+    scene::{Scene, draw::draws},
+    session::{Session, Test, Visibility},
 };
 
 /// One look on one rung.
@@ -33,6 +35,8 @@ struct Row {
     frames: u32,
     /// What failed, one sentence each.
     failures: Vec<String>,
+    /// Share of the volume that dual quaternions keep, by the linear blend: where joints hold a mesh.
+    volume: Option<f64>,
 }
 
 pub fn run(common: &Common, args: &Verify, streams: &mut Streams) -> Result<Exit, Fault> {
@@ -61,6 +65,19 @@ pub fn run(common: &Common, args: &Verify, streams: &mut Streams) -> Result<Exit
             row.look, row.rung, row.accuracy.race_pixels
         ));
     });
+    rows.iter().filter(|row| row.accuracy.bent_vertices > 0).for_each(|row| {
+        let a = &row.accuracy;
+        streams.note(&format!(
+            "{} on {}: {} bent vertices, at most {:.5} px and {:.1} ulp from the oracle's{}",
+            row.look,
+            row.rung,
+            a.bent_vertices,
+            a.max_bend_px,
+            a.max_bend_ulp,
+            row.volume
+                .map_or_else(String::new, |share| format!("; linear skinning has {:.2} % of the volume that dual has", 100.0 * share))
+        ));
+    });
     rows.iter().for_each(|row| row.failures.iter().for_each(|failure| streams.note(&format!("{} on {}: {failure}", row.look, row.rung))));
     Ok(Exit::failed_if(rows.iter().any(|row| !row.failures.is_empty())))
 }
@@ -71,6 +88,7 @@ fn verify(common: &Common, args: &Verify, look: &Look, painter: &mut Painter) ->
     let scene = scene_of(look)?;
     let (view, stack) = (session.view(&scene, session.output.size), session.posed_stack());
     let budget = session.test.clone().unwrap_or_default();
+    let volume = volume_share(&session, &scene)?;
     let (mut rows, mut first): (Vec<Row>, Option<(&str, Frame)>) = (Vec::new(), None);
     for rung in painter.rungs(&session) {
         let mut pinned = session.clone();
@@ -98,10 +116,32 @@ fn verify(common: &Common, args: &Verify, look: &Look, painter: &mut Painter) ->
         if let Some(folder) = &args.output {
             triptych(folder, &format!("{}-{name}", look.id), &verdict.expected, &capture.frame, common.force)?;
         }
-        rows.push(Row { look: look.id.clone(), rung: name, accuracy: verdict.accuracy, pixels_beyond, frames: args.frames, failures });
+        rows.push(Row {
+            look: look.id.clone(),
+            rung: name,
+            accuracy: verdict.accuracy,
+            pixels_beyond,
+            frames: args.frames,
+            failures,
+            volume,
+        });
         first.get_or_insert((name, capture.frame));
     }
     Ok(rows)
+}
+
+/// Volume by the linear blend, as a share of that by dual quaternions; none where no joint holds anything.
+fn volume_share(session: &Session, scene: &Scene) -> Result<Option<f64>, Fault> {
+    if scene.rig.skins.is_empty() {
+        return Ok(None);
+    }
+    let volume = |skinning: Skinning| -> Result<f64, Fault> {
+        let accuracy = crate::session::Accuracy { pins: session.accuracy.pins.with(skinning), ..session.accuracy };
+        let view = Session { accuracy, ..session.clone() }.view(scene, [64, 64]);
+        Ok(oracle::volume(scene, &draws(scene, &view)?))
+    };
+    let (linear, dual) = (volume(Skinning::Linear)?, volume(Skinning::Dual)?);
+    Ok((dual != 0.0).then_some(linear / dual))
 }
 
 /// Exact things have no budget; colour has the look's.

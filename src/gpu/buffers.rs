@@ -66,7 +66,20 @@ impl Buffers {
         usage: wgpu::BufferUsages,
         why: &'static str,
     ) -> Result<(), RenderError> {
-        self.ensure(gpu, name, data.len() as u64, usage, why)?;
+        self.fill_room(gpu, name, data, data.len() as u64, usage, why)
+    }
+
+    /// The same with room for so many bytes in all.
+    pub fn fill_room(
+        &mut self,
+        gpu: &Gpu,
+        name: &'static str,
+        data: &[u8],
+        room: u64,
+        usage: wgpu::BufferUsages,
+        why: &'static str,
+    ) -> Result<(), RenderError> {
+        self.ensure(gpu, name, room, usage, why)?;
         gpu.queue.write_buffer(self.get(name), 0, data);
         Ok(())
     }

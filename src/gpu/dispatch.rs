@@ -12,9 +12,10 @@ pub enum Dispatch {
     Indirect(u64),
 }
 
-/// Workgroups of `pass`.
-pub fn dispatch(pass: Pass, vertices: u32, triangles: u32, view: &View, key: &KernelKey) -> Dispatch {
+/// Workgroups of `pass` over so many projected vertices, triangles, and vertices that may bend.
+pub fn dispatch(pass: Pass, [vertices, triangles, bent]: [u32; 3], view: &View, key: &KernelKey) -> Dispatch {
     match pass {
+        Pass::Skin => Dispatch::Direct(folded(bent.div_ceil(key.list_group))),
         Pass::Project => Dispatch::Direct(folded(vertices.div_ceil(key.list_group))),
         Pass::RasterSmall(_) | Pass::RasterPoints(_) => Dispatch::Direct(folded(triangles.div_ceil(key.list_group))),
         Pass::Decide(Entries::Triangles) => Dispatch::Direct(folded(triangles.div_ceil(key.list_group))),

@@ -48,6 +48,7 @@ impl Renderer {
 
 fn pass_purpose(pass: Pass) -> &'static str {
     match pass {
+        Pass::Skin => "mixes shapes and follows joints, once per vertex of every mesh that bends",
         Pass::Project => "pulls, transforms and snaps every vertex once",
         Pass::RasterSmall(Phase::Tally) => "culls and classifies every triangle, counts the samples of the small ones",
         Pass::RasterSmall(Phase::Straddle) => "marks the samples of the triangle in which the drawing stops",

@@ -36,6 +36,9 @@ impl Hardware {
         if stack.moves() {
             return Ok(Err("an effect moves vertices, which it does not".into()));
         }
+        if scene.soft_vertex_count() > 0 {
+            return Ok(Err("meshes bend, which takes a pass that it does not have".into()));
+        }
         let strides = |p: &Primitive| (p.positions.stride, p.normals.stride, scene.materials[p.material].double_sided);
         let Some(first) = scene.primitives.first() else { return Ok(Err("the scene is empty".into())) };
         if scene.primitives.iter().any(|p| strides(p) != strides(first)) {

@@ -1,6 +1,7 @@
 //! The kernels on a device: [`Renderer`] records a frame as a straight list of passes and reads it back.
 
 pub mod bench;
+pub mod bends;
 pub mod buffers;
 pub mod device;
 mod dispatch;
@@ -25,6 +26,7 @@ pub use explain::Explanation;
 pub use readback::Capture;
 
 use self::{
+    bends::BENT_BYTES,
     buffers::Buffers,
     dispatch::{Dispatch, dispatch},
     pipelines::Pipelines,
@@ -77,6 +79,8 @@ pub struct Renderer {
     /// The last picture whose sums of layers overflowed, and the bits per channel that it gets instead.
     full: Option<(View, Stack, u32)>,
     pending: VecDeque<Pending>,
+    /// Which vertices, of all that may bend, the last picture bent.
+    bent: Vec<std::ops::Range<u32>>,
 }
 
 const STORAGE: wgpu::BufferUsages = wgpu::BufferUsages::STORAGE;
@@ -104,6 +108,7 @@ impl Renderer {
             last_picture: None,
             full: None,
             pending: VecDeque::new(),
+            bent: Vec::new(),
         }
     }
 
@@ -144,21 +149,19 @@ impl Renderer {
         }
         let limit = self.gpu.caps.max_storage_binding_bytes.min(self.gpu.caps.max_buffer_bytes);
         let vertices = 16 * scene.vertex_count();
-        for (buffer, bytes) in
-            [("vertex_bytes", scene.vertex_bytes.len() as u64), ("index_bytes", scene.index_bytes.len() as u64), ("vertices", vertices)]
-        {
+        let room = scene.vertex_bytes.len() as u64 + u64::from(BENT_BYTES) * scene.soft_vertex_count();
+        for (buffer, bytes) in [("vertex_bytes", room), ("index_bytes", scene.index_bytes.len() as u64), ("vertices", vertices)] {
             if bytes > limit {
                 return Err(RenderError::TooLarge { buffer, bytes, limit });
             }
         }
         self.buffers.keep(|name| !matches!(name, "vertex_bytes" | "index_bytes" | "vertices"));
-        self.buffers.fill(
-            &self.gpu,
-            "vertex_bytes",
-            &scene.vertex_bytes,
-            STORAGE | wgpu::BufferUsages::VERTEX,
-            "attributes as the file has them",
-        )?;
+        let why = match scene.soft_vertex_count() {
+            0 => "attributes as the file has them",
+            _ => "attributes as the file has them, and behind them bent vertices, 24 bytes each",
+        };
+        let usage = STORAGE | wgpu::BufferUsages::VERTEX;
+        self.buffers.fill_room(&self.gpu, "vertex_bytes", &scene.vertex_bytes, room, usage, why)?;
         if !scene.index_bytes.is_empty() {
             self.buffers.fill(
                 &self.gpu,
@@ -319,13 +322,14 @@ impl Renderer {
     fn record(&mut self, encoder: &mut wgpu::CommandEncoder, key: &KernelKey, passes: &[Pass], view: &View) -> Result<(), RenderError> {
         let scene = self.scene.as_ref().ok_or(RenderError::NoScene)?;
         let (vertices, triangles) = (record_count(key, scene) as u32, scene.triangle_count() as u32);
+        let bent = self.bent.last().map_or(0, |range| range.end);
         for (i, &pass) in passes.iter().enumerate() {
             let pipeline = self.pipelines.get(&self.gpu, key, pass)?;
             let is_last = i + 1 == passes.len();
             let timestamp_writes = self.timer.as_mut().and_then(|timer| timer.compute(&pipeline.label, is_last));
             let mut recorded = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor { label: Some(&pipeline.label), timestamp_writes });
             pipeline.bind(&self.gpu, &mut recorded, |name| self.buffers.get(name));
-            match dispatch(pass, vertices, triangles, view, key) {
+            match dispatch(pass, [vertices, triangles, bent], view, key) {
                 Dispatch::Direct([x, y]) => recorded.dispatch_workgroups(x, y, 1),
                 Dispatch::Indirect(offset) => recorded.dispatch_workgroups_indirect(self.buffers.get("args"), offset),
             }

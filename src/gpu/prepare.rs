@@ -2,6 +2,7 @@
 
 use super::{
     RenderError, Renderer, STORAGE,
+    bends::{Bends, bent_ranges},
     uniforms::{Capacities, DrawRecord, FrameUniform, OrderRecord, color_stride},
 };
 use crate::{
@@ -50,6 +51,7 @@ impl Renderer {
         let mut records: Vec<DrawRecord> = draws.iter().map(|draw| DrawRecord::new(draw, &scene)).collect();
         // A binding holds an element at least, even where nothing is to be drawn.
         records.resize(draws.len().max(1), DrawRecord::default());
+        let bends = Bends::of(&scene, &draws);
         let (triangles, vertex_records) = (scene.triangle_count(), record_count(key, &scene));
         let decisions = u64::from(key.decisions) * (triangles + u64::from(recorded.pieces));
         let first_rank = vertex_records + decisions;
@@ -57,10 +59,12 @@ impl Renderer {
             vertex_count: vertex_records as u32,
             point_radius: stack.point_radius(),
             first_rank: first_rank as u32,
+            bend_count: bends.records.len() as u32,
             ..FrameUniform::new(view, &scene, draws.len(), &recorded)
         };
         let parameters = uniform_bytes(&stack.0);
         let has_uniform = !parameters.is_empty() && key.baked.is_empty();
+        self.bent = bent_ranges(&scene, &draws);
         buffers.keep(|name| match name {
             "queues" => key.has_queues(),
             "args" => key.has_queues() || key.listed_tiles,
@@ -69,6 +73,9 @@ impl Renderer {
             "previous" => key.reads_previous(),
             "pieces" => key.has_clipping,
             "effects" => has_uniform,
+            "bends" => key.bends(),
+            "joints" => key.has_joints,
+            "shapes" => key.has_shapes,
             "depth_keys" | "owners" => key.layout() == Layout::Split,
             "depth_owner" => key.layout() == Layout::Pairs,
             "packed" => key.layout() == Layout::Word,
@@ -88,6 +95,17 @@ impl Renderer {
         )?;
         if has_uniform {
             buffers.fill(gpu, "effects", &parameters, wgpu::BufferUsages::UNIFORM, "parameters of the stack")?;
+        }
+        if key.bends() {
+            let why = "where the bytes of every mesh lie that bends";
+            buffers.fill(gpu, "bends", bytemuck::cast_slice(&bends.records), STORAGE, why)?;
+        }
+        if key.has_joints {
+            let why = "joints of every skin as they stand: three rows each, or a dual quaternion and a stretch";
+            buffers.fill(gpu, "joints", bytemuck::cast_slice(&bends.joints), STORAGE, why)?;
+        }
+        if key.has_shapes {
+            buffers.fill(gpu, "shapes", bytemuck::cast_slice(&bends.shapes), STORAGE, "weights and places of morph targets")?;
         }
         let ranks = if key.order == Order::Free { 0 } else { triangles.div_ceil(4) };
         let why = match decisions + ranks {

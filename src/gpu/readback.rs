@@ -6,7 +6,9 @@ use std::sync::{
 };
 
 use super::{
-    Demand, Gpu, RenderError, Renderer, STORAGE, buffers,
+    Demand, Gpu, RenderError, Renderer, STORAGE,
+    bends::BENT_BYTES,
+    buffers,
     prepare::record_count,
     timer::{Timer, Times},
     uniforms::OrderRecord,
@@ -222,7 +224,16 @@ impl Renderer {
             has_own_corners: key.parts_corners(),
             subpixel_bits: key.rungs.coverage.subpixel_bits(),
             exact: Exactness { vertices: key.rungs.vertex == Vertex::Strict, keys: key.rungs.depth == Depth::Integer },
+            bent: self.read_bent(scene.vertex_bytes.len() as u64)?,
         })
+    }
+
+    /// What the skin pass kept behind the file's bytes.
+    fn read_bent(&self, first: u64) -> Result<Vec<[f32; 6]>, RenderError> {
+        let Some(end) = self.bent.last().map(|range| range.end) else { return Ok(Vec::new()) };
+        let bytes = buffers::read(&self.gpu, self.buffers.get("vertex_bytes"), first + u64::from(BENT_BYTES * end))?;
+        let all: Vec<[f32; 6]> = bytemuck::pod_collect_to_vec(&bytes[first as usize..]);
+        Ok(self.bent.iter().flat_map(|range| &all[range.start as usize..range.end as usize]).copied().collect())
     }
 
     /// Runs the raster passes once more into a counter per pixel.

@@ -84,6 +84,7 @@ pub trait Truth {
 /// A combination with what has been measured of it.
 struct Entry {
     pins: Pins,
+    view: View,
     renderer: Renderer,
     error: TradeError,
     bytes: u64,
@@ -106,7 +107,6 @@ pub fn trade(
     progress: &mut dyn FnMut(&str, usize, usize) -> bool,
 ) -> Result<Vec<TradeRow>, RenderError> {
     const WARM_UP: usize = 3;
-    let view = session.view(scene, options.size);
     let pins = session.accuracy.pins;
     let combinations = if options.is_each_alone { each_alone(pins, &options.axes) } else { combinations(pins, &options.axes) };
     let rounds = options.samples + WARM_UP;
@@ -118,7 +118,9 @@ pub fn trade(
         if !is_wanted {
             break;
         }
-        match Entry::new(gpu, session, scene, &view, pins, truth) {
+        // A rung of the joints is settled with the pose that the view holds.
+        let pinned = Session { accuracy: Accuracy { pins, ..session.accuracy }, ..session.clone() };
+        match Entry::new(gpu, session, scene, pinned.view(scene, options.size), pins, truth) {
             Ok(entry) => entries.push(entry),
             Err(error) if error.is_unsupported() => lacking.push((pins, error.to_string())),
             Err(error) => return Err(error),
@@ -130,7 +132,7 @@ pub fn trade(
             if !is_wanted {
                 break;
             }
-            entry.sample(session, &view, round >= WARM_UP)?;
+            entry.sample(session, round >= WARM_UP)?;
         }
     }
     let row = |pins: Pins| TradeRow {
@@ -186,22 +188,22 @@ fn words(pins: &Pins, axes: &[&'static Axis]) -> String {
 
 impl Entry {
     /// Draws twice and measures the error.
-    fn new(gpu: &Arc<Gpu>, session: &Session, scene: &Arc<Scene>, view: &View, pins: Pins, truth: &dyn Truth) -> Result<Self, RenderError> {
+    fn new(gpu: &Arc<Gpu>, session: &Session, scene: &Arc<Scene>, view: View, pins: Pins, truth: &dyn Truth) -> Result<Self, RenderError> {
         let mut renderer = Renderer::new(gpu.clone());
         renderer.set_scene(scene)?;
         let accuracy = Accuracy { pins, ..session.accuracy };
-        let first = renderer.capture(view, &session.stack, &accuracy)?;
-        let second = renderer.capture(view, &session.stack, &accuracy)?;
+        let first = renderer.capture(&view, &session.stack, &accuracy)?;
+        let second = renderer.capture(&view, &session.stack, &accuracy)?;
         let bytes = renderer.explain().buffers.iter().map(|buffer| buffer.bytes).sum();
         let error = TradeError::of(&first, &second.frame, &truth.judge(&first), truth.picture());
-        Ok(Self { pins, renderer, error, bytes, ms: Vec::new(), invalid: 0 })
+        Ok(Self { pins, view, renderer, error, bytes, ms: Vec::new(), invalid: 0 })
     }
 
     /// Draws twice without a pause and waits for the second: an idle device lowers its clocks, and others' frames empty its caches.
-    fn sample(&mut self, session: &Session, view: &View, is_kept: bool) -> Result<(), RenderError> {
+    fn sample(&mut self, session: &Session, is_kept: bool) -> Result<(), RenderError> {
         let accuracy = Accuracy { pins: self.pins, ..session.accuracy };
-        self.renderer.draw_timed(view, &session.stack, &accuracy, Detail::Whole)?;
-        self.renderer.draw_timed(view, &session.stack, &accuracy, Detail::Whole)?;
+        self.renderer.draw_timed(&self.view, &session.stack, &accuracy, Detail::Whole)?;
+        self.renderer.draw_timed(&self.view, &session.stack, &accuracy, Detail::Whole)?;
         match self.renderer.finish()?.gpu_ms {
             Some(ms) if is_kept => self.ms.push(ms),
             None if is_kept => self.invalid += 1,

@@ -2,6 +2,7 @@
 
 use glam::DMat3;
 
+use super::bends::{BENT_BYTES, bent_offset};
 use crate::{
     frame::{Counters, OrderFigures},
     math::{rounded_columns, srgb_byte},
@@ -28,6 +29,8 @@ macro_rules! twin {
         }
     };
 }
+
+pub(super) use twin;
 
 twin! {
     /// One picture: size, viewpoint, capacities. Each member is explained in `shaders/common/frame.wgsl`.
@@ -57,6 +60,7 @@ twin! {
         pub tile_first: u32,
         pub point_radius: u32,
         pub first_rank: u32,
+        pub bend_count: u32,
     }
 }
 
@@ -222,12 +226,13 @@ impl FrameUniform {
             tile_first: capacities.clip + capacities.medium + capacities.large,
             point_radius: 0,
             first_rank: 0,
+            bend_count: 0,
         }
     }
 }
 
 /// Component type in bits 0 to 2, normalized in bit 3 (`shaders/common/pull.wgsl`), lanes from bit 8.
-fn format_word(accessor: &Accessor) -> u32 {
+pub fn format_word(accessor: &Accessor) -> u32 {
     (accessor.component as u32 - 5120) | u32::from(accessor.normalized) << 3 | accessor.lanes << 8
 }
 
@@ -236,6 +241,11 @@ impl DrawRecord {
         let primitive = &scene.primitives[draw.primitive];
         let material = &scene.materials[primitive.material];
         let color = primitive.colors.as_ref();
+        let bent = |part: usize| {
+            let offset = bent_offset(draw, scene) as usize + 12 * part;
+            Accessor { stride: BENT_BYTES, ..Accessor::packed_f32(offset, 3, primitive.vertex_count() as usize) }
+        };
+        let [positions, normals] = if draw.bend.is_some() { [bent(0), bent(1)] } else { [primitive.positions, primitive.normals] };
         Self {
             clip_from_object: draw.clip_from_object,
             world_from_object: rounded_columns(&draw.world_from_object),
@@ -248,12 +258,12 @@ impl DrawRecord {
             topology: primitive.topology as u32,
             index_offset: primitive.indices.map_or(0, |i| i.offset),
             index_format: primitive.indices.map_or(0, |i| i.component.bytes()),
-            position_offset: primitive.positions.offset,
-            position_stride: primitive.positions.stride,
-            position_format: format_word(&primitive.positions),
-            normal_offset: primitive.normals.offset,
-            normal_stride: primitive.normals.stride,
-            normal_format: format_word(&primitive.normals),
+            position_offset: positions.offset,
+            position_stride: positions.stride,
+            position_format: format_word(&positions),
+            normal_offset: normals.offset,
+            normal_stride: normals.stride,
+            normal_format: format_word(&normals),
             color_offset: color.map_or(0, |c| c.offset),
             color_stride: color.map_or(0, |c| c.stride),
             color_format: color.map_or(0, format_word),

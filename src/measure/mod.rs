@@ -43,6 +43,14 @@ pub struct Accuracy {
     pub attribute_outside_bound: u64,
     /// Largest distance between a snapped vertex and the oracle's, in units of 1/256 px, among well-conditioned vertices.
     pub max_snap_delta: u32,
+    /// Vertices that joints or shapes bend.
+    pub bent_vertices: u64,
+    /// Bent vertices whose position or normal lies outside its forward error bound.
+    pub bent_outside_bound: u64,
+    /// Largest distance between a bent vertex and the oracle's, in units of the last place of its largest coordinate.
+    pub max_bend_ulp: f64,
+    /// The same as it appears in the picture, pixels, of vertices that the near plane keeps.
+    pub max_bend_px: f64,
     /// Decisions of sample effects beyond their bound, or that do not follow from their first word.
     pub decisions_wrong: u64,
     /// Pixels whose number of layers, or sum of their weights, is wrong.
@@ -74,6 +82,12 @@ pub struct ErrorFigures {
     pub max_colour_delta: Option<u8>,
     /// Of 255; where both drew.
     pub rms_colour_delta: Option<f64>,
+    /// Largest error of a vertex that joints or shapes bend, pixels; none where nothing bends.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub max_bend_px: Option<f64>,
+    /// The same in units of the last place.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub max_bend_ulp: Option<f64>,
 }
 
 impl From<&Accuracy> for ErrorFigures {
@@ -88,6 +102,8 @@ impl From<&Accuracy> for ErrorFigures {
             overflow: Some(a.overflow),
             max_colour_delta: Some(a.max_colour_delta),
             rms_colour_delta: Some(a.rms_colour_delta),
+            max_bend_px: (a.bent_vertices > 0).then_some(a.max_bend_px),
+            max_bend_ulp: (a.bent_vertices > 0).then_some(a.max_bend_ulp),
         }
     }
 }
@@ -147,6 +163,7 @@ impl Accuracy {
             (self.key_outside_bound, 0, "depth keys lie outside their bound"),
             (self.snap_outside_bound, 0, "vertices snapped outside their bound"),
             (self.attribute_outside_bound, 0, "vertices have a depth or 1/w outside its bound"),
+            (self.bent_outside_bound, 0, "bent vertices lie outside their bound"),
             (self.unexplained, 0, "pixels differ from the oracle's own picture without a reason"),
             (self.decisions_wrong, 0, "decisions of sample effects are wrong"),
             (self.counts_wrong, 0, "pixels have a wrong number of layers, or a wrong sum of weights"),

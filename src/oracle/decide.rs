@@ -4,9 +4,9 @@ use glam::DVec3;
 use rayon::prelude::*;
 
 use super::{
+    bend::bounded_place,
     coverage::{corner_records, doubled_area, draw_of},
     moved::{Corner, Mover},
-    project::object_position,
     surface::center_screen,
 };
 use crate::{
@@ -95,21 +95,23 @@ fn facts(
     let draw = mover.draw;
     let primitive = &scene.primitives[draw.primitive];
     let vertices = primitive.corners(scene, id - draw.first_triangle);
-    let [Ok(a), Ok(b), Ok(c)] = vertices.map(|vertex| object_position(scene, primitive, vertex)) else { return None };
-    let object = [a, b, c].map(DVec3::from_array);
+    let [Ok(a), Ok(b), Ok(c)] = vertices.map(|vertex| bounded_place(scene, draw, vertex)) else { return None };
+    let object = [a, b, c].map(|place| place.value);
     let places = vertices.map(|vertex| Corner { vertex, triangle: id - draw.first_triangle });
     let world = object.map(|position| draw.world_from_object.transform_point3(position));
     // Rounding errors are proportional to the sums of magnitudes, however much cancels.
     let m = draw.world_from_object;
     let reach = object.map(|p| m.x_axis.abs() * p.x.abs() + m.y_axis.abs() * p.y.abs() + m.z_axis.abs() * p.z.abs() + m.w_axis.abs());
     let reach = reach.iter().fold(0.0, |most: f64, axis| most.max(axis.truncate().max_element()));
+    let bent = [a, b, c].map(|p| (m.x_axis.abs() * p.error.x + m.y_axis.abs() * p.error.y + m.z_axis.abs() * p.error.z).max_element());
+    let bent = bent.into_iter().fold(0.0, f64::max);
     Some(Facts {
         triangle: id,
         corners: corners.map(|corner| [corner.x, corner.y]),
         outline,
         size: [view.width, view.height],
         center: world.iter().sum::<DVec3>() / 3.0,
-        center_slack_m: 8.0 * ULP * reach,
+        center_slack_m: 8.0 * ULP * reach + bent,
         center_screen: center_screen(mover, view, &corner_records(scene, draw, geometry, id), places),
     })
 }

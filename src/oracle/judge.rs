@@ -7,6 +7,7 @@
 use rayon::prelude::*;
 
 use super::{
+    bend,
     coverage::{Coverage, Sample, cover_by, triangles},
     decide::{decide, wrong},
     empty,
@@ -120,6 +121,7 @@ pub fn judge_after(
     accuracy.step_band_pixels = step_band.iter().filter(|is_band| **is_band).count() as u64;
     judge_counters(&mut accuracy, &counters, adapter);
     judge_vertices(&mut accuracy, &vertices);
+    bend::judge(&mut accuracy, scene, &draws, view, &geometry.bent);
     accuracy.decisions_wrong = wrong(scene, &draws, view, stack, geometry);
     Whole { scene, draws: &draws, view, stack, own: &own, adapter: geometry, cut: rules.cut(), vertices: &vertices }.judge(
         &mut accuracy,

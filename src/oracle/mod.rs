@@ -5,10 +5,11 @@
 //! renderers it judges, and no line of their code: neither shader text nor planner, no SIMD maths where something is
 //! decided, no platform maths function. Work is parallel by rows and triangles; no result depends on the order of threads.
 //!
-//! [`project_moved`] moves and snaps vertices and clips triangles ([`project_strict`] in f32, to the bit), [`triangles`] assembles and turns them, [`decide`]
-//! settles what sample effects hold against, [`cover_by`] finds who owns each sample, [`shade`] colours it, and [`judge`]
-//! holds a frame that an adapter drew against all of that.
+//! [`project_moved`] bends, moves and snaps vertices and clips triangles ([`project_strict`] in f32, to the bit),
+//! [`triangles`] assembles and turns them, [`decide`] settles what sample effects hold against, [`cover_by`] finds who owns
+//! each sample, [`shade`] colours it, and [`judge`] holds a frame that an adapter drew against all of that.
 
+mod bend;
 mod clip;
 mod coverage;
 mod decide;
@@ -26,6 +27,7 @@ mod strict;
 mod surface;
 mod whole;
 
+pub use bend::volume;
 pub use coverage::{Coverage, OrientedTriangle, Sample, cover, cover_by, depth_bound, owns, triangles};
 pub use decide::decide;
 pub use finish::{Seen, shade};

@@ -3,7 +3,8 @@
 use glam::{DMat3, DVec2, DVec3};
 
 use super::{
-    project::{Clip, clip_position, gated_lane, object_position},
+    bend::{self, Bounded},
+    project::{Clip, clip_position},
     surface::{DEGENERATE, inverse_transpose, plane_normal},
 };
 use crate::{
@@ -125,20 +126,25 @@ impl<'a> Mover<'a> {
         primitive.corners(self.scene, corner.triangle).map(|vertex| self.place(vertex))
     }
 
-    /// A vertex in object space; the origin where a lane is refused.
-    fn place(&self, vertex: u32) -> DVec3 {
-        let object = object_position(self.scene, &self.scene.primitives[self.draw.primitive], vertex);
-        DVec3::from_array(object.unwrap_or_default())
+    /// Largest errors of those corners.
+    fn triangle_errors(&self, corner: Corner) -> DVec3 {
+        let primitive = &self.scene.primitives[self.draw.primitive];
+        let errors = primitive.corners(self.scene, corner.triangle).map(|vertex| self.bounded_place(vertex).error);
+        errors[0].max(errors[1]).max(errors[2])
     }
 
-    /// A stored normal; zero where a lane is refused.
+    /// A vertex in object space; the origin where a lane is refused.
+    fn place(&self, vertex: u32) -> DVec3 {
+        self.bounded_place(vertex).value
+    }
+
+    fn bounded_place(&self, vertex: u32) -> Bounded {
+        bend::bounded_place(self.scene, self.draw, vertex).unwrap_or_default()
+    }
+
+    /// A normal in object space; zero where a lane is refused.
     fn normal(&self, vertex: u32) -> DVec3 {
-        let normals = &self.scene.primitives[self.draw.primitive].normals;
-        let lane = |lane: u32| gated_lane(&self.scene.vertex_bytes, normals, vertex, lane);
-        match [0, 1, 2].map(lane) {
-            [Ok(x), Ok(y), Ok(z)] => DVec3::new(x, y, z),
-            _ => DVec3::ZERO,
-        }
+        bend::normal(self.scene, self.draw, vertex).unwrap_or_default()
     }
 
     /// The stored normal in the world, of any length.
@@ -161,16 +167,22 @@ impl Mover<'_> {
     /// Sums of magnitudes of the terms of each clip coordinate, and bounds of their errors: rounding errors are
     /// proportional to the terms, however much cancels, and what the effects err by comes on top.
     pub fn clip_errors(&self, corner: Corner) -> ([f64; 4], [f64; 4]) {
-        let mut sums = self.clip_rows(self.place(corner.vertex), true);
+        let place = self.bounded_place(corner.vertex);
+        let mut sums = self.clip_rows(place.value, true);
+        // What bending errs by, an error of the position that every row takes along.
+        let bent = [0, 1, 2, 3].map(|r| {
+            [0, 1, 2].map(|axis| f64::from(self.draw.clip_from_object[axis][r]).abs() * place.error[axis]).iter().sum::<f64>()
+                * (17.0 / 16.0)
+        });
         let (slack, offset) = if self.moves { self.offset_slack(corner) } else { (0.0, DVec3::ZERO) };
         if slack == 0.0 && offset == DVec3::ZERO {
-            return (sums, sums.map(|sum| 4.0 * ROUNDING * sum));
+            return (sums, [0, 1, 2, 3].map(|r| 4.0 * ROUNDING * sums[r] + bent[r]));
         }
         let errors = [0, 1, 2, 3].map(|r| {
             let row = [0, 1, 2].map(|axis| self.clip_from_world[axis][r].abs());
             sums[r] += row[0] * offset.x.abs() + row[1] * offset.y.abs() + row[2] * offset.z.abs();
             // Seven products, in whatever order they are added; a sixteenth for what is of second order in the quotient.
-            (7.0 * ROUNDING * sums[r] + slack * (row[0] + row[1] + row[2])) * (16.0 / 15.0)
+            (7.0 * ROUNDING * sums[r] + slack * (row[0] + row[1] + row[2])) * (16.0 / 15.0) + bent[r]
         });
         (sums, errors)
     }
@@ -197,25 +209,27 @@ impl Mover<'_> {
             terms.truncate()
         };
         let place = |p: DVec3| (magnitude(p) + m.w_axis.abs().truncate()).max_element();
+        let here = self.bounded_place(corner.vertex);
+        let bent = |error: DVec3| magnitude(error).max_element();
         // The matrix is rounded, then four products are added.
-        let position_m = 5.0 * ROUNDING * place(self.place(corner.vertex));
-        let stored = self.normal(corner.vertex);
-        let normal = self.direction_slack(stored, DVec3::ZERO);
+        let position_m = 5.0 * ROUNDING * place(here.value) + bent(here.error);
+        let stored = bend::bounded_normal(self.scene, self.draw, corner.vertex).unwrap_or_default();
+        let normal = self.direction_slack(stored.value, stored.error);
         if !self.has_own_corners {
             return Slack { position_m, normal, center_m: position_m, ..Slack::default() };
         }
         let corners = self.triangle_places(corner);
         let middle = corners.iter().map(|c| c.abs()).sum::<DVec3>() / 3.0;
-        let here = self.place(corner.vertex);
-        let edges = corners.iter().map(|c| (here - c).abs()).sum::<DVec3>() / 3.0;
-        let center_screen = self.screen_slack(corners.iter().sum::<DVec3>() / 3.0, middle);
+        let edges = corners.iter().map(|c| (here.value - c).abs()).sum::<DVec3>() / 3.0;
+        let error = self.triangle_errors(corner);
+        let center_screen = self.screen_slack(corners.iter().sum::<DVec3>() / 3.0, middle, error);
         Slack {
             position_m,
             normal,
-            center_m: 10.0 * ROUNDING * place(middle),
-            arm_m: 12.0 * ROUNDING * magnitude(edges).max_element(),
+            center_m: 10.0 * ROUNDING * place(middle) + bent(error),
+            arm_m: 12.0 * ROUNDING * magnitude(edges).max_element() + 2.0 * bent(error),
             center_screen,
-            flat_normal: self.plane_slack(corners),
+            flat_normal: self.plane_slack(corners, error.max_element()),
             offset_m: 0.0,
         }
     }
@@ -233,7 +247,8 @@ impl Mover<'_> {
     }
 
     /// Error of the direction of a triangle's plane: large for needles, 2 where even its being a plane is in doubt.
-    fn plane_slack(&self, [a, b, c]: [DVec3; 3]) -> f64 {
+    /// Corners are known to within `given`.
+    fn plane_slack(&self, [a, b, c]: [DVec3; 3], given: f64) -> f64 {
         let (ab, ac) = (b - a, c - a);
         let (long, wide) = (ab.abs().max_element(), ac.abs().max_element());
         if long == 0.0 || wide == 0.0 {
@@ -244,7 +259,9 @@ impl Mover<'_> {
         }
         let (u, v) = (ab / long, ac / wide);
         let term = |i: usize, j: usize| (u[i] * v[j]).abs() + (u[j] * v[i]).abs();
-        let error = 9.0 * ROUNDING * DVec3::new(term(1, 2), term(2, 0), term(0, 1));
+        // An edge errs by as much as both its ends, before it is scaled.
+        let edges = 5.0 * given * (1.0 / long + 1.0 / wide);
+        let error = 9.0 * ROUNDING * DVec3::new(term(1, 2), term(2, 0), term(0, 1)) + edges;
         let (normal, length) = (u.cross(v), u.cross(v).length());
         let doubt = 2.0 * length * error.length() + error.length_squared() + 8.0 * ROUNDING * length * length;
         match length * length - DEGENERATE {
@@ -255,8 +272,11 @@ impl Mover<'_> {
     }
 
     /// Error of the place of a triangle's middle in the picture; beyond all bounds where it may lie behind the eye.
-    fn screen_slack(&self, middle: DVec3, magnitudes: DVec3) -> f64 {
-        let ([x, y, _, w], [sx, sy, _, sw]) = (self.clip_rows(middle, false), self.clip_rows(magnitudes, true));
+    fn screen_slack(&self, middle: DVec3, magnitudes: DVec3, given: DVec3) -> f64 {
+        let ([x, y, _, w], sums) = (self.clip_rows(middle, false), self.clip_rows(magnitudes, true));
+        let bent = |r: usize| [0, 1, 2].map(|axis| f64::from(self.draw.clip_from_object[axis][r]).abs() * given[axis]).iter().sum::<f64>();
+        // An error of the corners counts as a rounding of the sums does.
+        let [sx, sy, _, sw] = [0, 1, 2, 3].map(|r| sums[r] + bent(r) / (8.0 * ROUNDING));
         let error_w = 10.0 * ROUNDING * sw;
         if w.abs() <= error_w {
             return f64::INFINITY;

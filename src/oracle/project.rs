@@ -2,12 +2,17 @@
 
 use rayon::prelude::*;
 
-use super::{clip, moved::Mover, strict::project_strict};
+use super::{
+    bend::{self, place},
+    clip,
+    moved::Mover,
+    strict::project_strict,
+};
 use crate::{
     effects::Stack,
     frame::{Exactness, Geometry, SnappedVertex, vertex_flags},
     math::GUARD_BAND,
-    scene::{Accessor, Component, Primitive, Scene, camera::View, draw::Draw},
+    scene::{Accessor, Component, Scene, camera::View, draw::Draw},
 };
 
 /// Homogeneous clip-space position (WebGPU: y up, z from 0 to w, reversed).
@@ -37,8 +42,9 @@ pub fn project_moved(scene: &Scene, draws: &[Draw], view: &View, stack: &Stack) 
         mover.corners().into_par_iter().map(snapped).collect::<Vec<_>>()
     };
     let vertices = movers.iter().flat_map(snapped).collect();
-    let mut geometry =
-        Geometry { vertices, has_own_corners: stack.parts_corners(), subpixel_bits: view.subpixel_bits, ..Geometry::default() };
+    let bent = draws.iter().flat_map(|draw| bend::vertices(scene, draw)).collect();
+    let (has_own_corners, subpixel_bits) = (stack.parts_corners(), view.subpixel_bits);
+    let mut geometry = Geometry { vertices, has_own_corners, bent, subpixel_bits, ..Geometry::default() };
     let pieces = |mover: &Mover| {
         clip::pieces(scene, mover.draw, view, &geometry, |corner| mover.clip(corner).expect("a cut triangle has no rejected corner"))
     };
@@ -71,18 +77,9 @@ pub(super) fn gated_lane(bytes: &[u8], accessor: &Accessor, element: u32, lane: 
     }
 }
 
-/// Position in object space, or the flags of all lanes that were refused.
-pub(super) fn object_position(scene: &Scene, primitive: &Primitive, vertex: u32) -> Result<[f64; 3], u32> {
-    let lanes = [0, 1, 2].map(|lane| gated_lane(&scene.vertex_bytes, &primitive.positions, vertex, lane));
-    match lanes {
-        [Ok(x), Ok(y), Ok(z)] => Ok([x, y, z]),
-        refused => Err(refused.iter().filter_map(|lane| lane.err()).fold(0, |all, flag| all | flag)),
-    }
-}
-
 /// Clip-space position of a vertex of `draw` before any effect, from the bits of its rounded matrix.
 pub(super) fn clip_position(scene: &Scene, draw: &Draw, vertex: u32) -> Result<Clip, u32> {
-    let [x, y, z] = object_position(scene, &scene.primitives[draw.primitive], vertex)?;
+    let [x, y, z] = place(scene, draw, vertex)?.to_array();
     let row = |r: usize| {
         let [a, b, c, d] = [0, 1, 2, 3].map(|column| f64::from(draw.clip_from_object[column][r]));
         a * x + b * y + c * z + d

@@ -8,11 +8,12 @@
 use rayon::prelude::*;
 
 use super::{
+    bend::place,
     clip::{self, Point},
     coverage::{cover_by, triangles},
     decide::decide,
     flushed::{difference, operand, product, quotient, round, sum},
-    project::{half_size, object_position, placed},
+    project::{half_size, placed},
     rules::Rules,
 };
 use crate::{
@@ -44,7 +45,7 @@ pub fn strict_frame(scene: &Scene, view: &View, stack: &Stack) -> Result<(Vec<u3
     Ok((coverage.owners(), coverage.keys()))
 }
 
-/// The records and pieces of a scene in which nothing moves.
+/// The records and pieces of a scene in which nothing moves or bends.
 pub fn project_strict(scene: &Scene, draws: &[Draw], view: &View) -> Geometry {
     let record = |draw: &Draw, vertex| match position(scene, draw, vertex) {
         Ok(clip) if clip.z <= clip.w && clip.w > 0.0 => clip.record(view),
@@ -78,7 +79,7 @@ struct Clip {
 /// Clip-space position of a vertex of `draw`, or the flags of all lanes that were refused.
 fn position(scene: &Scene, draw: &Draw, vertex: u32) -> Result<Clip, u32> {
     let primitive = &scene.primitives[draw.primitive];
-    object_position(scene, primitive, vertex)?;
+    place(scene, draw, vertex)?;
     let lane = |lane: u32| match primitive.positions.component {
         Component::F32 => operand(f32::from_bits(primitive.positions.f32_bits(&scene.vertex_bytes, vertex, lane))),
         _ => primitive.positions.value(&scene.vertex_bytes, vertex, lane) as f32,

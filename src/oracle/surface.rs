@@ -4,10 +4,11 @@ use glam::{DMat3, DVec2, DVec3, DVec4};
 use rayon::prelude::*;
 
 use super::{
+    bend::{normal, place},
     coverage::{OrientedTriangle, corner_records, doubled_area, draw_of, is_back},
     moved::{Corner, Mover},
     order::ranks,
-    project::{gated_lane, object_position},
+    project::gated_lane,
 };
 use crate::{
     effects::{Stack, Surface, hooks::Shape},
@@ -97,8 +98,8 @@ impl Triangle {
         let primitive = &scene.primitives[draw.primitive];
         let material = &scene.materials[primitive.material];
         let corners = primitive.corners(scene, owner - draw.first_triangle);
-        let [Ok(a), Ok(b), Ok(c)] = corners.map(|corner| object_position(scene, primitive, corner)) else { return None };
-        let object = [a, b, c].map(DVec3::from_array);
+        let [Ok(a), Ok(b), Ok(c)] = corners.map(|corner| place(scene, draw, corner)) else { return None };
+        let object = [a, b, c];
 
         let records = corner_records(scene, draw, geometry, owner);
         let is_cut = records.iter().any(|record| record.flags & vertex_flags::CLIPPED != 0);
@@ -107,7 +108,7 @@ impl Triangle {
 
         let base = DVec4::from_array(material.base_color.map(f64::from));
         let color = |corner| base * primitive.colors.map_or(DVec4::ONE, |colors| color(scene, &colors, corner));
-        let [n0, n1, n2] = corners.map(|corner| normal(scene, &primitive.normals, corner));
+        let [n0, n1, n2] = corners.map(|corner| normal(scene, draw, corner));
         let side = if material.double_sided && screen.is_back { -1.0 } else { 1.0 };
         let world_from_normal = inverse_transpose(DMat3::from_mat4(draw.world_from_object), draw.mirrored) * side;
         let mut triangle = Self {
@@ -331,12 +332,6 @@ fn color(scene: &Scene, colors: &Accessor, vertex: u32) -> DVec4 {
         [Ok(r), Ok(g), Ok(b), Ok(a)] => DVec4::new(r, g, b, a),
         _ => DVec4::ONE,
     }
-}
-
-/// Normal of a vertex in object space; none when a lane is not finite.
-fn normal(scene: &Scene, normals: &Accessor, vertex: u32) -> Option<DVec3> {
-    let lane = |lane: u32| gated_lane(&scene.vertex_bytes, normals, vertex, lane).ok();
-    Some(DVec3::new(lane(0)?, lane(1)?, lane(2)?))
 }
 
 /// Normal of the plane through three points, counterclockwise outward, of any length; none for a needle or a point.

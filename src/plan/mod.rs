@@ -259,6 +259,8 @@ pub fn plan(needs: &Needs, stack: &Stack, caps: &Caps, tuning: &Tuning, accuracy
         f32_positions: needs.f32_positions,
         f32_normals: needs.f32_normals,
         has_colors: needs.colors,
+        has_joints: needs.skinning.is_some(),
+        has_shapes: needs.shapes,
         has_planes,
         perspective: needs.perspective,
         small_samples,

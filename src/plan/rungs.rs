@@ -12,7 +12,7 @@ use crate::{
         points, read,
         xray::{Reach, Xray},
     },
-    ladder::{AXES, Coverage, Depth, Rungs, Sums, Vertex, Visibility},
+    ladder::{AXES, Coverage, Depth, Rung, Rungs, Skinning, Sums, Vertex, Visibility},
     math::SUBPIXEL_BITS,
     scene::needs::Needs,
 };
@@ -42,6 +42,8 @@ pub(super) fn choose(
     let visibility = if caps.int64_atomics { Visibility::Packed64 } else { Visibility::Split32 };
     let mut rungs = Rungs { visibility, ..accuracy.tier.base() };
     accuracy.pins.apply(&mut rungs);
+    // How joints hold a mesh was settled with its pose; without joints the rung is nobody's.
+    rungs.skinning = needs.skinning.unwrap_or_default();
     if layers == Some(Layers::Race) {
         rungs.visibility = Visibility::Race;
     }
@@ -53,7 +55,7 @@ pub(super) fn choose(
             continue;
         }
         let mut cheaper: Vec<usize> =
-            (0..axis.words.len()).filter(|&place| costs::saves(axis, place, rungs.get(axis), needs, caps)).collect();
+            (0..axis.words.len()).filter(|&place| i != Skinning::AXIS && costs::saves(axis, place, rungs.get(axis), needs, caps)).collect();
         cheaper.sort_by(|a, b| costs::of(axis, *a, needs, caps).total_cmp(&costs::of(axis, *b, needs, caps)));
         let fits = |place: &usize| {
             let mut tried = rungs;
@@ -104,7 +106,7 @@ fn check(rungs: &Rungs, needs: &Needs, f32_positions: bool, stack: &Stack, caps:
         return Err(PlanError::Inexact { rung: rungs.coverage.name() });
     }
     if rungs.vertex == Vertex::Strict
-        && let Some(what) = floats(stack, f32_positions)
+        && let Some(what) = floats(stack, needs, f32_positions)
     {
         return Err(PlanError::Floats { what });
     }
@@ -133,7 +135,7 @@ fn xray(stack: &Stack) -> Option<Xray> {
 }
 
 /// What in a picture hangs on floats even behind a strict vertex stage, if anything.
-fn floats(stack: &Stack, f32_positions: bool) -> Option<String> {
+fn floats(stack: &Stack, needs: &Needs, f32_positions: bool) -> Option<String> {
     let reason = |Enabled { effect, words }: &Enabled| {
         let is_from_floats = effect.hooks.sample.is_some_and(|hook| hook.decides && (hook.is_from_floats)(words));
         let why = match () {
@@ -145,5 +147,6 @@ fn floats(stack: &Stack, f32_positions: bool) -> Option<String> {
         Some(format!("the effect {} {why}", effect.name))
     };
     let positions = || (!f32_positions).then(|| "a mesh of the scene has positions that are not f32".to_owned());
-    stack.0.iter().find_map(reason).or_else(positions)
+    let bends = || (needs.skinning.is_some() || needs.shapes).then(|| "joints or shapes bend a mesh in floats".to_owned());
+    stack.0.iter().find_map(reason).or_else(bends).or_else(positions)
 }

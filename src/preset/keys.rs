@@ -6,7 +6,7 @@ use glam::DVec3;
 
 use super::form::{Form, Plain, Precision, brief};
 use crate::{
-    ladder::{AXES, Checks, Clipping, Counting, Coverage, Depth, Parameters, Perspective, Rung, Sums, Vertex, Visibility},
+    ladder::{AXES, Checks, Clipping, Counting, Coverage, Depth, Parameters, Perspective, Rung, Skinning, Sums, Vertex, Visibility},
     scene::camera::{Camera, MIN_NEAR_M, Projection},
     session::{SceneSource, Session, Test, Tier},
 };
@@ -175,6 +175,46 @@ pub const KEYS: &[Key] = &[
         |s| Some(Plain::number(s.spin_deg_per_s)),
         |s, v| s.spin_deg_per_s = v.first(),
     ),
+    key(
+        "scene",
+        "clip",
+        LINE,
+        "The clip that moves the scene, by its name or as #0, #1 …; empty: it stands at rest",
+        |s| Some(Plain::Text(s.play.clip.clone())),
+        |s, v| s.play.clip = v.into_text(),
+    ),
+    key(
+        "scene",
+        "clip_speed",
+        Form::number(-100.0, 100.0),
+        "Seconds of the clip that pass in one second of the clock",
+        |s| Some(Plain::number(s.play.speed)),
+        |s, v| s.play.speed = v.first(),
+    ),
+    key(
+        "scene",
+        "pose_s",
+        Form::number(0.0, 1e9),
+        "Freezes the clip at this time",
+        |s| s.play.pose_s.map(Plain::number),
+        |s, v| s.play.pose_s = Some(v.first()),
+    ),
+    key(
+        "scene",
+        "clip_b",
+        LINE,
+        "A second clip to blend with",
+        |s| Some(Plain::Text(s.play.other.clone())),
+        |s, v| s.play.other = v.into_text(),
+    ),
+    key(
+        "scene",
+        "blend",
+        Form::number(0.0, 1.0),
+        "Share of the second clip",
+        |s| Some(Plain::number(s.play.blend)),
+        |s, v| s.play.blend = v.first(),
+    ),
     key("camera", "eye", POINT, "Where the eye stands, metres", |s| camera(s, |c| point(c.eye)), |s, v| posed(s).eye = v.lanes().into()),
     key(
         "camera",
@@ -282,6 +322,7 @@ pub const KEYS: &[Key] = &[
     ),
     pin::<Coverage>(),
     pin::<Vertex>(),
+    pin::<Skinning>(),
     pin::<Depth>(),
     pin::<Visibility>(),
     pin::<Perspective>(),

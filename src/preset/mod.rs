@@ -215,20 +215,24 @@ pub enum SceneError {
     Absent { path: String },
     #[error(transparent)]
     Model(#[from] scene::gltf::LoadError),
+    #[error(transparent)]
+    Clip(#[from] crate::session::NoClip),
 }
 
 /// Builds or loads the scene of a look; a relative model path starts at the folder of `look_path`.
 pub fn load_scene(session: &Session, look_path: Option<&Path>) -> Result<Arc<Scene>, SceneError> {
-    match &session.scene {
-        SceneSource::Builtin(query) => Ok(Arc::new(scene::builtin::build(query)?)),
+    let scene = match &session.scene {
+        SceneSource::Builtin(query) => scene::builtin::build(query)?,
         SceneSource::File(model) => {
             let path = model_path(model, look_path);
             if !path.exists() {
                 return Err(SceneError::Absent { path: path.display().to_string() });
             }
-            Ok(Arc::new(scene::gltf::load(&path)?))
+            scene::gltf::load(&path)?
         }
-    }
+    };
+    session.play.check(&scene)?;
+    Ok(Arc::new(scene))
 }
 
 /// A parameter's value in its form.

@@ -1,8 +1,10 @@
 //! Where the picture is taken from: a pose a person can type, and the matrices made from it in f64.
 
+use std::sync::Arc;
+
 use glam::{DMat4, DVec3, DVec4};
 
-use super::Bounds;
+use super::{Bounds, pose::Pose};
 use crate::math::{SUBPIXEL_BITS, view_from_world};
 
 /// Smallest near distance that keeps every quotient of the vertex stage finite.
@@ -90,6 +92,8 @@ pub struct View {
     pub background: [f32; 4],
     /// Vertices snap to 2^-bits px: 4, 8 as a rule, or 12.
     pub subpixel_bits: u32,
+    /// How the scene stands; none: at rest.
+    pub pose: Option<Arc<Pose>>,
 }
 
 impl View {
@@ -130,6 +134,7 @@ impl View {
             scene_range_m: [from, farthest.max(from + margin)],
             background,
             subpixel_bits: SUBPIXEL_BITS,
+            pose: None,
         }
     }
 

@@ -8,9 +8,14 @@ pub mod camera;
 pub mod draw;
 pub mod gltf;
 pub mod needs;
+pub mod palette;
 pub mod pick;
+pub mod pose;
+pub mod rig;
 
 use glam::{DMat4, DVec3};
+
+use rig::{Rig, Softness};
 
 /// Number format of one attribute component; the discriminant is glTF's `componentType`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -151,6 +156,8 @@ pub struct Primitive {
     pub longest_edge: f64,
     /// No mixture of a triangle's corner normals is near zero ([`Primitive::normals_agree`]); false is always right.
     pub sound_normals: bool,
+    /// How it bends, if it does.
+    pub softness: Softness,
 }
 
 impl Primitive {
@@ -182,9 +189,9 @@ impl Primitive {
         })
     }
 
-    /// Position of a vertex in object space, as stored.
+    /// Position of a vertex in object space, as stored; integers are normalized where the file says so.
     pub fn position(&self, scene: &Scene, vertex: u32) -> [f32; 3] {
-        [0, 1, 2].map(|lane| f32::from_bits(self.positions.f32_bits(&scene.vertex_bytes, vertex, lane)))
+        [0, 1, 2].map(|lane| self.positions.value(&scene.vertex_bytes, vertex, lane) as f32)
     }
 }
 
@@ -209,7 +216,19 @@ impl Default for Material {
 pub struct Instance {
     /// Index into `Scene::primitives`.
     pub primitive: usize,
+    /// Where it stands at rest; where a skin holds it, its joints say the rest.
     pub world_from_object: DMat4,
+    /// The node of `Scene::rig` that shows it; none: it stays where it is.
+    pub node: Option<usize>,
+    /// The skin of `Scene::rig` that holds it.
+    pub skin: Option<usize>,
+}
+
+impl Instance {
+    /// An instance that nothing moves.
+    pub fn fixed(primitive: usize, world_from_object: DMat4) -> Self {
+        Self { primitive, world_from_object, node: None, skin: None }
+    }
 }
 
 /// A camera that came with the file.
@@ -226,6 +245,12 @@ pub struct Bounds {
     pub max: DVec3,
 }
 
+impl Default for Bounds {
+    fn default() -> Self {
+        Self::EMPTY
+    }
+}
+
 impl Bounds {
     pub const EMPTY: Self = Self { min: DVec3::INFINITY, max: DVec3::NEG_INFINITY };
 
@@ -236,6 +261,14 @@ impl Bounds {
     pub fn include(&mut self, point: DVec3) {
         self.min = self.min.min(point);
         self.max = self.max.max(point);
+    }
+
+    /// Takes in what `matrix` makes of a box whose sides were moved out by `slack`.
+    pub fn include_placed(&mut self, matrix: &DMat4, placed: &Self, slack: f64) {
+        if !placed.is_empty() {
+            let grown = Self { min: placed.min - slack, max: placed.max + slack };
+            grown.corners().into_iter().for_each(|corner| self.include(matrix.transform_point3(corner)));
+        }
     }
 
     pub fn corners(&self) -> [DVec3; 8] {
@@ -268,6 +301,8 @@ pub struct Scene {
     pub materials: Vec<Material>,
     pub instances: Vec<Instance>,
     pub cameras: Vec<FileCamera>,
+    /// What moves.
+    pub rig: Rig,
     /// What the loader wants the user to know, for instance extensions it ignored.
     pub notes: Vec<String>,
 }
@@ -283,14 +318,20 @@ impl Scene {
         self.instances.iter().map(|instance| u64::from(self.primitives[instance.primitive].vertex_count())).sum()
     }
 
-    /// Box round all instances, in world space.
+    /// Vertices of all instances of meshes that bend.
+    pub fn soft_vertex_count(&self) -> u64 {
+        let soft = self.instances.iter().map(|instance| &self.primitives[instance.primitive]).filter(|p| !p.softness.is_none());
+        soft.map(|primitive| u64::from(primitive.vertex_count())).sum()
+    }
+
+    /// Box round all instances, in world space; round all places that a scene which moves reaches.
     pub fn bounds(&self) -> Bounds {
+        if !self.rig.is_empty() {
+            return self.rig.reach;
+        }
         let mut bounds = Bounds::EMPTY;
         for instance in &self.instances {
-            let object = self.primitives[instance.primitive].bounds;
-            if !object.is_empty() {
-                object.corners().into_iter().for_each(|c| bounds.include(instance.world_from_object.transform_point3(c)));
-            }
+            bounds.include_placed(&instance.world_from_object, &self.primitives[instance.primitive].bounds, 0.0);
         }
         bounds
     }

@@ -5,7 +5,7 @@
 use glam::{DMat3, DMat4, DVec4};
 
 use super::{Component, Primitive, Scene, Topology, camera::View, draw::Draw};
-use crate::math::GUARD_BAND;
+use crate::{ladder::Skinning, math::GUARD_BAND};
 
 /// See the module's first line.
 #[derive(Clone, Debug, PartialEq)]
@@ -26,6 +26,10 @@ pub struct Needs {
     /// Normals are all f32.
     pub f32_normals: bool,
     pub colors: bool,
+    /// Some mesh is mixed from shapes.
+    pub shapes: bool,
+    /// How joints hold meshes, where any do.
+    pub skinning: Option<Skinning>,
     /// No interpolated normal ever needs a substitute.
     pub sound_normals: bool,
     /// w is metres; else depth is linear and w is 1.
@@ -48,7 +52,9 @@ impl Needs {
     /// Reads `scene` as `view` sees it through `draws`.
     pub fn of(scene: &Scene, draws: &[Draw], view: &View) -> Self {
         let drawn = || draws.iter().map(|draw| &scene.primitives[draw.primitive]);
-        let all_f32 = |pick: fn(&Primitive) -> Component| drawn().all(|p| pick(p) == Component::F32);
+        // Bent vertices are kept as f32, whatever they were.
+        let unbent = || draws.iter().filter(|draw| draw.bend.is_none()).map(|draw| &scene.primitives[draw.primitive]);
+        let all_f32 = |pick: fn(&Primitive) -> Component| unbent().all(|p| pick(p) == Component::F32);
         let largest_px = draws.iter().map(|draw| largest_px(&scene.primitives[draw.primitive], draw, view)).fold(0.0, f64::max);
         Self {
             size: [view.width, view.height],
@@ -61,7 +67,11 @@ impl Needs {
             f32_positions: all_f32(|p| p.positions.component),
             f32_normals: all_f32(|p| p.normals.component),
             colors: drawn().any(|p| p.colors.is_some()),
-            sound_normals: drawn().all(|p| p.sound_normals) && draws.iter().all(keeps_normals),
+            shapes: draws.iter().any(|draw| draw.bend.as_ref().is_some_and(|bend| bend.weights.iter().any(|weight| *weight != 0.0))),
+            skinning: draws.iter().find_map(|draw| Some(draw.bend.as_ref()?.palette.as_ref()?.skinning())),
+            sound_normals: draws.iter().all(|draw| draw.bend.is_none())
+                && drawn().all(|p| p.sound_normals)
+                && draws.iter().all(keeps_normals),
             perspective: view.linear_depth_m.is_none(),
             clipping: largest_px.is_infinite(),
             largest_px,
@@ -139,11 +149,14 @@ fn keeps_normals(draw: &Draw) -> bool {
 /// On a segment of object-space length l, clip x changes by at most |row 0| l and w by |row 3| l, hence x/w by at most
 /// (|row 0| + max|x/w| |row 3|) l / min w. Both extrema of the box are at its corners while w stays positive.
 fn largest_px(primitive: &Primitive, draw: &Draw, view: &View) -> f64 {
-    if primitive.bounds.is_empty() {
+    let bounds = draw.object_bounds(primitive);
+    if bounds.is_empty() {
         return 0.0;
     }
+    // Of a bent mesh, no edge is longer than its box.
+    let longest_edge = if draw.bend.is_some() { 2.0 * bounds.radius() } else { primitive.longest_edge };
     let clip_from_object = DMat4::from_cols_array_2d(&draw.clip_from_object.map(|column| column.map(f64::from)));
-    let corners = primitive.bounds.corners().map(|corner| clip_from_object * corner.extend(1.0));
+    let corners = bounds.corners().map(|corner| clip_from_object * corner.extend(1.0));
     let slack = 1.0 + 1e-4;
     let is_before_near = |c: &DVec4| c.w <= 0.0 || c.z * slack > c.w && view.linear_depth_m.is_none();
     if corners.iter().any(is_before_near) {
@@ -158,7 +171,7 @@ fn largest_px(primitive: &Primitive, draw: &Draw, view: &View) -> f64 {
             if (reach + 1.0) * half * f64::from(view.units_per_pixel()) * slack > f64::from(GUARD_BAND) {
                 return f64::INFINITY;
             }
-            (linear_row(axis) + reach * linear_row(3)) * primitive.longest_edge / min_w * half * slack + 1.0 / 128.0
+            (linear_row(axis) + reach * linear_row(3)) * longest_edge / min_w * half * slack + 1.0 / 128.0
         })
         .into_iter()
         .fold(0.0, f64::max)

@@ -37,8 +37,11 @@ impl Ray {
     fn nearest(&self, scene: &Scene, draw: &Draw) -> Option<f64> {
         let primitive = &scene.primitives[draw.primitive];
         let corner = |vertex: u32| {
-            let place = primitive.position(scene, vertex).map(f64::from);
-            draw.world_from_object.transform_point3(DVec3::from_array(place))
+            let place = match &draw.bend {
+                Some(bend) => bend.position(scene, primitive, vertex),
+                None => primitive.position(scene, vertex).map(f64::from).into(),
+            };
+            draw.world_from_object.transform_point3(place)
         };
         let hit = |triangle: u32| self.meets(primitive.corners(scene, triangle).map(corner));
         (0..primitive.triangle_count()).into_par_iter().filter_map(hit).reduce_with(f64::min)

@@ -5,7 +5,7 @@
 
 pub mod animation;
 
-use std::path::PathBuf;
+use std::{path::PathBuf, sync::Arc};
 
 use glam::{DMat4, DVec3};
 
@@ -15,6 +15,7 @@ use crate::{
     scene::{
         Scene,
         camera::{Camera, View},
+        pose::{Motion, Pose},
     },
 };
 pub use animation::Animation;
@@ -31,6 +32,59 @@ pub enum SceneSource {
     Builtin(String),
     /// A model file; relative paths are relative to the look's own folder.
     File(PathBuf),
+}
+
+/// Which clips of a scene play, and how.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Play {
+    /// Name of the clip; empty: at rest.
+    pub clip: String,
+    /// Seconds of the clips that pass in one second of the look.
+    pub speed: f64,
+    /// The moment of the clips that is shown, whatever the clock says.
+    pub pose_s: Option<f64>,
+    /// Name of a second clip to blend with; empty: none.
+    pub other: String,
+    /// Share of the second clip, 0 to 1.
+    pub blend: f64,
+}
+
+impl Default for Play {
+    fn default() -> Self {
+        Self { clip: String::new(), speed: 1.0, pose_s: None, other: String::new(), blend: 0.0 }
+    }
+}
+
+/// A clip that a scene does not have; one sentence.
+#[derive(Debug, PartialEq, thiserror::Error)]
+#[error("{key}: the scene has no clip {asked:?}{known}")]
+pub struct NoClip {
+    pub key: &'static str,
+    pub asked: String,
+    /// `; it has "Walk", "Run"`.
+    pub known: String,
+}
+
+impl Play {
+    /// Does it go with the clock?
+    pub fn is_moving(&self) -> bool {
+        !self.clip.is_empty() && self.pose_s.is_none() && self.speed != 0.0
+    }
+
+    /// Are the clips there?
+    ///
+    /// # Errors
+    /// With the first that is not.
+    pub fn check(&self, scene: &Scene) -> Result<(), NoClip> {
+        for (key, name) in [("scene.clip", &self.clip), ("scene.clip_b", &self.other)] {
+            if !name.is_empty() && scene.rig.clip(name).is_none() {
+                let known: Vec<String> = scene.rig.clips.iter().take(12).map(|clip| format!("{:?}", clip.name)).collect();
+                let known = if known.is_empty() { "; nothing in it moves".into() } else { format!("; it has {}", known.join(", ")) };
+                return Err(NoClip { key, asked: name.clone(), known });
+            }
+        }
+        Ok(())
+    }
 }
 
 /// The time of a look.
@@ -112,6 +166,8 @@ pub struct Session {
     pub scene: SceneSource,
     /// Turns the whole scene about +y.
     pub spin_deg_per_s: f64,
+    /// What moves the scene's own joints and parts.
+    pub play: Play,
     /// None: framed so that the whole scene shows.
     pub camera: Option<Camera>,
     pub clock: Clock,
@@ -132,6 +188,7 @@ impl Default for Session {
             tags: Vec::new(),
             scene: SceneSource::Builtin("teapot".into()),
             spin_deg_per_s: 0.0,
+            play: Play::default(),
             camera: None,
             clock: Clock::default(),
             stack: Stack::default(),
@@ -165,13 +222,26 @@ impl Session {
     /// Does the picture depend on the time?
     pub fn is_moving(&self) -> bool {
         let keyed = self.animation.tracks().iter().any(|t| t.keys().len() > 1 && self.stack.get(t.effect().name).is_some());
-        keyed || self.spin_deg_per_s != 0.0
+        keyed || self.spin_deg_per_s != 0.0 || self.play.is_moving()
     }
 
     /// Takes an effect out, with all that moves it.
     pub fn disable(&mut self, effect: &str) {
         self.stack.disable(effect);
         self.animation.remove_effect(effect);
+    }
+
+    /// How `scene` stands at the time of the clock; none where nothing in it can move.
+    pub fn pose(&self, scene: &Scene) -> Option<Arc<Pose>> {
+        let clip = |name: &str| scene.rig.clip(name).filter(|_| !name.is_empty());
+        let motion = Motion {
+            clip: clip(&self.play.clip),
+            other: clip(&self.play.other),
+            blend: self.play.blend,
+            time_s: self.play.pose_s.unwrap_or(self.clock.time_s * self.play.speed),
+            skinning: self.accuracy.pins.rung().unwrap_or_default(),
+        };
+        (!scene.rig.is_empty()).then(|| Arc::new(Pose::at(scene, &motion)))
     }
 
     /// The camera of the look, or the pose that frames `scene`.
@@ -199,12 +269,13 @@ impl Session {
         // Reduced before the trigonometry, so that a day of spinning costs no precision.
         let turns = self.spin_deg_per_s * self.clock.time_s / 360.0;
         let spin = if turns == 0.0 { DMat4::IDENTITY } else { rotation_y(turns.fract() * std::f64::consts::TAU) };
-        let mut bounds = scene.bounds();
+        let pose = self.pose(scene);
+        let mut bounds = pose.as_ref().map_or_else(|| scene.bounds(), |pose| pose.bounds(scene));
         if !bounds.is_empty() {
             let reach_m = self.posed_stack().reach_m(bounds.radius());
             (bounds.min, bounds.max) = (bounds.min - reach_m, bounds.max + reach_m);
         }
-        View::new(&self.camera_for(scene, aspect), width, height, &bounds, spin, self.output.background)
+        View { pose, ..View::new(&self.camera_for(scene, aspect), width, height, &bounds, spin, self.output.background) }
     }
 }
 

@@ -85,6 +85,10 @@ pub struct KernelKey {
     pub f32_positions: bool,
     pub f32_normals: bool,
     pub has_colors: bool,
+    /// Some mesh is held by joints.
+    pub has_joints: bool,
+    /// Some mesh is mixed from shapes.
+    pub has_shapes: bool,
     /// The resolve computes plane normals and triangle centres: an effect reads them, or a normal may need a substitute.
     pub has_planes: bool,
     /// w is metres; else depth is linear and w is 1.
@@ -130,6 +134,8 @@ impl KernelKey {
             f32_positions: false,
             f32_normals: false,
             has_colors: true,
+            has_joints: true,
+            has_shapes: true,
             has_planes: true,
             perspective: true,
             small_samples: 64,
@@ -149,6 +155,11 @@ impl KernelKey {
     /// Does an effect move corners by their triangle, so that every triangle has three projected records to itself?
     pub fn parts_corners(&self) -> bool {
         self.effects.iter().any(|effect| effect.hooks.vertex.is_some_and(|hook| hook.needs_triangle))
+    }
+
+    /// Does some mesh bend?
+    pub const fn bends(&self) -> bool {
+        self.has_joints || self.has_shapes
     }
 
     /// Are there queues at all?
@@ -244,7 +255,7 @@ impl KernelKey {
 
     /// Passes up to the last of the given raster phases.
     pub fn passes(&self, phases: &[Phase]) -> Vec<Pass> {
-        let mut passes = vec![Pass::Project];
+        let mut passes = if self.bends() { vec![Pass::Skin, Pass::Project] } else { vec![Pass::Project] };
         if self.decisions > 0 {
             passes.push(Pass::Decide(Entries::Triangles));
         }
@@ -367,6 +378,8 @@ impl fmt::Display for KernelKey {
             ("large", self.has_large),
             ("colors", self.has_colors),
             ("planes", self.has_planes),
+            ("joints", self.has_joints),
+            ("shapes", self.has_shapes),
             ("moved", self.moves()),
             ("parted", self.parts_corners()),
             ("image", self.has_image()),

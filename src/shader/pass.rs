@@ -3,6 +3,7 @@
 /// One entry point of the frame; the name is the file's stem in `shaders/passes` plus, for a repeated one, its phase.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Pass {
+    Skin,
     Project,
     /// What sample effects settle about triangles, or about pieces.
     Decide(Entries),
@@ -86,6 +87,7 @@ impl Pass {
     /// Stem of the file in `shaders/passes`.
     pub const fn stem(self) -> &'static str {
         match self {
+            Self::Skin => "skin",
             Self::Project => "project",
             Self::Decide(_) => "decide",
             Self::OrderSums => "order_sums",

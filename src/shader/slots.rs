@@ -51,6 +51,9 @@ impl KernelKey {
         let walk = if is_bin { "tiles" } else { "samples" };
         let keys = if self.rungs.depth == Depth::Integer { "integer" } else { "float" };
         let mut slots = vec![
+            ("bytes", format!("slots/bytes/{}", if pass == Pass::Skin { "write" } else { "read" })),
+            ("shapes", format!("slots/shapes/{}", if self.has_shapes { "kept" } else { "none" })),
+            ("skinning", format!("slots/skinning/{}", if self.has_joints { self.rungs.skinning.name() } else { "none" })),
             ("corners", format!("slots/corners/{records}")),
             ("sources", format!("slots/sources/{records}")),
             ("movement", format!("slots/movement/{movement}")),

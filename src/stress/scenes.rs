@@ -87,8 +87,9 @@ pub fn hand_made(parts: &[Part]) -> Arc<Scene> {
             bounds,
             longest_edge,
             sound_normals: false,
+            softness: Default::default(),
         });
-        scene.instances.extend(part.placements.iter().map(|&world_from_object| Instance { primitive: i, world_from_object }));
+        scene.instances.extend(part.placements.iter().map(|&world_from_object| Instance::fixed(i, world_from_object)));
     }
     Arc::new(scene)
 }
@@ -107,6 +108,7 @@ pub fn pixel_view(width: u32, height: u32) -> View {
         linear_depth_m: Some([0.0, 1.0]),
         scene_range_m: [0.0, 1.0],
         background: [0.0; 4],
+        pose: None,
         subpixel_bits: 8,
     }
 }

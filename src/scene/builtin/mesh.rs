@@ -132,6 +132,7 @@ impl Mesh {
             bounds,
             longest_edge,
             sound_normals: false,
+            softness: Default::default(),
         });
         let index = scene.primitives.len() - 1;
         scene.primitives[index].sound_normals = scene.primitives[index].normals_agree(scene);

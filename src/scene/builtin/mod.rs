@@ -9,6 +9,7 @@ mod plates;
 mod query;
 mod shapes;
 mod teapot;
+mod tentacle;
 
 use std::ops::RangeInclusive;
 
@@ -83,6 +84,17 @@ pub const BUILTINS: &[Builtin] = &[
             SEED,
         ],
         build: shapes::cube_wall,
+    },
+    Builtin {
+        name: "tentacle",
+        about: "a tube held by a chain of joints, with clips Sway, Curl, Twist and Breathe; one, or a field of them",
+        params: &[
+            whole("joints", "joints of the chain", 8.0, 1.0..=128.0),
+            whole("influences", "most joints that hold a vertex", 4.0, 1.0..=8.0),
+            whole("tess", "fineness; one has 16 * tess * (tess + 2) triangles and two caps", 8.0, 1.0..=128.0),
+            whole("instances", "how many, each with joints of its own", 1.0, 1.0..=10_000.0),
+        ],
+        build: tentacle::build,
     },
     Builtin {
         name: "near",

@@ -125,10 +125,8 @@ pub fn cube_wall(values: &Values) -> Result<Scene, BuiltinError> {
             let z = 0.7 * libm::sin(0.55 * x + 0.8) * libm::cos(0.6 * y) + 0.9 * chance(0) * chance(1);
             // The palette drifts across the wall; chance mixes neighbours.
             let tone = (f64::from(column) / f64::from(columns) * 4.0 + 2.0 * chance(2)) as usize % PALETTE.len();
-            scene.instances.push(Instance {
-                primitive: first + tone,
-                world_from_object: DMat4::from_translation(DVec3::new(x, y, z)) * DMat4::from_scale(DVec3::new(0.47, 0.47, 0.9)),
-            });
+            let placement = DMat4::from_translation(DVec3::new(x, y, z)) * DMat4::from_scale(DVec3::new(0.47, 0.47, 0.9));
+            scene.instances.push(Instance::fixed(first + tone, placement));
         }
     }
     Ok(scene)
@@ -153,6 +151,6 @@ fn cube() -> Mesh {
 pub fn alone(mesh: Mesh, name: &str, material: Material) -> Scene {
     let mut scene = Scene { materials: vec![material], ..Scene::default() };
     let primitive = mesh.append(&mut scene, name, 0);
-    scene.instances.push(Instance { primitive, world_from_object: DMat4::IDENTITY });
+    scene.instances.push(Instance::fixed(primitive, DMat4::IDENTITY));
     scene
 }

@@ -81,11 +81,16 @@ pub fn root(json: &[u8]) -> Result<json::Root, LoadError> {
     check_head(json)?;
     let malformed = |error: serde_json::Error| LoadError::new(format!("malformed glTF: {error}"));
     let stripped = without_custom_attributes(json).map_err(malformed)?;
-    let root = json::Root::from_slice(stripped.as_deref().unwrap_or(json)).map_err(malformed)?;
+    let mut root = json::Root::from_slice(stripped.as_deref().unwrap_or(json)).map_err(malformed)?;
+    // Read by us; the crate refuses whatever it does not read itself.
+    root.extensions_required.retain(|name| name != QUANTIZATION);
     check_positions(&root)?;
     let document = gltf::Document::from_json(root).map_err(|error| LoadError::new(format!("malformed glTF: {}", first_fault(error))))?;
     Ok(document.into_json())
 }
+
+/// Attributes may be small integers: they are pulled by their component type anyway.
+pub const QUANTIZATION: &str = "KHR_mesh_quantization";
 
 /// Version and required extensions, before the rest can fail in less telling ways.
 fn check_head(json: &[u8]) -> Result<(), LoadError> {
@@ -104,7 +109,8 @@ fn check_head(json: &[u8]) -> Result<(), LoadError> {
     if version != "2" && !version.starts_with("2.") {
         return Err(LoadError::new(format!("glTF version {} is not supported; only 2.x is", quoted(&version))));
     }
-    match head.extensions_required.iter().find(|name| !json::extensions::ENABLED_EXTENSIONS.contains(&name.as_str())) {
+    let is_read = |name: &str| name == QUANTIZATION || json::extensions::ENABLED_EXTENSIONS.contains(&name);
+    match head.extensions_required.iter().find(|name| !is_read(name)) {
         Some(name) => Err(LoadError::new(format!("requires the extension {}, which is not supported{}", quoted(name), remedy(name)))),
         None => Ok(()),
     }
@@ -127,7 +133,6 @@ fn check_positions(root: &json::Root) -> Result<(), LoadError> {
 fn remedy(extension: &str) -> &'static str {
     match extension {
         "KHR_draco_mesh_compression" | "EXT_meshopt_compression" | "KHR_meshopt_compression" => ": export the model without compression",
-        "KHR_mesh_quantization" => ": export the model without quantization",
         _ => "",
     }
 }

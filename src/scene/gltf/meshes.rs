@@ -15,12 +15,14 @@ use gltf::json::{
 use super::{
     LoadError, ReadFile,
     buffers::Buffers,
-    called, container, limits,
+    called, clips, container, limits,
     nodes::{Tree, node_name},
-    quoted,
-    skin::{Influences, Pose, bent_normal},
+    quoted, skin, soft,
 };
-use crate::scene::{Accessor, Bounds, Component, Instance, Material, Primitive, Scene, Topology};
+use crate::scene::{
+    Accessor, Bounds, Component, Instance, Material, Primitive, Scene, Topology, pose,
+    rig::{Rig, Softness},
+};
 
 /// The whole file as a scene.
 pub fn scene(bytes: &[u8], read: &mut ReadFile) -> Result<Scene, LoadError> {
@@ -29,12 +31,22 @@ pub fn scene(bytes: &[u8], read: &mut ReadFile) -> Result<Scene, LoadError> {
     let buffers = Buffers::read(&root, binary, read)?;
     check_images(&buffers)?;
     let tree = Tree::walk(&root)?;
+    let (mut rig, mut repairs) = (Rig::default(), Vec::new());
+    if soft::moves(&root) {
+        rig.nodes = tree.rig_nodes(&root)?;
+        rig.skins = skin::skins(&buffers, &tree)?;
+        clips::read(&buffers, &tree, &mut rig, &mut repairs)?;
+    }
     let mut loader = Loader::new(&buffers, &tree);
     for &node in &tree.shown {
-        loader.place(node)?;
+        loader.place(node, &rig)?;
     }
     let Loader { mut scene, notes, .. } = loader;
-    scene.notes = notes.into_iter().chain(omissions(&root)).collect();
+    scene.rig = rig;
+    if !scene.rig.is_empty() {
+        scene.rig.reach = pose::reach(&scene);
+    }
+    scene.notes = notes.into_iter().chain(repairs).chain(omissions(&root)).collect();
     if scene.instances.is_empty() {
         scene.notes.push("nothing to draw: the scene shows no triangles".into());
     }
@@ -58,7 +70,8 @@ fn check_images(buffers: &Buffers) -> Result<(), LoadError> {
 
 /// What the file has and the picture lacks.
 fn omissions(root: &json::Root) -> Vec<String> {
-    let mut notes: Vec<String> = root.extensions_used.iter().map(|name| format!("extension {} is ignored", quoted(name))).collect();
+    let ignored = root.extensions_used.iter().filter(|name| *name != container::QUANTIZATION);
+    let mut notes: Vec<String> = ignored.map(|name| format!("extension {} is ignored", quoted(name))).collect();
     let pbr = |material: &json::Material| material.pbr_metallic_roughness.base_color_texture.is_some();
     let any = [
         (root.materials.iter().any(pbr), "textures are not drawn yet, only base colour factors"),
@@ -66,26 +79,25 @@ fn omissions(root: &json::Root) -> Vec<String> {
             root.materials.iter().any(|m| m.alpha_mode != Checked::Valid(json::material::AlphaMode::Opaque)),
             "alpha is ignored: all surfaces are opaque",
         ),
-        (!root.animations.is_empty(), "animations are not played yet"),
-        (root.meshes.iter().flat_map(|mesh| &mesh.primitives).any(|p| p.targets.is_some()), "morph targets are not applied yet"),
     ];
     notes.extend(any.into_iter().filter(|(is_there, _)| *is_there).map(|(_, note)| note.to_owned()));
     notes
 }
 
-struct Loader<'a> {
-    buffers: &'a Buffers<'a>,
+pub(super) struct Loader<'a> {
+    pub(super) buffers: &'a Buffers<'a>,
     tree: &'a Tree,
-    scene: Scene,
+    pub(super) scene: Scene,
+    /// Attributes may be small integers.
+    pub(super) is_quantized: bool,
     notes: BTreeSet<String>,
     /// Where a view or a materialised accessor lies in the scene's bytes.
     vertex_places: HashMap<Source, u32>,
     index_places: HashMap<Source, u32>,
     /// What each primitive of the scene was read from.
-    origins: Vec<&'a json::mesh::Primitive>,
+    pub(super) origins: Vec<&'a json::mesh::Primitive>,
     /// Primitives of a mesh, once it was met.
     meshes: HashMap<usize, Range<usize>>,
-    poses: HashMap<usize, Pose>,
     default_material: Option<usize>,
     vertices: u64,
     triangles: u64,
@@ -105,20 +117,20 @@ impl<'a> Loader<'a> {
             buffers,
             tree,
             scene: Scene { materials, ..Scene::default() },
+            is_quantized: buffers.root.extensions_used.iter().any(|name| name == container::QUANTIZATION),
             notes: BTreeSet::new(),
             vertex_places: HashMap::new(),
             index_places: HashMap::new(),
             origins: Vec::new(),
             meshes: HashMap::new(),
-            poses: HashMap::new(),
             default_material: None,
             vertices: 0,
             triangles: 0,
         }
     }
 
-    /// Adds the instances of one node.
-    fn place(&mut self, node: usize) -> Result<(), LoadError> {
+    /// Adds the instances of one node. A mesh that a skin holds ignores its node: the joints place it.
+    fn place(&mut self, node: usize, rig: &Rig) -> Result<(), LoadError> {
         let about = &self.buffers.root.nodes[node];
         let Some(mesh) = about.mesh.map(|mesh| mesh.value()) else { return Ok(()) };
         let range = self.mesh(mesh)?;
@@ -127,66 +139,20 @@ impl<'a> Loader<'a> {
                 LoadError::new(format!("more than {} primitives are placed", limits::INSTANCES)).within(node_name(self.buffers.root, node))
             );
         }
-        match about.skin {
-            Some(skin) => self.place_skinned(range, skin.value()),
-            None => {
-                let world_from_object = self.tree.world_from_node[node];
-                self.scene.instances.extend(range.map(|primitive| Instance { primitive, world_from_object }));
-                Ok(())
-            }
-        }
-    }
-
-    /// A skinned mesh ignores its node: the joints place it.
-    fn place_skinned(&mut self, range: Range<usize>, skin: usize) -> Result<(), LoadError> {
-        let pose = match self.poses.remove(&skin) {
-            Some(pose) => pose,
-            None => Pose::at_rest(self.buffers, self.tree, skin)?,
-        };
-        self.notes.insert("skin: shown in bind pose".into());
+        let skin = about.skin.map(|skin| skin.value());
+        let place = (!rig.is_empty()).then(|| self.tree.place_of[node]);
         for primitive in range {
-            let (name, count) = (self.scene.primitives[primitive].name.clone(), self.scene.primitives[primitive].vertex_count());
-            let place = |error: LoadError| error.within(&name);
-            self.budget_vertices(count.into()).map_err(place)?;
-            let influences = self.influences(primitive, &pose).map_err(place)?;
-            let instance = match pose.common() {
-                Some(world_from_object) => Instance { primitive, world_from_object },
-                None => {
-                    Instance { primitive: self.bent(primitive, &pose, &influences).map_err(place)?, world_from_object: DMat4::IDENTITY }
-                }
-            };
-            self.scene.instances.push(instance);
+            if let Some(skin) = skin {
+                self.hold(primitive, skin, rig).map_err(|error| error.within(&self.scene.primitives[primitive].name))?;
+            }
+            let world_from_object = if skin.is_some() { DMat4::IDENTITY } else { self.tree.world_from_node[node] };
+            self.scene.instances.push(Instance { primitive, world_from_object, node: place, skin });
         }
-        self.poses.insert(skin, pose);
         Ok(())
     }
 
-    fn influences(&self, primitive: usize, pose: &Pose) -> Result<Influences, LoadError> {
-        let find = |semantic: Semantic| self.origins[primitive].attributes.get(&Checked::Valid(semantic)).map(|accessor| accessor.value());
-        let (Some(joints), Some(weights)) = (find(Semantic::Joints(0)), find(Semantic::Weights(0))) else {
-            return Err(LoadError::new("is placed by a skin, but lacks JOINTS_0 or WEIGHTS_0"));
-        };
-        let count = self.scene.primitives[primitive].vertex_count();
-        Influences::read(self.buffers, [joints, weights], count, pose.world_from_mesh.len())
-    }
-
-    /// A copy of a primitive with every vertex where its joints hold it, in world space.
-    fn bent(&mut self, primitive: usize, pose: &Pose, influences: &Influences) -> Result<usize, LoadError> {
-        let mut bent = self.scene.primitives[primitive].clone();
-        let (mut positions, mut normals) = (Vec::<[f32; 3]>::new(), Vec::<[f32; 3]>::new());
-        for vertex in 0..bent.vertex_count() {
-            let matrix = pose.world_from_vertex(influences.at(vertex));
-            let read =
-                |accessor: &Accessor| DVec3::from_array([0, 1, 2].map(|lane| accessor.value(&self.scene.vertex_bytes, vertex, lane)));
-            positions.push(matrix.transform_point3(read(&bent.positions)).as_vec3().into());
-            normals.push(bent_normal(&matrix, read(&bent.normals)).normalize_or(DVec3::Y).as_vec3().into());
-        }
-        bent.positions = self.append_vectors(&positions)?;
-        bent.normals = self.append_vectors(&normals)?;
-        measure(&self.scene, &mut bent).map_err(|error| error.within("bent by its skin"))?;
-        self.scene.primitives.push(bent);
-        self.origins.push(self.origins[primitive]);
-        Ok(self.scene.primitives.len() - 1)
+    pub(super) fn note(&mut self, note: String) {
+        self.notes.insert(note);
     }
 
     /// The primitives of a mesh; loads it when it is met for the first time.
@@ -221,8 +187,9 @@ impl<'a> Loader<'a> {
         let positions = attribute(Semantic::Positions).ok_or_else(|| plain(LoadError::new("has no POSITION")))?;
         let count = self.buffers.layout(positions).map_err(at("POSITION"))?.accessor.count;
         self.budget_vertices(count.into()).map_err(at("POSITION"))?;
-        let positions = self.attribute(positions, count, &[3], FLOAT).map_err(at("POSITION"))?;
-        let normals = attribute(Semantic::Normals).map(|a| self.attribute(a, count, &[3], FLOAT).map_err(at("NORMAL"))).transpose()?;
+        let (places, directions) = if self.is_quantized { (PLACES, DIRECTIONS) } else { (FLOAT, FLOAT) };
+        let positions = self.attribute(positions, count, &[3], places).map_err(at("POSITION"))?;
+        let normals = attribute(Semantic::Normals).map(|a| self.attribute(a, count, &[3], directions).map_err(at("NORMAL"))).transpose()?;
         let colors = attribute(Semantic::Colors(0)).map(|a| self.attribute(a, count, &[3, 4], COLOR).map_err(at("COLOR_0"))).transpose()?;
         let indices = about.indices.map(|a| self.indices(a.value()).map_err(at("indices"))).transpose()?;
         let corners = indices.map_or(count, |indices| indices.count);
@@ -239,6 +206,7 @@ impl<'a> Loader<'a> {
             bounds: Bounds::EMPTY,
             longest_edge: 0.0,
             sound_normals: false,
+            softness: Softness { shapes: self.shapes(about, count)?, ..Softness::default() },
         };
         check_indices(&self.scene, &primitive).map_err(at("indices"))?;
         measure(&self.scene, &mut primitive).map_err(at("POSITION"))?;
@@ -295,7 +263,13 @@ impl<'a> Loader<'a> {
     }
 
     /// Takes over an attribute of `count` vertices if its type is among those allowed.
-    fn attribute(&mut self, index: usize, count: u32, lanes: &[u32], kinds: &[(Component, bool)]) -> Result<Accessor, LoadError> {
+    pub(super) fn attribute(
+        &mut self,
+        index: usize,
+        count: u32,
+        lanes: &[u32],
+        kinds: &[(Component, bool)],
+    ) -> Result<Accessor, LoadError> {
         let layout = self.buffers.layout(index)?;
         let accessor = layout.accessor;
         if !lanes.contains(&accessor.lanes) || !kinds.contains(&(accessor.component, accessor.normalized)) {
@@ -304,6 +278,10 @@ impl<'a> Loader<'a> {
         if accessor.count != count {
             return Err(LoadError::new(format!("accessor {index} has {} elements for {count} vertices", accessor.count)));
         }
+        self.take_over(index)
+    }
+
+    pub(super) fn take_over(&mut self, index: usize) -> Result<Accessor, LoadError> {
         take_over(self.buffers, index, &mut self.vertex_places, &mut self.scene.vertex_bytes)
     }
 
@@ -326,7 +304,21 @@ impl<'a> Loader<'a> {
     }
 }
 
-const FLOAT: &[(Component, bool)] = &[(Component::F32, false)];
+pub(super) const FLOAT: &[(Component, bool)] = &[(Component::F32, false)];
+/// What KHR_mesh_quantization allows for positions.
+const PLACES: &[(Component, bool)] = &[
+    (Component::F32, false),
+    (Component::I8, false),
+    (Component::I8, true),
+    (Component::U8, false),
+    (Component::U8, true),
+    (Component::I16, false),
+    (Component::I16, true),
+    (Component::U16, false),
+    (Component::U16, true),
+];
+/// The same for normals.
+const DIRECTIONS: &[(Component, bool)] = &[(Component::F32, false), (Component::I8, true), (Component::I16, true)];
 const COLOR: &[(Component, bool)] = &[(Component::F32, false), (Component::U8, true), (Component::U16, true)];
 
 fn type_name(accessor: &Accessor) -> String {
@@ -380,7 +372,7 @@ fn append(bytes: &mut Vec<u8>, more: &[u8]) -> Result<u32, LoadError> {
     Ok(start)
 }
 
-fn check_finite(scene: &Scene, accessor: &Accessor) -> Result<(), LoadError> {
+pub(super) fn check_finite(scene: &Scene, accessor: &Accessor) -> Result<(), LoadError> {
     let value = |vertex, lane| accessor.value(&scene.vertex_bytes, vertex, lane);
     match (0..accessor.count).find(|&vertex| (0..accessor.lanes).any(|lane| !value(vertex, lane).is_finite())) {
         Some(vertex) => Err(LoadError::new(format!("vertex {vertex} is not finite"))),

@@ -4,14 +4,17 @@
 //! checked here, in 64-bit arithmetic and under the limits of [`limits`], before a byte is read. Attribute bytes are then
 //! taken over as they are. Every refusal is one sentence that names file, mesh, primitive and accessor.
 //!
-//! Read: triangle lists, strips and fans, any index width, interleaved and sparse accessors, base colour, vertex colours,
-//! the default scene's nodes and cameras. Named in [`Scene::notes`] and left out: points, lines, textures, animation.
+//! Read: triangle lists, strips and fans, any index width, interleaved, sparse and quantized accessors, base colour, vertex
+//! colours, the default scene's nodes and cameras, skins, morph targets and clips. Named in [`Scene::notes`] and left out:
+//! points, lines, textures.
 
 mod buffers;
+mod clips;
 mod container;
 mod meshes;
 mod nodes;
 mod skin;
+mod soft;
 mod uri;
 
 use std::{
@@ -44,6 +47,16 @@ pub mod limits {
     pub const NODE_DEPTH: usize = 256;
     /// Joints of a skin.
     pub const JOINTS: usize = 256;
+    /// Joints of all skins.
+    pub const ALL_JOINTS: usize = 1_000_000;
+    /// Morph targets of a mesh.
+    pub const SHAPES: usize = 256;
+    /// Morph weights of all nodes.
+    pub const WEIGHTS: usize = 4_000_000;
+    /// Channels of all clips.
+    pub const CHANNELS: usize = 262_144;
+    /// Key times and values of all clips.
+    pub const KEY_NUMBERS: usize = 16_000_000;
     /// Notes kept for the user.
     pub const NOTES: usize = 32;
 }

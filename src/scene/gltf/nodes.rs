@@ -1,12 +1,14 @@
 //! Nodes: the tree walked without recursion, world matrices in f64, and cameras.
 
-use glam::{DMat4, DQuat, DVec3};
+use glam::{DMat4, DVec3};
 use gltf::json::{self, camera::Type, validation::Checked};
 
-use super::{LoadError, called, limits};
+use super::{LoadError, called, limits, soft};
 use crate::scene::{
     Bounds, FileCamera,
     camera::{Camera, MIN_NEAR_M, Projection},
+    pose::unit,
+    rig::{Local, Node, Parts},
 };
 
 /// World matrix of every node, and the nodes that are shown.
@@ -14,6 +16,10 @@ pub struct Tree {
     pub world_from_node: Vec<DMat4>,
     /// Nodes of the default scene (else the first, else all), parents before children.
     pub shown: Vec<usize>,
+    /// All nodes, parents before children.
+    order: Vec<usize>,
+    /// Place of every node in that order.
+    pub place_of: Vec<usize>,
 }
 
 impl Tree {
@@ -24,7 +30,8 @@ impl Tree {
         let mut world_from_node = vec![DMat4::IDENTITY; root.nodes.len()];
         let all = visit(root, &roots, |node| {
             let parent = parents[node].map_or(DMat4::IDENTITY, |parent| world_from_node[parent]);
-            world_from_node[node] = parent * parent_from_node(&root.nodes[node]).map_err(|error| error.within(node_name(root, node)))?;
+            let local = local(&root.nodes[node]).map_err(|error| error.within(node_name(root, node)))?;
+            world_from_node[node] = parent * local.matrix();
             if world_from_node[node].is_finite() {
                 Ok(())
             } else {
@@ -35,7 +42,9 @@ impl Tree {
             return Err(LoadError::new("is its own ancestor").within(node_name(root, on_a_cycle(&parents, &all))));
         }
         let scene = root.scene.map(|scene| scene.value()).or((!root.scenes.is_empty()).then_some(0));
-        let Some(scene) = scene else { return Ok(Self { world_from_node, shown: all }) };
+        let mut place_of = vec![0; all.len()];
+        all.iter().enumerate().for_each(|(place, &node)| place_of[node] = place);
+        let Some(scene) = scene else { return Ok(Self { world_from_node, shown: all.clone(), order: all, place_of }) };
         let tops: Vec<usize> = root.scenes[scene].nodes.iter().map(|node| node.value()).collect();
         let mut listed = tops.clone();
         listed.sort_unstable();
@@ -46,7 +55,30 @@ impl Tree {
             return Err(LoadError::new(format!("{} is listed twice", node_name(root, pair[0]))).within(format!("scene {scene}")));
         }
         let shown = visit(root, &tops, |_| Ok(()))?;
-        Ok(Self { world_from_node, shown })
+        Ok(Self { world_from_node, shown, order: all, place_of })
+    }
+
+    /// The nodes as a rig has them.
+    pub fn rig_nodes(&self, root: &json::Root) -> Result<Vec<Node>, LoadError> {
+        let parents = parents(root)?;
+        let mut weights_in_all = 0;
+        let node = |&index: &usize| {
+            let node = &root.nodes[index];
+            let place = |error: LoadError| error.within(node_name(root, index));
+            let weights = soft::weights(root, node).map_err(place)?;
+            weights_in_all += weights.len();
+            if weights_in_all > limits::WEIGHTS {
+                let reason = format!("brings the nodes to {weights_in_all} morph weights; at most {} are read", limits::WEIGHTS);
+                return Err(place(LoadError::new(reason)));
+            }
+            Ok(Node {
+                name: node_name(root, index),
+                parent: parents[index].map(|parent| self.place_of[parent]),
+                rest: local(node).map_err(place)?,
+                weights,
+            })
+        };
+        self.order.iter().map(node).collect()
     }
 
     /// The cameras among the shown nodes. Their targets lie as far away as the middle of `bounds`.
@@ -104,12 +136,13 @@ fn visit(root: &json::Root, tops: &[usize], mut arrive: impl FnMut(usize) -> Res
     Ok(visited)
 }
 
-fn parent_from_node(node: &json::Node) -> Result<DMat4, LoadError> {
+/// Where a node stands in its parent.
+fn local(node: &json::Node) -> Result<Local, LoadError> {
     if let Some(matrix) = node.matrix {
         let matrix = DMat4::from_cols_array(&matrix.map(f64::from));
         let last_row = matrix.row(3);
         return if last_row == glam::DVec4::W {
-            Ok(matrix)
+            Ok(Local::Matrix(matrix))
         } else {
             Err(LoadError::new(format!("the last row of its matrix is {last_row}, not 0 0 0 1")))
         };
@@ -120,8 +153,8 @@ fn parent_from_node(node: &json::Node) -> Result<DMat4, LoadError> {
     if !(length.is_finite() && length > 0.0) {
         return Err(LoadError::new("its rotation is not a quaternion with a direction"));
     }
-    let rotation = DQuat::from_array(rotation.map(|v| v / length));
-    Ok(DMat4::from_scale_rotation_translation(vector(node.scale, DVec3::ONE), rotation, vector(node.translation, DVec3::ZERO)))
+    let (translation, scale) = (vector(node.translation, DVec3::ZERO), vector(node.scale, DVec3::ONE));
+    Ok(Local::Parts(Parts { translation, rotation: unit(rotation), scale }))
 }
 
 /// A camera looks along its node's -z with +y up; scale has no meaning for it.

@@ -1,0 +1,81 @@
+//! Clips: which movement of the scene plays, how fast, and which second one is blended in.
+
+use eframe::egui::{self, ComboBox, Ui};
+
+use super::{App, inspector::folder, theme};
+use crate::scene::{Scene, rig::Clip};
+
+impl App {
+    /// A folder for a scene that has clips; nothing for others.
+    pub(super) fn clips_ui(&mut self, ui: &mut Ui) {
+        let Some(scene) = self.stage.shown.as_ref().map(|(_, scene)| scene.clone()).filter(|scene| !scene.rig.clips.is_empty()) else {
+            return;
+        };
+        folder(ui, "Clips", true, |ui| {
+            clip_ui(ui, "scene.clip", "at rest", &scene, &mut self.look.session.play.clip);
+            let Some(clip) = scene.rig.clip(&self.look.session.play.clip) else { return };
+            self.key_ui(ui, "scene.clip_speed");
+            self.hold_ui(ui, &scene.rig.clips[clip]);
+            if scene.rig.clips.len() > 1 {
+                clip_ui(ui, "scene.clip_b", "no second clip", &scene, &mut self.look.session.play.other);
+            }
+            if !self.look.session.play.other.is_empty() {
+                self.key_ui(ui, "scene.blend");
+            }
+        });
+    }
+
+    /// Holds a moment of the clip, or lets it go with the clock, whose range may span it.
+    fn hold_ui(&mut self, ui: &mut Ui, clip: &Clip) {
+        let session = &mut self.look.session;
+        let (duration_s, speed) = (clip.duration_s, session.play.speed);
+        ui.horizontal(|ui| {
+            ui.set_min_height(theme::ROW);
+            ui.add_space(theme::GAP);
+            let mut is_held = session.play.pose_s.is_some();
+            let hold = ui.checkbox(&mut is_held, "Hold").on_hover_text("Shows one moment of the clip, whatever the clock says");
+            if hold.accessible_name("Hold the clip").clicked() {
+                let now_s = session.clock.time_s * speed;
+                let now_s = if duration_s > 0.0 { now_s.rem_euclid(duration_s) } else { 0.0 };
+                session.play.pose_s = is_held.then_some(now_s);
+            }
+            if let Some(pose_s) = &mut session.play.pose_s {
+                let slider = egui::Slider::new(pose_s, 0.0..=duration_s).suffix(" s").fixed_decimals(2);
+                ui.add(slider).on_hover_text("Moment of the clip").accessible_name("scene.pose_s");
+                return;
+            }
+            let wanted_s = [0.0, if speed == 0.0 { 0.0 } else { duration_s / speed.abs() }];
+            if wanted_s[1] > 0.0 && session.clock.range_s != wanted_s {
+                let button = ui.button("Clock spans the clip").on_hover_text(format!("The timeline runs from 0 to {:.2} s", wanted_s[1]));
+                if button.clicked() {
+                    session.clock.range_s = wanted_s;
+                }
+            } else {
+                ui.label(theme::weak(format!("{duration_s:.2} s")));
+            }
+        });
+    }
+}
+
+/// A menu of the scene's clips; `none` stands for the empty name.
+fn clip_ui(ui: &mut Ui, name: &str, none: &str, scene: &Scene, chosen: &mut String) {
+    let shown = if chosen.is_empty() { none.to_owned() } else { chosen.clone() };
+    ui.horizontal(|ui| {
+        ui.set_min_height(theme::ROW);
+        ui.add_space(theme::GAP);
+        let menu = ComboBox::from_id_salt(name).selected_text(shown).width(ui.available_width() - theme::GAP);
+        let menu = menu.show_ui(ui, |ui| {
+            ui.selectable_value(chosen, String::new(), none);
+            for (place, clip) in scene.rig.clips.iter().enumerate() {
+                // Of clips with one name, later ones go by their place.
+                let id = if scene.rig.clip(&clip.name) == Some(place) { clip.name.clone() } else { format!("#{place}") };
+                ui.selectable_value(chosen, id.clone(), id).on_hover_text(format!(
+                    "{:.2} s, {} channels",
+                    clip.duration_s,
+                    clip.channels.len()
+                ));
+            }
+        });
+        menu.response.accessible_name(name);
+    });
+}

@@ -1,0 +1,132 @@
+//! Bends: records for the pass that mixes shapes and follows joints. Twins of the structs in `shaders/common/bends.wgsl` and
+//! `shaders/slots/shapes/kept.wgsl`.
+
+use std::{collections::HashMap, ops::Range};
+
+use super::uniforms::{Twin, format_word, twin};
+use crate::scene::{Accessor, Scene, draw::Draw, pose::Palette, rig::Influences};
+
+twin! {
+    /// One draw that bends. Each member is explained in `shaders/common/bends.wgsl`.
+    pub struct BendRecord = "Bend" {
+        pub first: u32,
+        pub count: u32,
+        pub target_word: u32,
+        pub position_offset: u32,
+        pub position_stride: u32,
+        pub position_format: u32,
+        pub normal_offset: u32,
+        pub normal_stride: u32,
+        pub normal_format: u32,
+        pub first_joint: u32,
+        pub joints_offset: [u32; 2],
+        pub joints_stride: [u32; 2],
+        pub joints_format: [u32; 2],
+        pub weights_offset: [u32; 2],
+        pub weights_stride: [u32; 2],
+        pub weights_format: [u32; 2],
+        pub sets: u32,
+        pub joint_count: u32,
+        pub first_shape: u32,
+        pub shape_count: u32,
+    }
+}
+
+twin! {
+    /// One shape of one draw. Each member is explained in `shaders/slots/shapes/kept.wgsl`.
+    pub struct ShapeRecord = "Shape" {
+        pub weight: f32,
+        pub position_offset: u32,
+        pub position_stride: u32,
+        pub position_format: u32,
+        pub normal_offset: u32,
+        pub normal_stride: u32,
+        pub normal_format: u32,
+        pub spare: u32,
+    }
+}
+
+/// Bytes of a bent vertex: position and normal, three floats each.
+pub const BENT_BYTES: u32 = 24;
+
+/// Everything that the pass reads besides the scene's bytes.
+#[derive(Default)]
+pub struct Bends {
+    pub records: Vec<BendRecord>,
+    pub shapes: Vec<ShapeRecord>,
+    /// Joints: three vectors each, or five as dual quaternions.
+    pub joints: Vec<[f32; 4]>,
+}
+
+/// Where the bent vertices of a draw begin, in bytes.
+pub fn bent_offset(draw: &Draw, scene: &Scene) -> u32 {
+    scene.vertex_bytes.len() as u32 + BENT_BYTES * draw.first_soft
+}
+
+/// Which vertices, of all that may bend, a picture bends.
+pub fn bent_ranges(scene: &Scene, draws: &[Draw]) -> Vec<Range<u32>> {
+    let bent = draws.iter().filter(|draw| draw.bend.is_some());
+    bent.map(|draw| draw.first_soft..draw.first_soft + scene.primitives[draw.primitive].vertex_count()).collect()
+}
+
+impl Bends {
+    pub fn of(scene: &Scene, draws: &[Draw]) -> Self {
+        let mut bends = Self::default();
+        let mut known = HashMap::new();
+        for draw in draws {
+            bends.take(scene, draw, &mut known);
+        }
+        bends
+    }
+
+    fn take(&mut self, scene: &Scene, draw: &Draw, known: &mut HashMap<*const u8, u32>) {
+        let Some(bend) = &draw.bend else { return };
+        let primitive = &scene.primitives[draw.primitive];
+        let mut record = BendRecord {
+            first: draw.first_soft,
+            count: primitive.vertex_count(),
+            target_word: bent_offset(draw, scene) / 4,
+            position_offset: primitive.positions.offset,
+            position_stride: primitive.positions.stride,
+            position_format: format_word(&primitive.positions),
+            normal_offset: primitive.normals.offset,
+            normal_stride: primitive.normals.stride,
+            normal_format: format_word(&primitive.normals),
+            first_shape: self.shapes.len() as u32,
+            ..BendRecord::default()
+        };
+        if let Some(palette) = &bend.palette {
+            record.first_joint = self.joints_of(palette, known);
+            record.joint_count = palette.len() as u32;
+            let sets = &primitive.softness.influences;
+            record.sets = sets.len() as u32;
+            let each = |pick: fn(&Influences) -> u32| [0, 1].map(|set| sets.get(set).map_or(0, pick));
+            (record.joints_offset, record.weights_offset) = (each(|set| set.joints.offset), each(|set| set.weights.offset));
+            (record.joints_stride, record.weights_stride) = (each(|set| set.joints.stride), each(|set| set.weights.stride));
+            (record.joints_format, record.weights_format) = (each(|set| format_word(&set.joints)), each(|set| format_word(&set.weights)));
+        }
+        let shapes = bend.weights.iter().zip(&primitive.softness.shapes).filter(|(weight, _)| **weight != 0.0);
+        self.shapes.extend(shapes.map(|(&weight, shape)| {
+            let part = |accessor: Option<&Accessor>| accessor.map_or([0; 3], |a| [a.offset, a.stride, format_word(a)]);
+            let ([position_offset, position_stride, position_format], [normal_offset, normal_stride, normal_format]) =
+                (part(shape.positions.as_ref()), part(shape.normals.as_ref()));
+            ShapeRecord { weight, position_offset, position_stride, position_format, normal_offset, normal_stride, normal_format, spare: 0 }
+        }));
+        record.shape_count = self.shapes.len() as u32 - record.first_shape;
+        self.records.push(record);
+    }
+
+    /// Place of the first joint of a palette, which draws of one skin share.
+    fn joints_of(&mut self, palette: &Palette, known: &mut HashMap<*const u8, u32>) -> u32 {
+        let (bytes, vectors): (&[u8], usize) = match palette {
+            Palette::Linear(joints) => (bytemuck::cast_slice(joints), 3),
+            Palette::Dual(joints) => (bytemuck::cast_slice(joints), 5),
+        };
+        let joints = &mut self.joints;
+        *known.entry(bytes.as_ptr()).or_insert_with(|| {
+            let first = joints.len() / vectors;
+            joints.extend(bytemuck::pod_collect_to_vec::<u8, [f32; 4]>(bytes));
+            first as u32
+        })
+    }
+}

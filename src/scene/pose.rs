@@ -1,0 +1,351 @@
+//! Poses: where a moment of a clip puts every node, joint and shape of a scene, in f64 and rounded once.
+//!
+//! One pure function of scene, clips and time. What it gives is data like a placement: renderers and judges start from its
+//! bits, and each bends the vertices by itself.
+
+use std::sync::Arc;
+
+use glam::{DMat4, DQuat, DVec3};
+
+use super::palette::rounded_rows;
+pub use super::palette::{DualJoint, Joint, Palette};
+use super::{
+    Bounds, Primitive, Scene,
+    rig::{Interpolation, Local, Parts, Property, Rig, Sampler},
+};
+use crate::ladder::Skinning;
+
+/// Which moment of which clips.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Motion {
+    /// None: at rest.
+    pub clip: Option<usize>,
+    /// A second clip to blend with.
+    pub other: Option<usize>,
+    /// Share of the second clip, 0 to 1.
+    pub blend: f64,
+    /// Time in both clips; outside its keys a clip goes round.
+    pub time_s: f64,
+    pub skinning: Skinning,
+}
+
+/// A scene at a moment.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Pose {
+    /// Matrix of every instance.
+    places: Vec<DMat4>,
+    /// How every instance bends.
+    bends: Vec<Option<Bend>>,
+}
+
+/// What bends the vertices of an instance, before it is placed.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Bend {
+    /// Its joints; none without a skin.
+    pub palette: Option<Palette>,
+    /// Weights of its shapes, as many as it has.
+    pub weights: Arc<[f32]>,
+}
+
+impl Pose {
+    /// The pose of `scene`, whose rig must not be empty.
+    pub fn at(scene: &Scene, motion: &Motion) -> Self {
+        let rig = &scene.rig;
+        let mut state = State::at(rig, motion.clip, motion.time_s);
+        if let Some(other) = motion.other.filter(|_| motion.blend > 0.0) {
+            state.blend(&State::at(rig, Some(other), motion.time_s), motion.blend.min(1.0));
+        }
+        let mut scene_from_node: Vec<DMat4> = Vec::with_capacity(rig.nodes.len());
+        for (node, local) in rig.nodes.iter().zip(&state.locals) {
+            let parent = node.parent.map_or(DMat4::IDENTITY, |parent| scene_from_node[parent]);
+            scene_from_node.push(parent * local.matrix());
+        }
+        let palette = |skin: &super::rig::Skin| {
+            let matrices = skin.joints.iter().zip(&skin.joint_from_mesh).map(|(&node, inverse)| scene_from_node[node] * *inverse);
+            match motion.skinning {
+                Skinning::Linear => Palette::Linear(matrices.map(|matrix| rounded_rows(&matrix)).collect()),
+                Skinning::Dual => Palette::Dual(matrices.map(|matrix| DualJoint::of(&matrix)).collect()),
+            }
+        };
+        let palettes: Vec<Palette> = rig.skins.iter().map(palette).collect();
+        let bend = |instance: &super::Instance| {
+            let shapes = scene.primitives[instance.primitive].softness.shapes.len();
+            let palette = instance.skin.map(|skin| palettes[skin].clone());
+            let given = instance.node.map_or(&[][..], |node| &state.weights[node]);
+            let weights: Arc<[f32]> = (0..shapes).map(|shape| given.get(shape).copied().unwrap_or(0.0)).collect();
+            (palette.is_some() || weights.iter().any(|&weight| weight != 0.0)).then_some(Bend { palette, weights })
+        };
+        let place = |instance: &super::Instance| match (instance.skin, instance.node) {
+            // A mesh that a skin holds ignores its node.
+            (Some(_), _) => DMat4::IDENTITY,
+            (None, Some(node)) => scene_from_node[node],
+            (None, None) => instance.world_from_object,
+        };
+        Self { places: scene.instances.iter().map(place).collect(), bends: scene.instances.iter().map(bend).collect() }
+    }
+
+    /// The pose that no clip moves; none for a scene without a rig, whose placements say everything.
+    pub fn at_rest(scene: &Scene) -> Option<Self> {
+        (!scene.rig.is_empty()).then(|| Self::at(scene, &Motion::default()))
+    }
+
+    pub fn place(&self, instance: usize) -> DMat4 {
+        self.places[instance]
+    }
+
+    pub fn bend(&self, instance: usize) -> Option<&Bend> {
+        self.bends[instance].as_ref()
+    }
+
+    /// A box round the whole scene, before it is spun.
+    pub fn bounds(&self, scene: &Scene) -> Bounds {
+        let mut bounds = Bounds::EMPTY;
+        for ((instance, place), bend) in scene.instances.iter().zip(&self.places).zip(&self.bends) {
+            let primitive = &scene.primitives[instance.primitive];
+            let object = bend.as_ref().map_or(primitive.bounds, |bend| bend.bounds(primitive));
+            bounds.include_placed(place, &object, 0.0);
+        }
+        bounds
+    }
+}
+
+/// Box round samples of `scene`: its vertices at rest and at moments of its clips, not all of them where they are many. To
+/// frame by, not to rely on.
+pub fn reach(scene: &Scene) -> Bounds {
+    const MOMENTS: usize = 8;
+    const MOST_NODES: usize = 1_000_000;
+    const MOST_VERTICES: usize = 2_000_000;
+    // A file with thousands of clips over thousands of nodes is framed by the first of them.
+    let most = (MOST_NODES / (MOMENTS * (scene.rig.nodes.len() + scene.instances.len()).max(1))).max(1);
+    let moment = |clip: usize, moment: usize| Motion {
+        clip: Some(clip),
+        time_s: scene.rig.clips[clip].duration_s * (moment as f64 + 0.5) / MOMENTS as f64,
+        ..Motion::default()
+    };
+    let moments = (0..scene.rig.clips.len().min(most)).flat_map(|clip| (0..MOMENTS).map(move |at| moment(clip, at)));
+    let motions: Vec<Motion> = std::iter::once(Motion::default()).chain(moments).collect();
+    let stride = (scene.soft_vertex_count() as usize * motions.len()).div_ceil(MOST_VERTICES).max(1);
+    let mut reach = Bounds::EMPTY;
+    for motion in &motions {
+        let pose = Pose::at(scene, motion);
+        for (index, instance) in scene.instances.iter().enumerate() {
+            let (primitive, place) = (&scene.primitives[instance.primitive], pose.place(index));
+            let Some(bend) = pose.bend(index) else {
+                reach.include_placed(&place, &primitive.bounds, 0.0);
+                continue;
+            };
+            let vertices = (0..primitive.vertex_count()).step_by(stride);
+            vertices.for_each(|vertex| reach.include(place.transform_point3(bend.position(scene, primitive, vertex))));
+        }
+    }
+    reach
+}
+
+impl Bend {
+    /// Do its joints turn left into right, every one?
+    pub fn mirrors(&self) -> bool {
+        self.palette.as_ref().is_some_and(|palette| palette.matrices().all(|matrix| matrix.determinant() < 0.0))
+    }
+
+    /// A box round the bent mesh: a vertex lies between the places to which its joints take it, or, by dual quaternions, on
+    /// an arc over them.
+    pub fn bounds(&self, primitive: &Primitive) -> Bounds {
+        let softness = &primitive.softness;
+        let slack = self.weights.iter().zip(&softness.shapes).map(|(weight, shape)| f64::from(weight.abs()) * shape.reach).sum();
+        let mut bounds = Bounds::EMPTY;
+        let Some(palette) = &self.palette else {
+            bounds.include_placed(&DMat4::IDENTITY, &primitive.bounds, slack);
+            return bounds;
+        };
+        palette.matrices().zip(&softness.joint_bounds).for_each(|(matrix, held)| bounds.include_placed(&matrix, held, slack));
+        if matches!(palette, Palette::Dual(_)) && !bounds.is_empty() {
+            let bulge = bounds.radius();
+            (bounds.min, bounds.max) = (bounds.min - bulge, bounds.max + bulge);
+        }
+        bounds
+    }
+
+    /// Where a vertex goes, for whoever needs a place alone: shapes first, then the mean of its joints' matrices.
+    pub fn position(&self, scene: &Scene, primitive: &Primitive, vertex: u32) -> DVec3 {
+        let bytes = &scene.vertex_bytes;
+        let vector = |accessor: &super::Accessor| DVec3::from([0, 1, 2].map(|lane| accessor.value(bytes, vertex, lane)));
+        let shapes = self.weights.iter().zip(&primitive.softness.shapes).filter_map(|(w, shape)| Some((w, shape.positions.as_ref()?)));
+        let place = shapes.fold(vector(&primitive.positions), |place, (&weight, shape)| place + vector(shape) * f64::from(weight));
+        let Some(palette) = &self.palette else { return place };
+        let sets = primitive.softness.influences.iter();
+        let held = sets.flat_map(|set| {
+            [0, 1, 2, 3].map(|lane| (set.joints.integer(bytes, vertex, lane) as usize, set.weights.value(bytes, vertex, lane)))
+        });
+        let (mut sum, mut total, mut first) = (DVec3::ZERO, 0.0, None);
+        for (joint, weight) in held {
+            first.get_or_insert(joint);
+            sum += palette.matrix(joint).transform_point3(place) * weight;
+            total += weight;
+        }
+        if total > 0.0 { sum / total } else { first.map_or(place, |joint| palette.matrix(joint).transform_point3(place)) }
+    }
+}
+
+/// What clips change.
+struct State {
+    locals: Vec<Local>,
+    weights: Vec<Vec<f32>>,
+}
+
+impl State {
+    fn at(rig: &Rig, clip: Option<usize>, time_s: f64) -> Self {
+        let mut state = Self {
+            locals: rig.nodes.iter().map(|node| node.rest).collect(),
+            weights: rig.nodes.iter().map(|n| n.weights.clone()).collect(),
+        };
+        let Some(clip) = clip.and_then(|clip| rig.clips.get(clip)) else { return state };
+        let inside = (0.0..=clip.duration_s).contains(&time_s);
+        let time_s = if inside || clip.duration_s <= 0.0 { time_s } else { time_s.rem_euclid(clip.duration_s) };
+        for channel in &clip.channels {
+            let sampler = &rig.samplers[channel.sampler];
+            if channel.property == Property::Weights {
+                let value = |lane| sampler.value(lane, time_s) as f32;
+                state.weights[channel.node] = (0..sampler.lanes).map(value).collect();
+                continue;
+            }
+            let Local::Parts(parts) = &mut state.locals[channel.node] else { continue };
+            let vector = || DVec3::from([0, 1, 2].map(|lane| sampler.value(lane, time_s)));
+            match channel.property {
+                Property::Translation => parts.translation = vector(),
+                Property::Scale => parts.scale = vector(),
+                Property::Rotation => parts.rotation = sampler.rotation(time_s),
+                Property::Weights => unreachable!("weights were set above"),
+            }
+        }
+        state
+    }
+
+    fn blend(&mut self, other: &Self, share: f64) {
+        for (a, b) in self.locals.iter_mut().zip(&other.locals) {
+            if let (Local::Parts(a), Local::Parts(b)) = (a, b) {
+                *a = Parts {
+                    translation: a.translation.lerp(b.translation, share),
+                    rotation: slerp(a.rotation, b.rotation, share),
+                    scale: a.scale.lerp(b.scale, share),
+                };
+            }
+        }
+        for (a, b) in self.weights.iter_mut().flatten().zip(other.weights.iter().flatten()) {
+            *a = (f64::from(*a) + (f64::from(*b) - f64::from(*a)) * share) as f32;
+        }
+    }
+}
+
+impl Sampler {
+    /// The key at or before a moment, and how far it is to the next: a share and the seconds between them; none outside
+    /// the keys, where the nearest one holds.
+    fn segment(&self, time_s: f64) -> (usize, Option<(f64, f64)>) {
+        let next = self.times.partition_point(|&time| f64::from(time) <= time_s);
+        if next == 0 || next == self.times.len() {
+            return (next.saturating_sub(1), None);
+        }
+        let [from, to] = [next - 1, next].map(|key| f64::from(self.times[key]));
+        (next - 1, Some(((time_s - from) / (to - from), to - from)))
+    }
+
+    /// A number of a key: `part` 0 is the tangent that comes in, 1 the value, 2 the tangent that goes out.
+    fn number(&self, key: usize, part: usize, lane: usize) -> f64 {
+        let at = if self.interpolation == Interpolation::Cubic { 3 * key + part } else { key };
+        self.values[at * self.lanes + lane].into()
+    }
+
+    /// One lane at a moment (glTF 2.0, appendix C).
+    pub fn value(&self, lane: usize, time_s: f64) -> f64 {
+        let (key, segment) = self.segment(time_s);
+        let a = self.number(key, 1, lane);
+        let Some((t, seconds)) = segment else { return a };
+        match self.interpolation {
+            Interpolation::Step => a,
+            Interpolation::Linear => a + (self.number(key + 1, 1, lane) - a) * t,
+            Interpolation::Cubic => {
+                let (out, into, b) = (self.number(key, 2, lane), self.number(key + 1, 0, lane), self.number(key + 1, 1, lane));
+                let (t2, t3) = (t * t, t * t * t);
+                (2.0 * t3 - 3.0 * t2 + 1.0) * a
+                    + seconds * (t3 - 2.0 * t2 + t) * out
+                    + (3.0 * t2 - 2.0 * t3) * b
+                    + seconds * (t3 - t2) * into
+            }
+        }
+    }
+
+    /// A rotation at a moment: linear ones go the short way round at one speed.
+    pub fn rotation(&self, time_s: f64) -> DQuat {
+        let (key, segment) = self.segment(time_s);
+        match (self.interpolation, segment) {
+            (Interpolation::Linear, Some((share, _))) => {
+                let [a, b] = [key, key + 1].map(|key| unit([0, 1, 2, 3].map(|lane| self.number(key, 1, lane))));
+                slerp(a, b, share)
+            }
+            _ => unit([0, 1, 2, 3].map(|lane| self.value(lane, time_s))),
+        }
+    }
+}
+
+/// A quaternion's direction; a spline may pass through zero, which turns nothing.
+pub fn unit(q: [f64; 4]) -> DQuat {
+    let largest = q.iter().fold(0.0, |most: f64, v| most.max(v.abs()));
+    if !(largest > 0.0 && largest.is_finite()) {
+        return DQuat::IDENTITY;
+    }
+    let q = q.map(|v| v / largest);
+    let length = q.iter().map(|v| v * v).sum::<f64>().sqrt();
+    DQuat::from_array(q.map(|v| v / length))
+}
+
+/// From `a` to `b` the short way, at one speed (Shoemake 1985). Without a platform's sine: every host gives the same bits.
+fn slerp(a: DQuat, b: DQuat, share: f64) -> DQuat {
+    let b = if a.dot(b) < 0.0 { -b } else { b };
+    let (apart, together) = ((a - b).length(), (a + b).length());
+    let angle = 2.0 * libm::atan2(apart, together);
+    let (from, to) = if angle < 1e-8 {
+        (1.0 - share, share)
+    } else {
+        let whole = libm::sin(angle);
+        (libm::sin((1.0 - share) * angle) / whole, libm::sin(share * angle) / whole)
+    };
+    unit((a * from + b * to).to_array())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn sampler(interpolation: Interpolation, lanes: usize, values: &[f32]) -> Sampler {
+        Sampler { interpolation, times: vec![1.0, 3.0], values: values.into(), lanes }
+    }
+
+    #[test]
+    fn every_interpolation_meets_its_keys_and_holds_outside_them() {
+        let cubic = [9.0, 2.0, 0.5, -1.0, 6.0, 9.0];
+        for (interpolation, values, middle) in [
+            (Interpolation::Step, &[2.0, 6.0][..], 2.0),
+            (Interpolation::Linear, &[2.0, 6.0], 4.0),
+            // Half way: (2 + 6) / 2 + 2 s (0.5 - (-1)) / 8.
+            (Interpolation::Cubic, &cubic, 4.375),
+        ] {
+            let sampler = sampler(interpolation, 1, values);
+            let at = |time_s| sampler.value(0, time_s);
+            assert_eq!([at(-1.0), at(1.0), at(2.0), at(3.0), at(9.0)], [2.0, 2.0, middle, 6.0, 6.0], "{interpolation:?}");
+        }
+    }
+
+    #[test]
+    fn a_rotation_goes_the_short_way_at_one_speed_and_stays_a_unit() {
+        let (sin, cos) = libm::sincos(0.6);
+        // The same rotation as (sin, 0, 0, cos), named by its opposite, and three times as long.
+        let turn = [0.0, 0.0, 0.0, 1.0, -3.0 * sin as f32, 0.0, 0.0, -3.0 * cos as f32];
+        let sampler = sampler(Interpolation::Linear, 4, &turn);
+        for step in 0..=8 {
+            let share = f64::from(step) / 8.0;
+            let q = sampler.rotation(1.0 + 2.0 * share);
+            let (sin, cos) = libm::sincos(0.6 * share);
+            assert!((q.x.abs() - sin).abs() < 1e-7 && (q.w.abs() - cos).abs() < 1e-7 && q.x * q.w >= 0.0, "{share}: {q}");
+            assert!((q.length_squared() - 1.0).abs() < 1e-14);
+        }
+    }
+}
