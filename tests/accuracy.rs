@@ -282,7 +282,7 @@ fn mutants() -> Vec<Mutant> {
             sizes(),
             OWNERS,
         ),
-        mutant("affine weights", "common/shade", "let share = e * inv_w;", "let share = e;", receding(), COLORS),
+        mutant("affine weights", "common/shade", "let share = select(e * inv_w, e, IS_AFFINE);", "let share = e;", receding(), COLORS),
         mutant(
             "the larger id wins ties",
             "slots/visibility/split32_owner",

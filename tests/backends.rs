@@ -52,7 +52,7 @@ fn is_drawn_by(renderer: &Renderer, stems: &[&str]) {
 #[test]
 fn the_scenes_of_these_tests_include_every_builtin() {
     for builtin in BUILTINS {
-        assert!(SCENES.iter().any(|query| query.split('?').next() == Some(builtin.name)), "{} is not tested", builtin.name);
+        assert!(SCENES.iter().chain(BENT_SCENES).any(|query| query.split('?').next() == Some(builtin.name)), "{} is not tested", builtin.name);
     }
 }
 
@@ -63,7 +63,7 @@ fn every_exact_backend_gives_the_same_owners_and_keys() {
     if !rungs.contains(&Visibility::Packed64) {
         eprintln!("NOT RUN: this adapter has no 64-bit atomics, so there is no packed64 to compare with");
     }
-    for query in SCENES {
+    for query in SCENES.iter().chain(BENT_SCENES) {
         let scene = scene(query);
         let view = view(&scene, SIZE);
         for tuning in [renderer.gpu().caps.tuning(), GRAPHICS_CARD] {

@@ -2,7 +2,7 @@
 //! not; what was measured is held against them and a wrong prediction is shown.
 
 use crate::{
-    ladder::{AXES, Clipping, Coverage, Depth, Perspective, Rung, Rungs, Sums, Vertex},
+    ladder::{AXES, Clipping, Coverage, Depth, Perspective, Rung, Rungs, Sums, Vertex, Visibility},
     scene::needs::Needs,
 };
 
@@ -36,6 +36,7 @@ pub fn predict(axis: usize, place: usize, needs: &Needs) -> Prediction {
         Perspective::AXIS => perspective(Perspective::at(place), needs),
         Clipping::AXIS => clipping(Clipping::at(place), needs),
         Sums::AXIS => sums(Sums::at(place), needs),
+        Visibility::AXIS => visibility(Visibility::at(place), needs),
         _ => Prediction::default(),
     }
 }
@@ -98,6 +99,20 @@ fn perspective(rung: Perspective, needs: &Needs) -> Prediction {
         Perspective::Affine if !needs.perspective => Prediction::default(),
         // An attribute errs by at most (sqrt(ratio) - 1) / (sqrt(ratio) + 1) of its span within a triangle.
         Perspective::Affine => Prediction { wrong_ppm: 0.0, channel: 255.0 * ((ratio.sqrt() - 1.0) / (ratio.sqrt() + 1.0)).min(1.0) },
+    }
+}
+
+fn visibility(rung: Visibility, needs: &Needs) -> Prediction {
+    match rung {
+        // Of 28 bits of a depth below 1, five for the exponent, ids leave what remains of the word.
+        Visibility::Packed32 => {
+            let lost = (64 - (needs.triangles | 1).leading_zeros()).saturating_sub(4);
+            let [nearest, farthest] = needs.depth_m;
+            let step_m = needs.relative_m(farthest) * libm::exp2(f64::from(lost) - 23.0);
+            Prediction::wrong(1e6 * (step_m / (farthest - nearest).max(f64::MIN_POSITIVE)).min(1.0))
+        }
+        Visibility::Race => Prediction::wrong(f64::INFINITY),
+        Visibility::Split32 | Visibility::Packed64 | Visibility::Tiled => Prediction::default(),
     }
 }
 

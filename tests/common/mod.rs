@@ -42,6 +42,9 @@ pub const SCENES: &[&str] = &[
     "near",
 ];
 
+/// Scenes whose meshes bend, which the strict vertex stage refuses.
+pub const BENT_SCENES: &[&str] = &["tentacle?tess=3"];
+
 /// The adapter under test: `RASTERLAB_ADAPTER` (a part of its name) or the best there is. A missing one fails the test;
 /// only `RASTERLAB_GPU=skip` leaves GPU tests out, and says so.
 pub fn gpu() -> Option<Arc<Gpu>> {
