@@ -52,7 +52,11 @@ fn is_drawn_by(renderer: &Renderer, stems: &[&str]) {
 #[test]
 fn the_scenes_of_these_tests_include_every_builtin() {
     for builtin in BUILTINS {
-        assert!(SCENES.iter().chain(BENT_SCENES).any(|query| query.split('?').next() == Some(builtin.name)), "{} is not tested", builtin.name);
+        assert!(
+            SCENES.iter().chain(BENT_SCENES).any(|query| query.split('?').next() == Some(builtin.name)),
+            "{} is not tested",
+            builtin.name
+        );
     }
 }
 
