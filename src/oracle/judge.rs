@@ -252,7 +252,7 @@ fn strict_fault(adapter: &SnappedVertex, own: &SnappedVertex) -> VertexFault {
     VertexFault { delta, snap_is_outside, attribute_is_outside: bits(adapter) != bits(own), ..Default::default() }
 }
 
-/// How far a float renderer may place every record from [`project_moved`], in units and before it rounds; none
+/// How far a float renderer may place every record from [`super::project_moved`], in units and before it rounds; none
 /// where rounding may move it anywhere.
 pub fn snap_bounds(scene: &Scene, draws: &[Draw], view: &View, stack: &Stack) -> Vec<Option<[f64; 2]>> {
     let of_draw = |draw: &Draw| {
