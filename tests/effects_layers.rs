@@ -377,7 +377,7 @@ fn mutants() -> Vec<Mutant> {
     vec![
         mutant(
             "sums of 8 bits",
-            "slots/visibility/sum",
+            "slots/totals/four32",
             "* f32(whole))) * weight",
             "* 255.0)) * (whole / 255u) * weight",
             &["xray"],
@@ -385,9 +385,9 @@ fn mutants() -> Vec<Mutant> {
         ),
         mutant(
             "count 1 for a merged group",
-            "slots/visibility/sum",
+            "slots/totals/four32",
             "let before = sums_add(pixel, 3u, weight);",
-            "let before = sums_add(pixel, 3u, select(weight, 0u, id % 32u == 31u));",
+            "let before = sums_add(pixel, 3u, select(weight, 0u, pixel % 32u == 31u));",
             &["xray"],
             COUNTS,
         ),
