@@ -132,7 +132,7 @@ mod tests {
     #[test]
     fn hash_gives_its_published_values() {
         assert_eq!((hash(1), hash(0xdead_beef)), (0x6889_90c0, 0xe628_c683));
-        assert_eq!((fnv1a(&[]), fnv1a(&[u32::from_le_bytes(*b"foob")])), (0xcbf2_9ce4_8422_2325, 0x3f5d_3f6f_9f10_aa6a));
+        assert_eq!((fnv1a(&[]), fnv1a(&[u32::from_le_bytes(*b"foob")])), (0xcbf2_9ce4_8422_2325, 0xdd12_0e79_0c25_12af));
     }
 
     #[test]

@@ -92,7 +92,7 @@ pub const BUILTINS: &[Builtin] = &[
             whole("joints", "joints of the chain", 8.0, 1.0..=128.0),
             whole("influences", "most joints that hold a vertex", 4.0, 1.0..=8.0),
             whole("tess", "fineness; one has 16 * tess * (tess + 2) triangles and two caps", 8.0, 1.0..=128.0),
-            whole("instances", "how many, each with joints of its own", 1.0, 1.0..=10_000.0),
+            whole("instances", "how many, each with joints of its own", 1.0, 1.0..=5_000.0),
         ],
         build: tentacle::build,
     },
