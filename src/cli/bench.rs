@@ -18,9 +18,10 @@ use crate::{
         Capture,
         bench::{BenchOptions, BenchRow, bench, bench_stacks},
     },
+    measure::Verdict,
     oracle,
     preset::Look,
-    scene::Scene,
+    scene::{Scene, camera::View},
     session::SceneSource,
 };
 
@@ -39,11 +40,7 @@ pub fn run(common: &Common, args: &Bench, streams: &mut Streams) -> Result<Exit,
     for (look, scene) in &subjects {
         let session = &look.session.posed();
         let view = session.view(scene, args.size);
-        let judge = |stack: &Stack, capture: &Capture| {
-            let (layers, previous) = (capture.layers.as_deref(), capture.previous.as_deref());
-            oracle::judge_after(scene, &view, stack, &capture.frame, &capture.geometry, layers, previous)
-                .expect("a scene that was drawn can be judged")
-        };
+        let judge = judge(scene, &view);
         let mut progress = |what: &str, done: usize, all: usize| {
             bar.set_length(all as u64);
             bar.set_position(done as u64);
@@ -61,6 +58,15 @@ pub fn run(common: &Common, args: &Bench, streams: &mut Streams) -> Result<Exit,
     let broken: Vec<_> = rows.iter().filter(|row| row.is_promised && !row.error.keeps_the_promise()).collect();
     broken.iter().for_each(|row| streams.note(&format!("{} on {}: the error exceeds the promise", row.scene, row.rung)));
     Ok(Exit::failed_if(!broken.is_empty()))
+}
+
+/// The oracle's judgement of what an adapter drew of `scene` seen through `view`.
+pub fn judge<'a>(scene: &'a Scene, view: &'a View) -> impl Fn(&Stack, &Capture) -> Verdict + use<'a> {
+    move |stack, capture| {
+        let (layers, previous) = (capture.layers.as_deref(), capture.previous.as_deref());
+        oracle::judge_after(scene, view, stack, &capture.frame, &capture.geometry, layers, previous)
+            .expect("a scene that was drawn can be judged")
+    }
 }
 
 /// Rows in the format that was asked for, and how they were measured.

@@ -1,63 +1,22 @@
 //! `bench --axes`: every combination of rungs on chosen axes of the accuracy ladder, milliseconds beside error.
 
-use std::sync::Arc;
-
 use serde_json::Value;
 
 use super::{
-    args::Bench,
-    bench::{present, subjects},
+    args::{Bench, Common},
+    bench::{judge, present, subjects},
     fault::{Exit, Fault},
     painter::Painter,
     streams::Streams,
 };
 use crate::{
-    effects::Stack,
-    frame::Frame,
-    gpu::{
-        Capture,
-        trade::{AS_PLANNED, TradeOptions, TradeRow, Truth, trade},
-    },
+    gpu::trade::{AS_PLANNED, TradeError, TradeOptions, TradeRow, Truth, trade},
     ladder::{AXES, Axis},
-    measure::Verdict,
     oracle,
     preset::form::did_you_mean,
-    scene::{Scene, camera::View},
 };
 
-/// The oracle as the bench knows it: one picture, on the finest grid, and a judge.
-pub struct Oracle {
-    scene: Arc<Scene>,
-    view: View,
-    stack: Stack,
-    picture: Frame,
-}
-
-impl Oracle {
-    /// Draws the true picture, which takes its time.
-    ///
-    /// # Errors
-    /// When a placement or the number of triangles exceeds what the arithmetic holds.
-    pub fn new(scene: &Arc<Scene>, view: View, stack: Stack) -> Result<Self, crate::scene::draw::DrawError> {
-        let picture = oracle::render_finest(scene, &view, &stack)?;
-        Ok(Self { scene: scene.clone(), view, stack, picture })
-    }
-}
-
-impl Truth for Oracle {
-    fn picture(&self) -> &Frame {
-        &self.picture
-    }
-
-    fn judge(&self, capture: &Capture) -> Verdict {
-        let Self { scene, view, stack, .. } = self;
-        let (layers, previous) = (capture.layers.as_deref(), capture.previous.as_deref());
-        oracle::judge_after(scene, view, stack, &capture.frame, &capture.geometry, layers, previous)
-            .expect("a scene that was drawn can be judged")
-    }
-}
-
-pub fn run(common: &super::args::Common, args: &Bench, streams: &mut Streams) -> Result<Exit, Fault> {
+pub fn run(common: &Common, args: &Bench, streams: &mut Streams) -> Result<Exit, Fault> {
     let axes = axes(&args.axes)?;
     let options = TradeOptions { size: args.size, samples: args.samples as usize, axes, is_each_alone: args.each };
     let subjects = subjects(common, args)?;
@@ -70,14 +29,23 @@ pub fn run(common: &super::args::Common, args: &Bench, streams: &mut Streams) ->
     for (look, scene) in &subjects {
         let session = &look.session.posed();
         bar.set_message("the oracle draws");
-        let truth = Oracle::new(scene, session.view(scene, args.size), session.stack.clone())?;
+        let view = session.view(scene, args.size);
+        let picture = oracle::render_finest(scene, &view, &session.stack)?;
         let mut progress = |what: &str, done: usize, all: usize| {
             bar.set_length(all as u64);
             bar.set_position(done as u64);
             bar.set_message(what.to_owned());
             true
         };
-        rows.extend(trade(gpu, session, scene, &look.id, &options, &truth, &mut progress)?);
+        rows.extend(trade(
+            gpu,
+            session,
+            scene,
+            &look.id,
+            &options,
+            &Truth { picture: &picture, judge: &judge(scene, &view) },
+            &mut progress,
+        )?);
     }
     bar.finish_and_clear();
     let results = || rows.iter().map(serde_json::to_value).collect::<Result<Vec<Value>, _>>().map_err(Fault::usage);
@@ -164,7 +132,7 @@ fn lines(rows: &[TradeRow]) -> Vec<Vec<String>> {
     let not_measured = || "not measured".to_owned();
     let ms = |ms: Option<f64>| ms.map_or_else(not_measured, |ms| format!("{ms:.4}"));
     lines.extend(rows.iter().map(|row| {
-        let figure = |figure: &dyn Fn(&crate::gpu::trade::TradeError) -> String| row.error.as_ref().map_or_else(not_measured, figure);
+        let figure = |figure: &dyn Fn(&TradeError) -> String| row.error.as_ref().map_or_else(not_measured, figure);
         vec![
             row.scene.clone(),
             row.triangles.to_string(),

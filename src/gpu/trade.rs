@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use super::{Capture, Gpu, RenderError, Renderer, timer::Detail};
+use super::{Capture, Gpu, RenderError, Renderer, bench::Judge, timer::Detail};
 use crate::{
     frame::Frame,
     ladder::{AXES, Axis, Pins},
@@ -73,12 +73,11 @@ pub struct TradeRow {
     pub note: Option<String>,
 }
 
-/// Who knows the truth: the oracle, which this room never sees.
-pub trait Truth {
-    /// The picture on the finest grid that holds it.
-    fn picture(&self) -> &Frame;
-    /// The judgement of what an adapter drew.
-    fn judge(&self, capture: &Capture) -> Verdict;
+/// What pictures are held against: the oracle's, which this room never sees.
+pub struct Truth<'a> {
+    /// The picture on the oracle's finest grid.
+    pub picture: &'a Frame,
+    pub judge: Judge<'a>,
 }
 
 /// A combination with what has been measured of it.
@@ -92,8 +91,8 @@ struct Entry {
     invalid: usize,
 }
 
-/// Measures every combination of rungs on the chosen axes. `progress` gets what is going on, steps done and all steps, and
-/// answers whether to go on; stopped early, what has been timed so far is returned.
+/// Measures every combination of rungs on the chosen axes, held against `truth`. `progress` gets what is going
+/// on, steps done and all steps, and answers whether to go on; stopped early, what has been timed so far is returned.
 ///
 /// # Errors
 /// When the device is lost or the scene does not fit. What a combination cannot draw becomes its row's note.
@@ -103,7 +102,7 @@ pub fn trade(
     scene: &Arc<Scene>,
     scene_name: &str,
     options: &TradeOptions,
-    truth: &dyn Truth,
+    truth: &Truth,
     progress: &mut dyn FnMut(&str, usize, usize) -> bool,
 ) -> Result<Vec<TradeRow>, RenderError> {
     const WARM_UP: usize = 3;
@@ -188,14 +187,14 @@ fn words(pins: &Pins, axes: &[&'static Axis]) -> String {
 
 impl Entry {
     /// Draws twice and measures the error.
-    fn new(gpu: &Arc<Gpu>, session: &Session, scene: &Arc<Scene>, view: View, pins: Pins, truth: &dyn Truth) -> Result<Self, RenderError> {
+    fn new(gpu: &Arc<Gpu>, session: &Session, scene: &Arc<Scene>, view: View, pins: Pins, truth: &Truth) -> Result<Self, RenderError> {
         let mut renderer = Renderer::new(gpu.clone());
         renderer.set_scene(scene)?;
         let accuracy = Accuracy { pins, ..session.accuracy };
         let first = renderer.capture(&view, &session.stack, &accuracy)?;
         let second = renderer.capture(&view, &session.stack, &accuracy)?;
         let bytes = renderer.explain().buffers.iter().map(|buffer| buffer.bytes).sum();
-        let error = TradeError::of(&first, &second.frame, &truth.judge(&first), truth.picture());
+        let error = TradeError::of(&first, &second.frame, &(truth.judge)(&session.stack, &first), truth.picture);
         Ok(Self { pins, view, renderer, error, bytes, ms: Vec::new(), invalid: 0 })
     }
 

@@ -5,38 +5,15 @@ use std::sync::Arc;
 use super::{Metric, Point, Progress, Question, SAMPLES};
 use crate::{
     effects::Stack,
-    frame::Frame,
     gpu::{
         Capture, Gpu,
         device::AdapterChoice,
         trade::{TradeOptions, TradeRow, Truth, trade},
     },
     ladder::{Axis, Pins},
-    measure::Verdict,
     oracle,
-    scene::{Scene, camera::View},
+    scene::Scene,
 };
-
-/// The oracle as the bench knows it.
-struct Oracle<'a> {
-    scene: &'a Scene,
-    view: View,
-    stack: &'a Stack,
-    picture: Frame,
-}
-
-impl Truth for Oracle<'_> {
-    fn picture(&self) -> &Frame {
-        &self.picture
-    }
-
-    fn judge(&self, capture: &Capture) -> Verdict {
-        let Self { scene, view, stack, .. } = self;
-        let (layers, previous) = (capture.layers.as_deref(), capture.previous.as_deref());
-        oracle::judge_after(scene, view, stack, &capture.frame, &capture.geometry, layers, previous)
-            .expect("a scene that was drawn can be judged")
-    }
-}
 
 /// Measures every combination, on a device of its own.
 ///
@@ -48,10 +25,15 @@ pub fn measure(adapter: String, scene: &Arc<Scene>, question: &Question, progres
     let gpu = Gpu::open(&AdapterChoice::Named(adapter)).map_err(|e| e.to_string())?;
     let view = session.view(scene, *size);
     let picture = oracle::render_finest(scene, &view, &session.stack).map_err(|e| e.to_string())?;
-    let truth = Oracle { scene, view, stack: &session.stack, picture };
+    let judge = |stack: &Stack, capture: &Capture| {
+        let (layers, previous) = (capture.layers.as_deref(), capture.previous.as_deref());
+        oracle::judge_after(scene, &view, stack, &capture.frame, &capture.geometry, layers, previous)
+            .expect("a scene that was drawn can be judged")
+    };
     let options = TradeOptions { size: *size, samples: SAMPLES, axes: axes.clone(), is_each_alone: false };
     let mut tell = |what: &str, done: usize, all: usize| progress.tell(done, all, what);
-    let rows = trade(&gpu, session, scene, title, &options, &truth, &mut tell).map_err(|e| e.to_string())?;
+    let rows =
+        trade(&gpu, session, scene, title, &options, &Truth { picture: &picture, judge: &judge }, &mut tell).map_err(|e| e.to_string())?;
     Ok(rows.into_iter().map(|row| point(row, axes)).collect())
 }
 
