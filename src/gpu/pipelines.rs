@@ -1,6 +1,12 @@
-//! Pipelines by key: built once, kept; a switch back to a known key compiles nothing.
+//! Pipelines by key: built once, kept; a switch back to a known key compiles nothing, unless very many came in between.
 
-use std::{collections::HashMap, sync::Arc};
+use std::{
+    collections::HashMap,
+    sync::{
+        Arc,
+        atomic::{AtomicU64, Ordering},
+    },
+};
 
 use super::{Gpu, RenderError};
 use crate::{
@@ -19,7 +25,12 @@ pub struct Pipeline {
     pipeline: wgpu::ComputePipeline,
     layout: wgpu::BindGroupLayout,
     bindings: Vec<Binding>,
+    /// When it was asked for last, by the cache's own count.
+    used: AtomicU64,
 }
+
+/// Pipelines that are kept on a graphics card, and on a CPU adapter, whose compiled kernels take 10 MB and more each.
+const MOST_KEPT: [usize; 2] = [1024, 96];
 
 /// What tells one pipeline from another: its text and its constants.
 #[derive(Clone, PartialEq, Eq, Hash)]
@@ -35,11 +46,14 @@ pub struct Pipelines {
     library: Library,
     known: HashMap<(KernelKey, Pass), Arc<Pipeline>>,
     built: HashMap<Identity, Arc<Pipeline>>,
+    compiled: usize,
+    /// Counts what was asked for.
+    clock: u64,
 }
 
 impl Pipelines {
     pub fn new(library: Library) -> Self {
-        Self { library, known: HashMap::new(), built: HashMap::new() }
+        Self { library, known: HashMap::new(), built: HashMap::new(), compiled: 0, clock: 0 }
     }
 
     /// Where the shaders come from.
@@ -49,13 +63,13 @@ impl Pipelines {
 
     /// Number of pipelines compiled so far.
     pub fn compiled(&self) -> usize {
-        self.built.len()
+        self.compiled
     }
 
     /// The pipeline of a pass; compiles it at first use.
     pub fn get(&mut self, gpu: &Gpu, key: &KernelKey, pass: Pass) -> Result<Arc<Pipeline>, RenderError> {
-        if let Some(pipeline) = self.known.get(&(key.clone(), pass)) {
-            return Ok(pipeline.clone());
+        if let Some(pipeline) = self.known.get(&(key.clone(), pass)).cloned() {
+            return Ok(self.marked(pipeline));
         }
         let root = format!("passes/{}", pass.stem());
         let constants = key.constants(pass);
@@ -89,12 +103,32 @@ impl Pipelines {
             constants: constants.iter().map(|(name, value)| ((*name).to_owned(), value.to_bits())).collect(),
             is_trusted,
         };
-        if let Some(pipeline) = self.built.get(&identity) {
-            return Ok(pipeline.clone());
+        if let Some(pipeline) = self.built.get(&identity).cloned() {
+            return Ok(self.marked(pipeline));
         }
+        self.make_room(MOST_KEPT[usize::from(gpu.caps.software)]);
         let pipeline = Arc::new(compile(gpu, label, entry, linked.text, identity.is_trusted, reflected.bindings(entry), &constants)?);
+        self.compiled += 1;
         self.built.insert(identity, pipeline.clone());
-        Ok(pipeline)
+        Ok(self.marked(pipeline))
+    }
+
+    fn marked(&mut self, pipeline: Arc<Pipeline>) -> Arc<Pipeline> {
+        self.clock += 1;
+        pipeline.used.store(self.clock, Ordering::Relaxed);
+        pipeline
+    }
+
+    /// Where `most` are kept, forgets the half that was not asked for longest.
+    fn make_room(&mut self, most: usize) {
+        if self.built.len() < most {
+            return;
+        }
+        let used = |pipeline: &Arc<Pipeline>| pipeline.used.load(Ordering::Relaxed);
+        let mut times: Vec<u64> = self.built.values().map(used).collect();
+        let (_, &mut median, _) = times.select_nth_unstable(most / 2);
+        self.built.retain(|_, pipeline| used(pipeline) >= median);
+        self.known.retain(|_, pipeline| used(pipeline) >= median);
     }
 }
 
@@ -136,7 +170,7 @@ fn compile(
     });
     match pollster::block_on(scope.pop()) {
         Some(error) => Err(RenderError::Pipeline { label: label.to_owned(), reason: error.to_string() }),
-        None => Ok(Pipeline { label: label.to_owned(), pipeline, layout, bindings }),
+        None => Ok(Pipeline { label: label.to_owned(), pipeline, layout, bindings, used: AtomicU64::new(0) }),
     }
 }
 

@@ -5,7 +5,7 @@ use crate::{
     effects::{EFFECTS, Effect, Stack, hooks::Slot},
     measure::Budget,
     params::{Field, Kind},
-    plan::Accuracy,
+    plan::{Accuracy, Tuning},
 };
 
 pub const CASES: &[Case] = &[
@@ -51,8 +51,11 @@ fn judged(lab: &mut Lab, stack: &Stack, turn: usize, what: &str) -> Result<(), H
 }
 
 fn parameters_at_their_ends(lab: &mut Lab) -> Result<(), Halt> {
-    // One scene for each effect: kernels are made once for all its pictures.
+    let usual = lab.renderer.gpu().caps.tuning();
+    // One scene for each effect, and a key that leaves nothing out: kernels are made once for all its pictures. Where vertices
+    // move, the values decide what the planner may leave out, and that is put to the test.
     for (turn, effect) in EFFECTS.iter().enumerate() {
+        lab.renderer.set_tuning(Tuning { specialized: effect.hooks.vertex.is_some(), ..usual });
         for (end, word) in [(0, "least"), (1, "greatest")] {
             for field in effect.fields {
                 let mut stack = Stack::default();

@@ -225,9 +225,16 @@ fn ten_million_triangles(lab: &mut Lab) -> Result<(), Halt> {
     if room < 12 * u64::from(count) {
         return Err(Halt::LeftOut(format!("their index list takes {} bytes, and this adapter binds {room}", 12 * count)));
     }
-    let (scene, view) = dots(true, count, 1);
+    let is_software = caps.software;
     for rung in lab.rungs() {
-        let what = format!("ten million triangles on {}", rung.name());
+        // Every pixel of a tile looks at every triangle on its list: 2.6 billion looks, which are minutes without a card.
+        let is_fewer = is_software && rung == Visibility::Tiled;
+        let count = if is_fewer { count / 10 } else { count };
+        if is_fewer {
+            lab.note(format!("{} with {count} triangles, since this is a software adapter", rung.name()));
+        }
+        let (scene, view) = dots(true, count, 1);
+        let what = format!("{count} triangles on {}", rung.name());
         let capture = lab.captured(&scene, &view, &stack(&[]), &pinned(rung), &what)?;
         counted(&capture, count, 1, &what)?;
     }
