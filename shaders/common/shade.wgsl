@@ -70,9 +70,12 @@ fn linear_depths(z: vec3f) -> vec3f {
 
 // A clipped triangle has no snapped corners: homogeneous barycentrics (Olano and Greer 1997).
 fn place_clipped(t: Triangle, at: vec3u, pixel: vec2u) -> Place {
-    let a = transform_vertex(t.draw, at.x, t.id);
-    let b = transform_vertex(t.draw, at.y, t.id);
-    let c = transform_vertex(t.draw, at.z, t.id);
+    // A loop, since compilers copy what the effects do to a corner to wherever it is called.
+    var corners: array<vec4f, 3>;
+    for (var i = 0u; i < 3u; i += 1u) { corners[i] = transform_vertex(t.draw, at[i], t.id); }
+    let a = corners[0];
+    let b = corners[1];
+    let c = corners[2];
     let sample = (vec2f(pixel) + 0.5) / vec2f(frame.size);
     let p = vec3f(sample.x * 2.0 - 1.0, 1.0 - sample.y * 2.0, 1.0);
     // Counter-clockwise in clip space, y up, is a positive determinant, which all shares inside take their sign from. A

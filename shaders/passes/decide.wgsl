@@ -24,10 +24,10 @@ fn decide(@builtin(workgroup_id) group: vec3u, @builtin(num_workgroups) groups: 
     let at = triangle_vertices(t.draw, t.id - draws[t.draw].first_triangle);
     var center_screen: vec2f;
     if IS_PIECES {
-        let a = transform_vertex(t.draw, at.x, t.id);
-        let b = transform_vertex(t.draw, at.y, t.id);
-        let c = transform_vertex(t.draw, at.z, t.id);
-        center_screen = center_clipped(a, b, c, vec2f(0.5));
+        // A loop, since compilers copy what the effects do to a corner to wherever it is called.
+        var corners: array<vec4f, 3>;
+        for (var i = 0u; i < 3u; i += 1u) { corners[i] = transform_vertex(t.draw, at[i], t.id); }
+        center_screen = center_clipped(corners[0], corners[1], corners[2], vec2f(0.5));
     } else {
         if ((t.a.x | t.b.x | t.c.x) & 255u) != 0u { return; }
         center_screen = center_whole(t.a, t.b, t.c);

@@ -6,9 +6,8 @@
 //@ use slot/marks
 
 fn discs_draw(t: Triangle) {
-    discs_corner(t, t.a, 0u);
-    discs_corner(t, t.b, 1u);
-    discs_corner(t, t.c, 2u);
+    var corners = array(t.a, t.b, t.c);
+    for (var i = 0u; i < 3u; i += 1u) { discs_corner(t, corners[i], i); }
 }
 
 // The samples of one disc that belong to its corner.

@@ -10,9 +10,13 @@ fn shape_of(surface: Surface, draw: u32, at: vec3u, weights: vec3f) -> Surface {
     let pa = vertex_position(transform_bits(draw, at.x), 0u);
     let pb = vertex_position(transform_bits(draw, at.y), 0u);
     let pc = vertex_position(transform_bits(draw, at.z), 0u);
-    let a = movement_corner(draw, at.x, s.owner, pa);
-    let b = movement_corner(draw, at.y, s.owner, pb);
-    let c = movement_corner(draw, at.z, s.owner, pc);
+    // A loop, since compilers copy what the effects do to a corner to wherever it is called.
+    var corners: array<Vertex, 3>;
+    var places = array(pa, pb, pc);
+    for (var i = 0u; i < 3u; i += 1u) { corners[i] = movement_corner(draw, at[i], s.owner, places[i]); }
+    let a = corners[0];
+    let b = corners[1];
+    let c = corners[2];
     if any(a.offset != b.offset) || any(a.offset != c.offset) {
         let m = draws[draw].world_from_object;
         let ab = (m * vec4f(pb - pa, 0.0)).xyz + (b.offset - a.offset);
