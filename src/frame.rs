@@ -71,6 +71,11 @@ pub struct Geometry {
     pub decisions: Vec<[u32; 4]>,
     /// Positions are in units of 2^-bits px.
     pub subpixel_bits: u32,
+    /// Places were taken relative to the eye before they met a matrix.
+    pub is_relative: bool,
+    /// Places were rounded to fewer bits than the scene has, where the look asks for that: how far off they are is measured,
+    /// and no fault.
+    pub is_rough: bool,
     /// What its maker promises about it, and about the keys of a frame drawn through it.
     pub exact: Exactness,
 }
@@ -79,7 +84,7 @@ impl Default for Geometry {
     fn default() -> Self {
         let (vertices, bent, pieces, decisions) = (Vec::new(), Vec::new(), Vec::new(), Vec::new());
         let (subpixel_bits, exact) = (SUBPIXEL_BITS, Exactness::default());
-        Self { vertices, has_own_corners: false, bent, pieces, decisions, subpixel_bits, exact }
+        Self { vertices, has_own_corners: false, bent, pieces, decisions, subpixel_bits, is_relative: false, is_rough: false, exact }
     }
 }
 

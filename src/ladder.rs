@@ -105,6 +105,17 @@ ladder! {
         /// Exact edges between corners on 1/4096 px, in pictures of at most 2,047 px a side.
         Fixed12 = "fixed12",
     }
+    /// In how many bits vertices say where they are, and from where they count.
+    vertices: Vertices = "vertices", usual Stored {
+        /// 10 bits an axis, evenly spaced in the box of each primitive: 4 bytes a vertex, and cracks between neighbours.
+        Packed10 = "packed10",
+        /// 16 bits an axis of the same: 8 bytes a vertex.
+        Packed16 = "packed16",
+        /// As the file has them.
+        Stored = "stored",
+        /// The same relative to the eye, which is taken out in f64 first: what lies far from its origin keeps its places.
+        Relative = "relative",
+    }
     /// How vertices come to their place in the picture.
     vertex: Vertex = "vertex", usual Snapped {
         /// Floats, with the viewport's shift in floats too, then snapped.
@@ -209,6 +220,17 @@ impl Visibility {
     /// Does an adapter with or without 64-bit atomics have it?
     pub fn is_there(self, int64_atomics: bool) -> bool {
         self != Self::Packed64 || int64_atomics
+    }
+}
+
+impl Vertices {
+    /// Bits of a packed lane; none where positions are as the file has them.
+    pub const fn packed_bits(self) -> Option<u32> {
+        match self {
+            Self::Packed10 => Some(10),
+            Self::Packed16 => Some(16),
+            Self::Stored | Self::Relative => None,
+        }
     }
 }
 

@@ -31,6 +31,7 @@ pub fn run(common: &Common, args: &Bench, streams: &mut Streams) -> Result<Exit,
         bar.set_message("the oracle draws");
         let view = session.view(scene, args.size);
         let picture = oracle::render_finest(scene, &view, &session.stack)?;
+        let corners = oracle::project_finest(scene, &view, &session.stack)?;
         let mut progress = |what: &str, done: usize, all: usize| {
             bar.set_length(all as u64);
             bar.set_position(done as u64);
@@ -43,7 +44,7 @@ pub fn run(common: &Common, args: &Bench, streams: &mut Streams) -> Result<Exit,
             scene,
             &look.id,
             &options,
-            &Truth { picture: &picture, judge: &judge(scene, &view) },
+            &Truth { picture: &picture, corners: &corners, judge: &judge(scene, &view) },
             &mut progress,
         )?);
     }
@@ -125,6 +126,8 @@ fn lines(rows: &[TradeRow]) -> Vec<Vec<String>> {
         "MAX",
         "RMS",
         "CHANGED",
+        "MOVED PX",
+        "CRACKS/MPX",
         "MIB",
         "GAIN",
     ];
@@ -148,6 +151,8 @@ fn lines(rows: &[TradeRow]) -> Vec<Vec<String>> {
             figure(&|e| e.max_colour_delta.to_string()),
             figure(&|e| format!("{:.4}", e.rms_colour_delta)),
             figure(&|e| e.changed_pixels.to_string()),
+            figure(&|e| format!("{:.4}", e.moved_px)),
+            figure(&|e| format!("{:.1}", e.cracks_per_mpx)),
             format!("{:.1}", row.bytes as f64 / f64::from(1 << 20)),
             if row.is_beaten { "no gain" } else { "-" }.into(),
         ]

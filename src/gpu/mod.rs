@@ -10,6 +10,7 @@ mod explain;
 pub mod hardware;
 mod hardware_owners;
 pub mod naive;
+mod packing;
 pub mod pipelines;
 mod prepare;
 pub mod readback;
@@ -29,6 +30,7 @@ use self::{
     bends::BENT_BYTES,
     buffers::Buffers,
     dispatch::{Dispatch, dispatch},
+    packing::Packing,
     pipelines::Pipelines,
     prepare::{BACKGROUND_ROWS, bin_heads, first_capacities, record_count, recorded_capacities},
     readback::Pending,
@@ -79,6 +81,8 @@ pub struct Renderer {
     /// The last picture whose sums of layers overflowed, and the bits per channel that it gets instead.
     full: Option<(View, Stack, u32)>,
     pending: VecDeque<Pending>,
+    /// Positions in fewer bits, which lie behind everything else in `vertex_bytes`: so many bits, and where.
+    packed: Option<(u32, Packing)>,
     /// Which vertices, of all that may bend, the last picture bent.
     bent: Vec<std::ops::Range<u32>>,
 }
@@ -108,6 +112,7 @@ impl Renderer {
             last_picture: None,
             full: None,
             pending: VecDeque::new(),
+            packed: None,
             bent: Vec::new(),
         }
     }
@@ -156,12 +161,7 @@ impl Renderer {
             }
         }
         self.buffers.keep(|name| !matches!(name, "vertex_bytes" | "index_bytes" | "vertices"));
-        let why = match scene.soft_vertex_count() {
-            0 => "attributes as the file has them",
-            _ => "attributes as the file has them, and behind them bent vertices, 24 bytes each",
-        };
-        let usage = STORAGE | wgpu::BufferUsages::VERTEX;
-        self.buffers.fill_room(&self.gpu, "vertex_bytes", &scene.vertex_bytes, room, usage, why)?;
+        self.hold_attributes(scene, None)?;
         if !scene.index_bytes.is_empty() {
             self.buffers.fill(
                 &self.gpu,

@@ -16,7 +16,7 @@ use super::{
 use crate::{
     effects::{Stack, hooks::Layers},
     frame::{Counters, Exactness, Frame, Geometry, Piece, SnappedVertex},
-    ladder::{Depth, Sums, Vertex},
+    ladder::{Depth, Sums, Vertex, Vertices},
     plan::Accuracy,
     scene::camera::View,
     shader::key::{KernelKey, Layout, Phase},
@@ -223,6 +223,8 @@ impl Renderer {
             pieces: pieces.into_iter().map(|(_, _, piece)| piece).collect(),
             has_own_corners: key.parts_corners(),
             subpixel_bits: key.rungs.coverage.subpixel_bits(),
+            is_relative: key.rungs.vertices == Vertices::Relative,
+            is_rough: key.rungs.vertices.packed_bits().is_some(),
             exact: Exactness { vertices: key.rungs.vertex == Vertex::Strict, keys: key.rungs.depth == Depth::Integer },
             bent: self.read_bent(scene.vertex_bytes.len() as u64)?,
         })

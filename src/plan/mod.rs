@@ -170,6 +170,8 @@ pub enum PlanError {
     Window { rung: &'static str },
     #[error("vertex strict holds where integers decide, but {what}; take it out, or another rung")]
     Floats { what: String },
+    #[error("vertices {rung} packs meshes that keep their shape, and joints or shapes bend one here; use stored")]
+    Bent { rung: &'static str },
     #[error("depth integer divides exact edges, which coverage {rung} does not have; use fixed8")]
     Inexact { rung: &'static str },
     #[error(transparent)]

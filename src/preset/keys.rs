@@ -6,7 +6,9 @@ use glam::DVec3;
 
 use super::form::{Form, Plain, Precision, brief};
 use crate::{
-    ladder::{AXES, Checks, Clipping, Counting, Coverage, Depth, Parameters, Perspective, Rung, Skinning, Sums, Vertex, Visibility},
+    ladder::{
+        AXES, Checks, Clipping, Counting, Coverage, Depth, Parameters, Perspective, Rung, Skinning, Sums, Vertex, Vertices, Visibility,
+    },
     scene::camera::{Camera, MIN_NEAR_M, Projection},
     session::{SceneSource, Session, Test, Tier},
 };
@@ -321,6 +323,7 @@ pub const KEYS: &[Key] = &[
         |s, v| s.accuracy.channel = Some(v.first() as u8),
     ),
     pin::<Coverage>(),
+    pin::<Vertices>(),
     pin::<Vertex>(),
     pin::<Skinning>(),
     pin::<Depth>(),

@@ -92,6 +92,8 @@ pub struct View {
     pub background: [f32; 4],
     /// Vertices snap to 2^-bits px: 4, 8 as a rule, or 12.
     pub subpixel_bits: u32,
+    /// Places are taken relative to the eye before they meet a matrix.
+    pub is_relative: bool,
     /// How the scene stands; none: at rest.
     pub pose: Option<Arc<Pose>>,
 }
@@ -134,6 +136,7 @@ impl View {
             scene_range_m: [from, farthest.max(from + margin)],
             background,
             subpixel_bits: SUBPIXEL_BITS,
+            is_relative: false,
             pose: None,
         }
     }

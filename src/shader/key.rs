@@ -9,7 +9,7 @@ use crate::{
         hooks::{Layers, Shape},
     },
     frame::{NO_OWNER, vertex_flags},
-    ladder::{Clipping, Coverage, Depth, Perspective, Rungs, Vertex, Visibility},
+    ladder::{Clipping, Coverage, Depth, Perspective, Rungs, Vertex, Vertices, Visibility},
 };
 
 pub use super::pass::{Entries, Pass, Phase};
@@ -318,6 +318,7 @@ impl KernelKey {
         vec![
             ("ONLY_LISTS", flag(self.only_lists)),
             ("WIDE_INDICES", flag(self.wide_indices)),
+            ("IS_RELATIVE", flag(self.rungs.vertices == Vertices::Relative)),
             ("F32_POSITIONS", flag(self.f32_positions)),
             ("F32_NORMALS", flag(self.f32_normals)),
             ("HAS_COLORS", flag(self.has_colors)),

@@ -56,6 +56,10 @@ impl KernelKey {
             ("skinning", format!("slots/skinning/{}", if self.has_joints { self.rungs.skinning.name() } else { "none" })),
             ("corners", format!("slots/corners/{records}")),
             ("sources", format!("slots/sources/{records}")),
+            (
+                "positions",
+                format!("slots/positions/{}", self.rungs.vertices.packed_bits().map_or("stored", |_| self.rungs.vertices.name())),
+            ),
             ("movement", format!("slots/movement/{movement}")),
             ("shape", format!("slots/shape/{shape}")),
             ("pieces", format!("slots/pieces/{pieces}")),
