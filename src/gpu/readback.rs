@@ -130,7 +130,7 @@ impl Renderer {
             None
         };
         let layers = if key.layers == Some(Layers::Overdraw) { counted.clone() } else { self.count_layers(&key, view)? };
-        let keys_are_rough = !key.rungs.visibility.is_exact();
+        let keys_are_rough = !key.rungs.visibility.is_exact() || !matches!(key.rungs.depth, Depth::Reversed | Depth::Integer);
         let frame = Frame { width: view.width, height: view.height, owner, key: depth, color, counted, counters, keys_are_rough };
         Ok(Capture { frame, geometry, layers: Some(layers), previous })
     }

@@ -368,6 +368,14 @@ pub const KEYS: &[Key] = &[
     ),
     key(
         "test",
+        "max_wrong_owner",
+        Form::whole(1, 4_294_967_295.0),
+        "Pixels that may have another owner, or none, where the look pins a rung that promises less than exactness",
+        |s| s.test.as_ref().map(|t| Plain::number(t.max_wrong_owner)),
+        |s, v| tested(s).max_wrong_owner = v.first() as u32,
+    ),
+    key(
+        "test",
         "why",
         PARAGRAPH,
         "Why a budget above the default is needed",
