@@ -126,6 +126,15 @@ pub struct OrderFigures {
     pub limit: u64,
     /// Samples that there are.
     pub covered: u64,
+    /// The hardware chose, by tickets that are one word each.
+    pub is_chosen: bool,
+}
+
+impl OrderFigures {
+    /// Are there more samples than tickets? Then nobody knows how many were drawn.
+    pub const fn is_beyond_tickets(&self) -> bool {
+        self.is_chosen && self.covered > u32::MAX as u64
+    }
 }
 
 /// One finished picture with the integers that decided it. Images are row-major, top row first, `width * height` long.

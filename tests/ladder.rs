@@ -51,7 +51,10 @@ fn every_rung_draws_every_scene_or_says_why_not() {
                         let share = different as f64 / view.pixels() as f64;
                         // Dropping what would be clipped may leave nothing of a scene that is all before the near plane, and a
                         // race may lose anything.
-                        let is_any = axis.name == "clipping" || pins.rung() == Some(Visibility::Race);
+                        let is_any = axis.name == "clipping"
+                            || pins.rung() == Some(Visibility::Race)
+                            // A box of 100,000 px has steps of pixels.
+                            || axis.name == "vertices" && query == "sizes";
                         let most = if is_any { 1.0 } else { 0.1 };
                         assert!(share <= most, "{query} on {}: {:.1} % of the owners differ", pins.words(), 100.0 * share);
                     }

@@ -20,8 +20,8 @@ use rasterlab::{
         Budget,
         compare::{difference_picture, owners, pictures},
     },
-    plan::Accuracy,
     oracle,
+    plan::Accuracy,
     preset::{self, Look},
     scene::Scene,
     session::{Session, Visibility},
@@ -198,7 +198,8 @@ fn a_look_that_pins_a_lossy_rung_is_verified_within_the_owners_that_it_may_lose(
     let folder = tempfile::tempdir().expect("a temporary folder");
     let verify = |budget: &str| {
         let path = folder.path().join("lossy.toml");
-        let text = format!("schema = 1\n[scene]\nbuiltin = \"stack\"\n[accuracy]\nvisibility = \"packed32\"\n[output]\nsize = [64, 48]\n{budget}");
+        let text =
+            format!("schema = 1\n[scene]\nbuiltin = \"stack\"\n[accuracy]\nvisibility = \"packed32\"\n[output]\nsize = [64, 48]\n{budget}");
         fs::write(&path, text).expect("a look can be written");
         let mut command = std::process::Command::new(env!("CARGO_BIN_EXE_rasterlab"));
         let run = command.arg("verify").arg(&path).arg("--json").args(["--frames", "2"]).output().expect("the program runs");

@@ -34,6 +34,11 @@ pub enum RenderError {
     #[error("the queues still overflow after growing ten times; {0} entries were lost")]
     Overflow(u32),
     #[error(
+        "draw_order in the hardware's order counts in one word, at most 4294967295 samples, and this picture has {0}; take \
+         mode = \"submission\", or a smaller picture"
+    )]
+    Tickets(u64),
+    #[error(
         "{0} pixels have more layers than the x-ray's sums hold even with 8 bits a channel; narrow its window, give all layers equal \
          weight, show fewer, or take sums four32"
     )]
@@ -44,7 +49,7 @@ impl RenderError {
     /// A pinned rung that this look or adapter lacks, or a size.
     pub fn is_unsupported(&self) -> bool {
         matches!(self, Self::Plan(error) if !matches!(error, PlanError::Conflict(_)))
-            || matches!(self, Self::Untrusted | Self::TooLarge { .. } | Self::TooWide { .. } | Self::OutOfMemory { .. })
+            || matches!(self, Self::Untrusted | Self::Tickets(_) | Self::TooLarge { .. } | Self::TooWide { .. } | Self::OutOfMemory { .. })
     }
 
     pub fn is_lost(&self) -> bool {

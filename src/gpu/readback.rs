@@ -147,6 +147,9 @@ impl Renderer {
             if !report.redraw && report.counters.full_pixels > 0 {
                 return Err(RenderError::FullSums(report.counters.full_pixels));
             }
+            if let Some(order) = report.order.filter(|order| !report.redraw && order.is_beyond_tickets()) {
+                return Err(RenderError::Tickets(order.covered));
+            }
             if !report.redraw {
                 return Ok(report.counters);
             }

@@ -141,7 +141,7 @@ impl OrderRecord {
         let wide = |hi: u32, lo: u32| u64::from(hi) << 32 | u64::from(lo);
         let limit = wide(self.limit_hi, self.limit_lo);
         let drawn = if is_chosen { limit.min(tickets.into()) } else { wide(self.drawn_hi, self.drawn_lo) };
-        OrderFigures { drawn, limit, covered: wide(self.total_hi, self.total_lo) }
+        OrderFigures { drawn, limit, covered: wide(self.total_hi, self.total_lo), is_chosen }
     }
 }
 
