@@ -192,6 +192,19 @@ ladder! {
         /// Four words, channels of 8 to 16 bits: as many layers as the bits leave room for, with weights.
         Four32 = "four32",
     }
+    /// How many pixels are drawn for one that is shown.
+    scale: Scale = "scale", usual Whole {
+        /// A sixteenth: a quarter to a side, and light in between.
+        Quarter = "quarter",
+        /// A quarter: half to a side, and light in between.
+        Half = "half",
+        /// One.
+        Whole = "whole",
+        /// Four, two to a side, and the mean of their light.
+        Double = "double",
+        /// Sixteen, four to a side, and the mean of their light.
+        Quadruple = "quadruple",
+    }
     /// How the effects' parameters reach the kernels.
     parameters: Parameters = "parameters", usual Uniform {
         /// As constants in the text: a new text for every value.
@@ -230,6 +243,19 @@ impl Vertices {
             Self::Packed10 => Some(10),
             Self::Packed16 => Some(16),
             Self::Stored | Self::Relative => None,
+        }
+    }
+}
+
+impl Scale {
+    /// Drawn pixels for one that is shown, along a side.
+    pub const fn factor(self) -> f64 {
+        match self {
+            Self::Quarter => 0.25,
+            Self::Half => 0.5,
+            Self::Whole => 1.0,
+            Self::Double => 2.0,
+            Self::Quadruple => 4.0,
         }
     }
 }

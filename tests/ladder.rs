@@ -6,7 +6,7 @@ mod common;
 use common::*;
 use rasterlab::{
     gpu::{Capture, RenderError, Renderer},
-    ladder::{AXES, Checks, Clipping, Counting, Coverage, Depth, Parameters, Perspective, Pins, Sums, Vertex, Vertices, Visibility},
+    ladder::{AXES, Checks, Clipping, Counting, Coverage, Depth, Parameters, Perspective, Pins, Scale, Sums, Vertex, Vertices, Visibility},
     measure::{Verdict, compare},
     oracle,
     plan::{Accuracy, PlanError, Tier},
@@ -388,6 +388,72 @@ fn packed_places_refuse_what_the_file_s_places_refuse_and_meshes_that_bend() {
         refused.is_unsupported() && refused.to_string().starts_with("vertices packed10 packs meshes that keep their shape"),
         "{refused}"
     );
+}
+
+#[test]
+fn scaled_pictures_are_exact_in_their_own_pixels_and_shown_at_the_size_that_was_asked_for() {
+    let Some(mut renderer) = renderer() else { return };
+    let scene = scene("teapot?tess=8");
+    // Neither side is a multiple of four.
+    let (size, view) = ([161, 122], view(&scene, [161, 122]));
+    let effects = stack(&["lambert", "wireframe", "outline"]);
+    for rung in Scale::ALL.iter().copied() {
+        let (capture, verdict) = judged(&mut renderer, &scene, &view, &effects, &on(Pins::of(rung)));
+        assert_eq!(exactness(&verdict.accuracy), Ok(()), "{}", rung.name());
+        let drawn = &capture.frame;
+        let side = |side: u32| (f64::from(side) * rung.factor()).ceil() as u32;
+        assert_eq!([drawn.width, drawn.height], size.map(side), "{}", rung.name());
+        let has_pass = renderer.explain().passes.iter().any(|pass| pass.name == "scale");
+        let has_buffers = ["shown", "scaling"].map(|name| renderer.explain().buffers.iter().any(|buffer| buffer.name == name));
+        assert_eq!((has_pass, has_buffers, capture.shown.is_some()), (rung != Scale::Whole, [has_pass; 2], has_pass), "{}", rung.name());
+        let Some(shown) = &capture.shown else { continue };
+        assert_eq!(([shown.width, shown.height], shown.color.len(), shown.owner.len()), (size, view.pixels(), view.pixels()));
+        let right = oracle::scaled(&drawn.color, [drawn.width, drawn.height], size);
+        assert_eq!(compare::pictures(&shown.color, &right, 1).pixels_beyond, 0, "{}: the pass against the oracle's", rung.name());
+        // All by itself the oracle shows the same, but for corners that snap apart.
+        let golden = oracle::render_shown(&scene, &[(view.clone(), effects.clone())], rung.factor()).expect("a scene that fits");
+        let beyond = compare::pictures(&shown.color, &golden.color, 1).pixels_beyond;
+        assert!(beyond * 200 < view.pixels() as u64, "{}: {beyond} pixels are not the golden's", rung.name());
+    }
+}
+
+#[test]
+fn more_samples_come_nearer_to_eight_by_eight() {
+    let Some(mut renderer) = renderer() else { return };
+    let scene = scene("teapot?tess=8");
+    let view = view(&scene, [96, 72]);
+    let lit = stack(&["lambert"]);
+    let factors: Vec<f64> = Scale::ALL.iter().map(|rung| rung.factor()).collect();
+    let truths = oracle::truths(&scene, &view, &lit, &factors).expect("a scene that fits");
+    let smooth = truths.smooth.expect("sizes are compared");
+    let rms: Vec<f64> = Scale::ALL
+        .iter()
+        .map(|rung| {
+            let picture = captured(&mut renderer, &scene, &view, &lit, &on(Pins::of(*rung))).into_shown();
+            compare::pictures(&picture.color, &smooth, 0).rms
+        })
+        .collect();
+    eprintln!("RMS against 8 x 8 samples, quarter to quadruple: {rms:.2?}");
+    assert!(rms.windows(2).all(|pair| pair[1] < 0.9 * pair[0]), "{rms:?}");
+    assert!(rms[4] < 2.0, "{rms:?}");
+}
+
+#[test]
+fn a_scale_that_the_adapter_cannot_hold_says_what_it_would_draw() {
+    let Some(mut renderer) = renderer() else { return };
+    let scene = scene("teapot?tess=4");
+    let side = renderer.gpu().caps.max_texture_side;
+    renderer.set_scene(&scene).unwrap();
+    let wide = pixel_view(side, 8);
+    let refused = renderer.capture(&wide, &stack(&[]), &on(Pins::of(Scale::Double))).expect_err("twice the widest");
+    let sentence = format!(
+        "scale double draws {0}x16 pixels for a picture of {side}x8, and the picture is {0} x 16; this adapter's textures end at {side} pixels a \
+         side; take a smaller scale",
+        2 * side
+    );
+    assert!(refused.is_unsupported(), "{refused}");
+    assert_eq!(refused.to_string(), sentence);
+    captured(&mut renderer, &scene, &pixel_view(16, 8), &stack(&[]), &on(Pins::of(Scale::Double)));
 }
 
 #[test]

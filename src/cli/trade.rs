@@ -10,7 +10,7 @@ use super::{
     streams::Streams,
 };
 use crate::{
-    gpu::trade::{AS_PLANNED, TradeError, TradeOptions, TradeRow, Truth, trade},
+    gpu::trade::{AS_PLANNED, TradeError, TradeOptions, TradeRow, Truth, factors, trade},
     ladder::{AXES, Axis},
     oracle,
     preset::form::did_you_mean,
@@ -30,8 +30,7 @@ pub fn run(common: &Common, args: &Bench, streams: &mut Streams) -> Result<Exit,
         let session = &look.session.posed();
         bar.set_message("the oracle draws");
         let view = session.view(scene, args.size);
-        let picture = oracle::render_finest(scene, &view, &session.stack)?;
-        let corners = oracle::project_finest(scene, &view, &session.stack)?;
+        let truths = oracle::truths(scene, &view, &session.stack, &factors(session, &options.axes))?;
         let mut progress = |what: &str, done: usize, all: usize| {
             bar.set_length(all as u64);
             bar.set_position(done as u64);
@@ -44,7 +43,7 @@ pub fn run(common: &Common, args: &Bench, streams: &mut Streams) -> Result<Exit,
             scene,
             &look.id,
             &options,
-            &Truth { picture: &picture, corners: &corners, judge: &judge(scene, &view) },
+            &Truth { truths: &truths, judge: &judge(scene, &view) },
             &mut progress,
         )?);
     }

@@ -14,6 +14,7 @@ use super::{
 };
 use crate::{
     frame::Frame,
+    gpu::Capture,
     ladder::Skinning,
     measure::{
         Accuracy, Budget,
@@ -106,6 +107,7 @@ fn verify(common: &Common, args: &Verify, look: &Look, painter: &mut Painter) ->
         }
         let pixels_beyond = pictures(&capture.frame.color, &held, budget.max_channel).pixels_beyond;
         let mut failures = failures(&verdict.accuracy, &budget, pixels_beyond);
+        failures.extend(scaling_fault(&capture));
         let is_repeatable = session.stack.is_repeatable() && !session.accuracy.is_left_to_chance();
         for repeat in 1..args.frames {
             if is_repeatable && painter.capture(&pinned, &scene)?.frame != capture.frame {
@@ -134,6 +136,16 @@ fn verify(common: &Common, args: &Verify, look: &Look, painter: &mut Painter) ->
         first.get_or_insert((name, capture.frame));
     }
     Ok(rows)
+}
+
+/// The pass from drawn to shown pixels, held against the oracle's.
+fn scaling_fault(capture: &Capture) -> Option<String> {
+    let shown = capture.shown.as_ref()?;
+    let drawn = &capture.frame;
+    let right = oracle::scaled(&drawn.color, [drawn.width, drawn.height], [shown.width, shown.height]);
+    let delta = pictures(&shown.color, &right, 1);
+    (delta.pixels_beyond > 0)
+        .then(|| format!("{} shown pixels are off by up to {} of 255 from the drawn ones", delta.pixels_beyond, delta.max_delta))
 }
 
 /// Volume by the linear blend, as a share of that by dual quaternions; none where no joint holds anything.

@@ -4,7 +4,7 @@ use super::{
     RenderError, Renderer, STORAGE,
     bends::{BENT_BYTES, Bends, bent_ranges},
     packing::{Packing, bytes_of},
-    uniforms::{Capacities, DrawRecord, FrameUniform, OrderRecord, color_stride},
+    uniforms::{Capacities, DrawRecord, FrameUniform, OrderRecord, ScalingUniform, color_stride},
 };
 use crate::{
     effects::{Stack, hooks::Layers},
@@ -103,6 +103,7 @@ impl Renderer {
             "packed" => key.layout() == Layout::Word,
             "bins" => key.rungs.visibility == Visibility::Tiled,
             "order" | "counts" | "sums" => key.order != Order::Free,
+            "shown" | "scaling" => key.is_scaled(),
             "hits" => key.order == Order::Submission,
             "layers" => key.layers == Some(Layers::Overdraw),
             _ => true,
@@ -201,6 +202,13 @@ impl Renderer {
         let tiles = if key.listed_tiles { u64::from(view.width.div_ceil(8)) * u64::from(view.height.div_ceil(8)) } else { 0 };
         let picture = 4 * u64::from(color_stride(view.width)) * u64::from(view.height);
         buffers.ensure(gpu, "color", picture + 4 * tiles, STORAGE, "the picture, 4 bytes per pixel, and the list of tiles to resolve")?;
+        if key.is_scaled() {
+            let [width, height] = self.shown;
+            let scaling = ScalingUniform { size: self.shown, stride: color_stride(width), spare: 0 };
+            buffers.fill(gpu, "scaling", bytemuck::bytes_of(&scaling), wgpu::BufferUsages::UNIFORM, "size of what is shown")?;
+            let bytes = 4 * u64::from(color_stride(width)) * u64::from(height);
+            buffers.ensure(gpu, "shown", bytes, STORAGE, "the picture at the size that is shown, 4 bytes per pixel")?;
+        }
         if key.listed_tiles {
             buffers.ensure(gpu, "marks", 4 * tiles, STORAGE, "which 8 x 8 tiles the resolve must visit")?;
         }

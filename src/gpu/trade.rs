@@ -5,8 +5,8 @@ use std::sync::Arc;
 use super::{Capture, Gpu, RenderError, Renderer, bench::Judge, timer::Detail};
 use crate::{
     frame::{Frame, Geometry, NO_OWNER, SnappedVertex},
-    ladder::{AXES, Axis, Pins},
-    measure::{Verdict, compare, timing},
+    ladder::{AXES, Axis, Pins, Rung, Scale},
+    measure::{Truths, Verdict, compare, timing},
     plan::Accuracy,
     scene::{Scene, camera::View},
     session::Session,
@@ -27,7 +27,7 @@ pub struct TradeOptions {
 /// Error of a combination. None reads "not measured", never 0.
 #[derive(Clone, Copy, Debug, Default, PartialEq, serde::Serialize)]
 pub struct TradeError {
-    /// Pixels with another owner than in the oracle's picture on its finest grid, per million.
+    /// Pixels with another owner than in the oracle's picture on its finest grid, per million of those drawn.
     pub wrong_ppm: f64,
     /// Samples that a triangle covers, given its snapped corners, and that were not drawn, per million pixels.
     pub holes_per_mpx: f64,
@@ -35,7 +35,8 @@ pub struct TradeError {
     pub double_hits_per_mpx: f64,
     /// Pixels whose owner covers them but is not the nearest, per million.
     pub wrong_depth_ppm: f64,
-    /// Largest difference of a colour channel from the oracle's picture, of 255.
+    /// Largest difference of a colour channel from the oracle's picture, of 255; where sizes are compared, from its picture of
+    /// eight by eight samples to a pixel.
     pub max_colour_delta: u8,
     pub rms_colour_delta: f64,
     /// Pixels that differ between two equal frames.
@@ -79,11 +80,17 @@ pub struct TradeRow {
 
 /// What pictures are held against: the oracle's, which this room never sees.
 pub struct Truth<'a> {
-    /// The picture on the oracle's finest grid.
-    pub picture: &'a Frame,
-    /// Where its corners lie.
-    pub corners: &'a Geometry,
+    /// Pictures on the oracle's finest grid, at every size of [`factors`].
+    pub truths: &'a Truths,
     pub judge: Judge<'a>,
+}
+
+/// How many pixels to a side of a shown one the combinations on these axes draw, one first.
+pub fn factors(session: &Session, axes: &[&'static Axis]) -> Vec<f64> {
+    let pinned = session.accuracy.scale();
+    let is_walked = axes.iter().any(|axis| axis.index() == Scale::AXIS);
+    let drawn = Scale::ALL.iter().filter(|rung| **rung != Scale::Whole && (is_walked || **rung == pinned));
+    std::iter::once(1.0).chain(drawn.map(|rung| rung.factor())).collect()
 }
 
 /// A combination with what has been measured of it.
@@ -233,23 +240,29 @@ impl Entry {
 
 impl TradeError {
     fn of(capture: &Capture, again: &Frame, verdict: &Verdict, truth: &Truth) -> Self {
-        let (frame, corners, truth) = (&capture.frame, truth.corners, truth.picture);
+        let (frame, scale) = (&capture.frame, capture.geometry.scale);
+        let (picture, corners) = truth.truths.at(scale).expect("a truth at every size that is drawn");
         let pixels = (frame.owner.len() as f64).max(1.0);
         let per_million = |count: u64| count as f64 * 1e6 / pixels;
-        let colors = compare::pictures(&frame.color, &truth.color, 0);
+        // Where sizes are compared, colours are held against many samples a pixel, else against the true picture's.
+        let shown = capture.shown.as_ref().unwrap_or(frame);
+        let colors = match &truth.truths.smooth {
+            Some(smooth) => compare::pictures(&shown.color, smooth, 0),
+            None => compare::pictures(&frame.color, &picture.color, 0),
+        };
         let differs = |i: &usize| frame.owner[*i] != again.owner[*i] || frame.color[*i] != again.color[*i];
         let a = &verdict.accuracy;
         let moved_px = moved_px(&capture.geometry, corners, [frame.width, frame.height]);
         Self {
-            wrong_ppm: per_million(compare::owners(&frame.owner, &truth.owner).different),
+            wrong_ppm: per_million(compare::owners(&frame.owner, &picture.owner).different),
             holes_per_mpx: per_million(a.holes),
             double_hits_per_mpx: per_million(a.double_hits),
             wrong_depth_ppm: per_million(a.wrong_winners),
             max_colour_delta: colors.max_delta,
             rms_colour_delta: colors.rms,
             changed_pixels: (0..frame.owner.len()).filter(differs).count() as u64,
-            moved_px,
-            cracks_per_mpx: per_million(cracks(frame, truth, moved_px)),
+            moved_px: moved_px / scale,
+            cracks_per_mpx: per_million(cracks(frame, picture, moved_px)),
             overflow: a.overflow,
             orphans: a.orphans,
         }
@@ -313,7 +326,7 @@ fn mark_beaten(rows: &mut [TradeRow]) {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::ladder::{Coverage, Depth, Rung};
+    use crate::ladder::{Coverage, Depth};
 
     #[test]
     fn combinations_are_the_product_and_keep_other_pins() {

@@ -145,6 +145,15 @@ impl OrderRecord {
     }
 }
 
+twin! {
+    /// What is shown of a picture that is drawn at another size. Each member is explained in `shaders/passes/scale.wgsl`.
+    pub struct ScalingUniform = "Scaling" {
+        pub size: [u32; 2],
+        pub stride: u32,
+        pub spare: u32,
+    }
+}
+
 /// Entries that fit each queue.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Capacities {

@@ -128,6 +128,22 @@ pub struct Verdict {
     pub faults: faults::Faults,
 }
 
+/// What rungs are measured against.
+#[derive(Clone, Debug, Default)]
+pub struct Truths {
+    /// For every number of drawn pixels to a side of a shown one: the true picture, and where its corners lie.
+    pub pictures: Vec<(f64, crate::frame::Frame, crate::frame::Geometry)>,
+    /// The true picture with eight by eight samples to a pixel; none where all pictures are drawn as they are shown.
+    pub smooth: Option<Vec<[u8; 4]>>,
+}
+
+impl Truths {
+    /// At so many drawn pixels to a side of a shown one.
+    pub fn at(&self, factor: f64) -> Option<(&crate::frame::Frame, &crate::frame::Geometry)> {
+        self.pictures.iter().find(|(known, ..)| *known == factor).map(|(_, frame, geometry)| (frame, geometry))
+    }
+}
+
 /// What may differ in a picture that still passes. Everything that is judged as exact has no budget.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Budget {

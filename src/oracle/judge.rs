@@ -70,8 +70,9 @@ pub fn judge_after(
     layers: Option<&[u32]>,
     previous: Option<&[[u8; 4]]>,
 ) -> Result<Verdict, DrawError> {
-    // The adapter's grid and the origin of its places are promises of its rungs, not faults.
-    let view = &View { subpixel_bits: geometry.subpixel_bits, is_relative: geometry.is_relative, ..view.clone() };
+    // The adapter's grid, the origin of its places and the pixels that it draws are promises of its rungs, not faults.
+    let view = &View { subpixel_bits: geometry.subpixel_bits, is_relative: geometry.is_relative, ..view.scaled(geometry.scale) };
+    let stack = &stack.scaled(geometry.scale);
     let draws = draws(scene, view)?;
     if view.pixels() == 0 {
         return Ok(Verdict { expected: empty(view), ..Verdict::default() });

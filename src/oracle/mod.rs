@@ -22,6 +22,7 @@ mod moved;
 mod order;
 mod project;
 mod rules;
+mod shown;
 mod steps;
 mod strict;
 mod surface;
@@ -35,6 +36,7 @@ pub use judge::{judge, judge_after, snap_bounds};
 pub use order::Cut;
 pub use project::{project, project_moved};
 pub use rules::Rules;
+pub use shown::{render_shown, scaled, truths};
 pub use strict::{project_strict, strict_frame};
 
 use self::{

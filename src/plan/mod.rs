@@ -11,7 +11,7 @@ use crate::{
         Conflict, Enabled, Stack,
         hooks::{Layers, Shape},
     },
-    ladder::{AXES, Axis, Clipping, Counting, Depth, Parameters, Pins, Rungs, Vertex, Visibility},
+    ladder::{AXES, Axis, Clipping, Counting, Depth, Parameters, Pins, Rungs, Scale, Vertex, Visibility},
     math::SMALL_EXTENT,
     scene::needs::Needs,
     shader::{
@@ -133,7 +133,7 @@ impl Tolerance {
 }
 
 /// Axes whose fast rungs lose nothing, or say for themselves what they lose.
-const EXACT_AXES: [&str; 4] = ["visibility", "skinning", "parameters", "checks"];
+const EXACT_AXES: [&str; 5] = ["visibility", "skinning", "scale", "parameters", "checks"];
 
 /// How exact the picture must be.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -148,6 +148,11 @@ pub struct Accuracy {
 }
 
 impl Accuracy {
+    /// How many pixels are drawn for one that is shown: as the look pins it.
+    pub fn scale(&self) -> Scale {
+        self.pins.rung().unwrap_or_default()
+    }
+
     /// Does it pin a rung that lets chance decide?
     pub fn is_left_to_chance(&self) -> bool {
         self.pins.rung() == Some(Visibility::Race) || self.pins.rung() == Some(Counting::Racy)

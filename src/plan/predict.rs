@@ -2,7 +2,7 @@
 //! not; what was measured is held against them and a wrong prediction is shown.
 
 use crate::{
-    ladder::{AXES, Clipping, Coverage, Depth, Perspective, Rung, Rungs, Sums, Vertex, Vertices, Visibility},
+    ladder::{AXES, Clipping, Coverage, Depth, Perspective, Rung, Rungs, Scale, Sums, Vertex, Vertices, Visibility},
     scene::needs::Needs,
 };
 
@@ -36,6 +36,7 @@ pub fn predict(axis: usize, place: usize, needs: &Needs) -> Prediction {
         Depth::AXIS => depth(Depth::at(place), needs),
         Perspective::AXIS => perspective(Perspective::at(place), needs),
         Clipping::AXIS => clipping(Clipping::at(place), needs),
+        Scale::AXIS => scale(Scale::at(place)),
         Sums::AXIS => sums(Sums::at(place), needs),
         Visibility::AXIS => visibility(Visibility::at(place), needs),
         _ => Prediction::default(),
@@ -106,6 +107,11 @@ fn depth(rung: Depth, needs: &Needs) -> Prediction {
         _ => return Prediction::default(),
     };
     Prediction::wrong(1e6 * (step_m / span).min(1.0))
+}
+
+fn scale(rung: Scale) -> Prediction {
+    // Owners are those of the pixels that are drawn. Where fewer are drawn than shown, an edge may lie anywhere between two.
+    Prediction { wrong_ppm: 0.0, channel: if rung < Scale::Whole { 255.0 } else { 0.0 } }
 }
 
 fn perspective(rung: Perspective, needs: &Needs) -> Prediction {

@@ -7,7 +7,8 @@ use glam::DVec3;
 use super::form::{Form, Plain, Precision, brief};
 use crate::{
     ladder::{
-        AXES, Checks, Clipping, Counting, Coverage, Depth, Parameters, Perspective, Rung, Skinning, Sums, Vertex, Vertices, Visibility,
+        AXES, Checks, Clipping, Counting, Coverage, Depth, Parameters, Perspective, Rung, Scale, Skinning, Sums, Vertex, Vertices,
+        Visibility,
     },
     scene::camera::{Camera, MIN_NEAR_M, Projection},
     session::{SceneSource, Session, Test, Tier},
@@ -332,6 +333,7 @@ pub const KEYS: &[Key] = &[
     pin::<Clipping>(),
     pin::<Counting>(),
     pin::<Sums>(),
+    pin::<Scale>(),
     pin::<Parameters>(),
     pin::<Checks>(),
     key(

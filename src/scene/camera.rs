@@ -146,6 +146,13 @@ impl View {
         1 << self.subpixel_bits
     }
 
+    /// The same view in `factor` times as many pixels to a side, at least one.
+    #[must_use]
+    pub fn scaled(&self, factor: f64) -> Self {
+        let side = |side: u32| if side == 0 { 0 } else { (f64::from(side) * factor).ceil().min(f64::from(u32::MAX)).max(1.0) as u32 };
+        Self { width: side(self.width), height: side(self.height), ..self.clone() }
+    }
+
     pub fn pixels(&self) -> usize {
         self.width as usize * self.height as usize
     }

@@ -80,6 +80,7 @@ impl KernelKey {
             ("cell_keys", format!("slots/cell_keys/{keys}")),
             ("depth", format!("slots/depth/{}", self.rungs.depth.name())),
             ("owner", format!("slots/owner/{layout}")),
+            ("scaling", format!("slots/scaling/{}", if self.rungs.scale.factor() > 1.0 { "average" } else { "between" })),
             ("finish", format!("slots/finish/{finish}")),
             ("image", format!("slots/image/{}", if pass == Pass::Resolve { "seen" } else { "none" })),
             ("sums", format!("slots/sums/{layout}")),

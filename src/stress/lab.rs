@@ -290,6 +290,7 @@ impl<'a> Lab<'a> {
     /// Holds a strict picture against the CPU's.
     fn hold_strict(&mut self, capture: &Capture, scene: &Scene, view: &View, stack: &Stack, what: &str) -> Result<(), Halt> {
         let Some(strict) = &mut self.strict else { return Ok(()) };
+        let view = &View { is_relative: capture.geometry.is_relative, ..view.clone() };
         let (owner, key) = oracle::strict_frame(scene, view, stack)?;
         let folded = |hash: u64, [a, b]: [&[u32]; 2]| fnv1a(&[&[hash as u32, (hash >> 32) as u32], a, b].concat());
         strict.pictures += 1;
