@@ -71,6 +71,13 @@ pub struct Geometry {
     pub decisions: Vec<[u32; 4]>,
     /// Positions are in units of 2^-bits px.
     pub subpixel_bits: u32,
+    /// Drawn pixels for one that is shown, along a side: the picture and its effects' lengths are this many times as large.
+    pub scale: f64,
+    /// Places were taken relative to the eye before they met a matrix.
+    pub is_relative: bool,
+    /// Places were rounded to fewer bits than the scene has, where the look asks for that: how far off they are is measured,
+    /// and no fault.
+    pub is_rough: bool,
     /// What its maker promises about it, and about the keys of a frame drawn through it.
     pub exact: Exactness,
 }
@@ -79,7 +86,18 @@ impl Default for Geometry {
     fn default() -> Self {
         let (vertices, bent, pieces, decisions) = (Vec::new(), Vec::new(), Vec::new(), Vec::new());
         let (subpixel_bits, exact) = (SUBPIXEL_BITS, Exactness::default());
-        Self { vertices, has_own_corners: false, bent, pieces, decisions, subpixel_bits, exact }
+        Self {
+            vertices,
+            scale: 1.0,
+            has_own_corners: false,
+            bent,
+            pieces,
+            decisions,
+            subpixel_bits,
+            is_relative: false,
+            is_rough: false,
+            exact,
+        }
     }
 }
 
@@ -121,6 +139,15 @@ pub struct OrderFigures {
     pub limit: u64,
     /// Samples that there are.
     pub covered: u64,
+    /// The hardware chose, by tickets that are one word each.
+    pub is_chosen: bool,
+}
+
+impl OrderFigures {
+    /// Are there more samples than tickets? Then nobody knows how many were drawn.
+    pub const fn is_beyond_tickets(&self) -> bool {
+        self.is_chosen && self.covered > u32::MAX as u64
+    }
 }
 
 /// One finished picture with the integers that decided it. Images are row-major, top row first, `width * height` long.
@@ -142,6 +169,17 @@ pub struct Frame {
 }
 
 impl Frame {
+    /// The same picture at another size in these colours; a pixel has the integers of the drawn one under its middle.
+    pub fn shown(&self, [width, height]: [u32; 2], color: Vec<[u8; 4]>) -> Self {
+        let under = |at: u32, shown: u32, drawn: u32| ((2 * u64::from(at) + 1) * u64::from(drawn) / (2 * u64::from(shown))) as usize;
+        let places: Vec<usize> = (0..height)
+            .flat_map(|y| (0..width).map(move |x| under(y, height, self.height) * self.width as usize + under(x, width, self.width)))
+            .collect();
+        let of = |words: &[u32]| if words.is_empty() { Vec::new() } else { places.iter().map(|&at| words[at]).collect() };
+        let (owner, key, counted) = (of(&self.owner), of(&self.key), of(&self.counted));
+        Self { width, height, owner, key, color, counted, ..*self }
+    }
+
     /// Number of pixels that have an owner.
     pub fn covered(&self) -> usize {
         self.owner.iter().filter(|&&owner| owner != NO_OWNER).count()

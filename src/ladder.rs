@@ -105,6 +105,17 @@ ladder! {
         /// Exact edges between corners on 1/4096 px, in pictures of at most 2,047 px a side.
         Fixed12 = "fixed12",
     }
+    /// In how many bits vertices say where they are, and from where they count.
+    vertices: Vertices = "vertices", usual Stored {
+        /// 10 bits an axis, evenly spaced in the box of each primitive: 4 bytes a vertex, and cracks between neighbours.
+        Packed10 = "packed10",
+        /// 16 bits an axis of the same: 8 bytes a vertex.
+        Packed16 = "packed16",
+        /// As the file has them.
+        Stored = "stored",
+        /// The same relative to the eye, which is taken out in f64 first: what lies far from its origin keeps its places.
+        Relative = "relative",
+    }
     /// How vertices come to their place in the picture.
     vertex: Vertex = "vertex", usual Snapped {
         /// Floats, with the viewport's shift in floats too, then snapped.
@@ -181,6 +192,19 @@ ladder! {
         /// Four words, channels of 8 to 16 bits: as many layers as the bits leave room for, with weights.
         Four32 = "four32",
     }
+    /// How many pixels are drawn for one that is shown.
+    scale: Scale = "scale", usual Whole {
+        /// A sixteenth: a quarter to a side, and light in between.
+        Quarter = "quarter",
+        /// A quarter: half to a side, and light in between.
+        Half = "half",
+        /// One.
+        Whole = "whole",
+        /// Four, two to a side, and the mean of their light.
+        Double = "double",
+        /// Sixteen, four to a side, and the mean of their light.
+        Quadruple = "quadruple",
+    }
     /// How the effects' parameters reach the kernels.
     parameters: Parameters = "parameters", usual Uniform {
         /// As constants in the text: a new text for every value.
@@ -209,6 +233,30 @@ impl Visibility {
     /// Does an adapter with or without 64-bit atomics have it?
     pub fn is_there(self, int64_atomics: bool) -> bool {
         self != Self::Packed64 || int64_atomics
+    }
+}
+
+impl Vertices {
+    /// Bits of a packed lane; none where positions are as the file has them.
+    pub const fn packed_bits(self) -> Option<u32> {
+        match self {
+            Self::Packed10 => Some(10),
+            Self::Packed16 => Some(16),
+            Self::Stored | Self::Relative => None,
+        }
+    }
+}
+
+impl Scale {
+    /// Drawn pixels for one that is shown, along a side.
+    pub const fn factor(self) -> f64 {
+        match self {
+            Self::Quarter => 0.25,
+            Self::Half => 0.5,
+            Self::Whole => 1.0,
+            Self::Double => 2.0,
+            Self::Quadruple => 4.0,
+        }
     }
 }
 

@@ -5,19 +5,22 @@ mod common;
 
 use common::*;
 use rasterlab::{
-    gpu::{RenderError, Renderer},
-    ladder::{AXES, Checks, Clipping, Counting, Coverage, Depth, Parameters, Perspective, Pins, Sums, Vertex, Visibility},
+    gpu::{Capture, RenderError, Renderer},
+    ladder::{AXES, Checks, Clipping, Counting, Coverage, Depth, Parameters, Perspective, Pins, Scale, Sums, Vertex, Vertices, Visibility},
     measure::{Verdict, compare},
     oracle,
-    plan::{Accuracy, PlanError},
-    scene::{Scene, camera::View},
+    plan::{Accuracy, PlanError, Tier},
+    scene::{
+        Scene,
+        camera::{Camera, View},
+    },
 };
 
 fn on(pins: Pins) -> Accuracy {
     Accuracy { pins, ..Accuracy::default() }
 }
 
-fn verdict(renderer: &mut Renderer, query: &str, size: [u32; 2], pins: Pins) -> (rasterlab::gpu::Capture, Verdict) {
+fn verdict(renderer: &mut Renderer, query: &str, size: [u32; 2], pins: Pins) -> (Capture, Verdict) {
     let scene = scene(query);
     let view = view(&scene, size);
     judged(renderer, &scene, &view, &stack(&["lambert"]), &on(pins))
@@ -48,7 +51,10 @@ fn every_rung_draws_every_scene_or_says_why_not() {
                         let share = different as f64 / view.pixels() as f64;
                         // Dropping what would be clipped may leave nothing of a scene that is all before the near plane, and a
                         // race may lose anything.
-                        let is_any = axis.name == "clipping" || pins.rung() == Some(Visibility::Race);
+                        let is_any = axis.name == "clipping"
+                            || pins.rung() == Some(Visibility::Race)
+                            // A box of 100,000 px has steps of pixels.
+                            || axis.name == "vertices" && query == "sizes";
                         let most = if is_any { 1.0 } else { 0.1 };
                         assert!(share <= most, "{query} on {}: {:.1} % of the owners differ", pins.words(), 100.0 * share);
                     }
@@ -212,6 +218,242 @@ fn a_float_viewport_moves_few_owners() {
     let view = view(&scene, [320, 240]);
     let [viewport, snapped] = [Vertex::Viewport, Vertex::Snapped].map(|rung| wrong_pixels(&mut renderer, &scene, &view, Pins::of(rung)));
     assert!(viewport <= 2 * snapped + 20, "{viewport} against {snapped}");
+}
+
+/// Furthest that a corner of a capture lies from its place on the oracle's finest grid, pixels.
+fn moved_px(capture: &Capture, scene: &Scene, view: &View) -> f64 {
+    let truth = oracle::project_finest(scene, view, &stack(&[])).expect("a scene that fits");
+    let px = |at: i32, bits: u32| f64::from(at) / f64::from(1 << bits);
+    let (ours, theirs) = (capture.geometry.subpixel_bits, truth.subpixel_bits);
+    let twins = capture.geometry.vertices.iter().zip(&truth.vertices).filter(|(a, b)| a.flags | b.flags == 0);
+    twins.map(|(a, b)| (px(a.x, ours) - px(b.x, theirs)).hypot(px(a.y, ours) - px(b.y, theirs))).fold(0.0, f64::max)
+}
+
+#[test]
+fn packed_places_move_corners_by_half_a_step_at_most() {
+    let Some(mut renderer) = renderer() else { return };
+    let scene = scene("teapot?tess=8");
+    let view = view(&scene, [320, 240]);
+    let mut of = |rung: Vertices| {
+        let (capture, verdict) = judged(&mut renderer, &scene, &view, &stack(&["lambert"]), &on(Pins::of(rung)));
+        // Given its own corners, every rung covers and compares as exactly as any.
+        let a = &verdict.accuracy;
+        assert_eq!(
+            [a.owner_mismatch, a.holes, a.double_hits, a.orphans, a.key_outside_bound, a.snap_outside_bound],
+            [0; 6],
+            "{rung:?}: {a:?}"
+        );
+        assert_eq!(a.unexplained, 0, "{rung:?}: {a:?}");
+        moved_px(&capture, &scene, &view)
+    };
+    let [packed10, packed16, stored, relative] =
+        [Vertices::Packed10, Vertices::Packed16, Vertices::Stored, Vertices::Relative].map(&mut of);
+    // The teapot is some 300 px wide: a step of its box is 0.3 px, or 0.005.
+    assert!((0.05..0.3).contains(&packed10), "{packed10} px");
+    assert!(packed16 < packed10 / 8.0 && packed16 < 0.01, "{packed16} px");
+    assert!(stored <= 1.1 / 256.0 && relative <= 1.1 / 256.0, "{stored} {relative} px");
+}
+
+#[test]
+fn neighbours_in_boxes_of_their_own_crack_when_they_are_packed() {
+    let Some(mut renderer) = renderer() else { return };
+    // Two sheets that share a jagged border, the upper one much higher than the lower one.
+    let border = |i: u32| [i as f32 * 2.0 - 4.0, 128.0 + (rasterlab::math::hash(i) % 2048) as f32 / 128.0];
+    let sheet = |far: f32| {
+        let quad = |i: u32| {
+            let ([a, b], [x0, x1]) = ([border(i), border(i + 1)], [border(i)[0], border(i + 1)[0]]);
+            [[a[0], a[1]], [b[0], b[1]], [x0, far], [b[0], b[1]], [x1, far], [x0, far]].map(|[x, y]| [x, y, 0.5])
+        };
+        rasterlab::stress::scenes::sheet((0..136).flat_map(quad).collect())
+    };
+    let scene = hand_made(&[sheet(-1000.0), sheet(300.0)]);
+    let view = pixel_view(256, 256);
+    let mut empty = |rung: Vertices| {
+        let frame = captured(&mut renderer, &scene, &view, &stack(&[]), &on(Pins::of(rung))).frame;
+        frame.owner.iter().filter(|owner| **owner == u32::MAX).count()
+    };
+    let [packed10, packed16, stored, relative] =
+        [Vertices::Packed10, Vertices::Packed16, Vertices::Stored, Vertices::Relative].map(&mut empty);
+    assert!(packed10 > 10 && packed16 * 8 < packed10, "{packed10} and {packed16} pixels in the cracks");
+    assert_eq!((stored, relative), (0, 0), "places that are shared stay shared");
+}
+
+/// A knot whose vertices lie far away, and what sees it from near by.
+fn modelled_far_away(offset: f64, size: [u32; 2]) -> (std::sync::Arc<Scene>, View) {
+    let knot = scene("knot?tess=6");
+    let (mesh, at) = (&knot.primitives[0], glam::DVec3::new(offset, -offset, 0.5 * offset));
+    let place = |vertex| (glam::DVec3::from_array(mesh.position(&knot, vertex).map(f64::from)) + at).as_vec3().to_array();
+    let part = rasterlab::stress::scenes::Part {
+        positions: (0..mesh.vertex_count()).map(place).collect(),
+        indices: (0..mesh.triangle_count()).flat_map(|triangle| mesh.corners(&knot, triangle)).collect(),
+        ..Default::default()
+    };
+    let scene = hand_made(&[part]);
+    let camera = Camera { eye: at + glam::DVec3::new(1.0, 1.0, 4.0), target: at, ..Camera::default() };
+    let view = rasterlab::stress::scenes::seen(&scene, &camera, size);
+    (scene, view)
+}
+
+#[test]
+fn places_relative_to_the_eye_forget_how_far_they_are() {
+    let Some(mut renderer) = renderer() else { return };
+    let (scene, view) = modelled_far_away(1e5, [320, 240]);
+    for visibility in rungs(&renderer) {
+        let mut of = |rung: Vertices| {
+            let (capture, verdict) = judged(&mut renderer, &scene, &view, &stack(&[]), &on(Pins::of(rung).with(visibility)));
+            assert_eq!(exactness(&verdict.accuracy), Ok(()), "{rung:?} on {}", visibility.name());
+            (moved_px(&capture, &scene, &view), verdict.accuracy.max_snap_delta)
+        };
+        let [stored, relative] = [Vertices::Stored, Vertices::Relative].map(&mut of);
+        assert!(stored.0 > 0.1, "{stored:?}");
+        assert!(relative.0 <= 1.1 / 256.0 && relative.1 <= 1, "{relative:?}");
+    }
+}
+
+#[test]
+fn the_planner_takes_the_eye_out_where_a_scene_lies_far_away() {
+    let Some(mut renderer) = renderer() else { return };
+    let mut planned = |scene: &std::sync::Arc<Scene>, view: &View| {
+        captured(&mut renderer, scene, view, &stack(&[]), &Accuracy::default());
+        let why = renderer.explain().reasons.into_iter().find(|note| note.name == "vertices").expect("a reason for every axis").why;
+        (renderer.key().expect("something was drawn").rungs.vertices, why)
+    };
+    let near = scene("knot?tess=6");
+    let (rung, why) = planned(&near, &view(&near, [320, 240]));
+    assert!(rung == Vertices::Stored && why.starts_with("stored: "), "{why}");
+    let (scene, view) = modelled_far_away(1e5, [320, 240]);
+    let (rung, why) = planned(&scene, &view);
+    assert!(rung == Vertices::Relative && why.starts_with("relative: so far from the origin"), "{why}");
+}
+
+#[test]
+fn the_strict_rung_takes_the_eye_out_to_the_bit_and_refuses_packed_places() {
+    let Some(mut renderer) = renderer() else { return };
+    let (scene, view) = modelled_far_away(1e6, [96, 72]);
+    let strict = |rung: Vertices| Accuracy { tier: Tier::Strict, ..on(Pins::of(rung)) };
+    let capture = captured(&mut renderer, &scene, &view, &stack(&[]), &strict(Vertices::Relative));
+    let truth = oracle::strict_frame(&scene, &View { is_relative: true, ..view.clone() }, &stack(&[])).expect("a scene that fits");
+    assert_eq!((capture.frame.owner, capture.frame.key), truth);
+    for (rung, name) in [(Vertices::Packed10, "packed10"), (Vertices::Packed16, "packed16")] {
+        let refused = renderer.capture(&view, &stack(&[]), &strict(rung)).expect_err("floats unpack");
+        let sentence = format!(
+            "vertex strict holds where integers decide, but vertices {name} unpacks places in floats; take it out, or another rung"
+        );
+        assert_eq!(refused.to_string(), sentence);
+    }
+}
+
+#[test]
+fn packed_places_take_their_bytes_only_while_they_are_used() {
+    let Some(gpu) = gpu() else { return };
+    let mut renderer = Renderer::new(gpu);
+    let scene = scene("sphere?triangles=5000");
+    let view = view(&scene, [64, 48]);
+    let mut bytes = |rung: Vertices| {
+        captured(&mut renderer, &scene, &view, &stack(&[]), &on(Pins::of(rung)));
+        let note = renderer.explain().buffers.into_iter().find(|buffer| buffer.name == "vertex_bytes").expect("attributes");
+        (note.bytes - scene.vertex_bytes.len() as u64, note.why.contains("packed positions"))
+    };
+    let room = |bytes: u64| bytes..bytes + 16;
+    let vertices = scene.vertex_count();
+    let [stored, packed10, packed16, again] = [Vertices::Stored, Vertices::Packed10, Vertices::Packed16, Vertices::Stored].map(&mut bytes);
+    assert!(room(0).contains(&stored.0) && !stored.1, "{stored:?}");
+    assert!(room(4 * vertices).contains(&packed10.0) && packed10.1, "{packed10:?} of {vertices} vertices");
+    assert!(room(8 * vertices).contains(&packed16.0) && packed16.1, "{packed16:?} of {vertices} vertices");
+    assert_eq!(again, stored);
+}
+
+#[test]
+fn packed_places_refuse_what_the_file_s_places_refuse_and_meshes_that_bend() {
+    let Some(mut renderer) = renderer() else { return };
+    let good = [[4.0, 4.0, 0.25], [60.0, 8.0, 0.5], [8.0, 60.0, 0.75f32]];
+    let mut positions = good.to_vec();
+    for (corner, value) in [(0, f32::NAN), (1, f32::INFINITY), (2, f32::MAX)] {
+        let mut corners = good;
+        corners[corner][corner] = value;
+        positions.extend(corners);
+    }
+    let scene = hand_made(&[rasterlab::stress::scenes::sheet(positions)]);
+    for rung in [Vertices::Packed10, Vertices::Packed16] {
+        let (capture, verdict) = judged(&mut renderer, &scene, &pixel_view(64, 64), &stack(&[]), &on(Pins::of(rung)));
+        let counters = capture.frame.counters;
+        assert_eq!((counters.rejected_nonfinite, counters.rejected_range), (2, 1), "{rung:?}");
+        assert_eq!((verdict.accuracy.snap_outside_bound, verdict.accuracy.counters_wrong), (0, 0), "{rung:?}");
+        assert!(capture.frame.covered() > 1000, "{rung:?}");
+    }
+    let soft = self::scene("tentacle?tess=2");
+    renderer.set_scene(&soft).unwrap();
+    let refused = renderer.capture(&view(&soft, [64, 48]), &stack(&[]), &on(Pins::of(Vertices::Packed10))).expect_err("its skin bends");
+    assert!(
+        refused.is_unsupported() && refused.to_string().starts_with("vertices packed10 packs meshes that keep their shape"),
+        "{refused}"
+    );
+}
+
+#[test]
+fn scaled_pictures_are_exact_in_their_own_pixels_and_shown_at_the_size_that_was_asked_for() {
+    let Some(mut renderer) = renderer() else { return };
+    let scene = scene("teapot?tess=8");
+    // Neither side is a multiple of four.
+    let (size, view) = ([161, 122], view(&scene, [161, 122]));
+    let effects = stack(&["lambert", "wireframe", "outline"]);
+    for rung in Scale::ALL.iter().copied() {
+        let (capture, verdict) = judged(&mut renderer, &scene, &view, &effects, &on(Pins::of(rung)));
+        assert_eq!(exactness(&verdict.accuracy), Ok(()), "{}", rung.name());
+        let drawn = &capture.frame;
+        let side = |side: u32| (f64::from(side) * rung.factor()).ceil() as u32;
+        assert_eq!([drawn.width, drawn.height], size.map(side), "{}", rung.name());
+        let has_pass = renderer.explain().passes.iter().any(|pass| pass.name == "scale");
+        let has_buffers = ["shown", "scaling"].map(|name| renderer.explain().buffers.iter().any(|buffer| buffer.name == name));
+        assert_eq!((has_pass, has_buffers, capture.shown.is_some()), (rung != Scale::Whole, [has_pass; 2], has_pass), "{}", rung.name());
+        let Some(shown) = &capture.shown else { continue };
+        assert_eq!(([shown.width, shown.height], shown.color.len(), shown.owner.len()), (size, view.pixels(), view.pixels()));
+        let right = oracle::scaled(&drawn.color, [drawn.width, drawn.height], size);
+        assert_eq!(compare::pictures(&shown.color, &right, 1).pixels_beyond, 0, "{}: the pass against the oracle's", rung.name());
+        // All by itself the oracle shows the same, but for corners that snap apart.
+        let golden = oracle::render_shown(&scene, &[(view.clone(), effects.clone())], rung.factor()).expect("a scene that fits");
+        let beyond = compare::pictures(&shown.color, &golden.color, 1).pixels_beyond;
+        assert!(beyond * 200 < view.pixels() as u64, "{}: {beyond} pixels are not the golden's", rung.name());
+    }
+}
+
+#[test]
+fn more_samples_come_nearer_to_eight_by_eight() {
+    let Some(mut renderer) = renderer() else { return };
+    let scene = scene("teapot?tess=8");
+    let view = view(&scene, [96, 72]);
+    let lit = stack(&["lambert"]);
+    let factors: Vec<f64> = Scale::ALL.iter().map(|rung| rung.factor()).collect();
+    let truths = oracle::truths(&scene, &view, &lit, &factors).expect("a scene that fits");
+    let smooth = truths.smooth.expect("sizes are compared");
+    let rms: Vec<f64> = Scale::ALL
+        .iter()
+        .map(|rung| {
+            let picture = captured(&mut renderer, &scene, &view, &lit, &on(Pins::of(*rung))).into_shown();
+            compare::pictures(&picture.color, &smooth, 0).rms
+        })
+        .collect();
+    eprintln!("RMS against 8 x 8 samples, quarter to quadruple: {rms:.2?}");
+    assert!(rms.windows(2).all(|pair| pair[1] < 0.9 * pair[0]), "{rms:?}");
+    assert!(rms[4] < 2.0, "{rms:?}");
+}
+
+#[test]
+fn a_scale_that_the_adapter_cannot_hold_says_what_it_would_draw() {
+    let Some(mut renderer) = renderer() else { return };
+    let scene = scene("teapot?tess=4");
+    let side = renderer.gpu().caps.max_texture_side;
+    renderer.set_scene(&scene).unwrap();
+    let wide = pixel_view(side, 8);
+    let refused = renderer.capture(&wide, &stack(&[]), &on(Pins::of(Scale::Double))).expect_err("twice the widest");
+    let sentence = format!(
+        "scale double draws {0}x16 pixels for a picture of {side}x8, and the picture is {0} x 16; this adapter's textures end at {side} pixels a \
+         side; take a smaller scale",
+        2 * side
+    );
+    assert!(refused.is_unsupported(), "{refused}");
+    assert_eq!(refused.to_string(), sentence);
+    captured(&mut renderer, &scene, &pixel_view(16, 8), &stack(&[]), &on(Pins::of(Scale::Double)));
 }
 
 #[test]

@@ -3,7 +3,7 @@
 use rasterlab::{
     effects::{EFFECTS, Effect},
     gpu::bends::{BendRecord, ShapeRecord},
-    gpu::uniforms::{CounterRecord, DrawRecord, FrameUniform, Twin},
+    gpu::uniforms::{CounterRecord, DrawRecord, FrameUniform, ScalingUniform, Twin},
     ladder::Visibility,
     shader::{
         Fetch, KernelKey, Pass,
@@ -33,6 +33,7 @@ fn uniforms_and_records_agree() {
     check_twin::<FrameUniform>(&small);
     check_twin::<DrawRecord>(&small);
     check_twin::<CounterRecord>(&small);
+    check_twin::<ScalingUniform>(&reflected(Pass::Scale, vec![]));
     let skin = reflected(Pass::Skin, vec![]);
     check_twin::<BendRecord>(&skin);
     check_twin::<ShapeRecord>(&skin);

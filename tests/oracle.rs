@@ -136,6 +136,7 @@ fn flat_view(width: u32, height: u32) -> View {
         scene_range_m: [0.0, 1.0],
         background: [0.0; 4],
         subpixel_bits: 8,
+        is_relative: false,
         pose: None,
     }
 }

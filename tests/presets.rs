@@ -209,6 +209,14 @@ fn errors_name_line_key_value_and_range() {
             "look.toml:3: accuracy.tier must be one of draft, fast, precise, reference, strict, not a number",
         ),
         ("schema = 1\n[test]\nmax_pixels = 9\n", "look.toml:2: test.why must say why the budget is above the default"),
+        (
+            "schema = 1\n[test]\nmax_wrong_owner = 9\nwhy = \"because\"\n",
+            "look.toml:2: test.max_wrong_owner is for looks that pin a cheaper rung or take the tier draft or fast; this one must be exact",
+        ),
+        (
+            "schema = 1\n[accuracy]\nvisibility = \"race\"\n[test]\nmax_wrong_owner = 9\n",
+            "look.toml:4: test.why must say why the budget is above the default",
+        ),
         ("schema = 1\nname = \"\\u001b[31m\"\n", "look.toml:2: name contains the control character '\\u{1b}'"),
         ("schema = 1\neffects = 3\n", "look.toml:2: effects must be a table, written [effects]"),
         ("schema = 1\neffects.facet = true\n", "look.toml:2: effects.facet must be a table, written [effects.facet]"),
@@ -665,7 +673,7 @@ prop_compose! {
             stack,
             accuracy: Accuracy { tier: Tier::ALL[tier], pins: visibility.map_or(Pins::default(), |i| Pins::of(Visibility::EXACT[i])), ..Accuracy::default() },
             output: Output { size, background },
-            test: test.map(|(max_channel, max_pixels)| Test { max_channel, max_pixels, why: format!("because {why}") }),
+            test: test.map(|(max_channel, max_pixels)| Test { max_channel, max_pixels, max_wrong_owner: 0, why: format!("because {why}") }),
         }
     }
 }

@@ -6,6 +6,8 @@ struct Draw {
     world_from_object: mat4x4f,
     normal_from_object: mat4x4f, // cofactors: keeps the direction of plane normals
     base_color: vec4f,
+    origin: vec4f,               // places are counted from here, where they are packed or relative to the eye
+    step: vec4f,                 // what a packed place counts in
     first_vertex: u32,
     vertex_count: u32,
     first_triangle: u32,

@@ -1,22 +1,20 @@
 // Object to clip space, from the stored bytes: shared by the projection, the clipper and the resolve.
 //@ use common/draws
-//@ use common/pull
 //@ use common/vertex
 //@ use slot/movement
+//@ use slot/positions
 
-// Every draw's positions are f32, as glTF's core demands.
-override F32_POSITIONS: bool = false;
+// Places are taken from the draw's origin, near the eye, before they meet its matrix.
+override IS_RELATIVE: bool = false;
 
+// A vertex in object space, as bits: NaN or 2^40 and more in a lane where it is refused.
 fn transform_bits(draw: u32, vertex: u32) -> vec3u {
-    let byte = draws[draw].position_offset + vertex * draws[draw].position_stride;
-    if F32_POSITIONS {
-        let word = byte / 4u;
-        return vec3u(vertex_bytes[word], vertex_bytes[word + 1u], vertex_bytes[word + 2u]);
-    }
-    return pull_bits3(draws[draw].position_format, byte);
+    return positions_bits(draw, vertex);
 }
 
-fn transform_clip(draw: u32, p: vec3f) -> vec4f {
+fn transform_clip(draw: u32, place: vec3f) -> vec4f {
+    var p = place;
+    if IS_RELATIVE { p -= draws[draw].origin.xyz; }
     let m = draws[draw].clip_from_object;
     return m[0] * p.x + m[1] * p.y + m[2] * p.z + m[3];
 }

@@ -15,11 +15,12 @@ use super::{
     trade::{self, Point, Progress, Question},
 };
 use crate::{
+    effects::Stack,
     gpu::{Gpu, Renderer},
     oracle,
     preset::{self, Look, Provenance},
-    scene::Scene,
-    session::{SceneSource, Session},
+    scene::{Scene, camera::View},
+    session::{Accuracy, SceneSource, Session},
 };
 
 /// What names a scene: its source, and the look it is relative to.
@@ -147,9 +148,15 @@ fn verify(gpu: Arc<Gpu>, Inputs { scene, view, stack, accuracy }: &Inputs) -> Re
     let capture = renderer.capture(view, stack, accuracy).map_err(|e| e.to_string())?;
     let (layers, previous) = (capture.layers.as_deref(), capture.previous.as_deref());
     let verdict = oracle::judge_after(scene, view, stack, &capture.frame, &capture.geometry, layers, previous);
-    let truth =
-        if stack.is_repeatable() { Some(oracle::render_finest(scene, view, stack).map_err(|e| e.to_string())?.owner) } else { None };
+    let truth = if stack.is_repeatable() { Some(true_owners(scene, view, stack, accuracy)?) } else { None };
     verdict.map(|verdict| Box::new(Findings::new(capture, verdict, truth))).map_err(|e| e.to_string())
+}
+
+/// Owners of all pixels that are drawn, in the exact picture on the finest grid.
+fn true_owners(scene: &Scene, view: &View, stack: &Stack, accuracy: &Accuracy) -> Result<Vec<u32>, String> {
+    let factor = accuracy.scale().factor();
+    let frame = oracle::render_finest(scene, &view.scaled(factor), &stack.scaled(factor)).map_err(|e| e.to_string())?;
+    Ok(frame.owner)
 }
 
 /// Size of a thumbnail in pixels; shown at half of it.
@@ -163,7 +170,8 @@ fn thumbnail(look: &Look) -> Option<egui::ColorImage> {
     if scene.triangle_count() > THUMBNAIL_TRIANGLES {
         return None;
     }
-    let frame = oracle::render_last(&scene, &look.session.moments(&scene, THUMBNAIL)).ok()?;
+    let factor = look.session.accuracy.scale().factor();
+    let frame = oracle::render_shown(&scene, &look.session.moments(&scene, THUMBNAIL), factor).ok()?;
     let bytes: Vec<u8> = frame.color.concat();
     Some(egui::ColorImage::from_rgba_unmultiplied([frame.width as usize, frame.height as usize], &bytes))
 }
@@ -173,6 +181,6 @@ fn shot(gpu: Arc<Gpu>, Inputs { scene, view, stack, accuracy }: &Inputs, look: &
     let mut renderer = Renderer::new(gpu);
     renderer.set_scene(scene).map_err(|e| e.to_string())?;
     let capture = renderer.capture(view, stack, accuracy).map_err(|e| e.to_string())?;
-    let png = preset::png_with_look(&capture.frame, look, &provenance).map_err(|e| e.to_string())?;
+    let png = preset::png_with_look(&capture.into_shown(), look, &provenance).map_err(|e| e.to_string())?;
     preset::write_atomically(path, &png).map_err(|e| e.to_string())
 }

@@ -346,6 +346,9 @@ impl App {
         if let Some(order) = self.screen.report().and_then(|report| report.order) {
             let over = order.drawn.saturating_sub(order.limit);
             let share = 100.0 * order.drawn as f64 / order.covered.max(1) as f64;
+            if order.is_beyond_tickets() {
+                states.push((theme::RED, "more than 2^32 samples: the hardware's order lost count; take submission".into()));
+            }
             states.push((theme::TEXT, format!("drew {} of {} samples ({share:.1} %), {over} too many", order.drawn, order.covered)));
         }
         if self.picking.is_some() {

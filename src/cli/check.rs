@@ -105,10 +105,12 @@ fn drawn(args: &Check, look: &Look, scene: &std::sync::Arc<crate::scene::Scene>,
     }
     let delta = pictures(&expected, &frame.color, test.max_channel);
     let mut faults = Vec::new();
-    if delta.pixels_beyond > u64::from(test.max_pixels) {
+    // A wrong owner is a wrong pixel.
+    let allowed = u64::from(test.max_pixels) + u64::from(test.max_wrong_owner);
+    if delta.pixels_beyond > allowed {
         faults.push(format!(
-            "{} pixels differ from the golden by more than {} of 255, the worst by {}; {} are allowed",
-            delta.pixels_beyond, test.max_channel, delta.max_delta, test.max_pixels
+            "{} pixels differ from the golden by more than {} of 255, the worst by {}; {allowed} are allowed",
+            delta.pixels_beyond, test.max_channel, delta.max_delta
         ));
     }
     Ok((Some(Drawn { size, expected, actual: frame.color, delta }), faults))

@@ -39,7 +39,8 @@ pub fn run(common: &Common, args: &Explain, streams: &mut Streams) -> Result<Exi
             let session = &look.session;
             let (view, stack) = (session.view(&scene, session.output.size), session.posed_stack());
             let capture = renderer.capture(&view, &stack, &session.accuracy)?;
-            check = checked(&scene, &view, &stack, &capture.frame, &renderer.explain())?;
+            let factor = capture.geometry.scale;
+            check = checked(&scene, &view.scaled(factor), &stack.scaled(factor), &capture.frame, &renderer.explain())?;
             (Painter::Gpu(Box::new(crate::gpu::Renderer::new(gpu.clone())), gpu).json(), Some(renderer.explain()))
         }
         Some(painter) => (painter.json(), None),

@@ -41,7 +41,8 @@ pub fn draw(look: &Look, scene: &Scene) -> Result<Golden, Fault> {
         return Err(Fault::usage(format!("{}: output.size {width}x{height} is larger than a golden may be, 320x240", look.id)));
     }
     session.stack.check()?;
-    let frame = oracle::render_last(scene, &session.moments(scene, session.output.size))?;
+    let moments = session.moments(scene, session.output.size);
+    let frame = oracle::render_shown(scene, &moments, session.accuracy.scale().factor())?;
     let png = preset::png_bytes(&frame.color, session.output.size)?;
     if png.len() > MAX_BYTES {
         return Err(Fault::usage(format!("{}: its picture takes {} bytes; a golden is at most {MAX_BYTES}", look.id, png.len())));

@@ -108,8 +108,8 @@ impl Painter {
     pub fn frame(&mut self, session: &Session, scene: &Arc<Scene>) -> Result<Frame, Fault> {
         session.stack.check()?;
         match self {
-            Self::Cpu => Ok(oracle::render_last(scene, &session.moments(scene, session.output.size))?),
-            Self::Gpu(..) => Ok(self.capture(session, scene)?.frame),
+            Self::Cpu => Ok(oracle::render_shown(scene, &session.moments(scene, session.output.size), session.accuracy.scale().factor())?),
+            Self::Gpu(..) => Ok(self.capture(session, scene)?.into_shown()),
         }
     }
 
@@ -123,7 +123,7 @@ impl Painter {
                 let previous = if before.is_empty() { None } else { Some(oracle::render_last(scene, before)?.color) };
                 let frame = oracle::render_after(scene, view, stack, previous.as_deref())?;
                 let geometry: Geometry = oracle::project_moved(scene, &draws(scene, view)?, view, stack);
-                Ok(Capture { frame, geometry, layers: None, previous })
+                Ok(Capture { frame, geometry, layers: None, previous, shown: None })
             }
             Self::Gpu(renderer, _) => {
                 renderer.set_scene(scene)?;

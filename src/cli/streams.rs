@@ -52,6 +52,12 @@ impl Streams {
         ProgressBar::with_draw_target(Some(steps), ProgressDrawTarget::stderr()).with_style(style)
     }
 
+    /// Data that somebody waits for: it leaves at once.
+    pub fn text_now(&mut self, text: &str) -> io::Result<()> {
+        self.text(text)?;
+        self.out.flush()
+    }
+
     pub fn finish(&mut self) -> io::Result<()> {
         self.out.flush()
     }
@@ -59,20 +65,32 @@ impl Streams {
 
 /// Rows in aligned columns; the first row is the head. Numbers stand to the right.
 pub fn table(rows: &[Vec<String>]) -> String {
-    let columns = rows.iter().map(Vec::len).max().unwrap_or(0);
-    let cell = |row: &[String], column: usize| row.get(column).cloned().unwrap_or_default();
-    let width = |column| rows.iter().map(|row| cell(row, column).chars().count()).max().unwrap_or(0);
-    let widths: Vec<usize> = (0..columns).map(width).collect();
-    let is_number = |text: &str| text.is_empty() || text == "-" || text.starts_with(|c: char| c.is_ascii_digit());
-    let right: Vec<bool> = (0..columns).map(|column| rows.len() > 1 && rows[1..].iter().all(|row| is_number(&cell(row, column)))).collect();
-    let line = |row: &Vec<String>| {
-        let cells = (0..columns).map(|c| {
-            let (text, width) = (cell(row, c), widths[c]);
-            if right[c] { format!("{text:>width$}") } else { format!("{text:<width$}") }
+    let columns = Columns::of(rows);
+    rows.iter().map(|row| columns.line(row)).collect()
+}
+
+/// Widths of a table's columns, for one that is written line by line.
+pub struct Columns(Vec<(usize, bool)>);
+
+impl Columns {
+    /// As wide as the widest of these rows, the first of which is the head; where all others are numbers, they stand to the
+    /// right.
+    pub fn of(rows: &[Vec<String>]) -> Self {
+        let columns = rows.iter().map(Vec::len).max().unwrap_or(0);
+        let cell = |row: &[String], column: usize| row.get(column).cloned().unwrap_or_default();
+        let width = |column| rows.iter().map(|row| cell(row, column).chars().count()).max().unwrap_or(0);
+        let is_number = |text: &str| text.is_empty() || text == "-" || text.starts_with(|c: char| c.is_ascii_digit());
+        let is_right = |column| rows.len() > 1 && rows[1..].iter().all(|row| is_number(&cell(row, column)));
+        Self((0..columns).map(|column| (width(column), is_right(column))).collect())
+    }
+
+    pub fn line(&self, row: &[String]) -> String {
+        let cells = self.0.iter().enumerate().map(|(column, &(width, is_right))| {
+            let text = row.get(column).map_or("", String::as_str);
+            if is_right { format!("{text:>width$}") } else { format!("{text:<width$}") }
         });
         format!("{}\n", cells.collect::<Vec<_>>().join("  ").trim_end())
-    };
-    rows.iter().map(line).collect()
+    }
 }
 
 /// A float for JSON, which has no words for what is not finite.

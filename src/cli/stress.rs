@@ -6,11 +6,11 @@ use super::{
     args::{Common, Stress},
     fault::{Exit, Fault},
     painter::Painter,
-    streams::{Streams, table},
+    streams::{Columns, Streams, table},
 };
 use crate::{
     gpu::Renderer,
-    stress::{Outcome, Report, chosen},
+    stress::{Case, Outcome, Report, chosen},
 };
 
 pub fn run(common: &Common, args: &Stress, streams: &mut Streams) -> Result<Exit, Fault> {
@@ -32,6 +32,10 @@ pub fn run(common: &Common, args: &Stress, streams: &mut Streams) -> Result<Exit
         return Err(Fault::usage("the oracle judges and is never stressed; stress needs a GPU adapter"));
     };
     let bar = streams.progress(cases.len() as u64);
+    let columns = columns(&cases);
+    if !streams.json {
+        streams.text_now(&columns.line(&HEAD.map(str::to_owned)))?;
+    }
     let mut reports = Vec::new();
     for case in &cases {
         let report = case.run(renderer, args.seed, &|what| {
@@ -49,6 +53,10 @@ pub fn run(common: &Common, args: &Stress, streams: &mut Streams) -> Result<Exit
             **renderer = Renderer::new(gpu.clone());
             bar.suspend(|| streams.note(&line(&report)));
         }
+        if !streams.json {
+            // Some cases take minutes: each row leaves as soon as it is known.
+            bar.suspend(|| streams.text_now(&columns.line(&row(&report))))?;
+        }
         reports.push(report);
     }
     bar.finish_and_clear();
@@ -56,7 +64,6 @@ pub fn run(common: &Common, args: &Stress, streams: &mut Streams) -> Result<Exit
     if streams.json {
         streams.object("stress", painter.json(), reports.iter().map(result).collect())?;
     } else {
-        streams.text(&table(&rows(&reports)))?;
         remarks(&reports).iter().try_for_each(|remark| streams.text(&format!("{remark}\n")))?;
     }
     let seconds = reports.iter().map(|report| report.ms).sum::<f64>() / 1e3;
@@ -72,20 +79,28 @@ fn line(report: &Report) -> String {
     format!("case {number}, {name}: {}{seed}", outcome.why().unwrap_or(outcome.word()))
 }
 
-fn rows(reports: &[Report]) -> Vec<Vec<String>> {
-    let mut rows = vec![["CASE", "NAME", "EXPECTED", "OUTCOME", "PICTURES", "TRIANGLES", "MS"].map(str::to_owned).to_vec()];
-    rows.extend(reports.iter().map(|report| {
-        vec![
-            report.number.to_string(),
-            report.name.into(),
-            report.expectation.to_string(),
-            report.outcome.word().into(),
-            report.counts.pictures.to_string(),
-            report.counts.triangles.to_string(),
-            format!("{:.0}", report.ms),
-        ]
-    }));
-    rows
+const HEAD: [&str; 7] = ["CASE", "NAME", "EXPECTED", "OUTCOME", "PICTURES", "TRIANGLES", "MS"];
+
+/// Columns that hold every row to come.
+fn columns(cases: &[&Case]) -> Columns {
+    let most = |digits: usize| "0".repeat(digits);
+    let outcome = Outcome::Refused(String::new()).word().to_owned();
+    let widest = |case: &&Case| {
+        vec![case.number.to_string(), case.name.into(), case.expectation.to_string(), outcome.clone(), most(8), most(11), most(7)]
+    };
+    Columns::of(&std::iter::once(HEAD.map(str::to_owned).to_vec()).chain(cases.iter().map(widest)).collect::<Vec<_>>())
+}
+
+fn row(report: &Report) -> Vec<String> {
+    vec![
+        report.number.to_string(),
+        report.name.into(),
+        report.expectation.to_string(),
+        report.outcome.word().into(),
+        report.counts.pictures.to_string(),
+        report.counts.triangles.to_string(),
+        format!("{:.0}", report.ms),
+    ]
 }
 
 /// What the table has no room for: failures first, then what was left out, refused or noted.

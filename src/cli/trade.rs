@@ -10,7 +10,7 @@ use super::{
     streams::Streams,
 };
 use crate::{
-    gpu::trade::{AS_PLANNED, TradeError, TradeOptions, TradeRow, Truth, trade},
+    gpu::trade::{AS_PLANNED, TradeError, TradeOptions, TradeRow, Truth, factors, trade},
     ladder::{AXES, Axis},
     oracle,
     preset::form::did_you_mean,
@@ -30,7 +30,7 @@ pub fn run(common: &Common, args: &Bench, streams: &mut Streams) -> Result<Exit,
         let session = &look.session.posed();
         bar.set_message("the oracle draws");
         let view = session.view(scene, args.size);
-        let picture = oracle::render_finest(scene, &view, &session.stack)?;
+        let truths = oracle::truths(scene, &view, &session.stack, &factors(session, &options.axes))?;
         let mut progress = |what: &str, done: usize, all: usize| {
             bar.set_length(all as u64);
             bar.set_position(done as u64);
@@ -43,7 +43,7 @@ pub fn run(common: &Common, args: &Bench, streams: &mut Streams) -> Result<Exit,
             scene,
             &look.id,
             &options,
-            &Truth { picture: &picture, judge: &judge(scene, &view) },
+            &Truth { truths: &truths, judge: &judge(scene, &view) },
             &mut progress,
         )?);
     }
@@ -125,6 +125,8 @@ fn lines(rows: &[TradeRow]) -> Vec<Vec<String>> {
         "MAX",
         "RMS",
         "CHANGED",
+        "MOVED PX",
+        "CRACKS/MPX",
         "MIB",
         "GAIN",
     ];
@@ -148,6 +150,8 @@ fn lines(rows: &[TradeRow]) -> Vec<Vec<String>> {
             figure(&|e| e.max_colour_delta.to_string()),
             figure(&|e| format!("{:.4}", e.rms_colour_delta)),
             figure(&|e| e.changed_pixels.to_string()),
+            figure(&|e| format!("{:.4}", e.moved_px)),
+            figure(&|e| format!("{:.1}", e.cracks_per_mpx)),
             format!("{:.1}", row.bytes as f64 / f64::from(1 << 20)),
             if row.is_beaten { "no gain" } else { "-" }.into(),
         ]

@@ -14,6 +14,7 @@ use super::{
 };
 use crate::{
     frame::Frame,
+    gpu::Capture,
     ladder::Skinning,
     measure::{
         Accuracy, Budget,
@@ -98,9 +99,16 @@ fn verify(common: &Common, args: &Verify, look: &Look, painter: &mut Painter) ->
         let layers = capture.layers.as_deref();
         let previous = capture.previous.as_deref();
         let verdict = oracle::judge_after(&scene, &view, &stack, &capture.frame, &capture.geometry, layers, previous)?;
-        let pixels_beyond = pictures(&capture.frame.color, &verdict.expected.color, budget.max_channel).pixels_beyond;
+        // Where wrong owners have a budget, their colours are theirs: colour is held where the owner is right.
+        let mut held = verdict.expected.color.clone();
+        if budget.max_wrong_owner > 0 {
+            let wrong = capture.frame.owner.iter().zip(&verdict.expected.owner).enumerate().filter(|(_, (a, b))| a != b);
+            wrong.for_each(|(i, _)| held[i] = capture.frame.color[i]);
+        }
+        let pixels_beyond = pictures(&capture.frame.color, &held, budget.max_channel).pixels_beyond;
         let mut failures = failures(&verdict.accuracy, &budget, pixels_beyond);
-        let is_repeatable = session.stack.is_repeatable();
+        failures.extend(scaling_fault(&capture));
+        let is_repeatable = session.stack.is_repeatable() && !session.accuracy.is_left_to_chance();
         for repeat in 1..args.frames {
             if is_repeatable && painter.capture(&pinned, &scene)?.frame != capture.frame {
                 failures.push(format!("frame {} is not equal to the first, to the bit", repeat + 1));
@@ -109,7 +117,7 @@ fn verify(common: &Common, args: &Verify, look: &Look, painter: &mut Painter) ->
         }
         if let Some((other, frame)) = first.as_ref().filter(|_| is_repeatable) {
             let different = owners(&capture.frame.owner, &frame.owner).different;
-            if different > 0 {
+            if different > u64::from(budget.max_wrong_owner) {
                 failures.push(format!("{different} pixels have another owner than on {other}"));
             }
         }
@@ -130,6 +138,16 @@ fn verify(common: &Common, args: &Verify, look: &Look, painter: &mut Painter) ->
     Ok(rows)
 }
 
+/// The pass from drawn to shown pixels, held against the oracle's.
+fn scaling_fault(capture: &Capture) -> Option<String> {
+    let shown = capture.shown.as_ref()?;
+    let drawn = &capture.frame;
+    let right = oracle::scaled(&drawn.color, [drawn.width, drawn.height], [shown.width, shown.height]);
+    let delta = pictures(&shown.color, &right, 1);
+    (delta.pixels_beyond > 0)
+        .then(|| format!("{} shown pixels are off by up to {} of 255 from the drawn ones", delta.pixels_beyond, delta.max_delta))
+}
+
 /// Volume by the linear blend, as a share of that by dual quaternions; none where no joint holds anything.
 fn volume_share(session: &Session, scene: &Scene) -> Result<Option<f64>, Fault> {
     if scene.rig.skins.is_empty() {
@@ -144,10 +162,11 @@ fn volume_share(session: &Session, scene: &Scene) -> Result<Option<f64>, Fault> 
     Ok((dual != 0.0).then_some(linear / dual))
 }
 
-/// Exact things have no budget; colour has the look's.
+/// Exact things have no budget unless the look asks for less; colour has the look's.
 fn failures(accuracy: &Accuracy, test: &Test, pixels_beyond: u64) -> Vec<String> {
     let forgiven = pixels_beyond <= u64::from(test.max_pixels);
-    let budget = Budget { max_colour_delta: if forgiven { u8::MAX } else { test.max_channel }, ..Budget::default() };
+    let max_colour_delta = if forgiven { u8::MAX } else { test.max_channel };
+    let budget = Budget { max_colour_delta, max_wrong_owner: test.max_wrong_owner.into(), ..Budget::default() };
     accuracy.within(&budget).err().map_or_else(Vec::new, |reasons| reasons.split("; ").map(str::to_owned).collect())
 }
 

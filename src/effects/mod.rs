@@ -211,6 +211,23 @@ impl Stack {
         &mut self.0[at]
     }
 
+    /// The stack for a picture of `factor` times as many pixels to a side: lengths in pixels keep their share of it, as far as
+    /// their ranges and whole pixels go.
+    #[must_use]
+    pub fn scaled(&self, factor: f64) -> Self {
+        let mut stack = self.clone();
+        for Enabled { effect, words } in stack.0.iter_mut().filter(|_| factor != 1.0) {
+            for field in effect.fields.iter().filter(|field| field.unit == "px") {
+                let [low, high] = field.hard;
+                let length = |v: f64| (v * factor).clamp(low, high);
+                let lanes: Vec<f64> =
+                    field.get(words).into_iter().map(|v| if field.is_whole() { length(v).round() } else { length(v) }).collect();
+                field.set(words, &lanes).expect("within its range");
+            }
+        }
+        stack
+    }
+
     pub fn disable(&mut self, name: &str) {
         self.0.retain(|enabled| enabled.effect.name != name);
     }

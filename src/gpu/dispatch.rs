@@ -12,8 +12,9 @@ pub enum Dispatch {
     Indirect(u64),
 }
 
-/// Workgroups of `pass` over so many projected vertices, triangles, and vertices that may bend.
-pub fn dispatch(pass: Pass, [vertices, triangles, bent]: [u32; 3], view: &View, key: &KernelKey) -> Dispatch {
+/// Workgroups of `pass` over so many projected vertices, triangles, and vertices that may bend, in a picture of `view` that is
+/// shown at another size.
+pub fn dispatch(pass: Pass, [vertices, triangles, bent]: [u32; 3], view: &View, shown: [u32; 2], key: &KernelKey) -> Dispatch {
     match pass {
         Pass::Skin => Dispatch::Direct(folded(bent.div_ceil(key.list_group))),
         Pass::Project => Dispatch::Direct(folded(vertices.div_ceil(key.list_group))),
@@ -32,6 +33,7 @@ pub fn dispatch(pass: Pass, [vertices, triangles, bent]: [u32; 3], view: &View, 
         Pass::RasterLarge(_) => Dispatch::Indirect(36),
         Pass::ListTiles => Dispatch::Direct(folded((view.width.div_ceil(8) * view.height.div_ceil(8)).div_ceil(64))),
         Pass::Resolve if key.listed_tiles => Dispatch::Indirect(48),
+        Pass::Scale => Dispatch::Direct(shown.map(|side| side.div_ceil(8))),
         Pass::Resolve => Dispatch::Direct([view.width.div_ceil(key.tile_side()), view.height.div_ceil(key.tile_side())]),
     }
 }

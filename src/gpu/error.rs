@@ -1,8 +1,9 @@
 //! Errors of drawing, each one sentence.
 
 use crate::{
+    ladder::Scale,
     plan::PlanError,
-    scene::draw::DrawError,
+    scene::{camera::View, draw::DrawError},
     shader::{link::LinkError, reflect::ShaderError},
 };
 
@@ -19,6 +20,8 @@ pub enum RenderError {
     TooWide { width: u32, height: u32, limit: u32 },
     #[error("no memory for the buffer {buffer} of {bytes} bytes")]
     OutOfMemory { buffer: &'static str, bytes: u64 },
+    #[error("scale {} draws {}x{} pixels for a picture of {}x{}, and {why}; take a smaller scale", rung.name(), drawn[0], drawn[1], shown[0], shown[1])]
+    Scaled { rung: Scale, shown: [u32; 2], drawn: [u32; 2], why: Box<RenderError> },
     #[error("checks trusted is for the shaders inside this program, not for those of a folder; use checked")]
     Untrusted,
     #[error("the device was lost")]
@@ -34,6 +37,11 @@ pub enum RenderError {
     #[error("the queues still overflow after growing ten times; {0} entries were lost")]
     Overflow(u32),
     #[error(
+        "draw_order in the hardware's order counts in one word, at most 4294967295 samples, and this picture has {0}; take \
+         mode = \"submission\", or a smaller picture"
+    )]
+    Tickets(u64),
+    #[error(
         "{0} pixels have more layers than the x-ray's sums hold even with 8 bits a channel; narrow its window, give all layers equal \
          weight, show fewer, or take sums four32"
     )]
@@ -41,10 +49,29 @@ pub enum RenderError {
 }
 
 impl RenderError {
+    /// With the reason why so much was asked for.
+    pub(super) fn at_scale(self, rung: Scale, shown: &View, drawn: &View) -> Self {
+        let [shown, drawn] = [shown, drawn].map(|view| [view.width, view.height]);
+        match self {
+            Self::TooLarge { .. } | Self::TooWide { .. } | Self::OutOfMemory { .. } => {
+                Self::Scaled { rung, shown, drawn, why: Box::new(self) }
+            }
+            other => other,
+        }
+    }
+
     /// A pinned rung that this look or adapter lacks, or a size.
     pub fn is_unsupported(&self) -> bool {
         matches!(self, Self::Plan(error) if !matches!(error, PlanError::Conflict(_)))
-            || matches!(self, Self::Untrusted | Self::TooLarge { .. } | Self::TooWide { .. } | Self::OutOfMemory { .. })
+            || matches!(
+                self,
+                Self::Untrusted
+                    | Self::Scaled { .. }
+                    | Self::Tickets(_)
+                    | Self::TooLarge { .. }
+                    | Self::TooWide { .. }
+                    | Self::OutOfMemory { .. }
+            )
     }
 
     pub fn is_lost(&self) -> bool {

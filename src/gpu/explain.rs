@@ -80,5 +80,6 @@ fn pass_purpose(pass: Pass) -> &'static str {
         Pass::RasterLarge(_) => "one workgroup per 64 x 64 tile of a large triangle",
         Pass::ListTiles => "gathers the tiles that hold something",
         Pass::Resolve => "shades every pixel once",
+        Pass::Scale => "brings the pixels that were drawn to the size that is shown",
     }
 }

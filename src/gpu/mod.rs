@@ -10,6 +10,7 @@ mod explain;
 pub mod hardware;
 mod hardware_owners;
 pub mod naive;
+mod packing;
 pub mod pipelines;
 mod prepare;
 pub mod readback;
@@ -29,6 +30,7 @@ use self::{
     bends::BENT_BYTES,
     buffers::Buffers,
     dispatch::{Dispatch, dispatch},
+    packing::Packing,
     pipelines::Pipelines,
     prepare::{BACKGROUND_ROWS, bin_heads, first_capacities, record_count, recorded_capacities},
     readback::Pending,
@@ -39,6 +41,7 @@ pub use crate::plan::Note;
 use crate::{
     effects::{Stack, hooks::Layers, xray},
     frame::{Counters, OrderFigures},
+    ladder::Scale,
     plan::{Accuracy, Plan, Tuning},
     scene::{Scene, camera::View},
     shader::{
@@ -79,6 +82,10 @@ pub struct Renderer {
     /// The last picture whose sums of layers overflowed, and the bits per channel that it gets instead.
     full: Option<(View, Stack, u32)>,
     pending: VecDeque<Pending>,
+    /// Positions in fewer bits, which lie behind everything else in `vertex_bytes`: so many bits, and where.
+    packed: Option<(u32, Packing)>,
+    /// Size at which the picture is shown.
+    shown: [u32; 2],
     /// Which vertices, of all that may bend, the last picture bent.
     bent: Vec<std::ops::Range<u32>>,
 }
@@ -108,6 +115,8 @@ impl Renderer {
             last_picture: None,
             full: None,
             pending: VecDeque::new(),
+            packed: None,
+            shown: [0; 2],
             bent: Vec::new(),
         }
     }
@@ -156,12 +165,7 @@ impl Renderer {
             }
         }
         self.buffers.keep(|name| !matches!(name, "vertex_bytes" | "index_bytes" | "vertices"));
-        let why = match scene.soft_vertex_count() {
-            0 => "attributes as the file has them",
-            _ => "attributes as the file has them, and behind them bent vertices, 24 bytes each",
-        };
-        let usage = STORAGE | wgpu::BufferUsages::VERTEX;
-        self.buffers.fill_room(&self.gpu, "vertex_bytes", &scene.vertex_bytes, room, usage, why)?;
+        self.hold_attributes(scene, None)?;
         if !scene.index_bytes.is_empty() {
             self.buffers.fill(
                 &self.gpu,
@@ -185,6 +189,17 @@ impl Renderer {
     }
 
     pub(crate) fn draw_timed(&mut self, view: &View, stack: &Stack, accuracy: &Accuracy, detail: Detail) -> Result<(), RenderError> {
+        let scale = accuracy.scale();
+        self.shown = [view.width, view.height];
+        if scale == Scale::Whole {
+            return self.draw_pixels(view, stack, accuracy, detail);
+        }
+        let drawn = view.scaled(scale.factor());
+        self.draw_pixels(&drawn, &stack.scaled(scale.factor()), accuracy, detail).map_err(|error| error.at_scale(scale, view, &drawn))
+    }
+
+    /// Draws as many pixels as `view` has, whatever the size at which they are shown.
+    fn draw_pixels(&mut self, view: &View, stack: &Stack, accuracy: &Accuracy, detail: Detail) -> Result<(), RenderError> {
         if self.gpu.is_lost() {
             return Err(RenderError::Lost);
         }
@@ -207,7 +222,7 @@ impl Renderer {
         }
         self.keep_previous(&mut encoder, &plan.key, view, stack);
         self.record(&mut encoder, &plan.key, &passes, view)?;
-        self.present(&mut encoder, view);
+        self.present(&mut encoder);
         let order = self.buffers.has("order").then(|| self.buffers.get("order"));
         let pending = Pending::stage(&self.gpu, &mut encoder, [Some(self.buffers.get("counters")), order], self.timer.as_ref());
         self.gpu.queue.submit([encoder.finish()]);
@@ -329,7 +344,7 @@ impl Renderer {
             let timestamp_writes = self.timer.as_mut().and_then(|timer| timer.compute(&pipeline.label, is_last));
             let mut recorded = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor { label: Some(&pipeline.label), timestamp_writes });
             pipeline.bind(&self.gpu, &mut recorded, |name| self.buffers.get(name));
-            match dispatch(pass, [vertices, triangles, bent], view, key) {
+            match dispatch(pass, [vertices, triangles, bent], view, self.shown, key) {
                 Dispatch::Direct([x, y]) => recorded.dispatch_workgroups(x, y, 1),
                 Dispatch::Indirect(offset) => recorded.dispatch_workgroups_indirect(self.buffers.get("args"), offset),
             }
@@ -337,9 +352,10 @@ impl Renderer {
         Ok(())
     }
 
-    /// Copies the colour buffer into the texture that a window shows.
-    fn present(&mut self, encoder: &mut wgpu::CommandEncoder, view: &View) {
-        let size = wgpu::Extent3d { width: view.width, height: view.height, depth_or_array_layers: 1 };
+    /// Copies the picture into the texture that a window shows.
+    fn present(&mut self, encoder: &mut wgpu::CommandEncoder) {
+        let [width, height] = self.shown;
+        let size = wgpu::Extent3d { width, height, depth_or_array_layers: 1 };
         if self.target.as_ref().is_none_or(|(texture, _)| texture.size() != size) {
             let texture = self.gpu.device.create_texture(&wgpu::TextureDescriptor {
                 label: Some("picture"),
@@ -355,8 +371,9 @@ impl Renderer {
             self.target = Some((texture, texture_view));
         }
         let Some((texture, _)) = &self.target else { return };
-        let layout = wgpu::TexelCopyBufferLayout { offset: 0, bytes_per_row: Some(4 * color_stride(view.width)), rows_per_image: None };
-        let source = wgpu::TexelCopyBufferInfo { buffer: self.buffers.get("color"), layout };
+        let layout = wgpu::TexelCopyBufferLayout { offset: 0, bytes_per_row: Some(4 * color_stride(width)), rows_per_image: None };
+        let picture = if self.buffers.has("shown") { "shown" } else { "color" };
+        let source = wgpu::TexelCopyBufferInfo { buffer: self.buffers.get(picture), layout };
         encoder.copy_buffer_to_texture(source, texture.as_image_copy(), size);
     }
 }

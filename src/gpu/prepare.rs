@@ -2,15 +2,21 @@
 
 use super::{
     RenderError, Renderer, STORAGE,
-    bends::{Bends, bent_ranges},
-    uniforms::{Capacities, DrawRecord, FrameUniform, OrderRecord, color_stride},
+    bends::{BENT_BYTES, Bends, bent_ranges},
+    packing::{Packing, bytes_of},
+    uniforms::{Capacities, DrawRecord, FrameUniform, OrderRecord, ScalingUniform, color_stride},
 };
 use crate::{
     effects::{Stack, hooks::Layers},
-    ladder::Visibility,
+    ladder::{Vertices, Visibility},
     math::{SUBPIXEL_BITS, srgb_byte},
     plan::{Accuracy, Plan, plan},
-    scene::{Scene, camera::View, draw::draws, needs::Needs},
+    scene::{
+        Scene,
+        camera::View,
+        draw::{Draw, draws as drawn},
+        needs::Needs,
+    },
     shader::{
         glue::uniform_bytes,
         key::{KernelKey, Layout, Order},
@@ -21,34 +27,50 @@ impl Renderer {
     /// Plans the picture and makes its buffers hold what the passes will read.
     pub(super) fn prepare(&mut self, view: &View, stack: &Stack, accuracy: &Accuracy) -> Result<Plan, RenderError> {
         let scene = self.scene.clone().ok_or(RenderError::NoScene)?;
-        let (gpu, buffers) = (&self.gpu, &mut self.buffers);
+        let gpu = &self.gpu;
         let limit = gpu.caps.max_texture_side;
         if view.width.max(view.height) > limit {
             return Err(RenderError::TooWide { width: view.width, height: view.height, limit });
         }
-        let draws = draws(&scene, view)?;
-        let planned = |view: &View| {
-            let mut needs = Needs::of(&scene, &draws, view);
+        let mut draws = drawn(&scene, view)?;
+        let planned = |view: &View, draws: &[Draw]| {
+            let mut needs = Needs::of(&scene, draws, view);
             if self.distrust {
                 (needs.clipping, needs.largest_px) = (true, f64::INFINITY);
             }
             plan(&needs, stack, &gpu.caps, &self.tuning, accuracy)
         };
-        let mut plan = planned(view)?;
-        // Another grid has its guard band elsewhere, so its needs are its own.
-        let view = &View { subpixel_bits: plan.key.rungs.coverage.subpixel_bits(), ..view.clone() };
-        if view.subpixel_bits != SUBPIXEL_BITS {
-            plan = planned(view)?;
+        let mut plan = planned(view, &draws)?;
+        // Another grid has its guard band elsewhere, and another origin its matrices, so their needs are their own.
+        let rungs = &plan.key.rungs;
+        let (subpixel_bits, is_relative) = (rungs.coverage.subpixel_bits(), rungs.vertices == Vertices::Relative);
+        let asked = view;
+        let view = &View { subpixel_bits, is_relative, ..view.clone() };
+        if is_relative {
+            draws = drawn(&scene, view)?;
         }
+        if is_relative || view.subpixel_bits != SUBPIXEL_BITS {
+            plan = planned(view, &draws)?;
+        }
+        let packed_bits = plan.key.rungs.vertices.packed_bits();
+        if self.packed.as_ref().map(|(bits, _)| *bits) != packed_bits {
+            self.hold_attributes(&scene, packed_bits)?;
+        }
+        let (gpu, buffers) = (&self.gpu, &mut self.buffers);
         if let (Some(Layers::Xray { bits }), Some((full_view, full_stack, fewer))) = (&mut plan.key.layers, &self.full)
-            && (full_view, full_stack) == (view, stack)
+            && (full_view, full_stack) == (asked, stack)
         {
             *bits = (*bits).min(*fewer);
         }
         let key = &plan.key;
         let recorded = recorded_capacities(key, &self.capacities);
 
-        let mut records: Vec<DrawRecord> = draws.iter().map(|draw| DrawRecord::new(draw, &scene)).collect();
+        let first_packed = attribute_bytes(&scene) as u32;
+        let record = |draw: &Draw| {
+            let record = DrawRecord::new(draw, &scene);
+            self.packed.as_ref().map_or(record, |(_, packing)| record.packed(&packing.boxes[draw.primitive], first_packed))
+        };
+        let mut records: Vec<DrawRecord> = draws.iter().map(record).collect();
         // A binding holds an element at least, even where nothing is to be drawn.
         records.resize(draws.len().max(1), DrawRecord::default());
         let bends = Bends::of(&scene, &draws);
@@ -81,6 +103,7 @@ impl Renderer {
             "packed" => key.layout() == Layout::Word,
             "bins" => key.rungs.visibility == Visibility::Tiled,
             "order" | "counts" | "sums" => key.order != Order::Free,
+            "shown" | "scaling" => key.is_scaled(),
             "hits" => key.order == Order::Submission,
             "layers" => key.layers == Some(Layers::Overdraw),
             _ => true,
@@ -179,6 +202,13 @@ impl Renderer {
         let tiles = if key.listed_tiles { u64::from(view.width.div_ceil(8)) * u64::from(view.height.div_ceil(8)) } else { 0 };
         let picture = 4 * u64::from(color_stride(view.width)) * u64::from(view.height);
         buffers.ensure(gpu, "color", picture + 4 * tiles, STORAGE, "the picture, 4 bytes per pixel, and the list of tiles to resolve")?;
+        if key.is_scaled() {
+            let [width, height] = self.shown;
+            let scaling = ScalingUniform { size: self.shown, stride: color_stride(width), spare: 0 };
+            buffers.fill(gpu, "scaling", bytemuck::bytes_of(&scaling), wgpu::BufferUsages::UNIFORM, "size of what is shown")?;
+            let bytes = 4 * u64::from(color_stride(width)) * u64::from(height);
+            buffers.ensure(gpu, "shown", bytes, STORAGE, "the picture at the size that is shown, 4 bytes per pixel")?;
+        }
         if key.listed_tiles {
             buffers.ensure(gpu, "marks", 4 * tiles, STORAGE, "which 8 x 8 tiles the resolve must visit")?;
         }
@@ -191,6 +221,36 @@ impl Renderer {
         }
         Ok(plan)
     }
+}
+
+impl Renderer {
+    /// Uploads the bytes of all attributes with room for what lies behind them, and positions in `bits` an axis if any.
+    pub(super) fn hold_attributes(&mut self, scene: &Scene, bits: Option<u32>) -> Result<(), RenderError> {
+        let first = attribute_bytes(scene);
+        let packing = bits.map(|bits| (bits, Packing::new(scene, bits)));
+        let room = first + bits.map_or(0, |bits| bytes_of(scene, bits));
+        let why = match (scene.soft_vertex_count(), bits) {
+            (0, None) => "attributes as the file has them",
+            (0, Some(10)) => "attributes as the file has them, and behind them packed positions, 4 bytes each",
+            (0, Some(_)) => "attributes as the file has them, and behind them packed positions, 8 bytes each",
+            _ => "attributes as the file has them, and behind them bent vertices, 24 bytes each",
+        };
+        let usage = STORAGE | wgpu::BufferUsages::VERTEX;
+        self.buffers.keep(|name| name != "vertex_bytes");
+        self.packed = None;
+        self.buffers.fill_room(&self.gpu, "vertex_bytes", &scene.vertex_bytes, room, usage, why)?;
+        if let Some((_, packing)) = &packing {
+            self.gpu.queue.write_buffer(self.buffers.get("vertex_bytes"), first, bytemuck::cast_slice(&packing.words));
+        }
+        // Where each lies is all that is needed from now on.
+        self.packed = packing.map(|(bits, packing)| (bits, Packing { words: Vec::new(), ..packing }));
+        Ok(())
+    }
+}
+
+/// Bytes of the file's attributes and of every vertex that may bend.
+fn attribute_bytes(scene: &Scene) -> u64 {
+    scene.vertex_bytes.len() as u64 + u64::from(BENT_BYTES) * scene.soft_vertex_count()
 }
 
 /// Projected records of a picture: one per vertex of each draw, or three per triangle where effects part them.

@@ -16,7 +16,7 @@ use super::{
 use crate::{
     effects::{Stack, hooks::Layers},
     frame::{Counters, Exactness, Frame, Geometry, Piece, SnappedVertex},
-    ladder::{Depth, Sums, Vertex},
+    ladder::{Depth, Sums, Vertex, Vertices},
     plan::Accuracy,
     scene::camera::View,
     shader::key::{KernelKey, Layout, Phase},
@@ -89,6 +89,15 @@ pub struct Capture {
     pub layers: Option<Vec<u32>>,
     /// The picture before this one, where an effect reads it.
     pub previous: Option<Vec<[u8; 4]>>,
+    /// The picture at the size that is shown, where it was drawn at another.
+    pub shown: Option<Frame>,
+}
+
+impl Capture {
+    /// The picture as it is shown.
+    pub fn into_shown(self) -> Frame {
+        self.shown.unwrap_or(self.frame)
+    }
 }
 
 impl Renderer {
@@ -117,9 +126,11 @@ impl Renderer {
         let counters = self.draw_whole(view, stack, accuracy)?;
         if view.pixels() == 0 {
             let frame = Frame { width: view.width, height: view.height, ..Frame::default() };
-            return Ok(Capture { frame, geometry: Geometry::default(), layers: Some(Vec::new()), previous: None });
+            return Ok(Capture { frame, geometry: Geometry::default(), layers: Some(Vec::new()), previous: None, shown: None });
         }
         let key = self.last.as_ref().ok_or(RenderError::NoScene)?.key.clone();
+        let shown = [view.width, view.height];
+        let view = &view.scaled(key.rungs.scale.factor());
         let (owner, depth) = self.read_visibility(&key, view)?;
         let color = self.read_color(view)?;
         let geometry = self.read_geometry(&key)?;
@@ -130,9 +141,13 @@ impl Renderer {
             None
         };
         let layers = if key.layers == Some(Layers::Overdraw) { counted.clone() } else { self.count_layers(&key, view)? };
-        let keys_are_rough = !key.rungs.visibility.is_exact();
+        let keys_are_rough = !key.rungs.visibility.is_exact() || !matches!(key.rungs.depth, Depth::Reversed | Depth::Integer);
         let frame = Frame { width: view.width, height: view.height, owner, key: depth, color, counted, counters, keys_are_rough };
-        Ok(Capture { frame, geometry, layers: Some(layers), previous })
+        let shown = match key.is_scaled() {
+            true => Some(frame.shown(shown, buffers::read_picture(&self.gpu, self.buffers.get("shown"), shown)?)),
+            false => None,
+        };
+        Ok(Capture { frame, geometry, layers: Some(layers), previous, shown })
     }
 
     /// Draws until no queue overflows and no sum of layers.
@@ -146,6 +161,9 @@ impl Renderer {
             let report = self.finish()?;
             if !report.redraw && report.counters.full_pixels > 0 {
                 return Err(RenderError::FullSums(report.counters.full_pixels));
+            }
+            if let Some(order) = report.order.filter(|order| !report.redraw && order.is_beyond_tickets()) {
+                return Err(RenderError::Tickets(order.covered));
             }
             if !report.redraw {
                 return Ok(report.counters);
@@ -223,6 +241,9 @@ impl Renderer {
             pieces: pieces.into_iter().map(|(_, _, piece)| piece).collect(),
             has_own_corners: key.parts_corners(),
             subpixel_bits: key.rungs.coverage.subpixel_bits(),
+            scale: key.rungs.scale.factor(),
+            is_relative: key.rungs.vertices == Vertices::Relative,
+            is_rough: key.rungs.vertices.packed_bits().is_some(),
             exact: Exactness { vertices: key.rungs.vertex == Vertex::Strict, keys: key.rungs.depth == Depth::Integer },
             bent: self.read_bent(scene.vertex_bytes.len() as u64)?,
         })

@@ -4,9 +4,9 @@ use std::sync::Arc;
 
 use super::{Capture, Gpu, RenderError, Renderer, bench::Judge, timer::Detail};
 use crate::{
-    frame::Frame,
-    ladder::{AXES, Axis, Pins},
-    measure::{Verdict, compare, timing},
+    frame::{Frame, Geometry, NO_OWNER, SnappedVertex},
+    ladder::{AXES, Axis, Pins, Rung, Scale},
+    measure::{Truths, Verdict, compare, timing},
     plan::Accuracy,
     scene::{Scene, camera::View},
     session::Session,
@@ -27,7 +27,7 @@ pub struct TradeOptions {
 /// Error of a combination. None reads "not measured", never 0.
 #[derive(Clone, Copy, Debug, Default, PartialEq, serde::Serialize)]
 pub struct TradeError {
-    /// Pixels with another owner than in the oracle's picture on its finest grid, per million.
+    /// Pixels with another owner than in the oracle's picture on its finest grid, per million of those drawn.
     pub wrong_ppm: f64,
     /// Samples that a triangle covers, given its snapped corners, and that were not drawn, per million pixels.
     pub holes_per_mpx: f64,
@@ -35,11 +35,16 @@ pub struct TradeError {
     pub double_hits_per_mpx: f64,
     /// Pixels whose owner covers them but is not the nearest, per million.
     pub wrong_depth_ppm: f64,
-    /// Largest difference of a colour channel from the oracle's picture, of 255.
+    /// Largest difference of a colour channel from the oracle's picture, of 255; where sizes are compared, from its picture of
+    /// eight by eight samples to a pixel.
     pub max_colour_delta: u8,
     pub rms_colour_delta: f64,
     /// Pixels that differ between two equal frames.
     pub changed_pixels: u64,
+    /// Furthest that a corner in the picture lies from where it is on the oracle's finest grid, pixels.
+    pub moved_px: f64,
+    /// Pixels that were left empty well inside what the oracle's picture covers, per million: cracks between neighbours.
+    pub cracks_per_mpx: f64,
     pub overflow: u64,
     pub orphans: u64,
 }
@@ -75,9 +80,17 @@ pub struct TradeRow {
 
 /// What pictures are held against: the oracle's, which this room never sees.
 pub struct Truth<'a> {
-    /// The picture on the oracle's finest grid.
-    pub picture: &'a Frame,
+    /// Pictures on the oracle's finest grid, at every size of [`factors`].
+    pub truths: &'a Truths,
     pub judge: Judge<'a>,
+}
+
+/// How many pixels to a side of a shown one the combinations on these axes draw, one first.
+pub fn factors(session: &Session, axes: &[&'static Axis]) -> Vec<f64> {
+    let pinned = session.accuracy.scale();
+    let is_walked = axes.iter().any(|axis| axis.index() == Scale::AXIS);
+    let drawn = Scale::ALL.iter().filter(|rung| **rung != Scale::Whole && (is_walked || **rung == pinned));
+    std::iter::once(1.0).chain(drawn.map(|rung| rung.factor())).collect()
 }
 
 /// A combination with what has been measured of it.
@@ -194,7 +207,7 @@ impl Entry {
         let first = renderer.capture(&view, &session.stack, &accuracy)?;
         let second = renderer.capture(&view, &session.stack, &accuracy)?;
         let bytes = renderer.explain().buffers.iter().map(|buffer| buffer.bytes).sum();
-        let error = TradeError::of(&first, &second.frame, &(truth.judge)(&session.stack, &first), truth.picture);
+        let error = TradeError::of(&first, &second.frame, &(truth.judge)(&session.stack, &first), truth);
         Ok(Self { pins, view, renderer, error, bytes, ms: Vec::new(), invalid: 0 })
     }
 
@@ -226,21 +239,30 @@ impl Entry {
 }
 
 impl TradeError {
-    fn of(capture: &Capture, again: &Frame, verdict: &Verdict, truth: &Frame) -> Self {
-        let frame = &capture.frame;
+    fn of(capture: &Capture, again: &Frame, verdict: &Verdict, truth: &Truth) -> Self {
+        let (frame, scale) = (&capture.frame, capture.geometry.scale);
+        let (picture, corners) = truth.truths.at(scale).expect("a truth at every size that is drawn");
         let pixels = (frame.owner.len() as f64).max(1.0);
         let per_million = |count: u64| count as f64 * 1e6 / pixels;
-        let colors = compare::pictures(&frame.color, &truth.color, 0);
+        // Where sizes are compared, colours are held against many samples a pixel, else against the true picture's.
+        let shown = capture.shown.as_ref().unwrap_or(frame);
+        let colors = match &truth.truths.smooth {
+            Some(smooth) => compare::pictures(&shown.color, smooth, 0),
+            None => compare::pictures(&frame.color, &picture.color, 0),
+        };
         let differs = |i: &usize| frame.owner[*i] != again.owner[*i] || frame.color[*i] != again.color[*i];
         let a = &verdict.accuracy;
+        let moved_px = moved_px(&capture.geometry, corners, [frame.width, frame.height]);
         Self {
-            wrong_ppm: per_million(compare::owners(&frame.owner, &truth.owner).different),
+            wrong_ppm: per_million(compare::owners(&frame.owner, &picture.owner).different),
             holes_per_mpx: per_million(a.holes),
             double_hits_per_mpx: per_million(a.double_hits),
             wrong_depth_ppm: per_million(a.wrong_winners),
             max_colour_delta: colors.max_delta,
             rms_colour_delta: colors.rms,
             changed_pixels: (0..frame.owner.len()).filter(differs).count() as u64,
+            moved_px: moved_px / scale,
+            cracks_per_mpx: per_million(cracks(frame, picture, moved_px)),
             overflow: a.overflow,
             orphans: a.orphans,
         }
@@ -250,11 +272,36 @@ impl TradeError {
     pub fn is_at_most(&self, other: &Self) -> bool {
         let figures = |e: &Self| {
             let counts = [e.changed_pixels, e.overflow, e.orphans].map(|count| count as f64);
-            let shares = [e.wrong_ppm, e.holes_per_mpx, e.double_hits_per_mpx, e.wrong_depth_ppm, e.rms_colour_delta];
+            let shares = [e.wrong_ppm, e.holes_per_mpx, e.double_hits_per_mpx, e.wrong_depth_ppm, e.rms_colour_delta, e.cracks_per_mpx];
             [shares.to_vec(), counts.to_vec(), vec![e.max_colour_delta.into()]].concat()
         };
         figures(self).iter().zip(figures(other)).all(|(a, b)| *a <= b)
     }
+}
+
+/// Furthest that a corner of `given` lies from its twin, of those that are in the picture; either has a grid of its own.
+fn moved_px(given: &Geometry, truth: &Geometry, size: [u32; 2]) -> f64 {
+    let place = |geometry: &Geometry, at: &SnappedVertex| [at.x, at.y].map(|v| f64::from(v) / f64::from(1 << geometry.subpixel_bits));
+    let distance = |(a, b): (&SnappedVertex, &SnappedVertex)| {
+        let ([ax, ay], [bx, by]) = (place(given, a), place(truth, b));
+        let is_seen = a.flags == 0 && b.flags == 0 && (0.0..=size[0].into()).contains(&bx) && (0.0..=size[1].into()).contains(&by);
+        if is_seen { libm::hypot(ax - bx, ay - by) } else { 0.0 }
+    };
+    given.vertices.iter().zip(&truth.vertices).map(distance).fold(0.0, f64::max)
+}
+
+/// Pixels that are empty although the true picture covers them and everything as near as an outline may have moved.
+fn cracks(frame: &Frame, truth: &Frame, moved_px: f64) -> u64 {
+    let [width, height] = [frame.width, frame.height].map(i64::from);
+    let reach = 1 + (moved_px.ceil() as i64).clamp(0, 15);
+    let is_inside = |pixel: usize| {
+        let (x, y) = (pixel as i64 % width, pixel as i64 / width);
+        let rows = (y - reach).max(0)..=(y + reach).min(height - 1);
+        let mut around = rows.flat_map(|y| ((x - reach).max(0)..=(x + reach).min(width - 1)).map(move |x| (y * width + x) as usize));
+        around.all(|at| truth.owner[at] != NO_OWNER)
+    };
+    (0..frame.owner.len()).filter(|&pixel| frame.owner[pixel] == NO_OWNER && truth.owner[pixel] != NO_OWNER && is_inside(pixel)).count()
+        as u64
 }
 
 /// Marks rows that another row makes pointless: as right or better, and quicker, or as quick and better.
@@ -279,7 +326,7 @@ fn mark_beaten(rows: &mut [TradeRow]) {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::ladder::{Coverage, Depth, Rung};
+    use crate::ladder::{Coverage, Depth};
 
     #[test]
     fn combinations_are_the_product_and_keep_other_pins() {

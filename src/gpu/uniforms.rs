@@ -2,7 +2,10 @@
 
 use glam::DMat3;
 
-use super::bends::{BENT_BYTES, bent_offset};
+use super::{
+    bends::{BENT_BYTES, bent_offset},
+    packing::PackedBox,
+};
 use crate::{
     frame::{Counters, OrderFigures},
     math::{rounded_columns, srgb_byte},
@@ -71,6 +74,8 @@ twin! {
         pub world_from_object: [[f32; 4]; 4],
         pub normal_from_object: [[f32; 4]; 4],
         pub base_color: [f32; 4],
+        pub origin: [f32; 4],
+        pub step: [f32; 4],
         pub first_vertex: u32,
         pub vertex_count: u32,
         pub first_triangle: u32,
@@ -136,7 +141,16 @@ impl OrderRecord {
         let wide = |hi: u32, lo: u32| u64::from(hi) << 32 | u64::from(lo);
         let limit = wide(self.limit_hi, self.limit_lo);
         let drawn = if is_chosen { limit.min(tickets.into()) } else { wide(self.drawn_hi, self.drawn_lo) };
-        OrderFigures { drawn, limit, covered: wide(self.total_hi, self.total_lo) }
+        OrderFigures { drawn, limit, covered: wide(self.total_hi, self.total_lo), is_chosen }
+    }
+}
+
+twin! {
+    /// What is shown of a picture that is drawn at another size. Each member is explained in `shaders/passes/scale.wgsl`.
+    pub struct ScalingUniform = "Scaling" {
+        pub size: [u32; 2],
+        pub stride: u32,
+        pub spare: u32,
     }
 }
 
@@ -238,6 +252,7 @@ pub fn format_word(accessor: &Accessor) -> u32 {
 
 impl DrawRecord {
     pub fn new(draw: &Draw, scene: &Scene) -> Self {
+        let [x, y, z] = draw.origin;
         let primitive = &scene.primitives[draw.primitive];
         let material = &scene.materials[primitive.material];
         let color = primitive.colors.as_ref();
@@ -251,6 +266,8 @@ impl DrawRecord {
             world_from_object: rounded_columns(&draw.world_from_object),
             normal_from_object: normal_from_object(draw),
             base_color: material.base_color,
+            origin: [x, y, z, 0.0],
+            step: [0.0; 4],
             first_vertex: draw.first_vertex,
             vertex_count: primitive.vertex_count(),
             first_triangle: draw.first_triangle,
@@ -268,6 +285,14 @@ impl DrawRecord {
             color_stride: color.map_or(0, |c| c.stride),
             color_format: color.map_or(0, format_word),
         }
+    }
+}
+
+impl DrawRecord {
+    /// With its positions in steps of a box, which begin `first` bytes into the attributes.
+    pub fn packed(self, packed: &PackedBox, first: u32) -> Self {
+        let wide = |[x, y, z]: [f32; 3]| [x, y, z, 0.0];
+        Self { origin: wide(packed.origin), step: wide(packed.step), position_offset: first + 4 * packed.first_word, ..self }
     }
 }
 

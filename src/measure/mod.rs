@@ -128,11 +128,29 @@ pub struct Verdict {
     pub faults: faults::Faults,
 }
 
+/// What rungs are measured against.
+#[derive(Clone, Debug, Default)]
+pub struct Truths {
+    /// For every number of drawn pixels to a side of a shown one: the true picture, and where its corners lie.
+    pub pictures: Vec<(f64, crate::frame::Frame, crate::frame::Geometry)>,
+    /// The true picture with eight by eight samples to a pixel; none where all pictures are drawn as they are shown.
+    pub smooth: Option<Vec<[u8; 4]>>,
+}
+
+impl Truths {
+    /// At so many drawn pixels to a side of a shown one.
+    pub fn at(&self, factor: f64) -> Option<(&crate::frame::Frame, &crate::frame::Geometry)> {
+        self.pictures.iter().find(|(known, ..)| *known == factor).map(|(_, frame, geometry)| (frame, geometry))
+    }
+}
+
 /// What may differ in a picture that still passes. Everything that is judged as exact has no budget.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Budget {
     /// Largest difference of a colour channel, of 255.
     pub max_colour_delta: u8,
+    /// Most pixels with a wrong owner, most samples not drawn or drawn too often: where the look asks for less than exactness.
+    pub max_wrong_owner: u64,
     /// Most pixels in the depth band.
     pub max_band_pixels: u64,
     /// Most pixels explained by the snap.
@@ -144,7 +162,7 @@ pub struct Budget {
 impl Default for Budget {
     /// One step of a channel; a small share of pixels near colour steps; other bands are counted and not capped.
     fn default() -> Self {
-        Self { max_colour_delta: 1, max_band_pixels: u64::MAX, max_explained: u64::MAX, max_step_share: 0.03 }
+        Self { max_colour_delta: 1, max_wrong_owner: 0, max_band_pixels: u64::MAX, max_explained: u64::MAX, max_step_share: 0.03 }
     }
 }
 
@@ -155,16 +173,16 @@ impl Accuracy {
     /// A sentence for everything that fails, separated by semicolons.
     pub fn within(&self, budget: &Budget) -> Result<(), String> {
         let most = [
-            (self.owner_mismatch, 0, "pixels have the wrong owner"),
-            (self.holes, 0, "covered samples were not drawn"),
-            (self.double_hits, 0, "samples were drawn more often than they are covered"),
+            (self.owner_mismatch, budget.max_wrong_owner, "pixels have the wrong owner"),
+            (self.holes, budget.max_wrong_owner, "covered samples were not drawn"),
+            (self.double_hits, budget.max_wrong_owner, "samples were drawn more often than they are covered"),
             (self.orphans, 0, "pixels have a depth but no owner"),
             (self.overflow, 0, "queue entries were lost"),
             (self.key_outside_bound, 0, "depth keys lie outside their bound"),
             (self.snap_outside_bound, 0, "vertices snapped outside their bound"),
             (self.attribute_outside_bound, 0, "vertices have a depth or 1/w outside its bound"),
             (self.bent_outside_bound, 0, "bent vertices lie outside their bound"),
-            (self.unexplained, 0, "pixels differ from the oracle's own picture without a reason"),
+            (self.unexplained, budget.max_wrong_owner, "pixels differ from the oracle's own picture without a reason"),
             (self.decisions_wrong, 0, "decisions of sample effects are wrong"),
             (self.counts_wrong, 0, "pixels have a wrong number of layers, or a wrong sum of weights"),
             (self.counters_wrong, 0, "counters of rejected or degenerate triangles are wrong"),

@@ -95,6 +95,7 @@ fn judged(scene: &Scene, draw: &Draw, view: &View, vertex: u32, given: &[f32; 6]
     let largest = truth.value.abs().max_element().max(f64::from(f32::MIN_POSITIVE));
     let spacing = f64::from(f32::EPSILON) * libm::exp2(libm::floor(libm::log2(largest)));
     let screen = |p: DVec3| {
+        let p = p - draw.origin();
         let row = |r: usize| {
             let m = |column: usize| f64::from(draw.clip_from_object[column][r]);
             m(0) * p.x + m(1) * p.y + m(2) * p.z + m(3)

@@ -70,8 +70,9 @@ pub fn judge_after(
     layers: Option<&[u32]>,
     previous: Option<&[[u8; 4]]>,
 ) -> Result<Verdict, DrawError> {
-    // The adapter's grid is a promise of its rung, not a fault.
-    let view = &View { subpixel_bits: geometry.subpixel_bits, ..view.clone() };
+    // The adapter's grid, the origin of its places and the pixels that it draws are promises of its rungs, not faults.
+    let view = &View { subpixel_bits: geometry.subpixel_bits, is_relative: geometry.is_relative, ..view.scaled(geometry.scale) };
+    let stack = &stack.scaled(geometry.scale);
     let draws = draws(scene, view)?;
     if view.pixels() == 0 {
         return Ok(Verdict { expected: empty(view), ..Verdict::default() });
@@ -99,6 +100,7 @@ pub fn judge_after(
     let step_band = answers.band();
     let vertices = match geometry.exact.vertices {
         true => geometry.vertices.iter().zip(&own.vertices).map(|(adapter, own)| strict_fault(adapter, own)).collect(),
+        false if geometry.is_rough => geometry.vertices.iter().zip(&own.vertices).map(|(adapter, own)| rough_fault(adapter, own)).collect(),
         false => vertex_faults(scene, &draws, view, stack, geometry, &own),
     };
 
@@ -122,7 +124,8 @@ pub fn judge_after(
     judge_counters(&mut accuracy, &counters, adapter);
     judge_vertices(&mut accuracy, &vertices);
     bend::judge(&mut accuracy, scene, &draws, view, &geometry.bent);
-    accuracy.decisions_wrong = wrong(scene, &draws, view, stack, geometry);
+    // Of rough places, fronts travel roughly.
+    accuracy.decisions_wrong = if geometry.is_rough { 0 } else { wrong(scene, &draws, view, stack, geometry) };
     Whole { scene, draws: &draws, view, stack, own: &own, adapter: geometry, cut: rules.cut(), vertices: &vertices }.judge(
         &mut accuracy,
         &coverage,
@@ -250,6 +253,15 @@ fn strict_fault(adapter: &SnappedVertex, own: &SnappedVertex) -> VertexFault {
     let delta = if own.flags == 0 { adapter.x.abs_diff(own.x).max(adapter.y.abs_diff(own.y)) } else { 0 };
     let snap_is_outside = adapter.flags != own.flags || delta > 0;
     VertexFault { delta, snap_is_outside, attribute_is_outside: bits(adapter) != bits(own), ..Default::default() }
+}
+
+/// How far one record lies from its twin, whose place has more bits.
+fn rough_fault(adapter: &SnappedVertex, own: &SnappedVertex) -> VertexFault {
+    let is_placed = adapter.flags == 0 && own.flags == 0;
+    let delta = if is_placed { adapter.x.abs_diff(own.x).max(adapter.y.abs_diff(own.y)) } else { 0 };
+    // What is refused is refused in any number of bits.
+    let refused = |v: &SnappedVertex| (v.flags & vertex_flags::REJECTED != 0, v.flags & vertex_flags::NONFINITE != 0);
+    VertexFault { delta, snap_is_outside: refused(adapter) != refused(own), ..Default::default() }
 }
 
 /// How far a float renderer may place every record from [`super::project_moved`], in units and before it rounds; none

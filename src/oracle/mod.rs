@@ -22,6 +22,7 @@ mod moved;
 mod order;
 mod project;
 mod rules;
+mod shown;
 mod steps;
 mod strict;
 mod surface;
@@ -35,6 +36,7 @@ pub use judge::{judge, judge_after, snap_bounds};
 pub use order::Cut;
 pub use project::{project, project_moved};
 pub use rules::Rules;
+pub use shown::{render_shown, scaled, truths};
 pub use strict::{project_strict, strict_frame};
 
 use self::{
@@ -43,7 +45,7 @@ use self::{
 };
 use crate::{
     effects::Stack,
-    frame::{Counters, Frame},
+    frame::{Counters, Frame, Geometry},
     math::{GUARD_BAND, SUBPIXEL_BITS},
     scene::{
         Scene,
@@ -67,15 +69,29 @@ pub fn finest_bits(view: &View) -> u32 {
     (SUBPIXEL_BITS..=12).rev().find(|bits| side << bits <= i64::from(GUARD_BAND)).unwrap_or(SUBPIXEL_BITS)
 }
 
-/// The true picture on the finest grid that holds it: what snapping to any coarser one is measured against.
+/// The true picture on the finest grid that holds it, with the eye taken out before any rounding: what snapping to a coarser
+/// grid and rounding places are measured against.
 ///
 /// # Errors
 /// As [`render`].
 pub fn render_finest(scene: &Scene, view: &View, stack: &Stack) -> Result<Frame, DrawError> {
+    render(scene, &finest(view, stack), stack)
+}
+
+/// Where the corners of that picture lie.
+///
+/// # Errors
+/// As [`render`].
+pub fn project_finest(scene: &Scene, view: &View, stack: &Stack) -> Result<Geometry, DrawError> {
+    let view = finest(view, stack);
+    Ok(project_moved(scene, &draws(scene, &view)?, &view, stack))
+}
+
+fn finest(view: &View, stack: &Stack) -> View {
     // Sample effects measure triangles in 1/256 px.
-    let subpixel_bits =
-        if stack.each(|hooks| hooks.sample).next().is_some() || stack.point_radius() > 0 { SUBPIXEL_BITS } else { finest_bits(view) };
-    render(scene, &View { subpixel_bits, ..view.clone() }, stack)
+    let is_measured = stack.each(|hooks| hooks.sample).next().is_some() || stack.point_radius() > 0;
+    let subpixel_bits = if is_measured { SUBPIXEL_BITS } else { finest_bits(view) };
+    View { subpixel_bits, is_relative: true, ..view.clone() }
 }
 
 /// The true picture of `scene` that follows `previous`, a picture of the same size.

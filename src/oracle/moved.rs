@@ -109,7 +109,7 @@ impl<'a> Mover<'a> {
     fn with_triangle(&self, alone: Vertex, corner: Corner, object: DVec3) -> Vertex {
         let corners = self.triangle_places(corner);
         let middle = corners.iter().sum::<DVec3>() / 3.0;
-        let [x, y, _, w] = self.clip_rows(middle, false);
+        let [x, y, _, w] = self.clip_rows(middle - self.draw.origin(), false);
         Vertex {
             flat_normal: plane_normal(corners).map_or(DVec3::ZERO, |normal| direction(self.world_from_normal * normal)),
             center: held(self.draw.world_from_object.transform_point3(middle)),
@@ -152,7 +152,8 @@ impl<'a> Mover<'a> {
         self.world_from_normal * self.normal(vertex)
     }
 
-    /// Rows of the clip matrix times a point, or the sums of the magnitudes of their terms.
+    /// Rows of the clip matrix times a point, already taken from the draw's origin, or the sums of the magnitudes of their
+    /// terms.
     fn clip_rows(&self, p: DVec3, magnitudes: bool) -> [f64; 4] {
         let sign = |v: f64| if magnitudes { v.abs() } else { v };
         [0, 1, 2, 3].map(|r| {
@@ -168,7 +169,9 @@ impl Mover<'_> {
     /// proportional to the terms, however much cancels, and what the effects err by comes on top.
     pub fn clip_errors(&self, corner: Corner) -> ([f64; 4], [f64; 4]) {
         let place = self.bounded_place(corner.vertex);
-        let mut sums = self.clip_rows(place.value, true);
+        let mut sums = self.clip_rows(place.value - self.draw.origin(), true);
+        // Taking it from an origin rounds once more.
+        let steps = if self.draw.origin == [0.0; 3] { 4.0 } else { 5.0 };
         // What bending errs by, an error of the position that every row takes along.
         let bent = [0, 1, 2, 3].map(|r| {
             [0, 1, 2].map(|axis| f64::from(self.draw.clip_from_object[axis][r]).abs() * place.error[axis]).iter().sum::<f64>()
@@ -176,13 +179,13 @@ impl Mover<'_> {
         });
         let (slack, offset) = if self.moves { self.offset_slack(corner) } else { (0.0, DVec3::ZERO) };
         if slack == 0.0 && offset == DVec3::ZERO {
-            return (sums, [0, 1, 2, 3].map(|r| 4.0 * ROUNDING * sums[r] + bent[r]));
+            return (sums, [0, 1, 2, 3].map(|r| steps * ROUNDING * sums[r] + bent[r]));
         }
         let errors = [0, 1, 2, 3].map(|r| {
             let row = [0, 1, 2].map(|axis| self.clip_from_world[axis][r].abs());
             sums[r] += row[0] * offset.x.abs() + row[1] * offset.y.abs() + row[2] * offset.z.abs();
-            // Seven products, in whatever order they are added; a sixteenth for what is of second order in the quotient.
-            (7.0 * ROUNDING * sums[r] + slack * (row[0] + row[1] + row[2])) * (16.0 / 15.0) + bent[r]
+            // Three products more, in whatever order they are added; a sixteenth for what is of second order in the quotient.
+            ((steps + 3.0) * ROUNDING * sums[r] + slack * (row[0] + row[1] + row[2])) * (16.0 / 15.0) + bent[r]
         });
         (sums, errors)
     }
@@ -273,7 +276,8 @@ impl Mover<'_> {
 
     /// Error of the place of a triangle's middle in the picture; beyond all bounds where it may lie behind the eye.
     fn screen_slack(&self, middle: DVec3, magnitudes: DVec3, given: DVec3) -> f64 {
-        let ([x, y, _, w], sums) = (self.clip_rows(middle, false), self.clip_rows(magnitudes, true));
+        let origin = self.draw.origin();
+        let ([x, y, _, w], sums) = (self.clip_rows(middle - origin, false), self.clip_rows(magnitudes + origin.abs(), true));
         let bent = |r: usize| [0, 1, 2].map(|axis| f64::from(self.draw.clip_from_object[axis][r]).abs() * given[axis]).iter().sum::<f64>();
         // An error of the corners counts as a rounding of the sums does.
         let [sx, sy, _, sw] = [0, 1, 2, 3].map(|r| sums[r] + bent(r) / (8.0 * ROUNDING));

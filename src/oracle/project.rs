@@ -79,7 +79,7 @@ pub(super) fn gated_lane(bytes: &[u8], accessor: &Accessor, element: u32, lane: 
 
 /// Clip-space position of a vertex of `draw` before any effect, from the bits of its rounded matrix.
 pub(super) fn clip_position(scene: &Scene, draw: &Draw, vertex: u32) -> Result<Clip, u32> {
-    let [x, y, z] = place(scene, draw, vertex)?.to_array();
+    let [x, y, z] = (place(scene, draw, vertex)? - draw.origin()).to_array();
     let row = |r: usize| {
         let [a, b, c, d] = [0, 1, 2, 3].map(|column| f64::from(draw.clip_from_object[column][r]));
         a * x + b * y + c * z + d

@@ -1,7 +1,7 @@
 //! The strict rungs: a vertex stage in f32 with one order of operations, and depth keys as quotients of integers. What an
 //! adapter computes in u32 must be this, to the bit.
 //!
-//! x_c = ((m0·x + m1·y) + m2·z) + m3, the others alike; X = 128 W + round((x_c · 1/w) · 128 W), Y likewise and downwards; depth
+//! Places are taken from the draw's origin, x - o; then x_c = ((m0·x + m1·y) + m2·z) + m3, the others alike; X = 128 W + round((x_c · 1/w) · 128 W), Y likewise and downwards; depth
 //! = z_c · 1/w. A vertex is inside the near plane iff z_c <= w_c and w_c > 0. Clipping is that of [`super::clip`]:
 //! distances w - z and (guard ± 128 W)·w ± 128 W·x, t = d_in / (d_in - d_out) held to [0, 1], in + (out - in)·t.
 
@@ -84,7 +84,8 @@ fn position(scene: &Scene, draw: &Draw, vertex: u32) -> Result<Clip, u32> {
         Component::F32 => operand(f32::from_bits(primitive.positions.f32_bits(&scene.vertex_bytes, vertex, lane))),
         _ => primitive.positions.value(&scene.vertex_bytes, vertex, lane) as f32,
     };
-    let [x, y, z] = [0, 1, 2].map(lane);
+    // From the origin on; from 0, nothing changes.
+    let [x, y, z] = [0, 1, 2].map(|axis| difference(lane(axis), draw.origin[axis as usize]));
     let row = |r: usize| {
         let [a, b, c, d] = [0, 1, 2, 3].map(|column| draw.clip_from_object[column][r]);
         sum(sum(sum(product(a, x), product(b, y)), product(c, z)), d)

@@ -47,7 +47,9 @@ impl Whole<'_> {
             if is_right || !owner_is_right(sample, owner) {
                 continue;
             }
-            let may_move = || is_near_stop(owner) || is_near_stop(truth.owner) || self.snap_explains(truth.owner, owner, pixel);
+            let may_move = || {
+                self.adapter.is_rough || is_near_stop(owner) || is_near_stop(truth.owner) || self.snap_explains(truth.owner, owner, pixel)
+            };
             if !self.is_strict() && may_move() {
                 accuracy.explained_by_snap += 1;
             } else {

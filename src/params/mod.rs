@@ -135,6 +135,11 @@ impl Field {
             .collect()
     }
 
+    /// Does it hold whole numbers alone?
+    pub const fn is_whole(&self) -> bool {
+        !self.kind.is_float()
+    }
+
     /// Writes lane values. Refuses, with the allowed range in words, what is not finite, not whole where it must
     /// be, or outside the hard range; then nothing is changed.
     pub fn set(&self, words: &mut [u32], values: &[f64]) -> Result<(), ValueError> {

@@ -11,7 +11,7 @@ use crate::{
         Conflict, Enabled, Stack,
         hooks::{Layers, Shape},
     },
-    ladder::{Clipping, Depth, Parameters, Pins, Rungs, Vertex, Visibility},
+    ladder::{AXES, Axis, Clipping, Counting, Depth, Parameters, Pins, Rungs, Scale, Vertex, Visibility},
     math::SMALL_EXTENT,
     scene::needs::Needs,
     shader::{
@@ -132,6 +132,9 @@ impl Tolerance {
     }
 }
 
+/// Axes whose fast rungs lose nothing, or say for themselves what they lose.
+const EXACT_AXES: [&str; 5] = ["visibility", "skinning", "scale", "parameters", "checks"];
+
 /// How exact the picture must be.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Accuracy {
@@ -145,6 +148,24 @@ pub struct Accuracy {
 }
 
 impl Accuracy {
+    /// How many pixels are drawn for one that is shown: as the look pins it.
+    pub fn scale(&self) -> Scale {
+        self.pins.rung().unwrap_or_default()
+    }
+
+    /// Does it pin a rung that lets chance decide?
+    pub fn is_left_to_chance(&self) -> bool {
+        self.pins.rung() == Some(Visibility::Race) || self.pins.rung() == Some(Counting::Racy)
+    }
+
+    /// Does it ask for anything that promises less than exactness?
+    pub fn may_err(&self) -> bool {
+        let is_cheaper = |axis: &Axis| self.pins.get(axis).is_some_and(|place| place < axis.usual && !EXACT_AXES.contains(&axis.name));
+        let is_lossy = self.pins.rung::<Visibility>().is_some_and(|rung| !rung.is_exact());
+        let tolerance = self.tolerance();
+        is_lossy || AXES.iter().any(is_cheaper) || tolerance.wrong_ppm > 0.0
+    }
+
     /// The tier's tolerance, or what the look says instead.
     pub fn tolerance(&self) -> Tolerance {
         let named = self.tier.tolerance();
@@ -170,6 +191,8 @@ pub enum PlanError {
     Window { rung: &'static str },
     #[error("vertex strict holds where integers decide, but {what}; take it out, or another rung")]
     Floats { what: String },
+    #[error("vertices {rung} packs meshes that keep their shape, and joints or shapes bend one here; use stored")]
+    Bent { rung: &'static str },
     #[error("depth integer divides exact edges, which coverage {rung} does not have; use fixed8")]
     Inexact { rung: &'static str },
     #[error(transparent)]

@@ -2,7 +2,7 @@
 //! not; what was measured is held against them and a wrong prediction is shown.
 
 use crate::{
-    ladder::{AXES, Clipping, Coverage, Depth, Perspective, Rung, Rungs, Sums, Vertex, Visibility},
+    ladder::{AXES, Clipping, Coverage, Depth, Perspective, Rung, Rungs, Scale, Sums, Vertex, Vertices, Visibility},
     scene::needs::Needs,
 };
 
@@ -32,9 +32,11 @@ pub fn predict(axis: usize, place: usize, needs: &Needs) -> Prediction {
     match axis {
         Coverage::AXIS => coverage(Coverage::at(place), needs),
         Vertex::AXIS => vertex(Vertex::at(place), needs),
+        Vertices::AXIS => vertices(Vertices::at(place), needs),
         Depth::AXIS => depth(Depth::at(place), needs),
         Perspective::AXIS => perspective(Perspective::at(place), needs),
         Clipping::AXIS => clipping(Clipping::at(place), needs),
+        Scale::AXIS => scale(Scale::at(place)),
         Sums::AXIS => sums(Sums::at(place), needs),
         Visibility::AXIS => visibility(Visibility::at(place), needs),
         _ => Prediction::default(),
@@ -77,6 +79,21 @@ fn vertex(rung: Vertex, needs: &Needs) -> Prediction {
     }
 }
 
+fn vertices(rung: Vertices, needs: &Needs) -> Prediction {
+    // Bounds of rounding add up every step the wrong way; as a rule it comes to an eighth of that.
+    const USUAL: f64 = 1.0 / 8.0;
+    let [stored, relative] = needs.rounding_px;
+    match (rung, rung.packed_bits()) {
+        // A quarter of a step is the mean distance to the nearest one; the box is as wide as it looks from where it is nearest.
+        (_, Some(bits)) => Prediction::wrong(moved_ppm(0.25 * needs.box_px / libm::exp2(bits.into()), needs)),
+        // Within a unit of the grid every bound is at home; beyond it the relative one tells what the offset costs.
+        (Vertices::Stored, _) if stored > 2.0 * relative.max(1.0 / 256.0) => {
+            Prediction::wrong(moved_ppm(USUAL * (stored - relative), needs))
+        }
+        _ => Prediction::default(),
+    }
+}
+
 fn depth(rung: Depth, needs: &Needs) -> Prediction {
     let [nearest, farthest] = needs.depth_m;
     let span = (farthest - nearest).max(f64::MIN_POSITIVE);
@@ -90,6 +107,11 @@ fn depth(rung: Depth, needs: &Needs) -> Prediction {
         _ => return Prediction::default(),
     };
     Prediction::wrong(1e6 * (step_m / span).min(1.0))
+}
+
+fn scale(rung: Scale) -> Prediction {
+    // Owners are those of the pixels that are drawn. Where fewer are drawn than shown, an edge may lie anywhere between two.
+    Prediction { wrong_ppm: 0.0, channel: if rung < Scale::Whole { 255.0 } else { 0.0 } }
 }
 
 fn perspective(rung: Perspective, needs: &Needs) -> Prediction {

@@ -12,7 +12,7 @@ use crate::{
         points, read,
         xray::{Reach, Xray},
     },
-    ladder::{AXES, Coverage, Depth, Rung, Rungs, Skinning, Sums, Vertex, Visibility},
+    ladder::{AXES, Coverage, Depth, Rung, Rungs, Skinning, Sums, Vertex, Vertices, Visibility},
     math::SUBPIXEL_BITS,
     scene::needs::Needs,
 };
@@ -52,6 +52,19 @@ pub(super) fn choose(
     for (i, axis) in AXES.iter().enumerate() {
         if accuracy.pins.get(axis).is_some() {
             reasons.push(note(axis.name, format!("{}: pinned by the look", axis.words[rungs.get(axis)])));
+            continue;
+        }
+        // What lies far from its origin keeps its places only where the eye is taken out first, which costs nothing. A strict
+        // picture follows from the look alone.
+        if i == Vertices::AXIS && rungs.vertex != Vertex::Strict && !tolerance.holds(&predict(i, rungs.get(axis), needs)) {
+            let own = predict(i, rungs.get(axis), needs);
+            rungs.vertices = Vertices::Relative;
+            prediction = predict_all(&rungs, needs);
+            let why = format!(
+                "relative: so far from the origin, rounding moves a stored corner by up to {:.2} px, predicted to cost {:.0} of {:.0} ppm",
+                needs.rounding_px[0], own.wrong_ppm, tolerance.wrong_ppm
+            );
+            reasons.push(note(axis.name, why));
             continue;
         }
         let mut cheaper: Vec<usize> =
@@ -105,8 +118,11 @@ fn check(rungs: &Rungs, needs: &Needs, f32_positions: bool, stack: &Stack, caps:
     if rungs.depth == Depth::Integer && rungs.coverage.is_float() {
         return Err(PlanError::Inexact { rung: rungs.coverage.name() });
     }
+    if rungs.vertices.packed_bits().is_some() && (needs.skinning.is_some() || needs.shapes) {
+        return Err(PlanError::Bent { rung: rungs.vertices.name() });
+    }
     if rungs.vertex == Vertex::Strict
-        && let Some(what) = floats(stack, needs, f32_positions)
+        && let Some(what) = floats(rungs, stack, needs, f32_positions)
     {
         return Err(PlanError::Floats { what });
     }
@@ -135,7 +151,7 @@ fn xray(stack: &Stack) -> Option<Xray> {
 }
 
 /// What in a picture hangs on floats even behind a strict vertex stage, if anything.
-fn floats(stack: &Stack, needs: &Needs, f32_positions: bool) -> Option<String> {
+fn floats(rungs: &Rungs, stack: &Stack, needs: &Needs, f32_positions: bool) -> Option<String> {
     let reason = |Enabled { effect, words }: &Enabled| {
         let is_from_floats = effect.hooks.sample.is_some_and(|hook| hook.decides && (hook.is_from_floats)(words));
         let why = match () {
@@ -148,5 +164,6 @@ fn floats(stack: &Stack, needs: &Needs, f32_positions: bool) -> Option<String> {
     };
     let positions = || (!f32_positions).then(|| "a mesh of the scene has positions that are not f32".to_owned());
     let bends = || (needs.skinning.is_some() || needs.shapes).then(|| "joints or shapes bend a mesh in floats".to_owned());
-    stack.0.iter().find_map(reason).or_else(bends).or_else(positions)
+    let packed = || rungs.vertices.packed_bits().map(|_| format!("vertices {} unpacks places in floats", rungs.vertices.name()));
+    stack.0.iter().find_map(reason).or_else(packed).or_else(bends).or_else(positions)
 }

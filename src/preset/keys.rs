@@ -6,7 +6,10 @@ use glam::DVec3;
 
 use super::form::{Form, Plain, Precision, brief};
 use crate::{
-    ladder::{AXES, Checks, Clipping, Counting, Coverage, Depth, Parameters, Perspective, Rung, Skinning, Sums, Vertex, Visibility},
+    ladder::{
+        AXES, Checks, Clipping, Counting, Coverage, Depth, Parameters, Perspective, Rung, Scale, Skinning, Sums, Vertex, Vertices,
+        Visibility,
+    },
     scene::camera::{Camera, MIN_NEAR_M, Projection},
     session::{SceneSource, Session, Test, Tier},
 };
@@ -321,6 +324,7 @@ pub const KEYS: &[Key] = &[
         |s, v| s.accuracy.channel = Some(v.first() as u8),
     ),
     pin::<Coverage>(),
+    pin::<Vertices>(),
     pin::<Vertex>(),
     pin::<Skinning>(),
     pin::<Depth>(),
@@ -329,6 +333,7 @@ pub const KEYS: &[Key] = &[
     pin::<Clipping>(),
     pin::<Counting>(),
     pin::<Sums>(),
+    pin::<Scale>(),
     pin::<Parameters>(),
     pin::<Checks>(),
     key(
@@ -362,6 +367,14 @@ pub const KEYS: &[Key] = &[
         "Pixels that may differ by more",
         |s| s.test.as_ref().map(|t| Plain::number(t.max_pixels)),
         |s, v| tested(s).max_pixels = v.first() as u32,
+    ),
+    key(
+        "test",
+        "max_wrong_owner",
+        Form::whole(1, 4_294_967_295.0),
+        "Pixels that may have another owner, or none, where the look pins a rung that promises less than exactness",
+        |s| s.test.as_ref().map(|t| Plain::number(t.max_wrong_owner)),
+        |s, v| tested(s).max_wrong_owner = v.first() as u32,
     ),
     key(
         "test",

@@ -123,7 +123,7 @@ impl Reader<'_> {
             self.animation(effects, &mut session)?;
         }
         self.order(root, &mut session.stack)?;
-        self.budget(root, session.test.as_ref())?;
+        self.budget(root, &session)?;
         Ok(session)
     }
 
@@ -237,16 +237,17 @@ impl Reader<'_> {
         Ok(())
     }
 
-    /// A budget above the default says why.
-    fn budget(&self, root: &dyn TableLike, test: Option<&Test>) -> Result<(), PresetError> {
-        let default = Test::default();
-        match test {
-            Some(test)
-                if (test.max_channel > default.max_channel || test.max_pixels > default.max_pixels) && test.why.trim().is_empty() =>
-            {
-                Err(PresetError::value(self.at(root, "test"), "test.why", "must say why the budget is above the default"))
-            }
-            _ => Ok(()),
+    /// A budget above the default says why, and wrong owners are for looks that ask for less than exactness.
+    fn budget(&self, root: &dyn TableLike, session: &Session) -> Result<(), PresetError> {
+        let (Some(test), default) = (&session.test, Test::default()) else { return Ok(()) };
+        if test.max_wrong_owner > 0 && !session.accuracy.may_err() {
+            let why = "is for looks that pin a cheaper rung or take the tier draft or fast; this one must be exact";
+            return Err(PresetError::value(self.at(root, "test"), "test.max_wrong_owner", why));
         }
+        let is_wider = test.max_channel > default.max_channel || test.max_pixels > default.max_pixels || test.max_wrong_owner > 0;
+        if is_wider && test.why.trim().is_empty() {
+            return Err(PresetError::value(self.at(root, "test"), "test.why", "must say why the budget is above the default"));
+        }
+        Ok(())
     }
 }

@@ -92,6 +92,8 @@ pub struct View {
     pub background: [f32; 4],
     /// Vertices snap to 2^-bits px: 4, 8 as a rule, or 12.
     pub subpixel_bits: u32,
+    /// Places are taken relative to the eye before they meet a matrix.
+    pub is_relative: bool,
     /// How the scene stands; none: at rest.
     pub pose: Option<Arc<Pose>>,
 }
@@ -134,6 +136,7 @@ impl View {
             scene_range_m: [from, farthest.max(from + margin)],
             background,
             subpixel_bits: SUBPIXEL_BITS,
+            is_relative: false,
             pose: None,
         }
     }
@@ -141,6 +144,13 @@ impl View {
     /// Units of snapped positions in a pixel.
     pub const fn units_per_pixel(&self) -> i32 {
         1 << self.subpixel_bits
+    }
+
+    /// The same view in `factor` times as many pixels to a side, at least one.
+    #[must_use]
+    pub fn scaled(&self, factor: f64) -> Self {
+        let side = |side: u32| if side == 0 { 0 } else { (f64::from(side) * factor).ceil().min(f64::from(u32::MAX)).max(1.0) as u32 };
+        Self { width: side(self.width), height: side(self.height), ..self.clone() }
     }
 
     pub fn pixels(&self) -> usize {

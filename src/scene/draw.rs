@@ -1,9 +1,9 @@
 //! Draws: every instance with its matrices and its place in the global lists of vertices and triangles.
 
-use glam::DMat4;
+use glam::{DMat4, DVec3, DVec4};
 
 use super::{
-    Primitive, Scene,
+    Bounds, Primitive, Scene,
     camera::View,
     pose::{Bend, Pose},
 };
@@ -21,7 +21,11 @@ pub struct Draw {
     pub first_vertex: u32,
     /// Global id of its triangle 0.
     pub first_triangle: u32,
-    /// Columns; multiplied in f64 and rounded once, so that every judge starts from these bits.
+    /// From where positions are taken before they meet the next: the place of the mesh's box nearest to the eye where the
+    /// view is relative, else 0.
+    pub origin: [f32; 3],
+    /// Columns; multiplied in f64 and rounded once, so that every judge starts from these bits. It expects a position less
+    /// `origin`.
     pub clip_from_object: [[f32; 4]; 4],
     pub world_from_object: DMat4,
     /// The placement turns left into right, so front faces wind the other way.
@@ -33,8 +37,18 @@ pub struct Draw {
 }
 
 impl Draw {
+    /// The origin as the place that it is.
+    pub fn origin(&self) -> DVec3 {
+        DVec3::from_array(self.origin.map(f64::from))
+    }
+
+    /// Where a place of object space lies in clip space.
+    pub fn clip_point(&self, position: DVec3) -> DVec4 {
+        DMat4::from_cols_array_2d(&self.clip_from_object.map(|column| column.map(f64::from))) * (position - self.origin()).extend(1.0)
+    }
+
     /// Box round its vertices in object space, however they are bent.
-    pub fn object_bounds(&self, primitive: &Primitive) -> super::Bounds {
+    pub fn object_bounds(&self, primitive: &Primitive) -> Bounds {
         self.bend.as_ref().map_or(primitive.bounds, |bend| bend.bounds(primitive))
     }
 }
@@ -46,6 +60,14 @@ pub enum DrawError {
     Matrix { instance: String, value: f64 },
     #[error("the scene has {count} {what}; at most {limit} fit one picture")]
     TooMany { what: &'static str, count: u64, limit: u64 },
+}
+
+/// The place of a box nearest to `eye`, as floats have it; the origin where there is none.
+fn nearest(bounds: &Bounds, eye: DVec3) -> [f32; 3] {
+    if bounds.is_empty() || !eye.is_finite() || bounds.min.abs().max(bounds.max.abs()).max_element() >= MAX_MAGNITUDE {
+        return [0.0; 3];
+    }
+    eye.clamp(bounds.min, bounds.max).as_vec3().to_array()
 }
 
 /// Most triangles in one picture: ids share their word with a flag.
@@ -65,7 +87,10 @@ pub fn draws(scene: &Scene, view: &View) -> Result<Vec<Draw>, DrawError> {
         let primitive = &scene.primitives[instance.primitive];
         let bend = pose.and_then(|pose| pose.bend(index)).cloned();
         let world_from_object = view.world_from_scene * pose.map_or(instance.world_from_object, |pose| pose.place(index));
-        let clip_from_object = rounded_columns(&(view.clip_from_world * world_from_object));
+        let reach = bend.as_ref().map_or(primitive.bounds, |bend| bend.bounds(primitive));
+        let origin = if view.is_relative { nearest(&reach, world_from_object.inverse().transform_point3(view.eye)) } else { [0.0; 3] };
+        let moved = DMat4::from_translation(DVec3::from_array(origin.map(f64::from)));
+        let clip_from_object = rounded_columns(&(view.clip_from_world * world_from_object * moved));
         let entries = clip_from_object.iter().flatten().map(|&v| f64::from(v)).chain(world_from_object.to_cols_array());
         let joints = bend.iter().filter_map(|bend| bend.palette.as_ref()).flat_map(|palette| palette.matrices());
         let entries = entries.chain(view.clip_from_world.to_cols_array()).chain(joints.flat_map(|joint| joint.to_cols_array()));
@@ -76,6 +101,7 @@ pub fn draws(scene: &Scene, view: &View) -> Result<Vec<Draw>, DrawError> {
             primitive: instance.primitive,
             first_vertex,
             first_triangle,
+            origin,
             clip_from_object,
             world_from_object,
             mirrored: (world_from_object.determinant() < 0.0) != bend.as_ref().is_some_and(Bend::mirrors),

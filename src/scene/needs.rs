@@ -2,7 +2,7 @@
 //!
 //! Bounds are conservative: they may ask for a path that stays idle, never leave one out that a triangle takes.
 
-use glam::{DMat3, DMat4, DVec4};
+use glam::{DMat3, DMat4, DVec3, DVec4};
 
 use super::{Component, Primitive, Scene, Topology, camera::View, draw::Draw};
 use crate::{ladder::Skinning, math::GUARD_BAND};
@@ -40,6 +40,11 @@ pub struct Needs {
     pub largest_px: f64,
     /// Side of a triangle if all were alike and the scene covered its box on the screen twice; an estimate.
     pub typical_px: f64,
+    /// The most pixels that the box of a primitive spans on an axis; infinite where it may reach before the near plane.
+    pub box_px: f64,
+    /// How far rounding may move a corner in the picture, pixels: as it is stored, and relative to the eye. A bound where it
+    /// was looked for, at the boxes of some instances.
+    pub rounding_px: [f64; 2],
     /// Distances of the nearest and farthest corner of the scene's box along the viewing direction.
     pub depth_m: [f64; 2],
     /// Distance of the near plane, where there is one.
@@ -76,6 +81,8 @@ impl Needs {
             clipping: largest_px.is_infinite(),
             largest_px,
             typical_px: typical_px(scene, draws, view),
+            box_px: draws.iter().map(|draw| box_px(&scene.primitives[draw.primitive], draw, view)).fold(0.0, f64::max),
+            rounding_px: rounding_px(scene, draws, view),
             depth_m: view.scene_range_m,
             near_m: view.clip_from_world.w_axis.z.abs(),
             w_ratio: w_ratio(largest_px, view),
@@ -111,8 +118,7 @@ impl Needs {
 
 /// Corners of a box in normalized device coordinates, those in front of the eye, held to the picture.
 fn seen_corners(primitive: &Primitive, draw: &Draw) -> Vec<[f64; 2]> {
-    let clip_from_object = DMat4::from_cols_array_2d(&draw.clip_from_object.map(|column| column.map(f64::from)));
-    let corners = primitive.bounds.corners().map(|corner| clip_from_object * corner.extend(1.0));
+    let corners = primitive.bounds.corners().map(|corner| draw.clip_point(corner));
     corners.iter().filter(|c| c.w > 0.0).map(|c| [c.x / c.w, c.y / c.w].map(|ndc| ndc.clamp(-1.0, 1.0))).collect()
 }
 
@@ -129,6 +135,66 @@ fn typical_px(scene: &Scene, draws: &[Draw], view: &View) -> f64 {
     let area: f64 = draws.iter().map(area_of).sum();
     // Front and back cover the box; an equilateral triangle of side s has 0.433 s^2.
     (2.0 * area / (0.433 * scene.triangle_count().max(1) as f64)).sqrt()
+}
+
+/// See [`Needs::box_px`].
+fn box_px(primitive: &Primitive, draw: &Draw, view: &View) -> f64 {
+    let bounds = draw.object_bounds(primitive);
+    if bounds.is_empty() {
+        return 0.0;
+    }
+    let nearest = bounds.corners().map(|corner| draw.clip_point(corner).w).into_iter().fold(f64::INFINITY, f64::min);
+    if nearest <= 0.0 {
+        return f64::INFINITY;
+    }
+    let column = |axis: usize| draw.clip_from_object[axis].map(f64::from);
+    let widest = |axis: usize| {
+        let across = |row: usize, pixels: u32| column(axis)[row].abs() * f64::from(pixels) * 0.5;
+        (bounds.max - bounds.min)[axis] * across(0, view.width).max(across(1, view.height)) / nearest
+    };
+    [0, 1, 2].map(widest).into_iter().fold(0.0, f64::max)
+}
+
+/// See [`Needs::rounding_px`]: the forward error bound of the vertex stage at the corners and middles of boxes, where they are
+/// in the picture.
+fn rounding_px(scene: &Scene, draws: &[Draw], view: &View) -> [f64; 2] {
+    const ULP: f64 = 1.0 / (1 << 23) as f64;
+    let size = [f64::from(view.width), f64::from(view.height)];
+    let of_draw = |draw: &Draw| {
+        let bounds = draw.object_bounds(&scene.primitives[draw.primitive]);
+        if bounds.is_empty() {
+            return [0.0; 2];
+        }
+        let m = view.clip_from_world * draw.world_from_object;
+        let eye = draw.world_from_object.inverse().transform_point3(view.eye);
+        let origin = if eye.is_finite() { eye.clamp(bounds.min, bounds.max) } else { DVec3::ZERO };
+        let moved = m * DMat4::from_translation(origin);
+        let places = bounds.corners().into_iter().chain([bounds.center()]);
+        let bound = |m: &DMat4, place: DVec3, clip: DVec4| {
+            let sums = |row: usize| {
+                let row = m.row(row).abs();
+                row.x * place.x.abs() + row.y * place.y.abs() + row.z * place.z.abs() + row.w
+            };
+            let w = clip.w;
+            let along = |axis: usize| {
+                let bound = 4.0 * sums(axis) / w + (4.0 * sums(3) / w + 4.5) * (clip[axis] / w).abs();
+                0.5 * size[axis] * ULP * bound
+            };
+            along(0).max(along(1))
+        };
+        places.fold([0.0f64; 2], |[stored, relative], place| {
+            let clip = m * place.extend(1.0);
+            let is_seen = clip.w > 0.0 && clip.z <= clip.w && clip.x.abs() <= 1.5 * clip.w && clip.y.abs() <= 1.5 * clip.w;
+            if !is_seen {
+                return [stored, relative];
+            }
+            [stored.max(bound(&m, place, clip)), relative.max(bound(&moved, place - origin, clip))]
+        })
+    };
+    // Of a great many, some are enough.
+    const SAMPLED: usize = 1024;
+    let some = draws.iter().step_by(draws.len().div_ceil(SAMPLED).max(1));
+    some.map(of_draw).fold([0.0; 2], |[a, b], [c, d]| [a.max(c), b.max(d)])
 }
 
 /// A triangle of so many pixels that lies along the viewing direction, as near as the scene comes.
@@ -156,7 +222,7 @@ fn largest_px(primitive: &Primitive, draw: &Draw, view: &View) -> f64 {
     // Of a bent mesh, no edge is longer than its box.
     let longest_edge = if draw.bend.is_some() { 2.0 * bounds.radius() } else { primitive.longest_edge };
     let clip_from_object = DMat4::from_cols_array_2d(&draw.clip_from_object.map(|column| column.map(f64::from)));
-    let corners = bounds.corners().map(|corner| clip_from_object * corner.extend(1.0));
+    let corners = bounds.corners().map(|corner| draw.clip_point(corner));
     let slack = 1.0 + 1e-4;
     let is_before_near = |c: &DVec4| c.w <= 0.0 || c.z * slack > c.w && view.linear_depth_m.is_none();
     if corners.iter().any(is_before_near) {

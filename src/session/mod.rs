@@ -146,13 +146,15 @@ pub struct Test {
     pub max_channel: u8,
     /// Pixels that may differ by more.
     pub max_pixels: u32,
+    /// Pixels that may have another owner than the true one, where a cheaper rung is pinned.
+    pub max_wrong_owner: u32,
     /// Why a budget above the default is needed.
     pub why: String,
 }
 
 impl Default for Test {
     fn default() -> Self {
-        Self { max_channel: 1, max_pixels: 0, why: String::new() }
+        Self { max_channel: 1, max_pixels: 0, max_wrong_owner: 0, why: String::new() }
     }
 }
 

@@ -9,7 +9,7 @@ use crate::{
         hooks::{Layers, Shape},
     },
     frame::{NO_OWNER, vertex_flags},
-    ladder::{Clipping, Coverage, Depth, Perspective, Rungs, Vertex, Visibility},
+    ladder::{Clipping, Coverage, Depth, Perspective, Rungs, Scale, Vertex, Vertices, Visibility},
 };
 
 pub use super::pass::{Entries, Pass, Phase};
@@ -157,6 +157,11 @@ impl KernelKey {
         self.effects.iter().any(|effect| effect.hooks.vertex.is_some_and(|hook| hook.needs_triangle))
     }
 
+    /// Are other pixels drawn than are shown?
+    pub fn is_scaled(&self) -> bool {
+        self.rungs.scale != Scale::Whole
+    }
+
     /// Does some mesh bend?
     pub const fn bends(&self) -> bool {
         self.has_joints || self.has_shapes
@@ -250,6 +255,9 @@ impl KernelKey {
             passes.extend([Pass::ListTiles, Pass::Args]);
         }
         passes.push(Pass::Resolve);
+        if self.is_scaled() {
+            passes.push(Pass::Scale);
+        }
         passes
     }
 
@@ -318,6 +326,7 @@ impl KernelKey {
         vec![
             ("ONLY_LISTS", flag(self.only_lists)),
             ("WIDE_INDICES", flag(self.wide_indices)),
+            ("IS_RELATIVE", flag(self.rungs.vertices == Vertices::Relative)),
             ("F32_POSITIONS", flag(self.f32_positions)),
             ("F32_NORMALS", flag(self.f32_normals)),
             ("HAS_COLORS", flag(self.has_colors)),
@@ -340,6 +349,7 @@ impl KernelKey {
             ("SMALL_SIDE", self.small_side.into()),
             ("EARLY_LOAD", flag(self.early_load)),
             ("ID_BITS", self.id_bits.into()),
+            ("SCALE_SIDE", self.rungs.scale.factor().max(1.0)),
             ("KEY_BITS", self.key_span().0.into()),
             ("KEY_LEAST", self.key_span().1.into()),
             ("IS_LARGE", flag(matches!(pass, Pass::BinLarge(_)))),

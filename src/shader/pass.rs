@@ -33,6 +33,8 @@ pub enum Pass {
     RasterTiles,
     ListTiles,
     Resolve,
+    /// From the pixels that were drawn to those that are shown.
+    Scale,
 }
 
 /// Over what a pass runs.
@@ -106,6 +108,7 @@ impl Pass {
             Self::RasterTiles => "raster_tiles",
             Self::ListTiles => "list_tiles",
             Self::Resolve => "resolve",
+            Self::Scale => "scale",
         }
     }
 

@@ -56,6 +56,10 @@ impl KernelKey {
             ("skinning", format!("slots/skinning/{}", if self.has_joints { self.rungs.skinning.name() } else { "none" })),
             ("corners", format!("slots/corners/{records}")),
             ("sources", format!("slots/sources/{records}")),
+            (
+                "positions",
+                format!("slots/positions/{}", self.rungs.vertices.packed_bits().map_or("stored", |_| self.rungs.vertices.name())),
+            ),
             ("movement", format!("slots/movement/{movement}")),
             ("shape", format!("slots/shape/{shape}")),
             ("pieces", format!("slots/pieces/{pieces}")),
@@ -76,6 +80,7 @@ impl KernelKey {
             ("cell_keys", format!("slots/cell_keys/{keys}")),
             ("depth", format!("slots/depth/{}", self.rungs.depth.name())),
             ("owner", format!("slots/owner/{layout}")),
+            ("scaling", format!("slots/scaling/{}", if self.rungs.scale.factor() > 1.0 { "average" } else { "between" })),
             ("finish", format!("slots/finish/{finish}")),
             ("image", format!("slots/image/{}", if pass == Pass::Resolve { "seen" } else { "none" })),
             ("sums", format!("slots/sums/{layout}")),

@@ -10,9 +10,10 @@ use super::{
 };
 use crate::{
     effects::{Effect, Stack, dissolve::Mode, draw_order, hooks::Layers},
+    gpu::RenderError,
     math::srgb_byte,
     plan::Accuracy,
-    scene::Scene,
+    scene::{Scene, camera::View},
 };
 
 pub const CASES: &[Case] = &[
@@ -50,6 +51,13 @@ pub const CASES: &[Case] = &[
         about: "a draw order over more samples than a word counts",
         expectation: Expectation::Exact,
         run: more_than_a_word,
+    },
+    Case {
+        number: 26,
+        name: "more-tickets-than-2-to-the-32",
+        about: "the hardware's own order over more samples than a word counts",
+        expectation: Expectation::Refused("a sentence with the number of samples and what a word holds"),
+        run: more_tickets_than_a_word,
     },
 ];
 
@@ -192,7 +200,8 @@ fn draw_limit(lab: &mut Lab) -> Result<(), Halt> {
     Ok(())
 }
 
-fn more_than_a_word(lab: &mut Lab) -> Result<(), Halt> {
+/// Sheets over a whole picture, of more than 2^32 samples together; with that number.
+fn sheets_of_a_word(lab: &Lab) -> Result<(Arc<Scene>, View, u64), Halt> {
     if lab.renderer.gpu().caps.software {
         return Err(Halt::LeftOut("2^32 samples take a software adapter minutes".into()));
     }
@@ -201,7 +210,32 @@ fn more_than_a_word(lab: &mut Lab) -> Result<(), Halt> {
     hold!(total > u64::from(u32::MAX), "{total} samples are too few");
     let far = 8_388_607;
     let scene = hand_made(&[units(&(0..times).map(|i| ([[0, 0], [far, 0], [0, far]], 1e-3 * (i + 1) as f32)).collect::<Vec<_>>())]);
-    let view = pixel_view(side, side);
+    Ok((scene, pixel_view(side, side), total))
+}
+
+fn more_tickets_than_a_word(lab: &mut Lab) -> Result<(), Halt> {
+    let (scene, view, total) = sheets_of_a_word(lab)?;
+    let by_chance = f64::from(draw_order::Mode::Scheduler as u32);
+    for (what, unit, amount) in [("a count", "limit", 1e6), ("a share", "share", 0.5)] {
+        let kind = if unit == "limit" { draw_order::Unit::Count } else { draw_order::Unit::Share };
+        let stack = only("draw_order", &[("mode", by_chance), ("unit", f64::from(kind as u32)), (unit, amount)])?;
+        lab.step(&scene, &view, what)?;
+        lab.renderer.set_scene(&scene)?;
+        match lab.renderer.draw_whole(&view, &stack, &Accuracy::default()) {
+            Err(error @ RenderError::Tickets(_)) => {
+                let text = error.to_string();
+                hold!(error.is_unsupported() && text.contains(&total.to_string()), "{what}: {text}");
+                lab.refused(text);
+            }
+            Err(error) => return Err(Halt::Failed(format!("{what}: {error}"))),
+            Ok(_) => return Err(Halt::Failed(format!("{what}: {total} samples were drawn by tickets of one word"))),
+        }
+    }
+    Ok(())
+}
+
+fn more_than_a_word(lab: &mut Lab) -> Result<(), Halt> {
+    let (scene, view, total) = sheets_of_a_word(lab)?;
     let share = f64::from(draw_order::Unit::Share as u32);
     // All but one part in 2^24 is a limit beyond a word, too.
     for (what, fields, limit) in [

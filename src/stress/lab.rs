@@ -7,10 +7,10 @@ use crate::{
     effects::{Effect, Stack},
     gpu::{Capture, RenderError, Renderer},
     ladder::{Pins, Visibility},
-    math::hash,
+    math::{fnv1a, hash},
     measure::{Accuracy as Errors, Budget, Verdict, compare},
     oracle,
-    plan::{Accuracy, Caps, Tuning},
+    plan::{Accuracy, Caps, Tier, Tuning},
     scene::{Scene, builtin, camera::View, draw::DrawError},
     session::{SceneSource, Session},
 };
@@ -70,6 +70,19 @@ pub struct Lab<'a> {
     refusal: Option<String>,
     /// The depth band may be of any size.
     is_band_free: bool,
+    /// Pictures are drawn on the strict rung, where there is one.
+    strict: Option<Strict>,
+}
+
+/// What the pictures of a case come to on the strict rung.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Strict {
+    pub pictures: u64,
+    /// Pictures that hang on floats, and were drawn as usual.
+    pub floats: u64,
+    /// Hashes of all owners and keys, one picture after another.
+    pub adapter: u64,
+    pub cpu: u64,
 }
 
 /// Largest share of pixels that may lie in the depth band, where two owners are right; 16 pixels are always allowed.
@@ -194,7 +207,17 @@ impl<'a> Lab<'a> {
     pub(super) fn new(renderer: &'a mut Renderer, seed: u32, go_on: &'a dyn Fn(&str) -> bool) -> Self {
         let usual = renderer.gpu().caps.tuning();
         renderer.set_tuning(usual);
-        Self { renderer, seed, is_seeded: false, go_on, counts: Counts::default(), notes: vec![], refusal: None, is_band_free: false }
+        Self {
+            renderer,
+            seed,
+            is_seeded: false,
+            go_on,
+            counts: Counts::default(),
+            notes: vec![],
+            refusal: None,
+            is_band_free: false,
+            strict: None,
+        }
     }
 
     /// Leaves the renderer as it was found.
@@ -234,7 +257,53 @@ impl<'a> Lab<'a> {
         if (self.go_on)(what) { Ok(()) } else { Err(Halt::Stopped) }
     }
 
+    /// Runs a case on the strict rung; what it remarks on it has remarked on before.
+    pub(super) fn strictly(&mut self, name: &str, run: fn(&mut Self) -> Result<(), Halt>) -> Result<Strict, Halt> {
+        let remarks = self.notes.len();
+        self.strict = Some(Strict::default());
+        let outcome = run(self);
+        let strict = self.strict.take().unwrap_or_default();
+        self.notes.truncate(remarks);
+        let usual = self.renderer.gpu().caps.tuning();
+        self.renderer.set_tuning(usual);
+        match outcome {
+            Ok(()) | Err(Halt::LeftOut(_)) => Ok(strict),
+            Err(Halt::Failed(why)) => Err(Halt::Failed(format!("{name}: {why}"))),
+            Err(Halt::Stopped) => Err(Halt::Stopped),
+        }
+    }
+
+    /// The accuracy that a picture gets: the strict tier's while that is asked for and nothing hangs on floats.
+    fn asked(&mut self, scene: &Arc<Scene>, view: &View, stack: &Stack, accuracy: &Accuracy) -> Result<Accuracy, Halt> {
+        let Some(strict) = &mut self.strict else { return Ok(*accuracy) };
+        let wanted = Accuracy { tier: Tier::Strict, ..*accuracy };
+        self.renderer.set_scene(scene)?;
+        match self.renderer.draw(view, stack, &wanted) {
+            Err(RenderError::Plan(_)) => {
+                strict.floats += 1;
+                Ok(*accuracy)
+            }
+            _ => Ok(wanted),
+        }
+    }
+
+    /// Holds a strict picture against the CPU's.
+    fn hold_strict(&mut self, capture: &Capture, scene: &Scene, view: &View, stack: &Stack, what: &str) -> Result<(), Halt> {
+        let Some(strict) = &mut self.strict else { return Ok(()) };
+        let view = &View { is_relative: capture.geometry.is_relative, ..view.clone() };
+        let (owner, key) = oracle::strict_frame(scene, view, stack)?;
+        let folded = |hash: u64, [a, b]: [&[u32]; 2]| fnv1a(&[&[hash as u32, (hash >> 32) as u32], a, b].concat());
+        strict.pictures += 1;
+        strict.adapter = folded(strict.adapter, [&capture.frame.owner, &capture.frame.key]);
+        strict.cpu = folded(strict.cpu, [&owner, &key]);
+        let different = [(&capture.frame.owner, &owner), (&capture.frame.key, &key)].map(|(a, b)| compare::owners(a, b).different);
+        if different == [0, 0] { Ok(()) } else { Err(Halt::Failed(format!("{what}: {different:?} owners and keys are not the CPU's"))) }
+    }
+
     pub(super) fn rungs(&self) -> Vec<Visibility> {
+        if self.strict.is_some() {
+            return vec![self.quick_rung()];
+        }
         rungs(&self.renderer.gpu().caps)
     }
 
@@ -263,6 +332,7 @@ impl<'a> Lab<'a> {
         what: &str,
     ) -> Result<Capture, Halt> {
         self.step(scene, view, what)?;
+        let accuracy = &self.asked(scene, view, stack, accuracy)?;
         captured(self.renderer, scene, view, stack, accuracy).map_err(|error| Halt::Failed(format!("{what}: {error}")))
     }
 
@@ -276,7 +346,12 @@ impl<'a> Lab<'a> {
         what: &str,
     ) -> Result<(Capture, Verdict), Halt> {
         self.step(scene, view, what)?;
-        judged(self.renderer, scene, view, stack, accuracy).map_err(|error| Halt::Failed(format!("{what}: {error}")))
+        let accuracy = &self.asked(scene, view, stack, accuracy)?;
+        let judged = judged(self.renderer, scene, view, stack, accuracy).map_err(|error| Halt::Failed(format!("{what}: {error}")))?;
+        if accuracy.tier == Tier::Strict && view.pixels() > 0 {
+            self.hold_strict(&judged.0, scene, view, stack, what)?;
+        }
+        Ok(judged)
     }
 
     /// Draws, judges and insists on [`exactness`].
@@ -299,6 +374,9 @@ impl<'a> Lab<'a> {
     /// Draws on every rung with work shared out as on a graphics card, and on the last rung as the adapter likes it and
     /// with a workgroup for all but the tiniest triangles. Each is exact, and all are the same; the first is handed over.
     pub(super) fn everywhere_with(&mut self, scene: &Arc<Scene>, view: &View, stack: &Stack, what: &str) -> Result<Capture, Halt> {
+        if self.strict.is_some() {
+            return Ok(self.exact(scene, view, stack, &pinned(self.quick_rung()), what)?.0);
+        }
         let usual = self.renderer.gpu().caps.tuning();
         let [crowded, _, card, _] = tunings();
         let last = self.quick_rung();

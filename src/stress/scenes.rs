@@ -110,6 +110,7 @@ pub fn pixel_view(width: u32, height: u32) -> View {
         background: [0.0; 4],
         pose: None,
         subpixel_bits: 8,
+        is_relative: false,
     }
 }
 

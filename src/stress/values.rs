@@ -11,7 +11,12 @@ use super::{
     stack,
 };
 use crate::{
+    effects::Stack,
     frame::NO_OWNER,
+    gpu::Capture,
+    ladder::{Pins, Vertices},
+    oracle,
+    plan::Accuracy,
     scene::{
         Scene,
         camera::{Camera, Projection},
@@ -39,6 +44,13 @@ pub const CASES: &[Case] = &[
         about: "models at 10^4 to 10^8 units from the origin, scaled by 10^-6 to 10^6",
         expectation: Expectation::Bounded("vertices within the forward error of f32; exact given the snapped vertices"),
         run: scales_and_offsets,
+    },
+    Case {
+        number: 14,
+        name: "offsets-taken-out",
+        about: "models whose vertices themselves lie 10^4 to 10^8 units away, relative to the eye: the offset is gone",
+        expectation: Expectation::Exact,
+        run: offsets_taken_out,
     },
     Case {
         number: 17,
@@ -136,6 +148,40 @@ fn scales_and_offsets(lab: &mut Lab) -> Result<(), Halt> {
         let what = format!("offset {offset:e}, scale {scale:e}");
         let capture = lab.everywhere_with(&Arc::new(placed), &view, &stack(&["depth", "lambert"]), &what)?;
         hold!(capture.frame.covered() > 1500, "{what}: {} pixels", capture.frame.covered());
+    }
+    Ok(())
+}
+
+fn offsets_taken_out(lab: &mut Lab) -> Result<(), Halt> {
+    let knot = lab.scene("knot?tess=4")?;
+    let mesh = &knot.primitives[0];
+    let indices: Vec<u32> = (0..mesh.triangle_count()).flat_map(|triangle| mesh.corners(&knot, triangle)).collect();
+    let relative = Accuracy { pins: Pins::of(Vertices::Relative).with(lab.quick_rung()), ..Accuracy::default() };
+    let stored = Accuracy { pins: Pins::of(Vertices::Stored).with(lab.quick_rung()), ..Accuracy::default() };
+    for offset in [1e4, 1e5, 1e6, 1e7, 1e8] {
+        // A hundred thousand times as far as it is large: a float has some 7 bits left for its shape.
+        let (scale, at) = (1e-5 * offset, DVec3::new(offset, -offset, 0.5 * offset));
+        let far = |vertex| (DVec3::from_array(mesh.position(&knot, vertex).map(f64::from)) * scale + at).as_vec3().to_array();
+        let positions = (0..mesh.vertex_count()).map(far).collect();
+        let scene = hand_made(&[Part { positions, indices: indices.clone(), ..Part::default() }]);
+        let camera = Camera { eye: at + DVec3::new(1.0, 1.0, 4.0) * scale, target: at, near_m: scale.max(1e-6) * 0.1, ..Camera::default() };
+        let view = seen(&scene, &camera, [96, 72]);
+        let corners = oracle::project_finest(&scene, &view, &Stack::default())?;
+        let moved = |capture: &Capture| {
+            let twins = capture.geometry.vertices.iter().zip(&corners.vertices).filter(|(a, b)| a.flags | b.flags == 0);
+            let fine = f64::from(1 << (corners.subpixel_bits - capture.geometry.subpixel_bits));
+            let units = |a: i32, b: i32| (f64::from(a) - f64::from(b) / fine).abs();
+            twins.map(|(a, b)| units(a.x, b.x).max(units(a.y, b.y))).fold(0.0, f64::max)
+        };
+        let what = format!("vertices {offset:e} units away");
+        let (capture, _) = lab.exact(&scene, &view, &Stack::default(), &relative, &what)?;
+        let off = moved(&capture);
+        hold!(off <= 1.0, "{what}: a corner lies {off} units of 1/256 px from its place");
+        hold!(capture.frame.covered() > 1500, "{what}: {} pixels", capture.frame.covered());
+        let (capture, _) = lab.judged(&scene, &view, &Stack::default(), &stored, &format!("{what}, as they are stored"))?;
+        let stored_off = moved(&capture);
+        hold!(stored_off > 8.0 * off, "{what}: as they are stored, corners move by no more than {stored_off} units");
+        lab.note(format!("{what}: corners move by up to {:.3} px as they are stored, {:.4} px relative", stored_off / 256.0, off / 256.0));
     }
     Ok(())
 }

@@ -20,7 +20,12 @@ fn projection_row(m: vec4f, p: vec3u) -> u32 {
     return soft_add(soft_add(sum, soft_multiply(row.z, p.z)), row.w);
 }
 
-fn projection_clip(draw: u32, p: vec3u) -> Position {
+fn projection_clip(draw: u32, place: vec3u) -> Position {
+    var p = place;
+    if IS_RELATIVE {
+        let origin = bitcast<vec3u>(draws[draw].origin.xyz);
+        p = vec3u(soft_subtract(p.x, origin.x), soft_subtract(p.y, origin.y), soft_subtract(p.z, origin.z));
+    }
     let rows = transpose(draws[draw].clip_from_object);
     var z = bitcast<u32>(rows[2].w);
     if !IS_PERSPECTIVE { z = projection_row(rows[2], p); }

@@ -116,7 +116,7 @@ mod tests {
         let picture = [[9; 4]; 6];
         let faults = Faults::new(&picture, &picture, |i| if marked.contains(&i) { vec![Fault::Owner, Fault::Hole] } else { Vec::new() });
         let frame = Frame { width: 3, height: 2, owner: vec![0; 6], color: picture.to_vec(), ..Default::default() };
-        let capture = Capture { frame, geometry: Default::default(), layers: None, previous: None };
+        let capture = Capture { frame, geometry: Default::default(), layers: None, previous: None, shown: None };
         Findings::new(capture, Verdict { faults, ..Default::default() }, None)
     }
 

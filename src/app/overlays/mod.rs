@@ -358,7 +358,7 @@ mod tests {
 
     #[test]
     fn an_edge_lies_where_the_owner_changes_and_not_across_the_border_of_the_picture() {
-        let mut capture = Capture { frame: Default::default(), geometry: Default::default(), layers: None, previous: None };
+        let mut capture = Capture { frame: Default::default(), geometry: Default::default(), layers: None, previous: None, shown: None };
         (capture.frame.width, capture.frame.height) = (3, 2);
         capture.frame.owner = vec![1, 1, 2, 1, 1, 1];
         capture.frame.color = vec![[0; 4]; 6];

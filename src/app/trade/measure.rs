@@ -8,7 +8,7 @@ use crate::{
     gpu::{
         Capture, Gpu,
         device::AdapterChoice,
-        trade::{TradeOptions, TradeRow, Truth, trade},
+        trade::{TradeOptions, TradeRow, Truth, factors, trade},
     },
     ladder::{Axis, Pins},
     oracle,
@@ -24,7 +24,7 @@ pub fn measure(adapter: String, scene: &Arc<Scene>, question: &Question, progres
     progress.tell(0, 1, "the true picture");
     let gpu = Gpu::open(&AdapterChoice::Named(adapter)).map_err(|e| e.to_string())?;
     let view = session.view(scene, *size);
-    let picture = oracle::render_finest(scene, &view, &session.stack).map_err(|e| e.to_string())?;
+    let truths = oracle::truths(scene, &view, &session.stack, &factors(session, axes)).map_err(|e| e.to_string())?;
     let judge = |stack: &Stack, capture: &Capture| {
         let (layers, previous) = (capture.layers.as_deref(), capture.previous.as_deref());
         oracle::judge_after(scene, &view, stack, &capture.frame, &capture.geometry, layers, previous)
@@ -32,8 +32,8 @@ pub fn measure(adapter: String, scene: &Arc<Scene>, question: &Question, progres
     };
     let options = TradeOptions { size: *size, samples: SAMPLES, axes: axes.clone(), is_each_alone: false };
     let mut tell = |what: &str, done: usize, all: usize| progress.tell(done, all, what);
-    let rows =
-        trade(&gpu, session, scene, title, &options, &Truth { picture: &picture, judge: &judge }, &mut tell).map_err(|e| e.to_string())?;
+    let truth = Truth { truths: &truths, judge: &judge };
+    let rows = trade(&gpu, session, scene, title, &options, &truth, &mut tell).map_err(|e| e.to_string())?;
     Ok(rows.into_iter().map(|row| point(row, axes)).collect())
 }
 
@@ -53,6 +53,8 @@ fn point(row: TradeRow, axes: &[&'static Axis]) -> Point {
             ("wrong depth winners ppm", error.wrong_depth_ppm),
             ("colour RMS of 255", error.rms_colour_delta),
             ("pixels that change between equal frames", error.changed_pixels as f64),
+            ("corners moved px", error.moved_px),
+            ("cracks per Mpx", error.cracks_per_mpx),
             ("queue entries lost", error.overflow as f64),
             ("orphans", error.orphans as f64),
             ("buffers MiB", row.bytes as f64 / 1_048_576.0),

@@ -8,7 +8,12 @@ use gltf::json::{
     validation::Checked,
 };
 
-use super::{LoadError, buffers::Buffers, called, limits, nodes::Tree, nodes::node_name};
+use super::{
+    LoadError,
+    buffers::Buffers,
+    called, limits,
+    nodes::{LEAST_LENGTH, Tree, UNEVEN, node_name},
+};
 use crate::scene::{
     Accessor, Component,
     rig::{Channel, Clip, Interpolation, Local, Property, Rig, Sampler},
@@ -117,10 +122,10 @@ impl Reader<'_> {
             let keys = values.chunks_exact(4).skip(parts / 2).step_by(parts);
             for (key, q) in keys.enumerate() {
                 let length = q.iter().map(|&v| f64::from(v) * f64::from(v)).sum::<f64>().sqrt();
-                if length < 1e-6 {
+                if length < LEAST_LENGTH {
                     return Err(LoadError::new(format!("key {key} is no quaternion with a direction")).within("output"));
                 }
-                self.uneven += usize::from((length - 1.0).abs() > 0.01);
+                self.uneven += usize::from((length - 1.0).abs() > UNEVEN);
             }
         }
         Ok(Sampler { interpolation, times, values, lanes })

@@ -31,7 +31,7 @@ pub fn scene(bytes: &[u8], read: &mut ReadFile) -> Result<Scene, LoadError> {
     let buffers = Buffers::read(&root, binary, read)?;
     check_images(&buffers)?;
     let tree = Tree::walk(&root)?;
-    let (mut rig, mut repairs) = (Rig::default(), Vec::new());
+    let (mut rig, mut repairs) = (Rig::default(), Vec::from_iter(tree.uneven(&root)));
     if soft::moves(&root) {
         rig.nodes = tree.rig_nodes(&root)?;
         rig.skins = skin::skins(&buffers, &tree)?;

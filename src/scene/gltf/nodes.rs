@@ -81,6 +81,14 @@ impl Tree {
         self.order.iter().map(node).collect()
     }
 
+    /// What to say of rotations that are no unit quaternions.
+    pub fn uneven(&self, root: &json::Root) -> Option<String> {
+        let length = |q: &[f32; 4]| q.iter().map(|&v| f64::from(v) * f64::from(v)).sum::<f64>().sqrt();
+        let is_uneven = |&&node: &&usize| root.nodes[node].rotation.is_some_and(|q| (length(&q.0) - 1.0).abs() > UNEVEN);
+        let count = self.order.iter().filter(is_uneven).count();
+        (count > 0).then(|| format!("{count} node rotations are no unit quaternions; they are taken by their direction"))
+    }
+
     /// The cameras among the shown nodes. Their targets lie as far away as the middle of `bounds`.
     pub fn cameras(&self, root: &json::Root, bounds: &Bounds, notes: &mut Vec<String>) -> Vec<FileCamera> {
         let mut cameras = Vec::new();
@@ -137,6 +145,12 @@ fn visit(root: &json::Root, tops: &[usize], mut arrive: impl FnMut(usize) -> Res
 }
 
 /// Where a node stands in its parent.
+/// Shorter quaternions have no direction that anybody meant.
+pub const LEAST_LENGTH: f64 = 1e-6;
+
+/// Quaternions whose length is further from 1 are remarked on.
+pub const UNEVEN: f64 = 0.01;
+
 fn local(node: &json::Node) -> Result<Local, LoadError> {
     if let Some(matrix) = node.matrix {
         let matrix = DMat4::from_cols_array(&matrix.map(f64::from));
@@ -150,7 +164,7 @@ fn local(node: &json::Node) -> Result<Local, LoadError> {
     let vector = |v: Option<[f32; 3]>, default: DVec3| v.map_or(default, |v| v.map(f64::from).into());
     let rotation = node.rotation.unwrap_or_default().0.map(f64::from);
     let length = rotation.iter().map(|v| v * v).sum::<f64>().sqrt();
-    if !(length.is_finite() && length > 0.0) {
+    if !(length.is_finite() && length >= LEAST_LENGTH) {
         return Err(LoadError::new("its rotation is not a quaternion with a direction"));
     }
     let (translation, scale) = (vector(node.translation, DVec3::ZERO), vector(node.scale, DVec3::ONE));

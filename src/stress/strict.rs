@@ -1,0 +1,43 @@
+//! Strict: every row that is exact, over again on the strict rung, where owners and depth keys are the CPU's to the bit.
+
+use super::{Case, Expectation, Halt, Lab, cases, hold};
+
+pub const CASES: &[Case] = &[Case {
+    number: NUMBER,
+    name: "strict-everywhere",
+    about: "the pictures of all exact rows on the strict rung: owners and depth keys are those of the CPU, to the bit",
+    expectation: Expectation::Exact,
+    run: strict_everywhere,
+}];
+
+const NUMBER: u32 = 33;
+
+/// Rows that are hard by being many: a software adapter has drawn them once already.
+const LONG: [u32; 8] = [16, 18, 19, 20, 21, 22, 23, 27];
+
+fn strict_everywhere(lab: &mut Lab) -> Result<(), Halt> {
+    let is_software = lab.renderer.gpu().caps.software;
+    let is_meant = |case: &&Case| {
+        let is_long = is_software && LONG.contains(&case.number);
+        case.number != NUMBER && case.expectation == Expectation::Exact && !is_long
+    };
+    let (mut rows, mut pictures, mut floats) = (Vec::new(), 0, 0);
+    let mut hashes = Vec::new();
+    for case in cases().into_iter().filter(is_meant) {
+        let strict = lab.strictly(case.name, case.run)?;
+        hold!(strict.adapter == strict.cpu, "{}: the adapter's hash is {:016x}, the CPU's {:016x}", case.name, strict.adapter, strict.cpu);
+        (pictures, floats) = (pictures + strict.pictures, floats + strict.floats);
+        if strict.pictures > 0 {
+            rows.push(case.number);
+            hashes.extend([strict.cpu as u32, (strict.cpu >> 32) as u32]);
+        }
+    }
+    rows.dedup();
+    hold!(pictures > 100, "only {pictures} pictures have a strict rung");
+    let hash = crate::math::fnv1a(&hashes);
+    lab.note(format!("{pictures} pictures of rows {rows:?} come to {hash:016x} here and on the CPU; {floats} more hang on floats"));
+    if is_software {
+        lab.note(format!("rows {LONG:?} are left to graphics cards"));
+    }
+    Ok(())
+}
