@@ -150,6 +150,30 @@ impl OrderFigures {
     }
 }
 
+/// Meshlets that culling left, and those that it left out.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, serde::Serialize)]
+pub struct CullingFigures {
+    pub drawn: u32,
+    /// Outside the picture.
+    pub outside: u32,
+    /// All their triangles face away.
+    pub turned: u32,
+    /// Behind what was drawn.
+    pub hidden: u32,
+}
+
+impl CullingFigures {
+    /// All meshlets there are.
+    pub fn all(&self) -> u32 {
+        self.drawn + self.outside + self.turned + self.hidden
+    }
+
+    /// For people: how many were left out, and why.
+    pub fn reasons(&self) -> String {
+        format!("{} outside, {} turned away, {} hidden", self.outside, self.turned, self.hidden)
+    }
+}
+
 /// One finished picture with the integers that decided it. Images are row-major, top row first, `width * height` long.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Frame {

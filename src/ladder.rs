@@ -176,6 +176,17 @@ ladder! {
         /// They are cut, and what lies inside is drawn.
         Exact = "exact",
     }
+    /// What is left out before it is set up, since it cannot be seen.
+    culling: Culling = "culling", usual None {
+        /// Nothing: every triangle finds out by itself.
+        None = "none",
+        /// Instances and meshlets outside the picture, and meshlets that all face away.
+        Frustum = "frustum",
+        /// Those, and what lies behind the picture before this one: what has come out from behind it is missing.
+        Hiz = "hiz",
+        /// Those, and what lies behind this picture: first what was seen before is drawn, then what that does not hide.
+        TwoPass = "two-pass",
+    }
     /// How a draw order counts samples.
     counting: Counting = "counting", usual Prefix {
         /// Load, test, add, as a beginner's kernel does it: it overshoots.
@@ -257,6 +268,13 @@ impl Scale {
             Self::Double => 2.0,
             Self::Quadruple => 4.0,
         }
+    }
+}
+
+impl Culling {
+    /// Does it hold meshlets against depths that were drawn?
+    pub const fn occludes(self) -> bool {
+        matches!(self, Self::Hiz | Self::TwoPass)
     }
 }
 

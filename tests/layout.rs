@@ -3,11 +3,12 @@
 use rasterlab::{
     effects::{EFFECTS, Effect},
     gpu::bends::{BendRecord, ShapeRecord},
+    gpu::culling::{CullingUniform, InstanceRecord, MeshletRecord},
     gpu::uniforms::{CounterRecord, DrawRecord, FrameUniform, ScalingUniform, Twin},
     ladder::Visibility,
     shader::{
         Fetch, KernelKey, Pass,
-        key::Phase,
+        key::{Phase, Round},
         library::Library,
         link,
         reflect::{self, Reflected},
@@ -37,6 +38,10 @@ fn uniforms_and_records_agree() {
     let skin = reflected(Pass::Skin, vec![]);
     check_twin::<BendRecord>(&skin);
     check_twin::<ShapeRecord>(&skin);
+    let cull = reflected(Pass::Cull(Round::Behind), vec![]);
+    check_twin::<MeshletRecord>(&cull);
+    check_twin::<InstanceRecord>(&cull);
+    check_twin::<CullingUniform>(&cull);
 }
 
 #[test]

@@ -6,7 +6,7 @@ use rasterlab::{
         EFFECTS, Effect,
         hooks::{Shape, Slot},
     },
-    ladder::{AXES, Parameters, Visibility},
+    ladder::{AXES, Culling, Parameters, Visibility},
     shader::{
         Fetch, KernelKey, Pass,
         key::{Order, Phase},
@@ -102,7 +102,7 @@ fn every_rung_of_the_ladder_links_and_validates() {
     for axis in AXES {
         for place in 0..axis.words.len() {
             // Only some axes meddle with what the stacks differ in.
-            let is_meddling = matches!(axis.name, "visibility" | "counting" | "sums" | "depth");
+            let is_meddling = matches!(axis.name, "visibility" | "counting" | "sums" | "depth" | "culling");
             for effects in if is_meddling { &stacks[..] } else { &stacks[1..2] } {
                 let mut key = key(Fetch::Indexed, Visibility::Split32, true, effects.clone());
                 key.rungs.set(axis, place);
@@ -113,6 +113,25 @@ fn every_rung_of_the_ladder_links_and_validates() {
                 for pass in all_passes(&key) {
                     let storage = validate(&key, pass);
                     assert!(storage <= 8, "{} of {key} binds {storage} storage buffers", pass.label());
+                }
+            }
+        }
+    }
+}
+
+/// Meshlets take the last storage buffer that a pass may bind.
+#[test]
+fn every_way_of_culling_validates_on_every_exact_rung() {
+    for visibility in Visibility::EXACT {
+        for &culling in Culling::ALL {
+            for fetch in [Fetch::Direct, Fetch::Indexed] {
+                for effects in slot_stacks() {
+                    let mut key = key(fetch, visibility, true, effects);
+                    key.rungs.culling = culling;
+                    for pass in all_passes(&key) {
+                        let storage = validate(&key, pass);
+                        assert!(storage <= 8, "{} of {key} binds {storage} storage buffers", pass.label());
+                    }
                 }
             }
         }

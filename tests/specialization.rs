@@ -112,7 +112,9 @@ fn a_scene_of_small_triangles_has_no_queues_arguments_or_pieces() {
     let Some((small, ..)) = explained("sphere?triangles=20000", tuning) else { return };
     let (passes, buffers) = names(&small);
     assert_eq!(passes, ["project", "raster_small depth", "raster_small owner", "resolve"]);
-    for spared in ["queues", "args", "pieces", "marks", "background", "layers", "depth_owner", "bends", "joints", "shapes"] {
+    for spared in
+        ["queues", "args", "pieces", "marks", "background", "layers", "depth_owner", "bends", "joints", "shapes", "meshlets", "instances"]
+    {
         assert!(!buffers.contains(&spared), "{spared} exists: {buffers:?}");
     }
     for (part, why) in [("clip", "near plane"), ("raster_medium", "px"), ("tile_large, raster_large", "px")] {

@@ -17,6 +17,18 @@ struct Counters {
     bins: atomic<u32>,           // entries of the lists of all tiles
     full_pixels: atomic<u32>,    // pixels with more layers than the sums hold
     dropped: atomic<u32>,        // triangles left out that would have to be clipped
+    survivors: atomic<u32>,      // meshlets that culling left
+    outside: atomic<u32>,        // meshlets outside the picture
+    turned: atomic<u32>,         // meshlets that face away
+    hidden: atomic<u32>,         // meshlets behind what was drawn
+    survivors_done: atomic<u32>, // entries that an earlier round has drawn; 0 without rounds
+    clip_done: atomic<u32>,
+    medium_done: atomic<u32>,
+    large_done: atomic<u32>,
+    tiles_done: atomic<u32>,
+    spare_0: atomic<u32>,
+    spare_1: atomic<u32>,
+    spare_2: atomic<u32>,
 }
 
 @group(0) @binding(7) var<storage, read_write> counters: Counters;

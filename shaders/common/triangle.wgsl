@@ -18,7 +18,11 @@ struct Triangle {
 }
 
 fn triangle_load(id: u32) -> Triangle {
-    let draw = draws_of_triangle(id);
+    return triangle_of(draws_of_triangle(id), id);
+}
+
+// The same where its draw is known.
+fn triangle_of(draw: u32, id: u32) -> Triangle {
     let at = corners_of(draw, id);
     return Triangle(vertices[at.x], vertices[at.y], vertices[at.z], id, draw, id, 7u);
 }

@@ -11,9 +11,13 @@ struct Args {
     tiles: Dispatch,
     resolve: Dispatch,
     pieces: Dispatch,
+    meshlets: Dispatch,
 }
 
 @group(0) @binding(10) var<storage, read_write> args: Args;
+
+// Invocations for the triangles of a meshlet.
+override MESHLET_TRIANGLES: u32 = 64u;
 
 fn fold(groups: u32) -> Dispatch {
     return Dispatch(min(groups, 65535u), (groups + 65534u) / 65535u, 1u);
@@ -21,10 +25,13 @@ fn fold(groups: u32) -> Dispatch {
 
 @compute @workgroup_size(1)
 fn args_write() {
-    args.clip = fold((min(atomicLoad(&counters.clip), frame.clip_capacity) + 63u) / 64u);
-    args.medium = fold(min(atomicLoad(&counters.medium), frame.medium_capacity));
-    args.large = fold(min(atomicLoad(&counters.large), frame.large_capacity));
-    args.tiles = fold(min(atomicLoad(&counters.tiles), frame.tile_capacity));
+    args.clip = fold((min(atomicLoad(&counters.clip), frame.clip_capacity) - atomicLoad(&counters.clip_done) + 63u) / 64u);
+    args.medium = fold(min(atomicLoad(&counters.medium), frame.medium_capacity) - atomicLoad(&counters.medium_done));
+    args.large = fold(min(atomicLoad(&counters.large), frame.large_capacity) - atomicLoad(&counters.large_done));
+    args.tiles = fold(min(atomicLoad(&counters.tiles), frame.tile_capacity) - atomicLoad(&counters.tiles_done));
     args.pieces = fold((min(atomicLoad(&counters.pieces), frame.piece_capacity) + LIST_GROUP - 1u) / LIST_GROUP);
     args.resolve = fold(atomicLoad(&counters.marked_tiles));
+    let meshlets = atomicLoad(&counters.survivors) - atomicLoad(&counters.survivors_done);
+    // As many to a workgroup as fit, and one at least.
+    args.meshlets = fold((meshlets + LIST_GROUP / MESHLET_TRIANGLES - 1u) / (LIST_GROUP / MESHLET_TRIANGLES));
 }

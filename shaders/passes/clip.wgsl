@@ -4,6 +4,7 @@
 //@ use common/triangle
 //@ use slot/projection
 //@ use slot/queues
+//@ use common/rounds
 //@ use common/fixed
 
 struct Piece {
@@ -109,7 +110,7 @@ fn emit(polygon: Polygon, t: Triangle) {
 
 @compute @workgroup_size(64)
 fn clip(@builtin(workgroup_id) group: vec3u, @builtin(num_workgroups) groups: vec3u, @builtin(local_invocation_index) lane: u32) {
-    let slot = frame_invocation(group, groups, lane, 64u);
+    let slot = rounds_clip_done() + frame_invocation(group, groups, lane, 64u);
     if slot >= min(atomicLoad(&counters.clip), frame.clip_capacity) { return; }
     let t = triangle_load(queues[slot]);
     let at = triangle_vertices(t.draw, t.id - draws[t.draw].first_triangle);

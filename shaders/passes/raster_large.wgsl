@@ -1,6 +1,7 @@
 // Raster large: one workgroup per 64x64 tile of a large triangle, in sixteen blocks of 16x16 pixels.
 //@ use slot/pieces
 //@ use slot/queues
+//@ use common/rounds
 //@ use common/fixed
 //@ use common/reach
 //@ use slot/blocks
@@ -14,7 +15,7 @@ var<workgroup> blocks: array<BlockEdge, 48>;
 
 @compute @workgroup_size(64)
 fn raster_large(@builtin(workgroup_id) group: vec3u, @builtin(num_workgroups) groups: vec3u, @builtin(local_invocation_index) lane: u32) {
-    let slot = group.y * groups.x + group.x;
+    let slot = rounds_tiles_done() + group.y * groups.x + group.x;
     let count = min(atomicLoad(&counters.tiles), frame.tile_capacity);
     let is_live = slot < count;
     let place = frame.tile_first + 2u * select(0u, slot, is_live);

@@ -2,6 +2,7 @@
 //@ use slot/pieces
 //@ use common/fixed
 //@ use slot/queues
+//@ use common/rounds
 //@ use slot/coverage
 //@ use common/gate
 //@ use slot/visibility
@@ -9,7 +10,7 @@
 
 @compute @workgroup_size(64)
 fn raster_medium(@builtin(workgroup_id) group: vec3u, @builtin(num_workgroups) groups: vec3u, @builtin(local_invocation_index) lane: u32) {
-    let slot = group.y * groups.x + group.x;
+    let slot = rounds_medium_done() + group.y * groups.x + group.x;
     if slot >= min(atomicLoad(&counters.medium), frame.medium_capacity) { return; }
     let t = pieces_load(queues[frame.medium_first + slot]);
     let low = min(min(vertex_at(t.a), vertex_at(t.b)), vertex_at(t.c));

@@ -4,6 +4,7 @@
 //@ use common/fixed
 //@ use common/reject
 //@ use slot/queues
+//@ use slot/share
 //@ use slot/walk
 
 // Most candidate samples, and most pixels per side, that one invocation walks; chosen by the adapter's caps.
@@ -19,8 +20,9 @@ override DROPPED_FLAGS: u32 = 0u;
 @compute @workgroup_size(LIST_GROUP)
 fn raster_small(@builtin(workgroup_id) group: vec3u, @builtin(num_workgroups) groups: vec3u, @builtin(local_invocation_index) lane: u32) {
     // Loads come before the first branch: what all lanes load alike is then loaded once, even where branches are masks.
-    let id = frame_invocation(group, groups, lane, LIST_GROUP);
-    let t = triangle_load(min(id, frame.triangle_count - 1u));
+    let share = share_of(frame_invocation(group, groups, lane, LIST_GROUP));
+    let id = share.id;
+    let t = triangle_of(share.draw, share.loaded);
     let draw_flags = draws[t.draw].flags;
     if id >= frame.triangle_count { return; }
     let any_flag = (t.a.x | t.b.x | t.c.x) & 255u;

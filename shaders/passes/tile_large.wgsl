@@ -1,6 +1,7 @@
 // Tile large: one workgroup per large triangle finds the 64x64 tiles of the picture that it may touch.
 //@ use slot/pieces
 //@ use slot/queues
+//@ use common/rounds
 //@ use common/fixed
 //@ use common/reach
 //@ use slot/marks
@@ -14,7 +15,7 @@ fn tile_is_outside(a: vec2i, b: vec2i, pixels: vec4i) -> bool {
 
 @compute @workgroup_size(64)
 fn tile_large(@builtin(workgroup_id) group: vec3u, @builtin(num_workgroups) groups: vec3u, @builtin(local_invocation_index) lane: u32) {
-    let slot = group.y * groups.x + group.x;
+    let slot = rounds_large_done() + group.y * groups.x + group.x;
     if slot >= min(atomicLoad(&counters.large), frame.large_capacity) { return; }
     let entry = queues[frame.large_first + slot];
     let t = pieces_load(entry);

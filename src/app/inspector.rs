@@ -260,6 +260,10 @@ impl App {
             for (name, ms) in &report.passes {
                 line(name, &format!("{ms:.3} ms"), false);
             }
+            if let Some(culled) = report.culled {
+                line("meshlets drawn", &culled.drawn.to_string(), false);
+                line("left out", &culled.reasons(), false);
+            }
             let c = &report.counters;
             for (name, count) in [
                 ("non-finite", c.rejected_nonfinite),

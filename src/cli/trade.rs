@@ -51,7 +51,7 @@ pub fn run(common: &Common, args: &Bench, streams: &mut Streams) -> Result<Exit,
     let results = || rows.iter().map(serde_json::to_value).collect::<Result<Vec<Value>, _>>().map_err(Fault::usage);
     let table = if args.each { prices(&rows) } else { lines(&rows) };
     present(args, streams, &painter, &table, results)?;
-    rows.iter().filter(|row| row.error.is_none()).for_each(|row| {
+    rows.iter().filter(|row| row.error.is_none() || row.culled.is_some()).for_each(|row| {
         streams.note(&format!("{} {}: {}", row.scene, row.rungs, row.note.as_deref().unwrap_or("not drawn")));
     });
     Ok(Exit::Done)

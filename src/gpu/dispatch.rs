@@ -12,12 +12,17 @@ pub enum Dispatch {
     Indirect(u64),
 }
 
-/// Workgroups of `pass` over so many projected vertices, triangles, and vertices that may bend, in a picture of `view` that is
-/// shown at another size.
-pub fn dispatch(pass: Pass, [vertices, triangles, bent]: [u32; 3], view: &View, shown: [u32; 2], key: &KernelKey) -> Dispatch {
+/// Workgroups of `pass` over so many projected vertices, triangles, vertices that may bend, and meshlets of all instances, in a
+/// picture of `view` that is shown at another size.
+pub fn dispatch(pass: Pass, [vertices, triangles, bent, meshlets]: [u32; 4], view: &View, shown: [u32; 2], key: &KernelKey) -> Dispatch {
     match pass {
         Pass::Skin => Dispatch::Direct(folded(bent.div_ceil(key.list_group))),
         Pass::Project => Dispatch::Direct(folded(vertices.div_ceil(key.list_group))),
+        Pass::Cull(_) => Dispatch::Direct(folded(meshlets.div_ceil(key.list_group))),
+        Pass::Farthest => Dispatch::Direct([view.width.div_ceil(64), view.height.div_ceil(64)]),
+        Pass::Rounds { .. } => Dispatch::Direct([1, 1]),
+        Pass::ProjectMeshlets => Dispatch::Indirect(72),
+        Pass::RasterSmall(_) if key.culls() => Dispatch::Indirect(72),
         Pass::RasterSmall(_) | Pass::RasterPoints(_) => Dispatch::Direct(folded(triangles.div_ceil(key.list_group))),
         Pass::Decide(Entries::Triangles) => Dispatch::Direct(folded(triangles.div_ceil(key.list_group))),
         Pass::Decide(Entries::Pieces) => Dispatch::Indirect(60),

@@ -3,7 +3,7 @@
 use super::{BufferNote, Note, Renderer};
 use crate::{
     plan::{Tolerance, predict::Prediction},
-    shader::key::{Entries, Pass, Phase},
+    shader::key::{Entries, Pass, Phase, Round},
 };
 
 /// Which passes and buffers exist for the last picture, and why.
@@ -50,6 +50,14 @@ fn pass_purpose(pass: Pass) -> &'static str {
     match pass {
         Pass::Skin => "mixes shapes and follows joints, once per vertex of every mesh that bends",
         Pass::Project => "pulls, transforms and snaps every vertex once",
+        Pass::Cull(Round::Only) => "leaves out meshlets outside the picture and those that face away, lists the others",
+        Pass::Cull(Round::Before) => "leaves out those too that the picture before hides",
+        Pass::Cull(Round::Seen) => "lists the meshlets that were seen in the picture before",
+        Pass::Cull(Round::Behind) => "lists those of the others that the first round does not hide",
+        Pass::ProjectMeshlets => "pulls, transforms and snaps the vertices of the meshlets that are left",
+        Pass::Farthest => "finds the farthest depth of every tile, behind which meshlets hide",
+        Pass::Rounds { is_over: false } => "ends the first round: what follows takes up what is listed from here on",
+        Pass::Rounds { is_over: true } => "opens the lists of both rounds again",
         Pass::RasterSmall(Phase::Tally) => "culls and classifies every triangle, counts the samples of the small ones",
         Pass::RasterSmall(Phase::Straddle) => "marks the samples of the triangle in which the drawing stops",
         Pass::RasterSmall(Phase::Owner) => "visits the small triangles again for the owner of each nearest key",

@@ -3,6 +3,7 @@
 pub mod bench;
 pub mod bends;
 pub mod buffers;
+pub mod culling;
 pub mod device;
 mod dispatch;
 pub mod error;
@@ -29,6 +30,7 @@ pub use readback::Capture;
 use self::{
     bends::BENT_BYTES,
     buffers::Buffers,
+    culling::Patches,
     dispatch::{Dispatch, dispatch},
     packing::Packing,
     pipelines::Pipelines,
@@ -40,7 +42,7 @@ use self::{
 pub use crate::plan::Note;
 use crate::{
     effects::{Stack, hooks::Layers, xray},
-    frame::{Counters, OrderFigures},
+    frame::{Counters, CullingFigures, OrderFigures},
     ladder::Scale,
     plan::{Accuracy, Plan, Tuning},
     scene::{Scene, camera::View},
@@ -59,6 +61,8 @@ pub struct Report {
     pub counters: Counters,
     /// What a draw order let through, where one is kept.
     pub order: Option<OrderFigures>,
+    /// What culling left out, where there is some.
+    pub culled: Option<CullingFigures>,
     /// A queue overflowed and has grown: the picture is incomplete, draw it again.
     pub redraw: bool,
 }
@@ -88,6 +92,14 @@ pub struct Renderer {
     shown: [u32; 2],
     /// Which vertices, of all that may bend, the last picture bent.
     bent: Vec<std::ops::Range<u32>>,
+    /// Meshlets of the scene, once a picture asks for them.
+    patches: Option<Patches>,
+    /// Size and stack of the picture whose depths and meshlets the next one may start from; none: nothing of use.
+    occluders: Option<([u32; 2], Stack)>,
+    /// What culling left out of the last finished picture.
+    culled: Option<CullingFigures>,
+    /// A picture is drawn once more for the judge, after which the next one goes on as if it had not been.
+    is_judged: bool,
 }
 
 const STORAGE: wgpu::BufferUsages = wgpu::BufferUsages::STORAGE;
@@ -118,6 +130,10 @@ impl Renderer {
             packed: None,
             shown: [0; 2],
             bent: Vec::new(),
+            patches: None,
+            occluders: None,
+            culled: None,
+            is_judged: false,
         }
     }
 
@@ -146,6 +162,11 @@ impl Renderer {
         self.last.as_ref().map(|plan| &plan.key)
     }
 
+    /// What culling left out of the last finished picture; none where everything is drawn.
+    pub fn culled(&self) -> Option<CullingFigures> {
+        self.culled
+    }
+
     /// Pipelines compiled so far; a switch back to a known key adds none.
     pub fn compiled(&self) -> usize {
         self.pipelines.compiled()
@@ -164,7 +185,10 @@ impl Renderer {
                 return Err(RenderError::TooLarge { buffer, bytes, limit });
             }
         }
-        self.buffers.keep(|name| !matches!(name, "vertex_bytes" | "index_bytes" | "vertices"));
+        self.buffers
+            .keep(|name| !matches!(name, "vertex_bytes" | "index_bytes" | "vertices" | "meshlets" | "meshlet_lists" | "seen" | "hiz"));
+        self.patches = None;
+        self.occluders = None;
         self.hold_attributes(scene, None)?;
         if !scene.index_bytes.is_empty() {
             self.buffers.fill(
@@ -221,6 +245,7 @@ impl Renderer {
             self.fill_background(&mut encoder, view);
         }
         self.keep_previous(&mut encoder, &plan.key, view, stack);
+        self.keep_occluders(&mut encoder, &plan.key, view, stack);
         self.record(&mut encoder, &plan.key, &passes, view)?;
         self.present(&mut encoder);
         let order = self.buffers.has("order").then(|| self.buffers.get("order"));
@@ -275,12 +300,29 @@ impl Renderer {
         redraw |= counters.full_pixels > 0 && self.pending.is_empty() && self.take_fewer_bits();
         let key = &self.last.as_ref()?.key;
         let order = (key.order != Order::Free).then(|| order.figures(key.order == Order::Scheduler, record.tickets));
-        Some(Report { gpu_ms: times.total_ms, passes: times.passes, counters, order, redraw })
+        let culled = key.culls().then(|| record.culled());
+        if !self.is_judged {
+            self.culled = culled;
+        }
+        Some(Report { gpu_ms: times.total_ms, passes: times.passes, counters, order, culled, redraw })
     }
 
     /// Begins anew: the next picture stands after nothing but background.
     pub fn forget(&mut self) {
         self.past = None;
+        self.occluders = None;
+    }
+
+    /// Empties what culling remembers of the picture before, unless that was one like this.
+    fn keep_occluders(&mut self, encoder: &mut wgpu::CommandEncoder, key: &KernelKey, view: &View, stack: &Stack) {
+        if self.is_judged {
+            return;
+        }
+        let now = ([view.width, view.height], stack.clone());
+        if self.occluders.as_ref() != Some(&now) {
+            self.clear(encoder, &["seen", "hiz"]);
+        }
+        self.occluders = key.rungs.culling.occludes().then_some(now);
     }
 
     /// Makes the colour buffer hold the picture before this one where an effect reads it, and a copy that outlives the
@@ -338,13 +380,14 @@ impl Renderer {
         let scene = self.scene.as_ref().ok_or(RenderError::NoScene)?;
         let (vertices, triangles) = (record_count(key, scene) as u32, scene.triangle_count() as u32);
         let bent = self.bent.last().map_or(0, |range| range.end);
+        let meshlets = self.patches.as_ref().map_or(0, |patches| patches.count);
         for (i, &pass) in passes.iter().enumerate() {
             let pipeline = self.pipelines.get(&self.gpu, key, pass)?;
             let is_last = i + 1 == passes.len();
             let timestamp_writes = self.timer.as_mut().and_then(|timer| timer.compute(&pipeline.label, is_last));
             let mut recorded = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor { label: Some(&pipeline.label), timestamp_writes });
             pipeline.bind(&self.gpu, &mut recorded, |name| self.buffers.get(name));
-            match dispatch(pass, [vertices, triangles, bent], view, self.shown, key) {
+            match dispatch(pass, [vertices, triangles, bent, meshlets], view, self.shown, key) {
                 Dispatch::Direct([x, y]) => recorded.dispatch_workgroups(x, y, 1),
                 Dispatch::Indirect(offset) => recorded.dispatch_workgroups_indirect(self.buffers.get("args"), offset),
             }

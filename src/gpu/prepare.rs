@@ -3,12 +3,13 @@
 use super::{
     RenderError, Renderer, STORAGE,
     bends::{BENT_BYTES, Bends, bent_ranges},
+    culling::Patches,
     packing::{Packing, bytes_of},
-    uniforms::{Capacities, DrawRecord, FrameUniform, OrderRecord, ScalingUniform, color_stride},
+    uniforms::{Capacities, CounterRecord, DrawRecord, FrameUniform, OrderRecord, ScalingUniform, color_stride},
 };
 use crate::{
     effects::{Stack, hooks::Layers},
-    ladder::{Vertices, Visibility},
+    ladder::{Culling, Vertices, Visibility},
     math::{SUBPIXEL_BITS, srgb_byte},
     plan::{Accuracy, Plan, plan},
     scene::{
@@ -87,9 +88,13 @@ impl Renderer {
         let parameters = uniform_bytes(&stack.0);
         let has_uniform = !parameters.is_empty() && key.baked.is_empty();
         self.bent = bent_ranges(&scene, &draws);
+        let is_judged = self.is_judged;
         buffers.keep(|name| match name {
             "queues" => key.has_queues(),
-            "args" => key.has_queues() || key.listed_tiles,
+            "args" => key.has_queues() || key.listed_tiles || key.culls(),
+            "culling" | "instances" | "meshlets" | "meshlet_lists" => key.culls() || is_judged,
+            "seen" => key.rungs.culling == Culling::TwoPass || is_judged,
+            "hiz" => key.rungs.culling.occludes() || is_judged,
             "marks" => key.listed_tiles,
             "background" => key.listed_tiles || key.reads_previous(),
             "previous" => key.reads_previous(),
@@ -145,7 +150,7 @@ impl Renderer {
         if key.order == Order::Submission {
             buffers.ensure(gpu, "hits", (view.pixels() as u64).div_ceil(32) * 4, STORAGE, "samples of one triangle, a bit per pixel")?;
         }
-        buffers.ensure(gpu, "counters", 64, STORAGE, "queue demand and what was not drawn")?;
+        buffers.ensure(gpu, "counters", size_of::<CounterRecord>() as u64, STORAGE, "queue demand and what was not drawn")?;
         if key.has_queues() {
             buffers.ensure(
                 gpu,
@@ -155,8 +160,12 @@ impl Renderer {
                 "triangles waiting for clip, medium, large and tile kernels",
             )?;
         }
-        if key.has_queues() || key.listed_tiles {
-            buffers.ensure(gpu, "args", 72, STORAGE | wgpu::BufferUsages::INDIRECT, "dispatch sizes written on the GPU")?;
+        if key.culls() {
+            let patches = self.patches.get_or_insert_with(|| Patches::of(&scene));
+            buffers.fill_culling(gpu, patches, key.rungs.culling, (&scene, &draws, view))?;
+        }
+        if key.has_queues() || key.listed_tiles || key.culls() {
+            buffers.ensure(gpu, "args", 84, STORAGE | wgpu::BufferUsages::INDIRECT, "dispatch sizes written on the GPU")?;
         }
         if key.has_clipping {
             buffers.ensure(gpu, "pieces", 64 * u64::from(recorded.pieces), STORAGE, "what clipping leaves of a triangle")?;

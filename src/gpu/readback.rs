@@ -16,7 +16,7 @@ use super::{
 use crate::{
     effects::{Stack, hooks::Layers},
     frame::{Counters, Exactness, Frame, Geometry, Piece, SnappedVertex},
-    ladder::{Depth, Sums, Vertex, Vertices},
+    ladder::{Culling, Depth, Sums, Vertex, Vertices},
     plan::Accuracy,
     scene::camera::View,
     shader::key::{KernelKey, Layout, Phase},
@@ -29,7 +29,7 @@ pub struct Pending {
     ready: Arc<AtomicBool>,
 }
 
-const COUNTER_BYTES: u64 = 64;
+const COUNTER_BYTES: u64 = size_of::<Demand>() as u64;
 const ORDER_BYTES: u64 = size_of::<OrderRecord>() as u64;
 const FIGURE_BYTES: u64 = COUNTER_BYTES + ORDER_BYTES;
 
@@ -130,17 +130,18 @@ impl Renderer {
         }
         let key = self.last.as_ref().ok_or(RenderError::NoScene)?.key.clone();
         let shown = [view.width, view.height];
-        let view = &view.scaled(key.rungs.scale.factor());
+        let (asked, view) = (view, &view.scaled(key.rungs.scale.factor()));
         let (owner, depth) = self.read_visibility(&key, view)?;
         let color = self.read_color(view)?;
-        let geometry = self.read_geometry(&key)?;
         let counted = self.read_counted(&key, view)?;
         let previous = if key.reads_previous() {
             Some(buffers::read_picture(&self.gpu, self.buffers.get("previous"), [view.width, view.height])?)
         } else {
             None
         };
-        let layers = if key.layers == Some(Layers::Overdraw) { counted.clone() } else { self.count_layers(&key, view)? };
+        let (key, counters) = if key.culls() { self.draw_unculled(asked, stack, accuracy, counters)? } else { (key, counters) };
+        let geometry = self.read_geometry(&key)?;
+        let layers = if key.layers == Some(Layers::Overdraw) { self.read_counted(&key, view)? } else { self.count_layers(&key, view)? };
         let keys_are_rough = !key.rungs.visibility.is_exact() || !matches!(key.rungs.depth, Depth::Reversed | Depth::Integer);
         let frame = Frame { width: view.width, height: view.height, owner, key: depth, color, counted, counters, keys_are_rough };
         let shown = match key.is_scaled() {
@@ -148,6 +149,24 @@ impl Renderer {
             false => None,
         };
         Ok(Capture { frame, geometry, layers: Some(layers), previous, shown })
+    }
+
+    /// Draws a culled picture once more for the judge, who wants the vertices, pieces and layers of all triangles and the
+    /// counts of those that were refused. Neither what is known of the picture nor what the next one starts from changes.
+    fn draw_unculled(
+        &mut self,
+        view: &View,
+        stack: &Stack,
+        accuracy: &Accuracy,
+        drawn: Counters,
+    ) -> Result<(KernelKey, Counters), RenderError> {
+        let last = self.last.take();
+        self.is_judged = true;
+        let whole = self.draw_whole(view, stack, &Accuracy { pins: accuracy.pins.with(Culling::None), ..*accuracy });
+        self.is_judged = false;
+        let unculled = std::mem::replace(&mut self.last, last).ok_or(RenderError::NoScene)?;
+        let Counters { overflow, orphans, full_pixels, .. } = drawn;
+        Ok((unculled.key, Counters { overflow, orphans, full_pixels, ..whole? }))
     }
 
     /// Draws until no queue overflows and no sum of layers.

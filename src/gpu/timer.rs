@@ -3,7 +3,7 @@
 use super::Gpu;
 
 /// Most spans in one frame.
-const MAX_SPANS: u32 = 24;
+const MAX_SPANS: u32 = 64;
 
 /// Milliseconds of a finished frame; spans whose stamps were not written, or run backwards, are left out.
 #[derive(Clone, Debug, Default, PartialEq)]

@@ -1,10 +1,10 @@
 //! The trade: milliseconds beside error for every combination of rungs on chosen axes, interleaved in one run on one adapter.
 
-use std::sync::Arc;
+use std::{collections::HashSet, sync::Arc};
 
 use super::{Capture, Gpu, RenderError, Renderer, bench::Judge, timer::Detail};
 use crate::{
-    frame::{Frame, Geometry, NO_OWNER, SnappedVertex},
+    frame::{CullingFigures, Frame, Geometry, NO_OWNER, SnappedVertex},
     ladder::{AXES, Axis, Pins, Rung, Scale},
     measure::{Truths, Verdict, compare, timing},
     plan::Accuracy,
@@ -74,7 +74,9 @@ pub struct TradeRow {
     pub bytes: u64,
     /// Another row is at least as right and at least as quick.
     pub is_beaten: bool,
-    /// Why it could not be drawn, or what beats it.
+    /// Meshlets that culling left and left out in the last picture.
+    pub culled: Option<CullingFigures>,
+    /// Why it could not be drawn, what beats it, or what it spared.
     pub note: Option<String>,
 }
 
@@ -99,6 +101,8 @@ struct Entry {
     view: View,
     renderer: Renderer,
     error: TradeError,
+    /// Triangles that own a pixel.
+    owners: usize,
     bytes: u64,
     ms: Vec<f64>,
     invalid: usize,
@@ -162,6 +166,7 @@ pub fn trade(
         error: None,
         bytes: 0,
         is_beaten: false,
+        culled: None,
         note: None,
     };
     let mut rows: Vec<TradeRow> = entries.into_iter().map(|entry| entry.finish(&row)).collect();
@@ -208,7 +213,8 @@ impl Entry {
         let second = renderer.capture(&view, &session.stack, &accuracy)?;
         let bytes = renderer.explain().buffers.iter().map(|buffer| buffer.bytes).sum();
         let error = TradeError::of(&first, &second.frame, &(truth.judge)(&session.stack, &first), truth);
-        Ok(Self { pins, view, renderer, error, bytes, ms: Vec::new(), invalid: 0 })
+        let owners = first.frame.owner.iter().filter(|owner| **owner != NO_OWNER).collect::<HashSet<_>>().len();
+        Ok(Self { pins, view, renderer, error, owners, bytes, ms: Vec::new(), invalid: 0 })
     }
 
     /// Draws twice without a pause and waits for the second: an idle device lowers its clocks, and others' frames empty its caches.
@@ -224,6 +230,12 @@ impl Entry {
         Ok(())
     }
 
+    /// What culling spared, and the work that it left in vain.
+    fn wasted(&self, culled: &CullingFigures) -> String {
+        let (drawn, all, seen) = (culled.drawn, culled.all(), self.owners);
+        format!("{drawn} of {all} meshlets drawn ({}); {seen} triangles own a pixel", culled.reasons())
+    }
+
     fn finish(self, row: &dyn Fn(Pins) -> TradeRow) -> TradeRow {
         TradeRow {
             ms_p50: timing::percentile(&self.ms, 0.5),
@@ -233,6 +245,8 @@ impl Entry {
             outliers: timing::outliers(&self.ms),
             error: Some(self.error),
             bytes: self.bytes,
+            culled: self.renderer.culled(),
+            note: self.renderer.culled().map(|culled| self.wasted(&culled)),
             ..row(self.pins)
         }
     }
@@ -319,7 +333,8 @@ fn mark_beaten(rows: &mut [TradeRow]) {
         .collect();
     for (row, better) in rows.iter_mut().zip(beaten) {
         row.is_beaten = better.is_some();
-        row.note = better.map(|better| format!("no gain: {better} is as right and not slower"));
+        let beaten = better.map(|better| format!("no gain: {better} is as right and not slower"));
+        row.note = [row.note.take(), beaten].into_iter().flatten().reduce(|a, b| format!("{a}; {b}"));
     }
 }
 
@@ -354,6 +369,7 @@ mod tests {
             error: Some(TradeError { wrong_ppm, ..TradeError::default() }),
             bytes: 0,
             is_beaten: false,
+            culled: None,
             note: None,
         };
         let mut rows = [row(1.0, 5.0), row(2.0, 1.0), row(3.0, 1.0), row(3.0, 0.0)];

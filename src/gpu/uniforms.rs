@@ -7,7 +7,7 @@ use super::{
     packing::PackedBox,
 };
 use crate::{
-    frame::{Counters, OrderFigures},
+    frame::{Counters, CullingFigures, OrderFigures},
     math::{rounded_columns, srgb_byte},
     scene::{Accessor, Scene, camera::View, draw::Draw},
 };
@@ -114,6 +114,18 @@ twin! {
         pub bins: u32,
         pub full_pixels: u32,
         pub dropped: u32,
+        pub survivors: u32,
+        pub outside: u32,
+        pub turned: u32,
+        pub hidden: u32,
+        pub survivors_done: u32,
+        pub clip_done: u32,
+        pub medium_done: u32,
+        pub large_done: u32,
+        pub tiles_done: u32,
+        pub spare_0: u32,
+        pub spare_1: u32,
+        pub spare_2: u32,
     }
 }
 
@@ -311,6 +323,12 @@ fn normal_from_object(draw: &Draw) -> [[f32; 4]; 4] {
 }
 
 impl CounterRecord {
+    /// What culling left and left out.
+    pub fn culled(&self) -> CullingFigures {
+        let Self { survivors: drawn, outside, turned, hidden, .. } = *self;
+        CullingFigures { drawn, outside, turned, hidden }
+    }
+
     /// As the rest of the program counts; `overflow` is demand beyond `capacities`.
     pub fn counters(&self, capacities: &Capacities) -> Counters {
         let beyond = [

@@ -40,6 +40,10 @@ pub(super) fn explain(needs: &Needs, is_usual: bool, caps: &Caps, key: &KernelKe
             ),
         ),
     ]);
+    if key.culls() && key.bends() {
+        reasons
+            .push(note("culling of what bends", "its meshlets have no bounds of their own: they are left out with their whole instance"));
+    }
     if key.moves() {
         let why = if key.parts_corners() { "triangles part, three projected records each" } else { "triangles keep sharing vertices" };
         let movers: Vec<_> = key.effects.iter().filter(|effect| effect.hooks.vertex.is_some()).map(|effect| effect.name).collect();
@@ -53,6 +57,7 @@ pub(super) fn explain(needs: &Needs, is_usual: bool, caps: &Caps, key: &KernelKe
         ("skin", key.bends(), "no mesh has joints or morph weights".to_owned()),
         ("vertex effects", key.moves(), "no effect of the stack moves a vertex".to_owned()),
         ("corners of their own", key.parts_corners(), "no effect parts triangles, so neighbours share projected vertices".into()),
+        ("culling", key.culls(), "no rung asks for it, so every triangle finds out by itself".into()),
         ("clip", key.has_clipping, "the scene's box lies behind the near plane and inside the guard band".to_owned()),
         ("raster_medium", key.has_medium, bound.clone()),
         ("tile_large, raster_large", key.has_large, bound),

@@ -2,7 +2,7 @@
 //! not; what was measured is held against them and a wrong prediction is shown.
 
 use crate::{
-    ladder::{AXES, Clipping, Coverage, Depth, Perspective, Rung, Rungs, Scale, Sums, Vertex, Vertices, Visibility},
+    ladder::{AXES, Clipping, Coverage, Culling, Depth, Perspective, Rung, Rungs, Scale, Sums, Vertex, Vertices, Visibility},
     scene::needs::Needs,
 };
 
@@ -37,6 +37,8 @@ pub fn predict(axis: usize, place: usize, needs: &Needs) -> Prediction {
         Perspective::AXIS => perspective(Perspective::at(place), needs),
         Clipping::AXIS => clipping(Clipping::at(place), needs),
         Scale::AXIS => scale(Scale::at(place)),
+        // What comes out from behind something is missing for a picture, however much that is.
+        Culling::AXIS if Culling::at(place) == Culling::Hiz => Prediction::wrong(f64::INFINITY),
         Sums::AXIS => sums(Sums::at(place), needs),
         Visibility::AXIS => visibility(Visibility::at(place), needs),
         _ => Prediction::default(),

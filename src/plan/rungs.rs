@@ -8,11 +8,11 @@ use super::{
 use crate::{
     effects::{
         Effect, Enabled, Stack,
-        hooks::Layers,
+        hooks::{Layers, Shape},
         points, read,
         xray::{Reach, Xray},
     },
-    ladder::{AXES, Coverage, Depth, Rung, Rungs, Skinning, Sums, Vertex, Vertices, Visibility},
+    ladder::{AXES, Coverage, Culling, Depth, Rung, Rungs, Skinning, Sums, Vertex, Vertices, Visibility},
     math::SUBPIXEL_BITS,
     scene::needs::Needs,
 };
@@ -47,9 +47,18 @@ pub(super) fn choose(
     if layers == Some(Layers::Race) {
         rungs.visibility = Visibility::Race;
     }
+    let asked = rungs.culling;
+    let unfit = unfit_for_culling(asked, rungs.visibility, stack, layers);
+    if let Some((rung, _)) = unfit {
+        rungs.culling = rung;
+    }
     let mut reasons = Vec::new();
     let (mut prediction, tolerance) = (predict_all(&rungs, needs), accuracy.tolerance());
     for (i, axis) in AXES.iter().enumerate() {
+        if let Some((rung, why)) = unfit.filter(|_| i == Culling::AXIS) {
+            reasons.push(note(axis.name, format!("{} instead of {}: {why}", rung.name(), asked.name())));
+            continue;
+        }
         if accuracy.pins.get(axis).is_some() {
             reasons.push(note(axis.name, format!("{}: pinned by the look", axis.words[rungs.get(axis)])));
             continue;
@@ -91,6 +100,22 @@ pub(super) fn choose(
     }
     check(&rungs, needs, f32_positions, stack, caps)?;
     Ok(Choice { rungs, reasons, prediction })
+}
+
+/// What culling must come down to in a picture, and why, where it cannot be as it was asked for. Since it never shows, a look
+/// that pins it goes on without it.
+fn unfit_for_culling(asked: Culling, visibility: Visibility, stack: &Stack, layers: Option<Layers>) -> Option<(Culling, &'static str)> {
+    let (most, why) = match (layers, visibility) {
+        _ if stack.moves() => (Culling::None, "effects move meshes out of their bounds"),
+        _ if stack.shape() == Shape::Points => (Culling::None, "discs reach out of the bounds of their meshes"),
+        _ if stack.draw_order().is_some() => (Culling::None, "a draw order counts the samples of every triangle"),
+        (Some(Layers::Race), _) | (_, Visibility::Race) => (Culling::None, "a race shows what happens to every triangle"),
+        (Some(Layers::Xray { .. } | Layers::Overdraw), _) => (Culling::Frustum, "layers that are hidden count too"),
+        (_, Visibility::Packed32) => (Culling::Frustum, "packed32 keeps too little of a depth to hide anything behind it"),
+        (_, Visibility::Tiled) => (Culling::Frustum, "tiles are drawn once, whole"),
+        _ => return None,
+    };
+    (asked > most).then_some((most, why))
 }
 
 /// A sentence as it goes on behind a colon.

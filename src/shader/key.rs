@@ -9,10 +9,11 @@ use crate::{
         hooks::{Layers, Shape},
     },
     frame::{NO_OWNER, vertex_flags},
-    ladder::{Clipping, Coverage, Depth, Perspective, Rungs, Scale, Vertex, Vertices, Visibility},
+    ladder::{Clipping, Coverage, Culling, Depth, Perspective, Rungs, Scale, Vertex, Vertices, Visibility},
+    scene::meshlets::MESHLET_TRIANGLES,
 };
 
-pub use super::pass::{Entries, Pass, Phase};
+pub use super::pass::{Entries, Pass, Phase, Round};
 
 /// How corners find their vertices.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -248,60 +249,6 @@ impl KernelKey {
         [self.lead(), nearest, layers].concat()
     }
 
-    /// Every pass of one picture, in the order in which they are recorded.
-    pub fn frame(&self) -> Vec<Pass> {
-        let mut passes = self.passes(&self.phases());
-        if self.listed_tiles {
-            passes.extend([Pass::ListTiles, Pass::Args]);
-        }
-        passes.push(Pass::Resolve);
-        if self.is_scaled() {
-            passes.push(Pass::Scale);
-        }
-        passes
-    }
-
-    /// Passes up to the last of the given raster phases.
-    pub fn passes(&self, phases: &[Phase]) -> Vec<Pass> {
-        let mut passes = if self.bends() { vec![Pass::Skin, Pass::Project] } else { vec![Pass::Project] };
-        if self.decisions > 0 {
-            passes.push(Pass::Decide(Entries::Triangles));
-        }
-        let has_walks = phases.iter().any(|phase| !phase.is_tiled());
-        for (i, &phase) in phases.iter().enumerate() {
-            if phase == Phase::Tiles {
-                passes.push(Pass::RasterTiles);
-                continue;
-            }
-            passes.push(if self.shape == Shape::Points { Pass::RasterPoints(phase) } else { Pass::RasterSmall(phase) });
-            if i == 0 && self.has_clipping {
-                passes.extend([Pass::Args, Pass::Clip]);
-            }
-            if i == 0 && self.has_queues() {
-                passes.push(Pass::Args);
-            }
-            if i == 0 && self.has_clipping && self.decisions > 0 {
-                passes.push(Pass::Decide(Entries::Pieces));
-            }
-            if i == 0 && self.has_large && has_walks {
-                passes.extend([Pass::TileLarge, Pass::Args]);
-            }
-            if self.has_medium {
-                passes.push(if phase.is_bin() { Pass::BinMedium(phase) } else { Pass::RasterMedium(phase) });
-            }
-            if self.has_large {
-                passes.push(if phase.is_bin() { Pass::BinLarge(phase) } else { Pass::RasterLarge(phase) });
-            }
-            match phase {
-                Phase::Tally => passes.extend([Pass::OrderSums, Pass::OrderLimit, Pass::OrderRanks]),
-                Phase::Straddle => passes.push(Pass::OrderCut),
-                Phase::BinCount => passes.push(Pass::BinScan),
-                _ => {}
-            }
-        }
-        passes
-    }
-
     /// Does this pass come upon every triangle first, and so fill the queues and count?
     fn is_first(&self, pass: Pass) -> bool {
         match self.lead().first() {
@@ -340,6 +287,10 @@ impl KernelKey {
             ("SUBPIXEL_BITS", self.rungs.coverage.subpixel_bits().into()),
             ("DROPPED_FLAGS", self.dropped_flags().into()),
             ("IS_STRAIGHT", flag(self.listed_tiles)),
+            ("HAS_ROUNDS", flag(self.rungs.culling == Culling::TwoPass)),
+            ("IS_COUNTING", flag(pass != Pass::Cull(Round::Seen))),
+            ("IS_OVER", flag(pass == Pass::Rounds { is_over: true })),
+            ("MESHLET_TRIANGLES", MESHLET_TRIANGLES as f64),
             ("IS_PIECES", flag(pass == Pass::Decide(Entries::Pieces))),
             ("DECISIONS", self.decisions.into()),
             ("SHAPE", (self.shape as u32).into()),

@@ -5,6 +5,16 @@
 pub enum Pass {
     Skin,
     Project,
+    /// Which meshlets are drawn.
+    Cull(Round),
+    /// The vertices of those alone.
+    ProjectMeshlets,
+    /// The farthest depth of every tile, behind which meshlets hide.
+    Farthest,
+    /// The end of the first round, or of both.
+    Rounds {
+        is_over: bool,
+    },
     /// What sample effects settle about triangles, or about pieces.
     Decide(Entries),
     /// Samples of every block of triangles.
@@ -42,6 +52,19 @@ pub enum Pass {
 pub enum Entries {
     Triangles,
     Pieces,
+}
+
+/// In which round of a frame meshlets are culled.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Round {
+    /// The only one: nothing hides anything.
+    Only,
+    /// The only one: what the picture before hides is left out.
+    Before,
+    /// Those that were seen in the picture before.
+    Seen,
+    /// Those that the first round did not draw and does not hide.
+    Behind,
 }
 
 /// What a raster pass writes.
@@ -91,6 +114,10 @@ impl Pass {
         match self {
             Self::Skin => "skin",
             Self::Project => "project",
+            Self::Cull(_) => "cull",
+            Self::ProjectMeshlets => "project_meshlets",
+            Self::Farthest => "farthest",
+            Self::Rounds { .. } => "rounds",
             Self::Decide(_) => "decide",
             Self::OrderSums => "order_sums",
             Self::OrderLimit => "order_limit",
@@ -131,8 +158,11 @@ impl Pass {
 
     /// Label for profilers and tables.
     pub fn label(self) -> String {
-        if self == Self::Decide(Entries::Pieces) {
-            return "decide pieces".into();
+        match self {
+            Self::Decide(Entries::Pieces) => return "decide pieces".into(),
+            Self::Cull(Round::Seen) => return "cull seen".into(),
+            Self::Cull(Round::Behind) => return "cull behind".into(),
+            _ => {}
         }
         let stem = match self {
             Self::BinMedium(_) => "bin_medium",

@@ -1,6 +1,6 @@
 //! Slots: which file of `shaders/slots` fills each part that a pass leaves open.
 
-use super::key::{Fetch, KernelKey, Layout, Order, Pass, Phase};
+use super::key::{Fetch, KernelKey, Layout, Order, Pass, Phase, Round};
 use crate::{
     effects::hooks::{Layers, Shape},
     ladder::{Counting, Depth, Vertex},
@@ -69,6 +69,8 @@ impl KernelKey {
             ("samples", format!("slots/samples/{}", if self.has_samples { "hooked" } else { "all" })),
             ("draws", format!("slots/draws/{}", if self.single_draw { "one" } else { "many" })),
             ("fetch", format!("slots/fetch/{fetch}")),
+            ("share", format!("slots/share/{}", if self.culls() { "meshlets" } else { "all" })),
+            ("occlusion", format!("slots/occlusion/{}", occlusion(pass))),
             ("queues", format!("slots/queues/{queues}")),
             ("marks", format!("slots/marks/{marks}")),
             ("pixels", format!("slots/pixels/{pixels}")),
@@ -120,5 +122,15 @@ impl KernelKey {
             (Order::Submission, _) => "submission",
             (Order::Scheduler, _) => "scheduler",
         }
+    }
+}
+
+/// The file of the occlusion slot.
+fn occlusion(pass: Pass) -> &'static str {
+    match pass {
+        Pass::Cull(Round::Before) => "before",
+        Pass::Cull(Round::Seen) => "seen",
+        Pass::Cull(Round::Behind) => "behind",
+        _ => "none",
     }
 }

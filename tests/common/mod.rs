@@ -33,6 +33,7 @@ pub const SCENES: &[&str] = &[
     "sphere?triangles=200",
     "knot?tess=24",
     "cube-wall",
+    "field?count=27&triangles=200",
     "grid?cell=1",
     "grid?cell=0.4",
     "fan?n=13",

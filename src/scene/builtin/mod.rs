@@ -4,6 +4,7 @@
 //! rasterizer under load and bring the camera that does so. All are indexed, finite and the same on every machine.
 
 mod extremes;
+mod field;
 mod mesh;
 mod plates;
 mod query;
@@ -84,6 +85,16 @@ pub const BUILTINS: &[Builtin] = &[
             SEED,
         ],
         build: shapes::cube_wall,
+    },
+    Builtin {
+        name: "field",
+        about: "bumpy spheres in a lattice, seen from the middle: most lie outside the picture or behind others",
+        params: &[
+            whole("count", "how many", 216.0, 1.0..=5_000.0),
+            whole("triangles", "triangles of each; odd numbers lose one", 2_000.0, 100.0..=40_000.0),
+            SEED,
+        ],
+        build: field::build,
     },
     Builtin {
         name: "tentacle",

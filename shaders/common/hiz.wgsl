@@ -1,0 +1,51 @@
+// Hi-Z: the farthest depth key of every 8x8 pixels, and of every 64x64: what is farther than all it could cover is hidden. The
+// name is that of hierarchical z buffers (Greene, Kass and Miller 1993).
+//@ use common/culling
+//@ use common/extent
+//@ use common/transform
+//@ use slot/depth
+
+@group(0) @binding(28) var<storage, read> hiz: array<u32>;
+
+// The farthest key of the tiles that a box of pixels touches; 0, which hides nothing, where they are too many to ask.
+fn hiz_farthest(pixels: vec4i) -> u32 {
+    var width = culling.hiz_width;
+    var first = 0u;
+    var tiles = vec4u(pixels) / 8u;
+    if any(tiles.zw - tiles.xy >= vec2u(8u)) {
+        tiles /= 8u;
+        width /= 8u;
+        first = culling.hiz_first_block;
+    }
+    let sides = tiles.zw - tiles.xy + 1u;
+    if sides.x * sides.y > 256u { return 0u; }
+    var farthest = 0xffffffffu;
+    for (var i = 0u; i < sides.x * sides.y; i += 1u) {
+        farthest = min(farthest, hiz[first + (tiles.y + i / sides.x) * width + tiles.x + i % sides.x]);
+    }
+    return farthest;
+}
+
+// Is a box of object space behind what was drawn, whatever rounds?
+fn hiz_hides(draw: u32, box: Box, e: Extent) -> bool {
+    if !extent_is_plain(e) { return false; }
+    var low = vec2f(2.0);
+    var high = vec2f(-2.0);
+    for (var i = 0u; i < 8u; i += 1u) {
+        let way = vec3f(vec3u(i, i >> 1u, i >> 2u) & vec3u(1u)) * 2.0 - 1.0;
+        let clip = transform_clip(draw, box.center + box.half * way);
+        low = min(low, clip.xy / clip.w);
+        high = max(high, clip.xy / clip.w);
+    }
+    // A pixel more on every side; y points down in the picture.
+    let shift = 1.0 + extent_shift(e) / f32(grid_unit());
+    let middle = vec2f(frame.size) * 0.5;
+    let first = middle + vec2f(low.x, -high.y) * middle - shift;
+    let last = middle + vec2f(high.x, -low.y) * middle + shift;
+    let ends = vec2f(frame.size) - 1.0;
+    if any(last < vec2f(0.0)) || any(first > ends) { return false; }
+    let pixels = vec4i(vec4f(clamp(floor(first), vec2f(0.0), ends), clamp(floor(last), vec2f(0.0), ends)));
+    // No corner is nearer, and no sample is nearer than all corners.
+    let nearest = depth_key(clamp(e.high.z / e.low.w * 1.000004, 0.0, 1.0));
+    return nearest < hiz_farthest(pixels);
+}

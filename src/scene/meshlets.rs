@@ -1,0 +1,320 @@
+//! Meshlets: patches of a mesh, small enough to be left out whole, with bounds that hold whatever is rounded.
+//!
+//! A meshlet lists triangles of its primitive by their place there, so ids and their order stay what they were. Patches grow
+//! from a seed over shared vertices, which keeps them round; seeds come in Morton order (Morton 1966), which keeps what is
+//! left over together, and loose triangles too.
+
+use glam::DVec3;
+
+use super::{Bounds, Component, Primitive, Scene, draw::MAX_MAGNITUDE};
+
+/// Most triangles of a meshlet.
+pub const MESHLET_TRIANGLES: usize = 64;
+
+/// A patch and what is known of it, in object space.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Meshlet {
+    /// Its part of [`Meshlets::triangles`].
+    pub first_triangle: u32,
+    pub triangle_count: u32,
+    /// Its part of [`Meshlets::vertices`].
+    pub first_vertex: u32,
+    pub vertex_count: u32,
+    /// A box round every corner of every triangle that can be drawn: its middle, and half its sides, rounded up.
+    pub center: [f32; 3],
+    pub half: [f32; 3],
+    /// The normal of every triangle lies within an angle of this one.
+    pub axis: [f32; 3],
+    /// Cosine of that angle, rounded down, and its sine, rounded up.
+    pub cos: f32,
+    pub sin: f32,
+    /// Least altitude of a triangle, rounded down; 0 where facing tells nothing: some triangle has no area, or two look away
+    /// from each other.
+    pub altitude: f32,
+}
+
+/// The meshlets of a primitive.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Meshlets {
+    pub list: Vec<Meshlet>,
+    /// Triangles, counted within the primitive; every one stands here once.
+    pub triangles: Vec<u32>,
+    /// Vertices that each meshlet's triangles join, each once per meshlet.
+    pub vertices: Vec<u32>,
+}
+
+impl Meshlets {
+    /// Divides a primitive.
+    pub fn of(scene: &Scene, primitive: &Primitive) -> Self {
+        let last = primitive.vertex_count().max(1) - 1;
+        let corners: Vec<[u32; 3]> =
+            (0..primitive.triangle_count()).map(|t| primitive.corners(scene, t).map(|vertex| vertex.min(last))).collect();
+        let places: Vec<[f32; 3]> = (0..primitive.vertex_count()).map(|vertex| primitive.position(scene, vertex)).collect();
+        let builder = Builder { places: &places, corners: &corners, is_exact: primitive.positions.component == Component::F32 };
+        let mut meshlets = Self::default();
+        let mut stamps = vec![u32::MAX; places.len()];
+        for patch in builder.patches(&primitive.bounds) {
+            builder.finish(patch, &mut meshlets, &mut stamps);
+        }
+        meshlets
+    }
+}
+
+/// Can a vertex be drawn? The twin of the projection's gate.
+fn is_sound(place: [f32; 3]) -> bool {
+    place.iter().all(|v| f64::from(v.abs()) < MAX_MAGNITUDE)
+}
+
+fn wide(place: [f32; 3]) -> DVec3 {
+    place.map(f64::from).into()
+}
+
+/// The least float that is not below.
+pub fn rounded_up(value: f64) -> f32 {
+    let near = value as f32;
+    if f64::from(near) < value { near.next_up() } else { near }
+}
+
+/// Middle of a box, and half its sides with a share of its coordinates on top, rounded so that nothing falls out.
+pub fn boxed(bounds: &Bounds, share: f64) -> ([f32; 3], [f32; 3]) {
+    if bounds.is_empty() {
+        return ([0.0; 3], [0.0; 3]);
+    }
+    // What reaches beyond the largest coordinate that is drawn is not drawn.
+    let limit = DVec3::splat(MAX_MAGNITUDE);
+    let (min, max) = (bounds.min.clamp(-limit, limit), bounds.max.clamp(-limit, limit));
+    let center = ((min + max) * 0.5).as_vec3();
+    let middle = center.as_dvec3();
+    let half = (max - middle).max(middle - min) + min.abs().max(max.abs()) * (share + 1e-15);
+    (center.into(), half.to_array().map(rounded_up))
+}
+
+struct Builder<'a> {
+    places: &'a [[f32; 3]],
+    corners: &'a [[u32; 3]],
+    /// Positions are floats as they are; others are divided on their way, and rounded.
+    is_exact: bool,
+}
+
+impl Builder<'_> {
+    /// Every triangle in one patch, none of them larger than a meshlet may be.
+    fn patches(&self, bounds: &Bounds) -> Vec<Vec<u32>> {
+        let (firsts, sharers) = self.sharers();
+        let mut is_taken = vec![false; self.corners.len()];
+        let mut patches = Vec::with_capacity(self.corners.len() / 48 + 1);
+        let (mut patch, mut grown) = (Vec::with_capacity(MESHLET_TRIANGLES), 0);
+        for seed in self.morton_order(bounds) {
+            if is_taken[seed as usize] {
+                continue;
+            }
+            if patch.len() == MESHLET_TRIANGLES || patch.len() >= MESHLET_TRIANGLES / 4 && self.is_far(&patch, seed) {
+                patches.push(std::mem::replace(&mut patch, Vec::with_capacity(MESHLET_TRIANGLES)));
+                grown = 0;
+            }
+            is_taken[seed as usize] = true;
+            patch.push(seed);
+            // The patch is its own queue: whoever came first brings its neighbours first.
+            while grown < patch.len() {
+                for vertex in self.corners[patch[grown] as usize] {
+                    let [first, end] = [vertex, vertex + 1].map(|vertex| firsts[vertex as usize] as usize);
+                    for &neighbour in &sharers[first..end] {
+                        if patch.len() < MESHLET_TRIANGLES && !is_taken[neighbour as usize] {
+                            is_taken[neighbour as usize] = true;
+                            patch.push(neighbour);
+                        }
+                    }
+                }
+                grown += 1;
+            }
+        }
+        if !patch.is_empty() {
+            patches.push(patch);
+        }
+        patches
+    }
+
+    /// Triangles round every vertex: where its list begins, and all lists.
+    fn sharers(&self) -> (Vec<u32>, Vec<u32>) {
+        let mut firsts = vec![0u32; self.places.len() + 2];
+        self.corners.iter().flatten().for_each(|&vertex| firsts[vertex as usize + 2] += 1);
+        for vertex in 2..firsts.len() {
+            firsts[vertex] += firsts[vertex - 1];
+        }
+        let mut sharers = vec![0u32; 3 * self.corners.len()];
+        for (triangle, corners) in self.corners.iter().enumerate() {
+            for &vertex in corners {
+                let slot = &mut firsts[vertex as usize + 1];
+                sharers[*slot as usize] = triangle as u32;
+                *slot += 1;
+            }
+        }
+        (firsts, sharers)
+    }
+
+    /// Triangles along a curve that keeps neighbours together, by 21 bits of each coordinate of their first corner.
+    fn morton_order(&self, bounds: &Bounds) -> impl Iterator<Item = u32> {
+        let sides = (bounds.max - bounds.min).max(DVec3::splat(f64::MIN_POSITIVE));
+        let mut order: Vec<(u64, u32)> = self
+            .corners
+            .iter()
+            .enumerate()
+            .map(|(triangle, corners)| {
+                let place = (wide(self.places[corners[0] as usize]) - bounds.min) / sides * f64::from((1 << 21) - 1);
+                // What is no number goes to the beginning.
+                let bits = [place.x, place.y, place.z].map(|v| spread(v as u64));
+                (bits[0] | bits[1] << 1 | bits[2] << 2, triangle as u32)
+            })
+            .collect();
+        order.sort_unstable();
+        order.into_iter().map(|(_, triangle)| triangle)
+    }
+
+    /// Does a triangle lie further off than a patch is wide?
+    fn is_far(&self, patch: &[u32], triangle: u32) -> bool {
+        let mut hull = Bounds::EMPTY;
+        patch.iter().flat_map(|&t| self.corners[t as usize]).for_each(|vertex| hull.include(wide(self.places[vertex as usize])));
+        let place = wide(self.places[self.corners[triangle as usize][0] as usize]);
+        (place.clamp(hull.min, hull.max) - place).length() > 2.0 * hull.radius()
+    }
+
+    /// Measures a patch and appends it.
+    fn finish(&self, mut patch: Vec<u32>, meshlets: &mut Meshlets, stamps: &mut [u32]) {
+        patch.sort_unstable();
+        let (number, first_vertex) = (meshlets.list.len() as u32, meshlets.vertices.len() as u32);
+        let mut bounds = Bounds::EMPTY;
+        let mut faces = Faces::default();
+        for corners in patch.iter().map(|&triangle| self.corners[triangle as usize]) {
+            for vertex in corners {
+                if stamps[vertex as usize] != number {
+                    stamps[vertex as usize] = number;
+                    meshlets.vertices.push(vertex);
+                }
+            }
+            let places = corners.map(|vertex| self.places[vertex as usize]);
+            if places.into_iter().all(is_sound) {
+                places.into_iter().for_each(|place| bounds.include(wide(place)));
+                faces.add(places);
+            }
+        }
+        let (center, half) = boxed(&bounds, if self.is_exact { 0.0 } else { 1.0 / f64::from(1 << 20) });
+        let (axis, cos, sin, altitude) = faces.cone();
+        meshlets.list.push(Meshlet {
+            first_triangle: meshlets.triangles.len() as u32,
+            triangle_count: patch.len() as u32,
+            first_vertex,
+            vertex_count: meshlets.vertices.len() as u32 - first_vertex,
+            center,
+            half,
+            axis,
+            cos,
+            sin,
+            altitude,
+        });
+        meshlets.triangles.append(&mut patch);
+    }
+}
+
+/// Every third bit.
+fn spread(v: u64) -> u64 {
+    let v = v & 0x1f_ffff;
+    let v = (v | v << 32) & 0x001f_0000_0000_ffff;
+    let v = (v | v << 16) & 0x001f_0000_ff00_00ff;
+    let v = (v | v << 8) & 0x100f_00f0_0f00_f00f;
+    let v = (v | v << 4) & 0x10c3_0c30_c30c_30c3;
+    (v | v << 2) & 0x1249_2492_4924_9249
+}
+
+/// Which ways the triangles of a patch face.
+#[derive(Default)]
+struct Faces {
+    normals: Vec<DVec3>,
+    altitude: Option<f64>,
+}
+
+impl Faces {
+    fn add(&mut self, places: [[f32; 3]; 3]) {
+        // Two corners at one place are one record: such a triangle never has an area.
+        if places[0] == places[1] || places[1] == places[2] || places[2] == places[0] {
+            return;
+        }
+        let [a, b, c] = places.map(wide);
+        let doubled = (b - a).cross(c - a);
+        let longest = a.distance(b).max(b.distance(c)).max(c.distance(a));
+        let altitude = doubled.length() / longest;
+        self.altitude = Some(self.altitude.unwrap_or(f64::INFINITY).min(altitude));
+        self.normals.push(doubled.normalize_or_zero());
+    }
+
+    /// Axis, cosine and sine of the angle round it, least altitude.
+    fn cone(&self) -> ([f32; 3], f32, f32, f32) {
+        const NONE: ([f32; 3], f32, f32, f32) = ([0.0; 3], 0.0, 1.0, 0.0);
+        let axis = self.normals.iter().sum::<DVec3>().normalize_or_zero().as_vec3();
+        let exact = axis.as_dvec3().normalize_or_zero();
+        let least = self.normals.iter().map(|normal| normal.dot(exact)).fold(1.0, f64::min) - 1e-6;
+        let altitude = self.altitude.unwrap_or(0.0) * (1.0 - 1e-6);
+        // Below what a float holds in full, products could vanish.
+        if self.normals.is_empty() || least <= 0.0 || altitude < 1e-18 {
+            return NONE;
+        }
+        (axis.into(), (least as f32).next_down(), rounded_up((1.0 - least * least).max(0.0).sqrt()), (altitude as f32).next_down())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::scene::builtin;
+
+    fn meshlets(query: &str) -> (Scene, Meshlets) {
+        let scene = builtin::build(query).unwrap();
+        let meshlets = Meshlets::of(&scene, &scene.primitives[0]);
+        (scene, meshlets)
+    }
+
+    #[test]
+    fn every_triangle_is_in_one_meshlet_and_all_its_corners_are_inside() {
+        for query in ["sphere?triangles=5000", "teapot?tess=3", "knot?tess=8", "cube-wall", "near", "sizes", "grid?cell=8", "tentacle"] {
+            let (scene, meshlets) = meshlets(query);
+            let primitive = &scene.primitives[0];
+            let mut seen = vec![0; primitive.triangle_count() as usize];
+            for meshlet in &meshlets.list {
+                let part = |list: &[u32], first: u32, count: u32| list[first as usize..][..count as usize].to_vec();
+                let vertices = part(&meshlets.vertices, meshlet.first_vertex, meshlet.vertex_count);
+                assert!((1..=MESHLET_TRIANGLES as u32).contains(&meshlet.triangle_count), "{query}: {meshlet:?}");
+                let axis = wide(meshlet.axis).normalize_or_zero();
+                for triangle in part(&meshlets.triangles, meshlet.first_triangle, meshlet.triangle_count) {
+                    seen[triangle as usize] += 1;
+                    let corners = primitive.corners(&scene, triangle);
+                    assert!(corners.iter().all(|corner| vertices.contains(corner)), "{query}: triangle {triangle}");
+                    let places = corners.map(|corner| wide(primitive.position(&scene, corner)));
+                    for place in places {
+                        let out = (place - wide(meshlet.center)).abs() - wide(meshlet.half);
+                        assert!(out.max_element() <= 0.0, "{query}: a corner of triangle {triangle} lies outside by {out}");
+                    }
+                    let doubled = (places[1] - places[0]).cross(places[2] - places[0]);
+                    if meshlet.altitude > 0.0 && doubled.length() > 0.0 {
+                        let longest = places[0].distance(places[1]).max(places[1].distance(places[2])).max(places[2].distance(places[0]));
+                        assert!(doubled.normalize().dot(axis) >= f64::from(meshlet.cos), "{query}: triangle {triangle} leans out");
+                        assert!(doubled.length() / longest >= f64::from(meshlet.altitude), "{query}: triangle {triangle} is flat");
+                    }
+                }
+                assert!(meshlet.cos * meshlet.cos + meshlet.sin * meshlet.sin >= 1.0 - 1e-6, "{query}: {meshlet:?}");
+            }
+            assert!(seen.iter().all(|&count| count == 1), "{query}: {seen:?}");
+        }
+    }
+
+    #[test]
+    fn meshlets_of_a_closed_mesh_are_nearly_full_and_round() {
+        let (scene, meshlets) = meshlets("sphere?triangles=20000");
+        let full = 20_000 / MESHLET_TRIANGLES;
+        assert!(meshlets.list.len() < full + full / 4, "{} meshlets", meshlets.list.len());
+        let area = |m: &Meshlet| wide(m.half).length_squared();
+        let mean = meshlets.list.iter().map(area).sum::<f64>() / meshlets.list.len() as f64;
+        // A disc of 64 of 20,000 triangles of a sphere of radius 1.1 has a radius of 0.12.
+        assert!(mean < 0.2 * 0.2, "{mean}");
+        let facing = meshlets.list.iter().filter(|m| m.altitude > 0.0 && m.cos > 0.5).count();
+        assert!(10 * facing > 9 * meshlets.list.len(), "{facing} of {} tell where they face", meshlets.list.len());
+        assert_eq!(scene.primitives[0].triangle_count() as usize, meshlets.triangles.len());
+    }
+}

@@ -1,0 +1,109 @@
+//! Frames: which passes draw a picture, and in which order.
+
+use super::{
+    key::{KernelKey, Phase},
+    pass::{Entries, Pass, Round},
+};
+use crate::{effects::hooks::Shape, ladder::Culling};
+
+impl KernelKey {
+    /// Are meshlets left out that cannot be seen?
+    pub fn culls(&self) -> bool {
+        self.rungs.culling != Culling::None
+    }
+
+    /// Rounds in which meshlets are drawn.
+    const fn rounds(&self) -> &'static [Round] {
+        match self.rungs.culling {
+            Culling::None => &[],
+            Culling::Frustum => &[Round::Only],
+            Culling::Hiz => &[Round::Before],
+            Culling::TwoPass => &[Round::Seen, Round::Behind],
+        }
+    }
+
+    /// Every pass of one picture, in the order in which they are recorded.
+    pub fn frame(&self) -> Vec<Pass> {
+        let mut passes = self.passes(&self.phases());
+        if self.rungs.culling == Culling::Hiz {
+            passes.push(Pass::Farthest);
+        }
+        if self.listed_tiles {
+            passes.extend([Pass::ListTiles, Pass::Args]);
+        }
+        passes.push(Pass::Resolve);
+        if self.is_scaled() {
+            passes.push(Pass::Scale);
+        }
+        passes
+    }
+
+    /// Passes up to the last of the given raster phases.
+    pub fn passes(&self, phases: &[Phase]) -> Vec<Pass> {
+        let mut passes = Vec::new();
+        if self.bends() {
+            passes.push(Pass::Skin);
+        }
+        // What is settled per triangle is settled for all, so that all vertices are wanted.
+        let is_whole = !self.culls() || self.decisions > 0;
+        if is_whole {
+            passes.push(Pass::Project);
+        }
+        if self.decisions > 0 {
+            passes.push(Pass::Decide(Entries::Triangles));
+        }
+        let has_walks = phases.iter().any(|phase| !phase.is_tiled());
+        let Some((&first, others)) = phases.split_first() else { return passes };
+        for &round in self.rounds() {
+            if round == Round::Behind {
+                passes.extend([Pass::Farthest, Pass::Rounds { is_over: false }]);
+            }
+            passes.extend([Pass::Cull(round), Pass::Args]);
+            if !is_whole {
+                passes.push(Pass::ProjectMeshlets);
+            }
+            self.visit(first, true, has_walks, &mut passes);
+        }
+        if !self.culls() {
+            self.visit(first, true, has_walks, &mut passes);
+        }
+        if self.rungs.culling == Culling::TwoPass && !others.is_empty() {
+            passes.extend([Pass::Rounds { is_over: true }, Pass::Args]);
+        }
+        others.iter().for_each(|&phase| self.visit(phase, false, has_walks, &mut passes));
+        passes
+    }
+
+    /// The passes of a raster phase; the first one fills the queues.
+    fn visit(&self, phase: Phase, is_first: bool, has_walks: bool, passes: &mut Vec<Pass>) {
+        if phase == Phase::Tiles {
+            passes.push(Pass::RasterTiles);
+            return;
+        }
+        passes.push(if self.shape == Shape::Points { Pass::RasterPoints(phase) } else { Pass::RasterSmall(phase) });
+        if is_first && self.has_clipping {
+            passes.extend([Pass::Args, Pass::Clip]);
+        }
+        if is_first && self.has_queues() {
+            passes.push(Pass::Args);
+        }
+        if is_first && self.has_clipping && self.decisions > 0 {
+            passes.push(Pass::Decide(Entries::Pieces));
+        }
+        if is_first && self.has_large && has_walks {
+            passes.extend([Pass::TileLarge, Pass::Args]);
+        }
+        if self.has_medium {
+            passes.push(if phase.is_bin() { Pass::BinMedium(phase) } else { Pass::RasterMedium(phase) });
+        }
+        if self.has_large {
+            passes.push(if phase.is_bin() { Pass::BinLarge(phase) } else { Pass::RasterLarge(phase) });
+        }
+        match phase {
+            Phase::Tally => passes.extend([Pass::OrderSums, Pass::OrderLimit, Pass::OrderRanks]),
+            Phase::Straddle => passes.push(Pass::OrderCut),
+            Phase::BinCount => passes.push(Pass::BinScan),
+            _ => {}
+        }
+    }
+}

@@ -1,0 +1,474 @@
+//! Promise: what culling leaves out is never seen: owners and keys are those of a picture that leaves nothing out, from
+//! everywhere, on every rung, picture after picture. Needs an adapter.
+
+mod common;
+
+use std::sync::{Arc, Mutex, OnceLock};
+
+use common::*;
+use glam::{DMat4, DQuat, DVec3};
+use rasterlab::{
+    frame::{CullingFigures, Frame},
+    gpu::{Capture, Renderer},
+    ladder::{Coverage, Culling, Depth, Pins, Vertex, Visibility},
+    measure::compare,
+    plan::{Accuracy, Tuning},
+    scene::{
+        Scene,
+        camera::{Camera, Projection, View},
+    },
+};
+
+const SIZE: [u32; 2] = [160, 120];
+
+fn on(pins: Pins) -> Accuracy {
+    Accuracy { pins, ..Accuracy::default() }
+}
+
+/// Every image of `a` is that of `b`, bit for bit.
+fn assert_same(a: &Frame, b: &Frame, what: &str) {
+    let owners = compare::owners(&a.owner, &b.owner);
+    assert_eq!(owners.different, 0, "{what}: owners differ, first {:?}", owners.offenders.first());
+    let keys = compare::owners(&a.key, &b.key);
+    assert_eq!(keys.different, 0, "{what}: keys differ, first {:?}", keys.offenders.first());
+    assert_eq!(compare::pictures(&a.color, &b.color, 0).pixels_beyond, 0, "{what}: colours differ");
+}
+
+/// The next picture, and what was left out of it.
+fn drawn(renderer: &mut Renderer, view: &View, pins: Pins) -> (Capture, CullingFigures) {
+    let capture = renderer.capture_next(view, &stack(&["lambert"]), &on(pins)).unwrap_or_else(|error| panic!("{}: {error}", pins.words()));
+    (capture, renderer.culled().unwrap_or_default())
+}
+
+/// Scenes of every kind: closed and open, one and many, clipped, mirrored, double-sided, bent.
+fn scenes() -> Vec<(String, Arc<Scene>)> {
+    let queries =
+        ["field?count=64&triangles=600", "near", "cube-wall", "teapot?tess=6", "tentacle?tess=3&instances=12", "sizes", "slivers"];
+    let mut scenes: Vec<(String, Arc<Scene>)> = queries.iter().map(|query| ((*query).to_owned(), scene(query))).collect();
+    let mut mirrored = (*scene("field?count=27&triangles=400")).clone();
+    for (i, instance) in mirrored.instances.iter_mut().enumerate() {
+        instance.world_from_object *= DMat4::from_scale(DVec3::new(if i % 2 == 0 { -1.0 } else { 1.0 }, 1.0, [1.0, 0.1, 2.0][i % 3]));
+    }
+    mirrored.materials[1].double_sided = true;
+    scenes.push(("mirrored".into(), Arc::new(mirrored)));
+    scenes.push(("grown".into(), grown()));
+    scenes
+}
+
+/// Cameras inside, grazing, behind and across a scene, near and far.
+fn cameras(scene: &Scene, dice: &mut Dice, count: usize) -> Vec<View> {
+    let bounds = scene.bounds();
+    let (middle, reach) = (bounds.center(), bounds.radius().min(30.0));
+    let mut views: Vec<View> =
+        scene.cameras.iter().map(|camera| View::new(&camera.pose, SIZE[0], SIZE[1], &bounds, DMat4::IDENTITY, [0.0; 4])).collect();
+    let mut unit = |span: f64| dice.real(-span, span);
+    for i in 0..count {
+        let eye = middle + DVec3::new(unit(reach), unit(reach), unit(reach)) * [0.3, 1.0, 3.0][i % 3];
+        let target = middle + DVec3::new(unit(reach), unit(reach), unit(reach)) * 0.5;
+        let projection = match i % 4 {
+            3 => Projection::Orthographic { height_m: reach * [0.1, 2.5][i / 4 % 2] },
+            _ => Projection::Perspective { fov_y_deg: [20.0, 60.0, 120.0][i % 3] },
+        };
+        let camera = Camera { eye, target, up: DVec3::Y, projection, near_m: [0.01, 0.5, 2.0][i / 3 % 3] };
+        views.push(View::new(&camera, SIZE[0], SIZE[1], &bounds, DMat4::IDENTITY, [0.0; 4]));
+    }
+    views
+}
+
+/// As a CPU adapter likes it, and as a graphics card.
+fn both_tunings(renderer: &Renderer) -> [Tuning; 2] {
+    let card = Tuning { small_samples: 32, small_side: 32, list_group: 256, listed_tiles: false, early_load: false, specialized: true };
+    [renderer.gpu().caps.tuning(), card]
+}
+
+#[test]
+fn no_camera_sees_what_frustum_and_cones_leave_out() {
+    let Some(mut renderer) = renderer() else { return };
+    let (mut dice, mut total) = (Dice(7), CullingFigures::default());
+    for (what, scene) in scenes() {
+        renderer.set_scene(&scene).expect("it fits");
+        for (i, view) in cameras(&scene, &mut dice, 12).iter().enumerate() {
+            let rungs = rungs(&renderer);
+            let pins = Pins::of(rungs[i % rungs.len()]);
+            let tuning = both_tunings(&renderer)[i / 2 % 2];
+            renderer.set_tuning(tuning);
+            let (whole, _) = drawn(&mut renderer, view, pins.with(Culling::None));
+            let (culled, figures) = drawn(&mut renderer, view, pins.with(Culling::Frustum));
+            assert_same(&culled.frame, &whole.frame, &format!("{what} from camera {i} on {}", pins.words()));
+            assert_eq!((&culled.layers, &culled.geometry), (&whole.layers, &whole.geometry), "{what} from camera {i}: what the judge gets");
+            total.outside += figures.outside;
+            total.turned += figures.turned;
+            total.drawn += figures.drawn;
+        }
+    }
+    assert!(total.outside > total.drawn && total.turned > total.drawn / 8, "little is left out: {total:?}");
+}
+
+/// A walk through a scene: small steps and turns, and now and then a jump.
+fn walk(scene: &Scene, dice: &mut Dice, steps: usize, size: [u32; 2]) -> Vec<View> {
+    let bounds = scene.bounds();
+    let reach = bounds.radius().min(30.0);
+    let (mut eye, mut turn) = (bounds.center() + DVec3::splat(0.2 * reach), 0.0);
+    let mut views = Vec::new();
+    for step in 0..steps {
+        let [mut stride, mut swing] = [0.03 * reach, 0.2];
+        if step % 5 == 4 {
+            [stride, swing] = [0.7 * reach, 3.0];
+        }
+        eye += DVec3::new(dice.real(-stride, stride), dice.real(-stride, stride), dice.real(-stride, stride));
+        turn += dice.real(-swing, swing);
+        let way = DQuat::from_rotation_y(turn) * DVec3::new(0.0, 0.1, -1.0);
+        let projection =
+            if step % 7 == 6 { Projection::Orthographic { height_m: reach } } else { Projection::Perspective { fov_y_deg: 70.0 } };
+        let camera = Camera { eye, target: eye + way, up: DVec3::Y, projection, near_m: 0.02 };
+        views.push(View::new(&camera, size[0], size[1], &bounds, DMat4::IDENTITY, [0.0; 4]));
+    }
+    views
+}
+
+/// Follows a walk with two-pass culling, what each picture leaves for the next included; the first difference, and what was
+/// left out in all.
+fn followed(renderer: &mut Renderer, scene: &Arc<Scene>, views: &[View], pins: Pins) -> Result<CullingFigures, String> {
+    renderer.set_scene(scene).expect("it fits");
+    let mut total = CullingFigures::default();
+    for (step, view) in views.iter().enumerate() {
+        let (culled, figures) = drawn(renderer, view, pins);
+        let whole = whole(renderer, scene, view, pins);
+        let owners = compare::owners(&culled.frame.owner, &whole.owner);
+        let keys = compare::owners(&culled.frame.key, &whole.key);
+        if owners.different + keys.different > 0 {
+            let (what, pixel) = (pins.words(), owners.offenders.first());
+            return Err(format!("step {step} on {what}: {} owners and {} keys differ, {pixel:?}", owners.different, keys.different));
+        }
+        for (sum, count) in [
+            (&mut total.drawn, figures.drawn),
+            (&mut total.outside, figures.outside),
+            (&mut total.turned, figures.turned),
+            (&mut total.hidden, figures.hidden),
+        ] {
+            *sum += count;
+        }
+    }
+    Ok(total)
+}
+
+/// The same picture with nothing left out, by a renderer that shares nothing with the one under test.
+fn whole(renderer: &Renderer, scene: &Arc<Scene>, view: &View, pins: Pins) -> Frame {
+    static WHOLE: OnceLock<Mutex<Renderer>> = OnceLock::new();
+    let whole = WHOLE.get_or_init(|| Mutex::new(Renderer::new(renderer.gpu().clone())));
+    let mut whole = whole.lock().unwrap_or_else(|poisoned| poisoned.into_inner());
+    captured(&mut whole, scene, view, &stack(&["lambert"]), &on(pins.with(Culling::None))).frame
+}
+
+/// Rungs that two passes can hide behind.
+fn hiding(renderer: &Renderer) -> Vec<Pins> {
+    let rungs = rungs(renderer).into_iter().filter(|rung| *rung != Visibility::Tiled);
+    rungs.map(|rung| Pins::of(rung).with(Culling::TwoPass)).collect()
+}
+
+#[test]
+fn two_passes_lose_nothing_on_any_walk() {
+    let Some(mut renderer) = renderer() else { return };
+    let mut dice = Dice(11);
+    for (what, scene) in scenes() {
+        for (i, pins) in hiding(&renderer).into_iter().enumerate() {
+            let tuning = both_tunings(&renderer)[i % 2];
+            renderer.set_tuning(tuning);
+            let views = walk(&scene, &mut dice, 8, SIZE);
+            let total = followed(&mut renderer, &scene, &views, pins).unwrap_or_else(|why| panic!("{what}: {why}"));
+            assert!(!what.starts_with("field") || total.hidden > total.drawn / 8, "{what}: hardly anything is hidden: {total:?}");
+        }
+    }
+}
+
+#[test]
+fn every_rung_of_other_axes_keeps_its_picture() {
+    let Some(mut renderer) = renderer() else { return };
+    let (mut dice, scene) = (Dice(3), scene("field?count=64&triangles=600"));
+    let grids = Coverage::ALL.iter().map(|&rung| Pins::of(rung));
+    let depths = Depth::ALL.iter().map(|&rung| Pins::of(rung));
+    let vertices = Vertex::ALL.iter().map(|&rung| Pins::of(rung));
+    let views = walk(&scene, &mut dice, 3, SIZE);
+    for pins in grids.chain(depths).chain(vertices) {
+        let pins = pins.with(Culling::TwoPass).with(Visibility::Split32);
+        followed(&mut renderer, &scene, &views, pins).unwrap_or_else(|why| panic!("{why}"));
+    }
+}
+
+#[test]
+fn another_scene_another_size_and_a_pause_leave_nothing_stale() {
+    let Some(mut renderer) = renderer() else { return };
+    let mut dice = Dice(5);
+    let scenes = [scene("field?count=64&triangles=400"), scene("cube-wall"), scene("field?count=27&triangles=200&seed=3")];
+    for turn in 0..9 {
+        let scene = &scenes[turn % 3];
+        let size = [[160, 120], [65, 63], [1, 1], [200, 8]][turn % 4];
+        let views = walk(scene, &mut dice, 2, size);
+        for pins in hiding(&renderer) {
+            followed(&mut renderer, scene, &views, pins).unwrap_or_else(|why| panic!("turn {turn}: {why}"));
+            drawn(&mut renderer, &views[0], pins.with(Culling::Frustum));
+            followed(&mut renderer, scene, &views, pins).unwrap_or_else(|why| panic!("turn {turn}, after a pause: {why}"));
+        }
+    }
+}
+
+/// Triangles hardly larger than a unit of the grid turn over in the snap: what faces away may show. A sphere that is turned
+/// inside out, so that nothing stands before those.
+fn dust(dice: &mut Dice) -> (Arc<Scene>, Vec<View>) {
+    let mut scene = (*scene("sphere?triangles=60000")).clone();
+    scene.index_bytes.as_chunks_mut::<12>().0.iter_mut().for_each(|corners| {
+        let (first, rest) = corners.split_at_mut(4);
+        first.swap_with_slice(&mut rest[..4]);
+    });
+    let (scene, bounds) = (Arc::new(scene.clone()), scene.bounds());
+    let views = (0..6).map(|i| {
+        let way = DVec3::new(dice.real(-1.0, 1.0), dice.real(-1.0, 1.0), dice.real(-1.0, 1.0)).normalize_or(DVec3::Z);
+        let eye = way * [40.0, 150.0, 600.0][i % 3];
+        let camera = Camera { eye, projection: Projection::Perspective { fov_y_deg: 60.0 }, ..Camera::default() };
+        View::new(&camera, SIZE[0], SIZE[1], &bounds, DMat4::IDENTITY, [0.0; 4])
+    });
+    (scene, views.collect())
+}
+
+/// Spheres that reach into each other.
+fn grown() -> Arc<Scene> {
+    let mut scene = (*scene("field?count=64&triangles=600")).clone();
+    scene.instances.iter_mut().for_each(|instance| instance.world_from_object *= DMat4::from_scale(DVec3::splat(1.9)));
+    Arc::new(scene)
+}
+
+#[test]
+fn backs_that_the_snap_turns_over_are_not_left_out() {
+    let Some(mut renderer) = renderer() else { return };
+    let (scene, views) = dust(&mut Dice(2));
+    for pins in [Culling::Frustum, Culling::TwoPass].map(|rung| Pins::of(rung).with(Visibility::Split32)) {
+        followed(&mut renderer, &scene, &views, pins).unwrap_or_else(|why| panic!("{why}"));
+    }
+}
+
+#[test]
+fn mistakes_of_culling_are_seen() {
+    let Some(healthy) = renderer() else { return };
+    let gpu = healthy.gpu().clone();
+    let split = |rung: Culling| Pins::of(rung).with(Visibility::Split32);
+    let field = scene("field?count=64&triangles=600");
+    let through = walk(&field, &mut Dice(11), 8, SIZE);
+    let (ball, far) = dust(&mut Dice(2));
+    let crowd = grown();
+    let mut failures = Vec::new();
+    for (what, file, from, to, rung, scene, views) in [
+        (
+            "boxes are too small",
+            "passes/cull",
+            "Box(meshlets[record].center.xyz, meshlets[record].half.xyz)",
+            "Box(meshlets[record].center.xyz, meshlets[record].half.xyz * 0.7)",
+            Culling::Frustum,
+            &field,
+            &through,
+        ),
+        (
+            "a side of the picture is moved in",
+            "common/extent",
+            "any(e.sides < vec4f(0.0))",
+            "any(e.sides < vec4f(0.2))",
+            Culling::Frustum,
+            &field,
+            &through,
+        ),
+        ("the near plane is further off", "common/extent", "e.near < 0.0", "e.near < 1.5", Culling::Frustum, &field, &through),
+        ("cones are too narrow", "common/facing", "let across = sqrt(", "let across = 0.3 * sqrt(", Culling::Frustum, &field, &through),
+        (
+            "the wrong side is the back",
+            "common/facing",
+            "(center - eye.xyz) * eye.w",
+            "(eye.xyz - center) * eye.w",
+            Culling::Frustum,
+            &field,
+            &through,
+        ),
+        ("the snap is forgotten", "common/facing", "let shift = extent_shift(e);", "let shift = 0.0;", Culling::Frustum, &ball, &far),
+        (
+            "nearest and farthest are exchanged",
+            "passes/farthest",
+            "key = min(key,",
+            "key = max(select(key, 0u, key == 0xffffffffu),",
+            Culling::TwoPass,
+            &field,
+            &through,
+        ),
+        (
+            "tiles forget a corner",
+            "passes/farthest",
+            "for (var i = 0u; i < 64u;",
+            "for (var i = 0u; i < 8u;",
+            Culling::TwoPass,
+            &crowd,
+            &through,
+        ),
+        ("a box hides by its far side", "common/hiz", "e.high.z / e.low.w", "e.low.z / e.high.w", Culling::TwoPass, &crowd, &through),
+        ("the rectangle is upside down", "common/hiz", "vec2f(low.x, -high.y)", "vec2f(low.x, low.y)", Culling::TwoPass, &field, &through),
+        (
+            "the second round draws nothing",
+            "slots/occlusion/behind",
+            "select(CULL_LEFT, CULL_HIDDEN, is_hidden), CULL_WAITS",
+            "select(CULL_HIDDEN, CULL_HIDDEN, is_hidden), CULL_WAITS",
+            Culling::TwoPass,
+            &field,
+            &through,
+        ),
+        (
+            "a vertex of every meshlet is not projected",
+            "passes/project_meshlets",
+            "i < survivor.vertices;",
+            "i + 1u < survivor.vertices;",
+            Culling::Frustum,
+            &field,
+            &through,
+        ),
+        (
+            "the owner pass takes the second round alone",
+            "passes/rounds",
+            "capacity), 0u, IS_OVER)",
+            "capacity), min(count, capacity), IS_OVER)",
+            Culling::TwoPass,
+            &field,
+            &through,
+        ),
+    ] {
+        let library = mutated(file, from, to);
+        let mut wrong = Renderer::with_library(gpu.clone(), library.shaders());
+        match followed(&mut wrong, scene, views, split(rung)) {
+            Ok(_) => failures.push(format!("{what} does not show")),
+            Err(why) => eprintln!("{what}: {why}"),
+        }
+    }
+    assert!(failures.is_empty(), "{}", failures.join("\n"));
+}
+
+#[test]
+fn more_meshlets_than_one_row_of_workgroups_are_all_drawn() {
+    let Some(mut renderer) = renderer() else { return };
+    const SIDE: u32 = 257;
+    // One triangle over one sample, 66,049 times: as many meshlets, and more than 65,535 workgroups.
+    let corner = |x: f32, y: f32| [x / 4.0, y / 4.0, 0.5];
+    let placements = (0..SIDE * SIDE).map(|i| DMat4::from_translation(DVec3::new((i % SIDE).into(), (i / SIDE).into(), 0.0)));
+    let positions = vec![corner(1.0, 1.0), corner(1.0, 3.0), corner(3.0, 2.0)];
+    let scene = hand_made(&[Part { placements: placements.collect(), ..sheet(positions) }]);
+    let usual = renderer.gpu().caps.tuning();
+    renderer.set_tuning(Tuning { list_group: 64, ..usual });
+    renderer.set_scene(&scene).expect("it fits");
+    let view = pixel_view(260, 260);
+    for rung in [Culling::Frustum, Culling::TwoPass] {
+        for visibility in rungs(&renderer) {
+            let (culled, figures) = drawn(&mut renderer, &view, Pins::of(rung).with(visibility));
+            assert_eq!((culled.frame.covered() as u32, figures.drawn), (SIDE * SIDE, SIDE * SIDE), "{}", visibility.name());
+            let owners = culled.frame.owner.iter().filter(|owner| **owner != rasterlab::frame::NO_OWNER);
+            assert!(owners.zip(0..).all(|(&owner, id)| owner == id), "{}: an owner is another's", visibility.name());
+        }
+    }
+}
+
+/// What a renderer of its own makes for one picture.
+fn explained(query: &str, effects: &[&str], pins: Pins) -> Option<(Vec<String>, Vec<String>, String)> {
+    let mut renderer = Renderer::new(gpu()?);
+    let scene = scene(query);
+    renderer.set_scene(&scene).expect("a builtin fits");
+    renderer.draw_whole(&view(&scene, SIZE), &stack(effects), &on(pins)).expect("a builtin is drawn");
+    let explanation = renderer.explain();
+    let passes = explanation.passes.into_iter().map(|pass| pass.name).collect();
+    let buffers = explanation.buffers.into_iter().map(|buffer| buffer.name).collect();
+    let why = explanation.reasons.into_iter().find(|note| note.name == "culling").map(|note| note.why).unwrap_or_default();
+    Some((passes, buffers, why))
+}
+
+#[test]
+fn only_a_rung_that_culls_has_passes_and_buffers_for_it() {
+    const PASSES: [&str; 6] = ["cull", "cull seen", "cull behind", "project_meshlets", "farthest", "rounds"];
+    const BUFFERS: [&str; 6] = ["culling", "instances", "meshlets", "meshlet_lists", "seen", "hiz"];
+    let split = Pins::of(Visibility::Split32);
+    let of =
+        |names: &[String], known: &[&str]| -> Vec<String> { names.iter().filter(|name| known.contains(&name.as_str())).cloned().collect() };
+    for (rung, passes, buffers) in [
+        (Culling::None, &[][..], &[][..]),
+        (Culling::Frustum, &["cull", "project_meshlets"], &["culling", "instances", "meshlet_lists", "meshlets"]),
+        (Culling::Hiz, &["cull", "project_meshlets", "farthest"], &["culling", "hiz", "instances", "meshlet_lists", "meshlets"]),
+        (
+            Culling::TwoPass,
+            &["cull seen", "project_meshlets", "farthest", "rounds", "cull behind", "project_meshlets", "rounds"],
+            &["culling", "hiz", "instances", "meshlet_lists", "meshlets", "seen"],
+        ),
+    ] {
+        let Some((all_passes, all_buffers, _)) = explained("field?count=8&triangles=200", &["lambert"], split.with(rung)) else { return };
+        assert_eq!(of(&all_passes, &PASSES), passes, "{}", rung.name());
+        assert_eq!(of(&all_buffers, &BUFFERS), buffers, "{}", rung.name());
+        assert_eq!(all_passes.contains(&"project".to_owned()), rung == Culling::None, "{}: {all_passes:?}", rung.name());
+    }
+}
+
+#[test]
+fn a_picture_that_cannot_be_culled_says_why_and_is_drawn() {
+    let query = "field?count=8&triangles=200";
+    for (effects, visibility, got) in [
+        (&["explode"][..], Visibility::Split32, "none instead of two-pass: effects move meshes"),
+        (&["points"], Visibility::Split32, "none instead of two-pass: discs reach"),
+        (&["draw_order"], Visibility::Split32, "none instead of two-pass: a draw order counts"),
+        (&["race"], Visibility::Split32, "none instead of two-pass: a race"),
+        (&["xray"], Visibility::Split32, "frustum instead of two-pass: layers"),
+        (&["overdraw"], Visibility::Split32, "frustum instead of two-pass: layers"),
+        (&[], Visibility::Tiled, "frustum instead of two-pass: tiles"),
+        (&[], Visibility::Packed32, "frustum instead of two-pass: packed32"),
+        (&["dissolve"], Visibility::Split32, "two-pass: pinned"),
+    ] {
+        let Some((.., why)) = explained(query, effects, Pins::of(visibility).with(Culling::TwoPass)) else { return };
+        assert!(why.starts_with(got), "{effects:?}: {why}");
+    }
+    let Some((.., why)) = explained(query, &[], Pins::default()) else { return };
+    assert!(why.starts_with("none: "), "culling gains nothing as a rule: {why}");
+}
+
+#[test]
+fn effects_and_layers_keep_their_picture() {
+    let Some(mut renderer) = renderer() else { return };
+    let scene = scene("field?count=27&triangles=400");
+    let views = walk(&scene, &mut Dice(9), 4, SIZE);
+    renderer.set_scene(&scene).expect("it fits");
+    for effects in
+        [&["dissolve", "outline"][..], &["stipple", "lambert"], &["wireframe"], &["xray"], &["overdraw"], &["boxes"], &["facet", "fog"]]
+    {
+        for view in &views {
+            for visibility in rungs(&renderer) {
+                let mut draw = |rung| {
+                    let pins = Pins::of(visibility).with(rung);
+                    renderer.capture_next(view, &stack(effects), &on(pins)).unwrap_or_else(|error| panic!("{effects:?}: {error}"))
+                };
+                let culled = draw(Culling::TwoPass);
+                let whole = draw(Culling::None);
+                assert_same(&culled.frame, &whole.frame, &format!("{effects:?} on {}", visibility.name()));
+                assert_eq!(culled.frame.counted, whole.frame.counted, "{effects:?} on {}: layers", visibility.name());
+            }
+        }
+    }
+}
+
+#[test]
+fn the_picture_before_hides_what_has_come_out_since() {
+    let Some(mut renderer) = renderer() else { return };
+    let scene = scene("field?count=216&triangles=400");
+    renderer.set_scene(&scene).expect("it fits");
+    let pins = Pins::of(Culling::Hiz).with(Visibility::Split32);
+    let view = walk(&scene, &mut Dice(1), 1, SIZE).remove(0);
+    let truth = whole(&renderer, &scene, &view, pins);
+    // Nothing has moved since: nothing is missing.
+    renderer.forget();
+    let (first, all) = drawn(&mut renderer, &view, pins);
+    let (second, fewer) = drawn(&mut renderer, &view, pins);
+    assert_eq!((&first.frame.owner, &second.frame.owner), (&truth.owner, &truth.owner));
+    assert!(all.hidden == 0 && fewer.hidden > 0 && fewer.drawn < all.drawn, "{all:?} {fewer:?}");
+    // Going sideways, something is.
+    let mut lost = 0;
+    for view in walk(&scene, &mut Dice(1), 12, SIZE) {
+        let (cheap, _) = drawn(&mut renderer, &view, pins);
+        lost += compare::owners(&cheap.frame.owner, &whole(&renderer, &scene, &view, pins).owner).different;
+    }
+    assert!(lost > 0, "the cheap rung is as good as two passes");
+}
