@@ -69,6 +69,8 @@ pub struct Geometry {
     pub pieces: Vec<Piece>,
     /// What sample effects settled: for every triangle by id, then for every piece, one entry per effect that decides.
     pub decisions: Vec<[u32; 4]>,
+    /// One per dot of all lines, always in units of 1/256 px.
+    pub dots: Vec<SnappedVertex>,
     /// Positions are in units of 2^-bits px.
     pub subpixel_bits: u32,
     /// What its maker promises about it, and about the keys of a frame drawn through it.
@@ -77,9 +79,9 @@ pub struct Geometry {
 
 impl Default for Geometry {
     fn default() -> Self {
-        let (vertices, bent, pieces, decisions) = (Vec::new(), Vec::new(), Vec::new(), Vec::new());
+        let (vertices, bent, pieces, decisions, dots) = (Vec::new(), Vec::new(), Vec::new(), Vec::new(), Vec::new());
         let (subpixel_bits, exact) = (SUBPIXEL_BITS, Exactness::default());
-        Self { vertices, has_own_corners: false, bent, pieces, decisions, subpixel_bits, exact }
+        Self { vertices, has_own_corners: false, bent, pieces, decisions, dots, subpixel_bits, exact }
     }
 }
 
@@ -138,6 +140,8 @@ pub struct Frame {
     pub color: Vec<[u8; 4]>,
     /// What an effect in the visibility slot added up per pixel: weights of layers, or their number. Empty without one.
     pub counted: Vec<u32>,
+    /// Strength of the strongest dot per pixel, 0 to 256. Empty without dots.
+    pub dots: Vec<u32>,
     pub counters: Counters,
 }
 

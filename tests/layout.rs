@@ -3,6 +3,7 @@
 use rasterlab::{
     effects::{EFFECTS, Effect},
     gpu::bends::{BendRecord, ShapeRecord},
+    gpu::dots::{DotFrame, StretchRecord},
     gpu::uniforms::{CounterRecord, DrawRecord, FrameUniform, Twin},
     ladder::Visibility,
     shader::{
@@ -33,6 +34,9 @@ fn uniforms_and_records_agree() {
     check_twin::<FrameUniform>(&small);
     check_twin::<DrawRecord>(&small);
     check_twin::<CounterRecord>(&small);
+    let dots = reflected(Pass::DotsDraw, vec![]);
+    check_twin::<DotFrame>(&dots);
+    check_twin::<StretchRecord>(&dots);
     let skin = reflected(Pass::Skin, vec![]);
     check_twin::<BendRecord>(&skin);
     check_twin::<ShapeRecord>(&skin);

@@ -137,6 +137,7 @@ fn flat_view(width: u32, height: u32) -> View {
         background: [0.0; 4],
         subpixel_bits: 8,
         pose: None,
+        polyline: Default::default(),
     }
 }
 
@@ -156,7 +157,7 @@ fn all_effects() -> Stack {
 
 /// What a picture is coloured from.
 fn seen(frame: &Frame) -> Seen<'_> {
-    Seen { owners: &frame.owner, keys: &frame.key, previous: None }
+    Seen { owners: &frame.owner, keys: &frame.key, dots: &frame.dots, previous: None }
 }
 
 /// Numbers that look random and are the same on every run.

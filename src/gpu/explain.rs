@@ -78,6 +78,11 @@ fn pass_purpose(pass: Pass) -> &'static str {
         Pass::TileLarge => "finds the tiles of each large triangle",
         Pass::RasterMedium(_) => "one workgroup per triangle of up to 128 px",
         Pass::RasterLarge(_) => "one workgroup per 64 x 64 tile of a large triangle",
+        Pass::DotsEnds => "takes both ends of every segment of a line to clip space",
+        Pass::DotsCull => "leaves out lines beyond the view, thins the others, lists the dots that may show",
+        Pass::DotsArgs => "turns the number of listed dots into a dispatch size",
+        Pass::DotsDraw => "draws dots, one invocation each: the strongest on every pixel",
+        Pass::DotsProbe => "reads back where every dot lies",
         Pass::ListTiles => "gathers the tiles that hold something",
         Pass::Resolve => "shades every pixel once",
     }

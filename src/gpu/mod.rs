@@ -5,6 +5,8 @@ pub mod bends;
 pub mod buffers;
 pub mod device;
 mod dispatch;
+mod dot_tree;
+pub mod dots;
 pub mod error;
 mod explain;
 pub mod hardware;
@@ -29,6 +31,7 @@ use self::{
     bends::BENT_BYTES,
     buffers::Buffers,
     dispatch::{Dispatch, dispatch},
+    dots::DotStore,
     pipelines::Pipelines,
     prepare::{BACKGROUND_ROWS, bin_heads, first_capacities, record_count, recorded_capacities},
     readback::Pending,
@@ -52,6 +55,8 @@ use crate::{
 pub struct Report {
     /// Whole frame, clears included; none where the adapter has no timestamps.
     pub gpu_ms: Option<f64>,
+    /// What the CPU did for the newest frame while the GPU waited: choosing dots and handing them over.
+    pub cpu_ms: Option<f64>,
     pub passes: Vec<(String, f64)>,
     pub counters: Counters,
     /// What a draw order let through, where one is kept.
@@ -81,6 +86,8 @@ pub struct Renderer {
     pending: VecDeque<Pending>,
     /// Which vertices, of all that may bend, the last picture bent.
     bent: Vec<std::ops::Range<u32>>,
+    /// Lines and their dots, while a stack has them.
+    dots: Option<DotStore>,
 }
 
 const STORAGE: wgpu::BufferUsages = wgpu::BufferUsages::STORAGE;
@@ -109,6 +116,7 @@ impl Renderer {
             full: None,
             pending: VecDeque::new(),
             bent: Vec::new(),
+            dots: None,
         }
     }
 
@@ -175,6 +183,7 @@ impl Renderer {
         self.distrust = false;
         self.past = None;
         self.full = None;
+        self.dots = None;
         self.scene = Some(scene.clone());
         Ok(())
     }
@@ -199,6 +208,9 @@ impl Renderer {
             timer.begin(&mut encoder, detail);
         }
         self.clear(&mut encoder, &["counters", "depth_keys", "owners", "depth_owner", "packed", "layers", "marks", "counts", "hits"]);
+        if plan.key.dots.is_some() {
+            self.clear_dots(&mut encoder, &plan.key, view);
+        }
         if self.buffers.has("bins") {
             encoder.clear_buffer(self.buffers.get("bins"), 0, Some(4 * bin_heads(view)));
         }
@@ -260,7 +272,8 @@ impl Renderer {
         redraw |= counters.full_pixels > 0 && self.pending.is_empty() && self.take_fewer_bits();
         let key = &self.last.as_ref()?.key;
         let order = (key.order != Order::Free).then(|| order.figures(key.order == Order::Scheduler, record.tickets));
-        Some(Report { gpu_ms: times.total_ms, passes: times.passes, counters, order, redraw })
+        let cpu_ms = self.dots.as_ref().and_then(|dots| dots.chosen_ms);
+        Some(Report { gpu_ms: times.total_ms, cpu_ms, passes: times.passes, counters, order, redraw })
     }
 
     /// Begins anew: the next picture stands after nothing but background.
@@ -329,8 +342,13 @@ impl Renderer {
             let timestamp_writes = self.timer.as_mut().and_then(|timer| timer.compute(&pipeline.label, is_last));
             let mut recorded = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor { label: Some(&pipeline.label), timestamp_writes });
             pipeline.bind(&self.gpu, &mut recorded, |name| self.buffers.get(name));
-            match dispatch(pass, [vertices, triangles, bent], view, key) {
+            let size = match &self.dots {
+                Some(dots) if pass.is_of_dots() => dots.dispatch(pass, key),
+                _ => dispatch(pass, [vertices, triangles, bent], view, key),
+            };
+            match size {
                 Dispatch::Direct([x, y]) => recorded.dispatch_workgroups(x, y, 1),
+                Dispatch::Listed => recorded.dispatch_workgroups_indirect(self.buffers.get("dot_args"), 0),
                 Dispatch::Indirect(offset) => recorded.dispatch_workgroups_indirect(self.buffers.get("args"), offset),
             }
         }

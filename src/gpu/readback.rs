@@ -9,6 +9,7 @@ use super::{
     Demand, Gpu, RenderError, Renderer, STORAGE,
     bends::BENT_BYTES,
     buffers,
+    dots::first_dot_word,
     prepare::record_count,
     timer::{Timer, Times},
     uniforms::OrderRecord,
@@ -122,7 +123,9 @@ impl Renderer {
         let key = self.last.as_ref().ok_or(RenderError::NoScene)?.key.clone();
         let (owner, depth) = self.read_visibility(&key, view)?;
         let color = self.read_color(view)?;
-        let geometry = self.read_geometry(&key)?;
+        let mut geometry = self.read_geometry(&key)?;
+        geometry.dots = self.read_dots(&key)?;
+        let dots = self.read_strengths(&key, view)?;
         let counted = self.read_counted(&key, view)?;
         let previous = if key.reads_previous() {
             Some(buffers::read_picture(&self.gpu, self.buffers.get("previous"), [view.width, view.height])?)
@@ -131,7 +134,7 @@ impl Renderer {
         };
         let layers = if key.layers == Some(Layers::Overdraw) { counted.clone() } else { self.count_layers(&key, view)? };
         let keys_are_rough = !key.rungs.visibility.is_exact();
-        let frame = Frame { width: view.width, height: view.height, owner, key: depth, color, counted, counters, keys_are_rough };
+        let frame = Frame { width: view.width, height: view.height, owner, key: depth, color, counted, dots, counters, keys_are_rough };
         Ok(Capture { frame, geometry, layers: Some(layers), previous })
     }
 
@@ -196,6 +199,15 @@ impl Renderer {
         Ok(words[first as usize..].chunks_exact(all).map(weight).collect())
     }
 
+    /// Strength of the strongest dot per pixel.
+    fn read_strengths(&self, key: &KernelKey, view: &View) -> Result<Vec<u32>, RenderError> {
+        if key.dots.is_none() {
+            return Ok(Vec::new());
+        }
+        let first = first_dot_word(view);
+        Ok(self.words("color", first + view.pixels() as u64)?.split_off(first as usize))
+    }
+
     fn read_color(&self, view: &View) -> Result<Vec<[u8; 4]>, RenderError> {
         buffers::read_picture(&self.gpu, self.buffers.get("color"), [view.width, view.height])
     }
@@ -223,6 +235,7 @@ impl Renderer {
             pieces: pieces.into_iter().map(|(_, _, piece)| piece).collect(),
             has_own_corners: key.parts_corners(),
             subpixel_bits: key.rungs.coverage.subpixel_bits(),
+            dots: Vec::new(),
             exact: Exactness { vertices: key.rungs.vertex == Vertex::Strict, keys: key.rungs.depth == Depth::Integer },
             bent: self.read_bent(scene.vertex_bytes.len() as u64)?,
         })
@@ -258,7 +271,7 @@ fn piece(words: &[u32]) -> Piece {
     Piece { parent: words[12], corners, outline: words[15] }
 }
 
-fn vertex(words: &[u32]) -> SnappedVertex {
+pub(super) fn vertex(words: &[u32]) -> SnappedVertex {
     SnappedVertex {
         x: words[0] as i32 >> 8,
         y: words[1] as i32 >> 8,

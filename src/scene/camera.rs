@@ -94,6 +94,8 @@ pub struct View {
     pub subpixel_bits: u32,
     /// How the scene stands; none: at rest.
     pub pose: Option<Arc<Pose>>,
+    /// A line of the look's own, before the scene is spun.
+    pub polyline: Arc<[[f32; 3]]>,
 }
 
 impl View {
@@ -135,6 +137,7 @@ impl View {
             background,
             subpixel_bits: SUBPIXEL_BITS,
             pose: None,
+            polyline: Arc::default(),
         }
     }
 

@@ -5,11 +5,12 @@ use std::fmt;
 use crate::{
     effects::{
         Effect, Enabled, Stack,
+        dots::Strung,
         draw_order::Mode,
         hooks::{Layers, Shape},
     },
     frame::{NO_OWNER, vertex_flags},
-    ladder::{Clipping, Coverage, Depth, Perspective, Rungs, Vertex, Visibility},
+    ladder::{Clipping, Coverage, Depth, DotWay, Perspective, Rungs, Vertex, Visibility},
 };
 
 pub use super::pass::{Entries, Pass, Phase};
@@ -69,6 +70,8 @@ pub struct KernelKey {
     pub shape: Shape,
     /// Which samples are drawn.
     pub order: Order,
+    /// What dots are strung on, if there are any.
+    pub dots: Option<Strung>,
     /// A sample effect may leave samples out.
     pub has_samples: bool,
     /// Sample effects that settle something per triangle.
@@ -121,6 +124,7 @@ impl KernelKey {
             layers: Stack(effects.iter().map(|effect| Enabled::new(effect)).collect()).layers(u64::MAX),
             shape: Shape::Triangles,
             order: Order::Free,
+            dots: effects.iter().any(|effect| effect.hooks.has_lines).then_some(Strung::Edges),
             has_samples: effects.iter().any(|effect| effect.hooks.sample.is_some()),
             decisions: deciding(&effects),
             effects,
@@ -246,11 +250,21 @@ impl KernelKey {
     /// Every pass of one picture, in the order in which they are recorded.
     pub fn frame(&self) -> Vec<Pass> {
         let mut passes = self.passes(&self.phases());
+        passes.extend(self.dot_passes());
         if self.listed_tiles {
             passes.extend([Pass::ListTiles, Pass::Args]);
         }
         passes.push(Pass::Resolve);
         passes
+    }
+
+    /// The passes that draw dots, behind those that find the nearest depths.
+    fn dot_passes(&self) -> &'static [Pass] {
+        match (self.dots, self.rungs.dots) {
+            (None, _) => &[],
+            (Some(_), DotWay::Brute | DotWay::Cpu) => &[Pass::DotsEnds, Pass::DotsDraw],
+            (Some(_), DotWay::Gpu) => &[Pass::DotsEnds, Pass::DotsCull, Pass::DotsArgs, Pass::DotsDraw],
+        }
     }
 
     /// Passes up to the last of the given raster phases.
@@ -382,6 +396,7 @@ impl fmt::Display for KernelKey {
             ("shapes", self.has_shapes),
             ("moved", self.moves()),
             ("parted", self.parts_corners()),
+            ("dots", self.dots.is_some()),
             ("image", self.has_image()),
             ("orthographic", !self.perspective),
         ] {

@@ -2,8 +2,11 @@
 
 use super::key::{Fetch, KernelKey, Layout, Order, Pass, Phase};
 use crate::{
-    effects::hooks::{Layers, Shape},
-    ladder::{Counting, Depth, Vertex},
+    effects::{
+        dots::Strung,
+        hooks::{Layers, Shape},
+    },
+    ladder::{Counting, Depth, DotWay, Vertex},
 };
 
 impl KernelKey {
@@ -77,6 +80,9 @@ impl KernelKey {
             ("depth", format!("slots/depth/{}", self.rungs.depth.name())),
             ("owner", format!("slots/owner/{layout}")),
             ("finish", format!("slots/finish/{finish}")),
+            ("dots", format!("slots/dots/{}", if self.dots.is_some() { "over" } else { "none" })),
+            ("dot_ends", format!("slots/dot_ends/{}", if self.dots == Some(Strung::Polyline) { "points" } else { "edges" })),
+            ("dot_list", format!("slots/dot_list/{}", if self.rungs.dots == DotWay::Brute { "every" } else { "kept" })),
             ("image", format!("slots/image/{}", if pass == Pass::Resolve { "seen" } else { "none" })),
             ("sums", format!("slots/sums/{layout}")),
             ("walk", format!("slots/walk/{walk}")),
