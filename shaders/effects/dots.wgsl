@@ -33,9 +33,8 @@ fn dots_strength(number: u32, halved: u32, fade_rate: u32) -> u32 {
     return select(select(0u, fading, level == wanted), DOTS_FULL, level > wanted);
 }
 
-// Share of a pixel that a dot covers whose middle is so far from the sample, in units of 1/256 px.
+// Share of a pixel that a dot covers whose middle is so far from the sample, in units of 1/256 px: half of it at the radius.
 fn dots_cover(d: vec2i, radius: u32) -> u32 {
-    let reach = i32(radius) + 128;
     let squared = d.x * d.x + d.y * d.y;
-    return min(u32(max(reach * reach - squared, 0)) / (2u * radius), DOTS_FULL);
+    return min(u32(max(i32((radius + 256u) * radius) - squared, 0)) / (2u * radius), DOTS_FULL);
 }

@@ -110,11 +110,10 @@ impl Dots {
         }
     }
 
-    /// Share of a pixel that a dot covers whose middle is so far from the sample, given the square of the distance: all of it
-    /// within the radius less half a pixel, nothing beyond the radius and half a pixel.
+    /// Share of a pixel that a dot covers whose middle is so far from the sample, given the square of the distance: half of it
+    /// at the radius, falling about a pixel wide and evenly with the square, so that all shares together are the dot's area.
     pub fn cover(&self, squared: u64) -> u32 {
         let radius = u64::from(self.radius());
-        let reach = (radius + 128) * (radius + 128);
-        (reach.saturating_sub(squared) / (2 * radius)).min(u64::from(FULL)) as u32
+        (((radius + 256) * radius).saturating_sub(squared) / (2 * radius)).min(u64::from(FULL)) as u32
     }
 }

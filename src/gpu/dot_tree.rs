@@ -64,7 +64,8 @@ impl Planes {
     fn new(clip_from_scene: &DMat4, dots: &Dots, view: &View) -> Self {
         let [x, y, z, w] = [0, 1, 2, 3].map(|row| clip_from_scene.row(row));
         // Room beyond the picture for a dot's edge, in half pictures.
-        let [margin_x, margin_y] = [view.width, view.height].map(|pixels| 1.0 + f64::from(dots.radius() + 512) / f64::from(128 * pixels.max(1)));
+        let [margin_x, margin_y] =
+            [view.width, view.height].map(|pixels| 1.0 + f64::from(dots.radius() + 512) / f64::from(128 * pixels.max(1)));
         Self([w * margin_x - x, w * margin_x + x, w * margin_y - y, w * margin_y + y, w - z, z])
     }
 

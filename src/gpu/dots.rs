@@ -64,6 +64,9 @@ const MAX_COUNT: u32 = 64;
 /// Dots whose records are read back at a time: 16 bytes each stay far below any limit.
 const PROBED: u32 = 1 << 20;
 
+/// Bytes of a list without entries: a binding holds one at least.
+const ROOM: u64 = 32;
+
 /// Buffers that only pictures with dots have.
 const BUFFERS: [&str; 8] = ["dot_frame", "dot_segments", "stretches", "dot_ends", "dot_list", "dot_count", "dot_args", "dot_records"];
 
@@ -189,9 +192,10 @@ impl Renderer {
             }
             (store.stretches, store.dots, store.tree, store.spacing) = (stretches, count as u32, None, dots.spacing_m.to_bits());
             let why = "both ends of every segment on which dots are strung";
-            buffers.fill(gpu, "dot_segments", &store.segment_bytes(), STORAGE, why)?;
+            let (segments, records) = (store.segment_bytes(), bytemuck::cast_slice(&store.stretches));
+            buffers.fill_room(gpu, "dot_segments", &segments, ROOM.max(segments.len() as u64), STORAGE, why)?;
             let why = "up to 64 dots of one segment each, 20 bytes";
-            buffers.fill(gpu, "stretches", bytemuck::cast_slice(&store.stretches), STORAGE, why)?;
+            buffers.fill_room(gpu, "stretches", records, ROOM.max(records.len() as u64), STORAGE, why)?;
         }
         store.frame = DotFrame {
             clip_from_scene: rounded_columns(&(view.clip_from_world * view.world_from_scene)),

@@ -1,6 +1,6 @@
 //! Explanation: which passes and buffers the last picture has, which it does without, and why.
 
-use super::{BufferNote, Note, Renderer};
+use super::{BufferNote, Note, Renderer, dots::DotStore};
 use crate::{
     plan::{Tolerance, predict::Prediction},
     shader::key::{Entries, Pass, Phase},
@@ -34,11 +34,15 @@ impl Renderer {
             };
         };
         let passes = plan.key.frame();
+        let mut reasons = plan.reasons.clone();
+        if let Some([dots, lines]) = self.dots.as_ref().map(DotStore::counts) {
+            reasons.push(Note { name: "dots".into(), why: format!("{dots} dots on {lines} lines, as far as the lines are long") });
+        }
         Explanation {
             key: plan.key.to_string(),
             passes: passes.iter().map(|pass| Note { name: pass.label(), why: pass_purpose(*pass).into() }).collect(),
             buffers: self.buffers.notes(),
-            reasons: plan.reasons.clone(),
+            reasons,
             omitted: plan.omitted.clone(),
             prediction: Some(plan.prediction),
             tolerance: Some(plan.tolerance),

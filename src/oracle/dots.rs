@@ -33,7 +33,6 @@ struct Bounded {
 
 /// All dots of a picture.
 struct Strings<'a> {
-    scene: &'a Scene,
     movers: Vec<Mover<'a>>,
     lines: Lines,
     clip_from_scene: [[f64; 4]; 4],
@@ -64,7 +63,7 @@ impl<'a> Strings<'a> {
         }
         let clip_from_scene = rounded_columns(&(view.clip_from_world * view.world_from_scene)).map(|column| column.map(f64::from));
         let movers = draws.iter().map(|draw| Mover::new(scene, draw, view, stack)).collect();
-        Ok(Self { scene, movers, lines, clip_from_scene, dots: placed })
+        Ok(Self { movers, lines, clip_from_scene, dots: placed })
     }
 
     /// Both ends of every segment; none where one of them was refused.
@@ -75,7 +74,6 @@ impl<'a> Strings<'a> {
         };
         let of = |segment: &Segment| match segment.ends {
             Ends::Edge { draw, vertices: [a, b], triangle } => {
-                debug_assert!((draw as usize) < self.scene.instances.len());
                 let mover = &self.movers[draw as usize];
                 Some([edge(mover, Corner { vertex: a, triangle })?, edge(mover, Corner { vertex: b, triangle })?])
             }
@@ -89,7 +87,10 @@ impl<'a> Strings<'a> {
             let m = |column: usize| self.clip_from_scene[column][row];
             [m(0) * f64::from(x), m(1) * f64::from(y), m(2) * f64::from(z), m(3)]
         });
-        Bounded { at: terms.map(|row| row.iter().sum()), error: terms.map(|row| 4.0 * ULP * row.iter().map(|term| term.abs()).sum::<f64>()) }
+        Bounded {
+            at: terms.map(|row| row.iter().sum()),
+            error: terms.map(|row| 4.0 * ULP * row.iter().map(|term| term.abs()).sum::<f64>()),
+        }
     }
 }
 

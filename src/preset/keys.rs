@@ -9,7 +9,9 @@ use super::{
     polyline,
 };
 use crate::{
-    ladder::{AXES, Checks, Clipping, Counting, Coverage, Depth, DotWay, Parameters, Perspective, Rung, Skinning, Sums, Vertex, Visibility},
+    ladder::{
+        AXES, Checks, Clipping, Counting, Coverage, Depth, DotWay, Parameters, Perspective, Rung, Skinning, Sums, Vertex, Visibility,
+    },
     scene::camera::{Camera, MIN_NEAR_M, Projection},
     session::{SceneSource, Session, Test, Tier},
 };

@@ -12,12 +12,13 @@ pub fn parse(text: &str) -> Result<Vec<[f32; 3]>, String> {
     for written in text.split([';', '\n']).map(str::trim).filter(|written| !written.is_empty()) {
         let number = points.len() + 1;
         let lanes: Vec<&str> = written.split([' ', '\t', ',']).filter(|lane| !lane.is_empty()).collect();
-        let lanes: [&str; 3] =
-            lanes.try_into().map_err(|lanes: Vec<&str>| format!("has {} numbers in point {number}, {written:?}; it needs 3", lanes.len()))?;
+        let lanes: [&str; 3] = lanes
+            .try_into()
+            .map_err(|lanes: Vec<&str>| format!("has {} numbers in point {number}, {written:?}; it needs 3", lanes.len()))?;
         let mut point = [0.0; 3];
         for (lane, written) in point.iter_mut().zip(lanes) {
             let value: f32 = written.parse().map_err(|_| format!("has {written:?} in point {number}, which is no number"))?;
-            if !(value.abs() <= FARTHEST_M) {
+            if !value.is_finite() || value.abs() > FARTHEST_M {
                 return Err(format!("has {written} in point {number}; coordinates must lie within -1e9..=1e9"));
             }
             *lane = value;
@@ -46,7 +47,10 @@ mod tests {
     fn a_polyline_reads_back_to_the_bit() {
         let points = [[0.1, -0.0, 1e-40], [1e9, 3.402_823, -7.0], [0.0, 0.0, 0.0]];
         let back = parse(&written(&points)).expect("a polyline");
-        assert_eq!(back.iter().flatten().map(|v| v.to_bits()).collect::<Vec<_>>(), points.iter().flatten().map(|v| v.to_bits()).collect::<Vec<_>>());
+        assert_eq!(
+            back.iter().flatten().map(|v| v.to_bits()).collect::<Vec<_>>(),
+            points.iter().flatten().map(|v| v.to_bits()).collect::<Vec<_>>()
+        );
         assert_eq!(parse("\n 0 0 0\n1,2,3 ; 4 5\t6\n"), Ok(vec![[0.0; 3], [1.0, 2.0, 3.0], [4.0, 5.0, 6.0]]));
         assert_eq!(parse(" ; \n"), Ok(Vec::new()));
     }

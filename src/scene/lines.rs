@@ -65,8 +65,7 @@ impl Lines {
         let mut known: HashMap<usize, Vec<Walk>> = HashMap::new();
         let mut lines = Self::default();
         for (draw, instance) in scene.instances.iter().enumerate() {
-            let walks =
-                known.entry(instance.primitive).or_insert_with(|| walks(scene, &scene.primitives[instance.primitive], crease_deg));
+            let walks = known.entry(instance.primitive).or_insert_with(|| walks(scene, &scene.primitives[instance.primitive], crease_deg));
             let place = pose.as_ref().map_or(instance.world_from_object, |pose| pose.place(draw));
             // What joints hold is as large as its first joint makes it.
             let palette = pose.as_ref().and_then(|pose| pose.bend(draw)).and_then(|bend| bend.palette.as_ref());

@@ -281,7 +281,11 @@ impl Session {
             let reach_m = self.posed_stack().reach_m(bounds.radius());
             (bounds.min, bounds.max) = (bounds.min - reach_m, bounds.max + reach_m);
         }
-        View { pose, polyline: self.polyline.clone(), ..View::new(&self.camera_for(scene, aspect), width, height, &bounds, spin, self.output.background) }
+        View {
+            pose,
+            polyline: self.polyline.clone(),
+            ..View::new(&self.camera_for(scene, aspect), width, height, &bounds, spin, self.output.background)
+        }
     }
 }
 
