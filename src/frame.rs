@@ -69,6 +69,8 @@ pub struct Geometry {
     pub pieces: Vec<Piece>,
     /// What sample effects settled: for every triangle by id, then for every piece, one entry per effect that decides.
     pub decisions: Vec<[u32; 4]>,
+    /// One per dot of all lines, always in units of 1/256 px.
+    pub dots: Vec<SnappedVertex>,
     /// Positions are in units of 2^-bits px.
     pub subpixel_bits: u32,
     /// Drawn pixels for one that is shown, along a side: the picture and its effects' lengths are this many times as large.
@@ -84,7 +86,7 @@ pub struct Geometry {
 
 impl Default for Geometry {
     fn default() -> Self {
-        let (vertices, bent, pieces, decisions) = (Vec::new(), Vec::new(), Vec::new(), Vec::new());
+        let (vertices, bent, pieces, decisions, dots) = (Vec::new(), Vec::new(), Vec::new(), Vec::new(), Vec::new());
         let (subpixel_bits, exact) = (SUBPIXEL_BITS, Exactness::default());
         Self {
             vertices,
@@ -93,6 +95,7 @@ impl Default for Geometry {
             bent,
             pieces,
             decisions,
+            dots,
             subpixel_bits,
             is_relative: false,
             is_rough: false,
@@ -189,6 +192,8 @@ pub struct Frame {
     pub color: Vec<[u8; 4]>,
     /// What an effect in the visibility slot added up per pixel: weights of layers, or their number. Empty without one.
     pub counted: Vec<u32>,
+    /// Strength of the strongest dot per pixel, 0 to 256. Empty without dots.
+    pub dots: Vec<u32>,
     pub counters: Counters,
 }
 
@@ -200,8 +205,8 @@ impl Frame {
             .flat_map(|y| (0..width).map(move |x| under(y, height, self.height) * self.width as usize + under(x, width, self.width)))
             .collect();
         let of = |words: &[u32]| if words.is_empty() { Vec::new() } else { places.iter().map(|&at| words[at]).collect() };
-        let (owner, key, counted) = (of(&self.owner), of(&self.key), of(&self.counted));
-        Self { width, height, owner, key, color, counted, ..*self }
+        let (owner, key, counted, dots) = (of(&self.owner), of(&self.key), of(&self.counted), of(&self.dots));
+        Self { width, height, owner, key, color, counted, dots, ..*self }
     }
 
     /// Number of pixels that have an owner.

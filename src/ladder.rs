@@ -216,6 +216,15 @@ ladder! {
         /// Sixteen, four to a side, and the mean of their light.
         Quadruple = "quadruple",
     }
+    /// How dots that nobody would see are left out.
+    dots: DotWay = "dots", usual Gpu {
+        /// They are not: every dot is placed and drawn.
+        Brute = "brute",
+        /// The CPU searches a tree of lines, and hands over the dots that may show.
+        Cpu = "cpu",
+        /// Lines are culled and thinned in compute, and what is left is drawn by an indirect dispatch.
+        Gpu = "gpu",
+    }
     /// How the effects' parameters reach the kernels.
     parameters: Parameters = "parameters", usual Uniform {
         /// As constants in the text: a new text for every value.

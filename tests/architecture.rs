@@ -50,6 +50,7 @@ const GUARDED: &[(&str, &[&str])] = &[
     ("eframe", &["app"]),
     ("egui_wgpu", &["app"]),
     ("rfd", &["app"]),
+    ("rstar", &["gpu"]),
     ("clap", &["cli", "main"]),
     ("indicatif", &["cli"]),
     ("anyhow", &["cli", "app", "main"]),

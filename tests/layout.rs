@@ -4,6 +4,7 @@ use rasterlab::{
     effects::{EFFECTS, Effect},
     gpu::bends::{BendRecord, ShapeRecord},
     gpu::culling::{CullingUniform, InstanceRecord, MeshletRecord},
+    gpu::dots::{DotFrame, StretchRecord},
     gpu::uniforms::{CounterRecord, DrawRecord, FrameUniform, ScalingUniform, Twin},
     ladder::Visibility,
     shader::{
@@ -35,6 +36,9 @@ fn uniforms_and_records_agree() {
     check_twin::<DrawRecord>(&small);
     check_twin::<CounterRecord>(&small);
     check_twin::<ScalingUniform>(&reflected(Pass::Scale, vec![]));
+    let dots = reflected(Pass::DotsDraw, vec![]);
+    check_twin::<DotFrame>(&dots);
+    check_twin::<StretchRecord>(&dots);
     let skin = reflected(Pass::Skin, vec![]);
     check_twin::<BendRecord>(&skin);
     check_twin::<ShapeRecord>(&skin);

@@ -138,6 +138,7 @@ fn flat_view(width: u32, height: u32) -> View {
         subpixel_bits: 8,
         is_relative: false,
         pose: None,
+        polyline: Default::default(),
     }
 }
 
@@ -157,7 +158,7 @@ fn all_effects() -> Stack {
 
 /// What a picture is coloured from.
 fn seen(frame: &Frame) -> Seen<'_> {
-    Seen { owners: &frame.owner, keys: &frame.key, previous: None }
+    Seen { owners: &frame.owner, keys: &frame.key, dots: &frame.dots, previous: None }
 }
 
 /// Numbers that look random and are the same on every run.

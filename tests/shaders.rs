@@ -4,9 +4,10 @@
 use rasterlab::{
     effects::{
         EFFECTS, Effect,
+        dots::Strung,
         hooks::{Shape, Slot},
     },
-    ladder::{AXES, Culling, Parameters, Visibility},
+    ladder::{AXES, Culling, DotWay, Parameters, Visibility},
     shader::{
         Fetch, KernelKey, Pass,
         key::{Order, Phase},
@@ -29,6 +30,9 @@ fn key(fetch: Fetch, visibility: Visibility, has_queues: bool, effects: Vec<&'st
 fn all_passes(key: &KernelKey) -> Vec<Pass> {
     let mut passes = key.frame();
     passes.extend(key.passes(&[Phase::Count]));
+    if key.dots.is_some() {
+        passes.push(Pass::DotsProbe);
+    }
     passes
 }
 
@@ -213,4 +217,21 @@ fn an_error_names_the_file_and_line_a_person_wrote() {
     let linked = link::link(&Library::Folder(shaders.into()), "passes/project", &key, &[]).expect("links");
     let Err(error) = reflect::reflect(&linked, false) else { panic!("a wrong type was accepted") };
     assert!(error.to_string().starts_with("shaders/effects/wrong.wgsl:2:"), "{error}");
+}
+
+#[test]
+fn every_way_of_choosing_dots_validates_for_every_line_and_backend() {
+    let dots = Effect::find("dots").expect("a listed effect");
+    for visibility in Visibility::ALL {
+        for way in DotWay::ALL {
+            for strung in [Strung::Edges, Strung::Creases, Strung::Polyline] {
+                let mut key = KernelKey { dots: Some(strung), ..key(Fetch::Indexed, *visibility, true, vec![dots]) };
+                key.rungs.dots = *way;
+                for pass in all_passes(&key) {
+                    let storage = validate(&key, pass);
+                    assert!(storage <= 8, "{} of {key} binds {storage} storage buffers", pass.label());
+                }
+            }
+        }
+    }
 }

@@ -373,7 +373,7 @@ fn exchanged_owners_a_wrong_seed_and_a_reversed_stack_are_caught() {
         })
         .collect();
     let draws = rasterlab::scene::draw::draws(&scene, &view).expect("a look fits");
-    let seen = oracle::Seen { owners: &exchanged, keys: &whole.key, previous: None };
+    let seen = oracle::Seen { owners: &exchanged, keys: &whole.key, dots: &whole.dots, previous: None };
     let colors = oracle::shade(&scene, &draws, &view, &look.session.posed_stack(), &seen, &oracle::project(&scene, &draws, &view));
     let changed = whole.owner.iter().filter(|&&o| o == a || o == b).count() as u64;
     assert_eq!(owners(&exchanged, &whole.owner).different, changed);

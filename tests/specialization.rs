@@ -9,10 +9,10 @@ use rasterlab::{
     effects::{Stack, hooks::Shape},
     frame::Frame,
     gpu::{Explanation, Renderer},
-    ladder::Visibility,
+    ladder::{DotWay, Pins, Visibility},
     measure::compare,
     oracle,
-    plan::Tuning,
+    plan::{Accuracy, Tuning},
     preset,
     scene::{Scene, camera::View},
 };
@@ -160,6 +160,39 @@ fn only_a_scene_that_bends_has_the_pass_and_only_the_buffers_that_it_needs() {
     assert_eq!(passes[..2], ["skin", "project"]);
     assert!(buffers.contains(&"bends") && buffers.contains(&"joints") && !buffers.contains(&"shapes"), "{buffers:?}");
     assert!(bent.reasons.iter().any(|note| note.name == "skinning" && note.why.starts_with("linear: ")));
+}
+
+#[test]
+fn only_a_stack_with_dots_has_their_passes_and_only_their_way_s_buffers() {
+    let Some(gpu) = gpu() else { return };
+    let (scene, dots) = (scene("teapot?tess=4"), stack(&["dots"]));
+    let view = view(&scene, [160, 120]);
+    let explained = |stack: &Stack, way: DotWay| {
+        let mut renderer = Renderer::new(gpu.clone());
+        captured(&mut renderer, &scene, &view, stack, &Accuracy { pins: Pins::of(way), ..Accuracy::default() });
+        renderer.explain()
+    };
+    let bare = explained(&stack(&["lambert"]), DotWay::Gpu);
+    let (passes, buffers) = names(&bare);
+    assert!(passes.iter().chain(&buffers).all(|name| !name.contains("dot") && *name != "stretches"), "{passes:?} {buffers:?}");
+    assert!(bare.omitted.iter().any(|note| note.name == "dots" && note.why.contains("no effect strings dots")));
+    assert!(bare.reasons.iter().all(|note| note.name != "dots"));
+    let ways: [(DotWay, &[&str], &[&str]); 3] = [
+        (DotWay::Brute, &["dots_ends", "dots_draw"], &["dot_ends", "dot_frame", "dot_segments"]),
+        (DotWay::Cpu, &["dots_ends", "dots_draw"], &["dot_count", "dot_ends", "dot_frame", "dot_list", "dot_segments"]),
+        (
+            DotWay::Gpu,
+            &["dots_ends", "dots_cull", "dots_args", "dots_draw"],
+            &["dot_args", "dot_count", "dot_ends", "dot_frame", "dot_list", "dot_segments"],
+        ),
+    ];
+    for (way, its_passes, its_buffers) in ways {
+        let all = explained(&dots, way);
+        let (passes, buffers) = names(&all);
+        assert_eq!(passes.iter().filter(|name| name.contains("dot")).copied().collect::<Vec<_>>(), its_passes, "{}", way.name());
+        assert_eq!(buffers.iter().filter(|name| name.contains("dot")).copied().collect::<Vec<_>>(), its_buffers, "{}", way.name());
+        assert!(all.reasons.iter().any(|note| note.name == "dots" && note.why.contains(way.name())), "{}", way.name());
+    }
 }
 
 #[test]

@@ -4,6 +4,7 @@
 //@ use common/counters
 //@ use slot/owner
 //@ use slot/pixels
+//@ use slot/dots
 //@ use slot/finish
 //@ use slot/shading
 
@@ -24,7 +25,7 @@ fn resolve(@builtin(workgroup_id) group: vec3u, @builtin(num_workgroups) groups:
         encoded = select(encoded, vec4f(color_encode(shaded.rgb), shaded.a), is_owned);
     }
     if is_inside {
-        color[pixel.y * frame.stride + pixel.x] = color_pack(finish(pixel, encoded));
+        color[pixel.y * frame.stride + pixel.x] = color_pack(finish(pixel, dots_over(pixel, encoded)));
         if !is_owned && found.y != 0u { atomicAdd(&counters.orphans, 1u); }
     }
 }

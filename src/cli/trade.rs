@@ -133,9 +133,14 @@ fn lines(rows: &[TradeRow]) -> Vec<Vec<String>> {
     let mut lines = vec![head.map(str::to_owned).to_vec()];
     let not_measured = || "not measured".to_owned();
     let ms = |ms: Option<f64>| ms.map_or_else(not_measured, |ms| format!("{ms:.4}"));
+    // Only where the CPU chooses is there a column for how long.
+    let has_cpu = rows.iter().any(|row| row.cpu_ms_p50.is_some());
+    if has_cpu {
+        lines[0].insert(5, "OF THAT CPU".into());
+    }
     lines.extend(rows.iter().map(|row| {
         let figure = |figure: &dyn Fn(&TradeError) -> String| row.error.as_ref().map_or_else(not_measured, figure);
-        vec![
+        let mut line = vec![
             row.scene.clone(),
             row.triangles.to_string(),
             row.rungs.clone(),
@@ -154,7 +159,11 @@ fn lines(rows: &[TradeRow]) -> Vec<Vec<String>> {
             figure(&|e| format!("{:.1}", e.cracks_per_mpx)),
             format!("{:.1}", row.bytes as f64 / f64::from(1 << 20)),
             if row.is_beaten { "no gain" } else { "-" }.into(),
-        ]
+        ];
+        if has_cpu {
+            line.insert(5, row.cpu_ms_p50.map_or_else(|| "-".into(), |ms| format!("{ms:.4}")));
+        }
+        line
     }));
     lines
 }

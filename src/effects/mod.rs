@@ -39,6 +39,7 @@ effects![
     xray,
     overdraw,
     race,
+    dots,
     posterize,
     smear,
     outline,
@@ -117,6 +118,12 @@ impl Effect {
     /// The same effect, also in a slot of the rasterizer.
     pub const fn in_slot(mut self, slot: Slot) -> Self {
         self.hooks.slot = Some(slot);
+        self
+    }
+
+    /// The same effect, which draws along lines.
+    pub const fn with_lines(mut self) -> Self {
+        self.hooks.has_lines = true;
         self
     }
 
@@ -325,6 +332,11 @@ impl Stack {
     /// Parameters of the effect called `name`, if it is on; `P` must be its own.
     pub fn params<P: Params>(&self, name: &str) -> Option<P> {
         self.get(name).map(|enabled| read(&enabled.words))
+    }
+
+    /// The dots that are strung on lines, if any are.
+    pub fn dots(&self) -> Option<dots::Dots> {
+        self.params(dots::EFFECT.name)
     }
 
     /// What becomes of the samples of a pixel in a scene of so many triangles; none: the nearest is shown.

@@ -10,6 +10,8 @@ pub enum Dispatch {
     Direct([u32; 2]),
     /// Byte offset in the argument buffer.
     Indirect(u64),
+    /// As many as the dots that were listed on the device.
+    Listed,
 }
 
 /// Workgroups of `pass` over so many projected vertices, triangles, vertices that may bend, and meshlets of all instances, in a
@@ -36,6 +38,9 @@ pub fn dispatch(pass: Pass, [vertices, triangles, bent, meshlets]: [u32; 4], vie
         Pass::BinScan => Dispatch::Direct([1, 1]),
         Pass::RasterTiles => Dispatch::Direct([view.width.div_ceil(16), view.height.div_ceil(16)]),
         Pass::RasterLarge(_) => Dispatch::Indirect(36),
+        Pass::DotsEnds | Pass::DotsCull | Pass::DotsArgs | Pass::DotsDraw | Pass::DotsProbe => {
+            unreachable!("how many dots there are, only their store knows")
+        }
         Pass::ListTiles => Dispatch::Direct(folded((view.width.div_ceil(8) * view.height.div_ceil(8)).div_ceil(64))),
         Pass::Resolve if key.listed_tiles => Dispatch::Indirect(48),
         Pass::Scale => Dispatch::Direct(shown.map(|side| side.div_ceil(8))),

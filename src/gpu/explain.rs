@@ -1,6 +1,6 @@
 //! Explanation: which passes and buffers the last picture has, which it does without, and why.
 
-use super::{BufferNote, Note, Renderer};
+use super::{BufferNote, Note, Renderer, dots::DotStore};
 use crate::{
     plan::{Tolerance, predict::Prediction},
     shader::key::{Entries, Pass, Phase, Round},
@@ -34,11 +34,15 @@ impl Renderer {
             };
         };
         let passes = plan.key.frame();
+        let mut reasons = plan.reasons.clone();
+        if let Some([dots, lines]) = self.dots.as_ref().map(DotStore::counts) {
+            reasons.push(Note { name: "dots".into(), why: format!("{dots} dots on {lines} lines, as far as the lines are long") });
+        }
         Explanation {
             key: plan.key.to_string(),
             passes: passes.iter().map(|pass| Note { name: pass.label(), why: pass_purpose(*pass).into() }).collect(),
             buffers: self.buffers.notes(),
-            reasons: plan.reasons.clone(),
+            reasons,
             omitted: plan.omitted.clone(),
             prediction: Some(plan.prediction),
             tolerance: Some(plan.tolerance),
@@ -86,6 +90,11 @@ fn pass_purpose(pass: Pass) -> &'static str {
         Pass::TileLarge => "finds the tiles of each large triangle",
         Pass::RasterMedium(_) => "one workgroup per triangle of up to 128 px",
         Pass::RasterLarge(_) => "one workgroup per 64 x 64 tile of a large triangle",
+        Pass::DotsEnds => "takes both ends of every segment of a line to clip space",
+        Pass::DotsCull => "leaves out lines beyond the view, thins the others, lists the dots that may show",
+        Pass::DotsArgs => "turns the number of listed dots into a dispatch size",
+        Pass::DotsDraw => "draws dots, one invocation each: the strongest on every pixel",
+        Pass::DotsProbe => "reads back where every dot lies",
         Pass::ListTiles => "gathers the tiles that hold something",
         Pass::Resolve => "shades every pixel once",
         Pass::Scale => "brings the pixels that were drawn to the size that is shown",

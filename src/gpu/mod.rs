@@ -6,6 +6,8 @@ pub mod buffers;
 pub mod culling;
 pub mod device;
 mod dispatch;
+mod dot_tree;
+pub mod dots;
 pub mod error;
 mod explain;
 pub mod hardware;
@@ -32,6 +34,7 @@ use self::{
     buffers::Buffers,
     culling::Patches,
     dispatch::{Dispatch, dispatch},
+    dots::DotStore,
     packing::Packing,
     pipelines::Pipelines,
     prepare::{BACKGROUND_ROWS, bin_heads, first_capacities, record_count, recorded_capacities},
@@ -57,6 +60,8 @@ use crate::{
 pub struct Report {
     /// Whole frame, clears included; none where the adapter has no timestamps.
     pub gpu_ms: Option<f64>,
+    /// What the CPU did for the newest frame while the GPU waited: choosing dots and handing them over.
+    pub cpu_ms: Option<f64>,
     pub passes: Vec<(String, f64)>,
     pub counters: Counters,
     /// What a draw order let through, where one is kept.
@@ -100,6 +105,8 @@ pub struct Renderer {
     culled: Option<CullingFigures>,
     /// A picture is drawn once more for the judge, after which the next one goes on as if it had not been.
     is_judged: bool,
+    /// Lines and their dots, while a stack has them.
+    dots: Option<DotStore>,
 }
 
 const STORAGE: wgpu::BufferUsages = wgpu::BufferUsages::STORAGE;
@@ -134,6 +141,7 @@ impl Renderer {
             occluders: None,
             culled: None,
             is_judged: false,
+            dots: None,
         }
     }
 
@@ -203,6 +211,7 @@ impl Renderer {
         self.distrust = false;
         self.past = None;
         self.full = None;
+        self.dots = None;
         self.scene = Some(scene.clone());
         Ok(())
     }
@@ -238,6 +247,9 @@ impl Renderer {
             timer.begin(&mut encoder, detail);
         }
         self.clear(&mut encoder, &["counters", "depth_keys", "owners", "depth_owner", "packed", "layers", "marks", "counts", "hits"]);
+        if plan.key.dots.is_some() {
+            self.clear_dots(&mut encoder, &plan.key, view);
+        }
         if self.buffers.has("bins") {
             encoder.clear_buffer(self.buffers.get("bins"), 0, Some(4 * bin_heads(view)));
         }
@@ -304,7 +316,8 @@ impl Renderer {
         if !self.is_judged {
             self.culled = culled;
         }
-        Some(Report { gpu_ms: times.total_ms, passes: times.passes, counters, order, culled, redraw })
+        let cpu_ms = self.dots.as_ref().and_then(|dots| dots.chosen_ms);
+        Some(Report { gpu_ms: times.total_ms, cpu_ms, passes: times.passes, counters, order, culled, redraw })
     }
 
     /// Begins anew: the next picture stands after nothing but background.
@@ -387,8 +400,13 @@ impl Renderer {
             let timestamp_writes = self.timer.as_mut().and_then(|timer| timer.compute(&pipeline.label, is_last));
             let mut recorded = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor { label: Some(&pipeline.label), timestamp_writes });
             pipeline.bind(&self.gpu, &mut recorded, |name| self.buffers.get(name));
-            match dispatch(pass, [vertices, triangles, bent, meshlets], view, self.shown, key) {
+            let size = match &self.dots {
+                Some(dots) if pass.is_of_dots() => dots.dispatch(pass, key),
+                _ => dispatch(pass, [vertices, triangles, bent, meshlets], view, self.shown, key),
+            };
+            match size {
                 Dispatch::Direct([x, y]) => recorded.dispatch_workgroups(x, y, 1),
+                Dispatch::Listed => recorded.dispatch_workgroups_indirect(self.buffers.get("dot_args"), 0),
                 Dispatch::Indirect(offset) => recorded.dispatch_workgroups_indirect(self.buffers.get("args"), offset),
             }
         }

@@ -210,7 +210,11 @@ impl Renderer {
         }
         let tiles = if key.listed_tiles { u64::from(view.width.div_ceil(8)) * u64::from(view.height.div_ceil(8)) } else { 0 };
         let picture = 4 * u64::from(color_stride(view.width)) * u64::from(view.height);
-        buffers.ensure(gpu, "color", picture + 4 * tiles, STORAGE, "the picture, 4 bytes per pixel, and the list of tiles to resolve")?;
+        let (behind, why) = match key.dots {
+            None => (tiles, "the picture, 4 bytes per pixel, and the list of tiles to resolve"),
+            Some(_) => (pixels, "the picture, 4 bytes per pixel, and as many for the strongest dot on each"),
+        };
+        buffers.ensure(gpu, "color", picture + 4 * behind, STORAGE, why)?;
         if key.is_scaled() {
             let [width, height] = self.shown;
             let scaling = ScalingUniform { size: self.shown, stride: color_stride(width), spare: 0 };
@@ -228,6 +232,7 @@ impl Renderer {
             let rows = background_word(view).repeat((color_stride(view.width) * BACKGROUND_ROWS) as usize);
             buffers.fill(gpu, "background", &rows, STORAGE, "a few rows of background, copied all over the picture first")?;
         }
+        self.prepare_dots(view, stack, &plan.key)?;
         Ok(plan)
     }
 }

@@ -9,6 +9,7 @@ use super::{
     Demand, Gpu, RenderError, Renderer, STORAGE,
     bends::BENT_BYTES,
     buffers,
+    dots::first_dot_word,
     prepare::record_count,
     timer::{Timer, Times},
     uniforms::OrderRecord,
@@ -133,6 +134,7 @@ impl Renderer {
         let (asked, view) = (view, &view.scaled(key.rungs.scale.factor()));
         let (owner, depth) = self.read_visibility(&key, view)?;
         let color = self.read_color(view)?;
+        let (dot_places, dots) = (self.read_dots(&key)?, self.read_strengths(&key, view)?);
         let counted = self.read_counted(&key, view)?;
         let previous = if key.reads_previous() {
             Some(buffers::read_picture(&self.gpu, self.buffers.get("previous"), [view.width, view.height])?)
@@ -140,10 +142,11 @@ impl Renderer {
             None
         };
         let (key, counters) = if key.culls() { self.draw_unculled(asked, stack, accuracy, counters)? } else { (key, counters) };
-        let geometry = self.read_geometry(&key)?;
+        let mut geometry = self.read_geometry(&key)?;
+        geometry.dots = dot_places;
         let layers = if key.layers == Some(Layers::Overdraw) { self.read_counted(&key, view)? } else { self.count_layers(&key, view)? };
         let keys_are_rough = !key.rungs.visibility.is_exact() || !matches!(key.rungs.depth, Depth::Reversed | Depth::Integer);
-        let frame = Frame { width: view.width, height: view.height, owner, key: depth, color, counted, counters, keys_are_rough };
+        let frame = Frame { width: view.width, height: view.height, owner, key: depth, color, counted, dots, counters, keys_are_rough };
         let shown = match key.is_scaled() {
             true => Some(frame.shown(shown, buffers::read_picture(&self.gpu, self.buffers.get("shown"), shown)?)),
             false => None,
@@ -233,6 +236,15 @@ impl Renderer {
         Ok(words[first as usize..].chunks_exact(all).map(weight).collect())
     }
 
+    /// Strength of the strongest dot per pixel.
+    fn read_strengths(&self, key: &KernelKey, view: &View) -> Result<Vec<u32>, RenderError> {
+        if key.dots.is_none() {
+            return Ok(Vec::new());
+        }
+        let first = first_dot_word(view);
+        Ok(self.words("color", first + view.pixels() as u64)?.split_off(first as usize))
+    }
+
     fn read_color(&self, view: &View) -> Result<Vec<[u8; 4]>, RenderError> {
         buffers::read_picture(&self.gpu, self.buffers.get("color"), [view.width, view.height])
     }
@@ -263,6 +275,7 @@ impl Renderer {
             scale: key.rungs.scale.factor(),
             is_relative: key.rungs.vertices == Vertices::Relative,
             is_rough: key.rungs.vertices.packed_bits().is_some(),
+            dots: Vec::new(),
             exact: Exactness { vertices: key.rungs.vertex == Vertex::Strict, keys: key.rungs.depth == Depth::Integer },
             bent: self.read_bent(scene.vertex_bytes.len() as u64)?,
         })
@@ -298,7 +311,7 @@ fn piece(words: &[u32]) -> Piece {
     Piece { parent: words[12], corners, outline: words[15] }
 }
 
-fn vertex(words: &[u32]) -> SnappedVertex {
+pub(super) fn vertex(words: &[u32]) -> SnappedVertex {
     SnappedVertex {
         x: words[0] as i32 >> 8,
         y: words[1] as i32 >> 8,

@@ -60,9 +60,13 @@ pub struct TradeRow {
     pub rungs: String,
     #[serde(skip)]
     pub pins: Pins,
-    /// Whole frame by timestamps; none without them or where the combination cannot be drawn.
+    /// Whole frame by timestamps, and what the CPU chose before it by the clock; none without timestamps or where the
+    /// combination cannot be drawn.
     pub ms_p50: Option<f64>,
     pub ms_p95: Option<f64>,
+    /// What the CPU alone took of that, where it had to choose anything.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub cpu_ms_p50: Option<f64>,
     /// Valid samples.
     pub samples: usize,
     /// Samples whose timestamps were impossible.
@@ -105,6 +109,7 @@ struct Entry {
     owners: usize,
     bytes: u64,
     ms: Vec<f64>,
+    cpu_ms: Vec<f64>,
     invalid: usize,
 }
 
@@ -160,6 +165,7 @@ pub fn trade(
         pins,
         ms_p50: None,
         ms_p95: None,
+        cpu_ms_p50: None,
         samples: 0,
         invalid: 0,
         outliers: 0,
@@ -214,7 +220,7 @@ impl Entry {
         let bytes = renderer.explain().buffers.iter().map(|buffer| buffer.bytes).sum();
         let error = TradeError::of(&first, &second.frame, &(truth.judge)(&session.stack, &first), truth);
         let owners = first.frame.owner.iter().filter(|owner| **owner != NO_OWNER).collect::<HashSet<_>>().len();
-        Ok(Self { pins, view, renderer, error, owners, bytes, ms: Vec::new(), invalid: 0 })
+        Ok(Self { pins, view, renderer, error, owners, bytes, ms: Vec::new(), cpu_ms: Vec::new(), invalid: 0 })
     }
 
     /// Draws twice without a pause and waits for the second: an idle device lowers its clocks, and others' frames empty its caches.
@@ -222,8 +228,12 @@ impl Entry {
         let accuracy = Accuracy { pins: self.pins, ..session.accuracy };
         self.renderer.draw_timed(&self.view, &session.stack, &accuracy, Detail::Whole)?;
         self.renderer.draw_timed(&self.view, &session.stack, &accuracy, Detail::Whole)?;
-        match self.renderer.finish()?.gpu_ms {
-            Some(ms) if is_kept => self.ms.push(ms),
+        let report = self.renderer.finish()?;
+        match report.gpu_ms {
+            Some(ms) if is_kept => {
+                self.ms.push(ms + report.cpu_ms.unwrap_or(0.0));
+                self.cpu_ms.extend(report.cpu_ms);
+            }
             None if is_kept => self.invalid += 1,
             _ => {}
         }
@@ -240,6 +250,7 @@ impl Entry {
         TradeRow {
             ms_p50: timing::percentile(&self.ms, 0.5),
             ms_p95: timing::percentile(&self.ms, 0.95),
+            cpu_ms_p50: timing::percentile(&self.cpu_ms, 0.5),
             samples: self.ms.len(),
             invalid: self.invalid,
             outliers: timing::outliers(&self.ms),
@@ -363,6 +374,7 @@ mod tests {
             pins: Pins::default(),
             ms_p50: Some(ms),
             ms_p95: Some(ms),
+            cpu_ms_p50: None,
             samples: 1,
             invalid: 0,
             outliers: 0,

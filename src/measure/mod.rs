@@ -53,6 +53,15 @@ pub struct Accuracy {
     pub max_bend_px: f64,
     /// Decisions of sample effects beyond their bound, or that do not follow from their first word.
     pub decisions_wrong: u64,
+    /// Dots of all lines.
+    #[serde(skip_serializing_if = "is_zero")]
+    pub dots: u64,
+    /// Dots that lie outside their forward error bound.
+    #[serde(skip_serializing_if = "is_zero")]
+    pub dots_outside_bound: u64,
+    /// Pixels whose strongest dot is not what follows from the records of all dots.
+    #[serde(skip_serializing_if = "is_zero")]
+    pub dot_pixels_wrong: u64,
     /// Pixels whose number of layers, or sum of their weights, is wrong.
     pub counts_wrong: u64,
     /// Pixels of layers where several colours are right, because a weight or the depth window is at the edge of a step.
@@ -65,6 +74,10 @@ pub struct Accuracy {
     pub max_colour_delta: u8,
     /// Root mean square of that over all channels, of 255.
     pub rms_colour_delta: f64,
+}
+
+fn is_zero(count: &u64) -> bool {
+    *count == 0
 }
 
 /// Error as a bench row states it; none reads "not measured", never 0.
@@ -184,6 +197,8 @@ impl Accuracy {
             (self.bent_outside_bound, 0, "bent vertices lie outside their bound"),
             (self.unexplained, budget.max_wrong_owner, "pixels differ from the oracle's own picture without a reason"),
             (self.decisions_wrong, 0, "decisions of sample effects are wrong"),
+            (self.dots_outside_bound, 0, "dots lie outside their bound"),
+            (self.dot_pixels_wrong, 0, "pixels have a wrong strength of dots"),
             (self.counts_wrong, 0, "pixels have a wrong number of layers, or a wrong sum of weights"),
             (self.counters_wrong, 0, "counters of rejected or degenerate triangles are wrong"),
             (self.explained_by_snap, budget.max_explained, "pixels differ because vertices snapped apart"),

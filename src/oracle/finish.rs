@@ -7,7 +7,8 @@ use super::surface::surfaces;
 use crate::{
     effects::{
         Stack,
-        hooks::{Picture, Pixel},
+        dots::{Dots, FULL},
+        hooks::{Picture, Pixel, tone::encoded},
     },
     frame::Geometry,
     math::srgb_byte,
@@ -21,6 +22,8 @@ pub struct Seen<'a> {
     pub owners: &'a [u32],
     /// Depth key per pixel, 0 without an owner.
     pub keys: &'a [u32],
+    /// Strength of the strongest dot per pixel; empty without dots.
+    pub dots: &'a [u32],
     /// The picture before this one; none for the first.
     pub previous: Option<&'a [[u8; 4]]>,
 }
@@ -57,11 +60,20 @@ pub(super) fn finish_all(draws: &[Draw], view: &View, stack: &Stack, seen: &Seen
         previous: seen.previous,
         background: background(view),
     };
+    let dots = stack.dots().filter(|_| !seen.dots.is_empty());
     let finished = |(i, &color): (usize, &DVec4)| {
+        let color = dots.as_ref().map_or(color, |dots| dotted(dots, color, picture.background, seen.dots[i]));
         let pixel = Pixel { color, x: i as u32 % view.width, y: i as u32 / view.width, nudge };
         bytes(if stack.finishes() { stack.finish(pixel, &picture).color } else { color })
     };
     colors.par_iter().enumerate().map(finished).collect()
+}
+
+/// A pixel with a dot of some strength over its surface, or over the background alone.
+fn dotted(dots: &Dots, color: DVec4, background: DVec4, strength: u32) -> DVec4 {
+    let beneath = if dots.model != 0 { color } else { background };
+    let share = f64::from(strength) / f64::from(FULL) * f64::from(dots.color[3]);
+    beneath + (encoded(dots.color).truncate().extend(1.0) - beneath) * share
 }
 
 /// The background, gamma-encoded and rounded as a picture holds it.

@@ -10,6 +10,7 @@ use super::{
     bend,
     coverage::{Coverage, Sample, cover_by, triangles},
     decide::{decide, wrong},
+    dots::{self, dot_strengths},
     empty,
     faults::{Manner, faults},
     finish::{Seen, bytes},
@@ -89,7 +90,8 @@ pub fn judge_after(
     let rules = Rules::of(stack, geometry);
     let rules = if is_free { rules } else { rules.ordered(stack, &given, view) };
     let coverage = cover_by(&rules, &given, view, Some(&adapter.owner));
-    let seen = Seen { owners: &adapter.owner, keys: &adapter.key, previous };
+    let dots = dot_strengths(view, stack, &geometry.dots, &adapter.key);
+    let seen = Seen { owners: &adapter.owner, keys: &adapter.key, dots: &dots, previous };
     let scenery =
         Scenery { scene, draws: &draws, view, geometry, rules: &rules, triangles: &given, owners: &adapter.owner, keys: &adapter.key };
     let layered = layered(&scenery, &coverage, stack);
@@ -124,6 +126,7 @@ pub fn judge_after(
     judge_counters(&mut accuracy, &counters, adapter);
     judge_vertices(&mut accuracy, &vertices);
     bend::judge(&mut accuracy, scene, &draws, view, &geometry.bent);
+    dots::judge(&mut accuracy, (scene, &draws, view, stack), &geometry.dots, [&adapter.dots, &dots])?;
     // Of rough places, fronts travel roughly.
     accuracy.decisions_wrong = if geometry.is_rough { 0 } else { wrong(scene, &draws, view, stack, geometry) };
     Whole { scene, draws: &draws, view, stack, own: &own, adapter: geometry, cut: rules.cut(), vertices: &vertices }.judge(
@@ -137,7 +140,8 @@ pub fn judge_after(
         Some(layered) => (answers.middle(), layered.counted),
         None if owners == adapter.owner => (colors, Vec::new()),
         None => {
-            let seen = Seen { owners: &owners, keys: &coverage.keys(), previous };
+            let dots = &dot_strengths(view, stack, &geometry.dots, &coverage.keys());
+            let seen = Seen { owners: &owners, keys: &coverage.keys(), dots, previous };
             (Answers::of(scene, &draws, view, stack, &seen, geometry).nearest(&adapter.color), Vec::new())
         }
     };
@@ -276,7 +280,7 @@ pub fn snap_bounds(scene: &Scene, draws: &[Draw], view: &View, stack: &Stack) ->
 }
 
 /// Bound of a snapped position, given those of its clip coordinates; none where w is not known to a sixteenth.
-fn snap_bound(clip: &Clip, [ex, ey, _, ew]: [f64; 4], view: &View) -> Option<[f64; 2]> {
+pub(super) fn snap_bound(clip: &Clip, [ex, ey, _, ew]: [f64; 4], view: &View) -> Option<[f64; 2]> {
     let w = clip.w.abs();
     let [half_x, half_y] = half_size(view).map(f64::from);
     let bound = |half: f64, e: f64, c: f64| half * (e / w + (ew / w + 4.5 * ULP) * (c / w).abs());

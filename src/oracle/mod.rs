@@ -13,6 +13,7 @@ mod bend;
 mod clip;
 mod coverage;
 mod decide;
+mod dots;
 mod faults;
 mod finish;
 pub mod flushed;
@@ -31,6 +32,7 @@ mod whole;
 pub use bend::volume;
 pub use coverage::{Coverage, OrientedTriangle, Sample, cover, cover_by, depth_bound, owns, triangles};
 pub use decide::decide;
+pub use dots::{dot_records, dot_strengths};
 pub use finish::{Seen, shade};
 pub use judge::{judge, judge_after, snap_bounds};
 pub use order::Cut;
@@ -105,17 +107,19 @@ pub fn render_after(scene: &Scene, view: &View, stack: &Stack, previous: Option<
     }
     let mut geometry = project_moved(scene, &draws, view, stack);
     geometry.decisions = decide(scene, &draws, view, stack, &geometry);
+    geometry.dots = dot_records(scene, &draws, view, stack)?;
     let (triangles, counters) = triangles(scene, &draws, &geometry);
     let rules = Rules::of(stack, &geometry).ordered(stack, &triangles, view);
     let coverage = cover_by(&rules, &triangles, view, None);
     let (owners, keys) = (&coverage.owners(), &coverage.keys());
-    let seen = Seen { owners, keys, previous };
+    let dots = dot_strengths(view, stack, &geometry.dots, keys);
+    let seen = Seen { owners, keys, dots: &dots, previous };
     let scenery = Scenery { scene, draws: &draws, view, geometry: &geometry, rules: &rules, triangles: &triangles, owners, keys };
     let (color, counted) = match layered(&scenery, &coverage, stack) {
         Some(layered) => (finish_all(&draws, view, stack, &seen, &layered.colors, 0.0), layered.counted),
         None => (shade(scene, &draws, view, stack, &seen, &geometry), Vec::new()),
     };
-    Ok(frame(view, &coverage, color, counted, counters))
+    Ok(Frame { dots, ..frame(view, &coverage, color, counted, counters) })
 }
 
 /// The true picture of the last of `moments`, drawn after those before it, all of one size.

@@ -3,6 +3,7 @@
 use super::{Caps, Note};
 use crate::{
     effects::{
+        dots::Strung,
         hooks::{Layers, Shape},
         xray,
     },
@@ -52,6 +53,14 @@ pub(super) fn explain(needs: &Needs, is_usual: bool, caps: &Caps, key: &KernelKe
     if key.has_image() {
         reasons.push(note("finish", "an image effect finishes every pixel, empty ones too, so no tile is skipped"));
     }
+    if let Some(strung) = key.dots {
+        let lines = match strung {
+            Strung::Edges => "the edges of all meshes",
+            Strung::Creases => "the creases of all meshes",
+            Strung::Polyline => "the look's polyline",
+        };
+        reasons.push(note("dots", format!("an effect strings them along {lines}, over every pixel, so no tile is skipped")));
+    }
     reasons.extend(layers_note(needs, key));
     let parts = [
         ("skin", key.bends(), "no mesh has joints or morph weights".to_owned()),
@@ -67,6 +76,7 @@ pub(super) fn explain(needs: &Needs, is_usual: bool, caps: &Caps, key: &KernelKe
         ("decide", key.decisions > 0, "no effect settles anything per triangle".into()),
         ("draw order", key.order != Order::Free, "every sample is drawn".into()),
         ("sample effects", key.has_samples, "no effect leaves samples out".into()),
+        ("dots", key.dots.is_some(), "no effect strings dots".into()),
         ("image hook", key.has_image(), "no effect of the stack finishes pixels".into()),
         ("effects uniform", !key.effects.is_empty(), "the stack is empty".into()),
     ];

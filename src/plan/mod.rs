@@ -9,6 +9,7 @@ use self::{explain::explain, predict::Prediction, rungs::Choice};
 use crate::{
     effects::{
         Conflict, Enabled, Stack,
+        dots::Strung,
         hooks::{Layers, Shape},
     },
     ladder::{AXES, Axis, Clipping, Counting, Depth, Parameters, Pins, Rungs, Scale, Vertex, Visibility},
@@ -189,6 +190,8 @@ pub enum PlanError {
     Wide { size: [u32; 2] },
     #[error("depth {rung} keeps no distances, so xray cannot count within a window; use reversed, or reach = \"all\"")]
     Window { rung: &'static str },
+    #[error("dots cpu searches a tree of lines that stay where they are, but {what}; use gpu")]
+    Carried { what: String },
     #[error("vertex strict holds where integers decide, but {what}; take it out, or another rung")]
     Floats { what: String },
     #[error("vertices {rung} packs meshes that keep their shape, and joints or shapes bend one here; use stored")]
@@ -270,6 +273,7 @@ pub fn plan(needs: &Needs, stack: &Stack, caps: &Caps, tuning: &Tuning, accuracy
         layers,
         shape,
         order: Order::of(stack),
+        dots: stack.dots().map(|dots| Strung::of(dots.lines)),
         has_samples: effects.iter().any(|effect| effect.hooks.sample.is_some()),
         decisions: deciding(&effects),
         effects,
@@ -288,7 +292,7 @@ pub fn plan(needs: &Needs, stack: &Stack, caps: &Caps, tuning: &Tuning, accuracy
         perspective: needs.perspective,
         small_samples,
         small_side,
-        listed_tiles: tuning.listed_tiles && !stack.finishes(),
+        listed_tiles: tuning.listed_tiles && !stack.finishes() && stack.dots().is_none(),
         list_group: tuning.list_group,
         early_load: tuning.early_load,
         id_bits: if rungs.visibility == Visibility::Packed32 { bit_length(needs.triangles) } else { 0 },

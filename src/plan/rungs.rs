@@ -8,11 +8,12 @@ use super::{
 use crate::{
     effects::{
         Effect, Enabled, Stack,
+        dots::Strung,
         hooks::{Layers, Shape},
         points, read,
         xray::{Reach, Xray},
     },
-    ladder::{AXES, Coverage, Culling, Depth, Rung, Rungs, Skinning, Sums, Vertex, Vertices, Visibility},
+    ladder::{AXES, Coverage, Culling, Depth, DotWay, Rung, Rungs, Skinning, Sums, Vertex, Vertices, Visibility},
     math::SUBPIXEL_BITS,
     scene::needs::Needs,
 };
@@ -44,6 +45,10 @@ pub(super) fn choose(
     accuracy.pins.apply(&mut rungs);
     // How joints hold a mesh was settled with its pose; without joints the rung is nobody's.
     rungs.skinning = needs.skinning.unwrap_or_default();
+    let has_dots = stack.dots().is_some();
+    if !has_dots {
+        rungs.dots = DotWay::default();
+    }
     if layers == Some(Layers::Race) {
         rungs.visibility = Visibility::Race;
     }
@@ -54,7 +59,7 @@ pub(super) fn choose(
     }
     let mut reasons = Vec::new();
     let (mut prediction, tolerance) = (predict_all(&rungs, needs), accuracy.tolerance());
-    for (i, axis) in AXES.iter().enumerate() {
+    for (i, axis) in AXES.iter().enumerate().filter(|(i, _)| has_dots || *i != DotWay::AXIS) {
         if let Some((rung, why)) = unfit.filter(|_| i == Culling::AXIS) {
             reasons.push(note(axis.name, format!("{} instead of {}: {why}", rung.name(), asked.name())));
             continue;
@@ -146,6 +151,11 @@ fn check(rungs: &Rungs, needs: &Needs, f32_positions: bool, stack: &Stack, caps:
     if rungs.vertices.packed_bits().is_some() && (needs.skinning.is_some() || needs.shapes) {
         return Err(PlanError::Bent { rung: rungs.vertices.name() });
     }
+    if rungs.dots == DotWay::Cpu
+        && let Some(what) = carried(stack, needs)
+    {
+        return Err(PlanError::Carried { what });
+    }
     if rungs.vertex == Vertex::Strict
         && let Some(what) = floats(rungs, stack, needs, f32_positions)
     {
@@ -175,6 +185,16 @@ fn xray(stack: &Stack) -> Option<Xray> {
     stack.get("xray").map(|enabled| read::<Xray>(&enabled.words))
 }
 
+/// What carries the lines away from where a tree has them, if anything.
+fn carried(stack: &Stack, needs: &Needs) -> Option<String> {
+    if stack.dots().is_some_and(|dots| Strung::of(dots.lines) == Strung::Polyline) {
+        return None;
+    }
+    let mover = stack.0.iter().find(|enabled| enabled.effect.hooks.vertex.is_some());
+    let moved = mover.map(|enabled| format!("the effect {} moves them", enabled.effect.name));
+    moved.or_else(|| needs.moves.then(|| "the scene's own clips may move them".to_owned()))
+}
+
 /// What in a picture hangs on floats even behind a strict vertex stage, if anything.
 fn floats(rungs: &Rungs, stack: &Stack, needs: &Needs, f32_positions: bool) -> Option<String> {
     let reason = |Enabled { effect, words }: &Enabled| {
@@ -182,6 +202,7 @@ fn floats(rungs: &Rungs, stack: &Stack, needs: &Needs, f32_positions: bool) -> O
         let why = match () {
             () if effect.hooks.vertex.is_some() => "moves vertices in floats",
             () if is_from_floats => "lets a front travel in floats",
+            () if effect.hooks.has_lines => "places its dots in floats",
             () if !(effect.is_repeatable)(words) => "leaves its picture to chance",
             () => return None,
         };

@@ -4,10 +4,13 @@ use std::path::PathBuf;
 
 use glam::DVec3;
 
-use super::form::{Form, Plain, Precision, brief};
+use super::{
+    form::{Form, Plain, Precision, brief},
+    polyline,
+};
 use crate::{
     ladder::{
-        AXES, Checks, Clipping, Counting, Coverage, Depth, Parameters, Perspective, Rung, Scale, Skinning, Sums, Vertex, Vertices,
+        AXES, Checks, Clipping, Counting, Coverage, Depth, DotWay, Parameters, Perspective, Rung, Scale, Skinning, Sums, Vertex, Vertices,
         Visibility,
     },
     scene::camera::{Camera, MIN_NEAR_M, Projection},
@@ -218,6 +221,17 @@ pub const KEYS: &[Key] = &[
         |s| Some(Plain::number(s.play.blend)),
         |s, v| s.play.blend = v.first(),
     ),
+    ruled(
+        key(
+            "scene",
+            "polyline",
+            Form::Text { longest: 200_000 },
+            "A line of the look's own for dots to be strung on: points of three numbers, a line each or between semicolons, metres",
+            |s| Some(Plain::Text(polyline::written(&s.polyline))),
+            |s, v| s.polyline = polyline::parse(&v.into_text()).unwrap_or_default().into(),
+        ),
+        is_polyline,
+    ),
     key("camera", "eye", POINT, "Where the eye stands, metres", |s| camera(s, |c| point(c.eye)), |s, v| posed(s).eye = v.lanes().into()),
     key(
         "camera",
@@ -334,6 +348,7 @@ pub const KEYS: &[Key] = &[
     pin::<Counting>(),
     pin::<Sums>(),
     pin::<Scale>(),
+    pin::<DotWay>(),
     pin::<Parameters>(),
     pin::<Checks>(),
     key(
@@ -389,6 +404,10 @@ pub const KEYS: &[Key] = &[
 fn rises(range: &Plain) -> Result<(), String> {
     let [from, to] = range.lanes();
     if from < to { Ok(()) } else { Err(format!("must rise, but {} is not before {}", brief(from), brief(to))) }
+}
+
+fn is_polyline(text: &Plain) -> Result<(), String> {
+    polyline::parse(&text.clone().into_text()).map(drop)
 }
 
 fn camera(session: &Session, get: impl Fn(&Camera) -> Plain) -> Option<Plain> {

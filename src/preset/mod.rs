@@ -11,6 +11,7 @@ mod gallery;
 pub mod keys;
 pub mod migrate;
 mod path;
+mod polyline;
 mod read;
 pub mod schema;
 mod share;

@@ -96,6 +96,8 @@ pub struct View {
     pub is_relative: bool,
     /// How the scene stands; none: at rest.
     pub pose: Option<Arc<Pose>>,
+    /// A line of the look's own, before the scene is spun.
+    pub polyline: Arc<[[f32; 3]]>,
 }
 
 impl View {
@@ -138,6 +140,7 @@ impl View {
             subpixel_bits: SUBPIXEL_BITS,
             is_relative: false,
             pose: None,
+            polyline: Arc::default(),
         }
     }
 

@@ -7,6 +7,7 @@ pub mod builtin;
 pub mod camera;
 pub mod draw;
 pub mod gltf;
+pub mod lines;
 pub mod meshlets;
 pub mod needs;
 pub mod palette;

@@ -30,6 +30,8 @@ pub struct Needs {
     pub shapes: bool,
     /// How joints hold meshes, where any do.
     pub skinning: Option<Skinning>,
+    /// Clips may move parts of the scene.
+    pub moves: bool,
     /// No interpolated normal ever needs a substitute.
     pub sound_normals: bool,
     /// w is metres; else depth is linear and w is 1.
@@ -74,6 +76,7 @@ impl Needs {
             colors: drawn().any(|p| p.colors.is_some()),
             shapes: draws.iter().any(|draw| draw.bend.as_ref().is_some_and(|bend| bend.weights.iter().any(|weight| *weight != 0.0))),
             skinning: draws.iter().find_map(|draw| Some(draw.bend.as_ref()?.palette.as_ref()?.skinning())),
+            moves: !scene.rig.is_empty(),
             sound_normals: draws.iter().all(|draw| draw.bend.is_none())
                 && drawn().all(|p| p.sound_normals)
                 && draws.iter().all(keeps_normals),

@@ -170,6 +170,8 @@ pub struct Session {
     pub spin_deg_per_s: f64,
     /// What moves the scene's own joints and parts.
     pub play: Play,
+    /// A line of the look's own, for effects that draw along lines; it turns with the scene.
+    pub polyline: Arc<[[f32; 3]]>,
     /// None: framed so that the whole scene shows.
     pub camera: Option<Camera>,
     pub clock: Clock,
@@ -191,6 +193,7 @@ impl Default for Session {
             scene: SceneSource::Builtin("teapot".into()),
             spin_deg_per_s: 0.0,
             play: Play::default(),
+            polyline: Arc::default(),
             camera: None,
             clock: Clock::default(),
             stack: Stack::default(),
@@ -273,11 +276,18 @@ impl Session {
         let spin = if turns == 0.0 { DMat4::IDENTITY } else { rotation_y(turns.fract() * std::f64::consts::TAU) };
         let pose = self.pose(scene);
         let mut bounds = pose.as_ref().map_or_else(|| scene.bounds(), |pose| pose.bounds(scene));
+        if self.stack.0.iter().any(|enabled| enabled.effect.hooks.has_lines) {
+            self.polyline.iter().for_each(|point| bounds.include(DVec3::from(point.map(f64::from))));
+        }
         if !bounds.is_empty() {
             let reach_m = self.posed_stack().reach_m(bounds.radius());
             (bounds.min, bounds.max) = (bounds.min - reach_m, bounds.max + reach_m);
         }
-        View { pose, ..View::new(&self.camera_for(scene, aspect), width, height, &bounds, spin, self.output.background) }
+        View {
+            pose,
+            polyline: self.polyline.clone(),
+            ..View::new(&self.camera_for(scene, aspect), width, height, &bounds, spin, self.output.background)
+        }
     }
 }
 

@@ -25,6 +25,7 @@ impl KernelKey {
     /// Every pass of one picture, in the order in which they are recorded.
     pub fn frame(&self) -> Vec<Pass> {
         let mut passes = self.passes(&self.phases());
+        passes.extend(self.dot_passes());
         if self.rungs.culling == Culling::Hiz {
             passes.push(Pass::Farthest);
         }

@@ -5,11 +5,12 @@ use std::fmt;
 use crate::{
     effects::{
         Effect, Enabled, Stack,
+        dots::Strung,
         draw_order::Mode,
         hooks::{Layers, Shape},
     },
     frame::{NO_OWNER, vertex_flags},
-    ladder::{Clipping, Coverage, Culling, Depth, Perspective, Rungs, Scale, Vertex, Vertices, Visibility},
+    ladder::{Clipping, Coverage, Culling, Depth, DotWay, Perspective, Rungs, Scale, Vertex, Vertices, Visibility},
     scene::meshlets::MESHLET_TRIANGLES,
 };
 
@@ -70,6 +71,8 @@ pub struct KernelKey {
     pub shape: Shape,
     /// Which samples are drawn.
     pub order: Order,
+    /// What dots are strung on, if there are any.
+    pub dots: Option<Strung>,
     /// A sample effect may leave samples out.
     pub has_samples: bool,
     /// Sample effects that settle something per triangle.
@@ -122,6 +125,7 @@ impl KernelKey {
             layers: Stack(effects.iter().map(|effect| Enabled::new(effect)).collect()).layers(u64::MAX),
             shape: Shape::Triangles,
             order: Order::Free,
+            dots: effects.iter().any(|effect| effect.hooks.has_lines).then_some(Strung::Edges),
             has_samples: effects.iter().any(|effect| effect.hooks.sample.is_some()),
             decisions: deciding(&effects),
             effects,
@@ -249,6 +253,15 @@ impl KernelKey {
         [self.lead(), nearest, layers].concat()
     }
 
+    /// The passes that draw dots, behind those that find the nearest depths.
+    pub(super) fn dot_passes(&self) -> &'static [Pass] {
+        match (self.dots, self.rungs.dots) {
+            (None, _) => &[],
+            (Some(_), DotWay::Brute | DotWay::Cpu) => &[Pass::DotsEnds, Pass::DotsDraw],
+            (Some(_), DotWay::Gpu) => &[Pass::DotsEnds, Pass::DotsCull, Pass::DotsArgs, Pass::DotsDraw],
+        }
+    }
+
     /// Does this pass come upon every triangle first, and so fill the queues and count?
     fn is_first(&self, pass: Pass) -> bool {
         match self.lead().first() {
@@ -343,6 +356,7 @@ impl fmt::Display for KernelKey {
             ("shapes", self.has_shapes),
             ("moved", self.moves()),
             ("parted", self.parts_corners()),
+            ("dots", self.dots.is_some()),
             ("image", self.has_image()),
             ("orthographic", !self.perspective),
         ] {

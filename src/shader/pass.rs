@@ -41,6 +41,15 @@ pub enum Pass {
     BinScan,
     /// Every tile by itself, from its list.
     RasterTiles,
+    /// Ends of the segments on which dots are strung.
+    DotsEnds,
+    /// Which dots may show.
+    DotsCull,
+    /// How many those are, as a dispatch size.
+    DotsArgs,
+    DotsDraw,
+    /// Where all dots lie, for a judge alone.
+    DotsProbe,
     ListTiles,
     Resolve,
     /// From the pixels that were drawn to those that are shown.
@@ -133,6 +142,11 @@ impl Pass {
             Self::BinMedium(_) | Self::BinLarge(_) => "bin_queued",
             Self::BinScan => "bin_scan",
             Self::RasterTiles => "raster_tiles",
+            Self::DotsEnds => "dots_ends",
+            Self::DotsCull => "dots_cull",
+            Self::DotsArgs => "dots_args",
+            Self::DotsDraw => "dots_draw",
+            Self::DotsProbe => "dots_probe",
             Self::ListTiles => "list_tiles",
             Self::Resolve => "resolve",
             Self::Scale => "scale",
@@ -145,6 +159,11 @@ impl Pass {
             Self::Args => "args_write",
             other => other.stem(),
         }
+    }
+
+    /// Is it one of those over dots?
+    pub const fn is_of_dots(self) -> bool {
+        matches!(self, Self::DotsEnds | Self::DotsCull | Self::DotsArgs | Self::DotsDraw | Self::DotsProbe)
     }
 
     pub const fn phase(self) -> Option<Phase> {

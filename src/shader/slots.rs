@@ -2,8 +2,11 @@
 
 use super::key::{Fetch, KernelKey, Layout, Order, Pass, Phase, Round};
 use crate::{
-    effects::hooks::{Layers, Shape},
-    ladder::{Counting, Depth, Vertex},
+    effects::{
+        dots::Strung,
+        hooks::{Layers, Shape},
+    },
+    ladder::{Counting, Depth, DotWay, Vertex},
 };
 
 impl KernelKey {
@@ -84,6 +87,9 @@ impl KernelKey {
             ("owner", format!("slots/owner/{layout}")),
             ("scaling", format!("slots/scaling/{}", if self.rungs.scale.factor() > 1.0 { "average" } else { "between" })),
             ("finish", format!("slots/finish/{finish}")),
+            ("dots", format!("slots/dots/{}", if self.dots.is_some() { "over" } else { "none" })),
+            ("dot_ends", format!("slots/dot_ends/{}", if self.dots == Some(Strung::Polyline) { "points" } else { "edges" })),
+            ("dot_list", format!("slots/dot_list/{}", if self.rungs.dots == DotWay::Brute { "every" } else { "kept" })),
             ("image", format!("slots/image/{}", if pass == Pass::Resolve { "seen" } else { "none" })),
             ("sums", format!("slots/sums/{layout}")),
             ("walk", format!("slots/walk/{walk}")),

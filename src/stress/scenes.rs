@@ -109,6 +109,7 @@ pub fn pixel_view(width: u32, height: u32) -> View {
         scene_range_m: [0.0, 1.0],
         background: [0.0; 4],
         pose: None,
+        polyline: Arc::default(),
         subpixel_bits: 8,
         is_relative: false,
     }

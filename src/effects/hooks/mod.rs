@@ -29,12 +29,14 @@ pub struct Hooks {
     pub image: Option<ImageHook>,
     /// The part of the rasterizer that the effect replaces.
     pub slot: Option<Slot>,
+    /// It draws along lines, in passes of its own before pixels are shaded.
+    pub has_lines: bool,
     /// Its colour has steps, decided on a value plus [`Surface::nudge`].
     pub has_steps: bool,
 }
 
 impl Hooks {
-    pub const NONE: Self = Self { vertex: None, sample: None, surface: None, image: None, slot: None, has_steps: false };
+    pub const NONE: Self = Self { vertex: None, sample: None, surface: None, image: None, slot: None, has_lines: false, has_steps: false };
 
     /// Names for listings: `sample + surface`.
     pub fn names(&self) -> String {
@@ -43,6 +45,7 @@ impl Hooks {
             (self.vertex.is_some(), "vertex"),
             (self.sample.is_some(), "sample"),
             (self.surface.is_some(), "surface"),
+            (self.has_lines, "lines"),
             (self.image.is_some(), "image"),
         ];
         let names: Vec<&str> = hooks.iter().filter(|(is_there, _)| *is_there).map(|(_, name)| *name).collect();

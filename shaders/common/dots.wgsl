@@ -1,0 +1,51 @@
+// Dots: numbered along all lines. A stretch is a run of dots on one segment, and a dot is a stretch and its place there;
+// where it lies in the picture follows from the ends of the segment in clip space.
+//@ use common/dot_frame
+//@ use common/vertex
+//@ use effects/dots
+
+// Twin of `gpu::dots::StretchRecord`.
+struct Stretch {
+    segment: u32,
+    first: u32,   // number of its first dot
+    count: u32,
+    start: f32,   // where the first dot lies, as a share of the segment
+    step: f32,    // share from dot to dot
+}
+
+@group(0) @binding(21) var<storage, read> stretches: array<Stretch>;
+@group(0) @binding(22) var<storage, read> dot_ends: array<vec4f>;
+
+// A dot in clip space.
+fn dots_clip(stretch: u32, place: u32) -> vec4f {
+    let s = stretches[stretch];
+    let begin = dot_ends[2u * s.segment];
+    return begin + (dot_ends[2u * s.segment + 1u] - begin) * (s.start + f32(place) * s.step);
+}
+
+// How far rounding may carry the dots of a stretch in clip space, in whatever order and fusion a pass computes them.
+fn dots_slack(stretch: u32) -> vec4f {
+    let segment = stretches[stretch].segment;
+    return (abs(dot_ends[2u * segment]) + abs(dot_ends[2u * segment + 1u])) * 1e-6;
+}
+
+// A dot as it is drawn: snapped once, as vertices are; flags alone where it lies before the near plane or beyond the far one.
+fn dots_record(clip: vec4f) -> vec4u {
+    let is_between = clip.z <= clip.w && clip.w > 0.0 && clip.z >= 0.0;
+    let inv_w = 1.0 / select(1.0, clip.w, is_between);
+    let scaled = vec2i(clamp(round(clip.xy * inv_w * dot_frame.center), vec2f(-16777216.0), vec2f(16777216.0)));
+    let at = vec2i(dot_frame.center) + scaled * vec2i(1, -1);
+    return vertex_record(0u, is_between, at, bitcast<u32>(clip.z * inv_w), bitcast<u32>(inv_w));
+}
+
+// Stretch and place of the dot of this number.
+fn dots_find(number: u32) -> vec2u {
+    var low = 0u;
+    var high = dot_frame.stretches;
+    // As many halvings as an index has bits.
+    for (var i = 0u; i < 32u && high - low > 1u; i += 1u) {
+        let middle = (low + high) / 2u;
+        if stretches[middle].first <= number { low = middle; } else { high = middle; }
+    }
+    return vec2u(low, number - stretches[low].first);
+}

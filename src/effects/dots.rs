@@ -1,0 +1,119 @@
+//! Dots: strings dots along the edges of the meshes, or along a polyline, evenly in the world.
+//!
+//! A dot's level is how often its number can be halved: every second dot is of level 0, every fourth of level 1 and so on.
+//! Where dots would crowd on the screen, those of the lowest level fade until they are gone when the gap has halved, then
+//! the next ones begin; so the pattern thins as the camera moves away, and nothing ever jumps. The place of a dot is a
+//! float that is snapped once; its level, its fading and the samples that it covers are integers from there on. Of several
+//! dots on a pixel the strongest shows, in whatever order they are drawn.
+
+use super::Effect;
+use crate::{
+    choice, params,
+    params::{Color, Flag},
+    scene::camera::View,
+};
+
+choice! {
+    /// What dots are strung on.
+    pub enum Strung {
+        /// Every edge of every mesh, once.
+        Edges = "edges",
+        /// The edges at which faces meet at an angle, and open ones.
+        Creases = "creases",
+        /// The look's own line, `scene.polyline`.
+        Polyline = "polyline",
+    }
+}
+
+params! {
+    pub struct Dots {
+        /// Colour of the dots, linear; its alpha is their strength.
+        color: Color = [1.0, 0.55, 0.15, 1.0];
+        /// What dots are strung on.
+        lines: Strung = Strung::Edges as u32;
+        /// The least angle between two faces that counts as a crease.
+        crease_deg: f32 = 25.0, hard 0.0..=180.0, soft 1.0..=90.0, unit "°", when ("lines", &["creases"]);
+        /// Distance from dot to dot along the line.
+        spacing_m: f32 = 0.05, hard 0.00001..=1000.0, soft 0.001..=10.0, log true, unit "m";
+        /// Diameter of the dots.
+        size_px: f32 = 2.5, hard 1.0..=64.0, soft 1.0..=16.0, unit "px";
+        /// The gap on the screen below which every second dot begins to fade.
+        gap_px: f32 = 6.0, hard 0.25..=1024.0, soft 1.0..=64.0, log true, unit "px";
+        /// How often the dots may be halved; 0: all are drawn however they crowd.
+        levels: u32 = 20, hard 0.0..=24.0;
+        /// Share of the way from one halving to the next over which dots fade.
+        fade: f32 = 1.0, hard 0.0625..=1.0;
+        /// What is left of dots behind the model.
+        hidden: f32 = 0.2, hard 0.0..=1.0;
+        /// How far behind the surface a dot still counts as on it, as a share of its distance.
+        bias: f32 = 0.01, hard 0.0..=0.5, soft 0.0001..=0.1, log true;
+        /// The model shows beneath the dots; without it, it only hides them.
+        model: Flag = 1;
+    }
+}
+
+pub const EFFECT: Effect = Effect::new::<Dots>("dots", "Dots", "strings dots along edges or a polyline").with_lines();
+
+/// Most dots of a picture: 8 bytes each fit the binding of every adapter.
+pub const MAX_DOTS: u64 = 1 << 24;
+
+/// A dot that hides whatever is beneath it; strengths are from 0 to this.
+pub const FULL: u32 = 256;
+
+/// Bits of a float's fraction: so many steps lead from a power of two to the next.
+const STEPS: u32 = 23;
+
+impl Dots {
+    /// Dots on a line so long: one at its beginning, the others evenly.
+    pub fn count(&self, length_m: f64) -> u64 {
+        (length_m / f64::from(self.spacing_m)).floor() as u64 + 1
+    }
+
+    /// Radius in units of 1/256 px.
+    pub fn radius(&self) -> u32 {
+        (f64::from(self.size_px) * 128.0).round_ties_even() as u32
+    }
+
+    /// Bits of the f32 nearest to the 1/w at which dots of level 0 begin to fade: there they lie `gap_px` apart.
+    pub fn fade_from(&self, view: &View) -> u32 {
+        let pixel_m = view.ndc_axes[1].length() * 2.0 / f64::from(view.height.max(1));
+        ((pixel_m * f64::from(self.gap_px) / f64::from(self.spacing_m)).clamp(1e-30, 1e30) as f32).to_bits()
+    }
+
+    /// How fast dots fade, in strengths per level.
+    pub fn fade_rate(&self) -> u32 {
+        (f64::from(FULL) / f64::from(self.fade)).round() as u32
+    }
+
+    /// What is left of a hidden dot, of [`FULL`].
+    pub fn hidden_share(&self) -> u32 {
+        (f64::from(self.hidden) * f64::from(FULL)).round() as u32
+    }
+
+    /// The bias as a difference of depths' bits, which are a logarithm in straight pieces.
+    pub fn bias_steps(&self) -> u32 {
+        (f64::from(self.bias) * f64::from(1u32 << STEPS)) as u32
+    }
+
+    /// Strength of the dot of this number where 1/w has these bits, 0 to [`FULL`]. Bits of floats rise by one level when the
+    /// float doubles, so their difference is how often the gap has halved.
+    pub fn strength(&self, number: u32, inv_w: u32, fade_from: u32) -> u32 {
+        let halved = (i64::from(fade_from) - i64::from(inv_w)).clamp(0, i64::from(self.levels) << STEPS) as u32;
+        let level = if number == 0 { 31 } else { number.trailing_zeros() };
+        match level.cmp(&(halved >> STEPS)) {
+            std::cmp::Ordering::Greater => FULL,
+            std::cmp::Ordering::Less => 0,
+            std::cmp::Ordering::Equal => {
+                let left = (1 << STEPS) - (halved & ((1 << STEPS) - 1));
+                (((left >> 8) * self.fade_rate()) >> (STEPS - 8)).min(FULL)
+            }
+        }
+    }
+
+    /// Share of a pixel that a dot covers whose middle is so far from the sample, given the square of the distance: half of it
+    /// at the radius, falling about a pixel wide and evenly with the square, so that all shares together are the dot's area.
+    pub fn cover(&self, squared: u64) -> u32 {
+        let radius = u64::from(self.radius());
+        (((radius + 256) * radius).saturating_sub(squared) / (2 * radius)).min(u64::from(FULL)) as u32
+    }
+}

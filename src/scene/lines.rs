@@ -1,0 +1,284 @@
+//! Lines: what dots are strung on. The edges of the meshes, each once and joined to long walks, or a polyline of the look.
+//!
+//! Lengths are the world's, of the scene at rest: a dot stays on its place of an edge however the edge moves.
+
+use std::collections::{HashMap, hash_map::Entry};
+
+use glam::{DMat4, DVec3};
+
+use super::{Primitive, Scene, pose::Pose};
+
+/// The sharpest turn that a walk takes from one edge to the next: its cosine, of 60 degrees.
+const SHARPEST: f64 = 0.5;
+
+/// Where a segment begins and ends.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Ends {
+    /// At two corners of a triangle of a draw, both counted within the draw.
+    Edge { draw: u32, vertices: [u32; 2], triangle: u32 },
+    /// At two points in the scene, before it is spun.
+    Points([[f32; 3]; 2]),
+}
+
+/// One straight piece of a line.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Segment {
+    pub ends: Ends,
+    /// Length of its line up to its beginning.
+    pub start_m: f64,
+    /// Longer than 0.
+    pub length_m: f64,
+}
+
+/// Every line, in an order that no machine changes.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Lines {
+    pub segments: Vec<Segment>,
+    /// The segment with which each line begins.
+    pub firsts: Vec<u32>,
+}
+
+impl Lines {
+    /// The segments of each line.
+    pub fn each(&self) -> impl Iterator<Item = (usize, &[Segment])> {
+        let ends = self.firsts.iter().skip(1).map(|&first| first as usize).chain([self.segments.len()]);
+        self.firsts.iter().zip(ends).map(|(&first, end)| (first as usize, &self.segments[first as usize..end]))
+    }
+
+    /// All lines end to end.
+    pub fn length_m(&self) -> f64 {
+        self.each().filter_map(|(_, line)| line.last()).map(|last| last.start_m + last.length_m).sum()
+    }
+
+    /// One line through `points`; those that repeat the one before add nothing.
+    pub fn polyline(points: &[[f32; 3]]) -> Self {
+        let mut lines = Self::default();
+        let place = |p: [f32; 3]| DVec3::from(p.map(f64::from));
+        lines.walk(points.windows(2).map(|pair| (Ends::Points([pair[0], pair[1]]), (place(pair[1]) - place(pair[0])).length())));
+        lines
+    }
+
+    /// The edges of every instance, each once however many triangles share it. With `crease_deg` only those at which two
+    /// faces meet at that angle or a larger one, and those that are not shared by two faces.
+    pub fn edges(scene: &Scene, crease_deg: Option<f64>) -> Self {
+        let pose = Pose::at_rest(scene);
+        let mut known: HashMap<usize, Vec<Walk>> = HashMap::new();
+        let mut lines = Self::default();
+        for (draw, instance) in scene.instances.iter().enumerate() {
+            let walks = known.entry(instance.primitive).or_insert_with(|| walks(scene, &scene.primitives[instance.primitive], crease_deg));
+            let place = pose.as_ref().map_or(instance.world_from_object, |pose| pose.place(draw));
+            // What joints hold is as large as its first joint makes it.
+            let palette = pose.as_ref().and_then(|pose| pose.bend(draw)).and_then(|bend| bend.palette.as_ref());
+            let place = place * palette.filter(|palette| !palette.is_empty()).map_or(DMat4::IDENTITY, |palette| palette.matrix(0));
+            for walk in walks.iter() {
+                lines.walk(walk.iter().map(|step| {
+                    let ends = Ends::Edge { draw: draw as u32, vertices: step.vertices, triangle: step.triangle };
+                    (ends, place.transform_vector3(step.way).length())
+                }));
+            }
+        }
+        lines
+    }
+
+    /// Adds a line of segments with their lengths; what has none, or none that is finite, is left out.
+    fn walk(&mut self, segments: impl Iterator<Item = (Ends, f64)>) {
+        let (first, mut start_m) = (self.segments.len(), 0.0);
+        for (ends, length_m) in segments.filter(|(_, length_m)| length_m.is_finite() && *length_m > 0.0) {
+            self.segments.push(Segment { ends, start_m, length_m });
+            start_m += length_m;
+        }
+        if self.segments.len() > first {
+            self.firsts.push(first as u32);
+        }
+    }
+}
+
+/// Edges, one after the other.
+type Walk = Vec<Step>;
+
+/// One edge in the direction in which a walk goes along it.
+#[derive(Clone, Copy, Debug)]
+struct Step {
+    vertices: [u32; 2],
+    triangle: u32,
+    /// From the first to the second, object space.
+    way: DVec3,
+}
+
+/// An edge as the faces round it know it. Corners at one place are one, whatever their indices.
+struct Edge {
+    step: Step,
+    /// Places of its ends.
+    places: [u32; 2],
+    faces: u32,
+    normal: DVec3,
+    /// Least cosine between the first face and the others.
+    bend: f64,
+}
+
+/// The edges of a mesh as walks that turn as little as they can.
+fn walks(scene: &Scene, primitive: &Primitive, crease_deg: Option<f64>) -> Vec<Walk> {
+    let mut edges = edges(scene, primitive);
+    if let Some(degrees) = crease_deg {
+        let most = libm::cos(degrees.to_radians());
+        edges.retain(|edge| edge.faces != 2 || edge.bend <= most);
+    }
+    let mut at: HashMap<u32, Vec<u32>> = HashMap::new();
+    for (i, edge) in edges.iter().enumerate() {
+        edge.places.iter().for_each(|place| at.entry(*place).or_default().push(i as u32));
+    }
+    let mut is_used = vec![false; edges.len()];
+    let mut walks = Vec::new();
+    for first in 0..edges.len() {
+        if is_used[first] {
+            continue;
+        }
+        is_used[first] = true;
+        let mut walk = vec![edges[first].step];
+        // Forward from the end, then the same from the beginning, as if it were walked the other way.
+        for end in [1, 0] {
+            let (mut place, mut way) = (edges[first].places[end], edges[first].step.way * if end == 1 { 1.0 } else { -1.0 });
+            while let Some((next, step)) = straightest(&edges, &at[&place], &is_used, place, way) {
+                is_used[next] = true;
+                place = edges[next].places[usize::from(edges[next].places[0] == place)];
+                way = step.way;
+                walk.push(step);
+            }
+            walk = walk.into_iter().rev().map(Step::reversed).collect();
+        }
+        walks.push(walk);
+    }
+    walks
+}
+
+/// Of the unused edges at a place, the one that goes on with the least turn.
+fn straightest(edges: &[Edge], at: &[u32], is_used: &[bool], place: u32, way: DVec3) -> Option<(usize, Step)> {
+    let mut best: Option<(f64, usize, Step)> = None;
+    for &i in at {
+        let i = i as usize;
+        if is_used[i] {
+            continue;
+        }
+        let step = if edges[i].places[0] == place { edges[i].step } else { edges[i].step.reversed() };
+        let cosine = way.dot(step.way) / (way.length() * step.way.length());
+        if cosine > best.as_ref().map_or(SHARPEST, |best| best.0) {
+            best = Some((cosine, i, step));
+        }
+    }
+    best.map(|(_, i, step)| (i, step))
+}
+
+impl Step {
+    fn reversed(self) -> Self {
+        let [a, b] = self.vertices;
+        Self { vertices: [b, a], way: -self.way, ..self }
+    }
+}
+
+/// Every edge between two places, in the order in which triangles come upon them.
+fn edges(scene: &Scene, primitive: &Primitive) -> Vec<Edge> {
+    let mut places: HashMap<[u32; 3], u32> = HashMap::new();
+    let positions: Vec<[f32; 3]> = (0..primitive.vertex_count()).map(|vertex| primitive.position(scene, vertex)).collect();
+    let place_of: Vec<u32> = positions
+        .iter()
+        .map(|p| {
+            let next = places.len() as u32;
+            // Adding 0 makes one of the two zeros.
+            *places.entry(p.map(|lane| (lane + 0.0).to_bits())).or_insert(next)
+        })
+        .collect();
+    let mut at: HashMap<[u32; 2], usize> = HashMap::new();
+    let mut edges: Vec<Edge> = Vec::new();
+    for triangle in 0..primitive.triangle_count() {
+        let corners = primitive.corners(scene, triangle);
+        let [a, b, c] = corners.map(|corner| DVec3::from(positions[corner as usize].map(f64::from)));
+        if !(a.is_finite() && b.is_finite() && c.is_finite()) {
+            continue;
+        }
+        let normal = (b - a).cross(c - a).normalize_or_zero();
+        for side in 0..3 {
+            let vertices = [corners[side], corners[(side + 1) % 3]];
+            let ends = vertices.map(|vertex| place_of[vertex as usize]);
+            if ends[0] == ends[1] {
+                continue;
+            }
+            match at.entry([ends[0].min(ends[1]), ends[0].max(ends[1])]) {
+                Entry::Vacant(entry) => {
+                    entry.insert(edges.len());
+                    let way = [b - a, c - b, a - c][side];
+                    edges.push(Edge { step: Step { vertices, triangle, way }, places: ends, faces: 1, normal, bend: 1.0 });
+                }
+                Entry::Occupied(entry) => {
+                    let edge = &mut edges[*entry.get()];
+                    edge.faces += 1;
+                    edge.bend = edge.bend.min(edge.normal.dot(normal));
+                }
+            }
+        }
+    }
+    edges
+}
+
+#[cfg(test)]
+mod tests {
+    use std::collections::BTreeSet;
+
+    use super::*;
+    use crate::scene::builtin;
+
+    /// Places of both ends, the lesser first.
+    fn ends(scene: &Scene, segment: &Segment) -> [[u32; 3]; 2] {
+        let Ends::Edge { draw, vertices, .. } = segment.ends else { panic!("an edge") };
+        let primitive = &scene.primitives[scene.instances[draw as usize].primitive];
+        let mut ends = vertices.map(|vertex| primitive.position(scene, vertex).map(|lane| (lane + 0.0).to_bits()));
+        ends.sort_unstable();
+        ends
+    }
+
+    #[test]
+    fn every_edge_of_a_closed_mesh_is_walked_once() {
+        for query in ["sphere?triangles=2000", "knot?tess=4"] {
+            let scene = builtin::build(query).expect("a scene");
+            let lines = Lines::edges(&scene, None);
+            // Each of the triangles has three edges, and shares every one with a neighbour.
+            assert_eq!(lines.segments.len() as u64, scene.triangle_count() * 3 / 2, "{query}");
+            let all: BTreeSet<_> = lines.segments.iter().map(|segment| ends(&scene, segment)).collect();
+            assert_eq!(all.len(), lines.segments.len(), "{query}: an edge is walked twice");
+            assert!(lines.firsts.len() * 3 < lines.segments.len(), "{query}: {} walks", lines.firsts.len());
+        }
+    }
+
+    #[test]
+    fn a_walk_goes_from_end_to_end() {
+        let scene = builtin::build("knot?tess=4").expect("a scene");
+        let place = |vertex: u32| scene.primitives[0].position(&scene, vertex).map(|lane| (lane + 0.0).to_bits());
+        for (_, line) in Lines::edges(&scene, None).each() {
+            let mut length_m = 0.0;
+            for (i, segment) in line.iter().enumerate() {
+                assert_eq!(segment.start_m, length_m);
+                length_m += segment.length_m;
+                if let (Ends::Edge { vertices: a, .. }, Some(Ends::Edge { vertices: b, .. })) =
+                    (segment.ends, line.get(i + 1).map(|next| next.ends))
+                {
+                    assert_eq!(place(a[1]), place(b[0]));
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn creases_of_cubes_are_their_twelve_edges() {
+        let scene = builtin::build("cube-wall?columns=3&rows=2").expect("a scene");
+        assert_eq!(Lines::edges(&scene, Some(30.0)).segments.len(), 6 * 12, "diagonals lie in a face");
+        assert_eq!(Lines::edges(&scene, None).segments.len(), 6 * 18);
+        assert_eq!(Lines::edges(&scene, Some(180.0)).segments.len(), 0);
+    }
+
+    #[test]
+    fn a_polyline_leaves_out_what_has_no_length() {
+        let lines = Lines::polyline(&[[0.0; 3], [0.0; 3], [3.0, 4.0, 0.0], [3.0, 4.0, 2.0]]);
+        assert_eq!((lines.segments.len(), lines.firsts.as_slice(), lines.length_m()), (2, &[0][..], 7.0));
+        assert_eq!(Lines::polyline(&[[1.0; 3]]), Lines::default());
+        assert_eq!(Lines::polyline(&[[0.0; 3], [f32::NAN; 3], [1.0; 3]]).segments.len(), 0);
+    }
+}

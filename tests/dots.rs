@@ -1,0 +1,318 @@
+//! Promise: three ways of choosing dots give one picture, the oracle's; the pattern thins without a jump; no number of dots
+//! is lost or too many. Needs an adapter.
+
+mod common;
+
+use std::sync::Arc;
+
+use common::*;
+use rasterlab::{
+    effects::{
+        Effect, Stack,
+        dots::{Dots, FULL, MAX_DOTS},
+        read,
+    },
+    gpu::{Capture, RenderError, Renderer},
+    ladder::{DotWay, Pins, Visibility},
+    oracle,
+    plan::Accuracy,
+    scene::{Scene, camera::View, draw::draws},
+    session::{SceneSource, Session},
+};
+
+const WAYS: [DotWay; 3] = [DotWay::Brute, DotWay::Cpu, DotWay::Gpu];
+
+/// Dots with these values, and other effects.
+fn dotted(values: &[(&str, f64)], others: &[&str]) -> Stack {
+    let mut stack = stack(others);
+    let enabled = stack.enable(Effect::find("dots").expect("a listed effect"));
+    for (name, value) in values {
+        let field = enabled.effect.field(name).unwrap_or_else(|| panic!("dots has no {name}"));
+        let lanes = vec![*value; field.kind.lanes()];
+        field.set(&mut enabled.words, &lanes).unwrap_or_else(|error| panic!("{error}"));
+    }
+    stack
+}
+
+fn on(way: DotWay) -> Accuracy {
+    Accuracy { pins: Pins::of(way), ..Accuracy::default() }
+}
+
+/// One picture by all three ways, judged, and found to be one.
+fn three_ways(renderer: &mut Renderer, scene: &Arc<Scene>, view: &View, stack: &Stack, what: &str) -> Capture {
+    let [brute, cpu, gpu] = WAYS.map(|way| exact(renderer, scene, view, stack, &on(way), &format!("{what}, {}", way.name())).0);
+    for (way, other) in [("cpu", &cpu), ("gpu", &gpu)] {
+        assert!(brute.frame.dots == other.frame.dots, "{what}: {way} shows other dots than brute force");
+        assert!(brute.frame.color == other.frame.color, "{what}: {way} draws another picture than brute force");
+    }
+    gpu
+}
+
+/// `polyline` seen from the front, 1 m a pixel.
+fn flat(points: &[[f32; 3]], size: [u32; 2]) -> (Arc<Scene>, View) {
+    let scene = scene("stack?layers=1");
+    let session = Session { scene: SceneSource::Builtin("stack".into()), polyline: points.into(), ..Session::default() };
+    let view = session.view(&scene, size);
+    (scene, view)
+}
+
+#[test]
+fn three_ways_of_choosing_dots_give_the_oracle_s_picture() {
+    let Some(mut renderer) = renderer() else { return };
+    let cases: [(&str, &[(&str, f64)]); 6] = [
+        ("teapot?tess=8", &[("spacing_m", 0.02)]),
+        ("knot?tess=6", &[("spacing_m", 0.004), ("gap_px", 3.0), ("fade", 0.25), ("model", 0.0)]),
+        ("cube-wall", &[("lines", 1.0), ("spacing_m", 0.05), ("size_px", 5.0), ("hidden", 0.0)]),
+        ("near", &[("spacing_m", 5.0), ("levels", 24.0), ("gap_px", 20.0)]),
+        ("grid?cell=4", &[("spacing_m", 1.5), ("levels", 0.0), ("size_px", 1.0)]),
+        ("slivers", &[("spacing_m", 3.0)]),
+    ];
+    for (query, values) in cases {
+        let scene = scene(query);
+        let capture = three_ways(&mut renderer, &scene, &view(&scene, [200, 150]), &dotted(values, &["lambert"]), query);
+        let shown = capture.frame.dots.iter().filter(|strength| **strength > 0).count();
+        assert!(shown > 200, "{query}: {shown} pixels have dots");
+    }
+}
+
+#[test]
+fn close_views_leave_most_lines_out_and_no_dot() {
+    let Some(mut renderer) = renderer() else { return };
+    let scene = scene("knot?tess=12");
+    for (eye, target) in [([0.2, 0.1, 0.6], [1.0, 0.3, 0.0]), ([0.0, 0.0, 0.0], [0.4, 1.0, 0.1]), ([3.0, 0.2, 0.0], [0.0, 0.0, 0.0])] {
+        let camera = rasterlab::scene::camera::Camera { eye: eye.into(), target: target.into(), ..Default::default() };
+        let view = seen(&scene, &camera, [160, 120]);
+        three_ways(&mut renderer, &scene, &view, &dotted(&[("spacing_m", 0.003), ("gap_px", 2.0)], &[]), &format!("from {eye:?}"));
+    }
+}
+
+#[test]
+fn every_backend_of_visibility_hides_the_same_dots() {
+    let Some(mut renderer) = renderer() else { return };
+    let scene = scene("cube-wall");
+    let (view, stack) = (view(&scene, [160, 120]), dotted(&[("spacing_m", 0.03)], &[]));
+    let pictures: Vec<Capture> =
+        rungs(&renderer).into_iter().map(|rung| exact(&mut renderer, &scene, &view, &stack, &pinned(rung), rung.name()).0).collect();
+    assert!(pictures.windows(2).all(|pair| pair[0].frame.dots == pair[1].frame.dots && pair[0].frame.color == pair[1].frame.color));
+}
+
+#[test]
+fn dots_go_with_joints_and_effects_and_under_every_other() {
+    let Some(mut renderer) = renderer() else { return };
+    let bent = Session { scene: SceneSource::Builtin("tentacle?tess=3".into()), ..Session::default() };
+    let bent = Session { play: rasterlab::session::Play { clip: "Curl".into(), pose_s: Some(0.7), ..Default::default() }, ..bent };
+    let tentacle = scene("tentacle?tess=3");
+    let view_of = bent.view(&tentacle, [160, 120]);
+    exact(&mut renderer, &tentacle, &view_of, &dotted(&[("spacing_m", 0.03)], &[]), &Accuracy::default(), "tentacle");
+
+    let teapot = scene("teapot?tess=4");
+    for other in ["explode", "wobble", "inflate", "xray", "outline", "posterize", "dissolve", "points", "overdraw", "fog"] {
+        let stack = dotted(&[("spacing_m", 0.05)], &[other]);
+        exact(&mut renderer, &teapot, &view(&teapot, [160, 120]), &stack, &Accuracy::default(), other);
+    }
+}
+
+#[test]
+fn a_tree_of_lines_refuses_lines_that_move() {
+    let Some(mut renderer) = renderer() else { return };
+    for (query, others, word) in [("tentacle?tess=2", &[][..], "clips"), ("teapot?tess=2", &["wobble"][..], "the effect wobble")] {
+        let scene = scene(query);
+        renderer.set_scene(&scene).expect("it fits");
+        let error = renderer.capture(&view(&scene, [32, 24]), &dotted(&[], others), &on(DotWay::Cpu)).expect_err(query);
+        assert!(error.is_unsupported() && error.to_string().contains(word) && error.to_string().contains("use gpu"), "{error}");
+    }
+}
+
+#[test]
+fn no_number_of_dots_is_lost() {
+    let Some(mut renderer) = renderer() else { return };
+    // A line along the middle of the picture: so many metres hold so many dots.
+    for count in [1u64, 2, 63, 64, 65, 4096, 4097] {
+        let length = (count - 1).max(1) as f32;
+        let (scene, view) = flat(&[[0.0; 3], [length, 0.0, 0.0]], [64, 48]);
+        let spacing = if count == 1 { 1.5 } else { f64::from(length) / (count - 1) as f64 };
+        let stack = dotted(&[("lines", 2.0), ("levels", 0.0), ("spacing_m", spacing)], &[]);
+        let capture = three_ways(&mut renderer, &scene, &view, &stack, &format!("{count} dots"));
+        assert_eq!(capture.geometry.dots.len() as u64, count);
+    }
+    let (scene, view) = flat(&[], [64, 48]);
+    let capture = three_ways(&mut renderer, &scene, &view, &dotted(&[("lines", 2.0)], &[]), "no polyline");
+    assert!(capture.geometry.dots.is_empty() && capture.frame.dots.iter().all(|strength| *strength == 0));
+    let bare = captured(&mut renderer, &scene, &view, &stack(&[]), &Accuracy::default());
+    assert!(bare.frame.color == capture.frame.color, "no dots are no change");
+}
+
+/// One workgroup more than a dispatch has in a dimension, on the list and in brute force, all of them kept.
+#[test]
+fn dots_beyond_65_535_workgroups_are_all_drawn() {
+    let Some(mut renderer) = renderer() else { return };
+    let count: u64 = 65_535 * 64 + 1;
+    // A comb whose last tooth alone stands on the right: were the last dots lost, it would be gone.
+    let (scene, view) = flat(&[[-20.0, 0.0, 0.0], [-20.0, 65_520.0, 0.0], [20.0, 65_520.0, 0.0], [20.0, 0.0, 0.0]], [64, 48]);
+    let length = 2.0 * 65_520.0 + 40.0;
+    let spacing = length / (count - 1) as f64 * (1.0 - 1e-9);
+    let stack = dotted(&[("lines", 2.0), ("levels", 0.0), ("spacing_m", spacing), ("size_px", 1.0)], &[]);
+    let captures = [DotWay::Brute, DotWay::Gpu].map(|way| captured(&mut renderer, &scene, &view, &stack, &on(way)));
+    let dots = captures[0].geometry.dots.len() as u64;
+    assert!(dots.abs_diff(count) < 300, "{dots} dots");
+    assert!(dots.div_ceil(64) > 65_535, "{dots} dots are too few for this test");
+    assert!(captures[0].frame.dots == captures[1].frame.dots);
+    let expected = oracle::dot_strengths(&view, &stack, &captures[0].geometry.dots, &captures[0].frame.key);
+    assert!(captures[0].frame.dots == expected, "not the dots that there are");
+}
+
+#[test]
+fn more_dots_than_fit_are_refused_with_their_number() {
+    let Some(mut renderer) = renderer() else { return };
+    let (scene, view) = flat(&[[0.0; 3], [1e6, 0.0, 0.0]], [32, 24]);
+    renderer.set_scene(&scene).expect("it fits");
+    let stack = dotted(&[("lines", 2.0), ("spacing_m", 0.01)], &[]);
+    let refused = [
+        renderer.capture(&view, &stack, &Accuracy::default()).err().map(|error: RenderError| error.to_string()),
+        oracle::render(&scene, &view, &stack).err().map(|error| error.to_string()),
+    ];
+    for refused in refused {
+        let refused = refused.expect("too many dots");
+        assert!(refused.contains("dots") && refused.contains(&MAX_DOTS.to_string()), "{refused}");
+    }
+    // And the renderer goes on.
+    captured(&mut renderer, &scene, &view, &dotted(&[("lines", 2.0), ("spacing_m", 1000.0)], &[]), &Accuracy::default());
+}
+
+#[test]
+fn frames_repeat_to_the_bit() {
+    let Some(mut renderer) = renderer() else { return };
+    let scene = scene("knot?tess=6");
+    let (view, stack) = (view(&scene, [160, 120]), dotted(&[("spacing_m", 0.004)], &["lambert"]));
+    let first = captured(&mut renderer, &scene, &view, &stack, &Accuracy::default());
+    for round in 0..20 {
+        let again = captured(&mut renderer, &scene, &view, &stack, &Accuracy::default());
+        assert!(again.frame.color == first.frame.color && again.frame.dots == first.frame.dots, "round {round}");
+    }
+}
+
+// ---------------------------------------------------------------- levels
+
+fn parameters(values: &[(&str, f64)]) -> Dots {
+    read(&dotted(values, &[]).get("dots").expect("just enabled").words)
+}
+
+#[test]
+fn a_coarser_level_is_a_part_of_the_finer_one() {
+    let dots = parameters(&[("levels", 24.0), ("fade", 0.5)]);
+    let from = 1.0f32.to_bits();
+    for halvings in 0..23u32 {
+        for part in [0, 1, 1 << 22, (1 << 23) - 1] {
+            let (near, far) = (from - (halvings << 23) - part, from - ((halvings + 1) << 23) - part);
+            for number in (0..5000).chain([1 << 22, 1 << 23, 3 << 20]) {
+                let (strong, weak) = (dots.strength(number, near, from), dots.strength(number, far, from));
+                assert!(weak <= strong, "dot {number} comes back {halvings} halvings away");
+                let level = if number == 0 { 31 } else { number.trailing_zeros() };
+                assert_eq!(strong > 0, level >= halvings && (level > halvings || strong > 0));
+                assert_eq!(weak == 0 || level > halvings, true, "dot {number}");
+            }
+        }
+    }
+}
+
+#[test]
+fn strength_changes_with_distance_by_no_more_than_it_must() {
+    for fade in [1.0, 0.3, 0.0625] {
+        let dots = parameters(&[("levels", 24.0), ("fade", fade)]);
+        let from = 1.0f32.to_bits();
+        // A 4,096th of an octave at a time: a strength fades from all to nothing in `fade` octaves.
+        let most = (f64::from(FULL) / 4096.0 / fade).ceil() as u32 + 1;
+        for number in [0, 1, 2, 3, 4, 8, 12, 1024, 1 << 20] {
+            let mut before = FULL;
+            for step in 0..23 * 4096 {
+                let strength = dots.strength(number, from - step * 2048, from);
+                assert!(strength <= before && before - strength <= most, "fade {fade}, dot {number}, step {step}: {before} to {strength}");
+                before = strength;
+            }
+        }
+    }
+    let all = parameters(&[("levels", 0.0)]);
+    assert!((0..100).all(|number| all.strength(number, 1e-6f32.to_bits(), 1.0f32.to_bits()) == FULL), "0 levels thin nothing");
+}
+
+#[test]
+fn a_dot_covers_its_area() {
+    for size in [1.0, 2.5, 8.0, 33.0] {
+        let dots = parameters(&[("size_px", size)]);
+        for (cx, cy) in [(0i64, 0i64), (128, 128), (37, 201)] {
+            let covered: u64 = (-40i64..40)
+                .flat_map(|y| (-40i64..40).map(move |x| (256 * x + 128 - cx, 256 * y + 128 - cy)))
+                .map(|(dx, dy)| u64::from(dots.cover((dx * dx + dy * dy) as u64)))
+                .sum();
+            let (area, truth) = (covered as f64 / f64::from(FULL), std::f64::consts::PI * size * size / 4.0);
+            assert!((area - truth).abs() < 0.03 * truth + 0.15, "{size} px: {area} of {truth}");
+        }
+    }
+}
+
+/// Largest change of the mean strength from one picture to the next, from 3 m away to 6 m in so many steps: the gap halves
+/// once.
+fn largest_jump(stack: &Stack, steps: u32) -> f64 {
+    let scene = scene("teapot?tess=3");
+    let mean = |step: u32| {
+        let distance = 3.0 * (f64::from(step) / f64::from(steps)).exp2();
+        let eye = [0.3 * distance, 0.2 * distance, distance].into();
+        let view = seen(&scene, &rasterlab::scene::camera::Camera { eye, ..Default::default() }, [160, 120]);
+        let records = oracle::dot_records(&scene, &draws(&scene, &view).expect("it fits"), &view, stack).expect("they fit");
+        let strengths = oracle::dot_strengths(&view, stack, &records, &vec![0; view.pixels()]);
+        strengths.iter().map(|s| f64::from(*s)).sum::<f64>() / strengths.len() as f64 / f64::from(FULL)
+    };
+    let means: Vec<f64> = (0..=steps).map(mean).collect();
+    assert!(means[0] > 0.02, "too few dots: {}", means[0]);
+    means.windows(2).map(|pair| (pair[1] - pair[0]).abs() / means[0]).fold(0.0, f64::max)
+}
+
+#[test]
+fn moving_away_never_jumps() {
+    let values = |fade| [("spacing_m", 0.02), ("gap_px", 4.0), ("size_px", 3.0), ("model", 0.0), ("hidden", 1.0), ("fade", fade)];
+    // What is continuous changes in proportion to the step.
+    let stack = dotted(&values(1.0), &[]);
+    let (coarse, fine) = (largest_jump(&stack, 16), largest_jump(&stack, 256));
+    assert!(fine < 0.02 && fine < coarse / 6.0, "in 16 steps by {coarse}, in 256 by {fine} of the mean strength");
+    // A pattern that fades all at once is the jump that this would show.
+    let hasty = largest_jump(&dotted(&values(0.0625), &[]), 256);
+    assert!(hasty > 3.0 * fine, "hasty fading jumps by {hasty}, slow by {fine}");
+}
+
+// ---------------------------------------------------------------- mutants
+
+#[test]
+fn every_mistake_in_the_dots_shows() {
+    let Some(gpu) = gpu() else { return };
+    let scene = scene("cube-wall");
+    let view = view(&scene, [160, 120]);
+    let stack = dotted(&[("lines", 1.0), ("spacing_m", 0.03), ("gap_px", 8.0), ("size_px", 3.0)], &["lambert"]);
+    let mistakes = [
+        ("common/dots", "* (s.start + f32(place) * s.step)", "* (s.start + f32(place + 1u) * s.step)"),
+        ("common/dots", "scaled * vec2i(1, -1);", "scaled * vec2i(1, -1) + vec2i(256, 0);"),
+        (
+            "effects/dots",
+            "return min(u32(max(i32((radius + 256u) * radius) - squared, 0)) / (2u * radius), DOTS_FULL);",
+            "return select(0u, DOTS_FULL, squared <= i32(radius * radius));",
+        ),
+        ("effects/dots", "let wanted = halved >> DOTS_STEPS;", "let wanted = (halved >> DOTS_STEPS) + 1u;"),
+        ("effects/dots", "select(0u, fading, level == wanted)", "select(0u, DOTS_FULL, level == wanted)"),
+        ("passes/dots_draw", "depth + dot_frame.bias >= depth_bits(key)", "depth >= depth_bits(key)"),
+        ("passes/dots_draw", "atomicMax(&color[", "atomicAdd(&color["),
+        ("passes/dots_draw", "i32(dot_frame.radius) + 128;", "i32(dot_frame.radius) - 128;"),
+        ("passes/dots_cull", "let stride = 1u << level;", "let stride = 2u << level;"),
+        ("passes/dots_cull", "dot_list[first_slot + slot] = entry;", "dot_list[slot] = entry;"),
+        ("passes/dots_cull", "if at > 0u { before = sums[at - 1u]; }", ""),
+        ("passes/dots_args", "(dot_count + 63u) / 64u", "dot_count / 64u"),
+        ("slots/dots/over", "strength * dot_frame.ink.a", "strength * strength * dot_frame.ink.a"),
+    ];
+    let right = captured(&mut Renderer::new(gpu.clone()), &scene, &view, &stack, &Accuracy::default());
+    assert!(right.frame.dots.iter().any(|strength| (1..FULL).contains(strength)));
+    for (file, from, to) in mistakes {
+        let wrong = mutated(file, from, to);
+        let mut renderer = Renderer::with_library(gpu.clone(), wrong.shaders());
+        let (_, verdict) = judged(&mut renderer, &scene, &view, &stack, &Accuracy::default());
+        assert!(exactness(&verdict.accuracy).is_err(), "{file}: {from:?} as {to:?} passes");
+    }
+    assert!(rungs(&Renderer::new(gpu)).contains(&Visibility::Split32));
+}
