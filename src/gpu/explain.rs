@@ -34,10 +34,12 @@ impl Renderer {
             };
         };
         let passes = plan.key.frame();
+        let why = "a texture of words: what the materials of primitives are, and the levels of their images";
+        let texels = self.texels.as_ref().map(|texels| BufferNote { name: "texels".into(), bytes: texels.bytes, why: why.into() });
         Explanation {
             key: plan.key.to_string(),
             passes: passes.iter().map(|pass| Note { name: pass.label(), why: pass_purpose(*pass).into() }).collect(),
-            buffers: self.buffers.notes(),
+            buffers: self.buffers.notes().into_iter().chain(texels).collect(),
             reasons: plan.reasons.clone(),
             omitted: plan.omitted.clone(),
             prediction: Some(plan.prediction),

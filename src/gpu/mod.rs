@@ -15,6 +15,7 @@ mod packing;
 pub mod pipelines;
 mod prepare;
 pub mod readback;
+pub mod texels;
 pub mod timer;
 pub mod trade;
 pub mod uniforms;
@@ -36,6 +37,7 @@ use self::{
     pipelines::Pipelines,
     prepare::{BACKGROUND_ROWS, bin_heads, first_capacities, record_count, recorded_capacities},
     readback::Pending,
+    texels::Texels,
     timer::{Detail, Timer},
     uniforms::{Capacities, CounterRecord, color_stride},
 };
@@ -74,6 +76,8 @@ pub struct Renderer {
     buffers: Buffers,
     timer: Option<Timer>,
     scene: Option<Arc<Scene>>,
+    /// Images and materials of the scene, where it has any that are more than a base colour.
+    texels: Option<Texels>,
     tuning: Tuning,
     capacities: Capacities,
     /// A proof from bounds failed: queues and clipping are kept from now on.
@@ -119,6 +123,7 @@ impl Renderer {
             buffers: Buffers::default(),
             timer,
             scene: None,
+            texels: None,
             capacities: Capacities::default(),
             distrust: false,
             target: None,
@@ -203,6 +208,7 @@ impl Renderer {
         self.distrust = false;
         self.past = None;
         self.full = None;
+        self.texels = None;
         self.scene = Some(scene.clone());
         Ok(())
     }
@@ -386,7 +392,10 @@ impl Renderer {
             let is_last = i + 1 == passes.len();
             let timestamp_writes = self.timer.as_mut().and_then(|timer| timer.compute(&pipeline.label, is_last));
             let mut recorded = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor { label: Some(&pipeline.label), timestamp_writes });
-            pipeline.bind(&self.gpu, &mut recorded, |name| self.buffers.get(name));
+            pipeline.bind(&self.gpu, &mut recorded, |name| match &self.texels {
+                Some(texels) if name == "texels" => wgpu::BindingResource::TextureView(&texels.view),
+                _ => self.buffers.get(name).as_entire_binding(),
+            });
             match dispatch(pass, [vertices, triangles, bent, meshlets], view, self.shown, key) {
                 Dispatch::Direct([x, y]) => recorded.dispatch_workgroups(x, y, 1),
                 Dispatch::Indirect(offset) => recorded.dispatch_workgroups_indirect(self.buffers.get("args"), offset),

@@ -26,6 +26,7 @@ mod shown;
 mod steps;
 mod strict;
 mod surface;
+mod texels;
 mod whole;
 
 pub use bend::volume;

@@ -282,6 +282,7 @@ pub fn plan(needs: &Needs, stack: &Stack, caps: &Caps, tuning: &Tuning, accuracy
         f32_positions: needs.f32_positions,
         f32_normals: needs.f32_normals,
         has_colors: needs.colors,
+        has_texels: needs.paints > 0,
         has_joints: needs.skinning.is_some(),
         has_shapes: needs.shapes,
         has_planes,

@@ -13,10 +13,12 @@ pub mod palette;
 pub mod pick;
 pub mod pose;
 pub mod rig;
+pub mod texture;
 
 use glam::{DMat4, DVec3};
 
 use rig::{Rig, Softness};
+use texture::{Image, Texture};
 
 /// Number format of one attribute component; the discriminant is glTF's `componentType`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -149,6 +151,9 @@ pub struct Primitive {
     pub normals: Accessor,
     /// Three or four lanes, linear.
     pub colors: Option<Accessor>,
+    /// Where its material's textures are looked up, two lanes each: of the base colour, and of the light that it emits. There
+    /// where the material has that texture.
+    pub coords: [Option<Accessor>; 2],
     /// Index into `Scene::materials`.
     pub material: usize,
     /// Box of all vertex positions that are finite, in object space.
@@ -202,13 +207,41 @@ pub struct Material {
     pub name: String,
     /// Linear RGBA, each in [0, 1].
     pub base_color: [f32; 4],
+    /// Multiplies the base colour; its alpha says what is drawn at all where there is a cutoff, and nothing otherwise.
+    pub base_texture: Option<Texture>,
+    /// Light that it emits, linear RGB, from 0 up.
+    pub emission: [f32; 3],
+    /// Multiplies the emission.
+    pub emission_texture: Option<Texture>,
+    /// No light changes its colour.
+    pub unlit: bool,
     /// Draw back faces too, with the normal turned to the viewer.
     pub double_sided: bool,
 }
 
+impl Material {
+    /// Its textures: of the base colour, and of the light that it emits.
+    pub fn textures(&self) -> [Option<&Texture>; 2] {
+        [self.base_texture.as_ref(), self.emission_texture.as_ref()]
+    }
+
+    /// Is it no more than a base colour?
+    pub fn is_plain(&self) -> bool {
+        self.textures() == [None, None] && self.emission == [0.0; 3] && !self.unlit
+    }
+}
+
 impl Default for Material {
     fn default() -> Self {
-        Self { name: "default".into(), base_color: [1.0; 4], double_sided: false }
+        Self {
+            name: "default".into(),
+            base_color: [1.0; 4],
+            base_texture: None,
+            emission: [0.0; 3],
+            emission_texture: None,
+            unlit: false,
+            double_sided: false,
+        }
     }
 }
 
@@ -300,6 +333,8 @@ pub struct Scene {
     pub index_bytes: Vec<u8>,
     pub primitives: Vec<Primitive>,
     pub materials: Vec<Material>,
+    /// What the textures of materials show.
+    pub images: Vec<Image>,
     pub instances: Vec<Instance>,
     pub cameras: Vec<FileCamera>,
     /// What moves.

@@ -86,6 +86,8 @@ pub struct KernelKey {
     pub f32_positions: bool,
     pub f32_normals: bool,
     pub has_colors: bool,
+    /// Some material is more than a base colour.
+    pub has_texels: bool,
     /// Some mesh is held by joints.
     pub has_joints: bool,
     /// Some mesh is mixed from shapes.
@@ -135,6 +137,7 @@ impl KernelKey {
             f32_positions: false,
             f32_normals: false,
             has_colors: true,
+            has_texels: true,
             has_joints: true,
             has_shapes: true,
             has_planes: true,
@@ -338,6 +341,7 @@ impl fmt::Display for KernelKey {
             ("medium", self.has_medium),
             ("large", self.has_large),
             ("colors", self.has_colors),
+            ("texels", self.has_texels),
             ("planes", self.has_planes),
             ("joints", self.has_joints),
             ("shapes", self.has_shapes),

@@ -18,6 +18,8 @@ pub struct Reflected {
 pub enum BindingKind {
     Uniform,
     Storage { read_only: bool },
+    /// Layers of whole numbers, read texel by texel.
+    Texture,
 }
 
 /// One resource that an entry point really uses.
@@ -76,6 +78,7 @@ impl Reflected {
                 let kind = match variable.space {
                     AddressSpace::Uniform => BindingKind::Uniform,
                     AddressSpace::Storage { access } => BindingKind::Storage { read_only: !access.contains(StorageAccess::STORE) },
+                    AddressSpace::Handle => BindingKind::Texture,
                     _ => return None,
                 };
                 Some(Binding { name: variable.name.clone()?, index: variable.binding.as_ref()?.binding, kind })

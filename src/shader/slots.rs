@@ -54,6 +54,7 @@ impl KernelKey {
             ("bytes", format!("slots/bytes/{}", if pass == Pass::Skin { "write" } else { "read" })),
             ("shapes", format!("slots/shapes/{}", if self.has_shapes { "kept" } else { "none" })),
             ("skinning", format!("slots/skinning/{}", if self.has_joints { self.rungs.skinning.name() } else { "none" })),
+            ("texels", format!("slots/texels/{}", if self.has_texels { "atlas" } else { "none" })),
             ("corners", format!("slots/corners/{records}")),
             ("sources", format!("slots/sources/{records}")),
             (

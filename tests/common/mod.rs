@@ -34,6 +34,8 @@ pub const SCENES: &[&str] = &[
     "knot?tess=24",
     "cube-wall",
     "field?count=27&triangles=200",
+    "globe?tess=6",
+    "panels",
     "grid?cell=1",
     "grid?cell=0.4",
     "fan?n=13",

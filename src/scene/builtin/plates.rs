@@ -40,7 +40,7 @@ fn perspective_camera(height_px: f64) -> FileCamera {
 }
 
 fn plate_material() -> Material {
-    Material { name: "plate".into(), base_color: [0.8, 0.8, 0.8, 1.0], double_sided: true }
+    Material { name: "plate".into(), base_color: [0.8, 0.8, 0.8, 1.0], double_sided: true, ..Material::default() }
 }
 
 /// A jittered grid that overhangs a `width` x `height` picture on all sides, so each sample is covered exactly once.
