@@ -14,6 +14,7 @@ use rasterlab::{
     ladder::Visibility,
     measure::compare,
     oracle,
+    plan::{Accuracy, Tier},
     scene::{
         Accessor, Material, Scene,
         camera::{Camera, Projection, View},
@@ -21,7 +22,7 @@ use rasterlab::{
         texture::{Copies, Filter, Image, Texture, Wrap},
     },
     session::{SceneSource, Session},
-    shader::{Fetch, KernelKey, Pass, library::Library, link, reflect},
+    shader::{Fetch, KernelKey, Pass, key, library::Library, link, reflect},
 };
 use serde_json::{Value, json};
 
@@ -222,7 +223,7 @@ fn mistakes_in_looking_up_texels_are_caught() {
         ("turned the other way", "slots/texels/atlas", "look.u_per_v * stored.y", "look.v_per_u * stored.y"),
         ("emission is lit", "effects/lambert", "(s.color.rgb - s.glow) * light + s.glow", "s.color.rgb * light"),
         ("emission without its image", "slots/texels/atlas", "glow *= texels_at", "glow += 0.0 * texels_at"),
-        ("another primitive's material", "slots/texels/atlas", "draws[t.draw].flags >> DRAW_PRIMITIVE", "((draws[t.draw].flags >> DRAW_PRIMITIVE) ^ 1u)"),
+        ("another primitive's material", "slots/texels/atlas", "texels_record(t.draw)", "texels_record(t.draw ^ 1u)"),
     ];
     let mut missed = Vec::new();
     for (what, file, from, to) in mistakes {
@@ -237,6 +238,136 @@ fn mistakes_in_looking_up_texels_are_caught() {
     assert_eq!(missed, Vec::<&str>::new());
 }
 
+// ---------------------------------------------------------------- masks
+
+/// The crown from outside, and from inside, where leaves are cut at the eye.
+fn crowns(size: [u32; 2]) -> (Arc<Scene>, [(&'static str, View); 2]) {
+    let scene = scene("leaves?n=60");
+    let outside = from_eye(&scene, [0.6, 0.9, 3.6], [0.0, 0.0, 0.0], size);
+    let camera = Camera { eye: DVec3::new(0.55, 0.1, 0.75), target: DVec3::new(-0.3, -0.1, 0.0), near_m: 0.2, ..Camera::default() };
+    let inside = look(&scene, camera, size);
+    (scene, [("outside", outside), ("inside", inside)])
+}
+
+#[test]
+fn masks_leave_out_the_same_samples_on_every_rung_in_every_kernel_and_in_the_oracle() {
+    let Some(mut renderer) = renderer() else { return };
+    let (scene, views) = crowns([160, 120]);
+    let stacks = [&["lambert"][..], &["dissolve", "stipple"], &["wireframe"], &["xray"], &["draw_order"], &["explode"], &["boxes"], &["points"]];
+    let usual = renderer.gpu().caps.tuning();
+    let mut cut = 0;
+    for (what, view) in &views {
+        for (place, names) in stacks.iter().enumerate() {
+            let stack = stack(names);
+            let rungs = if place == 0 { rungs(&renderer) } else { vec![Visibility::Split32] };
+            for rung in rungs {
+                for tuning in if place == 0 { tunings().to_vec() } else { vec![usual] } {
+                    renderer.set_tuning(tuning);
+                    let about = format!("{what} {names:?} {}", rung.name());
+                    let (capture, _) = exact(&mut renderer, &scene, view, &stack, &pinned(rung), &about);
+                    cut += capture.geometry.pieces.len();
+                }
+            }
+        }
+    }
+    renderer.set_tuning(usual);
+    assert!(cut > 0, "no leaf was cut");
+}
+
+/// The crown with another cutoff.
+fn cut_at(scene: &Scene, cutoff: Option<f32>) -> Scene {
+    let mut scene = scene.clone();
+    scene.materials[0].cutoff = cutoff;
+    scene
+}
+
+#[test]
+fn a_higher_cutoff_draws_a_part_of_what_a_lower_one_does() {
+    let (scene, [(_, view), _]) = crowns([200, 150]);
+    let stack = stack(&["xray"]);
+    let layers = |cutoff| oracle::render(&cut_at(&scene, cutoff), &view, &stack).expect("it fits").counted;
+    let cutoffs = [None, Some(0.0), Some(0.2), Some(0.5), Some(0.51), Some(0.9), Some(1.0), Some(1.5)];
+    let counts: Vec<Vec<u32>> = cutoffs.iter().map(|&cutoff| layers(cutoff)).collect();
+    for pair in counts.windows(2) {
+        assert!(pair[0].iter().zip(&pair[1]).all(|(more, fewer)| more >= fewer));
+    }
+    let sums: Vec<u32> = counts.iter().map(|counts| counts.iter().sum()).collect();
+    assert!(sums[0] == sums[1] && sums[1] > sums[2] && sums[2] > sums[3] && sums[5] > sums[6] && sums[6] > 0 && sums[7] == 0, "{sums:?}");
+}
+
+#[test]
+fn a_mask_of_a_texel_a_pixel_is_the_alpha_of_the_image() {
+    let image = Image::new("dots", [8, 8], (0..64).map(|at| [255, 255, 255, rasterlab::math::hash(at) as u8]).collect());
+    for filter in [Filter::Nearest, Filter::Linear] {
+        for (wrap, span) in [(Wrap::Repeat, [0.0, 1.0]), (Wrap::Mirrored, [1.0, 2.0]), (Wrap::Clamp, [0.0, 1.0])] {
+            let texture = Texture { wrap: [wrap; 2], magnified: filter, ..Texture::plain(0) };
+            let (scene, view) = pixel_square(8, span, image.clone(), texture);
+            for least in [1u8, 100, 128, 200, 255] {
+                let masked = Arc::new(cut_at(&scene, Some(f32::from(least) / 255.0)));
+                let own = oracle::render(&masked, &view, &Stack::default()).expect("it fits").owner;
+                let mut all = vec![("oracle", own)];
+                if let Some(mut renderer) = renderer() {
+                    let capture = captured(&mut renderer, &masked, &view, &Stack::default(), &pinned(Visibility::Split32));
+                    assert_eq!(capture.frame.counters.orphans, 0);
+                    all.push(("adapter", capture.frame.owner));
+                }
+                for (who, owners) in all {
+                    for (at, owner) in owners.iter().enumerate() {
+                        let (x, y) = if wrap == Wrap::Mirrored { (7 - at % 8, 7 - at / 8) } else { (at % 8, at / 8) };
+                        let is_drawn = image.levels[0].texels[8 * y + x][3] >= least;
+                        assert_eq!(*owner != u32::MAX, is_drawn, "{who}: {filter:?} {wrap:?} {least} at {at}");
+                    }
+                }
+            }
+        }
+    }
+}
+
+#[test]
+fn mistakes_in_masks_are_caught() {
+    let Some(mut healthy) = renderer() else { return };
+    let (scene, views) = crowns([200, 150]);
+    let (stack, rung) = (stack(&[]), pinned(Visibility::Split32));
+    let mistakes = [
+        ("half a texel aside", "slots/mask/asked", "let corner = place - 128;", "let corner = place;"),
+        ("the nearest texel", "slots/mask/asked", "if ((look.sampling >> 4u) & 1u) == 0u {", "if true {"),
+        ("without perspective", "slots/mask/asked", "fixed_umul(spread.x, near.x).hi, fixed_umul(spread.y, near.y).hi, fixed_umul(spread.z, near.z).hi", "spread"),
+        ("another channel", "slots/mask/asked", ">> 24u", ">> 16u & 255u"),
+        ("mirrored", "slots/mask/asked", "vec3u(first.x, first.z, last.x)", "vec3u(first.z, first.x, last.x)"),
+        ("a piece placed as its parent", "slots/mask/settled", "corners[1] = a +", "corners[1] = b + 0 *"),
+        ("upside down", "slots/mask/settled", "-ndc.y", "ndc.y"),
+        ("settled two units aside", "slots/mask/settled", "var corners = array<vec2i, 3>(a, b, c);", "var corners = array<vec2i, 3>(a + 2, b, c);"),
+        ("not asked in the second pass", "common/gate", "mask_is_drawn(t, at) && order", "order"),
+    ];
+    for (what, view) in &views {
+        exact(&mut healthy, &scene, view, &stack, &rung, &format!("without a mistake {what}"));
+    }
+    let mut missed = Vec::new();
+    for (what, file, from, to) in mistakes {
+        let library = mutated(file, from, to);
+        let mut wrong = Renderer::with_library(healthy.gpu().clone(), library.shaders());
+        let why = views.iter().find_map(|(_, view)| exactness(&judged(&mut wrong, &scene, view, &stack, &rung).1.accuracy).err());
+        match why {
+            None => missed.push(what),
+            Some(why) => eprintln!("{what}: {why}"),
+        }
+    }
+    assert_eq!(missed, Vec::<&str>::new());
+}
+
+#[test]
+fn the_tier_strict_takes_masks_unless_something_masked_is_cut() {
+    let Some(mut renderer) = renderer() else { return };
+    let (scene, [(_, outside), (_, inside)]) = crowns([96, 72]);
+    let strict = Accuracy { tier: Tier::Strict, ..Accuracy::default() };
+    let (capture, _) = exact(&mut renderer, &scene, &outside, &stack(&["lambert"]), &strict, "strict");
+    let (owners, keys) = oracle::strict_frame(&scene, &outside, &stack(&["lambert"])).expect("it fits");
+    assert_eq!((capture.frame.owner, capture.frame.key), (owners, keys));
+    renderer.set_scene(&scene).expect("it fits");
+    let error = renderer.draw(&inside, &stack(&["lambert"]), &strict).expect_err("a cut leaf").to_string();
+    assert!(error.contains("the mask of a triangle that is cut is placed in floats"), "{error}");
+}
+
 // ---------------------------------------------------------------- nothing that a scene does not need
 
 #[test]
@@ -247,11 +378,26 @@ fn a_scene_of_plain_colours_has_no_texture_and_no_word_of_one() {
         for pass in plain.frame() {
             let root = format!("passes/{}", pass.stem());
             let linked = link::link(&Library::Embedded, &root, &plain, &plain.slots(pass)).expect("every file is there");
-            for trace in ["texture", "Lookup", "Slopes"] {
+            for trace in ["texture", "Lookup", "Slopes", "least_alpha", "fn mask_alpha"] {
                 assert!(!linked.text.contains(trace), "{}: {trace}", pass.label());
             }
         }
         let painted = KernelKey { has_texels: true, ..plain };
+        let text = |key: &KernelKey, pass: Pass| {
+            let root = format!("passes/{}", pass.stem());
+            link::link(&Library::Embedded, &root, key, &key.slots(pass)).expect("every file is there").text
+        };
+        // What a mask adds are a texture and records behind the vertices; storage buffers stay within the portable eight.
+        let masked = KernelKey { has_mask: true, decisions: painted.decisions + key::MASK_RECORDS, ..painted.clone() };
+        for pass in masked.frame() {
+            assert!(!text(&painted, pass).contains("mask_alpha"), "{}", pass.label());
+            let root = format!("passes/{}", pass.stem());
+            let linked = link::link(&Library::Embedded, &root, &masked, &masked.slots(pass)).expect("every file is there");
+            let reflected = reflect::reflect(&linked, false).unwrap_or_else(|error| panic!("{}: {error}", pass.label()));
+            let bindings = reflected.bindings(pass.entry());
+            let storage = bindings.iter().filter(|binding| matches!(binding.kind, reflect::BindingKind::Storage { .. })).count();
+            assert!(storage <= 8, "{} binds {storage} storage buffers", pass.label());
+        }
         let root = format!("passes/{}", Pass::Resolve.stem());
         let linked = link::link(&Library::Embedded, &root, &painted, &painted.slots(Pass::Resolve)).expect("every file is there");
         let reflected = reflect::reflect(&linked, false).expect("valid");
@@ -538,11 +684,41 @@ fn materials_shine_and_stay_unlit_as_the_file_says() {
 }
 
 #[test]
+fn alpha_modes_say_what_is_cut_out() {
+    let with_mode = |mode: &str| Model::new().with("/materials/0/alphaMode", json!(mode));
+    assert_eq!(Model::new().material().cutoff, None, "an opaque material ignores alpha");
+    assert_eq!(with_mode("MASK").material().cutoff, Some(0.5));
+    let faint = with_mode("MASK")
+        .with("/materials/0/alphaCutoff", json!(0.25))
+        .with("/materials/0/pbrMetallicRoughness/baseColorFactor", json!([1, 1, 1, 0.5]));
+    let faint = faint.material();
+    assert_eq!((faint.cutoff, faint.base_color[3]), (Some(0.5), 1.0), "what is left is opaque");
+    assert_eq!(with_mode("MASK").with("/materials/0/alphaCutoff", json!(0)).material().cutoff, None);
+    with_mode("MASK").with("/materials/0/alphaCutoff", json!(-0.1)).refused("material \"paper\": alphaCutoff -0.1 is not a number from 0 up");
+    with_mode("TRANSLUCENT").refused("alphaMode");
+
+    let blended = with_mode("BLEND").scene();
+    assert_eq!(blended.materials[0].cutoff, Some(0.5), "its image has a texel of 100 of 255");
+    let note = "material \"paper\": blending is not drawn; it is cut out where its alpha is below one half";
+    assert!(blended.notes.iter().any(|given| given == note), "{:?}", blended.notes);
+    let solid = with_mode("BLEND").showing(&encoded(ImageFormat::Jpeg)).scene();
+    assert!(solid.materials[0].cutoff.is_none() && solid.notes.iter().any(|note| note.ends_with("blending is not drawn; it is opaque")));
+
+    let plain = |alpha: f64| {
+        let model = with_mode("MASK").with("/materials/0/pbrMetallicRoughness", json!({ "baseColorFactor": [1, 1, 1, alpha] }));
+        model.scene()
+    };
+    assert_eq!((plain(0.6).triangle_count(), plain(0.6).materials[0].base_color[3]), (2, 1.0));
+    let nothing = plain(0.4);
+    assert!(nothing.triangle_count() == 0 && nothing.notes[0].contains("is left out: the alpha of its material"), "{:?}", nothing.notes);
+}
+
+#[test]
 fn textures_that_do_not_fit_are_refused_by_name() {
     let at = |place: &str, value: Value| Model::new().with(place, value);
-    at(&format!("{BASE}/index"), json!(9)).refused("textures");
-    at("/textures/0/source", json!(9)).refused("source");
-    at("/textures/0/sampler", json!(9)).refused("sampler");
+    at(&format!("{BASE}/index"), json!(9)).refused("baseColorTexture.index: Index out of bounds");
+    at("/textures/0/source", json!(9)).refused("textures[0].source: Index out of bounds");
+    at("/textures/0/sampler", json!(9)).refused("textures[0].sampler: Index out of bounds");
     at("/textures/0", json!({ "sampler": 0 })).refused("source");
     at("/samplers/0/wrapS", json!(1)).refused("wrapS");
     at("/samplers/0/magFilter", json!(9985)).refused("magFilter");
@@ -660,7 +836,7 @@ fn textured_boxes_of_the_corpus_show_their_image() {
     let mut pictures = Vec::new();
     for file in ["BoxTextured-glTF/BoxTextured.gltf", "BoxTextured-glTF-Embedded/BoxTextured.gltf", "BoxTextured-glTF-Binary/BoxTextured.glb"] {
         let scene = gltf::load(&corpus.join(file)).unwrap_or_else(|error| panic!("{error}"));
-        assert_eq!((scene.images.len(), scene.images[0].size()), (1, [256, 256]), "{file}");
+        assert_eq!((scene.images.len(), scene.images[0].size()), (1, [211, 211]), "{file}");
         let view = view(&scene, [96, 72]);
         let frame = oracle::render(&scene, &view, &Stack::default()).expect("it fits");
         let colors: std::collections::BTreeSet<[u8; 4]> = frame.color.iter().copied().collect();

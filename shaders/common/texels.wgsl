@@ -1,10 +1,15 @@
 // Texels: images and the records of materials that look them up, as words of one texture (`gpu::texels`). Every value is mixed
 // here, in linear light, from whole texels: what a sampler's own arithmetic would make of them no judge could tell.
+//@ use common/draws
 
 @group(0) @binding(30) var texels: texture_2d_array<u32>;
 
 // Words before the records: linear light of every byte.
 const TEXELS_RECORDS = 256u;
+const TEXELS_RECORD = 30u; // words of a primitive's record: its paint,
+const TEXELS_PAINT = 6u;
+const TEXELS_LOOKUP = 12u; // and how its base colour and its emission are looked up
+const DRAW_PRIMITIVE = 8u; // bits of a draw's flags from which its primitive is told
 
 // The material of a primitive.
 struct Paint {
@@ -12,11 +17,14 @@ struct Paint {
     red: f32,      // emitted light
     green: f32,
     blue: f32,
+    least_alpha: u32,  // that is drawn, in 2^-16 of a byte's step
+    first_corner: u32, // word of the first vertex's place in the image that masks it, in 1/256 of a texel, two words each
 }
 
 const PAINT_BASE_TEXTURE = 1u;
 const PAINT_EMISSION_TEXTURE = 2u;
 const PAINT_UNLIT = 4u;
+const PAINT_MASKED = 8u;
 
 // How a texture is looked up.
 struct Lookup {
@@ -47,7 +55,14 @@ fn texels_word(place: u32) -> u32 {
 fn texels_float(place: u32) -> f32 { return bitcast<f32>(texels_word(place)); }
 
 fn texels_paint(place: u32) -> Paint {
-    return Paint(texels_word(place), texels_float(place + 1u), texels_float(place + 2u), texels_float(place + 3u));
+    return Paint(
+        texels_word(place), texels_float(place + 1u), texels_float(place + 2u), texels_float(place + 3u),
+        texels_word(place + 4u), texels_word(place + 5u));
+}
+
+// Word of the record of a draw's primitive.
+fn texels_record(draw: u32) -> u32 {
+    return TEXELS_RECORDS + TEXELS_RECORD * (draws[draw].flags >> DRAW_PRIMITIVE);
 }
 
 fn texels_lookup(place: u32) -> Lookup {

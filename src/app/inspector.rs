@@ -44,7 +44,7 @@ impl App {
         egui::ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
             ui.spacing_mut().item_spacing.y = 2.0;
             self.effects_ui(ui);
-            self.keys_folder(ui, "Scene", true, &["scene.spin_deg_per_s", "output.background"]);
+            self.scene_ui(ui);
             self.clips_ui(ui);
             self.camera_ui(ui);
             self.clock_ui(ui);

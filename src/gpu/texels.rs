@@ -1,7 +1,8 @@
 //! Texels: what the resolve knows of materials that are more than a base colour, in one texture that costs no storage buffer.
 //!
 //! The texture is used as a row of words, folded to [`WIDTH`] words a line and as many lines a layer: sRGB decoded, a word per
-//! byte; a record per primitive; then the levels of all images, a texel a word. Twins of `shaders/common/texels.wgsl`.
+//! byte; a record per primitive; where the vertices of masked ones lie in their images; then the levels of all images, a texel a
+//! word. Twins of `shaders/common/texels.wgsl`.
 
 use std::mem::size_of;
 
@@ -11,7 +12,10 @@ use super::{
 };
 use crate::{
     math::linear_light,
-    scene::{Accessor, Scene, texture::Texture},
+    scene::{
+        Accessor, Primitive, Scene,
+        texture::{Texture, stored},
+    },
 };
 
 /// Words in a line, and lines in a layer.
@@ -42,6 +46,8 @@ twin! {
         pub red: f32,
         pub green: f32,
         pub blue: f32,
+        pub least_alpha: u32,
+        pub first_corner: u32,
     }
 }
 
@@ -52,6 +58,7 @@ pub const RECORD_WORDS: usize = (size_of::<PaintRecord>() + 2 * size_of::<Lookup
 const BASE_TEXTURE: u32 = 1;
 const EMISSION_TEXTURE: u32 = 2;
 const UNLIT: u32 = 4;
+const MASKED: u32 = 8;
 
 /// The texture on a device.
 pub struct Texels {
@@ -110,6 +117,7 @@ fn words(scene: &Scene) -> Vec<u32> {
     let records = scene.primitives.len().max(1);
     let mut first = words.len() + RECORD_WORDS * records;
     let mut places = Vec::new();
+    let corners = corners(scene, &mut first);
     for image in &scene.images {
         places.push(first as u32);
         first += (image.bytes() / 4) as usize;
@@ -139,19 +147,45 @@ fn words(scene: &Scene) -> Vec<u32> {
         }
         _ => LookupRecord::default(),
     };
-    for primitive in &scene.primitives {
+    for (primitive, corners) in scene.primitives.iter().zip(&corners) {
         let material = &scene.materials[primitive.material];
         let [base, glow] = material.textures();
         let flag = |is_there: bool, bit: u32| if is_there { bit } else { 0 };
-        let flags = flag(base.is_some(), BASE_TEXTURE) | flag(glow.is_some(), EMISSION_TEXTURE) | flag(material.unlit, UNLIT);
+        let textures = flag(base.is_some(), BASE_TEXTURE) | flag(glow.is_some(), EMISSION_TEXTURE);
+        let flags = textures | flag(material.unlit, UNLIT) | flag(material.least_alpha().is_some(), MASKED);
         let [red, green, blue] = material.emission;
-        words.extend_from_slice(bytemuck::cast_slice(&[PaintRecord { flags, red, green, blue }]));
+        let (least_alpha, first_corner) = (material.least_alpha().unwrap_or(0), corners.first);
+        words.extend_from_slice(bytemuck::cast_slice(&[PaintRecord { flags, red, green, blue, least_alpha, first_corner }]));
         let lookups = [lookup(base, primitive.coords[0].as_ref()), lookup(glow, primitive.coords[1].as_ref())];
         words.extend_from_slice(bytemuck::cast_slice(&lookups));
     }
     words.resize(256 + RECORD_WORDS * records, 0);
+    words.extend(corners.iter().flat_map(|corners| &corners.words));
     for level in scene.images.iter().flat_map(|image| &image.levels) {
         words.extend(level.texels.iter().map(|&texel| u32::from_le_bytes(texel)));
     }
     words
+}
+
+/// Where the vertices of a primitive with a mask lie in its image; no words for others.
+struct Corners {
+    first: u32,
+    words: Vec<u32>,
+}
+
+/// Those of all primitives, from word `first` on, which moves behind them.
+fn corners(scene: &Scene, first: &mut usize) -> Vec<Corners> {
+    let of_primitive = |primitive: &Primitive| {
+        let material = &scene.materials[primitive.material];
+        let masked = material.base_texture.as_ref().filter(|_| material.least_alpha().is_some()).zip(primitive.coords[0]);
+        let words = masked.map_or(Vec::new(), |(texture, coords)| {
+            let size = scene.images[texture.image].size();
+            let units = |vertex| texture.units(size, stored(&coords, &scene.vertex_bytes, vertex)).map(|v| v as u32);
+            (0..primitive.vertex_count()).flat_map(units).collect()
+        });
+        let corners = Corners { first: *first as u32, words };
+        *first += corners.words.len();
+        corners
+    };
+    scene.primitives.iter().map(of_primitive).collect()
 }

@@ -18,6 +18,7 @@ mod finish;
 pub mod flushed;
 mod judge;
 mod layers;
+mod mask;
 mod moved;
 mod order;
 mod project;
@@ -107,7 +108,7 @@ pub fn render_after(scene: &Scene, view: &View, stack: &Stack, previous: Option<
     let mut geometry = project_moved(scene, &draws, view, stack);
     geometry.decisions = decide(scene, &draws, view, stack, &geometry);
     let (triangles, counters) = triangles(scene, &draws, &geometry);
-    let rules = Rules::of(stack, &geometry).ordered(stack, &triangles, view);
+    let rules = Rules::of(stack, &geometry).masked(scene, &draws, stack).ordered(stack, &triangles, view);
     let coverage = cover_by(&rules, &triangles, view, None);
     let (owners, keys) = (&coverage.owners(), &coverage.keys());
     let seen = Seen { owners, keys, previous };

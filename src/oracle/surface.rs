@@ -68,7 +68,8 @@ enum Weights {
     Snapped([DVec3; 3]),
     /// Cross products of the other two corners' (x, y, w) in clip space, which weigh a sample even where w <= 0
     /// (Olano and Greer 1997); turned so that they are positive inside.
-    Homogeneous([DVec3; 3]),
+    /// With the sums of the magnitudes of their terms.
+    Homogeneous([DVec3; 3], [DVec3; 3]),
 }
 
 /// All that does not change from sample to sample.
@@ -208,9 +209,8 @@ impl<'a> Triangle<'a> {
 
     /// How the corners share a pixel's centre. Of boxes and discs the shares are taken not to change.
     fn shares(&self, weights: [f64; 3], pixel: DVec2, screen: DVec2, view: &View) -> Shares {
-        let is_cut = matches!(self.weights, Weights::Homogeneous(_));
         let slopes = if self.shape == Shape::Triangles { self.weights.slopes(weights, pixel, screen, view) } else { [[0.0; 3]; 2] };
-        Shares { weights, slopes, is_cut }
+        Shares { weights, slopes, doubts: self.weights.doubts(weights, screen) }
     }
 
     /// Interpolated in object space; none when the corner normals cancel out.
@@ -258,15 +258,24 @@ impl Screen {
         let v = clip.map(|p| DVec3::new(p.x, p.y, p.w));
         let sum = v[0] + v[1] + v[2];
         let rows = [v[1].cross(v[2]), v[2].cross(v[0]), v[0].cross(v[1])];
+        let terms = cross_terms(&v);
         // y points up in clip space: a negative determinant runs clockwise on screen.
         let is_clockwise = v[0].dot(rows[0]) < 0.0;
         Self {
-            weights: Weights::Homogeneous(if is_clockwise { rows.map(|row| -row) } else { rows }),
+            weights: Weights::Homogeneous(if is_clockwise { rows.map(|row| -row) } else { rows }, terms),
             is_back: is_clockwise != mover.draw.mirrored,
             depths_m: clip.map(|p| linear_depth(view, p.z / p.w).unwrap_or(p.w)),
             center: (sum.z > 0.0).then(|| DVec2::new(0.5 + 0.5 * sum.x / sum.z, 0.5 - 0.5 * sum.y / sum.z)),
         }
     }
+}
+
+/// Sums of the magnitudes of the terms of the cross products of the other two.
+pub(super) fn cross_terms(v: &[DVec3; 3]) -> [DVec3; 3] {
+    [(1, 2), (2, 0), (0, 1)].map(|(i, j): (usize, usize)| {
+        let (a, b) = (v[i].abs(), v[j].abs());
+        DVec3::new(a.y * b.z + a.z * b.y, a.z * b.x + a.x * b.z, a.x * b.y + a.y * b.x)
+    })
 }
 
 /// Metres of an orthographic depth; none in a perspective.
@@ -283,7 +292,7 @@ impl Weights {
                 let areas = areas(corners, pixel, shape, corner);
                 [0, 1, 2].map(|k| areas[k] * corners[k].z)
             }
-            Self::Homogeneous(rows) => {
+            Self::Homogeneous(rows, _) => {
                 let p = DVec3::new(2.0 * screen.x - 1.0, 1.0 - 2.0 * screen.y, 1.0);
                 // A snapped piece may own a sample a hair outside, where near a horizon the sum would vanish.
                 rows.map(|row| p.dot(row).max(0.0))
@@ -292,6 +301,21 @@ impl Weights {
         let sum: f64 = shares.iter().sum();
         let weights = shares.map(|share| share / sum);
         if weights.iter().all(|weight| weight.is_finite()) { weights } else { [1.0 / 3.0; 3] }
+    }
+
+    /// How far an f32 renderer's weights may be off.
+    fn doubts(&self, weights: [f64; 3], screen: DVec2) -> [f64; 3] {
+        // Fifteen roundings of numbers of one sign.
+        const WHOLE: f64 = 15.0 / (1 << 23) as f64;
+        match self {
+            Self::Snapped(_) => weights.map(|weight| weight * WHOLE),
+            Self::Homogeneous(rows, terms) => {
+                let p = DVec3::new(2.0 * screen.x - 1.0, 1.0 - 2.0 * screen.y, 1.0);
+                let sum: f64 = rows.iter().map(|row| p.dot(*row)).sum();
+                // Terms of either sign: an error is proportional to them and not to what they come to.
+                terms.map(|terms| p.abs().dot(terms) / sum.abs() / f64::from(1 << 20))
+            }
+        }
     }
 
     /// How `weights` change from a pixel to the next on the right, and to the next below. Each is a share of a sum, and shares
@@ -307,7 +331,7 @@ impl Weights {
                 let here = at(pixel);
                 (here, [DVec2::X, DVec2::Y].map(|step| at(pixel + step) - here))
             }
-            Self::Homogeneous(rows) => {
+            Self::Homogeneous(rows, _) => {
                 let p = DVec3::new(2.0 * screen.x - 1.0, 1.0 - 2.0 * screen.y, 1.0);
                 let shares = DVec3::from(rows.map(|row| p.dot(row)));
                 let right = DVec3::from(rows.map(|row| row.x * 2.0 / f64::from(view.width)));
@@ -330,7 +354,7 @@ impl Weights {
                 let edge_px = [0, 1, 2].map(|k| areas[k] / lengths[k]);
                 (DVec3::from_array(areas) / sum, DVec3::from_array(edge_px))
             }
-            Self::Homogeneous(rows) => {
+            Self::Homogeneous(rows, _) => {
                 let p = DVec3::new(2.0 * screen.x - 1.0, 1.0 - 2.0 * screen.y, 1.0);
                 let steps = DVec2::new(2.0 / f64::from(view.width), 2.0 / f64::from(view.height));
                 let edge_px = rows.map(|row| p.dot(row).abs() / (row.truncate() * steps).length().max(1e-30));

@@ -43,8 +43,8 @@ pub(super) struct Shares {
     pub weights: [f64; 3],
     /// A pixel to the right, and one down.
     pub slopes: [[f64; 3]; 2],
-    /// The triangle was cut, so its weights are known less exactly.
-    pub is_cut: bool,
+    /// How far an adapter's weights may be off.
+    pub doubts: [f64; 3],
 }
 
 impl<'a> Paint<'a> {
@@ -84,13 +84,12 @@ impl Look<'_> {
         let mixed = |k: [f64; 3]| self.corners[0] * k[0] + self.corners[1] * k[1] + self.corners[2] * k[2];
         let spans = shares.slopes.map(|slope| (mixed(slope) * size).length());
         let detail = libm::log2(spans[0].max(spans[1]).max(1e-15));
-        let [a, b, c] = self.corners;
-        let reach = (b - a).abs().max((c - a).abs());
-        // Weights err by some 2^-20 of what they weigh, on the plane of a cut triangle by 2^-14; corners by a few roundings.
-        let (weight, scale) = if shares.is_cut { (14, 6) } else { (20, 10) };
-        let slack = (reach / f64::from(1 << weight) + self.terms / f64::from(1 << 21)).max(DVec2::splat(1e-7));
-        let place = mixed(shares.weights) + slack * DVec2::new(aside[0], aside[1]);
-        self.filtered(levels, place, detail + aside[2] / f64::from(1 << scale))
+        let place = mixed(shares.weights);
+        let weighed: DVec2 = (0..3).map(|k| (self.corners[k] - place).abs() * shares.doubts[k]).sum();
+        // Corners err by a few roundings, the scale by as much as what it is made of, and by its logarithm.
+        let slack = (weighed + self.terms / f64::from(1 << 21)).max(DVec2::splat(1e-7));
+        let scale = 1.0 / f64::from(1 << 10) + 4.0 * shares.doubts.iter().sum::<f64>();
+        self.filtered(levels, place + slack * DVec2::new(aside[0], aside[1]), detail + aside[2] * scale.min(1.0))
     }
 
     /// The light at a place, where a pixel spans 2^detail texels.

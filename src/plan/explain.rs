@@ -56,6 +56,10 @@ pub(super) fn explain(needs: &Needs, is_usual: bool, caps: &Caps, key: &KernelKe
         };
         reasons.push(note("texels", why));
     }
+    if key.has_mask {
+        let why = "the alpha of an image leaves samples out: corners are placed in it once, in 1/256 of a texel, and integers decide";
+        reasons.push(note("mask", why));
+    }
     if key.has_image() {
         reasons.push(note("finish", "an image effect finishes every pixel, empty ones too, so no tile is skipped"));
     }
@@ -72,7 +76,8 @@ pub(super) fn explain(needs: &Needs, is_usual: bool, caps: &Caps, key: &KernelKe
         ("plane normals and centres", key.has_planes, "no effect reads them and no normal needs a substitute".into()),
         ("vertex colours", needs.colors, "no primitive has them".into()),
         ("texels", key.has_texels, "no material is more than a base colour".into()),
-        ("decide", key.decisions > 0, "no effect settles anything per triangle".into()),
+        ("mask", key.has_mask, "no image's alpha leaves anything out".into()),
+        ("decide", key.decisions > 0, "neither effects nor masks settle anything per triangle".into()),
         ("draw order", key.order != Order::Free, "every sample is drawn".into()),
         ("sample effects", key.has_samples, "no effect leaves samples out".into()),
         ("image hook", key.has_image(), "no effect of the stack finishes pixels".into()),

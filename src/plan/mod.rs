@@ -16,7 +16,7 @@ use crate::{
     scene::needs::Needs,
     shader::{
         glue::reads,
-        key::{Fetch, KernelKey, Order, deciding},
+        key::{Fetch, KernelKey, MASK_RECORDS, Order, deciding},
         library::Library,
     },
 };
@@ -258,6 +258,8 @@ pub fn plan(needs: &Needs, stack: &Stack, caps: &Caps, tuning: &Tuning, accuracy
     let planes = ["flat_normal", "flat_depth_m", "center"];
     let reads_planes = stack.0.iter().any(|enabled| planes.iter().any(|member| reads(&Library::Embedded, enabled.effect, member)));
     let has_planes = reads_planes || !needs.sound_normals;
+    // Boxes and discs show all of a material.
+    let has_mask = needs.masked && shape == Shape::Triangles;
     let effects: Vec<_> = stack.0.iter().map(|Enabled { effect, .. }| *effect).collect();
     let key = KernelKey {
         fetch: if needs.indexed { Fetch::Indexed } else { Fetch::Direct },
@@ -271,7 +273,8 @@ pub fn plan(needs: &Needs, stack: &Stack, caps: &Caps, tuning: &Tuning, accuracy
         shape,
         order: Order::of(stack),
         has_samples: effects.iter().any(|effect| effect.hooks.sample.is_some()),
-        decisions: deciding(&effects),
+        decisions: deciding(&effects) + if has_mask { MASK_RECORDS } else { 0 },
+        has_mask,
         effects,
         has_clipping,
         has_medium,

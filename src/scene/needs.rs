@@ -30,6 +30,8 @@ pub struct Needs {
     pub paints: usize,
     /// Of those, materials with a texture.
     pub textured: usize,
+    /// The alpha of an image leaves out a part of something.
+    pub masked: bool,
     /// Some mesh is mixed from shapes.
     pub shapes: bool,
     /// How joints hold meshes, where any do.
@@ -81,6 +83,7 @@ impl Needs {
             colors: drawn().any(|p| p.colors.is_some()),
             paints: painted.len(),
             textured: painted.iter().filter(|material| scene.materials[**material].textures() != [None, None]).count(),
+            masked: drawn().any(|p| scene.materials[p.material].least_alpha().is_some()),
             shapes: draws.iter().any(|draw| draw.bend.as_ref().is_some_and(|bend| bend.weights.iter().any(|weight| *weight != 0.0))),
             skinning: draws.iter().find_map(|draw| Some(draw.bend.as_ref()?.palette.as_ref()?.skinning())),
             sound_normals: draws.iter().all(|draw| draw.bend.is_none())

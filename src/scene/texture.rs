@@ -172,8 +172,21 @@ impl Texture {
     }
 }
 
+/// Units of [`Texture::units`] in a texel.
+pub const UNITS_PER_TEXEL: f64 = 256.0;
+
 /// Largest coordinate in an image that is looked up, either way: so many times it may be repeated.
 pub const MOST_REPEATS: f64 = 65_536.0;
+
+impl Texture {
+    /// Where stored coordinates lie in an image of this size, in 1/256 of a texel: what decides in integers starts from these.
+    /// Held to 2^29, which is two million texels either way.
+    pub fn units(&self, size: [u32; 2], stored: DVec2) -> [i32; 2] {
+        const FARTHEST: f64 = (1 << 29) as f64;
+        let place = self.placed(stored) * DVec2::from(size.map(f64::from)) * UNITS_PER_TEXEL;
+        place.to_array().map(|v| v.clamp(-FARTHEST, FARTHEST).round_ties_even() as i32)
+    }
+}
 
 /// Two stored coordinates of a vertex.
 pub fn stored(coords: &Accessor, bytes: &[u8], vertex: u32) -> DVec2 {

@@ -72,7 +72,7 @@ pub struct KernelKey {
     pub order: Order,
     /// A sample effect may leave samples out.
     pub has_samples: bool,
-    /// Sample effects that settle something per triangle.
+    /// Records that are settled per triangle: one of every sample effect that does, and [`MASK_RECORDS`] of a mask.
     pub decisions: u32,
     /// Some triangle may need clipping.
     pub has_clipping: bool,
@@ -88,6 +88,8 @@ pub struct KernelKey {
     pub has_colors: bool,
     /// Some material is more than a base colour.
     pub has_texels: bool,
+    /// The alpha of an image leaves samples out.
+    pub has_mask: bool,
     /// Some mesh is held by joints.
     pub has_joints: bool,
     /// Some mesh is mixed from shapes.
@@ -109,6 +111,9 @@ pub struct KernelKey {
     /// Bits of a triangle's id where it shares a word with its depth, else 0.
     pub id_bits: u32,
 }
+
+/// Records that a mask settles per triangle: where its corners lie in the image.
+pub const MASK_RECORDS: u32 = 2;
 
 /// Effects that settle something per triangle.
 pub fn deciding(effects: &[&'static Effect]) -> u32 {
@@ -138,6 +143,7 @@ impl KernelKey {
             f32_normals: false,
             has_colors: true,
             has_texels: true,
+            has_mask: false,
             has_joints: true,
             has_shapes: true,
             has_planes: true,
@@ -342,6 +348,7 @@ impl fmt::Display for KernelKey {
             ("large", self.has_large),
             ("colors", self.has_colors),
             ("texels", self.has_texels),
+            ("mask", self.has_mask),
             ("planes", self.has_planes),
             ("joints", self.has_joints),
             ("shapes", self.has_shapes),

@@ -36,6 +36,7 @@ pub const SCENES: &[&str] = &[
     "field?count=27&triangles=200",
     "globe?tess=6",
     "panels",
+    "leaves?n=40",
     "grid?cell=1",
     "grid?cell=0.4",
     "fan?n=13",

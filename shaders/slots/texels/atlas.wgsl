@@ -3,18 +3,14 @@
 //@ use common/texels
 //@ use common/slopes
 
-const TEXELS_RECORD = 28u; // words of a primitive's record
-const TEXELS_LOOKUP = 12u;
-const DRAW_PRIMITIVE = 8u;    // bits of a draw's flags from which its primitive is told
-
 fn texels_painted(surface: Surface, t: Triangle, at: vec3u, place: Place) -> Surface {
     var s = surface;
-    let record = TEXELS_RECORDS + TEXELS_RECORD * (draws[t.draw].flags >> DRAW_PRIMITIVE);
+    let record = texels_record(t.draw);
     let paint = texels_paint(record);
     var slopes: Slopes;
     if (paint.flags & (PAINT_BASE_TEXTURE | PAINT_EMISSION_TEXTURE)) != 0u { slopes = slopes_of(t, at, place, s.screen); }
     if (paint.flags & PAINT_BASE_TEXTURE) != 0u {
-        s.color = vec4f(s.color.rgb * texels_at(texels_lookup(record + 4u), at, place.weights, slopes), s.color.a);
+        s.color = vec4f(s.color.rgb * texels_at(texels_lookup(record + TEXELS_PAINT), at, place.weights, slopes), s.color.a);
     }
     if (paint.flags & PAINT_UNLIT) != 0u {
         s.glow = s.color.rgb;
@@ -22,7 +18,7 @@ fn texels_painted(surface: Surface, t: Triangle, at: vec3u, place: Place) -> Sur
     }
     var glow = vec3f(paint.red, paint.green, paint.blue);
     if (paint.flags & PAINT_EMISSION_TEXTURE) != 0u {
-        glow *= texels_at(texels_lookup(record + 4u + TEXELS_LOOKUP), at, place.weights, slopes);
+        glow *= texels_at(texels_lookup(record + TEXELS_PAINT + TEXELS_LOOKUP), at, place.weights, slopes);
     }
     s.glow = glow;
     s.color = vec4f(s.color.rgb + glow, s.color.a);

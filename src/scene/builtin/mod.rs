@@ -5,6 +5,7 @@
 
 mod extremes;
 mod field;
+mod leaves;
 mod mesh;
 mod painted;
 mod plates;
@@ -119,6 +120,12 @@ pub const BUILTINS: &[Builtin] = &[
         about: "panels that show images in every way: repeated, mirrored, clamped, turned, shining, unlit; and a ground of gravel",
         params: &[real("repeats", "how often the ground repeats its image along a side", 24.0, 1.0..=4096.0)],
         build: painted::panels,
+    },
+    Builtin {
+        name: "leaves",
+        about: "a crown of leaves, which the alpha of an image cuts out of quadrilaterals",
+        params: &[whole("n", "number of leaves", 160.0, 1.0..=1_000_000.0), SEED],
+        build: leaves::build,
     },
     Builtin {
         name: "near",

@@ -29,14 +29,14 @@ pub fn pixel_camera(height_px: f64, distance_m: f64) -> FileCamera {
         projection: Projection::Orthographic { height_m: height_px },
         near_m: 0.01,
     };
-    FileCamera { name: "pixels".into(), pose }
+    FileCamera { name: "pixels".into(), pose, node: None }
 }
 
 /// The same scale on the plane z = 0, in perspective: w is the same at all vertices.
 fn perspective_camera(height_px: f64) -> FileCamera {
     let fov_y_deg = 2.0 * libm::atan(0.5).to_degrees();
     let pose = Camera { projection: Projection::Perspective { fov_y_deg }, ..pixel_camera(height_px, height_px).pose };
-    FileCamera { name: "pixels in perspective".into(), pose }
+    FileCamera { name: "pixels in perspective".into(), pose, node: None }
 }
 
 fn plate_material() -> Material {

@@ -9,6 +9,7 @@ use std::{
 
 use gltf::json::{
     self,
+    material::AlphaMode,
     mesh::Mode,
     texture::{MagFilter, MinFilter, WrappingMode},
     validation::Checked,
@@ -55,12 +56,33 @@ pub fn read(
     Ok((materials, images))
 }
 
+/// What images point at must exist, even where nothing looks them up.
+pub fn check_images(buffers: &Buffers) -> Result<(), LoadError> {
+    for (index, image) in buffers.root.images.iter().enumerate() {
+        let place = |error: LoadError| error.within(called("image", index, image.name.as_deref()));
+        match (image.buffer_view, &image.uri) {
+            (Some(view), _) => drop(buffers.view(view.value()).map_err(place)?),
+            (None, None) => return Err(place(LoadError::new("has neither a URI nor a bufferView"))),
+            (None, Some(_)) => {}
+        }
+    }
+    Ok(())
+}
+
 /// Materials of triangles that the scene shows.
 fn used(root: &json::Root, shown: &[usize]) -> BTreeSet<usize> {
     let meshes = shown.iter().filter_map(|&node| root.nodes[node].mesh).map(|mesh| &root.meshes[mesh.value()]);
     let is_drawn = |mode: &Checked<Mode>| matches!(mode, Checked::Valid(Mode::Triangles | Mode::TriangleStrip | Mode::TriangleFan));
     let primitives = meshes.flat_map(|mesh| &mesh.primitives).filter(|primitive| is_drawn(&primitive.mode));
     primitives.filter_map(|primitive| primitive.material).map(|material| material.value()).collect()
+}
+
+/// Does a mask leave out all of it?
+pub fn is_invisible(about: &json::Material) -> bool {
+    let alpha = about.pbr_metallic_roughness.base_color_factor.0[3];
+    let cutoff = about.alpha_cutoff.map_or(0.5, |cutoff| cutoff.0);
+    let is_masked = about.alpha_mode == Checked::Valid(AlphaMode::Mask);
+    is_masked && about.pbr_metallic_roughness.base_color_texture.is_none() && alpha < cutoff
 }
 
 struct Reader<'a, 'b, 'c> {
@@ -79,9 +101,10 @@ impl Reader<'_, '_, '_> {
     fn material(&mut self, plain: Material, about: &json::Material) -> Result<Material, LoadError> {
         let base = about.pbr_metallic_roughness.base_color_texture.as_ref();
         let base_texture = base.map(|info| self.texture(info).map_err(|error| error.within("baseColorTexture"))).transpose()?;
+        let plain = self.masked(Material { base_texture, ..plain }, about)?;
         let extensions = about.extensions.as_ref();
         if extensions.is_some_and(|extensions| extensions.unlit.is_some()) {
-            return Ok(Material { base_texture, unlit: true, ..plain });
+            return Ok(Material { unlit: true, ..plain });
         }
         let strength = extensions.and_then(|extensions| extensions.emissive_strength.as_ref()).map_or(1.0, |s| s.emissive_strength.0);
         if !(0.0..=BRIGHTEST).contains(&strength) {
@@ -90,7 +113,32 @@ impl Reader<'_, '_, '_> {
         let emission = about.emissive_factor.0.map(|channel| channel.clamp(0.0, 1.0) * strength);
         let glow = about.emissive_texture.as_ref().filter(|_| emission != [0.0; 3]);
         let emission_texture = glow.map(|info| self.texture(info).map_err(|error| error.within("emissiveTexture"))).transpose()?;
-        Ok(Material { base_texture, emission, emission_texture, ..plain })
+        Ok(Material { emission, emission_texture, ..plain })
+    }
+
+    /// With a cutoff where alpha leaves something out. What it does not is drawn, and all of that is opaque.
+    fn masked(&mut self, plain: Material, about: &json::Material) -> Result<Material, LoadError> {
+        let name = quoted(&plain.name);
+        let alpha = plain.base_color[3];
+        let opaque = Material { base_color: [plain.base_color[0], plain.base_color[1], plain.base_color[2], 1.0], ..plain.clone() };
+        match about.alpha_mode {
+            Checked::Valid(AlphaMode::Mask) => {
+                let cutoff = about.alpha_cutoff.map_or(0.5, |cutoff| cutoff.0);
+                if !(cutoff >= 0.0 && cutoff.is_finite()) {
+                    return Err(LoadError::new(format!("alphaCutoff {cutoff} is not a number from 0 up")));
+                }
+                let cutoff = (cutoff > 0.0 && opaque.base_texture.is_some()).then(|| (cutoff / alpha).min(2.0));
+                Ok(Material { cutoff, ..opaque })
+            }
+            Checked::Valid(AlphaMode::Blend) => {
+                let texels = opaque.base_texture.map(|texture| &self.images[texture.image].levels[0].texels);
+                let has_holes = texels.is_some_and(|texels| texels.iter().any(|texel| texel[3] < 128));
+                let instead = if has_holes { "cut out where its alpha is below one half" } else { "opaque" };
+                self.notes.push(format!("material {name}: blending is not drawn; it is {instead}"));
+                Ok(Material { cutoff: has_holes.then_some(0.5), ..opaque })
+            }
+            _ => Ok(plain),
+        }
     }
 
     fn texture(&mut self, info: &json::texture::Info) -> Result<Texture, LoadError> {

@@ -30,7 +30,7 @@ pub fn scene(bytes: &[u8], read: &mut ReadFile) -> Result<Scene, LoadError> {
     let (json, binary) = container::split(bytes)?;
     let root = container::root(json)?;
     let mut buffers = Buffers::read(&root, binary, read)?;
-    check_images(&buffers)?;
+    materials::check_images(&buffers)?;
     let tree = Tree::walk(&root)?;
     let (mut rig, mut repairs) = (Rig::default(), Vec::from_iter(tree.uneven(&root)));
     let (materials, images) = materials::read(&mut buffers, &tree.shown, read, &mut repairs)?;
@@ -52,22 +52,9 @@ pub fn scene(bytes: &[u8], read: &mut ReadFile) -> Result<Scene, LoadError> {
     if scene.instances.is_empty() {
         scene.notes.push("nothing to draw: the scene shows no triangles".into());
     }
-    scene.cameras = tree.cameras(&root, &scene.bounds(), &mut scene.notes);
+    scene.cameras = tree.cameras(&root, &scene.bounds(), !scene.rig.is_empty(), &mut scene.notes);
     scene.notes.truncate(limits::NOTES);
     Ok(scene)
-}
-
-/// What images point at must exist, even where nothing looks them up.
-fn check_images(buffers: &Buffers) -> Result<(), LoadError> {
-    for (index, image) in buffers.root.images.iter().enumerate() {
-        let place = |error: LoadError| error.within(called("image", index, image.name.as_deref()));
-        match (image.buffer_view, &image.uri) {
-            (Some(view), _) => drop(buffers.view(view.value()).map_err(place)?),
-            (None, None) => return Err(place(LoadError::new("has neither a URI nor a bufferView"))),
-            (None, Some(_)) => {}
-        }
-    }
-    Ok(())
 }
 
 /// What the file has and the picture lacks.
@@ -79,14 +66,9 @@ fn omissions(root: &json::Root) -> Vec<String> {
         let roughness = material.pbr_metallic_roughness.metallic_roughness_texture.is_some();
         roughness || material.normal_texture.is_some() || material.occlusion_texture.is_some()
     };
-    let any = [
-        (root.materials.iter().any(has_more), "normal, occlusion and metallic-roughness textures are not drawn"),
-        (
-            root.materials.iter().any(|m| m.alpha_mode != Checked::Valid(json::material::AlphaMode::Opaque)),
-            "alpha is ignored: all surfaces are opaque",
-        ),
-    ];
-    notes.extend(any.into_iter().filter(|(is_there, _)| *is_there).map(|(_, note)| note.to_owned()));
+    if root.materials.iter().any(has_more) {
+        notes.push("normal, occlusion and metallic-roughness textures are not drawn".into());
+    }
     notes
 }
 
@@ -178,6 +160,11 @@ impl<'a> Loader<'a> {
                     continue;
                 }
             };
+            let material = primitive.material.map(|material| &self.buffers.root.materials[material.value()]);
+            if material.is_some_and(materials::is_invisible) {
+                self.notes.insert(format!("{name} is left out: the alpha of its material is below the cutoff everywhere"));
+                continue;
+            }
             self.primitive(&name, topology, primitive).map_err(|LoadError(reason)| LoadError(format!("{name}{reason}")))?;
         }
         let range = first..self.scene.primitives.len();
@@ -228,6 +215,9 @@ impl<'a> Loader<'a> {
         primitive.sound_normals = primitive.normals_agree(&self.scene);
         if let Some(colors) = &primitive.colors {
             check_finite(&self.scene, colors).map_err(at("COLOR_0"))?;
+            if colors.lanes == 4 && self.scene.materials[material].cutoff.is_some() {
+                self.notes.insert(format!("{name}: only the alpha of its image cuts it out, not that of its vertex colours"));
+            }
         }
         self.scene.primitives.push(primitive);
         self.origins.push(about);
