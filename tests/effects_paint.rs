@@ -142,6 +142,7 @@ fn what_is_off_leaves_no_trace_to_the_bit() {
 fn surface(color: DVec3) -> Surface {
     Surface {
         color: color.extend(1.0),
+        glow: DVec3::ZERO,
         position: DVec3::ZERO,
         normal: DVec3::Z,
         flat_normal: DVec3::Z,

@@ -5,6 +5,7 @@ use rasterlab::{
     gpu::bends::{BendRecord, ShapeRecord},
     gpu::culling::{CullingUniform, InstanceRecord, MeshletRecord},
     gpu::dots::{DotFrame, StretchRecord},
+    gpu::texels::{LookupRecord, PaintRecord},
     gpu::uniforms::{CounterRecord, DrawRecord, FrameUniform, ScalingUniform, Twin},
     ladder::Visibility,
     shader::{
@@ -46,6 +47,10 @@ fn uniforms_and_records_agree() {
     check_twin::<MeshletRecord>(&cull);
     check_twin::<InstanceRecord>(&cull);
     check_twin::<CullingUniform>(&cull);
+    // Read word by word, in the order of their members.
+    let resolve = reflected(Pass::Resolve, vec![]);
+    check_twin::<LookupRecord>(&resolve);
+    check_twin::<PaintRecord>(&resolve);
 }
 
 #[test]

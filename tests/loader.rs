@@ -955,7 +955,7 @@ fn nodes_must_form_a_shallow_tree() {
 }
 
 #[test]
-fn images_must_exist_although_they_are_not_drawn() {
+fn images_must_exist_although_nothing_looks_them_up() {
     Model::square().with("/images", json!([{}])).refused("image 0: has neither a URI nor a bufferView");
     let mut beyond = Model::square();
     let view = beyond.push("bufferViews", json!({ "buffer": 0, "byteOffset": 10, "byteLength": 1000 }));

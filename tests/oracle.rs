@@ -66,6 +66,7 @@ fn scene(meshes: &[(Mesh, DMat4)]) -> Scene {
             positions,
             normals,
             colors,
+            coords: [None; 2],
             material: i,
             bounds,
             longest_edge: 2.0 * bounds.radius(),

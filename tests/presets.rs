@@ -669,6 +669,7 @@ prop_compose! {
         Session {
             name, about, tags, scene, spin_deg_per_s, play, camera,
             polyline: if reversed { [[background[0], -background[1], 1.0], [1e9, background[2], 1e-9], [0.0; 3]].into() } else { [].into() },
+            scene_camera: if reversed { "from above".into() } else { String::new() },
             clock,
             animation: animated(&stack, tracks),
             stack,

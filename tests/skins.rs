@@ -22,7 +22,7 @@ use rasterlab::{
         pose::{Bend, Motion, Pose},
         rig::{Local, Node, Parts},
     },
-    session::{Clock, NoClip, Pins, Play, Session},
+    session::{Clock, NoSuch, Pins, Play, Session},
 };
 
 /// A moment of one or two clips of a scene, as a look without a camera shows it.
@@ -193,7 +193,7 @@ fn a_look_names_its_clips_holds_them_and_says_which_there_are() {
     let play = |clip: &str, other: &str| Play { clip: clip.into(), other: other.into(), ..Play::default() };
     assert_eq!(play("Sway", "#2").check(&scene), Ok(()));
     let known = "; it has \"Sway\", \"Curl\", \"Twist\", \"Breathe\"".to_owned();
-    assert_eq!(play("Sway", "sway").check(&scene), Err(NoClip { key: "scene.clip_b", asked: "sway".into(), known }));
+    assert_eq!(play("Sway", "sway").check(&scene), Err(NoSuch { key: "scene.clip_b", what: "clip", asked: "sway".into(), known }));
     assert_eq!(
         play("Walk", "").check(&common::scene("teapot?tess=1")).unwrap_err().to_string(),
         "scene.clip: the scene has no clip \"Walk\"; nothing in it moves"

@@ -74,7 +74,7 @@ fn the_planned_kernel_and_the_one_that_leaves_nothing_out_draw_the_same() {
         assert!(!(k.single_draw || k.only_lists || k.wide_indices || k.f32_positions || k.f32_normals), "{k:?}");
         assert_ne!(key, everything, "{what}: the planner spares nothing");
         spared += u32::from(!key.has_queues());
-        let band = if stack.has_steps() {
+        let band = if stack.has_steps() || !scene.images.is_empty() {
             let verdict = oracle::judge(&scene, &view, &stack, &planned.frame, &planned.geometry, planned.layers.as_deref());
             verdict.unwrap_or_else(|error| panic!("{what}: {error}")).step_band
         } else {

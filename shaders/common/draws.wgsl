@@ -11,7 +11,7 @@ struct Draw {
     first_vertex: u32,
     vertex_count: u32,
     first_triangle: u32,
-    flags: u32,
+    flags: u32,                  // and from bit 8 on the primitive that it shows
     topology: u32,
     index_offset: u32,
     index_format: u32,

@@ -11,6 +11,7 @@
 //@ use common/surface
 //@ use slot/shape
 //@ use slot/ranks
+//@ use slot/texels
 
 override HAS_COLORS: bool = false;
 override HAS_CLIPPING: bool = false;
@@ -143,6 +144,7 @@ fn shade_surface(id: u32, pixel: vec2u) -> Surface {
     }
     s.color = draws[t.draw].base_color
         * (color_of(t.draw, at.x) * k.x + color_of(t.draw, at.y) * k.y + color_of(t.draw, at.z) * k.z);
+    s = texels_painted(s, t, at, place);
 
     let na = normal_bits(t.draw, at.x);
     let nb = normal_bits(t.draw, at.y);

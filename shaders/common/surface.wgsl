@@ -2,6 +2,7 @@
 
 struct Surface {
     color: vec4f,
+    glow: vec3f,
     position: vec3f,
     normal: vec3f,
     flat_normal: vec3f,

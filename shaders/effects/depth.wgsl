@@ -14,6 +14,7 @@ fn depth(surface: Surface, p: Depth) -> Surface {
     let fitted = (s.depth_m - s.range_m.x) / (s.range_m.y - s.range_m.x);
     let way = select(s.depth_m * p.scale + p.offset, fitted, p.fit != 0u);
     let shade = p.near + (p.far - p.near) * clamp(way, 0.0, 1.0);
+    s.glow = vec3f(0.0);
     s.color = vec4f(shade.rgb, s.color.a);
     return s;
 }

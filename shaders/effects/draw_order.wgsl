@@ -13,6 +13,7 @@ struct DrawOrder {
 fn draw_order(surface: Surface, p: DrawOrder) -> Surface {
     var s = surface;
     let heat = mix(p.first, p.last, s.rank);
+    s.glow *= 1.0 - heat.a;
     s.color = vec4f(mix(s.color.rgb, heat.rgb, heat.a), s.color.a);
     return s;
 }

@@ -14,6 +14,7 @@ fn fog(surface: Surface, p: Fog) -> Surface {
     let above = max(s.position.y - p.level_m, 0.0);
     let thickness = p.density * exp(-above * p.falloff);
     let share = 1.0 - exp(-thickness * max(s.depth_m - p.start_m, 0.0));
+    s.glow *= 1.0 - share;
     s.color = vec4f(s.color.rgb + (p.color.rgb - s.color.rgb) * share, s.color.a);
     return s;
 }

@@ -17,6 +17,6 @@ fn lambert(surface: Surface, p: Lambert) -> Surface {
     let lamp = max(dot(s.normal, s.view), 0.0) * p.headlight;
     let up = 0.5 + 0.5 * s.normal.y;
     let light = p.sun.rgb * sun + p.ground.rgb + (p.sky.rgb - p.ground.rgb) * up + vec3f(lamp);
-    s.color = vec4f(s.color.rgb * light, s.color.a);
+    s.color = vec4f((s.color.rgb - s.glow) * light + s.glow, s.color.a);
     return s;
 }

@@ -1,9 +1,10 @@
-// Decide: settles, once per triangle or piece, the integers that sample effects hold their samples against. What comes
-// from floats is rounded here and nowhere else, so that no two passes can differ about it.
+// Decide: settles, once per triangle or piece, the integers that sample effects and masks hold their samples against. What
+// comes from floats is rounded here and nowhere else, so that no two passes can differ about it.
 //@ use common/center
 //@ use common/counters
 //@ use common/sample
 //@ use slot/pieces
+//@ use slot/mask
 //@ use glue/decide
 
 // The pieces that clipping left, instead of the triangles.
@@ -32,6 +33,7 @@ fn decide(@builtin(workgroup_id) group: vec3u, @builtin(num_workgroups) groups: 
         if ((t.a.x | t.b.x | t.c.x) & 255u) != 0u { return; }
         center_screen = center_whole(t.a, t.b, t.c);
     }
+    mask_settle(t, at);
     let center = center_world(t.draw, at);
     glue_decide(Facts(t.id, vertex_at(t.a), vertex_at(t.b), vertex_at(t.c), t.outline, frame.size, center, center_screen), t.entry);
 }

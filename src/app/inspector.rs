@@ -44,9 +44,7 @@ impl App {
         egui::ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
             ui.spacing_mut().item_spacing.y = 2.0;
             self.effects_ui(ui);
-            let has_lines = self.look.session.stack.0.iter().any(|enabled| enabled.effect.hooks.has_lines);
-            let paths = ["scene.spin_deg_per_s", "output.background", "scene.polyline"];
-            self.keys_folder(ui, "Scene", true, &paths[..if has_lines { 3 } else { 2 }]);
+            self.scene_ui(ui);
             self.clips_ui(ui);
             self.camera_ui(ui);
             self.clock_ui(ui);

@@ -21,6 +21,7 @@ mod orbit;
 mod overlays;
 mod playback;
 mod presets;
+mod scenery;
 mod screen;
 mod shortcuts;
 mod start;

@@ -166,6 +166,7 @@ impl App {
                 self.look.session.scene = SceneSource::Builtin(builtin.name.into());
                 // A pose for one scene says nothing about another.
                 self.look.session.camera = None;
+                self.look.session.scene_camera.clear();
             }
             if is_open && let Some(changed) = params_ui(ui, builtin, &query) {
                 self.look.session.scene = SceneSource::Builtin(changed);

@@ -117,6 +117,7 @@ pub fn subjects(common: &Common, args: &Bench) -> Result<Vec<(Look, Arc<Scene>)>
             look.session.scene = plain.session.scene.clone();
             // The camera of a look was placed for its own scene.
             look.session.camera = None;
+            look.session.scene_camera.clear();
             look
         }));
     }

@@ -1,6 +1,6 @@
 //! Depth: shades by distance from the eye, fitted to the scene or by a scale and an offset of your own.
 
-use glam::DVec4;
+use glam::{DVec3, DVec4};
 
 use super::{Effect, Surface, SurfaceEffect};
 use crate::{
@@ -34,6 +34,7 @@ impl SurfaceEffect for Depth {
         };
         let (near, far) = (vec4(p.near), vec4(p.far));
         let shade = near + (far - near) * way.clamp(0.0, 1.0);
+        s.glow = DVec3::ZERO;
         s.color = shade.truncate().extend(s.color.w);
         s
     }

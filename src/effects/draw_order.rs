@@ -69,6 +69,7 @@ impl SurfaceEffect for DrawOrder {
     fn apply(mut s: Surface, p: &Self) -> Surface {
         let [first, last] = [p.first, p.last].map(|color| DVec4::from_array(color.map(f64::from)));
         let heat = first.lerp(last, s.rank);
+        s.glow *= 1.0 - heat.w;
         s.color = s.color.truncate().lerp(heat.truncate(), heat.w).extend(s.color.w);
         s
     }

@@ -30,6 +30,7 @@ impl SurfaceEffect for Fog {
         let way = (s.depth_m - f64::from(p.start_m)).max(0.0);
         let share = 1.0 - libm::exp(-thickness * way);
         let base = s.color.truncate();
+        s.glow *= 1.0 - share;
         s.color = (base + (rgb(p.color) - base) * share).extend(s.color.w);
         s
     }

@@ -32,7 +32,7 @@ impl SurfaceEffect for Lambert {
         let lamp = s.normal.dot(s.view).max(0.0) * f64::from(p.headlight);
         let up = 0.5 + 0.5 * s.normal.y;
         let light = color(p.sun) * sun + color(p.ground) + (color(p.sky) - color(p.ground)) * up + DVec3::splat(lamp);
-        s.color = (s.color.truncate() * light).extend(s.color.w);
+        s.color = ((s.color.truncate() - s.glow) * light + s.glow).extend(s.color.w);
         s
     }
 }

@@ -18,6 +18,7 @@ impl SurfaceEffect for Normals {
     fn apply(mut s: Surface, p: &Self) -> Surface {
         let shade = s.normal * 0.5 + DVec3::splat(0.5);
         let base = s.color.truncate();
+        s.glow *= 1.0 - f64::from(p.amount);
         s.color = (base + (shade - base) * f64::from(p.amount)).extend(s.color.w);
         s
     }

@@ -22,6 +22,7 @@ impl SurfaceEffect for TriangleId {
         let byte = |shift: u32| f64::from(h >> shift & 255) / 255.0;
         let shade = DVec3::splat(0.08) + DVec3::new(byte(0), byte(8), byte(16)) * 0.8;
         let base = s.color.truncate();
+        s.glow *= 1.0 - f64::from(p.amount);
         s.color = (base + (shade - base) * f64::from(p.amount)).extend(s.color.w);
         s
     }

@@ -38,10 +38,12 @@ impl Renderer {
         if let Some([dots, lines]) = self.dots.as_ref().map(DotStore::counts) {
             reasons.push(Note { name: "dots".into(), why: format!("{dots} dots on {lines} lines, as far as the lines are long") });
         }
+        let why = "a texture of words: what the materials of primitives are, and the levels of their images";
+        let texels = self.texels.as_ref().map(|texels| BufferNote { name: "texels".into(), bytes: texels.bytes, why: why.into() });
         Explanation {
             key: plan.key.to_string(),
             passes: passes.iter().map(|pass| Note { name: pass.label(), why: pass_purpose(*pass).into() }).collect(),
-            buffers: self.buffers.notes(),
+            buffers: self.buffers.notes().into_iter().chain(texels).collect(),
             reasons,
             omitted: plan.omitted.clone(),
             prediction: Some(plan.prediction),

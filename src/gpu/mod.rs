@@ -17,6 +17,7 @@ mod packing;
 pub mod pipelines;
 mod prepare;
 pub mod readback;
+pub mod texels;
 pub mod timer;
 pub mod trade;
 pub mod uniforms;
@@ -39,6 +40,7 @@ use self::{
     pipelines::Pipelines,
     prepare::{BACKGROUND_ROWS, bin_heads, first_capacities, record_count, recorded_capacities},
     readback::Pending,
+    texels::Texels,
     timer::{Detail, Timer},
     uniforms::{Capacities, CounterRecord, color_stride},
 };
@@ -79,6 +81,8 @@ pub struct Renderer {
     buffers: Buffers,
     timer: Option<Timer>,
     scene: Option<Arc<Scene>>,
+    /// Images and materials of the scene, where it has any that are more than a base colour.
+    texels: Option<Texels>,
     tuning: Tuning,
     capacities: Capacities,
     /// A proof from bounds failed: queues and clipping are kept from now on.
@@ -126,6 +130,7 @@ impl Renderer {
             buffers: Buffers::default(),
             timer,
             scene: None,
+            texels: None,
             capacities: Capacities::default(),
             distrust: false,
             target: None,
@@ -212,6 +217,7 @@ impl Renderer {
         self.past = None;
         self.full = None;
         self.dots = None;
+        self.texels = None;
         self.scene = Some(scene.clone());
         Ok(())
     }
@@ -399,7 +405,10 @@ impl Renderer {
             let is_last = i + 1 == passes.len();
             let timestamp_writes = self.timer.as_mut().and_then(|timer| timer.compute(&pipeline.label, is_last));
             let mut recorded = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor { label: Some(&pipeline.label), timestamp_writes });
-            pipeline.bind(&self.gpu, &mut recorded, |name| self.buffers.get(name));
+            pipeline.bind(&self.gpu, &mut recorded, |name| match &self.texels {
+                Some(texels) if name == "texels" => wgpu::BindingResource::TextureView(&texels.view),
+                _ => self.buffers.get(name).as_entire_binding(),
+            });
             let size = match &self.dots {
                 Some(dots) if pass.is_of_dots() => dots.dispatch(pass, key),
                 _ => dispatch(pass, [vertices, triangles, bent, meshlets], view, self.shown, key),

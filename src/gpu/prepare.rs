@@ -5,6 +5,7 @@ use super::{
     bends::{BENT_BYTES, Bends, bent_ranges},
     culling::Patches,
     packing::{Packing, bytes_of},
+    texels::Texels,
     uniforms::{Capacities, CounterRecord, DrawRecord, FrameUniform, OrderRecord, ScalingUniform, color_stride},
 };
 use crate::{
@@ -64,6 +65,11 @@ impl Renderer {
             *bits = (*bits).min(*fewer);
         }
         let key = &plan.key;
+        match (key.has_texels, &self.texels) {
+            (true, None) => self.texels = Some(Texels::new(gpu, &scene)?),
+            (false, Some(_)) => self.texels = None,
+            _ => {}
+        }
         let recorded = recorded_capacities(key, &self.capacities);
 
         let first_packed = attribute_bytes(&scene) as u32;

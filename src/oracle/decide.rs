@@ -6,6 +6,7 @@ use rayon::prelude::*;
 use super::{
     bend::bounded_place,
     coverage::{corner_records, doubled_area, draw_of},
+    mask,
     moved::{Corner, Mover},
     surface::center_screen,
 };
@@ -14,45 +15,62 @@ use crate::{
         Stack,
         hooks::{Facts, SampleHook},
     },
-    frame::{Geometry, SnappedVertex},
+    frame::{Geometry, Piece, SnappedVertex},
     scene::{Scene, camera::View, draw::Draw},
 };
 
 /// Relative spacing of f32.
 const ULP: f64 = f32::EPSILON as f64;
 
-/// What every deciding effect of `stack` settles: for all triangles of `geometry`, then for all its pieces. Zeros where
-/// nothing is drawn: corners that are not ready, no area.
+/// What every deciding effect of `stack` settles, and behind it, in a scene with masks, where corners lie in their images: for
+/// all triangles of `geometry`, then for all its pieces. Zeros where nothing is drawn: corners that are not ready, no area.
 pub fn decide(scene: &Scene, draws: &[Draw], view: &View, stack: &Stack, geometry: &Geometry) -> Vec<[u32; 4]> {
-    let effects = deciding(stack);
-    if effects.is_empty() {
+    let (effects, masks) = (deciding(stack), masks(scene, stack));
+    if effects.len() + masks == 0 {
         return Vec::new();
     }
-    let settle = |facts: Option<Facts>| {
+    let settle = |entry: Option<Entry>| {
+        let (facts, places) = entry.map_or((None, None), |(facts, places)| (Some(facts), places));
         let one = |(hook, words): &(SampleHook, &[u32])| facts.as_ref().map_or([0; 4], |facts| (hook.decide)(facts, words, None));
-        effects.iter().map(one).collect::<Vec<_>>()
+        let places = places.map_or([[0; 4]; mask::RECORDS], |(primitive, places)| places.records(primitive));
+        effects.iter().map(one).chain(places.into_iter().take(masks)).collect::<Vec<_>>()
     };
     entries(scene, draws, view, stack, geometry).flat_map_iter(settle).collect()
 }
 
 /// Decisions that are not what the rules say: a first word beyond its bound, or another that does not follow from it.
 pub(super) fn wrong(scene: &Scene, draws: &[Draw], view: &View, stack: &Stack, geometry: &Geometry) -> u64 {
-    let effects = deciding(stack);
-    if effects.is_empty() {
+    let (effects, masks) = (deciding(stack), masks(scene, stack));
+    let records = effects.len() + masks;
+    if records == 0 {
         return 0;
     }
     let whole = scene.triangle_count() as usize;
-    assert_eq!(geometry.decisions.len(), effects.len() * (whole + geometry.pieces.len()), "the decisions are of another scene");
+    assert_eq!(geometry.decisions.len(), records * (whole + geometry.pieces.len()), "the decisions are of another scene");
     let is_wrong = |facts: &Facts, (hook, words): &(SampleHook, &[u32]), given: [u32; 4]| {
         let truth = (hook.decide)(facts, words, None);
         let is_near = f64::from(truth[0].abs_diff(given[0])) <= (hook.slack)(facts, words);
         !is_near || (hook.decide)(facts, words, Some(given[0])) != given
     };
-    let faults = |(facts, given): (Option<Facts>, &[[u32; 4]])| {
-        let Some(facts) = facts else { return 0 };
-        effects.iter().zip(given).filter(|(effect, given)| is_wrong(&facts, effect, **given)).count() as u64
+    let faults = |(entry, given): (Option<Entry>, &[[u32; 4]])| {
+        let Some((facts, places)) = entry else { return 0 };
+        let places_are_wrong = match (masks, places) {
+            (0, _) => false,
+            (_, None) => given[records - 1][2] != 0,
+            (_, Some((_, places))) => !places.allow(&given[effects.len()..]),
+        };
+        let wrong = effects.iter().zip(given).filter(|(effect, given)| is_wrong(&facts, effect, **given)).count();
+        (wrong + usize::from(places_are_wrong)) as u64
     };
-    entries(scene, draws, view, stack, geometry).zip(geometry.decisions.par_chunks(effects.len())).map(faults).sum()
+    entries(scene, draws, view, stack, geometry).zip(geometry.decisions.par_chunks(records)).map(faults).sum()
+}
+
+/// Facts about a triangle or piece, and where its corners lie in the image of its primitive, where that masks it.
+type Entry = (Facts, Option<(usize, mask::Places)>);
+
+/// Records that masks take per entry.
+fn masks(scene: &Scene, stack: &Stack) -> usize {
+    if mask::is_there(scene, stack) { mask::RECORDS } else { 0 }
 }
 
 fn deciding(stack: &Stack) -> Vec<(SampleHook, &[u32])> {
@@ -66,32 +84,37 @@ fn entries<'a>(
     view: &'a View,
     stack: &'a Stack,
     geometry: &'a Geometry,
-) -> impl IndexedParallelIterator<Item = Option<Facts>> + 'a {
+) -> impl IndexedParallelIterator<Item = Option<Entry>> + 'a {
+    let has_masks = masks(scene, stack) > 0;
     let whole = move |id: u32| {
         let draw = draw_of(scene, draws, id)?;
         let records = corner_records(scene, draw, geometry, id);
         let is_drawn = records.iter().all(|record| record.flags == 0) && doubled_area(&records) != 0;
-        is_drawn.then(|| facts(&Mover::new(scene, draw, view, stack), scene, view, geometry, id, &records, 7)).flatten()
+        is_drawn
+            .then(|| entry(&Mover::new(scene, draw, view, stack), scene, view, geometry, id, Shown::Whole(&records), has_masks))
+            .flatten()
     };
-    let pieces = move |piece: &crate::frame::Piece| {
+    let pieces = move |piece: &Piece| {
         let draw = draw_of(scene, draws, piece.parent)?;
         let is_drawn = doubled_area(&piece.corners) != 0;
         is_drawn
-            .then(|| facts(&Mover::new(scene, draw, view, stack), scene, view, geometry, piece.parent, &piece.corners, piece.outline))
+            .then(|| entry(&Mover::new(scene, draw, view, stack), scene, view, geometry, piece.parent, Shown::Piece(piece), has_masks))
             .flatten()
     };
     (0..scene.triangle_count() as u32).into_par_iter().map(whole).chain(geometry.pieces.par_iter().map(pieces))
 }
 
-fn facts(
-    mover: &Mover,
-    scene: &Scene,
-    view: &View,
-    geometry: &Geometry,
-    id: u32,
-    corners: &[SnappedVertex; 3],
-    outline: u32,
-) -> Option<Facts> {
+/// What is drawn of a triangle.
+enum Shown<'a> {
+    Whole(&'a [SnappedVertex; 3]),
+    Piece(&'a Piece),
+}
+
+fn entry(mover: &Mover, scene: &Scene, view: &View, geometry: &Geometry, id: u32, shown: Shown, has_masks: bool) -> Option<Entry> {
+    let (corners, outline, piece) = match shown {
+        Shown::Whole(corners) => (corners, 7, None),
+        Shown::Piece(piece) => (&piece.corners, piece.outline, Some(&piece.corners)),
+    };
     let draw = mover.draw;
     let primitive = &scene.primitives[draw.primitive];
     let vertices = primitive.corners(scene, id - draw.first_triangle);
@@ -105,7 +128,8 @@ fn facts(
     let reach = reach.iter().fold(0.0, |most: f64, axis| most.max(axis.truncate().max_element()));
     let bent = [a, b, c].map(|p| (m.x_axis.abs() * p.error.x + m.y_axis.abs() * p.error.y + m.z_axis.abs() * p.error.z).max_element());
     let bent = bent.into_iter().fold(0.0, f64::max);
-    Some(Facts {
+    let image = has_masks.then(|| mask::Places::of(mover, scene, view, places, piece)).flatten();
+    let facts = Facts {
         triangle: id,
         corners: corners.map(|corner| [corner.x, corner.y]),
         outline,
@@ -113,5 +137,6 @@ fn facts(
         center: world.iter().sum::<DVec3>() / 3.0,
         center_slack_m: 8.0 * ULP * reach + bent,
         center_screen: center_screen(mover, view, &corner_records(scene, draw, geometry, id), places),
-    })
+    };
+    Some((facts, image.map(|image| (draw.primitive, image))))
 }

@@ -3,7 +3,7 @@
 use glam::DVec4;
 use rayon::prelude::*;
 
-use super::surface::surfaces;
+use super::{steps::Nudge, surface::surfaces};
 use crate::{
     effects::{
         Stack,
@@ -30,10 +30,10 @@ pub struct Seen<'a> {
 
 /// Bytes of all pixels, given who owns them. Row-major, gamma-encoded.
 pub fn shade(scene: &Scene, draws: &[Draw], view: &View, stack: &Stack, seen: &Seen, geometry: &Geometry) -> Vec<[u8; 4]> {
-    shade_nudged(scene, draws, view, stack, seen, geometry, 0.0)
+    shade_nudged(scene, draws, view, stack, seen, geometry, Nudge::default())
 }
 
-/// The same, with every step of colour moved by `nudge`.
+/// The same, with every step of colour moved by `nudge`, and textures looked up aside.
 pub(super) fn shade_nudged(
     scene: &Scene,
     draws: &[Draw],
@@ -41,11 +41,11 @@ pub(super) fn shade_nudged(
     stack: &Stack,
     seen: &Seen,
     geometry: &Geometry,
-    nudge: f64,
+    nudge: Nudge,
 ) -> Vec<[u8; 4]> {
     let background = background(view);
     let colors = surfaces(scene, draws, view, stack, (seen.owners, background), geometry, nudge);
-    finish_all(draws, view, stack, seen, &colors, nudge)
+    finish_all(draws, view, stack, seen, &colors, nudge.step)
 }
 
 /// Bytes of a picture from its gamma-encoded colours, through the image effects, with every step moved by `nudge`.

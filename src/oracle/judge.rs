@@ -87,7 +87,7 @@ pub fn judge_after(
     let (given, counters) = triangles(scene, &draws, geometry);
     // Where the hardware chooses among samples, everything that is covered may be drawn.
     let is_free = order::is_free(stack);
-    let rules = Rules::of(stack, geometry);
+    let rules = Rules::of(stack, geometry).masked(scene, &draws, stack);
     let rules = if is_free { rules } else { rules.ordered(stack, &given, view) };
     let coverage = cover_by(&rules, &given, view, Some(&adapter.owner));
     let dots = dot_strengths(view, stack, &geometry.dots, &adapter.key);

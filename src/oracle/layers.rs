@@ -12,7 +12,7 @@ use super::{
     moved::Mover,
     order::ranks,
     rules::Rules,
-    steps::nudges,
+    steps::ways,
     surface::{Triangle, encoded},
 };
 use crate::{
@@ -119,9 +119,10 @@ fn tallies(scenery: &Scenery, stack: &Stack, params: &Xray, bits: u32) -> Vec<Ta
     let Scenery { scene, draws, view, geometry, rules, triangles, owners, keys } = *scenery;
     let mut tallies: Vec<Tally> = (0..view.pixels()).map(|_| Tally::default()).collect();
     let width = view.width as usize;
-    let ranks = ranks(scene, draws, view, stack, geometry);
+    let (ranks, ways) = (ranks(scene, draws, view, stack, geometry), ways(scene, stack));
+    let ways = &ways;
     scatter(rules, triangles, view, &mut tallies, |triangle| {
-        let mut surface: Option<Option<Triangle>> = None;
+        let mut surface: Option<Option<Triangle<'_>>> = None;
         let rank = ranks.get(triangle.id as usize).copied().unwrap_or(0.0);
         move |tally: &mut Tally, x: usize, y: usize, hit: Hit| {
             let pixel = y * width + x;
@@ -137,10 +138,12 @@ fn tallies(scenery: &Scenery, stack: &Stack, params: &Xray, bits: u32) -> Vec<Ta
                 Triangle::new(&Mover::new(scene, draw, view, stack), scene, view, geometry, triangle.id)
             });
             let Some(known) = known else { return };
-            let surface = known.surface(view, x, y);
-            let shaded = stack.shade(Surface { rank, ..surface });
-            // Near a step of colour either side of it is right.
-            let nudged = nudges(stack).iter().map(|&nudge| stack.shade(Surface { rank, nudge, ..surface }).color.truncate());
+            let shaded = stack.shade(Surface { rank, ..known.surface(view, x, y, [0.0; 3]) });
+            // Near a step of colour either side of it is right, and near the edge of a texel.
+            let nudged = ways.iter().map(|way| {
+                let surface = known.surface(view, x, y, way.aside);
+                stack.shade(Surface { rank, nudge: way.step, ..surface }).color.truncate()
+            });
             let ends = nudged.fold([shaded.color.truncate(); 2], |[least, most], color| [least.min(color), most.max(color)]);
             let weight = params.weight_of(&shaded);
             let counts = [is_front || hit.depth >= least, is_front || low >= least];

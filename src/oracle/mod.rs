@@ -19,6 +19,7 @@ mod finish;
 pub mod flushed;
 mod judge;
 mod layers;
+mod mask;
 mod moved;
 mod order;
 mod project;
@@ -27,6 +28,7 @@ mod shown;
 mod steps;
 mod strict;
 mod surface;
+mod texels;
 mod whole;
 
 pub use bend::volume;
@@ -109,7 +111,7 @@ pub fn render_after(scene: &Scene, view: &View, stack: &Stack, previous: Option<
     geometry.decisions = decide(scene, &draws, view, stack, &geometry);
     geometry.dots = dot_records(scene, &draws, view, stack)?;
     let (triangles, counters) = triangles(scene, &draws, &geometry);
-    let rules = Rules::of(stack, &geometry).ordered(stack, &triangles, view);
+    let rules = Rules::of(stack, &geometry).masked(scene, &draws, stack).ordered(stack, &triangles, view);
     let coverage = cover_by(&rules, &triangles, view, None);
     let (owners, keys) = (&coverage.owners(), &coverage.keys());
     let dots = dot_strengths(view, stack, &geometry.dots, keys);

@@ -54,7 +54,7 @@ pub fn ranks(scene: &Scene, draws: &[Draw], view: &View, stack: &Stack, geometry
     }
     let (drawn, _) = triangles(scene, draws, geometry);
     let mut ranks = vec![0.0; scene.triangle_count() as usize];
-    let counts = counts(&Rules::of(stack, geometry), &drawn, view);
+    let counts = counts(&Rules::of(stack, geometry).masked(scene, draws, stack), &drawn, view);
     counts.iter().for_each(|(id, count)| ranks[*id as usize] = *count as f64);
     let total = ranks.iter().sum::<f64>().max(1.0);
     let mut before = 0.0;

@@ -1,7 +1,8 @@
 //! Rules: which covered samples are drawn, by the sample effects of the stack. Integers alone.
 
 use super::{
-    coverage::OrientedTriangle,
+    coverage::{OrientedTriangle, draw_of},
+    mask,
     order::{self, Cut},
 };
 use crate::{
@@ -11,7 +12,7 @@ use crate::{
     },
     frame::Geometry,
     math::UNITS_PER_PIXEL,
-    scene::camera::View,
+    scene::{Scene, camera::View, draw::Draw},
 };
 
 /// The sample effects of a stack with what they settled per triangle.
@@ -20,6 +21,8 @@ pub struct Rules<'a> {
     decisions: &'a [[u32; 4]],
     /// Effects that decide, and so decisions per entry.
     deciding: usize,
+    /// Whose materials may leave samples out.
+    masked: Option<(&'a Scene, &'a [Draw])>,
     /// What triangles cover.
     pub(super) shape: Shape,
     /// Radius of discs about corners, in units.
@@ -42,7 +45,17 @@ struct Link<'a> {
 impl Default for Rules<'_> {
     fn default() -> Self {
         let unit = UNITS_PER_PIXEL.into();
-        Self { effects: Vec::new(), decisions: &[], deciding: 0, shape: Shape::default(), radius: 0, unit, integer_keys: false, cut: None }
+        Self {
+            effects: Vec::new(),
+            decisions: &[],
+            deciding: 0,
+            masked: None,
+            shape: Shape::default(),
+            radius: 0,
+            unit,
+            integer_keys: false,
+            cut: None,
+        }
     }
 }
 
@@ -62,12 +75,19 @@ impl<'a> Rules<'a> {
             effects,
             decisions: &geometry.decisions,
             deciding,
+            masked: None,
             shape: stack.shape(),
             radius: stack.point_radius().into(),
             unit: 1 << geometry.subpixel_bits,
             integer_keys: geometry.exact.keys,
             cut: None,
         }
+    }
+
+    /// The same, where the materials of a scene may leave samples out, too.
+    pub fn masked(mut self, scene: &'a Scene, draws: &'a [Draw], stack: &Stack) -> Self {
+        self.masked = mask::is_there(scene, stack).then_some((scene, draws));
+        self
     }
 
     /// The same, up to where the draw order of `stack` stops the drawing of these triangles.
@@ -91,7 +111,7 @@ impl<'a> Rules<'a> {
         if !self.is_in_order(triangle.id, x, y) {
             return false;
         }
-        if self.effects.is_empty() {
+        if self.effects.is_empty() && self.masked.is_none() {
             return true;
         }
         let area: i64 = weights.iter().sum();
@@ -100,9 +120,16 @@ impl<'a> Rules<'a> {
         if triangle.is_turned {
             parts.swap(1, 2);
         }
-        self.effects.iter().all(|link| {
-            let decided = link.place.map_or([0; 4], |place| self.decisions[triangle.entry * self.deciding + place]);
+        let records = self.deciding + if self.masked.is_some() { mask::RECORDS } else { 0 };
+        let settled = &self.decisions[triangle.entry * records..][..records];
+        let is_left = self.effects.iter().all(|link| {
+            let decided = link.place.map_or([0; 4], |place| settled[place]);
             (link.hook.is_drawn)(&Sample { x, y, triangle: triangle.id, parts, decided }, link.words)
-        })
+        });
+        is_left
+            && self.masked.is_none_or(|(scene, draws)| {
+                let draw = draw_of(scene, draws, triangle.id).expect("a triangle belongs to a draw");
+                mask::is_drawn(scene, &scene.primitives[draw.primitive], triangle, parts, &settled[self.deciding..])
+            })
     }
 }

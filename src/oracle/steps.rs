@@ -2,10 +2,12 @@
 //!
 //! An effect decides a step on a value plus a nudge, so shading with a small nudge to either side finds out which pixels
 //! lie so near. They are the band: derived without a look at the result, counted, and capped by whoever has a budget.
+//! Textures are looked up a little aside in the same way; there what lies between the answers is right as well.
 
 use super::{
     finish::{Seen, finish_all, shade_nudged},
     layers::Layered,
+    texels::{ASIDES, Aside},
 };
 use crate::{
     effects::{Stack, hooks::Slot},
@@ -17,17 +19,26 @@ use crate::{
 /// 2^7 operations that err by 2^-23 each, if all err alike, and the rest is room for `pow` and cancelled weights.
 pub const NUDGE: f64 = 1.0 / (1 << 15) as f64;
 
-/// The right pictures: one, or with steps three.
+/// By how much a judge's answer differs from the straight one: in what decides a step, and in where textures are looked up.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(super) struct Nudge {
+    pub step: f64,
+    pub aside: Aside,
+}
+
+/// The right pictures: one, or with steps three, and of each as many as there are ways to look aside.
 pub struct Answers {
     pictures: Vec<Vec<[u8; 4]>>,
     /// Whatever lies between them is right too.
     is_span: bool,
+    /// Every so many pictures one differs by a step.
+    stride: usize,
 }
 
 impl Answers {
     pub fn of(scene: &Scene, draws: &[Draw], view: &View, stack: &Stack, seen: &Seen, geometry: &Geometry) -> Self {
-        let shaded = |&nudge: &f64| shade_nudged(scene, draws, view, stack, seen, geometry, nudge);
-        Self { pictures: nudges(stack).iter().map(shaded).collect(), is_span: false }
+        let shaded = |&nudge: &Nudge| shade_nudged(scene, draws, view, stack, seen, geometry, nudge);
+        Self { pictures: ways(scene, stack).iter().map(shaded).collect(), is_span: has_texels(scene), stride: 1 }
     }
 
     /// What lies between the least and the most that a picture of layers may show.
@@ -35,7 +46,8 @@ impl Answers {
         let ends = [0, 1].map(|end| layered.bounds.iter().map(|bounds| bounds[end]).collect::<Vec<_>>());
         let finished =
             |&nudge: &f64| [&layered.colors, &ends[0], &ends[1]].map(|colors| finish_all(draws, view, stack, seen, colors, nudge));
-        Self { pictures: nudges(stack).iter().flat_map(finished).collect(), is_span: true }
+        // Of a span, the middles of what it goes through.
+        Self { pictures: nudges(stack).iter().flat_map(finished).collect(), is_span: true, stride: 3 }
     }
 
     /// The picture as f64 has it.
@@ -58,9 +70,7 @@ impl Answers {
 
     /// Which pixels have answers more than a step of 255 apart because of a step of colour; empty where none can.
     pub fn band(&self) -> Vec<bool> {
-        // Of a span, the middles of what it goes through.
-        let stride = if self.is_span { 3 } else { 1 };
-        let answers: Vec<_> = self.pictures.iter().step_by(stride).collect();
+        let answers: Vec<_> = self.pictures.iter().step_by(self.stride).collect();
         let [middle, others @ ..] = answers.as_slice() else { return Vec::new() };
         if others.is_empty() {
             return Vec::new();
@@ -79,4 +89,14 @@ pub(super) fn nudges(stack: &Stack) -> &'static [f64] {
         (true, None) => &[0.0, -NUDGE, NUDGE],
         (true, Some(_)) => &[0.0, -FAR, FAR],
     }
+}
+
+/// Every nudge of a look at `scene`, nothing first.
+pub(super) fn ways(scene: &Scene, stack: &Stack) -> Vec<Nudge> {
+    let asides = if has_texels(scene) { &ASIDES[..] } else { &ASIDES[..1] };
+    nudges(stack).iter().flat_map(|&step| asides.iter().map(move |&aside| Nudge { step, aside })).collect()
+}
+
+fn has_texels(scene: &Scene) -> bool {
+    !scene.images.is_empty()
 }

@@ -40,7 +40,7 @@ pub fn strict_frame(scene: &Scene, view: &View, stack: &Stack) -> Result<(Vec<u3
     geometry.exact.keys = true;
     geometry.decisions = decide(scene, &draws, view, stack, &geometry);
     let (triangles, _) = triangles(scene, &draws, &geometry);
-    let rules = Rules::of(stack, &geometry).ordered(stack, &triangles, view);
+    let rules = Rules::of(stack, &geometry).masked(scene, &draws, stack).ordered(stack, &triangles, view);
     let coverage = cover_by(&rules, &triangles, view, None);
     Ok((coverage.owners(), coverage.keys()))
 }

@@ -9,6 +9,8 @@ use super::{
     moved::{Corner, Mover},
     order::ranks,
     project::gated_lane,
+    steps::Nudge,
+    texels::{Aside, Paint, Shares},
 };
 use crate::{
     effects::{Stack, Surface, hooks::Shape},
@@ -20,7 +22,7 @@ use crate::{
 /// Below this squared length, at unit scale, a vector has no direction.
 pub(super) const DEGENERATE: f64 = 1e-12;
 
-/// Surface colours of all pixels, given who owns them, with every step of colour moved by `nudge`. Row-major,
+/// Surface colours of all pixels, given who owns them, with steps and textures as `nudge` says. Row-major,
 /// gamma-encoded; `background` where nobody does.
 ///
 /// `geometry` supplies the snapped corners that carry the weights; owners that were cut are weighted in clip space.
@@ -31,7 +33,7 @@ pub fn surfaces(
     stack: &Stack,
     (owners, background): (&[u32], DVec4),
     geometry: &Geometry,
-    nudge: f64,
+    nudge: Nudge,
 ) -> Vec<DVec4> {
     let width = view.width.max(1) as usize;
     let ranks = ranks(scene, draws, view, stack, geometry);
@@ -45,7 +47,7 @@ pub fn surfaces(
             match &triangle {
                 Some(triangle) => {
                     let rank = ranks.get(owner as usize).copied().unwrap_or(0.0);
-                    encoded(stack.shade(Surface { rank, nudge, ..triangle.surface(view, x, y) }).color)
+                    encoded(stack.shade(Surface { rank, nudge: nudge.step, ..triangle.surface(view, x, y, nudge.aside) }).color)
                 }
                 None => background,
             }
@@ -66,17 +68,20 @@ enum Weights {
     Snapped([DVec3; 3]),
     /// Cross products of the other two corners' (x, y, w) in clip space, which weigh a sample even where w <= 0
     /// (Olano and Greer 1997); turned so that they are positive inside.
-    Homogeneous([DVec3; 3]),
+    /// With the sums of the magnitudes of their terms.
+    Homogeneous([DVec3; 3], [DVec3; 3]),
 }
 
 /// All that does not change from sample to sample.
-pub(super) struct Triangle {
+pub(super) struct Triangle<'a> {
     owner: u32,
     weights: Weights,
     positions: [DVec3; 3],
     /// Mean of the corners before any vertex effect.
     center: DVec3,
     colors: [DVec4; 3],
+    /// What its material is besides a base colour.
+    paint: Option<Paint<'a>>,
     /// In object space; none when a corner has no finite normal.
     normals: Option<[DVec3; 3]>,
     /// Takes object normals to the world's, of any length; turned over for a back face.
@@ -91,9 +96,9 @@ pub(super) struct Triangle {
     disc: Option<([SnappedVertex; 3], i64)>,
 }
 
-impl Triangle {
+impl<'a> Triangle<'a> {
     /// None for a triangle with a rejected corner, which owns nothing.
-    pub fn new(mover: &Mover, scene: &Scene, view: &View, geometry: &Geometry, owner: u32) -> Option<Self> {
+    pub fn new(mover: &Mover, scene: &'a Scene, view: &View, geometry: &Geometry, owner: u32) -> Option<Self> {
         let draw = mover.draw;
         let primitive = &scene.primitives[draw.primitive];
         let material = &scene.materials[primitive.material];
@@ -117,6 +122,7 @@ impl Triangle {
             center: draw.world_from_object.transform_point3(object.iter().sum::<DVec3>() / 3.0),
             positions: object.map(|position| draw.world_from_object.transform_point3(position)),
             colors: corners.map(color),
+            paint: Paint::of(scene, primitive, corners),
             normals: n0.zip(n1).zip(n2).map(|((n0, n1), n2)| [n0, n1, n2]),
             world_from_normal,
             flat_normal: plane_normal(object).and_then(|normal| (world_from_normal * normal).try_normalize()),
@@ -152,8 +158,8 @@ impl Triangle {
         }
     }
 
-    /// The surface at the centre of a pixel.
-    pub fn surface(&self, view: &View, x: usize, y: usize) -> Surface {
+    /// The surface at the centre of a pixel, its textures looked up aside.
+    pub fn surface(&self, view: &View, x: usize, y: usize, aside: Aside) -> Surface {
         let pixel = DVec2::new(x as f64 + 0.5, y as f64 + 0.5);
         let screen = pixel / DVec2::new(view.width.into(), view.height.into());
         let corner = self.disc.and_then(|(records, radius)| {
@@ -175,8 +181,12 @@ impl Triangle {
         let depth_m = mixed(weights, self.depths_m);
         let smooth = self.normals.and_then(|normals| self.smooth_normal(weights, normals));
         let normal = smooth.or(self.flat_normal).unwrap_or(toward_eye);
+        let base = mixed(weights, self.colors);
+        let painted = self.paint.as_ref().map(|paint| paint.seen(base.truncate(), &self.shares(weights, pixel, screen, view), aside));
+        let (color, glow) = painted.unwrap_or((base.truncate(), DVec3::ZERO));
         Surface {
-            color: mixed(weights, self.colors),
+            color: color.extend(base.w),
+            glow,
             position,
             normal,
             flat_normal: self.flat_normal.unwrap_or(normal),
@@ -195,6 +205,12 @@ impl Triangle {
             rank: 0.0,
             nudge: 0.0,
         }
+    }
+
+    /// How the corners share a pixel's centre. Of boxes and discs the shares are taken not to change.
+    fn shares(&self, weights: [f64; 3], pixel: DVec2, screen: DVec2, view: &View) -> Shares {
+        let slopes = if self.shape == Shape::Triangles { self.weights.slopes(weights, pixel, screen, view) } else { [[0.0; 3]; 2] };
+        Shares { weights, slopes, doubts: self.weights.doubts(weights, screen) }
     }
 
     /// Interpolated in object space; none when the corner normals cancel out.
@@ -242,15 +258,24 @@ impl Screen {
         let v = clip.map(|p| DVec3::new(p.x, p.y, p.w));
         let sum = v[0] + v[1] + v[2];
         let rows = [v[1].cross(v[2]), v[2].cross(v[0]), v[0].cross(v[1])];
+        let terms = cross_terms(&v);
         // y points up in clip space: a negative determinant runs clockwise on screen.
         let is_clockwise = v[0].dot(rows[0]) < 0.0;
         Self {
-            weights: Weights::Homogeneous(if is_clockwise { rows.map(|row| -row) } else { rows }),
+            weights: Weights::Homogeneous(if is_clockwise { rows.map(|row| -row) } else { rows }, terms),
             is_back: is_clockwise != mover.draw.mirrored,
             depths_m: clip.map(|p| linear_depth(view, p.z / p.w).unwrap_or(p.w)),
             center: (sum.z > 0.0).then(|| DVec2::new(0.5 + 0.5 * sum.x / sum.z, 0.5 - 0.5 * sum.y / sum.z)),
         }
     }
+}
+
+/// Sums of the magnitudes of the terms of the cross products of the other two.
+pub(super) fn cross_terms(v: &[DVec3; 3]) -> [DVec3; 3] {
+    [(1, 2), (2, 0), (0, 1)].map(|(i, j): (usize, usize)| {
+        let (a, b) = (v[i].abs(), v[j].abs());
+        DVec3::new(a.y * b.z + a.z * b.y, a.z * b.x + a.x * b.z, a.x * b.y + a.y * b.x)
+    })
 }
 
 /// Metres of an orthographic depth; none in a perspective.
@@ -267,7 +292,7 @@ impl Weights {
                 let areas = areas(corners, pixel, shape, corner);
                 [0, 1, 2].map(|k| areas[k] * corners[k].z)
             }
-            Self::Homogeneous(rows) => {
+            Self::Homogeneous(rows, _) => {
                 let p = DVec3::new(2.0 * screen.x - 1.0, 1.0 - 2.0 * screen.y, 1.0);
                 // A snapped piece may own a sample a hair outside, where near a horizon the sum would vanish.
                 rows.map(|row| p.dot(row).max(0.0))
@@ -276,6 +301,45 @@ impl Weights {
         let sum: f64 = shares.iter().sum();
         let weights = shares.map(|share| share / sum);
         if weights.iter().all(|weight| weight.is_finite()) { weights } else { [1.0 / 3.0; 3] }
+    }
+
+    /// How far an f32 renderer's weights may be off.
+    fn doubts(&self, weights: [f64; 3], screen: DVec2) -> [f64; 3] {
+        // Fifteen roundings of numbers of one sign.
+        const WHOLE: f64 = 15.0 / (1 << 23) as f64;
+        match self {
+            Self::Snapped(_) => weights.map(|weight| weight * WHOLE),
+            Self::Homogeneous(rows, terms) => {
+                let p = DVec3::new(2.0 * screen.x - 1.0, 1.0 - 2.0 * screen.y, 1.0);
+                let sum: f64 = rows.iter().map(|row| p.dot(*row)).sum();
+                // Terms of either sign: an error is proportional to them and not to what they come to.
+                terms.map(|terms| p.abs().dot(terms) / sum.abs() / f64::from(1 << 20))
+            }
+        }
+    }
+
+    /// How `weights` change from a pixel to the next on the right, and to the next below. Each is a share of a sum, and shares
+    /// run linearly over the screen.
+    fn slopes(&self, weights: [f64; 3], pixel: DVec2, screen: DVec2, view: &View) -> [[f64; 3]; 2] {
+        let (shares, steps) = match self {
+            Self::Snapped(corners) => {
+                let at = |pixel: DVec2| {
+                    let [a, b, c] = corners.map(|corner| corner.truncate() - pixel);
+                    let areas = [b.perp_dot(c), c.perp_dot(a), a.perp_dot(b)];
+                    DVec3::from([0, 1, 2].map(|k| areas[k] * corners[k].z))
+                };
+                let here = at(pixel);
+                (here, [DVec2::X, DVec2::Y].map(|step| at(pixel + step) - here))
+            }
+            Self::Homogeneous(rows, _) => {
+                let p = DVec3::new(2.0 * screen.x - 1.0, 1.0 - 2.0 * screen.y, 1.0);
+                let shares = DVec3::from(rows.map(|row| p.dot(row)));
+                let right = DVec3::from(rows.map(|row| row.x * 2.0 / f64::from(view.width)));
+                (shares, [right, DVec3::from(rows.map(|row| row.y * -2.0 / f64::from(view.height)))])
+            }
+        };
+        let (weights, sum) = (DVec3::from(weights), shares.element_sum());
+        steps.map(|step| ((step - weights * step.element_sum()) / sum).to_array())
     }
 
     /// Shares of the corners on the screen (on its plane, of a triangle that was cut), and the distances of a pixel's
@@ -290,7 +354,7 @@ impl Weights {
                 let edge_px = [0, 1, 2].map(|k| areas[k] / lengths[k]);
                 (DVec3::from_array(areas) / sum, DVec3::from_array(edge_px))
             }
-            Self::Homogeneous(rows) => {
+            Self::Homogeneous(rows, _) => {
                 let p = DVec3::new(2.0 * screen.x - 1.0, 1.0 - 2.0 * screen.y, 1.0);
                 let steps = DVec2::new(2.0 / f64::from(view.width), 2.0 / f64::from(view.height));
                 let edge_px = rows.map(|row| p.dot(row).abs() / (row.truncate() * steps).length().max(1e-30));

@@ -32,7 +32,7 @@ impl Whole<'_> {
         if order::is_free(self.stack) {
             return;
         }
-        let rules = Rules::of(self.stack, self.own).ordered(self.stack, &triangles, self.view);
+        let rules = Rules::of(self.stack, self.own).masked(self.scene, self.draws, self.stack).ordered(self.stack, &triangles, self.view);
         let own = cover_by(&rules, &triangles, self.view, Some(&adapter.owner));
         // A sample more or less before it moves the place where a draw order stops.
         let stops = [self.cut, rules.cut()].map(|cut| cut.map(|cut| cut.straddler));

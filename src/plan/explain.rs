@@ -50,6 +50,19 @@ pub(super) fn explain(needs: &Needs, is_usual: bool, caps: &Caps, key: &KernelKe
         let movers: Vec<_> = key.effects.iter().filter(|effect| effect.hooks.vertex.is_some()).map(|effect| effect.name).collect();
         reasons.push(note("movement", format!("vertices are moved by {}: {why}", movers.join(", "))));
     }
+    if key.has_texels {
+        let why = match needs.textured {
+            0 => format!("atlas: {} materials shine or stay unlit, which the words of a texture tell", needs.paints),
+            textured => {
+                format!("atlas: {textured} of {} materials look up an image, texel by texel and mixed in linear light", needs.paints)
+            }
+        };
+        reasons.push(note("texels", why));
+    }
+    if key.has_mask {
+        let why = "the alpha of an image leaves samples out: corners are placed in it once, in 1/256 of a texel, and integers decide";
+        reasons.push(note("mask", why));
+    }
     if key.has_image() {
         reasons.push(note("finish", "an image effect finishes every pixel, empty ones too, so no tile is skipped"));
     }
@@ -73,7 +86,9 @@ pub(super) fn explain(needs: &Needs, is_usual: bool, caps: &Caps, key: &KernelKe
         ("index fetch", needs.indexed, "no primitive has indices".into()),
         ("plane normals and centres", key.has_planes, "no effect reads them and no normal needs a substitute".into()),
         ("vertex colours", needs.colors, "no primitive has them".into()),
-        ("decide", key.decisions > 0, "no effect settles anything per triangle".into()),
+        ("texels", key.has_texels, "no material is more than a base colour".into()),
+        ("mask", key.has_mask, "no image's alpha leaves anything out".into()),
+        ("decide", key.decisions > 0, "neither effects nor masks settle anything per triangle".into()),
         ("draw order", key.order != Order::Free, "every sample is drawn".into()),
         ("sample effects", key.has_samples, "no effect leaves samples out".into()),
         ("dots", key.dots.is_some(), "no effect strings dots".into()),

@@ -17,7 +17,7 @@ use crate::{
     scene::needs::Needs,
     shader::{
         glue::reads,
-        key::{Fetch, KernelKey, Order, deciding},
+        key::{Fetch, KernelKey, MASK_RECORDS, Order, deciding},
         library::Library,
     },
 };
@@ -261,6 +261,8 @@ pub fn plan(needs: &Needs, stack: &Stack, caps: &Caps, tuning: &Tuning, accuracy
     let planes = ["flat_normal", "flat_depth_m", "center"];
     let reads_planes = stack.0.iter().any(|enabled| planes.iter().any(|member| reads(&Library::Embedded, enabled.effect, member)));
     let has_planes = reads_planes || !needs.sound_normals;
+    // Boxes and discs show all of a material.
+    let has_mask = needs.masked && shape == Shape::Triangles;
     let effects: Vec<_> = stack.0.iter().map(|Enabled { effect, .. }| *effect).collect();
     let key = KernelKey {
         fetch: if needs.indexed { Fetch::Indexed } else { Fetch::Direct },
@@ -275,7 +277,8 @@ pub fn plan(needs: &Needs, stack: &Stack, caps: &Caps, tuning: &Tuning, accuracy
         order: Order::of(stack),
         dots: stack.dots().map(|dots| Strung::of(dots.lines)),
         has_samples: effects.iter().any(|effect| effect.hooks.sample.is_some()),
-        decisions: deciding(&effects),
+        decisions: deciding(&effects) + if has_mask { MASK_RECORDS } else { 0 },
+        has_mask,
         effects,
         has_clipping,
         has_medium,
@@ -286,6 +289,7 @@ pub fn plan(needs: &Needs, stack: &Stack, caps: &Caps, tuning: &Tuning, accuracy
         f32_positions: needs.f32_positions,
         f32_normals: needs.f32_normals,
         has_colors: needs.colors,
+        has_texels: needs.paints > 0,
         has_joints: needs.skinning.is_some(),
         has_shapes: needs.shapes,
         has_planes,

@@ -211,5 +211,6 @@ fn floats(rungs: &Rungs, stack: &Stack, needs: &Needs, f32_positions: bool) -> O
     let positions = || (!f32_positions).then(|| "a mesh of the scene has positions that are not f32".to_owned());
     let bends = || (needs.skinning.is_some() || needs.shapes).then(|| "joints or shapes bend a mesh in floats".to_owned());
     let packed = || rungs.vertices.packed_bits().map(|_| format!("vertices {} unpacks places in floats", rungs.vertices.name()));
-    stack.0.iter().find_map(reason).or_else(packed).or_else(bends).or_else(positions)
+    let masks = || (needs.masked && needs.clipping).then(|| "the mask of a triangle that is cut is placed in floats".to_owned());
+    stack.0.iter().find_map(reason).or_else(packed).or_else(bends).or_else(positions).or_else(masks)
 }

@@ -232,6 +232,14 @@ pub const KEYS: &[Key] = &[
         ),
         is_polyline,
     ),
+    key(
+        "scene",
+        "camera",
+        LINE,
+        "The scene's own camera to look through where there is no [camera], by its name or as #0, #1 …; empty: its first",
+        |s| Some(Plain::Text(s.scene_camera.clone())),
+        |s, v| s.scene_camera = v.into_text(),
+    ),
     key("camera", "eye", POINT, "Where the eye stands, metres", |s| camera(s, |c| point(c.eye)), |s, v| posed(s).eye = v.lanes().into()),
     key(
         "camera",

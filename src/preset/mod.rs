@@ -217,7 +217,7 @@ pub enum SceneError {
     #[error(transparent)]
     Model(#[from] scene::gltf::LoadError),
     #[error(transparent)]
-    Clip(#[from] crate::session::NoClip),
+    Absence(#[from] crate::session::NoSuch),
 }
 
 /// Builds or loads the scene of a look; a relative model path starts at the folder of `look_path`.
@@ -232,7 +232,7 @@ pub fn load_scene(session: &Session, look_path: Option<&Path>) -> Result<Arc<Sce
             scene::gltf::load(&path)?
         }
     };
-    session.play.check(&scene)?;
+    session.check(&scene)?;
     Ok(Arc::new(scene))
 }
 

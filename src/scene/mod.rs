@@ -14,10 +14,12 @@ pub mod palette;
 pub mod pick;
 pub mod pose;
 pub mod rig;
+pub mod texture;
 
 use glam::{DMat4, DVec3};
 
 use rig::{Rig, Softness};
+use texture::{Image, Texture};
 
 /// Number format of one attribute component; the discriminant is glTF's `componentType`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -150,6 +152,9 @@ pub struct Primitive {
     pub normals: Accessor,
     /// Three or four lanes, linear.
     pub colors: Option<Accessor>,
+    /// Where its material's textures are looked up, two lanes each: of the base colour, and of the light that it emits. There
+    /// where the material has that texture.
+    pub coords: [Option<Accessor>; 2],
     /// Index into `Scene::materials`.
     pub material: usize,
     /// Box of all vertex positions that are finite, in object space.
@@ -203,13 +208,50 @@ pub struct Material {
     pub name: String,
     /// Linear RGBA, each in [0, 1].
     pub base_color: [f32; 4],
+    /// Multiplies the base colour; its alpha counts only where there is a cutoff.
+    pub base_texture: Option<Texture>,
+    /// Only where the alpha of the base texture is at least this is anything drawn; from 0 up, above 1 nothing is.
+    pub cutoff: Option<f32>,
+    /// Light that it emits, linear RGB, from 0 up.
+    pub emission: [f32; 3],
+    /// Multiplies the emission.
+    pub emission_texture: Option<Texture>,
+    /// No light changes its colour.
+    pub unlit: bool,
     /// Draw back faces too, with the normal turned to the viewer.
     pub double_sided: bool,
 }
 
+impl Material {
+    /// Its textures: of the base colour, and of the light that it emits.
+    pub fn textures(&self) -> [Option<&Texture>; 2] {
+        [self.base_texture.as_ref(), self.emission_texture.as_ref()]
+    }
+
+    /// The least alpha that is drawn, in 2^-16 of a byte's step, where some is left out.
+    pub fn least_alpha(&self) -> Option<u32> {
+        let cutoff = self.cutoff.filter(|_| self.base_texture.is_some())?;
+        Some((f64::from(cutoff) * 255.0 * 65_536.0).ceil() as u32)
+    }
+
+    /// Is it no more than a base colour?
+    pub fn is_plain(&self) -> bool {
+        self.textures() == [None, None] && self.emission == [0.0; 3] && !self.unlit
+    }
+}
+
 impl Default for Material {
     fn default() -> Self {
-        Self { name: "default".into(), base_color: [1.0; 4], double_sided: false }
+        Self {
+            name: "default".into(),
+            base_color: [1.0; 4],
+            base_texture: None,
+            cutoff: None,
+            emission: [0.0; 3],
+            emission_texture: None,
+            unlit: false,
+            double_sided: false,
+        }
     }
 }
 
@@ -237,7 +279,20 @@ impl Instance {
 #[derive(Clone, Debug, PartialEq)]
 pub struct FileCamera {
     pub name: String,
+    /// Where it stands at rest.
     pub pose: camera::Camera,
+    /// The node of `Scene::rig` that carries it; none: it stays where it is.
+    pub node: Option<usize>,
+}
+
+impl FileCamera {
+    /// The same camera carried by a node that stands there: it looks along -z with +y up, and as far as at rest.
+    pub fn carried(&self, scene_from_node: &DMat4) -> camera::Camera {
+        let eye = scene_from_node.w_axis.truncate();
+        let forward = (-scene_from_node.z_axis.truncate()).try_normalize().unwrap_or_else(|| self.pose.forward());
+        let up = scene_from_node.y_axis.truncate().try_normalize().unwrap_or(self.pose.up);
+        camera::Camera { eye, target: eye + forward * (self.pose.target - self.pose.eye).length(), up, ..self.pose }
+    }
 }
 
 /// Axis-aligned box; empty when `min` exceeds `max`.
@@ -301,6 +356,8 @@ pub struct Scene {
     pub index_bytes: Vec<u8>,
     pub primitives: Vec<Primitive>,
     pub materials: Vec<Material>,
+    /// What the textures of materials show.
+    pub images: Vec<Image>,
     pub instances: Vec<Instance>,
     pub cameras: Vec<FileCamera>,
     /// What moves.
@@ -310,6 +367,12 @@ pub struct Scene {
 }
 
 impl Scene {
+    /// The camera called `name`; `#2` names the third one, whatever it is called.
+    pub fn camera(&self, name: &str) -> Option<usize> {
+        let by_place = || name.strip_prefix('#')?.parse().ok().filter(|&place: &usize| place < self.cameras.len());
+        self.cameras.iter().position(|camera| camera.name == name).or_else(by_place)
+    }
+
     /// Triangles of all instances together.
     pub fn triangle_count(&self) -> u64 {
         self.instances.iter().map(|instance| u64::from(self.primitives[instance.primitive].triangle_count())).sum()
@@ -318,6 +381,12 @@ impl Scene {
     /// Vertices of all instances together.
     pub fn vertex_count(&self) -> u64 {
         self.instances.iter().map(|instance| u64::from(self.primitives[instance.primitive].vertex_count())).sum()
+    }
+
+    /// Does the alpha of an image leave out a part of something?
+    pub fn is_masked(&self) -> bool {
+        let materials = self.instances.iter().map(|instance| &self.materials[self.primitives[instance.primitive].material]);
+        materials.into_iter().any(|material| material.least_alpha().is_some())
     }
 
     /// Vertices of all instances of meshes that bend.

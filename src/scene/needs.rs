@@ -26,6 +26,12 @@ pub struct Needs {
     /// Normals are all f32.
     pub f32_normals: bool,
     pub colors: bool,
+    /// Materials that are more than a base colour.
+    pub paints: usize,
+    /// Of those, materials with a texture.
+    pub textured: usize,
+    /// The alpha of an image leaves out a part of something.
+    pub masked: bool,
     /// Some mesh is mixed from shapes.
     pub shapes: bool,
     /// How joints hold meshes, where any do.
@@ -61,6 +67,9 @@ impl Needs {
         let drawn = || draws.iter().map(|draw| &scene.primitives[draw.primitive]);
         // Bent vertices are kept as f32, whatever they were.
         let unbent = || draws.iter().filter(|draw| draw.bend.is_none()).map(|draw| &scene.primitives[draw.primitive]);
+        let mut painted: Vec<usize> = drawn().map(|p| p.material).filter(|&material| !scene.materials[material].is_plain()).collect();
+        painted.sort_unstable();
+        painted.dedup();
         let all_f32 = |pick: fn(&Primitive) -> Component| unbent().all(|p| pick(p) == Component::F32);
         let largest_px = draws.iter().map(|draw| largest_px(&scene.primitives[draw.primitive], draw, view)).fold(0.0, f64::max);
         Self {
@@ -74,6 +83,9 @@ impl Needs {
             f32_positions: all_f32(|p| p.positions.component),
             f32_normals: all_f32(|p| p.normals.component),
             colors: drawn().any(|p| p.colors.is_some()),
+            paints: painted.len(),
+            textured: painted.iter().filter(|material| scene.materials[**material].textures() != [None, None]).count(),
+            masked: drawn().any(|p| scene.materials[p.material].least_alpha().is_some()),
             shapes: draws.iter().any(|draw| draw.bend.as_ref().is_some_and(|bend| bend.weights.iter().any(|weight| *weight != 0.0))),
             skinning: draws.iter().find_map(|draw| Some(draw.bend.as_ref()?.palette.as_ref()?.skinning())),
             moves: !scene.rig.is_empty(),
@@ -111,6 +123,7 @@ impl Needs {
             f32_positions: false,
             f32_normals: false,
             colors: true,
+            paints: self.paints.max(1),
             sound_normals: false,
             clipping: true,
             largest_px: f64::INFINITY,

@@ -51,15 +51,8 @@ impl Pose {
     /// The pose of `scene`, whose rig must not be empty.
     pub fn at(scene: &Scene, motion: &Motion) -> Self {
         let rig = &scene.rig;
-        let mut state = State::at(rig, motion.clip, motion.time_s);
-        if let Some(other) = motion.other.filter(|_| motion.blend > 0.0) {
-            state.blend(&State::at(rig, Some(other), motion.time_s), motion.blend.min(1.0));
-        }
-        let mut scene_from_node: Vec<DMat4> = Vec::with_capacity(rig.nodes.len());
-        for (node, local) in rig.nodes.iter().zip(&state.locals) {
-            let parent = node.parent.map_or(DMat4::IDENTITY, |parent| scene_from_node[parent]);
-            scene_from_node.push(parent * local.matrix());
-        }
+        let state = State::of(rig, motion);
+        let scene_from_node = state.places(rig);
         let palette = |skin: &super::rig::Skin| {
             let matrices = skin.joints.iter().zip(&skin.joint_from_mesh).map(|(&node, inverse)| scene_from_node[node] * *inverse);
             match motion.skinning {
@@ -107,6 +100,11 @@ impl Pose {
         }
         bounds
     }
+}
+
+/// Where every node of a rig stands.
+pub fn scene_from_nodes(rig: &Rig, motion: &Motion) -> Vec<DMat4> {
+    State::of(rig, motion).places(rig)
 }
 
 /// Box round samples of `scene`: its vertices at rest and at moments of its clips, not all of them where they are many. To
@@ -193,6 +191,24 @@ struct State {
 }
 
 impl State {
+    fn of(rig: &Rig, motion: &Motion) -> Self {
+        let mut state = Self::at(rig, motion.clip, motion.time_s);
+        if let Some(other) = motion.other.filter(|_| motion.blend > 0.0) {
+            state.blend(&Self::at(rig, Some(other), motion.time_s), motion.blend.min(1.0));
+        }
+        state
+    }
+
+    /// Parents stand before their children.
+    fn places(&self, rig: &Rig) -> Vec<DMat4> {
+        let mut scene_from_node: Vec<DMat4> = Vec::with_capacity(rig.nodes.len());
+        for (node, local) in rig.nodes.iter().zip(&self.locals) {
+            let parent = node.parent.map_or(DMat4::IDENTITY, |parent| scene_from_node[parent]);
+            scene_from_node.push(parent * local.matrix());
+        }
+        scene_from_node
+    }
+
     fn at(rig: &Rig, clip: Option<usize>, time_s: f64) -> Self {
         let mut state = Self {
             locals: rig.nodes.iter().map(|node| node.rest).collect(),

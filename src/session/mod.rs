@@ -15,7 +15,7 @@ use crate::{
     scene::{
         Scene,
         camera::{Camera, View},
-        pose::{Motion, Pose},
+        pose::{Motion, Pose, scene_from_nodes},
     },
 };
 pub use animation::Animation;
@@ -55,14 +55,21 @@ impl Default for Play {
     }
 }
 
-/// A clip that a scene does not have; one sentence.
+/// A clip or camera that a scene does not have; one sentence.
 #[derive(Debug, PartialEq, thiserror::Error)]
-#[error("{key}: the scene has no clip {asked:?}{known}")]
-pub struct NoClip {
+#[error("{key}: the scene has no {what} {asked:?}{known}")]
+pub struct NoSuch {
     pub key: &'static str,
+    pub what: &'static str,
     pub asked: String,
     /// `; it has "Walk", "Run"`.
     pub known: String,
+}
+
+/// `; it has "Walk", "Run"`, or what to say where there are none.
+fn known<'a>(names: impl Iterator<Item = &'a String>, none: &str) -> String {
+    let names: Vec<String> = names.take(12).map(|name| format!("{name:?}")).collect();
+    if names.is_empty() { format!("; {none}") } else { format!("; it has {}", names.join(", ")) }
 }
 
 impl Play {
@@ -75,12 +82,11 @@ impl Play {
     ///
     /// # Errors
     /// With the first that is not.
-    pub fn check(&self, scene: &Scene) -> Result<(), NoClip> {
+    pub fn check(&self, scene: &Scene) -> Result<(), NoSuch> {
         for (key, name) in [("scene.clip", &self.clip), ("scene.clip_b", &self.other)] {
             if !name.is_empty() && scene.rig.clip(name).is_none() {
-                let known: Vec<String> = scene.rig.clips.iter().take(12).map(|clip| format!("{:?}", clip.name)).collect();
-                let known = if known.is_empty() { "; nothing in it moves".into() } else { format!("; it has {}", known.join(", ")) };
-                return Err(NoClip { key, asked: name.clone(), known });
+                let known = known(scene.rig.clips.iter().map(|clip| &clip.name), "nothing in it moves");
+                return Err(NoSuch { key, what: "clip", asked: name.clone(), known });
             }
         }
         Ok(())
@@ -172,8 +178,10 @@ pub struct Session {
     pub play: Play,
     /// A line of the look's own, for effects that draw along lines; it turns with the scene.
     pub polyline: Arc<[[f32; 3]]>,
-    /// None: framed so that the whole scene shows.
+    /// None: the scene's own, or framed so that all of it shows.
     pub camera: Option<Camera>,
+    /// Name of the scene's camera to look through where the look has none of its own; empty: its first.
+    pub scene_camera: String,
     pub clock: Clock,
     /// The effects with the values that no key moves.
     pub stack: Stack,
@@ -195,6 +203,7 @@ impl Default for Session {
             play: Play::default(),
             polyline: Arc::default(),
             camera: None,
+            scene_camera: String::new(),
             clock: Clock::default(),
             stack: Stack::default(),
             animation: Animation::default(),
@@ -236,24 +245,42 @@ impl Session {
         self.animation.remove_effect(effect);
     }
 
-    /// How `scene` stands at the time of the clock; none where nothing in it can move.
-    pub fn pose(&self, scene: &Scene) -> Option<Arc<Pose>> {
+    /// Which moment of which clips of `scene` the clock shows.
+    fn motion(&self, scene: &Scene) -> Motion {
         let clip = |name: &str| scene.rig.clip(name).filter(|_| !name.is_empty());
-        let motion = Motion {
+        Motion {
             clip: clip(&self.play.clip),
             other: clip(&self.play.other),
             blend: self.play.blend,
             time_s: self.play.pose_s.unwrap_or(self.clock.time_s * self.play.speed),
             skinning: self.accuracy.pins.rung().unwrap_or_default(),
-        };
-        (!scene.rig.is_empty()).then(|| Arc::new(Pose::at(scene, &motion)))
+        }
     }
 
-    /// The camera of the look, or the pose that frames `scene`.
+    /// How `scene` stands at the time of the clock; none where nothing in it can move.
+    pub fn pose(&self, scene: &Scene) -> Option<Arc<Pose>> {
+        (!scene.rig.is_empty()).then(|| Arc::new(Pose::at(scene, &self.motion(scene))))
+    }
+
+    /// Has `scene` what the look names of it?
+    ///
+    /// # Errors
+    /// With the first clip or camera that is not there.
+    pub fn check(&self, scene: &Scene) -> Result<(), NoSuch> {
+        if !self.scene_camera.is_empty() && scene.camera(&self.scene_camera).is_none() {
+            let known = known(scene.cameras.iter().map(|camera| &camera.name), "there is none in it");
+            return Err(NoSuch { key: "scene.camera", what: "camera", asked: self.scene_camera.clone(), known });
+        }
+        self.play.check(scene)
+    }
+
+    /// The camera of the look, else that of the scene where its node carries it, else the pose that frames `scene`.
     pub fn camera_for(&self, scene: &Scene, aspect: f64) -> Camera {
-        self.camera
-            .or_else(|| scene.cameras.first().map(|c| c.pose))
-            .unwrap_or_else(|| Camera::framing(&scene.bounds(), FRAMING_DIRECTION, aspect))
+        let own = || {
+            let camera = scene.cameras.get(scene.camera(&self.scene_camera).unwrap_or(0))?;
+            Some(camera.node.map_or(camera.pose, |node| camera.carried(&scene_from_nodes(&scene.rig, &self.motion(scene))[node])))
+        };
+        self.camera.or_else(own).unwrap_or_else(|| Camera::framing(&scene.bounds(), FRAMING_DIRECTION, aspect))
     }
 
     /// What the pictures show that lead up to this one, each a view and a stack, and last this one itself: more than one

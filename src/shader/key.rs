@@ -75,7 +75,7 @@ pub struct KernelKey {
     pub dots: Option<Strung>,
     /// A sample effect may leave samples out.
     pub has_samples: bool,
-    /// Sample effects that settle something per triangle.
+    /// Records that are settled per triangle: one of every sample effect that does, and [`MASK_RECORDS`] of a mask.
     pub decisions: u32,
     /// Some triangle may need clipping.
     pub has_clipping: bool,
@@ -89,6 +89,10 @@ pub struct KernelKey {
     pub f32_positions: bool,
     pub f32_normals: bool,
     pub has_colors: bool,
+    /// Some material is more than a base colour.
+    pub has_texels: bool,
+    /// The alpha of an image leaves samples out.
+    pub has_mask: bool,
     /// Some mesh is held by joints.
     pub has_joints: bool,
     /// Some mesh is mixed from shapes.
@@ -110,6 +114,9 @@ pub struct KernelKey {
     /// Bits of a triangle's id where it shares a word with its depth, else 0.
     pub id_bits: u32,
 }
+
+/// Records that a mask settles per triangle: where its corners lie in the image.
+pub const MASK_RECORDS: u32 = 2;
 
 /// Effects that settle something per triangle.
 pub fn deciding(effects: &[&'static Effect]) -> u32 {
@@ -139,6 +146,8 @@ impl KernelKey {
             f32_positions: false,
             f32_normals: false,
             has_colors: true,
+            has_texels: true,
+            has_mask: false,
             has_joints: true,
             has_shapes: true,
             has_planes: true,
@@ -351,6 +360,8 @@ impl fmt::Display for KernelKey {
             ("medium", self.has_medium),
             ("large", self.has_large),
             ("colors", self.has_colors),
+            ("texels", self.has_texels),
+            ("mask", self.has_mask),
             ("planes", self.has_planes),
             ("joints", self.has_joints),
             ("shapes", self.has_shapes),

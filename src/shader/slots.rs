@@ -53,10 +53,17 @@ impl KernelKey {
         };
         let walk = if is_bin { "tiles" } else { "samples" };
         let keys = if self.rungs.depth == Depth::Integer { "integer" } else { "float" };
+        let mask = match (self.has_mask, pass) {
+            (false, _) => "none",
+            (true, Pass::Decide(_)) => "settled",
+            (true, _) => "asked",
+        };
         let mut slots = vec![
             ("bytes", format!("slots/bytes/{}", if pass == Pass::Skin { "write" } else { "read" })),
             ("shapes", format!("slots/shapes/{}", if self.has_shapes { "kept" } else { "none" })),
             ("skinning", format!("slots/skinning/{}", if self.has_joints { self.rungs.skinning.name() } else { "none" })),
+            ("texels", format!("slots/texels/{}", if self.has_texels { "atlas" } else { "none" })),
+            ("mask", format!("slots/mask/{mask}")),
             ("corners", format!("slots/corners/{records}")),
             ("sources", format!("slots/sources/{records}")),
             (

@@ -83,6 +83,7 @@ pub fn hand_made(parts: &[Part]) -> Arc<Scene> {
             positions,
             normals,
             colors,
+            coords: [None; 2],
             material,
             bounds,
             longest_edge,

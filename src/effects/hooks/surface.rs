@@ -7,8 +7,11 @@ use crate::params::Params;
 /// What the rasterizer knows about a visible sample; a surface effect changes it and passes it on.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Surface {
-    /// Linear RGBA so far; begins as the material's base colour times the vertex colour.
+    /// Linear RGBA so far; begins as the material's base colour times the vertex colour and the texture, and what it emits.
     pub color: DVec4,
+    /// The part of the colour that no light changes: what the material emits, or all of it where it is unlit. An effect that
+    /// paints over the colour leaves as much less of this.
+    pub glow: DVec3,
     /// World space, metres.
     pub position: DVec3,
     /// Unit, towards the viewer's side: interpolated, then whatever earlier effects made of it.

@@ -63,7 +63,7 @@ pub fn near(values: &Values) -> Result<Scene, BuiltinError> {
         near_m: NEAR_M,
     };
     let mut scene = alone(mesh, "hall", painted());
-    scene.cameras = vec![FileCamera { name: "inside".into(), pose }];
+    scene.cameras = vec![FileCamera { name: "inside".into(), pose, node: None }];
     Ok(scene)
 }
 

@@ -31,7 +31,7 @@ pub fn build(values: &Values) -> Result<Scene, BuiltinError> {
     scene.instances.clear();
     scene.materials.clear();
     for (material, (name, [r, g, b])) in TONES.into_iter().enumerate() {
-        scene.materials.push(Material { name: name.into(), base_color: [r, g, b, 1.0], double_sided: false });
+        scene.materials.push(Material { name: name.into(), base_color: [r, g, b, 1.0], ..Material::default() });
         if material > 0 {
             let primitive = scene.primitives[0].clone();
             scene.primitives.push(primitive);
@@ -60,6 +60,6 @@ pub fn build(values: &Values) -> Result<Scene, BuiltinError> {
         projection: Projection::Perspective { fov_y_deg: 50.0 },
         near_m: 0.05,
     };
-    scene.cameras = vec![FileCamera { name: "inside".into(), pose }];
+    scene.cameras = vec![FileCamera { name: "inside".into(), pose, node: None }];
     Ok(scene)
 }

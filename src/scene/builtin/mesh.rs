@@ -11,6 +11,8 @@ pub struct Mesh {
     normals: Vec<[f32; 3]>,
     /// Linear RGBA; empty, or one per vertex.
     colors: Vec<[u8; 4]>,
+    /// In the image of the base colour and of the emission; empty, or one per vertex.
+    coords: Vec<[f32; 2]>,
     indices: Vec<u32>,
 }
 
@@ -28,6 +30,7 @@ impl Mesh {
             positions: Vec::with_capacity(vertices),
             normals: Vec::with_capacity(vertices),
             colors: Vec::new(),
+            coords: Vec::new(),
             indices: Vec::with_capacity(3 * triangles),
         }
     }
@@ -43,6 +46,13 @@ impl Mesh {
     pub fn colored_vertex(&mut self, position: DVec3, normal: DVec3, color: [f64; 3]) -> u32 {
         let byte = |channel: f64| (channel.clamp(0.0, 1.0) * 255.0).round() as u8;
         self.colors.push([byte(color[0]), byte(color[1]), byte(color[2]), 255]);
+        self.vertex(position, normal)
+    }
+
+    /// Adds a vertex that shows this place of an image, whose left and top edges are at 0 and right and bottom ones at 1. All
+    /// vertices of a mesh have one, or none has.
+    pub fn painted_vertex(&mut self, position: DVec3, normal: DVec3, coords: [f64; 2]) -> u32 {
+        self.coords.push(coords.map(|v| v as f32));
         self.vertex(position, normal)
     }
 
@@ -95,7 +105,7 @@ impl Mesh {
 
     /// Appends the bytes to `scene` and lists the mesh as a primitive; returns its index.
     pub fn append(self, scene: &mut Scene, name: &str, material: usize) -> usize {
-        let Self { positions, normals, colors, indices } = self;
+        let Self { positions, normals, colors, coords, indices } = self;
         let (bounds, longest_edge) = (bounds(&positions), longest_edge(&positions, &indices));
         let start = scene.vertex_bytes.len();
         scene.vertex_bytes.reserve_exact(positions.len() * if colors.is_empty() { 24 } else { 28 });
@@ -104,6 +114,8 @@ impl Mesh {
         scene.vertex_bytes.extend_from_slice(bytemuck::cast_slice(&normals));
         let colors_at = scene.vertex_bytes.len();
         scene.vertex_bytes.extend_from_slice(bytemuck::cast_slice(&colors));
+        let coords_at = scene.vertex_bytes.len();
+        scene.vertex_bytes.extend_from_slice(bytemuck::cast_slice(&coords));
         let indices_at = scene.index_bytes.len();
         scene.index_bytes.extend_from_slice(bytemuck::cast_slice(&indices));
         let byte_color = Accessor {
@@ -128,6 +140,7 @@ impl Mesh {
             positions: Accessor::packed_f32(start, 3, positions.len()),
             normals: Accessor::packed_f32(normals_at, 3, normals.len()),
             colors: (!colors.is_empty()).then_some(byte_color),
+            coords: [(!coords.is_empty()).then_some(Accessor::packed_f32(coords_at, 2, coords.len())); 2],
             material,
             bounds,
             longest_edge,

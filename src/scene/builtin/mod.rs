@@ -5,7 +5,9 @@
 
 mod extremes;
 mod field;
+mod leaves;
 mod mesh;
+mod painted;
 mod plates;
 mod query;
 mod shapes;
@@ -106,6 +108,24 @@ pub const BUILTINS: &[Builtin] = &[
             whole("instances", "how many, each with joints of its own", 1.0, 1.0..=5_000.0),
         ],
         build: tentacle::build,
+    },
+    Builtin {
+        name: "globe",
+        about: "a globe with a map of coloured cells for its texture",
+        params: &[whole("tess", "fineness; it has 16 * tess^2 - 8 * tess triangles", 12.0, 2.0..=512.0)],
+        build: painted::globe,
+    },
+    Builtin {
+        name: "panels",
+        about: "panels that show images in every way: repeated, mirrored, clamped, turned, shining, unlit; and a ground of gravel",
+        params: &[real("repeats", "how often the ground repeats its image along a side", 24.0, 1.0..=4096.0)],
+        build: painted::panels,
+    },
+    Builtin {
+        name: "leaves",
+        about: "a crown of leaves, which the alpha of an image cuts out of quadrilaterals",
+        params: &[whole("n", "number of leaves", 160.0, 1.0..=1_000_000.0), SEED],
+        build: leaves::build,
     },
     Builtin {
         name: "near",

@@ -29,18 +29,18 @@ pub fn pixel_camera(height_px: f64, distance_m: f64) -> FileCamera {
         projection: Projection::Orthographic { height_m: height_px },
         near_m: 0.01,
     };
-    FileCamera { name: "pixels".into(), pose }
+    FileCamera { name: "pixels".into(), pose, node: None }
 }
 
 /// The same scale on the plane z = 0, in perspective: w is the same at all vertices.
 fn perspective_camera(height_px: f64) -> FileCamera {
     let fov_y_deg = 2.0 * libm::atan(0.5).to_degrees();
     let pose = Camera { projection: Projection::Perspective { fov_y_deg }, ..pixel_camera(height_px, height_px).pose };
-    FileCamera { name: "pixels in perspective".into(), pose }
+    FileCamera { name: "pixels in perspective".into(), pose, node: None }
 }
 
 fn plate_material() -> Material {
-    Material { name: "plate".into(), base_color: [0.8, 0.8, 0.8, 1.0], double_sided: true }
+    Material { name: "plate".into(), base_color: [0.8, 0.8, 0.8, 1.0], double_sided: true, ..Material::default() }
 }
 
 /// A jittered grid that overhangs a `width` x `height` picture on all sides, so each sample is covered exactly once.

@@ -47,7 +47,7 @@ pub fn sphere(values: &Values) -> Result<Scene, BuiltinError> {
     }
     let top = mesh.ring(1, |mesh, _| bump(mesh, DVec3::Y));
     mesh.band(below, top);
-    Ok(alone(mesh, "sphere", Material { name: "clay".into(), base_color: [0.42, 0.47, 0.52, 1.0], double_sided: false }))
+    Ok(alone(mesh, "sphere", Material { name: "clay".into(), base_color: [0.42, 0.47, 0.52, 1.0], ..Material::default() }))
 }
 
 /// The surface over direction `d` (a unit vector): radius r(d) = 1 + waves, normal from the gradient of |p| - r(p / |p|).
@@ -111,7 +111,7 @@ pub fn cube_wall(values: &Values) -> Result<Scene, BuiltinError> {
     let mut scene = Scene::default();
     let first = cube().append(&mut scene, "cube", 0);
     for (material, (name, [r, g, b])) in PALETTE.into_iter().enumerate() {
-        scene.materials.push(Material { name: name.into(), base_color: [r, g, b, 1.0], double_sided: false });
+        scene.materials.push(Material { name: name.into(), base_color: [r, g, b, 1.0], ..Material::default() });
         if material > 0 {
             let mut primitive = scene.primitives[first].clone();
             primitive.material = material;

@@ -66,7 +66,7 @@ pub fn build(values: &Values) -> Result<Scene, BuiltinError> {
     revolve(&mut mesh, &LID, tess);
     tube(&mut mesh, &HANDLE, tess);
     tube(&mut mesh, &SPOUT, tess);
-    let glaze = Material { name: "glaze".into(), base_color: [0.61, 0.235, 0.095, 1.0], double_sided: true };
+    let glaze = Material { name: "glaze".into(), base_color: [0.61, 0.235, 0.095, 1.0], double_sided: true, ..Material::default() };
     Ok(alone(mesh, "teapot", glaze))
 }
 

@@ -15,6 +15,8 @@ use crate::scene::{Accessor, Component};
 pub struct Buffers<'a> {
     pub root: &'a json::Root,
     bytes: Vec<Cow<'a, [u8]>>,
+    /// Of the budget for all files of the model.
+    pub left: u64,
 }
 
 /// Where the elements of an accessor lie, after all checks.
@@ -48,7 +50,7 @@ impl<'a> Buffers<'a> {
             }
             bytes.push(content);
         }
-        Ok(Self { root, bytes })
+        Ok(Self { root, bytes, left })
     }
 
     /// The bytes of a buffer view.

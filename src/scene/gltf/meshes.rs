@@ -15,29 +15,31 @@ use gltf::json::{
 use super::{
     LoadError, ReadFile,
     buffers::Buffers,
-    called, clips, container, limits,
+    called, clips, container, limits, materials,
     nodes::{Tree, node_name},
     quoted, skin, soft,
 };
 use crate::scene::{
     Accessor, Bounds, Component, Instance, Material, Primitive, Scene, Topology, pose,
     rig::{Rig, Softness},
+    texture::{MOST_REPEATS, stored},
 };
 
 /// The whole file as a scene.
 pub fn scene(bytes: &[u8], read: &mut ReadFile) -> Result<Scene, LoadError> {
     let (json, binary) = container::split(bytes)?;
     let root = container::root(json)?;
-    let buffers = Buffers::read(&root, binary, read)?;
-    check_images(&buffers)?;
+    let mut buffers = Buffers::read(&root, binary, read)?;
+    materials::check_images(&buffers)?;
     let tree = Tree::walk(&root)?;
     let (mut rig, mut repairs) = (Rig::default(), Vec::from_iter(tree.uneven(&root)));
+    let (materials, images) = materials::read(&mut buffers, &tree.shown, read, &mut repairs)?;
     if soft::moves(&root) {
         rig.nodes = tree.rig_nodes(&root)?;
         rig.skins = skin::skins(&buffers, &tree)?;
         clips::read(&buffers, &tree, &mut rig, &mut repairs)?;
     }
-    let mut loader = Loader::new(&buffers, &tree);
+    let mut loader = Loader::new(&buffers, &tree, Scene { materials, images, ..Scene::default() });
     for &node in &tree.shown {
         loader.place(node, &rig)?;
     }
@@ -50,37 +52,23 @@ pub fn scene(bytes: &[u8], read: &mut ReadFile) -> Result<Scene, LoadError> {
     if scene.instances.is_empty() {
         scene.notes.push("nothing to draw: the scene shows no triangles".into());
     }
-    scene.cameras = tree.cameras(&root, &scene.bounds(), &mut scene.notes);
+    scene.cameras = tree.cameras(&root, &scene.bounds(), !scene.rig.is_empty(), &mut scene.notes);
     scene.notes.truncate(limits::NOTES);
     Ok(scene)
 }
 
-/// Images are not decoded yet; what they point at must exist all the same.
-fn check_images(buffers: &Buffers) -> Result<(), LoadError> {
-    for (index, image) in buffers.root.images.iter().enumerate() {
-        let place = |error: LoadError| error.within(called("image", index, image.name.as_deref()));
-        match (image.buffer_view, &image.uri) {
-            (Some(view), _) => drop(buffers.view(view.value()).map_err(place)?),
-            (None, None) => return Err(place(LoadError::new("has neither a URI nor a bufferView"))),
-            (None, Some(_)) => {}
-        }
-    }
-    Ok(())
-}
-
 /// What the file has and the picture lacks.
 fn omissions(root: &json::Root) -> Vec<String> {
-    let ignored = root.extensions_used.iter().filter(|name| *name != container::QUANTIZATION);
+    let is_read = |name: &str| name == container::QUANTIZATION || materials::EXTENSIONS.contains(&name);
+    let ignored = root.extensions_used.iter().filter(|name| !is_read(name));
     let mut notes: Vec<String> = ignored.map(|name| format!("extension {} is ignored", quoted(name))).collect();
-    let pbr = |material: &json::Material| material.pbr_metallic_roughness.base_color_texture.is_some();
-    let any = [
-        (root.materials.iter().any(pbr), "textures are not drawn yet, only base colour factors"),
-        (
-            root.materials.iter().any(|m| m.alpha_mode != Checked::Valid(json::material::AlphaMode::Opaque)),
-            "alpha is ignored: all surfaces are opaque",
-        ),
-    ];
-    notes.extend(any.into_iter().filter(|(is_there, _)| *is_there).map(|(_, note)| note.to_owned()));
+    let has_more = |material: &json::Material| {
+        let roughness = material.pbr_metallic_roughness.metallic_roughness_texture.is_some();
+        roughness || material.normal_texture.is_some() || material.occlusion_texture.is_some()
+    };
+    if root.materials.iter().any(has_more) {
+        notes.push("normal, occlusion and metallic-roughness textures are not drawn".into());
+    }
     notes
 }
 
@@ -111,12 +99,12 @@ enum Source {
 }
 
 impl<'a> Loader<'a> {
-    fn new(buffers: &'a Buffers<'a>, tree: &'a Tree) -> Self {
-        let materials = buffers.root.materials.iter().enumerate().map(|(i, m)| material(i, m)).collect();
+    /// Adds to `scene`, which has the file's materials and their images.
+    fn new(buffers: &'a Buffers<'a>, tree: &'a Tree, scene: Scene) -> Self {
         Self {
             buffers,
             tree,
-            scene: Scene { materials, ..Scene::default() },
+            scene,
             is_quantized: buffers.root.extensions_used.iter().any(|name| name == container::QUANTIZATION),
             notes: BTreeSet::new(),
             vertex_places: HashMap::new(),
@@ -172,6 +160,11 @@ impl<'a> Loader<'a> {
                     continue;
                 }
             };
+            let material = primitive.material.map(|material| &self.buffers.root.materials[material.value()]);
+            if material.is_some_and(materials::is_invisible) {
+                self.notes.insert(format!("{name} is left out: the alpha of its material is below the cutoff everywhere"));
+                continue;
+            }
             self.primitive(&name, topology, primitive).map_err(|LoadError(reason)| LoadError(format!("{name}{reason}")))?;
         }
         let range = first..self.scene.primitives.len();
@@ -191,6 +184,8 @@ impl<'a> Loader<'a> {
         let positions = self.attribute(positions, count, &[3], places).map_err(at("POSITION"))?;
         let normals = attribute(Semantic::Normals).map(|a| self.attribute(a, count, &[3], directions).map_err(at("NORMAL"))).transpose()?;
         let colors = attribute(Semantic::Colors(0)).map(|a| self.attribute(a, count, &[3, 4], COLOR).map_err(at("COLOR_0"))).transpose()?;
+        let material = self.material(about);
+        let coords = self.coords(about, material, count)?;
         let indices = about.indices.map(|a| self.indices(a.value()).map_err(at("indices"))).transpose()?;
         let corners = indices.map_or(count, |indices| indices.count);
         self.budget_triangles(topology, corners).map_err(if indices.is_some() { at("indices") } else { at("POSITION") })?;
@@ -202,7 +197,8 @@ impl<'a> Loader<'a> {
             positions,
             normals: normals.unwrap_or(positions),
             colors,
-            material: self.material(about),
+            coords,
+            material,
             bounds: Bounds::EMPTY,
             longest_edge: 0.0,
             sound_normals: false,
@@ -219,6 +215,9 @@ impl<'a> Loader<'a> {
         primitive.sound_normals = primitive.normals_agree(&self.scene);
         if let Some(colors) = &primitive.colors {
             check_finite(&self.scene, colors).map_err(at("COLOR_0"))?;
+            if colors.lanes == 4 && self.scene.materials[material].cutoff.is_some() {
+                self.notes.insert(format!("{name}: only the alpha of its image cuts it out, not that of its vertex colours"));
+            }
         }
         self.scene.primitives.push(primitive);
         self.origins.push(about);
@@ -233,6 +232,30 @@ impl<'a> Loader<'a> {
                 materials.len() - 1
             })
         })
+    }
+
+    /// Where the textures of a material are looked up. Errors begin as those of attributes do.
+    fn coords(&mut self, about: &json::mesh::Primitive, material: usize, count: u32) -> Result<[Option<Accessor>; 2], LoadError> {
+        let textures = self.scene.materials[material].textures().map(|texture| texture.copied());
+        let mut coords = [None; 2];
+        for (coords, texture) in coords.iter_mut().zip(textures) {
+            let Some(texture) = texture else { continue };
+            let at = |error: LoadError| LoadError(format!(" TEXCOORD_{}: {error}", texture.set));
+            let index = about.attributes.get(&Checked::Valid(Semantic::TexCoords(texture.set)));
+            let index = index.ok_or_else(|| at(LoadError::new("is missing, and a texture of its material is looked up there")))?;
+            let kinds = if self.is_quantized { QUANTIZED_COORDS } else { COORDS };
+            let accessor = self.attribute(index.value(), count, &[2], kinds).map_err(at)?;
+            check_finite(&self.scene, &accessor).map_err(at)?;
+            let place = |vertex| texture.placed(stored(&accessor, &self.scene.vertex_bytes, vertex));
+            if let Some(vertex) = (0..count).find(|&vertex| place(vertex).abs().max_element() > MOST_REPEATS) {
+                let place = place(vertex);
+                let reason =
+                    format!("vertex {vertex} lies at {} {} of the image, which is followed to {MOST_REPEATS} repeats", place.x, place.y);
+                return Err(at(LoadError::new(reason)));
+            }
+            *coords = Some(accessor);
+        }
+        Ok(coords)
     }
 
     fn budget_vertices(&mut self, more: u64) -> Result<(), LoadError> {
@@ -319,6 +342,9 @@ const PLACES: &[(Component, bool)] = &[
 ];
 /// The same for normals.
 const DIRECTIONS: &[(Component, bool)] = &[(Component::F32, false), (Component::I8, true), (Component::I16, true)];
+const COORDS: &[(Component, bool)] = &[(Component::F32, false), (Component::U8, true), (Component::U16, true)];
+/// What KHR_mesh_quantization allows for texture coordinates.
+const QUANTIZED_COORDS: &[(Component, bool)] = PLACES;
 const COLOR: &[(Component, bool)] = &[(Component::F32, false), (Component::U8, true), (Component::U16, true)];
 
 fn type_name(accessor: &Accessor) -> String {
@@ -328,14 +354,6 @@ fn type_name(accessor: &Accessor) -> String {
 
 fn primitive_name(root: &json::Root, mesh: usize, primitive: usize) -> String {
     format!("{} primitive {primitive}", called("mesh", mesh, root.meshes[mesh].name.as_deref()))
-}
-
-fn material(index: usize, about: &json::Material) -> Material {
-    Material {
-        name: about.name.clone().unwrap_or_else(|| format!("material {index}")),
-        base_color: about.pbr_metallic_roughness.base_color_factor.0.map(|channel| channel.clamp(0.0, 1.0)),
-        double_sided: about.double_sided,
-    }
 }
 
 /// Copies the view of an accessor (or its sparse elements) unless that was done before.

@@ -4,13 +4,14 @@
 //! checked here, in 64-bit arithmetic and under the limits of [`limits`], before a byte is read. Attribute bytes are then
 //! taken over as they are. Every refusal is one sentence that names file, mesh, primitive and accessor.
 //!
-//! Read: triangle lists, strips and fans, any index width, interleaved, sparse and quantized accessors, base colour, vertex
-//! colours, the default scene's nodes and cameras, skins, morph targets and clips. Named in [`Scene::notes`] and left out:
-//! points, lines, textures.
+//! Read: triangle lists, strips and fans, any index width, interleaved, sparse and quantized accessors, base colour and
+//! emission with their textures, vertex colours, the default scene's nodes and cameras, skins, morph targets and clips. Named
+//! in [`Scene::notes`] and left out: points, lines, normal maps and what else physically based shading asks for.
 
 mod buffers;
 mod clips;
 mod container;
+mod materials;
 mod meshes;
 mod nodes;
 mod skin;
@@ -57,6 +58,10 @@ pub mod limits {
     pub const CHANNELS: usize = 262_144;
     /// Key times and values of all clips.
     pub const KEY_NUMBERS: usize = 16_000_000;
+    /// Texels across and down an image.
+    pub const IMAGE_SIDE: u32 = 8192;
+    /// All images once they are decoded, before smaller copies are made of them.
+    pub const IMAGES_BYTES: u64 = 512 * MIB;
     /// Notes kept for the user.
     pub const NOTES: usize = 32;
 }

@@ -89,15 +89,16 @@ impl Tree {
         (count > 0).then(|| format!("{count} node rotations are no unit quaternions; they are taken by their direction"))
     }
 
-    /// The cameras among the shown nodes. Their targets lie as far away as the middle of `bounds`.
-    pub fn cameras(&self, root: &json::Root, bounds: &Bounds, notes: &mut Vec<String>) -> Vec<FileCamera> {
+    /// The cameras among the shown nodes. Their targets lie as far away as the middle of `bounds`; where things move, they
+    /// go with their nodes.
+    pub fn cameras(&self, root: &json::Root, bounds: &Bounds, moves: bool, notes: &mut Vec<String>) -> Vec<FileCamera> {
         let mut cameras = Vec::new();
         for &node in &self.shown {
             let Some(index) = root.nodes[node].camera else { continue };
             let camera = &root.cameras[index.value()];
             let name = camera.name.clone().or_else(|| root.nodes[node].name.clone()).unwrap_or_else(|| format!("camera {}", index.value()));
             match pose(camera, &self.world_from_node[node], bounds) {
-                Ok(pose) => cameras.push(FileCamera { name, pose }),
+                Ok(pose) => cameras.push(FileCamera { name: shown(&name, cameras.len()), pose, node: moves.then(|| self.place_of[node]) }),
                 Err(reason) => notes.push(format!("{} is left out: {reason}", called("camera", index.value(), Some(&name)))),
             }
         }
@@ -169,6 +170,12 @@ fn local(node: &json::Node) -> Result<Local, LoadError> {
     }
     let (translation, scale) = (vector(node.translation, DVec3::ZERO), vector(node.scale, DVec3::ONE));
     Ok(Local::Parts(Parts { translation, rotation: unit(rotation), scale }))
+}
+
+/// As menus and looks name it, the `place`th of them.
+fn shown(name: &str, place: usize) -> String {
+    let name: String = name.chars().filter(|c| !c.is_control()).take(60).collect();
+    if name.trim().is_empty() { format!("camera {place}") } else { name }
 }
 
 /// A camera looks along its node's -z with +y up; scale has no meaning for it.

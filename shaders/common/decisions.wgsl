@@ -1,0 +1,9 @@
+// Decisions: what was settled about triangles and pieces, so many records each, behind the projected vertices.
+//@ use common/frame
+//@ use slot/records
+
+override DECISIONS: u32 = 0u;
+
+fn decisions_load(entry: u32, place: u32) -> vec4u {
+    return vertices[frame.vertex_count + entry * DECISIONS + place];
+}

@@ -1,0 +1,189 @@
+//! Texels: what the resolve knows of materials that are more than a base colour, in one texture that costs no storage buffer.
+//!
+//! The texture is used as a row of words, folded to [`WIDTH`] words a line and as many lines a layer: sRGB decoded, a word per
+//! byte; a record per primitive; where the vertices of masked ones lie in their images; then the levels of all images, a texel a
+//! word. Twins of `shaders/common/texels.wgsl`.
+
+use std::mem::size_of;
+
+use super::{
+    Gpu, RenderError,
+    uniforms::{Twin, format_word, twin},
+};
+use crate::{
+    math::linear_light,
+    scene::{
+        Accessor, Primitive, Scene,
+        texture::{Texture, stored},
+    },
+};
+
+/// Words in a line, and lines in a layer.
+pub const WIDTH: u32 = 4096;
+
+twin! {
+    /// How a texture is looked up. Each member is explained in `shaders/common/texels.wgsl`.
+    pub struct LookupRecord = "Lookup" {
+        pub first: u32,
+        pub size: u32,
+        pub sampling: u32,
+        pub format: u32,
+        pub offset: u32,
+        pub stride: u32,
+        pub u_per_u: f32,
+        pub u_per_v: f32,
+        pub u_offset: f32,
+        pub v_per_u: f32,
+        pub v_per_v: f32,
+        pub v_offset: f32,
+    }
+}
+
+twin! {
+    /// The material of one primitive. Each member is explained in `shaders/common/texels.wgsl`.
+    pub struct PaintRecord = "Paint" {
+        pub flags: u32,
+        pub red: f32,
+        pub green: f32,
+        pub blue: f32,
+        pub least_alpha: u32,
+        pub first_corner: u32,
+    }
+}
+
+/// Words of a primitive's record: its paint, and how base colour and emission are looked up.
+pub const RECORD_WORDS: usize = (size_of::<PaintRecord>() + 2 * size_of::<LookupRecord>()) / 4;
+
+/// Bits of [`PaintRecord::flags`].
+const BASE_TEXTURE: u32 = 1;
+const EMISSION_TEXTURE: u32 = 2;
+const UNLIT: u32 = 4;
+const MASKED: u32 = 8;
+
+/// The texture on a device.
+pub struct Texels {
+    pub view: wgpu::TextureView,
+    pub bytes: u64,
+}
+
+impl Texels {
+    /// Uploads what `scene` needs.
+    pub fn new(gpu: &Gpu, scene: &Scene) -> Result<Self, RenderError> {
+        let mut words = words(scene);
+        let line = WIDTH as usize;
+        words.resize(words.len().next_multiple_of(line), 0);
+        let lines = (words.len() / line) as u32;
+        let (height, layers) = (lines.min(WIDTH), lines.div_ceil(WIDTH));
+        let bytes = 4 * u64::from(WIDTH) * u64::from(height) * u64::from(layers);
+        let most = gpu.device.limits().max_texture_array_layers;
+        if layers > most {
+            let limit = 4 * u64::from(WIDTH) * u64::from(WIDTH) * u64::from(most);
+            return Err(RenderError::TooLarge { buffer: "texels", bytes, limit });
+        }
+        let scope = gpu.device.push_error_scope(wgpu::ErrorFilter::OutOfMemory);
+        let texture = gpu.device.create_texture(&wgpu::TextureDescriptor {
+            label: Some("texels"),
+            size: wgpu::Extent3d { width: WIDTH, height, depth_or_array_layers: layers },
+            mip_level_count: 1,
+            sample_count: 1,
+            dimension: wgpu::TextureDimension::D2,
+            format: wgpu::TextureFormat::R32Uint,
+            usage: wgpu::TextureUsages::COPY_DST | wgpu::TextureUsages::TEXTURE_BINDING,
+            view_formats: &[],
+        });
+        if pollster::block_on(scope.pop()).is_some() {
+            return Err(RenderError::OutOfMemory { buffer: "texels", bytes });
+        }
+        for (layer, words) in words.chunks(line * WIDTH as usize).enumerate() {
+            let rows = (words.len() / line) as u32;
+            let origin = wgpu::Origin3d { x: 0, y: 0, z: layer as u32 };
+            let target = wgpu::TexelCopyTextureInfo { origin, ..texture.as_image_copy() };
+            let layout = wgpu::TexelCopyBufferLayout { offset: 0, bytes_per_row: Some(4 * WIDTH), rows_per_image: None };
+            let size = wgpu::Extent3d { width: WIDTH, height: rows, depth_or_array_layers: 1 };
+            gpu.queue.write_texture(target, bytemuck::cast_slice(words), layout, size);
+        }
+        let view = texture
+            .create_view(&wgpu::TextureViewDescriptor { dimension: Some(wgpu::TextureViewDimension::D2Array), ..Default::default() });
+        Ok(Self { view, bytes })
+    }
+}
+
+/// Everything, word after word.
+fn words(scene: &Scene) -> Vec<u32> {
+    let mut words: Vec<u32> = (0..256).map(|byte| (linear_light(f64::from(byte) / 255.0) as f32).to_bits()).collect();
+    // A record at least, even where nothing is to be drawn.
+    let records = scene.primitives.len().max(1);
+    let mut first = words.len() + RECORD_WORDS * records;
+    let mut places = Vec::new();
+    let corners = corners(scene, &mut first);
+    for image in &scene.images {
+        places.push(first as u32);
+        first += (image.bytes() / 4) as usize;
+    }
+    let lookup = |texture: Option<&Texture>, coords: Option<&Accessor>| match (texture, coords) {
+        (Some(texture), Some(coords)) => {
+            let image = &scene.images[texture.image];
+            let [width, height] = image.size();
+            let [across, down] = texture.wrap.map(|wrap| wrap as u32);
+            let filters = (texture.magnified as u32) << 4 | (texture.minified as u32) << 5;
+            let copies = (texture.copies as u32) << 6 | (image.levels.len() as u32) << 8;
+            let [[u_per_u, u_per_v, u_offset], [v_per_u, v_per_v, v_offset]] = texture.image_from_stored;
+            LookupRecord {
+                first: places[texture.image],
+                size: width | height << 16,
+                sampling: across | down << 2 | filters | copies,
+                format: format_word(coords),
+                offset: coords.offset,
+                stride: coords.stride,
+                u_per_u,
+                u_per_v,
+                u_offset,
+                v_per_u,
+                v_per_v,
+                v_offset,
+            }
+        }
+        _ => LookupRecord::default(),
+    };
+    for (primitive, corners) in scene.primitives.iter().zip(&corners) {
+        let material = &scene.materials[primitive.material];
+        let [base, glow] = material.textures();
+        let flag = |is_there: bool, bit: u32| if is_there { bit } else { 0 };
+        let textures = flag(base.is_some(), BASE_TEXTURE) | flag(glow.is_some(), EMISSION_TEXTURE);
+        let flags = textures | flag(material.unlit, UNLIT) | flag(material.least_alpha().is_some(), MASKED);
+        let [red, green, blue] = material.emission;
+        let (least_alpha, first_corner) = (material.least_alpha().unwrap_or(0), corners.first);
+        words.extend_from_slice(bytemuck::cast_slice(&[PaintRecord { flags, red, green, blue, least_alpha, first_corner }]));
+        let lookups = [lookup(base, primitive.coords[0].as_ref()), lookup(glow, primitive.coords[1].as_ref())];
+        words.extend_from_slice(bytemuck::cast_slice(&lookups));
+    }
+    words.resize(256 + RECORD_WORDS * records, 0);
+    words.extend(corners.iter().flat_map(|corners| &corners.words));
+    for level in scene.images.iter().flat_map(|image| &image.levels) {
+        words.extend(level.texels.iter().map(|&texel| u32::from_le_bytes(texel)));
+    }
+    words
+}
+
+/// Where the vertices of a primitive with a mask lie in its image; no words for others.
+struct Corners {
+    first: u32,
+    words: Vec<u32>,
+}
+
+/// Those of all primitives, from word `first` on, which moves behind them.
+fn corners(scene: &Scene, first: &mut usize) -> Vec<Corners> {
+    let of_primitive = |primitive: &Primitive| {
+        let material = &scene.materials[primitive.material];
+        let masked = material.base_texture.as_ref().filter(|_| material.least_alpha().is_some()).zip(primitive.coords[0]);
+        let words = masked.map_or(Vec::new(), |(texture, coords)| {
+            let size = scene.images[texture.image].size();
+            let units = |vertex| texture.units(size, stored(&coords, &scene.vertex_bytes, vertex)).map(|v| v as u32);
+            (0..primitive.vertex_count()).flat_map(units).collect()
+        });
+        let corners = Corners { first: *first as u32, words };
+        *first += corners.words.len();
+        corners
+    };
+    scene.primitives.iter().map(of_primitive).collect()
+}

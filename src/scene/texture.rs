@@ -1,0 +1,227 @@
+//! Textures as plain data: images with smaller copies of themselves, and how a material looks one up.
+//!
+//! Texels stay the gamma-encoded bytes that the file has. Whoever mixes them decodes them first, since light adds up in
+//! linear values; the smaller copies are made here in that way, once, so that every renderer and judge starts from their bytes.
+
+use glam::DVec2;
+
+use super::Accessor;
+use crate::math::linear_light;
+
+/// A picture that surfaces show.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Image {
+    /// For people.
+    pub name: String,
+    /// The picture, and behind it copies of half the size each down to one texel; only the picture where none asks for more.
+    pub levels: Vec<Level>,
+}
+
+/// Texels row by row from the top, as gamma-encoded RGBA.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Level {
+    /// Width and height, each at least 1.
+    pub size: [u32; 2],
+    pub texels: Vec<[u8; 4]>,
+}
+
+impl Image {
+    /// An image without smaller copies.
+    ///
+    /// # Panics
+    /// When there are not `width * height` texels, or none.
+    pub fn new(name: &str, size: [u32; 2], texels: Vec<[u8; 4]>) -> Self {
+        assert!(!texels.is_empty() && texels.len() == size[0] as usize * size[1] as usize, "an image of {size:?} has texels");
+        Self { name: name.into(), levels: vec![Level { size, texels }] }
+    }
+
+    /// The same with all smaller copies.
+    pub fn with_copies(mut self) -> Self {
+        self.levels.truncate(1);
+        while let Some(smaller) = self.levels.last().and_then(Level::halved) {
+            self.levels.push(smaller);
+        }
+        self
+    }
+
+    /// Width and height of the picture.
+    pub fn size(&self) -> [u32; 2] {
+        self.levels[0].size
+    }
+
+    /// Bytes of all levels.
+    pub fn bytes(&self) -> u64 {
+        self.levels.iter().map(|level| 4 * level.texels.len() as u64).sum()
+    }
+}
+
+impl Level {
+    /// Half as wide and high, rounded down: every texel is the mean of the part that it covers, in linear light; none for
+    /// a single texel.
+    fn halved(&self) -> Option<Self> {
+        if self.size == [1, 1] {
+            return None;
+        }
+        let light: [f64; 256] = std::array::from_fn(|byte| linear_light(byte as f64 / 255.0));
+        // A value is nearest to a byte from half way between it and the one below.
+        let least: [f64; 256] = std::array::from_fn(|byte| linear_light((byte as f64 - 0.5).max(0.0) / 255.0));
+        let size = self.size.map(|side| (side / 2).max(1));
+        let shares = [0, 1].map(|axis| (0..size[axis]).map(|at| shares(at, size[axis], self.size[axis])).collect::<Vec<_>>());
+        let texel = |x: usize, y: usize| {
+            let mut sum = [0.0; 4];
+            for &(row, high) in &shares[1][y] {
+                for &(column, wide) in &shares[0][x] {
+                    let texel = self.texels[row * self.size[0] as usize + column];
+                    (0..3).for_each(|c| sum[c] += light[usize::from(texel[c])] * high * wide);
+                    sum[3] += f64::from(texel[3]) * high * wide;
+                }
+            }
+            let encoded = |value: f64| (least.partition_point(|&least| least <= value) - 1) as u8;
+            [encoded(sum[0]), encoded(sum[1]), encoded(sum[2]), (sum[3] + 0.5).floor() as u8]
+        };
+        let texels = (0..size[1] as usize).flat_map(|y| (0..size[0] as usize).map(move |x| (x, y))).map(|(x, y)| texel(x, y)).collect();
+        Some(Self { size, texels })
+    }
+}
+
+/// Which texels of a side of `of` the one at `at` of a smaller side covers, and the share of each.
+fn shares(at: u32, side: u32, of: u32) -> Vec<(usize, f64)> {
+    let scale = f64::from(of) / f64::from(side);
+    let (from, to) = (f64::from(at) * scale, f64::from(at + 1) * scale);
+    let part = |texel: u32| ((f64::from(texel) + 1.0).min(to) - f64::from(texel).max(from)) / scale;
+    let range = from.floor() as u32..(to.ceil() as u32).min(of);
+    range.map(|texel| (texel as usize, part(texel))).filter(|(_, share)| *share > 1e-9).collect()
+}
+
+/// What lies beyond an image's edge.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+#[repr(u32)]
+pub enum Wrap {
+    /// The image again.
+    #[default]
+    Repeat = 0,
+    /// The image turned over, then as it is, and so on.
+    Mirrored = 1,
+    /// Its outermost texels.
+    Clamp = 2,
+}
+
+/// How the value between texels is found.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+#[repr(u32)]
+pub enum Filter {
+    /// It is that of the texel in which it lies.
+    Nearest = 0,
+    /// Mixed from the four around it.
+    #[default]
+    Linear = 1,
+}
+
+/// Which of the smaller copies are taken where a pixel spans many texels.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+#[repr(u32)]
+pub enum Copies {
+    /// None.
+    Unused = 0,
+    /// The one of the nearest scale.
+    Nearest = 1,
+    /// The two on either side, mixed.
+    #[default]
+    Mixed = 2,
+}
+
+/// How a material looks up an image.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Texture {
+    /// Index into `Scene::images`.
+    pub image: usize,
+    /// Across and down.
+    pub wrap: [Wrap; 2],
+    /// Where a texel spans a pixel or more.
+    pub magnified: Filter,
+    /// Where a pixel spans more than a texel.
+    pub minified: Filter,
+    pub copies: Copies,
+    /// Which TEXCOORD attribute of the file it goes by.
+    pub set: u32,
+    /// What takes stored coordinates to those of the image, where 0 and 1 are its left and right, or top and bottom, edges:
+    /// per axis the factor of each coordinate, and what is added.
+    pub image_from_stored: [[f32; 3]; 2],
+}
+
+impl Texture {
+    /// The whole image, repeated and mixed, by the first set of coordinates.
+    pub fn plain(image: usize) -> Self {
+        Self {
+            image,
+            wrap: Default::default(),
+            magnified: Filter::Linear,
+            minified: Filter::Linear,
+            copies: Copies::Mixed,
+            set: 0,
+            image_from_stored: [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0]],
+        }
+    }
+
+    /// Coordinates in the image of stored ones.
+    pub fn placed(&self, stored: DVec2) -> DVec2 {
+        DVec2::from(self.image_from_stored.map(|row| {
+            let [u, v, offset] = row.map(f64::from);
+            u * stored.x + v * stored.y + offset
+        }))
+    }
+}
+
+/// Units of [`Texture::units`] in a texel.
+pub const UNITS_PER_TEXEL: f64 = 256.0;
+
+/// Largest coordinate in an image that is looked up, either way: so many times it may be repeated.
+pub const MOST_REPEATS: f64 = 65_536.0;
+
+impl Texture {
+    /// Where stored coordinates lie in an image of this size, in 1/256 of a texel: what decides in integers starts from these.
+    /// Held to 2^29, which is two million texels either way.
+    pub fn units(&self, size: [u32; 2], stored: DVec2) -> [i32; 2] {
+        const FARTHEST: f64 = (1 << 29) as f64;
+        let place = self.placed(stored) * DVec2::from(size.map(f64::from)) * UNITS_PER_TEXEL;
+        place.to_array().map(|v| v.clamp(-FARTHEST, FARTHEST).round_ties_even() as i32)
+    }
+}
+
+/// Two stored coordinates of a vertex.
+pub fn stored(coords: &Accessor, bytes: &[u8], vertex: u32) -> DVec2 {
+    DVec2::new(coords.value(bytes, vertex, 0), coords.value(bytes, vertex, 1))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::math::{hash, srgb};
+
+    #[test]
+    fn copies_halve_down_to_a_texel_and_keep_the_mean_of_their_light() {
+        for size in [[1, 1], [8, 8], [7, 3], [1, 9], [16, 5]] {
+            let noise = |i: u32| hash(i).to_le_bytes();
+            let image = Image::new("noise", size, (0..size[0] * size[1]).map(noise).collect()).with_copies();
+            let sizes: Vec<_> = image.levels.iter().map(|level| level.size).collect();
+            assert_eq!((sizes[0], *sizes.last().expect("a level")), (size, [1, 1]));
+            assert!(sizes.windows(2).all(|pair| pair[1] == pair[0].map(|side| (side / 2).max(1))), "{sizes:?}");
+            let mean = |level: &Level, c: usize| {
+                let light = |texel: &[u8; 4]| linear_light(f64::from(texel[c]) / 255.0);
+                level.texels.iter().map(light).sum::<f64>() / level.texels.len() as f64
+            };
+            for (level, c) in image.levels.iter().flat_map(|level| (0..3).map(move |c| (level, c))) {
+                let (kept, whole) = (srgb(mean(level, c)), srgb(mean(&image.levels[0], c)));
+                // A rounding a level.
+                assert!((kept - whole).abs() < 0.6 / 255.0 * image.levels.len() as f64, "{size:?} {c}: {kept} for {whole}");
+            }
+        }
+    }
+
+    #[test]
+    fn black_and_white_mix_to_half_the_light() {
+        let checks = Image::new("checks", [2, 1], vec![[0, 0, 0, 0], [255; 4]]).with_copies();
+        assert_eq!(checks.levels[1].texels, [[188, 188, 188, 128]]);
+        assert_eq!(checks.bytes(), 12);
+    }
+}
