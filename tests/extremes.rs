@@ -62,6 +62,7 @@ cases! {
     case_12_attributes_that_are_no_numbers = "attributes-that-are-no-numbers",
     case_13_depth_range = "depth-range",
     case_14_scales_and_offsets = "scales-and-offsets",
+    case_14_offsets_taken_out = "offsets-taken-out",
     case_15_coplanar_layers = "coplanar-layers",
     case_16_layers_on_one_pixel = "layers-on-one-pixel",
     case_17_without_area = "without-area",
@@ -85,16 +86,19 @@ cases! {
     case_25_fill_that_is_no_number = "fill-that-is-no-number",
     case_26_draw_limit = "draw-limit",
     case_26_more_than_2_to_the_32_samples = "more-than-2-to-the-32-samples",
+    case_26_more_tickets_than_2_to_the_32 = "more-tickets-than-2-to-the-32",
     case_27_a_million_triangles = "a-million-triangles",
     case_27_ten_million_triangles = "ten-million-triangles",
     case_27_a_thousand_full_screen_triangles = "a-thousand-full-screen-triangles",
     case_28_w_ratios = "w-ratios",
     case_29_a_day_later = "a-day-later",
     case_30_skins_that_are_taken = "skins-that-are-taken",
+    case_30_rotations_of_any_length = "rotations-of-any-length",
     case_30_skins_that_cannot_be = "skins-that-cannot-be",
     case_31_parameters_at_their_ends = "parameters-at-their-ends",
     case_31_every_effect_at_once = "every-effect-at-once",
     case_32_hardware_cross_check = "hardware-cross-check",
+    case_33_strict_everywhere = "strict-everywhere",
 }
 
 #[test]
