@@ -456,6 +456,31 @@ fn a_scale_that_the_adapter_cannot_hold_says_what_it_would_draw() {
     captured(&mut renderer, &scene, &pixel_view(16, 8), &stack(&[]), &on(Pins::of(Scale::Double)));
 }
 
+/// The planner's look at some triangles, held against what the queues of the frame counted.
+#[test]
+fn predicted_sizes_are_those_that_the_queues_count() {
+    let Some(gpu) = gpu() else { return };
+    // Every path is taken, as on a card.
+    let tuning = rasterlab::plan::Tuning { small_samples: 32, small_side: 32, specialized: false, ..gpu.caps.tuning() };
+    for (query, looked_at_all) in [
+        ("teapot?tess=8", false),
+        ("sphere?triangles=200", true),
+        ("sphere?triangles=20000", false),
+        ("knot?tess=4", true),
+        ("cube-wall", true),
+    ] {
+        let mut renderer = Renderer::new(gpu.clone());
+        renderer.set_tuning(tuning);
+        let scene = scene(query);
+        captured(&mut renderer, &scene, &view(&scene, [640, 480]), &stack(&[]), &Accuracy::default());
+        let sizes = renderer.explain().sizes.expect("a picture was drawn");
+        assert_eq!(sizes.triangles, scene.triangle_count());
+        assert_eq!(u64::from(sizes.looked_at) == sizes.triangles, looked_at_all, "{query}: {sizes:?}");
+        assert_eq!(sizes.is_foreseen, Some(true), "{query}: {sizes:?}");
+        assert_eq!(sizes.bins.iter().map(|(_, count)| count).sum::<u32>(), sizes.seen, "{query}");
+    }
+}
+
 #[test]
 fn what_no_kernel_can_draw_is_one_sentence() {
     let Some(mut renderer) = renderer() else { return };

@@ -12,11 +12,11 @@ use super::{
 use crate::{
     effects::Stack,
     frame::Frame,
-    gpu::Explanation,
+    gpu::{Explanation, SizesNote},
     measure::compare,
     oracle,
     plan::{Tolerance, predict::Prediction},
-    scene::{Scene, camera::View},
+    scene::{Scene, camera::View, sizes::Classes},
 };
 
 pub fn run(common: &Common, args: &Explain, streams: &mut Streams) -> Result<Exit, Fault> {
@@ -142,9 +142,36 @@ fn text(id: &str, scene: &Scene, stack: &Stack, plan: Option<&Explanation>, chec
             check.predicted.wrong_ppm, check.wrong_ppm, check.tolerance.wrong_ppm
         );
     }
+    text += &plan.sizes.as_ref().map_or_else(String::new, chart);
     text += &rows(["CHOICE", "", "WHY"], notes(&plan.reasons));
     text += &rows(["PASS", "", "WHY"], notes(&plan.passes));
     text += &rows(["BUFFER", "BYTES", "WHY"], buffers);
     text += &format!("{total} bytes in all\n");
     text + &rows(["OMITTED", "", "WHY"], notes(&plan.omitted))
+}
+
+/// Triangles by their size, a bar for every power of two.
+fn chart(sizes: &SizesNote) -> String {
+    const WIDEST: f64 = 40.0;
+    let SizesNote { triangles, looked_at, seen, cut, .. } = sizes;
+    let mut text =
+        format!("\nTRIANGLES BY SIZE  {seen} seen of {looked_at} looked at, of {triangles}; {cut} reach before the near plane\n");
+    let most = sizes.bins.iter().map(|(_, count)| *count).max().unwrap_or(0).max(1);
+    for (up_to, count) in &sizes.bins {
+        let up_to = if *up_to < 1.0 { format!("1/{}", 1.0 / up_to) } else { up_to.to_string() };
+        let bar = "#".repeat((WIDEST * f64::from(*count) / f64::from(most)).ceil() as usize);
+        text += &format!("  up to {up_to:>6} px  {:>5.1} %  {bar}\n", 100.0 * f64::from(*count) / f64::from((*seen).max(1)));
+    }
+    if let Some(Classes { small, medium, large, slack }) = sizes.predicted {
+        text += &format!("  predicted {small:.0} small, {medium:.0} medium, {large:.0} large, each give or take {slack:.0}");
+        if let Some([medium, large]) = sizes.counted {
+            text += &format!("; the queues counted {medium} medium, {large} large");
+        }
+        text += match sizes.is_foreseen {
+            Some(true) => ": as foreseen\n",
+            Some(false) => ": NOT AS FORESEEN\n",
+            None => "\n",
+        };
+    }
+    text
 }

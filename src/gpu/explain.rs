@@ -2,7 +2,8 @@
 
 use super::{BufferNote, Note, Renderer, dots::DotStore};
 use crate::{
-    plan::{Tolerance, predict::Prediction},
+    plan::{Plan, Tolerance, predict::Prediction},
+    scene::sizes::Classes,
     shader::key::{Entries, Pass, Phase, Round},
 };
 
@@ -14,9 +15,54 @@ pub struct Explanation {
     pub buffers: Vec<BufferNote>,
     pub reasons: Vec<Note>,
     pub omitted: Vec<Note>,
+    /// Triangles by their size on the screen, and the paths that they take.
+    pub sizes: Option<SizesNote>,
     /// What the rungs are predicted to err by, and what they may.
     pub prediction: Option<Prediction>,
     pub tolerance: Option<Tolerance>,
+}
+
+/// Triangles by their size on the screen, from a look at some, and what the frame then counted.
+#[derive(Clone, Debug, serde::Serialize)]
+pub struct SizesNote {
+    pub triangles: u64,
+    pub looked_at: u32,
+    /// Of those, whole ones that face the viewer and lie in the picture.
+    pub seen: u32,
+    /// Reach before the near plane.
+    pub cut: u32,
+    /// Upper end of a power of two in pixels, and how many of the seen ones lie in it.
+    pub bins: Vec<(f64, u32)>,
+    /// How many take which path; not where effects move or reshape triangles.
+    pub predicted: Option<Classes>,
+    /// What the queues of the frame counted: medium and large triangles. Not while figures are still to come.
+    pub counted: Option<[u32; 2]>,
+    /// The prediction holds, where both are known.
+    pub is_foreseen: Option<bool>,
+}
+
+impl SizesNote {
+    fn new(plan: &Plan, counted: Option<[u32; 2]>) -> Self {
+        let Plan { key, sizes, classes, .. } = plan;
+        // What is cut comes back as pieces of any size.
+        let is_told = |_: &[u32; 2]| !key.has_clipping || sizes.cut == 0;
+        let is_near = |c: Classes, [medium, large]: [u32; 2]| {
+            let near = |predicted: f64, counted: u32| (predicted - f64::from(counted)).abs() <= c.slack + 0.02 * f64::from(counted) + 1.0;
+            // Those that exceed the pass which was left out are drawn by the one before.
+            (near(c.medium, medium) || !key.has_medium) && (near(c.large, large) || !key.has_large)
+        };
+        let is_foreseen = classes.zip(counted.filter(is_told)).map(|(classes, counted)| is_near(classes, counted));
+        Self {
+            triangles: sizes.triangles,
+            looked_at: sizes.looked_at,
+            seen: sizes.seen(),
+            cut: sizes.cut,
+            bins: sizes.bins(),
+            predicted: *classes,
+            counted,
+            is_foreseen,
+        }
+    }
 }
 
 impl Renderer {
@@ -29,6 +75,7 @@ impl Renderer {
                 buffers: self.buffers.notes(),
                 reasons: Vec::new(),
                 omitted: Vec::new(),
+                sizes: None,
                 prediction: None,
                 tolerance: None,
             };
@@ -46,6 +93,7 @@ impl Renderer {
             buffers: self.buffers.notes().into_iter().chain(texels).collect(),
             reasons,
             omitted: plan.omitted.clone(),
+            sizes: Some(SizesNote::new(plan, self.demand)),
             prediction: Some(plan.prediction),
             tolerance: Some(plan.tolerance),
         }

@@ -27,7 +27,7 @@ use std::{collections::VecDeque, sync::Arc};
 pub use buffers::BufferNote;
 pub use device::Gpu;
 pub use error::RenderError;
-pub use explain::Explanation;
+pub use explain::{Explanation, SizesNote};
 pub use readback::Capture;
 
 use self::{
@@ -97,6 +97,8 @@ pub struct Renderer {
     pending: VecDeque<Pending>,
     /// Positions in fewer bits, which lie behind everything else in `vertex_bytes`: so many bits, and where.
     packed: Option<(u32, Packing)>,
+    /// Medium and large triangles of the newest finished frame.
+    demand: Option<[u32; 2]>,
     /// Size at which the picture is shown.
     shown: [u32; 2],
     /// Which vertices, of all that may bend, the last picture bent.
@@ -140,6 +142,7 @@ impl Renderer {
             full: None,
             pending: VecDeque::new(),
             packed: None,
+            demand: None,
             shown: [0; 2],
             bent: Vec::new(),
             patches: None,
@@ -306,6 +309,7 @@ impl Renderer {
     fn digest(&mut self, finished: Pending) -> Option<Report> {
         let (record, order, times) = finished.read(self.timer.as_ref())?;
         let key = &self.last.as_ref()?.key;
+        self.demand = Some([record.medium, record.large]);
         let recorded = recorded_capacities(key, &self.capacities);
         let counters = record.counters(&recorded);
         let mut redraw = false;

@@ -14,7 +14,10 @@ use crate::{
     },
     ladder::{AXES, Axis, Clipping, Counting, Depth, Parameters, Pins, Rungs, Scale, Vertex, Visibility},
     math::SMALL_EXTENT,
-    scene::needs::Needs,
+    scene::{
+        needs::Needs,
+        sizes::{Classes, Sizes},
+    },
     shader::{
         glue::reads,
         key::{Fetch, KernelKey, MASK_RECORDS, Order, deciding},
@@ -219,6 +222,9 @@ pub struct Plan {
     pub omitted: Vec<Note>,
     /// What the rungs are predicted to err by, against the oracle's picture.
     pub prediction: Prediction,
+    /// How large triangles are, and how many are predicted to take which path; not where effects move them.
+    pub sizes: Sizes,
+    pub classes: Option<Classes>,
     /// What they may err by.
     pub tolerance: Tolerance,
 }
@@ -303,5 +309,8 @@ pub fn plan(needs: &Needs, stack: &Stack, caps: &Caps, tuning: &Tuning, accuracy
     };
     let (reasons, omitted) = explain(needs, tuning == &caps.tuning(), caps, &key);
     reasons_of_rungs.extend(reasons);
-    Ok(Plan { key, reasons: reasons_of_rungs, omitted, prediction, tolerance: accuracy.tolerance() })
+    let large_px = f64::from(SMALL_EXTENT >> rungs.coverage.subpixel_bits());
+    let classes = (shape == Shape::Triangles && !stack.moves()).then(|| needs.sizes.classes(small_samples, small_side, large_px));
+    let sizes = needs.sizes.clone();
+    Ok(Plan { key, reasons: reasons_of_rungs, omitted, prediction, sizes, classes, tolerance: accuracy.tolerance() })
 }

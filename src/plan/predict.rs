@@ -51,10 +51,9 @@ pub fn predict_all(rungs: &Rungs, needs: &Needs) -> Prediction {
     each.fold(Prediction::default(), Prediction::and)
 }
 
-/// Pixels that change owner when edges of triangles move by a share of a pixel, per million. An edge passes over samples in
-/// proportion to its length: a triangle of side s has 3 s of edges to 0.43 s^2 of area, each edge shared by two.
+/// Pixels that change owner when edges of triangles move by a share of a pixel, per million.
 fn moved_ppm(shift_px: f64, needs: &Needs) -> f64 {
-    1e6 * (3.5 * shift_px / needs.typical_px.max(0.5)).min(1.0)
+    1e6 * needs.sizes.moved_share(shift_px, needs.size.into_iter().map(f64::from).product())
 }
 
 fn coverage(rung: Coverage, needs: &Needs) -> Prediction {

@@ -14,6 +14,7 @@ pub mod palette;
 pub mod pick;
 pub mod pose;
 pub mod rig;
+pub mod sizes;
 pub mod texture;
 
 use glam::{DMat4, DVec3};

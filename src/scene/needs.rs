@@ -4,7 +4,7 @@
 
 use glam::{DMat3, DMat4, DVec3, DVec4};
 
-use super::{Component, Primitive, Scene, Topology, camera::View, draw::Draw};
+use super::{Component, Primitive, Scene, Topology, camera::View, draw::Draw, sizes::Sizes};
 use crate::{ladder::Skinning, math::GUARD_BAND};
 
 /// See the module's first line.
@@ -38,6 +38,8 @@ pub struct Needs {
     pub skinning: Option<Skinning>,
     /// Clips may move parts of the scene.
     pub moves: bool,
+    /// Joints of all skins together.
+    pub joints: usize,
     /// No interpolated normal ever needs a substitute.
     pub sound_normals: bool,
     /// w is metres; else depth is linear and w is 1.
@@ -46,8 +48,8 @@ pub struct Needs {
     pub clipping: bool,
     /// No triangle is wider or higher than this, in pixels; infinite where clipping is needed.
     pub largest_px: f64,
-    /// Side of a triangle if all were alike and the scene covered its box on the screen twice; an estimate.
-    pub typical_px: f64,
+    /// How large triangles are, by a look at some of them.
+    pub sizes: Sizes,
     /// The most pixels that the box of a primitive spans on an axis; infinite where it may reach before the near plane.
     pub box_px: f64,
     /// How far rounding may move a corner in the picture, pixels: as it is stored, and relative to the eye. A bound where it
@@ -89,13 +91,18 @@ impl Needs {
             shapes: draws.iter().any(|draw| draw.bend.as_ref().is_some_and(|bend| bend.weights.iter().any(|weight| *weight != 0.0))),
             skinning: draws.iter().find_map(|draw| Some(draw.bend.as_ref()?.palette.as_ref()?.skinning())),
             moves: !scene.rig.is_empty(),
+            joints: if draws.iter().any(|draw| draw.bend.is_some()) {
+                scene.rig.skins.iter().map(|skin| skin.joints.len()).sum()
+            } else {
+                0
+            },
             sound_normals: draws.iter().all(|draw| draw.bend.is_none())
                 && drawn().all(|p| p.sound_normals)
                 && draws.iter().all(keeps_normals),
             perspective: view.linear_depth_m.is_none(),
             clipping: largest_px.is_infinite(),
             largest_px,
-            typical_px: typical_px(scene, draws, view),
+            sizes: Sizes::of(scene, draws, view),
             box_px: draws.iter().map(|draw| box_px(&scene.primitives[draw.primitive], draw, view)).fold(0.0, f64::max),
             rounding_px: rounding_px(scene, draws, view),
             depth_m: view.scene_range_m,
@@ -130,27 +137,6 @@ impl Needs {
             ..self.clone()
         }
     }
-}
-
-/// Corners of a box in normalized device coordinates, those in front of the eye, held to the picture.
-fn seen_corners(primitive: &Primitive, draw: &Draw) -> Vec<[f64; 2]> {
-    let corners = primitive.bounds.corners().map(|corner| draw.clip_point(corner));
-    corners.iter().filter(|c| c.w > 0.0).map(|c| [c.x / c.w, c.y / c.w].map(|ndc| ndc.clamp(-1.0, 1.0))).collect()
-}
-
-/// See [`Needs::typical_px`].
-fn typical_px(scene: &Scene, draws: &[Draw], view: &View) -> f64 {
-    let area_of = |draw: &Draw| {
-        let corners = seen_corners(&scene.primitives[draw.primitive], draw);
-        let extent = |axis: usize| {
-            let (low, high) = corners.iter().fold((1.0f64, -1.0f64), |(low, high), c| (low.min(c[axis]), high.max(c[axis])));
-            (high - low).max(0.0) * 0.5
-        };
-        extent(0) * f64::from(view.width) * extent(1) * f64::from(view.height)
-    };
-    let area: f64 = draws.iter().map(area_of).sum();
-    // Front and back cover the box; an equilateral triangle of side s has 0.433 s^2.
-    (2.0 * area / (0.433 * scene.triangle_count().max(1) as f64)).sqrt()
 }
 
 /// See [`Needs::box_px`].
