@@ -938,6 +938,43 @@ fn a_key_flips_between_a_and_b_and_both_sides_are_measured() {
     assert!(lab.query_all_by_label_contains("0 wrong owners").count() >= 3, "in the bar and under both sides");
 }
 
+/// Share of the middle of the picture that is darker than one step of 255 in every channel.
+fn black(image: &image::RgbaImage) -> f64 {
+    let dark = image.pixels().filter(|pixel| pixel.0[..3].iter().all(|channel| *channel == 0)).count();
+    dark as f64 / f64::from(image.width() * image.height())
+}
+
+#[test]
+fn both_sides_stand_beside_each_other_and_their_difference_shows_what_changed() {
+    let Some(mut lab) = lab("facet-sweep") else { return };
+    press(&mut lab, Modifiers::SHIFT, Key::Backslash);
+    click(&mut lab, Role::Button, "Keep B");
+    press(&mut lab, Modifiers::SHIFT, Key::Backslash);
+    assert!(lab.query_by_label("Wipe divider").is_none(), "side by side has no divider");
+    // Twice the same picture: one half is as the other.
+    let beside = middle(&mut lab);
+    let (width, height) = beside.dimensions();
+    let half =
+        |image: &image::RgbaImage, from: u32| image::imageops::crop_imm(image, from, height / 3, width / 2 - 8, height / 3).to_image();
+    let differing = |a: &image::RgbaImage, b: &image::RgbaImage| a.pixels().zip(b.pixels()).filter(|(a, b)| a != b).count();
+    let same = differing(&half(&beside, 0), &half(&beside, width / 2));
+    assert!(same * 20 < (width * height / 6) as usize, "{same} pixels of one half differ from the other's");
+    click(&mut lab, Role::Button, "Mute facet");
+    let changed = middle(&mut lab);
+    assert!(differing(&half(&changed, 0), &half(&changed, width / 2)) > same + 1000, "B did not change");
+    click(&mut lab, Role::Button, "Compare: difference");
+    let apart = middle(&mut lab);
+    assert!(lab.query_by_label("Difference gain").is_some());
+    click(&mut lab, Role::Button, "Unmute facet");
+    let none = middle(&mut lab);
+    assert!(black(&none) > 0.8 && black(&apart) < black(&none) - 0.05, "{} and {} black", black(&apart), black(&none));
+    assert!(lab.query_by_label("A and B not compared yet").is_some());
+    press(&mut lab, Modifiers::NONE, Key::V);
+    assert!(lab.query_by_label("max \u{394} 0, RMS 0.000, 0 other owners").is_some(), "{}", lab.state().log_text());
+    press(&mut lab, Modifiers::SHIFT, Key::Backslash);
+    assert!(lab.query_by_label("Difference gain").is_none() && lab.query_by_label("Compare: wipe").is_none(), "it is closed");
+}
+
 fn pinned_depth(lab: &Lab) -> Option<Depth> {
     lab.state().look().session.accuracy.pins.rung()
 }

@@ -19,48 +19,68 @@ override TO_LINEAR: bool;
 @fragment
 fn texel(in: Corner) -> @location(0) vec4f {
     let size = vec2f(textureDimensions(picture));
-    let color = textureLoad(picture, vec2i(min(in.uv * size, size - 1.0)), 0).rgb;
+    return texel_of(textureLoad(picture, vec2i(min(in.uv * size, size - 1.0)), 0).rgb);
+}
+
+fn texel_of(color: vec3f) -> vec4f {
     if TO_LINEAR {
         return vec4f(select(pow((color + 0.055) / 1.055, vec3f(2.4)), color / 12.92, color <= vec3f(0.04045)), 1.0);
     }
     return vec4f(color, 1.0);
 }";
 
-/// The pipeline, made once per window.
+/// What two pictures differ by, channel by channel, times a gain.
+const DIFFERENCE: &str = "
+@group(0) @binding(1) var other: texture_2d<f32>;
+@group(0) @binding(2) var<uniform> gain: vec4f;
+
+@fragment
+fn differing(in: Corner) -> @location(0) vec4f {
+    let size = vec2f(textureDimensions(picture));
+    let at = vec2i(min(in.uv * size, size - 1.0));
+    let last = vec2i(textureDimensions(other)) - 1;
+    let apart = abs(textureLoad(picture, at, 0).rgb - textureLoad(other, min(at, last), 0).rgb);
+    return texel_of(min(apart * gain.x, vec3f(1.0)));
+}";
+
+/// The pipelines, made once per window.
 #[derive(Clone)]
 pub struct Blitter {
     pipeline: wgpu::RenderPipeline,
+    difference: wgpu::RenderPipeline,
 }
 
 impl Blitter {
     pub fn new(window: &egui_wgpu::RenderState) -> Self {
         let device = &window.device;
-        let module = device
-            .create_shader_module(wgpu::ShaderModuleDescriptor { label: Some("blit"), source: wgpu::ShaderSource::Wgsl(SHADER.into()) });
+        let source = wgpu::ShaderSource::Wgsl(format!("{SHADER}{DIFFERENCE}").into());
+        let module = device.create_shader_module(wgpu::ShaderModuleDescriptor { label: Some("blit"), source });
         // An sRGB window would encode bytes that are encoded already.
         let to_linear = f64::from(u8::from(window.target_format.is_srgb()));
-        let pipeline = device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
-            label: Some("blit"),
-            layout: None,
-            vertex: wgpu::VertexState {
-                module: &module,
-                entry_point: Some("corner"),
-                compilation_options: Default::default(),
-                buffers: &[],
-            },
-            primitive: Default::default(),
-            depth_stencil: None,
-            multisample: Default::default(),
-            fragment: Some(wgpu::FragmentState {
-                module: &module,
-                entry_point: Some("texel"),
-                compilation_options: wgpu::PipelineCompilationOptions { constants: &[("TO_LINEAR", to_linear)], ..Default::default() },
-                targets: &[Some(window.target_format.into())],
-            }),
-            multiview_mask: None,
-            cache: None,
-        });
-        Self { pipeline }
+        let made = |entry: &str| {
+            device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
+                label: Some("blit"),
+                layout: None,
+                vertex: wgpu::VertexState {
+                    module: &module,
+                    entry_point: Some("corner"),
+                    compilation_options: Default::default(),
+                    buffers: &[],
+                },
+                primitive: Default::default(),
+                depth_stencil: None,
+                multisample: Default::default(),
+                fragment: Some(wgpu::FragmentState {
+                    module: &module,
+                    entry_point: Some(entry),
+                    compilation_options: wgpu::PipelineCompilationOptions { constants: &[("TO_LINEAR", to_linear)], ..Default::default() },
+                    targets: &[Some(window.target_format.into())],
+                }),
+                multiview_mask: None,
+                cache: None,
+            })
+        };
+        Self { pipeline: made("texel"), difference: made("differing") }
     }
 
     /// What shows `view`, again and again.
@@ -71,6 +91,19 @@ impl Blitter {
             entries: &[wgpu::BindGroupEntry { binding: 0, resource: wgpu::BindingResource::TextureView(view) }],
         });
         Blit { pipeline: self.pipeline.clone(), binding }
+    }
+
+    /// What shows how two views differ, times `gain`.
+    pub fn difference(&self, device: &wgpu::Device, [a, b]: [&wgpu::TextureView; 2], gain: u8) -> Blit {
+        let contents = bytemuck::bytes_of(&[f32::from(gain), 0.0, 0.0, 0.0]).to_vec();
+        let uniform = wgpu::util::BufferInitDescriptor { label: Some("gain"), contents: &contents, usage: wgpu::BufferUsages::UNIFORM };
+        let gain = wgpu::util::DeviceExt::create_buffer_init(device, &uniform);
+        let view = |binding, view| wgpu::BindGroupEntry { binding, resource: wgpu::BindingResource::TextureView(view) };
+        let entries = [view(0, a), view(1, b), wgpu::BindGroupEntry { binding: 2, resource: gain.as_entire_binding() }];
+        let layout = self.difference.get_bind_group_layout(0);
+        let binding =
+            device.create_bind_group(&wgpu::BindGroupDescriptor { label: Some("difference"), layout: &layout, entries: &entries });
+        Blit { pipeline: self.difference.clone(), binding }
     }
 }
 

@@ -1,5 +1,8 @@
 //! Compare: A, the most exact picture of this look or one that was kept, beside B, the look as it stands. Same camera,
-//! same clock; a divider that a hand drags in the picture, and under each side its milliseconds and its error.
+//! same clock; with a divider that a hand drags, side by side, one instead of the other, or as their difference. A label says
+//! which side is which, and under each stand its milliseconds and its error.
+
+mod bar;
 
 use eframe::egui::{self, Color32, CursorIcon, Pos2, Rect, RichText, Sense, Ui, pos2, vec2};
 
@@ -18,6 +21,10 @@ use crate::session::{Accuracy, Session, Tier};
 enum Show {
     /// A on the left of the divider, B on the right.
     Wipe,
+    /// All of A in the left half, all of B in the right.
+    Beside,
+    /// How far they are apart.
+    Difference,
     A,
     B,
 }
@@ -35,11 +42,15 @@ pub struct Compare {
     screen: Option<Screen>,
     wanted: Option<Inputs>,
     verdict: Option<Verdict>,
+    /// What a difference is multiplied by.
+    gain: u8,
+    /// How A and B differ, and the verdicts that tell.
+    delta: Option<bar::Delta>,
 }
 
 impl Default for Compare {
     fn default() -> Self {
-        Self { show: None, split: 0.5, kept: None, screen: None, wanted: None, verdict: None }
+        Self { show: None, split: 0.5, kept: None, screen: None, wanted: None, verdict: None, gain: 16, delta: None }
     }
 }
 
@@ -48,13 +59,28 @@ impl Compare {
         self.show == Some(Show::Wipe)
     }
 
-    /// Is A all there is to see?
-    pub fn hides_b(&self) -> bool {
-        self.show == Some(Show::A)
+    pub fn is_open(&self) -> bool {
+        self.show.is_some()
     }
 
-    pub fn toggle_wipe(&mut self) {
-        if self.is_wiping() { self.close() } else { self.show = Some(Show::Wipe) }
+    /// Where B goes.
+    pub fn side_b(&self, rect: Rect) -> Rect {
+        if self.show == Some(Show::Beside) { rect.split_left_right_at_fraction(0.5).1 } else { rect }
+    }
+
+    /// Is B nowhere to be seen by itself?
+    pub fn hides_b(&self) -> bool {
+        matches!(self.show, Some(Show::A | Show::Difference))
+    }
+
+    /// Wipe, side by side, difference, and none of them.
+    pub fn cycle(&mut self) {
+        match self.show {
+            Some(Show::Wipe) => self.show = Some(Show::Beside),
+            Some(Show::Beside) => self.show = Some(Show::Difference),
+            Some(Show::Difference) => self.close(),
+            None | Some(Show::A | Show::B) => self.show = Some(Show::Wipe),
+        }
     }
 
     /// A instead of B, and B instead of A.
@@ -64,7 +90,7 @@ impl Compare {
 
     /// Gives up A's renderer with all it holds.
     fn close(&mut self) {
-        *self = Self { split: self.split, kept: self.kept.take(), ..Self::default() };
+        *self = Self { split: self.split, gain: self.gain, kept: self.kept.take(), ..Self::default() };
     }
 
     /// Are figures of A still to come?
@@ -135,21 +161,36 @@ impl App {
             self.paint_overlays(ui, at, rect);
             return rect;
         };
-        let divider = match show {
-            Show::Wipe => at.left() + at.width() * self.compare.split,
-            Show::A => rect.right(),
-            Show::B => rect.left(),
+        let (half_a, half_b) = rect.split_left_right_at_fraction(0.5);
+        let divider = at.left() + at.width() * self.compare.split;
+        let [side_a, side_b] = match show {
+            Show::Wipe => [rect.with_max_x(divider), rect.with_min_x(divider)],
+            Show::Beside => [half_a, half_b],
+            Show::A | Show::Difference => [rect, Rect::NOTHING],
+            Show::B => [Rect::NOTHING, rect],
         };
-        let side_a = Rect::from_min_max(rect.min, pos2(divider, rect.bottom()));
-        if let Some((blit, size)) = self.compare.screen.as_ref().and_then(Screen::picture)
-            && side_a.width() >= 1.0
-        {
-            ui.painter_at(side_a).add(blit.shape(fitted(rect, size)));
+        let picture = self.compare.screen.as_ref().and_then(Screen::picture);
+        if let Some((blit, size)) = picture.filter(|_| side_a.width() >= 1.0) {
+            let blit = match show {
+                Show::Difference => self.compare.screen.as_ref().and_then(|a| a.difference(&self.screen, self.compare.gain)),
+                _ => Some(blit.clone()),
+            };
+            let place = fitted(if show == Show::Beside { half_a } else { rect }, size);
+            if show == Show::Beside {
+                ui.painter_at(half_a).rect_filled(half_a, 0.0, theme::VIEW);
+            }
+            ui.painter_at(side_a).extend(blit.map(|blit| blit.shape(place)));
         }
-        self.paint_overlays(ui, at, Rect::from_min_max(pos2(divider, rect.top()), rect.max));
-        if show == Show::Wipe {
-            self.divider_ui(ui, at);
+        if side_b.is_positive() {
+            self.paint_overlays(ui, at, side_b);
         }
+        match show {
+            Show::Wipe => self.divider_ui(ui, at),
+            Show::Beside => ui.painter().vline(half_a.right(), rect.y_range(), (1.5, theme::LINE)),
+            Show::Difference | Show::A | Show::B => {}
+        }
+        self.labels_ui(ui, [side_a, side_b], show == Show::Difference);
+        self.compare_bar_ui(ui, rect);
         self.plates_ui(ui, rect, show)
     }
 

@@ -105,6 +105,12 @@ impl Screen {
         self.picture.as_ref().map(|picture| (&picture.blit, picture.size))
     }
 
+    /// How the newest picture differs from another screen's, times `gain`.
+    pub fn difference(&self, other: &Self, gain: u8) -> Option<Blit> {
+        let views = [&self.picture.as_ref()?.view, &other.picture.as_ref()?.view];
+        Some(self.blitter.difference(&self.gpu.device, views, gain))
+    }
+
     /// What the newest picture was made from.
     pub fn drawn(&self) -> Option<&Inputs> {
         self.drawn.as_ref()

@@ -33,7 +33,7 @@ pub enum Action {
     Verify,
     Extremes,
     Overlays,
-    Wipe,
+    Compare,
     FlipAb,
     Trade,
     Panels,
@@ -84,7 +84,7 @@ const TABLE: &[(Action, &str, &[KeyboardShortcut])] = &[
     (Action::Verify, "Verify against the oracle", &[plain(Key::V)]),
     (Action::Extremes, "Run the extremes…", &[]),
     (Action::Overlays, "Hide or show overlays", &[plain(Key::O)]),
-    (Action::Wipe, "Wipe between the reference and this look", &[shift(Key::Backslash), plain(Key::Pipe)]),
+    (Action::Compare, "Compare: wipe, side by side, difference", &[shift(Key::Backslash), plain(Key::Pipe)]),
     (Action::FlipAb, "Flip between the reference and this look", &[plain(Key::Backslash)]),
     (Action::Trade, "Hide or show the trade of speed for accuracy", &[plain(Key::M)]),
     (Action::Panels, "Hide or show panels", &[plain(Key::F11)]),
@@ -210,7 +210,7 @@ impl App {
             Action::Verify => self.verify(),
             Action::Extremes => self.extremes.toggle(),
             Action::Overlays => self.overlays.toggle(),
-            Action::Wipe => self.compare.toggle_wipe(),
+            Action::Compare => self.compare.cycle(),
             Action::FlipAb => self.compare.flip(),
             Action::Panels => {
                 let shown = self.panels.left || self.panels.right || self.panels.timeline;

@@ -58,7 +58,7 @@ impl App {
                     None,
                     Some(A::Verify),
                     Some(A::Overlays),
-                    Some(A::Wipe),
+                    Some(A::Compare),
                     Some(A::FlipAb),
                     None,
                     Some(A::Panels),

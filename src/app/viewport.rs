@@ -82,7 +82,7 @@ impl App {
         self.pick_under(&response);
         self.draw(ui.ctx(), size, moved);
         self.feed_overlays(ui.ctx());
-        let at = self.picture_ui(ui, rect);
+        let at = self.picture_ui(ui, self.compare.side_b(rect));
         let below = self.compare_ui(ui, rect, at);
         self.overlay_ui(ui, rect);
         let below = self.overlay_legend_ui(ui, below, at);
@@ -380,7 +380,8 @@ impl App {
             }
         }
         ui.add_space(theme::GAP);
-        for (text, on, action) in [("Overlays", self.overlays.is_any(), Action::Overlays), ("Wipe", self.compare.is_wiping(), Action::Wipe)]
+        for (text, on, action) in
+            [("Overlays", self.overlays.is_any(), Action::Overlays), ("Compare", self.compare.is_open(), Action::Compare)]
         {
             let button = egui::Button::new(text).small().selected(on);
             let hint = format!("{} ({})", action.about(), action.keys_text());

@@ -138,6 +138,7 @@ pub struct Findings {
     pub size: [u32; 2],
     pub faults: Faults,
     pub owners: Vec<u32>,
+    pub color: Vec<[u8; 4]>,
     /// Owners in the exact picture on the finest grid; none where chance decides.
     truth: Option<Vec<u32>>,
     /// Triangles that cover each pixel.
@@ -154,6 +155,7 @@ impl Findings {
             size: [capture.frame.width, capture.frame.height],
             faults: verdict.faults,
             owners: capture.frame.owner,
+            color: capture.frame.color,
             truth: truth.filter(|truth| truth.len() == pixels),
             layers: capture.layers.unwrap_or_default(),
             counts: [0; Overlay::ALL.len()],
