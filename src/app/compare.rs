@@ -186,7 +186,7 @@ impl App {
         }
         match show {
             Show::Wipe => self.divider_ui(ui, at),
-            Show::Beside => ui.painter().vline(half_a.right(), rect.y_range(), (1.5, theme::LINE)),
+            Show::Beside => drop(ui.painter().vline(half_a.right(), rect.y_range(), (1.5, theme::LINE))),
             Show::Difference | Show::A | Show::B => {}
         }
         self.labels_ui(ui, [side_a, side_b], show == Show::Difference);
