@@ -6,7 +6,10 @@ mod common;
 use common::*;
 use rasterlab::{
     gpu::{Capture, RenderError, Renderer},
-    ladder::{AXES, Checks, Clipping, Counting, Coverage, Depth, Parameters, Perspective, Pins, Scale, Sums, Vertex, Vertices, Visibility},
+    ladder::{
+        AXES, Checks, Clipping, Counting, Coverage, Culling, Depth, Parameters, Perspective, Pins, Scale, Sums, Vertex, Vertices,
+        Visibility,
+    },
     measure::{Verdict, compare},
     oracle,
     plan::{Accuracy, PlanError, Tier},
@@ -324,6 +327,20 @@ fn the_planner_takes_the_eye_out_where_a_scene_lies_far_away() {
     let (scene, view) = modelled_far_away(1e5, [320, 240]);
     let (rung, why) = planned(&scene, &view);
     assert!(rung == Vertices::Relative && why.starts_with("relative: so far from the origin"), "{why}");
+}
+
+#[test]
+fn culling_is_left_out_where_places_are_not_those_of_its_bounds() {
+    let Some(mut renderer) = renderer() else { return };
+    let scene = scene("sphere?triangles=5000");
+    let view = view(&scene, [160, 120]);
+    let all = captured(&mut renderer, &scene, &view, &stack(&[]), &on(Pins::of(Vertices::Relative)));
+    for rung in [Vertices::Packed10, Vertices::Packed16, Vertices::Relative] {
+        let capture = captured(&mut renderer, &scene, &view, &stack(&[]), &on(Pins::of(rung).with(Culling::Frustum)));
+        let rungs = renderer.key().expect("something was drawn").rungs;
+        assert_eq!((rungs.vertices, rungs.culling), (rung, Culling::None));
+        assert!(rung != Vertices::Relative || capture.frame.owner == all.frame.owner);
+    }
 }
 
 #[test]

@@ -44,8 +44,8 @@ pub struct SizesNote {
 impl SizesNote {
     fn new(plan: &Plan, counted: Option<[u32; 2]>) -> Self {
         let Plan { key, sizes, classes, .. } = plan;
-        // What is cut comes back as pieces of any size.
-        let is_told = |_: &[u32; 2]| !key.has_clipping || sizes.cut == 0;
+        // What is cut comes back as pieces of any size, and what is hidden may never be queued.
+        let is_told = |_: &[u32; 2]| (!key.has_clipping || sizes.cut == 0) && !key.rungs.culling.occludes();
         let is_near = |c: Classes, [medium, large]: [u32; 2]| {
             let near = |predicted: f64, counted: u32| (predicted - f64::from(counted)).abs() <= c.slack + 0.02 * f64::from(counted) + 1.0;
             // Those that exceed the pass which was left out are drawn by the one before.

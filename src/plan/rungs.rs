@@ -1,7 +1,7 @@
 //! Rungs: which one is taken on every axis of the ladder, and what no kernel can draw.
 
 use super::{
-    Accuracy, Caps, Note, PlanError, costs,
+    Accuracy, Caps, Note, PlanError, Tolerance, costs,
     explain::note,
     predict::{Prediction, predict, predict_all},
 };
@@ -52,13 +52,18 @@ pub(super) fn choose(
     if layers == Some(Layers::Race) {
         rungs.visibility = Visibility::Race;
     }
+    let tolerance = accuracy.tolerance();
+    let far = far_away(&rungs, needs, accuracy, &tolerance);
+    if far.is_some() {
+        rungs.vertices = Vertices::Relative;
+    }
     let asked = rungs.culling;
-    let unfit = unfit_for_culling(asked, rungs.visibility, stack, layers);
+    let unfit = unfit_for_culling(&rungs, stack, layers);
     if let Some((rung, _)) = unfit {
         rungs.culling = rung;
     }
     let mut reasons = Vec::new();
-    let (mut prediction, tolerance) = (predict_all(&rungs, needs), accuracy.tolerance());
+    let mut prediction = predict_all(&rungs, needs);
     for (i, axis) in AXES.iter().enumerate().filter(|(i, _)| has_dots || *i != DotWay::AXIS) {
         if let Some((rung, why)) = unfit.filter(|_| i == Culling::AXIS) {
             reasons.push(note(axis.name, format!("{} instead of {}: {why}", rung.name(), asked.name())));
@@ -68,16 +73,7 @@ pub(super) fn choose(
             reasons.push(note(axis.name, format!("{}: pinned by the look", axis.words[rungs.get(axis)])));
             continue;
         }
-        // What lies far from its origin keeps its places only where the eye is taken out first, which costs nothing. A strict
-        // picture follows from the look alone.
-        if i == Vertices::AXIS && rungs.vertex != Vertex::Strict && !tolerance.holds(&predict(i, rungs.get(axis), needs)) {
-            let own = predict(i, rungs.get(axis), needs);
-            rungs.vertices = Vertices::Relative;
-            prediction = predict_all(&rungs, needs);
-            let why = format!(
-                "relative: so far from the origin, rounding moves a stored corner by up to {:.2} px, predicted to cost {:.0} of {:.0} ppm",
-                needs.rounding_px[0], own.wrong_ppm, tolerance.wrong_ppm
-            );
+        if let Some(why) = far.as_ref().filter(|_| i == Vertices::AXIS) {
             reasons.push(note(axis.name, why));
             continue;
         }
@@ -107,10 +103,24 @@ pub(super) fn choose(
     Ok(Choice { rungs, reasons, prediction })
 }
 
+/// Why places are taken relative to the eye, where nobody asked: what lies far from its origin keeps its places only so, and
+/// that costs nothing. A strict picture follows from the look alone.
+fn far_away(rungs: &Rungs, needs: &Needs, accuracy: &Accuracy, tolerance: &Tolerance) -> Option<String> {
+    let own = predict(Vertices::AXIS, rungs.vertices.place(), needs);
+    let is_settled = accuracy.pins.rung::<Vertices>().is_some() || rungs.vertex == Vertex::Strict;
+    (!is_settled && !tolerance.holds(&own)).then(|| {
+        format!(
+            "relative: so far from the origin, rounding moves a stored corner by up to {:.2} px, predicted to cost {:.0} of {:.0} ppm",
+            needs.rounding_px[0], own.wrong_ppm, tolerance.wrong_ppm
+        )
+    })
+}
+
 /// What culling must come down to in a picture, and why, where it cannot be as it was asked for. Since it never shows, a look
 /// that pins it goes on without it.
-fn unfit_for_culling(asked: Culling, visibility: Visibility, stack: &Stack, layers: Option<Layers>) -> Option<(Culling, &'static str)> {
-    let (most, why) = match (layers, visibility) {
+fn unfit_for_culling(rungs: &Rungs, stack: &Stack, layers: Option<Layers>) -> Option<(Culling, &'static str)> {
+    let (most, why) = match (layers, rungs.visibility) {
+        _ if rungs.vertices != Vertices::Stored => (Culling::None, "bounds of meshlets are of places as they are stored"),
         _ if stack.moves() => (Culling::None, "effects move meshes out of their bounds"),
         _ if stack.shape() == Shape::Points => (Culling::None, "discs reach out of the bounds of their meshes"),
         _ if stack.draw_order().is_some() => (Culling::None, "a draw order counts the samples of every triangle"),
@@ -120,7 +130,7 @@ fn unfit_for_culling(asked: Culling, visibility: Visibility, stack: &Stack, laye
         (_, Visibility::Tiled) => (Culling::Frustum, "tiles are drawn once, whole"),
         _ => return None,
     };
-    (asked > most).then_some((most, why))
+    (rungs.culling > most).then_some((most, why))
 }
 
 /// A sentence as it goes on behind a colon.
