@@ -15,7 +15,7 @@ struct DotFrame {
     hidden: u32,              // what is left of a hidden dot
     model: u32,               // 1: the model shows beneath
     first_probed: u32,        // dot of the first record that is read back
-    spare: u32,
+    zero: u32,                // 0, which no compiler knows
 }
 
 @group(0) @binding(20) var<uniform> dot_frame: DotFrame;

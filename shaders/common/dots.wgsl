@@ -16,11 +16,17 @@ struct Stretch {
 @group(0) @binding(21) var<storage, read> stretches: array<Stretch>;
 @group(0) @binding(22) var<storage, read> dot_ends: array<vec4f>;
 
+// A value as it is, which no compiler fuses with what is done to it next: so every pass places a dot alike.
+fn dots_rounded(v: vec4f) -> vec4f {
+    return bitcast<vec4f>(bitcast<vec4u>(v) ^ vec4u(dot_frame.zero));
+}
+
 // A dot in clip space.
 fn dots_clip(stretch: u32, place: u32) -> vec4f {
     let s = stretches[stretch];
     let begin = dot_ends[2u * s.segment];
-    return begin + (dot_ends[2u * s.segment + 1u] - begin) * (s.start + f32(place) * s.step);
+    let share = s.start + dots_rounded(vec4f(f32(place) * s.step)).x;
+    return begin + dots_rounded((dot_ends[2u * s.segment + 1u] - begin) * share);
 }
 
 // How far rounding may carry the dots of a stretch in clip space, in whatever order and fusion a pass computes them.

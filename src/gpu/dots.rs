@@ -43,7 +43,7 @@ twin! {
         pub hidden: u32,
         pub model: u32,
         pub first_probed: u32,
-        pub spare: u32,
+        pub zero: u32,
     }
 }
 
@@ -212,7 +212,7 @@ impl Renderer {
             hidden: dots.hidden_share(),
             model: dots.model,
             first_probed: 0,
-            spare: 0,
+            zero: 0,
         };
         buffers.fill(gpu, "dot_frame", bytemuck::bytes_of(&store.frame), wgpu::BufferUsages::UNIFORM, "size, gap and colour of dots")?;
         buffers.ensure(gpu, "dot_ends", 32 * store.lines.segments.len() as u64, STORAGE, "ends of segments in clip space, 32 bytes")?;
