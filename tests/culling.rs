@@ -16,10 +16,11 @@ use rasterlab::{
     scene::{
         Scene,
         camera::{Camera, Projection, View},
+        meshlets::{MESHLET_TRIANGLES, Meshlets},
     },
 };
 
-const SIZE: [u32; 2] = [160, 120];
+const SIZE: [u32; 2] = [128, 96];
 
 fn on(pins: Pins) -> Accuracy {
     Accuracy { pins, ..Accuracy::default() }
@@ -85,13 +86,13 @@ fn both_tunings(renderer: &Renderer) -> [Tuning; 2] {
 fn no_camera_sees_what_frustum_and_cones_leave_out() {
     let Some(mut renderer) = renderer() else { return };
     let (mut dice, mut total) = (Dice(7), CullingFigures::default());
-    for (what, scene) in scenes() {
+    for (place, (what, scene)) in scenes().into_iter().enumerate() {
         renderer.set_scene(&scene).expect("it fits");
-        for (i, view) in cameras(&scene, &mut dice, 12).iter().enumerate() {
-            let rungs = rungs(&renderer);
+        let tuning = both_tunings(&renderer)[place % 2];
+        renderer.set_tuning(tuning);
+        let rungs = rungs(&renderer);
+        for (i, view) in cameras(&scene, &mut dice, 6).iter().enumerate() {
             let pins = Pins::of(rungs[i % rungs.len()]);
-            let tuning = both_tunings(&renderer)[i / 2 % 2];
-            renderer.set_tuning(tuning);
             let (whole, _) = drawn(&mut renderer, view, pins.with(Culling::None));
             let (culled, figures) = drawn(&mut renderer, view, pins.with(Culling::Frustum));
             assert_same(&culled.frame, &whole.frame, &format!("{what} from camera {i} on {}", pins.words()));
@@ -212,22 +213,30 @@ fn another_scene_another_size_and_a_pause_leave_nothing_stale() {
     }
 }
 
-/// Triangles hardly larger than a unit of the grid turn over in the snap: what faces away may show. A sphere that is turned
-/// inside out, so that nothing stands before those.
-fn dust(dice: &mut Dice) -> (Arc<Scene>, Vec<View>) {
-    let mut scene = (*scene("sphere?triangles=60000")).clone();
-    scene.index_bytes.as_chunks_mut::<12>().0.iter_mut().for_each(|corners| {
-        let (first, rest) = corners.split_at_mut(4);
-        first.swap_with_slice(&mut rest[..4]);
-    });
-    let (scene, bounds) = (Arc::new(scene.clone()), scene.bounds());
-    let views = (0..6).map(|i| {
-        let way = DVec3::new(dice.real(-1.0, 1.0), dice.real(-1.0, 1.0), dice.real(-1.0, 1.0)).normalize_or(DVec3::Z);
-        let eye = way * [40.0, 150.0, 600.0][i % 3];
-        let camera = Camera { eye, projection: Projection::Perspective { fov_y_deg: 60.0 }, ..Camera::default() };
+/// A sheet of triangles that all face away, so far edge-on that they are about a unit of the grid high: the snap turns some
+/// of them over, and those show.
+fn dust() -> (Arc<Scene>, Vec<View>) {
+    const SIDES: [u32; 2] = [400, 200];
+    let place = |x: u32, z: u32| [x as f32 * 0.01 - 2.0, 0.0, z as f32 * 0.01 - 1.0];
+    let at = |x: u32, z: u32| z * (SIDES[0] + 1) + x;
+    let quad = |i: u32| {
+        let (x, z) = (i % SIDES[0], i / SIDES[0]);
+        [at(x, z), at(x + 1, z), at(x, z + 1), at(x, z + 1), at(x + 1, z), at(x + 1, z + 1)]
+    };
+    let scene = hand_made(&[Part {
+        positions: (0..=SIDES[1]).flat_map(|z| (0..=SIDES[0]).map(move |x| place(x, z))).collect(),
+        indices: (0..SIDES[0] * SIDES[1]).flat_map(quad).collect(),
+        double_sided: false,
+        ..Part::default()
+    }]);
+    let bounds = scene.bounds();
+    let view = |i: u32| {
+        let eye = DVec3::new(0.1 * f64::from(i), 0.12 + 0.02 * f64::from(i), 8.0);
+        let projection = Projection::Perspective { fov_y_deg: 60.0 };
+        let camera = Camera { eye, target: DVec3::ZERO, up: DVec3::new(0.3, 1.0, 0.0), projection, near_m: 0.01 };
         View::new(&camera, SIZE[0], SIZE[1], &bounds, DMat4::IDENTITY, [0.0; 4])
-    });
-    (scene, views.collect())
+    };
+    (scene.clone(), (0..6).map(view).collect())
 }
 
 /// Spheres that reach into each other.
@@ -240,7 +249,9 @@ fn grown() -> Arc<Scene> {
 #[test]
 fn backs_that_the_snap_turns_over_are_not_left_out() {
     let Some(mut renderer) = renderer() else { return };
-    let (scene, views) = dust(&mut Dice(2));
+    let (scene, views) = dust();
+    let shown: usize = views.iter().map(|view| whole(&renderer, &scene, view, Pins::of(Visibility::Split32)).covered()).sum();
+    assert!(shown > 0, "the snap turns nothing over");
     for pins in [Culling::Frustum, Culling::TwoPass].map(|rung| Pins::of(rung).with(Visibility::Split32)) {
         followed(&mut renderer, &scene, &views, pins).unwrap_or_else(|why| panic!("{why}"));
     }
@@ -250,10 +261,11 @@ fn backs_that_the_snap_turns_over_are_not_left_out() {
 fn mistakes_of_culling_are_seen() {
     let Some(healthy) = renderer() else { return };
     let gpu = healthy.gpu().clone();
+    drop(healthy);
     let split = |rung: Culling| Pins::of(rung).with(Visibility::Split32);
     let field = scene("field?count=64&triangles=600");
     let through = walk(&field, &mut Dice(11), 8, SIZE);
-    let (ball, far) = dust(&mut Dice(2));
+    let (sheet, edge_on) = dust();
     let crowd = grown();
     let mut failures = Vec::new();
     for (what, file, from, to, rung, scene, views) in [
@@ -286,7 +298,7 @@ fn mistakes_of_culling_are_seen() {
             &field,
             &through,
         ),
-        ("the snap is forgotten", "common/facing", "let shift = extent_shift(e);", "let shift = 0.0;", Culling::Frustum, &ball, &far),
+        ("the snap is forgotten", "common/facing", "let shift = extent_shift(e);", "let shift = 0.0;", Culling::Frustum, &sheet, &edge_on),
         (
             "nearest and farthest are exchanged",
             "passes/farthest",
@@ -471,4 +483,89 @@ fn the_picture_before_hides_what_has_come_out_since() {
         lost += compare::owners(&cheap.frame.owner, &whole(&renderer, &scene, &view, pins).owner).different;
     }
     assert!(lost > 0, "the cheap rung is as good as two passes");
+}
+
+/// Divides the first mesh of a builtin.
+fn divided(query: &str) -> (Arc<Scene>, Meshlets) {
+    let scene = scene(query);
+    let meshlets = Meshlets::of(&scene, &scene.primitives[0]);
+    (scene, meshlets)
+}
+
+fn wide(place: [f32; 3]) -> DVec3 {
+    place.map(f64::from).into()
+}
+
+#[test]
+fn every_triangle_is_in_one_meshlet_and_within_its_bounds() {
+    let shuffled = {
+        let mut scene = (*scene("knot?tess=8")).clone();
+        let mut order: Vec<[u8; 12]> = scene.index_bytes.as_chunks::<12>().0.to_vec();
+        Dice(4).shuffle(&mut order);
+        scene.index_bytes = order.concat();
+        let scene = Arc::new(scene);
+        let meshlets = Meshlets::of(&scene, &scene.primitives[0]);
+        (scene, meshlets)
+    };
+    let queries = ["sphere?triangles=5000", "teapot?tess=3", "cube-wall", "near", "sizes", "grid?cell=8", "tentacle", "slivers"];
+    for (scene, meshlets) in queries.map(divided).into_iter().chain([shuffled]) {
+        let (name, primitive) = (&scene.name, &scene.primitives[0]);
+        let mut seen = vec![0; primitive.triangle_count() as usize];
+        for meshlet in &meshlets.list {
+            let part = |list: &[u32], first: u32, count: u32| list[first as usize..][..count as usize].to_vec();
+            let vertices = part(&meshlets.vertices, meshlet.first_vertex, meshlet.vertex_count);
+            assert!((1..=MESHLET_TRIANGLES as u32).contains(&meshlet.triangle_count), "{name}: {meshlet:?}");
+            let axis = wide(meshlet.axis).normalize_or_zero();
+            for triangle in part(&meshlets.triangles, meshlet.first_triangle, meshlet.triangle_count) {
+                seen[triangle as usize] += 1;
+                let corners = primitive.corners(&scene, triangle);
+                assert!(corners.iter().all(|corner| vertices.contains(corner)), "{name}: triangle {triangle}");
+                let [a, b, c] = corners.map(|corner| wide(primitive.position(&scene, corner)));
+                for place in [a, b, c] {
+                    let out = (place - wide(meshlet.center)).abs() - wide(meshlet.half);
+                    assert!(out.max_element() <= 0.0, "{name}: a corner of triangle {triangle} lies outside by {out}");
+                }
+                let doubled = (b - a).cross(c - a);
+                if meshlet.altitude > 0.0 && doubled.length() > 0.0 {
+                    let longest = a.distance(b).max(b.distance(c)).max(c.distance(a));
+                    assert!(doubled.normalize().dot(axis) >= f64::from(meshlet.cos), "{name}: triangle {triangle} leans out");
+                    assert!(doubled.length() / longest >= f64::from(meshlet.altitude), "{name}: triangle {triangle} is lower");
+                }
+            }
+            assert!(f64::from(meshlet.cos).hypot(meshlet.sin.into()) >= 1.0 - 1e-6, "{name}: {meshlet:?}");
+        }
+        assert!(seen.iter().all(|&count| count == 1), "{name}: {seen:?}");
+    }
+}
+
+#[test]
+fn meshlets_of_a_closed_mesh_are_nearly_full_and_round() {
+    let (_, meshlets) = divided("sphere?triangles=20000");
+    let full = 20_000 / MESHLET_TRIANGLES;
+    assert!(meshlets.list.len() < full + full / 4, "{} meshlets", meshlets.list.len());
+    let mean = meshlets.list.iter().map(|meshlet| wide(meshlet.half).length()).sum::<f64>() / meshlets.list.len() as f64;
+    // A disc of 64 of 20,000 triangles of a sphere of radius 1.1 has a radius of 0.12.
+    assert!(mean < 0.25, "half a box's diagonal is {mean} m");
+    let facing = meshlets.list.iter().filter(|meshlet| meshlet.altitude > 0.0 && meshlet.cos > 0.5).count();
+    assert!(10 * facing > 9 * meshlets.list.len(), "{facing} of {} tell where they face", meshlets.list.len());
+}
+
+#[test]
+fn nobody_bends_what_lies_outside_the_picture() {
+    let scene = scene("tentacle?tess=1&instances=60");
+    let bounds = scene.bounds();
+    let middle = bounds.center();
+    let camera = Camera { eye: middle, target: middle + DVec3::new(1.0, 0.1, 0.3), near_m: 0.02, ..Camera::default() };
+    let view = View::new(&camera, SIZE[0], SIZE[1], &bounds, DMat4::IDENTITY, [0.0; 4]);
+    let drawn = [Culling::None, Culling::Frustum].map(|rung| {
+        let mut renderer = Renderer::new(gpu()?);
+        renderer.set_scene(&scene).expect("it fits");
+        renderer.draw_whole(&view, &stack(&["lambert"]), &on(Pins::of(rung))).expect("it is drawn");
+        let buffers = renderer.explain().buffers;
+        let capture = captured(&mut renderer, &scene, &view, &stack(&["lambert"]), &on(Pins::of(rung)));
+        Some((capture.frame, buffers.into_iter().find(|buffer| buffer.name == "joints").map_or(0, |buffer| buffer.bytes)))
+    });
+    let [Some((whole, all)), Some((culled, some))] = drawn else { return };
+    assert_same(&culled, &whole, "from the middle");
+    assert!(0 < some && 2 * some < all && whole.covered() > 0, "{some} of {all} bytes of joints");
 }

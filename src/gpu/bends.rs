@@ -70,11 +70,13 @@ pub fn bent_ranges(scene: &Scene, draws: &[Draw]) -> Vec<Range<u32>> {
 }
 
 impl Bends {
-    pub fn of(scene: &Scene, draws: &[Draw]) -> Self {
+    /// Of those draws that bend; one record at least, since no binding is empty.
+    pub fn of<'a>(scene: &Scene, draws: impl Iterator<Item = &'a Draw>) -> Self {
         let mut bends = Self::default();
         let mut known = HashMap::new();
-        for draw in draws {
-            bends.take(scene, draw, &mut known);
+        draws.for_each(|draw| bends.take(scene, draw, &mut known));
+        if bends.records.is_empty() {
+            bends.records.push(BendRecord::default());
         }
         bends
     }

@@ -3,7 +3,7 @@
 
 use std::collections::BTreeSet;
 
-use glam::{DMat3, DMat4, DVec3};
+use glam::{DMat3, DMat4, DVec3, DVec4};
 use rayon::prelude::*;
 
 use super::{
@@ -138,6 +138,20 @@ fn instance(scene: &Scene, draw: &Draw, view: &View) -> InstanceRecord {
         flags: if sight.is_some() { FACES } else { 0 } | if bends { BENDS } else { 0 },
         ..InstanceRecord::default()
     }
+}
+
+/// Does a draw lie outside the picture, with ten times as much to spare as the kernels leave?
+pub fn is_outside(draw: &Draw, scene: &Scene) -> bool {
+    const SLACK: f64 = 1e-4;
+    let columns = draw.clip_from_object.map(|column| DVec4::from(column.map(f64::from)));
+    let corners = draw.object_bounds(&scene.primitives[draw.primitive]).corners();
+    let ends = corners.map(|p| {
+        let terms = [columns[0] * p.x, columns[1] * p.y, columns[2] * p.z, columns[3]];
+        let (c, sums) = (terms.iter().sum::<DVec4>(), terms.iter().map(|term| term.abs()).sum::<DVec4>() * SLACK);
+        let least = |beyond: f64, sum: f64| beyond + sum + sums.w;
+        [least(c.w + c.x, sums.x), least(c.w - c.x, sums.x), least(c.w + c.y, sums.y), least(c.w - c.y, sums.y), least(c.w - c.z, sums.z)]
+    });
+    (0..5).any(|side| ends.iter().all(|end| end[side] < 0.0))
 }
 
 /// From where a draw is seen, in object space.

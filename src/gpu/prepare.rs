@@ -3,7 +3,7 @@
 use super::{
     RenderError, Renderer, STORAGE,
     bends::{BENT_BYTES, Bends, bent_ranges},
-    culling::Patches,
+    culling::{self, Patches},
     packing::{Packing, bytes_of},
     texels::Texels,
     uniforms::{Capacities, CounterRecord, DrawRecord, FrameUniform, OrderRecord, ScalingUniform, color_stride},
@@ -80,7 +80,9 @@ impl Renderer {
         let mut records: Vec<DrawRecord> = draws.iter().map(record).collect();
         // A binding holds an element at least, even where nothing is to be drawn.
         records.resize(draws.len().max(1), DrawRecord::default());
-        let bends = Bends::of(&scene, &draws);
+        // Nobody draws what lies outside the picture, so nothing bends it.
+        let is_bent = |draw: &&Draw| !key.culls() || !culling::is_outside(draw, &scene);
+        let bends = Bends::of(&scene, draws.iter().filter(is_bent));
         let (triangles, vertex_records) = (scene.triangle_count(), record_count(key, &scene));
         let decisions = u64::from(key.decisions) * (triangles + u64::from(recorded.pieces));
         let first_rank = vertex_records + decisions;

@@ -9,9 +9,9 @@ use super::{
     polyline,
 };
 use crate::{
-    ladder::{
-        AXES, Checks, Clipping, Counting, Coverage, Depth, DotWay, Parameters, Perspective, Rung, Scale, Skinning, Sums, Vertex, Vertices,
-        Visibility,
+ladder::{
+        AXES, Checks, Clipping, Counting, Coverage, Culling, Depth, DotWay, Parameters, Perspective, Rung, Scale, Skinning, Sums, Vertex,
+        Vertices, Visibility,
     },
     scene::camera::{Camera, MIN_NEAR_M, Projection},
     session::{SceneSource, Session, Test, Tier},
@@ -353,6 +353,7 @@ pub const KEYS: &[Key] = &[
     pin::<Visibility>(),
     pin::<Perspective>(),
     pin::<Clipping>(),
+    pin::<Culling>(),
     pin::<Counting>(),
     pin::<Sums>(),
     pin::<Scale>(),
