@@ -944,8 +944,9 @@ fn what_we_accept_the_validator_accepts_and_the_malformed_are_refused_by_both() 
             Err(error) if codes.is_empty() && !is_ours => disagreements.push(format!("the validator has nothing against it: {error}")),
             _ => {}
         }
-        let is_malformed = place >= from_corpus && place < from_corpus + malformed.len();
-        assert_eq!(gltf::load(file).is_err(), is_malformed || place < from_corpus && gltf::load(file).is_err(), "{}", file.display());
+        if place >= from_corpus {
+            assert_eq!(gltf::load(file).is_err(), place < from_corpus + malformed.len(), "{}", file.display());
+        }
     }
     assert_eq!(disagreements, Vec::<String>::new());
 }
