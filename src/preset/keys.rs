@@ -9,7 +9,7 @@ use super::{
     polyline,
 };
 use crate::{
-ladder::{
+    ladder::{
         AXES, Checks, Clipping, Counting, Coverage, Culling, Depth, DotWay, Parameters, Perspective, Rung, Scale, Skinning, Sums, Vertex,
         Vertices, Visibility,
     },
