@@ -11,6 +11,7 @@
 //@ use common/surface
 //@ use slot/shape
 //@ use slot/ranks
+//@ use slot/light
 
 override HAS_COLORS: bool = false;
 override HAS_CLIPPING: bool = false;
@@ -172,5 +173,5 @@ fn shade_surface(id: u32, pixel: vec2u) -> Surface {
         s.normal = -s.normal;
         s.flat_normal = -s.flat_normal;
     }
-    return s;
+    return light_filled(s);
 }

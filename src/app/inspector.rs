@@ -22,6 +22,7 @@ use crate::{
 
 /// How a key of the look is shown: its unit, and what its slider spans.
 const SHOWN: &[(&str, &str, Option<[f64; 2]>)] = &[
+    ("scene.room", "", Some([0.0, 4.0])),
     ("scene.spin_deg_per_s", "°/s", Some([-180.0, 180.0])),
     ("scene.clip_speed", "", Some([-2.0, 2.0])),
     ("scene.blend", "", Some([0.0, 1.0])),
@@ -45,8 +46,8 @@ impl App {
             ui.spacing_mut().item_spacing.y = 2.0;
             self.effects_ui(ui);
             let has_lines = self.look.session.stack.0.iter().any(|enabled| enabled.effect.hooks.has_lines);
-            let paths = ["scene.spin_deg_per_s", "output.background", "scene.polyline"];
-            self.keys_folder(ui, "Scene", true, &paths[..if has_lines { 3 } else { 2 }]);
+            let paths = ["scene.room", "scene.spin_deg_per_s", "output.background", "scene.polyline"];
+            self.keys_folder(ui, "Scene", true, &paths[..if has_lines { 4 } else { 3 }]);
             self.clips_ui(ui);
             self.camera_ui(ui);
             self.clock_ui(ui);

@@ -176,25 +176,26 @@ fn compile(
 
 /// The layout entry of a reflected binding.
 pub fn layout_entry(binding: &Binding, visibility: wgpu::ShaderStages) -> wgpu::BindGroupLayoutEntry {
+    let buffer = |ty| wgpu::BindingType::Buffer { ty, has_dynamic_offset: false, min_binding_size: None };
     let ty = match binding.kind {
-        BindingKind::Uniform => wgpu::BufferBindingType::Uniform,
-        BindingKind::Storage { read_only } => wgpu::BufferBindingType::Storage { read_only },
+        BindingKind::Uniform => buffer(wgpu::BufferBindingType::Uniform),
+        BindingKind::Storage { read_only } => buffer(wgpu::BufferBindingType::Storage { read_only }),
+        BindingKind::Texels => wgpu::BindingType::Texture {
+            sample_type: wgpu::TextureSampleType::Uint,
+            view_dimension: wgpu::TextureViewDimension::D2,
+            multisampled: false,
+        },
     };
-    wgpu::BindGroupLayoutEntry {
-        binding: binding.index,
-        visibility,
-        ty: wgpu::BindingType::Buffer { ty, has_dynamic_offset: false, min_binding_size: None },
-        count: None,
-    }
+    wgpu::BindGroupLayoutEntry { binding: binding.index, visibility, ty, count: None }
 }
 
 impl Pipeline {
-    /// Binds buffers by the names that the shader gives them, and sets the pipeline.
-    pub fn bind<'a>(&self, gpu: &Gpu, pass: &mut wgpu::ComputePass<'_>, buffer: impl Fn(&str) -> &'a wgpu::Buffer) {
+    /// Binds buffers and textures by the names that the shader gives them, and sets the pipeline.
+    pub fn bind<'a>(&self, gpu: &Gpu, pass: &mut wgpu::ComputePass<'_>, resource: impl Fn(&str) -> wgpu::BindingResource<'a>) {
         let entries: Vec<_> = self
             .bindings
             .iter()
-            .map(|binding| wgpu::BindGroupEntry { binding: binding.index, resource: buffer(&binding.name).as_entire_binding() })
+            .map(|binding| wgpu::BindGroupEntry { binding: binding.index, resource: resource(&binding.name) })
             .collect();
         let group =
             gpu.device.create_bind_group(&wgpu::BindGroupDescriptor { label: Some(&self.label), layout: &self.layout, entries: &entries });

@@ -15,7 +15,11 @@ use crate::{
         hooks::{Facts, SampleHook},
     },
     frame::{Geometry, SnappedVertex},
-    scene::{Scene, camera::View, draw::Draw},
+    scene::{
+        Scene,
+        camera::View,
+        draw::{Draw, totals},
+    },
 };
 
 /// Relative spacing of f32.
@@ -41,7 +45,7 @@ pub(super) fn wrong(scene: &Scene, draws: &[Draw], view: &View, stack: &Stack, g
     if effects.is_empty() {
         return 0;
     }
-    let whole = scene.triangle_count() as usize;
+    let whole = totals(scene, draws)[1] as usize;
     assert_eq!(geometry.decisions.len(), effects.len() * (whole + geometry.pieces.len()), "the decisions are of another scene");
     let is_wrong = |facts: &Facts, (hook, words): &(SampleHook, &[u32]), given: [u32; 4]| {
         let truth = (hook.decide)(facts, words, None);
@@ -80,7 +84,7 @@ fn entries<'a>(
             .then(|| facts(&Mover::new(scene, draw, view, stack), scene, view, geometry, piece.parent, &piece.corners, piece.outline))
             .flatten()
     };
-    (0..scene.triangle_count() as u32).into_par_iter().map(whole).chain(geometry.pieces.par_iter().map(pieces))
+    (0..totals(scene, draws)[1] as u32).into_par_iter().map(whole).chain(geometry.pieces.par_iter().map(pieces))
 }
 
 fn facts(
@@ -105,13 +109,15 @@ fn facts(
     let reach = reach.iter().fold(0.0, |most: f64, axis| most.max(axis.truncate().max_element()));
     let bent = [a, b, c].map(|p| (m.x_axis.abs() * p.error.x + m.y_axis.abs() * p.error.y + m.z_axis.abs() * p.error.z).max_element());
     let bent = bent.into_iter().fold(0.0, f64::max);
+    let center = world.iter().sum::<DVec3>() / 3.0;
+    let screen = || center_screen(mover, view, &corner_records(scene, draw, geometry, id), places);
     Some(Facts {
         triangle: id,
         corners: corners.map(|corner| [corner.x, corner.y]),
         outline,
         size: [view.width, view.height],
-        center: world.iter().sum::<DVec3>() / 3.0,
+        center,
         center_slack_m: 8.0 * ULP * reach + bent,
-        center_screen: center_screen(mover, view, &corner_records(scene, draw, geometry, id), places),
+        center_screen: mover.in_picture(center).unwrap_or_else(screen),
     })
 }

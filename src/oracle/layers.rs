@@ -9,6 +9,7 @@ use glam::{DVec3, DVec4};
 use super::{
     coverage::{Coverage, Hit, OrientedTriangle, draw_of, scatter},
     finish,
+    light::Light,
     moved::Mover,
     order::ranks,
     rules::Rules,
@@ -120,6 +121,8 @@ fn tallies(scenery: &Scenery, stack: &Stack, params: &Xray, bits: u32) -> Vec<Ta
     let mut tallies: Vec<Tally> = (0..view.pixels()).map(|_| Tally::default()).collect();
     let width = view.width as usize;
     let ranks = ranks(scene, draws, view, stack, geometry);
+    let light = Light::of(scene, view, stack, geometry);
+    let light = light.as_ref();
     scatter(rules, triangles, view, &mut tallies, |triangle| {
         let mut surface: Option<Option<Triangle>> = None;
         let rank = ranks.get(triangle.id as usize).copied().unwrap_or(0.0);
@@ -138,9 +141,12 @@ fn tallies(scenery: &Scenery, stack: &Stack, params: &Xray, bits: u32) -> Vec<Ta
             });
             let Some(known) = known else { return };
             let surface = known.surface(view, x, y);
-            let shaded = stack.shade(Surface { rank, ..surface });
+            let place = known.place(view, &surface);
+            let lit = |nudge: f64| light.map_or(0.0, |light| light.arrives(&place, triangle.id, nudge));
+            let shaded = stack.shade(Surface { rank, lit: lit(0.0), ..surface });
             // Near a step of colour either side of it is right.
-            let nudged = nudges(stack).iter().map(|&nudge| stack.shade(Surface { rank, nudge, ..surface }).color.truncate());
+            let nudged =
+                nudges(stack).iter().map(|&nudge| stack.shade(Surface { rank, lit: lit(nudge), nudge, ..surface }).color.truncate());
             let ends = nudged.fold([shaded.color.truncate(); 2], |[least, most], color| [least.min(color), most.max(color)]);
             let weight = params.weight_of(&shaded);
             let counts = [is_front || hit.depth >= least, is_front || low >= least];

@@ -22,12 +22,15 @@ pub struct Answers {
     pictures: Vec<Vec<[u8; 4]>>,
     /// Whatever lies between them is right too.
     is_span: bool,
+    /// Pictures for every nudge, the middle one first.
+    middles: usize,
 }
 
 impl Answers {
     pub fn of(scene: &Scene, draws: &[Draw], view: &View, stack: &Stack, seen: &Seen, geometry: &Geometry) -> Self {
         let shaded = |&nudge: &f64| shade_nudged(scene, draws, view, stack, seen, geometry, nudge);
-        Self { pictures: nudges(stack).iter().map(shaded).collect(), is_span: false }
+        // Taps of a shadow map fall one by one, so anything between all and none of the doubtful ones is right.
+        Self { pictures: nudges(stack).iter().map(shaded).collect(), is_span: stack.light().is_some(), middles: 1 }
     }
 
     /// What lies between the least and the most that a picture of layers may show.
@@ -35,7 +38,7 @@ impl Answers {
         let ends = [0, 1].map(|end| layered.bounds.iter().map(|bounds| bounds[end]).collect::<Vec<_>>());
         let finished =
             |&nudge: &f64| [&layered.colors, &ends[0], &ends[1]].map(|colors| finish_all(draws, view, stack, seen, colors, nudge));
-        Self { pictures: nudges(stack).iter().flat_map(finished).collect(), is_span: true }
+        Self { pictures: nudges(stack).iter().flat_map(finished).collect(), is_span: true, middles: 3 }
     }
 
     /// The picture as f64 has it.
@@ -59,8 +62,7 @@ impl Answers {
     /// Which pixels have answers more than a step of 255 apart because of a step of colour; empty where none can.
     pub fn band(&self) -> Vec<bool> {
         // Of a span, the middles of what it goes through.
-        let stride = if self.is_span { 3 } else { 1 };
-        let answers: Vec<_> = self.pictures.iter().step_by(stride).collect();
+        let answers: Vec<_> = self.pictures.iter().step_by(self.middles).collect();
         let [middle, others @ ..] = answers.as_slice() else { return Vec::new() };
         if others.is_empty() {
             return Vec::new();

@@ -7,6 +7,7 @@ pub mod builtin;
 pub mod camera;
 pub mod draw;
 pub mod gltf;
+pub mod light;
 pub mod lines;
 pub mod meshlets;
 pub mod needs;
@@ -14,6 +15,7 @@ pub mod palette;
 pub mod pick;
 pub mod pose;
 pub mod rig;
+mod room;
 
 use glam::{DMat4, DVec3};
 
@@ -302,6 +304,8 @@ pub struct Scene {
     pub primitives: Vec<Primitive>,
     pub materials: Vec<Material>,
     pub instances: Vec<Instance>,
+    /// How many of them, at the end, are walls round the others: they cast no shadows and do not spin.
+    pub walls: usize,
     pub cameras: Vec<FileCamera>,
     /// What moves.
     pub rig: Rig,
@@ -331,8 +335,13 @@ impl Scene {
         if !self.rig.is_empty() {
             return self.rig.reach;
         }
+        self.bounds_of(&self.instances)
+    }
+
+    /// Box round some of its instances where they stand at rest.
+    pub fn bounds_of(&self, instances: &[Instance]) -> Bounds {
         let mut bounds = Bounds::EMPTY;
-        for instance in &self.instances {
+        for instance in instances {
             bounds.include_placed(&instance.world_from_object, &self.primitives[instance.primitive].bounds, 0.0);
         }
         bounds

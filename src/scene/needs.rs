@@ -4,7 +4,7 @@
 
 use glam::{DMat3, DMat4, DVec3, DVec4};
 
-use super::{Component, Primitive, Scene, Topology, camera::View, draw::Draw};
+use super::{Component, Primitive, Scene, Topology, camera::View, draw::Draw, light::ShadowGrid};
 use crate::{ladder::Skinning, math::GUARD_BAND};
 
 /// See the module's first line.
@@ -26,6 +26,10 @@ pub struct Needs {
     /// Normals are all f32.
     pub f32_normals: bool,
     pub colors: bool,
+    /// How finely shadows are drawn.
+    pub shadow: ShadowGrid,
+    /// A light looks, not the eye.
+    pub is_light: bool,
     /// Some mesh is mixed from shapes.
     pub shapes: bool,
     /// How joints hold meshes, where any do.
@@ -73,6 +77,8 @@ impl Needs {
             topologies: drawn().any(|p| p.topology != Topology::List),
             f32_positions: all_f32(|p| p.positions.component),
             f32_normals: all_f32(|p| p.normals.component),
+            shadow: view.shadow,
+            is_light: view.is_light(),
             colors: drawn().any(|p| p.colors.is_some()),
             shapes: draws.iter().any(|draw| draw.bend.as_ref().is_some_and(|bend| bend.weights.iter().any(|weight| *weight != 0.0))),
             skinning: draws.iter().find_map(|draw| Some(draw.bend.as_ref()?.palette.as_ref()?.skinning())),

@@ -17,7 +17,11 @@ pub struct Reflected {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum BindingKind {
     Uniform,
-    Storage { read_only: bool },
+    Storage {
+        read_only: bool,
+    },
+    /// A picture of whole numbers, which is loaded texel by texel.
+    Texels,
 }
 
 /// One resource that an entry point really uses.
@@ -76,6 +80,7 @@ impl Reflected {
                 let kind = match variable.space {
                     AddressSpace::Uniform => BindingKind::Uniform,
                     AddressSpace::Storage { access } => BindingKind::Storage { read_only: !access.contains(StorageAccess::STORE) },
+                    AddressSpace::Handle => BindingKind::Texels,
                     _ => return None,
                 };
                 Some(Binding { name: variable.name.clone()?, index: variable.binding.as_ref()?.binding, kind })
