@@ -82,6 +82,18 @@ pub struct Geometry {
     pub is_rough: bool,
     /// What its maker promises about it, and about the keys of a frame drawn through it.
     pub exact: Exactness,
+    /// What the light sees, where an effect asks.
+    pub light: Option<Box<LightMap>>,
+}
+
+/// A shadow map with what it was drawn from.
+#[derive(Clone, Debug, PartialEq)]
+pub struct LightMap {
+    /// Depth key of every texel, row-major, top row first: bits of the reversed depth, larger is nearer to the light, 0 is
+    /// empty.
+    pub keys: Vec<u32>,
+    /// The scene as the light sees it.
+    pub geometry: Geometry,
 }
 
 impl Default for Geometry {
@@ -100,6 +112,7 @@ impl Default for Geometry {
             is_relative: false,
             is_rough: false,
             exact,
+            light: None,
         }
     }
 }

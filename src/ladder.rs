@@ -225,6 +225,28 @@ ladder! {
         /// Lines are culled and thinned in compute, and what is left is drawn by an indirect dispatch.
         Gpu = "gpu",
     }
+    /// How finely a shadow map samples what its light sees.
+    shadow_map: ShadowMap = "shadow_map", usual Side1024 {
+        /// 256 texels a side.
+        Side256 = "256",
+        /// 512 texels a side.
+        Side512 = "512",
+        /// 1,024 texels a side.
+        Side1024 = "1024",
+        /// 2,048 texels a side.
+        Side2048 = "2048",
+        /// 4,096 texels a side.
+        Side4096 = "4096",
+    }
+    /// How many texels of a shadow map tell how much of the light arrives.
+    taps: Taps = "taps", usual Nine {
+        /// The one under the sample: edges as hard and as jagged as the map.
+        One = "1",
+        /// 3 by 3, their share smooth from texel to texel.
+        Nine = "9",
+        /// 5 by 5: softer edges.
+        TwentyFive = "25",
+    }
     /// How the effects' parameters reach the kernels.
     parameters: Parameters = "parameters", usual Uniform {
         /// As constants in the text: a new text for every value.

@@ -6,7 +6,7 @@ use rasterlab::{
     gpu::culling::{CullingUniform, InstanceRecord, MeshletRecord},
     gpu::dots::{DotFrame, StretchRecord},
     gpu::texels::{LookupRecord, PaintRecord},
-    gpu::uniforms::{CounterRecord, DrawRecord, FrameUniform, ScalingUniform, Twin},
+    gpu::uniforms::{CounterRecord, DrawRecord, FrameUniform, LightUniform, ScalingUniform, Twin},
     ladder::Visibility,
     shader::{
         Fetch, KernelKey, Pass,
@@ -40,6 +40,7 @@ fn uniforms_and_records_agree() {
     let dots = reflected(Pass::DotsDraw, vec![]);
     check_twin::<DotFrame>(&dots);
     check_twin::<StretchRecord>(&dots);
+    check_twin::<LightUniform>(&reflected(Pass::Resolve, vec![&rasterlab::effects::shadow::EFFECT]));
     let skin = reflected(Pass::Skin, vec![]);
     check_twin::<BendRecord>(&skin);
     check_twin::<ShapeRecord>(&skin);

@@ -140,6 +140,8 @@ fn flat_view(width: u32, height: u32) -> View {
         is_relative: false,
         pose: None,
         polyline: Default::default(),
+        shadow: Default::default(),
+        picture_from_world: None,
     }
 }
 

@@ -16,6 +16,7 @@ mod inspector;
 mod jobs;
 mod keying;
 mod legend;
+mod light;
 mod log;
 mod orbit;
 mod overlays;

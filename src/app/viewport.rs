@@ -85,6 +85,7 @@ impl App {
         let at = self.picture_ui(ui, self.compare.side_b(rect));
         let below = self.compare_ui(ui, rect, at);
         self.overlay_ui(ui, rect);
+        self.light_ui(ui, at);
         let below = self.overlay_legend_ui(ui, below, at);
         if let Some(params) = self.visible_stack().params("overdraw") {
             legend::heat_ui(ui, below, &params);
@@ -113,7 +114,7 @@ impl App {
     }
 
     /// Pose of the camera, to be moved.
-    fn pose(&self) -> Option<Camera> {
+    pub(super) fn pose(&self) -> Option<Camera> {
         let (_, scene) = self.stage.shown.as_ref()?;
         Some(self.look.session.camera_for(scene, aspect(self.look.session.output.size)))
     }

@@ -2,7 +2,10 @@
 //! in a file of the same name. Panel, preset keys, `--set`, uniform bytes, layout test, golden and bench row are
 //! loops over [`EFFECTS`].
 
-use crate::params::{Field, Params};
+use crate::{
+    params::{Field, Params},
+    scene::{Scene, camera::View, light::view_from},
+};
 
 pub mod hooks;
 
@@ -32,6 +35,7 @@ effects![
     normals,
     depth,
     lambert,
+    shadow,
     toon,
     hatch,
     wireframe,
@@ -112,6 +116,12 @@ impl Effect {
     /// The same effect, with steps in its colour: a judge then accepts either side of a step that is very near.
     pub const fn in_steps(mut self) -> Self {
         self.hooks.has_steps = true;
+        self
+    }
+
+    /// The same effect, which asks how much of a light arrives at a sample.
+    pub const fn in_light(mut self) -> Self {
+        self.hooks.reads_light = true;
         self
     }
 
@@ -312,6 +322,22 @@ impl Stack {
             Some(enabled) if enabled.effect == &points::EFFECT => Shape::Points,
             Some(_) => Shape::Boxes,
         }
+    }
+
+    /// The light that casts shadows.
+    pub fn light(&self) -> Option<shadow::Shadow> {
+        self.params(shadow::EFFECT.name)
+    }
+
+    /// What that light sees of `scene` as `view` shows it.
+    pub fn light_view(&self, scene: &Scene, view: &View) -> Option<View> {
+        Some(view_from(self.light()?.toward(), scene, view, self.reach_m(scene.bounds_of(scene.casters()).radius())))
+    }
+
+    /// What of the stack decides which samples stop a light, and where they are.
+    pub fn casting(&self) -> Self {
+        let casts = |enabled: &&Enabled| enabled.effect.hooks.vertex.is_some() || enabled.effect.hooks.sample.is_some();
+        Self(self.0.iter().filter(casts).cloned().collect())
     }
 
     /// Radius of discs about corners, units of 1/256 px; 0 without them.

@@ -266,7 +266,7 @@ impl Renderer {
             self.gpu.queue.write_buffer(self.buffers.get("dot_frame"), 0, bytemuck::bytes_of(&frame));
             let mut encoder = self.gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor { label: Some("probe dots") });
             let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor { label: Some("dots_probe"), timestamp_writes: None });
-            pipeline.bind(&self.gpu, &mut pass, |name| self.buffers.get(name).as_entire_binding());
+            pipeline.bind(&self.gpu, &mut pass, |name| self.buffers.resource(name));
             let [x, y] = folded(probed.div_ceil(64));
             pass.dispatch_workgroups(x, y, 1);
             drop(pass);

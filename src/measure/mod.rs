@@ -80,6 +80,16 @@ fn is_zero(count: &u64) -> bool {
     *count == 0
 }
 
+/// How far a shadow map is from rays, over the pixels that face the light.
+#[derive(Clone, Copy, Debug, Default, PartialEq, serde::Serialize)]
+pub struct LightErrors {
+    pub pixels: u64,
+    /// Those where the map errs by more than half of the light.
+    pub wrong: u64,
+    /// Root mean square of the share of the light that is too much or too little.
+    pub rms: f64,
+}
+
 /// Error as a bench row states it; none reads "not measured", never 0.
 #[derive(Clone, Debug, Default, PartialEq, serde::Serialize)]
 pub struct ErrorFigures {

@@ -16,6 +16,7 @@ use super::{
     finish::{Seen, bytes},
     frame,
     layers::{Layered, Scenery, layered},
+    light,
     moved::{Corner, Mover},
     order,
     project::{Clip, half_size, project_as},
@@ -84,6 +85,7 @@ pub fn judge_after(
     let records = |geometry: &Geometry| (geometry.vertices.len(), geometry.has_own_corners);
     assert_eq!(records(geometry), records(&own), "the geometry is of another scene or stack");
 
+    assert_eq!(geometry.light.is_some(), stack.light().is_some(), "the light has a map, or there is neither");
     let (given, counters) = triangles(scene, &draws, geometry);
     // Where the hardware chooses among samples, everything that is covered may be drawn.
     let is_free = order::is_free(stack);
@@ -129,6 +131,9 @@ pub fn judge_after(
     dots::judge(&mut accuracy, (scene, &draws, view, stack), &geometry.dots, [&adapter.dots, &dots])?;
     // Of rough places, fronts travel roughly.
     accuracy.decisions_wrong = if geometry.is_rough { 0 } else { wrong(scene, &draws, view, stack, geometry) };
+    if let Some(map) = &geometry.light {
+        light::judge(&mut accuracy, scene, view, stack, map)?;
+    }
     Whole { scene, draws: &draws, view, stack, own: &own, adapter: geometry, cut: rules.cut(), vertices: &vertices }.judge(
         &mut accuracy,
         &coverage,
@@ -188,7 +193,7 @@ fn judge_choice(accuracy: &mut Accuracy, coverage: &Coverage, adapter: &Frame, l
 }
 
 /// Does a float key lie in the interval? A depth too small for a normal f32 has the least key, 1.
-fn key_fits(key: u32, [low, high]: [f64; 2]) -> bool {
+pub(super) fn key_fits(key: u32, [low, high]: [f64; 2]) -> bool {
     let depth = f64::from(f32::from_bits(key));
     (low..=high).contains(&depth) && key != 0 || key == 1 && low < f64::from(f32::MIN_POSITIVE)
 }
@@ -228,7 +233,7 @@ pub(super) struct VertexFault {
     pub wander: f64,
 }
 
-fn judge_vertices(accuracy: &mut Accuracy, faults: &[VertexFault]) {
+pub(super) fn judge_vertices(accuracy: &mut Accuracy, faults: &[VertexFault]) {
     for fault in faults {
         accuracy.vertices += 1;
         accuracy.ill_conditioned += u64::from(fault.is_ill_conditioned);
@@ -239,7 +244,14 @@ fn judge_vertices(accuracy: &mut Accuracy, faults: &[VertexFault]) {
     }
 }
 
-fn vertex_faults(scene: &Scene, draws: &[Draw], view: &View, stack: &Stack, adapter: &Geometry, own: &Geometry) -> Vec<VertexFault> {
+pub(super) fn vertex_faults(
+    scene: &Scene,
+    draws: &[Draw],
+    view: &View,
+    stack: &Stack,
+    adapter: &Geometry,
+    own: &Geometry,
+) -> Vec<VertexFault> {
     let of_draw = |draw: &Draw| {
         let mover = Mover::new(scene, draw, view, stack);
         let fault = |(i, corner)| {

@@ -13,7 +13,7 @@ use crate::{
         points, read,
         xray::{Reach, Xray},
     },
-    ladder::{AXES, Coverage, Culling, Depth, DotWay, Rung, Rungs, Skinning, Sums, Vertex, Vertices, Visibility},
+    ladder::{AXES, Coverage, Culling, Depth, DotWay, Rung, Rungs, ShadowMap, Skinning, Sums, Taps, Vertex, Vertices, Visibility},
     math::SUBPIXEL_BITS,
     scene::needs::Needs,
 };
@@ -45,6 +45,9 @@ pub(super) fn choose(
     accuracy.pins.apply(&mut rungs);
     // How joints hold a mesh was settled with its pose; without joints the rung is nobody's.
     rungs.skinning = needs.skinning.unwrap_or_default();
+    // So it is with shadows, which are drawn as finely as the view says.
+    let has_light = stack.light().is_some();
+    (rungs.shadow_map, rungs.taps) = if has_light { needs.shadow.rungs() } else { Default::default() };
     let has_dots = stack.dots().is_some();
     if !has_dots {
         rungs.dots = DotWay::default();
@@ -64,7 +67,8 @@ pub(super) fn choose(
     }
     let mut reasons = Vec::new();
     let mut prediction = predict_all(&rungs, needs);
-    for (i, axis) in AXES.iter().enumerate().filter(|(i, _)| has_dots || *i != DotWay::AXIS) {
+    let is_idle = |i: usize| !has_dots && i == DotWay::AXIS || !has_light && [ShadowMap::AXIS, Taps::AXIS].contains(&i);
+    for (i, axis) in AXES.iter().enumerate().filter(|(i, _)| !is_idle(*i)) {
         if let Some((rung, why)) = unfit.filter(|_| i == Culling::AXIS) {
             reasons.push(note(axis.name, format!("{} instead of {}: {why}", rung.name(), asked.name())));
             continue;

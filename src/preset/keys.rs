@@ -5,13 +5,14 @@ use std::path::PathBuf;
 use glam::DVec3;
 
 use super::{
-    form::{Form, Plain, Precision, brief},
+    form::{Form, Plain, Precision},
     polyline,
+    rules::{encloses, is_polyline, rises},
 };
 use crate::{
-ladder::{
-        AXES, Checks, Clipping, Counting, Coverage, Culling, Depth, DotWay, Parameters, Perspective, Rung, Scale, Skinning, Sums, Vertex,
-        Vertices, Visibility,
+    ladder::{
+        AXES, Checks, Clipping, Counting, Coverage, Culling, Depth, DotWay, Parameters, Perspective, Rung, Scale, ShadowMap, Skinning,
+        Sums, Taps, Vertex, Vertices, Visibility,
     },
     scene::camera::{Camera, MIN_NEAR_M, Projection},
     session::{SceneSource, Session, Test, Tier},
@@ -172,6 +173,17 @@ pub const KEYS: &[Key] = &[
             |s, v| s.scene = SceneSource::File(PathBuf::from(v.into_text())),
         ),
         "builtin",
+    ),
+    ruled(
+        key(
+            "scene",
+            "room",
+            Form::number(0.0, 100.0),
+            "Walls round the scene, seen from inside, so many times as far apart as it is wide; 0: none",
+            |s| Some(Plain::number(s.room)),
+            |s, v| s.room = v.first(),
+        ),
+        encloses,
     ),
     key(
         "scene",
@@ -358,6 +370,8 @@ pub const KEYS: &[Key] = &[
     pin::<Sums>(),
     pin::<Scale>(),
     pin::<DotWay>(),
+    pin::<ShadowMap>(),
+    pin::<Taps>(),
     pin::<Parameters>(),
     pin::<Checks>(),
     key(
@@ -409,15 +423,6 @@ pub const KEYS: &[Key] = &[
         |s, v| tested(s).why = v.into_text(),
     ),
 ];
-
-fn rises(range: &Plain) -> Result<(), String> {
-    let [from, to] = range.lanes();
-    if from < to { Ok(()) } else { Err(format!("must rise, but {} is not before {}", brief(from), brief(to))) }
-}
-
-fn is_polyline(text: &Plain) -> Result<(), String> {
-    polyline::parse(&text.clone().into_text()).map(drop)
-}
 
 fn camera(session: &Session, get: impl Fn(&Camera) -> Plain) -> Option<Plain> {
     session.camera.as_ref().map(get)

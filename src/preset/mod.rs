@@ -13,6 +13,7 @@ pub mod migrate;
 mod path;
 mod polyline;
 mod read;
+mod rules;
 pub mod schema;
 mod share;
 mod shot;
@@ -233,7 +234,7 @@ pub fn load_scene(session: &Session, look_path: Option<&Path>) -> Result<Arc<Sce
         }
     };
     session.check(&scene)?;
-    Ok(Arc::new(scene))
+    Ok(Arc::new(if session.room > 0.0 { scene.in_room(session.room) } else { scene }))
 }
 
 /// A parameter's value in its form.

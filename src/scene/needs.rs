@@ -4,7 +4,7 @@
 
 use glam::{DMat3, DMat4, DVec3, DVec4};
 
-use super::{Component, Primitive, Scene, Topology, camera::View, draw::Draw, sizes::Sizes};
+use super::{Component, Primitive, Scene, Topology, camera::View, draw::Draw, light::ShadowGrid, sizes::Sizes};
 use crate::{ladder::Skinning, math::GUARD_BAND};
 
 /// See the module's first line.
@@ -32,6 +32,10 @@ pub struct Needs {
     pub textured: usize,
     /// The alpha of an image leaves out a part of something.
     pub masked: bool,
+    /// How finely shadows are drawn.
+    pub shadow: ShadowGrid,
+    /// A light looks, not the eye.
+    pub is_light: bool,
     /// Some mesh is mixed from shapes.
     pub shapes: bool,
     /// How joints hold meshes, where any do.
@@ -84,6 +88,8 @@ impl Needs {
             topologies: drawn().any(|p| p.topology != Topology::List),
             f32_positions: all_f32(|p| p.positions.component),
             f32_normals: all_f32(|p| p.normals.component),
+            shadow: view.shadow,
+            is_light: view.is_light(),
             colors: drawn().any(|p| p.colors.is_some()),
             paints: painted.len(),
             textured: painted.iter().filter(|material| scene.materials[**material].textures() != [None, None]).count(),

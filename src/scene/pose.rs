@@ -92,8 +92,13 @@ impl Pose {
 
     /// A box round the whole scene, before it is spun.
     pub fn bounds(&self, scene: &Scene) -> Bounds {
+        self.bounds_of(scene, &scene.instances)
+    }
+
+    /// A box round the first instances of it.
+    pub fn bounds_of(&self, scene: &Scene, first: &[super::Instance]) -> Bounds {
         let mut bounds = Bounds::EMPTY;
-        for ((instance, place), bend) in scene.instances.iter().zip(&self.places).zip(&self.bends) {
+        for ((instance, place), bend) in first.iter().zip(&self.places).zip(&self.bends) {
             let primitive = &scene.primitives[instance.primitive];
             let object = bend.as_ref().map_or(primitive.bounds, |bend| bend.bounds(primitive));
             bounds.include_placed(place, &object, 0.0);

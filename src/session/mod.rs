@@ -15,6 +15,7 @@ use crate::{
     scene::{
         Scene,
         camera::{Camera, View},
+        light::ShadowGrid,
         pose::{Motion, Pose, scene_from_nodes},
     },
 };
@@ -172,6 +173,8 @@ pub struct Session {
     pub about: String,
     pub tags: Vec<String>,
     pub scene: SceneSource,
+    /// A room round the scene, so many times as wide as it; 0: none.
+    pub room: f64,
     /// Turns the whole scene about +y.
     pub spin_deg_per_s: f64,
     /// What moves the scene's own joints and parts.
@@ -199,6 +202,7 @@ impl Default for Session {
             about: String::new(),
             tags: Vec::new(),
             scene: SceneSource::Builtin("teapot".into()),
+            room: 0.0,
             spin_deg_per_s: 0.0,
             play: Play::default(),
             polyline: Arc::default(),
@@ -309,9 +313,17 @@ impl Session {
         if !bounds.is_empty() {
             let reach_m = self.posed_stack().reach_m(bounds.radius());
             (bounds.min, bounds.max) = (bounds.min - reach_m, bounds.max + reach_m);
+            if scene.walls > 0 {
+                // Walls stand still while the box is turned; this one holds them at any angle.
+                let aside = DVec3::new(std::f64::consts::SQRT_2, 1.0, std::f64::consts::SQRT_2);
+                (bounds.min, bounds.max) = (bounds.min * aside, bounds.max * aside);
+            }
         }
+        let pins = &self.accuracy.pins;
+        let shadow = ShadowGrid::of(pins.rung().unwrap_or_default(), pins.rung().unwrap_or_default());
         View {
             pose,
+            shadow,
             polyline: self.polyline.clone(),
             ..View::new(&self.camera_for(scene, aspect), width, height, &bounds, spin, self.output.background)
         }

@@ -39,6 +39,11 @@ impl KernelKey {
         passes
     }
 
+    /// Every pass of what a light sees of this kernel's scene: depth alone. Whatever bends has been bent for the picture.
+    pub fn light_frame(&self) -> Vec<Pass> {
+        self.passes(&[Phase::Depth]).into_iter().filter(|pass| *pass != Pass::Skin).collect()
+    }
+
     /// Passes up to the last of the given raster phases.
     pub fn passes(&self, phases: &[Phase]) -> Vec<Pass> {
         let mut passes = Vec::new();

@@ -8,6 +8,7 @@ use crate::{
         dots::Strung,
         draw_order::Mode,
         hooks::{Layers, Shape},
+        shadow::STEEPEST,
     },
     frame::{NO_OWNER, vertex_flags},
     ladder::{Clipping, Coverage, Culling, Depth, DotWay, Perspective, Rungs, Scale, Vertex, Vertices, Visibility},
@@ -111,6 +112,8 @@ pub struct KernelKey {
     pub list_group: u32,
     /// Load before the depth atomic.
     pub early_load: bool,
+    /// A light looks, not the eye: effects ask where things stand in the picture for which it does.
+    pub is_light: bool,
     /// Bits of a triangle's id where it shares a word with its depth, else 0.
     pub id_bits: u32,
 }
@@ -157,6 +160,7 @@ impl KernelKey {
             listed_tiles: true,
             list_group: 64,
             early_load: true,
+            is_light: false,
             id_bits: if visibility == Visibility::Packed32 { 24 } else { 0 },
         }
     }
@@ -189,6 +193,11 @@ impl KernelKey {
     /// Does an effect finish pixels? Then the resolve visits all of them, empty ones too.
     pub fn has_image(&self) -> bool {
         self.effects.iter().any(|effect| effect.hooks.image.is_some())
+    }
+
+    /// Does an effect ask how much of a light arrives?
+    pub fn reads_light(&self) -> bool {
+        self.effects.iter().any(|effect| effect.hooks.reads_light)
     }
 
     /// Does an effect read the picture before this one?
@@ -329,6 +338,8 @@ impl KernelKey {
             ("IS_TICKETED", flag(self.order == Order::Scheduler)),
             ("IS_FIRST", flag(self.is_first(pass))),
             ("IS_AGAIN", flag(self.is_again(pass))),
+            ("TAPS_SIDE", self.rungs.taps.side().into()),
+            ("STEEPEST", STEEPEST),
             ("SUM_WORDS", self.rungs.sums.words().into()),
             ("SUM_BITS", if let Some(Layers::Xray { bits }) = self.layers { bits.into() } else { 0.0 }),
         ]
@@ -370,6 +381,7 @@ impl fmt::Display for KernelKey {
             ("dots", self.dots.is_some()),
             ("image", self.has_image()),
             ("orthographic", !self.perspective),
+            ("light", self.is_light),
         ] {
             if is_on {
                 write!(f, " {name}")?;

@@ -70,6 +70,8 @@ impl KernelKey {
                 "positions",
                 format!("slots/positions/{}", self.rungs.vertices.packed_bits().map_or("stored", |_| self.rungs.vertices.name())),
             ),
+            ("screen", format!("slots/screen/{}", if self.is_light { "picture" } else { "own" })),
+            ("light", format!("slots/light/{}", if self.reads_light() { "mapped" } else { "none" })),
             ("movement", format!("slots/movement/{movement}")),
             ("shape", format!("slots/shape/{shape}")),
             ("pieces", format!("slots/pieces/{pieces}")),

@@ -33,10 +33,13 @@ pub struct Hooks {
     pub has_lines: bool,
     /// Its colour has steps, decided on a value plus [`Surface::nudge`].
     pub has_steps: bool,
+    /// It reads [`Surface::lit`], so the scene is drawn from the light as well.
+    pub reads_light: bool,
 }
 
 impl Hooks {
-    pub const NONE: Self = Self { vertex: None, sample: None, surface: None, image: None, slot: None, has_lines: false, has_steps: false };
+    pub const NONE: Self =
+        Self { vertex: None, sample: None, surface: None, image: None, slot: None, has_lines: false, has_steps: false, reads_light: false };
 
     /// Names for listings: `sample + surface`.
     pub fn names(&self) -> String {
