@@ -1224,5 +1224,6 @@ const EXPECTED: &[(&str, &str)] = &[
     ("glTF2/TestNoRootNode/NoScene", "scene: Index out of bounds"),
     ("glTF2/TestNoRootNode/SceneWithoutNodes", "missing field `nodes`"),
     ("glTF2/draco", "requires the extension \"KHR_draco_mesh_compression\""),
+    ("glTF2/issue_3269", "TEXCOORD_0: is missing, and a texture of its material is looked up there"),
     ("glTF2/wrongTypes", "malformed glTF: invalid type"),
 ];

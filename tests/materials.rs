@@ -21,7 +21,7 @@ use rasterlab::{
         gltf::{self, LoadError, limits},
         texture::{Copies, Filter, Image, Texture, Wrap},
     },
-    session::{SceneSource, Session},
+    session::{Clock, Play, SceneSource, Session},
     shader::{Fetch, KernelKey, Pass, key, library::Library, link, reflect},
 };
 use serde_json::{Value, json};
@@ -862,4 +862,153 @@ fn textured_boxes_of_the_corpus_show_their_image() {
         pictures.push(frame.color);
     }
     assert!(pictures.iter().all(|picture| compare::pictures(picture, &pictures[0], 0).pixels_beyond == 0), "three ways to store one box");
+}
+
+// ---------------------------------------------------------------- the validator of the standard
+
+/// Classes of errors that we leave alone: what a file says about itself and nobody reads, and normals of any length.
+const UNREAD: [&str; 4] =
+    ["ACCESSOR_MIN_MISMATCH", "ACCESSOR_MAX_MISMATCH", "ACCESSOR_VECTOR3_NON_UNIT", "MESH_PRIMITIVE_NO_TANGENT_SPACE"];
+
+/// Reads every file named after it and prints a line of JSON each: the codes of its errors.
+const VALIDATE: &str = r#"
+const validator = require('gltf-validator'), fs = require('fs'), path = require('path');
+const beside = file => uri => new Promise((found, failed) =>
+    fs.readFile(path.resolve(path.dirname(file), decodeURIComponent(uri)), (error, bytes) => error ? failed(String(error)) : found(new Uint8Array(bytes))));
+const codes = report => report.issues.messages.filter(message => message.severity === 0).map(message => message.code);
+(async () => {
+    for (const file of process.argv.slice(1)) {
+        const options = { uri: path.basename(file), externalResourceFunction: beside(file) };
+        const found = await validator.validateBytes(new Uint8Array(fs.readFileSync(file)), options).then(codes, error => [String(error)]);
+        console.log(JSON.stringify(found));
+    }
+})();
+"#;
+
+/// Codes of the errors that the validator finds in every file; none where node or the validator is missing.
+fn validated(files: &[std::path::PathBuf]) -> Option<Vec<Vec<String>>> {
+    let node = |script: &str| {
+        let mut command = std::process::Command::new("node");
+        command.current_dir(env!("CARGO_MANIFEST_DIR")).args(["-e", script]);
+        command
+    };
+    let is_there = node("require('gltf-validator')").output().is_ok_and(|output| output.status.success());
+    if !is_there {
+        eprintln!("gltf-validator is not installed (npm install gltf-validator here, or NODE_PATH): nothing is held against it");
+        return None;
+    }
+    let output = node(VALIDATE).arg("--").args(files).output().expect("node runs");
+    let lines = String::from_utf8(output.stdout).expect("JSON");
+    let lines: Vec<Vec<String>> = lines.lines().map(|line| serde_json::from_str(line).expect("JSON")).collect();
+    assert_eq!(lines.len(), files.len(), "{}", String::from_utf8_lossy(&output.stderr));
+    Some(lines)
+}
+
+fn models_below(folder: &std::path::Path, found: &mut Vec<std::path::PathBuf>) {
+    for entry in std::fs::read_dir(folder).expect("the corpus can be read") {
+        let path = entry.expect("the corpus can be read").path();
+        if path.is_dir() {
+            models_below(&path, found);
+        } else if path.extension().is_some_and(|e| e == "gltf" || e == "glb") {
+            found.push(path);
+        }
+    }
+}
+
+#[test]
+fn what_we_accept_the_validator_accepts_and_the_malformed_are_refused_by_both() {
+    let corpus = std::path::Path::new("/usr/share/assimp/models/glTF2");
+    let mut files = Vec::new();
+    if corpus.is_dir() {
+        models_below(corpus, &mut files);
+    }
+    files.sort();
+    let from_corpus = files.len();
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    let malformed: Vec<(&str, Model)> = malformed();
+    for (name, model) in &malformed {
+        let path = folder.path().join(format!("{name}.glb"));
+        std::fs::write(&path, model.glb()).expect("written");
+        files.push(path);
+    }
+    std::fs::write(folder.path().join("well.glb"), Model::new().glb()).expect("written");
+    files.push(folder.path().join("well.glb"));
+    let Some(errors) = validated(&files) else { return };
+    let mut disagreements = Vec::new();
+    for (place, (file, codes)) in files.iter().zip(&errors).enumerate() {
+        let codes: Vec<&String> = codes.iter().filter(|code| !UNREAD.contains(&code.as_str())).collect();
+        // Beyond the standard, or a schema of its own: extensions that we lack, and a scene that must have nodes.
+        let is_ours = ["techniqueWebGL", "draco", "SceneWithoutNodes"].iter().any(|name| file.to_string_lossy().contains(name));
+        match gltf::load(file) {
+            Ok(_) if !codes.is_empty() => disagreements.push(format!("{} is accepted, and the validator says {codes:?}", file.display())),
+            Err(error) if codes.is_empty() && !is_ours => disagreements.push(format!("the validator has nothing against it: {error}")),
+            _ => {}
+        }
+        if place >= from_corpus {
+            assert_eq!(gltf::load(file).is_err(), place < from_corpus + malformed.len(), "{}", file.display());
+        }
+    }
+    assert_eq!(disagreements, Vec::<String>::new());
+}
+
+/// Files that break a rule of the standard about textures, one each.
+fn malformed() -> Vec<(&'static str, Model)> {
+    let at = |place: &str, value: Value| Model::new().with(place, value);
+    let mut not_finite = Model::new();
+    let coords = not_finite.accessor(&floats(&[0.0, 0.0, f32::NAN, 0.0, 1.0, 1.0, 0.0, 1.0]), F32, "VEC2", 4);
+    let mut few = Model::new();
+    let three = few.accessor(&floats(&[0.0; 6]), F32, "VEC2", 3);
+    let set = "/meshes/0/primitives/0/attributes/TEXCOORD_0";
+    vec![
+        ("texture beyond the list", at(&format!("{BASE}/index"), json!(9))),
+        ("image beyond the list", at("/textures/0/source", json!(9))),
+        ("sampler beyond the list", at("/textures/0/sampler", json!(9))),
+        ("an image of nothing", at("/images/0", json!({}))),
+        ("an image of two things", at("/images/0/uri", json!("flag.png"))),
+        ("a view beyond its buffer", at("/bufferViews/3/byteLength", json!(100_000))),
+        ("no coordinates", at("/meshes/0/primitives/0/attributes", json!({ "POSITION": 0 }))),
+        ("coordinates of one lane", at("/accessors/1/type", json!("SCALAR"))),
+        ("coordinates that are no numbers", not_finite.with(set, json!(coords))),
+        ("fewer coordinates than vertices", few.with(set, json!(three))),
+        ("a negative cutoff", at("/materials/0/alphaMode", json!("MASK")).with("/materials/0/alphaCutoff", json!(-1))),
+    ]
+}
+
+// ---------------------------------------------------------------- cameras
+
+#[test]
+fn cameras_of_a_file_are_chosen_by_name_and_go_with_their_nodes() {
+    let mut model = Model::new();
+    let (times, places) = (model.accessor(&floats(&[0.0, 2.0]), F32, "SCALAR", 2), floats(&[0.0, 0.0, 5.0, 4.0, 0.0, 5.0]));
+    (model.json["accessors"][times]["min"], model.json["accessors"][times]["max"]) = (json!([0]), json!([2]));
+    let places = model.accessor(&places, F32, "VEC3", 2);
+    let lens = json!({ "type": "perspective", "perspective": { "yfov": 0.8, "znear": 0.1 } });
+    let model = model
+        .with("/cameras", json!([lens.clone(), lens]))
+        .with("/nodes", json!([{ "mesh": 0 }, { "children": [2] }, { "camera": 0, "name": "chase", "translation": [0, 1, 0] }, { "camera": 1, "name": "still", "translation": [0, 0, 9] }]))
+        .with("/scenes/0/nodes", json!([0, 1, 3]))
+        .with(
+            "/animations",
+            json!([{ "name": "Drive", "channels": [{ "sampler": 0, "target": { "node": 1, "path": "translation" } }], "samplers": [{ "input": times, "output": places }] }]),
+        );
+    let scene = model.scene();
+    let names: Vec<&str> = scene.cameras.iter().map(|camera| camera.name.as_str()).collect();
+    assert_eq!(names, ["chase", "still"]);
+    let eye = |camera: &str, clip: &str, time_s: f64| {
+        let play = Play { clip: clip.into(), ..Play::default() };
+        let session = Session { scene_camera: camera.into(), play, clock: Clock { time_s, ..Clock::default() }, ..Session::default() };
+        session.check(&scene).unwrap_or_else(|error| panic!("{error}"));
+        let view = session.view(&scene, [64, 48]);
+        (view.eye, view.forward)
+    };
+    assert_eq!(eye("", "", 0.5).0, DVec3::new(0.0, 1.0, 0.0), "at rest its node stands in its parent's place");
+    assert_eq!(eye("", "Drive", 0.5), (DVec3::new(1.0, 1.0, 5.0), DVec3::NEG_Z), "the first, unasked");
+    assert_eq!(eye("chase", "Drive", 1.5).0, DVec3::new(3.0, 1.0, 5.0));
+    assert_eq!(eye("#1", "Drive", 1.5).0, DVec3::new(0.0, 0.0, 9.0));
+    assert_eq!(eye("still", "", 0.0).0, DVec3::new(0.0, 0.0, 9.0));
+    let lost = Session { scene_camera: "crane".into(), ..Session::default() };
+    assert_eq!(lost.check(&scene).unwrap_err().to_string(), "scene.camera: the scene has no camera \"crane\"; it has \"chase\", \"still\"");
+    let own = Camera { eye: DVec3::splat(7.0), ..Camera::default() };
+    let own = Session { scene_camera: "still".into(), camera: Some(own), ..Session::default() };
+    assert_eq!(own.view(&scene, [64, 48]).eye, DVec3::splat(7.0), "a look's own camera comes first");
 }

@@ -1065,3 +1065,26 @@ fn clips_are_chosen_held_and_blended_in_their_folder() {
     settle(&mut lab);
     assert!(lab.state().draws() > before);
 }
+
+#[test]
+fn the_scene_shows_its_images_and_lets_one_look_through_its_cameras() {
+    let Some(mut lab) = lab("builtin:grid?cell=16") else { return };
+    let chosen = |lab: &Lab| lab.state().look().session.scene_camera.clone();
+    let choose = |lab: &mut Lab, entry: &str| {
+        click(lab, Role::ComboBox, "scene.camera");
+        lab.get_by_role_and_label(Role::Button, entry).click();
+        lab.run_steps(4);
+        settle(lab);
+    };
+    let before = lab.state().draws();
+    choose(&mut lab, "pixels in perspective");
+    assert!(chosen(&lab) == "pixels in perspective" && lab.state().draws() > before);
+    choose(&mut lab, "pixels");
+    assert_eq!(chosen(&lab), "", "the first needs no name");
+    undo(&mut lab);
+    assert_eq!(chosen(&lab), "pixels in perspective");
+
+    let Some(lab) = self::lab("builtin:panels") else { return };
+    assert!(lab.query_by_label_contains("3 images, ").is_some());
+    assert!(lab.query_by_label("scene.camera").is_none(), "a scene without cameras has no menu of them");
+}

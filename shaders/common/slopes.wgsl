@@ -21,9 +21,12 @@ fn slopes_of(t: Triangle, at: vec3u, place: Place, screen: vec2f) -> Slopes {
 
 // The same on the plane of a triangle that was cut, at a place of the picture from 0 to 1.
 fn slopes_clipped(t: Triangle, at: vec3u, weights: vec3f, screen: vec2f) -> Slopes {
-    let a = transform_vertex(t.draw, at.x, t.id);
-    let b = transform_vertex(t.draw, at.y, t.id);
-    let c = transform_vertex(t.draw, at.z, t.id);
+    // A loop, since compilers copy what the effects do to a corner to wherever it is called.
+    var corners: array<vec4f, 3>;
+    for (var i = 0u; i < 3u; i += 1u) { corners[i] = transform_vertex(t.draw, at[i], t.id); }
+    let a = corners[0];
+    let b = corners[1];
+    let c = corners[2];
     let lines = transpose(mat3x3f(cross(b.xyw, c.xyw), cross(c.xyw, a.xyw), cross(a.xyw, b.xyw)));
     let shares = lines * vec3f(screen.x * 2.0 - 1.0, 1.0 - screen.y * 2.0, 1.0);
     let sum = dot(shares, vec3f(1.0));

@@ -33,6 +33,9 @@ impl Hardware {
         if let Some(reason) = scene.primitives.iter().find_map(obstacle) {
             return Ok(Err(reason));
         }
+        if scene.primitives.iter().any(|p| !scene.materials[p.material].is_plain()) {
+            return Ok(Err("a material looks up an image, shines or is unlit, which it does not know".into()));
+        }
         if stack.moves() {
             return Ok(Err("an effect moves vertices, which it does not".into()));
         }

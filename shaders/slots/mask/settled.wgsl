@@ -17,11 +17,11 @@ fn mask_settle(t: Triangle, at: vec3u) {
     let c = mask_corner(paint.first_corner + 2u * at.z);
     var corners = array<vec2i, 3>(a, b, c);
     if IS_PIECES {
-        let va = transform_vertex(t.draw, at.x, t.id);
-        let vb = transform_vertex(t.draw, at.y, t.id);
-        let vc = transform_vertex(t.draw, at.z, t.id);
+        // A loop, since compilers copy what the effects do to a corner to wherever it is called.
+        var v: array<vec3f, 3>;
+        for (var i = 0u; i < 3u; i += 1u) { v[i] = transform_vertex(t.draw, at[i], t.id).xyw; }
         // Homogeneous shares of the parent's corners (Olano and Greer 1997).
-        let lines = mat3x3f(cross(vb.xyw, vc.xyw), cross(vc.xyw, va.xyw), cross(va.xyw, vb.xyw));
+        let lines = mat3x3f(cross(v[1], v[2]), cross(v[2], v[0]), cross(v[0], v[1]));
         corners[0] = a + mask_between(lines, vertex_at(t.a), b - a, c - a);
         corners[1] = a + mask_between(lines, vertex_at(t.b), b - a, c - a);
         corners[2] = a + mask_between(lines, vertex_at(t.c), b - a, c - a);
