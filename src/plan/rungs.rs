@@ -111,7 +111,8 @@ pub(super) fn choose(
 /// that costs nothing. A strict picture follows from the look alone.
 fn far_away(rungs: &Rungs, needs: &Needs, accuracy: &Accuracy, tolerance: &Tolerance) -> Option<String> {
     let own = predict(Vertices::AXIS, rungs.vertices.place(), needs);
-    let is_settled = accuracy.pins.rung::<Vertices>().is_some() || rungs.vertex == Vertex::Strict;
+    // Who asks for culling asks for stored places, which its bounds are of.
+    let is_settled = accuracy.pins.rung::<Vertices>().is_some() || rungs.vertex == Vertex::Strict || rungs.culling != Culling::None;
     (!is_settled && !tolerance.holds(&own)).then(|| {
         format!(
             "relative: so far from the origin, rounding moves a stored corner by up to {:.2} px, predicted to cost {:.0} of {:.0} ppm",
