@@ -187,6 +187,7 @@ fn cases() -> Vec<(Arc<Scene>, Stack)> {
         (boxed("teapot?tess=4"), lit(&["explode", "shadow"], &sweep)),
         (boxed("teapot?tess=5"), lit(&["dissolve", "shadow"], &front)),
         (boxed("knot?tess=6"), lit(&["stipple", "shadow"], &[])),
+        (boxed("leaves"), lit(&["shadow"], &[])),
         (boxed("knot?tess=6"), lit(&["shadow", "xray"], &[])),
         (boxed("knot?tess=6"), lit(&["shadow", "dither"], &[("dither", "levels", 5.0)])),
         (scene("near"), lit(&["shadow"], &[])),

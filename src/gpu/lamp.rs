@@ -46,6 +46,7 @@ impl Renderer {
         }
         renderer.tuning = Tuning { listed_tiles: false, ..self.tuning };
         renderer.scene = Some(scene);
+        renderer.texels = self.texels.clone();
         SHARED.iter().for_each(|name| renderer.buffers.share(name, &self.buffers));
         let accuracy = Accuracy { pins: Pins::of(Visibility::Split32).with(Culling::None), ..Accuracy::default() };
         let plan = renderer.prepare(&seen, &casting, &accuracy)?;

@@ -52,7 +52,7 @@ pub fn shadow_map(scene: &Scene, view: &View, stack: &Stack) -> Result<Option<Bo
     let mut geometry = project_moved(scene, &draws, &view, &casting);
     geometry.decisions = decide(scene, &draws, &view, &casting, &geometry);
     let (triangles, _) = triangles(scene, &draws, &geometry);
-    let rules = Rules::of(&casting, &geometry);
+    let rules = Rules::of(&casting, &geometry).masked(scene, &draws, &casting);
     let depths = cover_depths(&rules, &triangles, &view);
     let keys = depths.iter().map(|cell| if cell.depth.is_finite() { depth_key(cell.depth) } else { 0 }).collect();
     Ok(Some(Box::new(LightMap { keys, geometry })))
@@ -203,7 +203,7 @@ pub(super) fn judge(accuracy: &mut Accuracy, scene: &Scene, view: &View, stack: 
     let own = project_moved(scene, &draws, &view, &casting);
     assert_eq!(map.geometry.vertices.len(), own.vertices.len(), "the shadow map is of another scene or stack");
     let (triangles, _) = triangles(scene, &draws, &map.geometry);
-    let rules = Rules::of(&casting, &map.geometry);
+    let rules = Rules::of(&casting, &map.geometry).masked(scene, &draws, &casting);
     for (cell, &key) in cover_depths(&rules, &triangles, &view).iter().zip(&map.keys) {
         let is_covered = cell.depth.is_finite();
         accuracy.holes += u64::from(is_covered && key == 0);

@@ -6,13 +6,14 @@ use glam::DVec3;
 
 use super::{
     form::{Form, Plain, Precision},
+    pins::pin,
     polyline,
     rules::{encloses, is_polyline, rises},
 };
 use crate::{
     ladder::{
-        AXES, Checks, Clipping, Counting, Coverage, Culling, Depth, DotWay, Parameters, Perspective, Rung, Scale, ShadowMap, Skinning,
-        Sums, Taps, Vertex, Vertices, Visibility,
+        Checks, Clipping, Counting, Coverage, Culling, Depth, DotWay, Parameters, Perspective, Scale, ShadowMap, Skinning, Sums, Taps,
+        Vertex, Vertices, Visibility,
     },
     scene::camera::{Camera, MIN_NEAR_M, Projection},
     session::{SceneSource, Session, Test, Tier},
@@ -108,7 +109,7 @@ pub type Rule = fn(&Plain) -> Result<(), String>;
 type Get = fn(&Session) -> Option<Plain>;
 type Set = fn(&mut Session, Plain);
 
-const fn key(section: &'static str, name: &'static str, form: Form, doc: &'static str, get: Get, set: Set) -> Key {
+pub(super) const fn key(section: &'static str, name: &'static str, form: Form, doc: &'static str, get: Get, set: Set) -> Key {
     Key { section, name, doc, form, rival: None, rule: None, get, set }
 }
 
@@ -118,20 +119,6 @@ const fn ruled(key: Key, rule: Rule) -> Key {
 
 const fn rivals(key: Key, rival: &'static str) -> Key {
     Key { rival: Some(rival), ..key }
-}
-
-/// The key that pins an axis of the ladder; its first word leaves the choice to the planner.
-const fn pin<R: Rung>() -> Key {
-    let axis = &AXES[R::AXIS];
-    key("accuracy", axis.name, Form::Word(axis.choices), axis.about, pinned::<R>, set_pin::<R>)
-}
-
-fn pinned<R: Rung>(session: &Session) -> Option<Plain> {
-    Some(Plain::number(session.accuracy.pins.get(&AXES[R::AXIS]).map_or(0, |place| 1 + place as u32)))
-}
-
-fn set_pin<R: Rung>(session: &mut Session, plain: Plain) {
-    session.accuracy.pins.set(&AXES[R::AXIS], (plain.first() as usize).checked_sub(1));
 }
 
 /// Every key besides `schema`, `stack` and the effects, in the order in which they are written.
@@ -443,6 +430,7 @@ fn point(p: DVec3) -> Plain {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::ladder::AXES;
 
     #[test]
     fn every_axis_of_the_ladder_has_a_key() {

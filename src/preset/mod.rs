@@ -11,6 +11,7 @@ mod gallery;
 pub mod keys;
 pub mod migrate;
 mod path;
+mod pins;
 mod polyline;
 mod read;
 mod rules;
