@@ -132,6 +132,20 @@ ladder! {
         /// The mean of their motions as dual quaternions: lengths are kept, and nearly all of the volume.
         Dual = "dual",
     }
+    /// How the flow of particles is derived from noise.
+    curl: Curl = "curl", usual Analytic {
+        /// From six values about a point.
+        Difference = "difference",
+        /// From the exact derivatives of the noise, which take one visit to its lattice.
+        Analytic = "analytic",
+    }
+    /// How particles are kept from one step to the next.
+    state: State = "state", usual Float32 {
+        /// Places as 16-bit shares of the room, velocities as halves: 16 bytes a particle.
+        Half16 = "half16",
+        /// All numbers as floats: 32 bytes a particle.
+        Float32 = "float32",
+    }
     /// What a depth is compared by.
     depth: Depth = "depth", usual Reversed {
         /// 16 bits, evenly spaced in normalized device depth.

@@ -5,6 +5,7 @@ use rasterlab::{
     gpu::bends::{BendRecord, ShapeRecord},
     gpu::culling::{CullingUniform, InstanceRecord, MeshletRecord},
     gpu::dots::{DotFrame, StretchRecord},
+    gpu::swarm::{CourseRecord, SwarmUniform},
     gpu::texels::{LookupRecord, PaintRecord},
     gpu::uniforms::{CounterRecord, DrawRecord, FrameUniform, LightUniform, ScalingUniform, Twin},
     ladder::Visibility,
@@ -52,12 +53,17 @@ fn uniforms_and_records_agree() {
     let resolve = reflected(Pass::Resolve, vec![]);
     check_twin::<LookupRecord>(&resolve);
     check_twin::<PaintRecord>(&resolve);
+    let particles = reflected(Pass::Particles, vec![]);
+    check_twin::<SwarmUniform>(&particles);
+    check_twin::<CourseRecord>(&particles);
 }
 
 #[test]
 fn arrays_of_records_have_one_stride() {
     let (span, _) = reflected(Pass::Project, vec![]).layout("Draw").expect("there");
     assert_eq!(span, size_of::<DrawRecord>());
+    let (span, _) = reflected(Pass::Particles, vec![]).layout("Course").expect("there");
+    assert_eq!(span, size_of::<CourseRecord>());
 }
 
 #[test]

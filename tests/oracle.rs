@@ -142,6 +142,7 @@ fn flat_view(width: u32, height: u32) -> View {
         polyline: Default::default(),
         shadow: Default::default(),
         picture_from_world: None,
+        flow: None,
     }
 }
 

@@ -78,7 +78,7 @@ impl App {
         let most = self.screen.gpu.caps.max_texture_side;
         let size = [pixels.x, pixels.y].map(|side| (side.max(0.0) as u32).min(most));
         self.motion.widening = self.widening(size);
-        let moved = self.navigate(ui, &response);
+        let moved = if self.attract(&response) { false } else { self.navigate(ui, &response) };
         self.pick_under(&response);
         self.draw(ui.ctx(), size, moved);
         self.feed_overlays(ui.ctx());
@@ -126,7 +126,7 @@ impl App {
 
     /// The look as a picture of `size` shows it: the whole of the look's own frame, and more where the shapes differ.
     pub(super) fn view_at(&self, scene: &Scene, size: [u32; 2]) -> View {
-        self.view_of(self.shown_session(), scene, size)
+        self.with_trail(self.view_of(self.shown_session(), scene, size))
     }
 
     /// The same of another session.

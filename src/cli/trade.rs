@@ -142,6 +142,12 @@ fn lines(rows: &[TradeRow]) -> Vec<Vec<String>> {
         "GAIN",
     ];
     let mut lines = vec![head.map(str::to_owned).to_vec()];
+    // Only where particles fly is there a column for how far they went astray.
+    let flies = rows.iter().any(|row| row.error.is_some_and(|error| error.max_astray_px.is_some()));
+    let before_bytes = head.len() - 2;
+    if flies {
+        ["ASTRAY PX", "MEAN M"].map(str::to_owned).into_iter().rev().for_each(|cell| lines[0].insert(before_bytes, cell));
+    }
     let not_measured = || "not measured".to_owned();
     let ms = |ms: Option<f64>| ms.map_or_else(not_measured, |ms| format!("{ms:.4}"));
     // Only where a light casts shadows are there columns for how well.
@@ -177,6 +183,10 @@ fn lines(rows: &[TradeRow]) -> Vec<Vec<String>> {
             format!("{:.1}", row.bytes as f64 / f64::from(1 << 20)),
             if row.is_beaten { "no gain" } else { "-" }.into(),
         ];
+        if flies {
+            line.insert(before_bytes, figure(&|e| e.mean_astray_m.map_or_else(|| "-".into(), |m| format!("{m:.1e}"))));
+            line.insert(before_bytes, figure(&|e| e.max_astray_px.map_or_else(|| "-".into(), |px| format!("{px:.4}"))));
+        }
         if has_light {
             let light = |share: Option<f64>, digits: usize| share.map_or_else(not_measured, |share| format!("{share:.digits$}"));
             let cells = [figure(&|e| light(e.wrong_light_ppm, 1)), figure(&|e| light(e.rms_light, 4))];

@@ -4,7 +4,7 @@
 
 use crate::{
     params::{Field, Params},
-    scene::{Scene, camera::View, light::view_from},
+    scene::{Scene, camera::View, light::view_from, splats::Cloud},
 };
 
 pub mod hooks;
@@ -25,6 +25,7 @@ effects![
     boxes,
     points,
     draw_order,
+    particles,
     explode,
     inflate,
     wobble,
@@ -134,6 +135,12 @@ impl Effect {
     /// The same effect, which draws along lines.
     pub const fn with_lines(mut self) -> Self {
         self.hooks.has_lines = true;
+        self
+    }
+
+    /// The same effect, which puts a cloud beside the scene.
+    pub const fn with_cloud(mut self, cloud: fn(&[u32]) -> Cloud) -> Self {
+        self.hooks.cloud = Some(cloud);
         self
     }
 
@@ -308,6 +315,11 @@ impl Stack {
     /// Does an effect move corners by their triangle, so that triangles share none?
     pub fn parts_corners(&self) -> bool {
         self.each(|hooks| hooks.vertex).any(|(hook, _)| hook.needs_triangle)
+    }
+
+    /// The cloud that an effect puts beside the scene.
+    pub fn cloud(&self) -> Option<Cloud> {
+        self.each(|hooks| hooks.cloud).map(|(cloud, words)| cloud(words)).find(|cloud| cloud.count > 0)
     }
 
     /// The effect in a slot of the rasterizer.

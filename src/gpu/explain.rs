@@ -103,6 +103,7 @@ impl Renderer {
 
 pub(super) fn pass_purpose(pass: Pass) -> &'static str {
     match pass {
+        Pass::Particles => "takes every particle one step on and writes the triangle of its disc",
         Pass::Skin => "mixes shapes and follows joints, once per vertex of every mesh that bends",
         Pass::Project => "pulls, transforms and snaps every vertex once",
         Pass::Cull(Round::Only) => "leaves out meshlets outside the picture and those that face away, lists the others",

@@ -19,6 +19,8 @@ mod past;
 pub mod pipelines;
 mod prepare;
 pub mod readback;
+mod scenes;
+pub mod swarm;
 pub mod texels;
 pub mod timer;
 pub mod trade;
@@ -33,7 +35,6 @@ pub use explain::{Explanation, SizesNote};
 pub use readback::Capture;
 
 use self::{
-    bends::BENT_BYTES,
     buffers::Buffers,
     culling::Patches,
     dispatch::{Dispatch, dispatch},
@@ -41,7 +42,7 @@ use self::{
     lamp::Lamp,
     packing::Packing,
     pipelines::Pipelines,
-    prepare::{bin_heads, first_capacities, record_count, recorded_capacities},
+    prepare::{bin_heads, record_count, recorded_capacities},
     readback::Pending,
     texels::Texels,
     timer::{Detail, Timer},
@@ -53,7 +54,7 @@ use crate::{
     frame::{Counters, CullingFigures, OrderFigures},
     ladder::Scale,
     plan::{Accuracy, Plan, Tuning},
-    scene::{Scene, camera::View},
+    scene::{Scene, camera::View, splats::Cloud},
     shader::{
         key::{KernelKey, Order, Pass},
         library::Library,
@@ -75,6 +76,8 @@ pub struct Report {
     pub culled: Option<CullingFigures>,
     /// A queue overflowed and has grown: the picture is incomplete, draw it again.
     pub redraw: bool,
+    /// Particles are on their way to the frame that was asked for: draw it again.
+    pub is_behind: bool,
 }
 
 /// Draws scenes on one device.
@@ -83,9 +86,12 @@ pub struct Renderer {
     pipelines: Pipelines,
     buffers: Buffers,
     timer: Option<Timer>,
+    base: Option<Arc<Scene>>,
+    /// The base with the cloud that the stack puts beside it: what is on the device.
     scene: Option<Arc<Scene>>,
     /// Images and materials of the scene, where it has any that are more than a base colour.
     texels: Option<Texels>,
+    cloud: Option<Cloud>,
     tuning: Tuning,
     capacities: Capacities,
     /// A proof from bounds failed: queues and clipping are kept from now on.
@@ -122,6 +128,10 @@ pub struct Renderer {
     lamp: Option<Box<Lamp>>,
     /// This is such a one itself: it draws depths, no picture.
     is_lamp: bool,
+    /// The particles that the device keeps.
+    kept: Option<swarm::Kept>,
+    /// The last picture shows particles on their way to its own frame.
+    is_behind: bool,
 }
 
 const STORAGE: wgpu::BufferUsages = wgpu::BufferUsages::STORAGE;
@@ -140,8 +150,10 @@ impl Renderer {
             pipelines: Pipelines::new(library),
             buffers: Buffers::default(),
             timer,
+            base: None,
             scene: None,
             texels: None,
+            cloud: None,
             capacities: Capacities::default(),
             distrust: false,
             target: None,
@@ -162,6 +174,8 @@ impl Renderer {
             totals: [0; 2],
             lamp: None,
             is_lamp: false,
+            kept: None,
+            is_behind: false,
         }
     }
 
@@ -200,69 +214,48 @@ impl Renderer {
         self.pipelines.compiled()
     }
 
-    /// Uploads a scene's bytes as they are. The one in place stays when the new one does not fit.
-    pub fn set_scene(&mut self, scene: &Arc<Scene>) -> Result<(), RenderError> {
-        if self.scene.as_ref().is_some_and(|current| Arc::ptr_eq(current, scene)) {
-            return Ok(());
-        }
-        let limit = self.gpu.caps.max_storage_binding_bytes.min(self.gpu.caps.max_buffer_bytes);
-        let vertices = 16 * scene.vertex_count();
-        let room = scene.vertex_bytes.len() as u64 + u64::from(BENT_BYTES) * scene.soft_vertex_count();
-        for (buffer, bytes) in [("vertex_bytes", room), ("index_bytes", scene.index_bytes.len() as u64), ("vertices", vertices)] {
-            if bytes > limit {
-                return Err(RenderError::TooLarge { buffer, bytes, limit });
-            }
-        }
-        self.buffers
-            .keep(|name| !matches!(name, "vertex_bytes" | "index_bytes" | "vertices" | "meshlets" | "meshlet_lists" | "seen" | "hiz"));
-        self.patches = None;
-        self.occluders = None;
-        self.hold_attributes(scene, None)?;
-        if !scene.index_bytes.is_empty() {
-            self.buffers.fill(
-                &self.gpu,
-                "index_bytes",
-                &scene.index_bytes,
-                STORAGE | wgpu::BufferUsages::INDEX,
-                "index lists as the file has them",
-            )?;
-        }
-        self.capacities = first_capacities(scene);
-        self.distrust = false;
-        self.past = None;
-        self.full = None;
-        self.dots = None;
-        self.texels = None;
-        self.lamp = None;
-        self.scene = Some(scene.clone());
-        Ok(())
-    }
-
     /// Records and submits one frame; never waits. A picture of 0 pixels dispatches nothing.
     pub fn draw(&mut self, view: &View, stack: &Stack, accuracy: &Accuracy) -> Result<(), RenderError> {
-        self.draw_timed(view, stack, accuracy, Detail::Passes)
+        self.draw_timed(view, stack, accuracy, Detail::Passes, false)
     }
 
-    pub(crate) fn draw_timed(&mut self, view: &View, stack: &Stack, accuracy: &Accuracy, detail: Detail) -> Result<(), RenderError> {
+    pub(crate) fn draw_timed(
+        &mut self,
+        view: &View,
+        stack: &Stack,
+        accuracy: &Accuracy,
+        detail: Detail,
+        is_patient: bool,
+    ) -> Result<(), RenderError> {
         let scale = accuracy.scale();
         self.shown = [view.width, view.height];
         if scale == Scale::Whole {
-            return self.draw_pixels(view, stack, accuracy, detail);
+            return self.draw_pixels(view, stack, accuracy, detail, is_patient);
         }
         let drawn = view.scaled(scale.factor());
-        self.draw_pixels(&drawn, &stack.scaled(scale.factor()), accuracy, detail).map_err(|error| error.at_scale(scale, view, &drawn))
+        let stack = &stack.scaled(scale.factor());
+        self.draw_pixels(&drawn, stack, accuracy, detail, is_patient).map_err(|error| error.at_scale(scale, view, &drawn))
     }
 
-    /// Draws as many pixels as `view` has, whatever the size at which they are shown.
-    fn draw_pixels(&mut self, view: &View, stack: &Stack, accuracy: &Accuracy, detail: Detail) -> Result<(), RenderError> {
+    /// Draws as many pixels as `view` has, whatever the size at which they are shown. Who is patient waits for particles.
+    fn draw_pixels(
+        &mut self,
+        view: &View,
+        stack: &Stack,
+        accuracy: &Accuracy,
+        detail: Detail,
+        is_patient: bool,
+    ) -> Result<(), RenderError> {
         if self.gpu.is_lost() {
             return Err(RenderError::Lost);
         }
+        self.dress(stack)?;
         let plan = self.prepare(view, stack, accuracy)?;
         if view.pixels() == 0 {
             self.target = None;
             return Ok(());
         }
+        self.is_behind = self.fly(&plan.key, view, stack, is_patient)?;
         self.prepare_lamp(view, stack)?;
         let passes = plan.key.frame();
         let mut encoder = self.gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor { label: Some("frame") });
@@ -344,7 +337,7 @@ impl Renderer {
             self.culled = culled;
         }
         let cpu_ms = self.dots.as_ref().and_then(|dots| dots.chosen_ms);
-        Some(Report { gpu_ms: times.total_ms, cpu_ms, passes: times.passes, counters, order, culled, redraw })
+        Some(Report { gpu_ms: times.total_ms, cpu_ms, passes: times.passes, counters, order, culled, redraw, is_behind: self.is_behind })
     }
 
     /// Makes room for what the queues lost, or gives up a proof that was wrong; true if either may help.
@@ -389,7 +382,7 @@ impl Renderer {
     ) -> Result<(), RenderError> {
         let (vertices, triangles) = (record_count(key, self.totals) as u32, self.totals[1] as u32);
         let bent = self.bent.last().map_or(0, |range| range.end);
-        let meshlets = self.patches.as_ref().map_or(0, |patches| patches.count);
+        let (meshlets, particles) = (self.patches.as_ref().map_or(0, |patches| patches.count), self.cloud.map_or(0, |cloud| cloud.count));
         for (i, &pass) in passes.iter().enumerate() {
             let pipeline = self.pipelines.get(&self.gpu, key, pass)?;
             let is_last = ends && i + 1 == passes.len();
@@ -402,7 +395,7 @@ impl Renderer {
             });
             let size = match &self.dots {
                 Some(dots) if pass.is_of_dots() => dots.dispatch(pass, key),
-                _ => dispatch(pass, [vertices, triangles, bent, meshlets], view, self.shown, key),
+                _ => dispatch(pass, [vertices, triangles, bent, meshlets, particles], view, self.shown, key),
             };
             match size {
                 Dispatch::Direct([x, y]) => recorded.dispatch_workgroups(x, y, 1),

@@ -113,6 +113,7 @@ impl Renderer {
             "bends" => key.bends(),
             "joints" => key.has_joints,
             "shapes" => key.has_shapes,
+            "flights" | "course" | "swarm" => key.has_particles,
             "depth_keys" | "owners" => key.layout() == Layout::Split,
             "depth_owner" => key.layout() == Layout::Pairs,
             "packed" => key.layout() == Layout::Word,

@@ -11,7 +11,7 @@ use super::{
     buffers,
     dots::first_dot_word,
     prepare::record_count,
-    timer::{Timer, Times},
+    timer::{Detail, Timer, Times},
     uniforms::OrderRecord,
 };
 use crate::{
@@ -180,7 +180,7 @@ impl Renderer {
     pub fn draw_whole(&mut self, view: &View, stack: &Stack, accuracy: &Accuracy) -> Result<Counters, RenderError> {
         let mut lost = 0;
         for _ in 0..11 {
-            self.draw(view, stack, accuracy)?;
+            self.draw_timed(view, stack, accuracy, Detail::Passes, true)?;
             if view.pixels() == 0 {
                 return Ok(Counters::default());
             }
@@ -281,6 +281,8 @@ impl Renderer {
             is_rough: key.rungs.vertices.packed_bits().is_some(),
             dots: Vec::new(),
             exact: Exactness { vertices: key.rungs.vertex == Vertex::Strict, keys: key.rungs.depth == Depth::Integer },
+            swarm: self.read_swarm(key)?,
+            splats: scene.splat_ids(),
             bent: self.read_bent(scene.vertex_bytes.len() as u64)?,
             light: None,
         })

@@ -55,6 +55,12 @@ pub struct TradeError {
     pub cracks_per_mpx: f64,
     pub overflow: u64,
     pub orphans: u64,
+    /// Largest distance of a particle from its true flight, pixels; none without particles.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub max_astray_px: Option<f64>,
+    /// Mean of that in the scene, metres.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub mean_astray_m: Option<f64>,
 }
 
 /// One combination of rungs.
@@ -240,8 +246,8 @@ impl Entry {
     /// Draws twice without a pause and waits for the second: an idle device lowers its clocks, and others' frames empty its caches.
     fn sample(&mut self, session: &Session, is_kept: bool) -> Result<(), RenderError> {
         let accuracy = Accuracy { pins: self.pins, ..session.accuracy };
-        self.renderer.draw_timed(&self.view, &session.stack, &accuracy, Detail::Whole)?;
-        self.renderer.draw_timed(&self.view, &session.stack, &accuracy, Detail::Whole)?;
+        self.renderer.draw_timed(&self.view, &session.stack, &accuracy, Detail::Whole, true)?;
+        self.renderer.draw_timed(&self.view, &session.stack, &accuracy, Detail::Whole, true)?;
         let report = self.renderer.finish()?;
         match report.gpu_ms {
             Some(ms) if is_kept => {
@@ -306,6 +312,8 @@ impl TradeError {
             cracks_per_mpx: per_million(cracks(frame, picture, moved_px)),
             overflow: a.overflow,
             orphans: a.orphans,
+            max_astray_px: (a.particles > 0).then_some(a.max_astray_px),
+            mean_astray_m: (a.particles > 0).then_some(a.mean_astray_m),
         }
     }
 
@@ -313,7 +321,15 @@ impl TradeError {
     pub fn is_at_most(&self, other: &Self) -> bool {
         let figures = |e: &Self| {
             let counts = [e.changed_pixels, e.overflow, e.orphans].map(|count| count as f64);
-            let shares = [e.wrong_ppm, e.holes_per_mpx, e.double_hits_per_mpx, e.wrong_depth_ppm, e.rms_colour_delta, e.cracks_per_mpx];
+            let shares = [
+                e.wrong_ppm,
+                e.holes_per_mpx,
+                e.double_hits_per_mpx,
+                e.wrong_depth_ppm,
+                e.rms_colour_delta,
+                e.cracks_per_mpx,
+                e.mean_astray_m.unwrap_or(0.0),
+            ];
             let light = [e.wrong_light_ppm, e.rms_light].map(Option::unwrap_or_default);
             [shares.to_vec(), light.to_vec(), counts.to_vec(), vec![e.max_colour_delta.into()]].concat()
         };

@@ -318,7 +318,10 @@ impl DrawRecord {
             first_vertex: draw.first_vertex,
             vertex_count: primitive.vertex_count(),
             first_triangle: draw.first_triangle,
-            flags: u32::from(draw.double_sided) | u32::from(draw.mirrored) << 1 | (draw.primitive as u32) << 8,
+            flags: u32::from(draw.double_sided)
+                | u32::from(draw.mirrored) << 1
+                | u32::from(scene.splats == Some(draw.primitive)) << 2
+                | (draw.primitive as u32) << 8,
             topology: primitive.topology as u32,
             index_offset: primitive.indices.map_or(0, |i| i.offset),
             index_format: primitive.indices.map_or(0, |i| i.component.bytes()),

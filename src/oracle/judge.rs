@@ -18,7 +18,7 @@ use super::{
     layers::{Layered, Scenery, layered},
     light,
     moved::{Corner, Mover},
-    order,
+    order, particles,
     project::{Clip, half_size, project_as},
     rules::Rules,
     steps::Answers,
@@ -75,10 +75,12 @@ pub fn judge_after(
     // The adapter's grid, the origin of its places and the pixels that it draws are promises of its rungs, not faults.
     let view = &View { subpixel_bits: geometry.subpixel_bits, is_relative: geometry.is_relative, ..view.scaled(geometry.scale) };
     let stack = &stack.scaled(geometry.scale);
-    let draws = draws(scene, view)?;
     if view.pixels() == 0 {
+        draws(scene, view)?;
         return Ok(Verdict { expected: empty(view), ..Verdict::default() });
     }
+    let scene = &*particles::dressed(scene, view, stack, geometry.swarm.as_ref());
+    let draws = draws(scene, view)?;
     assert_eq!([adapter.owner.len(), adapter.key.len(), adapter.color.len()], [view.pixels(); 3], "the frame has another size");
     let mut own = project_as(geometry.exact, scene, &draws, view, stack);
     own.decisions = decide(scene, &draws, view, stack, &own);
@@ -127,6 +129,7 @@ pub fn judge_after(
     accuracy.step_band_pixels = step_band.iter().filter(|is_band| **is_band).count() as u64;
     judge_counters(&mut accuracy, &counters, adapter);
     judge_vertices(&mut accuracy, &vertices);
+    judge_particles(&mut accuracy, view, stack, geometry);
     bend::judge(&mut accuracy, scene, &draws, view, &geometry.bent);
     dots::judge(&mut accuracy, (scene, &draws, view, stack), &geometry.dots, [&adapter.dots, &dots])?;
     // Of rough places, fronts travel roughly.
@@ -218,6 +221,16 @@ fn judge_counters(accuracy: &mut Accuracy, truth: &Counters, adapter: &Frame) {
     accuracy.counters_wrong = counted(truth).iter().zip(counted(&adapter.counters)).filter(|(a, b)| *a != b).count() as u64;
     accuracy.overflow += u64::from(adapter.counters.overflow);
     accuracy.orphans = accuracy.orphans.max(adapter.counters.orphans.into());
+}
+
+fn judge_particles(accuracy: &mut Accuracy, view: &View, stack: &Stack, geometry: &Geometry) {
+    let Some(swarm) = &geometry.swarm else { return };
+    let judged = particles::judged(view, stack, swarm);
+    accuracy.particles = judged.len() as u64;
+    accuracy.particles_outside_bound = judged.iter().filter(|one| one.is_outside).count() as u64;
+    accuracy.particles_astray = judged.iter().filter(|one| one.astray_px > 1.0).count() as u64;
+    accuracy.max_astray_px = judged.iter().map(|one| one.astray_px).fold(0.0, f64::max);
+    accuracy.mean_astray_m = judged.iter().map(|one| one.astray_m).sum::<f64>() / judged.len().max(1) as f64;
 }
 
 /// What the judgement of one vertex found.

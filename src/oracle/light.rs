@@ -248,7 +248,7 @@ pub fn light_errors(
     }))
 }
 
-/// Does an effect leave samples out?
+/// Does an effect leave samples out, or show but a part of a triangle?
 pub(super) fn leaves_out(stack: &Stack) -> bool {
-    stack.each(|hooks| hooks.sample).next().is_some()
+    stack.each(|hooks| hooks.sample).next().is_some() || stack.cloud().is_some()
 }

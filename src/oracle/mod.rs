@@ -23,10 +23,12 @@ mod light;
 mod mask;
 mod moved;
 mod order;
+pub mod particles;
 mod project;
 mod rays;
 mod rules;
 mod shown;
+mod spread;
 mod steps;
 mod strict;
 mod surface;
@@ -121,10 +123,12 @@ fn traced(view: &View, stack: &Stack) -> View {
 /// # Errors
 /// As [`render`].
 pub fn render_after(scene: &Scene, view: &View, stack: &Stack, previous: Option<&[[u8; 4]]>) -> Result<Frame, DrawError> {
-    let draws = draws(scene, view)?;
     if view.pixels() == 0 {
+        draws(scene, view)?;
         return Ok(empty(view));
     }
+    let scene = &*particles::dressed(scene, view, stack, None);
+    let draws = draws(scene, view)?;
     let mut geometry = project_moved(scene, &draws, view, stack);
     geometry.decisions = decide(scene, &draws, view, stack, &geometry);
     geometry.dots = dot_records(scene, &draws, view, stack)?;

@@ -197,8 +197,8 @@ pub enum PlanError {
     Carried { what: String },
     #[error("vertex strict holds where integers decide, but {what}; take it out, or another rung")]
     Floats { what: String },
-    #[error("vertices {rung} packs meshes that keep their shape, and joints or shapes bend one here; use stored")]
-    Bent { rung: &'static str },
+    #[error("vertices {rung} packs meshes that keep their shape, and here {what}; use stored")]
+    Bent { rung: &'static str, what: &'static str },
     #[error("depth integer divides exact edges, which coverage {rung} does not have; use fixed8")]
     Inexact { rung: &'static str },
     #[error(transparent)]
@@ -300,6 +300,7 @@ pub fn plan(needs: &Needs, stack: &Stack, caps: &Caps, tuning: &Tuning, accuracy
         has_texels: needs.paints > 0,
         has_joints: needs.skinning.is_some(),
         has_shapes: needs.shapes,
+        has_particles: needs.splats,
         has_planes,
         perspective: needs.perspective,
         small_samples,

@@ -13,7 +13,9 @@ use crate::{
         points, read,
         xray::{Reach, Xray},
     },
-    ladder::{AXES, Coverage, Culling, Depth, DotWay, Rung, Rungs, ShadowMap, Skinning, Sums, Taps, Vertex, Vertices, Visibility},
+    ladder::{
+        AXES, Coverage, Culling, Curl, Depth, DotWay, Rung, Rungs, ShadowMap, Skinning, State, Sums, Taps, Vertex, Vertices, Visibility,
+    },
     math::SUBPIXEL_BITS,
     scene::needs::Needs,
 };
@@ -51,6 +53,9 @@ pub(super) fn choose(
     let has_dots = stack.dots().is_some();
     if !has_dots {
         rungs.dots = DotWay::default();
+    }
+    if !needs.splats {
+        (rungs.curl, rungs.state) = (Curl::default(), State::default());
     }
     if layers == Some(Layers::Race) {
         rungs.visibility = Visibility::Race;
@@ -127,6 +132,7 @@ fn unfit_for_culling(rungs: &Rungs, stack: &Stack, layers: Option<Layers>) -> Op
     let (most, why) = match (layers, rungs.visibility) {
         _ if rungs.vertices != Vertices::Stored => (Culling::None, "bounds of meshlets are of places as they are stored"),
         _ if stack.moves() => (Culling::None, "effects move meshes out of their bounds"),
+        _ if stack.cloud().is_some() => (Culling::None, "particles stay in no bounds that a meshlet could have"),
         _ if stack.shape() == Shape::Points => (Culling::None, "discs reach out of the bounds of their meshes"),
         _ if stack.draw_order().is_some() => (Culling::None, "a draw order counts the samples of every triangle"),
         (Some(Layers::Race), _) | (_, Visibility::Race) => (Culling::None, "a race shows what happens to every triangle"),
@@ -163,8 +169,9 @@ fn check(rungs: &Rungs, needs: &Needs, f32_positions: bool, stack: &Stack, caps:
     if rungs.depth == Depth::Integer && rungs.coverage.is_float() {
         return Err(PlanError::Inexact { rung: rungs.coverage.name() });
     }
-    if rungs.vertices.packed_bits().is_some() && (needs.skinning.is_some() || needs.shapes) {
-        return Err(PlanError::Bent { rung: rungs.vertices.name() });
+    if rungs.vertices.packed_bits().is_some() && (needs.skinning.is_some() || needs.shapes || needs.splats) {
+        let what = if needs.splats { "particles fly" } else { "joints or shapes bend one" };
+        return Err(PlanError::Bent { rung: rungs.vertices.name(), what });
     }
     if rungs.dots == DotWay::Cpu
         && let Some(what) = carried(stack, needs)
@@ -227,5 +234,6 @@ fn floats(rungs: &Rungs, stack: &Stack, needs: &Needs, f32_positions: bool) -> O
     let bends = || (needs.skinning.is_some() || needs.shapes).then(|| "joints or shapes bend a mesh in floats".to_owned());
     let packed = || rungs.vertices.packed_bits().map(|_| format!("vertices {} unpacks places in floats", rungs.vertices.name()));
     let masks = || (needs.masked && needs.clipping).then(|| "the mask of a triangle that is cut is placed in floats".to_owned());
-    stack.0.iter().find_map(reason).or_else(packed).or_else(bends).or_else(positions).or_else(masks)
+    let flies = || needs.splats.then(|| "particles fly in floats".to_owned());
+    stack.0.iter().find_map(reason).or_else(packed).or_else(bends).or_else(flies).or_else(positions).or_else(masks)
 }

@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use glam::{DMat4, DVec3, DVec4};
 
-use super::{Bounds, light::ShadowGrid, pose::Pose};
+use super::{Bounds, light::ShadowGrid, pose::Pose, splats::Flow};
 use crate::math::{SUBPIXEL_BITS, view_from_world};
 
 /// Smallest near distance that keeps every quotient of the vertex stage finite.
@@ -103,6 +103,8 @@ pub struct View {
     /// Where things stand in the picture for which this view, a light's, draws a shadow map; none in a picture itself. A
     /// light sees back faces too: they stop it as well.
     pub picture_from_world: Option<DMat4>,
+    /// How far the particles have flown; none: they are where they begin.
+    pub flow: Option<Arc<Flow>>,
 }
 
 impl View {
@@ -148,6 +150,7 @@ impl View {
             polyline: Arc::default(),
             shadow: ShadowGrid::default(),
             picture_from_world: None,
+            flow: None,
         }
     }
 

@@ -64,7 +64,9 @@ impl Lines {
         let pose = Pose::at_rest(scene);
         let mut known: HashMap<usize, Vec<Walk>> = HashMap::new();
         let mut lines = Self::default();
-        for (draw, instance) in scene.instances.iter().enumerate() {
+        // Discs have no edges.
+        let meshes = scene.instances.iter().enumerate().filter(|(_, instance)| scene.splats != Some(instance.primitive));
+        for (draw, instance) in meshes {
             let walks = known.entry(instance.primitive).or_insert_with(|| walks(scene, &scene.primitives[instance.primitive], crease_deg));
             let place = pose.as_ref().map_or(instance.world_from_object, |pose| pose.place(draw));
             // What joints hold is as large as its first joint makes it.

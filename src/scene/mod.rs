@@ -17,6 +17,7 @@ pub mod pose;
 pub mod rig;
 mod room;
 pub mod sizes;
+pub mod splats;
 pub mod texture;
 
 use glam::{DMat4, DVec3};
@@ -367,6 +368,8 @@ pub struct Scene {
     pub cameras: Vec<FileCamera>,
     /// What moves.
     pub rig: Rig,
+    /// The primitive whose triangles are splats, which one instance alone shows.
+    pub splats: Option<usize>,
     /// What the loader wants the user to know, for instance extensions it ignored.
     pub notes: Vec<String>,
 }

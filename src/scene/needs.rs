@@ -38,6 +38,8 @@ pub struct Needs {
     pub is_light: bool,
     /// Some mesh is mixed from shapes.
     pub shapes: bool,
+    /// Some triangles are splats.
+    pub splats: bool,
     /// How joints hold meshes, where any do.
     pub skinning: Option<Skinning>,
     /// Clips may move parts of the scene.
@@ -95,6 +97,7 @@ impl Needs {
             textured: painted.iter().filter(|material| scene.materials[**material].textures() != [None, None]).count(),
             masked: drawn().any(|p| scene.materials[p.material].least_alpha().is_some()),
             shapes: draws.iter().any(|draw| draw.bend.as_ref().is_some_and(|bend| bend.weights.iter().any(|weight| *weight != 0.0))),
+            splats: scene.splats.is_some(),
             skinning: draws.iter().find_map(|draw| Some(draw.bend.as_ref()?.palette.as_ref()?.skinning())),
             moves: !scene.rig.is_empty(),
             joints: if draws.iter().any(|draw| draw.bend.is_some()) {

@@ -83,11 +83,12 @@ impl Pose {
     }
 
     pub fn place(&self, instance: usize) -> DMat4 {
-        self.places[instance]
+        // What was put beside the scene since, no clip moves.
+        self.places.get(instance).copied().unwrap_or(DMat4::IDENTITY)
     }
 
     pub fn bend(&self, instance: usize) -> Option<&Bend> {
-        self.bends[instance].as_ref()
+        self.bends.get(instance).and_then(Option::as_ref)
     }
 
     /// A box round the whole scene, before it is spun.

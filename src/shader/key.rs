@@ -98,6 +98,8 @@ pub struct KernelKey {
     pub has_joints: bool,
     /// Some mesh is mixed from shapes.
     pub has_shapes: bool,
+    /// Particles fly.
+    pub has_particles: bool,
     /// The resolve computes plane normals and triangle centres: an effect reads them, or a normal may need a substitute.
     pub has_planes: bool,
     /// w is metres; else depth is linear and w is 1.
@@ -153,6 +155,7 @@ impl KernelKey {
             has_mask: false,
             has_joints: true,
             has_shapes: true,
+            has_particles: true,
             has_planes: true,
             perspective: true,
             small_samples: 64,
@@ -183,6 +186,11 @@ impl KernelKey {
     /// Does some mesh bend?
     pub const fn bends(&self) -> bool {
         self.has_joints || self.has_shapes
+    }
+
+    /// Are splats drawn as discs? What fills boxes or draws corners shows no triangles.
+    pub fn has_discs(&self) -> bool {
+        self.has_particles && self.shape == Shape::Triangles
     }
 
     /// Are there queues at all?
@@ -376,6 +384,7 @@ impl fmt::Display for KernelKey {
             ("planes", self.has_planes),
             ("joints", self.has_joints),
             ("shapes", self.has_shapes),
+            ("particles", self.has_particles),
             ("moved", self.moves()),
             ("parted", self.parts_corners()),
             ("dots", self.dots.is_some()),

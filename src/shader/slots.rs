@@ -59,7 +59,7 @@ impl KernelKey {
             (true, _) => "asked",
         };
         let mut slots = vec![
-            ("bytes", format!("slots/bytes/{}", if pass == Pass::Skin { "write" } else { "read" })),
+            ("bytes", format!("slots/bytes/{}", if matches!(pass, Pass::Particles | Pass::Skin) { "write" } else { "read" })),
             ("shapes", format!("slots/shapes/{}", if self.has_shapes { "kept" } else { "none" })),
             ("skinning", format!("slots/skinning/{}", if self.has_joints { self.rungs.skinning.name() } else { "none" })),
             ("texels", format!("slots/texels/{}", if self.has_texels { "atlas" } else { "none" })),
@@ -78,6 +78,9 @@ impl KernelKey {
             ("records", format!("slots/records/{}", if matches!(pass, Pass::Decide(_) | Pass::OrderRanks) { "write" } else { "read" })),
             ("order", format!("slots/order/{}", self.order_file(pass))),
             ("ranks", format!("slots/ranks/{}", if self.order == Order::Free { "none" } else { "kept" })),
+            ("splats", format!("slots/splats/{}", if self.has_discs() { "discs" } else { "none" })),
+            ("curl", format!("slots/curl/{}", self.rungs.curl.name())),
+            ("state", format!("slots/state/{}", self.rungs.state.name())),
             ("samples", format!("slots/samples/{}", if self.has_samples { "hooked" } else { "all" })),
             ("draws", format!("slots/draws/{}", if self.single_draw { "one" } else { "many" })),
             ("fetch", format!("slots/fetch/{fetch}")),

@@ -113,6 +113,7 @@ pub fn pixel_view(width: u32, height: u32) -> View {
         polyline: Arc::default(),
         shadow: Default::default(),
         picture_from_world: None,
+        flow: None,
         subpixel_bits: 8,
         is_relative: false,
     }
