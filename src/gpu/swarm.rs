@@ -51,8 +51,9 @@ twin! {
 /// Most steps of single particles that one submission takes: a small part of a second on the slowest adapter.
 const STEPS_AT_ONCE: u64 = 1 << 21;
 
-/// Most of them that a picture takes while somebody waits for the window; then it shows a frame on the way.
-const STEPS_IN_PASSING: u64 = 1 << 23;
+/// Most of them that a picture takes while somebody waits for the window, on a CPU adapter and on others; then it shows a frame
+/// on the way.
+const STEPS_IN_PASSING: [u64; 2] = [1 << 21, 1 << 26];
 
 /// What the device keeps.
 #[derive(Clone, Debug, PartialEq)]
@@ -133,7 +134,8 @@ impl Renderer {
         });
         let mut reached = kept.map(|kept| kept.flow.frame);
         let share = (STEPS_AT_ONCE / u64::from(flying.count)).max(1) as u32;
-        let mut left = if is_patient { u32::MAX } else { (STEPS_IN_PASSING / u64::from(flying.count)).max(1) as u32 };
+        let in_passing = STEPS_IN_PASSING[usize::from(!gpu.caps.software)];
+        let mut left = if is_patient { u32::MAX } else { (in_passing / u64::from(flying.count)).max(1) as u32 };
         let goal = flying.flow.frame;
         while reached.unwrap_or(0) + 1 < goal && left > 0 {
             let next = reached.unwrap_or(0).saturating_add(share.min(left)).min(goal - 1);
