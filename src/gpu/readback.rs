@@ -145,16 +145,17 @@ impl Renderer {
         } else {
             None
         };
+        let picture = match key.is_scaled() {
+            true => Some(buffers::read_picture(&self.gpu, self.buffers.get("shown"), shown)?),
+            false => None,
+        };
         let (key, counters) = if key.culls() { self.draw_unculled(asked, stack, accuracy, counters)? } else { (key, counters) };
         let mut geometry = self.read_geometry(&key)?;
         (geometry.dots, geometry.light) = (dot_places, light);
         let layers = if key.layers == Some(Layers::Overdraw) { self.read_counted(&key, view)? } else { self.count_layers(&key, view)? };
         let keys_are_rough = !key.rungs.visibility.is_exact() || !matches!(key.rungs.depth, Depth::Reversed | Depth::Integer);
         let frame = Frame { width: view.width, height: view.height, owner, key: depth, color, counted, dots, counters, keys_are_rough };
-        let shown = match key.is_scaled() {
-            true => Some(frame.shown(shown, buffers::read_picture(&self.gpu, self.buffers.get("shown"), shown)?)),
-            false => None,
-        };
+        let shown = picture.map(|picture| frame.shown(shown, picture));
         Ok(Capture { frame, geometry, layers: Some(layers), previous, shown })
     }
 

@@ -65,19 +65,10 @@ pub(super) fn choose(
     if far.is_some() {
         rungs.vertices = Vertices::Relative;
     }
-    let asked = rungs.culling;
-    let unfit = unfit_for_culling(&rungs, stack, layers);
-    if let Some((rung, _)) = unfit {
-        rungs.culling = rung;
-    }
     let mut reasons = Vec::new();
     let mut prediction = predict_all(&rungs, needs);
     let is_idle = |i: usize| !has_dots && i == DotWay::AXIS || !has_light && [ShadowMap::AXIS, Taps::AXIS].contains(&i);
     for (i, axis) in AXES.iter().enumerate().filter(|(i, _)| !is_idle(*i)) {
-        if let Some((rung, why)) = unfit.filter(|_| i == Culling::AXIS) {
-            reasons.push(note(axis.name, format!("{} instead of {}: {why}", rung.name(), asked.name())));
-            continue;
-        }
         if accuracy.pins.get(axis).is_some() {
             reasons.push(note(axis.name, format!("{}: pinned by the look", axis.words[rungs.get(axis)])));
             continue;
@@ -108,6 +99,14 @@ pub(super) fn choose(
             reasons.push(note(axis.name, format!("{}: {}", axis.words[rungs.get(axis)], lowered(usual))));
         }
     }
+    if let Some((rung, why)) = unfit_for_culling(&rungs, stack, layers) {
+        let said = reasons.iter_mut().find(|note| note.name == AXES[Culling::AXIS].name);
+        if let Some(note) = said {
+            note.why = format!("{} instead of {}: {why}", rung.name(), rungs.culling.name());
+        }
+        rungs.culling = rung;
+        prediction = predict_all(&rungs, needs);
+    }
     check(&rungs, needs, f32_positions, stack, caps)?;
     Ok(Choice { rungs, reasons, prediction })
 }
@@ -116,8 +115,7 @@ pub(super) fn choose(
 /// that costs nothing. A strict picture follows from the look alone.
 fn far_away(rungs: &Rungs, needs: &Needs, accuracy: &Accuracy, tolerance: &Tolerance) -> Option<String> {
     let own = predict(Vertices::AXIS, rungs.vertices.place(), needs);
-    // Who asks for culling asks for stored places, which its bounds are of.
-    let is_settled = accuracy.pins.rung::<Vertices>().is_some() || rungs.vertex == Vertex::Strict || rungs.culling != Culling::None;
+    let is_settled = accuracy.pins.rung::<Vertices>().is_some() || rungs.vertex == Vertex::Strict;
     (!is_settled && !tolerance.holds(&own)).then(|| {
         format!(
             "relative: so far from the origin, rounding moves a stored corner by up to {:.2} px, predicted to cost {:.0} of {:.0} ppm",
@@ -130,7 +128,7 @@ fn far_away(rungs: &Rungs, needs: &Needs, accuracy: &Accuracy, tolerance: &Toler
 /// that pins it goes on without it.
 fn unfit_for_culling(rungs: &Rungs, stack: &Stack, layers: Option<Layers>) -> Option<(Culling, &'static str)> {
     let (most, why) = match (layers, rungs.visibility) {
-        _ if rungs.vertices != Vertices::Stored => (Culling::None, "bounds of meshlets are of places as they are stored"),
+        _ if rungs.vertices.packed_bits().is_some() => (Culling::None, "packed places lie off the bounds of their meshlets"),
         _ if stack.moves() => (Culling::None, "effects move meshes out of their bounds"),
         _ if stack.cloud().is_some() => (Culling::None, "particles stay in no bounds that a meshlet could have"),
         _ if stack.shape() == Shape::Points => (Culling::None, "discs reach out of the bounds of their meshes"),
