@@ -55,6 +55,32 @@ pub struct Exactness {
     pub keys: bool,
 }
 
+/// A particle between two steps.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Flight {
+    /// In the scene, metres.
+    pub place: [f32; 3],
+    pub velocity: [f32; 3],
+    /// Steps since it was born.
+    pub age: u32,
+    /// How often it was born again.
+    pub births: u32,
+}
+
+/// Particles before and after the last step of a picture, and what was drawn of them.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Swarm {
+    /// Empty in the first frame, which no step leads to.
+    pub before: Vec<Flight>,
+    pub after: Vec<Flight>,
+    /// Corners with colour and normal, as they lie among the scene's bytes.
+    pub words: Vec<u32>,
+    /// Flights are kept in 16 bits a number.
+    pub is_rough: bool,
+    /// The flow's curl comes from differences.
+    pub is_difference: bool,
+}
+
 /// Everything the rasterizer proper sees: what stands between the float vertex stage and integer coverage.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Geometry {
@@ -65,6 +91,10 @@ pub struct Geometry {
     pub has_own_corners: bool,
     /// Position and normal, in object space, of every vertex of the draws that bend, in draw order.
     pub bent: Vec<[f32; 6]>,
+    /// The particles that the picture shows, and how they came there; none without particles.
+    pub swarm: Option<Swarm>,
+    /// Ids of the triangles that are splats.
+    pub splats: std::ops::Range<u32>,
     /// Fan pieces of clipped triangles; pieces of one parent stand in fan order.
     pub pieces: Vec<Piece>,
     /// What sample effects settled: for every triangle by id, then for every piece, one entry per effect that decides.
@@ -82,6 +112,18 @@ pub struct Geometry {
     pub is_rough: bool,
     /// What its maker promises about it, and about the keys of a frame drawn through it.
     pub exact: Exactness,
+    /// What the light sees, where an effect asks.
+    pub light: Option<Box<LightMap>>,
+}
+
+/// A shadow map with what it was drawn from.
+#[derive(Clone, Debug, PartialEq)]
+pub struct LightMap {
+    /// Depth key of every texel, row-major, top row first: bits of the reversed depth, larger is nearer to the light, 0 is
+    /// empty.
+    pub keys: Vec<u32>,
+    /// The scene as the light sees it.
+    pub geometry: Geometry,
 }
 
 impl Default for Geometry {
@@ -93,6 +135,8 @@ impl Default for Geometry {
             scale: 1.0,
             has_own_corners: false,
             bent,
+            swarm: None,
+            splats: 0..0,
             pieces,
             decisions,
             dots,
@@ -100,6 +144,7 @@ impl Default for Geometry {
             is_relative: false,
             is_rough: false,
             exact,
+            light: None,
         }
     }
 }

@@ -132,6 +132,20 @@ ladder! {
         /// The mean of their motions as dual quaternions: lengths are kept, and nearly all of the volume.
         Dual = "dual",
     }
+    /// How the flow of particles is derived from noise.
+    curl: Curl = "curl", usual Analytic {
+        /// From six values about a point.
+        Difference = "difference",
+        /// From the exact derivatives of the noise, which take one visit to its lattice.
+        Analytic = "analytic",
+    }
+    /// How particles are kept from one step to the next.
+    state: State = "state", usual Float32 {
+        /// Places as 16-bit shares of the room, velocities as halves: 16 bytes a particle.
+        Half16 = "half16",
+        /// All numbers as floats: 32 bytes a particle.
+        Float32 = "float32",
+    }
     /// What a depth is compared by.
     depth: Depth = "depth", usual Reversed {
         /// 16 bits, evenly spaced in normalized device depth.
@@ -224,6 +238,28 @@ ladder! {
         Cpu = "cpu",
         /// Lines are culled and thinned in compute, and what is left is drawn by an indirect dispatch.
         Gpu = "gpu",
+    }
+    /// How finely a shadow map samples what its light sees.
+    shadow_map: ShadowMap = "shadow_map", usual Side1024 {
+        /// 256 texels a side.
+        Side256 = "256",
+        /// 512 texels a side.
+        Side512 = "512",
+        /// 1,024 texels a side.
+        Side1024 = "1024",
+        /// 2,048 texels a side.
+        Side2048 = "2048",
+        /// 4,096 texels a side.
+        Side4096 = "4096",
+    }
+    /// How many texels of a shadow map tell how much of the light arrives.
+    taps: Taps = "taps", usual Nine {
+        /// The one under the sample: edges as hard and as jagged as the map.
+        One = "1",
+        /// 3 by 3, their share smooth from texel to texel.
+        Nine = "9",
+        /// 5 by 5: softer edges.
+        TwentyFive = "25",
     }
     /// How the effects' parameters reach the kernels.
     parameters: Parameters = "parameters", usual Uniform {

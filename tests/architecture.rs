@@ -40,7 +40,7 @@ const MAY_KNOW: &[(&str, &[&str])] = &[
 
 /// Longest source file, lines. A longer one stands here with its reason.
 const LONGEST: usize = 450;
-const LONG_FOR_A_REASON: &[(&str, &str)] = &[];
+const LONG_FOR_A_REASON: &[(&str, &str)] = &[("src/ladder.rs", "one list of all axes, with what every rung does")];
 
 /// Crates that only some rooms may name.
 const GUARDED: &[(&str, &[&str])] = &[

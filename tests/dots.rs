@@ -210,8 +210,12 @@ fn a_coarser_level_is_a_part_of_the_finer_one() {
                 let (strong, weak) = (dots.strength(number, near, from), dots.strength(number, far, from));
                 assert!(weak <= strong, "dot {number} comes back {halvings} halvings away");
                 let level = if number == 0 { 31 } else { number.trailing_zeros() };
-                assert_eq!(strong > 0, level >= halvings && (level > halvings || strong > 0));
-                assert_eq!(weak == 0 || level > halvings, true, "dot {number}");
+                let stands = |wanted: u32, strength: u32| match level.cmp(&wanted) {
+                    std::cmp::Ordering::Less => strength == 0,
+                    std::cmp::Ordering::Equal => strength > 0 || part > 1 << 22,
+                    std::cmp::Ordering::Greater => strength == FULL,
+                };
+                assert!(stands(halvings, strong) && stands(halvings + 1, weak), "dot {number}, {halvings} halvings and {part}");
             }
         }
     }
@@ -256,14 +260,14 @@ fn a_dot_covers_its_area() {
 /// Largest change of the mean strength from one picture to the next, as a share of the first, from 3 m away to 6 m in so
 /// many steps: the gap halves once, everywhere at the same time.
 fn largest_jump(fade: f64, steps: u32) -> f64 {
-    let rungs: Vec<[f32; 3]> =
-        (0..24u8).map(|i| [if i / 2 % 2 == i % 2 { -0.6 } else { 0.6 }, f32::from(i / 2) * 0.1 - 0.6, 0.0]).collect();
-    let values = [("lines", 2.0), ("spacing_m", 0.04), ("gap_px", 2.0), ("size_px", 2.0), ("model", 0.0), ("hidden", 1.0), ("fade", fade)];
+    // A zigzag, so that dots lie in all ways to the pixels.
+    let zigzag: Vec<[f32; 3]> = (0..20u8).map(|i| [if i % 2 == 0 { -0.6 } else { 0.6 }, f32::from(i) * 0.067 - 0.6, 0.0]).collect();
+    let values = [("lines", 2.0), ("spacing_m", 0.04), ("gap_px", 4.0), ("size_px", 2.0), ("model", 0.0), ("hidden", 1.0), ("fade", fade)];
     let (scene, stack) = (scene("stack?layers=1"), dotted(&values, &[]));
     let mean = |step: u32| {
         let eye = [0.0, 0.0, 3.0 * (f64::from(step) / f64::from(steps)).exp2()].into();
         let camera = rasterlab::scene::camera::Camera { eye, target: [0.0; 3].into(), ..Default::default() };
-        let view = View { polyline: rungs.as_slice().into(), ..seen(&scene, &camera, [160, 120]) };
+        let view = View { polyline: zigzag.as_slice().into(), ..seen(&scene, &camera, [160, 120]) };
         let records = oracle::dot_records(&scene, &draws(&scene, &view).expect("it fits"), &view, &stack).expect("they fit");
         let strengths = oracle::dot_strengths(&view, &stack, &records, &vec![0; view.pixels()]);
         strengths.iter().map(|s| f64::from(*s)).sum::<f64>() / strengths.len() as f64 / f64::from(FULL)
@@ -281,7 +285,7 @@ fn moving_away_never_jumps() {
     assert!(fine < 0.01 && fine < coarse / 4.0, "in 16 steps by {coarse}, in 256 by {fine}");
     // Dots that fade in a sixteenth of the time are the jump that this would show.
     let hasty = largest_jump(0.0625, 256);
-    assert!(hasty > 3.0 * fine, "hasty fading jumps by {hasty}, slow by {fine}");
+    assert!(hasty > 2.0 * fine, "hasty fading jumps by {hasty}, slow by {fine}");
 }
 
 // ---------------------------------------------------------------- mutants

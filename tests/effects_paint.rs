@@ -159,6 +159,7 @@ fn surface(color: DVec3) -> Surface {
         range_m: DVec2::new(1.0, 3.0),
         owner: 0,
         rank: 0.0,
+        lit: 1.0,
         nudge: 0.0,
     }
 }

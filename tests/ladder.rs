@@ -330,15 +330,17 @@ fn the_planner_takes_the_eye_out_where_a_scene_lies_far_away() {
 }
 
 #[test]
-fn culling_is_left_out_where_places_are_not_those_of_its_bounds() {
+fn culling_is_left_out_where_packed_places_are_not_those_of_its_bounds() {
     let Some(mut renderer) = renderer() else { return };
     let scene = scene("sphere?triangles=5000");
     let view = view(&scene, [160, 120]);
     let all = captured(&mut renderer, &scene, &view, &stack(&[]), &on(Pins::of(Vertices::Relative)));
-    for rung in [Vertices::Packed10, Vertices::Packed16, Vertices::Relative] {
+    for (rung, culling) in
+        [(Vertices::Packed10, Culling::None), (Vertices::Packed16, Culling::None), (Vertices::Relative, Culling::Frustum)]
+    {
         let capture = captured(&mut renderer, &scene, &view, &stack(&[]), &on(Pins::of(rung).with(Culling::Frustum)));
         let rungs = renderer.key().expect("something was drawn").rungs;
-        assert_eq!((rungs.vertices, rungs.culling), (rung, Culling::None));
+        assert_eq!((rungs.vertices, rungs.culling), (rung, culling));
         assert!(rung != Vertices::Relative || capture.frame.owner == all.frame.owner);
     }
 }

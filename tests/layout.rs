@@ -5,8 +5,9 @@ use rasterlab::{
     gpu::bends::{BendRecord, ShapeRecord},
     gpu::culling::{CullingUniform, InstanceRecord, MeshletRecord},
     gpu::dots::{DotFrame, StretchRecord},
+    gpu::swarm::{CourseRecord, SwarmUniform},
     gpu::texels::{LookupRecord, PaintRecord},
-    gpu::uniforms::{CounterRecord, DrawRecord, FrameUniform, ScalingUniform, Twin},
+    gpu::uniforms::{CounterRecord, DrawRecord, FrameUniform, LightUniform, ScalingUniform, Twin},
     ladder::Visibility,
     shader::{
         Fetch, KernelKey, Pass,
@@ -40,6 +41,7 @@ fn uniforms_and_records_agree() {
     let dots = reflected(Pass::DotsDraw, vec![]);
     check_twin::<DotFrame>(&dots);
     check_twin::<StretchRecord>(&dots);
+    check_twin::<LightUniform>(&reflected(Pass::Resolve, vec![&rasterlab::effects::shadow::EFFECT]));
     let skin = reflected(Pass::Skin, vec![]);
     check_twin::<BendRecord>(&skin);
     check_twin::<ShapeRecord>(&skin);
@@ -51,12 +53,17 @@ fn uniforms_and_records_agree() {
     let resolve = reflected(Pass::Resolve, vec![]);
     check_twin::<LookupRecord>(&resolve);
     check_twin::<PaintRecord>(&resolve);
+    let particles = reflected(Pass::Particles, vec![]);
+    check_twin::<SwarmUniform>(&particles);
+    check_twin::<CourseRecord>(&particles);
 }
 
 #[test]
 fn arrays_of_records_have_one_stride() {
     let (span, _) = reflected(Pass::Project, vec![]).layout("Draw").expect("there");
     assert_eq!(span, size_of::<DrawRecord>());
+    let (span, _) = reflected(Pass::Particles, vec![]).layout("Course").expect("there");
+    assert_eq!(span, size_of::<CourseRecord>());
 }
 
 #[test]

@@ -414,7 +414,8 @@ fn a_scene_of_plain_colours_has_no_texture_and_no_word_of_one() {
         let root = format!("passes/{}", Pass::Resolve.stem());
         let linked = link::link(&Library::Embedded, &root, &painted, &painted.slots(Pass::Resolve)).expect("every file is there");
         let reflected = reflect::reflect(&linked, false).expect("valid");
-        let textures = reflected.bindings("resolve").into_iter().filter(|binding| binding.kind == reflect::BindingKind::Texture);
+        let textures =
+            reflected.bindings("resolve").into_iter().filter(|binding| binding.kind == (reflect::BindingKind::Texture { layered: true }));
         assert_eq!(textures.map(|binding| binding.name).collect::<Vec<_>>(), ["texels"]);
     }
     let Some(mut renderer) = renderer() else { return };

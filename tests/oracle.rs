@@ -140,6 +140,9 @@ fn flat_view(width: u32, height: u32) -> View {
         is_relative: false,
         pose: None,
         polyline: Default::default(),
+        shadow: Default::default(),
+        picture_from_world: None,
+        flow: None,
     }
 }
 

@@ -965,7 +965,7 @@ fn both_sides_stand_beside_each_other_and_their_difference_shows_what_changed() 
     click(&mut lab, Role::Button, "Compare: difference");
     let apart = middle(&mut lab);
     assert!(lab.query_by_label("Difference gain").is_some());
-    click(&mut lab, Role::Button, "Unmute facet");
+    click(&mut lab, Role::Button, "Show facet");
     let none = middle(&mut lab);
     assert!(black(&none) > 0.8 && black(&apart) < black(&none) - 0.05, "{} and {} black", black(&apart), black(&none));
     assert!(lab.query_by_label("A and B not compared yet").is_some());

@@ -642,6 +642,7 @@ prop_compose! {
         texts in prop::array::uniform3("[^\\p{Cc}]{0,40}"),
         tags in prop::collection::vec("[a-z \"\\\\#']{0,12}", 0..4),
         scene in prop_oneof![Just(SceneSource::Builtin("knot?tess=8".into())), Just(SceneSource::File("a b/fox.glb".into())), Just(Session::default().scene)],
+        room in prop_oneof![Just(0.0), within(1.0, 100.0)],
         spin_deg_per_s in within(-1e6, 1e6),
         play in any_play(),
         camera in prop::option::of(any_camera()),
@@ -667,7 +668,7 @@ prop_compose! {
             stack.0.reverse();
         }
         Session {
-            name, about, tags, scene, spin_deg_per_s, play, camera,
+            name, about, tags, scene, room, spin_deg_per_s, play, camera,
             polyline: if reversed { [[background[0], -background[1], 1.0], [1e9, background[2], 1e-9], [0.0; 3]].into() } else { [].into() },
             scene_camera: if reversed { "from above".into() } else { String::new() },
             clock,

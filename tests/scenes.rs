@@ -342,7 +342,7 @@ fn mistaken_queries_are_answered_with_a_sentence() {
         (
             "teapto",
             "there is no builtin scene \"teapto\"; did you mean \"teapot\"? \
-             (known: teapot, sphere, knot, cube-wall, field, tentacle, near, grid, fan, sizes, slivers, stack)",
+             (known: teapot, sphere, knot, cube-wall, field, tentacle, chamber, globe, panels, leaves, near, grid, fan, sizes, slivers, stack)",
         ),
         ("teapot?tes=4", "teapot has no parameter \"tes\"; did you mean \"tess\"? (known: tess)"),
         ("knot?colour=4", "knot has no parameter \"colour\" (known: tess)"),

@@ -28,3 +28,4 @@ struct Draw {
 
 const DRAW_DOUBLE_SIDED = 1u;
 const DRAW_MIRRORED = 2u;
+const DRAW_SPLAT = 4u;

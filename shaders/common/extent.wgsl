@@ -3,6 +3,7 @@
 //@ use common/frame
 //@ use common/grid
 //@ use common/draws
+//@ use common/transform
 
 struct Box {
     center: vec3f,
@@ -20,9 +21,14 @@ struct Extent {
 // Rounding of sums of four products, of cuts at five planes and of what bounds them, as a share of the terms.
 const EXTENT_SLACK = 7.62939453125e-6; // 2^-17
 
+// A place of object space as the draw's matrix expects it.
+fn extent_place(draw: u32, place: vec3f) -> vec3f {
+    return select(place, place - draws[draw].origin.xyz, vec3<bool>(IS_RELATIVE));
+}
+
 fn extent_of(draw: u32, box: Box) -> Extent {
     let m = draws[draw].clip_from_object;
-    let c = box.center;
+    let c = extent_place(draw, box.center);
     let h = box.half;
     let far = abs(c) + h;
     let middle = m[0] * c.x + m[1] * c.y + m[2] * c.z + m[3];

@@ -12,7 +12,7 @@ fn facing_is_turned(instance: u32, record: u32, e: Extent) -> bool {
     let is_telling = (instances[instance].flags & INSTANCE_FACES) != 0u && altitude > 0.0;
     if !is_telling || !extent_is_plain(e) { return false; }
     let eye = instances[instance].eye;
-    let center = meshlets[record].center.xyz;
+    let center = extent_place(instance, meshlets[record].center.xyz);
     let axis = meshlets[record].axis.xyz;
     let is_point = eye.w != 0.0;
     let way = select(eye.xyz, (center - eye.xyz) * eye.w, vec3<bool>(is_point));

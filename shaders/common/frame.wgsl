@@ -7,6 +7,7 @@ struct Frame {
     ndc_x: vec4f,            // what one unit of normalized device x is in the world, per metre of depth for a perspective
     ndc_y: vec4f,
     clip_from_world: mat4x4f, // for what vertex effects add
+    picture_from_world: mat4x4f, // the same of the picture that a light's view is drawn for
     center: vec2f,           // half the picture in units (common/grid)
     range_m: vec2f,          // depth of the nearest and farthest corner of the scene's box
     linear_depth_m: vec2f,   // metres at depth 1 and 0; only where eye.w is 0

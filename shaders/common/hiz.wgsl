@@ -2,7 +2,6 @@
 // name is that of hierarchical z buffers (Greene, Kass and Miller 1993).
 //@ use common/culling
 //@ use common/extent
-//@ use common/transform
 //@ use slot/depth
 
 @group(0) @binding(28) var<storage, read> hiz: array<u32>;
@@ -29,19 +28,22 @@ fn hiz_farthest(pixels: vec4i) -> u32 {
 // Is a box of object space behind what was drawn, whatever rounds?
 fn hiz_hides(draw: u32, box: Box, e: Extent) -> bool {
     if !extent_is_plain(e) { return false; }
+    let m = draws[draw].clip_from_object;
+    let middle = extent_place(draw, box.center);
     var low = vec2f(2.0);
     var high = vec2f(-2.0);
     for (var i = 0u; i < 8u; i += 1u) {
         let way = vec3f(vec3u(i, i >> 1u, i >> 2u) & vec3u(1u)) * 2.0 - 1.0;
-        let clip = transform_clip(draw, box.center + box.half * way);
+        let place = middle + box.half * way;
+        let clip = m[0] * place.x + m[1] * place.y + m[2] * place.z + m[3];
         low = min(low, clip.xy / clip.w);
         high = max(high, clip.xy / clip.w);
     }
     // A pixel more on every side; y points down in the picture.
     let shift = 1.0 + extent_shift(e) / f32(grid_unit());
-    let middle = vec2f(frame.size) * 0.5;
-    let first = middle + vec2f(low.x, -high.y) * middle - shift;
-    let last = middle + vec2f(high.x, -low.y) * middle + shift;
+    let half = vec2f(frame.size) * 0.5;
+    let first = half + vec2f(low.x, -high.y) * half - shift;
+    let last = half + vec2f(high.x, -low.y) * half + shift;
     let ends = vec2f(frame.size) - 1.0;
     if any(last < vec2f(0.0)) || any(first > ends) { return false; }
     let pixels = vec4i(vec4f(clamp(floor(first), vec2f(0.0), ends), clamp(floor(last), vec2f(0.0), ends)));

@@ -2,7 +2,7 @@
 //@ use common/frame
 
 struct Instance {
-    eye: vec4f,          // object space. w: 1 or -1, for which side of a triangle is seen from there; 0: xyz is the viewing direction
+    eye: vec4f,          // object space, from the draw's origin where places are relative. w: 1 or -1, for which side of a triangle is seen from there; 0: xyz is the viewing direction
     center: vec4f,       // middle of a box round it, object space. w: area on screen of a unit of area at w = 1 that faces the eye
     half: vec4f,         // half its sides. w: most units that a metre within it is long on screen at w = 1
     first: u32,          // of its meshlets, counted over all instances

@@ -12,6 +12,7 @@
 //@ use slot/shape
 //@ use slot/ranks
 //@ use slot/texels
+//@ use slot/light
 
 override HAS_COLORS: bool = false;
 override HAS_CLIPPING: bool = false;
@@ -174,5 +175,5 @@ fn shade_surface(id: u32, pixel: vec2u) -> Surface {
         s.normal = -s.normal;
         s.flat_normal = -s.flat_normal;
     }
-    return s;
+    return light_filled(s);
 }

@@ -19,4 +19,5 @@ struct Surface {
     range_m: vec2f,
     owner: u32,
     rank: f32,
+    lit: f32,
 }

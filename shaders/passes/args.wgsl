@@ -32,6 +32,5 @@ fn args_write() {
     args.pieces = fold((min(atomicLoad(&counters.pieces), frame.piece_capacity) + LIST_GROUP - 1u) / LIST_GROUP);
     args.resolve = fold(atomicLoad(&counters.marked_tiles));
     let meshlets = atomicLoad(&counters.survivors) - atomicLoad(&counters.survivors_done);
-    // As many to a workgroup as fit, and one at least.
-    args.meshlets = fold((meshlets + LIST_GROUP / MESHLET_TRIANGLES - 1u) / (LIST_GROUP / MESHLET_TRIANGLES));
+    args.meshlets = fold((meshlets * MESHLET_TRIANGLES + LIST_GROUP - 1u) / LIST_GROUP);
 }

@@ -5,6 +5,7 @@
 //@ use common/sample
 //@ use slot/pieces
 //@ use slot/mask
+//@ use slot/screen
 //@ use glue/decide
 
 // The pieces that clipping left, instead of the triangles.
@@ -35,5 +36,6 @@ fn decide(@builtin(workgroup_id) group: vec3u, @builtin(num_workgroups) groups: 
     }
     mask_settle(t, at);
     let center = center_world(t.draw, at);
+    center_screen = screen_of(center, center_screen);
     glue_decide(Facts(t.id, vertex_at(t.a), vertex_at(t.b), vertex_at(t.c), t.outline, frame.size, center, center_screen), t.entry);
 }

@@ -22,6 +22,7 @@ use crate::{
 
 /// How a key of the look is shown: its unit, and what its slider spans.
 const SHOWN: &[(&str, &str, Option<[f64; 2]>)] = &[
+    ("scene.room", "", Some([0.0, 4.0])),
     ("scene.spin_deg_per_s", "°/s", Some([-180.0, 180.0])),
     ("scene.clip_speed", "", Some([-2.0, 2.0])),
     ("scene.blend", "", Some([0.0, 1.0])),

@@ -28,13 +28,15 @@ use crate::{
 pub struct SceneKey {
     pub source: SceneSource,
     pub look_path: Option<PathBuf>,
+    /// How wide the room round it is.
+    pub room: f64,
 }
 
 impl SceneKey {
     pub fn of(session: &Session, look_path: Option<&PathBuf>) -> Self {
         // A builtin is the same wherever the look lies.
         let look_path = if matches!(session.scene, SceneSource::File(_)) { look_path.cloned() } else { None };
-        Self { source: session.scene.clone(), look_path }
+        Self { source: session.scene.clone(), look_path, room: session.room }
     }
 }
 
@@ -83,7 +85,7 @@ impl Jobs {
 
     pub fn load_scene(&self, key: SceneKey) {
         self.spawn("scene", move || {
-            let session = Session { scene: key.source.clone(), ..Session::default() };
+            let session = Session { scene: key.source.clone(), room: key.room, ..Session::default() };
             let scene = caught("loading the scene", || preset::load_scene(&session, key.look_path.as_deref()).map_err(|e| e.to_string()));
             Done::Scene(key, scene)
         });

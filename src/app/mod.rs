@@ -3,6 +3,7 @@
 //!
 //! Slow work happens in `jobs`; the window waits for no thread and for no device.
 
+mod attraction;
 mod blit;
 mod clips;
 mod compare;
@@ -16,6 +17,7 @@ mod inspector;
 mod jobs;
 mod keying;
 mod legend;
+mod light;
 mod log;
 mod orbit;
 mod overlays;
@@ -140,6 +142,8 @@ pub struct App {
     playback: Playback,
     timeline: Timeline,
     motion: Motion,
+    /// The way that a hand has led the particles.
+    trail: attraction::Trail,
     /// Path and value of the row under the pointer.
     hovered_row: Option<(String, String)>,
     /// Where the next paste goes, when a menu asked for it.
@@ -188,6 +192,7 @@ impl App {
             playback: Playback::default(),
             timeline: Timeline::default(),
             motion: Motion::default(),
+            trail: attraction::Trail::default(),
             hovered_row: None,
             paste_into: None,
             seed: 0,
@@ -407,6 +412,7 @@ impl eframe::App for App {
         self.hovered_row = None;
         self.play(&ctx);
         self.set_stage();
+        self.follow_particles();
         self.panels_ui(ui);
         self.dialog_ui(&ctx);
         self.cheat_sheet_ui(&ctx);

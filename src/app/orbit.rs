@@ -27,7 +27,7 @@ fn distance(camera: &Camera) -> f64 {
 }
 
 /// Right and up of the picture, unit vectors.
-fn axes(camera: &Camera) -> (DVec3, DVec3) {
+pub fn axes(camera: &Camera) -> (DVec3, DVec3) {
     let forward = camera.forward();
     let right = [camera.up, DVec3::Y, DVec3::X].into_iter().find_map(|up| forward.cross(up).try_normalize()).unwrap_or(DVec3::X);
     (right, right.cross(forward))

@@ -13,6 +13,7 @@ impl App {
     /// The folder of the scene.
     pub(super) fn scene_ui(&mut self, ui: &mut Ui) {
         folder(ui, "Scene", true, |ui| {
+            self.key_ui(ui, "scene.room");
             self.key_ui(ui, "scene.spin_deg_per_s");
             self.key_ui(ui, "output.background");
             if self.look.session.stack.0.iter().any(|enabled| enabled.effect.hooks.has_lines) {

@@ -192,7 +192,7 @@ impl Screen {
             }
             return Ok(());
         };
-        let again = (report.redraw || self.cold) && self.redraws < MAX_REDRAWS;
+        let again = report.is_behind || (report.redraw || self.cold) && self.redraws < MAX_REDRAWS;
         self.report = Some(report);
         if self.renderer.is_pending() {
             return Ok(());

@@ -78,13 +78,14 @@ impl App {
         let most = self.screen.gpu.caps.max_texture_side;
         let size = [pixels.x, pixels.y].map(|side| (side.max(0.0) as u32).min(most));
         self.motion.widening = self.widening(size);
-        let moved = self.navigate(ui, &response);
+        let moved = if self.attract(&response) { false } else { self.navigate(ui, &response) };
         self.pick_under(&response);
         self.draw(ui.ctx(), size, moved);
         self.feed_overlays(ui.ctx());
         let at = self.picture_ui(ui, self.compare.side_b(rect));
         let below = self.compare_ui(ui, rect, at);
         self.overlay_ui(ui, rect);
+        self.light_ui(ui, at);
         let below = self.overlay_legend_ui(ui, below, at);
         if let Some(params) = self.visible_stack().params("overdraw") {
             legend::heat_ui(ui, below, &params);
@@ -113,7 +114,7 @@ impl App {
     }
 
     /// Pose of the camera, to be moved.
-    fn pose(&self) -> Option<Camera> {
+    pub(super) fn pose(&self) -> Option<Camera> {
         let (_, scene) = self.stage.shown.as_ref()?;
         Some(self.look.session.camera_for(scene, aspect(self.look.session.output.size)))
     }
@@ -125,7 +126,7 @@ impl App {
 
     /// The look as a picture of `size` shows it: the whole of the look's own frame, and more where the shapes differ.
     pub(super) fn view_at(&self, scene: &Scene, size: [u32; 2]) -> View {
-        self.view_of(self.shown_session(), scene, size)
+        self.with_trail(self.view_of(self.shown_session(), scene, size))
     }
 
     /// The same of another session.

@@ -141,6 +141,10 @@ fn lines(rows: &[BenchRow]) -> Vec<Vec<String>> {
     if bends {
         lines[0].insert(before_adapter, "BEND PX".into());
     }
+    let flies = rows.iter().any(|row| row.error.max_astray_px.is_some());
+    if flies {
+        lines[0].insert(before_adapter, "ASTRAY PX".into());
+    }
     let not_measured = || "not measured".to_owned();
     let ms = |ms: Option<f64>| ms.map_or_else(not_measured, |ms| format!("{ms:.3}"));
     let count = |count: Option<u64>| count.map_or_else(not_measured, |count| count.to_string());
@@ -163,6 +167,9 @@ fn lines(rows: &[BenchRow]) -> Vec<Vec<String>> {
         ];
         if bends {
             line.insert(before_adapter, e.max_bend_px.map_or_else(not_measured, |px| format!("{px:.5}")));
+        }
+        if flies {
+            line.insert(before_adapter, e.max_astray_px.map_or_else(not_measured, |px| format!("{px:.5}")));
         }
         line
     }));

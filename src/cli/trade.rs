@@ -10,10 +10,15 @@ use super::{
     streams::Streams,
 };
 use crate::{
-    gpu::trade::{AS_PLANNED, TradeError, TradeOptions, TradeRow, Truth, factors, trade},
+    effects::Stack,
+    gpu::{
+        Capture,
+        trade::{AS_PLANNED, Judged, TradeError, TradeOptions, TradeRow, Truth, factors, trade},
+    },
     ladder::{AXES, Axis},
     oracle,
     preset::form::did_you_mean,
+    scene::{Scene, camera::View},
 };
 
 pub fn run(common: &Common, args: &Bench, streams: &mut Streams) -> Result<Exit, Fault> {
@@ -43,7 +48,7 @@ pub fn run(common: &Common, args: &Bench, streams: &mut Streams) -> Result<Exit,
             scene,
             &look.id,
             &options,
-            &Truth { truths: &truths, judge: &judge(scene, &view) },
+            &Truth { truths: &truths, judge: &|view, stack, capture| judged(scene, view, stack, capture) },
             &mut progress,
         )?);
     }
@@ -55,6 +60,12 @@ pub fn run(common: &Common, args: &Bench, streams: &mut Streams) -> Result<Exit,
         streams.note(&format!("{} {}: {}", row.scene, row.rungs, row.note.as_deref().unwrap_or("not drawn")));
     });
     Ok(Exit::Done)
+}
+
+/// What the oracle says of a picture, and of the light in it.
+fn judged(scene: &Scene, view: &View, stack: &Stack, capture: &Capture) -> Judged {
+    let light = oracle::light_errors(scene, view, stack, &capture.frame.owner, &capture.geometry);
+    Judged { verdict: judge(scene, view)(stack, capture), light: light.expect("a scene that was drawn can be judged") }
 }
 
 /// The axes of these names.
@@ -131,8 +142,20 @@ fn lines(rows: &[TradeRow]) -> Vec<Vec<String>> {
         "GAIN",
     ];
     let mut lines = vec![head.map(str::to_owned).to_vec()];
+    // Only where particles fly is there a column for how far they went astray.
+    let flies = rows.iter().any(|row| row.error.is_some_and(|error| error.max_astray_px.is_some()));
+    let before_bytes = head.len() - 2;
+    if flies {
+        ["ASTRAY PX", "MEAN M"].map(str::to_owned).into_iter().rev().for_each(|cell| lines[0].insert(before_bytes, cell));
+    }
     let not_measured = || "not measured".to_owned();
     let ms = |ms: Option<f64>| ms.map_or_else(not_measured, |ms| format!("{ms:.4}"));
+    // Only where a light casts shadows are there columns for how well.
+    let has_light = rows.iter().any(|row| row.error.is_some_and(|error| error.wrong_light_ppm.is_some()));
+    let before_changed = head.iter().position(|name| *name == "CHANGED").expect("a column");
+    if has_light {
+        lines[0].splice(before_changed..before_changed, ["LIGHT PPM".to_owned(), "LIGHT RMS".to_owned()]);
+    }
     // Only where the CPU chooses is there a column for how long.
     let has_cpu = rows.iter().any(|row| row.cpu_ms_p50.is_some());
     if has_cpu {
@@ -160,6 +183,15 @@ fn lines(rows: &[TradeRow]) -> Vec<Vec<String>> {
             format!("{:.1}", row.bytes as f64 / f64::from(1 << 20)),
             if row.is_beaten { "no gain" } else { "-" }.into(),
         ];
+        if flies {
+            line.insert(before_bytes, figure(&|e| e.mean_astray_m.map_or_else(|| "-".into(), |m| format!("{m:.1e}"))));
+            line.insert(before_bytes, figure(&|e| e.max_astray_px.map_or_else(|| "-".into(), |px| format!("{px:.4}"))));
+        }
+        if has_light {
+            let light = |share: Option<f64>, digits: usize| share.map_or_else(not_measured, |share| format!("{share:.digits$}"));
+            let cells = [figure(&|e| light(e.wrong_light_ppm, 1)), figure(&|e| light(e.rms_light, 4))];
+            line.splice(before_changed..before_changed, cells);
+        }
         if has_cpu {
             line.insert(5, row.cpu_ms_p50.map_or_else(|| "-".into(), |ms| format!("{ms:.4}")));
         }

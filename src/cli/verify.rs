@@ -79,6 +79,13 @@ pub fn run(common: &Common, args: &Verify, streams: &mut Streams) -> Result<Exit
                 .map_or_else(String::new, |share| format!("; linear skinning has {:.2} % of the volume that dual has", 100.0 * share))
         ));
     });
+    rows.iter().filter(|row| row.accuracy.particles > 0).for_each(|row| {
+        let a = &row.accuracy;
+        streams.note(&format!(
+            "{} on {}: {} particles, {} of them more than a pixel from their true flight, at most {:.5} px, on average {:.1e} m",
+            row.look, row.rung, a.particles, a.particles_astray, a.max_astray_px, a.mean_astray_m
+        ));
+    });
     rows.iter().for_each(|row| row.failures.iter().for_each(|failure| streams.note(&format!("{} on {}: {failure}", row.look, row.rung))));
     Ok(Exit::failed_if(rows.iter().any(|row| !row.failures.is_empty())))
 }

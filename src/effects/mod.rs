@@ -2,7 +2,10 @@
 //! in a file of the same name. Panel, preset keys, `--set`, uniform bytes, layout test, golden and bench row are
 //! loops over [`EFFECTS`].
 
-use crate::params::{Field, Params};
+use crate::{
+    params::{Field, Params},
+    scene::{Scene, camera::View, light::view_from, splats::Cloud},
+};
 
 pub mod hooks;
 
@@ -22,6 +25,7 @@ effects![
     boxes,
     points,
     draw_order,
+    particles,
     explode,
     inflate,
     wobble,
@@ -32,6 +36,7 @@ effects![
     normals,
     depth,
     lambert,
+    shadow,
     toon,
     hatch,
     wireframe,
@@ -115,6 +120,12 @@ impl Effect {
         self
     }
 
+    /// The same effect, which asks how much of a light arrives at a sample.
+    pub const fn in_light(mut self) -> Self {
+        self.hooks.reads_light = true;
+        self
+    }
+
     /// The same effect, also in a slot of the rasterizer.
     pub const fn in_slot(mut self, slot: Slot) -> Self {
         self.hooks.slot = Some(slot);
@@ -124,6 +135,12 @@ impl Effect {
     /// The same effect, which draws along lines.
     pub const fn with_lines(mut self) -> Self {
         self.hooks.has_lines = true;
+        self
+    }
+
+    /// The same effect, which puts a cloud beside the scene.
+    pub const fn with_cloud(mut self, cloud: fn(&[u32]) -> Cloud) -> Self {
+        self.hooks.cloud = Some(cloud);
         self
     }
 
@@ -300,6 +317,11 @@ impl Stack {
         self.each(|hooks| hooks.vertex).any(|(hook, _)| hook.needs_triangle)
     }
 
+    /// The cloud that an effect puts beside the scene.
+    pub fn cloud(&self) -> Option<Cloud> {
+        self.each(|hooks| hooks.cloud).map(|(cloud, words)| cloud(words)).find(|cloud| cloud.count > 0)
+    }
+
     /// The effect in a slot of the rasterizer.
     pub fn in_slot(&self, slot: Slot) -> Option<&Enabled> {
         self.0.iter().find(|enabled| enabled.effect.hooks.slot == Some(slot))
@@ -312,6 +334,22 @@ impl Stack {
             Some(enabled) if enabled.effect == &points::EFFECT => Shape::Points,
             Some(_) => Shape::Boxes,
         }
+    }
+
+    /// The light that casts shadows.
+    pub fn light(&self) -> Option<shadow::Shadow> {
+        self.params(shadow::EFFECT.name)
+    }
+
+    /// What that light sees of `scene` as `view` shows it.
+    pub fn light_view(&self, scene: &Scene, view: &View) -> Option<View> {
+        Some(view_from(self.light()?.toward(), scene, view, self.reach_m(scene.bounds_of(scene.casters()).radius())))
+    }
+
+    /// What of the stack decides which samples stop a light, and where they are.
+    pub fn casting(&self) -> Self {
+        let casts = |enabled: &&Enabled| enabled.effect.hooks.vertex.is_some() || enabled.effect.hooks.sample.is_some();
+        Self(self.0.iter().filter(casts).cloned().collect())
     }
 
     /// Radius of discs about corners, units of 1/256 px; 0 without them.

@@ -163,7 +163,7 @@ impl<'a> Lab<'a> {
         }
         let row = |rung: String, error: ErrorFigures, note: Option<String>| BenchRow {
             scene: scene_name.into(),
-            triangles: scene.triangle_count(),
+            triangles: scene.triangle_count() + self.session.stack.cloud().map_or(0, |cloud| cloud.count.into()),
             rung,
             adapter: self.gpu.summary.name.clone(),
             ms_p50: None,
@@ -199,6 +199,10 @@ impl Lab<'_> {
             expected = Some(verdict.expected);
         }
         let (Some(expected), Some(key)) = (expected, self.first_key(&entries)) else { return Ok((entries, missing)) };
+        if key.has_particles {
+            missing.extend(["naive", "hardware"].map(|name| (name.to_owned(), "it draws what a file has, and no particles".to_owned())));
+            return Ok((entries, missing));
+        }
         for viewport in [Viewport::AsWritten, Viewport::Folded] {
             match Naive::new(self.gpu, scene, &self.view, &key, viewport) {
                 Ok(naive) => {
@@ -234,7 +238,7 @@ impl Lab<'_> {
             _ => None,
         };
         if let Some((renderer, stack, accuracy)) = ours {
-            renderer.draw_timed(&self.view, stack, &accuracy, detail)?;
+            renderer.draw_timed(&self.view, stack, &accuracy, detail, true)?;
             let report = renderer.finish()?;
             return Ok(Times { total_ms: report.gpu_ms, passes: report.passes });
         }
@@ -247,7 +251,7 @@ impl Lab<'_> {
             Contender::Hardware(hardware) => hardware.record(&mut encoder, self.timer.as_mut()),
             Contender::Ours(..) | Contender::Stacked(..) => {}
         }
-        let pending = Pending::stage(self.gpu, &mut encoder, [None; 2], self.timer.as_ref());
+        let pending = Pending::stage(self.gpu, &mut encoder, [None; 3], self.timer.as_ref());
         self.gpu.queue.submit([encoder.finish()]);
         let pending = pending.begin();
         buffers::wait(self.gpu)?;

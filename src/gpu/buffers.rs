@@ -18,10 +18,19 @@ struct Held {
     why: &'static str,
 }
 
+/// A picture of 32-bit words.
+struct Texels {
+    texture: wgpu::Texture,
+    view: wgpu::TextureView,
+    side: u32,
+    why: &'static str,
+}
+
 /// See the module's first line.
 #[derive(Default)]
 pub struct Buffers {
     held: BTreeMap<&'static str, Held>,
+    texels: BTreeMap<&'static str, Texels>,
 }
 
 impl Buffers {
@@ -84,9 +93,49 @@ impl Buffers {
         Ok(())
     }
 
-    /// Gives up every buffer that `is_needed` does not name.
+    /// Makes a square texture of 32-bit words.
+    pub fn ensure_texels(&mut self, gpu: &Gpu, name: &'static str, side: u32, why: &'static str) -> Result<(), RenderError> {
+        if self.texels.get(name).is_some_and(|held| held.side == side) {
+            return Ok(());
+        }
+        let scope = gpu.device.push_error_scope(wgpu::ErrorFilter::OutOfMemory);
+        let texture = gpu.device.create_texture(&wgpu::TextureDescriptor {
+            label: Some(name),
+            size: wgpu::Extent3d { width: side, height: side, depth_or_array_layers: 1 },
+            mip_level_count: 1,
+            sample_count: 1,
+            dimension: wgpu::TextureDimension::D2,
+            format: wgpu::TextureFormat::R32Uint,
+            usage: wgpu::TextureUsages::COPY_DST | wgpu::TextureUsages::TEXTURE_BINDING,
+            view_formats: &[],
+        });
+        let view = texture.create_view(&Default::default());
+        if pollster::block_on(scope.pop()).is_some() {
+            return Err(RenderError::OutOfMemory { buffer: name, bytes: 4 * u64::from(side) * u64::from(side) });
+        }
+        self.texels.insert(name, Texels { texture, view, side, why });
+        Ok(())
+    }
+
+    /// Copies a buffer of as many words into the texture called `name`; rows are multiples of 256 bytes.
+    pub fn fill_texels(&self, encoder: &mut wgpu::CommandEncoder, name: &str, from: &wgpu::Buffer) {
+        let Texels { texture, side, .. } = &self.texels[name];
+        let layout = wgpu::TexelCopyBufferLayout { offset: 0, bytes_per_row: Some(4 * side), rows_per_image: None };
+        let source = wgpu::TexelCopyBufferInfo { buffer: from, layout };
+        encoder.copy_buffer_to_texture(source, texture.as_image_copy(), texture.size());
+    }
+
+    /// Takes over the buffer called `name` of another list, to be used by both.
+    pub fn share(&mut self, name: &'static str, other: &Self) {
+        if let Some(Held { buffer, bytes, why }) = other.held.get(name) {
+            self.held.insert(name, Held { buffer: buffer.clone(), bytes: *bytes, why });
+        }
+    }
+
+    /// Gives up every buffer and texture that `is_needed` does not name.
     pub fn keep(&mut self, is_needed: impl Fn(&str) -> bool) {
         self.held.retain(|name, _| is_needed(name));
+        self.texels.retain(|name, _| is_needed(name));
     }
 
     pub fn has(&self, name: &str) -> bool {
@@ -101,9 +150,20 @@ impl Buffers {
         }
     }
 
-    /// Every buffer, by name.
+    /// The buffer or texture called `name`, to be bound.
+    pub fn resource(&self, name: &str) -> wgpu::BindingResource<'_> {
+        match self.texels.get(name) {
+            Some(held) => wgpu::BindingResource::TextureView(&held.view),
+            None => self.get(name).as_entire_binding(),
+        }
+    }
+
+    /// Every buffer by name, then every texture.
     pub fn notes(&self) -> Vec<BufferNote> {
-        self.held.iter().map(|(name, held)| BufferNote { name: (*name).into(), bytes: held.bytes, why: held.why.into() }).collect()
+        let note = |name: &str, bytes: u64, why: &str| BufferNote { name: name.into(), bytes, why: why.into() };
+        let buffers = self.held.iter().map(|(name, held)| note(name, held.bytes, held.why));
+        let texels = self.texels.iter().map(|(name, held)| note(name, 4 * u64::from(held.side) * u64::from(held.side), held.why));
+        buffers.chain(texels).collect()
     }
 }
 

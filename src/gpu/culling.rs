@@ -129,7 +129,7 @@ fn instance(scene: &Scene, draw: &Draw, view: &View) -> InstanceRecord {
     // Floats bend a vertex within 2^-18 of the places to which its joints take it; the box holds those.
     let (center, half) = boxed(&draw.object_bounds(primitive), 1.0 / f64::from(1 << 16));
     let bends = draw.bend.is_some();
-    let sight = if bends || scene.materials[primitive.material].double_sided { None } else { Sight::of(draw, view) };
+    let sight = if bends || draw.double_sided { None } else { Sight::of(draw, view) };
     let Sight { eye, area, length } = sight.unwrap_or_default();
     InstanceRecord {
         eye,
@@ -145,7 +145,8 @@ pub fn is_outside(draw: &Draw, scene: &Scene) -> bool {
     const SLACK: f64 = 1e-4;
     let columns = draw.clip_from_object.map(|column| DVec4::from(column.map(f64::from)));
     let corners = draw.object_bounds(&scene.primitives[draw.primitive]).corners();
-    let ends = corners.map(|p| {
+    let ends = corners.map(|corner| {
+        let p = corner - draw.origin();
         let terms = [columns[0] * p.x, columns[1] * p.y, columns[2] * p.z, columns[3]];
         let (c, sums) = (terms.iter().sum::<DVec4>(), terms.iter().map(|term| term.abs()).sum::<DVec4>() * SLACK);
         let least = |beyond: f64, sum: f64| beyond + sum + sums.w;

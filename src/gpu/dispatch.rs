@@ -14,10 +14,17 @@ pub enum Dispatch {
     Listed,
 }
 
-/// Workgroups of `pass` over so many projected vertices, triangles, vertices that may bend, and meshlets of all instances, in a
-/// picture of `view` that is shown at another size.
-pub fn dispatch(pass: Pass, [vertices, triangles, bent, meshlets]: [u32; 4], view: &View, shown: [u32; 2], key: &KernelKey) -> Dispatch {
+/// Workgroups of `pass` over so many projected vertices, triangles, vertices that may bend, meshlets of all instances, and
+/// particles, in a picture of `view` that is shown at another size.
+pub fn dispatch(
+    pass: Pass,
+    [vertices, triangles, bent, meshlets, particles]: [u32; 5],
+    view: &View,
+    shown: [u32; 2],
+    key: &KernelKey,
+) -> Dispatch {
     match pass {
+        Pass::Particles => Dispatch::Direct(folded(particles.div_ceil(key.list_group))),
         Pass::Skin => Dispatch::Direct(folded(bent.div_ceil(key.list_group))),
         Pass::Project => Dispatch::Direct(folded(vertices.div_ceil(key.list_group))),
         Pass::Cull(_) => Dispatch::Direct(folded(meshlets.div_ceil(key.list_group))),

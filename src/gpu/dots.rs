@@ -94,14 +94,14 @@ pub struct DotStore {
 }
 
 impl DotStore {
-    fn new(scene: &Scene, source: Source) -> Self {
+    fn new(scene: &Scene, source: Source) -> Result<Self, DrawError> {
         let lines = match source.strung {
-            Strung::Edges => Lines::edges(scene, None),
-            Strung::Creases => Lines::edges(scene, Some(f32::from_bits(source.crease).into())),
+            Strung::Edges => Lines::edges(scene, None)?,
+            Strung::Creases => Lines::edges(scene, Some(f32::from_bits(source.crease).into()))?,
             Strung::Polyline => Lines::polyline(&source.polyline),
         };
         let (spacing, stretches, dots, tree, chosen, frame) = (0, Vec::new(), 0, None, 0, DotFrame::default());
-        Self { source, lines, spacing, stretches, dots, tree, chosen, frame, chosen_ms: None }
+        Ok(Self { source, lines, spacing, stretches, dots, tree, chosen, frame, chosen_ms: None })
     }
 
     /// Workgroups of a pass over dots.
@@ -184,7 +184,8 @@ impl Renderer {
             crease: if strung == Strung::Creases { dots.crease_deg.to_bits() } else { 0 },
             polyline: if strung == Strung::Polyline { view.polyline.clone() } else { Arc::default() },
         };
-        let mut store = self.dots.take().filter(|store| store.source == source).unwrap_or_else(|| DotStore::new(&scene, source));
+        let known = self.dots.take().filter(|store| store.source == source);
+        let mut store = known.map_or_else(|| DotStore::new(&scene, source), Ok)?;
         if store.spacing != dots.spacing_m.to_bits() {
             let (stretches, count) = stretches(&store.lines, &dots);
             if count > MAX_DOTS {
@@ -266,7 +267,7 @@ impl Renderer {
             self.gpu.queue.write_buffer(self.buffers.get("dot_frame"), 0, bytemuck::bytes_of(&frame));
             let mut encoder = self.gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor { label: Some("probe dots") });
             let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor { label: Some("dots_probe"), timestamp_writes: None });
-            pipeline.bind(&self.gpu, &mut pass, |name| self.buffers.get(name).as_entire_binding());
+            pipeline.bind(&self.gpu, &mut pass, |name| self.buffers.resource(name));
             let [x, y] = folded(probed.div_ceil(64));
             pass.dispatch_workgroups(x, y, 1);
             drop(pass);

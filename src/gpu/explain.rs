@@ -80,7 +80,8 @@ impl Renderer {
                 tolerance: None,
             };
         };
-        let passes = plan.key.frame();
+        let own = plan.key.frame().into_iter().map(|pass| Note { name: pass.label(), why: pass_purpose(pass).into() });
+        let light = || self.lamp.iter();
         let mut reasons = plan.reasons.clone();
         if let Some([dots, lines]) = self.dots.as_ref().map(DotStore::counts) {
             reasons.push(Note { name: "dots".into(), why: format!("{dots} dots on {lines} lines, as far as the lines are long") });
@@ -89,8 +90,8 @@ impl Renderer {
         let texels = self.texels.as_ref().map(|texels| BufferNote { name: "texels".into(), bytes: texels.bytes, why: why.into() });
         Explanation {
             key: plan.key.to_string(),
-            passes: passes.iter().map(|pass| Note { name: pass.label(), why: pass_purpose(*pass).into() }).collect(),
-            buffers: self.buffers.notes().into_iter().chain(texels).collect(),
+            passes: light().flat_map(|lamp| lamp.passes()).chain(own).collect(),
+            buffers: self.buffers.notes().into_iter().chain(texels).chain(light().flat_map(|lamp| lamp.buffers())).collect(),
             reasons,
             omitted: plan.omitted.clone(),
             sizes: Some(SizesNote::new(plan, self.demand)),
@@ -100,8 +101,9 @@ impl Renderer {
     }
 }
 
-fn pass_purpose(pass: Pass) -> &'static str {
+pub(super) fn pass_purpose(pass: Pass) -> &'static str {
     match pass {
+        Pass::Particles => "takes every particle one step on and writes the triangle of its disc",
         Pass::Skin => "mixes shapes and follows joints, once per vertex of every mesh that bends",
         Pass::Project => "pulls, transforms and snaps every vertex once",
         Pass::Cull(Round::Only) => "leaves out meshlets outside the picture and those that face away, lists the others",

@@ -42,6 +42,9 @@ impl Hardware {
         if stack.dots().is_some() {
             return Ok(Err("an effect strings dots, which it does not".into()));
         }
+        if stack.light().is_some() {
+            return Ok(Err("an effect asks for shadows, which it does not draw".into()));
+        }
         if scene.soft_vertex_count() > 0 {
             return Ok(Err("meshes bend, which takes a pass that it does not have".into()));
         }

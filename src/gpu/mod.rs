@@ -12,11 +12,15 @@ pub mod error;
 mod explain;
 pub mod hardware;
 mod hardware_owners;
+mod lamp;
 pub mod naive;
 mod packing;
+mod past;
 pub mod pipelines;
 mod prepare;
 pub mod readback;
+mod scenes;
+pub mod swarm;
 pub mod texels;
 pub mod timer;
 pub mod trade;
@@ -31,14 +35,14 @@ pub use explain::{Explanation, SizesNote};
 pub use readback::Capture;
 
 use self::{
-    bends::BENT_BYTES,
     buffers::Buffers,
     culling::Patches,
     dispatch::{Dispatch, dispatch},
     dots::DotStore,
+    lamp::Lamp,
     packing::Packing,
     pipelines::Pipelines,
-    prepare::{BACKGROUND_ROWS, bin_heads, first_capacities, record_count, recorded_capacities},
+    prepare::{bin_heads, record_count, recorded_capacities},
     readback::Pending,
     texels::Texels,
     timer::{Detail, Timer},
@@ -50,7 +54,7 @@ use crate::{
     frame::{Counters, CullingFigures, OrderFigures},
     ladder::Scale,
     plan::{Accuracy, Plan, Tuning},
-    scene::{Scene, camera::View},
+    scene::{Scene, camera::View, splats::Cloud},
     shader::{
         key::{KernelKey, Order, Pass},
         library::Library,
@@ -72,6 +76,8 @@ pub struct Report {
     pub culled: Option<CullingFigures>,
     /// A queue overflowed and has grown: the picture is incomplete, draw it again.
     pub redraw: bool,
+    /// Particles are on their way to the frame that was asked for: draw it again.
+    pub is_behind: bool,
 }
 
 /// Draws scenes on one device.
@@ -80,9 +86,12 @@ pub struct Renderer {
     pipelines: Pipelines,
     buffers: Buffers,
     timer: Option<Timer>,
+    base: Option<Arc<Scene>>,
+    /// The base with the cloud that the stack puts beside it: what is on the device.
     scene: Option<Arc<Scene>>,
     /// Images and materials of the scene, where it has any that are more than a base colour.
     texels: Option<Texels>,
+    cloud: Option<Cloud>,
     tuning: Tuning,
     capacities: Capacities,
     /// A proof from bounds failed: queues and clipping are kept from now on.
@@ -113,6 +122,16 @@ pub struct Renderer {
     is_judged: bool,
     /// Lines and their dots, while a stack has them.
     dots: Option<DotStore>,
+    /// Vertices and triangles of the last picture's draws.
+    totals: [u64; 2],
+    /// What draws the shadow map, where an effect asks for one.
+    lamp: Option<Box<Lamp>>,
+    /// This is such a one itself: it draws depths, no picture.
+    is_lamp: bool,
+    /// The particles that the device keeps.
+    kept: Option<swarm::Kept>,
+    /// The last picture shows particles on their way to its own frame.
+    is_behind: bool,
 }
 
 const STORAGE: wgpu::BufferUsages = wgpu::BufferUsages::STORAGE;
@@ -131,8 +150,10 @@ impl Renderer {
             pipelines: Pipelines::new(library),
             buffers: Buffers::default(),
             timer,
+            base: None,
             scene: None,
             texels: None,
+            cloud: None,
             capacities: Capacities::default(),
             distrust: false,
             target: None,
@@ -150,6 +171,11 @@ impl Renderer {
             culled: None,
             is_judged: false,
             dots: None,
+            totals: [0; 2],
+            lamp: None,
+            is_lamp: false,
+            kept: None,
+            is_behind: false,
         }
     }
 
@@ -188,68 +214,49 @@ impl Renderer {
         self.pipelines.compiled()
     }
 
-    /// Uploads a scene's bytes as they are. The one in place stays when the new one does not fit.
-    pub fn set_scene(&mut self, scene: &Arc<Scene>) -> Result<(), RenderError> {
-        if self.scene.as_ref().is_some_and(|current| Arc::ptr_eq(current, scene)) {
-            return Ok(());
-        }
-        let limit = self.gpu.caps.max_storage_binding_bytes.min(self.gpu.caps.max_buffer_bytes);
-        let vertices = 16 * scene.vertex_count();
-        let room = scene.vertex_bytes.len() as u64 + u64::from(BENT_BYTES) * scene.soft_vertex_count();
-        for (buffer, bytes) in [("vertex_bytes", room), ("index_bytes", scene.index_bytes.len() as u64), ("vertices", vertices)] {
-            if bytes > limit {
-                return Err(RenderError::TooLarge { buffer, bytes, limit });
-            }
-        }
-        self.buffers
-            .keep(|name| !matches!(name, "vertex_bytes" | "index_bytes" | "vertices" | "meshlets" | "meshlet_lists" | "seen" | "hiz"));
-        self.patches = None;
-        self.occluders = None;
-        self.hold_attributes(scene, None)?;
-        if !scene.index_bytes.is_empty() {
-            self.buffers.fill(
-                &self.gpu,
-                "index_bytes",
-                &scene.index_bytes,
-                STORAGE | wgpu::BufferUsages::INDEX,
-                "index lists as the file has them",
-            )?;
-        }
-        self.capacities = first_capacities(scene);
-        self.distrust = false;
-        self.past = None;
-        self.full = None;
-        self.dots = None;
-        self.texels = None;
-        self.scene = Some(scene.clone());
-        Ok(())
-    }
-
     /// Records and submits one frame; never waits. A picture of 0 pixels dispatches nothing.
     pub fn draw(&mut self, view: &View, stack: &Stack, accuracy: &Accuracy) -> Result<(), RenderError> {
-        self.draw_timed(view, stack, accuracy, Detail::Passes)
+        self.draw_timed(view, stack, accuracy, Detail::Passes, false)
     }
 
-    pub(crate) fn draw_timed(&mut self, view: &View, stack: &Stack, accuracy: &Accuracy, detail: Detail) -> Result<(), RenderError> {
+    pub(crate) fn draw_timed(
+        &mut self,
+        view: &View,
+        stack: &Stack,
+        accuracy: &Accuracy,
+        detail: Detail,
+        is_patient: bool,
+    ) -> Result<(), RenderError> {
         let scale = accuracy.scale();
         self.shown = [view.width, view.height];
         if scale == Scale::Whole {
-            return self.draw_pixels(view, stack, accuracy, detail);
+            return self.draw_pixels(view, stack, accuracy, detail, is_patient);
         }
         let drawn = view.scaled(scale.factor());
-        self.draw_pixels(&drawn, &stack.scaled(scale.factor()), accuracy, detail).map_err(|error| error.at_scale(scale, view, &drawn))
+        let stack = &stack.scaled(scale.factor());
+        self.draw_pixels(&drawn, stack, accuracy, detail, is_patient).map_err(|error| error.at_scale(scale, view, &drawn))
     }
 
-    /// Draws as many pixels as `view` has, whatever the size at which they are shown.
-    fn draw_pixels(&mut self, view: &View, stack: &Stack, accuracy: &Accuracy, detail: Detail) -> Result<(), RenderError> {
+    /// Draws as many pixels as `view` has, whatever the size at which they are shown. Who is patient waits for particles.
+    fn draw_pixels(
+        &mut self,
+        view: &View,
+        stack: &Stack,
+        accuracy: &Accuracy,
+        detail: Detail,
+        is_patient: bool,
+    ) -> Result<(), RenderError> {
         if self.gpu.is_lost() {
             return Err(RenderError::Lost);
         }
+        self.dress(stack)?;
         let plan = self.prepare(view, stack, accuracy)?;
         if view.pixels() == 0 {
             self.target = None;
             return Ok(());
         }
+        self.is_behind = self.fly(&plan.key, view, stack, is_patient)?;
+        self.prepare_lamp(view, stack)?;
         let passes = plan.key.frame();
         let mut encoder = self.gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor { label: Some("frame") });
         if let Some(timer) = &mut self.timer {
@@ -267,10 +274,16 @@ impl Renderer {
         }
         self.keep_previous(&mut encoder, &plan.key, view, stack);
         self.keep_occluders(&mut encoder, &plan.key, view, stack);
-        self.record(&mut encoder, &plan.key, &passes, view)?;
+        // The light comes after whatever bends the scene for both.
+        let bending = if self.lamp.is_some() { passes.iter().take_while(|pass| **pass == Pass::Skin).count() } else { 0 };
+        self.record(&mut encoder, &plan.key, &passes[..bending], view, false)?;
+        self.record_lamp(&mut encoder)?;
+        self.record(&mut encoder, &plan.key, &passes[bending..], view, true)?;
         self.present(&mut encoder);
         let order = self.buffers.has("order").then(|| self.buffers.get("order"));
-        let pending = Pending::stage(&self.gpu, &mut encoder, [Some(self.buffers.get("counters")), order], self.timer.as_ref());
+        let light = self.lamp.as_ref().map(|lamp| lamp.counters());
+        let figures = [Some(self.buffers.get("counters")), light, order];
+        let pending = Pending::stage(&self.gpu, &mut encoder, figures, self.timer.as_ref());
         self.gpu.queue.submit([encoder.finish()]);
         self.pending.push_back(pending.begin());
         self.last = Some(plan);
@@ -307,18 +320,15 @@ impl Renderer {
     }
 
     fn digest(&mut self, finished: Pending) -> Option<Report> {
-        let (record, order, times) = finished.read(self.timer.as_ref())?;
-        let key = &self.last.as_ref()?.key;
+        let ([record, light], order, times) = finished.read(self.timer.as_ref())?;
         self.demand = Some([record.medium, record.large]);
-        let recorded = recorded_capacities(key, &self.capacities);
-        let counters = record.counters(&recorded);
-        let mut redraw = false;
-        if counters.overflow > 0 {
-            let is_proof_wrong =
-                record.clip > 0 && !key.has_clipping || record.medium > 0 && !key.has_medium || record.large > 0 && !key.has_large;
-            self.distrust |= is_proof_wrong;
-            redraw = self.capacities.grow(&record) || is_proof_wrong;
-        }
+        let key = self.last.as_ref()?.key.clone();
+        let recorded = recorded_capacities(&key, &self.capacities);
+        let mut counters = record.counters(&recorded);
+        let mut redraw = counters.overflow > 0 && self.mend(&key, &record);
+        let lost_light = self.digest_lamp(&light);
+        counters.overflow = counters.overflow.saturating_add(lost_light);
+        redraw |= lost_light > 0;
         redraw |= counters.full_pixels > 0 && self.pending.is_empty() && self.take_fewer_bits();
         let key = &self.last.as_ref()?.key;
         let order = (key.order != Order::Free).then(|| order.figures(key.order == Order::Scheduler, record.tickets));
@@ -327,48 +337,21 @@ impl Renderer {
             self.culled = culled;
         }
         let cpu_ms = self.dots.as_ref().and_then(|dots| dots.chosen_ms);
-        Some(Report { gpu_ms: times.total_ms, cpu_ms, passes: times.passes, counters, order, culled, redraw })
+        Some(Report { gpu_ms: times.total_ms, cpu_ms, passes: times.passes, counters, order, culled, redraw, is_behind: self.is_behind })
+    }
+
+    /// Makes room for what the queues lost, or gives up a proof that was wrong; true if either may help.
+    fn mend(&mut self, key: &KernelKey, record: &CounterRecord) -> bool {
+        let is_proof_wrong =
+            record.clip > 0 && !key.has_clipping || record.medium > 0 && !key.has_medium || record.large > 0 && !key.has_large;
+        self.distrust |= is_proof_wrong;
+        self.capacities.grow(record) || is_proof_wrong
     }
 
     /// Begins anew: the next picture stands after nothing but background.
     pub fn forget(&mut self) {
         self.past = None;
         self.occluders = None;
-    }
-
-    /// Empties what culling remembers of the picture before, unless that was one like this.
-    fn keep_occluders(&mut self, encoder: &mut wgpu::CommandEncoder, key: &KernelKey, view: &View, stack: &Stack) {
-        if self.is_judged {
-            return;
-        }
-        let now = ([view.width, view.height], stack.clone());
-        if self.occluders.as_ref() != Some(&now) {
-            self.clear(encoder, &["seen", "hiz"]);
-        }
-        self.occluders = key.rungs.culling.occludes().then_some(now);
-    }
-
-    /// Makes the colour buffer hold the picture before this one where an effect reads it, and a copy that outlives the
-    /// resolve. A picture that is drawn again stands after the same one as before.
-    fn keep_previous(&mut self, encoder: &mut wgpu::CommandEncoder, key: &KernelKey, view: &View, stack: &Stack) {
-        if !key.reads_previous() {
-            self.past = None;
-            return;
-        }
-        let now = (view.clone(), stack.clone());
-        let bytes = 4 * u64::from(color_stride(view.width)) * u64::from(view.height);
-        match &self.past {
-            Some(past) if *past == now => {
-                encoder.copy_buffer_to_buffer(self.buffers.get("previous"), 0, self.buffers.get("color"), 0, bytes);
-            }
-            past => {
-                if past.as_ref().is_none_or(|(past, _)| [past.width, past.height] != [view.width, view.height]) {
-                    self.fill_background(encoder, view);
-                }
-                encoder.copy_buffer_to_buffer(self.buffers.get("color"), 0, self.buffers.get("previous"), 0, bytes);
-            }
-        }
-        self.past = Some(now);
     }
 
     /// The last picture's sums overflowed: next time it gets the next smaller number of bits, if there is one.
@@ -382,40 +365,37 @@ impl Renderer {
         true
     }
 
-    /// Copies rows of background over the picture, for resolves that leave empty tiles alone, or what they come after.
-    fn fill_background(&self, encoder: &mut wgpu::CommandEncoder, view: &View) {
-        let (from, to) = (self.buffers.get("background"), self.buffers.get("color"));
-        let row = 4 * u64::from(color_stride(view.width));
-        for first in (0..view.height).step_by(BACKGROUND_ROWS as usize) {
-            let rows = BACKGROUND_ROWS.min(view.height - first);
-            encoder.copy_buffer_to_buffer(from, 0, to, row * u64::from(first), row * u64::from(rows));
-        }
-    }
-
     fn clear(&self, encoder: &mut wgpu::CommandEncoder, names: &[&str]) {
         for name in names.iter().filter(|name| self.buffers.has(name)) {
             encoder.clear_buffer(self.buffers.get(name), 0, None);
         }
     }
 
-    /// The straight list of passes.
-    fn record(&mut self, encoder: &mut wgpu::CommandEncoder, key: &KernelKey, passes: &[Pass], view: &View) -> Result<(), RenderError> {
-        let scene = self.scene.as_ref().ok_or(RenderError::NoScene)?;
-        let (vertices, triangles) = (record_count(key, scene) as u32, scene.triangle_count() as u32);
+    /// The straight list of passes; `ends` says whether the frame ends with the last of them.
+    fn record(
+        &mut self,
+        encoder: &mut wgpu::CommandEncoder,
+        key: &KernelKey,
+        passes: &[Pass],
+        view: &View,
+        ends: bool,
+    ) -> Result<(), RenderError> {
+        let (vertices, triangles) = (record_count(key, self.totals) as u32, self.totals[1] as u32);
         let bent = self.bent.last().map_or(0, |range| range.end);
-        let meshlets = self.patches.as_ref().map_or(0, |patches| patches.count);
+        let (meshlets, particles) = (self.patches.as_ref().map_or(0, |patches| patches.count), self.cloud.map_or(0, |cloud| cloud.count));
         for (i, &pass) in passes.iter().enumerate() {
             let pipeline = self.pipelines.get(&self.gpu, key, pass)?;
-            let is_last = i + 1 == passes.len();
-            let timestamp_writes = self.timer.as_mut().and_then(|timer| timer.compute(&pipeline.label, is_last));
-            let mut recorded = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor { label: Some(&pipeline.label), timestamp_writes });
+            let is_last = ends && i + 1 == passes.len();
+            let label = if self.is_lamp { format!("light {}", pass.label()) } else { pass.label() };
+            let timestamp_writes = self.timer.as_mut().and_then(|timer| timer.compute(&label, is_last));
+            let mut recorded = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor { label: Some(&label), timestamp_writes });
             pipeline.bind(&self.gpu, &mut recorded, |name| match &self.texels {
                 Some(texels) if name == "texels" => wgpu::BindingResource::TextureView(&texels.view),
-                _ => self.buffers.get(name).as_entire_binding(),
+                _ => self.buffers.resource(name),
             });
             let size = match &self.dots {
                 Some(dots) if pass.is_of_dots() => dots.dispatch(pass, key),
-                _ => dispatch(pass, [vertices, triangles, bent, meshlets], view, self.shown, key),
+                _ => dispatch(pass, [vertices, triangles, bent, meshlets, particles], view, self.shown, key),
             };
             match size {
                 Dispatch::Direct([x, y]) => recorded.dispatch_workgroups(x, y, 1),

@@ -80,7 +80,7 @@ impl Naive {
             let is_last = i + 1 == self.passes.len();
             let timestamp_writes = timer.as_mut().and_then(|timer| timer.compute(&pipeline.label, is_last));
             let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor { label: Some(&pipeline.label), timestamp_writes });
-            pipeline.bind(gpu, &mut pass, |name| self.buffers.get(name).as_entire_binding());
+            pipeline.bind(gpu, &mut pass, |name| self.buffers.resource(name));
             pass.dispatch_workgroups(*x, *y, 1);
         }
     }

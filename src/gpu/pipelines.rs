@@ -180,9 +180,9 @@ pub fn layout_entry(binding: &Binding, visibility: wgpu::ShaderStages) -> wgpu::
     let ty = match binding.kind {
         BindingKind::Uniform => buffer(wgpu::BufferBindingType::Uniform),
         BindingKind::Storage { read_only } => buffer(wgpu::BufferBindingType::Storage { read_only }),
-        BindingKind::Texture => wgpu::BindingType::Texture {
+        BindingKind::Texture { layered } => wgpu::BindingType::Texture {
             sample_type: wgpu::TextureSampleType::Uint,
-            view_dimension: wgpu::TextureViewDimension::D2Array,
+            view_dimension: if layered { wgpu::TextureViewDimension::D2Array } else { wgpu::TextureViewDimension::D2 },
             multisampled: false,
         },
     };

@@ -16,7 +16,7 @@ use crate::{
     scene::{
         Scene,
         camera::View,
-        draw::{Draw, draws as drawn},
+        draw::{Draw, draws as drawn, totals},
         needs::Needs,
     },
     shader::{
@@ -80,14 +80,16 @@ impl Renderer {
         let mut records: Vec<DrawRecord> = draws.iter().map(record).collect();
         // A binding holds an element at least, even where nothing is to be drawn.
         records.resize(draws.len().max(1), DrawRecord::default());
-        // Nobody draws what lies outside the picture, so nothing bends it.
-        let is_bent = |draw: &&Draw| !key.culls() || !culling::is_outside(draw, &scene);
+        // Nobody draws what lies outside the picture, so nothing bends it, unless it may throw a shadow into it.
+        let is_bent = |draw: &&Draw| !key.culls() || stack.light().is_some() || !culling::is_outside(draw, &scene);
         let bends = Bends::of(&scene, draws.iter().filter(is_bent));
-        let (triangles, vertex_records) = (scene.triangle_count(), record_count(key, &scene));
+        self.totals = totals(&scene, &draws);
+        let (triangles, vertex_records) = (self.totals[1], record_count(key, self.totals));
         let decisions = u64::from(key.decisions) * (triangles + u64::from(recorded.pieces));
         let first_rank = vertex_records + decisions;
         let uniform = FrameUniform {
             vertex_count: vertex_records as u32,
+            triangle_count: triangles as u32,
             point_radius: stack.point_radius(),
             first_rank: first_rank as u32,
             bend_count: bends.records.len() as u32,
@@ -111,6 +113,7 @@ impl Renderer {
             "bends" => key.bends(),
             "joints" => key.has_joints,
             "shapes" => key.has_shapes,
+            "flights" | "course" | "swarm" => key.has_particles,
             "depth_keys" | "owners" => key.layout() == Layout::Split,
             "depth_owner" => key.layout() == Layout::Pairs,
             "packed" => key.layout() == Layout::Word,
@@ -132,15 +135,15 @@ impl Renderer {
         if has_uniform {
             buffers.fill(gpu, "effects", &parameters, wgpu::BufferUsages::UNIFORM, "parameters of the stack")?;
         }
-        if key.bends() {
+        if key.bends() && !self.is_lamp {
             let why = "where the bytes of every mesh lie that bends";
             buffers.fill(gpu, "bends", bytemuck::cast_slice(&bends.records), STORAGE, why)?;
         }
-        if key.has_joints {
+        if key.has_joints && !self.is_lamp {
             let why = "joints of every skin as they stand: three rows each, or a dual quaternion and a stretch";
             buffers.fill(gpu, "joints", bytemuck::cast_slice(&bends.joints), STORAGE, why)?;
         }
-        if key.has_shapes {
+        if key.has_shapes && !self.is_lamp {
             buffers.fill(gpu, "shapes", bytemuck::cast_slice(&bends.shapes), STORAGE, "weights and places of morph targets")?;
         }
         let ranks = if key.order == Order::Free { 0 } else { triangles.div_ceil(4) };
@@ -203,7 +206,9 @@ impl Renderer {
         match key.layout() {
             Layout::Split => {
                 buffers.ensure(gpu, "depth_keys", 4 * pixels + sums, STORAGE, why[0])?;
-                buffers.ensure(gpu, "owners", 4 * pixels, STORAGE, "owner per pixel, 4 bytes")?;
+                if !self.is_lamp {
+                    buffers.ensure(gpu, "owners", 4 * pixels, STORAGE, "owner per pixel, 4 bytes")?;
+                }
             }
             Layout::Pairs => {
                 buffers.ensure(gpu, "depth_owner", 8 * pixels + sums, STORAGE, why[1])?;
@@ -217,6 +222,9 @@ impl Renderer {
             buffers.ensure(gpu, "bins", 4 * words, STORAGE, "which triangles each tile of 16 x 16 pixels has to look at")?;
         }
         let tiles = if key.listed_tiles { u64::from(view.width.div_ceil(8)) * u64::from(view.height.div_ceil(8)) } else { 0 };
+        if self.is_lamp {
+            return Ok(plan);
+        }
         let picture = 4 * u64::from(color_stride(view.width)) * u64::from(view.height);
         let (behind, why) = match key.dots {
             None => (tiles, "the picture, 4 bytes per pixel, and the list of tiles to resolve"),
@@ -275,9 +283,9 @@ fn attribute_bytes(scene: &Scene) -> u64 {
     scene.vertex_bytes.len() as u64 + u64::from(BENT_BYTES) * scene.soft_vertex_count()
 }
 
-/// Projected records of a picture: one per vertex of each draw, or three per triangle where effects part them.
-pub fn record_count(key: &KernelKey, scene: &Scene) -> u64 {
-    if key.parts_corners() { 3 * scene.triangle_count() } else { scene.vertex_count() }
+/// Projected records of so many vertices and triangles: one per vertex of each draw, or three per triangle where effects part them.
+pub fn record_count(key: &KernelKey, [vertices, triangles]: [u64; 2]) -> u64 {
+    if key.parts_corners() { 3 * triangles } else { vertices }
 }
 
 /// Rows that the background buffer holds.

@@ -11,7 +11,7 @@ use super::{
     buffers,
     dots::first_dot_word,
     prepare::record_count,
-    timer::{Timer, Times},
+    timer::{Detail, Timer, Times},
     uniforms::OrderRecord,
 };
 use crate::{
@@ -32,14 +32,14 @@ pub struct Pending {
 
 const COUNTER_BYTES: u64 = size_of::<Demand>() as u64;
 const ORDER_BYTES: u64 = size_of::<OrderRecord>() as u64;
-const FIGURE_BYTES: u64 = COUNTER_BYTES + ORDER_BYTES;
+const FIGURE_BYTES: u64 = 2 * COUNTER_BYTES + ORDER_BYTES;
 
 impl Pending {
     /// Records the copies that end a frame.
     pub fn stage(
         gpu: &Gpu,
         encoder: &mut wgpu::CommandEncoder,
-        [counters, order]: [Option<&wgpu::Buffer>; 2],
+        [counters, light, order]: [Option<&wgpu::Buffer>; 3],
         timer: Option<&Timer>,
     ) -> Self {
         let staging = gpu.device.create_buffer(&wgpu::BufferDescriptor {
@@ -51,8 +51,11 @@ impl Pending {
         if let Some(counters) = counters {
             encoder.copy_buffer_to_buffer(counters, 0, &staging, 0, COUNTER_BYTES);
         }
+        if let Some(light) = light {
+            encoder.copy_buffer_to_buffer(light, 0, &staging, COUNTER_BYTES, COUNTER_BYTES);
+        }
         if let Some(order) = order {
-            encoder.copy_buffer_to_buffer(order, 0, &staging, COUNTER_BYTES, ORDER_BYTES);
+            encoder.copy_buffer_to_buffer(order, 0, &staging, 2 * COUNTER_BYTES, ORDER_BYTES);
         }
         if let Some(timer) = timer {
             timer.end(encoder, &staging, FIGURE_BYTES);
@@ -71,12 +74,12 @@ impl Pending {
         self.ready.load(Ordering::Acquire)
     }
 
-    /// None when the device was lost under it.
-    pub fn read(&self, timer: Option<&Timer>) -> Option<(Demand, OrderRecord, Times)> {
+    /// Demand of the picture and of its light. None when the device was lost under it.
+    pub fn read(&self, timer: Option<&Timer>) -> Option<([Demand; 2], OrderRecord, Times)> {
         let bytes = self.staging.get_mapped_range(..).ok()?;
-        let demand = bytemuck::pod_read_unaligned(&bytes[..size_of::<Demand>()]);
+        let demand = [0, 1].map(|i| bytemuck::pod_read_unaligned(&bytes[i * COUNTER_BYTES as usize..][..size_of::<Demand>()]));
         let times = timer.map(|timer| timer.times(&bytes[FIGURE_BYTES as usize..], &self.labels)).unwrap_or_default();
-        let order = bytemuck::pod_read_unaligned(&bytes[COUNTER_BYTES as usize..FIGURE_BYTES as usize]);
+        let order = bytemuck::pod_read_unaligned(&bytes[2 * COUNTER_BYTES as usize..FIGURE_BYTES as usize]);
         Some((demand, order, times))
     }
 }
@@ -135,22 +138,24 @@ impl Renderer {
         let (owner, depth) = self.read_visibility(&key, view)?;
         let color = self.read_color(view)?;
         let (dot_places, dots) = (self.read_dots(&key)?, self.read_strengths(&key, view)?);
+        let light = self.lamp.as_ref().map(|lamp| lamp.read()).transpose()?.map(Box::new);
         let counted = self.read_counted(&key, view)?;
         let previous = if key.reads_previous() {
             Some(buffers::read_picture(&self.gpu, self.buffers.get("previous"), [view.width, view.height])?)
         } else {
             None
         };
+        let picture = match key.is_scaled() {
+            true => Some(buffers::read_picture(&self.gpu, self.buffers.get("shown"), shown)?),
+            false => None,
+        };
         let (key, counters) = if key.culls() { self.draw_unculled(asked, stack, accuracy, counters)? } else { (key, counters) };
         let mut geometry = self.read_geometry(&key)?;
-        geometry.dots = dot_places;
+        (geometry.dots, geometry.light) = (dot_places, light);
         let layers = if key.layers == Some(Layers::Overdraw) { self.read_counted(&key, view)? } else { self.count_layers(&key, view)? };
         let keys_are_rough = !key.rungs.visibility.is_exact() || !matches!(key.rungs.depth, Depth::Reversed | Depth::Integer);
         let frame = Frame { width: view.width, height: view.height, owner, key: depth, color, counted, dots, counters, keys_are_rough };
-        let shown = match key.is_scaled() {
-            true => Some(frame.shown(shown, buffers::read_picture(&self.gpu, self.buffers.get("shown"), shown)?)),
-            false => None,
-        };
+        let shown = picture.map(|picture| frame.shown(shown, picture));
         Ok(Capture { frame, geometry, layers: Some(layers), previous, shown })
     }
 
@@ -176,7 +181,7 @@ impl Renderer {
     pub fn draw_whole(&mut self, view: &View, stack: &Stack, accuracy: &Accuracy) -> Result<Counters, RenderError> {
         let mut lost = 0;
         for _ in 0..11 {
-            self.draw(view, stack, accuracy)?;
+            self.draw_timed(view, stack, accuracy, Detail::Passes, true)?;
             if view.pixels() == 0 {
                 return Ok(Counters::default());
             }
@@ -195,7 +200,7 @@ impl Renderer {
         Err(RenderError::Overflow(lost))
     }
 
-    fn words(&self, name: &str, count: u64) -> Result<Vec<u32>, RenderError> {
+    pub(super) fn words(&self, name: &str, count: u64) -> Result<Vec<u32>, RenderError> {
         let bytes = buffers::read(&self.gpu, self.buffers.get(name), 4 * count)?;
         Ok(bytemuck::pod_collect_to_vec(&bytes))
     }
@@ -249,9 +254,9 @@ impl Renderer {
         buffers::read_picture(&self.gpu, self.buffers.get("color"), [view.width, view.height])
     }
 
-    fn read_geometry(&self, key: &KernelKey) -> Result<Geometry, RenderError> {
+    pub(super) fn read_geometry(&self, key: &KernelKey) -> Result<Geometry, RenderError> {
         let scene = self.scene.as_ref().ok_or(RenderError::NoScene)?;
-        let (vertices, triangles) = (record_count(key, scene), scene.triangle_count() as usize);
+        let (vertices, triangles) = (record_count(key, self.totals), self.totals[1] as usize);
         let mut pieces = Vec::new();
         if key.has_clipping {
             let count = self.words("counters", 16)?[4].min(self.capacities.pieces);
@@ -277,7 +282,10 @@ impl Renderer {
             is_rough: key.rungs.vertices.packed_bits().is_some(),
             dots: Vec::new(),
             exact: Exactness { vertices: key.rungs.vertex == Vertex::Strict, keys: key.rungs.depth == Depth::Integer },
+            swarm: self.read_swarm(key)?,
+            splats: scene.splat_ids(),
             bent: self.read_bent(scene.vertex_bytes.len() as u64)?,
+            light: None,
         })
     }
 
@@ -296,7 +304,7 @@ impl Renderer {
         let mut encoder = self.gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor { label: Some("count") });
         self.clear(&mut encoder, &["counters", "layers", "counts", "hits"]);
         let timer = self.timer.take();
-        let recorded = self.record(&mut encoder, key, &key.passes(&[key.lead(), &[Phase::Count]].concat()), view);
+        let recorded = self.record(&mut encoder, key, &key.passes(&[key.lead(), &[Phase::Count]].concat()), view, true);
         self.timer = timer;
         recorded?;
         self.gpu.queue.submit([encoder.finish()]);

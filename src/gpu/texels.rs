@@ -61,6 +61,7 @@ const UNLIT: u32 = 4;
 const MASKED: u32 = 8;
 
 /// The texture on a device.
+#[derive(Clone)]
 pub struct Texels {
     pub view: wgpu::TextureView,
     pub bytes: u64,

@@ -2,11 +2,12 @@
 
 use std::{collections::HashSet, sync::Arc};
 
-use super::{Capture, Gpu, RenderError, Renderer, bench::Judge, timer::Detail};
+use super::{Capture, Gpu, RenderError, Renderer, timer::Detail};
 use crate::{
+    effects::Stack,
     frame::{CullingFigures, Frame, Geometry, NO_OWNER, SnappedVertex},
     ladder::{AXES, Axis, Pins, Rung, Scale},
-    measure::{Truths, Verdict, compare, timing},
+    measure::{LightErrors, Truths, Verdict, compare, timing},
     plan::Accuracy,
     scene::{Scene, camera::View},
     session::Session,
@@ -39,6 +40,13 @@ pub struct TradeError {
     /// eight by eight samples to a pixel.
     pub max_colour_delta: u8,
     pub rms_colour_delta: f64,
+    /// Of the pixels that face the light, those where the shadow map errs by more than half of it, per million; none without
+    /// a light.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub wrong_light_ppm: Option<f64>,
+    /// Root mean square of the share of the light by which the map errs.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub rms_light: Option<f64>,
     /// Pixels that differ between two equal frames.
     pub changed_pixels: u64,
     /// Furthest that a corner in the picture lies from where it is on the oracle's finest grid, pixels.
@@ -47,6 +55,12 @@ pub struct TradeError {
     pub cracks_per_mpx: f64,
     pub overflow: u64,
     pub orphans: u64,
+    /// Largest distance of a particle from its true flight, pixels; none without particles.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub max_astray_px: Option<f64>,
+    /// Mean of that in the scene, metres.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub mean_astray_m: Option<f64>,
 }
 
 /// One combination of rungs.
@@ -86,9 +100,15 @@ pub struct TradeRow {
 
 /// What pictures are held against: the oracle's, which this room never sees.
 pub struct Truth<'a> {
-    /// Pictures on the oracle's finest grid, at every size of [`factors`].
+    /// Pictures on the oracle's finest grid, at every size of [`factors`], their shadows by rays.
     pub truths: &'a Truths,
-    pub judge: Judge<'a>,
+    pub judge: &'a dyn Fn(&View, &Stack, &Capture) -> Judged,
+}
+
+/// What the oracle says of a picture, and of the light in it where an effect asks for one.
+pub struct Judged {
+    pub verdict: Verdict,
+    pub light: Option<LightErrors>,
 }
 
 /// How many pixels to a side of a shown one the combinations on these axes draw, one first.
@@ -218,7 +238,7 @@ impl Entry {
         let first = renderer.capture(&view, &session.stack, &accuracy)?;
         let second = renderer.capture(&view, &session.stack, &accuracy)?;
         let bytes = renderer.explain().buffers.iter().map(|buffer| buffer.bytes).sum();
-        let error = TradeError::of(&first, &second.frame, &(truth.judge)(&session.stack, &first), truth);
+        let error = TradeError::of(&first, &second.frame, &(truth.judge)(&view, &session.stack, &first), truth);
         let owners = first.frame.owner.iter().filter(|owner| **owner != NO_OWNER).collect::<HashSet<_>>().len();
         Ok(Self { pins, view, renderer, error, owners, bytes, ms: Vec::new(), cpu_ms: Vec::new(), invalid: 0 })
     }
@@ -226,8 +246,8 @@ impl Entry {
     /// Draws twice without a pause and waits for the second: an idle device lowers its clocks, and others' frames empty its caches.
     fn sample(&mut self, session: &Session, is_kept: bool) -> Result<(), RenderError> {
         let accuracy = Accuracy { pins: self.pins, ..session.accuracy };
-        self.renderer.draw_timed(&self.view, &session.stack, &accuracy, Detail::Whole)?;
-        self.renderer.draw_timed(&self.view, &session.stack, &accuracy, Detail::Whole)?;
+        self.renderer.draw_timed(&self.view, &session.stack, &accuracy, Detail::Whole, true)?;
+        self.renderer.draw_timed(&self.view, &session.stack, &accuracy, Detail::Whole, true)?;
         let report = self.renderer.finish()?;
         match report.gpu_ms {
             Some(ms) if is_kept => {
@@ -264,7 +284,7 @@ impl Entry {
 }
 
 impl TradeError {
-    fn of(capture: &Capture, again: &Frame, verdict: &Verdict, truth: &Truth) -> Self {
+    fn of(capture: &Capture, again: &Frame, judged: &Judged, truth: &Truth) -> Self {
         let (frame, scale) = (&capture.frame, capture.geometry.scale);
         let (picture, corners) = truth.truths.at(scale).expect("a truth at every size that is drawn");
         let pixels = (frame.owner.len() as f64).max(1.0);
@@ -276,7 +296,7 @@ impl TradeError {
             None => compare::pictures(&frame.color, &picture.color, 0),
         };
         let differs = |i: &usize| frame.owner[*i] != again.owner[*i] || frame.color[*i] != again.color[*i];
-        let a = &verdict.accuracy;
+        let a = &judged.verdict.accuracy;
         let moved_px = moved_px(&capture.geometry, corners, [frame.width, frame.height]);
         Self {
             wrong_ppm: per_million(compare::owners(&frame.owner, &picture.owner).different),
@@ -285,11 +305,15 @@ impl TradeError {
             wrong_depth_ppm: per_million(a.wrong_winners),
             max_colour_delta: colors.max_delta,
             rms_colour_delta: colors.rms,
+            wrong_light_ppm: judged.light.map(|light| light.wrong as f64 * 1e6 / (light.pixels as f64).max(1.0)),
+            rms_light: judged.light.map(|light| light.rms),
             changed_pixels: (0..frame.owner.len()).filter(differs).count() as u64,
             moved_px: moved_px / scale,
             cracks_per_mpx: per_million(cracks(frame, picture, moved_px)),
             overflow: a.overflow,
             orphans: a.orphans,
+            max_astray_px: (a.particles > 0).then_some(a.max_astray_px),
+            mean_astray_m: (a.particles > 0).then_some(a.mean_astray_m),
         }
     }
 
@@ -297,8 +321,17 @@ impl TradeError {
     pub fn is_at_most(&self, other: &Self) -> bool {
         let figures = |e: &Self| {
             let counts = [e.changed_pixels, e.overflow, e.orphans].map(|count| count as f64);
-            let shares = [e.wrong_ppm, e.holes_per_mpx, e.double_hits_per_mpx, e.wrong_depth_ppm, e.rms_colour_delta, e.cracks_per_mpx];
-            [shares.to_vec(), counts.to_vec(), vec![e.max_colour_delta.into()]].concat()
+            let shares = [
+                e.wrong_ppm,
+                e.holes_per_mpx,
+                e.double_hits_per_mpx,
+                e.wrong_depth_ppm,
+                e.rms_colour_delta,
+                e.cracks_per_mpx,
+                e.mean_astray_m.unwrap_or(0.0),
+            ];
+            let light = [e.wrong_light_ppm, e.rms_light].map(Option::unwrap_or_default);
+            [shares.to_vec(), light.to_vec(), counts.to_vec(), vec![e.max_colour_delta.into()]].concat()
         };
         figures(self).iter().zip(figures(other)).all(|(a, b)| *a <= b)
     }

@@ -44,6 +44,7 @@ twin! {
         pub ndc_x: [f32; 4],
         pub ndc_y: [f32; 4],
         pub clip_from_world: [[f32; 4]; 4],
+        pub picture_from_world: [[f32; 4]; 4],
         pub center: [f32; 2],
         pub range_m: [f32; 2],
         pub linear_depth_m: [f32; 2],
@@ -166,6 +167,39 @@ twin! {
     }
 }
 
+twin! {
+    /// What takes places to the shadow map. Each member is explained in `shaders/slots/light/mapped.wgsl`.
+    pub struct LightUniform = "Light" {
+        pub column: [f32; 4],
+        pub row: [f32; 4],
+        pub depth: [f32; 4],
+        pub texel_m: f32,
+        pub range_m: f32,
+        pub side: u32,
+        pub spare: u32,
+    }
+}
+
+impl LightUniform {
+    /// Of a light's view.
+    pub fn new(view: &View) -> Self {
+        let half = f64::from(view.width) * 0.5;
+        let row = |i: usize| view.clip_from_world.row(i);
+        let rounded = |row: glam::DVec4| row.to_array().map(|v| v as f32);
+        // Half a picture is one unit of normalized device coordinates, whose y points up.
+        let [column, down, depth] = [(row(0) + row(3)) * half, (row(3) - row(1)) * half, row(2)];
+        Self {
+            column: rounded(column),
+            row: rounded(down),
+            depth: rounded(depth),
+            texel_m: (1.0 / column.truncate().length()) as f32,
+            range_m: (1.0 / depth.truncate().length()) as f32,
+            side: view.width,
+            spare: 0,
+        }
+    }
+}
+
 /// Entries that fit each queue.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Capacities {
@@ -233,6 +267,7 @@ impl FrameUniform {
             ndc_x: wide(view.ndc_axes[0], 0.0),
             ndc_y: wide(view.ndc_axes[1], 0.0),
             clip_from_world: rounded_columns(&view.clip_from_world),
+            picture_from_world: rounded_columns(&view.picture_from_world.unwrap_or(view.clip_from_world)),
             center: [view.width, view.height].map(|pixels| (pixels as i32 * view.units_per_pixel() / 2) as f32),
             range_m: view.scene_range_m.map(|d| d as f32),
             linear_depth_m: view.linear_depth_m.unwrap_or_default().map(|d| d as f32),
@@ -283,7 +318,10 @@ impl DrawRecord {
             first_vertex: draw.first_vertex,
             vertex_count: primitive.vertex_count(),
             first_triangle: draw.first_triangle,
-            flags: u32::from(material.double_sided) | u32::from(draw.mirrored) << 1 | (draw.primitive as u32) << 8,
+            flags: u32::from(draw.double_sided)
+                | u32::from(draw.mirrored) << 1
+                | u32::from(scene.splats == Some(draw.primitive)) << 2
+                | (draw.primitive as u32) << 8,
             topology: primitive.topology as u32,
             index_offset: primitive.indices.map_or(0, |i| i.offset),
             index_format: primitive.indices.map_or(0, |i| i.component.bytes()),

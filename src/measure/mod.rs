@@ -51,6 +51,16 @@ pub struct Accuracy {
     pub max_bend_ulp: f64,
     /// The same as it appears in the picture, pixels, of vertices that the near plane keeps.
     pub max_bend_px: f64,
+    /// Particles of the picture.
+    pub particles: u64,
+    /// Particles whose last step, or whose disc, lies outside its forward error bound.
+    pub particles_outside_bound: u64,
+    /// Particles more than a pixel away from where their true flight has taken them; chaos, not judged.
+    pub particles_astray: u64,
+    /// Largest such distance in the picture, pixels.
+    pub max_astray_px: f64,
+    /// Its mean in the scene, metres.
+    pub mean_astray_m: f64,
     /// Decisions of sample effects beyond their bound, or that do not follow from their first word.
     pub decisions_wrong: u64,
     /// Dots of all lines.
@@ -80,6 +90,16 @@ fn is_zero(count: &u64) -> bool {
     *count == 0
 }
 
+/// How far a shadow map is from rays, over the pixels that face the light.
+#[derive(Clone, Copy, Debug, Default, PartialEq, serde::Serialize)]
+pub struct LightErrors {
+    pub pixels: u64,
+    /// Those where the map errs by more than half of the light.
+    pub wrong: u64,
+    /// Root mean square of the share of the light that is too much or too little.
+    pub rms: f64,
+}
+
 /// Error as a bench row states it; none reads "not measured", never 0.
 #[derive(Clone, Debug, Default, PartialEq, serde::Serialize)]
 pub struct ErrorFigures {
@@ -101,6 +121,12 @@ pub struct ErrorFigures {
     /// The same in units of the last place.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub max_bend_ulp: Option<f64>,
+    /// Largest distance of a particle from its true flight, pixels; none without particles.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub max_astray_px: Option<f64>,
+    /// Share of the particles that are more than a pixel away from it.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub astray_share: Option<f64>,
 }
 
 impl From<&Accuracy> for ErrorFigures {
@@ -117,6 +143,8 @@ impl From<&Accuracy> for ErrorFigures {
             rms_colour_delta: Some(a.rms_colour_delta),
             max_bend_px: (a.bent_vertices > 0).then_some(a.max_bend_px),
             max_bend_ulp: (a.bent_vertices > 0).then_some(a.max_bend_ulp),
+            max_astray_px: (a.particles > 0).then_some(a.max_astray_px),
+            astray_share: (a.particles > 0).then(|| a.particles_astray as f64 / a.particles as f64),
         }
     }
 }
@@ -195,6 +223,7 @@ impl Accuracy {
             (self.snap_outside_bound, 0, "vertices snapped outside their bound"),
             (self.attribute_outside_bound, 0, "vertices have a depth or 1/w outside its bound"),
             (self.bent_outside_bound, 0, "bent vertices lie outside their bound"),
+            (self.particles_outside_bound, 0, "particles took a step outside its bound"),
             (self.unexplained, budget.max_wrong_owner, "pixels differ from the oracle's own picture without a reason"),
             (self.decisions_wrong, 0, "decisions of sample effects are wrong"),
             (self.dots_outside_bound, 0, "dots lie outside their bound"),

@@ -12,7 +12,11 @@ use crate::{
     effects::hooks::Shape,
     frame::{Counters, Geometry, NO_OWNER, Piece, SnappedVertex, vertex_flags},
     math::SMALL_EXTENT,
-    scene::{Scene, camera::View, draw::Draw},
+    scene::{
+        Scene,
+        camera::View,
+        draw::{Draw, totals},
+    },
 };
 
 /// A triangle to be drawn, wound clockwise on screen (positive doubled area with y down).
@@ -154,7 +158,7 @@ pub fn triangles(scene: &Scene, draws: &[Draw], geometry: &Geometry) -> (Vec<Ori
     const CHUNK: u32 = 1 << 16;
     let mut pieces: Vec<(usize, &Piece)> = geometry.pieces.iter().enumerate().collect();
     pieces.sort_by_key(|(_, piece)| piece.parent);
-    let whole = scene.triangle_count() as usize;
+    let whole = totals(scene, draws)[1] as usize;
     let mut drawn = Vec::new();
     let mut counters = Counters::default();
     for draw in draws {
@@ -226,8 +230,7 @@ impl Assembly<'_> {
 
     /// Keeps a triangle unless it shows the back of a single-sided material, turned clockwise.
     fn oriented(&mut self, id: u32, entry: usize, mut corners: [SnappedVertex; 3], area: i64) {
-        let material = &self.scene.materials[self.scene.primitives[self.draw.primitive].material];
-        if is_back(area, self.draw) && !material.double_sided {
+        if is_back(area, self.draw) && !self.draw.double_sided {
             return;
         }
         if area < 0 {
@@ -257,6 +260,27 @@ pub fn cover_by(rules: &Rules, triangles: &[OrientedTriangle], view: &View, clai
         }
     });
     Coverage { samples }
+}
+
+/// The nearest that covers a sample, by depth alone.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Nearest {
+    pub depth: f64,
+    /// Between which depths the key of a float renderer lies.
+    pub interval: [f64; 2],
+}
+
+/// Finds the nearest depth on every sample of `view`; infinitely far where nothing is.
+pub(super) fn cover_depths(rules: &Rules, triangles: &[OrientedTriangle], view: &View) -> Vec<Nearest> {
+    let mut cells = vec![Nearest { depth: f64::NEG_INFINITY, interval: [f64::NEG_INFINITY; 2] }; view.pixels()];
+    scatter(rules, triangles, view, &mut cells, |_| {
+        |cell: &mut Nearest, _, _, hit: Hit| {
+            cell.depth = cell.depth.max(hit.depth);
+            // Whichever reaches farthest may be in front.
+            cell.interval = [0, 1].map(|end| cell.interval[end].max(hit.interval[end]));
+        }
+    });
+    cells
 }
 
 /// Where a triangle meets a sample: its depth, and the interval of float keys.
@@ -386,6 +410,6 @@ pub fn depth_bound(corners: &[SnappedVertex; 3]) -> f64 {
 }
 
 /// Bits of a depth rounded to f32, which order as the depths do; at least 1, because 0 is an empty pixel.
-fn depth_key(depth: f64) -> u32 {
+pub(super) fn depth_key(depth: f64) -> u32 {
     if depth > 0.0 { (depth as f32).to_bits().max(1) } else { 1 }
 }

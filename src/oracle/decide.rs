@@ -16,7 +16,11 @@ use crate::{
         hooks::{Facts, SampleHook},
     },
     frame::{Geometry, Piece, SnappedVertex},
-    scene::{Scene, camera::View, draw::Draw},
+    scene::{
+        Scene,
+        camera::View,
+        draw::{Draw, totals},
+    },
 };
 
 /// Relative spacing of f32.
@@ -45,7 +49,7 @@ pub(super) fn wrong(scene: &Scene, draws: &[Draw], view: &View, stack: &Stack, g
     if records == 0 {
         return 0;
     }
-    let whole = scene.triangle_count() as usize;
+    let whole = totals(scene, draws)[1] as usize;
     assert_eq!(geometry.decisions.len(), records * (whole + geometry.pieces.len()), "the decisions are of another scene");
     let is_wrong = |facts: &Facts, (hook, words): &(SampleHook, &[u32]), given: [u32; 4]| {
         let truth = (hook.decide)(facts, words, None);
@@ -101,7 +105,7 @@ fn entries<'a>(
             .then(|| entry(&Mover::new(scene, draw, view, stack), scene, view, geometry, piece.parent, Shown::Piece(piece), has_masks))
             .flatten()
     };
-    (0..scene.triangle_count() as u32).into_par_iter().map(whole).chain(geometry.pieces.par_iter().map(pieces))
+    (0..totals(scene, draws)[1] as u32).into_par_iter().map(whole).chain(geometry.pieces.par_iter().map(pieces))
 }
 
 /// What is drawn of a triangle.
@@ -129,14 +133,16 @@ fn entry(mover: &Mover, scene: &Scene, view: &View, geometry: &Geometry, id: u32
     let bent = [a, b, c].map(|p| (m.x_axis.abs() * p.error.x + m.y_axis.abs() * p.error.y + m.z_axis.abs() * p.error.z).max_element());
     let bent = bent.into_iter().fold(0.0, f64::max);
     let image = has_masks.then(|| mask::Places::of(mover, scene, view, places, piece)).flatten();
+    let center = world.iter().sum::<DVec3>() / 3.0;
+    let screen = || center_screen(mover, view, &corner_records(scene, draw, geometry, id), places);
     let facts = Facts {
         triangle: id,
         corners: corners.map(|corner| [corner.x, corner.y]),
         outline,
         size: [view.width, view.height],
-        center: world.iter().sum::<DVec3>() / 3.0,
+        center,
         center_slack_m: 8.0 * ULP * reach + bent,
-        center_screen: center_screen(mover, view, &corner_records(scene, draw, geometry, id), places),
+        center_screen: mover.in_picture(center).unwrap_or_else(screen),
     };
     Some((facts, image.map(|image| (draw.primitive, image))))
 }

@@ -43,8 +43,8 @@ struct Strings<'a> {
 impl<'a> Strings<'a> {
     fn new(scene: &'a Scene, draws: &'a [Draw], view: &'a View, stack: &'a Stack, dots: &Dots) -> Result<Self, DrawError> {
         let lines = match Strung::of(dots.lines) {
-            Strung::Edges => Lines::edges(scene, None),
-            Strung::Creases => Lines::edges(scene, Some(dots.crease_deg.into())),
+            Strung::Edges => Lines::edges(scene, None)?,
+            Strung::Creases => Lines::edges(scene, Some(dots.crease_deg.into()))?,
             Strung::Polyline => Lines::polyline(&view.polyline),
         };
         let count = |line: &[Segment]| line.last().map_or(0, |last| dots.count(last.start_m + last.length_m));

@@ -16,8 +16,9 @@ use super::{
     finish::{Seen, bytes},
     frame,
     layers::{Layered, Scenery, layered},
+    light,
     moved::{Corner, Mover},
-    order,
+    order, particles,
     project::{Clip, half_size, project_as},
     rules::Rules,
     steps::Answers,
@@ -74,16 +75,19 @@ pub fn judge_after(
     // The adapter's grid, the origin of its places and the pixels that it draws are promises of its rungs, not faults.
     let view = &View { subpixel_bits: geometry.subpixel_bits, is_relative: geometry.is_relative, ..view.scaled(geometry.scale) };
     let stack = &stack.scaled(geometry.scale);
-    let draws = draws(scene, view)?;
     if view.pixels() == 0 {
+        draws(scene, view)?;
         return Ok(Verdict { expected: empty(view), ..Verdict::default() });
     }
+    let scene = &*particles::dressed(scene, view, stack, geometry.swarm.as_ref());
+    let draws = draws(scene, view)?;
     assert_eq!([adapter.owner.len(), adapter.key.len(), adapter.color.len()], [view.pixels(); 3], "the frame has another size");
     let mut own = project_as(geometry.exact, scene, &draws, view, stack);
     own.decisions = decide(scene, &draws, view, stack, &own);
     let records = |geometry: &Geometry| (geometry.vertices.len(), geometry.has_own_corners);
     assert_eq!(records(geometry), records(&own), "the geometry is of another scene or stack");
 
+    assert_eq!(geometry.light.is_some(), stack.light().is_some(), "the light has a map, or there is neither");
     let (given, counters) = triangles(scene, &draws, geometry);
     // Where the hardware chooses among samples, everything that is covered may be drawn.
     let is_free = order::is_free(stack);
@@ -125,10 +129,14 @@ pub fn judge_after(
     accuracy.step_band_pixels = step_band.iter().filter(|is_band| **is_band).count() as u64;
     judge_counters(&mut accuracy, &counters, adapter);
     judge_vertices(&mut accuracy, &vertices);
+    judge_particles(&mut accuracy, view, stack, geometry);
     bend::judge(&mut accuracy, scene, &draws, view, &geometry.bent);
     dots::judge(&mut accuracy, (scene, &draws, view, stack), &geometry.dots, [&adapter.dots, &dots])?;
     // Of rough places, fronts travel roughly.
     accuracy.decisions_wrong = if geometry.is_rough { 0 } else { wrong(scene, &draws, view, stack, geometry) };
+    if let Some(map) = &geometry.light {
+        light::judge(&mut accuracy, scene, view, stack, map)?;
+    }
     Whole { scene, draws: &draws, view, stack, own: &own, adapter: geometry, cut: rules.cut(), vertices: &vertices }.judge(
         &mut accuracy,
         &coverage,
@@ -188,7 +196,7 @@ fn judge_choice(accuracy: &mut Accuracy, coverage: &Coverage, adapter: &Frame, l
 }
 
 /// Does a float key lie in the interval? A depth too small for a normal f32 has the least key, 1.
-fn key_fits(key: u32, [low, high]: [f64; 2]) -> bool {
+pub(super) fn key_fits(key: u32, [low, high]: [f64; 2]) -> bool {
     let depth = f64::from(f32::from_bits(key));
     (low..=high).contains(&depth) && key != 0 || key == 1 && low < f64::from(f32::MIN_POSITIVE)
 }
@@ -215,6 +223,16 @@ fn judge_counters(accuracy: &mut Accuracy, truth: &Counters, adapter: &Frame) {
     accuracy.orphans = accuracy.orphans.max(adapter.counters.orphans.into());
 }
 
+fn judge_particles(accuracy: &mut Accuracy, view: &View, stack: &Stack, geometry: &Geometry) {
+    let Some(swarm) = &geometry.swarm else { return };
+    let judged = particles::judged(view, stack, swarm);
+    accuracy.particles = judged.len() as u64;
+    accuracy.particles_outside_bound = judged.iter().filter(|one| one.is_outside).count() as u64;
+    accuracy.particles_astray = judged.iter().filter(|one| one.astray_px > 1.0).count() as u64;
+    accuracy.max_astray_px = judged.iter().map(|one| one.astray_px).fold(0.0, f64::max);
+    accuracy.mean_astray_m = judged.iter().map(|one| one.astray_m).sum::<f64>() / judged.len().max(1) as f64;
+}
+
 /// What the judgement of one vertex found.
 #[derive(Clone, Copy, Default)]
 pub(super) struct VertexFault {
@@ -228,7 +246,7 @@ pub(super) struct VertexFault {
     pub wander: f64,
 }
 
-fn judge_vertices(accuracy: &mut Accuracy, faults: &[VertexFault]) {
+pub(super) fn judge_vertices(accuracy: &mut Accuracy, faults: &[VertexFault]) {
     for fault in faults {
         accuracy.vertices += 1;
         accuracy.ill_conditioned += u64::from(fault.is_ill_conditioned);
@@ -239,7 +257,14 @@ fn judge_vertices(accuracy: &mut Accuracy, faults: &[VertexFault]) {
     }
 }
 
-fn vertex_faults(scene: &Scene, draws: &[Draw], view: &View, stack: &Stack, adapter: &Geometry, own: &Geometry) -> Vec<VertexFault> {
+pub(super) fn vertex_faults(
+    scene: &Scene,
+    draws: &[Draw],
+    view: &View,
+    stack: &Stack,
+    adapter: &Geometry,
+    own: &Geometry,
+) -> Vec<VertexFault> {
     let of_draw = |draw: &Draw| {
         let mover = Mover::new(scene, draw, view, stack);
         let fault = |(i, corner)| {

@@ -9,6 +9,7 @@ use glam::{DVec3, DVec4};
 use super::{
     coverage::{Coverage, Hit, OrientedTriangle, draw_of, scatter},
     finish,
+    light::Light,
     moved::Mover,
     order::ranks,
     rules::Rules,
@@ -121,6 +122,8 @@ fn tallies(scenery: &Scenery, stack: &Stack, params: &Xray, bits: u32) -> Vec<Ta
     let width = view.width as usize;
     let (ranks, ways) = (ranks(scene, draws, view, stack, geometry), ways(scene, stack));
     let ways = &ways;
+    let light = Light::of(scene, view, stack, geometry);
+    let light = light.as_ref();
     scatter(rules, triangles, view, &mut tallies, |triangle| {
         let mut surface: Option<Option<Triangle<'_>>> = None;
         let rank = ranks.get(triangle.id as usize).copied().unwrap_or(0.0);
@@ -138,11 +141,14 @@ fn tallies(scenery: &Scenery, stack: &Stack, params: &Xray, bits: u32) -> Vec<Ta
                 Triangle::new(&Mover::new(scene, draw, view, stack), scene, view, geometry, triangle.id)
             });
             let Some(known) = known else { return };
-            let shaded = stack.shade(Surface { rank, ..known.surface(view, x, y, [0.0; 3]) });
+            let surface = known.surface(view, x, y, [0.0; 3]);
+            let place = known.place(view, &surface);
+            let lit = |nudge: f64| light.map_or(0.0, |light| light.arrives(&place, triangle.id, nudge));
+            let shaded = stack.shade(Surface { rank, lit: lit(0.0), ..surface });
             // Near a step of colour either side of it is right, and near the edge of a texel.
             let nudged = ways.iter().map(|way| {
                 let surface = known.surface(view, x, y, way.aside);
-                stack.shade(Surface { rank, nudge: way.step, ..surface }).color.truncate()
+                stack.shade(Surface { rank, lit: lit(way.step), nudge: way.step, ..surface }).color.truncate()
             });
             let ends = nudged.fold([shaded.color.truncate(); 2], |[least, most], color| [least.min(color), most.max(color)]);
             let weight = params.weight_of(&shaded);

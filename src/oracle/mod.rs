@@ -19,12 +19,16 @@ mod finish;
 pub mod flushed;
 mod judge;
 mod layers;
+mod light;
 mod mask;
 mod moved;
 mod order;
+pub mod particles;
 mod project;
+mod rays;
 mod rules;
 mod shown;
+mod spread;
 mod steps;
 mod strict;
 mod surface;
@@ -37,6 +41,7 @@ pub use decide::decide;
 pub use dots::{dot_records, dot_strengths};
 pub use finish::{Seen, shade};
 pub use judge::{judge, judge_after, snap_bounds};
+pub use light::{light_errors, shadow_map};
 pub use order::Cut;
 pub use project::{project, project_moved};
 pub use rules::Rules;
@@ -55,6 +60,7 @@ use crate::{
         Scene,
         camera::View,
         draw::{DrawError, draws},
+        light::ShadowGrid,
     },
 };
 
@@ -98,18 +104,35 @@ fn finest(view: &View, stack: &Stack) -> View {
     View { subpixel_bits, is_relative: true, ..view.clone() }
 }
 
+/// The same, with the light that arrives told by rays: what shadow maps are measured against. Where effects leave samples
+/// out, of which rays know nothing, the map of `view` tells it.
+///
+/// # Errors
+/// As [`render`].
+pub fn render_reference(scene: &Scene, view: &View, stack: &Stack) -> Result<Frame, DrawError> {
+    render_finest(scene, &traced(view, stack), stack)
+}
+
+fn traced(view: &View, stack: &Stack) -> View {
+    let has_rays = stack.light().is_some() && !light::leaves_out(stack);
+    View { shadow: if has_rays { ShadowGrid::TRACED } else { view.shadow }, ..view.clone() }
+}
+
 /// The true picture of `scene` that follows `previous`, a picture of the same size.
 ///
 /// # Errors
 /// As [`render`].
 pub fn render_after(scene: &Scene, view: &View, stack: &Stack, previous: Option<&[[u8; 4]]>) -> Result<Frame, DrawError> {
-    let draws = draws(scene, view)?;
     if view.pixels() == 0 {
+        draws(scene, view)?;
         return Ok(empty(view));
     }
+    let scene = &*particles::dressed(scene, view, stack, None);
+    let draws = draws(scene, view)?;
     let mut geometry = project_moved(scene, &draws, view, stack);
     geometry.decisions = decide(scene, &draws, view, stack, &geometry);
     geometry.dots = dot_records(scene, &draws, view, stack)?;
+    geometry.light = shadow_map(scene, view, stack)?;
     let (triangles, counters) = triangles(scene, &draws, &geometry);
     let rules = Rules::of(stack, &geometry).masked(scene, &draws, stack).ordered(stack, &triangles, view);
     let coverage = cover_by(&rules, &triangles, view, None);

@@ -38,6 +38,8 @@ pub(super) struct Mover<'a> {
     /// Rounded once, so that every judge starts from these bits.
     clip_from_world: [[f64; 4]; 4],
     world_from_normal: DMat3,
+    /// Of the picture that a light's view is drawn for, rounded as above.
+    picture_from_world: Option<[[f64; 4]; 4]>,
 }
 
 impl<'a> Mover<'a> {
@@ -50,7 +52,22 @@ impl<'a> Mover<'a> {
             has_own_corners: stack.parts_corners(),
             clip_from_world: rounded_columns(&view.clip_from_world).map(|column| column.map(f64::from)),
             world_from_normal: inverse_transpose(DMat3::from_mat4(draw.world_from_object), draw.mirrored),
+            picture_from_world: view.picture_from_world.map(|matrix| rounded_columns(&matrix).map(|column| column.map(f64::from))),
         }
+    }
+
+    /// Where a place of the world stands in the picture that a light's view is drawn for, its middle where that is behind the
+    /// eye; none in a picture itself.
+    pub fn in_picture(&self, place: DVec3) -> Option<DVec2> {
+        let [x, y, _, w] = self.picture_rows(place, false)?;
+        Some(if w > 0.0 { DVec2::new(0.5 + 0.5 * x / w, 0.5 - 0.5 * y / w) } else { DVec2::splat(0.5) })
+    }
+
+    /// Rows of that picture's matrix times a place, or the sums of the magnitudes of their terms.
+    fn picture_rows(&self, p: DVec3, magnitudes: bool) -> Option<[f64; 4]> {
+        let m = self.picture_from_world?;
+        let sign = |v: f64| if magnitudes { v.abs() } else { v };
+        Some([0, 1, 2, 3].map(|r| sign(m[0][r] * p.x) + sign(m[1][r] * p.y) + sign(m[2][r] * p.z) + sign(m[3][r])))
     }
 
     /// The corner of every record of this draw, in order.
@@ -110,11 +127,13 @@ impl<'a> Mover<'a> {
         let corners = self.triangle_places(corner);
         let middle = corners.iter().sum::<DVec3>() / 3.0;
         let [x, y, _, w] = self.clip_rows(middle - self.draw.origin(), false);
+        let center = held(self.draw.world_from_object.transform_point3(middle));
+        let own = if w > 0.0 { DVec2::new(0.5 + 0.5 * x / w, 0.5 - 0.5 * y / w) } else { DVec2::splat(0.5) };
         Vertex {
             flat_normal: plane_normal(corners).map_or(DVec3::ZERO, |normal| direction(self.world_from_normal * normal)),
-            center: held(self.draw.world_from_object.transform_point3(middle)),
+            center,
             arm: self.draw.world_from_object.transform_vector3(object - middle),
-            center_screen: if w > 0.0 { DVec2::new(0.5 + 0.5 * x / w, 0.5 - 0.5 * y / w) } else { DVec2::splat(0.5) },
+            center_screen: self.in_picture(center).unwrap_or(own),
             triangle: self.draw.first_triangle + corner.triangle,
             ..alone
         }
@@ -280,7 +299,18 @@ impl Mover<'_> {
         let ([x, y, _, w], sums) = (self.clip_rows(middle - origin, false), self.clip_rows(magnitudes + origin.abs(), true));
         let bent = |r: usize| [0, 1, 2].map(|axis| f64::from(self.draw.clip_from_object[axis][r]).abs() * given[axis]).iter().sum::<f64>();
         // An error of the corners counts as a rounding of the sums does.
-        let [sx, sy, _, sw] = [0, 1, 2, 3].map(|r| sums[r] + bent(r) / (8.0 * ROUNDING));
+        let mut sums = [0, 1, 2, 3].map(|r| sums[r] + bent(r) / (8.0 * ROUNDING));
+        let mut rows = [x, y, w];
+        // In the picture for which a light looks: the place in the world is rounded first.
+        let world = self.draw.world_from_object;
+        let reach = |v: DVec3| (world.x_axis.abs() * v.x + world.y_axis.abs() * v.y + world.z_axis.abs() * v.z).truncate();
+        let magnitude = reach(magnitudes) + world.w_axis.abs().truncate() + reach(given) / (8.0 * ROUNDING);
+        if let (Some([x, y, _, w]), Some(picture)) =
+            (self.picture_rows(world.transform_point3(middle), false), self.picture_rows(magnitude, true))
+        {
+            (rows, sums) = ([x, y, w], picture.map(|sum| 2.0 * sum));
+        }
+        let ([x, y, w], [sx, sy, _, sw]) = (rows, sums);
         let error_w = 10.0 * ROUNDING * sw;
         if w.abs() <= error_w {
             return f64::INFINITY;

@@ -44,7 +44,8 @@ pub fn project_moved(scene: &Scene, draws: &[Draw], view: &View, stack: &Stack) 
     let vertices = movers.iter().flat_map(snapped).collect();
     let bent = draws.iter().flat_map(|draw| bend::vertices(scene, draw)).collect();
     let (has_own_corners, subpixel_bits) = (stack.parts_corners(), view.subpixel_bits);
-    let mut geometry = Geometry { vertices, has_own_corners, bent, subpixel_bits, ..Geometry::default() };
+    let splats = scene.splat_ids();
+    let mut geometry = Geometry { vertices, has_own_corners, bent, splats, subpixel_bits, ..Geometry::default() };
     let pieces = |mover: &Mover| {
         clip::pieces(scene, mover.draw, view, &geometry, |corner| mover.clip(corner).expect("a cut triangle has no rejected corner"))
     };

@@ -27,6 +27,8 @@ pub struct Rules<'a> {
     pub(super) shape: Shape,
     /// Radius of discs about corners, in units.
     pub(super) radius: i64,
+    /// Ids of the triangles of which only a disc is drawn.
+    discs: std::ops::Range<u32>,
     /// Units in a pixel.
     pub(super) unit: i64,
     /// Depth keys are quotients of integers.
@@ -52,6 +54,7 @@ impl Default for Rules<'_> {
             masked: None,
             shape: Shape::default(),
             radius: 0,
+            discs: 0..0,
             unit,
             integer_keys: false,
             cut: None,
@@ -78,6 +81,8 @@ impl<'a> Rules<'a> {
             masked: None,
             shape: stack.shape(),
             radius: stack.point_radius().into(),
+            // What fills boxes or draws corners shows no triangles.
+            discs: if stack.shape() == Shape::Triangles { geometry.splats.clone() } else { 0..0 },
             unit: 1 << geometry.subpixel_bits,
             integer_keys: geometry.exact.keys,
             cut: None,
@@ -111,7 +116,8 @@ impl<'a> Rules<'a> {
         if !self.is_in_order(triangle.id, x, y) {
             return false;
         }
-        if self.effects.is_empty() && self.masked.is_none() {
+        let is_disc = self.discs.contains(&triangle.id);
+        if self.effects.is_empty() && self.masked.is_none() && !is_disc {
             return true;
         }
         let area: i64 = weights.iter().sum();
@@ -119,6 +125,10 @@ impl<'a> Rules<'a> {
         let mut parts = weights.map(|weight| (weight.max(0) >> shift) as u32);
         if triangle.is_turned {
             parts.swap(1, 2);
+        }
+        // A splat that had to be cut is not drawn.
+        if is_disc && (triangle.entry != triangle.id as usize || !is_in_disc(parts)) {
+            return false;
         }
         let records = self.deciding + if self.masked.is_some() { mask::RECORDS } else { 0 };
         let settled = &self.decisions[triangle.entry * records..][..records];
@@ -132,4 +142,12 @@ impl<'a> Rules<'a> {
                 mask::is_drawn(scene, &scene.primitives[draw.primitive], triangle, parts, &settled[self.deciding..])
             })
     }
+}
+
+/// Does a sample lie in the ellipse that touches the sides of its triangle in their middles? Its shares a, b, c of the whole
+/// then are at most as unequal as those of the middle of a side, 1/2, 1/2 and 0: a² + b² + c² <= (a + b + c)² / 2.
+fn is_in_disc(parts: [u32; 3]) -> bool {
+    let squares: u128 = parts.iter().map(|&part| u128::from(part).pow(2)).sum();
+    let whole: u128 = parts.iter().map(|&part| u128::from(part)).sum();
+    2 * squares <= whole * whole
 }

@@ -4,7 +4,7 @@
 use glam::{DMat4, DVec4};
 use rayon::prelude::*;
 
-use super::{finest, project_moved, render, render_last};
+use super::{finest, project_moved, render, render_last, traced};
 use crate::{
     effects::Stack,
     frame::Frame,
@@ -95,6 +95,7 @@ impl Light {
 /// # Errors
 /// As [`render`].
 pub fn truths(scene: &Scene, view: &View, stack: &Stack, factors: &[f64]) -> Result<Truths, DrawError> {
+    let view = &traced(view, stack);
     let at = |&factor: &f64| {
         let (view, stack) = (view.scaled(factor), stack.scaled(factor));
         let fine = finest(&view, &stack);

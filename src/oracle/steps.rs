@@ -38,7 +38,9 @@ pub struct Answers {
 impl Answers {
     pub fn of(scene: &Scene, draws: &[Draw], view: &View, stack: &Stack, seen: &Seen, geometry: &Geometry) -> Self {
         let shaded = |&nudge: &Nudge| shade_nudged(scene, draws, view, stack, seen, geometry, nudge);
-        Self { pictures: ways(scene, stack).iter().map(shaded).collect(), is_span: has_texels(scene), stride: 1 }
+        // Taps of a shadow map fall one by one, so anything between all and none of the doubtful ones is right.
+        let is_span = has_texels(scene) || stack.light().is_some();
+        Self { pictures: ways(scene, stack).iter().map(shaded).collect(), is_span, stride: 1 }
     }
 
     /// What lies between the least and the most that a picture of layers may show.
@@ -46,7 +48,6 @@ impl Answers {
         let ends = [0, 1].map(|end| layered.bounds.iter().map(|bounds| bounds[end]).collect::<Vec<_>>());
         let finished =
             |&nudge: &f64| [&layered.colors, &ends[0], &ends[1]].map(|colors| finish_all(draws, view, stack, seen, colors, nudge));
-        // Of a span, the middles of what it goes through.
         Self { pictures: nudges(stack).iter().flat_map(finished).collect(), is_span: true, stride: 3 }
     }
 
@@ -70,6 +71,7 @@ impl Answers {
 
     /// Which pixels have answers more than a step of 255 apart because of a step of colour; empty where none can.
     pub fn band(&self) -> Vec<bool> {
+        // Of a span, the middles of what it goes through.
         let answers: Vec<_> = self.pictures.iter().step_by(self.stride).collect();
         let [middle, others @ ..] = answers.as_slice() else { return Vec::new() };
         if others.is_empty() {

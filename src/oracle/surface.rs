@@ -6,6 +6,7 @@ use rayon::prelude::*;
 use super::{
     bend::{normal, place},
     coverage::{OrientedTriangle, corner_records, doubled_area, draw_of, is_back},
+    light::{Light, Place, slack_m},
     moved::{Corner, Mover},
     order::ranks,
     project::gated_lane,
@@ -35,8 +36,25 @@ pub fn surfaces(
     geometry: &Geometry,
     nudge: Nudge,
 ) -> Vec<DVec4> {
-    let width = view.width.max(1) as usize;
     let ranks = ranks(scene, draws, view, stack, geometry);
+    let light = Light::of(scene, view, stack, geometry);
+    each_surface((scene, draws, view, stack), owners, geometry, nudge.aside, |found| {
+        let Some((triangle, surface)) = found else { return background };
+        let rank = ranks.get(surface.owner as usize).copied().unwrap_or(0.0);
+        let lit = light.as_ref().map_or(0.0, |light| light.arrives(&triangle.place(view, &surface), surface.owner, nudge.step));
+        encoded(stack.shade(Surface { rank, lit, nudge: nudge.step, ..surface }).color)
+    })
+}
+
+/// Visits the surface of every pixel before any surface effect, given who owns it; none where nobody does. Row-major.
+pub(super) fn each_surface<T: Send>(
+    (scene, draws, view, stack): (&Scene, &[Draw], &View, &Stack),
+    owners: &[u32],
+    geometry: &Geometry,
+    aside: Aside,
+    visit: impl Fn(Option<(&Triangle, Surface)>) -> T + Sync,
+) -> Vec<T> {
+    let width = view.width.max(1) as usize;
     let row = |(y, owners): (usize, &[u32])| {
         let mut triangle: Option<Triangle> = None;
         let pixel = |(x, &owner): (usize, &u32)| {
@@ -44,13 +62,7 @@ pub fn surfaces(
                 triangle = draw_of(scene, draws, owner)
                     .and_then(|draw| Triangle::new(&Mover::new(scene, draw, view, stack), scene, view, geometry, owner));
             }
-            match &triangle {
-                Some(triangle) => {
-                    let rank = ranks.get(owner as usize).copied().unwrap_or(0.0);
-                    encoded(stack.shade(Surface { rank, nudge: nudge.step, ..triangle.surface(view, x, y, nudge.aside) }).color)
-                }
-                None => background,
-            }
+            visit(triangle.as_ref().map(|triangle| (triangle, triangle.surface(view, x, y, aside))))
         };
         owners.iter().enumerate().map(pixel).collect::<Vec<_>>()
     };
@@ -203,6 +215,7 @@ impl<'a> Triangle<'a> {
             range_m: DVec2::from_array(view.scene_range_m),
             owner: self.owner,
             rank: 0.0,
+            lit: 0.0,
             nudge: 0.0,
         }
     }
@@ -211,6 +224,13 @@ impl<'a> Triangle<'a> {
     fn shares(&self, weights: [f64; 3], pixel: DVec2, screen: DVec2, view: &View) -> Shares {
         let slopes = if self.shape == Shape::Triangles { self.weights.slopes(weights, pixel, screen, view) } else { [[0.0; 3]; 2] };
         Shares { weights, slopes, doubts: self.weights.doubts(weights, screen) }
+    }
+
+    /// Where a sample with such a surface lies, for a light: on the ray of its pixel, whichever way corners have snapped.
+    pub fn place(&self, view: &View, surface: &Surface) -> Place {
+        let position = on_ray(view, surface.screen, surface.depth_m);
+        let is_cut = matches!(self.weights, Weights::Homogeneous(..));
+        Place { position, surface: surface.position, flat_normal: surface.flat_normal, slack_m: slack_m(view, position, is_cut) }
     }
 
     /// Interpolated in object space; none when the corner normals cancel out.

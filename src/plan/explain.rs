@@ -76,6 +76,7 @@ pub(super) fn explain(needs: &Needs, is_usual: bool, caps: &Caps, key: &KernelKe
     }
     reasons.extend(layers_note(needs, key));
     let parts = [
+        ("particles", key.has_particles, "no effect puts particles into the scene".to_owned()),
         ("skin", key.bends(), "no mesh has joints or morph weights".to_owned()),
         ("vertex effects", key.moves(), "no effect of the stack moves a vertex".to_owned()),
         ("corners of their own", key.parts_corners(), "no effect parts triangles, so neighbours share projected vertices".into()),

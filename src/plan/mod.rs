@@ -197,8 +197,8 @@ pub enum PlanError {
     Carried { what: String },
     #[error("vertex strict holds where integers decide, but {what}; take it out, or another rung")]
     Floats { what: String },
-    #[error("vertices {rung} packs meshes that keep their shape, and joints or shapes bend one here; use stored")]
-    Bent { rung: &'static str },
+    #[error("vertices {rung} packs meshes that keep their shape, and here {what}; use stored")]
+    Bent { rung: &'static str, what: &'static str },
     #[error("depth integer divides exact edges, which coverage {rung} does not have; use fixed8")]
     Inexact { rung: &'static str },
     #[error(transparent)]
@@ -265,7 +265,9 @@ pub fn plan(needs: &Needs, stack: &Stack, caps: &Caps, tuning: &Tuning, accuracy
     let has_medium = has_clipping || widest > f64::from(small_side) || widest * widest > f64::from(small_samples);
     let has_large = needs.largest_px >= f64::from(SMALL_EXTENT >> rungs.coverage.subpixel_bits());
     let planes = ["flat_normal", "flat_depth_m", "center"];
-    let reads_planes = stack.0.iter().any(|enabled| planes.iter().any(|member| reads(&Library::Embedded, enabled.effect, member)));
+    // Taps follow the plane of a triangle.
+    let reads_planes = stack.light().is_some()
+        || stack.0.iter().any(|enabled| planes.iter().any(|member| reads(&Library::Embedded, enabled.effect, member)));
     let has_planes = reads_planes || !needs.sound_normals;
     // Boxes and discs show all of a material.
     let has_mask = needs.masked && shape == Shape::Triangles;
@@ -298,6 +300,7 @@ pub fn plan(needs: &Needs, stack: &Stack, caps: &Caps, tuning: &Tuning, accuracy
         has_texels: needs.paints > 0,
         has_joints: needs.skinning.is_some(),
         has_shapes: needs.shapes,
+        has_particles: needs.splats,
         has_planes,
         perspective: needs.perspective,
         small_samples,
@@ -305,6 +308,7 @@ pub fn plan(needs: &Needs, stack: &Stack, caps: &Caps, tuning: &Tuning, accuracy
         listed_tiles: tuning.listed_tiles && !stack.finishes() && stack.dots().is_none(),
         list_group: tuning.list_group,
         early_load: tuning.early_load,
+        is_light: needs.is_light,
         id_bits: if rungs.visibility == Visibility::Packed32 { bit_length(needs.triangles) } else { 0 },
     };
     let (reasons, omitted) = explain(needs, tuning == &caps.tuning(), caps, &key);

@@ -13,7 +13,9 @@ use crate::{
         points, read,
         xray::{Reach, Xray},
     },
-    ladder::{AXES, Coverage, Culling, Depth, DotWay, Rung, Rungs, Skinning, Sums, Vertex, Vertices, Visibility},
+    ladder::{
+        AXES, Coverage, Culling, Curl, Depth, DotWay, Rung, Rungs, ShadowMap, Skinning, State, Sums, Taps, Vertex, Vertices, Visibility,
+    },
     math::SUBPIXEL_BITS,
     scene::needs::Needs,
 };
@@ -45,9 +47,15 @@ pub(super) fn choose(
     accuracy.pins.apply(&mut rungs);
     // How joints hold a mesh was settled with its pose; without joints the rung is nobody's.
     rungs.skinning = needs.skinning.unwrap_or_default();
+    // So it is with shadows, which are drawn as finely as the view says.
+    let has_light = stack.light().is_some();
+    (rungs.shadow_map, rungs.taps) = if has_light { needs.shadow.rungs() } else { Default::default() };
     let has_dots = stack.dots().is_some();
     if !has_dots {
         rungs.dots = DotWay::default();
+    }
+    if !needs.splats {
+        (rungs.curl, rungs.state) = (Curl::default(), State::default());
     }
     if layers == Some(Layers::Race) {
         rungs.visibility = Visibility::Race;
@@ -57,18 +65,10 @@ pub(super) fn choose(
     if far.is_some() {
         rungs.vertices = Vertices::Relative;
     }
-    let asked = rungs.culling;
-    let unfit = unfit_for_culling(&rungs, stack, layers);
-    if let Some((rung, _)) = unfit {
-        rungs.culling = rung;
-    }
     let mut reasons = Vec::new();
     let mut prediction = predict_all(&rungs, needs);
-    for (i, axis) in AXES.iter().enumerate().filter(|(i, _)| has_dots || *i != DotWay::AXIS) {
-        if let Some((rung, why)) = unfit.filter(|_| i == Culling::AXIS) {
-            reasons.push(note(axis.name, format!("{} instead of {}: {why}", rung.name(), asked.name())));
-            continue;
-        }
+    let is_idle = |i: usize| !has_dots && i == DotWay::AXIS || !has_light && [ShadowMap::AXIS, Taps::AXIS].contains(&i);
+    for (i, axis) in AXES.iter().enumerate().filter(|(i, _)| !is_idle(*i)) {
         if accuracy.pins.get(axis).is_some() {
             reasons.push(note(axis.name, format!("{}: pinned by the look", axis.words[rungs.get(axis)])));
             continue;
@@ -99,6 +99,14 @@ pub(super) fn choose(
             reasons.push(note(axis.name, format!("{}: {}", axis.words[rungs.get(axis)], lowered(usual))));
         }
     }
+    if let Some((rung, why)) = unfit_for_culling(&rungs, stack, layers) {
+        let said = reasons.iter_mut().find(|note| note.name == AXES[Culling::AXIS].name);
+        if let Some(note) = said {
+            note.why = format!("{} instead of {}: {why}", rung.name(), rungs.culling.name());
+        }
+        rungs.culling = rung;
+        prediction = predict_all(&rungs, needs);
+    }
     check(&rungs, needs, f32_positions, stack, caps)?;
     Ok(Choice { rungs, reasons, prediction })
 }
@@ -120,8 +128,9 @@ fn far_away(rungs: &Rungs, needs: &Needs, accuracy: &Accuracy, tolerance: &Toler
 /// that pins it goes on without it.
 fn unfit_for_culling(rungs: &Rungs, stack: &Stack, layers: Option<Layers>) -> Option<(Culling, &'static str)> {
     let (most, why) = match (layers, rungs.visibility) {
-        _ if rungs.vertices != Vertices::Stored => (Culling::None, "bounds of meshlets are of places as they are stored"),
+        _ if rungs.vertices.packed_bits().is_some() => (Culling::None, "packed places lie off the bounds of their meshlets"),
         _ if stack.moves() => (Culling::None, "effects move meshes out of their bounds"),
+        _ if stack.cloud().is_some() => (Culling::None, "particles stay in no bounds that a meshlet could have"),
         _ if stack.shape() == Shape::Points => (Culling::None, "discs reach out of the bounds of their meshes"),
         _ if stack.draw_order().is_some() => (Culling::None, "a draw order counts the samples of every triangle"),
         (Some(Layers::Race), _) | (_, Visibility::Race) => (Culling::None, "a race shows what happens to every triangle"),
@@ -158,8 +167,9 @@ fn check(rungs: &Rungs, needs: &Needs, f32_positions: bool, stack: &Stack, caps:
     if rungs.depth == Depth::Integer && rungs.coverage.is_float() {
         return Err(PlanError::Inexact { rung: rungs.coverage.name() });
     }
-    if rungs.vertices.packed_bits().is_some() && (needs.skinning.is_some() || needs.shapes) {
-        return Err(PlanError::Bent { rung: rungs.vertices.name() });
+    if rungs.vertices.packed_bits().is_some() && (needs.skinning.is_some() || needs.shapes || needs.splats) {
+        let what = if needs.splats { "particles fly" } else { "joints or shapes bend one" };
+        return Err(PlanError::Bent { rung: rungs.vertices.name(), what });
     }
     if rungs.dots == DotWay::Cpu
         && let Some(what) = carried(stack, needs)
@@ -222,5 +232,6 @@ fn floats(rungs: &Rungs, stack: &Stack, needs: &Needs, f32_positions: bool) -> O
     let bends = || (needs.skinning.is_some() || needs.shapes).then(|| "joints or shapes bend a mesh in floats".to_owned());
     let packed = || rungs.vertices.packed_bits().map(|_| format!("vertices {} unpacks places in floats", rungs.vertices.name()));
     let masks = || (needs.masked && needs.clipping).then(|| "the mask of a triangle that is cut is placed in floats".to_owned());
-    stack.0.iter().find_map(reason).or_else(packed).or_else(bends).or_else(positions).or_else(masks)
+    let flies = || needs.splats.then(|| "particles fly in floats".to_owned());
+    stack.0.iter().find_map(reason).or_else(packed).or_else(bends).or_else(flies).or_else(positions).or_else(masks)
 }

@@ -5,13 +5,15 @@ use std::path::PathBuf;
 use glam::DVec3;
 
 use super::{
-    form::{Form, Plain, Precision, brief},
+    form::{Form, Plain, Precision},
+    pins::pin,
     polyline,
+    rules::{encloses, is_polyline, rises},
 };
 use crate::{
     ladder::{
-        AXES, Checks, Clipping, Counting, Coverage, Culling, Depth, DotWay, Parameters, Perspective, Rung, Scale, Skinning, Sums, Vertex,
-        Vertices, Visibility,
+        Checks, Clipping, Counting, Coverage, Culling, Depth, DotWay, Parameters, Perspective, Scale, ShadowMap, Skinning, Sums, Taps,
+        Vertex, Vertices, Visibility,
     },
     scene::camera::{Camera, MIN_NEAR_M, Projection},
     session::{SceneSource, Session, Test, Tier},
@@ -107,7 +109,7 @@ pub type Rule = fn(&Plain) -> Result<(), String>;
 type Get = fn(&Session) -> Option<Plain>;
 type Set = fn(&mut Session, Plain);
 
-const fn key(section: &'static str, name: &'static str, form: Form, doc: &'static str, get: Get, set: Set) -> Key {
+pub(super) const fn key(section: &'static str, name: &'static str, form: Form, doc: &'static str, get: Get, set: Set) -> Key {
     Key { section, name, doc, form, rival: None, rule: None, get, set }
 }
 
@@ -117,20 +119,6 @@ const fn ruled(key: Key, rule: Rule) -> Key {
 
 const fn rivals(key: Key, rival: &'static str) -> Key {
     Key { rival: Some(rival), ..key }
-}
-
-/// The key that pins an axis of the ladder; its first word leaves the choice to the planner.
-const fn pin<R: Rung>() -> Key {
-    let axis = &AXES[R::AXIS];
-    key("accuracy", axis.name, Form::Word(axis.choices), axis.about, pinned::<R>, set_pin::<R>)
-}
-
-fn pinned<R: Rung>(session: &Session) -> Option<Plain> {
-    Some(Plain::number(session.accuracy.pins.get(&AXES[R::AXIS]).map_or(0, |place| 1 + place as u32)))
-}
-
-fn set_pin<R: Rung>(session: &mut Session, plain: Plain) {
-    session.accuracy.pins.set(&AXES[R::AXIS], (plain.first() as usize).checked_sub(1));
 }
 
 /// Every key besides `schema`, `stack` and the effects, in the order in which they are written.
@@ -172,6 +160,17 @@ pub const KEYS: &[Key] = &[
             |s, v| s.scene = SceneSource::File(PathBuf::from(v.into_text())),
         ),
         "builtin",
+    ),
+    ruled(
+        key(
+            "scene",
+            "room",
+            Form::number(0.0, 100.0),
+            "Walls round the scene, seen from inside, so many times as far apart as it is wide; 0: none",
+            |s| Some(Plain::number(s.room)),
+            |s, v| s.room = v.first(),
+        ),
+        encloses,
     ),
     key(
         "scene",
@@ -358,6 +357,8 @@ pub const KEYS: &[Key] = &[
     pin::<Sums>(),
     pin::<Scale>(),
     pin::<DotWay>(),
+    pin::<ShadowMap>(),
+    pin::<Taps>(),
     pin::<Parameters>(),
     pin::<Checks>(),
     key(
@@ -410,15 +411,6 @@ pub const KEYS: &[Key] = &[
     ),
 ];
 
-fn rises(range: &Plain) -> Result<(), String> {
-    let [from, to] = range.lanes();
-    if from < to { Ok(()) } else { Err(format!("must rise, but {} is not before {}", brief(from), brief(to))) }
-}
-
-fn is_polyline(text: &Plain) -> Result<(), String> {
-    polyline::parse(&text.clone().into_text()).map(drop)
-}
-
 fn camera(session: &Session, get: impl Fn(&Camera) -> Plain) -> Option<Plain> {
     session.camera.as_ref().map(get)
 }
@@ -438,6 +430,7 @@ fn point(p: DVec3) -> Plain {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::ladder::AXES;
 
     #[test]
     fn every_axis_of_the_ladder_has_a_key() {

@@ -11,8 +11,10 @@ mod gallery;
 pub mod keys;
 pub mod migrate;
 mod path;
+mod pins;
 mod polyline;
 mod read;
+mod rules;
 pub mod schema;
 mod share;
 mod shot;
@@ -233,7 +235,7 @@ pub fn load_scene(session: &Session, look_path: Option<&Path>) -> Result<Arc<Sce
         }
     };
     session.check(&scene)?;
-    Ok(Arc::new(scene))
+    Ok(Arc::new(if session.room > 0.0 { scene.in_room(session.room) } else { scene }))
 }
 
 /// A parameter's value in its form.

@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use glam::{DMat4, DVec3, DVec4};
 
-use super::{Bounds, pose::Pose};
+use super::{Bounds, light::ShadowGrid, pose::Pose, splats::Flow};
 use crate::math::{SUBPIXEL_BITS, view_from_world};
 
 /// Smallest near distance that keeps every quotient of the vertex stage finite.
@@ -98,6 +98,13 @@ pub struct View {
     pub pose: Option<Arc<Pose>>,
     /// A line of the look's own, before the scene is spun.
     pub polyline: Arc<[[f32; 3]]>,
+    /// How finely shadows are drawn in it.
+    pub shadow: ShadowGrid,
+    /// Where things stand in the picture for which this view, a light's, draws a shadow map; none in a picture itself. A
+    /// light sees back faces too: they stop it as well.
+    pub picture_from_world: Option<DMat4>,
+    /// How far the particles have flown; none: they are where they begin.
+    pub flow: Option<Arc<Flow>>,
 }
 
 impl View {
@@ -141,6 +148,9 @@ impl View {
             is_relative: false,
             pose: None,
             polyline: Arc::default(),
+            shadow: ShadowGrid::default(),
+            picture_from_world: None,
+            flow: None,
         }
     }
 
@@ -154,6 +164,11 @@ impl View {
     pub fn scaled(&self, factor: f64) -> Self {
         let side = |side: u32| if side == 0 { 0 } else { (f64::from(side) * factor).ceil().min(f64::from(u32::MAX)).max(1.0) as u32 };
         Self { width: side(self.width), height: side(self.height), ..self.clone() }
+    }
+
+    /// Is it a light that looks?
+    pub const fn is_light(&self) -> bool {
+        self.picture_from_world.is_some()
     }
 
     pub fn pixels(&self) -> usize {

@@ -28,6 +28,8 @@ pub struct Draw {
     /// `origin`.
     pub clip_from_object: [[f32; 4]; 4],
     pub world_from_object: DMat4,
+    /// Back faces are drawn too.
+    pub double_sided: bool,
     /// The placement turns left into right, so front faces wind the other way.
     pub mirrored: bool,
     /// What bends its vertices before they are placed.
@@ -70,6 +72,15 @@ fn nearest(bounds: &Bounds, eye: DVec3) -> [f32; 3] {
     eye.clamp(bounds.min, bounds.max).as_vec3().to_array()
 }
 
+/// Vertices and triangles of all draws together.
+pub fn totals(scene: &Scene, draws: &[Draw]) -> [u64; 2] {
+    draws.last().map_or([0; 2], |last| {
+        let primitive = &scene.primitives[last.primitive];
+        [(last.first_vertex, primitive.vertex_count()), (last.first_triangle, primitive.triangle_count())]
+            .map(|(first, count)| u64::from(first) + u64::from(count))
+    })
+}
+
 /// Most triangles in one picture: ids share their word with a flag.
 pub const MAX_TRIANGLES: u64 = (1 << 31) - 2;
 
@@ -82,11 +93,15 @@ pub fn draws(scene: &Scene, view: &View) -> Result<Vec<Draw>, DrawError> {
     }
     let at_rest = if view.pose.is_none() { Pose::at_rest(scene) } else { None };
     let pose = view.pose.as_deref().or(at_rest.as_ref());
+    let casters = scene.casters().len();
+    // A light looks past the walls, which stand behind all others.
+    let drawn = if view.is_light() { scene.casters() } else { &scene.instances };
     let (mut first_vertex, mut first_triangle, mut first_soft) = (0, 0, 0);
     let place = |(index, instance): (usize, &super::Instance)| {
         let primitive = &scene.primitives[instance.primitive];
         let bend = pose.and_then(|pose| pose.bend(index)).cloned();
-        let world_from_object = view.world_from_scene * pose.map_or(instance.world_from_object, |pose| pose.place(index));
+        let world_from_scene = if index < casters { view.world_from_scene } else { DMat4::IDENTITY };
+        let world_from_object = world_from_scene * pose.map_or(instance.world_from_object, |pose| pose.place(index));
         let reach = bend.as_ref().map_or(primitive.bounds, |bend| bend.bounds(primitive));
         let origin = if view.is_relative { nearest(&reach, world_from_object.inverse().transform_point3(view.eye)) } else { [0.0; 3] };
         let moved = DMat4::from_translation(DVec3::from_array(origin.map(f64::from)));
@@ -104,6 +119,7 @@ pub fn draws(scene: &Scene, view: &View) -> Result<Vec<Draw>, DrawError> {
             origin,
             clip_from_object,
             world_from_object,
+            double_sided: scene.materials[primitive.material].double_sided || view.is_light(),
             mirrored: (world_from_object.determinant() < 0.0) != bend.as_ref().is_some_and(Bend::mirrors),
             bend,
             first_soft,
@@ -113,5 +129,5 @@ pub fn draws(scene: &Scene, view: &View) -> Result<Vec<Draw>, DrawError> {
         first_triangle += primitive.triangle_count();
         Ok(draw)
     };
-    scene.instances.iter().enumerate().map(place).collect()
+    drawn.iter().enumerate().map(place).collect()
 }

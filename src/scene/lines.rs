@@ -6,10 +6,13 @@ use std::collections::{HashMap, hash_map::Entry};
 
 use glam::{DMat4, DVec3};
 
-use super::{Primitive, Scene, pose::Pose};
+use super::{Primitive, Scene, draw::DrawError, pose::Pose};
 
 /// The sharpest turn that a walk takes from one edge to the next: its cosine, of 60 degrees.
 const SHARPEST: f64 = 0.5;
+
+/// Most triangles among which edges are looked for: beyond, it would take long and gigabytes.
+const MAX_TRIANGLES: u64 = 1 << 23;
 
 /// Where a segment begins and ends.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -60,11 +63,20 @@ impl Lines {
 
     /// The edges of every instance, each once however many triangles share it. With `crease_deg` only those at which two
     /// faces meet at that angle or a larger one, and those that are not shared by two faces.
-    pub fn edges(scene: &Scene, crease_deg: Option<f64>) -> Self {
+    ///
+    /// # Errors
+    /// When there are more triangles than edges are looked for among.
+    pub fn edges(scene: &Scene, crease_deg: Option<f64>) -> Result<Self, DrawError> {
+        let count = scene.triangle_count();
+        if count > MAX_TRIANGLES {
+            return Err(DrawError::TooMany { what: "triangles to string dots along", count, limit: MAX_TRIANGLES });
+        }
         let pose = Pose::at_rest(scene);
         let mut known: HashMap<usize, Vec<Walk>> = HashMap::new();
         let mut lines = Self::default();
-        for (draw, instance) in scene.instances.iter().enumerate() {
+        // Discs have no edges.
+        let meshes = scene.instances.iter().enumerate().filter(|(_, instance)| scene.splats != Some(instance.primitive));
+        for (draw, instance) in meshes {
             let walks = known.entry(instance.primitive).or_insert_with(|| walks(scene, &scene.primitives[instance.primitive], crease_deg));
             let place = pose.as_ref().map_or(instance.world_from_object, |pose| pose.place(draw));
             // What joints hold is as large as its first joint makes it.
@@ -77,7 +89,7 @@ impl Lines {
                 }));
             }
         }
-        lines
+        Ok(lines)
     }
 
     /// Adds a line of segments with their lengths; what has none, or none that is finite, is left out.
@@ -239,7 +251,7 @@ mod tests {
     fn every_edge_of_a_closed_mesh_is_walked_once() {
         for query in ["sphere?triangles=2000", "knot?tess=4"] {
             let scene = builtin::build(query).expect("a scene");
-            let lines = Lines::edges(&scene, None);
+            let lines = Lines::edges(&scene, None).expect("few triangles");
             // Each of the triangles has three edges, and shares every one with a neighbour.
             assert_eq!(lines.segments.len() as u64, scene.triangle_count() * 3 / 2, "{query}");
             let all: BTreeSet<_> = lines.segments.iter().map(|segment| ends(&scene, segment)).collect();
@@ -252,7 +264,7 @@ mod tests {
     fn a_walk_goes_from_end_to_end() {
         let scene = builtin::build("knot?tess=4").expect("a scene");
         let place = |vertex: u32| scene.primitives[0].position(&scene, vertex).map(|lane| (lane + 0.0).to_bits());
-        for (_, line) in Lines::edges(&scene, None).each() {
+        for (_, line) in Lines::edges(&scene, None).expect("few triangles").each() {
             let mut length_m = 0.0;
             for (i, segment) in line.iter().enumerate() {
                 assert_eq!(segment.start_m, length_m);
@@ -269,9 +281,17 @@ mod tests {
     #[test]
     fn creases_of_cubes_are_their_twelve_edges() {
         let scene = builtin::build("cube-wall?columns=3&rows=2").expect("a scene");
-        assert_eq!(Lines::edges(&scene, Some(30.0)).segments.len(), 6 * 12, "diagonals lie in a face");
-        assert_eq!(Lines::edges(&scene, None).segments.len(), 6 * 18);
-        assert_eq!(Lines::edges(&scene, Some(180.0)).segments.len(), 0);
+        let edges = |crease_deg| Lines::edges(&scene, crease_deg).expect("few triangles").segments.len();
+        assert_eq!(edges(Some(30.0)), 6 * 12, "diagonals lie in a face");
+        assert_eq!((edges(None), edges(Some(180.0))), (6 * 18, 0));
+    }
+
+    #[test]
+    fn too_many_triangles_are_refused_with_their_number() {
+        let mut scene = builtin::build("sphere?triangles=5000").expect("a scene");
+        scene.instances = vec![scene.instances[0].clone(); 1680];
+        let error = Lines::edges(&scene, None).expect_err("too many").to_string();
+        assert!(error.contains(&scene.triangle_count().to_string()) && error.contains(&MAX_TRIANGLES.to_string()), "{error}");
     }
 
     #[test]

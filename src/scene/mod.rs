@@ -7,6 +7,7 @@ pub mod builtin;
 pub mod camera;
 pub mod draw;
 pub mod gltf;
+pub mod light;
 pub mod lines;
 pub mod meshlets;
 pub mod needs;
@@ -14,7 +15,9 @@ pub mod palette;
 pub mod pick;
 pub mod pose;
 pub mod rig;
+mod room;
 pub mod sizes;
+pub mod splats;
 pub mod texture;
 
 use glam::{DMat4, DVec3};
@@ -360,9 +363,13 @@ pub struct Scene {
     /// What the textures of materials show.
     pub images: Vec<Image>,
     pub instances: Vec<Instance>,
+    /// How many of them, at the end, are walls round the others: they cast no shadows and do not spin.
+    pub walls: usize,
     pub cameras: Vec<FileCamera>,
     /// What moves.
     pub rig: Rig,
+    /// The primitive whose triangles are splats, which one instance alone shows.
+    pub splats: Option<usize>,
     /// What the loader wants the user to know, for instance extensions it ignored.
     pub notes: Vec<String>,
 }
@@ -401,8 +408,13 @@ impl Scene {
         if !self.rig.is_empty() {
             return self.rig.reach;
         }
+        self.bounds_of(&self.instances)
+    }
+
+    /// Box round some of its instances where they stand at rest.
+    pub fn bounds_of(&self, instances: &[Instance]) -> Bounds {
         let mut bounds = Bounds::EMPTY;
-        for instance in &self.instances {
+        for instance in instances {
             bounds.include_placed(&instance.world_from_object, &self.primitives[instance.primitive].bounds, 0.0);
         }
         bounds

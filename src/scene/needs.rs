@@ -4,7 +4,7 @@
 
 use glam::{DMat3, DMat4, DVec3, DVec4};
 
-use super::{Component, Primitive, Scene, Topology, camera::View, draw::Draw, sizes::Sizes};
+use super::{Component, Primitive, Scene, Topology, camera::View, draw::Draw, light::ShadowGrid, sizes::Sizes};
 use crate::{ladder::Skinning, math::GUARD_BAND};
 
 /// See the module's first line.
@@ -32,8 +32,14 @@ pub struct Needs {
     pub textured: usize,
     /// The alpha of an image leaves out a part of something.
     pub masked: bool,
+    /// How finely shadows are drawn.
+    pub shadow: ShadowGrid,
+    /// A light looks, not the eye.
+    pub is_light: bool,
     /// Some mesh is mixed from shapes.
     pub shapes: bool,
+    /// Some triangles are splats.
+    pub splats: bool,
     /// How joints hold meshes, where any do.
     pub skinning: Option<Skinning>,
     /// Clips may move parts of the scene.
@@ -84,11 +90,14 @@ impl Needs {
             topologies: drawn().any(|p| p.topology != Topology::List),
             f32_positions: all_f32(|p| p.positions.component),
             f32_normals: all_f32(|p| p.normals.component),
+            shadow: view.shadow,
+            is_light: view.is_light(),
             colors: drawn().any(|p| p.colors.is_some()),
             paints: painted.len(),
             textured: painted.iter().filter(|material| scene.materials[**material].textures() != [None, None]).count(),
             masked: drawn().any(|p| scene.materials[p.material].least_alpha().is_some()),
             shapes: draws.iter().any(|draw| draw.bend.as_ref().is_some_and(|bend| bend.weights.iter().any(|weight| *weight != 0.0))),
+            splats: scene.splats.is_some(),
             skinning: draws.iter().find_map(|draw| Some(draw.bend.as_ref()?.palette.as_ref()?.skinning())),
             moves: !scene.rig.is_empty(),
             joints: if draws.iter().any(|draw| draw.bend.is_some()) {

@@ -83,17 +83,23 @@ impl Pose {
     }
 
     pub fn place(&self, instance: usize) -> DMat4 {
-        self.places[instance]
+        // What was put beside the scene since, no clip moves.
+        self.places.get(instance).copied().unwrap_or(DMat4::IDENTITY)
     }
 
     pub fn bend(&self, instance: usize) -> Option<&Bend> {
-        self.bends[instance].as_ref()
+        self.bends.get(instance).and_then(Option::as_ref)
     }
 
     /// A box round the whole scene, before it is spun.
     pub fn bounds(&self, scene: &Scene) -> Bounds {
+        self.bounds_of(scene, &scene.instances)
+    }
+
+    /// A box round the first instances of it.
+    pub fn bounds_of(&self, scene: &Scene, first: &[super::Instance]) -> Bounds {
         let mut bounds = Bounds::EMPTY;
-        for ((instance, place), bend) in scene.instances.iter().zip(&self.places).zip(&self.bends) {
+        for ((instance, place), bend) in first.iter().zip(&self.places).zip(&self.bends) {
             let primitive = &scene.primitives[instance.primitive];
             let object = bend.as_ref().map_or(primitive.bounds, |bend| bend.bounds(primitive));
             bounds.include_placed(place, &object, 0.0);

@@ -290,6 +290,11 @@ impl Animation {
         self.0.retain(|track| track.effect.name != effect || track.field.name != field);
     }
 
+    /// The tracks that `is_meant` is true for.
+    pub fn only(&self, is_meant: impl Fn(&Track) -> bool) -> Self {
+        Self(self.0.iter().filter(|track| is_meant(track)).cloned().collect())
+    }
+
     /// Takes every track of an effect out.
     pub fn remove_effect(&mut self, effect: &str) {
         self.0.retain(|track| track.effect.name != effect);

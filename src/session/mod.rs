@@ -4,6 +4,7 @@
 //! What is drawn is [`Session::posed_stack`], never the stack itself, which keyed parameters leave behind.
 
 pub mod animation;
+mod flow;
 
 use std::{path::PathBuf, sync::Arc};
 
@@ -13,8 +14,9 @@ use crate::{
     effects::{Stack, smear::Smear},
     math::rotation_y,
     scene::{
-        Scene,
+        Bounds, Scene,
         camera::{Camera, View},
+        light::ShadowGrid,
         pose::{Motion, Pose, scene_from_nodes},
     },
 };
@@ -172,6 +174,8 @@ pub struct Session {
     pub about: String,
     pub tags: Vec<String>,
     pub scene: SceneSource,
+    /// A room round the scene, so many times as wide as it; 0: none.
+    pub room: f64,
     /// Turns the whole scene about +y.
     pub spin_deg_per_s: f64,
     /// What moves the scene's own joints and parts.
@@ -199,6 +203,7 @@ impl Default for Session {
             about: String::new(),
             tags: Vec::new(),
             scene: SceneSource::Builtin("teapot".into()),
+            room: 0.0,
             spin_deg_per_s: 0.0,
             play: Play::default(),
             polyline: Arc::default(),
@@ -228,15 +233,17 @@ impl Session {
         self.animation.pose(&self.stack, time_s)
     }
 
-    /// The look with its values as they stand at its time, and nothing that moves them: the same picture.
+    /// The look with its values as they stand at its time, and nothing that moves them but what particles flew by: the same
+    /// picture.
     pub fn posed(&self) -> Self {
-        Self { stack: self.posed_stack(), animation: Animation::default(), ..self.clone() }
+        Self { stack: self.posed_stack(), animation: self.animation.only(flow::is_steering), ..self.clone() }
     }
 
     /// Does the picture depend on the time?
     pub fn is_moving(&self) -> bool {
         let keyed = self.animation.tracks().iter().any(|t| t.keys().len() > 1 && self.stack.get(t.effect().name).is_some());
-        keyed || self.spin_deg_per_s != 0.0 || self.play.is_moving()
+        let flies = self.stack.cloud().is_some();
+        keyed || flies || self.spin_deg_per_s != 0.0 || self.play.is_moving()
     }
 
     /// Takes an effect out, with all that moves it.
@@ -255,6 +262,15 @@ impl Session {
             time_s: self.play.pose_s.unwrap_or(self.clock.time_s * self.play.speed),
             skinning: self.accuracy.pins.rung().unwrap_or_default(),
         }
+    }
+
+    /// A box that holds another and the room of the particles.
+    fn with_cloud(&self, mut bounds: Bounds) -> Bounds {
+        if let Some(cloud) = self.posed_stack().cloud() {
+            let reach = cloud.reach();
+            [reach.min, reach.max].into_iter().for_each(|corner| bounds.include(corner));
+        }
+        bounds
     }
 
     /// How `scene` stands at the time of the clock; none where nothing in it can move.
@@ -280,7 +296,7 @@ impl Session {
             let camera = scene.cameras.get(scene.camera(&self.scene_camera).unwrap_or(0))?;
             Some(camera.node.map_or(camera.pose, |node| camera.carried(&scene_from_nodes(&scene.rig, &self.motion(scene))[node])))
         };
-        self.camera.or_else(own).unwrap_or_else(|| Camera::framing(&scene.bounds(), FRAMING_DIRECTION, aspect))
+        self.camera.or_else(own).unwrap_or_else(|| Camera::framing(&self.with_cloud(scene.bounds()), FRAMING_DIRECTION, aspect))
     }
 
     /// What the pictures show that lead up to this one, each a view and a stack, and last this one itself: more than one
@@ -302,17 +318,26 @@ impl Session {
         let turns = self.spin_deg_per_s * self.clock.time_s / 360.0;
         let spin = if turns == 0.0 { DMat4::IDENTITY } else { rotation_y(turns.fract() * std::f64::consts::TAU) };
         let pose = self.pose(scene);
-        let mut bounds = pose.as_ref().map_or_else(|| scene.bounds(), |pose| pose.bounds(scene));
+        let mut bounds = self.with_cloud(pose.as_ref().map_or_else(|| scene.bounds(), |pose| pose.bounds(scene)));
         if self.stack.0.iter().any(|enabled| enabled.effect.hooks.has_lines) {
             self.polyline.iter().for_each(|point| bounds.include(DVec3::from(point.map(f64::from))));
         }
         if !bounds.is_empty() {
             let reach_m = self.posed_stack().reach_m(bounds.radius());
             (bounds.min, bounds.max) = (bounds.min - reach_m, bounds.max + reach_m);
+            if scene.walls > 0 {
+                // Walls stand still while the box is turned; this one holds them at any angle.
+                let aside = DVec3::new(std::f64::consts::SQRT_2, 1.0, std::f64::consts::SQRT_2);
+                (bounds.min, bounds.max) = (bounds.min * aside, bounds.max * aside);
+            }
         }
+        let pins = &self.accuracy.pins;
+        let shadow = ShadowGrid::of(pins.rung().unwrap_or_default(), pins.rung().unwrap_or_default());
         View {
             pose,
+            shadow,
             polyline: self.polyline.clone(),
+            flow: self.flow(),
             ..View::new(&self.camera_for(scene, aspect), width, height, &bounds, spin, self.output.background)
         }
     }

@@ -39,9 +39,17 @@ impl KernelKey {
         passes
     }
 
+    /// Every pass of what a light sees of this kernel's scene: depth alone. Whatever bends has been bent for the picture.
+    pub fn light_frame(&self) -> Vec<Pass> {
+        self.passes(&[Phase::Depth]).into_iter().filter(|pass| !matches!(pass, Pass::Particles | Pass::Skin)).collect()
+    }
+
     /// Passes up to the last of the given raster phases.
     pub fn passes(&self, phases: &[Phase]) -> Vec<Pass> {
         let mut passes = Vec::new();
+        if self.has_particles {
+            passes.push(Pass::Particles);
+        }
         if self.bends() {
             passes.push(Pass::Skin);
         }

@@ -8,6 +8,7 @@ use crate::{
         dots::Strung,
         draw_order::Mode,
         hooks::{Layers, Shape},
+        shadow::STEEPEST,
     },
     frame::{NO_OWNER, vertex_flags},
     ladder::{Clipping, Coverage, Culling, Depth, DotWay, Perspective, Rungs, Scale, Vertex, Vertices, Visibility},
@@ -97,6 +98,8 @@ pub struct KernelKey {
     pub has_joints: bool,
     /// Some mesh is mixed from shapes.
     pub has_shapes: bool,
+    /// Particles fly.
+    pub has_particles: bool,
     /// The resolve computes plane normals and triangle centres: an effect reads them, or a normal may need a substitute.
     pub has_planes: bool,
     /// w is metres; else depth is linear and w is 1.
@@ -111,6 +114,8 @@ pub struct KernelKey {
     pub list_group: u32,
     /// Load before the depth atomic.
     pub early_load: bool,
+    /// A light looks, not the eye: effects ask where things stand in the picture for which it does.
+    pub is_light: bool,
     /// Bits of a triangle's id where it shares a word with its depth, else 0.
     pub id_bits: u32,
 }
@@ -150,6 +155,7 @@ impl KernelKey {
             has_mask: false,
             has_joints: true,
             has_shapes: true,
+            has_particles: true,
             has_planes: true,
             perspective: true,
             small_samples: 64,
@@ -157,6 +163,7 @@ impl KernelKey {
             listed_tiles: true,
             list_group: 64,
             early_load: true,
+            is_light: false,
             id_bits: if visibility == Visibility::Packed32 { 24 } else { 0 },
         }
     }
@@ -181,6 +188,11 @@ impl KernelKey {
         self.has_joints || self.has_shapes
     }
 
+    /// Are splats drawn as discs? What fills boxes or draws corners shows no triangles.
+    pub fn has_discs(&self) -> bool {
+        self.has_particles && self.shape == Shape::Triangles
+    }
+
     /// Are there queues at all?
     pub const fn has_queues(&self) -> bool {
         self.has_clipping || self.has_medium || self.has_large
@@ -189,6 +201,11 @@ impl KernelKey {
     /// Does an effect finish pixels? Then the resolve visits all of them, empty ones too.
     pub fn has_image(&self) -> bool {
         self.effects.iter().any(|effect| effect.hooks.image.is_some())
+    }
+
+    /// Does an effect ask how much of a light arrives?
+    pub fn reads_light(&self) -> bool {
+        self.effects.iter().any(|effect| effect.hooks.reads_light)
     }
 
     /// Does an effect read the picture before this one?
@@ -329,6 +346,8 @@ impl KernelKey {
             ("IS_TICKETED", flag(self.order == Order::Scheduler)),
             ("IS_FIRST", flag(self.is_first(pass))),
             ("IS_AGAIN", flag(self.is_again(pass))),
+            ("TAPS_SIDE", self.rungs.taps.side().into()),
+            ("STEEPEST", STEEPEST),
             ("SUM_WORDS", self.rungs.sums.words().into()),
             ("SUM_BITS", if let Some(Layers::Xray { bits }) = self.layers { bits.into() } else { 0.0 }),
         ]
@@ -365,11 +384,13 @@ impl fmt::Display for KernelKey {
             ("planes", self.has_planes),
             ("joints", self.has_joints),
             ("shapes", self.has_shapes),
+            ("particles", self.has_particles),
             ("moved", self.moves()),
             ("parted", self.parts_corners()),
             ("dots", self.dots.is_some()),
             ("image", self.has_image()),
             ("orthographic", !self.perspective),
+            ("light", self.is_light),
         ] {
             if is_on {
                 write!(f, " {name}")?;

@@ -3,6 +3,7 @@
 /// One entry point of the frame; the name is the file's stem in `shaders/passes` plus, for a repeated one, its phase.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Pass {
+    Particles,
     Skin,
     Project,
     /// Which meshlets are drawn.
@@ -121,6 +122,7 @@ impl Pass {
     /// Stem of the file in `shaders/passes`.
     pub const fn stem(self) -> &'static str {
         match self {
+            Self::Particles => "particles",
             Self::Skin => "skin",
             Self::Project => "project",
             Self::Cull(_) => "cull",

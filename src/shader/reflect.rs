@@ -20,8 +20,10 @@ pub enum BindingKind {
     Storage {
         read_only: bool,
     },
-    /// Layers of whole numbers, read texel by texel.
-    Texture,
+    /// Whole numbers, read texel by texel, in one layer or in several.
+    Texture {
+        layered: bool,
+    },
 }
 
 /// One resource that an entry point really uses.
@@ -80,7 +82,10 @@ impl Reflected {
                 let kind = match variable.space {
                     AddressSpace::Uniform => BindingKind::Uniform,
                     AddressSpace::Storage { access } => BindingKind::Storage { read_only: !access.contains(StorageAccess::STORE) },
-                    AddressSpace::Handle => BindingKind::Texture,
+                    AddressSpace::Handle => match self.module.types[variable.ty].inner {
+                        TypeInner::Image { arrayed, .. } => BindingKind::Texture { layered: arrayed },
+                        _ => return None,
+                    },
                     _ => return None,
                 };
                 Some(Binding { name: variable.name.clone()?, index: variable.binding.as_ref()?.binding, kind })

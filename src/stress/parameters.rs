@@ -2,7 +2,7 @@
 
 use super::{Case, Expectation, Halt, Lab, hold};
 use crate::{
-    effects::{EFFECTS, Effect, Stack, hooks::Slot},
+    effects::{EFFECTS, Effect, Stack, hooks::Slot, particles},
     measure::Budget,
     params::{Field, Kind},
     plan::{Accuracy, Tuning},
@@ -27,6 +27,9 @@ pub const CASES: &[Case] = &[
 
 /// The ends of what a field takes, as its own type holds them.
 fn ends(field: &Field) -> [f64; 2] {
+    if particles::EFFECT.field("count") == Some(field) {
+        return [field.hard[0], 2000.0]; // More of them, each as large as the picture, is a bench.
+    }
     match field.kind {
         Kind::F32 | Kind::Color | Kind::Point => field.hard.map(|end| f64::from(end as f32).clamp(field.hard[0], field.hard[1])),
         _ => field.hard,

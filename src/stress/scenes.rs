@@ -111,6 +111,9 @@ pub fn pixel_view(width: u32, height: u32) -> View {
         background: [0.0; 4],
         pose: None,
         polyline: Arc::default(),
+        shadow: Default::default(),
+        picture_from_world: None,
+        flow: None,
         subpixel_bits: 8,
         is_relative: false,
     }

@@ -44,6 +44,7 @@ pub const SCENES: &[&str] = &[
     "slivers",
     "stack",
     "near",
+    "chamber",
 ];
 
 /// Scenes whose meshes bend, which the strict vertex stage refuses.

@@ -2,6 +2,7 @@
 //@ use common/movement
 //@ use common/center
 //@ use common/topology
+//@ use slot/screen
 
 // A corner as the effects leave it; `p` is the vertex in object space, `id` its triangle.
 fn movement_corner(draw: u32, vertex: u32, id: u32, p: vec3f) -> Vertex {
@@ -15,7 +16,7 @@ fn movement_corner(draw: u32, vertex: u32, id: u32, p: vec3f) -> Vertex {
     v.center = movement_held(center_of(draw, a, b, c));
     v.arm = (draws[draw].world_from_object * vec4f(((p - a) + (p - b) + (p - c)) / 3.0, 0.0)).xyz;
     let middle = transform_clip(draw, (a + b + c) / 3.0);
-    v.center_screen = center_clipped(middle, middle, middle, vec2f(0.5));
+    v.center_screen = screen_of(v.center, center_clipped(middle, middle, middle, vec2f(0.5)));
     v.triangle = id;
     return glue_vertex(v);
 }

@@ -8,11 +8,11 @@ use crate::{
     gpu::{
         Capture, Gpu,
         device::AdapterChoice,
-        trade::{TradeOptions, TradeRow, Truth, factors, trade},
+        trade::{Judged, TradeOptions, TradeRow, Truth, factors, trade},
     },
     ladder::{Axis, Pins},
     oracle,
-    scene::Scene,
+    scene::{Scene, camera::View},
 };
 
 /// Measures every combination, on a device of its own.
@@ -25,10 +25,12 @@ pub fn measure(adapter: String, scene: &Arc<Scene>, question: &Question, progres
     let gpu = Gpu::open(&AdapterChoice::Named(adapter)).map_err(|e| e.to_string())?;
     let view = session.view(scene, *size);
     let truths = oracle::truths(scene, &view, &session.stack, &factors(session, axes)).map_err(|e| e.to_string())?;
-    let judge = |stack: &Stack, capture: &Capture| {
+    let judge = |view: &View, stack: &Stack, capture: &Capture| {
         let (layers, previous) = (capture.layers.as_deref(), capture.previous.as_deref());
-        oracle::judge_after(scene, &view, stack, &capture.frame, &capture.geometry, layers, previous)
-            .expect("a scene that was drawn can be judged")
+        let verdict = oracle::judge_after(scene, view, stack, &capture.frame, &capture.geometry, layers, previous);
+        let light = oracle::light_errors(scene, view, stack, &capture.frame.owner, &capture.geometry);
+        let known = "a scene that was drawn can be judged";
+        Judged { verdict: verdict.expect(known), light: light.expect(known) }
     };
     let options = TradeOptions { size: *size, samples: SAMPLES, axes: axes.clone(), is_each_alone: false };
     let mut tell = |what: &str, done: usize, all: usize| progress.tell(done, all, what);
@@ -45,6 +47,7 @@ fn point(row: TradeRow, axes: &[&'static Axis]) -> Point {
         Some(match metric {
             Metric::Wrong => error.wrong_ppm,
             Metric::Colour => error.max_colour_delta.into(),
+            Metric::Light => error.wrong_light_ppm?,
             Metric::Coverage => error.holes_per_mpx + error.double_hits_per_mpx,
         })
     });
@@ -59,6 +62,8 @@ fn point(row: TradeRow, axes: &[&'static Axis]) -> Point {
             ("orphans", error.orphans as f64),
             ("buffers MiB", row.bytes as f64 / 1_048_576.0),
         ]
+        .into_iter()
+        .chain(error.rms_light.map(|rms| ("light RMS, share", rms)))
     });
     Point {
         pins,

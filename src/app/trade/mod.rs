@@ -259,7 +259,7 @@ impl App {
         ui.allocate_ui_with_layout(plot, egui::Layout::top_down(egui::Align::Min), |ui| {
             ui.horizontal(|ui| {
                 ui.spacing_mut().item_spacing.x = 2.0;
-                for metric in Metric::ALL {
+                for metric in Metric::of(&answer.points) {
                     ui.selectable_value(&mut chosen_metric, metric, RichText::new(metric.name()).size(12.0));
                 }
             });

@@ -175,7 +175,7 @@ fn details_ui(ui: &mut Ui, point: &Point, role: &str) {
     ui.label(RichText::new(point.pins.words().replace(' ', "\n")).monospace().color(theme::TEXT_STRONG));
     let [p50, p95] = point.ms.map_or(["not timed".to_owned(), String::new()], |ms| ms.map(number));
     ui.label(format!("{p50} ms median, {p95} ms at 95 %, {} samples", point.samples));
-    for metric in Metric::ALL {
+    for metric in Metric::of(std::slice::from_ref(point)) {
         let error = point.error(metric).map_or_else(|| "not measured".into(), |error| format!("{} {}", number(error), metric.unit()));
         ui.label(format!("{}: {error}", metric.name()));
     }

@@ -12,16 +12,24 @@ pub enum Metric {
     Colour,
     /// Samples that are covered and not drawn, or drawn more often than covered.
     Coverage,
+    /// Pixels that face a light and get more than half of it too much or too little.
+    Light,
 }
 
 impl Metric {
-    pub const ALL: [Self; 3] = [Self::Wrong, Self::Colour, Self::Coverage];
+    pub const ALL: [Self; 4] = [Self::Wrong, Self::Colour, Self::Coverage, Self::Light];
+
+    /// The kinds that mean something for these points: of light only where there is one.
+    pub fn of(points: &[Point]) -> Vec<Self> {
+        Self::ALL.into_iter().filter(|metric| *metric != Self::Light || points.iter().any(|point| point.error(*metric).is_some())).collect()
+    }
 
     pub const fn name(self) -> &'static str {
         match self {
             Self::Wrong => "wrong pixels",
             Self::Colour => "colour difference",
             Self::Coverage => "holes and doubles",
+            Self::Light => "wrong light",
         }
     }
 
@@ -30,6 +38,7 @@ impl Metric {
             Self::Wrong => "ppm",
             Self::Colour => "of 255",
             Self::Coverage => "per Mpx",
+            Self::Light => "ppm",
         }
     }
 }
@@ -82,7 +91,8 @@ pub fn csv(points: &[Point], axes: &[&'static Axis]) -> String {
     let cell = |text: &str| if text.contains([',', '"', '\n']) { format!("\"{}\"", text.replace('"', "\"\"")) } else { text.to_owned() };
     let mut head: Vec<String> = axes.iter().map(|axis| axis.name.to_owned()).collect();
     head.extend(["ms p50", "ms p95", "samples"].map(str::to_owned));
-    head.extend(Metric::ALL.map(|metric| format!("{} {}", metric.name(), metric.unit())));
+    let metrics = Metric::of(points);
+    head.extend(metrics.iter().map(|metric| format!("{} {}", metric.name(), metric.unit())));
     let more = points.iter().map(|point| &point.more).max_by_key(|more| more.len());
     head.extend(more.into_iter().flatten().map(|(name, _)| (*name).to_owned()));
     head.push("note".into());
@@ -93,7 +103,7 @@ pub fn csv(points: &[Point], axes: &[&'static Axis]) -> String {
         let number = |value: Option<f64>| value.map_or_else(|| "not measured".into(), |value| value.to_string());
         line.extend([0, 1].map(|i| number(point.ms.map(|ms| ms[i]))));
         line.push(point.samples.to_string());
-        line.extend(point.errors.map(number));
+        line.extend(metrics.iter().map(|metric| number(point.errors[*metric as usize])));
         let place = |i: usize| point.more.get(i).map(|(_, value)| *value);
         line.extend((0..more.map_or(0, Vec::len)).map(|i| number(place(i))));
         line.push(cell(point.note.as_deref().unwrap_or_default()));
@@ -113,7 +123,7 @@ mod tests {
             pins,
             ms: Some([ms, 2.0 * ms]),
             samples: 30,
-            errors: [Some(wrong), Some(0.0), None],
+            errors: [Some(wrong), Some(0.0), None, None],
             more: vec![("bytes", 7.0)],
             is_idle: false,
             note: None,

@@ -12,19 +12,20 @@ use crate::ladder::Axis;
 /// Shows every row; the one that was clicked.
 pub fn table_ui(ui: &mut Ui, points: &[Point], axes: &[&'static Axis], metric: Metric, current: &dyn Fn(&Point) -> bool) -> Option<usize> {
     let mut clicked = None;
-    let front = front(points, metric);
+    let (front, metrics) = (front(points, metric), Metric::of(points));
     let mut order: Vec<usize> = (0..points.len()).collect();
     let ms = |i: &usize| points[*i].ms.map_or(f64::INFINITY, |[p50, _]| p50);
     order.sort_by(|a, b| ms(a).total_cmp(&ms(b)));
     egui::ScrollArea::both().id_salt("trade table").auto_shrink(false).show(ui, |ui| {
-        egui::Grid::new("trade table").num_columns(7).spacing([14.0, 3.0]).show(ui, |ui| {
+        egui::Grid::new("trade table").num_columns(4 + metrics.len()).spacing([14.0, 3.0]).show(ui, |ui| {
             let rungs = if let [one] = axes { one.name } else { "rungs" };
-            for head in [rungs, "ms", "95 %", "wrong ppm", "colour", "holes+doubles", ""] {
+            let errors = ["wrong ppm", "colour", "holes+doubles", "light ppm"];
+            for head in [rungs, "ms", "95 %"].into_iter().chain(metrics.iter().map(|metric| errors[*metric as usize])).chain([""]) {
                 ui.label(theme::weak(head).size(11.0));
             }
             ui.end_row();
             for i in order {
-                if row_ui(ui, &points[i], axes, (front.contains(&i), current(&points[i]))) {
+                if row_ui(ui, &points[i], axes, &metrics, (front.contains(&i), current(&points[i]))) {
                     clicked = Some(i);
                 }
                 ui.end_row();
@@ -34,7 +35,7 @@ pub fn table_ui(ui: &mut Ui, points: &[Point], axes: &[&'static Axis], metric: M
     clicked
 }
 
-fn row_ui(ui: &mut Ui, point: &Point, axes: &[&'static Axis], (is_front, is_current): (bool, bool)) -> bool {
+fn row_ui(ui: &mut Ui, point: &Point, axes: &[&'static Axis], metrics: &[Metric], (is_front, is_current): (bool, bool)) -> bool {
     let words: Vec<&str> = axes.iter().filter_map(|axis| Some(axis.words[point.pins.get(axis)?])).collect();
     let ink = match (point.ms.is_some(), is_current, is_front) {
         (false, ..) => theme::TEXT_WEAK,
@@ -51,7 +52,7 @@ fn row_ui(ui: &mut Ui, point: &Point, axes: &[&'static Axis], (is_front, is_curr
         ui.label(RichText::new(text).monospace().size(11.5).color(if value.is_some() { theme::TEXT } else { theme::TEXT_WEAK }));
     };
     [0, 1].into_iter().for_each(|i| cell(ui, point.ms.map(|ms| ms[i])));
-    Metric::ALL.into_iter().for_each(|metric| cell(ui, point.error(metric)));
+    metrics.iter().for_each(|metric| cell(ui, point.error(*metric)));
     let remark = match (&point.note, is_current, is_front) {
         (_, true, _) => RichText::new("this look").color(theme::AMBER),
         (_, _, true) => RichText::new("on the front").color(theme::ACCENT),

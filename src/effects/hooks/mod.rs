@@ -16,6 +16,8 @@ pub use slot::{Layers, Shape, Slot};
 pub use surface::{Surface, SurfaceEffect};
 pub use vertex::{ROUNDING, Slack, Vertex, VertexEffect, VertexHook};
 
+use crate::scene::splats::Cloud;
+
 /// Every hook of one effect, each with its function over the parameter words.
 #[derive(Clone, Copy)]
 pub struct Hooks {
@@ -31,17 +33,32 @@ pub struct Hooks {
     pub slot: Option<Slot>,
     /// It draws along lines, in passes of its own before pixels are shaded.
     pub has_lines: bool,
+    /// It puts something beside the scene: a cloud of splats.
+    pub cloud: Option<fn(&[u32]) -> Cloud>,
     /// Its colour has steps, decided on a value plus [`Surface::nudge`].
     pub has_steps: bool,
+    /// It reads [`Surface::lit`], so the scene is drawn from the light as well.
+    pub reads_light: bool,
 }
 
 impl Hooks {
-    pub const NONE: Self = Self { vertex: None, sample: None, surface: None, image: None, slot: None, has_lines: false, has_steps: false };
+    pub const NONE: Self = Self {
+        vertex: None,
+        sample: None,
+        surface: None,
+        image: None,
+        slot: None,
+        has_lines: false,
+        cloud: None,
+        has_steps: false,
+        reads_light: false,
+    };
 
     /// Names for listings: `sample + surface`.
     pub fn names(&self) -> String {
         let hooks = [
             (self.slot.is_some(), self.slot.map_or("", Slot::name)),
+            (self.cloud.is_some(), "scene"),
             (self.vertex.is_some(), "vertex"),
             (self.sample.is_some(), "sample"),
             (self.surface.is_some(), "surface"),

@@ -45,6 +45,8 @@ pub struct Surface {
     pub owner: u32,
     /// Share of all samples that were drawn before the owner's first, where a draw order is kept; else 0.
     pub rank: f64,
+    /// Share of the light that arrives, 0 to 1, where an effect asks for it; else 0.
+    pub lit: f64,
     /// Added to whatever decides a step of colour; 0 but for a judge, who finds out with it which pixels lie so close to
     /// a step that either answer is right.
     pub nudge: f64,

@@ -1,6 +1,6 @@
 //! Builtin scenes: meshes from formulas, asked for by a query such as `sphere?triangles=160000`.
 //!
-//! The handsome ones (teapot, sphere, knot, cube-wall) are for looking at; the others put one promise of the
+//! The handsome ones (teapot, sphere, knot, cube-wall, tentacle, chamber) are for looking at; the others put one promise of the
 //! rasterizer under load and bring the camera that does so. All are indexed, finite and the same on every machine.
 
 mod extremes;
@@ -108,6 +108,12 @@ pub const BUILTINS: &[Builtin] = &[
             whole("instances", "how many, each with joints of its own", 1.0, 1.0..=5_000.0),
         ],
         build: tentacle::build,
+    },
+    Builtin {
+        name: "chamber",
+        about: "six walls that show their insides alone, so that one looks in from everywhere; a place for particles",
+        params: &[real("half", "half the length of a wall in metres", 2.0, 0.1..=1000.0)],
+        build: shapes::chamber,
     },
     Builtin {
         name: "globe",

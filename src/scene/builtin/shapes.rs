@@ -147,6 +147,21 @@ fn cube() -> Mesh {
     mesh
 }
 
+/// A cube seen from within: every wall shows its inside, the floor the lightest.
+pub fn chamber(values: &Values) -> Result<Scene, BuiltinError> {
+    const TONES: [[f64; 3]; 3] = [[0.012, 0.012, 0.02], [0.024, 0.024, 0.032], [0.008, 0.012, 0.02]];
+    let half = values.get("half");
+    let mut mesh = Mesh::default();
+    for (axis, tone) in TONES.into_iter().enumerate() {
+        for side in [-1.0, 1.0] {
+            let (inward, u) = (DVec3::AXES[axis] * -side, DVec3::AXES[(axis + 1) % 3]);
+            let v = inward.cross(u);
+            mesh.quad([-u - v, u - v, u + v, v - u].map(|corner| (corner - inward) * half), tone);
+        }
+    }
+    Ok(alone(mesh, "chamber", Material { name: "plaster".into(), ..Material::default() }))
+}
+
 /// A scene of one mesh that stands where it was built.
 pub fn alone(mesh: Mesh, name: &str, material: Material) -> Scene {
     let mut scene = Scene { materials: vec![material], ..Scene::default() };

@@ -1,0 +1,33 @@
+// Shadow: a directional light of which a share arrives, as the shadow map says.
+//@ use common/surface
+//@ use common/tone
+
+struct Shadow {
+    light: vec4f,
+    sky: vec4f,
+    ground: vec4f,
+    azimuth_deg: f32,
+    elevation_deg: f32,
+    shading: u32,
+    strength: f32,
+    bias: f32,
+    slope: f32,
+}
+
+fn shadow_toward(p: Shadow) -> vec3f {
+    let azimuth = tone_turned(p.azimuth_deg);
+    let elevation = tone_turned(p.elevation_deg);
+    return vec3f(elevation.x * azimuth.y, elevation.y, elevation.x * azimuth.x);
+}
+
+fn shadow(surface: Surface, p: Shadow) -> Surface {
+    var s = surface;
+    let facing = max(dot(s.normal, shadow_toward(p)), 0.0);
+    let arrives = 1.0 - p.strength * (1.0 - s.lit);
+    let up = 0.5 + 0.5 * s.normal.y;
+    var shade = p.light.rgb * (facing * arrives) + p.ground.rgb + (p.sky.rgb - p.ground.rgb) * up;
+    // Where the light only grazes a surface, it was dim before.
+    if p.shading == SHADOW_SHADING_DIM { shade = vec3f(1.0 - p.strength * (1.0 - s.lit * min(4.0 * facing, 1.0))); }
+    s.color = vec4f(s.color.rgb * shade, s.color.a);
+    return s;
+}

@@ -1,0 +1,50 @@
+// State, half16: four words a particle. Places are shares of the room, velocities halves.
+//@ use common/flight
+
+@group(0) @binding(19) var<storage, read_write> flights: array<vec4u>;
+
+// Flights of even frames come first, then those of odd ones.
+fn state_load(frame_number: u32, id: u32) -> Flight {
+    return state_unpacked(frame_number, flights[(frame_number & 1u) * swarm.count + id]);
+}
+
+fn state_store(frame_number: u32, id: u32, f: Flight) {
+    flights[(frame_number & 1u) * swarm.count + id] = state_packed(frame_number, f);
+}
+
+// A flight as it comes back from being kept.
+fn state_kept(frame_number: u32, f: Flight) -> Flight {
+    return state_unpacked(frame_number, state_packed(frame_number, f));
+}
+
+fn state_packed(frame_number: u32, f: Flight) -> vec4u {
+    let c = course_of(frame_number);
+    let at = (f.place - course[c].p.origin.xyz) / course[c].p.room_m;
+    let v = state_halves(f.velocity);
+    return vec4u(
+        pack2x16snorm(at.xy),
+        (pack2x16snorm(vec2f(at.z, 0.0)) & 0xffffu) | (f.age << 16u),
+        v.x | (v.y << 16u),
+        v.z | (f.births << 16u));
+}
+
+fn state_unpacked(frame_number: u32, words: vec4u) -> Flight {
+    let c = course_of(frame_number);
+    let at = vec3f(unpack2x16snorm(words.x), unpack2x16snorm(words.y).x);
+    let v = state_floats(vec3u(words.z, words.z >> 16u, words.w));
+    return Flight(course[c].p.origin.xyz + course[c].p.room_m * at, v, words.y >> 16u, words.w >> 16u);
+}
+
+// Floats as halves, rounded to the nearest; those below 2^-14 are 0, and none is infinite.
+fn state_halves(v: vec3f) -> vec3u {
+    let bits = bitcast<vec3u>(v);
+    let size = min(bits & vec3u(0x7fffffffu), vec3u(0x477fe000u)) + vec3u(0x1000u);
+    let half = select((size - vec3u(0x38000000u)) >> vec3u(13u), vec3u(0u), size < vec3u(0x38801000u));
+    return ((bits >> vec3u(16u)) & vec3u(0x8000u)) | half;
+}
+
+fn state_floats(halves: vec3u) -> vec3f {
+    let size = halves & vec3u(0x7fffu);
+    let bits = select((size << vec3u(13u)) + vec3u(0x38000000u), vec3u(0u), size == vec3u(0u));
+    return bitcast<vec3f>(((halves & vec3u(0x8000u)) << vec3u(16u)) | bits);
+}

@@ -1,0 +1,172 @@
+//! Particles: a cloud of discs that a flow without sources or sinks carries along.
+//!
+//! What is said here both sides follow, the kernels in f32 and the oracle in f64.
+//!
+//! **Random numbers.** Number k of particle i in its life b (counted from 0) is `hash(base + k)` with
+//! `base = hash(hash(hash(seed) + i) ^ b)`, all in u32.
+//!
+//! **Life.** At most `L = max(1, round(life_s rate))` steps, of which `round(L life_spread)`, at most L - 1, are left to
+//! chance: L - n steps, where n is the upper word of random number 12 times (that many + 1). In frame 0 a particle is as
+//! old as the upper word of random number 13 times its life says. With every step it ages by one; who has come to the end
+//! of its life, or would leave the room, is born again instead.
+//!
+//! **Birth.** Numbers 2t and 2t + 1 give attempt t three coordinates: the lower and upper half of the first word and the
+//! lower half of the second, less 32768. The first of six attempts inside the ball of radius 32768 counts, else the last
+//! one halved. Coordinates over 32768, times `spread`, held within the room, are the place about `origin`. Velocity is 0.
+//!
+//! **Step.** dt = 1 / rate. With place p and velocity v of the frame before, away = attractor - p and
+//! pull = attraction 2 r away / (away² + r²), r = `attractor_m`: v' = (v + dt (drag u + pull)) / (1 + dt drag), p' = p + dt v'.
+//!
+//! **Flow.** u = `speed_mps` [`EVEN_SPEED`] Σ persistence^o curl ψ_o(q) / Σ persistence^o over the octaves o, where
+//! q = p 2^o / swirl_m + (o + 1) [`LATTICE_SHIFT`] + (step dt evolve) [`LATTICE_DRIFT`], and ψ_o is value noise: three numbers at
+//! every point (x, y, z) of the integer lattice, from the bits 0 to 9, 10 to 19 and 20 to 29 of
+//! `hash(hash(hash(x + salt) + y) + z)`, b as (2 b + 1) / 1024 - 1, with `salt = hash(seed ^ 0x9e3779b9) + o`; between
+//! them blended by t³(6t² - 15t + 10) along each axis. A curl has no divergence, so nothing piles up.
+//!
+//! **Disc.** With x the share of its life that has passed, a disc has the radius
+//! `size_m` (1 - `size_spread` n) s(x / fade) s((1 - x) / fade), s the smoothstep and n random number 14 as a fraction of 24 bits. Its colour goes from
+//! `slow` to `fast` as the speed goes from 0 to `bright_mps`. Its triangle faces the picture plane, its lower side
+//! level; normals lean outwards by 0.7 `roundness` at the rim.
+
+use glam::DVec3;
+
+use super::{Effect, read};
+use crate::{
+    params,
+    params::{Color, Field, Point},
+    scene::{
+        Bounds,
+        splats::{Cloud, Flow},
+    },
+};
+
+params! {
+    pub struct Particles {
+        /// Colour of what hardly moves.
+        slow: Color = [0.02, 0.1, 0.65, 1.0];
+        /// Colour of what is fast.
+        fast: Color = [1.0, 0.5, 0.12, 1.0];
+        /// Middle of the cloud.
+        origin: Point = [0.0; 4], hard -1000.0..=1000.0, soft -3.0..=3.0, unit "m";
+        /// Half axes of the ellipsoid in which particles are born.
+        spread: Point = [1.0, 1.0, 1.0, 0.0], hard 0.0..=1000.0, soft 0.0..=3.0, unit "m";
+        /// Where particles are drawn to; a drag over the picture with Ctrl held leads it.
+        attractor: Point = [0.0; 4], hard -1000.0..=1000.0, soft -3.0..=3.0, unit "m";
+        /// How many there are.
+        count: u32 = 100000, hard 0.0..=4000000.0, soft 0.0..=200000.0;
+        /// Another seed gives another flow and other lives.
+        seed: u32 = 1, soft 0.0..=999.0;
+        /// Steps per second of the look.
+        rate: u32 = 60, hard 1.0..=240.0, soft 24.0..=120.0, unit "/s";
+        /// Half the side of the room; who would leave it is born again.
+        room_m: f32 = 2.5, hard 0.01..=1000.0, soft 0.5..=5.0, unit "m";
+        /// Longest life.
+        life_s: f32 = 4.0, hard 0.01..=200.0, soft 0.25..=12.0, unit "s";
+        /// Share of it that is left to chance.
+        life_spread: f32 = 0.6, hard 0.0..=1.0;
+        /// Speed of the flow, about.
+        speed_mps: f32 = 0.6, hard 0.0..=100.0, soft 0.0..=3.0, unit "m/s";
+        /// Size of the largest swirls.
+        swirl_m: f32 = 0.9, hard 0.05..=1000.0, soft 0.1..=4.0, unit "m";
+        /// Layers of noise, each of half the size of the one before.
+        octaves: u32 = 3, hard 1.0..=6.0;
+        /// Speed of each layer as a share of that of the one before.
+        persistence: f32 = 0.45, hard 0.0..=1.0;
+        /// How fast the flow itself changes.
+        evolve: f32 = 0.25, hard 0.0..=10.0, soft 0.0..=2.0, unit "/s";
+        /// How tightly the flow holds particles.
+        drag: f32 = 5.0, hard 0.0..=1000.0, soft 0.0..=20.0, unit "/s";
+        /// Largest acceleration towards the attractor; below 0 away from it.
+        attraction: f32 = 0.0, hard -1000.0..=1000.0, soft -20.0..=20.0, unit "m/s²";
+        /// Distance from the attractor at which it draws most.
+        attractor_m: f32 = 0.5, hard 0.01..=1000.0, soft 0.05..=2.0, unit "m";
+        /// How long the attraction takes to follow its point.
+        follow_s: f32 = 0.15, hard 0.0..=60.0, soft 0.0..=1.0, unit "s";
+        /// Largest radius of a disc.
+        size_m: f32 = 0.008, hard 0.0..=10.0, soft 0.001..=0.05, unit "m";
+        /// Share of it that is left to chance.
+        size_spread: f32 = 0.5, hard 0.0..=1.0;
+        /// Share of its life in which a disc grows, and in which it shrinks.
+        fade: f32 = 0.3, hard 0.001..=0.5;
+        /// How far the rim of a disc turns from the viewer: 0 flat, 1 by 35 degrees.
+        roundness: f32 = 1.0, hard 0.0..=1.0;
+        /// Speed of the fast colour.
+        bright_mps: f32 = 0.9, hard 0.001..=1000.0, soft 0.05..=4.0, unit "m/s";
+    }
+}
+
+pub const EFFECT: Effect =
+    Effect::new::<Particles>("particles", "Particles", "puts a cloud of drifting discs into the scene").with_cloud(|words| cloud(&read(words)));
+
+/// Between the lattices of one octave and the next.
+pub const LATTICE_SHIFT: [f64; 3] = [0.3125, 0.4375, 0.71875];
+
+/// What makes one octave's mean speed about 1.
+pub const EVEN_SPEED: f64 = 0.625;
+
+/// Which way lattices drift.
+pub const LATTICE_DRIFT: [f64; 3] = [0.25, -0.5, 0.375];
+
+/// Frames of a flow; the next one is the first again.
+pub const FRAMES: u32 = 36_000;
+
+/// How much a normal leans outwards at the rim of a disc, at most.
+pub const LEAN: f64 = 0.7;
+
+/// The frame that a look shows at a time.
+pub fn frame_at(particles: &Particles, time_s: f64) -> u32 {
+    let frame = (time_s * f64::from(particles.rate)).round_ties_even();
+    if frame > 0.0 { (frame % f64::from(FRAMES)) as u32 } else { 0 }
+}
+
+fn cloud(p: &Particles) -> Cloud {
+    let origin = DVec3::new(p.origin[0].into(), p.origin[1].into(), p.origin[2].into());
+    let room = DVec3::splat(p.room_m.into());
+    let bounds = Bounds { min: origin - room, max: origin + room };
+    Cloud { count: p.count, bounds, radius_m: p.size_m.into() }
+}
+
+/// Longest life in steps, and how many of them are left to chance.
+pub fn life_steps(p: &Particles) -> [u32; 2] {
+    let steps = (f64::from(p.life_s) * f64::from(p.rate)).round_ties_even().max(1.0);
+    [steps as u32, ((steps * f64::from(p.life_spread)).round_ties_even() as u32).min(steps as u32 - 1)]
+}
+
+/// Does a parameter tell how particles look, and not where they fly?
+pub fn is_for_looks(field: &Field) -> bool {
+    matches!(field.name, "slow" | "fast" | "count" | "size_m" | "size_spread" | "fade" | "roundness" | "bright_mps")
+}
+
+/// The words by which particles fly, with what only tells how they look as it comes.
+fn of_flight(words: &[u32]) -> Vec<u32> {
+    let mut flight = words.to_vec();
+    let usual = (EFFECT.defaults)();
+    EFFECT.fields.iter().filter(|field| is_for_looks(field)).for_each(|field| field.copy(&usual, &mut flight));
+    flight
+}
+
+/// A flow at a frame, whose parameters do not change on the way.
+pub fn steady(words: &[u32], frame: u32) -> Flow {
+    Flow { frame, course: of_flight(words).into(), stride: words.len() }
+}
+
+/// A flow whose steps go by these words, one after another. The attraction follows its point behind.
+pub fn along(steps: impl Iterator<Item = Vec<u32>>, frame: u32) -> Flow {
+    let (mut course, mut stride) = (Vec::new(), 0);
+    let mut followed: Option<[f64; 3]> = None;
+    for words in steps {
+        let mut words = of_flight(&words);
+        let Particles { attractor, rate, follow_s, .. } = read(&words);
+        let goal = [0, 1, 2].map(|axis: usize| f64::from(attractor[axis]));
+        let share = 1.0 / (1.0 + f64::from(follow_s) * f64::from(rate));
+        let from = followed.unwrap_or(goal);
+        let at = [0, 1, 2].map(|axis: usize| from[axis] + (goal[axis] - from[axis]) * share);
+        followed = Some(at);
+        let field = EFFECT.field("attractor").expect("an attractor");
+        // Between two points that the field takes, it takes every point.
+        let _ = field.set(&mut words, &at);
+        stride = words.len();
+        course.extend(words);
+    }
+    Flow { frame, course: course.into(), stride }
+}

@@ -1,0 +1,80 @@
+//! Shadow: a directional light with a shadow map, drawn by the rasterizer itself from where the light stands.
+//!
+//! Where a sample lies deeper than what the light sees there, light does not arrive. A tap asks that of one texel, of the
+//! plane of the sample's triangle at the middle of that texel, moved towards the light by a bias: a constant, and a slope
+//! that grows with the tangent of the angle at which light meets the plane, both in texels.
+
+use glam::DVec3;
+
+use super::{
+    Effect, Surface, SurfaceEffect,
+    hooks::tone::{rgb, turned},
+};
+use crate::{
+    choice, params,
+    params::Color,
+};
+
+choice! {
+    /// What the light does.
+    pub enum Shading {
+        /// It shines on a matt surface (Lambert), with light from above and below where it does not arrive.
+        Lambert = "lambert",
+        /// It only dims what earlier effects have shaded.
+        Dim = "dim",
+    }
+}
+
+params! {
+    pub struct Shadow {
+        /// Colour of the light, linear.
+        light: Color = [0.92, 0.84, 0.70, 1.0], when ("shading", &["lambert"]);
+        /// Light from straight above that nothing stops, linear.
+        sky: Color = [0.16, 0.19, 0.24, 1.0], when ("shading", &["lambert"]);
+        /// Light from straight below that nothing stops, linear.
+        ground: Color = [0.08, 0.065, 0.055, 1.0], when ("shading", &["lambert"]);
+        /// Where the light comes from: 0 in front of the scene, 90 from its right.
+        azimuth_deg: f32 = 40.0, hard -36000.0..=36000.0, soft -180.0..=180.0, unit "°";
+        /// How high the light stands: 90 straight above.
+        elevation_deg: f32 = 48.0, hard -90.0..=90.0, unit "°";
+        /// What the light does.
+        shading: Shading = Shading::Lambert as u32;
+        /// Share of the light that a shadow takes away.
+        strength: f32 = 1.0, hard 0.0..=1.0;
+        /// How far a surface is moved towards the light before it is compared.
+        bias: f32 = 0.5, hard -64.0..=64.0, soft 0.0..=4.0, unit "texels";
+        /// The same for every unit of the tangent of the angle between the light and the surface's normal.
+        slope: f32 = 0.25, hard -64.0..=64.0, soft 0.0..=4.0, unit "texels";
+    }
+}
+
+pub const EFFECT: Effect =
+    Effect::surface::<Shadow>("shadow", "Shadow", "a directional light whose shadows the rasterizer draws itself").in_light().in_steps();
+
+/// Largest tangent that counts, for the slope and for the plane of a triangle between taps.
+pub const STEEPEST: f64 = 8.0;
+
+impl Shadow {
+    /// Unit vector towards the light.
+    pub fn toward(&self) -> DVec3 {
+        let [azimuth, elevation] = [self.azimuth_deg, self.elevation_deg].map(|degrees| turned(degrees.into()));
+        DVec3::new(elevation.x * azimuth.y, elevation.y, elevation.x * azimuth.x)
+    }
+}
+
+impl SurfaceEffect for Shadow {
+    fn apply(mut s: Surface, p: &Self) -> Surface {
+        let facing = s.normal.dot(p.toward()).max(0.0);
+        let arrives = 1.0 - f64::from(p.strength) * (1.0 - s.lit);
+        let light = match Shading::of(p.shading) {
+            Shading::Lambert => {
+                let up = 0.5 + 0.5 * s.normal.y;
+                rgb(p.light) * (facing * arrives) + rgb(p.ground) + (rgb(p.sky) - rgb(p.ground)) * up
+            }
+            // Where the light only grazes a surface, it was dim before.
+            Shading::Dim => DVec3::splat(1.0 - f64::from(p.strength) * (1.0 - s.lit * (4.0 * facing).min(1.0))),
+        };
+        s.color = (s.color.truncate() * light).extend(s.color.w);
+        s
+    }
+}

@@ -1,0 +1,157 @@
+//! Light: the view of a directional light, in which its shadow map is drawn. Plain matrices in f64, from whose bits renderers
+//! and judges start alike.
+
+use glam::{DVec2, DVec3};
+
+use super::{
+    Bounds, Scene,
+    camera::{Camera, Projection, View},
+    pose::Pose,
+};
+use crate::ladder::{ShadowMap, Taps};
+
+impl ShadowMap {
+    /// Texels a side.
+    pub const fn side(self) -> u32 {
+        256 << self as u32
+    }
+}
+
+impl Taps {
+    /// Texels a side of the filter.
+    pub const fn side(self) -> u32 {
+        2 * self as u32 + 1
+    }
+}
+
+/// How finely shadows are drawn.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct ShadowGrid {
+    /// Texels a side of a shadow map.
+    pub side: u32,
+    /// Texels a side of the filter: 1, 3 or 5.
+    pub taps: u32,
+}
+
+impl Default for ShadowGrid {
+    fn default() -> Self {
+        Self::of(ShadowMap::default(), Taps::default())
+    }
+}
+
+impl ShadowGrid {
+    /// No map: rays, one for each sample. The oracle alone has them.
+    pub const TRACED: Self = Self { side: 0, taps: 0 };
+
+    pub const fn of(map: ShadowMap, taps: Taps) -> Self {
+        Self { side: map.side(), taps: taps.side() }
+    }
+
+    /// The rungs of the ladder that this is; the usual ones where it is none.
+    pub fn rungs(&self) -> (ShadowMap, Taps) {
+        let map = ShadowMap::ALL.iter().find(|rung| rung.side() == self.side);
+        let taps = Taps::ALL.iter().find(|rung| rung.side() == self.taps);
+        (map.copied().unwrap_or_default(), taps.copied().unwrap_or_default())
+    }
+}
+
+/// Texels that stay empty along every border: half the widest filter, and one for what rounding moves.
+const BORDER: f64 = 3.0;
+
+/// What a light from `toward` (a unit vector) sees of `scene` as `view` shows it, where effects may move anything by
+/// `reach_m`: a square picture of parallel rays, framed round the box of what casts shadows.
+///
+/// The square's side is rounded up to a 32nd of a power of two and its place to whole texels, so that shadows stand still
+/// while what casts them moves a little.
+pub fn view_from(toward: DVec3, scene: &Scene, view: &View, reach_m: f64) -> View {
+    let at_rest = if view.pose.is_none() { Pose::at_rest(scene) } else { None };
+    let (pose, casters) = (view.pose.as_deref().or(at_rest.as_ref()), scene.casters());
+    let mut bounds = pose.map_or_else(|| scene.bounds_of(casters), |pose| pose.bounds_of(scene, casters));
+    if bounds.is_empty() {
+        bounds = Bounds { min: DVec3::ZERO, max: DVec3::ZERO };
+    }
+    (bounds.min, bounds.max) = (bounds.min - reach_m, bounds.max + reach_m);
+    let axes = Axes::of(toward);
+    let corners = bounds.corners().map(|corner| axes.plane(view.world_from_scene.transform_point3(corner)));
+    let low = corners.into_iter().fold(DVec2::INFINITY, DVec2::min);
+    let high = corners.into_iter().fold(DVec2::NEG_INFINITY, DVec2::max);
+    let side = view.shadow.side.max(16);
+    let needed_m = (high - low).max_element().max(1e-3 * bounds.radius()).max(1e-6);
+    let side_m = rounded_up(needed_m * f64::from(side) / (f64::from(side) - 2.0 * BORDER));
+    let texel_m = side_m / f64::from(side);
+    let middle = ((low + high) * 0.5 / texel_m).round() * texel_m;
+    let eye = axes.right * middle.x + axes.up * middle.y;
+    let projection = Projection::Orthographic { height_m: side_m };
+    let camera = Camera { eye, target: eye - toward, up: axes.up, projection, near_m: 1.0 };
+    View {
+        pose: view.pose.clone(),
+        shadow: view.shadow,
+        picture_from_world: Some(view.clip_from_world),
+        ..View::new(&camera, side, side, &bounds, view.world_from_scene, [0.0; 4])
+    }
+}
+
+/// The next 32nd of a power of two.
+fn rounded_up(length: f64) -> f64 {
+    let step = libm::exp2(libm::ceil(libm::log2(length)) - 5.0);
+    (length / step).ceil() * step
+}
+
+/// Two axes across a direction.
+struct Axes {
+    right: DVec3,
+    up: DVec3,
+}
+
+impl Axes {
+    fn of(toward: DVec3) -> Self {
+        // Straight from above there is no "up" but some.
+        let vertical = if toward.y.abs() > 0.999_999 { DVec3::NEG_Z } else { DVec3::Y };
+        let right = vertical.cross(toward).normalize();
+        Self { right, up: toward.cross(right) }
+    }
+
+    fn plane(&self, point: DVec3) -> DVec2 {
+        DVec2::new(self.right.dot(point), self.up.dot(point))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::scene::builtin;
+
+    #[test]
+    fn every_corner_of_the_scene_lies_inside_the_map_and_its_border_is_empty() {
+        let scene = builtin::build("knot?tess=4").unwrap();
+        for side in [256, 1024, 4096] {
+            for toward in [DVec3::Y, DVec3::NEG_Y, DVec3::X, DVec3::new(0.3, 0.9, -0.2).normalize(), DVec3::new(1e-9, 1.0, 0.0)] {
+                let picture = View::new(&Camera::default(), 8, 8, &scene.bounds(), glam::DMat4::IDENTITY, [0.0; 4]);
+                let picture = View { shadow: ShadowGrid { side, taps: 3 }, ..picture };
+                let light = view_from(toward, &scene, &picture, 0.0);
+                let border = 1.0 - 2.0 * (BORDER - 1.0) / f64::from(side);
+                for corner in scene.bounds().corners() {
+                    let clip = light.clip_from_world * corner.extend(1.0);
+                    assert!(clip.x.abs() <= border && clip.y.abs() <= border && (0.0..=1.0).contains(&clip.z), "{toward}: {clip}");
+                }
+                assert!((light.forward + toward).length() < 1e-9, "{toward}");
+            }
+        }
+    }
+
+    #[test]
+    fn a_scene_that_creeps_keeps_its_texels() {
+        let toward = DVec3::new(0.4, 0.8, 0.3).normalize();
+        let scene = builtin::build("sphere?triangles=500").unwrap();
+        let picture = View::new(&Camera::default(), 8, 8, &scene.bounds(), glam::DMat4::IDENTITY, [0.0; 4]);
+        let phase = |shift: f64| {
+            let moved = View { world_from_scene: glam::DMat4::from_translation(DVec3::X * shift), ..picture.clone() };
+            let light = view_from(toward, &scene, &moved, 0.0);
+            let texels = (light.clip_from_world * DVec3::ZERO.extend(1.0)).truncate().truncate() * 0.5 * f64::from(light.width);
+            (texels - texels.round()).abs().max_element()
+        };
+        for step in 0..20 {
+            assert!(phase(f64::from(step) * 0.000_37) < 1e-6, "the grid slides with the scene");
+        }
+    }
+}

@@ -1,0 +1,105 @@
+//! Room: a box round a scene, seen from inside. Its walls catch light and shadows and cast none.
+
+use glam::{DMat4, DVec3};
+
+use super::{Bounds, Instance, Material, Scene, builtin::Mesh};
+
+/// Cells a side of every wall, so that effects find triangles of a middling size on it.
+const CELLS: u32 = 8;
+
+/// How far below the scene the floor lies, as a share of its height: nothing that stands on it lies in its plane.
+const GAP: f64 = 1e-3;
+
+impl Scene {
+    /// The scene in a room `times` as wide as itself, which stands still while the scene spins about its vertical axis.
+    #[must_use]
+    pub fn in_room(mut self, times: f64) -> Self {
+        let bounds = self.bounds();
+        if bounds.is_empty() {
+            return self;
+        }
+        let reach = |corner: DVec3| libm::hypot(corner.x, corner.z);
+        let half = times * bounds.corners().map(reach).into_iter().fold(1e-6, f64::max);
+        let height = (bounds.max.y - bounds.min.y).max(1e-3 * half);
+        let floor = bounds.min.y - GAP * height;
+        let ceiling = floor + (2.0 * half).min(height * (1.0 + times)).max(height * 1.1);
+        let room = Bounds { min: DVec3::new(-half, floor, -half), max: DVec3::new(half, ceiling, half) };
+        self.materials.push(Material { name: "plaster".into(), base_color: [0.62, 0.6, 0.57, 1.0], ..Material::default() });
+        let material = self.materials.len() - 1;
+        let primitive = walls(&room).append(&mut self, "room", material);
+        self.instances.push(Instance::fixed(primitive, DMat4::IDENTITY));
+        self.walls += 1;
+        if !self.rig.is_empty() {
+            self.rig.reach.include(room.min);
+            self.rig.reach.include(room.max);
+        }
+        self
+    }
+
+    /// The instances that cast shadows: all but the walls round them.
+    pub fn casters(&self) -> &[Instance] {
+        &self.instances[..self.instances.len() - self.walls]
+    }
+}
+
+/// Six walls whose fronts look inwards.
+fn walls(room: &Bounds) -> Mesh {
+    let mut mesh = Mesh::default();
+    let (center, half) = (room.center(), (room.max - room.min) * 0.5);
+    for axis in 0..3 {
+        for side in [-1.0, 1.0] {
+            let inward = DVec3::AXES[axis] * -side;
+            let (u, v) = (DVec3::AXES[(axis + 1) % 3], inward.cross(DVec3::AXES[(axis + 1) % 3]));
+            let at = |i: u32, j: u32| {
+                let share = |k: u32| 2.0 * f64::from(k) / f64::from(CELLS) - 1.0;
+                center + (u * share(i) + v * share(j) - inward) * half
+            };
+            let row = |mesh: &mut Mesh, j: u32| (0..=CELLS).map(|i| mesh.vertex(at(i, j), inward)).collect::<Vec<_>>();
+            let rows: Vec<Vec<u32>> = (0..=CELLS).map(|j| row(&mut mesh, j)).collect();
+            for (below, above) in rows.iter().zip(&rows[1..]) {
+                for i in 0..CELLS as usize {
+                    mesh.triangle([below[i], below[i + 1], above[i + 1]]);
+                    mesh.triangle([below[i], above[i + 1], above[i]]);
+                }
+            }
+        }
+    }
+    mesh
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::scene::{Primitive, builtin};
+
+    fn room_of(scene: &Scene) -> &Primitive {
+        &scene.primitives[scene.instances.last().unwrap().primitive]
+    }
+
+    #[test]
+    fn walls_enclose_the_scene_however_it_is_turned_and_look_inwards() {
+        for query in ["teapot?tess=2", "cube-wall", "tentacle?tess=2"] {
+            let alone = builtin::build(query).unwrap();
+            let scene = builtin::build(query).unwrap().in_room(1.5);
+            assert_eq!(scene.casters(), alone.instances);
+            let room = room_of(&scene);
+            for corner in alone.bounds().corners() {
+                for turn in 0..12 {
+                    let turned = crate::math::rotation_y(f64::from(turn)).transform_point3(corner);
+                    assert!(turned.cmpgt(room.bounds.min).all() && turned.cmplt(room.bounds.max).all(), "{query}: {turned}");
+                }
+            }
+            let at = |vertex: u32| glam::Vec3::from(room.position(&scene, vertex)).as_dvec3();
+            for triangle in 0..room.triangle_count() {
+                let [a, b, c] = room.corners(&scene, triangle).map(at);
+                let normal = (b - a).cross(c - a);
+                assert!(normal.dot(room.bounds.center() - a) > 0.0, "{query}: triangle {triangle} looks outwards");
+            }
+        }
+    }
+
+    #[test]
+    fn nothing_needs_no_room() {
+        assert_eq!(Scene::default().in_room(2.0), Scene::default());
+    }
+}
