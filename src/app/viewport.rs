@@ -101,8 +101,13 @@ impl App {
         let Some((at, (_, scene))) = response.interact_pointer_pos().filter(|_| response.clicked()).zip(self.stage.shown.clone()) else {
             return;
         };
-        let place = (at - response.rect.min) / response.rect.size();
         let size = response.rect.size().round();
+        // Side by side the picture is smaller, and beside it there is nothing to click on.
+        let shown = fitted(self.compare.side_b(response.rect), [size.x.max(1.0) as u32, size.y.max(1.0) as u32]);
+        if !shown.contains(at) {
+            return;
+        }
+        let place = (at - shown.min) / shown.size();
         let view = self.view_at(&scene, [size.x.max(1.0) as u32, size.y.max(1.0) as u32]);
         match pick::pick(&scene, &view, DVec2::new(place.x.into(), place.y.into())) {
             Some(point) => {
