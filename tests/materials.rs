@@ -306,7 +306,7 @@ fn a_mask_of_a_texel_a_pixel_is_the_alpha_of_the_image() {
             let texture = Texture { wrap: [wrap; 2], magnified: filter, ..Texture::plain(0) };
             let (scene, view) = pixel_square(8, span, image.clone(), texture);
             for least in [1u8, 100, 128, 200, 255] {
-                let masked = Arc::new(cut_at(&scene, Some(f32::from(least) / 255.0)));
+                let masked = Arc::new(cut_at(&scene, Some((f32::from(least) - 0.5) / 255.0)));
                 let own = oracle::render(&masked, &view, &Stack::default()).expect("it fits").owner;
                 let mut all = vec![("oracle", own)];
                 if let Some(mut renderer) = renderer() {
