@@ -2,7 +2,7 @@
 // here, in linear light, from whole texels: what a sampler's own arithmetic would make of them no judge could tell.
 //@ use common/draws
 
-@group(0) @binding(30) var texels: texture_2d_array<u32>;
+@group(0) @binding(32) var texels: texture_2d_array<u32>;
 
 // Words before the records: linear light of every byte.
 const TEXELS_RECORDS = 256u;
