@@ -41,10 +41,10 @@ params! {
         shading: Shading = Shading::Lambert as u32;
         /// Share of the light that a shadow takes away.
         strength: f32 = 1.0, hard 0.0..=1.0;
-        /// How far a surface is moved towards the light before it is compared.
-        bias: f32 = 0.5, hard -64.0..=64.0, soft 0.0..=4.0, unit "texels";
+        /// How many texels a surface is moved towards the light before it is compared.
+        bias: f32 = 0.5, hard -64.0..=64.0, soft 0.0..=4.0;
         /// The same for every unit of the tangent of the angle between the light and the surface's normal.
-        slope: f32 = 0.25, hard -64.0..=64.0, soft 0.0..=4.0, unit "texels";
+        slope: f32 = 0.25, hard -64.0..=64.0, soft 0.0..=4.0;
     }
 }
 
