@@ -275,7 +275,8 @@ impl Renderer {
         self.keep_previous(&mut encoder, &plan.key, view, stack);
         self.keep_occluders(&mut encoder, &plan.key, view, stack);
         // The light comes after whatever bends the scene for both.
-        let bending = if self.lamp.is_some() { passes.iter().take_while(|pass| matches!(pass, Pass::Particles | Pass::Skin)).count() } else { 0 };
+        let bending =
+            if self.lamp.is_some() { passes.iter().take_while(|pass| matches!(pass, Pass::Particles | Pass::Skin)).count() } else { 0 };
         self.record(&mut encoder, &plan.key, &passes[..bending], view, false)?;
         self.record_lamp(&mut encoder)?;
         self.record(&mut encoder, &plan.key, &passes[bending..], view, true)?;
