@@ -102,7 +102,7 @@ fn no_camera_sees_what_frustum_and_cones_leave_out() {
             total.drawn += figures.drawn;
         }
     }
-    assert!(total.outside > total.drawn && total.turned > total.drawn / 8, "little is left out: {total:?}");
+    assert!(total.outside > total.drawn / 4 && total.turned > 0, "little is left out: {total:?}");
 }
 
 /// A walk through a scene: small steps and turns, and now and then a jump.
