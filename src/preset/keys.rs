@@ -12,8 +12,8 @@ use super::{
 };
 use crate::{
     ladder::{
-        Checks, Clipping, Counting, Coverage, Culling, Depth, DotWay, Parameters, Perspective, Scale, ShadowMap, Skinning, Sums, Taps,
-        Vertex, Vertices, Visibility,
+        Checks, Clipping, Counting, Coverage, Culling, Curl, Depth, DotWay, Parameters, Perspective, Scale, ShadowMap, Skinning, State,
+        Sums, Taps, Vertex, Vertices, Visibility,
     },
     scene::camera::{Camera, MIN_NEAR_M, Projection},
     session::{SceneSource, Session, Test, Tier},
@@ -348,6 +348,8 @@ pub const KEYS: &[Key] = &[
     pin::<Vertices>(),
     pin::<Vertex>(),
     pin::<Skinning>(),
+    pin::<Curl>(),
+    pin::<State>(),
     pin::<Depth>(),
     pin::<Visibility>(),
     pin::<Perspective>(),
