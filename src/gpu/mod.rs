@@ -54,7 +54,7 @@ use crate::{
     frame::{Counters, CullingFigures, OrderFigures},
     ladder::Scale,
     plan::{Accuracy, Plan, Tuning},
-    scene::{Scene, camera::View, splats::Cloud},
+    scene::{Scene, camera::View, needs::Needs, splats::Cloud},
     shader::{
         key::{KernelKey, Order, Pass},
         library::Library,
@@ -104,6 +104,8 @@ pub struct Renderer {
     /// The last picture whose sums of layers overflowed, and the bits per channel that it gets instead.
     full: Option<(View, Stack, u32)>,
     pending: VecDeque<Pending>,
+    /// What the last pictures required, with their scenes and views.
+    needs: Vec<(Arc<Scene>, View, Needs)>,
     /// Positions in fewer bits, which lie behind everything else in `vertex_bytes`: so many bits, and where.
     packed: Option<(u32, Packing)>,
     /// Medium and large triangles of the newest finished frame.
@@ -162,6 +164,7 @@ impl Renderer {
             last_picture: None,
             full: None,
             pending: VecDeque::new(),
+            needs: Vec::new(),
             packed: None,
             demand: None,
             shown: [0; 2],

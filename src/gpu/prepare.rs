@@ -1,5 +1,7 @@
 //! Preparation of a frame: the plan, and buffers that hold what its passes will read.
 
+use std::sync::Arc;
+
 use super::{
     RenderError, Renderer, STORAGE,
     bends::{BENT_BYTES, Bends, bent_ranges},
@@ -26,6 +28,30 @@ use crate::{
 };
 
 impl Renderer {
+    /// The plan for what the scene requires as `view` sees it. The last requirements are kept: a picture that is drawn again has
+    /// the same, and a look at thousands of triangles takes longer than many a card takes for all of them.
+    fn planned(
+        &mut self,
+        scene: &Arc<Scene>,
+        draws: &[Draw],
+        view: &View,
+        stack: &Stack,
+        accuracy: &Accuracy,
+    ) -> Result<Plan, RenderError> {
+        let is_known = |(of, seen, _): &(Arc<Scene>, View, Needs)| Arc::ptr_eq(of, scene) && seen == view;
+        let place = self.needs.iter().position(is_known).unwrap_or_else(|| {
+            // One for the grid that is usual, one for the grid that the plan then asks for.
+            self.needs.truncate(1);
+            self.needs.insert(0, (scene.clone(), view.clone(), Needs::of(scene, draws, view)));
+            0
+        });
+        let mut needs = self.needs[place].2.clone();
+        if self.distrust {
+            (needs.clipping, needs.largest_px) = (true, f64::INFINITY);
+        }
+        Ok(plan(&needs, stack, &self.gpu.caps, &self.tuning, accuracy)?)
+    }
+
     /// Plans the picture and makes its buffers hold what the passes will read.
     pub(super) fn prepare(&mut self, view: &View, stack: &Stack, accuracy: &Accuracy) -> Result<Plan, RenderError> {
         let scene = self.scene.clone().ok_or(RenderError::NoScene)?;
@@ -35,14 +61,7 @@ impl Renderer {
             return Err(RenderError::TooWide { width: view.width, height: view.height, limit });
         }
         let mut draws = drawn(&scene, view)?;
-        let planned = |view: &View, draws: &[Draw]| {
-            let mut needs = Needs::of(&scene, draws, view);
-            if self.distrust {
-                (needs.clipping, needs.largest_px) = (true, f64::INFINITY);
-            }
-            plan(&needs, stack, &gpu.caps, &self.tuning, accuracy)
-        };
-        let mut plan = planned(view, &draws)?;
+        let mut plan = self.planned(&scene, &draws, view, stack, accuracy)?;
         // Another grid has its guard band elsewhere, and another origin its matrices, so their needs are their own.
         let rungs = &plan.key.rungs;
         let (subpixel_bits, is_relative) = (rungs.coverage.subpixel_bits(), rungs.vertices == Vertices::Relative);
@@ -52,7 +71,7 @@ impl Renderer {
             draws = drawn(&scene, view)?;
         }
         if is_relative || view.subpixel_bits != SUBPIXEL_BITS {
-            plan = planned(view, &draws)?;
+            plan = self.planned(&scene, &draws, view, stack, accuracy)?;
         }
         let packed_bits = plan.key.rungs.vertices.packed_bits();
         if self.packed.as_ref().map(|(bits, _)| *bits) != packed_bits {
