@@ -385,7 +385,10 @@ fn the_tier_strict_takes_masks_unless_something_masked_is_cut() {
 
 #[test]
 fn a_scene_of_plain_colours_has_no_texture_and_no_word_of_one() {
-    for effects in [vec![], EFFECTS.iter().copied().filter(|effect| effect.hooks.slot.is_none() && effect.name != "shadow").collect::<Vec<&'static Effect>>()] {
+    for effects in [
+        vec![],
+        EFFECTS.iter().copied().filter(|effect| effect.hooks.slot.is_none() && effect.name != "shadow").collect::<Vec<&'static Effect>>(),
+    ] {
         // A shadow map is a texture, too.
         let plain = KernelKey { has_texels: false, ..KernelKey::whole(Fetch::Indexed, Visibility::Split32, effects.clone()) };
         assert!(!plain.to_string().contains("texels"));

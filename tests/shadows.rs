@@ -11,7 +11,7 @@ use rasterlab::{
     effects::{Effect, Stack, read, shadow::Shadow},
     gpu::{Capture, Renderer},
     ladder::{Pins, ShadowMap, Taps, Visibility},
-    measure::compare,
+    measure::{Budget, compare},
     oracle,
     plan::Accuracy,
     scene::{
@@ -258,7 +258,9 @@ fn the_map_is_the_picture_that_the_light_sees() {
         let capture = captured(&mut renderer, &scene, &view, &stack, &Accuracy::default());
         let map = capture.geometry.light.expect("there is a map");
         let (light, casting) = (stack.light_view(&scene, &view).expect("there is a light"), stack.casting());
-        let (seen, _) = exact(&mut renderer, &scene, &light, &casting, &pinned(Visibility::Split32), &scene.name);
+        let (seen, verdict) = judged(&mut renderer, &scene, &light, &casting, &pinned(Visibility::Split32));
+        // A map has depths and no owners, and layers a quantum apart are all in the band.
+        verdict.accuracy.within(&Budget::default()).unwrap_or_else(|faults| panic!("{}: {faults}", scene.name));
         assert!(seen.frame.key == map.keys, "{}: the map has other depths", scene.name);
         assert_eq!(seen.geometry.vertices, map.geometry.vertices, "{}", scene.name);
         let own = oracle::shadow_map(&scene, &view, &stack).expect("a scene that fits").expect("there is a light");

@@ -6,6 +6,7 @@ use crate::{
     measure::Budget,
     params::{Field, Kind},
     plan::{Accuracy, Tuning},
+    session::{SceneSource, Session},
 };
 
 pub const CASES: &[Case] = &[
@@ -47,7 +48,12 @@ fn judged(lab: &mut Lab, stack: &Stack, turn: usize, what: &str) -> Result<(), H
     let query = ["sphere?triangles=200", "near", "cube-wall", "grid?cell=0.4&width=8&height=8"][turn % 4];
     let scene = lab.scene(query)?;
     let what = format!("{what}, {query}");
-    let (capture, verdict) = lab.judged(&scene, &lab.view(&scene, [64, 48]), stack, &Accuracy::default(), &what)?;
+    // Depths range as far as particles fly.
+    let view = match stack.cloud() {
+        Some(_) => Session { scene: SceneSource::Builtin(query.into()), stack: stack.clone(), ..Session::default() }.view(&scene, [64, 48]),
+        None => lab.view(&scene, [64, 48]),
+    };
+    let (capture, verdict) = lab.judged(&scene, &view, stack, &Accuracy::default(), &what)?;
     let sound = capture.geometry.vertices.iter().all(|v| v.depth.is_finite() && v.inv_w.is_finite());
     hold!(sound, "{what}: a vertex is no number");
     verdict.accuracy.within(&Budget { max_step_share: 1.0, ..Budget::default() }).map_err(|why| Halt::Failed(format!("{what}: {why}")))
