@@ -21,4 +21,4 @@ done
 
 # $scenes is a list of words.
 # shellcheck disable=SC2086
-exec "$lab" bench $scenes --axes coverage,visibility,vertex,depth,checks,parameters --each --format md "$@"
+exec "$lab" bench $scenes --axes coverage,visibility,vertices,vertex,depth,culling,checks,parameters --each --format md "$@"
