@@ -1,4 +1,4 @@
-// Shadow: a directional light of which a share arrives, as the shadow map says.
+// Shadow: a directional light with a shadow map, drawn by the rasterizer itself from where the light stands.
 //@ use common/surface
 //@ use common/tone
 

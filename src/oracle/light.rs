@@ -73,7 +73,7 @@ pub(super) struct Place {
 
 /// A light, and what tells how much of it arrives.
 pub(super) enum Light<'a> {
-    Mapped(Mapped<'a>),
+    Mapped(Box<Mapped<'a>>),
     Traced(Rays),
 }
 
@@ -83,7 +83,7 @@ impl<'a> Light<'a> {
         if view.shadow == ShadowGrid::TRACED {
             return Rays::of(scene, view, stack).map(Self::Traced);
         }
-        Mapped::of(scene, view, stack, geometry).map(Self::Mapped)
+        Mapped::of(scene, view, stack, geometry).map(|mapped| Self::Mapped(Box::new(mapped)))
     }
 
     /// Share of the light that arrives at a sample of the triangle `owner`; the least an f32 twin may find where `nudge` is
