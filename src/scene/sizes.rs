@@ -169,10 +169,13 @@ mod tests {
     use super::*;
     use crate::scene::{builtin, camera::Camera, draw::draws};
 
+    fn framed(scene: &Scene, [width, height]: [u32; 2]) -> Camera {
+        Camera::framing(&scene.bounds(), DVec3::new(-0.4, -0.4, -1.0), f64::from(width) / f64::from(height))
+    }
+
     fn sizes(query: &str, [width, height]: [u32; 2]) -> Sizes {
         let scene = builtin::build(query).expect("a builtin");
-        let aspect = f64::from(width) / f64::from(height);
-        let camera = Camera::framing(&scene.bounds(), DVec3::new(-0.4, -0.4, -1.0), aspect);
+        let camera = framed(&scene, [width, height]);
         let view = View::new(&camera, width, height, &scene.bounds(), DMat4::IDENTITY, [0.0; 4]);
         Sizes::of(&scene, &draws(&scene, &view).expect("it fits"), &view)
     }
@@ -183,8 +186,12 @@ mod tests {
         let share = f64::from(few.seen()) / f64::from(few.looked_at);
         assert!((0.35..0.5).contains(&share), "{share} of the triangles face the viewer");
         assert_eq!(few.cut, 0);
-        // All pixels of the disc change where edges move as far as triangles are wide; a disc as high as the picture less its air.
-        let disc = std::f64::consts::PI * (0.46 * 480.0f64).powi(2) / (640.0 * 480.0);
+        // All pixels of the disc change where edges move as far as triangles are wide: the disc that a sphere of this radius
+        // makes from that far, with 45 degrees from the bottom of the picture to its top.
+        let scene = builtin::build("sphere?triangles=2000").expect("a builtin");
+        let (radius, camera) = (scene.bounds().max.y, framed(&scene, [640, 480]));
+        let disc_px = 240.0 / libm::tan(22.5f64.to_radians()) * radius / (camera.eye.distance_squared(camera.target) - radius * radius).sqrt();
+        let disc = std::f64::consts::PI * disc_px * disc_px / (640.0 * 480.0);
         let moved = few.moved_share(1e3, 640.0 * 480.0);
         assert!((0.8 * disc..1.1 * disc).contains(&moved), "{moved} of the picture, where {disc} is covered");
     }
