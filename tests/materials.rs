@@ -858,7 +858,11 @@ fn textured_boxes_of_the_corpus_show_their_image() {
     for file in
         ["BoxTextured-glTF/BoxTextured.gltf", "BoxTextured-glTF-Embedded/BoxTextured.gltf", "BoxTextured-glTF-Binary/BoxTextured.glb"]
     {
-        let scene = gltf::load(&corpus.join(file)).unwrap_or_else(|error| panic!("{error}"));
+        let mut scene = gltf::load(&corpus.join(file)).unwrap_or_else(|error| panic!("{error}"));
+        // The binary one alone is repeated, which mixes other texels at the image's edge.
+        let texture = scene.materials[0].base_texture.as_mut().expect("a texture");
+        assert_eq!(texture.wrap, if file.ends_with("glb") { [Wrap::Repeat; 2] } else { [Wrap::Mirrored, Wrap::Clamp] }, "{file}");
+        texture.wrap = [Wrap::Mirrored, Wrap::Clamp];
         assert_eq!((scene.images.len(), scene.images[0].size()), (1, [211, 211]), "{file}");
         let view = view(&scene, [96, 72]);
         let frame = oracle::render(&scene, &view, &Stack::default()).expect("it fits");

@@ -108,9 +108,22 @@ fn color_of(draw: u32, vertex: u32) -> vec4f {
     return select(vec4f(1.0), vec4f(vertex_position(bits.rgb, gate), vertex_position(bits.aaa, gate).x), gate == 0u);
 }
 
-fn shade_surface(id: u32, pixel: vec2u) -> Surface {
-    let t = triangle_load(id);
-    let at = triangle_vertices(t.draw, id - draws[t.draw].first_triangle);
+// The triangle whose samples are asked about, and its vertices.
+var<private> shaded: Triangle;
+var<private> shaded_at: vec3u;
+
+// Before samples of a triangle are asked about: what they share is fetched and told once. In the middle of a loop over samples
+// drivers take minutes to compile what vertex effects do.
+fn shade_begin(id: u32) {
+    shaded = triangle_load(id);
+    shaded_at = triangle_vertices(shaded.draw, id - draws[shaded.draw].first_triangle);
+    if HAS_PLANES { shape_begin(id, shaded.draw, shaded_at); }
+}
+
+fn shade_surface(pixel: vec2u) -> Surface {
+    let t = shaded;
+    let at = shaded_at;
+    let id = t.id;
     var place: Place;
     if HAS_CLIPPING && ((t.a.x | t.b.x | t.c.x) & VERTEX_CLIPPED) != 0u {
         place = place_clipped(t, at, pixel);
@@ -163,7 +176,7 @@ fn shade_surface(id: u32, pixel: vec2u) -> Surface {
         let c = vertex_position(transform_bits(t.draw, at.z), 0u);
         s.center = center_world(t.draw, at);
         s.flat_normal = normal_direction((normal_from_object * vec4f(normal_of_plane(a, b, c), 0.0)).xyz);
-        s = shape_of(s, t.draw, at, k);
+        s = shape_of(s, k);
         let has_smooth = any(s.normal != vec3f(0.0));
         let has_flat = any(s.flat_normal != vec3f(0.0));
         has_direction = has_smooth || has_flat;

@@ -28,7 +28,7 @@ const PAINT_MASKED = 8u;
 
 // How a texture is looked up.
 struct Lookup {
-    first: u32,    // word of the image's first texel
+    levels: u32,   // word of the list of words where the image's levels begin, the largest first
     size: u32,     // width, and height in bits 16 and up
     sampling: u32, // wrap across in bits 0 and 1, down in 2 and 3; linear where magnified in 4, minified in 5; copies in 6 and 7; levels from 8 on
     format: u32,   // coordinates as the file has them (common/pull)
@@ -90,12 +90,8 @@ fn texels_light(look: Lookup, first: u32, size: vec2i, at: vec2i) -> vec3f {
 
 // Linear RGB at a place of the image, in one of its levels.
 fn texels_level(look: Lookup, level: u32, place: vec2f, is_linear: bool) -> vec3f {
-    var first = look.first;
-    var size = vec2u(look.size & 0xffffu, look.size >> 16u);
-    for (var i = 0u; i < min(level, 15u); i += 1u) {
-        first += size.x * size.y;
-        size = max(size / 2u, vec2u(1u));
-    }
+    let first = texels_word(look.levels + level);
+    let size = max(vec2u(look.size & 0xffffu, look.size >> 16u) >> vec2u(level), vec2u(1u));
     // Held where it is a number: what no pixel shows may be none.
     let at = clamp(place * vec2f(size), vec2f(-1073741824.0), vec2f(1073741824.0));
     if !is_linear { return texels_light(look, first, vec2i(size), vec2i(floor(at))); }

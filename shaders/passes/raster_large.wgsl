@@ -50,6 +50,7 @@ fn raster_large(@builtin(workgroup_id) group: vec3u, @builtin(num_workgroups) gr
     workgroupBarrier();
     if !is_live { return; }
 
+    visibility_begin(t.id);
     let pixels = triangle_pixels(min(min(a, b), c), max(max(a, b), c));
     let keys = keys_begin_wide(z, area);
     let nearest = depth_key(bitcast<f32>(max(max(z.x, z.y), z.z)));

@@ -20,6 +20,7 @@ fn raster_medium(@builtin(workgroup_id) group: vec3u, @builtin(num_workgroups) g
     let is_turned = area < 0;
 
     if lane == 0u { marks_box(pixels); }
+    visibility_begin(t.id);
     let mine = vec2i(vec2u(lane % 8u, lane / 8u));
     let coverage = coverage_begin(
         t.a, select(t.b, t.c, is_turned), select(t.c, t.b, is_turned), abs(area), pixels.xy + mine);

@@ -32,6 +32,9 @@ pub fn dispatch(
         Pass::Rounds { .. } => Dispatch::Direct([1, 1]),
         Pass::ProjectMeshlets => Dispatch::Indirect(72),
         Pass::RasterSmall(_) if key.culls() => Dispatch::Indirect(72),
+        Pass::RasterPoints(phase) if !phase.is_bin() => {
+            Dispatch::Direct(folded(triangles.saturating_mul(key.disc_shares).div_ceil(key.list_group)))
+        }
         Pass::RasterSmall(_) | Pass::RasterPoints(_) => Dispatch::Direct(folded(triangles.div_ceil(key.list_group))),
         Pass::Decide(Entries::Triangles) => Dispatch::Direct(folded(triangles.div_ceil(key.list_group))),
         Pass::Decide(Entries::Pieces) => Dispatch::Indirect(60),

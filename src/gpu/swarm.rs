@@ -51,6 +51,10 @@ twin! {
 /// Most steps of single particles that one submission takes: a small part of a second on the slowest adapter.
 const STEPS_AT_ONCE: u64 = 1 << 21;
 
+/// Most steps of one particle among them: Mesa's software rasterizer ends all loops of an invocation after 65,535 iterations,
+/// of which a step takes up to thirteen.
+const STEPS_OF_ONE: u64 = 4096;
+
 /// Most of them that a picture takes while somebody waits for the window, on a CPU adapter and on others; then it shows a frame
 /// on the way.
 const STEPS_IN_PASSING: [u64; 2] = [1 << 21, 1 << 26];
@@ -133,7 +137,7 @@ impl Renderer {
             !is_new && is_same && reached <= flying.flow.frame
         });
         let mut reached = kept.map(|kept| kept.flow.frame);
-        let share = (STEPS_AT_ONCE / u64::from(flying.count)).max(1) as u32;
+        let share = (STEPS_AT_ONCE / u64::from(flying.count)).clamp(1, STEPS_OF_ONE) as u32;
         let in_passing = STEPS_IN_PASSING[usize::from(!gpu.caps.software)];
         let mut left = if is_patient { u32::MAX } else { (in_passing / u64::from(flying.count)).max(1) as u32 };
         let goal = flying.flow.frame;

@@ -1,8 +1,8 @@
 //! Texels: what the resolve knows of materials that are more than a base colour, in one texture that costs no storage buffer.
 //!
 //! The texture is used as a row of words, folded to [`WIDTH`] words a line and as many lines a layer: sRGB decoded, a word per
-//! byte; a record per primitive; where the vertices of masked ones lie in their images; then the levels of all images, a texel a
-//! word. Twins of `shaders/common/texels.wgsl`.
+//! byte; a record per primitive; where the vertices of masked ones lie in their images; then where the
+//! levels of each image begin, and the levels of all images, a texel a word. Twins of `shaders/common/texels.wgsl`.
 
 use std::mem::size_of;
 
@@ -24,7 +24,7 @@ pub const WIDTH: u32 = 4096;
 twin! {
     /// How a texture is looked up. Each member is explained in `shaders/common/texels.wgsl`.
     pub struct LookupRecord = "Lookup" {
-        pub first: u32,
+        pub levels: u32,
         pub size: u32,
         pub sampling: u32,
         pub format: u32,
@@ -115,12 +115,8 @@ fn words(scene: &Scene) -> Vec<u32> {
     // A record at least, even where nothing is to be drawn.
     let records = scene.primitives.len().max(1);
     let mut first = words.len() + RECORD_WORDS * records;
-    let mut places = Vec::new();
     let corners = corners(scene, &mut first);
-    for image in &scene.images {
-        places.push(first as u32);
-        first += (image.bytes() / 4) as usize;
-    }
+    let lists = Lists::of(scene, first as u32);
     let lookup = |texture: Option<&Texture>, coords: Option<&Accessor>| match (texture, coords) {
         (Some(texture), Some(coords)) => {
             let image = &scene.images[texture.image];
@@ -130,7 +126,7 @@ fn words(scene: &Scene) -> Vec<u32> {
             let copies = (texture.copies as u32) << 6 | (image.levels.len() as u32) << 8;
             let [[u_per_u, u_per_v, u_offset], [v_per_u, v_per_v, v_offset]] = texture.image_from_stored;
             LookupRecord {
-                first: places[texture.image],
+                levels: lists.places[texture.image],
                 size: width | height << 16,
                 sampling: across | down << 2 | filters | copies,
                 format: format_word(coords),
@@ -160,10 +156,34 @@ fn words(scene: &Scene) -> Vec<u32> {
     }
     words.resize(256 + RECORD_WORDS * records, 0);
     words.extend(corners.iter().flat_map(|corners| &corners.words));
+    words.extend(&lists.words);
     for level in scene.images.iter().flat_map(|image| &image.levels) {
         words.extend(level.texels.iter().map(|&texel| u32::from_le_bytes(texel)));
     }
     words
+}
+
+/// Where the levels of all images begin, an image after another.
+struct Lists {
+    /// Word of each image's list.
+    places: Vec<u32>,
+    words: Vec<u32>,
+}
+
+impl Lists {
+    /// From word `first` on, with the levels right behind.
+    fn of(scene: &Scene, first: u32) -> Self {
+        let mut level_word = first + scene.images.iter().map(|image| image.levels.len() as u32).sum::<u32>();
+        let (mut places, mut words) = (Vec::new(), Vec::new());
+        for image in &scene.images {
+            places.push(first + words.len() as u32);
+            for level in &image.levels {
+                words.push(level_word);
+                level_word += level.texels.len() as u32;
+            }
+        }
+        Self { places, words }
+    }
 }
 
 /// Where the vertices of a primitive with a mask lie in its image; no words for others.

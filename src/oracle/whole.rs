@@ -7,7 +7,7 @@ use super::{
     rules::Rules,
 };
 use crate::{
-    effects::Stack,
+    effects::{Stack, hooks::Shape},
     frame::{Exactness, Frame, Geometry, SnappedVertex},
     measure::Accuracy,
     scene::{Scene, camera::View, draw::Draw},
@@ -104,20 +104,24 @@ impl Whole<'_> {
         // Own pieces stand sorted by parent.
         let pieces = &self.own.pieces;
         let cut = &pieces[pieces.partition_point(|p| p.parent < owner)..pieces.partition_point(|p| p.parent <= owner)];
-        Some(Outline { triangles: if is_whole { vec![records] } else { cut.iter().map(|piece| piece.corners).collect() }, reach })
+        let is_disc = self.stack.shape() == Shape::Triangles && self.own.splats.contains(&owner);
+        Some(Outline { is_disc, triangles: if is_whole { vec![records] } else { cut.iter().map(|piece| piece.corners).collect() }, reach })
     }
 }
 
 /// One owner on the screen: itself, or its pieces.
 struct Outline {
     triangles: Vec<[SnappedVertex; 3]>,
+    /// Of which only the disc that touches its sides is drawn.
+    is_disc: bool,
     /// How far an edge may have moved, in units; more than the distance of its ends in either axis.
     reach: f64,
 }
 
 impl Outline {
     fn may_pass(&self, at: &Place) -> bool {
-        self.reach == f64::INFINITY || self.reach > 0.0 && self.triangles.iter().any(|corners| at.border(corners) <= self.reach)
+        let is_near = |corners| at.border(corners) <= self.reach || self.is_disc && at.is_near_rim(corners, self.reach);
+        self.reach == f64::INFINITY || self.reach > 0.0 && self.triangles.iter().any(is_near)
     }
 
     /// Depths that the surface may have at a sample; none more than a pixel away from it.
@@ -155,6 +159,24 @@ impl Place {
     /// Distance to the nearest edge of a triangle.
     fn border(&self, [a, b, c]: &[SnappedVertex; 3]) -> f64 {
         self.distance(a, b).min(self.distance(b, c)).min(self.distance(c, a))
+    }
+
+    /// May the rim of the ellipse that touches the sides in their middles pass over this point, once it is moved by `reach` units?
+    /// Its points are means of the corners, so they move no farther than these do.
+    fn is_near_rim(&self, [a, b, c]: &[SnappedVertex; 3], reach: f64) -> bool {
+        let [a, b, c] = [a, b, c].map(|v| [f64::from(v.x), f64::from(v.y)]);
+        let edge = |p: [f64; 2], q: [f64; 2], at: [f64; 2]| (q[0] - p[0]) * (at[1] - p[1]) - (q[1] - p[1]) * (at[0] - p[0]);
+        let area = edge(a, b, c);
+        let is_inside = |at: [f64; 2]| {
+            let shares = [edge(b, c, at), edge(c, a, at), edge(a, b, at)];
+            2.0 * shares.iter().map(|share| share * share).sum::<f64>() <= area * area
+        };
+        let here = [self.x, self.y];
+        let middle = [0, 1].map(|axis| (a[axis] + b[axis] + c[axis]) / 3.0);
+        let around = (0..16).map(|k| libm::sincos(f64::from(k) * std::f64::consts::TAU / 16.0));
+        let is_inside_here = is_inside(here);
+        libm::hypot(here[0] - middle[0], here[1] - middle[1]) <= reach
+            || around.into_iter().any(|(sin, cos)| is_inside([here[0] + reach * cos, here[1] + reach * sin]) != is_inside_here)
     }
 
     /// Depth of the plane through three corners here, give or take `reach` units of movement and the error of a float

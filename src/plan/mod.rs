@@ -2,6 +2,7 @@
 
 mod costs;
 mod explain;
+mod loops;
 pub mod predict;
 mod rungs;
 
@@ -259,7 +260,11 @@ pub fn plan(needs: &Needs, stack: &Stack, caps: &Caps, tuning: &Tuning, accuracy
     }
     // Whoever drops what would have to be clipped needs no clipper; what is left may still be wide.
     let has_clipping = needs.clipping && rungs.clipping != Clipping::Drop;
-    let (small_samples, small_side) = (tuning.small_samples.max(1), tuning.small_side.clamp(1, 128));
+    // Boxes and discs show all of a material.
+    let has_mask = needs.masked && shape == Shape::Triangles;
+    let loops = loops::of_a_sample(has_mask, layers, &rungs);
+    let small_samples = tuning.small_samples.min(loops::samples(caps, loops)).max(1);
+    let small_side = tuning.small_side.clamp(1, 128);
     // A box of n px touches at most n + 1 sample columns.
     let widest = needs.largest_px.floor() + 1.0;
     let has_medium = has_clipping || widest > f64::from(small_side) || widest * widest > f64::from(small_samples);
@@ -269,8 +274,6 @@ pub fn plan(needs: &Needs, stack: &Stack, caps: &Caps, tuning: &Tuning, accuracy
     let reads_planes = stack.light().is_some()
         || stack.0.iter().any(|enabled| planes.iter().any(|member| reads(&Library::Embedded, enabled.effect, member)));
     let has_planes = reads_planes || !needs.sound_normals;
-    // Boxes and discs show all of a material.
-    let has_mask = needs.masked && shape == Shape::Triangles;
     let effects: Vec<_> = stack.0.iter().map(|Enabled { effect, .. }| *effect).collect();
     let key = KernelKey {
         fetch: if needs.indexed { Fetch::Indexed } else { Fetch::Direct },
@@ -305,6 +308,7 @@ pub fn plan(needs: &Needs, stack: &Stack, caps: &Caps, tuning: &Tuning, accuracy
         perspective: needs.perspective,
         small_samples,
         small_side,
+        disc_shares: loops::disc_shares(caps, stack, loops),
         listed_tiles: tuning.listed_tiles && !stack.finishes() && stack.dots().is_none(),
         list_group: tuning.list_group,
         early_load: tuning.early_load,

@@ -1,11 +1,15 @@
 //! Parameters at both hard ends: one by one, all of an effect together, and with every effect on.
 
+use std::sync::Arc;
+
 use super::{Case, Expectation, Halt, Lab, hold};
 use crate::{
     effects::{EFFECTS, Effect, Stack, hooks::Slot, particles},
+    gpu::RenderError,
     measure::Budget,
     params::{Field, Kind},
     plan::{Accuracy, Tuning},
+    scene::{Scene, camera::View, draw::DrawError},
     session::{SceneSource, Session},
 };
 
@@ -53,10 +57,27 @@ fn judged(lab: &mut Lab, stack: &Stack, turn: usize, what: &str) -> Result<(), H
         Some(_) => Session { scene: SceneSource::Builtin(query.into()), stack: stack.clone(), ..Session::default() }.view(&scene, [64, 48]),
         None => lab.view(&scene, [64, 48]),
     };
+    let stack = &drawable(lab, &scene, &view, stack, &what)?;
     let (capture, verdict) = lab.judged(&scene, &view, stack, &Accuracy::default(), &what)?;
     let sound = capture.geometry.vertices.iter().all(|v| v.depth.is_finite() && v.inv_w.is_finite());
     hold!(sound, "{what}: a vertex is no number");
     verdict.accuracy.within(&Budget { max_step_share: 1.0, ..Budget::default() }).map_err(|why| Halt::Failed(format!("{what}: {why}")))
+}
+
+/// The stack, without dots where more of them are asked for than one picture takes, which a sentence says.
+fn drawable(lab: &mut Lab, scene: &Arc<Scene>, view: &View, stack: &Stack, what: &str) -> Result<Stack, Halt> {
+    let mut stack = stack.clone();
+    if stack.dots().is_some() {
+        lab.renderer.set_scene(scene)?;
+        match lab.renderer.draw(view, &stack, &Accuracy::default()) {
+            Err(RenderError::Draw(error @ DrawError::TooMany { what: "dots", .. })) => {
+                lab.note(format!("{what}: without dots, since {error}"));
+                stack.disable("dots");
+            }
+            drawn => drop(drawn?),
+        }
+    }
+    Ok(stack)
 }
 
 fn parameters_at_their_ends(lab: &mut Lab) -> Result<(), Halt> {

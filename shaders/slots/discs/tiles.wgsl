@@ -3,7 +3,7 @@
 //@ use common/tiles
 //@ use slot/bins
 
-fn discs_draw(t: Triangle) {
+fn discs_draw(t: Triangle, share: u32) {
     let a = discs_tiles(t.a);
     let b = discs_tiles(t.b);
     discs_gather(t.id, a, vec4i(0, 0, -1, -1), vec4i(0, 0, -1, -1));

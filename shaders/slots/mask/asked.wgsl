@@ -14,20 +14,21 @@ fn mask_is_drawn(t: Triangle, at: vec2u) -> bool {
         mask_mixed(weights, bitcast<vec3i>(vec3u(first.x, first.z, last.x))), mask_mixed(weights, bitcast<vec3i>(vec3u(first.y, first.w, last.y))));
     let least = texels_paint(last.z - 1u).least_alpha;
     let look = texels_lookup(last.z - 1u + TEXELS_PAINT);
-    if ((look.sampling >> 4u) & 1u) == 0u { return (mask_alpha(look, place >> vec2u(8u)) << 16u) >= least; }
+    let first_texel = texels_word(look.levels);
+    if ((look.sampling >> 4u) & 1u) == 0u { return (mask_alpha(look, first_texel, place >> vec2u(8u)) << 16u) >= least; }
     let corner = place - 128;
     let part = vec2u(corner & vec2i(255));
     let texel = corner >> vec2u(8u);
-    let above = mask_alpha(look, texel) * (256u - part.x) + mask_alpha(look, texel + vec2i(1, 0)) * part.x;
-    let below = mask_alpha(look, texel + vec2i(0, 1)) * (256u - part.x) + mask_alpha(look, texel + vec2i(1, 1)) * part.x;
+    let above = mask_alpha(look, first_texel, texel) * (256u - part.x) + mask_alpha(look, first_texel, texel + vec2i(1, 0)) * part.x;
+    let below = mask_alpha(look, first_texel, texel + vec2i(0, 1)) * (256u - part.x) + mask_alpha(look, first_texel, texel + vec2i(1, 1)) * part.x;
     return above * (256u - part.y) + below * part.y >= least;
 }
 
-fn mask_alpha(look: Lookup, at: vec2i) -> u32 {
+fn mask_alpha(look: Lookup, first: u32, at: vec2i) -> u32 {
     let size = vec2i(vec2u(look.size & 0xffffu, look.size >> 16u));
     let x = texels_wrapped(at.x, size.x, look.sampling & 3u);
     let y = texels_wrapped(at.y, size.y, (look.sampling >> 2u) & 3u);
-    return texels_word(look.first + u32(y * size.x + x)) >> 24u;
+    return texels_word(first + u32(y * size.x + x)) >> 24u;
 }
 
 // Shares of the corners in perspective, of 31 bits in all: parts times 1/w, whose significands are shifted to one exponent.

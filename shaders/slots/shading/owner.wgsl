@@ -5,5 +5,6 @@
 
 // Linear RGBA of a pixel, given its owner.
 fn shading_color(id: u32, pixel: vec2u) -> vec4f {
-    return glue_surface(shade_surface(id, pixel)).color;
+    shade_begin(id);
+    return glue_surface(shade_surface(pixel)).color;
 }

@@ -3,6 +3,8 @@
 
 @group(0) @binding(15) var<storage, read_write> layers: array<atomic<u32>>;
 
+fn visibility_begin(id: u32) {}
+
 fn visibility_write(pixel: u32, key: u32, id: u32) {
     atomicAdd(&layers[pixel], 1u);
 }

@@ -4,6 +4,8 @@
 
 @group(0) @binding(5) var<storage, read_write> packed: array<atomic<u32>>;
 
+fn visibility_begin(id: u32) {}
+
 fn visibility_write(pixel: u32, key: u32, id: u32) {
     atomicMax(&packed[pixel], packed_word(key, id));
 }

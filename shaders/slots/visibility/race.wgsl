@@ -3,6 +3,8 @@
 
 @group(0) @binding(5) var<storage, read_write> depth_owner: array<u32>;
 
+fn visibility_begin(id: u32) {}
+
 fn visibility_write(pixel: u32, key: u32, id: u32) {
     let is_nearer = depth_owner[2u * pixel + 1u] < key;
     if is_nearer && delay_passes(key) {

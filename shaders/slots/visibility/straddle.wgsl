@@ -2,6 +2,8 @@
 
 @group(0) @binding(5) var<storage, read_write> hits: array<atomic<u32>>;
 
+fn visibility_begin(id: u32) {}
+
 fn visibility_write(pixel: u32, key: u32, id: u32) {
     atomicOr(&hits[pixel / 32u], 1u << (pixel % 32u));
 }

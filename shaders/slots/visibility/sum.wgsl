@@ -6,9 +6,13 @@
 //@ use slot/totals
 //@ use glue/surface
 
+fn visibility_begin(id: u32) {
+    shade_begin(id);
+}
+
 fn visibility_write(pixel: u32, key: u32, id: u32) {
     if key < xray_threshold(sums_front(pixel), IS_PERSPECTIVE, effects.xray) { return; }
-    let surface = glue_surface(shade_surface(id, vec2u(pixel % frame.size.x, pixel / frame.size.x)));
+    let surface = glue_surface(shade_surface(vec2u(pixel % frame.size.x, pixel / frame.size.x)));
     let weight = xray_weight(surface, effects.xray);
     if totals_add(pixel, clamp(surface.color.rgb, vec3f(0.0), vec3f(1.0)), weight) { atomicAdd(&counters.full_pixels, 1u); }
 }

@@ -2,6 +2,8 @@
 
 @group(0) @binding(5) var<storage, read_write> counts: array<atomic<u32>>;
 
+fn visibility_begin(id: u32) {}
+
 fn visibility_write(pixel: u32, key: u32, id: u32) {
     atomicAdd(&counts[id], 1u);
 }

@@ -7,6 +7,7 @@
 // One flat loop over the box, so that neighbouring invocations stay together whatever their boxes' shapes.
 fn walk(t: Triangle, area: i32, pixels: vec4i) {
     marks_box(pixels);
+    visibility_begin(t.id);
     let is_turned = area < 0;
     let coverage = coverage_begin(t.a, select(t.b, t.c, is_turned), select(t.c, t.b, is_turned), abs(area), pixels.xy);
     let width = pixels.z - pixels.x + 1;
