@@ -190,7 +190,8 @@ mod tests {
         // makes from that far, with 45 degrees from the bottom of the picture to its top.
         let scene = builtin::build("sphere?triangles=2000").expect("a builtin");
         let (radius, camera) = (scene.bounds().max.y, framed(&scene, [640, 480]));
-        let disc_px = 240.0 / libm::tan(22.5f64.to_radians()) * radius / (camera.eye.distance_squared(camera.target) - radius * radius).sqrt();
+        let disc_px =
+            240.0 / libm::tan(22.5f64.to_radians()) * radius / (camera.eye.distance_squared(camera.target) - radius * radius).sqrt();
         let disc = std::f64::consts::PI * disc_px * disc_px / (640.0 * 480.0);
         let moved = few.moved_share(1e3, 640.0 * 480.0);
         assert!((0.8 * disc..1.1 * disc).contains(&moved), "{moved} of the picture, where {disc} is covered");
