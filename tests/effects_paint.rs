@@ -115,6 +115,18 @@ fn random_parameters_in_random_company_are_exact() {
 }
 
 #[test]
+fn fog_thins_out_by_the_height_on_the_ray_of_a_pixel_and_not_by_that_of_snapped_corners() {
+    let Some(mut renderer) = renderer() else { return };
+    // Pixels of 3.6 m, and fog that ends in a tenth of one: half a unit of snapping is several steps of 255 in row 35.
+    let fog = [("density", 0.8), ("start_m", 0.0), ("falloff", 16.0), ("level_m", 1.5), ("color", 0.0)];
+    let stack = with(&[&[("lambert", "", 0.0)], &fog.map(|(field, value)| ("fog", field, value))[..]].concat());
+    let scene = scene("sizes");
+    for rung in rungs(&renderer) {
+        exact(&mut renderer, &scene, &view(&scene, SIZE), &stack, &pinned(rung), rung.name());
+    }
+}
+
+#[test]
 fn what_is_off_leaves_no_trace_to_the_bit() {
     let Some(mut renderer) = renderer() else { return };
     let scene = scene("knot?tess=10");

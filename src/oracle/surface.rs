@@ -181,16 +181,12 @@ impl<'a> Triangle<'a> {
         let weights = self.weights.at(pixel, screen, self.shape, corner);
         let (shares, edge_px) = self.weights.on_screen(pixel, screen, view, self.shape, corner);
         let depth_m = mixed(weights, self.depths_m);
-        // Beyond the triangle only the ray of the pixel says where.
-        let position = match self.shape {
-            Shape::Triangles => mixed(weights, self.positions),
-            Shape::Boxes | Shape::Points => on_ray(view, screen, depth_m),
-        };
+        // Not the corners' mean: their weights are those of snapped corners, which puts it aside by up to half a unit.
+        let position = on_ray(view, screen, depth_m);
         let toward_eye = match view.linear_depth_m {
             Some(_) => -view.forward,
             None => (view.eye - position).try_normalize().unwrap_or(-view.forward),
         };
-        let depth_m = mixed(weights, self.depths_m);
         let smooth = self.normals.and_then(|normals| self.smooth_normal(weights, normals));
         let normal = smooth.or(self.flat_normal).unwrap_or(toward_eye);
         let base = mixed(weights, self.colors);
@@ -226,11 +222,16 @@ impl<'a> Triangle<'a> {
         Shares { weights, slopes, doubts: self.weights.doubts(weights, screen) }
     }
 
-    /// Where a sample with such a surface lies, for a light: on the ray of its pixel, whichever way corners have snapped.
+    /// Where a sample with such a surface lies, for a light.
     pub fn place(&self, view: &View, surface: &Surface) -> Place {
-        let position = on_ray(view, surface.screen, surface.depth_m);
+        let position = surface.position;
+        let on_triangle = match self.shape {
+            Shape::Triangles => mixed(self.weights.at(surface.pixel, surface.screen, self.shape, None), self.positions),
+            // Beyond the triangle only the ray of the pixel says where.
+            Shape::Boxes | Shape::Points => position,
+        };
         let is_cut = matches!(self.weights, Weights::Homogeneous(..));
-        Place { position, surface: surface.position, flat_normal: surface.flat_normal, slack_m: slack_m(view, position, is_cut) }
+        Place { position, surface: on_triangle, flat_normal: surface.flat_normal, slack_m: slack_m(view, position, is_cut) }
     }
 
     /// Interpolated in object space; none when the corner normals cancel out.

@@ -12,7 +12,7 @@ pub struct Surface {
     /// The part of the colour that no light changes: what the material emits, or all of it where it is unlit. An effect that
     /// paints over the colour leaves as much less of this.
     pub glow: DVec3,
-    /// World space, metres.
+    /// World space, metres: on the ray of its pixel as far as `depth_m` says, whichever way corners have snapped.
     pub position: DVec3,
     /// Unit, towards the viewer's side: interpolated, then whatever earlier effects made of it.
     pub normal: DVec3,
