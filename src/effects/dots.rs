@@ -66,7 +66,7 @@ const STEPS: u32 = 23;
 impl Dots {
     /// Dots on a line so long: one at its beginning, the others evenly.
     pub fn count(&self, length_m: f64) -> u64 {
-        (length_m / f64::from(self.spacing_m)).floor() as u64 + 1
+        ((length_m / f64::from(self.spacing_m)).floor() as u64).saturating_add(1)
     }
 
     /// Radius in units of 1/256 px.

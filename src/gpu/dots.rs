@@ -21,7 +21,7 @@ use crate::{
         Scene,
         camera::View,
         draw::DrawError,
-        lines::{Ends, Lines},
+        lines::{Ends, Lines, Segment},
     },
     shader::key::{KernelKey, Pass},
 };
@@ -138,8 +138,18 @@ pub fn first_dot_word(view: &View) -> u64 {
     u64::from(color_stride(view.width)) * u64::from(view.height)
 }
 
-/// Cuts lines into stretches, and counts their dots.
-pub fn stretches(lines: &Lines, dots: &Dots) -> (Vec<StretchRecord>, u64) {
+/// How many dots there are on lines.
+///
+/// # Errors
+/// When one picture does not take so many.
+pub fn counted(lines: &Lines, dots: &Dots) -> Result<u64, DrawError> {
+    let on_line = |line: &[Segment]| line.last().map_or(0, |last| dots.count(last.start_m + last.length_m));
+    let count = lines.each().fold(0u64, |sum, (_, line)| sum.saturating_add(on_line(line)));
+    if count > MAX_DOTS { Err(DrawError::TooMany { what: "dots", count, limit: MAX_DOTS }) } else { Ok(count) }
+}
+
+/// Cuts lines into stretches. As many steps as there are dots, so these are [`counted`] first.
+pub fn stretches(lines: &Lines, dots: &Dots) -> Vec<StretchRecord> {
     let spacing_m = f64::from(dots.spacing_m);
     let (mut stretches, mut before) = (Vec::new(), 0);
     for (first_segment, line) in lines.each() {
@@ -153,20 +163,18 @@ pub fn stretches(lines: &Lines, dots: &Dots) -> (Vec<StretchRecord>, u64) {
                     dot += 1;
                 }
                 let share = |dot: u64| (((dot as f64 * spacing_m - segment.start_m) / segment.length_m) as f32).clamp(0.0, 1.0);
-                if before + dot <= MAX_DOTS {
-                    stretches.push(StretchRecord {
-                        segment: (first_segment + i) as u32,
-                        first: (before + first) as u32,
-                        count: (dot - first) as u32,
-                        start: share(first),
-                        step: (spacing_m / segment.length_m) as f32,
-                    });
-                }
+                stretches.push(StretchRecord {
+                    segment: (first_segment + i) as u32,
+                    first: (before + first) as u32,
+                    count: (dot - first) as u32,
+                    start: share(first),
+                    step: (spacing_m / segment.length_m) as f32,
+                });
             }
         }
         before += count;
     }
-    (stretches, before)
+    stretches
 }
 
 impl Renderer {
@@ -187,10 +195,8 @@ impl Renderer {
         let known = self.dots.take().filter(|store| store.source == source);
         let mut store = known.map_or_else(|| DotStore::new(&scene, source), Ok)?;
         if store.spacing != dots.spacing_m.to_bits() {
-            let (stretches, count) = stretches(&store.lines, &dots);
-            if count > MAX_DOTS {
-                return Err(DrawError::TooMany { what: "dots", count, limit: MAX_DOTS }.into());
-            }
+            let count = counted(&store.lines, &dots)?;
+            let stretches = stretches(&store.lines, &dots);
             (store.stretches, store.dots, store.tree, store.spacing) = (stretches, count as u32, None, dots.spacing_m.to_bits());
             let why = "both ends of every segment on which dots are strung";
             let (segments, records) = (store.segment_bytes(), bytemuck::cast_slice(&store.stretches));

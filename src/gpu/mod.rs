@@ -387,6 +387,7 @@ impl Renderer {
         let (vertices, triangles) = (record_count(key, self.totals) as u32, self.totals[1] as u32);
         let bent = self.bent.last().map_or(0, |range| range.end);
         let (meshlets, particles) = (self.patches.as_ref().map_or(0, |patches| patches.count), self.cloud.map_or(0, |cloud| cloud.count));
+        self.pipelines.prepare(&self.gpu, key, passes)?;
         for (i, &pass) in passes.iter().enumerate() {
             let pipeline = self.pipelines.get(&self.gpu, key, pass)?;
             let is_last = ends && i + 1 == passes.len();

@@ -8,6 +8,8 @@ use std::{
     },
 };
 
+use rayon::prelude::*;
+
 use super::{Gpu, RenderError};
 use crate::{
     ladder::Checks,
@@ -41,10 +43,17 @@ struct Identity {
     is_trusted: bool,
 }
 
+/// What is to be compiled.
+struct Draft {
+    label: String,
+    identity: Identity,
+    bindings: Vec<Binding>,
+}
+
 /// The cache.
 pub struct Pipelines {
     library: Library,
-    known: HashMap<(KernelKey, Pass), Arc<Pipeline>>,
+    known: HashMap<KernelKey, HashMap<Pass, Arc<Pipeline>>>,
     built: HashMap<Identity, Arc<Pipeline>>,
     compiled: usize,
     /// Counts what was asked for.
@@ -68,13 +77,13 @@ impl Pipelines {
 
     /// The pipeline of a pass; compiles it at first use.
     pub fn get(&mut self, gpu: &Gpu, key: &KernelKey, pass: Pass) -> Result<Arc<Pipeline>, RenderError> {
-        if let Some(pipeline) = self.known.get(&(key.clone(), pass)).cloned() {
+        if let Some(pipeline) = self.known.get(key).and_then(|of_key| of_key.get(&pass)).cloned() {
             return Ok(self.marked(pipeline));
         }
         let root = format!("passes/{}", pass.stem());
         let constants = key.constants(pass);
         let pipeline = self.build(gpu, &root, &pass.label(), pass.entry(), key, &key.slots(pass), &constants)?;
-        self.known.insert((key.clone(), pass), pipeline.clone());
+        self.known.entry(key.clone()).or_default().insert(pass, pipeline.clone());
         Ok(pipeline)
     }
 
@@ -90,27 +99,68 @@ impl Pipelines {
         slots: &[(&str, String)],
         constants: &[(&str, f64)],
     ) -> Result<Arc<Pipeline>, RenderError> {
+        let draft = self.draft(gpu, root, label, entry, key, slots, constants)?;
+        if let Some(pipeline) = self.built.get(&draft.identity).cloned() {
+            return Ok(self.marked(pipeline));
+        }
+        let pipeline = compile(gpu, &draft)?;
+        Ok(self.keep(gpu, draft, pipeline))
+    }
+
+    /// Compiles what `passes` lack, all at once, since a driver compiles each on the thread that asks for it.
+    pub fn prepare(&mut self, gpu: &Gpu, key: &KernelKey, passes: &[Pass]) -> Result<(), RenderError> {
+        let mut drafts: Vec<Draft> = Vec::new();
+        let of_key = self.known.get(key);
+        for &pass in passes.iter().filter(|pass| of_key.is_none_or(|of_key| !of_key.contains_key(pass))) {
+            let root = format!("passes/{}", pass.stem());
+            let draft = self.draft(gpu, &root, &pass.label(), pass.entry(), key, &key.slots(pass), &key.constants(pass))?;
+            if !self.built.contains_key(&draft.identity) && drafts.iter().all(|other| other.identity != draft.identity) {
+                drafts.push(draft);
+            }
+        }
+        if drafts.len() < 2 {
+            return Ok(());
+        }
+        let pipelines: Vec<Pipeline> = drafts.par_iter().map(|draft| compile(gpu, draft)).collect::<Result<_, _>>()?;
+        for (draft, pipeline) in drafts.into_iter().zip(pipelines) {
+            self.keep(gpu, draft, pipeline);
+        }
+        Ok(())
+    }
+
+    #[allow(clippy::too_many_arguments, reason = "as `build`")]
+    fn draft(
+        &self,
+        gpu: &Gpu,
+        root: &str,
+        label: &str,
+        entry: &str,
+        key: &KernelKey,
+        slots: &[(&str, String)],
+        constants: &[(&str, f64)],
+    ) -> Result<Draft, RenderError> {
         let is_trusted = key.rungs.checks == Checks::Trusted;
         if is_trusted && !matches!(self.library, Library::Embedded) {
             return Err(RenderError::Untrusted);
         }
         let linked = link::link(&self.library, root, key, slots)?;
         let reflected = reflect::reflect(&linked, gpu.caps.int64_atomics)?;
-        let constants: Vec<(&str, f64)> = constants.iter().copied().filter(|(name, _)| reflected.has_override(name)).collect();
+        let declared = constants.iter().filter(|(name, _)| reflected.has_override(name));
         let identity = Identity {
-            text: linked.text.clone(),
+            text: linked.text,
             entry: entry.to_owned(),
-            constants: constants.iter().map(|(name, value)| ((*name).to_owned(), value.to_bits())).collect(),
+            constants: declared.map(|(name, value)| ((*name).to_owned(), value.to_bits())).collect(),
             is_trusted,
         };
-        if let Some(pipeline) = self.built.get(&identity).cloned() {
-            return Ok(self.marked(pipeline));
-        }
+        Ok(Draft { label: label.to_owned(), identity, bindings: reflected.bindings(entry) })
+    }
+
+    fn keep(&mut self, gpu: &Gpu, draft: Draft, pipeline: Pipeline) -> Arc<Pipeline> {
         self.make_room(MOST_KEPT[usize::from(gpu.caps.software)]);
-        let pipeline = Arc::new(compile(gpu, label, entry, linked.text, identity.is_trusted, reflected.bindings(entry), &constants)?);
+        let pipeline = Arc::new(pipeline);
         self.compiled += 1;
-        self.built.insert(identity, pipeline.clone());
-        Ok(self.marked(pipeline))
+        self.built.insert(draft.identity, pipeline.clone());
+        self.marked(pipeline)
     }
 
     fn marked(&mut self, pipeline: Arc<Pipeline>) -> Arc<Pipeline> {
@@ -128,7 +178,10 @@ impl Pipelines {
         let mut times: Vec<u64> = self.built.values().map(used).collect();
         let (_, &mut median, _) = times.select_nth_unstable(most / 2);
         self.built.retain(|_, pipeline| used(pipeline) >= median);
-        self.known.retain(|_, pipeline| used(pipeline) >= median);
+        self.known.retain(|_, of_key| {
+            of_key.retain(|_, pipeline| used(pipeline) >= median);
+            !of_key.is_empty()
+        });
     }
 }
 
@@ -140,18 +193,13 @@ fn trusted(gpu: &Gpu, descriptor: wgpu::ShaderModuleDescriptor<'_>) -> wgpu::Sha
     unsafe { gpu.device.create_shader_module_trusted(descriptor, wgpu::ShaderRuntimeChecks::unchecked()) }
 }
 
-fn compile(
-    gpu: &Gpu,
-    label: &str,
-    entry: &str,
-    text: String,
-    is_trusted: bool,
-    bindings: Vec<Binding>,
-    constants: &[(&str, f64)],
-) -> Result<Pipeline, RenderError> {
+fn compile(gpu: &Gpu, draft: &Draft) -> Result<Pipeline, RenderError> {
+    let Draft { label, identity, bindings } = draft;
+    let constants: Vec<(&str, f64)> = identity.constants.iter().map(|(name, bits)| (name.as_str(), f64::from_bits(*bits))).collect();
     let scope = gpu.device.push_error_scope(wgpu::ErrorFilter::Validation);
-    let descriptor = wgpu::ShaderModuleDescriptor { label: Some(label), source: wgpu::ShaderSource::Wgsl(text.into()) };
-    let module = if is_trusted { trusted(gpu, descriptor) } else { gpu.device.create_shader_module(descriptor) };
+    let source = wgpu::ShaderSource::Wgsl(identity.text.as_str().into());
+    let descriptor = wgpu::ShaderModuleDescriptor { label: Some(label), source };
+    let module = if identity.is_trusted { trusted(gpu, descriptor) } else { gpu.device.create_shader_module(descriptor) };
     let entries: Vec<_> = bindings.iter().map(|binding| layout_entry(binding, wgpu::ShaderStages::COMPUTE)).collect();
     let layout = gpu.device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor { label: Some(label), entries: &entries });
     let pipeline_layout = gpu.device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
@@ -163,14 +211,14 @@ fn compile(
         label: Some(label),
         layout: Some(&pipeline_layout),
         module: &module,
-        entry_point: Some(entry),
+        entry_point: Some(&identity.entry),
         // Our kernels write all workgroup memory before they read it.
-        compilation_options: wgpu::PipelineCompilationOptions { constants, zero_initialize_workgroup_memory: false },
+        compilation_options: wgpu::PipelineCompilationOptions { constants: &constants, zero_initialize_workgroup_memory: false },
         cache: None,
     });
     match pollster::block_on(scope.pop()) {
-        Some(error) => Err(RenderError::Pipeline { label: label.to_owned(), reason: error.to_string() }),
-        None => Ok(Pipeline { label: label.to_owned(), pipeline, layout, bindings, used: AtomicU64::new(0) }),
+        Some(error) => Err(RenderError::Pipeline { label: label.clone(), reason: error.to_string() }),
+        None => Ok(Pipeline { label: label.clone(), pipeline, layout, bindings: bindings.clone(), used: AtomicU64::new(0) }),
     }
 }
 
