@@ -160,8 +160,8 @@ impl App {
             if let Some(ask) = outcome.ask {
                 self.answer(ui.ctx(), ask);
             }
-            // Directions are points without a unit.
-            if field.kind == Kind::Point && field.unit == "m" {
+            // Directions are points without a unit, and extents are never negative.
+            if field.kind == Kind::Point && field.unit == "m" && field.hard[0] < 0.0 {
                 self.pick_ui(ui, effect, field);
             }
         }

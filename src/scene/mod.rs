@@ -235,7 +235,8 @@ impl Material {
     /// The least alpha that is drawn, in 2^-16 of a byte's step, where some is left out.
     pub fn least_alpha(&self) -> Option<u32> {
         let cutoff = self.cutoff.filter(|_| self.base_texture.is_some())?;
-        Some((f64::from(cutoff) * 255.0 * 65_536.0).ceil() as u32)
+        // A cutoff of k/255 is rounded to a float, up to half a unit up; an alpha of k bytes reaches it all the same.
+        Some((f64::from(cutoff) * 255.0 * 65_536.0 - 0.5).ceil() as u32)
     }
 
     /// Is it no more than a base colour?
