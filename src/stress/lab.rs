@@ -300,6 +300,11 @@ impl<'a> Lab<'a> {
         if different == [0, 0] { Ok(()) } else { Err(Halt::Failed(format!("{what}: {different:?} owners and keys are not the CPU's"))) }
     }
 
+    /// Is this a CPU adapter, to which a minute is what a second is to a card?
+    pub(super) fn is_software(&self) -> bool {
+        self.renderer.gpu().caps.software
+    }
+
     pub(super) fn rungs(&self) -> Vec<Visibility> {
         if self.strict.is_some() {
             return vec![self.quick_rung()];

@@ -30,10 +30,13 @@ pub const CASES: &[Case] = &[
     },
 ];
 
+/// Particles of a picture: more of them, each as large as the picture, are a bench.
+const MOST_PARTICLES: f64 = 2000.0;
+
 /// The ends of what a field takes, as its own type holds them.
 fn ends(field: &Field) -> [f64; 2] {
     if particles::EFFECT.field("count") == Some(field) {
-        return [field.hard[0], 2000.0]; // More of them, each as large as the picture, is a bench.
+        return [field.hard[0], MOST_PARTICLES];
     }
     match field.kind {
         Kind::F32 | Kind::Color | Kind::Point => field.hard.map(|end| f64::from(end as f32).clamp(field.hard[0], field.hard[1])),
@@ -41,8 +44,17 @@ fn ends(field: &Field) -> [f64; 2] {
     }
 }
 
+fn enable(stack: &mut Stack, effect: &'static Effect) {
+    let is_new = stack.get_mut(effect.name).is_none();
+    let words = &mut stack.enable(effect).words;
+    if let Some(count) = effect.field("count").filter(|_| is_new && *effect == particles::EFFECT) {
+        count.set(words, &[MOST_PARTICLES]).expect("so many particles may be");
+    }
+}
+
 fn set(stack: &mut Stack, effect: &'static Effect, field: &Field, end: usize) -> Result<(), Halt> {
     let values = vec![ends(field)[end]; field.kind.lanes()];
+    enable(stack, effect);
     field.set(&mut stack.enable(effect).words, &values).map_err(|error| Halt::Failed(format!("{}: {error}", effect.name)))
 }
 
@@ -94,7 +106,7 @@ fn parameters_at_their_ends(lab: &mut Lab) -> Result<(), Halt> {
                 judged(lab, &stack, turn, &what)?;
             }
             let mut stack = Stack::default();
-            stack.enable(effect);
+            enable(&mut stack, effect);
             effect.fields.iter().try_for_each(|field| set(&mut stack, effect, field, end))?;
             judged(lab, &stack, turn, &format!("all of {} at its {word}", effect.name))?;
         }
@@ -113,7 +125,7 @@ fn every_effect_at_once(lab: &mut Lab) -> Result<(), Halt> {
                 if !rivals.is_empty() && rivals[choice % rivals.len()] != effect {
                     continue;
                 }
-                stack.enable(effect);
+                enable(&mut stack, effect);
                 if let Some(end) = end {
                     effect.fields.iter().try_for_each(|field| set(&mut stack, effect, field, end))?;
                 }

@@ -16,7 +16,7 @@ const NUMBER: u32 = 33;
 const LONG: [u32; 8] = [16, 18, 19, 20, 21, 22, 23, 27];
 
 fn strict_everywhere(lab: &mut Lab) -> Result<(), Halt> {
-    let is_software = lab.renderer.gpu().caps.software;
+    let is_software = lab.is_software();
     let is_meant = |case: &&Case| {
         let is_long = is_software && LONG.contains(&case.number);
         case.number != NUMBER && case.expectation == Expectation::Exact && !is_long

@@ -47,12 +47,15 @@ fn a_hundred_frames(lab: &mut Lab) -> Result<(), Halt> {
     let hall = lab.scene("near")?;
     let view = lab.view(&hall, [80, 60]);
     lab.renderer.set_tuning(tunings()[2]);
-    for rung in lab.rungs() {
-        for stack in [stack(&["facet", "lambert"]), stack(&["lambert", "xray"])] {
+    for (i, rung) in lab.rungs().into_iter().enumerate() {
+        let stacks = [stack(&["facet", "lambert"]), stack(&["lambert", "xray"])];
+        // A CPU adapter takes a tenth of a second for each.
+        let chosen = if lab.is_software() { &stacks[i % 2..=i % 2] } else { &stacks };
+        for stack in chosen {
             let mut first: Option<Capture> = None;
             for frame in 1..=100 {
                 let what = format!("frame {frame} on {}", rung.name());
-                let capture = lab.captured(&hall, &view, &stack, &pinned(rung), &what)?;
+                let capture = lab.captured(&hall, &view, stack, &pinned(rung), &what)?;
                 let Some(first) = &first else {
                     hold!(!capture.geometry.pieces.is_empty(), "nothing was clipped");
                     first = Some(capture);
