@@ -305,6 +305,11 @@ impl<'a> Lab<'a> {
         self.renderer.gpu().caps.software
     }
 
+    /// Is it one that compiles slowly besides (SwiftShader)? It has two rungs that lose nothing.
+    fn is_slow(&self) -> bool {
+        self.is_software() && !self.renderer.gpu().caps.int64_atomics
+    }
+
     pub(super) fn rungs(&self) -> Vec<Visibility> {
         if self.strict.is_some() {
             return vec![self.quick_rung()];
@@ -385,9 +390,15 @@ impl<'a> Lab<'a> {
         let usual = self.renderer.gpu().caps.tuning();
         let [crowded, _, card, _] = tunings();
         let last = self.quick_rung();
-        let others = self.rungs().into_iter().map(|rung| (rung, card)).chain([(last, crowded), (last, usual)]);
+        let rungs = self.rungs();
+        let ways: Vec<_> = if self.is_slow() {
+            // Each rung and each way to share out work once: kernels take longer to compile than all their pictures to draw.
+            rungs.into_iter().zip([crowded, card]).collect()
+        } else {
+            rungs.into_iter().map(|rung| (rung, card)).chain([(last, crowded), (last, usual)]).collect()
+        };
         let mut first: Option<Capture> = None;
-        for (rung, tuning) in others.collect::<Vec<_>>() {
+        for (rung, tuning) in ways {
             self.renderer.set_tuning(tuning);
             let what = format!("{what}, {}, up to {} samples to an invocation", rung.name(), tuning.small_samples);
             let (capture, _) = self.exact(scene, view, stack, &pinned(rung), &what)?;
