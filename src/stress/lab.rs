@@ -306,7 +306,7 @@ impl<'a> Lab<'a> {
     }
 
     /// Is it one that compiles slowly besides (SwiftShader)? It has two rungs that lose nothing.
-    fn is_slow(&self) -> bool {
+    pub(super) fn is_slow(&self) -> bool {
         self.is_software() && !self.renderer.gpu().caps.int64_atomics
     }
 

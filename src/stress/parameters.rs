@@ -95,9 +95,9 @@ fn drawable(lab: &mut Lab, scene: &Arc<Scene>, view: &View, stack: &Stack, what:
 fn parameters_at_their_ends(lab: &mut Lab) -> Result<(), Halt> {
     let usual = lab.renderer.gpu().caps.tuning();
     // One scene for each effect, and a key that leaves nothing out: kernels are made once for all its pictures. Where vertices
-    // move, the values decide what the planner may leave out, and that is put to the test.
+    // move, the values decide what the planner may leave out, and that is put to the test where kernels compile in time.
     for (turn, effect) in EFFECTS.iter().enumerate() {
-        lab.renderer.set_tuning(Tuning { specialized: effect.hooks.vertex.is_some(), ..usual });
+        lab.renderer.set_tuning(Tuning { specialized: effect.hooks.vertex.is_some() && !lab.is_slow(), ..usual });
         for (end, word) in [(0, "least"), (1, "greatest")] {
             for field in effect.fields {
                 let mut stack = Stack::default();
