@@ -27,7 +27,7 @@ const EFFECTS: u32 = 8;
 pub fn of_a_sample(has_mask: bool, layers: Option<Layers>, rungs: &Rungs) -> u32 {
     // Two quotients, of two guesses and eight corrections each.
     let mask = if has_mask { 20 } else { 0 };
-    let taps = rungs.taps.side() as u32;
+    let taps = rungs.taps.side();
     let shading = if matches!(layers, Some(Layers::Xray { .. })) { taps * (taps + 1) + 6 } else { 0 };
     1 + mask + EFFECTS + shading
 }
