@@ -104,26 +104,37 @@ impl Pipelines {
             return Ok(self.marked(pipeline));
         }
         let pipeline = compile(gpu, &draft)?;
-        Ok(self.keep(gpu, draft, pipeline))
+        Ok(self.keep(gpu, draft.identity, pipeline))
     }
 
     /// Compiles what `passes` lack, all at once, since a driver compiles each on the thread that asks for it.
     pub fn prepare(&mut self, gpu: &Gpu, key: &KernelKey, passes: &[Pass]) -> Result<(), RenderError> {
-        let mut drafts: Vec<Draft> = Vec::new();
         let of_key = self.known.get(key);
-        for &pass in passes.iter().filter(|pass| of_key.is_none_or(|of_key| !of_key.contains_key(pass))) {
-            let root = format!("passes/{}", pass.stem());
-            let draft = self.draft(gpu, &root, &pass.label(), pass.entry(), key, &key.slots(pass), &key.constants(pass))?;
-            if !self.built.contains_key(&draft.identity) && drafts.iter().all(|other| other.identity != draft.identity) {
-                drafts.push(draft);
-            }
-        }
-        if drafts.len() < 2 {
+        let missing: Vec<Pass> = passes.iter().copied().filter(|pass| of_key.is_none_or(|of_key| !of_key.contains_key(pass))).collect();
+        if missing.is_empty() {
             return Ok(());
         }
-        let pipelines: Vec<Pipeline> = drafts.par_iter().map(|draft| compile(gpu, draft)).collect::<Result<_, _>>()?;
-        for (draft, pipeline) in drafts.into_iter().zip(pipelines) {
-            self.keep(gpu, draft, pipeline);
+        let describe = |pass: &Pass| {
+            let root = format!("passes/{}", pass.stem());
+            self.draft(gpu, &root, &pass.label(), pass.entry(), key, &key.slots(*pass), &key.constants(*pass))
+        };
+        let drafts: Vec<Draft> = missing.par_iter().map(describe).collect::<Result<_, _>>()?;
+        let mut fresh: Vec<&Draft> = Vec::new();
+        for draft in drafts.iter().filter(|draft| !self.built.contains_key(&draft.identity)) {
+            if fresh.iter().all(|other| other.identity != draft.identity) {
+                fresh.push(draft);
+            }
+        }
+        let pipelines: Vec<Pipeline> = fresh.par_iter().map(|draft| compile(gpu, draft)).collect::<Result<_, _>>()?;
+        let fresh: Vec<Identity> = fresh.into_iter().map(|draft| draft.identity.clone()).collect();
+        for (identity, pipeline) in fresh.into_iter().zip(pipelines) {
+            self.keep(gpu, identity, pipeline);
+        }
+        for (pass, draft) in missing.into_iter().zip(drafts) {
+            if let Some(pipeline) = self.built.get(&draft.identity).cloned() {
+                let pipeline = self.marked(pipeline);
+                self.known.entry(key.clone()).or_default().insert(pass, pipeline);
+            }
         }
         Ok(())
     }
@@ -155,11 +166,11 @@ impl Pipelines {
         Ok(Draft { label: label.to_owned(), identity, bindings: reflected.bindings(entry) })
     }
 
-    fn keep(&mut self, gpu: &Gpu, draft: Draft, pipeline: Pipeline) -> Arc<Pipeline> {
+    fn keep(&mut self, gpu: &Gpu, identity: Identity, pipeline: Pipeline) -> Arc<Pipeline> {
         self.make_room(MOST_KEPT[usize::from(gpu.caps.software)]);
         let pipeline = Arc::new(pipeline);
         self.compiled += 1;
-        self.built.insert(draft.identity, pipeline.clone());
+        self.built.insert(identity, pipeline.clone());
         self.marked(pipeline)
     }
 
