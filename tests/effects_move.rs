@@ -376,13 +376,7 @@ fn kernels_that_move_wrongly_are_caught() {
             "return movement_clip(draw, vertex, id, vertex_position(transform_bits(draw, vertex), 0u));",
             "return transform_clip(draw, vertex_position(transform_bits(draw, vertex), 0u));",
         ),
-        (
-            "the plane stays behind",
-            "wobble",
-            "slots/shape/moved",
-            "if shape.is_bent {",
-            "if false {",
-        ),
+        ("the plane stays behind", "wobble", "slots/shape/moved", "if shape.is_bent {", "if false {"),
         ("the last term of the sine is halved", "wobble", "common/sine", "y * 39.5367061", "y * 20.0"),
     ];
     let mut failures = Vec::new();
