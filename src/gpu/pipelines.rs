@@ -80,9 +80,8 @@ impl Pipelines {
         if let Some(pipeline) = self.known.get(key).and_then(|of_key| of_key.get(&pass)).cloned() {
             return Ok(self.marked(pipeline));
         }
-        let root = format!("passes/{}", pass.stem());
-        let constants = key.constants(pass);
-        let pipeline = self.build(gpu, &root, &pass.label(), pass.entry(), key, &key.slots(pass), &constants)?;
+        let draft = self.draft_of(gpu, key, pass)?;
+        let pipeline = self.built(gpu, draft)?;
         self.known.entry(key.clone()).or_default().insert(pass, pipeline.clone());
         Ok(pipeline)
     }
@@ -100,6 +99,11 @@ impl Pipelines {
         constants: &[(&str, f64)],
     ) -> Result<Arc<Pipeline>, RenderError> {
         let draft = self.draft(gpu, root, label, entry, key, slots, constants)?;
+        self.built(gpu, draft)
+    }
+
+    /// What was built already, or else is compiled now.
+    fn built(&mut self, gpu: &Gpu, draft: Draft) -> Result<Arc<Pipeline>, RenderError> {
         if let Some(pipeline) = self.built.get(&draft.identity).cloned() {
             return Ok(self.marked(pipeline));
         }
@@ -114,11 +118,7 @@ impl Pipelines {
         if missing.is_empty() {
             return Ok(());
         }
-        let describe = |pass: &Pass| {
-            let root = format!("passes/{}", pass.stem());
-            self.draft(gpu, &root, &pass.label(), pass.entry(), key, &key.slots(*pass), &key.constants(*pass))
-        };
-        let drafts: Vec<Draft> = missing.par_iter().map(describe).collect::<Result<_, _>>()?;
+        let drafts: Vec<Draft> = missing.par_iter().map(|&pass| self.draft_of(gpu, key, pass)).collect::<Result<_, _>>()?;
         let mut fresh: Vec<&Draft> = Vec::new();
         for draft in drafts.iter().filter(|draft| !self.built.contains_key(&draft.identity)) {
             if fresh.iter().all(|other| other.identity != draft.identity) {
@@ -137,6 +137,11 @@ impl Pipelines {
             }
         }
         Ok(())
+    }
+
+    fn draft_of(&self, gpu: &Gpu, key: &KernelKey, pass: Pass) -> Result<Draft, RenderError> {
+        let root = format!("passes/{}", pass.stem());
+        self.draft(gpu, &root, &pass.label(), pass.entry(), key, &key.slots(pass), &key.constants(pass))
     }
 
     #[allow(clippy::too_many_arguments, reason = "as `build`")]

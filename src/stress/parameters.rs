@@ -86,7 +86,7 @@ fn drawable(lab: &mut Lab, scene: &Arc<Scene>, view: &View, stack: &Stack, what:
                 lab.note(format!("{what}: without dots, since {error}"));
                 stack.disable("dots");
             }
-            drawn => drop(drawn?),
+            drawn => drawn?,
         }
     }
     Ok(stack)
@@ -96,6 +96,9 @@ fn parameters_at_their_ends(lab: &mut Lab) -> Result<(), Halt> {
     let usual = lab.renderer.gpu().caps.tuning();
     // One scene for each effect, and a key that leaves nothing out: kernels are made once for all its pictures. Where vertices
     // move, the values decide what the planner may leave out, and that is put to the test where kernels compile in time.
+    if lab.is_slow() {
+        lab.note("no kernel is specialised, since this adapter is slow".into());
+    }
     for (turn, effect) in EFFECTS.iter().enumerate() {
         lab.renderer.set_tuning(Tuning { specialized: effect.hooks.vertex.is_some() && !lab.is_slow(), ..usual });
         for (end, word) in [(0, "least"), (1, "greatest")] {
@@ -115,6 +118,9 @@ fn parameters_at_their_ends(lab: &mut Lab) -> Result<(), Halt> {
 }
 
 fn every_effect_at_once(lab: &mut Lab) -> Result<(), Halt> {
+    if lab.is_software() {
+        lab.note("dots no closer than a millimetre, since this is a software adapter".into());
+    }
     // Those of one slot take turns.
     let most = Slot::ALL.iter().map(|slot| EFFECTS.iter().filter(|effect| effect.hooks.slot == Some(*slot)).count()).max().unwrap_or(1);
     for choice in 0..most {

@@ -114,6 +114,9 @@ fn workgroups_indirect(lab: &mut Lab) -> Result<(), Halt> {
     let [crowded, _, card, _] = tunings();
     // Medium triangles: one group each.
     let demands = [65_537u32, 65_535, 65_536];
+    if lab.is_slow() {
+        lab.note(format!("medium triangles: {} alone, since this adapter is slow", demands[0]));
+    }
     for &demand in &demands[..if lab.is_slow() { 1 } else { 3 }] {
         let corners = |i: u32| {
             let [x, y] = [i % 21, i / 21 % 21].map(|k| 768 * k as i32);
