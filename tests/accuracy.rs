@@ -356,8 +356,15 @@ fn mutants() -> Vec<Mutant> {
 }
 
 /// Like a graphics card, so that every kernel has its share.
-const GRAPHICS_CARD: Tuning =
-    Tuning { small_samples: 64, small_side: 32, list_group: 256, listed_tiles: false, early_load: true, specialized: true };
+const GRAPHICS_CARD: Tuning = Tuning {
+    small_samples: 64,
+    small_side: 32,
+    list_group: 256,
+    list_walk: u32::MAX,
+    listed_tiles: false,
+    early_load: true,
+    specialized: true,
+};
 
 /// The map of faults shows what the counts count: as many wrong owners, holes and doubles just where there are any, and the
 /// largest difference of colour.

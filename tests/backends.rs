@@ -6,6 +6,7 @@ mod common;
 use std::sync::Arc;
 
 use common::*;
+use glam::{DMat4, DVec3};
 use rasterlab::{
     frame::{Frame, NO_OWNER},
     gpu::{Capture, Renderer, uniforms::Capacities},
@@ -36,8 +37,15 @@ fn hall() -> (Arc<Scene>, View) {
 }
 
 /// Small triangles walk alone, middling ones get a workgroup, as on a GPU.
-const GRAPHICS_CARD: Tuning =
-    Tuning { small_samples: 32, small_side: 32, list_group: 256, listed_tiles: false, early_load: false, specialized: true };
+const GRAPHICS_CARD: Tuning = Tuning {
+    small_samples: 32,
+    small_side: 32,
+    list_group: 256,
+    list_walk: u32::MAX,
+    listed_tiles: false,
+    early_load: false,
+    specialized: true,
+};
 
 /// What only the tiled rung has.
 const TILED: &[&str] = &["bin_queued", "bin_scan", "raster_tiles"];
@@ -188,6 +196,39 @@ fn lists_of_tiles_hold_their_demand_to_the_last_entry() {
     let mut wrong = Renderer::with_library(renderer.gpu().clone(), library.shaders());
     let (_, frame) = tiled(&mut wrong, demand);
     assert_ne!(compare::owners(&frame.owner, &truth.owner).different + compare::owners(&frame.key, &truth.key).different, 0);
+}
+
+/// Some drivers end a loop after so many turns: then several dispatches walk a list, and the last of 70,000 layers shows.
+#[test]
+fn long_lists_of_tiles_are_walked_to_their_end() {
+    let Some(mut renderer) = renderer() else { return };
+    let usual = renderer.gpu().caps.tuning();
+    for (query, list_walk) in [("near", 7), ("near", 100), ("stack?layers=70000&gap=0.0001", u32::MAX)] {
+        let mut scene = scene(query);
+        if query.starts_with("stack") {
+            // Turned inside out, so that the last layer is the nearest.
+            Arc::make_mut(&mut scene).instances[0].world_from_object *= DMat4::from_scale(DVec3::new(1.0, 1.0, -1.0));
+        }
+        let view = view(&scene, [80, 60]);
+        renderer.set_tuning(usual);
+        let truth = captured(&mut renderer, &scene, &view, &stack(&[]), &pinned(Visibility::Split32)).frame;
+        renderer.set_tuning(Tuning { list_walk, ..usual });
+        let frame = captured(&mut renderer, &scene, &view, &stack(&[]), &pinned(Visibility::Tiled)).frame;
+        assert_same(&frame, &truth, &format!("{query}, {list_walk} entries at once"));
+    }
+    let (scene, view) = hall();
+    let truth = captured(&mut renderer, &scene, &view, &stack(&[]), &pinned(Visibility::Split32)).frame;
+    for (from, to) in [
+        ("bins[tiles_count() + tile] += list.y - list.x", "bins[tiles_count() + tile] += 0u"),
+        ("list.x += bins[tiles_count() + tile]", "list.x += 0u"),
+        ("if LIST_WALK != 0xffffffffu && is_inside {", "if LIST_WALK == 0u {"),
+    ] {
+        let library = mutated("passes/raster_tiles", from, to);
+        let mut wrong = Renderer::with_library(renderer.gpu().clone(), library.shaders());
+        wrong.set_tuning(Tuning { list_walk: 100, ..usual });
+        let frame = captured(&mut wrong, &scene, &view, &stack(&[]), &pinned(Visibility::Tiled)).frame;
+        assert_ne!(compare::owners(&frame.owner, &truth.owner).different, 0, "{to}");
+    }
 }
 
 #[test]

@@ -78,7 +78,15 @@ fn cameras(scene: &Scene, dice: &mut Dice, count: usize) -> Vec<View> {
 
 /// As a CPU adapter likes it, and as a graphics card.
 fn both_tunings(renderer: &Renderer) -> [Tuning; 2] {
-    let card = Tuning { small_samples: 32, small_side: 32, list_group: 256, listed_tiles: false, early_load: false, specialized: true };
+    let card = Tuning {
+        small_samples: 32,
+        small_side: 32,
+        list_group: 256,
+        list_walk: u32::MAX,
+        listed_tiles: false,
+        early_load: false,
+        specialized: true,
+    };
     [renderer.gpu().caps.tuning(), card]
 }
 

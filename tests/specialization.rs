@@ -107,7 +107,15 @@ fn names(explanation: &Explanation) -> (Vec<&str>, Vec<&str>) {
 
 #[test]
 fn a_scene_of_small_triangles_has_no_queues_arguments_or_pieces() {
-    let tuning = Tuning { small_samples: 64, small_side: 32, list_group: 256, listed_tiles: false, early_load: false, specialized: true };
+    let tuning = Tuning {
+        small_samples: 64,
+        small_side: 32,
+        list_group: 256,
+        list_walk: u32::MAX,
+        listed_tiles: false,
+        early_load: false,
+        specialized: true,
+    };
     let explained = |query, tuning| explained(query, [320, 240], Visibility::Split32, tuning);
     let Some((small, ..)) = explained("sphere?triangles=20000", tuning) else { return };
     let (passes, buffers) = names(&small);

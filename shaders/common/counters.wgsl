@@ -26,9 +26,9 @@ struct Counters {
     medium_done: atomic<u32>,
     large_done: atomic<u32>,
     tiles_done: atomic<u32>,
+    longest_list: atomic<u32>,   // entries of the longest of them
     spare_0: atomic<u32>,
     spare_1: atomic<u32>,
-    spare_2: atomic<u32>,
 }
 
 @group(0) @binding(7) var<storage, read_write> counters: Counters;

@@ -39,10 +39,10 @@ fn soft_add(x: u32, y: u32) -> u32 {
     let moved = (small >> apart) | select(0u, 1u, is_lossy);
     let is_minus = ((a ^ b) & SOFT_SIGN) != 0u;
     let sum = select(large + moved, large - moved, is_minus);
-    // Nothing is left of x - x but +0; zeros of one sign keep it.
-    if sum == 0u { return select(a & SOFT_SIGN, 0u, is_minus); }
     let zeros = countLeadingZeros(sum);
-    return soft_pack(a & SOFT_SIGN, i32(soft_exponent(a) + 5u) - i32(zeros), sum << zeros);
+    let packed = soft_pack(a & SOFT_SIGN, i32(soft_exponent(a) + 5u) - i32(zeros), sum << (zeros & 31u));
+    // Nothing is left of x - x but +0; zeros of one sign keep it.
+    return select(packed, select(a & SOFT_SIGN, 0u, is_minus), sum == 0u);
 }
 
 fn soft_subtract(x: u32, y: u32) -> u32 {
@@ -53,14 +53,14 @@ fn soft_multiply(x: u32, y: u32) -> u32 {
     let a = soft_significand(x);
     let b = soft_significand(y);
     let sign = (x ^ y) & SOFT_SIGN;
-    if a == 0u || b == 0u { return sign; }
     // 48 bits from 16-bit limbs; the lowest 16 only tell whether there is anything.
     let low = (a & 0xffffu) * (b & 0xffffu);
     let middle = (a & 0xffffu) * (b >> 16u) + (a >> 16u) * (b & 0xffffu);
     let product = (low >> 16u) + middle + (((a >> 16u) * (b >> 16u)) << 16u);
     let sticky = select(0u, 1u, (low & 0xffffu) != 0u);
     let zeros = countLeadingZeros(product);
-    return soft_pack(sign, i32(soft_exponent(x) + soft_exponent(y)) - 126 - i32(zeros), (product << zeros) | sticky);
+    let packed = soft_pack(sign, i32(soft_exponent(x) + soft_exponent(y)) - 126 - i32(zeros), (product << (zeros & 31u)) | sticky);
+    return select(packed, sign, a == 0u || b == 0u);
 }
 
 // x / y for y other than 0: 26 steps of long division, and whether a remainder is left.
@@ -68,7 +68,6 @@ fn soft_divide(x: u32, y: u32) -> u32 {
     let divisor = soft_significand(y);
     let numerator = soft_significand(x);
     let sign = (x ^ y) & SOFT_SIGN;
-    if numerator == 0u { return sign; }
     let is_less = numerator < divisor;
     var rest = select(numerator, numerator << 1u, is_less);
     var quotient = 0u;
@@ -78,7 +77,7 @@ fn soft_divide(x: u32, y: u32) -> u32 {
         rest = select(rest, rest - divisor, fits) << 1u;
     }
     let exponent = i32(soft_exponent(x)) - i32(soft_exponent(y)) + 127 - select(0, 1, is_less);
-    return soft_pack(sign, exponent, (quotient << 6u) | select(0u, 1u, rest != 0u));
+    return select(soft_pack(sign, exponent, (quotient << 6u) | select(0u, 1u, rest != 0u)), sign, numerator == 0u);
 }
 
 // Nearest integer, ties to even, held to +-2^24.

@@ -1,4 +1,4 @@
-// Bin scan: turns the lengths of the tiles' lists into the places where they begin, and keeps the length of them all.
+// Bin scan: turns the lengths of the tiles' lists into the places where they begin, and keeps the length of them all and of the longest.
 //@ use common/tiles
 //@ use common/counters
 
@@ -18,7 +18,12 @@ fn bin_scan(@builtin(local_invocation_index) lane: u32) {
     let first = min(lane * share, tiles);
     let last = min(first + share, tiles);
     var sum = 0u;
-    for (var i = first; i < last; i += 1u) { sum = bin_sum(sum, bins[i]); }
+    var longest = 0u;
+    for (var i = first; i < last; i += 1u) {
+        sum = bin_sum(sum, bins[i]);
+        longest = max(longest, bins[i]);
+    }
+    atomicMax(&counters.longest_list, longest);
     sums[lane] = sum;
     workgroupBarrier();
     // Sums of lanes up to and with this one (Hillis and Steele 1986).

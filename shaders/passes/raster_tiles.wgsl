@@ -8,9 +8,11 @@
 
 // Every covered sample must ask whether it is drawn, even one that could not win.
 override IS_TICKETED: bool = false;
+// Most entries of a list that one dispatch walks, where a driver ends long loops; the next one goes on.
+override LIST_WALK: u32 = 0xffffffffu;
 
 @group(0) @binding(5) var<storage, read_write> depth_owner: array<vec2u>;
-@group(0) @binding(6) var<storage, read> bins: array<u32>;
+@group(0) @binding(6) var<storage, read_write> bins: array<u32>;
 
 var<workgroup> list: vec2u;                         // begin and end
 var<workgroup> entries: array<u32, CELLS_BATCH>;
@@ -27,6 +29,9 @@ fn raster_tiles(
         // Filling moved every begin to its end, which is where the next list begins.
         let begin = select(bins[max(tile, 1u) - 1u], 0u, tile == 0u);
         list = min(vec2u(begin, bins[tile]), vec2u(frame.bin_capacity));
+        list.x += bins[tiles_count() + tile];
+        list.y = list.x + min(list.y - list.x, LIST_WALK);
+        bins[tiles_count() + tile] += list.y - list.x;
     }
     let range = workgroupUniformLoad(&list);
     let first = vec2i(group.xy * 16u);
@@ -34,10 +39,11 @@ fn raster_tiles(
     let pixel = at.y * frame.size.x + at.x;
     let is_inside = all(at < frame.size);
     var nearest = vec2u(0u); // complemented id, key
+    if LIST_WALK != 0xffffffffu && is_inside { nearest = depth_owner[pixel]; }
     for (var begin = range.x; begin < range.y; begin += CELLS_BATCH) {
         let count = min(range.y - begin, CELLS_BATCH);
         if lane < count {
-            let entry = bins[tiles_count() + begin + lane];
+            let entry = bins[tiles_lists() + begin + lane];
             let t = pieces_load(entry);
             entries[lane] = entry;
             ids[lane] = t.id;

@@ -403,6 +403,10 @@ impl Renderer {
                 _ => dispatch(pass, [vertices, triangles, bent, meshlets, particles], view, self.shown, key),
             };
             match size {
+                // A list may be longer than one dispatch walks.
+                Dispatch::Direct([x, y]) if pass == Pass::RasterTiles => {
+                    (0..self.capacities.listed.div_ceil(key.list_walk).max(1)).for_each(|_| recorded.dispatch_workgroups(x, y, 1));
+                }
                 Dispatch::Direct([x, y]) => recorded.dispatch_workgroups(x, y, 1),
                 Dispatch::Listed => recorded.dispatch_workgroups_indirect(self.buffers.get("dot_args"), 0),
                 Dispatch::Indirect(offset) => recorded.dispatch_workgroups_indirect(self.buffers.get("args"), offset),

@@ -316,9 +316,9 @@ fn background_word(view: &View) -> [u8; 4] {
     [srgb_byte(r), srgb_byte(g), srgb_byte(b), (alpha.clamp(0.0, 1.0) * 255.0 + 0.5) as u8]
 }
 
-/// Tiles of 16 x 16 pixels: so many words stand before the lists of triangles.
+/// Words before the lists of triangles: two for each tile of 16 x 16 pixels.
 pub fn bin_heads(view: &View) -> u64 {
-    u64::from(view.width.div_ceil(16)) * u64::from(view.height.div_ceil(16))
+    2 * u64::from(view.width.div_ceil(16)) * u64::from(view.height.div_ceil(16))
 }
 
 /// Capacities of the queues that this key's passes have; 0 where a pass is left out.
@@ -331,6 +331,7 @@ pub fn recorded_capacities(key: &KernelKey, all: &Capacities) -> Capacities {
         large: kept(key.has_large, all.large),
         tiles: kept(key.has_large, all.tiles),
         bins: kept(key.rungs.visibility == Visibility::Tiled, all.bins),
+        listed: kept(key.rungs.visibility == Visibility::Tiled, all.listed.max(key.list_walk)),
     }
 }
 
@@ -345,5 +346,6 @@ pub fn first_capacities(scene: &Scene) -> Capacities {
         large: room(16_384),
         tiles: 16 * room(4096),
         bins: 4 * triangles.clamp(1024, 1 << 20),
+        listed: 0,
     }
 }

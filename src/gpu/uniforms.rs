@@ -124,9 +124,9 @@ twin! {
         pub medium_done: u32,
         pub large_done: u32,
         pub tiles_done: u32,
+        pub longest_list: u32,
         pub spare_0: u32,
         pub spare_1: u32,
-        pub spare_2: u32,
     }
 }
 
@@ -210,6 +210,8 @@ pub struct Capacities {
     pub tiles: u32,
     /// Entries on the lists of all tiles of a picture that is drawn tile by tile.
     pub bins: u32,
+    /// Entries on the longest such list that are walked.
+    pub listed: u32,
 }
 
 impl Capacities {
@@ -220,9 +222,9 @@ impl Capacities {
 
     /// Room for an entry everywhere: no binding may be empty.
     pub fn at_least_one(self) -> Self {
-        let Self { clip, pieces, medium, large, tiles, bins } = self;
+        let Self { clip, pieces, medium, large, tiles, bins, listed } = self;
         let [clip, pieces, medium, large, tiles, bins] = [clip, pieces, medium, large, tiles, bins].map(|capacity| capacity.max(1));
-        Self { clip, pieces, medium, large, tiles, bins }
+        Self { clip, pieces, medium, large, tiles, bins, listed }
     }
 
     /// Grows whatever the demand exceeded, by powers of two, the lists of tiles by a quarter; true if anything grew.
@@ -233,6 +235,7 @@ impl Capacities {
             (&mut self.medium, demand.medium),
             (&mut self.large, demand.large),
             (&mut self.tiles, demand.tiles),
+            (&mut self.listed, demand.longest_list),
         ];
         let mut grew = false;
         for (capacity, demand) in pairs {
@@ -376,6 +379,7 @@ impl CounterRecord {
             self.large.saturating_sub(capacities.large),
             self.tiles.saturating_sub(capacities.tiles),
             self.bins.saturating_sub(capacities.bins),
+            self.longest_list.saturating_sub(capacities.listed),
         ];
         Counters {
             rejected_nonfinite: self.rejected_nonfinite,

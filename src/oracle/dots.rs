@@ -186,14 +186,18 @@ fn is_within(record: &SnappedVertex, dot: &Option<Bounded>, own: &SnappedVertex,
     let [_, _, ez, ew] = error;
     let clip = Clip { x, y, z, w };
     let is_doubtful = (w - z).abs() <= ez + ew || z.abs() <= ez && z != 0.0 || w <= ew && w > -ew;
-    let Some(bounds) = snap_bound(&clip, error, view).filter(|_| w > 0.0) else { return is_doubtful || record.flags == own.flags };
+    let is_kept = (record.flags | own.flags) & vertex_flags::NEAR == 0;
+    let Some(bounds) = snap_bound(&clip, error, view).filter(|_| w > 0.0) else {
+        // Where w is hardly known, what the near plane keeps may lie anywhere.
+        return is_doubtful || is_kept || record.flags == own.flags;
+    };
     let [bound_x, bound_y] = bounds.map(|bound| if bound < 1.0 { 1.0 } else { (1.0 + bound).floor() });
     if record.flags != own.flags {
         let truth = placed_freely(&clip, view);
         let is_at_guard = [(truth[0], bound_x), (truth[1], bound_y)]
             .into_iter()
             .any(|(at, bound)| (at.abs() - f64::from(GUARD_BAND)).abs() <= bound + 1.0);
-        return is_doubtful || (record.flags | own.flags) & vertex_flags::NEAR == 0 && is_at_guard;
+        return is_doubtful || is_kept && is_at_guard;
     }
     if own.flags & vertex_flags::NEAR != 0 {
         return true;

@@ -51,7 +51,15 @@ impl Caps {
     pub fn tuning(&self) -> Tuning {
         let (small_samples, small_side) = if self.software { (128 * 128, 128) } else { (32, 32) };
         let list_group = if self.software { 64 } else { 256 };
-        Tuning { small_samples, small_side, list_group, listed_tiles: self.software, early_load: self.software, specialized: true }
+        Tuning {
+            small_samples,
+            small_side,
+            list_group,
+            list_walk: u32::MAX,
+            listed_tiles: self.software,
+            early_load: self.software,
+            specialized: true,
+        }
     }
 }
 
@@ -65,6 +73,8 @@ pub struct Tuning {
     pub small_side: u32,
     /// Invocations in a workgroup of the passes over vertices and triangles, 1 to 256.
     pub list_group: u32,
+    /// Most entries of a tile's list that one dispatch walks, at least 1 (tiled alone).
+    pub list_walk: u32,
     /// The resolve visits only tiles that a triangle's box touches, without branches.
     pub listed_tiles: bool,
     /// Load before the depth atomic (split32 alone).
@@ -309,6 +319,7 @@ pub fn plan(needs: &Needs, stack: &Stack, caps: &Caps, tuning: &Tuning, accuracy
         small_samples,
         small_side,
         disc_shares: loops::disc_shares(caps, stack, loops),
+        list_walk: tuning.list_walk.min(loops::samples(caps, loops::of_a_sample(has_mask, None, &rungs))).max(1),
         listed_tiles: tuning.listed_tiles && !stack.finishes() && stack.dots().is_none(),
         list_group: tuning.list_group,
         early_load: tuning.early_load,

@@ -110,6 +110,8 @@ pub struct KernelKey {
     pub small_side: u32,
     /// Among how many invocations the discs of one triangle are shared out, at least 1.
     pub disc_shares: u32,
+    /// Most entries of a tile's list that one dispatch walks.
+    pub list_walk: u32,
     /// The resolve visits only tiles that a triangle's box touches, without branches.
     pub listed_tiles: bool,
     /// Invocations in a workgroup of the passes over vertices and triangles.
@@ -163,6 +165,7 @@ impl KernelKey {
             small_samples: 64,
             small_side: 32,
             disc_shares: 1,
+            list_walk: u32::MAX,
             listed_tiles: true,
             list_group: 64,
             early_load: true,
@@ -341,6 +344,7 @@ impl KernelKey {
             ("SMALL_SAMPLES", self.small_samples.into()),
             ("SMALL_SIDE", self.small_side.into()),
             ("DISC_SHARES", if pass.phase().is_some_and(Phase::is_bin) { 1 } else { self.disc_shares }.into()),
+            ("LIST_WALK", self.list_walk.into()),
             ("EARLY_LOAD", flag(self.early_load)),
             ("ID_BITS", self.id_bits.into()),
             ("SCALE_SIDE", self.rungs.scale.factor().max(1.0)),

@@ -102,6 +102,7 @@ pub fn tunings() -> [Tuning; 4] {
     [(1, 1, false), (64, 32, true), (64, 32, false), (128 * 128, 128, true)].map(|(small_samples, small_side, listed_tiles)| Tuning {
         small_samples,
         list_group: if small_samples == 64 { 256 } else { 64 },
+        list_walk: if small_samples == 64 { 1000 } else { u32::MAX },
         small_side,
         listed_tiles,
         early_load: listed_tiles,

@@ -6,6 +6,7 @@ use super::{Case, Expectation, Halt, Lab, hold};
 use crate::{
     effects::{EFFECTS, Effect, Stack, hooks::Slot, particles},
     gpu::RenderError,
+    ladder::{Pins, ShadowMap},
     measure::Budget,
     params::{Field, Kind},
     plan::{Accuracy, Tuning},
@@ -69,19 +70,26 @@ fn judged(lab: &mut Lab, stack: &Stack, turn: usize, what: &str) -> Result<(), H
         Some(_) => Session { scene: SceneSource::Builtin(query.into()), stack: stack.clone(), ..Session::default() }.view(&scene, [64, 48]),
         None => lab.view(&scene, [64, 48]),
     };
-    let stack = &drawable(lab, &scene, &view, stack, &what)?;
-    let (capture, verdict) = lab.judged(&scene, &view, stack, &Accuracy::default(), &what)?;
+    let accuracy = &accuracy(lab);
+    let stack = &drawable(lab, &scene, &view, stack, accuracy, &what)?;
+    let (capture, verdict) = lab.judged(&scene, &view, stack, accuracy, &what)?;
     let sound = capture.geometry.vertices.iter().all(|v| v.depth.is_finite() && v.inv_w.is_finite());
     hold!(sound, "{what}: a vertex is no number");
     verdict.accuracy.within(&Budget { max_step_share: 1.0, ..Budget::default() }).map_err(|why| Halt::Failed(format!("{what}: {why}")))
 }
 
+/// As planned; a slow adapter would spend most of its time on texels of shadow maps.
+fn accuracy(lab: &Lab) -> Accuracy {
+    let pins = if lab.is_slow() { Pins::of(ShadowMap::Side256) } else { Pins::default() };
+    Accuracy { pins, ..Accuracy::default() }
+}
+
 /// The stack, without dots where more of them are asked for than one picture takes, which a sentence says.
-fn drawable(lab: &mut Lab, scene: &Arc<Scene>, view: &View, stack: &Stack, what: &str) -> Result<Stack, Halt> {
+fn drawable(lab: &mut Lab, scene: &Arc<Scene>, view: &View, stack: &Stack, accuracy: &Accuracy, what: &str) -> Result<Stack, Halt> {
     let mut stack = stack.clone();
     if stack.dots().is_some() {
         lab.renderer.set_scene(scene)?;
-        match lab.renderer.draw(view, &stack, &Accuracy::default()) {
+        match lab.renderer.draw(view, &stack, accuracy) {
             Err(RenderError::Draw(error @ DrawError::TooMany { what: "dots", .. })) => {
                 lab.note(format!("{what}: without dots, since {error}"));
                 stack.disable("dots");
@@ -97,7 +105,7 @@ fn parameters_at_their_ends(lab: &mut Lab) -> Result<(), Halt> {
     // One scene for each effect, and a key that leaves nothing out: kernels are made once for all its pictures. Where vertices
     // move, the values decide what the planner may leave out, and that is put to the test where kernels compile in time.
     if lab.is_slow() {
-        lab.note("no kernel is specialised, since this adapter is slow".into());
+        lab.note("no kernel is specialised, and shadow maps have 256 texels a side, since this adapter is slow".into());
     }
     for (turn, effect) in EFFECTS.iter().enumerate() {
         lab.renderer.set_tuning(Tuning { specialized: effect.hooks.vertex.is_some() && !lab.is_slow(), ..usual });
@@ -118,6 +126,9 @@ fn parameters_at_their_ends(lab: &mut Lab) -> Result<(), Halt> {
 }
 
 fn every_effect_at_once(lab: &mut Lab) -> Result<(), Halt> {
+    if lab.is_slow() {
+        lab.note("shadow maps have 256 texels a side, since this adapter is slow".into());
+    }
     if lab.is_software() {
         lab.note("dots no closer than a millimetre, since this is a software adapter".into());
     }

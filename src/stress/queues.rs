@@ -137,7 +137,7 @@ fn workgroups_indirect(lab: &mut Lab) -> Result<(), Halt> {
     lab.renderer.set_scene(&scene)?;
     lab.renderer.set_capacities(Capacities { large: 65_600, tiles: 65_600, ..Capacities::default() });
     lab.exact(&scene, &pixel_view(64, 64), &stack(&[]), &rung, "65,600 large triangles")?;
-    let foreseen = Capacities { clip: 1, pieces: 1, medium: 1, large: 65_600, tiles: 65_600, bins: 1 };
+    let foreseen = Capacities { clip: 1, pieces: 1, medium: 1, large: 65_600, tiles: 65_600, bins: 1, listed: 0 };
     equal(&lab.renderer.capacities(), &foreseen, "65,600 large triangles: room in the queues")?;
     // Tiles of the resolve: 66,048 of 8 x 8 pixels.
     let [a, b, c, d] = [[0, 0], [2048 * 256, 0], [2048 * 256, 2064 * 256], [0, 2064 * 256]];
@@ -154,7 +154,7 @@ type Demand = (&'static str, Capacities, Arc<Scene>, fn(&mut Capacities) -> &mut
 
 /// Each queue alone, with the demand that is known for it.
 fn demands() -> Vec<Demand> {
-    let ample = Capacities { clip: 4096, pieces: 4096, medium: 4096, large: 4096, tiles: 4096, bins: 65_536 };
+    let ample = Capacities { clip: 4096, pieces: 4096, medium: 4096, large: 4096, tiles: 4096, bins: 65_536, listed: 0 };
     let n = 40;
     let many = |triangle: [[i32; 2]; 3]| {
         let moved = |i: i32| (triangle.map(|[x, y]| [x, y + 97 * i]), 0.2 + 0.01 * i as f32);

@@ -4,5 +4,5 @@
 
 fn bins_add(tile: u32, entry: u32) {
     let slot = atomicAdd(&bins[tile], 1u);
-    if slot < frame.bin_capacity { atomicStore(&bins[tiles_count() + slot], entry); }
+    if slot < frame.bin_capacity { atomicStore(&bins[tiles_lists() + slot], entry); }
 }
