@@ -128,8 +128,8 @@ fn every_builtin_builds_at_both_ends_of_each_range() {
 }
 
 #[test]
-fn sphere_and_knot_are_closed() {
-    for query in ["sphere?triangles=100", "sphere?triangles=12346", "sphere", "knot?tess=2", "knot"] {
+fn sphere_knot_and_walker_are_closed() {
+    for query in ["sphere?triangles=100", "sphere?triangles=12346", "sphere", "knot?tess=2", "knot", "walker"] {
         let scene = scene(query);
         assert_eq!(open_edges(&scene, &scene.primitives[0]), [], "{query}");
     }
@@ -342,7 +342,7 @@ fn mistaken_queries_are_answered_with_a_sentence() {
         (
             "teapto",
             "there is no builtin scene \"teapto\"; did you mean \"teapot\"? \
-             (known: teapot, sphere, knot, cube-wall, field, tentacle, chamber, globe, panels, leaves, near, grid, fan, sizes, slivers, stack)",
+             (known: teapot, sphere, knot, cube-wall, field, tentacle, walker, chamber, globe, panels, leaves, near, grid, fan, sizes, slivers, stack)",
         ),
         ("teapot?tes=4", "teapot has no parameter \"tes\"; did you mean \"tess\"? (known: tess)"),
         ("knot?colour=4", "knot has no parameter \"colour\" (known: tess)"),

@@ -48,7 +48,7 @@ pub const SCENES: &[&str] = &[
 ];
 
 /// Scenes whose meshes bend, which the strict vertex stage refuses.
-pub const BENT_SCENES: &[&str] = &["tentacle?tess=3"];
+pub const BENT_SCENES: &[&str] = &["tentacle?tess=3", "walker?tess=1"];
 
 /// The adapter under test: `RASTERLAB_ADAPTER` (a part of its name) or the best there is. A missing one fails the test;
 /// only `RASTERLAB_GPU=skip` leaves GPU tests out, and says so.

@@ -1,10 +1,13 @@
 //! Builtin scenes: meshes from formulas, asked for by a query such as `sphere?triangles=160000`.
 //!
-//! The handsome ones (teapot, sphere, knot, cube-wall, tentacle, chamber) are for looking at; the others put one promise of the
+//! The handsome ones (teapot, sphere, knot, cube-wall, tentacle, walker, chamber) are for looking at; the others put one promise of the
 //! rasterizer under load and bring the camera that does so. All are indexed, finite and the same on every machine.
 
 mod extremes;
 mod field;
+mod flesh;
+mod gait;
+mod hold;
 mod leaves;
 mod mesh;
 mod painted;
@@ -13,6 +16,7 @@ mod query;
 mod shapes;
 mod teapot;
 mod tentacle;
+mod walker;
 
 use std::ops::RangeInclusive;
 
@@ -108,6 +112,15 @@ pub const BUILTINS: &[Builtin] = &[
             whole("instances", "how many, each with joints of its own", 1.0, 1.0..=5_000.0),
         ],
         build: tentacle::build,
+    },
+    Builtin {
+        name: "walker",
+        about: "a long-necked animal on four legs, with clips Walk, Trot and Idle; one, or a herd out of step",
+        params: &[
+            whole("tess", "fineness; one has about 1,400 * tess^2 triangles", 2.0, 1.0..=12.0),
+            whole("instances", "how many, each with joints of its own", 1.0, 1.0..=1_000.0),
+        ],
+        build: walker::build,
     },
     Builtin {
         name: "chamber",

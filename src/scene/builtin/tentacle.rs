@@ -4,10 +4,14 @@ use std::f64::consts::TAU;
 
 use glam::{DMat4, DVec3};
 
-use super::{BuiltinError, MAX_TRIANGLES, Mesh, Ring, query::Values};
+use super::{
+    BuiltinError, MAX_TRIANGLES, Mesh, Ring,
+    hold::{self, Hold},
+    query::Values,
+};
 use crate::scene::{
-    Accessor, Bounds, Component, Instance, Material, Scene, pose,
-    rig::{Channel, Clip, Influences, Interpolation, Local, Node, Parts, Property, Sampler, Shape, Skin},
+    Accessor, Instance, Material, Scene, pose,
+    rig::{Channel, Clip, Interpolation, Local, Node, Parts, Property, Sampler, Shape, Skin},
 };
 
 /// Length of the tube, metres.
@@ -94,23 +98,13 @@ fn tube(scene: &mut Scene, around: u32, along: u32) -> Vec<f64> {
 
 /// Gives the tube joints and weights, and the shape of its bulge.
 fn soften(scene: &mut Scene, heights: &[f64], joints: u32, influences: usize) {
+    let held: Vec<Vec<Hold>> = heights.iter().map(|share| shares(share * f64::from(joints - 1).max(1.0), joints, influences)).collect();
+    hold::append(scene, 0, joints as usize, influences.div_ceil(4), &held);
     let primitive = scene.primitives[0].clone();
-    let sets = influences.div_ceil(4);
-    let (mut numbers, mut weights) = (vec![Vec::<u8>::new(); sets], vec![Vec::<u16>::new(); sets]);
-    let mut bounds = vec![Bounds::EMPTY; joints as usize];
     let (mut moved, mut turned) = (Vec::<[f32; 3]>::new(), Vec::<[f32; 3]>::new());
     for (vertex, &share) in heights.iter().enumerate() {
-        let held = shares(share * f64::from(joints - 1).max(1.0), joints, influences);
         let place = DVec3::from(primitive.position(scene, vertex as u32).map(f64::from));
         let normal = DVec3::from([0, 1, 2].map(|lane| primitive.normals.value(&scene.vertex_bytes, vertex as u32, lane)));
-        for slot in 0..4 * sets {
-            let (joint, weight) = held.get(slot).copied().unwrap_or((0, 0));
-            numbers[slot / 4].push(joint);
-            weights[slot / 4].push(weight);
-            if weight > 0 {
-                bounds[usize::from(joint)].include(place);
-            }
-        }
         let aside = DVec3::new(place.x, 0.0, place.z);
         let [[plain, _], [full, slope]] = [0.0, 1.0].map(|bulge| profile(share, bulge));
         let is_pole = aside.length() < 1e-9;
@@ -118,38 +112,18 @@ fn soften(scene: &mut Scene, heights: &[f64], joints: u32, influences: usize) {
         moved.push((aside * ((full - plain) / plain)).as_vec3().into());
         turned.push((bulged - normal).as_vec3().into());
     }
-    let mut append = |bytes: &[u8]| {
-        let at = scene.vertex_bytes.len() as u32;
-        scene.vertex_bytes.extend_from_slice(bytes);
-        scene.vertex_bytes.resize(scene.vertex_bytes.len().next_multiple_of(4), 0);
-        at
+    let mut append = |lanes: &[[f32; 3]]| {
+        let at = scene.vertex_bytes.len();
+        scene.vertex_bytes.extend_from_slice(bytemuck::cast_slice(lanes));
+        Accessor::packed_f32(at, 3, lanes.len())
     };
-    let count = heights.len() as u32;
-    let sets: Vec<Influences> = numbers
-        .iter()
-        .zip(&weights)
-        .map(|(numbers, weights)| Influences {
-            joints: Accessor { offset: append(numbers), stride: 4, component: Component::U8, lanes: 4, normalized: false, count },
-            weights: Accessor {
-                offset: append(bytemuck::cast_slice(weights)),
-                stride: 8,
-                component: Component::U16,
-                lanes: 4,
-                normalized: true,
-                count,
-            },
-        })
-        .collect();
-    let positions = Accessor::packed_f32(append(bytemuck::cast_slice(&moved)) as usize, 3, moved.len());
-    let normals = Accessor::packed_f32(append(bytemuck::cast_slice(&turned)) as usize, 3, turned.len());
+    let (positions, normals) = (append(&moved), append(&turned));
     let reach = moved.iter().flatten().fold(0.0f64, |most, v| most.max(f64::from(v.abs())));
-    let softness = &mut scene.primitives[0].softness;
-    (softness.influences, softness.joint_bounds) = (sets, bounds);
-    softness.shapes = vec![Shape { positions: Some(positions), normals: Some(normals), reach }];
+    scene.primitives[0].softness.shapes = vec![Shape { positions: Some(positions), normals: Some(normals), reach }];
 }
 
 /// Joints that hold a vertex `along` joints up, with weights of 65,535 in all: a uniform B-spline, smooth but for its ends.
-fn shares(along: f64, joints: u32, influences: usize) -> Vec<(u8, u16)> {
+fn shares(along: f64, joints: u32, influences: usize) -> Vec<Hold> {
     // Cox and de Boor: from a step to the degree one below the number of influences.
     let shifted = along + 0.5 * (influences % 2) as f64;
     let (base, t) = (shifted.floor(), shifted - shifted.floor());
@@ -172,12 +146,7 @@ fn shares(along: f64, joints: u32, influences: usize) -> Vec<(u8, u16)> {
             None => held.push((joint, share)),
         }
     }
-    let mut rounded: Vec<(u8, u16)> =
-        held.iter().map(|&(joint, share)| (joint, (share.clamp(0.0, 1.0) * 65_535.0).round() as u16)).collect();
-    rounded.sort_by_key(|&(joint, weight)| (std::cmp::Reverse(weight), joint));
-    let sum: i32 = rounded.iter().map(|&(_, weight)| i32::from(weight)).sum();
-    rounded[0].1 = (i32::from(rounded[0].1) + 65_535 - sum) as u16;
-    rounded
+    hold::whole(&held)
 }
 
 /// Samplers of every clip: per phase one per joint; of the breath, one per phase.

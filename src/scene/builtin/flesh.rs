@@ -1,0 +1,166 @@
+//! Flesh: one closed skin round the bones of an animal, by surface nets, and weights that blend across its joints.
+//!
+//! Bones are tapered capsules whose union is smooth (a polynomial minimum); the ground cuts it off, so that soles are flat.
+
+use glam::{DMat3, DVec3};
+
+use super::hold::{self, Hold};
+
+/// A tapered capsule that a joint moves.
+#[derive(Clone, Copy, Debug)]
+pub struct Bone {
+    pub joint: usize,
+    pub ends: [DVec3; 2],
+    pub radii: [f64; 2],
+    /// How softly it runs into those before it, metres.
+    pub blend: f64,
+    /// It stands on the ground, where no other may move its sole.
+    pub is_foot: bool,
+}
+
+/// Bones, none thinner than a mesh can show.
+pub struct Flesh {
+    pub bones: Vec<Bone>,
+    pub thinnest: f64,
+}
+
+/// A mesh as it grows; corners run counter-clockwise seen from outside.
+pub struct Skin {
+    /// Place and normal of every vertex.
+    pub vertices: Vec<[DVec3; 2]>,
+    pub triangles: Vec<[u32; 3]>,
+}
+
+/// Joints blend over this share of the thickness of a limb, and hold soles alone below this height.
+const SOFTNESS: f64 = 0.6;
+const SOLE_M: f64 = 0.15;
+/// No blend lifts the skin by more.
+const BULGE_M: f64 = 0.05;
+
+impl Flesh {
+    /// Distance of the skin of one bone, about, and the radius there.
+    fn distance(&self, bone: &Bone, p: DVec3) -> (f64, f64) {
+        let axis = bone.ends[1] - bone.ends[0];
+        let share = ((p - bone.ends[0]).dot(axis) / axis.length_squared()).clamp(0.0, 1.0);
+        let radius = (bone.radii[0] + (bone.radii[1] - bone.radii[0]) * share).max(self.thinnest);
+        ((p - bone.ends[0] - axis * share).length() - radius, radius)
+    }
+
+    /// Below 0 inside.
+    fn field(&self, p: DVec3) -> f64 {
+        let mut nearest = f64::INFINITY;
+        for bone in &self.bones {
+            let (distance, _) = self.distance(bone, p);
+            let both = (bone.blend - (nearest - distance).abs()).max(0.0);
+            nearest = nearest.min(distance) - both * both / (4.0 * bone.blend);
+        }
+        nearest.max(-p.y)
+    }
+
+    fn slope(&self, p: DVec3) -> DVec3 {
+        const STEP: f64 = 1e-4;
+        let along = |axis: DVec3| self.field(p + axis * STEP) - self.field(p - axis * STEP);
+        DVec3::from_array(DVec3::AXES.map(along)) / (2.0 * STEP)
+    }
+
+    /// The skin in cells of this size: a vertex in every cell that it crosses, four of them round every edge of cells.
+    pub fn skin(&self, cell: f64) -> Skin {
+        let ends = || self.bones.iter().flat_map(|bone| bone.ends.map(|end| (end, bone.radii[0].max(bone.radii[1]).max(self.thinnest))));
+        let most = |pick: &dyn Fn(DVec3, f64) -> f64| ends().map(|(end, radius)| pick(end, radius)).fold(f64::NEG_INFINITY, f64::max);
+        let cells = |length: f64| ((length + BULGE_M) / cell).ceil() + 1.0;
+        // The ground and the plane of symmetry lie in the middle of cells.
+        let (behind, aside) = (cells(most(&|end, radius| radius - end.x)), cells(most(&|end, radius| radius + end.z.abs())));
+        let low = DVec3::new(-behind, -1.0, -aside) - 0.5;
+        let tall = [cells(most(&|end, radius| end.x + radius)) + behind, cells(most(&|end, radius| end.y + radius)) + 1.0, 2.0 * aside];
+        let [wide, high, deep] = tall.map(|count| count as usize + 2);
+        let steps = [1, wide, wide * high];
+        let corner = |at: usize| DVec3::new((at % wide) as f64, (at / wide % high) as f64, (at / steps[2]) as f64);
+        let values: Vec<f64> = (0..steps[2] * deep).map(|at| self.field((low + corner(at)) * cell)).collect();
+        let mut skin = Skin { vertices: Vec::new(), triangles: Vec::new() };
+        let mut vertex_in = vec![u32::MAX; values.len()];
+        for at in 0..values.len() - steps[0] - steps[1] - steps[2] {
+            if let Some(middle) = crossing(&values, at, steps) {
+                vertex_in[at] = skin.vertices.len() as u32;
+                skin.vertices.push(self.settled((low + corner(at)) * cell, middle, cell));
+            }
+        }
+        for at in steps[2] + steps[1] + 1..values.len() - steps[2] {
+            for axis in 0..3 {
+                let (inside, beyond) = (values[at] < 0.0, values[at + steps[axis]] < 0.0);
+                if inside == beyond {
+                    continue;
+                }
+                let (u, v) = (steps[(axis + 1) % 3], steps[(axis + 2) % 3]);
+                let mut round = [at - u - v, at - v, at, at - u].map(|at| vertex_in[at]);
+                if beyond {
+                    round.reverse();
+                }
+                skin.quadrilateral(round);
+            }
+        }
+        skin
+    }
+
+    /// Moves a vertex onto the skin without leaving its cell, which keeps neighbours apart.
+    fn settled(&self, corner: DVec3, middle: DVec3, cell: f64) -> [DVec3; 2] {
+        let mut p = corner + middle * cell;
+        for _ in 0..4 {
+            let slope = self.slope(p);
+            p -= slope * (self.field(p) / slope.length_squared().max(0.25));
+            p = p.clamp(corner + 0.05 * cell, corner + 0.95 * cell);
+        }
+        p.y = p.y.max(0.0);
+        [p, self.slope(p)]
+    }
+
+    /// The four joints that hold a place of the skin: the nearest, and those that are hardly farther away.
+    pub fn held(&self, p: DVec3) -> Vec<Hold> {
+        let joints = self.bones.iter().map(|bone| bone.joint + 1).max().unwrap_or(0);
+        let nearest = self.bones.iter().map(|bone| self.distance(bone, p).0).fold(f64::INFINITY, f64::min);
+        let mut held: Vec<(u8, f64)> = (0..joints).map(|joint| (joint as u8, 0.0)).collect();
+        let above = (p.y / SOLE_M).min(1.0);
+        for bone in &self.bones {
+            let (distance, radius) = self.distance(bone, p);
+            let near = (1.0 - (distance - nearest) / (SOFTNESS * radius)).max(0.0);
+            let weight = near * near * if bone.is_foot { 1.0 } else { above * above };
+            let slot = &mut held[bone.joint].1;
+            *slot = slot.max(weight);
+        }
+        held.sort_by(|a, b| b.1.total_cmp(&a.1));
+        // A fifth goes out smoothly, for the others give up as much.
+        let fifth = held.get(4).map_or(0.0, |held| held.1);
+        held.truncate(4);
+        held.iter_mut().for_each(|held| held.1 -= fifth);
+        let sum: f64 = held.iter().map(|held| held.1).sum();
+        held.iter_mut().for_each(|held| held.1 /= sum);
+        held.retain(|held| held.1 > 0.0);
+        hold::whole(&held)
+    }
+}
+
+/// Where the skin crosses a cell: the mean over its edges, in units of the cell.
+fn crossing(values: &[f64], at: usize, steps: [usize; 3]) -> Option<DVec3> {
+    let (mut sum, mut count) = (DVec3::ZERO, 0.0);
+    for axis in 0..3 {
+        let (u, v) = ((axis + 1) % 3, (axis + 2) % 3);
+        for [along_u, along_v] in [[0, 0], [0, 1], [1, 0], [1, 1]] {
+            let from = at + along_u * steps[u] + along_v * steps[v];
+            let [a, b] = [values[from], values[from + steps[axis]]];
+            if (a < 0.0) != (b < 0.0) {
+                let [x, y, z] = [DVec3::AXES[axis], DVec3::AXES[u], DVec3::AXES[v]];
+                sum += DMat3::from_cols(x, y, z) * DVec3::new(a / (a - b), along_u as f64, along_v as f64);
+                count += 1.0;
+            }
+        }
+    }
+    (count > 0.0).then(|| sum / count)
+}
+
+impl Skin {
+    /// Two triangles that share the shorter diagonal.
+    fn quadrilateral(&mut self, [a, b, c, d]: [u32; 4]) {
+        let apart = |a: u32, b: u32| self.vertices[a as usize][0].distance_squared(self.vertices[b as usize][0]);
+        let halves = if apart(a, c) <= apart(b, d) { [[a, b, c], [a, c, d]] } else { [[a, b, d], [b, c, d]] };
+        self.triangles.extend(halves);
+    }
+}

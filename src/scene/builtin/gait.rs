@@ -1,0 +1,233 @@
+//! Gaits: a skeleton on four legs and how it moves. Feet come first, where they stand and swing; hips and knees follow them.
+
+use std::f64::consts::TAU;
+
+use glam::{DMat3, DQuat, DVec3};
+
+/// Spine and tail: name, parent and place at rest, metres; it looks along +x. Legs follow, three joints each.
+pub const SPINE: [(&str, usize, [f64; 2]); 10] = [
+    ("pelvis", 0, [-0.42, 0.92]),
+    ("chest", 0, [0.02, 0.94]),
+    ("neck", 1, [0.46, 1.02]),
+    ("nape", 2, [0.70, 1.26]),
+    ("throat", 3, [0.88, 1.54]),
+    ("head", 4, [1.00, 1.80]),
+    ("tail 1", 0, [-0.60, 0.93]),
+    ("tail 2", 6, [-0.92, 0.88]),
+    ("tail 3", 7, [-1.24, 0.81]),
+    ("tail 4", 8, [-1.56, 0.77]),
+];
+/// Hip, knee and ankle of a hind leg and of a foreleg, whose knee is an elbow and points back.
+pub const LEGS: [[[f64; 2]; 3]; 2] = [[[-0.42, 0.84], [-0.27, 0.49], [-0.46, 0.09]], [[0.38, 0.80], [0.22, 0.47], [0.40, 0.09]]];
+/// Left hind, left fore, right hind, right fore: how far to the right of the spine.
+pub const SIDES_M: [f64; 4] = [-0.16, -0.15, 0.16, 0.15];
+pub const JOINTS: usize = SPINE.len() + 12;
+/// Tip of the toes and the heel, as they lie from the ankle.
+const SOLE: [[f64; 2]; 2] = [[0.15, -0.09], [-0.07, -0.09]];
+/// Between hips and shoulders.
+const TRUNK_M: f64 = 0.8;
+
+/// How it moves. Angles are in radians, times in rounds.
+pub struct Gait {
+    pub name: &'static str,
+    pub period_s: f64,
+    /// Share of a round that a foot stands.
+    duty: f64,
+    /// When each foot lands.
+    landing: [f64; 4],
+    stride_m: f64,
+    lift_m: f64,
+    /// How far the trunk bobs, and how far it leans over the feet that stand.
+    bob_m: f64,
+    lean_m: f64,
+    /// How far hips and shoulders turn, neck and tail sway against them, and the head nods.
+    sway: f64,
+    neck: f64,
+    tail: f64,
+    nod: f64,
+}
+
+#[rustfmt::skip]
+pub const GAITS: [Gait; 3] = [
+    Gait {
+        name: "Walk", period_s: 1.5, duty: 0.625, landing: [0.0, 0.25, 0.5, 0.75], stride_m: 0.5, lift_m: 0.13,
+        bob_m: 0.016, lean_m: 0.02, sway: 0.09, neck: 0.06, tail: 0.13, nod: 0.035,
+    },
+    Gait {
+        name: "Trot", period_s: 0.75, duty: 0.5, landing: [0.0, 0.5, 0.5, 0.0], stride_m: 0.48, lift_m: 0.17,
+        bob_m: 0.026, lean_m: 0.0, sway: 0.06, neck: 0.03, tail: 0.08, nod: 0.03,
+    },
+    Gait {
+        name: "Idle", period_s: 3.0, duty: 1.0, landing: [0.0, 0.25, 0.5, 0.75], stride_m: 0.0, lift_m: 0.0,
+        bob_m: 0.006, lean_m: 0.03, sway: 0.02, neck: 0.13, tail: 0.16, nod: 0.03,
+    },
+];
+
+/// A joint as it rests in the skeleton.
+pub struct Joint {
+    pub name: String,
+    pub parent: usize,
+    pub at: DVec3,
+}
+
+/// All of them, parents first; the pelvis is its own parent.
+pub fn joints() -> Vec<Joint> {
+    let spine = |&(name, parent, [x, y]): &(&str, usize, [f64; 2])| Joint { name: name.to_owned(), parent, at: DVec3::new(x, y, 0.0) };
+    let mut joints: Vec<Joint> = SPINE.iter().map(spine).collect();
+    for (leg, side) in ["left hind", "left fore", "right hind", "right fore"].into_iter().enumerate() {
+        for (part, [x, y]) in LEGS[leg % 2].into_iter().enumerate() {
+            let parent = if part == 0 { leg % 2 } else { joints.len() - 1 };
+            joints.push(Joint { name: format!("{side} {}", ["hip", "knee", "ankle"][part]), parent, at: DVec3::new(x, y, SIDES_M[leg]) });
+        }
+    }
+    joints
+}
+
+/// A wave of period 1 that starts at its crest.
+fn wave(t: f64) -> f64 {
+    libm::cos(TAU * t)
+}
+
+fn turn(axis: DVec3, angle: f64) -> DQuat {
+    let (sin, cos) = libm::sincos(0.5 * angle);
+    DQuat::from_xyzw(axis.x * sin, axis.y * sin, axis.z * sin, cos)
+}
+
+/// Where an ankle is, ahead of its place at rest and above the ground, and how far its toes point down; `t` rounds after it has landed.
+fn step(gait: &Gait, t: f64) -> ([f64; 2], f64) {
+    let t = t.rem_euclid(1.0);
+    let back = 0.5 * gait.stride_m;
+    let [ahead, lift] = if t < gait.duty {
+        [back - gait.stride_m * t / gait.duty, 0.0]
+    } else {
+        // A cubic that leaves and lands as fast as the ground goes back.
+        let (s, fast) = ((t - gait.duty) / (1.0 - gait.duty), -gait.stride_m * (1.0 - gait.duty) / gait.duty);
+        let (s2, s3) = (s * s, s * s * s);
+        [back * (6.0 * s2 - 4.0 * s3 - 1.0) + fast * (2.0 * s3 - 3.0 * s2 + s), 16.0 * gait.lift_m * s2 * (1.0 - s) * (1.0 - s)]
+    };
+    let hump = |low: f64, high: f64| {
+        let s = ((t - low) / (high - low)).clamp(0.0, 1.0);
+        16.0 * s * s * (1.0 - s) * (1.0 - s)
+    };
+    // The heel rises before the toes leave, and the toes before it lands.
+    let pitch = if gait.lift_m > 0.0 { 0.62 * hump(gait.duty - 0.14, gait.duty + 0.2) - 0.3 * hump(gait.duty + 0.14, 1.0) } else { 0.0 };
+    let (sin, cos) = libm::sincos(-pitch);
+    let [toe, heel] = SOLE.map(|[x, y]| [x * cos - y * sin, x * sin + y * cos]);
+    // The toes keep their course, and neither they nor the heel go below it.
+    ([ahead + SOLE[0][0] - toe[0], lift - toe[1].min(heel[1])], pitch)
+}
+
+/// A moment: how far the pelvis has moved, and the turn of every joint in its parent.
+pub fn moment(gait: &Gait, rest: &[Joint], t: f64) -> (DVec3, [DQuat; JOINTS]) {
+    let mut turns = [DQuat::IDENTITY; JOINTS];
+    // Each girdle is lowest when its feet have just landed, and its side that lands is ahead.
+    let bob = |girdle: usize| -gait.bob_m * wave(2.0 * (t - gait.landing[girdle] - 0.06));
+    let girdle = |girdle: usize| {
+        let after = t - gait.landing[girdle];
+        let (yaw, roll) = (-gait.sway * wave(after), -0.5 * gait.sway * wave(after + 0.5 * (1.0 - gait.duty)));
+        turn(DVec3::Y, yaw) * turn(DVec3::Z, (bob(1) - bob(0)) / TRUNK_M) * turn(DVec3::X, roll)
+    };
+    let girdles = [girdle(0), girdle(1)];
+    let shift = DVec3::new(0.0, bob(0), -gait.lean_m * wave(t - gait.landing[0] - 0.5 * gait.duty));
+    (turns[0], turns[1]) = (girdles[0], girdles[0].inverse() * girdles[1]);
+    for link in 0..4 {
+        let (late, more) = (0.07 * link as f64, 1.0 + 0.25 * link as f64);
+        let nod = if link == 3 { -3.0 * gait.nod } else { gait.nod };
+        let neck = t - gait.landing[1] - late;
+        turns[2 + link] = turn(DVec3::Y, gait.neck * wave(neck)) * turn(DVec3::Z, nod * wave(2.0 * neck - 0.12));
+        let tail = t - gait.landing[0] - late - 0.05;
+        turns[6 + link] = turn(DVec3::Y, gait.tail * more * wave(tail)) * turn(DVec3::Z, 0.5 * gait.nod * more * wave(2.0 * tail));
+    }
+    let places = [rest[0].at + shift, rest[0].at + shift + girdles[0] * (rest[1].at - rest[0].at)];
+    for leg in 0..4 {
+        let (girdle, first) = (leg % 2, SPINE.len() + 3 * leg);
+        let [hip, knee, ankle] = [0, 1, 2].map(|part| rest[first + part].at);
+        let ([ahead, up], pitch) = step(gait, t - gait.landing[leg]);
+        let at = places[girdle] + girdles[girdle] * (hip - rest[girdle].at);
+        let goal = DVec3::new(ankle.x + ahead, up, ankle.z) - at;
+        // Two sides and the third: the knee lies in the plane of the goal and the way ahead.
+        let (thigh, shank) = (knee - hip, ankle - knee);
+        let far = goal.length().min(0.9999 * (thigh.length() + shank.length()));
+        let (down, hinge) = (goal.normalize(), goal.cross(DVec3::X).normalize());
+        let along = (thigh.length_squared() - shank.length_squared() + far * far) / (2.0 * far);
+        let out = (thigh.length_squared() - along * along).max(0.0).sqrt() * if girdle == 0 { 1.0 } else { -1.0 };
+        let bent = down * along + hinge.cross(down) * out;
+        let facing = |from: DVec3, to: DVec3| {
+            let frame = |along: DVec3, hinge: DVec3| DMat3::from_cols(along.normalize(), hinge.cross(along.normalize()), hinge);
+            DQuat::from_mat3(&(frame(to, hinge) * frame(from, DVec3::Z).transpose()))
+        };
+        let [upper, lower] = [facing(thigh, bent), facing(shank, down * far - bent)];
+        turns[first] = girdles[girdle].inverse() * upper;
+        turns[first + 1] = upper.inverse() * lower;
+        turns[first + 2] = lower.inverse() * turn(DVec3::Z, -pitch);
+    }
+    (shift, turns)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn legs_keep_their_length_and_bring_the_foot_to_its_goal() {
+        let rest = joints();
+        for gait in &GAITS {
+            for at in 0..200 {
+                let t = f64::from(at) / 200.0;
+                let (shift, turns) = moment(gait, &rest, t);
+                let mut frames: Vec<(DVec3, DQuat)> = Vec::new();
+                for (joint, turn) in rest.iter().zip(turns) {
+                    assert!((turn.length() - 1.0).abs() < 1e-12, "{} {t}: {turn}", joint.name);
+                    let frame = if frames.is_empty() {
+                        (joint.at + shift, turn)
+                    } else {
+                        let (place, parent) = frames[joint.parent];
+                        (place + parent * (joint.at - rest[joint.parent].at), parent * turn)
+                    };
+                    frames.push(frame);
+                }
+                for (leg, landing) in gait.landing.into_iter().enumerate() {
+                    let ankle = SPINE.len() + 3 * leg + 2;
+                    let ([ahead, up], _) = step(gait, t - landing);
+                    let goal = DVec3::new(rest[ankle].at.x + ahead, up, rest[ankle].at.z);
+                    assert!(frames[ankle].0.distance(goal) < 1e-3, "{} {}: {} {goal}", gait.name, rest[ankle].name, frames[ankle].0);
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn feet_stand_while_the_ground_goes_back_evenly_and_land_in_four_beats() {
+        let [walk, trot, idle] = &GAITS;
+        let toe = |gait: &Gait, t| {
+            let ([ahead, up], pitch) = step(gait, t);
+            let (sin, cos) = libm::sincos(-pitch);
+            let [x, y] = SOLE[0];
+            [ahead + x * cos - y * sin, up + x * sin + y * cos]
+        };
+        for gait in [walk, trot, idle] {
+            for at in 0..100 {
+                let t = gait.duty * f64::from(at) / 100.0;
+                let [x, y] = toe(gait, t);
+                let even = SOLE[0][0] + gait.stride_m * (0.5 - t / gait.duty);
+                assert!((x - even).abs() < 1e-12 && y.abs() < 1e-12, "{} {t}: {x} {y}", gait.name);
+            }
+        }
+        for gait in [walk, trot] {
+            let middle = 0.5 * (1.0 + gait.duty);
+            assert!(toe(gait, middle)[1] > 0.8 * gait.lift_m, "{}", gait.name);
+            // Neither place nor speed jumps where a foot leaves and lands.
+            for t in [gait.duty, 1.0] {
+                let [before, at, after] = [-1e-4, 0.0, 1e-4].map(|late| toe(gait, t + late));
+                assert!([0, 1].iter().all(|&i| (before[i] - 2.0 * at[i] + after[i]).abs() < 1e-6), "{} {t}", gait.name);
+            }
+        }
+        let standing = |gait: &Gait, t: f64| gait.landing.iter().filter(|landing| (t - **landing).rem_euclid(1.0) < gait.duty).count();
+        let mut landings = walk.landing;
+        landings.sort_by(f64::total_cmp);
+        assert_eq!(landings, [0.0, 0.25, 0.5, 0.75]);
+        assert!((0..64).map(|t| standing(walk, f64::from(t) / 64.0)).all(|feet| feet == 2 || feet == 3));
+        assert!((0..64).map(|t| standing(trot, f64::from(t) / 64.0)).all(|feet| feet == 2));
+        assert!((0..64).map(|t| standing(idle, f64::from(t) / 64.0)).all(|feet| feet == 4));
+    }
+}

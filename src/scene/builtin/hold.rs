@@ -1,0 +1,58 @@
+//! Holds: which joints move a vertex, with weights that are whole numbers of one sum.
+
+use glam::DVec3;
+
+use crate::scene::{Accessor, Bounds, Component, Scene, rig::Influences};
+
+/// A joint and its weight, of 65,535 in all.
+pub type Hold = (u8, u16);
+
+/// Weights that sum to 1, or nearly, as whole ones of 65,535 in all; the largest first, which takes what rounding leaves.
+pub fn whole(held: &[(u8, f64)]) -> Vec<Hold> {
+    let mut rounded: Vec<Hold> = held.iter().map(|&(joint, share)| (joint, (share.clamp(0.0, 1.0) * 65_535.0).round() as u16)).collect();
+    rounded.sort_by_key(|&(joint, weight)| (std::cmp::Reverse(weight), joint));
+    let sum: i32 = rounded.iter().map(|&(_, weight)| i32::from(weight)).sum();
+    rounded[0].1 = (i32::from(rounded[0].1) + 65_535 - sum) as u16;
+    rounded
+}
+
+/// Lets `joints` joints hold the vertices of a primitive, `sets` times four of them each at most.
+pub fn append(scene: &mut Scene, primitive: usize, joints: usize, sets: usize, held: &[Vec<Hold>]) {
+    let mut bounds = vec![Bounds::EMPTY; joints];
+    let (mut numbers, mut weights) = (vec![Vec::<u8>::new(); sets], vec![Vec::<u16>::new(); sets]);
+    for (vertex, held) in held.iter().enumerate() {
+        let place = DVec3::from(scene.primitives[primitive].position(scene, vertex as u32).map(f64::from));
+        for slot in 0..4 * sets {
+            let (joint, weight) = held.get(slot).copied().unwrap_or((0, 0));
+            numbers[slot / 4].push(joint);
+            weights[slot / 4].push(weight);
+            if weight > 0 {
+                bounds[usize::from(joint)].include(place);
+            }
+        }
+    }
+    let mut append = |bytes: &[u8]| {
+        let at = scene.vertex_bytes.len() as u32;
+        scene.vertex_bytes.extend_from_slice(bytes);
+        scene.vertex_bytes.resize(scene.vertex_bytes.len().next_multiple_of(4), 0);
+        at
+    };
+    let accessor = |offset, component: Component, normalized| Accessor {
+        offset,
+        stride: 4 * component.bytes() as u32,
+        component,
+        lanes: 4,
+        normalized,
+        count: held.len() as u32,
+    };
+    let influences = numbers
+        .iter()
+        .zip(&weights)
+        .map(|(numbers, weights)| Influences {
+            joints: accessor(append(numbers), Component::U8, false),
+            weights: accessor(append(bytemuck::cast_slice(weights)), Component::U16, true),
+        })
+        .collect();
+    let softness = &mut scene.primitives[primitive].softness;
+    (softness.influences, softness.joint_bounds) = (influences, bounds);
+}

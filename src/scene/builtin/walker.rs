@@ -1,0 +1,281 @@
+//! Walker: a long-necked animal on four legs, alone or in a herd, with the clips of its gaits.
+
+use std::f64::consts::TAU;
+
+use glam::{DMat4, DVec3};
+
+use super::{
+    BuiltinError, MAX_TRIANGLES, Mesh,
+    flesh::{Bone, Flesh, Skin as Surface},
+    gait::{GAITS, Gait, JOINTS, Joint, LEGS, SIDES_M, SPINE, joints, moment},
+    hold,
+    query::Values,
+};
+use crate::scene::{
+    Instance, Material, Scene, pose,
+    rig::{Channel, Clip, Interpolation, Local, Node, Parts, Property, Sampler, Skin},
+};
+
+/// Keys of a round, and ways to begin it, so that neighbours are out of step.
+const KEYS: usize = 64;
+const PHASES: usize = 8;
+
+pub fn build(values: &Values) -> Result<Scene, BuiltinError> {
+    let (tess, instances) = (values.whole("tess"), values.whole("instances"));
+    let mut scene = Scene { materials: vec![Material { name: "hide".into(), ..Material::default() }], ..Scene::default() };
+    let cell = 0.1 / f64::from(tess);
+    let flesh = Flesh { bones: bones(), thinnest: 0.6 * cell };
+    let Surface { vertices, triangles } = flesh.skin(cell);
+    let all = triangles.len() as u64 * u64::from(instances);
+    if all > MAX_TRIANGLES {
+        return Err(BuiltinError(format!("walker: {all} triangles in all are too many; at most {MAX_TRIANGLES} are made")));
+    }
+    let mut mesh = Mesh::with_capacity(vertices.len(), triangles.len());
+    for &[place, normal] in &vertices {
+        mesh.colored_vertex(place, normal, tone(place, normal));
+    }
+    triangles.iter().for_each(|&corners| mesh.triangle(corners));
+    mesh.append(&mut scene, "walker", 0);
+    let held: Vec<_> = vertices.iter().map(|[place, _]| flesh.held(*place)).collect();
+    hold::append(&mut scene, 0, JOINTS, 1, &held);
+    let clip = |gait: &Gait| Clip { name: gait.name.into(), duration_s: gait.period_s, channels: Vec::new() };
+    scene.rig.clips = GAITS.iter().map(clip).collect();
+    let first: Vec<Vec<usize>> =
+        (0..PHASES.min(instances as usize)).map(|phase| GAITS.iter().map(|gait| record(&mut scene, gait, phase)).collect()).collect();
+    (0..instances).for_each(|instance| stand(&mut scene, instance, instances, &first[instance as usize % PHASES]));
+    scene.rig.reach = pose::reach(&scene);
+    Ok(scene)
+}
+
+/// The body: what its joints carry.
+fn bones() -> Vec<Bone> {
+    let mut bones = Vec::new();
+    let mut bone = |joint, z: [f64; 2], blend, [[x0, y0, r0], [x1, y1, r1]]: [[f64; 3]; 2]| {
+        let ends = [DVec3::new(x0, y0, z[0]), DVec3::new(x1, y1, z[1])];
+        bones.push(Bone { joint, ends, radii: [r0, r1], blend, is_foot: false });
+    };
+    let spine: [(usize, [[f64; 3]; 2]); 12] = [
+        (0, [[-0.44, 0.93, 0.235], [0.0, 0.90, 0.275]]),
+        (1, [[0.0, 0.90, 0.275], [0.36, 0.93, 0.22]]),
+        (1, [[0.36, 0.95, 0.20], [0.46, 1.02, 0.165]]),
+        (2, [[0.46, 1.02, 0.165], [0.70, 1.26, 0.115]]),
+        (3, [[0.70, 1.26, 0.115], [0.88, 1.54, 0.09]]),
+        (4, [[0.88, 1.54, 0.09], [1.00, 1.80, 0.08]]),
+        (5, [[1.00, 1.82, 0.095], [1.08, 1.82, 0.09]]),
+        (0, [[-0.50, 0.94, 0.20], [-0.60, 0.93, 0.155]]),
+        (6, [[-0.60, 0.93, 0.155], [-0.92, 0.88, 0.10]]),
+        (7, [[-0.92, 0.88, 0.10], [-1.24, 0.81, 0.068]]),
+        (8, [[-1.24, 0.81, 0.068], [-1.56, 0.77, 0.046]]),
+        (9, [[-1.56, 0.77, 0.046], [-1.86, 0.79, 0.03]]),
+    ];
+    spine.into_iter().for_each(|(joint, shape)| bone(joint, [0.0; 2], 0.05, shape));
+    bone(5, [0.0; 2], 0.05, [[1.08, 1.81, 0.085], [1.25, 1.73, 0.056]]);
+    for side in [-1.0, 1.0] {
+        bone(5, [0.05 * side, 0.075 * side], 0.02, [[0.98, 1.88, 0.024], [0.94, 2.0, 0.028]]);
+    }
+    for (leg, z) in SIDES_M.into_iter().enumerate() {
+        let ([hip, knee, ankle], first) = (LEGS[leg % 2], SPINE.len() + 3 * leg);
+        let [thick, bend] = [[0.165, 0.095], [0.135, 0.085]][leg % 2];
+        bone(first, [z; 2], 0.12, [[hip[0], hip[1], thick], [knee[0], knee[1], bend]]);
+        bone(first + 1, [z; 2], 0.04, [[knee[0], knee[1], bend], [ankle[0], ankle[1] + 0.03, 0.06]]);
+        bone(first + 2, [z; 2], 0.04, [[ankle[0] - 0.005, 0.07, 0.085], [ankle[0] + 0.085, 0.05, 0.07]]);
+    }
+    bones.iter_mut().for_each(|bone| bone.is_foot = bone.joint >= SPINE.len() && (bone.joint - SPINE.len()) % 3 == 2);
+    bones
+}
+
+/// Colour of its hide: dark above, pale below, bands over rump, tail and neck, dark feet, a muzzle and eyes.
+fn tone(p: DVec3, normal: DVec3) -> [f64; 3] {
+    const BACK: DVec3 = DVec3::new(0.52, 0.19, 0.06);
+    const BELLY: DVec3 = DVec3::new(0.92, 0.74, 0.47);
+    const BAND: DVec3 = DVec3::new(0.10, 0.045, 0.04);
+    let step = |low: f64, high: f64, v: f64| {
+        let t = ((v - low) / (high - low)).clamp(0.0, 1.0);
+        t * t * (3.0 - 2.0 * t)
+    };
+    // Along the spine: the neck rises.
+    let along = p.x + 0.9 * (p.y - 1.0).max(0.0);
+    let pale = step(0.1, -0.75, normal.y).max(step(0.62, 0.42, p.y));
+    let mut color = BACK.lerp(BELLY, 0.9 * pale);
+    let banded =
+        step(0.05, -0.45, along).max(step(0.55, 0.9, along) * step(1.78, 1.66, p.y)) * step(-0.35, 0.25, normal.y) * step(0.5, 0.62, p.y);
+    let band = step(-0.1, 0.55, libm::sin(TAU * along / 0.26));
+    color = color.lerp(BAND, 0.9 * banded * band);
+    color = color.lerp(BAND, step(0.17, 0.09, p.y).max(step(1.2, 1.27, p.x)).max(step(1.93, 1.97, p.y)));
+    let eye = DVec3::new(1.09, 1.85, 0.085);
+    color.lerp(DVec3::splat(0.01), step(0.045, 0.025, DVec3::new(p.x, p.y, p.z.abs()).distance(eye))).to_array()
+}
+
+/// Samplers of a gait that begins `phase` later: the way of the pelvis, then the turn of every joint. Gives the first.
+fn record(scene: &mut Scene, gait: &Gait, phase: usize) -> usize {
+    let rest = joints();
+    let (first, times) = (scene.rig.samplers.len(), |key| (gait.period_s * key as f64 / KEYS as f64) as f32);
+    let times: Vec<f32> = (0..=KEYS).map(times).collect();
+    // The last key is the first one again, to the bit.
+    let key = |key: usize| moment(gait, &rest, ((key + phase * KEYS / PHASES) % KEYS) as f64 / KEYS as f64);
+    let keys: Vec<_> = (0..=KEYS).map(key).collect();
+    let mut sampler =
+        |lanes, values| scene.rig.samplers.push(Sampler { interpolation: Interpolation::Linear, times: times.clone(), values, lanes });
+    sampler(3, keys.iter().flat_map(|(shift, _)| (rest[0].at + *shift).as_vec3().to_array()).collect());
+    for joint in 0..JOINTS {
+        sampler(4, keys.iter().flat_map(|(_, turns)| turns[joint].as_quat().to_array()).collect());
+    }
+    first
+}
+
+/// Adds one animal: its place, its joints, its skin, and its channels in every clip.
+fn stand(scene: &mut Scene, instance: u32, of: u32, samplers: &[usize]) {
+    // A sunflower's seeds, drawn out along the way; alone, it stands in the middle.
+    let reach = if of == 1 { 0.0 } else { (f64::from(instance) + 0.3).sqrt() };
+    let (sin, cos) = libm::sincos(f64::from(instance) * 2.399_963_229_728_653);
+    let part = |translation| Local::Parts(Parts { translation, ..Parts::default() });
+    let (rest, first, rig) = (joints(), scene.rig.nodes.len() + 1, &mut scene.rig);
+    let place = part(DVec3::new(2.3 * reach * sin, 0.0, 1.0 * reach * cos));
+    rig.nodes.push(Node { name: format!("walker {instance}"), parent: None, rest: place, weights: Vec::new() });
+    for (joint, Joint { name, parent, at }) in rest.iter().enumerate() {
+        let (parent, from) = if joint == 0 { (first - 1, DVec3::ZERO) } else { (first + parent, rest[*parent].at) };
+        rig.nodes.push(Node {
+            name: format!("walker {instance} {name}"),
+            parent: Some(parent),
+            rest: part(*at - from),
+            weights: Vec::new(),
+        });
+    }
+    rig.skins.push(Skin {
+        name: format!("walker {instance}"),
+        joints: (first..first + JOINTS).collect(),
+        joint_from_mesh: rest.iter().map(|joint| DMat4::from_translation(-joint.at)).collect(),
+    });
+    for (clip, &sampler) in rig.clips.iter_mut().zip(samplers) {
+        clip.channels.push(Channel { node: first, property: Property::Translation, sampler });
+        let channel = |joint| Channel { node: first + joint, property: Property::Rotation, sampler: sampler + 1 + joint };
+        clip.channels.extend((0..JOINTS).map(channel));
+    }
+    let skin = rig.skins.len() - 1;
+    scene.instances.push(Instance { primitive: 0, world_from_object: DMat4::IDENTITY, node: Some(first - 1), skin: Some(skin) });
+}
+
+#[cfg(test)]
+mod tests {
+    use std::collections::HashSet;
+
+    use super::super::build as scene_of;
+    use super::*;
+    use crate::{
+        ladder::Skinning,
+        scene::pose::{Motion, Pose},
+    };
+
+    /// Every vertex of every instance at a moment of a clip.
+    fn bent(scene: &Scene, clip: usize, time_s: f64, skinning: Skinning) -> Vec<DVec3> {
+        let pose = Pose::at(scene, &Motion { clip: Some(clip), time_s, skinning, ..Motion::default() });
+        let primitive = &scene.primitives[0];
+        let all = |instance: usize| {
+            let bend = pose.bend(instance).expect("its skin holds it").clone();
+            (0..primitive.vertex_count()).map(move |vertex| bend.position(scene, primitive, vertex))
+        };
+        (0..scene.instances.len()).flat_map(all).collect()
+    }
+
+    /// Moments between keys as well as on them.
+    fn moments(clip: &Clip) -> impl Iterator<Item = f64> {
+        (0..=75).map(|at| clip.duration_s * f64::from(at) / 75.0)
+    }
+
+    #[test]
+    fn it_is_one_closed_body_at_every_fineness() {
+        for tess in 1..=4 {
+            let scene = scene_of(&format!("walker?tess={tess}")).unwrap();
+            let primitive = &scene.primitives[0];
+            let corners = || (0..primitive.triangle_count()).map(|triangle| primitive.corners(&scene, triangle));
+            let edges: HashSet<[u32; 2]> = corners().flat_map(|[a, b, c]| [[a, b], [b, c], [c, a]]).collect();
+            assert_eq!(edges.len() as u64, 3 * u64::from(primitive.triangle_count()), "tess {tess}: no edge is run twice in one direction");
+            assert!(edges.iter().all(|&[a, b]| edges.contains(&[b, a])), "tess {tess}");
+            let mut seen = vec![false; primitive.vertex_count() as usize];
+            let mut open = vec![0];
+            let mut next = vec![Vec::new(); seen.len()];
+            edges.iter().for_each(|&[a, b]| next[a as usize].push(b));
+            while let Some(vertex) = open.pop() {
+                if !std::mem::replace(&mut seen[vertex as usize], true) {
+                    open.extend(&next[vertex as usize]);
+                }
+            }
+            assert!(seen.iter().all(|seen| *seen), "tess {tess}: it falls apart");
+            let at = |vertex: u32| DVec3::from(primitive.position(&scene, vertex).map(f64::from));
+            let volume: f64 = corners().map(|corners| corners.map(at)).map(|[a, b, c]| a.dot(b.cross(c)) / 6.0).sum();
+            assert!((0.2..0.6).contains(&volume), "tess {tess}: {volume} m³, outwards");
+        }
+    }
+
+    #[test]
+    fn weights_are_whole_and_soles_follow_their_foot_alone() {
+        let flesh = Flesh { bones: bones(), thinnest: 0.03 };
+        let mut most = 0;
+        for [place, _] in flesh.skin(0.05).vertices {
+            let held = flesh.held(place);
+            most = most.max(held.len());
+            assert!(held.len() <= 4 && held.iter().map(|&(_, weight)| u32::from(weight)).sum::<u32>() == 65_535, "{place}: {held:?}");
+            assert!(place.y > 0.0 || (held.len() == 1 && (usize::from(held[0].0) - SPINE.len()) % 3 == 2), "{place}: {held:?}");
+        }
+        assert_eq!(most, 4, "joints blend");
+    }
+
+    #[test]
+    fn it_goes_round_to_the_bit() {
+        let scene = scene_of("walker?tess=1&instances=3").unwrap();
+        for sampler in &scene.rig.samplers {
+            let keys: Vec<&[f32]> = sampler.values.chunks(sampler.lanes).collect();
+            assert_eq!((keys.len(), sampler.times.len(), keys[0]), (KEYS + 1, KEYS + 1, keys[KEYS]));
+        }
+        for (index, clip) in scene.rig.clips.iter().enumerate() {
+            let at = |time_s| Pose::at(&scene, &Motion { clip: Some(index), time_s, ..Motion::default() });
+            assert_eq!(at(0.0), at(clip.duration_s), "{}", clip.name);
+            assert_eq!(at(0.25 * clip.duration_s), at(4.25 * clip.duration_s), "{}", clip.name);
+            assert_ne!(at(0.0), at(0.25 * clip.duration_s), "{}", clip.name);
+        }
+        // Animals out of step make the same steps: the second is an eighth of a round ahead.
+        let [a, b] = [0, 1].map(|instance| {
+            let place = scene.rig.nodes[scene.instances[instance].node.unwrap()].rest.matrix().w_axis.truncate();
+            let (count, late) = (scene.primitives[0].vertex_count() as usize, 0.1875 * (1 - instance) as f64);
+            bent(&scene, 0, 0.3 + late, Skinning::Linear)[instance * count..][..count].iter().map(|p| *p - place).collect::<Vec<_>>()
+        });
+        assert!(a.iter().zip(&b).all(|(a, b)| a.distance(*b) < 1e-5));
+    }
+
+    #[test]
+    fn feet_stand_on_the_ground_and_never_below_it() {
+        let scene = scene_of("walker?instances=2").unwrap();
+        for (index, clip) in scene.rig.clips.iter().enumerate() {
+            for (time_s, skinning) in moments(clip).flat_map(|time_s| Skinning::ALL.iter().map(move |skinning| (time_s, *skinning))) {
+                let lowest = bent(&scene, index, time_s, skinning).iter().map(|p| p.y).fold(f64::INFINITY, f64::min);
+                assert!((-1e-3..8e-3).contains(&lowest), "{} at {time_s} s: {lowest}", clip.name);
+            }
+        }
+    }
+
+    #[test]
+    fn the_hide_stretches_without_a_tear_and_stays_in_its_boxes() {
+        let scene = scene_of("walker").unwrap();
+        let primitive = &scene.primitives[0];
+        let rest = |vertex: u32| DVec3::from(primitive.position(&scene, vertex).map(f64::from));
+        let mut longest: f64 = 0.0;
+        for (index, clip) in scene.rig.clips.iter().enumerate() {
+            for time_s in moments(clip) {
+                let places = bent(&scene, index, time_s, Skinning::Linear);
+                for [a, b, c] in (0..primitive.triangle_count()).map(|triangle| primitive.corners(&scene, triangle)) {
+                    for [a, b] in [[a, b], [b, c], [c, a]] {
+                        // Shortest edges are let off: a cell is 5 cm wide.
+                        let stretched = places[a as usize].distance(places[b as usize]) / rest(a).distance(rest(b)).max(0.02);
+                        longest = longest.max(stretched);
+                    }
+                }
+                let sure = Pose::at(&scene, &Motion { clip: Some(index), time_s, ..Motion::default() }).bounds(&scene);
+                let [sure, framed] = [(sure, 1e-6), (scene.rig.reach, 0.02)].map(|(b, slack)| (b.min - slack, b.max + slack));
+                for (low, high) in [sure, framed] {
+                    assert!(places.iter().all(|p| p.cmpge(low).all() && p.cmple(high).all()), "{} at {time_s} s", clip.name);
+                }
+            }
+        }
+        assert!(longest < 2.0, "an edge grows {longest} times");
+    }
+}
