@@ -32,8 +32,10 @@ pub struct Skin {
 }
 
 /// Joints blend over this share of the thickness of a limb, and hold soles alone below this height.
-const SOFTNESS: f64 = 0.6;
+const SOFTNESS: f64 = 0.8;
 const SOLE_M: f64 = 0.15;
+/// Bones taper by less than makes the field change by so many metres a metre.
+const STEEPEST: f64 = 1.25;
 /// No blend lifts the skin by more.
 const BULGE_M: f64 = 0.05;
 
@@ -75,7 +77,16 @@ impl Flesh {
         let [wide, high, deep] = tall.map(|count| count as usize + 2);
         let steps = [1, wide, wide * high];
         let corner = |at: usize| DVec3::new((at % wide) as f64, (at / wide % high) as f64, (at / steps[2]) as f64);
-        let values: Vec<f64> = (0..steps[2] * deep).map(|at| self.field((low + corner(at)) * cell)).collect();
+        let mut values = vec![f64::INFINITY; steps[2] * deep];
+        for row in (0..values.len()).step_by(wide) {
+            let mut at = row;
+            while at < row + wide {
+                values[at] = self.field((low + corner(at)) * cell);
+                // Corners far outside need no value.
+                at += (values[at] / (STEEPEST * cell)).max(1.0) as usize;
+            }
+        }
+        fill_pinches(&mut values, steps);
         let mut skin = Skin { vertices: Vec::new(), triangles: Vec::new() };
         let mut vertex_in = vec![u32::MAX; values.len()];
         for at in 0..values.len() - steps[0] - steps[1] - steps[2] {
@@ -135,6 +146,24 @@ impl Flesh {
         held.iter_mut().for_each(|held| held.1 /= sum);
         held.retain(|held| held.1 > 0.0);
         hold::whole(&held)
+    }
+}
+
+/// Where inside and outside alternate round a face of a cell, the skin would be pinched to a line: it swells over the nearer corner.
+fn fill_pinches(values: &mut [f64], steps: [usize; 3]) {
+    let mut is_pinched = true;
+    while std::mem::take(&mut is_pinched) {
+        for (at, axis) in (0..values.len() - steps[1] - steps[2]).flat_map(|at| (0..3).map(move |axis| (at, axis))) {
+            let (u, v) = (steps[(axis + 1) % 3], steps[(axis + 2) % 3]);
+            let round = [at, at + u, at + u + v, at + v];
+            let [a, b, c, d] = round.map(|corner| values[corner] < 0.0);
+            if a == c && b == d && a != b {
+                let outside = round.into_iter().filter(|&corner| values[corner] >= 0.0);
+                let nearer = outside.min_by(|&a, &b| values[a].total_cmp(&values[b])).expect("two are");
+                values[nearer] = -values[nearer].max(1e-9);
+                is_pinched = true;
+            }
+        }
     }
 }
 

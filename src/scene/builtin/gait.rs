@@ -4,26 +4,31 @@ use std::f64::consts::TAU;
 
 use glam::{DMat3, DQuat, DVec3};
 
-/// Spine and tail: name, parent and place at rest, metres; it looks along +x. Legs follow, three joints each.
+/// Spine and tail: name, parent and place at rest, metres; it looks along +x. Legs follow, four joints each.
 pub const SPINE: [(&str, usize, [f64; 2]); 10] = [
-    ("pelvis", 0, [-0.42, 0.92]),
-    ("chest", 0, [0.02, 0.94]),
-    ("neck", 1, [0.46, 1.02]),
-    ("nape", 2, [0.70, 1.26]),
-    ("throat", 3, [0.88, 1.54]),
-    ("head", 4, [1.00, 1.80]),
-    ("tail 1", 0, [-0.60, 0.93]),
-    ("tail 2", 6, [-0.92, 0.88]),
-    ("tail 3", 7, [-1.24, 0.81]),
-    ("tail 4", 8, [-1.56, 0.77]),
+    ("pelvis", 0, [-0.42, 1.00]),
+    ("chest", 0, [0.02, 1.01]),
+    ("neck", 1, [0.46, 1.09]),
+    ("nape", 2, [0.70, 1.32]),
+    ("throat", 3, [0.88, 1.60]),
+    ("head", 4, [1.00, 1.86]),
+    ("tail 1", 0, [-0.60, 1.02]),
+    ("tail 2", 6, [-0.92, 0.98]),
+    ("tail 3", 7, [-1.24, 0.90]),
+    ("tail 4", 8, [-1.56, 0.85]),
 ];
-/// Hip, knee and ankle of a hind leg and of a foreleg, whose knee is an elbow and points back.
-pub const LEGS: [[[f64; 2]; 3]; 2] = [[[-0.42, 0.84], [-0.27, 0.49], [-0.46, 0.09]], [[0.38, 0.80], [0.22, 0.47], [0.40, 0.09]]];
+/// Joints of a hind leg and of a foreleg: knees point ahead, elbows back, and feet stand on their toes.
+pub const LEGS: [[[f64; 2]; 4]; 2] =
+    [[[-0.42, 0.92], [-0.26, 0.65], [-0.48, 0.38], [-0.45, 0.08]], [[0.43, 0.88], [0.27, 0.63], [0.35, 0.36], [0.35, 0.08]]];
+const PARTS: [[&str; 4]; 2] = [["hip", "knee", "hock", "foot"], ["shoulder", "elbow", "wrist", "foot"]];
 /// Left hind, left fore, right hind, right fore: how far to the right of the spine.
-pub const SIDES_M: [f64; 4] = [-0.16, -0.15, 0.16, 0.15];
-pub const JOINTS: usize = SPINE.len() + 12;
-/// Tip of the toes and the heel, as they lie from the ankle.
-const SOLE: [[f64; 2]; 2] = [[0.15, -0.09], [-0.07, -0.09]];
+pub const SIDES_M: [f64; 4] = [-0.15, -0.14, 0.15, 0.14];
+pub const JOINTS: usize = SPINE.len() + 16;
+/// Tip of the toes and the heel, as they lie from the foot's joint.
+const SOLE: [[f64; 2]; 2] = [[0.13, -0.08], [-0.05, -0.08]];
+/// How far the lowest bone of a hind leg and of a foreleg leans ahead: at landing, in the middle of its stand, as it leaves, and
+/// twice in the air.
+const LEANS: [[f64; 5]; 2] = [[-0.28, 0.0, 0.55, 0.80, 0.25], [-0.28, 0.0, 0.45, 1.00, 0.50]];
 /// Between hips and shoulders.
 const TRUNK_M: f64 = 0.8;
 
@@ -59,7 +64,7 @@ pub const GAITS: [Gait; 3] = [
     },
     Gait {
         name: "Idle", period_s: 3.0, duty: 1.0, landing: [0.0, 0.25, 0.5, 0.75], stride_m: 0.0, lift_m: 0.0,
-        bob_m: 0.006, lean_m: 0.03, sway: 0.02, neck: 0.13, tail: 0.16, nod: 0.03,
+        bob_m: 0.006, lean_m: 0.03, sway: 0.02, neck: 0.10, tail: 0.10, nod: 0.03,
     },
 ];
 
@@ -77,7 +82,7 @@ pub fn joints() -> Vec<Joint> {
     for (leg, side) in ["left hind", "left fore", "right hind", "right fore"].into_iter().enumerate() {
         for (part, [x, y]) in LEGS[leg % 2].into_iter().enumerate() {
             let parent = if part == 0 { leg % 2 } else { joints.len() - 1 };
-            joints.push(Joint { name: format!("{side} {}", ["hip", "knee", "ankle"][part]), parent, at: DVec3::new(x, y, SIDES_M[leg]) });
+            joints.push(Joint { name: format!("{side} {}", PARTS[leg % 2][part]), parent, at: DVec3::new(x, y, SIDES_M[leg]) });
         }
     }
     joints
@@ -93,15 +98,38 @@ fn turn(axis: DVec3, angle: f64) -> DQuat {
     DQuat::from_xyzw(axis.x * sin, axis.y * sin, axis.z * sin, cos)
 }
 
-/// Where an ankle is, ahead of its place at rest and above the ground, and how far its toes point down; `t` rounds after it has landed.
-fn step(gait: &Gait, t: f64) -> ([f64; 2], f64) {
+/// A foot on its way.
+struct Step {
+    /// Its joint, ahead of its place at rest and above the ground.
+    at: [f64; 2],
+    /// How far its toes point down.
+    pitch: f64,
+    /// How far the bone above it leans ahead.
+    lean: f64,
+}
+
+/// A curve without corners through the values that it has at these times; it goes round.
+fn round_curve(times: [f64; 5], values: [f64; 5], t: f64) -> f64 {
+    let key = |i: usize| (times[i % 5] + (i / 5) as f64 - 1.0, values[i % 5]);
+    let after = (5..).find(|&i| key(i + 1).0 > t).expect("times end at 1");
+    let slope = |i: usize| (key(i + 1).1 - key(i - 1).1) / (key(i + 1).0 - key(i - 1).0);
+    let ((t0, v0), (t1, v1)) = (key(after), key(after + 1));
+    let (s, wide) = ((t - t0) / (t1 - t0), t1 - t0);
+    let (s2, s3) = (s * s, s * s * s);
+    let bent = slope(after) * (s3 - 2.0 * s2 + s) + slope(after + 1) * (s3 - s2);
+    v0 + (v1 - v0) * (3.0 * s2 - 2.0 * s3) + wide * bent
+}
+
+/// A foot of a girdle, `t` rounds after it has landed.
+fn step(gait: &Gait, girdle: usize, t: f64) -> Step {
     let t = t.rem_euclid(1.0);
     let back = 0.5 * gait.stride_m;
+    let air = 1.0 - gait.duty;
     let [ahead, lift] = if t < gait.duty {
         [back - gait.stride_m * t / gait.duty, 0.0]
     } else {
         // A cubic that leaves and lands as fast as the ground goes back.
-        let (s, fast) = ((t - gait.duty) / (1.0 - gait.duty), -gait.stride_m * (1.0 - gait.duty) / gait.duty);
+        let (s, fast) = ((t - gait.duty) / air, -gait.stride_m * air / gait.duty);
         let (s2, s3) = (s * s, s * s * s);
         [back * (6.0 * s2 - 4.0 * s3 - 1.0) + fast * (2.0 * s3 - 3.0 * s2 + s), 16.0 * gait.lift_m * s2 * (1.0 - s) * (1.0 - s)]
     };
@@ -109,12 +137,15 @@ fn step(gait: &Gait, t: f64) -> ([f64; 2], f64) {
         let s = ((t - low) / (high - low)).clamp(0.0, 1.0);
         16.0 * s * s * (1.0 - s) * (1.0 - s)
     };
+    let is_still = gait.lift_m == 0.0;
     // The heel rises before the toes leave, and the toes before it lands.
-    let pitch = if gait.lift_m > 0.0 { 0.62 * hump(gait.duty - 0.14, gait.duty + 0.2) - 0.3 * hump(gait.duty + 0.14, 1.0) } else { 0.0 };
+    let pitch = if is_still { 0.0 } else { 0.85 * hump(gait.duty - 0.14, gait.duty + 0.24) - 0.3 * hump(gait.duty + 0.16, 1.0) };
+    let times = [0.0, 0.5 * gait.duty, gait.duty, gait.duty + 0.35 * air, gait.duty + 0.7 * air];
+    let lean = if is_still { 0.0 } else { round_curve(times, LEANS[girdle], t) };
     let (sin, cos) = libm::sincos(-pitch);
     let [toe, heel] = SOLE.map(|[x, y]| [x * cos - y * sin, x * sin + y * cos]);
     // The toes keep their course, and neither they nor the heel go below it.
-    ([ahead + SOLE[0][0] - toe[0], lift - toe[1].min(heel[1])], pitch)
+    Step { at: [ahead + SOLE[0][0] - toe[0], lift - toe[1].min(heel[1])], pitch, lean }
 }
 
 /// A moment: how far the pelvis has moved, and the turn of every joint in its parent.
@@ -140,13 +171,14 @@ pub fn moment(gait: &Gait, rest: &[Joint], t: f64) -> (DVec3, [DQuat; JOINTS]) {
     }
     let places = [rest[0].at + shift, rest[0].at + shift + girdles[0] * (rest[1].at - rest[0].at)];
     for leg in 0..4 {
-        let (girdle, first) = (leg % 2, SPINE.len() + 3 * leg);
-        let [hip, knee, ankle] = [0, 1, 2].map(|part| rest[first + part].at);
-        let ([ahead, up], pitch) = step(gait, t - gait.landing[leg]);
+        let (girdle, first) = (leg % 2, SPINE.len() + 4 * leg);
+        let [hip, knee, hock, foot] = [0, 1, 2, 3].map(|part| rest[first + part].at);
+        let Step { at: [ahead, up], pitch, lean } = step(gait, girdle, t - gait.landing[leg]);
+        let (lean, pitch) = (turn(DVec3::Z, -lean), turn(DVec3::Z, -pitch));
         let at = places[girdle] + girdles[girdle] * (hip - rest[girdle].at);
-        let goal = DVec3::new(ankle.x + ahead, up, ankle.z) - at;
+        let goal = DVec3::new(foot.x + ahead, up, foot.z) + lean * (hock - foot) - at;
         // Two sides and the third: the knee lies in the plane of the goal and the way ahead.
-        let (thigh, shank) = (knee - hip, ankle - knee);
+        let (thigh, shank) = (knee - hip, hock - knee);
         let far = goal.length().min(0.9999 * (thigh.length() + shank.length()));
         let (down, hinge) = (goal.normalize(), goal.cross(DVec3::X).normalize());
         let along = (thigh.length_squared() - shank.length_squared() + far * far) / (2.0 * far);
@@ -159,7 +191,8 @@ pub fn moment(gait: &Gait, rest: &[Joint], t: f64) -> (DVec3, [DQuat; JOINTS]) {
         let [upper, lower] = [facing(thigh, bent), facing(shank, down * far - bent)];
         turns[first] = girdles[girdle].inverse() * upper;
         turns[first + 1] = upper.inverse() * lower;
-        turns[first + 2] = lower.inverse() * turn(DVec3::Z, -pitch);
+        turns[first + 2] = lower.inverse() * lean;
+        turns[first + 3] = lean.inverse() * pitch;
     }
     (shift, turns)
 }
@@ -187,11 +220,29 @@ mod tests {
                     frames.push(frame);
                 }
                 for (leg, landing) in gait.landing.into_iter().enumerate() {
-                    let ankle = SPINE.len() + 3 * leg + 2;
-                    let ([ahead, up], _) = step(gait, t - landing);
-                    let goal = DVec3::new(rest[ankle].at.x + ahead, up, rest[ankle].at.z);
-                    assert!(frames[ankle].0.distance(goal) < 1e-3, "{} {}: {} {goal}", gait.name, rest[ankle].name, frames[ankle].0);
+                    let foot = SPINE.len() + 4 * leg + 3;
+                    let [ahead, up] = step(gait, leg % 2, t - landing).at;
+                    let goal = DVec3::new(rest[foot].at.x + ahead, up, rest[foot].at.z);
+                    assert!(frames[foot].0.distance(goal) < 1e-9, "{} {} {t}: {} {goal}", gait.name, rest[foot].name, frames[foot].0);
                 }
+            }
+        }
+    }
+
+    #[test]
+    fn knees_point_ahead_and_elbows_back_and_no_leg_is_ever_stretched() {
+        let rest = joints();
+        for gait in &GAITS {
+            for (at, leg) in (0..200).flat_map(|at| (0..4).map(move |leg| (at, leg))) {
+                let (_, turns) = moment(gait, &rest, f64::from(at) / 200.0);
+                let first = SPINE.len() + 4 * leg;
+                let [upper, lower] = [1, 2].map(|part| rest[first + part].at - rest[first + part - 1].at);
+                // The lower bone in the frame of the upper one.
+                let lower = turns[first + 1] * lower;
+                let bend = upper.cross(lower) * if leg % 2 == 0 { -1.0 } else { 1.0 };
+                let stretched = (upper + lower).length() / (upper.length() + lower.length());
+                assert!(bend.z > 0.0 && bend.x.abs().max(bend.y.abs()) < 1e-9, "{} {}: {bend}", gait.name, rest[first + 1].name);
+                assert!((0.5..0.985).contains(&stretched), "{} {}: {stretched}", gait.name, rest[first + 1].name);
             }
         }
     }
@@ -200,7 +251,7 @@ mod tests {
     fn feet_stand_while_the_ground_goes_back_evenly_and_land_in_four_beats() {
         let [walk, trot, idle] = &GAITS;
         let toe = |gait: &Gait, t| {
-            let ([ahead, up], pitch) = step(gait, t);
+            let Step { at: [ahead, up], pitch, .. } = step(gait, 0, t);
             let (sin, cos) = libm::sincos(-pitch);
             let [x, y] = SOLE[0];
             [ahead + x * cos - y * sin, up + x * sin + y * cos]

@@ -3,6 +3,7 @@
 //! The handsome ones (teapot, sphere, knot, cube-wall, tentacle, walker, chamber) are for looking at; the others put one promise of the
 //! rasterizer under load and bring the camera that does so. All are indexed, finite and the same on every machine.
 
+mod body;
 mod extremes;
 mod field;
 mod flesh;
@@ -117,7 +118,7 @@ pub const BUILTINS: &[Builtin] = &[
         name: "walker",
         about: "a long-necked animal on four legs, with clips Walk, Trot and Idle; one, or a herd out of step",
         params: &[
-            whole("tess", "fineness; one has about 1,400 * tess^2 triangles", 2.0, 1.0..=12.0),
+            whole("tess", "fineness; one has about 1,300 * tess^2 triangles", 2.0, 1.0..=12.0),
             whole("instances", "how many, each with joints of its own", 1.0, 1.0..=1_000.0),
         ],
         build: walker::build,

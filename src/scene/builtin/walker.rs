@@ -1,13 +1,12 @@
 //! Walker: a long-necked animal on four legs, alone or in a herd, with the clips of its gaits.
 
-use std::f64::consts::TAU;
-
 use glam::{DMat4, DVec3};
 
 use super::{
     BuiltinError, MAX_TRIANGLES, Mesh,
-    flesh::{Bone, Flesh, Skin as Surface},
-    gait::{GAITS, Gait, JOINTS, Joint, LEGS, SIDES_M, SPINE, joints, moment},
+    body::{bones, tone},
+    flesh::{Flesh, Skin as Surface},
+    gait::{GAITS, Gait, JOINTS, Joint, joints, moment},
     hold,
     query::Values,
 };
@@ -45,65 +44,6 @@ pub fn build(values: &Values) -> Result<Scene, BuiltinError> {
     (0..instances).for_each(|instance| stand(&mut scene, instance, instances, &first[instance as usize % PHASES]));
     scene.rig.reach = pose::reach(&scene);
     Ok(scene)
-}
-
-/// The body: what its joints carry.
-fn bones() -> Vec<Bone> {
-    let mut bones = Vec::new();
-    let mut bone = |joint, z: [f64; 2], blend, [[x0, y0, r0], [x1, y1, r1]]: [[f64; 3]; 2]| {
-        let ends = [DVec3::new(x0, y0, z[0]), DVec3::new(x1, y1, z[1])];
-        bones.push(Bone { joint, ends, radii: [r0, r1], blend, is_foot: false });
-    };
-    let spine: [(usize, [[f64; 3]; 2]); 12] = [
-        (0, [[-0.44, 0.93, 0.235], [0.0, 0.90, 0.275]]),
-        (1, [[0.0, 0.90, 0.275], [0.36, 0.93, 0.22]]),
-        (1, [[0.36, 0.95, 0.20], [0.46, 1.02, 0.165]]),
-        (2, [[0.46, 1.02, 0.165], [0.70, 1.26, 0.115]]),
-        (3, [[0.70, 1.26, 0.115], [0.88, 1.54, 0.09]]),
-        (4, [[0.88, 1.54, 0.09], [1.00, 1.80, 0.08]]),
-        (5, [[1.00, 1.82, 0.095], [1.08, 1.82, 0.09]]),
-        (0, [[-0.50, 0.94, 0.20], [-0.60, 0.93, 0.155]]),
-        (6, [[-0.60, 0.93, 0.155], [-0.92, 0.88, 0.10]]),
-        (7, [[-0.92, 0.88, 0.10], [-1.24, 0.81, 0.068]]),
-        (8, [[-1.24, 0.81, 0.068], [-1.56, 0.77, 0.046]]),
-        (9, [[-1.56, 0.77, 0.046], [-1.86, 0.79, 0.03]]),
-    ];
-    spine.into_iter().for_each(|(joint, shape)| bone(joint, [0.0; 2], 0.05, shape));
-    bone(5, [0.0; 2], 0.05, [[1.08, 1.81, 0.085], [1.25, 1.73, 0.056]]);
-    for side in [-1.0, 1.0] {
-        bone(5, [0.05 * side, 0.075 * side], 0.02, [[0.98, 1.88, 0.024], [0.94, 2.0, 0.028]]);
-    }
-    for (leg, z) in SIDES_M.into_iter().enumerate() {
-        let ([hip, knee, ankle], first) = (LEGS[leg % 2], SPINE.len() + 3 * leg);
-        let [thick, bend] = [[0.165, 0.095], [0.135, 0.085]][leg % 2];
-        bone(first, [z; 2], 0.12, [[hip[0], hip[1], thick], [knee[0], knee[1], bend]]);
-        bone(first + 1, [z; 2], 0.04, [[knee[0], knee[1], bend], [ankle[0], ankle[1] + 0.03, 0.06]]);
-        bone(first + 2, [z; 2], 0.04, [[ankle[0] - 0.005, 0.07, 0.085], [ankle[0] + 0.085, 0.05, 0.07]]);
-    }
-    bones.iter_mut().for_each(|bone| bone.is_foot = bone.joint >= SPINE.len() && (bone.joint - SPINE.len()) % 3 == 2);
-    bones
-}
-
-/// Colour of its hide: dark above, pale below, bands over rump, tail and neck, dark feet, a muzzle and eyes.
-fn tone(p: DVec3, normal: DVec3) -> [f64; 3] {
-    const BACK: DVec3 = DVec3::new(0.52, 0.19, 0.06);
-    const BELLY: DVec3 = DVec3::new(0.92, 0.74, 0.47);
-    const BAND: DVec3 = DVec3::new(0.10, 0.045, 0.04);
-    let step = |low: f64, high: f64, v: f64| {
-        let t = ((v - low) / (high - low)).clamp(0.0, 1.0);
-        t * t * (3.0 - 2.0 * t)
-    };
-    // Along the spine: the neck rises.
-    let along = p.x + 0.9 * (p.y - 1.0).max(0.0);
-    let pale = step(0.1, -0.75, normal.y).max(step(0.62, 0.42, p.y));
-    let mut color = BACK.lerp(BELLY, 0.9 * pale);
-    let banded =
-        step(0.05, -0.45, along).max(step(0.55, 0.9, along) * step(1.78, 1.66, p.y)) * step(-0.35, 0.25, normal.y) * step(0.5, 0.62, p.y);
-    let band = step(-0.1, 0.55, libm::sin(TAU * along / 0.26));
-    color = color.lerp(BAND, 0.9 * banded * band);
-    color = color.lerp(BAND, step(0.17, 0.09, p.y).max(step(1.2, 1.27, p.x)).max(step(1.93, 1.97, p.y)));
-    let eye = DVec3::new(1.09, 1.85, 0.085);
-    color.lerp(DVec3::splat(0.01), step(0.045, 0.025, DVec3::new(p.x, p.y, p.z.abs()).distance(eye))).to_array()
 }
 
 /// Samplers of a gait that begins `phase` later: the way of the pelvis, then the turn of every joint. Gives the first.
@@ -215,23 +155,24 @@ mod tests {
             let held = flesh.held(place);
             most = most.max(held.len());
             assert!(held.len() <= 4 && held.iter().map(|&(_, weight)| u32::from(weight)).sum::<u32>() == 65_535, "{place}: {held:?}");
-            assert!(place.y > 0.0 || (held.len() == 1 && (usize::from(held[0].0) - SPINE.len()) % 3 == 2), "{place}: {held:?}");
+            assert!(place.y > 0.0 || (held.len() == 1 && joints()[usize::from(held[0].0)].name.ends_with("foot")), "{place}: {held:?}");
         }
         assert_eq!(most, 4, "joints blend");
     }
 
     #[test]
-    fn it_goes_round_to_the_bit() {
+    fn its_keys_go_round_to_the_bit() {
         let scene = scene_of("walker?tess=1&instances=3").unwrap();
         for sampler in &scene.rig.samplers {
             let keys: Vec<&[f32]> = sampler.values.chunks(sampler.lanes).collect();
             assert_eq!((keys.len(), sampler.times.len(), keys[0]), (KEYS + 1, KEYS + 1, keys[KEYS]));
         }
         for (index, clip) in scene.rig.clips.iter().enumerate() {
-            let at = |time_s| Pose::at(&scene, &Motion { clip: Some(index), time_s, ..Motion::default() });
-            assert_eq!(at(0.0), at(clip.duration_s), "{}", clip.name);
-            assert_eq!(at(0.25 * clip.duration_s), at(4.25 * clip.duration_s), "{}", clip.name);
-            assert_ne!(at(0.0), at(0.25 * clip.duration_s), "{}", clip.name);
+            let apart = |a: f64, b: f64| {
+                let [a, b] = [a, b].map(|share| bent(&scene, index, share * clip.duration_s, Skinning::Linear));
+                a.iter().zip(&b).map(|(a, b)| a.distance(*b)).fold(0.0, f64::max)
+            };
+            assert!(apart(0.0, 1.0) < 1e-6 && apart(0.25, 4.25) < 1e-6 && apart(0.0, 0.25) > 0.05, "{}", clip.name);
         }
         // Animals out of step make the same steps: the second is an eighth of a round ahead.
         let [a, b] = [0, 1].map(|instance| {
@@ -272,10 +213,12 @@ mod tests {
                 let sure = Pose::at(&scene, &Motion { clip: Some(index), time_s, ..Motion::default() }).bounds(&scene);
                 let [sure, framed] = [(sure, 1e-6), (scene.rig.reach, 0.02)].map(|(b, slack)| (b.min - slack, b.max + slack));
                 for (low, high) in [sure, framed] {
-                    assert!(places.iter().all(|p| p.cmpge(low).all() && p.cmple(high).all()), "{} at {time_s} s", clip.name);
+                    let beyond = places.iter().map(|p| (low - *p).max(*p - high).max_element()).fold(0.0, f64::max);
+                    assert_eq!(beyond, 0.0, "{} at {time_s} s, m", clip.name);
                 }
             }
         }
-        assert!(longest < 2.0, "an edge grows {longest} times");
+        // Most where two legs swing apart: 2.5 times.
+        assert!(longest < 2.8, "an edge grows {longest} times");
     }
 }
