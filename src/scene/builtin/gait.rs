@@ -144,8 +144,10 @@ fn step(gait: &Gait, girdle: usize, t: f64) -> Step {
     let lean = if is_still { 0.0 } else { round_curve(times, LEANS[girdle], t) };
     let (sin, cos) = libm::sincos(-pitch);
     let [toe, heel] = SOLE.map(|[x, y]| [x * cos - y * sin, x * sin + y * cos]);
-    // The toes keep their course, and neither they nor the heel go below it.
-    Step { at: [ahead + SOLE[0][0] - toe[0], lift - toe[1].min(heel[1])], pitch, lean }
+    // The toes keep their course, and neither they nor the heel go below it; up in the air one takes over from the other softly.
+    let both = (lift - (toe[1] - heel[1]).abs()).max(0.0);
+    let lower = toe[1].min(heel[1]) - if both > 0.0 { both * both / (4.0 * lift) } else { 0.0 };
+    Step { at: [ahead + SOLE[0][0] - toe[0], lift - lower], pitch, lean }
 }
 
 /// A moment: how far the pelvis has moved, and the turn of every joint in its parent.
@@ -243,6 +245,20 @@ mod tests {
                 let stretched = (upper + lower).length() / (upper.length() + lower.length());
                 assert!(bend.z > 0.0 && bend.x.abs().max(bend.y.abs()) < 1e-9, "{} {}: {bend}", gait.name, rest[first + 1].name);
                 assert!((0.5..0.985).contains(&stretched), "{} {}: {stretched}", gait.name, rest[first + 1].name);
+            }
+        }
+    }
+
+    #[test]
+    fn no_joint_snaps() {
+        const STEP: f64 = 1.0 / 400.0;
+        let rest = joints();
+        for (gait, at) in GAITS.iter().flat_map(|gait| (0..400).map(move |at| (gait, f64::from(at) * STEP))) {
+            let [before, now, after] = [-STEP, 0.0, STEP].map(|late| moment(gait, &rest, at + late).1);
+            for (joint, name) in rest.iter().map(|joint| &joint.name).enumerate() {
+                let near = |q: DQuat| if q.dot(now[joint]) < 0.0 { -q } else { q };
+                let change = 2.0 * (near(before[joint]) - now[joint] + (near(after[joint]) - now[joint])).length();
+                assert!(change < 4e-3, "{} {name} at {at}: its turn changes its speed by {change} a step", gait.name);
             }
         }
     }
