@@ -82,16 +82,17 @@ impl Flesh {
             let mut at = row;
             while at < row + wide {
                 values[at] = self.field((low + corner(at)) * cell);
-                // Corners far outside need no value.
+                // Corners that lie more than a cell outside need no value.
                 at += (values[at] / (STEEPEST * cell)).max(1.0) as usize;
             }
         }
         fill_pinches(&mut values, steps);
         let mut skin = Skin { vertices: Vec::new(), triangles: Vec::new() };
         let mut vertex_in = vec![u32::MAX; values.len()];
-        for at in 0..values.len() - steps[0] - steps[1] - steps[2] {
+        let last = values.len() - steps.iter().sum::<usize>();
+        for (at, vertex) in vertex_in.iter_mut().enumerate().take(last) {
             if let Some(middle) = crossing(&values, at, steps) {
-                vertex_in[at] = skin.vertices.len() as u32;
+                *vertex = skin.vertices.len() as u32;
                 skin.vertices.push(self.settled((low + corner(at)) * cell, middle, cell));
             }
         }

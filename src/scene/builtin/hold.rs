@@ -39,7 +39,7 @@ pub fn append(scene: &mut Scene, primitive: usize, joints: usize, sets: usize, h
     };
     let accessor = |offset, component: Component, normalized| Accessor {
         offset,
-        stride: 4 * component.bytes() as u32,
+        stride: 4 * component.bytes(),
         component,
         lanes: 4,
         normalized,
