@@ -220,8 +220,8 @@ fn long_lists_of_tiles_are_walked_to_their_end() {
     let truth = captured(&mut renderer, &scene, &view, &stack(&[]), &pinned(Visibility::Split32)).frame;
     for (from, to) in [
         ("bins[tiles_count() + tile] += list.y - list.x", "bins[tiles_count() + tile] += 0u"),
-        ("list.x += bins[tiles_count() + tile]", "list.x += 0u"),
-        ("if LIST_WALK != 0xffffffffu && is_inside {", "if LIST_WALK == 0u {"),
+        ("list.x + bins[tiles_count() + tile]", "list.x + 0u"),
+        ("if LIST_WALK != 0xffffffffu && range.x", "if LIST_WALK == 0u && range.x"),
     ] {
         let library = mutated("passes/raster_tiles", from, to);
         let mut wrong = Renderer::with_library(renderer.gpu().clone(), library.shaders());

@@ -26,7 +26,7 @@ struct Counters {
     medium_done: atomic<u32>,
     large_done: atomic<u32>,
     tiles_done: atomic<u32>,
-    longest_list: atomic<u32>,   // entries of the longest of them
+    longest_list: atomic<u32>,   // entries of the longest list of a tile
     spare_0: atomic<u32>,
     spare_1: atomic<u32>,
 }

@@ -29,7 +29,8 @@ fn raster_tiles(
         // Filling moved every begin to its end, which is where the next list begins.
         let begin = select(bins[max(tile, 1u) - 1u], 0u, tile == 0u);
         list = min(vec2u(begin, bins[tile]), vec2u(frame.bin_capacity));
-        list.x += bins[tiles_count() + tile];
+        // Earlier dispatches came so far; no index leaves the list, whatever its end says.
+        list.x = min(list.x + bins[tiles_count() + tile], list.y);
         list.y = list.x + min(list.y - list.x, LIST_WALK);
         bins[tiles_count() + tile] += list.y - list.x;
     }
@@ -39,7 +40,7 @@ fn raster_tiles(
     let pixel = at.y * frame.size.x + at.x;
     let is_inside = all(at < frame.size);
     var nearest = vec2u(0u); // complemented id, key
-    if LIST_WALK != 0xffffffffu && is_inside { nearest = depth_owner[pixel]; }
+    if LIST_WALK != 0xffffffffu && range.x < range.y && is_inside { nearest = depth_owner[pixel]; }
     for (var begin = range.x; begin < range.y; begin += CELLS_BATCH) {
         let count = min(range.y - begin, CELLS_BATCH);
         if lane < count {

@@ -81,7 +81,7 @@ impl Pipelines {
             return Ok(self.marked(pipeline));
         }
         let draft = self.draft_of(gpu, key, pass)?;
-        let pipeline = self.built(gpu, draft)?;
+        let pipeline = self.found_or_compiled(gpu, draft)?;
         self.known.entry(key.clone()).or_default().insert(pass, pipeline.clone());
         Ok(pipeline)
     }
@@ -99,11 +99,11 @@ impl Pipelines {
         constants: &[(&str, f64)],
     ) -> Result<Arc<Pipeline>, RenderError> {
         let draft = self.draft(gpu, root, label, entry, key, slots, constants)?;
-        self.built(gpu, draft)
+        self.found_or_compiled(gpu, draft)
     }
 
     /// What was built already, or else is compiled now.
-    fn built(&mut self, gpu: &Gpu, draft: Draft) -> Result<Arc<Pipeline>, RenderError> {
+    fn found_or_compiled(&mut self, gpu: &Gpu, draft: Draft) -> Result<Arc<Pipeline>, RenderError> {
         if let Some(pipeline) = self.built.get(&draft.identity).cloned() {
             return Ok(self.marked(pipeline));
         }

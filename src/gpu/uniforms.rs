@@ -210,7 +210,7 @@ pub struct Capacities {
     pub tiles: u32,
     /// Entries on the lists of all tiles of a picture that is drawn tile by tile.
     pub bins: u32,
-    /// Entries on the longest such list that are walked.
+    /// Entries of the longest such list that are walked: as many dispatches as that takes, at least one.
     pub listed: u32,
 }
 
@@ -378,8 +378,8 @@ impl CounterRecord {
             self.medium.saturating_sub(capacities.medium),
             self.large.saturating_sub(capacities.large),
             self.tiles.saturating_sub(capacities.tiles),
-            self.bins.saturating_sub(capacities.bins),
-            self.longest_list.saturating_sub(capacities.listed),
+            // Both may lose the same entries.
+            self.bins.saturating_sub(capacities.bins).max(self.longest_list.saturating_sub(capacities.listed)),
         ];
         Counters {
             rejected_nonfinite: self.rejected_nonfinite,

@@ -188,8 +188,9 @@ fn is_within(record: &SnappedVertex, dot: &Option<Bounded>, own: &SnappedVertex,
     let is_doubtful = (w - z).abs() <= ez + ew || z.abs() <= ez && z != 0.0 || w <= ew && w > -ew;
     let is_kept = (record.flags | own.flags) & vertex_flags::NEAR == 0;
     let Some(bounds) = snap_bound(&clip, error, view).filter(|_| w > 0.0) else {
-        // Where w is hardly known, what the near plane keeps may lie anywhere.
-        return is_doubtful || is_kept || record.flags == own.flags;
+        // Where w is hardly known, what the near plane keeps may lie anywhere before the eye.
+        let is_before = record.inv_w > 0.0 && (0.0..=1.0 + 8.0 * ULP).contains(&f64::from(record.depth));
+        return is_doubtful || if is_kept { is_before } else { record.flags == own.flags };
     };
     let [bound_x, bound_y] = bounds.map(|bound| if bound < 1.0 { 1.0 } else { (1.0 + bound).floor() });
     if record.flags != own.flags {

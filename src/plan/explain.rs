@@ -7,6 +7,7 @@ use crate::{
         hooks::{Layers, Shape},
         xray,
     },
+    ladder::Visibility,
     scene::needs::Needs,
     shader::key::{KernelKey, Order},
 };
@@ -41,6 +42,11 @@ pub(super) fn explain(needs: &Needs, is_usual: bool, caps: &Caps, key: &KernelKe
             ),
         ),
     ]);
+    if key.rungs.visibility == Visibility::Tiled && key.list_walk < u32::MAX {
+        let most = key.list_walk;
+        reasons
+            .push(note("lists of tiles", format!("a list of more than {most} triangles takes another dispatch: drivers end long loops")));
+    }
     if key.culls() && key.bends() {
         reasons
             .push(note("culling of what bends", "its meshlets have no bounds of their own: they are left out with their whole instance"));

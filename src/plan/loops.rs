@@ -32,6 +32,12 @@ pub fn of_a_sample(has_mask: bool, layers: Option<Layers>, rungs: &Rungs) -> u32
     1 + mask + EFFECTS + shading
 }
 
+/// Most iterations that a tile makes for a triangle on its list, where it asks each time whether a sample is drawn: then the
+/// draw of the triangle is searched for, too.
+pub fn of_an_entry(has_mask: bool, draws: usize, rungs: &Rungs) -> u32 {
+    of_a_sample(has_mask, None, rungs) + if draws > 1 { 32 } else { 0 }
+}
+
 /// Most samples that one invocation walks on this adapter.
 pub fn samples(caps: &Caps, loops: u32) -> u32 {
     if caps.software { MOST / loops } else { u32::MAX }

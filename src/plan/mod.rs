@@ -319,7 +319,7 @@ pub fn plan(needs: &Needs, stack: &Stack, caps: &Caps, tuning: &Tuning, accuracy
         small_samples,
         small_side,
         disc_shares: loops::disc_shares(caps, stack, loops),
-        list_walk: tuning.list_walk.min(loops::samples(caps, loops::of_a_sample(has_mask, None, &rungs))).max(1),
+        list_walk: tuning.list_walk.min(loops::samples(caps, loops::of_an_entry(has_mask, needs.draws, &rungs))).max(1),
         listed_tiles: tuning.listed_tiles && !stack.finishes() && stack.dots().is_none(),
         list_group: tuning.list_group,
         early_load: tuning.early_load,

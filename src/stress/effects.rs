@@ -109,9 +109,14 @@ fn layers_on_one_pixel(lab: &mut Lab) -> Result<(), Halt> {
             continue;
         }
         let (scene, stack) = (pile(count), only("xray", &[("bits", f64::from(choice))])?);
-        // A million layers take a CPU adapter seconds; fewer take a slow one as long, and each number is drawn there on one rung.
-        let is_quick = count < if lab.is_slow() { 65_000 } else { 1_000_000 };
-        for rung in if is_quick { lab.rungs() } else { vec![lab.quick_rung()] } {
+        let rungs = if count < if lab.is_slow() { 65_000 } else { 1_000_000 } {
+            lab.rungs()
+        } else {
+            let rung = lab.quick_rung();
+            lab.note(format!("{count} layers are drawn on {} alone: they wait for one another", rung.name()));
+            vec![rung]
+        };
+        for rung in rungs {
             let what = format!("{count} layers in {taken} bits on {}", rung.name());
             let (capture, _) = lab.exact(&scene, &view, &stack, &pinned(rung), &what)?;
             let found = lab.renderer.key().and_then(|key| key.layers);

@@ -102,7 +102,7 @@ pub fn tunings() -> [Tuning; 4] {
     [(1, 1, false), (64, 32, true), (64, 32, false), (128 * 128, 128, true)].map(|(small_samples, small_side, listed_tiles)| Tuning {
         small_samples,
         list_group: if small_samples == 64 { 256 } else { 64 },
-        list_walk: if small_samples == 64 { 1000 } else { u32::MAX },
+        list_walk: if small_samples == 64 { 100 } else { u32::MAX },
         small_side,
         listed_tiles,
         early_load: listed_tiles,
@@ -240,9 +240,11 @@ impl<'a> Lab<'a> {
         self.is_band_free = true;
     }
 
-    /// For people who read the report.
+    /// For people who read the report; said once.
     pub(super) fn note(&mut self, sentence: String) {
-        self.notes.push(sentence);
+        if !self.notes.contains(&sentence) {
+            self.notes.push(sentence);
+        }
     }
 
     /// What was refused, as it should be.
@@ -393,8 +395,9 @@ impl<'a> Lab<'a> {
         let last = self.quick_rung();
         let rungs = self.rungs();
         let ways: Vec<_> = if self.is_slow() {
-            // Each rung and each way to share out work once: kernels take longer to compile than all their pictures to draw.
-            rungs.into_iter().zip([crowded, card]).collect()
+            // Kernels take longer to compile than all their pictures to draw.
+            self.note("each rung and each way to share out work is drawn once, since this adapter is slow".into());
+            rungs.into_iter().zip([crowded, card].into_iter().cycle()).collect()
         } else {
             rungs.into_iter().map(|rung| (rung, card)).chain([(last, crowded), (last, usual)]).collect()
         };

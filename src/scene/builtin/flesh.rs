@@ -177,8 +177,10 @@ fn crossing(values: &[f64], at: usize, steps: [usize; 3]) -> Option<DVec3> {
             let from = at + along_u * steps[u] + along_v * steps[v];
             let [a, b] = [values[from], values[from + steps[axis]]];
             if (a < 0.0) != (b < 0.0) {
+                // A corner without a value lies far outside.
+                let share = if a.is_finite() { a / (a - b) } else { 1.0 };
                 let [x, y, z] = [DVec3::AXES[axis], DVec3::AXES[u], DVec3::AXES[v]];
-                sum += DMat3::from_cols(x, y, z) * DVec3::new(a / (a - b), along_u as f64, along_v as f64);
+                sum += DMat3::from_cols(x, y, z) * DVec3::new(share, along_u as f64, along_v as f64);
                 count += 1.0;
             }
         }

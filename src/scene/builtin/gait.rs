@@ -125,7 +125,7 @@ fn step(gait: &Gait, girdle: usize, t: f64) -> Step {
     let t = t.rem_euclid(1.0);
     let back = 0.5 * gait.stride_m;
     let air = 1.0 - gait.duty;
-    let [ahead, lift] = if t < gait.duty {
+    let [ahead, lift] = if t < gait.duty || gait.duty >= 1.0 {
         [back - gait.stride_m * t / gait.duty, 0.0]
     } else {
         // A cubic that leaves and lands as fast as the ground goes back.

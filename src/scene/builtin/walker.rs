@@ -124,7 +124,7 @@ mod tests {
 
     #[test]
     fn it_is_one_closed_body_at_every_fineness() {
-        for tess in 1..=4 {
+        for tess in 1..=12 {
             let scene = scene_of(&format!("walker?tess={tess}")).unwrap();
             let primitive = &scene.primitives[0];
             let corners = || (0..primitive.triangle_count()).map(|triangle| primitive.corners(&scene, triangle));
