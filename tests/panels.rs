@@ -1067,6 +1067,20 @@ fn clips_are_chosen_held_and_blended_in_their_folder() {
 }
 
 #[test]
+fn a_scene_at_rest_offers_its_clips_under_the_timeline() {
+    let Some(mut lab) = lab("builtin:tentacle?tess=3") else { return };
+    let scene = rasterlab::scene::builtin::build("tentacle?tess=3").expect("a builtin");
+    let sway = &scene.rig.clips[scene.rig.clip("Sway").expect("it sways")];
+    lab.get_by_role_and_label(Role::Button, "Play Sway").click();
+    // It plays from here on and never comes to rest.
+    lab.run_steps(4);
+    let session = &lab.state().look().session;
+    assert_eq!((session.play.clip.as_str(), session.clock.range_s), ("Sway", [0.0, sway.duration_s]));
+    assert!(lab.query_by_role_and_label(Role::Button, "Play Sway").is_none(), "it plays");
+    assert!(lab.query_by_label_contains("Sway plays").is_some());
+}
+
+#[test]
 fn the_scene_shows_its_images_and_lets_one_look_through_its_cameras() {
     let Some(mut lab) = lab("builtin:grid?cell=16") else { return };
     let chosen = |lab: &Lab| lab.state().look().session.scene_camera.clone();

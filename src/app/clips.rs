@@ -5,6 +5,9 @@ use eframe::egui::{self, ComboBox, Ui};
 use super::{App, inspector::folder, theme};
 use crate::scene::{Scene, rig::Clip};
 
+/// Clips that are offered under the timeline; the menu has all.
+const MOST_BUTTONS: usize = 5;
+
 impl App {
     /// A folder for a scene that has clips; nothing for others.
     pub(super) fn clips_ui(&mut self, ui: &mut Ui) {
@@ -23,6 +26,40 @@ impl App {
                 self.key_ui(ui, "scene.blend");
             }
         });
+    }
+
+    /// Under the timeline of a scene that has clips: what plays, or which may; false for a scene without.
+    pub(super) fn clips_hint_ui(&mut self, ui: &mut Ui) -> bool {
+        let Some(scene) = self.stage.shown.as_ref().map(|(_, scene)| scene.clone()).filter(|scene| !scene.rig.clips.is_empty()) else {
+            return false;
+        };
+        ui.horizontal(|ui| {
+            ui.spacing_mut().item_spacing.x = 6.0;
+            if let Some(clip) = scene.rig.clip(&self.look.session.play.clip) {
+                let Clip { name, duration_s, .. } = &scene.rig.clips[clip];
+                let words = format!("{name} plays, {duration_s:.2} s long. Clips, at the right, holds a moment of it or mixes in another.");
+                ui.add(egui::Label::new(theme::weak(words)).truncate());
+                return;
+            }
+            ui.label(theme::weak("This scene is at rest. Play"));
+            for (place, clip) in scene.rig.clips.iter().enumerate().take(MOST_BUTTONS) {
+                let id = id_of(&scene, place);
+                let button = ui.button(&id).on_hover_text(format!("{:.2} s; the timeline spans it", clip.duration_s));
+                if button.accessible_name(format!("Play {id}")).clicked() {
+                    self.look.session.play.clip = id;
+                    if clip.duration_s > 0.0 {
+                        self.look.session.clock.range_s = [0.0, clip.duration_s];
+                    }
+                    if !self.playback.playing {
+                        self.play_or_pause();
+                    }
+                }
+            }
+            if let Some(more) = scene.rig.clips.len().checked_sub(MOST_BUTTONS + 1) {
+                ui.label(theme::weak(format!("or one of {} more, under Clips at the right", more + 1)));
+            }
+        });
+        true
     }
 
     /// Holds a moment of the clip, or lets it go with the clock, whose range may span it.
@@ -57,6 +94,12 @@ impl App {
     }
 }
 
+/// What a look calls a clip: of those with one name, later ones go by their place.
+fn id_of(scene: &Scene, place: usize) -> String {
+    let name = &scene.rig.clips[place].name;
+    if scene.rig.clip(name) == Some(place) { name.clone() } else { format!("#{place}") }
+}
+
 /// A menu of the scene's clips; `none` stands for the empty name.
 fn clip_ui(ui: &mut Ui, name: &str, none: &str, scene: &Scene, chosen: &mut String) {
     let shown = if chosen.is_empty() { none.to_owned() } else { chosen.clone() };
@@ -67,8 +110,7 @@ fn clip_ui(ui: &mut Ui, name: &str, none: &str, scene: &Scene, chosen: &mut Stri
         let menu = menu.show_ui(ui, |ui| {
             ui.selectable_value(chosen, String::new(), none);
             for (place, clip) in scene.rig.clips.iter().enumerate() {
-                // Of clips with one name, later ones go by their place.
-                let id = if scene.rig.clip(&clip.name) == Some(place) { clip.name.clone() } else { format!("#{place}") };
+                let id = id_of(scene, place);
                 ui.selectable_value(chosen, id.clone(), id).on_hover_text(format!(
                     "{:.2} s, {} channels",
                     clip.duration_s,

@@ -100,7 +100,10 @@ impl App {
     }
 
     /// What to do where nothing is animated.
-    fn hint_ui(&self, ui: &mut Ui) {
+    fn hint_ui(&mut self, ui: &mut Ui) {
+        if self.clips_hint_ui(ui) {
+            return;
+        }
         let (before, after) = if self.look.session.stack.0.is_empty() {
             ("Nothing is animated. Switch an effect on at the right; the", "beside each of its values sets a key at this time.")
         } else {
