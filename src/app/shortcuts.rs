@@ -100,6 +100,8 @@ const POINTER: &[(&str, &str)] = &[
     ("Zoom", "wheel, pinch"),
     ("Look around and fly", "right drag, with W A S D Q E"),
     ("Frame the scene", "double click"),
+    ("Draw particles along", "Ctrl + left drag, where they have an attraction"),
+    ("Turn the light", "drag the ball in the corner"),
     ("Reset a value", "double click its label"),
     ("Animate a value", "click the diamond beside it, at two times"),
     ("Scrub", "drag on the timeline's ruler"),
