@@ -15,10 +15,13 @@ const NUMBER: u32 = 33;
 /// Rows that are hard by being many: a software adapter has drawn them once already.
 const LONG: [u32; 8] = [16, 18, 19, 20, 21, 22, 23, 27];
 
+/// Rows of effects, whose kernels a slow adapter has compiled once already.
+const SLOW: [u32; 4] = [12, 25, 26, 28];
+
 fn strict_everywhere(lab: &mut Lab) -> Result<(), Halt> {
-    let is_software = lab.is_software();
+    let (is_software, is_slow) = (lab.is_software(), lab.is_slow());
     let is_meant = |case: &&Case| {
-        let is_long = is_software && LONG.contains(&case.number);
+        let is_long = is_software && LONG.contains(&case.number) || is_slow && SLOW.contains(&case.number);
         case.number != NUMBER && case.expectation == Expectation::Exact && !is_long
     };
     let (mut rows, mut pictures, mut floats) = (Vec::new(), 0, 0);
@@ -38,6 +41,9 @@ fn strict_everywhere(lab: &mut Lab) -> Result<(), Halt> {
     lab.note(format!("{pictures} pictures of rows {rows:?} come to {hash:016x} here and on the CPU; {floats} more hang on floats"));
     if is_software {
         lab.note(format!("rows {LONG:?} are left to graphics cards"));
+    }
+    if is_slow {
+        lab.note(format!("rows {SLOW:?} are left to adapters that compile in less time"));
     }
     Ok(())
 }
