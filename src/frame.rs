@@ -4,8 +4,8 @@
 
 use crate::math::SUBPIXEL_BITS;
 
-/// Owner of a pixel that no triangle covers.
-pub const NO_OWNER: u32 = u32::MAX;
+/// Triangle id of a pixel that no triangle covers.
+pub const NO_TRIANGLE: u32 = u32::MAX;
 
 /// Why a projected vertex cannot be rasterized as it is; zero means ready.
 pub mod vertex_flags {
@@ -39,7 +39,7 @@ pub struct SnappedVertex {
 
 /// One triangle left over from clipping `parent`.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Piece {
+pub struct ClippedTriangle {
     pub parent: u32,
     pub corners: [SnappedVertex; 3],
     /// Bit k: the edge opposite corner k lies on an edge of the parent, not on a cut or inside.
@@ -57,7 +57,7 @@ pub struct Exactness {
 
 /// A particle between two steps.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Flight {
+pub struct ParticleState {
     /// In the scene, metres.
     pub place: [f32; 3],
     pub velocity: [f32; 3],
@@ -69,10 +69,10 @@ pub struct Flight {
 
 /// Particles before and after the last step of a picture, and what was drawn of them.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct Swarm {
+pub struct ParticleReadback {
     /// Empty in the first frame, which no step leads to.
-    pub before: Vec<Flight>,
-    pub after: Vec<Flight>,
+    pub before: Vec<ParticleState>,
+    pub after: Vec<ParticleState>,
     /// Corners with colour and normal, as they lie among the scene's bytes.
     pub words: Vec<u32>,
     /// Flights are kept in 16 bits a number.
@@ -84,21 +84,21 @@ pub struct Swarm {
 /// Everything the rasterizer proper sees: what stands between the float vertex stage and integer coverage.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Geometry {
-    /// One per vertex of each draw, in draw order (`Draw::first_vertex` indexes it); or, with `has_own_corners`, three per
+    /// One per vertex of each draw, in draw order (`Draw::first_vertex` indexes it); or, with `has_unshared_vertices`, three per
     /// triangle in order of their ids.
     pub vertices: Vec<SnappedVertex>,
     /// Effects part the triangles, so that they share no vertices.
-    pub has_own_corners: bool,
+    pub has_unshared_vertices: bool,
     /// Position and normal, in object space, of every vertex of the draws that bend, in draw order.
-    pub bent: Vec<[f32; 6]>,
+    pub deformed: Vec<[f32; 6]>,
     /// The particles that the picture shows, and how they came there; none without particles.
-    pub swarm: Option<Swarm>,
+    pub particle_readback: Option<ParticleReadback>,
     /// Ids of the triangles that are splats.
-    pub splats: std::ops::Range<u32>,
+    pub particle_discs: std::ops::Range<u32>,
     /// Fan pieces of clipped triangles; pieces of one parent stand in fan order.
-    pub pieces: Vec<Piece>,
+    pub pieces: Vec<ClippedTriangle>,
     /// What sample effects settled: for every triangle by id, then for every piece, one entry per effect that decides.
-    pub decisions: Vec<[u32; 4]>,
+    pub sample_setups: Vec<[u32; 4]>,
     /// One per dot of all lines, always in units of 1/256 px.
     pub dots: Vec<SnappedVertex>,
     /// Positions are in units of 2^-bits px.
@@ -107,7 +107,7 @@ pub struct Geometry {
     pub scale: f64,
     /// Places were taken relative to the eye before they met a matrix.
     pub is_relative: bool,
-    /// Places were rounded to fewer bits than the scene has, where the look asks for that: how far off they are is measured,
+    /// Places were rounded to fewer bits than the scene has, where the preset asks for that: how far off they are is measured,
     /// and no fault.
     pub is_rough: bool,
     /// What its maker promises about it, and about the keys of a frame drawn through it.
@@ -128,17 +128,17 @@ pub struct LightMap {
 
 impl Default for Geometry {
     fn default() -> Self {
-        let (vertices, bent, pieces, decisions, dots) = (Vec::new(), Vec::new(), Vec::new(), Vec::new(), Vec::new());
+        let (vertices, deformed, pieces, sample_setups, dots) = (Vec::new(), Vec::new(), Vec::new(), Vec::new(), Vec::new());
         let (subpixel_bits, exact) = (SUBPIXEL_BITS, Exactness::default());
         Self {
             vertices,
             scale: 1.0,
-            has_own_corners: false,
-            bent,
-            swarm: None,
-            splats: 0..0,
+            has_unshared_vertices: false,
+            deformed,
+            particle_readback: None,
+            particle_discs: 0..0,
             pieces,
-            decisions,
+            sample_setups,
             dots,
             subpixel_bits,
             is_relative: false,
@@ -161,14 +161,14 @@ pub struct Counters {
     /// Triangles that took the clipping path.
     pub clipped: u32,
     /// Clipped pieces that turned over or vanished in the snap, and were dropped.
-    pub fan_folds: u32,
-    /// Triangles left out because they would have to be clipped, where the look asks for that.
+    pub flipped_clips: u32,
+    /// Triangles left out because they would have to be clipped, where the preset asks for that.
     #[serde(skip_serializing_if = "is_zero")]
     pub dropped: u32,
     /// Queue entries that did not fit; the frame is incomplete unless 0.
     pub overflow: u32,
-    /// Pixels with a depth but no owner; must be 0.
-    pub orphans: u32,
+    /// Pixels with a depth but no triangle id; must be 0.
+    pub depth_without_id: u32,
     /// Pixels with more layers than the x-ray's sums hold; their averages are wrong unless 0.
     #[serde(skip_serializing_if = "is_zero")]
     pub full_pixels: u32,
@@ -180,7 +180,7 @@ fn is_zero(count: &u32) -> bool {
 
 /// What a draw order let through.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, serde::Serialize)]
-pub struct OrderFigures {
+pub struct OrderStats {
     /// Samples drawn.
     pub drawn: u64,
     /// Samples that should have been drawn.
@@ -191,34 +191,34 @@ pub struct OrderFigures {
     pub is_chosen: bool,
 }
 
-impl OrderFigures {
+impl OrderStats {
     /// Are there more samples than tickets? Then nobody knows how many were drawn.
-    pub const fn is_beyond_tickets(&self) -> bool {
+    pub const fn exceeds_sample_counter(&self) -> bool {
         self.is_chosen && self.covered > u32::MAX as u64
     }
 }
 
 /// Meshlets that culling left, and those that it left out.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, serde::Serialize)]
-pub struct CullingFigures {
+pub struct CullingStats {
     pub drawn: u32,
     /// Outside the picture.
     pub outside: u32,
     /// All their triangles face away.
-    pub turned: u32,
+    pub backfacing: u32,
     /// Behind what was drawn.
     pub hidden: u32,
 }
 
-impl CullingFigures {
+impl CullingStats {
     /// All meshlets there are.
     pub fn all(&self) -> u32 {
-        self.drawn + self.outside + self.turned + self.hidden
+        self.drawn + self.outside + self.backfacing + self.hidden
     }
 
     /// For people: how many were left out, and why.
     pub fn reasons(&self) -> String {
-        format!("{} outside, {} turned away, {} hidden", self.outside, self.turned, self.hidden)
+        format!("{} outside, {} turned away, {} hidden", self.outside, self.backfacing, self.hidden)
     }
 }
 
@@ -227,12 +227,12 @@ impl CullingFigures {
 pub struct Frame {
     pub width: u32,
     pub height: u32,
-    /// Global triangle id per pixel, or [`NO_OWNER`].
-    pub owner: Vec<u32>,
+    /// Global triangle id per pixel, or [`NO_TRIANGLE`].
+    pub triangle_id: Vec<u32>,
     /// Depth key per pixel: bits of the reversed depth, larger is nearer, 0 is empty.
     pub key: Vec<u32>,
-    /// Keys are cut short, or another sample's, where the look asks for that; they promise nothing and are not judged.
-    pub keys_are_rough: bool,
+    /// Keys are cut short, or another sample's, where the preset asks for that; they promise nothing and are not judged.
+    pub depth_keys_are_approximate: bool,
     /// Gamma-encoded sRGB and alpha.
     pub color: Vec<[u8; 4]>,
     /// What an effect in the visibility slot added up per pixel: weights of layers, or their number. Empty without one.
@@ -250,12 +250,12 @@ impl Frame {
             .flat_map(|y| (0..width).map(move |x| under(y, height, self.height) * self.width as usize + under(x, width, self.width)))
             .collect();
         let of = |words: &[u32]| if words.is_empty() { Vec::new() } else { places.iter().map(|&at| words[at]).collect() };
-        let (owner, key, counted, dots) = (of(&self.owner), of(&self.key), of(&self.counted), of(&self.dots));
-        Self { width, height, owner, key, color, counted, dots, ..*self }
+        let (triangle_id, key, counted, dots) = (of(&self.triangle_id), of(&self.key), of(&self.counted), of(&self.dots));
+        Self { width, height, triangle_id, key, color, counted, dots, ..*self }
     }
 
-    /// Number of pixels that have an owner.
+    /// Number of pixels that have an triangle id.
     pub fn covered(&self) -> usize {
-        self.owner.iter().filter(|&&owner| owner != NO_OWNER).count()
+        self.triangle_id.iter().filter(|&&triangle_id| triangle_id != NO_TRIANGLE).count()
     }
 }

@@ -5,7 +5,7 @@
 
 use glam::{DMat4, DVec3};
 
-/// Bits of the fraction of a snapped position unless a rung says otherwise (16.8 fixed point).
+/// Bits of the fraction of a snapped position unless a option says otherwise (16.8 fixed point).
 pub const SUBPIXEL_BITS: u32 = 8;
 
 /// Sub-pixel units in one pixel of that kind.
@@ -107,7 +107,7 @@ pub fn cos_turns(turns: f64) -> f64 {
 
 /// Bound of the error of `shaders/common/sine.wgsl`, given its argument: the polynomial's 3.4e-9 (Remez, degree 9 on a
 /// quarter turn) and ten roundings of terms whose magnitudes sum to 2.4.
-pub const SINE_SLACK: f64 = 24.0 / (1 << 23) as f64;
+pub const SINE_ERROR: f64 = 24.0 / (1 << 23) as f64;
 
 #[cfg(test)]
 mod tests {

@@ -8,14 +8,14 @@ use std::{fs, path::Path, sync::Arc};
 use common::*;
 use glam::{DMat4, DVec3};
 use rasterlab::{
+    accuracy::Visibility,
     gpu::{
         Renderer,
         naive::{Naive, Viewport},
     },
-    ladder::Visibility,
-    measure::{Accuracy as Errors, Verdict, faults::Fault},
+    measure::{ErrorReport as Errors, Verdict, faults::PixelError},
     plan::Tuning,
-    preset,
+    preset_file,
     scene::{
         Scene,
         camera::{Camera, Projection, View},
@@ -29,31 +29,32 @@ fn every_builtin_scene_is_within_tolerance_on_every_rung() {
     for query in SCENES {
         let scene = scene(query);
         let view = view(&scene, [320, 240]);
-        for rung in rungs(&renderer) {
-            let (capture, verdict) = judged(&mut renderer, &scene, &view, &stack(&["facet", "lambert"]), &pinned(rung));
-            eprintln!("{query} {}: {:?} {:?}", rung.name(), verdict.accuracy, capture.frame.counters);
-            failures.extend(exactness(&verdict.accuracy).err().map(|faults| format!("{query} {}: {faults}", rung.name())));
+        for option in options(&renderer) {
+            let (capture, verdict) = judged(&mut renderer, &scene, &view, &stack(&["facet", "lambert"]), &pinned(option));
+            eprintln!("{query} {}: {:?} {:?}", option.name(), verdict.accuracy, capture.frame.counters);
+            failures.extend(exactness(&verdict.accuracy).err().map(|faults| format!("{query} {}: {faults}", option.name())));
         }
     }
     assert_eq!(failures, Vec::<String>::new());
 }
 
 #[test]
-fn every_look_is_within_tolerance_on_every_rung() {
+fn every_preset_is_within_tolerance_with_every_option() {
     let Some(mut renderer) = renderer() else { return };
-    let looks = Path::new(env!("CARGO_MANIFEST_DIR")).join("presets");
+    let preset_files = Path::new(env!("CARGO_MANIFEST_DIR")).join("presets");
     let mut count = 0;
-    for entry in fs::read_dir(looks).expect("presets/ can be read") {
+    for entry in fs::read_dir(preset_files).expect("presets/ can be read") {
         let path = entry.expect("presets/ can be read").path();
         if path.extension().is_none_or(|e| e != "toml") {
             continue;
         }
-        let look = preset::load(&path).unwrap_or_else(|error| panic!("{error}"));
-        let scene = preset::load_scene(&look.session, look.path.as_deref()).unwrap_or_else(|error| panic!("{}: {error}", look.id));
-        let view = look.session.view(&scene, look.session.output.size);
-        for rung in rungs(&renderer) {
-            let what = format!("{} {}", look.id, rung.name());
-            exact(&mut renderer, &scene, &view, &look.session.posed_stack(), &pinned(rung), &what);
+        let preset_file = preset_file::load(&path).unwrap_or_else(|error| panic!("{error}"));
+        let scene = preset_file::load_scene(&preset_file.preset, preset_file.path.as_deref())
+            .unwrap_or_else(|error| panic!("{}: {error}", preset_file.id));
+        let view = preset_file.preset.view(&scene, preset_file.preset.output.size);
+        for option in options(&renderer) {
+            let what = format!("{} {}", preset_file.id, option.name());
+            exact(&mut renderer, &scene, &view, &preset_file.preset.evaluated_stack(), &pinned(option), &what);
         }
         count += 1;
     }
@@ -64,13 +65,13 @@ fn every_look_is_within_tolerance_on_every_rung() {
 fn every_size_of_picture_is_within_tolerance() {
     let Some(mut renderer) = renderer() else { return };
     let [knot, hall, sphere] = ["knot?tess=6", "near", "sphere?triangles=20000"].map(scene);
-    let rung = quick_rung(&renderer);
+    let option = quick_option(&renderer);
     let sizes = [[1, 1], [2, 1], [7, 9], [3, 200], [200, 3], [63, 65], [321, 243]];
     let cases = sizes.into_iter().flat_map(|size| [(&knot, size), (&hall, size)]).chain([(&sphere, [1920, 1080])]);
     for (scene, size) in cases {
         let view = view(scene, size);
         let what = format!("{} at {size:?}", scene.name);
-        let (capture, _) = exact(&mut renderer, scene, &view, &stack(&["facet", "lambert"]), &pinned(rung), &what);
+        let (capture, _) = exact(&mut renderer, scene, &view, &stack(&["facet", "lambert"]), &pinned(option), &what);
         assert_eq!([capture.frame.width, capture.frame.height], size);
     }
 }
@@ -143,9 +144,9 @@ fn moved(scene: &Scene, offset: DVec3) -> Scene {
 fn every_viewpoint_is_within_tolerance() {
     let Some(mut renderer) = renderer() else { return };
     for (what, scene, view) in viewpoints() {
-        for rung in rungs(&renderer) {
+        for option in options(&renderer) {
             let stack = stack(&["facet", "depth", "lambert"]);
-            let (capture, verdict) = exact(&mut renderer, &scene, &view, &stack, &pinned(rung), &format!("{what}, {}", rung.name()));
+            let (capture, verdict) = exact(&mut renderer, &scene, &view, &stack, &pinned(option), &format!("{what}, {}", option.name()));
             match what.as_str() {
                 "inside the mesh" | "in the mesh's skin" => assert_eq!(capture.frame.covered(), view.pixels(), "{what}"),
                 "looking away" => assert_eq!(capture.frame.covered(), 0, "{what}"),
@@ -167,11 +168,11 @@ fn dense_grids_have_no_hole_where_the_beginners_kernel_has_thousands() {
         let scene = scene(query);
         for camera in scene.cameras.iter().map(|camera| camera.pose) {
             let view = seen(&scene, &camera, [256, 256]);
-            for rung in rungs(&renderer) {
-                let (capture, _) = exact(&mut renderer, &scene, &view, &stack(&[]), &pinned(rung), query);
+            for option in options(&renderer) {
+                let (capture, _) = exact(&mut renderer, &scene, &view, &stack(&[]), &pinned(option), query);
                 let layers = capture.layers.expect("layers are counted");
                 let [holes, doubles] = [0, 2].map(|n| layers.iter().filter(|&&hits| if n == 0 { hits == 0 } else { hits >= n }).count());
-                assert_eq!((holes, doubles), (0, 0), "{query} {}", rung.name());
+                assert_eq!((holes, doubles), (0, 0), "{query} {}", option.name());
             }
             let key = renderer.key().expect("something was drawn").clone();
             let gpu = renderer.gpu().clone();
@@ -195,15 +196,15 @@ struct Mutant {
     to: &'static str,
     scene: Arc<Scene>,
     view: View,
-    rung: Visibility,
+    option: Visibility,
     /// Which figure of the judge shows it.
     shown_by: (&'static str, fn(&Errors) -> u64),
 }
 
 const HOLES: (&str, fn(&Errors) -> u64) = ("holes", |e| e.holes);
 const DOUBLES: (&str, fn(&Errors) -> u64) = ("double hits", |e| e.double_hits);
-const OWNERS: (&str, fn(&Errors) -> u64) = ("wrong owners", |e| e.owner_mismatch);
-const COLORS: (&str, fn(&Errors) -> u64) = ("colours", |e| u64::from(e.max_colour_delta > 1));
+const TRIANGLE_IDS: (&str, fn(&Errors) -> u64) = ("wrong triangle ids", |e| e.wrong_triangles);
+const COLORS: (&str, fn(&Errors) -> u64) = ("colours", |e| u64::from(e.max_color_delta > 1));
 const KEYS: (&str, fn(&Errors) -> u64) = ("depth keys", |e| e.key_outside_bound);
 const SNAPS: (&str, fn(&Errors) -> u64) = ("snapped vertices", |e| e.snap_outside_bound);
 const UNEXPLAINED: (&str, fn(&Errors) -> u64) = ("unexplained pixels", |e| e.unexplained);
@@ -223,20 +224,20 @@ fn mutants() -> Vec<Mutant> {
         let (near, far) = (-1.0f32, -41.0);
         let [a, b, c, d] = [[-3.0, -0.6, near], [3.0, -0.6, near], [3.0, -0.6, far], [-3.0, -0.6, far]];
         let (dark, light) = ([0.0, 0.0, 0.0, 1.0], [1.0, 1.0, 1.0, 1.0]);
-        let part = Part {
+        let part = SimpleMesh {
             positions: vec![a, b, c, a, c, d],
             normals: vec![[0.0, 1.0, 0.0]; 6],
             colors: vec![dark, dark, light, dark, light, light],
-            ..Part::default()
+            ..SimpleMesh::default()
         };
-        let scene = hand_made(&[part]);
+        let scene = scene_of_meshes(&[part]);
         let camera =
             Camera { eye: DVec3::ZERO, target: DVec3::NEG_Z, projection: Projection::Perspective { fov_y_deg: 90.0 }, ..Camera::default() };
         let view = seen(&scene, &camera, [128, 96]);
         (scene, view)
     };
     // Its upper edge spans the guard band, so edge functions in the picture pass 2^39.
-    let vast = || (hand_made(&[units(&[([[-8_388_607, 10], [8_388_607, 10], [0, 8_388_607]], 0.5)])]), pixel_view(256, 256));
+    let vast = || (scene_of_meshes(&[units(&[([[-8_388_607, 10], [8_388_607, 10], [0, 8_388_607]], 0.5)])]), pixel_view(256, 256));
     let mutant = |what, file, from, to, (scene, view): (Arc<Scene>, View), shown_by| Mutant {
         what,
         file,
@@ -244,27 +245,27 @@ fn mutants() -> Vec<Mutant> {
         to,
         scene,
         view,
-        rung: Visibility::Split32,
+        option: Visibility::Split32,
         shown_by,
     };
     // Edges that pass samples at a doubled area of 1.
     let close = || {
-        let mut dice = Dice(1);
-        let triangles: Vec<_> = (0..400).map(|i| (near_miss(&mut dice, 128 * 256, [64, 64]), 0.1 + 0.002 * i as f32)).collect();
-        (hand_made(&[units(&triangles)]), pixel_view(64, 64))
+        let mut rng = Rng(1);
+        let triangles: Vec<_> = (0..400).map(|i| (near_miss_triangle(&mut rng, 128 * 256, [64, 64]), 0.1 + 0.002 * i as f32)).collect();
+        (scene_of_meshes(&[units(&triangles)]), pixel_view(64, 64))
     };
     let rule = "return select(1, 0, d.y < 0 || (d.y == 0 && d.x > 0));";
     vec![
         mutant("bias 0 everywhere", "common/fixed", rule, "return 0;", ties(), DOUBLES),
         mutant("bias 1 everywhere", "common/fixed", rule, "return 1;", ties(), HOLES),
-        mutant("bottom-right rule", "common/fixed", rule, "return select(1, 0, d.y > 0 || (d.y == 0 && d.x < 0));", ties(), OWNERS),
+        mutant("bottom-right rule", "common/fixed", rule, "return select(1, 0, d.y > 0 || (d.y == 0 && d.x < 0));", ties(), TRIANGLE_IDS),
         mutant(
             "float edges",
             "slots/coverage/fixed",
             "coverage.row = dx * from_y - dy * from_x - bias;",
             "coverage.row = vec3i(vec3f(dx) * vec3f(from_y)) - vec3i(vec3f(dy) * vec3f(from_x)) - bias;",
             close(),
-            OWNERS,
+            TRIANGLE_IDS,
         ),
         mutant(
             "sample at the pixel corner",
@@ -272,7 +273,7 @@ fn mutants() -> Vec<Mutant> {
             "let p = grid_sample(first);",
             "let p = grid_sample(first) - 128;",
             ties(),
-            OWNERS,
+            TRIANGLE_IDS,
         ),
         mutant(
             "sample at the pixel corner of large triangles",
@@ -280,20 +281,20 @@ fn mutants() -> Vec<Mutant> {
             "* 16);\n        let edge",
             "* 16) - 128;\n        let edge",
             sizes(),
-            OWNERS,
+            TRIANGLE_IDS,
         ),
         mutant("affine weights", "common/shade", "let share = select(e * inv_w, e, IS_AFFINE);", "let share = e;", receding(), COLORS),
         mutant(
             "the larger id wins ties",
             "slots/visibility/split32_owner",
-            "atomicMax(&owners[pixel], ~id);",
+            "atomicMax(&triangle ids[pixel], ~id);",
             "loop {
-                let held = atomicLoad(&owners[pixel]);
+                let held = atomicLoad(&triangle ids[pixel]);
                 if held != 0u && held <= ~id { break; }
-                if atomicCompareExchangeWeak(&owners[pixel], held, ~id).exchanged { break; }
+                if atomicCompareExchangeWeak(&triangle ids[pixel], held, ~id).exchanged { break; }
             }",
             builtin("stack?layers=5", [128, 128]),
-            OWNERS,
+            TRIANGLE_IDS,
         ),
         mutant("one rebased block is skipped", "passes/raster_large", "for (var block = 0;", "for (var block = 1;", sizes(), HOLES),
         mutant(
@@ -357,25 +358,25 @@ fn mutants() -> Vec<Mutant> {
 
 /// Like a graphics card, so that every kernel has its share.
 const GRAPHICS_CARD: Tuning = Tuning {
-    small_samples: 64,
-    small_side: 32,
-    list_group: 256,
-    list_walk: u32::MAX,
+    max_small_samples: 64,
+    max_small_side: 32,
+    group_size: 256,
+    max_list_entries: u32::MAX,
     listed_tiles: false,
     early_load: true,
     specialized: true,
 };
 
-/// The map of faults shows what the counts count: as many wrong owners, holes and doubles just where there are any, and the
+/// The map of faults shows what the counts count: as many wrong triangle ids, holes and doubles just where there are any, and the
 /// largest difference of colour.
 fn map_agrees(verdict: &Verdict) -> Result<(), String> {
     let (a, map) = (&verdict.accuracy, &verdict.faults);
-    let owners = map.count(Fault::Owner) == a.owner_mismatch && map.count(Fault::Depth) == a.wrong_winners;
-    let coverage = (map.count(Fault::Hole) > 0) == (a.holes > 0) && (map.count(Fault::Double) > 0) == (a.double_hits > 0);
-    let ties = map.count(Fault::Tie) == a.band_pixels;
-    let colours = map.colour.iter().max().copied().unwrap_or(0) >= a.max_colour_delta;
-    let marks = Fault::ALL.map(|fault| map.count(fault));
-    if owners && coverage && ties && colours { Ok(()) } else { Err(format!("the map has {marks:?} and the counts say {a:?}")) }
+    let triangle_ids = map.count(PixelError::TriangleId) == a.wrong_triangles && map.count(PixelError::Depth) == a.wrong_nearest;
+    let coverage = (map.count(PixelError::Hole) > 0) == (a.holes > 0) && (map.count(PixelError::Double) > 0) == (a.double_hits > 0);
+    let ties = map.count(PixelError::Tie) == a.depth_band_pixels;
+    let colours = map.colour.iter().max().copied().unwrap_or(0) >= a.max_color_delta;
+    let marks = PixelError::ALL.map(|fault| map.count(fault));
+    if triangle_ids && coverage && ties && colours { Ok(()) } else { Err(format!("the map has {marks:?} and the counts say {a:?}")) }
 }
 
 #[test]
@@ -384,13 +385,13 @@ fn kernels_with_a_mistake_are_caught() {
     healthy.set_tuning(GRAPHICS_CARD);
     let mut failures = Vec::new();
     for mutant in mutants() {
-        let Mutant { what, scene, view, rung, shown_by: (figure, shown_by), .. } = &mutant;
-        exact(&mut healthy, scene, view, &stack(&[]), &pinned(*rung), &format!("without the mistake: {what}"));
+        let Mutant { what, scene, view, option, shown_by: (figure, shown_by), .. } = &mutant;
+        exact(&mut healthy, scene, view, &stack(&[]), &pinned(*option), &format!("without the mistake: {what}"));
 
         let library = mutated(mutant.file, mutant.from, mutant.to);
         let mut wrong = Renderer::with_library(healthy.gpu().clone(), library.shaders());
         wrong.set_tuning(GRAPHICS_CARD);
-        let (_, verdict) = judged(&mut wrong, scene, view, &stack(&[]), &pinned(*rung));
+        let (_, verdict) = judged(&mut wrong, scene, view, &stack(&[]), &pinned(*option));
         eprintln!("{what}: {}", exactness(&verdict.accuracy).err().unwrap_or_default());
         if exactness(&verdict.accuracy).is_ok() || shown_by(&verdict.accuracy) == 0 {
             failures.push(format!("{what} does not show in {figure}: {:?}", verdict.accuracy));

@@ -8,9 +8,9 @@ use std::sync::Arc;
 use common::*;
 use glam::{DMat4, DVec3};
 use rasterlab::{
-    frame::{Frame, NO_OWNER},
+    accuracy::Visibility,
+    frame::{Frame, NO_TRIANGLE},
     gpu::{Capture, Renderer, uniforms::Capacities},
-    ladder::Visibility,
     measure::compare,
     oracle,
     plan::Tuning,
@@ -21,12 +21,12 @@ const SIZE: [u32; 2] = [256, 192];
 
 /// Every image of `a` is that of `b`, bit for bit.
 fn assert_same(a: &Frame, b: &Frame, what: &str) {
-    let owners = compare::owners(&a.owner, &b.owner);
-    assert_eq!(owners.different, 0, "{what}: owners differ, first {:?}", owners.offenders.first());
-    let keys = compare::owners(&a.key, &b.key);
-    assert_eq!(keys.different, 0, "{what}: keys differ, first {:?}", keys.offenders.first());
+    let triangle_ids = compare::triangle_ids(&a.triangle_id, &b.triangle_id);
+    assert_eq!(triangle_ids.different, 0, "{what}: triangle ids differ, first {:?}", triangle_ids.mismatches.first());
+    let keys = compare::triangle_ids(&a.key, &b.key);
+    assert_eq!(keys.different, 0, "{what}: keys differ, first {:?}", keys.mismatches.first());
     let colors = compare::pictures(&a.color, &b.color, 0);
-    assert_eq!(colors.pixels_beyond, 0, "{what}: colours differ, first {:?}", colors.offenders.first());
+    assert_eq!(colors.pixels_over_tolerance, 0, "{what}: colours differ, first {:?}", colors.mismatches.first());
 }
 
 /// The hall from inside: clipping, and triangles of every class.
@@ -38,16 +38,16 @@ fn hall() -> (Arc<Scene>, View) {
 
 /// Small triangles walk alone, middling ones get a workgroup, as on a GPU.
 const GRAPHICS_CARD: Tuning = Tuning {
-    small_samples: 32,
-    small_side: 32,
-    list_group: 256,
-    list_walk: u32::MAX,
+    max_small_samples: 32,
+    max_small_side: 32,
+    group_size: 256,
+    max_list_entries: u32::MAX,
     listed_tiles: false,
     early_load: false,
     specialized: true,
 };
 
-/// What only the tiled rung has.
+/// What only the tiled option has.
 const TILED: &[&str] = &["bin_queued", "bin_scan", "raster_tiles"];
 
 fn is_drawn_by(renderer: &Renderer, stems: &[&str]) {
@@ -61,7 +61,7 @@ fn is_drawn_by(renderer: &Renderer, stems: &[&str]) {
 fn the_scenes_of_these_tests_include_every_builtin() {
     for builtin in BUILTINS {
         assert!(
-            SCENES.iter().chain(BENT_SCENES).any(|query| query.split('?').next() == Some(builtin.name)),
+            SCENES.iter().chain(DEFORMED_SCENES).any(|query| query.split('?').next() == Some(builtin.name)),
             "{} is not tested",
             builtin.name
         );
@@ -71,21 +71,21 @@ fn the_scenes_of_these_tests_include_every_builtin() {
 #[test]
 fn every_exact_backend_gives_the_same_owners_and_keys() {
     let Some(mut renderer) = renderer() else { return };
-    let rungs = rungs(&renderer);
-    if !rungs.contains(&Visibility::Packed64) {
+    let options = options(&renderer);
+    if !options.contains(&Visibility::Packed64) {
         eprintln!("NOT RUN: this adapter has no 64-bit atomics, so there is no packed64 to compare with");
     }
-    for query in SCENES.iter().chain(BENT_SCENES) {
+    for query in SCENES.iter().chain(DEFORMED_SCENES) {
         let scene = scene(query);
         let view = view(&scene, SIZE);
         for tuning in [renderer.gpu().caps.tuning(), GRAPHICS_CARD] {
             renderer.set_tuning(tuning);
-            let mut draw = |rung| captured(&mut renderer, &scene, &view, &stack(&["facet", "lambert"]), &pinned(rung));
+            let mut draw = |option| captured(&mut renderer, &scene, &view, &stack(&["facet", "lambert"]), &pinned(option));
             let split = draw(Visibility::Split32);
             assert!(split.frame.covered() > 0, "{query} shows nothing");
-            for &rung in &rungs[1..] {
-                let other = draw(rung);
-                let what = format!("{query} {}", rung.name());
+            for &option in &options[1..] {
+                let other = draw(option);
+                let what = format!("{query} {}", option.name());
                 assert_same(&other.frame, &split.frame, &what);
                 assert_eq!(other.geometry, split.geometry, "{what}: geometry");
                 assert_eq!(other.layers, split.layers, "{what}: layers");
@@ -110,23 +110,23 @@ fn packed32_loses_depth_and_nothing_else() {
     for query in SCENES {
         let scene = scene(query);
         let view = view(&scene, SIZE);
-        let truth = captured(&mut renderer, &scene, &view, &stack(&[]), &pinned(Visibility::Split32)).frame;
+        let reference = captured(&mut renderer, &scene, &view, &stack(&[]), &pinned(Visibility::Split32)).frame;
         let (capture, verdict) = judged(&mut renderer, &scene, &view, &stack(&[]), &pinned(Visibility::Packed32));
         let (frame, errors) = (&capture.frame, &verdict.accuracy);
-        assert_eq!([errors.holes, errors.double_hits, errors.orphans], [0; 3], "{query}");
-        assert_eq!(errors.owner_mismatch, errors.wrong_winners, "{query}: an owner does not cover its pixel");
-        let cut: Vec<u32> = truth.key.iter().map(|&key| cut_key(key, scene.triangle_count())).collect();
-        let keys = compare::owners(&frame.key, &cut);
-        assert_eq!(keys.different, 0, "{query}: keys, first {:?}", keys.offenders.first());
-        // Another owner than the nearest is one that a step of the key cannot tell from it: as deep when cut, and smaller.
+        assert_eq!([errors.holes, errors.double_hits, errors.depth_without_id], [0; 3], "{query}");
+        assert_eq!(errors.wrong_triangles, errors.wrong_nearest, "{query}: an triangle id does not cover its pixel");
+        let cut: Vec<u32> = reference.key.iter().map(|&key| cut_key(key, scene.triangle_count())).collect();
+        let keys = compare::triangle_ids(&frame.key, &cut);
+        assert_eq!(keys.different, 0, "{query}: keys, first {:?}", keys.mismatches.first());
+        // Another triangle id than the nearest is one that a step of the key cannot tell from it: as deep when cut, and smaller.
         let (draws, geometry) = (draws(&scene, &view).expect("a builtin fits"), &capture.geometry);
         let (triangles, _) = oracle::triangles(&scene, &draws, geometry);
-        let claimed = oracle::cover(&triangles, &view, Some(&frame.owner));
+        let claimed = oracle::cover(&triangles, &view, Some(&frame.triangle_id));
         for (pixel, sample) in claimed.samples.iter().enumerate() {
-            if frame.owner[pixel] != truth.owner[pixel] {
+            if frame.triangle_id[pixel] != reference.triangle_id[pixel] {
                 let [_, high] = sample.claimed.unwrap_or_else(|| panic!("{query}: pixel {pixel}"));
                 assert!(high >= f64::from(f32::from_bits(cut[pixel])), "{query}: pixel {pixel} shows what is farther by a step");
-                assert!(frame.owner[pixel] < truth.owner[pixel], "{query}: pixel {pixel} shows the larger id");
+                assert!(frame.triangle_id[pixel] < reference.triangle_id[pixel], "{query}: pixel {pixel} shows the larger id");
                 lost += 1;
             }
         }
@@ -140,14 +140,14 @@ fn a_race_may_lose_the_nearest_and_nothing_else() {
     for query in ["sphere?triangles=5000", "stack?layers=40", "near", "sizes"] {
         let scene = scene(query);
         let view = view(&scene, SIZE);
-        let truth = captured(&mut renderer, &scene, &view, &stack(&[]), &pinned(Visibility::Split32));
+        let reference = captured(&mut renderer, &scene, &view, &stack(&[]), &pinned(Visibility::Split32));
         let (capture, verdict) = judged(&mut renderer, &scene, &view, &stack(&[]), &pinned(Visibility::Race));
         let errors = &verdict.accuracy;
-        assert_eq!([errors.holes, errors.double_hits, errors.orphans], [0; 3], "{query}");
-        assert_eq!(errors.owner_mismatch, errors.wrong_winners, "{query}: an owner does not cover its pixel");
+        assert_eq!([errors.holes, errors.double_hits, errors.depth_without_id], [0; 3], "{query}");
+        assert_eq!(errors.wrong_triangles, errors.wrong_nearest, "{query}: an triangle id does not cover its pixel");
         let layers = capture.layers.as_deref().expect("layers are counted");
         for pixel in (0..layers.len()).filter(|&pixel| layers[pixel] < 2) {
-            let [here, there] = [&capture.frame, &truth.frame].map(|frame| (frame.owner[pixel], frame.key[pixel]));
+            let [here, there] = [&capture.frame, &reference.frame].map(|frame| (frame.triangle_id[pixel], frame.key[pixel]));
             assert_eq!(here, there, "{query}: pixel {pixel} has no rival");
         }
     }
@@ -159,13 +159,13 @@ fn all_layers_are_the_same_on_every_rung() {
     for (query, effect) in [("knot?tess=24", "xray"), ("near", "xray"), ("near", "overdraw"), ("sizes", "overdraw")] {
         let scene = scene(query);
         let view = view(&scene, SIZE);
-        let truth = captured(&mut renderer, &scene, &view, &stack(&[effect]), &pinned(Visibility::Split32));
+        let reference = captured(&mut renderer, &scene, &view, &stack(&[effect]), &pinned(Visibility::Split32));
         let has_int64 = renderer.gpu().caps.int64_atomics;
-        for rung in Visibility::ALL.iter().filter(|rung| rung.is_there(has_int64)) {
-            let capture = captured(&mut renderer, &scene, &view, &stack(&[effect]), &pinned(*rung));
-            let what = format!("{effect} of {query} on {}", rung.name());
-            assert!(capture.frame.counted == truth.frame.counted, "{what}: counts");
-            assert!(capture.frame.color == truth.frame.color, "{what}: colours");
+        for option in Visibility::ALL.iter().filter(|option| option.is_there(has_int64)) {
+            let capture = captured(&mut renderer, &scene, &view, &stack(&[effect]), &pinned(*option));
+            let what = format!("{effect} of {query} on {}", option.name());
+            assert!(capture.frame.counted == reference.frame.counted, "{what}: counts");
+            assert!(capture.frame.color == reference.frame.color, "{what}: colours");
         }
     }
 }
@@ -175,7 +175,7 @@ fn all_layers_are_the_same_on_every_rung() {
 fn lists_of_tiles_hold_their_demand_to_the_last_entry() {
     let Some(mut renderer) = renderer() else { return };
     let (scene, view) = hall();
-    let truth = captured(&mut renderer, &scene, &view, &stack(&[]), &pinned(Visibility::Split32)).frame;
+    let reference = captured(&mut renderer, &scene, &view, &stack(&[]), &pinned(Visibility::Split32)).frame;
     let tiled = |renderer: &mut Renderer, bins: u32| {
         renderer.set_scene(&scene).expect("a builtin fits");
         let room = renderer.capacities();
@@ -190,12 +190,16 @@ fn lists_of_tiles_hold_their_demand_to_the_last_entry() {
     for bins in [demand, demand - 1, demand / 10, 1] {
         let (report, frame) = tiled(&mut renderer, bins);
         assert_eq!((report.counters.overflow, report.redraw), (demand - bins, bins < demand), "room for {bins} of {demand}");
-        assert_same(&frame, &truth, &format!("room for {bins} of {demand}"));
+        assert_same(&frame, &reference, &format!("room for {bins} of {demand}"));
     }
     let library = mutated("passes/raster_tiles", "vec2u(frame.bin_capacity)", "vec2u(frame.bin_capacity / 2u)");
     let mut wrong = Renderer::with_library(renderer.gpu().clone(), library.shaders());
     let (_, frame) = tiled(&mut wrong, demand);
-    assert_ne!(compare::owners(&frame.owner, &truth.owner).different + compare::owners(&frame.key, &truth.key).different, 0);
+    assert_ne!(
+        compare::triangle_ids(&frame.triangle_id, &reference.triangle_id).different
+            + compare::triangle_ids(&frame.key, &reference.key).different,
+        0
+    );
 }
 
 /// Some drivers end a loop after so many turns: then several dispatches walk a list, and the last of 70,000 layers shows.
@@ -203,7 +207,7 @@ fn lists_of_tiles_hold_their_demand_to_the_last_entry() {
 fn long_lists_of_tiles_are_walked_to_their_end() {
     let Some(mut renderer) = renderer() else { return };
     let usual = renderer.gpu().caps.tuning();
-    for (query, list_walk) in [("near", 7), ("near", 100), ("stack?layers=70000&gap=0.0001", u32::MAX)] {
+    for (query, max_list_entries) in [("near", 7), ("near", 100), ("stack?layers=70000&gap=0.0001", u32::MAX)] {
         let mut scene = scene(query);
         if query.starts_with("stack") {
             // Turned inside out, so that the last layer is the nearest.
@@ -211,23 +215,23 @@ fn long_lists_of_tiles_are_walked_to_their_end() {
         }
         let view = view(&scene, [80, 60]);
         renderer.set_tuning(usual);
-        let truth = captured(&mut renderer, &scene, &view, &stack(&[]), &pinned(Visibility::Split32)).frame;
-        renderer.set_tuning(Tuning { list_walk, ..usual });
+        let reference = captured(&mut renderer, &scene, &view, &stack(&[]), &pinned(Visibility::Split32)).frame;
+        renderer.set_tuning(Tuning { max_list_entries, ..usual });
         let frame = captured(&mut renderer, &scene, &view, &stack(&[]), &pinned(Visibility::Tiled)).frame;
-        assert_same(&frame, &truth, &format!("{query}, {list_walk} entries at once"));
+        assert_same(&frame, &reference, &format!("{query}, {max_list_entries} entries at once"));
     }
     let (scene, view) = hall();
-    let truth = captured(&mut renderer, &scene, &view, &stack(&[]), &pinned(Visibility::Split32)).frame;
+    let reference = captured(&mut renderer, &scene, &view, &stack(&[]), &pinned(Visibility::Split32)).frame;
     for (from, to) in [
         ("bins[tiles_count() + tile] += list.y - list.x", "bins[tiles_count() + tile] += 0u"),
         ("list.x + bins[tiles_count() + tile]", "list.x + 0u"),
-        ("if LIST_WALK != 0xffffffffu && range.x", "if LIST_WALK == 0u && range.x"),
+        ("if MAX_LIST_ENTRIES != 0xffffffffu && range.x", "if MAX_LIST_ENTRIES == 0u && range.x"),
     ] {
         let library = mutated("passes/raster_tiles", from, to);
         let mut wrong = Renderer::with_library(renderer.gpu().clone(), library.shaders());
-        wrong.set_tuning(Tuning { list_walk: 100, ..usual });
+        wrong.set_tuning(Tuning { max_list_entries: 100, ..usual });
         let frame = captured(&mut wrong, &scene, &view, &stack(&[]), &pinned(Visibility::Tiled)).frame;
-        assert_ne!(compare::owners(&frame.owner, &truth.owner).different, 0, "{to}");
+        assert_ne!(compare::triangle_ids(&frame.triangle_id, &reference.triangle_id).different, 0, "{to}");
     }
 }
 
@@ -237,20 +241,20 @@ fn a_hundred_frames_are_equal_to_the_bit() {
     let (scene, _) = hall();
     let view = view(&scene, [160, 120]);
     renderer.set_tuning(GRAPHICS_CARD);
-    for rung in rungs(&renderer) {
-        let mut draw = || -> Capture { captured(&mut renderer, &scene, &view, &stack(&["facet", "lambert"]), &pinned(rung)) };
+    for option in options(&renderer) {
+        let mut draw = || -> Capture { captured(&mut renderer, &scene, &view, &stack(&["facet", "lambert"]), &pinned(option)) };
         let first = draw();
         assert!(first.frame.counters.clipped > 0 && !first.geometry.pieces.is_empty(), "nothing was clipped");
         for frame in 2..=100 {
             let again = draw();
-            let what = format!("{} frame {frame}", rung.name());
+            let what = format!("{} frame {frame}", option.name());
             assert_same(&again.frame, &first.frame, &what);
             assert_eq!(again.geometry, first.geometry, "{what}: geometry");
             assert_eq!(again.layers, first.layers, "{what}: layers");
             assert_eq!(again.frame.counters, first.frame.counters, "{what}: counters");
         }
         is_drawn_by(&renderer, &["project", "raster_small", "args", "clip", "resolve"]);
-        is_drawn_by(&renderer, if rung == Visibility::Tiled { TILED } else { &["tile_large", "raster_medium", "raster_large"] });
+        is_drawn_by(&renderer, if option == Visibility::Tiled { TILED } else { &["tile_large", "raster_medium", "raster_large"] });
     }
 }
 
@@ -262,9 +266,9 @@ fn shuffled(scene: &Scene, seed: u32) -> (Arc<Scene>, Vec<u32>) {
     assert_eq!((indices.stride, indices.offset), (4, 0));
     let triangles: Vec<[u8; 12]> = scene.index_bytes.as_chunks().0.to_vec();
     let mut order: Vec<u32> = (0..triangles.len() as u32).collect();
-    let mut dice = Dice(seed);
+    let mut rng = Rng(seed);
     for i in (1..order.len()).rev() {
-        order.swap(i, dice.between(0, i as i32 + 1) as usize);
+        order.swap(i, rng.between(0, i as i32 + 1) as usize);
     }
     scene.index_bytes = order.iter().flat_map(|&t| triangles[t as usize]).collect();
     (Arc::new(scene), order)
@@ -277,15 +281,15 @@ fn shuffled_triangles_own_the_pixels_they_owned_before() {
     for query in ["sphere?triangles=5000", "sphere?triangles=200", "knot?tess=6", "grid?cell=1", "sizes"] {
         let still = scene(query);
         let view = view(&still, SIZE);
-        for rung in rungs(&renderer) {
-            let before = captured(&mut renderer, &still, &view, &stack(&[]), &pinned(rung)).frame;
+        for option in options(&renderer) {
+            let before = captured(&mut renderer, &still, &view, &stack(&[]), &pinned(option)).frame;
             for seed in 1..=3 {
                 let (mixed, order) = shuffled(&still, seed);
                 assert!(order.iter().enumerate().filter(|(i, t)| *i as u32 != **t).count() > order.len() / 2, "hardly shuffled");
-                let after = captured(&mut renderer, &mixed, &view, &stack(&[]), &pinned(rung)).frame;
-                let by_old_id = |&owner: &u32| if owner == NO_OWNER { NO_OWNER } else { order[owner as usize] };
-                let owners: Vec<u32> = after.owner.iter().map(by_old_id).collect();
-                assert_same(&Frame { owner: owners, ..after }, &before, &format!("{query} {}, shuffle {seed}", rung.name()));
+                let after = captured(&mut renderer, &mixed, &view, &stack(&[]), &pinned(option)).frame;
+                let by_old_id = |&triangle_id: &u32| if triangle_id == NO_TRIANGLE { NO_TRIANGLE } else { order[triangle_id as usize] };
+                let triangle_ids: Vec<u32> = after.triangle_id.iter().map(by_old_id).collect();
+                assert_same(&Frame { triangle_id: triangle_ids, ..after }, &before, &format!("{query} {}, shuffle {seed}", option.name()));
             }
         }
     }
@@ -300,13 +304,13 @@ fn equal_keys_go_to_the_smaller_id() {
     let view = view(&still, SIZE);
     for tuning in tunings() {
         renderer.set_tuning(tuning);
-        for rung in rungs(&renderer) {
+        for option in options(&renderer) {
             for scene in [still.clone(), shuffled(&still, 5).0, shuffled(&still, 6).0] {
-                let (capture, verdict) = judged(&mut renderer, &scene, &view, &stack(&[]), &pinned(rung));
+                let (capture, verdict) = judged(&mut renderer, &scene, &view, &stack(&[]), &pinned(option));
                 let layers = capture.layers.as_deref().expect("layers are counted");
                 assert!(layers.iter().filter(|&&layers| layers > 4).count() > 1000, "layers hardly overlap");
-                let owners = compare::owners(&capture.frame.owner, &verdict.expected.owner);
-                assert_eq!(owners.different, 0, "{} {tuning:?}: {:?}", rung.name(), owners.offenders.first());
+                let triangle_ids = compare::triangle_ids(&capture.frame.triangle_id, &verdict.expected.triangle_id);
+                assert_eq!(triangle_ids.different, 0, "{} {tuning:?}: {:?}", option.name(), triangle_ids.mismatches.first());
             }
         }
     }
@@ -318,13 +322,13 @@ fn size_classes_and_listed_tiles_do_not_show() {
     for query in SCENES {
         let scene = scene(query);
         let view = view(&scene, SIZE);
-        for rung in rungs(&renderer) {
+        for option in options(&renderer) {
             let mut first: Option<Capture> = None;
             for tuning in tunings() {
                 renderer.set_tuning(tuning);
-                let capture = captured(&mut renderer, &scene, &view, &stack(&["facet", "depth", "lambert"]), &pinned(rung));
+                let capture = captured(&mut renderer, &scene, &view, &stack(&["facet", "depth", "lambert"]), &pinned(option));
                 let first = first.get_or_insert_with(|| capture.clone());
-                let what = format!("{query} {} {tuning:?}", rung.name());
+                let what = format!("{query} {} {tuning:?}", option.name());
                 assert_same(&capture.frame, &first.frame, &what);
                 assert_eq!(capture.layers, first.layers, "{what}: layers");
                 assert_eq!(capture.frame.counters, first.frame.counters, "{what}: counters");
@@ -386,14 +390,15 @@ fn tiles_with_a_mistake_are_caught() {
     for [what, file, from, to, query] in TILED_MUTANTS {
         let scene = scene(query);
         let view = view(&scene, SIZE);
-        let truth = captured(&mut renderer, &scene, &view, &stack(&[]), &pinned(Visibility::Split32)).frame;
+        let reference = captured(&mut renderer, &scene, &view, &stack(&[]), &pinned(Visibility::Split32)).frame;
         let library = mutated(file, from, to);
         let mut wrong = Renderer::with_library(renderer.gpu().clone(), library.shaders());
         wrong.set_tuning(Tuning { specialized: false, ..GRAPHICS_CARD });
         let frame = captured(&mut wrong, &scene, &view, &stack(&[]), &pinned(Visibility::Tiled)).frame;
-        let [owners, keys] = [(&frame.owner, &truth.owner), (&frame.key, &truth.key)].map(|(a, b)| compare::owners(a, b).different);
-        eprintln!("{what}: {owners} owners, {keys} keys differ");
-        if owners + keys == 0 {
+        let [triangle_ids, keys] = [(&frame.triangle_id, &reference.triangle_id), (&frame.key, &reference.key)]
+            .map(|(a, b)| compare::triangle_ids(a, b).different);
+        eprintln!("{what}: {triangle_ids} triangle ids, {keys} keys differ");
+        if triangle_ids + keys == 0 {
             failures.push(*what);
         }
     }

@@ -9,7 +9,7 @@ use std::{
 
 use serde_json::Value;
 
-/// The program in a clean world: no environment of ours, no looks of the person's own.
+/// The program in a clean world: no environment of ours, no presets of the person's own.
 fn command(folder: &Path) -> Command {
     let mut command = Command::new(env!("CARGO_BIN_EXE_rasterlab"));
     command.current_dir(folder).env_remove("RASTERLAB_ADAPTER").env_remove("RASTERLAB_PRESETS");
@@ -75,10 +75,10 @@ fn list_as_json_has_every_look_and_effect() {
         object["results"].as_array().unwrap().iter().filter(|r| r["kind"] == kind).map(|r| r["id"].clone()).collect::<Vec<_>>()
     };
     for effect in rasterlab::effects::EFFECTS {
-        assert!(of_kind("effect").contains(&effect.name.into()) && of_kind("look").contains(&effect.name.into()));
+        assert!(of_kind("effect").contains(&effect.name.into()) && of_kind("preset_file").contains(&effect.name.into()));
     }
-    let looks = object["results"].as_array().unwrap().iter().filter(|r| r["kind"] == "look");
-    looks.for_each(|look| assert_eq!(look["warnings"], Value::Array(vec![])));
+    let preset_files = object["results"].as_array().unwrap().iter().filter(|r| r["kind"] == "preset_file");
+    preset_files.for_each(|preset_file| assert_eq!(preset_file["warnings"], Value::Array(vec![])));
 }
 
 #[test]
@@ -185,12 +185,12 @@ fn the_same_look_gives_the_same_bytes() {
     assert!(a.bytes.starts_with(b"\x89PNG") && a.bytes == b.bytes);
 }
 
-/// A look that turns while a front crosses it.
+/// A preset that turns while a front crosses it.
 const MOVING: &str = "schema = 1\n[scene]\nbuiltin = \"knot?tess=3\"\nspin_deg_per_s = 90.0\n[clock]\nrange_s = [0.0, 1.0]\n\
     [effects.facet]\n[effects.lambert]\n[animation.facet]\namount = [{ time_s = 0.0, value = 0.0 }, { time_s = 1.0, value = 1.0 }]\n\
     [output]\nsize = [24, 18]\n";
 
-/// A folder with the moving look as `move.toml`.
+/// A folder with the moving preset as `move.toml`.
 fn studio() -> tempfile::TempDir {
     let folder = tempfile::tempdir().unwrap();
     fs::write(folder.path().join("move.toml"), MOVING).unwrap();
@@ -221,15 +221,16 @@ fn a_sequence_is_the_same_bytes_every_time_and_moves() {
     let drawn = frames(a.path());
     assert_eq!(drawn, frames(b.path()));
     assert!(drawn.windows(2).all(|pair| pair[0].1 != pair[1].1));
-    // A frame is the picture that render draws at its time, and gives that look back.
+    // A frame is the picture that render draws at its time, and gives that preset back.
     let path = a.path().join("f_003.png");
     let alone = run_in(a.path(), &["render", "move.toml", "--time", "0.375", "-o", "alone.png", "--adapter", "cpu"]);
     assert_eq!(alone.code, 0, "{}", alone.err);
-    let [of_sequence, of_render] = [path.clone(), a.path().join("alone.png")].map(|path| rasterlab::preset::png_pixels(&path).unwrap());
+    let [of_sequence, of_render] =
+        [path.clone(), a.path().join("alone.png")].map(|path| rasterlab::preset_file::png_pixels(&path).unwrap());
     assert_eq!(of_sequence, of_render);
-    let look = rasterlab::preset::look_from_png(&fs::read(path).unwrap(), "f").unwrap();
-    assert_eq!(look.session.clock.time_s, 0.375);
-    assert_eq!(look.session.animation.tracks().len(), 1);
+    let preset_file = rasterlab::preset_file::preset_from_png(&fs::read(path).unwrap(), "f").unwrap();
+    assert_eq!(preset_file.preset.clock.time_s, 0.375);
+    assert_eq!(preset_file.preset.animation.tracks().len(), 1);
 }
 
 #[test]
@@ -273,16 +274,16 @@ fn a_film_shows_the_frames() {
     let bytes = fs::read(folder.path().join("film.apng")).unwrap();
     let mut film = png::Decoder::new(std::io::Cursor::new(&bytes)).read_info().unwrap();
     let control = *film.info().animation_control().expect("an animated PNG");
-    assert_eq!((control.num_frames, control.num_plays), (8, 0), "it loops as the look does");
+    assert_eq!((control.num_frames, control.num_plays), (8, 0), "it loops as the preset does");
     for i in 0..8 {
         let mut pixels = vec![0; film.output_buffer_size().unwrap()];
         film.next_frame(&mut pixels).unwrap();
         let control = film.info().frame_control().unwrap();
         assert_eq!((control.delay_num, control.delay_den), (1, 8));
-        let (frame, _) = rasterlab::preset::png_pixels(&folder.path().join(format!("f_{i:03}.png"))).unwrap();
+        let (frame, _) = rasterlab::preset_file::png_pixels(&folder.path().join(format!("f_{i:03}.png"))).unwrap();
         assert_eq!(pixels, frame.concat(), "frame {i}");
     }
-    assert!(rasterlab::preset::look_from_png(&bytes, "film").is_ok());
+    assert!(rasterlab::preset_file::preset_from_png(&bytes, "film").is_ok());
     // From kept frames, and without any files, the same film comes out.
     fs::remove_file(folder.path().join("film.apng")).unwrap();
     assert!(sequence(folder.path(), &["--apng", "film.apng"]).err.contains("0 frames drawn, 8 kept"));
@@ -304,7 +305,11 @@ fn frames_of_another_look_are_overwritten_with_force_alone() {
     let changed = ["--set", "lambert.headlight=0.5"];
     let refused = sequence(folder.path(), &changed);
     assert_eq!(refused.code, 2);
-    assert!(refused.err.contains("f_000.png exists and is no frame of this look, and so do 7 more; --force overwrites"), "{}", refused.err);
+    assert!(
+        refused.err.contains("f_000.png exists and is no frame of this preset, and so do 7 more; --force overwrites"),
+        "{}",
+        refused.err
+    );
     let forced = sequence(folder.path(), &[&changed[..], &["--force"]].concat());
     assert!(forced.err.contains("8 frames drawn, 0 kept"), "{}", forced.err);
     fs::remove_file(folder.path().join("f_000.png")).unwrap();
@@ -378,10 +383,10 @@ fn every_command_draws_the_look_at_its_time() {
     let at = ["--set", "clock.time_s=0.5", "--adapter", "cpu"];
     let same = run_in(folder.path(), &[&["compare", "move.toml", "held.toml", "--max-channel", "0"], &at[..]].concat());
     assert_eq!(same.code, 0, "{}", same.out);
-    for look in ["move.toml", "held.toml"] {
-        let out = format!("{look}.png");
-        assert_eq!(run_in(folder.path(), &[&["render", look, "--bare", "-o", &out], &at[..]].concat()).code, 0);
-        assert_eq!(run_in(folder.path(), &[&["verify", look], &at[..]].concat()).code, 0, "{look}");
+    for preset_file in ["move.toml", "held.toml"] {
+        let out = format!("{preset_file}.png");
+        assert_eq!(run_in(folder.path(), &[&["render", preset_file, "--bare", "-o", &out], &at[..]].concat()).code, 0);
+        assert_eq!(run_in(folder.path(), &[&["verify", preset_file], &at[..]].concat()).code, 0, "{preset_file}");
     }
     let [moving, held] = ["move.toml.png", "held.toml.png"].map(|name| fs::read(folder.path().join(name)).unwrap());
     assert!(moving == held);
@@ -440,10 +445,10 @@ fn the_oracle_agrees_with_itself() {
     let object = json(&verify);
     assert_eq!(object["results"].as_array().unwrap().len(), 2);
     for row in object["results"].as_array().unwrap() {
-        for figure in ["owner_mismatch", "explained_by_snap", "holes", "double_hits", "orphans", "overflow", "max_colour_delta"] {
+        for figure in ["wrong_triangles", "explained_by_snap", "holes", "double_hits", "depth_without_id", "overflow", "max_color_delta"] {
             assert_eq!(row[figure], 0, "{figure} of {row}");
         }
-        assert_eq!((&row["rms_colour_delta"], &row["ok"], &row["class"]), (&0.0.into(), &true.into(), &"oracle".into()));
+        assert_eq!((&row["rms_color_delta"], &row["ok"], &row["class"]), (&0.0.into(), &true.into(), &"oracle".into()));
     }
 }
 
@@ -456,7 +461,7 @@ fn compare_exits_with_1_beyond_the_budget_and_0_within() {
     assert_eq!(over.code, 1);
     assert!(over.out.contains("FAIL") && folder.path().join("diff.png").exists());
     assert_eq!(compare(&["--max-channel", "255", "--max-wrong-owner", "99999"]).code, 0);
-    assert_eq!(compare(&["--max-pixels", "99999"]).code, 1, "owners have a budget of their own");
+    assert_eq!(compare(&["--max-pixels", "99999"]).code, 1, "triangle ids have a budget of their own");
     assert_eq!(run(&["compare", "facet", "facet", "--adapter", "cpu", "--size", "32x32"]).code, 0);
 }
 
@@ -483,8 +488,9 @@ fn check_finds_every_bad_look_and_lists_all() {
 fn bless_draws_what_check_then_accepts() {
     let folder = tempfile::tempdir().unwrap();
     fs::create_dir(folder.path().join("presets")).unwrap();
-    let look = "schema = 1\n[scene]\nbuiltin = \"knot?tess=3\"\n[effects.facet]\n[effects.lambert]\n[output]\nsize = [64, 48]\n[test]\n";
-    fs::write(folder.path().join("presets/mine.toml"), look).unwrap();
+    let preset_file =
+        "schema = 1\n[scene]\nbuiltin = \"knot?tess=3\"\n[effects.facet]\n[effects.lambert]\n[output]\nsize = [64, 48]\n[test]\n";
+    fs::write(folder.path().join("presets/mine.toml"), preset_file).unwrap();
     let go = |args: &[&str]| run_in(folder.path(), args);
     let check = ["check", "presets/mine.toml", "--render", "--adapter", "cpu"];
     let missing = go(&check);
@@ -498,7 +504,8 @@ fn bless_draws_what_check_then_accepts() {
     assert_eq!(passed.code, 0, "{}", passed.out);
     let report = fs::read_to_string(folder.path().join("r.html")).unwrap();
     assert!(report.contains("data:image/png;base64,") && !report.contains("{{"));
-    fs::write(folder.path().join("presets/mine.toml"), look.replace("[effects.facet]\n", "[effects.facet]\namount = 0.2\n")).unwrap();
+    fs::write(folder.path().join("presets/mine.toml"), preset_file.replace("[effects.facet]\n", "[effects.facet]\namount = 0.2\n"))
+        .unwrap();
     let changed = go(&check);
     assert!(changed.code == 1 && changed.out.contains("pixels differ from the golden"), "{}", changed.out);
     assert!(go(&["bless", "mine"]).out.contains("pixels change, at most by"));
@@ -510,8 +517,8 @@ fn blessing_an_effect_without_a_look_makes_its_first() {
     fs::create_dir(folder.path().join("presets")).unwrap();
     let blessed = run_in(folder.path(), &["bless", "normals"]);
     assert_eq!(blessed.code, 0, "{}", blessed.err);
-    let look = rasterlab::preset::load(&folder.path().join("presets/normals.toml")).unwrap().strict().unwrap();
-    assert!(look.session.stack.get("normals").is_some() && look.session.test.is_some());
+    let preset_file = rasterlab::preset_file::load(&folder.path().join("presets/normals.toml")).unwrap().strict().unwrap();
+    assert!(preset_file.preset.stack.get("normals").is_some() && preset_file.preset.test.is_some());
     assert!(folder.path().join("tests/snapshots/normals.png").exists() && folder.path().join("tests/snapshots/normals.json").exists());
     assert_eq!(run_in(folder.path(), &["bless", "no-such-effect"]).code, 2);
 }

@@ -1,5 +1,5 @@
-//! Promise: what culling leaves out is never seen: owners and keys are those of a picture that leaves nothing out, from
-//! everywhere, on every rung, picture after picture. Needs an adapter.
+//! Promise: what culling leaves out is never seen: triangle ids and keys are those of a picture that leaves nothing out, from
+//! everywhere, on every option, picture after picture. Needs an adapter.
 
 mod common;
 
@@ -8,11 +8,11 @@ use std::sync::{Arc, Mutex, OnceLock};
 use common::*;
 use glam::{DMat4, DQuat, DVec3};
 use rasterlab::{
-    frame::{CullingFigures, Frame},
+    accuracy::{Coverage, Culling, DepthFormat, PinnedOptions, PositionFormat, RenderScale, VertexTransform, Visibility},
+    frame::{CullingStats, Frame},
     gpu::{Capture, Renderer},
-    ladder::{Coverage, Culling, Depth, Pins, Scale, Vertex, Vertices, Visibility},
     measure::compare,
-    plan::{Accuracy, Tuning},
+    plan::{AccuracyRequest, Tuning},
     scene::{
         Scene,
         camera::{Camera, Projection, View},
@@ -22,21 +22,21 @@ use rasterlab::{
 
 const SIZE: [u32; 2] = [128, 96];
 
-fn on(pins: Pins) -> Accuracy {
-    Accuracy { pins, ..Accuracy::default() }
+fn on(pins: PinnedOptions) -> AccuracyRequest {
+    AccuracyRequest { pins, ..AccuracyRequest::default() }
 }
 
 /// Every image of `a` is that of `b`, bit for bit.
 fn assert_same(a: &Frame, b: &Frame, what: &str) {
-    let owners = compare::owners(&a.owner, &b.owner);
-    assert_eq!(owners.different, 0, "{what}: owners differ, first {:?}", owners.offenders.first());
-    let keys = compare::owners(&a.key, &b.key);
-    assert_eq!(keys.different, 0, "{what}: keys differ, first {:?}", keys.offenders.first());
-    assert_eq!(compare::pictures(&a.color, &b.color, 0).pixels_beyond, 0, "{what}: colours differ");
+    let triangle_ids = compare::triangle_ids(&a.triangle_id, &b.triangle_id);
+    assert_eq!(triangle_ids.different, 0, "{what}: triangle ids differ, first {:?}", triangle_ids.mismatches.first());
+    let keys = compare::triangle_ids(&a.key, &b.key);
+    assert_eq!(keys.different, 0, "{what}: keys differ, first {:?}", keys.mismatches.first());
+    assert_eq!(compare::pictures(&a.color, &b.color, 0).pixels_over_tolerance, 0, "{what}: colours differ");
 }
 
 /// The next picture, and what was left out of it.
-fn drawn(renderer: &mut Renderer, view: &View, pins: Pins) -> (Capture, CullingFigures) {
+fn drawn(renderer: &mut Renderer, view: &View, pins: PinnedOptions) -> (Capture, CullingStats) {
     let capture = renderer.capture_next(view, &stack(&["lambert"]), &on(pins)).unwrap_or_else(|error| panic!("{}: {error}", pins.words()));
     (capture, renderer.culled().unwrap_or_default())
 }
@@ -57,12 +57,12 @@ fn scenes() -> Vec<(String, Arc<Scene>)> {
 }
 
 /// Cameras inside, grazing, behind and across a scene, near and far.
-fn cameras(scene: &Scene, dice: &mut Dice, count: usize) -> Vec<View> {
+fn cameras(scene: &Scene, rng: &mut Rng, count: usize) -> Vec<View> {
     let bounds = scene.bounds();
     let (middle, reach) = (bounds.center(), bounds.radius().min(30.0));
     let mut views: Vec<View> =
         scene.cameras.iter().map(|camera| View::new(&camera.pose, SIZE[0], SIZE[1], &bounds, DMat4::IDENTITY, [0.0; 4])).collect();
-    let mut unit = |span: f64| dice.real(-span, span);
+    let mut unit = |span: f64| rng.real(-span, span);
     for i in 0..count {
         let eye = middle + DVec3::new(unit(reach), unit(reach), unit(reach)) * [0.3, 1.0, 3.0][i % 3];
         let target = middle + DVec3::new(unit(reach), unit(reach), unit(reach)) * 0.5;
@@ -79,10 +79,10 @@ fn cameras(scene: &Scene, dice: &mut Dice, count: usize) -> Vec<View> {
 /// As a CPU adapter likes it, and as a graphics card.
 fn both_tunings(renderer: &Renderer) -> [Tuning; 2] {
     let card = Tuning {
-        small_samples: 32,
-        small_side: 32,
-        list_group: 256,
-        list_walk: u32::MAX,
+        max_small_samples: 32,
+        max_small_side: 32,
+        group_size: 256,
+        max_list_entries: u32::MAX,
         listed_tiles: false,
         early_load: false,
         specialized: true,
@@ -93,28 +93,28 @@ fn both_tunings(renderer: &Renderer) -> [Tuning; 2] {
 #[test]
 fn no_camera_sees_what_frustum_and_cones_leave_out() {
     let Some(mut renderer) = renderer() else { return };
-    let (mut dice, mut total) = (Dice(7), CullingFigures::default());
+    let (mut rng, mut total) = (Rng(7), CullingStats::default());
     for (place, (what, scene)) in scenes().into_iter().enumerate() {
         renderer.set_scene(&scene).expect("it fits");
         let tuning = both_tunings(&renderer)[place % 2];
         renderer.set_tuning(tuning);
-        let rungs = rungs(&renderer);
-        for (i, view) in cameras(&scene, &mut dice, 6).iter().enumerate() {
-            let pins = Pins::of(rungs[i % rungs.len()]);
+        let options = options(&renderer);
+        for (i, view) in cameras(&scene, &mut rng, 6).iter().enumerate() {
+            let pins = PinnedOptions::of(options[i % options.len()]);
             let (whole, _) = drawn(&mut renderer, view, pins.with(Culling::None));
-            let (culled, figures) = drawn(&mut renderer, view, pins.with(Culling::Frustum));
+            let (culled, stats) = drawn(&mut renderer, view, pins.with(Culling::Frustum));
             assert_same(&culled.frame, &whole.frame, &format!("{what} from camera {i} on {}", pins.words()));
             assert_eq!((&culled.layers, &culled.geometry), (&whole.layers, &whole.geometry), "{what} from camera {i}: what the judge gets");
-            total.outside += figures.outside;
-            total.turned += figures.turned;
-            total.drawn += figures.drawn;
+            total.outside += stats.outside;
+            total.backfacing += stats.backfacing;
+            total.drawn += stats.drawn;
         }
     }
-    assert!(total.outside > total.drawn / 4 && total.turned > 0, "little is left out: {total:?}");
+    assert!(total.outside > total.drawn / 4 && total.backfacing > 0, "little is left out: {total:?}");
 }
 
 /// A walk through a scene: small steps and turns, and now and then a jump.
-fn walk(scene: &Scene, dice: &mut Dice, steps: usize, size: [u32; 2]) -> Vec<View> {
+fn walk(scene: &Scene, rng: &mut Rng, steps: usize, size: [u32; 2]) -> Vec<View> {
     let bounds = scene.bounds();
     let reach = bounds.radius().min(30.0);
     let (mut eye, mut turn) = (bounds.center() + DVec3::splat(0.2 * reach), 0.0);
@@ -124,8 +124,8 @@ fn walk(scene: &Scene, dice: &mut Dice, steps: usize, size: [u32; 2]) -> Vec<Vie
         if step % 5 == 4 {
             [stride, swing] = [0.7 * reach, 3.0];
         }
-        eye += DVec3::new(dice.real(-stride, stride), dice.real(-stride, stride), dice.real(-stride, stride));
-        turn += dice.real(-swing, swing);
+        eye += DVec3::new(rng.real(-stride, stride), rng.real(-stride, stride), rng.real(-stride, stride));
+        turn += rng.real(-swing, swing);
         let way = DQuat::from_rotation_y(turn) * DVec3::new(0.0, 0.1, -1.0);
         let projection =
             if step % 7 == 6 { Projection::Orthographic { height_m: reach } } else { Projection::Perspective { fov_y_deg: 70.0 } };
@@ -137,23 +137,26 @@ fn walk(scene: &Scene, dice: &mut Dice, steps: usize, size: [u32; 2]) -> Vec<Vie
 
 /// Follows a walk with two-pass culling, what each picture leaves for the next included; the first difference, and what was
 /// left out in all.
-fn followed(renderer: &mut Renderer, scene: &Arc<Scene>, views: &[View], pins: Pins) -> Result<CullingFigures, String> {
+fn followed(renderer: &mut Renderer, scene: &Arc<Scene>, views: &[View], pins: PinnedOptions) -> Result<CullingStats, String> {
     renderer.set_scene(scene).expect("it fits");
-    let mut total = CullingFigures::default();
+    let mut total = CullingStats::default();
     for (step, view) in views.iter().enumerate() {
-        let (culled, figures) = drawn(renderer, view, pins);
+        let (culled, stats) = drawn(renderer, view, pins);
         let whole = whole(renderer, scene, view, pins);
-        let owners = compare::owners(&culled.frame.owner, &whole.owner);
-        let keys = compare::owners(&culled.frame.key, &whole.key);
-        if owners.different + keys.different > 0 {
-            let (what, pixel) = (pins.words(), owners.offenders.first());
-            return Err(format!("step {step} on {what}: {} owners and {} keys differ, {pixel:?}", owners.different, keys.different));
+        let triangle_ids = compare::triangle_ids(&culled.frame.triangle_id, &whole.triangle_id);
+        let keys = compare::triangle_ids(&culled.frame.key, &whole.key);
+        if triangle_ids.different + keys.different > 0 {
+            let (what, pixel) = (pins.words(), triangle_ids.mismatches.first());
+            return Err(format!(
+                "step {step} on {what}: {} triangle ids and {} keys differ, {pixel:?}",
+                triangle_ids.different, keys.different
+            ));
         }
         for (sum, count) in [
-            (&mut total.drawn, figures.drawn),
-            (&mut total.outside, figures.outside),
-            (&mut total.turned, figures.turned),
-            (&mut total.hidden, figures.hidden),
+            (&mut total.drawn, stats.drawn),
+            (&mut total.outside, stats.outside),
+            (&mut total.backfacing, stats.backfacing),
+            (&mut total.hidden, stats.hidden),
         ] {
             *sum += count;
         }
@@ -162,28 +165,28 @@ fn followed(renderer: &mut Renderer, scene: &Arc<Scene>, views: &[View], pins: P
 }
 
 /// The same picture with nothing left out, by a renderer that shares nothing with the one under test.
-fn whole(renderer: &Renderer, scene: &Arc<Scene>, view: &View, pins: Pins) -> Frame {
+fn whole(renderer: &Renderer, scene: &Arc<Scene>, view: &View, pins: PinnedOptions) -> Frame {
     static WHOLE: OnceLock<Mutex<Renderer>> = OnceLock::new();
     let whole = WHOLE.get_or_init(|| Mutex::new(Renderer::new(renderer.gpu().clone())));
     let mut whole = whole.lock().unwrap_or_else(|poisoned| poisoned.into_inner());
     captured(&mut whole, scene, view, &stack(&["lambert"]), &on(pins.with(Culling::None))).frame
 }
 
-/// Rungs that two passes can hide behind.
-fn hiding(renderer: &Renderer) -> Vec<Pins> {
-    let rungs = rungs(renderer).into_iter().filter(|rung| *rung != Visibility::Tiled);
-    rungs.map(|rung| Pins::of(rung).with(Culling::TwoPass)).collect()
+/// AccuracyOptions that two passes can hide behind.
+fn hiding(renderer: &Renderer) -> Vec<PinnedOptions> {
+    let options = options(renderer).into_iter().filter(|option| *option != Visibility::Tiled);
+    options.map(|option| PinnedOptions::of(option).with(Culling::TwoPass)).collect()
 }
 
 #[test]
 fn two_passes_lose_nothing_on_any_walk() {
     let Some(mut renderer) = renderer() else { return };
-    let mut dice = Dice(11);
+    let mut rng = Rng(11);
     for (what, scene) in scenes() {
         for (i, pins) in hiding(&renderer).into_iter().enumerate() {
             let tuning = both_tunings(&renderer)[i % 2];
             renderer.set_tuning(tuning);
-            let views = walk(&scene, &mut dice, 8, SIZE);
+            let views = walk(&scene, &mut rng, 8, SIZE);
             let total = followed(&mut renderer, &scene, &views, pins).unwrap_or_else(|why| panic!("{what}: {why}"));
             assert!(!what.starts_with("field") || total.hidden > 0, "{what}: nothing is hidden: {total:?}");
         }
@@ -193,13 +196,13 @@ fn two_passes_lose_nothing_on_any_walk() {
 #[test]
 fn every_rung_of_other_axes_keeps_its_picture() {
     let Some(mut renderer) = renderer() else { return };
-    let (mut dice, scene) = (Dice(3), scene("field?count=64&triangles=600"));
-    let grids = Coverage::ALL.iter().map(|&rung| Pins::of(rung));
-    let depths = Depth::ALL.iter().map(|&rung| Pins::of(rung));
-    let vertices = Vertex::ALL.iter().map(|&rung| Pins::of(rung));
-    let places = Vertices::ALL.iter().map(|&rung| Pins::of(rung));
-    let sizes = [Scale::Half, Scale::Double].map(Pins::of);
-    let views = walk(&scene, &mut dice, 3, SIZE);
+    let (mut rng, scene) = (Rng(3), scene("field?count=64&triangles=600"));
+    let grids = Coverage::ALL.iter().map(|&option| PinnedOptions::of(option));
+    let depths = DepthFormat::ALL.iter().map(|&option| PinnedOptions::of(option));
+    let vertices = VertexTransform::ALL.iter().map(|&option| PinnedOptions::of(option));
+    let places = PositionFormat::ALL.iter().map(|&option| PinnedOptions::of(option));
+    let sizes = [RenderScale::Half, RenderScale::Double].map(PinnedOptions::of);
+    let views = walk(&scene, &mut rng, 3, SIZE);
     for pins in grids.chain(depths).chain(vertices).chain(places).chain(sizes) {
         let pins = pins.with(Culling::TwoPass).with(Visibility::Split32);
         followed(&mut renderer, &scene, &views, pins).unwrap_or_else(|why| panic!("{why}"));
@@ -209,12 +212,12 @@ fn every_rung_of_other_axes_keeps_its_picture() {
 #[test]
 fn another_scene_another_size_and_a_pause_leave_nothing_stale() {
     let Some(mut renderer) = renderer() else { return };
-    let mut dice = Dice(5);
+    let mut rng = Rng(5);
     let scenes = [scene("field?count=64&triangles=400"), scene("cube-wall"), scene("field?count=27&triangles=200&seed=3")];
     for turn in 0..9 {
         let scene = &scenes[turn % 3];
         let size = [[160, 120], [65, 63], [1, 1], [200, 8]][turn % 4];
-        let views = walk(scene, &mut dice, 2, size);
+        let views = walk(scene, &mut rng, 2, size);
         for pins in hiding(&renderer) {
             followed(&mut renderer, scene, &views, pins).unwrap_or_else(|why| panic!("turn {turn}: {why}"));
             drawn(&mut renderer, &views[0], pins.with(Culling::Frustum));
@@ -233,11 +236,11 @@ fn dust() -> (Arc<Scene>, Vec<View>) {
         let (x, z) = (i % SIDES[0], i / SIDES[0]);
         [at(x, z), at(x + 1, z), at(x, z + 1), at(x, z + 1), at(x + 1, z), at(x + 1, z + 1)]
     };
-    let scene = hand_made(&[Part {
+    let scene = scene_of_meshes(&[SimpleMesh {
         positions: (0..=SIDES[1]).flat_map(|z| (0..=SIDES[0]).map(move |x| place(x, z))).collect(),
         indices: (0..SIDES[0] * SIDES[1]).flat_map(quad).collect(),
         double_sided: false,
-        ..Part::default()
+        ..SimpleMesh::default()
     }]);
     let bounds = scene.bounds();
     let view = |i: u32| {
@@ -260,9 +263,9 @@ fn grown() -> Arc<Scene> {
 fn backs_that_the_snap_turns_over_are_not_left_out() {
     let Some(mut renderer) = renderer() else { return };
     let (scene, views) = dust();
-    let shown: usize = views.iter().map(|view| whole(&renderer, &scene, view, Pins::of(Visibility::Split32)).covered()).sum();
+    let shown: usize = views.iter().map(|view| whole(&renderer, &scene, view, PinnedOptions::of(Visibility::Split32)).covered()).sum();
     assert!(shown > 0, "the snap turns nothing over");
-    for pins in [Culling::Frustum, Culling::TwoPass].map(|rung| Pins::of(rung).with(Visibility::Split32)) {
+    for pins in [Culling::Frustum, Culling::TwoPass].map(|option| PinnedOptions::of(option).with(Visibility::Split32)) {
         followed(&mut renderer, &scene, &views, pins).unwrap_or_else(|why| panic!("{why}"));
     }
 }
@@ -272,12 +275,12 @@ fn mistakes_of_culling_are_seen() {
     let Some(healthy) = renderer() else { return };
     let gpu = healthy.gpu().clone();
     drop(healthy);
-    let split = |rung: Culling| Pins::of(rung).with(Visibility::Split32);
+    let split = |option: Culling| PinnedOptions::of(option).with(Visibility::Split32);
     let field = scene("field?count=64&triangles=600");
-    let through = walk(&field, &mut Dice(11), 8, SIZE);
+    let through = walk(&field, &mut Rng(11), 8, SIZE);
     let (sheet, edge_on) = dust();
     let mut failures = Vec::new();
-    for (what, file, from, to, rung, scene, views) in [
+    for (what, file, from, to, option, scene, views) in [
         (
             "boxes are too small",
             "passes/cull",
@@ -346,10 +349,10 @@ fn mistakes_of_culling_are_seen() {
             &through,
         ),
         (
-            "the owner pass takes the second round alone",
+            "the triangle id pass takes the second round alone",
             "passes/rounds",
-            "capacity), 0u, IS_OVER)",
-            "capacity), min(count, capacity), IS_OVER)",
+            "capacity), 0u, REOPENS_QUEUES)",
+            "capacity), min(count, capacity), REOPENS_QUEUES)",
             Culling::TwoPass,
             &field,
             &through,
@@ -357,7 +360,7 @@ fn mistakes_of_culling_are_seen() {
     ] {
         let library = mutated(file, from, to);
         let mut wrong = Renderer::with_library(gpu.clone(), library.shaders());
-        match followed(&mut wrong, scene, views, split(rung)) {
+        match followed(&mut wrong, scene, views, split(option)) {
             Ok(_) => failures.push(format!("{what} does not show")),
             Err(why) => eprintln!("{what}: {why}"),
         }
@@ -373,27 +376,31 @@ fn more_meshlets_than_one_row_of_workgroups_are_all_drawn() {
     let corner = |x: f32, y: f32| [x / 4.0, y / 4.0, 0.5];
     let placements = (0..SIDE * SIDE).map(|i| DMat4::from_translation(DVec3::new((i % SIDE).into(), (i / SIDE).into(), 0.0)));
     let positions = vec![corner(1.0, 1.0), corner(1.0, 3.0), corner(3.0, 2.0)];
-    let scene = hand_made(&[Part { placements: placements.collect(), ..sheet(positions) }]);
+    let scene = scene_of_meshes(&[SimpleMesh { placements: placements.collect(), ..sheet(positions) }]);
     let usual = renderer.gpu().caps.tuning();
-    renderer.set_tuning(Tuning { list_group: 64, ..usual });
+    renderer.set_tuning(Tuning { group_size: 64, ..usual });
     renderer.set_scene(&scene).expect("it fits");
     let view = pixel_view(260, 260);
-    for rung in [Culling::Frustum, Culling::TwoPass] {
-        for visibility in rungs(&renderer) {
-            let (culled, figures) = drawn(&mut renderer, &view, Pins::of(rung).with(visibility));
-            assert_eq!((culled.frame.covered() as u32, figures.drawn), (SIDE * SIDE, SIDE * SIDE), "{}", visibility.name());
-            let owners = culled.frame.owner.iter().filter(|owner| **owner != rasterlab::frame::NO_OWNER);
-            assert!(owners.zip(0..).all(|(&owner, id)| owner == id), "{}: an owner is another's", visibility.name());
+    for option in [Culling::Frustum, Culling::TwoPass] {
+        for visibility in options(&renderer) {
+            let (culled, stats) = drawn(&mut renderer, &view, PinnedOptions::of(option).with(visibility));
+            assert_eq!((culled.frame.covered() as u32, stats.drawn), (SIDE * SIDE, SIDE * SIDE), "{}", visibility.name());
+            let triangle_ids = culled.frame.triangle_id.iter().filter(|triangle_id| **triangle_id != rasterlab::frame::NO_TRIANGLE);
+            assert!(
+                triangle_ids.zip(0..).all(|(&triangle_id, id)| triangle_id == id),
+                "{}: an triangle id is another's",
+                visibility.name()
+            );
         }
     }
 }
 
 /// What a renderer of its own makes for one picture.
-fn explained(query: &str, effects: &[&str], pins: Pins) -> Option<(Vec<String>, Vec<String>, String)> {
+fn explained(query: &str, effects: &[&str], pins: PinnedOptions) -> Option<(Vec<String>, Vec<String>, String)> {
     let mut renderer = Renderer::new(gpu()?);
     let scene = scene(query);
     renderer.set_scene(&scene).expect("a builtin fits");
-    renderer.draw_whole(&view(&scene, SIZE), &stack(effects), &on(pins)).expect("a builtin is drawn");
+    renderer.draw_complete(&view(&scene, SIZE), &stack(effects), &on(pins)).expect("a builtin is drawn");
     let explanation = renderer.explain();
     let passes = explanation.passes.into_iter().map(|pass| pass.name).collect();
     let buffers = explanation.buffers.into_iter().map(|buffer| buffer.name).collect();
@@ -405,10 +412,10 @@ fn explained(query: &str, effects: &[&str], pins: Pins) -> Option<(Vec<String>, 
 fn only_a_rung_that_culls_has_passes_and_buffers_for_it() {
     const PASSES: [&str; 6] = ["cull", "cull seen", "cull behind", "project_meshlets", "farthest", "rounds"];
     const BUFFERS: [&str; 6] = ["culling", "instances", "meshlets", "meshlet_lists", "seen", "hiz"];
-    let split = Pins::of(Visibility::Split32);
+    let split = PinnedOptions::of(Visibility::Split32);
     let of =
         |names: &[String], known: &[&str]| -> Vec<String> { names.iter().filter(|name| known.contains(&name.as_str())).cloned().collect() };
-    for (rung, passes, buffers) in [
+    for (option, passes, buffers) in [
         (Culling::None, &[][..], &[][..]),
         (Culling::Frustum, &["cull", "project_meshlets"], &["culling", "instances", "meshlet_lists", "meshlets"]),
         (Culling::Hiz, &["cull", "project_meshlets", "farthest"], &["culling", "hiz", "instances", "meshlet_lists", "meshlets"]),
@@ -418,10 +425,10 @@ fn only_a_rung_that_culls_has_passes_and_buffers_for_it() {
             &["culling", "hiz", "instances", "meshlet_lists", "meshlets", "seen"],
         ),
     ] {
-        let Some((all_passes, all_buffers, _)) = explained("field?count=8&triangles=200", &["lambert"], split.with(rung)) else { return };
-        assert_eq!(of(&all_passes, &PASSES), passes, "{}", rung.name());
-        assert_eq!(of(&all_buffers, &BUFFERS), buffers, "{}", rung.name());
-        assert_eq!(all_passes.contains(&"project".to_owned()), rung == Culling::None, "{}: {all_passes:?}", rung.name());
+        let Some((all_passes, all_buffers, _)) = explained("field?count=8&triangles=200", &["lambert"], split.with(option)) else { return };
+        assert_eq!(of(&all_passes, &PASSES), passes, "{}", option.name());
+        assert_eq!(of(&all_buffers, &BUFFERS), buffers, "{}", option.name());
+        assert_eq!(all_passes.contains(&"project".to_owned()), option == Culling::None, "{}: {all_passes:?}", option.name());
     }
 }
 
@@ -439,12 +446,12 @@ fn a_picture_that_cannot_be_culled_says_why_and_is_drawn() {
         (&[], Visibility::Packed32, "frustum instead of two-pass: packed32"),
         (&["dissolve"], Visibility::Split32, "two-pass: pinned"),
     ] {
-        let Some((.., why)) = explained(query, effects, Pins::of(visibility).with(Culling::TwoPass)) else { return };
+        let Some((.., why)) = explained(query, effects, PinnedOptions::of(visibility).with(Culling::TwoPass)) else { return };
         assert!(why.starts_with(got), "{effects:?}: {why}");
     }
-    let Some((.., why)) = explained(query, &[], Pins::of(Vertices::Packed16).with(Culling::TwoPass)) else { return };
+    let Some((.., why)) = explained(query, &[], PinnedOptions::of(PositionFormat::Packed16).with(Culling::TwoPass)) else { return };
     assert!(why.starts_with("none instead of two-pass: packed places"), "{why}");
-    let Some((.., why)) = explained(query, &[], Pins::default()) else { return };
+    let Some((.., why)) = explained(query, &[], PinnedOptions::default()) else { return };
     assert!(why.starts_with("none: "), "culling gains nothing as a rule: {why}");
 }
 
@@ -452,15 +459,15 @@ fn a_picture_that_cannot_be_culled_says_why_and_is_drawn() {
 fn effects_and_layers_keep_their_picture() {
     let Some(mut renderer) = renderer() else { return };
     let scene = scene("field?count=27&triangles=400");
-    let views = walk(&scene, &mut Dice(9), 4, SIZE);
+    let views = walk(&scene, &mut Rng(9), 4, SIZE);
     renderer.set_scene(&scene).expect("it fits");
     for effects in
         [&["dissolve", "outline"][..], &["stipple", "lambert"], &["wireframe"], &["xray"], &["overdraw"], &["boxes"], &["facet", "fog"]]
     {
         for view in &views {
-            for visibility in rungs(&renderer) {
-                let mut draw = |rung| {
-                    let pins = Pins::of(visibility).with(rung);
+            for visibility in options(&renderer) {
+                let mut draw = |option| {
+                    let pins = PinnedOptions::of(visibility).with(option);
                     renderer.capture_next(view, &stack(effects), &on(pins)).unwrap_or_else(|error| panic!("{effects:?}: {error}"))
                 };
                 let culled = draw(Culling::TwoPass);
@@ -477,22 +484,22 @@ fn the_picture_before_hides_what_has_come_out_since() {
     let Some(mut renderer) = renderer() else { return };
     let scene = scene("field?count=216&triangles=400");
     renderer.set_scene(&scene).expect("it fits");
-    let pins = Pins::of(Culling::Hiz).with(Visibility::Split32);
-    let view = walk(&scene, &mut Dice(1), 1, SIZE).remove(0);
-    let truth = whole(&renderer, &scene, &view, pins);
+    let pins = PinnedOptions::of(Culling::Hiz).with(Visibility::Split32);
+    let view = walk(&scene, &mut Rng(1), 1, SIZE).remove(0);
+    let reference = whole(&renderer, &scene, &view, pins);
     // Nothing has moved since: nothing is missing.
-    renderer.forget();
+    renderer.clear_history();
     let (first, all) = drawn(&mut renderer, &view, pins);
     let (second, fewer) = drawn(&mut renderer, &view, pins);
-    assert_eq!((&first.frame.owner, &second.frame.owner), (&truth.owner, &truth.owner));
+    assert_eq!((&first.frame.triangle_id, &second.frame.triangle_id), (&reference.triangle_id, &reference.triangle_id));
     assert!(all.hidden == 0 && fewer.hidden > 0 && fewer.drawn < all.drawn, "{all:?} {fewer:?}");
     // Going sideways, something is.
     let mut lost = 0;
-    for view in walk(&scene, &mut Dice(1), 12, SIZE) {
+    for view in walk(&scene, &mut Rng(1), 12, SIZE) {
         let (cheap, _) = drawn(&mut renderer, &view, pins);
-        lost += compare::owners(&cheap.frame.owner, &whole(&renderer, &scene, &view, pins).owner).different;
+        lost += compare::triangle_ids(&cheap.frame.triangle_id, &whole(&renderer, &scene, &view, pins).triangle_id).different;
     }
-    assert!(lost > 0, "the cheap rung is as good as two passes");
+    assert!(lost > 0, "the cheap option is as good as two passes");
 }
 
 /// Divides the first mesh of a builtin.
@@ -511,7 +518,7 @@ fn every_triangle_is_in_one_meshlet_and_within_its_bounds() {
     let shuffled = {
         let mut scene = (*scene("knot?tess=8")).clone();
         let mut order: Vec<[u8; 12]> = scene.index_bytes.as_chunks::<12>().0.to_vec();
-        Dice(4).shuffle(&mut order);
+        Rng(4).shuffle(&mut order);
         scene.index_bytes = order.concat();
         let scene = Arc::new(scene);
         let meshlets = Meshlets::of(&scene, &scene.primitives[0]);
@@ -567,12 +574,12 @@ fn nobody_bends_what_lies_outside_the_picture() {
     let middle = bounds.center();
     let camera = Camera { eye: middle, target: middle + DVec3::new(1.0, 0.1, 0.3), near_m: 0.02, ..Camera::default() };
     let view = View::new(&camera, SIZE[0], SIZE[1], &bounds, DMat4::IDENTITY, [0.0; 4]);
-    let drawn = [Culling::None, Culling::Frustum].map(|rung| {
+    let drawn = [Culling::None, Culling::Frustum].map(|option| {
         let mut renderer = Renderer::new(gpu()?);
         renderer.set_scene(&scene).expect("it fits");
-        renderer.draw_whole(&view, &stack(&["lambert"]), &on(Pins::of(rung))).expect("it is drawn");
+        renderer.draw_complete(&view, &stack(&["lambert"]), &on(PinnedOptions::of(option))).expect("it is drawn");
         let buffers = renderer.explain().buffers;
-        let capture = captured(&mut renderer, &scene, &view, &stack(&["lambert"]), &on(Pins::of(rung)));
+        let capture = captured(&mut renderer, &scene, &view, &stack(&["lambert"]), &on(PinnedOptions::of(option)));
         Some((capture.frame, buffers.into_iter().find(|buffer| buffer.name == "joints").map_or(0, |buffer| buffer.bytes)))
     });
     let [Some((whole, all)), Some((culled, some))] = drawn else { return };
@@ -601,9 +608,9 @@ fn what_lies_far_from_its_origin_is_culled_about_the_eye() {
         View::new(&camera, SIZE[0], SIZE[1], &scene.bounds(), DMat4::IDENTITY, [0.0; 4])
     });
     let views: Vec<View> = views.collect();
-    for places in [Vertices::Stored, Vertices::Relative] {
-        let pins = Pins::of(places).with(Culling::TwoPass).with(Visibility::Split32);
+    for places in [PositionFormat::Stored, PositionFormat::Relative] {
+        let pins = PinnedOptions::of(places).with(Culling::TwoPass).with(Visibility::Split32);
         let total = followed(&mut renderer, &scene, &views, pins).unwrap_or_else(|why| panic!("{}: {why}", places.name()));
-        assert!(total.outside + total.turned > 0 || places == Vertices::Stored, "{}: {total:?}", places.name());
+        assert!(total.outside + total.backfacing > 0 || places == PositionFormat::Stored, "{}: {total:?}", places.name());
     }
 }

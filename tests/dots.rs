@@ -7,6 +7,7 @@ use std::sync::Arc;
 
 use common::*;
 use rasterlab::{
+    accuracy::{DotCulling, PinnedOptions, Visibility},
     effects::{
         Effect, Stack,
         dots::{Dots, FULL, MAX_DOTS},
@@ -14,14 +15,13 @@ use rasterlab::{
     },
     frame::SnappedVertex,
     gpu::{Capture, RenderError, Renderer},
-    ladder::{DotWay, Pins, Visibility},
     oracle,
-    plan::Accuracy,
+    plan::AccuracyRequest,
+    preset::{Preset, SceneSource},
     scene::{Scene, camera::View, draw::draws},
-    session::{SceneSource, Session},
 };
 
-const WAYS: [DotWay; 3] = [DotWay::Brute, DotWay::Cpu, DotWay::Gpu];
+const WAYS: [DotCulling; 3] = [DotCulling::Brute, DotCulling::Cpu, DotCulling::Gpu];
 
 /// Dots with these values, and other effects.
 fn dotted(values: &[(&str, f64)], others: &[&str]) -> Stack {
@@ -35,8 +35,8 @@ fn dotted(values: &[(&str, f64)], others: &[&str]) -> Stack {
     stack
 }
 
-fn on(way: DotWay) -> Accuracy {
-    Accuracy { pins: Pins::of(way), ..Accuracy::default() }
+fn on(way: DotCulling) -> AccuracyRequest {
+    AccuracyRequest { pins: PinnedOptions::of(way), ..AccuracyRequest::default() }
 }
 
 /// One picture by all three ways, judged, and found to be one.
@@ -52,8 +52,8 @@ fn three_ways(renderer: &mut Renderer, scene: &Arc<Scene>, view: &View, stack: &
 /// `polyline` seen from the front, 1 m a pixel.
 fn flat(points: &[[f32; 3]], size: [u32; 2]) -> (Arc<Scene>, View) {
     let scene = scene("stack?layers=1");
-    let session = Session { scene: SceneSource::Builtin("stack".into()), polyline: points.into(), ..Session::default() };
-    let view = session.view(&scene, size);
+    let preset = Preset { scene: SceneSource::Builtin("stack".into()), polyline: points.into(), ..Preset::default() };
+    let view = preset.view(&scene, size);
     (scene, view)
 }
 
@@ -92,24 +92,27 @@ fn every_backend_of_visibility_hides_the_same_dots() {
     let Some(mut renderer) = renderer() else { return };
     let scene = scene("cube-wall");
     let (view, stack) = (view(&scene, [160, 120]), dotted(&[("spacing_m", 0.03)], &[]));
-    let pictures: Vec<Capture> =
-        rungs(&renderer).into_iter().map(|rung| exact(&mut renderer, &scene, &view, &stack, &pinned(rung), rung.name()).0).collect();
+    let pictures: Vec<Capture> = options(&renderer)
+        .into_iter()
+        .map(|option| exact(&mut renderer, &scene, &view, &stack, &pinned(option), option.name()).0)
+        .collect();
     assert!(pictures.windows(2).all(|pair| pair[0].frame.dots == pair[1].frame.dots && pair[0].frame.color == pair[1].frame.color));
 }
 
 #[test]
 fn dots_go_with_joints_and_effects_and_under_every_other() {
     let Some(mut renderer) = renderer() else { return };
-    let bent = Session { scene: SceneSource::Builtin("tentacle?tess=3".into()), ..Session::default() };
-    let bent = Session { play: rasterlab::session::Play { clip: "Curl".into(), pose_s: Some(0.7), ..Default::default() }, ..bent };
+    let deformed = Preset { scene: SceneSource::Builtin("tentacle?tess=3".into()), ..Preset::default() };
+    let deformed =
+        Preset { play: rasterlab::preset::ClipPlayback { clip: "Curl".into(), clip_time_s: Some(0.7), ..Default::default() }, ..deformed };
     let tentacle = scene("tentacle?tess=3");
-    let view_of = bent.view(&tentacle, [160, 120]);
-    exact(&mut renderer, &tentacle, &view_of, &dotted(&[("spacing_m", 0.03)], &[]), &Accuracy::default(), "tentacle");
+    let view_of = deformed.view(&tentacle, [160, 120]);
+    exact(&mut renderer, &tentacle, &view_of, &dotted(&[("spacing_m", 0.03)], &[]), &AccuracyRequest::default(), "tentacle");
 
     let teapot = scene("teapot?tess=4");
     for other in ["explode", "wobble", "inflate", "xray", "outline", "posterize", "dissolve", "points", "overdraw", "fog"] {
         let stack = dotted(&[("spacing_m", 0.05)], &[other]);
-        exact(&mut renderer, &teapot, &view(&teapot, [160, 120]), &stack, &Accuracy::default(), other);
+        exact(&mut renderer, &teapot, &view(&teapot, [160, 120]), &stack, &AccuracyRequest::default(), other);
     }
 }
 
@@ -119,7 +122,7 @@ fn a_tree_of_lines_refuses_lines_that_move() {
     for (query, others, word) in [("tentacle?tess=2", &[][..], "clips"), ("teapot?tess=2", &["wobble"][..], "the effect wobble")] {
         let scene = scene(query);
         renderer.set_scene(&scene).expect("it fits");
-        let error = renderer.capture(&view(&scene, [32, 24]), &dotted(&[], others), &on(DotWay::Cpu)).expect_err(query);
+        let error = renderer.capture(&view(&scene, [32, 24]), &dotted(&[], others), &on(DotCulling::Cpu)).expect_err(query);
         assert!(error.is_unsupported() && error.to_string().contains(word) && error.to_string().contains("use gpu"), "{error}");
     }
 }
@@ -139,7 +142,7 @@ fn no_number_of_dots_is_lost() {
     let (scene, view) = flat(&[], [64, 48]);
     let capture = three_ways(&mut renderer, &scene, &view, &dotted(&[("lines", 2.0)], &[]), "no polyline");
     assert!(capture.geometry.dots.is_empty() && capture.frame.dots.iter().all(|strength| *strength == 0));
-    let bare = captured(&mut renderer, &scene, &view, &stack(&[]), &Accuracy::default());
+    let bare = captured(&mut renderer, &scene, &view, &stack(&[]), &AccuracyRequest::default());
     assert!(bare.frame.color == capture.frame.color, "no dots are no change");
 }
 
@@ -154,7 +157,7 @@ fn dots_beyond_65_535_workgroups_are_all_drawn() {
         let length = (count as f64 - 0.5) * f64::from(spacing);
         let (scene, view) = flat(&[[0.0; 3], [length as f32, 0.0, 0.0]], [64, 48]);
         let stack = dotted(&[("lines", 2.0), ("levels", 0.0), ("spacing_m", spacing.into()), ("size_px", 1.0)], &[]);
-        let [brute, gpu] = [DotWay::Brute, DotWay::Gpu].map(|way| captured(&mut renderer, &scene, &view, &stack, &on(way)));
+        let [brute, gpu] = [DotCulling::Brute, DotCulling::Gpu].map(|way| captured(&mut renderer, &scene, &view, &stack, &on(way)));
         assert_eq!(brute.geometry.dots.len(), count);
         let in_view = |dot: &SnappedVertex| dot.flags == 0 && (0..64 * 256).contains(&dot.x) && (0..48 * 256).contains(&dot.y);
         assert!(brute.geometry.dots.iter().all(in_view), "{count}: some dots lie outside the view");
@@ -170,7 +173,7 @@ fn more_dots_than_fit_are_refused_with_their_number() {
     renderer.set_scene(&scene).expect("it fits");
     let stack = dotted(&[("lines", 2.0), ("spacing_m", 0.01)], &[]);
     let refused = [
-        renderer.capture(&view, &stack, &Accuracy::default()).err().map(|error: RenderError| error.to_string()),
+        renderer.capture(&view, &stack, &AccuracyRequest::default()).err().map(|error: RenderError| error.to_string()),
         oracle::render(&scene, &view, &stack).err().map(|error| error.to_string()),
     ];
     for refused in refused {
@@ -178,7 +181,7 @@ fn more_dots_than_fit_are_refused_with_their_number() {
         assert!(refused.contains("dots") && refused.contains(&MAX_DOTS.to_string()), "{refused}");
     }
     // And the renderer goes on.
-    captured(&mut renderer, &scene, &view, &dotted(&[("lines", 2.0), ("spacing_m", 1000.0)], &[]), &Accuracy::default());
+    captured(&mut renderer, &scene, &view, &dotted(&[("lines", 2.0), ("spacing_m", 1000.0)], &[]), &AccuracyRequest::default());
 }
 
 #[test]
@@ -186,9 +189,9 @@ fn frames_repeat_to_the_bit() {
     let Some(mut renderer) = renderer() else { return };
     let scene = scene("knot?tess=6");
     let (view, stack) = (view(&scene, [160, 120]), dotted(&[("spacing_m", 0.004)], &["lambert"]));
-    let first = captured(&mut renderer, &scene, &view, &stack, &Accuracy::default());
+    let first = captured(&mut renderer, &scene, &view, &stack, &AccuracyRequest::default());
     for round in 0..20 {
-        let again = captured(&mut renderer, &scene, &view, &stack, &Accuracy::default());
+        let again = captured(&mut renderer, &scene, &view, &stack, &AccuracyRequest::default());
         assert!(again.frame.color == first.frame.color && again.frame.dots == first.frame.dots, "round {round}");
     }
 }
@@ -252,8 +255,8 @@ fn a_dot_covers_its_area() {
         // Samples are few; a dot is on average what it should be, wherever its middle lies.
         let all: u64 =
             (0..256).step_by(16).flat_map(|cy| (0..256).step_by(16).map(move |cx| (cx, cy))).map(|(cx, cy)| covered(cx, cy)).sum();
-        let (area, truth) = (all as f64 / 256.0 / f64::from(FULL), std::f64::consts::PI * size * size / 4.0);
-        assert!((area - truth).abs() < 0.01 * truth + 0.1, "{size} px: {area} of {truth}");
+        let (area, reference) = (all as f64 / 256.0 / f64::from(FULL), std::f64::consts::PI * size * size / 4.0);
+        assert!((area - reference).abs() < 0.01 * reference + 0.1, "{size} px: {area} of {reference}");
     }
 }
 
@@ -315,13 +318,13 @@ fn every_mistake_in_the_dots_shows() {
         ("passes/dots_args", "(dot_count + 63u) / 64u", "dot_count / 64u"),
         ("slots/dots/over", "strength * dot_frame.ink.a", "strength * strength * dot_frame.ink.a"),
     ];
-    let right = captured(&mut Renderer::new(gpu.clone()), &scene, &view, &stack, &Accuracy::default());
+    let right = captured(&mut Renderer::new(gpu.clone()), &scene, &view, &stack, &AccuracyRequest::default());
     assert!(right.frame.dots.iter().any(|strength| (1..FULL).contains(strength)));
     for (file, from, to) in mistakes {
         let wrong = mutated(file, from, to);
         let mut renderer = Renderer::with_library(gpu.clone(), wrong.shaders());
-        let (_, verdict) = judged(&mut renderer, &scene, &view, &stack, &Accuracy::default());
+        let (_, verdict) = judged(&mut renderer, &scene, &view, &stack, &AccuracyRequest::default());
         assert!(exactness(&verdict.accuracy).is_err(), "{file}: {from:?} as {to:?} passes");
     }
-    assert!(rungs(&Renderer::new(gpu)).contains(&Visibility::Split32));
+    assert!(options(&Renderer::new(gpu)).contains(&Visibility::Split32));
 }

@@ -8,29 +8,29 @@ use std::sync::Arc;
 use common::*;
 use glam::DVec3;
 use rasterlab::{
+    accuracy::Visibility,
     effects::{
         Effect, Stack,
         hooks::Layers,
         xray::{self, Xray},
     },
     gpu::{RenderError, Renderer},
-    ladder::Visibility,
     math::srgb_byte,
-    measure::Accuracy as Errors,
+    measure::ErrorReport as Errors,
     oracle,
-    plan::{Accuracy, Tuning},
-    preset,
+    plan::{AccuracyRequest, Tuning},
+    preset_file,
     scene::{Scene, camera::View},
 };
 
 /// A stack of effects with values: `"xray.weight=facing"`, or a name alone.
 fn with(values: &[&str]) -> Stack {
-    let mut look = preset::parse("schema = 1\n", "test").expect("an empty look");
+    let mut preset_file = preset_file::parse("schema = 1\n", "test").expect("an empty look");
     for value in values {
         let (path, value) = value.split_once('=').unwrap_or((value, ""));
-        preset::set(&mut look, path, value).unwrap_or_else(|error| panic!("{error}"));
+        preset_file::set(&mut preset_file, path, value).unwrap_or_else(|error| panic!("{error}"));
     }
-    look.session.stack
+    preset_file.preset.stack
 }
 
 /// Position, normal, colour.
@@ -38,24 +38,24 @@ type Corner = ([f32; 3], [f32; 3], [f32; 4]);
 
 /// Triangles all over a picture of `side` pixels, each in colours, normals and depths of its own.
 fn soup(seed: u32, count: usize, side: i32, darkest: f64) -> Vec<[Corner; 3]> {
-    let mut dice = Dice(seed);
-    let corner = |dice: &mut Dice| {
-        let at = [dice.between(-2000, 256 * side + 2000), dice.between(-2000, 256 * side + 2000)];
-        let position = [at[0] as f32 / 256.0, at[1] as f32 / 256.0, dice.real(0.05, 0.95) as f32];
-        let normal = DVec3::new(dice.real(-1.0, 1.0), dice.real(-1.0, 1.0), dice.real(-1.0, 1.0)).normalize_or(DVec3::Z);
-        let mut channel = || (darkest * dice.real(0.02, 1.0)) as f32;
+    let mut rng = Rng(seed);
+    let corner = |rng: &mut Rng| {
+        let at = [rng.between(-2000, 256 * side + 2000), rng.between(-2000, 256 * side + 2000)];
+        let position = [at[0] as f32 / 256.0, at[1] as f32 / 256.0, rng.real(0.05, 0.95) as f32];
+        let normal = DVec3::new(rng.real(-1.0, 1.0), rng.real(-1.0, 1.0), rng.real(-1.0, 1.0)).normalize_or(DVec3::Z);
+        let mut channel = || (darkest * rng.real(0.02, 1.0)) as f32;
         (position, normal.as_vec3().to_array(), [channel(), channel(), channel(), 1.0])
     };
-    (0..count).map(|_| [corner(&mut dice), corner(&mut dice), corner(&mut dice)]).collect()
+    (0..count).map(|_| [corner(&mut rng), corner(&mut rng), corner(&mut rng)]).collect()
 }
 
 fn scene_from(triangles: &[[Corner; 3]]) -> Arc<Scene> {
     let corners = || triangles.iter().flatten();
-    hand_made(&[Part {
+    scene_of_meshes(&[SimpleMesh {
         positions: corners().map(|corner| corner.0).collect(),
         normals: corners().map(|corner| corner.1).collect(),
         colors: corners().map(|corner| corner.2).collect(),
-        ..Part::default()
+        ..SimpleMesh::default()
     }])
 }
 
@@ -63,17 +63,17 @@ fn scene_from(triangles: &[[Corner; 3]]) -> Arc<Scene> {
 fn pile(count: u32) -> Arc<Scene> {
     let corners = |depth: f32| [[-4.0, -4.0, depth], [40.0, -4.0, depth], [-4.0, 40.0, depth]];
     let colors = [[1.0, 0.0, 0.25, 1.0], [0.0, 1.0, 0.25, 1.0]];
-    hand_made(&[Part {
+    scene_of_meshes(&[SimpleMesh {
         positions: [corners(0.5), corners(0.25)].concat(),
         colors: colors.iter().flat_map(|color| [*color; 3]).collect(),
         indices: (0..count).flat_map(|layer| [0, 1, 2].map(|corner| 3 * (layer % 2) + corner)).collect(),
-        ..Part::default()
+        ..SimpleMesh::default()
     }])
 }
 
-fn shuffled<T>(dice: &mut Dice, mut list: Vec<T>) -> Vec<T> {
+fn shuffled<T>(rng: &mut Rng, mut list: Vec<T>) -> Vec<T> {
     for last in (1..list.len()).rev() {
-        let other = dice.between(0, last as i32 + 1) as usize;
+        let other = rng.between(0, last as i32 + 1) as usize;
         list.swap(last, other);
     }
     list
@@ -85,17 +85,17 @@ fn shuffled<T>(dice: &mut Dice, mut list: Vec<T>) -> Vec<T> {
 fn two_effects_in_one_slot_are_refused_in_one_sentence_that_names_both() {
     let sentence = "xray and overdraw both take the visibility slot of the rasterizer; switch one of them off";
     let text = "schema = 1\n[effects.overdraw]\nfull = 4\n[effects.xray]\n";
-    let error = preset::parse(text, "both").expect_err("two effects in one slot").to_string();
+    let error = preset_file::parse(text, "both").expect_err("two effects in one slot").to_string();
     assert_eq!(error, format!("both.toml:2: effects {sentence}"));
 
-    let mut look = preset::parse("schema = 1\n[effects.xray]\n", "one").expect("one effect");
+    let mut preset_file = preset_file::parse("schema = 1\n[effects.xray]\n", "one").expect("one effect");
     for (path, value) in [("overdraw", ""), ("overdraw.full", "4")] {
-        let error = preset::set(&mut look, path, value).expect_err("a second effect").to_string();
+        let error = preset_file::set(&mut preset_file, path, value).expect_err("a second effect").to_string();
         assert!(error.starts_with(&format!("--set {path}")) && error.ends_with(&format!("effects {sentence}")), "{error}");
     }
-    assert!(look.session.stack.get("overdraw").is_none(), "nothing was switched on");
-    preset::unset(&mut look, "xray").expect("it is on");
-    preset::set(&mut look, "overdraw", "").expect("now the slot is free");
+    assert!(preset_file.preset.stack.get("overdraw").is_none(), "nothing was switched on");
+    preset_file::unset(&mut preset_file, "xray").expect("it is on");
+    preset_file::set(&mut preset_file, "overdraw", "").expect("now the slot is free");
 
     let error = stack(&["xray", "race"]).check().expect_err("two effects in one slot").to_string();
     assert_eq!(error, "xray and race both take the visibility slot of the rasterizer; switch one of them off");
@@ -109,8 +109,8 @@ fn the_average_is_bit_equal_in_any_order_on_every_run_rung_and_tuning() {
     let triangles = soup(1, 300, 64, 1.0);
     let view = pixel_view(64, 64);
     for stack in [with(&["xray"]), with(&["lambert", "xray.weight=facing"])] {
-        let draw = |renderer: &mut Renderer, scene: &Arc<Scene>, rung| {
-            let frame = captured(renderer, scene, &view, &stack, &pinned(rung)).frame;
+        let draw = |renderer: &mut Renderer, scene: &Arc<Scene>, option| {
+            let frame = captured(renderer, scene, &view, &stack, &pinned(option)).frame;
             (frame.color, frame.counted)
         };
         let scene = scene_from(&triangles);
@@ -119,13 +119,13 @@ fn the_average_is_bit_equal_in_any_order_on_every_run_rung_and_tuning() {
         for run in 0..20 {
             assert!(draw(&mut renderer, &scene, Visibility::Split32) == first, "run {run}");
         }
-        let mut dice = Dice(7);
+        let mut rng = Rng(7);
         let usual = renderer.gpu().caps.tuning();
-        for rung in rungs(&renderer) {
+        for option in options(&renderer) {
             for tuning in tunings() {
                 renderer.set_tuning(tuning);
-                let scene = scene_from(&shuffled(&mut dice, triangles.clone()));
-                assert!(draw(&mut renderer, &scene, rung) == first, "shuffled, {} {tuning:?}", rung.name());
+                let scene = scene_from(&shuffled(&mut rng, triangles.clone()));
+                assert!(draw(&mut renderer, &scene, option) == first, "shuffled, {} {tuning:?}", option.name());
             }
         }
         renderer.set_tuning(usual);
@@ -159,7 +159,7 @@ fn any_number_of_layers_gives_the_right_average_with_fewer_bits_where_it_must() 
         let scene = pile(count);
         let stack = with(&[&format!("xray.bits=\"{bits}\"")]);
         let what = format!("{count} layers from {bits} bits");
-        let (capture, verdict) = exact(&mut renderer, &scene, &view, &stack, &Accuracy::default(), &what);
+        let (capture, verdict) = exact(&mut renderer, &scene, &view, &stack, &AccuracyRequest::default(), &what);
         assert_eq!(renderer.key().and_then(|key| key.layers), Some(Layers::Xray { bits: taken }), "{what}");
         assert_eq!((capture.frame.counted, capture.frame.counters.full_pixels), (vec![count; 4], 0), "{what}");
         let expected = pile_color(count);
@@ -177,7 +177,7 @@ fn more_layers_than_any_sum_holds_are_a_sentence_and_a_mark_never_silent() {
     let scene = pile(count);
     let stack = with(&["xray.weight=facing"]);
     renderer.set_scene(&scene).expect("it fits");
-    match renderer.capture(&view, &stack, &Accuracy::default()) {
+    match renderer.capture(&view, &stack, &AccuracyRequest::default()) {
         Err(error @ RenderError::FullSums(4)) => {
             let text = error.to_string();
             assert!(text.starts_with("4 pixels have more layers than the x-ray's sums hold even with 8 bits"), "{text}");
@@ -185,12 +185,12 @@ fn more_layers_than_any_sum_holds_are_a_sentence_and_a_mark_never_silent() {
         other => panic!("{:?} of {count} layers", other.map(|capture| capture.frame.color)),
     }
     // Asynchronously, as a window draws: with 8 bits it is over, and the figures say so.
-    renderer.draw(&view, &stack, &Accuracy::default()).expect("a frame");
-    let report = renderer.finish().expect("figures");
+    renderer.draw(&view, &stack, &AccuracyRequest::default()).expect("a frame");
+    let report = renderer.finish().expect("stats");
     assert_eq!((report.counters.full_pixels, report.redraw), (4, false));
     // One layer fewer than too many is right.
     let scene = pile(count - 2);
-    let (capture, _) = exact(&mut renderer, &scene, &view, &stack, &Accuracy::default(), "as many as fit");
+    let (capture, _) = exact(&mut renderer, &scene, &view, &stack, &AccuracyRequest::default(), "as many as fit");
     assert_eq!(capture.frame.counted, vec![(count - 2) * xray::FULL_WEIGHT; 4]);
 }
 
@@ -211,36 +211,42 @@ fn windows_weights_and_opacities_are_the_oracles() {
             values.extend(window.split(','));
             let stack = with(&values);
             for (what, (scene, view)) in [("soup", &flat), ("knot", &deep), ("hall", &cut)] {
-                for rung in rungs(&renderer).into_iter().skip(i % 2) {
-                    let what = format!("{what} {} {values:?}", rung.name());
-                    let (_, verdict) = exact(&mut renderer, scene, view, &stack, &pinned(rung), &what);
+                for option in options(&renderer).into_iter().skip(i % 2) {
+                    let what = format!("{what} {} {values:?}", option.name());
+                    let (_, verdict) = exact(&mut renderer, scene, view, &stack, &pinned(option), &what);
                     let a = &verdict.accuracy;
-                    assert!(a.open_pixels <= a.pixels / 10, "{what}: {} of {} pixels are open", a.open_pixels, a.pixels);
+                    assert!(
+                        a.ambiguous_layer_pixels <= a.pixels / 10,
+                        "{what}: {} of {} pixels are open",
+                        a.ambiguous_layer_pixels,
+                        a.pixels
+                    );
                 }
             }
         }
     }
     // A window of nothing is the front alone, whatever lies behind.
     let (scene, view) = &deep;
-    let bare = captured(&mut renderer, scene, view, &with(&["normals"]), &Accuracy::default()).frame;
-    let front = captured(&mut renderer, scene, view, &with(&["normals", "xray.reach=window", "xray.window=0"]), &Accuracy::default()).frame;
-    assert_eq!(front.owner, bare.owner);
+    let bare = captured(&mut renderer, scene, view, &with(&["normals"]), &AccuracyRequest::default()).frame;
+    let front =
+        captured(&mut renderer, scene, view, &with(&["normals", "xray.reach=window", "xray.window=0"]), &AccuracyRequest::default()).frame;
+    assert_eq!(front.triangle_id, bare.triangle_id);
     let delta = rasterlab::measure::compare::pictures(&front.color, &bare.color, 1);
-    assert!(delta.pixels_beyond < 8, "{} pixels", delta.pixels_beyond);
+    assert!(delta.pixels_over_tolerance < 8, "{} pixels", delta.pixels_over_tolerance);
 }
 
 #[test]
 fn every_builtin_scene_is_exact_in_layers() {
     let Some(mut renderer) = renderer() else { return };
-    let rungs = rungs(&renderer);
+    let options = options(&renderer);
     for (i, query) in SCENES.iter().enumerate() {
         let scene = scene(query);
         let view = view(&scene, [160, 120]);
         let second = if i % 2 == 0 { with(&["xray.weight=grazing"]) } else { with(&["overdraw.scale=log"]) };
         for (j, stack) in [with(&["facet", "lambert", "xray"]), second].iter().enumerate() {
-            let rung = rungs[(i + j) % rungs.len()];
-            let what = format!("{query} {} {:?}", rung.name(), stack.0.last().map(|enabled| enabled.effect));
-            let (capture, verdict) = exact(&mut renderer, &scene, &view, stack, &pinned(rung), &what);
+            let option = options[(i + j) % options.len()];
+            let what = format!("{query} {} {:?}", option.name(), stack.0.last().map(|enabled| enabled.effect));
+            let (capture, verdict) = exact(&mut renderer, &scene, &view, stack, &pinned(option), &what);
             let is_weighted = stack.params::<Xray>("xray").is_some_and(|xray| xray.unit() > 1);
             if !is_weighted {
                 assert_eq!(
@@ -259,13 +265,13 @@ fn layers_are_averaged_among_the_samples_that_other_effects_leave() {
     let Some(mut renderer) = renderer() else { return };
     let scene = scene("knot?tess=6");
     let view = view(&scene, [120, 90]);
-    let rungs = rungs(&renderer);
+    let options = options(&renderer);
     let others = [&["dissolve"][..], &["stipple"], &["wireframe"], &["boxes"], &["points"], &["draw_order"], &["explode"]];
     for (i, others) in others.iter().enumerate() {
         for (j, last) in ["xray", ["overdraw", "race"][i % 2]].into_iter().enumerate() {
             let stack = stack(&[*others, &["lambert", last][..]].concat());
-            let rung = rungs[(i + j) % rungs.len()];
-            exact(&mut renderer, &scene, &view, &stack, &pinned(rung), &format!("{others:?} {last} {}", rung.name()));
+            let option = options[(i + j) % options.len()];
+            exact(&mut renderer, &scene, &view, &stack, &pinned(option), &format!("{others:?} {last} {}", option.name()));
         }
     }
 }
@@ -277,9 +283,9 @@ fn a_race_is_exact_where_one_layer_covers_and_elsewhere_a_covering_triangle_wins
     let Some(mut renderer) = renderer() else { return };
     let lonely = scene("grid?cell=1");
     let view_of = |scene: &Arc<Scene>| view(scene, [160, 120]);
-    let (capture, verdict) = exact(&mut renderer, &lonely, &view_of(&lonely), &stack(&["race"]), &Accuracy::default(), "one layer");
-    let alone = captured(&mut renderer, &lonely, &view_of(&lonely), &stack(&[]), &Accuracy::default()).frame;
-    assert_eq!((verdict.accuracy.race_pixels, &capture.frame.owner), (0, &alone.owner));
+    let (capture, verdict) = exact(&mut renderer, &lonely, &view_of(&lonely), &stack(&["race"]), &AccuracyRequest::default(), "one layer");
+    let alone = captured(&mut renderer, &lonely, &view_of(&lonely), &stack(&[]), &AccuracyRequest::default()).frame;
+    assert_eq!((verdict.accuracy.race_pixels, &capture.frame.triangle_id), (0, &alone.triangle_id));
 
     let crowded = scene_from(&soup(5, 400, 64, 1.0));
     let view = pixel_view(64, 64);
@@ -287,7 +293,7 @@ fn a_race_is_exact_where_one_layer_covers_and_elsewhere_a_covering_triangle_wins
         renderer.set_tuning(tuning);
         for delay in [0, 4] {
             let stack = with(&["race", &format!("race.delay={delay}")]);
-            let (_, verdict) = exact(&mut renderer, &crowded, &view, &stack, &Accuracy::default(), &format!("{tuning:?}"));
+            let (_, verdict) = exact(&mut renderer, &crowded, &view, &stack, &AccuracyRequest::default(), &format!("{tuning:?}"));
             eprintln!("delay {delay}, {tuning:?}: {} of {} pixels lost", verdict.accuracy.race_pixels, verdict.accuracy.pixels);
         }
     }
@@ -298,27 +304,27 @@ fn the_judge_counts_what_a_race_lost_and_refuses_what_it_cannot_lose() {
     let Some(mut renderer) = renderer() else { return };
     let scene = scene_from(&soup(5, 60, 32, 1.0));
     let (view, plain, racing) = (pixel_view(32, 32), stack(&[]), stack(&["race"]));
-    let capture = captured(&mut renderer, &scene, &view, &plain, &Accuracy::default());
+    let capture = captured(&mut renderer, &scene, &view, &plain, &AccuracyRequest::default());
     let judge = |frame: &rasterlab::frame::Frame, stack: &Stack| {
         oracle::judge(&scene, &view, stack, frame, &capture.geometry, capture.layers.as_deref()).expect("it fits").accuracy
     };
-    // Another triangle of the same pixel: what is drawn once the owner is gone.
+    // Another triangle of the same pixel: what is drawn once the triangle id is gone.
     let pixel = capture.layers.as_ref().expect("counted").iter().position(|&layers| layers > 3).expect("a crowded pixel");
     let covering: Vec<u32> = (0..60)
-        .filter(|&id| id != capture.frame.owner[pixel])
+        .filter(|&id| id != capture.frame.triangle_id[pixel])
         .filter(|&id| {
-            let mut claim = capture.frame.owner.clone();
+            let mut claim = capture.frame.triangle_id.clone();
             claim[pixel] = id;
-            let frame = rasterlab::frame::Frame { owner: claim, ..capture.frame.clone() };
-            judge(&frame, &racing).owner_mismatch == 0
+            let frame = rasterlab::frame::Frame { triangle_id: claim, ..capture.frame.clone() };
+            judge(&frame, &racing).wrong_triangles == 0
         })
         .collect();
     let layers = capture.layers.as_ref().expect("counted")[pixel];
     assert_eq!(covering.len() as u32, layers - 1, "the others that cover the sample, and none that does not");
     let mut lost = capture.frame.clone();
-    lost.owner[pixel] = covering[0];
-    assert_eq!((judge(&lost, &racing).race_pixels, judge(&lost, &racing).owner_mismatch), (1, 0));
-    assert_eq!((judge(&lost, &plain).race_pixels, judge(&lost, &plain).owner_mismatch), (0, 1), "nobody else may lose");
+    lost.triangle_id[pixel] = covering[0];
+    assert_eq!((judge(&lost, &racing).race_pixels, judge(&lost, &racing).wrong_triangles), (1, 0));
+    assert_eq!((judge(&lost, &plain).race_pixels, judge(&lost, &plain).wrong_triangles), (0, 1), "nobody else may lose");
 }
 
 // ---------------------------------------------------------------- work that is not there
@@ -328,15 +334,15 @@ fn without_these_effects_there_is_no_pass_no_buffer_and_no_text_of_theirs() {
     let Some(gpu) = gpu() else { return };
     let scene = scene("sphere?triangles=5000");
     let view = view(&scene, [64, 48]);
-    let explained = |names: &[&str], rung| {
+    let explained = |names: &[&str], option| {
         let mut renderer = Renderer::new(gpu.clone());
         renderer.set_scene(&scene).expect("a builtin fits");
-        renderer.draw_whole(&view, &stack(names), &pinned(rung)).expect("a builtin is drawn");
+        renderer.draw_complete(&view, &stack(names), &pinned(option)).expect("a builtin is drawn");
         renderer.explain()
     };
     let pixels = view.pixels() as u64;
-    let rung = Visibility::Split32;
-    let plain = explained(&["lambert"], rung);
+    let option = Visibility::Split32;
+    let plain = explained(&["lambert"], option);
     let bytes =
         |explanation: &rasterlab::gpu::Explanation, name: &str| explanation.buffers.iter().find(|b| b.name == name).map(|b| b.bytes);
     let passes = |explanation: &rasterlab::gpu::Explanation| explanation.passes.iter().map(|pass| pass.name.clone()).collect::<Vec<_>>();
@@ -344,13 +350,13 @@ fn without_these_effects_there_is_no_pass_no_buffer_and_no_text_of_theirs() {
     assert_eq!((bytes(&plain, "layers"), bytes(&plain, "depth_keys")), (None, Some(4 * pixels)));
     assert!(plain.reasons.iter().all(|note| note.name != "layers"));
 
-    let sums = explained(&["lambert", "xray"], rung);
+    let sums = explained(&["lambert", "xray"], option);
     assert!(passes(&sums).contains(&"raster_small sum".to_owned()) && sums.key.contains("layers=xray/16"), "{}", sums.key);
     assert_eq!((bytes(&sums, "layers"), bytes(&sums, "depth_keys")), (None, Some(20 * pixels)), "16 bytes per pixel more");
-    let heat = explained(&["lambert", "overdraw"], rung);
+    let heat = explained(&["lambert", "overdraw"], option);
     assert!(passes(&heat).contains(&"raster_small count".to_owned()) && heat.key.contains("layers=overdraw"));
     assert_eq!(bytes(&heat, "layers"), Some(4 * pixels));
-    let race = explained(&["lambert", "race"], rung);
+    let race = explained(&["lambert", "race"], option);
     assert_eq!(passes(&race).iter().filter(|pass| pass.starts_with("raster")).collect::<Vec<_>>(), ["raster_small race"]);
     assert!(race.key.contains("visibility=race") && bytes(&race, "depth_keys").is_none());
 }
@@ -359,9 +365,9 @@ fn without_these_effects_there_is_no_pass_no_buffer_and_no_text_of_theirs() {
 
 type Figure = (&'static str, fn(&Errors) -> u64);
 
-const COUNTS: Figure = ("counts_wrong", |e| e.counts_wrong);
-const COLORS: Figure = ("max_colour_delta", |e| u64::from(e.max_colour_delta.saturating_sub(1)));
-const OWNERS: Figure = ("owner_mismatch", |e| e.owner_mismatch);
+const COUNTS: Figure = ("layer_counts_wrong", |e| e.layer_counts_wrong);
+const COLORS: Figure = ("max_color_delta", |e| u64::from(e.max_color_delta.saturating_sub(1)));
+const TRIANGLE_IDS: Figure = ("wrong_triangles", |e| e.wrong_triangles);
 
 struct Mutant {
     what: &'static str,
@@ -448,12 +454,12 @@ fn mutants() -> Vec<Mutant> {
             COLORS,
         ),
         mutant(
-            "a race that stores another's owner",
+            "a race that stores another's triangle id",
             "slots/visibility/race",
-            "depth_owner[2u * pixel] = ~id;",
-            "depth_owner[2u * pixel] = ~(id + 1u);",
+            "depth_and_id[2u * pixel] = ~id;",
+            "depth_and_id[2u * pixel] = ~(id + 1u);",
             &["race"],
-            OWNERS,
+            TRIANGLE_IDS,
         ),
     ]
 }

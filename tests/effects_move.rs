@@ -1,4 +1,4 @@
-//! Promise: effects that move vertices are exact within the bound they state, on every rung, and change nothing at all
+//! Promise: effects that move vertices are exact within the bound they state, on every option, and change nothing at all
 //! when they move nothing. Needs an adapter for all but what the oracle says of itself.
 
 mod common;
@@ -8,12 +8,12 @@ use std::sync::Arc;
 use common::*;
 use glam::{DMat3, DVec2, DVec3};
 use rasterlab::{
+    accuracy::Visibility,
     effects::{
         Effect, Stack,
-        hooks::{Slack, Vertex},
+        hooks::{ErrorBound, Vertex},
     },
     gpu::Renderer,
-    ladder::Visibility,
     math::hash_unit,
     measure::Budget,
     oracle,
@@ -77,7 +77,8 @@ fn lit(mut stack: Stack) -> Stack {
 #[test]
 fn every_builtin_scene_is_exact_under_every_moving_effect() {
     let Some(mut renderer) = renderer() else { return };
-    let ways: Vec<(Visibility, Tuning)> = rungs(&renderer).into_iter().flat_map(|rung| tunings().map(|tuning| (rung, tuning))).collect();
+    let ways: Vec<(Visibility, Tuning)> =
+        options(&renderer).into_iter().flat_map(|option| tunings().map(|tuning| (option, tuning))).collect();
     let (mut failures, mut turn) = (Vec::new(), 0);
     for query in SCENES {
         let scene = scene(query);
@@ -86,10 +87,10 @@ fn every_builtin_scene_is_exact_under_every_moving_effect() {
         let count = if scene.triangle_count() <= 3000 { ways.len() } else { 1 };
         for effect in MOVING {
             let stack = lit(suited(effect, &scene));
-            for (rung, tuning) in ways.iter().cycle().skip(turn).take(count) {
+            for (option, tuning) in ways.iter().cycle().skip(turn).take(count) {
                 renderer.set_tuning(*tuning);
-                let (_, verdict) = judged(&mut renderer, &scene, &view, &stack, &pinned(*rung));
-                let what = format!("{query} {effect} {} small={}", rung.name(), tuning.small_samples);
+                let (_, verdict) = judged(&mut renderer, &scene, &view, &stack, &pinned(*option));
+                let what = format!("{query} {effect} {} small={}", option.name(), tuning.max_small_samples);
                 failures.extend(exactness(&verdict.accuracy).err().map(|faults| format!("{what}: {faults}")));
                 let ill = verdict.accuracy.ill_conditioned;
                 if ill * 100 > verdict.accuracy.vertices {
@@ -122,8 +123,8 @@ fn all_moving_effects_together_are_exact_far_from_the_origin_inside_and_in_paral
         set(&mut stack, "explode", "amount_m", &[0.1]);
         for (pattern, name) in ["uniform", "sweep", "radial", "random"].iter().enumerate() {
             set(&mut stack, "explode", "pattern", &[pattern as f64]);
-            for rung in rungs(&renderer) {
-                exact(&mut renderer, &scene, &view, &stack, &pinned(rung), &format!("{what}, {name}, {}", rung.name()));
+            for option in options(&renderer) {
+                exact(&mut renderer, &scene, &view, &stack, &pinned(option), &format!("{what}, {name}, {}", option.name()));
             }
         }
     }
@@ -137,7 +138,11 @@ fn an_effect_that_moves_nothing_changes_nothing() {
         let none = oracle::render(&scene, &view, &lit(Stack::default())).expect("a builtin fits");
         for effect in MOVING {
             let resting = oracle::render(&scene, &view, &lit(resting(effect, &scene))).expect("a builtin fits");
-            assert_eq!((&resting.owner, &resting.key, &resting.color), (&none.owner, &none.key, &none.color), "{query} {effect}");
+            assert_eq!(
+                (&resting.triangle_id, &resting.key, &resting.color),
+                (&none.triangle_id, &none.key, &none.color),
+                "{query} {effect}"
+            );
         }
     }
     let Some(mut renderer) = renderer() else { return };
@@ -177,10 +182,10 @@ fn stated_bounds_hold_under_a_telescope_and_are_not_idle() {
     for effect in MOVING {
         let stack = suited(effect, &scene);
         let (capture, _) = exact(&mut renderer, &scene, &view, &stack, &pinned(Visibility::Split32), effect);
-        let truth = oracle::project_moved(&scene, &draws, &view, &stack);
+        let reference = oracle::project_moved(&scene, &draws, &view, &stack);
         let bounds = oracle::snap_bounds(&scene, &draws, &view, &stack);
         let (mut largest, mut median) = (0.0f64, Vec::new());
-        for ((found, own), bound) in capture.geometry.vertices.iter().zip(&truth.vertices).zip(bounds) {
+        for ((found, own), bound) in capture.geometry.vertices.iter().zip(&reference.vertices).zip(bounds) {
             let (0, 0, Some([x, y])) = (found.flags, own.flags, bound) else { continue };
             let share = (f64::from(found.x.abs_diff(own.x)) / (1.0 + x)).max(f64::from(found.y.abs_diff(own.y)) / (1.0 + y));
             largest = largest.max(share);
@@ -195,18 +200,18 @@ fn stated_bounds_hold_under_a_telescope_and_are_not_idle() {
 }
 
 /// Any value of a field's hard range: its ends, its middle, by decades or evenly.
-fn any_value(dice: &mut Dice, field: &rasterlab::params::Field) -> Vec<f64> {
+fn any_value(rng: &mut Rng, field: &rasterlab::params::Field) -> Vec<f64> {
     let [low, high] = field.hard;
     let mut lane = || {
-        let value = match dice.between(0, 6) {
+        let value = match rng.between(0, 6) {
             0 => low,
             1 => high,
             2 => 0.0f64.clamp(low, high),
             3 | 4 => {
-                let decade = libm::pow(10.0, dice.real(-4.0, 3.0));
-                if dice.roll().is_multiple_of(2) { decade } else { -decade }
+                let decade = libm::pow(10.0, rng.real(-4.0, 3.0));
+                if rng.next_u32().is_multiple_of(2) { decade } else { -decade }
             }
-            _ => dice.real(low, high),
+            _ => rng.real(low, high),
         };
         let value = f64::from(value.clamp(low, high) as f32).clamp(low, high);
         if matches!(field.kind, Kind::F32 | Kind::Point | Kind::Color) { value } else { value.trunc().clamp(low, high) }
@@ -217,7 +222,7 @@ fn any_value(dice: &mut Dice, field: &rasterlab::params::Field) -> Vec<f64> {
 #[test]
 fn any_parameters_within_the_hard_ranges_are_drawn_exactly() {
     let Some(mut renderer) = renderer() else { return };
-    let mut dice = Dice(7);
+    let mut rng = Rng(7);
     let scenes = ["sphere?triangles=300", "teapot?tess=2", "near"].map(scene);
     for case in 0..72 {
         let scene = &scenes[case % scenes.len()];
@@ -228,7 +233,7 @@ fn any_parameters_within_the_hard_ranges_are_drawn_exactly() {
         }
         for enabled in &mut stack.0 {
             for field in enabled.effect.fields {
-                let values = any_value(&mut dice, field);
+                let values = any_value(&mut rng, field);
                 field.set(&mut enabled.words, &values).unwrap_or_else(|error| panic!("{error}"));
             }
         }
@@ -244,8 +249,8 @@ fn any_parameters_within_the_hard_ranges_are_drawn_exactly() {
 
 // ---------------------------------------------------------------- what the effects promise of themselves
 
-fn vertex(dice: &mut Dice) -> Vertex {
-    let mut point = |reach: f64| DVec3::new(dice.real(-reach, reach), dice.real(-reach, reach), dice.real(-reach, reach));
+fn vertex(rng: &mut Rng) -> Vertex {
+    let mut point = |reach: f64| DVec3::new(rng.real(-reach, reach), rng.real(-reach, reach), rng.real(-reach, reach));
     let (position, normal, flat_normal, arm) = (point(2.0), point(1.0).normalize(), point(1.0).normalize(), point(0.1));
     Vertex {
         position,
@@ -255,20 +260,20 @@ fn vertex(dice: &mut Dice) -> Vertex {
         center: position - arm,
         arm,
         center_screen: DVec2::new(0.4, 0.6),
-        triangle: dice.roll() >> 8,
+        triangle: rng.next_u32() >> 8,
     }
 }
 
 #[test]
 fn a_wobbling_normal_is_the_numerical_derivative_of_the_place() {
-    let mut dice = Dice(3);
+    let mut rng = Rng(3);
     for case in 0..200 {
         let mut stack = stack(&["wobble"]);
-        set(&mut stack, "wobble", "toward", &[dice.real(-1.0, 1.0), dice.real(-1.0, 1.0), dice.real(-1.0, 1.0)]);
-        set(&mut stack, "wobble", "sway", &[dice.real(-1.0, 1.0), dice.real(-1.0, 1.0), dice.real(-1.0, 1.0)]);
-        set(&mut stack, "wobble", "amplitude_m", &[dice.real(0.0, 0.4)]);
-        set(&mut stack, "wobble", "wavelength_m", &[dice.real(0.5, 3.0)]);
-        let here = vertex(&mut dice);
+        set(&mut stack, "wobble", "toward", &[rng.real(-1.0, 1.0), rng.real(-1.0, 1.0), rng.real(-1.0, 1.0)]);
+        set(&mut stack, "wobble", "sway", &[rng.real(-1.0, 1.0), rng.real(-1.0, 1.0), rng.real(-1.0, 1.0)]);
+        set(&mut stack, "wobble", "amplitude_m", &[rng.real(0.0, 0.4)]);
+        set(&mut stack, "wobble", "wavelength_m", &[rng.real(0.5, 3.0)]);
+        let here = vertex(&mut rng);
         let place = |p: DVec3| {
             let moved = stack.moved(Vertex { position: p, ..here });
             moved.position + moved.offset
@@ -294,7 +299,7 @@ fn exploding_and_turning_keeps_every_triangle_and_its_area() {
     let draws = draws(&scene, &view).expect("a builtin fits");
     let geometry = oracle::project_moved(&scene, &draws, &view, &stack);
     assert_eq!(geometry.vertices.len() as u64, 3 * scene.triangle_count());
-    assert!(geometry.has_own_corners);
+    assert!(geometry.has_unshared_vertices);
 
     let primitive = &scene.primitives[0];
     for t in 0..primitive.triangle_count() {
@@ -324,19 +329,19 @@ fn exploding_and_turning_keeps_every_triangle_and_its_area() {
 
 #[test]
 fn a_bound_grows_with_what_an_effect_is_given_and_with_what_it_does() {
-    let mut dice = Dice(11);
+    let mut rng = Rng(11);
     let given =
-        Slack { position_m: 1e-7, offset_m: 0.0, normal: 1e-7, flat_normal: 1e-7, center_m: 1e-7, arm_m: 1e-8, center_screen: 1e-7 };
+        ErrorBound { position_m: 1e-7, offset_m: 0.0, normal: 1e-7, flat_normal: 1e-7, center_m: 1e-7, arm_m: 1e-8, center_screen: 1e-7 };
     let coarser =
-        Slack { position_m: 1e-5, offset_m: 1e-6, normal: 1e-5, flat_normal: 1e-5, center_m: 1e-5, arm_m: 1e-5, center_screen: 1e-5 };
+        ErrorBound { position_m: 1e-5, offset_m: 1e-6, normal: 1e-5, flat_normal: 1e-5, center_m: 1e-5, arm_m: 1e-5, center_screen: 1e-5 };
     for effect in MOVING {
         let moving = suited(effect, &scene("sphere?triangles=200"));
         let still = resting(effect, &scene("sphere?triangles=200"));
         for _ in 0..100 {
-            let here = vertex(&mut dice);
-            assert_eq!(still.slack(here, given), given, "{effect} at rest");
+            let here = vertex(&mut rng);
+            assert_eq!(still.error_bound(here, given), given, "{effect} at rest");
             assert_eq!(still.moved(here), here, "{effect} at rest");
-            let (fine, coarse) = (moving.slack(here, given), moving.slack(here, coarser));
+            let (fine, coarse) = (moving.error_bound(here, given), moving.error_bound(here, coarser));
             assert!(fine.offset_m > 0.0 && fine.offset_m < 2e-5, "{effect}: {}", fine.offset_m);
             assert!(coarse.offset_m > fine.offset_m && coarse.normal >= fine.normal, "{effect}");
         }
@@ -376,7 +381,7 @@ fn kernels_that_move_wrongly_are_caught() {
             "return movement_clip(draw, vertex, id, vertex_position(transform_bits(draw, vertex), 0u));",
             "return transform_clip(draw, vertex_position(transform_bits(draw, vertex), 0u));",
         ),
-        ("the plane stays behind", "wobble", "slots/shape/moved", "if shape.is_bent {", "if false {"),
+        ("the plane stays behind", "wobble", "slots/shape/moved", "if shape.is_deformed {", "if false {"),
         ("the last term of the sine is halved", "wobble", "common/sine", "y * 39.5367061", "y * 20.0"),
     ];
     let mut failures = Vec::new();

@@ -1,4 +1,4 @@
-//! Promise: the effects on surface and image are exact. Each is judged on every builtin scene and rung, with its defaults
+//! Promise: the effects on surface and image are exact. Each is judged on every builtin scene and option, with its defaults
 //! and with random parameters, and keeps its own small promises. Needs an adapter for the pictures alone.
 
 mod common;
@@ -8,18 +8,18 @@ use std::sync::Arc;
 use common::*;
 use glam::{DVec2, DVec3, DVec4};
 use rasterlab::{
+    accuracy::Visibility,
     effects::{
         Effect, Stack, Surface,
         hooks::{Picture, Pixel},
     },
-    frame::{Frame, NO_OWNER},
+    frame::{Frame, NO_TRIANGLE},
     gpu::Renderer,
-    ladder::Visibility,
     measure::{Budget, compare::pictures},
     oracle,
     params::Kind,
+    preset::{Clock, Preset, SceneSource},
     scene::{Scene, camera::View},
-    session::{Clock, SceneSource, Session},
 };
 
 const PAINT: [&str; 7] = ["toon", "hatch", "fog", "posterize", "smear", "outline", "dither"];
@@ -44,15 +44,15 @@ fn drawn(scene: &Scene, view: &View, stack: &Stack) -> Frame {
 }
 
 /// Gives every parameter of an effect a random legal value from its slider's range.
-fn shake(stack: &mut Stack, name: &str, dice: &mut Dice) {
+fn shake(stack: &mut Stack, name: &str, rng: &mut Rng) {
     let enabled = stack.get_mut(name).expect("it was enabled");
     for field in enabled.effect.fields {
         let [low, high] = field.soft;
-        let lane = |dice: &mut Dice| match field.kind {
-            Kind::F32 | Kind::Color | Kind::Point => dice.real(low, high),
-            _ => f64::from(dice.between(low as i32, high as i32 + 1)),
+        let lane = |rng: &mut Rng| match field.kind {
+            Kind::F32 | Kind::Color | Kind::Point => rng.real(low, high),
+            _ => f64::from(rng.between(low as i32, high as i32 + 1)),
         };
-        let lanes: Vec<f64> = (0..field.kind.lanes()).map(|_| lane(dice)).collect();
+        let lanes: Vec<f64> = (0..field.kind.lanes()).map(|_| lane(rng)).collect();
         field.set(&mut enabled.words, &lanes).unwrap_or_else(|error| panic!("{name}: {error}"));
     }
 }
@@ -67,9 +67,9 @@ fn every_effect_is_exact_on_every_scene_and_rung() {
         let scene = scene(query);
         let view = view(&scene, SIZE);
         for name in PAINT {
-            for rung in rungs(&renderer) {
-                let what = format!("{name} on {query}, {}", rung.name());
-                let (_, verdict) = exact(&mut renderer, &scene, &view, &stack(&["lambert", name]), &pinned(rung), &what);
+            for option in options(&renderer) {
+                let what = format!("{name} on {query}, {}", option.name());
+                let (_, verdict) = exact(&mut renderer, &scene, &view, &stack(&["lambert", name]), &pinned(option), &what);
                 most = most.max(verdict.accuracy.step_band_pixels as f64 / verdict.accuracy.pixels as f64);
             }
         }
@@ -81,16 +81,16 @@ fn every_effect_is_exact_on_every_scene_and_rung() {
 #[test]
 fn random_parameters_in_random_company_are_exact() {
     let Some(mut renderer) = renderer() else { return };
-    let (mut dice, mut shares) = (Dice(7), Vec::new());
+    let (mut rng, mut shares) = (Rng(7), Vec::new());
     for round in 0..3 {
         for query in SCENES {
             let scene = scene(query);
             let view = view(&scene, SIZE);
             let mut stack = stack(&["lambert"]);
             for name in PAINT {
-                if dice.roll() % 3 == 0 {
+                if rng.next_u32() % 3 == 0 {
                     stack.enable(Effect::find(name).expect("a listed effect"));
-                    shake(&mut stack, name, &mut dice);
+                    shake(&mut stack, name, &mut rng);
                     if name == "hatch" && *query == "near" {
                         // Of triangles that the near plane cuts, f32 knows places to 1e-5 of their distance.
                         let hatch = stack.get_mut(name).expect("just enabled");
@@ -99,13 +99,13 @@ fn random_parameters_in_random_company_are_exact() {
                     }
                 }
             }
-            let rungs = rungs(&renderer);
-            let rung = rungs[dice.roll() as usize % rungs.len()];
-            let (_, verdict) = judged(&mut renderer, &scene, &view, &stack, &pinned(rung));
+            let options = options(&renderer);
+            let option = options[rng.next_u32() as usize % options.len()];
+            let (_, verdict) = judged(&mut renderer, &scene, &view, &stack, &pinned(option));
             // Of a hundred levels many pixels lie near one; together they may still not be many.
             let errors = &verdict.accuracy;
-            let judgement = errors.within(&Budget { max_step_share: 0.5, ..Budget::default() });
-            judgement.unwrap_or_else(|why| panic!("round {round}, {query}, {}: {why}\n{stack:?}\n{errors:?}", rung.name()));
+            let judgement = errors.within(&Budget { max_step_band_fraction: 0.5, ..Budget::default() });
+            judgement.unwrap_or_else(|why| panic!("round {round}, {query}, {}: {why}\n{stack:?}\n{errors:?}", option.name()));
             shares.push(errors.step_band_pixels as f64 / errors.pixels as f64);
         }
     }
@@ -121,8 +121,8 @@ fn fog_thins_out_by_the_height_on_the_ray_of_a_pixel_and_not_by_that_of_snapped_
     let fog = [("density", 0.8), ("start_m", 0.0), ("falloff", 16.0), ("level_m", 1.5), ("color", 0.0)];
     let stack = with(&[&[("lambert", "", 0.0)], &fog.map(|(field, value)| ("fog", field, value))[..]].concat());
     let scene = scene("sizes");
-    for rung in rungs(&renderer) {
-        exact(&mut renderer, &scene, &view(&scene, SIZE), &stack, &pinned(rung), rung.name());
+    for option in options(&renderer) {
+        exact(&mut renderer, &scene, &view(&scene, SIZE), &stack, &pinned(option), option.name());
     }
 }
 
@@ -169,7 +169,7 @@ fn surface(color: DVec3) -> Surface {
         pixel_m: 0.01,
         flat_depth_m: 2.0,
         range_m: DVec2::new(1.0, 3.0),
-        owner: 0,
+        triangle_id: 0,
         rank: 0.0,
         lit: 1.0,
         nudge: 0.0,
@@ -200,7 +200,7 @@ fn fog_takes_more_the_farther_and_the_lower_and_nothing_before_its_start() {
 #[test]
 fn toon_has_as_many_tones_as_steps_and_keeps_the_hue() {
     for steps in [1usize, 2, 3, 7] {
-        let stack = with(&[("toon", "steps", steps as f64), ("toon", "softness", 0.05)]);
+        let stack = with(&[("toon", "steps", steps as f64), ("toon", "deformation", 0.05)]);
         let tones: Vec<f64> =
             (0..=1000).map(|i| shaded(&stack, surface(DVec3::splat(f64::from(i) / 1000.0))).x).map(|x| (x * 1e9).round() / 1e9).collect();
         assert!(tones.is_sorted(), "{steps} steps");
@@ -243,14 +243,14 @@ fn hatch_is_darker_where_the_tone_is_and_bare_where_it_is_bright() {
 
 // ---------------------------------------------------------------- effects on the image
 
-/// A picture without any owner.
-fn empty(side: u32, owners: &[u32]) -> Picture<'_> {
-    Picture { width: side, height: side, owners, keys: owners, draws: &[0], previous: None, background: DVec4::ZERO }
+/// A picture without any triangle id.
+fn empty(side: u32, triangle_ids: &[u32]) -> Picture<'_> {
+    Picture { width: side, height: side, triangle_ids, keys: triangle_ids, draws: &[0], previous: None, background: DVec4::ZERO }
 }
 
 fn finished(stack: &Stack, color: DVec4, x: u32, y: u32) -> DVec4 {
-    let owners = [NO_OWNER; 64 * 64];
-    stack.finish(Pixel { color, x, y, nudge: 0.0 }, &empty(64, &owners)).color
+    let triangle_ids = [NO_TRIANGLE; 64 * 64];
+    stack.finish(Pixel { color, x, y, nudge: 0.0 }, &empty(64, &triangle_ids)).color
 }
 
 #[test]
@@ -312,9 +312,9 @@ fn outlines_of_a_mirrored_picture_are_mirrored_and_as_wide_as_asked() {
     let view = view(&scene, SIZE);
     let frame = drawn(&scene, &view, &stack(&[]));
     let draws: Vec<u32> = rasterlab::scene::draw::draws(&scene, &view).expect("it fits").iter().map(|draw| draw.first_triangle).collect();
-    let lines = |owners: &[u32], keys: &[u32], stack: &Stack| -> Vec<u32> {
+    let lines = |triangle_ids: &[u32], keys: &[u32], stack: &Stack| -> Vec<u32> {
         let [width, height] = SIZE;
-        let picture = Picture { width, height, owners, keys, draws: &draws, previous: None, background: DVec4::ONE };
+        let picture = Picture { width, height, triangle_ids, keys, draws: &draws, previous: None, background: DVec4::ONE };
         let pixel = |i: u32| Pixel { color: DVec4::ONE, x: i % width, y: i / width, nudge: 0.0 };
         (0..width * height).map(|i| u32::from(stack.finish(pixel(i), &picture).color.x < 0.5)).collect()
     };
@@ -322,17 +322,17 @@ fn outlines_of_a_mirrored_picture_are_mirrored_and_as_wide_as_asked() {
     for side in [0.0, 1.0, 2.0] {
         for width_px in [1.0, 3.0, 8.0] {
             let stack = with(&[("outline", "side", side), ("outline", "width_px", width_px)]);
-            let there = lines(&frame.owner, &frame.key, &stack);
-            let back = lines(&mirrored(&frame.owner, width), &mirrored(&frame.key, width), &stack);
+            let there = lines(&frame.triangle_id, &frame.key, &stack);
+            let back = lines(&mirrored(&frame.triangle_id, width), &mirrored(&frame.key, width), &stack);
             assert!(there.contains(&1) && mirrored(&back, width) == there, "side {side}, {width_px} px");
         }
     }
-    // A line outside lies on empty pixels alone where only silhouettes are drawn, within its width of an owner.
+    // A line outside lies on empty pixels alone where only silhouettes are drawn, within its width of an triangle id.
     let only = with(&[("outline", "objects", 0.0), ("outline", "depth", 0.0), ("outline", "width_px", 2.0)]);
-    let drawn = lines(&frame.owner, &frame.key, &only);
+    let drawn = lines(&frame.triangle_id, &frame.key, &only);
     let owned = |x: i64, y: i64| {
         let is_inside = (0..i64::from(SIZE[0])).contains(&x) && (0..i64::from(SIZE[1])).contains(&y);
-        is_inside && frame.owner[y as usize * width + x as usize] != NO_OWNER
+        is_inside && frame.triangle_id[y as usize * width + x as usize] != NO_TRIANGLE
     };
     for (i, &line) in drawn.iter().enumerate() {
         let (x, y) = ((i % width) as i64, (i / width) as i64);
@@ -344,10 +344,11 @@ fn outlines_of_a_mirrored_picture_are_mirrored_and_as_wide_as_asked() {
 #[test]
 fn a_slope_is_no_jump_and_a_step_of_depth_is() {
     // Eight pixels of one object; keys as bits of a depth.
-    let owners = [1u32; 64];
+    let triangle_ids = [1u32; 64];
     let line = |depth: fn(u32) -> f32, jump: f64| -> Vec<u32> {
         let keys: Vec<u32> = (0..64).map(|i| depth(i % 8).to_bits()).collect();
-        let picture = Picture { width: 8, height: 8, owners: &owners, keys: &keys, draws: &[0], previous: None, background: DVec4::ONE };
+        let picture =
+            Picture { width: 8, height: 8, triangle_ids: &triangle_ids, keys: &keys, draws: &[0], previous: None, background: DVec4::ONE };
         let stack = with(&[("outline", "width_px", 1.0), ("outline", "jump", jump)]);
         (0..8).filter(|&x| stack.finish(Pixel { color: DVec4::ONE, x, y: 4, nudge: 0.0 }, &picture).color.x < 0.5).collect()
     };
@@ -358,31 +359,31 @@ fn a_slope_is_no_jump_and_a_step_of_depth_is() {
 
 // ---------------------------------------------------------------- smear
 
-fn spinning(fade: f64) -> Session {
+fn spinning(fade: f64) -> Preset {
     let stack = with(&[("lambert", "", 0.0), ("smear", "fade", fade), ("smear", "frames", 5.0), ("smear", "step_s", 0.1)]);
     let clock = Clock { time_s: 0.7, ..Clock::default() };
-    let mut session =
-        Session { scene: SceneSource::Builtin("knot?tess=6".into()), spin_deg_per_s: 90.0, clock, stack, ..Session::default() };
-    session.output.size = SIZE;
-    session
+    let mut preset = Preset { scene: SceneSource::Builtin("knot?tess=6".into()), spin_deg_per_s: 90.0, clock, stack, ..Preset::default() };
+    preset.output.size = SIZE;
+    preset
 }
 
 #[test]
 fn a_trail_is_exact_bit_equal_on_repeats_and_on_every_rung() {
     let Some(mut renderer) = renderer() else { return };
     let scene = scene("knot?tess=6");
-    let session = spinning(0.2);
-    let bare = drawn(&scene, &session.view(&scene, SIZE), &with(&[("lambert", "", 0.0)]));
-    let truth = oracle::render_last(&scene, &session.moments(&scene, SIZE)).expect("it is drawn");
-    let trail = (0..truth.color.len()).filter(|&i| truth.owner[i] == NO_OWNER && truth.color[i] != bare.color[i]).count();
+    let preset = spinning(0.2);
+    let bare = drawn(&scene, &preset.view(&scene, SIZE), &with(&[("lambert", "", 0.0)]));
+    let reference = oracle::render_sequence(&scene, &preset.moments(&scene, SIZE)).expect("it is drawn");
+    let trail =
+        (0..reference.color.len()).filter(|&i| reference.triangle_id[i] == NO_TRIANGLE && reference.color[i] != bare.color[i]).count();
     assert!(trail > 200, "{trail} pixels of trail");
-    for rung in rungs(&renderer) {
-        let (capture, verdict) = judged_look(&mut renderer, &scene, &session, &pinned(rung));
-        exactness(&verdict.accuracy).unwrap_or_else(|why| panic!("{}: {why}", rung.name()));
-        let far = pictures(&capture.frame.color, &truth.color, 1);
-        assert!(far.pixels_beyond <= 2, "the oracle replays the same: {far:?}");
-        let (again, _) = judged_look(&mut renderer, &scene, &session, &pinned(rung));
-        assert!(again.frame == capture.frame && again.previous == capture.previous, "{}", rung.name());
+    for option in options(&renderer) {
+        let (capture, verdict) = judged_preset(&mut renderer, &scene, &preset, &pinned(option));
+        exactness(&verdict.accuracy).unwrap_or_else(|why| panic!("{}: {why}", option.name()));
+        let far = pictures(&capture.frame.color, &reference.color, 1);
+        assert!(far.pixels_over_tolerance <= 2, "the oracle replays the same: {far:?}");
+        let (again, _) = judged_preset(&mut renderer, &scene, &preset, &pinned(option));
+        assert!(again.frame == capture.frame && again.previous == capture.previous, "{}", option.name());
     }
 }
 
@@ -395,7 +396,7 @@ fn a_trail_fades_in_whole_steps_to_its_end_and_none_is_left_at_once_at_full_fade
         let stack = with(&[("smear", "fade", fade)]);
         let mut moments = vec![(view.clone(), stack.clone())];
         moments.extend(vec![(away.clone(), stack); pictures]);
-        oracle::render_last(&scene, &moments).expect("it is drawn").color
+        oracle::render_sequence(&scene, &moments).expect("it is drawn").color
     };
     let (first, nothing) = (after(0.1, 0), after(1.0, 1));
     assert!(nothing.iter().all(|pixel| *pixel == nothing[0]), "full fade leaves the background");
@@ -414,7 +415,7 @@ fn another_size_or_scene_begins_without_a_trail_and_drawing_again_adds_none() {
     let exact = pinned(Visibility::Split32);
     let turned = |scene: &Arc<Scene>, deg: f64| {
         let clock = Clock { time_s: deg, ..Clock::default() };
-        Session { spin_deg_per_s: 1.0, clock, ..Session::default() }.view(scene, SIZE)
+        Preset { spin_deg_per_s: 1.0, clock, ..Preset::default() }.view(scene, SIZE)
     };
     let mut next = |scene: &Arc<Scene>, view: &View| {
         renderer.set_scene(scene).expect("it fits");
@@ -455,10 +456,10 @@ fn effects_with_a_mistake_are_caught() {
         let mut wrong = Renderer::with_library(gpu.clone(), library.shaders());
         let stack = with(&[("lambert", "", 0.0), coarse(name)]);
         let (_, verdict) = if name == "smear" {
-            judged_look(&mut wrong, &scene, &spinning(0.2), &pinned(Visibility::Split32))
+            judged_preset(&mut wrong, &scene, &spinning(0.2), &pinned(Visibility::Split32))
         } else {
             judged(&mut wrong, &scene, &view, &stack, &pinned(Visibility::Split32))
         };
-        assert!(verdict.accuracy.max_colour_delta > 1, "{name}, {to:?}: {:?}", verdict.accuracy);
+        assert!(verdict.accuracy.max_color_delta > 1, "{name}, {to:?}: {:?}", verdict.accuracy);
     }
 }

@@ -1,5 +1,5 @@
 //! Promise: effects that decide about samples decide exactly: dissolve fills what it says, stipple and wireframe draw what
-//! their integers say, a draw order stops after N samples, boxes and points cover their boxes and discs; on every rung the
+//! their integers say, a draw order stops after N samples, boxes and points cover their boxes and discs; on every option the
 //! same, and a mistake shows. Needs an adapter, but for what the oracle alone can tell.
 
 mod common;
@@ -11,7 +11,7 @@ use rasterlab::{
     effects::{Effect, Stack, dissolve::Mode, draw_order::Unit},
     frame::Geometry,
     measure::Budget,
-    oracle::{self, Rules},
+    oracle::{self, SampleTests},
     scene::{Scene, camera::View, draw::draws},
 };
 
@@ -42,22 +42,22 @@ impl Drawn {
     fn of(scene: &Scene, view: &View, stack: &Stack) -> Self {
         let draws = draws(scene, view).expect("a scene that fits");
         let mut geometry = oracle::project(scene, &draws, view);
-        geometry.decisions = oracle::decide(scene, &draws, view, stack, &geometry);
+        geometry.sample_setups = oracle::decide(scene, &draws, view, stack, &geometry);
         let (triangles, _) = oracle::triangles(scene, &draws, &geometry);
         Self { geometry, triangles }
     }
 
     /// Layers of every pixel.
     fn layers(&self, view: &View, stack: &Stack) -> Vec<u32> {
-        let rules = Rules::of(stack, &self.geometry).ordered(stack, &self.triangles, view);
-        oracle::cover_by(&rules, &self.triangles, view, None).layers()
+        let rules = SampleTests::of(stack, &self.geometry).ordered(stack, &self.triangles, view);
+        oracle::cover_with(&rules, &self.triangles, view, None).layers()
     }
 
     /// Samples of each triangle, its pieces apart.
     fn samples(&self, view: &View, stack: &Stack) -> BTreeMap<usize, u64> {
-        let rules = Rules::of(stack, &self.geometry).ordered(stack, &self.triangles, view);
+        let rules = SampleTests::of(stack, &self.geometry).ordered(stack, &self.triangles, view);
         let one = |t: &oracle::OrientedTriangle| {
-            let layers = oracle::cover_by(&rules, std::slice::from_ref(t), view, None).layers();
+            let layers = oracle::cover_with(&rules, std::slice::from_ref(t), view, None).layers();
             (t.entry, layers.iter().map(|&count| u64::from(count)).sum())
         };
         self.triangles.iter().map(one).collect()
@@ -113,7 +113,7 @@ fn p_per_cent_of_a_triangle_are_p_per_cent_of_its_area() {
     let poses = [[[10, 7], [230, 60], [90, 220]], [[3, 200], [250, 190], [128, 9]], [[250, 250], [20, 240], [240, 11]]];
     for corners in poses {
         let corners: [[i32; 2]; 3] = corners.map(|corner: [i32; 2]| corner.map(|at| at * 256 + 61));
-        let (scene, view) = (hand_made(&[units(&[(corners, 0.5)])]), pixel_view(256, 256));
+        let (scene, view) = (scene_of_meshes(&[units(&[(corners, 0.5)])]), pixel_view(256, 256));
         let plain = Drawn::of(&scene, &view, &Stack::default());
         let covered = sum(&plain.layers(&view, &Stack::default())) as f64;
         for mode in MODES {
@@ -121,12 +121,12 @@ fn p_per_cent_of_a_triangle_are_p_per_cent_of_its_area() {
                 let stack = dissolved(mode, fill);
                 let filled = sum(&Drawn::of(&scene, &view, &stack).layers(&view, &stack)) as f64;
                 // A sweep errs by part of a row of samples along its edge; a hash by chance, 5 sigma.
-                let slack = match mode {
+                let error_bound = match mode {
                     Mode::Scanline => 0.5,
                     Mode::Hash => 5.0 * (covered * fill * (1.0 - fill)).sqrt(),
                     Mode::Edge | Mode::Corner | Mode::Centroid => 300.0,
                 };
-                assert!((filled - fill * covered).abs() <= slack, "{mode:?} {fill}: {filled} of {covered}");
+                assert!((filled - fill * covered).abs() <= error_bound, "{mode:?} {fill}: {filled} of {covered}");
             }
         }
     }
@@ -167,7 +167,7 @@ fn triangles_of_a_sample_or_none_dissolve_without_bias() {
 #[test]
 fn stipple_draws_its_share_of_every_matrix() {
     let [a, b, c, d] = [[0, 0], [64 * 256, 0], [64 * 256, 64 * 256], [0, 64 * 256]];
-    let (scene, view) = (hand_made(&[units(&[([a, b, c], 0.5), ([a, c, d], 0.5)])]), pixel_view(64, 64));
+    let (scene, view) = (scene_of_meshes(&[units(&[([a, b, c], 0.5), ([a, c, d], 0.5)])]), pixel_view(64, 64));
     for (matrix, levels) in [(0.0, 4.0), (1.0, 16.0), (2.0, 64.0)] {
         for cell in [1.0, 2.0, 4.0] {
             for level in 0..=8 {
@@ -182,11 +182,11 @@ fn stipple_draws_its_share_of_every_matrix() {
 
 #[test]
 fn wires_are_as_wide_as_they_say_whatever_the_edge() {
-    let mut dice = Dice(11);
+    let mut rng = Rng(11);
     for _ in 0..30 {
-        let mut corner = || [dice.between(-4000, 20_000), dice.between(-4000, 20_000)];
+        let mut corner = || [rng.between(-4000, 20_000), rng.between(-4000, 20_000)];
         let corners = [corner(), corner(), corner()];
-        let (scene, view) = (hand_made(&[units(&[(corners, 0.5)])]), pixel_view(64, 64));
+        let (scene, view) = (scene_of_meshes(&[units(&[(corners, 0.5)])]), pixel_view(64, 64));
         for width in [1.0, 2.5, 9.0] {
             let stack = only("wireframe", &[("width_px", width), ("hidden", 0.0)]);
             let plain = Drawn::of(&scene, &view, &Stack::default()).layers(&view, &Stack::default());
@@ -264,22 +264,22 @@ fn stacks() -> Vec<(String, Stack)> {
 #[test]
 fn every_rung_and_tuning_draws_what_the_oracle_draws() {
     let Some(mut renderer) = renderer() else { return };
-    let rungs = rungs(&renderer);
+    let options = options(&renderer);
     let scenes = ["teapot?tess=4", "sphere?triangles=200", "near", "sizes", "grid?cell=0.4", "cube-wall"];
     let mut turn = 0;
     for (what, stack) in stacks() {
-        // Every stack meets two scenes, rungs and tunings in turn.
+        // Every stack meets two scenes, options and tunings in turn.
         for k in 0..2 {
             let query = scenes[(turn + 3 * k) % scenes.len()];
             let scene = scene(query);
             let view = view(&scene, [64, 48]);
             turn += 1;
             renderer.set_tuning(tunings()[turn % 4]);
-            let rung = rungs[turn / 4 % rungs.len()];
-            let (_, verdict) = judged(&mut renderer, &scene, &view, &stack, &pinned(rung));
-            // Boxes and coplanar layers fill the depth band; it is counted and either owner is right there.
+            let option = options[turn / 4 % options.len()];
+            let (_, verdict) = judged(&mut renderer, &scene, &view, &stack, &pinned(option));
+            // Boxes and coplanar layers fill the depth band; it is counted and either triangle id is right there.
             if let Err(faults) = verdict.accuracy.within(&Budget::default()) {
-                panic!("{what} of {query} on {}: {faults}\n{:?}", rung.name(), verdict.accuracy);
+                panic!("{what} of {query} on {}: {faults}\n{:?}", option.name(), verdict.accuracy);
             }
         }
     }
@@ -291,13 +291,14 @@ fn a_scheduler_draws_as_many_samples_as_it_should_and_only_right_ones() {
     let scene = scene("cube-wall");
     let view = view(&scene, [160, 120]);
     let total = sum(&Drawn::of(&scene, &view, &Stack::default()).layers(&view, &Stack::default()));
-    for rung in rungs(&renderer) {
+    for option in options(&renderer) {
         for limit in [0, 1, total / 2, total, total + 100] {
             let stack = only("draw_order", &[("mode", 1.0), ("unit", 1.0), ("limit", limit as f64)]);
             assert!(!stack.is_repeatable());
-            let (capture, _) = exact(&mut renderer, &scene, &view, &stack, &pinned(rung), &format!("{limit} tickets on {}", rung.name()));
+            let (capture, _) =
+                exact(&mut renderer, &scene, &view, &stack, &pinned(option), &format!("{limit} tickets on {}", option.name()));
             let drawn = capture.layers.map(|layers| sum(&layers));
-            assert_eq!(drawn, Some(limit.min(total)), "{}", rung.name());
+            assert_eq!(drawn, Some(limit.min(total)), "{}", option.name());
         }
     }
 }
@@ -395,12 +396,12 @@ fn kernels_with_a_mistake_are_caught() {
     let view = view(&scene, [128, 96]);
     let mut failures = Vec::new();
     for (what, file, from, to, stack) in mutants {
-        let rung = pinned(rasterlab::ladder::Visibility::Split32);
-        exact(&mut healthy, &scene, &view, &stack, &rung, &format!("without the mistake: {what}"));
+        let option = pinned(rasterlab::accuracy::Visibility::Split32);
+        exact(&mut healthy, &scene, &view, &stack, &option, &format!("without the mistake: {what}"));
         let library = mutated(file, from, to);
         let mut wrong = rasterlab::gpu::Renderer::with_library(healthy.gpu().clone(), library.shaders());
         wrong.set_tuning(card);
-        let (_, verdict) = judged(&mut wrong, &scene, &view, &stack, &rung);
+        let (_, verdict) = judged(&mut wrong, &scene, &view, &stack, &option);
         if exactness(&verdict.accuracy).is_ok() {
             failures.push(what);
         }

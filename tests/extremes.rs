@@ -170,11 +170,11 @@ const MUTANTS: &[(&str, &str, &str, &str, &str)] = &[
     (
         "the larger id wins ties",
         "slots/visibility/split32_owner",
-        "atomicMax(&owners[pixel], ~id);",
+        "atomicMax(&triangle ids[pixel], ~id);",
         "loop {
-            let held = atomicLoad(&owners[pixel]);
+            let held = atomicLoad(&triangle ids[pixel]);
             if held != 0u && held <= ~id { break; }
-            if atomicCompareExchangeWeak(&owners[pixel], held, ~id).exchanged { break; }
+            if atomicCompareExchangeWeak(&triangle ids[pixel], held, ~id).exchanged { break; }
         }",
         "coplanar-layers",
     ),
@@ -194,10 +194,10 @@ const MUTANTS: &[(&str, &str, &str, &str, &str)] = &[
     ),
     ("one sample of a row too many", "effects/dissolve", "(u32(span.x) + rest)", "(u32(span.x) + rest + 1u)", "fill"),
     ("a limit that is off by one", "slots/order/submission", "pixel < order.cut", "pixel <= order.cut", "draw-limit"),
-    ("another triangle's name", "baselines/hardware_owners", "corner / 3u", "corner / 3u + 1u", "hardware-cross-check"),
+    ("another triangle's name", "baselines/hardware_ids", "corner / 3u", "corner / 3u + 1u", "hardware-cross-check"),
     (
         "the witness is moved by a sample",
-        "baselines/hardware_owners",
+        "baselines/hardware_ids",
         "vec4f(position, 1.0)",
         "vec4f(position + vec3f(0.03125, 0.0, 0.0), 1.0)",
         "hardware-cross-check",

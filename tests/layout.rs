@@ -1,14 +1,14 @@
 //! Promise: every struct shared by Rust and WGSL agrees by name, order, kind and offset. Needs no adapter.
 
 use rasterlab::{
+    accuracy::Visibility,
     effects::{EFFECTS, Effect},
-    gpu::bends::{BendRecord, ShapeRecord},
     gpu::culling::{CullingUniform, InstanceRecord, MeshletRecord},
-    gpu::dots::{DotFrame, StretchRecord},
-    gpu::swarm::{CourseRecord, SwarmUniform},
-    gpu::texels::{LookupRecord, PaintRecord},
-    gpu::uniforms::{CounterRecord, DrawRecord, FrameUniform, LightUniform, ScalingUniform, Twin},
-    ladder::Visibility,
+    gpu::deforms::{DeformRecord, ShapeRecord},
+    gpu::dots::{DotFrame, DotRunRecord},
+    gpu::particle_readback::{ParticleStepUniform, StepParams},
+    gpu::texels::{LookupRecord, MaterialRecord},
+    gpu::uniforms::{CounterRecord, DrawRecord, FrameUniform, GpuRecord, LightUniform, ScalingUniform},
     shader::{
         Fetch, KernelKey, Pass,
         key::{Phase, Round},
@@ -24,7 +24,7 @@ fn reflected(pass: Pass, effects: Vec<&'static Effect>) -> Reflected {
     reflect::reflect(&linked, false).expect("validates")
 }
 
-fn check_twin<T: Twin>(reflected: &Reflected) {
+fn check_twin<T: GpuRecord>(reflected: &Reflected) {
     let (span, members) = reflected.layout(T::WGSL).unwrap_or_else(|| panic!("no WGSL struct {}", T::WGSL));
     let wgsl: Vec<_> = members.iter().map(|m| (m.name.as_str(), m.offset)).collect();
     assert_eq!(wgsl, T::MEMBERS, "{}: WGSL on the left, Rust on the right", T::WGSL);
@@ -40,10 +40,10 @@ fn uniforms_and_records_agree() {
     check_twin::<ScalingUniform>(&reflected(Pass::Scale, vec![]));
     let dots = reflected(Pass::DotsDraw, vec![]);
     check_twin::<DotFrame>(&dots);
-    check_twin::<StretchRecord>(&dots);
+    check_twin::<DotRunRecord>(&dots);
     check_twin::<LightUniform>(&reflected(Pass::Resolve, vec![&rasterlab::effects::shadow::EFFECT]));
     let skin = reflected(Pass::Skin, vec![]);
-    check_twin::<BendRecord>(&skin);
+    check_twin::<DeformRecord>(&skin);
     check_twin::<ShapeRecord>(&skin);
     let cull = reflected(Pass::Cull(Round::Behind), vec![]);
     check_twin::<MeshletRecord>(&cull);
@@ -52,10 +52,10 @@ fn uniforms_and_records_agree() {
     // Read word by word, in the order of their members.
     let resolve = reflected(Pass::Resolve, vec![]);
     check_twin::<LookupRecord>(&resolve);
-    check_twin::<PaintRecord>(&resolve);
+    check_twin::<MaterialRecord>(&resolve);
     let particles = reflected(Pass::Particles, vec![]);
-    check_twin::<SwarmUniform>(&particles);
-    check_twin::<CourseRecord>(&particles);
+    check_twin::<ParticleStepUniform>(&particles);
+    check_twin::<StepParams>(&particles);
 }
 
 #[test]
@@ -63,7 +63,7 @@ fn arrays_of_records_have_one_stride() {
     let (span, _) = reflected(Pass::Project, vec![]).layout("Draw").expect("there");
     assert_eq!(span, size_of::<DrawRecord>());
     let (span, _) = reflected(Pass::Particles, vec![]).layout("Course").expect("there");
-    assert_eq!(span, size_of::<CourseRecord>());
+    assert_eq!(span, size_of::<StepParams>());
 }
 
 #[test]

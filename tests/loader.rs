@@ -83,12 +83,12 @@ impl Model {
     }
 
     fn floats(&mut self, kind: &str, values: &[f32]) -> usize {
-        self.accessor(&le_floats(values), F32, kind, values.len() / lanes(kind))
+        self.accessor(&le_floats(values), F32, kind, values.len() / components(kind))
     }
 
     fn shorts(&mut self, kind: &str, values: &[u16]) -> usize {
         let bytes: Vec<u8> = values.iter().flat_map(|v| v.to_le_bytes()).collect();
-        self.accessor(&bytes, U16, kind, values.len() / lanes(kind))
+        self.accessor(&bytes, U16, kind, values.len() / components(kind))
     }
 
     /// With one value of the JSON changed or added.
@@ -132,7 +132,7 @@ impl Model {
 
 const SQUARE: [[f32; 3]; 4] = [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [1.0, 1.0, 0.0], [0.0, 1.0, 0.0]];
 
-fn lanes(kind: &str) -> usize {
+fn components(kind: &str) -> usize {
     match kind {
         "SCALAR" => 1,
         "VEC3" => 3,
@@ -185,7 +185,7 @@ fn assert_sound(scene: &Scene) {
             let pose = Pose::at(scene, &Motion { clip, time_s, ..Motion::default() });
             assert!(
                 (0..scene.instances.len())
-                    .all(|i| !pose.place(i).is_nan() && pose.bend(i).is_none_or(|b| b.weights.iter().all(|w| w.is_finite())))
+                    .all(|i| !pose.place(i).is_nan() && pose.deform(i).is_none_or(|b| b.weights.iter().all(|w| w.is_finite())))
             );
         }
         assert!(scene.rig.nodes.iter().enumerate().all(|(i, node)| node.parent.is_none_or(|parent| parent < i)));
@@ -194,15 +194,15 @@ fn assert_sound(scene: &Scene) {
     assert!(scene.instances.iter().all(|i| i.primitive < scene.primitives.len() && i.world_from_object.is_finite()));
     for primitive in &scene.primitives {
         assert!(primitive.material < scene.materials.len());
-        let softness = &primitive.softness;
-        let shapes = softness.shapes.iter().flat_map(|shape| [shape.positions, shape.normals]);
-        let held = softness.influences.iter().flat_map(|set| [Some(set.joints), Some(set.weights)]);
+        let deformation = &primitive.deformation;
+        let shapes = deformation.morph_targets.iter().flat_map(|shape| [shape.positions, shape.normals]);
+        let held = deformation.influences.iter().flat_map(|set| [Some(set.joints), Some(set.weights)]);
         let attributes = [Some(primitive.positions), Some(primitive.normals), primitive.colors];
         for accessor in attributes.into_iter().chain(shapes).chain(held).flatten() {
             assert_eq!(accessor.count, primitive.vertex_count());
             assert!(accessor.offset % accessor.component.bytes() == 0 && accessor.stride % accessor.component.bytes() == 0);
             for vertex in 0..accessor.count {
-                assert!((0..accessor.lanes).all(|lane| accessor.value(&scene.vertex_bytes, vertex, lane).is_finite()));
+                assert!((0..accessor.components).all(|lane| accessor.value(&scene.vertex_bytes, vertex, lane).is_finite()));
             }
         }
         for vertex in 0..primitive.vertex_count() {
@@ -368,7 +368,7 @@ fn vertex_colours_come_in_three_widths() {
     let read = |model: Model| {
         let scene = model.scene();
         let color = scene.primitives[0].colors.unwrap();
-        (color.lanes, [0, 1, 2].map(|lane| color.value(&scene.vertex_bytes, 2, lane)))
+        (color.components, [0, 1, 2].map(|lane| color.value(&scene.vertex_bytes, 2, lane)))
     };
     let add = |normalized: bool, make: &dyn Fn(&mut Model) -> usize| {
         let mut model = Model::square();
@@ -453,8 +453,8 @@ fn posed(scene: &Scene, clip: Option<usize>, time_s: f64) -> Vec<[[f64; 3]; 3]> 
     for (index, instance) in scene.instances.iter().enumerate() {
         let primitive = &scene.primitives[instance.primitive];
         let corner = |vertex| {
-            let object = match pose.bend(index) {
-                Some(bend) => bend.position(scene, primitive, vertex),
+            let object = match pose.deform(index) {
+                Some(deform) => deform.position(scene, primitive, vertex),
                 None => primitive.position(scene, vertex).map(f64::from).into(),
             };
             pose.place(index).transform_point3(object).to_array()
@@ -506,7 +506,7 @@ fn eight_joints_hold_a_vertex_in_any_width() {
     let set = |model: Model, name: &str, accessor: usize| model.with(&format!("/meshes/0/primitives/0/attributes/{name}"), json!(accessor));
     let wide = set(set(set(set(wide, "JOINTS_0", joints), "WEIGHTS_0", weights), "JOINTS_1", more), "WEIGHTS_1", others);
     let scene = wide.scene();
-    assert_eq!(scene.primitives[0].softness.influences.len(), 2);
+    assert_eq!(scene.primitives[0].deformation.influences.len(), 2);
     // A fifth of the first joint, four fifths of the second.
     let [_, _, z] = posed(&scene, None, 0.0)[0][0];
     assert!((z - 0.8 * 8.0).abs() < 1e-12, "{z}");
@@ -518,7 +518,7 @@ fn clip(path: &str, interpolation: &str, kind: &str, values: &[f32]) -> Model {
     let mut model = Model::square();
     let input = model.floats("SCALAR", &[1.0, 3.0]);
     let output = model.floats(kind, values);
-    model.with("/nodes", json!([{ "children": [1], "translation": [10, 0, 0] }, { "mesh": 0, "name": "Part" }])).with(
+    model.with("/nodes", json!([{ "children": [1], "translation": [10, 0, 0] }, { "mesh": 0, "name": "SimpleMesh" }])).with(
         "/animations",
         json!([{
             "name": "Move", "channels": [{ "sampler": 0, "target": { "node": 1, "path": path } }],

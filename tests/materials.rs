@@ -9,19 +9,19 @@ use common::*;
 use glam::DVec3;
 use image::{ImageBuffer, ImageFormat, Rgba};
 use rasterlab::{
+    accuracy::Visibility,
     effects::{EFFECTS, Effect, Stack},
     gpu::Renderer,
-    ladder::Visibility,
     measure::compare,
     oracle,
-    plan::{Accuracy, Tier},
+    plan::{AccuracyRequest, Tier},
+    preset::{ClipPlayback, Clock, Preset, SceneSource},
     scene::{
         Accessor, Material, Scene,
         camera::{Camera, Projection, View},
         gltf::{self, LoadError, limits},
-        texture::{Copies, Filter, Image, Texture, Wrap},
+        texture::{Filter, Image, MipFilter, Texture, Wrap},
     },
-    session::{Clock, Play, SceneSource, Session},
     shader::{Fetch, KernelKey, Pass, key, library::Library, link, reflect},
 };
 use serde_json::{Value, json};
@@ -31,15 +31,15 @@ type Picture = Vec<[u8; 4]>;
 /// `scene` from `eye` to `target`.
 fn from_eye(scene: &Scene, eye: [f64; 3], target: [f64; 3], size: [u32; 2]) -> View {
     let camera = Camera { eye: eye.into(), target: target.into(), ..Camera::default() };
-    look(scene, camera, size)
+    preset_file(scene, camera, size)
 }
 
-fn look(scene: &Scene, camera: Camera, size: [u32; 2]) -> View {
+fn preset_file(scene: &Scene, camera: Camera, size: [u32; 2]) -> View {
     let scene_source = SceneSource::Builtin(scene.name.clone());
-    Session { scene: scene_source, camera: Some(camera), ..Session::default() }.view(scene, size)
+    Preset { scene: scene_source, camera: Some(camera), ..Preset::default() }.view(scene, size)
 }
 
-/// The panels as the look of that name sees them.
+/// The panels as the preset of that name sees them.
 fn panels(size: [u32; 2]) -> (Arc<Scene>, View) {
     let scene = scene("panels");
     let view = from_eye(&scene, [1.4, 0.7, 6.4], [0.1, -0.35, 0.0], size);
@@ -55,7 +55,7 @@ fn images_look_as_the_oracle_has_them_on_every_rung_and_under_every_kind_of_effe
     // Over the ground, which is cut behind the eye and runs to the horizon.
     let low = from_eye(&panels, [0.3, -1.9, 1.5], [0.0, -2.2, -6.0], [200, 150]);
     let flat = Camera { eye: DVec3::new(2.0, 1.5, 5.0), projection: Projection::Orthographic { height_m: 5.0 }, ..Camera::default() };
-    let parallel = look(&panels, flat, [160, 120]);
+    let parallel = preset_file(&panels, flat, [160, 120]);
     let globe = scene("globe?tess=6");
     let near = from_eye(&globe, [0.4, 0.5, 1.5], [0.0, 0.0, 0.0], [160, 120]);
     let stacks =
@@ -65,10 +65,10 @@ fn images_look_as_the_oracle_has_them_on_every_rung_and_under_every_kind_of_effe
         [("in front", &panels, &front), ("over the ground", &panels, &low), ("parallel", &panels, &parallel), ("globe", &globe, &near)]
     {
         for (place, names) in stacks.iter().enumerate() {
-            let rungs = if place == 1 { rungs(&renderer) } else { vec![quick_rung(&renderer)] };
-            for rung in rungs {
-                let about = format!("{what} {names:?} {}", rung.name());
-                let (capture, _) = exact(&mut renderer, scene, view, &stack(names), &pinned(rung), &about);
+            let options = if place == 1 { options(&renderer) } else { vec![quick_option(&renderer)] };
+            for option in options {
+                let about = format!("{what} {names:?} {}", option.name());
+                let (capture, _) = exact(&mut renderer, scene, view, &stack(names), &pinned(option), &about);
                 cut += capture.frame.counters.clipped;
             }
         }
@@ -80,11 +80,12 @@ fn images_look_as_the_oracle_has_them_on_every_rung_and_under_every_kind_of_effe
 fn pixel_square(side: u32, [from, to]: [f32; 2], image: Image, texture: Texture) -> (Arc<Scene>, View) {
     let s = side as f32;
     let corners = [[0.0, 0.0, 0.5], [s, 0.0, 0.5], [s, s, 0.5], [0.0, s, 0.5]];
-    let mut scene = (*hand_made(&[Part { positions: corners.to_vec(), indices: vec![0, 1, 2, 0, 2, 3], ..Part::default() }])).clone();
-    let coords: Vec<f32> = [[from, from], [to, from], [to, to], [from, to]].concat();
+    let mut scene =
+        (*scene_of_meshes(&[SimpleMesh { positions: corners.to_vec(), indices: vec![0, 1, 2, 0, 2, 3], ..SimpleMesh::default() }])).clone();
+    let texcoords: Vec<f32> = [[from, from], [to, from], [to, to], [from, to]].concat();
     let offset = scene.vertex_bytes.len();
-    scene.vertex_bytes.extend(coords.iter().flat_map(|v| v.to_le_bytes()));
-    scene.primitives[0].coords[0] = Some(Accessor::packed_f32(offset, 2, 4));
+    scene.vertex_bytes.extend(texcoords.iter().flat_map(|v| v.to_le_bytes()));
+    scene.primitives[0].texcoords[0] = Some(Accessor::packed_f32(offset, 2, 4));
     scene.materials[0].base_texture = Some(texture);
     scene.images.push(image);
     (Arc::new(scene), pixel_view(side, side))
@@ -103,8 +104,8 @@ fn noise(side: u32) -> Image {
 fn pictures(scene: &Arc<Scene>, view: &View) -> Vec<(&'static str, Picture)> {
     let mut pictures = vec![("oracle", oracle::render(scene, view, &Stack::default()).expect("it fits").color)];
     if let Some(mut renderer) = renderer() {
-        let rung = quick_rung(&renderer);
-        pictures.push(("adapter", captured(&mut renderer, scene, view, &Stack::default(), &pinned(rung)).frame.color));
+        let option = quick_option(&renderer);
+        pictures.push(("adapter", captured(&mut renderer, scene, view, &Stack::default(), &pinned(option)).frame.color));
     }
     pictures
 }
@@ -127,7 +128,7 @@ fn a_texel_a_pixel_is_the_image_itself_and_beyond_its_edges_what_the_sampler_say
     let wraps = [Wrap::Repeat, Wrap::Mirrored, Wrap::Clamp];
     for (across, down) in wraps.iter().flat_map(|&across| wraps.map(|down| (across, down))) {
         for filter in [Filter::Nearest, Filter::Linear] {
-            let texture = Texture { wrap: [across, down], magnified: filter, ..Texture::plain(0) };
+            let texture = Texture { wrap: [across, down], mag_filter: filter, ..Texture::plain(0) };
             let (scene, view) = pixel_square(3 * SIDE as u32, [-1.0, 2.0], image.clone(), texture);
             for (who, picture) in pictures(&scene, &view) {
                 for (at, pixel) in picture.iter().enumerate() {
@@ -143,7 +144,7 @@ fn a_texel_a_pixel_is_the_image_itself_and_beyond_its_edges_what_the_sampler_say
 #[test]
 fn between_texels_their_light_is_mixed_and_from_afar_their_mean_is_seen() {
     let light = |byte: u8| rasterlab::math::linear_light(f64::from(byte) / 255.0);
-    let image = noise(8).with_copies();
+    let image = noise(8).with_mipmaps();
     let texel = |x: usize, y: usize| image.levels[0].texels[y * 8 + x];
     let mean = |x: usize, y: usize, c: usize| {
         let sum: f64 = [(0, 0), (1, 0), (0, 1), (1, 1)].iter().map(|(i, j)| light(texel((x + i) % 8, (y + j) % 8)[c])).sum();
@@ -151,7 +152,7 @@ fn between_texels_their_light_is_mixed_and_from_afar_their_mean_is_seen() {
     };
     // Half a texel aside every pixel has four texels around it.
     let half = 1.0 / 16.0;
-    let (scene, view) = pixel_square(8, [half, 1.0 + half], image.clone(), Texture { copies: Copies::Unused, ..Texture::plain(0) });
+    let (scene, view) = pixel_square(8, [half, 1.0 + half], image.clone(), Texture { mip_filter: MipFilter::Unused, ..Texture::plain(0) });
     // Two texels a pixel: the first copy, whose texels are the means of four.
     let (far, far_view) = pixel_square(4, [0.0, 1.0], image.clone(), Texture::plain(0));
     for (who, scene, view, step) in [("between", &scene, &view, 1), ("afar", &far, &far_view, 2)] {
@@ -185,14 +186,14 @@ fn what_shines_is_seen_in_the_dark_and_what_is_unlit_in_any_light() {
     // Two triangles a panel: the fifth shines, the sixth is unlit.
     let black = |pixel: &[u8; 4]| pixel[..3] == [0, 0, 0];
     let mut seen = [0; 3];
-    for ((owner, lit), dark) in lit.owner.iter().zip(&lit.color).zip(&unlit.color) {
-        match owner {
+    for ((triangle_id, lit), dark) in lit.triangle_id.iter().zip(&lit.color).zip(&unlit.color) {
+        match triangle_id {
             10 | 11 => assert_eq!(lit, dark, "an unlit panel"),
             8 | 9 => seen[usize::from(!black(dark))] += 1,
-            0..14 => assert!(black(dark), "{owner}: {dark:?}"),
+            0..14 => assert!(black(dark), "{triangle_id}: {dark:?}"),
             _ => {}
         }
-        seen[2] += u32::from(matches!(owner, 10 | 11));
+        seen[2] += u32::from(matches!(triangle_id, 10 | 11));
     }
     assert!(seen.iter().all(|count| *count > 50), "{seen:?}");
 }
@@ -201,8 +202,8 @@ fn what_shines_is_seen_in_the_dark_and_what_is_unlit_in_any_light() {
 fn mistakes_in_looking_up_texels_are_caught() {
     let Some(mut healthy) = renderer() else { return };
     let (scene, view) = panels([200, 150]);
-    let (stack, rung) = (stack(&["lambert"]), pinned(Visibility::Split32));
-    exact(&mut healthy, &scene, &view, &stack, &rung, "without a mistake");
+    let (stack, option) = (stack(&["lambert"]), pinned(Visibility::Split32));
+    exact(&mut healthy, &scene, &view, &stack, &option, "without a mistake");
     let decoded = "return vec3f(texels_float(texel & 255u), texels_float((texel >> 8u) & 255u), texels_float((texel >> 16u) & 255u));";
     let mistakes = [
         ("half a texel aside", "common/texels", "clamp(place * vec2f(size),", "clamp(place * vec2f(size) + 0.5,"),
@@ -231,7 +232,7 @@ fn mistakes_in_looking_up_texels_are_caught() {
     for (what, file, from, to) in mistakes {
         let library = mutated(file, from, to);
         let mut wrong = Renderer::with_library(healthy.gpu().clone(), library.shaders());
-        let (_, verdict) = judged(&mut wrong, &scene, &view, &stack, &rung);
+        let (_, verdict) = judged(&mut wrong, &scene, &view, &stack, &option);
         match exactness(&verdict.accuracy) {
             Ok(()) => missed.push(what),
             Err(why) => eprintln!("{what}: {why}"),
@@ -247,7 +248,7 @@ fn crowns(size: [u32; 2]) -> (Arc<Scene>, [(&'static str, View); 2]) {
     let scene = scene("leaves?n=60");
     let outside = from_eye(&scene, [0.6, 0.9, 3.6], [0.0, 0.0, 0.0], size);
     let camera = Camera { eye: DVec3::new(0.55, 0.1, 0.75), target: DVec3::new(-0.3, -0.1, 0.0), near_m: 0.2, ..Camera::default() };
-    let inside = look(&scene, camera, size);
+    let inside = preset_file(&scene, camera, size);
     (scene, [("outside", outside), ("inside", inside)])
 }
 
@@ -262,12 +263,12 @@ fn masks_leave_out_the_same_samples_on_every_rung_in_every_kernel_and_in_the_ora
     for (what, view) in &views {
         for (place, names) in stacks.iter().enumerate() {
             let stack = stack(names);
-            let rungs = if place == 0 { rungs(&renderer) } else { vec![Visibility::Split32] };
-            for rung in rungs {
+            let options = if place == 0 { options(&renderer) } else { vec![Visibility::Split32] };
+            for option in options {
                 for tuning in if place == 0 { tunings().to_vec() } else { vec![usual] } {
                     renderer.set_tuning(tuning);
-                    let about = format!("{what} {names:?} {}", rung.name());
-                    let (capture, _) = exact(&mut renderer, &scene, view, &stack, &pinned(rung), &about);
+                    let about = format!("{what} {names:?} {}", option.name());
+                    let (capture, _) = exact(&mut renderer, &scene, view, &stack, &pinned(option), &about);
                     cut += capture.geometry.pieces.len();
                 }
             }
@@ -278,9 +279,9 @@ fn masks_leave_out_the_same_samples_on_every_rung_in_every_kernel_and_in_the_ora
 }
 
 /// The crown with another cutoff.
-fn cut_at(scene: &Scene, cutoff: Option<f32>) -> Scene {
+fn cut_at(scene: &Scene, alpha_cutoff: Option<f32>) -> Scene {
     let mut scene = scene.clone();
-    scene.materials[0].cutoff = cutoff;
+    scene.materials[0].alpha_cutoff = alpha_cutoff;
     scene
 }
 
@@ -288,7 +289,7 @@ fn cut_at(scene: &Scene, cutoff: Option<f32>) -> Scene {
 fn an_alpha_of_just_the_cutoff_is_drawn_whatever_the_byte() {
     let (scene, _) = crowns([8, 8]);
     for byte in 0..=255u32 {
-        let least = cut_at(&scene, Some(byte as f32 / 255.0)).materials[0].least_alpha().expect("a mask");
+        let least = cut_at(&scene, Some(byte as f32 / 255.0)).materials[0].alpha_threshold().expect("a mask");
         assert!(least <= byte << 16 && least + 2 > byte << 16, "{byte}: {least}");
     }
 }
@@ -297,9 +298,9 @@ fn an_alpha_of_just_the_cutoff_is_drawn_whatever_the_byte() {
 fn a_higher_cutoff_draws_a_part_of_what_a_lower_one_does() {
     let (scene, [(_, view), _]) = crowns([200, 150]);
     let stack = stack(&["xray"]);
-    let layers = |cutoff| oracle::render(&cut_at(&scene, cutoff), &view, &stack).expect("it fits").counted;
+    let layers = |alpha_cutoff| oracle::render(&cut_at(&scene, alpha_cutoff), &view, &stack).expect("it fits").counted;
     let cutoffs = [None, Some(0.0), Some(0.2), Some(0.5), Some(0.51), Some(0.9), Some(1.0), Some(1.5)];
-    let counts: Vec<Vec<u32>> = cutoffs.iter().map(|&cutoff| layers(cutoff)).collect();
+    let counts: Vec<Vec<u32>> = cutoffs.iter().map(|&alpha_cutoff| layers(alpha_cutoff)).collect();
     for pair in counts.windows(2) {
         assert!(pair[0].iter().zip(&pair[1]).all(|(more, fewer)| more >= fewer));
     }
@@ -312,22 +313,22 @@ fn a_mask_of_a_texel_a_pixel_is_the_alpha_of_the_image() {
     let image = Image::new("dots", [8, 8], (0..64).map(|at| [255, 255, 255, rasterlab::math::hash(at) as u8]).collect());
     for filter in [Filter::Nearest, Filter::Linear] {
         for (wrap, span) in [(Wrap::Repeat, [0.0, 1.0]), (Wrap::Mirrored, [1.0, 2.0]), (Wrap::Clamp, [0.0, 1.0])] {
-            let texture = Texture { wrap: [wrap; 2], magnified: filter, ..Texture::plain(0) };
+            let texture = Texture { wrap: [wrap; 2], mag_filter: filter, ..Texture::plain(0) };
             let (scene, view) = pixel_square(8, span, image.clone(), texture);
             for least in [1u8, 100, 128, 200, 255] {
                 let masked = Arc::new(cut_at(&scene, Some((f32::from(least) - 0.5) / 255.0)));
-                let own = oracle::render(&masked, &view, &Stack::default()).expect("it fits").owner;
+                let own = oracle::render(&masked, &view, &Stack::default()).expect("it fits").triangle_id;
                 let mut all = vec![("oracle", own)];
                 if let Some(mut renderer) = renderer() {
                     let capture = captured(&mut renderer, &masked, &view, &Stack::default(), &pinned(Visibility::Split32));
-                    assert_eq!(capture.frame.counters.orphans, 0);
-                    all.push(("adapter", capture.frame.owner));
+                    assert_eq!(capture.frame.counters.depth_without_id, 0);
+                    all.push(("adapter", capture.frame.triangle_id));
                 }
-                for (who, owners) in all {
-                    for (at, owner) in owners.iter().enumerate() {
+                for (who, triangle_ids) in all {
+                    for (at, triangle_id) in triangle_ids.iter().enumerate() {
                         let (x, y) = if wrap == Wrap::Mirrored { (7 - at % 8, 7 - at / 8) } else { (at % 8, at / 8) };
                         let is_drawn = image.levels[0].texels[8 * y + x][3] >= least;
-                        assert_eq!(*owner != u32::MAX, is_drawn, "{who}: {filter:?} {wrap:?} {least} at {at}");
+                        assert_eq!(*triangle_id != u32::MAX, is_drawn, "{who}: {filter:?} {wrap:?} {least} at {at}");
                     }
                 }
             }
@@ -339,7 +340,7 @@ fn a_mask_of_a_texel_a_pixel_is_the_alpha_of_the_image() {
 fn mistakes_in_masks_are_caught() {
     let Some(mut healthy) = renderer() else { return };
     let (scene, views) = crowns([200, 150]);
-    let (stack, rung) = (stack(&[]), pinned(Visibility::Split32));
+    let (stack, option) = (stack(&[]), pinned(Visibility::Split32));
     let mistakes = [
         ("half a texel aside", "slots/mask/asked", "let corner = place - 128;", "let corner = place;"),
         ("the nearest texel", "slots/mask/asked", "if ((look.sampling >> 4u) & 1u) == 0u {", "if true {"),
@@ -362,13 +363,13 @@ fn mistakes_in_masks_are_caught() {
         ("not asked in the second pass", "common/gate", "mask_is_drawn(t, at) && order", "order"),
     ];
     for (what, view) in &views {
-        exact(&mut healthy, &scene, view, &stack, &rung, &format!("without a mistake {what}"));
+        exact(&mut healthy, &scene, view, &stack, &option, &format!("without a mistake {what}"));
     }
     let mut missed = Vec::new();
     for (what, file, from, to) in mistakes {
         let library = mutated(file, from, to);
         let mut wrong = Renderer::with_library(healthy.gpu().clone(), library.shaders());
-        let why = views.iter().find_map(|(_, view)| exactness(&judged(&mut wrong, &scene, view, &stack, &rung).1.accuracy).err());
+        let why = views.iter().find_map(|(_, view)| exactness(&judged(&mut wrong, &scene, view, &stack, &option).1.accuracy).err());
         match why {
             None => missed.push(what),
             Some(why) => eprintln!("{what}: {why}"),
@@ -381,10 +382,10 @@ fn mistakes_in_masks_are_caught() {
 fn the_tier_strict_takes_masks_unless_something_masked_is_cut() {
     let Some(mut renderer) = renderer() else { return };
     let (scene, [(_, outside), (_, inside)]) = crowns([96, 72]);
-    let strict = Accuracy { tier: Tier::Strict, ..Accuracy::default() };
+    let strict = AccuracyRequest { tier: Tier::Strict, ..AccuracyRequest::default() };
     let (capture, _) = exact(&mut renderer, &scene, &outside, &stack(&["lambert"]), &strict, "strict");
-    let (owners, keys) = oracle::strict_frame(&scene, &outside, &stack(&["lambert"])).expect("it fits");
-    assert_eq!((capture.frame.owner, capture.frame.key), (owners, keys));
+    let (triangle_ids, keys) = oracle::strict_frame(&scene, &outside, &stack(&["lambert"])).expect("it fits");
+    assert_eq!((capture.frame.triangle_id, capture.frame.key), (triangle_ids, keys));
     renderer.set_scene(&scene).expect("it fits");
     let error = renderer.draw(&inside, &stack(&["lambert"]), &strict).expect_err("a cut leaf").to_string();
     assert!(error.contains("the mask of a triangle that is cut is placed in floats"), "{error}");
@@ -404,7 +405,7 @@ fn a_scene_of_plain_colours_has_no_texture_and_no_word_of_one() {
         for pass in plain.frame() {
             let root = format!("passes/{}", pass.stem());
             let linked = link::link(&Library::Embedded, &root, &plain, &plain.slots(pass)).expect("every file is there");
-            for trace in ["texture", "Lookup", "Slopes", "least_alpha", "fn mask_alpha"] {
+            for trace in ["texture", "Lookup", "Slopes", "alpha_threshold", "fn mask_alpha"] {
                 assert!(!linked.text.contains(trace), "{}: {trace}", pass.label());
             }
         }
@@ -414,7 +415,7 @@ fn a_scene_of_plain_colours_has_no_texture_and_no_word_of_one() {
             link::link(&Library::Embedded, &root, key, &key.slots(pass)).expect("every file is there").text
         };
         // What a mask adds are a texture and records behind the vertices; storage buffers stay within the portable eight.
-        let masked = KernelKey { has_mask: true, decisions: painted.decisions + key::MASK_RECORDS, ..painted.clone() };
+        let masked = KernelKey { has_mask: true, sample_setups: painted.sample_setups + key::MASK_RECORDS, ..painted.clone() };
         for pass in masked.frame() {
             assert!(!text(&painted, pass).contains("mask_alpha"), "{}", pass.label());
             let root = format!("passes/{}", pass.stem());
@@ -640,16 +641,16 @@ fn samplers_keep_their_wraps_and_filters() {
     assert_eq!(plain, Texture::plain(0));
     let all = Model::new().with("/samplers/0", json!({ "wrapS": 33648, "wrapT": 33071, "magFilter": 9728, "minFilter": 9985 })).texture();
     let wrap = [Wrap::Mirrored, Wrap::Clamp];
-    assert_eq!(all, Texture { wrap, magnified: Filter::Nearest, minified: Filter::Linear, copies: Copies::Nearest, ..plain });
-    for (filter, minified, copies) in [
-        (9728, Filter::Nearest, Copies::Unused),
-        (9729, Filter::Linear, Copies::Unused),
-        (9984, Filter::Nearest, Copies::Nearest),
-        (9986, Filter::Nearest, Copies::Mixed),
-        (9987, Filter::Linear, Copies::Mixed),
+    assert_eq!(all, Texture { wrap, mag_filter: Filter::Nearest, min_filter: Filter::Linear, mip_filter: MipFilter::Nearest, ..plain });
+    for (filter, min_filter, mip_filter) in [
+        (9728, Filter::Nearest, MipFilter::Unused),
+        (9729, Filter::Linear, MipFilter::Unused),
+        (9984, Filter::Nearest, MipFilter::Nearest),
+        (9986, Filter::Nearest, MipFilter::Mixed),
+        (9987, Filter::Linear, MipFilter::Mixed),
     ] {
         let texture = Model::new().with("/samplers/0/minFilter", json!(filter)).texture();
-        assert_eq!((texture.minified, texture.copies), (minified, copies), "{filter}");
+        assert_eq!((texture.min_filter, texture.mip_filter), (min_filter, mip_filter), "{filter}");
     }
     assert_eq!(Model::new().with("/textures/0", json!({ "source": 0 })).texture(), plain, "no sampler");
 }
@@ -669,7 +670,7 @@ fn transforms_scale_turn_and_move_and_may_name_another_set() {
         let place = texture.placed(stored.into());
         assert!(place.abs_diff_eq(placed.into(), 1e-6), "{stored:?}: {place}");
     }
-    assert_eq!(model.scene().primitives[0].coords[0].map(|coords| coords.normalized), Some(true));
+    assert_eq!(model.scene().primitives[0].texcoords[0].map(|texcoords| texcoords.normalized), Some(true));
     let named = Model::new().with(&format!("{BASE}/texCoord"), json!(0));
     assert_eq!(named.texture(), Texture::plain(0));
 }
@@ -683,9 +684,9 @@ fn coordinates_come_in_every_width_of_the_standard_and_quantized_ones_where_the_
     ];
     for (component, normalized, bytes) in sets {
         let mut model = Model::new();
-        let coords = model.accessor(&bytes, component, "VEC2", 4);
-        model.json["accessors"][coords]["normalized"] = json!(normalized);
-        let mut model = model.with("/meshes/0/primitives/0/attributes/TEXCOORD_0", json!(coords));
+        let texcoords = model.accessor(&bytes, component, "VEC2", 4);
+        model.json["accessors"][texcoords]["normalized"] = json!(normalized);
+        let mut model = model.with("/meshes/0/primitives/0/attributes/TEXCOORD_0", json!(texcoords));
         if component == I16 {
             model.refused("mesh \"X\" primitive 0 TEXCOORD_0: accessor 3 has a type that glTF does not allow here (2 x I16)");
             model = model
@@ -693,8 +694,8 @@ fn coordinates_come_in_every_width_of_the_standard_and_quantized_ones_where_the_
                 .with("/extensionsUsed", json!(["KHR_mesh_quantization"]));
         }
         let scene = model.scene();
-        let coords = scene.primitives[0].coords[0].expect("coordinates");
-        let corner = |vertex| [0, 1].map(|lane| coords.value(&scene.vertex_bytes, vertex, lane));
+        let texcoords = scene.primitives[0].texcoords[0].expect("coordinates");
+        let corner = |vertex| [0, 1].map(|lane| texcoords.value(&scene.vertex_bytes, vertex, lane));
         assert_eq!([0, 1, 2, 3].map(corner), [[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]], "{component}");
     }
 }
@@ -714,25 +715,27 @@ fn materials_shine_and_stay_unlit_as_the_file_says() {
 #[test]
 fn alpha_modes_say_what_is_cut_out() {
     let with_mode = |mode: &str| Model::new().with("/materials/0/alphaMode", json!(mode));
-    assert_eq!(Model::new().material().cutoff, None, "an opaque material ignores alpha");
-    assert_eq!(with_mode("MASK").material().cutoff, Some(0.5));
+    assert_eq!(Model::new().material().alpha_cutoff, None, "an opaque material ignores alpha");
+    assert_eq!(with_mode("MASK").material().alpha_cutoff, Some(0.5));
     let faint = with_mode("MASK")
         .with("/materials/0/alphaCutoff", json!(0.25))
         .with("/materials/0/pbrMetallicRoughness/baseColorFactor", json!([1, 1, 1, 0.5]));
     let faint = faint.material();
-    assert_eq!((faint.cutoff, faint.base_color[3]), (Some(0.5), 1.0), "what is left is opaque");
-    assert_eq!(with_mode("MASK").with("/materials/0/alphaCutoff", json!(0)).material().cutoff, None);
+    assert_eq!((faint.alpha_cutoff, faint.base_color[3]), (Some(0.5), 1.0), "what is left is opaque");
+    assert_eq!(with_mode("MASK").with("/materials/0/alphaCutoff", json!(0)).material().alpha_cutoff, None);
     with_mode("MASK")
         .with("/materials/0/alphaCutoff", json!(-0.1))
         .refused("material \"paper\": alphaCutoff -0.1 is not a number from 0 up");
     with_mode("TRANSLUCENT").refused("alphaMode");
 
     let blended = with_mode("BLEND").scene();
-    assert_eq!(blended.materials[0].cutoff, Some(0.5), "its image has a texel of 100 of 255");
+    assert_eq!(blended.materials[0].alpha_cutoff, Some(0.5), "its image has a texel of 100 of 255");
     let note = "material \"paper\": blending is not drawn; it is cut out where its alpha is below one half";
     assert!(blended.notes.iter().any(|given| given == note), "{:?}", blended.notes);
     let solid = with_mode("BLEND").showing(&encoded(ImageFormat::Jpeg)).scene();
-    assert!(solid.materials[0].cutoff.is_none() && solid.notes.iter().any(|note| note.ends_with("blending is not drawn; it is opaque")));
+    assert!(
+        solid.materials[0].alpha_cutoff.is_none() && solid.notes.iter().any(|note| note.ends_with("blending is not drawn; it is opaque"))
+    );
 
     let plain = |alpha: f64| {
         let model = with_mode("MASK").with("/materials/0/pbrMetallicRoughness", json!({ "baseColorFactor": [1, 1, 1, alpha] }));
@@ -828,12 +831,12 @@ fn coordinates_that_do_not_fit_are_refused_by_name() {
         ([0.0, 0.0, 1e6, 0.0, 1.0, 1.0, 0.0, 1.0], "vertex 1 lies at 1000000 0 of the image, which is followed to 65536 repeats"),
     ] {
         let mut model = Model::new();
-        let coords = model.accessor(&floats(&values), F32, "VEC2", 4);
-        model.with("/meshes/0/primitives/0/attributes/TEXCOORD_0", json!(coords)).refused(&format!("{place}{sentence}"));
+        let texcoords = model.accessor(&floats(&values), F32, "VEC2", 4);
+        model.with("/meshes/0/primitives/0/attributes/TEXCOORD_0", json!(texcoords)).refused(&format!("{place}{sentence}"));
     }
     let mut short = Model::new();
-    let coords = short.accessor(&floats(&[0.0; 6]), F32, "VEC2", 3);
-    short.with("/meshes/0/primitives/0/attributes/TEXCOORD_0", json!(coords)).refused("accessor 3 has 3 elements for 4 vertices");
+    let texcoords = short.accessor(&floats(&[0.0; 6]), F32, "VEC2", 3);
+    short.with("/meshes/0/primitives/0/attributes/TEXCOORD_0", json!(texcoords)).refused("accessor 3 has 3 elements for 4 vertices");
     Model::new().with("/accessors/1/type", json!("SCALAR")).refused(place);
     Model::new().with("/accessors/1/componentType", json!(U16)).refused(place);
 }
@@ -880,7 +883,10 @@ fn textured_boxes_of_the_corpus_show_their_image() {
         assert!(colors.len() > 100, "{file} shows {} colours", colors.len());
         pictures.push(frame.color);
     }
-    assert!(pictures.iter().all(|picture| compare::pictures(picture, &pictures[0], 0).pixels_beyond == 0), "three ways to store one box");
+    assert!(
+        pictures.iter().all(|picture| compare::pictures(picture, &pictures[0], 0).pixels_over_tolerance == 0),
+        "three ways to store one box"
+    );
 }
 
 // ---------------------------------------------------------------- the validator of the standard
@@ -974,7 +980,7 @@ fn what_we_accept_the_validator_accepts_and_the_malformed_are_refused_by_both() 
 fn malformed() -> Vec<(&'static str, Model)> {
     let at = |place: &str, value: Value| Model::new().with(place, value);
     let mut not_finite = Model::new();
-    let coords = not_finite.accessor(&floats(&[0.0, 0.0, f32::NAN, 0.0, 1.0, 1.0, 0.0, 1.0]), F32, "VEC2", 4);
+    let texcoords = not_finite.accessor(&floats(&[0.0, 0.0, f32::NAN, 0.0, 1.0, 1.0, 0.0, 1.0]), F32, "VEC2", 4);
     let mut few = Model::new();
     let three = few.accessor(&floats(&[0.0; 6]), F32, "VEC2", 3);
     let set = "/meshes/0/primitives/0/attributes/TEXCOORD_0";
@@ -987,7 +993,7 @@ fn malformed() -> Vec<(&'static str, Model)> {
         ("a view beyond its buffer", at("/bufferViews/3/byteLength", json!(100_000))),
         ("no coordinates", at("/meshes/0/primitives/0/attributes", json!({ "POSITION": 0 }))),
         ("coordinates of one lane", at("/accessors/1/type", json!("SCALAR"))),
-        ("coordinates that are no numbers", not_finite.with(set, json!(coords))),
+        ("coordinates that are no numbers", not_finite.with(set, json!(texcoords))),
         ("fewer coordinates than vertices", few.with(set, json!(three))),
         ("a negative cutoff", at("/materials/0/alphaMode", json!("MASK")).with("/materials/0/alphaCutoff", json!(-1))),
     ]
@@ -1014,10 +1020,10 @@ fn cameras_of_a_file_are_chosen_by_name_and_go_with_their_nodes() {
     let names: Vec<&str> = scene.cameras.iter().map(|camera| camera.name.as_str()).collect();
     assert_eq!(names, ["chase", "still"]);
     let eye = |camera: &str, clip: &str, time_s: f64| {
-        let play = Play { clip: clip.into(), ..Play::default() };
-        let session = Session { scene_camera: camera.into(), play, clock: Clock { time_s, ..Clock::default() }, ..Session::default() };
-        session.check(&scene).unwrap_or_else(|error| panic!("{error}"));
-        let view = session.view(&scene, [64, 48]);
+        let play = ClipPlayback { clip: clip.into(), ..ClipPlayback::default() };
+        let preset = Preset { scene_camera: camera.into(), play, clock: Clock { time_s, ..Clock::default() }, ..Preset::default() };
+        preset.check(&scene).unwrap_or_else(|error| panic!("{error}"));
+        let view = preset.view(&scene, [64, 48]);
         (view.eye, view.forward)
     };
     assert_eq!(eye("", "", 0.5).0, DVec3::new(0.0, 1.0, 0.0), "at rest its node stands in its parent's place");
@@ -1025,9 +1031,9 @@ fn cameras_of_a_file_are_chosen_by_name_and_go_with_their_nodes() {
     assert_eq!(eye("chase", "Drive", 1.5).0, DVec3::new(3.0, 1.0, 5.0));
     assert_eq!(eye("#1", "Drive", 1.5).0, DVec3::new(0.0, 0.0, 9.0));
     assert_eq!(eye("still", "", 0.0).0, DVec3::new(0.0, 0.0, 9.0));
-    let lost = Session { scene_camera: "crane".into(), ..Session::default() };
+    let lost = Preset { scene_camera: "crane".into(), ..Preset::default() };
     assert_eq!(lost.check(&scene).unwrap_err().to_string(), "scene.camera: the scene has no camera \"crane\"; it has \"chase\", \"still\"");
     let own = Camera { eye: DVec3::splat(7.0), ..Camera::default() };
-    let own = Session { scene_camera: "still".into(), camera: Some(own), ..Session::default() };
-    assert_eq!(own.view(&scene, [64, 48]).eye, DVec3::splat(7.0), "a look's own camera comes first");
+    let own = Preset { scene_camera: "still".into(), camera: Some(own), ..Preset::default() };
+    assert_eq!(own.view(&scene, [64, 48]).eye, DVec3::splat(7.0), "a preset's own camera comes first");
 }

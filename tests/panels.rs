@@ -12,12 +12,12 @@ use std::{
 use eframe::egui::{self, Key, Modifiers, Pos2, Rect, Role, vec2};
 use egui_kittest::{Harness, Node, kittest::Queryable as _};
 use rasterlab::{
+    accuracy::DepthFormat,
     app::{App, Options, wgpu_setup},
     gpu::device::AdapterChoice,
-    ladder::Depth,
     oracle,
-    preset::{self, form::Plain},
-    session::SceneSource,
+    preset::SceneSource,
+    preset_file::{self, form::Value},
 };
 
 type Lab = Harness<'static, App>;
@@ -45,7 +45,7 @@ fn settle(lab: &mut Lab) {
     let patience = Instant::now() + Duration::from_secs(120);
     loop {
         lab.step();
-        if lab.state().is_settled() {
+        if lab.state().is_idle() {
             break;
         }
         assert!(Instant::now() < patience, "the window does not come to rest\n{}", lab.state().log_text());
@@ -99,18 +99,18 @@ fn click(lab: &mut Lab, role: Role, label: &str) {
 
 /// A parameter of an enabled effect.
 fn value(lab: &Lab, effect: &str, field: &str) -> Vec<f64> {
-    let enabled = lab.state().look().session.stack.get(effect).unwrap_or_else(|| panic!("{effect} is not enabled"));
+    let enabled = lab.state().preset_file().preset.stack.get(effect).unwrap_or_else(|| panic!("{effect} is not enabled"));
     enabled.effect.field(field).expect("a field of the effect").get(&enabled.words)
 }
 
-/// The lab with `text` as its look.
+/// The lab with `text` as its preset.
 fn lab_of(folder: &Path, text: &str) -> Option<Lab> {
     let path = folder.join("mine.toml");
     std::fs::write(&path, text).expect("a file");
     lab(&path.to_string_lossy())
 }
 
-/// A look whose facets rise and fall, and jump.
+/// A preset whose facets rise and fall, and jump.
 const MOVING: &str = "schema = 1\n[scene]\nbuiltin = \"knot?tess=4\"\n[effects.facet]\n[effects.lambert]\n[animation.facet]\n\
     amount = [{ time_s = 0.0, value = 0.0 }, { time_s = 1.0, value = 1.0 }, { time_s = 3.0, value = 0.25 }]\n\
     pattern = [{ time_s = 0.5, value = \"sweep\" }, { time_s = 2.0, value = \"uniform\" }]\n\
@@ -118,13 +118,13 @@ const MOVING: &str = "schema = 1\n[scene]\nbuiltin = \"knot?tess=4\"\n[effects.f
 
 /// A parameter of an enabled effect, at the time that is shown.
 fn shown(lab: &Lab, effect: &str, field: &str) -> Vec<f64> {
-    let stack = lab.state().look().session.stack_at(lab.state().shown_time_s());
+    let stack = lab.state().preset_file().preset.stack_at(lab.state().shown_time_s());
     let enabled = stack.get(effect).unwrap_or_else(|| panic!("{effect} is not enabled"));
     enabled.effect.field(field).expect("a field of the effect").get(&enabled.words)
 }
 
 fn key_times(lab: &Lab, effect: &str, field: &str) -> Vec<f64> {
-    let track = lab.state().look().session.animation.get(effect, field);
+    let track = lab.state().preset_file().preset.animation.get(effect, field);
     track.map_or(Vec::new(), |track| track.keys().iter().map(|key| key.time_s).collect())
 }
 
@@ -186,7 +186,7 @@ fn a_reset_of_an_animated_value_takes_its_keys() {
     let default = value(&lab, "lambert", "headlight");
     click(&mut lab, Role::Button, "Animate lambert.headlight");
     click(&mut lab, Role::Button, "Reset lambert.headlight");
-    assert!(lab.state().look().session.animation.is_empty());
+    assert!(lab.state().preset_file().preset.animation.is_empty());
     assert_eq!(value(&lab, "lambert", "headlight"), default);
     undo(&mut lab);
     assert_eq!(key_times(&lab, "lambert", "headlight"), [0.0]);
@@ -218,14 +218,14 @@ fn a_selected_key_is_eased_and_removed() {
     assert_eq!(lab.state().shown_time_s(), 1.0, "a click goes there");
     click(&mut lab, Role::ComboBox, "Key easing");
     click(&mut lab, Role::Button, "linear");
-    let easing = |lab: &Lab| lab.state().look().session.animation.get("facet", "amount").expect("a track").keys()[1].easing;
-    assert_eq!(easing(&lab), rasterlab::session::animation::Easing::Linear);
+    let easing = |lab: &Lab| lab.state().preset_file().preset.animation.get("facet", "amount").expect("a track").keys()[1].easing;
+    assert_eq!(easing(&lab), rasterlab::preset::animation::Easing::Linear);
     press(&mut lab, Modifiers::NONE, Key::Delete);
     assert_eq!(key_times(&lab, "facet", "amount"), [0.0, 3.0]);
     assert_eq!(lab.state().undo_steps(), 2);
     undo(&mut lab);
     undo(&mut lab);
-    assert_eq!(easing(&lab), rasterlab::session::animation::Easing::Smooth);
+    assert_eq!(easing(&lab), rasterlab::preset::animation::Easing::Smooth);
 }
 
 #[test]
@@ -233,7 +233,7 @@ fn play_runs_loops_and_pauses() {
     let folder = tempfile::tempdir().expect("a temporary folder");
     let text = format!("{MOVING}[clock]\ntime_s = 0.5\nrange_s = [0.25, 1.25]\n");
     let Some(mut lab) = lab_of(folder.path(), &text) else { return };
-    let session = lab.state().look().session.clone();
+    let preset = lab.state().preset_file().preset.clone();
     let draws = lab.state().draws();
     lab.key_press(Key::Space);
     let mut times = Vec::new();
@@ -249,7 +249,7 @@ fn play_runs_loops_and_pauses() {
     lab.run_steps(10);
     assert_eq!((lab.state().shown_time_s(), lab.state().draws()), (paused_s, draws));
     assert_eq!(lab.output().viewport_output[&egui::ViewportId::ROOT].repaint_delay, Duration::MAX, "{:?}", lab.ctx.repaint_causes());
-    assert_eq!((&lab.state().look().session, lab.state().undo_steps()), (&session, 0), "playing changes no look");
+    assert_eq!((&lab.state().preset_file().preset, lab.state().undo_steps()), (&preset, 0), "playing changes no preset");
 }
 
 #[test]
@@ -257,7 +257,7 @@ fn play_without_loop_stops_at_the_end() {
     let folder = tempfile::tempdir().expect("a temporary folder");
     let Some(mut lab) = lab_of(folder.path(), &format!("{MOVING}[clock]\nrange_s = [0.0, 0.5]\n")) else { return };
     click(&mut lab, Role::CheckBox, "Loop");
-    assert_eq!(lab.state().undo_steps(), 1, "whether a look loops belongs to it");
+    assert_eq!(lab.state().undo_steps(), 1, "whether a preset loops belongs to it");
     lab.key_press(Key::Space);
     lab.run_steps(20);
     settle(&mut lab);
@@ -275,10 +275,10 @@ fn time_is_stepped_by_frames_and_kept_on_request() {
         assert!((lab.state().shown_time_s() - wanted / 30.0).abs() < 1e-9, "{} s", lab.state().shown_time_s());
     }
     scrub(&mut lab, 0.1, 0.5);
-    assert_eq!((lab.state().look().session.clock.time_s, lab.state().undo_steps()), (0.0, 0));
+    assert_eq!((lab.state().preset_file().preset.clock.time_s, lab.state().undo_steps()), (0.0, 0));
     let time_s = lab.state().shown_time_s();
     click(&mut lab, Role::Button, "Keep");
-    assert_eq!((lab.state().look().session.clock.time_s, lab.state().undo_steps()), (time_s, 1));
+    assert_eq!((lab.state().preset_file().preset.clock.time_s, lab.state().undo_steps()), (time_s, 1));
     press(&mut lab, Modifiers::NONE, Key::Num0);
     assert_eq!(lab.state().shown_time_s(), 0.0);
 }
@@ -291,11 +291,11 @@ fn the_window_shows_the_picture_of_the_moment() {
     lab.remove_cursor();
     settle(&mut lab);
     let seen = picture(&mut lab);
-    let mut session = lab.state().look().session.clone();
-    session.clock.time_s = lab.state().shown_time_s();
-    let scene = preset::load_scene(&session, None).expect("a built-in scene");
+    let mut preset = lab.state().preset_file().preset.clone();
+    preset.clock.time_s = lab.state().shown_time_s();
+    let scene = preset_file::load_scene(&preset, None).expect("a built-in scene");
     let view = lab.state().view([seen.width(), seen.height()]).expect("a scene on stage");
-    let expected = oracle::render(&scene, &view, &session.posed_stack()).expect("a picture");
+    let expected = oracle::render(&scene, &view, &preset.evaluated_stack()).expect("a picture");
     let pairs = seen.pixels().zip(&expected.color).skip((seen.width() * 48) as usize);
     let wrong = pairs.filter(|(a, b)| a.0.iter().zip(*b).any(|(a, b)| a.abs_diff(*b) > 1)).count();
     assert!(wrong <= 24, "{wrong} of {} pixels differ by more than 1", expected.color.len());
@@ -348,8 +348,8 @@ fn a_dropped_model_is_shown_and_undo_brings_the_look_back() {
     let Some(mut lab) = lab("lambert") else { return };
     let draws = lab.state().draws();
     drop_files(&mut lab, &[&model]);
-    assert_eq!(lab.state().look().session.scene, SceneSource::File(model.clone()));
-    assert_eq!(lab.state().look().title(), "tri");
+    assert_eq!(lab.state().preset_file().preset.scene, SceneSource::File(model.clone()));
+    assert_eq!(lab.state().preset_file().title(), "tri");
     assert!(lab.state().draws() > draws);
     let seen = picture(&mut lab);
     let background = *seen.get_pixel(seen.width() / 2, seen.height() - 20);
@@ -357,7 +357,7 @@ fn a_dropped_model_is_shown_and_undo_brings_the_look_back() {
     assert!(triangle > 10_000, "only {triangle} pixels show a triangle");
     assert!(!lab.state().log_text().contains("error"), "{}", lab.state().log_text());
     undo(&mut lab);
-    assert_eq!(lab.state().look().id, "lambert");
+    assert_eq!(lab.state().preset_file().id, "lambert");
 }
 
 #[test]
@@ -375,7 +375,7 @@ fn a_dropped_file_that_is_malformed_keeps_the_picture_and_is_one_sentence() {
         write("cut.glb", &glb[..glb.len() - 9]),
         write("text.glb", b"no model at all"),
         write("bad.toml", b"schema = 1\n[effects.facet]\namount = 7\n"),
-        write("bare.png", &preset::png_bytes(&[[0; 4]], [1, 1]).expect("a picture")),
+        write("bare.png", &preset_file::png_bytes(&[[0; 4]], [1, 1]).expect("a picture")),
         write("notes.txt", b"hello"),
         folder.path().join("absent.glb"),
     ];
@@ -403,16 +403,17 @@ fn dropped_looks_and_pictures_of_ours_are_opened() {
     let toml = folder.path().join("moving.toml");
     std::fs::write(&toml, MOVING).expect("a file");
     drop_files(&mut lab, &[&toml]);
-    assert_eq!((lab.state().look().id.as_str(), lab.state().look().session.animation.tracks().len()), ("moving", 3));
+    assert_eq!((lab.state().preset_file().id.as_str(), lab.state().preset_file().preset.animation.tracks().len()), ("moving", 3));
     let png = folder.path().join("shot.png");
-    let look = preset::open("facet-knot", None).expect("a built-in look");
+    let preset_file = preset_file::open("facet-knot", None).expect("a built-in preset");
     let frame = rasterlab::frame::Frame { width: 1, height: 1, color: vec![[9; 4]], ..Default::default() };
-    std::fs::write(&png, preset::png_with_look(&frame, &look, &preset::Provenance::default()).expect("a picture")).expect("a file");
+    std::fs::write(&png, preset_file::png_with_preset(&frame, &preset_file, &preset_file::Provenance::default()).expect("a picture"))
+        .expect("a file");
     drop_files(&mut lab, &[&png]);
-    assert_eq!(lab.state().look().session, look.session);
-    // A model with its textures, and a look among others: one is opened, and that is said.
+    assert_eq!(lab.state().preset_file().preset, preset_file.preset);
+    // A model with its textures, and a preset among others: one is opened, and that is said.
     drop_files(&mut lab, &[&png, Path::new("/nowhere/readme.txt"), &toml]);
-    assert_eq!(lab.state().look().id, "moving");
+    assert_eq!(lab.state().preset_file().id, "moving");
     assert!(lab.state().log_text().contains("3 files were dropped and one is opened at a time: moving.toml"));
     assert_eq!(error_lines(&lab), [""; 0]);
     assert_eq!(lab.state().undo_steps(), 3);
@@ -421,7 +422,7 @@ fn dropped_looks_and_pictures_of_ours_are_opened() {
 #[test]
 fn every_widget_of_every_folder_and_dialog_has_a_name() {
     let Some(mut lab) = lab("facet-sweep") else { return };
-    for folder in ["Camera", "Clock", "Kernel", "Look"] {
+    for folder in ["Camera", "Clock", "Kernel", "PresetFile"] {
         lab.get_by_label(folder).click();
         lab.run_steps(2);
     }
@@ -462,14 +463,14 @@ fn a_slider_drag_is_one_undo_step() {
 #[test]
 fn orbiting_is_one_undo_step_and_gives_the_look_a_camera() {
     let Some(mut lab) = lab("lambert") else { return };
-    let before = lab.state().look().session.camera;
+    let before = lab.state().preset_file().preset.camera;
     let view = lab.get_by_label("Picture").rect();
     drag(&mut lab, view.center(), view.center() + vec2(120.0, 40.0));
-    let after = lab.state().look().session.camera;
+    let after = lab.state().preset_file().preset.camera;
     assert!(after.is_some() && after != before);
     assert_eq!(lab.state().undo_steps(), 1);
     undo(&mut lab);
-    assert_eq!(lab.state().look().session.camera, before);
+    assert_eq!(lab.state().preset_file().preset.camera, before);
 }
 
 #[test]
@@ -491,33 +492,33 @@ fn a_wheel_burst_is_one_undo_step() {
     lab.run_steps(4);
     settle(&mut lab);
     assert_eq!(lab.state().undo_steps(), 1);
-    assert!(lab.state().look().session.camera.is_some());
+    assert!(lab.state().preset_file().preset.camera.is_some());
 }
 
 #[test]
 fn undo_of_a_look_brings_its_name_back() {
     let Some(mut lab) = lab("lambert") else { return };
-    let (id, session) = (lab.state().look().id.clone(), lab.state().look().session.clone());
+    let (id, preset) = (lab.state().preset_file().id.clone(), lab.state().preset_file().preset.clone());
     lab.get_by_label("Look Cut knot").scroll_to_me();
     lab.run_steps(20);
     click(&mut lab, Role::Button, "Look Cut knot");
-    assert_eq!(lab.state().look().id, "facet-knot");
+    assert_eq!(lab.state().preset_file().id, "facet-knot");
     assert_eq!(lab.state().undo_steps(), 1);
     undo(&mut lab);
-    assert_eq!((&lab.state().look().id, &lab.state().look().session), (&id, &session));
-    assert!(!lab.state().look().is_modified());
+    assert_eq!((&lab.state().preset_file().id, &lab.state().preset_file().preset), (&id, &preset));
+    assert!(!lab.state().preset_file().is_modified());
 }
 
 #[test]
 fn brackets_walk_through_the_gallery() {
     let Some(mut lab) = lab("lambert") else { return };
-    let ids: Vec<String> = preset::gallery(None).into_iter().map(|entry| entry.id).collect();
-    let here = ids.iter().position(|id| id == "lambert").expect("a look of the gallery");
+    let ids: Vec<String> = preset_file::gallery(None).into_iter().map(|entry| entry.id).collect();
+    let here = ids.iter().position(|id| id == "lambert").expect("a preset of the gallery");
     press(&mut lab, Modifiers::NONE, Key::CloseBracket);
-    assert_eq!(lab.state().look().id, ids[here + 1]);
+    assert_eq!(lab.state().preset_file().id, ids[here + 1]);
     press(&mut lab, Modifiers::NONE, Key::OpenBracket);
     press(&mut lab, Modifiers::NONE, Key::OpenBracket);
-    assert_eq!(lab.state().look().id, ids[here - 1]);
+    assert_eq!(lab.state().preset_file().id, ids[here - 1]);
 }
 
 #[test]
@@ -548,10 +549,10 @@ fn a_changed_value_has_a_reset_button_that_leads_to_its_default() {
 #[test]
 fn muting_changes_the_picture_and_not_the_look() {
     let Some(mut lab) = lab("lambert") else { return };
-    let (session, draws) = (lab.state().look().session.clone(), lab.state().draws());
+    let (preset, draws) = (lab.state().preset_file().preset.clone(), lab.state().draws());
     click(&mut lab, Role::Button, "Mute lambert");
     assert!(lab.state().draws() > draws);
-    assert_eq!(lab.state().look().session, session);
+    assert_eq!(lab.state().preset_file().preset, preset);
     assert_eq!(lab.state().undo_steps(), 0);
 }
 
@@ -575,7 +576,7 @@ fn an_idle_window_neither_draws_nor_asks_to_be_shown_again() {
 fn a_scene_that_cannot_be_loaded_keeps_the_last_picture_and_is_reported_once() {
     let Some(mut lab) = lab("lambert") else { return };
     let draws = lab.state().draws();
-    lab.state_mut().session_mut().scene = SceneSource::Builtin("no-such-scene".into());
+    lab.state_mut().preset_mut().scene = SceneSource::Builtin("no-such-scene".into());
     lab.run_steps(3);
     settle(&mut lab);
     lab.run_steps(10);
@@ -585,14 +586,14 @@ fn a_scene_that_cannot_be_loaded_keeps_the_last_picture_and_is_reported_once() {
     let reports: Vec<_> = log.lines().filter(|line| line.contains("no-such-scene")).collect();
     assert!(matches!(reports[..], [one] if !one.contains('×')), "{log}");
     undo(&mut lab);
-    assert_eq!(lab.state().look().session.scene, preset::open("lambert", None).unwrap().session.scene);
+    assert_eq!(lab.state().preset_file().preset.scene, preset_file::open("lambert", None).unwrap().preset.scene);
 }
 
 #[test]
 fn a_picture_that_cannot_be_drawn_keeps_the_last_one_and_is_reported_once() {
     let Some(mut lab) = lab("lambert") else { return };
     let before = picture(&mut lab);
-    lab.state_mut().session_mut().camera = Some(rasterlab::scene::camera::Camera { eye: glam::DVec3::splat(1e13), ..Default::default() });
+    lab.state_mut().preset_mut().camera = Some(rasterlab::scene::camera::Camera { eye: glam::DVec3::splat(1e13), ..Default::default() });
     lab.run_steps(10);
     let log = lab.state().log_text();
     assert_eq!(log.lines().filter(|line| line.starts_with("error")).count(), 1, "{log}");
@@ -611,15 +612,15 @@ fn saving_writes_a_file_that_loads_equal() {
     drag(&mut lab, rail.right_center() - vec2(8.0, 0.0), rail.center());
     let view = lab.get_by_label("Picture").rect();
     drag(&mut lab, view.center(), view.center() + vec2(33.0, 12.0));
-    assert!(lab.state().look().is_modified());
+    assert!(lab.state().preset_file().is_modified());
     press(&mut lab, Modifiers::COMMAND, Key::S); // Built in, so this asks for a name.
     press(&mut lab, Modifiers::NONE, Key::Enter);
     let path = folder.path().join("my-teapot.toml");
-    let loaded = preset::load(&path).unwrap_or_else(|error| panic!("{error}\n{}", lab.state().log_text()));
-    assert_eq!(loaded.session, lab.state().look().session);
-    assert!(loaded.warnings.is_empty() && !lab.state().look().is_modified());
-    assert_eq!(lab.state().look().id, "my-teapot");
-    assert_eq!(lab.query_all_by_label("Look Teapot").count(), 2, "the gallery shows the new look beside the built-in one");
+    let loaded = preset_file::load(&path).unwrap_or_else(|error| panic!("{error}\n{}", lab.state().log_text()));
+    assert_eq!(loaded.preset, lab.state().preset_file().preset);
+    assert!(loaded.warnings.is_empty() && !lab.state().preset_file().is_modified());
+    assert_eq!(lab.state().preset_file().id, "my-teapot");
+    assert_eq!(lab.query_all_by_label("Look Teapot").count(), 2, "the gallery shows the new preset beside the built-in one");
 }
 
 #[test]
@@ -643,7 +644,7 @@ fn an_exported_picture_carries_its_look() {
         std::thread::sleep(Duration::from_millis(10));
     }
     let png = std::fs::read(&path).expect("the picture");
-    assert_eq!(preset::look_from_png(&png, "shot.png").expect("a look inside").session, lab.state().look().session);
+    assert_eq!(preset_file::preset_from_png(&png, "shot.png").expect("a preset inside").preset, lab.state().preset_file().preset);
     let view = lab.get_by_label("Picture").rect();
     let decoded = image::load_from_memory(&png).expect("a PNG");
     assert_eq!([decoded.width(), decoded.height()], [view.width().round() as u32, view.height().round() as u32]);
@@ -653,26 +654,26 @@ fn an_exported_picture_carries_its_look() {
 fn undo_after_saving_is_an_unsaved_change_again() {
     let folder = tempfile::tempdir().expect("a temporary folder");
     let path = folder.path().join("mine.toml");
-    let mut look = preset::open("lambert", None).expect("a built-in look");
-    preset::save(&mut look, &path).expect("a file");
+    let mut preset_file = preset_file::open("lambert", None).expect("a built-in preset");
+    preset_file::save(&mut preset_file, &path).expect("a file");
     let Some(mut lab) = lab_in(&path.to_string_lossy(), Some(folder.path())) else { return };
     click(&mut lab, Role::CheckBox, "facet");
     press(&mut lab, Modifiers::COMMAND, Key::S);
-    assert!(!lab.state().look().is_modified());
+    assert!(!lab.state().preset_file().is_modified());
     undo(&mut lab);
-    assert!(lab.state().look().is_modified(), "the file has the facets, the look has not");
+    assert!(lab.state().preset_file().is_modified(), "the file has the facets, the preset has not");
     press(&mut lab, Modifiers::COMMAND, Key::S);
-    assert!(preset::load(&path).expect("a look").session.stack.get("facet").is_none());
+    assert!(preset_file::load(&path).expect("a preset").preset.stack.get("facet").is_none());
 }
 
 #[test]
 fn the_window_shows_the_picture_of_the_oracle() {
     let Some(mut lab) = lab("facet-sweep") else { return };
     let shown = picture(&mut lab);
-    let session = lab.state().look().session.clone();
-    let scene = preset::load_scene(&session, None).expect("a built-in scene");
+    let preset = lab.state().preset_file().preset.clone();
+    let scene = preset_file::load_scene(&preset, None).expect("a built-in scene");
     let view = lab.state().view([shown.width(), shown.height()]).expect("a scene on stage");
-    let expected = oracle::render(&scene, &view, &session.posed_stack()).expect("a picture");
+    let expected = oracle::render(&scene, &view, &preset.evaluated_stack()).expect("a picture");
     // The buttons lie over the top of it.
     let pairs = shown.pixels().zip(&expected.color).skip((shown.width() * 48) as usize);
     let wrong = pairs.filter(|(a, b)| a.0.iter().zip(*b).any(|(a, b)| a.abs_diff(*b) > 1)).count();
@@ -687,9 +688,9 @@ fn verify_measures_the_picture_and_a_change_makes_the_figure_stale() {
     assert!(lab.query_by_label("error not measured").is_some());
     click(&mut lab, Role::Button, "Verify");
     let accuracy = lab.state().accuracy().cloned().expect("a verdict on the picture as it is shown");
-    assert_eq!((accuracy.owner_mismatch, accuracy.holes, accuracy.double_hits), (0, 0, 0));
-    assert!(accuracy.pixels > 100_000 && accuracy.max_colour_delta <= 2, "{accuracy:?}");
-    assert!(lab.query_all_by_label_contains("0 wrong owners").count() > 0);
+    assert_eq!((accuracy.wrong_triangles, accuracy.holes, accuracy.double_hits), (0, 0, 0));
+    assert!(accuracy.pixels > 100_000 && accuracy.max_color_delta <= 2, "{accuracy:?}");
+    assert!(lab.query_all_by_label_contains("0 wrong triangle ids").count() > 0);
     click(&mut lab, Role::Button, "Top view");
     assert!(lab.state().accuracy().is_none());
     assert!(lab.query_by_label_contains("stale").is_some());
@@ -698,7 +699,7 @@ fn verify_measures_the_picture_and_a_change_makes_the_figure_stale() {
 #[test]
 fn typing_a_number_does_not_trigger_shortcuts() {
     let Some(mut lab) = lab("lambert") else { return };
-    let camera = lab.state().look().session.camera;
+    let camera = lab.state().preset_file().preset.camera;
     let field = lab.get_by_label("lambert.headlight value");
     field.click();
     lab.run_steps(2);
@@ -710,26 +711,26 @@ fn typing_a_number_does_not_trigger_shortcuts() {
     lab.key_press(Key::Enter);
     lab.run_steps(3);
     settle(&mut lab);
-    assert_eq!(lab.state().look().session.camera, camera, "7 is the key of the top view");
+    assert_eq!(lab.state().preset_file().preset.camera, camera, "7 is the key of the top view");
     assert_eq!(value(&lab, "lambert", "headlight"), [f64::from(0.7f32)]);
 }
 
 #[test]
 fn randomize_stays_within_soft_ranges_and_is_one_undo_step() {
     let Some(mut lab) = lab("facet-sweep") else { return };
-    let before = lab.state().look().session.clone();
+    let before = lab.state().preset_file().preset.clone();
     press(&mut lab, Modifiers::NONE, Key::R);
-    let after = lab.state().look().session.clone();
+    let after = lab.state().preset_file().preset.clone();
     assert_ne!(before.stack, after.stack);
     assert!(lab.state().log_text().contains("seed 1"));
     for enabled in &after.stack.0 {
         for field in enabled.effect.fields {
-            let Plain::Numbers(lanes) = Plain::Numbers(field.get(&enabled.words)) else { unreachable!() };
+            let Value::Numbers(lanes) = Value::Numbers(field.get(&enabled.words)) else { unreachable!() };
             assert!(lanes.iter().all(|lane| (field.soft[0]..=field.soft[1]).contains(lane)), "{}.{}", enabled.effect.name, field.name);
         }
     }
     undo(&mut lab);
-    assert_eq!(lab.state().look().session, before);
+    assert_eq!(lab.state().preset_file().preset, before);
 }
 
 /// The pixels of the view, as the window shows them.
@@ -745,7 +746,7 @@ fn picture(lab: &mut Lab) -> image::RgbaImage {
 #[ignore = "run by a_lost_device_rescues_the_look_and_closes_the_window"]
 fn child_that_loses_its_device() {
     let mut lab = lab("facet-sweep").expect("the parent has an adapter");
-    lab.state_mut().session_mut().spin_deg_per_s = 12.5;
+    lab.state_mut().preset_mut().spin_deg_per_s = 12.5;
     lab.state().gpu().device.destroy();
     // The driver says so in its own time.
     let patience = Instant::now() + Duration::from_secs(60);
@@ -774,14 +775,14 @@ fn a_lost_device_rescues_the_look_and_closes_the_window() {
     let said = String::from_utf8_lossy(&child.stdout).into_owned() + &String::from_utf8_lossy(&child.stderr);
     assert!(child.status.success(), "{said}");
     let folder = if cfg!(target_os = "macos") { "Library/Application Support/rasterlab" } else { "rasterlab" };
-    let rescued = preset::load(&home.path().join(folder).join("recovery.toml")).unwrap_or_else(|error| panic!("{error}\n{said}"));
-    assert_eq!(rescued.session.spin_deg_per_s, 12.5);
+    let rescued = preset_file::load(&home.path().join(folder).join("recovery.toml")).unwrap_or_else(|error| panic!("{error}\n{said}"));
+    assert_eq!(rescued.preset.spin_deg_per_s, 12.5);
 }
 
 #[test]
 fn a_second_effect_in_a_slot_says_so_and_offers_to_take_its_place() {
     let Some(mut lab) = lab("xray") else { return };
-    let has = |lab: &Lab, name: &str| lab.state().look().session.stack.get(name).is_some();
+    let has = |lab: &Lab, name: &str| lab.state().preset_file().preset.stack.get(name).is_some();
     click(&mut lab, Role::CheckBox, "overdraw");
     assert!(has(&lab, "xray") && !has(&lab, "overdraw"), "nothing was switched");
     let sentence = "xray and overdraw both take the visibility slot of the rasterizer; switch one of them off";
@@ -856,23 +857,23 @@ fn overlays_are_laid_over_the_picture_and_counted_in_a_legend() {
     assert!(edges != plain, "the edges are to be seen");
     assert!(lab.state().accuracy().is_some(), "the picture was judged without being asked to");
     assert!(lab.query_by_label_contains("triangle edges: ").is_some(), "the legend counts them");
-    show_overlay(&mut lab, "owner ids");
+    show_overlay(&mut lab, "triangle id ids");
     let both = middle(&mut lab);
     assert!(both != edges);
     show_overlay(&mut lab, "triangle edges");
-    let owners = middle(&mut lab);
-    assert!(owners != both && owners != plain, "any subset shows");
+    let triangle_ids = middle(&mut lab);
+    assert!(triangle_ids != both && triangle_ids != plain, "any subset shows");
     press(&mut lab, Modifiers::NONE, Key::O);
     assert!(middle(&mut lab) == plain, "the key hides them all");
     press(&mut lab, Modifiers::NONE, Key::O);
-    assert!(middle(&mut lab) == owners, "and brings back what was shown");
-    assert_eq!((lab.state().draws(), lab.state().undo_steps()), (draws, 0), "overlays draw no frame and are no part of the look");
+    assert!(middle(&mut lab) == triangle_ids, "and brings back what was shown");
+    assert_eq!((lab.state().draws(), lab.state().undo_steps()), (draws, 0), "overlays draw no frame and are no part of the preset");
 }
 
 #[test]
 fn the_legend_says_that_nothing_is_wrong_where_nothing_is() {
     let Some(mut lab) = lab("facet-sweep") else { return };
-    show_overlay(&mut lab, "wrong owner");
+    show_overlay(&mut lab, "wrong triangle id");
     show_overlay(&mut lab, "holes");
     let pixels = lab.state().accuracy().expect("a verdict").pixels;
     let sentence = format!("nothing is wrong: 0 of {},{:03} pixels", pixels / 1000, pixels % 1000);
@@ -887,7 +888,7 @@ fn the_legend_says_that_nothing_is_wrong_where_nothing_is() {
 fn the_wipe_shows_the_reference_on_its_left_and_is_dragged() {
     let Some(mut lab) = lab("facet-sweep") else { return };
     let alone = middle(&mut lab);
-    let (draws, session) = (lab.state().draws(), lab.state().look().session.clone());
+    let (draws, preset) = (lab.state().draws(), lab.state().preset_file().preset.clone());
     assert!(lab.query_by_label("Wipe divider").is_none());
     press(&mut lab, Modifiers::SHIFT, Key::Backslash);
     assert_eq!(lab.state().wipe_split(), Some(0.5));
@@ -911,7 +912,7 @@ fn the_wipe_shows_the_reference_on_its_left_and_is_dragged() {
     assert!((split - 0.25).abs() < 0.02, "{split}");
     let further = middle(&mut lab);
     assert!(differing(&part(&further, width / 4 + 20, width / 2 - 20), &part(&muted, width / 4 + 20, width / 2 - 20)) > 100);
-    assert_eq!(lab.state().look().session, session, "comparing changes no look");
+    assert_eq!(lab.state().preset_file().preset, preset, "comparing changes no preset");
     assert!(lab.state().draws() > draws);
     click(&mut lab, Role::Button, "Close the comparison");
     assert_eq!(lab.state().wipe_split(), None);
@@ -935,7 +936,7 @@ fn a_key_flips_between_a_and_b_and_both_sides_are_measured() {
     press(&mut lab, Modifiers::SHIFT, Key::Backslash);
     press(&mut lab, Modifiers::NONE, Key::V);
     assert_eq!(lab.query_all_by_label("error not measured").count(), 0);
-    assert!(lab.query_all_by_label_contains("0 wrong owners").count() >= 3, "in the bar and under both sides");
+    assert!(lab.query_all_by_label_contains("0 wrong triangle ids").count() >= 3, "in the bar and under both sides");
 }
 
 /// Share of the middle of the picture that is darker than one step of 255 in every channel.
@@ -970,13 +971,13 @@ fn both_sides_stand_beside_each_other_and_their_difference_shows_what_changed() 
     assert!(black(&none) > 0.8 && black(&apart) < black(&none) - 0.05, "{} and {} black", black(&apart), black(&none));
     assert!(lab.query_by_label("A and B not compared yet").is_some());
     press(&mut lab, Modifiers::NONE, Key::V);
-    assert!(lab.query_by_label("max \u{394} 0, RMS 0.000, 0 other owners").is_some(), "{}", lab.state().log_text());
+    assert!(lab.query_by_label("max \u{394} 0, RMS 0.000, 0 other triangle ids").is_some(), "{}", lab.state().log_text());
     press(&mut lab, Modifiers::SHIFT, Key::Backslash);
     assert!(lab.query_by_label("Difference gain").is_none() && lab.query_by_label("Compare: wipe").is_none(), "it is closed");
 }
 
-fn pinned_depth(lab: &Lab) -> Option<Depth> {
-    lab.state().look().session.accuracy.pins.rung()
+fn pinned_depth(lab: &Lab) -> Option<DepthFormat> {
+    lab.state().preset_file().preset.accuracy.pins.option()
 }
 
 #[test]
@@ -984,22 +985,22 @@ fn a_measured_combination_is_a_point_and_a_click_on_it_switches_the_look_in_one_
     let Some(mut lab) = lab("facet-sweep") else { return };
     press(&mut lab, Modifiers::NONE, Key::M);
     assert!(lab.query_by_label_contains("Nothing is measured yet").is_some());
-    // The rungs of depth cost about the same, so that a slow adapter is done in time.
+    // The options of depth cost about the same, so that a slow adapter is done in time.
     for axis in ["coverage", "depth"] {
         lab.get_by_role_and_label(Role::CheckBox, &format!("Measure {axis}")).click();
         lab.run_steps(2);
     }
-    assert!(lab.query_by_label(&format!("{} combinations", Depth::ALL.len())).is_some());
+    assert!(lab.query_by_label(&format!("{} combinations", DepthFormat::ALL.len())).is_some());
     click(&mut lab, Role::Button, "Measure");
-    assert_eq!(lab.state().trade_points(), Depth::ALL.len(), "{}", lab.state().log_text());
-    assert_eq!((pinned_depth(&lab), lab.state().undo_steps()), (None, 0), "measuring changes no look");
+    assert_eq!(lab.state().sweep_points(), DepthFormat::ALL.len(), "{}", lab.state().log_text());
+    assert_eq!((pinned_depth(&lab), lab.state().undo_steps()), (None, 0), "measuring changes no preset");
     click(&mut lab, Role::Button, "Point depth=log16");
-    assert_eq!((pinned_depth(&lab), lab.state().undo_steps()), (Some(Depth::Log16), 1));
+    assert_eq!((pinned_depth(&lab), lab.state().undo_steps()), (Some(DepthFormat::Log16), 1));
     undo(&mut lab);
     assert_eq!((pinned_depth(&lab), lab.state().undo_steps()), (None, 0));
     // The table does what the plot does.
     click(&mut lab, Role::Button, "Use depth=ndc16");
-    assert_eq!((pinned_depth(&lab), lab.state().undo_steps()), (Some(Depth::Ndc16), 1));
+    assert_eq!((pinned_depth(&lab), lab.state().undo_steps()), (Some(DepthFormat::Ndc16), 1));
     // Under another metric the points stay the same.
     click(&mut lab, Role::Button, "holes and doubles");
     assert!(lab.query_by_label("Point depth=log16").is_some());
@@ -1011,7 +1012,7 @@ fn a_measured_combination_is_a_point_and_a_click_on_it_switches_the_look_in_one_
     });
     let copied = copied.expect("a table on the clipboard");
     assert!(
-        copied.starts_with("depth,ms p50,ms p95,samples,wrong pixels ppm,") && copied.lines().count() == 1 + Depth::ALL.len(),
+        copied.starts_with("depth,ms p50,ms p95,samples,wrong pixels ppm,") && copied.lines().count() == 1 + DepthFormat::ALL.len(),
         "{copied}"
     );
     // Another camera makes another picture, and the figures are not about that one.
@@ -1028,18 +1029,18 @@ fn a_measurement_is_cancelled_and_leaves_nothing_behind() {
     lab.run_steps(2);
     lab.get_by_role_and_label(Role::Button, "Measure").click();
     lab.run_steps(2);
-    assert!(!lab.state().is_settled() && lab.query_by_role_and_label(Role::Button, "Measure").is_none());
+    assert!(!lab.state().is_idle() && lab.query_by_role_and_label(Role::Button, "Measure").is_none());
     lab.get_by_role_and_label(Role::Button, "Cancel").click();
     lab.run_steps(2);
     settle(&mut lab);
-    assert_eq!((lab.state().trade_points(), error_lines(&lab).len()), (0, 0));
+    assert_eq!((lab.state().sweep_points(), error_lines(&lab).len()), (0, 0));
     assert!(lab.query_by_role_and_label(Role::Button, "Measure").is_some());
 }
 
 #[test]
 fn clips_are_chosen_held_and_blended_in_their_folder() {
     let Some(mut lab) = lab("builtin:tentacle?tess=3") else { return };
-    let play = |lab: &Lab| lab.state().look().session.play.clone();
+    let play = |lab: &Lab| lab.state().preset_file().preset.play.clone();
     let choose = |lab: &mut Lab, menu: &str, entry: &str| {
         click(lab, Role::ComboBox, menu);
         lab.get_by_role_and_label(Role::Button, entry).click();
@@ -1050,18 +1051,18 @@ fn clips_are_chosen_held_and_blended_in_their_folder() {
     assert!(lab.query_by_label("Hold the clip").is_none(), "at rest there is nothing to hold");
     choose(&mut lab, "scene.clip", "Twist");
     assert_eq!(play(&lab).clip, "Twist");
-    assert!(lab.state().look().session.is_moving());
+    assert!(lab.state().preset_file().preset.is_moving());
     choose(&mut lab, "scene.clip_b", "Sway");
     assert_eq!(play(&lab).other, "Sway");
     assert!(has_slider(&lab, "scene.blend"));
     click(&mut lab, Role::CheckBox, "Hold the clip");
-    assert!(play(&lab).pose_s.is_some() && has_slider(&lab, "scene.pose_s"));
+    assert!(play(&lab).clip_time_s.is_some() && has_slider(&lab, "scene.pose_s"));
     undo(&mut lab);
-    assert_eq!((play(&lab).pose_s, play(&lab).other.as_str()), (None, "Sway"));
+    assert_eq!((play(&lab).clip_time_s, play(&lab).other.as_str()), (None, "Sway"));
 
     // The picture follows, and is what the oracle says.
     let before = lab.state().draws();
-    lab.state_mut().session_mut().play.pose_s = Some(1.0);
+    lab.state_mut().preset_mut().play.clip_time_s = Some(1.0);
     settle(&mut lab);
     assert!(lab.state().draws() > before);
 }
@@ -1074,8 +1075,8 @@ fn a_scene_at_rest_offers_its_clips_under_the_timeline() {
     lab.get_by_role_and_label(Role::Button, "Play Sway").click();
     // It plays from here on and never comes to rest.
     lab.run_steps(4);
-    let session = &lab.state().look().session;
-    assert_eq!((session.play.clip.as_str(), session.clock.range_s), ("Sway", [0.0, sway.duration_s]));
+    let preset = &lab.state().preset_file().preset;
+    assert_eq!((preset.play.clip.as_str(), preset.clock.range_s), ("Sway", [0.0, sway.duration_s]));
     assert!(lab.query_by_role_and_label(Role::Button, "Play Sway").is_none(), "it plays");
     assert!(lab.query_by_label_contains("Sway plays").is_some());
 }
@@ -1083,7 +1084,7 @@ fn a_scene_at_rest_offers_its_clips_under_the_timeline() {
 #[test]
 fn the_scene_shows_its_images_and_lets_one_look_through_its_cameras() {
     let Some(mut lab) = lab("builtin:grid?cell=16") else { return };
-    let chosen = |lab: &Lab| lab.state().look().session.scene_camera.clone();
+    let chosen = |lab: &Lab| lab.state().preset_file().preset.scene_camera.clone();
     let choose = |lab: &mut Lab, entry: &str| {
         click(lab, Role::ComboBox, "scene.camera");
         lab.get_by_role_and_label(Role::Button, entry).click();

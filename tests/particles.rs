@@ -1,4 +1,4 @@
-//! Promise: particles fly as their definition says, on every rung and however a frame was reached; their discs are decided in
+//! Promise: particles fly as their definition says, on every option and however a frame was reached; their discs are decided in
 //! integers; mistakes in the pass are found; and who has none pays nothing. The second half needs an adapter.
 
 mod common;
@@ -8,66 +8,72 @@ use std::sync::Arc;
 use common::*;
 use glam::DVec3;
 use rasterlab::{
+    accuracy::{CurlNoise, ParticleStorage, Visibility},
     effects::{
         Effect,
         particles::{self, EFFECT, Particles},
         read,
     },
-    frame::{Flight, Geometry, SnappedVertex, Swarm},
+    frame::{Geometry, ParticleReadback, ParticleState, SnappedVertex},
     gpu::{Capture, Gpu, Renderer},
-    ladder::{Curl, State, Visibility},
-    measure::{Accuracy as Measured, Budget},
-    oracle::{self, OrientedTriangle, Rules},
-    plan::Accuracy,
+    measure::{Budget, ErrorReport as Measured},
+    oracle::{self, OrientedTriangle, SampleTests},
+    plan::AccuracyRequest,
+    preset::{
+        Clock, PinnedOptions, Preset,
+        animation::{Easing, Keyframe, Track},
+    },
     scene::{
         Scene,
         camera::{Camera, View},
-    },
-    session::{
-        Clock, Pins, Session,
-        animation::{Easing, Keyframe, Track},
     },
     shader::Pass,
 };
 
 const SIZE: [u32; 2] = [96, 72];
 
-/// A look of the chamber with particles, some of their fields set.
-fn look(fields: &[(&str, &[f64])]) -> Session {
-    let mut session = Session::default();
-    let words = &mut session.stack.enable(&EFFECT).words;
+/// A preset of the chamber with particles, some of their fields set.
+fn preset_file(fields: &[(&str, &[f64])]) -> Preset {
+    let mut preset = Preset::default();
+    let words = &mut preset.stack.enable(&EFFECT).words;
     for (name, value) in [("count", &[500.0][..]), ("size_m", &[0.03])].iter().chain(fields) {
         let field = EFFECT.field(name).unwrap_or_else(|| panic!("no field {name}"));
         field.set(words, value).unwrap_or_else(|error| panic!("{error}"));
     }
-    session
+    preset
 }
 
-fn at(session: &Session, frame: u32) -> Session {
-    let rate: Particles = session.stack.params(EFFECT.name).expect("particles");
-    let clock = Clock { time_s: f64::from(frame) / f64::from(rate.rate), ..session.clock };
-    Session { clock, ..session.clone() }
+fn at(preset: &Preset, frame: u32) -> Preset {
+    let rate: Particles = preset.stack.params(EFFECT.name).expect("particles");
+    let clock = Clock { time_s: f64::from(frame) / f64::from(rate.rate), ..preset.clock };
+    Preset { clock, ..preset.clone() }
 }
 
-fn on(curl: Curl, state: State) -> Accuracy {
-    Accuracy { pins: Pins::of(curl).with(state), ..Accuracy::default() }
+fn on(curl: CurlNoise, state: ParticleStorage) -> AccuracyRequest {
+    AccuracyRequest { pins: PinnedOptions::of(curl).with(state), ..AccuracyRequest::default() }
 }
 
-fn rungs_of_flight() -> impl Iterator<Item = (Curl, State)> {
-    Curl::ALL.iter().flat_map(|&curl| State::ALL.iter().map(move |&state| (curl, state)))
+fn particle_options() -> impl Iterator<Item = (CurlNoise, ParticleStorage)> {
+    CurlNoise::ALL.iter().flat_map(|&curl| ParticleStorage::ALL.iter().map(move |&state| (curl, state)))
 }
 
 /// The swarm of a frame.
-fn flown(renderer: &mut Renderer, scene: &Arc<Scene>, session: &Session, frame: u32, accuracy: &Accuracy) -> (Capture, Swarm) {
-    let session = at(session, frame);
-    let capture = captured(renderer, scene, &session.view(scene, SIZE), &session.posed_stack(), accuracy);
-    let swarm = capture.geometry.swarm.clone().expect("particles");
-    (capture, swarm)
+fn flown(
+    renderer: &mut Renderer,
+    scene: &Arc<Scene>,
+    preset: &Preset,
+    frame: u32,
+    accuracy: &AccuracyRequest,
+) -> (Capture, ParticleReadback) {
+    let preset = at(preset, frame);
+    let capture = captured(renderer, scene, &preset.view(scene, SIZE), &preset.evaluated_stack(), accuracy);
+    let particle_readback = capture.geometry.particle_readback.clone().expect("particles");
+    (capture, particle_readback)
 }
 
-fn measured(renderer: &mut Renderer, scene: &Arc<Scene>, session: &Session, frame: u32, accuracy: &Accuracy) -> (Capture, Measured) {
-    let session = at(session, frame);
-    let (capture, verdict) = judged(renderer, scene, &session.view(scene, SIZE), &session.posed_stack(), accuracy);
+fn measured(renderer: &mut Renderer, scene: &Arc<Scene>, preset: &Preset, frame: u32, accuracy: &AccuracyRequest) -> (Capture, Measured) {
+    let preset = at(preset, frame);
+    let (capture, verdict) = judged(renderer, scene, &preset.view(scene, SIZE), &preset.evaluated_stack(), accuracy);
     (capture, verdict.accuracy)
 }
 
@@ -75,12 +81,12 @@ fn measured(renderer: &mut Renderer, scene: &Arc<Scene>, session: &Session, fram
 
 #[test]
 fn the_flow_has_no_sources_and_no_sinks() {
-    let mut dice = Dice(3);
+    let mut rng = Rng(3);
     for octaves in 1..=6 {
         let p = Particles { octaves, persistence: 0.8, ..Particles::default() };
         let (mut largest, mut steepest) = (0.0f64, 0.0f64);
         for _ in 0..300 {
-            let place = DVec3::from_array([0, 1, 2].map(|_| dice.real(-3.0, 3.0)));
+            let place = DVec3::from_array([0, 1, 2].map(|_| rng.real(-3.0, 3.0)));
             let h = 1e-5;
             let slope = |axis: usize| {
                 (particles_flow(&p, place + DVec3::AXES[axis] * h) - particles_flow(&p, place - DVec3::AXES[axis] * h)) / (2.0 * h)
@@ -94,15 +100,15 @@ fn the_flow_has_no_sources_and_no_sinks() {
 }
 
 fn particles_flow(p: &Particles, place: DVec3) -> DVec3 {
-    oracle::particles::flow(p, place, 20)
+    oracle::particles::particle_timeline(p, place, 20)
 }
 
 #[test]
 fn the_flow_is_about_as_fast_as_it_says_and_nowhere_jumps() {
     let p = Particles { octaves: 1, speed_mps: 2.0, swirl_m: 0.7, ..Particles::default() };
-    let mut dice = Dice(4);
+    let mut rng = Rng(4);
     let speeds: Vec<f64> =
-        (0..4000).map(|_| particles_flow(&p, DVec3::from_array([0, 1, 2].map(|_| dice.real(-9.0, 9.0)))).length()).collect();
+        (0..4000).map(|_| particles_flow(&p, DVec3::from_array([0, 1, 2].map(|_| rng.real(-9.0, 9.0)))).length()).collect();
     let mean = speeds.iter().sum::<f64>() / speeds.len() as f64;
     assert!((mean / 2.0 - 1.0).abs() < 0.15, "{mean} m/s");
     // Along a line through many cells of the lattice.
@@ -114,10 +120,10 @@ fn the_flow_is_about_as_fast_as_it_says_and_nowhere_jumps() {
 #[test]
 fn births_fill_the_ellipsoid_evenly_and_lives_begin_at_every_age() {
     let spread = [0.5, 1.0, 2.0];
-    let session = look(&[("count", &[20_000.0]), ("spread", &spread), ("origin", &[1.0, 2.0, 3.0])]);
-    let p: Particles = session.stack.params(EFFECT.name).expect("particles");
-    let flights: Vec<_> = (0..20_000).map(|id| oracle::particles::first(&p, id)).collect();
-    let shares: Vec<DVec3> = flights.iter().map(|f| (f.place - DVec3::new(1.0, 2.0, 3.0)) / DVec3::from_array(spread)).collect();
+    let preset = preset_file(&[("count", &[20_000.0]), ("spread", &spread), ("origin", &[1.0, 2.0, 3.0])]);
+    let p: Particles = preset.stack.params(EFFECT.name).expect("particles");
+    let particle_states: Vec<_> = (0..20_000).map(|id| oracle::particles::first(&p, id)).collect();
+    let shares: Vec<DVec3> = particle_states.iter().map(|f| (f.place - DVec3::new(1.0, 2.0, 3.0)) / DVec3::from_array(spread)).collect();
     assert!(shares.iter().all(|share| share.length() <= 1.0));
     // A ball of half the radius has an eighth of the volume; one of 0.8, 0.512 of it. The last attempt, halved, adds 1 %.
     for (radius, volume) in [(0.5, 0.125), (0.8, 0.512)] {
@@ -129,17 +135,17 @@ fn births_fill_the_ellipsoid_evenly_and_lives_begin_at_every_age() {
         assert!(mean.abs() < 0.02, "axis {axis} leans by {mean}");
     }
     let [longest, chance] = particles::life_steps(&p);
-    assert!(flights.iter().all(|f| f.age < longest && f.births == 0 && f.velocity == DVec3::ZERO));
-    let young = flights.iter().filter(|f| f.age * 2 < longest - chance / 2).count();
+    assert!(particle_states.iter().all(|f| f.age < longest && f.births == 0 && f.velocity == DVec3::ZERO));
+    let young = particle_states.iter().filter(|f| f.age * 2 < longest - chance / 2).count();
     assert!((8_000..14_000).contains(&young), "{young} of 20000 are in the first half of their life");
 }
 
 /// The samples of one triangle that its disc has, in a picture of so many pixels.
 fn disc(corners: [[i32; 2]; 3], view: &View) -> Vec<u32> {
     let corners = corners.map(|[x, y]| SnappedVertex { x, y, depth: 0.5, inv_w: 1.0, flags: 0 });
-    let geometry = Geometry { splats: 0..1, ..Geometry::default() };
+    let geometry = Geometry { particle_discs: 0..1, ..Geometry::default() };
     let stack = stack(&[]);
-    oracle::cover_by(&Rules::of(&stack, &geometry), &[OrientedTriangle::clockwise(0, corners)], view, None).layers()
+    oracle::cover_with(&SampleTests::of(&stack, &geometry), &[OrientedTriangle::clockwise(0, corners)], view, None).layers()
 }
 
 #[test]
@@ -178,17 +184,17 @@ fn a_disc_is_the_ellipse_that_touches_the_sides_in_their_middles() {
 fn every_step_is_within_its_bound_on_every_rung() {
     let Some(mut renderer) = renderer() else { return };
     let scene = scene("chamber");
-    let looks: [&[(&str, &[f64])]; 5] = [
+    let preset_files: [&[(&str, &[f64])]; 5] = [
         &[],
         &[("octaves", &[6.0]), ("persistence", &[0.9]), ("swirl_m", &[0.2]), ("speed_mps", &[3.0]), ("seed", &[77.0])],
         &[("drag", &[0.0]), ("attraction", &[12.0]), ("attractor_m", &[0.05]), ("attractor", &[0.3, -0.2, 0.1])],
         &[("life_s", &[0.1]), ("life_spread", &[1.0]), ("rate", &[30.0]), ("evolve", &[3.0])],
         &[("room_m", &[0.6]), ("spread", &[0.3, 0.9, 0.6]), ("speed_mps", &[4.0]), ("origin", &[40.0, -3.0, 7.0])],
     ];
-    for (number, fields) in looks.iter().enumerate() {
-        for (curl, state) in rungs_of_flight() {
+    for (number, fields) in preset_files.iter().enumerate() {
+        for (curl, state) in particle_options() {
             for frame in [0, 1, 2, 13, 40] {
-                let (_, accuracy) = measured(&mut renderer, &scene, &look(fields), frame, &on(curl, state));
+                let (_, accuracy) = measured(&mut renderer, &scene, &preset_file(fields), frame, &on(curl, state));
                 let what = format!("look {number}, frame {frame}, {} {}", curl.name(), state.name());
                 accuracy.within(&Budget::default()).unwrap_or_else(|why| panic!("{what}: {why}"));
                 assert_eq!((accuracy.particles, accuracy.particles_outside_bound), (500, 0), "{what}");
@@ -201,31 +207,32 @@ fn every_step_is_within_its_bound_on_every_rung() {
 fn a_frame_is_the_same_however_it_was_reached() {
     let Some(gpu) = gpu() else { return };
     let scene = scene("chamber");
-    for (curl, state) in rungs_of_flight() {
+    for (curl, state) in particle_options() {
         let accuracy = on(curl, state);
-        let session = look(&[("life_s", &[0.4]), ("count", &[333.0])]);
+        let preset = preset_file(&[("life_s", &[0.4]), ("count", &[333.0])]);
         let fresh = |gpu: &Arc<Gpu>| Renderer::new(gpu.clone());
-        let (jumped, truth) = flown(&mut fresh(&gpu), &scene, &session, 45, &accuracy);
-        assert!(truth.after.iter().any(|flight| flight.births > 1));
+        let (jumped, reference) = flown(&mut fresh(&gpu), &scene, &preset, 45, &accuracy);
+        assert!(reference.after.iter().any(|flight| flight.births > 1));
         // Played frame by frame, drawn twice here and there, jumped ahead, and gone back to.
         let mut renderer = fresh(&gpu);
         for frame in (0..=45).flat_map(|frame| vec![frame; 1 + usize::from(frame % 7 == 0)]) {
-            flown(&mut renderer, &scene, &session, frame, &accuracy);
+            flown(&mut renderer, &scene, &preset, frame, &accuracy);
         }
         for (way, frames) in [("played", &[45][..]), ("again", &[45]), ("scrubbed", &[60, 45]), ("from the start", &[0, 1, 44, 45])] {
             let mut last = None;
             for &frame in frames {
-                last = Some(flown(&mut renderer, &scene, &session, frame, &accuracy));
+                last = Some(flown(&mut renderer, &scene, &preset, frame, &accuracy));
             }
-            let (capture, swarm) = last.expect("frames");
-            assert!(swarm == truth, "{way}, {} {}: the particles differ", curl.name(), state.name());
+            let (capture, particle_readback) = last.expect("frames");
+            assert!(particle_readback == reference, "{way}, {} {}: the particles differ", curl.name(), state.name());
             assert!(capture.frame == jumped.frame, "{way}, {} {}: the picture differs", curl.name(), state.name());
         }
-        // Another look between leaves no trace.
-        flown(&mut renderer, &scene, &look(&[("count", &[70.0]), ("seed", &[9.0])]), 12, &accuracy);
-        assert!(flown(&mut renderer, &scene, &session, 45, &accuracy).1 == truth);
-        let other = flown(&mut renderer, &scene, &look(&[("life_s", &[0.4]), ("count", &[333.0]), ("seed", &[2.0])]), 45, &accuracy).1;
-        assert!(other != truth, "the seed changes nothing");
+        // Another preset between leaves no trace.
+        flown(&mut renderer, &scene, &preset_file(&[("count", &[70.0]), ("seed", &[9.0])]), 12, &accuracy);
+        assert!(flown(&mut renderer, &scene, &preset, 45, &accuracy).1 == reference);
+        let other =
+            flown(&mut renderer, &scene, &preset_file(&[("life_s", &[0.4]), ("count", &[333.0]), ("seed", &[2.0])]), 45, &accuracy).1;
+        assert!(other != reference, "the seed changes nothing");
     }
 }
 
@@ -233,42 +240,46 @@ fn a_frame_is_the_same_however_it_was_reached() {
 fn none_few_and_odd_numbers_of_particles_are_drawn() {
     let Some(mut renderer) = renderer() else { return };
     let scene = scene("chamber");
-    let bare = captured(&mut renderer, &scene, &Session::default().view(&scene, SIZE), &stack(&[]), &Accuracy::default());
+    let bare = captured(&mut renderer, &scene, &Preset::default().view(&scene, SIZE), &stack(&[]), &AccuracyRequest::default());
     for count in [0u32, 1, 2, 63, 65, 257] {
-        let session = at(&look(&[("count", &[f64::from(count)]), ("size_m", &[0.1])]), 20);
-        let view = session.view(&scene, SIZE);
-        let (capture, verdict) = judged(&mut renderer, &scene, &view, &session.posed_stack(), &Accuracy::default());
+        let preset = at(&preset_file(&[("count", &[f64::from(count)]), ("size_m", &[0.1])]), 20);
+        let view = preset.view(&scene, SIZE);
+        let (capture, verdict) = judged(&mut renderer, &scene, &view, &preset.evaluated_stack(), &AccuracyRequest::default());
         exactness(&verdict.accuracy).unwrap_or_else(|why| panic!("{count}: {why}"));
-        let swarm = capture.geometry.swarm.as_ref().map_or(0, |swarm| swarm.after.len() as u32);
-        assert_eq!((swarm, verdict.accuracy.particles), (count, count.into()));
+        let particle_readback =
+            capture.geometry.particle_readback.as_ref().map_or(0, |particle_readback| particle_readback.after.len() as u32);
+        assert_eq!((particle_readback, verdict.accuracy.particles), (count, count.into()));
         let first = scene.triangle_count() as u32;
-        let shown = capture.frame.owner.iter().filter(|&&owner| owner != u32::MAX && owner >= first).count();
+        let shown = capture.frame.triangle_id.iter().filter(|&&triangle_id| triangle_id != u32::MAX && triangle_id >= first).count();
         assert!(count < 60 || shown > 20, "{count}: {shown} pixels show particles");
-        assert!(count > 0 || capture.frame.owner == captured_of(&mut renderer, &scene, &view).frame.owner, "none is as without");
+        assert!(
+            count > 0 || capture.frame.triangle_id == captured_of(&mut renderer, &scene, &view).frame.triangle_id,
+            "none is as without"
+        );
     }
-    assert!(bare.geometry.swarm.is_none());
+    assert!(bare.geometry.particle_readback.is_none());
 }
 
 fn captured_of(renderer: &mut Renderer, scene: &Arc<Scene>, view: &View) -> Capture {
-    captured(renderer, scene, view, &stack(&[]), &Accuracy::default())
+    captured(renderer, scene, view, &stack(&[]), &AccuracyRequest::default())
 }
 
 #[test]
 fn lives_end_and_begin_again_inside_the_room() {
     let Some(mut renderer) = renderer() else { return };
     let scene = scene("chamber");
-    let session = look(&[("life_s", &[0.25]), ("room_m", &[0.8]), ("spread", &[0.4, 0.4, 0.4]), ("speed_mps", &[5.0])]);
-    let p: Particles = session.stack.params(EFFECT.name).expect("particles");
+    let preset = preset_file(&[("life_s", &[0.25]), ("room_m", &[0.8]), ("spread", &[0.4, 0.4, 0.4]), ("speed_mps", &[5.0])]);
+    let p: Particles = preset.stack.params(EFFECT.name).expect("particles");
     let [longest, _] = particles::life_steps(&p);
     assert_eq!(longest, 15);
-    for (curl, state) in rungs_of_flight() {
-        let swarm = flown(&mut renderer, &scene, &session, 100, &on(curl, state)).1;
-        let held = |flight: &Flight| flight.place.iter().all(|at| at.abs() <= 0.8 + 1e-5);
-        assert!(swarm.after.iter().all(|flight| held(flight) && flight.age < longest && flight.births >= 100 / longest - 1));
-        let reborn = swarm.after.iter().filter(|flight| flight.age == 0).count();
+    for (curl, state) in particle_options() {
+        let particle_readback = flown(&mut renderer, &scene, &preset, 100, &on(curl, state)).1;
+        let held = |flight: &ParticleState| flight.place.iter().all(|at| at.abs() <= 0.8 + 1e-5);
+        assert!(particle_readback.after.iter().all(|flight| held(flight) && flight.age < longest && flight.births >= 100 / longest - 1));
+        let reborn = particle_readback.after.iter().filter(|flight| flight.age == 0).count();
         assert!((10..200).contains(&reborn), "{reborn} of 500 were born in this very step");
-        let ball = |flight: &Flight| flight.place.iter().map(|at| at * at).sum::<f32>().sqrt() <= 0.4 + 1e-4;
-        assert!(swarm.after.iter().filter(|flight| flight.age == 0).all(ball));
+        let ball = |flight: &ParticleState| flight.place.iter().map(|at| at * at).sum::<f32>().sqrt() <= 0.4 + 1e-4;
+        assert!(particle_readback.after.iter().filter(|flight| flight.age == 0).all(ball));
     }
 }
 
@@ -276,30 +287,30 @@ fn lives_end_and_begin_again_inside_the_room() {
 fn for_a_second_the_flight_agrees_with_the_true_one_and_rough_rungs_drift() {
     let Some(mut renderer) = renderer() else { return };
     let scene = scene("chamber");
-    let session = look(&[("life_s", &[30.0]), ("life_spread", &[0.1]), ("room_m", &[4.0])]);
-    let drift = |renderer: &mut Renderer, frame: u32, curl: Curl, state: State| {
-        let (_, accuracy) = measured(renderer, &scene, &session, frame, &on(curl, state));
+    let preset = preset_file(&[("life_s", &[30.0]), ("life_spread", &[0.1]), ("room_m", &[4.0])]);
+    let drift = |renderer: &mut Renderer, frame: u32, curl: CurlNoise, state: ParticleStorage| {
+        let (_, accuracy) = measured(renderer, &scene, &preset, frame, &on(curl, state));
         eprintln!(
             "{:10} {:7} frame {frame:3}: {:.5} px at most, {:.1e} m on average, {} of {} beyond a pixel",
             curl.name(),
             state.name(),
-            accuracy.max_astray_px,
-            accuracy.mean_astray_m,
-            accuracy.particles_astray,
+            accuracy.max_divergence_px,
+            accuracy.mean_divergence_m,
+            accuracy.particles_diverged,
             accuracy.particles
         );
         accuracy
     };
     let mut last = 0.0;
     for frame in [0, 30, 60, 120, 240, 480] {
-        let accuracy = drift(&mut renderer, frame, Curl::Analytic, State::Float32);
-        assert!(accuracy.mean_astray_m >= last, "chaos does not heal");
-        last = accuracy.mean_astray_m;
-        assert!(frame > 60 || accuracy.max_astray_px < 0.1, "frame {frame}: {} px", accuracy.max_astray_px);
+        let accuracy = drift(&mut renderer, frame, CurlNoise::Analytic, ParticleStorage::Float32);
+        assert!(accuracy.mean_divergence_m >= last, "chaos does not heal");
+        last = accuracy.mean_divergence_m;
+        assert!(frame > 60 || accuracy.max_divergence_px < 0.1, "frame {frame}: {} px", accuracy.max_divergence_px);
     }
-    let exact = drift(&mut renderer, 60, Curl::Analytic, State::Float32).mean_astray_m;
-    for (curl, state) in rungs_of_flight().filter(|rungs| *rungs != (Curl::Analytic, State::Float32)) {
-        let rough = drift(&mut renderer, 60, curl, state).mean_astray_m;
+    let exact = drift(&mut renderer, 60, CurlNoise::Analytic, ParticleStorage::Float32).mean_divergence_m;
+    for (curl, state) in particle_options().filter(|options| *options != (CurlNoise::Analytic, ParticleStorage::Float32)) {
+        let rough = drift(&mut renderer, 60, curl, state).mean_divergence_m;
         assert!(rough > 10.0 * exact && rough < 0.05, "{} {}: {rough} m, where {exact} m are due to rounding", curl.name(), state.name());
     }
 }
@@ -310,25 +321,25 @@ fn discs_of_every_size_are_the_oracles_on_every_rung_and_tuning() {
     let scene = scene("chamber");
     // Less than a pixel, ordinary, larger than a tile, and as large as the picture with the eye among them.
     for (size, effects) in [(0.004, &[][..]), (0.03, &["xray"]), (0.5, &["dissolve"]), (3.0, &["overdraw"]), (9.0, &[])] {
-        let mut session = at(&look(&[("size_m", &[size]), ("count", &[60.0]), ("spread", &[3.0, 3.0, 3.0]), ("room_m", &[6.0])]), 25);
+        let mut preset = at(&preset_file(&[("size_m", &[size]), ("count", &[60.0]), ("spread", &[3.0, 3.0, 3.0]), ("room_m", &[6.0])]), 25);
         for name in effects {
-            session.stack.enable(Effect::find(name).expect("an effect"));
+            preset.stack.enable(Effect::find(name).expect("an effect"));
         }
         if size > 1.0 {
-            session.camera = Some(Camera { eye: DVec3::new(0.2, 0.1, 1.0), ..Camera::default() });
+            preset.camera = Some(Camera { eye: DVec3::new(0.2, 0.1, 1.0), ..Camera::default() });
         }
-        let (view, stack) = (session.view(&scene, SIZE), session.posed_stack());
+        let (view, stack) = (preset.view(&scene, SIZE), preset.evaluated_stack());
         let mut first: Option<Capture> = None;
-        for rung in rungs(&renderer) {
+        for option in options(&renderer) {
             for tuning in tunings() {
                 renderer.set_tuning(tuning);
-                let what = format!("size {size}, {} {tuning:?}", rung.name());
-                let (capture, _) = exact(&mut renderer, &scene, &view, &stack, &pinned(rung), &what);
+                let what = format!("size {size}, {} {tuning:?}", option.name());
+                let (capture, _) = exact(&mut renderer, &scene, &view, &stack, &pinned(option), &what);
                 let first = first.get_or_insert_with(|| capture.clone());
-                assert!(capture.frame.owner == first.frame.owner && capture.frame.key == first.frame.key, "{what}");
+                assert!(capture.frame.triangle_id == first.frame.triangle_id && capture.frame.key == first.frame.key, "{what}");
             }
         }
-        let cut = first.expect("a rung").frame.counters.clipped;
+        let cut = first.expect("a option").frame.counters.clipped;
         assert!(size < 9.0 || cut > 0, "nothing is cut by the near plane");
     }
 }
@@ -338,9 +349,9 @@ fn what_fills_boxes_or_draws_corners_shows_no_discs() {
     let Some(mut renderer) = renderer() else { return };
     let scene = scene("chamber");
     for name in ["boxes", "points"] {
-        let mut session = at(&look(&[("count", &[60.0])]), 10);
-        session.stack.enable(Effect::find(name).expect("an effect"));
-        exact(&mut renderer, &scene, &session.view(&scene, SIZE), &session.posed_stack(), &Accuracy::default(), name);
+        let mut preset = at(&preset_file(&[("count", &[60.0])]), 10);
+        preset.stack.enable(Effect::find(name).expect("an effect"));
+        exact(&mut renderer, &scene, &preset.view(&scene, SIZE), &preset.evaluated_stack(), &AccuracyRequest::default(), name);
     }
 }
 
@@ -348,48 +359,53 @@ fn what_fills_boxes_or_draws_corners_shows_no_discs() {
 fn keys_lead_the_attractor_and_a_frame_of_them_is_the_same_however_it_was_reached() {
     let Some(mut renderer) = renderer() else { return };
     let scene = scene("chamber");
-    let mut session = look(&[("attraction", &[9.0]), ("drag", &[1.0]), ("life_s", &[9.0])]);
+    let mut preset = preset_file(&[("attraction", &[9.0]), ("drag", &[1.0]), ("life_s", &[9.0])]);
     let key = |time_s: f64, x: f64| Keyframe { time_s, value: vec![x, 0.0, 0.0], easing: Easing::Linear };
     let field = EFFECT.field("attractor").expect("an attractor");
-    session.animation.put(Track::new(&EFFECT, field, vec![key(0.0, -2.0), key(0.5, 2.0)]).expect("sound keys"));
-    let flow = at(&session, 40).flow().expect("particles");
-    let x = |step: u32| read::<Particles>(flow.words(step)).attractor[0];
-    assert_eq!((flow.len(), flow.frame), (40, 40));
+    preset.animation.put(Track::new(&EFFECT, field, vec![key(0.0, -2.0), key(0.5, 2.0)]).expect("sound keys"));
+    let particle_timeline = at(&preset, 40).particle_timeline().expect("particles");
+    let x = |step: u32| read::<Particles>(particle_timeline.words(step)).attractor[0];
+    assert_eq!((particle_timeline.len(), particle_timeline.frame), (40, 40));
     assert!((1..40).all(|step| x(step) < x(step + 1)) && x(30) < 1.0 && x(40) > x(30), "the attraction follows behind");
-    let accuracy = Accuracy::default();
-    let (jumped, truth) = flown(&mut renderer, &scene, &session, 40, &accuracy);
+    let accuracy = AccuracyRequest::default();
+    let (jumped, reference) = flown(&mut renderer, &scene, &preset, 40, &accuracy);
     for frame in [0, 5, 6, 39] {
-        let (_, measured) = measured(&mut renderer, &scene, &session, frame, &accuracy);
+        let (_, measured) = measured(&mut renderer, &scene, &preset, frame, &accuracy);
         measured.within(&Budget::default()).unwrap_or_else(|why| panic!("frame {frame}: {why}"));
     }
-    let (again, swarm) = flown(&mut renderer, &scene, &session, 40, &accuracy);
-    assert!(swarm == truth && again.frame == jumped.frame);
+    let (again, particle_readback) = flown(&mut renderer, &scene, &preset, 40, &accuracy);
+    assert!(particle_readback == reference && again.frame == jumped.frame);
     // What a bench draws is the same picture.
-    let posed = at(&session, 40).posed();
-    assert_eq!(posed.flow(), at(&session, 40).flow());
+    let posed = at(&preset, 40).posed();
+    assert_eq!(posed.particle_timeline(), at(&preset, 40).particle_timeline());
 }
 
 #[test]
 fn a_scene_without_particles_has_nothing_of_them() {
     let Some(gpu) = gpu() else { return };
-    let explained = |session: &Session| {
+    let explained = |preset: &Preset| {
         let scene = scene("teapot?tess=4");
         let mut renderer = Renderer::new(gpu.clone());
         renderer.set_scene(&scene).expect("a builtin fits");
-        renderer.draw_whole(&session.view(&scene, SIZE), &session.posed_stack(), &pinned(Visibility::Split32)).expect("it is drawn");
+        renderer.draw_complete(&preset.view(&scene, SIZE), &preset.evaluated_stack(), &pinned(Visibility::Split32)).expect("it is drawn");
         (renderer.explain(), renderer.key().expect("it was drawn").clone())
     };
-    for without in [Session::default(), look(&[("count", &[0.0])])] {
+    for without in [Preset::default(), preset_file(&[("count", &[0.0])])] {
         let (explanation, key) = explained(&without);
         assert!(!key.has_particles && !key.frame().contains(&Pass::Particles));
-        assert!(key.slots(Pass::Project).iter().any(|(slot, file)| *slot == "splats" && file == "slots/splats/none"));
-        assert!(!explanation.buffers.iter().any(|buffer| ["flights", "course", "swarm"].contains(&buffer.name.as_str())));
+        assert!(key.slots(Pass::Project).iter().any(|(slot, file)| *slot == "particle_discs" && file == "slots/splats/none"));
+        assert!(
+            !explanation
+                .buffers
+                .iter()
+                .any(|buffer| ["particle_states", "step_params", "particle_readback"].contains(&buffer.name.as_str()))
+        );
         assert!(explanation.omitted.iter().any(|note| note.name == "particles"));
     }
-    let (explanation, key) = explained(&look(&[]));
+    let (explanation, key) = explained(&preset_file(&[]));
     assert!(key.has_particles && explanation.passes[0].name == "particles");
     let bytes = |name: &str| explanation.buffers.iter().find(|buffer| buffer.name == name).map_or(0, |buffer| buffer.bytes);
-    assert_eq!(bytes("flights"), 2 * 32 * 500, "two frames of 32 bytes a particle");
+    assert_eq!(bytes("particle_states"), 2 * 32 * 500, "two frames of 32 bytes a particle");
 }
 
 #[test]
@@ -397,33 +413,33 @@ fn too_many_particles_are_refused_with_a_sentence() {
     let Some(mut renderer) = renderer() else { return };
     let scene = scene("chamber");
     let most = renderer.gpu().caps.max_storage_binding_bytes;
-    let session = look(&[("count", &[4e6])]);
+    let preset = preset_file(&[("count", &[4e6])]);
     renderer.set_scene(&scene).expect("a builtin fits");
-    let drawn = renderer.draw_whole(&session.view(&scene, [8, 8]), &session.posed_stack(), &Accuracy::default());
+    let drawn = renderer.draw_complete(&preset.view(&scene, [8, 8]), &preset.evaluated_stack(), &AccuracyRequest::default());
     if most < 4_000_000 * 72 {
         let sentence = drawn.expect_err("it does not fit").to_string();
         assert!(sentence.contains("vertex_bytes"), "{sentence}");
     }
     // What was there before is still drawn.
-    let few = at(&look(&[]), 3);
-    exact(&mut renderer, &scene, &few.view(&scene, SIZE), &few.posed_stack(), &Accuracy::default(), "after a refusal");
+    let few = at(&preset_file(&[]), 3);
+    exact(&mut renderer, &scene, &few.view(&scene, SIZE), &few.evaluated_stack(), &AccuracyRequest::default(), "after a refusal");
 }
 
 #[test]
 fn a_mistake_in_the_pass_is_found() {
     let Some(gpu) = gpu() else { return };
     let scene = scene("chamber");
-    let session = look(&[("life_s", &[0.3]), ("attraction", &[2.0]), ("size_m", &[0.1])]);
+    let preset = preset_file(&[("life_s", &[0.3]), ("attraction", &[2.0]), ("size_m", &[0.1])]);
     for (file, right, wrong) in [
         ("common/flight", "if f.age + 1u >=", "if f.age + 2u >="),
         ("common/flight", "hash(base + 13u)", "hash(base + 14u)"),
         ("common/flight", "* 2.0 * r /", "* r /"),
         ("common/flight", "salt + octave)", "salt)"),
         ("common/flight", "0.4375", "0.4376"),
-        ("common/flight", "return Flight(place, velocity,", "return Flight(place, f.velocity,"),
+        ("common/flight", "return ParticleState(place, velocity,", "return ParticleState(place, f.velocity,"),
         ("slots/curl/analytic", "by_x.y - by_y.x", "by_x.y + by_y.x"),
         ("slots/curl/analytic", "(t - 1.0) * (t - 1.0)", "(t - 1.0) * t"),
-        ("slots/state/float32", "(frame_number & 1u) * swarm.count + id);\n    flights", "id);\n    flights"),
+        ("slots/state/float32", "(frame_number & 1u) * swarm.count + id);\n    particle_states", "id);\n    particle_states"),
         ("passes/particles", "vec2f(0.0, 2.0)", "vec2f(0.0, 1.99)"),
         ("passes/particles", "PARTICLES_LEAN = 0.7", "PARTICLES_LEAN = 0.8"),
         ("passes/particles", "hash_unit(base + 14u)", "hash_unit(base + 15u)"),
@@ -433,10 +449,10 @@ fn a_mistake_in_the_pass_is_found() {
         let mutant = mutated(file, right, wrong);
         let mut renderer = Renderer::with_library(gpu.clone(), mutant.shaders());
         let is_found = [0, 1, 18].into_iter().any(|frame| {
-            let session = at(&session, frame);
+            let preset = at(&preset, frame);
             renderer.set_scene(&scene).expect("a builtin fits");
-            let (view, stack) = (session.view(&scene, SIZE), session.posed_stack());
-            let Ok(capture) = renderer.capture(&view, &stack, &Accuracy::default()) else { return true };
+            let (view, stack) = (preset.view(&scene, SIZE), preset.evaluated_stack());
+            let Ok(capture) = renderer.capture(&view, &stack, &AccuracyRequest::default()) else { return true };
             let verdict = oracle::judge(&scene, &view, &stack, &capture.frame, &capture.geometry, capture.layers.as_deref());
             verdict.expect("it can be judged").accuracy.within(&Budget::default()).is_err()
         });

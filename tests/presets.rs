@@ -6,31 +6,31 @@ use proptest::prelude::*;
 use rasterlab::{
     effects::{EFFECTS, Effect},
     params::Kind,
-    preset::{self, Look, PresetError},
-    scene::camera::{Camera, MIN_NEAR_M, Projection},
-    session::{
-        Accuracy, Animation, Clock, Output, Pins, Play, SceneSource, Session, Test, Tier, Visibility,
-        animation::{Easing, Keyframe, MAX_KEYS, Track, steps},
+    preset::{
+        AccuracyRequest, Animation, ClipPlayback, Clock, Output, PinnedOptions, Preset, SceneSource, Test, Tier, Visibility,
+        animation::{Easing, Keyframe, MAX_KEYFRAMES, Track, steps},
     },
+    preset_file::{self, PresetError, PresetFile},
+    scene::camera::{Camera, MIN_NEAR_M, Projection},
 };
 
-fn parse(text: &str) -> Look {
-    preset::parse(text, "look").unwrap_or_else(|error| panic!("{error}"))
+fn parse(text: &str) -> PresetFile {
+    preset_file::parse(text, "preset_file").unwrap_or_else(|error| panic!("{error}"))
 }
 
 fn refusal(text: &str) -> String {
-    match preset::parse(text, "look") {
+    match preset_file::parse(text, "preset_file") {
         Err(error) => error.to_string(),
         Ok(_) => panic!("this should have been refused:\n{text}"),
     }
 }
 
 /// Everything in a session as bits and words, so that -0.0 and 0.0 differ.
-fn bits(session: &Session) -> String {
-    format!("{session:?}")
+fn bits(preset: &Preset) -> String {
+    format!("{preset:?}")
 }
 
-fn look_files() -> Vec<PathBuf> {
+fn preset_files() -> Vec<PathBuf> {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("presets");
     let files = std::fs::read_dir(folder).expect("presets/ is there").map(|entry| entry.unwrap().path());
     files.filter(|path| path.extension().is_some_and(|e| e == "toml")).collect()
@@ -38,7 +38,7 @@ fn look_files() -> Vec<PathBuf> {
 
 #[test]
 fn the_example_of_every_section_is_read() {
-    let look = parse(
+    let preset_file = parse(
         r##"#:schema ./schema.json
 schema = 1
 name = "Ink on glass"
@@ -89,8 +89,8 @@ max_channel = 2
 why = "because"
 "##,
     );
-    let s = &look.session;
-    assert_eq!(look.warnings, Vec::<String>::new());
+    let s = &preset_file.preset;
+    assert_eq!(preset_file.warnings, Vec::<String>::new());
     assert_eq!((s.name.as_str(), s.tags.len(), s.spin_deg_per_s, s.clock.time_s), ("Ink on glass", 2, 30.0, 1.25));
     assert_eq!(s.stack.0.iter().map(|e| e.effect.name).collect::<Vec<_>>(), ["lambert", "facet"]);
     let facet = s.stack.get("facet").unwrap();
@@ -105,10 +105,13 @@ why = "because"
     );
     assert_eq!(s.animation.get("facet", "seed").unwrap().keys()[0].easing, Easing::Hold);
     // 0.625 of the way in time, by the smoothstep.
-    let posed = s.posed_stack().get("facet").unwrap().words.clone();
+    let posed = s.evaluated_stack().get("facet").unwrap().words.clone();
     assert_eq!(facet.effect.field("amount").unwrap().get(&posed), [f64::from((0.625f64 * 0.625 * (3.0 - 1.25)) as f32)]);
     assert_eq!(facet.effect.field("seed").unwrap().get(&posed), [7.0]);
-    assert_eq!(s.accuracy, Accuracy { tier: Tier::Fast, pins: Pins::of(Visibility::Packed64), ..Accuracy::default() });
+    assert_eq!(
+        s.accuracy,
+        AccuracyRequest { tier: Tier::Fast, pins: PinnedOptions::of(Visibility::Packed64), ..AccuracyRequest::default() }
+    );
     assert_eq!(s.output.size, [64, 48]);
     assert_eq!(s.test.as_ref().unwrap().max_channel, 2);
 }
@@ -116,58 +119,58 @@ why = "because"
 #[test]
 fn an_unmodified_look_is_written_byte_for_byte() {
     let odd = "# mine\nschema=1\nname  =  'odd'   # spaced\n[effects]\n lambert = { sun = [1,1.0,0.50,1e0] } # inline\n\n[output]\nsize=[ 0x10, 1_0 ]\nx-own = 2024-01-01\n";
-    assert_eq!(preset::to_toml(&parse(odd)), odd);
-    for path in look_files() {
+    assert_eq!(preset_file::to_toml(&parse(odd)), odd);
+    for path in preset_files() {
         let text = std::fs::read_to_string(&path).unwrap();
-        assert_eq!(preset::to_toml(&preset::load(&path).unwrap()), text, "{}", path.display());
+        assert_eq!(preset_file::to_toml(&preset_file::load(&path).unwrap()), text, "{}", path.display());
     }
 }
 
 #[test]
 fn comments_and_unknown_keys_survive_a_change() {
     let text = "# head\nschema = 1\n# why\nfuture = { a = 1 }\n\n[camera] # pose\neye = [1.0, 2.0, 3.0] # high\nup = [0.0, 1.0, 0.5]\n\n[effects.facet]\n# half\namount = 0.5 # of the way\n\n[effects.later]\nx = 1\n# tail\n";
-    let mut look = parse(text);
-    preset::set(&mut look, "facet.amount", ".25").unwrap();
-    preset::set(&mut look, "camera.eye", "[1, 2, 4]").unwrap();
-    preset::unset(&mut look, "camera.up").unwrap();
-    let written = preset::to_toml(&look);
+    let mut preset_file = parse(text);
+    preset_file::set(&mut preset_file, "facet.amount", ".25").unwrap();
+    preset_file::set(&mut preset_file, "camera.eye", "[1, 2, 4]").unwrap();
+    preset_file::unset(&mut preset_file, "camera.up").unwrap();
+    let written = preset_file::to_toml(&preset_file);
     let wanted =
         text.replace("amount = 0.5 #", "amount = 0.25 #").replace("3.0] # high", "4.0] # high").replace("up = [0.0, 1.0, 0.5]\n", "");
     assert_eq!(written, wanted);
-    preset::unset(&mut look, "facet.amount").unwrap();
-    assert!(preset::to_toml(&look).contains("# half\namount = 1.0 # of the way"), "a commented line is kept with its default");
+    preset_file::unset(&mut preset_file, "facet.amount").unwrap();
+    assert!(preset_file::to_toml(&preset_file).contains("# half\namount = 1.0 # of the way"), "a commented line is kept with its default");
 }
 
 #[test]
 fn only_differences_from_defaults_are_written() {
-    let mut look = Look::new("new", Session::default());
-    assert_eq!(preset::to_toml(&look), "schema = 1\n");
-    preset::set(&mut look, "facet", "").unwrap();
-    preset::set(&mut look, "lambert.headlight", "0.2").unwrap();
-    preset::set(&mut look, "accuracy.tier", "draft").unwrap();
-    preset::set(&mut look, "camera", "").unwrap();
+    let mut preset_file = PresetFile::new("new", Preset::default());
+    assert_eq!(preset_file::to_toml(&preset_file), "schema = 1\n");
+    preset_file::set(&mut preset_file, "facet", "").unwrap();
+    preset_file::set(&mut preset_file, "lambert.headlight", "0.2").unwrap();
+    preset_file::set(&mut preset_file, "accuracy.tier", "draft").unwrap();
+    preset_file::set(&mut preset_file, "camera", "").unwrap();
     assert_eq!(
-        preset::to_toml(&look),
+        preset_file::to_toml(&preset_file),
         "schema = 1\n\n[camera]\n\n[effects.facet]\n\n[effects.lambert]\nheadlight = 0.2\n\n[accuracy]\ntier = \"draft\"\n"
     );
     for path in ["effects.lambert.headlight", "accuracy", "camera", "facet", "lambert"] {
-        preset::unset(&mut look, path).unwrap();
+        preset_file::unset(&mut preset_file, path).unwrap();
     }
-    assert_eq!(preset::to_toml(&look), "schema = 1\n");
+    assert_eq!(preset_file::to_toml(&preset_file), "schema = 1\n");
 }
 
 #[test]
 fn the_stack_key_is_written_only_where_order_is_unusual() {
-    let mut look = parse("schema = 1\n[effects.facet]\n[effects.lambert]\n");
-    look.session.stack.0.reverse();
-    let written = preset::to_toml(&look);
+    let mut preset_file = parse("schema = 1\n[effects.facet]\n[effects.lambert]\n");
+    preset_file.preset.stack.0.reverse();
+    let written = preset_file::to_toml(&preset_file);
     assert!(written.contains("stack = [\"lambert\", \"facet\"]"), "{written}");
     let mut again = parse(&written);
-    assert_eq!(again.session, look.session);
-    again.session.stack.0.reverse();
-    assert!(!preset::to_toml(&again).contains("stack"));
-    preset::set(&mut look, "stack", "[\"facet\", \"lambert\"]").unwrap();
-    assert!(look.session.stack.is_canonical());
+    assert_eq!(again.preset, preset_file.preset);
+    again.preset.stack.0.reverse();
+    assert!(!preset_file::to_toml(&again).contains("stack"));
+    preset_file::set(&mut preset_file, "stack", "[\"facet\", \"lambert\"]").unwrap();
+    assert!(preset_file.preset.stack.is_canonical());
 }
 
 #[test]
@@ -211,7 +214,7 @@ fn errors_name_line_key_value_and_range() {
         ("schema = 1\n[test]\nmax_pixels = 9\n", "look.toml:2: test.why must say why the budget is above the default"),
         (
             "schema = 1\n[test]\nmax_wrong_owner = 9\nwhy = \"because\"\n",
-            "look.toml:2: test.max_wrong_owner is for looks that pin a cheaper rung or take the tier draft or fast; this one must be exact",
+            "look.toml:2: test.max_wrong_triangles is for presets that pin a cheaper option or take the tier draft or fast; this one must be exact",
         ),
         (
             "schema = 1\n[accuracy]\nvisibility = \"race\"\n[test]\nmax_wrong_owner = 9\n",
@@ -233,7 +236,7 @@ fn errors_name_line_key_value_and_range() {
 #[test]
 fn keys_that_cannot_be_are_refused_by_name() {
     let with = |keys: &str| format!("schema = 1\n[effects.facet]\n[animation.facet]\namount = {keys}\n");
-    let many = format!("[{}]", (0..=MAX_KEYS).map(|i| format!("{{ time_s = {i}, value = 0 }}")).collect::<Vec<_>>().join(", "));
+    let many = format!("[{}]", (0..=MAX_KEYFRAMES).map(|i| format!("{{ time_s = {i}, value = 0 }}")).collect::<Vec<_>>().join(", "));
     for (text, wanted) in [
         (with("[{ time_s = 0, value = 2 }]"), "look.toml:4: animation.facet.amount key 1: value 2 lies outside 0..=1"),
         (with("[{ time_s = 0, value = nan }]"), "look.toml:4: animation.facet.amount key 1: value nan is not a finite number"),
@@ -274,8 +277,8 @@ fn keys_that_cannot_be_are_refused_by_name() {
 #[test]
 fn keys_of_what_is_not_there_warn_and_stay() {
     let text = "schema = 1\n[animation.facet]\namount = [{ time_s = 0, value = 1, note = 3 }]\namuont = []\n[animation.fascet]\nx = 1\n";
-    let look = parse(text);
-    let warnings = look.warnings.join("\n");
+    let preset_file = parse(text);
+    let warnings = preset_file.warnings.join("\n");
     for wanted in [
         "look.toml:2: animation.facet moves nothing; add [effects.facet]",
         "look.toml:3: unknown key animation.facet.amount key 1: note",
@@ -284,8 +287,8 @@ fn keys_of_what_is_not_there_warn_and_stay() {
     ] {
         assert!(warnings.contains(wanted), "{wanted:?} is not among\n{warnings}");
     }
-    assert!(look.session.posed_stack().0.is_empty());
-    assert_eq!(preset::to_toml(&look), text);
+    assert!(preset_file.preset.evaluated_stack().0.is_empty());
+    assert_eq!(preset_file::to_toml(&preset_file), text);
 }
 
 #[test]
@@ -294,40 +297,41 @@ fn tables_and_inline_tables_say_the_same_keys() {
         parse("schema = 1\n[effects.facet]\n[animation]\nfacet.amount = [{ time_s = 0, value = 0.5 }, { time_s = 1, value = 1 }]\n");
     let tables = "schema = 1\n[effects.facet]\n[[animation.facet.amount]]\ntime_s = 0\nvalue = 0.5\n[[animation.facet.amount]]\ntime_s = 1\nvalue = 1\n";
     let mut tables = parse(tables);
-    assert_eq!(inline.session, tables.session);
-    let track = tables.session.animation.get_mut("facet", "amount").unwrap();
-    track.move_key(1, 2.0);
-    assert_eq!(parse(&preset::to_toml(&tables)).session, tables.session);
+    assert_eq!(inline.preset, tables.preset);
+    let track = tables.preset.animation.get_mut("facet", "amount").unwrap();
+    track.move_keyframe(1, 2.0);
+    assert_eq!(parse(&preset_file::to_toml(&tables)).preset, tables.preset);
 }
 
 #[test]
 fn keys_are_written_one_a_line_and_comments_stay_with_theirs() {
-    let mut look = parse("schema = 1\n[effects.facet]\n");
+    let mut preset_file = parse("schema = 1\n[effects.facet]\n");
     let keys = [(0.0, 0.0, Easing::Smooth), (1.5, 0.1, Easing::Linear)];
     let keys = keys.map(|(time_s, value, easing)| Keyframe { time_s, value: vec![value], easing }).to_vec();
     let facet = Effect::find("facet").unwrap();
-    look.session.animation.put(Track::new(facet, facet.field("amount").unwrap(), keys).unwrap());
-    let written = preset::to_toml(&look);
+    preset_file.preset.animation.put(Track::new(facet, facet.field("amount").unwrap(), keys).unwrap());
+    let written = preset_file::to_toml(&preset_file);
     let wanted = "schema = 1\n[effects.facet]\n\n[animation.facet]\namount = [\n    { time_s = 0.0, value = 0.0 },\n    { time_s = 1.5, value = 0.1, easing = \"linear\" },\n]\n";
     assert_eq!(written, wanted);
-    let mut look = parse(&written.replace("    { time_s = 1.5, value = 0.1", "    # the end\n    { time_s = 1.50, value = 0.10, mine = 7"));
-    let track = look.session.animation.get_mut("facet", "amount").unwrap();
-    track.move_key(0, 0.25);
+    let mut preset_file =
+        parse(&written.replace("    { time_s = 1.5, value = 0.1", "    # the end\n    { time_s = 1.50, value = 0.10, mine = 7"));
+    let track = preset_file.preset.animation.get_mut("facet", "amount").unwrap();
+    track.move_keyframe(0, 0.25);
     track.set_easing(1, Easing::Out);
-    let written = preset::to_toml(&look);
+    let written = preset_file::to_toml(&preset_file);
     assert!(written.contains("{ time_s = 0.25, value = 0.0 }"), "{written}");
     assert!(written.contains("# the end\n    { time_s = 1.50, value = 0.10, mine = 7, easing = \"out\" }"), "{written}");
-    preset::unset(&mut look, "animation").unwrap();
-    assert!(!preset::to_toml(&look).contains("animation"), "{}", preset::to_toml(&look));
+    preset_file::unset(&mut preset_file, "animation").unwrap();
+    assert!(!preset_file::to_toml(&preset_file).contains("animation"), "{}", preset_file::to_toml(&preset_file));
 }
 
 #[test]
 fn set_animates_and_a_value_set_by_hand_holds_still() {
-    let mut look = Look::new("new", Session::default());
-    preset::set(&mut look, "animation.facet.amount", "[{ time_s = 0, value = 0 }, { time_s = 1, value = 1 }]").unwrap();
-    preset::set(&mut look, "clock.range_s", "[1, 2]").unwrap();
-    assert!(look.session.is_moving() && look.session.stack.get("facet").is_some());
-    assert_eq!(parse(&preset::to_toml(&look)).session, look.session);
+    let mut preset_file = PresetFile::new("new", Preset::default());
+    preset_file::set(&mut preset_file, "animation.facet.amount", "[{ time_s = 0, value = 0 }, { time_s = 1, value = 1 }]").unwrap();
+    preset_file::set(&mut preset_file, "clock.range_s", "[1, 2]").unwrap();
+    assert!(preset_file.preset.is_moving() && preset_file.preset.stack.get("facet").is_some());
+    assert_eq!(parse(&preset_file::to_toml(&preset_file)).preset, preset_file.preset);
     for (path, value, wanted) in [
         ("animation.facet.amount", "[{ time_s = 0, value = 9 }]", "key 1: value 9 lies outside 0..=1"),
         ("animation.facet.amount", "[", "--set animation.facet.amount=["),
@@ -336,15 +340,15 @@ fn set_animates_and_a_value_set_by_hand_holds_still() {
         ("animation.camera.eye", "[]", "is unknown; parameters of effects can be animated"),
         ("clock.range_s", "[2, 1]", "clock.range_s must rise"),
     ] {
-        let error = preset::set(&mut look, path, value).unwrap_err().to_string();
+        let error = preset_file::set(&mut preset_file, path, value).unwrap_err().to_string();
         assert!(error.contains(wanted) && !error.contains('\n'), "{error}");
     }
-    preset::set(&mut look, "facet.amount", "0.5").unwrap();
-    assert!(look.session.animation.is_empty() && !look.session.is_moving());
+    preset_file::set(&mut preset_file, "facet.amount", "0.5").unwrap();
+    assert!(preset_file.preset.animation.is_empty() && !preset_file.preset.is_moving());
     for unset in ["animation.facet.amount", "animation.facet", "animation", "facet.amount", "facet"] {
-        preset::set(&mut look, "animation.facet.amount", "[{ time_s = 0, value = 0 }]").unwrap();
-        preset::unset(&mut look, unset).unwrap();
-        assert!(look.session.animation.is_empty(), "{unset}");
+        preset_file::set(&mut preset_file, "animation.facet.amount", "[{ time_s = 0, value = 0 }]").unwrap();
+        preset_file::unset(&mut preset_file, unset).unwrap();
+        assert!(preset_file.preset.animation.is_empty(), "{unset}");
     }
 }
 
@@ -359,8 +363,8 @@ fn a_syntax_error_names_its_line() {
 
 #[test]
 fn unknown_keys_warn_with_a_suggestion_and_strictness_refuses_them() {
-    let look = parse("schema = 1\nnmae = 1\n[effects.fascet]\n[effects.lambert]\nsnu = 1\n[camera]\nfov = 3\n[otuput]\n");
-    let warnings = look.warnings.join("\n");
+    let preset_file = parse("schema = 1\nnmae = 1\n[effects.fascet]\n[effects.lambert]\nsnu = 1\n[camera]\nfov = 3\n[otuput]\n");
+    let warnings = preset_file.warnings.join("\n");
     for wanted in [
         "look.toml:2: unknown key nmae; did you mean \"name\"?",
         "look.toml:3: unknown key effects.fascet; did you mean \"facet\"?",
@@ -370,18 +374,18 @@ fn unknown_keys_warn_with_a_suggestion_and_strictness_refuses_them() {
     ] {
         assert!(warnings.contains(wanted), "{wanted:?} is not among\n{warnings}");
     }
-    assert!(matches!(look.strict(), Err(PresetError::Strict(warnings)) if warnings.len() == 5));
+    assert!(matches!(preset_file.strict(), Err(PresetError::Strict(warnings)) if warnings.len() == 5));
     assert!(parse("name = \"x\"").warnings[0].contains("schema is missing"));
 }
 
 #[test]
 fn a_newer_schema_opens_read_only_and_is_never_written() {
-    let mut look = parse("schema = 99\nname = \"new\"\n");
-    assert!(look.read_only && look.warnings[0].contains("schema 99 is newer"));
-    look.session.name = "changed".into();
+    let mut preset_file = parse("schema = 99\nname = \"new\"\n");
+    assert!(preset_file.read_only && preset_file.warnings[0].contains("schema 99 is newer"));
+    preset_file.preset.name = "changed".into();
     let folder = tempfile::tempdir().unwrap();
     let target = folder.path().join("copy.toml");
-    assert!(matches!(preset::save(&mut look, &target), Err(PresetError::ReadOnly { .. })));
+    assert!(matches!(preset_file::save(&mut preset_file, &target), Err(PresetError::ReadOnly { .. })));
     assert!(!target.exists());
 }
 
@@ -389,17 +393,17 @@ fn a_newer_schema_opens_read_only_and_is_never_written() {
 fn saving_is_atomic_and_leaves_an_unmodified_file_alone() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("mine.toml");
-    let mut look = Look::new("new", Session::default());
-    preset::save(&mut look, &path).unwrap();
-    assert_eq!((look.id.as_str(), look.path.as_deref()), ("mine", Some(path.as_path())));
+    let mut preset_file = PresetFile::new("new", Preset::default());
+    preset_file::save(&mut preset_file, &path).unwrap();
+    assert_eq!((preset_file.id.as_str(), preset_file.path.as_deref()), ("mine", Some(path.as_path())));
     let stamp = |path: &Path| std::fs::metadata(path).unwrap().modified().unwrap();
     let before = stamp(&path);
     std::thread::sleep(std::time::Duration::from_millis(20));
-    preset::save(&mut look, &path).unwrap();
-    assert_eq!(stamp(&path), before, "an unmodified look was rewritten");
-    preset::set(&mut look, "name", "Changed").unwrap();
-    preset::save(&mut look, &path).unwrap();
-    assert_eq!(preset::load(&path).unwrap().session.name, "Changed");
+    preset_file::save(&mut preset_file, &path).unwrap();
+    assert_eq!(stamp(&path), before, "an unmodified preset was rewritten");
+    preset_file::set(&mut preset_file, "name", "Changed").unwrap();
+    preset_file::save(&mut preset_file, &path).unwrap();
+    assert_eq!(preset_file::load(&path).unwrap().preset.name, "Changed");
     let names: Vec<_> = std::fs::read_dir(folder.path()).unwrap().map(|e| e.unwrap().file_name()).collect();
     assert_eq!(names, ["mine.toml"], "no temporary file is left behind");
 }
@@ -408,36 +412,36 @@ fn saving_is_atomic_and_leaves_an_unmodified_file_alone() {
 fn a_failed_save_keeps_the_old_file_and_the_unsaved_state() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("kept.toml");
-    let mut look = Look::new("new", Session { name: "old".into(), ..Session::default() });
-    preset::save(&mut look, &path).unwrap();
+    let mut preset_file = PresetFile::new("new", Preset { name: "old".into(), ..Preset::default() });
+    preset_file::save(&mut preset_file, &path).unwrap();
     let mut permissions = std::fs::metadata(&path).unwrap().permissions();
     permissions.set_readonly(true);
     std::fs::set_permissions(&path, permissions).unwrap();
-    look.session.name = "new".into();
-    assert!(matches!(preset::save(&mut look, &path), Err(PresetError::Write { .. })));
-    assert!(look.is_modified());
-    assert_eq!(preset::load(&path).unwrap().session.name, "old");
-    assert!(matches!(preset::save(&mut look, &folder.path().join("no/such/folder.toml")), Err(PresetError::Write { .. })));
+    preset_file.preset.name = "new".into();
+    assert!(matches!(preset_file::save(&mut preset_file, &path), Err(PresetError::Write { .. })));
+    assert!(preset_file.is_modified());
+    assert_eq!(preset_file::load(&path).unwrap().preset.name, "old");
+    assert!(matches!(preset_file::save(&mut preset_file, &folder.path().join("no/such/folder.toml")), Err(PresetError::Write { .. })));
 }
 
 #[test]
 fn saving_elsewhere_keeps_the_way_to_the_model() {
     let folder = tempfile::tempdir().unwrap();
-    let (looks, deeper) = (folder.path().join("looks"), folder.path().join("looks/a/b"));
+    let (preset_files, deeper) = (folder.path().join("preset_files"), folder.path().join("looks/a/b"));
     std::fs::create_dir_all(&deeper).unwrap();
     let model = folder.path().join("scenes/fox.glb");
-    let mut look = Look::of_scene("fox", SceneSource::File(model));
-    preset::save(&mut look, &looks.join("fox.toml")).unwrap();
-    assert_eq!(look.session.scene, SceneSource::File("../scenes/fox.glb".into()));
-    preset::save(&mut look, &deeper.join("fox.toml")).unwrap();
-    assert_eq!(look.session.scene, SceneSource::File("../../../scenes/fox.glb".into()));
-    let absent = preset::load_scene(&look.session, look.path.as_deref()).unwrap_err().to_string();
+    let mut preset_file = PresetFile::of_scene("fox", SceneSource::File(model));
+    preset_file::save(&mut preset_file, &preset_files.join("fox.toml")).unwrap();
+    assert_eq!(preset_file.preset.scene, SceneSource::File("../scenes/fox.glb".into()));
+    preset_file::save(&mut preset_file, &deeper.join("fox.toml")).unwrap();
+    assert_eq!(preset_file.preset.scene, SceneSource::File("../../../scenes/fox.glb".into()));
+    let absent = preset_file::load_scene(&preset_file.preset, preset_file.path.as_deref()).unwrap_err().to_string();
     assert!(absent.contains("fox.glb, which is not there"), "{absent}");
 }
 
 #[test]
 fn set_obeys_the_rules_of_files() {
-    let mut look = Look::new("new", Session::default());
+    let mut preset_file = PresetFile::new("new", Preset::default());
     for (path, value, wanted) in [
         ("facet.amount", "2", "--set facet.amount=2: facet.amount 2 lies outside 0..=1"),
         ("facet.amount", "inf", "facet.amount inf is not a finite number"),
@@ -447,10 +451,10 @@ fn set_obeys_the_rules_of_files() {
         ("facet", "1", "facet takes no value"),
         ("stack", "[\"facet\"]", "stack names facet, which is not enabled"),
     ] {
-        let error = preset::set(&mut look, path, value).unwrap_err().to_string();
+        let error = preset_file::set(&mut preset_file, path, value).unwrap_err().to_string();
         assert!(error.contains(wanted), "{error}");
     }
-    assert_eq!(look.session, Session::default(), "a refused value changes nothing");
+    assert_eq!(preset_file.preset, Preset::default(), "a refused value changes nothing");
     for (path, value) in [
         ("effects.facet.pattern", "random"),
         ("depth.fit", "false"),
@@ -458,13 +462,13 @@ fn set_obeys_the_rules_of_files() {
         ("scene.builtin", "teapot?tess=16"),
         ("tags", "[\"a\"]"),
     ] {
-        preset::set(&mut look, path, value).unwrap_or_else(|e| panic!("{e}"));
+        preset_file::set(&mut preset_file, path, value).unwrap_or_else(|e| panic!("{e}"));
     }
-    assert_eq!((look.session.name.as_str(), look.session.stack.0.len()), ("42", 2));
-    assert_eq!(look.session.scene, SceneSource::Builtin("teapot?tess=16".into()));
-    preset::set(&mut look, "camera.orthographic_height_m", "3").unwrap();
-    preset::unset(&mut look, "camera.orthographic_height_m").unwrap();
-    assert_eq!(look.session.camera, Some(Camera::default()));
+    assert_eq!((preset_file.preset.name.as_str(), preset_file.preset.stack.0.len()), ("42", 2));
+    assert_eq!(preset_file.preset.scene, SceneSource::Builtin("teapot?tess=16".into()));
+    preset_file::set(&mut preset_file, "camera.orthographic_height_m", "3").unwrap();
+    preset_file::unset(&mut preset_file, "camera.orthographic_height_m").unwrap();
+    assert_eq!(preset_file.preset.camera, Some(Camera::default()));
 }
 
 #[test]
@@ -474,24 +478,24 @@ fn hostile_text_is_refused_without_harm() {
     let wide = format!("schema = 1\ntags = [{}]\n", "\"t\",".repeat(1000));
     let huge = "schema = 1\n[effects.facet]\nseed = 99999999999999999999\n".to_owned();
     for text in [deep, long, wide, huge, "\u{0}".into(), "schema = [1]".into(), "=".into(), "[]".into()] {
-        assert!(preset::parse(&text, "hostile").is_err());
+        assert!(preset_file::parse(&text, "hostile").is_err());
     }
     let folder = tempfile::tempdir().unwrap();
     let binary = folder.path().join("binary.toml");
     std::fs::write(&binary, [0xff, 0xfe, 0x00]).unwrap();
-    assert!(preset::load(&binary).unwrap_err().to_string().contains("not UTF-8"));
+    assert!(preset_file::load(&binary).unwrap_err().to_string().contains("not UTF-8"));
 }
 
 #[test]
 fn a_shared_line_gives_the_look_back() {
-    let mut look = parse("schema = 1\nname = \"Tinte ✒\"\n[effects.facet]\namount = 0.1\n# kept\n");
-    look.session.clock.time_s = 0.1;
-    let line = preset::to_line(&look);
+    let mut preset_file = parse("schema = 1\nname = \"Tinte ✒\"\n[effects.facet]\namount = 0.1\n# kept\n");
+    preset_file.preset.clock.time_s = 0.1;
+    let line = preset_file::to_line(&preset_file);
     assert!(line.starts_with("rasterlab1:") && !line.contains('\n'));
     let (head, tail) = line.split_at(30);
-    let back = preset::from_line(&format!("  {head}\n{tail} ")).unwrap();
-    assert_eq!(bits(&back.session), bits(&look.session));
-    assert!(preset::to_toml(&back).contains("# kept"));
+    let back = preset_file::from_line(&format!("  {head}\n{tail} ")).unwrap();
+    assert_eq!(bits(&back.preset), bits(&preset_file.preset));
+    assert!(preset_file::to_toml(&back).contains("# kept"));
 }
 
 #[test]
@@ -503,41 +507,41 @@ fn hostile_shared_lines_are_refused() {
         use base64::Engine as _;
         format!("rasterlab1:{}", base64::engine::general_purpose::STANDARD.encode(deflate.finish().unwrap()))
     };
-    let bomb = preset::from_line(&pack(&vec![b' '; 64 << 20])).unwrap_err().to_string();
+    let bomb = preset_file::from_line(&pack(&vec![b' '; 64 << 20])).unwrap_err().to_string();
     assert!(bomb.contains("more than 1 MiB"), "{bomb}");
     for path in ["../secret.glb", "/etc/passwd", "a/../../b.glb", "C:\\x.glb", "..\\x.glb"] {
         let line = pack(format!("schema = 1\n[scene]\npath = '{path}'\n").as_bytes());
-        let error = preset::from_line(&line).unwrap_err().to_string();
-        assert!(error.contains("leaves the look's own folder"), "{path}: {error}");
+        let error = preset_file::from_line(&line).unwrap_err().to_string();
+        assert!(error.contains("leaves the preset's own folder"), "{path}: {error}");
     }
     for line in ["", "rasterlab2:AAAA", "rasterlab1:", "rasterlab1:!!", "rasterlab1:AAAA"] {
-        assert!(preset::from_line(line).is_err() || line == "rasterlab1:", "{line}");
+        assert!(preset_file::from_line(line).is_err() || line == "rasterlab1:", "{line}");
     }
 }
 
 #[test]
 fn a_saved_picture_gives_its_look_back_and_a_bare_one_says_so() {
-    let look = parse("schema = 1\nname = \"Tinte ✒\"\n[effects.facet]\namount = 0.1\n");
+    let preset_file = parse("schema = 1\nname = \"Tinte ✒\"\n[effects.facet]\namount = 0.1\n");
     let frame = rasterlab::frame::Frame { width: 2, height: 1, color: vec![[1, 2, 3, 255], [4, 5, 6, 255]], ..Default::default() };
-    let provenance = preset::Provenance { adapter: "cpu".into(), driver: "none".into() };
-    let png = preset::png_with_look(&frame, &look, &provenance).unwrap();
-    let back = preset::look_from_png(&png, "shot.png").unwrap();
-    assert_eq!(back.session, look.session);
-    let bare = preset::png_bytes(&frame.color, [2, 1]).unwrap();
-    assert!(preset::look_from_png(&bare, "bare.png").unwrap_err().to_string().contains("bare"));
-    assert!(preset::look_from_png(b"no png", "x.png").is_err());
-    assert!(preset::png_bytes(&[], [0, 1]).is_err());
+    let provenance = preset_file::Provenance { adapter: "cpu".into(), driver: "none".into() };
+    let png = preset_file::png_with_preset(&frame, &preset_file, &provenance).unwrap();
+    let back = preset_file::preset_from_png(&png, "shot.png").unwrap();
+    assert_eq!(back.preset, preset_file.preset);
+    let bare = preset_file::png_bytes(&frame.color, [2, 1]).unwrap();
+    assert!(preset_file::preset_from_png(&bare, "bare.png").unwrap_err().to_string().contains("bare"));
+    assert!(preset_file::preset_from_png(b"no png", "x.png").is_err());
+    assert!(preset_file::png_bytes(&[], [0, 1]).is_err());
 }
 
 #[test]
 fn schema_json_is_up_to_date() {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("presets/schema.json");
     if std::env::var_os("UPDATE_SNAPSHOTS").is_some() {
-        std::fs::write(&path, preset::schema::text()).unwrap();
+        std::fs::write(&path, preset_file::schema::text()).unwrap();
     }
     let stored = std::fs::read_to_string(&path).unwrap_or_default();
     assert!(
-        stored == preset::schema::text(),
+        stored == preset_file::schema::text(),
         "presets/schema.json is stale; UPDATE_SNAPSHOTS=1 cargo test --release --test presets writes it"
     );
 }
@@ -598,14 +602,14 @@ prop_compose! {
 }
 
 /// Time, seed of the value, easing.
-type AnyKey = (f64, u64, usize);
+type AnyKeyframe = (f64, u64, usize);
 
-fn any_keys() -> impl Strategy<Value = Vec<AnyKey>> {
+fn any_keyframes() -> impl Strategy<Value = Vec<AnyKeyframe>> {
     prop::collection::vec((within(-1e9, 1e9), any::<u64>(), 0..Easing::ALL.len()), 1..6)
 }
 
 /// Keys on parameters of the enabled effects.
-fn animated(stack: &rasterlab::effects::Stack, tracks: Vec<(prop::sample::Index, prop::sample::Index, Vec<AnyKey>)>) -> Animation {
+fn animated(stack: &rasterlab::effects::Stack, tracks: Vec<(prop::sample::Index, prop::sample::Index, Vec<AnyKeyframe>)>) -> Animation {
     let mut animation = Animation::default();
     for (effect, field, keys) in tracks.into_iter().filter(|_| !stack.0.is_empty()) {
         let effect = stack.0[effect.index(stack.0.len())].effect;
@@ -626,28 +630,28 @@ fn animated(stack: &rasterlab::effects::Stack, tracks: Vec<(prop::sample::Index,
 }
 
 prop_compose! {
-    fn any_play()(
+    fn any_playback()(
         names in prop::array::uniform2("[^\\p{Cc}]{0,20}"),
         speed in within(-100.0, 100.0),
-        pose_s in prop::option::of(within(0.0, 1e9)),
+        clip_time_s in prop::option::of(within(0.0, 1e9)),
         blend in within(0.0, 1.0),
-    ) -> Play {
+    ) -> ClipPlayback {
         let [clip, other] = names;
-        Play { clip, speed, pose_s, other, blend }
+        ClipPlayback { clip, speed, clip_time_s, other, blend }
     }
 }
 
 prop_compose! {
-    fn any_session()(
+    fn any_preset()(
         texts in prop::array::uniform3("[^\\p{Cc}]{0,40}"),
         tags in prop::collection::vec("[a-z \"\\\\#']{0,12}", 0..4),
-        scene in prop_oneof![Just(SceneSource::Builtin("knot?tess=8".into())), Just(SceneSource::File("a b/fox.glb".into())), Just(Session::default().scene)],
+        scene in prop_oneof![Just(SceneSource::Builtin("knot?tess=8".into())), Just(SceneSource::File("a b/fox.glb".into())), Just(Preset::default().scene)],
         room in prop_oneof![Just(0.0), within(1.0, 100.0)],
         spin_deg_per_s in within(-1e6, 1e6),
-        play in any_play(),
+        play in any_playback(),
         camera in prop::option::of(any_camera()),
         clock in any_clock(),
-        tracks in prop::collection::vec((any::<prop::sample::Index>(), any::<prop::sample::Index>(), any_keys()), 0..5),
+        tracks in prop::collection::vec((any::<prop::sample::Index>(), any::<prop::sample::Index>(), any_keyframes()), 0..5),
         effects in prop::collection::vec(any_effect(), 0..6),
         reversed in any::<bool>(),
         tier in 0..4usize,
@@ -655,7 +659,7 @@ prop_compose! {
         size in prop::array::uniform2(0..=16_384u32),
         background in prop::array::uniform4(0.0..=1.0f32),
         test in prop::option::of((any::<u8>(), any::<u32>())),
-    ) -> Session {
+    ) -> Preset {
         let [name, about, why] = texts;
         let mut stack = rasterlab::effects::Stack::default();
         for (index, seed) in effects {
@@ -667,16 +671,16 @@ prop_compose! {
         if reversed {
             stack.0.reverse();
         }
-        Session {
+        Preset {
             name, about, tags, scene, room, spin_deg_per_s, play, camera,
             polyline: if reversed { [[background[0], -background[1], 1.0], [1e9, background[2], 1e-9], [0.0; 3]].into() } else { [].into() },
             scene_camera: if reversed { "from above".into() } else { String::new() },
             clock,
             animation: animated(&stack, tracks),
             stack,
-            accuracy: Accuracy { tier: Tier::ALL[tier], pins: visibility.map_or(Pins::default(), |i| Pins::of(Visibility::EXACT[i])), ..Accuracy::default() },
+            accuracy: AccuracyRequest { tier: Tier::ALL[tier], pins: visibility.map_or(PinnedOptions::default(), |i| PinnedOptions::of(Visibility::EXACT[i])), ..AccuracyRequest::default() },
             output: Output { size, background },
-            test: test.map(|(max_channel, max_pixels)| Test { max_channel, max_pixels, max_wrong_owner: 0, why: format!("because {why}") }),
+            test: test.map(|(max_channel, max_pixels)| Test { max_channel, max_pixels, max_wrong_triangles: 0, why: format!("because {why}") }),
         }
     }
 }
@@ -685,26 +689,26 @@ proptest! {
     #![proptest_config(ProptestConfig { cases: 300, failure_persistence: None, ..ProptestConfig::default() })]
 
     #[test]
-    fn a_round_trip_keeps_every_bit(session in any_session()) {
-        let text = preset::to_toml(&Look::new("any", session.clone()));
-        let back = preset::parse(&text, "any").map_err(|e| TestCaseError::fail(format!("{e}\n{text}")))?;
-        prop_assert_eq!(bits(&back.session), bits(&session), "{}", text);
+    fn a_round_trip_keeps_every_bit(preset in any_preset()) {
+        let text = preset_file::to_toml(&PresetFile::new("any", preset.clone()));
+        let back = preset_file::parse(&text, "any").map_err(|e| TestCaseError::fail(format!("{e}\n{text}")))?;
+        prop_assert_eq!(bits(&back.preset), bits(&preset), "{}", text);
         prop_assert!(back.warnings.is_empty(), "{:?}", back.warnings);
-        prop_assert_eq!(preset::to_toml(&back), text);
+        prop_assert_eq!(preset_file::to_toml(&back), text);
     }
 
     #[test]
-    fn any_session_can_be_patched_into_any_other(before in any_session(), after in any_session()) {
-        let mut look = parse(&preset::to_toml(&Look::new("any", before)));
-        look.session = after.clone();
-        let text = preset::to_toml(&look);
-        let back = preset::parse(&text, "any").map_err(|e| TestCaseError::fail(format!("{e}\n{text}")))?;
-        prop_assert_eq!(bits(&back.session), bits(&after), "{}", text);
+    fn any_preset_can_be_patched_into_any_other(before in any_preset(), after in any_preset()) {
+        let mut preset_file = parse(&preset_file::to_toml(&PresetFile::new("any", before)));
+        preset_file.preset = after.clone();
+        let text = preset_file::to_toml(&preset_file);
+        let back = preset_file::parse(&text, "any").map_err(|e| TestCaseError::fail(format!("{e}\n{text}")))?;
+        prop_assert_eq!(bits(&back.preset), bits(&after), "{}", text);
     }
 
     #[test]
-    fn whatever_the_time_every_value_stays_inside_its_hard_range(session in any_session(), time_s in any::<f64>()) {
-        for enabled in session.stack_at(time_s).0 {
+    fn whatever_the_time_every_value_stays_inside_its_hard_range(preset in any_preset(), time_s in any::<f64>()) {
+        for enabled in preset.stack_at(time_s).0 {
             for field in enabled.effect.fields {
                 let [low, high] = field.hard.map(|bound| bound as f32);
                 let lanes = field.get(&enabled.words);
@@ -717,16 +721,16 @@ proptest! {
     #[test]
     fn a_parameter_survives_whatever_its_bits(value in finite_f32()) {
         let written = format!("schema = 1\n[effects.facet]\namount = {value:?}\n");
-        match preset::parse(&written, "any") {
-            Ok(look) => prop_assert_eq!(look.session.stack.get("facet").unwrap().effect.field("amount").unwrap().get(&look.session.stack.0[0].words)[0].to_bits(), f64::from(value).to_bits()),
+        match preset_file::parse(&written, "any") {
+            Ok(preset_file) => prop_assert_eq!(preset_file.preset.stack.get("facet").unwrap().effect.field("amount").unwrap().get(&preset_file.preset.stack.0[0].words)[0].to_bits(), f64::from(value).to_bits()),
             Err(error) => prop_assert!(!(0.0..=1.0).contains(&value), "{error}"),
         }
     }
 
     #[test]
     fn no_text_panics(text in "\\PC{0,200}") {
-        let _ = preset::parse(&text, "any");
-        let _ = preset::from_line(&text);
-        let _ = preset::look_from_png(text.as_bytes(), "any");
+        let _ = preset_file::parse(&text, "any");
+        let _ = preset_file::from_line(&text);
+        let _ = preset_file::preset_from_png(text.as_bytes(), "any");
     }
 }

@@ -1,4 +1,4 @@
-//! Promise: every effect has its quartet (two sources, a look, a golden), every look loads strictly, and no snapshot is orphaned.
+//! Promise: every effect has its quartet (two sources, a preset, a golden), every preset loads strictly, and no snapshot is orphaned.
 
 use std::{
     collections::BTreeSet,
@@ -9,8 +9,8 @@ use std::{
 use rasterlab::{
     cli::gallery,
     effects::EFFECTS,
-    preset::{
-        self, BUILTIN_DIR, Look,
+    preset_file::{
+        self, BUILTIN_DIR, PresetFile,
         keys::{KEYS, SECTIONS},
     },
 };
@@ -29,9 +29,9 @@ fn stems(folder: &str, extension: &str) -> BTreeSet<String> {
         .collect()
 }
 
-fn looks() -> Vec<Look> {
+fn preset_files() -> Vec<PresetFile> {
     let path = |stem: &String| -> PathBuf { root().join("presets").join(format!("{stem}.toml")) };
-    stems("presets", "toml").iter().map(|stem| preset::load(&path(stem)).unwrap_or_else(|e| panic!("{e}"))).collect()
+    stems("presets", "toml").iter().map(|stem| preset_file::load(&path(stem)).unwrap_or_else(|e| panic!("{e}"))).collect()
 }
 
 fn effects() -> BTreeSet<String> {
@@ -61,41 +61,46 @@ fn twins_open_with_the_same_sentence() {
 
 #[test]
 fn every_effect_has_a_canonical_look_that_enables_it() {
-    let looks = looks();
+    let preset_files = preset_files();
     for effect in effects() {
-        let look = looks
+        let preset_file = preset_files
             .iter()
-            .find(|look| look.id == effect)
+            .find(|preset_file| preset_file.id == effect)
             .unwrap_or_else(|| panic!("presets/{effect}.toml is missing; rasterlab bless {effect}"));
-        assert!(look.session.stack.get(&effect).is_some(), "presets/{effect}.toml does not enable {effect}");
+        assert!(preset_file.preset.stack.get(&effect).is_some(), "presets/{effect}.toml does not enable {effect}");
     }
 }
 
 #[test]
 fn every_look_loads_strictly_and_has_a_name_a_sentence_tags_and_a_test() {
-    for look in looks() {
-        assert_eq!(look.warnings, Vec::<String>::new(), "{}", look.id);
-        let session = &look.session;
-        assert!(!session.name.is_empty() && !session.about.is_empty() && !session.tags.is_empty(), "{} lacks name, about or tags", look.id);
-        assert!(session.test.is_some(), "{} has no [test] table", look.id);
-        let [width, height] = session.output.size;
-        assert!(width <= 320 && height <= 240, "{}: a golden is at most 320x240", look.id);
+    for preset_file in preset_files() {
+        assert_eq!(preset_file.warnings, Vec::<String>::new(), "{}", preset_file.id);
+        let preset = &preset_file.preset;
+        assert!(
+            !preset.name.is_empty() && !preset.about.is_empty() && !preset.tags.is_empty(),
+            "{} lacks name, about or tags",
+            preset_file.id
+        );
+        assert!(preset.test.is_some(), "{} has no [test] table", preset_file.id);
+        let [width, height] = preset.output.size;
+        assert!(width <= 320 && height <= 240, "{}: a golden is at most 320x240", preset_file.id);
     }
 }
 
 #[test]
 fn every_look_finds_its_scene() {
-    for look in looks() {
-        let scene = preset::load_scene(&look.session, look.path.as_deref()).unwrap_or_else(|e| panic!("{}: {e}", look.id));
-        assert!(scene.triangle_count() > 0, "{} shows nothing", look.id);
+    for preset_file in preset_files() {
+        let scene =
+            preset_file::load_scene(&preset_file.preset, preset_file.path.as_deref()).unwrap_or_else(|e| panic!("{}: {e}", preset_file.id));
+        assert!(scene.triangle_count() > 0, "{} shows nothing", preset_file.id);
     }
 }
 
 #[test]
 fn names_of_looks_are_unique() {
-    let looks = looks();
-    let names: BTreeSet<&str> = looks.iter().map(|look| look.session.name.as_str()).collect();
-    assert_eq!(names.len(), looks.len());
+    let preset_files = preset_files();
+    let names: BTreeSet<&str> = preset_files.iter().map(|preset_file| preset_file.preset.name.as_str()).collect();
+    assert_eq!(names.len(), preset_files.len());
 }
 
 #[test]
@@ -123,7 +128,8 @@ fn no_effect_is_named_like_a_section_or_key() {
 
 #[test]
 fn every_golden_has_its_look_and_sidecar_and_every_tested_look_its_golden() {
-    let tested: BTreeSet<String> = looks().into_iter().filter(|look| look.session.test.is_some()).map(|look| look.id).collect();
+    let tested: BTreeSet<String> =
+        preset_files().into_iter().filter(|preset_file| preset_file.preset.test.is_some()).map(|preset_file| preset_file.id).collect();
     let transient = |stem: &String| [".new", ".diff", ".old"].iter().any(|end| stem.ends_with(end));
     let pictures: BTreeSet<String> = stems("tests/snapshots", "png").into_iter().filter(|stem| !transient(stem)).collect();
     assert_eq!(pictures, tested, "tests/snapshots/*.png against looks with [test]; rasterlab bless --all draws what is missing");

@@ -1,13 +1,13 @@
 //! Promise: every slot choice, with no effect, each, all and every pair of effects, links and validates, with 64-bit
-//! atomics only where a rung asks for them, within eight storage buffers. Needs no adapter.
+//! atomics only where a option asks for them, within eight storage buffers. Needs no adapter.
 
 use rasterlab::{
+    accuracy::{AXES, Culling, DotCulling, Parameters, Visibility},
     effects::{
         EFFECTS, Effect,
-        dots::Strung,
+        dots::LineSource,
         hooks::{Shape, Slot},
     },
-    ladder::{AXES, Culling, DotWay, Parameters, Visibility},
     shader::{
         Fetch, KernelKey, Pass,
         key::{Order, Phase},
@@ -97,7 +97,7 @@ fn tiles_validate_within_eight_storage_buffers_for_every_shape_and_order() {
     }
 }
 
-/// Every rung of every axis, alone and with the effects that meddle with the same slots.
+/// Every option of every axis, alone and with the effects that meddle with the same slots.
 #[test]
 fn every_rung_of_the_ladder_links_and_validates() {
     let effect = |name| Effect::find(name).expect("an effect");
@@ -109,9 +109,9 @@ fn every_rung_of_the_ladder_links_and_validates() {
             let is_meddling = matches!(axis.name, "visibility" | "counting" | "sums" | "depth" | "culling");
             for effects in if is_meddling { &stacks[..] } else { &stacks[1..2] } {
                 let mut key = key(Fetch::Indexed, Visibility::Split32, true, effects.clone());
-                key.rungs.set(axis, place);
+                key.options.set(axis, place);
                 key.order = if effects.contains(&effect("draw_order")) { Order::Submission } else { Order::Free };
-                if key.rungs.parameters == Parameters::Baked {
+                if key.options.parameters == Parameters::Baked {
                     key.baked = effects.iter().map(|effect| (effect.defaults)()).collect();
                 }
                 for pass in all_passes(&key) {
@@ -130,7 +130,7 @@ fn every_way_of_culling_validates_on_every_exact_rung() {
         for &culling in Culling::ALL {
             for effects in slot_stacks() {
                 let mut key = key(Fetch::Indexed, visibility, true, effects);
-                key.rungs.culling = culling;
+                key.options.culling = culling;
                 for pass in all_passes(&key) {
                     let storage = validate(&key, pass);
                     assert!(storage <= 8, "{} of {key} binds {storage} storage buffers", pass.label());
@@ -182,12 +182,12 @@ fn a_stack_that_moves_nothing_leaves_no_trace_of_movement() {
 #[test]
 fn triangles_that_stay_together_share_their_vertices() {
     let effect = |name: &str| Effect::find(name).expect("a listed effect");
-    for (name, has_own_corners) in [("inflate", false), ("wobble", false), ("explode", true)] {
+    for (name, has_unshared_vertices) in [("inflate", false), ("wobble", false), ("explode", true)] {
         let key = key(Fetch::Indexed, Visibility::Split32, true, vec![effect(name)]);
-        assert!(key.moves() && key.parts_corners() == has_own_corners, "{name}");
+        assert!(key.moves() && key.unshares_vertices() == has_unshared_vertices, "{name}");
         let project = linked(&key, Pass::Project);
         let reads_indices = reflect::reflect(&project, false).expect("valid").bindings("project").iter().any(|b| b.name == "index_bytes");
-        assert_eq!(reads_indices, has_own_corners, "{name}: the projection looks up triangles only where it must");
+        assert_eq!(reads_indices, has_unshared_vertices, "{name}: the projection looks up triangles only where it must");
     }
 }
 
@@ -221,10 +221,10 @@ fn an_error_names_the_file_and_line_a_person_wrote() {
 fn every_way_of_choosing_dots_validates_for_every_line_and_backend() {
     let dots = Effect::find("dots").expect("a listed effect");
     for visibility in Visibility::ALL {
-        for way in DotWay::ALL {
-            for strung in [Strung::Edges, Strung::Creases, Strung::Polyline] {
-                let mut key = KernelKey { dots: Some(strung), ..key(Fetch::Indexed, *visibility, true, vec![dots]) };
-                key.rungs.dots = *way;
+        for way in DotCulling::ALL {
+            for line_source in [LineSource::Edges, LineSource::Creases, LineSource::Polyline] {
+                let mut key = KernelKey { dots: Some(line_source), ..key(Fetch::Indexed, *visibility, true, vec![dots]) };
+                key.options.dot_culling = *way;
                 for pass in all_passes(&key) {
                     let storage = validate(&key, pass);
                     assert!(storage <= 8, "{} of {key} binds {storage} storage buffers", pass.label());

@@ -1,5 +1,5 @@
-//! Promise: the light that arrives is what the oracle's own shadow map says, where geometry says, on every rung; mistakes in
-//! it are found; and a look without it has nothing of it. Most of it needs an adapter.
+//! Promise: the light that arrives is what the oracle's own shadow map says, where geometry says, on every option; mistakes in
+//! it are found; and a preset without it has nothing of it. Most of it needs an adapter.
 
 mod common;
 
@@ -8,18 +8,18 @@ use std::sync::Arc;
 use common::*;
 use glam::{DMat4, DVec3};
 use rasterlab::{
+    accuracy::{PinnedOptions, ShadowMapSize, ShadowTaps, Visibility},
     effects::{Effect, Stack, read, shadow::Shadow},
     gpu::{Capture, Renderer},
-    ladder::{Pins, ShadowMap, Taps, Visibility},
     measure::{Budget, compare},
     oracle,
-    plan::Accuracy,
+    plan::AccuracyRequest,
+    preset::Preset,
     scene::{
         Scene,
         camera::{Camera, Projection, View},
-        light::ShadowGrid,
+        light::ShadowResolution,
     },
-    session::Session,
     shader::{Fetch, KernelKey, library::Library, link},
 };
 
@@ -39,15 +39,15 @@ fn light_alone(values: &[(&str, &str, f64)]) -> Stack {
     lit(&["shadow"], &[&[("shadow", "light", 1.0), ("shadow", "sky", 0.0), ("shadow", "ground", 0.0)], values].concat())
 }
 
-fn on(view: &View, map: ShadowMap, taps: Taps) -> View {
-    View { shadow: ShadowGrid::of(map, taps), ..view.clone() }
+fn on(view: &View, map: ShadowMapSize, taps: ShadowTaps) -> View {
+    View { shadow: ShadowResolution::of(map, taps), ..view.clone() }
 }
 
 /// A horizontal square, seen from both sides.
-fn plate(half: f32, height: f32) -> Part {
+fn plate(half: f32, height: f32) -> SimpleMesh {
     let corner = |x: f32, z: f32| [half * x, height, half * z];
     let [a, b, c, d] = [corner(-1.0, 1.0), corner(1.0, 1.0), corner(1.0, -1.0), corner(-1.0, -1.0)];
-    Part { normals: vec![[0.0, 1.0, 0.0]; 6], ..sheet(vec![a, b, c, a, c, d]) }
+    SimpleMesh { normals: vec![[0.0, 1.0, 0.0]; 6], ..sheet(vec![a, b, c, a, c, d]) }
 }
 
 /// A smooth unit sphere.
@@ -60,7 +60,7 @@ fn ball() -> Arc<Scene> {
     };
     let cell = |i: u32, j: u32| [at(i, j), at(i, j + 1), at(i + 1, j + 1), at(i, j), at(i + 1, j + 1), at(i + 1, j)];
     let positions: Vec<[f32; 3]> = (0..ROWS).flat_map(|j| (0..2 * ROWS).flat_map(move |i| cell(i, j))).collect();
-    hand_made(&[Part { normals: positions.clone(), double_sided: false, ..sheet(positions) }])
+    scene_of_meshes(&[SimpleMesh { normals: positions.clone(), double_sided: false, ..sheet(positions) }])
 }
 
 fn slanted(scene: &Scene, size: [u32; 2]) -> View {
@@ -84,17 +84,18 @@ fn on_floor(view: &View, x: usize, y: usize) -> DVec3 {
 fn a_plate_throws_its_shadow_where_geometry_says_to_a_texel() {
     let Some(mut renderer) = renderer() else { return };
     const HALF: f64 = 0.6;
-    let scene = hand_made(&[plate(2.0, 0.0), plate(HALF as f32, 1.0)]);
+    let scene = scene_of_meshes(&[plate(2.0, 0.0), plate(HALF as f32, 1.0)]);
     for (azimuth, elevation) in [(0.0, 90.0), (25.0, 60.0), (-130.0, 40.0)] {
         let stack = light_alone(&[("shadow", "azimuth_deg", azimuth), ("shadow", "elevation_deg", elevation)]);
         let toward = read::<Shadow>(&stack.0[0].words).toward();
-        for map in [ShadowMap::Side256, ShadowMap::Side512] {
-            let view = on(&slanted(&scene, [200, 150]), map, Taps::One);
+        for map in [ShadowMapSize::Side256, ShadowMapSize::Side512] {
+            let view = on(&slanted(&scene, [200, 150]), map, ShadowTaps::One);
             let light = stack.light_view(&scene, &view).expect("there is a light");
             let texel_m = 2.0 / (light.clip_from_world.row(0).truncate().length() * f64::from(light.width));
-            let (capture, _) = exact(&mut renderer, &scene, &view, &stack, &Accuracy::default(), &format!("{azimuth} {elevation} {map:?}"));
+            let (capture, _) =
+                exact(&mut renderer, &scene, &view, &stack, &AccuracyRequest::default(), &format!("{azimuth} {elevation} {map:?}"));
             let mut counts = [0, 0];
-            for (i, color) in capture.frame.color.iter().enumerate().filter(|(i, _)| capture.frame.owner[*i] < 2) {
+            for (i, color) in capture.frame.color.iter().enumerate().filter(|(i, _)| capture.frame.triangle_id[*i] < 2) {
                 let above = on_floor(&view, i % view.width as usize, i / view.width as usize) + toward / toward.y;
                 let inside = HALF - above.x.abs().max(above.z.abs());
                 if inside.abs() * toward.y <= texel_m {
@@ -113,14 +114,14 @@ fn a_plate_throws_its_shadow_where_geometry_says_to_a_texel() {
 fn what_nothing_covers_is_lit_and_what_is_covered_is_dark() {
     let Some(mut renderer) = renderer() else { return };
     let above = [("shadow", "elevation_deg", 90.0)];
-    let (alone, covered) = (hand_made(&[plate(1.0, 0.0)]), hand_made(&[plate(1.0, 0.0), plate(1.5, 1.5)]));
+    let (alone, covered) = (scene_of_meshes(&[plate(1.0, 0.0)]), scene_of_meshes(&[plate(1.0, 0.0), plate(1.5, 1.5)]));
     let low = |scene: &Scene| seen(scene, &Camera { eye: DVec3::new(0.5, 0.8, 6.0), ..Camera::default() }, [160, 120]);
-    for map in [ShadowMap::Side256, ShadowMap::Side1024] {
-        for taps in [Taps::One, Taps::Nine, Taps::TwentyFive] {
+    for map in [ShadowMapSize::Side256, ShadowMapSize::Side1024] {
+        for taps in [ShadowTaps::One, ShadowTaps::Nine, ShadowTaps::TwentyFive] {
             for (scene, byte) in [(&alone, 255), (&covered, 0)] {
                 let (view, what) = (on(&low(scene), map, taps), format!("{map:?} {taps:?} {byte}"));
-                let (capture, _) = exact(&mut renderer, scene, &view, &light_alone(&above), &Accuracy::default(), &what);
-                let floor = capture.frame.owner.iter().zip(&capture.frame.color).filter(|(owner, _)| **owner < 2);
+                let (capture, _) = exact(&mut renderer, scene, &view, &light_alone(&above), &AccuracyRequest::default(), &what);
+                let floor = capture.frame.triangle_id.iter().zip(&capture.frame.color).filter(|(triangle_id, _)| **triangle_id < 2);
                 let wrong = floor.clone().filter(|(_, color)| color[0] != byte).count();
                 assert!(floor.count() > 300 && wrong == 0, "{what}: {wrong} pixels");
             }
@@ -143,11 +144,11 @@ fn a_ball_casts_no_shadow_on_its_lit_side() {
     for (azimuth, elevation) in [(40.0, 48.0), (-70.0, 10.0), (0.0, 90.0)] {
         let towards = [("shadow", "azimuth_deg", azimuth), ("shadow", "elevation_deg", elevation)];
         let bare = light_alone(&[&towards[..], &[("shadow", "strength", 0.0)]].concat());
-        for &map in ShadowMap::ALL {
-            for &taps in Taps::ALL {
+        for &map in ShadowMapSize::ALL {
+            for &taps in ShadowTaps::ALL {
                 let view = on(&view, map, taps);
                 let [unshaded, shaded] =
-                    [&bare, &light_alone(&towards)].map(|stack| captured(&mut renderer, &scene, &view, stack, &Accuracy::default()));
+                    [&bare, &light_alone(&towards)].map(|stack| captured(&mut renderer, &scene, &view, stack, &AccuracyRequest::default()));
                 assert_eq!(acne(&unshaded, &shaded), 0, "{azimuth} {elevation} {map:?} {taps:?}");
             }
         }
@@ -155,7 +156,7 @@ fn a_ball_casts_no_shadow_on_its_lit_side() {
     // The test can fail: surfaces behind their own depths are speckled.
     let drowned = light_alone(&[("shadow", "bias", -1.0)]);
     let [unshaded, shaded] = [light_alone(&[("shadow", "strength", 0.0)]), drowned]
-        .map(|stack| captured(&mut renderer, &scene, &view, &stack, &Accuracy::default()));
+        .map(|stack| captured(&mut renderer, &scene, &view, &stack, &AccuracyRequest::default()));
     assert!(acne(&unshaded, &shaded) > 1000);
 }
 
@@ -168,7 +169,7 @@ fn a_light_that_looks_as_the_eye_does_sees_all_that_the_eye_sees() {
     let camera = Camera { eye: toward * 4.0, projection: Projection::Orthographic { height_m: 2.4 }, ..Camera::default() };
     let view = seen(&scene, &camera, [160, 120]);
     let [unshaded, shaded] = [light_alone(&[&towards[..], &[("shadow", "strength", 0.0)]].concat()), light_alone(&towards)]
-        .map(|stack| captured(&mut renderer, &scene, &view, &stack, &Accuracy::default()));
+        .map(|stack| captured(&mut renderer, &scene, &view, &stack, &AccuracyRequest::default()));
     assert_eq!(acne(&unshaded, &shaded), 0);
 }
 
@@ -202,11 +203,11 @@ fn every_case_is_what_the_oracle_says_on_every_rung() {
     let Some(mut renderer) = renderer() else { return };
     for (scene, stack) in cases() {
         let names: Vec<&str> = stack.0.iter().map(|enabled| enabled.effect.name).collect();
-        let view = on(&view(&scene, [120, 90]), ShadowMap::Side512, Taps::Nine);
+        let view = on(&view(&scene, [120, 90]), ShadowMapSize::Side512, ShadowTaps::Nine);
         let mut first: Option<Capture> = None;
-        for rung in rungs(&renderer) {
-            let what = format!("{} {names:?} {}", scene.name, rung.name());
-            let (capture, _) = exact(&mut renderer, &scene, &view, &stack, &pinned(rung), &what);
+        for option in options(&renderer) {
+            let what = format!("{} {names:?} {}", scene.name, option.name());
+            let (capture, _) = exact(&mut renderer, &scene, &view, &stack, &pinned(option), &what);
             if let Some(first) = &first {
                 assert_eq!(capture.geometry.light, first.geometry.light, "{what}: the map");
                 assert_eq!(compare::pictures(&capture.frame.color, &first.frame.color, 0).max_delta, 0, "{what}: the picture");
@@ -220,9 +221,9 @@ fn every_case_is_what_the_oracle_says_on_every_rung() {
 fn every_size_of_map_and_filter_is_what_the_oracle_says() {
     let Some(mut renderer) = renderer() else { return };
     let scene = boxed("knot?tess=6");
-    let quick = quick_rung(&renderer);
-    for &map in ShadowMap::ALL {
-        for &taps in Taps::ALL {
+    let quick = quick_option(&renderer);
+    for &map in ShadowMapSize::ALL {
+        for &taps in ShadowTaps::ALL {
             let view = on(&view(&scene, [96, 72]), map, taps);
             let (capture, _) = exact(&mut renderer, &scene, &view, &lit(&["shadow"], &[]), &pinned(quick), &format!("{map:?} {taps:?}"));
             let keys = &capture.geometry.light.expect("there is a map").keys;
@@ -235,8 +236,8 @@ fn every_size_of_map_and_filter_is_what_the_oracle_says() {
 fn the_light_may_stand_anywhere() {
     let Some(mut renderer) = renderer() else { return };
     let scene = boxed("teapot?tess=4");
-    let quick = quick_rung(&renderer);
-    let coarse = |scene: &Scene| on(&view(scene, [96, 72]), ShadowMap::Side256, Taps::TwentyFive);
+    let quick = quick_option(&renderer);
+    let coarse = |scene: &Scene| on(&view(scene, [96, 72]), ShadowMapSize::Side256, ShadowTaps::TwentyFive);
     for (azimuth, elevation) in [(0.0, 90.0), (77.0, -90.0), (0.0, 0.0), (90.0, 0.0), (-180.0, 89.9999), (35_999.0, -35.0)] {
         let stack = lit(&["shadow"], &[("shadow", "azimuth_deg", azimuth), ("shadow", "elevation_deg", elevation)]);
         exact(&mut renderer, &scene, &coarse(&scene), &stack, &pinned(quick), &format!("{azimuth} {elevation}"));
@@ -245,21 +246,21 @@ fn the_light_may_stand_anywhere() {
         let stack = lit(&["shadow"], &[("shadow", "bias", bias), ("shadow", "slope", slope)]);
         let (_, verdict) = judged(&mut renderer, &scene, &coarse(&scene), &stack, &pinned(quick));
         let a = &verdict.accuracy;
-        assert!(a.max_colour_delta <= 1 && a.owner_mismatch + a.key_outside_bound == 0, "{bias} {slope}: {a:?}");
+        assert!(a.max_color_delta <= 1 && a.wrong_triangles + a.key_outside_bound == 0, "{bias} {slope}: {a:?}");
     }
 }
 
-/// The light's view drawn as a picture: owners to the sample, keys within their bound, and the map has those keys.
+/// The light's view drawn as a picture: triangle ids to the sample, keys within their bound, and the map has those keys.
 #[test]
 fn the_map_is_the_picture_that_the_light_sees() {
     let Some(mut renderer) = renderer() else { return };
     for (scene, stack) in cases().into_iter().filter(|(scene, _)| scene.triangle_count() > 0) {
-        let view = on(&view(&scene, [64, 48]), ShadowMap::Side256, Taps::One);
-        let capture = captured(&mut renderer, &scene, &view, &stack, &Accuracy::default());
+        let view = on(&view(&scene, [64, 48]), ShadowMapSize::Side256, ShadowTaps::One);
+        let capture = captured(&mut renderer, &scene, &view, &stack, &AccuracyRequest::default());
         let map = capture.geometry.light.expect("there is a map");
         let (light, casting) = (stack.light_view(&scene, &view).expect("there is a light"), stack.casting());
         let (seen, verdict) = judged(&mut renderer, &scene, &light, &casting, &pinned(Visibility::Split32));
-        // A map has depths and no owners, and layers a quantum apart are all in the band.
+        // A map has depths and no triangle ids, and layers a quantum apart are all in the band.
         verdict.accuracy.within(&Budget::default()).unwrap_or_else(|faults| panic!("{}: {faults}", scene.name));
         assert!(seen.frame.key == map.keys, "{}: the map has other depths", scene.name);
         assert_eq!(seen.geometry.vertices, map.geometry.vertices, "{}", scene.name);
@@ -275,32 +276,33 @@ fn the_map_is_the_picture_that_the_light_sees() {
 fn finer_maps_are_nearer_to_the_rays() {
     let scene = boxed("knot?tess=8");
     let stack = lit(&["shadow"], &[]);
-    let errors = |map: ShadowMap, taps: Taps| {
+    let errors = |map: ShadowMapSize, taps: ShadowTaps| {
         let view = on(&view(&scene, [240, 180]), map, taps);
-        let owners = oracle::render(&scene, &view, &stack).expect("a scene that fits").owner;
+        let triangle_ids = oracle::render(&scene, &view, &stack).expect("a scene that fits").triangle_id;
         let draws = rasterlab::scene::draw::draws(&scene, &view).expect("a scene that fits");
         let light = oracle::shadow_map(&scene, &view, &stack).expect("a scene that fits");
         let geometry = rasterlab::frame::Geometry { light, ..oracle::project(&scene, &draws, &view) };
-        oracle::light_errors(&scene, &view, &stack, &owners, &geometry).expect("a scene that fits").expect("there is a light")
+        oracle::shadow_errors(&scene, &view, &stack, &triangle_ids, &geometry).expect("a scene that fits").expect("there is a light")
     };
-    let [coarse, usual, fine] = [ShadowMap::Side256, ShadowMap::Side1024, ShadowMap::Side4096].map(|map| errors(map, Taps::One));
+    let [coarse, usual, fine] =
+        [ShadowMapSize::Side256, ShadowMapSize::Side1024, ShadowMapSize::Side4096].map(|map| errors(map, ShadowTaps::One));
     assert!(coarse.pixels > 10_000 && coarse.pixels == fine.pixels);
     assert!(coarse.wrong > usual.wrong && usual.wrong > fine.wrong, "{coarse:?} {usual:?} {fine:?}");
     assert!(coarse.rms > 1.2 * usual.rms && usual.rms > 1.2 * fine.rms, "{coarse:?} {usual:?} {fine:?}");
     assert!(fine.wrong * 1000 < fine.pixels, "{fine:?}: one in a thousand even with the finest map");
     // A wider filter is softer than a light without extent, so it errs more in all, and seldom by half.
-    let soft = errors(ShadowMap::Side1024, Taps::TwentyFive);
+    let soft = errors(ShadowMapSize::Side1024, ShadowTaps::TwentyFive);
     assert!(soft.wrong < 2 * usual.wrong, "{usual:?} {soft:?}");
 }
 
 #[test]
 fn rays_know_a_plate_from_the_sky() {
-    let scene = hand_made(&[plate(2.0, 0.0), plate(0.6, 1.0)]);
+    let scene = scene_of_meshes(&[plate(2.0, 0.0), plate(0.6, 1.0)]);
     let stack = light_alone(&[("shadow", "elevation_deg", 90.0)]);
     let view = slanted(&scene, [120, 90]);
     let frame = oracle::render_reference(&scene, &view, &stack).expect("a scene that fits");
     let mut counts = [0, 0];
-    for (i, color) in frame.color.iter().enumerate().filter(|(i, _)| frame.owner[*i] < 2) {
+    for (i, color) in frame.color.iter().enumerate().filter(|(i, _)| frame.triangle_id[*i] < 2) {
         let at = on_floor(&view, i % 120, i / 120);
         let inside = 0.6 - at.x.abs().max(at.z.abs());
         if inside.abs() > 1e-3 {
@@ -338,22 +340,22 @@ fn a_look_without_a_light_has_no_pass_buffer_or_text_of_it() {
         names.chain(reasons).filter(|name| ["light", "shadow", "taps"].iter().any(|word| name.contains(word))).cloned().collect::<Vec<_>>()
     };
     for (effects, is_there) in [(&["lambert"], false), (&["shadow"], true), (&["lambert"], false)] {
-        captured(&mut renderer, &scene, &view, &stack(effects), &Accuracy::default());
+        captured(&mut renderer, &scene, &view, &stack(effects), &AccuracyRequest::default());
         assert_eq!(!traces(&renderer).is_empty(), is_there, "{effects:?}: {:?}", traces(&renderer));
     }
-    captured(&mut renderer, &scene, &view, &stack(&["shadow"]), &Accuracy::default());
+    captured(&mut renderer, &scene, &view, &stack(&["shadow"]), &AccuracyRequest::default());
     let known = renderer.compiled();
-    captured(&mut renderer, &scene, &on(&view, ShadowMap::Side512, Taps::Nine), &stack(&["shadow"]), &Accuracy::default());
+    captured(&mut renderer, &scene, &on(&view, ShadowMapSize::Side512, ShadowTaps::Nine), &stack(&["shadow"]), &AccuracyRequest::default());
     assert_eq!(renderer.compiled(), known, "another size of map compiles nothing");
 }
 
 #[test]
 fn a_look_pins_size_and_taps() {
-    let pins = Pins::of(ShadowMap::Side2048).with(Taps::One);
-    let session = Session { accuracy: Accuracy { pins, ..Accuracy::default() }, ..Session::default() };
-    let view = session.view(&scene("teapot?tess=2"), [8, 8]);
-    assert_eq!(view.shadow, ShadowGrid { side: 2048, taps: 1 });
-    assert_eq!(view.shadow.rungs(), (ShadowMap::Side2048, Taps::One));
+    let pins = PinnedOptions::of(ShadowMapSize::Side2048).with(ShadowTaps::One);
+    let preset = Preset { accuracy: AccuracyRequest { pins, ..AccuracyRequest::default() }, ..Preset::default() };
+    let view = preset.view(&scene("teapot?tess=2"), [8, 8]);
+    assert_eq!(view.shadow, ShadowResolution { side: 2048, taps: 1 });
+    assert_eq!(view.shadow.options(), (ShadowMapSize::Side2048, ShadowTaps::One));
 }
 
 #[test]
@@ -362,9 +364,9 @@ fn walls_catch_shadows_and_cast_none_and_stand_still() {
     let scene = boxed("teapot?tess=4");
     let walls = u64::from(scene.primitives[scene.instances.last().expect("a room").primitive].vertex_count());
     let from_below = lit(&["shadow"], &[("shadow", "elevation_deg", -50.0)]);
-    let coarse = on(&view(&scene, [96, 72]), ShadowMap::Side256, Taps::Nine);
+    let coarse = on(&view(&scene, [96, 72]), ShadowMapSize::Side256, ShadowTaps::Nine);
     let turned = View { world_from_scene: rasterlab::math::rotation_y(0.7), ..coarse };
-    let (capture, _) = exact(&mut renderer, &scene, &turned, &from_below, &Accuracy::default(), "from below");
+    let (capture, _) = exact(&mut renderer, &scene, &turned, &from_below, &AccuracyRequest::default(), "from below");
     let map = capture.geometry.light.expect("there is a map");
     assert_eq!(map.geometry.vertices.len() as u64 + walls, scene.vertex_count());
     assert!(map.keys.contains(&0) && map.keys.iter().any(|&key| key != 0));
@@ -396,9 +398,9 @@ fn mistakes_in_the_light_are_found() {
     ] {
         let mutated = mutated(file, from, to);
         let mut renderer = Renderer::with_library(gpu.clone(), mutated.shaders());
-        let view = on(&view(&scene, [120, 90]), ShadowMap::Side512, Taps::Nine);
-        let rung = if rungs(&renderer).contains(&Visibility::Packed64) { Visibility::Packed64 } else { Visibility::Tiled };
-        let (_, verdict) = judged(&mut renderer, &scene, &view, stack, &pinned(rung));
+        let view = on(&view(&scene, [120, 90]), ShadowMapSize::Side512, ShadowTaps::Nine);
+        let option = if options(&renderer).contains(&Visibility::Packed64) { Visibility::Packed64 } else { Visibility::Tiled };
+        let (_, verdict) = judged(&mut renderer, &scene, &view, stack, &pinned(option));
         assert!(exactness(&verdict.accuracy).is_err(), "{from:?} as {to:?} in {file} passes: {:?}", verdict.accuracy);
     }
 }

@@ -1,4 +1,4 @@
-//! Promise: skins, shapes and clips bend meshes as glTF and the oracle have it, by both rungs of skinning, and mistakes in
+//! Promise: skins, shapes and clips bend meshes as glTF and the oracle have it, by both options of skinning, and mistakes in
 //! the pass are found. The second half needs an adapter.
 
 mod common;
@@ -8,47 +8,47 @@ use std::sync::Arc;
 use common::*;
 use glam::{DMat4, DQuat, DVec3};
 use rasterlab::{
+    accuracy::{Skinning, Visibility},
     effects::Stack,
     gpu::Renderer,
-    ladder::{Skinning, Visibility},
     math::rounded_columns,
     measure::Budget,
     oracle,
-    plan::Accuracy,
+    plan::AccuracyRequest,
+    preset::{ClipPlayback, Clock, MissingInScene, PinnedOptions, Preset},
     scene::{
         Accessor, Component, Scene,
         camera::View,
         draw::draws,
-        pose::{Bend, Motion, Pose},
-        rig::{Local, Node, Parts},
+        pose::{Deform, Motion, Pose},
+        rig::{Local, Node, Trs},
     },
-    session::{Clock, NoSuch, Pins, Play, Session},
 };
 
-/// A moment of one or two clips of a scene, as a look without a camera shows it.
+/// A moment of one or two clips of a scene, as a preset without a camera shows it.
 fn moment(scene: &Scene, clips: [&str; 2], time_s: f64, skinning: Skinning, size: [u32; 2]) -> View {
     let [clip, other] = clips.map(str::to_owned);
     let blend = if other.is_empty() { 0.0 } else { 0.5 };
-    Session {
-        play: Play { clip, other, blend, ..Play::default() },
+    Preset {
+        play: ClipPlayback { clip, other, blend, ..ClipPlayback::default() },
         clock: Clock { time_s, ..Clock::default() },
-        accuracy: Accuracy { pins: Pins::of(skinning), ..Accuracy::default() },
-        ..Session::default()
+        accuracy: AccuracyRequest { pins: PinnedOptions::of(skinning), ..AccuracyRequest::default() },
+        ..Preset::default()
     }
     .view(scene, size)
 }
 
 /// Every vertex of all draws as the oracle bends it, by its f32 rounding: position and normal.
-fn bent(scene: &Scene, view: &View) -> Vec<[f32; 6]> {
-    oracle::project(scene, &draws(scene, view).expect("a builtin fits"), view).bent
+fn deformed(scene: &Scene, view: &View) -> Vec<[f32; 6]> {
+    oracle::project(scene, &draws(scene, view).expect("a builtin fits"), view).deformed
 }
 
-fn place(bent: &[f32; 6]) -> DVec3 {
-    DVec3::new(bent[0].into(), bent[1].into(), bent[2].into())
+fn place(deformed: &[f32; 6]) -> DVec3 {
+    DVec3::new(deformed[0].into(), deformed[1].into(), deformed[2].into())
 }
 
-fn normal(bent: &[f32; 6]) -> DVec3 {
-    DVec3::new(bent[3].into(), bent[4].into(), bent[5].into())
+fn normal(deformed: &[f32; 6]) -> DVec3 {
+    DVec3::new(deformed[3].into(), deformed[4].into(), deformed[5].into())
 }
 
 // ---------------------------------------------------------------- the oracle alone
@@ -60,9 +60,9 @@ fn a_skeleton_that_stands_as_it_was_bound_leaves_every_bit() {
         let scene = scene(&format!("tentacle?joints=9&tess=3&influences={influences}"));
         for skinning in Skinning::ALL {
             let view = moment(&scene, ["", ""], 0.0, *skinning, [64, 64]);
-            for (vertex, bent) in bent(&scene, &view).iter().enumerate() {
+            for (vertex, deformed) in deformed(&scene, &view).iter().enumerate() {
                 let stored = scene.primitives[0].position(&scene, vertex as u32);
-                assert_eq!(bent[..3], stored, "{} {vertex}", skinning.name());
+                assert_eq!(deformed[..3], stored, "{} {vertex}", skinning.name());
             }
         }
     }
@@ -89,7 +89,7 @@ fn joints_that_all_move_alike_move_the_mesh_as_a_whole() {
     for skinning in Skinning::ALL {
         // At rest, and bent as far as it goes.
         for clips in [["", ""], ["Curl", "Breathe"]] {
-            let [a, b] = [&*still, &moved].map(|scene| bent(scene, &moment(scene, clips, 1.5, *skinning, [64, 64])));
+            let [a, b] = [&*still, &moved].map(|scene| deformed(scene, &moment(scene, clips, 1.5, *skinning, [64, 64])));
             for (a, b) in a.iter().zip(&b) {
                 // Matrices and both vertices are rounded to f32, at some 8 m from the origin.
                 assert!(rigid.transform_point3(place(a)).distance(place(b)) < 4e-6, "{}: {a:?} {b:?}", skinning.name());
@@ -103,7 +103,7 @@ fn joints_that_all_move_alike_move_the_mesh_as_a_whole() {
 fn the_order_in_which_joints_are_named_does_not_matter() {
     let scene = scene("tentacle?tess=3&influences=8");
     let mut turned = (*scene).clone();
-    for set in scene.primitives[0].softness.influences.clone() {
+    for set in scene.primitives[0].deformation.influences.clone() {
         for vertex in 0..set.joints.count {
             let swap = |bytes: &mut [u8], accessor: &Accessor| {
                 let size = accessor.component.bytes() as usize;
@@ -115,7 +115,7 @@ fn the_order_in_which_joints_are_named_does_not_matter() {
         }
     }
     for skinning in Skinning::ALL {
-        let [a, b] = [&*scene, &turned].map(|scene| bent(scene, &moment(scene, ["Sway", "Curl"], 1.1, *skinning, [64, 64])));
+        let [a, b] = [&*scene, &turned].map(|scene| deformed(scene, &moment(scene, ["Sway", "Curl"], 1.1, *skinning, [64, 64])));
         let furthest = a.iter().zip(&b).map(|(a, b)| place(a).distance(place(b))).fold(0.0, f64::max);
         assert!(furthest < 5e-7, "{}: {furthest}", skinning.name());
     }
@@ -126,13 +126,13 @@ fn dual_quaternions_keep_lengths_under_a_twist_where_the_linear_blend_does_not()
     let scene = scene("tentacle?joints=6&tess=6");
     let away = |skinning| {
         let view = moment(&scene, ["Twist", ""], 1.0, skinning, [64, 64]);
-        let shrunk = |(vertex, bent): (usize, &[f32; 6])| {
+        let shrunk = |(vertex, deformed): (usize, &[f32; 6])| {
             let [x, y, z] = scene.primitives[0].position(&scene, vertex as u32).map(f64::from);
             // A twist turns every vertex about the axis: its distance from there stays, and its height.
-            let lost = x.hypot(z) - place(bent).x.hypot(place(bent).z);
-            (lost / x.hypot(z).max(1e-3), (place(bent).y - y).abs())
+            let lost = x.hypot(z) - place(deformed).x.hypot(place(deformed).z);
+            (lost / x.hypot(z).max(1e-3), (place(deformed).y - y).abs())
         };
-        let all: Vec<(f64, f64)> = bent(&scene, &view).iter().enumerate().map(shrunk).collect();
+        let all: Vec<(f64, f64)> = deformed(&scene, &view).iter().enumerate().map(shrunk).collect();
         let largest = |pick: fn(&(f64, f64)) -> f64| all.iter().map(pick).fold(0.0, f64::max);
         (largest(|(lost, _)| lost.abs()), largest(|(_, risen)| *risen))
     };
@@ -163,8 +163,8 @@ fn a_bent_mesh_stays_in_its_box() {
             for step in 0..7 {
                 let view = moment(&scene, [clip, ""], 0.6 * f64::from(step), skinning, [64, 64]);
                 let bounds = view.pose.as_ref().expect("it has a rig").bounds(&scene);
-                for bent in bent(&scene, &view) {
-                    let p = place(&bent);
+                for deformed in deformed(&scene, &view) {
+                    let p = place(&deformed);
                     assert!(p.cmpge(bounds.min - 1e-6).all() && p.cmple(bounds.max + 1e-6).all(), "{query} {clip} {p} {bounds:?}");
                 }
             }
@@ -172,17 +172,17 @@ fn a_bent_mesh_stays_in_its_box() {
     }
 }
 
-/// What [`Bend::position`] gives, which picking uses, is what the oracle says.
+/// What [`Deform::position`] gives, which picking uses, is what the oracle says.
 #[test]
 fn a_click_lands_on_the_bent_mesh() {
     let scene = scene("tentacle?tess=4&influences=8");
     let view = moment(&scene, ["Curl", "Breathe"], 1.4, Skinning::Linear, [64, 48]);
-    let bend: &Bend = view.pose.as_ref().and_then(|pose| pose.bend(0)).expect("it bends");
-    for (vertex, bent) in bent(&scene, &view).iter().enumerate() {
-        assert!(bend.position(&scene, &scene.primitives[0], vertex as u32).distance(place(bent)) < 3e-7);
+    let deform: &Deform = view.pose.as_ref().and_then(|pose| pose.deform(0)).expect("it bends");
+    for (vertex, deformed) in deformed(&scene, &view).iter().enumerate() {
+        assert!(deform.position(&scene, &scene.primitives[0], vertex as u32).distance(place(deformed)) < 3e-7);
     }
     let frame = oracle::render(&scene, &view, &Stack::default()).expect("it fits");
-    let covered = frame.owner.iter().position(|owner| *owner != rasterlab::frame::NO_OWNER).expect("something shows");
+    let covered = frame.triangle_id.iter().position(|triangle_id| *triangle_id != rasterlab::frame::NO_TRIANGLE).expect("something shows");
     let screen = glam::DVec2::new((covered % 64) as f64 + 0.5, (covered / 64) as f64 + 0.5) / glam::DVec2::new(64.0, 48.0);
     assert!(rasterlab::scene::pick::pick(&scene, &view, screen).is_some());
 }
@@ -190,22 +190,22 @@ fn a_click_lands_on_the_bent_mesh() {
 #[test]
 fn a_look_names_its_clips_holds_them_and_says_which_there_are() {
     let scene = scene("tentacle?tess=1");
-    let play = |clip: &str, other: &str| Play { clip: clip.into(), other: other.into(), ..Play::default() };
+    let play = |clip: &str, other: &str| ClipPlayback { clip: clip.into(), other: other.into(), ..ClipPlayback::default() };
     assert_eq!(play("Sway", "#2").check(&scene), Ok(()));
     let known = "; it has \"Sway\", \"Curl\", \"Twist\", \"Breathe\"".to_owned();
-    assert_eq!(play("Sway", "sway").check(&scene), Err(NoSuch { key: "scene.clip_b", what: "clip", asked: "sway".into(), known }));
+    assert_eq!(play("Sway", "sway").check(&scene), Err(MissingInScene { key: "scene.clip_b", what: "clip", asked: "sway".into(), known }));
     assert_eq!(
         play("Walk", "").check(&common::scene("teapot?tess=1")).unwrap_err().to_string(),
         "scene.clip: the scene has no clip \"Walk\"; nothing in it moves"
     );
-    let at = |play: Play, time_s: f64| Session { play, clock: Clock { time_s, ..Clock::default() }, ..Session::default() };
+    let at = |play: ClipPlayback, time_s: f64| Preset { play, clock: Clock { time_s, ..Clock::default() }, ..Preset::default() };
     let moving = at(play("Sway", ""), 1.0);
     assert!(moving.is_moving() && moving.pose(&scene) != at(play("Sway", ""), 2.0).pose(&scene));
-    let held = |time_s| at(Play { pose_s: Some(0.5), ..play("Sway", "") }, time_s);
+    let held = |time_s| at(ClipPlayback { clip_time_s: Some(0.5), ..play("Sway", "") }, time_s);
     assert!(!held(1.0).is_moving() && held(1.0).pose(&scene) == held(2.0).pose(&scene));
-    assert_eq!(at(Play { speed: 0.5, ..play("Sway", "") }, 1.0).pose(&scene), held(0.0).pose(&scene));
+    assert_eq!(at(ClipPlayback { speed: 0.5, ..play("Sway", "") }, 1.0).pose(&scene), held(0.0).pose(&scene));
     assert_eq!(at(play("Sway", ""), 1.0).pose(&scene), at(play("Sway", ""), 4e6 + 1.0).pose(&scene), "a clip goes round for ever");
-    assert_eq!(Session::default().pose(&common::scene("teapot?tess=1")), None);
+    assert_eq!(Preset::default().pose(&common::scene("teapot?tess=1")), None);
 }
 
 #[test]
@@ -223,17 +223,17 @@ fn parts_that_a_clip_moves_are_placed_anew() {
     assert_ne!(a[0].world_from_object, b[0].world_from_object);
     assert_eq!(a[1], b[1], "what hangs on no node stays");
     let upper = scene.rig.nodes[0].rest.matrix();
-    assert_eq!(rounded_columns(&upper), rounded_columns(&Local::Parts(Parts::default()).matrix()));
+    assert_eq!(rounded_columns(&upper), rounded_columns(&Local::Trs(Trs::default()).matrix()));
 }
 
 // ---------------------------------------------------------------- on the adapter
 
 /// What every picture here must keep.
-fn insist(renderer: &mut Renderer, scene: &Arc<Scene>, view: &View, stack: &Stack, rung: Visibility, what: &str) -> f64 {
-    let (_, verdict) = exact(renderer, scene, view, stack, &pinned(rung), what);
+fn insist(renderer: &mut Renderer, scene: &Arc<Scene>, view: &View, stack: &Stack, option: Visibility, what: &str) -> f64 {
+    let (_, verdict) = exact(renderer, scene, view, stack, &pinned(option), what);
     let a = &verdict.accuracy;
-    assert!(a.bent_vertices > 0 && a.max_bend_px < 0.01 && a.max_bend_ulp < 100.0, "{what}: {a:?}");
-    a.max_bend_ulp
+    assert!(a.deformed_vertices > 0 && a.max_deform_px < 0.01 && a.max_deform_ulp < 100.0, "{what}: {a:?}");
+    a.max_deform_ulp
 }
 
 #[test]
@@ -248,9 +248,9 @@ fn every_rung_bends_as_the_oracle_does() {
         {
             for skinning in Skinning::ALL {
                 let view = moment(&scene, clips, time_s, *skinning, [160, 120]);
-                for rung in rungs(&renderer) {
-                    let what = format!("{query} {clips:?} {} {}", skinning.name(), rung.name());
-                    largest = largest.max(insist(&mut renderer, &scene, &view, &stack, rung, &what));
+                for option in options(&renderer) {
+                    let what = format!("{query} {clips:?} {} {}", skinning.name(), option.name());
+                    largest = largest.max(insist(&mut renderer, &scene, &view, &stack, option, &what));
                 }
             }
         }
@@ -283,11 +283,11 @@ fn a_camera_among_the_joints_is_clipped_like_any() {
         near_m: 0.05,
         ..rasterlab::scene::camera::Camera::default()
     };
-    let play = Play { clip: "Sway".into(), ..Play::default() };
-    let session = Session { camera: Some(camera), play, clock: Clock { time_s: 0.7, ..Clock::default() }, ..Session::default() };
-    let view = session.view(&scene, [160, 120]);
+    let play = ClipPlayback { clip: "Sway".into(), ..ClipPlayback::default() };
+    let preset = Preset { camera: Some(camera), play, clock: Clock { time_s: 0.7, ..Clock::default() }, ..Preset::default() };
+    let view = preset.view(&scene, [160, 120]);
     let (capture, verdict) = exact(&mut renderer, &scene, &view, &stack(&["lambert"]), &pinned(Visibility::Split32), "inside");
-    assert!(capture.frame.counters.clipped > 0 && verdict.accuracy.bent_vertices > 0, "{:?}", capture.frame.counters);
+    assert!(capture.frame.counters.clipped > 0 && verdict.accuracy.deformed_vertices > 0, "{:?}", capture.frame.counters);
 }
 
 #[test]
@@ -303,7 +303,7 @@ fn a_thousand_skinned_instances_are_exact() {
 /// The tentacle with weights as they come in files: some zero, some that do not sum to 1.
 fn careless() -> Arc<Scene> {
     let mut scene = (*scene("tentacle?tess=3&influences=8")).clone();
-    for set in scene.primitives[0].softness.influences.clone() {
+    for set in scene.primitives[0].deformation.influences.clone() {
         for vertex in 0..set.weights.count {
             let at = set.weights.offset as usize + vertex as usize * set.weights.stride as usize;
             let weights: &mut [u8] = &mut scene.vertex_bytes[at..at + 8];
@@ -340,13 +340,13 @@ fn quantized_places_are_drawn_and_bent_like_any() {
             scene.vertex_bytes.extend(place.iter().chain([&0]).flat_map(|v| v.to_le_bytes()));
         }
         let count = primitive.vertex_count();
-        scene.primitives[0].positions = Accessor { offset, stride: 8, component: Component::I16, lanes: 3, normalized, count };
+        scene.primitives[0].positions = Accessor { offset, stride: 8, component: Component::I16, components: 3, normalized, count };
         // Shapes and joints are of metres: quantized, the mesh stands still, and scaled by its place.
         let scale = if normalized { 2.5 } else { 1.0 / 2_000.0 };
         let mut placed = scene.clone();
         placed.rig = Default::default();
         placed.instances = vec![rasterlab::scene::Instance::fixed(0, DMat4::from_scale(DVec3::splat(scale)))];
-        placed.primitives[0].softness = Default::default();
+        placed.primitives[0].deformation = Default::default();
         placed.primitives[0].bounds.min *= 1.1 / scale;
         placed.primitives[0].bounds.max *= 1.1 / scale;
         placed.primitives[0].longest_edge *= 1.1 / scale;
@@ -356,7 +356,7 @@ fn quantized_places_are_drawn_and_bent_like_any() {
         if normalized {
             let scene = Arc::new(scene);
             let view = moment(&scene, ["Curl", "Breathe"], 1.2, Skinning::Linear, [160, 120]);
-            insist(&mut renderer, &scene, &view, &stack(&["lambert"]), Visibility::Split32, "bent");
+            insist(&mut renderer, &scene, &view, &stack(&["lambert"]), Visibility::Split32, "deformed");
         }
     }
 }

@@ -1,4 +1,4 @@
-//! Promise: every look with a `[test]` table looks like its golden, and goldens are the oracle's. Needs an adapter for
+//! Promise: every preset with a `[test]` table looks like its golden, and goldens are the oracle's. Needs an adapter for
 //! the pictures alone.
 //!
 //! `UPDATE_SNAPSHOTS=1` redraws the goldens of failing looks, `UPDATE_SNAPSHOTS=force` all of them: always by the
@@ -15,16 +15,16 @@ use std::{
 use common::*;
 use rasterlab::{
     cli::golden::{self, Golden},
-    frame::{Frame, NO_OWNER},
+    frame::{Frame, NO_TRIANGLE},
     measure::{
         Budget,
-        compare::{difference_picture, owners, pictures},
+        compare::{difference_picture, pictures, triangle_ids},
     },
     oracle,
-    plan::Accuracy,
-    preset::{self, Look},
+    plan::AccuracyRequest,
+    preset::{Preset, Visibility},
+    preset_file::{self, PresetFile},
     scene::Scene,
-    session::{Session, Visibility},
 };
 
 type Picture = Vec<[u8; 4]>;
@@ -37,47 +37,47 @@ fn snapshots() -> PathBuf {
     root().join("tests/snapshots")
 }
 
-/// Looks that have a golden, by id.
-fn looks() -> Vec<Look> {
+/// Presets that have a golden, by id.
+fn preset_files() -> Vec<PresetFile> {
     let folder = fs::read_dir(root().join("presets")).expect("presets/ can be read");
     let mut files: Vec<PathBuf> = folder
         .map(|entry| entry.expect("presets/ can be read").path())
         .filter(|path| path.extension().is_some_and(|e| e == "toml"))
         .collect();
     files.sort();
-    let looks = files.iter().map(|file| preset::load(file).unwrap_or_else(|error| panic!("{error}")));
-    looks.filter(|look| look.session.test.is_some()).collect()
+    let preset_files = files.iter().map(|file| preset_file::load(file).unwrap_or_else(|error| panic!("{error}")));
+    preset_files.filter(|preset_file| preset_file.preset.test.is_some()).collect()
 }
 
-fn look(id: &str) -> Look {
-    looks().into_iter().find(|look| look.id == id).unwrap_or_else(|| panic!("no look {id}"))
+fn preset_file(id: &str) -> PresetFile {
+    preset_files().into_iter().find(|preset_file| preset_file.id == id).unwrap_or_else(|| panic!("no preset {id}"))
 }
 
-fn scene_of(look: &Look) -> std::sync::Arc<Scene> {
-    preset::load_scene(&look.session, look.path.as_deref()).unwrap_or_else(|error| panic!("{}: {error}", look.id))
+fn scene_of(preset_file: &PresetFile) -> std::sync::Arc<Scene> {
+    preset_file::load_scene(&preset_file.preset, preset_file.path.as_deref()).unwrap_or_else(|error| panic!("{}: {error}", preset_file.id))
 }
 
-/// The comparator: what is wrong with a picture of `session`, held against its golden; integers and the look's budget.
-fn complaint(session: &Session, actual: &Picture, golden: &Picture) -> Option<String> {
-    complaint_but(session, actual, golden, &[])
+/// The comparator: what is wrong with a picture of `session`, held against its golden; integers and the preset's budget.
+fn complaint(preset: &Preset, actual: &Picture, golden: &Picture) -> Option<String> {
+    complaint_but(preset, actual, golden, &[])
 }
 
 /// The same, where pixels of `band` have two right answers and are left to the judge; empty: none.
-fn complaint_but(session: &Session, actual: &Picture, golden: &Picture, band: &[bool]) -> Option<String> {
-    let budget = session.test.as_ref().expect("a look with a golden");
+fn complaint_but(preset: &Preset, actual: &Picture, golden: &Picture, band: &[bool]) -> Option<String> {
+    let budget = preset.test.as_ref().expect("a preset with a golden");
     let mut held = golden.clone();
     let at_step = band.iter().enumerate().filter(|(_, is_band)| **is_band);
     at_step.for_each(|(i, _)| held[i] = actual[i]);
     let delta = pictures(actual, &held, budget.max_channel);
-    // A wrong owner is a wrong pixel.
-    let allowed = u64::from(budget.max_pixels) + u64::from(budget.max_wrong_owner);
-    if delta.pixels_beyond <= allowed {
+    // A wrong triangle id is a wrong pixel.
+    let allowed = u64::from(budget.max_pixels) + u64::from(budget.max_wrong_triangles);
+    if delta.pixels_over_tolerance <= allowed {
         return None;
     }
-    let first = delta.offenders.first().map(|o| format!(", first at {:?}: {:?} for {:?}", o.place(session.output.size[0]), o.a, o.b));
+    let first = delta.mismatches.first().map(|o| format!(", first at {:?}: {:?} for {:?}", o.place(preset.output.size[0]), o.a, o.b));
     Some(format!(
         "{} pixels differ by more than {} of 255 (at most {} may), largest {}{}",
-        delta.pixels_beyond,
+        delta.pixels_over_tolerance,
         budget.max_channel,
         allowed,
         delta.max_delta,
@@ -86,18 +86,18 @@ fn complaint_but(session: &Session, actual: &Picture, golden: &Picture, band: &[
 }
 
 /// A snapshot on disk with what a failure leaves beside it.
-struct Shelf {
+struct PresetBrowser {
     folder: PathBuf,
     id: String,
 }
 
-impl Shelf {
+impl PresetBrowser {
     fn path(&self, end: &str) -> PathBuf {
         self.folder.join(format!("{}{end}", self.id))
     }
 
     fn leave(&self, end: &str, picture: &Picture, size: [u32; 2]) {
-        fs::write(self.path(end), preset::png_bytes(picture, size).expect("a PNG")).expect("the snapshots folder can be written");
+        fs::write(self.path(end), preset_file::png_bytes(picture, size).expect("a PNG")).expect("the snapshots folder can be written");
     }
 
     /// Removes what an earlier failure or update left.
@@ -116,17 +116,17 @@ impl Shelf {
 
     /// Compares, and leaves `.new.png` and `.diff.png` or takes them away.
     /// Pixels of `band` are left to the judge.
-    fn check(&self, session: &Session, actual: &Picture, band: &[bool]) -> Result<(), String> {
-        let size = session.output.size;
+    fn check(&self, preset: &Preset, actual: &Picture, band: &[bool]) -> Result<(), String> {
+        let size = preset.output.size;
         let [path, _] = golden::paths(&self.folder, &self.id);
         if !path.exists() {
             self.leave(".new.png", actual, size);
             return Err(format!("{}: there is no golden; rasterlab bless {} draws one", self.id, self.id));
         }
-        let complaint = match preset::png_pixels(&path) {
+        let complaint = match preset_file::png_pixels(&path) {
             Err(error) => Some(error.to_string()),
-            Ok((_, golden_size)) if golden_size != size => Some(format!("the golden is {golden_size:?}, the look {size:?}")),
-            Ok((golden, _)) => complaint_but(session, actual, &golden, band).inspect(|_| {
+            Ok((_, golden_size)) if golden_size != size => Some(format!("the golden is {golden_size:?}, the preset {size:?}")),
+            Ok((golden, _)) => complaint_but(preset, actual, &golden, band).inspect(|_| {
                 self.leave(".diff.png", &difference_picture(&golden, actual, 16), size);
             }),
         };
@@ -143,11 +143,11 @@ impl Shelf {
     }
 }
 
-/// Exact, but for what the look's own budget allows.
-fn within_budget(errors: &rasterlab::measure::Accuracy, session: &Session) -> Result<(), String> {
-    match session.test.as_ref().map_or(0, |test| test.max_wrong_owner) {
+/// Exact, but for what the preset's own budget allows.
+fn within_budget(errors: &rasterlab::measure::ErrorReport, preset: &Preset) -> Result<(), String> {
+    match preset.test.as_ref().map_or(0, |test| test.max_wrong_triangles) {
         0 => exactness(errors),
-        most => errors.within(&Budget { max_wrong_owner: most.into(), ..Budget::default() }),
+        most => errors.within(&Budget { max_wrong_triangles: most.into(), ..Budget::default() }),
     }
 }
 
@@ -156,33 +156,33 @@ fn every_look_matches_its_golden_on_every_rung() {
     let Some(mut renderer) = renderer() else { return };
     let update = std::env::var("UPDATE_SNAPSHOTS").unwrap_or_default();
     let mut failures = Vec::new();
-    for look in looks() {
-        let session = &look.session;
-        let shelf = Shelf { folder: snapshots(), id: look.id.clone() };
-        let scene = scene_of(&look);
+    for preset_file in preset_files() {
+        let preset = &preset_file.preset;
+        let shelf = PresetBrowser { folder: snapshots(), id: preset_file.id.clone() };
+        let scene = scene_of(&preset_file);
         if update == "force" {
-            shelf.bless(&golden::draw(&look, &scene).expect("the oracle draws every look"));
+            shelf.bless(&golden::draw(&preset_file, &scene).expect("the oracle draws every preset"));
         }
-        let view = session.view(&scene, session.output.size);
-        for rung in session.accuracy.pins.rung::<Visibility>().map_or_else(|| rungs(&renderer), |pinned| vec![pinned]) {
+        let view = preset.view(&scene, preset.output.size);
+        for option in preset.accuracy.pins.option::<Visibility>().map_or_else(|| options(&renderer), |pinned| vec![pinned]) {
             // Steps of colour and edges of texels leave some pixels two right answers; which, and that one of them was met, is
             // the judge's word.
-            let accuracy = Accuracy { pins: session.accuracy.pins.with(rung), ..session.accuracy };
-            let (actual, band) = if session.stack.has_steps() || session.stack.reads_previous() || !scene.images.is_empty() {
-                let (capture, verdict) = judged_look(&mut renderer, &scene, session, &accuracy);
-                within_budget(&verdict.accuracy, session).unwrap_or_else(|why| panic!("{} {}: {why}", look.id, rung.name()));
+            let accuracy = AccuracyRequest { pins: preset.accuracy.pins.with(option), ..preset.accuracy };
+            let (actual, band) = if preset.stack.has_steps() || preset.stack.reads_previous() || !scene.images.is_empty() {
+                let (capture, verdict) = judged_preset(&mut renderer, &scene, preset, &accuracy);
+                within_budget(&verdict.accuracy, preset).unwrap_or_else(|why| panic!("{} {}: {why}", preset_file.id, option.name()));
                 (capture.frame.color, verdict.step_band)
             } else {
-                (captured(&mut renderer, &scene, &view, &session.posed_stack(), &accuracy).frame.color, Vec::new())
+                (captured(&mut renderer, &scene, &view, &preset.evaluated_stack(), &accuracy).frame.color, Vec::new())
             };
-            let mut outcome = shelf.check(session, &actual, &band);
+            let mut outcome = shelf.check(preset, &actual, &band);
             if outcome.is_err() && update == "1" {
-                shelf.bless(&golden::draw(&look, &scene).expect("the oracle draws every look"));
-                outcome = shelf.check(session, &actual, &band);
+                shelf.bless(&golden::draw(&preset_file, &scene).expect("the oracle draws every preset"));
+                outcome = shelf.check(preset, &actual, &band);
             }
             if let Err(why) = outcome {
-                // Another rung that passes would take the pictures of this failure away.
-                failures.push(format!("{} {why}", rung.name()));
+                // Another option that passes would take the pictures of this failure away.
+                failures.push(format!("{} {why}", option.name()));
                 break;
             }
         }
@@ -202,14 +202,14 @@ fn a_look_that_pins_a_lossy_rung_is_verified_within_the_owners_that_it_may_lose(
         let scene = "grid?cell=4&lattice=2&width=64&height=48";
         let text =
             format!("schema = 1\n[scene]\nbuiltin = \"{scene}\"\n[accuracy]\ncoverage = \"float\"\n[output]\nsize = [64, 48]\n{budget}");
-        fs::write(&path, text).expect("a look can be written");
+        fs::write(&path, text).expect("a preset can be written");
         let mut command = std::process::Command::new(env!("CARGO_BIN_EXE_rasterlab"));
         let run = command.arg("verify").arg(&path).arg("--json").args(["--frames", "2"]).output().expect("the program runs");
         let object: serde_json::Value = serde_json::from_slice(&run.stdout).expect("one object");
         let rows = object["results"].as_array().expect("rows").iter();
-        let figures =
-            rows.flat_map(|row| ["owner_mismatch", "double_hits", "holes", "unexplained"].map(|name| row[name].as_u64().expect("a count")));
-        (run.status.code(), figures.max().expect("a rung"))
+        let stats = rows
+            .flat_map(|row| ["wrong_triangles", "double_hits", "holes", "unexplained"].map(|name| row[name].as_u64().expect("a count")));
+        (run.status.code(), stats.max().expect("a option"))
     };
     let (exit, wrong) = verify("");
     assert!(exit == Some(1) && wrong > 100, "{exit:?}, {wrong} without a budget");
@@ -221,15 +221,15 @@ fn a_look_that_pins_a_lossy_rung_is_verified_within_the_owners_that_it_may_lose(
 #[test]
 fn blessing_everything_again_changes_nothing() {
     let mut changes = Vec::new();
-    for look in looks() {
-        let golden = golden::draw(&look, &scene_of(&look)).expect("the oracle draws every look");
-        let [picture, sidecar] = golden::paths(&snapshots(), &look.id);
-        let (stored, _) = preset::png_pixels(&picture).unwrap_or_else(|error| panic!("{error}"));
+    for preset_file in preset_files() {
+        let golden = golden::draw(&preset_file, &scene_of(&preset_file)).expect("the oracle draws every preset");
+        let [picture, sidecar] = golden::paths(&snapshots(), &preset_file.id);
+        let (stored, _) = preset_file::png_pixels(&picture).unwrap_or_else(|error| panic!("{error}"));
         if stored != golden.frame.color {
-            changes.push(format!("{}: the picture", look.id));
+            changes.push(format!("{}: the picture", preset_file.id));
         }
         if fs::read_to_string(&sidecar).ok().as_ref() != Some(&golden.sidecar) {
-            changes.push(format!("{}: the sidecar", look.id));
+            changes.push(format!("{}: the sidecar", preset_file.id));
         }
     }
     assert_eq!(changes, Vec::<String>::new(), "`rasterlab bless --all --dry-run` says more");
@@ -237,7 +237,7 @@ fn blessing_everything_again_changes_nothing() {
 
 #[test]
 fn every_file_among_the_snapshots_belongs_to_a_look() {
-    let tested: BTreeSet<String> = looks().into_iter().map(|look| look.id).collect();
+    let tested: BTreeSet<String> = preset_files().into_iter().map(|preset_file| preset_file.id).collect();
     let dead: Vec<String> = fs::read_dir(snapshots())
         .expect("the snapshots folder can be read")
         .map(|entry| entry.expect("the snapshots folder can be read").file_name().to_string_lossy().into_owned())
@@ -254,36 +254,36 @@ fn every_file_among_the_snapshots_belongs_to_a_look() {
 #[test]
 fn a_failure_leaves_its_pictures_and_a_pass_takes_them_away() {
     let folder = tempfile::tempdir().expect("a temporary folder");
-    let look = look("facet-knot");
-    let golden = golden::draw(&look, &scene_of(&look)).expect("the oracle draws every look");
-    let shelf = Shelf { folder: folder.path().to_owned(), id: look.id.clone() };
+    let preset_file = preset_file("facet-knot");
+    let golden = golden::draw(&preset_file, &scene_of(&preset_file)).expect("the oracle draws every preset");
+    let shelf = PresetBrowser { folder: folder.path().to_owned(), id: preset_file.id.clone() };
     let there = |end: &str| shelf.path(end).exists();
 
-    assert!(shelf.check(&look.session, &golden.frame.color, &[]).is_err_and(|why| why.contains("no golden")));
+    assert!(shelf.check(&preset_file.preset, &golden.frame.color, &[]).is_err_and(|why| why.contains("no golden")));
     assert!(there(".new.png") && !there(".png"), "a missing golden fails, leaves the picture, and is not made");
 
     shelf.bless(&golden);
-    assert!(shelf.check(&look.session, &golden.frame.color, &[]).is_ok());
+    assert!(shelf.check(&preset_file.preset, &golden.frame.color, &[]).is_ok());
     assert!(!there(".new.png"));
 
     let mut wrong = golden.frame.color.clone();
     wrong[77] = [255, 0, 255, 255];
-    let why = shelf.check(&look.session, &wrong, &[]).expect_err("one wrong pixel");
+    let why = shelf.check(&preset_file.preset, &wrong, &[]).expect_err("one wrong pixel");
     assert!(why.contains("1 pixels differ by more than 1 of 255 (at most 0 may)") && why.contains("[77, 0]"), "{why}");
-    let (left, _) = preset::png_pixels(&shelf.path(".new.png")).expect("the wrong picture");
-    let (diff, _) = preset::png_pixels(&shelf.path(".diff.png")).expect("the difference");
+    let (left, _) = preset_file::png_pixels(&shelf.path(".new.png")).expect("the wrong picture");
+    let (diff, _) = preset_file::png_pixels(&shelf.path(".diff.png")).expect("the difference");
     assert_eq!(left, wrong);
     assert_eq!(diff.iter().filter(|pixel| **pixel != [0, 0, 0, 255]).count(), 1);
 
-    assert!(shelf.check(&look.session, &golden.frame.color, &[]).is_ok());
+    assert!(shelf.check(&preset_file.preset, &golden.frame.color, &[]).is_ok());
     assert!(!there(".new.png") && !there(".diff.png") && there(".png") && there(".json"));
 
     shelf.bless(&golden);
     assert!(there(".old.png"), "an update keeps what was there");
 }
 
-fn drawn(session: &Session, scene: &Scene) -> Frame {
-    oracle::render_last(scene, &session.moments(scene, session.output.size)).expect("the oracle draws every look")
+fn drawn(preset: &Preset, scene: &Scene) -> Frame {
+    oracle::render_sequence(scene, &preset.moments(scene, preset.output.size)).expect("the oracle draws every preset")
 }
 
 /// The scene without one of its triangles, which then has no area; other ids stay.
@@ -296,76 +296,80 @@ fn without(scene: &Scene, triangle: u32) -> Scene {
     scene
 }
 
-/// The owner with the most, or the fewest, pixels.
-fn owner_by_size(frame: &Frame, pick_most: bool) -> u32 {
+/// The triangle id with the most, or the fewest, pixels.
+fn triangle_id_by_size(frame: &Frame, pick_most: bool) -> u32 {
     let mut counts = std::collections::BTreeMap::<u32, i64>::new();
-    frame.owner.iter().filter(|&&owner| owner != NO_OWNER).for_each(|&owner| *counts.entry(owner).or_default() += 1);
+    frame
+        .triangle_id
+        .iter()
+        .filter(|&&triangle_id| triangle_id != NO_TRIANGLE)
+        .for_each(|&triangle_id| *counts.entry(triangle_id).or_default() += 1);
     let sign = if pick_most { 1 } else { -1 };
     counts.into_iter().max_by_key(|(_, count)| sign * count).expect("something is drawn").0
 }
 
 #[test]
 fn mutants_of_every_golden_are_caught() {
-    for look in looks() {
-        let session = &look.session;
-        let frame = drawn(session, &scene_of(&look));
-        let caught = |mutant: Picture| complaint(session, &mutant, &frame.color).is_some();
-        assert!(!caught(frame.color.clone()), "{}: the golden itself", look.id);
-        if !session.stack.is_repeatable() {
+    for preset_file in preset_files() {
+        let preset = &preset_file.preset;
+        let frame = drawn(preset, &scene_of(&preset_file));
+        let caught = |mutant: Picture| complaint(preset, &mutant, &frame.color).is_some();
+        assert!(!caught(frame.color.clone()), "{}: the golden itself", preset_file.id);
+        if !preset.stack.is_repeatable() {
             continue; // What chance decides has a budget that hides smaller faults.
         }
 
-        let width = session.output.size[0] as usize;
+        let width = preset.output.size[0] as usize;
         let rows = |shift: fn(&mut [[u8; 4]])| {
             let mut picture = frame.color.clone();
             picture.chunks_exact_mut(width).for_each(shift);
             picture
         };
-        assert!(caught(rows(|row| row.rotate_right(1))), "{}: one pixel to the right", look.id);
-        assert!(caught(rows(|row| row.rotate_left(1))), "{}: one pixel to the left", look.id);
+        assert!(caught(rows(|row| row.rotate_right(1))), "{}: one pixel to the right", preset_file.id);
+        assert!(caught(rows(|row| row.rotate_left(1))), "{}: one pixel to the left", preset_file.id);
         let mut down = frame.color.clone();
         down.rotate_right(width);
-        assert!(caught(down), "{}: one pixel down", look.id);
+        assert!(caught(down), "{}: one pixel down", preset_file.id);
 
         let brighter = frame.color.iter().map(|&[r, g, b, a]| [r.saturating_add(2), g.saturating_add(2), b.saturating_add(2), a]).collect();
-        assert!(caught(brighter), "{}: two steps brighter", look.id);
+        assert!(caught(brighter), "{}: two steps brighter", preset_file.id);
         let mut doubled = frame.color.clone();
-        let shows = |i: usize| pictures(&doubled[i..=i], &doubled[i - 1..i], 1).pixels_beyond > 0;
-        let is_edge = |i: usize| (frame.owner[i] == NO_OWNER) != (frame.owner[i - 1] == NO_OWNER) && shows(i);
-        // Of some looks a line or a fog hides many of them.
-        let is_seam = |i: usize| frame.owner[i] != frame.owner[i - 1] && shows(i);
+        let shows = |i: usize| pictures(&doubled[i..=i], &doubled[i - 1..i], 1).pixels_over_tolerance > 0;
+        let is_edge = |i: usize| (frame.triangle_id[i] == NO_TRIANGLE) != (frame.triangle_id[i - 1] == NO_TRIANGLE) && shows(i);
+        // Of some presets a line or a fog hides many of them.
+        let is_seam = |i: usize| frame.triangle_id[i] != frame.triangle_id[i - 1] && shows(i);
         let all = || 1..doubled.len();
         let edge = all().find(|&i| is_edge(i)).or_else(|| all().find(|&i| is_seam(i))).expect("an edge, or a seam where nothing is empty");
         doubled[edge] = doubled[edge - 1];
-        let is_strict = session.test.as_ref().is_some_and(|test| test.max_pixels + test.max_wrong_owner == 0);
-        assert!(!is_strict || caught(doubled), "{}: a pixel of the edge is doubled", look.id);
+        let is_strict = preset.test.as_ref().is_some_and(|test| test.max_pixels + test.max_wrong_triangles == 0);
+        assert!(!is_strict || caught(doubled), "{}: a pixel of the edge is doubled", preset_file.id);
     }
 }
 
 #[test]
 fn a_missing_triangle_is_caught_even_the_least_one() {
     for id in ["facet-knot", "triangle_id", "facet-radial"] {
-        let look = look(id);
-        let scene = scene_of(&look);
-        let whole = drawn(&look.session, &scene);
-        for owner in [owner_by_size(&whole, true), owner_by_size(&whole, false)] {
-            let lacking = drawn(&look.session, &without(&scene, owner));
-            assert!(!lacking.owner.contains(&owner) && lacking.counters.degenerate == whole.counters.degenerate + 1);
-            assert!(owners(&lacking.owner, &whole.owner).different > 0, "{id}: owners without {owner}");
-            assert!(complaint(&look.session, &lacking.color, &whole.color).is_some(), "{id}: the picture without {owner}");
+        let preset_file = preset_file(id);
+        let scene = scene_of(&preset_file);
+        let whole = drawn(&preset_file.preset, &scene);
+        for triangle_id in [triangle_id_by_size(&whole, true), triangle_id_by_size(&whole, false)] {
+            let lacking = drawn(&preset_file.preset, &without(&scene, triangle_id));
+            assert!(!lacking.triangle_id.contains(&triangle_id) && lacking.counters.degenerate == whole.counters.degenerate + 1);
+            assert!(triangle_ids(&lacking.triangle_id, &whole.triangle_id).different > 0, "{id}: triangle ids without {triangle_id}");
+            assert!(complaint(&preset_file.preset, &lacking.color, &whole.color).is_some(), "{id}: the picture without {triangle_id}");
         }
     }
 }
 
 #[test]
 fn exchanged_owners_a_wrong_seed_and_a_reversed_stack_are_caught() {
-    let look = look("triangle_id");
-    let scene = scene_of(&look);
-    let view = look.session.view(&scene, look.session.output.size);
-    let whole = drawn(&look.session, &scene);
-    let (a, b) = (owner_by_size(&whole, true), owner_by_size(&whole, false));
+    let preset_file = preset_file("triangle_id");
+    let scene = scene_of(&preset_file);
+    let view = preset_file.preset.view(&scene, preset_file.preset.output.size);
+    let whole = drawn(&preset_file.preset, &scene);
+    let (a, b) = (triangle_id_by_size(&whole, true), triangle_id_by_size(&whole, false));
     let exchanged: Vec<u32> = whole
-        .owner
+        .triangle_id
         .iter()
         .map(|&o| {
             if o == a {
@@ -377,23 +381,24 @@ fn exchanged_owners_a_wrong_seed_and_a_reversed_stack_are_caught() {
             }
         })
         .collect();
-    let draws = rasterlab::scene::draw::draws(&scene, &view).expect("a look fits");
-    let seen = oracle::Seen { owners: &exchanged, keys: &whole.key, dots: &whole.dots, previous: None };
-    let colors = oracle::shade(&scene, &draws, &view, &look.session.posed_stack(), &seen, &oracle::project(&scene, &draws, &view));
-    let changed = whole.owner.iter().filter(|&&o| o == a || o == b).count() as u64;
-    assert_eq!(owners(&exchanged, &whole.owner).different, changed);
-    assert!(complaint(&look.session, &colors, &whole.color).is_some(), "exchanged owners");
+    let draws = rasterlab::scene::draw::draws(&scene, &view).expect("a preset fits");
+    let seen = oracle::Seen { triangle_ids: &exchanged, keys: &whole.key, dots: &whole.dots, previous: None };
+    let colors =
+        oracle::shade(&scene, &draws, &view, &preset_file.preset.evaluated_stack(), &seen, &oracle::project(&scene, &draws, &view));
+    let changed = whole.triangle_id.iter().filter(|&&o| o == a || o == b).count() as u64;
+    assert_eq!(triangle_ids(&exchanged, &whole.triangle_id).different, changed);
+    assert!(complaint(&preset_file.preset, &colors, &whole.color).is_some(), "exchanged triangle ids");
 
-    let mut seeded = look.session.clone();
-    let effect = seeded.stack.get_mut("triangle_id").expect("the look's own effect");
+    let mut seeded = preset_file.preset.clone();
+    let effect = seeded.stack.get_mut("triangle_id").expect("the preset's own effect");
     let seed = effect.effect.field("seed").expect("a seed");
     let lanes = seed.get(&effect.words);
     seed.set(&mut effect.words, &[lanes[0] + 1.0]).expect("another seed");
-    assert!(complaint(&look.session, &drawn(&seeded, &scene).color, &whole.color).is_some(), "a wrong seed");
+    assert!(complaint(&preset_file.preset, &drawn(&seeded, &scene).color, &whole.color).is_some(), "a wrong seed");
 
-    let look = looks().into_iter().find(|look| look.session.stack.0.len() > 1).expect("a look with a stack");
-    let (scene, mut reversed) = (scene_of(&look), look.session.clone());
+    let preset_file = preset_files().into_iter().find(|preset_file| preset_file.preset.stack.0.len() > 1).expect("a preset with a stack");
+    let (scene, mut reversed) = (scene_of(&preset_file), preset_file.preset.clone());
     reversed.stack.0.reverse();
-    let (there, back) = (drawn(&look.session, &scene), drawn(&reversed, &scene));
-    assert!(complaint(&look.session, &back.color, &there.color).is_some(), "{}: a reversed stack", look.id);
+    let (there, back) = (drawn(&preset_file.preset, &scene), drawn(&reversed, &scene));
+    assert!(complaint(&preset_file.preset, &back.color, &there.color).is_some(), "{}: a reversed stack", preset_file.id);
 }

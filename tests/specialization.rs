@@ -6,35 +6,36 @@ use std::{path::Path, sync::Arc};
 
 use common::*;
 use rasterlab::{
+    accuracy::{DotCulling, PinnedOptions, Visibility},
     effects::{Stack, hooks::Shape},
     frame::Frame,
     gpu::{Explanation, Renderer},
-    ladder::{DotWay, Pins, Visibility},
     measure::compare,
     oracle,
-    plan::{Accuracy, Tuning},
-    preset,
+    plan::{AccuracyRequest, Tuning},
+    preset_file,
     scene::{Scene, camera::View},
 };
 
-/// Every builtin scene on every rung, and every look on one: the resolve of its effects hardly knows the rung.
-fn pictures(rungs: &[Visibility]) -> Vec<(String, Arc<Scene>, View, Stack, Visibility)> {
+/// Every builtin scene on every option, and every preset on one: the resolve of its effects hardly knows the option.
+fn pictures(options: &[Visibility]) -> Vec<(String, Arc<Scene>, View, Stack, Visibility)> {
     let mut pictures = Vec::new();
     for query in SCENES {
         let scene = scene(query);
         let view = view(&scene, [200, 150]);
         let stack = stack(&["depth", "lambert"]);
-        pictures.extend(rungs.iter().map(|&rung| ((*query).to_owned(), scene.clone(), view.clone(), stack.clone(), rung)));
+        pictures.extend(options.iter().map(|&option| ((*query).to_owned(), scene.clone(), view.clone(), stack.clone(), option)));
     }
-    let looks = Path::new(env!("CARGO_MANIFEST_DIR")).join("presets");
-    for entry in std::fs::read_dir(looks).expect("presets/ can be read") {
+    let preset_files = Path::new(env!("CARGO_MANIFEST_DIR")).join("presets");
+    for entry in std::fs::read_dir(preset_files).expect("presets/ can be read") {
         let path = entry.expect("presets/ can be read").path();
         if path.extension().is_some_and(|e| e == "toml") {
-            let look = preset::load(&path).unwrap_or_else(|error| panic!("{error}"));
-            let scene = preset::load_scene(&look.session, look.path.as_deref()).unwrap_or_else(|error| panic!("{}: {error}", look.id));
-            let view = look.session.view(&scene, look.session.output.size);
-            if look.session.stack.is_repeatable() {
-                pictures.push((look.id.clone(), scene, view, look.session.posed_stack(), rungs[0]));
+            let preset_file = preset_file::load(&path).unwrap_or_else(|error| panic!("{error}"));
+            let scene = preset_file::load_scene(&preset_file.preset, preset_file.path.as_deref())
+                .unwrap_or_else(|error| panic!("{}: {error}", preset_file.id));
+            let view = preset_file.preset.view(&scene, preset_file.preset.output.size);
+            if preset_file.preset.stack.is_repeatable() {
+                pictures.push((preset_file.id.clone(), scene, view, preset_file.preset.evaluated_stack(), options[0]));
             }
         }
     }
@@ -42,16 +43,16 @@ fn pictures(rungs: &[Visibility]) -> Vec<(String, Arc<Scene>, View, Stack, Visib
 }
 
 fn assert_same(a: &Frame, b: &Frame, band: &[bool], what: &str) {
-    for (image, a, b) in [("owners", &a.owner, &b.owner), ("keys", &a.key, &b.key)] {
-        let delta = compare::owners(a, b);
-        assert_eq!(delta.different, 0, "{what}: {image} differ, first {:?}", delta.offenders.first());
+    for (image, a, b) in [("triangle_ids", &a.triangle_id, &b.triangle_id), ("keys", &a.key, &b.key)] {
+        let delta = compare::triangle_ids(a, b);
+        assert_eq!(delta.different, 0, "{what}: {image} differ, first {:?}", delta.mismatches.first());
     }
     // What decides is equal to the bit. Shading may round otherwise where a guard or a wide product is left out.
     // At a step of colour that may show; there the judge says which pixels have two right answers.
     let held: Vec<[u8; 4]> =
         b.color.iter().enumerate().map(|(i, &color)| if band.get(i) == Some(&true) { a.color[i] } else { color }).collect();
     let colors = compare::pictures(&a.color, &held, 1);
-    assert_eq!(colors.pixels_beyond, 0, "{what}: colours differ by more than a step, first {:?}", colors.offenders.first());
+    assert_eq!(colors.pixels_over_tolerance, 0, "{what}: colours differ by more than a step, first {:?}", colors.mismatches.first());
 }
 
 #[test]
@@ -59,19 +60,19 @@ fn the_planned_kernel_and_the_one_that_leaves_nothing_out_draw_the_same() {
     let Some(mut renderer) = renderer() else { return };
     let usual = renderer.gpu().caps.tuning();
     // Thresholds of a GPU, so that medium triangles occur.
-    let planned_tuning = Tuning { small_samples: 64, small_side: 32, ..usual };
+    let planned_tuning = Tuning { max_small_samples: 64, max_small_side: 32, ..usual };
     let mut spared = 0;
-    for (what, scene, view, stack, rung) in pictures(&rungs(&renderer)) {
+    for (what, scene, view, stack, option) in pictures(&options(&renderer)) {
         let [(planned, key), (maximal, everything)] = [true, false].map(|specialized| {
             renderer.set_tuning(Tuning { specialized, ..planned_tuning });
-            let capture = captured(&mut renderer, &scene, &view, &stack, &pinned(rung));
+            let capture = captured(&mut renderer, &scene, &view, &stack, &pinned(option));
             (capture, renderer.key().expect("something was drawn").clone())
         });
         let k = &everything;
         // Discs about corners need no path for large triangles, whatever the scene holds.
         let has_paths = k.has_clipping && k.has_medium && k.has_large || k.shape == Shape::Points;
         assert!(has_paths && k.has_planes && k.has_colors, "{k}");
-        assert!(!(k.single_draw || k.only_lists || k.wide_indices || k.f32_positions || k.f32_normals), "{k:?}");
+        assert!(!(k.single_draw || k.only_triangle_lists || k.u32_indices || k.f32_positions || k.f32_normals), "{k:?}");
         assert_ne!(key, everything, "{what}: the planner spares nothing");
         spared += u32::from(!key.has_queues());
         let band = if stack.has_steps() || !scene.images.is_empty() {
@@ -80,7 +81,7 @@ fn the_planned_kernel_and_the_one_that_leaves_nothing_out_draw_the_same() {
         } else {
             Vec::new()
         };
-        assert_same(&planned.frame, &maximal.frame, &band, &format!("{what} {}", rung.name()));
+        assert_same(&planned.frame, &maximal.frame, &band, &format!("{what} {}", option.name()));
         assert_eq!(planned.layers, maximal.layers, "{what}: layers");
         assert_eq!(planned.geometry, maximal.geometry, "{what}: geometry");
         assert_eq!(planned.frame.counters, maximal.frame.counters, "{what}: counters");
@@ -89,13 +90,13 @@ fn the_planned_kernel_and_the_one_that_leaves_nothing_out_draw_the_same() {
 }
 
 /// What a renderer of its own makes for one picture.
-fn explained(query: &str, size: [u32; 2], rung: Visibility, tuning: Tuning) -> Option<(Explanation, Arc<Scene>, View)> {
+fn explained(query: &str, size: [u32; 2], option: Visibility, tuning: Tuning) -> Option<(Explanation, Arc<Scene>, View)> {
     let mut renderer = Renderer::new(gpu()?);
     renderer.set_tuning(tuning);
     let scene = scene(query);
     let view = view(&scene, size);
     renderer.set_scene(&scene).expect("a builtin fits");
-    renderer.draw_whole(&view, &stack(&["lambert"]), &pinned(rung)).expect("a builtin is drawn");
+    renderer.draw_complete(&view, &stack(&["lambert"]), &pinned(option)).expect("a builtin is drawn");
     Some((renderer.explain(), scene, view))
 }
 
@@ -108,10 +109,10 @@ fn names(explanation: &Explanation) -> (Vec<&str>, Vec<&str>) {
 #[test]
 fn a_scene_of_small_triangles_has_no_queues_arguments_or_pieces() {
     let tuning = Tuning {
-        small_samples: 64,
-        small_side: 32,
-        list_group: 256,
-        list_walk: u32::MAX,
+        max_small_samples: 64,
+        max_small_side: 32,
+        group_size: 256,
+        max_list_entries: u32::MAX,
         listed_tiles: false,
         early_load: false,
         specialized: true,
@@ -119,10 +120,21 @@ fn a_scene_of_small_triangles_has_no_queues_arguments_or_pieces() {
     let explained = |query, tuning| explained(query, [320, 240], Visibility::Split32, tuning);
     let Some((small, ..)) = explained("sphere?triangles=20000", tuning) else { return };
     let (passes, buffers) = names(&small);
-    assert_eq!(passes, ["project", "raster_small depth", "raster_small owner", "resolve"]);
-    for spared in
-        ["queues", "args", "pieces", "marks", "background", "layers", "depth_owner", "bends", "joints", "shapes", "meshlets", "instances"]
-    {
+    assert_eq!(passes, ["project", "raster_small depth", "raster_small triangle id", "resolve"]);
+    for spared in [
+        "queues",
+        "args",
+        "pieces",
+        "marks",
+        "background",
+        "layers",
+        "depth_and_id",
+        "deforms",
+        "joints",
+        "shapes",
+        "meshlets",
+        "instances",
+    ] {
         assert!(!buffers.contains(&spared), "{spared} exists: {buffers:?}");
     }
     for (part, why) in [("clip", "near plane"), ("raster_medium", "px"), ("tile_large, raster_large", "px")] {
@@ -134,7 +146,7 @@ fn a_scene_of_small_triangles_has_no_queues_arguments_or_pieces() {
     for (query, tuning) in [("sphere?triangles=20000", Tuning { specialized: false, ..tuning }), ("near", tuning)] {
         let (all, ..) = explained(query, tuning).expect("there was an adapter");
         let (passes, buffers) = names(&all);
-        for pass in ["clip", "args", "tile_large", "raster_medium depth", "raster_large owner"] {
+        for pass in ["clip", "args", "tile_large", "raster_medium depth", "raster_large triangle id"] {
             assert!(passes.contains(&pass), "{query}: no {pass} in {passes:?}");
         }
         for buffer in ["queues", "args", "pieces"] {
@@ -155,7 +167,7 @@ fn only_a_scene_that_bends_has_the_pass_and_only_the_buffers_that_it_needs() {
     let still = explained("teapot?tess=4");
     let (passes, buffers) = names(&still);
     assert!(
-        !passes.contains(&"skin") && !["bends", "joints", "shapes"].iter().any(|name| buffers.contains(name)),
+        !passes.contains(&"skin") && !["deforms", "joints", "shapes"].iter().any(|name| buffers.contains(name)),
         "{passes:?} {buffers:?}"
     );
     assert!(still.omitted.iter().any(|note| note.name == "skin" && note.why.contains("no mesh has joints or morph weights")));
@@ -163,11 +175,11 @@ fn only_a_scene_that_bends_has_the_pass_and_only_the_buffers_that_it_needs() {
     assert!(bytes(&still) < scene("teapot?tess=4").vertex_bytes.len() as u64 + 16, "a rigid mesh has no room for bent vertices");
 
     // At rest its shape has no weight, so nothing is mixed.
-    let bent = explained("tentacle?tess=2");
-    let (passes, buffers) = names(&bent);
+    let deformed = explained("tentacle?tess=2");
+    let (passes, buffers) = names(&deformed);
     assert_eq!(passes[..2], ["skin", "project"]);
-    assert!(buffers.contains(&"bends") && buffers.contains(&"joints") && !buffers.contains(&"shapes"), "{buffers:?}");
-    assert!(bent.reasons.iter().any(|note| note.name == "skinning" && note.why.starts_with("linear: ")));
+    assert!(buffers.contains(&"deforms") && buffers.contains(&"joints") && !buffers.contains(&"shapes"), "{buffers:?}");
+    assert!(deformed.reasons.iter().any(|note| note.name == "skinning" && note.why.starts_with("linear: ")));
 }
 
 #[test]
@@ -175,21 +187,21 @@ fn only_a_stack_with_dots_has_their_passes_and_only_their_way_s_buffers() {
     let Some(gpu) = gpu() else { return };
     let (scene, dots) = (scene("teapot?tess=4"), stack(&["dots"]));
     let view = view(&scene, [160, 120]);
-    let explained = |stack: &Stack, way: DotWay| {
+    let explained = |stack: &Stack, way: DotCulling| {
         let mut renderer = Renderer::new(gpu.clone());
-        captured(&mut renderer, &scene, &view, stack, &Accuracy { pins: Pins::of(way), ..Accuracy::default() });
+        captured(&mut renderer, &scene, &view, stack, &AccuracyRequest { pins: PinnedOptions::of(way), ..AccuracyRequest::default() });
         renderer.explain()
     };
-    let bare = explained(&stack(&["lambert"]), DotWay::Gpu);
+    let bare = explained(&stack(&["lambert"]), DotCulling::Gpu);
     let (passes, buffers) = names(&bare);
     assert!(passes.iter().chain(&buffers).all(|name| !name.contains("dot") && *name != "stretches"), "{passes:?} {buffers:?}");
     assert!(bare.omitted.iter().any(|note| note.name == "dots" && note.why.contains("no effect strings dots")));
     assert!(bare.reasons.iter().all(|note| note.name != "dots"));
-    let ways: [(DotWay, &[&str], &[&str]); 3] = [
-        (DotWay::Brute, &["dots_ends", "dots_draw"], &["dot_ends", "dot_frame", "dot_segments"]),
-        (DotWay::Cpu, &["dots_ends", "dots_draw"], &["dot_count", "dot_ends", "dot_frame", "dot_list", "dot_segments"]),
+    let ways: [(DotCulling, &[&str], &[&str]); 3] = [
+        (DotCulling::Brute, &["dots_ends", "dots_draw"], &["dot_ends", "dot_frame", "dot_segments"]),
+        (DotCulling::Cpu, &["dots_ends", "dots_draw"], &["dot_count", "dot_ends", "dot_frame", "dot_list", "dot_segments"]),
         (
-            DotWay::Gpu,
+            DotCulling::Gpu,
             &["dots_ends", "dots_cull", "dots_args", "dots_draw"],
             &["dot_args", "dot_count", "dot_ends", "dot_frame", "dot_list", "dot_segments"],
         ),
@@ -206,15 +218,15 @@ fn only_a_stack_with_dots_has_their_passes_and_only_their_way_s_buffers() {
 #[test]
 fn vertices_and_pixels_take_sixteen_bytes_at_most() {
     let Some(gpu) = gpu() else { return };
-    for rung in Visibility::EXACT.into_iter().filter(|rung| rung.is_there(gpu.caps.int64_atomics)) {
+    for option in Visibility::EXACT.into_iter().filter(|option| option.is_there(gpu.caps.int64_atomics)) {
         let (explanation, scene, view) =
-            explained("sphere?triangles=20000", [1280, 720], rung, gpu.caps.tuning()).expect("there is an adapter");
+            explained("sphere?triangles=20000", [1280, 720], option, gpu.caps.tuning()).expect("there is an adapter");
         let bytes = |name: &str| explanation.buffers.iter().find(|buffer| buffer.name == name).map_or(0, |buffer| buffer.bytes);
         let per_vertex = bytes("vertices") as f64 / scene.vertex_count() as f64;
         assert!((12.0..=16.01).contains(&per_vertex), "{per_vertex} bytes per projected vertex");
-        let picture: u64 = ["depth_keys", "owners", "depth_owner", "color"].map(bytes).iter().sum();
+        let picture: u64 = ["depth_keys", "triangle_ids", "depth_and_id", "color"].map(bytes).iter().sum();
         let per_pixel = picture as f64 / view.pixels() as f64;
-        assert!((12.0..=16.0).contains(&per_pixel), "{per_pixel} bytes per pixel on {}", rung.name());
+        assert!((12.0..=16.0).contains(&per_pixel), "{per_pixel} bytes per pixel on {}", option.name());
         assert!(
             explanation.buffers.iter().all(|buffer| !buffer.why.is_empty()) && explanation.passes.iter().all(|pass| !pass.why.is_empty())
         );
@@ -230,8 +242,8 @@ fn a_known_key_compiles_nothing() {
     let round = |renderer: &mut Renderer| {
         for scene in &scenes {
             for stack in &stacks {
-                for rung in rungs(renderer) {
-                    captured(renderer, scene, &view(scene, [64, 48]), stack, &pinned(rung));
+                for option in options(renderer) {
+                    captured(renderer, scene, &view(scene, [64, 48]), stack, &pinned(option));
                 }
             }
         }

@@ -10,51 +10,51 @@ use rasterlab::{
     gpu::RenderError,
     measure::Budget,
     params::{Field, Kind},
-    preset,
-    session::Session,
+    preset::Preset,
+    preset_file,
 };
 
 /// Stacks that every run draws.
 const STACKS: u32 = 20;
 
 /// A legal value for a field: its ends now and then, else anything the slider spans.
-fn value(dice: &mut Dice, field: &Field) -> Vec<f64> {
+fn value(rng: &mut Rng, field: &Field) -> Vec<f64> {
     let [low, high] = field.soft;
-    let mut lane = || match (field.kind, dice.between(0, 8)) {
-        (Kind::Choice(_) | Kind::Bool, _) => f64::from(dice.between(low as i32, high as i32 + 1)),
+    let mut lane = || match (field.kind, rng.between(0, 8)) {
+        (Kind::Choice(_) | Kind::Bool, _) => f64::from(rng.between(low as i32, high as i32 + 1)),
         (_, 0) => low,
         (_, 1) => high,
-        (Kind::U32 | Kind::I32, _) => dice.real(low, high + 1.0).floor().min(high),
-        _ if field.log => low * (high / low).powf(dice.real(0.0, 1.0)),
-        _ => dice.real(low, high),
+        (Kind::U32 | Kind::I32, _) => rng.real(low, high + 1.0).floor().min(high),
+        _ if field.log => low * (high / low).powf(rng.real(0.0, 1.0)),
+        _ => rng.real(low, high),
     };
     (0..field.kind.lanes()).map(|_| lane()).collect()
 }
 
 /// Up to five effects, at most one of them in each slot, in an order of their own.
-fn random_stack(dice: &mut Dice) -> Stack {
+fn random_stack(rng: &mut Rng) -> Stack {
     let mut stack = Stack::default();
-    for _ in 0..dice.between(1, 6) {
-        let effect = EFFECTS[dice.between(0, EFFECTS.len() as i32) as usize];
+    for _ in 0..rng.between(1, 6) {
+        let effect = EFFECTS[rng.between(0, EFFECTS.len() as i32) as usize];
         let is_taken = effect.hooks.slot.is_some_and(|slot| stack.in_slot(slot).is_some_and(|other| other.effect != effect));
         if is_taken {
             continue;
         }
         let words = &mut stack.enable(effect).words;
         for field in effect.fields {
-            let value = value(dice, field);
+            let value = value(rng, field);
             field.set(words, &value).unwrap_or_else(|error| panic!("{}: {error}", effect.name));
         }
     }
     for i in (1..stack.0.len()).rev() {
-        stack.0.swap(i, dice.between(0, i as i32 + 1) as usize);
+        stack.0.swap(i, rng.between(0, i as i32 + 1) as usize);
     }
     stack
 }
 
-/// As a look, which a person can save and open.
-fn as_look(stack: &Stack) -> String {
-    preset::to_toml(&preset::Look::new("random", Session { stack: stack.clone(), ..Session::default() }))
+/// As a preset, which a person can save and open.
+fn as_preset(stack: &Stack) -> String {
+    preset_file::to_toml(&preset_file::PresetFile::new("random", Preset { stack: stack.clone(), ..Preset::default() }))
 }
 
 #[test]
@@ -64,19 +64,19 @@ fn random_stacks_draw_the_same_integers_on_the_adapter_and_in_the_oracle() {
         Ok(seed) => vec![seed.parse().expect("RASTERLAB_SEED is a whole number")],
         Err(_) => (0..STACKS).collect::<Vec<u32>>(),
     };
-    let rungs = rungs(&renderer);
+    let options = options(&renderer);
     let scenes = ["teapot?tess=4", "sphere?triangles=200", "near", "sizes", "cube-wall", "grid?cell=0.4", "stack?layers=5"];
     let mut failures = Vec::new();
     for seed in seeds {
-        let mut dice = Dice(seed.wrapping_mul(0x1234_5679));
-        let stack = random_stack(&mut dice);
-        let scene = scene(scenes[dice.between(0, scenes.len() as i32) as usize]);
+        let mut rng = Rng(seed.wrapping_mul(0x1234_5679));
+        let stack = random_stack(&mut rng);
+        let scene = scene(scenes[rng.between(0, scenes.len() as i32) as usize]);
         let view = view(&scene, [64, 48]);
-        renderer.set_tuning(tunings()[dice.between(0, 4) as usize]);
-        let rung = rungs[dice.between(0, rungs.len() as i32) as usize];
-        let (_, verdict) = judged(&mut renderer, &scene, &view, &stack, &pinned(rung));
+        renderer.set_tuning(tunings()[rng.between(0, 4) as usize]);
+        let option = options[rng.between(0, options.len() as i32) as usize];
+        let (_, verdict) = judged(&mut renderer, &scene, &view, &stack, &pinned(option));
         if let Err(faults) = verdict.accuracy.within(&Budget::default()) {
-            failures.push(format!("RASTERLAB_SEED={seed}: {} on {}: {faults}\n{}", scene.name, rung.name(), as_look(&stack)));
+            failures.push(format!("RASTERLAB_SEED={seed}: {} on {}: {faults}\n{}", scene.name, option.name(), as_preset(&stack)));
         }
     }
     assert!(failures.is_empty(), "{}", failures.join("\n"));
@@ -103,9 +103,9 @@ fn two_effects_in_one_slot_are_refused_by_name() {
 #[test]
 fn a_stack_reads_back_in_its_own_order() {
     for seed in 0..50 {
-        let stack = random_stack(&mut Dice(seed * 77));
-        let text = as_look(&stack);
-        let look = preset::parse(&text, "random").unwrap_or_else(|error| panic!("{error}\n{text}"));
-        assert_eq!(look.session.stack, stack, "{text}");
+        let stack = random_stack(&mut Rng(seed * 77));
+        let text = as_preset(&stack);
+        let preset_file = preset_file::parse(&text, "random").unwrap_or_else(|error| panic!("{error}\n{text}"));
+        assert_eq!(preset_file.preset.stack, stack, "{text}");
     }
 }

@@ -8,14 +8,14 @@ use std::{fs, path::Path, sync::Arc};
 use common::*;
 use glam::{DMat4, DVec3};
 use rasterlab::{
+    accuracy::{DepthFormat, PinnedOptions, VertexTransform, Visibility},
     effects::Stack,
-    frame::NO_OWNER,
+    frame::NO_TRIANGLE,
     gpu::{Gpu, Renderer, buffers},
-    ladder::{Depth, Pins, Vertex, Visibility},
     math::{fnv1a, hash},
     measure::compare,
     oracle::{self, flushed},
-    plan::{Accuracy, Tuning},
+    plan::{AccuracyRequest, Tuning},
     scene::{
         Scene,
         camera::{Camera, Projection, View},
@@ -88,9 +88,9 @@ fn hard_pairs(seed: u32, count: u32) -> Vec<[u32; 2]> {
     let number = |word: u32| if word >> 23 & 255 == 255 { word ^ 0x4000_0000 } else { word };
     let near = |value: f32, steps: u32| number(value.to_bits().wrapping_add(steps % 7).wrapping_sub(3));
     let pair = |i: u32| {
-        let dice = |k: u32| hash(hash(seed ^ i.wrapping_mul(0x9e37_79b9)) ^ k.wrapping_mul(0x85eb_ca6b));
-        let (x, y) = (number(dice(1)), number(dice(2)));
-        let of_few_bits = |word: u32| number(word & 0xff80_0000 | dice(3) & dice(4) & dice(5) & 0x7f_ffff);
+        let rng = |k: u32| hash(hash(seed ^ i.wrapping_mul(0x9e37_79b9)) ^ k.wrapping_mul(0x85eb_ca6b));
+        let (x, y) = (number(rng(1)), number(rng(2)));
+        let of_few_bits = |word: u32| number(word & 0xff80_0000 | rng(3) & rng(4) & rng(5) & 0x7f_ffff);
         // An exponent that differs by at most 27.
         let beside = |word: u32| {
             let exponent = (x >> 23 & 255) as i32 + (word >> 23 & 63) as i32 % 55 - 27;
@@ -102,16 +102,16 @@ fn hard_pairs(seed: u32, count: u32) -> Vec<[u32; 2]> {
             1 => [x, beside(y)],
             2 => [of_few_bits(x), of_few_bits(beside(y))],
             // Cancellation, to nothing or next to it.
-            3 => [x, near(-value, dice(6))],
+            3 => [x, near(-value, rng(6))],
             // Products and quotients about 2^-126.
-            4 => [x, near((f64::from(f32::MIN_POSITIVE) / f64::from(value)) as f32, dice(6))],
-            5 => [x, near((f64::from(value) / f64::from(f32::MIN_POSITIVE)) as f32, dice(6))],
+            4 => [x, near((f64::from(f32::MIN_POSITIVE) / f64::from(value)) as f32, rng(6))],
+            5 => [x, near((f64::from(value) / f64::from(f32::MIN_POSITIVE)) as f32, rng(6))],
             // Subnormals and zeros.
-            6 => [x & 0x807f_ffff, if dice(6) % 2 == 0 { y } else { y & 0x807f_ffff }],
+            6 => [x & 0x807f_ffff, if rng(6) % 2 == 0 { y } else { y & 0x807f_ffff }],
             // About integers and halves.
-            7 => [near((dice(6) >> (7 + dice(7) % 25)) as f32 / 2.0, dice(8)) | x & 0x8000_0000, x],
+            7 => [near((rng(6) >> (7 + rng(7) % 25)) as f32 / 2.0, rng(8)) | x & 0x8000_0000, x],
             // Quotients about powers of two, products about squares.
-            _ => [x, near(value, dice(6)) ^ dice(7) & 0x8000_0000],
+            _ => [x, near(value, rng(6)) ^ rng(7) & 0x8000_0000],
         }
     };
     (0..count).map(pair).collect()
@@ -185,21 +185,21 @@ impl Picture {
         Self { name: name.into(), scene, view, stack: stack(effects) }
     }
 
-    /// Owners and keys by the oracle alone.
-    fn truth(&self) -> (Vec<u32>, Vec<u32>) {
+    /// Triangle ids and keys by the oracle alone.
+    fn reference(&self) -> (Vec<u32>, Vec<u32>) {
         oracle::strict_frame(&self.scene, &self.view, &self.stack).unwrap_or_else(|error| panic!("{}: {error}", self.name))
     }
 
     /// Its line in the list.
-    fn line(&self, owners: &[u32], keys: &[u32]) -> String {
-        format!("{} {}x{} {:016x} {:016x}", self.name, self.view.width, self.view.height, fnv1a(owners), fnv1a(keys))
+    fn line(&self, triangle_ids: &[u32], keys: &[u32]) -> String {
+        format!("{} {}x{} {:016x} {:016x}", self.name, self.view.width, self.view.height, fnv1a(triangle_ids), fnv1a(keys))
     }
 }
 
 /// Random triangles about the eye, of all sizes: in front of the near plane, behind the eye, and past the guard band.
-fn about_the_eye(seed: u32, is_indexed: bool) -> Vec<Part> {
-    let mut dice = Dice(seed);
-    let mut corner = |reach: f64| [0, 1, 2].map(|_| dice.real(-1.0, 1.0) * reach);
+fn about_the_eye(seed: u32, is_indexed: bool) -> Vec<SimpleMesh> {
+    let mut rng = Rng(seed);
+    let mut corner = |reach: f64| [0, 1, 2].map(|_| rng.real(-1.0, 1.0) * reach);
     let mut positions = Vec::new();
     for i in 0..500 {
         let reach = [0.02, 0.3, 3.0, 60.0][i % 4];
@@ -215,13 +215,13 @@ fn about_the_eye(seed: u32, is_indexed: bool) -> Vec<Part> {
         DMat4::from_scale(scale) * DMat4::from_cols_array_2d(&rasterlab::math::rotation_y(turn).to_cols_array_2d())
     };
     let placements = vec![DMat4::IDENTITY, placed(DVec3::new(-0.3, 0.7, 1.1), 0.4), placed(DVec3::splat(1e-3), 2.0)];
-    let loose = Part { positions: positions.clone(), placements, ..Part::default() };
+    let loose = SimpleMesh { positions: positions.clone(), placements, ..SimpleMesh::default() };
     // A second draw with backs that do not show, and corners that are no numbers.
     let mut broken = positions.split_off(1200);
     broken[5][1] = f32::NAN;
     broken[50][2] = f32::MAX;
     broken[77] = [f32::MIN_POSITIVE / 2.0, -0.0, 1e-39];
-    vec![Part { indices, ..loose }, Part { positions: broken, double_sided: false, ..Part::default() }]
+    vec![SimpleMesh { indices, ..loose }, SimpleMesh { positions: broken, double_sided: false, ..SimpleMesh::default() }]
 }
 
 /// Every picture of the list: all classes of triangles, clipped ones, several draws, with and without indices, both
@@ -260,15 +260,18 @@ fn pictures() -> Vec<Picture> {
         ("wide", 4, false, inside(170.0, 1e-5), [1000, 30]),
         ("parallel", 5, true, parallel, [320, 240]),
     ] {
-        let scene = hand_made(&about_the_eye(seed, is_indexed));
+        let scene = scene_of_meshes(&about_the_eye(seed, is_indexed));
         let view = seen(&scene, &camera, size);
         pictures.push(Picture::new(name, scene, view, &[]));
     }
     pictures
 }
 
-fn strict(visibility: Visibility) -> Accuracy {
-    Accuracy { pins: Pins::of(visibility).with(Vertex::Strict).with(Depth::Integer), ..Accuracy::default() }
+fn strict(visibility: Visibility) -> AccuracyRequest {
+    AccuracyRequest {
+        pins: PinnedOptions::of(visibility).with(VertexTransform::Strict).with(DepthFormat::Integer),
+        ..AccuracyRequest::default()
+    }
 }
 
 const HASHES: &str = include_str!("strict_hashes.txt");
@@ -278,10 +281,10 @@ fn the_oracle_finds_the_hashes_of_the_list() {
     let lines: Vec<String> = pictures()
         .iter()
         .map(|picture| {
-            let (owners, keys) = picture.truth();
-            let covered = owners.iter().filter(|&&owner| owner != NO_OWNER).count();
+            let (triangle_ids, keys) = picture.reference();
+            let covered = triangle_ids.iter().filter(|&&triangle_id| triangle_id != NO_TRIANGLE).count();
             assert!(covered > 50, "{} shows next to nothing: {covered} pixels", picture.name);
-            picture.line(&owners, &keys)
+            picture.line(&triangle_ids, &keys)
         })
         .collect();
     let text = lines.join("\n") + "\n";
@@ -293,21 +296,21 @@ fn the_oracle_finds_the_hashes_of_the_list() {
     assert_eq!(text, HASHES, "the oracle on the left, the list on the right; UPDATE_SNAPSHOTS=1 writes it");
 }
 
-/// Nearly every triangle by a workgroup of its own on one rung, as the adapter likes it on the other.
+/// Nearly every triangle by a workgroup of its own on one option, as the adapter likes it on the other.
 fn ways(renderer: &Renderer) -> [(Tuning, Visibility); 2] {
-    let rungs = rungs(renderer);
-    [(tunings()[0], rungs[0]), (renderer.gpu().caps.tuning(), rungs[rungs.len() - 1])]
+    let options = options(renderer);
+    [(tunings()[0], options[0]), (renderer.gpu().caps.tuning(), options[options.len() - 1])]
 }
 
 /// How a picture that `renderer` draws differs from its line in the list, if it does.
-fn stray(renderer: &mut Renderer, picture: &Picture, line: &str, (tuning, rung): (Tuning, Visibility)) -> Option<String> {
+fn stray(renderer: &mut Renderer, picture: &Picture, line: &str, (tuning, option): (Tuning, Visibility)) -> Option<String> {
     renderer.set_tuning(tuning);
-    let frame = captured(renderer, &picture.scene, &picture.view, &picture.stack, &strict(rung)).frame;
-    (picture.line(&frame.owner, &frame.key) != line).then(|| {
-        let (owners, keys) = picture.truth();
-        let [owners, keys] = [compare::owners(&frame.owner, &owners), compare::owners(&frame.key, &keys)]
-            .map(|images| format!("{} differ, first {:?}", images.different, images.offenders.first()));
-        format!("{} {} {tuning:?}: owners: {owners}; keys: {keys}", picture.name, rung.name())
+    let frame = captured(renderer, &picture.scene, &picture.view, &picture.stack, &strict(option)).frame;
+    (picture.line(&frame.triangle_id, &frame.key) != line).then(|| {
+        let (triangle_ids, keys) = picture.reference();
+        let [triangle_ids, keys] = [compare::triangle_ids(&frame.triangle_id, &triangle_ids), compare::triangle_ids(&frame.key, &keys)]
+            .map(|images| format!("{} differ, first {:?}", images.different, images.mismatches.first()));
+        format!("{} {} {tuning:?}: triangle ids: {triangle_ids}; keys: {keys}", picture.name, option.name())
     })
 }
 
@@ -329,11 +332,11 @@ fn the_adapter_finds_the_hashes_of_the_list() {
 fn the_judge_finds_nothing_to_excuse_in_strict_pictures() {
     let Some(mut renderer) = renderer() else { return };
     for picture in pictures() {
-        let rung = Visibility::Split32;
+        let option = Visibility::Split32;
         let Picture { name, scene, view, stack } = &picture;
-        let (capture, verdict) = exact(&mut renderer, scene, view, stack, &strict(rung), name);
+        let (capture, verdict) = exact(&mut renderer, scene, view, stack, &strict(option), name);
         let a = &verdict.accuracy;
-        assert_eq!([a.band_pixels, a.ill_conditioned, a.explained_by_snap, a.max_snap_delta.into()], [0; 4], "{name}");
+        assert_eq!([a.depth_band_pixels, a.ill_conditioned, a.explained_by_snap, a.max_snap_delta.into()], [0; 4], "{name}");
         assert_eq!(verdict.expected.key, capture.frame.key, "{name}");
     }
 }
@@ -344,12 +347,12 @@ fn integer_keys_alone_leave_no_depth_band() {
     for query in SCENES {
         let scene = scene(query);
         let view = view(&scene, [256, 192]);
-        for (tuning, rung) in ways(&renderer) {
+        for (tuning, option) in ways(&renderer) {
             renderer.set_tuning(tuning);
-            let accuracy = Accuracy { pins: Pins::of(rung).with(Depth::Integer), ..Accuracy::default() };
+            let accuracy = AccuracyRequest { pins: PinnedOptions::of(option).with(DepthFormat::Integer), ..AccuracyRequest::default() };
             let (capture, verdict) = exact(&mut renderer, &scene, &view, &stack(&["depth"]), &accuracy, query);
-            assert_eq!(verdict.accuracy.band_pixels, 0, "{query}");
-            assert_eq!(verdict.expected.owner, capture.frame.owner, "{query}");
+            assert_eq!(verdict.accuracy.depth_band_pixels, 0, "{query}");
+            assert_eq!(verdict.expected.triangle_id, capture.frame.triangle_id, "{query}");
             assert_eq!(verdict.expected.key, capture.frame.key, "{query}");
         }
     }
@@ -359,7 +362,7 @@ fn integer_keys_alone_leave_no_depth_band() {
 fn a_strict_picture_with_one_mistake_differs_from_the_list() {
     let Some(healthy) = renderer() else { return };
     let pictures = pictures();
-    let way = (Tuning { small_samples: 64, small_side: 32, ..healthy.gpu().caps.tuning() }, Visibility::Split32);
+    let way = (Tuning { max_small_samples: 64, max_small_side: 32, ..healthy.gpu().caps.tuning() }, Visibility::Split32);
     for (what, name, file, from, to) in [
         ("one bit is rounded up", "teapot?tess=8", "common/soft", "+ 127u + (kept & 1u)", "+ 128u"),
         ("sums drop what is shifted out", "teapot?tess=8", "common/soft", "| select(0u, 1u, is_lossy)", ""),
@@ -403,7 +406,7 @@ fn what_floats_decide_is_refused_by_name() {
     let scene = scene("sphere?triangles=200");
     let view = view(&scene, [64, 64]);
     renderer.set_scene(&scene).expect("a builtin fits");
-    let accuracy = Accuracy { pins: Pins::of(Vertex::Strict), ..Accuracy::default() };
+    let accuracy = AccuracyRequest { pins: PinnedOptions::of(VertexTransform::Strict), ..AccuracyRequest::default() };
     for name in ["explode", "inflate", "wobble", "race"] {
         let error = renderer.draw(&view, &stack(&["lambert", name]), &accuracy).expect_err(name).to_string();
         assert!(error.starts_with("vertex strict ") && error.contains(&format!("the effect {name} ")), "{error}");

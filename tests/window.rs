@@ -1,4 +1,4 @@
-//! A real window on a display of its own (Xvfb): it opens, draws, follows a hand, saves a look and closes.
+//! A real window on a display of its own (Xvfb): it opens, draws, follows a hand, saves a preset and closes.
 #![cfg(all(feature = "gui", target_os = "linux"))]
 
 use std::{
@@ -8,7 +8,7 @@ use std::{
     time::{Duration, Instant},
 };
 
-use rasterlab::preset;
+use rasterlab::preset_file;
 use x11rb::{
     connection::Connection as _,
     protocol::{
@@ -208,15 +208,15 @@ fn a_real_window_opens_draws_follows_the_hand_saves_and_closes() {
     let saved: PathBuf = home.path().join(".config/rasterlab/presets/my-facet-knot.toml");
     display.press(&[CONTROL, u32::from(b's')]);
     std::thread::sleep(Duration::from_millis(500));
-    wait_for("the look was saved", &mut lab, || {
+    wait_for("the preset was saved", &mut lab, || {
         display.press(&[RETURN]);
         saved.exists()
     });
-    let look = preset::load(&saved).expect("the saved look loads");
-    assert!(look.session.camera.is_some() && look.warnings.is_empty());
-    let built_in = preset::open("facet-knot", None).expect("a built-in look").session;
-    assert_eq!(look.session.stack, built_in.stack);
-    assert_ne!(look.session.camera, built_in.camera);
+    let preset_file = preset_file::load(&saved).expect("the saved preset loads");
+    assert!(preset_file.preset.camera.is_some() && preset_file.warnings.is_empty());
+    let built_in = preset_file::open("facet-knot", None).expect("a built-in preset").preset;
+    assert_eq!(preset_file.preset.stack, built_in.stack);
+    assert_ne!(preset_file.preset.camera, built_in.camera);
 
     display.press(&[CONTROL, u32::from(b'q')]);
     assert!(wait_for_exit(&mut lab).success(), "the lab closes with status 0");

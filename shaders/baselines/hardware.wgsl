@@ -1,5 +1,5 @@
 // Hardware: an ordinary render pipeline over the same vertex and index bytes, as a yardstick. The same effects shade it;
-// what only a rasterizer of our own knows (flat normal, owner, centre) it leaves at the interpolated values.
+// what only a rasterizer of our own knows (flat normal, triangle id, centre) it leaves at the interpolated values.
 //@ use common/draws
 //@ use common/surface
 //@ use common/color

@@ -1,7 +1,7 @@
-// Bends: every draw whose vertices are bent, with where their bytes lie. Twin of `gpu::bends::BendRecord`.
+// Deforms: every draw whose vertices are bent, with where their bytes lie. Mirror of `gpu::bends::DeformRecord`.
 //@ use common/frame
 
-struct Bend {
+struct Deform {
     first: u32,            // of its vertices, among those of all draws that may bend
     count: u32,
     target_word: u32,      // where its bent vertices begin: six words each, position and normal
@@ -24,15 +24,15 @@ struct Bend {
     shape_count: u32,
 }
 
-@group(0) @binding(16) var<storage, read> bends: array<Bend>;
+@group(0) @binding(16) var<storage, read> deforms: array<Deform>;
 
 // The last draw that does not begin after vertex `id` of all that may bend.
-fn bends_of(id: u32) -> u32 {
+fn deforms_of(id: u32) -> u32 {
     var low = 0u;
-    var high = frame.bend_count;
+    var high = frame.deform_count;
     for (var step = 0u; step < 32u && high - low > 1u; step += 1u) {
         let middle = (low + high) / 2u;
-        if bends[middle].first <= id { low = middle; } else { high = middle; }
+        if deforms[middle].first <= id { low = middle; } else { high = middle; }
     }
     return low;
 }

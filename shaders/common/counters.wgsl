@@ -1,4 +1,4 @@
-// Counters: demand of every queue, and what a frame did not draw. Twin of `gpu::uniforms::CounterRecord`.
+// Counters: demand of every queue, and what a frame did not draw. Mirror of `gpu::uniforms::CounterRecord`.
 
 struct Counters {
     clip: atomic<u32>,
@@ -9,19 +9,19 @@ struct Counters {
     rejected_nonfinite: atomic<u32>,
     rejected_range: atomic<u32>,
     degenerate: atomic<u32>,
-    fan_folds: atomic<u32>,
-    orphans: atomic<u32>,
+    flipped_clips: atomic<u32>,
+    depth_without_id: atomic<u32>,
     marked_tiles: atomic<u32>,
-    tickets: atomic<u32>,
-    tickets_again: atomic<u32>,
+    next_sample_index: atomic<u32>,
+    next_sample_index_again: atomic<u32>,
     bins: atomic<u32>,           // entries of the lists of all tiles
     full_pixels: atomic<u32>,    // pixels with more layers than the sums hold
     dropped: atomic<u32>,        // triangles left out that would have to be clipped
-    survivors: atomic<u32>,      // meshlets that culling left
+    visible_meshlets: atomic<u32>,      // meshlets that culling left
     outside: atomic<u32>,        // meshlets outside the picture
-    turned: atomic<u32>,         // meshlets that face away
+    backfacing: atomic<u32>,         // meshlets that face away
     hidden: atomic<u32>,         // meshlets behind what was drawn
-    survivors_done: atomic<u32>, // entries that an earlier round has drawn; 0 without rounds
+    visible_meshlets_done: atomic<u32>, // entries that an earlier round has drawn; 0 without rounds
     clip_done: atomic<u32>,
     medium_done: atomic<u32>,
     large_done: atomic<u32>,

@@ -1,9 +1,9 @@
-// Culling: how many meshlets there are, counted once for every instance, and where those that are left are listed. Twin of
+// Culling: how many meshlets there are, counted once for every instance, and where those that are left are listed. Mirror of
 // `gpu::culling::CullingUniform`.
 
 struct Culling {
     meshlet_count: u32,
-    first_survivor: u32,  // word of `meshlet_lists`
+    first_visible: u32,  // word of `meshlet_lists`
     hiz_width: u32,       // tiles of 8x8 pixels in a row of the depths that hide, in whole blocks of 64x64
     hiz_first_block: u32, // word at which those of the blocks begin
 }
@@ -14,4 +14,4 @@ struct Culling {
 override MESHLET_TRIANGLES: u32 = 64u;
 
 // Draw, first triangle, first vertex, numbers of both.
-const SURVIVOR_WORDS = 4u;
+const VISIBLE_MESHLET_WORDS = 4u;

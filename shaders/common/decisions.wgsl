@@ -2,8 +2,8 @@
 //@ use common/frame
 //@ use slot/records
 
-override DECISIONS: u32 = 0u;
+override SAMPLE_SETUPS: u32 = 0u;
 
 fn decisions_load(entry: u32, place: u32) -> vec4u {
-    return vertices[frame.vertex_count + entry * DECISIONS + place];
+    return vertices[frame.vertex_count + entry * SAMPLE_SETUPS + place];
 }

@@ -1,11 +1,11 @@
-// The dot frame: what of a picture concerns its dots alone. Twin of `gpu::dots::DotFrame`.
+// The dot frame: what of a picture concerns its dots alone. Mirror of `gpu::dots::DotFrame`.
 
 struct DotFrame {
     clip_from_scene: mat4x4f, // for lines that no mesh carries
     ink: vec4f,               // gamma-encoded, alpha is the strength
     center: vec2f,            // half the picture in units of 1/256 px
     dots: u32,                // of all lines
-    stretches: u32,
+    dot_runs: u32,
     segments: u32,
     fade_from: u32,           // bits of the 1/w at which dots of level 0 begin to fade
     fade_rate: u32,

@@ -4,8 +4,8 @@
 //@ use common/vertex
 //@ use effects/dots
 
-// Twin of `gpu::dots::StretchRecord`.
-struct Stretch {
+// Mirror of `gpu::dots::DotRunRecord`.
+struct DotRun {
     segment: u32,
     first: u32,   // number of its first dot
     count: u32,
@@ -13,7 +13,7 @@ struct Stretch {
     step: f32,    // share from dot to dot
 }
 
-@group(0) @binding(21) var<storage, read> stretches: array<Stretch>;
+@group(0) @binding(21) var<storage, read> dot_runs: array<DotRun>;
 @group(0) @binding(22) var<storage, read> dot_ends: array<vec4f>;
 
 // A value as it is, which no compiler fuses with what is done to it next: so every pass places a dot alike.
@@ -23,7 +23,7 @@ fn dots_rounded(v: vec4f) -> vec4f {
 
 // A dot in clip space.
 fn dots_clip(stretch: u32, place: u32) -> vec4f {
-    let s = stretches[stretch];
+    let s = dot_runs[stretch];
     let begin = dot_ends[2u * s.segment];
     let share = s.start + dots_rounded(vec4f(f32(place) * s.step)).x;
     return begin + dots_rounded((dot_ends[2u * s.segment + 1u] - begin) * share);
@@ -31,7 +31,7 @@ fn dots_clip(stretch: u32, place: u32) -> vec4f {
 
 // How far rounding may carry the dots of a stretch in clip space, in whatever order and fusion a pass computes them.
 fn dots_slack(stretch: u32) -> vec4f {
-    let segment = stretches[stretch].segment;
+    let segment = dot_runs[stretch].segment;
     return (abs(dot_ends[2u * segment]) + abs(dot_ends[2u * segment + 1u])) * 1e-6;
 }
 
@@ -44,14 +44,14 @@ fn dots_record(clip: vec4f) -> vec4u {
     return vertex_record(0u, is_between, at, bitcast<u32>(clip.z * inv_w), bitcast<u32>(inv_w));
 }
 
-// Stretch and place of the dot of this number.
+// DotRun and place of the dot of this number.
 fn dots_find(number: u32) -> vec2u {
     var low = 0u;
-    var high = dot_frame.stretches;
+    var high = dot_frame.dot_runs;
     // As many halvings as an index has bits.
     for (var i = 0u; i < 32u && high - low > 1u; i += 1u) {
         let middle = (low + high) / 2u;
-        if stretches[middle].first <= number { low = middle; } else { high = middle; }
+        if dot_runs[middle].first <= number { low = middle; } else { high = middle; }
     }
-    return vec2u(low, number - stretches[low].first);
+    return vec2u(low, number - dot_runs[low].first);
 }

@@ -1,4 +1,4 @@
-// Draws: every instance with its matrices and where its bytes lie. Twin of `gpu::uniforms::DrawRecord`.
+// Draws: every instance with its matrices and where its bytes lie. Mirror of `gpu::uniforms::DrawRecord`.
 //@ use slot/draws
 
 struct Draw {
@@ -28,4 +28,4 @@ struct Draw {
 
 const DRAW_DOUBLE_SIDED = 1u;
 const DRAW_MIRRORED = 2u;
-const DRAW_SPLAT = 4u;
+const DRAW_PARTICLES = 4u;

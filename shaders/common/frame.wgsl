@@ -1,4 +1,4 @@
-// The frame uniform: one picture's size, viewpoint and capacities. Twin of `gpu::uniforms::FrameUniform`.
+// The frame uniform: one picture's size, viewpoint and capacities. Mirror of `gpu::uniforms::FrameUniform`.
 
 struct Frame {
     background: vec4f,       // already gamma-encoded
@@ -17,7 +17,7 @@ struct Frame {
     triangle_count: u32,
     draw_count: u32,
     clip_capacity: u32,      // entries that fit each queue
-    piece_capacity: u32,
+    clipped_triangle_capacity: u32,
     medium_capacity: u32,
     large_capacity: u32,
     tile_capacity: u32,
@@ -27,13 +27,13 @@ struct Frame {
     tile_first: u32,
     point_radius: u32,       // units of 1/256 px; only where corners are drawn as discs
     first_rank: u32,         // record at which ranks of triangles begin, behind vertices and decisions
-    bend_count: u32,         // draws that bend
+    deform_count: u32,         // draws that bend
 }
 
 @group(0) @binding(0) var<uniform> frame: Frame;
 
 // Invocations in a workgroup of the passes that run over lists; larger groups are launched faster on a GPU.
-override LIST_GROUP: u32 = 64u;
+override GROUP_SIZE: u32 = 64u;
 // Side of the square of pixels that a workgroup of the resolve visits.
 override TILE_SIDE: u32 = 8u;
 

@@ -1,4 +1,4 @@
-// Fronts: one number per triangle that travels over the model. Twin of `effects::hooks::Front`, where each is explained.
+// Fronts: one number per triangle that travels over the model. Mirror of `effects::hooks::Front`, where each is explained.
 //@ use common/hash
 
 const FRONT_SWEEP = 1u;

@@ -1,9 +1,9 @@
-// What an image effect knows: the pixel that it finishes, and the integers of the whole picture. Twin of
+// What an image effect knows: the pixel that it finishes, and the integers of the whole picture. Mirror of
 // `effects::hooks::{Pixel, Picture}`, where each is explained.
 //@ use common/frame
 //@ use slot/image
 
-const IMAGE_NO_OWNER = 0xffffffffu;
+const IMAGE_NO_TRIANGLE = 0xffffffffu;
 
 struct Pixel {
     color: vec4f,   // gamma-encoded

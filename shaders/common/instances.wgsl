@@ -1,4 +1,4 @@
-// Instances: what culling knows of every draw. Twin of `gpu::culling::InstanceRecord`.
+// Instances: what culling knows of every draw. Mirror of `gpu::culling::InstanceRecord`.
 //@ use common/frame
 
 struct Instance {
@@ -12,7 +12,7 @@ struct Instance {
 }
 
 const INSTANCE_FACES = 1u; // shows one side of its triangles
-const INSTANCE_BENDS = 2u; // its meshlets are nowhere near their bounds; its own box holds
+const INSTANCE_DEFORMS = 2u; // its meshlets are nowhere near their bounds; its own box holds
 
 @group(0) @binding(27) var<storage, read> instances: array<Instance>;
 

@@ -1,4 +1,4 @@
-// Meshlets: patches of meshes, with bounds in object space. Twin of `gpu::culling::MeshletRecord`.
+// Meshlets: patches of meshes, with bounds in object space. Mirror of `gpu::culling::MeshletRecord`.
 
 struct Meshlet {
     center: vec4f,        // middle of a box round it. w: cosine of the angle that its normals stay within

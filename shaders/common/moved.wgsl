@@ -1,4 +1,4 @@
-// A corner of a triangle before it is projected. Twin of `effects::hooks::Vertex`, where each member is explained.
+// A corner of a triangle before it is projected. Mirror of `effects::hooks::Vertex`, where each member is explained.
 
 struct Vertex {
     position: vec3f,

@@ -1,5 +1,5 @@
 // Order: where the drawing stops. Written by the passes over the counts, read by the raster passes as a uniform.
-// Twin of `gpu::uniforms::OrderRecord`.
+// Mirror of `gpu::uniforms::OrderRecord`.
 
 struct Order {
     straddler: u32,   // triangles before it are drawn, those behind it are not

@@ -1,4 +1,4 @@
-// Parts: doubled areas opposite the corners at a sample, as whole numbers below 2^31. Corners come in the order of the file,
+// Trs: doubled areas opposite the corners at a sample, as whole numbers below 2^31. Corners come in the order of the file,
 // so that every kernel measures the same parts.
 //@ use common/triangle
 //@ use common/fixed

@@ -2,24 +2,24 @@
 // behind the entries of the first.
 //@ use common/counters
 
-override HAS_ROUNDS: bool = false;
+override IS_TWO_PASS: bool = false;
 
 fn rounds_clip_done() -> u32 {
-    if HAS_ROUNDS { return atomicLoad(&counters.clip_done); }
+    if IS_TWO_PASS { return atomicLoad(&counters.clip_done); }
     return 0u;
 }
 
 fn rounds_medium_done() -> u32 {
-    if HAS_ROUNDS { return atomicLoad(&counters.medium_done); }
+    if IS_TWO_PASS { return atomicLoad(&counters.medium_done); }
     return 0u;
 }
 
 fn rounds_large_done() -> u32 {
-    if HAS_ROUNDS { return atomicLoad(&counters.large_done); }
+    if IS_TWO_PASS { return atomicLoad(&counters.large_done); }
     return 0u;
 }
 
 fn rounds_tiles_done() -> u32 {
-    if HAS_ROUNDS { return atomicLoad(&counters.tiles_done); }
+    if IS_TWO_PASS { return atomicLoad(&counters.tiles_done); }
     return 0u;
 }

@@ -1,4 +1,4 @@
-// What sample effects see. Twins of `effects::hooks::{Sample, Facts}`, where each member is explained.
+// What sample effects see. Twins of `effects::hooks::{Sample, TriangleSetup}`, where each member is explained.
 
 struct Sample {
     at: vec2u,
@@ -7,7 +7,7 @@ struct Sample {
     decided: vec4u,
 }
 
-struct Facts {
+struct TriangleSetup {
     triangle: u32,
     a: vec2i,
     b: vec2i,

@@ -1,5 +1,5 @@
 // Shade: a triangle's surface at a sample, rebuilt from its id and the snapped corners alone, so that the same text serves
-// the resolve, which knows the owner of a pixel, and passes that shade every layer.
+// the resolve, which knows the triangle id of a pixel, and passes that shade every layer.
 //@ use common/triangle
 //@ use common/transform
 //@ use common/center
@@ -134,7 +134,7 @@ fn shade_surface(pixel: vec2u) -> Surface {
     let normal_from_object = draws[t.draw].normal_from_object;
 
     var s: Surface;
-    s.owner = id;
+    s.triangle_id = id;
     s.rank = ranks_of(id);
     s.center_screen = place.center_screen;
     s.pixel = vec2f(pixel) + 0.5;

@@ -1,6 +1,6 @@
-// Sine of an angle in turns, by a minimax polynomial: drivers may err by 2^-11 in their own. Twin of `math::sin_turns`.
+// Sine of an angle in turns, by a minimax polynomial: drivers may err by 2^-11 in their own. Mirror of `math::sin_turns`.
 
-// Within `math::SINE_SLACK` of the sine of this very float, 0 exactly at whole and half turns.
+// Within `math::SINE_ERROR` of the sine of this very float, 0 exactly at whole and half turns.
 fn sine_turns(turns: f32) -> f32 {
     let rest = turns - round(turns);
     // Folded to a quarter turn either way.

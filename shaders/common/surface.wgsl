@@ -1,4 +1,4 @@
-// What the rasterizer knows about a visible sample. Twin of `effects::Surface`, where each member is explained.
+// What the rasterizer knows about a visible sample. Mirror of `effects::Surface`, where each member is explained.
 
 struct Surface {
     color: vec4f,
@@ -17,7 +17,7 @@ struct Surface {
     pixel_m: f32,
     flat_depth_m: f32,
     range_m: vec2f,
-    owner: u32,
+    triangle_id: u32,
     rank: f32,
     lit: f32,
 }

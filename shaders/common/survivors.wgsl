@@ -12,18 +12,18 @@ struct Survivor {
     vertices: u32,
 }
 
-fn survivors_end() -> u32 {
-    return atomicLoad(&counters.survivors);
+fn visible_meshlets_end() -> u32 {
+    return atomicLoad(&counters.visible_meshlets);
 }
 
 // Which one an invocation works on: every one has as many as it may have triangles. A second round begins behind the first.
-fn survivors_slot(invocation: u32) -> u32 {
-    return atomicLoad(&counters.survivors_done) + invocation / MESHLET_TRIANGLES;
+fn visible_meshlets_slot(invocation: u32) -> u32 {
+    return atomicLoad(&counters.visible_meshlets_done) + invocation / MESHLET_TRIANGLES;
 }
 
 // The last one for whoever comes too late.
-fn survivors_load(slot: u32) -> Survivor {
-    let at = culling.first_survivor + SURVIVOR_WORDS * min(slot, survivors_end() - 1u);
+fn visible_meshlets_load(slot: u32) -> Survivor {
+    let at = culling.first_visible + VISIBLE_MESHLET_WORDS * min(slot, visible_meshlets_end() - 1u);
     let counts = meshlet_lists[at + 3u];
     return Survivor(meshlet_lists[at], meshlet_lists[at + 1u], meshlet_lists[at + 2u], counts & 0xffffu, counts >> 16u);
 }

@@ -1,4 +1,4 @@
-// Texels: images and the records of materials that look them up, as words of one texture (`gpu::texels`). Every value is mixed
+// Texels: images and the records of materials that preset them up, as words of one texture (`gpu::texels`). Every value is mixed
 // here, in linear light, from whole texels: what a sampler's own arithmetic would make of them no judge could tell.
 //@ use common/draws
 
@@ -17,7 +17,7 @@ struct Paint {
     red: f32,      // emitted light
     green: f32,
     blue: f32,
-    least_alpha: u32,  // that is drawn, in 2^-16 of a byte's step
+    alpha_threshold: u32,  // that is drawn, in 2^-16 of a byte's step
     first_corner: u32, // word of the first vertex's place in the image that masks it, in 1/256 of a texel, two words each
 }
 

@@ -1,4 +1,4 @@
-// Tones that several effects compute alike. Twin of `effects::hooks::tone`.
+// Tones that several effects compute alike. Mirror of `effects::hooks::tone`.
 
 // Share of light that the eye sees of linear RGB (Rec. 709).
 fn tone_luminance(linear: vec3f) -> f32 {

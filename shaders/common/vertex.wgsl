@@ -1,4 +1,4 @@
-// The projected vertex, 16 bytes: X<<8 | flags, Y<<8, bits of depth, bits of 1/w. Twin of `frame::SnappedVertex`.
+// The projected vertex, 16 bytes: X<<8 | flags, Y<<8, bits of depth, bits of 1/w. Mirror of `frame::SnappedVertex`.
 
 const VERTEX_NONFINITE = 1u;
 const VERTEX_OUT_OF_RANGE = 2u;
@@ -29,7 +29,7 @@ fn vertex_position(bits: vec3u, flags: u32) -> vec3f {
 }
 
 // Snaps a clip-space point in front of the near plane: the one place where floats become positions.
-// `center` is half the picture in units, so the viewport shift is an exact integer; the cheaper rung shifts in floats.
+// `center` is half the picture in units, so the viewport shift is an exact integer; the cheaper option shifts in floats.
 fn vertex_snap(clip: vec4f, inv_w: f32, center: vec2f) -> vec2i {
     let limit = vec2f(16777216.0);
     if FLOAT_VIEWPORT { return vec2i(clamp(round((clip.xy * inv_w * vec2f(0.5, -0.5) + 0.5) * (2.0 * center)), -limit, limit)); }

@@ -39,7 +39,7 @@ fn dissolve_root(x: u32) -> u32 {
 }
 
 // x: share to fill, in 2^-24. y: threshold in 2^-16, or the first pixel that is not drawn. z: how to tell.
-fn dissolve_decide(t: Facts, p: Dissolve) -> vec4u {
+fn dissolve_decide(t: TriangleSetup, p: Dissolve) -> vec4u {
     let share = u32(round(clamp(dissolve_fill(p, t.center, t.center_screen, t.triangle), 0.0, 1.0) * 16777216.0));
     var b = t.b;
     var c = t.c;
@@ -91,7 +91,7 @@ fn dissolve_sample(s: Sample, p: Dissolve) -> bool {
 // A rim that glows where the triangle is about to go.
 fn dissolve_surface(surface: Surface, p: Dissolve) -> Surface {
     var s = surface;
-    let fill = clamp(dissolve_fill(p, s.center, s.center_screen, s.owner), 0.0, 1.0);
+    let fill = clamp(dissolve_fill(p, s.center, s.center_screen, s.triangle_id), 0.0, 1.0);
     let part = select(select(s.shares.x, s.shares.y, p.corner == 1u), s.shares.z, p.corner == 2u);
     var way = 0.0;
     var end = sqrt(fill);

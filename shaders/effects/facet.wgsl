@@ -18,7 +18,7 @@ struct Facet {
 fn facet(surface: Surface, p: Facet) -> Surface {
     var s = surface;
     let front = Front(p.pattern, p.front, p.width, vec2f(p.along_x, p.along_y), p.center.xyz, p.radius_m, p.width_m, p.seed);
-    let t = p.amount * front_reached(front, s.center, s.center_screen, s.owner);
+    let t = p.amount * front_reached(front, s.center, s.center_screen, s.triangle_id);
     if t <= 0.0 { return s; }
     s.depth_m += (s.flat_depth_m - s.depth_m) * t;
     let blended = s.normal + (s.flat_normal - s.normal) * t;

@@ -28,29 +28,29 @@ fn outline(pixel: Pixel, p: Outline) -> Pixel {
     return q;
 }
 
-// Does a line run at a pixel because of another? Each is owner, key and draw.
+// Does a line run at a pixel because of another? Each is triangle id, key and draw.
 fn outline_is_edge(p: Outline, at: vec2i, here: vec3u, step: vec2i) -> bool {
     if !image_has(at.x + step.x, at.y + step.y) { return false; }
     let there = image_at(at.x + step.x, at.y + step.y);
-    let is_empty = here.x == IMAGE_NO_OWNER;
-    if is_empty || there.x == IMAGE_NO_OWNER {
+    let is_empty = here.x == IMAGE_NO_TRIANGLE;
+    if is_empty || there.x == IMAGE_NO_TRIANGLE {
         let is_right_side = p.side == OUTLINE_SIDE_BOTH || is_empty == (p.side == OUTLINE_SIDE_OUTSIDE);
         return p.silhouette != 0u && here.x != there.x && is_right_side;
     }
     if here.z != there.z {
         // Equal keys: the later object counts as behind.
-        let is_behind = here.y < there.y || (here.y == there.y && here.z > there.z);
-        return p.objects != 0u && (p.side == OUTLINE_SIDE_BOTH || is_behind == (p.side == OUTLINE_SIDE_OUTSIDE));
+        let simulation_pending = here.y < there.y || (here.y == there.y && here.z > there.z);
+        return p.objects != 0u && (p.side == OUTLINE_SIDE_BOTH || simulation_pending == (p.side == OUTLINE_SIDE_OUTSIDE));
     }
     if p.depth == 0u || !image_has(at.x - step.x, at.y - step.y) { return false; }
     let beyond = image_at(at.x - step.x, at.y - step.y);
-    if beyond.z != here.z || beyond.x == IMAGE_NO_OWNER { return false; }
+    if beyond.z != here.z || beyond.x == IMAGE_NO_TRIANGLE { return false; }
     // What bends away from a straight slope; a slope alone is no jump. Keys end at the bits of 1.0: it fits.
-    let bend = i32(there.y) + i32(beyond.y) - 2 * i32(here.y);
+    let deform = i32(there.y) + i32(beyond.y) - 2 * i32(here.y);
     let jump = i32(p.jump * 8388608.0);
     switch p.side {
-        case OUTLINE_SIDE_OUTSIDE: { return bend > jump; }
-        case OUTLINE_SIDE_INSIDE: { return bend < -jump; }
-        default: { return abs(bend) > jump; }
+        case OUTLINE_SIDE_OUTSIDE: { return deform > jump; }
+        case OUTLINE_SIDE_INSIDE: { return deform < -jump; }
+        default: { return abs(deform) > jump; }
     }
 }

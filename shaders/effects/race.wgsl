@@ -1,4 +1,4 @@
-// Race: what goes wrong without atomics, live: load the depth, compare, store depth and owner, and hope.
+// Race: what goes wrong without atomics, live: load the depth, compare, store depth and triangle id, and hope.
 //@ use common/hash
 
 struct Race {

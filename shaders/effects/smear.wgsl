@@ -9,7 +9,7 @@ struct Smear {
 
 fn smear(pixel: Pixel, p: Smear) -> Pixel {
     var q = pixel;
-    if image_at(i32(q.x), i32(q.y)).x != IMAGE_NO_OWNER { return q; }
+    if image_at(i32(q.x), i32(q.y)).x != IMAGE_NO_TRIANGLE { return q; }
     let background = vec4i(clamp(image_background(), vec4f(0.0), vec4f(1.0)) * 255.0 + 0.5);
     let previous = vec4i(image_previous(q));
     // In units of 2^-16; a trail that fades at all takes a step at least, so it comes to its end.

@@ -11,7 +11,7 @@ struct Wireframe {
 }
 
 // How near the edge opposite each corner a sample must be, less one; 0 never. Of an edge's width each triangle draws half.
-fn wireframe_decide(t: Facts, p: Wireframe) -> vec4u {
+fn wireframe_decide(t: TriangleSetup, p: Wireframe) -> vec4u {
     let half_width = u32(round(p.width_px * 128.0));
     let shift = fixed_shift(fixed_abs(fixed_edge(t.a, t.b, t.c)));
     return vec4u(

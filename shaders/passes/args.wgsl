@@ -29,8 +29,8 @@ fn args_write() {
     args.medium = fold(min(atomicLoad(&counters.medium), frame.medium_capacity) - atomicLoad(&counters.medium_done));
     args.large = fold(min(atomicLoad(&counters.large), frame.large_capacity) - atomicLoad(&counters.large_done));
     args.tiles = fold(min(atomicLoad(&counters.tiles), frame.tile_capacity) - atomicLoad(&counters.tiles_done));
-    args.pieces = fold((min(atomicLoad(&counters.pieces), frame.piece_capacity) + LIST_GROUP - 1u) / LIST_GROUP);
+    args.pieces = fold((min(atomicLoad(&counters.pieces), frame.clipped_triangle_capacity) + GROUP_SIZE - 1u) / GROUP_SIZE);
     args.resolve = fold(atomicLoad(&counters.marked_tiles));
-    let meshlets = atomicLoad(&counters.survivors) - atomicLoad(&counters.survivors_done);
-    args.meshlets = fold((meshlets * MESHLET_TRIANGLES + LIST_GROUP - 1u) / LIST_GROUP);
+    let meshlets = atomicLoad(&counters.visible_meshlets) - atomicLoad(&counters.visible_meshlets_done);
+    args.meshlets = fold((meshlets * MESHLET_TRIANGLES + GROUP_SIZE - 1u) / GROUP_SIZE);
 }

@@ -7,14 +7,14 @@
 //@ use common/rounds
 //@ use common/fixed
 
-struct Piece {
+struct ClippedTriangle {
     a: vec4u,
     b: vec4u,
     c: vec4u,
     parent: vec4u, // id of the triangle, its draw, place in the fan, outline as in `Triangle`
 }
 
-@group(0) @binding(9) var<storage, read_write> pieces: array<Piece>;
+@group(0) @binding(9) var<storage, read_write> pieces: array<ClippedTriangle>;
 
 const CLIP_ENTRY = 0x80000000u;
 const CLIP_SMALL_EXTENT = 32768;
@@ -89,16 +89,16 @@ fn emit(polygon: Polygon, t: Triangle) {
         let c = vertex_at(records[i + 1u]);
         let sign = fixed_sign(fixed_edge(a, b, c));
         if sign == 0 || sign != fixed_sign(whole) {
-            atomicAdd(&counters.fan_folds, 1u);
+            atomicAdd(&counters.flipped_clips, 1u);
             continue;
         }
         if !triangle_is_shown(draws[t.draw].flags, sign > 0) { continue; }
         let slot = atomicAdd(&counters.pieces, 1u);
-        if slot >= frame.piece_capacity { continue; }
+        if slot >= frame.clipped_triangle_capacity { continue; }
         let is_first = i == 1u && polygon.corners[0].is_edge;
         let is_last = i + 2u == polygon.count && polygon.corners[i + 1u].is_edge;
         let outline = select(0u, 1u, polygon.corners[i].is_edge) | select(0u, 2u, is_last) | select(0u, 4u, is_first);
-        pieces[slot] = Piece(records[0], records[i], records[i + 1u], vec4u(t.id, t.draw, i, outline));
+        pieces[slot] = ClippedTriangle(records[0], records[i], records[i + 1u], vec4u(t.id, t.draw, i, outline));
         let low = min(min(a, b), c);
         let high = max(max(a, b), c);
         let pixels = triangle_pixels(low, high);

@@ -1,4 +1,4 @@
-// Dots cull: 64 stretches to a workgroup. Those outside the view are left out whole, the others are thinned by their
+// Dots cull: 64 dot_runs to a workgroup. Those outside the view are left out whole, the others are thinned by their
 // nearest end, and the dots that remain are shared out evenly among the invocations; those that may show are kept in a list
 // without gaps, in whatever order. It keeps a few too many, never one too few: the draw decides.
 //@ use common/frame
@@ -11,7 +11,7 @@ const CULL_GROUP = 64u;
 // Rounding of 1/w, in steps of its bits.
 const CULL_STEPS = 64u;
 
-// How many dots the stretches up to this one may show.
+// How many dots the dot_runs up to this one may show.
 var<workgroup> sums: array<u32, 64>;
 // Place of the first such dot in its stretch, and how often their numbers can be halved.
 var<workgroup> firsts: array<vec2u, 64>;
@@ -48,8 +48,8 @@ fn cull_halved(w: f32) -> u32 {
 }
 
 // How many dots a stretch may show, the place of the first and their level.
-fn cull_stretch(id: u32) -> vec3u {
-    let s = stretches[id];
+fn cull_dot_run(id: u32) -> vec3u {
+    let s = dot_runs[id];
     let a = dots_clip(id, 0u);
     let b = dots_clip(id, s.count - 1u);
     let slack = dots_slack(id);
@@ -62,7 +62,7 @@ fn cull_stretch(id: u32) -> vec3u {
 }
 
 // The stretch of the workgroup to which the candidate of this number belongs.
-fn cull_owner(candidate: u32) -> u32 {
+fn cull_triangle(candidate: u32) -> u32 {
     var low = 0u;
     for (var skip = 32u; skip > 0u; skip /= 2u) {
         if sums[low + skip - 1u] <= candidate { low += skip; }
@@ -72,9 +72,9 @@ fn cull_owner(candidate: u32) -> u32 {
 
 @compute @workgroup_size(CULL_GROUP)
 fn dots_cull(@builtin(workgroup_id) group: vec3u, @builtin(num_workgroups) groups: vec3u, @builtin(local_invocation_index) lane: u32) {
-    let first_stretch = frame_invocation(group, groups, 0u, CULL_GROUP);
+    let first_dot_run = frame_invocation(group, groups, 0u, CULL_GROUP);
     var own = vec3u(0u);
-    if first_stretch + lane < dot_frame.stretches { own = cull_stretch(first_stretch + lane); }
+    if first_dot_run + lane < dot_frame.dot_runs { own = cull_dot_run(first_dot_run + lane); }
     sums[lane] = own.x;
     firsts[lane] = own.yz;
     // Every invocation adds what stands 1, 2, 4 … before it.
@@ -94,14 +94,14 @@ fn dots_cull(@builtin(workgroup_id) group: vec3u, @builtin(num_workgroups) group
         var slot = 0u;
         var may_show = false;
         if candidate < candidates {
-            let at = cull_owner(candidate);
+            let at = cull_triangle(candidate);
             var before = 0u;
             if at > 0u { before = sums[at - 1u]; }
-            entry = vec2u(first_stretch + at, firsts[at].x + ((candidate - before) << firsts[at].y));
+            entry = vec2u(first_dot_run + at, firsts[at].x + ((candidate - before) << firsts[at].y));
             let clip = dots_clip(entry.x, entry.y);
             let slack = dots_slack(entry.x);
             let halved = cull_halved(clip.w - slack.w);
-            let number = stretches[entry.x].first + entry.y;
+            let number = dot_runs[entry.x].first + entry.y;
             may_show = !cull_is_outside(clip, clip, slack) && firstTrailingBit(number) >= (halved >> DOTS_STEPS);
             if may_show { slot = atomicAdd(&kept, 1u); }
         }

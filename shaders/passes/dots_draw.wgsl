@@ -22,7 +22,7 @@ fn dots_draw(@builtin(workgroup_id) group: vec3u, @builtin(num_workgroups) group
     let entry = dot_list_at(id);
     let record = dots_record(dots_clip(entry.x, entry.y));
     if (record.x & 255u) != 0u { return; }
-    let number = stretches[entry.x].first + entry.y;
+    let number = dot_runs[entry.x].first + entry.y;
     let strength = dots_strength(number, dots_halved(record.w, dot_frame.fade_from, dot_frame.levels), dot_frame.fade_rate);
     if strength == 0u { return; }
     let at = vertex_at(record);

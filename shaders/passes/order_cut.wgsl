@@ -3,7 +3,7 @@
 //@ use common/fixed
 //@ use common/order
 
-@group(0) @binding(5) var<storage, read> hits: array<u32>;
+@group(0) @binding(5) var<storage, read> boundary_samples: array<u32>;
 @group(0) @binding(14) var<storage, read_write> order: Order;
 
 var<workgroup> before: array<u32, 256>;
@@ -15,7 +15,7 @@ fn order_cut(@builtin(local_invocation_index) lane: u32) {
     let first = min(lane * share, words);
     let last = min(first + share, words);
     var sum = 0u;
-    for (var i = first; i < last; i += 1u) { sum += countOneBits(hits[i]); }
+    for (var i = first; i < last; i += 1u) { sum += countOneBits(boundary_samples[i]); }
     before[lane] = sum;
     workgroupBarrier();
     if lane == 0u {
@@ -36,9 +36,9 @@ fn order_cut(@builtin(local_invocation_index) lane: u32) {
     let rest = order.limit_lo - order.before_lo;
     sum = before[lane];
     for (var i = first; i < last; i += 1u) {
-        let here = countOneBits(hits[i]);
+        let here = countOneBits(boundary_samples[i]);
         if sum <= rest && rest < sum + here {
-            var bits = hits[i];
+            var bits = boundary_samples[i];
             for (var skip = sum; skip < rest; skip += 1u) { bits &= bits - 1u; }
             order.cut = i * 32u + countTrailingZeros(bits);
             let drawn = fixed_add(Wide(order.before_hi, order.before_lo), Wide(0u, rest));

@@ -5,7 +5,7 @@
 //@ use common/order
 //@ use glue/surface
 
-@group(0) @binding(5) var<storage, read> counts: array<u32>;
+@group(0) @binding(5) var<storage, read> sample_counts: array<u32>;
 @group(0) @binding(6) var<storage, read_write> sums: array<vec2u>;
 @group(0) @binding(14) var<storage, read_write> order: Order;
 
@@ -81,14 +81,14 @@ fn order_limit(@builtin(local_invocation_index) lane: u32) {
     workgroupBarrier();
     let begin = block * 1024u + lane * 4u;
     var mine = Wide(0u, 0u);
-    for (var id = begin; id < min(begin + 4u, frame.triangle_count); id += 1u) { mine = fixed_add(mine, Wide(0u, counts[id])); }
+    for (var id = begin; id < min(begin + 4u, frame.triangle_count); id += 1u) { mine = fixed_add(mine, Wide(0u, sample_counts[id])); }
     before[lane] = mine;
     workgroupBarrier();
     order_scan(lane);
     workgroupBarrier();
     sum = fixed_add(sum, before[lane]);
     for (var id = begin; id < min(begin + 4u, frame.triangle_count); id += 1u) {
-        let next = fixed_add(sum, Wide(0u, counts[id]));
+        let next = fixed_add(sum, Wide(0u, sample_counts[id]));
         if !fixed_is_less(limit, sum) && fixed_is_less(limit, next) {
             order.straddler = id;
             order.before_hi = sum.hi;

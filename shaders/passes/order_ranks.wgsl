@@ -4,7 +4,7 @@
 //@ use common/order
 //@ use slot/records
 
-@group(0) @binding(5) var<storage, read> counts: array<u32>;
+@group(0) @binding(5) var<storage, read> sample_counts: array<u32>;
 @group(0) @binding(6) var<storage, read> sums: array<vec2u>;
 @group(0) @binding(14) var<uniform> order: Order;
 
@@ -17,7 +17,7 @@ fn order_ranks(@builtin(workgroup_id) group: vec3u, @builtin(num_workgroups) gro
     var mine = vec4u(0u);
     var sum = Wide(0u, 0u);
     for (var i = 0u; i < 4u; i += 1u) {
-        if begin + i < frame.triangle_count { mine[i] = counts[begin + i]; }
+        if begin + i < frame.triangle_count { mine[i] = sample_counts[begin + i]; }
         sum = fixed_add(sum, Wide(0u, mine[i]));
     }
     partial[lane] = sum;

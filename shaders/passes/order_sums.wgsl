@@ -2,7 +2,7 @@
 //@ use common/frame
 //@ use common/fixed
 
-@group(0) @binding(5) var<storage, read> counts: array<u32>;
+@group(0) @binding(5) var<storage, read> sample_counts: array<u32>;
 @group(0) @binding(6) var<storage, read_write> sums: array<vec2u>;
 
 var<workgroup> partial: array<Wide, 256>;
@@ -13,7 +13,7 @@ fn order_sums(@builtin(workgroup_id) group: vec3u, @builtin(num_workgroups) grou
     var sum = Wide(0u, 0u);
     for (var i = 0u; i < 4u; i += 1u) {
         let id = block * 1024u + lane * 4u + i;
-        if id < frame.triangle_count { sum = fixed_add(sum, Wide(0u, counts[id])); }
+        if id < frame.triangle_count { sum = fixed_add(sum, Wide(0u, sample_counts[id])); }
     }
     partial[lane] = sum;
     workgroupBarrier();

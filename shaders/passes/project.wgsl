@@ -6,10 +6,10 @@
 
 @group(0) @binding(4) var<storage, read_write> vertices: array<vec4u>;
 
-@compute @workgroup_size(LIST_GROUP)
+@compute @workgroup_size(GROUP_SIZE)
 fn project(@builtin(workgroup_id) group: vec3u, @builtin(num_workgroups) groups: vec3u, @builtin(local_invocation_index) lane: u32) {
     // No early return: what all lanes load alike is then loaded once, even where branches are lane masks.
-    let invocation = frame_invocation(group, groups, lane, LIST_GROUP);
+    let invocation = frame_invocation(group, groups, lane, GROUP_SIZE);
     let id = min(invocation, frame.vertex_count - 1u);
     let source = sources_of(id);
     let record = projection_record(source.draw, source.vertex, source.triangle);

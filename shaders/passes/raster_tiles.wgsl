@@ -1,5 +1,5 @@
 // Raster tiles: one workgroup per 16x16 tile of the picture, one invocation per pixel. It walks the tile's list and keeps key
-// and owner to itself, so no pixel needs an atomic. The lanes set up a batch of the list together, each a triangle of it.
+// and triangle id to itself, so no pixel needs an atomic. The lanes set up a batch of the list together, each a triangle of it.
 //@ use slot/pieces
 //@ use common/tiles
 //@ use common/gate
@@ -7,11 +7,11 @@
 //@ use slot/marks
 
 // Every covered sample must ask whether it is drawn, even one that could not win.
-override IS_TICKETED: bool = false;
+override TESTS_EVERY_SAMPLE: bool = false;
 // Most entries of a list that one dispatch walks, where a driver ends long loops; the next one goes on.
-override LIST_WALK: u32 = 0xffffffffu;
+override MAX_LIST_ENTRIES: u32 = 0xffffffffu;
 
-@group(0) @binding(5) var<storage, read_write> depth_owner: array<vec2u>;
+@group(0) @binding(5) var<storage, read_write> depth_and_id: array<vec2u>;
 @group(0) @binding(6) var<storage, read_write> bins: array<u32>;
 
 var<workgroup> list: vec2u;                         // begin and end
@@ -31,7 +31,7 @@ fn raster_tiles(
         list = min(vec2u(begin, bins[tile]), vec2u(frame.bin_capacity));
         // Earlier dispatches came so far; no index leaves the list, whatever its end says.
         list.x = min(list.x + bins[tiles_count() + tile], list.y);
-        list.y = list.x + min(list.y - list.x, LIST_WALK);
+        list.y = list.x + min(list.y - list.x, MAX_LIST_ENTRIES);
         bins[tiles_count() + tile] += list.y - list.x;
     }
     let range = workgroupUniformLoad(&list);
@@ -40,7 +40,7 @@ fn raster_tiles(
     let pixel = at.y * frame.size.x + at.x;
     let is_inside = all(at < frame.size);
     var nearest = vec2u(0u); // complemented id, key
-    if LIST_WALK != 0xffffffffu && range.x < range.y && is_inside { nearest = depth_owner[pixel]; }
+    if MAX_LIST_ENTRIES != 0xffffffffu && range.x < range.y && is_inside { nearest = depth_and_id[pixel]; }
     for (var begin = range.x; begin < range.y; begin += CELLS_BATCH) {
         let count = min(range.y - begin, CELLS_BATCH);
         if lane < count {
@@ -57,7 +57,7 @@ fn raster_tiles(
             if is_inside && all(local.xy >= reach.xy) && all(local.xy <= reach.zw) {
                 let sample = vec2u(~ids[i], cells_key(cells[i], vec2i(at), vec2i(local.xy)));
                 let is_nearer = sample.y > nearest.y || (sample.y == nearest.y && sample.x > nearest.x);
-                if sample.y != 0u && (is_nearer || IS_TICKETED) {
+                if sample.y != 0u && (is_nearer || TESTS_EVERY_SAMPLE) {
                     if is_drawn(pieces_load(entries[i]), at, pixel) && is_nearer { nearest = sample; }
                 }
             }
@@ -65,7 +65,7 @@ fn raster_tiles(
         workgroupBarrier();
     }
     if range.x < range.y && is_inside {
-        depth_owner[pixel] = nearest;
+        depth_and_id[pixel] = nearest;
         if all(local.xy % 8u == vec2u(0u)) { marks_box(vec4i(vec4u(at, at))); }
     }
 }

@@ -4,15 +4,15 @@
 //@ use common/counters
 
 // Both rounds are over.
-override IS_OVER: bool = false;
+override REOPENS_QUEUES: bool = false;
 
 fn rounds_done(count: u32, capacity: u32) -> u32 {
-    return select(min(count, capacity), 0u, IS_OVER);
+    return select(min(count, capacity), 0u, REOPENS_QUEUES);
 }
 
 @compute @workgroup_size(1)
 fn rounds() {
-    atomicStore(&counters.survivors_done, rounds_done(atomicLoad(&counters.survivors), 0xffffffffu));
+    atomicStore(&counters.visible_meshlets_done, rounds_done(atomicLoad(&counters.visible_meshlets), 0xffffffffu));
     atomicStore(&counters.clip_done, rounds_done(atomicLoad(&counters.clip), frame.clip_capacity));
     atomicStore(&counters.medium_done, rounds_done(atomicLoad(&counters.medium), frame.medium_capacity));
     atomicStore(&counters.large_done, rounds_done(atomicLoad(&counters.large), frame.large_capacity));

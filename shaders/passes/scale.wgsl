@@ -4,7 +4,7 @@
 //@ use common/light
 //@ use slot/scaling
 
-// What is shown. Twin of `gpu::uniforms::ScalingUniform`.
+// What is shown. Mirror of `gpu::uniforms::ScalingUniform`.
 struct Scaling {
     size: vec2u,
     stride: u32, // pixels from one row to the next

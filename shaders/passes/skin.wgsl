@@ -11,24 +11,24 @@ fn skin_store(word: u32, bits: vec3u) {
     vertex_bytes[word + 2u] = bits.z;
 }
 
-@compute @workgroup_size(LIST_GROUP)
+@compute @workgroup_size(GROUP_SIZE)
 fn skin(@builtin(workgroup_id) group: vec3u, @builtin(num_workgroups) groups: vec3u, @builtin(local_invocation_index) lane: u32) {
-    let id = frame_invocation(group, groups, lane, LIST_GROUP);
-    let bend = bends_of(id);
-    let vertex = id - bends[bend].first;
+    let id = frame_invocation(group, groups, lane, GROUP_SIZE);
+    let deform = deforms_of(id);
+    let vertex = id - deforms[deform].first;
     // Draws that may bend and do not at this moment leave gaps.
-    if id < bends[bend].first || vertex >= bends[bend].count { return; }
-    let skinning = skinning_of(bend, vertex);
-    let word = bends[bend].target_word + 6u * vertex;
+    if id < deforms[deform].first || vertex >= deforms[deform].count { return; }
+    let skinning = skinning_of(deform, vertex);
+    let word = deforms[deform].target_word + 6u * vertex;
 
     // What cannot be drawn stays what it is, for the projection to refuse.
-    let place = pull_bits3(bends[bend].position_format, bends[bend].position_offset + vertex * bends[bend].position_stride);
+    let place = pull_bits3(deforms[deform].position_format, deforms[deform].position_offset + vertex * deforms[deform].position_stride);
     let gate = vertex_gate(place);
-    let bent = skinning_place(skinning, shapes_place(bend, vertex, vertex_position(place, gate)));
-    skin_store(word, select(place, bitcast<vec3u>(bent), gate == 0u));
+    let deformed = skinning_place(skinning, shapes_place(deform, vertex, vertex_position(place, gate)));
+    skin_store(word, select(place, bitcast<vec3u>(deformed), gate == 0u));
 
-    let stored = pull_bits3(bends[bend].normal_format, bends[bend].normal_offset + vertex * bends[bend].normal_stride);
+    let stored = pull_bits3(deforms[deform].normal_format, deforms[deform].normal_offset + vertex * deforms[deform].normal_stride);
     let normal = normal_gated(stored);
-    let turned = normal_direction(skinning_normal(skinning, shapes_normal(bend, vertex, normal.xyz)));
+    let turned = normal_direction(skinning_normal(skinning, shapes_normal(deform, vertex, normal.xyz)));
     skin_store(word + 3u, select(stored, bitcast<vec3u>(turned), normal.w != 0.0));
 }

@@ -1,7 +1,7 @@
 //! Attraction: the hand that draws particles along, and the trail that its way leaves while time runs.
 //!
-//! A look says where its attractor is at every moment, so its particles can be found from the first frame on. What a hand
-//! does while they fly is no part of the look: it is kept here, step by step, until time goes back.
+//! A preset says where its attractor is at every moment, so its particles can be found from the first frame on. What a hand
+//! does while they fly is no part of the preset: it is kept here, step by step, until time goes back.
 
 use std::sync::Arc;
 
@@ -11,17 +11,17 @@ use glam::DVec3;
 use super::App;
 use crate::{
     effects::particles::{self, EFFECT},
-    scene::{camera::View, splats::Flow},
+    scene::{camera::View, particle_discs::ParticleTimeline},
 };
 
 /// See the module's first line.
 #[derive(Default)]
 pub struct Trail {
-    /// Parameter words of every step so far; empty while the particles fly as the look alone has it.
+    /// Parameter words of every step so far; empty while the particles fly as the preset alone has it.
     steps: Vec<Vec<u32>>,
     /// Frame and words that were shown last.
     last: Option<(u32, Vec<u32>)>,
-    flow: Option<Arc<Flow>>,
+    particle_timeline: Option<Arc<ParticleTimeline>>,
 }
 
 impl Trail {
@@ -29,7 +29,7 @@ impl Trail {
     fn follow(&mut self, frame: u32, words: Vec<u32>, playing: bool) {
         let stands = frame as usize == self.steps.len() && self.steps.last() == Some(&words);
         if (frame as usize) < self.steps.len() || !playing && !stands {
-            self.steps.clear(); // Time went back, or a hand chose another moment: the look alone counts again.
+            self.steps.clear(); // Time went back, or a hand chose another moment: the preset alone counts again.
         }
         let changed = |(before, old): &&(u32, Vec<u32>)| playing && frame > *before && *old != words;
         let begun = self.last.as_ref().filter(changed).filter(|_| self.steps.is_empty());
@@ -39,7 +39,7 @@ impl Trail {
         if begun.is_some() || !self.steps.is_empty() {
             self.steps.resize(frame as usize, words.clone());
         }
-        self.flow = (!self.steps.is_empty()).then(|| Arc::new(particles::along(self.steps.iter().cloned(), frame)));
+        self.particle_timeline = (!self.steps.is_empty()).then(|| Arc::new(particles::along(self.steps.iter().cloned(), frame)));
         self.last = Some((frame, words));
     }
 }
@@ -47,20 +47,22 @@ impl Trail {
 impl App {
     /// Keeps the trail of the particles up to the moment that is shown.
     pub(super) fn follow_particles(&mut self) {
-        let session = self.shown_session();
+        let preset = self.shown_preset();
         // Where there are keys, they say how the particles fly.
-        match session.flow().filter(|flow| flow.len() == 1) {
-            Some(flow) => self.trail.follow(flow.frame, flow.words(1).to_vec(), self.playback.playing),
+        match preset.particle_timeline().filter(|particle_timeline| particle_timeline.len() == 1) {
+            Some(particle_timeline) => {
+                self.trail.follow(particle_timeline.frame, particle_timeline.words(1).to_vec(), self.playback.playing)
+            }
             None => self.trail = Trail::default(),
         }
     }
 
     /// The view as the hand has left the particles.
     pub(super) fn with_trail(&self, mut view: View) -> View {
-        if let (Some(flow), Some(trail)) = (&view.flow, &self.trail.flow)
-            && flow.frame == trail.frame
+        if let (Some(particle_timeline), Some(trail)) = (&view.particle_timeline, &self.trail.particle_timeline)
+            && particle_timeline.frame == trail.frame
         {
-            view.flow = Some(trail.clone());
+            view.particle_timeline = Some(trail.clone());
         }
         view
     }
@@ -68,8 +70,10 @@ impl App {
     /// While Ctrl (Cmd on macOS) is held, a drag moves the attractor over the plane through it that faces the viewer; true while it does.
     pub(super) fn attract(&mut self, response: &egui::Response) -> bool {
         let command = response.ctx.input(|i| i.modifiers.command);
-        let is_on = command && response.dragged_by(PointerButton::Primary) && self.visible_stack().cloud().is_some();
-        let (Some(field), Some((_, scene)), true) = (EFFECT.field("attractor"), self.stage.shown.clone(), is_on) else { return false };
+        let is_on = command && response.dragged_by(PointerButton::Primary) && self.visible_stack().particle_settings().is_some();
+        let (Some(field), Some((_, scene)), true) = (EFFECT.field("attractor"), self.scene_loader.shown.clone(), is_on) else {
+            return false;
+        };
         let Some((at, value)) = response.interact_pointer_pos().zip(self.shown_value(&EFFECT, field)) else { return true };
         let size = response.rect.size().round();
         let view = self.view_at(&scene, [size.x.max(1.0) as u32, size.y.max(1.0) as u32]);
@@ -117,16 +121,16 @@ mod tests {
         });
         let mut trail = Trail::default();
         trail.follow(10, a.clone(), true);
-        assert!(trail.flow.is_none(), "nothing has changed yet");
+        assert!(trail.particle_timeline.is_none(), "nothing has changed yet");
         trail.follow(13, b.clone(), true);
-        let flow = trail.flow.clone().expect("a trail");
-        let at = |step| read::<particles::Particles>(flow.words(step)).attractor[0];
-        assert_eq!((flow.frame, flow.len(), at(10)), (13, 13, 1.0));
+        let particle_timeline = trail.particle_timeline.clone().expect("a trail");
+        let at = |step| read::<particles::Particles>(particle_timeline.words(step)).attractor[0];
+        assert_eq!((particle_timeline.frame, particle_timeline.len(), at(10)), (13, 13, 1.0));
         assert!(at(11) > 1.0 && at(11) < at(12) && at(12) < at(13) && at(13) < 2.0, "the attraction follows behind");
         trail.follow(13, b.clone(), false);
-        assert!(trail.flow.is_some(), "a pause keeps it");
+        assert!(trail.particle_timeline.is_some(), "a pause keeps it");
         trail.follow(12, b, false);
-        assert!(trail.flow.is_none(), "time went back");
+        assert!(trail.particle_timeline.is_none(), "time went back");
     }
 
     #[test]

@@ -11,18 +11,19 @@ const MOST_BUTTONS: usize = 5;
 impl App {
     /// A folder for a scene that has clips; nothing for others.
     pub(super) fn clips_ui(&mut self, ui: &mut Ui) {
-        let Some(scene) = self.stage.shown.as_ref().map(|(_, scene)| scene.clone()).filter(|scene| !scene.rig.clips.is_empty()) else {
+        let Some(scene) = self.scene_loader.shown.as_ref().map(|(_, scene)| scene.clone()).filter(|scene| !scene.rig.clips.is_empty())
+        else {
             return;
         };
         folder(ui, "Clips", true, |ui| {
-            clip_ui(ui, "scene.clip", "at rest", &scene, &mut self.look.session.play.clip);
-            let Some(clip) = scene.rig.clip(&self.look.session.play.clip) else { return };
+            clip_ui(ui, "scene.clip", "at rest", &scene, &mut self.preset_file.preset.play.clip);
+            let Some(clip) = scene.rig.clip(&self.preset_file.preset.play.clip) else { return };
             self.key_ui(ui, "scene.clip_speed");
             self.hold_ui(ui, &scene.rig.clips[clip]);
             if scene.rig.clips.len() > 1 {
-                clip_ui(ui, "scene.clip_b", "no second clip", &scene, &mut self.look.session.play.other);
+                clip_ui(ui, "scene.clip_b", "no second clip", &scene, &mut self.preset_file.preset.play.other);
             }
-            if !self.look.session.play.other.is_empty() {
+            if !self.preset_file.preset.play.other.is_empty() {
                 self.key_ui(ui, "scene.blend");
             }
         });
@@ -30,12 +31,13 @@ impl App {
 
     /// Under the timeline of a scene that has clips: what plays, or which may; false for a scene without.
     pub(super) fn clips_hint_ui(&mut self, ui: &mut Ui) -> bool {
-        let Some(scene) = self.stage.shown.as_ref().map(|(_, scene)| scene.clone()).filter(|scene| !scene.rig.clips.is_empty()) else {
+        let Some(scene) = self.scene_loader.shown.as_ref().map(|(_, scene)| scene.clone()).filter(|scene| !scene.rig.clips.is_empty())
+        else {
             return false;
         };
         ui.horizontal(|ui| {
             ui.spacing_mut().item_spacing.x = 6.0;
-            if let Some(clip) = scene.rig.clip(&self.look.session.play.clip) {
+            if let Some(clip) = scene.rig.clip(&self.preset_file.preset.play.clip) {
                 let Clip { name, duration_s, .. } = &scene.rig.clips[clip];
                 let words = format!("{name} plays, {duration_s:.2} s long. Clips, at the right, holds a moment of it or mixes in another.");
                 ui.add(egui::Label::new(theme::weak(words)).truncate());
@@ -46,9 +48,9 @@ impl App {
                 let id = id_of(&scene, place);
                 let button = ui.button(&id).on_hover_text(format!("{:.2} s; the timeline spans it", clip.duration_s));
                 if button.accessible_name(format!("Play {id}")).clicked() {
-                    self.look.session.play.clip = id;
+                    self.preset_file.preset.play.clip = id;
                     if clip.duration_s > 0.0 {
-                        self.look.session.clock.range_s = [0.0, clip.duration_s];
+                        self.preset_file.preset.clock.range_s = [0.0, clip.duration_s];
                     }
                     if !self.playback.playing {
                         self.play_or_pause();
@@ -64,28 +66,28 @@ impl App {
 
     /// Holds a moment of the clip, or lets it go with the clock, whose range may span it.
     fn hold_ui(&mut self, ui: &mut Ui, clip: &Clip) {
-        let session = &mut self.look.session;
-        let (duration_s, speed) = (clip.duration_s, session.play.speed);
+        let preset = &mut self.preset_file.preset;
+        let (duration_s, speed) = (clip.duration_s, preset.play.speed);
         ui.horizontal(|ui| {
             ui.set_min_height(theme::ROW);
             ui.add_space(theme::GAP);
-            let mut is_held = session.play.pose_s.is_some();
+            let mut is_held = preset.play.clip_time_s.is_some();
             let hold = ui.checkbox(&mut is_held, "Hold").on_hover_text("Shows one moment of the clip, whatever the clock says");
             if hold.accessible_name("Hold the clip").clicked() {
-                let now_s = session.clock.time_s * speed;
+                let now_s = preset.clock.time_s * speed;
                 let now_s = if duration_s > 0.0 { now_s.rem_euclid(duration_s) } else { 0.0 };
-                session.play.pose_s = is_held.then_some(now_s);
+                preset.play.clip_time_s = is_held.then_some(now_s);
             }
-            if let Some(pose_s) = &mut session.play.pose_s {
-                let slider = egui::Slider::new(pose_s, 0.0..=duration_s).suffix(" s").fixed_decimals(2);
-                ui.add(slider).on_hover_text("Moment of the clip").accessible_name("scene.pose_s");
+            if let Some(clip_time_s) = &mut preset.play.clip_time_s {
+                let slider = egui::Slider::new(clip_time_s, 0.0..=duration_s).suffix(" s").fixed_decimals(2);
+                ui.add(slider).on_hover_text("UndoState of the clip").accessible_name("scene.pose_s");
                 return;
             }
             let wanted_s = [0.0, if speed == 0.0 { 0.0 } else { duration_s / speed.abs() }];
-            if wanted_s[1] > 0.0 && session.clock.range_s != wanted_s {
+            if wanted_s[1] > 0.0 && preset.clock.range_s != wanted_s {
                 let button = ui.button("Clock spans the clip").on_hover_text(format!("The timeline runs from 0 to {:.2} s", wanted_s[1]));
                 if button.clicked() {
-                    session.clock.range_s = wanted_s;
+                    preset.clock.range_s = wanted_s;
                 }
             } else {
                 ui.label(theme::weak(format!("{duration_s:.2} s")));
@@ -94,7 +96,7 @@ impl App {
     }
 }
 
-/// What a look calls a clip: of those with one name, later ones go by their place.
+/// What a preset calls a clip: of those with one name, later ones go by their place.
 fn id_of(scene: &Scene, place: usize) -> String {
     let name = &scene.rig.clips[place].name;
     if scene.rig.clip(name) == Some(place) { name.clone() } else { format!("#{place}") }

@@ -1,4 +1,4 @@
-//! Compare: A, the most exact picture of this look or one that was kept, beside B, the look as it stands. Same camera,
+//! Compare: A, the most exact picture of this preset or one that was kept, beside B, the preset as it stands. Same camera,
 //! same clock; with a divider that a hand drags, side by side, one instead of the other, or as their difference. A label says
 //! which side is which, and under each stand its milliseconds and its error.
 
@@ -14,7 +14,7 @@ use super::{
     topbar::{error_line, time_text},
     viewport::fitted,
 };
-use crate::session::{Accuracy, Session, Tier};
+use crate::preset::{AccuracyRequest, Preset, Tier};
 
 /// What is to be seen while A and B are compared.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -37,8 +37,8 @@ pub struct Compare {
     show: Option<Show>,
     /// Where the divider stands, as a share of the picture's width.
     split: f32,
-    /// What A shows: a look that was kept, or none for the reference.
-    kept: Option<Box<Session>>,
+    /// What A shows: a preset that was kept, or none for the reference.
+    kept: Option<Box<Preset>>,
     screen: Option<Screen>,
     wanted: Option<Inputs>,
     verdict: Option<Verdict>,
@@ -126,16 +126,16 @@ impl App {
         self.compare.is_wiping().then_some(self.compare.split)
     }
 
-    /// What A shows, at full size: the look's effects on the most exact rungs, or the kept look, under the live camera.
+    /// What A shows, at full size: the preset's effects on the most exact options, or the kept look, under the live camera.
     fn reference_inputs(&self, live: &Inputs, full: [u32; 2]) -> Inputs {
         let Some(kept) = &self.compare.kept else {
-            let accuracy = Accuracy { tier: Tier::Reference, ..Accuracy::default() };
+            let accuracy = AccuracyRequest { tier: Tier::Reference, ..AccuracyRequest::default() };
             return Inputs { view: self.view_at(&live.scene, full), accuracy, ..live.clone() };
         };
-        let Session { stack, animation, accuracy, .. } = (**kept).clone();
-        let session = Session { stack, animation, accuracy, ..self.shown_session() };
-        let stack = session.posed_stack();
-        Inputs { view: self.view_of(session, &live.scene, full), stack, accuracy, scene: live.scene.clone() }
+        let Preset { stack, animation, accuracy, .. } = (**kept).clone();
+        let preset = Preset { stack, animation, accuracy, ..self.shown_preset() };
+        let stack = preset.evaluated_stack();
+        Inputs { view: self.view_of(preset, &live.scene, full), stack, accuracy, scene: live.scene.clone() }
     }
 
     /// Draws A beside `live`, which may be coarser than `full` while a hand moves it.
@@ -246,15 +246,15 @@ impl App {
         };
         let time = time_text(self.compare.screen.as_ref().and_then(Screen::report));
         let title = format!("A · {}", kept.as_deref().unwrap_or("reference"));
-        let doc = if kept.is_some() { "A look as it was kept" } else { "This look with the most exact rung on every axis" };
+        let doc = if kept.is_some() { "A preset as it was kept" } else { "This preset with the most exact option on every axis" };
         plate(ui, &title, doc, (&time, &error, color, &hint), |ui| {
-            if ui.small_button("Keep B").on_hover_text("Make the look as it stands now the other side").clicked() {
-                let session = Session { stack: self.visible_stack(), animation: Default::default(), ..self.shown_session() };
+            if ui.small_button("Keep B").on_hover_text("Make the preset as it stands now the other side").clicked() {
+                let preset = Preset { stack: self.visible_stack(), animation: Default::default(), ..self.shown_preset() };
                 // With nothing muted its movement is kept too.
-                let whole = if self.muted.is_empty() { self.look.session.clone() } else { session };
+                let whole = if self.muted.is_empty() { self.preset_file.preset.clone() } else { preset };
                 self.compare.kept = Some(Box::new(whole));
             }
-            if kept.is_some() && ui.small_button("Reference").on_hover_text("Compare with the most exact rungs again").clicked() {
+            if kept.is_some() && ui.small_button("Reference").on_hover_text("Compare with the most exact options again").clicked() {
                 self.compare.kept = None;
             }
         });
@@ -264,7 +264,7 @@ impl App {
         let (color, error, hint) = error_line(self.verdict.as_ref(), self.motion.wanted.as_ref());
         let time = time_text(self.screen.report());
         let key = self.screen.explanation().map_or(String::new(), |explanation| explanation.key.clone());
-        plate(ui, "B · this look", &key, (&time, &error, color, &hint), |ui| {
+        plate(ui, "B · this preset", &key, (&time, &error, color, &hint), |ui| {
             if icon_button(ui, Icon::Cross, "Close the comparison").clicked() {
                 self.compare.close();
             }

@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use eframe::egui::{self, RichText, Ui};
 
 use super::{App, Level, theme};
-use crate::preset;
+use crate::preset_file;
 
 /// What a path is asked for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -27,9 +27,9 @@ impl Purpose {
 
     const fn hint(self) -> &'static str {
         match self {
-            Self::Open => "A look (.toml), a model (.glb, .gltf), one of our pictures (.png), a look's id, or builtin:teapot",
-            Self::SaveAs => "Looks in the suggested folder appear in the gallery",
-            Self::Export => "The picture carries its look: drop it here later to get it back",
+            Self::Open => "A preset (.toml), a model (.glb, .gltf), one of our pictures (.png), a preset's id, or builtin:teapot",
+            Self::SaveAs => "PresetList in the suggested folder appear in the gallery",
+            Self::Export => "The picture carries its preset: drop it here later to get it back",
         }
     }
 
@@ -43,8 +43,8 @@ impl Purpose {
     /// For the system's dialog: names and extensions.
     pub const fn filters(self) -> &'static [(&'static str, &'static [&'static str])] {
         match self {
-            Self::Open => &[("Looks, models, pictures", &["toml", "glb", "gltf", "png"])],
-            Self::SaveAs => &[("Looks", &["toml"])],
+            Self::Open => &[("PresetList, models, pictures", &["toml", "glb", "gltf", "png"])],
+            Self::SaveAs => &[("PresetList", &["toml"])],
             Self::Export => &[("Pictures", &["png"])],
         }
     }
@@ -93,9 +93,9 @@ impl Dialog {
 }
 
 impl App {
-    /// Saves to the look's own file; a built-in or new look asks for one.
+    /// Saves to the preset's own file; a built-in or new preset asks for one.
     pub(super) fn save(&mut self) {
-        match self.look.path.clone().filter(|_| !self.look.read_only) {
+        match self.preset_file.path.clone().filter(|_| !self.preset_file.read_only) {
             Some(path) => self.save_to(path),
             None => self.ask_save_as(),
         }
@@ -103,42 +103,43 @@ impl App {
 
     pub(super) fn ask_save_as(&mut self) {
         let folder = self.folder();
-        let id = if self.look.id.is_empty() { "look" } else { &self.look.id };
-        let name = if self.look.path.is_none() && self.look.read_only { format!("my-{id}") } else { id.to_owned() };
+        let id = if self.preset_file.id.is_empty() { "preset_file" } else { &self.preset_file.id };
+        let name = if self.preset_file.path.is_none() && self.preset_file.read_only { format!("my-{id}") } else { id.to_owned() };
         self.dialog = Some(Dialog::of(Purpose::SaveAs, folder.join(format!("{name}.toml")).display().to_string(), [0; 2]));
     }
 
     pub(super) fn ask_export(&mut self) {
         let folder = std::env::current_dir().unwrap_or_default();
-        let size = self.motion.wanted.as_ref().map_or(self.look.session.output.size, |inputs| [inputs.view.width, inputs.view.height]);
-        self.dialog = Some(Dialog::of(Purpose::Export, folder.join(format!("{}.png", self.look.id)).display().to_string(), size));
+        let size =
+            self.motion.wanted.as_ref().map_or(self.preset_file.preset.output.size, |inputs| [inputs.view.width, inputs.view.height]);
+        self.dialog = Some(Dialog::of(Purpose::Export, folder.join(format!("{}.png", self.preset_file.id)).display().to_string(), size));
     }
 
     /// Where looks go by default.
     fn folder(&self) -> PathBuf {
-        let own = self.look.path.as_deref().and_then(Path::parent).filter(|_| !self.look.read_only).map(Path::to_owned);
-        own.or_else(|| self.options.presets_dir.clone()).or_else(preset::user_folder).unwrap_or_default()
+        let own = self.preset_file.path.as_deref().and_then(Path::parent).filter(|_| !self.preset_file.read_only).map(Path::to_owned);
+        own.or_else(|| self.options.presets_dir.clone()).or_else(preset_file::user_folder).unwrap_or_default()
     }
 
     fn save_to(&mut self, path: PathBuf) {
         if self.muted.is_empty() {
-            self.write_look(&path);
+            self.write_preset(&path);
         } else {
             self.dialog = Some(Dialog::Muted { path });
         }
     }
 
-    fn write_look(&mut self, path: &Path) {
+    fn write_preset(&mut self, path: &Path) {
         if let Some(folder) = path.parent().filter(|folder| !folder.as_os_str().is_empty())
             && let Err(error) = std::fs::create_dir_all(folder)
         {
             return self.tell(Level::Error, format!("{}: cannot be made: {error}", folder.display()));
         }
-        match preset::save(&mut self.look, path) {
+        match preset_file::save(&mut self.preset_file, path) {
             Ok(()) => {
-                self.files.insert(super::FileId::of(&self.look), self.look.clone());
-                let id = self.look.id.clone();
-                self.shelf.refresh(self.options.presets_dir.as_deref(), &id);
+                self.files.insert(super::FileId::of(&self.preset_file), self.preset_file.clone());
+                let id = self.preset_file.id.clone();
+                self.preset_browser.refresh(self.options.presets_dir.as_deref(), &id);
                 self.tell(Level::Info, format!("Saved {}", path.display()));
             }
             Err(error) => self.tell(Level::Error, error.to_string()),
@@ -170,7 +171,7 @@ impl App {
                     path_ui(ui, *purpose, text, size, replace, *browsing, error.as_deref())
                 }
                 Dialog::Muted { .. } => muted_ui(ui, &self.muted.iter().copied().collect::<Vec<_>>()),
-                Dialog::Unsaved => unsaved_ui(ui, self.look.title()),
+                Dialog::Unsaved => unsaved_ui(ui, self.preset_file.title()),
             };
         });
         if chosen.is_none() && modal.should_close() {
@@ -195,9 +196,9 @@ impl App {
             (choice @ (Choice::KeepMuted | Choice::DropMuted), Some(Dialog::Muted { path })) => {
                 if choice == Choice::DropMuted {
                     let muted = std::mem::take(&mut self.muted);
-                    muted.into_iter().for_each(|name| self.look.session.disable(name));
+                    muted.into_iter().for_each(|name| self.preset_file.preset.disable(name));
                 }
-                self.write_look(&path);
+                self.write_preset(&path);
             }
             (Choice::Save, Some(Dialog::Unsaved)) => self.save(),
             (Choice::Discard, Some(Dialog::Unsaved)) => {
@@ -221,7 +222,7 @@ impl App {
             return self.open(&typed);
         }
         let path = with_extension(Path::new(&typed), purpose.extension());
-        if path.exists() && replace.as_deref() != Some(&path) && self.look.path.as_deref() != Some(&path) {
+        if path.exists() && replace.as_deref() != Some(&path) && self.preset_file.path.as_deref() != Some(&path) {
             *error = Some(format!("{} exists. Save once more to replace it.", path.display()));
             *replace = Some(path);
             return;
@@ -236,13 +237,13 @@ impl App {
     }
 
     fn export(&mut self, path: PathBuf, size: [u32; 2]) {
-        let (Some((_, scene)), Some(wanted)) = (&self.stage.shown, &self.motion.wanted) else {
+        let (Some((_, scene)), Some(wanted)) = (&self.scene_loader.shown, &self.motion.wanted) else {
             return self.tell(Level::Error, "There is no picture to export yet");
         };
         let inputs = super::Inputs { view: self.view_at(scene, size), ..wanted.clone() };
-        let mut look = self.look.clone();
-        look.session = self.shown_session();
-        self.jobs.shot(self.screen.gpu.clone(), inputs, look, path);
+        let mut preset_file = self.preset_file.clone();
+        preset_file.preset = self.shown_preset();
+        self.jobs.shot(self.screen.gpu.clone(), inputs, preset_file, path);
     }
 }
 

@@ -1,44 +1,44 @@
-//! Edits of the look as a whole: opening, undo, resets, copy and paste. Each is a step of its own.
+//! Edits of the preset as a whole: opening, undo, resets, copy and paste. Each is a step of its own.
 
 use std::path::PathBuf;
 
 use eframe::egui;
 
-use super::{App, FileId, Level, Moment, Playback, Timeline, fields::Ask};
+use super::{App, FileId, Level, Playback, Timeline, UndoState, fields::Ask};
 use crate::{
     effects::Effect,
-    preset::{self, Look},
+    preset_file::{self, PresetFile},
 };
 
 impl App {
     /// Makes `look` the open one, as a step of its own.
-    pub(super) fn open_look(&mut self, look: Look) {
+    pub(super) fn open_preset(&mut self, preset_file: PresetFile) {
         self.history.close();
-        for warning in &look.warnings {
+        for warning in &preset_file.warnings {
             self.log.add(Level::Warning, warning.clone());
         }
-        self.files.insert(FileId::of(&look), look.clone());
+        self.files.insert(FileId::of(&preset_file), preset_file.clone());
         self.muted.clear();
         self.playback = Playback::default();
         self.timeline = Timeline::default();
-        self.look = look;
+        self.preset_file = preset_file;
         self.observe(false);
         self.history.close();
     }
 
     /// Opens whatever a person may name or drop.
     pub(super) fn open(&mut self, what: &str) {
-        match preset::open(what, self.options.presets_dir.as_deref()) {
-            Ok(look) => {
-                let title = look.title().to_owned();
-                self.open_look(look);
+        match preset_file::open(what, self.options.presets_dir.as_deref()) {
+            Ok(preset_file) => {
+                let title = preset_file.title().to_owned();
+                self.open_preset(preset_file);
                 self.tell(Level::Info, format!("Opened {title}"));
             }
             Err(error) => self.tell(Level::Error, error.to_string()),
         }
     }
 
-    /// Files dropped on the window. One is opened: a look before a model before a picture, so that a model comes with
+    /// Files dropped on the window. One is opened: a preset before a model before a picture, so that a model comes with
     /// whatever lies beside it.
     pub(super) fn take_drops(&mut self, ctx: &egui::Context) {
         let mut dropped = ctx.input(|i| i.raw.dropped_files.iter().map(|file| file.path().to_owned()).collect::<Vec<_>>());
@@ -56,28 +56,28 @@ impl App {
     }
 
     pub(super) fn observe(&mut self, held: bool) {
-        let Look { id, path, session, .. } = &self.look;
-        self.history.observe(&Moment { file: FileId { id: id.clone(), path: path.clone() }, session: session.clone() }, self.now_s, held);
+        let PresetFile { id, path, preset, .. } = &self.preset_file;
+        self.history.observe(&UndoState { file: FileId { id: id.clone(), path: path.clone() }, preset: preset.clone() }, self.now_s, held);
     }
 
-    pub(super) fn restore(&mut self, moment: Option<Moment>, what: &str) {
-        let Some(Moment { file, session }) = moment else {
+    pub(super) fn restore(&mut self, moment: Option<UndoState>, what: &str) {
+        let Some(UndoState { file, preset }) = moment else {
             return self.tell(Level::Info, format!("Nothing to {what}"));
         };
-        if FileId::of(&self.look) != file {
-            if let Some(look) = self.files.get(&file) {
-                self.look = look.clone();
+        if FileId::of(&self.preset_file) != file {
+            if let Some(preset_file) = self.files.get(&file) {
+                self.preset_file = preset_file.clone();
             }
-            self.tell(Level::Info, format!("Back to {}", if session.name.is_empty() { &file.id } else { &session.name }));
+            self.tell(Level::Info, format!("Back to {}", if preset.name.is_empty() { &file.id } else { &preset.name }));
         }
-        self.look.session = session;
+        self.preset_file.preset = preset;
     }
 
     /// Carries out what a person asked of a row.
     pub(super) fn answer(&mut self, ctx: &egui::Context, ask: Ask) {
         self.history.close();
         let outcome = match ask {
-            Ask::Reset(path) => preset::unset(&mut self.look, &path).map_err(|e| e.to_string()),
+            Ask::Reset(path) => preset_file::unset(&mut self.preset_file, &path).map_err(|e| e.to_string()),
             Ask::ResetGroup(group) => self.reset_group(&group),
             Ask::Key(path) => {
                 self.toggle_key(&path);
@@ -102,30 +102,30 @@ impl App {
     pub(super) fn reset_group(&mut self, group: &str) -> Result<(), String> {
         match Effect::find(group) {
             Some(effect) => {
-                self.look.session.animation.remove_effect(group);
-                if let Some(enabled) = self.look.session.stack.get_mut(group) {
+                self.preset_file.preset.animation.remove_effect(group);
+                if let Some(enabled) = self.preset_file.preset.stack.get_mut(group) {
                     enabled.words = (effect.defaults)();
                 }
                 Ok(())
             }
-            None => preset::unset(&mut self.look, group).map_err(|e| e.to_string()),
+            None => preset_file::unset(&mut self.preset_file, group).map_err(|e| e.to_string()),
         }
     }
 
-    /// Text from the clipboard: a value for a row, or a look.
+    /// Text from the clipboard: a value for a row, or a preset.
     pub(super) fn paste(&mut self, text: &str) {
         self.history.close();
         let row = self.paste_into.take().or_else(|| self.hovered_row.as_ref().map(|(path, _)| path.clone()));
-        let is_look = text.trim_start().starts_with("rasterlab1:");
+        let is_preset = text.trim_start().starts_with("rasterlab1:");
         match row {
-            Some(path) if !is_look => match self.put_text(&path, text.trim()) {
+            Some(path) if !is_preset => match self.put_text(&path, text.trim()) {
                 Ok(()) => self.tell(Level::Info, format!("{path} = {}", text.trim())),
                 Err(error) => self.tell(Level::Error, error.to_string()),
             },
-            _ => match preset::from_line(text) {
-                Ok(look) => {
-                    self.open_look(look);
-                    self.tell(Level::Info, "Pasted a look");
+            _ => match preset_file::from_line(text) {
+                Ok(preset_file) => {
+                    self.open_preset(preset_file);
+                    self.tell(Level::Info, "Pasted a preset");
                 }
                 Err(error) => self.tell(Level::Error, error.to_string()),
             },

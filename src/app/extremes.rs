@@ -227,7 +227,7 @@ fn run_ui(ui: &mut Ui, run: &Run, height: f32) {
 fn report_ui(ui: &mut Ui, report: &Report) {
     let color: Color32 = match report.outcome {
         Outcome::Passed | Outcome::Refused(_) => theme::GREEN,
-        Outcome::LeftOut(_) | Outcome::Stopped => theme::AMBER,
+        Outcome::Skipped(_) | Outcome::Stopped => theme::AMBER,
         Outcome::Failed(_) => theme::RED,
     };
     ui.horizontal(|ui| {

@@ -1,4 +1,4 @@
-//! Rows of the inspector: a label and the control that its form asks for. One function serves every key of a look and
+//! Rows of the inspector: a label and the control that its form asks for. One function serves every key of a preset and
 //! every parameter of every effect.
 
 use eframe::egui::{self, Align, Align2, Color32, DragValue, Rect, RichText, Sense, Slider, SliderClamping, Ui, UiBuilder, pos2, vec2};
@@ -11,8 +11,8 @@ use super::{
 use crate::{
     effects::Effect,
     params::Field,
-    preset::{
-        form::{Form, Plain},
+    preset_file::{
+        form::{Value, ValueType},
         keys::Key,
     },
 };
@@ -24,7 +24,7 @@ pub struct Row {
     pub label: String,
     pub doc: &'static str,
     pub unit: &'static str,
-    pub form: Form,
+    pub form: ValueType,
     /// What a slider spans; without it there is a number alone.
     pub soft: Option<[f64; 2]>,
     pub log: bool,
@@ -42,7 +42,7 @@ impl Row {
             label: label(field.name, field.unit),
             doc: field.doc,
             unit: field.unit,
-            form: Form::of(field),
+            form: ValueType::of(field),
             soft: Some(field.soft),
             log: field.log,
             modified: !field.same(words, &(effect.defaults)()),
@@ -55,14 +55,14 @@ impl Row {
         Self { modified: self.modified || keying != Keying::Still, keying: Some(keying), ..self }
     }
 
-    /// The row of one of a look's own keys.
+    /// The row of one of a preset's own keys.
     pub fn of_key(key: &Key, unit: &'static str, soft: Option<[f64; 2]>, modified: bool) -> Self {
         let label = label(key.name, unit);
         Self { path: key.path(), label, doc: key.doc, unit, form: key.form, soft, log: false, modified, keying: None }
     }
 
     /// The value as TOML, as copied and pasted.
-    pub fn written(&self, value: &Plain) -> String {
+    pub fn written(&self, value: &Value) -> String {
         self.form.write(value).to_string().trim().to_owned()
     }
 }
@@ -90,7 +90,7 @@ pub enum Ask {
 /// What came of a row in this frame.
 #[derive(Default)]
 pub struct Outcome {
-    pub value: Option<Plain>,
+    pub value: Option<Value>,
     pub ask: Option<Ask>,
     /// The pointer is on this row: Ctrl+C and Ctrl+V mean its value.
     pub hovered: bool,
@@ -102,7 +102,7 @@ const KEY_WIDTH: f32 = 18.0;
 const NUMBER_WIDTH: f32 = 66.0;
 
 /// Shows `row` with `value`; the outcome holds what changed.
-pub fn row_ui(ui: &mut Ui, row: &Row, value: &Plain) -> Outcome {
+pub fn row_ui(ui: &mut Ui, row: &Row, value: &Value) -> Outcome {
     let mut outcome = Outcome::default();
     let width = ui.available_width();
     let (rect, _) = ui.allocate_exact_size(vec2(width, theme::ROW), Sense::hover());
@@ -137,7 +137,7 @@ pub fn row_ui(ui: &mut Ui, row: &Row, value: &Plain) -> Outcome {
 }
 
 /// The label: tooltip, double click to reset, menu.
-fn label_ui(ui: &mut Ui, row: &Row, value: &Plain, rect: Rect) -> Option<Ask> {
+fn label_ui(ui: &mut Ui, row: &Row, value: &Value, rect: Rect) -> Option<Ask> {
     let response = ui.interact(rect, egui::Id::unique((&row.path, "label")), Sense::click());
     let color = if row.modified || response.hovered() { theme::TEXT_STRONG } else { theme::TEXT };
     // Bold where the bundled fonts have no bold cut: the same text twice, half a pixel apart.
@@ -175,27 +175,27 @@ fn spaced(unit: &str) -> String {
     if unit.is_empty() { String::new() } else { format!(" {unit}") }
 }
 
-fn control_ui(ui: &mut Ui, row: &Row, value: &Plain) -> Option<Plain> {
+fn control_ui(ui: &mut Ui, row: &Row, value: &Value) -> Option<Value> {
     match (row.form, value) {
-        (Form::Flag, Plain::Numbers(lanes)) => {
+        (ValueType::Flag, Value::Numbers(lanes)) => {
             let mut on = lanes[0] != 0.0;
             let changed = ui.checkbox(&mut on, "").accessible_name(&row.path).changed();
-            changed.then(|| Plain::number(on))
+            changed.then(|| Value::number(on))
         }
-        (Form::Word(words), Plain::Numbers(lanes)) => word_ui(ui, row, words, lanes[0] as usize),
-        (Form::Numbers { lanes: 4, .. }, Plain::Numbers(lanes)) => color_ui(ui, row, lanes),
-        (Form::Numbers { lanes: 1, .. }, Plain::Numbers(lanes)) => number_ui(ui, row, lanes[0]),
-        (Form::Numbers { .. }, Plain::Numbers(lanes)) => lanes_ui(ui, row, lanes),
-        (Form::Text { longest }, Plain::Text(text)) => {
+        (ValueType::Word(words), Value::Numbers(lanes)) => word_ui(ui, row, words, lanes[0] as usize),
+        (ValueType::Numbers { lanes: 4, .. }, Value::Numbers(lanes)) => color_ui(ui, row, lanes),
+        (ValueType::Numbers { lanes: 1, .. }, Value::Numbers(lanes)) => number_ui(ui, row, lanes[0]),
+        (ValueType::Numbers { .. }, Value::Numbers(lanes)) => lanes_ui(ui, row, lanes),
+        (ValueType::Text { longest }, Value::Text(text)) => {
             let mut text = text.clone();
             let edit = egui::TextEdit::singleline(&mut text).char_limit(longest).desired_width(ui.available_width());
-            ui.add(edit).accessible_name(&row.path).changed().then_some(Plain::Text(text))
+            ui.add(edit).accessible_name(&row.path).changed().then_some(Value::Text(text))
         }
         _ => None, // Lists of texts are edited in the file.
     }
 }
 
-fn word_ui(ui: &mut Ui, row: &Row, words: &[&str], chosen: usize) -> Option<Plain> {
+fn word_ui(ui: &mut Ui, row: &Row, words: &[&str], chosen: usize) -> Option<Value> {
     let mut now = chosen;
     egui::ComboBox::from_id_salt(&row.path)
         .selected_text(words.get(chosen).copied().unwrap_or_default())
@@ -207,10 +207,10 @@ fn word_ui(ui: &mut Ui, row: &Row, words: &[&str], chosen: usize) -> Option<Plai
         })
         .response
         .accessible_name(&row.path);
-    (now != chosen).then(|| Plain::number(now as u32))
+    (now != chosen).then(|| Value::number(now as u32))
 }
 
-fn color_ui(ui: &mut Ui, row: &Row, lanes: &[f64]) -> Option<Plain> {
+fn color_ui(ui: &mut Ui, row: &Row, lanes: &[f64]) -> Option<Value> {
     let mut color: [f32; 4] = std::array::from_fn(|i| lanes[i] as f32);
     ui.spacing_mut().interact_size.x = 44.0;
     let response = ui.color_edit_button_rgba_unmultiplied(&mut color).accessible_name(&row.path).on_hover_text("Choose the colour");
@@ -218,13 +218,13 @@ fn color_ui(ui: &mut Ui, row: &Row, lanes: &[f64]) -> Option<Plain> {
     let alpha = if a == 255 { String::new() } else { format!(" {:.0}%", f64::from(a) / 2.55) };
     ui.label(RichText::new(format!("#{r:02x}{g:02x}{b:02x}{alpha}")).monospace().color(theme::TEXT_WEAK));
     // The picker's arithmetic may leave the unit range by a bit.
-    response.changed().then(|| Plain::Numbers(color.map(|c| f64::from(if c.is_finite() { c.clamp(0.0, 1.0) } else { 0.0 })).to_vec()))
+    response.changed().then(|| Value::Numbers(color.map(|c| f64::from(if c.is_finite() { c.clamp(0.0, 1.0) } else { 0.0 })).to_vec()))
 }
 
 /// One number: a slider over the soft range, and a field that takes the hard one.
-fn number_ui(ui: &mut Ui, row: &Row, value: f64) -> Option<Plain> {
-    let Form::Numbers { low, high, precision, .. } = row.form else { return None };
-    let whole = precision == crate::preset::form::Precision::Whole;
+fn number_ui(ui: &mut Ui, row: &Row, value: f64) -> Option<Value> {
+    let ValueType::Numbers { low, high, precision, .. } = row.form else { return None };
+    let whole = precision == crate::preset_file::form::Precision::Whole;
     let mut now = value;
     if let Some([from, to]) = row.soft {
         ui.spacing_mut().slider_width = (ui.available_width() - NUMBER_WIDTH - 6.0).max(24.0);
@@ -240,7 +240,7 @@ fn number_ui(ui: &mut Ui, row: &Row, value: f64) -> Option<Plain> {
     let width = if row.soft.is_some() { NUMBER_WIDTH } else { ui.available_width().min(120.0) };
     ui.add_sized([width, theme::ROW - 4.0], drag).accessible_name(format!("{} value", row.path));
     let now = if whole { now.round() } else { now };
-    (now != value && now.is_finite()).then(|| Plain::number(now.clamp(low, high)))
+    (now != value && now.is_finite()).then(|| Value::number(now.clamp(low, high)))
 }
 
 /// Decimals worth showing for a soft range.
@@ -278,9 +278,9 @@ fn slider_ui(ui: &mut Ui, row: &Row, value: f64, [from, to]: [f64; 2], whole: bo
 }
 
 /// Two or three numbers side by side.
-fn lanes_ui(ui: &mut Ui, row: &Row, lanes: &[f64]) -> Option<Plain> {
-    let Form::Numbers { low, high, precision, .. } = row.form else { return None };
-    let whole = precision == crate::preset::form::Precision::Whole;
+fn lanes_ui(ui: &mut Ui, row: &Row, lanes: &[f64]) -> Option<Value> {
+    let ValueType::Numbers { low, high, precision, .. } = row.form else { return None };
+    let whole = precision == crate::preset_file::form::Precision::Whole;
     let mut now = lanes.to_vec();
     (ui.spacing_mut().item_spacing.x, ui.spacing_mut().button_padding.x) = (4.0, 3.0);
     let width = (ui.available_width() - 4.0 * (lanes.len() - 1) as f32) / lanes.len() as f32;
@@ -295,7 +295,7 @@ fn lanes_ui(ui: &mut Ui, row: &Row, lanes: &[f64]) -> Option<Plain> {
         ui.add_sized([width, theme::ROW - 4.0], drag).accessible_name(format!("{}.{name}", row.path)).on_hover_text(name);
     }
     let changed = now != lanes && now.iter().all(|lane| lane.is_finite());
-    changed.then(|| Plain::Numbers(now.iter().map(|lane| if whole { lane.round() } else { *lane }).collect()))
+    changed.then(|| Value::Numbers(now.iter().map(|lane| if whole { lane.round() } else { *lane }).collect()))
 }
 
 /// A dot of `color` in front of a line, for states.

@@ -1,4 +1,4 @@
-//! Inspector: every value of the look in folders, straight from the tables that presets and the command line use.
+//! Inspector: every value of the preset in folders, straight from the tables that presets and the command line use.
 
 use eframe::egui::{self, RichText, Ui};
 
@@ -9,18 +9,18 @@ use super::{
     theme, topbar,
 };
 use crate::{
+    accuracy::AXES,
     effects::{EFFECTS, Effect},
     gpu::Explanation,
-    ladder::AXES,
     params::{Field, Kind},
-    preset::{
-        form::Plain,
+    preset::Tier,
+    preset_file::{
+        form::Value,
         keys::{KEYS, Key, Section},
     },
-    session::Tier,
 };
 
-/// How a key of the look is shown: its unit, and what its slider spans.
+/// How a key of the preset is shown: its unit, and what its slider spans.
 const SHOWN: &[(&str, &str, Option<[f64; 2]>)] = &[
     ("scene.room", "", Some([0.0, 4.0])),
     ("scene.spin_deg_per_s", "°/s", Some([-180.0, 180.0])),
@@ -53,7 +53,7 @@ impl App {
             folder(ui, "Overlays", false, |ui| self.overlays_ui(ui));
             folder(ui, "Timing", true, |ui| self.timing_ui(ui));
             folder(ui, "Kernel", false, |ui| self.kernel_ui(ui));
-            self.keys_folder(ui, "Look", false, &["name", "about", "output.size"]);
+            self.keys_folder(ui, "PresetFile", false, &["name", "about", "output.size"]);
             ui.add_space(16.0);
         });
     }
@@ -68,7 +68,7 @@ impl App {
                 }
             });
         });
-        let stack: Vec<&'static Effect> = self.look.session.stack.0.iter().map(|enabled| enabled.effect).collect();
+        let stack: Vec<&'static Effect> = self.preset_file.preset.stack.0.iter().map(|enabled| enabled.effect).collect();
         if stack.is_empty() {
             ui.label(theme::weak("No effect is on, so the picture shows plain base colours. Switch one on below."));
             ui.add_space(theme::HALF);
@@ -83,9 +83,9 @@ impl App {
                 ui.add_space(theme::GAP);
                 let mut on = false;
                 let clicked = ui.checkbox(&mut on, shown_name(effect)).on_hover_text(effect.about).accessible_name(effect.name).clicked();
-                let Some(conflict) = self.look.session.stack.rival(effect) else {
+                let Some(conflict) = self.preset_file.preset.stack.rival(effect) else {
                     if clicked {
-                        self.look.session.stack.enable(effect);
+                        self.preset_file.preset.stack.enable(effect);
                     }
                     return;
                 };
@@ -95,9 +95,9 @@ impl App {
                 let (name, other) = (effect.name, conflict.first);
                 let instead = ui.small_button(format!("instead of {other}")).accessible_name(format!("{name} instead of {other}"));
                 if instead.on_hover_text(format!("Switch {other} off and {name} on")).clicked() {
-                    self.look.session.disable(other);
+                    self.preset_file.preset.disable(other);
                     self.muted.remove(other);
-                    self.look.session.stack.enable(effect);
+                    self.preset_file.preset.stack.enable(effect);
                 }
             });
         }
@@ -121,7 +121,7 @@ impl App {
             let mut on = true;
             let title = RichText::new(shown_name(effect)).strong().color(theme::TEXT_STRONG);
             if ui.checkbox(&mut on, title).on_hover_text(effect.about).accessible_name(effect.name).clicked() {
-                self.look.session.disable(effect.name);
+                self.preset_file.preset.disable(effect.name);
                 self.muted.remove(effect.name);
             }
             ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
@@ -134,7 +134,7 @@ impl App {
                 for (icon, verb, to) in [(Icon::Down, "later", place + 1), (Icon::Up, "earlier", place.wrapping_sub(1))] {
                     let button = ui.add_enabled_ui(to < count, |ui| icon_button(ui, icon, &format!("Apply {} {verb}", effect.name)));
                     if button.inner.clicked() {
-                        self.look.session.stack.0.swap(place, to);
+                        self.preset_file.preset.stack.0.swap(place, to);
                     }
                 }
             });
@@ -149,12 +149,12 @@ impl App {
                 continue;
             }
             let row = Row::of_field(effect, field, &words).keyed(self.keying(effect, field));
-            let value = Plain::Numbers(field.get(&words));
+            let value = Value::Numbers(field.get(&words));
             let outcome = row_ui(ui, &row, &value);
             if outcome.hovered {
                 self.hovered_row = Some((row.path.clone(), row.written(&value)));
             }
-            if let Some(Plain::Numbers(lanes)) = outcome.value {
+            if let Some(Value::Numbers(lanes)) = outcome.value {
                 self.put_value(effect, field, lanes);
             }
             if let Some(ask) = outcome.ask {
@@ -180,23 +180,23 @@ impl App {
         });
     }
 
-    /// A folder with rows for keys of the look.
+    /// A folder with rows for keys of the preset.
     fn keys_folder(&mut self, ui: &mut Ui, title: &str, open: bool, paths: &[&str]) {
         folder(ui, title, open, |ui| paths.iter().for_each(|path| self.key_ui(ui, path)));
     }
 
     pub(super) fn key_ui(&mut self, ui: &mut Ui, path: &str) {
         let Some(key) = Key::find(path) else { return };
-        let session = &self.look.session;
-        let Some(value) = (key.get)(session) else { return };
+        let preset = &self.preset_file.preset;
+        let Some(value) = (key.get)(preset) else { return };
         let (unit, soft) = SHOWN.iter().find(|(shown, ..)| *shown == path).map_or(("", None), |&(_, unit, soft)| (unit, soft));
-        let row = Row::of_key(key, unit, soft, key_is_modified(key, session, &value));
+        let row = Row::of_key(key, unit, soft, key_is_modified(key, preset, &value));
         let outcome = row_ui(ui, &row, &value);
         if outcome.hovered {
             self.hovered_row = Some((row.path.clone(), row.written(&value)));
         }
         if let Some(value) = outcome.value.filter(|value| key.check(value).is_ok()) {
-            (key.set)(&mut self.look.session, value);
+            (key.set)(&mut self.preset_file.preset, value);
         }
         if let Some(ask) = outcome.ask {
             self.answer(ui.ctx(), ask);
@@ -205,7 +205,7 @@ impl App {
 
     fn camera_ui(&mut self, ui: &mut Ui) {
         folder(ui, "Camera", false, |ui| {
-            if self.look.session.camera.is_none() {
+            if self.preset_file.preset.camera.is_none() {
                 ui.label(theme::weak("Frames the whole scene by itself. Move the picture, or pin the pose to type numbers."));
                 if ui.button("Pin the pose").clicked() {
                     self.move_camera(|_| {});
@@ -217,27 +217,27 @@ impl App {
                 if ui.button("Frame scene").clicked() {
                     self.frame_scene();
                 }
-                if ui.button("Back to automatic").on_hover_text("Forget the pose: the look frames its scene by itself").clicked() {
-                    self.look.session.camera = None;
+                if ui.button("Back to automatic").on_hover_text("Forget the pose: the preset frames its scene by itself").clicked() {
+                    self.preset_file.preset.camera = None;
                 }
             });
         });
     }
 
     fn clock_ui(&mut self, ui: &mut Ui) {
-        let before_s = self.look.session.clock.time_s;
+        let before_s = self.preset_file.preset.clock.time_s;
         self.keys_folder(ui, "Clock", false, &["clock.time_s", "clock.range_s", "clock.loops", "clock.speed"]);
-        if self.look.session.clock.time_s != before_s {
+        if self.preset_file.preset.clock.time_s != before_s {
             self.show_own_time();
         }
     }
 
     fn accuracy_ui(&mut self, ui: &mut Ui) {
-        folder(ui, "Accuracy", true, |ui| {
+        folder(ui, "AccuracyRequest", true, |ui| {
             self.key_ui(ui, "accuracy.tier");
             AXES.iter().for_each(|axis| self.key_ui(ui, &format!("accuracy.{}", axis.name)));
-            if self.look.session.accuracy.tier == Tier::Reference {
-                ui.label(theme::weak("Reference asks for the most exact rung on every axis."));
+            if self.preset_file.preset.accuracy.tier == Tier::Reference {
+                ui.label(theme::weak("Reference asks for the most exact option on every axis."));
             }
         });
     }
@@ -271,9 +271,9 @@ impl App {
                 ("out of range", c.rejected_range),
                 ("no area", c.degenerate),
                 ("clipped", c.clipped),
-                ("fan folds", c.fan_folds),
+                ("fan folds", c.flipped_clips),
                 ("overflow", c.overflow),
-                ("orphans", c.orphans),
+                ("depth_without_id", c.depth_without_id),
             ] {
                 if count != 0 {
                     line(name, &count.to_string(), false);
@@ -317,9 +317,9 @@ impl App {
     }
 }
 
-/// Does `key` say something else than a look that leaves it out?
-fn key_is_modified(key: &Key, session: &crate::session::Session, value: &Plain) -> bool {
-    let baseline = Section::baseline(session);
+/// Does `key` say something else than a preset that leaves it out?
+fn key_is_modified(key: &Key, preset: &crate::preset::Preset, value: &Value) -> bool {
+    let baseline = Section::baseline(preset);
     (key.get)(&baseline).as_ref() != Some(value)
 }
 

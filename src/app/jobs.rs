@@ -12,31 +12,31 @@ use super::{
     dialogs::Purpose,
     overlays::Findings,
     screen::Inputs,
-    trade::{self, Point, Progress, Question},
+    sweep::{self, Point, Progress, Question},
 };
 use crate::{
     effects::Stack,
     gpu::{Gpu, Renderer},
     oracle,
-    preset::{self, Look, Provenance},
+    preset::{AccuracyRequest, Preset, SceneSource},
+    preset_file::{self, PresetFile, Provenance},
     scene::{Scene, camera::View},
-    session::{Accuracy, SceneSource, Session},
 };
 
-/// What names a scene: its source, and the look it is relative to.
+/// What names a scene: its source, and the preset it is relative to.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SceneKey {
     pub source: SceneSource,
-    pub look_path: Option<PathBuf>,
+    pub preset_path: Option<PathBuf>,
     /// How wide the room round it is.
     pub room: f64,
 }
 
 impl SceneKey {
-    pub fn of(session: &Session, look_path: Option<&PathBuf>) -> Self {
-        // A builtin is the same wherever the look lies.
-        let look_path = if matches!(session.scene, SceneSource::File(_)) { look_path.cloned() } else { None };
-        Self { source: session.scene.clone(), look_path, room: session.room }
+    pub fn of(preset: &Preset, preset_path: Option<&PathBuf>) -> Self {
+        // A builtin is the same wherever the preset lies.
+        let preset_path = if matches!(preset.scene, SceneSource::File(_)) { preset_path.cloned() } else { None };
+        Self { source: preset.scene.clone(), preset_path, room: preset.room }
     }
 }
 
@@ -44,8 +44,8 @@ impl SceneKey {
 pub enum Done {
     Scene(SceneKey, Result<Arc<Scene>, String>),
     Verdict(Box<Inputs>, Result<Box<Findings>, String>),
-    /// Combinations of rungs, measured.
-    Trade(Result<Vec<Point>, String>),
+    /// Combinations of options, measured.
+    Sweep(Result<Vec<Point>, String>),
     Thumbnail(String, Option<egui::ColorImage>),
     Shot(PathBuf, Result<(), String>),
     /// A path from the system's file dialog; none when it was cancelled or could not be shown.
@@ -85,8 +85,9 @@ impl Jobs {
 
     pub fn load_scene(&self, key: SceneKey) {
         self.spawn("scene", move || {
-            let session = Session { scene: key.source.clone(), room: key.room, ..Session::default() };
-            let scene = caught("loading the scene", || preset::load_scene(&session, key.look_path.as_deref()).map_err(|e| e.to_string()));
+            let preset = Preset { scene: key.source.clone(), room: key.room, ..Preset::default() };
+            let scene =
+                caught("loading the scene", || preset_file::load_scene(&preset, key.preset_path.as_deref()).map_err(|e| e.to_string()));
             Done::Scene(key, scene)
         });
     }
@@ -99,23 +100,23 @@ impl Jobs {
         });
     }
 
-    /// Measures combinations of rungs on a device of its own, so that neither disturbs the other's figures for long.
+    /// Measures combinations of options on a device of its own, so that neither disturbs the other's figures for long.
     pub fn measure(&self, adapter: String, scene: Arc<Scene>, question: Question, progress: Arc<Progress>) {
-        self.spawn("trade", move || Done::Trade(caught("measuring the trade", || trade::measure(adapter, &scene, &question, &progress))));
+        self.spawn("sweep", move || Done::Sweep(caught("measuring the trade", || sweep::measure(adapter, &scene, &question, &progress))));
     }
 
-    /// Draws the picture of a look with the oracle, which needs no device and so disturbs none.
-    pub fn thumbnail(&self, look: Look) {
+    /// Draws the picture of a preset with the oracle, which needs no device and so disturbs none.
+    pub fn thumbnail(&self, preset_file: PresetFile) {
         self.spawn("thumbnail", move || {
-            let image = caught("drawing a thumbnail", || thumbnail(&look).ok_or_else(String::new));
-            Done::Thumbnail(look.id, image.ok())
+            let image = caught("drawing a thumbnail", || thumbnail(&preset_file).ok_or_else(String::new));
+            Done::Thumbnail(preset_file.id, image.ok())
         });
     }
 
-    /// Draws `inputs`, and writes a PNG that carries the look.
-    pub fn shot(&self, gpu: Arc<Gpu>, inputs: Inputs, look: Look, path: PathBuf) {
+    /// Draws `inputs`, and writes a PNG that carries the preset.
+    pub fn shot(&self, gpu: Arc<Gpu>, inputs: Inputs, preset_file: PresetFile, path: PathBuf) {
         self.spawn("shot", move || {
-            let saved = caught("saving the picture", || shot(gpu, &inputs, &look, &path));
+            let saved = caught("saving the picture", || shot(gpu, &inputs, &preset_file, &path));
             Done::Shot(path, saved)
         });
     }
@@ -150,15 +151,15 @@ fn verify(gpu: Arc<Gpu>, Inputs { scene, view, stack, accuracy }: &Inputs) -> Re
     let capture = renderer.capture(view, stack, accuracy).map_err(|e| e.to_string())?;
     let (layers, previous) = (capture.layers.as_deref(), capture.previous.as_deref());
     let verdict = oracle::judge_after(scene, view, stack, &capture.frame, &capture.geometry, layers, previous);
-    let truth = if stack.is_repeatable() { Some(true_owners(scene, view, stack, accuracy)?) } else { None };
-    verdict.map(|verdict| Box::new(Findings::new(capture, verdict, truth))).map_err(|e| e.to_string())
+    let reference = if stack.is_repeatable() { Some(reference_ids(scene, view, stack, accuracy)?) } else { None };
+    verdict.map(|verdict| Box::new(Findings::new(capture, verdict, reference))).map_err(|e| e.to_string())
 }
 
-/// Owners of all pixels that are drawn, in the exact picture on the finest grid.
-fn true_owners(scene: &Scene, view: &View, stack: &Stack, accuracy: &Accuracy) -> Result<Vec<u32>, String> {
+/// Triangle ids of all pixels that are drawn, in the exact picture on the finest grid.
+fn reference_ids(scene: &Scene, view: &View, stack: &Stack, accuracy: &AccuracyRequest) -> Result<Vec<u32>, String> {
     let factor = accuracy.scale().factor();
     let frame = oracle::render_finest(scene, &view.scaled(factor), &stack.scaled(factor)).map_err(|e| e.to_string())?;
-    Ok(frame.owner)
+    Ok(frame.triangle_id)
 }
 
 /// Size of a thumbnail in pixels; shown at half of it.
@@ -167,22 +168,27 @@ pub const THUMBNAIL: [u32; 2] = [144, 108];
 /// More triangles than this are not worth a thumbnail's time.
 const THUMBNAIL_TRIANGLES: u64 = 400_000;
 
-fn thumbnail(look: &Look) -> Option<egui::ColorImage> {
-    let scene = preset::load_scene(&look.session, look.path.as_deref()).ok()?;
+fn thumbnail(preset_file: &PresetFile) -> Option<egui::ColorImage> {
+    let scene = preset_file::load_scene(&preset_file.preset, preset_file.path.as_deref()).ok()?;
     if scene.triangle_count() > THUMBNAIL_TRIANGLES {
         return None;
     }
-    let factor = look.session.accuracy.scale().factor();
-    let frame = oracle::render_shown(&scene, &look.session.moments(&scene, THUMBNAIL), factor).ok()?;
+    let factor = preset_file.preset.accuracy.scale().factor();
+    let frame = oracle::render_scaled(&scene, &preset_file.preset.moments(&scene, THUMBNAIL), factor).ok()?;
     let bytes: Vec<u8> = frame.color.concat();
     Some(egui::ColorImage::from_rgba_unmultiplied([frame.width as usize, frame.height as usize], &bytes))
 }
 
-fn shot(gpu: Arc<Gpu>, Inputs { scene, view, stack, accuracy }: &Inputs, look: &Look, path: &std::path::Path) -> Result<(), String> {
+fn shot(
+    gpu: Arc<Gpu>,
+    Inputs { scene, view, stack, accuracy }: &Inputs,
+    preset_file: &PresetFile,
+    path: &std::path::Path,
+) -> Result<(), String> {
     let provenance = Provenance { adapter: gpu.summary.name.clone(), driver: gpu.summary.driver.clone() };
     let mut renderer = Renderer::new(gpu);
     renderer.set_scene(scene).map_err(|e| e.to_string())?;
     let capture = renderer.capture(view, stack, accuracy).map_err(|e| e.to_string())?;
-    let png = preset::png_with_look(&capture.into_shown(), look, &provenance).map_err(|e| e.to_string())?;
-    preset::write_atomically(path, &png).map_err(|e| e.to_string())
+    let png = preset_file::png_with_preset(&capture.into_shown(), preset_file, &provenance).map_err(|e| e.to_string())?;
+    preset_file::write_atomically(path, &png).map_err(|e| e.to_string())
 }

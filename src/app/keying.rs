@@ -4,8 +4,8 @@ use super::{App, Level};
 use crate::{
     effects::Effect,
     params::Field,
-    preset::{self, PresetError},
-    session::animation::{Easing, Keyframe, Track, usual_easing},
+    preset::animation::{Easing, Keyframe, Track, default_easing},
+    preset_file::{self, PresetError},
 };
 
 /// Two moments that no hand can tell apart, seconds: half of a thousandth, the last digit that is shown.
@@ -46,7 +46,7 @@ fn parameter(path: &str) -> Option<(&'static Effect, &'static Field)> {
 
 impl App {
     pub(super) fn keying(&self, effect: &Effect, field: &Field) -> Keying {
-        match self.look.session.animation.get(effect.name, field.name) {
+        match self.preset_file.preset.animation.get(effect.name, field.name) {
             None => Keying::Still,
             Some(track) if self.key_here(track).is_some() => Keying::OnKey,
             Some(_) => Keying::Between,
@@ -61,11 +61,11 @@ impl App {
 
     /// Gives a parameter a value: an animated one at the time that is shown, any other at all times.
     pub(super) fn put_value(&mut self, effect: &'static Effect, field: &'static Field, lanes: Vec<f64>) {
-        let outcome = if self.look.session.animation.get(effect.name, field.name).is_some() {
+        let outcome = if self.preset_file.preset.animation.get(effect.name, field.name).is_some() {
             self.playback.playing = false; // Or every frame would leave a key.
             self.set_key(effect, field, lanes).map_err(|error| error.to_string())
         } else {
-            let enabled = self.look.session.stack.get_mut(effect.name);
+            let enabled = self.preset_file.preset.stack.get_mut(effect.name);
             enabled.map_or(Ok(()), |enabled| field.set(&mut enabled.words, &lanes).map_err(|error| error.to_string()))
         };
         if let Err(error) = outcome {
@@ -79,18 +79,18 @@ impl App {
         effect: &'static Effect,
         field: &'static Field,
         value: Vec<f64>,
-    ) -> Result<(), crate::session::animation::KeyError> {
+    ) -> Result<(), crate::preset::animation::KeyframeError> {
         let now_s = self.shown_time_s();
-        let Some(track) = self.look.session.animation.get(effect.name, field.name) else {
-            let first = Keyframe { time_s: now_s, value, easing: usual_easing(field) };
-            self.look.session.animation.put(Track::new(effect, field, vec![first])?);
+        let Some(track) = self.preset_file.preset.animation.get(effect.name, field.name) else {
+            let first = Keyframe { time_s: now_s, value, easing: default_easing(field) };
+            self.preset_file.preset.animation.put(Track::new(effect, field, vec![first])?);
             return Ok(());
         };
         let here = self.key_here(track);
         let before = here.or_else(|| track.keys().partition_point(|key| key.time_s <= now_s).checked_sub(1));
         let time_s = here.map_or(now_s, |index| track.keys()[index].time_s);
-        let easing = before.map_or(usual_easing(field), |index| track.keys()[index].easing);
-        match self.look.session.animation.get_mut(effect.name, field.name) {
+        let easing = before.map_or(default_easing(field), |index| track.keys()[index].easing);
+        match self.preset_file.preset.animation.get_mut(effect.name, field.name) {
             Some(track) => track.set(Keyframe { time_s, value, easing }),
             None => Ok(()),
         }
@@ -99,7 +99,7 @@ impl App {
     /// What the key button does: sets a key at the time that is shown, or removes the one that is there.
     pub(super) fn toggle_key(&mut self, path: &str) {
         let Some((effect, field)) = parameter(path) else { return };
-        let here = self.look.session.animation.get(effect.name, field.name).and_then(|track| {
+        let here = self.preset_file.preset.animation.get(effect.name, field.name).and_then(|track| {
             let index = self.key_here(track)?;
             Some(KeyId { effect, field: field.name, time_s: track.keys()[index].time_s })
         });
@@ -114,32 +114,32 @@ impl App {
 
     /// Removes a key. The value of the last one stays.
     pub(super) fn remove_key(&mut self, key: KeyId) {
-        let session = &mut self.look.session;
-        let Some(track) = session.animation.get(key.effect.name, key.field).cloned() else { return };
+        let preset = &mut self.preset_file.preset;
+        let Some(track) = preset.animation.get(key.effect.name, key.field).cloned() else { return };
         let Some(index) = track.at(key.time_s) else { return };
         let (field, last) = (track.field(), track.keys()[index].value.clone());
         match track.without(index) {
-            Some(track) => session.animation.put(track),
+            Some(track) => preset.animation.put(track),
             None => {
-                session.animation.remove(key.effect.name, key.field);
+                preset.animation.remove(key.effect.name, key.field);
                 self.put_value(key.effect, field, last);
             }
         }
     }
 
     /// Moves a key in time; it stays where it is when the place is taken. Gives its time.
-    pub(super) fn move_key(&mut self, key: KeyId, time_s: f64) -> f64 {
-        let track = self.look.session.animation.get_mut(key.effect.name, key.field);
+    pub(super) fn move_keyframe(&mut self, key: KeyId, time_s: f64) -> f64 {
+        let track = self.preset_file.preset.animation.get_mut(key.effect.name, key.field);
         let moved = track.and_then(|track| {
             let index = track.at(key.time_s)?;
-            let index = track.move_key(index, time_s);
+            let index = track.move_keyframe(index, time_s);
             Some(track.keys()[index].time_s)
         });
         moved.unwrap_or(key.time_s)
     }
 
     pub(super) fn ease_key(&mut self, key: KeyId, easing: Easing) {
-        if let Some(track) = self.look.session.animation.get_mut(key.effect.name, key.field)
+        if let Some(track) = self.preset_file.preset.animation.get_mut(key.effect.name, key.field)
             && let Some(index) = track.at(key.time_s)
         {
             track.set_easing(index, easing);
@@ -149,11 +149,11 @@ impl App {
     /// Sets a row's value from text, by the rules of files; a key where the row is animated.
     pub(super) fn put_text(&mut self, path: &str, text: &str) -> Result<(), PresetError> {
         let short = path.strip_prefix("effects.").unwrap_or(path);
-        let animated = parameter(short).filter(|(effect, field)| self.look.session.animation.get(effect.name, field.name).is_some());
-        let Some((effect, field)) = animated else { return preset::set(&mut self.look, path, text) };
-        let mut probe = self.look.clone();
-        preset::set(&mut probe, path, text)?;
-        if let Some(enabled) = probe.session.stack.get(effect.name) {
+        let animated = parameter(short).filter(|(effect, field)| self.preset_file.preset.animation.get(effect.name, field.name).is_some());
+        let Some((effect, field)) = animated else { return preset_file::set(&mut self.preset_file, path, text) };
+        let mut probe = self.preset_file.clone();
+        preset_file::set(&mut probe, path, text)?;
+        if let Some(enabled) = probe.preset.stack.get(effect.name) {
             self.put_value(effect, field, field.get(&enabled.words));
         }
         Ok(())

@@ -11,8 +11,8 @@ const BAR: [f32; 2] = [168.0, 8.0];
 /// Air round the bar and its words, points.
 const AIR: f32 = 10.0;
 
-/// Pieces that the bar is made of: colours between two stops run straight.
-const PIECES: usize = 8;
+/// ClippedTriangles that the bar is made of: colours between two stops run straight.
+const CLIPPED_TRIANGLES: usize = 8;
 
 /// A bar from one layer to full heat, with numbers at its ends and middle.
 pub fn heat_ui(ui: &Ui, picture: Rect, params: &Overdraw) {
@@ -29,13 +29,13 @@ pub fn heat_ui(ui: &Ui, picture: Rect, params: &Overdraw) {
         Color32::from_rgb(r, g, b)
     };
     let mut mesh = Mesh::default();
-    for i in 0..=PIECES {
-        let heat = i as f64 / PIECES as f64;
+    for i in 0..=CLIPPED_TRIANGLES {
+        let heat = i as f64 / CLIPPED_TRIANGLES as f64;
         let x = bar.left() + bar.width() * heat as f32;
         mesh.colored_vertex(pos2(x, bar.top()), color(heat));
         mesh.colored_vertex(pos2(x, bar.bottom()), color(heat));
     }
-    for i in 0..PIECES as u32 {
+    for i in 0..CLIPPED_TRIANGLES as u32 {
         mesh.add_triangle(2 * i, 2 * i + 1, 2 * i + 2);
         mesh.add_triangle(2 * i + 1, 2 * i + 2, 2 * i + 3);
     }

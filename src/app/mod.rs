@@ -27,10 +27,10 @@ mod scenery;
 mod screen;
 mod shortcuts;
 mod start;
+mod sweep;
 mod theme;
 mod timeline;
 mod topbar;
-mod trade;
 mod verdict;
 mod viewport;
 
@@ -50,9 +50,9 @@ use crate::{
     effects::Effect,
     gpu::Gpu,
     params::Field,
-    preset::Look,
+    preset::Preset,
+    preset_file::PresetFile,
     scene::{Scene, camera::View},
-    session::Session,
 };
 use compare::Compare;
 use dialogs::Dialog;
@@ -62,15 +62,15 @@ use jobs::{Done, Jobs, SceneKey};
 use log::Log;
 use overlays::Overlays;
 use playback::Playback;
-use presets::Shelf;
+use presets::PresetBrowser;
 use screen::{Inputs, Screen};
 use start::Ending;
+use sweep::Sweep;
 use timeline::Timeline;
-use trade::Trade;
 use verdict::Verdict;
 use viewport::Motion;
 
-/// Which file a look is, as undo remembers it.
+/// Which file a preset is, as undo remembers it.
 #[derive(Clone, Debug, PartialEq, Eq, Hash)]
 struct FileId {
     id: String,
@@ -78,21 +78,21 @@ struct FileId {
 }
 
 impl FileId {
-    fn of(look: &Look) -> Self {
-        Self { id: look.id.clone(), path: look.path.clone() }
+    fn of(preset_file: &PresetFile) -> Self {
+        Self { id: preset_file.id.clone(), path: preset_file.path.clone() }
     }
 }
 
 /// All that undo takes back.
 #[derive(Clone, Debug, PartialEq)]
-struct Moment {
+struct UndoState {
     file: FileId,
-    session: Session,
+    preset: Preset,
 }
 
 /// The scene that is shown, and the one that is on its way.
 #[derive(Default)]
-struct Stage {
+struct SceneLoader {
     shown: Option<(SceneKey, Arc<Scene>)>,
     loading: Option<SceneKey>,
     failed: Option<SceneKey>,
@@ -107,7 +107,7 @@ struct Panels {
     left: bool,
     right: bool,
     timeline: bool,
-    trade: bool,
+    sweep: bool,
     log: bool,
     cheat_sheet: bool,
     search: String,
@@ -117,16 +117,16 @@ struct Panels {
 pub struct App {
     options: Options,
     ending: Ending,
-    look: Look,
-    /// Every look of this run as its file has it.
-    files: HashMap<FileId, Look>,
-    history: History<Moment>,
-    stage: Stage,
+    preset_file: PresetFile,
+    /// Every preset of this run as its file has it.
+    files: HashMap<FileId, PresetFile>,
+    history: History<UndoState>,
+    scene_loader: SceneLoader,
     screen: Screen,
     jobs: Jobs,
-    shelf: Shelf,
+    preset_browser: PresetBrowser,
     log: Log,
-    /// Effects whose eye is shut: a viewing aid, no part of the look.
+    /// Effects whose eye is shut: a viewing aid, no part of the preset.
     muted: BTreeSet<&'static str>,
     /// The point of an effect that the next click on the model gives.
     picking: Option<(&'static Effect, &'static Field)>,
@@ -135,7 +135,7 @@ pub struct App {
     verifying: u32,
     overlays: Overlays,
     compare: Compare,
-    trade: Trade,
+    sweep: Sweep,
     dialog: Option<Dialog>,
     extremes: Extremes,
     panels: Panels,
@@ -164,29 +164,29 @@ impl App {
         theme::apply(&cc.egui_ctx);
         let (window, gpu) = start::adopt(cc)?;
         let mut log = Log::default();
-        let look = start::first_look(&options, &mut log);
-        let history = History::new(Moment { file: FileId::of(&look), session: look.session.clone() });
+        let preset_file = start::first_preset(&options, &mut log);
+        let history = History::new(UndoState { file: FileId::of(&preset_file), preset: preset_file.preset.clone() });
         let summary = &gpu.summary;
         log.add(Level::Info, format!("adapter: {}, {}, {}", summary.name, summary.backend, summary.driver));
         Ok(Self {
-            shelf: Shelf::new(options.presets_dir.as_deref()),
-            files: HashMap::from([(FileId::of(&look), look.clone())]),
+            preset_browser: PresetBrowser::new(options.presets_dir.as_deref()),
+            files: HashMap::from([(FileId::of(&preset_file), preset_file.clone())]),
             screen: Screen::new(&window, gpu),
             jobs: Jobs::new(cc.egui_ctx.clone()),
-            panels: Panels { left: true, right: true, timeline: true, trade: false, log: false, cheat_sheet: false, search: String::new() },
+            panels: Panels { left: true, right: true, timeline: true, sweep: false, log: false, cheat_sheet: false, search: String::new() },
             options,
             ending,
-            look,
+            preset_file,
             history,
             log,
-            stage: Stage::default(),
+            scene_loader: SceneLoader::default(),
             muted: BTreeSet::new(),
             picking: None,
             verdict: None,
             verifying: 0,
             overlays: Overlays::default(),
             compare: Compare::default(),
-            trade: Trade::default(),
+            sweep: Sweep::default(),
             dialog: None,
             extremes: Extremes::default(),
             playback: Playback::default(),
@@ -202,14 +202,14 @@ impl App {
         })
     }
 
-    /// The look as it stands.
-    pub fn look(&self) -> &Look {
-        &self.look
+    /// The preset as it stands.
+    pub fn preset_file(&self) -> &PresetFile {
+        &self.preset_file
     }
 
-    /// For tests: the look to be changed as a hand would change it.
-    pub fn session_mut(&mut self) -> &mut Session {
-        &mut self.look.session
+    /// For tests: the preset to be changed as a hand would change it.
+    pub fn preset_mut(&mut self) -> &mut Preset {
+        &mut self.preset_file.preset
     }
 
     /// Frames dispatched so far: stays where it is while nothing changes.
@@ -222,11 +222,16 @@ impl App {
         self.history.steps()
     }
 
-    /// Is there a picture of the look as it stands, with nothing still on its way?
-    pub fn is_settled(&self) -> bool {
-        let scene = self.stage.loading.is_none() && self.stage.shown.is_some();
+    /// Is there a picture of the preset as it stands, with nothing still on its way?
+    pub fn is_idle(&self) -> bool {
+        let scene = self.scene_loader.loading.is_none() && self.scene_loader.shown.is_some();
         let judged = self.verifying == 0 && self.overlays_are_settled();
-        scene && !self.screen.is_waiting() && !self.compare.is_waiting() && judged && !self.trade.is_measuring() && !self.shelf.is_busy()
+        scene
+            && !self.screen.is_waiting()
+            && !self.compare.is_waiting()
+            && judged
+            && !self.sweep.is_measuring()
+            && !self.preset_browser.is_busy()
     }
 
     /// Is there a picture at all?
@@ -241,7 +246,7 @@ impl App {
 
     /// The view that a picture of `size` pixels shows; none while there is no scene.
     pub fn view(&self, size: [u32; 2]) -> Option<View> {
-        self.stage.shown.as_ref().map(|(_, scene)| self.view_at(scene, size))
+        self.scene_loader.shown.as_ref().map(|(_, scene)| self.view_at(scene, size))
     }
 
     pub fn gpu(&self) -> &Arc<Gpu> {
@@ -252,9 +257,9 @@ impl App {
         self.log.tell(level, text, self.now_s);
     }
 
-    /// Has the look changes that would be lost? A look without a file has none until it is touched.
+    /// Has the preset changes that would be lost? A preset without a file has none until it is touched.
     fn is_modified(&self) -> bool {
-        self.files.get(&FileId::of(&self.look)).is_none_or(|as_opened| as_opened.session != self.look.session)
+        self.files.get(&FileId::of(&self.preset_file)).is_none_or(|as_opened| as_opened.preset != self.preset_file.preset)
     }
 
     /// Takes in what threads have finished.
@@ -263,12 +268,12 @@ impl App {
             match done {
                 Done::Scene(key, scene) => self.scene_arrived(key, scene),
                 Done::Verdict(inputs, findings) => self.verdict_arrived(*inputs, findings),
-                Done::Trade(points) => {
-                    if let Some(error) = self.trade.arrived(points) {
+                Done::Sweep(points) => {
+                    if let Some(error) = self.sweep.arrived(points) {
                         self.log.add(Level::Error, error);
                     }
                 }
-                Done::Thumbnail(id, image) => self.shelf.thumbnail_arrived(ctx, id, image),
+                Done::Thumbnail(id, image) => self.preset_browser.thumbnail_arrived(ctx, id, image),
                 Done::Shot(path, Ok(())) => self.tell(Level::Info, format!("Saved {}", path.display())),
                 Done::Shot(_, Err(error)) => self.tell(Level::Error, error),
                 Done::Path(purpose, path) => self.path_arrived(purpose, path),
@@ -277,28 +282,28 @@ impl App {
     }
 
     fn scene_arrived(&mut self, key: SceneKey, scene: Result<Arc<Scene>, String>) {
-        if self.stage.loading.as_ref() == Some(&key) {
-            self.stage.loading = None;
+        if self.scene_loader.loading.as_ref() == Some(&key) {
+            self.scene_loader.loading = None;
         }
         match scene {
             Ok(scene) => {
                 for note in &scene.notes {
                     self.log.add(Level::Warning, format!("{}: {note}", scene.name));
                 }
-                self.stage.recent.push_front((key, scene));
-                self.stage.recent.truncate(RECENT_SCENES);
+                self.scene_loader.recent.push_front((key, scene));
+                self.scene_loader.recent.truncate(RECENT_SCENES);
             }
             Err(error) => {
                 self.tell(Level::Error, error);
-                self.stage.failed = Some(key);
+                self.scene_loader.failed = Some(key);
             }
         }
     }
 
-    /// Brings the scene of the look on stage, or asks for it.
-    fn set_stage(&mut self) {
-        let key = SceneKey::of(&self.look.session, self.look.path.as_ref());
-        let Stage { shown, loading, failed, recent } = &mut self.stage;
+    /// Brings the scene of the preset on stage, or asks for it.
+    fn set_scene_loader(&mut self) {
+        let key = SceneKey::of(&self.preset_file.preset, self.preset_file.path.as_ref());
+        let SceneLoader { shown, loading, failed, recent } = &mut self.scene_loader;
         if shown.as_ref().is_some_and(|(shown, _)| *shown == key) {
             *failed = None;
             return;
@@ -312,12 +317,12 @@ impl App {
         }
     }
 
-    /// Saves the look for a new start of the window, once.
+    /// Saves the preset for a new start of the window, once.
     fn rescue(&mut self, ctx: &egui::Context) {
         if self.ending.is_lost() {
             return;
         }
-        let saved = start::write_recovery(&self.look);
+        let saved = start::write_recovery(&self.preset_file);
         eprintln!("rasterlab: the graphics device was lost; {saved}");
         self.ending.lose();
         self.may_quit = true;
@@ -325,7 +330,7 @@ impl App {
     }
 
     fn update_title(&mut self, ctx: &egui::Context) {
-        let title = format!("{}{} - rasterlab", if self.is_modified() { "• " } else { "" }, self.look.title());
+        let title = format!("{}{} - rasterlab", if self.is_modified() { "• " } else { "" }, self.preset_file.title());
         if title != self.title {
             ctx.send_viewport_cmd(egui::ViewportCommand::Title(title.clone()));
             self.title = title;
@@ -350,14 +355,14 @@ impl App {
             |ui| self.timeline_ui(ui),
         );
         self.panels.timeline = timeline;
-        let mut trade = self.panels.trade;
-        egui::Panel::bottom("trade").frame(theme::panel_frame()).resizable(true).default_size(304.0).min_size(190.0).show_collapsible(
+        let mut sweep = self.panels.sweep;
+        egui::Panel::bottom("sweep").frame(theme::panel_frame()).resizable(true).default_size(304.0).min_size(190.0).show_collapsible(
             ui,
-            &mut trade,
-            |ui| self.trade_ui(ui),
+            &mut sweep,
+            |ui| self.sweep_ui(ui),
         );
         // The panel has a button of its own to close it.
-        self.panels.trade &= trade;
+        self.panels.sweep &= sweep;
         let mut log = self.panels.log;
         egui::Panel::bottom("log").frame(theme::panel_frame()).resizable(true).default_size(150.0).min_size(72.0).show_collapsible(
             ui,
@@ -411,7 +416,7 @@ impl eframe::App for App {
         self.take_keys(&ctx);
         self.hovered_row = None;
         self.play(&ctx);
-        self.set_stage();
+        self.set_scene_loader();
         self.follow_particles();
         self.panels_ui(ui);
         self.dialog_ui(&ctx);

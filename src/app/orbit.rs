@@ -10,7 +10,7 @@ use crate::scene::{
 /// Bounds of the distance between eye and target, metres: what keeps poses clear of the arithmetic's gate at 2^40.
 const DISTANCE_M: [f64; 2] = [1e-5, 1e8];
 
-/// Farthest a target may be panned from the origin, metres.
+/// DepthReduce a target may be panned from the origin, metres.
 const REACH_M: f64 = 1e8;
 
 /// Closest the direction of view comes to straight up or down, radians; beyond it, left and right would swap.
@@ -91,7 +91,7 @@ pub fn zoom(camera: &mut Camera, factor: f64) {
     }
 }
 
-/// Looks at the target along `direction` from the same distance.
+/// PresetList at the target along `direction` from the same distance.
 pub fn look_along(camera: &mut Camera, direction: DVec3) {
     let distance = distance(camera);
     camera.up = if direction.y.abs() > 0.999 { DVec3::NEG_Z } else { DVec3::Y };

@@ -9,35 +9,35 @@ use eframe::egui::{self, Align2, DragValue, FontId, Pos2, Rect, RichText, Sense,
 
 use super::{App, Level, dialogs::Dialog, jobs, theme};
 use crate::{
-    preset::{self, GalleryEntry, Origin},
+    preset::SceneSource,
+    preset_file::{self, GalleryEntry, Origin},
     scene::builtin::{BUILTINS, Builtin},
-    session::SceneSource,
 };
 
 /// What the panel shows.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Tab {
-    Looks,
+    PresetList,
     Scene,
 }
 
 /// The gallery, and its pictures as they arrive.
-pub struct Shelf {
+pub struct PresetBrowser {
     entries: Vec<GalleryEntry>,
     pictures: HashMap<String, egui::TextureHandle>,
-    /// Looks that wait for a picture; one is drawn at a time.
+    /// PresetList that wait for a picture; one is drawn at a time.
     queue: VecDeque<String>,
     drawing: Option<String>,
-    /// Looks that have none: too large, or broken.
+    /// PresetList that have none: too large, or broken.
     without: HashSet<String>,
     tab: Tab,
 }
 
-impl Shelf {
+impl PresetBrowser {
     pub fn new(folder: Option<&Path>) -> Self {
-        let entries = preset::gallery(folder);
-        let queue = entries.iter().filter(|entry| entry.look.is_ok()).map(|entry| entry.id.clone()).collect();
-        Self { entries, queue, pictures: HashMap::new(), drawing: None, without: HashSet::new(), tab: Tab::Looks }
+        let entries = preset_file::gallery(folder);
+        let queue = entries.iter().filter(|entry| entry.preset_file.is_ok()).map(|entry| entry.id.clone()).collect();
+        Self { entries, queue, pictures: HashMap::new(), drawing: None, without: HashSet::new(), tab: Tab::PresetList }
     }
 
     /// Are thumbnails still to come?
@@ -60,7 +60,7 @@ impl Shelf {
 
     /// Reads the folders again and redraws `changed`.
     pub fn refresh(&mut self, folder: Option<&Path>, changed: &str) {
-        self.entries = preset::gallery(folder);
+        self.entries = preset_file::gallery(folder);
         self.without.remove(changed);
         if self.entries.iter().any(|entry| entry.id == changed) && !self.queue.iter().any(|id| id == changed) {
             self.queue.push_back(changed.to_owned());
@@ -74,43 +74,46 @@ impl App {
     /// Keeps one thumbnail in the making.
     pub(super) fn feed_thumbnails(&mut self) {
         // The picture and its figures come first: all want the same cores.
-        if self.shelf.drawing.is_some() || self.stage.loading.is_some() || self.screen.is_waiting() {
+        if self.preset_browser.drawing.is_some() || self.scene_loader.loading.is_some() || self.screen.is_waiting() {
             return;
         }
-        let Some(id) = self.shelf.queue.pop_front() else { return };
-        let look = self.shelf.entries.iter().find(|entry| entry.id == id).and_then(|entry| entry.look.as_ref().ok());
-        if let Some(look) = look.cloned() {
-            self.shelf.drawing = Some(id);
-            self.jobs.thumbnail(look);
+        let Some(id) = self.preset_browser.queue.pop_front() else { return };
+        let preset_file = self.preset_browser.entries.iter().find(|entry| entry.id == id).and_then(|entry| entry.preset_file.as_ref().ok());
+        if let Some(preset_file) = preset_file.cloned() {
+            self.preset_browser.drawing = Some(id);
+            self.jobs.thumbnail(preset_file);
         }
     }
 
     pub(super) fn left_ui(&mut self, ui: &mut Ui) {
         ui.horizontal(|ui| {
             ui.spacing_mut().item_spacing.x = 2.0;
-            for (tab, text) in [(Tab::Looks, "Looks"), (Tab::Scene, "Scene")] {
-                let button = egui::Button::selectable(self.shelf.tab == tab, RichText::new(text).strong()).min_size(vec2(72.0, theme::ROW));
+            for (tab, text) in [(Tab::PresetList, "PresetList"), (Tab::Scene, "Scene")] {
+                let button =
+                    egui::Button::selectable(self.preset_browser.tab == tab, RichText::new(text).strong()).min_size(vec2(72.0, theme::ROW));
                 if ui.add(button).clicked() {
-                    self.shelf.tab = tab;
+                    self.preset_browser.tab = tab;
                 }
             }
         });
         ui.add_space(theme::HALF);
-        egui::ScrollArea::vertical().id_salt(self.shelf.tab as u8).auto_shrink(false).show(ui, |ui| match self.shelf.tab {
-            Tab::Looks => self.looks_ui(ui),
-            Tab::Scene => self.scenes_ui(ui),
+        egui::ScrollArea::vertical().id_salt(self.preset_browser.tab as u8).auto_shrink(false).show(ui, |ui| {
+            match self.preset_browser.tab {
+                Tab::PresetList => self.presets_ui(ui),
+                Tab::Scene => self.scenes_ui(ui),
+            }
         });
     }
 
-    fn looks_ui(&mut self, ui: &mut Ui) {
-        if self.shelf.entries.is_empty() {
-            ui.label(theme::weak("No looks were found. Build one on the right and save it with Ctrl+S."));
+    fn presets_ui(&mut self, ui: &mut Ui) {
+        if self.preset_browser.entries.is_empty() {
+            ui.label(theme::weak("No presets were found. Build one on the right and save it with Ctrl+S."));
         }
         let mut chosen = None;
-        for index in 0..self.shelf.entries.len() {
-            let entry = &self.shelf.entries[index];
-            let is_open = entry.id == self.look.id && entry.path == self.look.path;
-            if look_row(ui, entry, self.shelf.pictures.get(&entry.id), is_open, is_open && self.is_modified()).clicked() {
+        for index in 0..self.preset_browser.entries.len() {
+            let entry = &self.preset_browser.entries[index];
+            let is_open = entry.id == self.preset_file.id && entry.path == self.preset_file.path;
+            if preset_row(ui, entry, self.preset_browser.pictures.get(&entry.id), is_open, is_open && self.is_modified()).clicked() {
                 chosen = Some(index);
             }
         }
@@ -120,24 +123,24 @@ impl App {
     }
 
     fn open_entry(&mut self, index: usize) {
-        match self.shelf.entries[index].look.clone() {
-            Ok(look) => {
-                let title = look.title().to_owned();
-                self.open_look(look);
+        match self.preset_browser.entries[index].preset_file.clone() {
+            Ok(preset_file) => {
+                let title = preset_file.title().to_owned();
+                self.open_preset(preset_file);
                 self.tell(Level::Info, title);
             }
             Err(error) => self.tell(Level::Error, error.to_string()),
         }
     }
 
-    /// Opens the look before or after this one in the gallery, round the ends.
-    pub(super) fn neighbour_look(&mut self, step: isize) {
-        let entries = &self.shelf.entries;
-        let good: Vec<usize> = (0..entries.len()).filter(|&index| entries[index].look.is_ok()).collect();
+    /// Opens the preset before or after this one in the gallery, round the ends.
+    pub(super) fn neighbour_preset(&mut self, step: isize) {
+        let entries = &self.preset_browser.entries;
+        let good: Vec<usize> = (0..entries.len()).filter(|&index| entries[index].preset_file.is_ok()).collect();
         if good.is_empty() {
             return self.tell(Level::Info, "The gallery is empty");
         }
-        let here = good.iter().position(|&index| entries[index].id == self.look.id);
+        let here = good.iter().position(|&index| entries[index].id == self.preset_file.id);
         let there = match here {
             Some(here) => (here as isize + step).rem_euclid(good.len() as isize) as usize,
             None => 0,
@@ -146,7 +149,7 @@ impl App {
     }
 
     fn scenes_ui(&mut self, ui: &mut Ui) {
-        self.stage_ui(ui);
+        self.scene_loader_ui(ui);
         ui.add_space(theme::HALF);
         if ui.button("Open model…").on_hover_text("A .glb or .gltf file").clicked() {
             self.dialog = Some(Dialog::open(self.options.presets_dir.as_deref()));
@@ -154,7 +157,7 @@ impl App {
         ui.label(theme::weak("Or drop a .glb, .gltf, look or one of our pictures anywhere on the window."));
         ui.add_space(theme::GAP);
         ui.label(theme::heading("Built in"));
-        let query = match &self.look.session.scene {
+        let query = match &self.preset_file.preset.scene {
             SceneSource::Builtin(query) => query.clone(),
             SceneSource::File(_) => String::new(),
         };
@@ -163,36 +166,36 @@ impl App {
             let is_open = builtin.name == open;
             let button = egui::Button::selectable(is_open, builtin.name).min_size(vec2(ui.available_width(), theme::ROW));
             if ui.add(button).on_hover_text(builtin.about).clicked() && !is_open {
-                self.look.session.scene = SceneSource::Builtin(builtin.name.into());
+                self.preset_file.preset.scene = SceneSource::Builtin(builtin.name.into());
                 // A pose for one scene says nothing about another.
-                self.look.session.camera = None;
-                self.look.session.scene_camera.clear();
+                self.preset_file.preset.camera = None;
+                self.preset_file.preset.scene_camera.clear();
             }
             if is_open && let Some(changed) = params_ui(ui, builtin, &query) {
-                self.look.session.scene = SceneSource::Builtin(changed);
+                self.preset_file.preset.scene = SceneSource::Builtin(changed);
             }
         }
     }
 
     /// What is on stage: name, counts, notes.
-    fn stage_ui(&mut self, ui: &mut Ui) {
-        let source = match &self.look.session.scene {
+    fn scene_loader_ui(&mut self, ui: &mut Ui) {
+        let source = match &self.preset_file.preset.scene {
             SceneSource::Builtin(query) => query.clone(),
             SceneSource::File(path) => path.display().to_string(),
         };
         ui.add(egui::Label::new(RichText::new(&source).color(theme::TEXT_STRONG).strong()).truncate()).on_hover_text(&source);
-        if self.stage.loading.is_some() {
+        if self.scene_loader.loading.is_some() {
             ui.horizontal(|ui| {
                 ui.add(egui::Spinner::new().size(12.0));
                 ui.label(theme::weak("loading"));
             });
             return;
         }
-        if self.stage.failed.is_some() {
+        if self.scene_loader.failed.is_some() {
             theme::notice(ui, theme::RED, "This scene cannot be shown; the log says why.");
             return;
         }
-        let Some((_, scene)) = &self.stage.shown else { return };
+        let Some((_, scene)) = &self.scene_loader.shown else { return };
         ui.label(theme::weak(format!("{} triangles · {} vertices", grouped(scene.triangle_count()), grouped(scene.vertex_count()))));
         if scene.instances.len() > 1 {
             ui.label(theme::weak(format!("{} placements", grouped(scene.instances.len() as u64))));
@@ -205,10 +208,16 @@ impl App {
 }
 
 /// A row of the gallery: picture, name, what it is.
-fn look_row(ui: &mut Ui, entry: &GalleryEntry, picture: Option<&egui::TextureHandle>, is_open: bool, is_modified: bool) -> egui::Response {
+fn preset_row(
+    ui: &mut Ui,
+    entry: &GalleryEntry,
+    picture: Option<&egui::TextureHandle>,
+    is_open: bool,
+    is_modified: bool,
+) -> egui::Response {
     let (rect, response) = ui.allocate_exact_size(vec2(ui.available_width(), THUMBNAIL_POINTS.y + 8.0), Sense::click());
-    let (name, about, color) = match &entry.look {
-        Ok(look) => (look.title(), look.session.about.clone(), theme::TEXT_STRONG),
+    let (name, about, color) = match &entry.preset_file {
+        Ok(preset_file) => (preset_file.title(), preset_file.preset.about.clone(), theme::TEXT_STRONG),
         Err(error) => (entry.id.as_str(), error.to_string(), theme::RED),
     };
     if is_open {
@@ -235,7 +244,7 @@ fn look_row(ui: &mut Ui, entry: &GalleryEntry, picture: Option<&egui::TextureHan
         egui::text::LayoutJob::single_section(about.clone(), egui::TextFormat::simple(FontId::proportional(11.5), weak_on(is_open)));
     job.wrap = egui::text::TextWrapping { max_width: text.width(), max_rows: 2, break_anywhere: false, overflow_character: Some('…') };
     painter.galley(text.min + vec2(0.0, 20.0), painter.layout_job(job), theme::TEXT_WEAK);
-    if entry.look.is_err() && picture.is_none() {
+    if entry.preset_file.is_err() && picture.is_none() {
         ui.painter().text(frame.center(), Align2::CENTER_CENTER, "!", FontId::proportional(18.0), theme::RED);
     }
     response.widget_info(|| egui::WidgetInfo::selected(egui::Role::Button, true, is_open, format!("Look {name}")));

@@ -7,7 +7,7 @@ use super::{
     inspector::{bytes_text, folder},
     theme,
 };
-use crate::{scene::Scene, session::Session};
+use crate::{preset::Preset, scene::Scene};
 
 impl App {
     /// The folder of the scene.
@@ -16,12 +16,12 @@ impl App {
             self.key_ui(ui, "scene.room");
             self.key_ui(ui, "scene.spin_deg_per_s");
             self.key_ui(ui, "output.background");
-            if self.look.session.stack.0.iter().any(|enabled| enabled.effect.hooks.has_lines) {
+            if self.preset_file.preset.stack.0.iter().any(|enabled| enabled.effect.hooks.has_lines) {
                 self.key_ui(ui, "scene.polyline");
             }
-            let Some(scene) = self.stage.shown.as_ref().map(|(_, scene)| scene.clone()) else { return };
+            let Some(scene) = self.scene_loader.shown.as_ref().map(|(_, scene)| scene.clone()) else { return };
             if !scene.cameras.is_empty() {
-                cameras_ui(ui, &scene, &mut self.look.session);
+                cameras_ui(ui, &scene, &mut self.preset_file.preset);
             }
             if let Some(text) = images_text(&scene) {
                 ui.horizontal(|ui| {
@@ -39,14 +39,14 @@ impl App {
     }
 }
 
-/// A menu of the scene's cameras. A pose of the look itself comes before them.
-fn cameras_ui(ui: &mut Ui, scene: &Scene, session: &mut Session) {
+/// A menu of the scene's cameras. A pose of the preset itself comes before them.
+fn cameras_ui(ui: &mut Ui, scene: &Scene, preset: &mut Preset) {
     let id = |place: usize| {
         let name = &scene.cameras[place].name;
         // Of cameras with one name, later ones go by their place.
         if scene.camera(name) == Some(place) { name.clone() } else { format!("#{place}") }
     };
-    let chosen = session.camera.is_none().then(|| scene.camera(&session.scene_camera).unwrap_or(0));
+    let chosen = preset.camera.is_none().then(|| scene.camera(&preset.scene_camera).unwrap_or(0));
     ui.horizontal(|ui| {
         ui.set_min_height(theme::ROW);
         ui.add_space(theme::GAP);
@@ -56,8 +56,8 @@ fn cameras_ui(ui: &mut Ui, scene: &Scene, session: &mut Session) {
             for place in 0..scene.cameras.len() {
                 if ui.selectable_label(chosen == Some(place), id(place)).clicked() {
                     // The first is looked through unasked.
-                    session.scene_camera = if place == 0 { String::new() } else { id(place) };
-                    session.camera = None;
+                    preset.scene_camera = if place == 0 { String::new() } else { id(place) };
+                    preset.camera = None;
                 }
             }
         });

@@ -7,11 +7,11 @@ use eframe::{egui_wgpu, wgpu};
 
 use super::blit::{Blit, Blitter};
 use crate::{
+    accuracy::AccuracyOptions,
     effects::Stack,
     gpu::{Explanation, Gpu, RenderError, Renderer, Report},
-    ladder::Rungs,
+    preset::AccuracyRequest,
     scene::{Scene, camera::View},
-    session::Accuracy,
 };
 
 /// Everything a picture depends on.
@@ -20,7 +20,7 @@ pub struct Inputs {
     pub scene: Arc<Scene>,
     pub view: View,
     pub stack: Stack,
-    pub accuracy: Accuracy,
+    pub accuracy: AccuracyRequest,
 }
 
 impl PartialEq for Inputs {
@@ -121,9 +121,9 @@ impl Screen {
         self.report.as_ref()
     }
 
-    /// The rungs of the newest picture's kernel.
-    pub fn rungs(&self) -> Option<Rungs> {
-        self.renderer.key().map(|key| key.rungs)
+    /// The options of the newest picture's kernel.
+    pub fn options(&self) -> Option<AccuracyOptions> {
+        self.renderer.key().map(|key| key.options)
     }
 
     /// What the newest picture ran, and why.
@@ -192,7 +192,7 @@ impl Screen {
             }
             return Ok(());
         };
-        let again = report.is_behind || (report.redraw || self.cold) && self.redraws < MAX_REDRAWS;
+        let again = report.simulation_pending || (report.redraw || self.cold) && self.redraws < MAX_REDRAWS;
         self.report = Some(report);
         if self.renderer.is_pending() {
             return Ok(());

@@ -3,7 +3,7 @@
 use eframe::egui::{self, Event, Key, KeyboardShortcut, Modifiers, RichText, Ui};
 
 use super::{App, Level, dialogs::Dialog, orbit, theme};
-use crate::{effects::Effect, math::hash_unit, params::Kind, preset};
+use crate::{effects::Effect, math::hash_unit, params::Kind, preset_file};
 
 /// What a key or a menu can do.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -12,14 +12,14 @@ pub enum Action {
     Save,
     SaveAs,
     Export,
-    CopyLook,
-    PasteLook,
+    CopyPreset,
+    PastePreset,
     Quit,
     Undo,
     Redo,
     Randomize,
-    PreviousLook,
-    NextLook,
+    PreviousPreset,
+    NextPreset,
     Frame,
     Front,
     Side,
@@ -35,7 +35,7 @@ pub enum Action {
     Overlays,
     Compare,
     FlipAb,
-    Trade,
+    Sweep,
     Panels,
     Timeline,
     Log,
@@ -65,11 +65,11 @@ const TABLE: &[(Action, &str, &[KeyboardShortcut])] = &[
     (Action::Save, "Save", &[command(Key::S)]),
     (Action::Open, "Open…", &[command(Key::O)]),
     (Action::Export, "Export PNG…", &[plain(Key::F12), command(Key::E)]),
-    (Action::CopyLook, "Copy look", &[]),
-    (Action::PasteLook, "Paste look", &[]),
+    (Action::CopyPreset, "Copy look", &[]),
+    (Action::PastePreset, "Paste look", &[]),
     (Action::Quit, "Quit", &[command(Key::Q)]),
-    (Action::PreviousLook, "Previous look", &[plain(Key::OpenBracket)]),
-    (Action::NextLook, "Next look", &[plain(Key::CloseBracket)]),
+    (Action::PreviousPreset, "Previous preset", &[plain(Key::OpenBracket)]),
+    (Action::NextPreset, "Next preset", &[plain(Key::CloseBracket)]),
     (Action::Randomize, "Randomize effects", &[plain(Key::R)]),
     (Action::Frame, "Frame the scene", &[plain(Key::Home)]),
     (Action::Front, "Front view", &[plain(Key::Num1)]),
@@ -85,8 +85,8 @@ const TABLE: &[(Action, &str, &[KeyboardShortcut])] = &[
     (Action::Extremes, "Run the extremes…", &[]),
     (Action::Overlays, "Hide or show overlays", &[plain(Key::O)]),
     (Action::Compare, "Compare: wipe, side by side, difference", &[shift(Key::Backslash), plain(Key::Pipe)]),
-    (Action::FlipAb, "Flip between the reference and this look", &[plain(Key::Backslash)]),
-    (Action::Trade, "Hide or show the trade of speed for accuracy", &[plain(Key::M)]),
+    (Action::FlipAb, "Flip between the reference and this preset", &[plain(Key::Backslash)]),
+    (Action::Sweep, "Hide or show the trade of speed for accuracy", &[plain(Key::M)]),
     (Action::Panels, "Hide or show panels", &[plain(Key::F11)]),
     (Action::Timeline, "Hide or show the timeline", &[plain(Key::T)]),
     (Action::Log, "Hide or show the log", &[plain(Key::L)]),
@@ -108,7 +108,7 @@ const POINTER: &[(&str, &str)] = &[
     ("Move a key", "drag its mark, with Shift off the grid"),
     ("Fine slider", "Shift + drag"),
     ("Copy or paste a value", "Ctrl+C, Ctrl+V over its row"),
-    ("Copy or paste the look", "Ctrl+C, Ctrl+V elsewhere"),
+    ("Copy or paste the preset", "Ctrl+C, Ctrl+V elsewhere"),
 ];
 
 impl Action {
@@ -123,8 +123,8 @@ impl Action {
     /// Its first key, as people write it.
     pub fn keys_text(self) -> String {
         match self {
-            Self::CopyLook => "Ctrl+C".into(),
-            Self::PasteLook => "Ctrl+V".into(),
+            Self::CopyPreset => "Ctrl+C".into(),
+            Self::PastePreset => "Ctrl+V".into(),
             _ => self.entry().2.first().map_or_else(String::new, written),
         }
     }
@@ -137,7 +137,7 @@ fn written(shortcut: &KeyboardShortcut) -> String {
 }
 
 impl App {
-    /// Carries out what the keyboard asks for. Plain keys yield to whatever is being typed into or has the focus.
+    /// Carries out what the keyboard asks for. Value keys yield to whatever is being typed into or has the focus.
     pub(super) fn take_keys(&mut self, ctx: &egui::Context) {
         if self.dialog.is_some() {
             return;
@@ -163,7 +163,7 @@ impl App {
             match event {
                 Event::Copy => match self.hovered_row.clone() {
                     Some((_, value)) => self.answer(ctx, super::Ask::Copy(value)),
-                    None => self.perform(ctx, Action::CopyLook),
+                    None => self.perform(ctx, Action::CopyPreset),
                 },
                 Event::Paste(text) => self.paste(&text),
                 _ => {}
@@ -180,11 +180,11 @@ impl App {
             Action::Save => self.save(),
             Action::SaveAs => self.ask_save_as(),
             Action::Export => self.ask_export(),
-            Action::CopyLook => {
-                ctx.copy_text(preset::to_line(&self.look));
-                self.tell(Level::Info, "Copied the look as one line of text");
+            Action::CopyPreset => {
+                ctx.copy_text(preset_file::to_line(&self.preset_file));
+                self.tell(Level::Info, "Copied the preset as one line of text");
             }
-            Action::PasteLook => ctx.send_viewport_cmd(egui::ViewportCommand::RequestPaste),
+            Action::PastePreset => ctx.send_viewport_cmd(egui::ViewportCommand::RequestPaste),
             Action::Quit => ctx.send_viewport_cmd(egui::ViewportCommand::Close),
             Action::Undo => {
                 self.observe(false);
@@ -197,8 +197,8 @@ impl App {
                 self.restore(moment, "redo");
             }
             Action::Randomize => self.randomize(),
-            Action::PreviousLook => self.neighbour_look(-1),
-            Action::NextLook => self.neighbour_look(1),
+            Action::PreviousPreset => self.neighbour_preset(-1),
+            Action::NextPreset => self.neighbour_preset(1),
             Action::Frame => self.frame_scene(),
             Action::Front => self.move_camera(|c| orbit::look_along(c, orbit::FRONT)),
             Action::Side => self.move_camera(|c| orbit::look_along(c, orbit::SIDE)),
@@ -219,7 +219,7 @@ impl App {
                 (self.panels.left, self.panels.right, self.panels.timeline) = (!shown, !shown, !shown);
             }
             Action::Timeline => self.panels.timeline = !self.panels.timeline,
-            Action::Trade => self.panels.trade = !self.panels.trade,
+            Action::Sweep => self.panels.sweep = !self.panels.sweep,
             Action::Log => self.panels.log = !self.panels.log,
             Action::CheatSheet => self.panels.cheat_sheet = !self.panels.cheat_sheet,
         }
@@ -227,12 +227,12 @@ impl App {
 
     /// Draws every parameter of the enabled effects from its soft range.
     fn randomize(&mut self) {
-        if self.look.session.stack.0.is_empty() {
+        if self.preset_file.preset.stack.0.is_empty() {
             return self.tell(Level::Info, "No effect is enabled, so there is nothing to randomize");
         }
         self.seed = self.seed.wrapping_add(1);
         let seed = self.seed;
-        for enabled in &mut self.look.session.stack.0 {
+        for enabled in &mut self.preset_file.preset.stack.0 {
             randomize_words(enabled.effect, &mut enabled.words, seed);
         }
         self.tell(Level::Info, format!("Randomized with seed {seed}"));
@@ -292,7 +292,7 @@ impl App {
             Action::Randomize => Some(format!("seed {}", self.seed)),
             Action::Timeline => Some(if self.panels.timeline { "shown".into() } else { "hidden".into() }),
             Action::Overlays => Some(if self.overlays.is_any() { "shown".into() } else { "hidden".into() }),
-            Action::Trade => Some(if self.panels.trade { "shown".into() } else { "hidden".into() }),
+            Action::Sweep => Some(if self.panels.sweep { "shown".into() } else { "hidden".into() }),
             Action::Log => Some(if self.panels.log { "shown".into() } else { "hidden".into() }),
             _ => None,
         }

@@ -1,4 +1,4 @@
-//! Start and end of the window: the device it runs on, the look it opens with, and what happens when the device is lost.
+//! Start and end of the window: the device it runs on, the preset it opens with, and what happens when the device is lost.
 
 use std::{
     path::{Path, PathBuf},
@@ -20,21 +20,21 @@ use crate::{
         Gpu,
         device::{self, AdapterChoice},
     },
-    preset::{self, Look},
-    session::SceneSource,
+    preset::SceneSource,
+    preset_file::{self, PresetFile},
 };
 
 /// What the window is started with.
 #[derive(Clone, Debug, Default)]
 pub struct Options {
-    /// A look's id or file, a model, a picture of ours, or `builtin:QUERY`.
+    /// A preset's id or file, a model, a picture of ours, or `builtin:QUERY`.
     pub open: Option<String>,
     pub adapter: AdapterChoice,
     pub presets_dir: Option<PathBuf>,
 }
 
-/// The look of a window that was asked for nothing.
-const FIRST_LOOK: &str = "teapot";
+/// The preset of a window that was asked for nothing.
+const FIRST_PRESET: &str = "teapot";
 
 /// Lost devices after which nobody tries again.
 const MAX_LOSSES: u32 = 2;
@@ -54,7 +54,7 @@ impl Ending {
 }
 
 /// Opens the window and returns when it is closed. A lost device closes it too; then it opens once more on a new
-/// device, with the look as it was.
+/// device, with the preset as it was.
 pub fn run(options: Options) -> anyhow::Result<()> {
     let mut options = options;
     for losses in 0..=MAX_LOSSES {
@@ -63,7 +63,7 @@ pub fn run(options: Options) -> anyhow::Result<()> {
         let create = move |cc: &eframe::CreationContext<'_>| -> Result<Box<dyn eframe::App>, Box<dyn std::error::Error + Send + Sync>> {
             let mut app = App::with_ending(cc, opened, theirs)?;
             if losses > 0 {
-                app.log.tell(Level::Warning, "The graphics device was lost. The window started again, with your look as it was.", 0.0);
+                app.log.tell(Level::Warning, "The graphics device was lost. The window started again, with your preset as it was.", 0.0);
             }
             Ok(Box::new(app))
         };
@@ -73,7 +73,7 @@ pub fn run(options: Options) -> anyhow::Result<()> {
         }
         options.open = recovery_path().filter(|path| path.exists()).map(|path| path.to_string_lossy().into_owned());
     }
-    let place = recovery_path().map_or_else(String::new, |path| format!("; the look is in {}", path.display()));
+    let place = recovery_path().map_or_else(String::new, |path| format!("; the preset is in {}", path.display()));
     Err(DeviceLost { times: MAX_LOSSES + 1, place }.into())
 }
 
@@ -141,41 +141,41 @@ pub(super) fn tune(frame: &mut eframe::Frame, gpu: &Gpu) {
     }
 }
 
-/// The look to begin with. One that cannot be opened is reported, and the teapot stands in.
-pub(super) fn first_look(options: &Options, log: &mut Log) -> Look {
+/// The preset to begin with. One that cannot be opened is reported, and the teapot stands in.
+pub(super) fn first_preset(options: &Options, log: &mut Log) -> PresetFile {
     let folder = options.presets_dir.as_deref();
-    let wanted = options.open.as_deref().unwrap_or(FIRST_LOOK);
-    match preset::open(wanted, folder) {
-        Ok(mut look) => {
-            look.warnings.iter().for_each(|warning| log.add(Level::Warning, warning.clone()));
+    let wanted = options.open.as_deref().unwrap_or(FIRST_PRESET);
+    match preset_file::open(wanted, folder) {
+        Ok(mut preset_file) => {
+            preset_file.warnings.iter().for_each(|warning| log.add(Level::Warning, warning.clone()));
             // A rescued look belongs somewhere else: Save asks where.
-            look.read_only |= look.path.is_some() && look.path == recovery_path();
-            look
+            preset_file.read_only |= preset_file.path.is_some() && preset_file.path == recovery_path();
+            preset_file
         }
         Err(error) => {
             if options.open.is_some() {
                 log.tell(Level::Error, error.to_string(), 0.0);
             }
-            Look::of_scene("teapot", SceneSource::Builtin("teapot".into()))
+            PresetFile::of_scene("teapot", SceneSource::Builtin("teapot".into()))
         }
     }
 }
 
-/// Where a look is kept when the device is lost.
+/// Where a preset is kept when the device is lost.
 fn recovery_path() -> Option<PathBuf> {
-    Some(preset::user_folder()?.parent()?.join("recovery.toml"))
+    Some(preset_file::user_folder()?.parent()?.join("recovery.toml"))
 }
 
-/// Writes the look for the next start; says in words what came of it.
-pub(super) fn write_recovery(look: &Look) -> String {
+/// Writes the preset for the next start; says in words what came of it.
+pub(super) fn write_recovery(preset_file: &PresetFile) -> String {
     let written = || -> anyhow::Result<PathBuf> {
         let path = recovery_path().context("there is no folder for it")?;
         std::fs::create_dir_all(path.parent().unwrap_or(Path::new(".")))?;
-        preset::save(&mut look.clone(), &path)?;
+        preset_file::save(&mut preset_file.clone(), &path)?;
         Ok(path)
     };
     match written() {
-        Ok(path) => format!("the look is in {}", path.display()),
-        Err(error) => format!("the look could not be kept: {error:#}"),
+        Ok(path) => format!("the preset is in {}", path.display()),
+        Err(error) => format!("the preset could not be kept: {error:#}"),
     }
 }

@@ -1,4 +1,4 @@
-//! The bar at the top: menus, which look is open, which adapter draws it, what that costs and how wrong it is.
+//! The bar at the top: menus, which preset is open, which adapter draws it, what that costs and how wrong it is.
 
 use eframe::egui::{self, Align, Color32, Layout, RichText, Sense, Ui, vec2};
 
@@ -10,7 +10,7 @@ use super::{
     shortcuts::Action,
     theme,
 };
-use crate::{gpu::Report, measure::Accuracy};
+use crate::{gpu::Report, measure::ErrorReport};
 
 impl App {
     pub(super) fn topbar_ui(&mut self, ui: &mut Ui) {
@@ -39,8 +39,8 @@ impl App {
                     Some(A::SaveAs),
                     Some(A::Export),
                     None,
-                    Some(A::CopyLook),
-                    Some(A::PasteLook),
+                    Some(A::CopyPreset),
+                    Some(A::PastePreset),
                     None,
                     Some(A::Quit),
                 ],
@@ -63,7 +63,7 @@ impl App {
                     None,
                     Some(A::Panels),
                     Some(A::Timeline),
-                    Some(A::Trade),
+                    Some(A::Sweep),
                     Some(A::Log),
                     None,
                     Some(A::Extremes),
@@ -80,7 +80,7 @@ impl App {
         }
         ui.add_space(theme::HALF);
         for (icon, action, able) in
-            [(Icon::Left, A::PreviousLook, true), (Icon::Right, A::NextLook, true), (Icon::Reset, A::Undo, self.history.can_undo())]
+            [(Icon::Left, A::PreviousPreset, true), (Icon::Right, A::NextPreset, true), (Icon::Reset, A::Undo, self.history.can_undo())]
         {
             let name = format!("{} ({})", action.about(), action.keys_text());
             if ui.add_enabled_ui(able, |ui| icon_button(ui, icon, &name)).inner.clicked() {
@@ -89,11 +89,11 @@ impl App {
         }
     }
 
-    /// Name of the look, with a dot while it has changes that no file has.
+    /// Name of the preset, with a dot while it has changes that no file has.
     fn name_ui(&mut self, ui: &mut Ui) {
         ui.spacing_mut().item_spacing.x = 6.0;
-        let name = RichText::new(self.look.title()).color(theme::TEXT_STRONG).strong();
-        let place = match (&self.look.path, self.look.read_only) {
+        let name = RichText::new(self.preset_file.title()).color(theme::TEXT_STRONG).strong();
+        let place = match (&self.preset_file.path, self.preset_file.read_only) {
             (Some(path), _) => path.display().to_string(),
             (None, true) => "built in: Save asks for a name".into(),
             (None, false) => "not saved yet".into(),
@@ -146,13 +146,13 @@ impl App {
         self.pins_ui(ui);
     }
 
-    /// Rungs that the look pins, beside what they cost.
+    /// AccuracyOptions that the preset pins, beside what they cost.
     fn pins_ui(&self, ui: &mut Ui) {
-        let words = self.look.session.accuracy.pins.words();
+        let words = self.preset_file.preset.accuracy.pins.words();
         let text = match words.split(' ').count() {
             _ if words.is_empty() => return,
             1 => words.clone(),
-            many => format!("{many} rungs pinned"),
+            many => format!("{many} options pinned"),
         };
         ui.label(theme::weak("·"));
         ui.label(RichText::new(text).size(12.0).color(theme::ACCENT)).on_hover_text(words.replace(' ', "\n"));
@@ -178,7 +178,7 @@ pub fn error_line(verdict: Option<&Verdict>, shown: Option<&Inputs>) -> (Color32
     if shown != Some(of) {
         return (theme::AMBER, format!("{text} · stale"), format!("Measured on an earlier picture. {detail}"));
     }
-    let wrong = a.owner_mismatch + a.holes + a.double_hits + a.orphans + a.overflow;
+    let wrong = a.wrong_triangles + a.holes + a.double_hits + a.depth_without_id + a.overflow;
     (if wrong == 0 { theme::GREEN } else { theme::RED }, text, detail)
 }
 
@@ -200,16 +200,20 @@ fn menu_ui(ui: &mut Ui, actions: &[Option<Action>]) -> Option<Action> {
     chosen
 }
 
-/// The error in a few words: `0 wrong owners, max Δ 1`.
-pub fn error_text(accuracy: &Accuracy) -> String {
-    let owners = accuracy.owner_mismatch;
+/// The error in a few words: `0 wrong triangle ids, max Δ 1`.
+pub fn error_text(accuracy: &ErrorReport) -> String {
+    let triangle_ids = accuracy.wrong_triangles;
     let race = if accuracy.race_pixels > 0 { format!(", {} lost to the race", accuracy.race_pixels) } else { String::new() };
-    format!("{owners} wrong {}{race}, max Δ {}", if owners == 1 { "owner" } else { "owners" }, accuracy.max_colour_delta)
+    format!(
+        "{triangle_ids} wrong {}{race}, max Δ {}",
+        if triangle_ids == 1 { "triangle_id" } else { "triangle_ids" },
+        accuracy.max_color_delta
+    )
 }
 
-fn details(a: &Accuracy) -> String {
+fn details(a: &ErrorReport) -> String {
     format!(
-        "{} pixels against the oracle: {} wrong owners, {} explained by a snap of one unit, {} in a depth tie, {} holes, {} drawn twice; colour max Δ {} and RMS {:.3} of 255",
-        a.pixels, a.owner_mismatch, a.explained_by_snap, a.band_pixels, a.holes, a.double_hits, a.max_colour_delta, a.rms_colour_delta
+        "{} pixels against the oracle: {} wrong triangle ids, {} explained by a snap of one unit, {} in a depth tie, {} holes, {} drawn twice; colour max Δ {} and RMS {:.3} of 255",
+        a.pixels, a.wrong_triangles, a.explained_by_snap, a.depth_band_pixels, a.holes, a.double_hits, a.max_color_delta, a.rms_color_delta
     )
 }

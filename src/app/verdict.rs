@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use super::{App, Level, overlays::Findings, screen::Inputs, topbar::error_text};
-use crate::measure::Accuracy;
+use crate::measure::ErrorReport;
 
 /// How wrong a picture was found to be.
 #[derive(Clone)]
@@ -14,7 +14,7 @@ pub struct Verdict {
 
 impl App {
     /// The measured error of the picture as it stands.
-    pub fn accuracy(&self) -> Option<&Accuracy> {
+    pub fn accuracy(&self) -> Option<&ErrorReport> {
         self.verdict.as_ref().filter(|verdict| self.screen.drawn() == Some(&verdict.of)).map(|verdict| &verdict.findings.accuracy)
     }
 
@@ -51,7 +51,7 @@ impl App {
         self.verifying = self.verifying.saturating_sub(1);
         match findings {
             Ok(findings) => {
-                self.log.add(Level::Info, format!("verified {}: {}", self.look.title(), error_text(&findings.accuracy)));
+                self.log.add(Level::Info, format!("verified {}: {}", self.preset_file.title(), error_text(&findings.accuracy)));
                 let verdict = Verdict { of, findings: findings.into() };
                 if !self.compare.take_verdict(&verdict) || self.motion.wanted.as_ref() == Some(&verdict.of) {
                     self.verdict = Some(verdict);

@@ -12,12 +12,12 @@ use super::{
     theme,
 };
 use crate::{
+    preset::Preset,
     scene::{
         Scene,
         camera::{Camera, Projection, View},
         pick,
     },
-    session::Session,
 };
 use glam::DVec2;
 
@@ -30,7 +30,7 @@ pub struct Motion {
     last_s: f64,
     /// Full pixels per drawn pixel, along a side.
     pub divisor: u32,
-    /// How much more than the look's own frame the window shows, at least 1.
+    /// How much more than the preset's own frame the window shows, at least 1.
     widening: f64,
 }
 
@@ -98,7 +98,8 @@ impl App {
         if response.ctx.input(|i| i.key_pressed(egui::Key::Escape)) {
             self.picking = None;
         }
-        let Some((at, (_, scene))) = response.interact_pointer_pos().filter(|_| response.clicked()).zip(self.stage.shown.clone()) else {
+        let Some((at, (_, scene))) = response.interact_pointer_pos().filter(|_| response.clicked()).zip(self.scene_loader.shown.clone())
+        else {
             return;
         };
         let size = response.rect.size().round();
@@ -120,24 +121,24 @@ impl App {
 
     /// Pose of the camera, to be moved.
     pub(super) fn pose(&self) -> Option<Camera> {
-        let (_, scene) = self.stage.shown.as_ref()?;
-        Some(self.look.session.camera_for(scene, aspect(self.look.session.output.size)))
+        let (_, scene) = self.scene_loader.shown.as_ref()?;
+        Some(self.preset_file.preset.camera_for(scene, aspect(self.preset_file.preset.output.size)))
     }
 
-    /// How much taller than the look's frame a picture of `size` must be for the frame's width to fit.
+    /// How much taller than the preset's frame a picture of `size` must be for the frame's width to fit.
     fn widening(&self, size: [u32; 2]) -> f64 {
-        (aspect(self.look.session.output.size) / aspect(size)).max(1.0)
+        (aspect(self.preset_file.preset.output.size) / aspect(size)).max(1.0)
     }
 
-    /// The look as a picture of `size` shows it: the whole of the look's own frame, and more where the shapes differ.
+    /// The preset as a picture of `size` shows it: the whole of the preset's own frame, and more where the shapes differ.
     pub(super) fn view_at(&self, scene: &Scene, size: [u32; 2]) -> View {
-        self.with_trail(self.view_of(self.shown_session(), scene, size))
+        self.with_trail(self.view_of(self.shown_preset(), scene, size))
     }
 
     /// The same of another session.
-    pub(super) fn view_of(&self, mut session: Session, scene: &Scene, size: [u32; 2]) -> View {
+    pub(super) fn view_of(&self, mut preset: Preset, scene: &Scene, size: [u32; 2]) -> View {
         let widening = self.widening(size);
-        let mut camera = session.camera_for(scene, aspect(session.output.size));
+        let mut camera = preset.camera_for(scene, aspect(preset.output.size));
         if widening > 1.0 {
             match &mut camera.projection {
                 Projection::Perspective { fov_y_deg } => {
@@ -146,37 +147,37 @@ impl App {
                 Projection::Orthographic { height_m } => *height_m *= widening,
             }
         }
-        session.camera = Some(camera);
-        session.view(scene, size)
+        preset.camera = Some(camera);
+        preset.view(scene, size)
     }
 
-    /// Moves the camera of the look.
+    /// Moves the camera of the preset.
     pub(super) fn move_camera(&mut self, change: impl FnOnce(&mut Camera)) {
         if let Some(mut camera) = self.pose() {
             change(&mut camera);
             let finite = camera.eye.is_finite() && camera.target.is_finite() && camera.up.is_finite();
             if finite {
-                self.look.session.camera = Some(camera);
+                self.preset_file.preset.camera = Some(camera);
             }
         }
     }
 
     /// Shows the whole scene from where the camera looks now.
     pub(super) fn frame_scene(&mut self) {
-        let Some((_, scene)) = &self.stage.shown else { return };
-        let session = self.shown_session();
+        let Some((_, scene)) = &self.scene_loader.shown else { return };
+        let preset = self.shown_preset();
         // The spin carries the box along.
-        let turn = session.view(scene, [1, 1]).world_from_scene;
+        let turn = preset.view(scene, [1, 1]).world_from_scene;
         let mut bounds = crate::scene::Bounds::EMPTY;
         let corners = if scene.bounds().is_empty() { None } else { Some(scene.bounds().corners()) };
         corners.into_iter().flatten().for_each(|corner| bounds.include(turn.transform_point3(corner)));
-        let aspect = aspect(session.output.size);
+        let aspect = aspect(preset.output.size);
         self.move_camera(|camera| *camera = orbit::framing(camera, &bounds, aspect));
     }
 
     /// Moves the camera by pointer, wheel and fly keys; true while a hand is at it.
     fn navigate(&mut self, ui: &Ui, response: &egui::Response) -> bool {
-        let before = self.look.session.camera;
+        let before = self.preset_file.preset.camera;
         let drag = response.drag_delta();
         let (right, down) = (f64::from(drag.x), f64::from(drag.y));
         let height = f64::from(response.rect.height().max(1.0)) / self.motion.widening;
@@ -205,7 +206,7 @@ impl App {
         if response.double_clicked() {
             self.frame_scene();
         }
-        self.look.session.camera != before
+        self.preset_file.preset.camera != before
     }
 
     /// W A S D Q E, while the right button is held.
@@ -216,23 +217,23 @@ impl App {
         if (x, y, z) == (0.0, 0.0, 0.0) {
             return;
         }
-        let radius = self.stage.shown.as_ref().map_or(1.0, |(_, scene)| scene.bounds().radius()).max(1e-3);
+        let radius = self.scene_loader.shown.as_ref().map_or(1.0, |(_, scene)| scene.bounds().radius()).max(1e-3);
         let step = radius * FLY_PER_S * f64::from(ui.input(|i| i.stable_dt)).min(0.1);
         self.move_camera(|c| orbit::fly(c, x * step, y * step, z * step));
         ui.ctx().request_repaint();
     }
 
-    /// Draws what the look asks for, coarser while a hand moves it on a slow adapter.
+    /// Draws what the preset asks for, coarser while a hand moves it on a slow adapter.
     fn draw(&mut self, ctx: &egui::Context, full: [u32; 2], camera_moved: bool) {
         let now_s = self.now_s;
         if let Err(error) = self.screen.poll(now_s) {
             self.log.add(Level::Error, error.to_string());
         }
-        let Some((key, scene)) = self.stage.shown.clone() else { return };
-        if key != SceneKey::of(&self.look.session, self.look.path.as_ref()) {
-            return; // Another look's scene in the light of this one would be a picture of neither.
+        let Some((key, scene)) = self.scene_loader.shown.clone() else { return };
+        if key != SceneKey::of(&self.preset_file.preset, self.preset_file.path.as_ref()) {
+            return; // Another preset's scene in the light of this one would be a picture of neither.
         }
-        let (stack, accuracy) = (self.visible_stack(), self.look.session.accuracy);
+        let (stack, accuracy) = (self.visible_stack(), self.preset_file.preset.accuracy);
         let wanted = Inputs { view: self.view_at(&scene, full), scene, stack, accuracy };
         let held = ctx.input(|i| i.pointer.any_down());
         let changed = self.motion.wanted.as_ref().is_some_and(|before| *before != wanted);
@@ -288,7 +289,7 @@ impl App {
             return at;
         }
         painter.rect_filled(rect, 0.0, theme::VIEW);
-        let (title, detail) = if self.stage.failed.is_some() {
+        let (title, detail) = if self.scene_loader.failed.is_some() {
             ("This scene cannot be shown", "The log says why. Choose another one on the left, or drop a .glb here.")
         } else if self.motion.wanted.as_ref().is_some_and(|inputs| self.screen.is_refused(inputs)) {
             ("This picture cannot be drawn", "The log says why.")
@@ -330,10 +331,10 @@ impl App {
     /// What is unusual about the picture just now.
     fn states(&self) -> Vec<(Color32, String)> {
         let mut states = Vec::new();
-        if self.stage.loading.is_some() && self.screen.picture().is_some() {
+        if self.scene_loader.loading.is_some() && self.screen.picture().is_some() {
             states.push((theme::TEXT, "loading the scene".into()));
         }
-        if self.stage.failed.is_some() && self.screen.picture().is_some() {
+        if self.scene_loader.failed.is_some() && self.screen.picture().is_some() {
             states.push((theme::RED, "last good picture: the scene cannot be shown".into()));
         } else if self.motion.wanted.as_ref().is_some_and(|inputs| self.screen.is_refused(inputs)) && self.screen.picture().is_some() {
             states.push((theme::RED, "last good picture: this one cannot be drawn".into()));
@@ -352,7 +353,7 @@ impl App {
         if let Some(order) = self.screen.report().and_then(|report| report.order) {
             let over = order.drawn.saturating_sub(order.limit);
             let share = 100.0 * order.drawn as f64 / order.covered.max(1) as f64;
-            if order.is_beyond_tickets() {
+            if order.exceeds_sample_counter() {
                 states.push((theme::RED, "more than 2^32 samples: the hardware's order lost count; take submission".into()));
             }
             states.push((theme::TEXT, format!("drew {} of {} samples ({share:.1} %), {over} too many", order.drawn, order.covered)));

@@ -4,7 +4,7 @@ use serde_json::{Value, json};
 
 use super::{
     fault::{Exit, Fault},
-    painter::{adapter_json, usable_rungs},
+    painter::{adapter_json, usable_options},
     streams::{Streams, table},
 };
 use crate::gpu::device;
@@ -16,25 +16,25 @@ pub fn run(streams: &mut Streams) -> Result<Exit, Fault> {
             .iter()
             .map(|(summary, caps)| {
                 let mut object = adapter_json(summary, caps);
-                object["rungs"] = usable_rungs(caps).iter().map(|rung| rung.name()).collect();
+                object["options"] = usable_options(caps).iter().map(|option| option.name()).collect();
                 object["limits"] = json!(caps);
                 object
             })
             .collect();
-        results.push(json!({ "name": "cpu", "backend": "cpu", "software": true, "class": "oracle", "rungs": [] }));
+        results.push(json!({ "name": "cpu", "backend": "cpu", "software": true, "class": "oracle", "options": [] }));
         streams.object("adapters", Value::Null, results)?;
         return Ok(Exit::Done);
     }
-    let head = ["ADAPTER", "BACKEND", "DRIVER", "CLASS", "RUNGS", "BINDING", "TIMESTAMPS", "KIND"];
+    let head = ["ADAPTER", "BACKEND", "DRIVER", "CLASS", "OPTIONS", "BINDING", "TIMESTAMPS", "KIND"];
     let mut rows = vec![head.map(str::to_owned).to_vec()];
     rows.extend(adapters.iter().map(|(summary, caps)| {
-        let rungs: Vec<_> = usable_rungs(caps).iter().map(|rung| rung.name()).collect();
+        let options: Vec<_> = usable_options(caps).iter().map(|option| option.name()).collect();
         vec![
             summary.name.clone(),
             summary.backend.clone(),
             summary.driver.clone(),
             caps.class().into(),
-            rungs.join(" "),
+            options.join(" "),
             format!("{} MiB", caps.max_storage_binding_bytes >> 20),
             if caps.timestamps { "yes" } else { "no" }.into(),
             if summary.software { "software" } else { "hardware" }.into(),

@@ -8,7 +8,7 @@ use clap::{Args, Parser, Subcommand, ValueEnum};
 #[derive(Parser, Debug)]
 #[command(name = "rasterlab", version, about, long_about = LONG)]
 pub struct Cli {
-    /// A look, a model (.glb, .gltf) or a picture of ours to open in the window
+    /// A preset, a model (.glb, .gltf) or a picture of ours to open in the window
     #[arg(value_name = "LOOK|MODEL|SHOT.png")]
     pub open: Option<String>,
     #[command(flatten)]
@@ -18,7 +18,7 @@ pub struct Cli {
 }
 
 const LONG: &str = "An effects lab around a compute-shader rasterizer, judged by an exact oracle.\n\n\
-    Without a command the window opens. A LOOK is an id of the gallery (rasterlab list), a .toml file, a .glb or .gltf \
+    Without a command the window opens. A preset is an id of the gallery (rasterlab list), a .toml file, a .glb or .gltf \
     model, a PNG saved by rasterlab, builtin:QUERY, or - for TOML from stdin.\n\n\
     Exit codes: 0 done; 1 a comparison, check, stress case, promised accuracy or dry run failed; 2 usage, or a file that \
     cannot be read or written; 3 no suitable adapter; 4 the device was lost.";
@@ -29,10 +29,10 @@ pub struct Common {
     /// Part of an adapter's name, or cpu for the built-in oracle [env: RASTERLAB_ADAPTER]
     #[arg(long, global = true, value_name = "NAME")]
     pub adapter: Option<String>,
-    /// Folder of looks that comes before all others [env: RASTERLAB_PRESETS]
+    /// Folder of presets that comes before all others [env: RASTERLAB_PRESETS]
     #[arg(long, global = true, value_name = "DIR")]
     pub presets: Option<PathBuf>,
-    /// Change a key of the look, e.g. facet.amount=.5; an effect's name alone enables it
+    /// Change a key of the preset, e.g. facet.amount=.5; an effect's name alone enables it
     #[arg(long, global = true, value_name = "PATH[=VALUE]")]
     pub set: Vec<String>,
     /// Put a key back to its default; an effect's name takes it out
@@ -44,7 +44,7 @@ pub struct Common {
     /// No progress, no notes
     #[arg(long, short, global = true)]
     pub quiet: bool,
-    /// Unknown keys in a look are errors
+    /// Unknown keys in a preset are errors
     #[arg(long, global = true)]
     pub strict: bool,
     /// Overwrite existing files
@@ -66,23 +66,23 @@ impl Common {
 
 #[derive(Subcommand, Debug)]
 pub enum Command {
-    /// Looks, builtin scenes, effects and their parameters with ranges
+    /// Presets, builtin scenes, effects and their parameters with ranges
     List(List),
-    /// Every adapter with backend, driver, limits and usable rungs
+    /// Every adapter with backend, driver, limits and usable options
     Adapters,
-    /// One picture of each look
+    /// One picture of each preset
     Render(Render),
-    /// A moving look, frame by frame; finished frames are not drawn again
+    /// A moving preset, frame by frame; finished frames are not drawn again
     Sequence(Sequence),
-    /// Each look on the adapter against the oracle, all buffers
+    /// Each preset on the adapter against the oracle, all buffers
     Verify(Verify),
-    /// Two pictures or looks against each other
+    /// Two pictures or presets against each other
     Compare(Compare),
     /// Passes, buffers, and the reason for each
     Explain(Explain),
     /// Redraw goldens with the oracle
     Bless(Bless),
-    /// Milliseconds beside error, rung by rung
+    /// Milliseconds beside error, option by option
     Bench(Bench),
     /// The table of extreme cases, each against its expectation
     Stress(Stress),
@@ -126,10 +126,10 @@ pub struct List {
     /// Only effects
     #[arg(long)]
     pub effects: bool,
-    /// Only looks
+    /// Only presets
     #[arg(long)]
-    pub looks: bool,
-    /// Only the accuracy ladder: axes with their rungs, from fast to accurate
+    pub preset_files: bool,
+    /// Only the accuracy axes: axes with their options, from fast to accurate
     #[arg(long)]
     pub axes: bool,
     /// Only builtin scenes
@@ -140,7 +140,7 @@ pub struct List {
 #[derive(Args, Debug)]
 pub struct Render {
     #[arg(required = true, value_name = "LOOK")]
-    pub looks: Vec<String>,
+    pub preset_files: Vec<String>,
     /// Where to; - for stdout. Knows {preset} {effect} {n} {n:3} {adapter} {tier}
     #[arg(short, long, value_name = "FILE", default_value = "{preset}.png")]
     pub output: String,
@@ -161,14 +161,14 @@ pub struct Render {
 #[derive(Args, Debug)]
 pub struct Sequence {
     #[arg(value_name = "LOOK")]
-    pub look: String,
+    pub preset_file: String,
     /// A file per frame, e.g. 'frame_{frame:4}.png'. Knows {preset} {effect} {frame} {frame:4} {adapter} {tier}
     #[arg(short, long, value_name = "FILE", required_unless_present = "apng")]
     pub output: Option<String>,
     /// All frames in one animated PNG
     #[arg(long, value_name = "FILE")]
     pub apng: Option<PathBuf>,
-    /// Time of frame 0 in seconds; without it the look's own range begins
+    /// Time of frame 0 in seconds; without it the preset's own range begins
     #[arg(long, value_name = "S", allow_negative_numbers = true)]
     pub from: Option<f64>,
     /// Time at which the film is over, which is not drawn: it is the first moment of the next round
@@ -190,13 +190,13 @@ pub struct Sequence {
 
 #[derive(Args, Debug)]
 pub struct Verify {
-    /// Looks; without any, every look of the gallery that has a golden
+    /// Presets; without any, every preset of the gallery that has a golden
     #[arg(value_name = "LOOK")]
-    pub looks: Vec<String>,
+    pub preset_files: Vec<String>,
     /// Draw so many frames, which must be equal to the bit
     #[arg(long, default_value_t = 1, value_parser = clap::value_parser!(u32).range(1..=10_000))]
     pub frames: u32,
-    /// Size in pixels instead of the look's own
+    /// Size in pixels instead of the preset's own
     #[arg(long, value_name = "WxH", value_parser = size)]
     pub size: Option<[u32; 2]>,
     /// Folder for pictures: expected, actual and difference side by side
@@ -206,9 +206,9 @@ pub struct Verify {
 
 #[derive(Args, Debug)]
 pub struct Compare {
-    /// A PNG or a look
+    /// A PNG or a preset
     pub a: String,
-    /// A PNG or a look
+    /// A PNG or a preset
     pub b: String,
     /// Picture of the differences
     #[arg(short, long, value_name = "FILE")]
@@ -219,28 +219,28 @@ pub struct Compare {
     /// Pixels beyond it that pass
     #[arg(long, default_value_t = 0)]
     pub max_pixels: u64,
-    /// Pixels with another owner that pass, between looks
+    /// Pixels with another triangle id that pass, between presets
     #[arg(long, default_value_t = 0)]
-    pub max_wrong_owner: u64,
-    /// Size in pixels of looks instead of their own
+    pub max_wrong_triangles: u64,
+    /// Size in pixels of presets instead of their own
     #[arg(long, value_name = "WxH", value_parser = size)]
     pub size: Option<[u32; 2]>,
 }
 
 #[derive(Args, Debug)]
 pub struct Explain {
-    pub look: String,
-    /// Size in pixels instead of the look's own
+    pub preset_file: String,
+    /// Size in pixels instead of the preset's own
     #[arg(long, value_name = "WxH", value_parser = size)]
     pub size: Option<[u32; 2]>,
 }
 
 #[derive(Args, Debug)]
 pub struct Bless {
-    /// Looks of the preset folder, or effects whose first look is to be made
+    /// Presets of the preset folder, or effects whose first preset is to be made
     #[arg(value_name = "LOOK|EFFECT")]
     pub names: Vec<String>,
-    /// Every look that has a [test] table
+    /// Every preset that has a [test] table
     #[arg(long, conflicts_with = "names")]
     pub all: bool,
     /// Change nothing; exit 1 if any golden would change
@@ -253,19 +253,19 @@ pub struct Bless {
 
 #[derive(Args, Debug)]
 pub struct Bench {
-    /// Looks; without any, daylight on each --scene
+    /// Presets; without any, daylight on each --scene
     #[arg(value_name = "LOOK")]
-    pub looks: Vec<String>,
-    /// A builtin scene by query or a model file, instead of the look's own; may be repeated
+    pub preset_files: Vec<String>,
+    /// A builtin scene by query or a model file, instead of the preset's own; may be repeated
     #[arg(long, value_name = "SCENE")]
     pub scene: Vec<String>,
-    /// What every effect costs: each alone, with the values of its canonical look, beside none
+    /// What every effect costs: each alone, with the values of its canonical preset, beside none
     #[arg(long)]
     pub effects: bool,
-    /// Axes of the accuracy ladder, by commas: every combination of their rungs, milliseconds beside error
+    /// Axes of the accuracy axes, by commas: every combination of their options, milliseconds beside error
     #[arg(long, value_name = "AXES", value_delimiter = ',', conflicts_with = "effects")]
     pub axes: Vec<String>,
-    /// With --axes: every rung alone beside the look as it is planned, instead of every combination; a row per rung, a pair of
+    /// With --axes: every option alone beside the preset as it is planned, instead of every combination; a row per option, a pair of
     /// columns per scene
     #[arg(long, requires = "axes")]
     pub each: bool,
@@ -302,7 +302,7 @@ pub enum Format {
 
 #[derive(Args, Debug)]
 pub struct Check {
-    /// Looks; without any, the whole gallery
+    /// Presets; without any, the whole gallery
     #[arg(value_name = "FILE")]
     pub files: Vec<String>,
     /// Also draw each on the adapter and compare it with its golden

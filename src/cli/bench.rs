@@ -1,4 +1,4 @@
-//! `bench`: milliseconds beside error, one row per scene and rung. No row has a time without an error.
+//! `bench`: milliseconds beside error, one row per scene and option. No row has a time without an error.
 
 use std::sync::Arc;
 
@@ -10,7 +10,7 @@ use super::{
     open,
     painter::{Painter, scene_of},
     streams::{Streams, table},
-    trade,
+    sweep,
 };
 use crate::{
     effects::{EFFECTS, Enabled, Stack},
@@ -20,14 +20,14 @@ use crate::{
     },
     measure::Verdict,
     oracle,
-    preset::Look,
+    preset::SceneSource,
+    preset_file::PresetFile,
     scene::{Scene, camera::View},
-    session::SceneSource,
 };
 
 pub fn run(common: &Common, args: &Bench, streams: &mut Streams) -> Result<Exit, Fault> {
     if !args.axes.is_empty() {
-        return trade::run(common, args, streams);
+        return sweep::run(common, args, streams);
     }
     let subjects = subjects(common, args)?;
     let painter = Painter::open(common, streams)?;
@@ -37,9 +37,9 @@ pub fn run(common: &Common, args: &Bench, streams: &mut Streams) -> Result<Exit,
     let options = BenchOptions { size: args.size, samples: args.samples as usize };
     let bar = streams.progress(0);
     let mut rows = Vec::new();
-    for (look, scene) in &subjects {
-        let session = &look.session.posed();
-        let view = session.view(scene, args.size);
+    for (preset_file, scene) in &subjects {
+        let preset = &preset_file.preset.posed();
+        let view = preset.view(scene, args.size);
         let judge = judge(scene, &view);
         let mut progress = |what: &str, done: usize, all: usize| {
             bar.set_length(all as u64);
@@ -47,16 +47,16 @@ pub fn run(common: &Common, args: &Bench, streams: &mut Streams) -> Result<Exit,
             bar.set_message(what.to_owned());
         };
         rows.extend(match args.effects {
-            true => bench_stacks(gpu, session, scene, &each_effect(common)?, &options, &mut progress, &judge)?,
-            false => bench(gpu, session, scene, &look.id, &options, &mut progress, &judge)?,
+            true => bench_stacks(gpu, preset, scene, &each_effect(common)?, &options, &mut progress, &judge)?,
+            false => bench(gpu, preset, scene, &preset_file.id, &options, &mut progress, &judge)?,
         });
     }
     bar.finish_and_clear();
     let results = || rows.iter().map(serde_json::to_value).collect::<Result<Vec<Value>, _>>().map_err(Fault::usage);
     present(args, streams, &painter, &lines(&rows), results)?;
     rows.iter().filter_map(|row| row.note.as_ref()).for_each(|note| streams.note(note));
-    let broken: Vec<_> = rows.iter().filter(|row| row.is_promised && !row.error.keeps_the_promise()).collect();
-    broken.iter().for_each(|row| streams.note(&format!("{} on {}: the error exceeds the promise", row.scene, row.rung)));
+    let broken: Vec<_> = rows.iter().filter(|row| row.is_promised && !row.error.is_exact()).collect();
+    broken.iter().for_each(|row| streams.note(&format!("{} on {}: the error exceeds the promise", row.scene, row.option)));
     Ok(Exit::failed_if(!broken.is_empty()))
 }
 
@@ -89,42 +89,42 @@ pub fn present(
     Ok(())
 }
 
-/// No effect at all, and every effect alone with the values of its canonical look.
+/// No effect at all, and every effect alone with the values of its canonical preset.
 fn each_effect(common: &Common) -> Result<Vec<(String, Stack)>, Fault> {
     let mut stacks = vec![("no effect".to_owned(), Stack::default())];
     for effect in EFFECTS {
-        let look = open(common, effect.name)?;
-        let enabled = look.session.posed_stack().get(effect.name).cloned().unwrap_or_else(|| Enabled::new(effect));
+        let preset_file = open(common, effect.name)?;
+        let enabled = preset_file.preset.evaluated_stack().get(effect.name).cloned().unwrap_or_else(|| Enabled::new(effect));
         stacks.push((format!("+{}", effect.name), Stack(vec![enabled])));
     }
     Ok(stacks)
 }
 
-/// Looks with their scenes: each named look on its own scene, or on each `--scene`.
-pub fn subjects(common: &Common, args: &Bench) -> Result<Vec<(Look, Arc<Scene>)>, Fault> {
-    let named = args.looks.iter().map(|what| open(common, what)).collect::<Result<Vec<_>, _>>()?;
-    let mut looks = Vec::new();
+/// Presets with their scenes: each named look on its own scene, or on each `--scene`.
+pub fn subjects(common: &Common, args: &Bench) -> Result<Vec<(PresetFile, Arc<Scene>)>, Fault> {
+    let named = args.preset_files.iter().map(|what| open(common, what)).collect::<Result<Vec<_>, _>>()?;
+    let mut preset_files = Vec::new();
     for scene in &args.scene {
         let mut plain = open(common, &if is_model(scene) { scene.clone() } else { format!("builtin:{scene}") })?;
         if named.is_empty() {
             plain.id.clone_from(scene);
-            looks.push(plain);
+            preset_files.push(plain);
             continue;
         }
-        looks.extend(named.iter().map(|look| {
-            let mut look = look.clone();
-            look.id = format!("{} on {scene}", look.id);
-            look.session.scene = plain.session.scene.clone();
-            // The camera of a look was placed for its own scene.
-            look.session.camera = None;
-            look.session.scene_camera.clear();
-            look
+        preset_files.extend(named.iter().map(|preset_file| {
+            let mut preset_file = preset_file.clone();
+            preset_file.id = format!("{} on {scene}", preset_file.id);
+            preset_file.preset.scene = plain.preset.scene.clone();
+            // The camera of a preset was placed for its own scene.
+            preset_file.preset.camera = None;
+            preset_file.preset.scene_camera.clear();
+            preset_file
         }));
     }
     if args.scene.is_empty() {
-        looks = if named.is_empty() { vec![Look::of_scene("teapot", SceneSource::Builtin("teapot".into()))] } else { named };
+        preset_files = if named.is_empty() { vec![PresetFile::of_scene("teapot", SceneSource::Builtin("teapot".into()))] } else { named };
     }
-    looks.into_iter().map(|look| Ok((look.clone(), scene_of(&look)?))).collect()
+    preset_files.into_iter().map(|preset_file| Ok((preset_file.clone(), scene_of(&preset_file)?))).collect()
 }
 
 fn is_model(scene: &str) -> bool {
@@ -136,12 +136,12 @@ fn lines(rows: &[BenchRow]) -> Vec<Vec<String>> {
     let head = ["SCENE", "TRIANGLES", "RUNG", "MS P50", "MS P95", "N", "OWNER", "SNAP", "HOLES", "DOUBLE", "MAX", "RMS", "ADAPTER"];
     let mut lines = vec![head.map(str::to_owned).to_vec()];
     // Only where something bends is there a column for how well.
-    let bends = rows.iter().any(|row| row.error.max_bend_px.is_some());
+    let deforms = rows.iter().any(|row| row.error.max_deform_px.is_some());
     let before_adapter = head.len() - 1;
-    if bends {
+    if deforms {
         lines[0].insert(before_adapter, "BEND PX".into());
     }
-    let flies = rows.iter().any(|row| row.error.max_astray_px.is_some());
+    let flies = rows.iter().any(|row| row.error.max_divergence_px.is_some());
     if flies {
         lines[0].insert(before_adapter, "ASTRAY PX".into());
     }
@@ -153,23 +153,23 @@ fn lines(rows: &[BenchRow]) -> Vec<Vec<String>> {
         let mut line = vec![
             row.scene.clone(),
             row.triangles.to_string(),
-            row.rung.clone(),
+            row.option.clone(),
             ms(row.ms_p50),
             ms(row.ms_p95),
             row.samples.to_string(),
-            count(e.owner_mismatch),
+            count(e.wrong_triangles),
             count(e.explained_by_snap),
             count(e.holes),
             count(e.double_hits),
-            count(e.max_colour_delta.map(u64::from)),
-            e.rms_colour_delta.map_or_else(not_measured, |rms| format!("{rms:.4}")),
+            count(e.max_color_delta.map(u64::from)),
+            e.rms_color_delta.map_or_else(not_measured, |rms| format!("{rms:.4}")),
             row.adapter.clone(),
         ];
-        if bends {
-            line.insert(before_adapter, e.max_bend_px.map_or_else(not_measured, |px| format!("{px:.5}")));
+        if deforms {
+            line.insert(before_adapter, e.max_deform_px.map_or_else(not_measured, |px| format!("{px:.5}")));
         }
         if flies {
-            line.insert(before_adapter, e.max_astray_px.map_or_else(not_measured, |px| format!("{px:.5}")));
+            line.insert(before_adapter, e.max_divergence_px.map_or_else(not_measured, |px| format!("{px:.5}")));
         }
         line
     }));

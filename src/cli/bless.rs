@@ -15,8 +15,8 @@ use super::{
 use crate::{
     effects::Effect,
     measure::compare::pictures,
-    preset::{self, Look},
-    session::{Output, Session, Test},
+    preset::{Output, Preset, Test},
+    preset_file::{self, PresetFile},
 };
 
 pub fn run(common: &Common, args: &Bless, streams: &mut Streams) -> Result<Exit, Fault> {
@@ -24,22 +24,26 @@ pub fn run(common: &Common, args: &Bless, streams: &mut Streams) -> Result<Exit,
         return Err(Fault::usage("goldens come from the oracle alone; bless takes no --adapter"));
     }
     if !(common.set.is_empty() && common.unset.is_empty()) {
-        return Err(Fault::usage("a golden is of the look as it stands in its file; bless takes no --set"));
+        return Err(Fault::usage("a golden is of the preset as it stands in its file; bless takes no --set"));
     }
     let folder = common.presets_dir().unwrap_or_else(|| PathBuf::from("presets"));
-    let looks = looks(args, &folder, streams)?;
-    let bar = streams.progress(looks.len() as u64);
+    let preset_files = preset_files(args, &folder, streams)?;
+    let bar = streams.progress(preset_files.len() as u64);
     let (mut results, mut changed) = (Vec::new(), false);
-    for (look, is_new) in looks {
-        bar.set_message(look.id.clone());
-        let golden = golden::draw(&look, &*scene_of(&look)?)?;
-        let change = change(&golden, &args.snapshots, &look.id);
+    for (preset_file, is_new) in preset_files {
+        bar.set_message(preset_file.id.clone());
+        let golden = golden::draw(&preset_file, &*scene_of(&preset_file)?)?;
+        let change = change(&golden, &args.snapshots, &preset_file.id);
         changed |= is_new || change["changes"] == json!(true);
         if !streams.json {
-            streams.text(&format!("{}{}\n", line(&look.id, &change), if is_new { " (its first look is made, too)" } else { "" }))?;
+            streams.text(&format!(
+                "{}{}\n",
+                line(&preset_file.id, &change),
+                if is_new { " (its first preset is made, too)" } else { "" }
+            ))?;
         }
         if !args.dry_run {
-            store(look, is_new, &golden, args, &folder, change["changes"] == json!(true))?;
+            store(preset_file, is_new, &golden, args, &folder, change["changes"] == json!(true))?;
         }
         results.push(change);
         bar.inc(1);
@@ -51,10 +55,10 @@ pub fn run(common: &Common, args: &Bless, streams: &mut Streams) -> Result<Exit,
     Ok(Exit::failed_if(args.dry_run && changed))
 }
 
-/// The looks to bless, each with whether it is yet to be made.
-fn looks(args: &Bless, folder: &Path, streams: &Streams) -> Result<Vec<(Look, bool)>, Fault> {
+/// The presets to bless, each with whether it is yet to be made.
+fn preset_files(args: &Bless, folder: &Path, streams: &Streams) -> Result<Vec<(PresetFile, bool)>, Fault> {
     if !args.all && args.names.is_empty() {
-        return Err(Fault::usage("name looks or effects, or say --all"));
+        return Err(Fault::usage("name presets or effects, or say --all"));
     }
     if !args.all {
         return args.names.iter().map(|name| named(name, folder)).collect();
@@ -63,45 +67,45 @@ fn looks(args: &Bless, folder: &Path, streams: &Streams) -> Result<Vec<(Look, bo
     let mut files: Vec<PathBuf> =
         entries.flatten().map(|entry| entry.path()).filter(|path| path.extension().is_some_and(|e| e == "toml")).collect();
     files.sort();
-    let looks = files.iter().map(|file| Ok(preset::load(file)?.strict()?)).collect::<Result<Vec<_>, Fault>>()?;
-    let (tested, bare): (Vec<_>, Vec<_>) = looks.into_iter().partition(|look| look.session.test.is_some());
-    bare.iter().for_each(|look| streams.note(&format!("{}: has no [test] table, so no golden", look.id)));
-    Ok(tested.into_iter().map(|look| (look, false)).collect())
+    let preset_files = files.iter().map(|file| Ok(preset_file::load(file)?.strict()?)).collect::<Result<Vec<_>, Fault>>()?;
+    let (tested, bare): (Vec<_>, Vec<_>) = preset_files.into_iter().partition(|preset_file| preset_file.preset.test.is_some());
+    bare.iter().for_each(|preset_file| streams.note(&format!("{}: has no [test] table, so no golden", preset_file.id)));
+    Ok(tested.into_iter().map(|preset_file| (preset_file, false)).collect())
 }
 
-fn named(name: &str, folder: &Path) -> Result<(Look, bool), Fault> {
+fn named(name: &str, folder: &Path) -> Result<(PresetFile, bool), Fault> {
     let file = folder.join(format!("{name}.toml"));
     if file.exists() {
-        return Ok((preset::load(&file)?.strict()?, false));
+        return Ok((preset_file::load(&file)?.strict()?, false));
     }
     if let Some(effect) = Effect::find(name) {
-        return Ok((first_look(effect), true));
+        return Ok((first_preset(effect), true));
     }
     Err(Fault::usage(format!("{} is not there, and {name} is no effect", file.display())))
 }
 
-/// The canonical look of a new effect: on the teapot, with its defaults.
-fn first_look(effect: &'static Effect) -> Look {
-    let mut session = Session {
+/// The canonical preset of a new effect: on the teapot, with its defaults.
+fn first_preset(effect: &'static Effect) -> PresetFile {
+    let mut preset = Preset {
         name: effect.name.replace('_', " "),
         about: effect.about.into(),
         tags: vec!["canonical".into()],
         output: Output { size: golden::MAX_SIZE, ..Output::default() },
         test: Some(Test::default()),
-        ..Session::default()
+        ..Preset::default()
     };
-    session.stack.enable(effect);
-    Look::new(effect.name, session)
+    preset.stack.enable(effect);
+    PresetFile::new(effect.name, preset)
 }
 
-fn store(mut look: Look, is_new: bool, golden: &Golden, args: &Bless, folder: &Path, changes: bool) -> Result<(), Fault> {
+fn store(mut preset_file: PresetFile, is_new: bool, golden: &Golden, args: &Bless, folder: &Path, changes: bool) -> Result<(), Fault> {
     if is_new {
-        let path = folder.join(format!("{}.toml", look.id));
-        preset::save(&mut look, &path)?;
+        let path = folder.join(format!("{}.toml", preset_file.id));
+        preset_file::save(&mut preset_file, &path)?;
     }
     if changes {
         std::fs::create_dir_all(&args.snapshots)?;
-        let [png, sidecar] = golden::paths(&args.snapshots, &look.id);
+        let [png, sidecar] = golden::paths(&args.snapshots, &preset_file.id);
         files::write(&png, &golden.png)?;
         files::write(&sidecar, golden.sidecar.as_bytes())?;
     }
@@ -115,14 +119,14 @@ fn change(golden: &Golden, snapshots: &Path, id: &str) -> Value {
     let old: Value = serde_json::from_str(&old_sidecar).unwrap_or_default();
     let size = [golden.frame.width, golden.frame.height];
     // A golden that cannot be read counts as absent.
-    let old_picture = preset::png_pixels(&png).ok();
+    let old_picture = preset_file::png_pixels(&png).ok();
     let delta = old_picture.as_ref().filter(|(_, old_size)| *old_size == size).map(|(color, _)| pictures(color, &golden.frame.color, 0));
-    let same = delta.as_ref().is_some_and(|delta| delta.pixels_beyond == 0) && old_sidecar == golden.sidecar;
+    let same = delta.as_ref().is_some_and(|delta| delta.pixels_over_tolerance == 0) && old_sidecar == golden.sidecar;
     json!({
-        "look": id, "changes": !same, "is_new": old_picture.is_none(),
+        "preset_file": id, "changes": !same, "is_new": old_picture.is_none(),
         "pixels": golden.frame.color.len(),
-        "pixels_changed": delta.as_ref().map(|delta| delta.pixels_beyond),
-        "max_colour_delta": delta.as_ref().map(|delta| delta.max_delta),
+        "pixels_changed": delta.as_ref().map(|delta| delta.pixels_over_tolerance),
+        "max_color_delta": delta.as_ref().map(|delta| delta.max_delta),
         "covered_old": old["covered"], "covered_new": golden.frame.covered(),
         "bytes": golden.png.len(),
     })
@@ -136,7 +140,7 @@ fn line(id: &str, change: &Value) -> String {
         return format!("{id}: new, {} of {} pixels covered, {} bytes", change["covered_new"], change["pixels"], change["bytes"]);
     }
     let [old, new] = [&change["covered_old"], &change["covered_new"]];
-    match (&change["pixels_changed"], &change["max_colour_delta"]) {
+    match (&change["pixels_changed"], &change["max_color_delta"]) {
         (Value::Null, _) => format!("{id}: another size; covered {old} -> {new}"),
         (pixels, delta) => {
             format!("{id}: {pixels} of {} pixels change, at most by {delta} of 255; covered {old} -> {new}", change["pixels"])

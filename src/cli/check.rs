@@ -15,17 +15,17 @@ use super::{
 };
 use crate::{
     measure::compare::{PictureDelta, pictures},
-    preset::{self, Look, PresetError},
+    preset_file::{self, PresetError, PresetFile},
 };
 
-/// What became of one look.
+/// What became of one preset.
 pub struct Finding {
-    pub look: String,
+    pub preset_file: String,
     pub exit: Exit,
     /// One sentence each; empty when all is well.
     pub faults: Vec<String>,
     pub warnings: Vec<String>,
-    pub place: Option<preset::Place>,
+    pub place: Option<preset_file::Place>,
     pub drawn: Option<Drawn>,
 }
 
@@ -39,7 +39,7 @@ pub struct Drawn {
 
 pub fn run(common: &Common, args: &Check, streams: &mut Streams) -> Result<Exit, Fault> {
     let files = if args.files.is_empty() {
-        preset::gallery(common.presets_dir().as_deref()).iter().map(gallery_name).collect()
+        preset_file::gallery(common.presets_dir().as_deref()).iter().map(gallery_name).collect()
     } else {
         args.files.clone()
     };
@@ -69,11 +69,11 @@ pub fn run(common: &Common, args: &Check, streams: &mut Streams) -> Result<Exit,
 
 fn check(common: &Common, args: &Check, file: &str, painter: Option<&mut Painter>) -> Finding {
     let id = Path::new(file).file_stem().map_or_else(|| file.to_owned(), |stem| stem.to_string_lossy().into_owned());
-    let mut finding = Finding { look: id, exit: Exit::Done, faults: Vec::new(), warnings: Vec::new(), place: None, drawn: None };
-    let outcome = open(common, file).and_then(|look| {
-        finding.warnings.clone_from(&look.warnings);
-        let scene = scene_of(&look)?;
-        painter.map(|painter| drawn(args, &look, &scene, painter)).transpose()
+    let mut finding = Finding { preset_file: id, exit: Exit::Done, faults: Vec::new(), warnings: Vec::new(), place: None, drawn: None };
+    let outcome = open(common, file).and_then(|preset_file| {
+        finding.warnings.clone_from(&preset_file.warnings);
+        let scene = scene_of(&preset_file)?;
+        painter.map(|painter| drawn(args, &preset_file, &scene, painter)).transpose()
     });
     match outcome {
         Ok(Some((drawn, faults))) => {
@@ -91,26 +91,31 @@ fn check(common: &Common, args: &Check, file: &str, painter: Option<&mut Painter
 
 type Comparison = (Option<Drawn>, Vec<String>);
 
-fn drawn(args: &Check, look: &Look, scene: &std::sync::Arc<crate::scene::Scene>, painter: &mut Painter) -> Result<Comparison, Fault> {
-    let Some(test) = &look.session.test else { return Ok((None, Vec::new())) };
-    let frame = painter.frame(&look.session, scene)?;
+fn drawn(
+    args: &Check,
+    preset_file: &PresetFile,
+    scene: &std::sync::Arc<crate::scene::Scene>,
+    painter: &mut Painter,
+) -> Result<Comparison, Fault> {
+    let Some(test) = &preset_file.preset.test else { return Ok((None, Vec::new())) };
+    let frame = painter.frame(&preset_file.preset, scene)?;
     let size = [frame.width, frame.height];
-    let [png, _] = golden::paths(&args.snapshots, &look.id);
+    let [png, _] = golden::paths(&args.snapshots, &preset_file.id);
     if !png.exists() {
-        return Ok((None, vec![format!("{} is missing; rasterlab bless {} draws it", png.display(), look.id)]));
+        return Ok((None, vec![format!("{} is missing; rasterlab bless {} draws it", png.display(), preset_file.id)]));
     }
-    let (expected, golden_size) = preset::png_pixels(&png)?;
+    let (expected, golden_size) = preset_file::png_pixels(&png)?;
     if golden_size != size {
-        return Ok((None, vec![format!("{} has another size than the look", png.display())]));
+        return Ok((None, vec![format!("{} has another size than the preset", png.display())]));
     }
     let delta = pictures(&expected, &frame.color, test.max_channel);
     let mut faults = Vec::new();
-    // A wrong owner is a wrong pixel.
-    let allowed = u64::from(test.max_pixels) + u64::from(test.max_wrong_owner);
-    if delta.pixels_beyond > allowed {
+    // A wrong triangle id is a wrong pixel.
+    let allowed = u64::from(test.max_pixels) + u64::from(test.max_wrong_triangles);
+    if delta.pixels_over_tolerance > allowed {
         faults.push(format!(
             "{} pixels differ from the golden by more than {} of 255, the worst by {}; {allowed} are allowed",
-            delta.pixels_beyond, test.max_channel, delta.max_delta
+            delta.pixels_over_tolerance, test.max_channel, delta.max_delta
         ));
     }
     Ok((Some(Drawn { size, expected, actual: frame.color, delta }), faults))
@@ -118,9 +123,9 @@ fn drawn(args: &Check, look: &Look, scene: &std::sync::Arc<crate::scene::Scene>,
 
 fn text(finding: &Finding) -> String {
     match (&finding.faults[..], &finding.drawn) {
-        ([], Some(drawn)) => format!("ok    {}: largest difference {} of 255\n", finding.look, drawn.delta.max_delta),
-        ([], None) => format!("ok    {}\n", finding.look),
-        (faults, _) => faults.iter().map(|fault| format!("FAIL  {}: {fault}\n", finding.look)).collect(),
+        ([], Some(drawn)) => format!("ok    {}: largest difference {} of 255\n", finding.preset_file, drawn.delta.max_delta),
+        ([], None) => format!("ok    {}\n", finding.preset_file),
+        (faults, _) => faults.iter().map(|fault| format!("FAIL  {}: {fault}\n", finding.preset_file)).collect(),
     }
 }
 
@@ -131,9 +136,9 @@ fn json_finding(finding: &Finding) -> Value {
         json!({ "code": finding.exit as u8, "message": message, "file": file, "line": place.line })
     };
     json!({
-        "look": finding.look, "ok": finding.faults.is_empty(), "warnings": finding.warnings,
+        "preset_file": finding.preset_file, "ok": finding.faults.is_empty(), "warnings": finding.warnings,
         "errors": finding.faults.iter().map(error).collect::<Vec<_>>(),
-        "max_colour_delta": finding.drawn.as_ref().map(|drawn| drawn.delta.max_delta),
-        "pixels_beyond": finding.drawn.as_ref().map(|drawn| drawn.delta.pixels_beyond),
+        "max_color_delta": finding.drawn.as_ref().map(|drawn| drawn.delta.max_delta),
+        "pixels_over_tolerance": finding.drawn.as_ref().map(|drawn| drawn.delta.pixels_over_tolerance),
     })
 }

@@ -1,4 +1,4 @@
-//! `explain`: which passes and buffers a look needs on this adapter, which it does without, and why.
+//! `explain`: which passes and buffers a preset needs on this adapter, which it does without, and why.
 
 use serde_json::{Value, json};
 
@@ -16,14 +16,14 @@ use crate::{
     measure::compare,
     oracle,
     plan::{Tolerance, predict::Prediction},
-    scene::{Scene, camera::View, sizes::Classes},
+    scene::{Scene, camera::View, sizes::SizeClasses},
 };
 
 pub fn run(common: &Common, args: &Explain, streams: &mut Streams) -> Result<Exit, Fault> {
-    let mut look = open(common, &args.look)?;
-    look.session.output.size = args.size.unwrap_or(look.session.output.size);
-    let scene = scene_of(&look)?;
-    // Without an adapter the plan cannot be made, but the look can still be told.
+    let mut preset_file = open(common, &args.preset_file)?;
+    preset_file.preset.output.size = args.size.unwrap_or(preset_file.preset.output.size);
+    let scene = scene_of(&preset_file)?;
+    // Without an adapter the plan cannot be made, but the preset can still be told.
     let painter = match Painter::open(common, streams) {
         Ok(painter) => Some(painter),
         Err(fault) if common.adapter_name().is_none() && fault.exit == Exit::NoAdapter => {
@@ -36,12 +36,12 @@ pub fn run(common: &Common, args: &Explain, streams: &mut Streams) -> Result<Exi
     let (adapter, plan) = match painter {
         Some(Painter::Gpu(mut renderer, gpu)) => {
             renderer.set_scene(&scene)?;
-            let session = &look.session;
-            let (view, stack) = (session.view(&scene, session.output.size), session.posed_stack());
-            let capture = renderer.capture(&view, &stack, &session.accuracy)?;
+            let preset = &preset_file.preset;
+            let (view, stack) = (preset.view(&scene, preset.output.size), preset.evaluated_stack());
+            let capture = renderer.capture(&view, &stack, &preset.accuracy)?;
             let factor = capture.geometry.scale;
-            flight = Flight::of(&scene, &view, &stack, &capture)?;
-            // Once chaos has parted them, two pictures of particles tell nothing of the rungs.
+            flight = ParticleState::of(&scene, &view, &stack, &capture)?;
+            // Once chaos has parted them, two pictures of particles tell nothing of the options.
             if flight.as_ref().is_none_or(|flight| flight.beyond_a_pixel == 0) {
                 check = checked(&scene, &view.scaled(factor), &stack.scaled(factor), &capture.frame, &renderer.explain())?;
             }
@@ -52,19 +52,19 @@ pub fn run(common: &Common, args: &Explain, streams: &mut Streams) -> Result<Exi
     };
     if streams.json {
         let result = json!({
-            "look": look.id, "scene": scene_json(&scene), "size": look.session.output.size,
-            "effects": effects_json(&look.session.stack), "plan": plan, "check": check, "flight": flight,
+            "preset_file": preset_file.id, "scene": scene_json(&scene), "size": preset_file.preset.output.size,
+            "effects": effects_json(&preset_file.preset.stack), "plan": plan, "check": check, "flight": flight,
         });
         streams.object("explain", adapter, vec![result])?;
     } else {
-        streams.text(&text(&look.id, &scene, &look.session.stack, plan.as_ref(), check.as_ref(), flight.as_ref()))?;
+        streams.text(&text(&preset_file.id, &scene, &preset_file.preset.stack, plan.as_ref(), check.as_ref(), flight.as_ref()))?;
     }
     Ok(Exit::failed_if(check.is_some_and(|check| !check.is_kept)))
 }
 
 /// Particles held against their true flight.
 #[derive(serde::Serialize)]
-struct Flight {
+struct ParticleState {
     particles: u64,
     /// Steps since the beginning.
     steps: u32,
@@ -73,20 +73,20 @@ struct Flight {
     mean_m: f64,
 }
 
-impl Flight {
+impl ParticleState {
     /// None without particles.
     fn of(scene: &Scene, view: &View, stack: &Stack, capture: &Capture) -> Result<Option<Self>, Fault> {
-        if capture.geometry.swarm.is_none() {
+        if capture.geometry.particle_readback.is_none() {
             return Ok(None);
         }
         let (layers, previous) = (capture.layers.as_deref(), capture.previous.as_deref());
         let a = oracle::judge_after(scene, view, stack, &capture.frame, &capture.geometry, layers, previous)?.accuracy;
         Ok(Some(Self {
             particles: a.particles,
-            steps: view.flow.as_ref().map_or(0, |flow| flow.frame),
-            beyond_a_pixel: a.particles_astray,
-            max_px: a.max_astray_px,
-            mean_m: a.mean_astray_m,
+            steps: view.particle_timeline.as_ref().map_or(0, |particle_timeline| particle_timeline.frame),
+            beyond_a_pixel: a.particles_diverged,
+            max_px: a.max_divergence_px,
+            mean_m: a.mean_divergence_m,
         }))
     }
 }
@@ -96,12 +96,12 @@ impl Flight {
 struct Check {
     predicted: Prediction,
     tolerance: Tolerance,
-    /// Pixels with another owner than in the oracle's picture, per million, without those that only the snap explains.
+    /// Pixels with another triangle id than in the oracle's picture, per million, without those that only the snap explains.
     wrong_ppm: f64,
     /// The picture stays within the tolerance.
     is_kept: bool,
     /// And within what was predicted.
-    is_foreseen: bool,
+    prediction_holds: bool,
 }
 
 /// Measures what the plan predicted; none for a picture without pixels or one that chance makes.
@@ -110,9 +110,9 @@ fn checked(scene: &Scene, view: &View, stack: &Stack, frame: &Frame, plan: &Expl
     if view.pixels() == 0 || !stack.is_repeatable() {
         return Ok(None);
     }
-    let truth = oracle::render(scene, view, stack)?;
-    let wrong_ppm = compare::owners(&frame.owner, &truth.owner).different as f64 * 1e6 / view.pixels() as f64;
-    // Corners snap one unit apart where f32 and f64 round differently: that much no rung promises.
+    let reference = oracle::render(scene, view, stack)?;
+    let wrong_ppm = compare::triangle_ids(&frame.triangle_id, &reference.triangle_id).different as f64 * 1e6 / view.pixels() as f64;
+    // Corners snap one unit apart where f32 and f64 round differently: that much no option promises.
     let snap_ppm = SNAP_PPM.max(4e6 / view.pixels() as f64);
     let is_within = |limit: f64| wrong_ppm <= limit + snap_ppm;
     Ok(Some(Check {
@@ -120,11 +120,11 @@ fn checked(scene: &Scene, view: &View, stack: &Stack, frame: &Frame, plan: &Expl
         tolerance,
         wrong_ppm,
         is_kept: is_within(tolerance.wrong_ppm.max(predicted.wrong_ppm)),
-        is_foreseen: is_within(predicted.wrong_ppm),
+        prediction_holds: is_within(predicted.wrong_ppm),
     }))
 }
 
-/// Pixels per million whose owner the last bit of a corner's place may decide.
+/// Pixels per million whose triangle id the last bit of a corner's place may decide.
 const SNAP_PPM: f64 = 100.0;
 
 /// Lowest and highest corner of the scene's box; none when it is empty.
@@ -144,7 +144,14 @@ fn effects_json(stack: &Stack) -> Vec<Value> {
     stack.0.iter().map(|enabled| json!({ "effect": enabled.effect.name, "hook": enabled.effect.hooks.names() })).collect()
 }
 
-fn text(id: &str, scene: &Scene, stack: &Stack, plan: Option<&Explanation>, check: Option<&Check>, flight: Option<&Flight>) -> String {
+fn text(
+    id: &str,
+    scene: &Scene,
+    stack: &Stack,
+    plan: Option<&Explanation>,
+    check: Option<&Check>,
+    flight: Option<&ParticleState>,
+) -> String {
     let effects: Vec<_> = stack.0.iter().map(|enabled| format!("{} ({})", enabled.effect.name, enabled.effect.hooks.names())).collect();
     let mut text = format!(
         "look     {id}\nscene    {}: {} triangles, {} vertices, {} instances\nbox      {}\neffects  {}\n",
@@ -164,20 +171,20 @@ fn text(id: &str, scene: &Scene, stack: &Stack, plan: Option<&Explanation>, chec
     let notes = |notes: &[crate::gpu::Note]| notes.iter().map(|n| vec![n.name.clone(), String::new(), n.why.clone()]).collect();
     let buffers: Vec<_> = plan.buffers.iter().map(|b| vec![b.name.clone(), b.bytes.to_string(), b.why.clone()]).collect();
     let total: u64 = plan.buffers.iter().map(|b| b.bytes).sum();
-    if let Some(Flight { particles, steps, beyond_a_pixel, max_px, mean_m }) = flight {
+    if let Some(ParticleState { particles, steps, beyond_a_pixel, max_px, mean_m }) = flight {
         text += &format!(
             "flight   {particles} particles after {steps} steps: {beyond_a_pixel} beyond a pixel from their true flight, at most {max_px:.5} px, \
              on average {mean_m:.1e} m\n"
         );
     }
     if let Some(check) = check {
-        let verdict = match (check.is_kept, check.is_foreseen) {
+        let verdict = match (check.is_kept, check.prediction_holds) {
             (true, true) => "as foreseen",
             (true, false) => "more than predicted",
             (false, _) => "BEYOND THE TOLERANCE",
         };
         text += &format!(
-            "error    predicted at most {:.0} ppm of the owners, measured {:.0}, allowed {:.0}: {verdict}\n",
+            "error    predicted at most {:.0} ppm of the triangle ids, measured {:.0}, allowed {:.0}: {verdict}\n",
             check.predicted.wrong_ppm, check.wrong_ppm, check.tolerance.wrong_ppm
         );
     }
@@ -192,21 +199,20 @@ fn text(id: &str, scene: &Scene, stack: &Stack, plan: Option<&Explanation>, chec
 /// Triangles by their size, a bar for every power of two.
 fn chart(sizes: &SizesNote) -> String {
     const WIDEST: f64 = 40.0;
-    let SizesNote { triangles, looked_at, seen, cut, .. } = sizes;
-    let mut text =
-        format!("\nTRIANGLES BY SIZE  {seen} seen of {looked_at} looked at, of {triangles}; {cut} reach before the near plane\n");
+    let SizesNote { triangles, sampled, seen, cut, .. } = sizes;
+    let mut text = format!("\nTRIANGLES BY SIZE  {seen} seen of {sampled} looked at, of {triangles}; {cut} reach before the near plane\n");
     let most = sizes.bins.iter().map(|(_, count)| *count).max().unwrap_or(0).max(1);
     for (up_to, count) in &sizes.bins {
         let up_to = if *up_to < 1.0 { format!("1/{}", 1.0 / up_to) } else { up_to.to_string() };
         let bar = "#".repeat((WIDEST * f64::from(*count) / f64::from(most)).ceil() as usize);
         text += &format!("  up to {up_to:>6} px  {:>5.1} %  {bar}\n", 100.0 * f64::from(*count) / f64::from((*seen).max(1)));
     }
-    if let Some(Classes { small, medium, large, slack }) = sizes.predicted {
-        text += &format!("  predicted {small:.0} small, {medium:.0} medium, {large:.0} large, each give or take {slack:.0}");
+    if let Some(SizeClasses { small, medium, large, error_bound }) = sizes.predicted {
+        text += &format!("  predicted {small:.0} small, {medium:.0} medium, {large:.0} large, each give or take {error_bound:.0}");
         if let Some([medium, large]) = sizes.counted {
             text += &format!("; the queues counted {medium} medium, {large} large");
         }
-        text += match sizes.is_foreseen {
+        text += match sizes.prediction_holds {
             Some(true) => ": as foreseen\n",
             Some(false) => ": NOT AS FORESEEN\n",
             None => "\n",

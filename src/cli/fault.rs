@@ -5,7 +5,7 @@ use std::process::ExitCode;
 use crate::{
     effects::Conflict,
     gpu::{RenderError, device::OpenError},
-    preset::{PresetError, SceneError},
+    preset_file::{PresetError, SceneError},
     scene::draw::DrawError,
 };
 

@@ -6,7 +6,7 @@ use std::{
 };
 
 use super::fault::Fault;
-use crate::preset;
+use crate::preset_file;
 
 /// Longest text taken from stdin, bytes.
 const MAX_STDIN: u64 = 1 << 20;
@@ -27,9 +27,9 @@ pub fn stdin_text() -> Result<String, Fault> {
     let mut bytes = Vec::new();
     std::io::stdin().lock().take(MAX_STDIN + 1).read_to_end(&mut bytes)?;
     if bytes.len() as u64 > MAX_STDIN {
-        return Err(Fault::usage("stdin: a look is at most 1 MiB"));
+        return Err(Fault::usage("stdin: a preset is at most 1 MiB"));
     }
-    String::from_utf8(bytes).map_err(|_| Fault::usage("stdin: a look is UTF-8 text"))
+    String::from_utf8(bytes).map_err(|_| Fault::usage("stdin: a preset is UTF-8 text"))
 }
 
 /// The file that `template` means: the first free number for `{n}`, and otherwise a name that is free or may be overwritten.
@@ -58,25 +58,25 @@ pub fn frame_path(template: &str, names: &Names) -> Result<PathBuf, Fault> {
 
 /// Does the template name the frame?
 pub fn has_frame(template: &str) -> Result<bool, Fault> {
-    Ok(pieces(template)?.iter().any(|piece| matches!(piece, Piece::Place { name: "frame", .. })))
+    Ok(pieces(template)?.iter().any(|piece| matches!(piece, ClippedTriangle::Place { name: "frame", .. })))
 }
 
 /// Writes whole or not at all.
 pub fn write(path: &Path, bytes: &[u8]) -> Result<(), Fault> {
-    Ok(preset::write_atomically(path, bytes)?)
+    Ok(preset_file::write_atomically(path, bytes)?)
 }
 
 /// Does the template count by itself?
 pub fn has_number(template: &str) -> Result<bool, Fault> {
-    Ok(pieces(template)?.iter().any(|piece| matches!(piece, Piece::Place { name: "n", .. })))
+    Ok(pieces(template)?.iter().any(|piece| matches!(piece, ClippedTriangle::Place { name: "n", .. })))
 }
 
-/// Does the template name the look?
+/// Does the template name the preset?
 pub fn has_preset(template: &str) -> Result<bool, Fault> {
-    Ok(pieces(template)?.iter().any(|piece| matches!(piece, Piece::Place { name: "preset", .. })))
+    Ok(pieces(template)?.iter().any(|piece| matches!(piece, ClippedTriangle::Place { name: "preset", .. })))
 }
 
-enum Piece<'a> {
+enum ClippedTriangle<'a> {
     Text(String),
     Place { name: &'a str, width: usize },
 }
@@ -86,14 +86,14 @@ fn expand(template: &str, names: &Names, n: usize) -> Result<String, Fault> {
     if names.frame.is_none() && has_frame(template)? {
         return Err(Fault::usage(format!("{template}: only sequence has frames, and so {{frame}}")));
     }
-    let text = |piece: Piece<'_>| match piece {
-        Piece::Text(text) => text,
-        Piece::Place { name: "frame", width } => format!("{:0width$}", names.frame.unwrap_or_default()),
-        Piece::Place { name: "preset", .. } => safe(&names.preset),
-        Piece::Place { name: "effect", .. } => safe(&names.effect),
-        Piece::Place { name: "adapter", .. } => safe(&names.adapter),
-        Piece::Place { name: "tier", .. } => safe(&names.tier),
-        Piece::Place { width, .. } => format!("{n:0width$}"),
+    let text = |piece: ClippedTriangle<'_>| match piece {
+        ClippedTriangle::Text(text) => text,
+        ClippedTriangle::Place { name: "frame", width } => format!("{:0width$}", names.frame.unwrap_or_default()),
+        ClippedTriangle::Place { name: "preset", .. } => safe(&names.preset),
+        ClippedTriangle::Place { name: "effect", .. } => safe(&names.effect),
+        ClippedTriangle::Place { name: "adapter", .. } => safe(&names.adapter),
+        ClippedTriangle::Place { name: "tier", .. } => safe(&names.tier),
+        ClippedTriangle::Place { width, .. } => format!("{n:0width$}"),
     };
     Ok(pieces.into_iter().map(text).collect())
 }
@@ -104,13 +104,13 @@ fn safe(name: &str) -> String {
     kept.trim_matches(['-', '.']).to_owned()
 }
 
-fn pieces(template: &str) -> Result<Vec<Piece<'_>>, Fault> {
+fn pieces(template: &str) -> Result<Vec<ClippedTriangle<'_>>, Fault> {
     let (mut pieces, mut rest) = (Vec::new(), template);
     while let Some(at) = rest.find(['{', '}']) {
         let (before, from) = rest.split_at(at);
-        pieces.push(Piece::Text(before.to_owned()));
+        pieces.push(ClippedTriangle::Text(before.to_owned()));
         if from.starts_with("{{") || from.starts_with("}}") {
-            pieces.push(Piece::Text(from[..1].to_owned()));
+            pieces.push(ClippedTriangle::Text(from[..1].to_owned()));
             rest = &from[2..];
             continue;
         }
@@ -125,10 +125,10 @@ fn pieces(template: &str) -> Result<Vec<Piece<'_>>, Fault> {
         if !["preset", "effect", "adapter", "tier", "n", "frame"].contains(&name) || (width > 0 && !["n", "frame"].contains(&name)) {
             return Err(wrong());
         }
-        pieces.push(Piece::Place { name, width });
+        pieces.push(ClippedTriangle::Place { name, width });
         rest = after;
     }
-    pieces.push(Piece::Text(rest.to_owned()));
+    pieces.push(ClippedTriangle::Text(rest.to_owned()));
     Ok(pieces)
 }
 

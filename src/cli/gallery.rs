@@ -8,7 +8,7 @@ use super::{
 };
 use crate::{
     effects::{EFFECTS, Effect},
-    preset::BUILTIN_DIR,
+    preset_file::BUILTIN_DIR,
 };
 
 /// Between these lines the table stands.
@@ -38,12 +38,12 @@ pub fn replaced(text: &str, table: &str) -> Option<String> {
     Some(format!("{}\n{table}{}", &text[..begin], &text[end..]))
 }
 
-/// Three effects a row: picture, name, what it does, hooks, and its other looks.
+/// Three effects a row: picture, name, what it does, hooks, and its other presets.
 pub fn table() -> String {
-    let mut looks: Vec<String> =
+    let mut preset_files: Vec<String> =
         BUILTIN_DIR.files().filter_map(|file| Some(file.path().file_stem()?.to_string_lossy().into_owned())).collect();
-    looks.sort();
-    let cells: Vec<String> = EFFECTS.iter().map(|effect| cell(effect, &looks)).collect();
+    preset_files.sort();
+    let cells: Vec<String> = EFFECTS.iter().map(|effect| cell(effect, &preset_files)).collect();
     let mut text = String::from("<table>\n");
     for row in cells.chunks(3) {
         text.push_str(&format!("<tr>\n{}</tr>\n", row.concat()));
@@ -52,11 +52,11 @@ pub fn table() -> String {
     text
 }
 
-fn cell(effect: &Effect, looks: &[String]) -> String {
+fn cell(effect: &Effect, preset_files: &[String]) -> String {
     let name = effect.name;
     let is_other = |id: &str| id != name && id.starts_with(&format!("{name}-"));
     let others: Vec<String> =
-        looks.iter().filter(|id| is_other(id)).map(|id| format!("<a href=\"tests/snapshots/{id}.png\">{id}</a>")).collect();
+        preset_files.iter().filter(|id| is_other(id)).map(|id| format!("<a href=\"tests/snapshots/{id}.png\">{id}</a>")).collect();
     let others = if others.is_empty() { String::new() } else { format!("<br><sub>also {}</sub>", others.join(", ")) };
     format!(
         "<td valign=\"top\"><img src=\"tests/snapshots/{name}.png\" width=\"260\" alt=\"{name}\"><br><b>{name}</b> <sub>{}</sub><br>{}{others}</td>\n",

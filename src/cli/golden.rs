@@ -1,4 +1,4 @@
-//! Goldens: the oracle's stored picture of a look, and a sidecar that says what it was drawn from.
+//! Goldens: the oracle's stored picture of a preset, and a sidecar that says what it was drawn from.
 //!
 //! Only the oracle makes them; any adapter may be held against them.
 
@@ -10,9 +10,9 @@ use super::fault::Fault;
 use crate::{
     frame::Frame,
     oracle,
-    preset::{self, Look},
+    preset::{Clock, Preset},
+    preset_file::{self, PresetFile},
     scene::Scene,
-    session::{Clock, Session},
 };
 
 /// Largest golden, pixels.
@@ -20,7 +20,7 @@ pub const MAX_SIZE: [u32; 2] = [320, 240];
 /// Largest golden, bytes.
 pub const MAX_BYTES: usize = 64 << 10;
 
-/// A look drawn by the oracle, as it is stored.
+/// A preset drawn by the oracle, as it is stored.
 pub struct Golden {
     pub frame: Frame,
     pub png: Vec<u8>,
@@ -30,52 +30,52 @@ pub struct Golden {
 /// Draws the golden of `look`.
 ///
 /// # Errors
-/// A look without `[test]` has none; a golden is at most 320x240 pixels and 64 KiB.
-pub fn draw(look: &Look, scene: &Scene) -> Result<Golden, Fault> {
-    let session = &look.session;
-    let [width, height] = session.output.size;
-    if session.test.is_none() {
-        return Err(Fault::usage(format!("{}: a look without a [test] table has no golden", look.id)));
+/// A preset without `[test]` has none; a golden is at most 320x240 pixels and 64 KiB.
+pub fn draw(preset_file: &PresetFile, scene: &Scene) -> Result<Golden, Fault> {
+    let preset = &preset_file.preset;
+    let [width, height] = preset.output.size;
+    if preset.test.is_none() {
+        return Err(Fault::usage(format!("{}: a preset without a [test] table has no golden", preset_file.id)));
     }
     if width > MAX_SIZE[0] || height > MAX_SIZE[1] {
-        return Err(Fault::usage(format!("{}: output.size {width}x{height} is larger than a golden may be, 320x240", look.id)));
+        return Err(Fault::usage(format!("{}: output.size {width}x{height} is larger than a golden may be, 320x240", preset_file.id)));
     }
-    session.stack.check()?;
-    let moments = session.moments(scene, session.output.size);
-    let frame = oracle::render_shown(scene, &moments, session.accuracy.scale().factor())?;
-    let png = preset::png_bytes(&frame.color, session.output.size)?;
+    preset.stack.check()?;
+    let moments = preset.moments(scene, preset.output.size);
+    let frame = oracle::render_scaled(scene, &moments, preset.accuracy.scale().factor())?;
+    let png = preset_file::png_bytes(&frame.color, preset.output.size)?;
     if png.len() > MAX_BYTES {
-        return Err(Fault::usage(format!("{}: its picture takes {} bytes; a golden is at most {MAX_BYTES}", look.id, png.len())));
+        return Err(Fault::usage(format!("{}: its picture takes {} bytes; a golden is at most {MAX_BYTES}", preset_file.id, png.len())));
     }
-    let sidecar = format!("{:#}\n", sidecar(look, scene, &frame));
+    let sidecar = format!("{:#}\n", sidecar(preset_file, scene, &frame));
     Ok(Golden { frame, png, sidecar })
 }
 
-/// Where the picture and the sidecar of a look are kept.
+/// Where the picture and the sidecar of a preset are kept.
 pub fn paths(snapshots: &Path, id: &str) -> [PathBuf; 2] {
     [snapshots.join(format!("{id}.png")), snapshots.join(format!("{id}.json"))]
 }
 
-fn sidecar(look: &Look, scene: &Scene, frame: &Frame) -> Value {
+fn sidecar(preset_file: &PresetFile, scene: &Scene, frame: &Frame) -> Value {
     let words = |words: &[u32]| hex(Fnv::new().words(words));
     json!({
         "schema": 1,
-        "look": look.id,
-        "look_hash": hex(look_hash(&look.session)),
+        "preset_file": preset_file.id,
+        "preset_hash": hex(preset_hash(&preset_file.preset)),
         "scene_hash": hex(scene_hash(scene)),
         "oracle": env!("CARGO_PKG_VERSION"),
         "size": [frame.width, frame.height],
         "covered": frame.covered(),
         "counters": frame.counters,
-        "digests": { "owner": words(&frame.owner), "key": words(&frame.key) },
+        "digests": { "triangle_id": words(&frame.triangle_id), "key": words(&frame.key) },
     })
 }
 
 /// Hash of all that decides the picture: not of names, comments, budgets, or what happens at another time.
-pub fn look_hash(session: &Session) -> Fnv {
-    let clock = Clock { time_s: session.clock.time_s, ..Clock::default() };
-    let picture = Session { name: String::new(), about: String::new(), tags: Vec::new(), test: None, clock, ..session.posed() };
-    Fnv::new().bytes(preset::to_toml(&Look::new("", picture)).as_bytes())
+pub fn preset_hash(preset: &Preset) -> Fnv {
+    let clock = Clock { time_s: preset.clock.time_s, ..Clock::default() };
+    let picture = Preset { name: String::new(), about: String::new(), tags: Vec::new(), test: None, clock, ..preset.posed() };
+    Fnv::new().bytes(preset_file::to_toml(&PresetFile::new("", picture)).as_bytes())
 }
 
 /// Hash of a scene's bytes, accessors, materials and placements.
@@ -83,16 +83,16 @@ pub fn scene_hash(scene: &Scene) -> Fnv {
     let mut hash = Fnv::new().bytes(&scene.vertex_bytes).bytes(&scene.index_bytes);
     for primitive in &scene.primitives {
         let mut accessor = |a: &crate::scene::Accessor| {
-            let words = [a.offset, a.stride, a.component as u32, a.lanes, a.normalized.into(), a.count];
+            let words = [a.offset, a.stride, a.component as u32, a.components, a.normalized.into(), a.count];
             hash = hash.words(&words);
         };
         [Some(&primitive.positions), Some(&primitive.normals), primitive.colors.as_ref(), primitive.indices.as_ref()]
             .into_iter()
             .flatten()
             .for_each(&mut accessor);
-        let softness = &primitive.softness;
-        softness.influences.iter().for_each(|set| [set.joints, set.weights].iter().for_each(&mut accessor));
-        softness.shapes.iter().for_each(|shape| shape.positions.iter().chain(&shape.normals).for_each(&mut accessor));
+        let deformation = &primitive.deformation;
+        deformation.influences.iter().for_each(|set| [set.joints, set.weights].iter().for_each(&mut accessor));
+        deformation.morph_targets.iter().for_each(|shape| shape.positions.iter().chain(&shape.normals).for_each(&mut accessor));
         hash = hash.words(&[primitive.topology as u32, primitive.material as u32]);
     }
     for material in &scene.materials {
@@ -118,7 +118,7 @@ fn rig_hash(mut hash: Fnv, scene: &Scene) -> Fnv {
         hash = skin.joint_from_mesh.iter().fold(hash, matrix);
     }
     for sampler in &scene.rig.samplers {
-        hash = floats(floats(hash.words(&[sampler.interpolation as u32, sampler.lanes as u32]), &sampler.times), &sampler.values);
+        hash = floats(floats(hash.words(&[sampler.interpolation as u32, sampler.components as u32]), &sampler.times), &sampler.values);
     }
     for clip in &scene.rig.clips {
         hash = hash.bytes(clip.name.as_bytes());
@@ -168,11 +168,11 @@ mod tests {
 
     #[test]
     fn a_name_does_not_change_the_hash_and_a_colour_does() {
-        let plain = Session::default();
-        let named = Session { name: "x".into(), ..plain.clone() };
+        let plain = Preset::default();
+        let named = Preset { name: "x".into(), ..plain.clone() };
         let mut tinted = plain.clone();
         tinted.output.background[0] += 0.001;
-        assert_eq!(look_hash(&plain), look_hash(&named));
-        assert_ne!(look_hash(&plain), look_hash(&tinted));
+        assert_eq!(preset_hash(&plain), preset_hash(&named));
+        assert_ne!(preset_hash(&plain), preset_hash(&tinted));
     }
 }

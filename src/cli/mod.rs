@@ -20,7 +20,7 @@ mod report;
 mod sequence;
 mod streams;
 mod stress;
-pub mod trade;
+pub mod sweep;
 mod verify;
 
 use std::io::{self, Write as _};
@@ -33,13 +33,13 @@ pub use args::{Cli, Command};
 pub use fault::{Exit, Fault};
 use streams::Streams;
 
-use crate::preset::{self, Look, PresetError};
+use crate::preset_file::{self, PresetError, PresetFile};
 
 /// Runs what was asked. Errors are for [`complain`].
 pub fn run(cli: &Cli) -> Result<Exit, Fault> {
     let Some(command) = &cli.command else { return window(cli) };
-    if let Some(look) = &cli.open {
-        return Err(Fault::usage(format!("{look:?} stands before a command; a look without a command opens the window")));
+    if let Some(preset_file) = &cli.open {
+        return Err(Fault::usage(format!("{preset_file:?} stands before a command; a preset without a command opens the window")));
     }
     let mut streams = Streams::new(cli.common.quiet, cli.common.json);
     let result = dispatch(&cli.common, command, &mut streams).and_then(|exit| streams.finish().map(|()| exit).map_err(Fault::from));
@@ -90,13 +90,13 @@ fn window(cli: &Cli) -> Result<Exit, Fault> {
     Ok(Exit::Done)
 }
 
-/// What is no look may be a command with a slip of the finger.
+/// What is no preset may be a command with a slip of the finger.
 #[cfg(feature = "gui")]
 fn perhaps_a_command(fault: Fault, what: &str) -> Fault {
     let names: Vec<String> = Cli::command().get_subcommands().map(|command| command.get_name().to_owned()).collect();
-    let hint = preset::form::did_you_mean(what, names.iter().map(String::as_str));
-    let is_unknown = matches!(fault.error.downcast_ref(), Some(PresetError::NoLook { .. }));
-    if hint.is_empty() || !is_unknown { fault } else { Fault::usage(format!("there is no look and no command {what:?}{hint}")) }
+    let hint = preset_file::form::did_you_mean(what, names.iter().map(String::as_str));
+    let is_unknown = matches!(fault.error.downcast_ref(), Some(PresetError::NoPreset { .. }));
+    if hint.is_empty() || !is_unknown { fault } else { Fault::usage(format!("there is no preset and no command {what:?}{hint}")) }
 }
 
 #[cfg(not(feature = "gui"))]
@@ -105,40 +105,40 @@ fn window(_: &Cli) -> Result<Exit, Fault> {
 }
 
 /// Opens what a person named and applies `--unset`, then `--set`, in that order.
-fn open(common: &Common, what: &str) -> Result<Look, Fault> {
-    let mut look = if what == "-" {
-        preset::parse_file(&files::stdin_text()?, "stdin", "stdin")?
+fn open(common: &Common, what: &str) -> Result<PresetFile, Fault> {
+    let mut preset_file = if what == "-" {
+        preset_file::parse_file(&files::stdin_text()?, "stdin", "stdin")?
     } else {
-        preset::open(what, common.presets_dir().as_deref())?
+        preset_file::open(what, common.presets_dir().as_deref())?
     };
     if common.strict {
-        look = look.strict()?;
+        preset_file = preset_file.strict()?;
     }
     for path in &common.unset {
-        preset::unset(&mut look, path)?;
+        preset_file::unset(&mut preset_file, path)?;
     }
     for set in &common.set {
         let (path, value) = set.split_once('=').unwrap_or((set, ""));
-        preset::set(&mut look, path.trim(), value)?;
+        preset_file::set(&mut preset_file, path.trim(), value)?;
     }
-    Ok(look)
+    Ok(preset_file)
 }
 
 /// Every gallery look that has a golden, or those that were named.
-fn looks(common: &Common, names: &[String], streams: &Streams) -> Result<Vec<Look>, Fault> {
-    let looks: Vec<Look> = if names.is_empty() {
-        let entries = preset::gallery(common.presets_dir().as_deref());
-        let looks = entries.iter().map(|entry| open(common, &gallery_name(entry))).collect::<Result<Vec<_>, _>>()?;
-        looks.into_iter().filter(|look| look.session.test.is_some()).collect()
+fn preset_files(common: &Common, names: &[String], streams: &Streams) -> Result<Vec<PresetFile>, Fault> {
+    let preset_files: Vec<PresetFile> = if names.is_empty() {
+        let entries = preset_file::gallery(common.presets_dir().as_deref());
+        let preset_files = entries.iter().map(|entry| open(common, &gallery_name(entry))).collect::<Result<Vec<_>, _>>()?;
+        preset_files.into_iter().filter(|preset_file| preset_file.preset.test.is_some()).collect()
     } else {
         names.iter().map(|name| open(common, name)).collect::<Result<_, _>>()?
     };
-    looks.iter().flat_map(|look| &look.warnings).for_each(|warning| streams.note(warning));
-    Ok(looks)
+    preset_files.iter().flat_map(|preset_file| &preset_file.warnings).for_each(|warning| streams.note(warning));
+    Ok(preset_files)
 }
 
-/// The path of a look on disk, so that a file wins over whatever else has its name.
-fn gallery_name(entry: &preset::GalleryEntry) -> String {
+/// The path of a preset on disk, so that a file wins over whatever else has its name.
+fn gallery_name(entry: &preset_file::GalleryEntry) -> String {
     entry.path.as_ref().map_or_else(|| entry.id.clone(), |path| path.to_string_lossy().into_owned())
 }
 

@@ -12,9 +12,9 @@ use crate::{
         device::{AdapterChoice, AdapterSummary, Caps},
     },
     oracle,
-    preset::{self, Look, Provenance},
+    preset::{Preset, Visibility},
+    preset_file::{self, PresetFile, Provenance},
     scene::{Scene, draw::draws},
-    session::{Session, Visibility},
 };
 
 /// Which painter was asked for.
@@ -95,47 +95,47 @@ impl Painter {
         }
     }
 
-    /// Visibility rungs this painter can draw `session` with: the pinned one, or all that the adapter has.
-    pub fn rungs(&self, session: &Session) -> Vec<Option<Visibility>> {
-        match (self, session.accuracy.pins.rung::<Visibility>()) {
+    /// Visibility options this painter can draw `session` with: the pinned one, or all that the adapter has.
+    pub fn options(&self, preset: &Preset) -> Vec<Option<Visibility>> {
+        match (self, preset.accuracy.pins.option::<Visibility>()) {
             (Self::Cpu, _) => vec![None],
             (_, Some(pinned)) => vec![Some(pinned)],
-            (Self::Gpu(_, gpu), None) => usable_rungs(&gpu.caps).into_iter().map(Some).collect(),
+            (Self::Gpu(_, gpu), None) => usable_options(&gpu.caps).into_iter().map(Some).collect(),
         }
     }
 
     /// The picture of `session`.
-    pub fn frame(&mut self, session: &Session, scene: &Arc<Scene>) -> Result<Frame, Fault> {
-        session.stack.check()?;
+    pub fn frame(&mut self, preset: &Preset, scene: &Arc<Scene>) -> Result<Frame, Fault> {
+        preset.stack.check()?;
         match self {
-            Self::Cpu => Ok(oracle::render_shown(scene, &session.moments(scene, session.output.size), session.accuracy.scale().factor())?),
-            Self::Gpu(..) => Ok(self.capture(session, scene)?.into_shown()),
+            Self::Cpu => Ok(oracle::render_scaled(scene, &preset.moments(scene, preset.output.size), preset.accuracy.scale().factor())?),
+            Self::Gpu(..) => Ok(self.capture(preset, scene)?.into_shown()),
         }
     }
 
     /// The picture with everything that a judge needs.
-    pub fn capture(&mut self, session: &Session, scene: &Arc<Scene>) -> Result<Capture, Fault> {
-        session.stack.check()?;
-        let moments = session.moments(scene, session.output.size);
+    pub fn capture(&mut self, preset: &Preset, scene: &Arc<Scene>) -> Result<Capture, Fault> {
+        preset.stack.check()?;
+        let moments = preset.moments(scene, preset.output.size);
         match self {
             Self::Cpu => {
-                let ((view, stack), before) = moments.split_last().expect("a look shows a moment");
-                let previous = if before.is_empty() { None } else { Some(oracle::render_last(scene, before)?.color) };
-                let frame = oracle::render_after(scene, view, stack, previous.as_deref())?;
+                let ((view, stack), before) = moments.split_last().expect("a preset shows a moment");
+                let previous = if before.is_empty() { None } else { Some(oracle::render_sequence(scene, before)?.color) };
+                let frame = oracle::render_next(scene, view, stack, previous.as_deref())?;
                 let geometry: Geometry = oracle::project_moved(scene, &draws(scene, view)?, view, stack);
                 Ok(Capture { frame, geometry, layers: None, previous, shown: None })
             }
             Self::Gpu(renderer, _) => {
                 renderer.set_scene(scene)?;
-                Ok(renderer.capture_last(&moments, &session.accuracy)?)
+                Ok(renderer.capture_last(&moments, &preset.accuracy)?)
             }
         }
     }
 }
 
-/// Rungs that an adapter of these capabilities has.
-pub fn usable_rungs(caps: &Caps) -> Vec<Visibility> {
-    Visibility::EXACT.into_iter().filter(|rung| rung.is_there(caps.int64_atomics)).collect()
+/// AccuracyOptions that an adapter of these capabilities has.
+pub fn usable_options(caps: &Caps) -> Vec<Visibility> {
+    Visibility::EXACT.into_iter().filter(|option| option.is_there(caps.int64_atomics)).collect()
 }
 
 pub fn describe(summary: &AdapterSummary, caps: &Caps) -> String {
@@ -150,7 +150,8 @@ pub fn adapter_json(summary: &AdapterSummary, caps: &Caps) -> Value {
     })
 }
 
-/// The scene of a look.
-pub fn scene_of(look: &Look) -> Result<Arc<Scene>, Fault> {
-    preset::load_scene(&look.session, look.path.as_deref()).map_err(|e| Fault::from(e).during(format!("look {}", look.id)))
+/// The scene of a preset.
+pub fn scene_of(preset_file: &PresetFile) -> Result<Arc<Scene>, Fault> {
+    preset_file::load_scene(&preset_file.preset, preset_file.path.as_deref())
+        .map_err(|e| Fault::from(e).during(format!("look {}", preset_file.id)))
 }

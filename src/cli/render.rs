@@ -1,4 +1,4 @@
-//! `render`: one picture of each look.
+//! `render`: one picture of each preset.
 
 use serde_json::json;
 
@@ -10,44 +10,46 @@ use super::{
     painter::{Painter, scene_of},
     streams::Streams,
 };
-use crate::preset::{self, Look};
+use crate::preset_file::{self, PresetFile};
 
 pub fn run(common: &Common, args: &Render, streams: &mut Streams) -> Result<Exit, Fault> {
     let to_stdout = args.output == "-";
-    if to_stdout && (streams.json || args.looks.len() > 1) {
+    if to_stdout && (streams.json || args.preset_files.len() > 1) {
         return Err(Fault::usage("-o - writes one PNG and nothing else to stdout; leave out --json and further looks"));
     }
-    if args.looks.len() > 1 && !(files::has_preset(&args.output)? || files::has_number(&args.output)?) {
-        return Err(Fault::usage(format!("{}: several looks need {{preset}} or {{n}} in the name", args.output)));
+    if args.preset_files.len() > 1 && !(files::has_preset(&args.output)? || files::has_number(&args.output)?) {
+        return Err(Fault::usage(format!("{}: several presets need {{preset}} or {{n}} in the name", args.output)));
     }
-    let looks = args.looks.iter().map(|what| look(common, args, what)).collect::<Result<Vec<_>, _>>()?;
-    looks.iter().flat_map(|look| &look.warnings).for_each(|warning| streams.note(warning));
+    let preset_files = args.preset_files.iter().map(|what| preset_file(common, args, what)).collect::<Result<Vec<_>, _>>()?;
+    preset_files.iter().flat_map(|preset_file| &preset_file.warnings).for_each(|warning| streams.note(warning));
     let mut painter = Painter::open(common, streams)?;
     if !to_stdout {
         // A name that is taken is better said before the work than after it.
-        looks.iter().try_for_each(|look| files::target(&args.output, &names(look, &painter), common.force).map(drop))?;
+        preset_files
+            .iter()
+            .try_for_each(|preset_file| files::target(&args.output, &names(preset_file, &painter), common.force).map(drop))?;
     }
-    let bar = streams.progress(looks.len() as u64);
+    let bar = streams.progress(preset_files.len() as u64);
     let mut results = Vec::new();
-    for look in &looks {
-        bar.set_message(look.id.clone());
-        let scene = scene_of(look)?;
+    for preset_file in &preset_files {
+        bar.set_message(preset_file.id.clone());
+        let scene = scene_of(preset_file)?;
         scene.notes.iter().for_each(|note| streams.note(note));
-        let frame = painter.frame(&look.session, &scene)?;
+        let frame = painter.frame(&preset_file.preset, &scene)?;
         let png = if args.bare {
-            preset::png_bytes(&frame.color, [frame.width, frame.height])?
+            preset_file::png_bytes(&frame.color, [frame.width, frame.height])?
         } else {
-            preset::png_with_look(&frame, look, &painter.provenance())?
+            preset_file::png_with_preset(&frame, preset_file, &painter.provenance())?
         };
         bar.inc(1);
         if to_stdout {
             streams.bytes(&png)?;
             continue;
         }
-        let path = files::target(&args.output, &names(look, &painter), common.force)?;
+        let path = files::target(&args.output, &names(preset_file, &painter), common.force)?;
         files::write(&path, &png)?;
         results.push(json!({
-            "look": look.id, "file": path.to_string_lossy(), "size": [frame.width, frame.height],
+            "preset_file": preset_file.id, "file": path.to_string_lossy(), "size": [frame.width, frame.height],
             "covered": frame.covered(), "counters": frame.counters,
         }));
         if !streams.json {
@@ -61,28 +63,28 @@ pub fn run(common: &Common, args: &Render, streams: &mut Streams) -> Result<Exit
     Ok(Exit::Done)
 }
 
-/// The look with `--size`, `--time` and `--tier`, which are short for `--set`.
-fn look(common: &Common, args: &Render, what: &str) -> Result<Look, Fault> {
-    let mut look = open(common, what)?;
+/// The preset with `--size`, `--time` and `--tier`, which are short for `--set`.
+fn preset_file(common: &Common, args: &Render, what: &str) -> Result<PresetFile, Fault> {
+    let mut preset_file = open(common, what)?;
     if let Some(size) = args.size {
-        look.session.output.size = size;
+        preset_file.preset.output.size = size;
     }
     if let Some(time) = args.time {
-        preset::set(&mut look, "clock.time_s", &format!("{time:?}"))?;
+        preset_file::set(&mut preset_file, "clock.time_s", &format!("{time:?}"))?;
     }
     if let Some(tier) = &args.tier {
-        preset::set(&mut look, "accuracy.tier", tier)?;
+        preset_file::set(&mut preset_file, "accuracy.tier", tier)?;
     }
-    Ok(look)
+    Ok(preset_file)
 }
 
-pub fn names(look: &Look, painter: &Painter) -> Names {
-    let effects: Vec<_> = look.session.stack.0.iter().map(|enabled| enabled.effect.name).collect();
+pub fn names(preset_file: &PresetFile, painter: &Painter) -> Names {
+    let effects: Vec<_> = preset_file.preset.stack.0.iter().map(|enabled| enabled.effect.name).collect();
     Names {
-        preset: look.id.clone(),
+        preset: preset_file.id.clone(),
         effect: if effects.is_empty() { "plain".into() } else { effects.join("+") },
         adapter: painter.name().into(),
-        tier: look.session.accuracy.tier.name().into(),
+        tier: preset_file.preset.accuracy.tier.name().into(),
         frame: None,
     }
 }

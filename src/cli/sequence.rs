@@ -1,4 +1,4 @@
-//! `sequence`: a moving look, frame by frame, from one process and one device.
+//! `sequence`: a moving preset, frame by frame, from one process and one device.
 //!
 //! Every frame carries a mark of all that decided it. A whole picture with the right mark is finished and is not drawn
 //! again, so an interrupted sequence goes on where it stopped, and machines that share a folder can each take a range.
@@ -16,7 +16,7 @@ use super::{
     args::{Common, Sequence},
     fault::{Exit, Fault},
     files::{self, Names},
-    golden::{Fnv, hex, look_hash, scene_hash},
+    golden::{Fnv, hex, preset_hash, scene_hash},
     open,
     painter::{Painter, scene_of},
     render,
@@ -24,9 +24,9 @@ use super::{
 };
 use crate::{
     frame::Frame,
-    preset::{self, Film, Look, PresetError, Reel, Standing},
+    preset::{Preset, SceneSource, animation::MAX_TIME_S},
+    preset_file::{self, Film, PresetError, PresetFile, Reel, Standing},
     scene::Scene,
-    session::{SceneSource, Session, animation::MAX_TIME_S},
 };
 
 /// Most frames of a film: almost an hour at 30 a second.
@@ -44,7 +44,7 @@ struct Schedule {
     from_s: f64,
     to_s: f64,
     fps: f64,
-    /// Seconds of the look from frame to frame.
+    /// Seconds of the preset from frame to frame.
     step_s: f64,
     /// Frames of the whole film.
     total: u32,
@@ -53,8 +53,8 @@ struct Schedule {
 }
 
 impl Schedule {
-    fn of(args: &Sequence, session: &Session) -> Result<Self, Fault> {
-        let [begin_s, end_s] = session.clock.range_s;
+    fn of(args: &Sequence, preset: &Preset) -> Result<Self, Fault> {
+        let [begin_s, end_s] = preset.clock.range_s;
         let (from_s, to_s, fps) = (args.from.unwrap_or(begin_s), args.to.unwrap_or(end_s), args.fps);
         for (name, time_s) in [("--from", from_s), ("--to", to_s)] {
             if !(-MAX_TIME_S..=MAX_TIME_S).contains(&time_s) {
@@ -67,7 +67,7 @@ impl Schedule {
         if !(0.001..=MAX_FPS).contains(&fps) {
             return Err(Fault::usage(format!("--fps {fps} lies outside 0.001..=1000")));
         }
-        let step_s = session.clock.speed / fps;
+        let step_s = preset.clock.speed / fps;
         // A last frame that rounding alone puts before the end would be drawn twice in a loop.
         let count = ((to_s - from_s) / step_s - 1e-6).ceil().max(1.0);
         if count > f64::from(MAX_FRAMES) {
@@ -101,23 +101,23 @@ struct Shot {
 }
 
 pub fn run(common: &Common, args: &Sequence, streams: &mut Streams) -> Result<Exit, Fault> {
-    let look = look(common, args)?;
-    look.warnings.iter().for_each(|warning| streams.note(warning));
-    let schedule = Schedule::of(args, &look.session)?;
+    let preset_file = preset_file(common, args)?;
+    preset_file.warnings.iter().for_each(|warning| streams.note(warning));
+    let schedule = Schedule::of(args, &preset_file.preset)?;
     check_template(args, &schedule)?;
-    let scene = scene_of(&look)?;
+    let scene = scene_of(&preset_file)?;
     scene.notes.iter().for_each(|note| streams.note(note));
     let mut painter = Painter::open(common, streams)?;
-    let mut shots = shots(args, &look, &scene, &schedule, &painter)?;
-    survey(common, &mut shots, look.session.output.size, &painter, streams)?;
-    let mut film = film(common, args, &look, &schedule, &shots, &painter)?;
+    let mut shots = shots(args, &preset_file, &scene, &schedule, &painter)?;
+    survey(common, &mut shots, preset_file.preset.output.size, &painter, streams)?;
+    let mut film = film(common, args, &preset_file, &schedule, &shots, &painter)?;
     if film.is_none() {
         // The film is there already, and nothing else may want a frame.
         shots.iter_mut().filter(|shot| shot.path.is_none()).for_each(|shot| shot.kept = true);
     }
     let kept = shots.iter().filter(|shot| shot.kept).count();
-    let of = |shot: &Shot| at(&look, &schedule, shot.frame);
-    draw(&shots, &of, look.session.output.size, &scene, &mut painter, &mut film, streams)?;
+    let of = |shot: &Shot| at(&preset_file, &schedule, shot.frame);
+    draw(&shots, &of, preset_file.preset.output.size, &scene, &mut painter, &mut film, streams)?;
     if let Some(film) = film {
         film.finish()?;
     }
@@ -132,20 +132,20 @@ pub fn run(common: &Common, args: &Sequence, streams: &mut Streams) -> Result<Ex
     Ok(Exit::Done)
 }
 
-/// The look with `--size` and `--tier`, which are short for `--set`.
-fn look(common: &Common, args: &Sequence) -> Result<Look, Fault> {
-    let mut look = open(common, &args.look)?;
+/// The preset with `--size` and `--tier`, which are short for `--set`.
+fn preset_file(common: &Common, args: &Sequence) -> Result<PresetFile, Fault> {
+    let mut preset_file = open(common, &args.preset_file)?;
     if let Some(size) = args.size {
-        look.session.output.size = size;
+        preset_file.preset.output.size = size;
     }
     if let Some(tier) = &args.tier {
-        preset::set(&mut look, "accuracy.tier", tier)?;
+        preset_file::set(&mut preset_file, "accuracy.tier", tier)?;
     }
-    let [width, height] = look.session.output.size;
+    let [width, height] = preset_file.preset.output.size;
     if width == 0 || height == 0 {
         return Err(Fault::usage(format!("a picture of {width}x{height} pixels has none, and PNG cannot hold it")));
     }
-    Ok(look)
+    Ok(preset_file)
 }
 
 fn check_template(args: &Sequence, schedule: &Schedule) -> Result<(), Fault> {
@@ -162,28 +162,28 @@ fn check_template(args: &Sequence, schedule: &Schedule) -> Result<(), Fault> {
     Ok(())
 }
 
-fn shots(args: &Sequence, look: &Look, scene: &Scene, schedule: &Schedule, painter: &Painter) -> Result<Vec<Shot>, Fault> {
-    let (scene, names) = (scene_hash(scene), render::names(look, painter));
+fn shots(args: &Sequence, preset_file: &PresetFile, scene: &Scene, schedule: &Schedule, painter: &Painter) -> Result<Vec<Shot>, Fault> {
+    let (scene, names) = (scene_hash(scene), render::names(preset_file, painter));
     let shot = |frame| {
         let names = Names { frame: Some(frame), ..names.clone() };
         let path = args.output.as_ref().map(|template| files::frame_path(template, &names)).transpose()?;
-        Ok(Shot { frame, mark: mark(&at(look, schedule, frame).session, scene), path, kept: false })
+        Ok(Shot { frame, mark: mark(&at(preset_file, schedule, frame).preset, scene), path, kept: false })
     };
     schedule.frames.clone().into_par_iter().map(shot).collect()
 }
 
-/// The look as a frame shows it.
-fn at(look: &Look, schedule: &Schedule, frame: u32) -> Look {
-    let mut look = look.clone();
-    look.session.clock.time_s = schedule.time_s(frame);
-    look
+/// The preset as a frame shows it.
+fn at(preset_file: &PresetFile, schedule: &Schedule, frame: u32) -> PresetFile {
+    let mut preset_file = preset_file.clone();
+    preset_file.preset.clock.time_s = schedule.time_s(frame);
+    preset_file
 }
 
 /// All that decides the picture but who draws it: the look at its time, the scene's bytes, and this program.
-fn mark(session: &Session, scene: Fnv) -> String {
+fn mark(preset: &Preset, scene: Fnv) -> String {
     // Where the scene lies differs from machine to machine; its bytes decide.
-    let anywhere = Session { scene: SceneSource::Builtin(String::new()), ..session.clone() };
-    let hashes = [look_hash(&anywhere).0, scene.0];
+    let anywhere = Preset { scene: SceneSource::Builtin(String::new()), ..preset.clone() };
+    let hashes = [preset_hash(&anywhere).0, scene.0];
     let hash = hashes.iter().fold(Fnv::new().bytes(env!("CARGO_PKG_VERSION").as_bytes()), |hash, part| hash.bytes(&part.to_le_bytes()));
     hex(hash)
 }
@@ -193,17 +193,17 @@ fn survey(common: &Common, shots: &mut [Shot], size: [u32; 2], painter: &Painter
     if let Some(folder) = shots.first().and_then(|shot| shot.path.as_deref()).and_then(Path::parent).filter(|f| !f.as_os_str().is_empty()) {
         std::fs::create_dir_all(folder).map_err(|e| Fault::from(e).during(format!("{} cannot be made", folder.display())))?;
     }
-    shots.first().and_then(|shot| shot.path.as_deref()).into_iter().for_each(preset::sweep);
+    shots.first().and_then(|shot| shot.path.as_deref()).into_iter().for_each(preset_file::sweep);
     let found: Vec<Standing> = shots
         .par_iter()
-        .map(|shot| shot.path.as_ref().map_or(Ok(Standing::Absent), |path| preset::standing(path, size, &shot.mark)))
+        .map(|shot| shot.path.as_ref().map_or(Ok(Standing::Absent), |path| preset_file::standing(path, size, &shot.mark)))
         .collect::<Result<_, PresetError>>()?;
     let others: Vec<&Path> =
         shots.iter().zip(&found).filter(|(_, found)| **found == Standing::Other).filter_map(|(shot, _)| shot.path.as_deref()).collect();
     if let ([first, rest @ ..], false) = (&others[..], common.force) {
         let more = if rest.is_empty() { String::new() } else { format!(", and so do {} more", rest.len()) };
         let first = first.display();
-        return Err(Fault::usage(format!("{first} exists and is no frame of this look{more}; --force overwrites")));
+        return Err(Fault::usage(format!("{first} exists and is no frame of this preset{more}; --force overwrites")));
     }
     let mut strangers: Vec<&str> = Vec::new();
     for (shot, found) in shots.iter_mut().zip(&found) {
@@ -224,25 +224,25 @@ fn survey(common: &Common, shots: &mut [Shot], size: [u32; 2], painter: &Painter
 fn film(
     common: &Common,
     args: &Sequence,
-    look: &Look,
+    preset_file: &PresetFile,
     schedule: &Schedule,
     shots: &[Shot],
     painter: &Painter,
 ) -> Result<Option<Film>, Fault> {
     let Some(path) = &args.apng else { return Ok(None) };
-    let clock = look.session.clock;
+    let clock = preset_file.preset.clock;
     let delay_s = delay(schedule.fps);
-    let reel = Reel { size: look.session.output.size, frames: shots.len() as u32, delay_s, loops: clock.loops };
+    let reel = Reel { size: preset_file.preset.output.size, frames: shots.len() as u32, delay_s, loops: clock.loops };
     let whole = shots.iter().fold(Fnv::new(), |hash, shot| hash.bytes(shot.mark.as_bytes()));
     let mark = hex(whole.words(&[delay_s[0].into(), delay_s[1].into(), clock.loops.into()]));
-    match preset::standing(path, reel.size, &mark)? {
+    match preset_file::standing(path, reel.size, &mark)? {
         Standing::Finished { adapter } if adapter == painter.name() => return Ok(None),
         Standing::Finished { .. } | Standing::Other if !common.force => {
             return Err(Fault::usage(format!("{} exists; --force overwrites it", path.display())));
         }
         _ => {}
     }
-    Ok(Some(Film::begin(path, &reel, look, &painter.provenance(), &mark)?))
+    Ok(Some(Film::begin(path, &reel, preset_file, &painter.provenance(), &mark)?))
 }
 
 /// One frame's time as a fraction of seconds that APNG can hold, as near as it comes.
@@ -264,7 +264,7 @@ fn delay(fps: f64) -> [u16; 2] {
 /// Draws what is not kept, a batch at a time: drawing is one after the other on one device, packing is not.
 fn draw(
     shots: &[Shot],
-    look_of: &(impl Fn(&Shot) -> Look + Sync),
+    preset_of: &(impl Fn(&Shot) -> PresetFile + Sync),
     size: [u32; 2],
     scene: &Arc<Scene>,
     painter: &mut Painter,
@@ -279,18 +279,18 @@ fn draw(
         let mut drawn: Vec<Option<Frame>> = Vec::new();
         for shot in shots {
             bar.set_message(shot.path.as_ref().map_or_else(|| format!("frame {}", shot.frame), |path| path.display().to_string()));
-            drawn.push(if !shot.kept { Some(painter.frame(&look_of(shot).session, scene)?) } else { None });
+            drawn.push(if !shot.kept { Some(painter.frame(&preset_of(shot).preset, scene)?) } else { None });
             bar.inc(1);
         }
         shots.par_iter().zip(&drawn).try_for_each(|(shot, frame)| match (&shot.path, frame) {
-            (Some(path), Some(frame)) => files::write(path, &preset::png_of_sequence(frame, &look_of(shot), &provenance, &shot.mark)?),
+            (Some(path), Some(frame)) => files::write(path, &preset_file::png_of_frame(frame, &preset_of(shot), &provenance, &shot.mark)?),
             _ => Ok(()),
         })?;
         let Some(film) = film.as_mut() else { continue };
         for (shot, frame) in shots.iter().zip(drawn) {
             match (frame, &shot.path) {
                 (Some(frame), _) => film.push(&frame.color)?,
-                (None, Some(path)) => film.push(&preset::png_pixels(path)?.0)?,
+                (None, Some(path)) => film.push(&preset_file::png_pixels(path)?.0)?,
                 (None, None) => unreachable!("a frame without a file is drawn for the film"),
             }
         }
@@ -323,27 +323,27 @@ fn tell(args: &Sequence, shots: &[Shot], schedule: &Schedule, painter: &Painter,
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::session::Clock;
+    use crate::preset::Clock;
 
     fn args(from: Option<f64>, to: Option<f64>, fps: f64, frames: Option<[Option<u32>; 2]>) -> Sequence {
-        Sequence { look: String::new(), output: None, apng: None, from, to, fps, frames, size: None, tier: None }
+        Sequence { preset_file: String::new(), output: None, apng: None, from, to, fps, frames, size: None, tier: None }
     }
 
     #[test]
     fn a_loop_does_not_draw_its_first_moment_twice() {
-        let session = Session::default();
+        let preset = Preset::default();
         for fps in [24.0, 25.0, 29.97, 30.0, 60.0, 144.0, 1.0, 0.3] {
-            let schedule = Schedule::of(&args(Some(-1.0), Some(3.1), fps, None), &session).unwrap();
+            let schedule = Schedule::of(&args(Some(-1.0), Some(3.1), fps, None), &preset).unwrap();
             let last = schedule.time_s(schedule.total - 1);
             assert!(last < 3.1 && last + 1.0 / fps > 3.1 - 1e-6, "{fps}: {last}");
         }
-        assert_eq!(Schedule::of(&args(None, None, 30.0, None), &session).unwrap().total, 120);
+        assert_eq!(Schedule::of(&args(None, None, 30.0, None), &preset).unwrap().total, 120);
     }
 
     #[test]
     fn the_speed_of_the_clock_is_the_speed_of_the_film() {
         let clock = Clock { range_s: [0.0, 4.0], speed: 2.0, ..Clock::default() };
-        let schedule = Schedule::of(&args(None, None, 30.0, Some([Some(30), None])), &Session { clock, ..Session::default() }).unwrap();
+        let schedule = Schedule::of(&args(None, None, 30.0, Some([Some(30), None])), &Preset { clock, ..Preset::default() }).unwrap();
         assert_eq!((schedule.total, schedule.frames.clone(), schedule.time_s(30)), (60, 30..60, 2.0));
     }
 

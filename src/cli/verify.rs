@@ -1,4 +1,4 @@
-//! `verify`: each look on the adapter against the oracle, every buffer, on every visibility rung the adapter has.
+//! `verify`: each preset on the adapter against the oracle, every buffer, on every visibility option the adapter has.
 
 use std::path::Path;
 
@@ -8,31 +8,31 @@ use super::{
     args::{Common, Verify},
     fault::{Exit, Fault},
     files::{self, Names},
-    looks,
     painter::{Painter, scene_of},
+    preset_files,
     streams::{Streams, number, table},
 };
 use crate::{
+    accuracy::Skinning,
     frame::Frame,
     gpu::Capture,
-    ladder::Skinning,
     measure::{
-        Accuracy, Budget,
-        compare::{difference_picture, owners, pictures},
+        Budget, ErrorReport,
+        compare::{difference_picture, pictures, triangle_ids},
     },
     oracle,
-    preset::{self, Look},
+    preset::{Preset, Test, Visibility},
+    preset_file::{self, PresetFile},
     scene::{Scene, draw::draws},
-    session::{Session, Test, Visibility},
 };
 
-/// One look on one rung.
+/// One preset on one option.
 struct Row {
-    look: String,
-    rung: &'static str,
-    accuracy: Accuracy,
-    /// Pixels with a colour channel beyond the look's budget.
-    pixels_beyond: u64,
+    preset_file: String,
+    option: &'static str,
+    accuracy: ErrorReport,
+    /// Pixels with a colour channel beyond the preset's budget.
+    pixels_over_tolerance: u64,
     frames: u32,
     /// What failed, one sentence each.
     failures: Vec<String>,
@@ -41,16 +41,16 @@ struct Row {
 }
 
 pub fn run(common: &Common, args: &Verify, streams: &mut Streams) -> Result<Exit, Fault> {
-    let looks = looks(common, &args.looks, streams)?;
+    let preset_files = preset_files(common, &args.preset_files, streams)?;
     let mut painter = Painter::open(common, streams)?;
     if let Some(folder) = &args.output {
         std::fs::create_dir_all(folder).map_err(|e| Fault::from(e).during(format!("{} cannot be made", folder.display())))?;
     }
-    let bar = streams.progress(looks.len() as u64);
+    let bar = streams.progress(preset_files.len() as u64);
     let mut rows = Vec::new();
-    for look in &looks {
-        bar.set_message(look.id.clone());
-        rows.extend(verify(common, args, look, &mut painter).map_err(|fault| fault.during(format!("look {}", look.id)))?);
+    for preset_file in &preset_files {
+        bar.set_message(preset_file.id.clone());
+        rows.extend(verify(common, args, preset_file, &mut painter).map_err(|fault| fault.during(format!("look {}", preset_file.id)))?);
         bar.inc(1);
     }
     bar.finish_and_clear();
@@ -63,18 +63,18 @@ pub fn run(common: &Common, args: &Verify, streams: &mut Streams) -> Result<Exit
     rows.iter().filter(|row| row.accuracy.race_pixels > 0).for_each(|row| {
         streams.note(&format!(
             "{} on {}: {} pixels were lost to the race, each to a triangle that covers it",
-            row.look, row.rung, row.accuracy.race_pixels
+            row.preset_file, row.option, row.accuracy.race_pixels
         ));
     });
-    rows.iter().filter(|row| row.accuracy.bent_vertices > 0).for_each(|row| {
+    rows.iter().filter(|row| row.accuracy.deformed_vertices > 0).for_each(|row| {
         let a = &row.accuracy;
         streams.note(&format!(
             "{} on {}: {} bent vertices, at most {:.5} px and {:.1} ulp from the oracle's{}",
-            row.look,
-            row.rung,
-            a.bent_vertices,
-            a.max_bend_px,
-            a.max_bend_ulp,
+            row.preset_file,
+            row.option,
+            a.deformed_vertices,
+            a.max_deform_px,
+            a.max_deform_ulp,
             row.volume
                 .map_or_else(String::new, |share| format!("; linear skinning has {:.2} % of the volume that dual has", 100.0 * share))
         ));
@@ -83,39 +83,40 @@ pub fn run(common: &Common, args: &Verify, streams: &mut Streams) -> Result<Exit
         let a = &row.accuracy;
         streams.note(&format!(
             "{} on {}: {} particles, {} of them more than a pixel from their true flight, at most {:.5} px, on average {:.1e} m",
-            row.look, row.rung, a.particles, a.particles_astray, a.max_astray_px, a.mean_astray_m
+            row.preset_file, row.option, a.particles, a.particles_diverged, a.max_divergence_px, a.mean_divergence_m
         ));
     });
-    rows.iter().for_each(|row| row.failures.iter().for_each(|failure| streams.note(&format!("{} on {}: {failure}", row.look, row.rung))));
+    rows.iter()
+        .for_each(|row| row.failures.iter().for_each(|failure| streams.note(&format!("{} on {}: {failure}", row.preset_file, row.option))));
     Ok(Exit::failed_if(rows.iter().any(|row| !row.failures.is_empty())))
 }
 
-fn verify(common: &Common, args: &Verify, look: &Look, painter: &mut Painter) -> Result<Vec<Row>, Fault> {
-    let mut session = look.session.clone();
-    session.output.size = args.size.unwrap_or(session.output.size);
-    let scene = scene_of(look)?;
-    let (view, stack) = (session.view(&scene, session.output.size), session.posed_stack());
-    let budget = session.test.clone().unwrap_or_default();
-    let volume = volume_share(&session, &scene)?;
+fn verify(common: &Common, args: &Verify, preset_file: &PresetFile, painter: &mut Painter) -> Result<Vec<Row>, Fault> {
+    let mut preset = preset_file.preset.clone();
+    preset.output.size = args.size.unwrap_or(preset.output.size);
+    let scene = scene_of(preset_file)?;
+    let (view, stack) = (preset.view(&scene, preset.output.size), preset.evaluated_stack());
+    let budget = preset.test.clone().unwrap_or_default();
+    let volume = volume_share(&preset, &scene)?;
     let (mut rows, mut first): (Vec<Row>, Option<(&str, Frame)>) = (Vec::new(), None);
-    for rung in painter.rungs(&session) {
-        let mut pinned = session.clone();
-        pinned.accuracy.pins = rung.map_or(session.accuracy.pins, |rung| session.accuracy.pins.with(rung));
-        let name = rung.map_or("exact", Visibility::name);
+    for option in painter.options(&preset) {
+        let mut pinned = preset.clone();
+        pinned.accuracy.pins = option.map_or(preset.accuracy.pins, |option| preset.accuracy.pins.with(option));
+        let name = option.map_or("exact", Visibility::name);
         let capture = painter.capture(&pinned, &scene)?;
         let layers = capture.layers.as_deref();
         let previous = capture.previous.as_deref();
         let verdict = oracle::judge_after(&scene, &view, &stack, &capture.frame, &capture.geometry, layers, previous)?;
-        // Where wrong owners have a budget, their colours are theirs: colour is held where the owner is right.
+        // Where wrong triangle ids have a budget, their colours are theirs: colour is held where the triangle id is right.
         let mut held = verdict.expected.color.clone();
-        if budget.max_wrong_owner > 0 {
-            let wrong = capture.frame.owner.iter().zip(&verdict.expected.owner).enumerate().filter(|(_, (a, b))| a != b);
+        if budget.max_wrong_triangles > 0 {
+            let wrong = capture.frame.triangle_id.iter().zip(&verdict.expected.triangle_id).enumerate().filter(|(_, (a, b))| a != b);
             wrong.for_each(|(i, _)| held[i] = capture.frame.color[i]);
         }
-        let pixels_beyond = pictures(&capture.frame.color, &held, budget.max_channel).pixels_beyond;
-        let mut failures = failures(&verdict.accuracy, &budget, pixels_beyond);
+        let pixels_over_tolerance = pictures(&capture.frame.color, &held, budget.max_channel).pixels_over_tolerance;
+        let mut failures = failures(&verdict.accuracy, &budget, pixels_over_tolerance);
         failures.extend(scaling_fault(&capture));
-        let is_repeatable = session.stack.is_repeatable() && !session.accuracy.is_left_to_chance();
+        let is_repeatable = preset.stack.is_repeatable() && !preset.accuracy.is_left_to_chance();
         for repeat in 1..args.frames {
             if is_repeatable && painter.capture(&pinned, &scene)?.frame != capture.frame {
                 failures.push(format!("frame {} is not equal to the first, to the bit", repeat + 1));
@@ -123,19 +124,19 @@ fn verify(common: &Common, args: &Verify, look: &Look, painter: &mut Painter) ->
             }
         }
         if let Some((other, frame)) = first.as_ref().filter(|_| is_repeatable) {
-            let different = owners(&capture.frame.owner, &frame.owner).different;
-            if different > u64::from(budget.max_wrong_owner) {
-                failures.push(format!("{different} pixels have another owner than on {other}"));
+            let different = triangle_ids(&capture.frame.triangle_id, &frame.triangle_id).different;
+            if different > u64::from(budget.max_wrong_triangles) {
+                failures.push(format!("{different} pixels have another triangle id than on {other}"));
             }
         }
         if let Some(folder) = &args.output {
-            triptych(folder, &format!("{}-{name}", look.id), &verdict.expected, &capture.frame, common.force)?;
+            triptych(folder, &format!("{}-{name}", preset_file.id), &verdict.expected, &capture.frame, common.force)?;
         }
         rows.push(Row {
-            look: look.id.clone(),
-            rung: name,
+            preset_file: preset_file.id.clone(),
+            option: name,
             accuracy: verdict.accuracy,
-            pixels_beyond,
+            pixels_over_tolerance,
             frames: args.frames,
             failures,
             volume,
@@ -151,37 +152,37 @@ fn scaling_fault(capture: &Capture) -> Option<String> {
     let drawn = &capture.frame;
     let right = oracle::scaled(&drawn.color, [drawn.width, drawn.height], [shown.width, shown.height]);
     let delta = pictures(&shown.color, &right, 1);
-    (delta.pixels_beyond > 0)
-        .then(|| format!("{} shown pixels are off by up to {} of 255 from the drawn ones", delta.pixels_beyond, delta.max_delta))
+    (delta.pixels_over_tolerance > 0)
+        .then(|| format!("{} shown pixels are off by up to {} of 255 from the drawn ones", delta.pixels_over_tolerance, delta.max_delta))
 }
 
 /// Volume by the linear blend, as a share of that by dual quaternions; none where no joint holds anything.
-fn volume_share(session: &Session, scene: &Scene) -> Result<Option<f64>, Fault> {
+fn volume_share(preset: &Preset, scene: &Scene) -> Result<Option<f64>, Fault> {
     if scene.rig.skins.is_empty() {
         return Ok(None);
     }
     let volume = |skinning: Skinning| -> Result<f64, Fault> {
-        let accuracy = crate::session::Accuracy { pins: session.accuracy.pins.with(skinning), ..session.accuracy };
-        let view = Session { accuracy, ..session.clone() }.view(scene, [64, 64]);
+        let accuracy = crate::preset::AccuracyRequest { pins: preset.accuracy.pins.with(skinning), ..preset.accuracy };
+        let view = Preset { accuracy, ..preset.clone() }.view(scene, [64, 64]);
         Ok(oracle::volume(scene, &draws(scene, &view)?))
     };
     let (linear, dual) = (volume(Skinning::Linear)?, volume(Skinning::Dual)?);
     Ok((dual != 0.0).then_some(linear / dual))
 }
 
-/// Exact things have no budget unless the look asks for less; colour has the look's.
-fn failures(accuracy: &Accuracy, test: &Test, pixels_beyond: u64) -> Vec<String> {
-    let forgiven = pixels_beyond <= u64::from(test.max_pixels);
-    let max_colour_delta = if forgiven { u8::MAX } else { test.max_channel };
-    let budget = Budget { max_colour_delta, max_wrong_owner: test.max_wrong_owner.into(), ..Budget::default() };
+/// Exact things have no budget unless the preset asks for less; colour has the preset's.
+fn failures(accuracy: &ErrorReport, test: &Test, pixels_over_tolerance: u64) -> Vec<String> {
+    let forgiven = pixels_over_tolerance <= u64::from(test.max_pixels);
+    let max_color_delta = if forgiven { u8::MAX } else { test.max_channel };
+    let budget = Budget { max_color_delta, max_wrong_triangles: test.max_wrong_triangles.into(), ..Budget::default() };
     accuracy.within(&budget).err().map_or_else(Vec::new, |reasons| reasons.split("; ").map(str::to_owned).collect())
 }
 
-/// Expected, actual and difference side by side, with the owners that differ in magenta.
+/// Expected, actual and difference side by side, with the triangle ids that differ in magenta.
 fn triptych(folder: &Path, name: &str, expected: &Frame, actual: &Frame, force: bool) -> Result<(), Fault> {
     let path = files::target(&folder.join("{preset}.png").to_string_lossy(), &Names { preset: name.into(), ..Names::default() }, force)?;
     let mut difference = difference_picture(&expected.color, &actual.color, 16);
-    for (pixel, (a, b)) in difference.iter_mut().zip(expected.owner.iter().zip(&actual.owner)) {
+    for (pixel, (a, b)) in difference.iter_mut().zip(expected.triangle_id.iter().zip(&actual.triangle_id)) {
         if a != b {
             *pixel = [255, 0, 255, 255];
         }
@@ -190,7 +191,7 @@ fn triptych(folder: &Path, name: &str, expected: &Frame, actual: &Frame, force: 
     let sides = [&expected.color, &actual.color, &difference];
     let rows = (0..expected.height as usize).flat_map(|y| sides.map(|side| side[y * width..][..width].to_vec()));
     let picture: Vec<[u8; 4]> = rows.flatten().collect();
-    files::write(&path, &preset::png_bytes(&picture, [expected.width * 3, expected.height])?)
+    files::write(&path, &preset_file::png_bytes(&picture, [expected.width * 3, expected.height])?)
 }
 
 fn text(rows: &[Row], class: &str) -> String {
@@ -199,18 +200,18 @@ fn text(rows: &[Row], class: &str) -> String {
     lines.extend(rows.iter().map(|row| {
         let a = &row.accuracy;
         let counts = [
-            a.owner_mismatch,
+            a.wrong_triangles,
             a.explained_by_snap,
             a.holes,
             a.double_hits,
-            a.orphans,
+            a.depth_without_id,
             a.overflow,
             a.step_band_pixels,
-            a.max_colour_delta.into(),
+            a.max_color_delta.into(),
         ];
-        let mut line = vec![row.look.clone(), row.rung.into(), class.into()];
+        let mut line = vec![row.preset_file.clone(), row.option.into(), class.into()];
         line.extend(counts.map(|count| count.to_string()));
-        line.extend([format!("{:.4}", a.rms_colour_delta), if row.failures.is_empty() { "ok" } else { "FAIL" }.into()]);
+        line.extend([format!("{:.4}", a.rms_color_delta), if row.failures.is_empty() { "ok" } else { "FAIL" }.into()]);
         line
     }));
     table(&lines)
@@ -219,12 +220,12 @@ fn text(rows: &[Row], class: &str) -> String {
 /// The row with every figure of the judgement.
 fn json_row(row: &Row, painter: &Painter) -> Value {
     let mut object = json!({
-        "look": row.look, "rung": row.rung, "adapter": painter.name(), "class": painter.class(),
-        "frames": row.frames, "pixels_beyond": row.pixels_beyond, "ok": row.failures.is_empty(), "failures": row.failures,
+        "preset_file": row.preset_file, "option": row.option, "adapter": painter.name(), "class": painter.class(),
+        "frames": row.frames, "pixels_over_tolerance": row.pixels_over_tolerance, "ok": row.failures.is_empty(), "failures": row.failures,
     });
-    if let (Value::Object(object), Ok(Value::Object(figures))) = (&mut object, serde_json::to_value(&row.accuracy)) {
-        object.extend(figures);
+    if let (Value::Object(object), Ok(Value::Object(stats))) = (&mut object, serde_json::to_value(&row.accuracy)) {
+        object.extend(stats);
     }
-    object["rms_colour_delta"] = number(row.accuracy.rms_colour_delta);
+    object["rms_color_delta"] = number(row.accuracy.rms_color_delta);
     object
 }

@@ -7,7 +7,7 @@ use glam::{DVec2, DVec3, DVec4};
 
 use super::{
     Effect, Surface, SurfaceEffect,
-    hooks::{Facts, Front, Pattern, Sample, SampleEffect, front_of},
+    hooks::{TriangleSetup, Front, Pattern, Sample, SampleEffect, front_of},
 };
 use crate::{
     choice,
@@ -50,7 +50,7 @@ params! {
         pattern: Pattern = Pattern::Uniform as u32;
         /// Progress of the front: 0 before the first triangle, 1 past the last.
         front: f32 = 0.5, hard 0.0..=1.0, when ("pattern", &["sweep", "random"]);
-        /// Softness of the front, as a share of its way.
+        /// Deformation of the front, as a share of its way.
         width: f32 = 0.25, hard 0.001..=100.0, soft 0.001..=2.0, log true, when ("pattern", &["sweep", "random"]);
         /// Direction of the sweep in the picture: part to the right.
         along_x: f32 = 1.0, hard -1.0..=1.0, when ("pattern", &["sweep"]);
@@ -97,25 +97,25 @@ fn root(share: u32) -> u32 {
 }
 
 impl SampleEffect for Dissolve {
-    const DECIDES: bool = true;
+    const HAS_SETUP: bool = true;
 
-    fn slack(facts: &Facts, p: &Self) -> f64 {
+    fn error_bound(setup: &TriangleSetup, p: &Self) -> f64 {
         if Pattern::of(p.pattern) == Pattern::Uniform {
             return 0.0;
         }
-        let slack = p.travelling().slack(facts.center, facts.center_screen, facts.triangle, &facts.slack());
-        slack * f64::from(ONE) + 2.0
+        let error_bound = p.travelling().error_bound(setup.center, setup.center_screen, setup.triangle, &setup.error_bound());
+        error_bound * f64::from(ONE) + 2.0
     }
 
     fn is_from_floats(p: &Self) -> bool {
         Pattern::of(p.pattern) != Pattern::Uniform
     }
 
-    fn decide(facts: &Facts, p: &Self, first: Option<u32>) -> [u32; 4] {
-        let fill = p.fill_of(facts.center, facts.center_screen, facts.triangle).clamp(0.0, 1.0);
+    fn decide(setup: &TriangleSetup, p: &Self, first: Option<u32>) -> [u32; 4] {
+        let fill = p.fill_of(setup.center, setup.center_screen, setup.triangle).clamp(0.0, 1.0);
         let share = first.unwrap_or((fill * f64::from(ONE)).round_ties_even() as u32);
         let mode = Mode::of(p.mode);
-        let samples = if mode == Mode::Hash { 0 } else { facts.samples().take(if mode == Mode::Scanline { usize::MAX } else { 2 }).count() };
+        let samples = if mode == Mode::Hash { 0 } else { setup.samples().take(if mode == Mode::Scanline { usize::MAX } else { 2 }).count() };
         if samples < 2 {
             return [share, 0, BY_HASH, 0];
         }
@@ -125,7 +125,7 @@ impl SampleEffect for Dissolve {
             Mode::Corner | Mode::Centroid => root(share),
             Mode::Scanline => {
                 let wanted = (u64::from(share) * samples as u64 + (1 << 23)) >> 24;
-                facts.samples().nth(wanted as usize).map_or(u32::MAX, |[x, y]| y << 16 | x)
+                setup.samples().nth(wanted as usize).map_or(u32::MAX, |[x, y]| y << 16 | x)
             }
             Mode::Hash => unreachable!("it took the hash"),
         };
@@ -152,7 +152,7 @@ impl SampleEffect for Dissolve {
 impl SurfaceEffect for Dissolve {
     /// A rim that glows where the triangle is about to go.
     fn apply(mut s: Surface, p: &Self) -> Surface {
-        let fill = p.fill_of(s.center, s.center_screen, s.owner).clamp(0.0, 1.0);
+        let fill = p.fill_of(s.center, s.center_screen, s.triangle_id).clamp(0.0, 1.0);
         let part = s.shares[p.corner.min(2) as usize];
         let (way, end) = match Mode::of(p.mode) {
             Mode::Edge => (part, 1.0 - (1.0 - fill).sqrt()),

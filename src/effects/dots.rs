@@ -15,12 +15,12 @@ use crate::{
 
 choice! {
     /// What dots are strung on.
-    pub enum Strung {
+    pub enum LineSource {
         /// Every edge of every mesh, once.
         Edges = "edges",
         /// The edges at which faces meet at an angle, and open ones.
         Creases = "creases",
-        /// The look's own line, `scene.polyline`.
+        /// The preset's own line, `scene.polyline`.
         Polyline = "polyline",
     }
 }
@@ -30,7 +30,7 @@ params! {
         /// Colour of the dots, linear; its alpha is their strength.
         color: Color = [1.0, 0.55, 0.15, 1.0];
         /// What dots are strung on.
-        lines: Strung = Strung::Edges as u32;
+        lines: LineSource = LineSource::Edges as u32;
         /// The least angle between two faces that counts as a crease.
         crease_deg: f32 = 25.0, hard 0.0..=180.0, soft 1.0..=90.0, unit "°", when ("lines", &["creases"]);
         /// Distance from dot to dot along the line.

@@ -6,10 +6,10 @@ use glam::DVec3;
 
 use super::{
     Effect,
-    hooks::{Front, Pattern, ROUNDING, front_of, Slack, Vertex, VertexEffect},
+    hooks::{Front, Pattern, ROUNDING, front_of, ErrorBound, Vertex, VertexEffect},
 };
 use crate::{
-    math::{SINE_SLACK, hash_unit, sin_turns},
+    math::{SINE_ERROR, hash_unit, sin_turns},
     params,
     params::Point,
 };
@@ -30,7 +30,7 @@ params! {
         pattern: Pattern = Pattern::Uniform as u32;
         /// Progress of the front: 0 before the first triangle, 1 past the last.
         front: f32 = 0.5, hard 0.0..=1.0, when ("pattern", &["sweep", "random"]);
-        /// Softness of the front, as a share of its way.
+        /// Deformation of the front, as a share of its way.
         width: f32 = 0.5, hard 0.001..=100.0, soft 0.001..=2.0, log true, when ("pattern", &["sweep", "random"]);
         /// Direction of the sweep in the picture: part to the right.
         along_x: f32 = 1.0, hard -1.0..=1.0, when ("pattern", &["sweep"]);
@@ -61,34 +61,34 @@ impl VertexEffect for Explode {
         v
     }
 
-    fn slack(v: &Vertex, mut slack: Slack, p: &Self) -> Slack {
+    fn error_bound(v: &Vertex, mut error_bound: ErrorBound, p: &Self) -> ErrorBound {
         let [amount, turns, shrink] = [p.amount_m, p.spin_turns, p.shrink].map(|f| f64::from(f).abs());
         if amount == 0.0 && turns == 0.0 && shrink == 0.0 {
-            return slack;
+            return error_bound;
         }
         let share = p.share(v);
-        let share_slack = p.travelling().slack(v.center, v.center_screen, v.triangle, &slack) + 4.0 * ROUNDING * share;
+        let share_slack = p.travelling().error_bound(v.center, v.center_screen, v.triangle, &error_bound) + 4.0 * ROUNDING * share;
         let spin = Spin::of(turns * share);
-        let (sine, versine) = spin.slack(turns * (share_slack + ROUNDING * share));
+        let (sine, versine) = spin.error_bound(turns * (share_slack + ROUNDING * share));
         // Per axis; lengths of three such are less than twice as long.
-        let arm_slack = slack.arm_m + slack.offset_m + ROUNDING * (v.arm.abs() + v.offset.abs()).max_element();
+        let arm_slack = error_bound.arm_m + error_bound.offset_m + ROUNDING * (v.arm.abs() + v.offset.abs()).max_element();
         let arm = (v.arm + v.offset).length();
         let turn_slack = |r: f64, r_slack: f64| {
             let most = spin.sine.abs() + sine + spin.versine + versine;
-            r * (sine + versine) + most * (2.0 * r_slack + r * (4.0 * slack.flat_normal + 10.0 * ROUNDING))
+            r * (sine + versine) + most * (2.0 * r_slack + r * (4.0 * error_bound.flat_normal + 10.0 * ROUNDING))
         };
         let (turn, turn_slack_m) = (arm * (spin.sine.abs() + spin.versine), turn_slack(arm, arm_slack));
-        let flight = amount * (share * (slack.flat_normal + 4.0 * ROUNDING) + share_slack);
+        let flight = amount * (share * (error_bound.flat_normal + 4.0 * ROUNDING) + share_slack);
         let loss = shrink * (share * (arm_slack + turn_slack_m + 4.0 * ROUNDING * (arm + turn)) + share_slack * (arm + turn));
         let sums = 3.0 * ROUNDING * (v.offset.abs().max_element() + amount * share + turn + shrink * share * (arm + turn));
-        slack.offset_m += flight + turn_slack_m + loss + sums;
+        error_bound.offset_m += flight + turn_slack_m + loss + sums;
         if turns > 0.0 {
-            slack.normal += turn_slack(1.0, slack.normal) + ROUNDING;
+            error_bound.normal += turn_slack(1.0, error_bound.normal) + ROUNDING;
         }
-        slack
+        error_bound
     }
 
-    fn reach_m(radius_m: f64, p: &Self) -> f64 {
+    fn max_displacement_m(radius_m: f64, p: &Self) -> f64 {
         let turned = if p.spin_turns == 0.0 { 0.0 } else { 2.0 };
         // No corner is farther from its triangle's centre than the model is wide.
         f64::from(p.amount_m).abs() + (turned + f64::from(p.shrink)) * 2.0 * radius_m
@@ -116,12 +116,12 @@ impl Spin {
     }
 
     /// Bounds of the errors of sine and versine in f32, given that of the angle in turns; none without a turn.
-    fn slack(&self, turns: f64) -> (f64, f64) {
+    fn error_bound(&self, turns: f64) -> (f64, f64) {
         if self.turns == 0.0 && turns == 0.0 {
             return (0.0, 0.0);
         }
-        let sine = std::f64::consts::TAU * turns + SINE_SLACK;
-        let half = 0.5 * std::f64::consts::TAU * turns + SINE_SLACK;
+        let sine = std::f64::consts::TAU * turns + SINE_ERROR;
+        let half = 0.5 * std::f64::consts::TAU * turns + SINE_ERROR;
         let versine = 4.0 * (0.5 * self.versine).sqrt() * half + 2.0 * half * half + 3.0 * ROUNDING * self.versine;
         (sine.min(2.0), versine.min(2.0))
     }

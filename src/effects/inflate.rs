@@ -4,7 +4,7 @@
 
 use super::{
     Effect,
-    hooks::{ROUNDING, Slack, Vertex, VertexEffect},
+    hooks::{ROUNDING, ErrorBound, Vertex, VertexEffect},
 };
 use crate::params;
 
@@ -27,15 +27,15 @@ impl VertexEffect for Inflate {
         v
     }
 
-    fn slack(v: &Vertex, mut slack: Slack, p: &Self) -> Slack {
+    fn error_bound(v: &Vertex, mut error_bound: ErrorBound, p: &Self) -> ErrorBound {
         let amount = f64::from(p.amount_m).abs();
         if amount > 0.0 {
-            slack.offset_m += amount * (slack.normal + 2.0 * ROUNDING) + ROUNDING * v.offset.abs().max_element();
+            error_bound.offset_m += amount * (error_bound.normal + 2.0 * ROUNDING) + ROUNDING * v.offset.abs().max_element();
         }
-        slack
+        error_bound
     }
 
-    fn reach_m(_: f64, p: &Self) -> f64 {
+    fn max_displacement_m(_: f64, p: &Self) -> f64 {
         f64::from(p.amount_m).abs()
     }
 }

@@ -1,10 +1,10 @@
-//! Effects: pure functions with parameters, written twice. Here in f64, the truth; in `shaders/effects/` in f32,
+//! Effects: pure functions with parameters, written twice. Here in f64, the reference; in `shaders/effects/` in f32,
 //! in a file of the same name. Panel, preset keys, `--set`, uniform bytes, layout test, golden and bench row are
 //! loops over [`EFFECTS`].
 
 use crate::{
     params::{Field, Params},
-    scene::{Scene, camera::View, light::view_from, splats::Cloud},
+    scene::{Scene, camera::View, light::light_view, particle_discs::ParticleSettings},
 };
 
 pub mod hooks;
@@ -16,7 +16,7 @@ pub use hooks::{Surface, SurfaceEffect};
 macro_rules! effects {
     ($($name:ident),* $(,)?) => {
         $(pub mod $name;)*
-        /// Every effect, in the order in which a look without a `stack` key applies them.
+        /// Every effect, in the order in which a preset without a `stack` key applies them.
         pub const EFFECTS: &[&Effect] = &[$(&$name::EFFECT),*];
     };
 }
@@ -89,8 +89,8 @@ impl Effect {
         self.hooks.vertex = Some(VertexHook {
             needs_triangle: P::NEEDS_TRIANGLE,
             moved: |vertex, words| P::moved(vertex, &read(words)),
-            slack: |vertex, slack, words| P::slack(vertex, slack, &read(words)),
-            reach_m: |radius_m, words| P::reach_m(radius_m, &read(words)),
+            error_bound: |vertex, error_bound, words| P::error_bound(vertex, error_bound, &read(words)),
+            max_displacement_m: |radius_m, words| P::max_displacement_m(radius_m, &read(words)),
         });
         self
     }
@@ -98,10 +98,10 @@ impl Effect {
     /// The same effect, also on the sample hook.
     pub const fn on_sample<P: SampleEffect>(mut self) -> Self {
         self.hooks.sample = Some(SampleHook {
-            decides: P::DECIDES,
-            slack: |facts, words| P::slack(facts, &read(words)),
+            has_setup: P::HAS_SETUP,
+            error_bound: |setup, words| P::error_bound(setup, &read(words)),
             is_from_floats: |words| P::is_from_floats(&read(words)),
-            decide: |facts, words, first| P::decide(facts, &read(words), first),
+            decide: |setup, words, first| P::decide(setup, &read(words), first),
             is_drawn: |sample, words| P::is_drawn(sample, &read(words)),
         });
         self
@@ -139,8 +139,8 @@ impl Effect {
     }
 
     /// The same effect, which puts a cloud beside the scene.
-    pub const fn with_cloud(mut self, cloud: fn(&[u32]) -> Cloud) -> Self {
-        self.hooks.cloud = Some(cloud);
+    pub const fn with_particles(mut self, particle_settings: fn(&[u32]) -> ParticleSettings) -> Self {
+        self.hooks.particle_settings = Some(particle_settings);
         self
     }
 
@@ -272,14 +272,17 @@ impl Stack {
     }
 
     /// How far an f32 twin of [`Stack::moved`] may err, given the slack of what it starts from.
-    pub fn slack(&self, vertex: hooks::Vertex, slack: hooks::Slack) -> hooks::Slack {
+    pub fn error_bound(&self, vertex: hooks::Vertex, error_bound: hooks::ErrorBound) -> hooks::ErrorBound {
         let each = self.each(|hooks| hooks.vertex);
-        each.fold((vertex, slack), |(vertex, slack), (hook, words)| ((hook.moved)(vertex, words), (hook.slack)(&vertex, slack, words))).1
+        each.fold((vertex, error_bound), |(vertex, error_bound), (hook, words)| {
+            ((hook.moved)(vertex, words), (hook.error_bound)(&vertex, error_bound, words))
+        })
+        .1
     }
 
     /// How far a vertex of a model of this radius may move.
-    pub fn reach_m(&self, radius_m: f64) -> f64 {
-        self.each(|hooks| hooks.vertex).fold(0.0, |reach, (hook, words)| reach + (hook.reach_m)(radius_m + reach, words))
+    pub fn max_displacement_m(&self, radius_m: f64) -> f64 {
+        self.each(|hooks| hooks.vertex).fold(0.0, |reach, (hook, words)| reach + (hook.max_displacement_m)(radius_m + reach, words))
     }
 
     /// Finishes a pixel by every image effect in order.
@@ -313,13 +316,15 @@ impl Stack {
     }
 
     /// Does an effect move corners by their triangle, so that triangles share none?
-    pub fn parts_corners(&self) -> bool {
+    pub fn unshares_vertices(&self) -> bool {
         self.each(|hooks| hooks.vertex).any(|(hook, _)| hook.needs_triangle)
     }
 
     /// The cloud that an effect puts beside the scene.
-    pub fn cloud(&self) -> Option<Cloud> {
-        self.each(|hooks| hooks.cloud).map(|(cloud, words)| cloud(words)).find(|cloud| cloud.count > 0)
+    pub fn particle_settings(&self) -> Option<ParticleSettings> {
+        self.each(|hooks| hooks.particle_settings)
+            .map(|(particle_settings, words)| particle_settings(words))
+            .find(|particle_settings| particle_settings.count > 0)
     }
 
     /// The effect in a slot of the rasterizer.
@@ -343,7 +348,7 @@ impl Stack {
 
     /// What that light sees of `scene` as `view` shows it.
     pub fn light_view(&self, scene: &Scene, view: &View) -> Option<View> {
-        Some(view_from(self.light()?.toward(), scene, view, self.reach_m(scene.bounds_of(scene.casters()).radius())))
+        Some(light_view(self.light()?.toward(), scene, view, self.max_displacement_m(scene.bounds_of(scene.shadow_casters()).radius())))
     }
 
     /// What of the stack decides which samples stop a light, and where they are.

@@ -1,6 +1,6 @@
 //! Outline: lines where the picture's integers change: at silhouettes, between objects, at steps of depth.
 //!
-//! Owners and depth keys alone decide, so a line is the same on every adapter that has the same keys. The bits of a float
+//! Triangle ids and depth keys alone decide, so a line is the same on every adapter that has the same keys. The bits of a float
 //! are a logarithm in straight pieces: a relative step of depth is a difference of keys.
 
 use super::{
@@ -46,7 +46,7 @@ params! {
 pub const EFFECT: Effect =
     Effect::new::<Outline>("outline", "Outline", "lines at silhouettes, between objects and at steps of depth").on_image::<Outline>();
 
-/// Owner, depth key and draw of a pixel.
+/// Triangle id, depth key and draw of a pixel.
 type Seen = (Option<u32>, u32, u32);
 
 impl ImageEffect for Outline {
@@ -79,17 +79,17 @@ impl Outline {
         }
         if here.2 != there.2 {
             // Equal keys: the later object counts as behind.
-            let is_behind = (here.1, there.2) < (there.1, here.2);
-            return self.objects != 0 && (side == Side::Both || is_behind == (side == Side::Outside));
+            let simulation_pending = (here.1, there.2) < (there.1, here.2);
+            return self.objects != 0 && (side == Side::Both || simulation_pending == (side == Side::Outside));
         }
         let Some(beyond) = beyond().filter(|beyond| self.depth != 0 && beyond.0.is_some() && beyond.2 == here.2) else { return false };
         // What bends away from a straight slope; a slope alone is no jump.
-        let bend = i64::from(there.1) + i64::from(beyond.1) - 2 * i64::from(here.1);
+        let deform = i64::from(there.1) + i64::from(beyond.1) - 2 * i64::from(here.1);
         let jump = (f64::from(self.jump) * f64::from(1 << 23)) as i64;
         match side {
-            Side::Outside => bend > jump,
-            Side::Inside => bend < -jump,
-            Side::Both => bend.abs() > jump,
+            Side::Outside => deform > jump,
+            Side::Inside => deform < -jump,
+            Side::Both => deform.abs() > jump,
         }
     }
 }

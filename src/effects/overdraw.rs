@@ -29,7 +29,7 @@ choice! {
 
 params! {
     pub struct Overdraw {
-        /// Layers at full heat; more look the same.
+        /// Layers at full heat; more preset the same.
         full: u32 = 12, hard 1.0..=1e9, soft 1.0..=100.0, log true;
         /// How layers become heat.
         scale: Scale = Scale::Linear as u32;

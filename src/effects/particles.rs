@@ -17,7 +17,7 @@
 //! **Step.** dt = 1 / rate. With place p and velocity v of the frame before, away = attractor - p and
 //! pull = attraction 2 r away / (away² + r²), r = `attractor_m`: v' = (v + dt (drag u + pull)) / (1 + dt drag), p' = p + dt v'.
 //!
-//! **Flow.** u = `speed_mps` [`EVEN_SPEED`] Σ persistence^o curl ψ_o(q) / Σ persistence^o over the octaves o, where
+//! **ParticleTimeline.** u = `speed_mps` [`EVEN_SPEED`] Σ persistence^o curl ψ_o(q) / Σ persistence^o over the octaves o, where
 //! q = p 2^o / swirl_m + (o + 1) [`LATTICE_SHIFT`] + (step dt evolve) [`LATTICE_DRIFT`], and ψ_o is value noise: three numbers at
 //! every point (x, y, z) of the integer lattice, from the bits 0 to 9, 10 to 19 and 20 to 29 of
 //! `hash(hash(hash(x + salt) + y) + z)`, b as (2 b + 1) / 1024 - 1, with `salt = hash(seed ^ 0x9e3779b9) + o`; between
@@ -36,7 +36,7 @@ use crate::{
     params::{Color, Field, Point},
     scene::{
         Bounds,
-        splats::{Cloud, Flow},
+        particle_discs::{ParticleSettings, ParticleTimeline},
     },
 };
 
@@ -56,7 +56,7 @@ params! {
         count: u32 = 100000, hard 0.0..=4000000.0, soft 0.0..=200000.0;
         /// Another seed gives another flow and other lives.
         seed: u32 = 1, soft 0.0..=999.0;
-        /// Steps per second of the look.
+        /// Steps per second of the preset.
         rate: u32 = 60, hard 1.0..=240.0, soft 24.0..=120.0, unit "/s";
         /// Half the side of the room; who would leave it is born again.
         room_m: f32 = 2.5, hard 0.01..=1000.0, soft 0.5..=5.0, unit "m";
@@ -96,7 +96,7 @@ params! {
 }
 
 pub const EFFECT: Effect =
-    Effect::new::<Particles>("particles", "Particles", "puts a cloud of drifting discs into the scene").with_cloud(|words| cloud(&read(words)));
+    Effect::new::<Particles>("particles", "Particles", "puts a cloud of drifting discs into the scene").with_particles(|words| particle_settings(&read(words)));
 
 /// Between the lattices of one octave and the next.
 pub const LATTICE_SHIFT: [f64; 3] = [0.3125, 0.4375, 0.71875];
@@ -113,17 +113,17 @@ pub const FRAMES: u32 = 36_000;
 /// How much a normal leans outwards at the rim of a disc, at most.
 pub const LEAN: f64 = 0.7;
 
-/// The frame that a look shows at a time.
+/// The frame that a preset shows at a time.
 pub fn frame_at(particles: &Particles, time_s: f64) -> u32 {
     let frame = (time_s * f64::from(particles.rate)).round_ties_even();
     if frame > 0.0 { (frame % f64::from(FRAMES)) as u32 } else { 0 }
 }
 
-fn cloud(p: &Particles) -> Cloud {
+fn particle_settings(p: &Particles) -> ParticleSettings {
     let origin = DVec3::new(p.origin[0].into(), p.origin[1].into(), p.origin[2].into());
     let room = DVec3::splat(p.room_m.into());
     let bounds = Bounds { min: origin - room, max: origin + room };
-    Cloud { count: p.count, bounds, radius_m: p.size_m.into() }
+    ParticleSettings { count: p.count, bounds, radius_m: p.size_m.into() }
 }
 
 /// Longest life in steps, and how many of them are left to chance.
@@ -133,26 +133,26 @@ pub fn life_steps(p: &Particles) -> [u32; 2] {
 }
 
 /// Does a parameter tell how particles look, and not where they fly?
-pub fn is_for_looks(field: &Field) -> bool {
+pub fn is_for_presets(field: &Field) -> bool {
     matches!(field.name, "slow" | "fast" | "count" | "size_m" | "size_spread" | "fade" | "roundness" | "bright_mps")
 }
 
 /// The words by which particles fly, with what only tells how they look as it comes.
 fn of_flight(words: &[u32]) -> Vec<u32> {
     let mut flight = words.to_vec();
-    let usual = (EFFECT.defaults)();
-    EFFECT.fields.iter().filter(|field| is_for_looks(field)).for_each(|field| field.copy(&usual, &mut flight));
+    let default = (EFFECT.defaults)();
+    EFFECT.fields.iter().filter(|field| is_for_presets(field)).for_each(|field| field.copy(&default, &mut flight));
     flight
 }
 
 /// A flow at a frame, whose parameters do not change on the way.
-pub fn steady(words: &[u32], frame: u32) -> Flow {
-    Flow { frame, course: of_flight(words).into(), stride: words.len() }
+pub fn steady(words: &[u32], frame: u32) -> ParticleTimeline {
+    ParticleTimeline { frame, step_params: of_flight(words).into(), stride: words.len() }
 }
 
 /// A flow whose steps go by these words, one after another. The attraction follows its point behind.
-pub fn along(steps: impl Iterator<Item = Vec<u32>>, frame: u32) -> Flow {
-    let (mut course, mut stride) = (Vec::new(), 0);
+pub fn along(steps: impl Iterator<Item = Vec<u32>>, frame: u32) -> ParticleTimeline {
+    let (mut step_params, mut stride) = (Vec::new(), 0);
     let mut followed: Option<[f64; 3]> = None;
     for words in steps {
         let mut words = of_flight(&words);
@@ -166,7 +166,7 @@ pub fn along(steps: impl Iterator<Item = Vec<u32>>, frame: u32) -> Flow {
         // Between two points that the field takes, it takes every point.
         let _ = field.set(&mut words, &at);
         stride = words.len();
-        course.extend(words);
+        step_params.extend(words);
     }
-    Flow { frame, course: course.into(), stride }
+    ParticleTimeline { frame, step_params: step_params.into(), stride }
 }

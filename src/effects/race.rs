@@ -1,4 +1,4 @@
-//! Race: what goes wrong without atomics, live: load the depth, compare, store depth and owner, and hope.
+//! Race: what goes wrong without atomics, live: load the depth, compare, store depth and triangle id, and hope.
 //!
 //! Two invocations that meet on a pixel both see the old depth, and whoever stores last stays, near or far. The true
 //! picture is the one without the race; the oracle draws that, and the judge counts the pixels that were lost.
@@ -14,6 +14,6 @@ params! {
 }
 
 pub const EFFECT: Effect =
-    Effect::new::<Race>("race", "Race", "stores depth and owner without atomics: wrong, and not twice the same")
+    Effect::new::<Race>("race", "Race", "stores depth and triangle id without atomics: wrong, and not twice the same")
         .in_slot(Slot::Visibility)
         .repeatable_if(|_| false);

@@ -52,7 +52,7 @@ pub const EFFECT: Effect =
     Effect::surface::<Shadow>("shadow", "Shadow", "a directional light whose shadows the rasterizer draws itself").in_light().in_steps();
 
 /// Largest tangent that counts, for the slope and for the plane of a triangle between taps.
-pub const STEEPEST: f64 = 8.0;
+pub const MAX_SHADOW_SLOPE: f64 = 8.0;
 
 impl Shadow {
     /// Unit vector towards the light.

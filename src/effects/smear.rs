@@ -30,8 +30,8 @@ impl ImageEffect for Smear {
     const READS_PREVIOUS: bool = true;
 
     fn finish(mut pixel: Pixel, picture: &Picture, p: &Self) -> Pixel {
-        let (owner, ..) = picture.at(pixel.x.into(), pixel.y.into());
-        if owner.is_some() {
+        let (triangle_id, ..) = picture.at(pixel.x.into(), pixel.y.into());
+        if triangle_id.is_some() {
             return pixel;
         }
         let background = picture.background.to_array().map(|c| (255.0 * c + 0.5).floor() as i64);

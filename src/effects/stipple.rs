@@ -2,7 +2,7 @@
 
 use super::{
     Effect,
-    hooks::{Facts, Sample, SampleEffect},
+    hooks::{TriangleSetup, Sample, SampleEffect},
 };
 use crate::{choice, math::hash, params, params::Flag};
 
@@ -37,9 +37,9 @@ pub const EFFECT: Effect =
     Effect::new::<Stipple>("stipple", "Stipple", "screen-door transparency by an ordered matrix").on_sample::<Stipple>();
 
 impl SampleEffect for Stipple {
-    const DECIDES: bool = false;
+    const HAS_SETUP: bool = false;
 
-    fn decide(_: &Facts, _: &Self, _: Option<u32>) -> [u32; 4] {
+    fn decide(_: &TriangleSetup, _: &Self, _: Option<u32>) -> [u32; 4] {
         [0; 4]
     }
 

@@ -18,7 +18,7 @@ pub const EFFECT: Effect = Effect::surface::<TriangleId>("triangle_id", "Triangl
 
 impl SurfaceEffect for TriangleId {
     fn apply(mut s: Surface, p: &Self) -> Surface {
-        let h = hash(s.owner ^ p.seed.wrapping_mul(0x9e37_79b9));
+        let h = hash(s.triangle_id ^ p.seed.wrapping_mul(0x9e37_79b9));
         let byte = |shift: u32| f64::from(h >> shift & 255) / 255.0;
         let shade = DVec3::splat(0.08) + DVec3::new(byte(0), byte(8), byte(16)) * 0.8;
         let base = s.color.truncate();

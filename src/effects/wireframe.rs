@@ -5,7 +5,7 @@
 
 use super::{
     Effect, Surface, SurfaceEffect,
-    hooks::{Facts, Sample, SampleEffect},
+    hooks::{TriangleSetup, Sample, SampleEffect},
 };
 use crate::{choice, params, params::Color};
 
@@ -37,14 +37,14 @@ pub const EFFECT: Effect = Effect::new::<Wireframe>("wireframe", "Wireframe", "d
     .on_surface::<Wireframe>();
 
 impl SampleEffect for Wireframe {
-    const DECIDES: bool = true;
+    const HAS_SETUP: bool = true;
 
     /// How near the edge opposite each corner a sample must be, less one; 0 never. Each triangle draws half of a width.
-    fn decide(facts: &Facts, p: &Self, first: Option<u32>) -> [u32; 4] {
+    fn decide(setup: &TriangleSetup, p: &Self, first: Option<u32>) -> [u32; 4] {
         let half_width = (f64::from(p.width_px) * 128.0).round_ties_even() as u64;
-        let reach = |k: usize| match facts.outline >> k & 1 {
+        let reach = |k: usize| match setup.outline >> k & 1 {
             0 => 0,
-            _ => ((facts.squared_length(k).isqrt() * half_width) >> facts.shift()).min(0x7fff_ffff) as u32 + 1,
+            _ => ((setup.squared_length(k).isqrt() * half_width) >> setup.shift()).min(0x7fff_ffff) as u32 + 1,
         };
         [first.unwrap_or(reach(0)), reach(1), reach(2), 0]
     }

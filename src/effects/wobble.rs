@@ -8,10 +8,10 @@ use glam::DVec3;
 
 use super::{
     Effect,
-    hooks::{ROUNDING, Slack, Vertex, VertexEffect},
+    hooks::{ROUNDING, ErrorBound, Vertex, VertexEffect},
 };
 use crate::{
-    math::{SINE_SLACK, cos_turns, sin_turns},
+    math::{SINE_ERROR, cos_turns, sin_turns},
     params,
     params::Point,
 };
@@ -74,29 +74,29 @@ impl VertexEffect for Wobble {
         v
     }
 
-    fn slack(v: &Vertex, mut slack: Slack, p: &Self) -> Slack {
+    fn error_bound(v: &Vertex, mut error_bound: ErrorBound, p: &Self) -> ErrorBound {
         let wave = Wave::at(v, p);
         if wave.amplitude == 0.0 {
-            return slack;
+            return error_bound;
         }
         let (place, toward) = (v.position + v.offset, wave.toward.abs());
         let wavelength = f64::from(p.wavelength_m);
-        let given = slack.position_m + slack.offset_m + ROUNDING * place.abs().max_element();
+        let given = error_bound.position_m + error_bound.offset_m + ROUNDING * place.abs().max_element();
         // A unit vector errs by ten roundings, the sum of products by four.
         let along = given * toward.element_sum() + 14.0 * ROUNDING * toward.dot(place.abs());
         let turns = along / wavelength + ROUNDING * (4.0 * wave.distance.abs() + f64::from(p.phase_turns));
-        let sine = (std::f64::consts::TAU * turns + SINE_SLACK).min(2.0);
-        slack.offset_m += wave.amplitude * (sine + 14.0 * ROUNDING) + ROUNDING * v.offset.abs().max_element();
+        let sine = (std::f64::consts::TAU * turns + SINE_ERROR).min(2.0);
+        error_bound.offset_m += wave.amplitude * (sine + 14.0 * ROUNDING) + ROUNDING * v.offset.abs().max_element();
 
         let steepest = std::f64::consts::TAU * wave.amplitude / wavelength;
         let slope = steepest * (sine + 2.0 * ROUNDING + 6.0 * ROUNDING);
-        let turned = 2.0 * slack.normal * (1.0 + 2.0 * wave.slope.abs()) + 2.0 * slope + ROUNDING * (4.0 + 40.0 * wave.slope.abs());
+        let turned = 2.0 * error_bound.normal * (1.0 + 2.0 * wave.slope.abs()) + 2.0 * slope + ROUNDING * (4.0 + 40.0 * wave.slope.abs());
         let length = wave.turned.length();
-        slack.normal = if turned < 0.5 * length { turned / (length - turned) + 10.0 * ROUNDING } else { 2.0 };
-        slack
+        error_bound.normal = if turned < 0.5 * length { turned / (length - turned) + 10.0 * ROUNDING } else { 2.0 };
+        error_bound
     }
 
-    fn reach_m(_: f64, p: &Self) -> f64 {
+    fn max_displacement_m(_: f64, p: &Self) -> f64 {
         p.amplitude_m.into()
     }
 }

@@ -63,7 +63,7 @@ pub const EFFECT: Effect =
     Effect::new::<Xray>("xray", "Xray", "averages all layers of a pixel in whole numbers, so that no order shows").in_slot(Slot::Visibility);
 
 /// Bits per channel that the sums may have, most first.
-pub const RUNGS: [u32; 4] = [16, 12, 10, 8];
+pub const OPTIONS: [u32; 4] = [16, 12, 10, 8];
 
 /// Weight of a layer that counts in full, where layers have weights.
 pub const FULL_WEIGHT: u32 = 255;
@@ -75,7 +75,7 @@ pub const fn capacity(bits: u32) -> u32 {
 
 /// The next smaller number of bits after an overflow.
 pub fn fewer(bits: u32) -> Option<u32> {
-    RUNGS.into_iter().find(|rung| *rung < bits)
+    OPTIONS.into_iter().find(|option| *option < bits)
 }
 
 impl Xray {
@@ -147,7 +147,7 @@ mod tests {
 
     #[test]
     fn capacities_are_the_published_ones() {
-        assert_eq!(RUNGS.map(capacity), [65_537, 1_048_832, 4_198_404, 16_843_009]);
+        assert_eq!(OPTIONS.map(capacity), [65_537, 1_048_832, 4_198_404, 16_843_009]);
     }
 
     #[test]

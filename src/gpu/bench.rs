@@ -1,4 +1,4 @@
-//! Milliseconds beside error: our rungs and two baselines, interleaved in one run on one adapter.
+//! Milliseconds beside error: our options and two baselines, interleaved in one run on one adapter.
 
 use std::sync::Arc;
 
@@ -11,13 +11,13 @@ use super::{
     uniforms::color_stride,
 };
 use crate::{
+    accuracy::{PinnedOptions, Visibility},
     effects::Stack,
-    frame::{Frame, NO_OWNER},
-    ladder::{Pins, Visibility},
-    measure::{ErrorFigures, Verdict, compare, timing},
-    plan::Accuracy,
+    frame::{Frame, NO_TRIANGLE},
+    measure::{ErrorStats, Verdict, compare, timing},
+    plan::AccuracyRequest,
+    preset::Preset,
     scene::{Scene, camera::View},
-    session::Session,
 };
 
 /// What to measure.
@@ -36,12 +36,12 @@ pub struct PassTime {
     pub ms_p95: f64,
 }
 
-/// One rung on one scene.
+/// One option on one scene.
 #[derive(Clone, Debug, serde::Serialize)]
 pub struct BenchRow {
     pub scene: String,
     pub triangles: u64,
-    pub rung: String,
+    pub option: String,
     pub adapter: String,
     /// Whole frame, clears and resolve included; none without timestamps or where the row could not run.
     pub ms_p50: Option<f64>,
@@ -49,8 +49,8 @@ pub struct BenchRow {
     /// Valid samples.
     pub samples: usize,
     pub passes: Vec<PassTime>,
-    pub error: ErrorFigures,
-    /// A rung of ours, which promises exactness; a baseline promises nothing.
+    pub error: ErrorStats,
+    /// A option of ours, which promises exactness; a baseline promises nothing.
     pub is_promised: bool,
     /// What a reader must know of this row.
     pub note: Option<String>,
@@ -62,14 +62,14 @@ pub type Judge<'a> = &'a dyn Fn(&Stack, &Capture) -> Verdict;
 /// Something that draws the scene.
 enum Contender {
     Ours(Visibility, Box<Renderer>),
-    /// A stack of its own, on the planned rung.
+    /// A stack of its own, on the planned option.
     Stacked(String, Box<(Stack, Renderer)>),
     Naive(Viewport, Box<Naive>),
     Hardware(Box<Hardware>),
 }
 
 impl Contender {
-    fn rung(&self) -> String {
+    fn option(&self) -> String {
         match self {
             Self::Ours(visibility, _) => visibility.name().into(),
             Self::Stacked(name, _) => name.clone(),
@@ -83,7 +83,7 @@ impl Contender {
 /// A contender with what has been measured of it.
 struct Entry {
     contender: Contender,
-    error: ErrorFigures,
+    error: ErrorStats,
     whole: Vec<f64>,
     invalid: usize,
     passes: Vec<(String, Vec<f64>)>,
@@ -91,42 +91,42 @@ struct Entry {
 
 struct Lab<'a> {
     gpu: &'a Arc<Gpu>,
-    session: &'a Session,
+    preset: &'a Preset,
     view: View,
     timer: Option<Timer>,
 }
 
-/// Measures every rung that the adapter has, and the baselines. Rows keep their order whatever the figures.
+/// Measures every option that the adapter has, and the baselines. Rows keep their order whatever the figures.
 pub fn bench(
     gpu: &Arc<Gpu>,
-    session: &Session,
+    preset: &Preset,
     scene: &Arc<Scene>,
     scene_name: &str,
     options: &BenchOptions,
     progress: &mut dyn FnMut(&str, usize, usize),
     judge: Judge,
 ) -> Result<Vec<BenchRow>, RenderError> {
-    let mut lab = Lab::new(gpu, session, scene, options);
+    let mut lab = Lab::new(gpu, preset, scene, options);
     let (entries, missing) = lab.line_up(scene, judge)?;
     lab.measure(scene, scene_name, entries, missing, options.samples, progress)
 }
 
-/// Measures stacks by name on one scene and camera, interleaved, each on the planned rung.
+/// Measures stacks by name on one scene and camera, interleaved, each on the planned option.
 pub fn bench_stacks(
     gpu: &Arc<Gpu>,
-    session: &Session,
+    preset: &Preset,
     scene: &Arc<Scene>,
     stacks: &[(String, Stack)],
     options: &BenchOptions,
     progress: &mut dyn FnMut(&str, usize, usize),
     judge: Judge,
 ) -> Result<Vec<BenchRow>, RenderError> {
-    let mut lab = Lab::new(gpu, session, scene, options);
+    let mut lab = Lab::new(gpu, preset, scene, options);
     let mut entries = Vec::new();
     for (name, stack) in stacks {
         let mut renderer = Renderer::new(gpu.clone());
         renderer.set_scene(scene)?;
-        let verdict = judge(stack, &renderer.capture(&lab.view, stack, &Accuracy::default())?);
+        let verdict = judge(stack, &renderer.capture(&lab.view, stack, &AccuracyRequest::default())?);
         let contender = Contender::Stacked(name.clone(), Box::new((stack.clone(), renderer)));
         entries.push(Entry::new(contender, (&verdict.accuracy).into()));
     }
@@ -134,8 +134,8 @@ pub fn bench_stacks(
 }
 
 impl<'a> Lab<'a> {
-    fn new(gpu: &'a Arc<Gpu>, session: &'a Session, scene: &Scene, options: &BenchOptions) -> Self {
-        Self { gpu, session, view: session.view(scene, options.size), timer: Timer::new(gpu) }
+    fn new(gpu: &'a Arc<Gpu>, preset: &'a Preset, scene: &Scene, options: &BenchOptions) -> Self {
+        Self { gpu, preset, view: preset.view(scene, options.size), timer: Timer::new(gpu) }
     }
 
     /// Draws all contenders in turn, round after round: whole frames first, then pass by pass.
@@ -157,14 +157,15 @@ impl<'a> Lab<'a> {
                 let times = self.sample(&mut entry.contender, detail)?;
                 if round >= WARM_UP {
                     entry.keep(times, detail);
-                    progress(&entry.contender.rung(), (round - WARM_UP) * all / rounds + i + 1, all);
+                    progress(&entry.contender.option(), (round - WARM_UP) * all / rounds + i + 1, all);
                 }
             }
         }
-        let row = |rung: String, error: ErrorFigures, note: Option<String>| BenchRow {
+        let row = |option: String, error: ErrorStats, note: Option<String>| BenchRow {
             scene: scene_name.into(),
-            triangles: scene.triangle_count() + self.session.stack.cloud().map_or(0, |cloud| cloud.count.into()),
-            rung,
+            triangles: scene.triangle_count()
+                + self.preset.stack.particle_settings().map_or(0, |particle_settings| particle_settings.count.into()),
+            option,
             adapter: self.gpu.summary.name.clone(),
             ms_p50: None,
             ms_p95: None,
@@ -175,7 +176,7 @@ impl<'a> Lab<'a> {
             note,
         };
         let mut rows: Vec<BenchRow> = entries.into_iter().map(|entry| entry.finish(&row)).collect();
-        rows.extend(missing.into_iter().map(|(rung, why)| row(rung, ErrorFigures::default(), Some(format!("{scene_name}: {why}")))));
+        rows.extend(missing.into_iter().map(|(option, why)| row(option, ErrorStats::default(), Some(format!("{scene_name}: {why}")))));
         Ok(rows)
     }
 }
@@ -193,8 +194,8 @@ impl Lab<'_> {
                 missing.push((visibility.name().into(), "packed64 needs 64-bit atomics, which this adapter lacks".into()));
                 continue;
             }
-            let capture = renderer.capture(&self.view, &self.session.stack, &pinned(visibility))?;
-            let verdict = judge(&self.session.stack, &capture);
+            let capture = renderer.capture(&self.view, &self.preset.stack, &pinned(visibility))?;
+            let verdict = judge(&self.preset.stack, &capture);
             entries.push(Entry::new(Contender::Ours(visibility, Box::new(renderer)), (&verdict.accuracy).into()));
             expected = Some(verdict.expected);
         }
@@ -213,7 +214,7 @@ impl Lab<'_> {
                 Err(error) => return Err(error),
             }
         }
-        match Hardware::new(self.gpu, scene, &self.view, &self.session.stack, &key)? {
+        match Hardware::new(self.gpu, scene, &self.view, &self.preset.stack, &key)? {
             Ok(hardware) => {
                 let picture = self.hardware_picture(&hardware)?;
                 entries.push(Entry::new(Contender::Hardware(Box::new(hardware)), picture_error(&picture, &expected)));
@@ -233,8 +234,8 @@ impl Lab<'_> {
     /// Draws once and waits.
     fn sample(&mut self, contender: &mut Contender, detail: Detail) -> Result<Times, RenderError> {
         let ours = match contender {
-            Contender::Ours(visibility, renderer) => Some((renderer.as_mut(), &self.session.stack, pinned(*visibility))),
-            Contender::Stacked(_, own) => Some((&mut own.1, &own.0, Accuracy::default())),
+            Contender::Ours(visibility, renderer) => Some((renderer.as_mut(), &self.preset.stack, pinned(*visibility))),
+            Contender::Stacked(_, own) => Some((&mut own.1, &own.0, AccuracyRequest::default())),
             _ => None,
         };
         if let Some((renderer, stack, accuracy)) = ours {
@@ -277,14 +278,14 @@ impl Lab<'_> {
     }
 }
 
-fn pinned(visibility: Visibility) -> Accuracy {
-    Accuracy { pins: Pins::of(visibility), ..Accuracy::default() }
+fn pinned(visibility: Visibility) -> AccuracyRequest {
+    AccuracyRequest { pins: PinnedOptions::of(visibility), ..AccuracyRequest::default() }
 }
 
-/// Error of a picture that has no owners: where it shows something it should not or the reverse, and how far off it is.
-fn picture_error(picture: &[[u8; 4]], expected: &Frame) -> ErrorFigures {
+/// Error of a picture that has no triangle ids: where it shows something it should not or the reverse, and how far off it is.
+fn picture_error(picture: &[[u8; 4]], expected: &Frame) -> ErrorStats {
     let is_drawn = |i: usize| picture[i][3] != 0;
-    let is_owned = |i: usize| expected.owner[i] != NO_OWNER;
+    let is_owned = |i: usize| expected.triangle_id[i] != NO_TRIANGLE;
     let count = |wrong: &dyn Fn(usize) -> bool| (0..picture.len()).filter(|&i| wrong(i)).count() as u64;
     // Only pixels that both drew: a hole is counted as one, not as a colour.
     let both: Vec<usize> = (0..picture.len()).filter(|&i| is_drawn(i) && is_owned(i)).collect();
@@ -292,17 +293,17 @@ fn picture_error(picture: &[[u8; 4]], expected: &Frame) -> ErrorFigures {
     let ours: Vec<_> = both.iter().map(|&i| opaque(picture[i])).collect();
     let theirs: Vec<_> = both.iter().map(|&i| opaque(expected.color[i])).collect();
     let delta = compare::pictures(&ours, &theirs, 1);
-    ErrorFigures {
+    ErrorStats {
         holes: Some(count(&|i| is_owned(i) && !is_drawn(i))),
         extra: Some(count(&|i| is_drawn(i) && !is_owned(i))),
-        max_colour_delta: Some(delta.max_delta),
-        rms_colour_delta: Some(delta.rms),
-        ..ErrorFigures::default()
+        max_color_delta: Some(delta.max_delta),
+        rms_color_delta: Some(delta.rms),
+        ..ErrorStats::default()
     }
 }
 
 impl Entry {
-    fn new(contender: Contender, error: ErrorFigures) -> Self {
+    fn new(contender: Contender, error: ErrorStats) -> Self {
         Self { contender, error, whole: Vec::new(), invalid: 0, passes: Vec::new() }
     }
 
@@ -321,12 +322,12 @@ impl Entry {
         }
     }
 
-    fn finish(self, row: &dyn Fn(String, ErrorFigures, Option<String>) -> BenchRow) -> BenchRow {
+    fn finish(self, row: &dyn Fn(String, ErrorStats, Option<String>) -> BenchRow) -> BenchRow {
         let note = match self.contender {
             Contender::Naive(Viewport::AsWritten, _) => {
                 Some("naive draws one quadrant of the view, as its author wrote it; holes are not comparable".into())
             }
-            _ if self.invalid > 0 => Some(format!("{}: {} samples had no valid timestamps", self.contender.rung(), self.invalid)),
+            _ if self.invalid > 0 => Some(format!("{}: {} samples had no valid timestamps", self.contender.option(), self.invalid)),
             _ => None,
         };
         let percentile = |samples: &[f64], p| timing::percentile(samples, p);
@@ -343,7 +344,7 @@ impl Entry {
                 Contender::Naive(..) | Contender::Hardware(_) => false,
             },
             passes: self.passes.into_iter().filter_map(pass).collect(),
-            ..row(self.contender.rung(), self.error, note)
+            ..row(self.contender.option(), self.error, note)
         }
     }
 }

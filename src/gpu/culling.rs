@@ -1,4 +1,4 @@
-//! Culling: meshlets of the scene's meshes, and what a picture knows of every instance. Twins of the structs in
+//! Culling: meshlets of the scene's meshes, and what a picture knows of every instance. Mirrors of the structs in
 //! `shaders/common/{meshlets,instances,culling}.wgsl`.
 
 use std::collections::BTreeSet;
@@ -9,19 +9,19 @@ use rayon::prelude::*;
 use super::{
     Gpu, RenderError, STORAGE,
     buffers::Buffers,
-    uniforms::{Twin, twin},
+    uniforms::{GpuRecord, gpu_record},
 };
 use crate::{
-    ladder::Culling,
+    accuracy::Culling,
     scene::{
         Scene,
         camera::View,
         draw::Draw,
-        meshlets::{Meshlet, Meshlets, boxed, rounded_up},
+        meshlets::{Meshlet, Meshlets, center_and_half, rounded_up},
     },
 };
 
-twin! {
+gpu_record! {
     /// One meshlet. Each member is explained in `shaders/common/meshlets.wgsl`.
     pub struct MeshletRecord = "Meshlet" {
         pub center: [f32; 4],
@@ -34,7 +34,7 @@ twin! {
     }
 }
 
-twin! {
+gpu_record! {
     /// One draw, for culling. Each member is explained in `shaders/common/instances.wgsl`.
     pub struct InstanceRecord = "Instance" {
         pub eye: [f32; 4],
@@ -47,26 +47,26 @@ twin! {
     }
 }
 
-twin! {
+gpu_record! {
     /// Numbers of a picture. Each member is explained in `shaders/common/culling.wgsl`.
     pub struct CullingUniform = "Culling" {
         pub meshlet_count: u32,
-        pub first_survivor: u32,
+        pub first_visible: u32,
         pub hiz_width: u32,
         pub hiz_first_block: u32,
     }
 }
 
 /// Words of a survivor.
-const SURVIVOR_WORDS: u64 = 4;
+const VISIBLE_MESHLET_WORDS: u64 = 4;
 
-/// `INSTANCE_FACES` and `INSTANCE_BENDS` of the shaders.
+/// `INSTANCE_FACES` and `INSTANCE_DEFORMS` of the shaders.
 const FACES: u32 = 1;
-const BENDS: u32 = 2;
+const DEFORMS: u32 = 2;
 
 /// The meshlets of a scene's primitives, as the kernels read them.
 #[derive(Default)]
-pub struct Patches {
+pub struct MeshletBuffers {
     records: Vec<MeshletRecord>,
     /// Triangles and vertices of all meshlets.
     lists: Vec<u32>,
@@ -76,22 +76,22 @@ pub struct Patches {
     pub count: u32,
 }
 
-impl Patches {
+impl MeshletBuffers {
     pub fn of(scene: &Scene) -> Self {
         let shown: BTreeSet<usize> = scene.instances.iter().map(|instance| instance.primitive).collect();
         let divided: Vec<(usize, Meshlets)> =
             shown.into_par_iter().map(|primitive| (primitive, Meshlets::of(scene, &scene.primitives[primitive]))).collect();
-        let mut patches = Self { spans: vec![(0, 0); scene.primitives.len()], ..Self::default() };
+        let mut meshlet_buffers = Self { spans: vec![(0, 0); scene.primitives.len()], ..Self::default() };
         for (primitive, meshlets) in divided {
-            let first_triangle = patches.lists.len() as u32;
-            patches.lists.extend(&meshlets.triangles);
-            let first_vertex = patches.lists.len() as u32;
-            patches.lists.extend(&meshlets.vertices);
-            patches.spans[primitive] = (patches.records.len() as u32, meshlets.list.len() as u32);
-            patches.records.extend(meshlets.list.iter().map(|meshlet| record(meshlet, first_triangle, first_vertex)));
+            let first_triangle = meshlet_buffers.lists.len() as u32;
+            meshlet_buffers.lists.extend(&meshlets.triangles);
+            let first_vertex = meshlet_buffers.lists.len() as u32;
+            meshlet_buffers.lists.extend(&meshlets.vertices);
+            meshlet_buffers.spans[primitive] = (meshlet_buffers.records.len() as u32, meshlets.list.len() as u32);
+            meshlet_buffers.records.extend(meshlets.list.iter().map(|meshlet| record(meshlet, first_triangle, first_vertex)));
         }
-        patches.count = scene.instances.iter().map(|instance| patches.spans[instance.primitive].1).sum();
-        patches
+        meshlet_buffers.count = scene.instances.iter().map(|instance| meshlet_buffers.spans[instance.primitive].1).sum();
+        meshlet_buffers
     }
 
     /// What a picture knows of every draw; one record at least.
@@ -127,15 +127,15 @@ fn record(meshlet: &Meshlet, first_triangle: u32, first_vertex: u32) -> MeshletR
 fn instance(scene: &Scene, draw: &Draw, view: &View) -> InstanceRecord {
     let primitive = &scene.primitives[draw.primitive];
     // Floats bend a vertex within 2^-18 of the places to which its joints take it; the box holds those.
-    let (center, half) = boxed(&draw.object_bounds(primitive), 1.0 / f64::from(1 << 16));
-    let bends = draw.bend.is_some();
-    let sight = if bends || draw.double_sided { None } else { Sight::of(draw, view) };
+    let (center, half) = center_and_half(&draw.object_bounds(primitive), 1.0 / f64::from(1 << 16));
+    let deforms = draw.deform.is_some();
+    let sight = if deforms || draw.double_sided { None } else { Sight::of(draw, view) };
     let Sight { eye, area, length } = sight.unwrap_or_default();
     InstanceRecord {
         eye,
         center: [center[0], center[1], center[2], area],
         half: [half[0], half[1], half[2], length],
-        flags: if sight.is_some() { FACES } else { 0 } | if bends { BENDS } else { 0 },
+        flags: if sight.is_some() { FACES } else { 0 } | if deforms { DEFORMS } else { 0 },
         ..InstanceRecord::default()
     }
 }
@@ -198,27 +198,43 @@ impl Buffers {
     pub(super) fn fill_culling(
         &mut self,
         gpu: &Gpu,
-        patches: &Patches,
-        rung: Culling,
+        meshlet_buffers: &MeshletBuffers,
+        option: Culling,
         (scene, draws, view): (&Scene, &[Draw], &View),
     ) -> Result<(), RenderError> {
         let [across, down] = blocks(view);
-        let (tiles, lists) = (64 * across * down, patches.lists.len() as u64);
-        let uniform =
-            CullingUniform { meshlet_count: patches.count, first_survivor: lists as u32, hiz_width: 8 * across, hiz_first_block: tiles };
+        let (tiles, lists) = (64 * across * down, meshlet_buffers.lists.len() as u64);
+        let uniform = CullingUniform {
+            meshlet_count: meshlet_buffers.count,
+            first_visible: lists as u32,
+            hiz_width: 8 * across,
+            hiz_first_block: tiles,
+        };
         self.fill(gpu, "culling", bytemuck::bytes_of(&uniform), wgpu::BufferUsages::UNIFORM, "how many meshlets there are")?;
-        let instances = patches.instances(scene, draws, view);
+        let instances = meshlet_buffers.instances(scene, draws, view);
         self.fill(gpu, "instances", bytemuck::cast_slice(&instances), STORAGE, "a box round every instance, and from where it is seen")?;
         if !self.has("meshlets") {
-            self.fill(gpu, "meshlets", bytemuck::cast_slice(&patches.records), STORAGE, "bounds of patches of up to 64 triangles")?;
-            let room = 4 * (lists + SURVIVOR_WORDS * u64::from(patches.count));
+            self.fill(
+                gpu,
+                "meshlets",
+                bytemuck::cast_slice(&meshlet_buffers.records),
+                STORAGE,
+                "bounds of meshlet_buffers of up to 64 triangles",
+            )?;
+            let room = 4 * (lists + VISIBLE_MESHLET_WORDS * u64::from(meshlet_buffers.count));
             let why = "triangles and vertices of every meshlet, and behind them the meshlets that culling left";
-            self.fill_room(gpu, "meshlet_lists", bytemuck::cast_slice(&patches.lists), room, STORAGE, why)?;
+            self.fill_room(gpu, "meshlet_lists", bytemuck::cast_slice(&meshlet_buffers.lists), room, STORAGE, why)?;
         }
-        if rung == Culling::TwoPass {
-            self.ensure(gpu, "seen", 4 * u64::from(patches.count), STORAGE, "which meshlets nothing hid in the picture before")?;
+        if option == Culling::TwoPass {
+            self.ensure(
+                gpu,
+                "meshlet_visibility",
+                4 * u64::from(meshlet_buffers.count),
+                STORAGE,
+                "which meshlets nothing hid in the picture before",
+            )?;
         }
-        if rung.occludes() {
+        if option.occludes() {
             let words = u64::from(tiles) + u64::from(across * down);
             self.ensure(gpu, "hiz", 4 * words, STORAGE, "the farthest depth of every 8 x 8 and every 64 x 64 pixels")?;
         }

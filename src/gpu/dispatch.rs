@@ -18,26 +18,26 @@ pub enum Dispatch {
 /// particles, in a picture of `view` that is shown at another size.
 pub fn dispatch(
     pass: Pass,
-    [vertices, triangles, bent, meshlets, particles]: [u32; 5],
+    [vertices, triangles, deformed, meshlets, particles]: [u32; 5],
     view: &View,
     shown: [u32; 2],
     key: &KernelKey,
 ) -> Dispatch {
     match pass {
-        Pass::Particles => Dispatch::Direct(folded(particles.div_ceil(key.list_group))),
-        Pass::Skin => Dispatch::Direct(folded(bent.div_ceil(key.list_group))),
-        Pass::Project => Dispatch::Direct(folded(vertices.div_ceil(key.list_group))),
-        Pass::Cull(_) => Dispatch::Direct(folded(meshlets.div_ceil(key.list_group))),
-        Pass::Farthest => Dispatch::Direct([view.width.div_ceil(64), view.height.div_ceil(64)]),
+        Pass::Particles => Dispatch::Direct(folded(particles.div_ceil(key.group_size))),
+        Pass::Skin => Dispatch::Direct(folded(deformed.div_ceil(key.group_size))),
+        Pass::Project => Dispatch::Direct(folded(vertices.div_ceil(key.group_size))),
+        Pass::Cull(_) => Dispatch::Direct(folded(meshlets.div_ceil(key.group_size))),
+        Pass::DepthReduce => Dispatch::Direct([view.width.div_ceil(64), view.height.div_ceil(64)]),
         Pass::Rounds { .. } => Dispatch::Direct([1, 1]),
         Pass::ProjectMeshlets => Dispatch::Indirect(72),
         Pass::RasterSmall(_) if key.culls() => Dispatch::Indirect(72),
         Pass::RasterPoints(phase) if !phase.is_bin() => {
-            Dispatch::Direct(folded(triangles.saturating_mul(key.disc_shares).div_ceil(key.list_group)))
+            Dispatch::Direct(folded(triangles.saturating_mul(key.invocations_per_triangle).div_ceil(key.group_size)))
         }
-        Pass::RasterSmall(_) | Pass::RasterPoints(_) => Dispatch::Direct(folded(triangles.div_ceil(key.list_group))),
-        Pass::Decide(Entries::Triangles) => Dispatch::Direct(folded(triangles.div_ceil(key.list_group))),
-        Pass::Decide(Entries::Pieces) => Dispatch::Indirect(60),
+        Pass::RasterSmall(_) | Pass::RasterPoints(_) => Dispatch::Direct(folded(triangles.div_ceil(key.group_size))),
+        Pass::SampleSetup(Entries::Triangles) => Dispatch::Direct(folded(triangles.div_ceil(key.group_size))),
+        Pass::SampleSetup(Entries::ClippedTriangles) => Dispatch::Indirect(60),
         Pass::OrderSums | Pass::OrderRanks => Dispatch::Direct(folded(triangles.div_ceil(1024))),
         Pass::OrderLimit | Pass::OrderCut => Dispatch::Direct([1, 1]),
         Pass::Args => Dispatch::Direct([1, 1]),

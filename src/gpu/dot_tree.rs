@@ -1,15 +1,15 @@
-//! A tree of stretches in space: what the CPU asks which dots may show. It keeps a few too many, never one too few.
+//! A tree of dot_runs in space: what the CPU asks which dots may show. It keeps a few too many, never one too few.
 
 use glam::{DMat4, DVec3, DVec4};
 use rstar::{AABB, RTree, RTreeObject, SelectionFunction};
 
-use super::dots::StretchRecord;
+use super::dots::DotRunRecord;
 use crate::{
     effects::dots::Dots,
     scene::{
         Scene,
         camera::View,
-        lines::{Ends, Lines},
+        lines::{Lines, SegmentEnds},
     },
 };
 
@@ -21,7 +21,7 @@ const STEPS: u32 = 256;
 
 /// A stretch with its box.
 struct Leaf {
-    stretch: u32,
+    dot_run: u32,
     corners: [[f64; 3]; 2],
 }
 
@@ -50,13 +50,13 @@ impl SelectionFunction<Leaf> for Planes {
             // The corner that lies farthest inside.
             let normal = plane.truncate();
             let corner = DVec3::select(normal.cmpge(DVec3::ZERO), high, low);
-            normal.dot(corner) + plane.w >= -slack(plane, corner)
+            normal.dot(corner) + plane.w >= -error_bound(plane, corner)
         })
     }
 }
 
 /// How far rounding may carry the distance of a point from a plane.
-fn slack(plane: &DVec4, point: DVec3) -> f64 {
+fn error_bound(plane: &DVec4, point: DVec3) -> f64 {
     ROUNDING * plane.abs().dot(point.abs().extend(1.0))
 }
 
@@ -71,53 +71,53 @@ impl Planes {
 
     /// May a point lie inside?
     fn may_hold(&self, point: DVec3) -> bool {
-        self.0.iter().all(|plane| plane.truncate().dot(point) + plane.w >= -slack(plane, point))
+        self.0.iter().all(|plane| plane.truncate().dot(point) + plane.w >= -error_bound(plane, point))
     }
 }
 
 impl DotTree {
     /// The tree of lines that stay where they are.
-    pub fn new(scene: &Scene, lines: &Lines, stretches: &[StretchRecord]) -> Self {
+    pub fn new(scene: &Scene, lines: &Lines, dot_runs: &[DotRunRecord]) -> Self {
         let place = |draw: u32, vertex: u32| {
             let instance = &scene.instances[draw as usize];
             let position = scene.primitives[instance.primitive].position(scene, vertex).map(f64::from);
             instance.world_from_object.transform_point3(position.into())
         };
-        let ends_of = |stretch: &StretchRecord| {
-            let [begin, end] = match lines.segments[stretch.segment as usize].ends {
-                Ends::Edge { draw, vertices, .. } => vertices.map(|vertex| place(draw, vertex)),
-                Ends::Points(points) => points.map(|point| DVec3::from(point.map(f64::from))),
+        let ends_of = |dot_run: &DotRunRecord| {
+            let [begin, end] = match lines.segments[dot_run.segment as usize].ends {
+                SegmentEnds::Edge { draw, vertices, .. } => vertices.map(|vertex| place(draw, vertex)),
+                SegmentEnds::Points(points) => points.map(|point| DVec3::from(point.map(f64::from))),
             };
-            let at = |place: u32| begin + (end - begin) * (f64::from(stretch.start) + f64::from(place) * f64::from(stretch.step));
-            [at(0), at(stretch.count - 1)]
+            let at = |place: u32| begin + (end - begin) * (f64::from(dot_run.start) + f64::from(place) * f64::from(dot_run.step));
+            [at(0), at(dot_run.count - 1)]
         };
-        let ends: Vec<[DVec3; 2]> = stretches.iter().map(ends_of).collect();
-        let leaf = |(i, [a, b]): (usize, &[DVec3; 2])| Leaf { stretch: i as u32, corners: [a.min(*b).to_array(), a.max(*b).to_array()] };
+        let ends: Vec<[DVec3; 2]> = dot_runs.iter().map(ends_of).collect();
+        let leaf = |(i, [a, b]): (usize, &[DVec3; 2])| Leaf { dot_run: i as u32, corners: [a.min(*b).to_array(), a.max(*b).to_array()] };
         Self { tree: RTree::bulk_load(ends.iter().enumerate().map(leaf).collect()), ends }
     }
 
-    /// Stretch and place of every dot that may show.
-    pub fn choose(&self, stretches: &[StretchRecord], dots: &Dots, view: &View) -> Vec<[u32; 2]> {
+    /// DotRun and place of every dot that may show.
+    pub fn choose(&self, dot_runs: &[DotRunRecord], dots: &Dots, view: &View) -> Vec<[u32; 2]> {
         let clip_from_scene = view.clip_from_world * view.world_from_scene;
         let planes = Planes::new(&clip_from_scene, dots, view);
         let (fade_from, row) = (dots.fade_from(view), clip_from_scene.row(3));
         // The level below which dots have surely faded at a point.
         let level = |point: DVec3| {
-            let w = row.truncate().dot(point) + row.w - slack(&row, point);
+            let w = row.truncate().dot(point) + row.w - error_bound(&row, point);
             let inv_w = if w > 0.0 { ((1.0 / w) as f32).to_bits().saturating_add(STEPS) } else { u32::MAX };
             let halved = (i64::from(fade_from) - i64::from(inv_w)).clamp(0, i64::from(dots.levels) << 23);
             (halved >> 23) as u32
         };
         let mut chosen = Vec::new();
         for leaf in self.tree.locate_with_selection_function(Planes(planes.0)) {
-            let (stretch, [a, b]) = (&stretches[leaf.stretch as usize], self.ends[leaf.stretch as usize]);
+            let (dot_run, [a, b]) = (&dot_runs[leaf.dot_run as usize], self.ends[leaf.dot_run as usize]);
             let stride = 1u32 << level(a).min(level(b));
-            let first = stretch.first.next_multiple_of(stride) - stretch.first;
-            for place in (first..stretch.count).step_by(stride as usize) {
-                let at = a + (b - a) * (f64::from(place) / f64::from(stretch.count.max(2) - 1));
-                let number = stretch.first + place;
+            let first = dot_run.first.next_multiple_of(stride) - dot_run.first;
+            for place in (first..dot_run.count).step_by(stride as usize) {
+                let at = a + (b - a) * (f64::from(place) / f64::from(dot_run.count.max(2) - 1));
+                let number = dot_run.first + place;
                 if (number == 0 || number.trailing_zeros() >= level(at)) && planes.may_hold(at) {
-                    chosen.push([leaf.stretch, place]);
+                    chosen.push([leaf.dot_run, place]);
                 }
             }
         }

@@ -1,4 +1,4 @@
-//! Dots: the lines they are strung on, cut into stretches of consecutive dots, and three ways of choosing which are drawn.
+//! Dots: the lines they are strung on, cut into dot_runs of consecutive dots, and three ways of choosing which are drawn.
 
 use std::{sync::Arc, time::Instant};
 
@@ -6,34 +6,34 @@ use super::{
     RenderError, Renderer, STORAGE, buffers,
     dispatch::{Dispatch, folded},
     dot_tree::DotTree,
-    uniforms::{Twin, color_stride, twin},
+    uniforms::{GpuRecord, color_stride, gpu_record},
 };
 use crate::{
+    accuracy::DotCulling,
     effects::{
         Stack,
-        dots::{Dots, MAX_DOTS, Strung},
+        dots::{Dots, LineSource, MAX_DOTS},
         hooks::tone::encoded,
     },
     frame::SnappedVertex,
-    ladder::DotWay,
     math::rounded_columns,
     scene::{
         Scene,
         camera::View,
         draw::DrawError,
-        lines::{Ends, Lines, Segment},
+        lines::{Lines, Segment, SegmentEnds},
     },
     shader::key::{KernelKey, Pass},
 };
 
-twin! {
+gpu_record! {
     /// What of a picture concerns its dots. Each member is explained in `shaders/common/dot_frame.wgsl`.
     pub struct DotFrame = "DotFrame" {
         pub clip_from_scene: [[f32; 4]; 4],
         pub ink: [f32; 4],
         pub center: [f32; 2],
         pub dots: u32,
-        pub stretches: u32,
+        pub dot_runs: u32,
         pub segments: u32,
         pub fade_from: u32,
         pub fade_rate: u32,
@@ -47,9 +47,9 @@ twin! {
     }
 }
 
-twin! {
+gpu_record! {
     /// Consecutive dots of one segment. Each member is explained in `shaders/common/dots.wgsl`.
-    pub struct StretchRecord = "Stretch" {
+    pub struct DotRunRecord = "DotRun" {
         pub segment: u32,
         pub first: u32,
         pub count: u32,
@@ -68,12 +68,12 @@ const PROBED: u32 = 1 << 20;
 const ROOM: u64 = 32;
 
 /// Buffers that only pictures with dots have.
-const BUFFERS: [&str; 8] = ["dot_frame", "dot_segments", "stretches", "dot_ends", "dot_list", "dot_count", "dot_args", "dot_records"];
+const BUFFERS: [&str; 8] = ["dot_frame", "dot_segments", "dot_runs", "dot_ends", "dot_list", "dot_count", "dot_args", "dot_records"];
 
 /// What lines are made from.
 #[derive(Clone, Debug, PartialEq)]
 struct Source {
-    strung: Strung,
+    line_source: LineSource,
     crease: u32,
     polyline: Arc<[[f32; 3]]>,
 }
@@ -83,7 +83,7 @@ pub struct DotStore {
     source: Source,
     lines: Lines,
     spacing: u32,
-    stretches: Vec<StretchRecord>,
+    dot_runs: Vec<DotRunRecord>,
     dots: u32,
     tree: Option<DotTree>,
     /// Dots that the CPU chose for the last picture.
@@ -95,37 +95,37 @@ pub struct DotStore {
 
 impl DotStore {
     fn new(scene: &Scene, source: Source) -> Result<Self, DrawError> {
-        let lines = match source.strung {
-            Strung::Edges => Lines::edges(scene, None)?,
-            Strung::Creases => Lines::edges(scene, Some(f32::from_bits(source.crease).into()))?,
-            Strung::Polyline => Lines::polyline(&source.polyline),
+        let lines = match source.line_source {
+            LineSource::Edges => Lines::edges(scene, None)?,
+            LineSource::Creases => Lines::edges(scene, Some(f32::from_bits(source.crease).into()))?,
+            LineSource::Polyline => Lines::polyline(&source.polyline),
         };
-        let (spacing, stretches, dots, tree, chosen, frame) = (0, Vec::new(), 0, None, 0, DotFrame::default());
-        Ok(Self { source, lines, spacing, stretches, dots, tree, chosen, frame, chosen_ms: None })
+        let (spacing, dot_runs, dots, tree, chosen, frame) = (0, Vec::new(), 0, None, 0, DotFrame::default());
+        Ok(Self { source, lines, spacing, dot_runs, dots, tree, chosen, frame, chosen_ms: None })
     }
 
     /// Workgroups of a pass over dots.
     pub fn dispatch(&self, pass: Pass, key: &KernelKey) -> Dispatch {
         let over = |count: u32| Dispatch::Direct(folded(count.div_ceil(64)));
-        match (pass, key.rungs.dots) {
+        match (pass, key.options.dot_culling) {
             (Pass::DotsEnds, _) => over(self.lines.segments.len() as u32),
-            (Pass::DotsCull, _) => over(self.stretches.len() as u32),
+            (Pass::DotsCull, _) => over(self.dot_runs.len() as u32),
             (Pass::DotsArgs, _) => Dispatch::Direct([1, 1]),
-            (_, DotWay::Brute) => over(self.dots),
-            (_, DotWay::Cpu) => over(self.chosen),
-            (_, DotWay::Gpu) => Dispatch::Listed,
+            (_, DotCulling::Brute) => over(self.dots),
+            (_, DotCulling::Cpu) => over(self.chosen),
+            (_, DotCulling::Gpu) => Dispatch::Listed,
         }
     }
 
     /// How many dots there are, on how many lines.
-    pub fn counts(&self) -> [usize; 2] {
-        [self.dots as usize, self.lines.firsts.len()]
+    pub fn sample_counts(&self) -> [usize; 2] {
+        [self.dots as usize, self.lines.first_segments.len()]
     }
 
     fn segment_bytes(&self) -> Vec<u8> {
-        let of = |ends: Ends| match ends {
-            Ends::Edge { draw, vertices: [a, b], triangle } => vec![draw, a, b, triangle],
-            Ends::Points(points) => {
+        let of = |ends: SegmentEnds| match ends {
+            SegmentEnds::Edge { draw, vertices: [a, b], triangle } => vec![draw, a, b, triangle],
+            SegmentEnds::Points(points) => {
                 points.iter().flat_map(|p| [p[0].to_bits(), p[1].to_bits(), p[2].to_bits(), 1.0f32.to_bits()]).collect()
             }
         };
@@ -148,10 +148,10 @@ pub fn counted(lines: &Lines, dots: &Dots) -> Result<u64, DrawError> {
     if count > MAX_DOTS { Err(DrawError::TooMany { what: "dots", count, limit: MAX_DOTS }) } else { Ok(count) }
 }
 
-/// Cuts lines into stretches. As many steps as there are dots, so these are [`counted`] first.
-pub fn stretches(lines: &Lines, dots: &Dots) -> Vec<StretchRecord> {
+/// Cuts lines into dot_runs. As many steps as there are dots, so these are [`counted`] first.
+pub fn dot_runs(lines: &Lines, dots: &Dots) -> Vec<DotRunRecord> {
     let spacing_m = f64::from(dots.spacing_m);
-    let (mut stretches, mut before) = (Vec::new(), 0);
+    let (mut dot_runs, mut before) = (Vec::new(), 0);
     for (first_segment, line) in lines.each() {
         let count = line.last().map_or(0, |last| dots.count(last.start_m + last.length_m));
         let mut dot = 0;
@@ -163,7 +163,7 @@ pub fn stretches(lines: &Lines, dots: &Dots) -> Vec<StretchRecord> {
                     dot += 1;
                 }
                 let share = |dot: u64| (((dot as f64 * spacing_m - segment.start_m) / segment.length_m) as f32).clamp(0.0, 1.0);
-                stretches.push(StretchRecord {
+                dot_runs.push(DotRunRecord {
                     segment: (first_segment + i) as u32,
                     first: (before + first) as u32,
                     count: (dot - first) as u32,
@@ -174,13 +174,13 @@ pub fn stretches(lines: &Lines, dots: &Dots) -> Vec<StretchRecord> {
         }
         before += count;
     }
-    stretches
+    dot_runs
 }
 
 impl Renderer {
     /// Makes the buffers hold what the passes over dots will read; chooses dots where that is the CPU's affair.
     pub(super) fn prepare_dots(&mut self, view: &View, stack: &Stack, key: &KernelKey) -> Result<(), RenderError> {
-        let Some((dots, strung)) = stack.dots().zip(key.dots) else {
+        let Some((dots, line_source)) = stack.dots().zip(key.dots) else {
             self.dots = None;
             self.buffers.keep(|name| !BUFFERS.contains(&name));
             return Ok(());
@@ -188,28 +188,28 @@ impl Renderer {
         let scene = self.scene.clone().ok_or(RenderError::NoScene)?;
         let (gpu, buffers) = (&self.gpu, &mut self.buffers);
         let source = Source {
-            strung,
-            crease: if strung == Strung::Creases { dots.crease_deg.to_bits() } else { 0 },
-            polyline: if strung == Strung::Polyline { view.polyline.clone() } else { Arc::default() },
+            line_source,
+            crease: if line_source == LineSource::Creases { dots.crease_deg.to_bits() } else { 0 },
+            polyline: if line_source == LineSource::Polyline { view.polyline.clone() } else { Arc::default() },
         };
         let known = self.dots.take().filter(|store| store.source == source);
         let mut store = known.map_or_else(|| DotStore::new(&scene, source), Ok)?;
         if store.spacing != dots.spacing_m.to_bits() {
             let count = counted(&store.lines, &dots)?;
-            let stretches = stretches(&store.lines, &dots);
-            (store.stretches, store.dots, store.tree, store.spacing) = (stretches, count as u32, None, dots.spacing_m.to_bits());
+            let dot_runs = dot_runs(&store.lines, &dots);
+            (store.dot_runs, store.dots, store.tree, store.spacing) = (dot_runs, count as u32, None, dots.spacing_m.to_bits());
             let why = "both ends of every segment on which dots are strung";
-            let (segments, records) = (store.segment_bytes(), bytemuck::cast_slice(&store.stretches));
+            let (segments, records) = (store.segment_bytes(), bytemuck::cast_slice(&store.dot_runs));
             buffers.fill_room(gpu, "dot_segments", &segments, ROOM.max(segments.len() as u64), STORAGE, why)?;
             let why = "up to 64 dots of one segment each, 20 bytes";
-            buffers.fill_room(gpu, "stretches", records, ROOM.max(records.len() as u64), STORAGE, why)?;
+            buffers.fill_room(gpu, "dot_runs", records, ROOM.max(records.len() as u64), STORAGE, why)?;
         }
         store.frame = DotFrame {
             clip_from_scene: rounded_columns(&(view.clip_from_world * view.world_from_scene)),
             ink: encoded(dots.color).to_array().map(|lane| lane as f32),
             center: [view.width, view.height].map(|pixels| (128 * pixels) as f32),
             dots: store.dots,
-            stretches: store.stretches.len() as u32,
+            dot_runs: store.dot_runs.len() as u32,
             segments: store.lines.segments.len() as u32,
             fade_from: dots.fade_from(view),
             fade_rate: dots.fade_rate(),
@@ -223,27 +223,27 @@ impl Renderer {
         };
         buffers.fill(gpu, "dot_frame", bytemuck::bytes_of(&store.frame), wgpu::BufferUsages::UNIFORM, "size, gap and colour of dots")?;
         buffers.ensure(gpu, "dot_ends", 32 * store.lines.segments.len() as u64, STORAGE, "ends of segments in clip space, 32 bytes")?;
-        let way = key.rungs.dots;
+        let way = key.options.dot_culling;
         buffers.keep(|name| match name {
-            "dot_list" | "dot_count" => way != DotWay::Brute,
-            "dot_args" => way == DotWay::Gpu,
+            "dot_list" | "dot_count" => way != DotCulling::Brute,
+            "dot_args" => way == DotCulling::Gpu,
             "dot_records" => false,
             _ => true,
         });
-        if way != DotWay::Brute {
+        if way != DotCulling::Brute {
             // Room for all of them: no list overflows, whatever shows.
             buffers.ensure(gpu, "dot_list", 8 * u64::from(store.dots), STORAGE, "dots that may show, room for all, 8 bytes each")?;
             buffers.ensure(gpu, "dot_count", 16, STORAGE, "how many dots may show")?;
         }
-        if way == DotWay::Gpu {
+        if way == DotCulling::Gpu {
             buffers.ensure(gpu, "dot_args", 16, STORAGE | wgpu::BufferUsages::INDIRECT, "dispatch size of dots, written on the GPU")?;
         }
         store.chosen_ms = None;
-        if way == DotWay::Cpu {
+        if way == DotCulling::Cpu {
             let lines = &store.lines;
-            let tree = store.tree.get_or_insert_with(|| DotTree::new(&scene, lines, &store.stretches));
+            let tree = store.tree.get_or_insert_with(|| DotTree::new(&scene, lines, &store.dot_runs));
             let began = Instant::now();
-            let chosen = tree.choose(&store.stretches, &dots, view);
+            let chosen = tree.choose(&store.dot_runs, &dots, view);
             store.chosen = chosen.len() as u32;
             gpu.queue.write_buffer(buffers.get("dot_list"), 0, bytemuck::cast_slice(&chosen));
             gpu.queue.write_buffer(buffers.get("dot_count"), 0, bytemuck::bytes_of(&store.chosen));
@@ -256,7 +256,7 @@ impl Renderer {
     /// No dot on any pixel, and none on the list that the GPU makes.
     pub(super) fn clear_dots(&self, encoder: &mut wgpu::CommandEncoder, key: &KernelKey, view: &View) {
         encoder.clear_buffer(self.buffers.get("color"), 4 * first_dot_word(view), Some(4 * view.pixels() as u64));
-        if key.rungs.dots == DotWay::Gpu {
+        if key.options.dot_culling == DotCulling::Gpu {
             encoder.clear_buffer(self.buffers.get("dot_count"), 0, None);
         }
     }

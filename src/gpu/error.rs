@@ -1,7 +1,7 @@
 //! Errors of drawing, each one sentence.
 
 use crate::{
-    ladder::Scale,
+    accuracy::RenderScale,
     plan::PlanError,
     scene::{camera::View, draw::DrawError},
     shader::{link::LinkError, reflect::ShaderError},
@@ -20,8 +20,8 @@ pub enum RenderError {
     TooWide { width: u32, height: u32, limit: u32 },
     #[error("no memory for the buffer {buffer} of {bytes} bytes")]
     OutOfMemory { buffer: &'static str, bytes: u64 },
-    #[error("scale {} draws {}x{} pixels for a picture of {}x{}, and {why}; take a smaller scale", rung.name(), drawn[0], drawn[1], shown[0], shown[1])]
-    Scaled { rung: Scale, shown: [u32; 2], drawn: [u32; 2], why: Box<RenderError> },
+    #[error("scale {} draws {}x{} pixels for a picture of {}x{}, and {why}; take a smaller scale", option.name(), drawn[0], drawn[1], shown[0], shown[1])]
+    Scaled { option: RenderScale, shown: [u32; 2], drawn: [u32; 2], why: Box<RenderError> },
     #[error("checks trusted is for the shaders inside this program, not for those of a folder; use checked")]
     Untrusted,
     #[error("the device was lost")]
@@ -50,17 +50,17 @@ pub enum RenderError {
 
 impl RenderError {
     /// With the reason why so much was asked for.
-    pub(super) fn at_scale(self, rung: Scale, shown: &View, drawn: &View) -> Self {
+    pub(super) fn at_scale(self, option: RenderScale, shown: &View, drawn: &View) -> Self {
         let [shown, drawn] = [shown, drawn].map(|view| [view.width, view.height]);
         match self {
             Self::TooLarge { .. } | Self::TooWide { .. } | Self::OutOfMemory { .. } => {
-                Self::Scaled { rung, shown, drawn, why: Box::new(self) }
+                Self::Scaled { option, shown, drawn, why: Box::new(self) }
             }
             other => other,
         }
     }
 
-    /// A pinned rung that this look or adapter lacks, or a size.
+    /// A pinned option that this preset or adapter lacks, or a size.
     pub fn is_unsupported(&self) -> bool {
         matches!(self, Self::Plan(error) if !matches!(error, PlanError::Conflict(_)))
             || matches!(

@@ -3,7 +3,7 @@
 use super::{BufferNote, Note, Renderer, dots::DotStore};
 use crate::{
     plan::{Plan, Tolerance, predict::Prediction},
-    scene::sizes::Classes,
+    scene::sizes::SizeClasses,
     shader::key::{Entries, Pass, Phase, Round},
 };
 
@@ -17,7 +17,7 @@ pub struct Explanation {
     pub omitted: Vec<Note>,
     /// Triangles by their size on the screen, and the paths that they take.
     pub sizes: Option<SizesNote>,
-    /// What the rungs are predicted to err by, and what they may.
+    /// What the options are predicted to err by, and what they may.
     pub prediction: Option<Prediction>,
     pub tolerance: Option<Tolerance>,
 }
@@ -26,7 +26,7 @@ pub struct Explanation {
 #[derive(Clone, Debug, serde::Serialize)]
 pub struct SizesNote {
     pub triangles: u64,
-    pub looked_at: u32,
+    pub sampled: u32,
     /// Of those, whole ones that face the viewer and lie in the picture.
     pub seen: u32,
     /// Reach before the near plane.
@@ -34,33 +34,34 @@ pub struct SizesNote {
     /// Upper end of a power of two in pixels, and how many of the seen ones lie in it.
     pub bins: Vec<(f64, u32)>,
     /// How many take which path; not where effects move or reshape triangles.
-    pub predicted: Option<Classes>,
+    pub predicted: Option<SizeClasses>,
     /// What the queues of the frame counted: medium and large triangles. Not while figures are still to come.
     pub counted: Option<[u32; 2]>,
     /// The prediction holds, where both are known.
-    pub is_foreseen: Option<bool>,
+    pub prediction_holds: Option<bool>,
 }
 
 impl SizesNote {
     fn new(plan: &Plan, counted: Option<[u32; 2]>) -> Self {
         let Plan { key, sizes, classes, .. } = plan;
         // What is cut comes back as pieces of any size, and what is hidden may never be queued.
-        let is_told = |_: &[u32; 2]| (!key.has_clipping || sizes.cut == 0) && !key.rungs.culling.occludes();
-        let is_near = |c: Classes, [medium, large]: [u32; 2]| {
-            let near = |predicted: f64, counted: u32| (predicted - f64::from(counted)).abs() <= c.slack + 0.02 * f64::from(counted) + 1.0;
+        let is_told = |_: &[u32; 2]| (!key.has_clipping || sizes.cut == 0) && !key.options.culling.occludes();
+        let is_near = |c: SizeClasses, [medium, large]: [u32; 2]| {
+            let near =
+                |predicted: f64, counted: u32| (predicted - f64::from(counted)).abs() <= c.error_bound + 0.02 * f64::from(counted) + 1.0;
             // Those that exceed the pass which was left out are drawn by the one before.
             (near(c.medium, medium) || !key.has_medium) && (near(c.large, large) || !key.has_large)
         };
-        let is_foreseen = classes.zip(counted.filter(is_told)).map(|(classes, counted)| is_near(classes, counted));
+        let prediction_holds = classes.zip(counted.filter(is_told)).map(|(classes, counted)| is_near(classes, counted));
         Self {
             triangles: sizes.triangles,
-            looked_at: sizes.looked_at,
+            sampled: sizes.sampled,
             seen: sizes.seen(),
             cut: sizes.cut,
             bins: sizes.bins(),
             predicted: *classes,
             counted,
-            is_foreseen,
+            prediction_holds,
         }
     }
 }
@@ -81,17 +82,17 @@ impl Renderer {
             };
         };
         let own = plan.key.frame().into_iter().map(|pass| Note { name: pass.label(), why: pass_purpose(pass).into() });
-        let light = || self.lamp.iter();
+        let light = || self.shadow_pass.iter();
         let mut reasons = plan.reasons.clone();
-        if let Some([dots, lines]) = self.dots.as_ref().map(DotStore::counts) {
+        if let Some([dots, lines]) = self.dots.as_ref().map(DotStore::sample_counts) {
             reasons.push(Note { name: "dots".into(), why: format!("{dots} dots on {lines} lines, as far as the lines are long") });
         }
         let why = "a texture of words: what the materials of primitives are, and the levels of their images";
         let texels = self.texels.as_ref().map(|texels| BufferNote { name: "texels".into(), bytes: texels.bytes, why: why.into() });
         Explanation {
             key: plan.key.to_string(),
-            passes: light().flat_map(|lamp| lamp.passes()).chain(own).collect(),
-            buffers: self.buffers.notes().into_iter().chain(texels).chain(light().flat_map(|lamp| lamp.buffers())).collect(),
+            passes: light().flat_map(|shadow_pass| shadow_pass.passes()).chain(own).collect(),
+            buffers: self.buffers.notes().into_iter().chain(texels).chain(light().flat_map(|shadow_pass| shadow_pass.buffers())).collect(),
             reasons,
             omitted: plan.omitted.clone(),
             sizes: Some(SizesNote::new(plan, self.demand)),
@@ -111,19 +112,19 @@ pub(super) fn pass_purpose(pass: Pass) -> &'static str {
         Pass::Cull(Round::Seen) => "lists the meshlets that were seen in the picture before",
         Pass::Cull(Round::Behind) => "lists those of the others that the first round does not hide",
         Pass::ProjectMeshlets => "pulls, transforms and snaps the vertices of the meshlets that are left",
-        Pass::Farthest => "finds the farthest depth of every tile, behind which meshlets hide",
+        Pass::DepthReduce => "finds the farthest depth of every tile, behind which meshlets hide",
         Pass::Rounds { is_over: false } => "ends the first round: what follows takes up what is listed from here on",
         Pass::Rounds { is_over: true } => "opens the lists of both rounds again",
         Pass::RasterSmall(Phase::Tally) => "culls and classifies every triangle, counts the samples of the small ones",
-        Pass::RasterSmall(Phase::Straddle) => "marks the samples of the triangle in which the drawing stops",
-        Pass::RasterSmall(Phase::Owner) => "visits the small triangles again for the owner of each nearest key",
+        Pass::RasterSmall(Phase::BoundaryTriangle) => "marks the samples of the triangle in which the drawing stops",
+        Pass::RasterSmall(Phase::TriangleId) => "visits the small triangles again for the triangle id of each nearest key",
         Pass::RasterSmall(Phase::Sum) => "visits the small triangles again and adds every layer's colour",
         Pass::RasterSmall(Phase::Count) => "visits the small triangles again and counts layers",
         Pass::RasterSmall(Phase::BinCount) => "culls and classifies every triangle, counts the tiles of the small ones",
         Pass::RasterSmall(Phase::BinFill) => "puts the small triangles on the lists of their tiles",
         Pass::RasterSmall(_) => "culls and classifies every triangle, draws the small ones on the spot",
-        Pass::Decide(Entries::Triangles) => "settles once per triangle what sample effects hold against",
-        Pass::Decide(Entries::Pieces) => "settles the same for the pieces that clipping left",
+        Pass::SampleSetup(Entries::Triangles) => "settles once per triangle what sample effects hold against",
+        Pass::SampleSetup(Entries::ClippedTriangles) => "settles the same for the pieces that clipping left",
         Pass::OrderSums => "adds up the samples of every 1,024 triangles",
         Pass::OrderLimit => "finds how many samples there are, how many to draw, and in which triangle that number is reached",
         Pass::OrderRanks => "tells which share of all samples comes before each triangle",

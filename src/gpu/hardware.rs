@@ -45,7 +45,7 @@ impl Hardware {
         if stack.light().is_some() {
             return Ok(Err("an effect asks for shadows, which it does not draw".into()));
         }
-        if scene.soft_vertex_count() > 0 {
+        if scene.deformable_vertex_count() > 0 {
             return Ok(Err("meshes bend, which takes a pass that it does not have".into()));
         }
         let strides = |p: &Primitive| (p.positions.stride, p.normals.stride, scene.materials[p.material].double_sided);

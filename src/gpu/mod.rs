@@ -1,9 +1,9 @@
 //! The kernels on a device: [`Renderer`] records a frame as a straight list of passes and reads it back.
 
 pub mod bench;
-pub mod bends;
 pub mod buffers;
 pub mod culling;
+pub mod deforms;
 pub mod device;
 mod dispatch;
 mod dot_tree;
@@ -11,19 +11,19 @@ pub mod dots;
 pub mod error;
 mod explain;
 pub mod hardware;
-mod hardware_owners;
-mod lamp;
+mod hardware_ids;
+mod history;
 pub mod naive;
 mod packing;
-mod past;
+pub mod particle_readback;
 pub mod pipelines;
 mod prepare;
 pub mod readback;
 mod scenes;
-pub mod swarm;
+mod shadow_pass;
+pub mod sweep;
 pub mod texels;
 pub mod timer;
-pub mod trade;
 pub mod uniforms;
 
 use std::{collections::VecDeque, sync::Arc};
@@ -36,25 +36,25 @@ pub use readback::Capture;
 
 use self::{
     buffers::Buffers,
-    culling::Patches,
+    culling::MeshletBuffers,
     dispatch::{Dispatch, dispatch},
     dots::DotStore,
-    lamp::Lamp,
     packing::Packing,
     pipelines::Pipelines,
     prepare::{bin_heads, record_count, recorded_capacities},
     readback::Pending,
+    shadow_pass::ShadowPass,
     texels::Texels,
     timer::{Detail, Timer},
     uniforms::{Capacities, CounterRecord, color_stride},
 };
 pub use crate::plan::Note;
 use crate::{
+    accuracy::RenderScale,
     effects::{Stack, hooks::Layers, xray},
-    frame::{Counters, CullingFigures, OrderFigures},
-    ladder::Scale,
-    plan::{Accuracy, Plan, Tuning},
-    scene::{Scene, camera::View, needs::Needs, splats::Cloud},
+    frame::{Counters, CullingStats, OrderStats},
+    plan::{AccuracyRequest, Plan, Tuning},
+    scene::{Scene, camera::View, needs::Needs, particle_discs::ParticleSettings},
     shader::{
         key::{KernelKey, Order, Pass},
         library::Library,
@@ -71,13 +71,13 @@ pub struct Report {
     pub passes: Vec<(String, f64)>,
     pub counters: Counters,
     /// What a draw order let through, where one is kept.
-    pub order: Option<OrderFigures>,
+    pub order: Option<OrderStats>,
     /// What culling left out, where there is some.
-    pub culled: Option<CullingFigures>,
+    pub culled: Option<CullingStats>,
     /// A queue overflowed and has grown: the picture is incomplete, draw it again.
     pub redraw: bool,
     /// Particles are on their way to the frame that was asked for: draw it again.
-    pub is_behind: bool,
+    pub simulation_pending: bool,
 }
 
 /// Draws scenes on one device.
@@ -91,15 +91,15 @@ pub struct Renderer {
     scene: Option<Arc<Scene>>,
     /// Images and materials of the scene, where it has any that are more than a base colour.
     texels: Option<Texels>,
-    cloud: Option<Cloud>,
+    particle_settings: Option<ParticleSettings>,
     tuning: Tuning,
     capacities: Capacities,
     /// A proof from bounds failed: queues and clipping are kept from now on.
-    distrust: bool,
+    force_all_paths: bool,
     target: Option<(wgpu::Texture, wgpu::TextureView)>,
     last: Option<Plan>,
     /// What the colour buffer shows, where an effect will read it as the picture before; none: nothing of use.
-    past: Option<(View, Stack)>,
+    history: Option<(View, Stack)>,
     last_picture: Option<(View, Stack)>,
     /// The last picture whose sums of layers overflowed, and the bits per channel that it gets instead.
     full: Option<(View, Stack, u32)>,
@@ -113,13 +113,13 @@ pub struct Renderer {
     /// Size at which the picture is shown.
     shown: [u32; 2],
     /// Which vertices, of all that may bend, the last picture bent.
-    bent: Vec<std::ops::Range<u32>>,
+    deformed: Vec<std::ops::Range<u32>>,
     /// Meshlets of the scene, once a picture asks for them.
-    patches: Option<Patches>,
+    meshlet_buffers: Option<MeshletBuffers>,
     /// Size and stack of the picture whose depths and meshlets the next one may start from; none: nothing of use.
     occluders: Option<([u32; 2], Stack)>,
     /// What culling left out of the last finished picture.
-    culled: Option<CullingFigures>,
+    culled: Option<CullingStats>,
     /// A picture is drawn once more for the judge, after which the next one goes on as if it had not been.
     is_judged: bool,
     /// Lines and their dots, while a stack has them.
@@ -127,13 +127,13 @@ pub struct Renderer {
     /// Vertices and triangles of the last picture's draws.
     totals: [u64; 2],
     /// What draws the shadow map, where an effect asks for one.
-    lamp: Option<Box<Lamp>>,
+    shadow_pass: Option<Box<ShadowPass>>,
     /// This is such a one itself: it draws depths, no picture.
-    is_lamp: bool,
+    is_shadow_pass: bool,
     /// The particles that the device keeps.
-    kept: Option<swarm::Kept>,
+    kept: Option<particle_readback::Kept>,
     /// The last picture shows particles on their way to its own frame.
-    is_behind: bool,
+    simulation_pending: bool,
 }
 
 const STORAGE: wgpu::BufferUsages = wgpu::BufferUsages::STORAGE;
@@ -155,12 +155,12 @@ impl Renderer {
             base: None,
             scene: None,
             texels: None,
-            cloud: None,
+            particle_settings: None,
             capacities: Capacities::default(),
-            distrust: false,
+            force_all_paths: false,
             target: None,
             last: None,
-            past: None,
+            history: None,
             last_picture: None,
             full: None,
             pending: VecDeque::new(),
@@ -168,17 +168,17 @@ impl Renderer {
             packed: None,
             demand: None,
             shown: [0; 2],
-            bent: Vec::new(),
-            patches: None,
+            deformed: Vec::new(),
+            meshlet_buffers: None,
             occluders: None,
             culled: None,
             is_judged: false,
             dots: None,
             totals: [0; 2],
-            lamp: None,
-            is_lamp: false,
+            shadow_pass: None,
+            is_shadow_pass: false,
             kept: None,
-            is_behind: false,
+            simulation_pending: false,
         }
     }
 
@@ -208,7 +208,7 @@ impl Renderer {
     }
 
     /// What culling left out of the last finished picture; none where everything is drawn.
-    pub fn culled(&self) -> Option<CullingFigures> {
+    pub fn culled(&self) -> Option<CullingStats> {
         self.culled
     }
 
@@ -218,7 +218,7 @@ impl Renderer {
     }
 
     /// Records and submits one frame; never waits. A picture of 0 pixels dispatches nothing.
-    pub fn draw(&mut self, view: &View, stack: &Stack, accuracy: &Accuracy) -> Result<(), RenderError> {
+    pub fn draw(&mut self, view: &View, stack: &Stack, accuracy: &AccuracyRequest) -> Result<(), RenderError> {
         self.draw_timed(view, stack, accuracy, Detail::Passes, false)
     }
 
@@ -226,13 +226,13 @@ impl Renderer {
         &mut self,
         view: &View,
         stack: &Stack,
-        accuracy: &Accuracy,
+        accuracy: &AccuracyRequest,
         detail: Detail,
         is_patient: bool,
     ) -> Result<(), RenderError> {
         let scale = accuracy.scale();
         self.shown = [view.width, view.height];
-        if scale == Scale::Whole {
+        if scale == RenderScale::Full {
             return self.draw_pixels(view, stack, accuracy, detail, is_patient);
         }
         let drawn = view.scaled(scale.factor());
@@ -245,27 +245,40 @@ impl Renderer {
         &mut self,
         view: &View,
         stack: &Stack,
-        accuracy: &Accuracy,
+        accuracy: &AccuracyRequest,
         detail: Detail,
         is_patient: bool,
     ) -> Result<(), RenderError> {
         if self.gpu.is_lost() {
             return Err(RenderError::Lost);
         }
-        self.dress(stack)?;
+        self.attach_particles(stack)?;
         let plan = self.prepare(view, stack, accuracy)?;
         if view.pixels() == 0 {
             self.target = None;
             return Ok(());
         }
-        self.is_behind = self.fly(&plan.key, view, stack, is_patient)?;
-        self.prepare_lamp(view, stack)?;
+        self.simulation_pending = self.simulate_particles(&plan.key, view, stack, is_patient)?;
+        self.prepare_shadow_pass(view, stack)?;
         let passes = plan.key.frame();
         let mut encoder = self.gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor { label: Some("frame") });
         if let Some(timer) = &mut self.timer {
             timer.begin(&mut encoder, detail);
         }
-        self.clear(&mut encoder, &["counters", "depth_keys", "owners", "depth_owner", "packed", "layers", "marks", "counts", "hits"]);
+        self.clear(
+            &mut encoder,
+            &[
+                "counters",
+                "depth_keys",
+                "triangle_ids",
+                "depth_and_id",
+                "packed",
+                "layers",
+                "tile_mask",
+                "sample_counts",
+                "boundary_samples",
+            ],
+        );
         if plan.key.dots.is_some() {
             self.clear_dots(&mut encoder, &plan.key, view);
         }
@@ -278,16 +291,19 @@ impl Renderer {
         self.keep_previous(&mut encoder, &plan.key, view, stack);
         self.keep_occluders(&mut encoder, &plan.key, view, stack);
         // The light comes after whatever bends the scene for both.
-        let bending =
-            if self.lamp.is_some() { passes.iter().take_while(|pass| matches!(pass, Pass::Particles | Pass::Skin)).count() } else { 0 };
-        self.record(&mut encoder, &plan.key, &passes[..bending], view, false)?;
-        self.record_lamp(&mut encoder)?;
-        self.record(&mut encoder, &plan.key, &passes[bending..], view, true)?;
+        let deforming = if self.shadow_pass.is_some() {
+            passes.iter().take_while(|pass| matches!(pass, Pass::Particles | Pass::Skin)).count()
+        } else {
+            0
+        };
+        self.record(&mut encoder, &plan.key, &passes[..deforming], view, false)?;
+        self.record_shadow_pass(&mut encoder)?;
+        self.record(&mut encoder, &plan.key, &passes[deforming..], view, true)?;
         self.present(&mut encoder);
         let order = self.buffers.has("order").then(|| self.buffers.get("order"));
-        let light = self.lamp.as_ref().map(|lamp| lamp.counters());
-        let figures = [Some(self.buffers.get("counters")), light, order];
-        let pending = Pending::stage(&self.gpu, &mut encoder, figures, self.timer.as_ref());
+        let light = self.shadow_pass.as_ref().map(|shadow_pass| shadow_pass.counters());
+        let stats = [Some(self.buffers.get("counters")), light, order];
+        let pending = Pending::stage(&self.gpu, &mut encoder, stats, self.timer.as_ref());
         self.gpu.queue.submit([encoder.finish()]);
         self.pending.push_back(pending.begin());
         self.last = Some(plan);
@@ -308,7 +324,7 @@ impl Renderer {
             let finished = self.pending.pop_front().expect("a front was just seen");
             newest = Some(finished);
         }
-        newest.and_then(|finished| self.digest(finished))
+        newest.and_then(|finished| self.collect_stats(finished))
     }
 
     /// Are figures of a submitted frame still to come?
@@ -320,41 +336,50 @@ impl Renderer {
     pub fn finish(&mut self) -> Result<Report, RenderError> {
         buffers::wait(&self.gpu)?;
         let finished = self.pending.drain(..).next_back().ok_or(RenderError::NoScene)?;
-        self.digest(finished).ok_or(RenderError::Lost)
+        self.collect_stats(finished).ok_or(RenderError::Lost)
     }
 
-    fn digest(&mut self, finished: Pending) -> Option<Report> {
+    fn collect_stats(&mut self, finished: Pending) -> Option<Report> {
         let ([record, light], order, times) = finished.read(self.timer.as_ref())?;
         self.demand = Some([record.medium, record.large]);
         let key = self.last.as_ref()?.key.clone();
         let recorded = recorded_capacities(&key, &self.capacities);
         let mut counters = record.counters(&recorded);
-        let mut redraw = counters.overflow > 0 && self.mend(&key, &record);
-        let lost_light = self.digest_lamp(&light);
+        let mut redraw = counters.overflow > 0 && self.grow_queues(&key, &record);
+        let lost_light = self.collect_shadow_stats(&light);
         counters.overflow = counters.overflow.saturating_add(lost_light);
         redraw |= lost_light > 0;
         redraw |= counters.full_pixels > 0 && self.pending.is_empty() && self.take_fewer_bits();
         let key = &self.last.as_ref()?.key;
-        let order = (key.order != Order::Free).then(|| order.figures(key.order == Order::Scheduler, record.tickets));
+        let order = (key.order != Order::Free).then(|| order.stats(key.order == Order::Scheduler, record.next_sample_index));
         let culled = key.culls().then(|| record.culled());
         if !self.is_judged {
             self.culled = culled;
         }
         let cpu_ms = self.dots.as_ref().and_then(|dots| dots.chosen_ms);
-        Some(Report { gpu_ms: times.total_ms, cpu_ms, passes: times.passes, counters, order, culled, redraw, is_behind: self.is_behind })
+        Some(Report {
+            gpu_ms: times.total_ms,
+            cpu_ms,
+            passes: times.passes,
+            counters,
+            order,
+            culled,
+            redraw,
+            simulation_pending: self.simulation_pending,
+        })
     }
 
     /// Makes room for what the queues lost, or gives up a proof that was wrong; true if either may help.
-    fn mend(&mut self, key: &KernelKey, record: &CounterRecord) -> bool {
+    fn grow_queues(&mut self, key: &KernelKey, record: &CounterRecord) -> bool {
         let is_proof_wrong =
             record.clip > 0 && !key.has_clipping || record.medium > 0 && !key.has_medium || record.large > 0 && !key.has_large;
-        self.distrust |= is_proof_wrong;
+        self.force_all_paths |= is_proof_wrong;
         self.capacities.grow(record) || is_proof_wrong
     }
 
     /// Begins anew: the next picture stands after nothing but background.
-    pub fn forget(&mut self) {
-        self.past = None;
+    pub fn clear_history(&mut self) {
+        self.history = None;
         self.occluders = None;
     }
 
@@ -385,13 +410,16 @@ impl Renderer {
         ends: bool,
     ) -> Result<(), RenderError> {
         let (vertices, triangles) = (record_count(key, self.totals) as u32, self.totals[1] as u32);
-        let bent = self.bent.last().map_or(0, |range| range.end);
-        let (meshlets, particles) = (self.patches.as_ref().map_or(0, |patches| patches.count), self.cloud.map_or(0, |cloud| cloud.count));
+        let deformed = self.deformed.last().map_or(0, |range| range.end);
+        let (meshlets, particles) = (
+            self.meshlet_buffers.as_ref().map_or(0, |meshlet_buffers| meshlet_buffers.count),
+            self.particle_settings.map_or(0, |particle_settings| particle_settings.count),
+        );
         self.pipelines.prepare(&self.gpu, key, passes)?;
         for (i, &pass) in passes.iter().enumerate() {
             let pipeline = self.pipelines.get(&self.gpu, key, pass)?;
             let is_last = ends && i + 1 == passes.len();
-            let label = if self.is_lamp { format!("light {}", pass.label()) } else { pass.label() };
+            let label = if self.is_shadow_pass { format!("light {}", pass.label()) } else { pass.label() };
             let timestamp_writes = self.timer.as_mut().and_then(|timer| timer.compute(&label, is_last));
             let mut recorded = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor { label: Some(&label), timestamp_writes });
             pipeline.bind(&self.gpu, &mut recorded, |name| match &self.texels {
@@ -400,12 +428,12 @@ impl Renderer {
             });
             let size = match &self.dots {
                 Some(dots) if pass.is_of_dots() => dots.dispatch(pass, key),
-                _ => dispatch(pass, [vertices, triangles, bent, meshlets, particles], view, self.shown, key),
+                _ => dispatch(pass, [vertices, triangles, deformed, meshlets, particles], view, self.shown, key),
             };
             match size {
                 // A list may be longer than one dispatch walks.
                 Dispatch::Direct([x, y]) if pass == Pass::RasterTiles => {
-                    (0..self.capacities.listed.div_ceil(key.list_walk).max(1)).for_each(|_| recorded.dispatch_workgroups(x, y, 1));
+                    (0..self.capacities.listed.div_ceil(key.max_list_entries).max(1)).for_each(|_| recorded.dispatch_workgroups(x, y, 1));
                 }
                 Dispatch::Direct([x, y]) => recorded.dispatch_workgroups(x, y, 1),
                 Dispatch::Listed => recorded.dispatch_workgroups_indirect(self.buffers.get("dot_args"), 0),

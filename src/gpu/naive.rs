@@ -105,8 +105,8 @@ fn world_corners(scene: &Scene, view: &View) -> Result<Vec<f32>, RenderError> {
         let primitive = &scene.primitives[draw.primitive];
         for triangle in 0..primitive.triangle_count() {
             for vertex in primitive.corners(scene, triangle) {
-                let position = match &draw.bend {
-                    Some(bend) => bend.position(scene, primitive, vertex),
+                let position = match &draw.deform {
+                    Some(deform) => deform.position(scene, primitive, vertex),
                     None => glam::Vec3::from(primitive.position(scene, vertex)).as_dvec3(),
                 };
                 corners.extend(draw.world_from_object.transform_point3(position).as_vec3().to_array());

@@ -12,7 +12,7 @@ use rayon::prelude::*;
 
 use super::{Gpu, RenderError};
 use crate::{
-    ladder::Checks,
+    accuracy::ShaderChecks,
     shader::{
         key::{KernelKey, Pass},
         library::Library,
@@ -44,7 +44,7 @@ struct Identity {
 }
 
 /// What is to be compiled.
-struct Draft {
+struct PipelineDesc {
     label: String,
     identity: Identity,
     bindings: Vec<Binding>,
@@ -80,8 +80,8 @@ impl Pipelines {
         if let Some(pipeline) = self.known.get(key).and_then(|of_key| of_key.get(&pass)).cloned() {
             return Ok(self.marked(pipeline));
         }
-        let draft = self.draft_of(gpu, key, pass)?;
-        let pipeline = self.found_or_compiled(gpu, draft)?;
+        let desc = self.desc_of(gpu, key, pass)?;
+        let pipeline = self.found_or_compiled(gpu, desc)?;
         self.known.entry(key.clone()).or_default().insert(pass, pipeline.clone());
         Ok(pipeline)
     }
@@ -98,17 +98,17 @@ impl Pipelines {
         slots: &[(&str, String)],
         constants: &[(&str, f64)],
     ) -> Result<Arc<Pipeline>, RenderError> {
-        let draft = self.draft(gpu, root, label, entry, key, slots, constants)?;
-        self.found_or_compiled(gpu, draft)
+        let desc = self.desc(gpu, root, label, entry, key, slots, constants)?;
+        self.found_or_compiled(gpu, desc)
     }
 
     /// What was built already, or else is compiled now.
-    fn found_or_compiled(&mut self, gpu: &Gpu, draft: Draft) -> Result<Arc<Pipeline>, RenderError> {
-        if let Some(pipeline) = self.built.get(&draft.identity).cloned() {
+    fn found_or_compiled(&mut self, gpu: &Gpu, desc: PipelineDesc) -> Result<Arc<Pipeline>, RenderError> {
+        if let Some(pipeline) = self.built.get(&desc.identity).cloned() {
             return Ok(self.marked(pipeline));
         }
-        let pipeline = compile(gpu, &draft)?;
-        Ok(self.keep(gpu, draft.identity, pipeline))
+        let pipeline = compile(gpu, &desc)?;
+        Ok(self.keep(gpu, desc.identity, pipeline))
     }
 
     /// Compiles what `passes` lack, all at once, since a driver compiles each on the thread that asks for it.
@@ -118,20 +118,20 @@ impl Pipelines {
         if missing.is_empty() {
             return Ok(());
         }
-        let drafts: Vec<Draft> = missing.par_iter().map(|&pass| self.draft_of(gpu, key, pass)).collect::<Result<_, _>>()?;
-        let mut fresh: Vec<&Draft> = Vec::new();
-        for draft in drafts.iter().filter(|draft| !self.built.contains_key(&draft.identity)) {
-            if fresh.iter().all(|other| other.identity != draft.identity) {
-                fresh.push(draft);
+        let drafts: Vec<PipelineDesc> = missing.par_iter().map(|&pass| self.desc_of(gpu, key, pass)).collect::<Result<_, _>>()?;
+        let mut fresh: Vec<&PipelineDesc> = Vec::new();
+        for desc in drafts.iter().filter(|desc| !self.built.contains_key(&desc.identity)) {
+            if fresh.iter().all(|other| other.identity != desc.identity) {
+                fresh.push(desc);
             }
         }
-        let pipelines: Vec<Pipeline> = fresh.par_iter().map(|draft| compile(gpu, draft)).collect::<Result<_, _>>()?;
-        let fresh: Vec<Identity> = fresh.into_iter().map(|draft| draft.identity.clone()).collect();
+        let pipelines: Vec<Pipeline> = fresh.par_iter().map(|desc| compile(gpu, desc)).collect::<Result<_, _>>()?;
+        let fresh: Vec<Identity> = fresh.into_iter().map(|desc| desc.identity.clone()).collect();
         for (identity, pipeline) in fresh.into_iter().zip(pipelines) {
             self.keep(gpu, identity, pipeline);
         }
-        for (pass, draft) in missing.into_iter().zip(drafts) {
-            if let Some(pipeline) = self.built.get(&draft.identity).cloned() {
+        for (pass, desc) in missing.into_iter().zip(drafts) {
+            if let Some(pipeline) = self.built.get(&desc.identity).cloned() {
                 let pipeline = self.marked(pipeline);
                 self.known.entry(key.clone()).or_default().insert(pass, pipeline);
             }
@@ -139,13 +139,13 @@ impl Pipelines {
         Ok(())
     }
 
-    fn draft_of(&self, gpu: &Gpu, key: &KernelKey, pass: Pass) -> Result<Draft, RenderError> {
+    fn desc_of(&self, gpu: &Gpu, key: &KernelKey, pass: Pass) -> Result<PipelineDesc, RenderError> {
         let root = format!("passes/{}", pass.stem());
-        self.draft(gpu, &root, &pass.label(), pass.entry(), key, &key.slots(pass), &key.constants(pass))
+        self.desc(gpu, &root, &pass.label(), pass.entry(), key, &key.slots(pass), &key.constants(pass))
     }
 
     #[allow(clippy::too_many_arguments, reason = "as `build`")]
-    fn draft(
+    fn desc(
         &self,
         gpu: &Gpu,
         root: &str,
@@ -154,8 +154,8 @@ impl Pipelines {
         key: &KernelKey,
         slots: &[(&str, String)],
         constants: &[(&str, f64)],
-    ) -> Result<Draft, RenderError> {
-        let is_trusted = key.rungs.checks == Checks::Trusted;
+    ) -> Result<PipelineDesc, RenderError> {
+        let is_trusted = key.options.shader_checks == ShaderChecks::Trusted;
         if is_trusted && !matches!(self.library, Library::Embedded) {
             return Err(RenderError::Untrusted);
         }
@@ -168,7 +168,7 @@ impl Pipelines {
             constants: declared.map(|(name, value)| ((*name).to_owned(), value.to_bits())).collect(),
             is_trusted,
         };
-        Ok(Draft { label: label.to_owned(), identity, bindings: reflected.bindings(entry) })
+        Ok(PipelineDesc { label: label.to_owned(), identity, bindings: reflected.bindings(entry) })
     }
 
     fn keep(&mut self, gpu: &Gpu, identity: Identity, pipeline: Pipeline) -> Arc<Pipeline> {
@@ -202,15 +202,15 @@ impl Pipelines {
 }
 
 /// A module without the compiler's own checks.
-#[allow(unsafe_code, reason = "the rung `trusted`: only for the shaders inside this program, and only where a look pins it")]
+#[allow(unsafe_code, reason = "the option `trusted`: only for the shaders inside this program, and only where a preset pins it")]
 fn trusted(gpu: &Gpu, descriptor: wgpu::ShaderModuleDescriptor<'_>) -> wgpu::ShaderModule {
     // SAFETY: every loop of the embedded kernels has a constant or counted bound, and every index is held inside its buffer
-    // by the kernel itself; the checked rung draws the same pictures (tests/ladder.rs).
+    // by the kernel itself; the checked option draws the same pictures (tests/ladder.rs).
     unsafe { gpu.device.create_shader_module_trusted(descriptor, wgpu::ShaderRuntimeChecks::unchecked()) }
 }
 
-fn compile(gpu: &Gpu, draft: &Draft) -> Result<Pipeline, RenderError> {
-    let Draft { label, identity, bindings } = draft;
+fn compile(gpu: &Gpu, desc: &PipelineDesc) -> Result<Pipeline, RenderError> {
+    let PipelineDesc { label, identity, bindings } = desc;
     let constants: Vec<(&str, f64)> = identity.constants.iter().map(|(name, bits)| (name.as_str(), f64::from_bits(*bits))).collect();
     let scope = gpu.device.push_error_scope(wgpu::ErrorFilter::Validation);
     let source = wgpu::ShaderSource::Wgsl(identity.text.as_str().into());

@@ -4,17 +4,17 @@ use std::sync::Arc;
 
 use super::{
     RenderError, Renderer, STORAGE,
-    bends::{BENT_BYTES, Bends, bent_ranges},
-    culling::{self, Patches},
+    culling::{self, MeshletBuffers},
+    deforms::{DEFORMED_BYTES, Deforms, deformed_ranges},
     packing::{Packing, bytes_of},
     texels::Texels,
     uniforms::{Capacities, CounterRecord, DrawRecord, FrameUniform, OrderRecord, ScalingUniform, color_stride},
 };
 use crate::{
+    accuracy::{Culling, PositionFormat, Visibility},
     effects::{Stack, hooks::Layers},
-    ladder::{Culling, Vertices, Visibility},
     math::{SUBPIXEL_BITS, srgb_byte},
-    plan::{Accuracy, Plan, plan},
+    plan::{AccuracyRequest, Plan, plan},
     scene::{
         Scene,
         camera::View,
@@ -36,9 +36,9 @@ impl Renderer {
         draws: &[Draw],
         view: &View,
         stack: &Stack,
-        accuracy: &Accuracy,
+        accuracy: &AccuracyRequest,
     ) -> Result<Plan, RenderError> {
-        let is_known = |(of, seen, _): &(Arc<Scene>, View, Needs)| Arc::ptr_eq(of, scene) && seen == view;
+        let is_known = |(of, meshlet_visibility, _): &(Arc<Scene>, View, Needs)| Arc::ptr_eq(of, scene) && meshlet_visibility == view;
         let place = self.needs.iter().position(is_known).unwrap_or_else(|| {
             // One for the grid that is usual, one for the grid that the plan then asks for.
             self.needs.truncate(1);
@@ -46,14 +46,14 @@ impl Renderer {
             0
         });
         let mut needs = self.needs[place].2.clone();
-        if self.distrust {
+        if self.force_all_paths {
             (needs.clipping, needs.largest_px) = (true, f64::INFINITY);
         }
         Ok(plan(&needs, stack, &self.gpu.caps, &self.tuning, accuracy)?)
     }
 
     /// Plans the picture and makes its buffers hold what the passes will read.
-    pub(super) fn prepare(&mut self, view: &View, stack: &Stack, accuracy: &Accuracy) -> Result<Plan, RenderError> {
+    pub(super) fn prepare(&mut self, view: &View, stack: &Stack, accuracy: &AccuracyRequest) -> Result<Plan, RenderError> {
         let scene = self.scene.clone().ok_or(RenderError::NoScene)?;
         let gpu = &self.gpu;
         let limit = gpu.caps.max_texture_side;
@@ -63,8 +63,8 @@ impl Renderer {
         let mut draws = drawn(&scene, view)?;
         let mut plan = self.planned(&scene, &draws, view, stack, accuracy)?;
         // Another grid has its guard band elsewhere, and another origin its matrices, so their needs are their own.
-        let rungs = &plan.key.rungs;
-        let (subpixel_bits, is_relative) = (rungs.coverage.subpixel_bits(), rungs.vertices == Vertices::Relative);
+        let options = &plan.key.options;
+        let (subpixel_bits, is_relative) = (options.coverage.subpixel_bits(), options.position_format == PositionFormat::Relative);
         let asked = view;
         let view = &View { subpixel_bits, is_relative, ..view.clone() };
         if is_relative {
@@ -73,7 +73,7 @@ impl Renderer {
         if is_relative || view.subpixel_bits != SUBPIXEL_BITS {
             plan = self.planned(&scene, &draws, view, stack, accuracy)?;
         }
-        let packed_bits = plan.key.rungs.vertices.packed_bits();
+        let packed_bits = plan.key.options.position_format.packed_bits();
         if self.packed.as_ref().map(|(bits, _)| *bits) != packed_bits {
             self.hold_attributes(&scene, packed_bits)?;
         }
@@ -100,46 +100,46 @@ impl Renderer {
         // A binding holds an element at least, even where nothing is to be drawn.
         records.resize(draws.len().max(1), DrawRecord::default());
         // Nobody draws what lies outside the picture, so nothing bends it, unless it may throw a shadow into it.
-        let is_bent = |draw: &&Draw| !key.culls() || stack.light().is_some() || !culling::is_outside(draw, &scene);
-        let bends = Bends::of(&scene, draws.iter().filter(is_bent));
+        let is_deformed = |draw: &&Draw| !key.culls() || stack.light().is_some() || !culling::is_outside(draw, &scene);
+        let deforms = Deforms::of(&scene, draws.iter().filter(is_deformed));
         self.totals = totals(&scene, &draws);
         let (triangles, vertex_records) = (self.totals[1], record_count(key, self.totals));
-        let decisions = u64::from(key.decisions) * (triangles + u64::from(recorded.pieces));
-        let first_rank = vertex_records + decisions;
+        let sample_setups = u64::from(key.sample_setups) * (triangles + u64::from(recorded.pieces));
+        let first_rank = vertex_records + sample_setups;
         let uniform = FrameUniform {
             vertex_count: vertex_records as u32,
             triangle_count: triangles as u32,
             point_radius: stack.point_radius(),
             first_rank: first_rank as u32,
-            bend_count: bends.records.len() as u32,
+            deform_count: deforms.records.len() as u32,
             ..FrameUniform::new(view, &scene, draws.len(), &recorded)
         };
         let parameters = uniform_bytes(&stack.0);
         let has_uniform = !parameters.is_empty() && key.baked.is_empty();
-        self.bent = bent_ranges(&scene, &draws);
+        self.deformed = deformed_ranges(&scene, &draws);
         let is_judged = self.is_judged;
         buffers.keep(|name| match name {
             "queues" => key.has_queues(),
             "args" => key.has_queues() || key.listed_tiles || key.culls(),
             "culling" | "instances" | "meshlets" | "meshlet_lists" => key.culls() || is_judged,
-            "seen" => key.rungs.culling == Culling::TwoPass || is_judged,
-            "hiz" => key.rungs.culling.occludes() || is_judged,
-            "marks" => key.listed_tiles,
+            "meshlet_visibility" => key.options.culling == Culling::TwoPass || is_judged,
+            "hiz" => key.options.culling.occludes() || is_judged,
+            "tile_mask" => key.listed_tiles,
             "background" => key.listed_tiles || key.reads_previous(),
             "previous" => key.reads_previous(),
             "pieces" => key.has_clipping,
             "effects" => has_uniform,
-            "bends" => key.bends(),
+            "deforms" => key.deforms(),
             "joints" => key.has_joints,
-            "shapes" => key.has_shapes,
-            "flights" | "course" | "swarm" => key.has_particles,
-            "depth_keys" | "owners" => key.layout() == Layout::Split,
-            "depth_owner" => key.layout() == Layout::Pairs,
+            "morph_targets" => key.has_morph_targets,
+            "particle_states" | "step_params" | "particle_step" => key.has_particles,
+            "depth_keys" | "triangle_ids" => key.layout() == Layout::Split,
+            "depth_and_id" => key.layout() == Layout::Pairs,
             "packed" => key.layout() == Layout::Word,
-            "bins" => key.rungs.visibility == Visibility::Tiled,
-            "order" | "counts" | "sums" => key.order != Order::Free,
+            "bins" => key.options.visibility == Visibility::Tiled,
+            "order" | "sample_counts" | "sums" => key.order != Order::Free,
             "shown" | "scaling" => key.is_scaled(),
-            "hits" => key.order == Order::Submission,
+            "boundary_samples" => key.order == Order::Submission,
             "layers" => key.layers == Some(Layers::Overdraw),
             _ => true,
         });
@@ -154,19 +154,25 @@ impl Renderer {
         if has_uniform {
             buffers.fill(gpu, "effects", &parameters, wgpu::BufferUsages::UNIFORM, "parameters of the stack")?;
         }
-        if key.bends() && !self.is_lamp {
+        if key.deforms() && !self.is_shadow_pass {
             let why = "where the bytes of every mesh lie that bends";
-            buffers.fill(gpu, "bends", bytemuck::cast_slice(&bends.records), STORAGE, why)?;
+            buffers.fill(gpu, "deforms", bytemuck::cast_slice(&deforms.records), STORAGE, why)?;
         }
-        if key.has_joints && !self.is_lamp {
+        if key.has_joints && !self.is_shadow_pass {
             let why = "joints of every skin as they stand: three rows each, or a dual quaternion and a stretch";
-            buffers.fill(gpu, "joints", bytemuck::cast_slice(&bends.joints), STORAGE, why)?;
+            buffers.fill(gpu, "joints", bytemuck::cast_slice(&deforms.joints), STORAGE, why)?;
         }
-        if key.has_shapes && !self.is_lamp {
-            buffers.fill(gpu, "shapes", bytemuck::cast_slice(&bends.shapes), STORAGE, "weights and places of morph targets")?;
+        if key.has_morph_targets && !self.is_shadow_pass {
+            buffers.fill(
+                gpu,
+                "morph_targets",
+                bytemuck::cast_slice(&deforms.morph_targets),
+                STORAGE,
+                "weights and places of morph targets",
+            )?;
         }
         let ranks = if key.order == Order::Free { 0 } else { triangles.div_ceil(4) };
-        let why = match decisions + ranks {
+        let why = match sample_setups + ranks {
             0 => "projected vertices, 16 bytes each",
             _ => "projected vertices, what sample effects decided, ranks of triangles; 16 bytes a record",
         };
@@ -174,11 +180,17 @@ impl Renderer {
         if key.order != Order::Free {
             let usage = STORAGE | wgpu::BufferUsages::UNIFORM;
             buffers.ensure(gpu, "order", size_of::<OrderRecord>() as u64, usage, "where the drawing stops")?;
-            buffers.ensure(gpu, "counts", 4 * triangles, STORAGE, "samples per triangle")?;
+            buffers.ensure(gpu, "sample_counts", 4 * triangles, STORAGE, "samples per triangle")?;
             buffers.ensure(gpu, "sums", 8 * triangles.div_ceil(1024), STORAGE, "samples before every block of 1,024 triangles")?;
         }
         if key.order == Order::Submission {
-            buffers.ensure(gpu, "hits", (view.pixels() as u64).div_ceil(32) * 4, STORAGE, "samples of one triangle, a bit per pixel")?;
+            buffers.ensure(
+                gpu,
+                "boundary_samples",
+                (view.pixels() as u64).div_ceil(32) * 4,
+                STORAGE,
+                "samples of one triangle, a bit per pixel",
+            )?;
         }
         buffers.ensure(gpu, "counters", size_of::<CounterRecord>() as u64, STORAGE, "queue demand and what was not drawn")?;
         if key.has_queues() {
@@ -191,8 +203,8 @@ impl Renderer {
             )?;
         }
         if key.culls() {
-            let patches = self.patches.get_or_insert_with(|| Patches::of(&scene));
-            buffers.fill_culling(gpu, patches, key.rungs.culling, (&scene, &draws, view))?;
+            let meshlet_buffers = self.meshlet_buffers.get_or_insert_with(|| MeshletBuffers::of(&scene));
+            buffers.fill_culling(gpu, meshlet_buffers, key.options.culling, (&scene, &draws, view))?;
         }
         if key.has_queues() || key.listed_tiles || key.culls() {
             buffers.ensure(gpu, "args", 84, STORAGE | wgpu::BufferUsages::INDIRECT, "dispatch sizes written on the GPU")?;
@@ -203,19 +215,19 @@ impl Renderer {
         let pixels = view.pixels() as u64;
         let (sums, why) = match key.layers {
             Some(Layers::Xray { .. }) => (
-                4 * u64::from(key.rungs.sums.words()) * pixels,
+                4 * u64::from(key.options.xray_sums.words()) * pixels,
                 [
                     "nearest depth key per pixel, 4 bytes, and behind them the sums of its layers",
-                    "depth key and owner per pixel, 8 bytes, and behind them the sums of its layers",
-                    "part of the depth key and owner per pixel, 4 bytes, and behind them the sums of its layers",
+                    "depth key and triangle id per pixel, 8 bytes, and behind them the sums of its layers",
+                    "part of the depth key and triangle id per pixel, 4 bytes, and behind them the sums of its layers",
                 ],
             ),
             _ => (
                 0,
                 [
                     "nearest depth key per pixel, 4 bytes",
-                    "depth key and owner per pixel, 8 bytes",
-                    "part of the depth key and owner per pixel, 4 bytes",
+                    "depth key and triangle id per pixel, 8 bytes",
+                    "part of the depth key and triangle id per pixel, 4 bytes",
                 ],
             ),
         };
@@ -225,23 +237,23 @@ impl Renderer {
         match key.layout() {
             Layout::Split => {
                 buffers.ensure(gpu, "depth_keys", 4 * pixels + sums, STORAGE, why[0])?;
-                if !self.is_lamp {
-                    buffers.ensure(gpu, "owners", 4 * pixels, STORAGE, "owner per pixel, 4 bytes")?;
+                if !self.is_shadow_pass {
+                    buffers.ensure(gpu, "triangle_ids", 4 * pixels, STORAGE, "triangle id per pixel, 4 bytes")?;
                 }
             }
             Layout::Pairs => {
-                buffers.ensure(gpu, "depth_owner", 8 * pixels + sums, STORAGE, why[1])?;
+                buffers.ensure(gpu, "depth_and_id", 8 * pixels + sums, STORAGE, why[1])?;
             }
             Layout::Word => {
                 buffers.ensure(gpu, "packed", 4 * pixels + sums, STORAGE, why[2])?;
             }
         }
-        if key.rungs.visibility == Visibility::Tiled {
+        if key.options.visibility == Visibility::Tiled {
             let words = bin_heads(view) + u64::from(recorded.bins);
             buffers.ensure(gpu, "bins", 4 * words, STORAGE, "which triangles each tile of 16 x 16 pixels has to look at")?;
         }
         let tiles = if key.listed_tiles { u64::from(view.width.div_ceil(8)) * u64::from(view.height.div_ceil(8)) } else { 0 };
-        if self.is_lamp {
+        if self.is_shadow_pass {
             return Ok(plan);
         }
         let picture = 4 * u64::from(color_stride(view.width)) * u64::from(view.height);
@@ -258,7 +270,7 @@ impl Renderer {
             buffers.ensure(gpu, "shown", bytes, STORAGE, "the picture at the size that is shown, 4 bytes per pixel")?;
         }
         if key.listed_tiles {
-            buffers.ensure(gpu, "marks", 4 * tiles, STORAGE, "which 8 x 8 tiles the resolve must visit")?;
+            buffers.ensure(gpu, "tile_mask", 4 * tiles, STORAGE, "which 8 x 8 tiles the resolve must visit")?;
         }
         if key.reads_previous() {
             buffers.ensure(gpu, "previous", picture, STORAGE, "the picture before this one, which an effect keeps")?;
@@ -278,7 +290,7 @@ impl Renderer {
         let first = attribute_bytes(scene);
         let packing = bits.map(|bits| (bits, Packing::new(scene, bits)));
         let room = first + bits.map_or(0, |bits| bytes_of(scene, bits));
-        let why = match (scene.soft_vertex_count(), bits) {
+        let why = match (scene.deformable_vertex_count(), bits) {
             (0, None) => "attributes as the file has them",
             (0, Some(10)) => "attributes as the file has them, and behind them packed positions, 4 bytes each",
             (0, Some(_)) => "attributes as the file has them, and behind them packed positions, 8 bytes each",
@@ -299,12 +311,12 @@ impl Renderer {
 
 /// Bytes of the file's attributes and of every vertex that may bend.
 fn attribute_bytes(scene: &Scene) -> u64 {
-    scene.vertex_bytes.len() as u64 + u64::from(BENT_BYTES) * scene.soft_vertex_count()
+    scene.vertex_bytes.len() as u64 + u64::from(DEFORMED_BYTES) * scene.deformable_vertex_count()
 }
 
 /// Projected records of so many vertices and triangles: one per vertex of each draw, or three per triangle where effects part them.
 pub fn record_count(key: &KernelKey, [vertices, triangles]: [u64; 2]) -> u64 {
-    if key.parts_corners() { 3 * triangles } else { vertices }
+    if key.unshares_vertices() { 3 * triangles } else { vertices }
 }
 
 /// Rows that the background buffer holds.
@@ -330,8 +342,8 @@ pub fn recorded_capacities(key: &KernelKey, all: &Capacities) -> Capacities {
         medium: kept(key.has_medium, all.medium),
         large: kept(key.has_large, all.large),
         tiles: kept(key.has_large, all.tiles),
-        bins: kept(key.rungs.visibility == Visibility::Tiled, all.bins),
-        listed: kept(key.rungs.visibility == Visibility::Tiled, all.listed.max(key.list_walk)),
+        bins: kept(key.options.visibility == Visibility::Tiled, all.bins),
+        listed: kept(key.options.visibility == Visibility::Tiled, all.listed.max(key.max_list_entries)),
     }
 }
 

@@ -6,19 +6,18 @@ use std::sync::{
 };
 
 use super::{
-    Demand, Gpu, RenderError, Renderer, STORAGE,
-    bends::BENT_BYTES,
-    buffers,
+    Demand, Gpu, RenderError, Renderer, STORAGE, buffers,
+    deforms::DEFORMED_BYTES,
     dots::first_dot_word,
     prepare::record_count,
     timer::{Detail, Timer, Times},
     uniforms::OrderRecord,
 };
 use crate::{
+    accuracy::{Culling, DepthFormat, PositionFormat, VertexTransform, XraySums},
     effects::{Stack, hooks::Layers},
-    frame::{Counters, Exactness, Frame, Geometry, Piece, SnappedVertex},
-    ladder::{Culling, Depth, Sums, Vertex, Vertices},
-    plan::Accuracy,
+    frame::{ClippedTriangle, Counters, Exactness, Frame, Geometry, SnappedVertex},
+    plan::AccuracyRequest,
     scene::camera::View,
     shader::key::{KernelKey, Layout, Phase},
 };
@@ -43,7 +42,7 @@ impl Pending {
         timer: Option<&Timer>,
     ) -> Self {
         let staging = gpu.device.create_buffer(&wgpu::BufferDescriptor {
-            label: Some("figures"),
+            label: Some("stats"),
             size: FIGURE_BYTES + Timer::BYTES,
             usage: wgpu::BufferUsages::MAP_READ | wgpu::BufferUsages::COPY_DST,
             mapped_at_creation: false,
@@ -109,36 +108,36 @@ impl Renderer {
     ///
     /// # Panics
     /// Without a moment.
-    pub fn capture_last(&mut self, moments: &[(View, Stack)], accuracy: &Accuracy) -> Result<Capture, RenderError> {
+    pub fn capture_last(&mut self, moments: &[(View, Stack)], accuracy: &AccuracyRequest) -> Result<Capture, RenderError> {
         let ((view, stack), before) = moments.split_last().expect("a picture shows a moment");
-        self.forget();
+        self.clear_history();
         for (view, stack) in before {
-            self.draw_whole(view, stack, accuracy)?;
+            self.draw_complete(view, stack, accuracy)?;
         }
         self.capture_next(view, stack, accuracy)
     }
 
     /// Draws a picture that stands after none, waits, draws again with larger queues while one overflows, and reads
     /// everything back.
-    pub fn capture(&mut self, view: &View, stack: &Stack, accuracy: &Accuracy) -> Result<Capture, RenderError> {
-        self.forget();
+    pub fn capture(&mut self, view: &View, stack: &Stack, accuracy: &AccuracyRequest) -> Result<Capture, RenderError> {
+        self.clear_history();
         self.capture_next(view, stack, accuracy)
     }
 
     /// The same of a picture that stands after the last one.
-    pub fn capture_next(&mut self, view: &View, stack: &Stack, accuracy: &Accuracy) -> Result<Capture, RenderError> {
-        let counters = self.draw_whole(view, stack, accuracy)?;
+    pub fn capture_next(&mut self, view: &View, stack: &Stack, accuracy: &AccuracyRequest) -> Result<Capture, RenderError> {
+        let counters = self.draw_complete(view, stack, accuracy)?;
         if view.pixels() == 0 {
             let frame = Frame { width: view.width, height: view.height, ..Frame::default() };
             return Ok(Capture { frame, geometry: Geometry::default(), layers: Some(Vec::new()), previous: None, shown: None });
         }
         let key = self.last.as_ref().ok_or(RenderError::NoScene)?.key.clone();
         let shown = [view.width, view.height];
-        let (asked, view) = (view, &view.scaled(key.rungs.scale.factor()));
-        let (owner, depth) = self.read_visibility(&key, view)?;
+        let (asked, view) = (view, &view.scaled(key.options.render_scale.factor()));
+        let (triangle_id, depth) = self.read_visibility(&key, view)?;
         let color = self.read_color(view)?;
         let (dot_places, dots) = (self.read_dots(&key)?, self.read_strengths(&key, view)?);
-        let light = self.lamp.as_ref().map(|lamp| lamp.read()).transpose()?.map(Box::new);
+        let light = self.shadow_pass.as_ref().map(|shadow_pass| shadow_pass.read()).transpose()?.map(Box::new);
         let counted = self.read_counted(&key, view)?;
         let previous = if key.reads_previous() {
             Some(buffers::read_picture(&self.gpu, self.buffers.get("previous"), [view.width, view.height])?)
@@ -153,8 +152,19 @@ impl Renderer {
         let mut geometry = self.read_geometry(&key)?;
         (geometry.dots, geometry.light) = (dot_places, light);
         let layers = if key.layers == Some(Layers::Overdraw) { self.read_counted(&key, view)? } else { self.count_layers(&key, view)? };
-        let keys_are_rough = !key.rungs.visibility.is_exact() || !matches!(key.rungs.depth, Depth::Reversed | Depth::Integer);
-        let frame = Frame { width: view.width, height: view.height, owner, key: depth, color, counted, dots, counters, keys_are_rough };
+        let depth_keys_are_approximate =
+            !key.options.visibility.is_exact() || !matches!(key.options.depth, DepthFormat::Reversed | DepthFormat::Integer);
+        let frame = Frame {
+            width: view.width,
+            height: view.height,
+            triangle_id,
+            key: depth,
+            color,
+            counted,
+            dots,
+            counters,
+            depth_keys_are_approximate,
+        };
         let shown = picture.map(|picture| frame.shown(shown, picture));
         Ok(Capture { frame, geometry, layers: Some(layers), previous, shown })
     }
@@ -165,20 +175,20 @@ impl Renderer {
         &mut self,
         view: &View,
         stack: &Stack,
-        accuracy: &Accuracy,
+        accuracy: &AccuracyRequest,
         drawn: Counters,
     ) -> Result<(KernelKey, Counters), RenderError> {
         let last = self.last.take();
         self.is_judged = true;
-        let whole = self.draw_whole(view, stack, &Accuracy { pins: accuracy.pins.with(Culling::None), ..*accuracy });
+        let whole = self.draw_complete(view, stack, &AccuracyRequest { pins: accuracy.pins.with(Culling::None), ..*accuracy });
         self.is_judged = false;
         let unculled = std::mem::replace(&mut self.last, last).ok_or(RenderError::NoScene)?;
-        let Counters { overflow, orphans, full_pixels, .. } = drawn;
-        Ok((unculled.key, Counters { overflow, orphans, full_pixels, ..whole? }))
+        let Counters { overflow, depth_without_id, full_pixels, .. } = drawn;
+        Ok((unculled.key, Counters { overflow, depth_without_id, full_pixels, ..whole? }))
     }
 
     /// Draws until no queue overflows and no sum of layers.
-    pub fn draw_whole(&mut self, view: &View, stack: &Stack, accuracy: &Accuracy) -> Result<Counters, RenderError> {
+    pub fn draw_complete(&mut self, view: &View, stack: &Stack, accuracy: &AccuracyRequest) -> Result<Counters, RenderError> {
         let mut lost = 0;
         for _ in 0..11 {
             self.draw_timed(view, stack, accuracy, Detail::Passes, true)?;
@@ -189,7 +199,7 @@ impl Renderer {
             if !report.redraw && report.counters.full_pixels > 0 {
                 return Err(RenderError::FullSums(report.counters.full_pixels));
             }
-            if let Some(order) = report.order.filter(|order| !report.redraw && order.is_beyond_tickets()) {
+            if let Some(order) = report.order.filter(|order| !report.redraw && order.exceeds_sample_counter()) {
                 return Err(RenderError::Tickets(order.covered));
             }
             if !report.redraw {
@@ -205,17 +215,17 @@ impl Renderer {
         Ok(bytemuck::pod_collect_to_vec(&bytes))
     }
 
-    /// Owner and key images.
+    /// Triangle id and key images.
     fn read_visibility(&self, key: &KernelKey, view: &View) -> Result<(Vec<u32>, Vec<u32>), RenderError> {
         let pixels = view.pixels() as u64;
         Ok(match key.layout() {
             Layout::Split => {
-                let owners = self.words("owners", pixels)?;
-                (owners.iter().map(|word| !word).collect(), self.words("depth_keys", pixels)?)
+                let triangle_ids = self.words("triangle_ids", pixels)?;
+                (triangle_ids.iter().map(|word| !word).collect(), self.words("depth_keys", pixels)?)
             }
             Layout::Word => self.words("packed", pixels)?.iter().map(|&word| key.unpacked(word)).unzip(),
             Layout::Pairs => {
-                let words = self.words("depth_owner", 2 * pixels)?;
+                let words = self.words("depth_and_id", 2 * pixels)?;
                 words.chunks_exact(2).map(|pair| (!pair[0], pair[1])).unzip()
             }
         })
@@ -227,16 +237,16 @@ impl Renderer {
         let (buffer, first) = match (key.layers, key.layout()) {
             (Some(Layers::Xray { .. }), Layout::Split) => ("depth_keys", pixels),
             (Some(Layers::Xray { .. }), Layout::Word) => ("packed", pixels),
-            (Some(Layers::Xray { .. }), Layout::Pairs) => ("depth_owner", 2 * pixels),
+            (Some(Layers::Xray { .. }), Layout::Pairs) => ("depth_and_id", 2 * pixels),
             (Some(Layers::Overdraw), _) => return self.words("layers", pixels),
             (Some(Layers::Race) | None, _) => return Ok(Vec::new()),
         };
-        let (sums, all) = (key.rungs.sums, key.rungs.sums.words() as usize);
+        let (sums, all) = (key.options.xray_sums, key.options.xray_sums.words() as usize);
         let words = self.words(buffer, first + all as u64 * pixels)?;
         let weight = |words: &[u32]| match sums {
-            Sums::Packed16 => words[1] >> 16,
-            Sums::Three8 => words[0] >> 20,
-            Sums::Four32 => words[3],
+            XraySums::Packed16 => words[1] >> 16,
+            XraySums::Three8 => words[0] >> 20,
+            XraySums::Four32 => words[3],
         };
         Ok(words[first as usize..].chunks_exact(all).map(weight).collect())
     }
@@ -262,10 +272,10 @@ impl Renderer {
             let count = self.words("counters", 16)?[4].min(self.capacities.pieces);
             let words = self.words("pieces", 16 * u64::from(count))?;
             pieces = words.chunks_exact(16).enumerate().map(|(slot, words)| (slot, words[14], piece(words))).collect();
-            // Pieces land in the order of the scheduler; parent and place in the fan put them in ours.
-            pieces.sort_by_key(|(_, place, piece): &(usize, u32, Piece)| (piece.parent, *place));
+            // ClippedTriangles land in the order of the scheduler; parent and place in the fan put them in ours.
+            pieces.sort_by_key(|(_, place, piece): &(usize, u32, ClippedTriangle)| (piece.parent, *place));
         }
-        let deciding = key.decisions as usize;
+        let deciding = key.sample_setups as usize;
         let entries = if deciding > 0 { triangles + pieces.len() } else { 0 };
         let words = self.words("vertices", 4 * (vertices + (deciding * entries) as u64))?;
         let (records, decided) = words.split_at(4 * vertices as usize);
@@ -273,28 +283,31 @@ impl Renderer {
         let order = (0..triangles).chain(pieces.iter().map(|(slot, _, _)| triangles + slot)).take(entries);
         Ok(Geometry {
             vertices: records.chunks_exact(4).map(vertex).collect(),
-            decisions: order.flat_map(|entry| of_entry(entry).chunks_exact(4).map(|w| [w[0], w[1], w[2], w[3]])).collect(),
+            sample_setups: order.flat_map(|entry| of_entry(entry).chunks_exact(4).map(|w| [w[0], w[1], w[2], w[3]])).collect(),
             pieces: pieces.into_iter().map(|(_, _, piece)| piece).collect(),
-            has_own_corners: key.parts_corners(),
-            subpixel_bits: key.rungs.coverage.subpixel_bits(),
-            scale: key.rungs.scale.factor(),
-            is_relative: key.rungs.vertices == Vertices::Relative,
-            is_rough: key.rungs.vertices.packed_bits().is_some(),
+            has_unshared_vertices: key.unshares_vertices(),
+            subpixel_bits: key.options.coverage.subpixel_bits(),
+            scale: key.options.render_scale.factor(),
+            is_relative: key.options.position_format == PositionFormat::Relative,
+            is_rough: key.options.position_format.packed_bits().is_some(),
             dots: Vec::new(),
-            exact: Exactness { vertices: key.rungs.vertex == Vertex::Strict, keys: key.rungs.depth == Depth::Integer },
-            swarm: self.read_swarm(key)?,
-            splats: scene.splat_ids(),
-            bent: self.read_bent(scene.vertex_bytes.len() as u64)?,
+            exact: Exactness {
+                vertices: key.options.vertex_transform == VertexTransform::Strict,
+                keys: key.options.depth == DepthFormat::Integer,
+            },
+            particle_readback: self.read_particles(key)?,
+            particle_discs: scene.particle_disc_ids(),
+            deformed: self.read_deformed(scene.vertex_bytes.len() as u64)?,
             light: None,
         })
     }
 
     /// What the skin pass kept behind the file's bytes.
-    fn read_bent(&self, first: u64) -> Result<Vec<[f32; 6]>, RenderError> {
-        let Some(end) = self.bent.last().map(|range| range.end) else { return Ok(Vec::new()) };
-        let bytes = buffers::read(&self.gpu, self.buffers.get("vertex_bytes"), first + u64::from(BENT_BYTES * end))?;
+    fn read_deformed(&self, first: u64) -> Result<Vec<[f32; 6]>, RenderError> {
+        let Some(end) = self.deformed.last().map(|range| range.end) else { return Ok(Vec::new()) };
+        let bytes = buffers::read(&self.gpu, self.buffers.get("vertex_bytes"), first + u64::from(DEFORMED_BYTES * end))?;
         let all: Vec<[f32; 6]> = bytemuck::pod_collect_to_vec(&bytes[first as usize..]);
-        Ok(self.bent.iter().flat_map(|range| &all[range.start as usize..range.end as usize]).copied().collect())
+        Ok(self.deformed.iter().flat_map(|range| &all[range.start as usize..range.end as usize]).copied().collect())
     }
 
     /// Runs the raster passes once more into a counter per pixel.
@@ -302,7 +315,7 @@ impl Renderer {
         let pixels = view.pixels() as u64;
         self.buffers.ensure(&self.gpu, "layers", 4 * pixels, STORAGE, "layers per pixel, only while verifying")?;
         let mut encoder = self.gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor { label: Some("count") });
-        self.clear(&mut encoder, &["counters", "layers", "counts", "hits"]);
+        self.clear(&mut encoder, &["counters", "layers", "sample_counts", "boundary_samples"]);
         let timer = self.timer.take();
         let recorded = self.record(&mut encoder, key, &key.passes(&[key.lead(), &[Phase::Count]].concat()), view, true);
         self.timer = timer;
@@ -314,9 +327,9 @@ impl Renderer {
     }
 }
 
-fn piece(words: &[u32]) -> Piece {
+fn piece(words: &[u32]) -> ClippedTriangle {
     let corners = [&words[0..4], &words[4..8], &words[8..12]].map(vertex);
-    Piece { parent: words[12], corners, outline: words[15] }
+    ClippedTriangle { parent: words[12], corners, outline: words[15] }
 }
 
 pub(super) fn vertex(words: &[u32]) -> SnappedVertex {

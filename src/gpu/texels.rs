@@ -2,13 +2,13 @@
 //!
 //! The texture is used as a row of words, folded to [`WIDTH`] words a line and as many lines a layer: sRGB decoded, a word per
 //! byte; a record per primitive; where the vertices of masked ones lie in their images; then where the
-//! levels of each image begin, and the levels of all images, a texel a word. Twins of `shaders/common/texels.wgsl`.
+//! levels of each image begin, and the levels of all images, a texel a word. Mirrors of `shaders/common/texels.wgsl`.
 
 use std::mem::size_of;
 
 use super::{
     Gpu, RenderError,
-    uniforms::{Twin, format_word, twin},
+    uniforms::{GpuRecord, format_word, gpu_record},
 };
 use crate::{
     math::linear_light,
@@ -21,7 +21,7 @@ use crate::{
 /// Words in a line, and lines in a layer.
 pub const WIDTH: u32 = 4096;
 
-twin! {
+gpu_record! {
     /// How a texture is looked up. Each member is explained in `shaders/common/texels.wgsl`.
     pub struct LookupRecord = "Lookup" {
         pub levels: u32,
@@ -39,22 +39,22 @@ twin! {
     }
 }
 
-twin! {
+gpu_record! {
     /// The material of one primitive. Each member is explained in `shaders/common/texels.wgsl`.
-    pub struct PaintRecord = "Paint" {
+    pub struct MaterialRecord = "Paint" {
         pub flags: u32,
         pub red: f32,
         pub green: f32,
         pub blue: f32,
-        pub least_alpha: u32,
+        pub alpha_threshold: u32,
         pub first_corner: u32,
     }
 }
 
 /// Words of a primitive's record: its paint, and how base colour and emission are looked up.
-pub const RECORD_WORDS: usize = (size_of::<PaintRecord>() + 2 * size_of::<LookupRecord>()) / 4;
+pub const RECORD_WORDS: usize = (size_of::<MaterialRecord>() + 2 * size_of::<LookupRecord>()) / 4;
 
-/// Bits of [`PaintRecord::flags`].
+/// Bits of [`MaterialRecord::flags`].
 const BASE_TEXTURE: u32 = 1;
 const EMISSION_TEXTURE: u32 = 2;
 const UNLIT: u32 = 4;
@@ -117,21 +117,21 @@ fn words(scene: &Scene) -> Vec<u32> {
     let mut first = words.len() + RECORD_WORDS * records;
     let corners = corners(scene, &mut first);
     let lists = Lists::of(scene, first as u32);
-    let lookup = |texture: Option<&Texture>, coords: Option<&Accessor>| match (texture, coords) {
-        (Some(texture), Some(coords)) => {
+    let lookup = |texture: Option<&Texture>, texcoords: Option<&Accessor>| match (texture, texcoords) {
+        (Some(texture), Some(texcoords)) => {
             let image = &scene.images[texture.image];
             let [width, height] = image.size();
             let [across, down] = texture.wrap.map(|wrap| wrap as u32);
-            let filters = (texture.magnified as u32) << 4 | (texture.minified as u32) << 5;
-            let copies = (texture.copies as u32) << 6 | (image.levels.len() as u32) << 8;
-            let [[u_per_u, u_per_v, u_offset], [v_per_u, v_per_v, v_offset]] = texture.image_from_stored;
+            let filters = (texture.mag_filter as u32) << 4 | (texture.min_filter as u32) << 5;
+            let mip_filter = (texture.mip_filter as u32) << 6 | (image.levels.len() as u32) << 8;
+            let [[u_per_u, u_per_v, u_offset], [v_per_u, v_per_v, v_offset]] = texture.image_from_texcoord;
             LookupRecord {
                 levels: lists.places[texture.image],
                 size: width | height << 16,
-                sampling: across | down << 2 | filters | copies,
-                format: format_word(coords),
-                offset: coords.offset,
-                stride: coords.stride,
+                sampling: across | down << 2 | filters | mip_filter,
+                format: format_word(texcoords),
+                offset: texcoords.offset,
+                stride: texcoords.stride,
                 u_per_u,
                 u_per_v,
                 u_offset,
@@ -147,11 +147,11 @@ fn words(scene: &Scene) -> Vec<u32> {
         let [base, glow] = material.textures();
         let flag = |is_there: bool, bit: u32| if is_there { bit } else { 0 };
         let textures = flag(base.is_some(), BASE_TEXTURE) | flag(glow.is_some(), EMISSION_TEXTURE);
-        let flags = textures | flag(material.unlit, UNLIT) | flag(material.least_alpha().is_some(), MASKED);
+        let flags = textures | flag(material.unlit, UNLIT) | flag(material.alpha_threshold().is_some(), MASKED);
         let [red, green, blue] = material.emission;
-        let (least_alpha, first_corner) = (material.least_alpha().unwrap_or(0), corners.first);
-        words.extend_from_slice(bytemuck::cast_slice(&[PaintRecord { flags, red, green, blue, least_alpha, first_corner }]));
-        let lookups = [lookup(base, primitive.coords[0].as_ref()), lookup(glow, primitive.coords[1].as_ref())];
+        let (alpha_threshold, first_corner) = (material.alpha_threshold().unwrap_or(0), corners.first);
+        words.extend_from_slice(bytemuck::cast_slice(&[MaterialRecord { flags, red, green, blue, alpha_threshold, first_corner }]));
+        let lookups = [lookup(base, primitive.texcoords[0].as_ref()), lookup(glow, primitive.texcoords[1].as_ref())];
         words.extend_from_slice(bytemuck::cast_slice(&lookups));
     }
     words.resize(256 + RECORD_WORDS * records, 0);
@@ -196,10 +196,10 @@ struct Corners {
 fn corners(scene: &Scene, first: &mut usize) -> Vec<Corners> {
     let of_primitive = |primitive: &Primitive| {
         let material = &scene.materials[primitive.material];
-        let masked = material.base_texture.as_ref().filter(|_| material.least_alpha().is_some()).zip(primitive.coords[0]);
-        let words = masked.map_or(Vec::new(), |(texture, coords)| {
+        let masked = material.base_texture.as_ref().filter(|_| material.alpha_threshold().is_some()).zip(primitive.texcoords[0]);
+        let words = masked.map_or(Vec::new(), |(texture, texcoords)| {
             let size = scene.images[texture.image].size();
-            let units = |vertex| texture.units(size, stored(&coords, &scene.vertex_bytes, vertex)).map(|v| v as u32);
+            let units = |vertex| texture.units(size, stored(&texcoords, &scene.vertex_bytes, vertex)).map(|v| v as u32);
             (0..primitive.vertex_count()).flat_map(units).collect()
         });
         let corners = Corners { first: *first as u32, words };

@@ -1,41 +1,41 @@
-//! Twins of the WGSL structs that are filled from Rust: same members, same order, compared by naga in `tests/layout.rs`.
+//! Mirrors of the WGSL structs that are filled from Rust: same members, same order, compared by naga in `tests/layout.rs`.
 
 use glam::DMat3;
 
 use super::{
-    bends::{BENT_BYTES, bent_offset},
+    deforms::{DEFORMED_BYTES, deformed_offset},
     packing::PackedBox,
 };
 use crate::{
-    frame::{Counters, CullingFigures, OrderFigures},
+    frame::{Counters, CullingStats, OrderStats},
     math::{rounded_columns, srgb_byte},
     scene::{Accessor, Scene, camera::View, draw::Draw},
 };
 
 /// Name and byte offset of every member, for the layout test.
-pub trait Twin {
+pub trait GpuRecord {
     /// Name of the WGSL struct.
     const WGSL: &'static str;
     const MEMBERS: &'static [(&'static str, usize)];
 }
 
-macro_rules! twin {
+macro_rules! gpu_record {
     ($(#[$meta:meta])* pub struct $name:ident = $wgsl:literal { $(pub $member:ident : $ty:ty,)* }) => {
         $(#[$meta])*
         #[derive(Clone, Copy, Debug, Default, PartialEq, bytemuck::Pod, bytemuck::Zeroable)]
         #[repr(C)]
         pub struct $name { $(pub $member: $ty,)* }
 
-        impl Twin for $name {
+        impl GpuRecord for $name {
             const WGSL: &'static str = $wgsl;
             const MEMBERS: &'static [(&'static str, usize)] = &[$((stringify!($member), std::mem::offset_of!($name, $member))),*];
         }
     };
 }
 
-pub(super) use twin;
+pub(super) use gpu_record;
 
-twin! {
+gpu_record! {
     /// One picture: size, viewpoint, capacities. Each member is explained in `shaders/common/frame.wgsl`.
     pub struct FrameUniform = "Frame" {
         pub background: [f32; 4],
@@ -54,7 +54,7 @@ twin! {
         pub triangle_count: u32,
         pub draw_count: u32,
         pub clip_capacity: u32,
-        pub piece_capacity: u32,
+        pub clipped_triangle_capacity: u32,
         pub medium_capacity: u32,
         pub large_capacity: u32,
         pub tile_capacity: u32,
@@ -64,11 +64,11 @@ twin! {
         pub tile_first: u32,
         pub point_radius: u32,
         pub first_rank: u32,
-        pub bend_count: u32,
+        pub deform_count: u32,
     }
 }
 
-twin! {
+gpu_record! {
     /// One draw. Each member is explained in `shaders/common/draws.wgsl`.
     pub struct DrawRecord = "Draw" {
         pub clip_from_object: [[f32; 4]; 4],
@@ -96,7 +96,7 @@ twin! {
     }
 }
 
-twin! {
+gpu_record! {
     /// Demand of the queues and what was not drawn. Each member is explained in `shaders/common/counters.wgsl`.
     pub struct CounterRecord = "Counters" {
         pub clip: u32,
@@ -107,19 +107,19 @@ twin! {
         pub rejected_nonfinite: u32,
         pub rejected_range: u32,
         pub degenerate: u32,
-        pub fan_folds: u32,
-        pub orphans: u32,
+        pub flipped_clips: u32,
+        pub depth_without_id: u32,
         pub marked_tiles: u32,
-        pub tickets: u32,
-        pub tickets_again: u32,
+        pub next_sample_index: u32,
+        pub next_sample_index_again: u32,
         pub bins: u32,
         pub full_pixels: u32,
         pub dropped: u32,
-        pub survivors: u32,
+        pub visible_meshlets: u32,
         pub outside: u32,
-        pub turned: u32,
+        pub backfacing: u32,
         pub hidden: u32,
-        pub survivors_done: u32,
+        pub visible_meshlets_done: u32,
         pub clip_done: u32,
         pub medium_done: u32,
         pub large_done: u32,
@@ -130,7 +130,7 @@ twin! {
     }
 }
 
-twin! {
+gpu_record! {
     /// Where the drawing stops. Each member is explained in `shaders/common/order.wgsl`.
     pub struct OrderRecord = "Order" {
         pub straddler: u32,
@@ -150,15 +150,15 @@ twin! {
 
 impl OrderRecord {
     /// As the rest of the program says it; `tickets` tells how many samples asked where the hardware chose.
-    pub fn figures(&self, is_chosen: bool, tickets: u32) -> OrderFigures {
+    pub fn stats(&self, is_chosen: bool, next_sample_index: u32) -> OrderStats {
         let wide = |hi: u32, lo: u32| u64::from(hi) << 32 | u64::from(lo);
         let limit = wide(self.limit_hi, self.limit_lo);
-        let drawn = if is_chosen { limit.min(tickets.into()) } else { wide(self.drawn_hi, self.drawn_lo) };
-        OrderFigures { drawn, limit, covered: wide(self.total_hi, self.total_lo), is_chosen }
+        let drawn = if is_chosen { limit.min(next_sample_index.into()) } else { wide(self.drawn_hi, self.drawn_lo) };
+        OrderStats { drawn, limit, covered: wide(self.total_hi, self.total_lo), is_chosen }
     }
 }
 
-twin! {
+gpu_record! {
     /// What is shown of a picture that is drawn at another size. Each member is explained in `shaders/passes/scale.wgsl`.
     pub struct ScalingUniform = "Scaling" {
         pub size: [u32; 2],
@@ -167,7 +167,7 @@ twin! {
     }
 }
 
-twin! {
+gpu_record! {
     /// What takes places to the shadow map. Each member is explained in `shaders/slots/light/mapped.wgsl`.
     pub struct LightUniform = "Light" {
         pub column: [f32; 4],
@@ -280,7 +280,7 @@ impl FrameUniform {
             triangle_count: scene.triangle_count() as u32,
             draw_count: draw_count as u32,
             clip_capacity: capacities.clip,
-            piece_capacity: capacities.pieces,
+            clipped_triangle_capacity: capacities.pieces,
             medium_capacity: capacities.medium,
             large_capacity: capacities.large,
             tile_capacity: capacities.tiles,
@@ -290,14 +290,14 @@ impl FrameUniform {
             tile_first: capacities.clip + capacities.medium + capacities.large,
             point_radius: 0,
             first_rank: 0,
-            bend_count: 0,
+            deform_count: 0,
         }
     }
 }
 
 /// Component type in bits 0 to 2, normalized in bit 3 (`shaders/common/pull.wgsl`), lanes from bit 8.
 pub fn format_word(accessor: &Accessor) -> u32 {
-    (accessor.component as u32 - 5120) | u32::from(accessor.normalized) << 3 | accessor.lanes << 8
+    (accessor.component as u32 - 5120) | u32::from(accessor.normalized) << 3 | accessor.components << 8
 }
 
 impl DrawRecord {
@@ -306,11 +306,12 @@ impl DrawRecord {
         let primitive = &scene.primitives[draw.primitive];
         let material = &scene.materials[primitive.material];
         let color = primitive.colors.as_ref();
-        let bent = |part: usize| {
-            let offset = bent_offset(draw, scene) as usize + 12 * part;
-            Accessor { stride: BENT_BYTES, ..Accessor::packed_f32(offset, 3, primitive.vertex_count() as usize) }
+        let deformed = |part: usize| {
+            let offset = deformed_offset(draw, scene) as usize + 12 * part;
+            Accessor { stride: DEFORMED_BYTES, ..Accessor::packed_f32(offset, 3, primitive.vertex_count() as usize) }
         };
-        let [positions, normals] = if draw.bend.is_some() { [bent(0), bent(1)] } else { [primitive.positions, primitive.normals] };
+        let [positions, normals] =
+            if draw.deform.is_some() { [deformed(0), deformed(1)] } else { [primitive.positions, primitive.normals] };
         Self {
             clip_from_object: draw.clip_from_object,
             world_from_object: rounded_columns(&draw.world_from_object),
@@ -323,7 +324,7 @@ impl DrawRecord {
             first_triangle: draw.first_triangle,
             flags: u32::from(draw.double_sided)
                 | u32::from(draw.mirrored) << 1
-                | u32::from(scene.splats == Some(draw.primitive)) << 2
+                | u32::from(scene.particle_discs == Some(draw.primitive)) << 2
                 | (draw.primitive as u32) << 8,
             topology: primitive.topology as u32,
             index_offset: primitive.indices.map_or(0, |i| i.offset),
@@ -365,9 +366,9 @@ fn normal_from_object(draw: &Draw) -> [[f32; 4]; 4] {
 
 impl CounterRecord {
     /// What culling left and left out.
-    pub fn culled(&self) -> CullingFigures {
-        let Self { survivors: drawn, outside, turned, hidden, .. } = *self;
-        CullingFigures { drawn, outside, turned, hidden }
+    pub fn culled(&self) -> CullingStats {
+        let Self { visible_meshlets: drawn, outside, backfacing, hidden, .. } = *self;
+        CullingStats { drawn, outside, backfacing, hidden }
     }
 
     /// As the rest of the program counts; `overflow` is demand beyond `capacities`.
@@ -386,9 +387,9 @@ impl CounterRecord {
             rejected_range: self.rejected_range,
             degenerate: self.degenerate,
             clipped: self.clip,
-            fan_folds: self.fan_folds,
+            flipped_clips: self.flipped_clips,
             overflow: beyond.iter().fold(0, |sum: u32, b| sum.saturating_add(*b)),
-            orphans: self.orphans,
+            depth_without_id: self.depth_without_id,
             full_pixels: self.full_pixels,
             dropped: self.dropped,
         }

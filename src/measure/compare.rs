@@ -1,7 +1,7 @@
 //! Picture against picture, in integers: no blur, no perceptual metric, no tolerance that is not stated.
 
 /// Offenders that a comparison names at most.
-pub const MAX_OFFENDERS: usize = 16;
+pub const MAX_MISMATCHES: usize = 16;
 
 /// Difference of two pictures.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -11,21 +11,21 @@ pub struct PictureDelta {
     /// Root mean square over all channels, of 255.
     pub rms: f64,
     /// Pixels with a channel that differs by more than allowed.
-    pub pixels_beyond: u64,
-    /// The first of them, at most [`MAX_OFFENDERS`].
-    pub offenders: Vec<Offender<[u8; 4]>>,
+    pub pixels_over_tolerance: u64,
+    /// The first of them, at most [`MAX_MISMATCHES`].
+    pub mismatches: Vec<Mismatch<[u8; 4]>>,
 }
 
 /// A pixel that two images disagree about.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Offender<T> {
+pub struct Mismatch<T> {
     /// Place in the image, row-major.
     pub index: usize,
     pub a: T,
     pub b: T,
 }
 
-impl<T> Offender<T> {
+impl<T> Mismatch<T> {
     /// Column and row in an image `width` pixels wide.
     pub fn place(&self, width: u32) -> [usize; 2] {
         let width = width.max(1) as usize;
@@ -45,16 +45,16 @@ pub fn pictures(a: &[[u8; 4]], b: &[[u8; 4]], max_channel: u8) -> PictureDelta {
         squares += channels.iter().map(|&d| u64::from(d) * u64::from(d)).sum::<u64>();
         delta.max_delta = delta.max_delta.max(largest);
         if largest > max_channel {
-            delta.pixels_beyond += 1;
-            if delta.offenders.len() < MAX_OFFENDERS {
-                delta.offenders.push(Offender { index, a, b });
+            delta.pixels_over_tolerance += 1;
+            if delta.mismatches.len() < MAX_MISMATCHES {
+                delta.mismatches.push(Mismatch { index, a, b });
             }
         }
     }
     let missing = a.len().abs_diff(b.len()) as u64;
     if missing > 0 {
         delta.max_delta = u8::MAX;
-        delta.pixels_beyond += missing;
+        delta.pixels_over_tolerance += missing;
         squares += missing * 4 * 255 * 255;
     }
     let channels = 4 * a.len().max(b.len()).max(1);
@@ -62,20 +62,20 @@ pub fn pictures(a: &[[u8; 4]], b: &[[u8; 4]], max_channel: u8) -> PictureDelta {
     delta
 }
 
-/// Difference of two owner images.
+/// Difference of two triangle id images.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
-pub struct OwnerDelta {
-    /// Pixels with different owners; the surplus of a longer image counts.
+pub struct TriangleDelta {
+    /// Pixels with different triangle ids; the surplus of a longer image counts.
     pub different: u64,
-    /// The first of them, at most [`MAX_OFFENDERS`].
-    pub offenders: Vec<Offender<u32>>,
+    /// The first of them, at most [`MAX_MISMATCHES`].
+    pub mismatches: Vec<Mismatch<u32>>,
 }
 
-/// Compares two owner images (or images of depth keys) of one size, exactly.
-pub fn owners(a: &[u32], b: &[u32]) -> OwnerDelta {
-    let offenders = a.iter().zip(b).enumerate().filter(|(_, (a, b))| a != b).map(|(index, (&a, &b))| Offender { index, a, b });
-    let different = offenders.clone().count() + a.len().abs_diff(b.len());
-    OwnerDelta { different: different as u64, offenders: offenders.take(MAX_OFFENDERS).collect() }
+/// Compares two triangle id images (or images of depth keys) of one size, exactly.
+pub fn triangle_ids(a: &[u32], b: &[u32]) -> TriangleDelta {
+    let mismatches = a.iter().zip(b).enumerate().filter(|(_, (a, b))| a != b).map(|(index, (&a, &b))| Mismatch { index, a, b });
+    let different = mismatches.clone().count() + a.len().abs_diff(b.len());
+    TriangleDelta { different: different as u64, mismatches: mismatches.take(MAX_MISMATCHES).collect() }
 }
 
 /// Differences of two pictures made visible: each channel's difference times `gain`, opaque; black where they agree.
@@ -99,19 +99,19 @@ mod tests {
         b[2][1] += 1;
         b[4][2] -= 2;
         let delta = pictures(&a, &b, 1);
-        assert_eq!((delta.max_delta, delta.pixels_beyond), (2, 1));
-        assert_eq!(delta.offenders, [Offender { index: 4, a: a[4], b: b[4] }]);
-        assert_eq!(delta.offenders[0].place(3), [1, 1]);
+        assert_eq!((delta.max_delta, delta.pixels_over_tolerance), (2, 1));
+        assert_eq!(delta.mismatches, [Mismatch { index: 4, a: a[4], b: b[4] }]);
+        assert_eq!(delta.mismatches[0].place(3), [1, 1]);
         assert!((delta.rms - (5.0f64 / 24.0).sqrt()).abs() < 1e-15);
-        assert_eq!(pictures(&a, &b, 2).pixels_beyond, 0);
+        assert_eq!(pictures(&a, &b, 2).pixels_over_tolerance, 0);
     }
 
     #[test]
     fn alpha_is_a_channel_and_a_missing_pixel_is_a_difference() {
-        assert_eq!(pictures(&[[1, 2, 3, 255]], &[[1, 2, 3, 250]], 4).pixels_beyond, 1);
+        assert_eq!(pictures(&[[1, 2, 3, 255]], &[[1, 2, 3, 250]], 4).pixels_over_tolerance, 1);
         let short = pictures(&[[0; 4]; 3], &[[0; 4]; 2], 255);
-        assert_eq!((short.max_delta, short.pixels_beyond), (255, 1));
-        assert_eq!(owners(&[1, 2, 3], &[1, 4]).different, 2);
+        assert_eq!((short.max_delta, short.pixels_over_tolerance), (255, 1));
+        assert_eq!(triangle_ids(&[1, 2, 3], &[1, 4]).different, 2);
     }
 
     #[test]

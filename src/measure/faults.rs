@@ -1,24 +1,24 @@
-//! Faults: where a picture is wrong, pixel by pixel. The counts of an [`Accuracy`](super::Accuracy) say how often.
+//! ErrorMap: where a picture is wrong, pixel by pixel. The counts of an [`ErrorReport`](super::ErrorReport) say how often.
 
 /// What may be the matter with a pixel.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Fault {
-    /// Its owner is wrong, outside every named band.
-    Owner,
-    /// Its owner is wrong and covers the sample: coverage is right, the comparison of depths is not.
+pub enum PixelError {
+    /// Its triangle id is wrong, outside every named band.
+    TriangleId,
+    /// Its triangle id is wrong and covers the sample: coverage is right, the comparison of depths is not.
     Depth,
     /// A triangle covers its sample and was not drawn there.
     Hole,
     /// A triangle was drawn there more often than it covers the sample.
     Double,
-    /// Two owners are right: their depths are closer than the bound of the depth key.
+    /// Two triangle ids are right: their depths are closer than the bound of the depth key.
     Tie,
-    /// Its depth, or a value at a corner of its owner, is NaN, infinite or negative by its bits.
+    /// Its depth, or a value at a corner of its triangle id, is NaN, infinite or negative by its bits.
     Unsound,
 }
 
-impl Fault {
-    pub const ALL: [Self; 6] = [Self::Owner, Self::Depth, Self::Hole, Self::Double, Self::Tie, Self::Unsound];
+impl PixelError {
+    pub const ALL: [Self; 6] = [Self::TriangleId, Self::Depth, Self::Hole, Self::Double, Self::Tie, Self::Unsound];
 
     const fn bit(self) -> u8 {
         1 << self as u8
@@ -27,24 +27,24 @@ impl Fault {
 
 /// The map of a picture's faults. Row-major, top row first.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct Faults {
+pub struct ErrorMap {
     marks: Vec<u8>,
     /// Largest difference of a colour channel from the right answer, of 255.
     pub colour: Vec<u8>,
 }
 
-impl Faults {
+impl ErrorMap {
     /// The map whose pixel `i` has the faults that `of` gives; colours are held against `right`.
-    pub fn new(picture: &[[u8; 4]], right: &[[u8; 4]], of: impl Fn(usize) -> Vec<Fault>) -> Self {
+    pub fn new(picture: &[[u8; 4]], right: &[[u8; 4]], of: impl Fn(usize) -> Vec<PixelError>) -> Self {
         let marks = (0..picture.len()).map(|i| of(i).into_iter().fold(0, |bits, fault| bits | fault.bit())).collect();
         let colour = picture.iter().zip(right).map(|(a, b)| largest(a, b)).collect();
         Self { marks, colour }
     }
 
-    /// Where the owner is wrong, holds the colour against that of the right one.
-    pub fn recolour(&mut self, picture: &[[u8; 4]], right: &[[u8; 4]]) {
+    /// Where the triangle id is wrong, holds the colour against that of the right one.
+    pub fn compare_again(&mut self, picture: &[[u8; 4]], right: &[[u8; 4]]) {
         for i in 0..self.marks.len() {
-            if self.has(i, Fault::Owner) {
+            if self.has(i, PixelError::TriangleId) {
                 self.colour[i] = largest(&picture[i], &right[i]);
             }
         }
@@ -55,12 +55,12 @@ impl Faults {
         self.marks.len()
     }
 
-    pub fn has(&self, pixel: usize, fault: Fault) -> bool {
+    pub fn has(&self, pixel: usize, fault: PixelError) -> bool {
         self.marks[pixel] & fault.bit() != 0
     }
 
     /// Pixels with a fault.
-    pub fn count(&self, fault: Fault) -> u64 {
+    pub fn count(&self, fault: PixelError) -> u64 {
         self.marks.iter().filter(|marks| *marks & fault.bit() != 0).count() as u64
     }
 
@@ -100,11 +100,11 @@ mod tests {
     #[test]
     fn a_wrong_owner_is_held_against_the_right_one_s_colour() {
         let picture = [[10, 10, 10, 255]; 3];
-        let of = |i: usize| if i == 1 { vec![Fault::Owner, Fault::Depth] } else { Vec::new() };
-        let mut faults = Faults::new(&picture, &[[11, 10, 10, 255]; 3], of);
-        assert_eq!((faults.colour.clone(), faults.differing(), faults.count(Fault::Depth)), (vec![1, 1, 1], 3, 1));
-        faults.recolour(&picture, &[[10, 10, 90, 255]; 3]);
+        let of = |i: usize| if i == 1 { vec![PixelError::TriangleId, PixelError::Depth] } else { Vec::new() };
+        let mut faults = ErrorMap::new(&picture, &[[11, 10, 10, 255]; 3], of);
+        assert_eq!((faults.colour.clone(), faults.differing(), faults.count(PixelError::Depth)), (vec![1, 1, 1], 3, 1));
+        faults.compare_again(&picture, &[[10, 10, 90, 255]; 3]);
         assert_eq!(faults.colour, [1, 80, 1]);
-        assert!(faults.has(1, Fault::Owner) && !faults.has(1, Fault::Hole) && !faults.has(0, Fault::Owner));
+        assert!(faults.has(1, PixelError::TriangleId) && !faults.has(1, PixelError::Hole) && !faults.has(0, PixelError::TriangleId));
     }
 }

@@ -6,27 +6,27 @@ pub mod timing;
 
 /// How wrong a picture is, against the oracle. Counts are pixels unless they say otherwise.
 #[derive(Clone, Debug, Default, PartialEq, serde::Serialize)]
-pub struct Accuracy {
+pub struct ErrorReport {
     /// Pixels of the picture.
     pub pixels: u64,
-    /// Pixels whose owner is wrong outside every named band.
-    pub owner_mismatch: u64,
-    /// Of those, pixels whose owner covers the sample but is not the nearest that does.
-    pub wrong_winners: u64,
+    /// Pixels whose triangle id is wrong outside every named band.
+    pub wrong_triangles: u64,
+    /// Of those, pixels whose triangle id covers the sample but is not the nearest that does.
+    pub wrong_nearest: u64,
     /// Pixels that differ from the oracle's own picture only because vertices snapped apart, within their bounds.
     pub explained_by_snap: u64,
     /// Pixels that differ from the oracle's own picture although the snap does not explain it.
     pub unexplained: u64,
-    /// Pixels where two owners are right: depths closer than the float key's bound.
-    pub band_pixels: u64,
+    /// Pixels where two triangle ids are right: depths closer than the float key's bound.
+    pub depth_band_pixels: u64,
     /// Pixels where either side of a step of colour is right: so near that f32 and f64 may fall apart.
     pub step_band_pixels: u64,
     /// Samples that a triangle covers and that were not drawn.
     pub holes: u64,
     /// Samples that were drawn more often than they are covered.
     pub double_hits: u64,
-    /// Pixels with a depth but no owner.
-    pub orphans: u64,
+    /// Pixels with a depth but no triangle id.
+    pub depth_without_id: u64,
     /// Queue entries lost; not 0 means an incomplete picture.
     pub overflow: u64,
     /// Pixels whose depth key lies outside its relative bound.
@@ -44,25 +44,25 @@ pub struct Accuracy {
     /// Largest distance between a snapped vertex and the oracle's, in units of 1/256 px, among well-conditioned vertices.
     pub max_snap_delta: u32,
     /// Vertices that joints or shapes bend.
-    pub bent_vertices: u64,
-    /// Bent vertices whose position or normal lies outside its forward error bound.
-    pub bent_outside_bound: u64,
+    pub deformed_vertices: u64,
+    /// Deformed vertices whose position or normal lies outside its forward error bound.
+    pub deformed_outside_bound: u64,
     /// Largest distance between a bent vertex and the oracle's, in units of the last place of its largest coordinate.
-    pub max_bend_ulp: f64,
+    pub max_deform_ulp: f64,
     /// The same as it appears in the picture, pixels, of vertices that the near plane keeps.
-    pub max_bend_px: f64,
+    pub max_deform_px: f64,
     /// Particles of the picture.
     pub particles: u64,
     /// Particles whose last step, or whose disc, lies outside its forward error bound.
     pub particles_outside_bound: u64,
     /// Particles more than a pixel away from where their true flight has taken them; chaos, not judged.
-    pub particles_astray: u64,
+    pub particles_diverged: u64,
     /// Largest such distance in the picture, pixels.
-    pub max_astray_px: f64,
+    pub max_divergence_px: f64,
     /// Its mean in the scene, metres.
-    pub mean_astray_m: f64,
+    pub mean_divergence_m: f64,
     /// Decisions of sample effects beyond their bound, or that do not follow from their first word.
-    pub decisions_wrong: u64,
+    pub sample_setups_wrong: u64,
     /// Dots of all lines.
     #[serde(skip_serializing_if = "is_zero")]
     pub dots: u64,
@@ -73,17 +73,17 @@ pub struct Accuracy {
     #[serde(skip_serializing_if = "is_zero")]
     pub dot_pixels_wrong: u64,
     /// Pixels whose number of layers, or sum of their weights, is wrong.
-    pub counts_wrong: u64,
+    pub layer_counts_wrong: u64,
     /// Pixels of layers where several colours are right, because a weight or the depth window is at the edge of a step.
-    pub open_pixels: u64,
+    pub ambiguous_layer_pixels: u64,
     /// Pixels where a race lost the nearest triangle; only the effect that shows this has any.
     pub race_pixels: u64,
     /// Counters of rejected and degenerate triangles that are not the oracle's.
     pub counters_wrong: u64,
     /// Largest difference of a colour channel from the nearest right answer, of 255.
-    pub max_colour_delta: u8,
+    pub max_color_delta: u8,
     /// Root mean square of that over all channels, of 255.
-    pub rms_colour_delta: f64,
+    pub rms_color_delta: f64,
 }
 
 fn is_zero(count: &u64) -> bool {
@@ -92,7 +92,7 @@ fn is_zero(count: &u64) -> bool {
 
 /// How far a shadow map is from rays, over the pixels that face the light.
 #[derive(Clone, Copy, Debug, Default, PartialEq, serde::Serialize)]
-pub struct LightErrors {
+pub struct ShadowErrors {
     pub pixels: u64,
     /// Those where the map errs by more than half of the light.
     pub wrong: u64,
@@ -102,83 +102,83 @@ pub struct LightErrors {
 
 /// Error as a bench row states it; none reads "not measured", never 0.
 #[derive(Clone, Debug, Default, PartialEq, serde::Serialize)]
-pub struct ErrorFigures {
-    pub owner_mismatch: Option<u64>,
+pub struct ErrorStats {
+    pub wrong_triangles: Option<u64>,
     pub explained_by_snap: Option<u64>,
     pub holes: Option<u64>,
     pub double_hits: Option<u64>,
     /// Pixels drawn where the oracle has none.
     pub extra: Option<u64>,
-    pub orphans: Option<u64>,
+    pub depth_without_id: Option<u64>,
     pub overflow: Option<u64>,
     /// Of 255; where both drew.
-    pub max_colour_delta: Option<u8>,
+    pub max_color_delta: Option<u8>,
     /// Of 255; where both drew.
-    pub rms_colour_delta: Option<f64>,
+    pub rms_color_delta: Option<f64>,
     /// Largest error of a vertex that joints or shapes bend, pixels; none where nothing bends.
     #[serde(skip_serializing_if = "Option::is_none")]
-    pub max_bend_px: Option<f64>,
+    pub max_deform_px: Option<f64>,
     /// The same in units of the last place.
     #[serde(skip_serializing_if = "Option::is_none")]
-    pub max_bend_ulp: Option<f64>,
+    pub max_deform_ulp: Option<f64>,
     /// Largest distance of a particle from its true flight, pixels; none without particles.
     #[serde(skip_serializing_if = "Option::is_none")]
-    pub max_astray_px: Option<f64>,
+    pub max_divergence_px: Option<f64>,
     /// Share of the particles that are more than a pixel away from it.
     #[serde(skip_serializing_if = "Option::is_none")]
-    pub astray_share: Option<f64>,
+    pub diverged_fraction: Option<f64>,
 }
 
-impl From<&Accuracy> for ErrorFigures {
-    fn from(a: &Accuracy) -> Self {
+impl From<&ErrorReport> for ErrorStats {
+    fn from(a: &ErrorReport) -> Self {
         Self {
-            owner_mismatch: Some(a.owner_mismatch),
+            wrong_triangles: Some(a.wrong_triangles),
             explained_by_snap: Some(a.explained_by_snap),
             holes: Some(a.holes),
             double_hits: Some(a.double_hits),
             extra: None,
-            orphans: Some(a.orphans),
+            depth_without_id: Some(a.depth_without_id),
             overflow: Some(a.overflow),
-            max_colour_delta: Some(a.max_colour_delta),
-            rms_colour_delta: Some(a.rms_colour_delta),
-            max_bend_px: (a.bent_vertices > 0).then_some(a.max_bend_px),
-            max_bend_ulp: (a.bent_vertices > 0).then_some(a.max_bend_ulp),
-            max_astray_px: (a.particles > 0).then_some(a.max_astray_px),
-            astray_share: (a.particles > 0).then(|| a.particles_astray as f64 / a.particles as f64),
+            max_color_delta: Some(a.max_color_delta),
+            rms_color_delta: Some(a.rms_color_delta),
+            max_deform_px: (a.deformed_vertices > 0).then_some(a.max_deform_px),
+            max_deform_ulp: (a.deformed_vertices > 0).then_some(a.max_deform_ulp),
+            max_divergence_px: (a.particles > 0).then_some(a.max_divergence_px),
+            diverged_fraction: (a.particles > 0).then(|| a.particles_diverged as f64 / a.particles as f64),
         }
     }
 }
 
-impl ErrorFigures {
+impl ErrorStats {
     /// Is everything measured and exact, and the colour within one step?
-    pub fn keeps_the_promise(&self) -> bool {
-        let exact = [self.owner_mismatch, self.holes, self.double_hits, self.orphans, self.overflow];
-        exact.iter().all(|count| *count == Some(0)) && self.max_colour_delta.is_some_and(|delta| delta <= 1)
+    pub fn is_exact(&self) -> bool {
+        let exact = [self.wrong_triangles, self.holes, self.double_hits, self.depth_without_id, self.overflow];
+        exact.iter().all(|count| *count == Some(0)) && self.max_color_delta.is_some_and(|delta| delta <= 1)
     }
 }
 
 /// What a judge says of a picture.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Verdict {
-    pub accuracy: Accuracy,
+    pub accuracy: ErrorReport,
     /// What the oracle draws from the same snapped vertices; in the step band, the right answer nearest to the picture.
     pub expected: crate::frame::Frame,
-    /// Which pixels lie in the step band; empty for a look without steps.
+    /// Which pixels lie in the step band; empty for a preset without steps.
     pub step_band: Vec<bool>,
     /// Where it is wrong.
-    pub faults: faults::Faults,
+    pub faults: faults::ErrorMap,
 }
 
-/// What rungs are measured against.
+/// What options are measured against.
 #[derive(Clone, Debug, Default)]
-pub struct Truths {
+pub struct References {
     /// For every number of drawn pixels to a side of a shown one: the true picture, and where its corners lie.
     pub pictures: Vec<(f64, crate::frame::Frame, crate::frame::Geometry)>,
     /// The true picture with eight by eight samples to a pixel; none where all pictures are drawn as they are shown.
     pub smooth: Option<Vec<[u8; 4]>>,
 }
 
-impl Truths {
+impl References {
     /// At so many drawn pixels to a side of a shown one.
     pub fn at(&self, factor: f64) -> Option<(&crate::frame::Frame, &crate::frame::Geometry)> {
         self.pictures.iter().find(|(known, ..)| *known == factor).map(|(_, frame, geometry)| (frame, geometry))
@@ -189,51 +189,57 @@ impl Truths {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Budget {
     /// Largest difference of a colour channel, of 255.
-    pub max_colour_delta: u8,
-    /// Most pixels with a wrong owner, most samples not drawn or drawn too often: where the look asks for less than exactness.
-    pub max_wrong_owner: u64,
+    pub max_color_delta: u8,
+    /// Most pixels with a wrong triangle id, most samples not drawn or drawn too often: where the preset asks for less than exactness.
+    pub max_wrong_triangles: u64,
     /// Most pixels in the depth band.
-    pub max_band_pixels: u64,
+    pub max_depth_band_pixels: u64,
     /// Most pixels explained by the snap.
     pub max_explained: u64,
     /// Largest share of the pixels that may lie in the band of colour steps.
-    pub max_step_share: f64,
+    pub max_step_band_fraction: f64,
 }
 
 impl Default for Budget {
     /// One step of a channel; a small share of pixels near colour steps; other bands are counted and not capped.
     fn default() -> Self {
-        Self { max_colour_delta: 1, max_wrong_owner: 0, max_band_pixels: u64::MAX, max_explained: u64::MAX, max_step_share: 0.03 }
+        Self {
+            max_color_delta: 1,
+            max_wrong_triangles: 0,
+            max_depth_band_pixels: u64::MAX,
+            max_explained: u64::MAX,
+            max_step_band_fraction: 0.03,
+        }
     }
 }
 
-impl Accuracy {
+impl ErrorReport {
     /// Passes when nothing exact is wrong and the rest stays within `budget`.
     ///
     /// # Errors
     /// A sentence for everything that fails, separated by semicolons.
     pub fn within(&self, budget: &Budget) -> Result<(), String> {
         let most = [
-            (self.owner_mismatch, budget.max_wrong_owner, "pixels have the wrong owner"),
-            (self.holes, budget.max_wrong_owner, "covered samples were not drawn"),
-            (self.double_hits, budget.max_wrong_owner, "samples were drawn more often than they are covered"),
-            (self.orphans, 0, "pixels have a depth but no owner"),
+            (self.wrong_triangles, budget.max_wrong_triangles, "pixels have the wrong triangle id"),
+            (self.holes, budget.max_wrong_triangles, "covered samples were not drawn"),
+            (self.double_hits, budget.max_wrong_triangles, "samples were drawn more often than they are covered"),
+            (self.depth_without_id, 0, "pixels have a depth but no triangle id"),
             (self.overflow, 0, "queue entries were lost"),
             (self.key_outside_bound, 0, "depth keys lie outside their bound"),
             (self.snap_outside_bound, 0, "vertices snapped outside their bound"),
             (self.attribute_outside_bound, 0, "vertices have a depth or 1/w outside its bound"),
-            (self.bent_outside_bound, 0, "bent vertices lie outside their bound"),
+            (self.deformed_outside_bound, 0, "bent vertices lie outside their bound"),
             (self.particles_outside_bound, 0, "particles took a step outside its bound"),
-            (self.unexplained, budget.max_wrong_owner, "pixels differ from the oracle's own picture without a reason"),
-            (self.decisions_wrong, 0, "decisions of sample effects are wrong"),
+            (self.unexplained, budget.max_wrong_triangles, "pixels differ from the oracle's own picture without a reason"),
+            (self.sample_setups_wrong, 0, "decisions of sample effects are wrong"),
             (self.dots_outside_bound, 0, "dots lie outside their bound"),
             (self.dot_pixels_wrong, 0, "pixels have a wrong strength of dots"),
-            (self.counts_wrong, 0, "pixels have a wrong number of layers, or a wrong sum of weights"),
+            (self.layer_counts_wrong, 0, "pixels have a wrong number of layers, or a wrong sum of weights"),
             (self.counters_wrong, 0, "counters of rejected or degenerate triangles are wrong"),
             (self.explained_by_snap, budget.max_explained, "pixels differ because vertices snapped apart"),
-            (self.band_pixels, budget.max_band_pixels, "pixels lie in the depth band"),
-            (self.step_band_pixels, (self.pixels as f64 * budget.max_step_share) as u64, "pixels lie in the band of colour steps"),
-            (self.max_colour_delta.into(), budget.max_colour_delta.into(), "of 255 is the largest colour difference"),
+            (self.depth_band_pixels, budget.max_depth_band_pixels, "pixels lie in the depth band"),
+            (self.step_band_pixels, (self.pixels as f64 * budget.max_step_band_fraction) as u64, "pixels lie in the band of colour steps"),
+            (self.max_color_delta.into(), budget.max_color_delta.into(), "of 255 is the largest colour difference"),
         ];
         let sentence = |&(count, limit, what): &(u64, u64, &str)| {
             (count > limit).then(|| if limit == 0 { format!("{count} {what}") } else { format!("{count} {what} (at most {limit})") })

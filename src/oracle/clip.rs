@@ -11,7 +11,7 @@ use super::{
     project::{Clip, half_size, snap_inside},
 };
 use crate::{
-    frame::{Geometry, Piece, SnappedVertex, vertex_flags},
+    frame::{ClippedTriangle, Geometry, SnappedVertex, vertex_flags},
     math::GUARD_BAND,
     scene::{Scene, camera::View, draw::Draw},
 };
@@ -39,7 +39,7 @@ pub(super) trait Point: Copy + Send + Sync {
     fn snapped(&self, on: u32, view: &View) -> SnappedVertex;
 }
 
-/// Pieces of all cut triangles of a draw, in triangle order, each triangle as a fan from its first remaining corner; `clip`
+/// ClippedTriangles of all cut triangles of a draw, in triangle order, each triangle as a fan from its first remaining corner; `clip`
 /// places a corner.
 pub(super) fn pieces<P: Point>(
     scene: &Scene,
@@ -47,7 +47,7 @@ pub(super) fn pieces<P: Point>(
     view: &View,
     geometry: &Geometry,
     clip: impl Fn(moved::Corner) -> P + Sync,
-) -> Vec<Piece> {
+) -> Vec<ClippedTriangle> {
     let primitive = &scene.primitives[draw.primitive];
     let cut = |t: u32| {
         let records = corner_records(scene, draw, geometry, draw.first_triangle + t);
@@ -68,7 +68,7 @@ pub(super) fn pieces<P: Point>(
             // Inside the polygon run the diagonals of the fan.
             let outline = [b_leads, i + 2 == polygon.len() && c_leads, i == 1 && a_leads];
             let outline = (0..3).fold(0, |bits, k| bits | u32::from(outline[k]) << k);
-            Piece { parent: draw.first_triangle + t, corners: [a, b, c], outline }
+            ClippedTriangle { parent: draw.first_triangle + t, corners: [a, b, c], outline }
         };
         (1..polygon.len().saturating_sub(1)).map(piece).collect()
     };

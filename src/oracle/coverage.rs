@@ -1,4 +1,4 @@
-//! Who owns each sample: exact integer coverage and the depth that decides between owners.
+//! Who owns each sample: exact integer coverage and the depth that decides between triangle ids.
 //!
 //! A sample on an edge belongs to the side onto which it falls when moved by an infinitesimal step to the right and a far
 //! smaller one down: the top-left rule, stated without a bias. Every pixel of a triangle's box is evaluated afresh.
@@ -7,10 +7,10 @@ use std::ops::Range;
 
 use rayon::prelude::*;
 
-use super::{clip::is_cut, rules::Rules, strict::integer_key};
+use super::{clip::is_cut, rules::SampleTests, strict::integer_key};
 use crate::{
     effects::hooks::Shape,
-    frame::{Counters, Geometry, NO_OWNER, Piece, SnappedVertex, vertex_flags},
+    frame::{ClippedTriangle, Counters, Geometry, NO_TRIANGLE, SnappedVertex, vertex_flags},
     math::SMALL_EXTENT,
     scene::{
         Scene,
@@ -44,25 +44,25 @@ impl OrientedTriangle {
 /// ([`depth_bound`]), cut to the depths of the triangle's corners, to which every renderer clamps.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Sample {
-    /// Nearest triangle, the smaller id at equal keys; [`NO_OWNER`] without one.
-    pub owner: u32,
-    /// Bits of the owner's depth rounded to f32, at least 1; 0 without an owner.
+    /// Nearest triangle, the smaller id at equal keys; [`NO_TRIANGLE`] without one.
+    pub triangle_id: u32,
+    /// Bits of the triangle id's depth rounded to f32, at least 1; 0 without an triangle id.
     pub key: u32,
     /// Drawn triangles and pieces that cover the sample, in front or behind.
     pub layers: u32,
-    /// Interval of the owner's depth.
+    /// Interval of the triangle id's depth.
     pub interval: [f64; 2],
-    /// Largest high end among the other owners.
+    /// Largest high end among the other triangle ids.
     pub rival: f64,
     /// Largest low end of all: what reaches less far is certainly hidden.
     pub floor: f64,
-    /// Interval of the owner that somebody claims for this pixel, if it covers the sample.
+    /// Interval of the triangle id that somebody claims for this pixel, if it covers the sample.
     pub claimed: Option<[f64; 2]>,
 }
 
 impl Sample {
     const EMPTY: Self = Self {
-        owner: NO_OWNER,
+        triangle_id: NO_TRIANGLE,
         key: 0,
         layers: 0,
         interval: [f64::NEG_INFINITY; 2],
@@ -71,12 +71,12 @@ impl Sample {
         claimed: None,
     };
 
-    /// Do two owners lie so close that a float key may prefer either?
+    /// Do two triangle ids lie so close that a float key may prefer either?
     pub fn is_band(&self) -> bool {
         self.layers > 1 && self.rival > self.interval[0]
     }
 
-    /// May the claimed owner be in front? It must cover the sample and reach past whatever certainly does.
+    /// May the claimed triangle id be in front? It must cover the sample and reach past whatever certainly does.
     pub fn claim_is_possible(&self) -> bool {
         self.claimed.is_some_and(|[_, high]| high >= self.floor)
     }
@@ -88,13 +88,13 @@ impl Sample {
             self.claimed = Some(interval);
         }
         let key = depth_key(depth);
-        let wins = key > self.key || key == self.key && id < self.owner;
+        let wins = key > self.key || key == self.key && id < self.triangle_id;
         let loser = if wins { self.interval[1] } else { interval[1] };
-        if id != self.owner {
+        if id != self.triangle_id {
             self.rival = self.rival.max(loser);
         }
         if wins {
-            (self.owner, self.key, self.interval) = (id, key, interval);
+            (self.triangle_id, self.key, self.interval) = (id, key, interval);
         }
     }
 }
@@ -106,8 +106,8 @@ pub struct Coverage {
 }
 
 impl Coverage {
-    pub fn owners(&self) -> Vec<u32> {
-        self.samples.iter().map(|sample| sample.owner).collect()
+    pub fn triangle_ids(&self) -> Vec<u32> {
+        self.samples.iter().map(|sample| sample.triangle_id).collect()
     }
 
     pub fn keys(&self) -> Vec<u32> {
@@ -143,7 +143,7 @@ pub(super) fn corner_records(scene: &Scene, draw: &Draw, geometry: &Geometry, id
 
 /// Where the corner records of triangle `id` of `draw` stand.
 pub(super) fn corner_places(scene: &Scene, draw: &Draw, geometry: &Geometry, id: u32) -> [usize; 3] {
-    if geometry.has_own_corners {
+    if geometry.has_unshared_vertices {
         return [0, 1, 2].map(|k| 3 * id as usize + k);
     }
     let corners = scene.primitives[draw.primitive].corners(scene, id - draw.first_triangle);
@@ -156,7 +156,7 @@ pub(super) fn corner_places(scene: &Scene, draw: &Draw, geometry: &Geometry, id:
 /// the sum of its parent's pieces is a fold.
 pub fn triangles(scene: &Scene, draws: &[Draw], geometry: &Geometry) -> (Vec<OrientedTriangle>, Counters) {
     const CHUNK: u32 = 1 << 16;
-    let mut pieces: Vec<(usize, &Piece)> = geometry.pieces.iter().enumerate().collect();
+    let mut pieces: Vec<(usize, &ClippedTriangle)> = geometry.pieces.iter().enumerate().collect();
     pieces.sort_by_key(|(_, piece)| piece.parent);
     let whole = totals(scene, draws)[1] as usize;
     let mut drawn = Vec::new();
@@ -175,7 +175,7 @@ pub fn triangles(scene: &Scene, draws: &[Draw], geometry: &Geometry) -> (Vec<Ori
             counters.rejected_range += counts.rejected_range;
             counters.degenerate += counts.degenerate;
             counters.clipped += counts.clipped;
-            counters.fan_folds += counts.fan_folds;
+            counters.flipped_clips += counts.flipped_clips;
         }
     }
     (drawn, counters)
@@ -187,7 +187,7 @@ struct Assembly<'a> {
     draw: &'a Draw,
     geometry: &'a Geometry,
     /// Sorted by parent, each with its place in the geometry.
-    pieces: &'a [(usize, &'a Piece)],
+    pieces: &'a [(usize, &'a ClippedTriangle)],
     /// Triangles of the scene, before the pieces among the entries.
     whole: usize,
     drawn: Vec<OrientedTriangle>,
@@ -221,7 +221,7 @@ impl Assembly<'_> {
         let facing = areas.iter().map(|(_, _, area)| area).sum::<i64>().signum();
         for (entry, corners, area) in areas {
             if area == 0 || area.signum() != facing {
-                self.counters.fan_folds += 1;
+                self.counters.flipped_clips += 1;
             } else {
                 self.oriented(parent, entry, corners, area);
             }
@@ -245,17 +245,17 @@ pub(super) fn is_back(area: i64, draw: &Draw) -> bool {
     (area > 0) != draw.mirrored
 }
 
-/// Finds what lies on every sample of `view`; `claims`, if given, names an owner per pixel to be examined.
+/// Finds what lies on every sample of `view`; `claims`, if given, names an triangle id per pixel to be examined.
 pub fn cover(triangles: &[OrientedTriangle], view: &View, claims: Option<&[u32]>) -> Coverage {
-    cover_by(&Rules::default(), triangles, view, claims)
+    cover_with(&SampleTests::default(), triangles, view, claims)
 }
 
 /// The same, where `rules` may leave samples out.
-pub fn cover_by(rules: &Rules, triangles: &[OrientedTriangle], view: &View, claims: Option<&[u32]>) -> Coverage {
+pub fn cover_with(rules: &SampleTests, triangles: &[OrientedTriangle], view: &View, claims: Option<&[u32]>) -> Coverage {
     let mut samples = vec![Sample::EMPTY; view.pixels()];
     scatter(rules, triangles, view, &mut samples, |triangle| {
         move |sample: &mut Sample, x: usize, y: usize, Hit { depth, interval }: Hit| {
-            let claim = claims.map_or(NO_OWNER, |claims| claims[y * view.width as usize + x]);
+            let claim = claims.map_or(NO_TRIANGLE, |claims| claims[y * view.width as usize + x]);
             sample.add(triangle.id, depth, interval, claim);
         }
     });
@@ -271,7 +271,7 @@ pub(super) struct Nearest {
 }
 
 /// Finds the nearest depth on every sample of `view`; infinitely far where nothing is.
-pub(super) fn cover_depths(rules: &Rules, triangles: &[OrientedTriangle], view: &View) -> Vec<Nearest> {
+pub(super) fn cover_depths(rules: &SampleTests, triangles: &[OrientedTriangle], view: &View) -> Vec<Nearest> {
     let mut cells = vec![Nearest { depth: f64::NEG_INFINITY, interval: [f64::NEG_INFINITY; 2] }; view.pixels()];
     scatter(rules, triangles, view, &mut cells, |_| {
         |cell: &mut Nearest, _, _, hit: Hit| {
@@ -293,7 +293,7 @@ pub(super) struct Hit {
 /// Visits every drawn sample of `view`, triangle by triangle, with the cell of its pixel; `visitor` makes a visit of each
 /// triangle. Parallel by bands of rows, so a triangle may be visited more than once, each sample by one visit alone.
 pub(super) fn scatter<'a, T: Send, V: FnMut(&mut T, usize, usize, Hit)>(
-    rules: &Rules,
+    rules: &SampleTests,
     triangles: &'a [OrientedTriangle],
     view: &View,
     cells: &mut [T],
@@ -330,7 +330,7 @@ pub(super) fn scatter<'a, T: Send, V: FnMut(&mut T, usize, usize, Hit)>(
 
 impl OrientedTriangle {
     /// Columns and rows of the pixels whose samples may be covered, within the view; none for a piece where corners are drawn.
-    pub(super) fn bounds(&self, view: &View, rules: &Rules) -> (Range<usize>, Range<usize>) {
+    pub(super) fn bounds(&self, view: &View, rules: &SampleTests) -> (Range<usize>, Range<usize>) {
         if rules.shape == Shape::Points && self.entry != self.id as usize {
             return (0..0, 0..0);
         }
@@ -346,7 +346,7 @@ impl OrientedTriangle {
     }
 
     /// Depth of this triangle at the centre of a pixel, with the interval of float keys; none when nothing is drawn there.
-    pub(super) fn at(&self, x: usize, y: usize, rules: &Rules) -> Option<(f64, [f64; 2])> {
+    pub(super) fn at(&self, x: usize, y: usize, rules: &SampleTests) -> Option<(f64, [f64; 2])> {
         let [a, b, c] = &self.corners;
         let [px, py] = [x, y].map(|k| rules.unit * k as i64 + rules.unit / 2);
         let opposite = [(b, c), (c, a), (a, b)];
@@ -390,8 +390,8 @@ impl OrientedTriangle {
         let (low, high) = (z[0].min(z[1]).min(z[2]), z[0].max(z[1]).max(z[2]));
         let [e0, e1, e2] = weights.map(|e| e as f64);
         let depth = ((e0 * z[0] + e1 * z[1] + e2 * z[2]) / (e0 + e1 + e2)).max(low).min(high);
-        let slack = depth.abs() * depth_bound(&self.corners);
-        (depth, [(depth - slack).max(low), (depth + slack).min(high)])
+        let error_bound = depth.abs() * depth_bound(&self.corners);
+        (depth, [(depth - error_bound).max(low), (depth + error_bound).min(high)])
     }
 }
 

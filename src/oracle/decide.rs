@@ -4,18 +4,18 @@ use glam::DVec3;
 use rayon::prelude::*;
 
 use super::{
-    bend::bounded_place,
     coverage::{corner_records, doubled_area, draw_of},
+    deform::bounded_place,
     mask,
-    moved::{Corner, Mover},
+    moved::{Corner, VertexEvaluator},
     surface::center_screen,
 };
 use crate::{
     effects::{
         Stack,
-        hooks::{Facts, SampleHook},
+        hooks::{SampleHook, TriangleSetup},
     },
-    frame::{Geometry, Piece, SnappedVertex},
+    frame::{ClippedTriangle, Geometry, SnappedVertex},
     scene::{
         Scene,
         camera::View,
@@ -34,8 +34,8 @@ pub fn decide(scene: &Scene, draws: &[Draw], view: &View, stack: &Stack, geometr
         return Vec::new();
     }
     let settle = |entry: Option<Entry>| {
-        let (facts, places) = entry.map_or((None, None), |(facts, places)| (Some(facts), places));
-        let one = |(hook, words): &(SampleHook, &[u32])| facts.as_ref().map_or([0; 4], |facts| (hook.decide)(facts, words, None));
+        let (setup, places) = entry.map_or((None, None), |(setup, places)| (Some(setup), places));
+        let one = |(hook, words): &(SampleHook, &[u32])| setup.as_ref().map_or([0; 4], |setup| (hook.decide)(setup, words, None));
         let places = places.map_or([[0; 4]; mask::RECORDS], |(primitive, places)| places.records(primitive));
         effects.iter().map(one).chain(places.into_iter().take(masks)).collect::<Vec<_>>()
     };
@@ -50,27 +50,27 @@ pub(super) fn wrong(scene: &Scene, draws: &[Draw], view: &View, stack: &Stack, g
         return 0;
     }
     let whole = totals(scene, draws)[1] as usize;
-    assert_eq!(geometry.decisions.len(), records * (whole + geometry.pieces.len()), "the decisions are of another scene");
-    let is_wrong = |facts: &Facts, (hook, words): &(SampleHook, &[u32]), given: [u32; 4]| {
-        let truth = (hook.decide)(facts, words, None);
-        let is_near = f64::from(truth[0].abs_diff(given[0])) <= (hook.slack)(facts, words);
-        !is_near || (hook.decide)(facts, words, Some(given[0])) != given
+    assert_eq!(geometry.sample_setups.len(), records * (whole + geometry.pieces.len()), "the decisions are of another scene");
+    let is_wrong = |setup: &TriangleSetup, (hook, words): &(SampleHook, &[u32]), given: [u32; 4]| {
+        let reference = (hook.decide)(setup, words, None);
+        let is_near = f64::from(reference[0].abs_diff(given[0])) <= (hook.error_bound)(setup, words);
+        !is_near || (hook.decide)(setup, words, Some(given[0])) != given
     };
     let faults = |(entry, given): (Option<Entry>, &[[u32; 4]])| {
-        let Some((facts, places)) = entry else { return 0 };
+        let Some((setup, places)) = entry else { return 0 };
         let places_are_wrong = match (masks, places) {
             (0, _) => false,
             (_, None) => given[records - 1][2] != 0,
             (_, Some((_, places))) => !places.allow(&given[effects.len()..]),
         };
-        let wrong = effects.iter().zip(given).filter(|(effect, given)| is_wrong(&facts, effect, **given)).count();
+        let wrong = effects.iter().zip(given).filter(|(effect, given)| is_wrong(&setup, effect, **given)).count();
         (wrong + usize::from(places_are_wrong)) as u64
     };
-    entries(scene, draws, view, stack, geometry).zip(geometry.decisions.par_chunks(records)).map(faults).sum()
+    entries(scene, draws, view, stack, geometry).zip(geometry.sample_setups.par_chunks(records)).map(faults).sum()
 }
 
-/// Facts about a triangle or piece, and where its corners lie in the image of its primitive, where that masks it.
-type Entry = (Facts, Option<(usize, mask::Places)>);
+/// TriangleSetup about a triangle or piece, and where its corners lie in the image of its primitive, where that masks it.
+type Entry = (TriangleSetup, Option<(usize, mask::Places)>);
 
 /// Records that masks take per entry.
 fn masks(scene: &Scene, stack: &Stack) -> usize {
@@ -78,10 +78,10 @@ fn masks(scene: &Scene, stack: &Stack) -> usize {
 }
 
 fn deciding(stack: &Stack) -> Vec<(SampleHook, &[u32])> {
-    stack.each(|hooks| hooks.sample.filter(|hook| hook.decides)).collect()
+    stack.each(|hooks| hooks.sample.filter(|hook| hook.has_setup)).collect()
 }
 
-/// Facts of all triangles, then of all pieces; none where nothing is drawn.
+/// TriangleSetup of all triangles, then of all pieces; none where nothing is drawn.
 fn entries<'a>(
     scene: &'a Scene,
     draws: &'a [Draw],
@@ -95,14 +95,26 @@ fn entries<'a>(
         let records = corner_records(scene, draw, geometry, id);
         let is_drawn = records.iter().all(|record| record.flags == 0) && doubled_area(&records) != 0;
         is_drawn
-            .then(|| entry(&Mover::new(scene, draw, view, stack), scene, view, geometry, id, Shown::Whole(&records), has_masks))
+            .then(|| {
+                entry(&VertexEvaluator::new(scene, draw, view, stack), scene, view, geometry, id, Shown::EndToEnd(&records), has_masks)
+            })
             .flatten()
     };
-    let pieces = move |piece: &Piece| {
+    let pieces = move |piece: &ClippedTriangle| {
         let draw = draw_of(scene, draws, piece.parent)?;
         let is_drawn = doubled_area(&piece.corners) != 0;
         is_drawn
-            .then(|| entry(&Mover::new(scene, draw, view, stack), scene, view, geometry, piece.parent, Shown::Piece(piece), has_masks))
+            .then(|| {
+                entry(
+                    &VertexEvaluator::new(scene, draw, view, stack),
+                    scene,
+                    view,
+                    geometry,
+                    piece.parent,
+                    Shown::ClippedTriangle(piece),
+                    has_masks,
+                )
+            })
             .flatten()
     };
     (0..totals(scene, draws)[1] as u32).into_par_iter().map(whole).chain(geometry.pieces.par_iter().map(pieces))
@@ -110,16 +122,24 @@ fn entries<'a>(
 
 /// What is drawn of a triangle.
 enum Shown<'a> {
-    Whole(&'a [SnappedVertex; 3]),
-    Piece(&'a Piece),
+    EndToEnd(&'a [SnappedVertex; 3]),
+    ClippedTriangle(&'a ClippedTriangle),
 }
 
-fn entry(mover: &Mover, scene: &Scene, view: &View, geometry: &Geometry, id: u32, shown: Shown, has_masks: bool) -> Option<Entry> {
+fn entry(
+    vertex_evaluator: &VertexEvaluator,
+    scene: &Scene,
+    view: &View,
+    geometry: &Geometry,
+    id: u32,
+    shown: Shown,
+    has_masks: bool,
+) -> Option<Entry> {
     let (corners, outline, piece) = match shown {
-        Shown::Whole(corners) => (corners, 7, None),
-        Shown::Piece(piece) => (&piece.corners, piece.outline, Some(&piece.corners)),
+        Shown::EndToEnd(corners) => (corners, 7, None),
+        Shown::ClippedTriangle(piece) => (&piece.corners, piece.outline, Some(&piece.corners)),
     };
-    let draw = mover.draw;
+    let draw = vertex_evaluator.draw;
     let primitive = &scene.primitives[draw.primitive];
     let vertices = primitive.corners(scene, id - draw.first_triangle);
     let [Ok(a), Ok(b), Ok(c)] = vertices.map(|vertex| bounded_place(scene, draw, vertex)) else { return None };
@@ -130,19 +150,19 @@ fn entry(mover: &Mover, scene: &Scene, view: &View, geometry: &Geometry, id: u32
     let m = draw.world_from_object;
     let reach = object.map(|p| m.x_axis.abs() * p.x.abs() + m.y_axis.abs() * p.y.abs() + m.z_axis.abs() * p.z.abs() + m.w_axis.abs());
     let reach = reach.iter().fold(0.0, |most: f64, axis| most.max(axis.truncate().max_element()));
-    let bent = [a, b, c].map(|p| (m.x_axis.abs() * p.error.x + m.y_axis.abs() * p.error.y + m.z_axis.abs() * p.error.z).max_element());
-    let bent = bent.into_iter().fold(0.0, f64::max);
-    let image = has_masks.then(|| mask::Places::of(mover, scene, view, places, piece)).flatten();
+    let deformed = [a, b, c].map(|p| (m.x_axis.abs() * p.error.x + m.y_axis.abs() * p.error.y + m.z_axis.abs() * p.error.z).max_element());
+    let deformed = deformed.into_iter().fold(0.0, f64::max);
+    let image = has_masks.then(|| mask::Places::of(vertex_evaluator, scene, view, places, piece)).flatten();
     let center = world.iter().sum::<DVec3>() / 3.0;
-    let screen = || center_screen(mover, view, &corner_records(scene, draw, geometry, id), places);
-    let facts = Facts {
+    let screen = || center_screen(vertex_evaluator, view, &corner_records(scene, draw, geometry, id), places);
+    let setup = TriangleSetup {
         triangle: id,
         corners: corners.map(|corner| [corner.x, corner.y]),
         outline,
         size: [view.width, view.height],
         center,
-        center_slack_m: 8.0 * ULP * reach + bent,
-        center_screen: mover.in_picture(center).unwrap_or_else(screen),
+        center_slack_m: 8.0 * ULP * reach + deformed,
+        center_screen: vertex_evaluator.in_picture(center).unwrap_or_else(screen),
     };
-    Some((facts, image.map(|image| (draw.primitive, image))))
+    Some((setup, image.map(|image| (draw.primitive, image))))
 }

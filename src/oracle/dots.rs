@@ -5,22 +5,22 @@ use rayon::prelude::*;
 
 use super::{
     judge::{ULP, snap_bound},
-    moved::{Corner, Mover},
+    moved::{Corner, VertexEvaluator},
     project::{Clip, snap_inside},
 };
 use crate::{
     effects::{
         Stack,
-        dots::{Dots, FULL, MAX_DOTS, Strung},
+        dots::{Dots, FULL, LineSource, MAX_DOTS},
     },
     frame::{SnappedVertex, vertex_flags},
     math::{GUARD_BAND, SUBPIXEL_BITS, rounded_columns},
-    measure::Accuracy,
+    measure::ErrorReport,
     scene::{
         Scene,
         camera::View,
         draw::{Draw, DrawError},
-        lines::{Ends, Lines, Segment},
+        lines::{Lines, Segment, SegmentEnds},
     },
 };
 
@@ -33,7 +33,7 @@ struct Bounded {
 
 /// All dots of a picture.
 struct Strings<'a> {
-    movers: Vec<Mover<'a>>,
+    movers: Vec<VertexEvaluator<'a>>,
     lines: Lines,
     clip_from_scene: [[f64; 4]; 4],
     /// Segment of every dot, and which share of it lies before the dot.
@@ -42,10 +42,10 @@ struct Strings<'a> {
 
 impl<'a> Strings<'a> {
     fn new(scene: &'a Scene, draws: &'a [Draw], view: &'a View, stack: &'a Stack, dots: &Dots) -> Result<Self, DrawError> {
-        let lines = match Strung::of(dots.lines) {
-            Strung::Edges => Lines::edges(scene, None)?,
-            Strung::Creases => Lines::edges(scene, Some(dots.crease_deg.into()))?,
-            Strung::Polyline => Lines::polyline(&view.polyline),
+        let lines = match LineSource::of(dots.lines) {
+            LineSource::Edges => Lines::edges(scene, None)?,
+            LineSource::Creases => Lines::edges(scene, Some(dots.crease_deg.into()))?,
+            LineSource::Polyline => Lines::polyline(&view.polyline),
         };
         let count = |line: &[Segment]| line.last().map_or(0, |last| dots.count(last.start_m + last.length_m));
         let all: u64 = lines.each().map(|(_, line)| count(line)).sum();
@@ -62,22 +62,22 @@ impl<'a> Strings<'a> {
             }));
         }
         let clip_from_scene = rounded_columns(&(view.clip_from_world * view.world_from_scene)).map(|column| column.map(f64::from));
-        let movers = draws.iter().map(|draw| Mover::new(scene, draw, view, stack)).collect();
+        let movers = draws.iter().map(|draw| VertexEvaluator::new(scene, draw, view, stack)).collect();
         Ok(Self { movers, lines, clip_from_scene, dots: placed })
     }
 
     /// Both ends of every segment; none where one of them was refused.
     fn ends(&self, has_errors: bool) -> Vec<Option<[Bounded; 2]>> {
-        let edge = |mover: &Mover, corner: Corner| {
-            let Clip { x, y, z, w } = mover.clip(corner).ok()?;
-            Some(Bounded { at: [x, y, z, w], error: if has_errors { mover.clip_errors(corner).1 } else { [0.0; 4] } })
+        let edge = |vertex_evaluator: &VertexEvaluator, corner: Corner| {
+            let Clip { x, y, z, w } = vertex_evaluator.clip(corner).ok()?;
+            Some(Bounded { at: [x, y, z, w], error: if has_errors { vertex_evaluator.clip_errors(corner).1 } else { [0.0; 4] } })
         };
         let of = |segment: &Segment| match segment.ends {
-            Ends::Edge { draw, vertices: [a, b], triangle } => {
-                let mover = &self.movers[draw as usize];
-                Some([edge(mover, Corner { vertex: a, triangle })?, edge(mover, Corner { vertex: b, triangle })?])
+            SegmentEnds::Edge { draw, vertices: [a, b], triangle } => {
+                let vertex_evaluator = &self.movers[draw as usize];
+                Some([edge(vertex_evaluator, Corner { vertex: a, triangle })?, edge(vertex_evaluator, Corner { vertex: b, triangle })?])
             }
-            Ends::Points(points) => Some(points.map(|point| self.point(point))),
+            SegmentEnds::Points(points) => Some(points.map(|point| self.point(point))),
         };
         self.lines.segments.par_iter().map(of).collect()
     }
@@ -154,13 +154,13 @@ pub fn dot_strengths(view: &View, stack: &Stack, records: &[SnappedVertex], keys
     strengths
 }
 
-/// Holds the dots that an adapter placed against the truth and its bound, and the strengths on its pixels, which are
+/// Holds the dots that an adapter placed against the reference and its bound, and the strengths on its pixels, which are
 /// integers, against what follows from its own records.
 ///
 /// # Errors
 /// When there are too many.
 pub(super) fn judge(
-    accuracy: &mut Accuracy,
+    accuracy: &mut ErrorReport,
     (scene, draws, view, stack): (&Scene, &[Draw], &View, &Stack),
     records: &[SnappedVertex],
     [strengths, expected]: [&[u32]; 2],
@@ -180,7 +180,7 @@ pub(super) fn judge(
     Ok(())
 }
 
-/// Does a record lie as near to its truth as rounding allows? What rounding may carry anywhere always does.
+/// Does a record lie as near to its reference as rounding allows? What rounding may carry anywhere always does.
 fn is_within(record: &SnappedVertex, dot: &Option<Bounded>, own: &SnappedVertex, view: &View) -> bool {
     let Some(Bounded { at: [x, y, z, w], error }) = *dot else { return record.flags == own.flags };
     let [_, _, ez, ew] = error;
@@ -194,8 +194,8 @@ fn is_within(record: &SnappedVertex, dot: &Option<Bounded>, own: &SnappedVertex,
     };
     let [bound_x, bound_y] = bounds.map(|bound| if bound < 1.0 { 1.0 } else { (1.0 + bound).floor() });
     if record.flags != own.flags {
-        let truth = placed_freely(&clip, view);
-        let is_at_guard = [(truth[0], bound_x), (truth[1], bound_y)]
+        let reference = placed_freely(&clip, view);
+        let is_at_guard = [(reference[0], bound_x), (reference[1], bound_y)]
             .into_iter()
             .any(|(at, bound)| (at.abs() - f64::from(GUARD_BAND)).abs() <= bound + 1.0);
         return is_doubtful || is_kept && is_at_guard;

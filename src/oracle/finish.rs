@@ -18,9 +18,9 @@ use crate::{
 /// The integers that a picture is coloured from, row-major.
 #[derive(Clone, Copy, Debug)]
 pub struct Seen<'a> {
-    /// Global triangle id per pixel, [`crate::frame::NO_OWNER`] without one.
-    pub owners: &'a [u32],
-    /// Depth key per pixel, 0 without an owner.
+    /// Global triangle id per pixel, [`crate::frame::NO_TRIANGLE`] without one.
+    pub triangle_ids: &'a [u32],
+    /// Depth key per pixel, 0 without an triangle id.
     pub keys: &'a [u32],
     /// Strength of the strongest dot per pixel; empty without dots.
     pub dots: &'a [u32],
@@ -44,7 +44,7 @@ pub(super) fn shade_nudged(
     nudge: Nudge,
 ) -> Vec<[u8; 4]> {
     let background = background(view);
-    let colors = surfaces(scene, draws, view, stack, (seen.owners, background), geometry, nudge);
+    let colors = surfaces(scene, draws, view, stack, (seen.triangle_ids, background), geometry, nudge);
     finish_all(draws, view, stack, seen, &colors, nudge.step)
 }
 
@@ -54,7 +54,7 @@ pub(super) fn finish_all(draws: &[Draw], view: &View, stack: &Stack, seen: &Seen
     let picture = Picture {
         width: view.width,
         height: view.height,
-        owners: seen.owners,
+        triangle_ids: seen.triangle_ids,
         keys: seen.keys,
         draws: &first,
         previous: seen.previous,

@@ -49,7 +49,7 @@ mod tests {
         let floor = f32::MIN_POSITIVE;
         let below_one = 1.0 - f32::EPSILON / 2.0;
         assert_eq!(product(floor, 1.0), floor);
-        // Plain f32 has no number between 2^-126 - 2^-149 and 2^-126, and would round to the latter.
+        // Value f32 has no number between 2^-126 - 2^-149 and 2^-126, and would round to the latter.
         assert_eq!((floor * below_one, product(floor, below_one)), (floor, 0.0));
         assert_eq!(product(-floor, below_one).to_bits(), (-0f32).to_bits());
         // (1 + e)(1 - e) = 1 - e², which no 24 bits tell from 1.

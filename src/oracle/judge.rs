@@ -1,15 +1,15 @@
 //! The judgement: an adapter's frame held against the oracle, stage by stage, each stage from the adapter's own input.
 //!
-//! Vertices are judged from the matrix bits with a forward error bound, coverage and owners from the adapter's snapped
-//! vertices and pieces, colours from the adapter's owners; so one fault is counted once, where it happened. Last, the whole
+//! Vertices are judged from the matrix bits with a forward error bound, coverage and triangle ids from the adapter's snapped
+//! vertices and pieces, colours from the adapter's triangle ids; so one fault is counted once, where it happened. Last, the whole
 //! picture is held against the oracle's own, where only what a snapped vertex explains may differ.
 
 use rayon::prelude::*;
 
 use super::{
-    bend,
-    coverage::{Coverage, Sample, cover_by, triangles},
+    coverage::{Coverage, Sample, cover_with, triangles},
     decide::{decide, wrong},
+    deform,
     dots::{self, dot_strengths},
     empty,
     faults::{Manner, faults},
@@ -17,18 +17,18 @@ use super::{
     frame,
     layers::{Layered, Scenery, layered},
     light,
-    moved::{Corner, Mover},
+    moved::{Corner, VertexEvaluator},
     order, particles,
     project::{Clip, half_size, project_as},
-    rules::Rules,
+    rules::SampleTests,
     steps::Answers,
-    whole::Whole,
+    whole::EndToEnd,
 };
 use crate::{
     effects::Stack,
-    frame::{Counters, Frame, Geometry, NO_OWNER, SnappedVertex, vertex_flags},
+    frame::{Counters, Frame, Geometry, NO_TRIANGLE, SnappedVertex, vertex_flags},
     math::GUARD_BAND,
-    measure::{Accuracy, Verdict, compare},
+    measure::{ErrorReport, Verdict, compare},
     scene::{
         Scene,
         camera::View,
@@ -72,32 +72,40 @@ pub fn judge_after(
     layers: Option<&[u32]>,
     previous: Option<&[[u8; 4]]>,
 ) -> Result<Verdict, DrawError> {
-    // The adapter's grid, the origin of its places and the pixels that it draws are promises of its rungs, not faults.
+    // The adapter's grid, the origin of its places and the pixels that it draws are promises of its options, not faults.
     let view = &View { subpixel_bits: geometry.subpixel_bits, is_relative: geometry.is_relative, ..view.scaled(geometry.scale) };
     let stack = &stack.scaled(geometry.scale);
     if view.pixels() == 0 {
         draws(scene, view)?;
         return Ok(Verdict { expected: empty(view), ..Verdict::default() });
     }
-    let scene = &*particles::dressed(scene, view, stack, geometry.swarm.as_ref());
+    let scene = &*particles::dressed(scene, view, stack, geometry.particle_readback.as_ref());
     let draws = draws(scene, view)?;
-    assert_eq!([adapter.owner.len(), adapter.key.len(), adapter.color.len()], [view.pixels(); 3], "the frame has another size");
+    assert_eq!([adapter.triangle_id.len(), adapter.key.len(), adapter.color.len()], [view.pixels(); 3], "the frame has another size");
     let mut own = project_as(geometry.exact, scene, &draws, view, stack);
-    own.decisions = decide(scene, &draws, view, stack, &own);
-    let records = |geometry: &Geometry| (geometry.vertices.len(), geometry.has_own_corners);
+    own.sample_setups = decide(scene, &draws, view, stack, &own);
+    let records = |geometry: &Geometry| (geometry.vertices.len(), geometry.has_unshared_vertices);
     assert_eq!(records(geometry), records(&own), "the geometry is of another scene or stack");
 
     assert_eq!(geometry.light.is_some(), stack.light().is_some(), "the light has a map, or there is neither");
     let (given, counters) = triangles(scene, &draws, geometry);
     // Where the hardware chooses among samples, everything that is covered may be drawn.
     let is_free = order::is_free(stack);
-    let rules = Rules::of(stack, geometry).masked(scene, &draws, stack);
+    let rules = SampleTests::of(stack, geometry).masked(scene, &draws, stack);
     let rules = if is_free { rules } else { rules.ordered(stack, &given, view) };
-    let coverage = cover_by(&rules, &given, view, Some(&adapter.owner));
+    let coverage = cover_with(&rules, &given, view, Some(&adapter.triangle_id));
     let dots = dot_strengths(view, stack, &geometry.dots, &adapter.key);
-    let seen = Seen { owners: &adapter.owner, keys: &adapter.key, dots: &dots, previous };
-    let scenery =
-        Scenery { scene, draws: &draws, view, geometry, rules: &rules, triangles: &given, owners: &adapter.owner, keys: &adapter.key };
+    let seen = Seen { triangle_ids: &adapter.triangle_id, keys: &adapter.key, dots: &dots, previous };
+    let scenery = Scenery {
+        scene,
+        draws: &draws,
+        view,
+        geometry,
+        rules: &rules,
+        triangles: &given,
+        triangle_ids: &adapter.triangle_id,
+        keys: &adapter.key,
+    };
     let layered = layered(&scenery, &coverage, stack);
     let answers = match &layered {
         Some(layered) => Answers::between(&draws, view, stack, &seen, layered),
@@ -110,7 +118,7 @@ pub fn judge_after(
         false => vertex_faults(scene, &draws, view, stack, geometry, &own),
     };
 
-    let mut accuracy = Accuracy { pixels: view.pixels() as u64, ..Default::default() };
+    let mut accuracy = ErrorReport { pixels: view.pixels() as u64, ..Default::default() };
     let cut = is_free.then(|| order::cut(stack, &rules, &given, view)).flatten();
     match cut {
         Some(cut) => judge_choice(&mut accuracy, &coverage, adapter, layers, cut.limit),
@@ -130,66 +138,67 @@ pub fn judge_after(
     judge_counters(&mut accuracy, &counters, adapter);
     judge_vertices(&mut accuracy, &vertices);
     judge_particles(&mut accuracy, view, stack, geometry);
-    bend::judge(&mut accuracy, scene, &draws, view, &geometry.bent);
+    deform::judge(&mut accuracy, scene, &draws, view, &geometry.deformed);
     dots::judge(&mut accuracy, (scene, &draws, view, stack), &geometry.dots, [&adapter.dots, &dots])?;
     // Of rough places, fronts travel roughly.
-    accuracy.decisions_wrong = if geometry.is_rough { 0 } else { wrong(scene, &draws, view, stack, geometry) };
+    accuracy.sample_setups_wrong = if geometry.is_rough { 0 } else { wrong(scene, &draws, view, stack, geometry) };
     if let Some(map) = &geometry.light {
         light::judge(&mut accuracy, scene, view, stack, map)?;
     }
-    Whole { scene, draws: &draws, view, stack, own: &own, adapter: geometry, cut: rules.cut(), vertices: &vertices }.judge(
+    EndToEnd { scene, draws: &draws, view, stack, own: &own, adapter: geometry, cut: rules.cut(), vertices: &vertices }.judge(
         &mut accuracy,
         &coverage,
         adapter,
     );
 
-    let owners = coverage.owners();
+    let triangle_ids = coverage.triangle_ids();
     let (colors, counted) = match layered {
         Some(layered) => (answers.middle(), layered.counted),
-        None if owners == adapter.owner => (colors, Vec::new()),
+        None if triangle_ids == adapter.triangle_id => (colors, Vec::new()),
         None => {
             let dots = &dot_strengths(view, stack, &geometry.dots, &coverage.keys());
-            let seen = Seen { owners: &owners, keys: &coverage.keys(), dots, previous };
+            let seen = Seen { triangle_ids: &triangle_ids, keys: &coverage.keys(), dots, previous };
             (Answers::of(scene, &draws, view, stack, &seen, geometry).nearest(&adapter.color), Vec::new())
         }
     };
-    faults.recolour(&adapter.color, &colors);
+    faults.compare_again(&adapter.color, &colors);
     Ok(Verdict { accuracy, expected: frame(view, &coverage, colors, counted, counters), step_band, faults })
 }
 
-/// Is the adapter's owner right, exactly or as one of the two answers of the depth band?
-pub(super) fn owner_is_right(sample: &Sample, owner: u32) -> bool {
-    owner == sample.owner || sample.is_band() && sample.claim_is_possible()
+/// Is the adapter's triangle id right, exactly or as one of the two answers of the depth band?
+pub(super) fn triangle_is_right(sample: &Sample, triangle_id: u32) -> bool {
+    triangle_id == sample.triangle_id || sample.is_band() && sample.claim_is_possible()
 }
 
-fn judge_samples(accuracy: &mut Accuracy, coverage: &Coverage, adapter: &Frame, layers: Option<&[u32]>, is_racing: bool) {
+fn judge_samples(accuracy: &mut ErrorReport, coverage: &Coverage, adapter: &Frame, layers: Option<&[u32]>, is_racing: bool) {
     for (i, sample) in coverage.samples.iter().enumerate() {
-        let (owner, key) = (adapter.owner[i], adapter.key[i]);
-        let hits = layers.map_or(u32::from(owner != NO_OWNER), |layers| layers[i]);
-        let truth = if layers.is_some() { sample.layers } else { sample.layers.min(1) };
-        accuracy.holes += u64::from(truth.saturating_sub(hits));
-        accuracy.double_hits += u64::from(hits.saturating_sub(truth));
-        accuracy.band_pixels += u64::from(sample.is_band());
-        accuracy.orphans += u64::from(owner == NO_OWNER && key != 0);
+        let (triangle_id, key) = (adapter.triangle_id[i], adapter.key[i]);
+        let hits = layers.map_or(u32::from(triangle_id != NO_TRIANGLE), |layers| layers[i]);
+        let reference = if layers.is_some() { sample.layers } else { sample.layers.min(1) };
+        accuracy.holes += u64::from(reference.saturating_sub(hits));
+        accuracy.double_hits += u64::from(hits.saturating_sub(reference));
+        accuracy.depth_band_pixels += u64::from(sample.is_band());
+        accuracy.depth_without_id += u64::from(triangle_id == NO_TRIANGLE && key != 0);
         // Where layers race, any that covers the sample may win, and the key may be another's.
         let is_contested = is_racing && sample.layers > 1 && sample.claimed.is_some();
-        accuracy.race_pixels += u64::from(is_contested && !owner_is_right(sample, owner));
-        let is_wrong = !is_contested && !owner_is_right(sample, owner);
-        accuracy.owner_mismatch += u64::from(is_wrong);
-        accuracy.wrong_winners += u64::from(is_wrong && sample.claimed.is_some());
-        let is_judged = !is_contested && !adapter.keys_are_rough;
+        accuracy.race_pixels += u64::from(is_contested && !triangle_is_right(sample, triangle_id));
+        let is_wrong = !is_contested && !triangle_is_right(sample, triangle_id);
+        accuracy.wrong_triangles += u64::from(is_wrong);
+        accuracy.wrong_nearest += u64::from(is_wrong && sample.claimed.is_some());
+        let is_judged = !is_contested && !adapter.depth_keys_are_approximate;
         accuracy.key_outside_bound += u64::from(is_judged && sample.claimed.is_some_and(|bound| !key_fits(key, bound)));
     }
 }
 
-/// Where the hardware chooses: an owner must cover its sample, and as many samples are drawn as the limit says.
-fn judge_choice(accuracy: &mut Accuracy, coverage: &Coverage, adapter: &Frame, layers: Option<&[u32]>, limit: u64) {
+/// Where the hardware chooses: an triangle id must cover its sample, and as many samples are drawn as the limit says.
+fn judge_choice(accuracy: &mut ErrorReport, coverage: &Coverage, adapter: &Frame, layers: Option<&[u32]>, limit: u64) {
     for (i, sample) in coverage.samples.iter().enumerate() {
-        let (owner, key) = (adapter.owner[i], adapter.key[i]);
+        let (triangle_id, key) = (adapter.triangle_id[i], adapter.key[i]);
         accuracy.double_hits += layers.map_or(0, |layers| u64::from(layers[i].saturating_sub(sample.layers)));
-        accuracy.owner_mismatch += u64::from(owner != NO_OWNER && sample.claimed.is_none());
-        accuracy.orphans += u64::from(owner == NO_OWNER && key != 0);
-        accuracy.key_outside_bound += u64::from(!adapter.keys_are_rough && sample.claimed.is_some_and(|bound| !key_fits(key, bound)));
+        accuracy.wrong_triangles += u64::from(triangle_id != NO_TRIANGLE && sample.claimed.is_none());
+        accuracy.depth_without_id += u64::from(triangle_id == NO_TRIANGLE && key != 0);
+        accuracy.key_outside_bound +=
+            u64::from(!adapter.depth_keys_are_approximate && sample.claimed.is_some_and(|bound| !key_fits(key, bound)));
     }
     let drawn: Option<u64> = layers.map(|layers| layers.iter().map(|&count| u64::from(count)).sum());
     accuracy.holes += drawn.map_or(0, |drawn| drawn.abs_diff(limit));
@@ -202,35 +211,35 @@ pub(super) fn key_fits(key: u32, [low, high]: [f64; 2]) -> bool {
 }
 
 /// Judges counts of layers.
-fn judge_layers(accuracy: &mut Accuracy, truth: &Layered, adapter: &Frame) {
-    assert_eq!(adapter.counted.len(), truth.counted.len(), "the counts have another size");
+fn judge_layers(accuracy: &mut ErrorReport, reference: &Layered, adapter: &Frame) {
+    assert_eq!(adapter.counted.len(), reference.counted.len(), "the counts have another size");
     let is_wrong = |(count, [least, most]): &(&u32, &[u64; 2])| !(*least..=*most).contains(&u64::from(**count));
-    accuracy.counts_wrong = adapter.counted.iter().zip(&truth.count_bounds).filter(is_wrong).count() as u64;
+    accuracy.layer_counts_wrong = adapter.counted.iter().zip(&reference.count_bounds).filter(is_wrong).count() as u64;
     accuracy.overflow += u64::from(adapter.counters.full_pixels);
-    accuracy.open_pixels = truth.bounds.iter().filter(|ends| bytes(ends[0]) != bytes(ends[1])).count() as u64;
+    accuracy.ambiguous_layer_pixels = reference.bounds.iter().filter(|ends| bytes(ends[0]) != bytes(ends[1])).count() as u64;
 }
 
-fn judge_colors(accuracy: &mut Accuracy, expected: &[[u8; 4]], adapter: &Frame) {
+fn judge_colors(accuracy: &mut ErrorReport, expected: &[[u8; 4]], adapter: &Frame) {
     let delta = compare::pictures(expected, &adapter.color, 0);
-    accuracy.max_colour_delta = delta.max_delta;
-    accuracy.rms_colour_delta = delta.rms;
+    accuracy.max_color_delta = delta.max_delta;
+    accuracy.rms_color_delta = delta.rms;
 }
 
-fn judge_counters(accuracy: &mut Accuracy, truth: &Counters, adapter: &Frame) {
+fn judge_counters(accuracy: &mut ErrorReport, reference: &Counters, adapter: &Frame) {
     let counted = |c: &Counters| [c.rejected_nonfinite, c.rejected_range, c.degenerate];
-    accuracy.counters_wrong = counted(truth).iter().zip(counted(&adapter.counters)).filter(|(a, b)| *a != b).count() as u64;
+    accuracy.counters_wrong = counted(reference).iter().zip(counted(&adapter.counters)).filter(|(a, b)| *a != b).count() as u64;
     accuracy.overflow += u64::from(adapter.counters.overflow);
-    accuracy.orphans = accuracy.orphans.max(adapter.counters.orphans.into());
+    accuracy.depth_without_id = accuracy.depth_without_id.max(adapter.counters.depth_without_id.into());
 }
 
-fn judge_particles(accuracy: &mut Accuracy, view: &View, stack: &Stack, geometry: &Geometry) {
-    let Some(swarm) = &geometry.swarm else { return };
-    let judged = particles::judged(view, stack, swarm);
+fn judge_particles(accuracy: &mut ErrorReport, view: &View, stack: &Stack, geometry: &Geometry) {
+    let Some(particle_readback) = &geometry.particle_readback else { return };
+    let judged = particles::judged(view, stack, particle_readback);
     accuracy.particles = judged.len() as u64;
     accuracy.particles_outside_bound = judged.iter().filter(|one| one.is_outside).count() as u64;
-    accuracy.particles_astray = judged.iter().filter(|one| one.astray_px > 1.0).count() as u64;
-    accuracy.max_astray_px = judged.iter().map(|one| one.astray_px).fold(0.0, f64::max);
-    accuracy.mean_astray_m = judged.iter().map(|one| one.astray_m).sum::<f64>() / judged.len().max(1) as f64;
+    accuracy.particles_diverged = judged.iter().filter(|one| one.astray_px > 1.0).count() as u64;
+    accuracy.max_divergence_px = judged.iter().map(|one| one.astray_px).fold(0.0, f64::max);
+    accuracy.mean_divergence_m = judged.iter().map(|one| one.astray_m).sum::<f64>() / judged.len().max(1) as f64;
 }
 
 /// What the judgement of one vertex found.
@@ -246,7 +255,7 @@ pub(super) struct VertexFault {
     pub wander: f64,
 }
 
-pub(super) fn judge_vertices(accuracy: &mut Accuracy, faults: &[VertexFault]) {
+pub(super) fn judge_vertices(accuracy: &mut ErrorReport, faults: &[VertexFault]) {
     for fault in faults {
         accuracy.vertices += 1;
         accuracy.ill_conditioned += u64::from(fault.is_ill_conditioned);
@@ -266,12 +275,12 @@ pub(super) fn vertex_faults(
     own: &Geometry,
 ) -> Vec<VertexFault> {
     let of_draw = |draw: &Draw| {
-        let mover = Mover::new(scene, draw, view, stack);
+        let vertex_evaluator = VertexEvaluator::new(scene, draw, view, stack);
         let fault = |(i, corner)| {
-            let at = mover.first_record() + i;
-            vertex_fault(&mover, view, corner, &adapter.vertices[at], &own.vertices[at])
+            let at = vertex_evaluator.first_record() + i;
+            vertex_fault(&vertex_evaluator, view, corner, &adapter.vertices[at], &own.vertices[at])
         };
-        mover.corners().into_par_iter().enumerate().map(fault).collect::<Vec<_>>()
+        vertex_evaluator.corners().into_par_iter().enumerate().map(fault).collect::<Vec<_>>()
     };
     draws.iter().flat_map(of_draw).collect()
 }
@@ -297,9 +306,9 @@ fn rough_fault(adapter: &SnappedVertex, own: &SnappedVertex) -> VertexFault {
 /// where rounding may move it anywhere.
 pub fn snap_bounds(scene: &Scene, draws: &[Draw], view: &View, stack: &Stack) -> Vec<Option<[f64; 2]>> {
     let of_draw = |draw: &Draw| {
-        let mover = Mover::new(scene, draw, view, stack);
-        let bound = |corner| snap_bound(&mover.clip(corner).ok()?, mover.clip_errors(corner).1, view);
-        mover.corners().into_iter().map(bound).collect::<Vec<_>>()
+        let vertex_evaluator = VertexEvaluator::new(scene, draw, view, stack);
+        let bound = |corner| snap_bound(&vertex_evaluator.clip(corner).ok()?, vertex_evaluator.clip_errors(corner).1, view);
+        vertex_evaluator.corners().into_iter().map(bound).collect::<Vec<_>>()
     };
     draws.iter().flat_map(of_draw).collect()
 }
@@ -312,14 +321,20 @@ pub(super) fn snap_bound(clip: &Clip, [ex, ey, _, ew]: [f64; 4], view: &View) ->
     (ew <= w / 16.0).then(|| [bound(half_x, ex, clip.x), bound(half_y, ey, clip.y)])
 }
 
-/// Holds one record against the truth by a forward error bound that covers every rounding, order and fusion WGSL allows.
-fn vertex_fault(mover: &Mover, view: &View, corner: Corner, adapter: &SnappedVertex, own: &SnappedVertex) -> VertexFault {
-    let Ok(clip) = mover.clip(corner) else {
+/// Holds one record against the reference by a forward error bound that covers every rounding, order and fusion WGSL allows.
+fn vertex_fault(
+    vertex_evaluator: &VertexEvaluator,
+    view: &View,
+    corner: Corner,
+    adapter: &SnappedVertex,
+    own: &SnappedVertex,
+) -> VertexFault {
+    let Ok(clip) = vertex_evaluator.clip(corner) else {
         let is_nonfinite = |v: &SnappedVertex| v.flags & vertex_flags::NONFINITE != 0;
         let is_rejected_alike = adapter.flags & vertex_flags::REJECTED != 0 && is_nonfinite(adapter) == is_nonfinite(own);
         return VertexFault { snap_is_outside: !is_rejected_alike, ..Default::default() };
     };
-    let ([_, _, sz, sw], errors) = mover.clip_errors(corner);
+    let ([_, _, sz, sw], errors) = vertex_evaluator.clip_errors(corner);
     let [_, _, ez, ew] = errors;
     let w = clip.w.abs();
     let Some(bounds) = snap_bound(&clip, errors, view) else {
@@ -340,7 +355,7 @@ fn vertex_fault(mover: &Mover, view: &View, corner: Corner, adapter: &SnappedVer
     }
     let wander = || {
         let nearest = if view.linear_depth_m.is_some() { 1.0 } else { clip.z.abs() };
-        mover.wander(corner, nearest) * half_size(view).map(f64::from).into_iter().fold(0.0, f64::max)
+        vertex_evaluator.wander(corner, nearest) * half_size(view).map(f64::from).into_iter().fold(0.0, f64::max)
     };
     if own.flags & vertex_flags::NEAR != 0 {
         return VertexFault { wander: wander(), ..Default::default() };

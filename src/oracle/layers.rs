@@ -10,9 +10,9 @@ use super::{
     coverage::{Coverage, Hit, OrientedTriangle, draw_of, scatter},
     finish,
     light::Light,
-    moved::Mover,
+    moved::VertexEvaluator,
     order::ranks,
-    rules::Rules,
+    rules::SampleTests,
     steps::ways,
     surface::{Triangle, encoded},
 };
@@ -47,9 +47,9 @@ pub(super) struct Scenery<'a> {
     pub draws: &'a [Draw],
     pub view: &'a View,
     pub geometry: &'a Geometry,
-    pub rules: &'a Rules<'a>,
+    pub rules: &'a SampleTests<'a>,
     pub triangles: &'a [OrientedTriangle],
-    pub owners: &'a [u32],
+    pub triangle_ids: &'a [u32],
     pub keys: &'a [u32],
 }
 
@@ -117,7 +117,7 @@ fn averaged(scenery: &Scenery, stack: &Stack, params: &Xray, bits: u32) -> Layer
 }
 
 fn tallies(scenery: &Scenery, stack: &Stack, params: &Xray, bits: u32) -> Vec<Tally> {
-    let Scenery { scene, draws, view, geometry, rules, triangles, owners, keys } = *scenery;
+    let Scenery { scene, draws, view, geometry, rules, triangles, triangle_ids, keys } = *scenery;
     let mut tallies: Vec<Tally> = (0..view.pixels()).map(|_| Tally::default()).collect();
     let width = view.width as usize;
     let (ranks, ways) = (ranks(scene, draws, view, stack, geometry), ways(scene, stack));
@@ -130,7 +130,7 @@ fn tallies(scenery: &Scenery, stack: &Stack, params: &Xray, bits: u32) -> Vec<Ta
         move |tally: &mut Tally, x: usize, y: usize, hit: Hit| {
             let pixel = y * width + x;
             let least = f64::from(f32::from_bits(params.threshold(keys[pixel], view.linear_depth_m.is_none())));
-            let is_front = owners[pixel] == triangle.id;
+            let is_front = triangle_ids[pixel] == triangle.id;
             // A depth too small for a key has key 1.
             let [low, high] = hit.interval.map(|depth| depth.max(f64::from(f32::from_bits(1))));
             if high < least && !is_front {
@@ -138,7 +138,7 @@ fn tallies(scenery: &Scenery, stack: &Stack, params: &Xray, bits: u32) -> Vec<Ta
             }
             let known = surface.get_or_insert_with(|| {
                 let draw = draw_of(scene, draws, triangle.id)?;
-                Triangle::new(&Mover::new(scene, draw, view, stack), scene, view, geometry, triangle.id)
+                Triangle::new(&VertexEvaluator::new(scene, draw, view, stack), scene, view, geometry, triangle.id)
             });
             let Some(known) = known else { return };
             let surface = known.surface(view, x, y, [0.0; 3]);
@@ -154,13 +154,13 @@ fn tallies(scenery: &Scenery, stack: &Stack, params: &Xray, bits: u32) -> Vec<Ta
             let weight = params.weight_of(&shaded);
             let counts = [is_front || hit.depth >= least, is_front || low >= least];
             // On what clipping left, f32 places a sample only to some 2^-16 of its distance.
-            let is_piece = triangle.entry != triangle.id as usize;
-            let slack = match (params.unit() > 1, is_piece) {
+            let is_clipped_triangle = triangle.entry != triangle.id as usize;
+            let error_bound = match (params.unit() > 1, is_clipped_triangle) {
                 (false, _) => 0.0,
                 (true, false) => WEIGHT_SLACK,
                 (true, true) => 8.0 * WEIGHT_SLACK,
             };
-            tally.add(shaded.color.truncate(), ends, weight, slack, bits, counts);
+            tally.add(shaded.color.truncate(), ends, weight, error_bound, bits, counts);
         }
     });
     tallies
@@ -169,11 +169,12 @@ fn tallies(scenery: &Scenery, stack: &Stack, params: &Xray, bits: u32) -> Vec<Ta
 impl Tally {
     /// Adds a layer, whose colour lies between `ends`; `counts` says whether it lies inside the window, and whether that
     /// is certain.
-    fn add(&mut self, color: DVec3, ends: [DVec3; 2], weight: f64, slack: f64, bits: u32, [counts, is_certain]: [bool; 2]) {
+    fn add(&mut self, color: DVec3, ends: [DVec3; 2], weight: f64, error_bound: f64, bits: u32, [counts, is_certain]: [bool; 2]) {
         let whole = f64::from((1u32 << bits) - 1);
-        let rounded = |color: DVec3, slack: f64| color.to_array().map(|c| ((c + slack).clamp(0.0, 1.0) * whole + 0.5).floor() as u64);
-        let slack = slack * f64::from(xray::FULL_WEIGHT);
-        let [weight, low, high] = [0.0, -slack, slack].map(|nudge| (weight + nudge + 0.5).floor().max(1.0) as u64);
+        let rounded =
+            |color: DVec3, error_bound: f64| color.to_array().map(|c| ((c + error_bound).clamp(0.0, 1.0) * whole + 0.5).floor() as u64);
+        let error_bound = error_bound * f64::from(xray::FULL_WEIGHT);
+        let [weight, low, high] = [0.0, -error_bound, error_bound].map(|nudge| (weight + nudge + 0.5).floor().max(1.0) as u64);
         let (exact, least, most) = (rounded(color, 0.0), rounded(ends[0], -COLOR_SLACK), rounded(ends[1], COLOR_SLACK));
         if counts {
             (0..3).for_each(|c| self.sums[c] += exact[c] * weight);

@@ -3,7 +3,7 @@
 //! The map holds, for the middle of every texel, the depth of the nearest triangle of the scene as the light sees it. A tap
 //! finds a texel lit where the plane of the sample's triangle, at the middle of that texel and moved towards the light by
 //! bias + slope · tan, is not behind what the map has there; tan, of the angle between light and normal, counts up to
-//! [`STEEPEST`]. With n taps a side the sample takes those round its own texel; the weights of the outermost are 1 - f
+//! [`MAX_SHADOW_SLOPE`]. With n taps a side the sample takes those round its own texel; the weights of the outermost are 1 - f
 //! and f, f being how far the sample stands in its texel, and of the others 1.
 //!
 //! An f32 twin errs in where a sample lies, so it may meet another texel or pass a depth by a hair. Shading with a nudge to
@@ -17,21 +17,21 @@ use super::{
     judge::{judge_vertices, key_fits, vertex_faults},
     project::project_moved,
     rays::Rays,
-    rules::Rules,
+    rules::SampleTests,
     surface::each_surface,
 };
 use crate::{
     effects::{
         Stack,
-        shadow::{STEEPEST, Shadow},
+        shadow::{MAX_SHADOW_SLOPE, Shadow},
     },
     frame::{Geometry, LightMap},
-    measure::{Accuracy, LightErrors},
+    measure::{ErrorReport, ShadowErrors},
     scene::{
         Scene,
         camera::View,
         draw::{Draw, DrawError, draws},
-        light::ShadowGrid,
+        light::ShadowResolution,
     },
 };
 
@@ -43,16 +43,16 @@ const ULP: f64 = f32::EPSILON as f64;
 /// # Errors
 /// When a placement or the number of triangles exceeds what the arithmetic holds.
 pub fn shadow_map(scene: &Scene, view: &View, stack: &Stack) -> Result<Option<Box<LightMap>>, DrawError> {
-    if view.shadow == ShadowGrid::TRACED {
+    if view.shadow == ShadowResolution::TRACED {
         return Ok(None);
     }
     let Some(view) = stack.light_view(scene, view) else { return Ok(None) };
     let casting = stack.casting();
     let draws = draws(scene, &view)?;
     let mut geometry = project_moved(scene, &draws, &view, &casting);
-    geometry.decisions = decide(scene, &draws, &view, &casting, &geometry);
+    geometry.sample_setups = decide(scene, &draws, &view, &casting, &geometry);
     let (triangles, _) = triangles(scene, &draws, &geometry);
-    let rules = Rules::of(&casting, &geometry).masked(scene, &draws, &casting);
+    let rules = SampleTests::of(&casting, &geometry).masked(scene, &draws, &casting);
     let depths = cover_depths(&rules, &triangles, &view);
     let keys = depths.iter().map(|cell| if cell.depth.is_finite() { depth_key(cell.depth) } else { 0 }).collect();
     Ok(Some(Box::new(LightMap { keys, geometry })))
@@ -68,7 +68,7 @@ pub(super) struct Place {
     /// Of the plane of its triangle, a unit vector.
     pub flat_normal: DVec3,
     /// How far an f32 twin may put it from there.
-    pub slack_m: f64,
+    pub error_bound_m: f64,
 }
 
 /// A light, and what tells how much of it arrives.
@@ -80,18 +80,18 @@ pub(super) enum Light<'a> {
 impl<'a> Light<'a> {
     /// The light of `stack`, whose map `geometry` holds.
     pub fn of(scene: &Scene, view: &View, stack: &Stack, geometry: &'a Geometry) -> Option<Self> {
-        if view.shadow == ShadowGrid::TRACED {
+        if view.shadow == ShadowResolution::TRACED {
             return Rays::of(scene, view, stack).map(Self::Traced);
         }
         Mapped::of(scene, view, stack, geometry).map(|mapped| Self::Mapped(Box::new(mapped)))
     }
 
-    /// Share of the light that arrives at a sample of the triangle `owner`; the least an f32 twin may find where `nudge` is
+    /// Share of the light that arrives at a sample of the triangle `triangle id`; the least an f32 twin may find where `nudge` is
     /// below 0, the most where it is above.
-    pub fn arrives(&self, place: &Place, owner: u32, nudge: f64) -> f64 {
+    pub fn arrives(&self, place: &Place, triangle_id: u32, nudge: f64) -> f64 {
         match self {
             Self::Mapped(mapped) => mapped.arrives(place, nudge),
-            Self::Traced(rays) => f64::from(u8::from(rays.reach(place, owner))),
+            Self::Traced(rays) => f64::from(u8::from(rays.reach(place, triangle_id))),
         }
     }
 }
@@ -138,7 +138,7 @@ impl<'a> Mapped<'a> {
         let along = if along < 0.0 { along.min(-1e-3) } else { along.max(1e-3) };
         let slant = DVec2::new(across, down) / along;
         let tangent = slant.length();
-        let held = tangent.min(STEEPEST);
+        let held = tangent.min(MAX_SHADOW_SLOPE);
         let texel_depth = self.texel_m / self.range_m;
         let fall = if tangent > 0.0 { -slant * (held / tangent * texel_depth) } else { DVec2::ZERO };
         let bias = f64::from(self.params.bias) + f64::from(self.params.slope) * held;
@@ -147,8 +147,8 @@ impl<'a> Mapped<'a> {
             return self.filtered(at, depth, fall);
         }
         // Rounding of the place and of the product with the matrix; the normal's goes with the square of the tangent.
-        let aside = place.slack_m / self.texel_m + 4.0 * ULP * self.side as f64;
-        let deep = (place.slack_m + self.texel_m * (1.0 + held * held) / f64::from(1 << 14)) / self.range_m + 4.0 * ULP;
+        let aside = place.error_bound_m / self.texel_m + 4.0 * ULP * self.side as f64;
+        let deep = (place.error_bound_m + self.texel_m * (1.0 + held * held) / f64::from(1 << 14)) / self.range_m + 4.0 * ULP;
         let ends = [[-1.0, -1.0], [1.0, -1.0], [-1.0, 1.0], [1.0, 1.0], [0.0, 0.0]];
         let shares = ends.map(|[x, y]| self.filtered(at + DVec2::new(x, y) * aside, depth + nudge.signum() * deep, fall));
         let pick = if nudge < 0.0 { f64::min } else { f64::max };
@@ -190,20 +190,20 @@ impl<'a> Mapped<'a> {
 
 /// How far an f32 twin may put a sample: weights of small triangles err by 9, of large ones by 15 steps, the place on the
 /// ray by a few more; what clipping left, by 2^-16 of the distance.
-pub(super) fn slack_m(view: &View, position: DVec3, is_cut: bool) -> f64 {
+pub(super) fn error_bound_m(view: &View, position: DVec3, is_cut: bool) -> f64 {
     let (away, out) = ((position - view.eye).length(), view.eye.length());
     if is_cut { (away + out) / f64::from(1 << 15) } else { (24.0 * away + 4.0 * out) * ULP }
 }
 
 /// Judges the map of an adapter from its own records, as a picture's depths are judged, and those records.
-pub(super) fn judge(accuracy: &mut Accuracy, scene: &Scene, view: &View, stack: &Stack, map: &LightMap) -> Result<(), DrawError> {
+pub(super) fn judge(accuracy: &mut ErrorReport, scene: &Scene, view: &View, stack: &Stack, map: &LightMap) -> Result<(), DrawError> {
     let Some(view) = stack.light_view(scene, view) else { return Ok(()) };
     let casting = stack.casting();
     let draws = draws(scene, &view)?;
     let own = project_moved(scene, &draws, &view, &casting);
     assert_eq!(map.geometry.vertices.len(), own.vertices.len(), "the shadow map is of another scene or stack");
     let (triangles, _) = triangles(scene, &draws, &map.geometry);
-    let rules = Rules::of(&casting, &map.geometry).masked(scene, &draws, &casting);
+    let rules = SampleTests::of(&casting, &map.geometry).masked(scene, &draws, &casting);
     for (cell, &key) in cover_depths(&rules, &triangles, &view).iter().zip(&map.keys) {
         let is_covered = cell.depth.is_finite();
         accuracy.holes += u64::from(is_covered && key == 0);
@@ -211,37 +211,37 @@ pub(super) fn judge(accuracy: &mut Accuracy, scene: &Scene, view: &View, stack: 
         accuracy.key_outside_bound += u64::from(is_covered && key != 0 && !key_fits(key, cell.interval));
     }
     judge_vertices(accuracy, &vertex_faults(scene, &draws, &view, &casting, &map.geometry, &own));
-    accuracy.decisions_wrong += wrong(scene, &draws, &view, &casting, &map.geometry);
+    accuracy.sample_setups_wrong += wrong(scene, &draws, &view, &casting, &map.geometry);
     Ok(())
 }
 
 /// How far the light that arrives by the map of `geometry` is from what rays say, over all pixels that face the light and
-/// have an owner; none without a light, or where effects leave samples out, of which rays know nothing.
+/// have an triangle id; none without a light, or where effects leave samples out, of which rays know nothing.
 ///
 /// # Errors
 /// When a placement or the number of triangles exceeds what the arithmetic holds.
-pub fn light_errors(
+pub fn shadow_errors(
     scene: &Scene,
     view: &View,
     stack: &Stack,
-    owners: &[u32],
+    triangle_ids: &[u32],
     geometry: &Geometry,
-) -> Result<Option<LightErrors>, DrawError> {
+) -> Result<Option<ShadowErrors>, DrawError> {
     let (view, stack) = (&view.scaled(geometry.scale), &stack.scaled(geometry.scale));
     let view = &View { subpixel_bits: geometry.subpixel_bits, is_relative: geometry.is_relative, ..view.clone() };
     let draws: Vec<Draw> = draws(scene, view)?;
     let (Some(mapped), false) = (Light::of(scene, view, stack, geometry), leaves_out(stack)) else { return Ok(None) };
     let (Some(rays), Some(light)) = (Rays::of(scene, view, stack), stack.light()) else { return Ok(None) };
     let toward = light.toward();
-    let shares = each_surface((scene, &draws, view, stack), owners, geometry, [0.0; 3], |found| {
+    let shares = each_surface((scene, &draws, view, stack), triangle_ids, geometry, [0.0; 3], |found| {
         let (triangle, surface) = found.filter(|(_, surface)| surface.normal.dot(toward) > 0.0)?;
         let place = triangle.place(view, &surface);
-        let truth = f64::from(u8::from(rays.reach(&place, surface.owner)));
-        Some(mapped.arrives(&place, surface.owner, 0.0) - truth)
+        let reference = f64::from(u8::from(rays.reach(&place, surface.triangle_id)));
+        Some(mapped.arrives(&place, surface.triangle_id, 0.0) - reference)
     });
     let errors: Vec<f64> = shares.into_iter().flatten().collect();
     let squares: f64 = errors.iter().map(|error| error * error).sum();
-    Ok(Some(LightErrors {
+    Ok(Some(ShadowErrors {
         pixels: errors.len() as u64,
         wrong: errors.iter().filter(|error| error.abs() > 0.5).count() as u64,
         rms: (squares / (errors.len() as f64).max(1.0)).sqrt(),
@@ -250,5 +250,5 @@ pub fn light_errors(
 
 /// Does an effect leave samples out, or show but a part of a triangle?
 pub(super) fn leaves_out(stack: &Stack) -> bool {
-    stack.each(|hooks| hooks.sample).next().is_some() || stack.cloud().is_some()
+    stack.each(|hooks| hooks.sample).next().is_some() || stack.particle_settings().is_some()
 }

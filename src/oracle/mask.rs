@@ -5,7 +5,7 @@ use glam::{DVec2, DVec3};
 
 use super::{
     coverage::OrientedTriangle,
-    moved::{Corner, Mover},
+    moved::{Corner, VertexEvaluator},
     surface::cross_terms,
 };
 use crate::{
@@ -29,7 +29,7 @@ pub(super) fn is_there(scene: &Scene, stack: &Stack) -> bool {
 /// A primitive's texture whose alpha decides, and the least alpha that is drawn.
 fn masked<'a>(scene: &'a Scene, primitive: &Primitive) -> Option<(&'a Texture, u32)> {
     let material = &scene.materials[primitive.material];
-    material.base_texture.as_ref().zip(material.least_alpha())
+    material.base_texture.as_ref().zip(material.alpha_threshold())
 }
 
 /// Where corners lie in the image, each with a bound of a float renderer's error.
@@ -37,15 +37,21 @@ pub(super) struct Places([(DVec2, DVec2); 3]);
 
 impl Places {
     /// Of a whole triangle, or of a piece with these records; none where nothing is masked.
-    pub fn of(mover: &Mover, scene: &Scene, view: &View, corners: [Corner; 3], piece: Option<&[SnappedVertex; 3]>) -> Option<Self> {
-        let primitive = &scene.primitives[mover.draw.primitive];
+    pub fn of(
+        vertex_evaluator: &VertexEvaluator,
+        scene: &Scene,
+        view: &View,
+        corners: [Corner; 3],
+        piece: Option<&[SnappedVertex; 3]>,
+    ) -> Option<Self> {
+        let primitive = &scene.primitives[vertex_evaluator.draw.primitive];
         let (texture, _) = masked(scene, primitive)?;
-        let coords = primitive.coords[0].as_ref()?;
+        let texcoords = primitive.texcoords[0].as_ref()?;
         let size = scene.images[texture.image].size();
         let whole =
-            corners.map(|corner| DVec2::from(texture.units(size, stored(coords, &scene.vertex_bytes, corner.vertex)).map(f64::from)));
+            corners.map(|corner| DVec2::from(texture.units(size, stored(texcoords, &scene.vertex_bytes, corner.vertex)).map(f64::from)));
         let Some(records) = piece else { return Some(Self(whole.map(|place| (place, DVec2::ZERO)))) };
-        let clip = corners.map(|corner| mover.clip(corner).expect("positions have passed the gate"));
+        let clip = corners.map(|corner| vertex_evaluator.clip(corner).expect("positions have passed the gate"));
         let v = clip.map(|p| DVec3::new(p.x, p.y, p.w));
         let lines = [(1, 2), (2, 0), (0, 1)].map(|(i, j)| v[i].cross(v[j]));
         let terms = cross_terms(&v);
@@ -103,7 +109,7 @@ pub(super) fn is_drawn(scene: &Scene, primitive: &Primitive, triangle: &Oriented
         }
     };
     let alpha = |x: i64, y: i64| u64::from(level.texels[(side(y, 1) * i64::from(level.size[0]) + side(x, 0)) as usize][3]);
-    let reached = match texture.magnified {
+    let reached = match texture.mag_filter {
         Filter::Nearest => alpha(place[0].div_euclid(256), place[1].div_euclid(256)) << 16,
         Filter::Linear => {
             // The middle of a texel is its value.

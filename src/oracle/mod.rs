@@ -6,13 +6,13 @@
 //! decided, no platform maths function. Work is parallel by rows and triangles; no result depends on the order of threads.
 //!
 //! [`project_moved`] bends, moves and snaps vertices and clips triangles ([`project_strict`] in f32, to the bit),
-//! [`triangles`] assembles and turns them, [`decide`] settles what sample effects hold against, [`cover_by`] finds who owns
+//! [`triangles`] assembles and turns them, [`decide`] settles what sample effects hold against, [`cover_with`] finds who owns
 //! each sample, [`shade`] colours it, and [`judge`] holds a frame that an adapter drew against all of that.
 
-mod bend;
 mod clip;
 mod coverage;
 mod decide;
+mod deform;
 mod dots;
 mod faults;
 mod finish;
@@ -35,17 +35,17 @@ mod surface;
 mod texels;
 mod whole;
 
-pub use bend::volume;
-pub use coverage::{Coverage, OrientedTriangle, Sample, cover, cover_by, depth_bound, owns, triangles};
+pub use coverage::{Coverage, OrientedTriangle, Sample, cover, cover_with, depth_bound, owns, triangles};
 pub use decide::decide;
+pub use deform::volume;
 pub use dots::{dot_records, dot_strengths};
 pub use finish::{Seen, shade};
 pub use judge::{judge, judge_after, snap_bounds};
-pub use light::{light_errors, shadow_map};
+pub use light::{shadow_errors, shadow_map};
 pub use order::Cut;
 pub use project::{project, project_moved};
-pub use rules::Rules;
-pub use shown::{render_shown, scaled, truths};
+pub use rules::SampleTests;
+pub use shown::{references, render_scaled, scaled};
 pub use strict::{project_strict, strict_frame};
 
 use self::{
@@ -60,7 +60,7 @@ use crate::{
         Scene,
         camera::View,
         draw::{DrawError, draws},
-        light::ShadowGrid,
+        light::ShadowResolution,
     },
 };
 
@@ -69,7 +69,7 @@ use crate::{
 /// # Errors
 /// When a placement or the number of triangles exceeds what the arithmetic holds.
 pub fn render(scene: &Scene, view: &View, stack: &Stack) -> Result<Frame, DrawError> {
-    render_after(scene, view, stack, None)
+    render_next(scene, view, stack, None)
 }
 
 /// Most bits of the fraction with which every pixel of `view` lies inside the guard band, at most 12: the finest grid on
@@ -115,14 +115,14 @@ pub fn render_reference(scene: &Scene, view: &View, stack: &Stack) -> Result<Fra
 
 fn traced(view: &View, stack: &Stack) -> View {
     let has_rays = stack.light().is_some() && !light::leaves_out(stack);
-    View { shadow: if has_rays { ShadowGrid::TRACED } else { view.shadow }, ..view.clone() }
+    View { shadow: if has_rays { ShadowResolution::TRACED } else { view.shadow }, ..view.clone() }
 }
 
 /// The true picture of `scene` that follows `previous`, a picture of the same size.
 ///
 /// # Errors
 /// As [`render`].
-pub fn render_after(scene: &Scene, view: &View, stack: &Stack, previous: Option<&[[u8; 4]]>) -> Result<Frame, DrawError> {
+pub fn render_next(scene: &Scene, view: &View, stack: &Stack, previous: Option<&[[u8; 4]]>) -> Result<Frame, DrawError> {
     if view.pixels() == 0 {
         draws(scene, view)?;
         return Ok(empty(view));
@@ -130,16 +130,16 @@ pub fn render_after(scene: &Scene, view: &View, stack: &Stack, previous: Option<
     let scene = &*particles::dressed(scene, view, stack, None);
     let draws = draws(scene, view)?;
     let mut geometry = project_moved(scene, &draws, view, stack);
-    geometry.decisions = decide(scene, &draws, view, stack, &geometry);
+    geometry.sample_setups = decide(scene, &draws, view, stack, &geometry);
     geometry.dots = dot_records(scene, &draws, view, stack)?;
     geometry.light = shadow_map(scene, view, stack)?;
     let (triangles, counters) = triangles(scene, &draws, &geometry);
-    let rules = Rules::of(stack, &geometry).masked(scene, &draws, stack).ordered(stack, &triangles, view);
-    let coverage = cover_by(&rules, &triangles, view, None);
-    let (owners, keys) = (&coverage.owners(), &coverage.keys());
+    let rules = SampleTests::of(stack, &geometry).masked(scene, &draws, stack).ordered(stack, &triangles, view);
+    let coverage = cover_with(&rules, &triangles, view, None);
+    let (triangle_ids, keys) = (&coverage.triangle_ids(), &coverage.keys());
     let dots = dot_strengths(view, stack, &geometry.dots, keys);
-    let seen = Seen { owners, keys, dots: &dots, previous };
-    let scenery = Scenery { scene, draws: &draws, view, geometry: &geometry, rules: &rules, triangles: &triangles, owners, keys };
+    let seen = Seen { triangle_ids, keys, dots: &dots, previous };
+    let scenery = Scenery { scene, draws: &draws, view, geometry: &geometry, rules: &rules, triangles: &triangles, triangle_ids, keys };
     let (color, counted) = match layered(&scenery, &coverage, stack) {
         Some(layered) => (finish_all(&draws, view, stack, &seen, &layered.colors, 0.0), layered.counted),
         None => (shade(scene, &draws, view, stack, &seen, &geometry), Vec::new()),
@@ -154,10 +154,10 @@ pub fn render_after(scene: &Scene, view: &View, stack: &Stack, previous: Option<
 ///
 /// # Panics
 /// Without a moment.
-pub fn render_last(scene: &Scene, moments: &[(View, Stack)]) -> Result<Frame, DrawError> {
+pub fn render_sequence(scene: &Scene, moments: &[(View, Stack)]) -> Result<Frame, DrawError> {
     let mut last: Option<Frame> = None;
     for (view, stack) in moments {
-        last = Some(render_after(scene, view, stack, last.as_ref().map(|frame| frame.color.as_slice()))?);
+        last = Some(render_next(scene, view, stack, last.as_ref().map(|frame| frame.color.as_slice()))?);
     }
     Ok(last.expect("a picture shows a moment"))
 }
@@ -169,6 +169,6 @@ fn empty(view: &View) -> Frame {
 
 /// The integers of `coverage` with their colours.
 fn frame(view: &View, coverage: &Coverage, color: Vec<[u8; 4]>, counted: Vec<u32>, counters: Counters) -> Frame {
-    let (owner, key) = (coverage.owners(), coverage.keys());
-    Frame { width: view.width, height: view.height, owner, key, color, counted, counters, ..Frame::default() }
+    let (triangle_id, key) = (coverage.triangle_ids(), coverage.keys());
+    Frame { width: view.width, height: view.height, triangle_id, key, color, counted, counters, ..Frame::default() }
 }

@@ -3,14 +3,14 @@
 use glam::{DMat3, DVec2, DVec3};
 
 use super::{
-    bend::{self, Bounded},
+    deform::{self, Bounded},
     project::{Clip, clip_position},
     surface::{DEGENERATE, inverse_transpose, plane_normal},
 };
 use crate::{
     effects::{
         Stack,
-        hooks::{ROUNDING, Slack, Vertex},
+        hooks::{ErrorBound, ROUNDING, Vertex},
     },
     math::rounded_columns,
     scene::{
@@ -28,13 +28,13 @@ pub(super) struct Corner {
 }
 
 /// Places the corners of one draw.
-pub(super) struct Mover<'a> {
+pub(super) struct VertexEvaluator<'a> {
     scene: &'a Scene,
     pub draw: &'a Draw,
     pub stack: &'a Stack,
     pub moves: bool,
     /// Every triangle has three records to itself.
-    has_own_corners: bool,
+    has_unshared_vertices: bool,
     /// Rounded once, so that every judge starts from these bits.
     clip_from_world: [[f64; 4]; 4],
     world_from_normal: DMat3,
@@ -42,14 +42,14 @@ pub(super) struct Mover<'a> {
     picture_from_world: Option<[[f64; 4]; 4]>,
 }
 
-impl<'a> Mover<'a> {
+impl<'a> VertexEvaluator<'a> {
     pub fn new(scene: &'a Scene, draw: &'a Draw, view: &'a View, stack: &'a Stack) -> Self {
         Self {
             scene,
             draw,
             stack,
             moves: stack.moves(),
-            has_own_corners: stack.parts_corners(),
+            has_unshared_vertices: stack.unshares_vertices(),
             clip_from_world: rounded_columns(&view.clip_from_world).map(|column| column.map(f64::from)),
             world_from_normal: inverse_transpose(DMat3::from_mat4(draw.world_from_object), draw.mirrored),
             picture_from_world: view.picture_from_world.map(|matrix| rounded_columns(&matrix).map(|column| column.map(f64::from))),
@@ -73,7 +73,7 @@ impl<'a> Mover<'a> {
     /// The corner of every record of this draw, in order.
     pub fn corners(&self) -> Vec<Corner> {
         let primitive = &self.scene.primitives[self.draw.primitive];
-        if !self.has_own_corners {
+        if !self.has_unshared_vertices {
             return (0..primitive.vertex_count()).map(|vertex| Corner { vertex, triangle: 0 }).collect();
         }
         let corners = |triangle| primitive.corners(self.scene, triangle).map(|vertex| Corner { vertex, triangle });
@@ -82,7 +82,7 @@ impl<'a> Mover<'a> {
 
     /// Place of this draw's first record in the geometry.
     pub fn first_record(&self) -> usize {
-        if self.has_own_corners { 3 * self.draw.first_triangle as usize } else { self.draw.first_vertex as usize }
+        if self.has_unshared_vertices { 3 * self.draw.first_triangle as usize } else { self.draw.first_vertex as usize }
     }
 
     /// Position in clip space after all effects, or why it was refused.
@@ -119,7 +119,7 @@ impl<'a> Mover<'a> {
             center_screen: DVec2::ZERO,
             triangle: 0,
         };
-        if self.has_own_corners { self.with_triangle(alone, corner, object) } else { alone }
+        if self.has_unshared_vertices { self.with_triangle(alone, corner, object) } else { alone }
     }
 
     /// Adds what effects may know of a corner's triangle.
@@ -158,12 +158,12 @@ impl<'a> Mover<'a> {
     }
 
     fn bounded_place(&self, vertex: u32) -> Bounded {
-        bend::bounded_place(self.scene, self.draw, vertex).unwrap_or_default()
+        deform::bounded_place(self.scene, self.draw, vertex).unwrap_or_default()
     }
 
     /// A normal in object space; zero where a lane is refused.
     fn normal(&self, vertex: u32) -> DVec3 {
-        bend::normal(self.scene, self.draw, vertex).unwrap_or_default()
+        deform::normal(self.scene, self.draw, vertex).unwrap_or_default()
     }
 
     /// The stored normal in the world, of any length.
@@ -183,7 +183,7 @@ impl<'a> Mover<'a> {
 }
 
 /// Errors of a float renderer.
-impl Mover<'_> {
+impl VertexEvaluator<'_> {
     /// Sums of magnitudes of the terms of each clip coordinate, and bounds of their errors: rounding errors are
     /// proportional to the terms, however much cancels, and what the effects err by comes on top.
     pub fn clip_errors(&self, corner: Corner) -> ([f64; 4], [f64; 4]) {
@@ -192,19 +192,19 @@ impl Mover<'_> {
         // Taking it from an origin rounds once more.
         let steps = if self.draw.origin == [0.0; 3] { 4.0 } else { 5.0 };
         // What bending errs by, an error of the position that every row takes along.
-        let bent = [0, 1, 2, 3].map(|r| {
+        let deformed = [0, 1, 2, 3].map(|r| {
             [0, 1, 2].map(|axis| f64::from(self.draw.clip_from_object[axis][r]).abs() * place.error[axis]).iter().sum::<f64>()
                 * (17.0 / 16.0)
         });
-        let (slack, offset) = if self.moves { self.offset_slack(corner) } else { (0.0, DVec3::ZERO) };
-        if slack == 0.0 && offset == DVec3::ZERO {
-            return (sums, [0, 1, 2, 3].map(|r| steps * ROUNDING * sums[r] + bent[r]));
+        let (error_bound, offset) = if self.moves { self.offset_slack(corner) } else { (0.0, DVec3::ZERO) };
+        if error_bound == 0.0 && offset == DVec3::ZERO {
+            return (sums, [0, 1, 2, 3].map(|r| steps * ROUNDING * sums[r] + deformed[r]));
         }
         let errors = [0, 1, 2, 3].map(|r| {
             let row = [0, 1, 2].map(|axis| self.clip_from_world[axis][r].abs());
             sums[r] += row[0] * offset.x.abs() + row[1] * offset.y.abs() + row[2] * offset.z.abs();
             // Three products more, in whatever order they are added; a sixteenth for what is of second order in the quotient.
-            ((steps + 3.0) * ROUNDING * sums[r] + slack * (row[0] + row[1] + row[2])) * (16.0 / 15.0) + bent[r]
+            ((steps + 3.0) * ROUNDING * sums[r] + error_bound * (row[0] + row[1] + row[2])) * (16.0 / 15.0) + deformed[r]
         });
         (sums, errors)
     }
@@ -220,11 +220,11 @@ impl Mover<'_> {
 
     fn offset_slack(&self, corner: Corner) -> (f64, DVec3) {
         let still = self.still(corner);
-        (self.stack.slack(still, self.still_slack(corner)).offset_m, self.stack.moved(still).offset)
+        (self.stack.error_bound(still, self.still_slack(corner)).offset_m, self.stack.moved(still).offset)
     }
 
-    /// How far a corner of a float renderer may be from [`Mover::still`].
-    fn still_slack(&self, corner: Corner) -> Slack {
+    /// How far a corner of a float renderer may be from [`VertexEvaluator::still`].
+    fn still_slack(&self, corner: Corner) -> ErrorBound {
         let m = self.draw.world_from_object;
         let magnitude = |p: DVec3| {
             let terms = m.x_axis.abs() * p.x.abs() + m.y_axis.abs() * p.y.abs() + m.z_axis.abs() * p.z.abs();
@@ -232,24 +232,24 @@ impl Mover<'_> {
         };
         let place = |p: DVec3| (magnitude(p) + m.w_axis.abs().truncate()).max_element();
         let here = self.bounded_place(corner.vertex);
-        let bent = |error: DVec3| magnitude(error).max_element();
+        let deformed = |error: DVec3| magnitude(error).max_element();
         // The matrix is rounded, then four products are added.
-        let position_m = 5.0 * ROUNDING * place(here.value) + bent(here.error);
-        let stored = bend::bounded_normal(self.scene, self.draw, corner.vertex).unwrap_or_default();
+        let position_m = 5.0 * ROUNDING * place(here.value) + deformed(here.error);
+        let stored = deform::bounded_normal(self.scene, self.draw, corner.vertex).unwrap_or_default();
         let normal = self.direction_slack(stored.value, stored.error);
-        if !self.has_own_corners {
-            return Slack { position_m, normal, center_m: position_m, ..Slack::default() };
+        if !self.has_unshared_vertices {
+            return ErrorBound { position_m, normal, center_m: position_m, ..ErrorBound::default() };
         }
         let corners = self.triangle_places(corner);
         let middle = corners.iter().map(|c| c.abs()).sum::<DVec3>() / 3.0;
         let edges = corners.iter().map(|c| (here.value - c).abs()).sum::<DVec3>() / 3.0;
         let error = self.triangle_errors(corner);
         let center_screen = self.screen_slack(corners.iter().sum::<DVec3>() / 3.0, middle, error);
-        Slack {
+        ErrorBound {
             position_m,
             normal,
-            center_m: 10.0 * ROUNDING * place(middle) + bent(error),
-            arm_m: 12.0 * ROUNDING * magnitude(edges).max_element() + 2.0 * bent(error),
+            center_m: 10.0 * ROUNDING * place(middle) + deformed(error),
+            arm_m: 12.0 * ROUNDING * magnitude(edges).max_element() + 2.0 * deformed(error),
             center_screen,
             flat_normal: self.plane_slack(corners, error.max_element()),
             offset_m: 0.0,
@@ -297,9 +297,10 @@ impl Mover<'_> {
     fn screen_slack(&self, middle: DVec3, magnitudes: DVec3, given: DVec3) -> f64 {
         let origin = self.draw.origin();
         let ([x, y, _, w], sums) = (self.clip_rows(middle - origin, false), self.clip_rows(magnitudes + origin.abs(), true));
-        let bent = |r: usize| [0, 1, 2].map(|axis| f64::from(self.draw.clip_from_object[axis][r]).abs() * given[axis]).iter().sum::<f64>();
+        let deformed =
+            |r: usize| [0, 1, 2].map(|axis| f64::from(self.draw.clip_from_object[axis][r]).abs() * given[axis]).iter().sum::<f64>();
         // An error of the corners counts as a rounding of the sums does.
-        let mut sums = [0, 1, 2, 3].map(|r| sums[r] + bent(r) / (8.0 * ROUNDING));
+        let mut sums = [0, 1, 2, 3].map(|r| sums[r] + deformed(r) / (8.0 * ROUNDING));
         let mut rows = [x, y, w];
         // In the picture for which a light looks: the place in the world is rounded first.
         let world = self.draw.world_from_object;

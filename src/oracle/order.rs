@@ -4,7 +4,7 @@ use rayon::prelude::*;
 
 use super::{
     coverage::{OrientedTriangle, triangles},
-    rules::Rules,
+    rules::SampleTests,
 };
 use crate::{
     effects::{Stack, draw_order::Mode},
@@ -30,7 +30,7 @@ pub fn is_free(stack: &Stack) -> bool {
 }
 
 /// Where the order of a stack stops the drawing of `drawn` triangles; none without an order.
-pub fn cut(stack: &Stack, rules: &Rules, drawn: &[OrientedTriangle], view: &View) -> Option<Cut> {
+pub fn cut(stack: &Stack, rules: &SampleTests, drawn: &[OrientedTriangle], view: &View) -> Option<Cut> {
     let order = stack.draw_order()?;
     let counts = counts(rules, drawn, view);
     let total = counts.iter().map(|(_, count)| count).sum();
@@ -54,7 +54,7 @@ pub fn ranks(scene: &Scene, draws: &[Draw], view: &View, stack: &Stack, geometry
     }
     let (drawn, _) = triangles(scene, draws, geometry);
     let mut ranks = vec![0.0; scene.triangle_count() as usize];
-    let counts = counts(&Rules::of(stack, geometry).masked(scene, draws, stack), &drawn, view);
+    let counts = counts(&SampleTests::of(stack, geometry).masked(scene, draws, stack), &drawn, view);
     counts.iter().for_each(|(id, count)| ranks[*id as usize] = *count as f64);
     let total = ranks.iter().sum::<f64>().max(1.0);
     let mut before = 0.0;
@@ -67,7 +67,7 @@ pub fn ranks(scene: &Scene, draws: &[Draw], view: &View, stack: &Stack, geometry
 }
 
 /// Samples of every drawn triangle, its pieces together, by rising id.
-fn counts(rules: &Rules, drawn: &[OrientedTriangle], view: &View) -> Vec<(u32, u64)> {
+fn counts(rules: &SampleTests, drawn: &[OrientedTriangle], view: &View) -> Vec<(u32, u64)> {
     let mut counts: Vec<(u32, u64)> = drawn.par_iter().map(|t| (t.id, samples(rules, t, view).count() as u64)).collect();
     counts.sort_by_key(|(id, _)| *id);
     counts.dedup_by(|next, kept| {
@@ -79,7 +79,7 @@ fn counts(rules: &Rules, drawn: &[OrientedTriangle], view: &View) -> Vec<(u32, u
 }
 
 /// Pixels whose samples a triangle draws.
-fn samples<'a>(rules: &'a Rules, triangle: &'a OrientedTriangle, view: &View) -> impl Iterator<Item = usize> + 'a {
+fn samples<'a>(rules: &'a SampleTests, triangle: &'a OrientedTriangle, view: &View) -> impl Iterator<Item = usize> + 'a {
     let (columns, rows) = triangle.bounds(view, rules);
     let width = view.width as usize;
     rows.flat_map(move |y| columns.clone().filter(move |&x| triangle.at(x, y, rules).is_some()).map(move |x| y * width + x))

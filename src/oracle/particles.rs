@@ -17,39 +17,39 @@ use crate::{
         particles::{self, EVEN_SPEED, LATTICE_DRIFT, LATTICE_SHIFT, LEAN, Particles},
         read,
     },
-    frame::{Flight, Swarm},
+    frame::{ParticleReadback, ParticleState},
     math::{hash, hash_unit},
     scene::{
         Scene,
         camera::View,
-        splats::{Flow, SPLAT_WORDS},
+        particle_discs::{PARTICLE_DISC_WORDS, ParticleTimeline},
     },
 };
 
 /// A particle between two steps.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct TrueFlight {
+pub struct ReferenceParticle {
     pub place: DVec3,
     pub velocity: DVec3,
     pub age: u32,
     pub births: u32,
 }
 
-impl From<&Flight> for TrueFlight {
-    fn from(flight: &Flight) -> Self {
+impl From<&ParticleState> for ReferenceParticle {
+    fn from(flight: &ParticleState) -> Self {
         let [place, velocity] = [flight.place, flight.velocity].map(|v| DVec3::from_array(v.map(f64::from)));
         Self { place, velocity, age: flight.age, births: flight.births }
     }
 }
 
 /// The scene with the particles that a stack puts there: those of an adapter, or where they truly are.
-pub(super) fn dressed<'a>(scene: &'a Scene, view: &View, stack: &Stack, swarm: Option<&Swarm>) -> Cow<'a, Scene> {
-    let mut scene = scene.with_cloud(stack.cloud().as_ref());
-    let range = scene.splat_bytes();
+pub(super) fn dressed<'a>(scene: &'a Scene, view: &View, stack: &Stack, particle_readback: Option<&ParticleReadback>) -> Cow<'a, Scene> {
+    let mut scene = scene.with_particles(stack.particle_settings().as_ref());
+    let range = scene.particle_disc_bytes();
     if !range.is_empty() {
-        let own = || splats(&flights_of(view, stack), &shown(stack), view);
-        let words = swarm.map_or_else(own, |swarm| swarm.words.clone());
-        assert_eq!(4 * words.len(), range.len(), "the particles are of another look");
+        let own = || particle_discs(&flights_of(view, stack), &shown(stack), view);
+        let words = particle_readback.map_or_else(own, |particle_readback| particle_readback.words.clone());
+        assert_eq!(4 * words.len(), range.len(), "the particles are of another preset");
         scene.to_mut().vertex_bytes[range].copy_from_slice(bytemuck::cast_slice(&words));
     }
     scene
@@ -61,19 +61,23 @@ fn shown(stack: &Stack) -> Particles {
 }
 
 /// The flow that a view is at.
-pub(super) fn flow_of(view: &View, stack: &Stack) -> Flow {
-    let usual = (particles::EFFECT.defaults)();
-    let words = stack.get(particles::EFFECT.name).map_or(&usual, |enabled| &enabled.words);
-    view.flow.as_deref().filter(|flow| flow.stride == words.len()).cloned().unwrap_or_else(|| particles::steady(words, 0))
+pub(super) fn flow_of(view: &View, stack: &Stack) -> ParticleTimeline {
+    let default = (particles::EFFECT.defaults)();
+    let words = stack.get(particles::EFFECT.name).map_or(&default, |enabled| &enabled.words);
+    view.particle_timeline
+        .as_deref()
+        .filter(|particle_timeline| particle_timeline.stride == words.len())
+        .cloned()
+        .unwrap_or_else(|| particles::steady(words, 0))
 }
 
 /// Where the particles of a stack truly are.
-pub fn flights_of(view: &View, stack: &Stack) -> Vec<TrueFlight> {
-    let flow = flow_of(view, stack);
-    let steps: Vec<Particles> = (1..=flow.len() as u32).map(|step| read(flow.words(step))).collect();
+pub fn flights_of(view: &View, stack: &Stack) -> Vec<ReferenceParticle> {
+    let particle_timeline = flow_of(view, stack);
+    let steps: Vec<Particles> = (1..=particle_timeline.len() as u32).map(|step| read(particle_timeline.words(step))).collect();
     let of_step = |step: u32| &steps[(step.max(1) as usize - 1).min(steps.len() - 1)];
-    let count = stack.cloud().map_or(0, |cloud| cloud.count);
-    let fly = |id: u32| (1..=flow.frame).fold(first(of_step(0), id), |flight, step| stepped(of_step(step), id, &flight, step));
+    let count = stack.particle_settings().map_or(0, |particle_settings| particle_settings.count);
+    let fly = |id: u32| (1..=particle_timeline.frame).fold(first(of_step(0), id), |flight, step| stepped(of_step(step), id, &flight, step));
     (0..count).into_par_iter().map(fly).collect()
 }
 
@@ -96,7 +100,7 @@ fn life(p: &Particles, base: u32) -> u32 {
     steps - share_of(hash(base.wrapping_add(12)), chance + 1)
 }
 
-fn born(p: &Particles, id: u32, births: u32) -> TrueFlight {
+fn born(p: &Particles, id: u32, births: u32) -> ReferenceParticle {
     let base = base(p, id, births);
     let attempt = |t: u32| {
         let (xy, z) = (hash(base.wrapping_add(2 * t)), hash(base.wrapping_add(2 * t + 1)));
@@ -106,31 +110,31 @@ fn born(p: &Particles, id: u32, births: u32) -> TrueFlight {
     let at = (0..6).map(attempt).find(is_inside).unwrap_or_else(|| attempt(5) / 2);
     let room = DVec3::splat(p.room_m.into());
     let offset = (at.as_dvec3() / 32768.0 * vector(p.spread)).clamp(-room, room);
-    TrueFlight { place: vector(p.origin) + offset, velocity: DVec3::ZERO, age: 0, births }
+    ReferenceParticle { place: vector(p.origin) + offset, velocity: DVec3::ZERO, age: 0, births }
 }
 
 /// A particle in frame 0.
-pub fn first(p: &Particles, id: u32) -> TrueFlight {
+pub fn first(p: &Particles, id: u32) -> ReferenceParticle {
     let base = base(p, id, 0);
-    TrueFlight { age: share_of(hash(base.wrapping_add(13)), life(p, base)), ..born(p, id, 0) }
+    ReferenceParticle { age: share_of(hash(base.wrapping_add(13)), life(p, base)), ..born(p, id, 0) }
 }
 
 /// A particle one step later.
-pub fn stepped(p: &Particles, id: u32, flight: &TrueFlight, step: u32) -> TrueFlight {
+pub fn stepped(p: &Particles, id: u32, flight: &ReferenceParticle, step: u32) -> ReferenceParticle {
     let Some(next) = moved(p, id, flight, step) else { return born(p, id, flight.births + 1) };
     let is_outside = (next.place - vector(p.origin)).abs().max_element() > f64::from(p.room_m);
     if is_outside { born(p, id, flight.births + 1) } else { next }
 }
 
 /// The same if it may leave the room; none when its life ends.
-fn moved(p: &Particles, id: u32, flight: &TrueFlight, step: u32) -> Option<TrueFlight> {
+fn moved(p: &Particles, id: u32, flight: &ReferenceParticle, step: u32) -> Option<ReferenceParticle> {
     if flight.age + 1 >= life(p, base(p, id, flight.births)) {
         return None;
     }
     let (dt, drag) = (1.0 / f64::from(p.rate), f64::from(p.drag));
-    let carried = drag * flow(p, flight.place, step) + pull(p, flight.place);
+    let carried = drag * particle_timeline(p, flight.place, step) + pull(p, flight.place);
     let velocity = (flight.velocity + dt * carried) / (1.0 + dt * drag);
-    Some(TrueFlight { place: flight.place + dt * velocity, velocity, age: flight.age + 1, births: flight.births })
+    Some(ReferenceParticle { place: flight.place + dt * velocity, velocity, age: flight.age + 1, births: flight.births })
 }
 
 fn pull(p: &Particles, place: DVec3) -> DVec3 {
@@ -139,7 +143,7 @@ fn pull(p: &Particles, place: DVec3) -> DVec3 {
 }
 
 /// Velocity of the flow at a place, at the step that leads to a frame.
-pub fn flow(p: &Particles, place: DVec3, step: u32) -> DVec3 {
+pub fn particle_timeline(p: &Particles, place: DVec3, step: u32) -> DVec3 {
     let salt = hash(p.seed ^ 0x9e37_79b9);
     let (mut sum, mut share, mut shares) = (DVec3::ZERO, 1.0, 0.0);
     for octave in 0..p.octaves {
@@ -182,12 +186,12 @@ fn curl(q: DVec3, salt: u32) -> DVec3 {
 }
 
 /// Words of the triangles of all discs.
-fn splats(flights: &[TrueFlight], p: &Particles, view: &View) -> Vec<u32> {
-    flights.par_iter().enumerate().flat_map_iter(|(id, flight)| splat(p, id as u32, flight, view)).collect()
+fn particle_discs(particle_states: &[ReferenceParticle], p: &Particles, view: &View) -> Vec<u32> {
+    particle_states.par_iter().enumerate().flat_map_iter(|(id, flight)| splat(p, id as u32, flight, view)).collect()
 }
 
 /// Radius of a disc and its colour.
-fn disc(p: &Particles, id: u32, flight: &TrueFlight) -> (f64, DVec3) {
+fn disc(p: &Particles, id: u32, flight: &ReferenceParticle) -> (f64, DVec3) {
     let base = base(p, id, flight.births);
     let smooth = |x: f64| x.clamp(0.0, 1.0).powi(2) * (3.0 - 2.0 * x.clamp(0.0, 1.0));
     let (share, fade) = (f64::from(flight.age) / f64::from(life(p, base)), f64::from(p.fade));
@@ -203,11 +207,11 @@ fn facing(view: &View) -> [DVec3; 3] {
     [view.ndc_axes[0], view.ndc_axes[1], -view.forward].map(|axis| scene_from_world.transform_vector3(axis).normalize_or_zero())
 }
 
-fn splat(p: &Particles, id: u32, flight: &TrueFlight, view: &View) -> [u32; SPLAT_WORDS] {
+fn splat(p: &Particles, id: u32, flight: &ReferenceParticle, view: &View) -> [u32; PARTICLE_DISC_WORDS] {
     let (radius, color) = disc(p, id, flight);
     let [right, up, toward] = facing(view);
     let lean = LEAN * f64::from(p.roundness);
-    let mut words = [0; SPLAT_WORDS];
+    let mut words = [0; PARTICLE_DISC_WORDS];
     for (corner, aside) in [[-3f64.sqrt(), -1.0], [3f64.sqrt(), -1.0], [0.0, 2.0]].into_iter().enumerate() {
         let offset = right * aside[0] + up * aside[1];
         let (place, normal) = (flight.place + radius * offset, (toward + lean * offset).normalize_or_zero());
@@ -236,38 +240,43 @@ pub(super) struct Judged {
 }
 
 /// Holds an adapter's particles against the step that they took last, and against the flight that is true from the start.
-pub(super) fn judged(view: &View, stack: &Stack, swarm: &Swarm) -> Vec<Judged> {
-    let (flow, shown, truth) = (flow_of(view, stack), shown(stack), flights_of(view, stack));
-    assert_eq!(swarm.after.len(), truth.len(), "the particles are of another look");
-    let p: Particles = read(flow.words(flow.frame));
-    let spread = Spread::new(&p, swarm, flow.frame);
+pub(super) fn judged(view: &View, stack: &Stack, particle_readback: &ParticleReadback) -> Vec<Judged> {
+    let (particle_timeline, shown, reference) = (flow_of(view, stack), shown(stack), flights_of(view, stack));
+    assert_eq!(particle_readback.after.len(), reference.len(), "the particles are of another preset");
+    let p: Particles = read(particle_timeline.words(particle_timeline.frame));
+    let spread = Spread::new(&p, particle_readback, particle_timeline.frame);
     let clip_from_scene = view.clip_from_world * view.world_from_scene;
     let screen = |place: DVec3| {
         let clip = clip_from_scene * place.extend(1.0);
         let half = DVec2::new(f64::from(view.width), f64::from(view.height)) * 0.5;
         (clip.z <= clip.w && clip.w > 0.0).then(|| clip.truncate().truncate() / clip.w * half)
     };
-    let one = |(id, (given, truth)): (usize, (&Flight, &TrueFlight))| {
-        let (number, after) = (id as u32, TrueFlight::from(given));
-        let step_is_right = match swarm.before.get(id) {
+    let one = |(id, (given, reference)): (usize, (&ParticleState, &ReferenceParticle))| {
+        let (number, after) = (id as u32, ReferenceParticle::from(given));
+        let step_is_right = match particle_readback.before.get(id) {
             None => spread.is_first(&first(&p, number), &after),
             Some(before) => {
-                let before = TrueFlight::from(before);
-                spread.allows(&before, moved(&p, number, &before, flow.frame).as_ref(), &born(&p, number, before.births + 1), &after)
+                let before = ReferenceParticle::from(before);
+                spread.allows(
+                    &before,
+                    moved(&p, number, &before, particle_timeline.frame).as_ref(),
+                    &born(&p, number, before.births + 1),
+                    &after,
+                )
             }
         };
-        let words = &swarm.words[SPLAT_WORDS * id..][..SPLAT_WORDS];
-        let is_drawn_right = is_splat(words, &splat(&shown, number, &after, view), &shown, &after);
-        let astray = screen(after.place).zip(screen(truth.place)).map_or(0.0, |(a, b)| a.distance(b));
-        Judged { is_outside: !(step_is_right && is_drawn_right), astray_px: astray, astray_m: after.place.distance(truth.place) }
+        let words = &particle_readback.words[PARTICLE_DISC_WORDS * id..][..PARTICLE_DISC_WORDS];
+        let is_drawn_right = is_particle_disc(words, &splat(&shown, number, &after, view), &shown, &after);
+        let astray = screen(after.place).zip(screen(reference.place)).map_or(0.0, |(a, b)| a.distance(b));
+        Judged { is_outside: !(step_is_right && is_drawn_right), astray_px: astray, astray_m: after.place.distance(reference.place) }
     };
-    swarm.after.par_iter().zip(&truth).enumerate().map(one).collect()
+    particle_readback.after.par_iter().zip(&reference).enumerate().map(one).collect()
 }
 
 /// Are the words of a splat those that its flight asks for?
-fn is_splat(given: &[u32], truth: &[u32; SPLAT_WORDS], p: &Particles, flight: &TrueFlight) -> bool {
+fn is_particle_disc(given: &[u32], reference: &[u32; PARTICLE_DISC_WORDS], p: &Particles, flight: &ReferenceParticle) -> bool {
     let size = f64::from(p.size_m);
-    let slack = 16.0 * ROUNDING * (flight.place.abs().max_element() + 4.0 * size)
+    let error_bound = 16.0 * ROUNDING * (flight.place.abs().max_element() + 4.0 * size)
         + size * 64.0 * ROUNDING * (1.0 + 1.0 / f64::from(p.fade))
         + f64::from(f32::MIN_POSITIVE);
     let is_near = |a: u32, b: u32, most: i32| {
@@ -275,8 +284,8 @@ fn is_splat(given: &[u32], truth: &[u32; SPLAT_WORDS], p: &Particles, flight: &T
         // Colours run round from 65535 to 0, which two neighbours never are.
         halves(a).into_iter().zip(halves(b)).all(|(a, b)| (a - b).abs().min(65536 - (a - b).abs()) <= most)
     };
-    given.iter().zip(truth).enumerate().all(|(place, (&a, &b))| match place % 6 {
-        0..3 => gate(a).is_ok_and(|a| (a - f64::from(f32::from_bits(b))).abs() <= slack),
+    given.iter().zip(reference).enumerate().all(|(place, (&a, &b))| match place % 6 {
+        0..3 => gate(a).is_ok_and(|a| (a - f64::from(f32::from_bits(b))).abs() <= error_bound),
         _ => is_near(a, b, 1),
     })
 }

@@ -3,9 +3,9 @@
 use rayon::prelude::*;
 
 use super::{
-    bend::{self, place},
     clip,
-    moved::Mover,
+    deform::{self, place},
+    moved::VertexEvaluator,
     strict::project_strict,
 };
 use crate::{
@@ -33,21 +33,23 @@ pub fn project(scene: &Scene, draws: &[Draw], view: &View) -> Geometry {
 /// where the stack parts them, and the pieces of every triangle that the near plane or the guard band cuts, folded ones
 /// included.
 pub fn project_moved(scene: &Scene, draws: &[Draw], view: &View, stack: &Stack) -> Geometry {
-    let movers: Vec<Mover> = draws.iter().map(|draw| Mover::new(scene, draw, view, stack)).collect();
-    let snapped = |mover: &Mover| {
-        let snapped = |corner| match mover.clip(corner) {
+    let movers: Vec<VertexEvaluator> = draws.iter().map(|draw| VertexEvaluator::new(scene, draw, view, stack)).collect();
+    let snapped = |vertex_evaluator: &VertexEvaluator| {
+        let snapped = |corner| match vertex_evaluator.clip(corner) {
             Ok(position) => snap(&position, view),
             Err(flags) => SnappedVertex { flags, ..Default::default() },
         };
-        mover.corners().into_par_iter().map(snapped).collect::<Vec<_>>()
+        vertex_evaluator.corners().into_par_iter().map(snapped).collect::<Vec<_>>()
     };
     let vertices = movers.iter().flat_map(snapped).collect();
-    let bent = draws.iter().flat_map(|draw| bend::vertices(scene, draw)).collect();
-    let (has_own_corners, subpixel_bits) = (stack.parts_corners(), view.subpixel_bits);
-    let splats = scene.splat_ids();
-    let mut geometry = Geometry { vertices, has_own_corners, bent, splats, subpixel_bits, ..Geometry::default() };
-    let pieces = |mover: &Mover| {
-        clip::pieces(scene, mover.draw, view, &geometry, |corner| mover.clip(corner).expect("a cut triangle has no rejected corner"))
+    let deformed = draws.iter().flat_map(|draw| deform::vertices(scene, draw)).collect();
+    let (has_unshared_vertices, subpixel_bits) = (stack.unshares_vertices(), view.subpixel_bits);
+    let particle_discs = scene.particle_disc_ids();
+    let mut geometry = Geometry { vertices, has_unshared_vertices, deformed, particle_discs, subpixel_bits, ..Geometry::default() };
+    let pieces = |vertex_evaluator: &VertexEvaluator| {
+        clip::pieces(scene, vertex_evaluator.draw, view, &geometry, |corner| {
+            vertex_evaluator.clip(corner).expect("a cut triangle has no rejected corner")
+        })
     };
     geometry.pieces = movers.iter().flat_map(pieces).collect();
     geometry

@@ -1,4 +1,4 @@
-//! Rays: whether anything stands between a sample and a directional light, in f64 and without a map: the truth that shadow
+//! Rays: whether anything stands between a sample and a directional light, in f64 and without a map: the reference that shadow
 //! maps are measured against. Triangles as they are, before any snap, in a hierarchy of boxes; a light sees them from both sides.
 
 use glam::DVec3;
@@ -6,7 +6,7 @@ use rayon::prelude::*;
 
 use super::{
     light::Place,
-    moved::{Corner, Mover},
+    moved::{Corner, VertexEvaluator},
 };
 use crate::{
     effects::Stack,
@@ -14,7 +14,7 @@ use crate::{
         Scene,
         camera::View,
         draw::{Draw, draws},
-        light::ShadowGrid,
+        light::ShadowResolution,
     },
 };
 
@@ -55,10 +55,10 @@ impl Rays {
     /// What stands in the way of the light of `stack`; none where there is no light, or a matrix that does not hold.
     pub fn of(scene: &Scene, view: &View, stack: &Stack) -> Option<Self> {
         let toward = stack.light()?.toward();
-        let seen = stack.light_view(scene, &View { shadow: ShadowGrid::default(), ..view.clone() })?;
+        let seen = stack.light_view(scene, &View { shadow: ShadowResolution::default(), ..view.clone() })?;
         let draws = draws(scene, &seen).ok()?;
         let mut casters: Vec<Caster> = draws.iter().flat_map(|draw| casters(scene, draw, view, stack)).collect();
-        let radius = scene.bounds_of(scene.casters()).radius().max(1e-9);
+        let radius = scene.bounds_of(scene.shadow_casters()).radius().max(1e-9);
         let mut nodes = Vec::new();
         if !casters.is_empty() {
             let all = 0..casters.len();
@@ -67,8 +67,8 @@ impl Rays {
         Some(Self { casters, nodes, toward, least_m: 1e-7 * radius })
     }
 
-    /// Does light reach a sample of the triangle `owner`?
-    pub fn reach(&self, place: &Place, owner: u32) -> bool {
+    /// Does light reach a sample of the triangle `triangle id`?
+    pub fn reach(&self, place: &Place, triangle_id: u32) -> bool {
         let (origin, inverse) = (place.surface, self.toward.recip());
         let mut waiting = vec![0u32];
         while let Some(at) = waiting.pop() {
@@ -85,7 +85,7 @@ impl Rays {
                 continue;
             }
             let casters = &self.casters[node.leaf.start as usize..node.leaf.end as usize];
-            if casters.iter().any(|caster| caster.id != owner && self.meets(origin, caster)) {
+            if casters.iter().any(|caster| caster.id != triangle_id && self.meets(origin, caster)) {
                 return false;
             }
         }
@@ -111,16 +111,16 @@ impl Rays {
 
 /// Triangles of a draw where its effects leave them; those with a corner that was refused are none.
 fn casters(scene: &Scene, draw: &Draw, view: &View, stack: &Stack) -> Vec<Caster> {
-    let mover = Mover::new(scene, draw, view, stack);
+    let vertex_evaluator = VertexEvaluator::new(scene, draw, view, stack);
     let primitive = &scene.primitives[draw.primitive];
     let caster = |triangle: u32| {
         let corners = primitive.corners(scene, triangle).map(|vertex| Corner { vertex, triangle });
-        if corners.iter().any(|corner| mover.clip(*corner).is_err()) {
+        if corners.iter().any(|corner| vertex_evaluator.clip(*corner).is_err()) {
             return None;
         }
         let corners = corners.map(|corner| {
-            let moved = mover.moved(corner);
-            mover.still(corner).position + moved.offset
+            let moved = vertex_evaluator.moved(corner);
+            vertex_evaluator.still(corner).position + moved.offset
         });
         Some(Caster { corners, id: draw.first_triangle + triangle })
     };

@@ -1,4 +1,4 @@
-//! Rules: which covered samples are drawn, by the sample effects of the stack. Integers alone.
+//! SampleTests: which covered samples are drawn, by the sample effects of the stack. Integers alone.
 
 use super::{
     coverage::{OrientedTriangle, draw_of},
@@ -16,9 +16,9 @@ use crate::{
 };
 
 /// The sample effects of a stack with what they settled per triangle.
-pub struct Rules<'a> {
+pub struct SampleTests<'a> {
     effects: Vec<Link<'a>>,
-    decisions: &'a [[u32; 4]],
+    sample_setups: &'a [[u32; 4]],
     /// Effects that decide, and so decisions per entry.
     deciding: usize,
     /// Whose materials may leave samples out.
@@ -44,12 +44,12 @@ struct Link<'a> {
     place: Option<usize>,
 }
 
-impl Default for Rules<'_> {
+impl Default for SampleTests<'_> {
     fn default() -> Self {
         let unit = UNITS_PER_PIXEL.into();
         Self {
             effects: Vec::new(),
-            decisions: &[],
+            sample_setups: &[],
             deciding: 0,
             masked: None,
             shape: Shape::default(),
@@ -62,27 +62,27 @@ impl Default for Rules<'_> {
     }
 }
 
-impl<'a> Rules<'a> {
+impl<'a> SampleTests<'a> {
     /// The rules of `stack`, with the decisions that `geometry` carries.
     pub fn of(stack: &'a Stack, geometry: &'a Geometry) -> Self {
         let mut deciding = 0;
         let effects = stack
             .each(|hooks| hooks.sample)
             .map(|(hook, words)| {
-                let place = hook.decides.then_some(deciding);
-                deciding += usize::from(hook.decides);
+                let place = hook.has_setup.then_some(deciding);
+                deciding += usize::from(hook.has_setup);
                 Link { hook, words, place }
             })
             .collect();
         Self {
             effects,
-            decisions: &geometry.decisions,
+            sample_setups: &geometry.sample_setups,
             deciding,
             masked: None,
             shape: stack.shape(),
             radius: stack.point_radius().into(),
             // What fills boxes or draws corners shows no triangles.
-            discs: if stack.shape() == Shape::Triangles { geometry.splats.clone() } else { 0..0 },
+            discs: if stack.shape() == Shape::Triangles { geometry.particle_discs.clone() } else { 0..0 },
             unit: 1 << geometry.subpixel_bits,
             integer_keys: geometry.exact.keys,
             cut: None,
@@ -131,7 +131,7 @@ impl<'a> Rules<'a> {
             return false;
         }
         let records = self.deciding + if self.masked.is_some() { mask::RECORDS } else { 0 };
-        let settled = &self.decisions[triangle.entry * records..][..records];
+        let settled = &self.sample_setups[triangle.entry * records..][..records];
         let is_left = self.effects.iter().all(|link| {
             let decided = link.place.map_or([0; 4], |place| settled[place]);
             (link.hook.is_drawn)(&Sample { x, y, triangle: triangle.id, parts, decided }, link.words)

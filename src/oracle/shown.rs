@@ -4,12 +4,12 @@
 use glam::{DMat4, DVec4};
 use rayon::prelude::*;
 
-use super::{finest, project_moved, render, render_last, traced};
+use super::{finest, project_moved, render, render_sequence, traced};
 use crate::{
     effects::Stack,
     frame::Frame,
     math::{linear_light, srgb_byte},
-    measure::Truths,
+    measure::References,
     scene::{
         Scene,
         camera::View,
@@ -25,13 +25,13 @@ use crate::{
 ///
 /// # Panics
 /// Without a moment.
-pub fn render_shown(scene: &Scene, moments: &[(View, Stack)], factor: f64) -> Result<Frame, DrawError> {
+pub fn render_scaled(scene: &Scene, moments: &[(View, Stack)], factor: f64) -> Result<Frame, DrawError> {
     let (view, _) = moments.last().expect("a picture shows a moment");
     if factor == 1.0 || view.pixels() == 0 {
-        return render_last(scene, moments);
+        return render_sequence(scene, moments);
     }
     let drawn: Vec<_> = moments.iter().map(|(view, stack)| (view.scaled(factor), stack.scaled(factor))).collect();
-    let frame = render_last(scene, &drawn)?;
+    let frame = render_sequence(scene, &drawn)?;
     let size = [view.width, view.height];
     Ok(frame.shown(size, scaled(&frame.color, [frame.width, frame.height], size)))
 }
@@ -89,12 +89,12 @@ impl Light {
     }
 }
 
-/// What rungs are measured against: the true picture and its corners at every size that is drawn, `factors` times as many
+/// What options are measured against: the true picture and its corners at every size that is drawn, `factors` times as many
 /// pixels to a side, on the finest grid; and where sizes are compared, the true picture of eight by eight samples a pixel.
 ///
 /// # Errors
 /// As [`render`].
-pub fn truths(scene: &Scene, view: &View, stack: &Stack, factors: &[f64]) -> Result<Truths, DrawError> {
+pub fn references(scene: &Scene, view: &View, stack: &Stack, factors: &[f64]) -> Result<References, DrawError> {
     let view = &traced(view, stack);
     let at = |&factor: &f64| {
         let (view, stack) = (view.scaled(factor), stack.scaled(factor));
@@ -103,7 +103,7 @@ pub fn truths(scene: &Scene, view: &View, stack: &Stack, factors: &[f64]) -> Res
     };
     let pictures = factors.iter().map(at).collect::<Result<Vec<_>, DrawError>>()?;
     let smooth = if factors.len() > 1 { Some(smooth(scene, view, stack)?) } else { None };
-    Ok(Truths { pictures, smooth })
+    Ok(References { pictures, smooth })
 }
 
 /// Samples to a side of a pixel.

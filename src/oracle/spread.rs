@@ -3,13 +3,13 @@
 
 use glam::DVec3;
 
-use super::particles::TrueFlight;
+use super::particles::ReferenceParticle;
 use crate::{
     effects::{
         hooks::ROUNDING,
         particles::{LATTICE_DRIFT, LATTICE_SHIFT, Particles},
     },
-    frame::Swarm,
+    frame::ParticleReadback,
 };
 
 /// See the module's first line.
@@ -22,29 +22,35 @@ pub(super) struct Spread<'a> {
 
 /// Errors of place and velocity.
 #[derive(Clone, Copy)]
-struct Slack {
+struct ErrorBound {
     place: f64,
     velocity: f64,
 }
 
 impl<'a> Spread<'a> {
-    pub fn new(p: &'a Particles, swarm: &Swarm, frame: u32) -> Self {
-        Self { p, frame, is_rough: swarm.is_rough, is_difference: swarm.is_difference }
+    pub fn new(p: &'a Particles, particle_readback: &ParticleReadback, frame: u32) -> Self {
+        Self { p, frame, is_rough: particle_readback.is_rough, is_difference: particle_readback.is_difference }
     }
 
     /// Is this where and what a particle is in frame 0?
-    pub fn is_first(&self, truth: &TrueFlight, given: &TrueFlight) -> bool {
-        is_near(truth, given, &self.born_slack())
+    pub fn is_first(&self, reference: &ReferenceParticle, given: &ReferenceParticle) -> bool {
+        is_near(reference, given, &self.born_slack())
     }
 
-    /// May a step lead from `before` to `given`? In truth it leads to `moved`, or to `born` where the life or the room ends.
-    pub fn allows(&self, before: &TrueFlight, moved: Option<&TrueFlight>, born: &TrueFlight, given: &TrueFlight) -> bool {
+    /// May a step lead from `before` to `given`? In reference it leads to `moved`, or to `born` where the life or the room ends.
+    pub fn allows(
+        &self,
+        before: &ReferenceParticle,
+        moved: Option<&ReferenceParticle>,
+        born: &ReferenceParticle,
+        given: &ReferenceParticle,
+    ) -> bool {
         let Some(moved) = moved else { return is_near(born, given, &self.born_slack()) };
-        let slack = self.slack(before, moved);
+        let error_bound = self.error_bound(before, moved);
         let origin = DVec3::new(self.p.origin[0].into(), self.p.origin[1].into(), self.p.origin[2].into());
         let beyond = (moved.place - origin).abs().max_element() - f64::from(self.p.room_m);
-        let wall = slack.place + 4.0 * ROUNDING * (f64::from(self.p.room_m) + origin.abs().max_element());
-        beyond <= wall && is_near(moved, given, &slack) || beyond >= -wall && is_near(born, given, &self.born_slack())
+        let wall = error_bound.place + 4.0 * ROUNDING * (f64::from(self.p.room_m) + origin.abs().max_element());
+        beyond <= wall && is_near(moved, given, &error_bound) || beyond >= -wall && is_near(born, given, &self.born_slack())
     }
 
     /// What keeping a place in 16 bits does to it.
@@ -52,9 +58,9 @@ impl<'a> Spread<'a> {
         if self.is_rough { f64::from(self.p.room_m) * 1.01 / 32767.0 } else { 0.0 }
     }
 
-    fn born_slack(&self) -> Slack {
+    fn born_slack(&self) -> ErrorBound {
         let place = 8.0 * ROUNDING * (self.reach() + f64::from(self.p.room_m));
-        Slack { place: place + self.grain(), velocity: 0.0 }
+        ErrorBound { place: place + self.grain(), velocity: 0.0 }
     }
 
     /// Largest coordinate in the room.
@@ -63,7 +69,7 @@ impl<'a> Spread<'a> {
         origin[0].max(origin[1]).max(origin[2]) + f64::from(self.p.room_m)
     }
 
-    fn slack(&self, before: &TrueFlight, moved: &TrueFlight) -> Slack {
+    fn error_bound(&self, before: &ReferenceParticle, moved: &ReferenceParticle) -> ErrorBound {
         let (p, wide) = (self.p, |value: f32| f64::from(value));
         let (dt, drag) = (1.0 / f64::from(p.rate), wide(p.drag));
         // A rough place is unpacked twice, here and there.
@@ -74,18 +80,18 @@ impl<'a> Spread<'a> {
         let pull = wide(p.attraction).abs() * (2.0 * 3.0 * away / wide(p.attractor_m) + 32.0 * ROUNDING);
         let share = dt / (1.0 + dt * drag);
         let terms = before.velocity.abs().max_element() + dt * drag * 4.0 * wide(p.speed_mps) + dt * wide(p.attraction).abs();
-        let mut velocity = share * (drag * self.flow(before.place, given) + pull) + 16.0 * ROUNDING * terms;
+        let mut velocity = share * (drag * self.particle_timeline(before.place, given) + pull) + 16.0 * ROUNDING * terms;
         let mut place = dt * velocity + given + 8.0 * ROUNDING * (before.place.abs().max_element() + dt * terms);
         if self.is_rough {
             // Halves have eleven bits; below 2^-14 they are 0.
             velocity += moved.velocity.abs().max_element() / 1024.0 + 6.2e-5;
             place += self.grain() + given;
         }
-        Slack { place, velocity }
+        ErrorBound { place, velocity }
     }
 
     /// Error of the flow at a place.
-    fn flow(&self, place: DVec3, given: f64) -> f64 {
+    fn particle_timeline(&self, place: DVec3, given: f64) -> f64 {
         let p = self.p;
         let drift = f64::from(self.frame) / f64::from(p.rate) * f64::from(p.evolve) * LATTICE_DRIFT.map(f64::abs)[1];
         let (mut sum, mut share, mut shares) = (0.0, 1.0, 0.0);
@@ -109,9 +115,9 @@ impl<'a> Spread<'a> {
     }
 }
 
-fn is_near(truth: &TrueFlight, given: &TrueFlight, slack: &Slack) -> bool {
+fn is_near(reference: &ReferenceParticle, given: &ReferenceParticle, error_bound: &ErrorBound) -> bool {
     let within = |a: DVec3, b: DVec3, most: f64| (a - b).abs().max_element() <= most;
-    (truth.age, truth.births) == (given.age, given.births)
-        && within(truth.place, given.place, slack.place)
-        && within(truth.velocity, given.velocity, slack.velocity)
+    (reference.age, reference.births) == (given.age, given.births)
+        && within(reference.place, given.place, error_bound.place)
+        && within(reference.velocity, given.velocity, error_bound.velocity)
 }

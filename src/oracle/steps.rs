@@ -26,7 +26,7 @@ pub(super) struct Nudge {
     pub aside: Aside,
 }
 
-/// The right pictures: one, or with steps three, and of each as many as there are ways to look aside.
+/// The right pictures: one, or with steps three, and of each as many as there are ways to preset aside.
 pub struct Answers {
     pictures: Vec<Vec<[u8; 4]>>,
     /// Whatever lies between them is right too.

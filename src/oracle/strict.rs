@@ -1,4 +1,4 @@
-//! The strict rungs: a vertex stage in f32 with one order of operations, and depth keys as quotients of integers. What an
+//! The strict options: a vertex stage in f32 with one order of operations, and depth keys as quotients of integers. What an
 //! adapter computes in u32 must be this, to the bit.
 //!
 //! Places are taken from the draw's origin, x - o; then x_c = ((m0·x + m1·y) + m2·z) + m3, the others alike; X = 128 W + round((x_c · 1/w) · 128 W), Y likewise and downwards; depth
@@ -8,13 +8,13 @@
 use rayon::prelude::*;
 
 use super::{
-    bend::place,
     clip::{self, Point},
-    coverage::{cover_by, triangles},
+    coverage::{cover_with, triangles},
     decide::decide,
+    deform::place,
     flushed::{difference, operand, product, quotient, round, sum},
     project::{half_size, placed},
-    rules::Rules,
+    rules::SampleTests,
 };
 use crate::{
     effects::Stack,
@@ -30,7 +30,7 @@ use crate::{
 /// The nearest that a near plane may be: no visible w is smaller.
 const LEAST_W: f32 = 1.0 / (1 << 20) as f32;
 
-/// Owner and depth key of every pixel, as every adapter must find them; `stack` must move no vertices.
+/// Triangle id and depth key of every pixel, as every adapter must find them; `stack` must move no vertices.
 ///
 /// # Errors
 /// When a placement or the number of triangles exceeds what the arithmetic holds.
@@ -38,11 +38,11 @@ pub fn strict_frame(scene: &Scene, view: &View, stack: &Stack) -> Result<(Vec<u3
     let draws = draws(scene, view)?;
     let mut geometry = project_strict(scene, &draws, view);
     geometry.exact.keys = true;
-    geometry.decisions = decide(scene, &draws, view, stack, &geometry);
+    geometry.sample_setups = decide(scene, &draws, view, stack, &geometry);
     let (triangles, _) = triangles(scene, &draws, &geometry);
-    let rules = Rules::of(stack, &geometry).masked(scene, &draws, stack).ordered(stack, &triangles, view);
-    let coverage = cover_by(&rules, &triangles, view, None);
-    Ok((coverage.owners(), coverage.keys()))
+    let rules = SampleTests::of(stack, &geometry).masked(scene, &draws, stack).ordered(stack, &triangles, view);
+    let coverage = cover_with(&rules, &triangles, view, None);
+    Ok((coverage.triangle_ids(), coverage.keys()))
 }
 
 /// The records and pieces of a scene in which nothing moves or bends.
@@ -196,8 +196,8 @@ mod tests {
             let low = depths.iter().copied().fold(1.0, f32::min);
             let high = depths.iter().copied().fold(0.0, f32::max);
             assert!((low.to_bits()..=high.to_bits()).contains(&key), "{depths:?} {weights:?}");
-            let truth: f64 = (0..3).map(|i| f64::from(depths[i]) * weights[i] as f64).sum::<f64>() / weights.iter().sum::<i64>() as f64;
-            assert!((f64::from(f32::from_bits(key)) / truth - 1.0).abs() < 12.0 * f64::from(f32::EPSILON), "{depths:?} {weights:?}");
+            let reference: f64 = (0..3).map(|i| f64::from(depths[i]) * weights[i] as f64).sum::<f64>() / weights.iter().sum::<i64>() as f64;
+            assert!((f64::from(f32::from_bits(key)) / reference - 1.0).abs() < 12.0 * f64::from(f32::EPSILON), "{depths:?} {weights:?}");
         }
     }
 }

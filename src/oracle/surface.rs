@@ -1,17 +1,17 @@
-//! Shading in f64: what the sample of an owner knows about its surface, and the effects on it.
+//! Shading in f64: what the sample of an triangle id knows about its surface, and the effects on it.
 
 use glam::{DMat3, DVec2, DVec3, DVec4};
 use rayon::prelude::*;
 
 use super::{
-    bend::{normal, place},
     coverage::{OrientedTriangle, corner_records, doubled_area, draw_of, is_back},
-    light::{Light, Place, slack_m},
-    moved::{Corner, Mover},
+    deform::{normal, place},
+    light::{Light, Place, error_bound_m},
+    moved::{Corner, VertexEvaluator},
     order::ranks,
     project::gated_lane,
     steps::Nudge,
-    texels::{Aside, Paint, Shares},
+    texels::{Aside, Material, Shares},
 };
 use crate::{
     effects::{Stack, Surface, hooks::Shape},
@@ -26,22 +26,22 @@ pub(super) const DEGENERATE: f64 = 1e-12;
 /// Surface colours of all pixels, given who owns them, with steps and textures as `nudge` says. Row-major,
 /// gamma-encoded; `background` where nobody does.
 ///
-/// `geometry` supplies the snapped corners that carry the weights; owners that were cut are weighted in clip space.
+/// `geometry` supplies the snapped corners that carry the weights; triangle ids that were cut are weighted in clip space.
 pub fn surfaces(
     scene: &Scene,
     draws: &[Draw],
     view: &View,
     stack: &Stack,
-    (owners, background): (&[u32], DVec4),
+    (triangle_ids, background): (&[u32], DVec4),
     geometry: &Geometry,
     nudge: Nudge,
 ) -> Vec<DVec4> {
     let ranks = ranks(scene, draws, view, stack, geometry);
     let light = Light::of(scene, view, stack, geometry);
-    each_surface((scene, draws, view, stack), owners, geometry, nudge.aside, |found| {
+    each_surface((scene, draws, view, stack), triangle_ids, geometry, nudge.aside, |found| {
         let Some((triangle, surface)) = found else { return background };
-        let rank = ranks.get(surface.owner as usize).copied().unwrap_or(0.0);
-        let lit = light.as_ref().map_or(0.0, |light| light.arrives(&triangle.place(view, &surface), surface.owner, nudge.step));
+        let rank = ranks.get(surface.triangle_id as usize).copied().unwrap_or(0.0);
+        let lit = light.as_ref().map_or(0.0, |light| light.arrives(&triangle.place(view, &surface), surface.triangle_id, nudge.step));
         encoded(stack.shade(Surface { rank, lit, nudge: nudge.step, ..surface }).color)
     })
 }
@@ -49,24 +49,24 @@ pub fn surfaces(
 /// Visits the surface of every pixel before any surface effect, given who owns it; none where nobody does. Row-major.
 pub(super) fn each_surface<T: Send>(
     (scene, draws, view, stack): (&Scene, &[Draw], &View, &Stack),
-    owners: &[u32],
+    triangle_ids: &[u32],
     geometry: &Geometry,
     aside: Aside,
     visit: impl Fn(Option<(&Triangle, Surface)>) -> T + Sync,
 ) -> Vec<T> {
     let width = view.width.max(1) as usize;
-    let row = |(y, owners): (usize, &[u32])| {
+    let row = |(y, triangle_ids): (usize, &[u32])| {
         let mut triangle: Option<Triangle> = None;
-        let pixel = |(x, &owner): (usize, &u32)| {
-            if triangle.as_ref().is_none_or(|triangle| triangle.owner != owner) {
-                triangle = draw_of(scene, draws, owner)
-                    .and_then(|draw| Triangle::new(&Mover::new(scene, draw, view, stack), scene, view, geometry, owner));
+        let pixel = |(x, &triangle_id): (usize, &u32)| {
+            if triangle.as_ref().is_none_or(|triangle| triangle.triangle_id != triangle_id) {
+                triangle = draw_of(scene, draws, triangle_id)
+                    .and_then(|draw| Triangle::new(&VertexEvaluator::new(scene, draw, view, stack), scene, view, geometry, triangle_id));
             }
             visit(triangle.as_ref().map(|triangle| (triangle, triangle.surface(view, x, y, aside))))
         };
-        owners.iter().enumerate().map(pixel).collect::<Vec<_>>()
+        triangle_ids.iter().enumerate().map(pixel).collect::<Vec<_>>()
     };
-    owners.par_chunks(width).enumerate().flat_map_iter(row).collect()
+    triangle_ids.par_chunks(width).enumerate().flat_map_iter(row).collect()
 }
 
 /// Linear RGBA as sRGB, each 0 to 1; alpha is not gamma-encoded.
@@ -86,14 +86,14 @@ enum Weights {
 
 /// All that does not change from sample to sample.
 pub(super) struct Triangle<'a> {
-    owner: u32,
+    triangle_id: u32,
     weights: Weights,
     positions: [DVec3; 3],
     /// Mean of the corners before any vertex effect.
     center: DVec3,
     colors: [DVec4; 3],
     /// What its material is besides a base colour.
-    paint: Option<Paint<'a>>,
+    paint: Option<Material<'a>>,
     /// In object space; none when a corner has no finite normal.
     normals: Option<[DVec3; 3]>,
     /// Takes object normals to the world's, of any length; turned over for a back face.
@@ -110,18 +110,18 @@ pub(super) struct Triangle<'a> {
 
 impl<'a> Triangle<'a> {
     /// None for a triangle with a rejected corner, which owns nothing.
-    pub fn new(mover: &Mover, scene: &'a Scene, view: &View, geometry: &Geometry, owner: u32) -> Option<Self> {
-        let draw = mover.draw;
+    pub fn new(vertex_evaluator: &VertexEvaluator, scene: &'a Scene, view: &View, geometry: &Geometry, triangle_id: u32) -> Option<Self> {
+        let draw = vertex_evaluator.draw;
         let primitive = &scene.primitives[draw.primitive];
         let material = &scene.materials[primitive.material];
-        let corners = primitive.corners(scene, owner - draw.first_triangle);
+        let corners = primitive.corners(scene, triangle_id - draw.first_triangle);
         let [Ok(a), Ok(b), Ok(c)] = corners.map(|corner| place(scene, draw, corner)) else { return None };
         let object = [a, b, c];
 
-        let records = corner_records(scene, draw, geometry, owner);
+        let records = corner_records(scene, draw, geometry, triangle_id);
         let is_cut = records.iter().any(|record| record.flags & vertex_flags::CLIPPED != 0);
-        let places = corners.map(|vertex| Corner { vertex, triangle: owner - draw.first_triangle });
-        let screen = if is_cut { Screen::cut(mover, view, places) } else { Screen::snapped(&records, draw, view) };
+        let places = corners.map(|vertex| Corner { vertex, triangle: triangle_id - draw.first_triangle });
+        let screen = if is_cut { Screen::cut(vertex_evaluator, view, places) } else { Screen::snapped(&records, draw, view) };
 
         let base = DVec4::from_array(material.base_color.map(f64::from));
         let color = |corner| base * primitive.colors.map_or(DVec4::ONE, |colors| color(scene, &colors, corner));
@@ -129,22 +129,22 @@ impl<'a> Triangle<'a> {
         let side = if material.double_sided && screen.is_back { -1.0 } else { 1.0 };
         let world_from_normal = inverse_transpose(DMat3::from_mat4(draw.world_from_object), draw.mirrored) * side;
         let mut triangle = Self {
-            owner,
+            triangle_id,
             weights: screen.weights,
             center: draw.world_from_object.transform_point3(object.iter().sum::<DVec3>() / 3.0),
             positions: object.map(|position| draw.world_from_object.transform_point3(position)),
             colors: corners.map(color),
-            paint: Paint::of(scene, primitive, corners),
+            paint: Material::of(scene, primitive, corners),
             normals: n0.zip(n1).zip(n2).map(|((n0, n1), n2)| [n0, n1, n2]),
             world_from_normal,
             flat_normal: plane_normal(object).and_then(|normal| (world_from_normal * normal).try_normalize()),
             depths_m: screen.depths_m,
             center_screen: screen.center,
-            shape: mover.stack.shape(),
-            disc: (mover.stack.shape() == Shape::Points).then_some((records, mover.stack.point_radius().into())),
+            shape: vertex_evaluator.stack.shape(),
+            disc: (vertex_evaluator.stack.shape() == Shape::Points).then_some((records, vertex_evaluator.stack.point_radius().into())),
         };
-        if mover.moves {
-            triangle.follow(mover, places, side);
+        if vertex_evaluator.moves {
+            triangle.follow(vertex_evaluator, places, side);
         }
         Some(triangle)
     }
@@ -153,19 +153,19 @@ impl<'a> Triangle<'a> {
     /// centre stays where it was, so that fronts of several effects meet.
     ///
     /// A triangle that is only carried along keeps its plane, and normals that no effect turns stay what they were.
-    fn follow(&mut self, mover: &Mover, corners: [Corner; 3], side: f64) {
-        let moved = corners.map(|corner| mover.moved(corner));
+    fn follow(&mut self, vertex_evaluator: &VertexEvaluator, corners: [Corner; 3], side: f64) {
+        let moved = corners.map(|corner| vertex_evaluator.moved(corner));
         for (position, vertex) in self.positions.iter_mut().zip(&moved) {
             *position += vertex.offset;
         }
         if moved.iter().any(|vertex| vertex.offset != moved[0].offset) {
-            let side = if mover.draw.mirrored { -side } else { side };
+            let side = if vertex_evaluator.draw.mirrored { -side } else { side };
             self.flat_normal = plane_normal(self.positions).and_then(|normal| (normal * side).try_normalize());
         }
-        let is_turned = moved.iter().zip(corners).any(|(vertex, corner)| vertex.normal != mover.still(corner).normal);
+        let is_turned = moved.iter().zip(corners).any(|(vertex, corner)| vertex.normal != vertex_evaluator.still(corner).normal);
         if is_turned && self.normals.is_some() {
             // Turned normals keep the lengths by which the file weighs them.
-            self.normals = Some([0, 1, 2].map(|k| moved[k].normal * mover.world_normal(corners[k].vertex).length()));
+            self.normals = Some([0, 1, 2].map(|k| moved[k].normal * vertex_evaluator.world_normal(corners[k].vertex).length()));
             self.world_from_normal = DMat3::from_diagonal(DVec3::splat(side));
         }
     }
@@ -176,7 +176,7 @@ impl<'a> Triangle<'a> {
         let screen = pixel / DVec2::new(view.width.into(), view.height.into());
         let corner = self.disc.and_then(|(records, radius)| {
             let at = pixel * f64::from(view.units_per_pixel());
-            OrientedTriangle::clockwise(self.owner, records).corner_under(at.x as i64, at.y as i64, radius)
+            OrientedTriangle::clockwise(self.triangle_id, records).corner_under(at.x as i64, at.y as i64, radius)
         });
         let weights = self.weights.at(pixel, screen, self.shape, corner);
         let (shares, edge_px) = self.weights.on_screen(pixel, screen, view, self.shape, corner);
@@ -209,7 +209,7 @@ impl<'a> Triangle<'a> {
             pixel_m: view.ndc_axes[1].length() * 2.0 / f64::from(view.height) * if view.linear_depth_m.is_some() { 1.0 } else { depth_m },
             flat_depth_m: self.depths_m.iter().sum::<f64>() / 3.0,
             range_m: DVec2::from_array(view.scene_range_m),
-            owner: self.owner,
+            triangle_id: self.triangle_id,
             rank: 0.0,
             lit: 0.0,
             nudge: 0.0,
@@ -231,7 +231,7 @@ impl<'a> Triangle<'a> {
             Shape::Boxes | Shape::Points => position,
         };
         let is_cut = matches!(self.weights, Weights::Homogeneous(..));
-        Place { position, surface: on_triangle, flat_normal: surface.flat_normal, slack_m: slack_m(view, position, is_cut) }
+        Place { position, surface: on_triangle, flat_normal: surface.flat_normal, error_bound_m: error_bound_m(view, position, is_cut) }
     }
 
     /// Interpolated in object space; none when the corner normals cancel out.
@@ -245,9 +245,9 @@ impl<'a> Triangle<'a> {
 
 /// Where the middle of a triangle of the mover's draw stands in the picture, from 0 to 1; the middle of the picture where
 /// it lies behind the eye.
-pub(super) fn center_screen(mover: &Mover, view: &View, records: &[SnappedVertex; 3], corners: [Corner; 3]) -> DVec2 {
+pub(super) fn center_screen(vertex_evaluator: &VertexEvaluator, view: &View, records: &[SnappedVertex; 3], corners: [Corner; 3]) -> DVec2 {
     let is_cut = records.iter().any(|record| record.flags & vertex_flags::CLIPPED != 0);
-    let screen = if is_cut { Screen::cut(mover, view, corners) } else { Screen::snapped(records, mover.draw, view) };
+    let screen = if is_cut { Screen::cut(vertex_evaluator, view, corners) } else { Screen::snapped(records, vertex_evaluator.draw, view) };
     screen.center.unwrap_or(DVec2::splat(0.5))
 }
 
@@ -274,8 +274,8 @@ impl Screen {
         }
     }
 
-    fn cut(mover: &Mover, view: &View, corners: [Corner; 3]) -> Self {
-        let clip = corners.map(|corner| mover.clip(corner).expect("positions have passed the gate"));
+    fn cut(vertex_evaluator: &VertexEvaluator, view: &View, corners: [Corner; 3]) -> Self {
+        let clip = corners.map(|corner| vertex_evaluator.clip(corner).expect("positions have passed the gate"));
         let v = clip.map(|p| DVec3::new(p.x, p.y, p.w));
         let sum = v[0] + v[1] + v[2];
         let rows = [v[1].cross(v[2]), v[2].cross(v[0]), v[0].cross(v[1])];
@@ -284,7 +284,7 @@ impl Screen {
         let is_clockwise = v[0].dot(rows[0]) < 0.0;
         Self {
             weights: Weights::Homogeneous(if is_clockwise { rows.map(|row| -row) } else { rows }, terms),
-            is_back: is_clockwise != mover.draw.mirrored,
+            is_back: is_clockwise != vertex_evaluator.draw.mirrored,
             depths_m: clip.map(|p| linear_depth(view, p.z / p.w).unwrap_or(p.w)),
             center: (sum.z > 0.0).then(|| DVec2::new(0.5 + 0.5 * sum.x / sum.z, 0.5 - 0.5 * sum.y / sum.z)),
         }
@@ -412,7 +412,7 @@ fn mixed<T: std::ops::Mul<f64, Output = T> + std::ops::Add<Output = T>>(weights:
 
 /// Linear RGBA of a vertex, opaque where it has three lanes; white when a lane is refused.
 fn color(scene: &Scene, colors: &Accessor, vertex: u32) -> DVec4 {
-    let lane = |lane: u32| if lane < colors.lanes { gated_lane(&scene.vertex_bytes, colors, vertex, lane) } else { Ok(1.0) };
+    let lane = |lane: u32| if lane < colors.components { gated_lane(&scene.vertex_bytes, colors, vertex, lane) } else { Ok(1.0) };
     match [0, 1, 2, 3].map(lane) {
         [Ok(r), Ok(g), Ok(b), Ok(a)] => DVec4::new(r, g, b, a),
         _ => DVec4::ONE,

@@ -10,27 +10,27 @@ use crate::{
     math::linear_light,
     scene::{
         Primitive, Scene,
-        texture::{Copies, Filter, Level, Texture, Wrap, stored},
+        texture::{Filter, Level, MipFilter, Texture, Wrap, stored},
     },
 };
 
-/// How far to look aside, in bounds of error: across, down, and in the scale.
+/// How far to preset aside, in bounds of error: across, down, and in the scale.
 pub(super) type Aside = [f64; 3];
 
-/// Every way to look aside, straight first.
+/// Every way to preset aside, straight first.
 pub(super) const ASIDES: [Aside; 5] = [[0.0; 3], [1.0; 3], [-1.0; 3], [1.0, -1.0, 1.0], [-1.0, 1.0, -1.0]];
 
 /// A material as one triangle shows it.
-pub(super) struct Paint<'a> {
+pub(super) struct Material<'a> {
     scene: &'a Scene,
-    base: Option<Look<'a>>,
+    base: Option<TextureLookup<'a>>,
     emission: DVec3,
-    glow: Option<Look<'a>>,
+    glow: Option<TextureLookup<'a>>,
     is_unlit: bool,
 }
 
 /// A texture with the places of the corners in its image.
-struct Look<'a> {
+struct TextureLookup<'a> {
     texture: &'a Texture,
     corners: [DVec2; 3],
     /// Sums of the magnitudes of the terms that make a place: rounding errors are proportional to them.
@@ -47,27 +47,29 @@ pub(super) struct Shares {
     pub doubts: [f64; 3],
 }
 
-impl<'a> Paint<'a> {
+impl<'a> Material<'a> {
     /// None for a material that is a base colour and no more.
     pub fn of(scene: &'a Scene, primitive: &'a Primitive, corners: [u32; 3]) -> Option<Self> {
         let material = &scene.materials[primitive.material];
         if material.is_plain() {
             return None;
         }
-        let look = |slot: usize| {
-            let (texture, coords) = material.textures()[slot].zip(primitive.coords[slot].as_ref())?;
-            let at = corners.map(|corner| stored(coords, &scene.vertex_bytes, corner));
-            let magnitudes = texture.image_from_stored.map(|row| row.map(|v| f64::from(v).abs()));
+        let preset_file = |slot: usize| {
+            let (texture, texcoords) = material.textures()[slot].zip(primitive.texcoords[slot].as_ref())?;
+            let at = corners.map(|corner| stored(texcoords, &scene.vertex_bytes, corner));
+            let magnitudes = texture.image_from_texcoord.map(|row| row.map(|v| f64::from(v).abs()));
             let terms = at.map(|at| DVec2::from(magnitudes.map(|[u, v, offset]| u * at.x.abs() + v * at.y.abs() + offset)));
-            Some(Look { texture, corners: at.map(|at| texture.placed(at)), terms: terms[0].max(terms[1]).max(terms[2]) })
+            Some(TextureLookup { texture, corners: at.map(|at| texture.placed(at)), terms: terms[0].max(terms[1]).max(terms[2]) })
         };
         let emission = DVec3::from(material.emission.map(f64::from));
-        Some(Self { scene, base: look(0), emission, glow: look(1), is_unlit: material.unlit })
+        Some(Self { scene, base: preset_file(0), emission, glow: preset_file(1), is_unlit: material.unlit })
     }
 
     /// Colour of a surface whose base colour is `base`, and the part of it that no light changes.
     pub fn seen(&self, base: DVec3, shares: &Shares, aside: Aside) -> (DVec3, DVec3) {
-        let light = |look: &Option<Look>| look.as_ref().map_or(DVec3::ONE, |look| look.light(self.scene, shares, aside));
+        let light = |preset_file: &Option<TextureLookup>| {
+            preset_file.as_ref().map_or(DVec3::ONE, |preset_file| preset_file.light(self.scene, shares, aside))
+        };
         let color = base * light(&self.base);
         if self.is_unlit {
             return (color, color);
@@ -77,7 +79,7 @@ impl<'a> Paint<'a> {
     }
 }
 
-impl Look<'_> {
+impl TextureLookup<'_> {
     fn light(&self, scene: &Scene, shares: &Shares, aside: Aside) -> DVec3 {
         let levels = &scene.images[self.texture.image].levels;
         let size = DVec2::from(levels[0].size.map(f64::from));
@@ -87,9 +89,9 @@ impl Look<'_> {
         let place = mixed(shares.weights);
         let weighed: DVec2 = (0..3).map(|k| (self.corners[k] - place).abs() * shares.doubts[k]).sum();
         // Corners err by a few roundings, the scale by as much as what it is made of, and by its logarithm.
-        let slack = (weighed + self.terms / f64::from(1 << 21)).max(DVec2::splat(1e-7));
+        let error_bound = (weighed + self.terms / f64::from(1 << 21)).max(DVec2::splat(1e-7));
         let scale = 1.0 / f64::from(1 << 10) + 4.0 * shares.doubts.iter().sum::<f64>();
-        self.filtered(levels, place + slack * DVec2::new(aside[0], aside[1]), detail + aside[2] * scale.min(1.0))
+        self.filtered(levels, place + error_bound * DVec2::new(aside[0], aside[1]), detail + aside[2] * scale.min(1.0))
     }
 
     /// The light at a place, where a pixel spans 2^detail texels.
@@ -97,13 +99,13 @@ impl Look<'_> {
         let at = |level: f64, filter: Filter| self.level(&levels[level as usize], place, filter);
         let last = levels.len() as f64 - 1.0;
         if detail <= 0.0 {
-            return at(0.0, self.texture.magnified);
+            return at(0.0, self.texture.mag_filter);
         }
-        let filter = self.texture.minified;
-        match self.texture.copies {
-            Copies::Unused => at(0.0, filter),
-            Copies::Nearest => at((detail + 0.5).floor().min(last), filter),
-            Copies::Mixed => {
+        let filter = self.texture.min_filter;
+        match self.texture.mip_filter {
+            MipFilter::Unused => at(0.0, filter),
+            MipFilter::Nearest => at((detail + 0.5).floor().min(last), filter),
+            MipFilter::Mixed => {
                 let level = detail.min(last);
                 let above = level.ceil().min(last);
                 at(level.floor(), filter).lerp(at(above, filter), level - level.floor())

@@ -1,20 +1,20 @@
 //! The whole: an adapter's picture against the oracle's own, where only what a snapped vertex explains may differ.
 
 use super::{
-    coverage::{Coverage, corner_places, corner_records, cover_by, draw_of, triangles},
-    judge::{ULP, VertexFault, owner_is_right},
+    coverage::{Coverage, corner_places, corner_records, cover_with, draw_of, triangles},
+    judge::{ULP, VertexFault, triangle_is_right},
     order,
-    rules::Rules,
+    rules::SampleTests,
 };
 use crate::{
     effects::{Stack, hooks::Shape},
     frame::{Exactness, Frame, Geometry, SnappedVertex},
-    measure::Accuracy,
+    measure::ErrorReport,
     scene::{Scene, camera::View, draw::Draw},
 };
 
 /// The adapter's picture against the oracle's own, from the matrix bits on.
-pub(super) struct Whole<'a> {
+pub(super) struct EndToEnd<'a> {
     pub scene: &'a Scene,
     pub draws: &'a [Draw],
     pub view: &'a View,
@@ -26,29 +26,33 @@ pub(super) struct Whole<'a> {
     pub vertices: &'a [VertexFault],
 }
 
-impl Whole<'_> {
-    pub fn judge(&self, accuracy: &mut Accuracy, coverage: &Coverage, adapter: &Frame) {
+impl EndToEnd<'_> {
+    pub fn judge(&self, accuracy: &mut ErrorReport, coverage: &Coverage, adapter: &Frame) {
         let (triangles, _) = triangles(self.scene, self.draws, self.own);
         if order::is_free(self.stack) {
             return;
         }
-        let rules = Rules::of(self.stack, self.own).masked(self.scene, self.draws, self.stack).ordered(self.stack, &triangles, self.view);
-        let own = cover_by(&rules, &triangles, self.view, Some(&adapter.owner));
+        let rules =
+            SampleTests::of(self.stack, self.own).masked(self.scene, self.draws, self.stack).ordered(self.stack, &triangles, self.view);
+        let own = cover_with(&rules, &triangles, self.view, Some(&adapter.triangle_id));
         // A sample more or less before it moves the place where a draw order stops.
         let stops = [self.cut, rules.cut()].map(|cut| cut.map(|cut| cut.straddler));
-        let is_near_stop = |owner: u32| match stops {
-            [Some(a), Some(b)] if self.cut != rules.cut() => (a.min(b)..=a.max(b)).contains(&owner),
+        let is_near_stop = |triangle_id: u32| match stops {
+            [Some(a), Some(b)] if self.cut != rules.cut() => (a.min(b)..=a.max(b)).contains(&triangle_id),
             _ => false,
         };
-        for (pixel, (truth, sample)) in own.samples.iter().zip(&coverage.samples).enumerate() {
-            let owner = adapter.owner[pixel];
-            let is_right = owner_is_right(truth, owner) && (!self.is_strict() || adapter.key[pixel] == truth.key);
-            // An owner that is wrong even for the adapter's own geometry has been counted as such.
-            if is_right || !owner_is_right(sample, owner) {
+        for (pixel, (reference, sample)) in own.samples.iter().zip(&coverage.samples).enumerate() {
+            let triangle_id = adapter.triangle_id[pixel];
+            let is_right = triangle_is_right(reference, triangle_id) && (!self.is_strict() || adapter.key[pixel] == reference.key);
+            // An triangle id that is wrong even for the adapter's own geometry has been counted as such.
+            if is_right || !triangle_is_right(sample, triangle_id) {
                 continue;
             }
             let may_move = || {
-                self.adapter.is_rough || is_near_stop(owner) || is_near_stop(truth.owner) || self.snap_explains(truth.owner, owner, pixel)
+                self.adapter.is_rough
+                    || is_near_stop(triangle_id)
+                    || is_near_stop(reference.triangle_id)
+                    || self.snap_explains(reference.triangle_id, triangle_id, pixel)
             };
             if !self.is_strict() && may_move() {
                 accuracy.explained_by_snap += 1;
@@ -63,16 +67,17 @@ impl Whole<'_> {
         self.own.exact == Exactness { vertices: true, keys: true }
     }
 
-    /// May two owners change places at a pixel because vertices moved? Either an outline passed over the sample, or the
+    /// May two triangle ids change places at a pixel because vertices moved? Either an outline passed over the sample, or the
     /// two surfaces cross there.
     fn snap_explains(&self, a: u32, b: u32, pixel: usize) -> bool {
         let at = Place::of(self.view, pixel);
-        let outlines: Vec<Outline> = [a, b].into_iter().filter_map(|owner| self.outline(owner)).collect();
+        let outlines: Vec<Outline> = [a, b].into_iter().filter_map(|triangle_id| self.outline(triangle_id)).collect();
         if outlines.iter().any(|outline| outline.may_pass(&at)) {
             return true;
         }
         // Sample effects measure inside of triangles: there a moved corner or another decision may tell otherwise.
-        let tells = |owner: u32| self.outline(owner).is_some_and(|outline| outline.reach > 0.0) || self.decides_otherwise(owner);
+        let tells =
+            |triangle_id: u32| self.outline(triangle_id).is_some_and(|outline| outline.reach > 0.0) || self.decides_otherwise(triangle_id);
         if self.stack.each(|hooks| hooks.sample).next().is_some() && [a, b].into_iter().any(tells) {
             return true;
         }
@@ -81,19 +86,20 @@ impl Whole<'_> {
     }
 
     /// Did sample effects settle something else about this triangle than the oracle does?
-    fn decides_otherwise(&self, owner: u32) -> bool {
-        let deciding = self.stack.each(|hooks| hooks.sample.filter(|hook| hook.decides)).count();
-        let of =
-            |geometry: &Geometry| geometry.decisions.get(owner as usize * deciding..(owner as usize + 1) * deciding).map(<[_]>::to_vec);
+    fn decides_otherwise(&self, triangle_id: u32) -> bool {
+        let deciding = self.stack.each(|hooks| hooks.sample.filter(|hook| hook.has_setup)).count();
+        let of = |geometry: &Geometry| {
+            geometry.sample_setups.get(triangle_id as usize * deciding..(triangle_id as usize + 1) * deciding).map(<[_]>::to_vec)
+        };
         of(self.adapter) != of(self.own)
     }
 
-    /// Where an owner is drawn and how far that may move: as far as its corners did, or a pixel where it is cut and what
+    /// Where an triangle id is drawn and how far that may move: as far as its corners did, or a pixel where it is cut and what
     /// effects err by at its corners.
-    fn outline(&self, owner: u32) -> Option<Outline> {
-        let draw = draw_of(self.scene, self.draws, owner)?;
-        let records = corner_records(self.scene, draw, self.own, owner);
-        let faults = corner_places(self.scene, draw, self.own, owner).map(|at| self.vertices[at]);
+    fn outline(&self, triangle_id: u32) -> Option<Outline> {
+        let draw = draw_of(self.scene, self.draws, triangle_id)?;
+        let records = corner_records(self.scene, draw, self.own, triangle_id);
+        let faults = corner_places(self.scene, draw, self.own, triangle_id).map(|at| self.vertices[at]);
         let is_whole = records.iter().all(|record| record.flags == 0);
         let moved = f64::from(faults.iter().map(|fault| fault.delta).max().unwrap_or(0));
         let reach = match faults.iter().any(|fault| fault.is_ill_conditioned) {
@@ -103,13 +109,13 @@ impl Whole<'_> {
         };
         // Own pieces stand sorted by parent.
         let pieces = &self.own.pieces;
-        let cut = &pieces[pieces.partition_point(|p| p.parent < owner)..pieces.partition_point(|p| p.parent <= owner)];
-        let is_disc = self.stack.shape() == Shape::Triangles && self.own.splats.contains(&owner);
+        let cut = &pieces[pieces.partition_point(|p| p.parent < triangle_id)..pieces.partition_point(|p| p.parent <= triangle_id)];
+        let is_disc = self.stack.shape() == Shape::Triangles && self.own.particle_discs.contains(&triangle_id);
         Some(Outline { is_disc, triangles: if is_whole { vec![records] } else { cut.iter().map(|piece| piece.corners).collect() }, reach })
     }
 }
 
-/// One owner on the screen: itself, or its pieces.
+/// One triangle id on the screen: itself, or its pieces.
 struct Outline {
     triangles: Vec<[SnappedVertex; 3]>,
     /// Of which only the disc that touches its sides is drawn.
@@ -195,7 +201,7 @@ impl Place {
         let slope_y = (v[2] * u[0] - u[2] * v[0]) / area;
         let (low, high) = (a[2].min(b[2]).min(c[2]), a[2].max(b[2]).max(c[2]));
         let depth = a[2] + slope_x * (self.x - a[0]) + slope_y * (self.y - a[1]);
-        let slack = reach * (slope_x.abs() + slope_y.abs()) + 64.0 * ULP * depth.abs();
-        Some([(depth - slack).max(low).min(high), (depth + slack).min(high).max(low)])
+        let error_bound = reach * (slope_x.abs() + slope_y.abs()) + 64.0 * ULP * depth.abs();
+        Some([(depth - error_bound).max(low).min(high), (depth + error_bound).min(high).max(low)])
     }
 }

@@ -1,9 +1,9 @@
-//! Costs: time of a frame on a rung as a share of its time on the usual one, as measured (README, the price of exactness).
+//! Costs: time of a frame on a option as a share of its time on the usual one, as measured (README, the price of exactness).
 //! Only what is cheaper by more than the noise of a measurement stands here; the rest gains nothing and is never chosen.
 
 use super::Caps;
 use crate::{
-    ladder::{AXES, Axis, Coverage, Rung, Visibility},
+    accuracy::{AXES, Axis, AxisOption, Coverage, Visibility},
     math::SMALL_EXTENT,
     scene::needs::Needs,
 };
@@ -11,7 +11,7 @@ use crate::{
 /// Share of the usual time.
 pub(super) fn of(axis: &Axis, place: usize, needs: &Needs, caps: &Caps) -> f64 {
     // On a coarser grid more triangles are small, so that most pictures need no kernel for large ones: that is the gain.
-    let has_large = |rung: Coverage| needs.largest_px >= f64::from(SMALL_EXTENT >> rung.subpixel_bits());
+    let has_large = |option: Coverage| needs.largest_px >= f64::from(SMALL_EXTENT >> option.subpixel_bits());
     let is_fixed4 = axis.name == AXES[Coverage::AXIS].name && place == Coverage::Fixed4.place();
     if is_fixed4 && has_large(Coverage::Fixed8) && !has_large(Coverage::Fixed4) {
         return if caps.software { FIXED4_SOFTWARE } else { FIXED4_CARD };
@@ -30,7 +30,7 @@ const FIXED4_CARD: f64 = 0.72;
 /// On lavapipe the kernel for large triangles costs hardly more than the others.
 const FIXED4_SOFTWARE: f64 = 1.0;
 
-/// Is the rung worth leaving `from` for?
+/// Is the option worth leaving `from` for?
 pub(super) fn saves(axis: &Axis, place: usize, from: usize, needs: &Needs, caps: &Caps) -> bool {
     of(axis, place, needs, caps) < of(axis, from, needs, caps)
 }

@@ -2,12 +2,12 @@
 
 use super::{Caps, Note};
 use crate::{
+    accuracy::Visibility,
     effects::{
-        dots::Strung,
+        dots::LineSource,
         hooks::{Layers, Shape},
         xray,
     },
-    ladder::Visibility,
     scene::needs::Needs,
     shader::key::{KernelKey, Order},
 };
@@ -16,7 +16,7 @@ pub(super) fn note(name: &str, why: impl Into<String>) -> Note {
     Note { name: name.into(), why: why.into() }
 }
 
-pub(super) fn explain(needs: &Needs, is_usual: bool, caps: &Caps, key: &KernelKey) -> (Vec<Note>, Vec<Note>) {
+pub(super) fn explain(needs: &Needs, is_default: bool, caps: &Caps, key: &KernelKey) -> (Vec<Note>, Vec<Note>) {
     let bound = if needs.clipping { "clipping leaves it open".into() } else { format!("no triangle exceeds {:.1} px", needs.largest_px) };
     let mut reasons = Vec::new();
     match (key.shape, key.layers) {
@@ -33,8 +33,8 @@ pub(super) fn explain(needs: &Needs, is_usual: bool, caps: &Caps, key: &KernelKe
             "small",
             format!(
                 "one invocation walks up to {} samples: {}",
-                key.small_samples,
-                match (is_usual, caps.software) {
+                key.max_small_samples,
+                match (is_default, caps.software) {
                     (false, _) => "as the tuning asks",
                     (true, true) => "a CPU adapter runs lanes in turn",
                     (true, false) => "a workgroup takes over early on a GPU",
@@ -42,25 +42,28 @@ pub(super) fn explain(needs: &Needs, is_usual: bool, caps: &Caps, key: &KernelKe
             ),
         ),
     ]);
-    if key.rungs.visibility == Visibility::Tiled && key.list_walk < u32::MAX {
-        let most = key.list_walk;
+    if key.options.visibility == Visibility::Tiled && key.max_list_entries < u32::MAX {
+        let most = key.max_list_entries;
         reasons
             .push(note("lists of tiles", format!("a list of more than {most} triangles takes another dispatch: drivers end long loops")));
     }
-    if key.culls() && key.bends() {
+    if key.culls() && key.deforms() {
         reasons
             .push(note("culling of what bends", "its meshlets have no bounds of their own: they are left out with their whole instance"));
     }
     if key.moves() {
-        let why = if key.parts_corners() { "triangles part, three projected records each" } else { "triangles keep sharing vertices" };
+        let why = if key.unshares_vertices() { "triangles part, three projected records each" } else { "triangles keep sharing vertices" };
         let movers: Vec<_> = key.effects.iter().filter(|effect| effect.hooks.vertex.is_some()).map(|effect| effect.name).collect();
         reasons.push(note("movement", format!("vertices are moved by {}: {why}", movers.join(", "))));
     }
     if key.has_texels {
         let why = match needs.textured {
-            0 => format!("atlas: {} materials shine or stay unlit, which the words of a texture tell", needs.paints),
+            0 => format!("atlas: {} materials shine or stay unlit, which the words of a texture tell", needs.material_count),
             textured => {
-                format!("atlas: {textured} of {} materials look up an image, texel by texel and mixed in linear light", needs.paints)
+                format!(
+                    "atlas: {textured} of {} materials look up an image, texel by texel and mixed in linear light",
+                    needs.material_count
+                )
             }
         };
         reasons.push(note("texels", why));
@@ -72,21 +75,21 @@ pub(super) fn explain(needs: &Needs, is_usual: bool, caps: &Caps, key: &KernelKe
     if key.has_image() {
         reasons.push(note("finish", "an image effect finishes every pixel, empty ones too, so no tile is skipped"));
     }
-    if let Some(strung) = key.dots {
-        let lines = match strung {
-            Strung::Edges => "the edges of all meshes",
-            Strung::Creases => "the creases of all meshes",
-            Strung::Polyline => "the look's polyline",
+    if let Some(line_source) = key.dots {
+        let lines = match line_source {
+            LineSource::Edges => "the edges of all meshes",
+            LineSource::Creases => "the creases of all meshes",
+            LineSource::Polyline => "the preset's polyline",
         };
         reasons.push(note("dots", format!("an effect strings them along {lines}, over every pixel, so no tile is skipped")));
     }
     reasons.extend(layers_note(needs, key));
     let parts = [
         ("particles", key.has_particles, "no effect puts particles into the scene".to_owned()),
-        ("skin", key.bends(), "no mesh has joints or morph weights".to_owned()),
+        ("skin", key.deforms(), "no mesh has joints or morph weights".to_owned()),
         ("vertex effects", key.moves(), "no effect of the stack moves a vertex".to_owned()),
-        ("corners of their own", key.parts_corners(), "no effect parts triangles, so neighbours share projected vertices".into()),
-        ("culling", key.culls(), "no rung asks for it, so every triangle finds out by itself".into()),
+        ("corners of their own", key.unshares_vertices(), "no effect parts triangles, so neighbours share projected vertices".into()),
+        ("culling", key.culls(), "no option asks for it, so every triangle finds out by itself".into()),
         ("clip", key.has_clipping, "the scene's box lies behind the near plane and inside the guard band".to_owned()),
         ("raster_medium", key.has_medium, bound.clone()),
         ("tile_large, raster_large", key.has_large, bound),
@@ -95,7 +98,7 @@ pub(super) fn explain(needs: &Needs, is_usual: bool, caps: &Caps, key: &KernelKe
         ("vertex colours", needs.colors, "no primitive has them".into()),
         ("texels", key.has_texels, "no material is more than a base colour".into()),
         ("mask", key.has_mask, "no image's alpha leaves anything out".into()),
-        ("decide", key.decisions > 0, "neither effects nor masks settle anything per triangle".into()),
+        ("decide", key.sample_setups > 0, "neither effects nor masks settle anything per triangle".into()),
         ("draw order", key.order != Order::Free, "every sample is drawn".into()),
         ("sample effects", key.has_samples, "no effect leaves samples out".into()),
         ("dots", key.dots.is_some(), "no effect strings dots".into()),

@@ -3,21 +3,24 @@
 mod costs;
 mod explain;
 mod loops;
+mod options;
 pub mod predict;
-mod rungs;
 
-use self::{explain::explain, predict::Prediction, rungs::Choice};
+use self::{explain::explain, options::Choice, predict::Prediction};
 use crate::{
+    accuracy::{
+        AXES, AccuracyOptions, Axis, Clipping, DepthFormat, Parameters, PinnedOptions, RenderScale, SampleCounter, VertexTransform,
+        Visibility,
+    },
     effects::{
         Conflict, Enabled, Stack,
-        dots::Strung,
+        dots::LineSource,
         hooks::{Layers, Shape},
     },
-    ladder::{AXES, Axis, Clipping, Counting, Depth, Parameters, Pins, Rungs, Scale, Vertex, Visibility},
     math::SMALL_EXTENT,
     scene::{
         needs::Needs,
-        sizes::{Classes, Sizes},
+        sizes::{SizeClasses, TriangleSizes},
     },
     shader::{
         glue::reads,
@@ -29,7 +32,7 @@ use crate::{
 /// What an adapter can do for us.
 #[derive(Clone, Debug, PartialEq, serde::Serialize)]
 pub struct Caps {
-    /// 64-bit atomic maximum on storage buffers: the `packed64` rung.
+    /// 64-bit atomic maximum on storage buffers: the `packed64` option.
     pub int64_atomics: bool,
     /// GPU timestamps.
     pub timestamps: bool,
@@ -49,13 +52,13 @@ impl Caps {
     /// How work is shared out on this adapter. On a GPU a whole workgroup takes over early, since one slow lane holds up
     /// its neighbours; a CPU adapter runs lanes in turn, executes both sides of every branch, and gains nothing by it.
     pub fn tuning(&self) -> Tuning {
-        let (small_samples, small_side) = if self.software { (128 * 128, 128) } else { (32, 32) };
-        let list_group = if self.software { 64 } else { 256 };
+        let (max_small_samples, max_small_side) = if self.software { (128 * 128, 128) } else { (32, 32) };
+        let group_size = if self.software { 64 } else { 256 };
         Tuning {
-            small_samples,
-            small_side,
-            list_group,
-            list_walk: u32::MAX,
+            max_small_samples,
+            max_small_side,
+            group_size,
+            max_list_entries: u32::MAX,
             listed_tiles: self.software,
             early_load: self.software,
             specialized: true,
@@ -68,13 +71,13 @@ impl Caps {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Tuning {
     /// Most candidate samples that one invocation walks, at least 1.
-    pub small_samples: u32,
+    pub max_small_samples: u32,
     /// Most pixels per side of such a box, 1 to 128.
-    pub small_side: u32,
+    pub max_small_side: u32,
     /// Invocations in a workgroup of the passes over vertices and triangles, 1 to 256.
-    pub list_group: u32,
+    pub group_size: u32,
     /// Most entries of a tile's list that one dispatch walks, at least 1 (tiled alone).
-    pub list_walk: u32,
+    pub max_list_entries: u32,
     /// The resolve visits only tiles that a triangle's box touches, without branches.
     pub listed_tiles: bool,
     /// Load before the depth atomic (split32 alone).
@@ -95,7 +98,7 @@ pub enum Tier {
     Precise,
     /// Depths in integers too: no two answers are right.
     Reference,
-    /// The same bits of owners and depths on every adapter and on the CPU.
+    /// The same bits of triangle ids and depths on every adapter and on the CPU.
     Strict,
 }
 
@@ -121,12 +124,14 @@ impl Tier {
         }
     }
 
-    /// The rungs that are left only for a gain within the tolerance.
-    fn base(self) -> Rungs {
+    /// The options that are left only for a gain within the tolerance.
+    fn base(self) -> AccuracyOptions {
         match self {
-            Self::Draft | Self::Fast | Self::Precise => Rungs::default(),
-            Self::Reference => Rungs { depth: Depth::Integer, ..Rungs::default() },
-            Self::Strict => Rungs { depth: Depth::Integer, vertex: Vertex::Strict, ..Rungs::default() },
+            Self::Draft | Self::Fast | Self::Precise => AccuracyOptions::default(),
+            Self::Reference => AccuracyOptions { depth: DepthFormat::Integer, ..AccuracyOptions::default() },
+            Self::Strict => {
+                AccuracyOptions { depth: DepthFormat::Integer, vertex_transform: VertexTransform::Strict, ..AccuracyOptions::default() }
+            }
         }
     }
 }
@@ -134,7 +139,7 @@ impl Tier {
 /// How far a picture may be off the oracle's.
 #[derive(Clone, Copy, Debug, PartialEq, serde::Serialize)]
 pub struct Tolerance {
-    /// Pixels with another owner, per million.
+    /// Pixels with another triangle id, per million.
     pub wrong_ppm: f64,
     /// Difference of a colour channel, of 255.
     pub channel: u8,
@@ -147,41 +152,41 @@ impl Tolerance {
     }
 }
 
-/// Axes whose fast rungs lose nothing, or say for themselves what they lose.
+/// Axes whose fast options lose nothing, or say for themselves what they lose.
 const EXACT_AXES: [&str; 5] = ["visibility", "skinning", "scale", "parameters", "checks"];
 
 /// How exact the picture must be.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Accuracy {
+pub struct AccuracyRequest {
     pub tier: Tier,
-    /// Pinned rungs beat the tier.
-    pub pins: Pins,
-    /// Another tolerance than the tier's, pixels with the wrong owner per million.
+    /// Pinned options beat the tier.
+    pub pins: PinnedOptions,
+    /// Another tolerance than the tier's, pixels with the wrong triangle id per million.
     pub wrong_ppm: Option<f64>,
     /// Another tolerance than the tier's, difference of a colour channel of 255.
     pub channel: Option<u8>,
 }
 
-impl Accuracy {
-    /// How many pixels are drawn for one that is shown: as the look pins it.
-    pub fn scale(&self) -> Scale {
-        self.pins.rung().unwrap_or_default()
+impl AccuracyRequest {
+    /// How many pixels are drawn for one that is shown: as the preset pins it.
+    pub fn scale(&self) -> RenderScale {
+        self.pins.option().unwrap_or_default()
     }
 
-    /// Does it pin a rung that lets chance decide?
+    /// Does it pin a option that lets chance decide?
     pub fn is_left_to_chance(&self) -> bool {
-        self.pins.rung() == Some(Visibility::Race) || self.pins.rung() == Some(Counting::Racy)
+        self.pins.option() == Some(Visibility::Race) || self.pins.option() == Some(SampleCounter::Racy)
     }
 
     /// Does it ask for anything that promises less than exactness?
     pub fn may_err(&self) -> bool {
-        let is_cheaper = |axis: &Axis| self.pins.get(axis).is_some_and(|place| place < axis.usual && !EXACT_AXES.contains(&axis.name));
-        let is_lossy = self.pins.rung::<Visibility>().is_some_and(|rung| !rung.is_exact());
+        let is_cheaper = |axis: &Axis| self.pins.get(axis).is_some_and(|place| place < axis.default && !EXACT_AXES.contains(&axis.name));
+        let is_lossy = self.pins.option::<Visibility>().is_some_and(|option| !option.is_exact());
         let tolerance = self.tolerance();
         is_lossy || AXES.iter().any(is_cheaper) || tolerance.wrong_ppm > 0.0
     }
 
-    /// The tier's tolerance, or what the look says instead.
+    /// The tier's tolerance, or what the preset says instead.
     pub fn tolerance(&self) -> Tolerance {
         let named = self.tier.tolerance();
         Tolerance { wrong_ppm: self.wrong_ppm.unwrap_or(named.wrong_ppm), channel: self.channel.unwrap_or(named.channel) }
@@ -191,27 +196,27 @@ impl Accuracy {
 /// Why no kernel draws this stack here.
 #[derive(Debug, thiserror::Error)]
 pub enum PlanError {
-    /// A rung that was asked for by name.
+    /// A option that was asked for by name.
     #[error("visibility packed64 needs 64-bit atomics, which this adapter lacks; use split32 or leave it out")]
     Lacking,
     #[error("visibility packed32 keeps triangle and depth in 32 bits, at most 2^24 triangles, and this scene has {triangles}; use split32")]
     Crowded { triangles: u64 },
-    #[error("coverage {rung} cannot draw the effect {effect}, which measures triangles in 1/256 px; use fixed8, float or float-top-left")]
-    Grid { rung: &'static str, effect: &'static str },
-    #[error("sums {rung} counts all layers alike, and this xray weighs them; use four32, or weight = \"equal\"")]
-    Weights { rung: &'static str },
+    #[error("coverage {option} cannot draw the effect {effect}, which measures triangles in 1/256 px; use fixed8, float or float-top-left")]
+    Grid { option: &'static str, effect: &'static str },
+    #[error("sums {option} counts all layers alike, and this xray weighs them; use four32, or weight = \"equal\"")]
+    Weights { option: &'static str },
     #[error("coverage fixed12 holds pictures of at most 2047 px a side, and this one has {}x{}; use fixed8", size[0], size[1])]
     Wide { size: [u32; 2] },
-    #[error("depth {rung} keeps no distances, so xray cannot count within a window; use reversed, or reach = \"all\"")]
-    Window { rung: &'static str },
+    #[error("depth {option} keeps no distances, so xray cannot count within a window; use reversed, or reach = \"all\"")]
+    Window { option: &'static str },
     #[error("dots cpu searches a tree of lines that stay where they are, but {what}; use gpu")]
     Carried { what: String },
-    #[error("vertex strict holds where integers decide, but {what}; take it out, or another rung")]
+    #[error("vertex strict holds where integers decide, but {what}; take it out, or another option")]
     Floats { what: String },
-    #[error("vertices {rung} packs meshes that keep their shape, and here {what}; use stored")]
-    Bent { rung: &'static str, what: &'static str },
-    #[error("depth integer divides exact edges, which coverage {rung} does not have; use fixed8")]
-    Inexact { rung: &'static str },
+    #[error("vertices {option} packs meshes that keep their shape, and here {what}; use stored")]
+    Deformed { option: &'static str, what: &'static str },
+    #[error("depth integer divides exact edges, which coverage {option} does not have; use fixed8")]
+    Inexact { option: &'static str },
     #[error(transparent)]
     Conflict(#[from] Conflict),
 }
@@ -231,11 +236,11 @@ pub struct Plan {
     pub reasons: Vec<Note>,
     /// What this picture does without.
     pub omitted: Vec<Note>,
-    /// What the rungs are predicted to err by, against the oracle's picture.
+    /// What the options are predicted to err by, against the oracle's picture.
     pub prediction: Prediction,
     /// How large triangles are, and how many are predicted to take which path; not where effects move them.
-    pub sizes: Sizes,
-    pub classes: Option<Classes>,
+    pub sizes: TriangleSizes,
+    pub classes: Option<SizeClasses>,
     /// What they may err by.
     pub tolerance: Tolerance,
 }
@@ -248,15 +253,15 @@ const fn bit_length(triangles: u64) -> u32 {
 /// Chooses the kernel.
 ///
 /// # Errors
-/// When the look pins a rung that the adapter lacks, or two effects take one slot.
-pub fn plan(needs: &Needs, stack: &Stack, caps: &Caps, tuning: &Tuning, accuracy: &Accuracy) -> Result<Plan, PlanError> {
+/// When the preset pins a option that the adapter lacks, or two effects take one slot.
+pub fn plan(needs: &Needs, stack: &Stack, caps: &Caps, tuning: &Tuning, accuracy: &AccuracyRequest) -> Result<Plan, PlanError> {
     stack.check()?;
     let shape = stack.shape();
     let f32_positions = needs.f32_positions;
     let mut needs = if tuning.specialized { needs.clone() } else { needs.everything() };
     if stack.moves() {
         // Bounds of the scene say nothing of where effects move it, nor its normals of how they turn them.
-        needs = Needs { clipping: true, largest_px: f64::INFINITY, sound_normals: false, ..needs };
+        needs = Needs { clipping: true, largest_px: f64::INFINITY, normals_agree: false, ..needs };
     }
     if shape == Shape::Points {
         // Discs are small, and triangles that would be clipped show none.
@@ -264,72 +269,73 @@ pub fn plan(needs: &Needs, stack: &Stack, caps: &Caps, tuning: &Tuning, accuracy
     }
     let needs = &needs;
     let mut layers = stack.layers(needs.triangles);
-    let Choice { rungs, reasons: mut reasons_of_rungs, prediction } = rungs::choose(needs, f32_positions, stack, caps, accuracy, layers)?;
-    if let (Some(Layers::Xray { bits }), Some(_)) = (&mut layers, rungs.sums.capacity()) {
+    let Choice { options, reasons: mut reasons_of_options, prediction } =
+        options::choose(needs, f32_positions, stack, caps, accuracy, layers)?;
+    if let (Some(Layers::Xray { bits }), Some(_)) = (&mut layers, options.xray_sums.capacity()) {
         *bits = 8;
     }
     // Whoever drops what would have to be clipped needs no clipper; what is left may still be wide.
-    let has_clipping = needs.clipping && rungs.clipping != Clipping::Drop;
+    let has_clipping = needs.clipping && options.clipping != Clipping::Drop;
     // Boxes and discs show all of a material.
     let has_mask = needs.masked && shape == Shape::Triangles;
-    let loops = loops::of_a_sample(has_mask, layers, &rungs);
-    let small_samples = tuning.small_samples.min(loops::samples(caps, loops)).max(1);
-    let small_side = tuning.small_side.clamp(1, 128);
+    let loops = loops::of_a_sample(has_mask, layers, &options);
+    let max_small_samples = tuning.max_small_samples.min(loops::samples(caps, loops)).max(1);
+    let max_small_side = tuning.max_small_side.clamp(1, 128);
     // A box of n px touches at most n + 1 sample columns.
     let widest = needs.largest_px.floor() + 1.0;
-    let has_medium = has_clipping || widest > f64::from(small_side) || widest * widest > f64::from(small_samples);
-    let has_large = needs.largest_px >= f64::from(SMALL_EXTENT >> rungs.coverage.subpixel_bits());
+    let has_medium = has_clipping || widest > f64::from(max_small_side) || widest * widest > f64::from(max_small_samples);
+    let has_large = needs.largest_px >= f64::from(SMALL_EXTENT >> options.coverage.subpixel_bits());
     let planes = ["flat_normal", "flat_depth_m", "center"];
     // Taps follow the plane of a triangle.
     let reads_planes = stack.light().is_some()
         || stack.0.iter().any(|enabled| planes.iter().any(|member| reads(&Library::Embedded, enabled.effect, member)));
-    let has_planes = reads_planes || !needs.sound_normals;
+    let has_planes = reads_planes || !needs.normals_agree;
     let effects: Vec<_> = stack.0.iter().map(|Enabled { effect, .. }| *effect).collect();
     let key = KernelKey {
         fetch: if needs.indexed { Fetch::Indexed } else { Fetch::Direct },
-        baked: if rungs.parameters == Parameters::Baked {
+        baked: if options.parameters == Parameters::Baked {
             stack.0.iter().map(|enabled| enabled.words.clone()).collect()
         } else {
             Vec::new()
         },
-        rungs,
+        options,
         layers,
         shape,
         order: Order::of(stack),
-        dots: stack.dots().map(|dots| Strung::of(dots.lines)),
+        dots: stack.dots().map(|dots| LineSource::of(dots.lines)),
         has_samples: effects.iter().any(|effect| effect.hooks.sample.is_some()),
-        decisions: deciding(&effects) + if has_mask { MASK_RECORDS } else { 0 },
+        sample_setups: deciding(&effects) + if has_mask { MASK_RECORDS } else { 0 },
         has_mask,
         effects,
         has_clipping,
         has_medium,
         has_large,
         single_draw: needs.draws == 1,
-        only_lists: !needs.topologies,
-        wide_indices: needs.wide_indices,
+        only_triangle_lists: !needs.topologies,
+        u32_indices: needs.u32_indices,
         f32_positions: needs.f32_positions,
         f32_normals: needs.f32_normals,
         has_colors: needs.colors,
-        has_texels: needs.paints > 0,
+        has_texels: needs.material_count > 0,
         has_joints: needs.skinning.is_some(),
-        has_shapes: needs.shapes,
-        has_particles: needs.splats,
+        has_morph_targets: needs.morph_targets,
+        has_particles: needs.particle_discs,
         has_planes,
         perspective: needs.perspective,
-        small_samples,
-        small_side,
-        disc_shares: loops::disc_shares(caps, stack, loops),
-        list_walk: tuning.list_walk.min(loops::samples(caps, loops::of_an_entry(has_mask, needs.draws, &rungs))).max(1),
+        max_small_samples,
+        max_small_side,
+        invocations_per_triangle: loops::invocations_per_triangle(caps, stack, loops),
+        max_list_entries: tuning.max_list_entries.min(loops::samples(caps, loops::of_an_entry(has_mask, needs.draws, &options))).max(1),
         listed_tiles: tuning.listed_tiles && !stack.finishes() && stack.dots().is_none(),
-        list_group: tuning.list_group,
+        group_size: tuning.group_size,
         early_load: tuning.early_load,
         is_light: needs.is_light,
-        id_bits: if rungs.visibility == Visibility::Packed32 { bit_length(needs.triangles) } else { 0 },
+        id_bits: if options.visibility == Visibility::Packed32 { bit_length(needs.triangles) } else { 0 },
     };
     let (reasons, omitted) = explain(needs, tuning == &caps.tuning(), caps, &key);
-    reasons_of_rungs.extend(reasons);
-    let large_px = f64::from(SMALL_EXTENT >> rungs.coverage.subpixel_bits());
-    let classes = (shape == Shape::Triangles && !stack.moves()).then(|| needs.sizes.classes(small_samples, small_side, large_px));
+    reasons_of_options.extend(reasons);
+    let large_px = f64::from(SMALL_EXTENT >> options.coverage.subpixel_bits());
+    let classes = (shape == Shape::Triangles && !stack.moves()).then(|| needs.sizes.classes(max_small_samples, max_small_side, large_px));
     let sizes = needs.sizes.clone();
-    Ok(Plan { key, reasons: reasons_of_rungs, omitted, prediction, sizes, classes, tolerance: accuracy.tolerance() })
+    Ok(Plan { key, reasons: reasons_of_options, omitted, prediction, sizes, classes, tolerance: accuracy.tolerance() })
 }

@@ -1,17 +1,20 @@
-//! Predictions: how far a rung will be off in a scene, before anything is drawn. Bounds where there is one, estimates where
+//! Predictions: how far a option will be off in a scene, before anything is drawn. Bounds where there is one, estimates where
 //! not; what was measured is held against them and a wrong prediction is shown.
 
 use crate::{
-    ladder::{AXES, Clipping, Coverage, Culling, Depth, Perspective, Rung, Rungs, Scale, Sums, Vertex, Vertices, Visibility},
+    accuracy::{
+        AXES, AccuracyOptions, AxisOption, Clipping, Coverage, Culling, DepthFormat, Perspective, PositionFormat, RenderScale,
+        VertexTransform, Visibility, XraySums,
+    },
     scene::needs::Needs,
 };
 
 /// Error of a picture against the oracle's, as far as it can be told before it is drawn.
 #[derive(Clone, Copy, Debug, Default, PartialEq, serde::Serialize)]
 pub struct Prediction {
-    /// Pixels with the wrong owner, per million.
+    /// Pixels with the wrong triangle id, per million.
     pub wrong_ppm: f64,
-    /// Difference of a colour channel where the owner is right, of 255.
+    /// Difference of a colour channel where the triangle id is right, of 255.
     pub channel: f64,
 }
 
@@ -26,40 +29,40 @@ impl Prediction {
     }
 }
 
-/// What the rung at `place` of `axis` adds to the error of a picture. Infinite where nothing can be said.
+/// What the option at `place` of `axis` adds to the error of a picture. Infinite where nothing can be said.
 pub fn predict(axis: usize, place: usize, needs: &Needs) -> Prediction {
     debug_assert!(axis < AXES.len(), "an axis of the list");
     match axis {
         Coverage::AXIS => coverage(Coverage::at(place), needs),
-        Vertex::AXIS => vertex(Vertex::at(place), needs),
-        Vertices::AXIS => vertices(Vertices::at(place), needs),
-        Depth::AXIS => depth(Depth::at(place), needs),
+        VertexTransform::AXIS => vertex(VertexTransform::at(place), needs),
+        PositionFormat::AXIS => vertices(PositionFormat::at(place), needs),
+        DepthFormat::AXIS => depth(DepthFormat::at(place), needs),
         Perspective::AXIS => perspective(Perspective::at(place), needs),
         Clipping::AXIS => clipping(Clipping::at(place), needs),
-        Scale::AXIS => scale(Scale::at(place)),
+        RenderScale::AXIS => scale(RenderScale::at(place)),
         // What comes out from behind something is missing for a picture, however much that is.
         Culling::AXIS if Culling::at(place) == Culling::Hiz => Prediction::wrong(f64::INFINITY),
-        Sums::AXIS => sums(Sums::at(place), needs),
+        XraySums::AXIS => sums(XraySums::at(place), needs),
         Visibility::AXIS => visibility(Visibility::at(place), needs),
         _ => Prediction::default(),
     }
 }
 
 /// The sum over all axes.
-pub fn predict_all(rungs: &Rungs, needs: &Needs) -> Prediction {
-    let each = AXES.iter().enumerate().map(|(i, axis)| predict(i, rungs.get(axis), needs));
+pub fn predict_all(options: &AccuracyOptions, needs: &Needs) -> Prediction {
+    let each = AXES.iter().enumerate().map(|(i, axis)| predict(i, options.get(axis), needs));
     each.fold(Prediction::default(), Prediction::and)
 }
 
-/// Pixels that change owner when edges of triangles move by a share of a pixel, per million.
+/// Pixels that change triangle id when edges of triangles move by a share of a pixel, per million.
 fn moved_ppm(shift_px: f64, needs: &Needs) -> f64 {
-    1e6 * needs.sizes.moved_share(shift_px, needs.size.into_iter().map(f64::from).product())
+    1e6 * needs.sizes.changed_fraction(shift_px, needs.size.into_iter().map(f64::from).product())
 }
 
-fn coverage(rung: Coverage, needs: &Needs) -> Prediction {
+fn coverage(option: Coverage, needs: &Needs) -> Prediction {
     // Products of two differences of 16.8 are exact in an f32 up to 16 px.
     const EXACT_PX: f64 = 16.0;
-    match rung {
+    match option {
         Coverage::Fixed8 => Prediction::default(),
         // Against 1/256 px: corners lie up to half a unit off either way, a quarter as a rule.
         Coverage::Fixed4 => Prediction::wrong(moved_ppm(0.25 / 16.0, needs)),
@@ -72,52 +75,52 @@ fn coverage(rung: Coverage, needs: &Needs) -> Prediction {
     }
 }
 
-fn vertex(rung: Vertex, needs: &Needs) -> Prediction {
-    match rung {
+fn vertex(option: VertexTransform, needs: &Needs) -> Prediction {
+    match option {
         // 1.4 % of the corners lie one unit off at 1080p, where centre-relative ones are at 0.65 %.
-        Vertex::Viewport => Prediction::wrong(moved_ppm(0.014 / 256.0, needs)),
+        VertexTransform::Viewport => Prediction::wrong(moved_ppm(0.014 / 256.0, needs)),
         _ => Prediction::default(),
     }
 }
 
-fn vertices(rung: Vertices, needs: &Needs) -> Prediction {
+fn vertices(option: PositionFormat, needs: &Needs) -> Prediction {
     // Bounds of rounding add up every step the wrong way; as a rule it comes to an eighth of that.
     const USUAL: f64 = 1.0 / 8.0;
     let [stored, relative] = needs.rounding_px;
-    match (rung, rung.packed_bits()) {
+    match (option, option.packed_bits()) {
         // A quarter of a step is the mean distance to the nearest one; the box is as wide as it looks from where it is nearest.
         (_, Some(bits)) => Prediction::wrong(moved_ppm(0.25 * needs.box_px / libm::exp2(bits.into()), needs)),
         // Within a unit of the grid every bound is at home; beyond it the relative one tells what the offset costs.
-        (Vertices::Stored, _) if stored > 2.0 * relative.max(1.0 / 256.0) => {
+        (PositionFormat::Stored, _) if stored > 2.0 * relative.max(1.0 / 256.0) => {
             Prediction::wrong(moved_ppm(USUAL * (stored - relative), needs))
         }
         _ => Prediction::default(),
     }
 }
 
-fn depth(rung: Depth, needs: &Needs) -> Prediction {
+fn depth(option: DepthFormat, needs: &Needs) -> Prediction {
     let [nearest, farthest] = needs.depth_m;
     let span = (farthest - nearest).max(f64::MIN_POSITIVE);
     // Smallest distance that always gives another key, at the far end: surfaces nearer to each other than that are confused,
     // and of a scene as deep as its box that share of pixels has one behind so close.
-    let step_m = match rung {
-        Depth::Ndc16 => needs.per_depth_m(farthest) / 65_536.0,
-        Depth::Log16 => needs.relative_m(farthest) / 2048.0,
-        Depth::Log24 => needs.relative_m(farthest) / 524_288.0,
-        Depth::Standard => needs.per_depth_m(farthest) / f64::from(1 << 24),
+    let step_m = match option {
+        DepthFormat::Ndc16 => needs.per_depth_m(farthest) / 65_536.0,
+        DepthFormat::Log16 => needs.relative_m(farthest) / 2048.0,
+        DepthFormat::Log24 => needs.relative_m(farthest) / 524_288.0,
+        DepthFormat::Standard => needs.per_depth_m(farthest) / f64::from(1 << 24),
         _ => return Prediction::default(),
     };
     Prediction::wrong(1e6 * (step_m / span).min(1.0))
 }
 
-fn scale(rung: Scale) -> Prediction {
-    // Owners are those of the pixels that are drawn. Where fewer are drawn than shown, an edge may lie anywhere between two.
-    Prediction { wrong_ppm: 0.0, channel: if rung < Scale::Whole { 255.0 } else { 0.0 } }
+fn scale(option: RenderScale) -> Prediction {
+    // Triangle ids are those of the pixels that are drawn. Where fewer are drawn than shown, an edge may lie anywhere between two.
+    Prediction { wrong_ppm: 0.0, channel: if option < RenderScale::Full { 255.0 } else { 0.0 } }
 }
 
-fn perspective(rung: Perspective, needs: &Needs) -> Prediction {
+fn perspective(option: Perspective, needs: &Needs) -> Prediction {
     let ratio = needs.w_ratio;
-    match rung {
+    match option {
         Perspective::Exact => Prediction::default(),
         Perspective::Affine if !needs.perspective => Prediction::default(),
         // An attribute errs by at most (sqrt(ratio) - 1) / (sqrt(ratio) + 1) of its span within a triangle.
@@ -125,8 +128,8 @@ fn perspective(rung: Perspective, needs: &Needs) -> Prediction {
     }
 }
 
-fn visibility(rung: Visibility, needs: &Needs) -> Prediction {
-    match rung {
+fn visibility(option: Visibility, needs: &Needs) -> Prediction {
+    match option {
         // Of 28 bits of a depth below 1, five for the exponent, ids leave what remains of the word.
         Visibility::Packed32 => {
             let lost = (64 - (needs.triangles | 1).leading_zeros()).saturating_sub(4);
@@ -139,8 +142,8 @@ fn visibility(rung: Visibility, needs: &Needs) -> Prediction {
     }
 }
 
-fn sums(rung: Sums, needs: &Needs) -> Prediction {
-    match rung.capacity() {
+fn sums(option: XraySums, needs: &Needs) -> Prediction {
+    match option.capacity() {
         None => Prediction::default(),
         // More layers than triangles there are not.
         Some(capacity) if needs.triangles > capacity => Prediction { wrong_ppm: 0.0, channel: f64::INFINITY },
@@ -149,8 +152,8 @@ fn sums(rung: Sums, needs: &Needs) -> Prediction {
     }
 }
 
-fn clipping(rung: Clipping, needs: &Needs) -> Prediction {
-    match rung {
+fn clipping(option: Clipping, needs: &Needs) -> Prediction {
+    match option {
         Clipping::Exact => Prediction::default(),
         _ if !needs.clipping => Prediction::default(),
         _ => Prediction { wrong_ppm: f64::INFINITY, channel: 0.0 },

@@ -1,228 +1,422 @@
-//! Keys over time, as looks say them: `[animation.facet]` with one list per parameter, each entry
-//! `{ time_s = 1.5, value = 0.25, easing = "linear" }`. An easing that is usual for its parameter is left out.
+//! Animation: parameters that follow the clock by keyframes.
+//!
+//! A [`Track`] holds the keys of one parameter, sorted by time, each time once, every value inside the hard range of its
+//! field. Outside its keys the nearest one holds. All arithmetic is f64, and the result is clamped before it is rounded
+//! to the parameter's own type, so a track can give nothing that a file could not say.
 
-use toml_edit::{Array, InlineTable, Item, Table, TableLike, Value};
+use std::fmt;
 
-use super::{
-    error::{Place, PresetError},
-    form::{Form, Plain},
-    read::Reader,
-};
 use crate::{
-    effects::{EFFECTS, Effect},
-    params::Field,
-    session::{
-        Animation, Session,
-        animation::{Easing, Keyframe, MAX_KEYS, MAX_TIME_S, Track, usual_easing},
-    },
+    effects::{Effect, Stack},
+    params::{Field, Kind, ValueError},
 };
 
-const EASINGS: &[&str] =
-    &[Easing::ALL[0].name(), Easing::ALL[1].name(), Easing::ALL[2].name(), Easing::ALL[3].name(), Easing::ALL[4].name()];
-const TIME: Form = Form::number(-MAX_TIME_S, MAX_TIME_S);
+/// Most keys that a track may have.
+pub const MAX_KEYFRAMES: usize = 256;
 
-/// The keys of an entry with their forms and words for editors.
-pub fn entry_forms(field: &Field) -> [(&'static str, Form, &'static str); 3] {
-    [
-        ("time_s", TIME, "When, in seconds of the clock"),
-        ("value", Form::of(field), "The parameter's value at that time"),
-        ("easing", Form::Word(EASINGS), "The way to the next key; whole numbers, flags and words always hold"),
-    ]
+/// Largest distance of a moment from zero, seconds; as `clock.time_s`.
+pub const MAX_TIME_S: f64 = 1e9;
+
+/// How a value goes from its key to the next.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Easing {
+    Hold,
+    Linear,
+    /// Starts and ends at rest: 3 s² - 2 s³, the smoothstep.
+    #[default]
+    Smooth,
+    /// Starts at rest: s².
+    In,
+    /// Ends at rest: s (2 - s).
+    Out,
 }
 
-impl Reader<'_> {
-    /// Reads `[animation]`.
-    pub(super) fn animation(&mut self, effects: &dyn TableLike, session: &mut Session) -> Result<(), PresetError> {
-        for (name, _) in effects.iter() {
-            let table = self.table(effects, "animation.", name)?.expect("iterating shows keys that are there");
-            let Some(effect) = Effect::find(name) else {
-                self.unknown(effects, "animation.", name, EFFECTS.iter().map(|effect| effect.name));
-                continue;
-            };
-            if session.stack.get(name).is_none() {
-                let at = self.at(effects, name);
-                self.warnings.push(format!("{at}: animation.{name} moves nothing; add [effects.{name}]"));
+impl Easing {
+    pub const ALL: [Self; 5] = [Self::Hold, Self::Linear, Self::Smooth, Self::In, Self::Out];
+
+    /// As presets and menus say it.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Hold => "hold",
+            Self::Linear => "linear",
+            Self::Smooth => "smooth",
+            Self::In => "in",
+            Self::Out => "out",
+        }
+    }
+
+    /// In words.
+    pub const fn about(self) -> &'static str {
+        match self {
+            Self::Hold => "stays, then jumps",
+            Self::Linear => "at one speed",
+            Self::Smooth => "starts slowly and ends slowly",
+            Self::In => "starts slowly",
+            Self::Out => "ends slowly",
+        }
+    }
+
+    /// The share of the way that is done when the share `s` of the time, 0 to 1, has passed.
+    pub fn shape(self, s: f64) -> f64 {
+        match self {
+            Self::Hold => 0.0,
+            Self::Linear => s,
+            Self::Smooth => s * s * (3.0 - 2.0 * s),
+            Self::In => s * s,
+            Self::Out => s * (2.0 - s),
+        }
+    }
+}
+
+/// A value at a moment.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Keyframe {
+    pub time_s: f64,
+    /// One number per lane of the field, exactly as the field keeps it.
+    pub value: Vec<f64>,
+    /// The way to the next key.
+    pub easing: Easing,
+}
+
+/// Why a key cannot be.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum KeyframeError {
+    #[error(transparent)]
+    Value(#[from] ValueError),
+    #[error("time_s {0} lies outside -1e9..=1e9")]
+    Time(f64),
+    #[error("time_s {0} has a key already")]
+    Taken(f64),
+    #[error("a parameter has 1 to {MAX_KEYFRAMES} keys, not {0}")]
+    Count(usize),
+    #[error("easing {0} cannot be: a value without fractions holds until its next key")]
+    Steps(&'static str),
+}
+
+/// The keys of one parameter of one effect; at least one.
+#[derive(Clone)]
+pub struct Track {
+    effect: &'static Effect,
+    field: &'static Field,
+    keys: Vec<Keyframe>,
+}
+
+impl PartialEq for Track {
+    fn eq(&self, other: &Self) -> bool {
+        self.effect == other.effect && self.field.name == other.field.name && self.keys == other.keys
+    }
+}
+
+impl fmt::Debug for Track {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{} {:?}", self.path(), self.keys)
+    }
+}
+
+impl Track {
+    /// A track with these keys, in any order.
+    ///
+    /// # Errors
+    /// No key or more than [`MAX_KEYFRAMES`]; a time that is taken or outside ±[`MAX_TIME_S`]; a value that the field refuses;
+    /// another easing than hold for a field without fractions.
+    pub fn new(effect: &'static Effect, field: &'static Field, keys: Vec<Keyframe>) -> Result<Self, KeyframeError> {
+        if keys.is_empty() || keys.len() > MAX_KEYFRAMES {
+            return Err(KeyframeError::Count(keys.len()));
+        }
+        let mut track = Self { effect, field, keys: Vec::with_capacity(keys.len()) };
+        for key in keys {
+            if track.at(key.time_s).is_some() {
+                return Err(KeyframeError::Taken(key.time_s));
             }
-            for (name, item) in table.iter() {
-                match effect.field(name) {
-                    Some(field) => session.animation.put(self.track(table, effect, field, item)?),
-                    None => {
-                        let prefix = format!("animation.{}.", effect.name);
-                        self.unknown(table, &prefix, name, effect.fields.iter().map(|field| field.name));
-                    }
-                }
+            track.set(key)?;
+        }
+        Ok(track)
+    }
+
+    pub fn effect(&self) -> &'static Effect {
+        self.effect
+    }
+
+    pub fn field(&self) -> &'static Field {
+        self.field
+    }
+
+    /// Sorted by time.
+    pub fn keys(&self) -> &[Keyframe] {
+        &self.keys
+    }
+
+    /// `facet.front`.
+    pub fn path(&self) -> String {
+        format!("{}.{}", self.effect.name, self.field.name)
+    }
+
+    /// Which key stands at exactly this time.
+    pub fn at(&self, time_s: f64) -> Option<usize> {
+        self.keys.iter().position(|key| key.time_s == time_s)
+    }
+
+    /// Adds a key, or replaces the one at its time.
+    ///
+    /// # Errors
+    /// As [`Track::new`]; then nothing is changed.
+    pub fn set(&mut self, key: Keyframe) -> Result<(), KeyframeError> {
+        let key = checked(self.effect, self.field, key)?;
+        match self.at(key.time_s) {
+            Some(index) => self.keys[index] = key,
+            None if self.keys.len() >= MAX_KEYFRAMES => return Err(KeyframeError::Count(self.keys.len() + 1)),
+            None => {
+                let index = self.keys.partition_point(|other| other.time_s < key.time_s);
+                self.keys.insert(index, key);
             }
         }
         Ok(())
     }
 
-    fn track(&mut self, table: &dyn TableLike, effect: &'static Effect, field: &'static Field, item: &Item) -> Result<Track, PresetError> {
-        let path = format!("animation.{}.{}", effect.name, field.name);
-        let wrong = |at: Place, reason: String| PresetError::value(at, path.clone(), reason);
-        let entries = entries(item).filter(|entries| (1..=MAX_KEYS).contains(&entries.len())).ok_or_else(|| {
-            let reason = format!("must be a list of 1 to {MAX_KEYS} keys such as {{ time_s = 0.0, value = … }}");
-            wrong(self.at(table, field.name), reason)
-        })?;
-        let mut track: Option<Track> = None;
-        for (index, entry) in entries.into_iter().enumerate() {
-            let key = self.keyframe(entry, field, &format!("{path} key {}: ", index + 1))?;
-            let time_s = key.time_s;
-            let added = match &mut track {
-                None => Track::new(effect, field, vec![key]).map(|first| track = Some(first)),
-                Some(track) if track.at(time_s).is_some() => Err(crate::session::animation::KeyError::Taken(time_s)),
-                Some(track) => track.set(key),
-            };
-            added.map_err(|error| wrong(self.entry_place(entry), format!("key {}: {error}", index + 1)))?;
+    /// Moves a key in time and gives its new place. A time that is taken, out of range or no number leaves it where it is.
+    pub fn move_keyframe(&mut self, index: usize, time_s: f64) -> usize {
+        let is_free = self.at(time_s).is_none() && time_s.abs() <= MAX_TIME_S;
+        if !is_free || index >= self.keys.len() {
+            return index;
         }
-        Ok(track.expect("a list of at least one key was read"))
+        let key = Keyframe { time_s, ..self.keys.remove(index) };
+        let index = self.keys.partition_point(|other| other.time_s < time_s);
+        self.keys.insert(index, key);
+        index
     }
 
-    fn keyframe(&mut self, entry: &dyn TableLike, field: &Field, prefix: &str) -> Result<Keyframe, PresetError> {
-        let forms = entry_forms(field);
-        let mut read: [Option<Plain>; 3] = [None, None, None];
-        for (name, item) in entry.iter() {
-            match forms.iter().position(|(known, ..)| *known == name) {
-                Some(place) => read[place] = Some(self.value(entry, prefix, name, item, &forms[place].1)?),
-                None => self.unknown(entry, prefix, name, forms.iter().map(|(name, ..)| *name)),
-            }
+    /// Changes the way from a key to the next; a field without fractions keeps holding.
+    pub fn set_easing(&mut self, index: usize, easing: Easing) {
+        if let Some(key) = self.keys.get_mut(index).filter(|_| !steps(self.field)) {
+            key.easing = easing;
         }
-        let [time, value, easing] = read;
-        let (Some(time), Some(Plain::Numbers(value))) = (time, value) else {
-            return Err(PresetError::value(self.entry_place(entry), prefix.trim_end_matches(": "), "must have time_s and value"));
+    }
+
+    /// The track without one key; none when that was the last.
+    pub fn without(mut self, index: usize) -> Option<Self> {
+        if index < self.keys.len() {
+            self.keys.remove(index);
+        }
+        (!self.keys.is_empty()).then_some(self)
+    }
+
+    /// Lanes at `time_s`: finite and inside the hard range, whatever the time.
+    pub fn value_at(&self, time_s: f64) -> Vec<f64> {
+        let next = self.keys.partition_point(|key| key.time_s <= time_s);
+        let (Some(a), Some(b)) = (next.checked_sub(1).map(|before| &self.keys[before]), self.keys.get(next)) else {
+            return self.keys[next.min(self.keys.len() - 1)].value.clone();
         };
-        let easing = easing.map_or(usual_easing(field), |word| Easing::ALL[word.first() as usize]);
-        Ok(Keyframe { time_s: time.first(), value, easing })
+        let share = ((time_s - a.time_s) / (b.time_s - a.time_s)).clamp(0.0, 1.0);
+        let done = a.easing.shape(share);
+        if done == 0.0 {
+            return a.value.clone(); // To the bit: -0.0 plus nothing is 0.0.
+        }
+        let [low, high] = self.field.hard;
+        a.value.iter().zip(&b.value).map(|(a, b)| (a + (b - a) * done).clamp(low, high)).collect()
     }
 
-    /// Where an entry begins: at its first key that has a place.
-    fn entry_place(&self, entry: &dyn TableLike) -> Place {
-        let places = entry.iter().map(|(name, _)| self.at(entry, name));
-        places.into_iter().find(|place| place.line.is_some()).unwrap_or_else(|| self.at(entry, ""))
+    /// Writes the value at `time_s` into an effect's words.
+    fn pose(&self, words: &mut [u32], time_s: f64) {
+        let [low, high] = self.field.hard;
+        // A bound such as 0.1 is no f32, so a key on it may lie beyond by a rounding.
+        let lanes: Vec<f64> = self.value_at(time_s).iter().map(|lane| lane.clamp(low, high)).collect();
+        let taken = self.field.set(words, &lanes);
+        debug_assert!(taken.is_ok(), "{self:?} at {time_s}: {taken:?}");
     }
 }
 
-/// The entries of a list of tables, whichever way TOML says it.
-fn entries(item: &Item) -> Option<Vec<&dyn TableLike>> {
-    if let Some(tables) = item.as_array_of_tables() {
-        return Some(tables.iter().map(|table| table as &dyn TableLike).collect());
-    }
-    item.as_array()?.iter().map(|value| value.as_inline_table().map(|table| table as &dyn TableLike)).collect()
+/// Does a field jump from key to key, having no values in between?
+pub fn steps(field: &Field) -> bool {
+    !matches!(field.kind, Kind::F32 | Kind::Color | Kind::Point)
 }
 
-/// Patches `root`, whose animation says `saved`, so that it says `now`. A track that is the same keeps its text.
-pub fn patch(root: &mut Table, saved: &Animation, now: &Animation) {
-    if saved == now {
-        return;
+/// What a key of `field` does when its file does not say.
+pub fn default_easing(field: &Field) -> Easing {
+    if steps(field) { Easing::Hold } else { Easing::default() }
+}
+
+/// The key with its value rounded to what the field keeps.
+fn checked(effect: &Effect, field: &Field, key: Keyframe) -> Result<Keyframe, KeyframeError> {
+    let Keyframe { time_s, value, easing } = key;
+    if !(-MAX_TIME_S..=MAX_TIME_S).contains(&time_s) {
+        return Err(KeyframeError::Time(time_s));
     }
-    if root.get("animation").is_none() {
-        root.insert("animation", Item::Table(implicit()));
+    if steps(field) && easing != Easing::Hold {
+        return Err(KeyframeError::Steps(easing.name()));
     }
-    let tables = root.get_mut("animation").and_then(Item::as_table_like_mut).expect("the animation was read as a table");
-    for effect in EFFECTS {
-        for field in effect.fields {
-            let [before, after] = [saved, now].map(|animation| animation.get(effect.name, field.name));
-            match after {
-                _ if before == after => {}
-                Some(track) => patch_track(tables, track),
-                None => {
-                    if let Some(table) = tables.get_mut(effect.name).and_then(Item::as_table_like_mut) {
-                        table.remove(field.name);
-                        if table.is_empty() {
-                            tables.remove(effect.name);
-                        }
-                    }
-                }
-            }
+    let mut words = (effect.defaults)();
+    let [low, high] = field.hard;
+    // What a parameter holds may lie beyond a decimal bound by its rounding; that is no fault of the key.
+    let inside = |lane: &f64| {
+        let is_rounding = !steps(field) && (*lane as f32) == (lane.clamp(low, high) as f32);
+        if is_rounding { lane.clamp(low, high) } else { *lane }
+    };
+    field.set(&mut words, &value.iter().map(inside).collect::<Vec<_>>())?;
+    Ok(Keyframe { time_s, value: field.get(&words), easing })
+}
+
+/// Every track of a preset, one per parameter, in the order of effects and fields.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Animation(Vec<Track>);
+
+impl Animation {
+    pub fn tracks(&self) -> &[Track] {
+        &self.0
+    }
+
+    pub fn is_empty(&self) -> bool {
+        self.0.is_empty()
+    }
+
+    pub fn get(&self, effect: &str, field: &str) -> Option<&Track> {
+        self.0.iter().find(|track| track.effect.name == effect && track.field.name == field)
+    }
+
+    pub fn get_mut(&mut self, effect: &str, field: &str) -> Option<&mut Track> {
+        self.0.iter_mut().find(|track| track.effect.name == effect && track.field.name == field)
+    }
+
+    /// Puts a track in, in place of one of the same parameter.
+    pub fn put(&mut self, track: Track) {
+        let rank = |track: &Track| (track.effect.rank(), track.field.offset);
+        match self.0.binary_search_by_key(&rank(&track), rank) {
+            Ok(there) => self.0[there] = track,
+            Err(place) => self.0.insert(place, track),
         }
     }
-    if tables.is_empty() {
-        root.remove("animation");
+
+    /// Takes the track of one parameter out.
+    pub fn remove(&mut self, effect: &str, field: &str) {
+        self.0.retain(|track| track.effect.name != effect || track.field.name != field);
+    }
+
+    /// The tracks that `is_meant` is true for.
+    pub fn only(&self, is_meant: impl Fn(&Track) -> bool) -> Self {
+        Self(self.0.iter().filter(|track| is_meant(track)).cloned().collect())
+    }
+
+    /// Takes every track of an effect out.
+    pub fn remove_effect(&mut self, effect: &str) {
+        self.0.retain(|track| track.effect.name != effect);
+    }
+
+    /// `stack` as it stands at `time_s`. Tracks of effects that are not enabled do nothing.
+    pub fn pose(&self, stack: &Stack, time_s: f64) -> Stack {
+        let mut posed = stack.clone();
+        for enabled in &mut posed.0 {
+            enabled.words = self.evaluate_words(enabled.effect.name, &enabled.words, time_s);
+        }
+        posed
+    }
+
+    /// The values of one effect at `time_s`, where `words` are those that no key moves.
+    pub fn evaluate_words(&self, effect: &str, words: &[u32], time_s: f64) -> Vec<u32> {
+        let mut posed = words.to_vec();
+        self.0.iter().filter(|track| track.effect.name == effect).for_each(|track| track.pose(&mut posed, time_s));
+        posed
     }
 }
 
-fn implicit() -> Table {
-    let mut table = Table::new();
-    table.set_implicit(true);
-    table
-}
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::effects::{facet, lambert};
 
-fn patch_track(tables: &mut dyn TableLike, track: &Track) {
-    let (effect, field) = (track.effect().name, track.field().name);
-    if tables.get(effect).is_none() {
-        tables.insert(effect, Item::Table(Table::new()));
+    fn field(effect: &'static Effect, name: &str) -> &'static Field {
+        effect.field(name).expect("a field of the effect")
     }
-    let table = tables.get_mut(effect).and_then(Item::as_table_like_mut).expect("an effect's animation was read as a table");
-    let list = written(track, table.get(field));
-    match table.get_mut(field).and_then(Item::as_value_mut) {
-        Some(there) => {
-            let decor = there.decor().clone();
-            *there = Value::Array(list);
-            *there.decor_mut() = decor;
-        }
-        None => drop(table.insert(field, Item::Value(Value::Array(list)))),
-    }
-}
 
-/// The list, one key a line. An entry of `before` at the same time keeps its comments and whatever we do not know.
-fn written(track: &Track, before: Option<&Item>) -> Array {
-    let mut list = Array::new();
-    for key in track.keys() {
-        let [(time, time_form, _), (value, value_form, _), (easing, easing_form, _)] = entry_forms(track.field());
-        let old = before.and_then(Item::as_array).into_iter().flatten().find(|entry| time_of(entry) == Some(key.time_s));
-        let mut entry = old.and_then(Value::as_inline_table).cloned().unwrap_or_default();
-        put(&mut entry, time, time_form.write(&Plain::number(key.time_s)));
-        put(&mut entry, value, value_form.write(&Plain::Numbers(key.value.clone())));
-        if key.easing == usual_easing(track.field()) {
-            entry.remove(easing);
-        } else {
-            put(&mut entry, easing, easing_form.write(&Plain::number(key.easing as u32)));
-        }
-        if old.is_none() {
-            entry.decor_mut().set_prefix("\n    ");
-        }
-        list.push_formatted(Value::InlineTable(entry));
+    fn key(time_s: f64, value: f64, easing: Easing) -> Keyframe {
+        Keyframe { time_s, value: vec![value], easing }
     }
-    let old = before.and_then(Item::as_array);
-    match old {
-        Some(old) => {
-            list.set_trailing(old.trailing().clone());
-            list.set_trailing_comma(old.trailing_comma());
+
+    fn amount(keys: &[(f64, f64, Easing)]) -> Track {
+        let keys = keys.iter().map(|&(time_s, value, easing)| key(time_s, value, easing)).collect();
+        Track::new(&facet::EFFECT, field(&facet::EFFECT, "amount"), keys).expect("sound keys")
+    }
+
+    #[test]
+    fn outside_its_keys_the_nearest_one_holds() {
+        let track = amount(&[(2.0, 0.75, Easing::Linear), (1.0, 0.25, Easing::Linear)]);
+        for (time_s, wanted) in [(-1e9, 0.25), (1.0, 0.25), (1.5, 0.5), (2.0, 0.75), (1e9, 0.75), (f64::INFINITY, 0.75)] {
+            assert_eq!(track.value_at(time_s), [wanted], "{time_s}");
         }
-        None => {
-            list.set_trailing("\n");
-            list.set_trailing_comma(true);
+        assert!(track.value_at(f64::NAN)[0].is_finite());
+    }
+
+    #[test]
+    fn every_easing_rises_from_key_to_key_and_meets_both() {
+        for easing in Easing::ALL {
+            let track = amount(&[(0.0, 0.0, easing), (1.0, 1.0, Easing::Hold)]);
+            let values: Vec<f64> = (0..=1000).map(|i| track.value_at(f64::from(i) / 1000.0)[0]).collect();
+            assert!(values.is_sorted() && values[0] == 0.0 && values[1000] == 1.0, "{easing:?}");
+            let middle = [0.0, 0.5, 0.5, 0.25, 0.75][easing as usize];
+            assert_eq!(values[500], middle, "{easing:?}");
         }
     }
-    list
-}
 
-fn time_of(entry: &Value) -> Option<f64> {
-    number(entry.as_inline_table()?.get("time_s")?)
-}
-
-fn number(value: &Value) -> Option<f64> {
-    value.as_float().or_else(|| value.as_integer().map(|whole| whole as f64))
-}
-
-/// Sets a value unless it is written so already, and so keeps how a person wrote it.
-fn put(entry: &mut InlineTable, name: &str, mut value: Value) {
-    match entry.get_mut(name) {
-        Some(there) if same(there, &value) => {}
-        Some(there) => {
-            *value.decor_mut() = there.decor().clone();
-            *there = value;
-        }
-        None => drop(entry.insert(name, value)),
+    #[test]
+    fn values_without_fractions_hold() {
+        let keys = vec![key(0.0, 3.0, Easing::Hold), key(1.0, 9.0, Easing::Hold)];
+        let track = Track::new(&facet::EFFECT, field(&facet::EFFECT, "seed"), keys.clone()).expect("sound keys");
+        assert_eq!((track.value_at(0.999), track.value_at(1.0)), (vec![3.0], vec![9.0]));
+        let smooth = Track::new(&facet::EFFECT, field(&facet::EFFECT, "seed"), vec![key(0.0, 3.0, Easing::Smooth)]);
+        assert_eq!(smooth, Err(KeyframeError::Steps("smooth")));
     }
-}
 
-/// Do both mean the same, to the bit, however it is written?
-fn same(a: &Value, b: &Value) -> bool {
-    match (number(a), number(b)) {
-        (Some(a), Some(b)) => a.to_bits() == b.to_bits(),
-        _ => match (a.as_array(), b.as_array()) {
-            (Some(a), Some(b)) => a.len() == b.len() && a.iter().zip(b).all(|(a, b)| same(a, b)),
-            _ => a.to_string().trim() == b.to_string().trim(),
-        },
+    #[test]
+    fn what_no_file_could_say_no_track_holds() {
+        let new = |keys| Track::new(&facet::EFFECT, field(&facet::EFFECT, "amount"), keys);
+        assert_eq!(new(vec![]), Err(KeyframeError::Count(0)));
+        let many = (0..=MAX_KEYFRAMES as u32).map(|i| key(i.into(), 0.0, Easing::Linear)).collect();
+        assert_eq!(new(many), Err(KeyframeError::Count(MAX_KEYFRAMES + 1)));
+        assert_eq!(new(vec![key(0.0, 0.0, Easing::Hold), key(-0.0, 1.0, Easing::Hold)]), Err(KeyframeError::Taken(-0.0)));
+        for time_s in [f64::NAN, f64::INFINITY, -1.1e9] {
+            assert!(matches!(new(vec![key(time_s, 0.0, Easing::Hold)]), Err(KeyframeError::Time(_))), "{time_s}");
+        }
+        for value in [f64::NAN, 1.5, -0.1] {
+            assert!(matches!(new(vec![key(0.0, value, Easing::Hold)]), Err(KeyframeError::Value(_))), "{value}");
+        }
+    }
+
+    #[test]
+    fn keys_between_close_moments_stay_inside_the_hard_range() {
+        let high = f64::from_bits(1.0f64.to_bits() + 1);
+        let track = amount(&[(1.0, 1.0, Easing::Smooth), (high, 0.0, Easing::Out), (1e9, 1.0, Easing::In)]);
+        let mut stack = Stack::default();
+        stack.enable(&facet::EFFECT);
+        let animation = Animation(vec![track]);
+        for time_s in [0.0, 1.0, high, 5e8, 1e9, f64::MAX, f64::MIN, f64::NAN] {
+            let posed = animation.pose(&stack, time_s);
+            let value = field(&facet::EFFECT, "amount").get(&posed.0[0].words)[0];
+            assert!((0.0..=1.0).contains(&value), "{time_s}: {value}");
+        }
+    }
+
+    #[test]
+    fn all_lanes_move_together_and_other_fields_stay() {
+        let sun = field(&lambert::EFFECT, "sun");
+        let keys = [(0.0, vec![0.0, 0.5, 1.0, 1.0]), (2.0, vec![1.0, 0.5, 0.0, 1.0])];
+        let keys = keys.map(|(time_s, value)| Keyframe { time_s, value, easing: Easing::Linear }).to_vec();
+        let animation = Animation(vec![Track::new(&lambert::EFFECT, sun, keys).expect("sound keys")]);
+        let mut stack = Stack::default();
+        stack.enable(&lambert::EFFECT);
+        let posed = animation.pose(&stack, 0.5);
+        assert_eq!(sun.get(&posed.0[0].words), [0.25, 0.5, 0.75, 1.0]);
+        let untouched = lambert::EFFECT.fields.iter().filter(|field| field.name != "sun");
+        untouched.for_each(|field| assert!(field.same(&posed.0[0].words, &stack.0[0].words), "{}", field.name));
+        assert_eq!(animation.pose(&Stack::default(), 0.5), Stack::default(), "a track enables nothing");
+    }
+
+    #[test]
+    fn a_key_moves_past_others_and_never_onto_one() {
+        let mut track = amount(&[(0.0, 0.0, Easing::Hold), (1.0, 0.5, Easing::Hold), (2.0, 1.0, Easing::Hold)]);
+        assert_eq!(track.move_keyframe(0, 1.5), 1);
+        assert_eq!(track.keys().iter().map(|key| key.time_s).collect::<Vec<_>>(), [1.0, 1.5, 2.0]);
+        assert_eq!(track.move_keyframe(0, 2.0), 0, "taken");
+        assert_eq!(track.move_keyframe(0, f64::NAN), 0);
+        let track = track.without(0).and_then(|track| track.without(0)).expect("one key is left");
+        assert_eq!(track.keys().len(), 1);
+        assert!(track.without(0).is_none());
     }
 }

@@ -1,250 +1,378 @@
-//! Looks: TOML files that hold a whole [`Session`], sparse, versioned and keyed by name.
+//! Preset: everything a preset says, as plain data that is always finite, and the view it describes.
 //!
-//! Presence of `[effects.NAME]` enables an effect; `stack` is only order. Comments and unknown keys are kept and
-//! written back. Every value is finite and inside its hard range after loading, or the file is refused with a line.
+//! `Clone + PartialEq`, so undo is a list of sessions. Playback, window layout and overlays live elsewhere.
+//! What is drawn is [`Preset::evaluated_stack`], never the stack itself, which keyed parameters leave behind.
 
-mod animation;
-mod atomic;
-mod error;
-pub mod form;
-mod gallery;
-pub mod keys;
-pub mod migrate;
-mod path;
-mod pins;
-mod polyline;
-mod read;
-mod rules;
-pub mod schema;
-mod share;
-mod shot;
-mod write;
+pub mod animation;
+mod particle_timeline;
 
-use std::{
-    io::Write as _,
-    path::{Component, Path, PathBuf},
-    sync::Arc,
-};
+use std::{path::PathBuf, sync::Arc};
 
-use toml_edit::DocumentMut;
-
-pub use atomic::{AtomicFile, sweep};
-pub use error::{Place, PresetError};
-pub use gallery::{BUILTIN_DIR, GalleryEntry, Origin, gallery, open, user_folder};
-pub use path::{set, unset};
-pub use share::{from_line, to_line};
-pub use shot::{Film, Provenance, Reel, Standing, look_from_png, png_bytes, png_of_sequence, png_pixels, png_with_look, standing};
+use glam::{DMat4, DVec3};
 
 use crate::{
-    params::Field,
-    scene::{self, Scene},
-    session::{SceneSource, Session},
+    effects::{Stack, smear::Smear},
+    math::rotation_y,
+    scene::{
+        Bounds, Scene,
+        camera::{Camera, View},
+        light::ShadowResolution,
+        pose::{Motion, Pose, scene_from_nodes},
+    },
 };
-use form::Plain;
+pub use animation::Animation;
 
-/// An open look: a session with the file it came from.
-#[derive(Clone, Debug)]
-pub struct Look {
-    /// File stem.
-    pub id: String,
-    /// None for built-in, pasted and new looks.
-    pub path: Option<PathBuf>,
-    pub session: Session,
-    /// What the reader found odd, each with its line.
-    pub warnings: Vec<String>,
-    /// Built in, or written by a newer program.
-    pub read_only: bool,
-    /// Written by a newer program: it may mean more than we understand, so it is never written back.
-    is_newer: bool,
-    /// The text as it was, with comments and unknown keys.
-    document: DocumentMut,
-    /// What `document` says.
-    saved: Session,
+pub use crate::{
+    accuracy::{PinnedOptions, Visibility},
+    plan::{AccuracyRequest, Tier},
+};
+
+/// Which scene a preset shows.
+#[derive(Clone, Debug, PartialEq)]
+pub enum SceneSource {
+    /// A procedural scene by its query, for instance `teapot?tess=16`.
+    Builtin(String),
+    /// A model file; relative paths are relative to the preset's own folder.
+    File(PathBuf),
 }
 
-impl Look {
-    /// A look without a file.
-    pub fn new(id: &str, session: Session) -> Self {
+/// Which clips of a scene play, and how.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ClipPlayback {
+    /// Name of the clip; empty: at rest.
+    pub clip: String,
+    /// Seconds of the clips that pass in one second of the preset.
+    pub speed: f64,
+    /// The moment of the clips that is shown, whatever the clock says.
+    pub clip_time_s: Option<f64>,
+    /// Name of a second clip to blend with; empty: none.
+    pub other: String,
+    /// Share of the second clip, 0 to 1.
+    pub blend: f64,
+}
+
+impl Default for ClipPlayback {
+    fn default() -> Self {
+        Self { clip: String::new(), speed: 1.0, clip_time_s: None, other: String::new(), blend: 0.0 }
+    }
+}
+
+/// A clip or camera that a scene does not have; one sentence.
+#[derive(Debug, PartialEq, thiserror::Error)]
+#[error("{key}: the scene has no {what} {asked:?}{known}")]
+pub struct MissingInScene {
+    pub key: &'static str,
+    pub what: &'static str,
+    pub asked: String,
+    /// `; it has "Walk", "Run"`.
+    pub known: String,
+}
+
+/// `; it has "Walk", "Run"`, or what to say where there are none.
+fn known<'a>(names: impl Iterator<Item = &'a String>, none: &str) -> String {
+    let names: Vec<String> = names.take(12).map(|name| format!("{name:?}")).collect();
+    if names.is_empty() { format!("; {none}") } else { format!("; it has {}", names.join(", ")) }
+}
+
+impl ClipPlayback {
+    /// Does it go with the clock?
+    pub fn is_moving(&self) -> bool {
+        !self.clip.is_empty() && self.clip_time_s.is_none() && self.speed != 0.0
+    }
+
+    /// Are the clips there?
+    ///
+    /// # Errors
+    /// With the first that is not.
+    pub fn check(&self, scene: &Scene) -> Result<(), MissingInScene> {
+        for (key, name) in [("scene.clip", &self.clip), ("scene.clip_b", &self.other)] {
+            if !name.is_empty() && scene.rig.clip(name).is_none() {
+                let known = known(scene.rig.clips.iter().map(|clip| &clip.name), "nothing in it moves");
+                return Err(MissingInScene { key, what: "clip", asked: name.clone(), known });
+            }
+        }
+        Ok(())
+    }
+}
+
+/// The time of a preset.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Clock {
+    /// The moment that a picture shows.
+    pub time_s: f64,
+    /// What the timeline spans and a sequence draws: from the first, up to and without the second, which is later.
+    pub range_s: [f64; 2],
+    /// After the end of the range comes its beginning.
+    pub loops: bool,
+    /// Seconds of the preset that pass in one second of film, above 0.
+    pub speed: f64,
+}
+
+impl Default for Clock {
+    fn default() -> Self {
+        Self { time_s: 0.0, range_s: [0.0, 4.0], loops: true, speed: 1.0 }
+    }
+}
+
+impl Clock {
+    /// Where the clock stands `passed_s` seconds of film after it stood at `time_s`, and whether it goes on from there.
+    /// A moment outside the range runs into it from the side it is on.
+    pub fn after(&self, time_s: f64, passed_s: f64) -> (f64, bool) {
+        let [from_s, to_s] = self.range_s;
+        let next_s = time_s + passed_s * self.speed;
+        if next_s < to_s {
+            return (next_s, true);
+        }
+        if !self.loops {
+            return (to_s, false);
+        }
+        // The remainder of a tiny negative number may round up to the whole range.
+        let wrapped_s = from_s + (next_s - from_s).rem_euclid(to_s - from_s);
+        (if wrapped_s < to_s { wrapped_s } else { from_s }, true)
+    }
+}
+
+/// The picture to be made.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Output {
+    /// Width and height in pixels, each 0 to 16,384.
+    pub size: [u32; 2],
+    /// Linear RGBA.
+    pub background: [f32; 4],
+}
+
+impl Default for Output {
+    fn default() -> Self {
+        Self { size: [320, 240], background: [0.012, 0.014, 0.02, 1.0] }
+    }
+}
+
+/// What a golden of this preset may differ by; a preset without it has no golden.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Test {
+    /// Largest difference of a channel of 255.
+    pub max_channel: u8,
+    /// Pixels that may differ by more.
+    pub max_pixels: u32,
+    /// Pixels that may have another triangle id than the true one, where a cheaper option is pinned.
+    pub max_wrong_triangles: u32,
+    /// Why a budget above the default is needed.
+    pub why: String,
+}
+
+impl Default for Test {
+    fn default() -> Self {
+        Self { max_channel: 1, max_pixels: 0, max_wrong_triangles: 0, why: String::new() }
+    }
+}
+
+/// A preset.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Preset {
+    /// Shown; the file stem is the id.
+    pub name: String,
+    pub about: String,
+    pub tags: Vec<String>,
+    pub scene: SceneSource,
+    /// A room round the scene, so many times as wide as it; 0: none.
+    pub room: f64,
+    /// Turns the whole scene about +y.
+    pub spin_deg_per_s: f64,
+    /// What moves the scene's own joints and parts.
+    pub play: ClipPlayback,
+    /// A line of the preset's own, for effects that draw along lines; it turns with the scene.
+    pub polyline: Arc<[[f32; 3]]>,
+    /// None: the scene's own, or framed so that all of it shows.
+    pub camera: Option<Camera>,
+    /// Name of the scene's camera to look through where the preset has none of its own; empty: its first.
+    pub scene_camera: String,
+    pub clock: Clock,
+    /// The effects with the values that no key moves.
+    pub stack: Stack,
+    /// What moves with the clock.
+    pub animation: Animation,
+    pub accuracy: AccuracyRequest,
+    pub output: Output,
+    pub test: Option<Test>,
+}
+
+impl Default for Preset {
+    fn default() -> Self {
         Self {
-            id: id.into(),
-            path: None,
-            session,
-            warnings: Vec::new(),
-            read_only: false,
-            is_newer: false,
-            document: DocumentMut::new(),
-            saved: Session::default(),
+            name: String::new(),
+            about: String::new(),
+            tags: Vec::new(),
+            scene: SceneSource::Builtin("teapot".into()),
+            room: 0.0,
+            spin_deg_per_s: 0.0,
+            play: ClipPlayback::default(),
+            polyline: Arc::default(),
+            camera: None,
+            scene_camera: String::new(),
+            clock: Clock::default(),
+            stack: Stack::default(),
+            animation: Animation::default(),
+            accuracy: AccuracyRequest::default(),
+            output: Output::default(),
+            test: None,
+        }
+    }
+}
+
+/// Where a preset without a camera stands: in front, a little to the right and above.
+pub const FRAMING_DIRECTION: DVec3 = DVec3::new(-0.45, -0.42, -1.0);
+
+impl Preset {
+    /// The stack at the time of the clock: what is drawn.
+    pub fn evaluated_stack(&self) -> Stack {
+        self.stack_at(self.clock.time_s)
+    }
+
+    /// The stack at another time.
+    pub fn stack_at(&self, time_s: f64) -> Stack {
+        self.animation.pose(&self.stack, time_s)
+    }
+
+    /// The preset with its values as they stand at its time, and nothing that moves them but what particles flew by: the same
+    /// picture.
+    pub fn posed(&self) -> Self {
+        Self { stack: self.evaluated_stack(), animation: self.animation.only(particle_timeline::is_steering), ..self.clone() }
+    }
+
+    /// Does the picture depend on the time?
+    pub fn is_moving(&self) -> bool {
+        let keyed = self.animation.tracks().iter().any(|t| t.keys().len() > 1 && self.stack.get(t.effect().name).is_some());
+        let flies = self.stack.particle_settings().is_some();
+        keyed || flies || self.spin_deg_per_s != 0.0 || self.play.is_moving()
+    }
+
+    /// Takes an effect out, with all that moves it.
+    pub fn disable(&mut self, effect: &str) {
+        self.stack.disable(effect);
+        self.animation.remove_effect(effect);
+    }
+
+    /// Which moment of which clips of `scene` the clock shows.
+    fn motion(&self, scene: &Scene) -> Motion {
+        let clip = |name: &str| scene.rig.clip(name).filter(|_| !name.is_empty());
+        Motion {
+            clip: clip(&self.play.clip),
+            other: clip(&self.play.other),
+            blend: self.play.blend,
+            time_s: self.play.clip_time_s.unwrap_or(self.clock.time_s * self.play.speed),
+            skinning: self.accuracy.pins.option().unwrap_or_default(),
         }
     }
 
-    /// The default look on a model or builtin scene: daylight, nothing else.
-    pub fn of_scene(id: &str, scene: SceneSource) -> Self {
-        let mut session = Session { name: id.into(), scene, ..Session::default() };
-        session.stack.enable(&crate::effects::lambert::EFFECT);
-        Self::new(id, session)
+    /// A box that holds another and the room of the particles.
+    fn with_particles(&self, mut bounds: Bounds) -> Bounds {
+        if let Some(particle_settings) = self.evaluated_stack().particle_settings() {
+            let reach = particle_settings.reach();
+            [reach.min, reach.max].into_iter().for_each(|corner| bounds.include(corner));
+        }
+        bounds
     }
 
-    /// Shown to people: the name, or the id of a nameless look.
-    pub fn title(&self) -> &str {
-        if self.session.name.is_empty() { &self.id } else { &self.session.name }
+    /// How `scene` stands at the time of the clock; none where nothing in it can move.
+    pub fn pose(&self, scene: &Scene) -> Option<Arc<Pose>> {
+        (!scene.rig.is_empty()).then(|| Arc::new(Pose::at(scene, &self.motion(scene))))
     }
 
-    /// Would saving change the file?
-    pub fn is_modified(&self) -> bool {
-        self.session != self.saved
+    /// Has `scene` what the preset names of it?
+    ///
+    /// # Errors
+    /// With the first clip or camera that is not there.
+    pub fn check(&self, scene: &Scene) -> Result<(), MissingInScene> {
+        if !self.scene_camera.is_empty() && scene.camera(&self.scene_camera).is_none() {
+            let known = known(scene.cameras.iter().map(|camera| &camera.name), "there is none in it");
+            return Err(MissingInScene { key: "scene.camera", what: "camera", asked: self.scene_camera.clone(), known });
+        }
+        self.play.check(scene)
     }
 
-    /// Fails if the reader had warnings.
-    pub fn strict(self) -> Result<Self, PresetError> {
-        if self.warnings.is_empty() { Ok(self) } else { Err(PresetError::Strict(self.warnings)) }
+    /// The camera of the preset, else that of the scene where its node carries it, else the pose that frames `scene`.
+    pub fn camera_for(&self, scene: &Scene, aspect: f64) -> Camera {
+        let own = || {
+            let camera = scene.cameras.get(scene.camera(&self.scene_camera).unwrap_or(0))?;
+            Some(camera.node.map_or(camera.pose, |node| camera.carried(&scene_from_nodes(&scene.rig, &self.motion(scene))[node])))
+        };
+        self.camera.or_else(own).unwrap_or_else(|| Camera::framing(&self.with_particles(scene.bounds()), FRAMING_DIRECTION, aspect))
     }
-}
 
-/// Reads the text of a look called `id`; errors and warnings name `<id>.toml`.
-pub fn parse(text: &str, id: &str) -> Result<Look, PresetError> {
-    parse_file(text, id, &format!("{id}.toml"))
-}
-
-/// Reads the text of a look that people know as `file`.
-pub fn parse_file(text: &str, id: &str, file: &str) -> Result<Look, PresetError> {
-    let document = read::document(text, file)?;
-    let read::Reading { session, warnings, is_newer } = read::read(&document, file)?;
-    let schema = document.get("schema").and_then(|item| item.as_integer()).unwrap_or(migrate::CURRENT);
-    let document = if schema < migrate::CURRENT { migrate::migrate(document.into_mut(), schema) } else { document.into_mut() };
-    Ok(Look { id: id.into(), path: None, saved: session.clone(), session, warnings, read_only: is_newer, is_newer, document })
-}
-
-/// Reads a look from a `.toml` file.
-pub fn load(path: &Path) -> Result<Look, PresetError> {
-    let file = path.display().to_string();
-    let bytes = read_capped(path, read::MAX_BYTES as u64)?;
-    let text = String::from_utf8(bytes).map_err(|_| PresetError::Read { file: file.clone(), reason: "it is not UTF-8 text".into() })?;
-    let look = parse_file(&text, &stem(path), &file)?;
-    Ok(Look { path: Some(path.to_owned()), ..look })
-}
-
-fn read_capped(path: &Path, most: u64) -> Result<Vec<u8>, PresetError> {
-    use std::io::Read as _;
-    let failed = |reason: String| PresetError::Read { file: path.display().to_string(), reason };
-    let mut bytes = Vec::new();
-    let file = std::fs::File::open(path).map_err(|e| failed(e.to_string()))?;
-    file.take(most + 1).read_to_end(&mut bytes).map_err(|e| failed(e.to_string()))?;
-    if bytes.len() as u64 > most {
-        return Err(failed(format!("it is longer than {most} bytes")));
+    /// What the pictures show that lead up to this one, each a view and a stack, and last this one itself: more than one
+    /// where an effect keeps the picture before.
+    pub fn moments(&self, scene: &Scene, size: [u32; 2]) -> Vec<(View, Stack)> {
+        let (frames, step_s) = Smear::of(&self.evaluated_stack()).map_or((0, 0.0), |smear| (smear.frames, f64::from(smear.step_s)));
+        let moment = |before: u32| {
+            let clock = Clock { time_s: self.clock.time_s - f64::from(before) * step_s, ..self.clock };
+            let then = Self { clock, ..self.clone() };
+            (then.view(scene, size), then.evaluated_stack())
+        };
+        (0..=frames).rev().map(moment).collect()
     }
-    Ok(bytes)
-}
 
-fn stem(path: &Path) -> String {
-    path.file_stem().map_or_else(|| "look".into(), |stem| stem.to_string_lossy().into_owned())
-}
-
-/// The look as TOML: the text it came from, with the differences written in. Byte for byte the file if nothing changed.
-pub fn to_toml(look: &Look) -> String {
-    let mut document = look.document.clone();
-    if !look.is_newer {
-        write::patch(&mut document, &look.saved, &look.session);
-    }
-    document.to_string()
-}
-
-/// Writes the look to `path`, whole or not at all, and makes that its file. An unmodified file is left alone.
-/// A relative model path is rewritten so that it still leads to the model.
-pub fn save(look: &mut Look, path: &Path) -> Result<(), PresetError> {
-    if look.is_newer {
-        return Err(PresetError::ReadOnly { id: look.id.clone(), reason: "its schema is newer than this program".into() });
-    }
-    let mut next = look.clone();
-    if let SceneSource::File(model) = &look.session.scene {
-        next.session.scene = SceneSource::File(rebase(model, look.path.as_deref(), path));
-    }
-    let text = to_toml(&next);
-    if look.path.as_deref() != Some(path) || text != look.document.to_string() {
-        write_atomically(path, text.as_bytes())?;
-    }
-    next.document =
-        text.parse().map_err(|e: toml_edit::TomlError| PresetError::Write { file: path.display().to_string(), reason: e.to_string() })?;
-    next.saved = next.session.clone();
-    (next.id, next.path, next.read_only) = (stem(path), Some(path.to_owned()), false);
-    *look = next;
-    Ok(())
-}
-
-/// Writes beside `path`, then renames, so that a reader sees the old file or the new one.
-pub fn write_atomically(path: &Path, bytes: &[u8]) -> Result<(), PresetError> {
-    let mut file = AtomicFile::create(path)?;
-    file.write_all(bytes).map_err(|e| file.failed(e))?;
-    file.commit()
-}
-
-/// Where a model lies, for a look at `look_path` (or in the current folder).
-fn model_path(model: &Path, look_path: Option<&Path>) -> PathBuf {
-    look_path.and_then(Path::parent).unwrap_or(Path::new("")).join(model)
-}
-
-/// `model` as seen from the folder of `to`, when it was written for the folder of `from`.
-fn rebase(model: &Path, from: Option<&Path>, to: &Path) -> PathBuf {
-    let tidy = |path: &Path| -> Option<PathBuf> {
-        let mut tidy = PathBuf::new();
-        for part in std::path::absolute(path).ok()?.components() {
-            match part {
-                Component::ParentDir => drop(tidy.pop()),
-                Component::CurDir => {}
-                part => tidy.push(part),
+    /// The view of `scene` on a target of `size` pixels, its depths ranging as far as the effects may move anything.
+    pub fn view(&self, scene: &Scene, [width, height]: [u32; 2]) -> View {
+        let aspect = f64::from(width.max(1)) / f64::from(height.max(1));
+        // Reduced before the trigonometry, so that a day of spinning costs no precision.
+        let turns = self.spin_deg_per_s * self.clock.time_s / 360.0;
+        let spin = if turns == 0.0 { DMat4::IDENTITY } else { rotation_y(turns.fract() * std::f64::consts::TAU) };
+        let pose = self.pose(scene);
+        let mut bounds = self.with_particles(pose.as_ref().map_or_else(|| scene.bounds(), |pose| pose.bounds(scene)));
+        if self.stack.0.iter().any(|enabled| enabled.effect.hooks.has_lines) {
+            self.polyline.iter().for_each(|point| bounds.include(DVec3::from(point.map(f64::from))));
+        }
+        if !bounds.is_empty() {
+            let max_displacement_m = self.evaluated_stack().max_displacement_m(bounds.radius());
+            (bounds.min, bounds.max) = (bounds.min - max_displacement_m, bounds.max + max_displacement_m);
+            if scene.walls > 0 {
+                // Walls stand still while the box is turned; this one holds them at any angle.
+                let aside = DVec3::new(std::f64::consts::SQRT_2, 1.0, std::f64::consts::SQRT_2);
+                (bounds.min, bounds.max) = (bounds.min * aside, bounds.max * aside);
             }
         }
-        Some(tidy)
-    };
-    let (Some(model_at), Some(folder)) = (tidy(&model_path(model, from)), tidy(to).and_then(|to| to.parent().map(Path::to_owned))) else {
-        return model.to_owned();
-    };
-    let (there, here): (Vec<_>, Vec<_>) = (model_at.components().collect(), folder.components().collect());
-    let shared = there.iter().zip(&here).take_while(|(a, b)| a == b).count();
-    if shared == 0 {
-        return model_at; // Another drive: no relative way.
-    }
-    let up = std::iter::repeat_n("..", here.len() - shared).collect::<PathBuf>();
-    let relative = up.join(there[shared..].iter().collect::<PathBuf>());
-    // Forward slashes read the same on every system.
-    PathBuf::from(relative.to_string_lossy().replace(std::path::MAIN_SEPARATOR, "/"))
-}
-
-/// A scene that a look names and that cannot be had.
-#[derive(Debug, thiserror::Error)]
-pub enum SceneError {
-    #[error(transparent)]
-    Builtin(#[from] scene::builtin::BuiltinError),
-    #[error("the look names {path}, which is not there")]
-    Absent { path: String },
-    #[error(transparent)]
-    Model(#[from] scene::gltf::LoadError),
-    #[error(transparent)]
-    Absence(#[from] crate::session::NoSuch),
-}
-
-/// Builds or loads the scene of a look; a relative model path starts at the folder of `look_path`.
-pub fn load_scene(session: &Session, look_path: Option<&Path>) -> Result<Arc<Scene>, SceneError> {
-    let scene = match &session.scene {
-        SceneSource::Builtin(query) => scene::builtin::build(query)?,
-        SceneSource::File(model) => {
-            let path = model_path(model, look_path);
-            if !path.exists() {
-                return Err(SceneError::Absent { path: path.display().to_string() });
-            }
-            scene::gltf::load(&path)?
+        let pins = &self.accuracy.pins;
+        let shadow = ShadowResolution::of(pins.option().unwrap_or_default(), pins.option().unwrap_or_default());
+        View {
+            pose,
+            shadow,
+            polyline: self.polyline.clone(),
+            particle_timeline: self.particle_timeline(),
+            ..View::new(&self.camera_for(scene, aspect), width, height, &bounds, spin, self.output.background)
         }
-    };
-    session.check(&scene)?;
-    Ok(Arc::new(if session.room > 0.0 { scene.in_room(session.room) } else { scene }))
+    }
 }
 
-/// A parameter's value in its form.
-fn get(field: &Field, words: &[u32]) -> Plain {
-    Plain::Numbers(field.get(words))
-}
+#[cfg(test)]
+mod tests {
+    use super::*;
 
-/// Writes a parameter; the error completes a sentence that begins with its key.
-fn put(field: &Field, words: &mut [u32], plain: &Plain) -> Result<(), String> {
-    let Plain::Numbers(lanes) = plain else { unreachable!("parameters are numbers") };
-    field.set(words, lanes).map_err(|e| e.to_string().trim_start_matches(field.name).trim_start().to_owned())
+    #[test]
+    fn a_looping_clock_stays_in_its_range_and_the_other_stops_at_its_end() {
+        let clock = Clock { range_s: [1.0, 3.0], speed: 2.0, ..Clock::default() };
+        assert_eq!(clock.after(1.0, 0.5), (2.0, true));
+        assert_eq!(clock.after(2.5, 0.5), (1.5, true));
+        assert_eq!(clock.after(-4.0, 0.5), (-3.0, true), "it runs into the range");
+        assert!(clock.after(1e9, 1e-9).1);
+        let once = Clock { loops: false, ..clock };
+        assert_eq!(once.after(2.5, 0.5), (3.0, false));
+        for start in 0..10_000 {
+            let (time_s, goes_on) = clock.after(f64::from(start) * 0.377, 1.0 / 60.0);
+            assert!(goes_on && (1.0..3.0).contains(&time_s) || f64::from(start) * 0.377 < 1.0, "{start}: {time_s}");
+        }
+    }
+
+    #[test]
+    fn a_day_of_play_costs_no_precision() {
+        let preset = Preset { spin_deg_per_s: 90.0, ..Preset::default() };
+        let scene = crate::scene::builtin::build("teapot?tess=2").expect("a scene");
+        let turn = |time_s: f64| {
+            let preset = Preset { clock: Clock { time_s, ..Clock::default() }, ..preset.clone() };
+            preset.view(&scene, [8, 8]).world_from_scene
+        };
+        let (fresh, late) = (turn(0.37), turn(86_400.0 + 0.37));
+        let error = fresh.to_cols_array().iter().zip(late.to_cols_array()).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
+        // A millionth of a period is an angle of 6e-6.
+        assert!(error < 1e-9, "{error}");
+    }
 }

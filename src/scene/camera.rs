@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use glam::{DMat4, DVec3, DVec4};
 
-use super::{Bounds, light::ShadowGrid, pose::Pose, splats::Flow};
+use super::{Bounds, light::ShadowResolution, particle_discs::ParticleTimeline, pose::Pose};
 use crate::math::{SUBPIXEL_BITS, view_from_world};
 
 /// Smallest near distance that keeps every quotient of the vertex stage finite.
@@ -43,7 +43,7 @@ impl Default for Camera {
 }
 
 impl Camera {
-    /// The nearest pose that looks along `direction` at the middle of `bounds` and shows all of it with a little air.
+    /// The nearest pose that presets along `direction` at the middle of `bounds` and shows all of it with a little air.
     pub fn framing(bounds: &Bounds, direction: DVec3, aspect: f64) -> Self {
         let fov_y_deg: f64 = 45.0;
         let tan_y = libm::tan(fov_y_deg.to_radians() * 0.5) * 0.92;
@@ -88,7 +88,7 @@ pub struct View {
     pub linear_depth_m: Option<[f64; 2]>,
     /// Nearest and farthest distance along `forward` of the scene's box, at least `near_m` apart from the eye.
     pub scene_range_m: [f64; 2],
-    /// Linear RGBA of pixels without an owner.
+    /// Linear RGBA of pixels without an triangle id.
     pub background: [f32; 4],
     /// Vertices snap to 2^-bits px: 4, 8 as a rule, or 12.
     pub subpixel_bits: u32,
@@ -96,15 +96,15 @@ pub struct View {
     pub is_relative: bool,
     /// How the scene stands; none: at rest.
     pub pose: Option<Arc<Pose>>,
-    /// A line of the look's own, before the scene is spun.
+    /// A line of the preset's own, before the scene is spun.
     pub polyline: Arc<[[f32; 3]]>,
     /// How finely shadows are drawn in it.
-    pub shadow: ShadowGrid,
+    pub shadow: ShadowResolution,
     /// Where things stand in the picture for which this view, a light's, draws a shadow map; none in a picture itself. A
     /// light sees back faces too: they stop it as well.
     pub picture_from_world: Option<DMat4>,
     /// How far the particles have flown; none: they are where they begin.
-    pub flow: Option<Arc<Flow>>,
+    pub particle_timeline: Option<Arc<ParticleTimeline>>,
 }
 
 impl View {
@@ -148,9 +148,9 @@ impl View {
             is_relative: false,
             pose: None,
             polyline: Arc::default(),
-            shadow: ShadowGrid::default(),
+            shadow: ShadowResolution::default(),
             picture_from_world: None,
-            flow: None,
+            particle_timeline: None,
         }
     }
 
@@ -166,7 +166,7 @@ impl View {
         Self { width: side(self.width), height: side(self.height), ..self.clone() }
     }
 
-    /// Is it a light that looks?
+    /// Is it a light that presets?
     pub const fn is_light(&self) -> bool {
         self.picture_from_world.is_some()
     }

@@ -5,7 +5,7 @@ use glam::{DMat4, DVec3, DVec4};
 use super::{
     Bounds, Primitive, Scene,
     camera::View,
-    pose::{Bend, Pose},
+    pose::{Deform, Pose},
 };
 use crate::math::rounded_columns;
 
@@ -33,9 +33,9 @@ pub struct Draw {
     /// The placement turns left into right, so front faces wind the other way.
     pub mirrored: bool,
     /// What bends its vertices before they are placed.
-    pub bend: Option<Bend>,
+    pub deform: Option<Deform>,
     /// Place of its vertices among those of all draws that may bend.
-    pub first_soft: u32,
+    pub first_deformable: u32,
 }
 
 impl Draw {
@@ -51,7 +51,7 @@ impl Draw {
 
     /// Box round its vertices in object space, however they are bent.
     pub fn object_bounds(&self, primitive: &Primitive) -> Bounds {
-        self.bend.as_ref().map_or(primitive.bounds, |bend| bend.bounds(primitive))
+        self.deform.as_ref().map_or(primitive.bounds, |deform| deform.bounds(primitive))
     }
 }
 
@@ -93,21 +93,22 @@ pub fn draws(scene: &Scene, view: &View) -> Result<Vec<Draw>, DrawError> {
     }
     let at_rest = if view.pose.is_none() { Pose::at_rest(scene) } else { None };
     let pose = view.pose.as_deref().or(at_rest.as_ref());
-    let casters = scene.casters().len();
+    let shadow_casters = scene.shadow_casters().len();
     // A light looks past the walls, which stand behind all others.
-    let drawn = if view.is_light() { scene.casters() } else { &scene.instances };
-    let (mut first_vertex, mut first_triangle, mut first_soft) = (0, 0, 0);
+    let drawn = if view.is_light() { scene.shadow_casters() } else { &scene.instances };
+    let (mut first_vertex, mut first_triangle, mut first_deformable) = (0, 0, 0);
     let place = |(index, instance): (usize, &super::Instance)| {
         let primitive = &scene.primitives[instance.primitive];
-        let bend = pose.and_then(|pose| pose.bend(index)).cloned();
-        let world_from_scene = if index < casters { view.world_from_scene } else { DMat4::IDENTITY };
+        let deform = pose.and_then(|pose| pose.deform(index)).cloned();
+        let world_from_scene = if index < shadow_casters { view.world_from_scene } else { DMat4::IDENTITY };
         let world_from_object = world_from_scene * pose.map_or(instance.world_from_object, |pose| pose.place(index));
-        let reach = bend.as_ref().map_or(primitive.bounds, |bend| bend.bounds(primitive));
+        let reach = deform.as_ref().map_or(primitive.bounds, |deform| deform.bounds(primitive));
         let origin = if view.is_relative { nearest(&reach, world_from_object.inverse().transform_point3(view.eye)) } else { [0.0; 3] };
         let moved = DMat4::from_translation(DVec3::from_array(origin.map(f64::from)));
         let clip_from_object = rounded_columns(&(view.clip_from_world * world_from_object * moved));
         let entries = clip_from_object.iter().flatten().map(|&v| f64::from(v)).chain(world_from_object.to_cols_array());
-        let joints = bend.iter().filter_map(|bend| bend.palette.as_ref()).flat_map(|palette| palette.matrices());
+        let joints =
+            deform.iter().filter_map(|deform| deform.joint_transforms.as_ref()).flat_map(|joint_transforms| joint_transforms.matrices());
         let entries = entries.chain(view.clip_from_world.to_cols_array()).chain(joints.flat_map(|joint| joint.to_cols_array()));
         if let Some(value) = entries.into_iter().find(|v| !v.is_finite() || v.abs() >= MAX_MAGNITUDE) {
             return Err(DrawError::Matrix { instance: primitive.name.clone(), value });
@@ -120,11 +121,11 @@ pub fn draws(scene: &Scene, view: &View) -> Result<Vec<Draw>, DrawError> {
             clip_from_object,
             world_from_object,
             double_sided: scene.materials[primitive.material].double_sided || view.is_light(),
-            mirrored: (world_from_object.determinant() < 0.0) != bend.as_ref().is_some_and(Bend::mirrors),
-            bend,
-            first_soft,
+            mirrored: (world_from_object.determinant() < 0.0) != deform.as_ref().is_some_and(Deform::mirrors),
+            deform,
+            first_deformable,
         };
-        first_soft += if primitive.softness.is_none() { 0 } else { primitive.vertex_count() };
+        first_deformable += if primitive.deformation.is_none() { 0 } else { primitive.vertex_count() };
         first_vertex += primitive.vertex_count();
         first_triangle += primitive.triangle_count();
         Ok(draw)

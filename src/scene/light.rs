@@ -1,4 +1,4 @@
-//! Light: the view of a directional light, in which its shadow map is drawn. Plain matrices in f64, from whose bits renderers
+//! Light: the view of a directional light, in which its shadow map is drawn. Value matrices in f64, from whose bits renderers
 //! and judges start alike.
 
 use glam::{DVec2, DVec3};
@@ -8,16 +8,16 @@ use super::{
     camera::{Camera, Projection, View},
     pose::Pose,
 };
-use crate::ladder::{ShadowMap, Taps};
+use crate::accuracy::{ShadowMapSize, ShadowTaps};
 
-impl ShadowMap {
+impl ShadowMapSize {
     /// Texels a side.
     pub const fn side(self) -> u32 {
         256 << self as u32
     }
 }
 
-impl Taps {
+impl ShadowTaps {
     /// Texels a side of the filter.
     pub const fn side(self) -> u32 {
         2 * self as u32 + 1
@@ -26,31 +26,31 @@ impl Taps {
 
 /// How finely shadows are drawn.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct ShadowGrid {
+pub struct ShadowResolution {
     /// Texels a side of a shadow map.
     pub side: u32,
     /// Texels a side of the filter: 1, 3 or 5.
     pub taps: u32,
 }
 
-impl Default for ShadowGrid {
+impl Default for ShadowResolution {
     fn default() -> Self {
-        Self::of(ShadowMap::default(), Taps::default())
+        Self::of(ShadowMapSize::default(), ShadowTaps::default())
     }
 }
 
-impl ShadowGrid {
+impl ShadowResolution {
     /// No map: rays, one for each sample. The oracle alone has them.
     pub const TRACED: Self = Self { side: 0, taps: 0 };
 
-    pub const fn of(map: ShadowMap, taps: Taps) -> Self {
+    pub const fn of(map: ShadowMapSize, taps: ShadowTaps) -> Self {
         Self { side: map.side(), taps: taps.side() }
     }
 
-    /// The rungs of the ladder that this is; the usual ones where it is none.
-    pub fn rungs(&self) -> (ShadowMap, Taps) {
-        let map = ShadowMap::ALL.iter().find(|rung| rung.side() == self.side);
-        let taps = Taps::ALL.iter().find(|rung| rung.side() == self.taps);
+    /// The options of the accuracy axes that this is; the usual ones where it is none.
+    pub fn options(&self) -> (ShadowMapSize, ShadowTaps) {
+        let map = ShadowMapSize::ALL.iter().find(|option| option.side() == self.side);
+        let taps = ShadowTaps::ALL.iter().find(|option| option.side() == self.taps);
         (map.copied().unwrap_or_default(), taps.copied().unwrap_or_default())
     }
 }
@@ -59,18 +59,18 @@ impl ShadowGrid {
 const BORDER: f64 = 3.0;
 
 /// What a light from `toward` (a unit vector) sees of `scene` as `view` shows it, where effects may move anything by
-/// `reach_m`: a square picture of parallel rays, framed round the box of what casts shadows.
+/// `max_displacement_m`: a square picture of parallel rays, framed round the box of what casts shadows.
 ///
 /// The square's side is rounded up to a 32nd of a power of two and its place to whole texels, so that shadows stand still
 /// while what casts them moves a little.
-pub fn view_from(toward: DVec3, scene: &Scene, view: &View, reach_m: f64) -> View {
+pub fn light_view(toward: DVec3, scene: &Scene, view: &View, max_displacement_m: f64) -> View {
     let at_rest = if view.pose.is_none() { Pose::at_rest(scene) } else { None };
-    let (pose, casters) = (view.pose.as_deref().or(at_rest.as_ref()), scene.casters());
-    let mut bounds = pose.map_or_else(|| scene.bounds_of(casters), |pose| pose.bounds_of(scene, casters));
+    let (pose, shadow_casters) = (view.pose.as_deref().or(at_rest.as_ref()), scene.shadow_casters());
+    let mut bounds = pose.map_or_else(|| scene.bounds_of(shadow_casters), |pose| pose.bounds_of(scene, shadow_casters));
     if bounds.is_empty() {
         bounds = Bounds { min: DVec3::ZERO, max: DVec3::ZERO };
     }
-    (bounds.min, bounds.max) = (bounds.min - reach_m, bounds.max + reach_m);
+    (bounds.min, bounds.max) = (bounds.min - max_displacement_m, bounds.max + max_displacement_m);
     let axes = Axes::of(toward);
     let corners = bounds.corners().map(|corner| axes.plane(view.world_from_scene.transform_point3(corner)));
     let low = corners.into_iter().fold(DVec2::INFINITY, DVec2::min);
@@ -127,8 +127,8 @@ mod tests {
         for side in [256, 1024, 4096] {
             for toward in [DVec3::Y, DVec3::NEG_Y, DVec3::X, DVec3::new(0.3, 0.9, -0.2).normalize(), DVec3::new(1e-9, 1.0, 0.0)] {
                 let picture = View::new(&Camera::default(), 8, 8, &scene.bounds(), glam::DMat4::IDENTITY, [0.0; 4]);
-                let picture = View { shadow: ShadowGrid { side, taps: 3 }, ..picture };
-                let light = view_from(toward, &scene, &picture, 0.0);
+                let picture = View { shadow: ShadowResolution { side, taps: 3 }, ..picture };
+                let light = light_view(toward, &scene, &picture, 0.0);
                 let border = 1.0 - 2.0 * (BORDER - 1.0) / f64::from(side);
                 for corner in scene.bounds().corners() {
                     let clip = light.clip_from_world * corner.extend(1.0);
@@ -146,7 +146,7 @@ mod tests {
         let picture = View::new(&Camera::default(), 8, 8, &scene.bounds(), glam::DMat4::IDENTITY, [0.0; 4]);
         let phase = |shift: f64| {
             let moved = View { world_from_scene: glam::DMat4::from_translation(DVec3::X * shift), ..picture.clone() };
-            let light = view_from(toward, &scene, &moved, 0.0);
+            let light = light_view(toward, &scene, &moved, 0.0);
             let texels = (light.clip_from_world * DVec3::ZERO.extend(1.0)).truncate().truncate() * 0.5 * f64::from(light.width);
             (texels - texels.round()).abs().max_element()
         };

@@ -1,4 +1,4 @@
-//! Lines: what dots are strung on. The edges of the meshes, each once and joined to long walks, or a polyline of the look.
+//! Lines: what dots are strung on. The edges of the meshes, each once and joined to long walks, or a polyline of the preset.
 //!
 //! Lengths are the world's, of the scene at rest: a dot stays on its place of an edge however the edge moves.
 
@@ -16,7 +16,7 @@ const MAX_TRIANGLES: u64 = 1 << 23;
 
 /// Where a segment begins and ends.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Ends {
+pub enum SegmentEnds {
     /// At two corners of a triangle of a draw, both counted within the draw.
     Edge { draw: u32, vertices: [u32; 2], triangle: u32 },
     /// At two points in the scene, before it is spun.
@@ -26,7 +26,7 @@ pub enum Ends {
 /// One straight piece of a line.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Segment {
-    pub ends: Ends,
+    pub ends: SegmentEnds,
     /// Length of its line up to its beginning.
     pub start_m: f64,
     /// Longer than 0.
@@ -38,14 +38,14 @@ pub struct Segment {
 pub struct Lines {
     pub segments: Vec<Segment>,
     /// The segment with which each line begins.
-    pub firsts: Vec<u32>,
+    pub first_segments: Vec<u32>,
 }
 
 impl Lines {
     /// The segments of each line.
     pub fn each(&self) -> impl Iterator<Item = (usize, &[Segment])> {
-        let ends = self.firsts.iter().skip(1).map(|&first| first as usize).chain([self.segments.len()]);
-        self.firsts.iter().zip(ends).map(|(&first, end)| (first as usize, &self.segments[first as usize..end]))
+        let ends = self.first_segments.iter().skip(1).map(|&first| first as usize).chain([self.segments.len()]);
+        self.first_segments.iter().zip(ends).map(|(&first, end)| (first as usize, &self.segments[first as usize..end]))
     }
 
     /// All lines end to end.
@@ -57,7 +57,7 @@ impl Lines {
     pub fn polyline(points: &[[f32; 3]]) -> Self {
         let mut lines = Self::default();
         let place = |p: [f32; 3]| DVec3::from(p.map(f64::from));
-        lines.walk(points.windows(2).map(|pair| (Ends::Points([pair[0], pair[1]]), (place(pair[1]) - place(pair[0])).length())));
+        lines.walk(points.windows(2).map(|pair| (SegmentEnds::Points([pair[0], pair[1]]), (place(pair[1]) - place(pair[0])).length())));
         lines
     }
 
@@ -75,16 +75,19 @@ impl Lines {
         let mut known: HashMap<usize, Vec<Walk>> = HashMap::new();
         let mut lines = Self::default();
         // Discs have no edges.
-        let meshes = scene.instances.iter().enumerate().filter(|(_, instance)| scene.splats != Some(instance.primitive));
+        let meshes = scene.instances.iter().enumerate().filter(|(_, instance)| scene.particle_discs != Some(instance.primitive));
         for (draw, instance) in meshes {
             let walks = known.entry(instance.primitive).or_insert_with(|| walks(scene, &scene.primitives[instance.primitive], crease_deg));
             let place = pose.as_ref().map_or(instance.world_from_object, |pose| pose.place(draw));
             // What joints hold is as large as its first joint makes it.
-            let palette = pose.as_ref().and_then(|pose| pose.bend(draw)).and_then(|bend| bend.palette.as_ref());
-            let place = place * palette.filter(|palette| !palette.is_empty()).map_or(DMat4::IDENTITY, |palette| palette.matrix(0));
+            let joint_transforms = pose.as_ref().and_then(|pose| pose.deform(draw)).and_then(|deform| deform.joint_transforms.as_ref());
+            let place = place
+                * joint_transforms
+                    .filter(|joint_transforms| !joint_transforms.is_empty())
+                    .map_or(DMat4::IDENTITY, |joint_transforms| joint_transforms.matrix(0));
             for walk in walks.iter() {
                 lines.walk(walk.iter().map(|step| {
-                    let ends = Ends::Edge { draw: draw as u32, vertices: step.vertices, triangle: step.triangle };
+                    let ends = SegmentEnds::Edge { draw: draw as u32, vertices: step.vertices, triangle: step.triangle };
                     (ends, place.transform_vector3(step.way).length())
                 }));
             }
@@ -93,14 +96,14 @@ impl Lines {
     }
 
     /// Adds a line of segments with their lengths; what has none, or none that is finite, is left out.
-    fn walk(&mut self, segments: impl Iterator<Item = (Ends, f64)>) {
+    fn walk(&mut self, segments: impl Iterator<Item = (SegmentEnds, f64)>) {
         let (first, mut start_m) = (self.segments.len(), 0.0);
         for (ends, length_m) in segments.filter(|(_, length_m)| length_m.is_finite() && *length_m > 0.0) {
             self.segments.push(Segment { ends, start_m, length_m });
             start_m += length_m;
         }
         if self.segments.len() > first {
-            self.firsts.push(first as u32);
+            self.first_segments.push(first as u32);
         }
     }
 }
@@ -125,7 +128,7 @@ struct Edge {
     faces: u32,
     normal: DVec3,
     /// Least cosine between the first face and the others.
-    bend: f64,
+    deform: f64,
 }
 
 /// The edges of a mesh as walks that turn as little as they can.
@@ -133,7 +136,7 @@ fn walks(scene: &Scene, primitive: &Primitive, crease_deg: Option<f64>) -> Vec<W
     let mut edges = edges(scene, primitive);
     if let Some(degrees) = crease_deg {
         let most = libm::cos(degrees.to_radians());
-        edges.retain(|edge| edge.faces != 2 || edge.bend <= most);
+        edges.retain(|edge| edge.faces != 2 || edge.deform <= most);
     }
     let mut at: HashMap<u32, Vec<u32>> = HashMap::new();
     for (i, edge) in edges.iter().enumerate() {
@@ -218,12 +221,12 @@ fn edges(scene: &Scene, primitive: &Primitive) -> Vec<Edge> {
                 Entry::Vacant(entry) => {
                     entry.insert(edges.len());
                     let way = [b - a, c - b, a - c][side];
-                    edges.push(Edge { step: Step { vertices, triangle, way }, places: ends, faces: 1, normal, bend: 1.0 });
+                    edges.push(Edge { step: Step { vertices, triangle, way }, places: ends, faces: 1, normal, deform: 1.0 });
                 }
                 Entry::Occupied(entry) => {
                     let edge = &mut edges[*entry.get()];
                     edge.faces += 1;
-                    edge.bend = edge.bend.min(edge.normal.dot(normal));
+                    edge.deform = edge.deform.min(edge.normal.dot(normal));
                 }
             }
         }
@@ -240,7 +243,7 @@ mod tests {
 
     /// Places of both ends, the lesser first.
     fn ends(scene: &Scene, segment: &Segment) -> [[u32; 3]; 2] {
-        let Ends::Edge { draw, vertices, .. } = segment.ends else { panic!("an edge") };
+        let SegmentEnds::Edge { draw, vertices, .. } = segment.ends else { panic!("an edge") };
         let primitive = &scene.primitives[scene.instances[draw as usize].primitive];
         let mut ends = vertices.map(|vertex| primitive.position(scene, vertex).map(|lane| (lane + 0.0).to_bits()));
         ends.sort_unstable();
@@ -256,7 +259,7 @@ mod tests {
             assert_eq!(lines.segments.len() as u64, scene.triangle_count() * 3 / 2, "{query}");
             let all: BTreeSet<_> = lines.segments.iter().map(|segment| ends(&scene, segment)).collect();
             assert_eq!(all.len(), lines.segments.len(), "{query}: an edge is walked twice");
-            assert!(lines.firsts.len() * 3 < lines.segments.len(), "{query}: {} walks", lines.firsts.len());
+            assert!(lines.first_segments.len() * 3 < lines.segments.len(), "{query}: {} walks", lines.first_segments.len());
         }
     }
 
@@ -269,7 +272,7 @@ mod tests {
             for (i, segment) in line.iter().enumerate() {
                 assert_eq!(segment.start_m, length_m);
                 length_m += segment.length_m;
-                if let (Ends::Edge { vertices: a, .. }, Some(Ends::Edge { vertices: b, .. })) =
+                if let (SegmentEnds::Edge { vertices: a, .. }, Some(SegmentEnds::Edge { vertices: b, .. })) =
                     (segment.ends, line.get(i + 1).map(|next| next.ends))
                 {
                     assert_eq!(place(a[1]), place(b[0]));
@@ -297,7 +300,7 @@ mod tests {
     #[test]
     fn a_polyline_leaves_out_what_has_no_length() {
         let lines = Lines::polyline(&[[0.0; 3], [0.0; 3], [3.0, 4.0, 0.0], [3.0, 4.0, 2.0]]);
-        assert_eq!((lines.segments.len(), lines.firsts.as_slice(), lines.length_m()), (2, &[0][..], 7.0));
+        assert_eq!((lines.segments.len(), lines.first_segments.as_slice(), lines.length_m()), (2, &[0][..], 7.0));
         assert_eq!(Lines::polyline(&[[1.0; 3]]), Lines::default());
         assert_eq!(Lines::polyline(&[[0.0; 3], [f32::NAN; 3], [1.0; 3]]).segments.len(), 0);
     }

@@ -1,6 +1,6 @@
 //! Meshlets: patches of a mesh, small enough to be left out whole, with bounds that hold whatever is rounded.
 //!
-//! A meshlet lists triangles of its primitive by their place there, so ids and their order stay what they were. Patches grow
+//! A meshlet lists triangles of its primitive by their place there, so ids and their order stay what they were. MeshletBuffers grow
 //! from a seed over shared vertices, which keeps them round; seeds come in Morton order (Morton 1966), which keeps what is
 //! left over together, and loose triangles too.
 
@@ -28,7 +28,7 @@ pub struct Meshlet {
     /// Cosine of that angle, rounded down, and its sine, rounded up.
     pub cos: f32,
     pub sin: f32,
-    /// Least altitude of a triangle, rounded down; 0 where facing tells nothing: some triangle has no area, or two look away
+    /// Least altitude of a triangle, rounded down; 0 where facing tells nothing: some triangle has no area, or two preset away
     /// from each other.
     pub altitude: f32,
 }
@@ -76,7 +76,7 @@ pub fn rounded_up(value: f64) -> f32 {
 }
 
 /// Middle of a box, and half its sides with a share of its coordinates on top, rounded so that nothing falls out.
-pub fn boxed(bounds: &Bounds, share: f64) -> ([f32; 3], [f32; 3]) {
+pub fn center_and_half(bounds: &Bounds, share: f64) -> ([f32; 3], [f32; 3]) {
     if bounds.is_empty() {
         return ([0.0; 3], [0.0; 3]);
     }
@@ -196,7 +196,7 @@ impl Builder<'_> {
                 faces.add(places);
             }
         }
-        let (center, half) = boxed(&bounds, if self.is_exact { 0.0 } else { 1.0 / f64::from(1 << 20) });
+        let (center, half) = center_and_half(&bounds, if self.is_exact { 0.0 } else { 1.0 / f64::from(1 << 20) });
         let (axis, cos, sin, altitude) = faces.cone();
         meshlets.list.push(Meshlet {
             first_triangle: meshlets.triangles.len() as u32,

@@ -7,22 +7,22 @@ pub mod builtin;
 pub mod camera;
 pub mod draw;
 pub mod gltf;
+pub mod joint_transforms;
 pub mod light;
 pub mod lines;
 pub mod meshlets;
 pub mod needs;
-pub mod palette;
+pub mod particle_discs;
 pub mod pick;
 pub mod pose;
 pub mod rig;
 mod room;
 pub mod sizes;
-pub mod splats;
 pub mod texture;
 
 use glam::{DMat4, DVec3};
 
-use rig::{Rig, Softness};
+use rig::{Deformation, Rig};
 use texture::{Image, Texture};
 
 /// Number format of one attribute component; the discriminant is glTF's `componentType`.
@@ -60,7 +60,7 @@ pub struct Accessor {
     pub stride: u32,
     pub component: Component,
     /// Components per element, 1 to 4.
-    pub lanes: u32,
+    pub components: u32,
     /// Integers stand for [0, 1] or [-1, 1].
     pub normalized: bool,
     /// Number of elements.
@@ -69,8 +69,15 @@ pub struct Accessor {
 
 impl Accessor {
     /// Tightly packed f32 elements that begin at byte `offset`.
-    pub fn packed_f32(offset: usize, lanes: u32, count: usize) -> Self {
-        Self { offset: offset as u32, stride: lanes * 4, component: Component::F32, lanes, normalized: false, count: count as u32 }
+    pub fn packed_f32(offset: usize, components: u32, count: usize) -> Self {
+        Self {
+            offset: offset as u32,
+            stride: components * 4,
+            component: Component::F32,
+            components,
+            normalized: false,
+            count: count as u32,
+        }
     }
 
     fn raw<const N: usize>(&self, bytes: &[u8], element: u32, lane: u32) -> [u8; N] {
@@ -158,7 +165,7 @@ pub struct Primitive {
     pub colors: Option<Accessor>,
     /// Where its material's textures are looked up, two lanes each: of the base colour, and of the light that it emits. There
     /// where the material has that texture.
-    pub coords: [Option<Accessor>; 2],
+    pub texcoords: [Option<Accessor>; 2],
     /// Index into `Scene::materials`.
     pub material: usize,
     /// Box of all vertex positions that are finite, in object space.
@@ -166,9 +173,9 @@ pub struct Primitive {
     /// Length of the longest triangle edge in object space; an upper bound is enough.
     pub longest_edge: f64,
     /// No mixture of a triangle's corner normals is near zero ([`Primitive::normals_agree`]); false is always right.
-    pub sound_normals: bool,
+    pub normals_agree: bool,
     /// How it bends, if it does.
-    pub softness: Softness,
+    pub deformation: Deformation,
 }
 
 impl Primitive {
@@ -215,7 +222,7 @@ pub struct Material {
     /// Multiplies the base colour; its alpha counts only where there is a cutoff.
     pub base_texture: Option<Texture>,
     /// Only where the alpha of the base texture is at least this is anything drawn; from 0 up, above 1 nothing is.
-    pub cutoff: Option<f32>,
+    pub alpha_cutoff: Option<f32>,
     /// Light that it emits, linear RGB, from 0 up.
     pub emission: [f32; 3],
     /// Multiplies the emission.
@@ -233,10 +240,10 @@ impl Material {
     }
 
     /// The least alpha that is drawn, in 2^-16 of a byte's step, where some is left out.
-    pub fn least_alpha(&self) -> Option<u32> {
-        let cutoff = self.cutoff.filter(|_| self.base_texture.is_some())?;
+    pub fn alpha_threshold(&self) -> Option<u32> {
+        let alpha_cutoff = self.alpha_cutoff.filter(|_| self.base_texture.is_some())?;
         // A cutoff of k/255 is rounded to a float, up to half a unit up; an alpha of k bytes reaches it all the same.
-        Some((f64::from(cutoff) * 255.0 * 65_536.0 - 0.5).ceil() as u32)
+        Some((f64::from(alpha_cutoff) * 255.0 * 65_536.0 - 0.5).ceil() as u32)
     }
 
     /// Is it no more than a base colour?
@@ -251,7 +258,7 @@ impl Default for Material {
             name: "default".into(),
             base_color: [1.0; 4],
             base_texture: None,
-            cutoff: None,
+            alpha_cutoff: None,
             emission: [0.0; 3],
             emission_texture: None,
             unlit: false,
@@ -282,7 +289,7 @@ impl Instance {
 
 /// A camera that came with the file.
 #[derive(Clone, Debug, PartialEq)]
-pub struct FileCamera {
+pub struct SceneCamera {
     pub name: String,
     /// Where it stands at rest.
     pub pose: camera::Camera,
@@ -290,7 +297,7 @@ pub struct FileCamera {
     pub node: Option<usize>,
 }
 
-impl FileCamera {
+impl SceneCamera {
     /// The same camera carried by a node that stands there: it looks along -z with +y up, and as far as at rest.
     pub fn carried(&self, scene_from_node: &DMat4) -> camera::Camera {
         let eye = scene_from_node.w_axis.truncate();
@@ -326,9 +333,9 @@ impl Bounds {
     }
 
     /// Takes in what `matrix` makes of a box whose sides were moved out by `slack`.
-    pub fn include_placed(&mut self, matrix: &DMat4, placed: &Self, slack: f64) {
+    pub fn include_transformed(&mut self, matrix: &DMat4, placed: &Self, error_bound: f64) {
         if !placed.is_empty() {
-            let grown = Self { min: placed.min - slack, max: placed.max + slack };
+            let grown = Self { min: placed.min - error_bound, max: placed.max + error_bound };
             grown.corners().into_iter().for_each(|corner| self.include(matrix.transform_point3(corner)));
         }
     }
@@ -366,11 +373,11 @@ pub struct Scene {
     pub instances: Vec<Instance>,
     /// How many of them, at the end, are walls round the others: they cast no shadows and do not spin.
     pub walls: usize,
-    pub cameras: Vec<FileCamera>,
+    pub cameras: Vec<SceneCamera>,
     /// What moves.
     pub rig: Rig,
     /// The primitive whose triangles are splats, which one instance alone shows.
-    pub splats: Option<usize>,
+    pub particle_discs: Option<usize>,
     /// What the loader wants the user to know, for instance extensions it ignored.
     pub notes: Vec<String>,
 }
@@ -395,12 +402,12 @@ impl Scene {
     /// Does the alpha of an image leave out a part of something?
     pub fn is_masked(&self) -> bool {
         let materials = self.instances.iter().map(|instance| &self.materials[self.primitives[instance.primitive].material]);
-        materials.into_iter().any(|material| material.least_alpha().is_some())
+        materials.into_iter().any(|material| material.alpha_threshold().is_some())
     }
 
     /// Vertices of all instances of meshes that bend.
-    pub fn soft_vertex_count(&self) -> u64 {
-        let soft = self.instances.iter().map(|instance| &self.primitives[instance.primitive]).filter(|p| !p.softness.is_none());
+    pub fn deformable_vertex_count(&self) -> u64 {
+        let soft = self.instances.iter().map(|instance| &self.primitives[instance.primitive]).filter(|p| !p.deformation.is_none());
         soft.map(|primitive| u64::from(primitive.vertex_count())).sum()
     }
 
@@ -416,7 +423,7 @@ impl Scene {
     pub fn bounds_of(&self, instances: &[Instance]) -> Bounds {
         let mut bounds = Bounds::EMPTY;
         for instance in instances {
-            bounds.include_placed(&instance.world_from_object, &self.primitives[instance.primitive].bounds, 0.0);
+            bounds.include_transformed(&instance.world_from_object, &self.primitives[instance.primitive].bounds, 0.0);
         }
         bounds
     }

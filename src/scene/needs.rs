@@ -4,8 +4,8 @@
 
 use glam::{DMat3, DMat4, DVec3, DVec4};
 
-use super::{Component, Primitive, Scene, Topology, camera::View, draw::Draw, light::ShadowGrid, sizes::Sizes};
-use crate::{ladder::Skinning, math::GUARD_BAND};
+use super::{Component, Primitive, Scene, Topology, camera::View, draw::Draw, light::ShadowResolution, sizes::TriangleSizes};
+use crate::{accuracy::Skinning, math::GUARD_BAND};
 
 /// See the module's first line.
 #[derive(Clone, Debug, PartialEq)]
@@ -18,7 +18,7 @@ pub struct Needs {
     /// Some primitive has indices.
     pub indexed: bool,
     /// All indices are u32.
-    pub wide_indices: bool,
+    pub u32_indices: bool,
     /// Strips or fans occur.
     pub topologies: bool,
     /// Positions are all f32.
@@ -27,19 +27,19 @@ pub struct Needs {
     pub f32_normals: bool,
     pub colors: bool,
     /// Materials that are more than a base colour.
-    pub paints: usize,
+    pub material_count: usize,
     /// Of those, materials with a texture.
     pub textured: usize,
     /// The alpha of an image leaves out a part of something.
     pub masked: bool,
     /// How finely shadows are drawn.
-    pub shadow: ShadowGrid,
+    pub shadow: ShadowResolution,
     /// A light looks, not the eye.
     pub is_light: bool,
     /// Some mesh is mixed from shapes.
-    pub shapes: bool,
+    pub morph_targets: bool,
     /// Some triangles are splats.
-    pub splats: bool,
+    pub particle_discs: bool,
     /// How joints hold meshes, where any do.
     pub skinning: Option<Skinning>,
     /// Clips may move parts of the scene.
@@ -47,7 +47,7 @@ pub struct Needs {
     /// Joints of all skins together.
     pub joints: usize,
     /// No interpolated normal ever needs a substitute.
-    pub sound_normals: bool,
+    pub normals_agree: bool,
     /// w is metres; else depth is linear and w is 1.
     pub perspective: bool,
     /// Some vertex may lie before the near plane or beyond the guard band.
@@ -55,7 +55,7 @@ pub struct Needs {
     /// No triangle is wider or higher than this, in pixels; infinite where clipping is needed.
     pub largest_px: f64,
     /// How large triangles are, by a look at some of them.
-    pub sizes: Sizes,
+    pub sizes: TriangleSizes,
     /// The most pixels that the box of a primitive spans on an axis; infinite where it may reach before the near plane.
     pub box_px: f64,
     /// How far rounding may move a corner in the picture, pixels: as it is stored, and relative to the eye. A bound where it
@@ -73,8 +73,8 @@ impl Needs {
     /// Reads `scene` as `view` sees it through `draws`.
     pub fn of(scene: &Scene, draws: &[Draw], view: &View) -> Self {
         let drawn = || draws.iter().map(|draw| &scene.primitives[draw.primitive]);
-        // Bent vertices are kept as f32, whatever they were.
-        let unbent = || draws.iter().filter(|draw| draw.bend.is_none()).map(|draw| &scene.primitives[draw.primitive]);
+        // Deformed vertices are kept as f32, whatever they were.
+        let unbent = || draws.iter().filter(|draw| draw.deform.is_none()).map(|draw| &scene.primitives[draw.primitive]);
         let mut painted: Vec<usize> = drawn().map(|p| p.material).filter(|&material| !scene.materials[material].is_plain()).collect();
         painted.sort_unstable();
         painted.dedup();
@@ -86,32 +86,34 @@ impl Needs {
             vertices: scene.vertex_count(),
             draws: draws.len(),
             indexed: drawn().any(|p| p.indices.is_some()),
-            wide_indices: drawn().all(|p| p.indices.is_some_and(|i| i.component == Component::U32 && i.stride == 4)),
+            u32_indices: drawn().all(|p| p.indices.is_some_and(|i| i.component == Component::U32 && i.stride == 4)),
             topologies: drawn().any(|p| p.topology != Topology::List),
             f32_positions: all_f32(|p| p.positions.component),
             f32_normals: all_f32(|p| p.normals.component),
             shadow: view.shadow,
             is_light: view.is_light(),
             colors: drawn().any(|p| p.colors.is_some()),
-            paints: painted.len(),
+            material_count: painted.len(),
             textured: painted.iter().filter(|material| scene.materials[**material].textures() != [None, None]).count(),
-            masked: drawn().any(|p| scene.materials[p.material].least_alpha().is_some()),
-            shapes: draws.iter().any(|draw| draw.bend.as_ref().is_some_and(|bend| bend.weights.iter().any(|weight| *weight != 0.0))),
-            splats: scene.splats.is_some(),
-            skinning: draws.iter().find_map(|draw| Some(draw.bend.as_ref()?.palette.as_ref()?.skinning())),
+            masked: drawn().any(|p| scene.materials[p.material].alpha_threshold().is_some()),
+            morph_targets: draws
+                .iter()
+                .any(|draw| draw.deform.as_ref().is_some_and(|deform| deform.weights.iter().any(|weight| *weight != 0.0))),
+            particle_discs: scene.particle_discs.is_some(),
+            skinning: draws.iter().find_map(|draw| Some(draw.deform.as_ref()?.joint_transforms.as_ref()?.skinning())),
             moves: !scene.rig.is_empty(),
-            joints: if draws.iter().any(|draw| draw.bend.is_some()) {
+            joints: if draws.iter().any(|draw| draw.deform.is_some()) {
                 scene.rig.skins.iter().map(|skin| skin.joints.len()).sum()
             } else {
                 0
             },
-            sound_normals: draws.iter().all(|draw| draw.bend.is_none())
-                && drawn().all(|p| p.sound_normals)
+            normals_agree: draws.iter().all(|draw| draw.deform.is_none())
+                && drawn().all(|p| p.normals_agree)
                 && draws.iter().all(keeps_normals),
             perspective: view.linear_depth_m.is_none(),
             clipping: largest_px.is_infinite(),
             largest_px,
-            sizes: Sizes::of(scene, draws, view),
+            sizes: TriangleSizes::of(scene, draws, view),
             box_px: draws.iter().map(|draw| box_px(&scene.primitives[draw.primitive], draw, view)).fold(0.0, f64::max),
             rounding_px: rounding_px(scene, draws, view),
             depth_m: view.scene_range_m,
@@ -134,13 +136,13 @@ impl Needs {
     pub fn everything(&self) -> Self {
         Self {
             draws: self.draws.max(2),
-            wide_indices: false,
+            u32_indices: false,
             topologies: true,
             f32_positions: false,
             f32_normals: false,
             colors: true,
-            paints: self.paints.max(1),
-            sound_normals: false,
+            material_count: self.material_count.max(1),
+            normals_agree: false,
             clipping: true,
             largest_px: f64::INFINITY,
             ..self.clone()
@@ -231,11 +233,11 @@ fn largest_px(primitive: &Primitive, draw: &Draw, view: &View) -> f64 {
         return 0.0;
     }
     // Of a bent mesh, no edge is longer than its box.
-    let longest_edge = if draw.bend.is_some() { 2.0 * bounds.radius() } else { primitive.longest_edge };
+    let longest_edge = if draw.deform.is_some() { 2.0 * bounds.radius() } else { primitive.longest_edge };
     let clip_from_object = DMat4::from_cols_array_2d(&draw.clip_from_object.map(|column| column.map(f64::from)));
     let corners = bounds.corners().map(|corner| draw.clip_point(corner));
-    let slack = 1.0 + 1e-4;
-    let is_before_near = |c: &DVec4| c.w <= 0.0 || c.z * slack > c.w && view.linear_depth_m.is_none();
+    let error_bound = 1.0 + 1e-4;
+    let is_before_near = |c: &DVec4| c.w <= 0.0 || c.z * error_bound > c.w && view.linear_depth_m.is_none();
     if corners.iter().any(is_before_near) {
         return f64::INFINITY;
     }
@@ -245,10 +247,10 @@ fn largest_px(primitive: &Primitive, draw: &Draw, view: &View) -> f64 {
         .map(|(axis, pixels)| {
             let reach = corners.iter().fold(0.0, |max: f64, c| max.max((c[axis] / c.w).abs()));
             let half = f64::from(pixels) * 0.5;
-            if (reach + 1.0) * half * f64::from(view.units_per_pixel()) * slack > f64::from(GUARD_BAND) {
+            if (reach + 1.0) * half * f64::from(view.units_per_pixel()) * error_bound > f64::from(GUARD_BAND) {
                 return f64::INFINITY;
             }
-            (linear_row(axis) + reach * linear_row(3)) * longest_edge / min_w * half * slack + 1.0 / 128.0
+            (linear_row(axis) + reach * linear_row(3)) * longest_edge / min_w * half * error_bound + 1.0 / 128.0
         })
         .into_iter()
         .fold(0.0, f64::max)

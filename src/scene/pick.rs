@@ -37,8 +37,8 @@ impl Ray {
     fn nearest(&self, scene: &Scene, draw: &Draw) -> Option<f64> {
         let primitive = &scene.primitives[draw.primitive];
         let corner = |vertex: u32| {
-            let place = match &draw.bend {
-                Some(bend) => bend.position(scene, primitive, vertex),
+            let place = match &draw.deform {
+                Some(deform) => deform.position(scene, primitive, vertex),
                 None => primitive.position(scene, vertex).map(f64::from).into(),
             };
             draw.world_from_object.transform_point3(place)

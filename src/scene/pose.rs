@@ -7,13 +7,13 @@ use std::sync::Arc;
 
 use glam::{DMat4, DQuat, DVec3};
 
-use super::palette::rounded_rows;
-pub use super::palette::{DualJoint, Joint, Palette};
+use super::joint_transforms::rounded_rows;
+pub use super::joint_transforms::{DualQuaternionJoint, JointMatrix, JointTransforms};
 use super::{
     Bounds, Primitive, Scene,
-    rig::{Interpolation, Local, Parts, Property, Rig, Sampler},
+    rig::{Interpolation, Local, Property, Rig, Sampler, Trs},
 };
-use crate::ladder::Skinning;
+use crate::accuracy::Skinning;
 
 /// Which moment of which clips.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -35,14 +35,14 @@ pub struct Pose {
     /// Matrix of every instance.
     places: Vec<DMat4>,
     /// How every instance bends.
-    bends: Vec<Option<Bend>>,
+    deforms: Vec<Option<Deform>>,
 }
 
 /// What bends the vertices of an instance, before it is placed.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Bend {
+pub struct Deform {
     /// Its joints; none without a skin.
-    pub palette: Option<Palette>,
+    pub joint_transforms: Option<JointTransforms>,
     /// Weights of its shapes, as many as it has.
     pub weights: Arc<[f32]>,
 }
@@ -53,20 +53,20 @@ impl Pose {
         let rig = &scene.rig;
         let state = State::of(rig, motion);
         let scene_from_node = state.places(rig);
-        let palette = |skin: &super::rig::Skin| {
+        let joint_transforms = |skin: &super::rig::Skin| {
             let matrices = skin.joints.iter().zip(&skin.joint_from_mesh).map(|(&node, inverse)| scene_from_node[node] * *inverse);
             match motion.skinning {
-                Skinning::Linear => Palette::Linear(matrices.map(|matrix| rounded_rows(&matrix)).collect()),
-                Skinning::Dual => Palette::Dual(matrices.map(|matrix| DualJoint::of(&matrix)).collect()),
+                Skinning::Linear => JointTransforms::Linear(matrices.map(|matrix| rounded_rows(&matrix)).collect()),
+                Skinning::Dual => JointTransforms::Dual(matrices.map(|matrix| DualQuaternionJoint::of(&matrix)).collect()),
             }
         };
-        let palettes: Vec<Palette> = rig.skins.iter().map(palette).collect();
-        let bend = |instance: &super::Instance| {
-            let shapes = scene.primitives[instance.primitive].softness.shapes.len();
-            let palette = instance.skin.map(|skin| palettes[skin].clone());
+        let palettes: Vec<JointTransforms> = rig.skins.iter().map(joint_transforms).collect();
+        let deform = |instance: &super::Instance| {
+            let morph_targets = scene.primitives[instance.primitive].deformation.morph_targets.len();
+            let joint_transforms = instance.skin.map(|skin| palettes[skin].clone());
             let given = instance.node.map_or(&[][..], |node| &state.weights[node]);
-            let weights: Arc<[f32]> = (0..shapes).map(|shape| given.get(shape).copied().unwrap_or(0.0)).collect();
-            (palette.is_some() || weights.iter().any(|&weight| weight != 0.0)).then_some(Bend { palette, weights })
+            let weights: Arc<[f32]> = (0..morph_targets).map(|shape| given.get(shape).copied().unwrap_or(0.0)).collect();
+            (joint_transforms.is_some() || weights.iter().any(|&weight| weight != 0.0)).then_some(Deform { joint_transforms, weights })
         };
         let place = |instance: &super::Instance| match (instance.skin, instance.node) {
             // A mesh that a skin holds ignores its node.
@@ -74,7 +74,7 @@ impl Pose {
             (None, Some(node)) => scene_from_node[node],
             (None, None) => instance.world_from_object,
         };
-        Self { places: scene.instances.iter().map(place).collect(), bends: scene.instances.iter().map(bend).collect() }
+        Self { places: scene.instances.iter().map(place).collect(), deforms: scene.instances.iter().map(deform).collect() }
     }
 
     /// The pose that no clip moves; none for a scene without a rig, whose placements say everything.
@@ -87,8 +87,8 @@ impl Pose {
         self.places.get(instance).copied().unwrap_or(DMat4::IDENTITY)
     }
 
-    pub fn bend(&self, instance: usize) -> Option<&Bend> {
-        self.bends.get(instance).and_then(Option::as_ref)
+    pub fn deform(&self, instance: usize) -> Option<&Deform> {
+        self.deforms.get(instance).and_then(Option::as_ref)
     }
 
     /// A box round the whole scene, before it is spun.
@@ -99,10 +99,10 @@ impl Pose {
     /// A box round the first instances of it.
     pub fn bounds_of(&self, scene: &Scene, first: &[super::Instance]) -> Bounds {
         let mut bounds = Bounds::EMPTY;
-        for ((instance, place), bend) in first.iter().zip(&self.places).zip(&self.bends) {
+        for ((instance, place), deform) in first.iter().zip(&self.places).zip(&self.deforms) {
             let primitive = &scene.primitives[instance.primitive];
-            let object = bend.as_ref().map_or(primitive.bounds, |bend| bend.bounds(primitive));
-            bounds.include_placed(place, &object, 0.0);
+            let object = deform.as_ref().map_or(primitive.bounds, |deform| deform.bounds(primitive));
+            bounds.include_transformed(place, &object, 0.0);
         }
         bounds
     }
@@ -128,41 +128,45 @@ pub fn reach(scene: &Scene) -> Bounds {
     };
     let moments = (0..scene.rig.clips.len().min(most)).flat_map(|clip| (0..MOMENTS).map(move |at| moment(clip, at)));
     let motions: Vec<Motion> = std::iter::once(Motion::default()).chain(moments).collect();
-    let stride = (scene.soft_vertex_count() as usize * motions.len()).div_ceil(MOST_VERTICES).max(1);
+    let stride = (scene.deformable_vertex_count() as usize * motions.len()).div_ceil(MOST_VERTICES).max(1);
     let mut reach = Bounds::EMPTY;
     for motion in &motions {
         let pose = Pose::at(scene, motion);
         for (index, instance) in scene.instances.iter().enumerate() {
             let (primitive, place) = (&scene.primitives[instance.primitive], pose.place(index));
-            let Some(bend) = pose.bend(index) else {
-                reach.include_placed(&place, &primitive.bounds, 0.0);
+            let Some(deform) = pose.deform(index) else {
+                reach.include_transformed(&place, &primitive.bounds, 0.0);
                 continue;
             };
             let vertices = (0..primitive.vertex_count()).step_by(stride);
-            vertices.for_each(|vertex| reach.include(place.transform_point3(bend.position(scene, primitive, vertex))));
+            vertices.for_each(|vertex| reach.include(place.transform_point3(deform.position(scene, primitive, vertex))));
         }
     }
     reach
 }
 
-impl Bend {
+impl Deform {
     /// Do its joints turn left into right, every one?
     pub fn mirrors(&self) -> bool {
-        self.palette.as_ref().is_some_and(|palette| palette.matrices().all(|matrix| matrix.determinant() < 0.0))
+        self.joint_transforms.as_ref().is_some_and(|joint_transforms| joint_transforms.matrices().all(|matrix| matrix.determinant() < 0.0))
     }
 
     /// A box round the bent mesh: a vertex lies between the places to which its joints take it, or, by dual quaternions, on
     /// an arc over them.
     pub fn bounds(&self, primitive: &Primitive) -> Bounds {
-        let softness = &primitive.softness;
-        let slack = self.weights.iter().zip(&softness.shapes).map(|(weight, shape)| f64::from(weight.abs()) * shape.reach).sum();
+        let deformation = &primitive.deformation;
+        let error_bound =
+            self.weights.iter().zip(&deformation.morph_targets).map(|(weight, shape)| f64::from(weight.abs()) * shape.reach).sum();
         let mut bounds = Bounds::EMPTY;
-        let Some(palette) = &self.palette else {
-            bounds.include_placed(&DMat4::IDENTITY, &primitive.bounds, slack);
+        let Some(joint_transforms) = &self.joint_transforms else {
+            bounds.include_transformed(&DMat4::IDENTITY, &primitive.bounds, error_bound);
             return bounds;
         };
-        palette.matrices().zip(&softness.joint_bounds).for_each(|(matrix, held)| bounds.include_placed(&matrix, held, slack));
-        if matches!(palette, Palette::Dual(_)) && !bounds.is_empty() {
+        joint_transforms
+            .matrices()
+            .zip(&deformation.joint_bounds)
+            .for_each(|(matrix, held)| bounds.include_transformed(&matrix, held, error_bound));
+        if matches!(joint_transforms, JointTransforms::Dual(_)) && !bounds.is_empty() {
             let bulge = bounds.radius();
             (bounds.min, bounds.max) = (bounds.min - bulge, bounds.max + bulge);
         }
@@ -173,20 +177,21 @@ impl Bend {
     pub fn position(&self, scene: &Scene, primitive: &Primitive, vertex: u32) -> DVec3 {
         let bytes = &scene.vertex_bytes;
         let vector = |accessor: &super::Accessor| DVec3::from([0, 1, 2].map(|lane| accessor.value(bytes, vertex, lane)));
-        let shapes = self.weights.iter().zip(&primitive.softness.shapes).filter_map(|(w, shape)| Some((w, shape.positions.as_ref()?)));
-        let place = shapes.fold(vector(&primitive.positions), |place, (&weight, shape)| place + vector(shape) * f64::from(weight));
-        let Some(palette) = &self.palette else { return place };
-        let sets = primitive.softness.influences.iter();
+        let morph_targets =
+            self.weights.iter().zip(&primitive.deformation.morph_targets).filter_map(|(w, shape)| Some((w, shape.positions.as_ref()?)));
+        let place = morph_targets.fold(vector(&primitive.positions), |place, (&weight, shape)| place + vector(shape) * f64::from(weight));
+        let Some(joint_transforms) = &self.joint_transforms else { return place };
+        let sets = primitive.deformation.influences.iter();
         let held = sets.flat_map(|set| {
             [0, 1, 2, 3].map(|lane| (set.joints.integer(bytes, vertex, lane) as usize, set.weights.value(bytes, vertex, lane)))
         });
         let (mut sum, mut total, mut first) = (DVec3::ZERO, 0.0, None);
         for (joint, weight) in held {
             first.get_or_insert(joint);
-            sum += palette.matrix(joint).transform_point3(place) * weight;
+            sum += joint_transforms.matrix(joint).transform_point3(place) * weight;
             total += weight;
         }
-        if total > 0.0 { sum / total } else { first.map_or(place, |joint| palette.matrix(joint).transform_point3(place)) }
+        if total > 0.0 { sum / total } else { first.map_or(place, |joint| joint_transforms.matrix(joint).transform_point3(place)) }
     }
 }
 
@@ -227,10 +232,10 @@ impl State {
             let sampler = &rig.samplers[channel.sampler];
             if channel.property == Property::Weights {
                 let value = |lane| sampler.value(lane, time_s) as f32;
-                state.weights[channel.node] = (0..sampler.lanes).map(value).collect();
+                state.weights[channel.node] = (0..sampler.components).map(value).collect();
                 continue;
             }
-            let Local::Parts(parts) = &mut state.locals[channel.node] else { continue };
+            let Local::Trs(parts) = &mut state.locals[channel.node] else { continue };
             let vector = || DVec3::from([0, 1, 2].map(|lane| sampler.value(lane, time_s)));
             match channel.property {
                 Property::Translation => parts.translation = vector(),
@@ -244,8 +249,8 @@ impl State {
 
     fn blend(&mut self, other: &Self, share: f64) {
         for (a, b) in self.locals.iter_mut().zip(&other.locals) {
-            if let (Local::Parts(a), Local::Parts(b)) = (a, b) {
-                *a = Parts {
+            if let (Local::Trs(a), Local::Trs(b)) = (a, b) {
+                *a = Trs {
                     translation: a.translation.lerp(b.translation, share),
                     rotation: slerp(a.rotation, b.rotation, share),
                     scale: a.scale.lerp(b.scale, share),
@@ -273,7 +278,7 @@ impl Sampler {
     /// A number of a key: `part` 0 is the tangent that comes in, 1 the value, 2 the tangent that goes out.
     fn number(&self, key: usize, part: usize, lane: usize) -> f64 {
         let at = if self.interpolation == Interpolation::Cubic { 3 * key + part } else { key };
-        self.values[at * self.lanes + lane].into()
+        self.values[at * self.components + lane].into()
     }
 
     /// One lane at a moment (glTF 2.0, appendix C).
@@ -337,8 +342,8 @@ fn slerp(a: DQuat, b: DQuat, share: f64) -> DQuat {
 mod tests {
     use super::*;
 
-    fn sampler(interpolation: Interpolation, lanes: usize, values: &[f32]) -> Sampler {
-        Sampler { interpolation, times: vec![1.0, 3.0], values: values.into(), lanes }
+    fn sampler(interpolation: Interpolation, components: usize, values: &[f32]) -> Sampler {
+        Sampler { interpolation, times: vec![1.0, 3.0], values: values.into(), components }
     }
 
     #[test]

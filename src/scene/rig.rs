@@ -46,18 +46,18 @@ pub enum Local {
     /// As it is; no clip may move it.
     Matrix(DMat4),
     /// Scaled, then turned, then moved.
-    Parts(Parts),
+    Trs(Trs),
 }
 
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Parts {
+pub struct Trs {
     pub translation: DVec3,
     /// A unit quaternion.
     pub rotation: DQuat,
     pub scale: DVec3,
 }
 
-impl Default for Parts {
+impl Default for Trs {
     fn default() -> Self {
         Self { translation: DVec3::ZERO, rotation: DQuat::IDENTITY, scale: DVec3::ONE }
     }
@@ -67,7 +67,7 @@ impl Local {
     pub fn matrix(&self) -> DMat4 {
         match self {
             Self::Matrix(matrix) => *matrix,
-            Self::Parts(Parts { translation, rotation, scale }) => DMat4::from_scale_rotation_translation(*scale, *rotation, *translation),
+            Self::Trs(Trs { translation, rotation, scale }) => DMat4::from_scale_rotation_translation(*scale, *rotation, *translation),
         }
     }
 }
@@ -135,22 +135,22 @@ pub struct Sampler {
     pub times: Vec<f32>,
     /// `lanes` numbers a key, three times as many for a cubic spline; all finite.
     pub values: Vec<f32>,
-    pub lanes: usize,
+    pub components: usize,
 }
 
 /// How a mesh bends: whom its vertices follow, and what its shapes add to them.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct Softness {
+pub struct Deformation {
     /// Sets of four joints with their weights; at most two, none for a mesh without a skin.
     pub influences: Vec<Influences>,
-    pub shapes: Vec<Shape>,
+    pub morph_targets: Vec<Shape>,
     /// Box of the vertices that each joint holds with any weight; as many as the largest joint number asks for.
     pub joint_bounds: Vec<Bounds>,
 }
 
-impl Softness {
+impl Deformation {
     pub fn is_none(&self) -> bool {
-        self.influences.is_empty() && self.shapes.is_empty()
+        self.influences.is_empty() && self.morph_targets.is_empty()
     }
 }
 

@@ -37,7 +37,7 @@ impl Scene {
     }
 
     /// The instances that cast shadows: all but the walls round them.
-    pub fn casters(&self) -> &[Instance] {
+    pub fn shadow_casters(&self) -> &[Instance] {
         &self.instances[..self.instances.len() - self.walls]
     }
 }
@@ -81,7 +81,7 @@ mod tests {
         for query in ["teapot?tess=2", "cube-wall", "tentacle?tess=2"] {
             let alone = builtin::build(query).unwrap();
             let scene = builtin::build(query).unwrap().in_room(1.5);
-            assert_eq!(scene.casters(), alone.instances);
+            assert_eq!(scene.shadow_casters(), alone.instances);
             let room = room_of(&scene);
             for corner in alone.bounds().corners() {
                 for turn in 0..12 {

@@ -12,11 +12,11 @@ const SAMPLED: u64 = 2048;
 
 /// Triangles of a picture by their size.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct Sizes {
+pub struct TriangleSizes {
     /// Triangles of the scene.
     pub triangles: u64,
     /// How many were looked at.
-    pub looked_at: u32,
+    pub sampled: u32,
     /// Of those, how many reach before the near plane: their size is not known.
     pub cut: u32,
     /// Those that are whole, face the viewer and touch a sample column and a row of the picture, or lie between two.
@@ -37,15 +37,15 @@ struct Seen {
 
 /// What shares of the triangles that were looked at take each path.
 #[derive(Clone, Copy, Debug, Default, PartialEq, serde::Serialize)]
-pub struct Classes {
+pub struct SizeClasses {
     pub small: f64,
     pub medium: f64,
     pub large: f64,
     /// By how much each may be off, since only some were looked at: three standard deviations.
-    pub slack: f64,
+    pub error_bound: f64,
 }
 
-impl Sizes {
+impl TriangleSizes {
     /// Looks at triangles of `scene` as `view` sees it through `draws`, spread evenly over their list.
     pub fn of(scene: &Scene, draws: &[Draw], view: &View) -> Self {
         let triangles: u64 = draws.iter().map(|draw| u64::from(scene.primitives[draw.primitive].triangle_count())).sum();
@@ -56,13 +56,13 @@ impl Sizes {
             let within = if triangles > SAMPLED { hash_unit(k as u32) } else { 0.0 };
             let id = ((k as f64 + within) * triangles as f64 / count as f64) as u64;
             let draw = &draws[draws.partition_point(|draw| u64::from(draw.first_triangle) <= id) - 1];
-            match look(scene, draw, view, id as u32 - draw.first_triangle) {
-                Look::Seen(one) => seen.push(one),
-                Look::Cut => cut += 1,
-                Look::Unseen => {}
+            match preset_file(scene, draw, view, id as u32 - draw.first_triangle) {
+                PresetFile::Seen(one) => seen.push(one),
+                PresetFile::Cut => cut += 1,
+                PresetFile::Unseen => {}
             }
         }
-        Self { triangles, looked_at: count as u32, cut, seen: seen.into() }
+        Self { triangles, sampled: count as u32, cut, seen: seen.into() }
     }
 
     /// Triangles that were looked at and are seen whole.
@@ -81,62 +81,62 @@ impl Sizes {
 
     /// How many triangles one invocation walks, how many a workgroup takes over, and how many exceed `large_px`, as far as a
     /// look at some of them tells.
-    pub fn classes(&self, small_samples: u32, small_side: u32, large_px: f64) -> Classes {
-        let mut classes = Classes::default();
+    pub fn classes(&self, max_small_samples: u32, max_small_side: u32, large_px: f64) -> SizeClasses {
+        let mut classes = SizeClasses::default();
         for seen in self.seen.iter().filter(|seen| seen.samples.iter().all(|count| *count > 0)) {
             let [columns, rows] = seen.samples;
             let class = match () {
                 () if f64::from(seen.extent_px) > large_px => &mut classes.large,
-                () if columns * rows > small_samples || columns.max(rows) > small_side => &mut classes.medium,
+                () if columns * rows > max_small_samples || columns.max(rows) > max_small_side => &mut classes.medium,
                 () => &mut classes.small,
             };
             *class += 1.0;
         }
-        let each = self.triangles as f64 / f64::from(self.looked_at.max(1));
-        let deviation = |count: f64| (count * (1.0 - count / f64::from(self.looked_at.max(1)))).sqrt();
+        let each = self.triangles as f64 / f64::from(self.sampled.max(1));
+        let deviation = |count: f64| (count * (1.0 - count / f64::from(self.sampled.max(1)))).sqrt();
         let most = deviation(classes.small).max(deviation(classes.medium)).max(deviation(classes.large));
-        // One more, for a kind that is rarer than the look is fine; all were seen where all were looked at.
-        let slack = if u64::from(self.looked_at) == self.triangles { 0.0 } else { each * (3.0 * most + 1.0) };
-        Classes { small: classes.small * each, medium: classes.medium * each, large: classes.large * each, slack }
+        // One more, for a kind that is rarer than the preset is fine; all were seen where all were looked at.
+        let error_bound = if u64::from(self.sampled) == self.triangles { 0.0 } else { each * (3.0 * most + 1.0) };
+        SizeClasses { small: classes.small * each, medium: classes.medium * each, large: classes.large * each, error_bound }
     }
 
-    /// Share of the picture's pixels that change owner when every edge moves by `shift_px`: an edge passes over samples in
+    /// Share of the picture's pixels that change triangle id when every edge moves by `shift_px`: an edge passes over samples in
     /// proportion to its length, and two triangles share it.
-    pub fn moved_share(&self, shift_px: f64, pixels: f64) -> f64 {
+    pub fn changed_fraction(&self, shift_px: f64, pixels: f64) -> f64 {
         if self.seen.is_empty() {
             // Where nothing of a few thousand was seen, what there is may be small.
-            return if u64::from(self.looked_at) == self.triangles && self.cut == 0 { 0.0 } else { (7.0 * shift_px).min(1.0) };
+            return if u64::from(self.sampled) == self.triangles && self.cut == 0 { 0.0 } else { (7.0 * shift_px).min(1.0) };
         }
         let area: f64 = self.seen.iter().map(|seen| f64::from(seen.area)).sum();
         let passed: f64 = self.seen.iter().map(|seen| (f64::from(seen.outline) * shift_px * 0.5).min(f64::from(seen.area))).sum();
-        let each = self.triangles as f64 / f64::from(self.looked_at.max(1));
+        let each = self.triangles as f64 / f64::from(self.sampled.max(1));
         let covered = if self.cut > 0 { 1.0 } else { (area * each / pixels.max(1.0)).min(1.0) };
         if area > 0.0 { passed / area * covered } else { 0.0 }
     }
 }
 
-enum Look {
+enum PresetFile {
     Seen(Seen),
     Cut,
     /// Turned away, or nowhere in the picture.
     Unseen,
 }
 
-fn look(scene: &Scene, draw: &Draw, view: &View, triangle: u32) -> Look {
+fn preset_file(scene: &Scene, draw: &Draw, view: &View, triangle: u32) -> PresetFile {
     let primitive = &scene.primitives[draw.primitive];
-    let place = |vertex: u32| match &draw.bend {
-        Some(bend) => bend.position(scene, primitive, vertex),
+    let place = |vertex: u32| match &draw.deform {
+        Some(deform) => deform.position(scene, primitive, vertex),
         None => DVec3::from_array(primitive.position(scene, vertex).map(f64::from)),
     };
     let clip: [DVec4; 3] = primitive.corners(scene, triangle).map(|vertex| draw.clip_point(place(vertex)));
     if clip.iter().any(|c| !c.is_finite()) {
-        return Look::Unseen;
+        return PresetFile::Unseen;
     }
     let is_before_near = |c: &&DVec4| c.w <= 0.0 || c.z > c.w;
     match clip.iter().filter(is_before_near).count() {
         0 => {}
-        3 => return Look::Unseen,
-        _ => return Look::Cut,
+        3 => return PresetFile::Unseen,
+        _ => return PresetFile::Cut,
     }
     let size = DVec2::new(view.width.into(), view.height.into());
     let [a, b, c] = clip.map(|c| DVec2::new(0.5 + 0.5 * c.x / c.w, 0.5 - 0.5 * c.y / c.w) * size);
@@ -146,7 +146,7 @@ fn look(scene: &Scene, draw: &Draw, view: &View, triangle: u32) -> Look {
     let is_back = (doubled > 0.0) != draw.mirrored;
     let is_beside = high.x <= 0.0 || high.y <= 0.0 || low.x >= size.x || low.y >= size.y;
     if is_beside || doubled == 0.0 || is_back && !scene.materials[primitive.material].double_sided {
-        return Look::Unseen;
+        return PresetFile::Unseen;
     }
     let samples = [0, 1].map(|axis| {
         let (first, last) = ((low[axis] - 0.5).ceil().max(0.0), (high[axis] - 0.5).floor().min(size[axis] - 1.0));
@@ -154,7 +154,7 @@ fn look(scene: &Scene, draw: &Draw, view: &View, triangle: u32) -> Look {
     });
     let inside = (high.min(size) - low.max(DVec2::ZERO)) / (high - low).max(DVec2::splat(f64::MIN_POSITIVE));
     let share = inside.x * inside.y;
-    Look::Seen(Seen {
+    PresetFile::Seen(Seen {
         extent_px: (high - low).max_element() as f32,
         samples,
         area: (0.5 * doubled.abs() * share) as f32,
@@ -173,17 +173,17 @@ mod tests {
         Camera::framing(&scene.bounds(), DVec3::new(-0.4, -0.4, -1.0), f64::from(width) / f64::from(height))
     }
 
-    fn sizes(query: &str, [width, height]: [u32; 2]) -> Sizes {
+    fn sizes(query: &str, [width, height]: [u32; 2]) -> TriangleSizes {
         let scene = builtin::build(query).expect("a builtin");
         let camera = framed(&scene, [width, height]);
         let view = View::new(&camera, width, height, &scene.bounds(), DMat4::IDENTITY, [0.0; 4]);
-        Sizes::of(&scene, &draws(&scene, &view).expect("it fits"), &view)
+        TriangleSizes::of(&scene, &draws(&scene, &view).expect("it fits"), &view)
     }
 
     #[test]
     fn half_of_a_sphere_is_seen_and_covers_its_disc() {
         let few = sizes("sphere?triangles=2000", [640, 480]);
-        let share = f64::from(few.seen()) / f64::from(few.looked_at);
+        let share = f64::from(few.seen()) / f64::from(few.sampled);
         assert!((0.35..0.5).contains(&share), "{share} of the triangles face the viewer");
         assert_eq!(few.cut, 0);
         // All pixels of the disc change where edges move as far as triangles are wide: the disc that a sphere of this radius
@@ -193,28 +193,28 @@ mod tests {
         let disc_px =
             240.0 / libm::tan(22.5f64.to_radians()) * radius / (camera.eye.distance_squared(camera.target) - radius * radius).sqrt();
         let disc = std::f64::consts::PI * disc_px * disc_px / (640.0 * 480.0);
-        let moved = few.moved_share(1e3, 640.0 * 480.0);
+        let moved = few.changed_fraction(1e3, 640.0 * 480.0);
         assert!((0.8 * disc..1.1 * disc).contains(&moved), "{moved} of the picture, where {disc} is covered");
     }
 
     #[test]
     fn a_look_at_some_tells_what_a_look_at_all_does() {
         let many = sizes("sphere?triangles=200000", [640, 480]);
-        assert_eq!((many.looked_at, many.triangles / 1000), (2048, 200));
+        assert_eq!((many.sampled, many.triangles / 1000), (2048, 200));
         let typical = many.bins().into_iter().max_by_key(|(_, count)| *count).expect("some are seen").0;
         // 100,000 triangles on 150,000 pixels are some two pixels wide.
         assert!((2.0..=4.0).contains(&typical), "most are up to {typical} px wide: {:?}", many.bins());
-        let small = many.moved_share(1.0 / 256.0, 640.0 * 480.0);
-        let large = many.moved_share(1.0 / 64.0, 640.0 * 480.0);
+        let small = many.changed_fraction(1.0 / 256.0, 640.0 * 480.0);
+        let large = many.changed_fraction(1.0 / 64.0, 640.0 * 480.0);
         assert!((large / small - 4.0).abs() < 0.2, "what moves is in proportion to how far: {small} {large}");
     }
 
     #[test]
     fn classes_hold_all_that_is_seen() {
         let sizes = sizes("teapot?tess=4", [640, 480]);
-        assert_eq!(u64::from(sizes.looked_at), sizes.triangles);
+        assert_eq!(u64::from(sizes.sampled), sizes.triangles);
         let classes = sizes.classes(32, 32, 128.0);
-        assert!(classes.medium > 100.0 && classes.large == 0.0 && classes.slack == 0.0, "{classes:?}");
+        assert!(classes.medium > 100.0 && classes.large == 0.0 && classes.error_bound == 0.0, "{classes:?}");
         assert!(classes.small + classes.medium <= f64::from(sizes.seen()));
         assert_eq!(sizes.classes(1 << 20, 1 << 20, 1e9).small, classes.small + classes.medium);
     }

@@ -36,7 +36,7 @@ impl Image {
     }
 
     /// The same with all smaller copies.
-    pub fn with_copies(mut self) -> Self {
+    pub fn with_mipmaps(mut self) -> Self {
         self.levels.truncate(1);
         while let Some(smaller) = self.levels.last().and_then(Level::halved) {
             self.levels.push(smaller);
@@ -120,7 +120,7 @@ pub enum Filter {
 /// Which of the smaller copies are taken where a pixel spans many texels.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[repr(u32)]
-pub enum Copies {
+pub enum MipFilter {
     /// None.
     Unused = 0,
     /// The one of the nearest scale.
@@ -138,15 +138,15 @@ pub struct Texture {
     /// Across and down.
     pub wrap: [Wrap; 2],
     /// Where a texel spans a pixel or more.
-    pub magnified: Filter,
+    pub mag_filter: Filter,
     /// Where a pixel spans more than a texel.
-    pub minified: Filter,
-    pub copies: Copies,
+    pub min_filter: Filter,
+    pub mip_filter: MipFilter,
     /// Which TEXCOORD attribute of the file it goes by.
     pub set: u32,
     /// What takes stored coordinates to those of the image, where 0 and 1 are its left and right, or top and bottom, edges:
     /// per axis the factor of each coordinate, and what is added.
-    pub image_from_stored: [[f32; 3]; 2],
+    pub image_from_texcoord: [[f32; 3]; 2],
 }
 
 impl Texture {
@@ -155,17 +155,17 @@ impl Texture {
         Self {
             image,
             wrap: Default::default(),
-            magnified: Filter::Linear,
-            minified: Filter::Linear,
-            copies: Copies::Mixed,
+            mag_filter: Filter::Linear,
+            min_filter: Filter::Linear,
+            mip_filter: MipFilter::Mixed,
             set: 0,
-            image_from_stored: [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0]],
+            image_from_texcoord: [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0]],
         }
     }
 
     /// Coordinates in the image of stored ones.
     pub fn placed(&self, stored: DVec2) -> DVec2 {
-        DVec2::from(self.image_from_stored.map(|row| {
+        DVec2::from(self.image_from_texcoord.map(|row| {
             let [u, v, offset] = row.map(f64::from);
             u * stored.x + v * stored.y + offset
         }))
@@ -176,7 +176,7 @@ impl Texture {
 pub const UNITS_PER_TEXEL: f64 = 256.0;
 
 /// Largest coordinate in an image that is looked up, either way: so many times it may be repeated.
-pub const MOST_REPEATS: f64 = 65_536.0;
+pub const MAX_REPEATS: f64 = 65_536.0;
 
 impl Texture {
     /// Where stored coordinates lie in an image of this size, in 1/256 of a texel: what decides in integers starts from these.
@@ -189,8 +189,8 @@ impl Texture {
 }
 
 /// Two stored coordinates of a vertex.
-pub fn stored(coords: &Accessor, bytes: &[u8], vertex: u32) -> DVec2 {
-    DVec2::new(coords.value(bytes, vertex, 0), coords.value(bytes, vertex, 1))
+pub fn stored(texcoords: &Accessor, bytes: &[u8], vertex: u32) -> DVec2 {
+    DVec2::new(texcoords.value(bytes, vertex, 0), texcoords.value(bytes, vertex, 1))
 }
 
 #[cfg(test)]
@@ -202,7 +202,7 @@ mod tests {
     fn copies_halve_down_to_a_texel_and_keep_the_mean_of_their_light() {
         for size in [[1, 1], [8, 8], [7, 3], [1, 9], [16, 5]] {
             let noise = |i: u32| hash(i).to_le_bytes();
-            let image = Image::new("noise", size, (0..size[0] * size[1]).map(noise).collect()).with_copies();
+            let image = Image::new("noise", size, (0..size[0] * size[1]).map(noise).collect()).with_mipmaps();
             let sizes: Vec<_> = image.levels.iter().map(|level| level.size).collect();
             assert_eq!((sizes[0], *sizes.last().expect("a level")), (size, [1, 1]));
             assert!(sizes.windows(2).all(|pair| pair[1] == pair[0].map(|side| (side / 2).max(1))), "{sizes:?}");
@@ -220,7 +220,7 @@ mod tests {
 
     #[test]
     fn black_and_white_mix_to_half_the_light() {
-        let checks = Image::new("checks", [2, 1], vec![[0, 0, 0, 0], [255; 4]]).with_copies();
+        let checks = Image::new("checks", [2, 1], vec![[0, 0, 0, 0], [255; 4]]).with_mipmaps();
         assert_eq!(checks.levels[1].texels, [[188, 188, 188, 128]]);
         assert_eq!(checks.bytes(), 12);
     }

@@ -4,17 +4,17 @@ use super::{
     key::{KernelKey, Phase},
     pass::{Entries, Pass, Round},
 };
-use crate::{effects::hooks::Shape, ladder::Culling};
+use crate::{accuracy::Culling, effects::hooks::Shape};
 
 impl KernelKey {
     /// Are meshlets left out that cannot be seen?
     pub fn culls(&self) -> bool {
-        self.rungs.culling != Culling::None
+        self.options.culling != Culling::None
     }
 
     /// Rounds in which meshlets are drawn.
     const fn rounds(&self) -> &'static [Round] {
-        match self.rungs.culling {
+        match self.options.culling {
             Culling::None => &[],
             Culling::Frustum => &[Round::Only],
             Culling::Hiz => &[Round::Before],
@@ -26,8 +26,8 @@ impl KernelKey {
     pub fn frame(&self) -> Vec<Pass> {
         let mut passes = self.passes(&self.phases());
         passes.extend(self.dot_passes());
-        if self.rungs.culling == Culling::Hiz {
-            passes.push(Pass::Farthest);
+        if self.options.culling == Culling::Hiz {
+            passes.push(Pass::DepthReduce);
         }
         if self.listed_tiles {
             passes.extend([Pass::ListTiles, Pass::Args]);
@@ -50,22 +50,22 @@ impl KernelKey {
         if self.has_particles {
             passes.push(Pass::Particles);
         }
-        if self.bends() {
+        if self.deforms() {
             passes.push(Pass::Skin);
         }
         // What is settled per triangle is settled for all, so that all vertices are wanted.
-        let is_whole = !self.culls() || self.decisions > 0;
+        let is_whole = !self.culls() || self.sample_setups > 0;
         if is_whole {
             passes.push(Pass::Project);
         }
-        if self.decisions > 0 {
-            passes.push(Pass::Decide(Entries::Triangles));
+        if self.sample_setups > 0 {
+            passes.push(Pass::SampleSetup(Entries::Triangles));
         }
         let has_walks = phases.iter().any(|phase| !phase.is_tiled());
         let Some((&first, others)) = phases.split_first() else { return passes };
         for &round in self.rounds() {
             if round == Round::Behind {
-                passes.extend([Pass::Farthest, Pass::Rounds { is_over: false }]);
+                passes.extend([Pass::DepthReduce, Pass::Rounds { is_over: false }]);
             }
             passes.extend([Pass::Cull(round), Pass::Args]);
             if !is_whole {
@@ -76,7 +76,7 @@ impl KernelKey {
         if !self.culls() {
             self.visit(first, true, has_walks, &mut passes);
         }
-        if self.rungs.culling == Culling::TwoPass && !others.is_empty() {
+        if self.options.culling == Culling::TwoPass && !others.is_empty() {
             passes.extend([Pass::Rounds { is_over: true }, Pass::Args]);
         }
         others.iter().for_each(|&phase| self.visit(phase, false, has_walks, &mut passes));
@@ -96,8 +96,8 @@ impl KernelKey {
         if is_first && self.has_queues() {
             passes.push(Pass::Args);
         }
-        if is_first && self.has_clipping && self.decisions > 0 {
-            passes.push(Pass::Decide(Entries::Pieces));
+        if is_first && self.has_clipping && self.sample_setups > 0 {
+            passes.push(Pass::SampleSetup(Entries::ClippedTriangles));
         }
         if is_first && self.has_large && has_walks {
             passes.extend([Pass::TileLarge, Pass::Args]);
@@ -110,7 +110,7 @@ impl KernelKey {
         }
         match phase {
             Phase::Tally => passes.extend([Pass::OrderSums, Pass::OrderLimit, Pass::OrderRanks]),
-            Phase::Straddle => passes.push(Pass::OrderCut),
+            Phase::BoundaryTriangle => passes.push(Pass::OrderCut),
             Phase::BinCount => passes.push(Pass::BinScan),
             _ => {}
         }

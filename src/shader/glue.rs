@@ -62,20 +62,20 @@ pub enum Chain {
     Vertex,
     Sample,
     /// What the sample effects settle per triangle.
-    Decide,
+    SampleSetup,
     Surface,
     Image,
 }
 
 impl Chain {
-    pub const ALL: [Self; 5] = [Self::Vertex, Self::Sample, Self::Decide, Self::Surface, Self::Image];
+    pub const ALL: [Self; 5] = [Self::Vertex, Self::Sample, Self::SampleSetup, Self::Surface, Self::Image];
 
     /// Name in `//@ use glue/NAME` and in the names of WGSL functions.
     pub const fn name(self) -> &'static str {
         match self {
             Self::Vertex => "vertex",
             Self::Sample => "sample",
-            Self::Decide => "decide",
+            Self::SampleSetup => "decide",
             Self::Surface => "surface",
             Self::Image => "image",
         }
@@ -87,7 +87,7 @@ impl Chain {
         match self {
             Self::Vertex => hooks.vertex.is_some(),
             Self::Sample => hooks.sample.is_some(),
-            Self::Decide => hooks.sample.is_some_and(|hook| hook.decides),
+            Self::SampleSetup => hooks.sample.is_some_and(|hook| hook.has_setup),
             Self::Surface => hooks.surface.is_some(),
             Self::Image => hooks.image.is_some(),
         }
@@ -107,12 +107,12 @@ impl Chain {
         let (head, tail) = match self {
             Self::Vertex => ("fn glue_vertex(vertex: Vertex) -> Vertex {\n    var v = vertex;\n", "    return v;\n}\n"),
             Self::Sample => ("fn glue_sample(sample: Sample, entry: u32) -> bool {\n    var s = sample;\n", "    return true;\n}\n"),
-            Self::Decide => ("fn glue_decide(facts: Facts, entry: u32) {\n", "}\n"),
+            Self::SampleSetup => ("fn glue_decide(facts: TriangleSetup, entry: u32) {\n", "}\n"),
             Self::Surface => ("fn glue_surface(surface: Surface) -> Surface {\n    var s = surface;\n", "    return s;\n}\n"),
             Self::Image => ("fn glue_image(pixel: Pixel) -> Pixel {\n    var q = pixel;\n", "    return q;\n}\n"),
         };
         text.push_str(head);
-        let decided: Vec<&str> = effects.iter().filter(|effect| Self::Decide.has(effect)).map(|effect| effect.name).collect();
+        let decided: Vec<&str> = effects.iter().filter(|effect| Self::SampleSetup.has(effect)).map(|effect| effect.name).collect();
         let place = |name: &str| decided.iter().position(|other| *other == name);
         for (function, name) in links {
             let line = match self {
@@ -123,7 +123,7 @@ impl Chain {
                     let load = place(name).map_or(String::new(), |place| format!("    s.decided = decisions_load(entry, {place}u);\n"));
                     format!("{load}    if !{function}(s, effects.{name}) {{ return false; }}")
                 }
-                Self::Decide => {
+                Self::SampleSetup => {
                     let place = place(name).expect("a link of this chain decides");
                     format!("    decisions_store(entry, {place}u, {function}(facts, effects.{name}));")
                 }

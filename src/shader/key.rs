@@ -3,15 +3,18 @@
 use std::fmt;
 
 use crate::{
+    accuracy::{
+        AccuracyOptions, Clipping, Coverage, Culling, DepthFormat, DotCulling, Perspective, PositionFormat, RenderScale, VertexTransform,
+        Visibility,
+    },
     effects::{
         Effect, Enabled, Stack,
-        dots::Strung,
+        dots::LineSource,
         draw_order::Mode,
         hooks::{Layers, Shape},
-        shadow::STEEPEST,
+        shadow::MAX_SHADOW_SLOPE,
     },
-    frame::{NO_OWNER, vertex_flags},
-    ladder::{Clipping, Coverage, Culling, Depth, DotWay, Perspective, Rungs, Scale, Vertex, Vertices, Visibility},
+    frame::{NO_TRIANGLE, vertex_flags},
     scene::meshlets::MESHLET_TRIANGLES,
 };
 
@@ -24,14 +27,14 @@ pub enum Fetch {
     Indexed,
 }
 
-/// How depth and owner of the pixels lie in memory.
+/// How depth and triangle id of the pixels lie in memory.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Layout {
-    /// A buffer of keys and one of complemented owners.
+    /// A buffer of keys and one of complemented triangle ids.
     Split,
     /// One word for both.
     Word,
-    /// Complemented owner and key side by side.
+    /// Complemented triangle id and key side by side.
     Pairs,
 }
 
@@ -60,8 +63,8 @@ impl Order {
 #[derive(Clone, Debug, PartialEq, Eq, Hash)]
 pub struct KernelKey {
     pub fetch: Fetch,
-    /// A rung on every axis of the ladder.
-    pub rungs: Rungs,
+    /// A option on every accuracy axis.
+    pub options: AccuracyOptions,
     /// What an effect makes of the samples of a pixel; without one the nearest is shown.
     pub layers: Option<Layers>,
     /// Effects in stack order.
@@ -73,11 +76,11 @@ pub struct KernelKey {
     /// Which samples are drawn.
     pub order: Order,
     /// What dots are strung on, if there are any.
-    pub dots: Option<Strung>,
+    pub dots: Option<LineSource>,
     /// A sample effect may leave samples out.
     pub has_samples: bool,
     /// Records that are settled per triangle: one of every sample effect that does, and [`MASK_RECORDS`] of a mask.
-    pub decisions: u32,
+    pub sample_setups: u32,
     /// Some triangle may need clipping.
     pub has_clipping: bool,
     /// Some triangle may be wider than one invocation's share.
@@ -85,8 +88,8 @@ pub struct KernelKey {
     /// Some triangle may exceed 128 px.
     pub has_large: bool,
     pub single_draw: bool,
-    pub only_lists: bool,
-    pub wide_indices: bool,
+    pub only_triangle_lists: bool,
+    pub u32_indices: bool,
     pub f32_positions: bool,
     pub f32_normals: bool,
     pub has_colors: bool,
@@ -97,7 +100,7 @@ pub struct KernelKey {
     /// Some mesh is held by joints.
     pub has_joints: bool,
     /// Some mesh is mixed from shapes.
-    pub has_shapes: bool,
+    pub has_morph_targets: bool,
     /// Particles fly.
     pub has_particles: bool,
     /// The resolve computes plane normals and triangle centres: an effect reads them, or a normal may need a substitute.
@@ -105,17 +108,17 @@ pub struct KernelKey {
     /// w is metres; else depth is linear and w is 1.
     pub perspective: bool,
     /// Most candidate samples that one invocation walks.
-    pub small_samples: u32,
+    pub max_small_samples: u32,
     /// Most pixels per side of such a box.
-    pub small_side: u32,
+    pub max_small_side: u32,
     /// Among how many invocations the discs of one triangle are shared out, at least 1.
-    pub disc_shares: u32,
+    pub invocations_per_triangle: u32,
     /// Most entries of a tile's list that one dispatch walks.
-    pub list_walk: u32,
+    pub max_list_entries: u32,
     /// The resolve visits only tiles that a triangle's box touches, without branches.
     pub listed_tiles: bool,
     /// Invocations in a workgroup of the passes over vertices and triangles.
-    pub list_group: u32,
+    pub group_size: u32,
     /// Load before the depth atomic.
     pub early_load: bool,
     /// A light looks, not the eye: effects ask where things stand in the picture for which it does.
@@ -129,7 +132,7 @@ pub const MASK_RECORDS: u32 = 2;
 
 /// Effects that settle something per triangle.
 pub fn deciding(effects: &[&'static Effect]) -> u32 {
-    effects.iter().filter(|effect| effect.hooks.sample.is_some_and(|hook| hook.decides)).count() as u32
+    effects.iter().filter(|effect| effect.hooks.sample.is_some_and(|hook| hook.has_setup)).count() as u32
 }
 
 impl KernelKey {
@@ -137,37 +140,37 @@ impl KernelKey {
     pub fn whole(fetch: Fetch, visibility: Visibility, effects: Vec<&'static Effect>) -> Self {
         Self {
             fetch,
-            rungs: Rungs { visibility, ..Rungs::default() },
+            options: AccuracyOptions { visibility, ..AccuracyOptions::default() },
             layers: Stack(effects.iter().map(|effect| Enabled::new(effect)).collect()).layers(u64::MAX),
             shape: Shape::Triangles,
             order: Order::Free,
-            dots: effects.iter().any(|effect| effect.hooks.has_lines).then_some(Strung::Edges),
+            dots: effects.iter().any(|effect| effect.hooks.has_lines).then_some(LineSource::Edges),
             has_samples: effects.iter().any(|effect| effect.hooks.sample.is_some()),
-            decisions: deciding(&effects),
+            sample_setups: deciding(&effects),
             effects,
             baked: Vec::new(),
             has_clipping: true,
             has_medium: true,
             has_large: true,
             single_draw: false,
-            only_lists: false,
-            wide_indices: false,
+            only_triangle_lists: false,
+            u32_indices: false,
             f32_positions: false,
             f32_normals: false,
             has_colors: true,
             has_texels: true,
             has_mask: false,
             has_joints: true,
-            has_shapes: true,
+            has_morph_targets: true,
             has_particles: true,
             has_planes: true,
             perspective: true,
-            small_samples: 64,
-            small_side: 32,
-            disc_shares: 1,
-            list_walk: u32::MAX,
+            max_small_samples: 64,
+            max_small_side: 32,
+            invocations_per_triangle: 1,
+            max_list_entries: u32::MAX,
             listed_tiles: true,
-            list_group: 64,
+            group_size: 64,
             early_load: true,
             is_light: false,
             id_bits: if visibility == Visibility::Packed32 { 24 } else { 0 },
@@ -180,18 +183,18 @@ impl KernelKey {
     }
 
     /// Does an effect move corners by their triangle, so that every triangle has three projected records to itself?
-    pub fn parts_corners(&self) -> bool {
+    pub fn unshares_vertices(&self) -> bool {
         self.effects.iter().any(|effect| effect.hooks.vertex.is_some_and(|hook| hook.needs_triangle))
     }
 
     /// Are other pixels drawn than are shown?
     pub fn is_scaled(&self) -> bool {
-        self.rungs.scale != Scale::Whole
+        self.options.render_scale != RenderScale::Full
     }
 
     /// Does some mesh bend?
-    pub const fn bends(&self) -> bool {
-        self.has_joints || self.has_shapes
+    pub const fn deforms(&self) -> bool {
+        self.has_joints || self.has_morph_targets
     }
 
     /// Are splats drawn as discs? What fills boxes or draws corners shows no triangles.
@@ -221,7 +224,7 @@ impl KernelKey {
 
     /// Flags of a corner for which a triangle is left out instead of clipped.
     const fn dropped_flags(&self) -> u32 {
-        match self.rungs.clipping {
+        match self.options.clipping {
             Clipping::Drop => vertex_flags::CLIPPED,
             Clipping::Near => vertex_flags::NEAR,
             Clipping::Exact => 0,
@@ -237,43 +240,43 @@ impl KernelKey {
     pub const fn lead(&self) -> &'static [Phase] {
         match self.order {
             Order::Free => &[],
-            Order::Submission => &[Phase::Tally, Phase::Straddle],
+            Order::Submission => &[Phase::Tally, Phase::BoundaryTriangle],
             Order::Scheduler => &[Phase::Tally],
         }
     }
 
     pub const fn layout(&self) -> Layout {
-        match self.rungs.visibility {
+        match self.options.visibility {
             Visibility::Split32 => Layout::Split,
             Visibility::Packed32 => Layout::Word,
             Visibility::Race | Visibility::Packed64 | Visibility::Tiled => Layout::Pairs,
         }
     }
 
-    /// Bits of a depth key that shares a word with an owner, before it is cut, and the least key that counts: two far
+    /// Bits of a depth key that shares a word with an triangle id, before it is cut, and the least key that counts: two far
     /// depths below 2^-31 are one.
     const fn key_span(&self) -> (u32, u32) {
-        match self.rungs.depth {
-            Depth::Ndc16 | Depth::Log16 => (16, 0),
-            Depth::Log24 => (24, 0),
-            Depth::Standard => (30, 0),
-            Depth::Reversed | Depth::Integer => (28, 0x3000_0000),
+        match self.options.depth {
+            DepthFormat::Ndc16 | DepthFormat::Log16 => (16, 0),
+            DepthFormat::Log24 => (24, 0),
+            DepthFormat::Standard => (30, 0),
+            DepthFormat::Reversed | DepthFormat::Integer => (28, 0x3000_0000),
         }
     }
 
-    /// Owner and key of a pixel from the word in which they share the bits, as `shaders/common/packed.wgsl` has them.
+    /// Triangle id and key of a pixel from the word in which they share the bits, as `shaders/common/packed.wgsl` has them.
     pub fn unpacked(&self, word: u32) -> (u32, u32) {
         let (bits, least) = self.key_span();
         let loss = (bits + self.id_bits).saturating_sub(32);
-        if word == 0 { (NO_OWNER, 0) } else { (!word & ((1 << self.id_bits) - 1), (((word >> self.id_bits) << loss) + least).max(1)) }
+        if word == 0 { (NO_TRIANGLE, 0) } else { (!word & ((1 << self.id_bits) - 1), (((word >> self.id_bits) << loss) + least).max(1)) }
     }
 
     /// The raster phases of one frame, in order.
     pub fn phases(&self) -> Vec<Phase> {
-        let nearest: &[Phase] = match (self.layers, self.rungs.visibility) {
+        let nearest: &[Phase] = match (self.layers, self.options.visibility) {
             (Some(Layers::Race), _) | (_, Visibility::Race) => &[Phase::Race],
             (_, Visibility::Packed32) => &[Phase::Packed32],
-            (_, Visibility::Split32) => &[Phase::Depth, Phase::Owner],
+            (_, Visibility::Split32) => &[Phase::Depth, Phase::TriangleId],
             (_, Visibility::Packed64) => &[Phase::Packed],
             (_, Visibility::Tiled) => &[Phase::BinCount, Phase::BinFill, Phase::Tiles],
         };
@@ -287,10 +290,10 @@ impl KernelKey {
 
     /// The passes that draw dots, behind those that find the nearest depths.
     pub(super) fn dot_passes(&self) -> &'static [Pass] {
-        match (self.dots, self.rungs.dots) {
+        match (self.dots, self.options.dot_culling) {
             (None, _) => &[],
-            (Some(_), DotWay::Brute | DotWay::Cpu) => &[Pass::DotsEnds, Pass::DotsDraw],
-            (Some(_), DotWay::Gpu) => &[Pass::DotsEnds, Pass::DotsCull, Pass::DotsArgs, Pass::DotsDraw],
+            (Some(_), DotCulling::Brute | DotCulling::Cpu) => &[Pass::DotsEnds, Pass::DotsDraw],
+            (Some(_), DotCulling::Gpu) => &[Pass::DotsEnds, Pass::DotsCull, Pass::DotsArgs, Pass::DotsDraw],
         }
     }
 
@@ -298,7 +301,7 @@ impl KernelKey {
     fn is_first(&self, pass: Pass) -> bool {
         match self.lead().first() {
             Some(&first) => pass.phase() == Some(first),
-            None => !matches!(pass.phase(), Some(Phase::Owner | Phase::BinFill)) && !self.is_again(pass),
+            None => !matches!(pass.phase(), Some(Phase::TriangleId | Phase::BinFill)) && !self.is_again(pass),
         }
     }
 
@@ -316,9 +319,9 @@ impl KernelKey {
     pub fn constants(&self, pass: Pass) -> Vec<(&'static str, f64)> {
         let flag = |value: bool| f64::from(u8::from(value));
         vec![
-            ("ONLY_LISTS", flag(self.only_lists)),
-            ("WIDE_INDICES", flag(self.wide_indices)),
-            ("IS_RELATIVE", flag(self.rungs.vertices == Vertices::Relative)),
+            ("ONLY_TRIANGLE_LISTS", flag(self.only_triangle_lists)),
+            ("U32_INDICES", flag(self.u32_indices)),
+            ("IS_RELATIVE", flag(self.options.position_format == PositionFormat::Relative)),
             ("F32_POSITIONS", flag(self.f32_positions)),
             ("F32_NORMALS", flag(self.f32_normals)),
             ("HAS_COLORS", flag(self.has_colors)),
@@ -326,37 +329,37 @@ impl KernelKey {
             ("IS_PERSPECTIVE", flag(self.perspective)),
             ("HAS_LARGE", flag(self.has_large)),
             ("HAS_CLIPPING", flag(self.has_clipping)),
-            ("IS_AFFINE", flag(self.rungs.perspective == Perspective::Affine)),
-            ("IS_TOP_LEFT", flag(self.rungs.coverage != Coverage::Float)),
-            ("FLOAT_VIEWPORT", flag(self.rungs.vertex == Vertex::Viewport)),
-            ("SUBPIXEL_BITS", self.rungs.coverage.subpixel_bits().into()),
+            ("IS_AFFINE", flag(self.options.perspective == Perspective::Affine)),
+            ("IS_TOP_LEFT", flag(self.options.coverage != Coverage::Float)),
+            ("FLOAT_VIEWPORT", flag(self.options.vertex_transform == VertexTransform::Viewport)),
+            ("SUBPIXEL_BITS", self.options.coverage.subpixel_bits().into()),
             ("DROPPED_FLAGS", self.dropped_flags().into()),
-            ("IS_STRAIGHT", flag(self.listed_tiles)),
-            ("HAS_ROUNDS", flag(self.rungs.culling == Culling::TwoPass)),
-            ("IS_COUNTING", flag(pass != Pass::Cull(Round::Seen))),
-            ("IS_OVER", flag(pass == Pass::Rounds { is_over: true })),
+            ("IS_BRANCHLESS", flag(self.listed_tiles)),
+            ("IS_TWO_PASS", flag(self.options.culling == Culling::TwoPass)),
+            ("COUNTS_CULLED", flag(pass != Pass::Cull(Round::Seen))),
+            ("REOPENS_QUEUES", flag(pass == Pass::Rounds { is_over: true })),
             ("MESHLET_TRIANGLES", MESHLET_TRIANGLES as f64),
-            ("IS_PIECES", flag(pass == Pass::Decide(Entries::Pieces))),
-            ("DECISIONS", self.decisions.into()),
+            ("IS_CLIPPED_TRIANGLES", flag(pass == Pass::SampleSetup(Entries::ClippedTriangles))),
+            ("SAMPLE_SETUPS", self.sample_setups.into()),
             ("SHAPE", (self.shape as u32).into()),
-            ("LIST_GROUP", self.list_group.into()),
+            ("GROUP_SIZE", self.group_size.into()),
             ("TILE_SIDE", self.tile_side().into()),
-            ("SMALL_SAMPLES", self.small_samples.into()),
-            ("SMALL_SIDE", self.small_side.into()),
-            ("DISC_SHARES", if pass.phase().is_some_and(Phase::is_bin) { 1 } else { self.disc_shares }.into()),
-            ("LIST_WALK", self.list_walk.into()),
+            ("MAX_SMALL_SAMPLES", self.max_small_samples.into()),
+            ("MAX_SMALL_SIDE", self.max_small_side.into()),
+            ("INVOCATIONS_PER_TRIANGLE", if pass.phase().is_some_and(Phase::is_bin) { 1 } else { self.invocations_per_triangle }.into()),
+            ("MAX_LIST_ENTRIES", self.max_list_entries.into()),
             ("EARLY_LOAD", flag(self.early_load)),
             ("ID_BITS", self.id_bits.into()),
-            ("SCALE_SIDE", self.rungs.scale.factor().max(1.0)),
-            ("KEY_BITS", self.key_span().0.into()),
-            ("KEY_LEAST", self.key_span().1.into()),
+            ("SCALE_SIDE", self.options.render_scale.factor().max(1.0)),
+            ("DEPTH_KEY_BITS", self.key_span().0.into()),
+            ("MIN_DEPTH_KEY", self.key_span().1.into()),
             ("IS_LARGE", flag(matches!(pass, Pass::BinLarge(_)))),
-            ("IS_TICKETED", flag(self.order == Order::Scheduler)),
-            ("IS_FIRST", flag(self.is_first(pass))),
-            ("IS_AGAIN", flag(self.is_again(pass))),
-            ("TAPS_SIDE", self.rungs.taps.side().into()),
-            ("STEEPEST", STEEPEST),
-            ("SUM_WORDS", self.rungs.sums.words().into()),
+            ("TESTS_EVERY_SAMPLE", flag(self.order == Order::Scheduler)),
+            ("IS_FIRST_VISIT", flag(self.is_first(pass))),
+            ("USES_SECOND_COUNTER", flag(self.is_again(pass))),
+            ("SHADOW_TAPS_SIDE", self.options.shadow_taps.side().into()),
+            ("MAX_SHADOW_SLOPE", MAX_SHADOW_SLOPE),
+            ("SUM_WORDS", self.options.xray_sums.words().into()),
             ("SUM_BITS", if let Some(Layers::Xray { bits }) = self.layers { bits.into() } else { 0.0 }),
         ]
     }
@@ -368,13 +371,13 @@ impl fmt::Display for KernelKey {
             Fetch::Direct => "direct",
             Fetch::Indexed => "indexed",
         };
-        let visibility = match self.rungs.visibility {
+        let visibility = match self.options.visibility {
             Visibility::Packed32 => format!("packed32/{}", self.id_bits),
             other => other.name().into(),
         };
-        let coverage = self.rungs.coverage.name();
-        write!(f, "raster[fetch={fetch} coverage={coverage} visibility={visibility} small={}", self.small_samples)?;
-        for (axis, word) in self.rungs.unusual().filter(|(axis, _)| !matches!(axis.name, "coverage" | "visibility")) {
+        let coverage = self.options.coverage.name();
+        write!(f, "raster[fetch={fetch} coverage={coverage} visibility={visibility} small={}", self.max_small_samples)?;
+        for (axis, word) in self.options.unusual().filter(|(axis, _)| !matches!(axis.name, "coverage" | "visibility")) {
             write!(f, " {}={word}", axis.name)?;
         }
         match self.layers {
@@ -391,10 +394,10 @@ impl fmt::Display for KernelKey {
             ("mask", self.has_mask),
             ("planes", self.has_planes),
             ("joints", self.has_joints),
-            ("shapes", self.has_shapes),
+            ("shapes", self.has_morph_targets),
             ("particles", self.has_particles),
             ("moved", self.moves()),
-            ("parted", self.parts_corners()),
+            ("parted", self.unshares_vertices()),
             ("dots", self.dots.is_some()),
             ("image", self.has_image()),
             ("orthographic", !self.perspective),

@@ -11,13 +11,13 @@ pub enum Pass {
     /// The vertices of those alone.
     ProjectMeshlets,
     /// The farthest depth of every tile, behind which meshlets hide.
-    Farthest,
+    DepthReduce,
     /// The end of the first round, or of both.
     Rounds {
         is_over: bool,
     },
     /// What sample effects settle about triangles, or about pieces.
-    Decide(Entries),
+    SampleSetup(Entries),
     /// Samples of every block of triangles.
     OrderSums,
     /// In which triangle the limit falls.
@@ -61,7 +61,7 @@ pub enum Pass {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Entries {
     Triangles,
-    Pieces,
+    ClippedTriangles,
 }
 
 /// In which round of a frame meshlets are culled.
@@ -80,29 +80,29 @@ pub enum Round {
 /// What a raster pass writes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Phase {
-    /// Key and owner at once.
+    /// Key and triangle id at once.
     Packed,
-    /// Owner and what fits of the key, in one word.
+    /// Triangle id and what fits of the key, in one word.
     Packed32,
     /// The nearest key.
     Depth,
-    /// The owner of the nearest key.
-    Owner,
+    /// The triangle id of the nearest key.
+    TriangleId,
     /// Layers per pixel: for the heat map, and for the judge.
     Count,
     /// Weighted colours of all layers.
     Sum,
-    /// Key and owner without atomics.
+    /// Key and triangle id without atomics.
     Race,
     /// Samples per triangle.
     Tally,
     /// The samples of the triangle in which the drawing stops.
-    Straddle,
+    BoundaryTriangle,
     /// How many triangles each tile has to look at.
     BinCount,
     /// Which ones.
     BinFill,
-    /// Key and owner, tile by tile.
+    /// Key and triangle id, tile by tile.
     Tiles,
 }
 
@@ -112,7 +112,7 @@ impl Phase {
         matches!(self, Self::BinCount | Self::BinFill)
     }
 
-    /// Is it one of the three that together find owners tile by tile?
+    /// Is it one of the three that together find triangle ids tile by tile?
     pub const fn is_tiled(self) -> bool {
         self.is_bin() || matches!(self, Self::Tiles)
     }
@@ -127,9 +127,9 @@ impl Pass {
             Self::Project => "project",
             Self::Cull(_) => "cull",
             Self::ProjectMeshlets => "project_meshlets",
-            Self::Farthest => "farthest",
+            Self::DepthReduce => "depth_reduce",
             Self::Rounds { .. } => "rounds",
-            Self::Decide(_) => "decide",
+            Self::SampleSetup(_) => "decide",
             Self::OrderSums => "order_sums",
             Self::OrderLimit => "order_limit",
             Self::OrderRanks => "order_ranks",
@@ -180,7 +180,7 @@ impl Pass {
     /// Label for profilers and tables.
     pub fn label(self) -> String {
         match self {
-            Self::Decide(Entries::Pieces) => return "decide pieces".into(),
+            Self::SampleSetup(Entries::ClippedTriangles) => return "decide pieces".into(),
             Self::Cull(Round::Seen) => return "cull seen".into(),
             Self::Cull(Round::Behind) => return "cull behind".into(),
             _ => {}
@@ -194,10 +194,10 @@ impl Pass {
             Some(Phase::BinCount) => format!("{stem} count tiles"),
             Some(Phase::BinFill) => format!("{stem} list tiles"),
             Some(Phase::Depth) => format!("{} depth", self.stem()),
-            Some(Phase::Owner) => format!("{} owner", self.stem()),
+            Some(Phase::TriangleId) => format!("{} triangle id", self.stem()),
             Some(Phase::Count) => format!("{} count", self.stem()),
             Some(Phase::Tally) => format!("{} tally", self.stem()),
-            Some(Phase::Straddle) => format!("{} straddle", self.stem()),
+            Some(Phase::BoundaryTriangle) => format!("{} straddle", self.stem()),
             Some(Phase::Sum) => format!("{} sum", self.stem()),
             Some(Phase::Race) => format!("{} race", self.stem()),
             Some(Phase::Packed | Phase::Packed32 | Phase::Tiles) | None => self.stem().into(),

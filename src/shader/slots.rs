@@ -2,11 +2,11 @@
 
 use super::key::{Fetch, KernelKey, Layout, Order, Pass, Phase, Round};
 use crate::{
+    accuracy::{DepthFormat, DotCulling, SampleCounter, VertexTransform},
     effects::{
-        dots::Strung,
+        dots::LineSource,
         hooks::{Layers, Shape},
     },
-    ladder::{Counting, Depth, DotWay, Vertex},
 };
 
 impl KernelKey {
@@ -17,13 +17,13 @@ impl KernelKey {
             Fetch::Indexed => "indexed",
         };
         let queues = if self.has_queues() { "kept" } else { "none" };
-        let is_marking =
-            self.listed_tiles && !matches!(pass.phase(), Some(Phase::Owner | Phase::Count | Phase::Sum | Phase::Tally | Phase::Straddle));
+        let is_marking = self.listed_tiles
+            && !matches!(pass.phase(), Some(Phase::TriangleId | Phase::Count | Phase::Sum | Phase::Tally | Phase::BoundaryTriangle));
         let marks = if is_marking { "kept" } else { "none" };
         let pixels = if self.listed_tiles { "listed" } else { "all" };
         let pieces = if self.has_clipping { "kept" } else { "none" };
-        let records = if self.parts_corners() { "own" } else { "shared" };
-        let movement = match (self.moves(), self.parts_corners()) {
+        let records = if self.unshares_vertices() { "own" } else { "shared" };
+        let movement = match (self.moves(), self.unshares_vertices()) {
             (false, _) => "none",
             (true, false) => "vertices",
             (true, true) => "triangles",
@@ -33,11 +33,11 @@ impl KernelKey {
         let shading = match self.layers {
             Some(Layers::Xray { .. }) => "average",
             Some(Layers::Overdraw) => "heat",
-            Some(Layers::Race) | None => "owner",
+            Some(Layers::Race) | None => "triangle_id",
         };
         let coverage = match self.shape {
             Shape::Boxes => "boxes",
-            _ if self.rungs.coverage.is_float() => "float",
+            _ if self.options.coverage.is_float() => "float",
             _ => "fixed",
         };
         let layout = match self.layout() {
@@ -52,35 +52,41 @@ impl KernelKey {
             Shape::Triangles | Shape::Boxes => "small",
         };
         let walk = if is_bin { "tiles" } else { "samples" };
-        let keys = if self.rungs.depth == Depth::Integer { "integer" } else { "float" };
+        let keys = if self.options.depth == DepthFormat::Integer { "integer" } else { "float" };
         let mask = match (self.has_mask, pass) {
             (false, _) => "none",
-            (true, Pass::Decide(_)) => "settled",
+            (true, Pass::SampleSetup(_)) => "settled",
             (true, _) => "asked",
         };
         let mut slots = vec![
             ("bytes", format!("slots/bytes/{}", if matches!(pass, Pass::Particles | Pass::Skin) { "write" } else { "read" })),
-            ("shapes", format!("slots/shapes/{}", if self.has_shapes { "kept" } else { "none" })),
-            ("skinning", format!("slots/skinning/{}", if self.has_joints { self.rungs.skinning.name() } else { "none" })),
+            ("shapes", format!("slots/shapes/{}", if self.has_morph_targets { "kept" } else { "none" })),
+            ("skinning", format!("slots/skinning/{}", if self.has_joints { self.options.skinning.name() } else { "none" })),
             ("texels", format!("slots/texels/{}", if self.has_texels { "atlas" } else { "none" })),
             ("mask", format!("slots/mask/{mask}")),
             ("corners", format!("slots/corners/{records}")),
             ("sources", format!("slots/sources/{records}")),
             (
                 "positions",
-                format!("slots/positions/{}", self.rungs.vertices.packed_bits().map_or("stored", |_| self.rungs.vertices.name())),
+                format!(
+                    "slots/positions/{}",
+                    self.options.position_format.packed_bits().map_or("stored", |_| self.options.position_format.name())
+                ),
             ),
             ("screen", format!("slots/screen/{}", if self.is_light { "picture" } else { "own" })),
             ("light", format!("slots/light/{}", if self.reads_light() { "mapped" } else { "none" })),
             ("movement", format!("slots/movement/{movement}")),
             ("shape", format!("slots/shape/{shape}")),
             ("pieces", format!("slots/pieces/{pieces}")),
-            ("records", format!("slots/records/{}", if matches!(pass, Pass::Decide(_) | Pass::OrderRanks) { "write" } else { "read" })),
+            (
+                "records",
+                format!("slots/records/{}", if matches!(pass, Pass::SampleSetup(_) | Pass::OrderRanks) { "write" } else { "read" }),
+            ),
             ("order", format!("slots/order/{}", self.order_file(pass))),
             ("ranks", format!("slots/ranks/{}", if self.order == Order::Free { "none" } else { "kept" })),
-            ("splats", format!("slots/splats/{}", if self.has_discs() { "discs" } else { "none" })),
-            ("curl", format!("slots/curl/{}", self.rungs.curl.name())),
-            ("state", format!("slots/state/{}", self.rungs.state.name())),
+            ("particle_discs", format!("slots/splats/{}", if self.has_discs() { "discs" } else { "none" })),
+            ("curl", format!("slots/curl/{}", self.options.curl_noise.name())),
+            ("state", format!("slots/state/{}", self.options.particle_storage.name())),
             ("samples", format!("slots/samples/{}", if self.has_samples { "hooked" } else { "all" })),
             ("draws", format!("slots/draws/{}", if self.single_draw { "one" } else { "many" })),
             ("fetch", format!("slots/fetch/{fetch}")),
@@ -90,18 +96,21 @@ impl KernelKey {
             ("marks", format!("slots/marks/{marks}")),
             ("pixels", format!("slots/pixels/{pixels}")),
             ("coverage", format!("slots/coverage/{coverage}")),
-            ("blocks", format!("slots/blocks/{}", if self.rungs.coverage.is_float() { "float" } else { "rebased" })),
-            ("projection", format!("slots/projection/{}", if self.rungs.vertex == Vertex::Strict { "strict" } else { "float" })),
+            ("blocks", format!("slots/blocks/{}", if self.options.coverage.is_float() { "float" } else { "rebased" })),
+            (
+                "projection",
+                format!("slots/projection/{}", if self.options.vertex_transform == VertexTransform::Strict { "strict" } else { "float" }),
+            ),
             ("keys", format!("slots/keys/{keys}")),
             ("block_keys", format!("slots/block_keys/{keys}")),
             ("cell_keys", format!("slots/cell_keys/{keys}")),
-            ("depth", format!("slots/depth/{}", self.rungs.depth.name())),
-            ("owner", format!("slots/owner/{layout}")),
-            ("scaling", format!("slots/scaling/{}", if self.rungs.scale.factor() > 1.0 { "average" } else { "between" })),
+            ("depth", format!("slots/depth/{}", self.options.depth.name())),
+            ("triangle_id", format!("slots/owner/{layout}")),
+            ("scaling", format!("slots/scaling/{}", if self.options.render_scale.factor() > 1.0 { "average" } else { "between" })),
             ("finish", format!("slots/finish/{finish}")),
             ("dots", format!("slots/dots/{}", if self.dots.is_some() { "over" } else { "none" })),
-            ("dot_ends", format!("slots/dot_ends/{}", if self.dots == Some(Strung::Polyline) { "points" } else { "edges" })),
-            ("dot_list", format!("slots/dot_list/{}", if self.rungs.dots == DotWay::Brute { "every" } else { "kept" })),
+            ("dot_ends", format!("slots/dot_ends/{}", if self.dots == Some(LineSource::Polyline) { "points" } else { "edges" })),
+            ("dot_list", format!("slots/dot_list/{}", if self.options.dot_culling == DotCulling::Brute { "every" } else { "kept" })),
             ("image", format!("slots/image/{}", if pass == Pass::Resolve { "seen" } else { "none" })),
             ("sums", format!("slots/sums/{layout}")),
             ("walk", format!("slots/walk/{walk}")),
@@ -110,18 +119,18 @@ impl KernelKey {
             ("cells", format!("slots/cells/{cells}")),
             ("delay", format!("slots/delay/{}", if self.layers == Some(Layers::Race) { "raced" } else { "none" })),
             ("shading", format!("slots/shading/{shading}")),
-            ("totals", format!("slots/totals/{}", self.rungs.sums.name())),
-            ("average", format!("slots/average/{}", self.rungs.sums.name())),
+            ("totals", format!("slots/totals/{}", self.options.xray_sums.name())),
+            ("average", format!("slots/average/{}", self.options.xray_sums.name())),
         ];
         if let Some(phase) = pass.phase() {
             let file = match phase {
                 Phase::Packed => "packed64",
                 Phase::Packed32 => "packed32",
                 Phase::Depth => "split32_depth",
-                Phase::Owner => "split32_owner",
+                Phase::TriangleId => "split32_owner",
                 Phase::Count => "count",
                 Phase::Tally => "tally",
-                Phase::Straddle => "straddle",
+                Phase::BoundaryTriangle => "straddle",
                 Phase::Sum => "sum",
                 Phase::Race => "race",
                 Phase::BinCount | Phase::BinFill | Phase::Tiles => return slots,
@@ -134,9 +143,9 @@ impl KernelKey {
     /// The file of the order slot: tickets are drawn once, where depth is decided, and counts count everything.
     fn order_file(&self, pass: Pass) -> &'static str {
         match (self.order, pass.phase()) {
-            (_, Some(Phase::Straddle)) => "straddler",
-            (Order::Free, _) | (_, Some(Phase::Tally)) | (Order::Scheduler, Some(Phase::Owner)) => "free",
-            _ if self.rungs.counting == Counting::Racy => "racy",
+            (_, Some(Phase::BoundaryTriangle)) => "straddler",
+            (Order::Free, _) | (_, Some(Phase::Tally)) | (Order::Scheduler, Some(Phase::TriangleId)) => "free",
+            _ if self.options.sample_counter == SampleCounter::Racy => "racy",
             (Order::Submission, _) => "submission",
             (Order::Scheduler, _) => "scheduler",
         }

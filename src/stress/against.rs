@@ -1,17 +1,17 @@
 //! Against the adapter's own rasterizer: the same snapped positions through its render pipeline.
 
 use super::{
-    Case, Expectation, Halt, Lab,
-    aim::near_miss,
+    Case, CaseContext, EarlyEnd, Expectation,
+    adversarial::near_miss_triangle,
     hold,
-    scenes::{hand_made, pixel_view, units},
+    scenes::{pixel_view, scene_of_meshes, units},
 };
-use crate::frame::NO_OWNER;
+use crate::frame::NO_TRIANGLE;
 
 pub const CASES: &[Case] = &[Case {
     number: 32,
     name: "hardware-cross-check",
-    about: "the same snapped positions through the render pipeline, samples on an edge masked: the same owners",
+    about: "the same snapped positions through the render pipeline, samples on an edge masked: the same triangle ids",
     expectation: Expectation::Exact,
     run: hardware_cross_check,
 }];
@@ -22,16 +22,16 @@ const SIDE: u32 = 64;
 type Flat = ([[i32; 2]; 3], f32);
 
 /// The witness's picture: exact up to its own snap, since a picture of a power of two loses no bit on the way.
-fn witness(lab: &Lab, triangles: &[Flat]) -> Result<Vec<u32>, Halt> {
+fn witness(context: &CaseContext, triangles: &[Flat]) -> Result<Vec<u32>, EarlyEnd> {
     let half = 128.0 * SIDE as f32;
     let place = |[x, y]: [i32; 2], depth: f32| [x as f32 / half - 1.0, 1.0 - y as f32 / half, depth];
     let corners: Vec<_> = triangles.iter().flat_map(|(corners, depth)| corners.map(|corner| place(corner, *depth))).collect();
-    Ok(lab.renderer.hardware_owners([SIDE, SIDE], &corners)?)
+    Ok(context.renderer.hardware_ids([SIDE, SIDE], &corners)?)
 }
 
 /// Units to which the witness snaps: 1 where edges one unit from a sample are told apart, else 16, since Vulkan asks for no
 /// more than 4 bits below the pixel.
-fn witness_grid(lab: &Lab) -> Result<i32, Halt> {
+fn witness_grid(context: &CaseContext) -> Result<i32, EarlyEnd> {
     let sample = 256 * 32 + 128;
     let mut bars = Vec::new();
     // A bar to a row, which ends or begins so many units from the sample.
@@ -42,9 +42,9 @@ fn witness_grid(lab: &Lab) -> Result<i32, Halt> {
             bars.extend([([a, b, c], 0.5), ([a, c, d], 0.5)]);
         }
     }
-    let owners = witness(lab, &bars)?;
+    let triangle_ids = witness(context, &bars)?;
     let is_fine = (-8..=8).enumerate().all(|(row, from_sample)| {
-        let drawn = [0, 1].map(|half| owners[(2 * row + half) * SIDE as usize + 32] != NO_OWNER);
+        let drawn = [0, 1].map(|half| triangle_ids[(2 * row + half) * SIDE as usize + 32] != NO_TRIANGLE);
         // Its left end is in, its right end is out.
         drawn == [from_sample > 0, from_sample <= 0]
     });
@@ -67,40 +67,41 @@ fn mask(triangles: &[Flat]) -> Vec<bool> {
     masked
 }
 
-fn hardware_cross_check(lab: &mut Lab) -> Result<(), Halt> {
-    let grid = witness_grid(lab)?;
+fn hardware_cross_check(context: &mut CaseContext) -> Result<(), EarlyEnd> {
+    let grid = witness_grid(context)?;
     let view = pixel_view(SIDE, SIDE);
     let side = 256 * SIDE as i32;
     let (mut masked_samples, mut samples) = (0, 0);
     for (extent, count) in [(700, 1000), (3000, 600), (9000, 200), (16_384, 60)] {
         for picture in 0..4u32 {
-            let mut dice = lab.dice(extent as u32 ^ picture.wrapping_mul(0x27d4_eb2f));
+            let mut rng = context.rng(extent as u32 ^ picture.wrapping_mul(0x27d4_eb2f));
             let mut flat = |i: usize| loop {
                 // Inside the picture: what a pipeline clips it also moves.
-                let corners = near_miss(&mut dice, extent, [SIDE as i32; 2]).map(|corner| corner.map(|v| (v + grid / 2) / grid * grid));
+                let corners =
+                    near_miss_triangle(&mut rng, extent, [SIDE as i32; 2]).map(|corner| corner.map(|v| (v + grid / 2) / grid * grid));
                 if corners.as_flattened().iter().all(|v| (0..=side).contains(v)) {
                     return (corners, (i + 1) as f32 / 1024.0);
                 }
             };
             let triangles: Vec<Flat> = (0..count).map(&mut flat).collect();
             let what = format!("extent {extent} units, picture {picture}");
-            let ours = lab.everywhere(&hand_made(&[units(&triangles)]), &view, &what)?;
-            let theirs = witness(lab, &triangles)?;
+            let ours = context.exact_on_all(&scene_of_meshes(&[units(&triangles)]), &view, &what)?;
+            let theirs = witness(context, &triangles)?;
             let masked = mask(&triangles);
             masked_samples += masked.iter().filter(|is_masked| **is_masked).count();
             samples += masked.len();
-            let pixels = ours.frame.owner.iter().zip(&theirs).zip(&masked).enumerate();
+            let pixels = ours.frame.triangle_id.iter().zip(&theirs).zip(&masked).enumerate();
             let wrong: Vec<_> = pixels.filter(|(_, ((a, b), is_masked))| a != b && !**is_masked).map(|(i, (pair, _))| (i, pair)).collect();
             hold!(
                 wrong.is_empty(),
-                "{what}: {} pixels outside the mask have another owner in the render pipeline, first (pixel, (ours, theirs)) {:?}",
+                "{what}: {} pixels outside the mask have another triangle id in the render pipeline, first (pixel, (ours, theirs)) {:?}",
                 wrong.len(),
                 wrong[0]
             );
-            hold!(theirs.iter().any(|owner| *owner != NO_OWNER), "{what}: the render pipeline drew nothing");
+            hold!(theirs.iter().any(|triangle_id| *triangle_id != NO_TRIANGLE), "{what}: the render pipeline drew nothing");
         }
     }
     hold!(masked_samples > 0 && masked_samples < samples / 2, "{masked_samples} of {samples} samples are masked");
-    lab.note(format!("{masked_samples} of {samples} samples lie on an edge and are masked; positions on 1/{} px", 256 / grid));
+    context.note(format!("{masked_samples} of {samples} samples lie on an edge and are masked; positions on 1/{} px", 256 / grid));
     Ok(())
 }

@@ -5,10 +5,10 @@ use std::sync::Arc;
 use glam::DVec3;
 
 use super::{
-    Case, Expectation, Halt, Lab, hold,
-    lab::once,
-    pinned,
-    scenes::{hand_made, pixel_view, seen, sheet, square_perspective, units},
+    Case, CaseContext, EarlyEnd, Expectation,
+    context::once,
+    hold, pinned,
+    scenes::{pixel_view, scene_of_meshes, seen, sheet, square_perspective, units},
     stack,
 };
 use crate::{
@@ -40,10 +40,10 @@ pub const CASES: &[Case] = &[
     },
 ];
 
-fn guard_band(lab: &mut Lab) -> Result<(), Halt> {
+fn guard_band(context: &mut CaseContext) -> Result<(), EarlyEnd> {
     let view = pixel_view(16, 16);
     let center = [2125, 1971];
-    let rung = pinned(lab.quick_rung());
+    let option = pinned(context.quick_option());
     let (mut whole, mut cut) = (0, 0);
     // Each coordinate of four corners at the end of the guard band or one unit beyond.
     for beyond in 0..256 {
@@ -53,12 +53,12 @@ fn guard_band(lab: &mut Lab) -> Result<(), Halt> {
         };
         let [a, b, c, d] = [corner(0, [-1, -1]), corner(1, [1, -1]), corner(2, [1, 1]), corner(3, [-1, 1])];
         let faces = [[center, a, b], [center, b, c], [center, c, d], [center, d, a]];
-        let scene = hand_made(&[units(&faces.map(|face| (face, 0.5)))]);
+        let scene = scene_of_meshes(&[units(&faces.map(|face| (face, 0.5)))]);
         let what = format!("corners beyond: {beyond:08b}");
         let capture = match beyond {
-            // All inside, one corner beyond in either axis, all beyond: on every rung.
-            0 | 1 | 2 | 255 => lab.everywhere(&scene, &view, &what)?,
-            _ => lab.exact(&scene, &view, &stack(&[]), &rung, &what)?.0,
+            // All inside, one corner beyond in either axis, all beyond: on every option.
+            0 | 1 | 2 | 255 => context.exact_on_all(&scene, &view, &what)?,
+            _ => context.exact(&scene, &view, &stack(&[]), &option, &what)?.0,
         };
         once(&capture, &what)?;
         for (vertex, [x, y]) in capture.geometry.vertices.iter().zip(faces.as_flattened()) {
@@ -73,21 +73,21 @@ fn guard_band(lab: &mut Lab) -> Result<(), Halt> {
     Ok(())
 }
 
-fn w_around_zero(lab: &mut Lab) -> Result<(), Halt> {
+fn w_around_zero(context: &mut CaseContext) -> Result<(), EarlyEnd> {
     let near = 1.0f32 / 128.0;
     let step = |v: f32, by: i32| f32::from_bits(v.to_bits().wrapping_add_signed(by));
     let depths = [0.0, 1e-30, -1e-30, near, step(near, 1), step(near, -1), 1.0, -1.0, 0.5, 1e3, -1e3];
     for round in 1..=6 {
-        let mut dice = lab.dice(round);
+        let mut rng = context.rng(round);
         let mut corner = || {
-            let w = depths[dice.between(0, depths.len() as i32) as usize];
+            let w = depths[rng.between(0, depths.len() as i32) as usize];
             let spread = if w.abs() > 1.0 { 900.0 } else { 2.0 };
-            [dice.real(-spread, spread) as f32, dice.real(-spread, spread) as f32, -w]
+            [rng.real(-spread, spread) as f32, rng.real(-spread, spread) as f32, -w]
         };
         let positions: Vec<_> = (0..180).map(|_| corner()).collect();
         let view = square_perspective(64, 64, near.into());
         let what = format!("round {round}");
-        let capture = lab.everywhere(&hand_made(&[sheet(positions)]), &view, &what)?;
+        let capture = context.exact_on_all(&scene_of_meshes(&[sheet(positions)]), &view, &what)?;
         let counters = capture.frame.counters;
         hold!(counters.clipped > 20 && capture.frame.covered() > 2000, "{what}: {counters:?}");
         let wild = capture.geometry.vertices.iter().find(|v| !(v.depth.is_finite() && v.inv_w.is_finite() && v.inv_w <= 129.0));
@@ -96,12 +96,12 @@ fn w_around_zero(lab: &mut Lab) -> Result<(), Halt> {
     Ok(())
 }
 
-fn near_plane_sweep(lab: &mut Lab) -> Result<(), Halt> {
-    let mut shell = Scene::clone(&*lab.scene("sphere?triangles=300")?);
+fn near_plane_sweep(context: &mut CaseContext) -> Result<(), EarlyEnd> {
+    let mut shell = Scene::clone(&*context.scene("sphere?triangles=300")?);
     shell.materials[0].double_sided = true;
-    let ground = hand_made(&[sheet(vec![[-50.0, -0.5, -50.0], [-50.0, -0.5, 50.0], [50.0, -0.5, 50.0]])]);
+    let ground = scene_of_meshes(&[sheet(vec![[-50.0, -0.5, -50.0], [-50.0, -0.5, 50.0], [50.0, -0.5, 50.0]])]);
     let shell = Arc::new(shell);
-    let rung = pinned(lab.quick_rung());
+    let option = pinned(context.quick_option());
     let (mut cut, mut worst) = (0, 0);
     for step in 0..1000 {
         let way = f64::from(step) / 1000.0;
@@ -109,13 +109,13 @@ fn near_plane_sweep(lab: &mut Lab) -> Result<(), Halt> {
         let eye = DVec3::new(0.3 - 0.4 * way, 0.9 - 1.6 * way, 1.7 - 1.4 * way);
         let camera = Camera { eye, target: DVec3::new(0.1, -0.2, -1.0), near_m: 0.1, ..Camera::default() };
         let view = seen(scene, &camera, [48, 32]);
-        let (capture, verdict) = lab.exact(scene, &view, &stack(&["depth"]), &rung, &format!("step {step}"))?;
+        let (capture, verdict) = context.exact(scene, &view, &stack(&["depth"]), &option, &format!("step {step}"))?;
         cut += u32::from(capture.frame.counters.clipped > 0);
         worst = worst.max(verdict.accuracy.explained_by_snap);
     }
     hold!(cut > 300, "{cut} pictures were clipped");
     // Clipped outlines may move by less than a pixel: at most a row along the longest cut.
     hold!(worst <= 48, "{worst} pixels differ from the oracle's own picture");
-    lab.note(format!("at most {worst} pixels of a picture differ from the oracle's own along a cut"));
+    context.note(format!("at most {worst} pixels of a picture differ from the oracle's own along a cut"));
     Ok(())
 }

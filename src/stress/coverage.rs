@@ -1,12 +1,11 @@
 //! Coverage: which samples triangles of every size and shape own.
 
 use super::{
-    Case, Expectation, Halt, Lab,
-    aim::{near_line, near_miss, troubled_sheet},
-    hold,
-    lab::{equal, layers, once},
-    pinned,
-    scenes::{Dice, Part, hand_made, pixel_view, sheet, truth, units},
+    Case, CaseContext, EarlyEnd, Expectation,
+    adversarial::{near_collinear_triangle, near_miss_triangle, near_tie_mesh},
+    context::{equal, layers, once},
+    hold, pinned,
+    scenes::{Rng, SimpleMesh, pixel_view, reference, scene_of_meshes, sheet, units},
     stack, tunings,
 };
 use crate::{math::GUARD_BAND, measure::compare};
@@ -63,81 +62,86 @@ pub const CASES: &[Case] = &[
     },
 ];
 
-fn translation(lab: &mut Lab) -> Result<(), Halt> {
-    let mut dice = lab.dice(11);
-    let soup: Vec<_> = (0..60).map(|i| (near_miss(&mut dice, [600, 8192, 40_000][i % 3], [32, 32]), 0.1 + 0.01 * i as f32)).collect();
+fn translation(context: &mut CaseContext) -> Result<(), EarlyEnd> {
+    let mut rng = context.rng(11);
+    let soup: Vec<_> =
+        (0..60).map(|i| (near_miss_triangle(&mut rng, [600, 8192, 40_000][i % 3], [32, 32]), 0.1 + 0.01 * i as f32)).collect();
     let view = pixel_view(128, 128);
     let mut drawn = |by: [i32; 2]| {
         let moved: Vec<_> = soup.iter().map(|(corners, z)| (corners.map(|[x, y]| [x + 256 * by[0], y + 256 * by[1]]), *z)).collect();
-        lab.everywhere(&hand_made(&[units(&moved)]), &view, &format!("moved by {by:?}"))
+        context.exact_on_all(&scene_of_meshes(&[units(&moved)]), &view, &format!("moved by {by:?}"))
     };
     let still = drawn([0, 0])?;
     for by in [[1, 0], [0, 1], [31, 17], [64, 96]] {
         let moved = drawn(by)?;
         for (x, y) in (0..128 - by[0]).flat_map(|x| (0..128 - by[1]).map(move |y| (x, y))) {
             let (from, to) = ((y * 128 + x) as usize, ((y + by[1]) * 128 + x + by[0]) as usize);
-            let found = (moved.frame.owner[to], layers(&moved)[to]);
-            equal(&found, &(still.frame.owner[from], layers(&still)[from]), &format!("moved by {by:?}: owner and hits of {x}, {y}"))?;
+            let found = (moved.frame.triangle_id[to], layers(&moved)[to]);
+            equal(
+                &found,
+                &(still.frame.triangle_id[from], layers(&still)[from]),
+                &format!("moved by {by:?}: triangle id and hits of {x}, {y}"),
+            )?;
         }
     }
     Ok(())
 }
 
-fn sizes(lab: &mut Lab) -> Result<(), Halt> {
+fn sizes(context: &mut CaseContext) -> Result<(), EarlyEnd> {
     for exponent in -3..=9 {
         let size = libm::pow(10.0, f64::from(exponent)) as f32;
         let (x, y) = (32.3f32, 31.7f32);
-        let scene = hand_made(&[sheet(vec![[x, y - size, 0.5], [x + size, y, 0.5], [x, y + size, 0.5]])]);
-        let capture = lab.everywhere(&scene, &pixel_view(64, 64), &format!("10^{exponent} px"))?;
+        let scene = scene_of_meshes(&[sheet(vec![[x, y - size, 0.5], [x + size, y, 0.5], [x, y + size, 0.5]])]);
+        let capture = context.exact_on_all(&scene, &pixel_view(64, 64), &format!("10^{exponent} px"))?;
         for (pixel, &hits) in layers(&capture).iter().enumerate() {
             let (px, py) = ((pixel % 64) as f32 + 0.5, (pixel / 64) as f32 + 0.5);
-            let slack = (size - (py - y).abs() - (px - x)).min(px - x);
-            if slack.abs() > 1.0 / 128.0 {
-                equal(&hits, &u32::from(slack > 0.0), &format!("10^{exponent} px, hits of pixel {pixel}"))?;
+            let error_bound = (size - (py - y).abs() - (px - x)).min(px - x);
+            if error_bound.abs() > 1.0 / 128.0 {
+                equal(&hits, &u32::from(error_bound > 0.0), &format!("10^{exponent} px, hits of pixel {pixel}"))?;
             }
         }
     }
     Ok(())
 }
 
-fn dense_grids(lab: &mut Lab) -> Result<(), Halt> {
+fn dense_grids(context: &mut CaseContext) -> Result<(), EarlyEnd> {
     for query in ["grid?cell=0.1&width=48&height=48", "grid?cell=0.4&width=96&height=96", "grid?cell=1&lattice=16&width=96&height=96"] {
-        let grid = lab.scene(query)?;
+        let grid = context.scene(query)?;
         let size = if query.contains("48") { [48, 48] } else { [96, 96] };
-        let capture = lab.everywhere(&grid, &lab.view(&grid, size), query)?;
+        let capture = context.exact_on_all(&grid, &context.view(&grid, size), query)?;
         once(&capture, query)?;
     }
     Ok(())
 }
 
-fn slivers(lab: &mut Lab) -> Result<(), Halt> {
-    let mut dice = lab.dice(17);
+fn slivers(context: &mut CaseContext) -> Result<(), EarlyEnd> {
+    let mut rng = context.rng(17);
     let guard = GUARD_BAND;
     for height in 1..=8 {
         // Needles of a million to one, back to back: above them, below them and they themselves cover each sample once.
-        let (left, right) = (dice.between(2000, 14_000), dice.between(2000, 14_000));
+        let (left, right) = (rng.between(2000, 14_000), rng.between(2000, 14_000));
         let [a, b] = [[-guard, left], [guard, right]];
         let [c, d] = [[-guard, left + height], [guard, right + height]];
         let [e, f, g, h] = [[-guard, -guard], [guard, -guard], [-guard, guard], [guard, guard]];
         let faces = [[e, f, a], [f, b, a], [a, b, c], [b, d, c], [c, d, g], [d, h, g]];
         let what = format!("height {height} of 256");
-        let capture = lab.everywhere(&hand_made(&[units(&faces.map(|face| (face, 0.5)))]), &pixel_view(64, 64), &what)?;
+        let capture = context.exact_on_all(&scene_of_meshes(&[units(&faces.map(|face| (face, 0.5)))]), &pixel_view(64, 64), &what)?;
         once(&capture, &what)?;
     }
-    let needles = lab.scene("slivers?n=200&length=30000")?;
-    lab.everywhere(&needles, &lab.view(&needles, [256, 256]), "needles")?;
+    let needles = context.scene("slivers?n=200&length=30000")?;
+    context.exact_on_all(&needles, &context.view(&needles, [256, 256]), "needles")?;
     Ok(())
 }
 
-fn class_borders(lab: &mut Lab) -> Result<(), Halt> {
-    let mut dice = lab.dice(23);
+fn class_borders(context: &mut CaseContext) -> Result<(), EarlyEnd> {
+    let mut rng = context.rng(23);
     let px = 256;
     // Sides of boxes at the borders of all classes: 8 px and 32 px of one invocation, 64 px, 128 px of extent, and where i32 ends.
     for extent in [8 * px, 11 * px, 32 * px, 33 * px, 64 * px, 65 * px, 128 * px - 1, 128 * px, 128 * px + 1, 46_340, 46_341, 65_536] {
         let mut triangles = Vec::new();
         for i in 0..24 {
-            let at = [dice.between(-extent / 2, 128 * px), dice.between(-extent / 2, 128 * px)];
-            let [near, far] = [dice.between(0, extent + 1), dice.between(0, extent + 1)];
+            let at = [rng.between(-extent / 2, 128 * px), rng.between(-extent / 2, 128 * px)];
+            let [near, far] = [rng.between(0, extent + 1), rng.between(0, extent + 1)];
             let mut corners = [[0, 0], [extent, near], [far, extent]];
             if i % 2 == 1 {
                 corners = corners.map(|[x, y]| [extent - x, y]);
@@ -148,7 +152,7 @@ fn class_borders(lab: &mut Lab) -> Result<(), Halt> {
             }
             triangles.push((corners.map(|[x, y]| [x + at[0], y + at[1]]), 0.2 + 0.01 * i as f32));
         }
-        lab.everywhere(&hand_made(&[units(&triangles)]), &pixel_view(128, 128), &format!("extent {extent} units"))?;
+        context.exact_on_all(&scene_of_meshes(&[units(&triangles)]), &pixel_view(128, 128), &format!("extent {extent} units"))?;
     }
     // Boxes of 63 to 65 and 127 to 129 samples, the most that one invocation walks.
     let boxes = [(7, 9), (8, 8), (5, 13), (1, 127), (8, 16), (3, 43), (64, 2), (2, 65)];
@@ -159,12 +163,16 @@ fn class_borders(lab: &mut Lab) -> Result<(), Halt> {
         };
         [(place(false), 0.2 + 0.02 * i as f32), (place(true), 0.21 + 0.02 * i as f32)]
     });
-    lab.everywhere(&hand_made(&[units(&triangles.collect::<Vec<_>>())]), &pixel_view(128, 128), "boxes of 63 to 130 samples")?;
+    context.exact_on_all(
+        &scene_of_meshes(&[units(&triangles.collect::<Vec<_>>())]),
+        &pixel_view(128, 128),
+        "boxes of 63 to 130 samples",
+    )?;
     Ok(())
 }
 
-fn near_misses(lab: &mut Lab) -> Result<(), Halt> {
-    let rung = lab.quick_rung();
+fn near_misses(context: &mut CaseContext) -> Result<(), EarlyEnd> {
+    let option = context.quick_option();
     let view = pixel_view(64, 64);
     // Extent in units, triangles in a picture, pictures: a million triangles altogether.
     for (extent, count, pictures) in [
@@ -177,53 +185,57 @@ fn near_misses(lab: &mut Lab) -> Result<(), Halt> {
         (8_388_607, 200, 4),
     ] {
         for picture in 1..=pictures {
-            let mut dice = lab.dice((picture as u32).wrapping_mul(0x9e37_79b1) ^ extent as u32);
-            let depth = |dice: &mut Dice| dice.between(1, 1024) as f32 / 1024.0;
-            let triangles: Vec<_> = (0..count).map(|_| (near_miss(&mut dice, extent, [64, 64]), depth(&mut dice))).collect();
-            let scene = hand_made(&[units(&triangles)]);
+            let mut rng = context.rng((picture as u32).wrapping_mul(0x9e37_79b1) ^ extent as u32);
+            let depth = |rng: &mut Rng| rng.between(1, 1024) as f32 / 1024.0;
+            let triangles: Vec<_> = (0..count).map(|_| (near_miss_triangle(&mut rng, extent, [64, 64]), depth(&mut rng))).collect();
+            let scene = scene_of_meshes(&[units(&triangles)]);
             let what = format!("extent {extent} units, picture {picture}");
             let capture = if count > 2000 {
-                lab.renderer.set_tuning(tunings()[2]);
-                lab.exact(&scene, &view, &stack(&[]), &pinned(rung), &what)?.0
+                context.renderer.set_tuning(tunings()[2]);
+                context.exact(&scene, &view, &stack(&[]), &pinned(option), &what)?.0
             } else {
-                lab.everywhere(&scene, &view, &what)?
+                context.exact_on_all(&scene, &view, &what)?
             };
             // Nothing moved on the way: the lattice is exact in f32.
             let placed = triangles.iter().flat_map(|(corners, _)| *corners);
             let moved = capture.geometry.vertices.iter().zip(placed).find(|(v, [x, y])| v.flags != 0 || (v.x, v.y) != (*x, *y));
             hold!(moved.is_none(), "{what}: a vertex is not where it was put: {moved:?}");
-            // Flat triangles have their corners' depth, so no owner is left to a band.
-            let truth = truth(&scene, &view)?;
-            equal(&compare::owners(&capture.frame.owner, &truth.owners()), &Default::default(), &format!("{what}: owners"))?;
-            equal(&compare::owners(layers(&capture), &truth.layers()), &Default::default(), &format!("{what}: hits"))?;
+            // Flat triangles have their corners' depth, so no triangle id is left to a band.
+            let reference = reference(&scene, &view)?;
+            equal(
+                &compare::triangle_ids(&capture.frame.triangle_id, &reference.triangle_ids()),
+                &Default::default(),
+                &format!("{what}: triangle ids"),
+            )?;
+            equal(&compare::triangle_ids(layers(&capture), &reference.layers()), &Default::default(), &format!("{what}: hits"))?;
         }
     }
     Ok(())
 }
 
-fn near_ties(lab: &mut Lab) -> Result<(), Halt> {
+fn near_ties(context: &mut CaseContext) -> Result<(), EarlyEnd> {
     let size = [64, 64];
     let view = pixel_view(64, 64);
     for round in 0..8u32 {
-        let mut dice = lab.dice(round.wrapping_mul(0x85eb_ca6b) ^ 0x7135);
+        let mut rng = context.rng(round.wrapping_mul(0x85eb_ca6b) ^ 0x7135);
         let cell = [2, 3, 5, 16][round as usize % 4];
-        let (positions, indices) = troubled_sheet(&mut dice, size, cell);
+        let (positions, indices) = near_tie_mesh(&mut rng, size, cell);
         let what = format!("cells of {cell} px, round {round}");
-        let shared = Part { positions: positions.clone(), indices: indices.clone(), ..Part::default() };
-        let capture = lab.everywhere(&hand_made(&[shared]), &view, &what)?;
+        let shared = SimpleMesh { positions: positions.clone(), indices: indices.clone(), ..SimpleMesh::default() };
+        let capture = context.exact_on_all(&scene_of_meshes(&[shared]), &view, &what)?;
         once(&capture, &what)?;
         // Every triangle with corners of its own: the same bits go to the same unit wherever they stand.
         let loose = sheet(indices.iter().map(|&i| positions[i as usize]).collect());
-        let apart = lab.everywhere(&hand_made(&[loose]), &view, &format!("{what}, triangles apart"))?;
+        let apart = context.exact_on_all(&scene_of_meshes(&[loose]), &view, &format!("{what}, triangles apart"))?;
         once(&apart, &format!("{what}, triangles apart"))?;
         let parted = indices.iter().zip(&apart.geometry.vertices).find(|(i, v)| capture.geometry.vertices[**i as usize] != **v);
         hold!(parted.is_none(), "{what}: equal positions went to different places: {parted:?}");
     }
     for round in 0..4u32 {
-        let mut dice = lab.dice(round.wrapping_mul(0xc2b2_ae35) ^ 0x51de);
-        let slivers = (0..400).flat_map(|i| near_line(&mut dice, size).map(|[x, y]| [x, y, 0.2 + 0.001 * i as f32]));
-        let scene = hand_made(&[sheet(slivers.collect())]);
-        lab.everywhere(&scene, &view, &format!("slivers of no width, round {round}"))?;
+        let mut rng = context.rng(round.wrapping_mul(0xc2b2_ae35) ^ 0x51de);
+        let slivers = (0..400).flat_map(|i| near_collinear_triangle(&mut rng, size).map(|[x, y]| [x, y, 0.2 + 0.001 * i as f32]));
+        let scene = scene_of_meshes(&[sheet(slivers.collect())]);
+        context.exact_on_all(&scene, &view, &format!("slivers of no width, round {round}"))?;
     }
     Ok(())
 }

@@ -3,12 +3,13 @@
 use std::collections::BTreeSet;
 
 use super::{
-    Case, Expectation, Halt, Lab, hold,
-    lab::equal,
-    scenes::{Part, hand_made, pixel_view, quad, sheet, square_perspective, turned, units},
+    Case, CaseContext, EarlyEnd, Expectation,
+    context::equal,
+    hold,
+    scenes::{SimpleMesh, pixel_view, quad, scene_of_meshes, sheet, square_perspective, turned, units},
     stack,
 };
-use crate::frame::NO_OWNER;
+use crate::frame::NO_TRIANGLE;
 
 pub const CASES: &[Case] = &[
     Case {
@@ -34,7 +35,7 @@ pub const CASES: &[Case] = &[
     },
 ];
 
-fn depth_range(lab: &mut Lab) -> Result<(), Halt> {
+fn depth_range(context: &mut CaseContext) -> Result<(), EarlyEnd> {
     for near in [1e-3, 1e-5] {
         let view = square_perspective(64, 64, near);
         let mut positions = Vec::new();
@@ -46,50 +47,50 @@ fn depth_range(lab: &mut Lab) -> Result<(), Halt> {
             }
         }
         let what = format!("near plane at {near:e}");
-        let capture = lab.everywhere_with(&hand_made(&[sheet(positions)]), &view, &stack(&["depth"]), &what)?;
-        let seen: BTreeSet<u32> = capture.frame.owner.iter().copied().filter(|&o| o != NO_OWNER).collect();
-        hold!(seen.iter().all(|owner| owner % 4 >= 2), "{what}: the farther of a pair shows among {seen:?}");
+        let capture = context.exact_on_all_with(&scene_of_meshes(&[sheet(positions)]), &view, &stack(&["depth"]), &what)?;
+        let seen: BTreeSet<u32> = capture.frame.triangle_id.iter().copied().filter(|&o| o != NO_TRIANGLE).collect();
+        hold!(seen.iter().all(|triangle_id| triangle_id % 4 >= 2), "{what}: the farther of a pair shows among {seen:?}");
         hold!(seen.len() >= 20, "{what}: {} triangles show", seen.len());
     }
     Ok(())
 }
 
-fn coplanar_layers(lab: &mut Lab) -> Result<(), Halt> {
+fn coplanar_layers(context: &mut CaseContext) -> Result<(), EarlyEnd> {
     let view = pixel_view(64, 64);
-    let mut dice = lab.dice(5);
+    let mut rng = context.rng(5);
     // Full-screen layers in no order, one float after another: small triangles, and one that is large.
     for (what, corners) in [("small", [[0, 0], [24 * 256, 0], [0, 24 * 256]]), ("large", [[-60_000, -90_000], [90_000, 0], [0, 90_000]])] {
         let mut steps: Vec<u32> = (0..40).chain(10..20).collect();
-        dice.shuffle(&mut steps);
+        rng.shuffle(&mut steps);
         let layers: Vec<_> = steps.iter().map(|step| (corners, f32::from_bits(0.5f32.to_bits() + step))).collect();
-        let capture = lab.everywhere(&hand_made(&[units(&layers)]), &view, &format!("{what} layers"))?;
+        let capture = context.exact_on_all(&scene_of_meshes(&[units(&layers)]), &view, &format!("{what} layers"))?;
         let nearest = steps.iter().position(|&step| step == 39).unwrap_or_default();
-        let mut owners: Vec<u32> = capture.frame.owner.iter().copied().filter(|&o| o != NO_OWNER).collect();
-        owners.dedup();
-        equal(&owners, &vec![nearest as u32], &format!("{what} layers: owners"))?;
+        let mut triangle_ids: Vec<u32> = capture.frame.triangle_id.iter().copied().filter(|&o| o != NO_TRIANGLE).collect();
+        triangle_ids.dedup();
+        equal(&triangle_ids, &vec![nearest as u32], &format!("{what} layers: triangle ids"))?;
         let top = 0.5f32.to_bits() + 39;
         hold!(capture.frame.key.iter().all(|&key| key == 0 || key == top), "{what} layers: a depth key is not the nearest's");
 
         // The nearest twice more: equal keys go to the smaller id.
         let again: Vec<_> = layers.iter().chain([&layers[nearest]; 2]).copied().collect();
-        let equals = lab.everywhere(&hand_made(&[units(&again)]), &view, &format!("equal {what} layers"))?;
-        hold!(equals.frame.owner == capture.frame.owner, "equal {what} layers: a larger id wins");
+        let equals = context.exact_on_all(&scene_of_meshes(&[units(&again)]), &view, &format!("equal {what} layers"))?;
+        hold!(equals.frame.triangle_id == capture.frame.triangle_id, "equal {what} layers: a larger id wins");
     }
     Ok(())
 }
 
-fn w_ratios(lab: &mut Lab) -> Result<(), Halt> {
+fn w_ratios(context: &mut CaseContext) -> Result<(), EarlyEnd> {
     for ratio in [2.0, 10.0, 1e3, 1e6f64] {
         let (w, mid) = (1.0f64, ratio.sqrt());
         let corners = [([-0.95, -0.9], w), ([0.95, -0.7], ratio), ([0.1, 0.95], mid)];
         let positions = corners.map(|([x, y], w)| [x * w, y * w, -w].map(|v| v as f32)).to_vec();
         let colors = vec![[1.0, 0.0, 0.0, 1.0], [0.0, 1.0, 0.0, 0.5], [0.0, 0.0, 1.0, 0.0]];
         let normals = vec![[1.0, 0.0, 0.1], [0.0, 1.0, 0.1], [-1.0, 0.2, 0.5]];
-        let scene = hand_made(&[Part { positions, normals, colors, ..Part::default() }]);
+        let scene = scene_of_meshes(&[SimpleMesh { positions, normals, colors, ..SimpleMesh::default() }]);
         for effects in [&[][..], &["normals"], &["depth"]] {
             let view = square_perspective(160, 160, 1.0 / 1024.0);
             let what = format!("ratio {ratio}, {effects:?}");
-            let capture = lab.everywhere_with(&scene, &view, &stack(effects), &what)?;
+            let capture = context.exact_on_all_with(&scene, &view, &stack(effects), &what)?;
             hold!(capture.frame.covered() > 5000, "{what}: {} pixels", capture.frame.covered());
         }
     }

@@ -3,16 +3,16 @@
 use std::sync::Arc;
 
 use super::{
-    Case, Expectation, Halt, Lab, hold,
-    lab::{equal, layers},
-    pinned,
-    scenes::{Part, hand_made, pixel_view, units},
+    Case, CaseContext, EarlyEnd, Expectation,
+    context::{equal, layers},
+    hold, pinned,
+    scenes::{SimpleMesh, pixel_view, scene_of_meshes, units},
 };
 use crate::{
     effects::{Effect, Stack, dissolve::Mode, draw_order, hooks::Layers},
     gpu::RenderError,
     math::srgb_byte,
-    plan::Accuracy,
+    plan::AccuracyRequest,
     scene::{Scene, camera::View},
 };
 
@@ -62,14 +62,14 @@ pub const CASES: &[Case] = &[
 ];
 
 /// Sets a field of an effect, which it switches on.
-fn set(stack: &mut Stack, effect: &str, field: &str, value: f64) -> Result<(), Halt> {
-    let effect = Effect::find(effect).ok_or_else(|| Halt::Failed(format!("there is no effect {effect}")))?;
-    let about = effect.field(field).ok_or_else(|| Halt::Failed(format!("{} has no field {field}", effect.name)))?;
-    about.set(&mut stack.enable(effect).words, &[value]).map_err(|error| Halt::Failed(format!("{}: {error}", effect.name)))
+fn set(stack: &mut Stack, effect: &str, field: &str, value: f64) -> Result<(), EarlyEnd> {
+    let effect = Effect::find(effect).ok_or_else(|| EarlyEnd::Failed(format!("there is no effect {effect}")))?;
+    let about = effect.field(field).ok_or_else(|| EarlyEnd::Failed(format!("{} has no field {field}", effect.name)))?;
+    about.set(&mut stack.enable(effect).words, &[value]).map_err(|error| EarlyEnd::Failed(format!("{}: {error}", effect.name)))
 }
 
 /// A stack of one effect with some of its fields set.
-fn only(effect: &str, fields: &[(&str, f64)]) -> Result<Stack, Halt> {
+fn only(effect: &str, fields: &[(&str, f64)]) -> Result<Stack, EarlyEnd> {
     let mut stack = Stack::default();
     fields.iter().try_for_each(|(field, value)| set(&mut stack, effect, field, *value))?;
     Ok(stack)
@@ -79,15 +79,15 @@ fn only(effect: &str, fields: &[(&str, f64)]) -> Result<Stack, Halt> {
 fn pile(count: u32) -> Arc<Scene> {
     let corners = |depth: f32| [[-4.0, -4.0, depth], [40.0, -4.0, depth], [-4.0, 40.0, depth]];
     let colors = [[1.0, 0.0, 0.25, 1.0], [0.0, 1.0, 0.25, 1.0]];
-    hand_made(&[Part {
+    scene_of_meshes(&[SimpleMesh {
         positions: [corners(0.5), corners(0.25)].concat(),
         colors: colors.iter().flat_map(|color| [*color; 3]).collect(),
         indices: (0..count).flat_map(|layer| [0, 1, 2].map(|corner| 3 * (layer % 2) + corner)).collect(),
-        ..Part::default()
+        ..SimpleMesh::default()
     }])
 }
 
-fn layers_on_one_pixel(lab: &mut Lab) -> Result<(), Halt> {
+fn layers_on_one_pixel(context: &mut CaseContext) -> Result<(), EarlyEnd> {
     let view = pixel_view(2, 2);
     // Layers, the choice of bits (auto, 16, 12, 10, 8), and the bits that they come to.
     for (count, choice, taken) in [
@@ -104,22 +104,22 @@ fn layers_on_one_pixel(lab: &mut Lab) -> Result<(), Halt> {
         (1_048_833, 0, 10),
     ] {
         // Both ways to a million layers end in the same kernel, and the last number takes more of them.
-        if count == 1_000_000 && lab.is_slow() {
-            lab.note(format!("{count} layers are left out, since this adapter is slow"));
+        if count == 1_000_000 && context.is_slow() {
+            context.note(format!("{count} layers are left out, since this adapter is slow"));
             continue;
         }
         let (scene, stack) = (pile(count), only("xray", &[("bits", f64::from(choice))])?);
-        let rungs = if count < if lab.is_slow() { 65_000 } else { 1_000_000 } {
-            lab.rungs()
+        let options = if count < if context.is_slow() { 65_000 } else { 1_000_000 } {
+            context.options()
         } else {
-            let rung = lab.quick_rung();
-            lab.note(format!("{count} layers are drawn on {} alone: they wait for one another", rung.name()));
-            vec![rung]
+            let option = context.quick_option();
+            context.note(format!("{count} layers are drawn on {} alone: they wait for one another", option.name()));
+            vec![option]
         };
-        for rung in rungs {
-            let what = format!("{count} layers in {taken} bits on {}", rung.name());
-            let (capture, _) = lab.exact(&scene, &view, &stack, &pinned(rung), &what)?;
-            let found = lab.renderer.key().and_then(|key| key.layers);
+        for option in options {
+            let what = format!("{count} layers in {taken} bits on {}", option.name());
+            let (capture, _) = context.exact(&scene, &view, &stack, &pinned(option), &what)?;
+            let found = context.renderer.key().and_then(|key| key.layers);
             equal(&found, &Some(Layers::Xray { bits: taken }), &format!("{what}: kernel"))?;
             equal(&capture.frame.counted, &vec![count; 4], &format!("{what}: layers of each pixel"))?;
             equal(&capture.frame.counters.full_pixels, &0, &format!("{what}: pixels that overflowed"))?;
@@ -133,26 +133,26 @@ fn layers_on_one_pixel(lab: &mut Lab) -> Result<(), Halt> {
     Ok(())
 }
 
-fn fill(lab: &mut Lab) -> Result<(), Halt> {
-    lab.free_the_band();
-    if lab.is_slow() {
-        lab.note("only the first mode is drawn on every rung, since this adapter is slow".into());
+fn fill(context: &mut CaseContext) -> Result<(), EarlyEnd> {
+    context.allow_any_depth_band();
+    if context.is_slow() {
+        context.note("only the first mode is drawn on every option, since this adapter is slow".into());
     }
     let least = f64::from(f32::from_bits(0x3380_0000)); // 2^-24
     let fills = [0.0, least, 0.5, 1.0 - least, 1.0];
     for query in ["sphere?triangles=200", "grid?cell=0.4&width=48&height=48", "near"] {
-        let scene = lab.scene(query)?;
-        let view = lab.view(&scene, [64, 48]);
-        let (whole, _) = lab.exact(&scene, &view, &Stack::default(), &Accuracy::default(), query)?;
+        let scene = context.scene(query)?;
+        let view = context.view(&scene, [64, 48]);
+        let (whole, _) = context.exact(&scene, &view, &Stack::default(), &AccuracyRequest::default(), query)?;
         for mode in [Mode::Edge, Mode::Corner, Mode::Centroid, Mode::Scanline, Mode::Hash] {
             let mut before: Option<Vec<u32>> = None;
             for (i, fill) in fills.into_iter().enumerate() {
                 let stack = only("dissolve", &[("mode", f64::from(mode as u32)), ("fill", fill)])?;
                 let what = format!("{query} filled to {fill} by {mode:?}");
-                let capture = if i == 2 && (mode == Mode::Edge || !lab.is_slow()) {
-                    lab.everywhere_with(&scene, &view, &stack, &what)?
+                let capture = if i == 2 && (mode == Mode::Edge || !context.is_slow()) {
+                    context.exact_on_all_with(&scene, &view, &stack, &what)?
                 } else {
-                    lab.exact(&scene, &view, &stack, &Accuracy::default(), &what)?.0
+                    context.exact(&scene, &view, &stack, &AccuracyRequest::default(), &what)?.0
                 };
                 let now = layers(&capture).to_vec();
                 if let Some(before) = &before {
@@ -167,14 +167,14 @@ fn fill(lab: &mut Lab) -> Result<(), Halt> {
     Ok(())
 }
 
-fn fill_that_is_no_number(lab: &mut Lab) -> Result<(), Halt> {
+fn fill_that_is_no_number(context: &mut CaseContext) -> Result<(), EarlyEnd> {
     for value in [f64::NAN, -1e-30, 1.0 + f64::EPSILON, f64::INFINITY, f64::NEG_INFINITY] {
         match only("dissolve", &[("fill", value)]) {
-            Err(Halt::Failed(sentence)) => {
+            Err(EarlyEnd::Failed(sentence)) => {
                 hold!(sentence.contains("fill") && sentence.contains("0..=1"), "{value}: {sentence}");
-                lab.refused(sentence);
+                context.refused(sentence);
             }
-            other => return Err(Halt::Failed(format!("a share of {value} was taken: {other:?}"))),
+            other => return Err(EarlyEnd::Failed(format!("a share of {value} was taken: {other:?}"))),
         }
     }
     Ok(())
@@ -184,22 +184,22 @@ fn sum(layers: &[u32]) -> u64 {
     layers.iter().map(|&count| u64::from(count)).sum()
 }
 
-fn draw_limit(lab: &mut Lab) -> Result<(), Halt> {
-    lab.free_the_band();
+fn draw_limit(context: &mut CaseContext) -> Result<(), EarlyEnd> {
+    context.allow_any_depth_band();
     let count = f64::from(draw_order::Unit::Count as u32);
     for query in ["sphere?triangles=200", "near", "stack?layers=5"] {
-        let scene = lab.scene(query)?;
-        let view = lab.view(&scene, [48, 40]);
-        let (whole, _) = lab.exact(&scene, &view, &Stack::default(), &Accuracy::default(), query)?;
+        let scene = context.scene(query)?;
+        let view = context.view(&scene, [48, 40]);
+        let (whole, _) = context.exact(&scene, &view, &Stack::default(), &AccuracyRequest::default(), query)?;
         let total = sum(layers(&whole));
         let limits = [0, 1, total / 2, total / 2 + 1, total - 1, total, total + 1, u64::from(u32::MAX)];
-        for rung in lab.rungs() {
+        for option in context.options() {
             let mut before: Option<Vec<u32>> = None;
             for limit in limits {
                 for mode in [draw_order::Mode::Submission, draw_order::Mode::Scheduler] {
                     let stack = only("draw_order", &[("mode", f64::from(mode as u32)), ("unit", count), ("limit", limit as f64)])?;
-                    let what = format!("{query}: {limit} of {total} samples by {mode:?} on {}", rung.name());
-                    let (capture, _) = lab.exact(&scene, &view, &stack, &pinned(rung), &what)?;
+                    let what = format!("{query}: {limit} of {total} samples by {mode:?} on {}", option.name());
+                    let (capture, _) = context.exact(&scene, &view, &stack, &pinned(option), &what)?;
                     equal(&sum(layers(&capture)), &limit.min(total), &format!("{what}: samples drawn"))?;
                     if mode == draw_order::Mode::Submission {
                         let now = layers(&capture).to_vec();
@@ -215,41 +215,41 @@ fn draw_limit(lab: &mut Lab) -> Result<(), Halt> {
 }
 
 /// Sheets over a whole picture, of more than 2^32 samples together; with that number.
-fn sheets_of_a_word(lab: &Lab) -> Result<(Arc<Scene>, View, u64), Halt> {
-    if lab.is_software() {
-        return Err(Halt::LeftOut("2^32 samples take a software adapter minutes".into()));
+fn sheets_of_a_word(context: &CaseContext) -> Result<(Arc<Scene>, View, u64), EarlyEnd> {
+    if context.is_software() {
+        return Err(EarlyEnd::Skipped("2^32 samples take a software adapter minutes".into()));
     }
     let (side, times) = (4096u32, 260);
     let total = u64::from(side) * u64::from(side) * times;
     hold!(total > u64::from(u32::MAX), "{total} samples are too few");
     let far = 8_388_607;
-    let scene = hand_made(&[units(&(0..times).map(|i| ([[0, 0], [far, 0], [0, far]], 1e-3 * (i + 1) as f32)).collect::<Vec<_>>())]);
+    let scene = scene_of_meshes(&[units(&(0..times).map(|i| ([[0, 0], [far, 0], [0, far]], 1e-3 * (i + 1) as f32)).collect::<Vec<_>>())]);
     Ok((scene, pixel_view(side, side), total))
 }
 
-fn more_tickets_than_a_word(lab: &mut Lab) -> Result<(), Halt> {
-    let (scene, view, total) = sheets_of_a_word(lab)?;
+fn more_tickets_than_a_word(context: &mut CaseContext) -> Result<(), EarlyEnd> {
+    let (scene, view, total) = sheets_of_a_word(context)?;
     let by_chance = f64::from(draw_order::Mode::Scheduler as u32);
     for (what, unit, amount) in [("a count", "limit", 1e6), ("a share", "share", 0.5)] {
         let kind = if unit == "limit" { draw_order::Unit::Count } else { draw_order::Unit::Share };
         let stack = only("draw_order", &[("mode", by_chance), ("unit", f64::from(kind as u32)), (unit, amount)])?;
-        lab.step(&scene, &view, what)?;
-        lab.renderer.set_scene(&scene)?;
-        match lab.renderer.draw_whole(&view, &stack, &Accuracy::default()) {
+        context.step(&scene, &view, what)?;
+        context.renderer.set_scene(&scene)?;
+        match context.renderer.draw_complete(&view, &stack, &AccuracyRequest::default()) {
             Err(error @ RenderError::Tickets(_)) => {
                 let text = error.to_string();
                 hold!(error.is_unsupported() && text.contains(&total.to_string()), "{what}: {text}");
-                lab.refused(text);
+                context.refused(text);
             }
-            Err(error) => return Err(Halt::Failed(format!("{what}: {error}"))),
-            Ok(_) => return Err(Halt::Failed(format!("{what}: {total} samples were drawn by tickets of one word"))),
+            Err(error) => return Err(EarlyEnd::Failed(format!("{what}: {error}"))),
+            Ok(_) => return Err(EarlyEnd::Failed(format!("{what}: {total} samples were drawn by tickets of one word"))),
         }
     }
     Ok(())
 }
 
-fn more_than_a_word(lab: &mut Lab) -> Result<(), Halt> {
-    let (scene, view, total) = sheets_of_a_word(lab)?;
+fn more_than_a_word(context: &mut CaseContext) -> Result<(), EarlyEnd> {
+    let (scene, view, total) = sheets_of_a_word(context)?;
     let share = f64::from(draw_order::Unit::Share as u32);
     // All but one part in 2^24 is a limit beyond a word, too.
     for (what, fields, limit) in [
@@ -258,11 +258,11 @@ fn more_than_a_word(lab: &mut Lab) -> Result<(), Halt> {
         ("all", vec![("unit", share), ("share", 1.0)], total),
     ] {
         let stack = only("draw_order", &fields)?;
-        lab.step(&scene, &view, what)?;
-        lab.renderer.set_scene(&scene)?;
-        lab.renderer.draw_whole(&view, &stack, &Accuracy::default())?;
-        lab.renderer.draw(&view, &stack, &Accuracy::default())?;
-        let order = lab.renderer.finish()?.order.unwrap_or_default();
+        context.step(&scene, &view, what)?;
+        context.renderer.set_scene(&scene)?;
+        context.renderer.draw_complete(&view, &stack, &AccuracyRequest::default())?;
+        context.renderer.draw(&view, &stack, &AccuracyRequest::default())?;
+        let order = context.renderer.finish()?.order.unwrap_or_default();
         equal(&[order.covered, order.limit, order.drawn], &[total, limit, limit], &format!("{what}: samples covered, asked for, drawn"))?;
     }
     Ok(())

@@ -4,13 +4,13 @@
 //! where an answer is published or can be counted on fingers, that answer judges as well. A case is its row in [`CASES`]
 //! and a function in the file of its kind.
 
+pub mod adversarial;
 mod against;
-pub mod aim;
 mod clipping;
+mod context;
 mod coverage;
 mod depth;
 mod effects;
-mod lab;
 mod parameters;
 mod published;
 mod queues;
@@ -26,14 +26,14 @@ use std::{
     time::Instant,
 };
 
-pub use lab::{Counts, Halt, Lab, captured, exactness, judged, pinned, quick_rung, rungs, stack, tunings};
+pub use context::{CaseContext, Counts, EarlyEnd, captured, exactness, judged, options, pinned, quick_option, stack, tunings};
 
 use crate::gpu::Renderer;
 
 /// What a case must come to.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Expectation {
-    /// Every integer is the oracle's, colours within one step of 255; on every rung and tuning the same.
+    /// Every integer is the oracle's, colours within one step of 255; on every option and tuning the same.
     Exact,
     /// Right within this bound.
     Bounded(&'static str),
@@ -60,7 +60,7 @@ pub struct Case {
     /// One line for people.
     pub about: &'static str,
     pub expectation: Expectation,
-    run: fn(&mut Lab) -> Result<(), Halt>,
+    run: fn(&mut CaseContext) -> Result<(), EarlyEnd>,
 }
 
 /// What became of a case.
@@ -71,7 +71,7 @@ pub enum Outcome {
     /// Refused, as expected; the sentence.
     Refused(String),
     /// This adapter lacks what it takes; the sentence.
-    LeftOut(String),
+    Skipped(String),
     /// Not as expected; the sentences.
     Failed(String),
     /// Somebody stopped the run.
@@ -83,7 +83,7 @@ impl Outcome {
         match self {
             Self::Passed => "passed",
             Self::Refused(_) => "refused as stated",
-            Self::LeftOut(_) => "left out",
+            Self::Skipped(_) => "left out",
             Self::Failed(_) => "FAILED",
             Self::Stopped => "stopped",
         }
@@ -92,7 +92,7 @@ impl Outcome {
     /// Why, where there is more to say.
     pub fn why(&self) -> Option<&str> {
         match self {
-            Self::Refused(why) | Self::LeftOut(why) | Self::Failed(why) => Some(why),
+            Self::Refused(why) | Self::Skipped(why) | Self::Failed(why) => Some(why),
             Self::Passed | Self::Stopped => None,
         }
     }
@@ -153,18 +153,18 @@ pub fn chosen(filter: Option<&str>) -> Vec<&'static Case> {
 }
 
 impl Case {
-    /// Draws and judges. `go_on` hears what is about to be drawn and may stop the run. Whatever happens, the renderer can
+    /// Draws and judges. `keep_going` hears what is about to be drawn and may stop the run. Whatever happens, the renderer can
     /// be used for the next case.
-    pub fn run(&self, renderer: &mut Renderer, seed: u32, go_on: &dyn Fn(&str) -> bool) -> Report {
+    pub fn run(&self, renderer: &mut Renderer, seed: u32, keep_going: &dyn Fn(&str) -> bool) -> Report {
         let began = Instant::now();
-        let mut lab = Lab::new(renderer, seed, go_on);
-        let result = catch_unwind(AssertUnwindSafe(|| (self.run)(&mut lab)))
-            .unwrap_or_else(|panic| Err(Halt::Failed(format!("the program stumbled: {}", said(panic.as_ref())))));
-        let left = lab.leave();
+        let mut context = CaseContext::new(renderer, seed, keep_going);
+        let result = catch_unwind(AssertUnwindSafe(|| (self.run)(&mut context)))
+            .unwrap_or_else(|panic| Err(EarlyEnd::Failed(format!("the program stumbled: {}", said(panic.as_ref())))));
+        let left = context.leave();
         let outcome = match (result, self.expectation) {
-            (Err(Halt::Failed(why)), _) => Outcome::Failed(why),
-            (Err(Halt::LeftOut(why)), _) => Outcome::LeftOut(why),
-            (Err(Halt::Stopped), _) => Outcome::Stopped,
+            (Err(EarlyEnd::Failed(why)), _) => Outcome::Failed(why),
+            (Err(EarlyEnd::Skipped(why)), _) => Outcome::Skipped(why),
+            (Err(EarlyEnd::Stopped), _) => Outcome::Stopped,
             (Ok(()), Expectation::Refused(limit)) => match left.refusal {
                 Some(sentence) => Outcome::Refused(sentence),
                 None => Outcome::Failed(format!("it was drawn, where it should have been refused: {limit}")),
@@ -196,7 +196,7 @@ macro_rules! hold {
     ($condition:expr, $($sentence:tt)+) => {
         let holds: bool = $condition;
         if !holds {
-            return Err($crate::stress::Halt::Failed(format!($($sentence)+)));
+            return Err($crate::stress::EarlyEnd::Failed(format!($($sentence)+)));
         }
     };
 }

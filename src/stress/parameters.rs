@@ -2,16 +2,16 @@
 
 use std::sync::Arc;
 
-use super::{Case, Expectation, Halt, Lab, hold};
+use super::{Case, CaseContext, EarlyEnd, Expectation, hold};
 use crate::{
+    accuracy::{PinnedOptions, ShadowMapSize},
     effects::{EFFECTS, Effect, Stack, hooks::Slot, particles},
     gpu::RenderError,
-    ladder::{Pins, ShadowMap},
     measure::Budget,
     params::{Field, Kind},
-    plan::{Accuracy, Tuning},
+    plan::{AccuracyRequest, Tuning},
+    preset::{Preset, SceneSource},
     scene::{Scene, camera::View, draw::DrawError},
-    session::{SceneSource, Session},
 };
 
 pub const CASES: &[Case] = &[
@@ -53,45 +53,55 @@ fn enable(stack: &mut Stack, effect: &'static Effect) {
     }
 }
 
-fn set(stack: &mut Stack, effect: &'static Effect, field: &Field, end: usize) -> Result<(), Halt> {
+fn set(stack: &mut Stack, effect: &'static Effect, field: &Field, end: usize) -> Result<(), EarlyEnd> {
     let values = vec![ends(field)[end]; field.kind.lanes()];
     enable(stack, effect);
-    field.set(&mut stack.enable(effect).words, &values).map_err(|error| Halt::Failed(format!("{}: {error}", effect.name)))
+    field.set(&mut stack.enable(effect).words, &values).map_err(|error| EarlyEnd::Failed(format!("{}: {error}", effect.name)))
 }
 
 /// Draws and judges; steps of colour may lie anywhere.
-fn judged(lab: &mut Lab, stack: &Stack, turn: usize, what: &str) -> Result<(), Halt> {
+fn judged(context: &mut CaseContext, stack: &Stack, turn: usize, what: &str) -> Result<(), EarlyEnd> {
     // Few triangles: discs and boxes at their largest cover the picture once for each of them.
     let query = ["sphere?triangles=200", "near", "cube-wall", "grid?cell=0.4&width=8&height=8"][turn % 4];
-    let scene = lab.scene(query)?;
+    let scene = context.scene(query)?;
     let what = format!("{what}, {query}");
     // Depths range as far as particles fly.
-    let view = match stack.cloud() {
-        Some(_) => Session { scene: SceneSource::Builtin(query.into()), stack: stack.clone(), ..Session::default() }.view(&scene, [64, 48]),
-        None => lab.view(&scene, [64, 48]),
+    let view = match stack.particle_settings() {
+        Some(_) => Preset { scene: SceneSource::Builtin(query.into()), stack: stack.clone(), ..Preset::default() }.view(&scene, [64, 48]),
+        None => context.view(&scene, [64, 48]),
     };
-    let accuracy = &accuracy(lab);
-    let stack = &drawable(lab, &scene, &view, stack, accuracy, &what)?;
-    let (capture, verdict) = lab.judged(&scene, &view, stack, accuracy, &what)?;
+    let accuracy = &accuracy(context);
+    let stack = &drawable(context, &scene, &view, stack, accuracy, &what)?;
+    let (capture, verdict) = context.judged(&scene, &view, stack, accuracy, &what)?;
     let sound = capture.geometry.vertices.iter().all(|v| v.depth.is_finite() && v.inv_w.is_finite());
     hold!(sound, "{what}: a vertex is no number");
-    verdict.accuracy.within(&Budget { max_step_share: 1.0, ..Budget::default() }).map_err(|why| Halt::Failed(format!("{what}: {why}")))
+    verdict
+        .accuracy
+        .within(&Budget { max_step_band_fraction: 1.0, ..Budget::default() })
+        .map_err(|why| EarlyEnd::Failed(format!("{what}: {why}")))
 }
 
 /// As planned; a slow adapter would spend most of its time on texels of shadow maps.
-fn accuracy(lab: &Lab) -> Accuracy {
-    let pins = if lab.is_slow() { Pins::of(ShadowMap::Side256) } else { Pins::default() };
-    Accuracy { pins, ..Accuracy::default() }
+fn accuracy(context: &CaseContext) -> AccuracyRequest {
+    let pins = if context.is_slow() { PinnedOptions::of(ShadowMapSize::Side256) } else { PinnedOptions::default() };
+    AccuracyRequest { pins, ..AccuracyRequest::default() }
 }
 
 /// The stack, without dots where more of them are asked for than one picture takes, which a sentence says.
-fn drawable(lab: &mut Lab, scene: &Arc<Scene>, view: &View, stack: &Stack, accuracy: &Accuracy, what: &str) -> Result<Stack, Halt> {
+fn drawable(
+    context: &mut CaseContext,
+    scene: &Arc<Scene>,
+    view: &View,
+    stack: &Stack,
+    accuracy: &AccuracyRequest,
+    what: &str,
+) -> Result<Stack, EarlyEnd> {
     let mut stack = stack.clone();
     if stack.dots().is_some() {
-        lab.renderer.set_scene(scene)?;
-        match lab.renderer.draw(view, &stack, accuracy) {
+        context.renderer.set_scene(scene)?;
+        match context.renderer.draw(view, &stack, accuracy) {
             Err(RenderError::Draw(error @ DrawError::TooMany { what: "dots", .. })) => {
-                lab.note(format!("{what}: without dots, since {error}"));
+                context.note(format!("{what}: without dots, since {error}"));
                 stack.disable("dots");
             }
             drawn => drawn?,
@@ -100,43 +110,43 @@ fn drawable(lab: &mut Lab, scene: &Arc<Scene>, view: &View, stack: &Stack, accur
     Ok(stack)
 }
 
-fn parameters_at_their_ends(lab: &mut Lab) -> Result<(), Halt> {
-    let usual = lab.renderer.gpu().caps.tuning();
+fn parameters_at_their_ends(context: &mut CaseContext) -> Result<(), EarlyEnd> {
+    let default = context.renderer.gpu().caps.tuning();
     // One scene for each effect, and a key that leaves nothing out: kernels are made once for all its pictures. Where vertices
     // move, the values decide what the planner may leave out, and that is put to the test where kernels compile in time.
-    if lab.is_slow() {
-        lab.note("no kernel is specialised, and shadow maps have 256 texels a side, since this adapter is slow".into());
+    if context.is_slow() {
+        context.note("no kernel is specialised, and shadow maps have 256 texels a side, since this adapter is slow".into());
     }
     for (turn, effect) in EFFECTS.iter().enumerate() {
-        lab.renderer.set_tuning(Tuning { specialized: effect.hooks.vertex.is_some() && !lab.is_slow(), ..usual });
+        context.renderer.set_tuning(Tuning { specialized: effect.hooks.vertex.is_some() && !context.is_slow(), ..default });
         for (end, word) in [(0, "least"), (1, "greatest")] {
             for field in effect.fields {
                 let mut stack = Stack::default();
                 set(&mut stack, effect, field, end)?;
                 let what = format!("{}.{} at its {word}, {}", effect.name, field.name, ends(field)[end]);
-                judged(lab, &stack, turn, &what)?;
+                judged(context, &stack, turn, &what)?;
             }
             let mut stack = Stack::default();
             enable(&mut stack, effect);
             effect.fields.iter().try_for_each(|field| set(&mut stack, effect, field, end))?;
-            judged(lab, &stack, turn, &format!("all of {} at its {word}", effect.name))?;
+            judged(context, &stack, turn, &format!("all of {} at its {word}", effect.name))?;
         }
     }
     Ok(())
 }
 
-fn every_effect_at_once(lab: &mut Lab) -> Result<(), Halt> {
-    if lab.is_slow() {
-        lab.note("one end for each choice of slots, and shadow maps of 256 texels a side, since this adapter is slow".into());
+fn every_effect_at_once(context: &mut CaseContext) -> Result<(), EarlyEnd> {
+    if context.is_slow() {
+        context.note("one end for each choice of slots, and shadow maps of 256 texels a side, since this adapter is slow".into());
     }
-    if lab.is_software() {
-        lab.note("dots no closer than a millimetre, since this is a software adapter".into());
+    if context.is_software() {
+        context.note("dots no closer than a millimetre, since this is a software adapter".into());
     }
     // Those of one slot take turns.
     let most = Slot::ALL.iter().map(|slot| EFFECTS.iter().filter(|effect| effect.hooks.slot == Some(*slot)).count()).max().unwrap_or(1);
     for choice in 0..most {
         let ends = [None, Some(0), Some(1)];
-        let chosen = if lab.is_slow() { &ends[choice % 3..=choice % 3] } else { &ends[..] };
+        let chosen = if context.is_slow() { &ends[choice % 3..=choice % 3] } else { &ends[..] };
         for &end in chosen {
             let mut stack = Stack::default();
             for effect in EFFECTS {
@@ -149,14 +159,14 @@ fn every_effect_at_once(lab: &mut Lab) -> Result<(), Halt> {
                     effect.fields.iter().try_for_each(|field| set(&mut stack, effect, field, end))?;
                 }
             }
-            if let Some(dots) = stack.get_mut("dots").filter(|_| lab.is_software() && end == Some(0)) {
+            if let Some(dots) = stack.get_mut("dots").filter(|_| context.is_software() && end == Some(0)) {
                 // Millions of dots are a bench on a CPU adapter.
                 let spacing = dots.effect.field("spacing_m").expect("dots have a spacing");
                 spacing.set(&mut dots.words, &[1e-3]).expect("a millimetre may be");
             }
             let names: Vec<_> = stack.0.iter().filter(|e| e.effect.hooks.slot.is_some()).map(|e| e.effect.name).collect();
             let at = ["as they come", "at their least", "at their greatest"][end.map_or(0, |end| end + 1)];
-            judged(lab, &stack, choice, &format!("all effects {at}, in the slots {}", names.join(" and ")))?;
+            judged(context, &stack, choice, &format!("all effects {at}, in the slots {}", names.join(" and ")))?;
         }
     }
     Ok(())

@@ -1,13 +1,13 @@
 //! Published fixtures of fill rules: answers that share no code with us.
 
 use super::{
-    Case, Expectation, Halt, Lab, hold,
-    lab::{equal, exactness, layers, once},
-    pinned,
-    scenes::{hand_made, pixel_view, quad, sheet, square_perspective, turned, units},
+    Case, CaseContext, EarlyEnd, Expectation,
+    context::{equal, exactness, layers, once},
+    hold, pinned,
+    scenes::{pixel_view, quad, scene_of_meshes, sheet, square_perspective, turned, units},
     stack,
 };
-use crate::{frame::NO_OWNER, ladder::Visibility};
+use crate::{accuracy::Visibility, frame::NO_TRIANGLE};
 
 pub const CASES: &[Case] = &[
     Case {
@@ -65,9 +65,9 @@ pub const CASES: &[Case] = &[
 /// external/vulkancts/modules/vulkan/rasterization/vktRasterizationTests.cpp): 4 x 4 centres, half a side of 0.15, 32 angles
 /// over a quarter turn in two pictures of 256 x 256. Its `basic` winds the two triangles of a quad against each other,
 /// its `reversed` alike; `projected` gives each corner a w from 0.1 to 4.
-fn rotated_quads(lab: &mut Lab) -> Result<(), Halt> {
+fn rotated_quads(context: &mut CaseContext) -> Result<(), EarlyEnd> {
     let view = square_perspective(256, 256, 1.0 / 128.0);
-    let mut dice = lab.dice(0xabcd);
+    let mut rng = context.rng(0xabcd);
     for (kind, order) in [("basic", [0, 1, 2, 2, 0, 3]), ("reversed", [0, 1, 2, 0, 2, 3]), ("projected", [0, 1, 2, 2, 0, 3])] {
         for iteration in 0..2 {
             let mut corners = Vec::new();
@@ -76,11 +76,11 @@ fn rotated_quads(lab: &mut Lab) -> Result<(), Halt> {
                 let angle = f64::from(16 * iteration + place) / 32.0 * std::f64::consts::FRAC_PI_2;
                 // Corners lie half a side along both axes: the square root of two times it away, half a quarter turn on.
                 let square = turned(center, 0.15 * std::f64::consts::SQRT_2, angle - std::f64::consts::FRAC_PI_4);
-                let w = square.map(|_| if kind == "projected" { dice.real(0.1, 4.0) } else { 1.0 });
+                let w = square.map(|_| if kind == "projected" { rng.real(0.1, 4.0) } else { 1.0 });
                 corners.extend(order.map(|i| [square[i][0] * w[i], square[i][1] * w[i], -w[i]].map(|v| v as f32)));
             }
             let what = format!("{kind}, picture {}", iteration + 1);
-            let capture = lab.everywhere(&hand_made(&[sheet(corners)]), &view, &what)?;
+            let capture = context.exact_on_all(&scene_of_meshes(&[sheet(corners)]), &view, &what)?;
             hold!(layers(&capture).iter().all(|&hits| hits <= 1), "{what}: a sample is drawn twice");
             // A square of 0.3 to a side fills 38.4 x 38.4 of 256 x 256 pixels, its outline at most 4 x 55 of them.
             let covered = capture.frame.covered();
@@ -92,15 +92,15 @@ fn rotated_quads(lab: &mut Lab) -> Result<(), Halt> {
 
 /// The same source's `clipped_partial` and `clipped_full`: pictures of 64 x 64, 15 angles from none to a quarter turn, half a
 /// side of 1 about (0.5, 0.5) and of 2 about the middle.
-fn clipped_quads(lab: &mut Lab) -> Result<(), Halt> {
+fn clipped_quads(context: &mut CaseContext) -> Result<(), EarlyEnd> {
     let view = square_perspective(64, 64, 1.0 / 128.0);
     for (kind, center, half) in [("partial", [0.5, 0.5], 1.0), ("full", [0.0, 0.0], 2.0)] {
         for iteration in 0..15 {
             let angle = f64::from(iteration) / 14.0 * std::f64::consts::FRAC_PI_2;
             let square = turned(center, half * std::f64::consts::SQRT_2, angle - std::f64::consts::FRAC_PI_4);
             let what = format!("{kind}, angle {} of 15", iteration + 1);
-            let scene = hand_made(&[sheet(quad(square, [1.0; 4], false))]);
-            let capture = lab.everywhere(&scene, &view, &what)?;
+            let scene = scene_of_meshes(&[sheet(quad(square, [1.0; 4], false))]);
+            let capture = context.exact_on_all(&scene, &view, &what)?;
             hold!(layers(&capture).iter().all(|&hits| hits <= 1), "{what}: a sample is drawn twice");
             if kind == "full" {
                 once(&capture, &what)?;
@@ -110,7 +110,7 @@ fn clipped_quads(lab: &mut Lab) -> Result<(), Halt> {
     Ok(())
 }
 
-fn vast_quads(lab: &mut Lab) -> Result<(), Halt> {
+fn vast_quads(context: &mut CaseContext) -> Result<(), EarlyEnd> {
     let view = square_perspective(96, 64, 1.0 / 128.0);
     for turn in 0..15 {
         let angle = f64::from(turn) * std::f64::consts::FRAC_PI_2 / 15.0;
@@ -118,13 +118,14 @@ fn vast_quads(lab: &mut Lab) -> Result<(), Halt> {
         for half in [2.5, 40.0, 1e5, 1e8] {
             let part = sheet(quad(turned([0.1, -0.2], half, angle), [1.0, 0.7, 2.0, 1.3], turn % 2 == 0));
             let what = format!("turn {turn}, half {half:e}");
-            let (capture, mut verdict) = lab.judged(&hand_made(&[part]), &view, &stack(&[]), &pinned(Visibility::Split32), &what)?;
+            let (capture, mut verdict) =
+                context.judged(&scene_of_meshes(&[part]), &view, &stack(&[]), &pinned(Visibility::Split32), &what)?;
             if half > 1e6 {
                 // Cuts of f32 coordinates of 10^8 lie whole pixels apart: exact given the clipped pieces, and without a crack.
                 hold!(capture.frame.counters.clipped == 2 && !capture.geometry.pieces.is_empty(), "{what}: nothing was clipped");
                 verdict.accuracy.unexplained = 0;
             }
-            exactness(&verdict.accuracy).map_err(|faults| Halt::Failed(format!("{what}: {faults}")))?;
+            exactness(&verdict.accuracy).map_err(|faults| EarlyEnd::Failed(format!("{what}: {faults}")))?;
             once(&capture, &what)?;
         }
     }
@@ -132,14 +133,14 @@ fn vast_quads(lab: &mut Lab) -> Result<(), Halt> {
 }
 
 /// After piglit's fans of triangles that meet in a point of the sample grid.
-fn fan_about_a_sample(lab: &mut Lab) -> Result<(), Halt> {
+fn fan_about_a_sample(context: &mut CaseContext) -> Result<(), EarlyEnd> {
     for n in [3, 5, 8, 13, 40] {
         for seed in 0..3 {
             let what = format!("{n} triangles, seed {seed}");
-            let fan = lab.scene(&format!("fan?n={n}&radius=0.3&seed={seed}"))?;
+            let fan = context.scene(&format!("fan?n={n}&radius=0.3&seed={seed}"))?;
             for (size, hits) in [([64, 64], 0), ([256, 256], 1)] {
                 // A picture of another size shows the fan beside the sample.
-                let capture = lab.everywhere(&fan, &lab.view(&fan, size), &what)?;
+                let capture = context.exact_on_all(&fan, &context.view(&fan, size), &what)?;
                 equal(&layers(&capture).iter().sum::<u32>(), &hits, &format!("{what}, {size:?}: hits"))?;
             }
         }
@@ -147,17 +148,17 @@ fn fan_about_a_sample(lab: &mut Lab) -> Result<(), Halt> {
     Ok(())
 }
 
-/// Direct3D's documents, "Rasterization Rules": the first triangle gets 15 pixels and the second 10, because the edge they
+/// Direct3D's documents, "Rasterization SampleTests": the first triangle gets 15 pixels and the second 10, because the edge they
 /// share is a left edge of the first. Their samples lie at whole numbers, ours half a pixel further; both are drawn.
-fn d3d_rectangle(lab: &mut Lab) -> Result<(), Halt> {
+fn d3d_rectangle(context: &mut CaseContext) -> Result<(), EarlyEnd> {
     for shift in [0, 128] {
         let [a, b, c, d] = [[0, 0], [5, 0], [5, 5], [0, 5]].map(|corner| corner.map(|v| 256 * v + shift));
         for (first, second) in [([a, b, c], [d, a, c]), ([c, b, a], [a, d, c])] {
             let what = format!("{first:?} and {second:?}");
-            let scene = hand_made(&[units(&[(first, 0.5), (second, 0.5)])]);
-            let capture = lab.everywhere(&scene, &pixel_view(8, 8), &what)?;
-            let count = |owner| capture.frame.owner.iter().filter(|&&o| o == owner).count();
-            equal(&[count(0), count(1), count(NO_OWNER)], &[15, 10, 39], &format!("{what}: pixels of each, and of none"))?;
+            let scene = scene_of_meshes(&[units(&[(first, 0.5), (second, 0.5)])]);
+            let capture = context.exact_on_all(&scene, &pixel_view(8, 8), &what)?;
+            let count = |triangle_id| capture.frame.triangle_id.iter().filter(|&&o| o == triangle_id).count();
+            equal(&[count(0), count(1), count(NO_TRIANGLE)], &[15, 10, 39], &format!("{what}: pixels of each, and of none"))?;
             hold!(layers(&capture).iter().all(|&hits| hits <= 1), "{what}: a sample is drawn twice");
         }
     }
@@ -166,15 +167,15 @@ fn d3d_rectangle(lab: &mut Lab) -> Result<(), Halt> {
 
 /// From the same page: the rectangle (0.5, 0.5) to (2.5, 4.5), four triangles about its centre, needs no rule, since all its
 /// samples lie inside of triangles. Moved by half a pixel most of them lie on edges; the same pixels are affected.
-fn d3d_four_triangles(lab: &mut Lab) -> Result<(), Halt> {
+fn d3d_four_triangles(context: &mut CaseContext) -> Result<(), EarlyEnd> {
     let mut covered = Vec::new();
     for (what, [left, top]) in [("off the samples", [128, 128]), ("on the samples", [256, 256])] {
         // Our samples lie half a pixel further than theirs.
         let at = |x: i32, y: i32| [left + 128 + x, top + 128 + y];
         let [a, b, c, d, middle] = [at(0, 0), at(512, 0), at(512, 1024), at(0, 1024), at(256, 512)];
         let faces = [[a, b, middle], [b, c, middle], [c, d, middle], [d, a, middle]];
-        let scene = hand_made(&[units(&faces.map(|face| (face, 0.5)))]);
-        let capture = lab.everywhere(&scene, &pixel_view(8, 8), what)?;
+        let scene = scene_of_meshes(&[units(&faces.map(|face| (face, 0.5)))]);
+        let capture = context.exact_on_all(&scene, &pixel_view(8, 8), what)?;
         hold!(layers(&capture).iter().all(|&hits| hits <= 1), "{what}: a sample is drawn twice");
         covered.push(layers(&capture).to_vec());
     }
@@ -184,15 +185,15 @@ fn d3d_four_triangles(lab: &mut Lab) -> Result<(), Halt> {
 }
 
 /// Direct3D 11.3 functional specification, "coordinate snapping": 16.8 fixed point, to the nearest and ties to even.
-fn d3d_snap(lab: &mut Lab) -> Result<(), Halt> {
+fn d3d_snap(context: &mut CaseContext) -> Result<(), EarlyEnd> {
     let ties: Vec<i32> = (-6..6).chain([2047, 2048, 8190, 16_381, 32_766]).collect();
     // Halves of units, exact in f32 and through the matrix.
     let half = |unit: i32| (unit as f32 + 0.5) / 256.0;
     let even = |unit: i32| if unit % 2 == 0 { unit } else { unit + 1 };
     let corners: Vec<[f32; 3]> =
         ties.iter().flat_map(|&k| [[half(k), half(k), 0.5], [40.0 + half(k), 3.0, 0.5], [3.0, 40.0 + half(k), 0.5]]).collect();
-    let scene = hand_made(&[sheet(corners)]);
-    let capture = lab.everywhere(&scene, &pixel_view(128, 128), "ties of the snap")?;
+    let scene = scene_of_meshes(&[sheet(corners)]);
+    let capture = context.exact_on_all(&scene, &pixel_view(128, 128), "ties of the snap")?;
     for (vertex, tie) in capture.geometry.vertices.as_chunks::<3>().0.iter().zip(ties) {
         let found = [[vertex[0].x, vertex[0].y], [vertex[1].x, vertex[1].y], [vertex[2].x, vertex[2].y]];
         let wanted = [[even(tie); 2], [40 * 256 + even(tie), 3 * 256], [3 * 256, 40 * 256 + even(tie)]];

@@ -5,16 +5,16 @@ use std::sync::Arc;
 use glam::{DMat4, DVec3};
 
 use super::{
-    Case, Expectation, Halt, Lab, hold,
-    lab::{equal, layers},
-    pinned,
-    scenes::{Part, hand_made, pixel_view, units},
+    Case, CaseContext, EarlyEnd, Expectation,
+    context::{equal, layers},
+    hold, pinned,
+    scenes::{SimpleMesh, pixel_view, scene_of_meshes, units},
     stack, tunings,
 };
 use crate::{
+    accuracy::Visibility,
     frame::vertex_flags,
     gpu::{Capture, uniforms::Capacities},
-    ladder::Visibility,
     plan::Tuning,
     scene::{Scene, camera::View},
 };
@@ -51,7 +51,7 @@ pub const CASES: &[Case] = &[
     Case {
         number: 27,
         name: "ten-million-triangles",
-        about: "ten million tiny triangles, whose owners and hits can be counted",
+        about: "ten million tiny triangles, whose triangle ids and hits can be counted",
         expectation: Expectation::Exact,
         run: ten_million_triangles,
     },
@@ -71,81 +71,81 @@ fn dots(indexed: bool, count: u32, times: u32) -> (Arc<Scene>, View) {
         [[x + 0.25, y + 0.25, 0.0], [x + 0.75, y + 0.5, 0.0], [x + 0.25, y + 0.75, 0.0]][c]
     };
     let distinct = if indexed { 4096.min(count) } else { count };
-    let part = Part {
+    let part = SimpleMesh {
         positions: (0..distinct).flat_map(|i| [0, 1, 2].map(|c| corner(i, c))).collect(),
         indices: if indexed { (0..count).flat_map(|i| [0, 1, 2].map(|c| 3 * (i % distinct) + c)).collect() } else { vec![] },
         placements: (0..times).map(|i| DMat4::from_translation(DVec3::Z * f64::from(i + 1) / f64::from(times + 1))).collect(),
-        ..Part::default()
+        ..SimpleMesh::default()
     };
-    (hand_made(&[part]), pixel_view(64, 64))
+    (scene_of_meshes(&[part]), pixel_view(64, 64))
 }
 
-/// Hits of each pixel, and its owner: the last of those with the last placement's depth has the smallest id there.
-fn counted(capture: &Capture, count: u32, times: u32, what: &str) -> Result<(), Halt> {
+/// Hits of each pixel, and its triangle id: the last of those with the last placement's depth has the smallest id there.
+fn counted(capture: &Capture, count: u32, times: u32, what: &str) -> Result<(), EarlyEnd> {
     let rounds = |pixel: u32| (count - pixel).div_ceil(4096);
     for pixel in 0..4096.min(count) {
-        let found = (layers(capture)[pixel as usize], capture.frame.owner[pixel as usize]);
-        equal(&found, &(times * rounds(pixel), (times - 1) * count + pixel), &format!("{what}: hits and owner of pixel {pixel}"))?;
+        let found = (layers(capture)[pixel as usize], capture.frame.triangle_id[pixel as usize]);
+        equal(&found, &(times * rounds(pixel), (times - 1) * count + pixel), &format!("{what}: hits and triangle id of pixel {pixel}"))?;
     }
     Ok(())
 }
 
-fn workgroups_direct(lab: &mut Lab) -> Result<(), Halt> {
-    let rung = pinned(lab.quick_rung());
+fn workgroups_direct(context: &mut CaseContext) -> Result<(), EarlyEnd> {
+    let option = pinned(context.quick_option());
     // 64 triangles, or vertices, to a group: 65,535, 65,536 and 65,537 groups, the last one with a single lane at work.
     for groups in [65_535u32, 65_536, 65_537] {
         let triangles = 64 * (groups - 1) + 1;
         // Three placements divide none of these evenly, so the list itself is as long as it must be.
         let (scene, view) = dots(true, triangles, 1);
         let what = format!("{groups} groups of triangles");
-        let capture = lab.captured(&scene, &view, &stack(&[]), &rung, &what)?;
+        let capture = context.captured(&scene, &view, &stack(&[]), &option, &what)?;
         counted(&capture, triangles, 1, &what)?;
     }
     let (count, times) = (66_666, 21);
     hold!(3 * count * times > 64 * 65_535, "too few vertices");
     let (scene, view) = dots(false, count, times);
     let what = "65,626 groups of vertices";
-    let capture = lab.captured(&scene, &view, &stack(&[]), &rung, what)?;
+    let capture = context.captured(&scene, &view, &stack(&[]), &option, what)?;
     counted(&capture, count, times, what)
 }
 
-fn workgroups_indirect(lab: &mut Lab) -> Result<(), Halt> {
-    let rung = pinned(lab.quick_rung());
+fn workgroups_indirect(context: &mut CaseContext) -> Result<(), EarlyEnd> {
+    let option = pinned(context.quick_option());
     let [crowded, _, card, _] = tunings();
     // Medium triangles: one group each.
     let demands = [65_537u32, 65_535, 65_536];
-    if lab.is_slow() {
-        lab.note(format!("medium triangles: {} alone, since this adapter is slow", demands[0]));
+    if context.is_slow() {
+        context.note(format!("medium triangles: {} alone, since this adapter is slow", demands[0]));
     }
-    for &demand in &demands[..if lab.is_slow() { 1 } else { 3 }] {
+    for &demand in &demands[..if context.is_slow() { 1 } else { 3 }] {
         let corners = |i: u32| {
             let [x, y] = [i % 21, i / 21 % 21].map(|k| 768 * k as i32);
             [[x, y], [x + 600, y], [x, y + 600]]
         };
         let triangles: Vec<_> = (0..demand).map(|i| (corners(i), 0.25 + 1e-6 * i as f32)).collect();
-        let scene = hand_made(&[units(&triangles)]);
-        lab.renderer.set_tuning(crowded);
+        let scene = scene_of_meshes(&[units(&triangles)]);
+        context.renderer.set_tuning(crowded);
         let what = format!("{demand} medium triangles");
-        lab.exact(&scene, &pixel_view(64, 64), &stack(&[]), &rung, &what)?;
-        hold!(lab.renderer.capacities().medium >= demand, "{what}: {:?}", lab.renderer.capacities());
+        context.exact(&scene, &pixel_view(64, 64), &stack(&[]), &option, &what)?;
+        hold!(context.renderer.capacities().medium >= demand, "{what}: {:?}", context.renderer.capacities());
     }
     // Large triangles and their tiles: one group each, one tile to a triangle; with room from the start, since it takes time.
     let needle = |i: i32| [[-20_000 - i % 7, i % 16_000], [40_000, i % 16_000 + 3], [40_000, i % 16_000 + 600]];
     let triangles: Vec<_> = (0..65_600).map(|i| (needle(i), 0.25 + 1e-6 * i as f32)).collect();
-    let scene = hand_made(&[units(&triangles)]);
-    lab.renderer.set_tuning(card);
-    lab.renderer.set_scene(&scene)?;
-    lab.renderer.set_capacities(Capacities { large: 65_600, tiles: 65_600, ..Capacities::default() });
-    lab.exact(&scene, &pixel_view(64, 64), &stack(&[]), &rung, "65,600 large triangles")?;
+    let scene = scene_of_meshes(&[units(&triangles)]);
+    context.renderer.set_tuning(card);
+    context.renderer.set_scene(&scene)?;
+    context.renderer.set_capacities(Capacities { large: 65_600, tiles: 65_600, ..Capacities::default() });
+    context.exact(&scene, &pixel_view(64, 64), &stack(&[]), &option, "65,600 large triangles")?;
     let foreseen = Capacities { clip: 1, pieces: 1, medium: 1, large: 65_600, tiles: 65_600, bins: 1, listed: 0 };
-    equal(&lab.renderer.capacities(), &foreseen, "65,600 large triangles: room in the queues")?;
+    equal(&context.renderer.capacities(), &foreseen, "65,600 large triangles: room in the queues")?;
     // Tiles of the resolve: 66,048 of 8 x 8 pixels.
     let [a, b, c, d] = [[0, 0], [2048 * 256, 0], [2048 * 256, 2064 * 256], [0, 2064 * 256]];
-    lab.renderer.set_tuning(Tuning { listed_tiles: true, ..card });
-    let scene = hand_made(&[units(&[([a, b, c], 0.5), ([a, c, d], 0.5)])]);
+    context.renderer.set_tuning(Tuning { listed_tiles: true, ..card });
+    let scene = scene_of_meshes(&[units(&[([a, b, c], 0.5), ([a, c, d], 0.5)])]);
     let view = pixel_view(2048, 2064);
     let what = "66,048 tiles of the picture";
-    let (capture, _) = lab.exact(&scene, &view, &stack(&["triangle_id"]), &pinned(Visibility::Split32), what)?;
+    let (capture, _) = context.exact(&scene, &view, &stack(&["triangle_id"]), &pinned(Visibility::Split32), what)?;
     equal(&capture.frame.covered(), &(2048 * 2064), &format!("{what}: pixels"))
 }
 
@@ -158,7 +158,7 @@ fn demands() -> Vec<Demand> {
     let n = 40;
     let many = |triangle: [[i32; 2]; 3]| {
         let moved = |i: i32| (triangle.map(|[x, y]| [x, y + 97 * i]), 0.2 + 0.01 * i as f32);
-        hand_made(&[units(&(0..n).map(moved).collect::<Vec<_>>())])
+        scene_of_meshes(&[units(&(0..n).map(moved).collect::<Vec<_>>())])
     };
     let demand = n as u32;
     // One corner beyond the guard band leaves a quad of two pieces, both on screen.
@@ -177,84 +177,84 @@ fn demands() -> Vec<Demand> {
     ]
 }
 
-fn queues(lab: &mut Lab) -> Result<(), Halt> {
+fn queues(context: &mut CaseContext) -> Result<(), EarlyEnd> {
     let view = pixel_view(128, 128);
-    lab.renderer.set_tuning(tunings()[0]);
-    for rung in lab.rungs() {
+    context.renderer.set_tuning(tunings()[0]);
+    for option in context.options() {
         // A tiled picture has lists, the others tiles of large triangles.
-        let has = |queue: &str| queue != if rung == Visibility::Tiled { "tiles" } else { "bins" };
+        let has = |queue: &str| queue != if option == Visibility::Tiled { "tiles" } else { "bins" };
         for (queue, exactly, scene, field) in demands().into_iter().filter(|(queue, ..)| has(queue)) {
             let demand = *field(&mut exactly.clone());
             for capacity in [demand, demand - 1, demand / 10, 1] {
-                let what = format!("{queue} on {}: demand {demand}, room for {capacity}", rung.name());
+                let what = format!("{queue} on {}: demand {demand}, room for {capacity}", option.name());
                 let mut capacities = exactly;
                 *field(&mut capacities) = capacity;
-                lab.renderer.set_scene(&scene)?;
-                lab.renderer.set_capacities(capacities);
-                lab.renderer.draw(&view, &stack(&[]), &pinned(rung))?;
-                let report = lab.renderer.finish()?;
+                context.renderer.set_scene(&scene)?;
+                context.renderer.set_capacities(capacities);
+                context.renderer.draw(&view, &stack(&[]), &pinned(option))?;
+                let report = context.renderer.finish()?;
                 equal(&report.counters.overflow, &(demand - capacity), &format!("{what}: entries lost"))?;
                 equal(&report.redraw, &(capacity < demand), &format!("{what}: drawn again"))?;
-                lab.exact(&scene, &view, &stack(&[]), &pinned(rung), &what)?;
-                hold!(*field(&mut lab.renderer.capacities()) >= demand, "{what}: it has not grown");
+                context.exact(&scene, &view, &stack(&[]), &pinned(option), &what)?;
+                hold!(*field(&mut context.renderer.capacities()) >= demand, "{what}: it has not grown");
             }
         }
     }
     Ok(())
 }
 
-fn a_million_triangles(lab: &mut Lab) -> Result<(), Halt> {
-    let sphere = lab.scene("sphere?triangles=1000000")?;
-    let view = lab.view(&sphere, [256, 192]);
+fn a_million_triangles(context: &mut CaseContext) -> Result<(), EarlyEnd> {
+    let sphere = context.scene("sphere?triangles=1000000")?;
+    let view = context.view(&sphere, [256, 192]);
     let mut first: Option<Capture> = None;
-    for rung in lab.rungs() {
-        let what = format!("a million triangles on {}", rung.name());
+    for option in context.options() {
+        let what = format!("a million triangles on {}", option.name());
         let capture = match &first {
-            None => lab.exact(&sphere, &view, &stack(&["lambert"]), &pinned(rung), &what)?.0,
-            Some(_) => lab.captured(&sphere, &view, &stack(&["lambert"]), &pinned(rung), &what)?,
+            None => context.exact(&sphere, &view, &stack(&["lambert"]), &pinned(option), &what)?.0,
+            Some(_) => context.captured(&sphere, &view, &stack(&["lambert"]), &pinned(option), &what)?,
         };
         hold!(capture.frame.covered() > 7000, "{what}: {} pixels", capture.frame.covered());
         match &first {
             None => first = Some(capture),
-            Some(first) => super::lab::same(&capture, first, &what)?,
+            Some(first) => super::context::same(&capture, first, &what)?,
         }
     }
     Ok(())
 }
 
-fn ten_million_triangles(lab: &mut Lab) -> Result<(), Halt> {
+fn ten_million_triangles(context: &mut CaseContext) -> Result<(), EarlyEnd> {
     let count = 10_000_000;
-    let caps = &lab.renderer.gpu().caps;
+    let caps = &context.renderer.gpu().caps;
     let room = caps.max_storage_binding_bytes.min(caps.max_buffer_bytes);
     if room < 12 * u64::from(count) {
-        return Err(Halt::LeftOut(format!("their index list takes {} bytes, and this adapter binds {room}", 12 * count)));
+        return Err(EarlyEnd::Skipped(format!("their index list takes {} bytes, and this adapter binds {room}", 12 * count)));
     }
     let is_software = caps.software;
-    for rung in lab.rungs() {
+    for option in context.options() {
         // Every pixel of a tile looks at every triangle on its list: 2.6 billion looks, which are minutes without a card.
-        let is_fewer = is_software && rung == Visibility::Tiled;
+        let is_fewer = is_software && option == Visibility::Tiled;
         let count = if is_fewer { count / 10 } else { count };
         if is_fewer {
-            lab.note(format!("{} with {count} triangles, since this is a software adapter", rung.name()));
+            context.note(format!("{} with {count} triangles, since this is a software adapter", option.name()));
         }
         let (scene, view) = dots(true, count, 1);
-        let what = format!("{count} triangles on {}", rung.name());
-        let capture = lab.captured(&scene, &view, &stack(&[]), &pinned(rung), &what)?;
+        let what = format!("{count} triangles on {}", option.name());
+        let capture = context.captured(&scene, &view, &stack(&[]), &pinned(option), &what)?;
         counted(&capture, count, 1, &what)?;
     }
     Ok(())
 }
 
-fn full_screen_triangles(lab: &mut Lab) -> Result<(), Halt> {
-    let mut dice = lab.dice(3);
-    let mut far = || dice.between(60_000, 8_000_000);
+fn full_screen_triangles(context: &mut CaseContext) -> Result<(), EarlyEnd> {
+    let mut rng = context.rng(3);
+    let mut far = || rng.between(60_000, 8_000_000);
     let triangles: Vec<_> =
         (0..1000).map(|i| ([[-far(), -far()], [2 * far() / 2 + 40_000, -far()], [64 * 256, 8_388_607]], 1e-3 * (i % 997) as f32)).collect();
-    let scene = hand_made(&[units(&triangles)]);
-    lab.renderer.set_tuning(tunings()[2]);
-    for rung in lab.rungs() {
-        let what = format!("a thousand full-screen triangles on {}", rung.name());
-        let (capture, _) = lab.exact(&scene, &pixel_view(128, 64), &stack(&[]), &pinned(rung), &what)?;
+    let scene = scene_of_meshes(&[units(&triangles)]);
+    context.renderer.set_tuning(tunings()[2]);
+    for option in context.options() {
+        let what = format!("a thousand full-screen triangles on {}", option.name());
+        let (capture, _) = context.exact(&scene, &pixel_view(128, 64), &stack(&[]), &pinned(option), &what)?;
         hold!(layers(&capture).iter().all(|&hits| hits > 900), "{what}: a pixel with fewer than 900 layers");
         let cut = capture.geometry.vertices.iter().any(|vertex| vertex.flags & vertex_flags::CLIPPED != 0);
         hold!(!cut, "{what}: one was clipped");

@@ -16,7 +16,7 @@ use crate::{
 
 /// Triangles in their own bytes; everything a hand-made scene needs.
 #[derive(Clone)]
-pub struct Part {
+pub struct SimpleMesh {
     pub positions: Vec<[f32; 3]>,
     /// Empty: (0, 0, 1) everywhere.
     pub normals: Vec<[f32; 3]>,
@@ -28,7 +28,7 @@ pub struct Part {
     pub placements: Vec<DMat4>,
 }
 
-impl Default for Part {
+impl Default for SimpleMesh {
     fn default() -> Self {
         let placements = vec![DMat4::IDENTITY];
         Self { positions: vec![], normals: vec![], colors: vec![], indices: vec![], double_sided: true, placements }
@@ -36,24 +36,24 @@ impl Default for Part {
 }
 
 /// Loose triangles that show both sides.
-pub fn sheet(positions: Vec<[f32; 3]>) -> Part {
-    Part { positions, ..Part::default() }
+pub fn sheet(positions: Vec<[f32; 3]>) -> SimpleMesh {
+    SimpleMesh { positions, ..SimpleMesh::default() }
 }
 
 /// Loose triangles from units of 1/256 px and one depth each; exact on a [`pixel_view`] up to the guard band.
-pub fn units(triangles: &[([[i32; 2]; 3], f32)]) -> Part {
+pub fn units(triangles: &[([[i32; 2]; 3], f32)]) -> SimpleMesh {
     let place = |[x, y]: [i32; 2], depth: f32| [x as f32 / 256.0, y as f32 / 256.0, depth];
     sheet(triangles.iter().flat_map(|(corners, depth)| corners.map(|corner| place(corner, *depth))).collect())
 }
 
 /// A scene of these parts.
-pub fn hand_made(parts: &[Part]) -> Arc<Scene> {
+pub fn scene_of_meshes(parts: &[SimpleMesh]) -> Arc<Scene> {
     let mut scene = Scene { name: "hand-made".into(), ..Scene::default() };
     for (i, part) in parts.iter().enumerate() {
-        let mut push = |lanes: u32, values: &[f32]| {
+        let mut push = |components: u32, values: &[f32]| {
             let offset = scene.vertex_bytes.len();
             scene.vertex_bytes.extend(values.iter().flat_map(|v| v.to_le_bytes()));
-            Accessor::packed_f32(offset, lanes, values.len() / lanes as usize)
+            Accessor::packed_f32(offset, components, values.len() / components as usize)
         };
         let positions = push(3, part.positions.as_flattened());
         let normals = if part.normals.is_empty() { vec![[0.0, 0.0, 1.0]; part.positions.len()] } else { part.normals.clone() };
@@ -62,7 +62,7 @@ pub fn hand_made(parts: &[Part]) -> Arc<Scene> {
         let indices = (!part.indices.is_empty()).then(|| {
             let (offset, count) = (scene.index_bytes.len() as u32, part.indices.len() as u32);
             scene.index_bytes.extend(part.indices.iter().flat_map(|i| i.to_le_bytes()));
-            Accessor { offset, stride: 4, component: Component::U32, lanes: 1, normalized: false, count }
+            Accessor { offset, stride: 4, component: Component::U32, components: 1, normalized: false, count }
         });
         let mut bounds = Bounds::EMPTY;
         let finite = part.positions.iter().filter(|p| p.iter().all(|v| v.is_finite()));
@@ -83,12 +83,12 @@ pub fn hand_made(parts: &[Part]) -> Arc<Scene> {
             positions,
             normals,
             colors,
-            coords: [None; 2],
+            texcoords: [None; 2],
             material,
             bounds,
             longest_edge,
-            sound_normals: false,
-            softness: Default::default(),
+            normals_agree: false,
+            deformation: Default::default(),
         });
         scene.instances.extend(part.placements.iter().map(|&world_from_object| Instance::fixed(i, world_from_object)));
     }
@@ -113,7 +113,7 @@ pub fn pixel_view(width: u32, height: u32) -> View {
         polyline: Arc::default(),
         shadow: Default::default(),
         picture_from_world: None,
-        flow: None,
+        particle_timeline: None,
         subpixel_bits: 8,
         is_relative: false,
     }
@@ -136,11 +136,11 @@ pub fn seen(scene: &Scene, camera: &Camera, [width, height]: [u32; 2]) -> View {
     View::new(camera, width, height, &scene.bounds(), DMat4::IDENTITY, [0.01, 0.02, 0.03, 1.0])
 }
 
-/// What the oracle makes of a scene all by itself: the truth that an adapter has not touched.
+/// What the oracle makes of a scene all by itself: the reference that an adapter has not touched.
 ///
 /// # Errors
 /// When a placement or the number of triangles exceeds what the arithmetic holds.
-pub fn truth(scene: &Scene, view: &View) -> Result<oracle::Coverage, DrawError> {
+pub fn reference(scene: &Scene, view: &View) -> Result<oracle::Coverage, DrawError> {
     let draws = draws(scene, view)?;
     let (triangles, _) = oracle::triangles(scene, &draws, &oracle::project(scene, &draws, view));
     Ok(oracle::cover(&triangles, view, None))
@@ -161,23 +161,23 @@ pub fn quad(corners: [[f64; 2]; 4], w: [f64; 4], reversed: bool) -> Vec<[f32; 3]
     order.map(place).to_vec()
 }
 
-/// Numbers that look random and are the same on every run.
-pub struct Dice(pub u32);
+/// Numbers that preset random and are the same on every run.
+pub struct Rng(pub u32);
 
-impl Dice {
-    pub fn roll(&mut self) -> u32 {
+impl Rng {
+    pub fn next_u32(&mut self) -> u32 {
         self.0 = self.0.wrapping_add(0x9e37_79b9);
         hash(self.0)
     }
 
     /// From `low` up to but without `high`.
     pub fn between(&mut self, low: i32, high: i32) -> i32 {
-        low + ((u64::from(self.roll()) * u64::from(high.abs_diff(low))) >> 32) as i32
+        low + ((u64::from(self.next_u32()) * u64::from(high.abs_diff(low))) >> 32) as i32
     }
 
     /// From `low` up to but without `high`.
     pub fn real(&mut self, low: f64, high: f64) -> f64 {
-        low + (high - low) * f64::from(self.roll()) / 4_294_967_296.0
+        low + (high - low) * f64::from(self.next_u32()) / 4_294_967_296.0
     }
 
     /// Leaves the same things in another order.

@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use serde_json::json;
 
-use super::{Case, Expectation, Halt, Lab, hold, lab::same, stack};
+use super::{Case, CaseContext, EarlyEnd, Expectation, context::same, hold, stack};
 use crate::scene::gltf;
 
 pub const CASES: &[Case] = &[
@@ -77,7 +77,7 @@ fn model(skin: &Skin) -> Result<crate::scene::Scene, gltf::LoadError> {
     gltf::parse(document.to_string().as_bytes(), &mut |_, _| Ok(bytes.clone()))
 }
 
-fn skins_that_are_taken(lab: &mut Lab) -> Result<(), Halt> {
+fn skins_that_are_taken(context: &mut CaseContext) -> Result<(), EarlyEnd> {
     let skins = [
         ("a sound skin", SOUND),
         ("weights of zero", Skin { weights: [0.0; 4], ..SOUND }),
@@ -89,13 +89,13 @@ fn skins_that_are_taken(lab: &mut Lab) -> Result<(), Halt> {
             Ok(scene) => {
                 let bounds = scene.bounds();
                 hold!(bounds.min.is_finite() && bounds.max.is_finite(), "{what}: vertices of {bounds:?}");
-                let view = lab.view(&scene, [64, 48]);
-                let capture = lab.everywhere_with(&Arc::new(scene), &view, &stack(&["lambert"]), what)?;
+                let view = context.view(&scene, [64, 48]);
+                let capture = context.exact_on_all_with(&Arc::new(scene), &view, &stack(&["lambert"]), what)?;
                 hold!(capture.frame.covered() > 300, "{what}: {} pixels", capture.frame.covered());
             }
             Err(error) => {
                 hold!(i > 0, "{what} is refused: {error}");
-                lab.note(format!("{what}: {error}"));
+                context.note(format!("{what}: {error}"));
             }
         }
     }
@@ -103,26 +103,26 @@ fn skins_that_are_taken(lab: &mut Lab) -> Result<(), Halt> {
 }
 
 /// A rotation is its direction: however long it is, it turns as the unit quaternion does, and the loader says that it took it.
-fn rotations_of_any_length(lab: &mut Lab) -> Result<(), Halt> {
+fn rotations_of_any_length(context: &mut CaseContext) -> Result<(), EarlyEnd> {
     let half = std::f64::consts::FRAC_1_SQRT_2;
     let turned = |length: f64| Skin { rotation: [0.0, 0.0, half * length, half * length], ..SOUND };
-    let taken = |length: f64| model(&turned(length)).map_err(|error| Halt::Failed(format!("a rotation of length {length}: {error}")));
+    let taken = |length: f64| model(&turned(length)).map_err(|error| EarlyEnd::Failed(format!("a rotation of length {length}: {error}")));
     let sound = taken(1.0)?;
-    let view = lab.view(&sound, [64, 48]);
+    let view = context.view(&sound, [64, 48]);
     let says = |scene: &crate::scene::Scene| scene.notes.iter().any(|note| note.contains("rotation") && note.contains("direction"));
     hold!(!says(&sound), "a unit quaternion is remarked on: {:?}", sound.notes);
-    let truth = lab.everywhere_with(&Arc::new(sound), &view, &stack(&["lambert"]), "a rotation of length 1")?;
+    let reference = context.exact_on_all_with(&Arc::new(sound), &view, &stack(&["lambert"]), "a rotation of length 1")?;
     for length in [3.0, 1e-3, 1e18] {
         let what = format!("a rotation of length {length:e}");
         let scene = taken(length)?;
         hold!(says(&scene), "{what} is taken without a word: {:?}", scene.notes);
-        let capture = lab.everywhere_with(&Arc::new(scene), &view, &stack(&["lambert"]), &what)?;
-        same(&capture, &truth, &what)?;
+        let capture = context.exact_on_all_with(&Arc::new(scene), &view, &stack(&["lambert"]), &what)?;
+        same(&capture, &reference, &what)?;
     }
     Ok(())
 }
 
-fn skins_that_cannot_be(lab: &mut Lab) -> Result<(), Halt> {
+fn skins_that_cannot_be(context: &mut CaseContext) -> Result<(), EarlyEnd> {
     for (what, skin, word) in [
         ("a joint out of range", Skin { joints: [0, 2, 0, 0], ..SOUND }, "joint 2"),
         ("the last joint that a byte names", Skin { joints: [255; 4], ..SOUND }, "joint 255"),
@@ -135,9 +135,9 @@ fn skins_that_cannot_be(lab: &mut Lab) -> Result<(), Halt> {
         match model(&skin) {
             Err(error) => {
                 hold!(error.to_string().contains(word), "{what}: {error}");
-                lab.refused(error);
+                context.refused(error);
             }
-            Ok(_) => return Err(Halt::Failed(format!("{what} was taken"))),
+            Ok(_) => return Err(EarlyEnd::Failed(format!("{what} was taken"))),
         }
     }
     Ok(())

@@ -1,11 +1,11 @@
-//! Strict: every row that is exact, over again on the strict rung, where owners and depth keys are the CPU's to the bit.
+//! Strict: every row that is exact, over again on the strict option, where triangle ids and depth keys are the CPU's to the bit.
 
-use super::{Case, Expectation, Halt, Lab, cases, hold};
+use super::{Case, CaseContext, EarlyEnd, Expectation, cases, hold};
 
 pub const CASES: &[Case] = &[Case {
     number: NUMBER,
     name: "strict-everywhere",
-    about: "the pictures of all exact rows on the strict rung: owners and depth keys are those of the CPU, to the bit",
+    about: "the pictures of all exact rows on the strict option: triangle ids and depth keys are those of the CPU, to the bit",
     expectation: Expectation::Exact,
     run: strict_everywhere,
 }];
@@ -18,8 +18,8 @@ const LONG: [u32; 8] = [16, 18, 19, 20, 21, 22, 23, 27];
 /// Rows of effects, whose kernels a slow adapter has compiled once already.
 const SLOW: [u32; 4] = [12, 25, 26, 28];
 
-fn strict_everywhere(lab: &mut Lab) -> Result<(), Halt> {
-    let (is_software, is_slow) = (lab.is_software(), lab.is_slow());
+fn strict_everywhere(context: &mut CaseContext) -> Result<(), EarlyEnd> {
+    let (is_software, is_slow) = (context.is_software(), context.is_slow());
     let is_meant = |case: &&Case| {
         let is_long = is_software && LONG.contains(&case.number) || is_slow && SLOW.contains(&case.number);
         case.number != NUMBER && case.expectation == Expectation::Exact && !is_long
@@ -27,7 +27,7 @@ fn strict_everywhere(lab: &mut Lab) -> Result<(), Halt> {
     let (mut rows, mut pictures, mut floats) = (Vec::new(), 0, 0);
     let mut hashes = Vec::new();
     for case in cases().into_iter().filter(is_meant) {
-        let strict = lab.strictly(case.name, case.run)?;
+        let strict = context.strictly(case.name, case.run)?;
         hold!(strict.adapter == strict.cpu, "{}: the adapter's hash is {:016x}, the CPU's {:016x}", case.name, strict.adapter, strict.cpu);
         (pictures, floats) = (pictures + strict.pictures, floats + strict.floats);
         if strict.pictures > 0 {
@@ -36,14 +36,14 @@ fn strict_everywhere(lab: &mut Lab) -> Result<(), Halt> {
         }
     }
     rows.dedup();
-    hold!(pictures > 100, "only {pictures} pictures have a strict rung");
+    hold!(pictures > 100, "only {pictures} pictures have a strict option");
     let hash = crate::math::fnv1a(&hashes);
-    lab.note(format!("{pictures} pictures of rows {rows:?} come to {hash:016x} here and on the CPU; {floats} more hang on floats"));
+    context.note(format!("{pictures} pictures of rows {rows:?} come to {hash:016x} here and on the CPU; {floats} more hang on floats"));
     if is_software {
-        lab.note(format!("rows {LONG:?} are left to graphics cards"));
+        context.note(format!("rows {LONG:?} are left to graphics cards"));
     }
     if is_slow {
-        lab.note(format!("rows {SLOW:?} are left to adapters that compile in less time"));
+        context.note(format!("rows {SLOW:?} are left to adapters that compile in less time"));
     }
     Ok(())
 }

@@ -4,16 +4,16 @@
 use std::time::{Duration, Instant};
 
 use super::{
-    Case, Expectation, Halt, Lab, captured, hold,
-    lab::{equal, same},
-    pinned,
-    scenes::{Part, hand_made, pixel_view},
+    Case, CaseContext, EarlyEnd, Expectation, captured,
+    context::{equal, same},
+    hold, pinned,
+    scenes::{SimpleMesh, pixel_view, scene_of_meshes},
     stack,
 };
 use crate::{
     effects::{Stack, hooks::Layers},
     gpu::{Gpu, RenderError, Renderer, device::AdapterChoice},
-    plan::Accuracy,
+    plan::AccuracyRequest,
 };
 
 pub const CASES: &[Case] = &[
@@ -75,131 +75,137 @@ pub const CASES: &[Case] = &[
     },
 ];
 
-fn without_pixels(lab: &mut Lab) -> Result<(), Halt> {
-    let hall = lab.scene("near")?;
+fn without_pixels(context: &mut CaseContext) -> Result<(), EarlyEnd> {
+    let hall = context.scene("near")?;
     for size in [[0, 0], [0, 64], [64, 0]] {
         let what = format!("{size:?} pixels");
-        let capture = lab.captured(&hall, &lab.view(&hall, size), &stack(&["lambert"]), &Accuracy::default(), &what)?;
+        let capture = context.captured(&hall, &context.view(&hall, size), &stack(&["lambert"]), &AccuracyRequest::default(), &what)?;
         equal(&[capture.frame.width, capture.frame.height], &size, &what)?;
-        hold!(capture.frame.owner.is_empty() && capture.frame.color.is_empty(), "{what}: it has pixels");
-        hold!(lab.renderer.texture_view().is_none(), "{what}: there is a picture");
-        lab.exact(&hall, &lab.view(&hall, [33, 17]), &stack(&["lambert"]), &Accuracy::default(), "the next picture")?;
-        hold!(lab.renderer.texture_view().is_some(), "after {what} there is no picture");
+        hold!(capture.frame.triangle_id.is_empty() && capture.frame.color.is_empty(), "{what}: it has pixels");
+        hold!(context.renderer.texture_view().is_none(), "{what}: there is a picture");
+        context.exact(&hall, &context.view(&hall, [33, 17]), &stack(&["lambert"]), &AccuracyRequest::default(), "the next picture")?;
+        hold!(context.renderer.texture_view().is_some(), "after {what} there is no picture");
     }
     Ok(())
 }
 
-fn odd_targets(lab: &mut Lab) -> Result<(), Halt> {
-    let hall = lab.scene("near")?;
+fn odd_targets(context: &mut CaseContext) -> Result<(), EarlyEnd> {
+    let hall = context.scene("near")?;
     for size in [[1, 1], [1, 97], [97, 1], [9, 7], [65, 63], [129, 127]] {
-        lab.everywhere_with(&hall, &lab.view(&hall, size), &stack(&["lambert"]), &format!("{size:?} pixels"))?;
+        context.exact_on_all_with(&hall, &context.view(&hall, size), &stack(&["lambert"]), &format!("{size:?} pixels"))?;
     }
     Ok(())
 }
 
-fn wide_targets(lab: &mut Lab) -> Result<(), Halt> {
-    let most = lab.renderer.gpu().caps.max_texture_side;
+fn wide_targets(context: &mut CaseContext) -> Result<(), EarlyEnd> {
+    let most = context.renderer.gpu().caps.max_texture_side;
     hold!(most >= 8192, "WebGPU promises 8,192 pixels to a side, this adapter has {most}");
-    let teapot = lab.scene("teapot?tess=4")?;
+    let teapot = context.scene("teapot?tess=4")?;
     for side in [8192, 16_384] {
         if side > most {
-            lab.note(format!("left out: {side} pixels to a side; this adapter's textures end at {most}"));
+            context.note(format!("left out: {side} pixels to a side; this adapter's textures end at {most}"));
             continue;
         }
         for size in [[side, 6], [6, side]] {
-            lab.exact(&teapot, &lab.view(&teapot, size), &stack(&["lambert"]), &Accuracy::default(), &format!("{size:?} pixels"))?;
+            context.exact(
+                &teapot,
+                &context.view(&teapot, size),
+                &stack(&["lambert"]),
+                &AccuracyRequest::default(),
+                &format!("{size:?} pixels"),
+            )?;
         }
     }
     Ok(())
 }
 
-fn too_wide_a_target(lab: &mut Lab) -> Result<(), Halt> {
-    let most = lab.renderer.gpu().caps.max_texture_side;
-    let teapot = lab.scene("teapot?tess=4")?;
+fn too_wide_a_target(context: &mut CaseContext) -> Result<(), EarlyEnd> {
+    let most = context.renderer.gpu().caps.max_texture_side;
+    let teapot = context.scene("teapot?tess=4")?;
     for size in [[most + 1, 6], [6, most + 1], [u32::MAX, u32::MAX]] {
         let view = pixel_view(size[0], size[1]);
-        lab.renderer.set_scene(&teapot)?;
+        context.renderer.set_scene(&teapot)?;
         let what = format!("{} x {} pixels", size[0], size[1]);
-        match lab.renderer.draw(&view, &stack(&[]), &Accuracy::default()) {
+        match context.renderer.draw(&view, &stack(&[]), &AccuracyRequest::default()) {
             Err(error @ RenderError::TooWide { .. }) => {
                 let text = error.to_string();
                 let says = text.contains(&format!("{} x {}", size[0], size[1])) && text.contains(&most.to_string());
                 hold!(says && error.is_unsupported(), "{what}: {text}");
-                lab.refused(text);
+                context.refused(text);
             }
-            Err(error) => return Err(Halt::Failed(format!("{what}: {error}"))),
-            Ok(()) => return Err(Halt::Failed(format!("{what} were drawn, and {most} are the most to a side"))),
+            Err(error) => return Err(EarlyEnd::Failed(format!("{what}: {error}"))),
+            Ok(()) => return Err(EarlyEnd::Failed(format!("{what} were drawn, and {most} are the most to a side"))),
         }
     }
     Ok(())
 }
 
 /// Two layers over everything, of two colours.
-fn veils() -> Part {
+fn veils() -> SimpleMesh {
     let corners = |depth: f32| [[-16.0, -16.0, depth], [40_000.0, -16.0, depth], [-16.0, 40_000.0, depth]];
     let colors = [[1.0, 0.0, 0.25, 1.0], [0.0, 1.0, 0.25, 1.0]];
-    Part {
+    SimpleMesh {
         positions: [corners(0.5), corners(0.25)].concat(),
         colors: colors.iter().flat_map(|color| [*color; 3]).collect(),
-        ..Part::default()
+        ..SimpleMesh::default()
     }
 }
 
-fn xray_at_5k(lab: &mut Lab) -> Result<(), Halt> {
-    let (scene, accuracy) = (hand_made(&[veils()]), pinned(lab.quick_rung()));
+fn xray_at_5k(context: &mut CaseContext) -> Result<(), EarlyEnd> {
+    let (scene, accuracy) = (scene_of_meshes(&[veils()]), pinned(context.quick_option()));
     let (stack, [width, height]) = (stack(&["xray"]), [5120u32, 2880]);
     let bytes = 24 * u64::from(width) * u64::from(height);
-    let caps = &lab.renderer.gpu().caps;
+    let caps = &context.renderer.gpu().caps;
     let room = caps.max_storage_binding_bytes.min(caps.max_buffer_bytes);
     if room < bytes {
-        return Err(Halt::LeftOut(format!("its sums take {bytes} bytes in one binding, and this adapter binds {room}")));
+        return Err(EarlyEnd::Skipped(format!("its sums take {bytes} bytes in one binding, and this adapter binds {room}")));
     }
     // Judged where it is small, the same to the bit where it is large: every pixel shows the same two layers.
-    let (small, _) = lab.exact(&scene, &pixel_view(64, 36), &stack, &accuracy, "64 x 36 pixels")?;
+    let (small, _) = context.exact(&scene, &pixel_view(64, 36), &stack, &accuracy, "64 x 36 pixels")?;
     let (color, count) = (small.frame.color[0], small.frame.counted[0]);
     hold!(small.frame.color.iter().all(|c| *c == color), "the veils are not even");
     let what = "5,120 x 2,880 pixels";
-    let large = lab.captured(&scene, &pixel_view(width, height), &stack, &accuracy, what)?;
+    let large = context.captured(&scene, &pixel_view(width, height), &stack, &accuracy, what)?;
     let odd = large.frame.color.iter().zip(&large.frame.counted).filter(|found| *found != (&color, &count)).count();
     equal(&odd, &0, &format!("{what}: pixels that show something else"))?;
     equal(&large.frame.covered(), &(width as usize * height as usize), &format!("{what}: pixels covered"))
 }
 
-fn more_than_a_binding(lab: &mut Lab) -> Result<(), Halt> {
-    let caps = &lab.renderer.gpu().caps;
+fn more_than_a_binding(context: &mut CaseContext) -> Result<(), EarlyEnd> {
+    let caps = &context.renderer.gpu().caps;
     let (room, most) = (caps.max_storage_binding_bytes.min(caps.max_buffer_bytes), caps.max_texture_side);
-    let (scene, stack) = (hand_made(&[veils()]), stack(&["xray"]));
+    let (scene, stack) = (scene_of_meshes(&[veils()]), stack(&["xray"]));
     if room >= 24 * u64::from(most) * u64::from(most) {
-        return Err(Halt::LeftOut(format!("this adapter binds {room} bytes, which is room for any picture of {most} x {most} pixels")));
+        return Err(EarlyEnd::Skipped(format!("this adapter binds {room} bytes, which is room for any picture of {most} x {most} pixels")));
     }
-    lab.renderer.set_scene(&scene)?;
-    match lab.renderer.draw(&pixel_view(most, most), &stack, &Accuracy::default()) {
+    context.renderer.set_scene(&scene)?;
+    match context.renderer.draw(&pixel_view(most, most), &stack, &AccuracyRequest::default()) {
         Err(error @ RenderError::TooLarge { .. }) => {
             let text = error.to_string();
             hold!(error.is_unsupported() && text.contains(&room.to_string()), "{text}");
-            lab.refused(text);
+            context.refused(text);
             // What was there before still works.
-            lab.renderer.set_scene(&scene)?;
-            lab.exact(&scene, &pixel_view(64, 36), &stack, &Accuracy::default(), "the next picture")?;
-            hold!(matches!(lab.renderer.key().and_then(|key| key.layers), Some(Layers::Xray { .. })), "the effect is gone");
+            context.renderer.set_scene(&scene)?;
+            context.exact(&scene, &pixel_view(64, 36), &stack, &AccuracyRequest::default(), "the next picture")?;
+            hold!(matches!(context.renderer.key().and_then(|key| key.layers), Some(Layers::Xray { .. })), "the effect is gone");
             Ok(())
         }
-        Err(error) => Err(Halt::Failed(format!("{most} x {most} pixels: {error}"))),
-        Ok(()) => Err(Halt::Failed(format!("{most} x {most} pixels were drawn, and {room} bytes are the most in a binding"))),
+        Err(error) => Err(EarlyEnd::Failed(format!("{most} x {most} pixels: {error}"))),
+        Ok(()) => Err(EarlyEnd::Failed(format!("{most} x {most} pixels were drawn, and {room} bytes are the most in a binding"))),
     }
 }
 
-fn resized(lab: &mut Lab) -> Result<(), Halt> {
-    lab.free_the_band();
-    let mut dice = lab.dice(21);
-    let hall = lab.scene("near")?;
+fn resized(context: &mut CaseContext) -> Result<(), EarlyEnd> {
+    context.allow_any_depth_band();
+    let mut rng = context.rng(21);
+    let hall = context.scene("near")?;
     let stacks = [stack(&["lambert"]), stack(&["xray"]), stack(&["lambert", "outline"]), Stack::default()];
-    let rungs = lab.rungs();
+    let options = context.options();
     for picture in 0..100 {
-        let size = [dice.between(1, 160), dice.between(1, 120)].map(|side| side as u32);
-        let rung = rungs[picture % rungs.len()];
-        let what = format!("picture {picture} of {size:?} pixels on {}", rung.name());
-        lab.exact(&hall, &lab.view(&hall, size), &stacks[picture % stacks.len()], &pinned(rung), &what)?;
+        let size = [rng.between(1, 160), rng.between(1, 120)].map(|side| side as u32);
+        let option = options[picture % options.len()];
+        let what = format!("picture {picture} of {size:?} pixels on {}", option.name());
+        context.exact(&hall, &context.view(&hall, size), &stacks[picture % stacks.len()], &pinned(option), &what)?;
     }
     Ok(())
 }
@@ -207,20 +213,20 @@ fn resized(lab: &mut Lab) -> Result<(), Halt> {
 /// How long a driver may take to say that its device is gone.
 const PATIENCE: Duration = Duration::from_secs(20);
 
-fn device_lost(lab: &mut Lab) -> Result<(), Halt> {
-    let name = lab.renderer.gpu().summary.name.clone();
-    let gpu = Gpu::open(&AdapterChoice::Named(name)).map_err(|error| Halt::Failed(format!("a second device: {error}")))?;
-    let hall = lab.scene("near")?;
-    let (view, stack, accuracy) = (lab.view(&hall, [96, 64]), stack(&["lambert"]), Accuracy::default());
+fn device_lost(context: &mut CaseContext) -> Result<(), EarlyEnd> {
+    let name = context.renderer.gpu().summary.name.clone();
+    let gpu = Gpu::open(&AdapterChoice::Named(name)).map_err(|error| EarlyEnd::Failed(format!("a second device: {error}")))?;
+    let hall = context.scene("near")?;
+    let (view, stack, accuracy) = (context.view(&hall, [96, 64]), stack(&["lambert"]), AccuracyRequest::default());
     let mut renderer = Renderer::new(gpu.clone());
     let before = captured(&mut renderer, &hall, &view, &stack, &accuracy)?;
     gpu.device.destroy();
     let began = Instant::now();
     let error = loop {
-        lab.step(&hall, &view, "a lost device")?;
+        context.step(&hall, &view, "a lost device")?;
         match renderer.draw(&view, &stack, &accuracy).and_then(|()| renderer.finish().map(|_| ())) {
             Err(error) if error.is_lost() => break error,
-            _ if began.elapsed() > PATIENCE => return Err(Halt::Failed("the renderer never says that its device is gone".into())),
+            _ if began.elapsed() > PATIENCE => return Err(EarlyEnd::Failed("the renderer never says that its device is gone".into())),
             _ => std::thread::sleep(Duration::from_millis(5)),
         }
     };
@@ -229,9 +235,9 @@ fn device_lost(lab: &mut Lab) -> Result<(), Halt> {
     hold!(again.is_err_and(|error| error.is_lost()), "a lost device draws");
     drop(renderer);
     // Scene, viewpoint and stack are not the device's: another one shows the same picture, to the bit.
-    let after = lab.captured(&hall, &view, &stack, &accuracy, "the same on another device")?;
+    let after = context.captured(&hall, &view, &stack, &accuracy, "the same on another device")?;
     same(&after, &before, "the same on another device")?;
     hold!(after.frame.color == before.frame.color, "another device shows other colours");
-    lab.refused(error);
+    context.refused(error);
     Ok(())
 }

@@ -3,20 +3,20 @@
 use std::sync::Arc;
 
 use super::{
-    Case, Expectation, Halt, Lab, hold,
-    lab::{equal, same},
-    pinned, stack, tunings,
+    Case, CaseContext, EarlyEnd, Expectation,
+    context::{equal, same},
+    hold, pinned, stack, tunings,
 };
 use crate::{
     effects::{Effect, Enabled, Stack},
-    frame::NO_OWNER,
+    frame::NO_TRIANGLE,
     gpu::Capture,
     measure::compare,
-    scene::Scene,
-    session::{
-        Animation, Clock, Session,
+    preset::{
+        Animation, Clock, Preset,
         animation::{Easing, Keyframe, Track},
     },
+    scene::Scene,
 };
 
 pub const CASES: &[Case] = &[
@@ -43,21 +43,21 @@ pub const CASES: &[Case] = &[
     },
 ];
 
-fn a_hundred_frames(lab: &mut Lab) -> Result<(), Halt> {
-    let hall = lab.scene("near")?;
-    let view = lab.view(&hall, [80, 60]);
-    lab.renderer.set_tuning(tunings()[2]);
-    if lab.is_slow() {
-        lab.note("one look on each rung, since this adapter is slow".into());
+fn a_hundred_frames(context: &mut CaseContext) -> Result<(), EarlyEnd> {
+    let hall = context.scene("near")?;
+    let view = context.view(&hall, [80, 60]);
+    context.renderer.set_tuning(tunings()[2]);
+    if context.is_slow() {
+        context.note("one preset on each option, since this adapter is slow".into());
     }
-    for (i, rung) in lab.rungs().into_iter().enumerate() {
+    for (i, option) in context.options().into_iter().enumerate() {
         let stacks = [stack(&["facet", "lambert"]), stack(&["lambert", "xray"])];
-        let chosen = if lab.is_slow() { &stacks[i % 2..=i % 2] } else { &stacks };
+        let chosen = if context.is_slow() { &stacks[i % 2..=i % 2] } else { &stacks };
         for stack in chosen {
             let mut first: Option<Capture> = None;
             for frame in 1..=100 {
-                let what = format!("frame {frame} on {}", rung.name());
-                let capture = lab.captured(&hall, &view, stack, &pinned(rung), &what)?;
+                let what = format!("frame {frame} on {}", option.name());
+                let capture = context.captured(&hall, &view, stack, &pinned(option), &what)?;
                 let Some(first) = &first else {
                     hold!(!capture.geometry.pieces.is_empty(), "nothing was clipped");
                     first = Some(capture);
@@ -79,23 +79,23 @@ fn shuffled(scene: &Scene, order: &[u32]) -> Arc<Scene> {
     Arc::new(scene)
 }
 
-fn shuffled_triangles(lab: &mut Lab) -> Result<(), Halt> {
-    lab.renderer.set_tuning(tunings()[2]);
+fn shuffled_triangles(context: &mut CaseContext) -> Result<(), EarlyEnd> {
+    context.renderer.set_tuning(tunings()[2]);
     for query in ["sphere?triangles=5000", "knot?tess=6", "grid?cell=1", "sizes"] {
-        let still = lab.scene(query)?;
+        let still = context.scene(query)?;
         let is_one_list = still.instances.len() == 1 && still.primitives[0].indices.is_some_and(|i| i.stride == 4 && i.offset == 0);
         hold!(is_one_list, "{query}: it is not one list of 32-bit indices");
-        let view = lab.view(&still, [192, 144]);
-        for rung in lab.rungs() {
-            let what = format!("{query} on {}", rung.name());
-            let (before, _) = lab.exact(&still, &view, &stack(&[]), &pinned(rung), &what)?;
+        let view = context.view(&still, [192, 144]);
+        for option in context.options() {
+            let what = format!("{query} on {}", option.name());
+            let (before, _) = context.exact(&still, &view, &stack(&[]), &pinned(option), &what)?;
             for round in 1..=3 {
                 let what = format!("{what}, shuffle {round}");
                 let mut order: Vec<u32> = (0..still.triangle_count() as u32).collect();
-                lab.dice(round).shuffle(&mut order);
-                let mut after = lab.captured(&shuffled(&still, &order), &view, &stack(&[]), &pinned(rung), &what)?;
-                for owner in after.frame.owner.iter_mut().filter(|owner| **owner != NO_OWNER) {
-                    *owner = order[*owner as usize];
+                context.rng(round).shuffle(&mut order);
+                let mut after = context.captured(&shuffled(&still, &order), &view, &stack(&[]), &pinned(option), &what)?;
+                for triangle_id in after.frame.triangle_id.iter_mut().filter(|triangle_id| **triangle_id != NO_TRIANGLE) {
+                    *triangle_id = order[*triangle_id as usize];
                 }
                 same(&after, &before, &what)?;
                 hold!(after.frame.color == before.frame.color, "{what}: colours differ");
@@ -111,32 +111,32 @@ const DAY_S: f64 = 86_400.0;
 /// Most of a period that a phase may be off.
 const PHASE: f64 = 1e-6;
 
-fn a_day_later(lab: &mut Lab) -> Result<(), Halt> {
-    let knot = lab.scene("knot?tess=4")?;
-    let facet = Effect::find("facet").ok_or_else(|| Halt::Failed("no effect facet".into()))?;
-    let amount = facet.field("amount").ok_or_else(|| Halt::Failed("no field facet.amount".into()))?;
+fn a_day_later(context: &mut CaseContext) -> Result<(), EarlyEnd> {
+    let knot = context.scene("knot?tess=4")?;
+    let facet = Effect::find("facet").ok_or_else(|| EarlyEnd::Failed("no effect facet".into()))?;
+    let amount = facet.field("amount").ok_or_else(|| EarlyEnd::Failed("no field facet.amount".into()))?;
     let key = |time_s: f64, value: f64| Keyframe { time_s, value: vec![value], easing: Easing::Linear };
-    let sentence = |error: crate::session::animation::KeyError| Halt::Failed(error.to_string());
+    let sentence = |error: crate::preset::animation::KeyframeError| EarlyEnd::Failed(error.to_string());
     // A ramp of a second that begins a day after the start, and spin of a quarter turn a second.
-    let looks = |late_s: f64| -> Result<Session, Halt> {
+    let preset_files = |late_s: f64| -> Result<Preset, EarlyEnd> {
         let mut animation = Animation::default();
         animation.put(Track::new(facet, amount, vec![key(late_s, 0.0), key(late_s + 1.0, 1.0)]).map_err(sentence)?);
-        Ok(Session {
+        Ok(Preset {
             spin_deg_per_s: 90.0,
             stack: Stack(vec![Enabled::new(facet)]),
             animation,
             clock: Clock { time_s: late_s + 0.37, ..Clock::default() },
-            ..Session::default()
+            ..Preset::default()
         })
     };
-    let (fresh, late) = (looks(0.0)?, looks(DAY_S)?);
-    let angle = |session: &Session| {
-        let x = session.view(&knot, [8, 8]).world_from_scene.x_axis;
+    let (fresh, late) = (preset_files(0.0)?, preset_files(DAY_S)?);
+    let angle = |preset: &Preset| {
+        let x = preset.view(&knot, [8, 8]).world_from_scene.x_axis;
         libm::atan2(-x.z, x.x) / std::f64::consts::TAU
     };
     let off = (angle(&late) - angle(&fresh)).abs();
     hold!(off <= PHASE, "the spin is {off:e} of a turn off");
-    let value = |session: &Session| amount.get(&session.posed_stack().0[0].words)[0];
+    let value = |preset: &Preset| amount.get(&preset.evaluated_stack().0[0].words)[0];
     let ramp = (value(&late) - value(&fresh)).abs();
     hold!(ramp <= PHASE && (value(&fresh) - 0.37).abs() <= PHASE, "the keyed value is {ramp:e} of its way off");
 
@@ -151,14 +151,14 @@ fn a_day_later(lab: &mut Lab) -> Result<(), Halt> {
     hold!(phase <= PHASE, "after {frames} frames the clock is {phase:e} of a round off");
 
     let mut drawn = Vec::new();
-    for (what, session) in [("at the start", &fresh), ("a day later", &late)] {
-        let view = session.view(&knot, [96, 72]);
-        drawn.push(lab.everywhere_with(&knot, &view, &session.posed_stack(), what)?);
+    for (what, preset) in [("at the start", &fresh), ("a day later", &late)] {
+        let view = preset.view(&knot, [96, 72]);
+        drawn.push(context.exact_on_all_with(&knot, &view, &preset.evaluated_stack(), what)?);
     }
-    let changed = compare::owners(&drawn[1].frame.owner, &drawn[0].frame.owner).different;
+    let changed = compare::triangle_ids(&drawn[1].frame.triangle_id, &drawn[0].frame.triangle_id).different;
     let vertices = drawn[0].geometry.vertices.iter().zip(&drawn[1].geometry.vertices);
     let moved = vertices.map(|(a, b)| a.x.abs_diff(b.x).max(a.y.abs_diff(b.y))).max().unwrap_or(0);
     hold!(moved <= 1, "a vertex is {moved} units of 1/256 px off");
-    lab.note(format!("spin off by {off:.1e} of a turn, clock by {phase:.1e} of a round, {changed} pixels of another owner"));
+    context.note(format!("spin off by {off:.1e} of a turn, clock by {phase:.1e} of a round, {changed} pixels of another triangle id"));
     equal(&drawn[0].frame.counters, &drawn[1].frame.counters, "counters a day later")
 }

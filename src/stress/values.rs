@@ -5,18 +5,19 @@ use std::sync::Arc;
 use glam::{DMat4, DVec3};
 
 use super::{
-    Case, Expectation, Halt, Lab, hold,
-    lab::equal,
-    scenes::{Part, hand_made, pixel_view, seen, sheet, units},
+    Case, CaseContext, EarlyEnd, Expectation,
+    context::equal,
+    hold,
+    scenes::{SimpleMesh, pixel_view, scene_of_meshes, seen, sheet, units},
     stack,
 };
 use crate::{
+    accuracy::{PinnedOptions, PositionFormat},
     effects::Stack,
-    frame::NO_OWNER,
+    frame::NO_TRIANGLE,
     gpu::Capture,
-    ladder::{Pins, Vertices},
     oracle,
-    plan::Accuracy,
+    plan::AccuracyRequest,
     scene::{
         Scene,
         camera::{Camera, Projection},
@@ -68,7 +69,7 @@ pub const CASES: &[Case] = &[
     },
 ];
 
-fn bad_positions(lab: &mut Lab) -> Result<(), Halt> {
+fn bad_positions(context: &mut CaseContext) -> Result<(), EarlyEnd> {
     let view = pixel_view(64, 64);
     let good = [[4.0, 4.0, 0.25], [60.0, 8.0, 0.5], [8.0, 60.0, 0.75f32]];
     let huge = (1u64 << 40) as f32;
@@ -85,28 +86,31 @@ fn bad_positions(lab: &mut Lab) -> Result<(), Halt> {
     let good_too = good.map(|[x, y, z]| [64.0 - x, y, z]);
     positions.extend(good_too);
     let last = positions.len() as u32 / 3 - 1;
-    let capture = lab.everywhere(&hand_made(&[sheet(positions)]), &view, "bad positions")?;
+    let capture = context.exact_on_all(&scene_of_meshes(&[sheet(positions)]), &view, "bad positions")?;
     let counters = capture.frame.counters;
     let counted = (counters.rejected_nonfinite, counters.rejected_range, counters.degenerate);
     equal(&counted, &(nonfinite, range, 0), "triangles rejected as not finite, as out of range, as without area")?;
-    hold!(capture.frame.owner.iter().all(|&owner| [0, last, NO_OWNER].contains(&owner)), "a rejected triangle owns a pixel");
-    let alone = hand_made(&[sheet([good, good_too].concat())]);
-    let truth = lab.everywhere(&alone, &view, "good positions alone")?;
-    hold!(capture.frame.key == truth.frame.key, "a rejected triangle leaves a trace in the depth keys");
+    hold!(
+        capture.frame.triangle_id.iter().all(|&triangle_id| [0, last, NO_TRIANGLE].contains(&triangle_id)),
+        "a rejected triangle owns a pixel"
+    );
+    let alone = scene_of_meshes(&[sheet([good, good_too].concat())]);
+    let reference = context.exact_on_all(&alone, &view, "good positions alone")?;
+    hold!(capture.frame.key == reference.frame.key, "a rejected triangle leaves a trace in the depth keys");
 
     // The largest that pass the gate are clipped; what is subnormal is 0.
     let below = f32::from_bits(huge.to_bits() - 1);
-    let vast = hand_made(&[sheet(vec![[-below, -below, 0.5], [below, -below, 0.5], [0.0, below, 0.5]])]);
-    let capture = lab.everywhere(&vast, &view, "just below 2^40")?;
+    let vast = scene_of_meshes(&[sheet(vec![[-below, -below, 0.5], [below, -below, 0.5], [0.0, below, 0.5]])]);
+    let capture = context.exact_on_all(&vast, &view, "just below 2^40")?;
     equal(&capture.frame.covered(), &(64 * 64), "pixels of a triangle just below 2^40")?;
-    let with = |zero: f32| hand_made(&[sheet(vec![[zero, zero, 0.5], [50.0, zero, zero], [zero, 50.0, 0.25]])]);
-    let zero = lab.everywhere(&with(0.0), &view, "zero")?;
-    let subnormal = lab.everywhere(&with(f32::from_bits(0x007f_ffff)), &view, "subnormal")?;
+    let with = |zero: f32| scene_of_meshes(&[sheet(vec![[zero, zero, 0.5], [50.0, zero, zero], [zero, 50.0, 0.25]])]);
+    let zero = context.exact_on_all(&with(0.0), &view, "zero")?;
+    let subnormal = context.exact_on_all(&with(f32::from_bits(0x007f_ffff)), &view, "subnormal")?;
     hold!(zero.frame == subnormal.frame && zero.geometry == subnormal.geometry, "a subnormal is not 0");
     Ok(())
 }
 
-fn bad_attributes(lab: &mut Lab) -> Result<(), Halt> {
+fn bad_attributes(context: &mut CaseContext) -> Result<(), EarlyEnd> {
     let bad = [f32::NAN, f32::INFINITY, f32::NEG_INFINITY, f32::MAX, -f32::MAX, 1e-40, -1e-40, 0.0, 1e20, -3.0];
     let (mut positions, mut normals, mut colors) = (vec![], vec![], vec![]);
     for (i, value) in bad.into_iter().enumerate() {
@@ -125,20 +129,25 @@ fn bad_attributes(lab: &mut Lab) -> Result<(), Halt> {
         }
     }
     let both = |normals: &[[f32; 3]], colors: &[[f32; 4]]| {
-        hand_made(&[Part { positions: positions.clone(), normals: normals.to_vec(), colors: colors.to_vec(), ..Part::default() }])
+        scene_of_meshes(&[SimpleMesh {
+            positions: positions.clone(),
+            normals: normals.to_vec(),
+            colors: colors.to_vec(),
+            ..SimpleMesh::default()
+        }])
     };
     for (what, scene) in [("normals", both(&normals, &[])), ("colours", both(&[], &colors)), ("both", both(&normals, &colors))] {
         for effects in [&["lambert"][..], &["normals"], &["facet", "lambert"]] {
             let what = format!("bad {what} under {}", effects.join(" and "));
-            let capture = lab.everywhere_with(&scene, &pixel_view(64, 64), &stack(effects), &what)?;
+            let capture = context.exact_on_all_with(&scene, &pixel_view(64, 64), &stack(effects), &what)?;
             hold!(capture.frame.covered() > 700, "{what}: {} pixels", capture.frame.covered());
         }
     }
     Ok(())
 }
 
-fn scales_and_offsets(lab: &mut Lab) -> Result<(), Halt> {
-    let knot = lab.scene("knot?tess=4")?;
+fn scales_and_offsets(context: &mut CaseContext) -> Result<(), EarlyEnd> {
+    let knot = context.scene("knot?tess=4")?;
     for (offset, scale) in [(0.0, 1e-6), (0.0, 1e-3), (0.0, 1e6), (1e4, 1.0), (1e5, 1.0), (1e6, 1.0), (1e7, 1.0), (1e8, 1.0), (1e8, 1e6)] {
         let mut placed = Scene::clone(&knot);
         let at = DVec3::new(offset, -offset, 0.5 * offset);
@@ -146,24 +155,26 @@ fn scales_and_offsets(lab: &mut Lab) -> Result<(), Halt> {
         let camera = Camera { eye: at + DVec3::new(1.0, 1.0, 4.0) * scale, target: at, near_m: scale.max(1e-6), ..Camera::default() };
         let view = seen(&placed, &camera, [96, 72]);
         let what = format!("offset {offset:e}, scale {scale:e}");
-        let capture = lab.everywhere_with(&Arc::new(placed), &view, &stack(&["depth", "lambert"]), &what)?;
+        let capture = context.exact_on_all_with(&Arc::new(placed), &view, &stack(&["depth", "lambert"]), &what)?;
         hold!(capture.frame.covered() > 1500, "{what}: {} pixels", capture.frame.covered());
     }
     Ok(())
 }
 
-fn offsets_taken_out(lab: &mut Lab) -> Result<(), Halt> {
-    let knot = lab.scene("knot?tess=4")?;
+fn offsets_taken_out(context: &mut CaseContext) -> Result<(), EarlyEnd> {
+    let knot = context.scene("knot?tess=4")?;
     let mesh = &knot.primitives[0];
     let indices: Vec<u32> = (0..mesh.triangle_count()).flat_map(|triangle| mesh.corners(&knot, triangle)).collect();
-    let relative = Accuracy { pins: Pins::of(Vertices::Relative).with(lab.quick_rung()), ..Accuracy::default() };
-    let stored = Accuracy { pins: Pins::of(Vertices::Stored).with(lab.quick_rung()), ..Accuracy::default() };
+    let relative =
+        AccuracyRequest { pins: PinnedOptions::of(PositionFormat::Relative).with(context.quick_option()), ..AccuracyRequest::default() };
+    let stored =
+        AccuracyRequest { pins: PinnedOptions::of(PositionFormat::Stored).with(context.quick_option()), ..AccuracyRequest::default() };
     for offset in [1e4, 1e5, 1e6, 1e7, 1e8] {
         // A hundred thousand times as far as it is large: a float has some 7 bits left for its shape.
         let (scale, at) = (1e-5 * offset, DVec3::new(offset, -offset, 0.5 * offset));
         let far = |vertex| (DVec3::from_array(mesh.position(&knot, vertex).map(f64::from)) * scale + at).as_vec3().to_array();
         let positions = (0..mesh.vertex_count()).map(far).collect();
-        let scene = hand_made(&[Part { positions, indices: indices.clone(), ..Part::default() }]);
+        let scene = scene_of_meshes(&[SimpleMesh { positions, indices: indices.clone(), ..SimpleMesh::default() }]);
         let camera = Camera { eye: at + DVec3::new(1.0, 1.0, 4.0) * scale, target: at, near_m: scale.max(1e-6) * 0.1, ..Camera::default() };
         let view = seen(&scene, &camera, [96, 72]);
         let corners = oracle::project_finest(&scene, &view, &Stack::default())?;
@@ -174,34 +185,39 @@ fn offsets_taken_out(lab: &mut Lab) -> Result<(), Halt> {
             twins.map(|(a, b)| units(a.x, b.x).max(units(a.y, b.y))).fold(0.0, f64::max)
         };
         let what = format!("vertices {offset:e} units away");
-        let (capture, _) = lab.exact(&scene, &view, &Stack::default(), &relative, &what)?;
+        let (capture, _) = context.exact(&scene, &view, &Stack::default(), &relative, &what)?;
         let off = moved(&capture);
         hold!(off <= 1.0, "{what}: a corner lies {off} units of 1/256 px from its place");
         hold!(capture.frame.covered() > 1500, "{what}: {} pixels", capture.frame.covered());
-        let (capture, _) = lab.judged(&scene, &view, &Stack::default(), &stored, &format!("{what}, as they are stored"))?;
+        let (capture, _) = context.judged(&scene, &view, &Stack::default(), &stored, &format!("{what}, as they are stored"))?;
         let stored_off = moved(&capture);
         hold!(stored_off > 8.0 * off, "{what}: as they are stored, corners move by no more than {stored_off} units");
-        lab.note(format!("{what}: corners move by up to {:.3} px as they are stored, {:.4} px relative", stored_off / 256.0, off / 256.0));
+        context.note(format!(
+            "{what}: corners move by up to {:.3} px as they are stored, {:.4} px relative",
+            stored_off / 256.0,
+            off / 256.0
+        ));
     }
     Ok(())
 }
 
-fn without_area(lab: &mut Lab) -> Result<(), Halt> {
+fn without_area(context: &mut CaseContext) -> Result<(), EarlyEnd> {
     let view = pixel_view(32, 32);
     let points = vec![[1.0, 1.0, 0.5], [30.0, 2.0, 0.5], [3.0, 30.0, 0.5], [15.5, 1.5, 0.5], [1.0, 1.0, 0.9]];
-    let none = Part { positions: points.clone(), indices: vec![0, 0, 0, 0, 1, 1, 0, 1, 3, 0, 4, 1, 2, 0, 2], ..Part::default() };
-    let capture = lab.everywhere(&hand_made(std::slice::from_ref(&none)), &view, "repeated indices")?;
+    let none =
+        SimpleMesh { positions: points.clone(), indices: vec![0, 0, 0, 0, 1, 1, 0, 1, 3, 0, 4, 1, 2, 0, 2], ..SimpleMesh::default() };
+    let capture = context.exact_on_all(&scene_of_meshes(std::slice::from_ref(&none)), &view, "repeated indices")?;
     equal(&(capture.frame.covered(), capture.frame.counters.degenerate), &(0, 5), "pixels and triangles without area")?;
 
     // Far larger than a class of its own, and still a line; a speck that the snap makes a point.
     let line = units(&[([[-8_000_000, -8_000_000], [0, 0], [8_000_000, 8_000_000]], 0.5)]);
     let speck = sheet(vec![[9.5, 9.5, 0.5], [9.5001, 9.5, 0.5], [9.5, 9.5001, 0.5]]);
-    let capture = lab.everywhere(&hand_made(&[none, line, speck]), &view, "lines and specks")?;
+    let capture = context.exact_on_all(&scene_of_meshes(&[none, line, speck]), &view, "lines and specks")?;
     equal(&(capture.frame.covered(), capture.frame.counters.degenerate), &(0, 7), "pixels and triangles without area")?;
 
     // Meshes without triangles, without vertices, alone and among others; a scene without meshes.
-    let empty = Part { positions: vec![[1.0, 1.0, 0.5]; 2], ..Part::default() };
-    let nothing = Part::default();
+    let empty = SimpleMesh { positions: vec![[1.0, 1.0, 0.5]; 2], ..SimpleMesh::default() };
+    let nothing = SimpleMesh::default();
     let whole = sheet(points[..3].to_vec());
     for (parts, covered) in [
         (vec![], false),
@@ -212,33 +228,33 @@ fn without_area(lab: &mut Lab) -> Result<(), Halt> {
         (vec![nothing, whole, empty], true),
     ] {
         let what = format!("{} meshes, {} of triangles", parts.len(), u32::from(covered));
-        let capture = lab.everywhere(&hand_made(&parts), &view, &what)?;
+        let capture = context.exact_on_all(&scene_of_meshes(&parts), &view, &what)?;
         equal(&(capture.frame.covered() > 0), &covered, &format!("{what}: anything drawn"))?;
         equal(&capture.frame.counters, &Default::default(), &what)?;
     }
     Ok(())
 }
 
-fn mirrored(lab: &mut Lab) -> Result<(), Halt> {
+fn mirrored(context: &mut CaseContext) -> Result<(), EarlyEnd> {
     let camera = Camera { eye: DVec3::Z * 4.0, projection: Projection::Orthographic { height_m: 2.6 }, ..Camera::default() };
     for double_sided in [false, true] {
-        let mut plain = Scene::clone(&*lab.scene("sphere?triangles=900")?);
+        let mut plain = Scene::clone(&*context.scene("sphere?triangles=900")?);
         plain.materials[0].double_sided = double_sided;
         let mut drawn = |scale: DVec3| {
             let mut scene = plain.clone();
             scene.instances[0].world_from_object = DMat4::from_scale(scale);
             let view = seen(&scene, &camera, [128, 96]);
-            lab.everywhere_with(&Arc::new(scene), &view, &stack(&["lambert"]), &format!("scale {scale}, double-sided {double_sided}"))
+            context.exact_on_all_with(&Arc::new(scene), &view, &stack(&["lambert"]), &format!("scale {scale}, double-sided {double_sided}"))
         };
         let straight = drawn(DVec3::ONE)?;
         // Mirrored left to right the same triangles show, but for samples on edges, which have a left and a right.
         let left_right = drawn(DVec3::new(-1.0, 1.0, 1.0))?;
-        let rows = straight.frame.owner.chunks_exact(128).flat_map(|row| row.iter().rev());
-        let different = rows.zip(&left_right.frame.owner).filter(|(a, b)| a != b).count();
+        let rows = straight.frame.triangle_id.chunks_exact(128).flat_map(|row| row.iter().rev());
+        let different = rows.zip(&left_right.frame.triangle_id).filter(|(a, b)| a != b).count();
         hold!(different <= 8, "mirrored left to right, {different} pixels show another triangle");
         // Mirrored front to back its other side shows, from outside again.
         let turned = drawn(DVec3::new(1.0, 1.0, -1.0))?;
-        let shared = turned.frame.owner.iter().filter(|&o| *o != NO_OWNER && straight.frame.owner.contains(o)).count();
+        let shared = turned.frame.triangle_id.iter().filter(|&o| *o != NO_TRIANGLE && straight.frame.triangle_id.contains(o)).count();
         hold!(shared < turned.frame.covered() / 10, "mirrored front to back, {shared} pixels show the front");
         hold!(turned.frame.covered() > 3000, "{} pixels", turned.frame.covered());
     }

@@ -8,20 +8,20 @@ use std::{
 };
 
 pub use rasterlab::stress::{
-    aim::near_miss,
+    adversarial::near_miss_triangle,
     exactness, pinned,
-    scenes::{Dice, Part, hand_made, pixel_view, seen, sheet, units},
+    scenes::{Rng, SimpleMesh, pixel_view, scene_of_meshes, seen, sheet, units},
     stack, tunings,
 };
 use rasterlab::{
+    accuracy::Visibility,
     effects::Stack,
     gpu::{Capture, Gpu, Renderer, device::AdapterChoice},
-    ladder::Visibility,
     measure::Verdict,
     oracle,
-    plan::Accuracy,
+    plan::AccuracyRequest,
+    preset::{Preset, SceneSource},
     scene::{Scene, builtin, camera::View},
-    session::{SceneSource, Session},
     shader::library::Library,
     stress,
 };
@@ -48,7 +48,7 @@ pub const SCENES: &[&str] = &[
 ];
 
 /// Scenes whose meshes bend, which the strict vertex stage refuses.
-pub const BENT_SCENES: &[&str] = &["tentacle?tess=3", "walker?tess=1"];
+pub const DEFORMED_SCENES: &[&str] = &["tentacle?tess=3", "walker?tess=1"];
 
 /// The adapter under test: `RASTERLAB_ADAPTER` (a part of its name) or the best there is. A missing one fails the test;
 /// only `RASTERLAB_GPU=skip` leaves GPU tests out, and says so.
@@ -77,41 +77,41 @@ pub fn renderer() -> Option<MutexGuard<'static, Renderer>> {
     Some(renderer)
 }
 
-/// The visibility rungs that lose nothing and that the adapter has.
-pub fn rungs(renderer: &Renderer) -> Vec<Visibility> {
-    stress::rungs(&renderer.gpu().caps)
+/// The visibility options that lose nothing and that the adapter has.
+pub fn options(renderer: &Renderer) -> Vec<Visibility> {
+    stress::options(&renderer.gpu().caps)
 }
 
-/// The exact rung that a CPU adapter is quickest on, for what takes long.
-pub fn quick_rung(renderer: &Renderer) -> Visibility {
-    stress::quick_rung(&renderer.gpu().caps)
+/// The exact option that a CPU adapter is quickest on, for what takes long.
+pub fn quick_option(renderer: &Renderer) -> Visibility {
+    stress::quick_option(&renderer.gpu().caps)
 }
 
 pub fn scene(query: &str) -> Arc<Scene> {
     Arc::new(builtin::build(query).unwrap_or_else(|error| panic!("{query}: {error}")))
 }
 
-/// A scene as a look without a camera shows it.
+/// A scene as a preset without a camera shows it.
 pub fn view(scene: &Scene, size: [u32; 2]) -> View {
-    Session { scene: SceneSource::Builtin(scene.name.clone()), ..Session::default() }.view(scene, size)
+    Preset { scene: SceneSource::Builtin(scene.name.clone()), ..Preset::default() }.view(scene, size)
 }
 
 /// Draws and judges.
-pub fn judged(renderer: &mut Renderer, scene: &Arc<Scene>, view: &View, stack: &Stack, accuracy: &Accuracy) -> (Capture, Verdict) {
+pub fn judged(renderer: &mut Renderer, scene: &Arc<Scene>, view: &View, stack: &Stack, accuracy: &AccuracyRequest) -> (Capture, Verdict) {
     stress::judged(renderer, scene, view, stack, accuracy).unwrap_or_else(|error| panic!("{error}"))
 }
 
 /// Draws without judging.
-pub fn captured(renderer: &mut Renderer, scene: &Arc<Scene>, view: &View, stack: &Stack, accuracy: &Accuracy) -> Capture {
+pub fn captured(renderer: &mut Renderer, scene: &Arc<Scene>, view: &View, stack: &Stack, accuracy: &AccuracyRequest) -> Capture {
     stress::captured(renderer, scene, view, stack, accuracy).unwrap_or_else(|error| panic!("{error}"))
 }
 
-/// The picture of a look, after those that lead up to it, with its verdict.
-pub fn judged_look(renderer: &mut Renderer, scene: &Arc<Scene>, session: &Session, accuracy: &Accuracy) -> (Capture, Verdict) {
-    let moments = session.moments(scene, session.output.size);
+/// The picture of a preset, after those that lead up to it, with its verdict.
+pub fn judged_preset(renderer: &mut Renderer, scene: &Arc<Scene>, preset: &Preset, accuracy: &AccuracyRequest) -> (Capture, Verdict) {
+    let moments = preset.moments(scene, preset.output.size);
     renderer.set_scene(scene).unwrap_or_else(|error| panic!("{}: {error}", scene.name));
     let capture = renderer.capture_last(&moments, accuracy).unwrap_or_else(|error| panic!("{}: {error}", scene.name));
-    let (view, stack) = moments.last().expect("a look shows a moment");
+    let (view, stack) = moments.last().expect("a preset shows a moment");
     let (layers, previous) = (capture.layers.as_deref(), capture.previous.as_deref());
     let verdict = oracle::judge_after(scene, view, stack, &capture.frame, &capture.geometry, layers, previous)
         .unwrap_or_else(|error| panic!("{}: {error}", scene.name));
@@ -124,7 +124,7 @@ pub fn exact(
     scene: &Arc<Scene>,
     view: &View,
     stack: &Stack,
-    accuracy: &Accuracy,
+    accuracy: &AccuracyRequest,
     what: &str,
 ) -> (Capture, Verdict) {
     let (capture, verdict) = judged(renderer, scene, view, stack, accuracy);
@@ -169,7 +169,7 @@ fn copy_folder(from: &Path, to: &Path) {
     }
 }
 
-/// What the oracle makes of a scene all by itself: the truth that an adapter has not touched.
-pub fn truth(scene: &Scene, view: &View) -> oracle::Coverage {
-    stress::scenes::truth(scene, view).expect("a scene that fits")
+/// What the oracle makes of a scene all by itself: the reference that an adapter has not touched.
+pub fn reference(scene: &Scene, view: &View) -> oracle::Coverage {
+    stress::scenes::reference(scene, view).expect("a scene that fits")
 }

@@ -12,11 +12,11 @@ struct Average {
 }
 
 fn average_of(pixel: u32) -> Average {
-    let weight = owner_beyond(4u * pixel + 3u);
+    let weight = triangle_beyond(4u * pixel + 3u);
     let whole = (1u << SUM_BITS) - 1u;
     let color = vec3f(vec3u(
-        xray_average(owner_beyond(4u * pixel), weight),
-        xray_average(owner_beyond(4u * pixel + 1u), weight),
-        xray_average(owner_beyond(4u * pixel + 2u), weight))) / f32(whole);
+        xray_average(triangle_beyond(4u * pixel), weight),
+        xray_average(triangle_beyond(4u * pixel + 1u), weight),
+        xray_average(triangle_beyond(4u * pixel + 2u), weight))) / f32(whole);
     return Average(color, weight, weight > 0xffffffffu / whole);
 }

@@ -9,8 +9,8 @@ struct Average {
 }
 
 fn average_of(pixel: u32) -> Average {
-    let first = owner_beyond(2u * pixel);
-    let second = owner_beyond(2u * pixel + 1u);
+    let first = triangle_beyond(2u * pixel);
+    let second = triangle_beyond(2u * pixel + 1u);
     let weight = second >> 16u;
     let color = vec3f(vec3u(
         xray_average(first & 0xffffu, weight),

@@ -9,11 +9,11 @@ struct Average {
 }
 
 fn average_of(pixel: u32) -> Average {
-    let first = owner_beyond(3u * pixel);
+    let first = triangle_beyond(3u * pixel);
     let weight = first >> 20u;
     let color = vec3f(vec3u(
         xray_average(first & 0xfffffu, weight),
-        xray_average(owner_beyond(3u * pixel + 1u), weight),
-        xray_average(owner_beyond(3u * pixel + 2u), weight))) / 255.0;
-    return Average(color, weight, weight == 0u && (first | owner_beyond(3u * pixel + 1u)) != 0u);
+        xray_average(triangle_beyond(3u * pixel + 1u), weight),
+        xray_average(triangle_beyond(3u * pixel + 2u), weight))) / 255.0;
+    return Average(color, weight, weight == 0u && (first | triangle_beyond(3u * pixel + 1u)) != 0u);
 }

@@ -16,7 +16,7 @@ fn discs_corner(t: Triangle, corner: vec4u, place: u32, share: u32) {
     let pixels = points_pixels(corner);
     if any(pixels.zw < pixels.xy) { return; }
     marks_box(pixels);
-    for (var y = pixels.y + i32(share); y <= pixels.w; y += i32(DISC_SHARES)) {
+    for (var y = pixels.y + i32(share); y <= pixels.w; y += i32(INVOCATIONS_PER_TRIANGLE)) {
         for (var x = pixels.x; x <= pixels.z; x += 1) {
             let pixel = u32(y) * frame.size.x + u32(x);
             if points_corner(t.a, t.b, t.c, grid_sample(vec2i(x, y))) == place && is_drawn(t, vec2u(vec2i(x, y)), pixel) {

@@ -1,4 +1,4 @@
-// Dot ends, points: a line of the look's own, which nothing moves but the scene's spin.
+// Dot ends, points: a line of the preset's own, which nothing moves but the scene's spin.
 
 struct DotPoints { begin: vec4f, end: vec4f }
 

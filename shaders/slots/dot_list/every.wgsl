@@ -2,5 +2,5 @@
 
 fn dot_list_count() -> u32 { return dot_frame.dots; }
 
-// Stretch and place.
+// DotRun and place.
 fn dot_list_at(id: u32) -> vec2u { return dots_find(id); }

@@ -5,5 +5,5 @@
 
 fn dot_list_count() -> u32 { return dot_count; }
 
-// Stretch and place.
+// DotRun and place.
 fn dot_list_at(id: u32) -> vec2u { return dot_list[id]; }

@@ -4,12 +4,12 @@
 @group(0) @binding(3) var<storage, read> index_bytes: array<u32>;
 
 // All draws have u32 indices.
-override WIDE_INDICES: bool = false;
+override U32_INDICES: bool = false;
 
 // Vertex of the draw at `place` of its list; out of range is held to the last vertex.
 fn fetch_vertex(draw: u32, place: u32) -> u32 {
     let first = draws[draw].index_offset;
-    if WIDE_INDICES { return min(index_bytes[first / 4u + place], draws[draw].vertex_count - 1u); }
+    if U32_INDICES { return min(index_bytes[first / 4u + place], draws[draw].vertex_count - 1u); }
     let bytes = draws[draw].index_format;
     if bytes == 0u { return place; }
     let byte = first + place * bytes;

@@ -1,4 +1,4 @@
-// Finish, image: the image effects of the stack, one after the other. Owners and depth keys of all pixels are final by now.
+// Finish, image: the image effects of the stack, one after the other. Triangle ids and depth keys of all pixels are final by now.
 //@ use common/image
 //@ use glue/image
 

@@ -1,14 +1,14 @@
-// Image, seen: owners and keys of all pixels, which are final by the time of the resolve.
+// Image, seen: triangle ids and keys of all pixels, which are final by the time of the resolve.
 //@ use common/draws
 //@ use common/picture
 //@ use slot/owner
 //@ use slot/depth
 
-// Owner, depth key and draw of a pixel; those of the nearest pixel of the picture when it lies outside.
+// Triangle id, depth key and draw of a pixel; those of the nearest pixel of the picture when it lies outside.
 fn image_at(x: i32, y: i32) -> vec3u {
     let at = vec2u(clamp(vec2i(x, y), vec2i(0), vec2i(frame.size) - 1));
     let found = owner_load(at.y * frame.size.x + at.x);
-    if found.x == 0u { return vec3u(IMAGE_NO_OWNER, image_depth(found.y), frame.draw_count); }
+    if found.x == 0u { return vec3u(IMAGE_NO_TRIANGLE, image_depth(found.y), frame.draw_count); }
     return vec3u(~found.x, image_depth(found.y), draws_of_triangle(~found.x) + 1u);
 }
 

@@ -2,7 +2,7 @@
 //@ use common/surface
 //@ use glue/surface
 
-// What takes a place in the world to the shadow map. Twin of `gpu::uniforms::LightUniform`.
+// What takes a place in the world to the shadow map. Mirror of `gpu::uniforms::LightUniform`.
 struct Light {
     column: vec4f, // texels to the right, of a place (x, y, z, 1)
     row: vec4f,    // texels down
@@ -17,9 +17,9 @@ struct Light {
 @group(0) @binding(31) var shadow_map: texture_2d<u32>;
 
 // Texels a side of the filter: 1, 3 or 5.
-override TAPS_SIDE: i32 = 3;
+override SHADOW_TAPS_SIDE: i32 = 3;
 // Largest tangent of the angle between light and normal that counts.
-override STEEPEST: f32 = 8.0;
+override MAX_SHADOW_SLOPE: f32 = 8.0;
 
 // Is the depth at least that of what the light sees in a texel? Reversed depths are floats from 0 up, whose bits order as
 // they do. Beyond the map stands nothing.
@@ -29,10 +29,10 @@ fn light_reaches(texel: vec2i, depth: f32) -> bool {
     return !is_inside || bitcast<u32>(max(depth, 1e-9)) >= key;
 }
 
-// Weight of a tap along one axis, of `TAPS_SIDE - 1` in all: the outermost fade as the sample crosses its texel, so that the
+// Weight of a tap along one axis, of `SHADOW_TAPS_SIDE - 1` in all: the outermost fade as the sample crosses its texel, so that the
 // sum is smooth.
 fn light_weight(tap: i32, fraction: f32) -> f32 {
-    let reach = TAPS_SIDE / 2;
+    let reach = SHADOW_TAPS_SIDE / 2;
     if reach == 0 { return 1.0; }
     return select(select(1.0, fraction, tap == reach), 1.0 - fraction, tap == -reach);
 }
@@ -47,13 +47,13 @@ fn light_filled(surface: Surface) -> Surface {
     let along = dot(light.depth.xyz, s.flat_normal) * light.range_m;
     let slant = across / select(max(along, 1e-3), min(along, -1e-3), along < 0.0);
     let tangent = length(slant);
-    let held = min(tangent, STEEPEST);
+    let held = min(tangent, MAX_SHADOW_SLOPE);
     let fall = -slant * (held / max(tangent, 1e-9)) * texel_depth;
     let depth = dot(light.depth, p) + (effects.shadow.bias + effects.shadow.slope * held) * texel_depth;
 
     let first = floor(at);
     let fraction = at - first;
-    let reach = TAPS_SIDE / 2;
+    let reach = SHADOW_TAPS_SIDE / 2;
     var sum = 0.0;
     for (var y = -reach; y <= reach; y += 1) {
         for (var x = -reach; x <= reach; x += 1) {
@@ -63,7 +63,7 @@ fn light_filled(surface: Surface) -> Surface {
             sum += select(0.0, weight, light_reaches(vec2i(first) + texel, depth + dot(fall, middle)));
         }
     }
-    let whole = f32(max(TAPS_SIDE - 1, 1));
+    let whole = f32(max(SHADOW_TAPS_SIDE - 1, 1));
     s.lit = sum / (whole * whole);
     return s;
 }

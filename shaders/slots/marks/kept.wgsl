@@ -2,7 +2,7 @@
 // A CPU adapter executes both sides of every branch, so an empty pixel costs it as much as a full one.
 //@ use common/frame
 
-@group(0) @binding(13) var<storage, read_write> marks: array<atomic<u32>>;
+@group(0) @binding(13) var<storage, read_write> tile_mask: array<atomic<u32>>;
 
 // Marks the tiles under a box of pixels (first and last, inclusive, inside the picture).
 fn marks_box(pixels: vec4i) {
@@ -10,7 +10,7 @@ fn marks_box(pixels: vec4i) {
     let width = (frame.size.x + 7u) / 8u;
     for (var y = tiles.y; y <= tiles.w; y += 1u) {
         for (var x = tiles.x; x <= tiles.z; x += 1u) {
-            atomicStore(&marks[y * width + x], 1u);
+            atomicStore(&tile_mask[y * width + x], 1u);
         }
     }
 }

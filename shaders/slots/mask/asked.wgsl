@@ -1,18 +1,18 @@
 // Mask, asked: a covered sample is drawn where the alpha of its material's image reaches the cutoff. Integers alone say so, from
-// what was settled about the triangle, so that every pass, rung and adapter says the same: the largest level, mixed in 1/256
+// what was settled about the triangle, so that every pass, option and adapter says the same: the largest level, mixed in 1/256
 // of a texel, or the nearest texel where the sampler asks for that.
 //@ use common/decisions
 //@ use common/parts
 //@ use common/texels
 
 fn mask_is_drawn(t: Triangle, at: vec2u) -> bool {
-    let last = decisions_load(t.entry, DECISIONS - 1u);
+    let last = decisions_load(t.entry, SAMPLE_SETUPS - 1u);
     if last.z == 0u { return true; }
-    let first = decisions_load(t.entry, DECISIONS - 2u);
+    let first = decisions_load(t.entry, SAMPLE_SETUPS - 2u);
     let weights = mask_weights(parts_of(t, at), vec3u(t.a.w, t.b.w, t.c.w));
     let place = vec2i(
         mask_mixed(weights, bitcast<vec3i>(vec3u(first.x, first.z, last.x))), mask_mixed(weights, bitcast<vec3i>(vec3u(first.y, first.w, last.y))));
-    let least = texels_paint(last.z - 1u).least_alpha;
+    let least = texels_paint(last.z - 1u).alpha_threshold;
     let look = texels_lookup(last.z - 1u + TEXELS_PAINT);
     let first_texel = texels_word(look.levels);
     if ((look.sampling >> 4u) & 1u) == 0u { return (mask_alpha(look, first_texel, place >> vec2u(8u)) << 16u) >= least; }

@@ -9,14 +9,14 @@ fn mask_settle(t: Triangle, at: vec3u) {
     let record = texels_record(t.draw);
     let paint = texels_paint(record);
     if (paint.flags & PAINT_MASKED) == 0u {
-        decisions_store(t.entry, DECISIONS - 1u, vec4u(0u));
+        decisions_store(t.entry, SAMPLE_SETUPS - 1u, vec4u(0u));
         return;
     }
     let a = mask_corner(paint.first_corner + 2u * at.x);
     let b = mask_corner(paint.first_corner + 2u * at.y);
     let c = mask_corner(paint.first_corner + 2u * at.z);
     var corners = array<vec2i, 3>(a, b, c);
-    if IS_PIECES {
+    if IS_CLIPPED_TRIANGLES {
         // A loop, since compilers copy what the effects do to a corner to wherever it is called.
         var v: array<vec3f, 3>;
         for (var i = 0u; i < 3u; i += 1u) { v[i] = transform_vertex(t.draw, at[i], t.id).xyw; }
@@ -27,8 +27,8 @@ fn mask_settle(t: Triangle, at: vec3u) {
         corners[2] = a + mask_between(lines, vertex_at(t.c), b - a, c - a);
     }
     let words = array<vec2u, 3>(bitcast<vec2u>(corners[0]), bitcast<vec2u>(corners[1]), bitcast<vec2u>(corners[2]));
-    decisions_store(t.entry, DECISIONS - 2u, vec4u(words[0], words[1]));
-    decisions_store(t.entry, DECISIONS - 1u, vec4u(words[2], record + 1u, 0u));
+    decisions_store(t.entry, SAMPLE_SETUPS - 2u, vec4u(words[0], words[1]));
+    decisions_store(t.entry, SAMPLE_SETUPS - 1u, vec4u(words[2], record + 1u, 0u));
 }
 
 fn mask_corner(place: u32) -> vec2i {

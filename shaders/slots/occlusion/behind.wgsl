@@ -1,11 +1,11 @@
 // Occlusion, behind: the second round draws what the first did not and does not hide, and remembers what is not hidden now.
 //@ use common/hiz
 
-@group(0) @binding(29) var<storage, read_write> seen: array<u32>;
+@group(0) @binding(29) var<storage, read_write> meshlet_visibility: array<u32>;
 
 fn occlusion_verdict(id: u32, draw: u32, box: Box, e: Extent) -> u32 {
-    let is_drawn = seen[id] != 0u;
+    let is_drawn = meshlet_visibility[id] != 0u;
     let is_hidden = hiz_hides(draw, box, e);
-    seen[id] = select(1u, 0u, is_hidden);
+    meshlet_visibility[id] = select(1u, 0u, is_hidden);
     return select(select(CULL_LEFT, CULL_HIDDEN, is_hidden), CULL_WAITS, is_drawn);
 }

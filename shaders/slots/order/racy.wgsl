@@ -6,15 +6,15 @@
 @group(0) @binding(14) var<uniform> order: Order;
 
 // Several passes visit the samples of a frame: each counts by itself.
-override IS_AGAIN: bool = false;
+override USES_SECOND_COUNTER: bool = false;
 
 fn order_is_drawn(t: Triangle, pixel: u32) -> bool {
-    if IS_AGAIN {
-        if order.limit_hi == 0u && atomicLoad(&counters.tickets_again) >= order.limit_lo { return false; }
-        atomicAdd(&counters.tickets_again, 1u);
+    if USES_SECOND_COUNTER {
+        if order.limit_hi == 0u && atomicLoad(&counters.next_sample_index_again) >= order.limit_lo { return false; }
+        atomicAdd(&counters.next_sample_index_again, 1u);
         return true;
     }
-    if order.limit_hi == 0u && atomicLoad(&counters.tickets) >= order.limit_lo { return false; }
-    atomicAdd(&counters.tickets, 1u);
+    if order.limit_hi == 0u && atomicLoad(&counters.next_sample_index) >= order.limit_lo { return false; }
+    atomicAdd(&counters.next_sample_index, 1u);
     return true;
 }

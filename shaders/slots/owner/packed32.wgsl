@@ -1,4 +1,4 @@
-// Owner of a finished pixel, from packed32's word.
+// Triangle id of a finished pixel, from packed32's word.
 //@ use common/packed
 
 @group(0) @binding(5) var<storage, read> packed: array<u32>;
@@ -10,6 +10,6 @@ fn owner_load(pixel: u32) -> vec2u {
 }
 
 // A word of what stands behind the last pixel.
-fn owner_beyond(word: u32) -> u32 {
+fn triangle_beyond(word: u32) -> u32 {
     return packed[frame.size.x * frame.size.y + word];
 }

@@ -1,7 +1,7 @@
-// Pieces, kept: what clipping left of triangles; a queue entry may name one instead of a triangle.
+// ClippedTriangles, kept: what clipping left of triangles; a queue entry may name one instead of a triangle.
 //@ use common/triangle
 
-struct Piece {
+struct ClippedTriangle {
     a: vec4u,
     b: vec4u,
     c: vec4u,
@@ -10,7 +10,7 @@ struct Piece {
 
 const PIECES_ENTRY = 0x80000000u;
 
-@group(0) @binding(9) var<storage, read> pieces: array<Piece>;
+@group(0) @binding(9) var<storage, read> pieces: array<ClippedTriangle>;
 
 // The triangle that a queue entry names.
 fn pieces_load(entry: u32) -> Triangle {

@@ -1,4 +1,4 @@
-// Projection, float: clip space and the one snap in f32. The default rung.
+// Projection, float: clip space and the one snap in f32. The default option.
 //@ use common/frame
 //@ use common/transform
 

@@ -5,7 +5,7 @@
 
 // What the samples of a triangle share.
 struct Shape {
-    is_bent: bool,     // the plane is no longer the file's
+    is_deformed: bool,     // the plane is no longer the file's
     flat_normal: vec3f,
     is_turned: bool,   // the corners' normals are no longer the file's
     a: vec4f,          // as `normal_gated`
@@ -27,7 +27,7 @@ fn shape_begin(id: u32, draw: u32, at: vec3u) {
     let a = corners[0];
     let b = corners[1];
     let c = corners[2];
-    shape.is_bent = any(a.offset != b.offset) || any(a.offset != c.offset);
+    shape.is_deformed = any(a.offset != b.offset) || any(a.offset != c.offset);
     let m = draws[draw].world_from_object;
     let ab = (m * vec4f(pb - pa, 0.0)).xyz + (b.offset - a.offset);
     let ac = (m * vec4f(pc - pa, 0.0)).xyz + (c.offset - a.offset);
@@ -48,7 +48,7 @@ fn shape_begin(id: u32, draw: u32, at: vec3u) {
 // is only carried along, and the interpolated normal where no corner's is turned.
 fn shape_of(surface: Surface, weights: vec3f) -> Surface {
     var s = surface;
-    if shape.is_bent { s.flat_normal = shape.flat_normal; }
+    if shape.is_deformed { s.flat_normal = shape.flat_normal; }
     if shape.is_turned { s.normal = normal_direction(normal_mixed(shape.a, shape.b, shape.c, weights)); }
     return s;
 }

@@ -1,4 +1,4 @@
-// Shapes, kept: what morph targets add to a vertex, each by its weight. Twin of `gpu::bends::ShapeRecord`.
+// Shapes, kept: what morph targets add to a vertex, each by its weight. Mirror of `gpu::bends::ShapeRecord`.
 //@ use common/bends
 //@ use common/normal
 
@@ -21,19 +21,19 @@ fn shapes_stored(format: u32, byte: u32) -> vec3f {
     return normal_gated(pull_bits3(format, byte)).xyz;
 }
 
-fn shapes_place(bend: u32, vertex: u32, p: vec3f) -> vec3f {
+fn shapes_place(deform: u32, vertex: u32, p: vec3f) -> vec3f {
     var sum = p;
-    for (var i = 0u; i < bends[bend].shape_count; i += 1u) {
-        let at = bends[bend].first_shape + i;
+    for (var i = 0u; i < deforms[deform].shape_count; i += 1u) {
+        let at = deforms[deform].first_shape + i;
         sum += shapes_stored(shapes[at].position_format, shapes[at].position_offset + vertex * shapes[at].position_stride) * shapes[at].weight;
     }
     return sum;
 }
 
-fn shapes_normal(bend: u32, vertex: u32, n: vec3f) -> vec3f {
+fn shapes_normal(deform: u32, vertex: u32, n: vec3f) -> vec3f {
     var sum = n;
-    for (var i = 0u; i < bends[bend].shape_count; i += 1u) {
-        let at = bends[bend].first_shape + i;
+    for (var i = 0u; i < deforms[deform].shape_count; i += 1u) {
+        let at = deforms[deform].first_shape + i;
         sum += shapes_stored(shapes[at].normal_format, shapes[at].normal_offset + vertex * shapes[at].normal_stride) * shapes[at].weight;
     }
     return sum;

@@ -9,10 +9,10 @@ struct Share {
 }
 
 fn share_of(invocation: u32) -> Share {
-    let slot = survivors_slot(invocation);
-    let survivor = survivors_load(slot);
+    let slot = visible_meshlets_slot(invocation);
+    let survivor = visible_meshlets_load(slot);
     let place = invocation % MESHLET_TRIANGLES;
-    let is_there = slot < survivors_end() && place < survivor.triangles;
+    let is_there = slot < visible_meshlets_end() && place < survivor.triangles;
     let t = meshlet_lists[survivor.first_triangle + min(place, survivor.triangles - 1u)];
     let loaded = draws[survivor.draw].first_triangle + t;
     return Share(select(0xffffffffu, loaded, is_there), survivor.draw, loaded);

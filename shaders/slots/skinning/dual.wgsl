@@ -1,4 +1,4 @@
-// Skinning, dual: stretches are averaged as matrices, then rigid motions as dual quaternions, which keep lengths (Kavan et
+// Skinning, dual: dot_runs are averaged as matrices, then rigid motions as dual quaternions, which keep lengths (Kavan et
 // al. 2007). Quaternions are x y z w.
 //@ use common/influences
 
@@ -7,15 +7,15 @@
 
 struct Skinning { real: vec4f, dual: vec4f, x: vec3f, y: vec3f, z: vec3f, is_held: bool }
 
-fn skinning_of(bend: u32, vertex: u32) -> Skinning {
+fn skinning_of(deform: u32, vertex: u32) -> Skinning {
     var s: Skinning;
-    s.is_held = bends[bend].sets > 0u;
+    s.is_held = deforms[deform].sets > 0u;
     if !s.is_held { return s; }
-    let sum = influences_sum(bend, vertex);
-    let pivot = joints[5u * influences_joint(bend, vertex, 0u, 0u)];
-    for (var i = 0u; i < 4u * bends[bend].sets; i += 1u) {
-        let share = influences_share(bend, vertex, i, sum);
-        let row = 5u * influences_joint(bend, vertex, i / 4u, i % 4u);
+    let sum = influences_sum(deform, vertex);
+    let pivot = joints[5u * influences_joint(deform, vertex, 0u, 0u)];
+    for (var i = 0u; i < 4u * deforms[deform].sets; i += 1u) {
+        let share = influences_share(deform, vertex, i, sum);
+        let row = 5u * influences_joint(deform, vertex, i / 4u, i % 4u);
         // A rotation and its opposite are the same: take the one on the side of the first joint's.
         let signed = select(share, -share, dot(pivot, joints[row]) < 0.0);
         s.real += joints[row] * signed;

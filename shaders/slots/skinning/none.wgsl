@@ -2,7 +2,7 @@
 
 struct Skinning { spare: u32 }
 
-fn skinning_of(bend: u32, vertex: u32) -> Skinning {
+fn skinning_of(deform: u32, vertex: u32) -> Skinning {
     return Skinning(0u);
 }
 

@@ -4,7 +4,7 @@
 //@ use common/parts
 
 fn splats_is_drawn(t: Triangle, at: vec2u) -> bool {
-    if (draws[t.draw].flags & DRAW_SPLAT) == 0u { return true; }
+    if (draws[t.draw].flags & DRAW_PARTICLES) == 0u { return true; }
     let parts = parts_of(t, at);
     let d = u32(abs(i32(parts.x + parts.y) - i32(parts.z)));
     let is_inside = !fixed_is_less(fixed_umul(2u * parts.x, 2u * parts.y), fixed_umul(d, d));

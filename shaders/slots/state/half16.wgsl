@@ -1,25 +1,25 @@
 // State, half16: four words a particle. Places are shares of the room, velocities halves.
 //@ use common/flight
 
-@group(0) @binding(19) var<storage, read_write> flights: array<vec4u>;
+@group(0) @binding(19) var<storage, read_write> particle_states: array<vec4u>;
 
 // Flights of even frames come first, then those of odd ones.
-fn state_load(frame_number: u32, id: u32) -> Flight {
-    return state_unpacked(frame_number, flights[(frame_number & 1u) * swarm.count + id]);
+fn state_load(frame_number: u32, id: u32) -> ParticleState {
+    return state_unpacked(frame_number, particle_states[(frame_number & 1u) * particle_step.count + id]);
 }
 
-fn state_store(frame_number: u32, id: u32, f: Flight) {
-    flights[(frame_number & 1u) * swarm.count + id] = state_packed(frame_number, f);
+fn state_store(frame_number: u32, id: u32, f: ParticleState) {
+    particle_states[(frame_number & 1u) * particle_step.count + id] = state_packed(frame_number, f);
 }
 
 // A flight as it comes back from being kept.
-fn state_kept(frame_number: u32, f: Flight) -> Flight {
+fn state_kept(frame_number: u32, f: ParticleState) -> ParticleState {
     return state_unpacked(frame_number, state_packed(frame_number, f));
 }
 
-fn state_packed(frame_number: u32, f: Flight) -> vec4u {
-    let c = course_of(frame_number);
-    let at = (f.place - course[c].p.origin.xyz) / course[c].p.room_m;
+fn state_packed(frame_number: u32, f: ParticleState) -> vec4u {
+    let c = step_params_of(frame_number);
+    let at = (f.place - step_params[c].p.origin.xyz) / step_params[c].p.room_m;
     let v = state_halves(f.velocity);
     return vec4u(
         pack2x16snorm(at.xy),
@@ -28,11 +28,11 @@ fn state_packed(frame_number: u32, f: Flight) -> vec4u {
         v.z | (f.births << 16u));
 }
 
-fn state_unpacked(frame_number: u32, words: vec4u) -> Flight {
-    let c = course_of(frame_number);
+fn state_unpacked(frame_number: u32, words: vec4u) -> ParticleState {
+    let c = step_params_of(frame_number);
     let at = vec3f(unpack2x16snorm(words.x), unpack2x16snorm(words.y).x);
     let v = state_floats(vec3u(words.z, words.z >> 16u, words.w));
-    return Flight(course[c].p.origin.xyz + course[c].p.room_m * at, v, words.y >> 16u, words.w >> 16u);
+    return ParticleState(step_params[c].p.origin.xyz + step_params[c].p.room_m * at, v, words.y >> 16u, words.w >> 16u);
 }
 
 // Floats as halves, rounded to the nearest; those below 2^-14 are 0, and none is infinite.

@@ -1,4 +1,4 @@
-// Sums of packed32: the words of each pixel behind those of depth and owner.
+// Sums of packed32: the words of each pixel behind those of depth and triangle id.
 //@ use common/frame
 //@ use common/packed
 

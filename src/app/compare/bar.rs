@@ -5,7 +5,7 @@ use eframe::egui::{self, Align2, FontId, Rect, RichText, Ui, pos2, vec2};
 use super::{Show, Verdict};
 use crate::{
     app::{App, presets::grouped, theme},
-    measure::compare::{owners, pictures},
+    measure::compare::{pictures, triangle_ids},
 };
 
 /// How A and B differ, as their verdicts tell.
@@ -30,7 +30,7 @@ impl App {
         let kept = self.compare.kept.as_ref().map(|kept| if kept.name.is_empty() { "kept look" } else { &kept.name });
         let first = if is_difference { "|A \u{2212} B|".to_owned() } else { format!("A \u{b7} {}", kept.unwrap_or("reference")) };
         for (side, text, align) in
-            [(sides[0], first, Align2::LEFT_BOTTOM), (sides[1], "B \u{b7} this look".to_owned(), Align2::RIGHT_BOTTOM)]
+            [(sides[0], first, Align2::LEFT_BOTTOM), (sides[1], "B \u{b7} this preset".to_owned(), Align2::RIGHT_BOTTOM)]
         {
             // A side too narrow for its name goes without.
             if side.width() < 140.0 || !side.is_positive() {
@@ -72,7 +72,7 @@ impl App {
         });
     }
 
-    /// `max \u{394} 12, RMS 0.31, 5 other owners`, as far as both were judged as they stand.
+    /// `max \u{394} 12, RMS 0.31, 5 other triangle ids`, as far as both were judged as they stand.
     fn delta_text(&mut self) -> String {
         let side =
             |verdict: &Option<Verdict>, wanted: Option<&super::Inputs>| verdict.clone().filter(|verdict| wanted == Some(&verdict.of));
@@ -86,8 +86,8 @@ impl App {
         let (found_a, found_b) = (&a.findings, &b.findings);
         let text = if found_a.size == found_b.size {
             let colors = pictures(&found_a.color, &found_b.color, 0);
-            let others = owners(&found_a.owners, &found_b.owners).different;
-            let word = if others == 1 { "owner" } else { "owners" };
+            let others = triangle_ids(&found_a.triangle_ids, &found_b.triangle_ids).different;
+            let word = if others == 1 { "triangle_id" } else { "triangle_ids" };
             format!("max \u{394} {}, RMS {:.3}, {} other {word}", colors.max_delta, colors.rms, grouped(others))
         } else {
             let [w, h] = found_a.size;

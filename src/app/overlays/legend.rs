@@ -35,7 +35,7 @@ fn lines(overlays: &Overlays, found: &Findings) -> Vec<Line> {
                     format!("{name} × {}: {count} px, at most {most} of 255", overlays.gain)
                 }
                 Overlay::Layers => format!("{name}: up to {}", found.layers.iter().max().copied().unwrap_or(0)),
-                Overlay::Owners => format!("{}: {count} px are covered", overlay.name().to_lowercase()),
+                Overlay::TriangleIds => format!("{}: {count} px are covered", overlay.name().to_lowercase()),
                 _ => format!("{}: {count} px", if overlay == Overlay::Unsound { overlay.name().to_owned() } else { name }),
             };
             Line { swatch: Some(overlay.color()), text, color: theme::TEXT_STRONG }
@@ -108,14 +108,16 @@ mod tests {
         gpu::Capture,
         measure::{
             Verdict,
-            faults::{Fault, Faults},
+            faults::{ErrorMap, PixelError},
         },
     };
 
     fn found(marked: &[usize]) -> Findings {
         let picture = [[9; 4]; 6];
-        let faults = Faults::new(&picture, &picture, |i| if marked.contains(&i) { vec![Fault::Owner, Fault::Hole] } else { Vec::new() });
-        let frame = Frame { width: 3, height: 2, owner: vec![0; 6], color: picture.to_vec(), ..Default::default() };
+        let faults = ErrorMap::new(&picture, &picture, |i| {
+            if marked.contains(&i) { vec![PixelError::TriangleId, PixelError::Hole] } else { Vec::new() }
+        });
+        let frame = Frame { width: 3, height: 2, triangle_id: vec![0; 6], color: picture.to_vec(), ..Default::default() };
         let capture = Capture { frame, geometry: Default::default(), layers: None, previous: None, shown: None };
         Findings::new(capture, Verdict { faults, ..Default::default() }, None)
     }
@@ -126,12 +128,12 @@ mod tests {
         overlays.toggle();
         let text = |overlays: &Overlays, found: &Findings| lines(overlays, found).into_iter().map(|line| line.text).collect::<Vec<_>>();
         assert_eq!(text(&overlays, &found(&[])), ["nothing is wrong: 0 of 6 pixels"]);
-        assert_eq!(text(&overlays, &found(&[1, 4])), ["wrong owner: 2 px", "holes: 2 px"]);
+        assert_eq!(text(&overlays, &found(&[1, 4])), ["wrong triangle id: 2 px", "holes: 2 px"]);
         overlays.shown = vec![Overlay::Depth];
         assert_eq!(text(&overlays, &found(&[1])), ["no wrong depth winner: 0 of 6 pixels"]);
         overlays.shown = vec![Overlay::Edges];
         assert_eq!(text(&overlays, &found(&[1])), ["nothing to show in 6 pixels"]);
-        overlays.shown = vec![Overlay::Owners];
-        assert_eq!(text(&overlays, &found(&[1])), ["owner ids: 6 px are covered"]);
+        overlays.shown = vec![Overlay::TriangleIds];
+        assert_eq!(text(&overlays, &found(&[1])), ["triangle id ids: 6 px are covered"]);
     }
 }

@@ -11,33 +11,33 @@ use eframe::egui::{self, Color32, Rect, RichText, Sense, Ui, vec2};
 
 use super::{App, presets::grouped, screen::Inputs, theme};
 use crate::{
-    frame::NO_OWNER,
+    frame::NO_TRIANGLE,
     gpu::Capture,
     measure::{
-        Accuracy, Verdict,
-        faults::{Fault, Faults},
+        ErrorReport, Verdict,
+        faults::{ErrorMap, PixelError},
     },
 };
 
 /// One layer over the picture; those further down cover those further up.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Overlay {
-    Owners,
+    TriangleIds,
     Layers,
     Colour,
     Edges,
     Ties,
-    Truth,
+    Reference,
     Doubles,
     Holes,
-    Owner,
+    TriangleId,
     Depth,
     Unsound,
 }
 
 /// Each with its name, what it shows, and its colour.
 const TABLE: [(Overlay, &str, &str, Color32); 11] = [
-    (Overlay::Owners, "Owner ids", "A colour for every triangle, where it won the pixel", Color32::from_rgb(150, 120, 210)),
+    (Overlay::TriangleIds, "Triangle id ids", "A colour for every triangle, where it won the pixel", Color32::from_rgb(150, 120, 210)),
     (Overlay::Layers, "Layers", "How many triangles cover each pixel, in front or behind", Color32::from_rgb(214, 86, 60)),
     (
         Overlay::Colour,
@@ -45,52 +45,57 @@ const TABLE: [(Overlay, &str, &str, Color32); 11] = [
         "The largest difference of a channel from the right colour, times the gain",
         Color32::from_rgb(126, 255, 142),
     ),
-    (Overlay::Edges, "Triangle edges", "Where the owner changes from one pixel to the next", Color32::from_rgb(150, 154, 164)),
+    (Overlay::Edges, "Triangle edges", "Where the triangle id changes from one pixel to the next", Color32::from_rgb(150, 154, 164)),
     (
         Overlay::Ties,
         "Depth ties",
-        "Two owners are right: their depths are closer than a float key can tell. Not an error",
+        "Two triangle ids are right: their depths are closer than a float key can tell. Not an error",
         Color32::from_rgb(96, 134, 255),
     ),
     (
-        Overlay::Truth,
-        "Not the true owner",
-        "Another owner than in the exact picture on the finest grid: what the trade counts, the price of coarser rungs too",
+        Overlay::Reference,
+        "Not the true triangle id",
+        "Another triangle id than in the exact picture on the finest grid: what the trade counts, the price of coarser options too",
         Color32::from_rgb(204, 156, 255),
     ),
     (Overlay::Doubles, "Drawn twice", "A triangle was drawn more often than it covers the sample", Color32::from_rgb(255, 233, 74)),
     (Overlay::Holes, "Holes", "A triangle covers the sample and was not drawn there", Color32::from_rgb(60, 225, 255)),
-    (Overlay::Owner, "Wrong owner", "Another triangle than the exact one, outside every named band", Color32::from_rgb(255, 64, 224)),
+    (
+        Overlay::TriangleId,
+        "Wrong triangle id",
+        "Another triangle than the exact one, outside every named band",
+        Color32::from_rgb(255, 64, 224),
+    ),
     (
         Overlay::Depth,
         "Wrong depth winner",
-        "The owner covers the sample and is not the nearest; these are wrong owners too",
+        "The triangle id covers the sample and is not the nearest; these are wrong triangle ids too",
         Color32::from_rgb(255, 150, 48),
     ),
     (
         Overlay::Unsound,
         "NaN, infinite, negative",
-        "By the bits of the depth, and of depth, 1/w, normal and colour at the owner's corners",
+        "By the bits of the depth, and of depth, 1/w, normal and colour at the triangle id's corners",
         Color32::from_rgb(255, 48, 48),
     ),
 ];
 
 /// What the key switches on when nothing was chosen yet.
 const FIRST: [Overlay; 7] =
-    [Overlay::Truth, Overlay::Owner, Overlay::Depth, Overlay::Holes, Overlay::Doubles, Overlay::Colour, Overlay::Unsound];
+    [Overlay::Reference, Overlay::TriangleId, Overlay::Depth, Overlay::Holes, Overlay::Doubles, Overlay::Colour, Overlay::Unsound];
 
 impl Overlay {
     /// From the lowest to the topmost.
     pub const ALL: [Self; 11] = [
-        Self::Owners,
+        Self::TriangleIds,
         Self::Layers,
         Self::Colour,
         Self::Edges,
         Self::Ties,
-        Self::Truth,
+        Self::Reference,
         Self::Doubles,
         Self::Holes,
-        Self::Owner,
+        Self::TriangleId,
         Self::Depth,
         Self::Unsound,
     ];
@@ -114,33 +119,33 @@ impl Overlay {
     }
 
     /// The mark that it shows, if it shows one.
-    const fn fault(self) -> Option<Fault> {
+    const fn fault(self) -> Option<PixelError> {
         match self {
-            Self::Owner => Some(Fault::Owner),
-            Self::Depth => Some(Fault::Depth),
-            Self::Holes => Some(Fault::Hole),
-            Self::Doubles => Some(Fault::Double),
-            Self::Ties => Some(Fault::Tie),
-            Self::Unsound => Some(Fault::Unsound),
-            Self::Owners | Self::Layers | Self::Colour | Self::Edges | Self::Truth => None,
+            Self::TriangleId => Some(PixelError::TriangleId),
+            Self::Depth => Some(PixelError::Depth),
+            Self::Holes => Some(PixelError::Hole),
+            Self::Doubles => Some(PixelError::Double),
+            Self::Ties => Some(PixelError::Tie),
+            Self::Unsound => Some(PixelError::Unsound),
+            Self::TriangleIds | Self::Layers | Self::Colour | Self::Edges | Self::Reference => None,
         }
     }
 
     /// Does it show errors? The others show what the picture is made of.
     pub const fn is_fault(self) -> bool {
-        !matches!(self, Self::Owners | Self::Layers | Self::Edges | Self::Ties)
+        !matches!(self, Self::TriangleIds | Self::Layers | Self::Edges | Self::Ties)
     }
 }
 
 /// What the oracle found in a picture, with the integers that it found it in.
 pub struct Findings {
-    pub accuracy: Accuracy,
+    pub accuracy: ErrorReport,
     pub size: [u32; 2],
-    pub faults: Faults,
-    pub owners: Vec<u32>,
+    pub faults: ErrorMap,
+    pub triangle_ids: Vec<u32>,
     pub color: Vec<[u8; 4]>,
-    /// Owners in the exact picture on the finest grid; none where chance decides.
-    truth: Option<Vec<u32>>,
+    /// Triangle ids in the exact picture on the finest grid; none where chance decides.
+    reference: Option<Vec<u32>>,
     /// Triangles that cover each pixel.
     pub layers: Vec<u32>,
     /// Pixels that each overlay paints, in the order of [`Overlay::ALL`].
@@ -148,25 +153,25 @@ pub struct Findings {
 }
 
 impl Findings {
-    pub fn new(capture: Capture, verdict: Verdict, truth: Option<Vec<u32>>) -> Self {
-        let pixels = capture.frame.owner.len();
+    pub fn new(capture: Capture, verdict: Verdict, reference: Option<Vec<u32>>) -> Self {
+        let pixels = capture.frame.triangle_id.len();
         let mut found = Self {
             accuracy: verdict.accuracy,
             size: [capture.frame.width, capture.frame.height],
             faults: verdict.faults,
-            owners: capture.frame.owner,
+            triangle_ids: capture.frame.triangle_id,
             color: capture.frame.color,
-            truth: truth.filter(|truth| truth.len() == pixels),
+            reference: reference.filter(|reference| reference.len() == pixels),
             layers: capture.layers.unwrap_or_default(),
             counts: [0; Overlay::ALL.len()],
         };
         found.layers.resize(pixels, 0);
         found.counts = Overlay::ALL.map(|overlay| match (overlay, overlay.fault()) {
             (_, Some(fault)) => found.faults.count(fault),
-            (Overlay::Owners, _) => found.owners.iter().filter(|owner| **owner != NO_OWNER).count() as u64,
+            (Overlay::TriangleIds, _) => found.triangle_ids.iter().filter(|triangle_id| **triangle_id != NO_TRIANGLE).count() as u64,
             (Overlay::Layers, _) => found.layers.iter().filter(|layers| **layers > 0).count() as u64,
             (Overlay::Colour, _) => found.faults.differing(),
-            (Overlay::Truth, _) => (0..pixels).filter(|&i| found.is_untrue(i)).count() as u64,
+            (Overlay::Reference, _) => (0..pixels).filter(|&i| found.is_untrue(i)).count() as u64,
             _ => (0..pixels).filter(|&i| found.is_edge(i)).count() as u64,
         });
         found
@@ -177,23 +182,34 @@ impl Findings {
         self.counts[overlay as usize]
     }
 
-    /// Has the exact picture another owner here?
+    /// Has the exact picture another triangle id here?
     fn is_untrue(&self, i: usize) -> bool {
-        self.truth.as_ref().is_some_and(|truth| truth[i] != self.owners[i])
+        self.reference.as_ref().is_some_and(|reference| reference[i] != self.triangle_ids[i])
     }
 
     /// One pixel in words.
     fn pixel_text(&self, i: usize) -> String {
         let layers = self.layers[i];
-        let name = |owner: u32| if owner == NO_OWNER { "empty".into() } else { format!("triangle {}", grouped(owner.into())) };
-        let truth = self.truth.as_ref().filter(|_| self.is_untrue(i)).map_or(String::new(), |truth| format!(" (truly {})", name(truth[i])));
-        format!("{}{truth}, {layers} {}, Δ {}", name(self.owners[i]), if layers == 1 { "layer" } else { "layers" }, self.faults.colour[i])
+        let name = |triangle_id: u32| {
+            if triangle_id == NO_TRIANGLE { "empty".into() } else { format!("triangle {}", grouped(triangle_id.into())) }
+        };
+        let reference = self
+            .reference
+            .as_ref()
+            .filter(|_| self.is_untrue(i))
+            .map_or(String::new(), |reference| format!(" (truly {})", name(reference[i])));
+        format!(
+            "{}{reference}, {layers} {}, Δ {}",
+            name(self.triangle_ids[i]),
+            if layers == 1 { "layer" } else { "layers" },
+            self.faults.colour[i]
+        )
     }
 
-    /// Does the next pixel, right or below, belong to another owner?
+    /// Does the next pixel, right or below, belong to another triangle id?
     fn is_edge(&self, i: usize) -> bool {
         let width = self.size[0].max(1) as usize;
-        let differs = |j: usize| self.owners.get(j).is_some_and(|owner| *owner != self.owners[i]);
+        let differs = |j: usize| self.triangle_ids.get(j).is_some_and(|triangle_id| *triangle_id != self.triangle_ids[i]);
         !(i + 1).is_multiple_of(width) && differs(i + 1) || differs(i + width)
     }
 }
@@ -362,13 +378,13 @@ mod tests {
     fn an_edge_lies_where_the_owner_changes_and_not_across_the_border_of_the_picture() {
         let mut capture = Capture { frame: Default::default(), geometry: Default::default(), layers: None, previous: None, shown: None };
         (capture.frame.width, capture.frame.height) = (3, 2);
-        capture.frame.owner = vec![1, 1, 2, 1, 1, 1];
+        capture.frame.triangle_id = vec![1, 1, 2, 1, 1, 1];
         capture.frame.color = vec![[0; 4]; 6];
-        let faults = Faults::new(&capture.frame.color, &capture.frame.color, |_| Vec::new());
+        let faults = ErrorMap::new(&capture.frame.color, &capture.frame.color, |_| Vec::new());
         let found = Findings::new(capture, Verdict { faults, ..Default::default() }, Some(vec![1, 1, 2, 1, 7, 1]));
         let edges: Vec<_> = (0..6).filter(|&i| found.is_edge(i)).collect();
         assert_eq!(edges, [1, 2]);
-        assert_eq!((found.count(Overlay::Edges), found.count(Overlay::Truth)), (2, 1));
+        assert_eq!((found.count(Overlay::Edges), found.count(Overlay::Reference)), (2, 1));
         assert_eq!(found.pixel_text(4), "triangle 1 (truly triangle 7), 0 layers, Δ 0");
     }
 }

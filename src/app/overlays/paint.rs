@@ -4,7 +4,7 @@ use eframe::egui::{Color32, ColorImage};
 use rayon::prelude::*;
 
 use super::{Findings, Overlay};
-use crate::{effects::overdraw::Overdraw, frame::NO_OWNER, math::hash, measure::faults::Fault};
+use crate::{effects::overdraw::Overdraw, frame::NO_TRIANGLE, math::hash, measure::faults::PixelError};
 
 /// How much of the picture is left under faults, so that a single wrong pixel is seen: of 255.
 const DIMMED: u8 = 96;
@@ -15,7 +15,7 @@ pub const MOST_RINGS: usize = 48;
 /// Overlays from the lowest to the topmost, blended in this order whatever the order they were switched on in.
 pub fn image(found: &Findings, shown: &[Overlay], gain: u8) -> ColorImage {
     let [width, height] = found.size.map(|side| side as usize);
-    let is_opaque = |overlay: &&Overlay| matches!(overlay, Overlay::Owners | Overlay::Layers);
+    let is_opaque = |overlay: &&Overlay| matches!(overlay, Overlay::TriangleIds | Overlay::Layers);
     let dims = shown.iter().any(|overlay| overlay.is_fault() && found.count(*overlay) > 0) && !shown.iter().any(|o| is_opaque(&o));
     let ground = if dims { Color32::from_black_alpha(255 - DIMMED) } else { Color32::TRANSPARENT };
     let heat = Overdraw::default();
@@ -28,28 +28,28 @@ pub fn image(found: &Findings, shown: &[Overlay], gain: u8) -> ColorImage {
 
 /// What one overlay paints on pixel `i`.
 fn color(found: &Findings, overlay: Overlay, i: usize, gain: u8, heat: &Overdraw) -> Option<Color32> {
-    let has = |fault: Fault| found.faults.has(i, fault);
+    let has = |fault: PixelError| found.faults.has(i, fault);
     match overlay {
-        Overlay::Owners => (found.owners[i] != NO_OWNER).then(|| owner_color(found.owners[i])),
+        Overlay::TriangleIds => (found.triangle_ids[i] != NO_TRIANGLE).then(|| triangle_color(found.triangle_ids[i])),
         Overlay::Layers => (found.layers[i] > 0).then(|| layers_color(heat, found.layers[i])),
         Overlay::Colour => {
             let delta = found.faults.colour[i].saturating_mul(gain);
             (delta > 0).then(|| overlay.color().gamma_multiply(f32::from(delta) / 255.0))
         }
         Overlay::Edges => found.is_edge(i).then(|| overlay.color()),
-        Overlay::Truth => found.is_untrue(i).then(|| overlay.color()),
-        Overlay::Ties => has(Fault::Tie).then(|| overlay.color()),
-        Overlay::Doubles => has(Fault::Double).then(|| overlay.color()),
-        Overlay::Holes => has(Fault::Hole).then(|| overlay.color()),
-        Overlay::Owner => has(Fault::Owner).then(|| overlay.color()),
-        Overlay::Depth => has(Fault::Depth).then(|| overlay.color()),
-        Overlay::Unsound => has(Fault::Unsound).then(|| overlay.color()),
+        Overlay::Reference => found.is_untrue(i).then(|| overlay.color()),
+        Overlay::Ties => has(PixelError::Tie).then(|| overlay.color()),
+        Overlay::Doubles => has(PixelError::Double).then(|| overlay.color()),
+        Overlay::Holes => has(PixelError::Hole).then(|| overlay.color()),
+        Overlay::TriangleId => has(PixelError::TriangleId).then(|| overlay.color()),
+        Overlay::Depth => has(PixelError::Depth).then(|| overlay.color()),
+        Overlay::Unsound => has(PixelError::Unsound).then(|| overlay.color()),
     }
 }
 
 /// A colour for every triangle, bright enough to be told from its neighbours.
-fn owner_color(owner: u32) -> Color32 {
-    let h = hash(owner);
+fn triangle_color(triangle_id: u32) -> Color32 {
+    let h = hash(triangle_id);
     let channel = |shift: u32| 40 + ((h >> shift & 255) * 3 / 4) as u8;
     Color32::from_rgb(channel(0), channel(8), channel(16))
 }
@@ -65,7 +65,7 @@ pub fn rings(found: &Findings, shown: &[Overlay]) -> Vec<(usize, Color32)> {
     for overlay in shown.iter().filter(|overlay| found.count(**overlay) as usize <= MOST_RINGS) {
         let is_there = |&i: &usize| match overlay.fault() {
             Some(fault) => found.faults.has(i, fault),
-            None if *overlay == Overlay::Truth => found.is_untrue(i),
+            None if *overlay == Overlay::Reference => found.is_untrue(i),
             None => *overlay == Overlay::Colour && found.faults.colour[i] > 0,
         };
         rings.extend((0..found.faults.pixels()).filter(is_there).map(|i| (i, overlay.color())));

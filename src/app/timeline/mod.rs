@@ -13,11 +13,11 @@ use super::{
     theme,
 };
 use crate::{
-    preset::{
-        form::{Form, Plain},
+    preset::animation::{Easing, Track, steps},
+    preset_file::{
+        form::{Value, ValueType},
         keys::Key,
     },
-    session::animation::{Easing, Track, steps},
 };
 use ruler::Span;
 
@@ -31,7 +31,7 @@ const OPEN_TRACK: f32 = 84.0;
 const MOST_TRACKS: f32 = 172.0;
 const TRANSPORT: f32 = 28.0;
 
-/// What the panel remembers; no part of the look.
+/// What the panel remembers; no part of the preset.
 #[derive(Default)]
 pub struct Timeline {
     pub selected: Option<KeyId>,
@@ -54,8 +54,8 @@ impl App {
 
     /// Tracks of the enabled effects.
     fn animated(&self) -> Vec<Track> {
-        let session = &self.look.session;
-        session.animation.tracks().iter().filter(|track| session.stack.get(track.effect().name).is_some()).cloned().collect()
+        let preset = &self.preset_file.preset;
+        preset.animation.tracks().iter().filter(|track| preset.stack.get(track.effect().name).is_some()).cloned().collect()
     }
 
     fn track_height(&self, track: &Track) -> f32 {
@@ -64,7 +64,7 @@ impl App {
 
     pub(super) fn timeline_ui(&mut self, ui: &mut Ui) {
         ui.spacing_mut().item_spacing.y = theme::HALF;
-        self.timeline.selected = self.timeline.selected.filter(|key| self.find_key(*key).is_some());
+        self.timeline.selected = self.timeline.selected.filter(|key| self.find_keyframe(*key).is_some());
         ui.horizontal(|ui| {
             ui.set_height(TRANSPORT);
             self.transport_ui(ui);
@@ -76,7 +76,7 @@ impl App {
         });
         let tracks = self.animated();
         if self.timeline.span_s.is_none() || !ui.input(|i| i.pointer.any_down()) {
-            self.timeline.span_s = Some(ruler::extent(self.look.session.clock.range_s, &tracks));
+            self.timeline.span_s = Some(ruler::extent(self.preset_file.preset.clock.range_s, &tracks));
         }
         let (rect, _) = ui.allocate_exact_size(vec2(ui.available_width(), RULER), egui::Sense::hover());
         let left = rect.left() + GUTTER.min(rect.width() * 0.4);
@@ -104,7 +104,7 @@ impl App {
         if self.clips_hint_ui(ui) {
             return;
         }
-        let (before, after) = if self.look.session.stack.0.is_empty() {
+        let (before, after) = if self.preset_file.preset.stack.0.is_empty() {
             ("Nothing is animated. Switch an effect on at the right; the", "beside each of its values sets a key at this time.")
         } else {
             ("Nothing is animated. The", "beside a value sets a key at this time. Go to another time, change the value, and it moves.")
@@ -135,17 +135,17 @@ impl App {
                 self.perform(ui.ctx(), action);
             }
         }
-        let loops = self.look.session.clock.loops;
+        let loops = self.preset_file.preset.clock.loops;
         let hint = if loops { "Loop: on; after the end comes the beginning" } else { "Loop: off; play stops at the end" };
         if toggle_button(ui, Icon::Loop, loops, "Loop").on_hover_text(hint).clicked() {
-            self.look.session.clock.loops = !loops;
+            self.preset_file.preset.clock.loops = !loops;
         }
         ui.add_space(theme::HALF);
         self.clock_value(ui, "clock.speed", 0, |drag| drag.speed(0.01).max_decimals(2).suffix(" ×"));
         ui.add_space(theme::GAP);
     }
 
-    /// The time that is shown, to be typed or dragged; and what leads back to the look's own.
+    /// The time that is shown, to be typed or dragged; and what leads back to the preset's own.
     fn time_ui(&mut self, ui: &mut Ui) {
         let mut now_s = self.shown_time_s();
         let drag = DragValue::new(&mut now_s).speed(0.01).fixed_decimals(3).suffix(" s").update_while_editing(false);
@@ -155,11 +155,11 @@ impl App {
         }
         if self.is_off_its_time() {
             ui.spacing_mut().item_spacing.x = 2.0;
-            let own = format!("{:.3} s", self.look.session.clock.time_s);
-            if ui.small_button("Keep").on_hover_text("Make this the look's own time, which pictures and goldens show").clicked() {
+            let own = format!("{:.3} s", self.preset_file.preset.clock.time_s);
+            if ui.small_button("Keep").on_hover_text("Make this the preset's own time, which pictures and goldens show").clicked() {
                 self.keep_time();
             }
-            if ui.small_button("Back").on_hover_text(format!("Show the look's own time, {own}")).clicked() {
+            if ui.small_button("Back").on_hover_text(format!("Show the preset's own time, {own}")).clicked() {
                 self.playback.playing = false;
                 self.show_own_time();
             }
@@ -176,31 +176,35 @@ impl App {
     }
 
     /// One number of a key of the clock; what its rule refuses is not taken.
-    fn clock_value(&mut self, ui: &mut Ui, path: &str, lane: usize, look: impl FnOnce(DragValue<'_>) -> DragValue<'_>) {
+    fn clock_value(&mut self, ui: &mut Ui, path: &str, lane: usize, preset_file: impl FnOnce(DragValue<'_>) -> DragValue<'_>) {
         let Some(key) = Key::find(path) else { return };
-        let (Some(Plain::Numbers(mut lanes)), Form::Numbers { low, high, .. }) = ((key.get)(&self.look.session), key.form) else { return };
+        let (Some(Value::Numbers(mut lanes)), ValueType::Numbers { low, high, .. }) = ((key.get)(&self.preset_file.preset), key.form)
+        else {
+            return;
+        };
         let name = match (lanes.len(), lane) {
             (1, _) => key.path(),
             (_, 0) => format!("{} begin", key.path()),
             _ => format!("{} end", key.path()),
         };
-        let drag = look(DragValue::new(&mut lanes[lane]).range(low..=high).update_while_editing(false));
+        let drag = preset_file(DragValue::new(&mut lanes[lane]).range(low..=high).update_while_editing(false));
         let response = ui.add_sized([72.0, theme::ROW - 2.0], drag).accessible_name(name).on_hover_text(key.doc);
-        let plain = Plain::Numbers(lanes);
+        let plain = Value::Numbers(lanes);
         if response.changed() && key.check(&plain).is_ok() {
-            (key.set)(&mut self.look.session, plain);
+            (key.set)(&mut self.preset_file.preset, plain);
         }
     }
 
-    fn find_key(&self, key: KeyId) -> Option<(&Track, usize)> {
-        let track = self.look.session.animation.get(key.effect.name, key.field)?;
+    fn find_keyframe(&self, key: KeyId) -> Option<(&Track, usize)> {
+        let track = self.preset_file.preset.animation.get(key.effect.name, key.field)?;
         Some((track, track.at(key.time_s)?))
     }
 
     /// Time and easing of the selected key.
     fn selection_ui(&mut self, ui: &mut Ui) {
         let Some(key) = self.timeline.selected else { return };
-        let Some((easing, is_stepped)) = self.find_key(key).map(|(track, index)| (track.keys()[index].easing, steps(track.field()))) else {
+        let Some((easing, is_stepped)) = self.find_keyframe(key).map(|(track, index)| (track.keys()[index].easing, steps(track.field())))
+        else {
             return;
         };
         ui.spacing_mut().item_spacing.x = 6.0;
@@ -238,7 +242,7 @@ impl App {
     /// Moves the selected key and stays on it.
     fn move_selected(&mut self, time_s: f64) {
         if let Some(key) = self.timeline.selected {
-            let time_s = self.move_key(key, time_s);
+            let time_s = self.move_keyframe(key, time_s);
             self.timeline.selected = Some(KeyId { time_s, ..key });
         }
     }

@@ -3,7 +3,7 @@
 use eframe::egui::{self, Align2, FontId, Rect, Sense, Shape, Stroke, Ui, pos2, vec2};
 
 use super::super::theme;
-use crate::{app::App, session::animation::Track};
+use crate::{app::App, preset::animation::Track};
 
 /// Least distance of labelled ticks, points.
 const TICK_POINTS: f32 = 64.0;
@@ -67,7 +67,7 @@ impl App {
         self.playback.held = response.is_pointer_button_down_on();
         let response = response.on_hover_cursor(egui::CursorIcon::ResizeHorizontal);
         let painter = ui.painter_at(rail);
-        let clock = self.look.session.clock;
+        let clock = self.preset_file.preset.clock;
         painter.rect_filled(rail, 4.0, theme::WELL);
         let [from, to] = clock.range_s.map(|time_s| span.x(time_s));
         let range = Rect::from_min_max(pos2(from, rail.top()), pos2(to, rail.bottom()));

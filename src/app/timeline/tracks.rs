@@ -14,8 +14,8 @@ use super::{
 use crate::{
     app::App,
     params::Kind,
-    preset::form::{Form, Plain, brief},
-    session::animation::{Easing, Keyframe, Track, steps},
+    preset::animation::{Easing, Keyframe, Track, steps},
+    preset_file::form::{Value, ValueType, format_number},
 };
 
 /// Half of a mark's width, points.
@@ -71,7 +71,7 @@ impl App {
         let name = Rect::from_min_max(pos2(row.cursor().left() + theme::HALF, top.top()), pos2(shown.left() - 6.0, top.bottom()));
         ui.painter_at(name).text(pos2(name.left(), y), Align2::LEFT_CENTER, &path, font, theme::TEXT);
         if is_open && let Some([low, high]) = Curve::of(track, rect).shown_range() {
-            let (at, text) = (pos2(name.left(), y + 18.0), format!("{} to {}", brief(low), brief(high)));
+            let (at, text) = (pos2(name.left(), y + 18.0), format!("{} to {}", format_number(low), format_number(high)));
             ui.painter_at(rect).text(at, Align2::LEFT_CENTER, text, FontId::proportional(11.5), theme::TEXT_WEAK);
         }
     }
@@ -122,7 +122,7 @@ impl App {
         let (origin, now, free) = ui.input(|i| (i.pointer.press_origin(), i.pointer.interact_pos(), i.modifiers.shift));
         let (Some(grabbed_s), Some(origin), Some(now)) = (self.timeline.grabbed_s, origin, now) else { return };
         let wanted_s = grabbed_s + f64::from(now.x - origin.x) * span.seconds_per_point();
-        let [from_s, _] = self.look.session.clock.range_s;
+        let [from_s, _] = self.preset_file.preset.clock.range_s;
         let snapped_s = if free { wanted_s } else { from_s + ((wanted_s - from_s) / STEP_S).round() * STEP_S };
         let room = |neighbour: Option<&Keyframe>, aside_s: f64, edge_s: f64| neighbour.map_or(edge_s, |key| key.time_s + aside_s);
         let [first_s, last_s] = span.ends_s();
@@ -164,7 +164,7 @@ fn value_text(track: &Track, time_s: f64) -> String {
             format!("#{r:02x}{g:02x}{b:02x}")
         }
         Kind::Bool | Kind::Choice(_) => {
-            Form::of(track.field()).write(&Plain::Numbers(value)).to_string().trim().trim_matches('"').to_owned()
+            ValueType::of(track.field()).write(&Value::Numbers(value)).to_string().trim().trim_matches('"').to_owned()
         }
         Kind::U32 | Kind::I32 => format!("{:.0}", value[0]),
         Kind::F32 | Kind::Point => value.iter().map(|lane| format!("{lane:.3}")).collect::<Vec<_>>().join(" "),

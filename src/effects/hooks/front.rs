@@ -2,7 +2,7 @@
 
 use glam::{DVec2, DVec3};
 
-use super::{ROUNDING, Slack};
+use super::{ErrorBound, ROUNDING};
 use crate::{choice, math::hash_unit};
 
 choice! {
@@ -25,7 +25,7 @@ pub struct Front {
     pub pattern: Pattern,
     /// Progress: 0 before the first triangle, 1 past the last.
     pub progress: f64,
-    /// Softness, as a share of its way.
+    /// Deformation, as a share of its way.
     pub width: f64,
     /// Direction in the picture.
     pub along: DVec2,
@@ -60,10 +60,10 @@ impl Front {
     }
 
     /// Bound of the error of an f32 twin of [`Front::reached`]: first-order roundings, each of the terms it concerns.
-    pub fn slack(&self, center: DVec3, center_screen: DVec2, triangle: u32, given: &Slack) -> f64 {
+    pub fn error_bound(&self, center: DVec3, center_screen: DVec2, triangle: u32, given: &ErrorBound) -> f64 {
         let passed = self.passed(center, center_screen, triangle);
         let progress = 3.0 * ROUNDING * self.progress * (1.0 + self.width);
-        let slack = match self.pattern {
+        let error_bound = match self.pattern {
             Pattern::Uniform => return 0.0,
             Pattern::Sweep => {
                 let share = self.along.abs() / self.reach();
@@ -78,7 +78,7 @@ impl Front {
             Pattern::Random => progress / self.width,
         } + 4.0 * ROUNDING * (passed.abs() + 1.0);
         // Away from the front both ends are exact.
-        if passed + slack < 0.0 || passed - slack > 1.0 { 0.0 } else { slack.min(1.0) }
+        if passed + error_bound < 0.0 || passed - error_bound > 1.0 { 0.0 } else { error_bound.min(1.0) }
     }
 }
 

@@ -20,8 +20,8 @@ pub struct Picture<'a> {
     pub width: u32,
     pub height: u32,
     /// Global triangle id per pixel, `u32::MAX` without one.
-    pub owners: &'a [u32],
-    /// Depth key per pixel, 0 without an owner.
+    pub triangle_ids: &'a [u32],
+    /// Depth key per pixel, 0 without an triangle id.
     pub keys: &'a [u32],
     /// First triangle of every draw, rising.
     pub draws: &'a [u32],
@@ -37,13 +37,13 @@ impl Picture<'_> {
         (0..i64::from(self.width)).contains(&x) && (0..i64::from(self.height)).contains(&y)
     }
 
-    /// Owner if any, depth key and draw of a pixel; those of the nearest pixel of the picture when it lies outside.
+    /// Triangle id if any, depth key and draw of a pixel; those of the nearest pixel of the picture when it lies outside.
     pub fn at(&self, x: i64, y: i64) -> (Option<u32>, u32, u32) {
         let x = x.clamp(0, i64::from(self.width) - 1) as usize;
         let y = y.clamp(0, i64::from(self.height) - 1) as usize;
-        let owner = self.owners[y * self.width as usize + x];
-        let draw = self.draws.partition_point(|&first| first <= owner) as u32;
-        ((owner != u32::MAX).then_some(owner), self.keys[y * self.width as usize + x], draw)
+        let triangle_id = self.triangle_ids[y * self.width as usize + x];
+        let draw = self.draws.partition_point(|&first| first <= triangle_id) as u32;
+        ((triangle_id != u32::MAX).then_some(triangle_id), self.keys[y * self.width as usize + x], draw)
     }
 }
 

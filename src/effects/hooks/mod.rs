@@ -11,12 +11,12 @@ mod vertex;
 pub(crate) use front::front_of;
 pub use front::{Front, Pattern};
 pub use image::{ImageEffect, ImageHook, Picture, Pixel};
-pub use sample::{Facts, Sample, SampleEffect, SampleHook};
+pub use sample::{Sample, SampleEffect, SampleHook, TriangleSetup};
 pub use slot::{Layers, Shape, Slot};
 pub use surface::{Surface, SurfaceEffect};
-pub use vertex::{ROUNDING, Slack, Vertex, VertexEffect, VertexHook};
+pub use vertex::{ErrorBound, ROUNDING, Vertex, VertexEffect, VertexHook};
 
-use crate::scene::splats::Cloud;
+use crate::scene::particle_discs::ParticleSettings;
 
 /// Every hook of one effect, each with its function over the parameter words.
 #[derive(Clone, Copy)]
@@ -34,7 +34,7 @@ pub struct Hooks {
     /// It draws along lines, in passes of its own before pixels are shaded.
     pub has_lines: bool,
     /// It puts something beside the scene: a cloud of splats.
-    pub cloud: Option<fn(&[u32]) -> Cloud>,
+    pub particle_settings: Option<fn(&[u32]) -> ParticleSettings>,
     /// Its colour has steps, decided on a value plus [`Surface::nudge`].
     pub has_steps: bool,
     /// It reads [`Surface::lit`], so the scene is drawn from the light as well.
@@ -49,7 +49,7 @@ impl Hooks {
         image: None,
         slot: None,
         has_lines: false,
-        cloud: None,
+        particle_settings: None,
         has_steps: false,
         reads_light: false,
     };
@@ -58,7 +58,7 @@ impl Hooks {
     pub fn names(&self) -> String {
         let hooks = [
             (self.slot.is_some(), self.slot.map_or("", Slot::name)),
-            (self.cloud.is_some(), "scene"),
+            (self.particle_settings.is_some(), "scene"),
             (self.vertex.is_some(), "vertex"),
             (self.sample.is_some(), "sample"),
             (self.surface.is_some(), "surface"),

@@ -1,16 +1,16 @@
-//! The sample hook: is this sample drawn? Integers alone decide, so that every pass, rung and adapter says the same.
+//! The sample hook: is this sample drawn? Integers alone decide, so that every pass, option and adapter says the same.
 //!
 //! What a decision takes from floats (a front in the world, say) is settled once per triangle, stored, and read by all:
 //! [`SampleEffect::decide`].
 
 use glam::{DVec2, DVec3};
 
-use super::{ROUNDING, Slack};
+use super::{ErrorBound, ROUNDING};
 use crate::params::Params;
 
 /// What is known of a triangle, or of a piece that clipping left of one, when an effect decides about it.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Facts {
+pub struct TriangleSetup {
     /// Global triangle id; a piece has its parent's.
     pub triangle: u32,
     /// Snapped corners, units of 1/256 px, in the order of the file or of the fan.
@@ -27,20 +27,20 @@ pub struct Facts {
     pub center_screen: DVec2,
 }
 
-impl Facts {
+impl TriangleSetup {
     /// Twice the area, units of 1/256 px squared.
     pub fn doubled_area(&self) -> u64 {
         let [[ax, ay], [bx, by], [cx, cy]] = self.corners.map(|corner| corner.map(i64::from));
         ((bx - ax) * (cy - ay) - (by - ay) * (cx - ax)).unsigned_abs()
     }
 
-    /// How far an f32 twin's centre may be from the truth, in the world and in the picture.
-    pub fn slack(&self) -> Slack {
+    /// How far an f32 twin's centre may be from the reference, in the world and in the picture.
+    pub fn error_bound(&self) -> ErrorBound {
         // A few operations on numbers up to the largest corner's place, as shares of the picture.
         let reach = self.corners.as_flattened().iter().map(|at| f64::from(*at).abs()).fold(0.0, f64::max);
         let shortest = f64::from(self.size[0].min(self.size[1]).max(1));
         let center_screen = 24.0 * ROUNDING * (1.0 + reach / (256.0 * shortest));
-        Slack { center_m: self.center_slack_m, center_screen, ..Slack::default() }
+        ErrorBound { center_m: self.center_slack_m, center_screen, ..ErrorBound::default() }
     }
 
     /// Samples that the triangle owns in the picture, row by row, each afresh.
@@ -87,7 +87,7 @@ pub struct Sample {
     pub y: u32,
     /// Global triangle id; a piece has its parent's.
     pub triangle: u32,
-    /// Doubled area of the part opposite each corner, shifted down by [`Facts::shift`].
+    /// Doubled area of the part opposite each corner, shifted down by [`TriangleSetup::shift`].
     pub parts: [u32; 3],
     /// What the effect decided about the triangle.
     pub decided: [u32; 4],
@@ -104,22 +104,22 @@ impl Sample {
 #[derive(Clone, Copy)]
 pub struct SampleHook {
     /// It settles something per triangle.
-    pub decides: bool,
+    pub has_setup: bool,
     /// Bound of the error of an f32 twin in the first word of a decision.
-    pub slack: fn(&Facts, &[u32]) -> f64,
+    pub error_bound: fn(&TriangleSetup, &[u32]) -> f64,
     /// What is settled is rounded from floats that differ from one adapter to the next.
     pub is_from_floats: fn(&[u32]) -> bool,
-    pub decide: fn(&Facts, &[u32], Option<u32>) -> [u32; 4],
+    pub decide: fn(&TriangleSetup, &[u32], Option<u32>) -> [u32; 4],
     pub is_drawn: fn(&Sample, &[u32]) -> bool,
 }
 
 /// The integer side of an effect on the sample hook.
 pub trait SampleEffect: Params {
     /// Samples read `decided`.
-    const DECIDES: bool;
+    const HAS_SETUP: bool;
 
     /// Bound of the error of an f32 twin in the first word of a decision; the other words are exact, given the first.
-    fn slack(_: &Facts, _: &Self) -> f64 {
+    fn error_bound(_: &TriangleSetup, _: &Self) -> f64 {
         0.0
     }
 
@@ -130,7 +130,7 @@ pub trait SampleEffect: Params {
 
     /// Settles what the samples of a triangle are held against. Only the first word may come from floats; where `first`
     /// is given it is that word, and the others follow from it.
-    fn decide(facts: &Facts, params: &Self, first: Option<u32>) -> [u32; 4];
+    fn decide(setup: &TriangleSetup, params: &Self, first: Option<u32>) -> [u32; 4];
 
     fn is_drawn(sample: &Sample, params: &Self) -> bool;
 }

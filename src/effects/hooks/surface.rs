@@ -42,8 +42,8 @@ pub struct Surface {
     /// Nearest and farthest `depth_m` of the scene's box.
     pub range_m: DVec2,
     /// Global triangle id.
-    pub owner: u32,
-    /// Share of all samples that were drawn before the owner's first, where a draw order is kept; else 0.
+    pub triangle_id: u32,
+    /// Share of all samples that were drawn before the triangle id's first, where a draw order is kept; else 0.
     pub rank: f64,
     /// Share of the light that arrives, 0 to 1, where an effect asks for it; else 0.
     pub lit: f64,

@@ -29,9 +29,9 @@ pub struct Vertex {
     pub triangle: u32,
 }
 
-/// How far the members of an f32 twin's [`Vertex`] may be from the truth, along any axis.
+/// How far the members of an f32 twin's [`Vertex`] may be from the reference, along any axis.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Slack {
+pub struct ErrorBound {
     pub position_m: f64,
     pub offset_m: f64,
     pub normal: f64,
@@ -50,8 +50,8 @@ pub struct VertexHook {
     /// It reads the triangle, so corners cannot be shared between triangles.
     pub needs_triangle: bool,
     pub moved: fn(Vertex, &[u32]) -> Vertex,
-    pub slack: fn(&Vertex, Slack, &[u32]) -> Slack,
-    pub reach_m: fn(f64, &[u32]) -> f64,
+    pub error_bound: fn(&Vertex, ErrorBound, &[u32]) -> ErrorBound,
+    pub max_displacement_m: fn(f64, &[u32]) -> f64,
 }
 
 /// The f64 side of an effect on the vertex hook.
@@ -62,10 +62,10 @@ pub trait VertexEffect: Params {
     /// Changes `offset` and `normal` alone.
     fn moved(vertex: Vertex, params: &Self) -> Vertex;
 
-    /// Slack of what an f32 twin makes of `vertex`, whatever rounding, order and fusion WGSL allows, where `slack` is that
+    /// ErrorBound of what an f32 twin makes of `vertex`, whatever rounding, order and fusion WGSL allows, where `slack` is that
     /// of what it is given. Parameters that move nothing add nothing.
-    fn slack(vertex: &Vertex, slack: Slack, params: &Self) -> Slack;
+    fn error_bound(vertex: &Vertex, error_bound: ErrorBound, params: &Self) -> ErrorBound;
 
     /// How far it moves a vertex of a model of this radius at most.
-    fn reach_m(radius_m: f64, params: &Self) -> f64;
+    fn max_displacement_m(radius_m: f64, params: &Self) -> f64;
 }

@@ -13,7 +13,7 @@ use super::{
 use crate::{
     math::{UNITS_PER_PIXEL, hash, hash_unit},
     scene::{
-        FileCamera, Material, Scene,
+        Material, Scene, SceneCamera,
         camera::{Camera, Projection},
     },
 };
@@ -63,7 +63,7 @@ pub fn near(values: &Values) -> Result<Scene, BuiltinError> {
         near_m: NEAR_M,
     };
     let mut scene = alone(mesh, "hall", painted());
-    scene.cameras = vec![FileCamera { name: "inside".into(), pose, node: None }];
+    scene.cameras = vec![SceneCamera { name: "inside".into(), pose, node: None }];
     Ok(scene)
 }
 

@@ -6,7 +6,7 @@ use super::{BuiltinError, MAX_TRIANGLES, query::Values, shapes};
 use crate::{
     math::{hash, hash_unit},
     scene::{
-        FileCamera, Instance, Material, Scene,
+        Instance, Material, Scene, SceneCamera,
         camera::{Camera, Projection},
     },
 };
@@ -60,6 +60,6 @@ pub fn build(values: &Values) -> Result<Scene, BuiltinError> {
         projection: Projection::Perspective { fov_y_deg: 50.0 },
         near_m: 0.05,
     };
-    scene.cameras = vec![FileCamera { name: "inside".into(), pose, node: None }];
+    scene.cameras = vec![SceneCamera { name: "inside".into(), pose, node: None }];
     Ok(scene)
 }

@@ -32,10 +32,10 @@ pub struct Skin {
 }
 
 /// Joints blend over this share of the thickness of a limb, and hold soles alone below this height.
-const SOFTNESS: f64 = 0.8;
+const DEFORMATION: f64 = 0.8;
 const SOLE_M: f64 = 0.15;
 /// Bones taper by less than makes the field change by so many metres a metre.
-const STEEPEST: f64 = 1.25;
+const MAX_SHADOW_SLOPE: f64 = 1.25;
 /// No blend lifts the skin by more.
 const BULGE_M: f64 = 0.05;
 
@@ -83,7 +83,7 @@ impl Flesh {
             while at < row + wide {
                 values[at] = self.field((low + corner(at)) * cell);
                 // Corners that lie more than a cell outside need no value.
-                at += (values[at] / (STEEPEST * cell)).max(1.0) as usize;
+                at += (values[at] / (MAX_SHADOW_SLOPE * cell)).max(1.0) as usize;
             }
         }
         fill_pinches(&mut values, steps);
@@ -133,7 +133,7 @@ impl Flesh {
         let above = (p.y / SOLE_M).min(1.0);
         for bone in &self.bones {
             let (distance, radius) = self.distance(bone, p);
-            let near = (1.0 - (distance - nearest) / (SOFTNESS * radius)).max(0.0);
+            let near = (1.0 - (distance - nearest) / (DEFORMATION * radius)).max(0.0);
             let weight = near * near * if bone.is_foot { 1.0 } else { above * above };
             let slot = &mut held[bone.joint].1;
             *slot = slot.max(weight);

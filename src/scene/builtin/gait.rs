@@ -116,8 +116,8 @@ fn round_curve(times: [f64; 5], values: [f64; 5], t: f64) -> f64 {
     let ((t0, v0), (t1, v1)) = (key(after), key(after + 1));
     let (s, wide) = ((t - t0) / (t1 - t0), t1 - t0);
     let (s2, s3) = (s * s, s * s * s);
-    let bent = slope(after) * (s3 - 2.0 * s2 + s) + slope(after + 1) * (s3 - s2);
-    v0 + (v1 - v0) * (3.0 * s2 - 2.0 * s3) + wide * bent
+    let deformed = slope(after) * (s3 - 2.0 * s2 + s) + slope(after + 1) * (s3 - s2);
+    v0 + (v1 - v0) * (3.0 * s2 - 2.0 * s3) + wide * deformed
 }
 
 /// A foot of a girdle, `t` rounds after it has landed.
@@ -185,12 +185,12 @@ pub fn moment(gait: &Gait, rest: &[Joint], t: f64) -> (DVec3, [DQuat; JOINTS]) {
         let (down, hinge) = (goal.normalize(), goal.cross(DVec3::X).normalize());
         let along = (thigh.length_squared() - shank.length_squared() + far * far) / (2.0 * far);
         let out = (thigh.length_squared() - along * along).max(0.0).sqrt() * if girdle == 0 { 1.0 } else { -1.0 };
-        let bent = down * along + hinge.cross(down) * out;
+        let deformed = down * along + hinge.cross(down) * out;
         let facing = |from: DVec3, to: DVec3| {
             let frame = |along: DVec3, hinge: DVec3| DMat3::from_cols(along.normalize(), hinge.cross(along.normalize()), hinge);
             DQuat::from_mat3(&(frame(to, hinge) * frame(from, DVec3::Z).transpose()))
         };
-        let [upper, lower] = [facing(thigh, bent), facing(shank, down * far - bent)];
+        let [upper, lower] = [facing(thigh, deformed), facing(shank, down * far - deformed)];
         turns[first] = girdles[girdle].inverse() * upper;
         turns[first + 1] = upper.inverse() * lower;
         turns[first + 2] = lower.inverse() * lean;
@@ -241,9 +241,9 @@ mod tests {
                 let [upper, lower] = [1, 2].map(|part| rest[first + part].at - rest[first + part - 1].at);
                 // The lower bone in the frame of the upper one.
                 let lower = turns[first + 1] * lower;
-                let bend = upper.cross(lower) * if leg % 2 == 0 { -1.0 } else { 1.0 };
+                let deform = upper.cross(lower) * if leg % 2 == 0 { -1.0 } else { 1.0 };
                 let stretched = (upper + lower).length() / (upper.length() + lower.length());
-                assert!(bend.z > 0.0 && bend.x.abs().max(bend.y.abs()) < 1e-9, "{} {}: {bend}", gait.name, rest[first + 1].name);
+                assert!(deform.z > 0.0 && deform.x.abs().max(deform.y.abs()) < 1e-9, "{} {}: {deform}", gait.name, rest[first + 1].name);
                 assert!((0.5..0.985).contains(&stretched), "{} {}: {stretched}", gait.name, rest[first + 1].name);
             }
         }

@@ -41,7 +41,7 @@ pub fn append(scene: &mut Scene, primitive: usize, joints: usize, sets: usize, h
         offset,
         stride: 4 * component.bytes(),
         component,
-        lanes: 4,
+        components: 4,
         normalized,
         count: held.len() as u32,
     };
@@ -53,6 +53,6 @@ pub fn append(scene: &mut Scene, primitive: usize, joints: usize, sets: usize, h
             weights: accessor(append(bytemuck::cast_slice(weights)), Component::U16, true),
         })
         .collect();
-    let softness = &mut scene.primitives[primitive].softness;
-    (softness.influences, softness.joint_bounds) = (influences, bounds);
+    let deformation = &mut scene.primitives[primitive].deformation;
+    (deformation.influences, deformation.joint_bounds) = (influences, bounds);
 }

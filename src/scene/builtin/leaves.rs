@@ -34,14 +34,15 @@ pub fn build(values: &Values) -> Result<Scene, BuiltinError> {
         let width = 0.34 * LENGTH_M;
         let corner = |side: f64, way: f64| stem + across * (side * width) + along * (way * LENGTH_M);
         let corners = [(-1.0, 0.0), (1.0, 0.0), (1.0, 1.0), (-1.0, 1.0)];
-        let [a, b, c, d] = corners.map(|(side, way)| mesh.painted_vertex(corner(side, way), normal, [0.5 + 0.5 * side, 1.0 - way]));
+        let [a, b, c, d] = corners.map(|(side, way)| mesh.textured_vertex(corner(side, way), normal, [0.5 + 0.5 * side, 1.0 - way]));
         mesh.triangle([a, b, c]);
         mesh.triangle([a, c, d]);
     }
     let texture = Texture { wrap: [Wrap::Clamp; 2], ..Texture::plain(0) };
-    let leaf = Material { name: "leaf".into(), base_texture: Some(texture), cutoff: Some(0.5), double_sided: true, ..Material::default() };
+    let leaf =
+        Material { name: "leaf".into(), base_texture: Some(texture), alpha_cutoff: Some(0.5), double_sided: true, ..Material::default() };
     let mut scene = alone(mesh, "leaves", leaf);
-    scene.images.push(leaf_image(40, 60).with_copies());
+    scene.images.push(leaf_image(40, 60).with_mipmaps());
     Ok(scene)
 }
 

@@ -12,7 +12,7 @@ pub struct Mesh {
     /// Linear RGBA; empty, or one per vertex.
     colors: Vec<[u8; 4]>,
     /// In the image of the base colour and of the emission; empty, or one per vertex.
-    coords: Vec<[f32; 2]>,
+    texcoords: Vec<[f32; 2]>,
     indices: Vec<u32>,
 }
 
@@ -30,7 +30,7 @@ impl Mesh {
             positions: Vec::with_capacity(vertices),
             normals: Vec::with_capacity(vertices),
             colors: Vec::new(),
-            coords: Vec::new(),
+            texcoords: Vec::new(),
             indices: Vec::with_capacity(3 * triangles),
         }
     }
@@ -51,8 +51,8 @@ impl Mesh {
 
     /// Adds a vertex that shows this place of an image, whose left and top edges are at 0 and right and bottom ones at 1. All
     /// vertices of a mesh have one, or none has.
-    pub fn painted_vertex(&mut self, position: DVec3, normal: DVec3, coords: [f64; 2]) -> u32 {
-        self.coords.push(coords.map(|v| v as f32));
+    pub fn textured_vertex(&mut self, position: DVec3, normal: DVec3, texcoords: [f64; 2]) -> u32 {
+        self.texcoords.push(texcoords.map(|v| v as f32));
         self.vertex(position, normal)
     }
 
@@ -105,7 +105,7 @@ impl Mesh {
 
     /// Appends the bytes to `scene` and lists the mesh as a primitive; returns its index.
     pub fn append(self, scene: &mut Scene, name: &str, material: usize) -> usize {
-        let Self { positions, normals, colors, coords, indices } = self;
+        let Self { positions, normals, colors, texcoords, indices } = self;
         let (bounds, longest_edge) = (bounds(&positions), longest_edge(&positions, &indices));
         let start = scene.vertex_bytes.len();
         scene.vertex_bytes.reserve_exact(positions.len() * if colors.is_empty() { 24 } else { 28 });
@@ -115,14 +115,14 @@ impl Mesh {
         let colors_at = scene.vertex_bytes.len();
         scene.vertex_bytes.extend_from_slice(bytemuck::cast_slice(&colors));
         let coords_at = scene.vertex_bytes.len();
-        scene.vertex_bytes.extend_from_slice(bytemuck::cast_slice(&coords));
+        scene.vertex_bytes.extend_from_slice(bytemuck::cast_slice(&texcoords));
         let indices_at = scene.index_bytes.len();
         scene.index_bytes.extend_from_slice(bytemuck::cast_slice(&indices));
         let byte_color = Accessor {
             offset: colors_at as u32,
             stride: 4,
             component: Component::U8,
-            lanes: 4,
+            components: 4,
             normalized: true,
             count: colors.len() as u32,
         };
@@ -133,22 +133,22 @@ impl Mesh {
                 offset: indices_at as u32,
                 stride: 4,
                 component: Component::U32,
-                lanes: 1,
+                components: 1,
                 normalized: false,
                 count: indices.len() as u32,
             }),
             positions: Accessor::packed_f32(start, 3, positions.len()),
             normals: Accessor::packed_f32(normals_at, 3, normals.len()),
             colors: (!colors.is_empty()).then_some(byte_color),
-            coords: [(!coords.is_empty()).then_some(Accessor::packed_f32(coords_at, 2, coords.len())); 2],
+            texcoords: [(!texcoords.is_empty()).then_some(Accessor::packed_f32(coords_at, 2, texcoords.len())); 2],
             material,
             bounds,
             longest_edge,
-            sound_normals: false,
-            softness: Default::default(),
+            normals_agree: false,
+            deformation: Default::default(),
         });
         let index = scene.primitives.len() - 1;
-        scene.primitives[index].sound_normals = scene.primitives[index].normals_agree(scene);
+        scene.primitives[index].normals_agree = scene.primitives[index].normals_agree(scene);
         index
     }
 }

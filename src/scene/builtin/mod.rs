@@ -125,7 +125,7 @@ pub const BUILTINS: &[Builtin] = &[
     },
     Builtin {
         name: "chamber",
-        about: "six walls that show their insides alone, so that one looks in from everywhere; a place for particles",
+        about: "six walls that show their insides alone, so that one presets in from everywhere; a place for particles",
         params: &[real("half", "half the length of a wall in metres", 2.0, 0.1..=1000.0)],
         build: shapes::chamber,
     },

@@ -1,4 +1,4 @@
-//! Painted scenes: images from formulas on a globe, and on panels that look them up in every way there is.
+//! Painted scenes: images from formulas on a globe, and on panels that preset them up in every way there is.
 
 use std::f64::consts::{PI, TAU};
 
@@ -9,7 +9,7 @@ use crate::{
     math::{hash, rotation_y, srgb_byte},
     scene::{
         Instance, Material, Scene,
-        texture::{Copies, Filter, Image, Texture, Wrap},
+        texture::{Filter, Image, MipFilter, Texture, Wrap},
     },
 };
 
@@ -29,8 +29,8 @@ pub fn globe(values: &Values) -> Result<Scene, BuiltinError> {
                 row if row == rows => DVec3::NEG_Y,
                 _ => DVec3::new(sin_v * sin_u, cos_v, sin_v * cos_u),
             };
-            let coords = [(f64::from(column) + aside) / f64::from(columns), f64::from(row) / f64::from(rows)];
-            mesh.painted_vertex(normal, normal, coords);
+            let texcoords = [(f64::from(column) + aside) / f64::from(columns), f64::from(row) / f64::from(rows)];
+            mesh.textured_vertex(normal, normal, texcoords);
         }
     }
     for row in 0..rows {
@@ -47,7 +47,7 @@ pub fn globe(values: &Values) -> Result<Scene, BuiltinError> {
     let texture = Texture { wrap: [Wrap::Repeat, Wrap::Clamp], ..Texture::plain(0) };
     let map = Material { name: "map".into(), base_texture: Some(texture), ..Material::default() };
     let mut scene = alone(mesh, "globe", map);
-    scene.images.push(color_grid(256, 128, 16).with_copies());
+    scene.images.push(color_grid(256, 128, 16).with_mipmaps());
     Ok(scene)
 }
 
@@ -114,14 +114,14 @@ struct Panel {
 
 /// Panels in two rows above a ground that runs to the horizon, each with another way to look up an image.
 pub fn panels(values: &Values) -> Result<Scene, BuiltinError> {
-    let mut scene = Scene { images: vec![arrow().with_copies(), gravel().with_copies(), windows().with_copies()], ..Scene::default() };
+    let mut scene = Scene { images: vec![arrow().with_mipmaps(), gravel().with_mipmaps(), windows().with_mipmaps()], ..Scene::default() };
     let repeats = values.get("repeats");
     for (place, Panel { material, span }) in ways(repeats).into_iter().enumerate() {
         let is_ground = place == 6;
         let mut mesh = Mesh::with_capacity(4, 2);
         let [[left, right], [top, bottom]] = span;
         for (x, y, u, v) in [(-1.0, -1.0, left, bottom), (1.0, -1.0, right, bottom), (1.0, 1.0, right, top), (-1.0, 1.0, left, top)] {
-            mesh.painted_vertex(DVec3::new(x, y, 0.0), DVec3::Z, [u, v]);
+            mesh.textured_vertex(DVec3::new(x, y, 0.0), DVec3::Z, [u, v]);
         }
         mesh.triangle([0, 1, 2]);
         mesh.triangle([0, 2, 3]);
@@ -148,7 +148,7 @@ fn ways(repeats: f64) -> Vec<Panel> {
         double_sided: true,
         ..Material::default()
     };
-    let crisp = Texture { magnified: Filter::Nearest, minified: Filter::Nearest, copies: Copies::Unused, ..Texture::plain(0) };
+    let crisp = Texture { mag_filter: Filter::Nearest, min_filter: Filter::Nearest, mip_filter: MipFilter::Unused, ..Texture::plain(0) };
     let around = [[-0.7, 1.9], [-0.6, 1.7]];
     // A sixth of a turn, and half as large.
     let (sin, cos) = libm::sincos(TAU / 6.0);
@@ -162,17 +162,17 @@ fn ways(repeats: f64) -> Vec<Panel> {
         Panel {
             material: paper(
                 "clamped across, mirrored down, nearest",
-                Texture { wrap: [Wrap::Clamp, Wrap::Mirrored], copies: Copies::Nearest, ..crisp },
+                Texture { wrap: [Wrap::Clamp, Wrap::Mirrored], mip_filter: MipFilter::Nearest, ..crisp },
             ),
             span: around,
         },
-        Panel { material: paper("turned", Texture { image_from_stored: turned, ..Texture::plain(0) }), span: [[0.0, 1.0], [0.0, 1.0]] },
+        Panel { material: paper("turned", Texture { image_from_texcoord: turned, ..Texture::plain(0) }), span: [[0.0, 1.0], [0.0, 1.0]] },
         Panel {
             material: Material {
                 base_color: [0.05, 0.09, 0.16, 1.0],
                 base_texture: None,
                 emission: [1.0, 1.0, 1.0],
-                emission_texture: Some(Texture { magnified: Filter::Nearest, ..Texture::plain(2) }),
+                emission_texture: Some(Texture { mag_filter: Filter::Nearest, ..Texture::plain(2) }),
                 ..paper("shining", crisp)
             },
             span: [[0.0, 1.0], [0.0, 1.0]],

@@ -12,7 +12,7 @@ use super::{BuiltinError, MAX_TRIANGLES, Mesh, query::Values, shapes::alone};
 use crate::{
     math::{UNITS_PER_PIXEL, hash, hash_unit},
     scene::{
-        FileCamera, Material, Scene,
+        Material, Scene, SceneCamera,
         camera::{Camera, Projection},
     },
 };
@@ -21,7 +21,7 @@ use crate::{
 pub const PICTURE_PX: f64 = 256.0;
 
 /// A camera that shows one metre as one pixel on a picture `height_px` high, and stands `distance_m` before the origin.
-pub fn pixel_camera(height_px: f64, distance_m: f64) -> FileCamera {
+pub fn pixel_camera(height_px: f64, distance_m: f64) -> SceneCamera {
     let pose = Camera {
         eye: DVec3::Z * distance_m,
         target: DVec3::ZERO,
@@ -29,14 +29,14 @@ pub fn pixel_camera(height_px: f64, distance_m: f64) -> FileCamera {
         projection: Projection::Orthographic { height_m: height_px },
         near_m: 0.01,
     };
-    FileCamera { name: "pixels".into(), pose, node: None }
+    SceneCamera { name: "pixels".into(), pose, node: None }
 }
 
 /// The same scale on the plane z = 0, in perspective: w is the same at all vertices.
-fn perspective_camera(height_px: f64) -> FileCamera {
+fn perspective_camera(height_px: f64) -> SceneCamera {
     let fov_y_deg = 2.0 * libm::atan(0.5).to_degrees();
     let pose = Camera { projection: Projection::Perspective { fov_y_deg }, ..pixel_camera(height_px, height_px).pose };
-    FileCamera { name: "pixels in perspective".into(), pose, node: None }
+    SceneCamera { name: "pixels in perspective".into(), pose, node: None }
 }
 
 fn plate_material() -> Material {
@@ -59,8 +59,8 @@ pub fn grid(values: &Values) -> Result<Scene, BuiltinError> {
         )));
     }
     let lattice_step = if lattice > 0.0 { 1.0 / lattice } else { 0.0 };
-    let slack = 0.25 * cell - 0.5 * lattice_step - 0.5 / f64::from(UNITS_PER_PIXEL);
-    if slack <= 0.0 {
+    let error_bound = 0.25 * cell - 0.5 * lattice_step - 0.5 / f64::from(UNITS_PER_PIXEL);
+    if error_bound <= 0.0 {
         return Err(BuiltinError(format!(
             "grid: lattice={lattice} is too coarse for cell={cell}: cells would fold; lattice must exceed {:.1}",
             2.1 / cell
@@ -72,7 +72,7 @@ pub fn grid(values: &Values) -> Result<Scene, BuiltinError> {
             let salt = hash(hash(seed) ^ (row as u32)).wrapping_add(2 * column as u32);
             let place = |at: u64, count: u64, salt: u32| {
                 let straight = (at as f64 - 0.5 * count as f64) * cell;
-                let moved = straight + 0.8 * slack * (2.0 * hash_unit(salt) - 1.0);
+                let moved = straight + 0.8 * error_bound * (2.0 * hash_unit(salt) - 1.0);
                 if lattice > 0.0 { (moved * lattice).round() / lattice } else { moved }
             };
             mesh.vertex(DVec3::new(place(column, columns, salt), place(row, rows, salt + 1), 0.0), DVec3::Z);

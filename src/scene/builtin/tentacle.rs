@@ -11,7 +11,7 @@ use super::{
 };
 use crate::scene::{
     Accessor, Instance, Material, Scene, pose,
-    rig::{Channel, Clip, Interpolation, Local, Node, Parts, Property, Sampler, Shape, Skin},
+    rig::{Channel, Clip, Interpolation, Local, Node, Property, Sampler, Shape, Skin, Trs},
 };
 
 /// Length of the tube, metres.
@@ -112,14 +112,14 @@ fn soften(scene: &mut Scene, heights: &[f64], joints: u32, influences: usize) {
         moved.push((aside * ((full - plain) / plain)).as_vec3().into());
         turned.push((bulged - normal).as_vec3().into());
     }
-    let mut append = |lanes: &[[f32; 3]]| {
+    let mut append = |components: &[[f32; 3]]| {
         let at = scene.vertex_bytes.len();
-        scene.vertex_bytes.extend_from_slice(bytemuck::cast_slice(lanes));
-        Accessor::packed_f32(at, 3, lanes.len())
+        scene.vertex_bytes.extend_from_slice(bytemuck::cast_slice(components));
+        Accessor::packed_f32(at, 3, components.len())
     };
     let (positions, normals) = (append(&moved), append(&turned));
     let reach = moved.iter().flatten().fold(0.0f64, |most, v| most.max(f64::from(v.abs())));
-    scene.primitives[0].softness.shapes = vec![Shape { positions: Some(positions), normals: Some(normals), reach }];
+    scene.primitives[0].deformation.morph_targets = vec![Shape { positions: Some(positions), normals: Some(normals), reach }];
 }
 
 /// Joints that hold a vertex `along` joints up, with weights of 65,535 in all: a uniform B-spline, smooth but for its ends.
@@ -159,8 +159,8 @@ fn clips(scene: &mut Scene, joints: u32) -> Samplers {
     let rig = &mut scene.rig;
     let clip = |name: &str| Clip { name: name.into(), duration_s: PERIOD_S, channels: Vec::new() };
     rig.clips = ["Sway", "Curl", "Twist", "Breathe"].map(clip).into();
-    let mut sampler = |interpolation, lanes, times: Vec<f32>, values: Vec<f32>| {
-        rig.samplers.push(Sampler { interpolation, times, values, lanes });
+    let mut sampler = |interpolation, components, times: Vec<f32>, values: Vec<f32>| {
+        rig.samplers.push(Sampler { interpolation, times, values, components });
         rig.samplers.len() - 1
     };
     let round: Vec<f32> = (0..=KEYS).map(|key| (PERIOD_S * key as f64 / KEYS as f64) as f32).collect();
@@ -208,7 +208,7 @@ fn stand(scene: &mut Scene, instance: u32, of: u32, joints: u32, samplers: &Samp
     let (sin, cos) = libm::sincos(f64::from(instance) * 2.399_963_229_728_653);
     let foot = DVec3::new(reach * sin, 0.0, reach * cos);
     let rig = &mut scene.rig;
-    let part = |translation| Local::Parts(Parts { translation, ..Parts::default() });
+    let part = |translation| Local::Trs(Trs { translation, ..Trs::default() });
     let first = rig.nodes.len();
     let segment = LENGTH_M / f64::from(joints - 1).max(1.0);
     for joint in 0..joints as usize {

@@ -12,7 +12,7 @@ use super::{
 };
 use crate::scene::{
     Instance, Material, Scene, pose,
-    rig::{Channel, Clip, Interpolation, Local, Node, Parts, Property, Sampler, Skin},
+    rig::{Channel, Clip, Interpolation, Local, Node, Property, Sampler, Skin, Trs},
 };
 
 /// Keys of a round, and ways to begin it, so that neighbours are out of step.
@@ -54,8 +54,9 @@ fn record(scene: &mut Scene, gait: &Gait, phase: usize) -> usize {
     // The last key is the first one again, to the bit.
     let key = |key: usize| moment(gait, &rest, ((key + phase * KEYS / PHASES) % KEYS) as f64 / KEYS as f64);
     let keys: Vec<_> = (0..=KEYS).map(key).collect();
-    let mut sampler =
-        |lanes, values| scene.rig.samplers.push(Sampler { interpolation: Interpolation::Linear, times: times.clone(), values, lanes });
+    let mut sampler = |components, values| {
+        scene.rig.samplers.push(Sampler { interpolation: Interpolation::Linear, times: times.clone(), values, components })
+    };
     sampler(3, keys.iter().flat_map(|(shift, _)| (rest[0].at + *shift).as_vec3().to_array()).collect());
     for joint in 0..JOINTS {
         sampler(4, keys.iter().flat_map(|(_, turns)| turns[joint].as_quat().to_array()).collect());
@@ -68,7 +69,7 @@ fn stand(scene: &mut Scene, instance: u32, of: u32, samplers: &[usize]) {
     // A sunflower's seeds, drawn out along the way; alone, it stands in the middle.
     let reach = if of == 1 { 0.0 } else { (f64::from(instance) + 0.3).sqrt() };
     let (sin, cos) = libm::sincos(f64::from(instance) * 2.399_963_229_728_653);
-    let part = |translation| Local::Parts(Parts { translation, ..Parts::default() });
+    let part = |translation| Local::Trs(Trs { translation, ..Trs::default() });
     let (rest, first, rig) = (joints(), scene.rig.nodes.len() + 1, &mut scene.rig);
     let place = part(DVec3::new(2.3 * reach * sin, 0.0, 1.0 * reach * cos));
     rig.nodes.push(Node { name: format!("walker {instance}"), parent: None, rest: place, weights: Vec::new() });
@@ -102,17 +103,17 @@ mod tests {
     use super::super::build as scene_of;
     use super::*;
     use crate::{
-        ladder::Skinning,
+        accuracy::Skinning,
         scene::pose::{Motion, Pose},
     };
 
     /// Every vertex of every instance at a moment of a clip.
-    fn bent(scene: &Scene, clip: usize, time_s: f64, skinning: Skinning) -> Vec<DVec3> {
+    fn deformed(scene: &Scene, clip: usize, time_s: f64, skinning: Skinning) -> Vec<DVec3> {
         let pose = Pose::at(scene, &Motion { clip: Some(clip), time_s, skinning, ..Motion::default() });
         let primitive = &scene.primitives[0];
         let all = |instance: usize| {
-            let bend = pose.bend(instance).expect("its skin holds it").clone();
-            (0..primitive.vertex_count()).map(move |vertex| bend.position(scene, primitive, vertex))
+            let deform = pose.deform(instance).expect("its skin holds it").clone();
+            (0..primitive.vertex_count()).map(move |vertex| deform.position(scene, primitive, vertex))
         };
         (0..scene.instances.len()).flat_map(all).collect()
     }
@@ -164,12 +165,12 @@ mod tests {
     fn its_keys_go_round_to_the_bit() {
         let scene = scene_of("walker?tess=1&instances=3").unwrap();
         for sampler in &scene.rig.samplers {
-            let keys: Vec<&[f32]> = sampler.values.chunks(sampler.lanes).collect();
+            let keys: Vec<&[f32]> = sampler.values.chunks(sampler.components).collect();
             assert_eq!((keys.len(), sampler.times.len(), keys[0]), (KEYS + 1, KEYS + 1, keys[KEYS]));
         }
         for (index, clip) in scene.rig.clips.iter().enumerate() {
             let apart = |a: f64, b: f64| {
-                let [a, b] = [a, b].map(|share| bent(&scene, index, share * clip.duration_s, Skinning::Linear));
+                let [a, b] = [a, b].map(|share| deformed(&scene, index, share * clip.duration_s, Skinning::Linear));
                 a.iter().zip(&b).map(|(a, b)| a.distance(*b)).fold(0.0, f64::max)
             };
             assert!(apart(0.0, 1.0) < 1e-6 && apart(0.25, 4.25) < 1e-6 && apart(0.0, 0.25) > 0.05, "{}", clip.name);
@@ -178,7 +179,7 @@ mod tests {
         let [a, b] = [0, 1].map(|instance| {
             let place = scene.rig.nodes[scene.instances[instance].node.unwrap()].rest.matrix().w_axis.truncate();
             let (count, late) = (scene.primitives[0].vertex_count() as usize, 0.1875 * (1 - instance) as f64);
-            bent(&scene, 0, 0.3 + late, Skinning::Linear)[instance * count..][..count].iter().map(|p| *p - place).collect::<Vec<_>>()
+            deformed(&scene, 0, 0.3 + late, Skinning::Linear)[instance * count..][..count].iter().map(|p| *p - place).collect::<Vec<_>>()
         });
         assert!(a.iter().zip(&b).all(|(a, b)| a.distance(*b) < 1e-5));
     }
@@ -188,7 +189,7 @@ mod tests {
         let scene = scene_of("walker?instances=2").unwrap();
         for (index, clip) in scene.rig.clips.iter().enumerate() {
             for (time_s, skinning) in moments(clip).flat_map(|time_s| Skinning::ALL.iter().map(move |skinning| (time_s, *skinning))) {
-                let lowest = bent(&scene, index, time_s, skinning).iter().map(|p| p.y).fold(f64::INFINITY, f64::min);
+                let lowest = deformed(&scene, index, time_s, skinning).iter().map(|p| p.y).fold(f64::INFINITY, f64::min);
                 assert!((-1e-3..8e-3).contains(&lowest), "{} at {time_s} s: {lowest}", clip.name);
             }
         }
@@ -202,7 +203,7 @@ mod tests {
         let mut longest: f64 = 0.0;
         for (index, clip) in scene.rig.clips.iter().enumerate() {
             for time_s in moments(clip) {
-                let places = bent(&scene, index, time_s, Skinning::Linear);
+                let places = deformed(&scene, index, time_s, Skinning::Linear);
                 for [a, b, c] in (0..primitive.triangle_count()).map(|triangle| primitive.corners(&scene, triangle)) {
                     for [a, b] in [[a, b], [b, c], [c, a]] {
                         // Shortest edges are let off: a cell is 5 cm wide.
@@ -211,7 +212,8 @@ mod tests {
                     }
                 }
                 let sure = Pose::at(&scene, &Motion { clip: Some(index), time_s, ..Motion::default() }).bounds(&scene);
-                let [sure, framed] = [(sure, 1e-6), (scene.rig.reach, 0.02)].map(|(b, slack)| (b.min - slack, b.max + slack));
+                let [sure, framed] =
+                    [(sure, 1e-6), (scene.rig.reach, 0.02)].map(|(b, error_bound)| (b.min - error_bound, b.max + error_bound));
                 for (low, high) in [sure, framed] {
                     let beyond = places.iter().map(|p| (low - *p).max(*p - high).max_element()).fold(0.0, f64::max);
                     assert_eq!(beyond, 0.0, "{} at {time_s} s, m", clip.name);

@@ -79,8 +79,8 @@ impl<'a> Buffers<'a> {
         let (Checked::Valid(component), Checked::Valid(kind)) = (accessor.component_type, accessor.type_) else {
             return Err(LoadError::new("its type is unknown"));
         };
-        let (component, lanes) = (component_of(component.0), lanes_of(kind));
-        let (size, element) = (u64::from(component.bytes()), u64::from(component.bytes() * lanes));
+        let (component, components) = (component_of(component.0), lanes_of(kind));
+        let (size, element) = (u64::from(component.bytes()), u64::from(component.bytes() * components));
         let (count, offset) = (accessor.count.0, accessor.byte_offset.unwrap_or_default().0);
         // Before anything is allocated: a sparse accessor needs no bytes to claim any count.
         if count == 0 || count > 3 * limits::TRIANGLES {
@@ -110,7 +110,7 @@ impl<'a> Buffers<'a> {
             offset: offset as u32,
             stride: stride as u32,
             component,
-            lanes,
+            components,
             normalized: accessor.normalized,
             count: count as u32,
         };
@@ -119,8 +119,8 @@ impl<'a> Buffers<'a> {
 
     /// Elements of a sparse accessor, packed: the base or zeros, with the overlay in place.
     pub fn materialized(&self, index: usize, layout: &Layout) -> Result<Vec<u8>, LoadError> {
-        let Accessor { offset, stride, component, lanes, count, .. } = layout.accessor;
-        let element = (component.bytes() * lanes) as usize;
+        let Accessor { offset, stride, component, components, count, .. } = layout.accessor;
+        let element = (component.bytes() * components) as usize;
         if u64::from(count) * element as u64 > limits::BINDING_BYTES {
             return Err(LoadError::new(format!("accessor {index}: {count} elements exceed {} bytes", limits::BINDING_BYTES)));
         }
@@ -155,7 +155,7 @@ impl<'a> Buffers<'a> {
         };
         let indices = part("indices", sparse.indices.buffer_view.value(), sparse.indices.byte_offset.0, width.bytes().into())?;
         let values = part("values", sparse.values.buffer_view.value(), sparse.values.byte_offset.0, element as u64)?;
-        let reader = Accessor { offset: 0, stride: width.bytes(), component: width, lanes: 1, normalized: false, count: count as u32 };
+        let reader = Accessor { offset: 0, stride: width.bytes(), component: width, components: 1, normalized: false, count: count as u32 };
         let mut previous = -1;
         for (i, value) in values.chunks_exact(element).enumerate() {
             let at = reader.integer(indices, i as u32, 0);

@@ -49,7 +49,7 @@ pub fn read(buffers: &Buffers, tree: &Tree, rig: &mut Rig, notes: &mut Vec<Strin
     Ok(())
 }
 
-/// As menus and looks name it.
+/// As menus and presets name it.
 fn name_of(animation: &json::Animation, index: usize) -> String {
     let name: String = animation.name.iter().flat_map(|name| name.chars()).filter(|c| !c.is_control()).take(60).collect();
     if name.trim().is_empty() { format!("clip {index}") } else { name }
@@ -78,7 +78,7 @@ impl Reader<'_> {
         // The crate leaves this index unchecked.
         let node =
             tree.place_of.get(target).copied().ok_or_else(|| LoadError::new(format!("moves node {target}, which does not exist")))?;
-        let (property, lanes) = match channel.target.path {
+        let (property, components) = match channel.target.path {
             Checked::Valid(Path::Translation) => (Property::Translation, 3),
             Checked::Valid(Path::Rotation) => (Property::Rotation, 4),
             Checked::Valid(Path::Scale) => (Property::Scale, 3),
@@ -87,25 +87,25 @@ impl Reader<'_> {
         };
         let name = node_name(self.buffers.root, target);
         let place = |error: LoadError| error.within(format!("{} of {name}", property.name()));
-        if property == Property::Weights && lanes == 0 {
+        if property == Property::Weights && components == 0 {
             return Err(place(LoadError::new("the node shows no mesh with morph targets")));
         }
         if property != Property::Weights && matches!(self.rig.nodes[node].rest, Local::Matrix(_)) {
             return Err(place(LoadError::new("the node has a matrix, which no clip may move")));
         }
-        let sampler = match self.known.get(&(clip, at, lanes)) {
+        let sampler = match self.known.get(&(clip, at, components)) {
             Some(&sampler) => sampler,
             None => {
-                let sampler = self.sampler(&from.samplers[at], property, lanes).map_err(place)?;
+                let sampler = self.sampler(&from.samplers[at], property, components).map_err(place)?;
                 self.rig.samplers.push(sampler);
-                self.known.insert((clip, at, lanes), self.rig.samplers.len() - 1);
+                self.known.insert((clip, at, components), self.rig.samplers.len() - 1);
                 self.rig.samplers.len() - 1
             }
         };
         Ok(Channel { node, property, sampler })
     }
 
-    fn sampler(&mut self, from: &json::animation::Sampler, property: Property, lanes: usize) -> Result<Sampler, LoadError> {
+    fn sampler(&mut self, from: &json::animation::Sampler, property: Property, components: usize) -> Result<Sampler, LoadError> {
         let (interpolation, parts) = match from.interpolation {
             Checked::Valid(Way::Step) => (Interpolation::Step, 1),
             Checked::Valid(Way::Linear) => (Interpolation::Linear, 1),
@@ -113,10 +113,10 @@ impl Reader<'_> {
             Checked::Invalid => return Err(LoadError::new("its interpolation is unknown")),
         };
         let times = self.times(from.input.value()).map_err(|error| error.within("input"))?;
-        let wanted = times.len() * parts * if property == Property::Weights { lanes } else { 1 };
+        let wanted = times.len() * parts * if property == Property::Weights { components } else { 1 };
         let values = self.values(from.output.value(), property, wanted).map_err(|error| error.within("output"))?;
         if let Some(at) = values.iter().position(|value| !value.is_finite()) {
-            return Err(LoadError::new(format!("key {} has the value {}", at / (lanes * parts), values[at])).within("output"));
+            return Err(LoadError::new(format!("key {} has the value {}", at / (components * parts), values[at])).within("output"));
         }
         if property == Property::Rotation {
             let keys = values.chunks_exact(4).skip(parts / 2).step_by(parts);
@@ -128,13 +128,13 @@ impl Reader<'_> {
                 self.uneven += usize::from((length - 1.0).abs() > UNEVEN);
             }
         }
-        Ok(Sampler { interpolation, times, values, lanes })
+        Ok(Sampler { interpolation, times, values, components })
     }
 
     /// Key times: finite, not negative, and strictly rising.
     fn times(&mut self, index: usize) -> Result<Vec<f32>, LoadError> {
         let about = self.buffers.layout(index)?.accessor;
-        if (about.component, about.lanes) != (Component::F32, 1) {
+        if (about.component, about.components) != (Component::F32, 1) {
             return Err(LoadError::new("is not SCALAR of FLOAT"));
         }
         let times = self.numbers(index)?;
@@ -157,12 +157,12 @@ impl Reader<'_> {
             Component::U32 => false,
             _ => about.normalized && may_be_integer,
         };
-        let lanes = match property {
+        let components = match property {
             Property::Translation | Property::Scale => 3,
             Property::Rotation => 4,
             Property::Weights => 1,
         };
-        if !is_number || about.lanes != lanes {
+        if !is_number || about.components != components {
             return Err(LoadError::new("has a type that glTF does not allow here"));
         }
         if about.count as usize != wanted {
@@ -174,14 +174,14 @@ impl Reader<'_> {
     /// All numbers of an accessor, normalized.
     fn numbers(&mut self, index: usize) -> Result<Vec<f32>, LoadError> {
         let layout = self.buffers.layout(index)?;
-        let Accessor { component, lanes, count, .. } = layout.accessor;
-        self.numbers += (count * lanes) as usize;
+        let Accessor { component, components, count, .. } = layout.accessor;
+        self.numbers += (count * components) as usize;
         if self.numbers > limits::KEY_NUMBERS {
             return Err(LoadError::new(format!("brings the clips to {} numbers; at most {} are read", self.numbers, limits::KEY_NUMBERS)));
         }
         let bytes = self.buffers.materialized(index, &layout)?;
-        let packed = Accessor { offset: 0, stride: component.bytes() * lanes, ..layout.accessor };
-        let element = |element: u32| (0..lanes).map(move |lane| (element, lane));
+        let packed = Accessor { offset: 0, stride: component.bytes() * components, ..layout.accessor };
+        let element = |element: u32| (0..components).map(move |lane| (element, lane));
         Ok((0..count).flat_map(element).map(|(element, lane)| packed.value(&bytes, element, lane) as f32).collect())
     }
 }

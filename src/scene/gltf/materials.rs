@@ -19,7 +19,7 @@ use image::{DynamicImage, ImageDecoder, ImageFormat, ImageReader, Limits};
 use super::{LoadError, ReadFile, buffers::Buffers, called, limits, quoted, uri};
 use crate::scene::{
     Material,
-    texture::{Copies, Filter, Image, Texture, Wrap},
+    texture::{Filter, Image, MipFilter, Texture, Wrap},
 };
 
 /// Extensions of materials that are read.
@@ -80,9 +80,9 @@ fn used(root: &json::Root, shown: &[usize]) -> BTreeSet<usize> {
 /// Does a mask leave out all of it?
 pub fn is_invisible(about: &json::Material) -> bool {
     let alpha = about.pbr_metallic_roughness.base_color_factor.0[3];
-    let cutoff = about.alpha_cutoff.map_or(0.5, |cutoff| cutoff.0);
+    let alpha_cutoff = about.alpha_cutoff.map_or(0.5, |alpha_cutoff| alpha_cutoff.0);
     let is_masked = about.alpha_mode == Checked::Valid(AlphaMode::Mask);
-    is_masked && about.pbr_metallic_roughness.base_color_texture.is_none() && alpha < cutoff
+    is_masked && about.pbr_metallic_roughness.base_color_texture.is_none() && alpha < alpha_cutoff
 }
 
 struct Reader<'a, 'b, 'c> {
@@ -123,19 +123,19 @@ impl Reader<'_, '_, '_> {
         let opaque = Material { base_color: [plain.base_color[0], plain.base_color[1], plain.base_color[2], 1.0], ..plain.clone() };
         match about.alpha_mode {
             Checked::Valid(AlphaMode::Mask) => {
-                let cutoff = about.alpha_cutoff.map_or(0.5, |cutoff| cutoff.0);
-                if !(cutoff >= 0.0 && cutoff.is_finite()) {
-                    return Err(LoadError::new(format!("alphaCutoff {cutoff} is not a number from 0 up")));
+                let alpha_cutoff = about.alpha_cutoff.map_or(0.5, |alpha_cutoff| alpha_cutoff.0);
+                if !(alpha_cutoff >= 0.0 && alpha_cutoff.is_finite()) {
+                    return Err(LoadError::new(format!("alphaCutoff {alpha_cutoff} is not a number from 0 up")));
                 }
-                let cutoff = (cutoff > 0.0 && opaque.base_texture.is_some()).then(|| (cutoff / alpha).min(2.0));
-                Ok(Material { cutoff, ..opaque })
+                let alpha_cutoff = (alpha_cutoff > 0.0 && opaque.base_texture.is_some()).then(|| (alpha_cutoff / alpha).min(2.0));
+                Ok(Material { alpha_cutoff, ..opaque })
             }
             Checked::Valid(AlphaMode::Blend) => {
                 let texels = opaque.base_texture.map(|texture| &self.images[texture.image].levels[0].texels);
                 let has_holes = texels.is_some_and(|texels| texels.iter().any(|texel| texel[3] < 128));
                 let instead = if has_holes { "cut out where its alpha is below one half" } else { "opaque" };
                 self.notes.push(format!("material {name}: blending is not drawn; it is {instead}"));
-                Ok(Material { cutoff: has_holes.then_some(0.5), ..opaque })
+                Ok(Material { alpha_cutoff: has_holes.then_some(0.5), ..opaque })
             }
             _ => Ok(plain),
         }
@@ -154,27 +154,27 @@ impl Reader<'_, '_, '_> {
         let wrap = [wrap(|sampler| sampler.wrap_s)?, wrap(|sampler| sampler.wrap_t)?];
         let unknown = || LoadError::new("its sampler has a filter that glTF does not have");
         // Where the file leaves it open, pictures look best mixed.
-        let magnified = match sampler.and_then(|sampler| sampler.mag_filter) {
+        let mag_filter = match sampler.and_then(|sampler| sampler.mag_filter) {
             None | Some(Checked::Valid(MagFilter::Linear)) => Filter::Linear,
             Some(Checked::Valid(MagFilter::Nearest)) => Filter::Nearest,
             Some(Checked::Invalid) => return Err(unknown()),
         };
-        let (minified, copies) = match sampler.and_then(|sampler| sampler.min_filter) {
-            None | Some(Checked::Valid(MinFilter::LinearMipmapLinear)) => (Filter::Linear, Copies::Mixed),
-            Some(Checked::Valid(MinFilter::Nearest)) => (Filter::Nearest, Copies::Unused),
-            Some(Checked::Valid(MinFilter::Linear)) => (Filter::Linear, Copies::Unused),
-            Some(Checked::Valid(MinFilter::NearestMipmapNearest)) => (Filter::Nearest, Copies::Nearest),
-            Some(Checked::Valid(MinFilter::LinearMipmapNearest)) => (Filter::Linear, Copies::Nearest),
-            Some(Checked::Valid(MinFilter::NearestMipmapLinear)) => (Filter::Nearest, Copies::Mixed),
+        let (min_filter, mip_filter) = match sampler.and_then(|sampler| sampler.min_filter) {
+            None | Some(Checked::Valid(MinFilter::LinearMipmapLinear)) => (Filter::Linear, MipFilter::Mixed),
+            Some(Checked::Valid(MinFilter::Nearest)) => (Filter::Nearest, MipFilter::Unused),
+            Some(Checked::Valid(MinFilter::Linear)) => (Filter::Linear, MipFilter::Unused),
+            Some(Checked::Valid(MinFilter::NearestMipmapNearest)) => (Filter::Nearest, MipFilter::Nearest),
+            Some(Checked::Valid(MinFilter::LinearMipmapNearest)) => (Filter::Linear, MipFilter::Nearest),
+            Some(Checked::Valid(MinFilter::NearestMipmapLinear)) => (Filter::Nearest, MipFilter::Mixed),
             Some(Checked::Invalid) => return Err(unknown()),
         };
-        let (image_from_stored, set) = transform(info)?;
+        let (image_from_texcoord, set) = transform(info)?;
         let image = self.image(texture.source.value())?;
-        if copies != Copies::Unused && self.images[image].levels.len() == 1 {
+        if mip_filter != MipFilter::Unused && self.images[image].levels.len() == 1 {
             let plain = std::mem::replace(&mut self.images[image], Image::new("", [1, 1], vec![[0; 4]]));
-            self.images[image] = plain.with_copies();
+            self.images[image] = plain.with_mipmaps();
         }
-        Ok(Texture { image, wrap, magnified, minified, copies, set, image_from_stored })
+        Ok(Texture { image, wrap, mag_filter, min_filter, mip_filter, set, image_from_texcoord })
     }
 
     /// The place of a decoded image.

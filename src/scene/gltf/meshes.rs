@@ -21,8 +21,8 @@ use super::{
 };
 use crate::scene::{
     Accessor, Bounds, Component, Instance, Material, Primitive, Scene, Topology, pose,
-    rig::{Rig, Softness},
-    texture::{MOST_REPEATS, stored},
+    rig::{Deformation, Rig},
+    texture::{MAX_REPEATS, stored},
 };
 
 /// The whole file as a scene.
@@ -185,7 +185,7 @@ impl<'a> Loader<'a> {
         let normals = attribute(Semantic::Normals).map(|a| self.attribute(a, count, &[3], directions).map_err(at("NORMAL"))).transpose()?;
         let colors = attribute(Semantic::Colors(0)).map(|a| self.attribute(a, count, &[3, 4], COLOR).map_err(at("COLOR_0"))).transpose()?;
         let material = self.material(about);
-        let coords = self.coords(about, material, count)?;
+        let texcoords = self.texcoords(about, material, count)?;
         let indices = about.indices.map(|a| self.indices(a.value()).map_err(at("indices"))).transpose()?;
         let corners = indices.map_or(count, |indices| indices.count);
         self.budget_triangles(topology, corners).map_err(if indices.is_some() { at("indices") } else { at("POSITION") })?;
@@ -197,12 +197,12 @@ impl<'a> Loader<'a> {
             positions,
             normals: normals.unwrap_or(positions),
             colors,
-            coords,
+            texcoords,
             material,
             bounds: Bounds::EMPTY,
             longest_edge: 0.0,
-            sound_normals: false,
-            softness: Softness { shapes: self.shapes(about, count)?, ..Softness::default() },
+            normals_agree: false,
+            deformation: Deformation { morph_targets: self.morph_targets(about, count)?, ..Deformation::default() },
         };
         check_indices(&self.scene, &primitive).map_err(at("indices"))?;
         measure(&self.scene, &mut primitive).map_err(at("POSITION"))?;
@@ -212,10 +212,10 @@ impl<'a> Loader<'a> {
         } else {
             check_finite(&self.scene, &primitive.normals).map_err(at("NORMAL"))?;
         }
-        primitive.sound_normals = primitive.normals_agree(&self.scene);
+        primitive.normals_agree = primitive.normals_agree(&self.scene);
         if let Some(colors) = &primitive.colors {
             check_finite(&self.scene, colors).map_err(at("COLOR_0"))?;
-            if colors.lanes == 4 && self.scene.materials[material].cutoff.is_some() {
+            if colors.components == 4 && self.scene.materials[material].alpha_cutoff.is_some() {
                 self.notes.insert(format!("{name}: only the alpha of its image cuts it out, not that of its vertex colours"));
             }
         }
@@ -235,10 +235,10 @@ impl<'a> Loader<'a> {
     }
 
     /// Where the textures of a material are looked up. Errors begin as those of attributes do.
-    fn coords(&mut self, about: &json::mesh::Primitive, material: usize, count: u32) -> Result<[Option<Accessor>; 2], LoadError> {
+    fn texcoords(&mut self, about: &json::mesh::Primitive, material: usize, count: u32) -> Result<[Option<Accessor>; 2], LoadError> {
         let textures = self.scene.materials[material].textures().map(|texture| texture.copied());
-        let mut coords = [None; 2];
-        for (coords, texture) in coords.iter_mut().zip(textures) {
+        let mut texcoords = [None; 2];
+        for (texcoords, texture) in texcoords.iter_mut().zip(textures) {
             let Some(texture) = texture else { continue };
             let at = |error: LoadError| LoadError(format!(" TEXCOORD_{}: {error}", texture.set));
             let index = about.attributes.get(&Checked::Valid(Semantic::TexCoords(texture.set)));
@@ -247,15 +247,15 @@ impl<'a> Loader<'a> {
             let accessor = self.attribute(index.value(), count, &[2], kinds).map_err(at)?;
             check_finite(&self.scene, &accessor).map_err(at)?;
             let place = |vertex| texture.placed(stored(&accessor, &self.scene.vertex_bytes, vertex));
-            if let Some(vertex) = (0..count).find(|&vertex| place(vertex).abs().max_element() > MOST_REPEATS) {
+            if let Some(vertex) = (0..count).find(|&vertex| place(vertex).abs().max_element() > MAX_REPEATS) {
                 let place = place(vertex);
                 let reason =
-                    format!("vertex {vertex} lies at {} {} of the image, which is followed to {MOST_REPEATS} repeats", place.x, place.y);
+                    format!("vertex {vertex} lies at {} {} of the image, which is followed to {MAX_REPEATS} repeats", place.x, place.y);
                 return Err(at(LoadError::new(reason)));
             }
-            *coords = Some(accessor);
+            *texcoords = Some(accessor);
         }
-        Ok(coords)
+        Ok(texcoords)
     }
 
     fn budget_vertices(&mut self, more: u64) -> Result<(), LoadError> {
@@ -290,12 +290,12 @@ impl<'a> Loader<'a> {
         &mut self,
         index: usize,
         count: u32,
-        lanes: &[u32],
+        components: &[u32],
         kinds: &[(Component, bool)],
     ) -> Result<Accessor, LoadError> {
         let layout = self.buffers.layout(index)?;
         let accessor = layout.accessor;
-        if !lanes.contains(&accessor.lanes) || !kinds.contains(&(accessor.component, accessor.normalized)) {
+        if !components.contains(&accessor.components) || !kinds.contains(&(accessor.component, accessor.normalized)) {
             return Err(LoadError::new(format!("accessor {index} has a type that glTF does not allow here ({})", type_name(&accessor))));
         }
         if accessor.count != count {
@@ -310,8 +310,9 @@ impl<'a> Loader<'a> {
 
     fn indices(&mut self, index: usize) -> Result<Accessor, LoadError> {
         let accessor = self.buffers.layout(index)?.accessor;
-        let is_index =
-            matches!(accessor.component, Component::U8 | Component::U16 | Component::U32) && accessor.lanes == 1 && !accessor.normalized;
+        let is_index = matches!(accessor.component, Component::U8 | Component::U16 | Component::U32)
+            && accessor.components == 1
+            && !accessor.normalized;
         if !is_index {
             return Err(LoadError::new(format!("accessor {index} has a type that glTF does not allow here ({})", type_name(&accessor))));
         }
@@ -349,7 +350,7 @@ const COLOR: &[(Component, bool)] = &[(Component::F32, false), (Component::U8, t
 
 fn type_name(accessor: &Accessor) -> String {
     let normalized = if accessor.normalized { " normalized" } else { "" };
-    format!("{} x {:?}{normalized}", accessor.lanes, accessor.component)
+    format!("{} x {:?}{normalized}", accessor.components, accessor.component)
 }
 
 fn primitive_name(root: &json::Root, mesh: usize, primitive: usize) -> String {
@@ -362,7 +363,7 @@ fn take_over(buffers: &Buffers, index: usize, places: &mut HashMap<Source, u32>,
     let accessor = layout.accessor;
     let (source, placed) = match layout.view {
         Some(view) if !layout.is_sparse => (Source::View(view), accessor),
-        _ => (Source::Accessor(index), Accessor { offset: 0, stride: accessor.component.bytes() * accessor.lanes, ..accessor }),
+        _ => (Source::Accessor(index), Accessor { offset: 0, stride: accessor.component.bytes() * accessor.components, ..accessor }),
     };
     let start = match places.get(&source) {
         Some(&start) => start,
@@ -392,7 +393,7 @@ fn append(bytes: &mut Vec<u8>, more: &[u8]) -> Result<u32, LoadError> {
 
 pub(super) fn check_finite(scene: &Scene, accessor: &Accessor) -> Result<(), LoadError> {
     let value = |vertex, lane| accessor.value(&scene.vertex_bytes, vertex, lane);
-    match (0..accessor.count).find(|&vertex| (0..accessor.lanes).any(|lane| !value(vertex, lane).is_finite())) {
+    match (0..accessor.count).find(|&vertex| (0..accessor.components).any(|lane| !value(vertex, lane).is_finite())) {
         Some(vertex) => Err(LoadError::new(format!("vertex {vertex} is not finite"))),
         None => Ok(()),
     }

@@ -5,10 +5,10 @@ use gltf::json::{self, camera::Type, validation::Checked};
 
 use super::{LoadError, called, limits, soft};
 use crate::scene::{
-    Bounds, FileCamera,
+    Bounds, SceneCamera,
     camera::{Camera, MIN_NEAR_M, Projection},
     pose::unit,
-    rig::{Local, Node, Parts},
+    rig::{Local, Node, Trs},
 };
 
 /// World matrix of every node, and the nodes that are shown.
@@ -91,14 +91,14 @@ impl Tree {
 
     /// The cameras among the shown nodes. Their targets lie as far away as the middle of `bounds`; where things move, they
     /// go with their nodes.
-    pub fn cameras(&self, root: &json::Root, bounds: &Bounds, moves: bool, notes: &mut Vec<String>) -> Vec<FileCamera> {
+    pub fn cameras(&self, root: &json::Root, bounds: &Bounds, moves: bool, notes: &mut Vec<String>) -> Vec<SceneCamera> {
         let mut cameras = Vec::new();
         for &node in &self.shown {
             let Some(index) = root.nodes[node].camera else { continue };
             let camera = &root.cameras[index.value()];
             let name = camera.name.clone().or_else(|| root.nodes[node].name.clone()).unwrap_or_else(|| format!("camera {}", index.value()));
             match pose(camera, &self.world_from_node[node], bounds) {
-                Ok(pose) => cameras.push(FileCamera { name: shown(&name, cameras.len()), pose, node: moves.then(|| self.place_of[node]) }),
+                Ok(pose) => cameras.push(SceneCamera { name: shown(&name, cameras.len()), pose, node: moves.then(|| self.place_of[node]) }),
                 Err(reason) => notes.push(format!("{} is left out: {reason}", called("camera", index.value(), Some(&name)))),
             }
         }
@@ -169,10 +169,10 @@ fn local(node: &json::Node) -> Result<Local, LoadError> {
         return Err(LoadError::new("its rotation is not a quaternion with a direction"));
     }
     let (translation, scale) = (vector(node.translation, DVec3::ZERO), vector(node.scale, DVec3::ONE));
-    Ok(Local::Parts(Parts { translation, rotation: unit(rotation), scale }))
+    Ok(Local::Trs(Trs { translation, rotation: unit(rotation), scale }))
 }
 
-/// As menus and looks name it, the `place`th of them.
+/// As menus and presets name it, the `place`th of them.
 fn shown(name: &str, place: usize) -> String {
     let name: String = name.chars().filter(|c| !c.is_control()).take(60).collect();
     if name.trim().is_empty() { format!("camera {place}") } else { name }

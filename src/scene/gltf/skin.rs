@@ -39,7 +39,7 @@ fn read(buffers: &Buffers, tree: &Tree, skin: &json::Skin) -> Result<Skin, LoadE
 fn inverse_bind(buffers: &Buffers, index: usize, joints: usize) -> Result<Vec<DMat4>, LoadError> {
     let layout = buffers.layout(index)?;
     let about = layout.accessor;
-    if about.component != Component::F32 || about.lanes != 16 {
+    if about.component != Component::F32 || about.components != 16 {
         return Err(LoadError::new("is not MAT4 of FLOAT"));
     }
     if (about.count as usize) < joints || about.count as usize > limits::JOINTS {
@@ -63,7 +63,7 @@ pub fn check_types(accessor: &Accessor, what: &str, count: u32) -> Result<(), Lo
         true => &[(Component::U8, false), (Component::U16, false)],
         false => &[(Component::F32, false), (Component::U8, true), (Component::U16, true)],
     };
-    if accessor.lanes != 4 || !kinds.contains(&(accessor.component, accessor.normalized)) {
+    if accessor.components != 4 || !kinds.contains(&(accessor.component, accessor.normalized)) {
         return Err(LoadError::new("is not VEC4 of a type that glTF allows here").within(what));
     }
     if accessor.count != count {
@@ -83,7 +83,7 @@ pub struct Held {
 }
 
 /// Refuses joints past `palette`, and weights that are negative or not finite.
-pub fn held(scene: &Scene, sets: &[Influences], positions: &Accessor, palette: usize) -> Result<Held, LoadError> {
+pub fn held(scene: &Scene, sets: &[Influences], positions: &Accessor, joint_transforms: usize) -> Result<Held, LoadError> {
     let bytes = &scene.vertex_bytes;
     let mut held = Held { bounds: Vec::new(), weightless: 0, uneven: 0 };
     for vertex in 0..positions.count {
@@ -93,8 +93,9 @@ pub fn held(scene: &Scene, sets: &[Influences], positions: &Accessor, palette: u
             for lane in 0..4 {
                 let joint = influences.joints.integer(bytes, vertex, lane) as usize;
                 let weight = influences.weights.value(bytes, vertex, lane);
-                if joint >= palette {
-                    return Err(LoadError::new(format!("vertex {vertex} names joint {joint} of {palette}")).within(format!("JOINTS_{set}")));
+                if joint >= joint_transforms {
+                    return Err(LoadError::new(format!("vertex {vertex} names joint {joint} of {joint_transforms}"))
+                        .within(format!("JOINTS_{set}")));
                 }
                 if !(weight.is_finite() && weight >= 0.0) {
                     return Err(LoadError::new(format!("vertex {vertex} has the weight {weight}")).within(format!("WEIGHTS_{set}")));

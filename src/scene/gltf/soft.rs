@@ -1,4 +1,4 @@
-//! Softness: morph targets of primitives, and the joints and weights of those that a skin holds.
+//! Deformation: morph targets of primitives, and the joints and weights of those that a skin holds.
 
 use gltf::json::{self, mesh::Semantic, validation::Checked};
 
@@ -27,18 +27,18 @@ pub fn moves(root: &json::Root) -> bool {
 pub fn weights(root: &json::Root, node: &json::Node) -> Result<Vec<f32>, LoadError> {
     let Some(mesh) = node.mesh.map(|mesh| &root.meshes[mesh.value()]) else { return Ok(Vec::new()) };
     let counts = mesh.primitives.iter().map(|primitive| primitive.targets.as_ref().map_or(0, Vec::len));
-    let shapes = counts.clone().max().unwrap_or(0);
-    if shapes > limits::SHAPES {
-        return Err(LoadError::new(format!("its mesh has {shapes} morph targets; at most {} are read", limits::SHAPES)));
+    let morph_targets = counts.clone().max().unwrap_or(0);
+    if morph_targets > limits::SHAPES {
+        return Err(LoadError::new(format!("its mesh has {morph_targets} morph targets; at most {} are read", limits::SHAPES)));
     }
-    if let Some(fewer) = counts.clone().find(|&count| count != shapes) {
-        return Err(LoadError::new(format!("primitives of its mesh have {fewer} and {shapes} morph targets")));
+    if let Some(fewer) = counts.clone().find(|&count| count != morph_targets) {
+        return Err(LoadError::new(format!("primitives of its mesh have {fewer} and {morph_targets} morph targets")));
     }
     let given = node.weights.as_ref().or(mesh.weights.as_ref()).filter(|weights| !weights.is_empty());
     match given {
-        None => Ok(vec![0.0; shapes]),
-        Some(weights) if weights.len() != shapes => {
-            Err(LoadError::new(format!("has {} weights for {shapes} morph targets", weights.len())))
+        None => Ok(vec![0.0; morph_targets]),
+        Some(weights) if weights.len() != morph_targets => {
+            Err(LoadError::new(format!("has {} weights for {morph_targets} morph targets", weights.len())))
         }
         Some(weights) => match weights.iter().find(|weight| !weight.is_finite()) {
             Some(weight) => Err(LoadError::new(format!("has the morph weight {weight}"))),
@@ -49,7 +49,7 @@ pub fn weights(root: &json::Root, node: &json::Node) -> Result<Vec<f32>, LoadErr
 
 impl Loader<'_> {
     /// The morph targets of a primitive. Errors begin as those of attributes do.
-    pub fn shapes(&mut self, about: &json::mesh::Primitive, count: u32) -> Result<Vec<Shape>, LoadError> {
+    pub fn morph_targets(&mut self, about: &json::mesh::Primitive, count: u32) -> Result<Vec<Shape>, LoadError> {
         let targets = about.targets.iter().flatten().enumerate();
         targets.map(|(index, target)| self.shape(target, count).map_err(|e| LoadError(format!(" target {index} {}", e.0)))).collect()
     }
@@ -72,20 +72,22 @@ impl Loader<'_> {
 
     /// Makes sure that a primitive can follow the joints of a skin.
     pub fn hold(&mut self, primitive: usize, skin: usize, rig: &Rig) -> Result<(), LoadError> {
-        let palette = rig.skins[skin].joints.len();
-        let Primitive { name, positions, softness, .. } = self.scene.primitives[primitive].clone();
-        if softness.influences.is_empty() {
+        let joint_transforms = rig.skins[skin].joints.len();
+        let Primitive { name, positions, deformation, .. } = self.scene.primitives[primitive].clone();
+        if deformation.influences.is_empty() {
             let sets = self.influences(primitive, positions.count)?;
-            let held = skin::held(&self.scene, &sets, &positions, palette)?;
+            let held = skin::held(&self.scene, &sets, &positions, joint_transforms)?;
             let what = [
                 (held.weightless, "have no weight; their first joint holds them"),
                 (held.uneven, "have weights that do not sum to 1; they are divided by their sum"),
             ];
             what.iter().filter(|(count, _)| *count > 0).for_each(|(count, what)| self.note(format!("{name}: {count} vertices {what}")));
-            let softness = &mut self.scene.primitives[primitive].softness;
-            (softness.influences, softness.joint_bounds) = (sets, held.bounds);
-        } else if softness.joint_bounds.len() > palette {
-            return Err(LoadError::new(format!("names joint {} of {palette}", softness.joint_bounds.len() - 1)).within("JOINTS_0"));
+            let deformation = &mut self.scene.primitives[primitive].deformation;
+            (deformation.influences, deformation.joint_bounds) = (sets, held.bounds);
+        } else if deformation.joint_bounds.len() > joint_transforms {
+            return Err(
+                LoadError::new(format!("names joint {} of {joint_transforms}", deformation.joint_bounds.len() - 1)).within("JOINTS_0")
+            );
         }
         Ok(())
     }

@@ -1,0 +1,77 @@
+//! The job behind the panel: the bench over combinations of options, with the oracle as its judge.
+
+use std::sync::Arc;
+
+use super::{Metric, Point, Progress, Question, SAMPLES};
+use crate::{
+    accuracy::{Axis, PinnedOptions},
+    effects::Stack,
+    gpu::{
+        Capture, Gpu,
+        device::AdapterChoice,
+        sweep::{Judged, Reference, SweepOptions, SweepRow, factors, sweep},
+    },
+    oracle,
+    scene::{Scene, camera::View},
+};
+
+/// Measures every combination, on a device of its own.
+///
+/// # Errors
+/// In a sentence for people.
+pub fn measure(adapter: String, scene: &Arc<Scene>, question: &Question, progress: &Progress) -> Result<Vec<Point>, String> {
+    let Question { preset, size, axes, title } = question;
+    progress.tell(0, 1, "the true picture");
+    let gpu = Gpu::open(&AdapterChoice::Named(adapter)).map_err(|e| e.to_string())?;
+    let view = preset.view(scene, *size);
+    let references = oracle::references(scene, &view, &preset.stack, &factors(preset, axes)).map_err(|e| e.to_string())?;
+    let judge = |view: &View, stack: &Stack, capture: &Capture| {
+        let (layers, previous) = (capture.layers.as_deref(), capture.previous.as_deref());
+        let verdict = oracle::judge_after(scene, view, stack, &capture.frame, &capture.geometry, layers, previous);
+        let light = oracle::shadow_errors(scene, view, stack, &capture.frame.triangle_id, &capture.geometry);
+        let known = "a scene that was drawn can be judged";
+        Judged { verdict: verdict.expect(known), light: light.expect(known) }
+    };
+    let options = SweepOptions { size: *size, samples: SAMPLES, axes: axes.clone(), is_one_option_at_a_time: false };
+    let mut tell = |what: &str, done: usize, all: usize| progress.tell(done, all, what);
+    let reference = Reference { references: &references, judge: &judge };
+    let rows = sweep(&gpu, preset, scene, title, &options, &reference, &mut tell).map_err(|e| e.to_string())?;
+    Ok(rows.into_iter().map(|row| point(row, axes)).collect())
+}
+
+fn point(row: SweepRow, axes: &[&'static Axis]) -> Point {
+    let mut pins = PinnedOptions::default();
+    axes.iter().for_each(|axis| pins.set(axis, row.pins.get(axis)));
+    let errors = Metric::ALL.map(|metric| {
+        let error = row.error.as_ref()?;
+        Some(match metric {
+            Metric::Wrong => error.wrong_ppm,
+            Metric::Colour => error.max_color_delta.into(),
+            Metric::Light => error.wrong_light_ppm?,
+            Metric::Coverage => error.holes_per_mpx + error.double_hits_per_mpx,
+        })
+    });
+    let more = row.error.iter().flat_map(|error| {
+        [
+            ("wrong depth winners ppm", error.wrong_depth_ppm),
+            ("colour RMS of 255", error.rms_color_delta),
+            ("pixels that change between equal frames", error.changed_pixels as f64),
+            ("corners moved px", error.moved_px),
+            ("cracks per Mpx", error.cracks_per_mpx),
+            ("queue entries lost", error.overflow as f64),
+            ("depth_without_id", error.depth_without_id as f64),
+            ("buffers MiB", row.bytes as f64 / 1_048_576.0),
+        ]
+        .into_iter()
+        .chain(error.rms_light.map(|rms| ("light RMS, share", rms)))
+    });
+    Point {
+        pins,
+        ms: row.ms_p50.zip(row.ms_p95).map(|(p50, p95)| [p50, p95]),
+        samples: row.samples,
+        errors,
+        more: more.collect(),
+        is_idle: row.is_dominated,
+        note: row.note,
+    }
+}

@@ -1,0 +1,164 @@
+//! What was measured of a combination of options, and which of them are worth their time.
+
+use crate::accuracy::{Axis, PinnedOptions};
+
+/// A kind of error. Each is 0 where the picture is exact.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Metric {
+    /// Pixels with another triangle id than the exact picture has.
+    #[default]
+    Wrong,
+    /// Largest difference of a colour channel.
+    Colour,
+    /// Samples that are covered and not drawn, or drawn more often than covered.
+    Coverage,
+    /// Pixels that face a light and get more than half of it too much or too little.
+    Light,
+}
+
+impl Metric {
+    pub const ALL: [Self; 4] = [Self::Wrong, Self::Colour, Self::Coverage, Self::Light];
+
+    /// The kinds that mean something for these points: of light only where there is one.
+    pub fn of(points: &[Point]) -> Vec<Self> {
+        Self::ALL.into_iter().filter(|metric| *metric != Self::Light || points.iter().any(|point| point.error(*metric).is_some())).collect()
+    }
+
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Wrong => "wrong pixels",
+            Self::Colour => "colour difference",
+            Self::Coverage => "holes and doubles",
+            Self::Light => "wrong light",
+        }
+    }
+
+    pub const fn unit(self) -> &'static str {
+        match self {
+            Self::Wrong => "ppm",
+            Self::Colour => "of 255",
+            Self::Coverage => "per Mpx",
+            Self::Light => "ppm",
+        }
+    }
+}
+
+/// One combination: time beside error, never one without the other.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Point {
+    /// A option of every axis that was measured.
+    pub pins: PinnedOptions,
+    /// Median and 95th percentile, milliseconds; none where it could not run or has no timer.
+    pub ms: Option<[f64; 2]>,
+    pub samples: usize,
+    /// In the order of [`Metric::ALL`].
+    pub errors: [Option<f64>; Metric::ALL.len()],
+    /// Further figures, each with its name and unit.
+    pub more: Vec<(&'static str, f64)>,
+    /// Another combination is nowhere worse and not slower: what this one costs more gains nothing.
+    pub is_idle: bool,
+    /// Why it could not be drawn, or what beats it.
+    pub note: Option<String>,
+}
+
+impl Point {
+    pub fn error(&self, metric: Metric) -> Option<f64> {
+        self.errors[metric as usize].filter(|error| error.is_finite())
+    }
+
+    /// Time and error, where both were measured.
+    pub fn place(&self, metric: Metric) -> Option<[f64; 2]> {
+        let ms = self.ms.map(|[p50, _]| p50).filter(|ms| ms.is_finite() && *ms > 0.0)?;
+        Some([ms, self.error(metric)?.max(0.0)])
+    }
+}
+
+/// Points that no other beats in both time and error, fast ones first.
+pub fn front(points: &[Point], metric: Metric) -> Vec<usize> {
+    let mut order: Vec<(usize, [f64; 2])> = points.iter().enumerate().filter_map(|(i, p)| Some((i, p.place(metric)?))).collect();
+    order.sort_by(|(_, a), (_, b)| a[0].total_cmp(&b[0]).then(a[1].total_cmp(&b[1])));
+    let mut least = f64::INFINITY;
+    order.retain(|(_, [_, error])| {
+        let is_better = *error < least;
+        least = least.min(*error);
+        is_better
+    });
+    order.into_iter().map(|(i, _)| i).collect()
+}
+
+/// The table as comma-separated values, a column for every measured axis.
+pub fn csv(points: &[Point], axes: &[&'static Axis]) -> String {
+    let cell = |text: &str| if text.contains([',', '"', '\n']) { format!("\"{}\"", text.replace('"', "\"\"")) } else { text.to_owned() };
+    let mut head: Vec<String> = axes.iter().map(|axis| axis.name.to_owned()).collect();
+    head.extend(["ms p50", "ms p95", "samples"].map(str::to_owned));
+    let metrics = Metric::of(points);
+    head.extend(metrics.iter().map(|metric| format!("{} {}", metric.name(), metric.unit())));
+    let more = points.iter().map(|point| &point.more).max_by_key(|more| more.len());
+    head.extend(more.into_iter().flatten().map(|(name, _)| (*name).to_owned()));
+    head.push("note".into());
+    let mut text = head.join(",") + "\n";
+    for point in points {
+        let mut line: Vec<String> =
+            axes.iter().map(|axis| point.pins.get(axis).map_or(String::new(), |place| axis.words[place].to_owned())).collect();
+        let number = |value: Option<f64>| value.map_or_else(|| "not measured".into(), |value| value.to_string());
+        line.extend([0, 1].map(|i| number(point.ms.map(|ms| ms[i]))));
+        line.push(point.samples.to_string());
+        line.extend(metrics.iter().map(|metric| number(point.errors[*metric as usize])));
+        let place = |i: usize| point.more.get(i).map(|(_, value)| *value);
+        line.extend((0..more.map_or(0, Vec::len)).map(|i| number(place(i))));
+        line.push(cell(point.note.as_deref().unwrap_or_default()));
+        text += &(line.join(",") + "\n");
+    }
+    text
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::accuracy::{Coverage, DepthFormat};
+
+    fn point(coverage: Coverage, depth: DepthFormat, ms: f64, wrong: f64) -> Point {
+        let pins = PinnedOptions::of(coverage).with(depth);
+        Point {
+            pins,
+            ms: Some([ms, 2.0 * ms]),
+            samples: 30,
+            errors: [Some(wrong), Some(0.0), None, None],
+            more: vec![("bytes", 7.0)],
+            is_idle: false,
+            note: None,
+        }
+    }
+
+    fn points() -> Vec<Point> {
+        vec![
+            point(Coverage::Float, DepthFormat::Ndc16, 1.0, 500.0),
+            point(Coverage::Float, DepthFormat::Reversed, 1.5, 200.0),
+            point(Coverage::Fixed8, DepthFormat::Ndc16, 2.0, 300.0),
+            point(Coverage::Fixed8, DepthFormat::Reversed, 2.5, 0.0),
+            point(Coverage::Fixed12, DepthFormat::Reversed, 3.0, 0.0),
+        ]
+    }
+
+    #[test]
+    fn the_front_holds_what_nothing_beats() {
+        assert_eq!(front(&points(), Metric::Wrong), [0, 1, 3]);
+        assert_eq!(front(&points(), Metric::Colour), [0], "all are exact, so the fastest stands alone");
+        assert_eq!(front(&points(), Metric::Coverage), [0; 0], "not measured is no point");
+    }
+
+    #[test]
+    fn csv_has_a_column_for_every_axis_and_says_what_was_not_measured() {
+        let axes = ["coverage", "depth"].map(|name| Axis::find(name).expect("an axis"));
+        let mut points = points();
+        points.truncate(1);
+        points[0].note = Some("a, b".into());
+        let text = csv(&points, &axes);
+        let lines: Vec<_> = text.lines().collect();
+        assert_eq!(
+            lines[0],
+            "coverage,depth,ms p50,ms p95,samples,wrong pixels ppm,colour difference of 255,holes and doubles per Mpx,bytes,note"
+        );
+        assert_eq!(lines[1], "float,ndc16,1,2,30,500,0,not measured,7,\"a, b\"");
+    }
+}

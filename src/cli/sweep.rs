@@ -1,0 +1,201 @@
+//! `bench --axes`: every combination of options on chosen axes of the accuracy axes, milliseconds beside error.
+
+use serde_json::Value;
+
+use super::{
+    args::{Bench, Common},
+    bench::{judge, present, subjects},
+    fault::{Exit, Fault},
+    painter::Painter,
+    streams::Streams,
+};
+use crate::{
+    accuracy::{AXES, Axis},
+    effects::Stack,
+    gpu::{
+        Capture,
+        sweep::{AS_PLANNED, Judged, Reference, SweepError, SweepOptions, SweepRow, factors, sweep},
+    },
+    oracle,
+    preset_file::form::did_you_mean,
+    scene::{Scene, camera::View},
+};
+
+pub fn run(common: &Common, args: &Bench, streams: &mut Streams) -> Result<Exit, Fault> {
+    let axes = axes(&args.axes)?;
+    let options = SweepOptions { size: args.size, samples: args.samples as usize, axes, is_one_option_at_a_time: args.each };
+    let subjects = subjects(common, args)?;
+    let painter = Painter::open(common, streams)?;
+    let Painter::Gpu(_, gpu) = &painter else {
+        return Err(Fault::usage("the oracle judges and is never ranked; bench needs a GPU adapter"));
+    };
+    let bar = streams.progress(0);
+    let mut rows = Vec::new();
+    for (preset_file, scene) in &subjects {
+        let preset = &preset_file.preset.posed();
+        bar.set_message("the oracle draws");
+        let view = preset.view(scene, args.size);
+        let references = oracle::references(scene, &view, &preset.stack, &factors(preset, &options.axes))?;
+        let mut progress = |what: &str, done: usize, all: usize| {
+            bar.set_length(all as u64);
+            bar.set_position(done as u64);
+            bar.set_message(what.to_owned());
+            true
+        };
+        rows.extend(sweep(
+            gpu,
+            preset,
+            scene,
+            &preset_file.id,
+            &options,
+            &Reference { references: &references, judge: &|view, stack, capture| judged(scene, view, stack, capture) },
+            &mut progress,
+        )?);
+    }
+    bar.finish_and_clear();
+    let results = || rows.iter().map(serde_json::to_value).collect::<Result<Vec<Value>, _>>().map_err(Fault::usage);
+    let table = if args.each { prices(&rows) } else { lines(&rows) };
+    present(args, streams, &painter, &table, results)?;
+    rows.iter().filter(|row| row.error.is_none() || row.culled.is_some()).for_each(|row| {
+        streams.note(&format!("{} {}: {}", row.scene, row.options, row.note.as_deref().unwrap_or("not drawn")));
+    });
+    Ok(Exit::Done)
+}
+
+/// What the oracle says of a picture, and of the light in it.
+fn judged(scene: &Scene, view: &View, stack: &Stack, capture: &Capture) -> Judged {
+    let light = oracle::shadow_errors(scene, view, stack, &capture.frame.triangle_id, &capture.geometry);
+    Judged { verdict: judge(scene, view)(stack, capture), light: light.expect("a scene that was drawn can be judged") }
+}
+
+/// The axes of these names.
+fn axes(names: &[String]) -> Result<Vec<&'static Axis>, Fault> {
+    let find = |name: &String| {
+        Axis::find(name).ok_or_else(|| {
+            let known: Vec<&str> = AXES.iter().map(|axis| axis.name).collect();
+            Fault::usage(format!("no axis is called {name:?}; there are {}{}", known.join(", "), did_you_mean(name, known.iter().copied())))
+        })
+    };
+    let mut axes: Vec<&'static Axis> = Vec::new();
+    for axis in names.iter().map(find) {
+        let axis = axis?;
+        if !axes.iter().any(|known| known.name == axis.name) {
+            axes.push(axis);
+        }
+    }
+    Ok(axes)
+}
+
+/// A row per option: for every scene the time with its ratio to the planned one, and the error.
+fn prices(rows: &[SweepRow]) -> Vec<Vec<String>> {
+    let mut scenes: Vec<(&str, u64)> = rows.iter().map(|row| (row.scene.as_str(), row.triangles)).collect();
+    scenes.dedup();
+    let mut options: Vec<&str> = Vec::new();
+    rows.iter().for_each(|row| {
+        if !options.contains(&row.options.as_str()) {
+            options.push(&row.options);
+        }
+    });
+    let row_of = |scene: &str, options: &str| rows.iter().find(|row| row.scene == scene && row.options == options);
+    let head = scenes
+        .iter()
+        .flat_map(|(_, triangles)| [format!("{triangles} TRIANGLES, MS"), "X".into(), "WRONG PPM".into(), "HOLES+DOUBLES".into()]);
+    let mut table = vec![std::iter::once("RUNG".to_owned()).chain(head).collect::<Vec<_>>()];
+    for option in options {
+        let cells = scenes.iter().flat_map(|(scene, _)| {
+            let missing = || ["-".to_owned(), "-".into(), "-".into(), "-".into()];
+            let (Some(row), Some(default)) = (row_of(scene, option), row_of(scene, AS_PLANNED)) else { return missing() };
+            let (Some(ms), Some(error)) = (row.ms_p50, row.error) else { return missing() };
+            let ratio = default.ms_p50.map_or_else(|| "-".into(), |default| format!("{:.2}", ms / default));
+            let samples = (error.holes_per_mpx + error.double_hits_per_mpx) * f64::from(row.size[0]) * f64::from(row.size[1]) / 1e6;
+            [
+                if ms < 10.0 { format!("{ms:.4}") } else { format!("{ms:.1}") },
+                ratio,
+                format!("{:.0}", error.wrong_ppm),
+                format!("{samples:.0}"),
+            ]
+        });
+        table.push(std::iter::once(option.to_owned()).chain(cells).collect());
+    }
+    table
+}
+
+fn lines(rows: &[SweepRow]) -> Vec<Vec<String>> {
+    let head = [
+        "SCENE",
+        "TRIANGLES",
+        "OPTIONS",
+        "MS P50",
+        "MS P95",
+        "N",
+        "OUTLIERS",
+        "WRONG PPM",
+        "HOLES/MPX",
+        "DOUBLE/MPX",
+        "DEPTH PPM",
+        "MAX",
+        "RMS",
+        "CHANGED",
+        "MOVED PX",
+        "CRACKS/MPX",
+        "MIB",
+        "GAIN",
+    ];
+    let mut lines = vec![head.map(str::to_owned).to_vec()];
+    // Only where particles fly is there a column for how far they went astray.
+    let flies = rows.iter().any(|row| row.error.is_some_and(|error| error.max_divergence_px.is_some()));
+    let before_bytes = head.len() - 2;
+    if flies {
+        ["ASTRAY PX", "MEAN M"].map(str::to_owned).into_iter().rev().for_each(|cell| lines[0].insert(before_bytes, cell));
+    }
+    let not_measured = || "not measured".to_owned();
+    let ms = |ms: Option<f64>| ms.map_or_else(not_measured, |ms| format!("{ms:.4}"));
+    // Only where a light casts shadows are there columns for how well.
+    let has_light = rows.iter().any(|row| row.error.is_some_and(|error| error.wrong_light_ppm.is_some()));
+    let before_changed = head.iter().position(|name| *name == "CHANGED").expect("a column");
+    if has_light {
+        lines[0].splice(before_changed..before_changed, ["LIGHT PPM".to_owned(), "LIGHT RMS".to_owned()]);
+    }
+    // Only where the CPU chooses is there a column for how long.
+    let has_cpu = rows.iter().any(|row| row.cpu_ms_p50.is_some());
+    if has_cpu {
+        lines[0].insert(5, "OF THAT CPU".into());
+    }
+    lines.extend(rows.iter().map(|row| {
+        let figure = |figure: &dyn Fn(&SweepError) -> String| row.error.as_ref().map_or_else(not_measured, figure);
+        let mut line = vec![
+            row.scene.clone(),
+            row.triangles.to_string(),
+            row.options.clone(),
+            ms(row.ms_p50),
+            ms(row.ms_p95),
+            row.samples.to_string(),
+            row.outliers.to_string(),
+            figure(&|e| format!("{:.1}", e.wrong_ppm)),
+            figure(&|e| format!("{:.1}", e.holes_per_mpx)),
+            figure(&|e| format!("{:.1}", e.double_hits_per_mpx)),
+            figure(&|e| format!("{:.1}", e.wrong_depth_ppm)),
+            figure(&|e| e.max_color_delta.to_string()),
+            figure(&|e| format!("{:.4}", e.rms_color_delta)),
+            figure(&|e| e.changed_pixels.to_string()),
+            figure(&|e| format!("{:.4}", e.moved_px)),
+            figure(&|e| format!("{:.1}", e.cracks_per_mpx)),
+            format!("{:.1}", row.bytes as f64 / f64::from(1 << 20)),
+            if row.is_dominated { "no gain" } else { "-" }.into(),
+        ];
+        if flies {
+            line.insert(before_bytes, figure(&|e| e.mean_divergence_m.map_or_else(|| "-".into(), |m| format!("{m:.1e}"))));
+            line.insert(before_bytes, figure(&|e| e.max_divergence_px.map_or_else(|| "-".into(), |px| format!("{px:.4}"))));
+        }
+        if has_light {
+            let light = |share: Option<f64>, digits: usize| share.map_or_else(not_measured, |share| format!("{share:.digits$}"));
+            let cells = [figure(&|e| light(e.wrong_light_ppm, 1)), figure(&|e| light(e.rms_light, 4))];
+            line.splice(before_changed..before_changed, cells);
+        }
+        if has_cpu {
+            line.insert(5, row.cpu_ms_p50.map_or_else(|| "-".into(), |ms| format!("{ms:.4}")));
+        }
+        line
+    }));
+    lines
+}

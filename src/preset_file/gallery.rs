@@ -1,0 +1,116 @@
+//! Gallery: every preset there is. Folders are searched in order and the first preset of an id wins.
+
+use std::path::{Path, PathBuf};
+
+use include_dir::{Dir, include_dir};
+
+use super::{PresetError, PresetFile, form::did_you_mean, load, parse_file, preset_from_png, read_capped, shot::MAX_FILE_BYTES, stem};
+use crate::preset::SceneSource;
+
+/// The presets that travel inside the binary.
+pub static BUILTIN_DIR: Dir<'static> = include_dir!("$CARGO_MANIFEST_DIR/presets");
+
+/// Where a preset was found, in order of precedence.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, serde::Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Origin {
+    /// `--presets DIR`.
+    Chosen,
+    /// `presets/` beside the program.
+    Beside,
+    /// The user's own folder.
+    User,
+    /// Inside the program.
+    Builtin,
+}
+
+/// A preset of the gallery, or why it cannot be one.
+#[derive(Clone, Debug)]
+pub struct GalleryEntry {
+    pub id: String,
+    pub origin: Origin,
+    /// None when built in.
+    pub path: Option<PathBuf>,
+    pub preset_file: Result<PresetFile, PresetError>,
+    /// Where looks of the same id were passed over.
+    pub shadows: Vec<Origin>,
+}
+
+/// Every preset, sorted by id.
+pub fn gallery(chosen: Option<&Path>) -> Vec<GalleryEntry> {
+    let beside = std::env::current_exe().ok().and_then(|exe| Some(exe.parent()?.join("presets")));
+    let folders = [(Origin::Chosen, chosen.map(Path::to_owned)), (Origin::Beside, beside), (Origin::User, user_folder())];
+    let mut entries: Vec<GalleryEntry> = Vec::new();
+    let on_disk = folders.into_iter().filter_map(|(origin, folder)| Some((origin, folder?)));
+    for entry in on_disk.flat_map(|(origin, folder)| folder_entries(origin, &folder)).chain(builtin_entries()) {
+        match entries.iter_mut().find(|winner| winner.id == entry.id) {
+            Some(winner) => winner.shadows.push(entry.origin),
+            None => entries.push(entry),
+        }
+    }
+    entries.sort_by(|a, b| a.id.cmp(&b.id));
+    entries
+}
+
+fn folder_entries(origin: Origin, folder: &Path) -> Vec<GalleryEntry> {
+    let files = std::fs::read_dir(folder).into_iter().flatten().flatten().map(|entry| entry.path());
+    let preset_files = files.filter(|path| has_extension(path, "toml") && path.is_file());
+    preset_files
+        .map(|path| GalleryEntry { id: stem(&path), origin, preset_file: load(&path), path: Some(path), shadows: Vec::new() })
+        .collect()
+}
+
+fn builtin_entries() -> impl Iterator<Item = GalleryEntry> {
+    BUILTIN_DIR.files().filter(|file| has_extension(file.path(), "toml")).map(|file| {
+        let (id, name) = (stem(file.path()), format!("presets/{}", file.path().display()));
+        let text = file.contents_utf8().unwrap_or_default();
+        let preset_file = parse_file(text, &id, &name).map(|preset_file| PresetFile { read_only: true, ..preset_file });
+        GalleryEntry { id, origin: Origin::Builtin, path: None, preset_file, shadows: Vec::new() }
+    })
+}
+
+/// Where a person's own presets are kept: `rasterlab/presets` in the system's place for configuration.
+pub fn user_folder() -> Option<PathBuf> {
+    let variable = |name: &str| std::env::var_os(name).map(PathBuf::from).filter(|path| path.is_absolute());
+    let config = if cfg!(windows) {
+        variable("APPDATA")
+    } else if cfg!(target_os = "macos") {
+        std::env::home_dir().map(|home| home.join("Library/Application Support"))
+    } else {
+        variable("XDG_CONFIG_HOME").or_else(|| std::env::home_dir().map(|home| home.join(".config")))
+    };
+    Some(config?.join("rasterlab/presets"))
+}
+
+/// Opens whatever a person may name: a preset of the gallery, a `.toml` file, a picture of ours, a model, or `builtin:QUERY`.
+pub fn open(what: &str, chosen: Option<&Path>) -> Result<PresetFile, PresetError> {
+    if let Some(query) = what.strip_prefix("builtin:") {
+        let name = query.split('?').next().unwrap_or(query);
+        return Ok(PresetFile::of_scene(name, SceneSource::Builtin(query.into())));
+    }
+    let path = Path::new(what);
+    if has_extension(path, "toml") {
+        return load(path);
+    }
+    if has_extension(path, "png") {
+        let preset_file = preset_from_png(&read_capped(path, MAX_FILE_BYTES)?, what)?;
+        return Ok(PresetFile { id: stem(path), path: Some(path.to_owned()), read_only: true, ..preset_file });
+    }
+    if has_extension(path, "glb") || has_extension(path, "gltf") {
+        let absolute = std::path::absolute(path).map_err(|e| PresetError::Read { file: what.into(), reason: e.to_string() })?;
+        return Ok(PresetFile::of_scene(&stem(path), SceneSource::File(absolute)));
+    }
+    let entries = gallery(chosen);
+    match entries.iter().position(|entry| entry.id == what) {
+        Some(at) => entries.into_iter().nth(at).expect("its place was just found").preset_file,
+        None => {
+            let hint = did_you_mean(what, entries.iter().map(|entry| entry.id.as_str()));
+            let hint = if hint.is_empty() { "; rasterlab list shows all of them".into() } else { hint };
+            Err(PresetError::NoPreset { what: what.into(), hint })
+        }
+    }
+}
+
+fn has_extension(path: &Path, wanted: &str) -> bool {
+    path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case(wanted))
+}

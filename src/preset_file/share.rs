@@ -1,0 +1,46 @@
+//! Sharing: a preset as one line of text, `rasterlab1:` + base64(deflate(TOML)). No server, no account.
+
+use std::io::{Read as _, Write as _};
+use std::path::{Component, Path};
+
+use base64::{Engine as _, engine::general_purpose::STANDARD};
+use flate2::{Compression, read::DeflateDecoder, write::DeflateEncoder};
+
+use super::{PresetError, PresetFile, parse_file, read::MAX_BYTES, to_toml};
+use crate::preset::SceneSource;
+
+const PREFIX: &str = "rasterlab1:";
+
+/// The preset as one line.
+pub fn to_line(preset_file: &PresetFile) -> String {
+    let mut deflate = DeflateEncoder::new(Vec::new(), Compression::best());
+    deflate.write_all(to_toml(preset_file).as_bytes()).expect("memory takes all bytes");
+    format!("{PREFIX}{}", STANDARD.encode(deflate.finish().expect("memory takes all bytes")))
+}
+
+/// Reads a pasted line; white space from a mail or chat is forgiven. A model path may not leave the folder.
+pub fn from_line(line: &str) -> Result<PresetFile, PresetError> {
+    let not_ours = |reason: &str| PresetError::NotOurs { what: "the pasted text".into(), reason: reason.into() };
+    let packed = line.trim().strip_prefix(PREFIX).ok_or_else(|| not_ours("it does not begin with rasterlab1:"))?;
+    let packed: String = packed.chars().filter(|c| !c.is_whitespace()).take(MAX_BYTES * 2).collect();
+    let deflated = STANDARD.decode(packed).map_err(|_| not_ours("it is cut off or garbled"))?;
+    let mut toml = Vec::new();
+    let inflate = DeflateDecoder::new(deflated.as_slice());
+    inflate.take(MAX_BYTES as u64 + 1).read_to_end(&mut toml).map_err(|_| not_ours("it is cut off or garbled"))?;
+    if toml.len() > MAX_BYTES {
+        return Err(not_ours("it unpacks to more than 1 MiB"));
+    }
+    let toml = String::from_utf8(toml).map_err(|_| not_ours("it is no text"))?;
+    let preset_file = parse_file(&toml, "pasted", "the pasted text")?;
+    if let SceneSource::File(model) = &preset_file.preset.scene
+        && !stays_inside(model)
+    {
+        return Err(not_ours("its scene.path leaves the preset's own folder"));
+    }
+    Ok(preset_file)
+}
+
+fn stays_inside(model: &Path) -> bool {
+    let text = model.to_string_lossy();
+    model.components().all(|part| matches!(part, Component::Normal(_) | Component::CurDir)) && !text.contains(['\\', ':'])
+}

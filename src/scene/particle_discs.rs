@@ -1,0 +1,134 @@
+//! Splats: a cloud of discs beside a scene's meshes. Each is a triangle that faces the viewer, of which only the ellipse is
+//! drawn that touches its sides in their middles; a pass writes its corners anew for every picture.
+
+use std::{borrow::Cow, sync::Arc};
+
+use glam::{DMat4, DVec3};
+
+use super::{Accessor, Bounds, Component, Instance, Material, Primitive, Scene, Topology, rig::Deformation};
+
+/// Bytes of a corner: position as three floats, colour as three normalized u16, normal as three normalized i16.
+pub const CORNER_BYTES: u32 = 24;
+
+/// Words of a splat.
+pub const PARTICLE_DISC_WORDS: usize = 3 * CORNER_BYTES as usize / 4;
+
+/// How many splats there are and where they stay.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ParticleSettings {
+    pub count: u32,
+    /// Holds the middle of every splat, before the scene is spun.
+    pub bounds: Bounds,
+    /// No disc is larger.
+    pub radius_m: f64,
+}
+
+impl ParticleSettings {
+    /// Box that holds every corner.
+    pub fn reach(&self) -> Bounds {
+        // Corners lie two radii away; the rest is for the rounding of floats.
+        let error_bound = 2.0 * self.radius_m + 1e-5 * (self.bounds.min.abs().max(self.bounds.max.abs()).max_element() + self.radius_m);
+        Bounds { min: self.bounds.min - error_bound, max: self.bounds.max + error_bound }
+    }
+}
+
+/// A moment of a flow that carries a cloud: which frame it is, and what its steps went by.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ParticleTimeline {
+    /// Steps since the beginning.
+    pub frame: u32,
+    /// Parameter words of every step from the first on, `stride` each; the last hold for all later ones.
+    pub step_params: Arc<Vec<u32>>,
+    pub stride: usize,
+}
+
+impl ParticleTimeline {
+    /// Parameter words of the step that leads to frame `step`, counted from 1.
+    pub fn words(&self, step: u32) -> &[u32] {
+        let last = self.step_params.len() / self.stride - 1;
+        let place = (step.max(1) as usize - 1).min(last);
+        &self.step_params[place * self.stride..][..self.stride]
+    }
+
+    /// Steps with words of their own.
+    pub fn len(&self) -> usize {
+        self.step_params.len() / self.stride
+    }
+
+    pub fn is_empty(&self) -> bool {
+        self.step_params.is_empty()
+    }
+
+    /// Did the other flow take the same first `frames` steps?
+    pub fn begins_like(&self, other: &Self, frames: u32) -> bool {
+        let steps = self.len().max(other.len()).min(frames.max(1) as usize) as u32;
+        self.stride == other.stride && (1..=steps).all(|step| self.words(step) == other.words(step))
+    }
+}
+
+impl Scene {
+    /// The scene with a cloud beside its meshes, its last instance but for walls. Its bytes are zeros until somebody writes them.
+    pub fn with_particles(&self, particle_settings: Option<&ParticleSettings>) -> Cow<'_, Self> {
+        let Some(particle_settings) = particle_settings.filter(|particle_settings| particle_settings.count > 0) else {
+            return Cow::Borrowed(self);
+        };
+        let mut scene = self.clone();
+        let first = scene.vertex_bytes.len();
+        let corners = 3 * particle_settings.count as usize;
+        scene.vertex_bytes.resize(first + corners * CORNER_BYTES as usize, 0);
+        let accessor = |offset: usize, component, normalized| Accessor {
+            offset: (first + offset) as u32,
+            stride: CORNER_BYTES,
+            component,
+            components: 3,
+            normalized,
+            count: corners as u32,
+        };
+        scene.particle_discs = Some(scene.primitives.len());
+        // Walls come last, since they cast no shadows.
+        let place = scene.instances.len() - scene.walls;
+        scene.instances.insert(place, Instance::fixed(scene.primitives.len(), DMat4::IDENTITY));
+        scene.primitives.push(Primitive {
+            name: "particles".into(),
+            topology: Topology::List,
+            indices: None,
+            positions: accessor(0, Component::F32, false),
+            normals: accessor(18, Component::I16, true),
+            colors: Some(accessor(12, Component::U16, true)),
+            texcoords: [None, None],
+            material: scene.materials.len(),
+            bounds: particle_settings.reach(),
+            longest_edge: 2.0 * 3f64.sqrt() * particle_settings.radius_m * (1.0 + 1e-5) + 1e-5 * particle_settings.reach().radius(),
+            normals_agree: true,
+            deformation: Deformation::default(),
+        });
+        scene.materials.push(Material { name: "particles".into(), double_sided: true, ..Material::default() });
+        if !scene.rig.is_empty() {
+            let reach = particle_settings.reach();
+            [reach.min, reach.max].into_iter().for_each(|corner: DVec3| scene.rig.reach.include(corner));
+        }
+        Cow::Owned(scene)
+    }
+
+    /// Where the words of the splats lie among the scene's bytes; empty where there are none.
+    pub fn particle_disc_bytes(&self) -> std::ops::Range<usize> {
+        self.particle_discs.map_or(0..0, |primitive| {
+            let positions = &self.primitives[primitive].positions;
+            let first = positions.offset as usize;
+            first..first + positions.count as usize * CORNER_BYTES as usize
+        })
+    }
+
+    /// Ids of the triangles that are splats; empty where there are none.
+    pub fn particle_disc_ids(&self) -> std::ops::Range<u32> {
+        let count = |instance: &Instance| self.primitives[instance.primitive].triangle_count();
+        let mut first = 0;
+        for instance in &self.instances {
+            if self.particle_discs == Some(instance.primitive) {
+                return first..first + count(instance);
+            }
+            first += count(instance);
+        }
+        0..0
+    }
+}
