@@ -1,6 +1,6 @@
 //! rasterlab: an effects lab around a triangle rasterizer written as compute shaders.
 //!
-//! Modules in dependency order; `tests/architecture.rs` holds the arrows.
+//! Modules in dependency order; `tests/house/architecture.rs` holds the arrows.
 //!
 //! * [`math`], [`frame`]: snapping and exact comparisons, and the picture with its integer buffers
 //! * [`accuracy`]: every axis on which speed is traded for accuracy, and its options

@@ -205,7 +205,7 @@ impl Pipelines {
 #[allow(unsafe_code, reason = "the option `trusted`: only for the shaders inside this program, and only where a preset pins it")]
 fn trusted(gpu: &Gpu, descriptor: wgpu::ShaderModuleDescriptor<'_>) -> wgpu::ShaderModule {
     // SAFETY: every loop of the embedded kernels has a constant or counted bound, and every index is held inside its buffer
-    // by the kernel itself; the checked option draws the same pictures (tests/ladder.rs).
+    // by the kernel itself; the checked option draws the same pictures (tests/exact/accuracy_axes.rs).
     unsafe { gpu.device.create_shader_module_trusted(descriptor, wgpu::ShaderRuntimeChecks::unchecked()) }
 }
 

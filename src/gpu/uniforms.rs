@@ -1,4 +1,4 @@
-//! Mirrors of the WGSL structs that are filled from Rust: same members, same order, compared by naga in `tests/layout.rs`.
+//! Mirrors of the WGSL structs that are filled from Rust: same members, same order, compared by naga in `tests/house/layout.rs`.
 
 use glam::DMat3;
 

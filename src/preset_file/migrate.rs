@@ -5,7 +5,7 @@
 
 use toml_edit::DocumentMut;
 
-/// `MIGRATIONS[n]` takes schema `n + 1` to `n + 2`. Each comes with a before and an after fixture in `tests/presets.rs`.
+/// `MIGRATIONS[n]` takes schema `n + 1` to `n + 2`. Each comes with a before and an after fixture in `tests/house/presets.rs`.
 pub const MIGRATIONS: &[fn(DocumentMut) -> DocumentMut] = &[];
 
 /// The schema this program writes.

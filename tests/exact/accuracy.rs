@@ -1,11 +1,9 @@
 //! Promise: the GPU is within each stated tolerance of the oracle, and a kernel with any of the classic mistakes is not.
 //! Needs an adapter.
 
-mod common;
-
 use std::{fs, path::Path, sync::Arc};
 
-use common::*;
+use crate::common::*;
 use glam::{DMat4, DVec3};
 use rasterlab::{
     accuracy::Visibility,

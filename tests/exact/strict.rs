@@ -1,11 +1,9 @@
 //! Promise: strict arithmetic gives the same bits on every adapter and on the CPU: soft floats, and whole pictures by a
 //! committed list of hashes. `UPDATE_SNAPSHOTS=1` writes the list anew, always by the oracle. Needs an adapter.
 
-mod common;
-
 use std::{fs, path::Path, sync::Arc};
 
-use common::*;
+use crate::common::*;
 use glam::{DMat4, DVec3};
 use rasterlab::{
     accuracy::{DepthFormat, PinnedOptions, VertexTransform, Visibility},
@@ -274,7 +272,7 @@ fn strict(visibility: Visibility) -> AccuracyRequest {
     }
 }
 
-const HASHES: &str = include_str!("strict_hashes.txt");
+const HASHES: &str = include_str!("../strict_hashes.txt");
 
 #[test]
 fn the_oracle_finds_the_hashes_of_the_list() {

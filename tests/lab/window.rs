@@ -1,5 +1,4 @@
 //! A real window on a display of its own (Xvfb): it opens, draws, follows a hand, saves a preset and closes.
-#![cfg(all(feature = "gui", target_os = "linux"))]
 
 use std::{
     io::{BufRead as _, BufReader},

@@ -1,11 +1,9 @@
 //! Promise: x-ray, overdraw and race do what they say with all the samples of a pixel: sums that no order shows, counts that
 //! are exact, overflow that is never silent, and a race that loses no more than it may. Needs an adapter but for the first.
 
-mod common;
-
 use std::sync::Arc;
 
-use common::*;
+use crate::common::*;
 use glam::DVec3;
 use rasterlab::{
     accuracy::Visibility,

@@ -1,11 +1,9 @@
 //! Promise: effects that move vertices are exact within the bound they state, on every option, and change nothing at all
 //! when they move nothing. Needs an adapter for all but what the oracle says of itself.
 
-mod common;
-
 use std::sync::Arc;
 
-use common::*;
+use crate::common::*;
 use glam::{DMat3, DVec2, DVec3};
 use rasterlab::{
     accuracy::Visibility,
@@ -229,7 +227,7 @@ fn any_parameters_within_the_hard_ranges_are_drawn_exactly() {
         let view = view(scene, [96, 72]);
         let mut stack = stack(&MOVING[case / 3 % 3..][..1]);
         if case % 10 == 9 {
-            stack = common::stack(&MOVING);
+            stack = crate::common::stack(&MOVING);
         }
         for enabled in &mut stack.0 {
             for field in enabled.effect.fields {

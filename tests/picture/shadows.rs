@@ -1,11 +1,9 @@
 //! Promise: the light that arrives is what the oracle's own shadow map says, where geometry says, on every option; mistakes in
 //! it are found; and a preset without it has nothing of it. Most of it needs an adapter.
 
-mod common;
-
 use std::sync::Arc;
 
-use common::*;
+use crate::common::*;
 use glam::{DMat4, DVec3};
 use rasterlab::{
     accuracy::{PinnedOptions, ShadowMapSize, ShadowTaps, Visibility},

@@ -2,9 +2,7 @@
 //! and in the oracle, and two effects in one slot are refused with one sentence. Seeded: a failure prints the seed, and
 //! `RASTERLAB_SEED=n` draws that stack again. Needs an adapter.
 
-mod common;
-
-use common::*;
+use crate::common::*;
 use rasterlab::{
     effects::{EFFECTS, Stack, hooks::Slot},
     gpu::RenderError,

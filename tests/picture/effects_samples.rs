@@ -2,11 +2,9 @@
 //! their integers say, a draw order stops after N samples, boxes and points cover their boxes and discs; on every option the
 //! same, and a mistake shows. Needs an adapter, but for what the oracle alone can tell.
 
-mod common;
-
 use std::{collections::BTreeMap, sync::Arc};
 
-use common::*;
+use crate::common::*;
 use rasterlab::{
     effects::{Effect, Stack, dissolve::Mode, draw_order::Unit},
     frame::Geometry,

@@ -1,10 +1,8 @@
 //! Promise: what the planner leaves out does not show, is not allocated and is not compiled again. Needs an adapter.
 
-mod common;
-
 use std::{path::Path, sync::Arc};
 
-use common::*;
+use crate::common::*;
 use rasterlab::{
     accuracy::{DotCulling, PinnedOptions, Visibility},
     effects::{Stack, hooks::Shape},

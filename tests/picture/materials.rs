@@ -1,11 +1,9 @@
 //! Promise: what a material's images show arrives in the picture as the oracle has it, whichever way they are looked up; and a
 //! file's textures load as the standard has them, or are refused in a sentence. The pictures alone need an adapter.
 
-mod common;
-
 use std::sync::Arc;
 
-use common::*;
+use crate::common::*;
 use glam::DVec3;
 use image::{ImageBuffer, ImageFormat, Rgba};
 use rasterlab::{

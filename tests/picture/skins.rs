@@ -1,11 +1,9 @@
 //! Promise: skins, shapes and clips bend meshes as glTF and the oracle have it, by both options of skinning, and mistakes in
 //! the pass are found. The second half needs an adapter.
 
-mod common;
-
 use std::sync::Arc;
 
-use common::*;
+use crate::common::*;
 use glam::{DMat4, DQuat, DVec3};
 use rasterlab::{
     accuracy::{Skinning, Visibility},
@@ -195,7 +193,7 @@ fn a_look_names_its_clips_holds_them_and_says_which_there_are() {
     let known = "; it has \"Sway\", \"Curl\", \"Twist\", \"Breathe\"".to_owned();
     assert_eq!(play("Sway", "sway").check(&scene), Err(MissingInScene { key: "scene.clip_b", what: "clip", asked: "sway".into(), known }));
     assert_eq!(
-        play("Walk", "").check(&common::scene("teapot?tess=1")).unwrap_err().to_string(),
+        play("Walk", "").check(&crate::common::scene("teapot?tess=1")).unwrap_err().to_string(),
         "scene.clip: the scene has no clip \"Walk\"; nothing in it moves"
     );
     let at = |play: ClipPlayback, time_s: f64| Preset { play, clock: Clock { time_s, ..Clock::default() }, ..Preset::default() };
@@ -205,14 +203,14 @@ fn a_look_names_its_clips_holds_them_and_says_which_there_are() {
     assert!(!held(1.0).is_moving() && held(1.0).pose(&scene) == held(2.0).pose(&scene));
     assert_eq!(at(ClipPlayback { speed: 0.5, ..play("Sway", "") }, 1.0).pose(&scene), held(0.0).pose(&scene));
     assert_eq!(at(play("Sway", ""), 1.0).pose(&scene), at(play("Sway", ""), 4e6 + 1.0).pose(&scene), "a clip goes round for ever");
-    assert_eq!(Preset::default().pose(&common::scene("teapot?tess=1")), None);
+    assert_eq!(Preset::default().pose(&crate::common::scene("teapot?tess=1")), None);
 }
 
 #[test]
 fn parts_that_a_clip_moves_are_placed_anew() {
     // A cube wall whose first cube hangs on a node.
     let mut scene = (*scene("cube-wall?columns=2&rows=1")).clone();
-    let tower = (*common::scene("tentacle?tess=1&joints=2")).clone();
+    let tower = (*crate::common::scene("tentacle?tess=1&joints=2")).clone();
     scene.rig = tower.rig;
     scene.instances[0].node = Some(1);
     let view = |time_s| {
@@ -351,7 +349,7 @@ fn quantized_places_are_drawn_and_bent_like_any() {
         placed.primitives[0].bounds.max *= 1.1 / scale;
         placed.primitives[0].longest_edge *= 1.1 / scale;
         let placed = Arc::new(placed);
-        let view = common::view(&placed, [160, 120]);
+        let view = crate::common::view(&placed, [160, 120]);
         exact(&mut renderer, &placed, &view, &stack(&["lambert"]), &pinned(Visibility::Split32), "placed");
         if normalized {
             let scene = Arc::new(scene);
@@ -398,7 +396,7 @@ fn mistakes_in_the_pass_are_found() {
         let mut found = false;
         for (skinning, clips, time_s) in Skinning::ALL.iter().flat_map(|s| [(*s, ["Curl", "Breathe"], 1.4), (*s, ["Twist", ""], 1.0)]) {
             // Of a rotation and its opposite, files have either: half of the joints turn a whole turn more.
-            let scene = if what.contains("opposite") { common::scene("tentacle?joints=3&tess=3") } else { scene.clone() };
+            let scene = if what.contains("opposite") { crate::common::scene("tentacle?joints=3&tess=3") } else { scene.clone() };
             let view = moment(&scene, clips, time_s, skinning, [120, 90]);
             let mut renderer = Renderer::with_library(gpu.clone(), mutant.shaders());
             let (_, verdict) = judged(&mut renderer, &scene, &view, &stack, &pinned(Visibility::Split32));

@@ -1,11 +1,9 @@
 //! Promise: particles fly as their definition says, on every option and however a frame was reached; their discs are decided in
 //! integers; mistakes in the pass are found; and who has none pays nothing. The second half needs an adapter.
 
-mod common;
-
 use std::sync::Arc;
 
-use common::*;
+use crate::common::*;
 use glam::DVec3;
 use rasterlab::{
     accuracy::{CurlNoise, ParticleStorage, Visibility},

@@ -1,8 +1,5 @@
 //! The whole window in a harness, on the real adapter: every widget has a name, a drag is one undo step, nothing is
 //! drawn while nothing changes, and what is shown is what the oracle says.
-#![cfg(feature = "gui")]
-
-mod common;
 
 use std::{
     path::Path,
@@ -24,7 +21,7 @@ type Lab = Harness<'static, App>;
 
 /// A window of 1280 x 800 that shows `open`, with its first picture drawn.
 fn lab_in(open: &str, presets_dir: Option<&Path>) -> Option<Lab> {
-    common::gpu()?; // Fails with one sentence when there is none.
+    crate::common::gpu()?; // Fails with one sentence when there is none.
     let adapter = std::env::var("RASTERLAB_ADAPTER").map_or(AdapterChoice::Any, AdapterChoice::Named);
     let options = Options { open: Some(open.into()), adapter, presets_dir: presets_dir.map(Path::to_owned) };
     let mut lab = Harness::builder()
@@ -762,12 +759,12 @@ fn child_that_loses_its_device() {
 
 #[test]
 fn a_lost_device_rescues_the_look_and_closes_the_window() {
-    if common::gpu().is_none() {
+    if crate::common::gpu().is_none() {
         return;
     }
     let home = tempfile::tempdir().expect("a temporary folder");
     let child = std::process::Command::new(std::env::current_exe().expect("this test"))
-        .args(["--exact", "child_that_loses_its_device", "--ignored"])
+        .args(["--exact", "panels::child_that_loses_its_device", "--ignored"])
         .env("XDG_CONFIG_HOME", home.path())
         .env("HOME", home.path())
         .output()

@@ -1,11 +1,9 @@
 //! Promise: the effects on surface and image are exact. Each is judged on every builtin scene and option, with its defaults
 //! and with random parameters, and keeps its own small promises. Needs an adapter for the pictures alone.
 
-mod common;
-
 use std::sync::Arc;
 
-use common::*;
+use crate::common::*;
 use glam::{DVec2, DVec3, DVec4};
 use rasterlab::{
     accuracy::Visibility,

@@ -4,15 +4,13 @@
 //! `UPDATE_SNAPSHOTS=1` redraws the goldens of failing looks, `UPDATE_SNAPSHOTS=force` all of them: always by the
 //! oracle, with the code of `rasterlab bless`, so an adapter that is wrong stays wrong.
 
-mod common;
-
 use std::{
     collections::BTreeSet,
     fs,
     path::{Path, PathBuf},
 };
 
-use common::*;
+use crate::common::*;
 use rasterlab::{
     cli::golden::{self, Golden},
     frame::{Frame, NO_TRIANGLE},

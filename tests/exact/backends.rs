@@ -1,11 +1,9 @@
 //! Promise: every visibility backend, every size class and every order of the triangles gives the same picture, every
 //! time. Needs an adapter.
 
-mod common;
-
 use std::sync::Arc;
 
-use common::*;
+use crate::common::*;
 use glam::{DMat4, DVec3};
 use rasterlab::{
     accuracy::Visibility,

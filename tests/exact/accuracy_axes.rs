@@ -1,9 +1,7 @@
 //! Promise: every option of the accuracy axes draws, errs as it says, and no more; those that promise exactness keep it.
 //! Needs an adapter.
 
-mod common;
-
-use common::*;
+use crate::common::*;
 use rasterlab::{
     accuracy::{
         AXES, Clipping, Coverage, Culling, DepthFormat, Parameters, Perspective, PinnedOptions, PositionFormat, RenderScale, SampleCounter,

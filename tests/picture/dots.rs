@@ -1,11 +1,9 @@
 //! Promise: three ways of choosing dots give one picture, the oracle's; the pattern thins without a jump; no number of dots
 //! is lost or too many. Needs an adapter.
 
-mod common;
-
 use std::sync::Arc;
 
-use common::*;
+use crate::common::*;
 use rasterlab::{
     accuracy::{DotCulling, PinnedOptions, Visibility},
     effects::{

@@ -1,11 +1,9 @@
 //! Promise: every extreme case of the table keeps its expectation, and the judge of every kind of case can fail. Needs an
 //! adapter. `RASTERLAB_SEED=n` throws other dice; a failure says which case and seed draw it again.
 
-mod common;
-
 use std::{cell::Cell, collections::BTreeSet};
 
-use common::*;
+use crate::common::*;
 use rasterlab::{
     gpu::Renderer,
     stress::{self, Outcome, Report},

@@ -1,11 +1,9 @@
 //! Promise: what culling leaves out is never seen: triangle ids and keys are those of a picture that leaves nothing out, from
 //! everywhere, on every option, picture after picture. Needs an adapter.
 
-mod common;
-
 use std::sync::{Arc, Mutex, OnceLock};
 
-use common::*;
+use crate::common::*;
 use glam::{DMat4, DQuat, DVec3};
 use rasterlab::{
     accuracy::{Coverage, Culling, DepthFormat, PinnedOptions, PositionFormat, RenderScale, VertexTransform, Visibility},

@@ -1,0 +1,14 @@
+//! Promises about exactness: the oracle keeps the rules of rasterization, and every kernel draws what the oracle draws.
+
+#[path = "../common/mod.rs"]
+mod common;
+
+mod accuracy;
+mod accuracy_axes;
+mod backends;
+mod culling;
+mod extremes;
+mod oracle;
+mod specialization;
+mod stacks;
+mod strict;

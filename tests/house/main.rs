@@ -1,0 +1,10 @@
+//! Promises that need no adapter: the rules of the code base, files and their formats, the command line.
+
+mod architecture;
+mod cli;
+mod layout;
+mod loader;
+mod presets;
+mod registry;
+mod scenes;
+mod shaders;

@@ -1,0 +1,15 @@
+//! Promises about pictures: effects, materials, skins, shadows, particles and dots look as the oracle has them.
+
+#[path = "../common/mod.rs"]
+mod common;
+
+mod dots;
+mod effects_layers;
+mod effects_move;
+mod effects_paint;
+mod effects_samples;
+mod materials;
+mod particles;
+mod shadows;
+mod skins;
+mod snapshots;
