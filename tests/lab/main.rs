@@ -4,6 +4,7 @@
 #[path = "../common/mod.rs"]
 mod common;
 
+mod harness;
 mod panels;
 #[cfg(target_os = "linux")]
 mod window;

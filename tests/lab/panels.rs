@@ -6,131 +6,16 @@ use std::{
     time::{Duration, Instant},
 };
 
-use eframe::egui::{self, Key, Modifiers, Pos2, Rect, Role, vec2};
-use egui_kittest::{Harness, Node, kittest::Queryable as _};
+use eframe::egui::{self, Key, Modifiers, Pos2, Role, vec2};
+use egui_kittest::kittest::Queryable as _;
 use rasterlab::{
     accuracy::DepthFormat,
-    app::{App, Options, wgpu_setup},
-    gpu::device::AdapterChoice,
     oracle,
     preset::SceneSource,
     preset_file::{self, form::Value},
 };
 
-type Lab = Harness<'static, App>;
-
-/// A window of 1280 x 800 that shows `open`, with its first picture drawn.
-fn lab_in(open: &str, presets_dir: Option<&Path>) -> Option<Lab> {
-    crate::common::gpu()?; // Fails with one sentence when there is none.
-    let adapter = std::env::var("RASTERLAB_ADAPTER").map_or(AdapterChoice::Any, AdapterChoice::Named);
-    let options = Options { open: Some(open.into()), adapter, presets_dir: presets_dir.map(Path::to_owned) };
-    let mut lab = Harness::builder()
-        .with_size([1280.0, 800.0])
-        .with_render_cursor(false)
-        .wgpu_setup(wgpu_setup(&options.adapter))
-        .build_eframe(|cc| App::new(cc, options).unwrap_or_else(|error| panic!("{error:#}")));
-    settle(&mut lab);
-    Some(lab)
-}
-
-fn lab(open: &str) -> Option<Lab> {
-    lab_in(open, None)
-}
-
-/// Steps until pictures, figures and thumbnails have arrived, and then until every gesture is closed.
-fn settle(lab: &mut Lab) {
-    let patience = Instant::now() + Duration::from_secs(120);
-    loop {
-        lab.step();
-        if lab.state().is_idle() {
-            break;
-        }
-        assert!(Instant::now() < patience, "the window does not come to rest\n{}", lab.state().log_text());
-        std::thread::sleep(Duration::from_millis(5));
-    }
-    lab.run_steps(3);
-    lab.check_accessibility();
-}
-
-/// Drags from one place to another in several moves, as a hand does.
-fn drag(lab: &mut Lab, from: Pos2, to: Pos2) {
-    lab.hover_at(from);
-    lab.step();
-    lab.drag_at(from);
-    lab.step();
-    for i in 1..=8 {
-        lab.hover_at(from + (to - from) * (i as f32 / 8.0));
-        lab.step();
-    }
-    lab.drop_at(to);
-    lab.step();
-    settle(lab);
-}
-
-fn slider<'a>(lab: &'a Lab, path: &'a str) -> Node<'a> {
-    lab.get_by_role_and_label(Role::Slider, path)
-}
-
-fn has_slider(lab: &Lab, path: &str) -> bool {
-    lab.query_by_role_and_label(Role::Slider, path).is_some()
-}
-
-fn press(lab: &mut Lab, modifiers: Modifiers, key: Key) {
-    lab.key_press_modifiers(modifiers, key);
-    lab.run_steps(4);
-    settle(lab);
-}
-
-fn undo(lab: &mut Lab) {
-    press(lab, Modifiers::COMMAND, Key::Z);
-}
-
-fn click(lab: &mut Lab, role: Role, label: &str) {
-    // A long panel shows it only after scrolling.
-    lab.get_by_role_and_label(role, label).scroll_to_me();
-    lab.run_steps(3);
-    lab.get_by_role_and_label(role, label).click();
-    lab.run_steps(3);
-    settle(lab);
-}
-
-/// A parameter of an enabled effect.
-fn value(lab: &Lab, effect: &str, field: &str) -> Vec<f64> {
-    let enabled = lab.state().preset_file().preset.stack.get(effect).unwrap_or_else(|| panic!("{effect} is not enabled"));
-    enabled.effect.field(field).expect("a field of the effect").get(&enabled.words)
-}
-
-/// The lab with `text` as its preset.
-fn lab_of(folder: &Path, text: &str) -> Option<Lab> {
-    let path = folder.join("mine.toml");
-    std::fs::write(&path, text).expect("a file");
-    lab(&path.to_string_lossy())
-}
-
-/// A preset whose facets rise and fall, and jump.
-const MOVING: &str = "schema = 1\n[scene]\nbuiltin = \"knot?tess=4\"\n[effects.facet]\n[effects.lambert]\n[animation.facet]\n\
-    amount = [{ time_s = 0.0, value = 0.0 }, { time_s = 1.0, value = 1.0 }, { time_s = 3.0, value = 0.25 }]\n\
-    pattern = [{ time_s = 0.5, value = \"sweep\" }, { time_s = 2.0, value = \"uniform\" }]\n\
-    [animation.lambert]\nsun = [{ time_s = 0.0, value = [1, 1, 1, 1] }, { time_s = 4.0, value = [1, 0, 0, 1] }]\n";
-
-/// A parameter of an enabled effect, at the time that is shown.
-fn shown(lab: &Lab, effect: &str, field: &str) -> Vec<f64> {
-    let stack = lab.state().preset_file().preset.stack_at(lab.state().shown_time_s());
-    let enabled = stack.get(effect).unwrap_or_else(|| panic!("{effect} is not enabled"));
-    enabled.effect.field(field).expect("a field of the effect").get(&enabled.words)
-}
-
-fn key_times(lab: &Lab, effect: &str, field: &str) -> Vec<f64> {
-    let track = lab.state().preset_file().preset.animation.get(effect, field);
-    track.map_or(Vec::new(), |track| track.keys().iter().map(|key| key.time_s).collect())
-}
-
-/// Drags the hand of the clock to a share of the ruler.
-fn scrub(lab: &mut Lab, from: f32, to: f32) {
-    let ruler = lab.get_by_role_and_label(Role::Slider, "Timeline").rect();
-    let at = |share: f32| Pos2::new(ruler.left() + share * ruler.width(), ruler.center().y);
-    drag(lab, at(from), at(to));
-}
+use crate::harness::*;
 
 #[test]
 fn a_keyed_value_follows_the_clock_and_a_change_at_a_time_is_a_key() {
@@ -728,14 +613,6 @@ fn randomize_stays_within_soft_ranges_and_is_one_undo_step() {
     }
     undo(&mut lab);
     assert_eq!(lab.state().preset_file().preset, before);
-}
-
-/// The pixels of the view, as the window shows them.
-fn picture(lab: &mut Lab) -> image::RgbaImage {
-    let Rect { min, max } = lab.get_by_label("Picture").rect();
-    let window = lab.render().expect("a rendered window");
-    let [x, y, width, height] = [min.x, min.y, max.x - min.x, max.y - min.y].map(|v| v.round() as u32);
-    image::imageops::crop_imm(&window, x, y, width, height).to_image()
 }
 
 /// Run by the next test in a process of its own, whose environment says where a rescued look goes.

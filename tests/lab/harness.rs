@@ -1,0 +1,246 @@
+//! The window without a screen: the whole app in a harness that presses and drags as a hand does, on the adapter under test.
+
+use std::{
+    iter,
+    ops::{Deref, DerefMut},
+    path::Path,
+    time::{Duration, Instant},
+};
+
+use eframe::{
+    egui::{self, Key, Modifiers, Pos2, Rect, Role, TexturesDelta},
+    egui_wgpu::{RenderState, RendererOptions, ScreenDescriptor, WgpuConfiguration},
+    wgpu,
+};
+use egui_kittest::{Harness, Node, TestRenderer, kittest::Queryable as _};
+use rasterlab::{
+    app::{App, Options, wgpu_setup},
+    gpu::device::AdapterChoice,
+};
+
+/// The app in a harness, and the device that draws it.
+pub struct Lab {
+    harness: Harness<'static, App>,
+    window: RenderState,
+}
+
+impl Deref for Lab {
+    type Target = Harness<'static, App>;
+
+    fn deref(&self) -> &Self::Target {
+        &self.harness
+    }
+}
+
+impl DerefMut for Lab {
+    fn deref_mut(&mut self) -> &mut Self::Target {
+        &mut self.harness
+    }
+}
+
+/// Hands the app its device, and the device the textures of the app.
+struct Window(RenderState);
+
+impl TestRenderer for Window {
+    fn setup_eframe(&self, cc: &mut eframe::CreationContext<'_>, frame: &mut eframe::Frame) {
+        cc.wgpu_render_state = Some(self.0.clone());
+        frame.wgpu_render_state = Some(self.0.clone());
+    }
+
+    fn handle_delta(&mut self, delta: &mut TexturesDelta) {
+        let mut renderer = self.0.renderer.write();
+        for (id, images) in delta.set.drain() {
+            images.iter().for_each(|image| renderer.update_texture(&self.0.device, &self.0.queue, id, image));
+        }
+        delta.free.drain().for_each(|id| renderer.free_texture(&id));
+    }
+
+    fn render(&mut self, _: &egui::Context, _: &egui::FullOutput) -> Result<image::RgbaImage, String> {
+        Err("a lab is drawn by Lab::screenshot".into())
+    }
+}
+
+/// A device without a surface, as the program asks for it.
+fn device(adapter: &AdapterChoice) -> RenderState {
+    let setup = wgpu_setup(adapter);
+    let instance = pollster::block_on(setup.new_instance());
+    let configuration = WgpuConfiguration { wgpu_setup: setup, ..Default::default() };
+    let state = RenderState::create(&configuration, &instance, None, RendererOptions::PREDICTABLE);
+    pollster::block_on(state).unwrap_or_else(|error| panic!("{error}"))
+}
+
+impl Lab {
+    /// What the window shows.
+    pub fn screenshot(&mut self) -> image::RgbaImage {
+        let RenderState { device, queue, target_format, renderer, .. } = &self.window;
+        let (context, output) = (&self.harness.ctx, self.harness.output());
+        let scale = context.pixels_per_point();
+        let [width, height] = <[f32; 2]>::from(context.content_rect().size() * scale).map(|side| side.round() as u32);
+        let screen = ScreenDescriptor { size_in_pixels: [width, height], pixels_per_point: scale };
+        let meshes = context.tessellate(output.shapes.clone(), scale);
+        let target = device.create_texture(&wgpu::TextureDescriptor {
+            label: Some("screenshot"),
+            size: wgpu::Extent3d { width, height, depth_or_array_layers: 1 },
+            mip_level_count: 1,
+            sample_count: 1,
+            dimension: wgpu::TextureDimension::D2,
+            format: *target_format,
+            usage: wgpu::TextureUsages::RENDER_ATTACHMENT | wgpu::TextureUsages::COPY_SRC,
+            view_formats: &[],
+        });
+        let row = 4 * width;
+        assert_eq!(row % wgpu::COPY_BYTES_PER_ROW_ALIGNMENT, 0, "rows of {width} pixels would need padding");
+        let staging = device.create_buffer(&wgpu::BufferDescriptor {
+            label: Some("screenshot"),
+            size: u64::from(row * height),
+            usage: wgpu::BufferUsages::MAP_READ | wgpu::BufferUsages::COPY_DST,
+            mapped_at_creation: false,
+        });
+
+        let mut renderer = renderer.write();
+        let mut encoder = device.create_command_encoder(&Default::default());
+        let before = renderer.update_buffers(device, queue, &mut encoder, &meshes, &screen);
+        let view = target.create_view(&Default::default());
+        let attachment = wgpu::RenderPassColorAttachment {
+            view: &view,
+            resolve_target: None,
+            ops: wgpu::Operations { load: wgpu::LoadOp::Clear(wgpu::Color::TRANSPARENT), store: wgpu::StoreOp::Store },
+            depth_slice: None,
+        };
+        let pass = wgpu::RenderPassDescriptor { label: Some("screenshot"), color_attachments: &[Some(attachment)], ..Default::default() };
+        renderer.render(&mut encoder.begin_render_pass(&pass).forget_lifetime(), &meshes, &screen);
+        let layout = wgpu::TexelCopyBufferLayout { offset: 0, bytes_per_row: Some(row), rows_per_image: None };
+        let to = wgpu::TexelCopyBufferInfo { buffer: &staging, layout };
+        encoder.copy_texture_to_buffer(target.as_image_copy(), to, target.size());
+        queue.submit(before.into_iter().chain(iter::once(encoder.finish())));
+
+        staging.map_async(wgpu::MapMode::Read, .., |result| result.expect("a screenshot is read"));
+        let patience = wgpu::PollType::Wait { submission_index: None, timeout: Some(Duration::from_secs(60)) };
+        device.poll(patience).expect("a screenshot is drawn within a minute");
+        let bytes = staging.get_mapped_range(..).expect("a screenshot is read").to_vec();
+        image::RgbaImage::from_raw(width, height, bytes).expect("four bytes for each pixel")
+    }
+}
+
+/// A window of 1280 x 800 that shows the preset `open`, with its first picture drawn; presets lie in `presets_dir`.
+pub fn lab_in(open: &str, presets_dir: Option<&Path>) -> Option<Lab> {
+    crate::common::gpu()?; // Fails with one sentence when there is none.
+    let adapter = std::env::var("RASTERLAB_ADAPTER").map_or(AdapterChoice::Any, AdapterChoice::Named);
+    let window = device(&adapter);
+    let options = Options { open: Some(open.into()), adapter, presets_dir: presets_dir.map(Path::to_owned) };
+    let harness = Harness::builder()
+        .with_size([1280.0, 800.0])
+        .renderer(Window(window.clone()))
+        .build_eframe(|cc| App::new(cc, options).unwrap_or_else(|error| panic!("{error:#}")));
+    let mut lab = Lab { harness, window };
+    settle(&mut lab);
+    Some(lab)
+}
+
+/// A window with the program's own presets.
+pub fn lab(open: &str) -> Option<Lab> {
+    lab_in(open, None)
+}
+
+/// Steps until pictures, figures and thumbnails have arrived, and then until every gesture is closed.
+pub fn settle(lab: &mut Lab) {
+    let patience = Instant::now() + Duration::from_secs(120);
+    loop {
+        lab.step();
+        if lab.state().is_idle() {
+            break;
+        }
+        assert!(Instant::now() < patience, "the window does not come to rest\n{}", lab.state().log_text());
+        std::thread::sleep(Duration::from_millis(5));
+    }
+    lab.run_steps(3);
+    lab.check_accessibility();
+}
+
+/// Drags from one place to another in several moves, as a hand does.
+pub fn drag(lab: &mut Lab, from: Pos2, to: Pos2) {
+    lab.hover_at(from);
+    lab.step();
+    lab.drag_at(from);
+    lab.step();
+    for i in 1..=8 {
+        lab.hover_at(from + (to - from) * (i as f32 / 8.0));
+        lab.step();
+    }
+    lab.drop_at(to);
+    lab.step();
+    settle(lab);
+}
+
+pub fn slider<'a>(lab: &'a Lab, path: &'a str) -> Node<'a> {
+    lab.get_by_role_and_label(Role::Slider, path)
+}
+
+pub fn has_slider(lab: &Lab, path: &str) -> bool {
+    lab.query_by_role_and_label(Role::Slider, path).is_some()
+}
+
+pub fn press(lab: &mut Lab, modifiers: Modifiers, key: Key) {
+    lab.key_press_modifiers(modifiers, key);
+    lab.run_steps(4);
+    settle(lab);
+}
+
+pub fn undo(lab: &mut Lab) {
+    press(lab, Modifiers::COMMAND, Key::Z);
+}
+
+pub fn click(lab: &mut Lab, role: Role, label: &str) {
+    // A long panel shows it only after scrolling.
+    lab.get_by_role_and_label(role, label).scroll_to_me();
+    lab.run_steps(3);
+    lab.get_by_role_and_label(role, label).click();
+    lab.run_steps(3);
+    settle(lab);
+}
+
+/// A parameter of an enabled effect.
+pub fn value(lab: &Lab, effect: &str, field: &str) -> Vec<f64> {
+    let enabled = lab.state().preset_file().preset.stack.get(effect).unwrap_or_else(|| panic!("{effect} is not enabled"));
+    enabled.effect.field(field).expect("a field of the effect").get(&enabled.words)
+}
+
+/// The lab with `text` as its preset.
+pub fn lab_of(folder: &Path, text: &str) -> Option<Lab> {
+    let path = folder.join("mine.toml");
+    std::fs::write(&path, text).expect("a file");
+    lab(&path.to_string_lossy())
+}
+
+/// A preset whose facets rise and fall, and jump.
+pub const MOVING: &str = "schema = 1\n[scene]\nbuiltin = \"knot?tess=4\"\n[effects.facet]\n[effects.lambert]\n[animation.facet]\n\
+    amount = [{ time_s = 0.0, value = 0.0 }, { time_s = 1.0, value = 1.0 }, { time_s = 3.0, value = 0.25 }]\n\
+    pattern = [{ time_s = 0.5, value = \"sweep\" }, { time_s = 2.0, value = \"uniform\" }]\n\
+    [animation.lambert]\nsun = [{ time_s = 0.0, value = [1, 1, 1, 1] }, { time_s = 4.0, value = [1, 0, 0, 1] }]\n";
+
+/// A parameter of an enabled effect, at the time that is shown.
+pub fn shown(lab: &Lab, effect: &str, field: &str) -> Vec<f64> {
+    let stack = lab.state().preset_file().preset.stack_at(lab.state().shown_time_s());
+    let enabled = stack.get(effect).unwrap_or_else(|| panic!("{effect} is not enabled"));
+    enabled.effect.field(field).expect("a field of the effect").get(&enabled.words)
+}
+
+pub fn key_times(lab: &Lab, effect: &str, field: &str) -> Vec<f64> {
+    let track = lab.state().preset_file().preset.animation.get(effect, field);
+    track.map_or(Vec::new(), |track| track.keys().iter().map(|key| key.time_s).collect())
+}
+
+/// Drags the hand of the clock to a share of the ruler.
+pub fn scrub(lab: &mut Lab, from: f32, to: f32) {
+    let ruler = lab.get_by_role_and_label(Role::Slider, "Timeline").rect();
+    let at = |share: f32| Pos2::new(ruler.left() + share * ruler.width(), ruler.center().y);
+    drag(lab, at(from), at(to));
+}
+
+/// The pixels of the view, as the window shows them.
+pub fn picture(lab: &mut Lab) -> image::RgbaImage {
+    let Rect { min, max } = lab.get_by_label("Picture").rect();
+    let window = lab.screenshot();
+    let [x, y, width, height] = [min.x, min.y, max.x - min.x, max.y - min.y].map(|v| v.round() as u32);
+    image::imageops::crop_imm(&window, x, y, width, height).to_image()
+}
