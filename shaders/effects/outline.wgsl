@@ -39,18 +39,18 @@ fn outline_is_edge(p: Outline, at: vec2i, here: vec3u, step: vec2i) -> bool {
     }
     if here.z != there.z {
         // Equal keys: the later object counts as behind.
-        let simulation_pending = here.y < there.y || (here.y == there.y && here.z > there.z);
-        return p.objects != 0u && (p.side == OUTLINE_SIDE_BOTH || simulation_pending == (p.side == OUTLINE_SIDE_OUTSIDE));
+        let is_behind = here.y < there.y || (here.y == there.y && here.z > there.z);
+        return p.objects != 0u && (p.side == OUTLINE_SIDE_BOTH || is_behind == (p.side == OUTLINE_SIDE_OUTSIDE));
     }
     if p.depth == 0u || !image_has(at.x - step.x, at.y - step.y) { return false; }
     let beyond = image_at(at.x - step.x, at.y - step.y);
     if beyond.z != here.z || beyond.x == IMAGE_NO_TRIANGLE { return false; }
     // What bends away from a straight slope; a slope alone is no jump. Keys end at the bits of 1.0: it fits.
-    let deform = i32(there.y) + i32(beyond.y) - 2 * i32(here.y);
+    let curvature = i32(there.y) + i32(beyond.y) - 2 * i32(here.y);
     let jump = i32(p.jump * 8388608.0);
     switch p.side {
-        case OUTLINE_SIDE_OUTSIDE: { return deform > jump; }
-        case OUTLINE_SIDE_INSIDE: { return deform < -jump; }
-        default: { return abs(deform) > jump; }
+        case OUTLINE_SIDE_OUTSIDE: { return curvature > jump; }
+        case OUTLINE_SIDE_INSIDE: { return curvature < -jump; }
+        default: { return abs(curvature) > jump; }
     }
 }

@@ -1,5 +1,5 @@
 // Particles: a cloud of discs that a flow without sources or sinks carries along.
-// How they fly and preset is said in src/effects/particles.rs; no hook of the stack is theirs.
+// How they move and look is said in src/effects/particles.rs; no hook of the stack is theirs.
 
 struct Particles {
     slow: vec4f,

@@ -28,7 +28,7 @@ impl Purpose {
     const fn hint(self) -> &'static str {
         match self {
             Self::Open => "A preset (.toml), a model (.glb, .gltf), one of our pictures (.png), a preset's id, or builtin:teapot",
-            Self::SaveAs => "PresetList in the suggested folder appear in the gallery",
+            Self::SaveAs => "Presets in the suggested folder appear in the gallery",
             Self::Export => "The picture carries its preset: drop it here later to get it back",
         }
     }
@@ -43,8 +43,8 @@ impl Purpose {
     /// For the system's dialog: names and extensions.
     pub const fn filters(self) -> &'static [(&'static str, &'static [&'static str])] {
         match self {
-            Self::Open => &[("PresetList, models, pictures", &["toml", "glb", "gltf", "png"])],
-            Self::SaveAs => &[("PresetList", &["toml"])],
+            Self::Open => &[("Presets, models, pictures", &["toml", "glb", "gltf", "png"])],
+            Self::SaveAs => &[("Presets", &["toml"])],
             Self::Export => &[("Pictures", &["png"])],
         }
     }
@@ -103,7 +103,7 @@ impl App {
 
     pub(super) fn ask_save_as(&mut self) {
         let folder = self.folder();
-        let id = if self.preset_file.id.is_empty() { "preset_file" } else { &self.preset_file.id };
+        let id = if self.preset_file.id.is_empty() { "preset" } else { &self.preset_file.id };
         let name = if self.preset_file.path.is_none() && self.preset_file.read_only { format!("my-{id}") } else { id.to_owned() };
         self.dialog = Some(Dialog::of(Purpose::SaveAs, folder.join(format!("{name}.toml")).display().to_string(), [0; 2]));
     }

@@ -53,7 +53,7 @@ impl App {
             folder(ui, "Overlays", false, |ui| self.overlays_ui(ui));
             folder(ui, "Timing", true, |ui| self.timing_ui(ui));
             folder(ui, "Kernel", false, |ui| self.kernel_ui(ui));
-            self.keys_folder(ui, "PresetFile", false, &["name", "about", "output.size"]);
+            self.keys_folder(ui, "Preset", false, &["name", "about", "output.size"]);
             ui.add_space(16.0);
         });
     }

@@ -91,7 +91,7 @@ pub fn zoom(camera: &mut Camera, factor: f64) {
     }
 }
 
-/// PresetList at the target along `direction` from the same distance.
+/// Looks at the target along `direction` from the same distance.
 pub fn look_along(camera: &mut Camera, direction: DVec3) {
     let distance = distance(camera);
     camera.up = if direction.y.abs() > 0.999 { DVec3::NEG_Z } else { DVec3::Y };

@@ -17,7 +17,7 @@ use crate::{
 /// What the panel shows.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Tab {
-    PresetList,
+    Presets,
     Scene,
 }
 
@@ -25,10 +25,10 @@ enum Tab {
 pub struct PresetBrowser {
     entries: Vec<GalleryEntry>,
     pictures: HashMap<String, egui::TextureHandle>,
-    /// PresetList that wait for a picture; one is drawn at a time.
+    /// Presets that wait for a picture; one is drawn at a time.
     queue: VecDeque<String>,
     drawing: Option<String>,
-    /// PresetList that have none: too large, or broken.
+    /// Presets that have none: too large, or broken.
     without: HashSet<String>,
     tab: Tab,
 }
@@ -37,7 +37,7 @@ impl PresetBrowser {
     pub fn new(folder: Option<&Path>) -> Self {
         let entries = preset_file::gallery(folder);
         let queue = entries.iter().filter(|entry| entry.preset_file.is_ok()).map(|entry| entry.id.clone()).collect();
-        Self { entries, queue, pictures: HashMap::new(), drawing: None, without: HashSet::new(), tab: Tab::PresetList }
+        Self { entries, queue, pictures: HashMap::new(), drawing: None, without: HashSet::new(), tab: Tab::Presets }
     }
 
     /// Are thumbnails still to come?
@@ -88,7 +88,7 @@ impl App {
     pub(super) fn left_ui(&mut self, ui: &mut Ui) {
         ui.horizontal(|ui| {
             ui.spacing_mut().item_spacing.x = 2.0;
-            for (tab, text) in [(Tab::PresetList, "PresetList"), (Tab::Scene, "Scene")] {
+            for (tab, text) in [(Tab::Presets, "Presets"), (Tab::Scene, "Scene")] {
                 let button =
                     egui::Button::selectable(self.preset_browser.tab == tab, RichText::new(text).strong()).min_size(vec2(72.0, theme::ROW));
                 if ui.add(button).clicked() {
@@ -99,7 +99,7 @@ impl App {
         ui.add_space(theme::HALF);
         egui::ScrollArea::vertical().id_salt(self.preset_browser.tab as u8).auto_shrink(false).show(ui, |ui| {
             match self.preset_browser.tab {
-                Tab::PresetList => self.presets_ui(ui),
+                Tab::Presets => self.presets_ui(ui),
                 Tab::Scene => self.scenes_ui(ui),
             }
         });

@@ -206,7 +206,7 @@ pub fn error_text(accuracy: &ErrorReport) -> String {
     let race = if accuracy.race_pixels > 0 { format!(", {} lost to the race", accuracy.race_pixels) } else { String::new() };
     format!(
         "{triangle_ids} wrong {}{race}, max Δ {}",
-        if triangle_ids == 1 { "triangle_id" } else { "triangle_ids" },
+        if triangle_ids == 1 { "triangle id" } else { "triangle ids" },
         accuracy.max_color_delta
     )
 }

@@ -123,7 +123,7 @@ fn change(golden: &Golden, snapshots: &Path, id: &str) -> Value {
     let delta = old_picture.as_ref().filter(|(_, old_size)| *old_size == size).map(|(color, _)| pictures(color, &golden.frame.color, 0));
     let same = delta.as_ref().is_some_and(|delta| delta.pixels_over_tolerance == 0) && old_sidecar == golden.sidecar;
     json!({
-        "preset_file": id, "changes": !same, "is_new": old_picture.is_none(),
+        "preset": id, "changes": !same, "is_new": old_picture.is_none(),
         "pixels": golden.frame.color.len(),
         "pixels_changed": delta.as_ref().map(|delta| delta.pixels_over_tolerance),
         "max_color_delta": delta.as_ref().map(|delta| delta.max_delta),

@@ -136,7 +136,7 @@ fn json_finding(finding: &Finding) -> Value {
         json!({ "code": finding.exit as u8, "message": message, "file": file, "line": place.line })
     };
     json!({
-        "preset_file": finding.preset_file, "ok": finding.faults.is_empty(), "warnings": finding.warnings,
+        "preset": finding.preset_file, "ok": finding.faults.is_empty(), "warnings": finding.warnings,
         "errors": finding.faults.iter().map(error).collect::<Vec<_>>(),
         "max_color_delta": finding.drawn.as_ref().map(|drawn| drawn.delta.max_delta),
         "pixels_over_tolerance": finding.drawn.as_ref().map(|drawn| drawn.delta.pixels_over_tolerance),

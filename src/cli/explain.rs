@@ -52,7 +52,7 @@ pub fn run(common: &Common, args: &Explain, streams: &mut Streams) -> Result<Exi
     };
     if streams.json {
         let result = json!({
-            "preset_file": preset_file.id, "scene": scene_json(&scene), "size": preset_file.preset.output.size,
+            "preset": preset_file.id, "scene": scene_json(&scene), "size": preset_file.preset.output.size,
             "effects": effects_json(&preset_file.preset.stack), "plan": plan, "check": check, "flight": flight,
         });
         streams.object("explain", adapter, vec![result])?;

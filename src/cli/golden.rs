@@ -60,7 +60,7 @@ fn sidecar(preset_file: &PresetFile, scene: &Scene, frame: &Frame) -> Value {
     let words = |words: &[u32]| hex(Fnv::new().words(words));
     json!({
         "schema": 1,
-        "preset_file": preset_file.id,
+        "preset": preset_file.id,
         "preset_hash": hex(preset_hash(&preset_file.preset)),
         "scene_hash": hex(scene_hash(scene)),
         "oracle": env!("CARGO_PKG_VERSION"),

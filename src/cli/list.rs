@@ -130,7 +130,7 @@ fn axis_json(axis: &Axis) -> Value {
 
 fn preset_json(entry: &GalleryEntry) -> Value {
     let mut object = json!({
-        "kind": "preset_file", "id": entry.id, "origin": entry.origin, "shadows": entry.shadows,
+        "kind": "preset", "id": entry.id, "origin": entry.origin, "shadows": entry.shadows,
         "file": entry.path.as_ref().map(|path| path.to_string_lossy()),
     });
     match &entry.preset_file {

@@ -49,7 +49,7 @@ pub fn run(common: &Common, args: &Render, streams: &mut Streams) -> Result<Exit
         let path = files::target(&args.output, &names(preset_file, &painter), common.force)?;
         files::write(&path, &png)?;
         results.push(json!({
-            "preset_file": preset_file.id, "file": path.to_string_lossy(), "size": [frame.width, frame.height],
+            "preset": preset_file.id, "file": path.to_string_lossy(), "size": [frame.width, frame.height],
             "covered": frame.covered(), "counters": frame.counters,
         }));
         if !streams.json {

@@ -110,7 +110,7 @@ mod tests {
     #[test]
     fn numbers_stand_right_and_words_left() {
         let row = |cells: [&str; 2]| cells.map(str::to_owned).to_vec();
-        assert_eq!(table(&[row(["preset_file", "px"]), row(["a", "10"]), row(["facet", "9"])]), "look   px\na      10\nfacet   9\n");
+        assert_eq!(table(&[row(["preset", "px"]), row(["a", "10"]), row(["facet", "9"])]), "preset  px\na       10\nfacet    9\n");
     }
 
     #[test]

@@ -220,7 +220,7 @@ fn text(rows: &[Row], class: &str) -> String {
 /// The row with every figure of the judgement.
 fn json_row(row: &Row, painter: &Painter) -> Value {
     let mut object = json!({
-        "preset_file": row.preset_file, "option": row.option, "adapter": painter.name(), "class": painter.class(),
+        "preset": row.preset_file, "option": row.option, "adapter": painter.name(), "class": painter.class(),
         "frames": row.frames, "pixels_over_tolerance": row.pixels_over_tolerance, "ok": row.failures.is_empty(), "failures": row.failures,
     });
     if let (Value::Object(object), Ok(Value::Object(stats))) = (&mut object, serde_json::to_value(&row.accuracy)) {

@@ -79,17 +79,17 @@ impl Outline {
         }
         if here.2 != there.2 {
             // Equal keys: the later object counts as behind.
-            let simulation_pending = (here.1, there.2) < (there.1, here.2);
-            return self.objects != 0 && (side == Side::Both || simulation_pending == (side == Side::Outside));
+            let is_behind = (here.1, there.2) < (there.1, here.2);
+            return self.objects != 0 && (side == Side::Both || is_behind == (side == Side::Outside));
         }
         let Some(beyond) = beyond().filter(|beyond| self.depth != 0 && beyond.0.is_some() && beyond.2 == here.2) else { return false };
         // What bends away from a straight slope; a slope alone is no jump.
-        let deform = i64::from(there.1) + i64::from(beyond.1) - 2 * i64::from(here.1);
+        let curvature = i64::from(there.1) + i64::from(beyond.1) - 2 * i64::from(here.1);
         let jump = (f64::from(self.jump) * f64::from(1 << 23)) as i64;
         match side {
-            Side::Outside => deform > jump,
-            Side::Inside => deform < -jump,
-            Side::Both => deform.abs() > jump,
+            Side::Outside => curvature > jump,
+            Side::Inside => curvature < -jump,
+            Side::Both => curvature.abs() > jump,
         }
     }
 }

@@ -16,7 +16,7 @@ params! {
         /// Number of flat tones.
         steps: u32 = 3, hard 1.0..=16.0, soft 1.0..=8.0;
         /// Width of the edge between two tones, as a share of a step.
-        deformation: f32 = 0.12, hard 0.05..=1.0;
+        softness: f32 = 0.12, hard 0.05..=1.0;
         /// Tone of the darkest step, as the eye sees it.
         shadow: f32 = 0.3, hard 0.0..=1.0;
         /// Tone of the brightest step.
@@ -30,18 +30,18 @@ pub const EFFECT: Effect = Effect::surface::<Toon>("toon", "Toon", "light in a f
 
 impl SurfaceEffect for Toon {
     fn apply(mut s: Surface, p: &Self) -> Surface {
-        let (steps, deformation) = (f64::from(p.steps), f64::from(p.deformation));
+        let (steps, softness) = (f64::from(p.steps), f64::from(p.softness));
         let base = s.color.truncate();
         let brightest = base.max_element().max(0.0);
         // The soft edge of a step is its upper end.
         let place = (brightest.sqrt().min(1.0) + s.nudge).max(0.0) * steps;
-        let step = (place.floor() + smooth(1.0 - deformation, 1.0, place - place.floor())).min(steps - 1.0);
+        let step = (place.floor() + smooth(1.0 - softness, 1.0, place - place.floor())).min(steps - 1.0);
         let (shadow, light) = (f64::from(p.shadow), f64::from(p.light));
         let tone = light - (light - shadow) * (steps - 1.0 - step) / (steps - 1.0).max(1.0);
         let flat = if brightest > 1e-6 { base * (tone * tone / brightest) } else { glam::DVec3::splat(tone * tone) };
         let turned_away = 1.0 - s.normal.dot(s.view).clamp(0.0, 1.0);
         let inner = 1.0 - f64::from(p.rim_width);
-        let rim = smooth(inner, inner + 0.5 * deformation, turned_away) * f64::from(p.rim[3]);
+        let rim = smooth(inner, inner + 0.5 * softness, turned_away) * f64::from(p.rim[3]);
         s.color = (flat + (rgb(p.rim) - flat) * rim).extend(s.color.w);
         s
     }

@@ -136,7 +136,7 @@ fn read_capped(path: &Path, most: u64) -> Result<Vec<u8>, PresetError> {
 }
 
 fn stem(path: &Path) -> String {
-    path.file_stem().map_or_else(|| "preset_file".into(), |stem| stem.to_string_lossy().into_owned())
+    path.file_stem().map_or_else(|| "preset".into(), |stem| stem.to_string_lossy().into_owned())
 }
 
 /// The preset as TOML: the text it came from, with the differences written in. Byte for byte the file if nothing changed.

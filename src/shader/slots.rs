@@ -33,7 +33,7 @@ impl KernelKey {
         let shading = match self.layers {
             Some(Layers::Xray { .. }) => "average",
             Some(Layers::Overdraw) => "heat",
-            Some(Layers::Race) | None => "triangle_id",
+            Some(Layers::Race) | None => "owner",
         };
         let coverage = match self.shape {
             Shape::Boxes => "boxes",
@@ -84,7 +84,7 @@ impl KernelKey {
             ),
             ("order", format!("slots/order/{}", self.order_file(pass))),
             ("ranks", format!("slots/ranks/{}", if self.order == Order::Free { "none" } else { "kept" })),
-            ("particle_discs", format!("slots/splats/{}", if self.has_discs() { "discs" } else { "none" })),
+            ("splats", format!("slots/splats/{}", if self.has_discs() { "discs" } else { "none" })),
             ("curl", format!("slots/curl/{}", self.options.curl_noise.name())),
             ("state", format!("slots/state/{}", self.options.particle_storage.name())),
             ("samples", format!("slots/samples/{}", if self.has_samples { "hooked" } else { "all" })),
@@ -105,7 +105,7 @@ impl KernelKey {
             ("block_keys", format!("slots/block_keys/{keys}")),
             ("cell_keys", format!("slots/cell_keys/{keys}")),
             ("depth", format!("slots/depth/{}", self.options.depth.name())),
-            ("triangle_id", format!("slots/owner/{layout}")),
+            ("owner", format!("slots/owner/{layout}")),
             ("scaling", format!("slots/scaling/{}", if self.options.render_scale.factor() > 1.0 { "average" } else { "between" })),
             ("finish", format!("slots/finish/{finish}")),
             ("dots", format!("slots/dots/{}", if self.dots.is_some() { "over" } else { "none" })),

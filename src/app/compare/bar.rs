@@ -87,7 +87,7 @@ impl App {
         let text = if found_a.size == found_b.size {
             let colors = pictures(&found_a.color, &found_b.color, 0);
             let others = triangle_ids(&found_a.triangle_ids, &found_b.triangle_ids).different;
-            let word = if others == 1 { "triangle_id" } else { "triangle_ids" };
+            let word = if others == 1 { "triangle id" } else { "triangle ids" };
             format!("max \u{394} {}, RMS {:.3}, {} other {word}", colors.max_delta, colors.rms, grouped(others))
         } else {
             let [w, h] = found_a.size;
