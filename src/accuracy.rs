@@ -24,7 +24,7 @@ pub struct Axis {
     /// What a preset may say: "planned", or a option's word.
     pub choices: &'static [&'static str],
     /// What each option does, in the same order.
-    pub abouts: &'static [&'static str],
+    pub option_abouts: &'static [&'static str],
     /// Place of the option that is taken unless something speaks for another.
     pub default: usize,
     get: fn(&AccuracyOptions) -> usize,
@@ -83,7 +83,7 @@ macro_rules! accuracy {
             about: concat!($($about),+),
             words: &[$($word),+],
             choices: &["planned", $($word),+],
-            abouts: &[$(concat!($($option_about),+)),+],
+            option_abouts: &[$(concat!($($option_about),+)),+],
             default: $name::$default as usize,
             get: |options| options.$axis as usize,
             set: |options, place| options.$axis = $name::ALL[place],
@@ -370,7 +370,7 @@ impl AccuracyOptions {
     }
 
     /// Axes that are not on their usual option, with the word they are on.
-    pub fn unusual(&self) -> impl Iterator<Item = (&'static Axis, &'static str)> + use<> {
+    pub fn non_default(&self) -> impl Iterator<Item = (&'static Axis, &'static str)> + use<> {
         let options = *self;
         AXES.iter()
             .map(move |axis| (axis, options.get(axis)))
@@ -433,13 +433,13 @@ mod tests {
     #[test]
     fn every_axis_reads_back_what_it_is_set_to() {
         for axis in AXES {
-            assert_eq!((axis.words.len(), axis.default), (axis.abouts.len(), AccuracyOptions::default().get(axis)), "{}", axis.name);
+            assert_eq!((axis.words.len(), axis.default), (axis.option_abouts.len(), AccuracyOptions::default().get(axis)), "{}", axis.name);
             for place in 0..axis.words.len() {
                 let (mut options, mut pins) = (AccuracyOptions::default(), PinnedOptions::default());
                 pins.set(axis, Some(place));
                 pins.apply(&mut options);
                 assert_eq!((options.get(axis), pins.get(axis)), (place, Some(place)), "{}", axis.name);
-                assert_eq!(options.unusual().count(), usize::from(place != axis.default), "{}", axis.name);
+                assert_eq!(options.non_default().count(), usize::from(place != axis.default), "{}", axis.name);
             }
         }
     }

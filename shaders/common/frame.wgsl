@@ -9,7 +9,7 @@ struct Frame {
     clip_from_world: mat4x4f, // for what vertex effects add
     picture_from_world: mat4x4f, // the same of the picture that a light's view is drawn for
     center: vec2f,           // half the picture in units (common/grid)
-    range_m: vec2f,          // depth of the nearest and farthest corner of the scene's box
+    depth_range_m: vec2f,          // depth of the nearest and farthest corner of the scene's box
     linear_depth_m: vec2f,   // metres at depth 1 and 0; only where eye.w is 0
     size: vec2u,             // pixels
     stride: u32,             // pixels from one row of the colour buffer to the next

@@ -30,7 +30,7 @@ struct Place {
     corner_depths: vec3f, // the same, of the corners
     center_screen: vec2f,
     shares: vec3f,        // as `Surface`
-    edge_px: vec3f,
+    edge_distance_px: vec3f,
     is_clockwise: bool,
 }
 
@@ -92,8 +92,8 @@ fn place_clipped(t: Triangle, at: vec3u, pixel: vec2u) -> Place {
     if !IS_PERSPECTIVE { depths = linear_depths(vec3f(a.z, b.z, c.z)); }
     let steps = 2.0 / vec2f(frame.size);
     let slopes = vec3f(length(lines[0].xy * steps), length(lines[1].xy * steps), length(lines[2].xy * steps));
-    let edge_px = abs(signed) / max(slopes, vec3f(1e-30));
-    return Place(weights, dot(weights, depths), depths, center_clipped(a, b, c, sample), weights, edge_px, is_clockwise);
+    let edge_distance_px = abs(signed) / max(slopes, vec3f(1e-30));
+    return Place(weights, dot(weights, depths), depths, center_clipped(a, b, c, sample), weights, edge_distance_px, is_clockwise);
 }
 
 // White where a lane is NaN, infinite or beyond 2^40.
@@ -140,11 +140,11 @@ fn shade_surface(pixel: vec2u) -> Surface {
     s.pixel = vec2f(pixel) + 0.5;
     s.screen = s.pixel / vec2f(frame.size);
     s.shares = place.shares;
-    s.edge_px = place.edge_px;
+    s.edge_distance_px = place.edge_distance_px;
     s.depth_m = place.depth;
-    s.pixel_m = length(frame.ndc_y.xyz) * 2.0 / f32(frame.size.y) * select(1.0, place.depth, IS_PERSPECTIVE);
+    s.pixel_size_m = length(frame.ndc_y.xyz) * 2.0 / f32(frame.size.y) * select(1.0, place.depth, IS_PERSPECTIVE);
     s.flat_depth_m = dot(place.corner_depths, vec3f(1.0 / 3.0));
-    s.range_m = frame.range_m;
+    s.depth_range_m = frame.depth_range_m;
     // The sample lies on the ray of its pixel, so depth alone tells where.
     let ndc = vec2f(s.screen.x * 2.0 - 1.0, 1.0 - s.screen.y * 2.0);
     let aside = frame.ndc_x.xyz * ndc.x + frame.ndc_y.xyz * ndc.y;

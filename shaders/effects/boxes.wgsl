@@ -8,7 +8,7 @@ struct Boxes {
 fn boxes(surface: Surface, p: Boxes) -> Surface {
     var s = surface;
     // Beyond the triangle at least one share is held at zero.
-    let is_beyond = min(min(s.shares.x, s.shares.y), s.shares.z) <= 0.0;
+    let is_beyond = min(min(s.barycentrics.x, s.barycentrics.y), s.barycentrics.z) <= 0.0;
     if is_beyond { s.glow *= 1.0 - p.tint.a; }
     if is_beyond { s.color = vec4f(mix(s.color.rgb, p.tint.rgb, p.tint.a), s.color.a); }
     return s;

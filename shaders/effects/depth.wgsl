@@ -11,7 +11,7 @@ struct Depth {
 
 fn depth(surface: Surface, p: Depth) -> Surface {
     var s = surface;
-    let fitted = (s.depth_m - s.range_m.x) / (s.range_m.y - s.range_m.x);
+    let fitted = (s.depth_m - s.depth_range_m.x) / (s.depth_range_m.y - s.depth_range_m.x);
     let way = select(s.depth_m * p.scale + p.offset, fitted, p.fit != 0u);
     let shade = p.near + (p.far - p.near) * clamp(way, 0.0, 1.0);
     s.glow = vec3f(0.0);

@@ -92,13 +92,13 @@ fn dissolve_sample(s: Sample, p: Dissolve) -> bool {
 fn dissolve_surface(surface: Surface, p: Dissolve) -> Surface {
     var s = surface;
     let fill = clamp(dissolve_fill(p, s.center, s.center_screen, s.triangle_id), 0.0, 1.0);
-    let part = select(select(s.shares.x, s.shares.y, p.corner == 1u), s.shares.z, p.corner == 2u);
+    let part = select(select(s.barycentrics.x, s.barycentrics.y, p.corner == 1u), s.barycentrics.z, p.corner == 2u);
     var way = 0.0;
     var end = sqrt(fill);
     switch p.mode {
         case DISSOLVE_MODE_EDGE: { way = part; end = 1.0 - sqrt(1.0 - fill); }
         case DISSOLVE_MODE_CORNER: { way = 1.0 - part; }
-        case DISSOLVE_MODE_CENTROID: { way = 1.0 - 3.0 * min(min(s.shares.x, s.shares.y), s.shares.z); }
+        case DISSOLVE_MODE_CENTROID: { way = 1.0 - 3.0 * min(min(s.barycentrics.x, s.barycentrics.y), s.barycentrics.z); }
         default: { end = fill; }
     }
     // The rim is born as the triangle starts to go, so a whole one has none.

@@ -47,7 +47,7 @@ fn hatch_line(s: Surface, p: Hatch, layer: u32, share: f32) -> f32 {
         // How far the planes' distance changes from pixel to pixel; held where the surface lies along the planes or is
         // seen edge-on, and where f32 has no finer places in the world.
         let change = across - s.normal * (dot(across, s.view) / max(dot(s.normal, s.view), 0.1));
-        let per_px = max(s.pixel_m * max(length(change), 0.4), 1.5e-4 * (length(s.position) + s.depth_m));
+        let per_px = max(s.pixel_size_m * max(length(change), 0.4), 1.5e-4 * (length(s.position) + s.depth_m));
         place = dot(s.position, across) / p.spacing_m;
         spacing_px = p.spacing_m / per_px;
     }

@@ -33,7 +33,7 @@ fn wireframe_sample(s: Sample, p: Wireframe) -> bool {
 
 fn wireframe_surface(surface: Surface, p: Wireframe) -> Surface {
     var s = surface;
-    let distance = min(min(s.edge_px.x, s.edge_px.y), s.edge_px.z);
+    let distance = min(min(s.edge_distance_px.x, s.edge_distance_px.y), s.edge_distance_px.z);
     // Where the faces are drawn too, the line ends softly, over one pixel.
     var line = 1.0;
     if p.hidden == WIREFRAME_HIDDEN_REMOVED { line = clamp(0.5 * p.width_px + 0.5 - distance, 0.0, 1.0); }

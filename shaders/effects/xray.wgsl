@@ -16,7 +16,7 @@ fn xray_weight(s: Surface, p: Xray) -> u32 {
     switch p.weight {
         case XRAY_WEIGHT_EQUAL: { return 1u; }
         case XRAY_WEIGHT_GRAZING: { share = 1.0 - facing; }
-        case XRAY_WEIGHT_NEAR: { share = (s.range_m.y - s.depth_m) / (s.range_m.y - s.range_m.x); }
+        case XRAY_WEIGHT_NEAR: { share = (s.depth_range_m.y - s.depth_m) / (s.depth_range_m.y - s.depth_range_m.x); }
         default: {}
     }
     return u32(clamp(share * 255.0, 1.0, 255.0) + 0.5);

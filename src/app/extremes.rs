@@ -42,7 +42,7 @@ struct Progress {
     reports: Vec<Report>,
     /// Why there is no run.
     error: Option<String>,
-    is_over: bool,
+    reopens_queues: bool,
 }
 
 impl Run {
@@ -85,7 +85,7 @@ impl Extremes {
 
     /// Is a run under way?
     pub fn is_running(&self) -> bool {
-        self.run.as_ref().is_some_and(|run| !run.progress().is_over)
+        self.run.as_ref().is_some_and(|run| !run.progress().reopens_queues)
     }
 
     fn start(&mut self, adapter: String, ctx: &egui::Context) {
@@ -97,11 +97,11 @@ impl Extremes {
                 .unwrap_or_else(|_| Err("the run failed inside the program; the terminal says where".into()));
             let mut progress = shared.progress();
             progress.error = result.err();
-            progress.is_over = true;
+            progress.reopens_queues = true;
             ctx.request_repaint();
         };
         if let Err(error) = std::thread::Builder::new().name("extremes".into()).spawn(work) {
-            *run.progress() = Progress { error: Some(format!("no thread for it: {error}")), is_over: true, ..Progress::default() };
+            *run.progress() = Progress { error: Some(format!("no thread for it: {error}")), reopens_queues: true, ..Progress::default() };
         }
         (self.run, self.is_told) = (Some(run), false);
     }
@@ -160,7 +160,7 @@ impl App {
     fn tell_of_extremes(&mut self) {
         let Some(run) = self.extremes.run.clone().filter(|_| !self.extremes.is_told) else { return };
         let progress = run.progress();
-        if !progress.is_over {
+        if !progress.reopens_queues {
             return;
         }
         self.extremes.is_told = true;
@@ -205,7 +205,7 @@ fn run_ui(ui: &mut Ui, run: &Run, height: f32) {
     let progress = run.progress();
     let done = progress.reports.len();
     ui.add_space(theme::HALF);
-    if progress.is_over {
+    if progress.reopens_queues {
         let failed = progress.reports.iter().any(|report| report.outcome.is_failure());
         let color = if failed || progress.error.is_some() { theme::RED } else { theme::GREEN };
         ui.label(RichText::new(summary(&progress.reports)).color(color));

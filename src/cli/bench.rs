@@ -13,7 +13,7 @@ use super::{
     sweep,
 };
 use crate::{
-    effects::{EFFECTS, Enabled, Stack},
+    effects::{EFFECTS, EnabledEffect, Stack},
     gpu::{
         Capture,
         bench::{BenchOptions, BenchRow, bench, bench_stacks},
@@ -94,7 +94,7 @@ fn each_effect(common: &Common) -> Result<Vec<(String, Stack)>, Fault> {
     let mut stacks = vec![("no effect".to_owned(), Stack::default())];
     for effect in EFFECTS {
         let preset_file = open(common, effect.name)?;
-        let enabled = preset_file.preset.evaluated_stack().get(effect.name).cloned().unwrap_or_else(|| Enabled::new(effect));
+        let enabled = preset_file.preset.evaluated_stack().get(effect.name).cloned().unwrap_or_else(|| EnabledEffect::new(effect));
         stacks.push((format!("+{}", effect.name), Stack(vec![enabled])));
     }
     Ok(stacks)

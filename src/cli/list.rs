@@ -117,14 +117,16 @@ fn axes_text(axes: &[Axis]) -> String {
     let mut rows = vec![["AXIS", "USUAL", "WHAT"].map(str::to_owned).to_vec()];
     for axis in axes {
         rows.push(vec![format!("accuracy.{}", axis.name), axis.words[axis.default].into(), axis.about.trim().into()]);
-        rows.extend(axis.words.iter().zip(axis.abouts).map(|(word, about)| vec![format!("  {word}"), String::new(), about.trim().into()]));
+        rows.extend(
+            axis.words.iter().zip(axis.option_abouts).map(|(word, about)| vec![format!("  {word}"), String::new(), about.trim().into()]),
+        );
     }
     table(&rows)
 }
 
 fn axis_json(axis: &Axis) -> Value {
     let options: Vec<Value> =
-        axis.words.iter().zip(axis.abouts).map(|(word, about)| json!({ "name": word, "about": about.trim() })).collect();
+        axis.words.iter().zip(axis.option_abouts).map(|(word, about)| json!({ "name": word, "about": about.trim() })).collect();
     json!({ "kind": "axis", "id": axis.name, "about": axis.about.trim(), "default": axis.words[axis.default], "options": options })
 }
 

@@ -21,7 +21,7 @@ pub const EFFECT: Effect =
 impl SurfaceEffect for Boxes {
     fn apply(mut s: Surface, p: &Self) -> Surface {
         // Beyond the triangle at least one share is held at zero.
-        if s.shares.min_element() <= 0.0 {
+        if s.barycentrics.min_element() <= 0.0 {
             let [red, green, blue, share] = p.tint.map(f64::from);
             s.glow *= 1.0 - share;
             s.color = s.color.truncate().lerp(DVec3::new(red, green, blue), share).extend(s.color.w);

@@ -28,7 +28,7 @@ pub const EFFECT: Effect = Effect::surface::<Depth>("depth", "Depth", "shades by
 impl SurfaceEffect for Depth {
     fn apply(mut s: Surface, p: &Self) -> Surface {
         let way = if p.fit != 0 {
-            (s.depth_m - s.range_m.x) / (s.range_m.y - s.range_m.x)
+            (s.depth_m - s.depth_range_m.x) / (s.depth_range_m.y - s.depth_range_m.x)
         } else {
             s.depth_m * f64::from(p.scale) + f64::from(p.offset)
         };

@@ -78,10 +78,10 @@ impl Dissolve {
         if Pattern::of(self.pattern) == Pattern::Uniform {
             return self.fill.into();
         }
-        1.0 - (1.0 - f64::from(self.fill)) * self.travelling().reached(center, center_screen, triangle)
+        1.0 - (1.0 - f64::from(self.fill)) * self.front().reached(center, center_screen, triangle)
     }
 
-    fn travelling(&self) -> Front {
+    fn front(&self) -> Front {
         front_of!(self)
     }
 }
@@ -103,7 +103,7 @@ impl SampleEffect for Dissolve {
         if Pattern::of(p.pattern) == Pattern::Uniform {
             return 0.0;
         }
-        let error_bound = p.travelling().error_bound(setup.center, setup.center_screen, setup.triangle, &setup.error_bound());
+        let error_bound = p.front().error_bound(setup.center, setup.center_screen, setup.triangle, &setup.error_bound());
         error_bound * f64::from(ONE) + 2.0
     }
 
@@ -153,11 +153,11 @@ impl SurfaceEffect for Dissolve {
     /// A rim that glows where the triangle is about to go.
     fn apply(mut s: Surface, p: &Self) -> Surface {
         let fill = p.fill_of(s.center, s.center_screen, s.triangle_id).clamp(0.0, 1.0);
-        let part = s.shares[p.corner.min(2) as usize];
+        let part = s.barycentrics[p.corner.min(2) as usize];
         let (way, end) = match Mode::of(p.mode) {
             Mode::Edge => (part, 1.0 - (1.0 - fill).sqrt()),
             Mode::Corner => (1.0 - part, fill.sqrt()),
-            Mode::Centroid => (1.0 - 3.0 * s.shares.min_element(), fill.sqrt()),
+            Mode::Centroid => (1.0 - 3.0 * s.barycentrics.min_element(), fill.sqrt()),
             Mode::Scanline | Mode::Hash => (0.0, fill),
         };
         // The rim is born as the triangle starts to go, so a whole one has none.

@@ -76,8 +76,8 @@ impl Dots {
 
     /// Bits of the f32 nearest to the 1/w at which dots of level 0 begin to fade: there they lie `gap_px` apart.
     pub fn fade_from(&self, view: &View) -> u32 {
-        let pixel_m = view.ndc_axes[1].length() * 2.0 / f64::from(view.height.max(1));
-        ((pixel_m * f64::from(self.gap_px) / f64::from(self.spacing_m)).clamp(1e-30, 1e30) as f32).to_bits()
+        let pixel_size_m = view.ndc_axes[1].length() * 2.0 / f64::from(view.height.max(1));
+        ((pixel_size_m * f64::from(self.gap_px) / f64::from(self.spacing_m)).clamp(1e-30, 1e30) as f32).to_bits()
     }
 
     /// How fast dots fade, in strengths per level.

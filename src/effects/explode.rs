@@ -67,7 +67,7 @@ impl VertexEffect for Explode {
             return error_bound;
         }
         let share = p.share(v);
-        let share_slack = p.travelling().error_bound(v.center, v.center_screen, v.triangle, &error_bound) + 4.0 * ROUNDING * share;
+        let share_slack = p.front().error_bound(v.center, v.center_screen, v.triangle, &error_bound) + 4.0 * ROUNDING * share;
         let spin = Spin::of(turns * share);
         let (sine, versine) = spin.error_bound(turns * (share_slack + ROUNDING * share));
         // Per axis; lengths of three such are less than twice as long.
@@ -130,11 +130,11 @@ impl Spin {
 impl Explode {
     /// How much of its way a triangle has gone.
     fn share(&self, v: &Vertex) -> f64 {
-        let reached = self.travelling().reached(v.center, v.center_screen, v.triangle);
+        let reached = self.front().reached(v.center, v.center_screen, v.triangle);
         reached * (1.0 - f64::from(self.scatter) * hash_unit(v.triangle ^ self.seed.wrapping_mul(0x85eb_ca6b)))
     }
 
-    fn travelling(&self) -> Front {
+    fn front(&self) -> Front {
         front_of!(self)
     }
 }

@@ -38,7 +38,7 @@ pub const EFFECT: Effect =
 
 impl SurfaceEffect for Facet {
     fn apply(mut s: Surface, p: &Self) -> Surface {
-        let t = f64::from(p.amount) * p.travelling().reached(s.center, s.center_screen, s.triangle_id);
+        let t = f64::from(p.amount) * p.front().reached(s.center, s.center_screen, s.triangle_id);
         if t <= 0.0 {
             return s;
         }
@@ -50,7 +50,7 @@ impl SurfaceEffect for Facet {
 }
 
 impl Facet {
-    fn travelling(&self) -> Front {
+    fn front(&self) -> Front {
         front_of!(self)
     }
 }

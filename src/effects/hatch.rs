@@ -85,7 +85,7 @@ impl Hatch {
                 // How far the planes' distance changes from pixel to pixel; held where the surface lies along the planes or
                 // is seen edge-on, and where f32 has no finer places in the world.
                 let change = across - s.normal * (across.dot(s.view) / s.normal.dot(s.view).max(0.1));
-                let per_px = (s.pixel_m * change.length().max(0.4)).max(1.5e-4 * (s.position.length() + s.depth_m));
+                let per_px = (s.pixel_size_m * change.length().max(0.4)).max(1.5e-4 * (s.position.length() + s.depth_m));
                 (s.position.dot(across) / f64::from(self.spacing_m), f64::from(self.spacing_m) / per_px)
             }
         };

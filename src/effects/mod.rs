@@ -197,13 +197,13 @@ fn defaults<P: Params>() -> Vec<u32> {
 
 /// An effect with its values.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Enabled {
+pub struct EnabledEffect {
     pub effect: &'static Effect,
     /// Parameter words, laid out by `effect.fields`.
     pub words: Vec<u32>,
 }
 
-impl Enabled {
+impl EnabledEffect {
     pub fn new(effect: &'static Effect) -> Self {
         Self { effect, words: (effect.defaults)() }
     }
@@ -211,24 +211,24 @@ impl Enabled {
 
 /// The enabled effects, in the order in which they apply.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct Stack(pub Vec<Enabled>);
+pub struct Stack(pub Vec<EnabledEffect>);
 
 impl Stack {
-    pub fn get(&self, name: &str) -> Option<&Enabled> {
+    pub fn get(&self, name: &str) -> Option<&EnabledEffect> {
         self.0.iter().find(|enabled| enabled.effect.name == name)
     }
 
-    pub fn get_mut(&mut self, name: &str) -> Option<&mut Enabled> {
+    pub fn get_mut(&mut self, name: &str) -> Option<&mut EnabledEffect> {
         self.0.iter_mut().find(|enabled| enabled.effect.name == name)
     }
 
     /// Puts `effect` in with defaults, in front of the first one that follows it in [`EFFECTS`]; keeps one already there.
-    pub fn enable(&mut self, effect: &'static Effect) -> &mut Enabled {
+    pub fn enable(&mut self, effect: &'static Effect) -> &mut EnabledEffect {
         let at = match self.0.iter().position(|enabled| enabled.effect == effect) {
             Some(at) => at,
             None => {
                 let at = self.0.iter().position(|enabled| enabled.effect.rank() > effect.rank()).unwrap_or(self.0.len());
-                self.0.insert(at, Enabled::new(effect));
+                self.0.insert(at, EnabledEffect::new(effect));
                 at
             }
         };
@@ -240,7 +240,7 @@ impl Stack {
     #[must_use]
     pub fn scaled(&self, factor: f64) -> Self {
         let mut stack = self.clone();
-        for Enabled { effect, words } in stack.0.iter_mut().filter(|_| factor != 1.0) {
+        for EnabledEffect { effect, words } in stack.0.iter_mut().filter(|_| factor != 1.0) {
             for field in effect.fields.iter().filter(|field| field.unit == "px") {
                 let [low, high] = field.hard;
                 let length = |v: f64| (v * factor).clamp(low, high);
@@ -328,7 +328,7 @@ impl Stack {
     }
 
     /// The effect in a slot of the rasterizer.
-    pub fn in_slot(&self, slot: Slot) -> Option<&Enabled> {
+    pub fn in_slot(&self, slot: Slot) -> Option<&EnabledEffect> {
         self.0.iter().find(|enabled| enabled.effect.hooks.slot == Some(slot))
     }
 
@@ -353,7 +353,7 @@ impl Stack {
 
     /// What of the stack decides which samples stop a light, and where they are.
     pub fn casting(&self) -> Self {
-        let casts = |enabled: &&Enabled| enabled.effect.hooks.vertex.is_some() || enabled.effect.hooks.sample.is_some();
+        let casts = |enabled: &&EnabledEffect| enabled.effect.hooks.vertex.is_some() || enabled.effect.hooks.sample.is_some();
         Self(self.0.iter().filter(casts).cloned().collect())
     }
 
@@ -384,7 +384,7 @@ impl Stack {
 
     /// What becomes of the samples of a pixel in a scene of so many triangles; none: the nearest is shown.
     pub fn layers(&self, triangles: u64) -> Option<Layers> {
-        let Enabled { effect, words } = self.in_slot(Slot::Visibility)?;
+        let EnabledEffect { effect, words } = self.in_slot(Slot::Visibility)?;
         Some(match effect.name {
             "xray" => Layers::Xray { bits: read::<xray::Xray>(words).first_bits(triangles) },
             "overdraw" => Layers::Overdraw,

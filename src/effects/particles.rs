@@ -17,7 +17,7 @@
 //! **Step.** dt = 1 / rate. With place p and velocity v of the frame before, away = attractor - p and
 //! pull = attraction 2 r away / (away² + r²), r = `attractor_m`: v' = (v + dt (drag u + pull)) / (1 + dt drag), p' = p + dt v'.
 //!
-//! **ParticleTimeline.** u = `speed_mps` [`EVEN_SPEED`] Σ persistence^o curl ψ_o(q) / Σ persistence^o over the octaves o, where
+//! **ParticleTimeline.** u = `speed_mps` [`SPEED_NORMALIZER`] Σ persistence^o curl ψ_o(q) / Σ persistence^o over the octaves o, where
 //! q = p 2^o / swirl_m + (o + 1) [`LATTICE_SHIFT`] + (step dt evolve) [`LATTICE_DRIFT`], and ψ_o is value noise: three numbers at
 //! every point (x, y, z) of the integer lattice, from the bits 0 to 9, 10 to 19 and 20 to 29 of
 //! `hash(hash(hash(x + salt) + y) + z)`, b as (2 b + 1) / 1024 - 1, with `salt = hash(seed ^ 0x9e3779b9) + o`; between
@@ -102,7 +102,7 @@ pub const EFFECT: Effect =
 pub const LATTICE_SHIFT: [f64; 3] = [0.3125, 0.4375, 0.71875];
 
 /// What makes one octave's mean speed about 1.
-pub const EVEN_SPEED: f64 = 0.625;
+pub const SPEED_NORMALIZER: f64 = 0.625;
 
 /// Which way lattices drift.
 pub const LATTICE_DRIFT: [f64; 3] = [0.25, -0.5, 0.375];
@@ -146,7 +146,7 @@ fn of_flight(words: &[u32]) -> Vec<u32> {
 }
 
 /// A flow at a frame, whose parameters do not change on the way.
-pub fn steady(words: &[u32], frame: u32) -> ParticleTimeline {
+pub fn constant_timeline(words: &[u32], frame: u32) -> ParticleTimeline {
     ParticleTimeline { frame, step_params: of_flight(words).into(), stride: words.len() }
 }
 

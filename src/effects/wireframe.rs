@@ -60,7 +60,7 @@ impl SurfaceEffect for Wireframe {
         // Where the faces are drawn too, the line ends softly, over one pixel.
         let line = match Hidden::of(p.hidden) {
             Hidden::Shown => 1.0,
-            Hidden::Removed => (0.5 * width + 0.5 - s.edge_px.min_element()).clamp(0.0, 1.0),
+            Hidden::Removed => (0.5 * width + 0.5 - s.edge_distance_px.min_element()).clamp(0.0, 1.0),
         };
         let (own, alpha) = (s.color.truncate(), s.color.w);
         let tinted = |[red, green, blue, share]: [f32; 4]| own.lerp([red, green, blue].map(f64::from).into(), share.into());

@@ -102,7 +102,7 @@ impl Xray {
             Weighting::Equal => return 1.0,
             Weighting::Facing => facing,
             Weighting::Grazing => 1.0 - facing,
-            Weighting::Near => (s.range_m.y - s.depth_m) / (s.range_m.y - s.range_m.x),
+            Weighting::Near => (s.depth_range_m.y - s.depth_m) / (s.depth_range_m.y - s.depth_range_m.x),
         };
         (share * f64::from(FULL_WEIGHT)).clamp(1.0, f64::from(FULL_WEIGHT))
     }

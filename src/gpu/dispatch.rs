@@ -2,7 +2,7 @@
 
 use crate::{
     scene::camera::View,
-    shader::key::{Entries, KernelKey, Pass},
+    shader::key::{KernelKey, Pass, TriangleSource},
 };
 
 /// How many workgroups a pass takes.
@@ -29,15 +29,15 @@ pub fn dispatch(
         Pass::Project => Dispatch::Direct(folded(vertices.div_ceil(key.group_size))),
         Pass::Cull(_) => Dispatch::Direct(folded(meshlets.div_ceil(key.group_size))),
         Pass::DepthReduce => Dispatch::Direct([view.width.div_ceil(64), view.height.div_ceil(64)]),
-        Pass::Rounds { .. } => Dispatch::Direct([1, 1]),
+        Pass::AdvanceQueues { .. } => Dispatch::Direct([1, 1]),
         Pass::ProjectMeshlets => Dispatch::Indirect(72),
         Pass::RasterSmall(_) if key.culls() => Dispatch::Indirect(72),
         Pass::RasterPoints(phase) if !phase.is_bin() => {
             Dispatch::Direct(folded(triangles.saturating_mul(key.invocations_per_triangle).div_ceil(key.group_size)))
         }
         Pass::RasterSmall(_) | Pass::RasterPoints(_) => Dispatch::Direct(folded(triangles.div_ceil(key.group_size))),
-        Pass::SampleSetup(Entries::Triangles) => Dispatch::Direct(folded(triangles.div_ceil(key.group_size))),
-        Pass::SampleSetup(Entries::ClippedTriangles) => Dispatch::Indirect(60),
+        Pass::SampleSetup(TriangleSource::Triangles) => Dispatch::Direct(folded(triangles.div_ceil(key.group_size))),
+        Pass::SampleSetup(TriangleSource::ClippedTriangles) => Dispatch::Indirect(60),
         Pass::OrderSums | Pass::OrderRanks => Dispatch::Direct(folded(triangles.div_ceil(1024))),
         Pass::OrderLimit | Pass::OrderCut => Dispatch::Direct([1, 1]),
         Pass::Args => Dispatch::Direct([1, 1]),

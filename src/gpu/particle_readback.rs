@@ -82,7 +82,11 @@ impl Flying {
         let count = stack.particle_settings()?.count;
         let particle_timeline =
             view.particle_timeline.as_deref().filter(|particle_timeline| particle_timeline.stride == words.len()).cloned();
-        Some(Self { count, particle_timeline: particle_timeline.unwrap_or_else(|| particles::steady(words, 0)), words: words.clone() })
+        Some(Self {
+            count,
+            particle_timeline: particle_timeline.unwrap_or_else(|| particles::constant_timeline(words, 0)),
+            words: words.clone(),
+        })
     }
 
     /// A record for every step, and one for how the particles look.
@@ -141,7 +145,7 @@ impl Renderer {
         let kept = self.kept.take().filter(|kept| {
             let reached = kept.particle_timeline.frame;
             let is_same = (kept.count, kept.options) == (flying.count, options)
-                && kept.particle_timeline.begins_like(&flying.particle_timeline, reached);
+                && kept.particle_timeline.shares_steps_with(&flying.particle_timeline, reached);
             !is_new && is_same && reached <= flying.particle_timeline.frame
         });
         let mut reached = kept.map(|kept| kept.particle_timeline.frame);

@@ -19,7 +19,7 @@ use crate::{
     frame::{ClippedTriangle, Counters, Exactness, Frame, Geometry, SnappedVertex},
     plan::AccuracyRequest,
     scene::camera::View,
-    shader::key::{KernelKey, Layout, Phase},
+    shader::key::{KernelKey, Layout, RasterPhase},
 };
 
 /// Counters and stamps of a frame in flight.
@@ -317,7 +317,7 @@ impl Renderer {
         let mut encoder = self.gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor { label: Some("count") });
         self.clear(&mut encoder, &["counters", "layers", "sample_counts", "boundary_samples"]);
         let timer = self.timer.take();
-        let recorded = self.record(&mut encoder, key, &key.passes(&[key.lead(), &[Phase::Count]].concat()), view, true);
+        let recorded = self.record(&mut encoder, key, &key.passes(&[key.lead(), &[RasterPhase::Count]].concat()), view, true);
         self.timer = timer;
         recorded?;
         self.gpu.queue.submit([encoder.finish()]);

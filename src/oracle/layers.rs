@@ -83,7 +83,7 @@ struct Open {
 
 /// The sums of one pixel.
 #[derive(Default)]
-struct Tally {
+struct CountSamples {
     /// As f64 says.
     sums: [u64; 3],
     weight: u64,
@@ -116,9 +116,9 @@ fn averaged(scenery: &Scenery, stack: &Stack, params: &Xray, bits: u32) -> Layer
     layered
 }
 
-fn tallies(scenery: &Scenery, stack: &Stack, params: &Xray, bits: u32) -> Vec<Tally> {
+fn tallies(scenery: &Scenery, stack: &Stack, params: &Xray, bits: u32) -> Vec<CountSamples> {
     let Scenery { scene, draws, view, geometry, rules, triangles, triangle_ids, keys } = *scenery;
-    let mut tallies: Vec<Tally> = (0..view.pixels()).map(|_| Tally::default()).collect();
+    let mut tallies: Vec<CountSamples> = (0..view.pixels()).map(|_| CountSamples::default()).collect();
     let width = view.width as usize;
     let (ranks, ways) = (ranks(scene, draws, view, stack, geometry), ways(scene, stack));
     let ways = &ways;
@@ -127,7 +127,7 @@ fn tallies(scenery: &Scenery, stack: &Stack, params: &Xray, bits: u32) -> Vec<Ta
     scatter(rules, triangles, view, &mut tallies, |triangle| {
         let mut surface: Option<Option<Triangle<'_>>> = None;
         let rank = ranks.get(triangle.id as usize).copied().unwrap_or(0.0);
-        move |tally: &mut Tally, x: usize, y: usize, hit: Hit| {
+        move |tally: &mut CountSamples, x: usize, y: usize, hit: Hit| {
             let pixel = y * width + x;
             let least = f64::from(f32::from_bits(params.threshold(keys[pixel], view.linear_depth_m.is_none())));
             let is_front = triangle_ids[pixel] == triangle.id;
@@ -166,7 +166,7 @@ fn tallies(scenery: &Scenery, stack: &Stack, params: &Xray, bits: u32) -> Vec<Ta
     tallies
 }
 
-impl Tally {
+impl CountSamples {
     /// Adds a layer, whose colour lies between `ends`; `counts` says whether it lies inside the window, and whether that
     /// is certain.
     fn add(&mut self, color: DVec3, ends: [DVec3; 2], weight: f64, error_bound: f64, bits: u32, [counts, is_certain]: [bool; 2]) {

@@ -105,7 +105,7 @@ pub(super) struct Mapped<'a> {
     reach: i64,
     /// Metres from texel to texel, and from depth 0 to depth 1.
     texel_m: f64,
-    range_m: f64,
+    depth_range_m: f64,
     /// Unit vectors to the right and down in the map, and towards the light.
     axes: [DVec3; 3],
 }
@@ -123,7 +123,7 @@ impl<'a> Mapped<'a> {
             side: view.width.into(),
             reach: i64::from(view.shadow.taps) / 2,
             texel_m: 2.0 / (rows[0].length() * f64::from(view.width)),
-            range_m: 1.0 / rows[2].length(),
+            depth_range_m: 1.0 / rows[2].length(),
             axes: [right, -up, near],
             view,
         })
@@ -139,7 +139,7 @@ impl<'a> Mapped<'a> {
         let slant = DVec2::new(across, down) / along;
         let tangent = slant.length();
         let held = tangent.min(MAX_SHADOW_SLOPE);
-        let texel_depth = self.texel_m / self.range_m;
+        let texel_depth = self.texel_m / self.depth_range_m;
         let fall = if tangent > 0.0 { -slant * (held / tangent * texel_depth) } else { DVec2::ZERO };
         let bias = f64::from(self.params.bias) + f64::from(self.params.slope) * held;
         let depth = clip.z + bias * texel_depth;
@@ -148,7 +148,7 @@ impl<'a> Mapped<'a> {
         }
         // Rounding of the place and of the product with the matrix; the normal's goes with the square of the tangent.
         let aside = place.error_bound_m / self.texel_m + 4.0 * ULP * self.side as f64;
-        let deep = (place.error_bound_m + self.texel_m * (1.0 + held * held) / f64::from(1 << 14)) / self.range_m + 4.0 * ULP;
+        let deep = (place.error_bound_m + self.texel_m * (1.0 + held * held) / f64::from(1 << 14)) / self.depth_range_m + 4.0 * ULP;
         let ends = [[-1.0, -1.0], [1.0, -1.0], [-1.0, 1.0], [1.0, 1.0], [0.0, 0.0]];
         let shares = ends.map(|[x, y]| self.filtered(at + DVec2::new(x, y) * aside, depth + nudge.signum() * deep, fall));
         let pick = if nudge < 0.0 { f64::min } else { f64::max };

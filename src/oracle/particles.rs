@@ -14,7 +14,7 @@ use crate::{
     effects::{
         Stack,
         hooks::ROUNDING,
-        particles::{self, EVEN_SPEED, LATTICE_DRIFT, LATTICE_SHIFT, LEAN, Particles},
+        particles::{self, LATTICE_DRIFT, LATTICE_SHIFT, LEAN, Particles, SPEED_NORMALIZER},
         read,
     },
     frame::{ParticleReadback, ParticleState},
@@ -68,7 +68,7 @@ pub(super) fn flow_of(view: &View, stack: &Stack) -> ParticleTimeline {
         .as_deref()
         .filter(|particle_timeline| particle_timeline.stride == words.len())
         .cloned()
-        .unwrap_or_else(|| particles::steady(words, 0))
+        .unwrap_or_else(|| particles::constant_timeline(words, 0))
 }
 
 /// Where the particles of a stack truly are.
@@ -151,7 +151,7 @@ pub fn particle_timeline(p: &Particles, place: DVec3, step: u32) -> DVec3 {
         shares += share;
         share *= f64::from(p.persistence);
     }
-    sum * (EVEN_SPEED * f64::from(p.speed_mps) / shares)
+    sum * (SPEED_NORMALIZER * f64::from(p.speed_mps) / shares)
 }
 
 /// Where a place lies in the lattice of an octave.

@@ -179,7 +179,7 @@ impl<'a> Triangle<'a> {
             OrientedTriangle::clockwise(self.triangle_id, records).corner_under(at.x as i64, at.y as i64, radius)
         });
         let weights = self.weights.at(pixel, screen, self.shape, corner);
-        let (shares, edge_px) = self.weights.on_screen(pixel, screen, view, self.shape, corner);
+        let (shares, edge_distance_px) = self.weights.on_screen(pixel, screen, view, self.shape, corner);
         let depth_m = mixed(weights, self.depths_m);
         // Not the corners' mean: their weights are those of snapped corners, which puts it aside by up to half a unit.
         let position = on_ray(view, screen, depth_m);
@@ -204,11 +204,12 @@ impl<'a> Triangle<'a> {
             screen,
             pixel,
             shares,
-            edge_px,
+            edge_distance_px,
             depth_m,
-            pixel_m: view.ndc_axes[1].length() * 2.0 / f64::from(view.height) * if view.linear_depth_m.is_some() { 1.0 } else { depth_m },
+            pixel_size_m: view.ndc_axes[1].length() * 2.0 / f64::from(view.height)
+                * if view.linear_depth_m.is_some() { 1.0 } else { depth_m },
             flat_depth_m: self.depths_m.iter().sum::<f64>() / 3.0,
-            range_m: DVec2::from_array(view.scene_range_m),
+            depth_range_m: DVec2::from_array(view.scene_range_m),
             triangle_id: self.triangle_id,
             rank: 0.0,
             lit: 0.0,
@@ -372,14 +373,14 @@ impl Weights {
                 let areas = areas(corners, pixel, shape, corner);
                 let lengths = [(b, c), (c, a), (a, b)].map(|(from, to)| (to - from).length());
                 let sum: f64 = areas.iter().sum();
-                let edge_px = [0, 1, 2].map(|k| areas[k] / lengths[k]);
-                (DVec3::from_array(areas) / sum, DVec3::from_array(edge_px))
+                let edge_distance_px = [0, 1, 2].map(|k| areas[k] / lengths[k]);
+                (DVec3::from_array(areas) / sum, DVec3::from_array(edge_distance_px))
             }
             Self::Homogeneous(rows, _) => {
                 let p = DVec3::new(2.0 * screen.x - 1.0, 1.0 - 2.0 * screen.y, 1.0);
                 let steps = DVec2::new(2.0 / f64::from(view.width), 2.0 / f64::from(view.height));
-                let edge_px = rows.map(|row| p.dot(row).abs() / (row.truncate() * steps).length().max(1e-30));
-                (DVec3::from_array(self.at(pixel, screen, shape, corner)), DVec3::from_array(edge_px))
+                let edge_distance_px = rows.map(|row| p.dot(row).abs() / (row.truncate() * steps).length().max(1e-30));
+                (DVec3::from_array(self.at(pixel, screen, shape, corner)), DVec3::from_array(edge_distance_px))
             }
         }
     }

@@ -13,7 +13,7 @@ use crate::{
         Visibility,
     },
     effects::{
-        Conflict, Enabled, Stack,
+        Conflict, EnabledEffect, Stack,
         dots::LineSource,
         hooks::{Layers, Shape},
     },
@@ -24,7 +24,7 @@ use crate::{
     },
     shader::{
         glue::reads,
-        key::{Fetch, KernelKey, MASK_RECORDS, Order, deciding},
+        key::{Fetch, KernelKey, MASK_SETUPS, Order, deciding},
         library::Library,
     },
 };
@@ -290,7 +290,7 @@ pub fn plan(needs: &Needs, stack: &Stack, caps: &Caps, tuning: &Tuning, accuracy
     let reads_planes = stack.light().is_some()
         || stack.0.iter().any(|enabled| planes.iter().any(|member| reads(&Library::Embedded, enabled.effect, member)));
     let has_planes = reads_planes || !needs.normals_agree;
-    let effects: Vec<_> = stack.0.iter().map(|Enabled { effect, .. }| *effect).collect();
+    let effects: Vec<_> = stack.0.iter().map(|EnabledEffect { effect, .. }| *effect).collect();
     let key = KernelKey {
         fetch: if needs.indexed { Fetch::Indexed } else { Fetch::Direct },
         baked: if options.parameters == Parameters::Baked {
@@ -304,14 +304,14 @@ pub fn plan(needs: &Needs, stack: &Stack, caps: &Caps, tuning: &Tuning, accuracy
         order: Order::of(stack),
         dots: stack.dots().map(|dots| LineSource::of(dots.lines)),
         has_samples: effects.iter().any(|effect| effect.hooks.sample.is_some()),
-        sample_setups: deciding(&effects) + if has_mask { MASK_RECORDS } else { 0 },
+        sample_setups: deciding(&effects) + if has_mask { MASK_SETUPS } else { 0 },
         has_mask,
         effects,
         has_clipping,
         has_medium,
         has_large,
         single_draw: needs.draws == 1,
-        only_triangle_lists: !needs.topologies,
+        only_triangle_lists: !needs.has_strips_or_fans,
         u32_indices: needs.u32_indices,
         f32_positions: needs.f32_positions,
         f32_normals: needs.f32_normals,

@@ -11,7 +11,7 @@ use crate::{
         ShadowMapSize, ShadowTaps, Skinning, VertexTransform, Visibility, XraySums,
     },
     effects::{
-        Effect, Enabled, Stack,
+        Effect, EnabledEffect, Stack,
         dots::LineSource,
         hooks::{Layers, Shape},
         points, read,
@@ -97,7 +97,7 @@ pub(super) fn choose(
             );
             reasons.push(note(axis.name, why));
         } else {
-            let default = axis.abouts[options.get(axis)].trim().trim_end_matches('.');
+            let default = axis.option_abouts[options.get(axis)].trim().trim_end_matches('.');
             reasons.push(note(axis.name, format!("{}: {}", axis.words[options.get(axis)], lowered(default))));
         }
     }
@@ -219,7 +219,7 @@ fn carried(stack: &Stack, needs: &Needs) -> Option<String> {
 
 /// What in a picture hangs on floats even behind a strict vertex stage, if anything.
 fn floats(options: &AccuracyOptions, stack: &Stack, needs: &Needs, f32_positions: bool) -> Option<String> {
-    let reason = |Enabled { effect, words }: &Enabled| {
+    let reason = |EnabledEffect { effect, words }: &EnabledEffect| {
         let is_from_floats = effect.hooks.sample.is_some_and(|hook| hook.has_setup && (hook.is_from_floats)(words));
         let why = match () {
             () if effect.hooks.vertex.is_some() => "moves vertices in floats",

@@ -104,10 +104,10 @@ fn depth(option: DepthFormat, needs: &Needs) -> Prediction {
     // Smallest distance that always gives another key, at the far end: surfaces nearer to each other than that are confused,
     // and of a scene as deep as its box that share of pixels has one behind so close.
     let step_m = match option {
-        DepthFormat::Ndc16 => needs.per_depth_m(farthest) / 65_536.0,
-        DepthFormat::Log16 => needs.relative_m(farthest) / 2048.0,
-        DepthFormat::Log24 => needs.relative_m(farthest) / 524_288.0,
-        DepthFormat::Standard => needs.per_depth_m(farthest) / f64::from(1 << 24),
+        DepthFormat::Ndc16 => needs.depth_unit_m(farthest) / 65_536.0,
+        DepthFormat::Log16 => needs.doubling_span_m(farthest) / 2048.0,
+        DepthFormat::Log24 => needs.doubling_span_m(farthest) / 524_288.0,
+        DepthFormat::Standard => needs.depth_unit_m(farthest) / f64::from(1 << 24),
         _ => return Prediction::default(),
     };
     Prediction::wrong(1e6 * (step_m / span).min(1.0))
@@ -134,7 +134,7 @@ fn visibility(option: Visibility, needs: &Needs) -> Prediction {
         Visibility::Packed32 => {
             let lost = (64 - (needs.triangles | 1).leading_zeros()).saturating_sub(4);
             let [nearest, farthest] = needs.depth_m;
-            let step_m = needs.relative_m(farthest) * libm::exp2(f64::from(lost) - 23.0);
+            let step_m = needs.doubling_span_m(farthest) * libm::exp2(f64::from(lost) - 23.0);
             Prediction::wrong(1e6 * (step_m / (farthest - nearest).max(f64::MIN_POSITIVE)).min(1.0))
         }
         Visibility::Race => Prediction::wrong(f64::INFINITY),

@@ -27,7 +27,7 @@ impl Preset {
         Some(Arc::new(if self.animation.tracks().iter().any(is_steering) {
             particles::along((1..=frame.max(1)).map(|step| words_at(f64::from(step) / f64::from(particles.rate))), frame)
         } else {
-            particles::steady(&now, frame)
+            particles::constant_timeline(&now, frame)
         }))
     }
 }

@@ -9,7 +9,7 @@ use super::{
     migrate,
 };
 use crate::{
-    effects::{Conflict, EFFECTS, Effect, Enabled, Stack},
+    effects::{Conflict, EFFECTS, Effect, EnabledEffect, Stack},
     preset::{Preset, Test},
 };
 
@@ -193,7 +193,7 @@ impl Reader<'_> {
         Ok(())
     }
 
-    fn effect(&mut self, table: &dyn TableLike, enabled: &mut Enabled) -> Result<(), PresetError> {
+    fn effect(&mut self, table: &dyn TableLike, enabled: &mut EnabledEffect) -> Result<(), PresetError> {
         let prefix = format!("effects.{}.", enabled.effect.name);
         for (name, item) in table.iter() {
             let Some(field) = enabled.effect.field(name) else {

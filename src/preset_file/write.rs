@@ -8,7 +8,7 @@ use super::{
     keys::{KEYS, SECTIONS, Section},
 };
 use crate::{
-    effects::{EFFECTS, Effect, Enabled, Stack},
+    effects::{EFFECTS, Effect, EnabledEffect, Stack},
     preset::Preset,
 };
 
@@ -78,12 +78,12 @@ fn patch_effects(root: &mut Table, saved: &Stack, now: &Stack) {
     }
 }
 
-fn patch_effect(table: &mut dyn TableLike, saved: Option<&Enabled>, now: &Enabled) {
-    let defaults = Enabled::new(now.effect);
+fn patch_effect(table: &mut dyn TableLike, saved: Option<&EnabledEffect>, now: &EnabledEffect) {
+    let defaults = EnabledEffect::new(now.effect);
     let saved = saved.unwrap_or(&defaults);
     for field in now.effect.fields {
         let form = ValueType::of(field);
-        let written = |enabled: &Enabled| Some(form.write(&super::get(field, &enabled.words)));
+        let written = |enabled: &EnabledEffect| Some(form.write(&super::get(field, &enabled.words)));
         patch_value(table, field.name, written(saved), written(now), written(&defaults));
     }
 }

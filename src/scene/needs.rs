@@ -20,7 +20,7 @@ pub struct Needs {
     /// All indices are u32.
     pub u32_indices: bool,
     /// Strips or fans occur.
-    pub topologies: bool,
+    pub has_strips_or_fans: bool,
     /// Positions are all f32.
     pub f32_positions: bool,
     /// Normals are all f32.
@@ -87,7 +87,7 @@ impl Needs {
             draws: draws.len(),
             indexed: drawn().any(|p| p.indices.is_some()),
             u32_indices: drawn().all(|p| p.indices.is_some_and(|i| i.component == Component::U32 && i.stride == 4)),
-            topologies: drawn().any(|p| p.topology != Topology::List),
+            has_strips_or_fans: drawn().any(|p| p.topology != Topology::List),
             f32_positions: all_f32(|p| p.positions.component),
             f32_normals: all_f32(|p| p.normals.component),
             shadow: view.shadow,
@@ -123,12 +123,12 @@ impl Needs {
     }
 
     /// Metres that one unit of the depth buffer spans at a distance.
-    pub fn per_depth_m(&self, at_m: f64) -> f64 {
+    pub fn depth_unit_m(&self, at_m: f64) -> f64 {
         if self.perspective { at_m * at_m / self.near_m.max(f64::MIN_POSITIVE) } else { self.depth_m[1] - self.depth_m[0] }
     }
 
     /// Metres that a depth twice as far spans from a distance on: what a logarithm divides evenly.
-    pub fn relative_m(&self, at_m: f64) -> f64 {
+    pub fn doubling_span_m(&self, at_m: f64) -> f64 {
         if self.perspective { at_m } else { self.depth_m[1] - self.depth_m[0] }
     }
 
@@ -137,7 +137,7 @@ impl Needs {
         Self {
             draws: self.draws.max(2),
             u32_indices: false,
-            topologies: true,
+            has_strips_or_fans: true,
             f32_positions: false,
             f32_normals: false,
             colors: true,

@@ -60,7 +60,7 @@ impl ParticleTimeline {
     }
 
     /// Did the other flow take the same first `frames` steps?
-    pub fn begins_like(&self, other: &Self, frames: u32) -> bool {
+    pub fn shares_steps_with(&self, other: &Self, frames: u32) -> bool {
         let steps = self.len().max(other.len()).min(frames.max(1) as usize) as u32;
         self.stride == other.stride && (1..=steps).all(|step| self.words(step) == other.words(step))
     }

@@ -1,8 +1,8 @@
 //! Frames: which passes draw a picture, and in which order.
 
 use super::{
-    key::{KernelKey, Phase},
-    pass::{Entries, Pass, Round},
+    key::{KernelKey, RasterPhase},
+    pass::{CullPhase, Pass, TriangleSource},
 };
 use crate::{accuracy::Culling, effects::hooks::Shape};
 
@@ -13,12 +13,12 @@ impl KernelKey {
     }
 
     /// Rounds in which meshlets are drawn.
-    const fn rounds(&self) -> &'static [Round] {
+    const fn rounds(&self) -> &'static [CullPhase] {
         match self.options.culling {
             Culling::None => &[],
-            Culling::Frustum => &[Round::Only],
-            Culling::Hiz => &[Round::Before],
-            Culling::TwoPass => &[Round::Seen, Round::Behind],
+            Culling::Frustum => &[CullPhase::FrustumOnly],
+            Culling::Hiz => &[CullPhase::PreviousFrame],
+            Culling::TwoPass => &[CullPhase::Early, CullPhase::Late],
         }
     }
 
@@ -41,11 +41,11 @@ impl KernelKey {
 
     /// Every pass of what a light sees of this kernel's scene: depth alone. Whatever bends has been bent for the picture.
     pub fn light_frame(&self) -> Vec<Pass> {
-        self.passes(&[Phase::Depth]).into_iter().filter(|pass| !matches!(pass, Pass::Particles | Pass::Skin)).collect()
+        self.passes(&[RasterPhase::Depth]).into_iter().filter(|pass| !matches!(pass, Pass::Particles | Pass::Skin)).collect()
     }
 
     /// Passes up to the last of the given raster phases.
-    pub fn passes(&self, phases: &[Phase]) -> Vec<Pass> {
+    pub fn passes(&self, phases: &[RasterPhase]) -> Vec<Pass> {
         let mut passes = Vec::new();
         if self.has_particles {
             passes.push(Pass::Particles);
@@ -59,13 +59,13 @@ impl KernelKey {
             passes.push(Pass::Project);
         }
         if self.sample_setups > 0 {
-            passes.push(Pass::SampleSetup(Entries::Triangles));
+            passes.push(Pass::SampleSetup(TriangleSource::Triangles));
         }
         let has_walks = phases.iter().any(|phase| !phase.is_tiled());
         let Some((&first, others)) = phases.split_first() else { return passes };
         for &round in self.rounds() {
-            if round == Round::Behind {
-                passes.extend([Pass::DepthReduce, Pass::Rounds { is_over: false }]);
+            if round == CullPhase::Late {
+                passes.extend([Pass::DepthReduce, Pass::AdvanceQueues { reopens_queues: false }]);
             }
             passes.extend([Pass::Cull(round), Pass::Args]);
             if !is_whole {
@@ -77,15 +77,15 @@ impl KernelKey {
             self.visit(first, true, has_walks, &mut passes);
         }
         if self.options.culling == Culling::TwoPass && !others.is_empty() {
-            passes.extend([Pass::Rounds { is_over: true }, Pass::Args]);
+            passes.extend([Pass::AdvanceQueues { reopens_queues: true }, Pass::Args]);
         }
         others.iter().for_each(|&phase| self.visit(phase, false, has_walks, &mut passes));
         passes
     }
 
     /// The passes of a raster phase; the first one fills the queues.
-    fn visit(&self, phase: Phase, is_first: bool, has_walks: bool, passes: &mut Vec<Pass>) {
-        if phase == Phase::Tiles {
+    fn visit(&self, phase: RasterPhase, is_first: bool, has_walks: bool, passes: &mut Vec<Pass>) {
+        if phase == RasterPhase::Tiles {
             passes.push(Pass::RasterTiles);
             return;
         }
@@ -97,7 +97,7 @@ impl KernelKey {
             passes.push(Pass::Args);
         }
         if is_first && self.has_clipping && self.sample_setups > 0 {
-            passes.push(Pass::SampleSetup(Entries::ClippedTriangles));
+            passes.push(Pass::SampleSetup(TriangleSource::ClippedTriangles));
         }
         if is_first && self.has_large && has_walks {
             passes.extend([Pass::TileLarge, Pass::Args]);
@@ -109,9 +109,9 @@ impl KernelKey {
             passes.push(if phase.is_bin() { Pass::BinLarge(phase) } else { Pass::RasterLarge(phase) });
         }
         match phase {
-            Phase::Tally => passes.extend([Pass::OrderSums, Pass::OrderLimit, Pass::OrderRanks]),
-            Phase::BoundaryTriangle => passes.push(Pass::OrderCut),
-            Phase::BinCount => passes.push(Pass::BinScan),
+            RasterPhase::CountSamples => passes.extend([Pass::OrderSums, Pass::OrderLimit, Pass::OrderRanks]),
+            RasterPhase::BoundaryTriangle => passes.push(Pass::OrderCut),
+            RasterPhase::BinCount => passes.push(Pass::BinScan),
             _ => {}
         }
     }

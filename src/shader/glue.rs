@@ -3,7 +3,7 @@
 use std::fmt::Write;
 
 use crate::{
-    effects::{Effect, Enabled},
+    effects::{Effect, EnabledEffect},
     params::{Field, Kind},
     shader::library::Library,
 };
@@ -142,7 +142,7 @@ pub fn reads(library: &Library, effect: &Effect, member: &str) -> bool {
 }
 
 /// Bytes of the `Effects` uniform for this stack; empty when there is none.
-pub fn uniform_bytes(stack: &[Enabled]) -> Vec<u8> {
+pub fn uniform_bytes(stack: &[EnabledEffect]) -> Vec<u8> {
     let mut bytes = Vec::new();
     for enabled in stack {
         bytes.extend_from_slice(bytemuck::cast_slice(&enabled.words));

@@ -8,7 +8,7 @@ use crate::{
         Visibility,
     },
     effects::{
-        Effect, Enabled, Stack,
+        Effect, EnabledEffect, Stack,
         dots::LineSource,
         draw_order::Mode,
         hooks::{Layers, Shape},
@@ -18,7 +18,7 @@ use crate::{
     scene::meshlets::MESHLET_TRIANGLES,
 };
 
-pub use super::pass::{Entries, Pass, Phase, Round};
+pub use super::pass::{CullPhase, Pass, RasterPhase, TriangleSource};
 
 /// How corners find their vertices.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -79,7 +79,7 @@ pub struct KernelKey {
     pub dots: Option<LineSource>,
     /// A sample effect may leave samples out.
     pub has_samples: bool,
-    /// Records that are settled per triangle: one of every sample effect that does, and [`MASK_RECORDS`] of a mask.
+    /// Records that are settled per triangle: one of every sample effect that does, and [`MASK_SETUPS`] of a mask.
     pub sample_setups: u32,
     /// Some triangle may need clipping.
     pub has_clipping: bool,
@@ -128,7 +128,7 @@ pub struct KernelKey {
 }
 
 /// Records that a mask settles per triangle: where its corners lie in the image.
-pub const MASK_RECORDS: u32 = 2;
+pub const MASK_SETUPS: u32 = 2;
 
 /// Effects that settle something per triangle.
 pub fn deciding(effects: &[&'static Effect]) -> u32 {
@@ -141,7 +141,7 @@ impl KernelKey {
         Self {
             fetch,
             options: AccuracyOptions { visibility, ..AccuracyOptions::default() },
-            layers: Stack(effects.iter().map(|effect| Enabled::new(effect)).collect()).layers(u64::MAX),
+            layers: Stack(effects.iter().map(|effect| EnabledEffect::new(effect)).collect()).layers(u64::MAX),
             shape: Shape::Triangles,
             order: Order::Free,
             dots: effects.iter().any(|effect| effect.hooks.has_lines).then_some(LineSource::Edges),
@@ -237,11 +237,11 @@ impl KernelKey {
     }
 
     /// Raster phases that find out where the drawing stops, before anything is drawn.
-    pub const fn lead(&self) -> &'static [Phase] {
+    pub const fn lead(&self) -> &'static [RasterPhase] {
         match self.order {
             Order::Free => &[],
-            Order::Submission => &[Phase::Tally, Phase::BoundaryTriangle],
-            Order::Scheduler => &[Phase::Tally],
+            Order::Submission => &[RasterPhase::CountSamples, RasterPhase::BoundaryTriangle],
+            Order::Scheduler => &[RasterPhase::CountSamples],
         }
     }
 
@@ -272,17 +272,17 @@ impl KernelKey {
     }
 
     /// The raster phases of one frame, in order.
-    pub fn phases(&self) -> Vec<Phase> {
-        let nearest: &[Phase] = match (self.layers, self.options.visibility) {
-            (Some(Layers::Race), _) | (_, Visibility::Race) => &[Phase::Race],
-            (_, Visibility::Packed32) => &[Phase::Packed32],
-            (_, Visibility::Split32) => &[Phase::Depth, Phase::TriangleId],
-            (_, Visibility::Packed64) => &[Phase::Packed],
-            (_, Visibility::Tiled) => &[Phase::BinCount, Phase::BinFill, Phase::Tiles],
+    pub fn phases(&self) -> Vec<RasterPhase> {
+        let nearest: &[RasterPhase] = match (self.layers, self.options.visibility) {
+            (Some(Layers::Race), _) | (_, Visibility::Race) => &[RasterPhase::Race],
+            (_, Visibility::Packed32) => &[RasterPhase::Packed32],
+            (_, Visibility::Split32) => &[RasterPhase::Depth, RasterPhase::TriangleId],
+            (_, Visibility::Packed64) => &[RasterPhase::Packed],
+            (_, Visibility::Tiled) => &[RasterPhase::BinCount, RasterPhase::BinFill, RasterPhase::Tiles],
         };
-        let layers: &[Phase] = match self.layers {
-            Some(Layers::Xray { .. }) => &[Phase::Sum],
-            Some(Layers::Overdraw) => &[Phase::Count],
+        let layers: &[RasterPhase] = match self.layers {
+            Some(Layers::Xray { .. }) => &[RasterPhase::Sum],
+            Some(Layers::Overdraw) => &[RasterPhase::Count],
             Some(Layers::Race) | None => &[],
         };
         [self.lead(), nearest, layers].concat()
@@ -301,7 +301,7 @@ impl KernelKey {
     fn is_first(&self, pass: Pass) -> bool {
         match self.lead().first() {
             Some(&first) => pass.phase() == Some(first),
-            None => !matches!(pass.phase(), Some(Phase::TriangleId | Phase::BinFill)) && !self.is_again(pass),
+            None => !matches!(pass.phase(), Some(RasterPhase::TriangleId | RasterPhase::BinFill)) && !self.is_again(pass),
         }
     }
 
@@ -309,8 +309,8 @@ impl KernelKey {
     /// unless the picture itself shows the count.
     fn is_again(&self, pass: Pass) -> bool {
         match pass.phase() {
-            Some(Phase::Sum) => true,
-            Some(Phase::Count) => self.layers == Some(Layers::Overdraw),
+            Some(RasterPhase::Sum) => true,
+            Some(RasterPhase::Count) => self.layers == Some(Layers::Overdraw),
             _ => false,
         }
     }
@@ -336,17 +336,20 @@ impl KernelKey {
             ("DROPPED_FLAGS", self.dropped_flags().into()),
             ("IS_BRANCHLESS", flag(self.listed_tiles)),
             ("IS_TWO_PASS", flag(self.options.culling == Culling::TwoPass)),
-            ("COUNTS_CULLED", flag(pass != Pass::Cull(Round::Seen))),
-            ("REOPENS_QUEUES", flag(pass == Pass::Rounds { is_over: true })),
+            ("COUNTS_CULLED", flag(pass != Pass::Cull(CullPhase::Early))),
+            ("REOPENS_QUEUES", flag(pass == Pass::AdvanceQueues { reopens_queues: true })),
             ("MESHLET_TRIANGLES", MESHLET_TRIANGLES as f64),
-            ("IS_CLIPPED_TRIANGLES", flag(pass == Pass::SampleSetup(Entries::ClippedTriangles))),
+            ("IS_CLIPPED_TRIANGLES", flag(pass == Pass::SampleSetup(TriangleSource::ClippedTriangles))),
             ("SAMPLE_SETUPS", self.sample_setups.into()),
             ("SHAPE", (self.shape as u32).into()),
             ("GROUP_SIZE", self.group_size.into()),
             ("TILE_SIDE", self.tile_side().into()),
             ("MAX_SMALL_SAMPLES", self.max_small_samples.into()),
             ("MAX_SMALL_SIDE", self.max_small_side.into()),
-            ("INVOCATIONS_PER_TRIANGLE", if pass.phase().is_some_and(Phase::is_bin) { 1 } else { self.invocations_per_triangle }.into()),
+            (
+                "INVOCATIONS_PER_TRIANGLE",
+                if pass.phase().is_some_and(RasterPhase::is_bin) { 1 } else { self.invocations_per_triangle }.into(),
+            ),
             ("MAX_LIST_ENTRIES", self.max_list_entries.into()),
             ("EARLY_LOAD", flag(self.early_load)),
             ("ID_BITS", self.id_bits.into()),
@@ -377,7 +380,7 @@ impl fmt::Display for KernelKey {
         };
         let coverage = self.options.coverage.name();
         write!(f, "raster[fetch={fetch} coverage={coverage} visibility={visibility} small={}", self.max_small_samples)?;
-        for (axis, word) in self.options.unusual().filter(|(axis, _)| !matches!(axis.name, "coverage" | "visibility")) {
+        for (axis, word) in self.options.non_default().filter(|(axis, _)| !matches!(axis.name, "coverage" | "visibility")) {
             write!(f, " {}={word}", axis.name)?;
         }
         match self.layers {

@@ -7,17 +7,17 @@ pub enum Pass {
     Skin,
     Project,
     /// Which meshlets are drawn.
-    Cull(Round),
+    Cull(CullPhase),
     /// The vertices of those alone.
     ProjectMeshlets,
     /// The farthest depth of every tile, behind which meshlets hide.
     DepthReduce,
     /// The end of the first round, or of both.
-    Rounds {
-        is_over: bool,
+    AdvanceQueues {
+        reopens_queues: bool,
     },
     /// What sample effects settle about triangles, or about pieces.
-    SampleSetup(Entries),
+    SampleSetup(TriangleSource),
     /// Samples of every block of triangles.
     OrderSums,
     /// In which triangle the limit falls.
@@ -26,18 +26,18 @@ pub enum Pass {
     OrderRanks,
     /// At which pixel of that triangle the drawing stops.
     OrderCut,
-    RasterSmall(Phase),
+    RasterSmall(RasterPhase),
     /// Corners as discs, instead of the triangles.
-    RasterPoints(Phase),
+    RasterPoints(RasterPhase),
     Args,
     Clip,
     TileLarge,
-    RasterMedium(Phase),
-    RasterLarge(Phase),
+    RasterMedium(RasterPhase),
+    RasterLarge(RasterPhase),
     /// Lists of the tiles that medium triangles touch.
-    BinMedium(Phase),
+    BinMedium(RasterPhase),
     /// The same of large ones.
-    BinLarge(Phase),
+    BinLarge(RasterPhase),
     /// Where the list of each tile begins.
     BinScan,
     /// Every tile by itself, from its list.
@@ -59,14 +59,14 @@ pub enum Pass {
 
 /// Over what a pass runs.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub enum Entries {
+pub enum TriangleSource {
     Triangles,
     ClippedTriangles,
 }
 
 /// In which round of a frame meshlets are culled.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub enum Round {
+pub enum CullPhase {
     /// The only one: nothing hides anything.
     Only,
     /// The only one: what the picture before hides is left out.
@@ -79,7 +79,7 @@ pub enum Round {
 
 /// What a raster pass writes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub enum Phase {
+pub enum RasterPhase {
     /// Key and triangle id at once.
     Packed,
     /// Triangle id and what fits of the key, in one word.
@@ -95,7 +95,7 @@ pub enum Phase {
     /// Key and triangle id without atomics.
     Race,
     /// Samples per triangle.
-    Tally,
+    CountSamples,
     /// The samples of the triangle in which the drawing stops.
     BoundaryTriangle,
     /// How many triangles each tile has to look at.
@@ -106,7 +106,7 @@ pub enum Phase {
     Tiles,
 }
 
-impl Phase {
+impl RasterPhase {
     /// Does it put triangles on lists instead of visiting their samples?
     pub const fn is_bin(self) -> bool {
         matches!(self, Self::BinCount | Self::BinFill)
@@ -128,7 +128,7 @@ impl Pass {
             Self::Cull(_) => "cull",
             Self::ProjectMeshlets => "project_meshlets",
             Self::DepthReduce => "depth_reduce",
-            Self::Rounds { .. } => "rounds",
+            Self::AdvanceQueues { .. } => "rounds",
             Self::SampleSetup(_) => "decide",
             Self::OrderSums => "order_sums",
             Self::OrderLimit => "order_limit",
@@ -168,11 +168,11 @@ impl Pass {
         matches!(self, Self::DotsEnds | Self::DotsCull | Self::DotsArgs | Self::DotsDraw | Self::DotsProbe)
     }
 
-    pub const fn phase(self) -> Option<Phase> {
+    pub const fn phase(self) -> Option<RasterPhase> {
         match self {
             Self::RasterSmall(phase) | Self::RasterPoints(phase) | Self::RasterMedium(phase) | Self::RasterLarge(phase) => Some(phase),
             Self::BinMedium(phase) | Self::BinLarge(phase) => Some(phase),
-            Self::RasterTiles => Some(Phase::Tiles),
+            Self::RasterTiles => Some(RasterPhase::Tiles),
             _ => None,
         }
     }
@@ -180,9 +180,9 @@ impl Pass {
     /// Label for profilers and tables.
     pub fn label(self) -> String {
         match self {
-            Self::SampleSetup(Entries::ClippedTriangles) => return "decide pieces".into(),
-            Self::Cull(Round::Seen) => return "cull seen".into(),
-            Self::Cull(Round::Behind) => return "cull behind".into(),
+            Self::SampleSetup(TriangleSource::ClippedTriangles) => return "decide pieces".into(),
+            Self::Cull(CullPhase::Early) => return "cull seen".into(),
+            Self::Cull(CullPhase::Late) => return "cull behind".into(),
             _ => {}
         }
         let stem = match self {
@@ -191,16 +191,16 @@ impl Pass {
             _ => self.stem(),
         };
         match self.phase() {
-            Some(Phase::BinCount) => format!("{stem} count tiles"),
-            Some(Phase::BinFill) => format!("{stem} list tiles"),
-            Some(Phase::Depth) => format!("{} depth", self.stem()),
-            Some(Phase::TriangleId) => format!("{} triangle id", self.stem()),
-            Some(Phase::Count) => format!("{} count", self.stem()),
-            Some(Phase::Tally) => format!("{} tally", self.stem()),
-            Some(Phase::BoundaryTriangle) => format!("{} straddle", self.stem()),
-            Some(Phase::Sum) => format!("{} sum", self.stem()),
-            Some(Phase::Race) => format!("{} race", self.stem()),
-            Some(Phase::Packed | Phase::Packed32 | Phase::Tiles) | None => self.stem().into(),
+            Some(RasterPhase::BinCount) => format!("{stem} count tiles"),
+            Some(RasterPhase::BinFill) => format!("{stem} list tiles"),
+            Some(RasterPhase::Depth) => format!("{} depth", self.stem()),
+            Some(RasterPhase::TriangleId) => format!("{} triangle id", self.stem()),
+            Some(RasterPhase::Count) => format!("{} count", self.stem()),
+            Some(RasterPhase::CountSamples) => format!("{} tally", self.stem()),
+            Some(RasterPhase::BoundaryTriangle) => format!("{} straddle", self.stem()),
+            Some(RasterPhase::Sum) => format!("{} sum", self.stem()),
+            Some(RasterPhase::Race) => format!("{} race", self.stem()),
+            Some(RasterPhase::Packed | RasterPhase::Packed32 | RasterPhase::Tiles) | None => self.stem().into(),
         }
     }
 }

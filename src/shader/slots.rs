@@ -1,6 +1,6 @@
 //! Slots: which file of `shaders/slots` fills each part that a pass leaves open.
 
-use super::key::{Fetch, KernelKey, Layout, Order, Pass, Phase, Round};
+use super::key::{CullPhase, Fetch, KernelKey, Layout, Order, Pass, RasterPhase};
 use crate::{
     accuracy::{DepthFormat, DotCulling, SampleCounter, VertexTransform},
     effects::{
@@ -18,7 +18,16 @@ impl KernelKey {
         };
         let queues = if self.has_queues() { "kept" } else { "none" };
         let is_marking = self.listed_tiles
-            && !matches!(pass.phase(), Some(Phase::TriangleId | Phase::Count | Phase::Sum | Phase::Tally | Phase::BoundaryTriangle));
+            && !matches!(
+                pass.phase(),
+                Some(
+                    RasterPhase::TriangleId
+                        | RasterPhase::Count
+                        | RasterPhase::Sum
+                        | RasterPhase::CountSamples
+                        | RasterPhase::BoundaryTriangle
+                )
+            );
         let marks = if is_marking { "kept" } else { "none" };
         let pixels = if self.listed_tiles { "listed" } else { "all" };
         let pieces = if self.has_clipping { "kept" } else { "none" };
@@ -45,7 +54,7 @@ impl KernelKey {
             Layout::Word => "packed32",
             Layout::Pairs => "packed64",
         };
-        let is_bin = pass.phase().is_some_and(Phase::is_bin);
+        let is_bin = pass.phase().is_some_and(RasterPhase::is_bin);
         let cells = match self.shape {
             Shape::Points => "points",
             Shape::Triangles if self.has_large => "all",
@@ -115,7 +124,7 @@ impl KernelKey {
             ("sums", format!("slots/sums/{layout}")),
             ("walk", format!("slots/walk/{walk}")),
             ("discs", format!("slots/discs/{walk}")),
-            ("bins", format!("slots/bins/{}", if pass.phase() == Some(Phase::BinFill) { "fill" } else { "count" })),
+            ("bins", format!("slots/bins/{}", if pass.phase() == Some(RasterPhase::BinFill) { "fill" } else { "count" })),
             ("cells", format!("slots/cells/{cells}")),
             ("delay", format!("slots/delay/{}", if self.layers == Some(Layers::Race) { "raced" } else { "none" })),
             ("shading", format!("slots/shading/{shading}")),
@@ -124,16 +133,16 @@ impl KernelKey {
         ];
         if let Some(phase) = pass.phase() {
             let file = match phase {
-                Phase::Packed => "packed64",
-                Phase::Packed32 => "packed32",
-                Phase::Depth => "split32_depth",
-                Phase::TriangleId => "split32_owner",
-                Phase::Count => "count",
-                Phase::Tally => "tally",
-                Phase::BoundaryTriangle => "straddle",
-                Phase::Sum => "sum",
-                Phase::Race => "race",
-                Phase::BinCount | Phase::BinFill | Phase::Tiles => return slots,
+                RasterPhase::Packed => "packed64",
+                RasterPhase::Packed32 => "packed32",
+                RasterPhase::Depth => "split32_depth",
+                RasterPhase::TriangleId => "split32_owner",
+                RasterPhase::Count => "count",
+                RasterPhase::CountSamples => "tally",
+                RasterPhase::BoundaryTriangle => "straddle",
+                RasterPhase::Sum => "sum",
+                RasterPhase::Race => "race",
+                RasterPhase::BinCount | RasterPhase::BinFill | RasterPhase::Tiles => return slots,
             };
             slots.push(("visibility", format!("slots/visibility/{file}")));
         }
@@ -143,8 +152,8 @@ impl KernelKey {
     /// The file of the order slot: tickets are drawn once, where depth is decided, and counts count everything.
     fn order_file(&self, pass: Pass) -> &'static str {
         match (self.order, pass.phase()) {
-            (_, Some(Phase::BoundaryTriangle)) => "straddler",
-            (Order::Free, _) | (_, Some(Phase::Tally)) | (Order::Scheduler, Some(Phase::TriangleId)) => "free",
+            (_, Some(RasterPhase::BoundaryTriangle)) => "straddler",
+            (Order::Free, _) | (_, Some(RasterPhase::CountSamples)) | (Order::Scheduler, Some(RasterPhase::TriangleId)) => "free",
             _ if self.options.sample_counter == SampleCounter::Racy => "racy",
             (Order::Submission, _) => "submission",
             (Order::Scheduler, _) => "scheduler",
@@ -155,9 +164,9 @@ impl KernelKey {
 /// The file of the occlusion slot.
 fn occlusion(pass: Pass) -> &'static str {
     match pass {
-        Pass::Cull(Round::Before) => "before",
-        Pass::Cull(Round::Seen) => "seen",
-        Pass::Cull(Round::Behind) => "behind",
+        Pass::Cull(CullPhase::PreviousFrame) => "before",
+        Pass::Cull(CullPhase::Early) => "seen",
+        Pass::Cull(CullPhase::Late) => "behind",
         _ => "none",
     }
 }

@@ -8,7 +8,7 @@ use super::{
     hold, pinned, stack, tunings,
 };
 use crate::{
-    effects::{Effect, Enabled, Stack},
+    effects::{Effect, EnabledEffect, Stack},
     frame::NO_TRIANGLE,
     gpu::Capture,
     measure::compare,
@@ -123,7 +123,7 @@ fn a_day_later(context: &mut CaseContext) -> Result<(), EarlyEnd> {
         animation.put(Track::new(facet, amount, vec![key(late_s, 0.0), key(late_s + 1.0, 1.0)]).map_err(sentence)?);
         Ok(Preset {
             spin_deg_per_s: 90.0,
-            stack: Stack(vec![Enabled::new(facet)]),
+            stack: Stack(vec![EnabledEffect::new(facet)]),
             animation,
             clock: Clock { time_s: late_s + 0.37, ..Clock::default() },
             ..Preset::default()

@@ -11,7 +11,7 @@ use rasterlab::{
     gpu::uniforms::{CounterRecord, DrawRecord, FrameUniform, GpuRecord, LightUniform, ScalingUniform},
     shader::{
         Fetch, KernelKey, Pass,
-        key::{Phase, Round},
+        key::{RasterPhase, Round},
         library::Library,
         link,
         reflect::{self, Reflected},
@@ -33,7 +33,7 @@ fn check_twin<T: GpuRecord>(reflected: &Reflected) {
 
 #[test]
 fn uniforms_and_records_agree() {
-    let small = reflected(Pass::RasterSmall(Phase::Depth), vec![]);
+    let small = reflected(Pass::RasterSmall(RasterPhase::Depth), vec![]);
     check_twin::<FrameUniform>(&small);
     check_twin::<DrawRecord>(&small);
     check_twin::<CounterRecord>(&small);
@@ -45,7 +45,7 @@ fn uniforms_and_records_agree() {
     let skin = reflected(Pass::Skin, vec![]);
     check_twin::<DeformRecord>(&skin);
     check_twin::<ShapeRecord>(&skin);
-    let cull = reflected(Pass::Cull(Round::Behind), vec![]);
+    let cull = reflected(Pass::Cull(CullPhase::Late), vec![]);
     check_twin::<MeshletRecord>(&cull);
     check_twin::<InstanceRecord>(&cull);
     check_twin::<CullingUniform>(&cull);

@@ -10,7 +10,7 @@ use rasterlab::{
     },
     shader::{
         Fetch, KernelKey, Pass,
-        key::{Order, Phase},
+        key::{Order, RasterPhase},
         library::Library,
         link::{self, Linked},
         reflect::{self, BindingKind},
@@ -29,7 +29,7 @@ fn key(fetch: Fetch, visibility: Visibility, has_queues: bool, effects: Vec<&'st
 
 fn all_passes(key: &KernelKey) -> Vec<Pass> {
     let mut passes = key.frame();
-    passes.extend(key.passes(&[Phase::Count]));
+    passes.extend(key.passes(&[RasterPhase::Count]));
     if key.dots.is_some() {
         passes.push(Pass::DotsProbe);
     }
@@ -52,7 +52,7 @@ fn linked(key: &KernelKey, pass: Pass) -> Linked {
 
 /// Validates one pass and returns the number of storage buffers it binds.
 fn validate(key: &KernelKey, pass: Pass) -> usize {
-    let int64 = pass.phase() == Some(Phase::Packed);
+    let int64 = pass.phase() == Some(RasterPhase::Packed);
     let linked = linked(key, pass);
     let reflected = reflect::reflect(&linked, int64).unwrap_or_else(|error| panic!("{} of {key}: {error}", pass.label()));
     let bindings = reflected.bindings(pass.entry());

@@ -413,7 +413,7 @@ fn a_scene_of_plain_colours_has_no_texture_and_no_word_of_one() {
             link::link(&Library::Embedded, &root, key, &key.slots(pass)).expect("every file is there").text
         };
         // What a mask adds are a texture and records behind the vertices; storage buffers stay within the portable eight.
-        let masked = KernelKey { has_mask: true, sample_setups: painted.sample_setups + key::MASK_RECORDS, ..painted.clone() };
+        let masked = KernelKey { has_mask: true, sample_setups: painted.sample_setups + key::MASK_SETUPS, ..painted.clone() };
         for pass in masked.frame() {
             assert!(!text(&painted, pass).contains("mask_alpha"), "{}", pass.label());
             let root = format!("passes/{}", pass.stem());

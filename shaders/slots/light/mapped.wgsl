@@ -8,7 +8,7 @@ struct Light {
     row: vec4f,    // texels down
     depth: vec4f,  // reversed depth: 1 near the light
     texel_m: f32,
-    range_m: f32,  // metres from depth 0 to depth 1
+    depth_range_m: f32,  // metres from depth 0 to depth 1
     side: u32,     // texels
     spare: u32,
 }
@@ -41,10 +41,10 @@ fn light_filled(surface: Surface) -> Surface {
     var s = surface;
     let p = vec4f(s.position, 1.0);
     let at = vec2f(dot(light.column, p), dot(light.row, p));
-    let texel_depth = light.texel_m / light.range_m;
+    let texel_depth = light.texel_m / light.depth_range_m;
     // The plane of the triangle: how deep it falls from texel to texel.
     let across = vec2f(dot(light.column.xyz, s.flat_normal), dot(light.row.xyz, s.flat_normal)) * light.texel_m;
-    let along = dot(light.depth.xyz, s.flat_normal) * light.range_m;
+    let along = dot(light.depth.xyz, s.flat_normal) * light.depth_range_m;
     let slant = across / select(max(along, 1e-3), min(along, -1e-3), along < 0.0);
     let tangent = length(slant);
     let held = min(tangent, MAX_SHADOW_SLOPE);

@@ -30,17 +30,17 @@ pub struct Surface {
     pub pixel: DVec2,
     /// Shares of the three corners at the sample, measured on the screen: 1 at the corner, 0 on the opposite edge. Of a
     /// triangle that was clipped, measured on its plane.
-    pub shares: DVec3,
+    pub barycentrics: DVec3,
     /// Distance of the sample from the edge opposite each corner, pixels.
-    pub edge_px: DVec3,
+    pub edge_distance_px: DVec3,
     /// Distance from the eye along the viewing direction, metres.
     pub depth_m: f64,
     /// Side of a pixel at the sample's depth, metres, across the view.
-    pub pixel_m: f64,
+    pub pixel_size_m: f64,
     /// Mean of `depth_m` over the triangle's corners.
     pub flat_depth_m: f64,
     /// Nearest and farthest `depth_m` of the scene's box.
-    pub range_m: DVec2,
+    pub depth_range_m: DVec2,
     /// Global triangle id.
     pub triangle_id: u32,
     /// Share of all samples that were drawn before the triangle id's first, where a draw order is kept; else 0.
