@@ -200,7 +200,7 @@ impl Lab<'_> {
             expected = Some(verdict.expected);
         }
         let (Some(expected), Some(key)) = (expected, self.first_key(&entries)) else { return Ok((entries, missing)) };
-        if key.has_particles {
+        if key.generated.has_particles {
             missing.extend(["naive", "hardware"].map(|name| (name.to_owned(), "it draws what a file has, and no particles".to_owned())));
             return Ok((entries, missing));
         }

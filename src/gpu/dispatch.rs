@@ -2,7 +2,10 @@
 
 use crate::{
     scene::camera::View,
-    shader::key::{KernelKey, Pass, TriangleSource},
+    shader::{
+        key::KernelKey,
+        pass::{Pass, TriangleSource},
+    },
 };
 
 /// How many workgroups a pass takes.
@@ -24,19 +27,19 @@ pub fn dispatch(
     key: &KernelKey,
 ) -> Dispatch {
     match pass {
-        Pass::Particles => Dispatch::Direct(folded(particles.div_ceil(key.group_size))),
-        Pass::Skin => Dispatch::Direct(folded(deformed.div_ceil(key.group_size))),
-        Pass::Project => Dispatch::Direct(folded(vertices.div_ceil(key.group_size))),
-        Pass::Cull(_) => Dispatch::Direct(folded(meshlets.div_ceil(key.group_size))),
+        Pass::Particles => Dispatch::Direct(folded(particles.div_ceil(key.work.group_size))),
+        Pass::Skin => Dispatch::Direct(folded(deformed.div_ceil(key.work.group_size))),
+        Pass::Project => Dispatch::Direct(folded(vertices.div_ceil(key.work.group_size))),
+        Pass::Cull(_) => Dispatch::Direct(folded(meshlets.div_ceil(key.work.group_size))),
         Pass::DepthReduce => Dispatch::Direct([view.width.div_ceil(64), view.height.div_ceil(64)]),
         Pass::AdvanceQueues { .. } => Dispatch::Direct([1, 1]),
         Pass::ProjectMeshlets => Dispatch::Indirect(72),
         Pass::RasterSmall(_) if key.culls() => Dispatch::Indirect(72),
         Pass::RasterPoints(phase) if !phase.is_bin() => {
-            Dispatch::Direct(folded(triangles.saturating_mul(key.invocations_per_triangle).div_ceil(key.group_size)))
+            Dispatch::Direct(folded(triangles.saturating_mul(key.work.invocations_per_triangle).div_ceil(key.work.group_size)))
         }
-        Pass::RasterSmall(_) | Pass::RasterPoints(_) => Dispatch::Direct(folded(triangles.div_ceil(key.group_size))),
-        Pass::SampleSetup(TriangleSource::Triangles) => Dispatch::Direct(folded(triangles.div_ceil(key.group_size))),
+        Pass::RasterSmall(_) | Pass::RasterPoints(_) => Dispatch::Direct(folded(triangles.div_ceil(key.work.group_size))),
+        Pass::SampleSetup(TriangleSource::Triangles) => Dispatch::Direct(folded(triangles.div_ceil(key.work.group_size))),
         Pass::SampleSetup(TriangleSource::ClippedTriangles) => Dispatch::Indirect(60),
         Pass::OrderSums | Pass::OrderRanks => Dispatch::Direct(folded(triangles.div_ceil(1024))),
         Pass::OrderLimit | Pass::OrderCut => Dispatch::Direct([1, 1]),
@@ -52,7 +55,7 @@ pub fn dispatch(
             unreachable!("how many dots there are, only their store knows")
         }
         Pass::ListTiles => Dispatch::Direct(folded((view.width.div_ceil(8) * view.height.div_ceil(8)).div_ceil(64))),
-        Pass::Resolve if key.listed_tiles => Dispatch::Indirect(48),
+        Pass::Resolve if key.work.listed_tiles => Dispatch::Indirect(48),
         Pass::Scale => Dispatch::Direct(shown.map(|side| side.div_ceil(8))),
         Pass::Resolve => Dispatch::Direct([view.width.div_ceil(key.tile_side()), view.height.div_ceil(key.tile_side())]),
     }

@@ -23,7 +23,7 @@ use crate::{
         draw::DrawError,
         lines::{Lines, Segment, SegmentEnds},
     },
-    shader::key::{KernelKey, Pass},
+    shader::{key::KernelKey, pass::Pass},
 };
 
 gpu_record! {
@@ -180,7 +180,7 @@ pub fn dot_runs(lines: &Lines, dots: &Dots) -> Vec<DotRunRecord> {
 impl Renderer {
     /// Makes the buffers hold what the passes over dots will read; chooses dots where that is the CPU's affair.
     pub(super) fn prepare_dots(&mut self, view: &View, stack: &Stack, key: &KernelKey) -> Result<(), RenderError> {
-        let Some((dots, line_source)) = stack.dots().zip(key.dots) else {
+        let Some((dots, line_source)) = stack.dots().zip(key.effects.dots) else {
             self.dots = None;
             self.buffers.keep(|name| !BUFFERS.contains(&name));
             return Ok(());

@@ -4,7 +4,7 @@ use super::{BufferNote, Note, Renderer, dots::DotStore};
 use crate::{
     plan::{Plan, Tolerance, predict::Prediction},
     scene::sizes::SizeClasses,
-    shader::key::{CullPhase, Pass, RasterPhase, TriangleSource},
+    shader::pass::{CullPhase, Pass, RasterPhase, TriangleSource},
 };
 
 /// Which passes and buffers exist for the last picture, and why.
@@ -45,12 +45,12 @@ impl SizesNote {
     fn new(plan: &Plan, counted: Option<[u32; 2]>) -> Self {
         let Plan { key, sizes, classes, .. } = plan;
         // What is cut comes back as pieces of any size, and what is hidden may never be queued.
-        let is_told = |_: &[u32; 2]| (!key.has_clipping || sizes.cut == 0) && !key.options.culling.occludes();
+        let is_told = |_: &[u32; 2]| (!key.paths.has_clipping || sizes.cut == 0) && !key.options.culling.occludes();
         let is_near = |c: SizeClasses, [medium, large]: [u32; 2]| {
             let near =
                 |predicted: f64, counted: u32| (predicted - f64::from(counted)).abs() <= c.error_bound + 0.02 * f64::from(counted) + 1.0;
             // Those that exceed the pass which was left out are drawn by the one before.
-            (near(c.medium, medium) || !key.has_medium) && (near(c.large, large) || !key.has_large)
+            (near(c.medium, medium) || !key.paths.has_medium) && (near(c.large, large) || !key.paths.has_large)
         };
         let prediction_holds = classes.zip(counted.filter(is_told)).map(|(classes, counted)| is_near(classes, counted));
         Self {

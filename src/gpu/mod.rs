@@ -51,14 +51,11 @@ use self::{
 pub use crate::plan::Note;
 use crate::{
     accuracy::RenderScale,
-    effects::{Stack, hooks::Layers, xray},
+    effects::{Stack, draw_order, hooks::Layers, xray},
     frame::{Counters, CullingStats, OrderStats},
     plan::{AccuracyRequest, Plan, Tuning},
     scene::{Scene, camera::View, needs::Needs, particle_discs::ParticleSettings},
-    shader::{
-        key::{KernelKey, Order, Pass},
-        library::Library,
-    },
+    shader::{key::KernelKey, library::Library, pass::Pass},
 };
 
 /// Figures of a finished frame.
@@ -279,13 +276,13 @@ impl Renderer {
                 "boundary_samples",
             ],
         );
-        if plan.key.dots.is_some() {
+        if plan.key.effects.dots.is_some() {
             self.clear_dots(&mut encoder, &plan.key, view);
         }
         if self.buffers.has("bins") {
             encoder.clear_buffer(self.buffers.get("bins"), 0, Some(4 * bin_heads(view)));
         }
-        if plan.key.listed_tiles {
+        if plan.key.work.listed_tiles {
             self.fill_background(&mut encoder, view);
         }
         self.keep_previous(&mut encoder, &plan.key, view, stack);
@@ -351,7 +348,8 @@ impl Renderer {
         redraw |= lost_light > 0;
         redraw |= counters.full_pixels > 0 && self.pending.is_empty() && self.take_fewer_bits();
         let key = &self.last.as_ref()?.key;
-        let order = (key.order != Order::Free).then(|| order.stats(key.order == Order::Scheduler, record.next_sample_index));
+        let order = (key.samples.draw_order.is_some())
+            .then(|| order.stats(key.samples.draw_order == Some(draw_order::Mode::Scheduler), record.next_sample_index));
         let culled = key.culls().then(|| record.culled());
         if !self.is_judged {
             self.culled = culled;
@@ -371,8 +369,9 @@ impl Renderer {
 
     /// Makes room for what the queues lost, or gives up a proof that was wrong; true if either may help.
     fn grow_queues(&mut self, key: &KernelKey, record: &CounterRecord) -> bool {
-        let is_proof_wrong =
-            record.clip > 0 && !key.has_clipping || record.medium > 0 && !key.has_medium || record.large > 0 && !key.has_large;
+        let is_proof_wrong = record.clip > 0 && !key.paths.has_clipping
+            || record.medium > 0 && !key.paths.has_medium
+            || record.large > 0 && !key.paths.has_large;
         self.force_all_paths |= is_proof_wrong;
         self.capacities.grow(record) || is_proof_wrong
     }
@@ -385,7 +384,7 @@ impl Renderer {
 
     /// The last picture's sums overflowed: next time it gets the next smaller number of bits, if there is one.
     fn take_fewer_bits(&mut self) -> bool {
-        let bits = match self.key().and_then(|key| key.layers) {
+        let bits = match self.key().and_then(|key| key.framebuffer.layers) {
             Some(Layers::Xray { bits }) => xray::fewer(bits),
             _ => None,
         };
@@ -433,7 +432,8 @@ impl Renderer {
             match size {
                 // A list may be longer than one dispatch walks.
                 Dispatch::Direct([x, y]) if pass == Pass::RasterTiles => {
-                    (0..self.capacities.listed.div_ceil(key.max_list_entries).max(1)).for_each(|_| recorded.dispatch_workgroups(x, y, 1));
+                    (0..self.capacities.listed.div_ceil(key.work.max_list_entries).max(1))
+                        .for_each(|_| recorded.dispatch_workgroups(x, y, 1));
                 }
                 Dispatch::Direct([x, y]) => recorded.dispatch_workgroups(x, y, 1),
                 Dispatch::Listed => recorded.dispatch_workgroups_indirect(self.buffers.get("dot_args"), 0),

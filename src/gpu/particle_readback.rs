@@ -19,7 +19,7 @@ use crate::{
         camera::View,
         particle_discs::{PARTICLE_DISC_WORDS, ParticleTimeline},
     },
-    shader::key::{KernelKey, Pass},
+    shader::{key::KernelKey, pass::Pass},
 };
 
 gpu_record! {
@@ -129,7 +129,7 @@ impl Renderer {
         stack: &Stack,
         is_patient: bool,
     ) -> Result<bool, RenderError> {
-        let Some(mut flying) = Flying::of(view, stack).filter(|_| key.has_particles) else {
+        let Some(mut flying) = Flying::of(view, stack).filter(|_| key.generated.has_particles) else {
             self.kept = None;
             return Ok(false);
         };
@@ -204,7 +204,7 @@ impl Renderer {
         {
             let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor { label: Some("steps"), timestamp_writes: None });
             pipeline.bind(&gpu, &mut pass, |name| self.buffers.get(name).as_entire_binding());
-            let [x, y] = folded(flying.count.div_ceil(key.group_size));
+            let [x, y] = folded(flying.count.div_ceil(key.work.group_size));
             pass.dispatch_workgroups(x, y, 1);
         }
         gpu.queue.submit([encoder.finish()]);
@@ -213,7 +213,9 @@ impl Renderer {
 
     /// The particles of the last picture, and the frame before.
     pub(super) fn read_particles(&self, key: &KernelKey) -> Result<Option<ParticleReadback>, RenderError> {
-        let (Some(kept), Some(scene)) = (self.kept.as_ref().filter(|_| key.has_particles), self.scene.as_ref()) else { return Ok(None) };
+        let (Some(kept), Some(scene)) = (self.kept.as_ref().filter(|_| key.generated.has_particles), self.scene.as_ref()) else {
+            return Ok(None);
+        };
         let count = kept.count as usize;
         let bytes = buffers::read(&self.gpu, self.buffers.get("particle_states"), 2 * particle_state_bytes(kept.options.1) * count as u64)?;
         let words: Vec<u32> = bytemuck::pod_collect_to_vec(&bytes);

@@ -14,9 +14,10 @@ use super::{Gpu, RenderError};
 use crate::{
     accuracy::ShaderChecks,
     shader::{
-        key::{KernelKey, Pass},
+        key::KernelKey,
         library::Library,
         link,
+        pass::Pass,
         reflect::{self, Binding, BindingKind},
     },
 };
@@ -141,7 +142,7 @@ impl Pipelines {
 
     fn desc_of(&self, gpu: &Gpu, key: &KernelKey, pass: Pass) -> Result<PipelineDesc, RenderError> {
         let root = format!("passes/{}", pass.stem());
-        self.desc(gpu, &root, &pass.label(), pass.entry(), key, &key.slots(pass), &key.constants(pass))
+        self.desc(gpu, &root, &pass.label(), pass.entry(), key, &key.variants(pass), &key.constants(pass))
     }
 
     #[allow(clippy::too_many_arguments, reason = "as `build`")]

@@ -12,7 +12,7 @@ use super::{
 };
 use crate::{
     accuracy::{Culling, PositionFormat, Visibility},
-    effects::{Stack, hooks::Layers},
+    effects::{Stack, draw_order, hooks::Layers},
     math::{SUBPIXEL_BITS, srgb_byte},
     plan::{AccuracyRequest, Plan, plan},
     scene::{
@@ -23,7 +23,7 @@ use crate::{
     },
     shader::{
         glue::uniform_bytes,
-        key::{KernelKey, Layout, Order},
+        key::{FramebufferLayout, KernelKey},
     },
 };
 
@@ -78,13 +78,13 @@ impl Renderer {
             self.hold_attributes(&scene, packed_bits)?;
         }
         let (gpu, buffers) = (&self.gpu, &mut self.buffers);
-        if let (Some(Layers::Xray { bits }), Some((full_view, full_stack, fewer))) = (&mut plan.key.layers, &self.full)
+        if let (Some(Layers::Xray { bits }), Some((full_view, full_stack, fewer))) = (&mut plan.key.framebuffer.layers, &self.full)
             && (full_view, full_stack) == (asked, stack)
         {
             *bits = (*bits).min(*fewer);
         }
         let key = &plan.key;
-        match (key.has_texels, &self.texels) {
+        match (key.surface.has_material_atlas, &self.texels) {
             (true, None) => self.texels = Some(Texels::new(gpu, &scene)?),
             (false, Some(_)) => self.texels = None,
             _ => {}
@@ -104,7 +104,7 @@ impl Renderer {
         let deforms = Deforms::of(&scene, draws.iter().filter(is_deformed));
         self.totals = totals(&scene, &draws);
         let (triangles, vertex_records) = (self.totals[1], record_count(key, self.totals));
-        let sample_setups = u64::from(key.sample_setups) * (triangles + u64::from(recorded.pieces));
+        let sample_setups = u64::from(key.sample_setups()) * (triangles + u64::from(recorded.pieces));
         let first_rank = vertex_records + sample_setups;
         let uniform = FrameUniform {
             vertex_count: vertex_records as u32,
@@ -115,32 +115,32 @@ impl Renderer {
             ..FrameUniform::new(view, &scene, draws.len(), &recorded)
         };
         let parameters = uniform_bytes(&stack.0);
-        let has_uniform = !parameters.is_empty() && key.baked.is_empty();
+        let has_uniform = !parameters.is_empty() && key.effects.baked.is_empty();
         self.deformed = deformed_ranges(&scene, &draws);
         let is_judged = self.is_judged;
         buffers.keep(|name| match name {
             "queues" => key.has_queues(),
-            "args" => key.has_queues() || key.listed_tiles || key.culls(),
+            "args" => key.has_queues() || key.work.listed_tiles || key.culls(),
             "culling" | "instances" | "meshlets" | "meshlet_lists" => key.culls() || is_judged,
             "meshlet_visibility" => key.options.culling == Culling::TwoPass || is_judged,
             "hiz" => key.options.culling.occludes() || is_judged,
-            "tile_mask" => key.listed_tiles,
-            "background" => key.listed_tiles || key.reads_previous(),
+            "tile_mask" => key.work.listed_tiles,
+            "background" => key.work.listed_tiles || key.reads_previous(),
             "previous" => key.reads_previous(),
-            "pieces" => key.has_clipping,
+            "pieces" => key.paths.has_clipping,
             "effects" => has_uniform,
             "deforms" => key.deforms(),
-            "joints" => key.has_joints,
-            "morph_targets" => key.has_morph_targets,
-            "particle_states" | "step_params" | "particle_step" => key.has_particles,
-            "depth_keys" | "triangle_ids" => key.layout() == Layout::Split,
-            "depth_and_id" => key.layout() == Layout::Pairs,
-            "packed" => key.layout() == Layout::Word,
+            "joints" => key.generated.has_joints,
+            "morph_targets" => key.generated.has_morph_targets,
+            "particle_states" | "step_params" | "particle_step" => key.generated.has_particles,
+            "depth_keys" | "triangle_ids" => key.framebuffer_layout() == FramebufferLayout::Split32,
+            "depth_and_id" => key.framebuffer_layout() == FramebufferLayout::Packed64,
+            "packed" => key.framebuffer_layout() == FramebufferLayout::Packed32,
             "bins" => key.options.visibility == Visibility::Tiled,
-            "order" | "sample_counts" | "sums" => key.order != Order::Free,
+            "order" | "sample_counts" | "sums" => key.samples.draw_order.is_some(),
             "shown" | "scaling" => key.is_scaled(),
-            "boundary_samples" => key.order == Order::Submission,
-            "layers" => key.layers == Some(Layers::Overdraw),
+            "boundary_samples" => key.samples.draw_order == Some(draw_order::Mode::Submission),
+            "layers" => key.framebuffer.layers == Some(Layers::Overdraw),
             _ => true,
         });
         buffers.fill(gpu, "frame", bytemuck::bytes_of(&uniform), wgpu::BufferUsages::UNIFORM, "size, viewpoint, capacities")?;
@@ -158,11 +158,11 @@ impl Renderer {
             let why = "where the bytes of every mesh lie that bends";
             buffers.fill(gpu, "deforms", bytemuck::cast_slice(&deforms.records), STORAGE, why)?;
         }
-        if key.has_joints && !self.is_shadow_pass {
+        if key.generated.has_joints && !self.is_shadow_pass {
             let why = "joints of every skin as they stand: three rows each, or a dual quaternion and a stretch";
             buffers.fill(gpu, "joints", bytemuck::cast_slice(&deforms.joints), STORAGE, why)?;
         }
-        if key.has_morph_targets && !self.is_shadow_pass {
+        if key.generated.has_morph_targets && !self.is_shadow_pass {
             buffers.fill(
                 gpu,
                 "morph_targets",
@@ -171,19 +171,19 @@ impl Renderer {
                 "weights and places of morph targets",
             )?;
         }
-        let ranks = if key.order == Order::Free { 0 } else { triangles.div_ceil(4) };
+        let ranks = if key.samples.draw_order.is_none() { 0 } else { triangles.div_ceil(4) };
         let why = match sample_setups + ranks {
             0 => "projected vertices, 16 bytes each",
             _ => "projected vertices, what sample effects decided, ranks of triangles; 16 bytes a record",
         };
         buffers.ensure(gpu, "vertices", 16 * (first_rank + ranks), STORAGE, why)?;
-        if key.order != Order::Free {
+        if key.samples.draw_order.is_some() {
             let usage = STORAGE | wgpu::BufferUsages::UNIFORM;
             buffers.ensure(gpu, "order", size_of::<OrderRecord>() as u64, usage, "where the drawing stops")?;
             buffers.ensure(gpu, "sample_counts", 4 * triangles, STORAGE, "samples per triangle")?;
             buffers.ensure(gpu, "sums", 8 * triangles.div_ceil(1024), STORAGE, "samples before every block of 1,024 triangles")?;
         }
-        if key.order == Order::Submission {
+        if key.samples.draw_order == Some(draw_order::Mode::Submission) {
             buffers.ensure(
                 gpu,
                 "boundary_samples",
@@ -206,14 +206,14 @@ impl Renderer {
             let meshlet_buffers = self.meshlet_buffers.get_or_insert_with(|| MeshletBuffers::of(&scene));
             buffers.fill_culling(gpu, meshlet_buffers, key.options.culling, (&scene, &draws, view))?;
         }
-        if key.has_queues() || key.listed_tiles || key.culls() {
+        if key.has_queues() || key.work.listed_tiles || key.culls() {
             buffers.ensure(gpu, "args", 84, STORAGE | wgpu::BufferUsages::INDIRECT, "dispatch sizes written on the GPU")?;
         }
-        if key.has_clipping {
+        if key.paths.has_clipping {
             buffers.ensure(gpu, "pieces", 64 * u64::from(recorded.pieces), STORAGE, "what clipping leaves of a triangle")?;
         }
         let pixels = view.pixels() as u64;
-        let (sums, why) = match key.layers {
+        let (sums, why) = match key.framebuffer.layers {
             Some(Layers::Xray { .. }) => (
                 4 * u64::from(key.options.xray_sums.words()) * pixels,
                 [
@@ -231,20 +231,20 @@ impl Renderer {
                 ],
             ),
         };
-        if key.layers == Some(Layers::Overdraw) {
+        if key.framebuffer.layers == Some(Layers::Overdraw) {
             buffers.ensure(gpu, "layers", 4 * pixels, STORAGE, "layers per pixel, 4 bytes")?;
         }
-        match key.layout() {
-            Layout::Split => {
+        match key.framebuffer_layout() {
+            FramebufferLayout::Split32 => {
                 buffers.ensure(gpu, "depth_keys", 4 * pixels + sums, STORAGE, why[0])?;
                 if !self.is_shadow_pass {
                     buffers.ensure(gpu, "triangle_ids", 4 * pixels, STORAGE, "triangle id per pixel, 4 bytes")?;
                 }
             }
-            Layout::Pairs => {
+            FramebufferLayout::Packed64 => {
                 buffers.ensure(gpu, "depth_and_id", 8 * pixels + sums, STORAGE, why[1])?;
             }
-            Layout::Word => {
+            FramebufferLayout::Packed32 => {
                 buffers.ensure(gpu, "packed", 4 * pixels + sums, STORAGE, why[2])?;
             }
         }
@@ -252,12 +252,12 @@ impl Renderer {
             let words = bin_heads(view) + u64::from(recorded.bins);
             buffers.ensure(gpu, "bins", 4 * words, STORAGE, "which triangles each tile of 16 x 16 pixels has to look at")?;
         }
-        let tiles = if key.listed_tiles { u64::from(view.width.div_ceil(8)) * u64::from(view.height.div_ceil(8)) } else { 0 };
+        let tiles = if key.work.listed_tiles { u64::from(view.width.div_ceil(8)) * u64::from(view.height.div_ceil(8)) } else { 0 };
         if self.is_shadow_pass {
             return Ok(plan);
         }
         let picture = 4 * u64::from(color_stride(view.width)) * u64::from(view.height);
-        let (behind, why) = match key.dots {
+        let (behind, why) = match key.effects.dots {
             None => (tiles, "the picture, 4 bytes per pixel, and the list of tiles to resolve"),
             Some(_) => (pixels, "the picture, 4 bytes per pixel, and as many for the strongest dot on each"),
         };
@@ -269,13 +269,13 @@ impl Renderer {
             let bytes = 4 * u64::from(color_stride(width)) * u64::from(height);
             buffers.ensure(gpu, "shown", bytes, STORAGE, "the picture at the size that is shown, 4 bytes per pixel")?;
         }
-        if key.listed_tiles {
+        if key.work.listed_tiles {
             buffers.ensure(gpu, "tile_mask", 4 * tiles, STORAGE, "which 8 x 8 tiles the resolve must visit")?;
         }
         if key.reads_previous() {
             buffers.ensure(gpu, "previous", picture, STORAGE, "the picture before this one, which an effect keeps")?;
         }
-        if key.listed_tiles || key.reads_previous() {
+        if key.work.listed_tiles || key.reads_previous() {
             let rows = background_word(view).repeat((color_stride(view.width) * BACKGROUND_ROWS) as usize);
             buffers.fill(gpu, "background", &rows, STORAGE, "a few rows of background, copied all over the picture first")?;
         }
@@ -337,13 +337,13 @@ pub fn bin_heads(view: &View) -> u64 {
 pub fn recorded_capacities(key: &KernelKey, all: &Capacities) -> Capacities {
     let kept = |is_there: bool, capacity: u32| if is_there { capacity } else { 0 };
     Capacities {
-        clip: kept(key.has_clipping, all.clip),
-        pieces: kept(key.has_clipping, all.pieces),
-        medium: kept(key.has_medium, all.medium),
-        large: kept(key.has_large, all.large),
-        tiles: kept(key.has_large, all.tiles),
+        clip: kept(key.paths.has_clipping, all.clip),
+        pieces: kept(key.paths.has_clipping, all.pieces),
+        medium: kept(key.paths.has_medium, all.medium),
+        large: kept(key.paths.has_large, all.large),
+        tiles: kept(key.paths.has_large, all.tiles),
         bins: kept(key.options.visibility == Visibility::Tiled, all.bins),
-        listed: kept(key.options.visibility == Visibility::Tiled, all.listed.max(key.max_list_entries)),
+        listed: kept(key.options.visibility == Visibility::Tiled, all.listed.max(key.work.max_list_entries)),
     }
 }
 

@@ -19,7 +19,10 @@ use crate::{
     frame::{ClippedTriangle, Counters, Exactness, Frame, Geometry, SnappedVertex},
     plan::AccuracyRequest,
     scene::camera::View,
-    shader::key::{KernelKey, Layout, RasterPhase},
+    shader::{
+        key::{FramebufferLayout, KernelKey},
+        pass::RasterPhase,
+    },
 };
 
 /// Counters and stamps of a frame in flight.
@@ -151,7 +154,8 @@ impl Renderer {
         let (key, counters) = if key.culls() { self.draw_unculled(asked, stack, accuracy, counters)? } else { (key, counters) };
         let mut geometry = self.read_geometry(&key)?;
         (geometry.dots, geometry.light) = (dot_places, light);
-        let layers = if key.layers == Some(Layers::Overdraw) { self.read_counted(&key, view)? } else { self.count_layers(&key, view)? };
+        let layers =
+            if key.framebuffer.layers == Some(Layers::Overdraw) { self.read_counted(&key, view)? } else { self.count_layers(&key, view)? };
         let depth_keys_are_approximate =
             !key.options.visibility.is_exact() || !matches!(key.options.depth, DepthFormat::Reversed | DepthFormat::Integer);
         let frame = Frame {
@@ -218,13 +222,13 @@ impl Renderer {
     /// Triangle id and key images.
     fn read_visibility(&self, key: &KernelKey, view: &View) -> Result<(Vec<u32>, Vec<u32>), RenderError> {
         let pixels = view.pixels() as u64;
-        Ok(match key.layout() {
-            Layout::Split => {
+        Ok(match key.framebuffer_layout() {
+            FramebufferLayout::Split32 => {
                 let triangle_ids = self.words("triangle_ids", pixels)?;
                 (triangle_ids.iter().map(|word| !word).collect(), self.words("depth_keys", pixels)?)
             }
-            Layout::Word => self.words("packed", pixels)?.iter().map(|&word| key.unpacked(word)).unzip(),
-            Layout::Pairs => {
+            FramebufferLayout::Packed32 => self.words("packed", pixels)?.iter().map(|&word| key.unpack(word)).unzip(),
+            FramebufferLayout::Packed64 => {
                 let words = self.words("depth_and_id", 2 * pixels)?;
                 words.chunks_exact(2).map(|pair| (!pair[0], pair[1])).unzip()
             }
@@ -234,10 +238,10 @@ impl Renderer {
     /// Weights or layers per pixel, as the effect in the visibility slot has them.
     fn read_counted(&self, key: &KernelKey, view: &View) -> Result<Vec<u32>, RenderError> {
         let pixels = view.pixels() as u64;
-        let (buffer, first) = match (key.layers, key.layout()) {
-            (Some(Layers::Xray { .. }), Layout::Split) => ("depth_keys", pixels),
-            (Some(Layers::Xray { .. }), Layout::Word) => ("packed", pixels),
-            (Some(Layers::Xray { .. }), Layout::Pairs) => ("depth_and_id", 2 * pixels),
+        let (buffer, first) = match (key.framebuffer.layers, key.framebuffer_layout()) {
+            (Some(Layers::Xray { .. }), FramebufferLayout::Split32) => ("depth_keys", pixels),
+            (Some(Layers::Xray { .. }), FramebufferLayout::Packed32) => ("packed", pixels),
+            (Some(Layers::Xray { .. }), FramebufferLayout::Packed64) => ("depth_and_id", 2 * pixels),
             (Some(Layers::Overdraw), _) => return self.words("layers", pixels),
             (Some(Layers::Race) | None, _) => return Ok(Vec::new()),
         };
@@ -253,7 +257,7 @@ impl Renderer {
 
     /// Strength of the strongest dot per pixel.
     fn read_strengths(&self, key: &KernelKey, view: &View) -> Result<Vec<u32>, RenderError> {
-        if key.dots.is_none() {
+        if key.effects.dots.is_none() {
             return Ok(Vec::new());
         }
         let first = first_dot_word(view);
@@ -268,14 +272,14 @@ impl Renderer {
         let scene = self.scene.as_ref().ok_or(RenderError::NoScene)?;
         let (vertices, triangles) = (record_count(key, self.totals), self.totals[1] as usize);
         let mut pieces = Vec::new();
-        if key.has_clipping {
+        if key.paths.has_clipping {
             let count = self.words("counters", 16)?[4].min(self.capacities.pieces);
             let words = self.words("pieces", 16 * u64::from(count))?;
             pieces = words.chunks_exact(16).enumerate().map(|(slot, words)| (slot, words[14], piece(words))).collect();
             // ClippedTriangles land in the order of the scheduler; parent and place in the fan put them in ours.
             pieces.sort_by_key(|(_, place, piece): &(usize, u32, ClippedTriangle)| (piece.parent, *place));
         }
-        let deciding = key.sample_setups as usize;
+        let deciding = key.sample_setups() as usize;
         let entries = if deciding > 0 { triangles + pieces.len() } else { 0 };
         let words = self.words("vertices", 4 * (vertices + (deciding * entries) as u64))?;
         let (records, decided) = words.split_at(4 * vertices as usize);
@@ -317,7 +321,7 @@ impl Renderer {
         let mut encoder = self.gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor { label: Some("count") });
         self.clear(&mut encoder, &["counters", "layers", "sample_counts", "boundary_samples"]);
         let timer = self.timer.take();
-        let recorded = self.record(&mut encoder, key, &key.passes(&[key.lead(), &[RasterPhase::Count]].concat()), view, true);
+        let recorded = self.record(&mut encoder, key, &key.passes(&[key.order_phases(), &[RasterPhase::Count]].concat()), view, true);
         self.timer = timer;
         recorded?;
         self.gpu.queue.submit([encoder.finish()]);

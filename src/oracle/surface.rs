@@ -203,7 +203,7 @@ impl<'a> Triangle<'a> {
             center_screen: self.center_screen.unwrap_or(screen),
             screen,
             pixel,
-            shares,
+            barycentrics: shares,
             edge_distance_px,
             depth_m,
             pixel_size_m: view.ndc_axes[1].length() * 2.0 / f64::from(view.height)

@@ -9,7 +9,7 @@ use crate::{
         xray,
     },
     scene::needs::Needs,
-    shader::key::{KernelKey, Order},
+    shader::key::KernelKey,
 };
 
 pub(super) fn note(name: &str, why: impl Into<String>) -> Note {
@@ -17,9 +17,8 @@ pub(super) fn note(name: &str, why: impl Into<String>) -> Note {
 }
 
 pub(super) fn explain(needs: &Needs, is_default: bool, caps: &Caps, key: &KernelKey) -> (Vec<Note>, Vec<Note>) {
-    let bound = if needs.clipping { "clipping leaves it open".into() } else { format!("no triangle exceeds {:.1} px", needs.largest_px) };
     let mut reasons = Vec::new();
-    match (key.shape, key.layers) {
+    match (key.samples.shape, key.framebuffer.layers) {
         (Shape::Boxes, _) => reasons.push(note("shape", "boxes: an effect fills the bounding boxes")),
         (Shape::Points, _) => reasons.push(note("shape", "points: an effect draws corners as discs")),
         (_, Some(Layers::Race)) => {
@@ -33,7 +32,7 @@ pub(super) fn explain(needs: &Needs, is_default: bool, caps: &Caps, key: &Kernel
             "small",
             format!(
                 "one invocation walks up to {} samples: {}",
-                key.max_small_samples,
+                key.paths.max_small_samples,
                 match (is_default, caps.software) {
                     (false, _) => "as the tuning asks",
                     (true, true) => "a CPU adapter runs lanes in turn",
@@ -42,8 +41,8 @@ pub(super) fn explain(needs: &Needs, is_default: bool, caps: &Caps, key: &Kernel
             ),
         ),
     ]);
-    if key.options.visibility == Visibility::Tiled && key.max_list_entries < u32::MAX {
-        let most = key.max_list_entries;
+    if key.options.visibility == Visibility::Tiled && key.work.max_list_entries < u32::MAX {
+        let most = key.work.max_list_entries;
         reasons
             .push(note("lists of tiles", format!("a list of more than {most} triangles takes another dispatch: drivers end long loops")));
     }
@@ -53,10 +52,10 @@ pub(super) fn explain(needs: &Needs, is_default: bool, caps: &Caps, key: &Kernel
     }
     if key.moves() {
         let why = if key.unshares_vertices() { "triangles part, three projected records each" } else { "triangles keep sharing vertices" };
-        let movers: Vec<_> = key.effects.iter().filter(|effect| effect.hooks.vertex.is_some()).map(|effect| effect.name).collect();
+        let movers: Vec<_> = key.effects.list.iter().filter(|effect| effect.hooks.vertex.is_some()).map(|effect| effect.name).collect();
         reasons.push(note("movement", format!("vertices are moved by {}: {why}", movers.join(", "))));
     }
-    if key.has_texels {
+    if key.surface.has_material_atlas {
         let why = match needs.textured {
             0 => format!("atlas: {} materials shine or stay unlit, which the words of a texture tell", needs.material_count),
             textured => {
@@ -66,16 +65,16 @@ pub(super) fn explain(needs: &Needs, is_default: bool, caps: &Caps, key: &Kernel
                 )
             }
         };
-        reasons.push(note("texels", why));
+        reasons.push(note("material atlas", why));
     }
-    if key.has_mask {
+    if key.samples.has_mask {
         let why = "the alpha of an image leaves samples out: corners are placed in it once, in 1/256 of a texel, and integers decide";
         reasons.push(note("mask", why));
     }
-    if key.has_image() {
+    if key.finishes_pixels() {
         reasons.push(note("finish", "an image effect finishes every pixel, empty ones too, so no tile is skipped"));
     }
-    if let Some(line_source) = key.dots {
+    if let Some(line_source) = key.effects.dots {
         let lines = match line_source {
             LineSource::Edges => "the edges of all meshes",
             LineSource::Creases => "the creases of all meshes",
@@ -84,34 +83,13 @@ pub(super) fn explain(needs: &Needs, is_default: bool, caps: &Caps, key: &Kernel
         reasons.push(note("dots", format!("an effect strings them along {lines}, over every pixel, so no tile is skipped")));
     }
     reasons.extend(layers_note(needs, key));
-    let parts = [
-        ("particles", key.has_particles, "no effect puts particles into the scene".to_owned()),
-        ("skin", key.deforms(), "no mesh has joints or morph weights".to_owned()),
-        ("vertex effects", key.moves(), "no effect of the stack moves a vertex".to_owned()),
-        ("corners of their own", key.unshares_vertices(), "no effect parts triangles, so neighbours share projected vertices".into()),
-        ("culling", key.culls(), "no option asks for it, so every triangle finds out by itself".into()),
-        ("clip", key.has_clipping, "the scene's box lies behind the near plane and inside the guard band".to_owned()),
-        ("raster_medium", key.has_medium, bound.clone()),
-        ("tile_large, raster_large", key.has_large, bound),
-        ("index fetch", needs.indexed, "no primitive has indices".into()),
-        ("plane normals and centres", key.has_planes, "no effect reads them and no normal needs a substitute".into()),
-        ("vertex colours", needs.colors, "no primitive has them".into()),
-        ("texels", key.has_texels, "no material is more than a base colour".into()),
-        ("mask", key.has_mask, "no image's alpha leaves anything out".into()),
-        ("decide", key.sample_setups > 0, "neither effects nor masks settle anything per triangle".into()),
-        ("draw order", key.order != Order::Free, "every sample is drawn".into()),
-        ("sample effects", key.has_samples, "no effect leaves samples out".into()),
-        ("dots", key.dots.is_some(), "no effect strings dots".into()),
-        ("image hook", key.has_image(), "no effect of the stack finishes pixels".into()),
-        ("effects uniform", !key.effects.is_empty(), "the stack is empty".into()),
-    ];
-    let omitted = parts.into_iter().filter(|(_, is_there, _)| !is_there).map(|(name, _, why)| note(name, why)).collect();
+    let omitted = key.omissions(needs).into_iter().map(|(name, why)| note(name, why)).collect();
     (reasons, omitted)
 }
 
 /// Why the samples of a pixel are added up or counted, and in how many bits.
 fn layers_note(needs: &Needs, key: &KernelKey) -> Option<Note> {
-    Some(match key.layers? {
+    Some(match key.framebuffer.layers? {
         Layers::Xray { bits } => {
             let most = xray::capacity(bits);
             note(

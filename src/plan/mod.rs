@@ -15,6 +15,7 @@ use crate::{
     effects::{
         Conflict, EnabledEffect, Stack,
         dots::LineSource,
+        draw_order,
         hooks::{Layers, Shape},
     },
     math::SMALL_EXTENT,
@@ -24,7 +25,10 @@ use crate::{
     },
     shader::{
         glue::reads,
-        key::{Fetch, KernelKey, MASK_SETUPS, Order, deciding},
+        key::{
+            AttributeFormat, EffectList, Fetch, Framebuffer, GeneratedVertices, KernelKey, ProjectionKind, RasterPaths, SampleRules,
+            SurfaceInputs, VertexInputs, ViewKind, WorkSharing,
+        },
         library::Library,
     },
 };
@@ -250,6 +254,10 @@ const fn bit_length(triangles: u64) -> u32 {
     64 - (triangles | 1).leading_zeros()
 }
 
+const fn attribute_format(is_f32: bool) -> AttributeFormat {
+    if is_f32 { AttributeFormat::F32 } else { AttributeFormat::Any }
+}
+
 /// Chooses the kernel.
 ///
 /// # Errors
@@ -292,45 +300,51 @@ pub fn plan(needs: &Needs, stack: &Stack, caps: &Caps, tuning: &Tuning, accuracy
     let has_planes = reads_planes || !needs.normals_agree;
     let effects: Vec<_> = stack.0.iter().map(|EnabledEffect { effect, .. }| *effect).collect();
     let key = KernelKey {
-        fetch: if needs.indexed { Fetch::Indexed } else { Fetch::Direct },
-        baked: if options.parameters == Parameters::Baked {
-            stack.0.iter().map(|enabled| enabled.words.clone()).collect()
-        } else {
-            Vec::new()
-        },
         options,
-        layers,
-        shape,
-        order: Order::of(stack),
-        dots: stack.dots().map(|dots| LineSource::of(dots.lines)),
-        has_samples: effects.iter().any(|effect| effect.hooks.sample.is_some()),
-        sample_setups: deciding(&effects) + if has_mask { MASK_SETUPS } else { 0 },
-        has_mask,
-        effects,
-        has_clipping,
-        has_medium,
-        has_large,
-        single_draw: needs.draws == 1,
-        only_triangle_lists: !needs.has_strips_or_fans,
-        u32_indices: needs.u32_indices,
-        f32_positions: needs.f32_positions,
-        f32_normals: needs.f32_normals,
-        has_colors: needs.colors,
-        has_texels: needs.material_count > 0,
-        has_joints: needs.skinning.is_some(),
-        has_morph_targets: needs.morph_targets,
-        has_particles: needs.particle_discs,
-        has_planes,
-        perspective: needs.perspective,
-        max_small_samples,
-        max_small_side,
-        invocations_per_triangle: loops::invocations_per_triangle(caps, stack, loops),
-        max_list_entries: tuning.max_list_entries.min(loops::samples(caps, loops::of_an_entry(has_mask, needs.draws, &options))).max(1),
-        listed_tiles: tuning.listed_tiles && !stack.finishes() && stack.dots().is_none(),
-        group_size: tuning.group_size,
-        early_load: tuning.early_load,
-        is_light: needs.is_light,
-        id_bits: if options.visibility == Visibility::Packed32 { bit_length(needs.triangles) } else { 0 },
+        vertices: VertexInputs {
+            fetch: match (needs.indexed, needs.u32_indices) {
+                (false, _) => Fetch::Direct,
+                (true, false) => Fetch::Indexed,
+                (true, true) => Fetch::IndexedU32,
+            },
+            positions: attribute_format(needs.f32_positions),
+            normals: attribute_format(needs.f32_normals),
+            has_colors: needs.colors,
+            only_triangle_lists: !needs.has_strips_or_fans,
+            is_single_draw: needs.draws == 1,
+        },
+        generated: GeneratedVertices {
+            has_joints: needs.skinning.is_some(),
+            has_morph_targets: needs.morph_targets,
+            has_particles: needs.particle_discs,
+        },
+        samples: SampleRules { shape, draw_order: stack.draw_order().map(|order| draw_order::Mode::of(order.mode)), has_mask },
+        paths: RasterPaths { has_clipping, has_medium, has_large, max_small_samples, max_small_side },
+        work: WorkSharing {
+            group_size: tuning.group_size,
+            invocations_per_triangle: loops::invocations_per_triangle(caps, stack, loops),
+            max_list_entries: tuning.max_list_entries.min(loops::samples(caps, loops::of_an_entry(has_mask, needs.draws, &options))).max(1),
+            listed_tiles: tuning.listed_tiles && !stack.finishes() && stack.dots().is_none(),
+            early_load: tuning.early_load,
+        },
+        framebuffer: Framebuffer {
+            layers,
+            triangle_id_bits: if options.visibility == Visibility::Packed32 { bit_length(needs.triangles) } else { 0 },
+        },
+        surface: SurfaceInputs { has_material_atlas: needs.material_count > 0, has_planes },
+        view: ViewKind {
+            projection: if needs.perspective { ProjectionKind::Perspective } else { ProjectionKind::Orthographic },
+            is_light: needs.is_light,
+        },
+        effects: EffectList {
+            baked: if options.parameters == Parameters::Baked {
+                stack.0.iter().map(|enabled| enabled.words.clone()).collect()
+            } else {
+                Vec::new()
+            },
+            dots: stack.dots().map(|dots| LineSource::of(dots.lines)),
+            list: effects,
+        },
     };
     let (reasons, omitted) = explain(needs, tuning == &caps.tuning(), caps, &key);
     reasons_of_options.extend(reasons);

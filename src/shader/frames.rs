@@ -1,27 +1,18 @@
 //! Frames: which passes draw a picture, and in which order.
 
 use super::{
-    key::{KernelKey, RasterPhase},
-    pass::{CullPhase, Pass, TriangleSource},
+    key::KernelKey,
+    pass::{CullPhase, Pass, RasterPhase, TriangleSource},
 };
-use crate::{accuracy::Culling, effects::hooks::Shape};
+use crate::{
+    accuracy::{Culling, DotCulling, Visibility},
+    effects::{
+        draw_order,
+        hooks::{Layers, Shape},
+    },
+};
 
 impl KernelKey {
-    /// Are meshlets left out that cannot be seen?
-    pub fn culls(&self) -> bool {
-        self.options.culling != Culling::None
-    }
-
-    /// Rounds in which meshlets are drawn.
-    const fn rounds(&self) -> &'static [CullPhase] {
-        match self.options.culling {
-            Culling::None => &[],
-            Culling::Frustum => &[CullPhase::FrustumOnly],
-            Culling::Hiz => &[CullPhase::PreviousFrame],
-            Culling::TwoPass => &[CullPhase::Early, CullPhase::Late],
-        }
-    }
-
     /// Every pass of one picture, in the order in which they are recorded.
     pub fn frame(&self) -> Vec<Pass> {
         let mut passes = self.passes(&self.phases());
@@ -29,7 +20,7 @@ impl KernelKey {
         if self.options.culling == Culling::Hiz {
             passes.push(Pass::DepthReduce);
         }
-        if self.listed_tiles {
+        if self.work.listed_tiles {
             passes.extend([Pass::ListTiles, Pass::Args]);
         }
         passes.push(Pass::Resolve);
@@ -39,73 +30,102 @@ impl KernelKey {
         passes
     }
 
-    /// Every pass of what a light sees of this kernel's scene: depth alone. Whatever bends has been bent for the picture.
+    /// Every pass of a shadow map of this kernel's scene: depth alone. The picture's own passes have written the vertices.
     pub fn light_frame(&self) -> Vec<Pass> {
         self.passes(&[RasterPhase::Depth]).into_iter().filter(|pass| !matches!(pass, Pass::Particles | Pass::Skin)).collect()
+    }
+
+    /// The raster phases of one frame, in order.
+    pub fn phases(&self) -> Vec<RasterPhase> {
+        let nearest: &[RasterPhase] = match (self.framebuffer.layers, self.options.visibility) {
+            (Some(Layers::Race), _) | (_, Visibility::Race) => &[RasterPhase::Race],
+            (_, Visibility::Packed32) => &[RasterPhase::Packed32],
+            (_, Visibility::Split32) => &[RasterPhase::Depth, RasterPhase::TriangleId],
+            (_, Visibility::Packed64) => &[RasterPhase::Packed],
+            (_, Visibility::Tiled) => &[RasterPhase::BinCount, RasterPhase::BinFill, RasterPhase::Tiles],
+        };
+        let layers: &[RasterPhase] = match self.framebuffer.layers {
+            Some(Layers::Xray { .. }) => &[RasterPhase::Sum],
+            Some(Layers::Overdraw) => &[RasterPhase::Count],
+            Some(Layers::Race) | None => &[],
+        };
+        [self.order_phases(), nearest, layers].concat()
+    }
+
+    /// Raster phases that find the sample at which a draw order stops, before anything is drawn.
+    pub const fn order_phases(&self) -> &'static [RasterPhase] {
+        match self.samples.draw_order {
+            None => &[],
+            Some(draw_order::Mode::Submission) => &[RasterPhase::CountSamples, RasterPhase::BoundaryTriangle],
+            Some(draw_order::Mode::Scheduler) => &[RasterPhase::CountSamples],
+        }
     }
 
     /// Passes up to the last of the given raster phases.
     pub fn passes(&self, phases: &[RasterPhase]) -> Vec<Pass> {
         let mut passes = Vec::new();
-        if self.has_particles {
+        if self.generated.has_particles {
             passes.push(Pass::Particles);
         }
         if self.deforms() {
             passes.push(Pass::Skin);
         }
-        // What is settled per triangle is settled for all, so that all vertices are wanted.
-        let is_whole = !self.culls() || self.sample_setups > 0;
-        if is_whole {
+        // Sample setups are computed for all triangles, which takes all vertices.
+        let projects_all = !self.culls() || self.sample_setups() > 0;
+        if projects_all {
             passes.push(Pass::Project);
         }
-        if self.sample_setups > 0 {
+        if self.sample_setups() > 0 {
             passes.push(Pass::SampleSetup(TriangleSource::Triangles));
         }
-        let has_walks = phases.iter().any(|phase| !phase.is_tiled());
+        let walks_samples = phases.iter().any(|phase| !phase.is_tiled());
         let Some((&first, others)) = phases.split_first() else { return passes };
-        for &round in self.rounds() {
-            if round == CullPhase::Late {
+        for &cull_phase in self.cull_phases() {
+            if cull_phase == CullPhase::Late {
                 passes.extend([Pass::DepthReduce, Pass::AdvanceQueues { reopens_queues: false }]);
             }
-            passes.extend([Pass::Cull(round), Pass::Args]);
-            if !is_whole {
+            passes.extend([Pass::Cull(cull_phase), Pass::Args]);
+            if !projects_all {
                 passes.push(Pass::ProjectMeshlets);
             }
-            self.visit(first, true, has_walks, &mut passes);
+            passes.extend(self.raster_passes(first, true, walks_samples));
         }
         if !self.culls() {
-            self.visit(first, true, has_walks, &mut passes);
+            passes.extend(self.raster_passes(first, true, walks_samples));
         }
         if self.options.culling == Culling::TwoPass && !others.is_empty() {
             passes.extend([Pass::AdvanceQueues { reopens_queues: true }, Pass::Args]);
         }
-        others.iter().for_each(|&phase| self.visit(phase, false, has_walks, &mut passes));
+        passes.extend(others.iter().flat_map(|&phase| self.raster_passes(phase, false, walks_samples)));
         passes
     }
 
-    /// The passes of a raster phase; the first one fills the queues.
-    fn visit(&self, phase: RasterPhase, is_first: bool, has_walks: bool, passes: &mut Vec<Pass>) {
+    /// The culling phases in which meshlets are drawn.
+    const fn cull_phases(&self) -> &'static [CullPhase] {
+        match self.options.culling {
+            Culling::None => &[],
+            Culling::Frustum => &[CullPhase::FrustumOnly],
+            Culling::Hiz => &[CullPhase::PreviousFrame],
+            Culling::TwoPass => &[CullPhase::Early, CullPhase::Late],
+        }
+    }
+
+    /// The passes of a raster phase; the first phase of a frame fills the queues.
+    fn raster_passes(&self, phase: RasterPhase, is_first: bool, walks_samples: bool) -> Vec<Pass> {
         if phase == RasterPhase::Tiles {
-            passes.push(Pass::RasterTiles);
-            return;
+            return vec![Pass::RasterTiles];
         }
-        passes.push(if self.shape == Shape::Points { Pass::RasterPoints(phase) } else { Pass::RasterSmall(phase) });
-        if is_first && self.has_clipping {
-            passes.extend([Pass::Args, Pass::Clip]);
+        let mut passes = vec![match self.samples.shape {
+            Shape::Points => Pass::RasterPoints(phase),
+            Shape::Triangles | Shape::Boxes => Pass::RasterSmall(phase),
+        }];
+        if is_first {
+            passes.extend(self.queue_passes(walks_samples));
         }
-        if is_first && self.has_queues() {
-            passes.push(Pass::Args);
-        }
-        if is_first && self.has_clipping && self.sample_setups > 0 {
-            passes.push(Pass::SampleSetup(TriangleSource::ClippedTriangles));
-        }
-        if is_first && self.has_large && has_walks {
-            passes.extend([Pass::TileLarge, Pass::Args]);
-        }
-        if self.has_medium {
+        if self.paths.has_medium {
             passes.push(if phase.is_bin() { Pass::BinMedium(phase) } else { Pass::RasterMedium(phase) });
         }
-        if self.has_large {
+        if self.paths.has_large {
             passes.push(if phase.is_bin() { Pass::BinLarge(phase) } else { Pass::RasterLarge(phase) });
         }
         match phase {
@@ -113,6 +133,55 @@ impl KernelKey {
             RasterPhase::BoundaryTriangle => passes.push(Pass::OrderCut),
             RasterPhase::BinCount => passes.push(Pass::BinScan),
             _ => {}
+        }
+        passes
+    }
+
+    /// The passes that clip and divide the triangles which the first raster pass has queued.
+    fn queue_passes(&self, walks_samples: bool) -> Vec<Pass> {
+        let mut passes = Vec::new();
+        if self.paths.has_clipping {
+            passes.extend([Pass::Args, Pass::Clip]);
+        }
+        if self.has_queues() {
+            passes.push(Pass::Args);
+        }
+        if self.paths.has_clipping && self.sample_setups() > 0 {
+            passes.push(Pass::SampleSetup(TriangleSource::ClippedTriangles));
+        }
+        if self.paths.has_large && walks_samples {
+            passes.extend([Pass::TileLarge, Pass::Args]);
+        }
+        passes
+    }
+
+    /// The passes that draw dots, after those that find the nearest depths.
+    fn dot_passes(&self) -> &'static [Pass] {
+        match (self.effects.dots, self.options.dot_culling) {
+            (None, _) => &[],
+            (Some(_), DotCulling::Brute | DotCulling::Cpu) => &[Pass::DotsEnds, Pass::DotsDraw],
+            (Some(_), DotCulling::Gpu) => &[Pass::DotsEnds, Pass::DotsCull, Pass::DotsArgs, Pass::DotsDraw],
+        }
+    }
+
+    /// Does this pass visit every triangle first, and so fill the queues and count?
+    pub(super) fn is_first_visit(&self, pass: Pass) -> bool {
+        match self.order_phases().first() {
+            Some(&first) => pass.phase() == Some(first),
+            None => {
+                let is_second_visit = matches!(pass.phase(), Some(RasterPhase::TriangleId | RasterPhase::BinFill));
+                !is_second_visit && !self.uses_second_counter(pass)
+            }
+        }
+    }
+
+    /// Does this pass visit all layers of a frame that has found the nearest before, and so count in the second counter? The
+    /// judge counts layers in a frame of its own, unless the picture itself shows the count.
+    pub(super) fn uses_second_counter(&self, pass: Pass) -> bool {
+        match pass.phase() {
+            Some(RasterPhase::Sum) => true,
+            Some(RasterPhase::Count) => self.framebuffer.layers == Some(Layers::Overdraw),
+            _ => false,
         }
     }
 }

@@ -83,12 +83,12 @@ impl Linker<'_> {
             return Ok(());
         }
         if !self.linked.files.iter().any(|(taken, _)| taken == GLUE) {
-            self.append(GLUE, &glue::glue(&self.key.effects, &self.key.baked));
-            for effect in &self.key.effects {
+            self.append(GLUE, &glue::glue(&self.key.effects.list, &self.key.effects.baked));
+            for effect in &self.key.effects.list {
                 self.take(&format!("effects/{}", effect.name), user)?;
             }
         }
-        self.append(&chain_name, &chain.text(&self.key.effects));
+        self.append(&chain_name, &chain.text(&self.key.effects.list));
         Ok(())
     }
 

@@ -1,120 +1,146 @@
 //! Passes: the entry points of a frame, and what each raster pass writes.
 
-/// One entry point of the frame; the name is the file's stem in `shaders/passes` plus, for a repeated one, its phase.
+/// One entry point of a frame. Its file in `shaders/passes` is [`Pass::stem`], its name for profilers [`Pass::label`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Pass {
+    /// Simulates particles and writes their discs.
     Particles,
+    /// Writes the vertices of meshes that deform.
     Skin,
+    /// Projects every vertex.
     Project,
-    /// Which meshlets are drawn.
+    /// Lists the meshlets to draw.
     Cull(CullPhase),
-    /// The vertices of those alone.
+    /// Projects the vertices of the listed meshlets alone.
     ProjectMeshlets,
-    /// The farthest depth of every tile, behind which meshlets hide.
+    /// Finds the farthest depth of every tile, behind which meshlets are hidden.
     DepthReduce,
-    /// The end of the first round, or of both.
+    /// Between the early and the late culling phase: makes the next passes start at the queue entries listed from here on, or
+    /// at the first entry again.
     AdvanceQueues {
         reopens_queues: bool,
     },
-    /// What sample effects settle about triangles, or about pieces.
+    /// Computes what sample tests read once per triangle.
     SampleSetup(TriangleSource),
-    /// Samples of every block of triangles.
+    /// Sums the samples of every block of triangles.
     OrderSums,
-    /// In which triangle the limit falls.
+    /// Finds the triangle in which the sample limit lies.
     OrderLimit,
-    /// Which share of all samples comes before each triangle.
+    /// Writes the fraction of all samples that precede each triangle.
     OrderRanks,
-    /// At which pixel of that triangle the drawing stops.
+    /// Finds the pixel of the boundary triangle at which drawing stops.
     OrderCut,
     RasterSmall(RasterPhase),
-    /// Corners as discs, instead of the triangles.
+    /// Draws corners as discs instead of triangles.
     RasterPoints(RasterPhase),
+    /// Writes the arguments of indirect dispatches.
     Args,
     Clip,
+    /// Divides large triangles into tiles.
     TileLarge,
     RasterMedium(RasterPhase),
     RasterLarge(RasterPhase),
-    /// Lists of the tiles that medium triangles touch.
+    /// Lists the tiles that medium triangles touch.
     BinMedium(RasterPhase),
-    /// The same of large ones.
+    /// Lists the tiles that large triangles touch.
     BinLarge(RasterPhase),
-    /// Where the list of each tile begins.
+    /// Finds where the list of each tile begins.
     BinScan,
-    /// Every tile by itself, from its list.
+    /// Draws every tile from its list.
     RasterTiles,
-    /// Ends of the segments on which dots are strung.
+    /// Projects the ends of the segments along which dots lie.
     DotsEnds,
-    /// Which dots may show.
+    /// Lists the dots that may be visible.
     DotsCull,
-    /// How many those are, as a dispatch size.
+    /// Writes the number of listed dots as dispatch arguments.
     DotsArgs,
     DotsDraw,
-    /// Where all dots lie, for a judge alone.
+    /// Writes the positions of all dots, for the judge alone.
     DotsProbe,
+    /// Lists the tiles that a triangle touched.
     ListTiles,
+    /// Shades every pixel.
     Resolve,
-    /// From the pixels that were drawn to those that are shown.
+    /// Resamples the drawn picture to the shown size.
     Scale,
 }
 
-/// Over what a pass runs.
+/// Which triangles a pass runs over.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum TriangleSource {
+    /// The scene's.
     Triangles,
+    /// Those that clipping produced.
     ClippedTriangles,
 }
 
-/// In which round of a frame meshlets are culled.
+/// Against what a pass culls meshlets.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum CullPhase {
-    /// The only one: nothing hides anything.
-    Only,
-    /// The only one: what the picture before hides is left out.
-    Before,
-    /// Those that were seen in the picture before.
-    Seen,
-    /// Those that the first round did not draw and does not hide.
-    Behind,
+    /// The view frustum and the facing alone.
+    FrustumOnly,
+    /// Those, and the depths of the previous frame.
+    PreviousFrame,
+    /// First of two phases: passes what was visible in the previous frame.
+    Early,
+    /// Second of two phases: passes what the early phase did not draw and does not hide.
+    Late,
 }
 
 /// What a raster pass writes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum RasterPhase {
-    /// Key and triangle id at once.
+    /// Depth key and triangle id in one 64-bit atomic.
     Packed,
-    /// Triangle id and what fits of the key, in one word.
+    /// Triangle id and the upper bits of the depth key in one 32-bit atomic.
     Packed32,
-    /// The nearest key.
+    /// The nearest depth key.
     Depth,
-    /// The triangle id of the nearest key.
+    /// The triangle id of the nearest depth key.
     TriangleId,
     /// Layers per pixel: for the heat map, and for the judge.
     Count,
     /// Weighted colours of all layers.
     Sum,
-    /// Key and triangle id without atomics.
+    /// Depth key and triangle id without atomics.
     Race,
     /// Samples per triangle.
     CountSamples,
-    /// The samples of the triangle in which the drawing stops.
+    /// The samples of the triangle in which drawing stops.
     BoundaryTriangle,
-    /// How many triangles each tile has to look at.
+    /// How many triangles each tile lists.
     BinCount,
-    /// Which ones.
+    /// The triangles that each tile lists.
     BinFill,
-    /// Key and triangle id, tile by tile.
+    /// Depth key and triangle id, tile by tile.
     Tiles,
 }
 
 impl RasterPhase {
-    /// Does it put triangles on lists instead of visiting their samples?
+    /// Does it list triangles by tile instead of visiting their samples?
     pub const fn is_bin(self) -> bool {
         matches!(self, Self::BinCount | Self::BinFill)
     }
 
-    /// Is it one of the three that together find triangle ids tile by tile?
+    /// Is it one of the three phases that find triangle ids tile by tile?
     pub const fn is_tiled(self) -> bool {
         self.is_bin() || matches!(self, Self::Tiles)
+    }
+
+    /// What tells its passes apart from those of other phases in a label.
+    const fn label(self) -> &'static str {
+        match self {
+            Self::Packed | Self::Packed32 | Self::Tiles => "",
+            Self::Depth => "depth",
+            Self::TriangleId => "triangle id",
+            Self::Count => "count",
+            Self::Sum => "sum",
+            Self::Race => "race",
+            Self::CountSamples => "count samples",
+            Self::BoundaryTriangle => "boundary triangle",
+            Self::BinCount => "count tiles",
+            Self::BinFill => "list tiles",
+        }
     }
 }
 
@@ -163,11 +189,12 @@ impl Pass {
         }
     }
 
-    /// Is it one of those over dots?
+    /// Does it run over dots?
     pub const fn is_of_dots(self) -> bool {
         matches!(self, Self::DotsEnds | Self::DotsCull | Self::DotsArgs | Self::DotsDraw | Self::DotsProbe)
     }
 
+    /// What it writes, if it is a raster pass.
     pub const fn phase(self) -> Option<RasterPhase> {
         match self {
             Self::RasterSmall(phase) | Self::RasterPoints(phase) | Self::RasterMedium(phase) | Self::RasterLarge(phase) => Some(phase),
@@ -177,30 +204,19 @@ impl Pass {
         }
     }
 
-    /// Label for profilers and tables.
+    /// Label for profilers and tables: the stem, and what tells the pass apart from others of the same file.
     pub fn label(self) -> String {
-        match self {
-            Self::SampleSetup(TriangleSource::ClippedTriangles) => return "decide pieces".into(),
-            Self::Cull(CullPhase::Early) => return "cull seen".into(),
-            Self::Cull(CullPhase::Late) => return "cull behind".into(),
-            _ => {}
-        }
         let stem = match self {
             Self::BinMedium(_) => "bin_medium",
             Self::BinLarge(_) => "bin_large",
             _ => self.stem(),
         };
-        match self.phase() {
-            Some(RasterPhase::BinCount) => format!("{stem} count tiles"),
-            Some(RasterPhase::BinFill) => format!("{stem} list tiles"),
-            Some(RasterPhase::Depth) => format!("{} depth", self.stem()),
-            Some(RasterPhase::TriangleId) => format!("{} triangle id", self.stem()),
-            Some(RasterPhase::Count) => format!("{} count", self.stem()),
-            Some(RasterPhase::CountSamples) => format!("{} tally", self.stem()),
-            Some(RasterPhase::BoundaryTriangle) => format!("{} straddle", self.stem()),
-            Some(RasterPhase::Sum) => format!("{} sum", self.stem()),
-            Some(RasterPhase::Race) => format!("{} race", self.stem()),
-            Some(RasterPhase::Packed | RasterPhase::Packed32 | RasterPhase::Tiles) | None => self.stem().into(),
-        }
+        let detail = match self {
+            Self::SampleSetup(TriangleSource::ClippedTriangles) => "clipped triangles",
+            Self::Cull(CullPhase::Early) => "early",
+            Self::Cull(CullPhase::Late) => "late",
+            _ => self.phase().map_or("", RasterPhase::label),
+        };
+        if detail.is_empty() { stem.into() } else { format!("{stem} {detail}") }
     }
 }

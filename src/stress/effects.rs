@@ -119,7 +119,7 @@ fn layers_on_one_pixel(context: &mut CaseContext) -> Result<(), EarlyEnd> {
         for option in options {
             let what = format!("{count} layers in {taken} bits on {}", option.name());
             let (capture, _) = context.exact(&scene, &view, &stack, &pinned(option), &what)?;
-            let found = context.renderer.key().and_then(|key| key.layers);
+            let found = context.renderer.key().and_then(|key| key.framebuffer.layers);
             equal(&found, &Some(Layers::Xray { bits: taken }), &format!("{what}: kernel"))?;
             equal(&capture.frame.counted, &vec![count; 4], &format!("{what}: layers of each pixel"))?;
             equal(&capture.frame.counters.full_pixels, &0, &format!("{what}: pixels that overflowed"))?;

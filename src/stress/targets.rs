@@ -187,7 +187,7 @@ fn more_than_a_binding(context: &mut CaseContext) -> Result<(), EarlyEnd> {
             // What was there before still works.
             context.renderer.set_scene(&scene)?;
             context.exact(&scene, &pixel_view(64, 36), &stack, &AccuracyRequest::default(), "the next picture")?;
-            hold!(matches!(context.renderer.key().and_then(|key| key.layers), Some(Layers::Xray { .. })), "the effect is gone");
+            hold!(matches!(context.renderer.key().and_then(|key| key.framebuffer.layers), Some(Layers::Xray { .. })), "the effect is gone");
             Ok(())
         }
         Err(error) => Err(EarlyEnd::Failed(format!("{most} x {most} pixels: {error}"))),

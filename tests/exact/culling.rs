@@ -408,7 +408,7 @@ fn explained(query: &str, effects: &[&str], pins: PinnedOptions) -> Option<(Vec<
 
 #[test]
 fn only_a_rung_that_culls_has_passes_and_buffers_for_it() {
-    const PASSES: [&str; 6] = ["cull", "cull seen", "cull behind", "project_meshlets", "farthest", "rounds"];
+    const PASSES: [&str; 6] = ["cull", "cull early", "cull late", "project_meshlets", "depth_reduce", "rounds"];
     const BUFFERS: [&str; 6] = ["culling", "instances", "meshlets", "meshlet_lists", "seen", "hiz"];
     let split = PinnedOptions::of(Visibility::Split32);
     let of =
@@ -416,10 +416,10 @@ fn only_a_rung_that_culls_has_passes_and_buffers_for_it() {
     for (option, passes, buffers) in [
         (Culling::None, &[][..], &[][..]),
         (Culling::Frustum, &["cull", "project_meshlets"], &["culling", "instances", "meshlet_lists", "meshlets"]),
-        (Culling::Hiz, &["cull", "project_meshlets", "farthest"], &["culling", "hiz", "instances", "meshlet_lists", "meshlets"]),
+        (Culling::Hiz, &["cull", "project_meshlets", "depth_reduce"], &["culling", "hiz", "instances", "meshlet_lists", "meshlets"]),
         (
             Culling::TwoPass,
-            &["cull seen", "project_meshlets", "farthest", "rounds", "cull behind", "project_meshlets", "rounds"],
+            &["cull early", "project_meshlets", "depth_reduce", "rounds", "cull late", "project_meshlets", "rounds"],
             &["culling", "hiz", "instances", "meshlet_lists", "meshlets", "seen"],
         ),
     ] {

@@ -13,6 +13,7 @@ use rasterlab::{
     plan::{AccuracyRequest, Tuning},
     preset_file,
     scene::{Scene, camera::View},
+    shader::{Fetch, key::AttributeFormat},
 };
 
 /// Every builtin scene on every option, and every preset on one: the resolve of its effects hardly knows the option.
@@ -68,9 +69,11 @@ fn the_planned_kernel_and_the_one_that_leaves_nothing_out_draw_the_same() {
         });
         let k = &everything;
         // Discs about corners need no path for large triangles, whatever the scene holds.
-        let has_paths = k.has_clipping && k.has_medium && k.has_large || k.shape == Shape::Points;
-        assert!(has_paths && k.has_planes && k.has_colors, "{k}");
-        assert!(!(k.single_draw || k.only_triangle_lists || k.u32_indices || k.f32_positions || k.f32_normals), "{k:?}");
+        let has_paths = k.paths.has_clipping && k.paths.has_medium && k.paths.has_large || k.samples.shape == Shape::Points;
+        assert!(has_paths && k.surface.has_planes && k.vertices.has_colors, "{k}");
+        let vertices = &k.vertices;
+        assert!(!vertices.is_single_draw && !vertices.only_triangle_lists && vertices.fetch != Fetch::IndexedU32, "{k:?}");
+        assert_eq!([vertices.positions, vertices.normals], [AttributeFormat::Any; 2], "{k:?}");
         assert_ne!(key, everything, "{what}: the planner spares nothing");
         spared += u32::from(!key.has_queues());
         let band = if stack.has_steps() || !scene.images.is_empty() {
@@ -193,7 +196,7 @@ fn only_a_stack_with_dots_has_their_passes_and_only_their_way_s_buffers() {
     let bare = explained(&stack(&["lambert"]), DotCulling::Gpu);
     let (passes, buffers) = names(&bare);
     assert!(passes.iter().chain(&buffers).all(|name| !name.contains("dot") && *name != "stretches"), "{passes:?} {buffers:?}");
-    assert!(bare.omitted.iter().any(|note| note.name == "dots" && note.why.contains("no effect strings dots")));
+    assert!(bare.omitted.iter().any(|note| note.name == "dots" && note.why.contains("no effect draws dots")));
     assert!(bare.reasons.iter().all(|note| note.name != "dots"));
     let ways: [(DotCulling, &[&str], &[&str]); 3] = [
         (DotCulling::Brute, &["dots_ends", "dots_draw"], &["dot_ends", "dot_frame", "dot_segments"]),

@@ -11,16 +11,16 @@ use rasterlab::{
     gpu::uniforms::{CounterRecord, DrawRecord, FrameUniform, GpuRecord, LightUniform, ScalingUniform},
     shader::{
         Fetch, KernelKey, Pass,
-        key::{RasterPhase, Round},
         library::Library,
         link,
+        pass::{CullPhase, RasterPhase},
         reflect::{self, Reflected},
     },
 };
 
 fn reflected(pass: Pass, effects: Vec<&'static Effect>) -> Reflected {
-    let key = KernelKey::whole(Fetch::Indexed, Visibility::Split32, effects);
-    let linked = link::link(&Library::Embedded, &format!("passes/{}", pass.stem()), &key, &key.slots(pass)).expect("links");
+    let key = KernelKey::complete(Fetch::Indexed, Visibility::Split32, effects);
+    let linked = link::link(&Library::Embedded, &format!("passes/{}", pass.stem()), &key, &key.variants(pass)).expect("links");
     reflect::reflect(&linked, false).expect("validates")
 }
 

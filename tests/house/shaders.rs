@@ -6,31 +6,29 @@ use rasterlab::{
     effects::{
         EFFECTS, Effect,
         dots::LineSource,
+        draw_order::Mode,
         hooks::{Shape, Slot},
     },
     shader::{
         Fetch, KernelKey, Pass,
-        key::{Order, RasterPhase},
         library::Library,
         link::{self, Linked},
+        pass::RasterPhase,
         reflect::{self, BindingKind},
     },
 };
 
 fn key(fetch: Fetch, visibility: Visibility, has_queues: bool, effects: Vec<&'static Effect>) -> KernelKey {
-    KernelKey {
-        has_clipping: has_queues,
-        has_medium: has_queues,
-        has_large: has_queues,
-        listed_tiles: has_queues,
-        ..KernelKey::whole(fetch, visibility, effects)
-    }
+    let mut key = KernelKey::complete(fetch, visibility, effects);
+    (key.paths.has_clipping, key.paths.has_medium, key.paths.has_large) = (has_queues, has_queues, has_queues);
+    key.work.listed_tiles = has_queues;
+    key
 }
 
 fn all_passes(key: &KernelKey) -> Vec<Pass> {
     let mut passes = key.frame();
     passes.extend(key.passes(&[RasterPhase::Count]));
-    if key.dots.is_some() {
+    if key.effects.dots.is_some() {
         passes.push(Pass::DotsProbe);
     }
     passes
@@ -47,7 +45,7 @@ fn slot_stacks() -> Vec<Vec<&'static Effect>> {
 }
 
 fn linked(key: &KernelKey, pass: Pass) -> Linked {
-    link::link(&Library::Embedded, &format!("passes/{}", pass.stem()), key, &key.slots(pass)).expect("every file is there")
+    link::link(&Library::Embedded, &format!("passes/{}", pass.stem()), key, &key.variants(pass)).expect("every file is there")
 }
 
 /// Validates one pass and returns the number of storage buffers it binds.
@@ -65,10 +63,11 @@ fn every_slot_choice_links_and_validates_within_eight_storage_buffers() {
     for fetch in [Fetch::Direct, Fetch::Indexed] {
         for visibility in Visibility::EXACT {
             for has_queues in [false, true] {
-                for single_draw in [false, true] {
-                    let is_fullest = has_queues && !single_draw;
+                for is_single_draw in [false, true] {
+                    let is_fullest = has_queues && !is_single_draw;
                     for effects in if is_fullest { slot_stacks() } else { vec![vec![]] } {
-                        let key = KernelKey { single_draw, ..key(fetch, visibility, has_queues, effects) };
+                        let mut key = key(fetch, visibility, has_queues, effects);
+                        key.vertices.is_single_draw = is_single_draw;
                         for pass in all_passes(&key) {
                             let storage = validate(&key, pass);
                             assert!(storage <= 8, "{} of {key} binds {storage} storage buffers", pass.label());
@@ -84,10 +83,11 @@ fn every_slot_choice_links_and_validates_within_eight_storage_buffers() {
 #[test]
 fn tiles_validate_within_eight_storage_buffers_for_every_shape_and_order() {
     for shape in [Shape::Triangles, Shape::Boxes, Shape::Points] {
-        for order in [Order::Free, Order::Submission, Order::Scheduler] {
+        for draw_order in [None, Some(Mode::Submission), Some(Mode::Scheduler)] {
             for has_large in [false, true] {
                 let effects = ["dissolve", "draw_order", "xray"].map(|name| Effect::find(name).expect("a listed effect")).to_vec();
-                let key = KernelKey { shape, order, has_large, ..key(Fetch::Indexed, Visibility::Tiled, true, effects) };
+                let mut key = key(Fetch::Indexed, Visibility::Tiled, true, effects);
+                (key.samples.shape, key.samples.draw_order, key.paths.has_large) = (shape, draw_order, has_large);
                 for pass in all_passes(&key) {
                     let storage = validate(&key, pass);
                     assert!(storage <= 8, "{} of {key} binds {storage} storage buffers", pass.label());
@@ -110,9 +110,9 @@ fn every_rung_of_the_ladder_links_and_validates() {
             for effects in if is_meddling { &stacks[..] } else { &stacks[1..2] } {
                 let mut key = key(Fetch::Indexed, Visibility::Split32, true, effects.clone());
                 key.options.set(axis, place);
-                key.order = if effects.contains(&effect("draw_order")) { Order::Submission } else { Order::Free };
+                key.samples.draw_order = effects.contains(&effect("draw_order")).then_some(Mode::Submission);
                 if key.options.parameters == Parameters::Baked {
-                    key.baked = effects.iter().map(|effect| (effect.defaults)()).collect();
+                    key.effects.baked = effects.iter().map(|effect| (effect.defaults)()).collect();
                 }
                 for pass in all_passes(&key) {
                     let storage = validate(&key, pass);
@@ -169,7 +169,7 @@ fn an_empty_stack_leaves_no_trace_of_effects() {
 fn a_stack_that_moves_nothing_leaves_no_trace_of_movement() {
     for effects in [vec![], EFFECTS.iter().copied().filter(|effect| effect.hooks.vertex.is_none()).collect()] {
         let key = key(Fetch::Indexed, Visibility::Split32, true, effects);
-        assert!(!key.to_string().contains("moved"), "{key}");
+        assert!(!key.to_string().contains("vertex_effects"), "{key}");
         for pass in all_passes(&key) {
             let text = linked(&key, pass).text;
             for trace in ["struct Vertex", "glue_vertex", "movement_corner"] {
@@ -223,7 +223,8 @@ fn every_way_of_choosing_dots_validates_for_every_line_and_backend() {
     for visibility in Visibility::ALL {
         for way in DotCulling::ALL {
             for line_source in [LineSource::Edges, LineSource::Creases, LineSource::Polyline] {
-                let mut key = KernelKey { dots: Some(line_source), ..key(Fetch::Indexed, *visibility, true, vec![dots]) };
+                let mut key = key(Fetch::Indexed, *visibility, true, vec![dots]);
+                key.effects.dots = Some(line_source);
                 key.options.dot_culling = *way;
                 for pass in all_passes(&key) {
                     let storage = validate(&key, pass);

@@ -158,7 +158,7 @@ fn any_number_of_layers_gives_the_right_average_with_fewer_bits_where_it_must() 
         let stack = with(&[&format!("xray.bits=\"{bits}\"")]);
         let what = format!("{count} layers from {bits} bits");
         let (capture, verdict) = exact(&mut renderer, &scene, &view, &stack, &AccuracyRequest::default(), &what);
-        assert_eq!(renderer.key().and_then(|key| key.layers), Some(Layers::Xray { bits: taken }), "{what}");
+        assert_eq!(renderer.key().and_then(|key| key.framebuffer.layers), Some(Layers::Xray { bits: taken }), "{what}");
         assert_eq!((capture.frame.counted, capture.frame.counters.full_pixels), (vec![count; 4], 0), "{what}");
         let expected = pile_color(count);
         let near = |color: &[u8; 4]| color.iter().zip(expected).all(|(a, b)| a.abs_diff(b) <= 1);

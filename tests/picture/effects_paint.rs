@@ -161,7 +161,7 @@ fn surface(color: DVec3) -> Surface {
         center_screen: DVec2::splat(0.5),
         screen: DVec2::splat(0.5),
         pixel: DVec2::splat(50.5),
-        shares: DVec3::splat(1.0 / 3.0),
+        barycentrics: DVec3::splat(1.0 / 3.0),
         edge_distance_px: DVec3::splat(9.0),
         depth_m: 2.0,
         pixel_size_m: 0.01,

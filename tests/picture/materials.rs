@@ -20,7 +20,7 @@ use rasterlab::{
         gltf::{self, LoadError, limits},
         texture::{Filter, Image, MipFilter, Texture, Wrap},
     },
-    shader::{Fetch, KernelKey, Pass, key, library::Library, link, reflect},
+    shader::{Fetch, KernelKey, Pass, library::Library, link, reflect},
 };
 use serde_json::{Value, json};
 
@@ -398,33 +398,36 @@ fn a_scene_of_plain_colours_has_no_texture_and_no_word_of_one() {
         EFFECTS.iter().copied().filter(|effect| effect.hooks.slot.is_none() && effect.name != "shadow").collect::<Vec<&'static Effect>>(),
     ] {
         // A shadow map is a texture, too.
-        let plain = KernelKey { has_texels: false, ..KernelKey::whole(Fetch::Indexed, Visibility::Split32, effects.clone()) };
-        assert!(!plain.to_string().contains("texels"));
+        let mut plain = KernelKey::complete(Fetch::Indexed, Visibility::Split32, effects.clone());
+        plain.surface.has_material_atlas = false;
+        assert!(!plain.to_string().contains("material_atlas"));
         for pass in plain.frame() {
             let root = format!("passes/{}", pass.stem());
-            let linked = link::link(&Library::Embedded, &root, &plain, &plain.slots(pass)).expect("every file is there");
+            let linked = link::link(&Library::Embedded, &root, &plain, &plain.variants(pass)).expect("every file is there");
             for trace in ["texture", "Lookup", "Slopes", "alpha_threshold", "fn mask_alpha"] {
                 assert!(!linked.text.contains(trace), "{}: {trace}", pass.label());
             }
         }
-        let painted = KernelKey { has_texels: true, ..plain };
+        let mut painted = plain;
+        painted.surface.has_material_atlas = true;
         let text = |key: &KernelKey, pass: Pass| {
             let root = format!("passes/{}", pass.stem());
-            link::link(&Library::Embedded, &root, key, &key.slots(pass)).expect("every file is there").text
+            link::link(&Library::Embedded, &root, key, &key.variants(pass)).expect("every file is there").text
         };
         // What a mask adds are a texture and records behind the vertices; storage buffers stay within the portable eight.
-        let masked = KernelKey { has_mask: true, sample_setups: painted.sample_setups + key::MASK_SETUPS, ..painted.clone() };
+        let mut masked = painted.clone();
+        masked.samples.has_mask = true;
         for pass in masked.frame() {
             assert!(!text(&painted, pass).contains("mask_alpha"), "{}", pass.label());
             let root = format!("passes/{}", pass.stem());
-            let linked = link::link(&Library::Embedded, &root, &masked, &masked.slots(pass)).expect("every file is there");
+            let linked = link::link(&Library::Embedded, &root, &masked, &masked.variants(pass)).expect("every file is there");
             let reflected = reflect::reflect(&linked, false).unwrap_or_else(|error| panic!("{}: {error}", pass.label()));
             let bindings = reflected.bindings(pass.entry());
             let storage = bindings.iter().filter(|binding| matches!(binding.kind, reflect::BindingKind::Storage { .. })).count();
             assert!(storage <= 8, "{} binds {storage} storage buffers", pass.label());
         }
         let root = format!("passes/{}", Pass::Resolve.stem());
-        let linked = link::link(&Library::Embedded, &root, &painted, &painted.slots(Pass::Resolve)).expect("every file is there");
+        let linked = link::link(&Library::Embedded, &root, &painted, &painted.variants(Pass::Resolve)).expect("every file is there");
         let reflected = reflect::reflect(&linked, false).expect("valid");
         let textures =
             reflected.bindings("resolve").into_iter().filter(|binding| binding.kind == (reflect::BindingKind::Texture { layered: true }));
@@ -436,7 +439,8 @@ fn a_scene_of_plain_colours_has_no_texture_and_no_word_of_one() {
         let view = view(&scene, [64, 48]);
         captured(&mut renderer, &scene, &view, &stack(&["lambert"]), &pinned(Visibility::Split32));
         let explained = renderer.explain();
-        let said = explained.omitted.iter().chain(&explained.reasons).find(|note| note.name == "texels").map(|note| note.why.clone());
+        let said =
+            explained.omitted.iter().chain(&explained.reasons).find(|note| note.name == "material atlas").map(|note| note.why.clone());
         (explained.buffers.iter().find(|buffer| buffer.name == "texels").map(|buffer| buffer.bytes), said.expect("a line about it"))
     };
     assert_eq!(buffers("teapot?tess=4"), (None, "no material is more than a base colour".into()));

@@ -390,8 +390,8 @@ fn a_scene_without_particles_has_nothing_of_them() {
     };
     for without in [Preset::default(), preset_file(&[("count", &[0.0])])] {
         let (explanation, key) = explained(&without);
-        assert!(!key.has_particles && !key.frame().contains(&Pass::Particles));
-        assert!(key.slots(Pass::Project).iter().any(|(slot, file)| *slot == "particle_discs" && file == "slots/splats/none"));
+        assert!(!key.generated.has_particles && !key.frame().contains(&Pass::Particles));
+        assert!(key.variants(Pass::Project).iter().any(|(slot, file)| *slot == "particle_discs" && file == "slots/splats/none"));
         assert!(
             !explanation
                 .buffers
@@ -401,7 +401,7 @@ fn a_scene_without_particles_has_nothing_of_them() {
         assert!(explanation.omitted.iter().any(|note| note.name == "particles"));
     }
     let (explanation, key) = explained(&preset_file(&[]));
-    assert!(key.has_particles && explanation.passes[0].name == "particles");
+    assert!(key.generated.has_particles && explanation.passes[0].name == "particles");
     let bytes = |name: &str| explanation.buffers.iter().find(|buffer| buffer.name == name).map_or(0, |buffer| buffer.bytes);
     assert_eq!(bytes("particle_states"), 2 * 32 * 500, "two frames of 32 bytes a particle");
 }

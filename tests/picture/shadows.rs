@@ -315,12 +315,12 @@ fn rays_know_a_plate_from_the_sky() {
 
 #[test]
 fn a_look_without_a_light_has_no_pass_buffer_or_text_of_it() {
-    let key = |effects: Vec<&'static Effect>| KernelKey::whole(Fetch::Indexed, Visibility::Split32, effects);
+    let key = |effects: Vec<&'static Effect>| KernelKey::complete(Fetch::Indexed, Visibility::Split32, effects);
     let shadow = Effect::find("shadow").expect("an effect");
     for (effects, is_there) in [(vec![], false), (vec![Effect::find("lambert").expect("an effect")], false), (vec![shadow], true)] {
         let key = key(effects);
         for pass in key.frame() {
-            let linked = link::link(&Library::Embedded, &format!("passes/{}", pass.stem()), &key, &key.slots(pass)).expect("links");
+            let linked = link::link(&Library::Embedded, &format!("passes/{}", pass.stem()), &key, &key.variants(pass)).expect("links");
             let has_text = linked.text.contains("shadow_map");
             assert!(!has_text || is_there, "{} of {key}", pass.label());
             assert_eq!(has_text, is_there && pass.stem() == "resolve", "{} of {key}", pass.label());

@@ -1,0 +1,183 @@
+//! Geometry features: vertex formats, generated vertices, vertex effects, culling and clipping.
+
+use super::{Feature, Part, flag, word_if};
+use crate::{
+    accuracy::{Clipping, Culling, PositionFormat, VertexTransform},
+    frame::vertex_flags,
+    scene::meshlets::MESHLET_TRIANGLES,
+    shader::{
+        key::{AttributeFormat, Fetch, KernelKey, ProjectionKind},
+        pass::{CullPhase, Pass},
+    },
+};
+
+pub(super) const FEATURES: &[Feature] = &[
+    PARTICLES,
+    JOINTS,
+    MORPH_TARGETS,
+    DEFORMATION,
+    VERTEX_EFFECTS,
+    UNSHARED_VERTICES,
+    CULLING,
+    CLIPPING,
+    VERTEX_FORMATS,
+    TRANSFORM,
+    PROJECTION,
+    LIGHT_VIEW,
+];
+
+const PARTICLES: Feature = Feature {
+    label: |key| word_if(key.generated.has_particles, "particles"),
+    part: Some(Part {
+        name: "particles",
+        is_used: |key| key.generated.has_particles,
+        why_omitted: |_| "no effect puts particles into the scene".into(),
+    }),
+    variants: &[
+        ("splats", |key, _| if key.has_discs() { "discs" } else { "none" }),
+        ("curl", |key, _| key.options.curl_noise.name()),
+        ("state", |key, _| key.options.particle_storage.name()),
+    ],
+    ..Feature::NONE
+};
+
+const JOINTS: Feature = Feature {
+    label: |key| word_if(key.generated.has_joints, "joints"),
+    variants: &[("skinning", |key, _| if key.generated.has_joints { key.options.skinning.name() } else { "none" })],
+    ..Feature::NONE
+};
+
+const MORPH_TARGETS: Feature = Feature {
+    label: |key| word_if(key.generated.has_morph_targets, "morph_targets"),
+    variants: &[("shapes", |key, _| if key.generated.has_morph_targets { "kept" } else { "none" })],
+    ..Feature::NONE
+};
+
+const DEFORMATION: Feature = Feature {
+    part: Some(Part { name: "skin", is_used: KernelKey::deforms, why_omitted: |_| "no mesh has joints or morph weights".into() }),
+    variants: &[("bytes", |_, pass| if matches!(pass, Pass::Particles | Pass::Skin) { "write" } else { "read" })],
+    ..Feature::NONE
+};
+
+const VERTEX_EFFECTS: Feature = Feature {
+    label: |key| word_if(key.moves(), "vertex_effects"),
+    part: Some(Part { name: "vertex effects", is_used: KernelKey::moves, why_omitted: |_| "no effect of the stack moves a vertex".into() }),
+    variants: &[
+        ("movement", |key, _| match (key.moves(), key.unshares_vertices()) {
+            (false, _) => "none",
+            (true, false) => "vertices",
+            (true, true) => "triangles",
+        }),
+        ("shape", |key, _| if key.moves() { "moved" } else { "still" }),
+    ],
+    ..Feature::NONE
+};
+
+const UNSHARED_VERTICES: Feature = Feature {
+    label: |key| word_if(key.unshares_vertices(), "unshared_vertices"),
+    part: Some(Part {
+        name: "unshared vertices",
+        is_used: KernelKey::unshares_vertices,
+        why_omitted: |_| "no effect moves triangles apart, so neighbours share projected vertices".into(),
+    }),
+    variants: &[("corners", vertex_records), ("sources", vertex_records)],
+    ..Feature::NONE
+};
+
+fn vertex_records(key: &KernelKey, _: Pass) -> &'static str {
+    if key.unshares_vertices() { "own" } else { "shared" }
+}
+
+const CULLING: Feature = Feature {
+    part: Some(Part {
+        name: "culling",
+        is_used: KernelKey::culls,
+        why_omitted: |_| "culling = none, so each triangle is tested on its own".into(),
+    }),
+    variants: &[
+        ("share", |key, _| if key.culls() { "meshlets" } else { "all" }),
+        ("occlusion", |_, pass| match pass {
+            Pass::Cull(CullPhase::PreviousFrame) => "before",
+            Pass::Cull(CullPhase::Early) => "seen",
+            Pass::Cull(CullPhase::Late) => "behind",
+            _ => "none",
+        }),
+    ],
+    constants: &[
+        ("IS_TWO_PASS", |key, _| flag(key.options.culling == Culling::TwoPass)),
+        ("COUNTS_CULLED", |_, pass| flag(pass != Pass::Cull(CullPhase::Early))),
+        ("REOPENS_QUEUES", |_, pass| flag(pass == Pass::AdvanceQueues { reopens_queues: true })),
+        ("MESHLET_TRIANGLES", |_, _| MESHLET_TRIANGLES as f64),
+    ],
+    ..Feature::NONE
+};
+
+const CLIPPING: Feature = Feature {
+    label: |key| word_if(key.paths.has_clipping, "clip"),
+    part: Some(Part {
+        name: "clip",
+        is_used: |key| key.paths.has_clipping,
+        why_omitted: |needs| match needs.clipping {
+            true => "clipping = drop, so triangles that would be clipped are not drawn".into(),
+            false => "the scene's box lies beyond the near plane and inside the guard band".into(),
+        },
+    }),
+    variants: &[("pieces", |key, _| if key.paths.has_clipping { "kept" } else { "none" })],
+    constants: &[
+        ("HAS_CLIPPING", |key, _| flag(key.paths.has_clipping)),
+        // Flags of a corner for which a triangle is dropped instead of clipped.
+        ("DROPPED_FLAGS", |key, _| match key.options.clipping {
+            Clipping::Drop => vertex_flags::CLIPPED.into(),
+            Clipping::Near => vertex_flags::NEAR.into(),
+            Clipping::Exact => 0.0,
+        }),
+    ],
+};
+
+const VERTEX_FORMATS: Feature = Feature {
+    part: Some(Part {
+        name: "index fetch",
+        is_used: |key| key.vertices.fetch != Fetch::Direct,
+        why_omitted: |_| "no primitive has indices".into(),
+    }),
+    variants: &[
+        ("fetch", |key, _| match key.vertices.fetch {
+            Fetch::Direct => "direct",
+            Fetch::Indexed | Fetch::IndexedU32 => "indexed",
+        }),
+        ("draws", |key, _| if key.vertices.is_single_draw { "one" } else { "many" }),
+        ("positions", |key, _| match key.options.position_format {
+            PositionFormat::Stored | PositionFormat::Relative => "stored",
+            packed => packed.name(),
+        }),
+    ],
+    constants: &[
+        ("ONLY_TRIANGLE_LISTS", |key, _| flag(key.vertices.only_triangle_lists)),
+        ("U32_INDICES", |key, _| flag(key.vertices.fetch == Fetch::IndexedU32)),
+        ("F32_POSITIONS", |key, _| flag(key.vertices.positions == AttributeFormat::F32)),
+        ("F32_NORMALS", |key, _| flag(key.vertices.normals == AttributeFormat::F32)),
+    ],
+    ..Feature::NONE
+};
+
+const TRANSFORM: Feature = Feature {
+    variants: &[("projection", |key, _| if key.options.vertex_transform == VertexTransform::Strict { "strict" } else { "float" })],
+    constants: &[
+        ("IS_RELATIVE", |key, _| flag(key.options.position_format == PositionFormat::Relative)),
+        ("FLOAT_VIEWPORT", |key, _| flag(key.options.vertex_transform == VertexTransform::Viewport)),
+        ("GROUP_SIZE", |key, _| key.work.group_size.into()),
+    ],
+    ..Feature::NONE
+};
+
+const PROJECTION: Feature = Feature {
+    label: |key| word_if(key.view.projection == ProjectionKind::Orthographic, "orthographic"),
+    constants: &[("IS_PERSPECTIVE", |key, _| flag(key.view.projection == ProjectionKind::Perspective))],
+    ..Feature::NONE
+};
+
+const LIGHT_VIEW: Feature = Feature {
+    label: |key| word_if(key.view.is_light, "light"),
+    variants: &[("screen", |key, _| if key.view.is_light { "picture" } else { "own" })],
+    ..Feature::NONE
+};

@@ -1,0 +1,77 @@
+//! Features: one table says what every part of the kernel key means: which shader files it selects, which overrides it sets,
+//! how it reads in the key's label, and which part of the frame is omitted without it.
+
+mod geometry;
+mod raster;
+mod shading;
+
+use std::fmt;
+
+use super::{key::KernelKey, pass::Pass};
+use crate::scene::needs::Needs;
+
+/// One row of the table.
+struct Feature {
+    /// What it adds to the key's label; empty where it adds nothing.
+    label: fn(&KernelKey) -> String,
+    /// A part of the frame that exists only with this feature.
+    part: Option<Part>,
+    /// Parts that stages leave open, and the stem of the file that a pass takes for each.
+    variants: &'static [(&'static str, fn(&KernelKey, Pass) -> &'static str)],
+    /// Overrides, and their values in a pass.
+    constants: &'static [(&'static str, fn(&KernelKey, Pass) -> f64)],
+}
+
+impl Feature {
+    const NONE: Self = Self { label: |_| String::new(), part: None, variants: &[], constants: &[] };
+}
+
+/// A part of the frame that can be omitted.
+struct Part {
+    name: &'static str,
+    is_used: fn(&KernelKey) -> bool,
+    /// Why it is omitted, where it is.
+    why_omitted: fn(&Needs) -> String,
+}
+
+/// Every feature, in the order of the frame.
+fn features() -> impl Iterator<Item = &'static Feature> {
+    raster::BASIS.iter().chain(geometry::FEATURES).chain(raster::FEATURES).chain(shading::FEATURES)
+}
+
+impl KernelKey {
+    /// The file below `shaders` for each part that the stage of a pass leaves open.
+    pub fn variants(&self, pass: Pass) -> Vec<(&'static str, String)> {
+        let file = |slot, stem: &str| (slot, format!("slots/{slot}/{stem}"));
+        let variants = features().flat_map(|feature| feature.variants.iter().map(|(slot, stem)| file(*slot, stem(self, pass))));
+        variants.chain(raster::visibility_stem(pass).map(|stem| file("visibility", stem))).collect()
+    }
+
+    /// Values of the overrides. Those that a pass does not declare are dropped by the pipeline builder.
+    pub fn constants(&self, pass: Pass) -> Vec<(&'static str, f64)> {
+        features().flat_map(|feature| feature.constants.iter().map(|(name, value)| (*name, value(self, pass)))).collect()
+    }
+
+    /// Parts of the frame that this key omits, each with the reason.
+    pub fn omissions(&self, needs: &Needs) -> Vec<(&'static str, String)> {
+        let omitted = features().filter_map(|feature| feature.part.as_ref()).filter(|part| !(part.is_used)(self));
+        omitted.map(|part| (part.name, (part.why_omitted)(needs))).collect()
+    }
+}
+
+impl fmt::Display for KernelKey {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let words: Vec<String> = features().map(|feature| (feature.label)(self)).filter(|words| !words.is_empty()).collect();
+        write!(f, "raster[{}]", words.join(" "))
+    }
+}
+
+/// The word if the condition holds, else nothing.
+fn word_if(is_there: bool, word: &str) -> String {
+    if is_there { word.into() } else { String::new() }
+}
+
+/// The value of a boolean override.
+fn flag(value: bool) -> f64 {
+    f64::from(u8::from(value))
+}

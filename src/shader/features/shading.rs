@@ -1,0 +1,115 @@
+//! Shading features: surface inputs, light, layers, dots, image effects and the size of the picture.
+
+use super::{Feature, Part, flag, word_if};
+use crate::{
+    accuracy::{DotCulling, Perspective},
+    effects::{dots::LineSource, hooks::Layers, shadow::MAX_SHADOW_SLOPE},
+    shader::{key::KernelKey, pass::Pass},
+};
+
+pub(super) const FEATURES: &[Feature] =
+    &[LAYERS, PLANES, COLORS, ATTRIBUTES, MATERIAL_ATLAS, MASK, LIGHT, DOTS, IMAGE_EFFECTS, RENDER_SCALE, EFFECTS];
+
+const LAYERS: Feature = Feature {
+    label: |key| match key.framebuffer.layers {
+        Some(Layers::Xray { bits }) => format!("layers=xray/{bits}"),
+        Some(Layers::Overdraw) => "layers=overdraw".into(),
+        Some(Layers::Race) | None => String::new(),
+    },
+    variants: &[
+        ("shading", |key, _| match key.framebuffer.layers {
+            Some(Layers::Xray { .. }) => "average",
+            Some(Layers::Overdraw) => "heat",
+            Some(Layers::Race) | None => "owner",
+        }),
+        ("totals", |key, _| key.options.xray_sums.name()),
+        ("average", |key, _| key.options.xray_sums.name()),
+        ("delay", |key, _| if key.framebuffer.layers == Some(Layers::Race) { "raced" } else { "none" }),
+    ],
+    constants: &[
+        ("SUM_WORDS", |key, _| key.options.xray_sums.words().into()),
+        ("SUM_BITS", |key, _| if let Some(Layers::Xray { bits }) = key.framebuffer.layers { bits.into() } else { 0.0 }),
+    ],
+    ..Feature::NONE
+};
+
+const PLANES: Feature = Feature {
+    label: |key| word_if(key.surface.has_planes, "planes"),
+    part: Some(Part {
+        name: "plane normals and centres",
+        is_used: |key| key.surface.has_planes,
+        why_omitted: |_| "no effect reads them and no normal needs a substitute".into(),
+    }),
+    constants: &[("HAS_PLANES", |key, _| flag(key.surface.has_planes))],
+    ..Feature::NONE
+};
+
+const COLORS: Feature = Feature {
+    label: |key| word_if(key.vertices.has_colors, "colors"),
+    part: Some(Part { name: "vertex colours", is_used: |key| key.vertices.has_colors, why_omitted: |_| "no primitive has them".into() }),
+    constants: &[("HAS_COLORS", |key, _| flag(key.vertices.has_colors))],
+    ..Feature::NONE
+};
+
+const ATTRIBUTES: Feature =
+    Feature { constants: &[("IS_AFFINE", |key, _| flag(key.options.perspective == Perspective::Affine))], ..Feature::NONE };
+
+const MATERIAL_ATLAS: Feature = Feature {
+    label: |key| word_if(key.surface.has_material_atlas, "material_atlas"),
+    part: Some(Part {
+        name: "material atlas",
+        is_used: |key| key.surface.has_material_atlas,
+        why_omitted: |_| "no material is more than a base colour".into(),
+    }),
+    variants: &[("texels", |key, _| if key.surface.has_material_atlas { "atlas" } else { "none" })],
+    ..Feature::NONE
+};
+
+const MASK: Feature = Feature {
+    label: |key| word_if(key.samples.has_mask, "mask"),
+    part: Some(Part { name: "mask", is_used: |key| key.samples.has_mask, why_omitted: |_| "no texture's alpha discards samples".into() }),
+    ..Feature::NONE
+};
+
+const LIGHT: Feature = Feature {
+    variants: &[("light", |key, _| if key.reads_light() { "mapped" } else { "none" })],
+    constants: &[("SHADOW_TAPS_SIDE", |key, _| key.options.shadow_taps.side().into()), ("MAX_SHADOW_SLOPE", |_, _| MAX_SHADOW_SLOPE)],
+    ..Feature::NONE
+};
+
+const DOTS: Feature = Feature {
+    label: |key| word_if(key.effects.dots.is_some(), "dots"),
+    part: Some(Part { name: "dots", is_used: |key| key.effects.dots.is_some(), why_omitted: |_| "no effect draws dots".into() }),
+    variants: &[
+        ("dots", |key, _| if key.effects.dots.is_some() { "over" } else { "none" }),
+        ("dot_ends", |key, _| if key.effects.dots == Some(LineSource::Polyline) { "points" } else { "edges" }),
+        ("dot_list", |key, _| if key.options.dot_culling == DotCulling::Brute { "every" } else { "kept" }),
+    ],
+    ..Feature::NONE
+};
+
+const IMAGE_EFFECTS: Feature = Feature {
+    label: |key| word_if(key.finishes_pixels(), "image"),
+    part: Some(Part {
+        name: "image effects",
+        is_used: KernelKey::finishes_pixels,
+        why_omitted: |_| "no effect of the stack finishes pixels".into(),
+    }),
+    variants: &[
+        ("finish", |key, _| if key.finishes_pixels() { "image" } else { "none" }),
+        ("image", |_, pass| if pass == Pass::Resolve { "seen" } else { "none" }),
+    ],
+    ..Feature::NONE
+};
+
+const RENDER_SCALE: Feature = Feature {
+    variants: &[("scaling", |key, _| if key.options.render_scale.factor() > 1.0 { "average" } else { "between" })],
+    constants: &[("SCALE_SIDE", |key, _| key.options.render_scale.factor().max(1.0))],
+    ..Feature::NONE
+};
+
+const EFFECTS: Feature = Feature {
+    label: |key| key.effects.list.iter().map(|effect| format!("+{}", effect.name)).collect::<Vec<_>>().join(" "),
+    part: Some(Part { name: "effects uniform", is_used: |key| !key.effects.list.is_empty(), why_omitted: |_| "the stack is empty".into() }),
+    ..Feature::NONE
+};
