@@ -13,8 +13,8 @@
 //! * [`gpu`]: runs the kernels
 //! * [`preset_file`]: presets as sparse TOML files
 //! * [`stress`]: the table of extreme cases, each drawn and judged
-//! * [`cli`]: every subcommand; opens no window except through `app`
 //! * `app`: the window (feature `gui`)
+//! * [`cli`]: every subcommand; opens no window except through `app`
 
 // One place opts out, with its reason: the option `trusted` of src/gpu/pipelines.rs.
 #![deny(unsafe_code)]

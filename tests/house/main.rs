@@ -1,6 +1,7 @@
 //! Promises that need no adapter: the rules of the code base, files and their formats, the command line.
 
 mod architecture;
+mod circles;
 mod cli;
 mod layout;
 mod loader;
