@@ -18,7 +18,7 @@ params! {
         pattern: Pattern = Pattern::Uniform as u32;
         /// Progress of the front: 0 before the first triangle, 1 past the last.
         front: f32 = 0.5, hard 0.0..=1.0, when ("pattern", &["sweep", "random"]);
-        /// Deformation of the front, as a share of its way.
+        /// Softness of the front, as a fraction of its path.
         width: f32 = 0.25, hard 0.001..=100.0, soft 0.001..=2.0, log true, when ("pattern", &["sweep", "random"]);
         /// Direction of the sweep in the picture: part to the right.
         along_x: f32 = 1.0, hard -1.0..=1.0, when ("pattern", &["sweep"]);
