@@ -36,3 +36,10 @@ pub mod preset_file;
 pub mod scene;
 pub mod shader;
 pub mod stress;
+
+/// The arithmetic that the kernels and the oracle implement: the page `docs/exactness.md`, to which doc comments refer by section.
+#[cfg(doc)]
+#[allow(rustdoc::broken_intra_doc_links, rustdoc::invalid_html_tags)]
+pub mod exactness {
+    #![doc = include_str!("../docs/exactness.md")]
+}
