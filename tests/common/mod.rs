@@ -2,9 +2,12 @@
 #![allow(dead_code, unused_imports, reason = "each test file uses its own part")]
 
 use std::{
+    collections::VecDeque,
     fs,
+    ops::{Deref, DerefMut},
     path::Path,
-    sync::{Arc, Mutex, MutexGuard, OnceLock},
+    sync::{Arc, Condvar, LazyLock, Mutex, MutexGuard, OnceLock},
+    thread,
 };
 
 pub use rasterlab::stress::{
@@ -55,26 +58,90 @@ pub const DEFORMED_SCENES: &[&str] = &["tentacle?tess=3", "walker?tess=1"];
 pub fn gpu() -> Option<Arc<Gpu>> {
     static GPU: OnceLock<Option<Arc<Gpu>>> = OnceLock::new();
     GPU.get_or_init(|| {
-        if std::env::var("RASTERLAB_GPU").as_deref() == Ok("skip") {
-            eprintln!("RASTERLAB_GPU=skip: GPU tests are left out");
-            return None;
-        }
-        let choice = std::env::var("RASTERLAB_ADAPTER").map_or(AdapterChoice::Any, AdapterChoice::Named);
-        let gpu = Gpu::open(&choice).unwrap_or_else(|error| panic!("{error}"));
+        let gpu = own_gpu()?;
         eprintln!("adapter: {} ({}), caps {}", gpu.summary.name, gpu.summary.driver, gpu.caps.class());
         Some(gpu)
     })
     .clone()
 }
 
-/// A renderer as the adapter likes it, one at a time: software adapters share two cores among all tests.
-pub fn renderer() -> Option<MutexGuard<'static, Renderer>> {
-    static RENDERER: OnceLock<Option<Mutex<Renderer>>> = OnceLock::new();
-    let renderer = RENDERER.get_or_init(|| gpu().map(|gpu| Mutex::new(Renderer::new(gpu)))).as_ref()?;
-    let mut renderer = renderer.lock().unwrap_or_else(|poisoned| poisoned.into_inner());
-    let usual = renderer.gpu().caps.tuning();
-    renderer.set_tuning(usual);
-    Some(renderer)
+/// The adapter under test, with a new device that no other test uses.
+pub fn own_gpu() -> Option<Arc<Gpu>> {
+    if std::env::var("RASTERLAB_GPU").as_deref() == Ok("skip") {
+        eprintln!("RASTERLAB_GPU=skip: GPU tests are left out");
+        return None;
+    }
+    let choice = std::env::var("RASTERLAB_ADAPTER").map_or(AdapterChoice::Any, AdapterChoice::Named);
+    Some(Gpu::open(&choice).unwrap_or_else(|error| panic!("{error}")))
+}
+
+/// Renderers that tests share: one for each of two tests that draw at the same time. Each has its own device, because a software
+/// adapter runs and compiles the kernels of one device one after the other.
+struct Pool {
+    state: Mutex<PoolState>,
+    returned: Condvar,
+}
+
+#[derive(Default)]
+struct PoolState {
+    idle: Vec<Renderer>,
+    lent: usize,
+}
+
+static POOL: LazyLock<Pool> = LazyLock::new(|| Pool { state: Mutex::default(), returned: Condvar::new() });
+
+const RENDERERS: usize = 2;
+
+impl Pool {
+    fn state(&self) -> MutexGuard<'_, PoolState> {
+        self.state.lock().unwrap_or_else(|poisoned| poisoned.into_inner())
+    }
+}
+
+/// A renderer of the pool, which it goes back to when this is dropped.
+pub struct Loan(Option<Renderer>);
+
+impl Deref for Loan {
+    type Target = Renderer;
+
+    fn deref(&self) -> &Renderer {
+        self.0.as_ref().expect("it is there until this is dropped")
+    }
+}
+
+impl DerefMut for Loan {
+    fn deref_mut(&mut self) -> &mut Renderer {
+        self.0.as_mut().expect("it is there until this is dropped")
+    }
+}
+
+impl Drop for Loan {
+    fn drop(&mut self) {
+        let mut state = POOL.state();
+        state.lent -= 1;
+        // A failed test may leave a renderer half-way: the next test gets a new one.
+        state.idle.extend(self.0.take().filter(|_| !thread::panicking()));
+        POOL.returned.notify_one();
+    }
+}
+
+/// A renderer with the tuning that suits the adapter. Earlier tests may have drawn with it, so it knows their pipelines.
+pub fn renderer() -> Option<Loan> {
+    let first = gpu()?;
+    let mut state =
+        POOL.returned.wait_while(POOL.state(), |state| state.lent == RENDERERS).unwrap_or_else(|poisoned| poisoned.into_inner());
+    state.lent += 1;
+    let idle = state.idle.pop();
+    let is_first_free = state.lent == 1;
+    drop(state);
+    let mut loan = Loan(None);
+    loan.0 = match idle {
+        Some(renderer) => Some(renderer),
+        None => Some(Renderer::new(if is_first_free { first } else { own_gpu()? })),
+    };
+    let tuning = loan.gpu().caps.tuning();
+    loan.set_tuning(tuning);
+    Some(loan)
 }
 
 /// The visibility options that lose nothing and that the adapter has.
@@ -98,7 +165,45 @@ pub fn view(scene: &Scene, size: [u32; 2]) -> View {
 
 /// Draws and judges.
 pub fn judged(renderer: &mut Renderer, scene: &Arc<Scene>, view: &View, stack: &Stack, accuracy: &AccuracyRequest) -> (Capture, Verdict) {
-    stress::judged(renderer, scene, view, stack, accuracy).unwrap_or_else(|error| panic!("{error}"))
+    let capture = captured(renderer, scene, view, stack, accuracy);
+    let verdict = verdict(scene, view, stack, &capture);
+    (capture, verdict)
+}
+
+/// A picture with its verdict.
+struct Judged {
+    scene: Arc<Scene>,
+    view: View,
+    stack: Stack,
+    capture: Capture,
+    verdict: Verdict,
+}
+
+/// What the judge says about a picture. Options and tunings that draw the same picture to the last bit, geometry included, are judged
+/// once: the verdict follows from nothing else.
+fn verdict(scene: &Arc<Scene>, view: &View, stack: &Stack, capture: &Capture) -> Verdict {
+    static LATEST: Mutex<VecDeque<Judged>> = Mutex::new(VecDeque::new());
+    let latest = || LATEST.lock().unwrap_or_else(|poisoned| poisoned.into_inner());
+    let is_same = |judged: &&Judged| {
+        let (a, b) = (&judged.capture, capture);
+        Arc::ptr_eq(&judged.scene, scene)
+            && (&judged.view, &judged.stack) == (view, stack)
+            && (&a.frame, &a.geometry, &a.layers, &a.previous) == (&b.frame, &b.geometry, &b.layers, &b.previous)
+    };
+    // Strict vertices are held against the oracle's bit by bit, and zeros of either sign are equal here.
+    let is_by_bits = capture.geometry.exact.vertices;
+    if !is_by_bits && let Some(same) = latest().iter().find(is_same) {
+        return same.verdict.clone();
+    }
+    let (layers, previous) = (capture.layers.as_deref(), capture.previous.as_deref());
+    let verdict = oracle::judge_after(scene, view, stack, &capture.frame, &capture.geometry, layers, previous)
+        .unwrap_or_else(|error| panic!("{}: {error}", scene.name));
+    let mut latest = latest();
+    latest.truncate(2 * RENDERERS);
+    let judged = Judged { scene: scene.clone(), view: view.clone(), stack: stack.clone(), capture: capture.clone(), verdict };
+    let verdict = judged.verdict.clone();
+    latest.push_front(judged);
+    verdict
 }
 
 /// Draws without judging.
@@ -112,9 +217,7 @@ pub fn judged_preset(renderer: &mut Renderer, scene: &Arc<Scene>, preset: &Prese
     renderer.set_scene(scene).unwrap_or_else(|error| panic!("{}: {error}", scene.name));
     let capture = renderer.capture_last(&moments, accuracy).unwrap_or_else(|error| panic!("{}: {error}", scene.name));
     let (view, stack) = moments.last().expect("a preset shows a moment");
-    let (layers, previous) = (capture.layers.as_deref(), capture.previous.as_deref());
-    let verdict = oracle::judge_after(scene, view, stack, &capture.frame, &capture.geometry, layers, previous)
-        .unwrap_or_else(|error| panic!("{}: {error}", scene.name));
+    let verdict = verdict(scene, view, stack, &capture);
     (capture, verdict)
 }
 

@@ -3,6 +3,7 @@
 mod architecture;
 mod circles;
 mod cli;
+mod features;
 mod layout;
 mod loader;
 mod presets;

@@ -8,7 +8,7 @@ use std::{
 };
 
 use eframe::{
-    egui::{self, Key, Modifiers, Pos2, Rect, Role, TexturesDelta},
+    egui::{Key, Modifiers, Pos2, Rect, Role, TexturesDelta},
     egui_wgpu::{RenderState, RendererOptions, ScreenDescriptor, WgpuConfiguration},
     wgpu,
 };
@@ -53,10 +53,6 @@ impl TestRenderer for Window {
             images.iter().for_each(|image| renderer.update_texture(&self.0.device, &self.0.queue, id, image));
         }
         delta.free.drain().for_each(|id| renderer.free_texture(&id));
-    }
-
-    fn render(&mut self, _: &egui::Context, _: &egui::FullOutput) -> Result<image::RgbaImage, String> {
-        Err("a lab is drawn by Lab::screenshot".into())
     }
 }
 
