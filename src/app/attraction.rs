@@ -11,6 +11,7 @@ use glam::DVec3;
 use super::App;
 use crate::{
     effects::particles::{self, EFFECT},
+    params::Stored as _,
     scene::{camera::View, particle_discs::ParticleTimeline},
 };
 
@@ -82,7 +83,7 @@ impl App {
         let point = facing_point(&view, DVec3::new(value[0], value[1], value[2]), ndc);
         if let Some(point) = point {
             let [low, high] = field.hard;
-            self.put_value(&EFFECT, field, point.clamp(DVec3::splat(low), DVec3::splat(high)).to_array().to_vec());
+            self.put_value(&EFFECT, field, &point.clamp(DVec3::splat(low), DVec3::splat(high)).to_value());
         }
         true
     }

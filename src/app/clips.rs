@@ -16,15 +16,15 @@ impl App {
             return;
         };
         folder(ui, "Clips", true, |ui| {
-            clip_ui(ui, "scene.clip", "at rest", &scene, &mut self.preset_file.preset.play.clip);
-            let Some(clip) = scene.rig.clip(&self.preset_file.preset.play.clip) else { return };
+            clip_ui(ui, "scene.clip", "at rest", &scene, &mut self.preset_file.preset.playback.clip);
+            let Some(clip) = scene.rig.clip(&self.preset_file.preset.playback.clip) else { return };
             self.key_ui(ui, "scene.clip_speed");
             self.hold_ui(ui, &scene.rig.clips[clip]);
             if scene.rig.clips.len() > 1 {
-                clip_ui(ui, "scene.clip_b", "no second clip", &scene, &mut self.preset_file.preset.play.other);
+                clip_ui(ui, "scene.second_clip", "no second clip", &scene, &mut self.preset_file.preset.playback.second_clip);
             }
-            if !self.preset_file.preset.play.other.is_empty() {
-                self.key_ui(ui, "scene.blend");
+            if !self.preset_file.preset.playback.second_clip.is_empty() {
+                self.key_ui(ui, "scene.clip_blend");
             }
         });
     }
@@ -37,7 +37,7 @@ impl App {
         };
         ui.horizontal(|ui| {
             ui.spacing_mut().item_spacing.x = 6.0;
-            if let Some(clip) = scene.rig.clip(&self.preset_file.preset.play.clip) {
+            if let Some(clip) = scene.rig.clip(&self.preset_file.preset.playback.clip) {
                 let Clip { name, duration_s, .. } = &scene.rig.clips[clip];
                 let words = format!("{name} plays, {duration_s:.2} s long. Clips, at the right, holds a moment of it or mixes in another.");
                 ui.add(egui::Label::new(theme::weak(words)).truncate());
@@ -48,7 +48,7 @@ impl App {
                 let id = id_of(&scene, place);
                 let button = ui.button(&id).on_hover_text(format!("{:.2} s; the timeline spans it", clip.duration_s));
                 if button.accessible_name(format!("Play {id}")).clicked() {
-                    self.preset_file.preset.play.clip = id;
+                    self.preset_file.preset.playback.clip = id;
                     if clip.duration_s > 0.0 {
                         self.preset_file.preset.clock.range_s = [0.0, clip.duration_s];
                     }
@@ -67,18 +67,18 @@ impl App {
     /// Holds a moment of the clip, or lets it go with the clock, whose range may span it.
     fn hold_ui(&mut self, ui: &mut Ui, clip: &Clip) {
         let preset = &mut self.preset_file.preset;
-        let (duration_s, speed) = (clip.duration_s, preset.play.speed);
+        let (duration_s, speed) = (clip.duration_s, preset.playback.speed);
         ui.horizontal(|ui| {
             ui.set_min_height(theme::ROW);
             ui.add_space(theme::GAP);
-            let mut is_held = preset.play.clip_time_s.is_some();
+            let mut is_held = preset.playback.clip_time_s.is_some();
             let hold = ui.checkbox(&mut is_held, "Hold").on_hover_text("Shows one moment of the clip, whatever the clock says");
             if hold.accessible_name("Hold the clip").clicked() {
                 let now_s = preset.clock.time_s * speed;
                 let now_s = if duration_s > 0.0 { now_s.rem_euclid(duration_s) } else { 0.0 };
-                preset.play.clip_time_s = is_held.then_some(now_s);
+                preset.playback.clip_time_s = is_held.then_some(now_s);
             }
-            if let Some(clip_time_s) = &mut preset.play.clip_time_s {
+            if let Some(clip_time_s) = &mut preset.playback.clip_time_s {
                 let slider = egui::Slider::new(clip_time_s, 0.0..=duration_s).suffix(" s").fixed_decimals(2);
                 ui.add(slider).on_hover_text("UndoState of the clip").accessible_name("scene.pose_s");
                 return;

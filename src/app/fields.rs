@@ -10,11 +10,9 @@ use super::{
 };
 use crate::{
     effects::Effect,
-    params::Field,
-    preset_file::{
-        form::{Value, ValueType},
-        keys::Key,
-    },
+    params::{Field, Param, Value, ValueType},
+    preset::{Preset, settings::Setting},
+    preset_file::toml_value,
 };
 
 /// What a row shows and what it edits.
@@ -22,48 +20,45 @@ pub struct Row {
     /// `facet.amount`: path for copy, paste and reset, and the accessible name of its control.
     pub path: String,
     pub label: String,
-    pub doc: &'static str,
-    pub unit: &'static str,
-    pub form: ValueType,
-    /// What a slider spans; without it there is a number alone.
-    pub soft: Option<[f64; 2]>,
-    pub log: bool,
+    pub param: Param,
     /// Differs from its default.
     pub modified: bool,
-    /// Whether it has keys; none for what cannot be animated.
+    /// Whether it has keyframes; none for what cannot be animated.
     pub keying: Option<Keying>,
 }
 
 impl Row {
     /// The row of an effect's parameter.
     pub fn of_field(effect: &Effect, field: &Field, words: &[u32]) -> Self {
-        Self {
-            path: format!("{}.{}", effect.name, field.name),
-            label: label(field.name, field.unit),
-            doc: field.doc,
-            unit: field.unit,
-            form: ValueType::of(field),
-            soft: Some(field.soft),
-            log: field.log,
-            modified: !field.same(words, &(effect.defaults)()),
-            keying: None,
-        }
+        Self::new(format!("{}.{}", effect.name, field.name), field.param, !field.same(words, &(effect.defaults)()))
     }
 
-    /// The row of a parameter that can be animated. Keys are a difference from the default, whatever they say.
+    /// The row of a parameter that can be animated. Keyframes are a difference from the default, whatever their values.
     pub fn keyed(self, keying: Keying) -> Self {
         Self { modified: self.modified || keying != Keying::Still, keying: Some(keying), ..self }
     }
 
-    /// The row of one of a preset's own keys.
-    pub fn of_key(key: &Key, unit: &'static str, soft: Option<[f64; 2]>, modified: bool) -> Self {
-        let label = label(key.name, unit);
-        Self { path: key.path(), label, doc: key.doc, unit, form: key.form, soft, log: false, modified, keying: None }
+    /// The row of a setting of the preset.
+    pub fn of_setting(setting: &Setting, preset: &Preset) -> Self {
+        Self::new(setting.path(), setting.param, setting.is_modified(preset))
+    }
+
+    fn new(path: String, param: Param, modified: bool) -> Self {
+        Self { path, label: label(param.name, param.unit), param, modified, keying: None }
     }
 
     /// The value as TOML, as copied and pasted.
     pub fn written(&self, value: &Value) -> String {
-        self.form.write(value).to_string().trim().to_owned()
+        toml_value::write_text(self.param.value_type, value)
+    }
+
+    /// What the slider spans; none where there is a number field alone.
+    fn slider(&self) -> Option<[f64; 2]> {
+        self.param.has_slider.then_some(self.param.soft)
+    }
+
+    fn is_whole(&self) -> bool {
+        !self.param.value_type.is_continuous()
     }
 }
 
@@ -165,8 +160,8 @@ fn label_ui(ui: &mut Ui, row: &Row, value: &Value, rect: Rect) -> Option<Ask> {
         }
     });
     response.on_hover_ui(|ui| {
-        ui.label(RichText::new(row.doc).color(theme::TEXT_STRONG));
-        ui.label(theme::weak(format!("{}   {}{}", row.path, row.form.allowed(), spaced(row.unit))));
+        ui.label(RichText::new(row.param.doc).color(theme::TEXT_STRONG));
+        ui.label(theme::weak(format!("{}   {}{}", row.path, row.param.allowed(), spaced(row.param.unit))));
     });
     ask
 }
@@ -176,19 +171,21 @@ fn spaced(unit: &str) -> String {
 }
 
 fn control_ui(ui: &mut Ui, row: &Row, value: &Value) -> Option<Value> {
-    match (row.form, value) {
-        (ValueType::Flag, Value::Numbers(lanes)) => {
-            let mut on = lanes[0] != 0.0;
+    match (row.param.value_type, value) {
+        (_, Value::Bool(on)) => {
+            let mut on = *on;
             let changed = ui.checkbox(&mut on, "").accessible_name(&row.path).changed();
-            changed.then(|| Value::number(on))
+            changed.then_some(Value::Bool(on))
         }
-        (ValueType::Word(words), Value::Numbers(lanes)) => word_ui(ui, row, words, lanes[0] as usize),
-        (ValueType::Numbers { lanes: 4, .. }, Value::Numbers(lanes)) => color_ui(ui, row, lanes),
-        (ValueType::Numbers { lanes: 1, .. }, Value::Numbers(lanes)) => number_ui(ui, row, lanes[0]),
-        (ValueType::Numbers { .. }, Value::Numbers(lanes)) => lanes_ui(ui, row, lanes),
-        (ValueType::Text { longest }, Value::Text(text)) => {
+        (ValueType::Choice(words), Value::Choice(index)) => word_ui(ui, row, words, *index),
+        (ValueType::Color, Value::Numbers(components)) => color_ui(ui, row, components),
+        (_, Value::Numbers(components)) => match components[..] {
+            [number] => number_ui(ui, row, number),
+            _ => components_ui(ui, row, components),
+        },
+        (ValueType::Text { max_chars }, Value::Text(text)) => {
             let mut text = text.clone();
-            let edit = egui::TextEdit::singleline(&mut text).char_limit(longest).desired_width(ui.available_width());
+            let edit = egui::TextEdit::singleline(&mut text).char_limit(max_chars).desired_width(ui.available_width());
             ui.add(edit).accessible_name(&row.path).changed().then_some(Value::Text(text))
         }
         _ => None, // Lists of texts are edited in the file.
@@ -207,11 +204,11 @@ fn word_ui(ui: &mut Ui, row: &Row, words: &[&str], chosen: usize) -> Option<Valu
         })
         .response
         .accessible_name(&row.path);
-    (now != chosen).then(|| Value::number(now as u32))
+    (now != chosen).then_some(Value::Choice(now))
 }
 
-fn color_ui(ui: &mut Ui, row: &Row, lanes: &[f64]) -> Option<Value> {
-    let mut color: [f32; 4] = std::array::from_fn(|i| lanes[i] as f32);
+fn color_ui(ui: &mut Ui, row: &Row, components: &[f64]) -> Option<Value> {
+    let mut color: [f32; 4] = std::array::from_fn(|i| components[i] as f32);
     ui.spacing_mut().interact_size.x = 44.0;
     let response = ui.color_edit_button_rgba_unmultiplied(&mut color).accessible_name(&row.path).on_hover_text("Choose the colour");
     let [r, g, b, a] = egui::Rgba::from_rgba_unmultiplied(color[0], color[1], color[2], color[3]).to_srgba_unmultiplied();
@@ -223,21 +220,20 @@ fn color_ui(ui: &mut Ui, row: &Row, lanes: &[f64]) -> Option<Value> {
 
 /// One number: a slider over the soft range, and a field that takes the hard one.
 fn number_ui(ui: &mut Ui, row: &Row, value: f64) -> Option<Value> {
-    let ValueType::Numbers { low, high, precision, .. } = row.form else { return None };
-    let whole = precision == crate::preset_file::form::Precision::Whole;
+    let ([low, high], whole, soft) = (row.param.hard, row.is_whole(), row.slider());
     let mut now = value;
-    if let Some([from, to]) = row.soft {
+    if let Some([from, to]) = soft {
         ui.spacing_mut().slider_width = (ui.available_width() - NUMBER_WIDTH - 6.0).max(24.0);
         now = slider_ui(ui, row, value, [from, to], whole);
     }
-    let speed = row.soft.map_or_else(|| value.abs().max(1.0) * 0.01, |[from, to]| (to - from) / 300.0);
+    let speed = soft.map_or_else(|| value.abs().max(1.0) * 0.01, |[from, to]| (to - from) / 300.0);
     let mut drag =
         DragValue::new(&mut now).range(low..=high).speed(if whole { speed.max(0.05) } else { speed }).update_while_editing(false);
-    drag = if whole { drag.fixed_decimals(0) } else { drag.max_decimals(decimals(row.soft)) };
-    if !row.unit.is_empty() {
-        drag = drag.suffix(spaced(row.unit));
+    drag = if whole { drag.fixed_decimals(0) } else { drag.max_decimals(decimals(soft)) };
+    if !row.param.unit.is_empty() {
+        drag = drag.suffix(spaced(row.param.unit));
     }
-    let width = if row.soft.is_some() { NUMBER_WIDTH } else { ui.available_width().min(120.0) };
+    let width = if soft.is_some() { NUMBER_WIDTH } else { ui.available_width().min(120.0) };
     ui.add_sized([width, theme::ROW - 4.0], drag).accessible_name(format!("{} value", row.path));
     let now = if whole { now.round() } else { now };
     (now != value && now.is_finite()).then(|| Value::number(now.clamp(low, high)))
@@ -267,35 +263,30 @@ fn slider_ui(ui: &mut Ui, row: &Row, value: f64, [from, to]: [f64; 2], whole: bo
     };
     let mut slider = Slider::from_get_set(from..=to, set).show_value(false).clamping(SliderClamping::Edits);
     slider = if whole { slider.step_by(1.0) } else { slider };
-    slider = if row.log { slider.logarithmic(true).smallest_positive(from.abs().max(1e-6)) } else { slider };
+    slider = if row.param.log { slider.logarithmic(true).smallest_positive(from.abs().max(1e-6)) } else { slider };
     let response = ui.add(slider).accessible_name(&row.path);
     if !(fine && response.dragged()) {
         return now;
     }
     let part = f64::from(response.drag_delta().x / rail.max(1.0)) * 0.1;
-    let moved = if row.log && value > 0.0 && from > 0.0 { value * (to / from).powf(part) } else { value + (to - from) * part };
+    let moved = if row.param.log && value > 0.0 && from > 0.0 { value * (to / from).powf(part) } else { value + (to - from) * part };
     if whole { value } else { moved.clamp(from.min(value), to.max(value)) }
 }
 
 /// Two or three numbers side by side.
-fn lanes_ui(ui: &mut Ui, row: &Row, lanes: &[f64]) -> Option<Value> {
-    let ValueType::Numbers { low, high, precision, .. } = row.form else { return None };
-    let whole = precision == crate::preset_file::form::Precision::Whole;
-    let mut now = lanes.to_vec();
+fn components_ui(ui: &mut Ui, row: &Row, components: &[f64]) -> Option<Value> {
+    let ([low, high], whole, soft) = (row.param.hard, row.is_whole(), row.slider());
+    let mut now = components.to_vec();
     (ui.spacing_mut().item_spacing.x, ui.spacing_mut().button_padding.x) = (4.0, 3.0);
-    let width = (ui.available_width() - 4.0 * (lanes.len() - 1) as f32) / lanes.len() as f32;
-    let names = match lanes.len() {
-        2 if whole => ["width", "height", ""],
-        2 => ["begin", "end", ""],
-        _ => ["x", "y", "z"],
-    };
-    for (lane, name) in now.iter_mut().zip(names) {
-        let speed = if whole { 1.0 } else { row.soft.map_or_else(|| lane.abs().max(0.5) * 0.01, |[from, to]| (to - from) / 300.0) };
-        let drag = DragValue::new(lane).range(low..=high).speed(speed).max_decimals(if whole { 0 } else { 3 }).update_while_editing(false);
-        ui.add_sized([width, theme::ROW - 4.0], drag).accessible_name(format!("{}.{name}", row.path)).on_hover_text(name);
+    let width = (ui.available_width() - 4.0 * (components.len() - 1) as f32) / components.len() as f32;
+    for (component, name) in now.iter_mut().zip(row.param.value_type.component_names()) {
+        let speed = if whole { 1.0 } else { soft.map_or_else(|| component.abs().max(0.5) * 0.01, |[from, to]| (to - from) / 300.0) };
+        let drag =
+            DragValue::new(component).range(low..=high).speed(speed).max_decimals(if whole { 0 } else { 3 }).update_while_editing(false);
+        ui.add_sized([width, theme::ROW - 4.0], drag).accessible_name(format!("{}.{name}", row.path)).on_hover_text(*name);
     }
-    let changed = now != lanes && now.iter().all(|lane| lane.is_finite());
-    changed.then(|| Value::Numbers(now.iter().map(|lane| if whole { lane.round() } else { *lane }).collect()))
+    let changed = now != components && now.iter().all(|component| component.is_finite());
+    changed.then(|| Value::Numbers(now.iter().map(|component| if whole { component.round() } else { *component }).collect()))
 }
 
 /// A dot of `color` in front of a line, for states.

@@ -12,33 +12,12 @@ use crate::{
     accuracy::AXES,
     effects::{EFFECTS, Effect},
     gpu::Explanation,
-    params::{Field, Kind},
-    preset::Tier,
-    preset_file::{
-        form::Value,
-        keys::{KEYS, Key, Section},
+    params::{Field, ValueType},
+    preset::{
+        Tier,
+        settings::{CAMERA, Setting},
     },
 };
-
-/// How a key of the preset is shown: its unit, and what its slider spans.
-const SHOWN: &[(&str, &str, Option<[f64; 2]>)] = &[
-    ("scene.room", "", Some([0.0, 4.0])),
-    ("scene.spin_deg_per_s", "°/s", Some([-180.0, 180.0])),
-    ("scene.clip_speed", "", Some([-2.0, 2.0])),
-    ("scene.blend", "", Some([0.0, 1.0])),
-    ("camera.eye", "m", None),
-    ("camera.target", "m", None),
-    ("camera.fov_y_deg", "°", Some([10.0, 120.0])),
-    ("camera.orthographic_height_m", "m", None),
-    ("camera.near_m", "m", None),
-    ("clock.time_s", "s", Some([0.0, 12.0])),
-    ("clock.range_s", "s", None),
-    ("clock.loops", "", None),
-    ("clock.speed", "", None),
-    ("output.size", "", None),
-    ("output.background", "", None),
-    ("accuracy.tier", "", None),
-];
 
 impl App {
     pub(super) fn inspector_ui(&mut self, ui: &mut Ui) {
@@ -149,19 +128,19 @@ impl App {
                 continue;
             }
             let row = Row::of_field(effect, field, &words).keyed(self.keying(effect, field));
-            let value = Value::Numbers(field.get(&words));
+            let value = field.value(&words);
             let outcome = row_ui(ui, &row, &value);
             if outcome.hovered {
                 self.hovered_row = Some((row.path.clone(), row.written(&value)));
             }
-            if let Some(Value::Numbers(lanes)) = outcome.value {
-                self.put_value(effect, field, lanes);
+            if let Some(value) = outcome.value {
+                self.put_value(effect, field, &value);
             }
             if let Some(ask) = outcome.ask {
                 self.answer(ui.ctx(), ask);
             }
             // Directions are points without a unit, and extents are never negative.
-            if field.kind == Kind::Point && field.unit == "m" && field.hard[0] < 0.0 {
+            if field.value_type == ValueType::Point && field.unit == "m" && field.hard[0] < 0.0 {
                 self.pick_ui(ui, effect, field);
             }
         }
@@ -186,17 +165,17 @@ impl App {
     }
 
     pub(super) fn key_ui(&mut self, ui: &mut Ui, path: &str) {
-        let Some(key) = Key::find(path) else { return };
+        let Some(setting) = Setting::find(path) else { return };
         let preset = &self.preset_file.preset;
-        let Some(value) = (key.get)(preset) else { return };
-        let (unit, soft) = SHOWN.iter().find(|(shown, ..)| *shown == path).map_or(("", None), |&(_, unit, soft)| (unit, soft));
-        let row = Row::of_key(key, unit, soft, key_is_modified(key, preset, &value));
+        let Some(value) = setting.get(preset) else { return };
+        let row = Row::of_setting(setting, preset);
         let outcome = row_ui(ui, &row, &value);
         if outcome.hovered {
             self.hovered_row = Some((row.path.clone(), row.written(&value)));
         }
-        if let Some(value) = outcome.value.filter(|value| key.check(value).is_ok()) {
-            (key.set)(&mut self.preset_file.preset, value);
+        if let Some(value) = outcome.value {
+            // While a person types, a value may break a rule; the preset keeps the last one that does not.
+            drop(setting.set(&mut self.preset_file.preset, &value));
         }
         if let Some(ask) = outcome.ask {
             self.answer(ui.ctx(), ask);
@@ -212,7 +191,7 @@ impl App {
                 }
                 return;
             }
-            KEYS.iter().filter(|key| key.section == "camera" && key.name != "up").for_each(|key| self.key_ui(ui, &key.path()));
+            CAMERA.settings.iter().filter(|setting| setting.name != "up").for_each(|setting| self.key_ui(ui, &setting.path()));
             ui.horizontal(|ui| {
                 if ui.button("Frame scene").clicked() {
                     self.frame_scene();
@@ -226,7 +205,7 @@ impl App {
 
     fn clock_ui(&mut self, ui: &mut Ui) {
         let before_s = self.preset_file.preset.clock.time_s;
-        self.keys_folder(ui, "Clock", false, &["clock.time_s", "clock.range_s", "clock.loops", "clock.speed"]);
+        self.keys_folder(ui, "Clock", false, &["clock.time_s", "clock.range_s", "clock.loop", "clock.speed"]);
         if self.preset_file.preset.clock.time_s != before_s {
             self.show_own_time();
         }
@@ -317,12 +296,6 @@ impl App {
     }
 }
 
-/// Does `key` say something else than a preset that leaves it out?
-fn key_is_modified(key: &Key, preset: &crate::preset::Preset, value: &Value) -> bool {
-    let baseline = Section::baseline(preset);
-    (key.get)(&baseline).as_ref() != Some(value)
-}
-
 /// `triangle_id` as people read it.
 fn shown_name(effect: &Effect) -> String {
     let mut name = effect.name.replace('_', " ");
@@ -352,13 +325,6 @@ pub fn bytes_text(bytes: u64) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn every_shown_key_exists() {
-        for (path, ..) in SHOWN {
-            assert!(Key::find(path).is_some(), "{path}");
-        }
-    }
 
     #[test]
     fn effects_read_as_words() {

@@ -3,7 +3,7 @@
 use super::{App, Level};
 use crate::{
     effects::Effect,
-    params::Field,
+    params::{Field, Value},
     preset::animation::{Easing, Keyframe, Track, default_easing},
     preset_file::{self, PresetError},
 };
@@ -60,13 +60,13 @@ impl App {
     }
 
     /// Gives a parameter a value: an animated one at the time that is shown, any other at all times.
-    pub(super) fn put_value(&mut self, effect: &'static Effect, field: &'static Field, lanes: Vec<f64>) {
+    pub(super) fn put_value(&mut self, effect: &'static Effect, field: &'static Field, value: &Value) {
         let outcome = if self.preset_file.preset.animation.get(effect.name, field.name).is_some() {
             self.playback.playing = false; // Or every frame would leave a key.
-            self.set_key(effect, field, lanes).map_err(|error| error.to_string())
+            self.set_key(effect, field, value.components()).map_err(|error| error.to_string())
         } else {
             let enabled = self.preset_file.preset.stack.get_mut(effect.name);
-            enabled.map_or(Ok(()), |enabled| field.set(&mut enabled.words, &lanes).map_err(|error| error.to_string()))
+            enabled.map_or(Ok(()), |enabled| field.set_value(&mut enabled.words, value).map_err(|error| error.to_string()))
         };
         if let Err(error) = outcome {
             self.tell(Level::Error, format!("{}.{}: {error}", effect.name, field.name));
@@ -122,7 +122,9 @@ impl App {
             Some(track) => preset.animation.put(track),
             None => {
                 preset.animation.remove(key.effect.name, key.field);
-                self.put_value(key.effect, field, last);
+                if let Some(last) = field.value_type.value(&last) {
+                    self.put_value(key.effect, field, &last);
+                }
             }
         }
     }
@@ -154,7 +156,7 @@ impl App {
         let mut probe = self.preset_file.clone();
         preset_file::set(&mut probe, path, text)?;
         if let Some(enabled) = probe.preset.stack.get(effect.name) {
-            self.put_value(effect, field, field.get(&enabled.words));
+            self.put_value(effect, field, &field.value(&enabled.words));
         }
         Ok(())
     }

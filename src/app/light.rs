@@ -7,6 +7,7 @@ use super::{App, orbit, theme};
 use crate::{
     effects::shadow::{self, Shadow},
     math::srgb_byte,
+    params::Value,
     scene::camera::Camera,
 };
 
@@ -36,7 +37,7 @@ impl App {
             let [right, down] = [drag.x, drag.y].map(|points| f64::from(points / RADIUS));
             for (name, degrees) in ["azimuth_deg", "elevation_deg"].into_iter().zip(angles(turned(toward, &camera, right, down))) {
                 if let Some(field) = shadow::EFFECT.field(name) {
-                    self.put_value(&shadow::EFFECT, field, vec![degrees]);
+                    self.put_value(&shadow::EFFECT, field, &Value::number(degrees));
                 }
             }
         }

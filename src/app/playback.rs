@@ -70,7 +70,7 @@ impl App {
     pub(super) fn play_or_pause(&mut self) {
         self.playback.playing = !self.playback.playing;
         let clock = self.preset_file.preset.clock;
-        if self.playback.playing && !clock.loops && self.shown_time_s() >= clock.range_s[1] {
+        if self.playback.playing && !clock.is_looping && self.shown_time_s() >= clock.range_s[1] {
             self.show_time(clock.range_s[0]); // From the end there is no way on.
         }
         if self.playback.playing && !self.preset_file.preset.is_moving() {

@@ -3,7 +3,7 @@
 use eframe::egui::{self, Event, Key, KeyboardShortcut, Modifiers, RichText, Ui};
 
 use super::{App, Level, dialogs::Dialog, orbit, theme};
-use crate::{effects::Effect, math::hash_unit, params::Kind, preset_file};
+use crate::{effects::Effect, math::hash_unit, params::ValueType, preset_file};
 
 /// What a key or a menu can do.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -305,13 +305,15 @@ fn randomize_words(effect: &Effect, words: &mut [u32], seed: u32) {
         let salt =
             effect.name.bytes().chain(field.name.bytes()).fold(seed.wrapping_mul(0x9e37_79b9), |h, b| h.rotate_left(5) ^ u32::from(b));
         let [from, to] = field.soft;
-        let values: Vec<f64> = (0..field.kind.lanes() as u32)
+        let values: Vec<f64> = (0..field.value_type.components() as u32)
             .map(|lane| {
                 let share = hash_unit(salt.wrapping_add(lane.wrapping_mul(0x85eb_ca6b)));
-                match field.kind {
-                    Kind::Color if lane == 3 => 1.0,
-                    Kind::U32 | Kind::I32 | Kind::Bool | Kind::Choice(_) => (from + share * (to - from + 1.0)).floor().min(to),
-                    Kind::F32 if field.log && from > 0.0 => from * (to / from).powf(share),
+                match field.value_type {
+                    ValueType::Color if lane == 3 => 1.0,
+                    ValueType::U32 | ValueType::I32 | ValueType::Bool | ValueType::Choice(_) => {
+                        (from + share * (to - from + 1.0)).floor().min(to)
+                    }
+                    ValueType::F32 if field.log && from > 0.0 => from * (to / from).powf(share),
                     _ => from + share * (to - from),
                 }
             })

@@ -12,6 +12,7 @@ use super::{
     theme,
 };
 use crate::{
+    params::Stored as _,
     preset::Preset,
     scene::{
         Scene,
@@ -113,7 +114,7 @@ impl App {
         match pick::pick(&scene, &view, DVec2::new(place.x.into(), place.y.into())) {
             Some(point) => {
                 self.picking = None;
-                self.put_value(effect, field, point.to_array().to_vec());
+                self.put_value(effect, field, &point.to_value());
             }
             None => self.log.tell(Level::Info, "There is nothing under this click; the point stays where it was.", self.now_s),
         }

@@ -90,6 +90,8 @@ pub enum Command {
     Gallery(Gallery),
     /// Validate looks; with --render also against their goldens
     Check(Check),
+    /// Show how the current schema changes preset files; with --write change them
+    Migrate(Migrate),
     /// Print a completion script
     Completions { shell: clap_complete::Shell },
 }
@@ -109,6 +111,7 @@ impl Command {
             Self::Stress(_) => "stress",
             Self::Gallery(_) => "gallery",
             Self::Check(_) => "check",
+            Self::Migrate(_) => "migrate",
             Self::Completions { .. } => "completions",
         }
     }
@@ -298,6 +301,16 @@ pub enum Format {
     Json,
     Csv,
     Md,
+}
+
+#[derive(Args, Debug)]
+pub struct Migrate {
+    /// Preset files
+    #[arg(required = true, value_name = "FILE")]
+    pub files: Vec<PathBuf>,
+    /// Change the files
+    #[arg(long)]
+    pub write: bool,
 }
 
 #[derive(Args, Debug)]

@@ -15,7 +15,7 @@ use super::{
 use crate::{
     effects::Effect,
     measure::compare::pictures,
-    preset::{Output, Preset, Test},
+    preset::{GoldenTest, Output, Preset},
     preset_file::{self, PresetFile},
 };
 
@@ -91,7 +91,7 @@ fn first_preset(effect: &'static Effect) -> PresetFile {
         about: effect.about.into(),
         tags: vec!["canonical".into()],
         output: Output { size: golden::MAX_SIZE, ..Output::default() },
-        test: Some(Test::default()),
+        test: Some(GoldenTest::default()),
         ..Preset::default()
     };
     preset.stack.enable(effect);

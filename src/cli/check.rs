@@ -25,7 +25,7 @@ pub struct Finding {
     /// One sentence each; empty when all is well.
     pub faults: Vec<String>,
     pub warnings: Vec<String>,
-    pub place: Option<preset_file::Place>,
+    pub position: Option<preset_file::Position>,
     pub drawn: Option<Drawn>,
 }
 
@@ -69,7 +69,7 @@ pub fn run(common: &Common, args: &Check, streams: &mut Streams) -> Result<Exit,
 
 fn check(common: &Common, args: &Check, file: &str, painter: Option<&mut Painter>) -> Finding {
     let id = Path::new(file).file_stem().map_or_else(|| file.to_owned(), |stem| stem.to_string_lossy().into_owned());
-    let mut finding = Finding { preset_file: id, exit: Exit::Done, faults: Vec::new(), warnings: Vec::new(), place: None, drawn: None };
+    let mut finding = Finding { preset_file: id, exit: Exit::Done, faults: Vec::new(), warnings: Vec::new(), position: None, drawn: None };
     let outcome = open(common, file).and_then(|preset_file| {
         finding.warnings.clone_from(&preset_file.warnings);
         let scene = scene_of(&preset_file)?;
@@ -82,7 +82,7 @@ fn check(common: &Common, args: &Check, file: &str, painter: Option<&mut Painter
         }
         Ok(None) => {}
         Err(fault) => {
-            finding.place = fault.error.downcast_ref::<PresetError>().and_then(PresetError::place);
+            finding.position = fault.error.downcast_ref::<PresetError>().and_then(PresetError::position);
             (finding.exit, finding.faults) = (fault.exit, vec![fault.sentence()]);
         }
     }
@@ -130,10 +130,10 @@ fn text(finding: &Finding) -> String {
 }
 
 fn json_finding(finding: &Finding) -> Value {
-    let place = finding.place.clone().unwrap_or_default();
+    let position = finding.position.clone().unwrap_or_default();
     let error = |message: &String| {
-        let file = if place.file.is_empty() { Value::Null } else { json!(place.file) };
-        json!({ "code": finding.exit as u8, "message": message, "file": file, "line": place.line })
+        let file = if position.file.is_empty() { Value::Null } else { json!(position.file) };
+        json!({ "code": finding.exit as u8, "message": message, "file": file, "line": position.line })
     };
     json!({
         "preset": finding.preset_file, "ok": finding.faults.is_empty(), "warnings": finding.warnings,

@@ -74,7 +74,7 @@ fn sidecar(preset_file: &PresetFile, scene: &Scene, frame: &Frame) -> Value {
 /// Hash of all that decides the picture: not of names, comments, budgets, or what happens at another time.
 pub fn preset_hash(preset: &Preset) -> Fnv {
     let clock = Clock { time_s: preset.clock.time_s, ..Clock::default() };
-    let picture = Preset { name: String::new(), about: String::new(), tags: Vec::new(), test: None, clock, ..preset.posed() };
+    let picture = Preset { name: String::new(), about: String::new(), tags: Vec::new(), test: None, clock, ..preset.evaluated() };
     Fnv::new().bytes(preset_file::to_toml(&PresetFile::new("", picture)).as_bytes())
 }
 

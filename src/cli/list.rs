@@ -10,8 +10,8 @@ use super::{
 use crate::{
     accuracy::{AXES, Axis},
     effects::{EFFECTS, Effect},
-    params::Field,
-    preset_file::{self, GalleryEntry, form::ValueType, gallery},
+    params::{Field, format_number},
+    preset_file::{self, GalleryEntry, gallery, toml_value},
     scene::builtin::BUILTINS,
 };
 
@@ -64,7 +64,7 @@ fn presets_text(entries: &[GalleryEntry]) -> String {
 }
 
 fn default_text(field: &Field, words: &[u32]) -> String {
-    ValueType::of(field).write(&preset_file::form::Value::Numbers(field.get(words))).to_string().trim().to_owned()
+    toml_value::write_text(field.value_type, &field.value(words))
 }
 
 fn effects_text(effects: &[&Effect]) -> String {
@@ -83,7 +83,7 @@ fn effects_text(effects: &[&Effect]) -> String {
         let defaults = (effect.defaults)();
         rows.extend(effect.fields.iter().map(|field| {
             let name = format!("  {}.{}", effect.name, field.name);
-            vec![name, default_text(field, &defaults), ValueType::of(field).allowed(), field.unit.into(), field.doc.trim().into()]
+            vec![name, default_text(field, &defaults), field.allowed(), field.unit.into(), field.doc.trim().into()]
         }));
     }
     table(&rows)
@@ -102,9 +102,8 @@ fn scenes_text(scenes: &[crate::scene::builtin::Builtin]) -> String {
     for scene in scenes {
         rows.push(vec![scene.name.into(), String::new(), String::new(), scene.about.into()]);
         rows.extend(scene.params.iter().map(|p| {
-            let allowed =
-                format!("{}..={}", preset_file::form::format_number(*p.range.start()), preset_file::form::format_number(*p.range.end()));
-            vec![format!("  ?{}", p.name), preset_file::form::format_number(p.default), allowed, p.doc.into()]
+            let allowed = format!("{}..={}", format_number(*p.range.start()), format_number(*p.range.end()));
+            vec![format!("  ?{}", p.name), format_number(p.default), allowed, p.doc.into()]
         }));
     }
     table(&rows)
@@ -153,8 +152,8 @@ fn effect_json(effect: &Effect) -> Value {
     let defaults = (effect.defaults)();
     let parameter = |field: &Field| {
         json!({
-            "name": field.name, "about": field.doc.trim(), "type": field.kind.wgsl(), "unit": field.unit,
-            "default": default_text(field, &defaults), "allowed": ValueType::of(field).allowed(),
+            "name": field.name, "about": field.doc.trim(), "type": field.wgsl.name(), "unit": field.unit,
+            "default": default_text(field, &defaults), "allowed": field.allowed(),
             "hard": field.hard, "soft": field.soft, "log": field.log,
         })
     };

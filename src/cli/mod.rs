@@ -14,6 +14,7 @@ mod files;
 pub mod gallery;
 pub mod golden;
 mod list;
+mod migrate;
 mod painter;
 mod render;
 mod report;
@@ -64,6 +65,7 @@ fn dispatch(common: &Common, command: &Command, streams: &mut Streams) -> Result
         Command::Stress(args) => stress::run(common, args, streams),
         Command::Gallery(args) => gallery::run(args, streams),
         Command::Check(args) => check::run(common, args, streams),
+        Command::Migrate(args) => migrate::run(args, streams),
         Command::Completions { shell } => {
             let mut script = Vec::new();
             clap_complete::generate(*shell, &mut Cli::command(), "rasterlab", &mut script);
@@ -94,7 +96,7 @@ fn window(cli: &Cli) -> Result<Exit, Fault> {
 #[cfg(feature = "gui")]
 fn perhaps_a_command(fault: Fault, what: &str) -> Fault {
     let names: Vec<String> = Cli::command().get_subcommands().map(|command| command.get_name().to_owned()).collect();
-    let hint = preset_file::form::did_you_mean(what, names.iter().map(String::as_str));
+    let hint = crate::params::did_you_mean(what, names.iter().map(String::as_str));
     let is_unknown = matches!(fault.error.downcast_ref(), Some(PresetError::NoPreset { .. }));
     if hint.is_empty() || !is_unknown { fault } else { Fault::usage(format!("there is no preset and no command {what:?}{hint}")) }
 }
@@ -149,9 +151,9 @@ pub fn complain(cli: &Cli, fault: &Fault) {
         let _ = writeln!(io::stderr(), "{}{cause}", if depth == 0 { "error: " } else { "  because " });
     }
     if cli.common.json {
-        let place = fault.error.downcast_ref::<PresetError>().and_then(PresetError::place).unwrap_or_default();
-        let file = if place.file.is_empty() { Value::Null } else { json!(place.file) };
-        let error = json!({ "code": fault.exit as u8, "message": fault.sentence(), "file": file, "line": place.line });
+        let position = fault.error.downcast_ref::<PresetError>().and_then(PresetError::position).unwrap_or_default();
+        let file = if position.file.is_empty() { Value::Null } else { json!(position.file) };
+        let error = json!({ "code": fault.exit as u8, "message": fault.sentence(), "file": file, "line": position.line });
         let command = cli.command.as_ref().map(Command::name);
         let object = json!({ "schema": 1, "command": command, "adapter": null, "results": [], "errors": [error] });
         let _ = Streams::new(true, true).text(&format!("{object:#}\n"));

@@ -25,7 +25,7 @@ use super::{
 use crate::{
     frame::Frame,
     preset::{Preset, SceneSource, animation::MAX_TIME_S},
-    preset_file::{self, Film, PresetError, PresetFile, Reel, Standing},
+    preset_file::{self, AnimatedPng, AnimationOptions, FrameStatus, PresetError, PresetFile},
     scene::Scene,
 };
 
@@ -193,13 +193,13 @@ fn survey(common: &Common, shots: &mut [Shot], size: [u32; 2], painter: &Painter
     if let Some(folder) = shots.first().and_then(|shot| shot.path.as_deref()).and_then(Path::parent).filter(|f| !f.as_os_str().is_empty()) {
         std::fs::create_dir_all(folder).map_err(|e| Fault::from(e).during(format!("{} cannot be made", folder.display())))?;
     }
-    shots.first().and_then(|shot| shot.path.as_deref()).into_iter().for_each(preset_file::sweep);
-    let found: Vec<Standing> = shots
+    shots.first().and_then(|shot| shot.path.as_deref()).into_iter().for_each(preset_file::remove_unfinished);
+    let found: Vec<FrameStatus> = shots
         .par_iter()
-        .map(|shot| shot.path.as_ref().map_or(Ok(Standing::Absent), |path| preset_file::standing(path, size, &shot.mark)))
+        .map(|shot| shot.path.as_ref().map_or(Ok(FrameStatus::Absent), |path| preset_file::frame_status(path, size, &shot.mark)))
         .collect::<Result<_, PresetError>>()?;
     let others: Vec<&Path> =
-        shots.iter().zip(&found).filter(|(_, found)| **found == Standing::Other).filter_map(|(shot, _)| shot.path.as_deref()).collect();
+        shots.iter().zip(&found).filter(|(_, found)| **found == FrameStatus::Other).filter_map(|(shot, _)| shot.path.as_deref()).collect();
     if let ([first, rest @ ..], false) = (&others[..], common.force) {
         let more = if rest.is_empty() { String::new() } else { format!(", and so do {} more", rest.len()) };
         let first = first.display();
@@ -207,7 +207,7 @@ fn survey(common: &Common, shots: &mut [Shot], size: [u32; 2], painter: &Painter
     }
     let mut strangers: Vec<&str> = Vec::new();
     for (shot, found) in shots.iter_mut().zip(&found) {
-        let Standing::Finished { adapter } = found else { continue };
+        let FrameStatus::Finished { adapter } = found else { continue };
         let is_ours = adapter == painter.name();
         shot.kept = is_ours || !common.force;
         if !is_ours && shot.kept && !strangers.contains(&adapter.as_str()) {
@@ -228,21 +228,21 @@ fn film(
     schedule: &Schedule,
     shots: &[Shot],
     painter: &Painter,
-) -> Result<Option<Film>, Fault> {
+) -> Result<Option<AnimatedPng>, Fault> {
     let Some(path) = &args.apng else { return Ok(None) };
     let clock = preset_file.preset.clock;
     let delay_s = delay(schedule.fps);
-    let reel = Reel { size: preset_file.preset.output.size, frames: shots.len() as u32, delay_s, loops: clock.loops };
+    let reel = AnimationOptions { size: preset_file.preset.output.size, frames: shots.len() as u32, delay_s, is_looping: clock.is_looping };
     let whole = shots.iter().fold(Fnv::new(), |hash, shot| hash.bytes(shot.mark.as_bytes()));
-    let mark = hex(whole.words(&[delay_s[0].into(), delay_s[1].into(), clock.loops.into()]));
-    match preset_file::standing(path, reel.size, &mark)? {
-        Standing::Finished { adapter } if adapter == painter.name() => return Ok(None),
-        Standing::Finished { .. } | Standing::Other if !common.force => {
+    let mark = hex(whole.words(&[delay_s[0].into(), delay_s[1].into(), clock.is_looping.into()]));
+    match preset_file::frame_status(path, reel.size, &mark)? {
+        FrameStatus::Finished { adapter } if adapter == painter.name() => return Ok(None),
+        FrameStatus::Finished { .. } | FrameStatus::Other if !common.force => {
             return Err(Fault::usage(format!("{} exists; --force overwrites it", path.display())));
         }
         _ => {}
     }
-    Ok(Some(Film::begin(path, &reel, preset_file, &painter.provenance(), &mark)?))
+    Ok(Some(AnimatedPng::begin(path, &reel, preset_file, &painter.provenance(), &mark)?))
 }
 
 /// One frame's time as a fraction of seconds that APNG can hold, as near as it comes.
@@ -268,7 +268,7 @@ fn draw(
     size: [u32; 2],
     scene: &Arc<Scene>,
     painter: &mut Painter,
-    film: &mut Option<Film>,
+    film: &mut Option<AnimatedPng>,
     streams: &Streams,
 ) -> Result<(), Fault> {
     let bar = streams.progress(shots.len() as u64);

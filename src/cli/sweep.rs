@@ -17,7 +17,7 @@ use crate::{
         sweep::{AS_PLANNED, Judged, Reference, SweepError, SweepOptions, SweepRow, factors, sweep},
     },
     oracle,
-    preset_file::form::did_you_mean,
+    params::did_you_mean,
     scene::{Scene, camera::View},
 };
 
@@ -32,7 +32,7 @@ pub fn run(common: &Common, args: &Bench, streams: &mut Streams) -> Result<Exit,
     let bar = streams.progress(0);
     let mut rows = Vec::new();
     for (preset_file, scene) in &subjects {
-        let preset = &preset_file.preset.posed();
+        let preset = &preset_file.preset.evaluated();
         bar.set_message("the oracle draws");
         let view = preset.view(scene, args.size);
         let references = oracle::references(scene, &view, &preset.stack, &factors(preset, &options.axes))?;

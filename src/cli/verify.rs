@@ -21,7 +21,7 @@ use crate::{
         compare::{difference_picture, pictures, triangle_ids},
     },
     oracle,
-    preset::{Preset, Test, Visibility},
+    preset::{GoldenTest, Preset, Visibility},
     preset_file::{self, PresetFile},
     scene::{Scene, draw::draws},
 };
@@ -171,7 +171,7 @@ fn volume_share(preset: &Preset, scene: &Scene) -> Result<Option<f64>, Fault> {
 }
 
 /// Exact things have no budget unless the preset asks for less; colour has the preset's.
-fn failures(accuracy: &ErrorReport, test: &Test, pixels_over_tolerance: u64) -> Vec<String> {
+fn failures(accuracy: &ErrorReport, test: &GoldenTest, pixels_over_tolerance: u64) -> Vec<String> {
     let forgiven = pixels_over_tolerance <= u64::from(test.max_pixels);
     let max_color_delta = if forgiven { u8::MAX } else { test.max_channel };
     let budget = Budget { max_color_delta, max_wrong_triangles: test.max_wrong_triangles.into(), ..Budget::default() };

@@ -244,8 +244,11 @@ impl Stack {
             for field in effect.fields.iter().filter(|field| field.unit == "px") {
                 let [low, high] = field.hard;
                 let length = |v: f64| (v * factor).clamp(low, high);
-                let lanes: Vec<f64> =
-                    field.get(words).into_iter().map(|v| if field.is_whole() { length(v).round() } else { length(v) }).collect();
+                let lanes: Vec<f64> = field
+                    .get(words)
+                    .into_iter()
+                    .map(|v| if !field.value_type.is_continuous() { length(v).round() } else { length(v) })
+                    .collect();
                 field.set(words, &lanes).expect("within its range");
             }
         }

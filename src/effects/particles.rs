@@ -133,7 +133,7 @@ pub fn life_steps(p: &Particles) -> [u32; 2] {
 }
 
 /// Does a parameter tell how particles look, and not where they fly?
-pub fn is_for_presets(field: &Field) -> bool {
+pub fn affects_only_appearance(field: &Field) -> bool {
     matches!(field.name, "slow" | "fast" | "count" | "size_m" | "size_spread" | "fade" | "roundness" | "bright_mps")
 }
 
@@ -141,7 +141,7 @@ pub fn is_for_presets(field: &Field) -> bool {
 fn of_flight(words: &[u32]) -> Vec<u32> {
     let mut flight = words.to_vec();
     let default = (EFFECT.defaults)();
-    EFFECT.fields.iter().filter(|field| is_for_presets(field)).for_each(|field| field.copy(&default, &mut flight));
+    EFFECT.fields.iter().filter(|field| affects_only_appearance(field)).for_each(|field| field.copy(&default, &mut flight));
     flight
 }
 

@@ -1,95 +1,43 @@
-//! Parameters: one table per effect feeds sliders, preset keys, `--set`, help, layout test and uniform bytes.
+//! Parameters: one registry entry for everything that a person can set.
 //!
-//! [`params!`](crate::params!) declares a struct of 4-byte words exactly as WGSL lays it out, and beside it a table of
-//! [`Field`]s. Values travel as plain words (`Vec<u32>`), so the rest of the program needs no type per effect.
+//! A [`Param`] says what a value is called, what it means, its type, its ranges and its unit. Effects declare theirs with
+//! [`params!`](crate::params!), which also lays the struct out as WGSL has it; settings of a preset and accuracy axes wrap the same
+//! type. Sliders, preset files, `--set`, listings, the JSON schema and uniform bytes all read these entries.
 
-use std::ops::RangeInclusive;
+mod suggest;
+mod value;
 
-/// What a field holds, and so which widget, TOML form and WGSL type it has.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Kind {
-    /// WGSL `f32`.
-    F32,
-    /// WGSL `u32`.
-    U32,
-    /// WGSL `i32`.
-    I32,
-    /// WGSL `u32`, 0 or 1.
-    Bool,
-    /// WGSL `u32`, the index of a name.
-    Choice(&'static [&'static str]),
-    /// WGSL `vec4f`: linear RGBA.
-    Color,
-    /// WGSL `vec4f`: a point in world space in metres, the fourth lane unused.
-    Point,
-}
+use std::ops::{Deref, RangeInclusive};
 
-impl Kind {
-    /// Number of 4-byte words.
-    pub const fn words(self) -> usize {
-        match self {
-            Self::Color | Self::Point => 4,
-            _ => 1,
-        }
-    }
+pub use suggest::{did_you_mean, suggestion};
+pub use value::{Stored, Value, ValueError, ValueType, format_number};
 
-    /// Lanes that a person sees and a preset holds.
-    pub const fn lanes(self) -> usize {
-        match self {
-            Self::Color => 4,
-            Self::Point => 3,
-            _ => 1,
-        }
-    }
-
-    /// Name of the type in WGSL.
-    pub const fn wgsl(self) -> &'static str {
-        match self {
-            Self::F32 => "f32",
-            Self::I32 => "i32",
-            Self::U32 | Self::Bool | Self::Choice(_) => "u32",
-            Self::Color | Self::Point => "vec4<f32>",
-        }
-    }
-
-    const fn is_float(self) -> bool {
-        matches!(self, Self::F32 | Self::Color | Self::Point)
-    }
-}
-
-/// One parameter: all that any surface of the program needs to know about it.
+/// One parameter: what every surface of the program needs to know about it.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Field {
-    /// Stable name: preset key, WGSL member, `--set` path. Renaming needs a migration.
+pub struct Param {
+    /// Stable name: key in preset files, end of a `--set` path, WGSL member. A new name needs a migration.
     pub name: &'static str,
     /// Tooltip and help text.
     pub doc: &'static str,
-    pub kind: Kind,
-    /// Byte offset in the struct, on both sides.
-    pub offset: usize,
-    /// What the kernel survives; files and `--set` outside it are errors.
+    pub value_type: ValueType,
+    /// What the kernel survives; every number outside it is an error.
     pub hard: [f64; 2],
     /// What the slider spans.
     pub soft: [f64; 2],
-    /// Unit shown after the value, empty when a plain number.
+    /// Shown with a slider; otherwise as a number field alone.
+    pub has_slider: bool,
+    /// Unit shown after the value; empty for a plain number.
     pub unit: &'static str,
     /// The slider moves in decades.
     pub log: bool,
-    /// Shown only while the choice field of this name has one of these values.
+    /// Shown only while the choice of this name has one of these words.
     pub when: Option<(&'static str, &'static [&'static str])>,
 }
 
-impl Field {
-    pub const fn new(name: &'static str, doc: &'static str, kind: Kind, offset: usize) -> Self {
-        let (hard, soft) = match kind {
-            Kind::F32 | Kind::Point => ([-1e6, 1e6], [-1.0, 1.0]),
-            Kind::Color => ([0.0, 1.0], [0.0, 1.0]),
-            Kind::U32 => ([0.0, 4_294_967_295.0], [0.0, 100.0]),
-            Kind::I32 => ([-2_147_483_648.0, 2_147_483_647.0], [-100.0, 100.0]),
-            Kind::Bool => ([0.0, 1.0], [0.0, 1.0]),
-            Kind::Choice(names) => ([0.0, (names.len() - 1) as f64], [0.0, (names.len() - 1) as f64]),
-        };
-        Self { name, doc, kind, offset, hard, soft, unit: "", log: false, when: None }
+impl Param {
+    pub const fn new(name: &'static str, doc: &'static str, value_type: ValueType) -> Self {
+        let (hard, soft) = value_type.default_ranges();
+        Self { name, doc, value_type, hard, soft, has_slider: false, unit: "", log: false, when: None }
     }
 
     pub const fn hard(mut self, range: RangeInclusive<f64>) -> Self {
@@ -100,6 +48,7 @@ impl Field {
 
     pub const fn soft(mut self, range: RangeInclusive<f64>) -> Self {
         self.soft = [*range.start(), *range.end()];
+        self.has_slider = true;
         self
     }
 
@@ -113,112 +62,182 @@ impl Field {
         self
     }
 
-    /// Only shown while choice `field` is one of `values`.
+    /// Shown only while the choice of this name has one of these words.
     pub const fn when(mut self, condition: (&'static str, &'static [&'static str])) -> Self {
         self.when = Some(condition);
         self
     }
 
-    fn first_word(&self) -> usize {
-        self.offset / 4
+    /// Does `value` have the parameter's type, and lie inside its hard range?
+    ///
+    /// # Errors
+    /// Completes a sentence that begins with the parameter's name.
+    pub fn check(&self, value: &Value) -> Result<(), ValueError> {
+        self.value_type.check(value, self.hard)
     }
 
-    /// Lane values as a person sees them; a choice is its index, a bool 0 or 1.
+    /// What is allowed, for listings: `0..=1`, `smooth | flat`, `4 numbers, each 0..=1`.
+    pub fn allowed(&self) -> String {
+        let [low, high] = self.hard.map(format_number);
+        match self.value_type {
+            ValueType::Bool => "true | false".into(),
+            ValueType::Choice(words) => words.join(" | "),
+            ValueType::Text { max_chars } => format!("text, at most {max_chars} characters"),
+            ValueType::TextList { max_entries, max_chars } => format!("at most {max_entries} texts of {max_chars} characters"),
+            numbers if numbers.components() == 1 => format!("{low}..={high}"),
+            numbers => format!("{} numbers, each {low}..={high}", numbers.components()),
+        }
+    }
+}
+
+/// How an effect's parameter is stored in its WGSL struct.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum WgslType {
+    F32,
+    U32,
+    I32,
+    Vec4F32,
+}
+
+impl WgslType {
+    /// The name in WGSL.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::F32 => "f32",
+            Self::U32 => "u32",
+            Self::I32 => "i32",
+            Self::Vec4F32 => "vec4<f32>",
+        }
+    }
+
+    /// Number of 4-byte words.
+    pub const fn words(self) -> usize {
+        if matches!(self, Self::Vec4F32) { 4 } else { 1 }
+    }
+}
+
+/// A parameter of an effect: a [`Param`] and where the effect's words hold its value.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Field {
+    pub param: Param,
+    pub wgsl: WgslType,
+    /// Byte offset in the struct, in Rust and in WGSL.
+    pub offset: usize,
+}
+
+impl Deref for Field {
+    type Target = Param;
+
+    fn deref(&self) -> &Param {
+        &self.param
+    }
+}
+
+impl Field {
+    /// The parameter at `offset`. Every parameter of an effect has a slider.
+    pub const fn new(param: Param, wgsl: WgslType, offset: usize) -> Self {
+        Self { param: Param { has_slider: true, ..param }, wgsl, offset }
+    }
+
+    fn words_range(&self) -> std::ops::Range<usize> {
+        self.offset / 4..self.offset / 4 + self.wgsl.words()
+    }
+
+    /// The value in an effect's words.
+    pub fn value(&self, words: &[u32]) -> Value {
+        self.value_type.value(&self.get(words)).expect("effects have no texts")
+    }
+
+    /// The components of the value: a choice is its index, a flag 0 or 1.
     pub fn get(&self, words: &[u32]) -> Vec<f64> {
-        words[self.first_word()..][..self.kind.lanes()]
-            .iter()
-            .map(|&word| match self.kind {
-                k if k.is_float() => f64::from(f32::from_bits(word)),
-                Kind::I32 => f64::from(word as i32),
-                _ => f64::from(word),
-            })
-            .collect()
+        let words = &words[self.words_range()][..self.value_type.components()];
+        let number = |word: u32| match self.wgsl {
+            WgslType::F32 | WgslType::Vec4F32 => f64::from(f32::from_bits(word)),
+            WgslType::I32 => f64::from(word as i32),
+            WgslType::U32 => f64::from(word),
+        };
+        words.iter().map(|word| number(*word)).collect()
     }
 
-    /// Does it hold whole numbers alone?
-    pub const fn is_whole(&self) -> bool {
-        !self.kind.is_float()
-    }
-
-    /// Writes lane values. Refuses, with the allowed range in words, what is not finite, not whole where it must
-    /// be, or outside the hard range; then nothing is changed.
-    pub fn set(&self, words: &mut [u32], values: &[f64]) -> Result<(), ValueError> {
-        if values.len() != self.kind.lanes() {
-            return Err(ValueError::Lanes { field: self.name, wanted: self.kind.lanes(), found: values.len() });
-        }
-        let [low, high] = self.hard;
-        for &value in values {
-            if !(low..=high).contains(&value) {
-                return Err(ValueError::Range { field: self.name, value, low, high });
-            }
-            if !self.kind.is_float() && value.fract() != 0.0 {
-                return Err(ValueError::Whole { field: self.name, value });
-            }
-        }
-        for (word, &value) in words[self.first_word()..].iter_mut().zip(values) {
-            *word = match self.kind {
-                k if k.is_float() => (value as f32).to_bits(),
-                Kind::I32 => value as i32 as u32,
-                _ => value as u32,
+    /// Writes a value.
+    ///
+    /// # Errors
+    /// The value has another type or lies outside the hard range; then nothing is changed.
+    pub fn set_value(&self, words: &mut [u32], value: &Value) -> Result<(), ValueError> {
+        self.check(value)?;
+        let range = self.words_range();
+        for (word, number) in words[range].iter_mut().zip(value.components()) {
+            *word = match self.wgsl {
+                WgslType::F32 | WgslType::Vec4F32 => (number as f32).to_bits(),
+                WgslType::I32 => number as i32 as u32,
+                WgslType::U32 => number as u32,
             };
         }
         Ok(())
     }
 
+    /// Writes a value by its components.
+    ///
+    /// # Errors
+    /// As [`Field::set_value`].
+    pub fn set(&self, words: &mut [u32], components: &[f64]) -> Result<(), ValueError> {
+        // A flag or choice takes one whole number inside its range, before it becomes a value of its type.
+        let numbers = Value::Numbers(components.to_vec());
+        let value = match self.value_type {
+            ValueType::Bool | ValueType::Choice(_) => {
+                ValueType::U32.check(&numbers, self.hard)?;
+                self.value_type.value(components).expect("one number is a flag or choice")
+            }
+            _ => numbers,
+        };
+        self.set_value(words, &value)
+    }
+
     /// Do both hold the same bits in this field?
     pub fn same(&self, a: &[u32], b: &[u32]) -> bool {
-        let range = self.first_word()..self.first_word() + self.kind.words();
-        a[range.clone()] == b[range]
+        a[self.words_range()] == b[self.words_range()]
     }
 
     /// Copies this field's bits.
     pub fn copy(&self, from: &[u32], to: &mut [u32]) {
-        let range = self.first_word()..self.first_word() + self.kind.words();
-        to[range.clone()].copy_from_slice(&from[range]);
+        to[self.words_range()].copy_from_slice(&from[self.words_range()]);
     }
 
-    /// Is the field worth showing for these values?
-    pub fn is_shown(&self, fields: &[Field], words: &[u32]) -> bool {
+    /// Is the field shown for these values?
+    pub fn is_shown(&self, fields: &[Self], words: &[u32]) -> bool {
         self.when.is_none_or(|(name, allowed)| {
-            fields.iter().find(|f| f.name == name).is_some_and(|f| match f.kind {
-                Kind::Choice(names) => names.get(words[f.first_word()] as usize).is_some_and(|n| allowed.contains(n)),
+            fields.iter().find(|field| field.name == name).is_some_and(|field| match (field.value_type, field.value(words)) {
+                (ValueType::Choice(names), Value::Choice(index)) => names.get(index).is_some_and(|name| allowed.contains(name)),
                 _ => true,
             })
         })
     }
 }
 
-/// A value that a field refuses.
-#[derive(Clone, Debug, PartialEq, thiserror::Error)]
-pub enum ValueError {
-    #[error("{field} {value} lies outside {low}..={high}")]
-    Range { field: &'static str, value: f64, low: f64, high: f64 },
-    #[error("{field} {value} must be a whole number")]
-    Whole { field: &'static str, value: f64 },
-    #[error("{field} needs {wanted} numbers, {found} given")]
-    Lanes { field: &'static str, wanted: usize, found: usize },
-}
-
 /// A type that can stand in a `params!` declaration.
 pub trait ParamType {
     /// What the struct stores.
     type Raw: bytemuck::Pod + PartialEq + std::fmt::Debug;
-    const KIND: Kind;
+    const TYPE: ValueType;
+    const WGSL: WgslType;
 }
 
 impl ParamType for f32 {
     type Raw = f32;
-    const KIND: Kind = Kind::F32;
+    const TYPE: ValueType = ValueType::F32;
+    const WGSL: WgslType = WgslType::F32;
 }
 
 impl ParamType for u32 {
     type Raw = u32;
-    const KIND: Kind = Kind::U32;
+    const TYPE: ValueType = ValueType::U32;
+    const WGSL: WgslType = WgslType::U32;
 }
 
 impl ParamType for i32 {
     type Raw = i32;
-    const KIND: Kind = Kind::I32;
+    const TYPE: ValueType = ValueType::I32;
+    const WGSL: WgslType = WgslType::I32;
 }
 
 /// An on/off parameter, stored as 0 or 1.
@@ -226,7 +245,8 @@ pub enum Flag {}
 
 impl ParamType for Flag {
     type Raw = u32;
-    const KIND: Kind = Kind::Bool;
+    const TYPE: ValueType = ValueType::Bool;
+    const WGSL: WgslType = WgslType::U32;
 }
 
 /// A linear RGBA parameter.
@@ -234,15 +254,17 @@ pub enum Color {}
 
 impl ParamType for Color {
     type Raw = [f32; 4];
-    const KIND: Kind = Kind::Color;
+    const TYPE: ValueType = ValueType::Color;
+    const WGSL: WgslType = WgslType::Vec4F32;
 }
 
-/// A world-space point parameter.
+/// A world-space point or direction; the fourth component is unused.
 pub enum Point {}
 
 impl ParamType for Point {
     type Raw = [f32; 4];
-    const KIND: Kind = Kind::Point;
+    const TYPE: ValueType = ValueType::Point;
+    const WGSL: WgslType = WgslType::Vec4F32;
 }
 
 /// A struct declared by [`params!`](crate::params!).
@@ -250,7 +272,7 @@ pub trait Params: bytemuck::Pod + Default {
     const FIELDS: &'static [Field];
 }
 
-/// Declares a choice: an enum whose names are the preset's words and, upper-cased, WGSL constants.
+/// Declares a choice: an enum whose words stand in presets and, upper-cased, name WGSL constants.
 #[macro_export]
 macro_rules! choice {
     ($(#[$meta:meta])* pub enum $name:ident { $($(#[$vmeta:meta])* $variant:ident = $word:literal),+ $(,)? }) => {
@@ -262,7 +284,7 @@ macro_rules! choice {
         impl $name {
             const ALL: &'static [Self] = &[$(Self::$variant),+];
 
-            /// The choice with this index; out of range (which no checked value is) gives the first.
+            /// The choice with this index; an index out of range, which no checked value has, gives the first.
             pub fn of(index: u32) -> Self {
                 Self::ALL.get(index as usize).copied().unwrap_or(Self::ALL[0])
             }
@@ -270,7 +292,8 @@ macro_rules! choice {
 
         impl $crate::params::ParamType for $name {
             type Raw = u32;
-            const KIND: $crate::params::Kind = $crate::params::Kind::Choice(&[$($word),+]);
+            const TYPE: $crate::params::ValueType = $crate::params::ValueType::Choice(&[$($word),+]);
+            const WGSL: $crate::params::WgslType = $crate::params::WgslType::U32;
         }
     };
 }
@@ -295,11 +318,11 @@ macro_rules! params {
         impl $crate::params::Params for $name {
             const FIELDS: &'static [$crate::params::Field] = &[$(
                 $crate::params::Field::new(
-                    stringify!($field),
-                    concat!($($doc),+),
-                    <$ty as $crate::params::ParamType>::KIND,
+                    $crate::params::Param::new(stringify!($field), concat!($($doc),+), <$ty as $crate::params::ParamType>::TYPE)
+                        $(.$key($value))*,
+                    <$ty as $crate::params::ParamType>::WGSL,
                     std::mem::offset_of!($name, $field),
-                )$(.$key($value))*
+                )
             ),*];
         }
     };

@@ -1,23 +1,26 @@
 //! Animation: parameters that follow the clock by keyframes.
 //!
-//! A [`Track`] holds the keys of one parameter, sorted by time, each time once, every value inside the hard range of its
-//! field. Outside its keys the nearest one holds. All arithmetic is f64, and the result is clamped before it is rounded
-//! to the parameter's own type, so a track can give nothing that a file could not say.
+//! A [`Track`] holds the keyframes of one parameter, sorted by time, each time once, every value inside the hard range of its
+//! field. Before the first and after the last keyframe its value holds. All arithmetic is f64, and the result is clamped before
+//! it is rounded to the parameter's type, so that a track gives only values that a file may have.
 
 use std::fmt;
 
 use crate::{
-    effects::{Effect, Stack},
-    params::{Field, Kind, ValueError},
+    effects::{
+        Effect, Stack,
+        particles::{self, affects_only_appearance},
+    },
+    params::{Field, ValueError},
 };
 
-/// Most keys that a track may have.
+/// Largest number of keyframes of a track.
 pub const MAX_KEYFRAMES: usize = 256;
 
-/// Largest distance of a moment from zero, seconds; as `clock.time_s`.
+/// Largest absolute time of a keyframe, seconds; as for `clock.time_s`.
 pub const MAX_TIME_S: f64 = 1e9;
 
-/// How a value goes from its key to the next.
+/// How a value goes from its keyframe to the next.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Easing {
     Hold,
@@ -34,7 +37,7 @@ pub enum Easing {
 impl Easing {
     pub const ALL: [Self; 5] = [Self::Hold, Self::Linear, Self::Smooth, Self::In, Self::Out];
 
-    /// As presets and menus say it.
+    /// The word in presets and menus.
     pub const fn name(self) -> &'static str {
         match self {
             Self::Hold => "hold",
@@ -45,7 +48,7 @@ impl Easing {
         }
     }
 
-    /// In words.
+    /// A description for menus.
     pub const fn about(self) -> &'static str {
         match self {
             Self::Hold => "stays, then jumps",
@@ -56,8 +59,8 @@ impl Easing {
         }
     }
 
-    /// The share of the way that is done when the share `s` of the time, 0 to 1, has passed.
-    pub fn shape(self, s: f64) -> f64 {
+    /// The eased fraction, 0 to 1, for the fraction `s` of the time between two keyframes, 0 to 1.
+    pub fn ease(self, s: f64) -> f64 {
         match self {
             Self::Hold => 0.0,
             Self::Linear => s,
@@ -68,32 +71,32 @@ impl Easing {
     }
 }
 
-/// A value at a moment.
+/// A value at a time.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Keyframe {
     pub time_s: f64,
-    /// One number per lane of the field, exactly as the field keeps it.
+    /// The components of the value, rounded as the field stores them; a flag is 0 or 1, a choice its index.
     pub value: Vec<f64>,
-    /// The way to the next key.
+    /// How the value goes to the next keyframe.
     pub easing: Easing,
 }
 
-/// Why a key cannot be.
+/// Why a keyframe is refused.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum KeyframeError {
     #[error(transparent)]
     Value(#[from] ValueError),
     #[error("time_s {0} lies outside -1e9..=1e9")]
     Time(f64),
-    #[error("time_s {0} has a key already")]
+    #[error("there is already a keyframe at time_s {0}")]
     Taken(f64),
-    #[error("a parameter has 1 to {MAX_KEYFRAMES} keys, not {0}")]
+    #[error("a parameter has 1 to {MAX_KEYFRAMES} keyframes, not {0}")]
     Count(usize),
-    #[error("easing {0} cannot be: a value without fractions holds until its next key")]
+    #[error("easing must be hold, not {0}: whole numbers, flags and words have no values in between")]
     Steps(&'static str),
 }
 
-/// The keys of one parameter of one effect; at least one.
+/// The keyframes of one parameter of one effect; at least one.
 #[derive(Clone)]
 pub struct Track {
     effect: &'static Effect,
@@ -114,11 +117,11 @@ impl fmt::Debug for Track {
 }
 
 impl Track {
-    /// A track with these keys, in any order.
+    /// A track with these keyframes, in any order.
     ///
     /// # Errors
-    /// No key or more than [`MAX_KEYFRAMES`]; a time that is taken or outside ±[`MAX_TIME_S`]; a value that the field refuses;
-    /// another easing than hold for a field without fractions.
+    /// No keyframe or more than [`MAX_KEYFRAMES`]; a time that occurs twice or lies outside ±[`MAX_TIME_S`]; a value that the field
+    /// refuses; an easing other than hold for a field without fractions.
     pub fn new(effect: &'static Effect, field: &'static Field, keys: Vec<Keyframe>) -> Result<Self, KeyframeError> {
         if keys.is_empty() || keys.len() > MAX_KEYFRAMES {
             return Err(KeyframeError::Count(keys.len()));
@@ -151,12 +154,17 @@ impl Track {
         format!("{}.{}", self.effect.name, self.field.name)
     }
 
-    /// Which key stands at exactly this time.
+    /// Does the track change the steps of the particle simulation, so that their history counts?
+    pub(super) fn changes_simulation(&self) -> bool {
+        self.effect == &particles::EFFECT && self.keys.len() > 1 && !affects_only_appearance(self.field)
+    }
+
+    /// Index of the keyframe at exactly this time.
     pub fn at(&self, time_s: f64) -> Option<usize> {
         self.keys.iter().position(|key| key.time_s == time_s)
     }
 
-    /// Adds a key, or replaces the one at its time.
+    /// Adds a keyframe, or replaces the one at its time.
     ///
     /// # Errors
     /// As [`Track::new`]; then nothing is changed.
@@ -173,7 +181,8 @@ impl Track {
         Ok(())
     }
 
-    /// Moves a key in time and gives its new place. A time that is taken, out of range or no number leaves it where it is.
+    /// Moves a keyframe in time and returns its new index. It stays where it is if there is a keyframe at `time_s` already, or if
+    /// that is out of range.
     pub fn move_keyframe(&mut self, index: usize, time_s: f64) -> usize {
         let is_free = self.at(time_s).is_none() && time_s.abs() <= MAX_TIME_S;
         if !is_free || index >= self.keys.len() {
@@ -185,14 +194,14 @@ impl Track {
         index
     }
 
-    /// Changes the way from a key to the next; a field without fractions keeps holding.
+    /// Changes the easing of a keyframe; a field without fractions keeps hold.
     pub fn set_easing(&mut self, index: usize, easing: Easing) {
         if let Some(key) = self.keys.get_mut(index).filter(|_| !steps(self.field)) {
             key.easing = easing;
         }
     }
 
-    /// The track without one key; none when that was the last.
+    /// The track without one keyframe; none when that was the last.
     pub fn without(mut self, index: usize) -> Option<Self> {
         if index < self.keys.len() {
             self.keys.remove(index);
@@ -200,42 +209,39 @@ impl Track {
         (!self.keys.is_empty()).then_some(self)
     }
 
-    /// Lanes at `time_s`: finite and inside the hard range, whatever the time.
+    /// Components of the value at `time_s`: finite and inside the hard range for every time.
     pub fn value_at(&self, time_s: f64) -> Vec<f64> {
         let next = self.keys.partition_point(|key| key.time_s <= time_s);
         let (Some(a), Some(b)) = (next.checked_sub(1).map(|before| &self.keys[before]), self.keys.get(next)) else {
             return self.keys[next.min(self.keys.len() - 1)].value.clone();
         };
-        let share = ((time_s - a.time_s) / (b.time_s - a.time_s)).clamp(0.0, 1.0);
-        let done = a.easing.shape(share);
+        let fraction = ((time_s - a.time_s) / (b.time_s - a.time_s)).clamp(0.0, 1.0);
+        let done = a.easing.ease(fraction);
         if done == 0.0 {
-            return a.value.clone(); // To the bit: -0.0 plus nothing is 0.0.
+            return a.value.clone(); // Keeps the sign of -0.0, which -0.0 + 0.0 loses.
         }
         let [low, high] = self.field.hard;
         a.value.iter().zip(&b.value).map(|(a, b)| (a + (b - a) * done).clamp(low, high)).collect()
     }
 
     /// Writes the value at `time_s` into an effect's words.
-    fn pose(&self, words: &mut [u32], time_s: f64) {
-        let [low, high] = self.field.hard;
-        // A bound such as 0.1 is no f32, so a key on it may lie beyond by a rounding.
-        let lanes: Vec<f64> = self.value_at(time_s).iter().map(|lane| lane.clamp(low, high)).collect();
-        let taken = self.field.set(words, &lanes);
-        debug_assert!(taken.is_ok(), "{self:?} at {time_s}: {taken:?}");
+    fn evaluate(&self, words: &mut [u32], time_s: f64) {
+        let result = self.field.set(words, &self.value_at(time_s));
+        debug_assert!(result.is_ok(), "{self:?} at {time_s}: {result:?}");
     }
 }
 
-/// Does a field jump from key to key, having no values in between?
+/// Does a field jump from keyframe to keyframe, since it has no values in between?
 pub fn steps(field: &Field) -> bool {
-    !matches!(field.kind, Kind::F32 | Kind::Color | Kind::Point)
+    !field.value_type.is_continuous()
 }
 
-/// What a key of `field` does when its file does not say.
+/// The easing of a keyframe of `field` whose file has none.
 pub fn default_easing(field: &Field) -> Easing {
     if steps(field) { Easing::Hold } else { Easing::default() }
 }
 
-/// The key with its value rounded to what the field keeps.
+/// The keyframe with its value rounded as the field stores it.
 fn checked(effect: &Effect, field: &Field, key: Keyframe) -> Result<Keyframe, KeyframeError> {
     let Keyframe { time_s, value, easing } = key;
     if !(-MAX_TIME_S..=MAX_TIME_S).contains(&time_s) {
@@ -245,17 +251,11 @@ fn checked(effect: &Effect, field: &Field, key: Keyframe) -> Result<Keyframe, Ke
         return Err(KeyframeError::Steps(easing.name()));
     }
     let mut words = (effect.defaults)();
-    let [low, high] = field.hard;
-    // What a parameter holds may lie beyond a decimal bound by its rounding; that is no fault of the key.
-    let inside = |lane: &f64| {
-        let is_rounding = !steps(field) && (*lane as f32) == (lane.clamp(low, high) as f32);
-        if is_rounding { lane.clamp(low, high) } else { *lane }
-    };
-    field.set(&mut words, &value.iter().map(inside).collect::<Vec<_>>())?;
+    field.set(&mut words, &value)?;
     Ok(Keyframe { time_s, value: field.get(&words), easing })
 }
 
-/// Every track of a preset, one per parameter, in the order of effects and fields.
+/// The tracks of a preset, one per parameter, in the order of effects and fields.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Animation(Vec<Track>);
 
@@ -276,44 +276,44 @@ impl Animation {
         self.0.iter_mut().find(|track| track.effect.name == effect && track.field.name == field)
     }
 
-    /// Puts a track in, in place of one of the same parameter.
+    /// Adds a track, in place of one of the same parameter.
     pub fn put(&mut self, track: Track) {
         let rank = |track: &Track| (track.effect.rank(), track.field.offset);
         match self.0.binary_search_by_key(&rank(&track), rank) {
-            Ok(there) => self.0[there] = track,
-            Err(place) => self.0.insert(place, track),
+            Ok(index) => self.0[index] = track,
+            Err(index) => self.0.insert(index, track),
         }
     }
 
-    /// Takes the track of one parameter out.
+    /// Removes the track of one parameter.
     pub fn remove(&mut self, effect: &str, field: &str) {
         self.0.retain(|track| track.effect.name != effect || track.field.name != field);
     }
 
-    /// The tracks that `is_meant` is true for.
-    pub fn only(&self, is_meant: impl Fn(&Track) -> bool) -> Self {
-        Self(self.0.iter().filter(|track| is_meant(track)).cloned().collect())
+    /// The tracks for which `is_kept` is true.
+    pub fn only(&self, is_kept: impl Fn(&Track) -> bool) -> Self {
+        Self(self.0.iter().filter(|track| is_kept(track)).cloned().collect())
     }
 
-    /// Takes every track of an effect out.
+    /// Removes every track of an effect.
     pub fn remove_effect(&mut self, effect: &str) {
         self.0.retain(|track| track.effect.name != effect);
     }
 
-    /// `stack` as it stands at `time_s`. Tracks of effects that are not enabled do nothing.
-    pub fn pose(&self, stack: &Stack, time_s: f64) -> Stack {
-        let mut posed = stack.clone();
-        for enabled in &mut posed.0 {
+    /// `stack` with the values at `time_s`. Tracks of effects that are not enabled do nothing.
+    pub fn evaluate(&self, stack: &Stack, time_s: f64) -> Stack {
+        let mut evaluated = stack.clone();
+        for enabled in &mut evaluated.0 {
             enabled.words = self.evaluate_words(enabled.effect.name, &enabled.words, time_s);
         }
-        posed
+        evaluated
     }
 
-    /// The values of one effect at `time_s`, where `words` are those that no key moves.
+    /// The parameter words of one effect at `time_s`; `words` has the values that are not animated.
     pub fn evaluate_words(&self, effect: &str, words: &[u32], time_s: f64) -> Vec<u32> {
-        let mut posed = words.to_vec();
-        self.0.iter().filter(|track| track.effect.name == effect).for_each(|track| track.pose(&mut posed, time_s));
-        posed
+        let mut evaluated = words.to_vec();
+        self.0.iter().filter(|track| track.effect.name == effect).for_each(|track| track.evaluate(&mut evaluated, time_s));
+        evaluated
     }
 }
 
@@ -387,7 +387,7 @@ mod tests {
         stack.enable(&facet::EFFECT);
         let animation = Animation(vec![track]);
         for time_s in [0.0, 1.0, high, 5e8, 1e9, f64::MAX, f64::MIN, f64::NAN] {
-            let posed = animation.pose(&stack, time_s);
+            let posed = animation.evaluate(&stack, time_s);
             let value = field(&facet::EFFECT, "amount").get(&posed.0[0].words)[0];
             assert!((0.0..=1.0).contains(&value), "{time_s}: {value}");
         }
@@ -401,11 +401,11 @@ mod tests {
         let animation = Animation(vec![Track::new(&lambert::EFFECT, sun, keys).expect("sound keys")]);
         let mut stack = Stack::default();
         stack.enable(&lambert::EFFECT);
-        let posed = animation.pose(&stack, 0.5);
+        let posed = animation.evaluate(&stack, 0.5);
         assert_eq!(sun.get(&posed.0[0].words), [0.25, 0.5, 0.75, 1.0]);
         let untouched = lambert::EFFECT.fields.iter().filter(|field| field.name != "sun");
         untouched.for_each(|field| assert!(field.same(&posed.0[0].words, &stack.0[0].words), "{}", field.name));
-        assert_eq!(animation.pose(&Stack::default(), 0.5), Stack::default(), "a track enables nothing");
+        assert_eq!(animation.evaluate(&Stack::default(), 0.5), Stack::default(), "a track enables nothing");
     }
 
     #[test]

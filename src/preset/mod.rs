@@ -1,10 +1,12 @@
-//! Preset: everything a preset says, as plain data that is always finite, and the view it describes.
+//! The state of a preset: plain data that is always finite, and the view that it describes.
 //!
-//! `Clone + PartialEq`, so undo is a list of sessions. Playback, window layout and overlays live elsewhere.
-//! What is drawn is [`Preset::evaluated_stack`], never the stack itself, which keyed parameters leave behind.
+//! `Clone + PartialEq`, so undo is a list of presets. Playback, window layout and overlays are no part of it.
+//! [`Preset::evaluated_stack`] is drawn, not the stack itself: keyframes change its values with the time.
 
 pub mod animation;
 mod particle_timeline;
+pub mod polyline;
+pub mod settings;
 
 use std::{path::PathBuf, sync::Arc};
 
@@ -20,7 +22,7 @@ use crate::{
         pose::{Motion, Pose, scene_from_nodes},
     },
 };
-pub use animation::Animation;
+pub use animation::{Animation, Track};
 
 pub use crate::{
     accuracy::{PinnedOptions, Visibility},
@@ -32,28 +34,28 @@ pub use crate::{
 pub enum SceneSource {
     /// A procedural scene by its query, for instance `teapot?tess=16`.
     Builtin(String),
-    /// A model file; relative paths are relative to the preset's own folder.
+    /// A model file; relative paths are relative to the folder of the preset.
     File(PathBuf),
 }
 
-/// Which clips of a scene play, and how.
+/// Which animation clips of a scene play, and how.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ClipPlayback {
-    /// Name of the clip; empty: at rest.
+    /// Name of the clip; empty: none.
     pub clip: String,
-    /// Seconds of the clips that pass in one second of the preset.
+    /// Seconds of the clips that pass in one second of the clock.
     pub speed: f64,
-    /// The moment of the clips that is shown, whatever the clock says.
+    /// Freezes the clips at this time.
     pub clip_time_s: Option<f64>,
     /// Name of a second clip to blend with; empty: none.
-    pub other: String,
-    /// Share of the second clip, 0 to 1.
+    pub second_clip: String,
+    /// Weight of the second clip, 0 to 1.
     pub blend: f64,
 }
 
 impl Default for ClipPlayback {
     fn default() -> Self {
-        Self { clip: String::new(), speed: 1.0, clip_time_s: None, other: String::new(), blend: 0.0 }
+        Self { clip: String::new(), speed: 1.0, clip_time_s: None, second_clip: String::new(), blend: 0.0 }
     }
 }
 
@@ -85,7 +87,7 @@ impl ClipPlayback {
     /// # Errors
     /// With the first that is not.
     pub fn check(&self, scene: &Scene) -> Result<(), MissingInScene> {
-        for (key, name) in [("scene.clip", &self.clip), ("scene.clip_b", &self.other)] {
+        for (key, name) in [("scene.clip", &self.clip), ("scene.second_clip", &self.second_clip)] {
             if !name.is_empty() && scene.rig.clip(name).is_none() {
                 let known = known(scene.rig.clips.iter().map(|clip| &clip.name), "nothing in it moves");
                 return Err(MissingInScene { key, what: "clip", asked: name.clone(), known });
@@ -103,14 +105,14 @@ pub struct Clock {
     /// What the timeline spans and a sequence draws: from the first, up to and without the second, which is later.
     pub range_s: [f64; 2],
     /// After the end of the range comes its beginning.
-    pub loops: bool,
+    pub is_looping: bool,
     /// Seconds of the preset that pass in one second of film, above 0.
     pub speed: f64,
 }
 
 impl Default for Clock {
     fn default() -> Self {
-        Self { time_s: 0.0, range_s: [0.0, 4.0], loops: true, speed: 1.0 }
+        Self { time_s: 0.0, range_s: [0.0, 4.0], is_looping: true, speed: 1.0 }
     }
 }
 
@@ -123,7 +125,7 @@ impl Clock {
         if next_s < to_s {
             return (next_s, true);
         }
-        if !self.loops {
+        if !self.is_looping {
             return (to_s, false);
         }
         // The remainder of a tiny negative number may round up to the whole range.
@@ -149,7 +151,7 @@ impl Default for Output {
 
 /// What a golden of this preset may differ by; a preset without it has no golden.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Test {
+pub struct GoldenTest {
     /// Largest difference of a channel of 255.
     pub max_channel: u8,
     /// Pixels that may differ by more.
@@ -160,7 +162,7 @@ pub struct Test {
     pub why: String,
 }
 
-impl Default for Test {
+impl Default for GoldenTest {
     fn default() -> Self {
         Self { max_channel: 1, max_pixels: 0, max_wrong_triangles: 0, why: String::new() }
     }
@@ -179,7 +181,7 @@ pub struct Preset {
     /// Turns the whole scene about +y.
     pub spin_deg_per_s: f64,
     /// What moves the scene's own joints and parts.
-    pub play: ClipPlayback,
+    pub playback: ClipPlayback,
     /// A line of the preset's own, for effects that draw along lines; it turns with the scene.
     pub polyline: Arc<[[f32; 3]]>,
     /// None: the scene's own, or framed so that all of it shows.
@@ -193,7 +195,7 @@ pub struct Preset {
     pub animation: Animation,
     pub accuracy: AccuracyRequest,
     pub output: Output,
-    pub test: Option<Test>,
+    pub test: Option<GoldenTest>,
 }
 
 impl Default for Preset {
@@ -205,7 +207,7 @@ impl Default for Preset {
             scene: SceneSource::Builtin("teapot".into()),
             room: 0.0,
             spin_deg_per_s: 0.0,
-            play: ClipPlayback::default(),
+            playback: ClipPlayback::default(),
             polyline: Arc::default(),
             camera: None,
             scene_camera: String::new(),
@@ -230,20 +232,20 @@ impl Preset {
 
     /// The stack at another time.
     pub fn stack_at(&self, time_s: f64) -> Stack {
-        self.animation.pose(&self.stack, time_s)
+        self.animation.evaluate(&self.stack, time_s)
     }
 
     /// The preset with its values as they stand at its time, and nothing that moves them but what particles flew by: the same
     /// picture.
-    pub fn posed(&self) -> Self {
-        Self { stack: self.evaluated_stack(), animation: self.animation.only(particle_timeline::is_steering), ..self.clone() }
+    pub fn evaluated(&self) -> Self {
+        Self { stack: self.evaluated_stack(), animation: self.animation.only(Track::changes_simulation), ..self.clone() }
     }
 
     /// Does the picture depend on the time?
     pub fn is_moving(&self) -> bool {
         let keyed = self.animation.tracks().iter().any(|t| t.keys().len() > 1 && self.stack.get(t.effect().name).is_some());
         let flies = self.stack.particle_settings().is_some();
-        keyed || flies || self.spin_deg_per_s != 0.0 || self.play.is_moving()
+        keyed || flies || self.spin_deg_per_s != 0.0 || self.playback.is_moving()
     }
 
     /// Takes an effect out, with all that moves it.
@@ -256,10 +258,10 @@ impl Preset {
     fn motion(&self, scene: &Scene) -> Motion {
         let clip = |name: &str| scene.rig.clip(name).filter(|_| !name.is_empty());
         Motion {
-            clip: clip(&self.play.clip),
-            other: clip(&self.play.other),
-            blend: self.play.blend,
-            time_s: self.play.clip_time_s.unwrap_or(self.clock.time_s * self.play.speed),
+            clip: clip(&self.playback.clip),
+            other: clip(&self.playback.second_clip),
+            blend: self.playback.blend,
+            time_s: self.playback.clip_time_s.unwrap_or(self.clock.time_s * self.playback.speed),
             skinning: self.accuracy.pins.option().unwrap_or_default(),
         }
     }
@@ -287,7 +289,7 @@ impl Preset {
             let known = known(scene.cameras.iter().map(|camera| &camera.name), "there is none in it");
             return Err(MissingInScene { key: "scene.camera", what: "camera", asked: self.scene_camera.clone(), known });
         }
-        self.play.check(scene)
+        self.playback.check(scene)
     }
 
     /// The camera of the preset, else that of the scene where its node carries it, else the pose that frames `scene`.
@@ -354,7 +356,7 @@ mod tests {
         assert_eq!(clock.after(2.5, 0.5), (1.5, true));
         assert_eq!(clock.after(-4.0, 0.5), (-3.0, true), "it runs into the range");
         assert!(clock.after(1e9, 1e-9).1);
-        let once = Clock { loops: false, ..clock };
+        let once = Clock { is_looping: false, ..clock };
         assert_eq!(once.after(2.5, 0.5), (3.0, false));
         for start in 0..10_000 {
             let (time_s, goes_on) = clock.after(f64::from(start) * 0.377, 1.0 / 60.0);

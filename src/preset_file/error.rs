@@ -1,16 +1,16 @@
-//! What can be wrong with a preset, each as one sentence that says where.
+//! Errors of preset files, each one sentence that begins with the file and line.
 
 use std::fmt;
 
-/// Where in which file; files have names that a person knows, also `stdin` or `--set facet.amount=2`.
+/// A line of a file; `file` may also be `stdin` or an argument such as `--set facet.amount=2`.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
-pub struct Place {
+pub struct Position {
     pub file: String,
     /// Counted from 1.
     pub line: Option<usize>,
 }
 
-impl fmt::Display for Place {
+impl fmt::Display for Position {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self.line {
             Some(line) => write!(f, "{}:{line}", self.file),
@@ -19,22 +19,22 @@ impl fmt::Display for Place {
     }
 }
 
-/// Why a preset cannot be had, changed or kept.
+/// Why a preset cannot be read, changed or written.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum PresetError {
     #[error("{file}: cannot be read: {reason}")]
     Read { file: String, reason: String },
     #[error("{at}: {reason}")]
-    Syntax { at: Place, reason: String },
-    /// A value outside its form or range, or keys that contradict each other.
+    Syntax { at: Position, reason: String },
+    /// A value of another type or outside its range, or keys that contradict each other.
     #[error("{at}: {key} {reason}")]
-    Value { at: Place, key: String, reason: String },
+    Value { at: Position, key: String, reason: String },
     /// Warnings, when strictness makes them errors.
     #[error("{}", .0.join("\n"))]
     Strict(Vec<String>),
     #[error("there is no preset {what:?}{hint}")]
     NoPreset { what: String, hint: String },
-    #[error("{what} holds no preset of ours: {reason}")]
+    #[error("{what} holds no rasterlab preset: {reason}")]
     NotOurs { what: String, reason: String },
     #[error("{id} cannot be changed: {reason}")]
     ReadOnly { id: String, reason: String },
@@ -43,16 +43,16 @@ pub enum PresetError {
 }
 
 impl PresetError {
-    /// Where the fault lies, as far as it lies in a file.
-    pub fn place(&self) -> Option<Place> {
+    /// The file and line of the error, if it is in a file.
+    pub fn position(&self) -> Option<Position> {
         match self {
             Self::Syntax { at, .. } | Self::Value { at, .. } => Some(at.clone()),
-            Self::Read { file, .. } | Self::Write { file, .. } => Some(Place { file: file.clone(), line: None }),
+            Self::Read { file, .. } | Self::Write { file, .. } => Some(Position { file: file.clone(), line: None }),
             _ => None,
         }
     }
 
-    pub(super) fn value(at: Place, key: impl Into<String>, reason: impl Into<String>) -> Self {
+    pub(super) fn value(at: Position, key: impl Into<String>, reason: impl Into<String>) -> Self {
         Self::Value { at, key: key.into(), reason: reason.into() }
     }
 }

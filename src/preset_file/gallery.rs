@@ -1,13 +1,18 @@
-//! Gallery: every preset there is. Folders are searched in order and the first preset of an id wins.
+//! Gallery: every available preset. Folders are searched in order and the first preset of an id wins.
 
 use std::path::{Path, PathBuf};
 
 use include_dir::{Dir, include_dir};
 
-use super::{PresetError, PresetFile, form::did_you_mean, load, parse_file, preset_from_png, read_capped, shot::MAX_FILE_BYTES, stem};
-use crate::preset::SceneSource;
+use super::{
+    error::PresetError,
+    file::{PresetFile, stem},
+    load::{load, parse_file, read_capped},
+    picture::{MAX_FILE_BYTES, preset_from_png},
+};
+use crate::{params::did_you_mean, preset::SceneSource};
 
-/// The presets that travel inside the binary.
+/// The presets inside the binary.
 pub static BUILTIN_DIR: Dir<'static> = include_dir!("$CARGO_MANIFEST_DIR/presets");
 
 /// Where a preset was found, in order of precedence.
@@ -18,13 +23,13 @@ pub enum Origin {
     Chosen,
     /// `presets/` beside the program.
     Beside,
-    /// The user's own folder.
+    /// The folder of the user.
     User,
     /// Inside the program.
     Builtin,
 }
 
-/// A preset of the gallery, or why it cannot be one.
+/// A preset of the gallery, or why it cannot be read.
 #[derive(Clone, Debug)]
 pub struct GalleryEntry {
     pub id: String,
@@ -32,7 +37,7 @@ pub struct GalleryEntry {
     /// None when built in.
     pub path: Option<PathBuf>,
     pub preset_file: Result<PresetFile, PresetError>,
-    /// Where looks of the same id were passed over.
+    /// Where other presets of the same id are, which this one hides.
     pub shadows: Vec<Origin>,
 }
 
@@ -82,7 +87,10 @@ pub fn user_folder() -> Option<PathBuf> {
     Some(config?.join("rasterlab/presets"))
 }
 
-/// Opens whatever a person may name: a preset of the gallery, a `.toml` file, a picture of ours, a model, or `builtin:QUERY`.
+/// Opens what a person names: a preset of the gallery, a `.toml` file, a PNG saved by rasterlab, a model, or `builtin:QUERY`.
+///
+/// # Errors
+/// No such preset or file, or a file that cannot be read.
 pub fn open(what: &str, chosen: Option<&Path>) -> Result<PresetFile, PresetError> {
     if let Some(query) = what.strip_prefix("builtin:") {
         let name = query.split('?').next().unwrap_or(query);
@@ -102,7 +110,7 @@ pub fn open(what: &str, chosen: Option<&Path>) -> Result<PresetFile, PresetError
     }
     let entries = gallery(chosen);
     match entries.iter().position(|entry| entry.id == what) {
-        Some(at) => entries.into_iter().nth(at).expect("its place was just found").preset_file,
+        Some(index) => entries.into_iter().nth(index).expect("the index was just found").preset_file,
         None => {
             let hint = did_you_mean(what, entries.iter().map(|entry| entry.id.as_str()));
             let hint = if hint.is_empty() { "; rasterlab list shows all of them".into() } else { hint };
@@ -111,6 +119,6 @@ pub fn open(what: &str, chosen: Option<&Path>) -> Result<PresetFile, PresetError
     }
 }
 
-fn has_extension(path: &Path, wanted: &str) -> bool {
-    path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case(wanted))
+fn has_extension(path: &Path, expected: &str) -> bool {
+    path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case(expected))
 }

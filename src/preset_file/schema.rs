@@ -1,43 +1,44 @@
-//! The JSON schema of presets, for editors: generated from the same tables that read them.
+//! The JSON schema of preset files, for editors: generated from the registry that reads them.
 
 use serde_json::{Map, Value as Json, json};
 
-use super::{
-    animation::entry_forms,
-    form::{Precision, Value, ValueType},
-    keys::{KEYS, SECTIONS},
-    migrate,
-};
+use super::{keyframes::entry_params, migrate};
 use crate::{
     effects::{EFFECTS, Effect},
-    preset::{Preset, animation::MAX_KEYFRAMES},
+    params::{Param, Value, ValueType},
+    preset::{
+        Preset,
+        animation::MAX_KEYFRAMES,
+        settings::{SECTIONS, Section, TOP},
+    },
 };
 
 /// The whole schema. `presets/schema.json` is this, and a test fails when it is stale.
 pub fn schema() -> Json {
     let mut properties = Map::new();
     properties.insert("schema".into(), json!({ "const": migrate::CURRENT, "description": "Version of the format" }));
-    properties.extend(section(""));
+    properties.extend(section_schema(&TOP));
     let names: Vec<_> = EFFECTS.iter().map(|effect| effect.name).collect();
     properties.insert(
         "stack".into(),
         json!({
-            "description": "Order of the enabled effects, each named once; only where it differs from the usual one",
+            "description": "Order of the enabled effects, each named once; only where it differs from the default order",
             "type": "array", "uniqueItems": true, "items": { "enum": names },
         }),
     );
-    for table in SECTIONS {
-        properties.insert(table.name.into(), json!({ "type": "object", "description": table.doc, "properties": section(table.name) }));
+    for section in SECTIONS.iter().filter(|section| !section.name.is_empty()) {
+        properties
+            .insert(section.name.into(), json!({ "type": "object", "description": section.doc, "properties": section_schema(section) }));
     }
     let effects: Map<String, Json> = EFFECTS.iter().map(|effect| (effect.name.to_owned(), effect_schema(effect))).collect();
     let doc = "Presence of a table enables the effect";
     properties.insert("effects".into(), json!({ "type": "object", "description": doc, "properties": effects }));
     let animation: Map<String, Json> = EFFECTS.iter().map(|effect| (effect.name.to_owned(), animation_schema(effect))).collect();
-    let doc = "Parameters that follow the clock, as lists of keys";
+    let doc = "Parameters that follow the clock, as lists of keyframes";
     properties.insert("animation".into(), json!({ "type": "object", "description": doc, "properties": animation }));
     json!({
         "$schema": "https://json-schema.org/draft/2020-12/schema",
-        "title": "rasterlab look",
+        "title": "rasterlab preset",
         "type": "object",
         "required": ["schema"],
         "properties": properties,
@@ -49,70 +50,74 @@ pub fn text() -> String {
     format!("{:#}\n", schema())
 }
 
-fn section(name: &str) -> Map<String, Json> {
+fn section_schema(section: &Section) -> Map<String, Json> {
     let defaults = Preset::default();
-    let keys = KEYS.iter().filter(|key| key.section == name);
-    keys.map(|key| (key.name.to_owned(), form_schema(&key.form, key.doc, (key.get)(&defaults)))).collect()
+    section.settings.iter().map(|setting| (setting.name.to_owned(), param_schema(setting, setting.get(&defaults)))).collect()
 }
 
 fn effect_schema(effect: &Effect) -> Json {
     let defaults = (effect.defaults)();
-    let field = |field: &crate::params::Field| {
-        let doc = if field.unit.is_empty() { field.doc.trim().to_owned() } else { format!("{} ({})", field.doc.trim(), field.unit) };
-        (field.name.to_owned(), form_schema(&ValueType::of(field), &doc, Some(super::get(field, &defaults))))
-    };
-    let properties: Map<String, Json> = effect.fields.iter().map(field).collect();
+    let properties: Map<String, Json> =
+        effect.fields.iter().map(|field| (field.name.to_owned(), param_schema(field, Some(field.value(&defaults))))).collect();
     json!({ "type": "object", "description": effect.about, "properties": properties })
 }
 
 fn animation_schema(effect: &Effect) -> Json {
     let track = |field: &crate::params::Field| {
-        let entry = entry_forms(field).map(|(name, form, doc)| (name.to_owned(), form_schema(&form, doc, None)));
-        let keys = json!({ "type": "object", "required": ["time_s", "value"], "properties": Map::from_iter(entry) });
-        (field.name.to_owned(), json!({ "type": "array", "minItems": 1, "maxItems": MAX_KEYFRAMES, "items": keys }))
+        let entry = entry_params(field).map(|param| (param.name.to_owned(), param_schema(&param, None)));
+        let keyframe = json!({ "type": "object", "required": ["time_s", "value"], "properties": Map::from_iter(entry) });
+        (field.name.to_owned(), json!({ "type": "array", "minItems": 1, "maxItems": MAX_KEYFRAMES, "items": keyframe }))
     };
     json!({ "type": "object", "properties": effect.fields.iter().map(track).collect::<Map<String, Json>>() })
 }
 
-fn form_schema(form: &ValueType, doc: &str, default: Option<Value>) -> Json {
-    let mut schema = match *form {
-        ValueType::Text { longest } => json!({ "type": "string", "maxLength": longest }),
-        ValueType::Texts { most, longest } => {
-            json!({ "type": "array", "maxItems": most, "items": { "type": "string", "maxLength": longest } })
+fn param_schema(param: &Param, default: Option<Value>) -> Json {
+    let mut schema = match param.value_type {
+        ValueType::Text { max_chars } => json!({ "type": "string", "maxLength": max_chars }),
+        ValueType::TextList { max_entries, max_chars } => {
+            json!({ "type": "array", "maxItems": max_entries, "items": { "type": "string", "maxLength": max_chars } })
         }
-        ValueType::Flag => json!({ "type": "boolean" }),
-        ValueType::Word(words) => json!({ "enum": words }),
-        ValueType::Numbers { lanes, low, high, precision } => {
-            let kind = if precision == Precision::Whole { "integer" } else { "number" };
-            let lane = json!({ "type": kind, "minimum": exact(low), "maximum": exact(high) });
-            if lanes == 1 { lane } else { json!({ "type": "array", "minItems": lanes, "maxItems": lanes, "items": lane }) }
+        ValueType::Bool => json!({ "type": "boolean" }),
+        ValueType::Choice(words) => json!({ "enum": words }),
+        numbers => {
+            let kind = if numbers.is_continuous() { "number" } else { "integer" };
+            let number = json!({ "type": kind, "minimum": exact(param.hard[0]), "maximum": exact(param.hard[1]) });
+            match numbers.components() {
+                1 => number,
+                count => json!({ "type": "array", "minItems": count, "maxItems": count, "items": number }),
+            }
         }
     };
-    schema["description"] = doc.into();
+    let doc = param.doc.trim();
+    schema["description"] = if param.unit.is_empty() { doc.into() } else { format!("{doc} ({})", param.unit).into() };
     if let Some(default) = default {
-        schema["default"] = default_json(form, &default);
+        schema["default"] = default_json(param.value_type, &default);
     }
     schema
 }
 
-/// A default as the file would say it.
-fn default_json(form: &ValueType, default: &Value) -> Json {
-    let shortest = |lane: &f64, precision: Precision| match precision {
-        Precision::Single => format!("{:?}", *lane as f32).parse().map_or(json!(lane), exact),
-        _ => exact(*lane),
+/// A default as the file would have it.
+fn default_json(value_type: ValueType, default: &Value) -> Json {
+    let shortest = |number: &f64| match value_type.is_single() {
+        true => format!("{:?}", *number as f32).parse().map_or(json!(number), exact),
+        false => exact(*number),
     };
-    match (form, default) {
-        (_, Value::Text(text)) => json!(text),
-        (_, Value::Texts(texts)) => json!(texts),
-        (ValueType::Flag, plain) => json!(plain.first() != 0.0),
-        (ValueType::Word(words), plain) => json!(words[plain.first() as usize]),
-        (ValueType::Numbers { lanes: 1, precision, .. }, Value::Numbers(lanes)) => shortest(&lanes[0], *precision),
-        (ValueType::Numbers { precision, .. }, Value::Numbers(lanes)) => lanes.iter().map(|lane| shortest(lane, *precision)).collect(),
-        (form, plain) => unreachable!("{plain:?} is not of the form {form:?}"),
+    match default {
+        Value::Text(text) => json!(text),
+        Value::TextList(texts) => json!(texts),
+        Value::Bool(on) => json!(on),
+        Value::Choice(index) => match value_type {
+            ValueType::Choice(words) => json!(words.get(*index)),
+            _ => json!(index),
+        },
+        Value::Numbers(numbers) => match numbers.as_slice() {
+            [number] => shortest(number),
+            numbers => numbers.iter().map(shortest).collect(),
+        },
     }
 }
 
 /// Whole numbers without a point.
-fn exact(value: f64) -> Json {
-    if value.fract() == 0.0 && value.abs() < 1e15 { json!(value as i64) } else { json!(value) }
+fn exact(number: f64) -> Json {
+    if number.fract() == 0.0 && number.abs() < 1e15 { json!(number as i64) } else { json!(number) }
 }

@@ -6,7 +6,11 @@ use std::path::{Component, Path};
 use base64::{Engine as _, engine::general_purpose::STANDARD};
 use flate2::{Compression, read::DeflateDecoder, write::DeflateEncoder};
 
-use super::{PresetError, PresetFile, parse_file, read::MAX_BYTES, to_toml};
+use super::{
+    error::PresetError,
+    file::{PresetFile, to_toml},
+    load::{MAX_BYTES, parse_file},
+};
 use crate::preset::SceneSource;
 
 const PREFIX: &str = "rasterlab1:";
@@ -30,12 +34,12 @@ pub fn from_line(line: &str) -> Result<PresetFile, PresetError> {
     if toml.len() > MAX_BYTES {
         return Err(not_ours("it unpacks to more than 1 MiB"));
     }
-    let toml = String::from_utf8(toml).map_err(|_| not_ours("it is no text"))?;
+    let toml = String::from_utf8(toml).map_err(|_| not_ours("it is not text"))?;
     let preset_file = parse_file(&toml, "pasted", "the pasted text")?;
     if let SceneSource::File(model) = &preset_file.preset.scene
         && !stays_inside(model)
     {
-        return Err(not_ours("its scene.path leaves the preset's own folder"));
+        return Err(not_ours("its scene.path leaves the folder of the preset"));
     }
     Ok(preset_file)
 }

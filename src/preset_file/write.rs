@@ -1,56 +1,78 @@
-//! Writing: the difference between two sessions becomes a patch of the document, so that comments, unknown keys and
-//! whatever a person arranged stay as they are.
+//! Writing: the difference between two presets becomes a patch of the document, so that comments, unknown keys and
+//! the arrangement of the file stay.
 
-use toml_edit::{DocumentMut, Item, Table, TableLike, Value as TomlValue};
+use toml_edit::{DocumentMut, Item, Table, TableLike, Value as Toml};
 
-use super::{
-    form::ValueType,
-    keys::{KEYS, SECTIONS, Section},
-};
+use super::{keyframes, migrate, toml_value};
 use crate::{
     effects::{EFFECTS, Effect, EnabledEffect, Stack},
-    preset::Preset,
+    params::{Param, Value},
+    preset::{
+        Preset,
+        settings::{ACCURACY, CAMERA, CLOCK, OUTPUT, SCENE, Section, TEST, TOP, baseline},
+    },
 };
 
-/// MeshletBuffers `document`, which says `saved`, so that it says `now`. Only differences from defaults are written.
+/// A part of a preset file.
+enum Part {
+    Section(&'static Section),
+    Stack,
+    Effects,
+    Animation,
+}
+
+/// The order in which a new file has its parts.
+static PARTS: [Part; 10] = [
+    Part::Section(&TOP),
+    Part::Stack,
+    Part::Section(&SCENE),
+    Part::Section(&CAMERA),
+    Part::Section(&CLOCK),
+    Part::Effects,
+    Part::Animation,
+    Part::Section(&ACCURACY),
+    Part::Section(&OUTPUT),
+    Part::Section(&TEST),
+];
+
+/// Patches `document`, which describes `saved`, so that it describes `now`. Only differences from defaults are written.
 pub fn patch(document: &mut DocumentMut, saved: &Preset, now: &Preset) {
     if document.get("schema").is_none() {
-        document.insert("schema", super::migrate::CURRENT.into());
+        document.insert("schema", migrate::CURRENT.into());
     }
     let root = document.as_table_mut();
-    patch_keys(root, "", saved, now);
-    patch_order(root, &saved.stack, &now.stack);
-    for section in SECTIONS {
-        if section.name == "accuracy" {
-            patch_effects(root, &saved.stack, &now.stack);
-            super::animation::patch(root, &saved.animation, &now.animation);
+    for part in &PARTS {
+        match part {
+            Part::Section(section) if section.name.is_empty() => patch_settings(root, section, saved, now),
+            Part::Section(section) => patch_section(root, section, saved, now),
+            Part::Stack => patch_order(root, &saved.stack, &now.stack),
+            Part::Effects => patch_effects(root, &saved.stack, &now.stack),
+            Part::Animation => keyframes::patch(root, &saved.animation, &now.animation),
         }
-        match section.is_there.map(|there| (there(saved), there(now))) {
-            Some((_, false)) => drop(root.remove(section.name)),
-            Some((false, true)) => drop(root.insert(section.name, Item::Table(Table::new()))),
-            _ => {}
-        }
-        patch_section(root, section, saved, now);
     }
 }
 
 fn patch_section(root: &mut Table, section: &Section, saved: &Preset, now: &Preset) {
+    match section.presence.as_ref().map(|presence| ((presence.is_present)(saved), (presence.is_present)(now))) {
+        Some((_, false)) => drop(root.remove(section.name)),
+        Some((false, true)) => drop(root.insert(section.name, Item::Table(Table::new()))),
+        _ => {}
+    }
     let was_missing = root.get(section.name).is_none();
     if was_missing {
         root.insert(section.name, Item::Table(Table::new()));
     }
     let table = root.get_mut(section.name).and_then(Item::as_table_like_mut).expect("a section that was read is a table");
-    patch_keys(table, section.name, saved, now);
+    patch_settings(table, section, saved, now);
     if was_missing && table.is_empty() {
         root.remove(section.name);
     }
 }
 
-fn patch_keys(table: &mut dyn TableLike, section: &str, saved: &Preset, now: &Preset) {
-    let baseline = Section::baseline(now);
-    for key in KEYS.iter().filter(|key| key.section == section) {
-        let written = |preset: &Preset| (key.get)(preset).map(|plain| key.form.write(&plain));
-        patch_value(table, key.name, written(saved), written(now), written(&baseline));
+fn patch_settings(table: &mut dyn TableLike, section: &Section, saved: &Preset, now: &Preset) {
+    let baseline = baseline(now);
+    for setting in section.settings {
+        patch_value(table, setting, setting.get(saved), setting.get(now), setting.get(&baseline));
     }
 }
 
@@ -82,47 +104,54 @@ fn patch_effect(table: &mut dyn TableLike, saved: Option<&EnabledEffect>, now: &
     let defaults = EnabledEffect::new(now.effect);
     let saved = saved.unwrap_or(&defaults);
     for field in now.effect.fields {
-        let form = ValueType::of(field);
-        let written = |enabled: &EnabledEffect| Some(form.write(&super::get(field, &enabled.words)));
-        patch_value(table, field.name, written(saved), written(now), written(&defaults));
+        let value = |enabled: &EnabledEffect| Some(field.value(&enabled.words));
+        patch_value(table, field, value(saved), value(now), value(&defaults));
     }
 }
 
-/// Writes `stack` only where it says more than the usual order.
+/// Writes `stack` only where the order is not the default one.
 fn patch_order(root: &mut Table, saved: &Stack, now: &Stack) {
     let names = |stack: &Stack| -> Vec<&str> { stack.0.iter().map(|enabled| enabled.effect.name).collect() };
     if names(saved) == names(now) {
         return;
     }
     // Effects that only a newer program knows keep being named.
-    let strangers: Vec<String> = root
+    let unknown: Vec<String> = root
         .get("stack")
         .and_then(Item::as_array)
         .into_iter()
         .flatten()
-        .filter_map(TomlValue::as_str)
+        .filter_map(Toml::as_str)
         .filter(|name| Effect::find(name).is_none())
         .map(str::to_owned)
         .collect();
-    let order: TomlValue = names(now).into_iter().chain(strangers.iter().map(String::as_str)).collect();
-    let default = (now.is_canonical() && strangers.is_empty()).then(|| order.clone());
-    patch_value(root, "stack", None, Some(order), default);
+    let order: Toml = names(now).into_iter().chain(unknown.iter().map(String::as_str)).collect();
+    let is_default = now.is_canonical() && unknown.is_empty();
+    let is_written = !is_default || has_comment(root, "stack");
+    put(root, "stack", Some(order).filter(|_| is_written));
 }
 
-/// Sets, keeps or removes one key. A line that carries a comment is kept even when it says the default.
-fn patch_value(table: &mut dyn TableLike, name: &str, saved: Option<TomlValue>, now: Option<TomlValue>, default: Option<TomlValue>) {
-    let text = |value: &Option<TomlValue>| value.as_ref().map(TomlValue::to_string);
+/// Sets, keeps or removes one value. A line that carries a comment is kept even when it has the default.
+fn patch_value(table: &mut dyn TableLike, param: &Param, saved: Option<Value>, now: Option<Value>, default: Option<Value>) {
+    // Compared as text, which tells -0.0 from 0.0.
+    let text = |value: &Option<Value>| value.as_ref().map(|value| toml_value::write_text(param.value_type, value));
     if text(&saved) == text(&now) {
         return;
     }
-    let Some(mut value) = now.clone().filter(|_| text(&now) != text(&default) || has_comment(table, name)) else {
+    let is_written = text(&now) != text(&default) || has_comment(table, param.name);
+    put(table, param.name, now.filter(|_| is_written).map(|value| toml_value::write(param.value_type, &value)));
+}
+
+/// Sets one value with the decoration of the one before, or removes it.
+fn put(table: &mut dyn TableLike, name: &str, value: Option<Toml>) {
+    let Some(mut value) = value else {
         table.remove(name);
         return;
     };
     match table.get_mut(name).and_then(Item::as_value_mut) {
-        Some(there) => {
-            *value.decor_mut() = there.decor().clone();
-            *there = value;
+        Some(before) => {
+            *value.decor_mut() = before.decor().clone();
+            *before = value;
         }
         None => drop(table.insert(name, Item::Value(value))),
     }
@@ -133,4 +162,17 @@ fn has_comment(table: &dyn TableLike, name: &str) -> bool {
     let before = key.leaf_decor().prefix();
     let after = item.as_value().and_then(|value| value.decor().suffix());
     [before, after].into_iter().flatten().filter_map(|raw| raw.as_str()).any(|text| text.contains('#'))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::preset::settings::SECTIONS;
+
+    #[test]
+    fn every_section_is_written() {
+        let written: Vec<&str> =
+            PARTS.iter().filter_map(|part| if let Part::Section(section) = part { Some(section.name) } else { None }).collect();
+        assert_eq!(written, SECTIONS.iter().map(|section| section.name).collect::<Vec<_>>());
+    }
 }

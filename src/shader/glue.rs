@@ -4,7 +4,7 @@ use std::fmt::Write;
 
 use crate::{
     effects::{Effect, EnabledEffect},
-    params::{Field, Kind},
+    params::{Field, ValueType, WgslType},
     shader::library::Library,
 };
 
@@ -17,7 +17,7 @@ pub fn glue(effects: &[&'static Effect], baked: &[Vec<u32>]) -> String {
     let mut text = String::new();
     for effect in effects {
         for field in effect.fields {
-            if let Kind::Choice(words) = field.kind {
+            if let ValueType::Choice(words) = field.value_type {
                 for (index, word) in words.iter().enumerate() {
                     let name = format!("{}_{}_{word}", effect.name, field.name).to_uppercase().replace('-', "_");
                     writeln!(text, "const {name} = {index}u;").expect("writing to a string");
@@ -43,13 +43,13 @@ pub fn glue(effects: &[&'static Effect], baked: &[Vec<u32>]) -> String {
 
 /// An effect's parameters as a constant expression: every number as the shortest decimal that is exactly itself.
 fn constructor(effect: &Effect, words: &[u32]) -> String {
-    let literal = |kind: Kind, word: u32| match kind {
-        Kind::F32 | Kind::Color | Kind::Point => format!("{:?}f", f32::from_bits(word)),
-        Kind::I32 => format!("i32({})", word as i32),
-        Kind::U32 | Kind::Bool | Kind::Choice(_) => format!("{word}u"),
+    let literal = |wgsl: WgslType, word: u32| match wgsl {
+        WgslType::F32 | WgslType::Vec4F32 => format!("{:?}f", f32::from_bits(word)),
+        WgslType::I32 => format!("i32({})", word as i32),
+        WgslType::U32 => format!("{word}u"),
     };
     let member = |field: &Field| {
-        let lanes: Vec<String> = words[field.offset / 4..][..field.kind.words()].iter().map(|&word| literal(field.kind, word)).collect();
+        let lanes: Vec<String> = words[field.offset / 4..][..field.wgsl.words()].iter().map(|&word| literal(field.wgsl, word)).collect();
         if lanes.len() == 1 { lanes[0].clone() } else { format!("vec4f({})", lanes.join(", ")) }
     };
     let members: Vec<String> = effect.fields.iter().map(member).collect();

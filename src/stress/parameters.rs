@@ -8,7 +8,7 @@ use crate::{
     effects::{EFFECTS, Effect, Stack, hooks::Slot, particles},
     gpu::RenderError,
     measure::Budget,
-    params::{Field, Kind},
+    params::Field,
     plan::{AccuracyRequest, Tuning},
     preset::{Preset, SceneSource},
     scene::{Scene, camera::View, draw::DrawError},
@@ -39,10 +39,8 @@ fn ends(field: &Field) -> [f64; 2] {
     if particles::EFFECT.field("count") == Some(field) {
         return [field.hard[0], MOST_PARTICLES];
     }
-    match field.kind {
-        Kind::F32 | Kind::Color | Kind::Point => field.hard.map(|end| f64::from(end as f32).clamp(field.hard[0], field.hard[1])),
-        _ => field.hard,
-    }
+    let [low, high] = field.hard;
+    if field.value_type.is_continuous() { [low, high].map(|end| f64::from(end as f32).clamp(low, high)) } else { [low, high] }
 }
 
 fn enable(stack: &mut Stack, effect: &'static Effect) {
@@ -54,7 +52,7 @@ fn enable(stack: &mut Stack, effect: &'static Effect) {
 }
 
 fn set(stack: &mut Stack, effect: &'static Effect, field: &Field, end: usize) -> Result<(), EarlyEnd> {
-    let values = vec![ends(field)[end]; field.kind.lanes()];
+    let values = vec![ends(field)[end]; field.value_type.components()];
     enable(stack, effect);
     field.set(&mut stack.enable(effect).words, &values).map_err(|error| EarlyEnd::Failed(format!("{}: {error}", effect.name)))
 }

@@ -18,15 +18,15 @@ const STACKS: u32 = 20;
 /// A legal value for a field: its ends now and then, else anything the slider spans.
 fn value(rng: &mut Rng, field: &Field) -> Vec<f64> {
     let [low, high] = field.soft;
-    let mut lane = || match (field.kind, rng.between(0, 8)) {
-        (Kind::Choice(_) | Kind::Bool, _) => f64::from(rng.between(low as i32, high as i32 + 1)),
+    let mut lane = || match (field.value_type, rng.between(0, 8)) {
+        (ValueType::Choice(_) | ValueType::Bool, _) => f64::from(rng.between(low as i32, high as i32 + 1)),
         (_, 0) => low,
         (_, 1) => high,
-        (Kind::U32 | Kind::I32, _) => rng.real(low, high + 1.0).floor().min(high),
+        (ValueType::U32 | ValueType::I32, _) => rng.real(low, high + 1.0).floor().min(high),
         _ if field.log => low * (high / low).powf(rng.real(0.0, 1.0)),
         _ => rng.real(low, high),
     };
-    (0..field.kind.lanes()).map(|_| lane()).collect()
+    (0..field.value_type.components()).map(|_| lane()).collect()
 }
 
 /// Up to five effects, at most one of them in each slot, in an order of their own.

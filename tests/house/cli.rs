@@ -84,7 +84,7 @@ fn list_as_json_has_every_look_and_effect() {
 #[test]
 fn list_shows_which_look_shadows_which() {
     let folder = tempfile::tempdir().unwrap();
-    fs::write(folder.path().join("facet.toml"), "schema = 1\nname = \"Mine\"\n").unwrap();
+    fs::write(folder.path().join("facet.toml"), "schema = 2\nname = \"Mine\"\n").unwrap();
     let list = run_in(folder.path(), &["list", "--looks", "--presets", "."]);
     assert!(list.out.contains("--presets, shadows built in"), "{}", list.out);
 }
@@ -152,7 +152,7 @@ fn an_unknown_adapter_exits_with_3_and_points_to_cpu() {
 #[test]
 fn errors_as_json_have_code_message_file_and_line() {
     let folder = tempfile::tempdir().unwrap();
-    fs::write(folder.path().join("bad.toml"), "schema = 1\n\n[effects.facet]\namount = 3\n").unwrap();
+    fs::write(folder.path().join("bad.toml"), "schema = 2\n\n[effects.facet]\namount = 3\n").unwrap();
     let run = run_in(folder.path(), &["render", "bad.toml", "--adapter", "cpu", "--json"]);
     let error = &json(&run)["errors"][0];
     assert_eq!((run.code, &error["code"], &error["file"], &error["line"]), (2, &2.into(), &"bad.toml".into(), &4.into()));
@@ -186,7 +186,7 @@ fn the_same_look_gives_the_same_bytes() {
 }
 
 /// A preset that turns while a front crosses it.
-const MOVING: &str = "schema = 1\n[scene]\nbuiltin = \"knot?tess=3\"\nspin_deg_per_s = 90.0\n[clock]\nrange_s = [0.0, 1.0]\n\
+const MOVING: &str = "schema = 2\n[scene]\nbuiltin = \"knot?tess=3\"\nspin_deg_per_s = 90.0\n[clock]\nrange_s = [0.0, 1.0]\n\
     [effects.facet]\n[effects.lambert]\n[animation.facet]\namount = [{ time_s = 0.0, value = 0.0 }, { time_s = 1.0, value = 1.0 }]\n\
     [output]\nsize = [24, 18]\n";
 
@@ -403,11 +403,11 @@ fn a_bare_picture_carries_no_text() {
 #[test]
 fn a_look_comes_from_stdin() {
     let folder = tempfile::tempdir().unwrap();
-    let text = "schema = 1\n[scene]\nbuiltin = \"knot?tess=3\"\n[effects.normals]\n[output]\nsize = [20, 10]\n";
+    let text = "schema = 2\n[scene]\nbuiltin = \"knot?tess=3\"\n[effects.normals]\n[output]\nsize = [20, 10]\n";
     let run = piped(folder.path(), &["render", "-", "--adapter", "cpu", "-o", "-"], text);
     assert_eq!(run.code, 0, "{}", run.err);
     assert_eq!(&run.bytes[16..24], [0, 0, 0, 20, 0, 0, 0, 10]);
-    let wrong = piped(folder.path(), &["render", "-", "--adapter", "cpu"], "schema = 1\nnmae = 1\n=\n");
+    let wrong = piped(folder.path(), &["render", "-", "--adapter", "cpu"], "schema = 2\nnmae = 1\n=\n");
     assert!(wrong.code == 2 && wrong.err.contains("stdin:3:"), "{}", wrong.err);
 }
 
@@ -469,10 +469,10 @@ fn compare_exits_with_1_beyond_the_budget_and_0_within() {
 fn check_finds_every_bad_look_and_lists_all() {
     let folder = tempfile::tempdir().unwrap();
     let write = |name: &str, text: &str| fs::write(folder.path().join(name), text).unwrap();
-    write("good.toml", "schema = 1\n[effects.lambert]\n");
-    write("typo.toml", "schema = 1\n[effects.lambert]\nsnu = 1\n");
-    write("range.toml", "schema = 1\n[effects.facet]\namount = 7\n");
-    write("lost.toml", "schema = 1\n[scene]\npath = \"../absent.glb\"\n");
+    write("good.toml", "schema = 2\n[effects.lambert]\n");
+    write("typo.toml", "schema = 2\n[effects.lambert]\nsnu = 1\n");
+    write("range.toml", "schema = 2\n[effects.facet]\namount = 7\n");
+    write("lost.toml", "schema = 2\n[scene]\npath = \"../absent.glb\"\n");
     let loose = run_in(folder.path(), &["check", "good.toml", "typo.toml"]);
     assert_eq!(loose.code, 0, "{}", loose.out);
     assert!(loose.err.contains("typo.toml:3: unknown key effects.lambert.snu; did you mean \"sun\"?"), "{}", loose.err);
@@ -489,7 +489,7 @@ fn bless_draws_what_check_then_accepts() {
     let folder = tempfile::tempdir().unwrap();
     fs::create_dir(folder.path().join("presets")).unwrap();
     let preset_file =
-        "schema = 1\n[scene]\nbuiltin = \"knot?tess=3\"\n[effects.facet]\n[effects.lambert]\n[output]\nsize = [64, 48]\n[test]\n";
+        "schema = 2\n[scene]\nbuiltin = \"knot?tess=3\"\n[effects.facet]\n[effects.lambert]\n[output]\nsize = [64, 48]\n[test]\n";
     fs::write(folder.path().join("presets/mine.toml"), preset_file).unwrap();
     let go = |args: &[&str]| run_in(folder.path(), args);
     let check = ["check", "presets/mine.toml", "--render", "--adapter", "cpu"];

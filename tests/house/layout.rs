@@ -72,11 +72,11 @@ fn every_effect_has_the_same_fields_on_both_sides() {
         let reflected = reflected(Pass::Resolve, vec![effect]);
         let (_, members) = reflected.layout(effect.wgsl_struct).unwrap_or_else(|| panic!("no WGSL struct {}", effect.wgsl_struct));
         let wgsl: Vec<_> = members.iter().map(|m| (m.name.as_str(), m.offset, m.kind.as_str())).collect();
-        let rust: Vec<_> = effect.fields.iter().map(|f| (f.name, f.offset, f.kind.wgsl())).collect();
+        let rust: Vec<_> = effect.fields.iter().map(|f| (f.name, f.offset, f.wgsl.name())).collect();
         assert_eq!(wgsl, rust, "{}: WGSL on the left, Rust on the right", effect.name);
         let words = (effect.defaults)();
         let last = effect.fields.last().expect("an effect has fields");
-        assert_eq!(words.len() * 4, last.offset + last.kind.words() * 4, "{}: padding at the end", effect.name);
+        assert_eq!(words.len() * 4, last.offset + last.wgsl.words() * 4, "{}: padding at the end", effect.name);
     }
 }
 

@@ -5,9 +5,9 @@ use std::path::{Path, PathBuf};
 use proptest::prelude::*;
 use rasterlab::{
     effects::{EFFECTS, Effect},
-    params::Kind,
+    params::ValueType,
     preset::{
-        AccuracyRequest, Animation, ClipPlayback, Clock, Output, PinnedOptions, Preset, SceneSource, Test, Tier, Visibility,
+        AccuracyRequest, Animation, ClipPlayback, Clock, GoldenTest, Output, PinnedOptions, Preset, SceneSource, Tier, Visibility,
         animation::{Easing, Keyframe, MAX_KEYFRAMES, Track, steps},
     },
     preset_file::{self, PresetError, PresetFile},
@@ -40,7 +40,7 @@ fn preset_files() -> Vec<PathBuf> {
 fn the_example_of_every_section_is_read() {
     let preset_file = parse(
         r##"#:schema ./schema.json
-schema = 1
+schema = 2
 name = "Ink on glass"
 about = "Half facets"
 tags = ["stylised", "stack"]
@@ -58,7 +58,7 @@ fov_y_deg = 60
 [clock]
 time_s = 1.25
 range_s = [0, 2.5]
-loops = false
+loop = false
 speed = 0.5
 
 [animation.facet]
@@ -97,7 +97,7 @@ why = "because"
     let value = |name: &str| facet.effect.field(name).unwrap().get(&facet.words);
     assert_eq!((value("amount"), value("pattern"), value("center")), (vec![f64::from(0.8f32)], vec![2.0], vec![1.0, 2.0, 3.0]));
     assert_eq!(s.camera.unwrap().projection, Projection::Perspective { fov_y_deg: 60.0 });
-    assert_eq!(s.clock, Clock { time_s: 1.25, range_s: [0.0, 2.5], loops: false, speed: 0.5 });
+    assert_eq!(s.clock, Clock { time_s: 1.25, range_s: [0.0, 2.5], is_looping: false, speed: 0.5 });
     let amount = s.animation.get("facet", "amount").unwrap();
     assert_eq!(
         amount.keys().iter().map(|key| (key.time_s, key.easing)).collect::<Vec<_>>(),
@@ -128,7 +128,7 @@ fn an_unmodified_look_is_written_byte_for_byte() {
 
 #[test]
 fn comments_and_unknown_keys_survive_a_change() {
-    let text = "# head\nschema = 1\n# why\nfuture = { a = 1 }\n\n[camera] # pose\neye = [1.0, 2.0, 3.0] # high\nup = [0.0, 1.0, 0.5]\n\n[effects.facet]\n# half\namount = 0.5 # of the way\n\n[effects.later]\nx = 1\n# tail\n";
+    let text = "# head\nschema = 2\n# why\nfuture = { a = 1 }\n\n[camera] # pose\neye = [1.0, 2.0, 3.0] # high\nup = [0.0, 1.0, 0.5]\n\n[effects.facet]\n# half\namount = 0.5 # of the way\n\n[effects.later]\nx = 1\n# tail\n";
     let mut preset_file = parse(text);
     preset_file::set(&mut preset_file, "facet.amount", ".25").unwrap();
     preset_file::set(&mut preset_file, "camera.eye", "[1, 2, 4]").unwrap();
@@ -144,24 +144,24 @@ fn comments_and_unknown_keys_survive_a_change() {
 #[test]
 fn only_differences_from_defaults_are_written() {
     let mut preset_file = PresetFile::new("new", Preset::default());
-    assert_eq!(preset_file::to_toml(&preset_file), "schema = 1\n");
+    assert_eq!(preset_file::to_toml(&preset_file), "schema = 2\n");
     preset_file::set(&mut preset_file, "facet", "").unwrap();
     preset_file::set(&mut preset_file, "lambert.headlight", "0.2").unwrap();
     preset_file::set(&mut preset_file, "accuracy.tier", "draft").unwrap();
     preset_file::set(&mut preset_file, "camera", "").unwrap();
     assert_eq!(
         preset_file::to_toml(&preset_file),
-        "schema = 1\n\n[camera]\n\n[effects.facet]\n\n[effects.lambert]\nheadlight = 0.2\n\n[accuracy]\ntier = \"draft\"\n"
+        "schema = 2\n\n[camera]\n\n[effects.facet]\n\n[effects.lambert]\nheadlight = 0.2\n\n[accuracy]\ntier = \"draft\"\n"
     );
     for path in ["effects.lambert.headlight", "accuracy", "camera", "facet", "lambert"] {
         preset_file::unset(&mut preset_file, path).unwrap();
     }
-    assert_eq!(preset_file::to_toml(&preset_file), "schema = 1\n");
+    assert_eq!(preset_file::to_toml(&preset_file), "schema = 2\n");
 }
 
 #[test]
 fn the_stack_key_is_written_only_where_order_is_unusual() {
-    let mut preset_file = parse("schema = 1\n[effects.facet]\n[effects.lambert]\n");
+    let mut preset_file = parse("schema = 2\n[effects.facet]\n[effects.lambert]\n");
     preset_file.preset.stack.0.reverse();
     let written = preset_file::to_toml(&preset_file);
     assert!(written.contains("stack = [\"lambert\", \"facet\"]"), "{written}");
@@ -175,7 +175,7 @@ fn the_stack_key_is_written_only_where_order_is_unusual() {
 
 #[test]
 fn the_stack_key_names_each_enabled_effect_exactly_once() {
-    let with = |stack: &str| format!("schema = 1\nstack = {stack}\n[effects.facet]\n[effects.lambert]\n");
+    let with = |stack: &str| format!("schema = 2\nstack = {stack}\n[effects.facet]\n[effects.lambert]\n");
     assert_eq!(refusal(&with("[\"facet\"]")), "look.toml:2: stack leaves out lambert, which is enabled");
     assert_eq!(refusal(&with("[\"facet\", \"lambert\", \"facet\"]")), "look.toml:2: stack names facet twice");
     assert!(refusal(&with("[\"facet\", \"lambert\", \"depth\"]")).contains("names depth, which is not enabled"));
@@ -186,47 +186,47 @@ fn the_stack_key_names_each_enabled_effect_exactly_once() {
 #[test]
 fn errors_name_line_key_value_and_range() {
     let cases = [
-        ("schema = 1\n[effects.facet]\namount = -1\n", "look.toml:3: effects.facet.amount -1 lies outside 0..=1"),
+        ("schema = 2\n[effects.facet]\namount = -1\n", "look.toml:3: effects.facet.amount -1 lies outside 0..=1"),
         (
-            "schema = 1\n[effects.facet]\namount = 1e39\n",
+            "schema = 2\n[effects.facet]\namount = 1e39\n",
             "look.toml:3: effects.facet.amount 1e39 is too large for a 32-bit float, which ends at 3.4028235e38",
         ),
-        ("schema = 1\n[effects.facet]\namount = nan\n", "look.toml:3: effects.facet.amount nan is not a finite number"),
-        ("schema = 1\n[effects.facet]\nseed = 1.5\n", "look.toml:3: effects.facet.seed 1.5 must be a whole number"),
-        ("schema = 1\n[effects.facet]\nseed = -1\n", "look.toml:3: effects.facet.seed -1 lies outside 0..=4294967295"),
+        ("schema = 2\n[effects.facet]\namount = nan\n", "look.toml:3: effects.facet.amount nan is not a finite number"),
+        ("schema = 2\n[effects.facet]\nseed = 1.5\n", "look.toml:3: effects.facet.seed 1.5 must be a whole number"),
+        ("schema = 2\n[effects.facet]\nseed = -1\n", "look.toml:3: effects.facet.seed -1 lies outside 0..=4294967295"),
         (
-            "schema = 1\n[effects.facet]\npattern = \"radail\"\n",
+            "schema = 2\n[effects.facet]\npattern = \"radail\"\n",
             "look.toml:3: effects.facet.pattern \"radail\" is not one of uniform, sweep, radial, random; did you mean \"radial\"?",
         ),
         (
-            "schema = 1\n[effects.facet]\ncenter = [1, 2]\n",
+            "schema = 2\n[effects.facet]\ncenter = [1, 2]\n",
             "look.toml:3: effects.facet.center must be a list of 3 numbers, not a list of 2",
         ),
-        ("schema = 1\n[effects.depth]\nfit = 1\n", "look.toml:3: effects.depth.fit must be true or false, not a number"),
-        ("schema = 1\n[output]\nsize = [16385, 1]\n", "look.toml:3: output.size 16385 lies outside 0..=16384"),
-        ("schema = 1\n[camera]\nfov_y_deg = 180\n", "look.toml:3: camera.fov_y_deg 180 lies outside 1..=179"),
-        ("schema = 1\n[camera]\neye = [0, inf, 0]\n", "look.toml:3: camera.eye inf is not a finite number"),
-        ("schema = 1\n[camera]\neye = [0, 1e10, 0]\n", "look.toml:3: camera.eye 1e10 lies outside -1e9..=1e9"),
+        ("schema = 2\n[effects.depth]\nfit = 1\n", "look.toml:3: effects.depth.fit must be true or false, not a number"),
+        ("schema = 2\n[output]\nsize = [16385, 1]\n", "look.toml:3: output.size 16385 lies outside 0..=16384"),
+        ("schema = 2\n[camera]\nfov_y_deg = 180\n", "look.toml:3: camera.fov_y_deg 180 lies outside 1..=179"),
+        ("schema = 2\n[camera]\neye = [0, inf, 0]\n", "look.toml:3: camera.eye inf is not a finite number"),
+        ("schema = 2\n[camera]\neye = [0, 1e10, 0]\n", "look.toml:3: camera.eye 1e10 lies outside -1e9..=1e9"),
         (
-            "schema = 1\n[accuracy]\ntier = 3\n",
+            "schema = 2\n[accuracy]\ntier = 3\n",
             "look.toml:3: accuracy.tier must be one of draft, fast, precise, reference, strict, not a number",
         ),
-        ("schema = 1\n[test]\nmax_pixels = 9\n", "look.toml:2: test.why must say why the budget is above the default"),
+        ("schema = 2\n[test]\nmax_pixels = 9\n", "look.toml:2: test.why must say why the budget is above the default"),
         (
-            "schema = 1\n[test]\nmax_wrong_owner = 9\nwhy = \"because\"\n",
+            "schema = 2\n[test]\nmax_wrong_owner = 9\nwhy = \"because\"\n",
             "look.toml:2: test.max_wrong_triangles is for presets that pin a cheaper option or take the tier draft or fast; this one must be exact",
         ),
         (
-            "schema = 1\n[accuracy]\nvisibility = \"race\"\n[test]\nmax_wrong_owner = 9\n",
+            "schema = 2\n[accuracy]\nvisibility = \"race\"\n[test]\nmax_wrong_owner = 9\n",
             "look.toml:4: test.why must say why the budget is above the default",
         ),
-        ("schema = 1\nname = \"\\u001b[31m\"\n", "look.toml:2: name contains the control character '\\u{1b}'"),
-        ("schema = 1\neffects = 3\n", "look.toml:2: effects must be a table, written [effects]"),
-        ("schema = 1\neffects.facet = true\n", "look.toml:2: effects.facet must be a table, written [effects.facet]"),
-        ("schema = 1\n[[camera]]\n", "look.toml:2: camera must be a table, written [camera]"),
+        ("schema = 2\nname = \"\\u001b[31m\"\n", "look.toml:2: name contains the control character '\\u{1b}'"),
+        ("schema = 2\neffects = 3\n", "look.toml:2: effects must be a table, written [effects]"),
+        ("schema = 2\neffects.facet = true\n", "look.toml:2: effects.facet must be a table, written [effects.facet]"),
+        ("schema = 2\n[[camera]]\n", "look.toml:2: camera must be a table, written [camera]"),
         ("schema = 0\n", "look.toml:1: schema must be a whole number from 1 up"),
-        ("schema = 1\n[scene]\npath = \"https://example.org/a.glb\"\n", "look.toml:3: scene.path must be a file, not an address"),
-        ("schema = 1\n[scene]\npath = \"a.glb\"\nbuiltin = \"knot\"\n", "look.toml:3: scene.path and scene.builtin exclude each other"),
+        ("schema = 2\n[scene]\npath = \"https://example.org/a.glb\"\n", "look.toml:3: scene.path must be a file, not an address"),
+        ("schema = 2\n[scene]\npath = \"a.glb\"\nbuiltin = \"knot\"\n", "look.toml:3: scene.path and scene.builtin exclude each other"),
     ];
     for (text, wanted) in cases {
         assert_eq!(refusal(text), wanted);
@@ -235,7 +235,7 @@ fn errors_name_line_key_value_and_range() {
 
 #[test]
 fn keys_that_cannot_be_are_refused_by_name() {
-    let with = |keys: &str| format!("schema = 1\n[effects.facet]\n[animation.facet]\namount = {keys}\n");
+    let with = |keys: &str| format!("schema = 2\n[effects.facet]\n[animation.facet]\namount = {keys}\n");
     let many = format!("[{}]", (0..=MAX_KEYFRAMES).map(|i| format!("{{ time_s = {i}, value = 0 }}")).collect::<Vec<_>>().join(", "));
     for (text, wanted) in [
         (with("[{ time_s = 0, value = 2 }]"), "look.toml:4: animation.facet.amount key 1: value 2 lies outside 0..=1"),
@@ -257,17 +257,17 @@ fn keys_that_cannot_be_are_refused_by_name() {
         (with("[0.5]"), "must be a list of 1 to 256 keys"),
         (with("3"), "must be a list of 1 to 256 keys"),
         (
-            "schema = 1\n[effects.facet]\n[animation.facet]\nseed = [{ time_s = 0, value = 1, easing = \"linear\" }]\n".into(),
+            "schema = 2\n[effects.facet]\n[animation.facet]\nseed = [{ time_s = 0, value = 1, easing = \"linear\" }]\n".into(),
             "key 1: easing linear cannot be",
         ),
         (
-            "schema = 1\n[effects.facet]\n[animation.facet]\ncenter = [{ time_s = 0, value = 1 }]\n".into(),
+            "schema = 2\n[effects.facet]\n[animation.facet]\ncenter = [{ time_s = 0, value = 1 }]\n".into(),
             "value must be a list of 3 numbers",
         ),
-        ("schema = 1\nanimation = 3\n".into(), "look.toml:2: animation must be a table, written [animation]"),
-        ("schema = 1\n[animation]\nfacet = 3\n".into(), "look.toml:3: animation.facet must be a table, written [animation.facet]"),
-        ("schema = 1\n[clock]\nrange_s = [2, 2]\n".into(), "look.toml:3: clock.range_s must rise, but 2 is not before 2"),
-        ("schema = 1\n[clock]\nspeed = 0\n".into(), "look.toml:3: clock.speed 0 lies outside 0.01..=100"),
+        ("schema = 2\nanimation = 3\n".into(), "look.toml:2: animation must be a table, written [animation]"),
+        ("schema = 2\n[animation]\nfacet = 3\n".into(), "look.toml:3: animation.facet must be a table, written [animation.facet]"),
+        ("schema = 2\n[clock]\nrange_s = [2, 2]\n".into(), "look.toml:3: clock.range_s must rise, but 2 is not before 2"),
+        ("schema = 2\n[clock]\nspeed = 0\n".into(), "look.toml:3: clock.speed 0 lies outside 0.01..=100"),
     ] {
         let said = refusal(&text);
         assert!(said.contains(wanted), "{said}");
@@ -276,7 +276,7 @@ fn keys_that_cannot_be_are_refused_by_name() {
 
 #[test]
 fn keys_of_what_is_not_there_warn_and_stay() {
-    let text = "schema = 1\n[animation.facet]\namount = [{ time_s = 0, value = 1, note = 3 }]\namuont = []\n[animation.fascet]\nx = 1\n";
+    let text = "schema = 2\n[animation.facet]\namount = [{ time_s = 0, value = 1, note = 3 }]\namuont = []\n[animation.fascet]\nx = 1\n";
     let preset_file = parse(text);
     let warnings = preset_file.warnings.join("\n");
     for wanted in [
@@ -294,8 +294,8 @@ fn keys_of_what_is_not_there_warn_and_stay() {
 #[test]
 fn tables_and_inline_tables_say_the_same_keys() {
     let inline =
-        parse("schema = 1\n[effects.facet]\n[animation]\nfacet.amount = [{ time_s = 0, value = 0.5 }, { time_s = 1, value = 1 }]\n");
-    let tables = "schema = 1\n[effects.facet]\n[[animation.facet.amount]]\ntime_s = 0\nvalue = 0.5\n[[animation.facet.amount]]\ntime_s = 1\nvalue = 1\n";
+        parse("schema = 2\n[effects.facet]\n[animation]\nfacet.amount = [{ time_s = 0, value = 0.5 }, { time_s = 1, value = 1 }]\n");
+    let tables = "schema = 2\n[effects.facet]\n[[animation.facet.amount]]\ntime_s = 0\nvalue = 0.5\n[[animation.facet.amount]]\ntime_s = 1\nvalue = 1\n";
     let mut tables = parse(tables);
     assert_eq!(inline.preset, tables.preset);
     let track = tables.preset.animation.get_mut("facet", "amount").unwrap();
@@ -305,13 +305,13 @@ fn tables_and_inline_tables_say_the_same_keys() {
 
 #[test]
 fn keys_are_written_one_a_line_and_comments_stay_with_theirs() {
-    let mut preset_file = parse("schema = 1\n[effects.facet]\n");
+    let mut preset_file = parse("schema = 2\n[effects.facet]\n");
     let keys = [(0.0, 0.0, Easing::Smooth), (1.5, 0.1, Easing::Linear)];
     let keys = keys.map(|(time_s, value, easing)| Keyframe { time_s, value: vec![value], easing }).to_vec();
     let facet = Effect::find("facet").unwrap();
     preset_file.preset.animation.put(Track::new(facet, facet.field("amount").unwrap(), keys).unwrap());
     let written = preset_file::to_toml(&preset_file);
-    let wanted = "schema = 1\n[effects.facet]\n\n[animation.facet]\namount = [\n    { time_s = 0.0, value = 0.0 },\n    { time_s = 1.5, value = 0.1, easing = \"linear\" },\n]\n";
+    let wanted = "schema = 2\n[effects.facet]\n\n[animation.facet]\namount = [\n    { time_s = 0.0, value = 0.0 },\n    { time_s = 1.5, value = 0.1, easing = \"linear\" },\n]\n";
     assert_eq!(written, wanted);
     let mut preset_file =
         parse(&written.replace("    { time_s = 1.5, value = 0.1", "    # the end\n    { time_s = 1.50, value = 0.10, mine = 7"));
@@ -354,7 +354,7 @@ fn set_animates_and_a_value_set_by_hand_holds_still() {
 
 #[test]
 fn a_syntax_error_names_its_line() {
-    for (text, line) in [("schema = 1\nname = \n", 2), ("schema = 1\n\n[effects.facet\n", 3), ("schema = 1\nschema = 1\n", 2)] {
+    for (text, line) in [("schema = 2\nname = \n", 2), ("schema = 2\n\n[effects.facet\n", 3), ("schema = 2\nschema = 2\n", 2)] {
         let message = refusal(text);
         assert!(message.starts_with(&format!("look.toml:{line}: ")), "{message}");
         assert!(!message.contains('\n'), "{message}");
@@ -363,7 +363,7 @@ fn a_syntax_error_names_its_line() {
 
 #[test]
 fn unknown_keys_warn_with_a_suggestion_and_strictness_refuses_them() {
-    let preset_file = parse("schema = 1\nnmae = 1\n[effects.fascet]\n[effects.lambert]\nsnu = 1\n[camera]\nfov = 3\n[otuput]\n");
+    let preset_file = parse("schema = 2\nnmae = 1\n[effects.fascet]\n[effects.lambert]\nsnu = 1\n[camera]\nfov = 3\n[otuput]\n");
     let warnings = preset_file.warnings.join("\n");
     for wanted in [
         "look.toml:2: unknown key nmae; did you mean \"name\"?",
@@ -473,10 +473,10 @@ fn set_obeys_the_rules_of_files() {
 
 #[test]
 fn hostile_text_is_refused_without_harm() {
-    let deep = format!("schema = 1\nx = {}{}\n", "[".repeat(100_000), "]".repeat(100_000));
-    let long = format!("schema = 1\nname = \"{}\"\n", "x".repeat(2 << 20));
-    let wide = format!("schema = 1\ntags = [{}]\n", "\"t\",".repeat(1000));
-    let huge = "schema = 1\n[effects.facet]\nseed = 99999999999999999999\n".to_owned();
+    let deep = format!("schema = 2\nx = {}{}\n", "[".repeat(100_000), "]".repeat(100_000));
+    let long = format!("schema = 2\nname = \"{}\"\n", "x".repeat(2 << 20));
+    let wide = format!("schema = 2\ntags = [{}]\n", "\"t\",".repeat(1000));
+    let huge = "schema = 2\n[effects.facet]\nseed = 99999999999999999999\n".to_owned();
     for text in [deep, long, wide, huge, "\u{0}".into(), "schema = [1]".into(), "=".into(), "[]".into()] {
         assert!(preset_file::parse(&text, "hostile").is_err());
     }
@@ -488,7 +488,7 @@ fn hostile_text_is_refused_without_harm() {
 
 #[test]
 fn a_shared_line_gives_the_look_back() {
-    let mut preset_file = parse("schema = 1\nname = \"Tinte ✒\"\n[effects.facet]\namount = 0.1\n# kept\n");
+    let mut preset_file = parse("schema = 2\nname = \"Tinte ✒\"\n[effects.facet]\namount = 0.1\n# kept\n");
     preset_file.preset.clock.time_s = 0.1;
     let line = preset_file::to_line(&preset_file);
     assert!(line.starts_with("rasterlab1:") && !line.contains('\n'));
@@ -510,7 +510,7 @@ fn hostile_shared_lines_are_refused() {
     let bomb = preset_file::from_line(&pack(&vec![b' '; 64 << 20])).unwrap_err().to_string();
     assert!(bomb.contains("more than 1 MiB"), "{bomb}");
     for path in ["../secret.glb", "/etc/passwd", "a/../../b.glb", "C:\\x.glb", "..\\x.glb"] {
-        let line = pack(format!("schema = 1\n[scene]\npath = '{path}'\n").as_bytes());
+        let line = pack(format!("schema = 2\n[scene]\npath = '{path}'\n").as_bytes());
         let error = preset_file::from_line(&line).unwrap_err().to_string();
         assert!(error.contains("leaves the preset's own folder"), "{path}: {error}");
     }
@@ -521,7 +521,7 @@ fn hostile_shared_lines_are_refused() {
 
 #[test]
 fn a_saved_picture_gives_its_look_back_and_a_bare_one_says_so() {
-    let preset_file = parse("schema = 1\nname = \"Tinte ✒\"\n[effects.facet]\namount = 0.1\n");
+    let preset_file = parse("schema = 2\nname = \"Tinte ✒\"\n[effects.facet]\namount = 0.1\n");
     let frame = rasterlab::frame::Frame { width: 2, height: 1, color: vec![[1, 2, 3, 255], [4, 5, 6, 255]], ..Default::default() };
     let provenance = preset_file::Provenance { adapter: "cpu".into(), driver: "none".into() };
     let png = preset_file::png_with_preset(&frame, &preset_file, &provenance).unwrap();
@@ -564,14 +564,14 @@ fn filled(effect: &'static Effect, seed: u64) -> Vec<u32> {
     let mut words = (effect.defaults)();
     let mut state = seed as u32;
     for field in effect.fields {
-        let lanes: Vec<f64> = (0..field.kind.lanes())
+        let lanes: Vec<f64> = (0..field.value_type.components())
             .map(|_| {
                 state = rasterlab::math::hash(state.wrapping_add(0x9e37_79b9));
                 let [low, high] = field.hard;
                 let value = low + (high - low) * f64::from(state) / f64::from(u32::MAX);
-                match field.kind {
-                    Kind::F32 | Kind::Color | Kind::Point if state.is_multiple_of(7) && (low..=high).contains(&-0.0) => -0.0,
-                    Kind::F32 | Kind::Color | Kind::Point => f64::from(value as f32).clamp(low, high),
+                match field.value_type {
+                    ValueType::F32 | ValueType::Color | ValueType::Point if state.is_multiple_of(7) && (low..=high).contains(&-0.0) => -0.0,
+                    ValueType::F32 | ValueType::Color | ValueType::Point => f64::from(value as f32).clamp(low, high),
                     _ => value.round(),
                 }
             })
@@ -596,8 +596,8 @@ prop_compose! {
 }
 
 prop_compose! {
-    fn any_clock()(time_s in within(-1e9, 1e9), from in within(-1e9, 0.0), to in within(1e-3, 1e9), loops in any::<bool>(), speed in within(0.01, 100.0)) -> Clock {
-        Clock { time_s, range_s: [from, to], loops, speed }
+    fn any_clock()(time_s in within(-1e9, 1e9), from in within(-1e9, 0.0), to in within(1e-3, 1e9), is_looping in any::<bool>(), speed in within(0.01, 100.0)) -> Clock {
+        Clock { time_s, range_s: [from, to], is_looping, speed }
     }
 }
 
@@ -636,8 +636,8 @@ prop_compose! {
         clip_time_s in prop::option::of(within(0.0, 1e9)),
         blend in within(0.0, 1.0),
     ) -> ClipPlayback {
-        let [clip, other] = names;
-        ClipPlayback { clip, speed, clip_time_s, other, blend }
+        let [clip, second_clip] = names;
+        ClipPlayback { clip, speed, clip_time_s, second_clip, blend }
     }
 }
 
@@ -648,7 +648,7 @@ prop_compose! {
         scene in prop_oneof![Just(SceneSource::Builtin("knot?tess=8".into())), Just(SceneSource::File("a b/fox.glb".into())), Just(Preset::default().scene)],
         room in prop_oneof![Just(0.0), within(1.0, 100.0)],
         spin_deg_per_s in within(-1e6, 1e6),
-        play in any_playback(),
+        playback in any_playback(),
         camera in prop::option::of(any_camera()),
         clock in any_clock(),
         tracks in prop::collection::vec((any::<prop::sample::Index>(), any::<prop::sample::Index>(), any_keyframes()), 0..5),
@@ -672,7 +672,7 @@ prop_compose! {
             stack.0.reverse();
         }
         Preset {
-            name, about, tags, scene, room, spin_deg_per_s, play, camera,
+            name, about, tags, scene, room, spin_deg_per_s, playback, camera,
             polyline: if reversed { [[background[0], -background[1], 1.0], [1e9, background[2], 1e-9], [0.0; 3]].into() } else { [].into() },
             scene_camera: if reversed { "from above".into() } else { String::new() },
             clock,
@@ -680,7 +680,7 @@ prop_compose! {
             stack,
             accuracy: AccuracyRequest { tier: Tier::ALL[tier], pins: visibility.map_or(PinnedOptions::default(), |i| PinnedOptions::of(Visibility::EXACT[i])), ..AccuracyRequest::default() },
             output: Output { size, background },
-            test: test.map(|(max_channel, max_pixels)| Test { max_channel, max_pixels, max_wrong_triangles: 0, why: format!("because {why}") }),
+            test: test.map(|(max_channel, max_pixels)| GoldenTest { max_channel, max_pixels, max_wrong_triangles: 0, why: format!("because {why}") }),
         }
     }
 }
@@ -712,7 +712,7 @@ proptest! {
             for field in enabled.effect.fields {
                 let [low, high] = field.hard.map(|bound| bound as f32);
                 let lanes = field.get(&enabled.words);
-                let inside = |lane: &f64| !matches!(field.kind, Kind::F32 | Kind::Color | Kind::Point) || (low..=high).contains(&(*lane as f32));
+                let inside = |lane: &f64| !matches!(field.value_type, ValueType::F32 | ValueType::Color | ValueType::Point) || (low..=high).contains(&(*lane as f32));
                 prop_assert!(lanes.iter().all(inside), "{}.{} {lanes:?}", enabled.effect.name, field.name);
             }
         }
@@ -720,7 +720,7 @@ proptest! {
 
     #[test]
     fn a_parameter_survives_whatever_its_bits(value in finite_f32()) {
-        let written = format!("schema = 1\n[effects.facet]\namount = {value:?}\n");
+        let written = format!("schema = 2\n[effects.facet]\namount = {value:?}\n");
         match preset_file::parse(&written, "any") {
             Ok(preset_file) => prop_assert_eq!(preset_file.preset.stack.get("facet").unwrap().effect.field("amount").unwrap().get(&preset_file.preset.stack.0[0].words)[0].to_bits(), f64::from(value).to_bits()),
             Err(error) => prop_assert!(!(0.0..=1.0).contains(&value), "{error}"),

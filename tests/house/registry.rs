@@ -9,10 +9,8 @@ use std::{
 use rasterlab::{
     cli::gallery,
     effects::EFFECTS,
-    preset_file::{
-        self, BUILTIN_DIR, PresetFile,
-        keys::{KEYS, SECTIONS},
-    },
+    preset::settings::{SECTIONS, settings},
+    preset_file::{self, BUILTIN_DIR, PresetFile},
 };
 
 fn root() -> &'static Path {
@@ -121,7 +119,7 @@ fn the_program_carries_every_look_of_the_folder() {
 fn no_effect_is_named_like_a_section_or_key() {
     for effect in effects() {
         assert!(SECTIONS.iter().all(|section| section.name != effect), "{effect}");
-        assert!(KEYS.iter().all(|key| key.path() != effect), "{effect}");
+        assert!(settings().all(|setting| setting.path() != effect), "{effect}");
         assert!(!["schema", "stack", "effects"].contains(&effect.as_str()));
     }
 }

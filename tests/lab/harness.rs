@@ -209,7 +209,7 @@ pub fn lab_of(folder: &Path, text: &str) -> Option<Lab> {
 }
 
 /// A preset whose facets rise and fall, and jump.
-pub const MOVING: &str = "schema = 1\n[scene]\nbuiltin = \"knot?tess=4\"\n[effects.facet]\n[effects.lambert]\n[animation.facet]\n\
+pub const MOVING: &str = "schema = 2\n[scene]\nbuiltin = \"knot?tess=4\"\n[effects.facet]\n[effects.lambert]\n[animation.facet]\n\
     amount = [{ time_s = 0.0, value = 0.0 }, { time_s = 1.0, value = 1.0 }, { time_s = 3.0, value = 0.25 }]\n\
     pattern = [{ time_s = 0.5, value = \"sweep\" }, { time_s = 2.0, value = \"uniform\" }]\n\
     [animation.lambert]\nsun = [{ time_s = 0.0, value = [1, 1, 1, 1] }, { time_s = 4.0, value = [1, 0, 0, 1] }]\n";

@@ -12,7 +12,7 @@ use rasterlab::{
     accuracy::DepthFormat,
     oracle,
     preset::SceneSource,
-    preset_file::{self, form::Value},
+    preset_file,
 };
 
 use crate::harness::*;
@@ -256,7 +256,7 @@ fn a_dropped_file_that_is_malformed_keeps_the_picture_and_is_one_sentence() {
     let files = [
         write("cut.glb", &glb[..glb.len() - 9]),
         write("text.glb", b"no model at all"),
-        write("bad.toml", b"schema = 1\n[effects.facet]\namount = 7\n"),
+        write("bad.toml", b"schema = 2\n[effects.facet]\namount = 7\n"),
         write("bare.png", &preset_file::png_bytes(&[[0; 4]], [1, 1]).expect("a picture")),
         write("notes.txt", b"hello"),
         folder.path().join("absent.glb"),
@@ -607,7 +607,7 @@ fn randomize_stays_within_soft_ranges_and_is_one_undo_step() {
     assert!(lab.state().log_text().contains("seed 1"));
     for enabled in &after.stack.0 {
         for field in enabled.effect.fields {
-            let Value::Numbers(lanes) = Value::Numbers(field.get(&enabled.words)) else { unreachable!() };
+            let lanes = field.get(&enabled.words);
             assert!(lanes.iter().all(|lane| (field.soft[0]..=field.soft[1]).contains(lane)), "{}.{}", enabled.effect.name, field.name);
         }
     }
@@ -914,7 +914,7 @@ fn a_measurement_is_cancelled_and_leaves_nothing_behind() {
 #[test]
 fn clips_are_chosen_held_and_blended_in_their_folder() {
     let Some(mut lab) = lab("builtin:tentacle?tess=3") else { return };
-    let play = |lab: &Lab| lab.state().preset_file().preset.play.clone();
+    let play = |lab: &Lab| lab.state().preset_file().preset.playback.clone();
     let choose = |lab: &mut Lab, menu: &str, entry: &str| {
         click(lab, Role::ComboBox, menu);
         lab.get_by_role_and_label(Role::Button, entry).click();
@@ -926,17 +926,17 @@ fn clips_are_chosen_held_and_blended_in_their_folder() {
     choose(&mut lab, "scene.clip", "Twist");
     assert_eq!(play(&lab).clip, "Twist");
     assert!(lab.state().preset_file().preset.is_moving());
-    choose(&mut lab, "scene.clip_b", "Sway");
-    assert_eq!(play(&lab).other, "Sway");
-    assert!(has_slider(&lab, "scene.blend"));
+    choose(&mut lab, "scene.second_clip", "Sway");
+    assert_eq!(play(&lab).second_clip, "Sway");
+    assert!(has_slider(&lab, "scene.clip_blend"));
     click(&mut lab, Role::CheckBox, "Hold the clip");
     assert!(play(&lab).clip_time_s.is_some() && has_slider(&lab, "scene.pose_s"));
     undo(&mut lab);
-    assert_eq!((play(&lab).clip_time_s, play(&lab).other.as_str()), (None, "Sway"));
+    assert_eq!((play(&lab).clip_time_s, play(&lab).second_clip.as_str()), (None, "Sway"));
 
     // The picture follows, and is what the oracle says.
     let before = lab.state().draws();
-    lab.state_mut().preset_mut().play.clip_time_s = Some(1.0);
+    lab.state_mut().preset_mut().playback.clip_time_s = Some(1.0);
     settle(&mut lab);
     assert!(lab.state().draws() > before);
 }
@@ -950,7 +950,7 @@ fn a_scene_at_rest_offers_its_clips_under_the_timeline() {
     // It plays from here on and never comes to rest.
     lab.run_steps(4);
     let preset = &lab.state().preset_file().preset;
-    assert_eq!((preset.play.clip.as_str(), preset.clock.range_s), ("Sway", [0.0, sway.duration_s]));
+    assert_eq!((preset.playback.clip.as_str(), preset.clock.range_s), ("Sway", [0.0, sway.duration_s]));
     assert!(lab.query_by_role_and_label(Role::Button, "Play Sway").is_none(), "it plays");
     assert!(lab.query_by_label_contains("Sway plays").is_some());
 }

@@ -27,7 +27,7 @@ fn dotted(values: &[(&str, f64)], others: &[&str]) -> Stack {
     let enabled = stack.enable(Effect::find("dots").expect("a listed effect"));
     for (name, value) in values {
         let field = enabled.effect.field(name).unwrap_or_else(|| panic!("dots has no {name}"));
-        let lanes = vec![*value; field.kind.lanes()];
+        let lanes = vec![*value; field.value_type.components()];
         field.set(&mut enabled.words, &lanes).unwrap_or_else(|error| panic!("{error}"));
     }
     stack
@@ -101,8 +101,10 @@ fn every_backend_of_visibility_hides_the_same_dots() {
 fn dots_go_with_joints_and_effects_and_under_every_other() {
     let Some(mut renderer) = renderer() else { return };
     let deformed = Preset { scene: SceneSource::Builtin("tentacle?tess=3".into()), ..Preset::default() };
-    let deformed =
-        Preset { play: rasterlab::preset::ClipPlayback { clip: "Curl".into(), clip_time_s: Some(0.7), ..Default::default() }, ..deformed };
+    let deformed = Preset {
+        playback: rasterlab::preset::ClipPlayback { clip: "Curl".into(), clip_time_s: Some(0.7), ..Default::default() },
+        ..deformed
+    };
     let tentacle = scene("tentacle?tess=3");
     let view_of = deformed.view(&tentacle, [160, 120]);
     exact(&mut renderer, &tentacle, &view_of, &dotted(&[("spacing_m", 0.03)], &[]), &AccuracyRequest::default(), "tentacle");

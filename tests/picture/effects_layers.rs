@@ -23,7 +23,7 @@ use rasterlab::{
 
 /// A stack of effects with values: `"xray.weight=facing"`, or a name alone.
 fn with(values: &[&str]) -> Stack {
-    let mut preset_file = preset_file::parse("schema = 1\n", "test").expect("an empty look");
+    let mut preset_file = preset_file::parse("schema = 2\n", "test").expect("an empty look");
     for value in values {
         let (path, value) = value.split_once('=').unwrap_or((value, ""));
         preset_file::set(&mut preset_file, path, value).unwrap_or_else(|error| panic!("{error}"));
@@ -82,11 +82,11 @@ fn shuffled<T>(rng: &mut Rng, mut list: Vec<T>) -> Vec<T> {
 #[test]
 fn two_effects_in_one_slot_are_refused_in_one_sentence_that_names_both() {
     let sentence = "xray and overdraw both take the visibility slot of the rasterizer; switch one of them off";
-    let text = "schema = 1\n[effects.overdraw]\nfull = 4\n[effects.xray]\n";
+    let text = "schema = 2\n[effects.overdraw]\nfull = 4\n[effects.xray]\n";
     let error = preset_file::parse(text, "both").expect_err("two effects in one slot").to_string();
     assert_eq!(error, format!("both.toml:2: effects {sentence}"));
 
-    let mut preset_file = preset_file::parse("schema = 1\n[effects.xray]\n", "one").expect("one effect");
+    let mut preset_file = preset_file::parse("schema = 2\n[effects.xray]\n", "one").expect("one effect");
     for (path, value) in [("overdraw", ""), ("overdraw.full", "4")] {
         let error = preset_file::set(&mut preset_file, path, value).expect_err("a second effect").to_string();
         assert!(error.starts_with(&format!("--set {path}")) && error.ends_with(&format!("effects {sentence}")), "{error}");

@@ -15,7 +15,7 @@ use rasterlab::{
     gpu::Renderer,
     measure::{Budget, compare::pictures},
     oracle,
-    params::Kind,
+    params::ValueType,
     preset::{Clock, Preset, SceneSource},
     scene::{Scene, camera::View},
 };
@@ -30,7 +30,7 @@ fn with(settings: &[(&str, &str, f64)]) -> Stack {
         let enabled = stack.enable(Effect::find(name).unwrap_or_else(|| panic!("no effect {name}")));
         if !field.is_empty() {
             let field = enabled.effect.field(field).unwrap_or_else(|| panic!("{name} has no {field}"));
-            let lanes = vec![value; field.kind.lanes()];
+            let lanes = vec![value; field.value_type.components()];
             field.set(&mut enabled.words, &lanes).unwrap_or_else(|error| panic!("{name}: {error}"));
         }
     }
@@ -46,11 +46,11 @@ fn shake(stack: &mut Stack, name: &str, rng: &mut Rng) {
     let enabled = stack.get_mut(name).expect("it was enabled");
     for field in enabled.effect.fields {
         let [low, high] = field.soft;
-        let lane = |rng: &mut Rng| match field.kind {
-            Kind::F32 | Kind::Color | Kind::Point => rng.real(low, high),
+        let lane = |rng: &mut Rng| match field.value_type {
+            ValueType::F32 | ValueType::Color | ValueType::Point => rng.real(low, high),
             _ => f64::from(rng.between(low as i32, high as i32 + 1)),
         };
-        let lanes: Vec<f64> = (0..field.kind.lanes()).map(|_| lane(rng)).collect();
+        let lanes: Vec<f64> = (0..field.value_type.components()).map(|_| lane(rng)).collect();
         field.set(&mut enabled.words, &lanes).unwrap_or_else(|error| panic!("{name}: {error}"));
     }
 }

@@ -25,7 +25,7 @@ fn set(stack: &mut Stack, name: &str, fields: &[(&str, f64)]) {
     let words = &mut stack.enable(effect).words;
     for (field, value) in fields {
         let field = effect.field(field).unwrap_or_else(|| panic!("no field {name}.{field}"));
-        let lanes = vec![*value; field.kind.lanes()];
+        let lanes = vec![*value; field.value_type.components()];
         field.set(words, &lanes).unwrap_or_else(|error| panic!("{name}: {error}"));
     }
 }

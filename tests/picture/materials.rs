@@ -1023,7 +1023,8 @@ fn cameras_of_a_file_are_chosen_by_name_and_go_with_their_nodes() {
     assert_eq!(names, ["chase", "still"]);
     let eye = |camera: &str, clip: &str, time_s: f64| {
         let play = ClipPlayback { clip: clip.into(), ..ClipPlayback::default() };
-        let preset = Preset { scene_camera: camera.into(), play, clock: Clock { time_s, ..Clock::default() }, ..Preset::default() };
+        let preset =
+            Preset { scene_camera: camera.into(), playback: play, clock: Clock { time_s, ..Clock::default() }, ..Preset::default() };
         preset.check(&scene).unwrap_or_else(|error| panic!("{error}"));
         let view = preset.view(&scene, [64, 48]);
         (view.eye, view.forward)

@@ -374,7 +374,7 @@ fn keys_lead_the_attractor_and_a_frame_of_them_is_the_same_however_it_was_reache
     let (again, particle_readback) = flown(&mut renderer, &scene, &preset, 40, &accuracy);
     assert!(particle_readback == reference && again.frame == jumped.frame);
     // What a bench draws is the same picture.
-    let posed = at(&preset, 40).posed();
+    let posed = at(&preset, 40).evaluated();
     assert_eq!(posed.particle_timeline(), at(&preset, 40).particle_timeline());
 }
 

@@ -27,7 +27,7 @@ fn lit(effects: &[&str], values: &[(&str, &str, f64)]) -> Stack {
     for (effect, field, value) in values {
         let enabled = stack.get_mut(effect).expect("an effect of the stack");
         let field = enabled.effect.field(field).expect("a field");
-        field.set(&mut enabled.words, &vec![*value; field.kind.lanes()]).expect("within its range");
+        field.set(&mut enabled.words, &vec![*value; field.value_type.components()]).expect("within its range");
     }
     stack
 }

@@ -28,7 +28,7 @@ fn moment(scene: &Scene, clips: [&str; 2], time_s: f64, skinning: Skinning, size
     let [clip, other] = clips.map(str::to_owned);
     let blend = if other.is_empty() { 0.0 } else { 0.5 };
     Preset {
-        play: ClipPlayback { clip, other, blend, ..ClipPlayback::default() },
+        playback: ClipPlayback { clip, second_clip: other, blend, ..ClipPlayback::default() },
         clock: Clock { time_s, ..Clock::default() },
         accuracy: AccuracyRequest { pins: PinnedOptions::of(skinning), ..AccuracyRequest::default() },
         ..Preset::default()
@@ -188,15 +188,18 @@ fn a_click_lands_on_the_bent_mesh() {
 #[test]
 fn a_look_names_its_clips_holds_them_and_says_which_there_are() {
     let scene = scene("tentacle?tess=1");
-    let play = |clip: &str, other: &str| ClipPlayback { clip: clip.into(), other: other.into(), ..ClipPlayback::default() };
+    let play = |clip: &str, other: &str| ClipPlayback { clip: clip.into(), second_clip: other.into(), ..ClipPlayback::default() };
     assert_eq!(play("Sway", "#2").check(&scene), Ok(()));
     let known = "; it has \"Sway\", \"Curl\", \"Twist\", \"Breathe\"".to_owned();
-    assert_eq!(play("Sway", "sway").check(&scene), Err(MissingInScene { key: "scene.clip_b", what: "clip", asked: "sway".into(), known }));
+    assert_eq!(
+        play("Sway", "sway").check(&scene),
+        Err(MissingInScene { key: "scene.second_clip", what: "clip", asked: "sway".into(), known })
+    );
     assert_eq!(
         play("Walk", "").check(&crate::common::scene("teapot?tess=1")).unwrap_err().to_string(),
         "scene.clip: the scene has no clip \"Walk\"; nothing in it moves"
     );
-    let at = |play: ClipPlayback, time_s: f64| Preset { play, clock: Clock { time_s, ..Clock::default() }, ..Preset::default() };
+    let at = |play: ClipPlayback, time_s: f64| Preset { playback: play, clock: Clock { time_s, ..Clock::default() }, ..Preset::default() };
     let moving = at(play("Sway", ""), 1.0);
     assert!(moving.is_moving() && moving.pose(&scene) != at(play("Sway", ""), 2.0).pose(&scene));
     let held = |time_s| at(ClipPlayback { clip_time_s: Some(0.5), ..play("Sway", "") }, time_s);

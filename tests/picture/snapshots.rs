@@ -211,7 +211,7 @@ fn a_look_that_pins_a_lossy_rung_is_verified_within_the_owners_that_it_may_lose(
         let path = folder.path().join("lossy.toml");
         let scene = "grid?cell=4&lattice=2&width=64&height=48";
         let text =
-            format!("schema = 1\n[scene]\nbuiltin = \"{scene}\"\n[accuracy]\ncoverage = \"float\"\n[output]\nsize = [64, 48]\n{budget}");
+            format!("schema = 2\n[scene]\nbuiltin = \"{scene}\"\n[accuracy]\ncoverage = \"float\"\n[output]\nsize = [64, 48]\n{budget}");
         fs::write(&path, text).expect("a preset can be written");
         let mut command = std::process::Command::new(env!("CARGO_BIN_EXE_rasterlab"));
         let run = command.arg("verify").arg(&path).arg("--json").args(["--frames", "2"]).output().expect("the program runs");

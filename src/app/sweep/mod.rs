@@ -118,7 +118,7 @@ impl Sweep {
 
 /// The preset without its options: the same of these is the same question.
 fn bare(preset: &Preset) -> Preset {
-    let mut bare = preset.posed();
+    let mut bare = preset.evaluated();
     (bare.accuracy, bare.test, bare.name, bare.about) = (AccuracyRequest::default(), None, String::new(), String::new());
     bare.tags.clear();
     bare
@@ -224,7 +224,7 @@ impl App {
 
     fn measure(&mut self) {
         let (Some((_, scene)), Some(wanted)) = (&self.scene_loader.shown, &self.motion.wanted) else { return };
-        let preset = Preset { stack: self.visible_stack(), ..self.shown_preset() }.posed();
+        let preset = Preset { stack: self.visible_stack(), ..self.shown_preset() }.evaluated();
         let size = [wanted.view.width, wanted.view.height];
         let question = Question { preset, size, axes: self.sweep.axes(), title: self.preset_file.title().to_owned() };
         let progress = Arc::new(Progress::default());

@@ -13,10 +13,10 @@ use super::{
     theme,
 };
 use crate::{
-    preset::animation::{Easing, Track, steps},
-    preset_file::{
-        form::{Value, ValueType},
-        keys::Key,
+    params::Value,
+    preset::{
+        animation::{Easing, Track, steps},
+        settings::Setting,
     },
 };
 use ruler::Span;
@@ -135,10 +135,10 @@ impl App {
                 self.perform(ui.ctx(), action);
             }
         }
-        let loops = self.preset_file.preset.clock.loops;
+        let loops = self.preset_file.preset.clock.is_looping;
         let hint = if loops { "Loop: on; after the end comes the beginning" } else { "Loop: off; play stops at the end" };
         if toggle_button(ui, Icon::Loop, loops, "Loop").on_hover_text(hint).clicked() {
-            self.preset_file.preset.clock.loops = !loops;
+            self.preset_file.preset.clock.is_looping = !loops;
         }
         ui.add_space(theme::HALF);
         self.clock_value(ui, "clock.speed", 0, |drag| drag.speed(0.01).max_decimals(2).suffix(" ×"));
@@ -176,22 +176,19 @@ impl App {
     }
 
     /// One number of a key of the clock; what its rule refuses is not taken.
-    fn clock_value(&mut self, ui: &mut Ui, path: &str, lane: usize, preset_file: impl FnOnce(DragValue<'_>) -> DragValue<'_>) {
-        let Some(key) = Key::find(path) else { return };
-        let (Some(Value::Numbers(mut lanes)), ValueType::Numbers { low, high, .. }) = ((key.get)(&self.preset_file.preset), key.form)
-        else {
-            return;
+    fn clock_value(&mut self, ui: &mut Ui, path: &str, index: usize, style: impl FnOnce(DragValue<'_>) -> DragValue<'_>) {
+        let Some(setting) = Setting::find(path) else { return };
+        let Some(Value::Numbers(mut components)) = setting.get(&self.preset_file.preset) else { return };
+        let name = match setting.value_type.component_names().get(index) {
+            Some(component) => format!("{path} {component}"),
+            None => path.to_owned(),
         };
-        let name = match (lanes.len(), lane) {
-            (1, _) => key.path(),
-            (_, 0) => format!("{} begin", key.path()),
-            _ => format!("{} end", key.path()),
-        };
-        let drag = preset_file(DragValue::new(&mut lanes[lane]).range(low..=high).update_while_editing(false));
-        let response = ui.add_sized([72.0, theme::ROW - 2.0], drag).accessible_name(name).on_hover_text(key.doc);
-        let plain = Value::Numbers(lanes);
-        if response.changed() && key.check(&plain).is_ok() {
-            (key.set)(&mut self.preset_file.preset, plain);
+        let [low, high] = setting.hard;
+        let drag = style(DragValue::new(&mut components[index]).range(low..=high).update_while_editing(false));
+        let response = ui.add_sized([72.0, theme::ROW - 2.0], drag).accessible_name(name).on_hover_text(setting.doc);
+        if response.changed() {
+            // A begin after the end is refused, and the preset keeps its range.
+            drop(setting.set(&mut self.preset_file.preset, &Value::Numbers(components)));
         }
     }
 

@@ -13,9 +13,8 @@ use super::{
 };
 use crate::{
     app::App,
-    params::Kind,
+    params::{ValueType, format_number},
     preset::animation::{Easing, Keyframe, Track, steps},
-    preset_file::form::{Value, ValueType, format_number},
 };
 
 /// Half of a mark's width, points.
@@ -157,17 +156,16 @@ fn menu_ui(ui: &mut Ui, track: &Track, key: &Keyframe) -> Option<MarkAsk> {
 /// The value at a time, as short as it can be read.
 fn value_text(track: &Track, time_s: f64) -> String {
     let value = track.value_at(time_s);
-    match track.field().kind {
-        Kind::Color => {
+    match track.field().value_type {
+        ValueType::Color => {
             let [r, g, b, a] = std::array::from_fn(|lane| value.get(lane).map_or(0.0, |v| *v as f32));
             let [r, g, b, _] = egui::Rgba::from_rgba_unmultiplied(r, g, b, a).to_srgba_unmultiplied();
             format!("#{r:02x}{g:02x}{b:02x}")
         }
-        Kind::Bool | Kind::Choice(_) => {
-            ValueType::of(track.field()).write(&Value::Numbers(value)).to_string().trim().trim_matches('"').to_owned()
-        }
-        Kind::U32 | Kind::I32 => format!("{:.0}", value[0]),
-        Kind::F32 | Kind::Point => value.iter().map(|lane| format!("{lane:.3}")).collect::<Vec<_>>().join(" "),
+        ValueType::Bool => if value[0] == 0.0 { "false" } else { "true" }.into(),
+        ValueType::Choice(words) => words.get(value[0] as usize).copied().unwrap_or_default().into(),
+        ValueType::U32 | ValueType::I32 => format!("{:.0}", value[0]),
+        _ => value.iter().map(|lane| format!("{lane:.3}")).collect::<Vec<_>>().join(" "),
     }
 }
 
@@ -225,7 +223,8 @@ impl Curve {
         let count = (rail.width() / CURVE_POINTS).ceil() as usize;
         let xs: Vec<f32> = (0..=count).map(|i| (rail.left() + i as f32 * CURVE_POINTS).min(rail.right())).collect();
         let values: Vec<Vec<f64>> = xs.iter().map(|x| track.value_at(span.time_s(*x))).collect();
-        let lanes = if track.field().kind == Kind::Color { 3 } else { track.field().kind.lanes() };
+        let value_type = track.field().value_type;
+        let lanes = if value_type == ValueType::Color { 3 } else { value_type.components() };
         for lane in 0..lanes {
             let points = xs.iter().zip(&values).map(|(x, value)| pos2(*x, self.y(value[lane]))).collect();
             painter.add(Shape::line(points, Stroke::new(1.5, lane_color(lane, lanes))));

@@ -11,17 +11,17 @@ pub fn parse(text: &str) -> Result<Vec<[f32; 3]>, String> {
     let mut points: Vec<[f32; 3]> = Vec::new();
     for written in text.split([';', '\n']).map(str::trim).filter(|written| !written.is_empty()) {
         let number = points.len() + 1;
-        let lanes: Vec<&str> = written.split([' ', '\t', ',']).filter(|lane| !lane.is_empty()).collect();
-        let lanes: [&str; 3] = lanes
+        let numbers: Vec<&str> = written.split([' ', '\t', ',']).filter(|number| !number.is_empty()).collect();
+        let numbers: [&str; 3] = numbers
             .try_into()
-            .map_err(|lanes: Vec<&str>| format!("has {} numbers in point {number}, {written:?}; it needs 3", lanes.len()))?;
+            .map_err(|numbers: Vec<&str>| format!("has {} numbers in point {number}, {written:?}; it needs 3", numbers.len()))?;
         let mut point = [0.0; 3];
-        for (lane, written) in point.iter_mut().zip(lanes) {
+        for (number, written) in point.iter_mut().zip(numbers) {
             let value: f32 = written.parse().map_err(|_| format!("has {written:?} in point {number}, which is no number"))?;
             if !value.is_finite() || value.abs() > FARTHEST_M {
                 return Err(format!("has {written} in point {number}; coordinates must lie within -1e9..=1e9"));
             }
-            *lane = value;
+            *number = value;
         }
         if points.last() == Some(&point) {
             return Err(format!("has point {number} in the place of the one before, {written:?}; leave one of them out"));
@@ -35,7 +35,7 @@ pub fn parse(text: &str) -> Result<Vec<[f32; 3]>, String> {
 }
 
 /// What [`parse`] takes back to the same bits.
-pub fn written(points: &[[f32; 3]]) -> String {
+pub fn to_text(points: &[[f32; 3]]) -> String {
     points.iter().map(|[x, y, z]| format!("{x} {y} {z}")).collect::<Vec<_>>().join("; ")
 }
 
@@ -46,7 +46,7 @@ mod tests {
     #[test]
     fn a_polyline_reads_back_to_the_bit() {
         let points = [[0.1, -0.0, 1e-40], [1e9, 3.402_823, -7.0], [0.0, 0.0, 0.0]];
-        let back = parse(&written(&points)).expect("a polyline");
+        let back = parse(&to_text(&points)).expect("a polyline");
         assert_eq!(
             back.iter().flatten().map(|v| v.to_bits()).collect::<Vec<_>>(),
             points.iter().flatten().map(|v| v.to_bits()).collect::<Vec<_>>()

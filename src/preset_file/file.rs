@@ -1,0 +1,147 @@
+//! An open preset: the state with the file it came from.
+
+use std::path::{Component, Path, PathBuf};
+
+use toml_edit::DocumentMut;
+
+use super::{atomic::write_atomically, error::PresetError, write};
+use crate::{
+    effects::lambert,
+    preset::{Preset, SceneSource},
+};
+
+/// A preset with its file and the text that it was read from.
+#[derive(Clone, Debug)]
+pub struct PresetFile {
+    /// File stem.
+    pub id: String,
+    /// None for built-in, pasted and new presets.
+    pub path: Option<PathBuf>,
+    pub preset: Preset,
+    /// What the reader warns of, each with its line.
+    pub warnings: Vec<String>,
+    /// Built in, or written by a newer program.
+    pub read_only: bool,
+    /// Written by a newer program: parts of it may be unknown here, so it is never written back.
+    pub(super) is_newer: bool,
+    /// The text, with comments and unknown keys.
+    pub(super) document: DocumentMut,
+    /// The state that `document` describes.
+    pub(super) saved: Preset,
+}
+
+impl PresetFile {
+    /// A preset without a file.
+    pub fn new(id: &str, preset: Preset) -> Self {
+        Self {
+            id: id.into(),
+            path: None,
+            preset,
+            warnings: Vec::new(),
+            read_only: false,
+            is_newer: false,
+            document: DocumentMut::new(),
+            saved: Preset::default(),
+        }
+    }
+
+    /// The default preset for a model or builtin scene: daylight and no other effect.
+    pub fn of_scene(id: &str, scene: SceneSource) -> Self {
+        let mut preset = Preset { name: id.into(), scene, ..Preset::default() };
+        preset.stack.enable(&lambert::EFFECT);
+        Self::new(id, preset)
+    }
+
+    /// The name, or the id of a preset without a name.
+    pub fn title(&self) -> &str {
+        if self.preset.name.is_empty() { &self.id } else { &self.preset.name }
+    }
+
+    /// Would saving change the file?
+    pub fn is_modified(&self) -> bool {
+        self.preset != self.saved
+    }
+
+    /// # Errors
+    /// The reader had warnings.
+    pub fn strict(self) -> Result<Self, PresetError> {
+        if self.warnings.is_empty() { Ok(self) } else { Err(PresetError::Strict(self.warnings)) }
+    }
+
+    /// Does the text have a table for this effect, known or not?
+    pub(super) fn has_effect_table(&self, name: &str) -> bool {
+        self.document.get("effects").and_then(|effects| effects.get(name)).is_some()
+    }
+}
+
+/// The preset as TOML: the text that it came from with the differences written in; the same bytes where nothing changed.
+pub fn to_toml(preset_file: &PresetFile) -> String {
+    let mut document = preset_file.document.clone();
+    if !preset_file.is_newer {
+        write::patch(&mut document, &preset_file.saved, &preset_file.preset);
+    }
+    document.to_string()
+}
+
+/// Writes the preset to `path`, whole or not at all, and makes that its file. An unmodified file is not written.
+/// A relative model path is rewritten so that it still leads to the model.
+///
+/// # Errors
+/// The preset has a newer schema, or the file cannot be written; then `preset_file` stays as it is.
+pub fn save(preset_file: &mut PresetFile, path: &Path) -> Result<(), PresetError> {
+    if preset_file.is_newer {
+        return Err(PresetError::ReadOnly { id: preset_file.id.clone(), reason: "its schema is newer than this program".into() });
+    }
+    let mut next = preset_file.clone();
+    if let SceneSource::File(model) = &preset_file.preset.scene {
+        next.preset.scene = SceneSource::File(rebase(model, preset_file.path.as_deref(), path));
+    }
+    let text = to_toml(&next);
+    if preset_file.path.as_deref() != Some(path) || text != preset_file.document.to_string() {
+        write_atomically(path, text.as_bytes())?;
+    }
+    next.document =
+        text.parse().map_err(|e: toml_edit::TomlError| PresetError::Write { file: path.display().to_string(), reason: e.to_string() })?;
+    next.saved = next.preset.clone();
+    (next.id, next.path, next.read_only) = (stem(path), Some(path.to_owned()), false);
+    *preset_file = next;
+    Ok(())
+}
+
+/// The id of a preset at `path`.
+pub(super) fn stem(path: &Path) -> String {
+    path.file_stem().map_or_else(|| "preset".into(), |stem| stem.to_string_lossy().into_owned())
+}
+
+/// The path of a model, for a preset at `preset_path` (or in the current folder).
+pub(super) fn model_path(model: &Path, preset_path: Option<&Path>) -> PathBuf {
+    preset_path.and_then(Path::parent).unwrap_or(Path::new("")).join(model)
+}
+
+/// `model` relative to the folder of `to`, when it was relative to the folder of `from`.
+fn rebase(model: &Path, from: Option<&Path>, to: &Path) -> PathBuf {
+    let normalized = |path: &Path| -> Option<PathBuf> {
+        let mut normalized = PathBuf::new();
+        for part in std::path::absolute(path).ok()?.components() {
+            match part {
+                Component::ParentDir => drop(normalized.pop()),
+                Component::CurDir => {}
+                part => normalized.push(part),
+            }
+        }
+        Some(normalized)
+    };
+    let folder = normalized(to).and_then(|to| to.parent().map(Path::to_owned));
+    let (Some(model_path), Some(folder)) = (normalized(&model_path(model, from)), folder) else {
+        return model.to_owned();
+    };
+    let (model_parts, folder_parts): (Vec<_>, Vec<_>) = (model_path.components().collect(), folder.components().collect());
+    let shared = model_parts.iter().zip(&folder_parts).take_while(|(a, b)| a == b).count();
+    if shared == 0 {
+        return model_path; // Another drive: there is no relative path.
+    }
+    let up = std::iter::repeat_n("..", folder_parts.len() - shared).collect::<PathBuf>();
+    let relative = up.join(model_parts[shared..].iter().collect::<PathBuf>());
+    // Forward slashes read the same on every system.
+    PathBuf::from(relative.to_string_lossy().replace(std::path::MAIN_SEPARATOR, "/"))
+}

@@ -1,0 +1,79 @@
+//! Reading one table of a preset file: its values, and the lines of its errors.
+
+use toml_edit::{Item, TableLike, Value as Toml};
+
+use super::{
+    error::{Position, PresetError},
+    toml_value,
+};
+use crate::params::{Param, Value, did_you_mean};
+
+/// What every part of the reader shares.
+pub struct Reader<'a> {
+    /// What errors call the file.
+    pub file: &'a str,
+    /// The text that spans point into; none for a value that did not come from a file.
+    pub text: Option<&'a str>,
+    pub warnings: Vec<String>,
+}
+
+impl Reader<'_> {
+    /// Where the key `name` stands, or the table itself when it has no such key.
+    pub fn position(&self, table: &dyn TableLike, name: &str) -> Position {
+        match self.text {
+            Some(text) => position(table, name, self.file, text),
+            None => Position { file: self.file.into(), line: None },
+        }
+    }
+
+    /// The table called `name`, if it is there.
+    pub fn table<'t>(&self, parent: &'t dyn TableLike, prefix: &str, name: &str) -> Result<Option<&'t dyn TableLike>, PresetError> {
+        let Some(item) = parent.get(name) else { return Ok(None) };
+        let path = format!("{prefix}{name}");
+        let reason = format!("must be a table, written [{path}]");
+        item.as_table_like().map(Some).ok_or_else(|| PresetError::value(self.position(parent, name), path, reason))
+    }
+
+    /// The value of `param`, which stands in `table` as `item`.
+    pub fn value(&self, table: &dyn TableLike, prefix: &str, param: &Param, item: &Item) -> Result<Value, PresetError> {
+        let read = match item.as_value() {
+            Some(toml) => toml_value::read(param, toml, &|toml| number_text(toml, self.text)),
+            None => Err("must be a value, not a table".into()),
+        };
+        read.map_err(|reason| self.error(table, prefix, param.name, reason))
+    }
+
+    /// The error of the key `name` in `table`.
+    pub fn error(&self, table: &dyn TableLike, prefix: &str, name: &str, reason: impl ToString) -> PresetError {
+        PresetError::value(self.position(table, name), format!("{prefix}{name}"), reason.to_string())
+    }
+
+    /// Warns of a key that is not one of `known`.
+    pub fn unknown<'k>(&mut self, table: &dyn TableLike, prefix: &str, name: &str, known: impl Iterator<Item = &'k str>) {
+        let hint = did_you_mean(name, known);
+        self.warnings.push(format!("{}: unknown key {prefix}{name}{hint}", self.position(table, name)));
+    }
+}
+
+/// Where the key `name` of `table` stands in `text`, or the table itself when it has no such key.
+pub fn position(table: &dyn TableLike, name: &str, file: &str, text: &str) -> Position {
+    let span = table.get_key_value(name).and_then(|(key, item)| key.span().or_else(|| item.span()));
+    Position { file: file.into(), line: span.map(|span| line_of(text, span.start)) }
+}
+
+/// The line of a byte, counted from 1.
+pub fn line_of(text: &str, byte: usize) -> usize {
+    1 + text.as_bytes()[..byte.min(text.len())].iter().filter(|&&b| b == b'\n').count()
+}
+
+/// A number as it stands in the file.
+pub fn number_text(toml: &Toml, text: Option<&str>) -> String {
+    let repr = match toml {
+        Toml::Float(float) => float.as_repr(),
+        Toml::Integer(integer) => integer.as_repr(),
+        _ => None,
+    };
+    let raw = repr.map(|repr| repr.as_raw());
+    let written = raw.and_then(|raw| raw.as_str()).or_else(|| text?.get(raw?.span()?));
+    written.map_or_else(|| toml.to_string().trim().to_owned(), str::to_owned)
+}
