@@ -7,7 +7,7 @@ use rasterlab::{
     effects::{EFFECTS, Stack, hooks::Slot},
     gpu::RenderError,
     measure::Budget,
-    params::{Field, Kind},
+    params::{Field, ValueType},
     preset::Preset,
     preset_file,
 };

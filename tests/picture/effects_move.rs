@@ -212,7 +212,11 @@ fn any_value(rng: &mut Rng, field: &rasterlab::params::Field) -> Vec<f64> {
             _ => rng.real(low, high),
         };
         let value = f64::from(value.clamp(low, high) as f32).clamp(low, high);
-        if matches!(field.value_type, ValueType::F32 | ValueType::Point | ValueType::Color) { value } else { value.trunc().clamp(low, high) }
+        if matches!(field.value_type, ValueType::F32 | ValueType::Point | ValueType::Color) {
+            value
+        } else {
+            value.trunc().clamp(low, high)
+        }
     };
     (0..field.value_type.components()).map(|_| lane()).collect()
 }
