@@ -285,7 +285,7 @@ fn a_camera_among_the_joints_is_clipped_like_any() {
         ..rasterlab::scene::camera::Camera::default()
     };
     let play = ClipPlayback { clip: "Sway".into(), ..ClipPlayback::default() };
-    let preset = Preset { camera: Some(camera), play, clock: Clock { time_s: 0.7, ..Clock::default() }, ..Preset::default() };
+    let preset = Preset { camera: Some(camera), playback: play, clock: Clock { time_s: 0.7, ..Clock::default() }, ..Preset::default() };
     let view = preset.view(&scene, [160, 120]);
     let (capture, verdict) = exact(&mut renderer, &scene, &view, &stack(&["lambert"]), &pinned(Visibility::Split32), "inside");
     assert!(capture.frame.counters.clipped > 0 && verdict.accuracy.deformed_vertices > 0, "{:?}", capture.frame.counters);
