@@ -8,12 +8,7 @@ use std::{
 
 use eframe::egui::{self, Key, Modifiers, Pos2, Role, vec2};
 use egui_kittest::kittest::Queryable as _;
-use rasterlab::{
-    accuracy::DepthFormat,
-    oracle,
-    preset::SceneSource,
-    preset_file,
-};
+use rasterlab::{accuracy::DepthFormat, oracle, preset::SceneSource, preset_file};
 
 use crate::harness::*;
 
