@@ -139,7 +139,7 @@ fn shade_surface(pixel: vec2u) -> Surface {
     s.center_screen = place.center_screen;
     s.pixel = vec2f(pixel) + 0.5;
     s.screen = s.pixel / vec2f(frame.size);
-    s.shares = place.shares;
+    s.barycentrics = place.shares;
     s.edge_distance_px = place.edge_distance_px;
     s.depth_m = place.depth;
     s.pixel_size_m = length(frame.ndc_y.xyz) * 2.0 / f32(frame.size.y) * select(1.0, place.depth, IS_PERSPECTIVE);

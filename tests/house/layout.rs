@@ -62,7 +62,7 @@ fn uniforms_and_records_agree() {
 fn arrays_of_records_have_one_stride() {
     let (span, _) = reflected(Pass::Project, vec![]).layout("Draw").expect("there");
     assert_eq!(span, size_of::<DrawRecord>());
-    let (span, _) = reflected(Pass::Particles, vec![]).layout("Course").expect("there");
+    let (span, _) = reflected(Pass::Particles, vec![]).layout("StepParams").expect("there");
     assert_eq!(span, size_of::<StepParams>());
 }
 
