@@ -5,6 +5,7 @@ use std::sync::{
     atomic::{AtomicBool, Ordering},
 };
 
+use super::pipelines::PipelineStore;
 pub use crate::plan::Caps;
 
 /// Which adapter a person asked for.
@@ -47,6 +48,8 @@ pub struct Gpu {
     pub queue: wgpu::Queue,
     pub summary: AdapterSummary,
     pub caps: Caps,
+    /// What its renderers compiled.
+    pub(super) pipelines: PipelineStore,
     lost: Arc<AtomicBool>,
     /// First error that no scope caught.
     error: Arc<Mutex<Option<String>>>,
@@ -170,7 +173,7 @@ impl Gpu {
         device.on_uncaptured_error(Arc::new(move |e: wgpu::Error| {
             slot.lock().unwrap_or_else(|p| p.into_inner()).get_or_insert(e.to_string());
         }));
-        Arc::new(Self { device, queue, summary: summary(adapter), caps: caps(adapter), lost, error })
+        Arc::new(Self { device, queue, summary: summary(adapter), caps: caps(adapter), pipelines: PipelineStore::default(), lost, error })
     }
 
     /// Has the device been lost? Then everything made from it is dead.

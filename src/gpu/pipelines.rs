@@ -1,9 +1,10 @@
-//! Pipelines by key: built once, kept; a switch back to a known key compiles nothing, unless very many came in between.
+//! Pipelines: compiled once for each device, found again by kernel key. A switch back to a known key compiles nothing, unless very
+//! many came in between.
 
 use std::{
     collections::HashMap,
     sync::{
-        Arc,
+        Arc, Mutex, MutexGuard, Weak,
         atomic::{AtomicU64, Ordering},
     },
 };
@@ -16,7 +17,7 @@ use crate::{
     shader::{
         key::KernelKey,
         library::Library,
-        link,
+        link::{self, Linked},
         pass::Pass,
         reflect::{self, Binding, BindingKind},
     },
@@ -28,12 +29,15 @@ pub struct Pipeline {
     pipeline: wgpu::ComputePipeline,
     layout: wgpu::BindGroupLayout,
     bindings: Vec<Binding>,
-    /// When it was asked for last, by the cache's own count.
+    /// When it was asked for last, by the store's own count.
     used: AtomicU64,
 }
 
 /// Pipelines that are kept on a graphics card, and on a CPU adapter, whose compiled kernels take 10 MB and more each.
 const MOST_KEPT: [usize; 2] = [1024, 96];
+
+/// Interfaces that are kept, with a text of some 30 KB each.
+const MOST_INTERFACES: usize = 1024;
 
 /// What tells one pipeline from another: its text and its constants.
 #[derive(Clone, PartialEq, Eq, Hash)]
@@ -51,19 +55,81 @@ struct PipelineDesc {
     bindings: Vec<Binding>,
 }
 
-/// The cache.
+/// What a pipeline needs to know of its text: the names of its overrides, and what its entry point binds.
+struct Interface {
+    overrides: Vec<String>,
+    bindings: Vec<Binding>,
+}
+
+/// The compiled pipelines of a device. All renderers on it share them, so that one with other shaders compiles only what differs.
+#[derive(Default)]
+pub struct PipelineStore {
+    state: Mutex<StoreState>,
+    /// Counts what was asked for.
+    clock: AtomicU64,
+}
+
+#[derive(Default)]
+struct StoreState {
+    built: HashMap<Identity, Arc<Pipeline>>,
+    /// By text and entry point.
+    interfaces: HashMap<(String, String), Arc<Interface>>,
+}
+
+impl PipelineStore {
+    fn state(&self) -> MutexGuard<'_, StoreState> {
+        self.state.lock().unwrap_or_else(|poisoned| poisoned.into_inner())
+    }
+
+    fn find(&self, identity: &Identity) -> Option<Arc<Pipeline>> {
+        self.state().built.get(identity).cloned()
+    }
+
+    /// Stores a compiled pipeline, or returns the one that another renderer stored in the meantime. Above `most` pipelines, the half
+    /// that was not asked for longest is dropped.
+    fn keep(&self, identity: Identity, pipeline: Pipeline, most: usize) -> Arc<Pipeline> {
+        let mut state = self.state();
+        if state.built.len() >= most {
+            let used = |pipeline: &Arc<Pipeline>| pipeline.used.load(Ordering::Relaxed);
+            let mut times: Vec<u64> = state.built.values().map(used).collect();
+            let (_, &mut median, _) = times.select_nth_unstable(most / 2);
+            state.built.retain(|_, pipeline| used(pipeline) >= median);
+        }
+        state.built.entry(identity).or_insert_with(|| Arc::new(pipeline)).clone()
+    }
+
+    /// The interface of an entry point.
+    fn interface(&self, linked: &Linked, entry: &str, has_int64: bool) -> Result<Arc<Interface>, RenderError> {
+        let name = (linked.text.clone(), entry.to_owned());
+        if let Some(interface) = self.state().interfaces.get(&name) {
+            return Ok(interface.clone());
+        }
+        let reflected = reflect::reflect(linked, has_int64)?;
+        let overrides = reflected.module.overrides.iter().filter_map(|(_, one)| one.name.clone()).collect();
+        let interface = Arc::new(Interface { overrides, bindings: reflected.bindings(entry) });
+        let mut state = self.state();
+        if state.interfaces.len() >= MOST_INTERFACES {
+            state.interfaces.clear();
+        }
+        Ok(state.interfaces.entry(name).or_insert(interface).clone())
+    }
+
+    /// Notes that a pipeline is in use, so that others are dropped before it.
+    fn mark(&self, pipeline: &Pipeline) {
+        pipeline.used.store(self.clock.fetch_add(1, Ordering::Relaxed) + 1, Ordering::Relaxed);
+    }
+}
+
+/// The pipelines of a renderer, by what asks for them.
 pub struct Pipelines {
     library: Library,
-    known: HashMap<KernelKey, HashMap<Pass, Arc<Pipeline>>>,
-    built: HashMap<Identity, Arc<Pipeline>>,
+    known: HashMap<KernelKey, HashMap<Pass, Weak<Pipeline>>>,
     compiled: usize,
-    /// Counts what was asked for.
-    clock: u64,
 }
 
 impl Pipelines {
     pub fn new(library: Library) -> Self {
-        Self { library, known: HashMap::new(), built: HashMap::new(), compiled: 0, clock: 0 }
+        Self { library, known: HashMap::new(), compiled: 0 }
     }
 
     /// Where the shaders come from.
@@ -71,19 +137,20 @@ impl Pipelines {
         &self.library
     }
 
-    /// Number of pipelines compiled so far.
+    /// Number of pipelines that this renderer compiled so far.
     pub fn compiled(&self) -> usize {
         self.compiled
     }
 
     /// The pipeline of a pass; compiles it at first use.
     pub fn get(&mut self, gpu: &Gpu, key: &KernelKey, pass: Pass) -> Result<Arc<Pipeline>, RenderError> {
-        if let Some(pipeline) = self.known.get(key).and_then(|of_key| of_key.get(&pass)).cloned() {
-            return Ok(self.marked(pipeline));
+        if let Some(pipeline) = self.known.get(key).and_then(|of_key| of_key.get(&pass)).and_then(Weak::upgrade) {
+            gpu.pipelines.mark(&pipeline);
+            return Ok(pipeline);
         }
         let desc = self.desc_of(gpu, key, pass)?;
         let pipeline = self.found_or_compiled(gpu, desc)?;
-        self.known.entry(key.clone()).or_default().insert(pass, pipeline.clone());
+        self.remember(key, pass, &pipeline);
         Ok(pipeline)
     }
 
@@ -105,23 +172,28 @@ impl Pipelines {
 
     /// What was built already, or else is compiled now.
     fn found_or_compiled(&mut self, gpu: &Gpu, desc: PipelineDesc) -> Result<Arc<Pipeline>, RenderError> {
-        if let Some(pipeline) = self.built.get(&desc.identity).cloned() {
-            return Ok(self.marked(pipeline));
-        }
-        let pipeline = compile(gpu, &desc)?;
-        Ok(self.keep(gpu, desc.identity, pipeline))
+        let pipeline = match gpu.pipelines.find(&desc.identity) {
+            Some(pipeline) => pipeline,
+            None => {
+                let pipeline = compile(gpu, &desc)?;
+                self.keep(gpu, desc.identity, pipeline)
+            }
+        };
+        gpu.pipelines.mark(&pipeline);
+        Ok(pipeline)
     }
 
     /// Compiles what `passes` lack, all at once, since a driver compiles each on the thread that asks for it.
     pub fn prepare(&mut self, gpu: &Gpu, key: &KernelKey, passes: &[Pass]) -> Result<(), RenderError> {
         let of_key = self.known.get(key);
-        let missing: Vec<Pass> = passes.iter().copied().filter(|pass| of_key.is_none_or(|of_key| !of_key.contains_key(pass))).collect();
+        let is_known = |pass: &Pass| of_key.and_then(|of_key| of_key.get(pass)).is_some_and(|pipeline| pipeline.strong_count() > 0);
+        let missing: Vec<Pass> = passes.iter().copied().filter(|pass| !is_known(pass)).collect();
         if missing.is_empty() {
             return Ok(());
         }
-        let drafts: Vec<PipelineDesc> = missing.par_iter().map(|&pass| self.desc_of(gpu, key, pass)).collect::<Result<_, _>>()?;
+        let descs: Vec<PipelineDesc> = missing.par_iter().map(|&pass| self.desc_of(gpu, key, pass)).collect::<Result<_, _>>()?;
         let mut fresh: Vec<&PipelineDesc> = Vec::new();
-        for desc in drafts.iter().filter(|desc| !self.built.contains_key(&desc.identity)) {
+        for desc in descs.iter().filter(|desc| gpu.pipelines.find(&desc.identity).is_none()) {
             if fresh.iter().all(|other| other.identity != desc.identity) {
                 fresh.push(desc);
             }
@@ -129,15 +201,25 @@ impl Pipelines {
         let pipelines: Vec<Pipeline> = fresh.par_iter().map(|desc| compile(gpu, desc)).collect::<Result<_, _>>()?;
         let fresh: Vec<Identity> = fresh.into_iter().map(|desc| desc.identity.clone()).collect();
         for (identity, pipeline) in fresh.into_iter().zip(pipelines) {
-            self.keep(gpu, identity, pipeline);
+            let pipeline = self.keep(gpu, identity, pipeline);
+            gpu.pipelines.mark(&pipeline);
         }
-        for (pass, desc) in missing.into_iter().zip(drafts) {
-            if let Some(pipeline) = self.built.get(&desc.identity).cloned() {
-                let pipeline = self.marked(pipeline);
-                self.known.entry(key.clone()).or_default().insert(pass, pipeline);
+        for (pass, desc) in missing.into_iter().zip(descs) {
+            if let Some(pipeline) = gpu.pipelines.find(&desc.identity) {
+                gpu.pipelines.mark(&pipeline);
+                self.remember(key, pass, &pipeline);
             }
         }
         Ok(())
+    }
+
+    fn remember(&mut self, key: &KernelKey, pass: Pass, pipeline: &Arc<Pipeline>) {
+        let is_kept = |pipeline: &Weak<Pipeline>| pipeline.strong_count() > 0;
+        if !self.known.contains_key(key) {
+            // Keys whose pipelines the store dropped.
+            self.known.retain(|_, of_key| of_key.values().any(is_kept));
+        }
+        self.known.entry(key.clone()).or_default().insert(pass, Arc::downgrade(pipeline));
     }
 
     fn desc_of(&self, gpu: &Gpu, key: &KernelKey, pass: Pass) -> Result<PipelineDesc, RenderError> {
@@ -161,44 +243,20 @@ impl Pipelines {
             return Err(RenderError::Untrusted);
         }
         let linked = link::link(&self.library, root, key, slots)?;
-        let reflected = reflect::reflect(&linked, gpu.caps.int64_atomics)?;
-        let declared = constants.iter().filter(|(name, _)| reflected.has_override(name));
+        let interface = gpu.pipelines.interface(&linked, entry, gpu.caps.int64_atomics)?;
+        let declared = constants.iter().filter(|(name, _)| interface.overrides.iter().any(|declared| declared == name));
         let identity = Identity {
             text: linked.text,
             entry: entry.to_owned(),
             constants: declared.map(|(name, value)| ((*name).to_owned(), value.to_bits())).collect(),
             is_trusted,
         };
-        Ok(PipelineDesc { label: label.to_owned(), identity, bindings: reflected.bindings(entry) })
+        Ok(PipelineDesc { label: label.to_owned(), identity, bindings: interface.bindings.clone() })
     }
 
     fn keep(&mut self, gpu: &Gpu, identity: Identity, pipeline: Pipeline) -> Arc<Pipeline> {
-        self.make_room(MOST_KEPT[usize::from(gpu.caps.software)]);
-        let pipeline = Arc::new(pipeline);
         self.compiled += 1;
-        self.built.insert(identity, pipeline.clone());
-        self.marked(pipeline)
-    }
-
-    fn marked(&mut self, pipeline: Arc<Pipeline>) -> Arc<Pipeline> {
-        self.clock += 1;
-        pipeline.used.store(self.clock, Ordering::Relaxed);
-        pipeline
-    }
-
-    /// Where `most` are kept, forgets the half that was not asked for longest.
-    fn make_room(&mut self, most: usize) {
-        if self.built.len() < most {
-            return;
-        }
-        let used = |pipeline: &Arc<Pipeline>| pipeline.used.load(Ordering::Relaxed);
-        let mut times: Vec<u64> = self.built.values().map(used).collect();
-        let (_, &mut median, _) = times.select_nth_unstable(most / 2);
-        self.built.retain(|_, pipeline| used(pipeline) >= median);
-        self.known.retain(|_, of_key| {
-            of_key.retain(|_, pipeline| used(pipeline) >= median);
-            !of_key.is_empty()
-        });
+        gpu.pipelines.keep(identity, pipeline, MOST_KEPT[usize::from(gpu.caps.software)])
     }
 }
 

@@ -95,11 +95,6 @@ impl Reflected {
         bindings
     }
 
-    /// Does the module declare this override?
-    pub fn has_override(&self, name: &str) -> bool {
-        self.module.overrides.iter().any(|(_, o)| o.name.as_deref() == Some(name))
-    }
-
     /// Size in bytes and members of a struct.
     pub fn layout(&self, name: &str) -> Option<(usize, Vec<Member>)> {
         let (_, ty) = self.module.types.iter().find(|(_, ty)| ty.name.as_deref() == Some(name))?;
