@@ -311,7 +311,7 @@ fn mistakes_of_culling_are_seen() {
         ("the snap is forgotten", "common/facing", "let shift = extent_shift(e);", "let shift = 0.0;", Culling::Frustum, &sheet, &edge_on),
         (
             "nearest and farthest are exchanged",
-            "passes/farthest",
+            "passes/depth_reduce",
             "key = min(key,",
             "key = max(select(key, 0u, key == 0xffffffffu),",
             Culling::TwoPass,
@@ -320,7 +320,7 @@ fn mistakes_of_culling_are_seen() {
         ),
         (
             "a tile knows one of its pixels",
-            "passes/farthest",
+            "passes/depth_reduce",
             "for (var i = 0u; i < 64u;",
             "for (var i = 0u; i < 1u;",
             Culling::TwoPass,

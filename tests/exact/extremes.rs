@@ -168,11 +168,11 @@ const MUTANTS: &[(&str, &str, &str, &str, &str)] = &[
     (
         "the larger id wins ties",
         "slots/visibility/split32_owner",
-        "atomicMax(&triangle ids[pixel], ~id);",
+        "atomicMax(&triangle_ids[pixel], ~id);",
         "loop {
-            let held = atomicLoad(&triangle ids[pixel]);
+            let held = atomicLoad(&triangle_ids[pixel]);
             if held != 0u && held <= ~id { break; }
-            if atomicCompareExchangeWeak(&triangle ids[pixel], held, ~id).exchanged { break; }
+            if atomicCompareExchangeWeak(&triangle_ids[pixel], held, ~id).exchanged { break; }
         }",
         "coplanar-layers",
     ),

@@ -437,7 +437,7 @@ fn a_mistake_in_the_pass_is_found() {
         ("common/flight", "return ParticleState(place, velocity,", "return ParticleState(place, f.velocity,"),
         ("slots/curl/analytic", "by_x.y - by_y.x", "by_x.y + by_y.x"),
         ("slots/curl/analytic", "(t - 1.0) * (t - 1.0)", "(t - 1.0) * t"),
-        ("slots/state/float32", "(frame_number & 1u) * swarm.count + id);\n    particle_states", "id);\n    particle_states"),
+        ("slots/state/float32", "(frame_number & 1u) * particle_step.count + id);\n    particle_states", "id);\n    particle_states"),
         ("passes/particles", "vec2f(0.0, 2.0)", "vec2f(0.0, 1.99)"),
         ("passes/particles", "PARTICLES_LEAN = 0.7", "PARTICLES_LEAN = 0.8"),
         ("passes/particles", "hash_unit(base + 14u)", "hash_unit(base + 15u)"),

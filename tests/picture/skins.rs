@@ -382,14 +382,19 @@ fn mistakes_in_the_pass_are_found() {
     let mutants = [
         ("joint off by one", "common/influences", "min(u32(pull_lane(format, byte))", "min(u32(pull_lane(format, byte)) + 1u"),
         ("weights as they are", "common/influences", "weight / select(1.0, sum, sum > 0.0)", "weight"),
-        ("only the first four are followed", "slots/skinning/linear", "i < 4u * bends[bend].sets", "i < 4u * min(1u, bends[bend].sets)"),
+        (
+            "only the first four are followed",
+            "slots/skinning/linear",
+            "i < 4u * deforms[deform].sets",
+            "i < 4u * min(1u, deforms[deform].sets)",
+        ),
         (
             "shapes after joints",
             "passes/skin",
-            "skinning_place(skinning, shapes_place(bend, vertex, vertex_position(place, gate)))",
-            "shapes_place(bend, vertex, skinning_place(skinning, vertex_position(place, gate)))",
+            "skinning_place(skinning, shapes_place(deform, vertex, vertex_position(place, gate)))",
+            "shapes_place(deform, vertex, skinning_place(skinning, vertex_position(place, gate)))",
         ),
-        ("normals left as they were", "passes/skin", "skinning_normal(skinning, shapes_normal(bend, vertex, normal.xyz))", "normal.xyz"),
+        ("normals left as they were", "passes/skin", "skinning_normal(skinning, shapes_normal(deform, vertex, normal.xyz))", "normal.xyz"),
         ("normals by the wrong cofactors", "slots/skinning/linear", "cross(s.y.xyz, s.z.xyz)", "cross(s.z.xyz, s.y.xyz)"),
         ("a rotation's opposite taken as another", "slots/skinning/dual", "select(share, -share,", "select(share, share,"),
         ("the shift left out", "slots/skinning/dual", "skinning_turned(s, stretched) + shift", "skinning_turned(s, stretched)"),
