@@ -1,4 +1,4 @@
-//! Draws: every instance with its matrices and its place in the global lists of vertices and triangles.
+//! Draws: every instance with its matrices and its ranges in the global lists of vertices and triangles.
 
 use glam::{DMat4, DVec3, DVec4};
 
@@ -9,62 +9,62 @@ use super::{
 };
 use crate::math::rounded_columns;
 
-/// Largest magnitude that a matrix entry or a coordinate may have: 2^40 (the gate that keeps all products finite).
+/// Exclusive limit of the magnitude of a matrix entry or a coordinate, 2^40: below it all products are finite in f32.
 pub const MAX_MAGNITUDE: f64 = (1u64 << 40) as f64;
 
-/// One instance, ready to be projected.
+/// An instance with everything that its projection needs.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Draw {
     /// Index into `Scene::primitives`.
     pub primitive: usize,
-    /// Place of its vertices in `Geometry::vertices`.
+    /// Index of its vertex 0 in `Geometry::vertices`.
     pub first_vertex: u32,
     /// Global id of its triangle 0.
     pub first_triangle: u32,
-    /// From where positions are taken before they meet the next: the place of the mesh's box nearest to the eye where the
-    /// view is relative, else 0.
+    /// Subtracted from object-space positions before `clip_from_object`: in a relative view the point of the mesh's box nearest
+    /// to the eye, else 0.
     pub origin: [f32; 3],
-    /// Columns; multiplied in f64 and rounded once, so that every judge starts from these bits. It expects a position less
-    /// `origin`.
+    /// Columns, for positions relative to `origin`. Multiplied in f64 and rounded once, so that every renderer and the oracle
+    /// start from the same bits.
     pub clip_from_object: [[f32; 4]; 4],
     pub world_from_object: DMat4,
-    /// Back faces are drawn too.
+    /// Back faces are drawn.
     pub double_sided: bool,
-    /// The placement turns left into right, so front faces wind the other way.
+    /// The transform mirrors, so front faces have the opposite winding.
     pub mirrored: bool,
-    /// What bends its vertices before they are placed.
+    /// What deforms its vertices before they are transformed.
     pub deform: Option<Deform>,
-    /// Place of its vertices among those of all draws that may bend.
+    /// Index of its vertex 0 among the vertices of all draws that can deform.
     pub first_deformable: u32,
 }
 
 impl Draw {
-    /// The origin as the place that it is.
+    /// The origin in f64.
     pub fn origin(&self) -> DVec3 {
         DVec3::from_array(self.origin.map(f64::from))
     }
 
-    /// Where a place of object space lies in clip space.
+    /// Clip-space position of an object-space one.
     pub fn clip_point(&self, position: DVec3) -> DVec4 {
         DMat4::from_cols_array_2d(&self.clip_from_object.map(|column| column.map(f64::from))) * (position - self.origin()).extend(1.0)
     }
 
-    /// Box round its vertices in object space, however they are bent.
+    /// Object-space box of its vertices after deformation.
     pub fn object_bounds(&self, primitive: &Primitive) -> Bounds {
         self.deform.as_ref().map_or(primitive.bounds, |deform| deform.bounds(primitive))
     }
 }
 
-/// A scene and viewpoint that the arithmetic cannot hold.
+/// Why a scene and a viewpoint exceed the arithmetic.
 #[derive(Debug, thiserror::Error)]
 pub enum DrawError {
-    #[error("{instance}: the placement or camera has a matrix entry of {value:e}; it must be finite and below 2^40 (1.1e12)")]
+    #[error("{instance}: its transform or the camera has a matrix entry of {value:e}; entries must be finite and below 2^40 (1.1e12)")]
     Matrix { instance: String, value: f64 },
-    #[error("the scene has {count} {what}; at most {limit} fit one picture")]
+    #[error("the scene has {count} {what}; a picture may have at most {limit}")]
     TooMany { what: &'static str, count: u64, limit: u64 },
 }
 
-/// The place of a box nearest to `eye`, as floats have it; the origin where there is none.
+/// The point of a box nearest to `eye`, in f32; the origin if the box is empty or too large.
 fn nearest(bounds: &Bounds, eye: DVec3) -> [f32; 3] {
     if bounds.is_empty() || !eye.is_finite() || bounds.min.abs().max(bounds.max.abs()).max_element() >= MAX_MAGNITUDE {
         return [0.0; 3];
@@ -72,7 +72,7 @@ fn nearest(bounds: &Bounds, eye: DVec3) -> [f32; 3] {
     eye.clamp(bounds.min, bounds.max).as_vec3().to_array()
 }
 
-/// Vertices and triangles of all draws together.
+/// The numbers of vertices and of triangles of all draws.
 pub fn totals(scene: &Scene, draws: &[Draw]) -> [u64; 2] {
     draws.last().map_or([0; 2], |last| {
         let primitive = &scene.primitives[last.primitive];
@@ -81,10 +81,13 @@ pub fn totals(scene: &Scene, draws: &[Draw]) -> [u64; 2] {
     })
 }
 
-/// Most triangles in one picture: ids share their word with a flag.
+/// The most triangles in a picture: an id shares its word with a flag, and one value means none.
 pub const MAX_TRIANGLES: u64 = (1 << 31) - 2;
 
-/// Lists the draws of `scene` as `view` sees it, in instance order.
+/// The draws of `scene` as `view` sees it, in instance order.
+///
+/// # Errors
+/// If there are more than [`MAX_TRIANGLES`] triangles or vertices, or a matrix entry reaches [`MAX_MAGNITUDE`].
 pub fn draws(scene: &Scene, view: &View) -> Result<Vec<Draw>, DrawError> {
     for (what, count) in [("triangles", scene.triangle_count()), ("vertices", scene.vertex_count())] {
         if count > MAX_TRIANGLES {
@@ -94,7 +97,7 @@ pub fn draws(scene: &Scene, view: &View) -> Result<Vec<Draw>, DrawError> {
     let at_rest = if view.pose.is_none() { Pose::at_rest(scene) } else { None };
     let pose = view.pose.as_deref().or(at_rest.as_ref());
     let shadow_casters = scene.shadow_casters().len();
-    // A light looks past the walls, which stand behind all others.
+    // The view of a light leaves out the walls, which are last in the list.
     let drawn = if view.is_light() { scene.shadow_casters() } else { &scene.instances };
     let (mut first_vertex, mut first_triangle, mut first_deformable) = (0, 0, 0);
     let place = |(index, instance): (usize, &super::Instance)| {

@@ -1,4 +1,4 @@
-//! Palettes: the joints of a skin, as matrices or taken apart into stretches and dual quaternions; rounded once.
+//! Joint transforms of a skin: matrices for linear skinning, or dual quaternions with a stretch. Rounded to f32 once.
 
 use std::sync::Arc;
 
@@ -7,20 +7,20 @@ use glam::{DMat3, DMat4, DQuat, DVec3};
 use super::pose::unit;
 use crate::accuracy::Skinning;
 
-/// Rows of a joint's matrix, which takes the mesh to the scene; the fourth is 0 0 0 1.
+/// The upper three rows of the matrix from the mesh to the scene; the fourth row is 0 0 0 1.
 pub type JointMatrix = [[f32; 4]; 3];
 
-/// A joint's matrix taken apart: stretched, then turned and moved by a unit dual quaternion.
+/// A joint matrix as a stretch followed by a unit dual quaternion (rotation and translation).
 #[derive(Clone, Copy, Debug, Default, PartialEq, bytemuck::Pod, bytemuck::Zeroable)]
 #[repr(C)]
 pub struct DualQuaternionJoint {
     pub real: [f32; 4],
     pub dual: [f32; 4],
-    /// Rows; the fourth entry is 0.
+    /// Rows of a 3 x 3 matrix; the fourth entry of each is 0.
     pub stretch: [[f32; 4]; 3],
 }
 
-/// The joints of a skin, as its way of skinning wants them.
+/// The joints of a skin, in the form that its skinning method needs.
 #[derive(Clone, Debug, PartialEq)]
 pub enum JointTransforms {
     Linear(Arc<[JointMatrix]>),
@@ -60,8 +60,8 @@ impl JointTransforms {
 }
 
 impl DualQuaternionJoint {
-    /// Takes an affine matrix apart: columns made orthonormal in turn are the rotation, and what is left is the stretch. A
-    /// mirror is a stretch, and what has no direction turns nothing.
+    /// Splits an affine matrix. Gram-Schmidt on its columns gives the rotation, and the remaining factor is the stretch, which
+    /// also holds mirroring. A degenerate column is replaced by any orthonormal one.
     pub(super) fn of(m: &DMat4) -> Self {
         let linear = DMat3::from_mat4(*m);
         let x = linear.x_axis.try_normalize().unwrap_or(DVec3::X);
@@ -76,7 +76,7 @@ impl DualQuaternionJoint {
         Self { real: rounded(real.to_array()), dual: rounded(dual.to_array()), stretch: [row(0), row(1), row(2)] }
     }
 
-    /// What it does to a point, as a matrix.
+    /// The same transform as a matrix.
     pub fn matrix(&self) -> DMat4 {
         let [real, dual] = [self.real, self.dual].map(|q| DQuat::from_array(q.map(f64::from)));
         let shift = dual * real.conjugate() * (2.0 / real.length_squared());
@@ -88,7 +88,7 @@ impl DualQuaternionJoint {
     }
 }
 
-/// A joint's rows as a matrix.
+/// The matrix of a joint.
 pub fn matrix([x, y, z]: &JointMatrix) -> DMat4 {
     let rows = [x.map(f64::from), y.map(f64::from), z.map(f64::from), [0.0, 0.0, 0.0, 1.0]];
     DMat4::from_cols_array_2d(&rows).transpose()

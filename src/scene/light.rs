@@ -1,5 +1,5 @@
-//! Light: the view of a directional light, in which its shadow map is drawn. Value matrices in f64, from whose bits renderers
-//! and judges start alike.
+//! Light views: the orthographic view from a directional light in which its shadow map is drawn. The matrices are f64, and
+//! renderers and the oracle start from the same bits.
 
 use glam::{DVec2, DVec3};
 
@@ -8,61 +8,15 @@ use super::{
     camera::{Camera, Projection, View},
     pose::Pose,
 };
-use crate::accuracy::{ShadowMapSize, ShadowTaps};
 
-impl ShadowMapSize {
-    /// Texels a side.
-    pub const fn side(self) -> u32 {
-        256 << self as u32
-    }
-}
-
-impl ShadowTaps {
-    /// Texels a side of the filter.
-    pub const fn side(self) -> u32 {
-        2 * self as u32 + 1
-    }
-}
-
-/// How finely shadows are drawn.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct ShadowResolution {
-    /// Texels a side of a shadow map.
-    pub side: u32,
-    /// Texels a side of the filter: 1, 3 or 5.
-    pub taps: u32,
-}
-
-impl Default for ShadowResolution {
-    fn default() -> Self {
-        Self::of(ShadowMapSize::default(), ShadowTaps::default())
-    }
-}
-
-impl ShadowResolution {
-    /// No map: rays, one for each sample. The oracle alone has them.
-    pub const TRACED: Self = Self { side: 0, taps: 0 };
-
-    pub const fn of(map: ShadowMapSize, taps: ShadowTaps) -> Self {
-        Self { side: map.side(), taps: taps.side() }
-    }
-
-    /// The options of the accuracy axes that this is; the usual ones where it is none.
-    pub fn options(&self) -> (ShadowMapSize, ShadowTaps) {
-        let map = ShadowMapSize::ALL.iter().find(|option| option.side() == self.side);
-        let taps = ShadowTaps::ALL.iter().find(|option| option.side() == self.taps);
-        (map.copied().unwrap_or_default(), taps.copied().unwrap_or_default())
-    }
-}
-
-/// Texels that stay empty along every border: half the widest filter, and one for what rounding moves.
+/// Empty texels along every border: half the widest filter, and one for rounding.
 const BORDER: f64 = 3.0;
 
-/// What a light from `toward` (a unit vector) sees of `scene` as `view` shows it, where effects may move anything by
-/// `max_displacement_m`: a square picture of parallel rays, framed round the box of what casts shadows.
+/// The view from a light in direction `toward` (a unit vector that points to the light) of `scene` as `view` shows it: a
+/// square orthographic picture of the shadow casters' box, grown by `reach_m`, the largest displacement by effects in metres.
 ///
-/// The square's side is rounded up to a 32nd of a power of two and its place to whole texels, so that shadows stand still
-/// while what casts them moves a little.
+/// The side of the square is rounded up to 1/32 of a power of two and its position to whole texels, so that shadows do not
+/// flicker while their casters move slowly.
 pub fn light_view(toward: DVec3, scene: &Scene, view: &View, max_displacement_m: f64) -> View {
     let at_rest = if view.pose.is_none() { Pose::at_rest(scene) } else { None };
     let (pose, shadow_casters) = (view.pose.as_deref().or(at_rest.as_ref()), scene.shadow_casters());
@@ -91,13 +45,13 @@ pub fn light_view(toward: DVec3, scene: &Scene, view: &View, max_displacement_m:
     }
 }
 
-/// The next 32nd of a power of two.
+/// Rounded up to a multiple of 1/32 of the power of two above it.
 fn rounded_up(length: f64) -> f64 {
     let step = libm::exp2(libm::ceil(libm::log2(length)) - 5.0);
     (length / step).ceil() * step
 }
 
-/// Two axes across a direction.
+/// Two unit vectors perpendicular to a direction and to each other.
 struct Axes {
     right: DVec3,
     up: DVec3,
@@ -105,7 +59,7 @@ struct Axes {
 
 impl Axes {
     fn of(toward: DVec3) -> Self {
-        // Straight from above there is no "up" but some.
+        // A vertical light has no natural up direction.
         let vertical = if toward.y.abs() > 0.999_999 { DVec3::NEG_Z } else { DVec3::Y };
         let right = vertical.cross(toward).normalize();
         Self { right, up: toward.cross(right) }

@@ -1,6 +1,7 @@
-//! Lines: what dots are strung on. The edges of the meshes, each once and joined to long walks, or a polyline of the preset.
+//! Lines: the curves along which dots are placed. Either the edges of the meshes, each once and joined into chains, or the
+//! polyline of a preset.
 //!
-//! Lengths are the world's, of the scene at rest: a dot stays on its place of an edge however the edge moves.
+//! Lengths are measured in the world with the scene in its rest pose, so a dot keeps its position on an edge that moves.
 
 use std::collections::{HashMap, hash_map::Entry};
 
@@ -8,52 +9,52 @@ use glam::{DMat4, DVec3};
 
 use super::{Primitive, Scene, draw::DrawError, pose::Pose};
 
-/// The sharpest turn that a walk takes from one edge to the next: its cosine, of 60 degrees.
+/// Cosine of the sharpest turn between consecutive edges of a chain: 60 degrees.
 const SHARPEST: f64 = 0.5;
 
-/// Most triangles among which edges are looked for: beyond, it would take long and gigabytes.
+/// The most triangles whose edges are collected; beyond, it would take minutes and gigabytes.
 const MAX_TRIANGLES: u64 = 1 << 23;
 
-/// Where a segment begins and ends.
+/// The end points of a segment.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum SegmentEnds {
-    /// At two corners of a triangle of a draw, both counted within the draw.
+    /// Two vertices of a triangle; both indices count within the draw.
     Edge { draw: u32, vertices: [u32; 2], triangle: u32 },
-    /// At two points in the scene, before it is spun.
+    /// Two points in the scene, before its spin.
     Points([[f32; 3]; 2]),
 }
 
-/// One straight piece of a line.
+/// A straight segment of a line.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Segment {
     pub ends: SegmentEnds,
-    /// Length of its line up to its beginning.
+    /// Distance of its start from the start of its line, metres.
     pub start_m: f64,
-    /// Longer than 0.
+    /// Its length in metres, above 0.
     pub length_m: f64,
 }
 
-/// Every line, in an order that no machine changes.
+/// All lines, in an order that is the same on every machine.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Lines {
     pub segments: Vec<Segment>,
-    /// The segment with which each line begins.
+    /// Index of the first segment of each line.
     pub first_segments: Vec<u32>,
 }
 
 impl Lines {
-    /// The segments of each line.
+    /// Each line as the index of its first segment and its segments.
     pub fn each(&self) -> impl Iterator<Item = (usize, &[Segment])> {
         let ends = self.first_segments.iter().skip(1).map(|&first| first as usize).chain([self.segments.len()]);
         self.first_segments.iter().zip(ends).map(|(&first, end)| (first as usize, &self.segments[first as usize..end]))
     }
 
-    /// All lines end to end.
+    /// The total length of all lines, metres.
     pub fn length_m(&self) -> f64 {
         self.each().filter_map(|(_, line)| line.last()).map(|last| last.start_m + last.length_m).sum()
     }
 
-    /// One line through `points`; those that repeat the one before add nothing.
+    /// One line through `points`. Repeated points add no segment.
     pub fn polyline(points: &[[f32; 3]]) -> Self {
         let mut lines = Self::default();
         let place = |p: [f32; 3]| DVec3::from(p.map(f64::from));
@@ -61,25 +62,25 @@ impl Lines {
         lines
     }
 
-    /// The edges of every instance, each once however many triangles share it. With `crease_deg` only those at which two
-    /// faces meet at that angle or a larger one, and those that are not shared by two faces.
+    /// The edges of every instance, each once however many triangles share it. With `crease_deg` only edges whose two faces meet
+    /// at that angle or more, and edges that do not belong to exactly two faces.
     ///
     /// # Errors
-    /// When there are more triangles than edges are looked for among.
+    /// If the scene has more than 2^23 triangles.
     pub fn edges(scene: &Scene, crease_deg: Option<f64>) -> Result<Self, DrawError> {
         let count = scene.triangle_count();
         if count > MAX_TRIANGLES {
-            return Err(DrawError::TooMany { what: "triangles to string dots along", count, limit: MAX_TRIANGLES });
+            return Err(DrawError::TooMany { what: "triangles with dots along their edges", count, limit: MAX_TRIANGLES });
         }
         let pose = Pose::at_rest(scene);
         let mut known: HashMap<usize, Vec<Walk>> = HashMap::new();
         let mut lines = Self::default();
-        // Discs have no edges.
+        // Particle discs have no edges.
         let meshes = scene.instances.iter().enumerate().filter(|(_, instance)| scene.particle_discs != Some(instance.primitive));
         for (draw, instance) in meshes {
             let walks = known.entry(instance.primitive).or_insert_with(|| walks(scene, &scene.primitives[instance.primitive], crease_deg));
             let place = pose.as_ref().map_or(instance.world_from_object, |pose| pose.place(draw));
-            // What joints hold is as large as its first joint makes it.
+            // The first joint gives the scale of a skinned mesh.
             let joint_transforms = pose.as_ref().and_then(|pose| pose.deform(draw)).and_then(|deform| deform.joint_transforms.as_ref());
             let place = place
                 * joint_transforms
@@ -95,7 +96,7 @@ impl Lines {
         Ok(lines)
     }
 
-    /// Adds a line of segments with their lengths; what has none, or none that is finite, is left out.
+    /// Adds a line. Segments whose length is 0 or not finite are left out.
     fn walk(&mut self, segments: impl Iterator<Item = (SegmentEnds, f64)>) {
         let (first, mut start_m) = (self.segments.len(), 0.0);
         for (ends, length_m) in segments.filter(|(_, length_m)| length_m.is_finite() && *length_m > 0.0) {
@@ -108,30 +109,30 @@ impl Lines {
     }
 }
 
-/// Edges, one after the other.
+/// Connected edges in order.
 type Walk = Vec<Step>;
 
-/// One edge in the direction in which a walk goes along it.
+/// An edge with the direction in which its chain runs.
 #[derive(Clone, Copy, Debug)]
 struct Step {
     vertices: [u32; 2],
     triangle: u32,
-    /// From the first to the second, object space.
+    /// From the first vertex to the second, object space.
     way: DVec3,
 }
 
-/// An edge as the faces round it know it. Corners at one place are one, whatever their indices.
+/// An edge with what is known of its faces. Vertices with equal positions count as one, whatever their indices.
 struct Edge {
     step: Step,
-    /// Places of its ends.
+    /// Identifiers of the positions of its ends.
     places: [u32; 2],
     faces: u32,
     normal: DVec3,
-    /// Least cosine between the first face and the others.
+    /// The smallest cosine between the normal of the first face and those of the others.
     deform: f64,
 }
 
-/// The edges of a mesh as walks that turn as little as they can.
+/// The edges of a mesh, joined into chains that turn as little as possible.
 fn walks(scene: &Scene, primitive: &Primitive, crease_deg: Option<f64>) -> Vec<Walk> {
     let mut edges = edges(scene, primitive);
     if let Some(degrees) = crease_deg {
@@ -150,7 +151,7 @@ fn walks(scene: &Scene, primitive: &Primitive, crease_deg: Option<f64>) -> Vec<W
         }
         is_used[first] = true;
         let mut walk = vec![edges[first].step];
-        // Forward from the end, then the same from the beginning, as if it were walked the other way.
+        // Extend at the end, reverse, extend at the other end, reverse.
         for end in [1, 0] {
             let (mut place, mut way) = (edges[first].places[end], edges[first].step.way * if end == 1 { 1.0 } else { -1.0 });
             while let Some((next, step)) = straightest(&edges, &at[&place], &is_used, place, way) {
@@ -166,7 +167,7 @@ fn walks(scene: &Scene, primitive: &Primitive, crease_deg: Option<f64>) -> Vec<W
     walks
 }
 
-/// Of the unused edges at a place, the one that goes on with the least turn.
+/// Of the unused edges at a position, the one that continues with the smallest turn.
 fn straightest(edges: &[Edge], at: &[u32], is_used: &[bool], place: u32, way: DVec3) -> Option<(usize, Step)> {
     let mut best: Option<(f64, usize, Step)> = None;
     for &i in at {
@@ -190,7 +191,7 @@ impl Step {
     }
 }
 
-/// Every edge between two places, in the order in which triangles come upon them.
+/// Every edge between two different positions, in the order in which triangles first use it.
 fn edges(scene: &Scene, primitive: &Primitive) -> Vec<Edge> {
     let mut places: HashMap<[u32; 3], u32> = HashMap::new();
     let positions: Vec<[f32; 3]> = (0..primitive.vertex_count()).map(|vertex| primitive.position(scene, vertex)).collect();
@@ -198,7 +199,7 @@ fn edges(scene: &Scene, primitive: &Primitive) -> Vec<Edge> {
         .iter()
         .map(|p| {
             let next = places.len() as u32;
-            // Adding 0 makes one of the two zeros.
+            // Adding 0 turns -0 into 0.
             *places.entry(p.map(|lane| (lane + 0.0).to_bits())).or_insert(next)
         })
         .collect();
@@ -241,7 +242,7 @@ mod tests {
     use super::*;
     use crate::scene::builtin;
 
-    /// Places of both ends, the lesser first.
+    /// Positions of both ends, the smaller first.
     fn ends(scene: &Scene, segment: &Segment) -> [[u32; 3]; 2] {
         let SegmentEnds::Edge { draw, vertices, .. } = segment.ends else { panic!("an edge") };
         let primitive = &scene.primitives[scene.instances[draw as usize].primitive];
@@ -255,7 +256,7 @@ mod tests {
         for query in ["sphere?triangles=2000", "knot?tess=4"] {
             let scene = builtin::build(query).expect("a scene");
             let lines = Lines::edges(&scene, None).expect("few triangles");
-            // Each of the triangles has three edges, and shares every one with a neighbour.
+            // Each triangle has three edges and shares each with one neighbour.
             assert_eq!(lines.segments.len() as u64, scene.triangle_count() * 3 / 2, "{query}");
             let all: BTreeSet<_> = lines.segments.iter().map(|segment| ends(&scene, segment)).collect();
             assert_eq!(all.len(), lines.segments.len(), "{query}: an edge is walked twice");

@@ -1,34 +1,34 @@
-//! Meshlets: patches of a mesh, small enough to be left out whole, with bounds that hold whatever is rounded.
+//! Meshlets: clusters of a mesh's triangles that can be culled as a whole, with bounds that are conservative after rounding.
 //!
-//! A meshlet lists triangles of its primitive by their place there, so ids and their order stay what they were. MeshletBuffers grow
-//! from a seed over shared vertices, which keeps them round; seeds come in Morton order (Morton 1966), which keeps what is
-//! left over together, and loose triangles too.
+//! A meshlet lists triangles by their index in the primitive, so triangle ids and their order do not change. Clusters grow
+//! from a seed over shared vertices, which keeps them round. Seeds are taken in Morton order (Morton 1966), which keeps
+//! left-over and unconnected triangles together.
 
 use glam::DVec3;
 
 use super::{Bounds, Component, Primitive, Scene, draw::MAX_MAGNITUDE};
 
-/// Most triangles of a meshlet.
+/// The most triangles of a meshlet.
 pub const MESHLET_TRIANGLES: usize = 64;
 
-/// A patch and what is known of it, in object space.
+/// A cluster of triangles with its bounds, in object space.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Meshlet {
-    /// Its part of [`Meshlets::triangles`].
+    /// Its range of [`Meshlets::triangles`].
     pub first_triangle: u32,
     pub triangle_count: u32,
-    /// Its part of [`Meshlets::vertices`].
+    /// Its range of [`Meshlets::vertices`].
     pub first_vertex: u32,
     pub vertex_count: u32,
-    /// A box round every corner of every triangle that can be drawn: its middle, and half its sides, rounded up.
+    /// Centre and half extents of a box of all drawable triangles, rounded outwards.
     pub center: [f32; 3],
     pub half: [f32; 3],
-    /// The normal of every triangle lies within an angle of this one.
+    /// Axis of a cone that contains the normals of all triangles.
     pub axis: [f32; 3],
-    /// Cosine of that angle, rounded down, and its sine, rounded up.
+    /// Cosine of the cone's half angle, rounded down, and its sine, rounded up.
     pub cos: f32,
     pub sin: f32,
-    /// Least altitude of a triangle, rounded down; 0 where facing tells nothing: some triangle has no area, or two preset away
+    /// The smallest altitude of a triangle, rounded down. 0 where the cone cannot cull: a triangle has no area, or two face away
     /// from each other.
     pub altitude: f32,
 }
@@ -37,14 +37,14 @@ pub struct Meshlet {
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Meshlets {
     pub list: Vec<Meshlet>,
-    /// Triangles, counted within the primitive; every one stands here once.
+    /// Triangle indices within the primitive; each occurs once.
     pub triangles: Vec<u32>,
-    /// Vertices that each meshlet's triangles join, each once per meshlet.
+    /// Vertex indices within the primitive, each once per meshlet.
     pub vertices: Vec<u32>,
 }
 
 impl Meshlets {
-    /// Divides a primitive.
+    /// Divides a primitive into meshlets.
     pub fn of(scene: &Scene, primitive: &Primitive) -> Self {
         let last = primitive.vertex_count().max(1) - 1;
         let corners: Vec<[u32; 3]> =
@@ -60,7 +60,7 @@ impl Meshlets {
     }
 }
 
-/// Can a vertex be drawn? The twin of the projection's gate.
+/// Returns true if a vertex can be drawn: the same test as in the projection.
 fn is_sound(place: [f32; 3]) -> bool {
     place.iter().all(|v| f64::from(v.abs()) < MAX_MAGNITUDE)
 }
@@ -69,18 +69,18 @@ fn wide(place: [f32; 3]) -> DVec3 {
     place.map(f64::from).into()
 }
 
-/// The least float that is not below.
+/// The smallest f32 that is not below `value`.
 pub fn rounded_up(value: f64) -> f32 {
     let near = value as f32;
     if f64::from(near) < value { near.next_up() } else { near }
 }
 
-/// Middle of a box, and half its sides with a share of its coordinates on top, rounded so that nothing falls out.
+/// Centre and half extents of a box, grown by `margin` times its coordinates and rounded outwards.
 pub fn center_and_half(bounds: &Bounds, share: f64) -> ([f32; 3], [f32; 3]) {
     if bounds.is_empty() {
         return ([0.0; 3], [0.0; 3]);
     }
-    // What reaches beyond the largest coordinate that is drawn is not drawn.
+    // Coordinates beyond this limit are not drawn.
     let limit = DVec3::splat(MAX_MAGNITUDE);
     let (min, max) = (bounds.min.clamp(-limit, limit), bounds.max.clamp(-limit, limit));
     let center = ((min + max) * 0.5).as_vec3();
@@ -92,12 +92,12 @@ pub fn center_and_half(bounds: &Bounds, share: f64) -> ([f32; 3], [f32; 3]) {
 struct Builder<'a> {
     places: &'a [[f32; 3]],
     corners: &'a [[u32; 3]],
-    /// Positions are floats as they are; others are divided on their way, and rounded.
+    /// Positions are stored as f32; integers are normalized on reading, with rounding.
     is_exact: bool,
 }
 
 impl Builder<'_> {
-    /// Every triangle in one patch, none of them larger than a meshlet may be.
+    /// All triangles, divided into clusters of at most [`MESHLET_TRIANGLES`].
     fn patches(&self, bounds: &Bounds) -> Vec<Vec<u32>> {
         let (firsts, sharers) = self.sharers();
         let mut is_taken = vec![false; self.corners.len()];
@@ -113,7 +113,7 @@ impl Builder<'_> {
             }
             is_taken[seed as usize] = true;
             patch.push(seed);
-            // The patch is its own queue: whoever came first brings its neighbours first.
+            // Breadth-first: the cluster is its own queue.
             while grown < patch.len() {
                 for vertex in self.corners[patch[grown] as usize] {
                     let [first, end] = [vertex, vertex + 1].map(|vertex| firsts[vertex as usize] as usize);
@@ -133,7 +133,7 @@ impl Builder<'_> {
         patches
     }
 
-    /// Triangles round every vertex: where its list begins, and all lists.
+    /// The triangles around each vertex: the first index of each vertex's list, and all lists concatenated.
     fn sharers(&self) -> (Vec<u32>, Vec<u32>) {
         let mut firsts = vec![0u32; self.places.len() + 2];
         self.corners.iter().flatten().for_each(|&vertex| firsts[vertex as usize + 2] += 1);
@@ -151,7 +151,7 @@ impl Builder<'_> {
         (firsts, sharers)
     }
 
-    /// Triangles along a curve that keeps neighbours together, by 21 bits of each coordinate of their first corner.
+    /// Triangles in Morton order of their first corner, by 21 bits of each coordinate.
     fn morton_order(&self, bounds: &Bounds) -> impl Iterator<Item = u32> {
         let sides = (bounds.max - bounds.min).max(DVec3::splat(f64::MIN_POSITIVE));
         let mut order: Vec<(u64, u32)> = self
@@ -160,7 +160,7 @@ impl Builder<'_> {
             .enumerate()
             .map(|(triangle, corners)| {
                 let place = (wide(self.places[corners[0] as usize]) - bounds.min) / sides * f64::from((1 << 21) - 1);
-                // What is no number goes to the beginning.
+                // NaN becomes 0.
                 let bits = [place.x, place.y, place.z].map(|v| spread(v as u64));
                 (bits[0] | bits[1] << 1 | bits[2] << 2, triangle as u32)
             })
@@ -169,7 +169,7 @@ impl Builder<'_> {
         order.into_iter().map(|(_, triangle)| triangle)
     }
 
-    /// Does a triangle lie further off than a patch is wide?
+    /// Returns true if a triangle is farther from the cluster than the cluster is wide.
     fn is_far(&self, patch: &[u32], triangle: u32) -> bool {
         let mut hull = Bounds::EMPTY;
         patch.iter().flat_map(|&t| self.corners[t as usize]).for_each(|vertex| hull.include(wide(self.places[vertex as usize])));
@@ -177,7 +177,7 @@ impl Builder<'_> {
         (place.clamp(hull.min, hull.max) - place).length() > 2.0 * hull.radius()
     }
 
-    /// Measures a patch and appends it.
+    /// Computes the bounds of a cluster and appends it.
     fn finish(&self, mut patch: Vec<u32>, meshlets: &mut Meshlets, stamps: &mut [u32]) {
         patch.sort_unstable();
         let (number, first_vertex) = (meshlets.list.len() as u32, meshlets.vertices.len() as u32);
@@ -214,7 +214,7 @@ impl Builder<'_> {
     }
 }
 
-/// Every third bit.
+/// Moves each of the 21 low bits to every third position.
 fn spread(v: u64) -> u64 {
     let v = v & 0x1f_ffff;
     let v = (v | v << 32) & 0x001f_0000_0000_ffff;
@@ -224,7 +224,7 @@ fn spread(v: u64) -> u64 {
     (v | v << 2) & 0x1249_2492_4924_9249
 }
 
-/// Which ways the triangles of a patch face.
+/// The normals of a cluster's triangles.
 #[derive(Default)]
 struct Faces {
     normals: Vec<DVec3>,
@@ -233,7 +233,7 @@ struct Faces {
 
 impl Faces {
     fn add(&mut self, places: [[f32; 3]; 3]) {
-        // Two corners at one place are one record: such a triangle never has an area.
+        // A triangle with two equal corners never has an area.
         if places[0] == places[1] || places[1] == places[2] || places[2] == places[0] {
             return;
         }
@@ -245,14 +245,14 @@ impl Faces {
         self.normals.push(doubled.normalize_or_zero());
     }
 
-    /// Axis, cosine and sine of the angle round it, least altitude.
+    /// Axis of the normal cone, cosine and sine of its half angle, and the smallest altitude.
     fn cone(&self) -> ([f32; 3], f32, f32, f32) {
         const NONE: ([f32; 3], f32, f32, f32) = ([0.0; 3], 0.0, 1.0, 0.0);
         let axis = self.normals.iter().sum::<DVec3>().normalize_or_zero().as_vec3();
         let exact = axis.as_dvec3().normalize_or_zero();
         let least = self.normals.iter().map(|normal| normal.dot(exact)).fold(1.0, f64::min) - 1e-6;
         let altitude = self.altitude.unwrap_or(0.0) * (1.0 - 1e-6);
-        // Below what a float holds in full, products could vanish.
+        // Smaller altitudes could underflow in products.
         if self.normals.is_empty() || least <= 0.0 || altitude < 1e-18 {
             return NONE;
         }

@@ -1,4 +1,4 @@
-//! Picking: which point of the scene lies under a place of the picture.
+//! Picking: the nearest point of the scene under a position of the picture.
 
 use glam::{DVec2, DVec3};
 use rayon::prelude::*;
@@ -9,8 +9,8 @@ use super::{
     draw::{Draw, draws},
 };
 
-/// The nearest point of the scene, in the world, on the ray through a place of the picture (0 to 1, right and down); none
-/// where the ray meets nothing, or where the scene cannot be drawn. Effects move nothing here, and both sides count.
+/// The world-space point nearest to the eye on the ray through `screen` (0 to 1, right and down). `None` if the ray hits
+/// nothing or the scene cannot be drawn. Effects are ignored, and both sides of triangles are hit.
 pub fn pick(scene: &Scene, view: &View, screen: DVec2) -> Option<DVec3> {
     let ray = Ray::through(view, screen);
     let draws = draws(scene, view).ok()?;
@@ -18,7 +18,7 @@ pub fn pick(scene: &Scene, view: &View, screen: DVec2) -> Option<DVec3> {
     nearest.is_finite().then(|| ray.from + ray.along * nearest)
 }
 
-/// From the eye, or from its plane where all rays are parallel.
+/// Starts at the eye, or in the eye's plane where all rays are parallel.
 struct Ray {
     from: DVec3,
     along: DVec3,
@@ -33,7 +33,7 @@ impl Ray {
         }
     }
 
-    /// How far along the ray it meets the first triangle of a draw.
+    /// Distance along the ray to the nearest triangle of a draw, in lengths of `along`.
     fn nearest(&self, scene: &Scene, draw: &Draw) -> Option<f64> {
         let primitive = &scene.primitives[draw.primitive];
         let corner = |vertex: u32| {
@@ -47,7 +47,7 @@ impl Ray {
         (0..primitive.triangle_count()).into_par_iter().filter_map(hit).reduce_with(f64::min)
     }
 
-    /// Where the ray meets a triangle (Möller and Trumbore 1997).
+    /// Distance along the ray to a triangle (Möller and Trumbore 1997).
     fn meets(&self, [a, b, c]: [DVec3; 3]) -> Option<f64> {
         let (ab, ac) = (b - a, c - a);
         let across = self.along.cross(ac);
@@ -57,7 +57,7 @@ impl Ray {
         let turned = from_a.cross(ab);
         let v = self.along.dot(turned) / determinant;
         let t = ac.dot(turned) / determinant;
-        // False for NaN, which a ray in the plane makes.
+        // Comparisons with NaN, which a ray in the triangle's plane produces, are false.
         (u >= 0.0 && v >= 0.0 && u + v <= 1.0 && t > 0.0 && t.is_finite()).then_some(t)
     }
 }
@@ -77,7 +77,7 @@ mod tests {
         let point = pick(&scene, &view, DVec2::splat(0.5)).expect("something is there");
         let (near, far) = (view.eye.distance(point), view.eye.distance(scene.bounds().center()));
         assert!(near < far && point.distance(scene.bounds().center()) < scene.bounds().radius() * 1.01);
-        // It lies where it was asked for.
+        // It projects to the position that was picked.
         let clip = view.clip_from_world * point.extend(1.0);
         assert!((clip.x / clip.w).abs() < 1e-9 && (clip.y / clip.w).abs() < 1e-9);
         assert_eq!(pick(&scene, &view, DVec2::ZERO), None);

@@ -1,7 +1,7 @@
-//! Poses: where a moment of a clip puts every node, joint and shape of a scene, in f64 and rounded once.
+//! Poses: the transform of every instance, the joint transforms and the morph weights of a scene at a time of its clips.
 //!
-//! One pure function of scene, clips and time. What it gives is data like a placement: renderers and judges start from its
-//! bits, and each bends the vertices by itself.
+//! A pose is a pure function of scene, clips and time, computed in f64 and rounded once. Renderers and the oracle start from
+//! these rounded bits, and each deforms the vertices with its own code.
 
 use std::sync::Arc;
 
@@ -15,40 +15,40 @@ use super::{
 };
 use crate::accuracy::Skinning;
 
-/// Which moment of which clips.
+/// Which clips are sampled at which time.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Motion {
-    /// None: at rest.
+    /// Index into `Rig::clips`. `None`: the rest pose.
     pub clip: Option<usize>,
-    /// A second clip to blend with.
+    /// Index of a second clip to blend with.
     pub other: Option<usize>,
-    /// Share of the second clip, 0 to 1.
+    /// Weight of the second clip, 0 to 1.
     pub blend: f64,
-    /// Time in both clips; outside its keys a clip goes round.
+    /// Time in both clips, seconds. Beyond the end of a clip it wraps around.
     pub time_s: f64,
     pub skinning: Skinning,
 }
 
-/// A scene at a moment.
+/// A scene at one time.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Pose {
-    /// Matrix of every instance.
+    /// World transform of every instance.
     places: Vec<DMat4>,
-    /// How every instance bends.
+    /// Deformation of every instance that has one.
     deforms: Vec<Option<Deform>>,
 }
 
-/// What bends the vertices of an instance, before it is placed.
+/// What deforms the vertices of an instance before its world transform is applied.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Deform {
-    /// Its joints; none without a skin.
+    /// The transforms of its joints. `None` without a skin.
     pub joint_transforms: Option<JointTransforms>,
-    /// Weights of its shapes, as many as it has.
+    /// The weight of each of its morph targets.
     pub weights: Arc<[f32]>,
 }
 
 impl Pose {
-    /// The pose of `scene`, whose rig must not be empty.
+    /// The pose of `scene` at the time of `motion`. The rig must not be empty.
     pub fn at(scene: &Scene, motion: &Motion) -> Self {
         let rig = &scene.rig;
         let state = State::of(rig, motion);
@@ -69,7 +69,7 @@ impl Pose {
             (joint_transforms.is_some() || weights.iter().any(|&weight| weight != 0.0)).then_some(Deform { joint_transforms, weights })
         };
         let place = |instance: &super::Instance| match (instance.skin, instance.node) {
-            // A mesh that a skin holds ignores its node.
+            // The joints alone place a skinned mesh; its node is ignored (glTF 2.0, section 3.7.3.2).
             (Some(_), _) => DMat4::IDENTITY,
             (None, Some(node)) => scene_from_node[node],
             (None, None) => instance.world_from_object,
@@ -77,13 +77,13 @@ impl Pose {
         Self { places: scene.instances.iter().map(place).collect(), deforms: scene.instances.iter().map(deform).collect() }
     }
 
-    /// The pose that no clip moves; none for a scene without a rig, whose placements say everything.
+    /// The rest pose. `None` for a scene without a rig, whose instance transforms are constant.
     pub fn at_rest(scene: &Scene) -> Option<Self> {
         (!scene.rig.is_empty()).then(|| Self::at(scene, &Motion::default()))
     }
 
     pub fn place(&self, instance: usize) -> DMat4 {
-        // What was put beside the scene since, no clip moves.
+        // Instances that were added after the pose was computed (particle discs) do not move.
         self.places.get(instance).copied().unwrap_or(DMat4::IDENTITY)
     }
 
@@ -91,12 +91,12 @@ impl Pose {
         self.deforms.get(instance).and_then(Option::as_ref)
     }
 
-    /// A box round the whole scene, before it is spun.
+    /// A box of all instances, before the scene's spin.
     pub fn bounds(&self, scene: &Scene) -> Bounds {
         self.bounds_of(scene, &scene.instances)
     }
 
-    /// A box round the first instances of it.
+    /// A box of `first`, the leading instances of `scene`.
     pub fn bounds_of(&self, scene: &Scene, first: &[super::Instance]) -> Bounds {
         let mut bounds = Bounds::EMPTY;
         for ((instance, place), deform) in first.iter().zip(&self.places).zip(&self.deforms) {
@@ -108,18 +108,18 @@ impl Pose {
     }
 }
 
-/// Where every node of a rig stands.
+/// The transform of every node of a rig.
 pub fn scene_from_nodes(rig: &Rig, motion: &Motion) -> Vec<DMat4> {
     State::of(rig, motion).places(rig)
 }
 
-/// Box round samples of `scene`: its vertices at rest and at moments of its clips, not all of them where they are many. To
-/// frame by, not to rely on.
+/// A box of `scene` in its rest pose and at eight times of each clip. Of large scenes only some vertices and clips are
+/// sampled, so it is good for framing and not a strict bound.
 pub fn reach(scene: &Scene) -> Bounds {
     const MOMENTS: usize = 8;
     const MOST_NODES: usize = 1_000_000;
     const MOST_VERTICES: usize = 2_000_000;
-    // A file with thousands of clips over thousands of nodes is framed by the first of them.
+    // Of thousands of clips over thousands of nodes only the first are sampled.
     let most = (MOST_NODES / (MOMENTS * (scene.rig.nodes.len() + scene.instances.len()).max(1))).max(1);
     let moment = |clip: usize, moment: usize| Motion {
         clip: Some(clip),
@@ -146,13 +146,13 @@ pub fn reach(scene: &Scene) -> Bounds {
 }
 
 impl Deform {
-    /// Do its joints turn left into right, every one?
+    /// Returns true if every joint transform mirrors (has a negative determinant).
     pub fn mirrors(&self) -> bool {
         self.joint_transforms.as_ref().is_some_and(|joint_transforms| joint_transforms.matrices().all(|matrix| matrix.determinant() < 0.0))
     }
 
-    /// A box round the bent mesh: a vertex lies between the places to which its joints take it, or, by dual quaternions, on
-    /// an arc over them.
+    /// A box of the deformed mesh. A linearly skinned vertex lies between the positions that its joints give it; by dual
+    /// quaternions it may bulge beyond them by the radius of their box.
     pub fn bounds(&self, primitive: &Primitive) -> Bounds {
         let deformation = &primitive.deformation;
         let error_bound =
@@ -173,7 +173,7 @@ impl Deform {
         bounds
     }
 
-    /// Where a vertex goes, for whoever needs a place alone: shapes first, then the mean of its joints' matrices.
+    /// The deformed position of a vertex: morph targets, then linear skinning. For estimates; the picture uses other code.
     pub fn position(&self, scene: &Scene, primitive: &Primitive, vertex: u32) -> DVec3 {
         let bytes = &scene.vertex_bytes;
         let vector = |accessor: &super::Accessor| DVec3::from([0, 1, 2].map(|lane| accessor.value(bytes, vertex, lane)));
@@ -195,7 +195,7 @@ impl Deform {
     }
 }
 
-/// What clips change.
+/// The animated values of all nodes.
 struct State {
     locals: Vec<Local>,
     weights: Vec<Vec<f32>>,
@@ -210,7 +210,7 @@ impl State {
         state
     }
 
-    /// Parents stand before their children.
+    /// Transforms of all nodes. Parents come before their children.
     fn places(&self, rig: &Rig) -> Vec<DMat4> {
         let mut scene_from_node: Vec<DMat4> = Vec::with_capacity(rig.nodes.len());
         for (node, local) in rig.nodes.iter().zip(&self.locals) {
@@ -264,8 +264,8 @@ impl State {
 }
 
 impl Sampler {
-    /// The key at or before a moment, and how far it is to the next: a share and the seconds between them; none outside
-    /// the keys, where the nearest one holds.
+    /// The keyframe at or before `time_s`, and the fraction of the way to the next one with the seconds between them. Outside
+    /// the keyframes only the nearest one.
     fn segment(&self, time_s: f64) -> (usize, Option<(f64, f64)>) {
         let next = self.times.partition_point(|&time| f64::from(time) <= time_s);
         if next == 0 || next == self.times.len() {
@@ -275,13 +275,13 @@ impl Sampler {
         (next - 1, Some(((time_s - from) / (to - from), to - from)))
     }
 
-    /// A number of a key: `part` 0 is the tangent that comes in, 1 the value, 2 the tangent that goes out.
+    /// A number of a keyframe: `part` 0 is the in-tangent, 1 the value, 2 the out-tangent.
     fn number(&self, key: usize, part: usize, lane: usize) -> f64 {
         let at = if self.interpolation == Interpolation::Cubic { 3 * key + part } else { key };
         self.values[at * self.components + lane].into()
     }
 
-    /// One lane at a moment (glTF 2.0, appendix C).
+    /// One component at `time_s` (glTF 2.0, appendix C).
     pub fn value(&self, lane: usize, time_s: f64) -> f64 {
         let (key, segment) = self.segment(time_s);
         let a = self.number(key, 1, lane);
@@ -300,7 +300,7 @@ impl Sampler {
         }
     }
 
-    /// A rotation at a moment: linear ones go the short way round at one speed.
+    /// A rotation at `time_s`. Linear interpolation is spherical, along the shorter arc.
     pub fn rotation(&self, time_s: f64) -> DQuat {
         let (key, segment) = self.segment(time_s);
         match (self.interpolation, segment) {
@@ -311,31 +311,6 @@ impl Sampler {
             _ => unit([0, 1, 2, 3].map(|lane| self.value(lane, time_s))),
         }
     }
-}
-
-/// A quaternion's direction; a spline may pass through zero, which turns nothing.
-pub fn unit(q: [f64; 4]) -> DQuat {
-    let largest = q.iter().fold(0.0, |most: f64, v| most.max(v.abs()));
-    if !(largest > 0.0 && largest.is_finite()) {
-        return DQuat::IDENTITY;
-    }
-    let q = q.map(|v| v / largest);
-    let length = q.iter().map(|v| v * v).sum::<f64>().sqrt();
-    DQuat::from_array(q.map(|v| v / length))
-}
-
-/// From `a` to `b` the short way, at one speed (Shoemake 1985). Without a platform's sine: every host gives the same bits.
-fn slerp(a: DQuat, b: DQuat, share: f64) -> DQuat {
-    let b = if a.dot(b) < 0.0 { -b } else { b };
-    let (apart, together) = ((a - b).length(), (a + b).length());
-    let angle = 2.0 * libm::atan2(apart, together);
-    let (from, to) = if angle < 1e-8 {
-        (1.0 - share, share)
-    } else {
-        let whole = libm::sin(angle);
-        (libm::sin((1.0 - share) * angle) / whole, libm::sin(share * angle) / whole)
-    };
-    unit((a * from + b * to).to_array())
 }
 
 #[cfg(test)]

@@ -1,19 +1,19 @@
-//! Rigs as plain data: nodes, clips that move them, skins that follow them, and shapes that meshes are mixed from.
+//! Rigs as plain data: nodes, the skins whose joints they are, and the clips that animate them.
 
 use glam::{DMat4, DQuat, DVec3};
 
-use super::{Accessor, Bounds};
+use super::bounds::Bounds;
 
-/// What moves in a scene. Empty where nothing does.
+/// The skeletons and animations of a scene. Empty if nothing moves.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Rig {
-    /// Parents stand before their children.
+    /// Every parent comes before its children.
     pub nodes: Vec<Node>,
     pub skins: Vec<Skin>,
     pub clips: Vec<Clip>,
-    /// Key times and values, which channels may share.
+    /// Keyframes. Several channels may share a sampler.
     pub samplers: Vec<Sampler>,
-    /// Box round samples of the scene at rest and in its clips: what a camera frames.
+    /// World-space box of sampled vertices in the rest pose and in the clips. Used to frame the camera; not a strict bound.
     pub reach: Bounds,
 }
 
@@ -22,34 +22,35 @@ impl Rig {
         self.nodes.is_empty()
     }
 
-    /// The clip called `name`; `#2` names the third one, whatever it is called.
+    /// The index of the clip called `name`. `#2` is the clip at index 2, whatever its name.
     pub fn clip(&self, name: &str) -> Option<usize> {
         let by_place = || name.strip_prefix('#')?.parse().ok().filter(|&place: &usize| place < self.clips.len());
         self.clips.iter().position(|clip| clip.name == name).or_else(by_place)
     }
 }
 
-/// A place that others hang on.
+/// A node of the scene graph.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Node {
     pub name: String,
     pub parent: Option<usize>,
-    /// Where it stands in its parent while no clip moves it.
+    /// Transform relative to the parent in the rest pose.
     pub rest: Local,
-    /// Weights of the shapes of the mesh that it shows, at rest.
+    /// Morph weights of its mesh in the rest pose, one per morph target.
     pub weights: Vec<f32>,
 }
 
-/// Where a node stands in its parent.
+/// A transform relative to the parent node.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Local {
-    /// As it is; no clip may move it.
+    /// A matrix from the file, which clips cannot animate.
     Matrix(DMat4),
-    /// Scaled, then turned, then moved.
+    /// Separate translation, rotation and scale, which clips can animate.
     Trs(Trs),
 }
 
 #[derive(Clone, Copy, Debug, PartialEq)]
+/// Translation, rotation and scale; a vertex is scaled first and translated last.
 pub struct Trs {
     pub translation: DVec3,
     /// A unit quaternion.
@@ -72,26 +73,26 @@ impl Local {
     }
 }
 
-/// Joints that hold a mesh.
+/// The joints that move the vertices of a mesh.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Skin {
     pub name: String,
-    /// Nodes, in the order in which vertices number them.
+    /// Node indices; the `JOINTS_n` attributes index this list.
     pub joints: Vec<usize>,
-    /// The inverse bind matrices: one per joint.
+    /// The inverse bind matrix of each joint.
     pub joint_from_mesh: Vec<DMat4>,
 }
 
-/// A named movement.
+/// A named animation.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Clip {
     pub name: String,
-    /// Time of the last key of any channel.
+    /// Time of the last keyframe of any channel, seconds.
     pub duration_s: f64,
     pub channels: Vec<Channel>,
 }
 
-/// One property of one node, following a sampler.
+/// The animation of one property of one node.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Channel {
     pub node: usize,
@@ -118,55 +119,22 @@ impl Property {
     }
 }
 
-/// How a value goes from one key to the next.
+/// How a value changes from one keyframe to the next.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Interpolation {
     Step,
     Linear,
-    /// Three values a key: the tangent that comes in, the value, the tangent that goes out.
+    /// Cubic Hermite spline. Each keyframe has three values: in-tangent, value, out-tangent.
     Cubic,
 }
 
-/// Keys over time.
+/// Keyframes: times and values.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Sampler {
     pub interpolation: Interpolation,
-    /// Seconds, strictly rising, at least one.
+    /// Keyframe times in seconds, strictly increasing, at least one.
     pub times: Vec<f32>,
-    /// `lanes` numbers a key, three times as many for a cubic spline; all finite.
+    /// `components` numbers per keyframe, three times as many for a cubic spline. All finite.
     pub values: Vec<f32>,
     pub components: usize,
-}
-
-/// How a mesh bends: whom its vertices follow, and what its shapes add to them.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub struct Deformation {
-    /// Sets of four joints with their weights; at most two, none for a mesh without a skin.
-    pub influences: Vec<Influences>,
-    pub morph_targets: Vec<Shape>,
-    /// Box of the vertices that each joint holds with any weight; as many as the largest joint number asks for.
-    pub joint_bounds: Vec<Bounds>,
-}
-
-impl Deformation {
-    pub fn is_none(&self) -> bool {
-        self.influences.is_empty() && self.morph_targets.is_empty()
-    }
-}
-
-/// Four joints per vertex and their weights, in `Scene::vertex_bytes`.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Influences {
-    pub joints: Accessor,
-    /// Not negative; they need not sum to 1, and where all are 0 the first joint holds the vertex.
-    pub weights: Accessor,
-}
-
-/// A morph target: what full weight adds to every vertex. In `Scene::vertex_bytes`.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Shape {
-    pub positions: Option<Accessor>,
-    pub normals: Option<Accessor>,
-    /// Largest distance along any axis that it moves a vertex.
-    pub reach: f64,
 }

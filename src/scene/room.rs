@@ -1,17 +1,17 @@
-//! Room: a box round a scene, seen from inside. Its walls catch light and shadows and cast none.
+//! A room: six walls around a scene, visible from the inside. They receive light and shadows and cast no shadow.
 
 use glam::{DMat4, DVec3};
 
 use super::{Bounds, Instance, Material, Scene, builtin::Mesh};
 
-/// Cells a side of every wall, so that effects find triangles of a middling size on it.
+/// Quads along each side of a wall, so that effects meet triangles of medium size.
 const CELLS: u32 = 8;
 
-/// How far below the scene the floor lies, as a share of its height: nothing that stands on it lies in its plane.
+/// Distance of the floor below the scene, as a fraction of the scene's height, so that nothing lies in the floor's plane.
 const GAP: f64 = 1e-3;
 
 impl Scene {
-    /// The scene in a room `times` as wide as itself, which stands still while the scene spins about its vertical axis.
+    /// Adds a room `times` as wide as the scene. The room stands still while the scene spins about its vertical axis.
     #[must_use]
     pub fn in_room(mut self, times: f64) -> Self {
         let bounds = self.bounds();
@@ -36,13 +36,13 @@ impl Scene {
         self
     }
 
-    /// The instances that cast shadows: all but the walls round them.
+    /// The instances that cast shadows: all but the walls.
     pub fn shadow_casters(&self) -> &[Instance] {
         &self.instances[..self.instances.len() - self.walls]
     }
 }
 
-/// Six walls whose fronts look inwards.
+/// Six walls whose front faces point inwards.
 fn walls(room: &Bounds) -> Mesh {
     let mut mesh = Mesh::default();
     let (center, half) = (room.center(), (room.max - room.min) * 0.5);

@@ -1,4 +1,4 @@
-//! Sizes: how large the triangles of a scene are on the screen, from a bounded number of them, projected in f64.
+//! Triangle sizes: how large the triangles of a scene are on the screen, estimated in f64 from a bounded sample of them.
 
 use std::sync::Arc;
 
@@ -7,52 +7,52 @@ use glam::{DVec2, DVec3, DVec4};
 use super::{Scene, camera::View, draw::Draw};
 use crate::math::hash_unit;
 
-/// Most triangles that are looked at: a share is known to within a few percent, and no picture waits for it.
+/// The most triangles that are sampled. Fractions are then known to within a few percent at a constant cost.
 const SAMPLED: u64 = 2048;
 
-/// Triangles of a picture by their size.
+/// A sample of the triangles of a picture with their sizes.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct TriangleSizes {
     /// Triangles of the scene.
     pub triangles: u64,
-    /// How many were looked at.
+    /// The number of sampled triangles.
     pub sampled: u32,
-    /// Of those, how many reach before the near plane: their size is not known.
+    /// How many of the sampled triangles cross the near plane; their size is not known.
     pub cut: u32,
-    /// Those that are whole, face the viewer and touch a sample column and a row of the picture, or lie between two.
+    /// The sampled triangles that lie behind the near plane, face the viewer and are inside the picture.
     seen: Arc<[Seen]>,
 }
 
-/// One triangle that was looked at.
+/// A sampled triangle that is visible.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Seen {
-    /// Width or height of its box, whichever is larger, pixels.
+    /// The larger of the width and the height of its bounding box, pixels.
     extent_px: f32,
-    /// Sample columns and rows that its box touches inside the picture.
+    /// Sample columns and rows inside the picture that its bounding box covers.
     samples: [u32; 2],
-    /// What of its area, square pixels, and of its outline, pixels, lies in the picture.
+    /// The parts of its area (square pixels) and of its perimeter (pixels) inside the picture.
     area: f32,
     outline: f32,
 }
 
-/// What shares of the triangles that were looked at take each path.
+/// Estimated numbers of triangles for each raster path.
 #[derive(Clone, Copy, Debug, Default, PartialEq, serde::Serialize)]
 pub struct SizeClasses {
     pub small: f64,
     pub medium: f64,
     pub large: f64,
-    /// By how much each may be off, since only some were looked at: three standard deviations.
+    /// Error of each number: three standard deviations of the sampling, 0 if all triangles were sampled.
     pub error_bound: f64,
 }
 
 impl TriangleSizes {
-    /// Looks at triangles of `scene` as `view` sees it through `draws`, spread evenly over their list.
+    /// Samples triangles of `scene` as `view` sees it through `draws`, spread evenly over their list.
     pub fn of(scene: &Scene, draws: &[Draw], view: &View) -> Self {
         let triangles: u64 = draws.iter().map(|draw| u64::from(scene.primitives[draw.primitive].triangle_count())).sum();
         let count = triangles.min(SAMPLED);
         let (mut seen, mut cut) = (Vec::new(), 0);
         for k in 0..count {
-            // A place of its own in each share of the list, or the rhythm of a strip would show.
+            // One random position per stratum: a fixed step would alias with the order of a strip.
             let within = if triangles > SAMPLED { hash_unit(k as u32) } else { 0.0 };
             let id = ((k as f64 + within) * triangles as f64 / count as f64) as u64;
             let draw = &draws[draws.partition_point(|draw| u64::from(draw.first_triangle) <= id) - 1];
@@ -65,12 +65,12 @@ impl TriangleSizes {
         Self { triangles, sampled: count as u32, cut, seen: seen.into() }
     }
 
-    /// Triangles that were looked at and are seen whole.
+    /// The number of sampled triangles that are visible and not cut by the near plane.
     pub fn seen(&self) -> u32 {
         self.seen.len() as u32
     }
 
-    /// How many of those lie in each power of two, with the upper end in pixels, from the first that holds any to the last.
+    /// A histogram of [`Self::seen`] by powers of two: the upper end in pixels and the count, from the first to the last non-empty bin.
     pub fn bins(&self) -> Vec<(f64, u32)> {
         let of = |seen: &Seen| libm::floor(libm::log2(f64::from(seen.extent_px.max(1.0 / 256.0)))) as i32 + 1;
         let (Some(first), Some(last)) = (self.seen.iter().map(of).min(), self.seen.iter().map(of).max()) else { return Vec::new() };
@@ -79,8 +79,8 @@ impl TriangleSizes {
         bins
     }
 
-    /// How many triangles one invocation walks, how many a workgroup takes over, and how many exceed `large_px`, as far as a
-    /// look at some of them tells.
+    /// Estimates how many triangles are drawn by one invocation (small), by one workgroup (medium), and how many exceed
+    /// `large_px` (large).
     pub fn classes(&self, max_small_samples: u32, max_small_side: u32, large_px: f64) -> SizeClasses {
         let mut classes = SizeClasses::default();
         for seen in self.seen.iter().filter(|seen| seen.samples.iter().all(|count| *count > 0)) {
@@ -95,16 +95,16 @@ impl TriangleSizes {
         let each = self.triangles as f64 / f64::from(self.sampled.max(1));
         let deviation = |count: f64| (count * (1.0 - count / f64::from(self.sampled.max(1)))).sqrt();
         let most = deviation(classes.small).max(deviation(classes.medium)).max(deviation(classes.large));
-        // One more, for a kind that is rarer than the preset is fine; all were seen where all were looked at.
+        // One more, for classes too rare to be sampled. The numbers are exact where all triangles were sampled.
         let error_bound = if u64::from(self.sampled) == self.triangles { 0.0 } else { each * (3.0 * most + 1.0) };
         SizeClasses { small: classes.small * each, medium: classes.medium * each, large: classes.large * each, error_bound }
     }
 
-    /// Share of the picture's pixels that change triangle id when every edge moves by `shift_px`: an edge passes over samples in
-    /// proportion to its length, and two triangles share it.
+    /// Estimated fraction of the picture's pixels that show another triangle when every edge moves by `shift_px`. An edge
+    /// passes over samples in proportion to its length, and two triangles share it.
     pub fn changed_fraction(&self, shift_px: f64, pixels: f64) -> f64 {
         if self.seen.is_empty() {
-            // Where nothing of a few thousand was seen, what there is may be small.
+            // No sampled triangle is visible; triangles that were not sampled may be small.
             return if u64::from(self.sampled) == self.triangles && self.cut == 0 { 0.0 } else { (7.0 * shift_px).min(1.0) };
         }
         let area: f64 = self.seen.iter().map(|seen| f64::from(seen.area)).sum();
@@ -118,7 +118,7 @@ impl TriangleSizes {
 enum PresetFile {
     Seen(Seen),
     Cut,
-    /// Turned away, or nowhere in the picture.
+    /// Facing away, or outside the picture.
     Unseen,
 }
 
@@ -141,7 +141,7 @@ fn preset_file(scene: &Scene, draw: &Draw, view: &View, triangle: u32) -> Preset
     let size = DVec2::new(view.width.into(), view.height.into());
     let [a, b, c] = clip.map(|c| DVec2::new(0.5 + 0.5 * c.x / c.w, 0.5 - 0.5 * c.y / c.w) * size);
     let (low, high) = (a.min(b).min(c), a.max(b).max(c));
-    // y points down, so what is clockwise on the screen is a back.
+    // y points down, so clockwise on the screen is a back face.
     let doubled = (b - a).perp_dot(c - a);
     let is_back = (doubled > 0.0) != draw.mirrored;
     let is_beside = high.x <= 0.0 || high.y <= 0.0 || low.x >= size.x || low.y >= size.y;
@@ -186,8 +186,8 @@ mod tests {
         let share = f64::from(few.seen()) / f64::from(few.sampled);
         assert!((0.35..0.5).contains(&share), "{share} of the triangles face the viewer");
         assert_eq!(few.cut, 0);
-        // All pixels of the disc change where edges move as far as triangles are wide: the disc that a sphere of this radius
-        // makes from that far, with 45 degrees from the bottom of the picture to its top.
+        // All pixels of the disc change when edges move as far as triangles are wide. The disc is that of a sphere of this radius
+        // at this distance, with 45 degrees from the bottom of the picture to its top.
         let scene = builtin::build("sphere?triangles=2000").expect("a builtin");
         let (radius, camera) = (scene.bounds().max.y, framed(&scene, [640, 480]));
         let disc_px =

@@ -1,23 +1,23 @@
-//! Textures as plain data: images with smaller copies of themselves, and how a material looks one up.
+//! Textures as plain data: images with their mip levels, and how a material samples them.
 //!
-//! Texels stay the gamma-encoded bytes that the file has. Whoever mixes them decodes them first, since light adds up in
-//! linear values; the smaller copies are made here in that way, once, so that every renderer and judge starts from their bytes.
+//! Texels stay the sRGB-encoded bytes of the file. Filtering happens in linear light, so each reader decodes before it
+//! blends. The mip levels are computed here once, so that every renderer and the oracle start from the same bytes.
 
 use glam::DVec2;
 
 use super::Accessor;
 use crate::math::linear_light;
 
-/// A picture that surfaces show.
+/// A picture for surfaces.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Image {
-    /// For people.
+    /// Shown to people.
     pub name: String,
-    /// The picture, and behind it copies of half the size each down to one texel; only the picture where none asks for more.
+    /// The picture, followed by its mip levels down to one texel; only the picture where no sampler uses mip levels.
     pub levels: Vec<Level>,
 }
 
-/// Texels row by row from the top, as gamma-encoded RGBA.
+/// Texels row by row from the top, sRGB-encoded RGBA with linear alpha.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Level {
     /// Width and height, each at least 1.
@@ -26,16 +26,16 @@ pub struct Level {
 }
 
 impl Image {
-    /// An image without smaller copies.
+    /// An image without mip levels.
     ///
     /// # Panics
-    /// When there are not `width * height` texels, or none.
+    /// If there are not `width * height` texels, or none.
     pub fn new(name: &str, size: [u32; 2], texels: Vec<[u8; 4]>) -> Self {
         assert!(!texels.is_empty() && texels.len() == size[0] as usize * size[1] as usize, "an image of {size:?} has texels");
         Self { name: name.into(), levels: vec![Level { size, texels }] }
     }
 
-    /// The same with all smaller copies.
+    /// The same image with all mip levels.
     pub fn with_mipmaps(mut self) -> Self {
         self.levels.truncate(1);
         while let Some(smaller) = self.levels.last().and_then(Level::halved) {
@@ -56,14 +56,14 @@ impl Image {
 }
 
 impl Level {
-    /// Half as wide and high, rounded down: every texel is the mean of the part that it covers, in linear light; none for
-    /// a single texel.
+    /// The next mip level: half as wide and high, rounded down. Each texel is the area-weighted mean of what it covers, in
+    /// linear light. `None` for a single texel.
     fn halved(&self) -> Option<Self> {
         if self.size == [1, 1] {
             return None;
         }
         let light: [f64; 256] = std::array::from_fn(|byte| linear_light(byte as f64 / 255.0));
-        // A value is nearest to a byte from half way between it and the one below.
+        // The smallest linear value that rounds to each byte.
         let least: [f64; 256] = std::array::from_fn(|byte| linear_light((byte as f64 - 0.5).max(0.0) / 255.0));
         let size = self.size.map(|side| (side / 2).max(1));
         let shares = [0, 1].map(|axis| (0..size[axis]).map(|at| shares(at, size[axis], self.size[axis])).collect::<Vec<_>>());
@@ -84,7 +84,7 @@ impl Level {
     }
 }
 
-/// Which texels of a side of `of` the one at `at` of a smaller side covers, and the share of each.
+/// The texels, of `of` in a row, that texel `at` of `side` in a row covers, each with its fraction.
 fn shares(at: u32, side: u32, of: u32) -> Vec<(usize, f64)> {
     let scale = f64::from(of) / f64::from(side);
     let (from, to) = (f64::from(at) * scale, f64::from(at + 1) * scale);
@@ -93,64 +93,64 @@ fn shares(at: u32, side: u32, of: u32) -> Vec<(usize, f64)> {
     range.map(|texel| (texel as usize, part(texel))).filter(|(_, share)| *share > 1e-9).collect()
 }
 
-/// What lies beyond an image's edge.
+/// How coordinates beyond the edges of an image are wrapped.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[repr(u32)]
 pub enum Wrap {
-    /// The image again.
+    /// The image repeats.
     #[default]
     Repeat = 0,
-    /// The image turned over, then as it is, and so on.
+    /// The image repeats, every second time mirrored.
     Mirrored = 1,
-    /// Its outermost texels.
+    /// The outermost texels continue.
     Clamp = 2,
 }
 
-/// How the value between texels is found.
+/// How a value between texel centres is found.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[repr(u32)]
 pub enum Filter {
-    /// It is that of the texel in which it lies.
+    /// The value of the nearest texel.
     Nearest = 0,
-    /// Mixed from the four around it.
+    /// Bilinear interpolation of the four nearest texels.
     #[default]
     Linear = 1,
 }
 
-/// Which of the smaller copies are taken where a pixel spans many texels.
+/// Which mip levels are read where a pixel covers several texels.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[repr(u32)]
 pub enum MipFilter {
-    /// None.
+    /// Only the full image.
     Unused = 0,
-    /// The one of the nearest scale.
+    /// The level of the nearest size.
     Nearest = 1,
-    /// The two on either side, mixed.
+    /// Linear interpolation between the two nearest levels.
     #[default]
     Mixed = 2,
 }
 
-/// How a material looks up an image.
+/// How a material samples an image.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Texture {
     /// Index into `Scene::images`.
     pub image: usize,
-    /// Across and down.
+    /// Horizontally and vertically.
     pub wrap: [Wrap; 2],
-    /// Where a texel spans a pixel or more.
+    /// Filter where a texel covers a pixel or more.
     pub mag_filter: Filter,
-    /// Where a pixel spans more than a texel.
+    /// Filter where a pixel covers more than a texel.
     pub min_filter: Filter,
     pub mip_filter: MipFilter,
-    /// Which TEXCOORD attribute of the file it goes by.
+    /// The set of texture coordinates: n of `TEXCOORD_n`.
     pub set: u32,
-    /// What takes stored coordinates to those of the image, where 0 and 1 are its left and right, or top and bottom, edges:
-    /// per axis the factor of each coordinate, and what is added.
+    /// Rows of the affine map from stored texture coordinates to image coordinates, in which 0 and 1 are the left and right
+    /// edges, or the top and bottom ones.
     pub image_from_texcoord: [[f32; 3]; 2],
 }
 
 impl Texture {
-    /// The whole image, repeated and mixed, by the first set of coordinates.
+    /// The whole image, repeated, with linear filters, by the first set of coordinates.
     pub fn plain(image: usize) -> Self {
         Self {
             image,
@@ -163,7 +163,7 @@ impl Texture {
         }
     }
 
-    /// Coordinates in the image of stored ones.
+    /// Image coordinates of stored texture coordinates.
     pub fn placed(&self, stored: DVec2) -> DVec2 {
         DVec2::from(self.image_from_texcoord.map(|row| {
             let [u, v, offset] = row.map(f64::from);
@@ -172,15 +172,15 @@ impl Texture {
     }
 }
 
-/// Units of [`Texture::units`] in a texel.
+/// Units of [`Texture::units`] per texel.
 pub const UNITS_PER_TEXEL: f64 = 256.0;
 
-/// Largest coordinate in an image that is looked up, either way: so many times it may be repeated.
+/// Largest magnitude of an image coordinate, which is the largest number of repeats.
 pub const MAX_REPEATS: f64 = 65_536.0;
 
 impl Texture {
-    /// Where stored coordinates lie in an image of this size, in 1/256 of a texel: what decides in integers starts from these.
-    /// Held to 2^29, which is two million texels either way.
+    /// Stored texture coordinates in units of 1/256 texel of an image of this size, from which integer decisions are made.
+    /// Clamped to ±2^29 units, two million texels.
     pub fn units(&self, size: [u32; 2], stored: DVec2) -> [i32; 2] {
         const FARTHEST: f64 = (1 << 29) as f64;
         let place = self.placed(stored) * DVec2::from(size.map(f64::from)) * UNITS_PER_TEXEL;
@@ -188,7 +188,7 @@ impl Texture {
     }
 }
 
-/// Two stored coordinates of a vertex.
+/// The texture coordinates of a vertex as they are stored.
 pub fn stored(texcoords: &Accessor, bytes: &[u8], vertex: u32) -> DVec2 {
     DVec2::new(texcoords.value(bytes, vertex, 0), texcoords.value(bytes, vertex, 1))
 }

@@ -1,4 +1,4 @@
-//! Body: what the bones of the walker carry, and the colours of its hide.
+//! The walker's body: the capsules on its joints and the colours of its hide.
 
 use std::f64::consts::TAU;
 
@@ -9,10 +9,10 @@ use super::{
     gait::{LEGS, SIDES_M, SPINE},
 };
 
-/// Thicknesses of a hind leg and of a foreleg at its joints, metres.
+/// Radii of a hind leg and of a foreleg at their joints, metres.
 const LEG_RADII_M: [[f64; 4]; 2] = [[0.16, 0.092, 0.052, 0.046], [0.125, 0.076, 0.054, 0.046]];
 
-/// What every joint carries.
+/// All capsules.
 pub fn bones() -> Vec<Bone> {
     let mut bones = Vec::new();
     let mut bone = |joint, z: [f64; 2], blend, [[x0, y0, r0], [x1, y1, r1]]: [[f64; 3]; 2]| {
@@ -51,7 +51,7 @@ pub fn bones() -> Vec<Bone> {
     bones
 }
 
-/// Colour of its hide: dark above, pale below, bands over rump, tail and neck, dark feet, a muzzle and eyes.
+/// Colour of the hide: dark back, pale belly, bands over rump, tail and neck, dark feet, muzzle and eyes.
 pub fn tone(p: DVec3, normal: DVec3) -> [f64; 3] {
     const BACK: DVec3 = DVec3::new(0.52, 0.19, 0.06);
     const BELLY: DVec3 = DVec3::new(0.92, 0.74, 0.47);
@@ -60,7 +60,7 @@ pub fn tone(p: DVec3, normal: DVec3) -> [f64; 3] {
         let t = ((v - low) / (high - low)).clamp(0.0, 1.0);
         t * t * (3.0 - 2.0 * t)
     };
-    // Along the spine: the neck rises.
+    // Distance along the spine; the neck rises.
     let along = p.x + 0.9 * (p.y - 1.0).max(0.0);
     let pale = step(0.1, -0.75, normal.y).max(step(0.66, 0.44, p.y));
     let mut color = BACK.lerp(BELLY, 0.9 * pale);

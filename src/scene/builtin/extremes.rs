@@ -1,4 +1,4 @@
-//! Extremes: sizes, slivers, coplanar stacks, and geometry on every clipping plane.
+//! Extremes: triangle sizes, slivers, coplanar layers, and geometry that crosses every clipping plane.
 
 use std::f64::consts::TAU;
 
@@ -18,7 +18,7 @@ use crate::{
     },
 };
 
-/// A saturated colour for each number; neighbours differ well.
+/// A saturated colour for each number; consecutive numbers differ clearly.
 fn hue(i: u32) -> [f64; 3] {
     let turn = f64::from(i) * 0.618_033_988_75;
     [0.0, 1.0 / 3.0, 2.0 / 3.0].map(|shift| 0.42 + 0.36 * libm::cos(TAU * (turn + shift)))
@@ -28,8 +28,8 @@ fn painted() -> Material {
     Material { name: "painted".into(), double_sided: true, ..Material::default() }
 }
 
-/// A hall along z round the camera. Hoops stand across it, one of them in the near plane; four walls of two triangles
-/// each reach `reach` metres to all sides and cross the near plane; planks leave the guard band on each side.
+/// A hall along z around the camera. Rings stand across it, one of them in the near plane. Four walls of two triangles each
+/// extend `reach` metres in every direction and cross the near plane. Planks leave the guard band on each side.
 pub fn near(values: &Values) -> Result<Scene, BuiltinError> {
     const HALF_WIDTH_M: f64 = 1.6;
     const NEAR_M: f64 = 0.05;
@@ -46,7 +46,7 @@ pub fn near(values: &Values) -> Result<Scene, BuiltinError> {
     for i in 0..32 {
         hoop(&mut mesh, 2.5 - NEAR_M - 1.25 * f64::from(i), hue(i));
     }
-    // Planks across the hall: their ends lie in front of the eye and far beyond the guard band.
+    // Planks across the hall: their ends are in front of the eye and far beyond the guard band.
     for (i, at) in [-0.8, 0.8].into_iter().enumerate() {
         let (low, high) = (at - 0.06, at + 0.06);
         let level = [[-reach, low], [reach, low], [reach, high], [-reach, high]];
@@ -67,10 +67,10 @@ pub fn near(values: &Values) -> Result<Scene, BuiltinError> {
     Ok(scene)
 }
 
-/// A closed ring of square section round the z axis.
+/// A closed ring of square cross-section around the z axis.
 fn hoop(mesh: &mut Mesh, z: f64, color: [f64; 3]) {
     const SEGMENTS: u32 = 48;
-    /// (radius, depth) of the four corners of the section, and the outward direction of the face that follows.
+    /// (radius, depth) of the corners of the cross-section, and the outward normal of the face that follows.
     const SECTION: [([f64; 2], [f64; 2]); 4] =
         [([1.2, 0.15], [-1.0, 0.0]), ([1.2, -0.15], [0.0, -1.0]), ([1.45, -0.15], [1.0, 0.0]), ([1.45, 0.15], [0.0, 1.0])];
     for face in 0..4 {
@@ -90,7 +90,7 @@ fn hoop(mesh: &mut Mesh, z: f64, color: [f64; 3]) {
     }
 }
 
-/// Nine sizes, a metre apart in depth. The small lie scattered over the picture, the large cross it with one edge.
+/// Triangles of nine sizes, a metre apart in depth. Small ones are scattered over the picture; one edge of each large one crosses it.
 pub fn sizes(values: &Values) -> Result<Scene, BuiltinError> {
     const COPIES: [u32; 9] = [512, 512, 256, 256, 96, 10, 3, 2, 2];
     let seed = hash(values.whole("seed"));
@@ -105,7 +105,7 @@ pub fn sizes(values: &Values) -> Result<Scene, BuiltinError> {
         for copy in 0..copies {
             let (sin, cos) = libm::sincos(TAU * next());
             let offset = DVec2::new(next() - 0.5, next() - 0.5) * PICTURE_PX;
-            // 0.2887 = distance from the middle of an equilateral triangle to its sides.
+            // 0.2887 is the distance from the centre of an equilateral triangle of side 1 to its sides.
             let middle = if side > PICTURE_PX { 0.5 * offset + DVec2::new(sin, -cos) * (0.2887 * side) } else { offset };
             let corner = |x: f64, y: f64| {
                 let turned = DVec2::new(cos * x - sin * y, sin * x + cos * y);
@@ -119,7 +119,7 @@ pub fn sizes(values: &Values) -> Result<Scene, BuiltinError> {
     Ok(scene)
 }
 
-/// Needles from near the middle outwards; heights of 1 to 8 units in turn.
+/// Needles from near the centre outwards; heights cycle through 1 to 8 units.
 pub fn slivers(values: &Values) -> Result<Scene, BuiltinError> {
     let (n, length) = (values.whole("n"), values.get("length"));
     let mut mesh = Mesh::with_capacity(3 * n as usize, n as usize);
@@ -136,12 +136,12 @@ pub fn slivers(values: &Values) -> Result<Scene, BuiltinError> {
     Ok(scene)
 }
 
-/// Squares turned and shrunk from layer to layer; the first is the nearest.
+/// Rotated squares, smallest and nearest first.
 pub fn stack(values: &Values) -> Result<Scene, BuiltinError> {
     let (layers, gap) = (values.whole("layers"), values.get("gap"));
     let mut mesh = Mesh::with_capacity(4 * layers as usize, 2 * layers as usize);
     for layer in 0..layers {
-        // Later layers are larger, so each shows a rim behind the ones before it.
+        // Later layers are larger, so each shows a rim behind the previous ones.
         let half = PICTURE_PX * (0.12 + 0.3 * f64::from(layer + 1) / f64::from(layers));
         let z = -gap * f64::from(layer);
         let turn = TAU * 0.618_033_988_75 * f64::from(layer);

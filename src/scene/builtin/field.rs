@@ -1,4 +1,4 @@
-//! Fields: bumpy spheres in a lattice, turned every way, seen from the middle: most lie outside the picture or behind others.
+//! Field: a lattice of randomly rotated bumpy spheres seen from its centre; most are outside the picture or occluded.
 
 use glam::{DMat4, DQuat, DVec3};
 
@@ -11,7 +11,7 @@ use crate::{
     },
 };
 
-/// Distance of neighbours, metres; spheres have a radius of about 1.
+/// Distance between neighbours, metres; spheres have a radius of about 1.
 const SPACING_M: f64 = 2.4;
 
 pub fn build(values: &Values) -> Result<Scene, BuiltinError> {
@@ -25,7 +25,7 @@ pub fn build(values: &Values) -> Result<Scene, BuiltinError> {
     let (count, seed) = (values.whole("count"), values.whole("seed"));
     let triangles = u64::from(values.whole("triangles")) * u64::from(count);
     if triangles > MAX_TRIANGLES {
-        return Err(BuiltinError(format!("field: {triangles} triangles in all are too many; at most {MAX_TRIANGLES} are made")));
+        return Err(BuiltinError(format!("field: {triangles} triangles in all; allowed: at most {MAX_TRIANGLES}. Lower count or triangles")));
     }
     let mut scene = shapes::sphere(values)?;
     scene.instances.clear();
@@ -38,7 +38,7 @@ pub fn build(values: &Values) -> Result<Scene, BuiltinError> {
         }
         scene.primitives[material].material = material;
     }
-    // The smallest cube that holds them all, filled plane by plane; an even side leaves a gap in the middle.
+    // The smallest cube that contains them all, filled plane by plane. An even side leaves a gap at the centre.
     let side = (1..).find(|side: &u32| side.pow(3) >= count).unwrap_or(1);
     let middle = 0.5 * f64::from(side - 1);
     for i in 0..count {

@@ -1,46 +1,46 @@
-//! Flesh: one closed skin round the bones of an animal, by surface nets, and weights that blend across its joints.
+//! Meshes a set of capsules as one closed surface by naive surface nets (Gibson 1998), with weights that blend across joints.
 //!
-//! Bones are tapered capsules whose union is smooth (a polynomial minimum); the ground cuts it off, so that soles are flat.
+//! The capsules are tapered and joined by a polynomial smooth minimum. The ground plane cuts them, so soles are flat.
 
 use glam::{DMat3, DVec3};
 
 use super::hold::{self, Hold};
 
-/// A tapered capsule that a joint moves.
+/// A tapered capsule that follows a joint.
 #[derive(Clone, Copy, Debug)]
 pub struct Bone {
     pub joint: usize,
     pub ends: [DVec3; 2],
     pub radii: [f64; 2],
-    /// How softly it runs into those before it, metres.
+    /// Radius of the smooth blend into the capsules before it, metres.
     pub blend: f64,
-    /// It stands on the ground, where no other may move its sole.
+    /// It is a foot: no other joint influences its sole.
     pub is_foot: bool,
 }
 
-/// Bones, none thinner than a mesh can show.
+/// All capsules, with a minimum radius that the mesh resolution can show.
 pub struct Flesh {
     pub bones: Vec<Bone>,
     pub thinnest: f64,
 }
 
-/// A mesh as it grows; corners run counter-clockwise seen from outside.
+/// A surface mesh; triangles are counter-clockwise seen from the outside.
 pub struct Skin {
-    /// Place and normal of every vertex.
+    /// Position and normal of every vertex.
     pub vertices: Vec<[DVec3; 2]>,
     pub triangles: Vec<[u32; 3]>,
 }
 
-/// Joints blend over this share of the thickness of a limb, and hold soles alone below this height.
+/// Weights blend over this fraction of a limb's radius.
 const DEFORMATION: f64 = 0.8;
 const SOLE_M: f64 = 0.15;
-/// Bones taper by less than makes the field change by so many metres a metre.
+/// Upper bound of the slope of the distance field, which tapering makes steeper than 1.
 const MAX_SHADOW_SLOPE: f64 = 1.25;
-/// No blend lifts the skin by more.
+/// Upper bound of the bulge of the blends, metres.
 const BULGE_M: f64 = 0.05;
 
 impl Flesh {
-    /// Distance of the skin of one bone, about, and the radius there.
+    /// Approximate signed distance to the surface of a capsule, and its radius there.
     fn distance(&self, bone: &Bone, p: DVec3) -> (f64, f64) {
         let axis = bone.ends[1] - bone.ends[0];
         let share = ((p - bone.ends[0]).dot(axis) / axis.length_squared()).clamp(0.0, 1.0);
@@ -48,7 +48,7 @@ impl Flesh {
         ((p - bone.ends[0] - axis * share).length() - radius, radius)
     }
 
-    /// Below 0 inside.
+    /// The distance field of the whole body; negative inside.
     fn field(&self, p: DVec3) -> f64 {
         let mut nearest = f64::INFINITY;
         for bone in &self.bones {
@@ -65,12 +65,12 @@ impl Flesh {
         DVec3::from_array(DVec3::AXES.map(along)) / (2.0 * STEP)
     }
 
-    /// The skin in cells of this size: a vertex in every cell that it crosses, four of them round every edge of cells.
+    /// The surface on a grid of cells of this size: a vertex in every cell that it crosses, a quad around every edge that it crosses.
     pub fn skin(&self, cell: f64) -> Skin {
         let ends = || self.bones.iter().flat_map(|bone| bone.ends.map(|end| (end, bone.radii[0].max(bone.radii[1]).max(self.thinnest))));
         let most = |pick: &dyn Fn(DVec3, f64) -> f64| ends().map(|(end, radius)| pick(end, radius)).fold(f64::NEG_INFINITY, f64::max);
         let cells = |length: f64| ((length + BULGE_M) / cell).ceil() + 1.0;
-        // The ground and the plane of symmetry lie in the middle of cells.
+        // The ground plane and the plane of symmetry pass through the centres of cells.
         let (behind, aside) = (cells(most(&|end, radius| radius - end.x)), cells(most(&|end, radius| radius + end.z.abs())));
         let low = DVec3::new(-behind, -1.0, -aside) - 0.5;
         let tall = [cells(most(&|end, radius| end.x + radius)) + behind, cells(most(&|end, radius| end.y + radius)) + 1.0, 2.0 * aside];
@@ -82,7 +82,7 @@ impl Flesh {
             let mut at = row;
             while at < row + wide {
                 values[at] = self.field((low + corner(at)) * cell);
-                // Corners that lie more than a cell outside need no value.
+                // Skip corners that are certainly more than a cell outside.
                 at += (values[at] / (MAX_SHADOW_SLOPE * cell)).max(1.0) as usize;
             }
         }
@@ -113,7 +113,7 @@ impl Flesh {
         skin
     }
 
-    /// Moves a vertex onto the skin without leaving its cell, which keeps neighbours apart.
+    /// Moves a vertex onto the surface by Newton steps, clamped to its cell so that neighbours stay apart.
     fn settled(&self, corner: DVec3, middle: DVec3, cell: f64) -> [DVec3; 2] {
         let mut p = corner + middle * cell;
         for _ in 0..4 {
@@ -125,7 +125,7 @@ impl Flesh {
         [p, self.slope(p)]
     }
 
-    /// The four joints that hold a place of the skin: the nearest, and those that are hardly farther away.
+    /// The up to four joints that influence a point of the surface: the nearest ones, weighted by distance.
     pub fn held(&self, p: DVec3) -> Vec<Hold> {
         let joints = self.bones.iter().map(|bone| bone.joint + 1).max().unwrap_or(0);
         let nearest = self.bones.iter().map(|bone| self.distance(bone, p).0).fold(f64::INFINITY, f64::min);
@@ -139,7 +139,7 @@ impl Flesh {
             *slot = slot.max(weight);
         }
         held.sort_by(|a, b| b.1.total_cmp(&a.1));
-        // A fifth goes out smoothly, for the others give up as much.
+        // Subtracting the fifth weight makes it fade out smoothly.
         let fifth = held.get(4).map_or(0.0, |held| held.1);
         held.truncate(4);
         held.iter_mut().for_each(|held| held.1 -= fifth);
@@ -150,7 +150,7 @@ impl Flesh {
     }
 }
 
-/// Where inside and outside alternate round a face of a cell, the skin would be pinched to a line: it swells over the nearer corner.
+/// Flips grid corners where inside and outside alternate around a face, which would pinch the surface to a line.
 fn fill_pinches(values: &mut [f64], steps: [usize; 3]) {
     let mut is_pinched = true;
     while std::mem::take(&mut is_pinched) {
@@ -160,7 +160,7 @@ fn fill_pinches(values: &mut [f64], steps: [usize; 3]) {
             let [a, b, c, d] = round.map(|corner| values[corner] < 0.0);
             if a == c && b == d && a != b {
                 let outside = round.into_iter().filter(|&corner| values[corner] >= 0.0);
-                let nearer = outside.min_by(|&a, &b| values[a].total_cmp(&values[b])).expect("two are");
+                let nearer = outside.min_by(|&a, &b| values[a].total_cmp(&values[b])).expect("two corners are outside");
                 values[nearer] = -values[nearer].max(1e-9);
                 is_pinched = true;
             }
@@ -168,7 +168,7 @@ fn fill_pinches(values: &mut [f64], steps: [usize; 3]) {
     }
 }
 
-/// Where the skin crosses a cell: the mean over its edges, in units of the cell.
+/// The mean of the crossings on the edges of a cell, in units of the cell.
 fn crossing(values: &[f64], at: usize, steps: [usize; 3]) -> Option<DVec3> {
     let (mut sum, mut count) = (DVec3::ZERO, 0.0);
     for axis in 0..3 {
@@ -177,7 +177,7 @@ fn crossing(values: &[f64], at: usize, steps: [usize; 3]) -> Option<DVec3> {
             let from = at + along_u * steps[u] + along_v * steps[v];
             let [a, b] = [values[from], values[from + steps[axis]]];
             if (a < 0.0) != (b < 0.0) {
-                // A corner without a value lies far outside.
+                // A skipped corner is far outside.
                 let share = if a.is_finite() { a / (a - b) } else { 1.0 };
                 let [x, y, z] = [DVec3::AXES[axis], DVec3::AXES[u], DVec3::AXES[v]];
                 sum += DMat3::from_cols(x, y, z) * DVec3::new(share, along_u as f64, along_v as f64);
@@ -189,7 +189,7 @@ fn crossing(values: &[f64], at: usize, steps: [usize; 3]) -> Option<DVec3> {
 }
 
 impl Skin {
-    /// Two triangles that share the shorter diagonal.
+    /// Adds a quad as two triangles that share its shorter diagonal.
     fn quadrilateral(&mut self, [a, b, c, d]: [u32; 4]) {
         let apart = |a: u32, b: u32| self.vertices[a as usize][0].distance_squared(self.vertices[b as usize][0]);
         let halves = if apart(a, c) <= apart(b, d) { [[a, b, c], [a, c, d]] } else { [[a, b, d], [b, c, d]] };

@@ -1,10 +1,10 @@
-//! Gaits: a skeleton on four legs and how it moves. Feet come first, where they stand and swing; hips and knees follow them.
+//! Gaits: a four-legged skeleton and its motion. Foot trajectories come first; inverse kinematics gives hips and knees.
 
 use std::f64::consts::TAU;
 
 use glam::{DMat3, DQuat, DVec3};
 
-/// Spine and tail: name, parent and place at rest, metres; it looks along +x. Legs follow, four joints each.
+/// Spine and tail: name, parent and rest position (x, y) in metres. The animal faces +x. The joints of the legs follow.
 pub const SPINE: [(&str, usize, [f64; 2]); 10] = [
     ("pelvis", 0, [-0.42, 1.00]),
     ("chest", 0, [0.02, 1.01]),
@@ -17,35 +17,35 @@ pub const SPINE: [(&str, usize, [f64; 2]); 10] = [
     ("tail 3", 7, [-1.24, 0.90]),
     ("tail 4", 8, [-1.56, 0.85]),
 ];
-/// Joints of a hind leg and of a foreleg: knees point ahead, elbows back, and feet stand on their toes.
+/// Joints of a hind leg and of a foreleg: knees point forward, elbows backward, feet stand on their toes.
 pub const LEGS: [[[f64; 2]; 4]; 2] =
     [[[-0.42, 0.92], [-0.26, 0.65], [-0.48, 0.38], [-0.45, 0.08]], [[0.43, 0.88], [0.27, 0.63], [0.35, 0.36], [0.35, 0.08]]];
 const PARTS: [[&str; 4]; 2] = [["hip", "knee", "hock", "foot"], ["shoulder", "elbow", "wrist", "foot"]];
-/// Left hind, left fore, right hind, right fore: how far to the right of the spine.
+/// Sideways offset of the left hind, left fore, right hind and right fore leg, metres.
 pub const SIDES_M: [f64; 4] = [-0.15, -0.14, 0.15, 0.14];
 pub const JOINTS: usize = SPINE.len() + 16;
-/// Tip of the toes and the heel, as they lie from the foot's joint.
+/// Toe tip and heel, relative to the foot's joint.
 const SOLE: [[f64; 2]; 2] = [[0.13, -0.08], [-0.05, -0.08]];
-/// How far the lowest bone of a hind leg and of a foreleg leans ahead: at landing, in the middle of its stand, as it leaves, and
+/// Forward lean in radians of the lowest bone of a hind leg and of a foreleg: at landing, at mid-stance, at lift-off, and
 /// twice in the air.
 const LEANS: [[f64; 5]; 2] = [[-0.28, 0.0, 0.55, 0.80, 0.25], [-0.28, 0.0, 0.45, 1.00, 0.50]];
-/// Between hips and shoulders.
+/// Distance between hips and shoulders, metres.
 const TRUNK_M: f64 = 0.8;
 
-/// How it moves. Angles are in radians, times in rounds.
+/// Parameters of a gait. Angles are in radians, times in cycles.
 pub struct Gait {
     pub name: &'static str,
     pub period_s: f64,
-    /// Share of a round that a foot stands.
+    /// Fraction of the cycle during which a foot is on the ground.
     duty: f64,
-    /// When each foot lands.
+    /// Time at which each foot lands.
     landing: [f64; 4],
     stride_m: f64,
     lift_m: f64,
-    /// How far the trunk bobs, and how far it leans over the feet that stand.
+    /// Amplitudes of the trunk: vertical, and sideways towards the standing feet.
     bob_m: f64,
     lean_m: f64,
-    /// How far hips and shoulders turn, neck and tail sway against them, and the head nods.
+    /// Amplitudes of hip and shoulder rotation, neck and tail sway, and head nod.
     sway: f64,
     neck: f64,
     tail: f64,
@@ -68,14 +68,14 @@ pub const GAITS: [Gait; 3] = [
     },
 ];
 
-/// A joint as it rests in the skeleton.
+/// A joint in the rest pose.
 pub struct Joint {
     pub name: String,
     pub parent: usize,
     pub at: DVec3,
 }
 
-/// All of them, parents first; the pelvis is its own parent.
+/// All joints, parents first. The pelvis is its own parent.
 pub fn joints() -> Vec<Joint> {
     let spine = |&(name, parent, [x, y]): &(&str, usize, [f64; 2])| Joint { name: name.to_owned(), parent, at: DVec3::new(x, y, 0.0) };
     let mut joints: Vec<Joint> = SPINE.iter().map(spine).collect();
@@ -88,7 +88,7 @@ pub fn joints() -> Vec<Joint> {
     joints
 }
 
-/// A wave of period 1 that starts at its crest.
+/// A cosine of period 1.
 fn wave(t: f64) -> f64 {
     libm::cos(TAU * t)
 }
@@ -98,17 +98,17 @@ fn turn(axis: DVec3, angle: f64) -> DQuat {
     DQuat::from_xyzw(axis.x * sin, axis.y * sin, axis.z * sin, cos)
 }
 
-/// A foot on its way.
+/// A foot at one time.
 struct Step {
-    /// Its joint, ahead of its place at rest and above the ground.
+    /// Position of its joint: forward of the rest position, and above the ground.
     at: [f64; 2],
-    /// How far its toes point down.
+    /// Downward rotation of the toes.
     pitch: f64,
-    /// How far the bone above it leans ahead.
+    /// Forward lean of the bone above it.
     lean: f64,
 }
 
-/// A curve without corners through the values that it has at these times; it goes round.
+/// A periodic cubic spline through these values at these times.
 fn round_curve(times: [f64; 5], values: [f64; 5], t: f64) -> f64 {
     let key = |i: usize| (times[i % 5] + (i / 5) as f64 - 1.0, values[i % 5]);
     let after = (5..).find(|&i| key(i + 1).0 > t).expect("times end at 1");
@@ -120,7 +120,7 @@ fn round_curve(times: [f64; 5], values: [f64; 5], t: f64) -> f64 {
     v0 + (v1 - v0) * (3.0 * s2 - 2.0 * s3) + wide * deformed
 }
 
-/// A foot of a girdle, `t` rounds after it has landed.
+/// A foot of a girdle, `t` cycles after landing.
 fn step(gait: &Gait, girdle: usize, t: f64) -> Step {
     let t = t.rem_euclid(1.0);
     let back = 0.5 * gait.stride_m;
@@ -128,7 +128,7 @@ fn step(gait: &Gait, girdle: usize, t: f64) -> Step {
     let [ahead, lift] = if t < gait.duty || gait.duty >= 1.0 {
         [back - gait.stride_m * t / gait.duty, 0.0]
     } else {
-        // A cubic that leaves and lands as fast as the ground goes back.
+        // A cubic that starts and ends at the speed of the ground.
         let (s, fast) = ((t - gait.duty) / air, -gait.stride_m * air / gait.duty);
         let (s2, s3) = (s * s, s * s * s);
         [back * (6.0 * s2 - 4.0 * s3 - 1.0) + fast * (2.0 * s3 - 3.0 * s2 + s), 16.0 * gait.lift_m * s2 * (1.0 - s) * (1.0 - s)]
@@ -138,22 +138,22 @@ fn step(gait: &Gait, girdle: usize, t: f64) -> Step {
         16.0 * s * s * (1.0 - s) * (1.0 - s)
     };
     let is_still = gait.lift_m == 0.0;
-    // The heel rises before the toes leave, and the toes before it lands.
+    // The heel rises before the toes leave the ground, and the toes rise before landing.
     let pitch = if is_still { 0.0 } else { 0.85 * hump(gait.duty - 0.14, gait.duty + 0.24) - 0.3 * hump(gait.duty + 0.16, 1.0) };
     let times = [0.0, 0.5 * gait.duty, gait.duty, gait.duty + 0.35 * air, gait.duty + 0.7 * air];
     let lean = if is_still { 0.0 } else { round_curve(times, LEANS[girdle], t) };
     let (sin, cos) = libm::sincos(-pitch);
     let [toe, heel] = SOLE.map(|[x, y]| [x * cos - y * sin, x * sin + y * cos]);
-    // The toes keep their course, and neither they nor the heel go below it; up in the air one takes over from the other softly.
+    // The toes follow their trajectory. Neither they nor the heel go below the ground; in the air a smooth minimum blends them.
     let both = (lift - (toe[1] - heel[1]).abs()).max(0.0);
     let lower = toe[1].min(heel[1]) - if both > 0.0 { both * both / (4.0 * lift) } else { 0.0 };
     Step { at: [ahead + SOLE[0][0] - toe[0], lift - lower], pitch, lean }
 }
 
-/// A moment: how far the pelvis has moved, and the turn of every joint in its parent.
+/// Translation of the pelvis and rotation of every joint relative to its parent, at time `t`.
 pub fn moment(gait: &Gait, rest: &[Joint], t: f64) -> (DVec3, [DQuat; JOINTS]) {
     let mut turns = [DQuat::IDENTITY; JOINTS];
-    // Each girdle is lowest when its feet have just landed, and its side that lands is ahead.
+    // Each girdle is lowest just after landing, and the side that lands is ahead.
     let bob = |girdle: usize| -gait.bob_m * wave(2.0 * (t - gait.landing[girdle] - 0.06));
     let girdle = |girdle: usize| {
         let after = t - gait.landing[girdle];
@@ -179,7 +179,7 @@ pub fn moment(gait: &Gait, rest: &[Joint], t: f64) -> (DVec3, [DQuat; JOINTS]) {
         let (lean, pitch) = (turn(DVec3::Z, -lean), turn(DVec3::Z, -pitch));
         let at = places[girdle] + girdles[girdle] * (hip - rest[girdle].at);
         let goal = DVec3::new(foot.x + ahead, up, foot.z) + lean * (hock - foot) - at;
-        // Two sides and the third: the knee lies in the plane of the goal and the way ahead.
+        // Two-bone inverse kinematics: the knee lies in the plane of the goal and the forward direction.
         let (thigh, shank) = (knee - hip, hock - knee);
         let far = goal.length().min(0.9999 * (thigh.length() + shank.length()));
         let (down, hinge) = (goal.normalize(), goal.cross(DVec3::X).normalize());
@@ -258,7 +258,7 @@ mod tests {
             for (joint, name) in rest.iter().map(|joint| &joint.name).enumerate() {
                 let near = |q: DQuat| if q.dot(now[joint]) < 0.0 { -q } else { q };
                 let change = 2.0 * (near(before[joint]) - now[joint] + (near(after[joint]) - now[joint])).length();
-                assert!(change < 4e-3, "{} {name} at {at}: its turn changes its speed by {change} a step", gait.name);
+                assert!(change < 4e-3, "{} {name} at {at}: its angular speed changes by {change} per step", gait.name);
             }
         }
     }
@@ -283,7 +283,7 @@ mod tests {
         for gait in [walk, trot] {
             let middle = 0.5 * (1.0 + gait.duty);
             assert!(toe(gait, middle)[1] > 0.8 * gait.lift_m, "{}", gait.name);
-            // Neither place nor speed jumps where a foot leaves and lands.
+            // Position and speed are continuous at lift-off and landing.
             for t in [gait.duty, 1.0] {
                 let [before, at, after] = [-1e-4, 0.0, 1e-4].map(|late| toe(gait, t + late));
                 assert!([0, 1].iter().all(|&i| (before[i] - 2.0 * at[i] + after[i]).abs() < 1e-6), "{} {t}", gait.name);

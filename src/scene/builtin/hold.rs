@@ -1,13 +1,13 @@
-//! Holds: which joints move a vertex, with weights that are whole numbers of one sum.
+//! Skinning weights: which joints influence each vertex, with integer weights of a constant sum.
 
 use glam::DVec3;
 
 use crate::scene::{Accessor, Bounds, Component, Scene, rig::Influences};
 
-/// A joint and its weight, of 65,535 in all.
+/// A joint and its weight; the weights of a vertex sum to 65,535.
 pub type Hold = (u8, u16);
 
-/// Weights that sum to 1, or nearly, as whole ones of 65,535 in all; the largest first, which takes what rounding leaves.
+/// Rounds weights that sum to about 1 to integers that sum to 65,535, largest first. The largest absorbs the rounding error.
 pub fn whole(held: &[(u8, f64)]) -> Vec<Hold> {
     let mut rounded: Vec<Hold> = held.iter().map(|&(joint, share)| (joint, (share.clamp(0.0, 1.0) * 65_535.0).round() as u16)).collect();
     rounded.sort_by_key(|&(joint, weight)| (std::cmp::Reverse(weight), joint));
@@ -16,7 +16,7 @@ pub fn whole(held: &[(u8, f64)]) -> Vec<Hold> {
     rounded
 }
 
-/// Lets `joints` joints hold the vertices of a primitive, `sets` times four of them each at most.
+/// Appends joint indices and weights to a primitive: `sets` sets of four per vertex, `joints` joints in all.
 pub fn append(scene: &mut Scene, primitive: usize, joints: usize, sets: usize, held: &[Vec<Hold>]) {
     let mut bounds = vec![Bounds::EMPTY; joints];
     let (mut numbers, mut weights) = (vec![Vec::<u8>::new(); sets], vec![Vec::<u16>::new(); sets]);

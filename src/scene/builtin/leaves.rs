@@ -1,4 +1,4 @@
-//! Leaves: quadrilaterals that an image cuts into shape, scattered over a crown.
+//! Leaves: quadrilaterals masked by the alpha of an image, scattered over a crown.
 
 use std::f64::consts::TAU;
 
@@ -16,13 +16,13 @@ use crate::{
 /// Length of a leaf, metres.
 const LENGTH_M: f64 = 0.62;
 
-/// As many leaves as asked, on a crown about 2 m across, each in its own vertices.
+/// `n` leaves on a crown about 2 m across, each with its own vertices.
 pub fn build(values: &Values) -> Result<Scene, BuiltinError> {
     let (leaves, seed) = (values.whole("n"), values.whole("seed"));
     let mut mesh = Mesh::with_capacity(4 * leaves as usize, 2 * leaves as usize);
     for leaf in 0..leaves {
         let unit = |salt: u32| hash_unit(hash(seed) ^ hash(8 * leaf + salt));
-        // A sunflower's seeds over the sphere, a little inside it, hanging out and down.
+        // On a sunflower spiral over the sphere, slightly inside it, pointing out and down.
         let height = 1.0 - 2.0 * (f64::from(leaf) + 0.5) / f64::from(leaves);
         let turn = f64::from(leaf) * 0.381_966_011_250_105 + 0.05 * unit(0);
         let flat = (1.0 - height * height).max(0.0).sqrt();
@@ -46,7 +46,7 @@ pub fn build(values: &Values) -> Result<Scene, BuiltinError> {
     Ok(scene)
 }
 
-/// A serrated leaf with veins, its stem below; alpha falls off over a texel or two at its outline.
+/// A serrated leaf with veins and a stem; alpha falls off over one or two texels at its outline.
 fn leaf_image(width: u32, height: u32) -> Image {
     let texel = |x: u32, y: u32| {
         let across = (f64::from(x) + 0.5) / f64::from(width) * 2.0 - 1.0;

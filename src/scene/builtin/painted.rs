@@ -1,4 +1,4 @@
-//! Painted scenes: images from formulas on a globe, and on panels that preset them up in every way there is.
+//! Textured scenes: procedural images on a globe, and on panels that cover every way of sampling.
 
 use std::f64::consts::{PI, TAU};
 
@@ -13,7 +13,7 @@ use crate::{
     },
 };
 
-/// A globe whose map is a grid of colours: hue runs round it, and every second cell is pale.
+/// A globe with a grid of colours: the hue changes with longitude, and every second cell is pale.
 pub fn globe(values: &Values) -> Result<Scene, BuiltinError> {
     let tess = values.whole("tess");
     let (columns, rows) = (4 * tess, 2 * tess);
@@ -22,7 +22,7 @@ pub fn globe(values: &Values) -> Result<Scene, BuiltinError> {
         let (sin_v, cos_v) = libm::sincos(PI * f64::from(row) / f64::from(rows));
         for column in 0..=columns {
             let (sin_u, cos_u) = libm::sincos(TAU * f64::from(column % columns) / f64::from(columns));
-            // At a pole a triangle has one vertex of its own, in the middle of its part of the map.
+            // Each triangle at a pole has its own vertex, at the centre of its part of the texture.
             let aside = if row == 0 || row == rows { 0.5 } else { 0.0 };
             let normal = match row {
                 0 => DVec3::Y,
@@ -51,7 +51,7 @@ pub fn globe(values: &Values) -> Result<Scene, BuiltinError> {
     Ok(scene)
 }
 
-/// Cells of all hues, light and dark by turns, between fine lines.
+/// Cells of all hues, alternately light and dark, with thin lines between them.
 fn color_grid(width: u32, height: u32, cell: u32) -> Image {
     let texel = |x: u32, y: u32| {
         let turn = f64::from(x / cell) / f64::from(width / cell);
@@ -74,7 +74,7 @@ fn color_grid(width: u32, height: u32, cell: u32) -> Image {
     Image::new("colour grid", [width, height], (0..height).flat_map(|y| (0..width).map(move |x| texel(x, y))).collect())
 }
 
-/// A few texels that no turn and no mirror takes to themselves, of an odd size: an arrow to the right above, on two tones.
+/// An image of odd size without any symmetry: an arrow to the right on two colours.
 fn arrow() -> Image {
     const ROWS: [&[u8; 11]; 7] =
         [b".....#.....", b".....##....", b"########...", b".....##..oo", b"+++++#...oo", b"+++++++++++", b"..........."];
@@ -87,7 +87,7 @@ fn arrow() -> Image {
     Image::new("arrow", [11, 7], ROWS.iter().flat_map(|row| row.iter().map(tone)).collect())
 }
 
-/// Gravel: every texel its own grey, so that a wrong scale shows.
+/// Gravel: every texel has a random grey, so that wrong scales are visible.
 fn gravel() -> Image {
     let texel = |at: u32| {
         let grey = 70 + (hash(at) % 120) as u8;
@@ -96,7 +96,7 @@ fn gravel() -> Image {
     Image::new("gravel", [64, 64], (0..64 * 64).map(texel).collect())
 }
 
-/// Windows of a house at night: what shines, and what does not.
+/// Windows at night: an emission texture with dark and bright parts.
 fn windows() -> Image {
     let texel = |x: u32, y: u32| {
         let is_pane = x % 8 > 1 && y % 8 > 2 && !hash(y / 8 * 4 + x / 8).is_multiple_of(3);
@@ -105,14 +105,14 @@ fn windows() -> Image {
     Image::new("windows", [32, 32], (0..32).flat_map(|y| (0..32).map(move |x| texel(x, y))).collect())
 }
 
-/// How one panel shows its image.
+/// A panel with its image.
 struct Panel {
     material: Material,
-    /// Coordinates of the image at its left and right, top and bottom edge.
+    /// Texture coordinates at its left and right, top and bottom edges.
     span: [[f64; 2]; 2],
 }
 
-/// Panels in two rows above a ground that runs to the horizon, each with another way to look up an image.
+/// Panels in two rows above a ground that extends to the horizon, each with another way of sampling.
 pub fn panels(values: &Values) -> Result<Scene, BuiltinError> {
     let mut scene = Scene { images: vec![arrow().with_mipmaps(), gravel().with_mipmaps(), windows().with_mipmaps()], ..Scene::default() };
     let repeats = values.get("repeats");
@@ -129,7 +129,7 @@ pub fn panels(values: &Values) -> Result<Scene, BuiltinError> {
         scene.materials.push(material);
         let primitive = mesh.append(&mut scene, &name, place);
         let world_from_object = if is_ground {
-            // On its back.
+            // Rotated to face up.
             DMat4::from_cols(DVec4::X * 6.0, DVec4::NEG_Z * 6.0, DVec4::Y, DVec4::new(0.0, -2.3, -3.0, 1.0))
         } else {
             let (column, row) = ((place % 3) as f64, (place / 3) as f64);
@@ -140,7 +140,7 @@ pub fn panels(values: &Values) -> Result<Scene, BuiltinError> {
     Ok(scene)
 }
 
-/// The six panels, and the ground.
+/// The six panels and the ground.
 fn ways(repeats: f64) -> Vec<Panel> {
     let paper = |name: &str, texture: Texture| Material {
         name: name.into(),
@@ -150,7 +150,7 @@ fn ways(repeats: f64) -> Vec<Panel> {
     };
     let crisp = Texture { mag_filter: Filter::Nearest, min_filter: Filter::Nearest, mip_filter: MipFilter::Unused, ..Texture::plain(0) };
     let around = [[-0.7, 1.9], [-0.6, 1.7]];
-    // A sixth of a turn, and half as large.
+    // Rotated by a sixth of a turn, and half as large.
     let (sin, cos) = libm::sincos(TAU / 6.0);
     let turned = [[2.0 * cos, 2.0 * sin, 0.15], [-2.0 * sin, 2.0 * cos, 0.4]].map(|row| row.map(|v| v as f32));
     vec![

@@ -1,8 +1,8 @@
 //! Plates: flat meshes measured in pixels, for counting holes and double hits.
 //!
-//! One metre is one pixel: the camera is orthographic and `height_m` high, so the picture must be `height` pixels high
-//! (and `width` wide) for cells to have their size. The middle of the picture is the origin, x to the right, y up, and
-//! with even sizes pixel centres lie on odd multiples of half a metre.
+//! One metre is one pixel: the camera is orthographic and `height_m` high, so cells have their size only in a picture of
+//! `height` (and `width`) pixels. The origin is the centre of the picture, x points right, y up. With even sizes pixel
+//! centres lie on odd multiples of half a metre.
 
 use std::f64::consts::TAU;
 
@@ -17,10 +17,10 @@ use crate::{
     },
 };
 
-/// Height of the picture of the plates that do not ask for another, in pixels.
+/// Height in pixels of the picture for plates that do not specify one.
 pub const PICTURE_PX: f64 = 256.0;
 
-/// A camera that shows one metre as one pixel on a picture `height_px` high, and stands `distance_m` before the origin.
+/// A camera for which one metre is one pixel in a picture `height_px` high, `distance_m` in front of the origin.
 pub fn pixel_camera(height_px: f64, distance_m: f64) -> SceneCamera {
     let pose = Camera {
         eye: DVec3::Z * distance_m,
@@ -32,7 +32,7 @@ pub fn pixel_camera(height_px: f64, distance_m: f64) -> SceneCamera {
     SceneCamera { name: "pixels".into(), pose, node: None }
 }
 
-/// The same scale on the plane z = 0, in perspective: w is the same at all vertices.
+/// The same scale on the plane z = 0 in perspective; w is equal at all vertices.
 fn perspective_camera(height_px: f64) -> SceneCamera {
     let fov_y_deg = 2.0 * libm::atan(0.5).to_degrees();
     let pose = Camera { projection: Projection::Perspective { fov_y_deg }, ..pixel_camera(height_px, height_px).pose };
@@ -43,11 +43,11 @@ fn plate_material() -> Material {
     Material { name: "plate".into(), base_color: [0.8, 0.8, 0.8, 1.0], double_sided: true, ..Material::default() }
 }
 
-/// A jittered grid that overhangs a `width` x `height` picture on all sides, so each sample is covered exactly once.
+/// A jittered grid that extends beyond a `width` x `height` picture on all sides, so each sample is covered exactly once.
 ///
-/// Fold-free by construction: if every vertex of a cell of side c moves by at most a in x and in y, the smallest oriented
-/// area is ((c - 2a)^2 - (2a)^2) / 2, positive for a < c/4. The snap (half a unit) and the lattice (half a step) count
-/// into a; the jitter has four fifths of the rest.
+/// It cannot fold: if every vertex of a cell of side c moves by at most a in x and in y, the smallest oriented area is
+/// ((c - 2a)^2 - (2a)^2) / 2, which is positive for a < c/4. The snap (half a unit) and the lattice (half a step) count
+/// towards a; the jitter uses four fifths of the rest.
 pub fn grid(values: &Values) -> Result<Scene, BuiltinError> {
     let (cell, seed, lattice) = (values.get("cell"), values.whole("seed"), values.get("lattice"));
     let (width, height) = (values.get("width"), values.get("height"));
@@ -55,14 +55,14 @@ pub fn grid(values: &Values) -> Result<Scene, BuiltinError> {
     let triangles = 2 * columns * rows;
     if triangles > MAX_TRIANGLES {
         return Err(BuiltinError(format!(
-            "grid: cell={cell} on {width}x{height} px makes {triangles} triangles; at most {MAX_TRIANGLES} are built"
+            "grid: cell={cell} on {width}x{height} px makes {triangles} triangles; allowed: at most {MAX_TRIANGLES}. Increase cell"
         )));
     }
     let lattice_step = if lattice > 0.0 { 1.0 / lattice } else { 0.0 };
     let error_bound = 0.25 * cell - 0.5 * lattice_step - 0.5 / f64::from(UNITS_PER_PIXEL);
     if error_bound <= 0.0 {
         return Err(BuiltinError(format!(
-            "grid: lattice={lattice} is too coarse for cell={cell}: cells would fold; lattice must exceed {:.1}",
+            "grid: lattice={lattice} is too coarse for cell={cell}, cells would fold; lattice must be above {:.1}",
             2.1 / cell
         )));
     }
@@ -82,7 +82,7 @@ pub fn grid(values: &Values) -> Result<Scene, BuiltinError> {
     for row in 0..rows as u32 {
         for column in 0..columns as u32 {
             let (a, b) = (row * stride + column, (row + 1) * stride + column);
-            // Diagonals alternate, so that edges run in all directions.
+            // Diagonals alternate, so that edges have all directions.
             let quad = if (row ^ column) & 1 == 0 { [[a, a + 1, b + 1], [a, b + 1, b]] } else { [[a, a + 1, b], [a + 1, b + 1, b]] };
             quad.into_iter().for_each(|t| mesh.triangle(t));
         }
@@ -92,13 +92,13 @@ pub fn grid(values: &Values) -> Result<Scene, BuiltinError> {
     Ok(scene)
 }
 
-/// `n` triangles round the sample right of and above the middle of the picture.
+/// `n` triangles around the sample to the right of and above the centre of the picture.
 pub fn fan(values: &Values) -> Result<Scene, BuiltinError> {
     let (n, radius, seed) = (values.whole("n"), values.get("radius"), values.whole("seed"));
-    // Three units of rim per triangle: with less than two the snap could change the order of the rim's vertices.
+    // Three units of rim per triangle: with fewer than two the snap could reorder the vertices of the rim.
     let most = TAU * radius * f64::from(UNITS_PER_PIXEL) / 3.0;
     if f64::from(n) > most {
-        return Err(BuiltinError(format!("fan: n={n} triangles would fold in the snap at radius={radius}; at most {}", most.floor())));
+        return Err(BuiltinError(format!("fan: n={n} triangles would fold after the snap at radius={radius}; allowed: at most {}", most.floor())));
     }
     let mut mesh = Mesh::with_capacity(n as usize + 1, n as usize);
     let sample = DVec3::new(0.5, 0.5, 0.0);

@@ -1,27 +1,30 @@
-//! Queries: `name?key=value&key=value`, checked against the tables of [`BUILTINS`].
+//! Queries: parses `name?parameter=value&parameter=value` and checks it against the table of builtin scenes.
 
 use super::{BUILTINS, Builtin, BuiltinError, BuiltinParam};
 
-/// The value of every parameter of one builtin, within its range.
+/// The values of all parameters of a builtin, each within its range.
 pub struct Values {
     builtin: &'static Builtin,
     values: Vec<f64>,
 }
 
 impl Values {
-    /// Value of the parameter `name`, which the builtin's table must hold.
+    /// The value of the parameter `name`.
+    ///
+    /// # Panics
+    /// If the builtin has no such parameter.
     pub fn get(&self, name: &str) -> f64 {
         let at = self.builtin.params.iter().position(|param| param.name == name).expect("a builtin asks for parameters of its own table");
         self.values[at]
     }
 
-    /// A whole parameter as an integer.
+    /// The value of a whole-number parameter.
     pub fn whole(&self, name: &str) -> u32 {
         self.get(name) as u32
     }
 }
 
-/// Finds the builtin and checks every value.
+/// Finds the builtin of a query and checks every value.
 pub fn parse(query: &str) -> Result<(&'static Builtin, Values), BuiltinError> {
     let (name, pairs) = query.trim().split_once('?').unwrap_or((query.trim(), ""));
     let builtin = BUILTINS
@@ -30,13 +33,13 @@ pub fn parse(query: &str) -> Result<(&'static Builtin, Values), BuiltinError> {
         .ok_or_else(|| BuiltinError(unknown("there is no builtin scene", name, BUILTINS.iter().map(|b| b.name).collect())))?;
     let mut values: Vec<Option<f64>> = vec![None; builtin.params.len()];
     for pair in pairs.split('&').filter(|pair| !pair.is_empty()) {
-        let (key, text) = pair.split_once('=').ok_or_else(|| BuiltinError(format!("{name}: \"{pair}\" is not of the form key=value")))?;
+        let (key, text) = pair.split_once('=').ok_or_else(|| BuiltinError(format!("{name}: \"{pair}\" must have the form parameter=value")))?;
         let Some(at) = builtin.params.iter().position(|param| param.name == key) else {
             let known = builtin.params.iter().map(|param| param.name).collect();
             return Err(BuiltinError(unknown(&format!("{name} has no parameter"), key, known)));
         };
         if values[at].replace(checked(name, &builtin.params[at], text)?).is_some() {
-            return Err(BuiltinError(format!("{name}: {key} is given twice")));
+            return Err(BuiltinError(format!("{name}: {key} is given twice; remove one")));
         }
     }
     let values = values.iter().zip(builtin.params).map(|(value, param)| value.unwrap_or(param.default)).collect();
@@ -51,13 +54,13 @@ fn checked(builtin: &str, param: &BuiltinParam, text: &str) -> Result<f64, Built
             if param.range.contains(&value) {
                 return Ok(value);
             }
-            Err(BuiltinError(format!("{builtin}: {}={text} lies outside {low}..={high}", param.name)))
+            Err(BuiltinError(format!("{builtin}: {}={text} must be {kind} from {low} to {high}", param.name)))
         }
-        _ => Err(BuiltinError(format!("{builtin}: {}={text} must be {kind} in {low}..={high}", param.name))),
+        _ => Err(BuiltinError(format!("{builtin}: {}={text} must be {kind} from {low} to {high}", param.name))),
     }
 }
 
-/// One sentence that names what was asked, the nearest known name, and all of them.
+/// A sentence with the unknown name, the most similar known one, and all known names.
 fn unknown(what: &str, asked: &str, known: Vec<&str>) -> String {
     let near = known.iter().map(|name| (strsim::damerau_levenshtein(name, asked), name)).min();
     let hint = match near {

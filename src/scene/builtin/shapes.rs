@@ -1,4 +1,4 @@
-//! Closed and instanced scenes that are pleasant to look at: sphere, knot, cube wall.
+//! Shapes: sphere, trefoil knot, cube wall and chamber.
 
 use std::f64::consts::{PI, TAU};
 
@@ -18,10 +18,10 @@ const WAVES: [(DVec3, f64, f64); 4] = [
     (DVec3::new(-6.7, -7.9, 8.1), 0.7, 0.021),
 ];
 
-/// A closed sphere of radius about 1 with as many triangles as asked (an even number), near to right-angled before the bumps.
+/// A closed sphere of radius about 1 with the given even number of triangles, nearly equilateral before the bumps.
 ///
 /// Rings of latitude share the vertices in proportion to their length. A closed mesh of V vertices has 2V - 4 triangles
-/// (Euler); two vertices are the poles, so V - 2 = triangles / 2 vertices on rings meet the number exactly.
+/// (Euler). Two vertices are the poles, so the rings have V - 2 = triangles / 2 vertices.
 pub fn sphere(values: &Values) -> Result<Scene, BuiltinError> {
     let on_rings = values.whole("triangles") / 2;
     // Rows of equilateral triangles of height h cover the sphere when h^2 = 4 pi sqrt(3) / triangles.
@@ -62,7 +62,7 @@ fn bump(mesh: &mut Mesh, d: DVec3) {
     mesh.vertex(d * radius, d - tangential / radius);
 }
 
-/// A trefoil: a tube round the curve that winds twice round a torus's axis and thrice round its core.
+/// A trefoil: a tube around the curve that winds twice around the axis of a torus and three times around its core.
 pub fn knot(values: &Values) -> Result<Scene, BuiltinError> {
     const CORE_M: f64 = 0.8;
     const RING_M: f64 = 0.36;
@@ -79,7 +79,7 @@ pub fn knot(values: &Values) -> Result<Scene, BuiltinError> {
             let center = DVec3::new(reach * c2, reach * s2, RING_M * s3);
             let drift = -3.0 * RING_M * s3;
             let tangent = DVec3::new(drift * c2 - 2.0 * reach * s2, drift * s2 + 2.0 * reach * c2, 3.0 * RING_M * c3).normalize();
-            // The torus's own normal is perpendicular to every curve on it, and closes after one turn.
+            // The normal of the torus is perpendicular to every curve on it, and closes after one turn.
             let out = DVec3::new(c3 * c2, c3 * s2, s3);
             let side = tangent.cross(out);
             mesh.ring(round, |mesh, j| {
@@ -97,7 +97,7 @@ pub fn knot(values: &Values) -> Result<Scene, BuiltinError> {
     Ok(alone(mesh, "knot", Material { name: "enamel".into(), ..Material::default() }))
 }
 
-/// One cube, placed many times at depths that roll like a wave; its six primitives differ in material only.
+/// Instances of one cube at depths that follow a wave. Its six primitives differ only in material.
 pub fn cube_wall(values: &Values) -> Result<Scene, BuiltinError> {
     const PALETTE: [(&str, [f32; 3]); 6] = [
         ("coral", [0.82, 0.17, 0.10]),
@@ -123,7 +123,7 @@ pub fn cube_wall(values: &Values) -> Result<Scene, BuiltinError> {
             let chance = |salt: u32| hash_unit((row * columns + column).wrapping_mul(4).wrapping_add(salt) ^ crate::math::hash(seed));
             let (x, y) = (f64::from(column) - 0.5 * f64::from(columns - 1), f64::from(row) - 0.5 * f64::from(rows - 1));
             let z = 0.7 * libm::sin(0.55 * x + 0.8) * libm::cos(0.6 * y) + 0.9 * chance(0) * chance(1);
-            // The palette drifts across the wall; chance mixes neighbours.
+            // Colours change gradually across the wall; random numbers mix neighbours.
             let tone = (f64::from(column) / f64::from(columns) * 4.0 + 2.0 * chance(2)) as usize % PALETTE.len();
             let placement = DMat4::from_translation(DVec3::new(x, y, z)) * DMat4::from_scale(DVec3::new(0.47, 0.47, 0.9));
             scene.instances.push(Instance::fixed(first + tone, placement));
@@ -147,7 +147,7 @@ fn cube() -> Mesh {
     mesh
 }
 
-/// A cube seen from within: every wall shows its inside, the floor the lightest.
+/// A cube seen from the inside, with the lightest floor.
 pub fn chamber(values: &Values) -> Result<Scene, BuiltinError> {
     const TONES: [[f64; 3]; 3] = [[0.012, 0.012, 0.02], [0.024, 0.024, 0.032], [0.008, 0.012, 0.02]];
     let half = values.get("half");
@@ -162,7 +162,7 @@ pub fn chamber(values: &Values) -> Result<Scene, BuiltinError> {
     Ok(alone(mesh, "chamber", Material { name: "plaster".into(), ..Material::default() }))
 }
 
-/// A scene of one mesh that stands where it was built.
+/// A scene of one mesh with an identity transform.
 pub fn alone(mesh: Mesh, name: &str, material: Material) -> Scene {
     let mut scene = Scene { materials: vec![material], ..Scene::default() };
     let primitive = mesh.append(&mut scene, name, 0);

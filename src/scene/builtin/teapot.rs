@@ -1,9 +1,9 @@
 //! The Utah teapot (M. Newell, 1975) from its 32 bicubic Bézier patches.
 //!
-//! Newell's 306 control points are written as what they are: profiles turned round the axis in four quarter arcs of
-//! kappa 0.56, and two tubes mirrored in the plane y = 0 (z is up in the data). So neighbouring patches share their
-//! vertices by construction, and the poles of lid and bottom have their exact normals. The knob's 0.45 of the
-//! published table is 0.448 here, so that its rings have the shape of all others.
+//! Newell's 306 control points are stored as what they describe: profiles revolved around the axis in four quarter arcs of
+//! kappa 0.56, and two tubes mirrored in the plane y = 0 (z is up in the data). Neighbouring patches therefore share their
+//! vertices, and the poles of lid and bottom have exact normals. The knob's published value 0.45 is 0.448 here, so that its
+//! rings have the same shape as all others.
 
 use glam::{DVec2, DVec3};
 
@@ -51,9 +51,9 @@ const SPOUT: [Section; 7] = [
     section([2.8, 2.4], [3.2, 2.4], 0.15),
 ];
 
-/// Handle of a Bézier quarter arc, as Newell has it (a true circle wants 0.5523).
+/// Handle length of a Bézier quarter arc in Newell's data (a true circle needs 0.5523).
 const KAPPA: f64 = 0.56;
-/// Metres per unit of the data: the pot becomes 2.6 m wide.
+/// Metres per unit of the data; the pot becomes 2.6 m wide.
 const SCALE: f64 = 0.4;
 /// Middle of the data's box.
 const CENTER: DVec3 = DVec3::new(0.217, 0.0, 1.575);
@@ -70,7 +70,7 @@ pub fn build(values: &Values) -> Result<Scene, BuiltinError> {
     Ok(alone(mesh, "teapot", glaze))
 }
 
-/// Turns a profile that runs from the top down round the axis.
+/// Revolves a profile, given from top to bottom, around the axis.
 fn revolve(mesh: &mut Mesh, profile: &[[f64; 2]], tess: u32) {
     let mut above: Option<Ring> = None;
     for row in 0..=(profile.len() as u32 - 1) / 3 * tess {
@@ -79,7 +79,7 @@ fn revolve(mesh: &mut Mesh, profile: &[[f64; 2]], tess: u32) {
         let ring = mesh.ring(columns, |mesh, column| {
             let (arc, along) = arc(column, tess);
             let position = DVec3::new(point.x * arc.x, point.x * arc.y, point.z);
-            // The derivative round the axis is taken without its factor, the radius: so a pole has a normal too.
+            // The derivative around the axis omits its factor, the radius, so that poles have a normal too.
             let normal =
                 slopes.iter().map(|d| DVec3::new(d.x * arc.x, d.x * arc.y, d.z).cross(along.extend(0.0)).normalize_or_zero()).sum();
             place(mesh, position, normal);

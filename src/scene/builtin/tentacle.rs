@@ -1,4 +1,4 @@
-//! Tentacles: a skinned tube of many joints with clips, one or a field of them, each with a skeleton of its own.
+//! Tentacle: a skinned tube of many joints with clips, one or many, each with its own skeleton.
 
 use std::f64::consts::TAU;
 
@@ -16,13 +16,13 @@ use crate::scene::{
 
 /// Length of the tube, metres.
 const LENGTH_M: f64 = 2.0;
-/// Radii at the foot and at the tip, metres.
+/// Radii at the bottom and at the tip, metres.
 const RADII_M: [f64; 2] = [0.26, 0.07];
-/// Duration of every clip.
+/// Duration of every clip, seconds.
 const PERIOD_S: f64 = 4.0;
-/// Ways to begin a clip, so that neighbours do not move alike.
+/// Phases at which an instance may start, so that neighbours move differently.
 const PHASES: usize = 8;
-/// Keys of a linear round.
+/// Keyframes per cycle of a linear sampler.
 const KEYS: usize = 16;
 
 pub fn build(values: &Values) -> Result<Scene, BuiltinError> {
@@ -30,7 +30,7 @@ pub fn build(values: &Values) -> Result<Scene, BuiltinError> {
     let (around, along) = (4 + 2 * tess, 4 * tess);
     let triangles = u64::from(2 * around * along) * u64::from(instances);
     if triangles > MAX_TRIANGLES {
-        return Err(BuiltinError(format!("tentacle: {triangles} triangles in all are too many; at most {MAX_TRIANGLES} are made")));
+        return Err(BuiltinError(format!("tentacle: {triangles} triangles in all; allowed: at most {MAX_TRIANGLES}. Lower tess or instances")));
     }
     let mut scene = Scene { materials: vec![Material { name: "skin".into(), ..Material::default() }], ..Scene::default() };
     let heights = tube(&mut scene, around, along);
@@ -43,7 +43,7 @@ pub fn build(values: &Values) -> Result<Scene, BuiltinError> {
     Ok(scene)
 }
 
-/// Radius of the tube at a share of its height, and its slope, with a share of the bulge.
+/// Radius and slope of the tube at a fraction of its height; `bulge` (0 to 1) adds the bulge.
 fn profile(share: f64, bulge: f64) -> [f64; 2] {
     let taper = RADII_M[1] - RADII_M[0];
     let (sin, cos) = libm::sincos(TAU * 5.0 * share);
@@ -53,7 +53,7 @@ fn profile(share: f64, bulge: f64) -> [f64; 2] {
     [radius, slope / LENGTH_M]
 }
 
-/// Builds the tube on +y and gives the height of every vertex, as a share.
+/// Builds the tube along +y and returns the height of every vertex as a fraction.
 fn tube(scene: &mut Scene, around: u32, along: u32) -> Vec<f64> {
     const TONES: [[f64; 3]; 3] = [[0.05, 0.20, 0.28], [0.80, 0.30, 0.20], [0.95, 0.78, 0.52]];
     let mut mesh = Mesh::with_capacity((around * (along + 1) + 2) as usize, (2 * around * along) as usize);
@@ -68,7 +68,7 @@ fn tube(scene: &mut Scene, around: u32, along: u32) -> Vec<f64> {
     };
     let mut below: Option<Ring> = None;
     for row in 0..=along + 2 {
-        // Poles below the foot and above the tip close the tube.
+        // Poles below the bottom and above the tip close the tube.
         let is_pole = row == 0 || row == along + 2;
         let share = f64::from(row.clamp(1, along + 1) - 1) / f64::from(along);
         let [radius, slope] = profile(share, 0.0);
@@ -96,7 +96,7 @@ fn tube(scene: &mut Scene, around: u32, along: u32) -> Vec<f64> {
     heights
 }
 
-/// Gives the tube joints and weights, and the shape of its bulge.
+/// Adds joints and weights to the tube, and the morph target of its bulge.
 fn soften(scene: &mut Scene, heights: &[f64], joints: u32, influences: usize) {
     let held: Vec<Vec<Hold>> = heights.iter().map(|share| shares(share * f64::from(joints - 1).max(1.0), joints, influences)).collect();
     hold::append(scene, 0, joints as usize, influences.div_ceil(4), &held);
@@ -122,16 +122,16 @@ fn soften(scene: &mut Scene, heights: &[f64], joints: u32, influences: usize) {
     scene.primitives[0].deformation.morph_targets = vec![Shape { positions: Some(positions), normals: Some(normals), reach }];
 }
 
-/// Joints that hold a vertex `along` joints up, with weights of 65,535 in all: a uniform B-spline, smooth but for its ends.
+/// The joints that influence a vertex at joint coordinate `along`, with weights of a uniform B-spline that sum to 65,535.
 fn shares(along: f64, joints: u32, influences: usize) -> Vec<Hold> {
-    // Cox and de Boor: from a step to the degree one below the number of influences.
+    // Cox-de Boor recursion up to the degree one below the number of influences.
     let shifted = along + 0.5 * (influences % 2) as f64;
     let (base, t) = (shifted.floor(), shifted - shifted.floor());
     let mut basis = vec![1.0];
     for degree in 1..influences {
         let mut next = vec![0.0; degree + 1];
         for (i, &value) in basis.iter().enumerate() {
-            // Of the piece that lies `at` behind its first knot.
+            // The basis piece that starts `at` before this point.
             let at = t + (degree - 1 - i) as f64;
             next[i] += value * (degree as f64 - at) / degree as f64;
             next[i + 1] += value * at / degree as f64;
@@ -149,7 +149,7 @@ fn shares(along: f64, joints: u32, influences: usize) -> Vec<Hold> {
     hold::whole(&held)
 }
 
-/// Samplers of every clip: per phase one per joint; of the breath, one per phase.
+/// Samplers of the clips: one per phase and joint; of Breathe one per phase.
 struct Samplers {
     joints: Vec<Vec<Vec<usize>>>,
     breath: Vec<usize>,
@@ -201,9 +201,9 @@ fn clips(scene: &mut Scene, joints: u32) -> Samplers {
     Samplers { joints: vec![sway, curl, twist], breath }
 }
 
-/// Adds one tentacle: its place, its joints, its skin, and its channels in every clip.
+/// Adds one tentacle: its nodes, skin, channels in every clip, and instance.
 fn stand(scene: &mut Scene, instance: u32, of: u32, joints: u32, samplers: &Samplers) {
-    // A sunflower's seeds; alone, it stands in the middle.
+    // Positions on a sunflower spiral; a single tentacle stands at the origin.
     let reach = if of == 1 { 0.0 } else { 0.9 * (f64::from(instance) + 0.3).sqrt() };
     let (sin, cos) = libm::sincos(f64::from(instance) * 2.399_963_229_728_653);
     let foot = DVec3::new(reach * sin, 0.0, reach * cos);

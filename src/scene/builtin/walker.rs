@@ -1,4 +1,4 @@
-//! Walker: a long-necked animal on four legs, alone or in a herd, with the clips of its gaits.
+//! Walker: a long-necked animal on four legs, alone or in a herd, with a clip for each gait.
 
 use glam::{DMat4, DVec3};
 
@@ -15,7 +15,7 @@ use crate::scene::{
     rig::{Channel, Clip, Interpolation, Local, Node, Property, Sampler, Skin, Trs},
 };
 
-/// Keys of a round, and ways to begin it, so that neighbours are out of step.
+/// Keyframes per cycle, and phases at which an animal may start, so that neighbours are out of step.
 const KEYS: usize = 64;
 const PHASES: usize = 8;
 
@@ -27,7 +27,7 @@ pub fn build(values: &Values) -> Result<Scene, BuiltinError> {
     let Surface { vertices, triangles } = flesh.skin(cell);
     let all = triangles.len() as u64 * u64::from(instances);
     if all > MAX_TRIANGLES {
-        return Err(BuiltinError(format!("walker: {all} triangles in all are too many; at most {MAX_TRIANGLES} are made")));
+        return Err(BuiltinError(format!("walker: {all} triangles in all; allowed: at most {MAX_TRIANGLES}. Lower tess or instances")));
     }
     let mut mesh = Mesh::with_capacity(vertices.len(), triangles.len());
     for &[place, normal] in &vertices {
@@ -46,12 +46,12 @@ pub fn build(values: &Values) -> Result<Scene, BuiltinError> {
     Ok(scene)
 }
 
-/// Samplers of a gait that begins `phase` later: the way of the pelvis, then the turn of every joint. Gives the first.
+/// Adds the samplers of a gait shifted by `phase`: the pelvis translation, then the rotation of every joint. Returns the first.
 fn record(scene: &mut Scene, gait: &Gait, phase: usize) -> usize {
     let rest = joints();
     let (first, times) = (scene.rig.samplers.len(), |key| (gait.period_s * key as f64 / KEYS as f64) as f32);
     let times: Vec<f32> = (0..=KEYS).map(times).collect();
-    // The last key is the first one again, to the bit.
+    // The last keyframe equals the first, bit by bit.
     let key = |key: usize| moment(gait, &rest, ((key + phase * KEYS / PHASES) % KEYS) as f64 / KEYS as f64);
     let keys: Vec<_> = (0..=KEYS).map(key).collect();
     let mut sampler = |components, values| {
@@ -64,9 +64,9 @@ fn record(scene: &mut Scene, gait: &Gait, phase: usize) -> usize {
     first
 }
 
-/// Adds one animal: its place, its joints, its skin, and its channels in every clip.
+/// Adds one animal: its nodes, skin, channels in every clip, and instance.
 fn stand(scene: &mut Scene, instance: u32, of: u32, samplers: &[usize]) {
-    // A sunflower's seeds, drawn out along the way; alone, it stands in the middle.
+    // Positions on a stretched sunflower spiral; a single animal stands at the origin.
     let reach = if of == 1 { 0.0 } else { (f64::from(instance) + 0.3).sqrt() };
     let (sin, cos) = libm::sincos(f64::from(instance) * 2.399_963_229_728_653);
     let part = |translation| Local::Trs(Trs { translation, ..Trs::default() });
@@ -107,7 +107,7 @@ mod tests {
         scene::pose::{Motion, Pose},
     };
 
-    /// Every vertex of every instance at a moment of a clip.
+    /// Every vertex of every instance at a time of a clip.
     fn deformed(scene: &Scene, clip: usize, time_s: f64, skinning: Skinning) -> Vec<DVec3> {
         let pose = Pose::at(scene, &Motion { clip: Some(clip), time_s, skinning, ..Motion::default() });
         let primitive = &scene.primitives[0];
@@ -118,7 +118,7 @@ mod tests {
         (0..scene.instances.len()).flat_map(all).collect()
     }
 
-    /// Moments between keys as well as on them.
+    /// Times on keyframes and between them.
     fn moments(clip: &Clip) -> impl Iterator<Item = f64> {
         (0..=75).map(|at| clip.duration_s * f64::from(at) / 75.0)
     }
@@ -130,7 +130,7 @@ mod tests {
             let primitive = &scene.primitives[0];
             let corners = || (0..primitive.triangle_count()).map(|triangle| primitive.corners(&scene, triangle));
             let edges: HashSet<[u32; 2]> = corners().flat_map(|[a, b, c]| [[a, b], [b, c], [c, a]]).collect();
-            assert_eq!(edges.len() as u64, 3 * u64::from(primitive.triangle_count()), "tess {tess}: no edge is run twice in one direction");
+            assert_eq!(edges.len() as u64, 3 * u64::from(primitive.triangle_count()), "tess {tess}: an edge occurs twice in one direction");
             assert!(edges.iter().all(|&[a, b]| edges.contains(&[b, a])), "tess {tess}");
             let mut seen = vec![false; primitive.vertex_count() as usize];
             let mut open = vec![0];
@@ -141,7 +141,7 @@ mod tests {
                     open.extend(&next[vertex as usize]);
                 }
             }
-            assert!(seen.iter().all(|seen| *seen), "tess {tess}: it falls apart");
+            assert!(seen.iter().all(|seen| *seen), "tess {tess}: it is not connected");
             let at = |vertex: u32| DVec3::from(primitive.position(&scene, vertex).map(f64::from));
             let volume: f64 = corners().map(|corners| corners.map(at)).map(|[a, b, c]| a.dot(b.cross(c)) / 6.0).sum();
             assert!((0.2..0.6).contains(&volume), "tess {tess}: {volume} m³, outwards");
@@ -206,7 +206,7 @@ mod tests {
                 let places = deformed(&scene, index, time_s, Skinning::Linear);
                 for [a, b, c] in (0..primitive.triangle_count()).map(|triangle| primitive.corners(&scene, triangle)) {
                     for [a, b] in [[a, b], [b, c], [c, a]] {
-                        // Shortest edges are let off: a cell is 5 cm wide.
+                        // The shortest edges are exempt: a cell is 5 cm wide.
                         let stretched = places[a as usize].distance(places[b as usize]) / rest(a).distance(rest(b)).max(0.02);
                         longest = longest.max(stretched);
                     }
@@ -220,7 +220,7 @@ mod tests {
                 }
             }
         }
-        // Most where two legs swing apart: 2.5 times.
+        // The largest factor occurs where two legs swing apart: 2.5.
         assert!(longest < 2.8, "an edge grows {longest} times");
     }
 }

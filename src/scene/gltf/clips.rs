@@ -1,4 +1,4 @@
-//! Clips: the file's animations, with every key checked before it is kept.
+//! Clips: the animations of a file, with every keyframe checked.
 
 use std::collections::{HashMap, HashSet};
 
@@ -19,12 +19,12 @@ use crate::scene::{
     rig::{Channel, Clip, Interpolation, Local, Property, Rig, Sampler},
 };
 
-/// Reads every animation into `rig`, whose nodes stand; `notes` takes what was put right.
+/// Reads every animation into `rig`, whose nodes must be complete. `notes` receives messages about repairs.
 pub fn read(buffers: &Buffers, tree: &Tree, rig: &mut Rig, notes: &mut Vec<String>) -> Result<(), LoadError> {
     let root = buffers.root;
     let channels: usize = root.animations.iter().map(|animation| animation.channels.len()).sum();
     if channels > limits::CHANNELS {
-        return Err(LoadError::new(format!("the clips have {channels} channels; at most {} are read", limits::CHANNELS)));
+        return Err(LoadError::new(format!("the animations have {channels} channels; allowed: at most {}", limits::CHANNELS)));
     }
     let mut reader = Reader { buffers, rig, known: HashMap::new(), numbers: 0, uneven: 0 };
     for (index, animation) in root.animations.iter().enumerate() {
@@ -35,7 +35,7 @@ pub fn read(buffers: &Buffers, tree: &Tree, rig: &mut Rig, notes: &mut Vec<Strin
             let at = |error: LoadError| error.within(format!("{name} channel {place}"));
             let channel = reader.channel(tree, index, animation, channel).map_err(at)?;
             if !taken.insert((channel.node, channel.property.name())) {
-                return Err(at(LoadError::new(format!("its node has another channel of {}", channel.property.name()))));
+                return Err(at(LoadError::new(format!("another channel already animates the {} of its node; a clip may animate it once", channel.property.name()))));
             }
             let last = reader.rig.samplers[channel.sampler].times.last();
             clip.duration_s = last.map_or(clip.duration_s, |&last| clip.duration_s.max(last.into()));
@@ -44,12 +44,12 @@ pub fn read(buffers: &Buffers, tree: &Tree, rig: &mut Rig, notes: &mut Vec<Strin
         reader.rig.clips.push(clip);
     }
     if reader.uneven > 0 {
-        notes.push(format!("{} rotation keys are no unit quaternions; they are taken by their direction", reader.uneven));
+        notes.push(format!("{} rotation keyframes are not unit quaternions; they are normalized", reader.uneven));
     }
     Ok(())
 }
 
-/// As menus and presets name it.
+/// The name in menus and presets.
 fn name_of(animation: &json::Animation, index: usize) -> String {
     let name: String = animation.name.iter().flat_map(|name| name.chars()).filter(|c| !c.is_control()).take(60).collect();
     if name.trim().is_empty() { format!("clip {index}") } else { name }
@@ -58,11 +58,11 @@ fn name_of(animation: &json::Animation, index: usize) -> String {
 struct Reader<'a> {
     buffers: &'a Buffers<'a>,
     rig: &'a mut Rig,
-    /// Samplers by animation, place and lanes.
+    /// Index of the sampler read for each animation, sampler index and number of components.
     known: HashMap<(usize, usize, usize), usize>,
-    /// Key numbers read so far.
+    /// Numbers read so far.
     numbers: usize,
-    /// Rotation keys that are no unit quaternions.
+    /// Rotation keyframes that are not unit quaternions.
     uneven: usize,
 }
 
@@ -75,23 +75,23 @@ impl Reader<'_> {
         channel: &json::animation::Channel,
     ) -> Result<Channel, LoadError> {
         let (target, at) = (channel.target.node.value(), channel.sampler.value());
-        // The crate leaves this index unchecked.
+        // The crate `gltf` does not check this index.
         let node =
-            tree.place_of.get(target).copied().ok_or_else(|| LoadError::new(format!("moves node {target}, which does not exist")))?;
+            tree.place_of.get(target).copied().ok_or_else(|| LoadError::new(format!("its target is node {target}, which does not exist")))?;
         let (property, components) = match channel.target.path {
             Checked::Valid(Path::Translation) => (Property::Translation, 3),
             Checked::Valid(Path::Rotation) => (Property::Rotation, 4),
             Checked::Valid(Path::Scale) => (Property::Scale, 3),
             Checked::Valid(Path::MorphTargetWeights) => (Property::Weights, self.rig.nodes[node].weights.len()),
-            Checked::Invalid => return Err(LoadError::new("moves a property that glTF does not have")),
+            Checked::Invalid => return Err(LoadError::new("its target path must be translation, rotation, scale or weights")),
         };
         let name = node_name(self.buffers.root, target);
         let place = |error: LoadError| error.within(format!("{} of {name}", property.name()));
         if property == Property::Weights && components == 0 {
-            return Err(place(LoadError::new("the node shows no mesh with morph targets")));
+            return Err(place(LoadError::new("the node has no mesh with morph targets")));
         }
         if property != Property::Weights && matches!(self.rig.nodes[node].rest, Local::Matrix(_)) {
-            return Err(place(LoadError::new("the node has a matrix, which no clip may move")));
+            return Err(place(LoadError::new("the node has a matrix; only a node with translation, rotation and scale can be animated")));
         }
         let sampler = match self.known.get(&(clip, at, components)) {
             Some(&sampler) => sampler,
@@ -110,20 +110,20 @@ impl Reader<'_> {
             Checked::Valid(Way::Step) => (Interpolation::Step, 1),
             Checked::Valid(Way::Linear) => (Interpolation::Linear, 1),
             Checked::Valid(Way::CubicSpline) => (Interpolation::Cubic, 3),
-            Checked::Invalid => return Err(LoadError::new("its interpolation is unknown")),
+            Checked::Invalid => return Err(LoadError::new("its interpolation must be STEP, LINEAR or CUBICSPLINE")),
         };
         let times = self.times(from.input.value()).map_err(|error| error.within("input"))?;
         let wanted = times.len() * parts * if property == Property::Weights { components } else { 1 };
         let values = self.values(from.output.value(), property, wanted).map_err(|error| error.within("output"))?;
         if let Some(at) = values.iter().position(|value| !value.is_finite()) {
-            return Err(LoadError::new(format!("key {} has the value {}", at / (components * parts), values[at])).within("output"));
+            return Err(LoadError::new(format!("keyframe {} has the value {}; it must be finite", at / (components * parts), values[at])).within("output"));
         }
         if property == Property::Rotation {
             let keys = values.chunks_exact(4).skip(parts / 2).step_by(parts);
             for (key, q) in keys.enumerate() {
                 let length = q.iter().map(|&v| f64::from(v) * f64::from(v)).sum::<f64>().sqrt();
                 if length < LEAST_LENGTH {
-                    return Err(LoadError::new(format!("key {key} is no quaternion with a direction")).within("output"));
+                    return Err(LoadError::new(format!("keyframe {key} is a quaternion of length {length:e}; it must be at least {LEAST_LENGTH:e}")).within("output"));
                 }
                 self.uneven += usize::from((length - 1.0).abs() > UNEVEN);
             }
@@ -131,19 +131,19 @@ impl Reader<'_> {
         Ok(Sampler { interpolation, times, values, components })
     }
 
-    /// Key times: finite, not negative, and strictly rising.
+    /// Keyframe times: finite, not negative and strictly increasing.
     fn times(&mut self, index: usize) -> Result<Vec<f32>, LoadError> {
         let about = self.buffers.layout(index)?.accessor;
         if (about.component, about.components) != (Component::F32, 1) {
-            return Err(LoadError::new("is not SCALAR of FLOAT"));
+            return Err(LoadError::new("must be SCALAR of FLOAT"));
         }
         let times = self.numbers(index)?;
         for (key, &time) in times.iter().enumerate() {
             if !(time >= 0.0 && time.is_finite()) {
-                return Err(LoadError::new(format!("key {key} lies at {time} s; a time is a number from 0 up")));
+                return Err(LoadError::new(format!("keyframe {key} has the time {time} s; it must be finite and at least 0")));
             }
             if key > 0 && times[key - 1] >= time {
-                return Err(LoadError::new(format!("times must rise, but key {key} at {time} s follows {} s", times[key - 1])));
+                return Err(LoadError::new(format!("keyframe {key} at {time} s follows {} s; times must increase", times[key - 1])));
             }
         }
         Ok(times)
@@ -163,21 +163,21 @@ impl Reader<'_> {
             Property::Weights => 1,
         };
         if !is_number || about.components != components {
-            return Err(LoadError::new("has a type that glTF does not allow here"));
+            return Err(LoadError::new("has a type that glTF does not allow for this property"));
         }
         if about.count as usize != wanted {
-            return Err(LoadError::new(format!("has {} elements; its keys ask for {wanted}", about.count)));
+            return Err(LoadError::new(format!("has {} elements; its keyframes need {wanted}", about.count)));
         }
         self.numbers(index)
     }
 
-    /// All numbers of an accessor, normalized.
+    /// All components of an accessor, normalized where it says so.
     fn numbers(&mut self, index: usize) -> Result<Vec<f32>, LoadError> {
         let layout = self.buffers.layout(index)?;
         let Accessor { component, components, count, .. } = layout.accessor;
         self.numbers += (count * components) as usize;
         if self.numbers > limits::KEY_NUMBERS {
-            return Err(LoadError::new(format!("brings the clips to {} numbers; at most {} are read", self.numbers, limits::KEY_NUMBERS)));
+            return Err(LoadError::new(format!("the animations have {} numbers or more; allowed: at most {}", self.numbers, limits::KEY_NUMBERS)));
         }
         let bytes = self.buffers.materialized(index, &layout)?;
         let packed = Accessor { offset: 0, stride: component.bytes() * components, ..layout.accessor };

@@ -1,6 +1,6 @@
-//! Materials: colours, textures with their samplers and transforms, and the images that they show.
+//! Materials: colours, textures with their samplers and transforms, and the images that they use.
 //!
-//! Only images that something drawn looks up are decoded, within the limits of [`limits`] and none larger than its header says.
+//! Only images that a visible primitive uses are decoded, within [`limits`] and only at the size in their header.
 
 use std::{
     collections::{BTreeSet, HashMap},
@@ -22,13 +22,13 @@ use crate::scene::{
     texture::{Filter, Image, MipFilter, Texture, Wrap},
 };
 
-/// Extensions of materials that are read.
+/// Supported material extensions.
 pub const EXTENSIONS: [&str; 3] = ["KHR_texture_transform", "KHR_materials_unlit", "KHR_materials_emissive_strength"];
 
-/// Largest factor of emitted light.
+/// Largest emissive strength: the largest finite f16.
 const BRIGHTEST: f32 = 65_504.0;
 
-/// Every material of the file, and the images of those that `shown` nodes use; `notes` takes what is not drawn as it says.
+/// Reads every material, and the images of those on `shown` nodes. `notes` receives messages about what is drawn differently.
 pub fn read(
     buffers: &mut Buffers,
     shown: &[usize],
@@ -56,20 +56,20 @@ pub fn read(
     Ok((materials, images))
 }
 
-/// What images point at must exist, even where nothing looks them up.
+/// Checks the sources of all images, even of unused ones.
 pub fn check_images(buffers: &Buffers) -> Result<(), LoadError> {
     for (index, image) in buffers.root.images.iter().enumerate() {
         let place = |error: LoadError| error.within(called("image", index, image.name.as_deref()));
         match (image.buffer_view, &image.uri) {
             (Some(view), _) => drop(buffers.view(view.value()).map_err(place)?),
-            (None, None) => return Err(place(LoadError::new("has neither a URI nor a bufferView"))),
+            (None, None) => return Err(place(LoadError::new("it has neither a URI nor a bufferView"))),
             (None, Some(_)) => {}
         }
     }
     Ok(())
 }
 
-/// Materials of triangles that the scene shows.
+/// Materials of the triangles that the scene shows.
 fn used(root: &json::Root, shown: &[usize]) -> BTreeSet<usize> {
     let meshes = shown.iter().filter_map(|&node| root.nodes[node].mesh).map(|mesh| &root.meshes[mesh.value()]);
     let is_drawn = |mode: &Checked<Mode>| matches!(mode, Checked::Valid(Mode::Triangles | Mode::TriangleStrip | Mode::TriangleFan));
@@ -77,7 +77,7 @@ fn used(root: &json::Root, shown: &[usize]) -> BTreeSet<usize> {
     primitives.filter_map(|primitive| primitive.material).map(|material| material.value()).collect()
 }
 
-/// Does a mask leave out all of it?
+/// Returns true if alpha masking discards all of it.
 pub fn is_invisible(about: &json::Material) -> bool {
     let alpha = about.pbr_metallic_roughness.base_color_factor.0[3];
     let alpha_cutoff = about.alpha_cutoff.map_or(0.5, |alpha_cutoff| alpha_cutoff.0);
@@ -89,15 +89,15 @@ struct Reader<'a, 'b, 'c> {
     buffers: &'a mut Buffers<'b>,
     read: &'a mut ReadFile<'c>,
     images: Vec<Image>,
-    /// Place of every image of the file that was decoded.
+    /// Index of each decoded image, by its index in the file.
     known: HashMap<usize, usize>,
-    /// Of all decoded images.
+    /// Decoded size of all images so far.
     bytes: u64,
     notes: &'a mut Vec<String>,
 }
 
 impl Reader<'_, '_, '_> {
-    /// `plain` with all that is looked up.
+    /// `plain` with its textures, emission and alpha cutoff.
     fn material(&mut self, plain: Material, about: &json::Material) -> Result<Material, LoadError> {
         let base = about.pbr_metallic_roughness.base_color_texture.as_ref();
         let base_texture = base.map(|info| self.texture(info).map_err(|error| error.within("baseColorTexture"))).transpose()?;
@@ -108,7 +108,7 @@ impl Reader<'_, '_, '_> {
         }
         let strength = extensions.and_then(|extensions| extensions.emissive_strength.as_ref()).map_or(1.0, |s| s.emissive_strength.0);
         if !(0.0..=BRIGHTEST).contains(&strength) {
-            return Err(LoadError::new(format!("emissiveStrength {strength} lies outside 0..={BRIGHTEST}")));
+            return Err(LoadError::new(format!("emissiveStrength is {strength}; allowed: 0 to {BRIGHTEST}")));
         }
         let emission = about.emissive_factor.0.map(|channel| channel.clamp(0.0, 1.0) * strength);
         let glow = about.emissive_texture.as_ref().filter(|_| emission != [0.0; 3]);
@@ -116,7 +116,7 @@ impl Reader<'_, '_, '_> {
         Ok(Material { emission, emission_texture, ..plain })
     }
 
-    /// With a cutoff where alpha leaves something out. What it does not is drawn, and all of that is opaque.
+    /// Adds the alpha cutoff of MASK and BLEND materials. What is drawn of them is opaque.
     fn masked(&mut self, plain: Material, about: &json::Material) -> Result<Material, LoadError> {
         let name = quoted(&plain.name);
         let alpha = plain.base_color[3];
@@ -125,7 +125,7 @@ impl Reader<'_, '_, '_> {
             Checked::Valid(AlphaMode::Mask) => {
                 let alpha_cutoff = about.alpha_cutoff.map_or(0.5, |alpha_cutoff| alpha_cutoff.0);
                 if !(alpha_cutoff >= 0.0 && alpha_cutoff.is_finite()) {
-                    return Err(LoadError::new(format!("alphaCutoff {alpha_cutoff} is not a number from 0 up")));
+                    return Err(LoadError::new(format!("alphaCutoff is {alpha_cutoff}; it must be finite and at least 0")));
                 }
                 let alpha_cutoff = (alpha_cutoff > 0.0 && opaque.base_texture.is_some()).then(|| (alpha_cutoff / alpha).min(2.0));
                 Ok(Material { alpha_cutoff, ..opaque })
@@ -133,8 +133,8 @@ impl Reader<'_, '_, '_> {
             Checked::Valid(AlphaMode::Blend) => {
                 let texels = opaque.base_texture.map(|texture| &self.images[texture.image].levels[0].texels);
                 let has_holes = texels.is_some_and(|texels| texels.iter().any(|texel| texel[3] < 128));
-                let instead = if has_holes { "cut out where its alpha is below one half" } else { "opaque" };
-                self.notes.push(format!("material {name}: blending is not drawn; it is {instead}"));
+                let instead = if has_holes { "masked where its alpha is below one half" } else { "opaque" };
+                self.notes.push(format!("material {name}: blending is not supported; the material is {instead}"));
                 Ok(Material { alpha_cutoff: has_holes.then_some(0.5), ..opaque })
             }
             _ => Ok(plain),
@@ -149,11 +149,11 @@ impl Reader<'_, '_, '_> {
             None | Some(Checked::Valid(WrappingMode::Repeat)) => Ok(Wrap::Repeat),
             Some(Checked::Valid(WrappingMode::MirroredRepeat)) => Ok(Wrap::Mirrored),
             Some(Checked::Valid(WrappingMode::ClampToEdge)) => Ok(Wrap::Clamp),
-            Some(Checked::Invalid) => Err(LoadError::new("its sampler wraps in a way that glTF does not have")),
+            Some(Checked::Invalid) => Err(LoadError::new("the wrap mode of its sampler is not one of glTF 2.0")),
         };
         let wrap = [wrap(|sampler| sampler.wrap_s)?, wrap(|sampler| sampler.wrap_t)?];
-        let unknown = || LoadError::new("its sampler has a filter that glTF does not have");
-        // Where the file leaves it open, pictures look best mixed.
+        let unknown = || LoadError::new("a filter of its sampler is not one of glTF 2.0");
+        // The default where the file specifies no filter: linear.
         let mag_filter = match sampler.and_then(|sampler| sampler.mag_filter) {
             None | Some(Checked::Valid(MagFilter::Linear)) => Filter::Linear,
             Some(Checked::Valid(MagFilter::Nearest)) => Filter::Nearest,
@@ -177,7 +177,7 @@ impl Reader<'_, '_, '_> {
         Ok(Texture { image, wrap, mag_filter, min_filter, mip_filter, set, image_from_texcoord })
     }
 
-    /// The place of a decoded image.
+    /// The index of an image, which is decoded on its first use.
     fn image(&mut self, index: usize) -> Result<usize, LoadError> {
         if let Some(&place) = self.known.get(&index) {
             return Ok(place);
@@ -198,16 +198,16 @@ impl Reader<'_, '_, '_> {
                 self.buffers.left -= bytes.len() as u64;
                 bytes
             }
-            (Some(_), Some(_)) => return Err(LoadError::new("has both a URI and a bufferView")),
-            (None, None) => return Err(LoadError::new("has neither a URI nor a bufferView")),
+            (Some(_), Some(_)) => return Err(LoadError::new("it has both a URI and a bufferView; remove one of them")),
+            (None, None) => return Err(LoadError::new("it has neither a URI nor a bufferView")),
         };
         let format = match &bytes[..] {
             [0x89, b'P', b'N', b'G', ..] => ImageFormat::Png,
             [0xff, 0xd8, 0xff, ..] => ImageFormat::Jpeg,
-            _ => return Err(LoadError::new("is neither PNG nor JPEG")),
+            _ => return Err(LoadError::new("it is neither PNG nor JPEG; convert it to one of them")),
         };
         if let Some(kind) = about.mime_type.as_ref().map(|kind| kind.0.as_str()).filter(|kind| *kind != format.to_mime_type()) {
-            self.notes.push(format!("{name} is {}, although the file says {}", format.to_mime_type(), quoted(kind)));
+            self.notes.push(format!("{name} is {}, although the file declares {}", format.to_mime_type(), quoted(kind)));
         }
         let (size, texels) = decode(&bytes, format, limits::IMAGES_BYTES - self.bytes)?;
         self.bytes += 4 * texels.len() as u64;
@@ -215,10 +215,10 @@ impl Reader<'_, '_, '_> {
     }
 }
 
-/// What takes stored coordinates to the image's, and the set that they are stored in.
+/// The map from stored texture coordinates to image coordinates, and the set of coordinates that it uses.
 ///
-/// KHR_texture_transform: scaled, then turned, then moved. The turn is counterclockwise in a picture whose v points down, as
-/// its words and its test model have it; the formula beside the words turns the other way.
+/// KHR_texture_transform: scaled, then rotated, then translated. The rotation is counterclockwise in an image whose v axis
+/// points down, as the extension's text and test model define it; the formula next to the text rotates the other way.
 fn transform(info: &json::texture::Info) -> Result<([[f32; 3]; 2], u32), LoadError> {
     let Some(given) = info.extensions.as_ref().and_then(|extensions| extensions.texture_transform.as_ref()) else {
         return Ok(([[1.0, 0.0, 0.0], [0.0, 1.0, 0.0]], info.tex_coord));
@@ -227,30 +227,30 @@ fn transform(info: &json::texture::Info) -> Result<([[f32; 3]; 2], u32), LoadErr
     let (sin, cos) = libm::sincos(given.rotation.0.into());
     let rows = [[cos * wide, sin * high, x], [-sin * wide, cos * high, y]].map(|row| row.map(|v| v as f32));
     if rows.as_flattened().iter().any(|v| !v.is_finite()) {
-        return Err(LoadError::new("KHR_texture_transform has a number that is not finite"));
+        return Err(LoadError::new("KHR_texture_transform has a value that is not finite"));
     }
     Ok((rows, given.tex_coord.unwrap_or(info.tex_coord)))
 }
 
-/// Size and texels of an encoded image, refused by its header before anything is decoded.
+/// Decodes an image. Its header is checked against the limits before anything is decoded.
 fn decode(bytes: &[u8], format: ImageFormat, left: u64) -> Result<([u32; 2], Vec<[u8; 4]>), LoadError> {
-    let failed = |error: image::ImageError| LoadError::new(format!("cannot be decoded: {}", error.to_string().replace('\n', " ")));
+    let failed = |error: image::ImageError| LoadError::new(format!("cannot decode the image: {}", error.to_string().replace('\n', " ")));
     let mut reader = ImageReader::with_format(Cursor::new(bytes), format);
     let mut most = Limits::default();
-    // Up to eight bytes a texel while it is decoded, and as much again for the decoder itself.
+    // Up to eight bytes per texel while it is decoded, and as much again for the decoder.
     most.max_alloc = Some(4 * left.max(1 << 20));
     reader.limits(most);
     let decoder = reader.into_decoder().map_err(failed)?;
     let (width, height) = decoder.dimensions();
     let side = limits::IMAGE_SIDE;
     if width == 0 || height == 0 || width.max(height) > side {
-        return Err(LoadError::new(format!("is {width} x {height} texels; 1 to {side} a side are read")));
+        return Err(LoadError::new(format!("it has {width} x {height} texels; allowed: 1 to {side} along each side")));
     }
     let decoded = 4 * u64::from(width) * u64::from(height);
     if decoded > left {
         let all = limits::IMAGES_BYTES - left + decoded;
         return Err(LoadError::new(format!(
-            "brings the model's images to {all} bytes once decoded; at most {} are read",
+            "with it the decoded images have {all} bytes; allowed: at most {}",
             limits::IMAGES_BYTES
         )));
     }

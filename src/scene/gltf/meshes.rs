@@ -1,4 +1,4 @@
-//! Meshes: primitives with their bytes, placed by the nodes that show them.
+//! Meshes: reads primitives with their attributes and creates the instances of the nodes that show them.
 
 use std::{
     collections::{BTreeSet, HashMap},
@@ -25,7 +25,7 @@ use crate::scene::{
     texture::{MAX_REPEATS, stored},
 };
 
-/// The whole file as a scene.
+/// Reads a whole model.
 pub fn scene(bytes: &[u8], read: &mut ReadFile) -> Result<Scene, LoadError> {
     let (json, binary) = container::split(bytes)?;
     let root = container::root(json)?;
@@ -57,11 +57,11 @@ pub fn scene(bytes: &[u8], read: &mut ReadFile) -> Result<Scene, LoadError> {
     Ok(scene)
 }
 
-/// What the file has and the picture lacks.
+/// Messages about features of the file that are not drawn.
 fn omissions(root: &json::Root) -> Vec<String> {
     let is_read = |name: &str| name == container::QUANTIZATION || materials::EXTENSIONS.contains(&name);
     let ignored = root.extensions_used.iter().filter(|name| !is_read(name));
-    let mut notes: Vec<String> = ignored.map(|name| format!("extension {} is ignored", quoted(name))).collect();
+    let mut notes: Vec<String> = ignored.map(|name| format!("the extension {} is not supported and is ignored", quoted(name))).collect();
     let has_more = |material: &json::Material| {
         let roughness = material.pbr_metallic_roughness.metallic_roughness_texture.is_some();
         roughness || material.normal_texture.is_some() || material.occlusion_texture.is_some()
@@ -76,22 +76,22 @@ pub(super) struct Loader<'a> {
     pub(super) buffers: &'a Buffers<'a>,
     tree: &'a Tree,
     pub(super) scene: Scene,
-    /// Attributes may be small integers.
+    /// The file declares KHR_mesh_quantization: attributes may be small integers.
     pub(super) is_quantized: bool,
     notes: BTreeSet<String>,
-    /// Where a view or a materialised accessor lies in the scene's bytes.
+    /// Byte offset of each copied buffer view or sparse accessor in the scene's bytes.
     vertex_places: HashMap<Source, u32>,
     index_places: HashMap<Source, u32>,
-    /// What each primitive of the scene was read from.
+    /// The JSON of each primitive of the scene.
     pub(super) origins: Vec<&'a json::mesh::Primitive>,
-    /// Primitives of a mesh, once it was met.
+    /// Primitives of each mesh that was read.
     meshes: HashMap<usize, Range<usize>>,
     default_material: Option<usize>,
     vertices: u64,
     triangles: u64,
 }
 
-/// Bytes that several primitives may share.
+/// A source of bytes that several primitives may share.
 #[derive(Clone, Copy, PartialEq, Eq, Hash)]
 enum Source {
     View(usize),
@@ -99,7 +99,7 @@ enum Source {
 }
 
 impl<'a> Loader<'a> {
-    /// Adds to `scene`, which has the file's materials and their images.
+    /// A loader that adds to `scene`, which must have the file's materials and images.
     fn new(buffers: &'a Buffers<'a>, tree: &'a Tree, scene: Scene) -> Self {
         Self {
             buffers,
@@ -117,14 +117,14 @@ impl<'a> Loader<'a> {
         }
     }
 
-    /// Adds the instances of one node. A mesh that a skin holds ignores its node: the joints place it.
+    /// Adds the instances of a node. A skinned mesh ignores the transform of its node: its joints place it.
     fn place(&mut self, node: usize, rig: &Rig) -> Result<(), LoadError> {
         let about = &self.buffers.root.nodes[node];
         let Some(mesh) = about.mesh.map(|mesh| mesh.value()) else { return Ok(()) };
         let range = self.mesh(mesh)?;
         if self.scene.instances.len() + range.len() > limits::INSTANCES {
             return Err(
-                LoadError::new(format!("more than {} primitives are placed", limits::INSTANCES)).within(node_name(self.buffers.root, node))
+                LoadError::new(format!("the nodes show more than {} primitives, which is the limit", limits::INSTANCES)).within(node_name(self.buffers.root, node))
             );
         }
         let skin = about.skin.map(|skin| skin.value());
@@ -143,7 +143,7 @@ impl<'a> Loader<'a> {
         self.notes.insert(note);
     }
 
-    /// The primitives of a mesh; loads it when it is met for the first time.
+    /// The primitives of a mesh, which is read on its first use.
     fn mesh(&mut self, mesh: usize) -> Result<Range<usize>, LoadError> {
         if let Some(range) = self.meshes.get(&mesh) {
             return Ok(range.clone());
@@ -156,13 +156,13 @@ impl<'a> Loader<'a> {
                 Checked::Valid(Mode::TriangleStrip) => Topology::Strip,
                 Checked::Valid(Mode::TriangleFan) => Topology::Fan,
                 _ => {
-                    self.notes.insert(format!("{name} is left out: points and lines are not drawn"));
+                    self.notes.insert(format!("{name} is skipped: points and lines are not drawn"));
                     continue;
                 }
             };
             let material = primitive.material.map(|material| &self.buffers.root.materials[material.value()]);
             if material.is_some_and(materials::is_invisible) {
-                self.notes.insert(format!("{name} is left out: the alpha of its material is below the cutoff everywhere"));
+                self.notes.insert(format!("{name} is skipped: the alpha of its material is below the cutoff everywhere"));
                 continue;
             }
             self.primitive(&name, topology, primitive).map_err(|LoadError(reason)| LoadError(format!("{name}{reason}")))?;
@@ -172,12 +172,12 @@ impl<'a> Loader<'a> {
         Ok(range)
     }
 
-    /// Loads one primitive. Reasons of errors begin with ` ATTRIBUTE: ` or `: `, to follow the primitive's name.
+    /// Reads a primitive. Errors begin with ` ATTRIBUTE: ` or `: `, to follow the primitive's name.
     fn primitive(&mut self, name: &str, topology: Topology, about: &'a json::mesh::Primitive) -> Result<(), LoadError> {
         let attribute = |semantic: Semantic| about.attributes.get(&Checked::Valid(semantic)).map(|accessor| accessor.value());
         let at = |place: &'static str| move |error: LoadError| LoadError(format!(" {place}: {error}"));
         let plain = |error: LoadError| LoadError(format!(": {error}"));
-        let positions = attribute(Semantic::Positions).ok_or_else(|| plain(LoadError::new("has no POSITION")))?;
+        let positions = attribute(Semantic::Positions).ok_or_else(|| plain(LoadError::new("it has no POSITION attribute")))?;
         let count = self.buffers.layout(positions).map_err(at("POSITION"))?.accessor.count;
         self.budget_vertices(count.into()).map_err(at("POSITION"))?;
         let (places, directions) = if self.is_quantized { (PLACES, DIRECTIONS) } else { (FLOAT, FLOAT) };
@@ -216,7 +216,7 @@ impl<'a> Loader<'a> {
         if let Some(colors) = &primitive.colors {
             check_finite(&self.scene, colors).map_err(at("COLOR_0"))?;
             if colors.components == 4 && self.scene.materials[material].alpha_cutoff.is_some() {
-                self.notes.insert(format!("{name}: only the alpha of its image cuts it out, not that of its vertex colours"));
+                self.notes.insert(format!("{name}: alpha masking uses the alpha of the image, not that of the vertex colours"));
             }
         }
         self.scene.primitives.push(primitive);
@@ -234,7 +234,7 @@ impl<'a> Loader<'a> {
         })
     }
 
-    /// Where the textures of a material are looked up. Errors begin as those of attributes do.
+    /// The texture coordinates of a material's textures. Errors begin as those of attributes do.
     fn texcoords(&mut self, about: &json::mesh::Primitive, material: usize, count: u32) -> Result<[Option<Accessor>; 2], LoadError> {
         let textures = self.scene.materials[material].textures().map(|texture| texture.copied());
         let mut texcoords = [None; 2];
@@ -242,7 +242,7 @@ impl<'a> Loader<'a> {
             let Some(texture) = texture else { continue };
             let at = |error: LoadError| LoadError(format!(" TEXCOORD_{}: {error}", texture.set));
             let index = about.attributes.get(&Checked::Valid(Semantic::TexCoords(texture.set)));
-            let index = index.ok_or_else(|| at(LoadError::new("is missing, and a texture of its material is looked up there")))?;
+            let index = index.ok_or_else(|| at(LoadError::new("it is missing, although a texture of the material uses it")))?;
             let kinds = if self.is_quantized { QUANTIZED_COORDS } else { COORDS };
             let accessor = self.attribute(index.value(), count, &[2], kinds).map_err(at)?;
             check_finite(&self.scene, &accessor).map_err(at)?;
@@ -250,7 +250,7 @@ impl<'a> Loader<'a> {
             if let Some(vertex) = (0..count).find(|&vertex| place(vertex).abs().max_element() > MAX_REPEATS) {
                 let place = place(vertex);
                 let reason =
-                    format!("vertex {vertex} lies at {} {} of the image, which is followed to {MAX_REPEATS} repeats", place.x, place.y);
+                    format!("vertex {vertex} has the image coordinates {} {}; allowed: magnitudes up to {MAX_REPEATS}", place.x, place.y);
                 return Err(at(LoadError::new(reason)));
             }
             *texcoords = Some(accessor);
@@ -261,7 +261,7 @@ impl<'a> Loader<'a> {
     fn budget_vertices(&mut self, more: u64) -> Result<(), LoadError> {
         self.vertices += more;
         if self.vertices > limits::VERTICES {
-            return Err(LoadError::new(format!("brings the model to {} vertices; at most {} are read", self.vertices, limits::VERTICES)));
+            return Err(LoadError::new(format!("the model has {} vertices or more; allowed: at most {}", self.vertices, limits::VERTICES)));
         }
         Ok(())
     }
@@ -272,12 +272,12 @@ impl<'a> Loader<'a> {
             Topology::Strip | Topology::Fan => (corners >= 3, "at least 3"),
         };
         if !fits {
-            return Err(LoadError::new(format!("{corners} corners make no triangles; their number must be {wanted}")));
+            return Err(LoadError::new(format!("{corners} corners do not form whole triangles; their number must be {wanted}")));
         }
         self.triangles += u64::from(topology.triangles(corners));
         if self.triangles > limits::TRIANGLES {
             return Err(LoadError::new(format!(
-                "brings the model to {} triangles; at most {} are read",
+                "the model has {} triangles or more; allowed: at most {}",
                 self.triangles,
                 limits::TRIANGLES
             )));
@@ -285,7 +285,7 @@ impl<'a> Loader<'a> {
         Ok(())
     }
 
-    /// Takes over an attribute of `count` vertices if its type is among those allowed.
+    /// Copies an attribute of `count` vertices if its type is among the allowed ones.
     pub(super) fn attribute(
         &mut self,
         index: usize,
@@ -296,10 +296,10 @@ impl<'a> Loader<'a> {
         let layout = self.buffers.layout(index)?;
         let accessor = layout.accessor;
         if !components.contains(&accessor.components) || !kinds.contains(&(accessor.component, accessor.normalized)) {
-            return Err(LoadError::new(format!("accessor {index} has a type that glTF does not allow here ({})", type_name(&accessor))));
+            return Err(LoadError::new(format!("accessor {index} has the type {}, which glTF does not allow for it", type_name(&accessor))));
         }
         if accessor.count != count {
-            return Err(LoadError::new(format!("accessor {index} has {} elements for {count} vertices", accessor.count)));
+            return Err(LoadError::new(format!("accessor {index} has {} elements, but the primitive has {count} vertices", accessor.count)));
         }
         self.take_over(index)
     }
@@ -314,10 +314,10 @@ impl<'a> Loader<'a> {
             && accessor.components == 1
             && !accessor.normalized;
         if !is_index {
-            return Err(LoadError::new(format!("accessor {index} has a type that glTF does not allow here ({})", type_name(&accessor))));
+            return Err(LoadError::new(format!("accessor {index} has the type {}, which glTF does not allow for it", type_name(&accessor))));
         }
         if accessor.stride != accessor.component.bytes() {
-            return Err(LoadError::new(format!("accessor {index} has a byteStride, which indices must not have")));
+            return Err(LoadError::new(format!("the bufferView of accessor {index} has a byteStride; indices must not have one")));
         }
         take_over(self.buffers, index, &mut self.index_places, &mut self.scene.index_bytes)
     }
@@ -329,7 +329,7 @@ impl<'a> Loader<'a> {
 }
 
 pub(super) const FLOAT: &[(Component, bool)] = &[(Component::F32, false)];
-/// What KHR_mesh_quantization allows for positions.
+/// Component types of positions under KHR_mesh_quantization.
 const PLACES: &[(Component, bool)] = &[
     (Component::F32, false),
     (Component::I8, false),
@@ -341,10 +341,10 @@ const PLACES: &[(Component, bool)] = &[
     (Component::U16, false),
     (Component::U16, true),
 ];
-/// The same for normals.
+/// Component types of normals under KHR_mesh_quantization.
 const DIRECTIONS: &[(Component, bool)] = &[(Component::F32, false), (Component::I8, true), (Component::I16, true)];
 const COORDS: &[(Component, bool)] = &[(Component::F32, false), (Component::U8, true), (Component::U16, true)];
-/// What KHR_mesh_quantization allows for texture coordinates.
+/// Component types of texture coordinates under KHR_mesh_quantization.
 const QUANTIZED_COORDS: &[(Component, bool)] = PLACES;
 const COLOR: &[(Component, bool)] = &[(Component::F32, false), (Component::U8, true), (Component::U16, true)];
 
@@ -357,7 +357,7 @@ fn primitive_name(root: &json::Root, mesh: usize, primitive: usize) -> String {
     format!("{} primitive {primitive}", called("mesh", mesh, root.meshes[mesh].name.as_deref()))
 }
 
-/// Copies the view of an accessor (or its sparse elements) unless that was done before.
+/// Copies the buffer view of an accessor (or its sparse elements) unless that was done before.
 fn take_over(buffers: &Buffers, index: usize, places: &mut HashMap<Source, u32>, bytes: &mut Vec<u8>) -> Result<Accessor, LoadError> {
     let layout = buffers.layout(index)?;
     let accessor = layout.accessor;
@@ -379,11 +379,11 @@ fn take_over(buffers: &Buffers, index: usize, places: &mut HashMap<Source, u32>,
     Ok(Accessor { offset: start + placed.offset, ..placed })
 }
 
-/// Appends at a multiple of 4 bytes and pads to one; returns where.
+/// Appends at a multiple of 4 bytes and pads to one; returns the offset.
 fn append(bytes: &mut Vec<u8>, more: &[u8]) -> Result<u32, LoadError> {
     let total = bytes.len() as u64 + more.len().next_multiple_of(4) as u64;
     if total > limits::BINDING_BYTES {
-        return Err(LoadError::new(format!("brings the model to {total} bytes in one buffer; at most {} fit", limits::BINDING_BYTES)));
+        return Err(LoadError::new(format!("the model needs {total} bytes or more in one buffer; allowed: at most {}", limits::BINDING_BYTES)));
     }
     let start = bytes.len() as u32;
     bytes.extend_from_slice(more);
@@ -394,7 +394,7 @@ fn append(bytes: &mut Vec<u8>, more: &[u8]) -> Result<u32, LoadError> {
 pub(super) fn check_finite(scene: &Scene, accessor: &Accessor) -> Result<(), LoadError> {
     let value = |vertex, lane| accessor.value(&scene.vertex_bytes, vertex, lane);
     match (0..accessor.count).find(|&vertex| (0..accessor.components).any(|lane| !value(vertex, lane).is_finite())) {
-        Some(vertex) => Err(LoadError::new(format!("vertex {vertex} is not finite"))),
+        Some(vertex) => Err(LoadError::new(format!("vertex {vertex} has a value that is not finite"))),
         None => Ok(()),
     }
 }
@@ -406,13 +406,13 @@ fn check_indices(scene: &Scene, primitive: &Primitive) -> Result<(), LoadError> 
     match (0..indices.count).find(beyond) {
         Some(corner) => {
             let index = indices.integer(&scene.index_bytes, corner, 0);
-            Err(LoadError::new(format!("corner {corner} names vertex {index} of {count}")))
+            Err(LoadError::new(format!("corner {corner} refers to vertex {index}, but there are only {count}")))
         }
         None => Ok(()),
     }
 }
 
-/// Fills in bounds and longest edge; refuses positions that are not finite.
+/// Computes the bounds and the longest edge. Positions must be finite.
 fn measure(scene: &Scene, primitive: &mut Primitive) -> Result<(), LoadError> {
     check_finite(scene, &primitive.positions)?;
     let at = |vertex: u32| DVec3::from(primitive.position(scene, vertex).map(f64::from));
@@ -427,10 +427,10 @@ fn measure(scene: &Scene, primitive: &mut Primitive) -> Result<(), LoadError> {
     Ok(())
 }
 
-/// Normals of a primitive that has none: the mean of the adjoining faces, weighted by area.
+/// Computes missing normals: the mean of the normals of the adjoining triangles, weighted by area.
 ///
-/// glTF asks for flat normals here. Vertices that triangles do not share (no indices) get just those; shared ones would
-/// have to be split first, so they are smoothed instead, and the file's bytes stay as they are.
+/// glTF asks for flat normals. Without indices the result is flat. Shared vertices would have to be split first, so theirs
+/// are smooth instead and the bytes of the file stay as they are.
 fn smooth_normals(scene: &Scene, primitive: &Primitive) -> Vec<[f32; 3]> {
     let at = |vertex: u32| DVec3::from(primitive.position(scene, vertex).map(f64::from));
     let mut sums = vec![DVec3::ZERO; primitive.vertex_count() as usize];

@@ -1,12 +1,12 @@
-//! glTF 2.0: models from files that nobody vouches for.
+//! glTF 2.0 loader for untrusted files.
 //!
-//! The crate `gltf` parses and validates the JSON; everything after that (URIs, buffers, accessors, the node tree) is
-//! checked here, in 64-bit arithmetic and under the limits of [`limits`], before a byte is read. Attribute bytes are then
-//! taken over as they are. Every refusal is one sentence that names file, mesh, primitive and accessor.
+//! The crate `gltf` parses and validates the JSON. Everything else (URIs, buffers, accessors, the node tree) is checked here
+//! in 64-bit arithmetic and against [`limits`] before a byte is read. Attribute bytes are copied as they are. Every error is
+//! one sentence that names the file, the mesh, the primitive and the accessor.
 //!
-//! Read: triangle lists, strips and fans, any index width, interleaved, sparse and quantized accessors, base colour and
-//! emission with their textures, vertex colours, the default scene's nodes and cameras, skins, morph targets and clips. Named
-//! in [`Scene::notes`] and left out: points, lines, normal maps and what else physically based shading asks for.
+//! Supported: triangle lists, strips and fans, all index widths, interleaved, sparse and quantized accessors, base colour and
+//! emission with their textures, vertex colours, the nodes and cameras of the default scene, skins, morph targets and clips.
+//! Skipped with an entry in [`Scene::notes`]: points, lines, normal maps and the rest of physically based shading.
 
 mod buffers;
 mod clips;
@@ -26,23 +26,23 @@ use std::{
 
 use super::Scene;
 
-/// Everything that a file may ask for, in one table.
+/// Upper limits of everything that a file can demand.
 pub mod limits {
     const MIB: u64 = 1 << 20;
-    /// Size of the model file, and of each file that it names.
+    /// Size of the model file, and of each file that it refers to.
     pub const FILE_BYTES: u64 = 256 * MIB;
-    /// All files of a model together.
+    /// Total size of all files of a model.
     pub const TOTAL_BYTES: u64 = 512 * MIB;
     pub const JSON_BYTES: u64 = 64 * MIB;
-    /// JSON objects: each may cost hundreds of bytes once parsed.
+    /// JSON objects; each may need hundreds of bytes once parsed.
     pub const JSON_OBJECTS: usize = 1_000_000;
-    /// One portable storage binding.
+    /// Size of the largest storage binding that every adapter supports.
     pub const BINDING_BYTES: u64 = 128 * MIB;
-    /// Of all primitives together, before instancing.
+    /// Vertices of all primitives, each counted once however often it is instanced.
     pub const VERTICES: u64 = 4_000_000;
-    /// Of all primitives together, before instancing.
+    /// Triangles of all primitives, each counted once however often it is instanced.
     pub const TRIANGLES: u64 = 10_000_000;
-    /// Placements of primitives.
+    /// Instances of primitives.
     pub const INSTANCES: usize = 65_536;
     /// Nodes from a root to a leaf.
     pub const NODE_DEPTH: usize = 256;
@@ -58,15 +58,15 @@ pub mod limits {
     pub const CHANNELS: usize = 262_144;
     /// Key times and values of all clips.
     pub const KEY_NUMBERS: usize = 16_000_000;
-    /// Texels across and down an image.
+    /// Width and height of an image in texels.
     pub const IMAGE_SIDE: u32 = 8192;
-    /// All images once they are decoded, before smaller copies are made of them.
+    /// Decoded size of all images, without mip levels.
     pub const IMAGES_BYTES: u64 = 512 * MIB;
-    /// Notes kept for the user.
+    /// Messages to the user.
     pub const NOTES: usize = 32;
 }
 
-/// Why a model cannot be drawn; one sentence.
+/// Why a model cannot be loaded; one sentence.
 #[derive(Debug, PartialEq, thiserror::Error)]
 #[error("{0}")]
 pub struct LoadError(pub String);
@@ -76,16 +76,19 @@ impl LoadError {
         Self(reason.to_string())
     }
 
-    /// Says where.
+    /// Prepends the place of the error.
     fn within(self, place: impl Display) -> Self {
         Self(format!("{place}: {}", self.0))
     }
 }
 
-/// Reads a file that lies beside the model, given its relative path and the most bytes it may have.
+/// Reads a file next to the model, given its relative path and the largest size in bytes.
 pub type ReadFile<'a> = dyn FnMut(&Path, u64) -> Result<Vec<u8>, LoadError> + 'a;
 
-/// Loads a `.gltf` or `.glb`. Only the model's own folder is read.
+/// Loads a `.gltf` or `.glb` file. Only files in its folder and below are read.
+///
+/// # Errors
+/// If a file cannot be read, is malformed, or exceeds [`limits`]; the sentence begins with the file name.
 pub fn load(path: &Path) -> Result<Scene, LoadError> {
     let file = path.file_name().unwrap_or(path.as_os_str()).to_string_lossy().into_owned();
     let name = path.file_stem().map(|stem| stem.to_string_lossy().into_owned()).unwrap_or_default();
@@ -99,20 +102,23 @@ pub fn load(path: &Path) -> Result<Scene, LoadError> {
     }
 }
 
-/// Reads a model from memory; `read` supplies the files that it names, by relative paths that never climb.
+/// Loads a model from memory. `read` supplies the files that it refers to, by relative paths without `..`.
+///
+/// # Errors
+/// If the model is malformed, exceeds [`limits`], or `read` fails.
 pub fn parse(bytes: &[u8], read: &mut ReadFile) -> Result<Scene, LoadError> {
-    // The crate's validation is code of others; a panic there must not take the window along.
+    // A panic in the validation of the crate `gltf` must not close the window.
     catch_unwind(AssertUnwindSafe(|| meshes::scene(bytes, read)))
-        .unwrap_or_else(|_| Err(LoadError::new("the loader stumbled over this file; please report it")))
+        .unwrap_or_else(|_| Err(LoadError::new("the loader failed on this file, which is a bug: please report it")))
 }
 
-/// A name from a file, fit for a message: quoted, escaped and short.
+/// A name from a file, made safe for messages: quoted, escaped and at most 60 characters.
 fn quoted(name: &str) -> String {
     let short: String = name.chars().take(60).collect();
     if short.len() < name.len() { format!("{:?}", short + "…") } else { format!("{short:?}") }
 }
 
-/// `kind "name"`, or `kind 3` for a thing without a name.
+/// `kind "name"`, or `kind 3` if it has no name.
 fn called(kind: &str, index: usize, name: Option<&str>) -> String {
     match name {
         Some(name) if !name.is_empty() => format!("{kind} {}", quoted(name)),

@@ -1,4 +1,4 @@
-//! Skins: joints with their inverse bind matrices, and the joints and weights of vertices.
+//! Skins: joints with their inverse bind matrices, and checks of the joints and weights of vertices.
 
 use glam::DMat4;
 use gltf::json;
@@ -6,11 +6,11 @@ use gltf::json;
 use super::{LoadError, buffers::Buffers, called, limits, nodes::Tree};
 use crate::scene::{Accessor, Bounds, Component, Scene, rig::Influences, rig::Skin};
 
-/// Every skin of the file.
+/// Reads every skin of the file.
 pub fn skins(buffers: &Buffers, tree: &Tree) -> Result<Vec<Skin>, LoadError> {
     let joints: usize = buffers.root.skins.iter().map(|skin| skin.joints.len()).sum();
     if joints > limits::ALL_JOINTS {
-        return Err(LoadError::new(format!("the skins have {joints} joints; at most {} are read", limits::ALL_JOINTS)));
+        return Err(LoadError::new(format!("the skins have {joints} joints; allowed: at most {}", limits::ALL_JOINTS)));
     }
     let skin = |(index, skin): (usize, &json::Skin)| {
         let name = called("skin", index, skin.name.as_deref());
@@ -22,7 +22,7 @@ pub fn skins(buffers: &Buffers, tree: &Tree) -> Result<Vec<Skin>, LoadError> {
 fn read(buffers: &Buffers, tree: &Tree, skin: &json::Skin) -> Result<Skin, LoadError> {
     let joints = skin.joints.len();
     if joints == 0 || joints > limits::JOINTS {
-        return Err(LoadError::new(format!("{joints} joints lie outside 1..={}", limits::JOINTS)));
+        return Err(LoadError::new(format!("it has {joints} joints; allowed: 1 to {}", limits::JOINTS)));
     }
     let joint_from_mesh = match skin.inverse_bind_matrices {
         None => vec![DMat4::IDENTITY; joints],
@@ -31,7 +31,7 @@ fn read(buffers: &Buffers, tree: &Tree, skin: &json::Skin) -> Result<Skin, LoadE
     let nodes: Vec<usize> = skin.joints.iter().map(|joint| tree.place_of[joint.value()]).collect();
     let place = |(joint, inverse): (&json::Index<json::Node>, &DMat4)| tree.world_from_node[joint.value()] * *inverse;
     match skin.joints.iter().zip(&joint_from_mesh).position(|pair| !place(pair).is_finite()) {
-        Some(joint) => Err(LoadError::new(format!("joint {joint} has a matrix that is not finite"))),
+        Some(joint) => Err(LoadError::new(format!("the matrix of joint {joint} is not finite"))),
         None => Ok(Skin { name: String::new(), joints: nodes, joint_from_mesh }),
     }
 }
@@ -40,50 +40,50 @@ fn inverse_bind(buffers: &Buffers, index: usize, joints: usize) -> Result<Vec<DM
     let layout = buffers.layout(index)?;
     let about = layout.accessor;
     if about.component != Component::F32 || about.components != 16 {
-        return Err(LoadError::new("is not MAT4 of FLOAT"));
+        return Err(LoadError::new("must be MAT4 of FLOAT"));
     }
     if (about.count as usize) < joints || about.count as usize > limits::JOINTS {
-        return Err(LoadError::new(format!("has {} matrices for {joints} joints", about.count)));
+        return Err(LoadError::new(format!("it has {} matrices for {joints} joints; it needs one for each and at most {}", about.count)));
     }
     let bytes = buffers.materialized(index, &layout)?;
     let numbers = Accessor { offset: 0, stride: 64, ..about };
     let matrix = |i: u32| DMat4::from_cols_array(&std::array::from_fn(|lane| numbers.value(&bytes, i, lane as u32)));
     let matrices: Vec<DMat4> = (0..joints as u32).map(matrix).collect();
-    // Its last row says 0 0 0 1; exporters that round leave a little beside it.
+    // Exporters that round leave small errors in the last row, 0 0 0 1.
     let is_affine = |m: &DMat4| m.row(3).abs_diff_eq(glam::DVec4::W, 1e-3);
     match matrices.iter().position(|m| !m.is_finite() || !is_affine(m)) {
-        Some(joint) => Err(LoadError::new(format!("matrix {joint} is not finite with the last row 0 0 0 1"))),
+        Some(joint) => Err(LoadError::new(format!("matrix {joint} must be finite and have the last row 0 0 0 1"))),
         None => Ok(matrices),
     }
 }
 
-/// Are these joints or weights of a type that the standard allows?
+/// Checks the type and the count of a JOINTS or WEIGHTS attribute.
 pub fn check_types(accessor: &Accessor, what: &str, count: u32) -> Result<(), LoadError> {
     let kinds: &[(Component, bool)] = match what.starts_with("JOINTS") {
         true => &[(Component::U8, false), (Component::U16, false)],
         false => &[(Component::F32, false), (Component::U8, true), (Component::U16, true)],
     };
     if accessor.components != 4 || !kinds.contains(&(accessor.component, accessor.normalized)) {
-        return Err(LoadError::new("is not VEC4 of a type that glTF allows here").within(what));
+        return Err(LoadError::new("must be VEC4 of a type that glTF allows for it").within(what));
     }
     if accessor.count != count {
-        return Err(LoadError::new(format!("has {} elements for {count} vertices", accessor.count)).within(what));
+        return Err(LoadError::new(format!("has {} elements, but the primitive has {count} vertices", accessor.count)).within(what));
     }
     Ok(())
 }
 
-/// What the joints and weights of a mesh say once they are known to be sound.
+/// What checking the joints and weights of a mesh found.
 pub struct Held {
-    /// Box of the vertices of each joint, up to the largest joint that is named.
+    /// Box of the vertices of each joint, up to the largest joint in use.
     pub bounds: Vec<Bounds>,
-    /// Vertices whose weights are all zero; their first joint holds them.
+    /// The number of vertices whose weights are all 0; they follow their first joint.
     pub weightless: u32,
-    /// Vertices whose weights do not sum to 1; they are divided by their sum.
+    /// The number of vertices whose weights do not sum to 1; they are normalized.
     pub uneven: u32,
 }
 
-/// Refuses joints past `palette`, and weights that are negative or not finite.
-pub fn held(scene: &Scene, sets: &[Influences], positions: &Accessor, joint_transforms: usize) -> Result<Held, LoadError> {
+/// Checks that all joints are below `joint_count` and that all weights are finite and not negative.
+pub fn held(scene: &Scene, sets: &[Influences], positions: &Accessor, joint_count: usize) -> Result<Held, LoadError> {
     let bytes = &scene.vertex_bytes;
     let mut held = Held { bounds: Vec::new(), weightless: 0, uneven: 0 };
     for vertex in 0..positions.count {
@@ -93,12 +93,12 @@ pub fn held(scene: &Scene, sets: &[Influences], positions: &Accessor, joint_tran
             for lane in 0..4 {
                 let joint = influences.joints.integer(bytes, vertex, lane) as usize;
                 let weight = influences.weights.value(bytes, vertex, lane);
-                if joint >= joint_transforms {
-                    return Err(LoadError::new(format!("vertex {vertex} names joint {joint} of {joint_transforms}"))
+                if joint >= joint_count {
+                    return Err(LoadError::new(format!("vertex {vertex} refers to joint {joint}, but the skin has {joint_count} joints"))
                         .within(format!("JOINTS_{set}")));
                 }
                 if !(weight.is_finite() && weight >= 0.0) {
-                    return Err(LoadError::new(format!("vertex {vertex} has the weight {weight}")).within(format!("WEIGHTS_{set}")));
+                    return Err(LoadError::new(format!("vertex {vertex} has the weight {weight}; weights must be finite and at least 0")).within(format!("WEIGHTS_{set}")));
                 }
                 if joint >= held.bounds.len() {
                     held.bounds.resize(joint + 1, Bounds::EMPTY);
@@ -116,7 +116,7 @@ pub fn held(scene: &Scene, sets: &[Influences], positions: &Accessor, joint_tran
             held.bounds[first].include(place);
             held.weightless += 1;
         } else if sum > 1e30 {
-            return Err(LoadError::new(format!("vertex {vertex} has weights that sum to {sum:e}")).within("WEIGHTS_0"));
+            return Err(LoadError::new(format!("the weights of vertex {vertex} sum to {sum:e}; allowed: at most 1e30")).within("WEIGHTS_0"));
         } else if (sum - 1.0).abs() > 0.01 {
             held.uneven += 1;
         }

@@ -1,4 +1,4 @@
-//! Deformation: morph targets of primitives, and the joints and weights of those that a skin holds.
+//! Deformation: the morph targets of primitives, and the joints and weights of skinned ones.
 
 use gltf::json::{self, mesh::Semantic, validation::Checked};
 
@@ -12,36 +12,36 @@ use crate::scene::{
     rig::{Influences, Rig, Shape},
 };
 
-/// What KHR_mesh_quantization adds for what a morph target adds.
+/// Component types of displacements under KHR_mesh_quantization.
 const SHORT: &[(Component, bool)] =
     &[(Component::F32, false), (Component::I8, false), (Component::I8, true), (Component::I16, false), (Component::I16, true)];
 
-/// Does the file hold anything that moves?
+/// Returns true if the file has animations, skinned meshes or morph targets.
 pub fn moves(root: &json::Root) -> bool {
     let has_targets = |primitive: &json::mesh::Primitive| primitive.targets.as_ref().is_some_and(|targets| !targets.is_empty());
     let is_skinned = root.nodes.iter().any(|node| node.skin.is_some() && node.mesh.is_some());
     !root.animations.is_empty() || is_skinned || root.meshes.iter().flat_map(|mesh| &mesh.primitives).any(has_targets)
 }
 
-/// Weights of the shapes of a node's mesh at rest: the node's own, else the mesh's, else zeros.
+/// Morph weights of a node in the rest pose: its own, else those of its mesh, else zeros.
 pub fn weights(root: &json::Root, node: &json::Node) -> Result<Vec<f32>, LoadError> {
     let Some(mesh) = node.mesh.map(|mesh| &root.meshes[mesh.value()]) else { return Ok(Vec::new()) };
     let counts = mesh.primitives.iter().map(|primitive| primitive.targets.as_ref().map_or(0, Vec::len));
     let morph_targets = counts.clone().max().unwrap_or(0);
     if morph_targets > limits::SHAPES {
-        return Err(LoadError::new(format!("its mesh has {morph_targets} morph targets; at most {} are read", limits::SHAPES)));
+        return Err(LoadError::new(format!("its mesh has {morph_targets} morph targets; allowed: at most {}", limits::SHAPES)));
     }
     if let Some(fewer) = counts.clone().find(|&count| count != morph_targets) {
-        return Err(LoadError::new(format!("primitives of its mesh have {fewer} and {morph_targets} morph targets")));
+        return Err(LoadError::new(format!("the primitives of its mesh have {fewer} and {morph_targets} morph targets; all must have the same number")));
     }
     let given = node.weights.as_ref().or(mesh.weights.as_ref()).filter(|weights| !weights.is_empty());
     match given {
         None => Ok(vec![0.0; morph_targets]),
         Some(weights) if weights.len() != morph_targets => {
-            Err(LoadError::new(format!("has {} weights for {morph_targets} morph targets", weights.len())))
+            Err(LoadError::new(format!("it has {} weights for {morph_targets} morph targets; both numbers must be equal", weights.len())))
         }
         Some(weights) => match weights.iter().find(|weight| !weight.is_finite()) {
-            Some(weight) => Err(LoadError::new(format!("has the morph weight {weight}"))),
+            Some(weight) => Err(LoadError::new(format!("it has the morph weight {weight}; weights must be finite"))),
             None => Ok(weights.clone()),
         },
     }
@@ -70,23 +70,23 @@ impl Loader<'_> {
         Ok(Shape { positions, normals, reach })
     }
 
-    /// Makes sure that a primitive can follow the joints of a skin.
+    /// Reads the joints and weights of a primitive that is placed by `skin`, unless that was done before.
     pub fn hold(&mut self, primitive: usize, skin: usize, rig: &Rig) -> Result<(), LoadError> {
-        let joint_transforms = rig.skins[skin].joints.len();
+        let joint_count = rig.skins[skin].joints.len();
         let Primitive { name, positions, deformation, .. } = self.scene.primitives[primitive].clone();
         if deformation.influences.is_empty() {
             let sets = self.influences(primitive, positions.count)?;
-            let held = skin::held(&self.scene, &sets, &positions, joint_transforms)?;
+            let held = skin::held(&self.scene, &sets, &positions, joint_count)?;
             let what = [
-                (held.weightless, "have no weight; their first joint holds them"),
-                (held.uneven, "have weights that do not sum to 1; they are divided by their sum"),
+                (held.weightless, "have only weights of 0; they follow their first joint"),
+                (held.uneven, "have weights that do not sum to 1; they are normalized"),
             ];
             what.iter().filter(|(count, _)| *count > 0).for_each(|(count, what)| self.note(format!("{name}: {count} vertices {what}")));
             let deformation = &mut self.scene.primitives[primitive].deformation;
             (deformation.influences, deformation.joint_bounds) = (sets, held.bounds);
-        } else if deformation.joint_bounds.len() > joint_transforms {
+        } else if deformation.joint_bounds.len() > joint_count {
             return Err(
-                LoadError::new(format!("names joint {} of {joint_transforms}", deformation.joint_bounds.len() - 1)).within("JOINTS_0")
+                LoadError::new(format!("refers to joint {}, but the skin has {joint_count} joints", deformation.joint_bounds.len() - 1)).within("JOINTS_0")
             );
         }
         Ok(())
@@ -100,11 +100,11 @@ impl Loader<'_> {
             let (joints, weights) = match (find(Semantic::Joints(set)), find(Semantic::Weights(set))) {
                 (Some(joints), Some(weights)) => (joints, weights),
                 (None, None) if set > 0 => break,
-                _ => return Err(LoadError::new(format!("is placed by a skin, but lacks JOINTS_{set} or WEIGHTS_{set}"))),
+                _ => return Err(LoadError::new(format!("it has a skin, but lacks JOINTS_{set} or WEIGHTS_{set}; export both"))),
             };
             if set == 2 {
                 let name = self.scene.primitives[primitive].name.clone();
-                self.note(format!("{name}: of more than 8 joints per vertex, the first 8 are followed"));
+                self.note(format!("{name}: only the first 8 joints per vertex are used"));
                 break;
             }
             let mut take = |index: usize, what: &str| -> Result<Accessor, LoadError> {

@@ -1,4 +1,4 @@
-//! URIs: `data:` is decoded, a plain relative path is handed to the reader, everything else is refused.
+//! URIs: decodes `data:`, passes plain relative paths to the reader, and refuses everything else.
 
 use std::path::{Component, Path, PathBuf};
 
@@ -10,44 +10,44 @@ use base64::{
 
 use super::{LoadError, ReadFile, quoted};
 
-/// Padding is optional in the wild.
+/// Real files often omit the padding.
 const BASE64: GeneralPurpose =
     GeneralPurpose::new(&STANDARD, GeneralPurposeConfig::new().with_decode_padding_mode(DecodePaddingMode::Indifferent));
 
-/// The bytes behind `uri`, at most `most` of them.
+/// The bytes that `uri` refers to, at most `most`.
 pub fn resolve(uri: &str, most: u64, read: &mut ReadFile) -> Result<Vec<u8>, LoadError> {
     let bytes = match uri.strip_prefix("data:") {
         Some(data) => decode(data)?,
         None => read(&relative(uri)?, most).map_err(|error| error.within(quoted(uri)))?,
     };
     if bytes.len() as u64 > most {
-        return Err(LoadError::new(format!("{} bytes are more than the {most} left of the model's budget", bytes.len())));
+        return Err(LoadError::new(format!("it has {} bytes, but only {most} of the limit for all files of a model are left", bytes.len())));
     }
     Ok(bytes)
 }
 
 fn decode(data: &str) -> Result<Vec<u8>, LoadError> {
-    let (kind, payload) = data.split_once(',').ok_or_else(|| LoadError::new("data URI has no comma"))?;
+    let (kind, payload) = data.split_once(',').ok_or_else(|| LoadError::new("its data URI has no comma"))?;
     if !kind.ends_with(";base64") {
-        return Err(LoadError::new("data URI is not in base64"));
+        return Err(LoadError::new("its data URI is not base64"));
     }
-    BASE64.decode(payload).map_err(|error| LoadError::new(format!("data URI: {error}")))
+    BASE64.decode(payload).map_err(|error| LoadError::new(format!("its data URI is malformed: {error}")))
 }
 
-/// A path below the model's folder: no scheme, no root, no `..`, decided after percent-decoding.
+/// A path inside the model's folder: no scheme, no root and no `..` after percent-decoding.
 pub fn relative(uri: &str) -> Result<PathBuf, LoadError> {
     let refused = |reason: &str| LoadError::new(format!("URI {} {reason}", quoted(uri)));
-    let decoded = percent_decoded(uri).ok_or_else(|| refused("is not valid percent-encoded UTF-8"))?;
+    let decoded = percent_decoded(uri).ok_or_else(|| refused("is not percent-encoded UTF-8"))?;
     if decoded.contains(['\0', '\\']) {
-        return Err(refused("holds a NUL or a backslash"));
+        return Err(refused("contains a NUL or a backslash"));
     }
-    // A colon before the first slash is a scheme, or a drive.
+    // A colon before the first slash ends a scheme or a drive letter.
     if decoded.split('/').next().is_some_and(|first| first.contains(':')) {
-        return Err(refused("has a scheme; only data: and relative paths are read"));
+        return Err(refused("has a scheme; only data: URIs and relative paths are supported"));
     }
     let path = Path::new(&decoded);
     if !path.components().all(|part| matches!(part, Component::Normal(_) | Component::CurDir)) {
-        return Err(refused("leads out of the model's folder"));
+        return Err(refused("leads out of the model's folder; copy the file there"));
     }
     if path.file_name().is_none() {
         return Err(refused("names no file"));

@@ -1,22 +1,22 @@
-//! Mesh: grows triangles vertex by vertex, then lays them into a scene's byte buffers.
+//! Mesh builder: collects vertices and triangles and appends them to the byte buffers of a scene.
 
 use glam::DVec3;
 
 use crate::scene::{Accessor, Bounds, Component, Primitive, Scene, Topology};
 
-/// Triangles being built: counter-clockwise seen from outside, as glTF has them.
+/// A mesh under construction. Triangles are counter-clockwise seen from the outside, as in glTF.
 #[derive(Clone, Debug, Default)]
 pub struct Mesh {
     positions: Vec<[f32; 3]>,
     normals: Vec<[f32; 3]>,
     /// Linear RGBA; empty, or one per vertex.
     colors: Vec<[u8; 4]>,
-    /// In the image of the base colour and of the emission; empty, or one per vertex.
+    /// Texture coordinates, for base colour and emission; empty, or one per vertex.
     texcoords: Vec<[f32; 2]>,
     indices: Vec<u32>,
 }
 
-/// Consecutive vertices that form a closed loop; a loop of one vertex is a pole.
+/// A closed loop of consecutive vertices. One vertex is a pole.
 #[derive(Clone, Copy, Debug)]
 pub struct Ring {
     pub first: u32,
@@ -24,7 +24,7 @@ pub struct Ring {
 }
 
 impl Mesh {
-    /// A mesh with room for this much.
+    /// An empty mesh with reserved capacity.
     pub fn with_capacity(vertices: usize, triangles: usize) -> Self {
         Self {
             positions: Vec::with_capacity(vertices),
@@ -35,32 +35,33 @@ impl Mesh {
         }
     }
 
-    /// Adds a vertex; `normal` need not be a unit vector, but must not be zero.
+    /// Adds a vertex and returns its index. `normal` is normalized; it must not be zero.
     pub fn vertex(&mut self, position: DVec3, normal: DVec3) -> u32 {
         self.positions.push(position.as_vec3().into());
         self.normals.push(normal.normalize_or(DVec3::Y).as_vec3().into());
         self.positions.len() as u32 - 1
     }
 
-    /// Adds a vertex with a linear colour, each channel in [0, 1]. All vertices of a mesh have one, or none has.
+    /// Adds a vertex with a linear colour, each channel in [0, 1]. Either all vertices of a mesh have a colour, or none.
     pub fn colored_vertex(&mut self, position: DVec3, normal: DVec3, color: [f64; 3]) -> u32 {
         let byte = |channel: f64| (channel.clamp(0.0, 1.0) * 255.0).round() as u8;
         self.colors.push([byte(color[0]), byte(color[1]), byte(color[2]), 255]);
         self.vertex(position, normal)
     }
 
-    /// Adds a vertex that shows this place of an image, whose left and top edges are at 0 and right and bottom ones at 1. All
-    /// vertices of a mesh have one, or none has.
+    /// Adds a vertex with texture coordinates: 0 at the left and top edges of the image, 1 at the right and bottom ones. Either
+    /// all vertices of a mesh have them, or none.
     pub fn textured_vertex(&mut self, position: DVec3, normal: DVec3, texcoords: [f64; 2]) -> u32 {
         self.texcoords.push(texcoords.map(|v| v as f32));
         self.vertex(position, normal)
     }
 
+    /// Adds a triangle of existing vertices.
     pub fn triangle(&mut self, corners: [u32; 3]) {
         self.indices.extend(corners);
     }
 
-    /// A flat triangle in its own three vertices.
+    /// Adds a flat triangle with three new vertices.
     pub fn facet(&mut self, corners: [DVec3; 3], color: [f64; 3]) {
         let [a, b, c] = corners;
         let normal = (b - a).cross(c - a);
@@ -68,7 +69,7 @@ impl Mesh {
         self.triangle(corners);
     }
 
-    /// A flat quadrilateral in its own four vertices, counter-clockwise from outside.
+    /// Adds a flat quadrilateral with four new vertices, counter-clockwise from the outside.
     pub fn quad(&mut self, corners: [DVec3; 4], color: [f64; 3]) {
         let normal = (corners[2] - corners[0]).cross(corners[3] - corners[1]);
         let [a, b, c, d] = corners.map(|p| self.colored_vertex(p, normal, color));
@@ -83,15 +84,15 @@ impl Mesh {
         Ring { first, count }
     }
 
-    /// Joins two loops that run to the right, `upper` above `lower`, without T-junctions. Their counts may differ.
-    /// A pole gives a fan, so no triangle is degenerate.
+    /// Triangulates the band between two loops, `upper` above `lower`, both counter-clockwise seen from above. Their counts may
+    /// differ. A pole makes a fan, so no triangle is degenerate.
     pub fn band(&mut self, lower: Ring, upper: Ring) {
         let (mut i, mut j) = (0, 0);
         let last = |ring: Ring| if ring.count == 1 { 0 } else { ring.count };
         let at = |ring: Ring, i: u32| ring.first + if i == ring.count { 0 } else { i };
         while i < last(lower) || j < last(upper) {
             let (a, b) = (at(lower, i), at(upper, j));
-            // The next edge is the one whose middle lies further back, which keeps the diagonals short.
+            // Advance on the loop whose next edge has its midpoint further back: this keeps the diagonals short.
             let behind = u64::from(2 * i + 1) * u64::from(upper.count) <= u64::from(2 * j + 1) * u64::from(lower.count);
             if j == last(upper) || (i < last(lower) && behind) {
                 i += 1;
@@ -103,7 +104,7 @@ impl Mesh {
         }
     }
 
-    /// Appends the bytes to `scene` and lists the mesh as a primitive; returns its index.
+    /// Appends the mesh to `scene` as a primitive and returns its index.
     pub fn append(self, scene: &mut Scene, name: &str, material: usize) -> usize {
         let Self { positions, normals, colors, texcoords, indices } = self;
         let (bounds, longest_edge) = (bounds(&positions), longest_edge(&positions, &indices));

@@ -1,0 +1,97 @@
+//! Accessors: where attributes and indices lie in a byte buffer, and how to read them.
+
+/// Number format of one attribute component. The discriminant is glTF's `componentType`.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[repr(u32)]
+pub enum Component {
+    I8 = 5120,
+    U8 = 5121,
+    I16 = 5122,
+    U16 = 5123,
+    U32 = 5125,
+    F32 = 5126,
+}
+
+impl Component {
+    /// Size of one component in bytes: 1, 2 or 4.
+    pub const fn bytes(self) -> u32 {
+        match self {
+            Self::I8 | Self::U8 => 1,
+            Self::I16 | Self::U16 => 2,
+            Self::U32 | Self::F32 => 4,
+        }
+    }
+}
+
+/// Where the elements of an attribute or of an index list lie in a byte buffer.
+///
+/// Every constructor of a [`Scene`] guarantees (the glTF loader checks it) that `offset` and `stride` are multiples of the
+/// component size and that the last element ends inside the buffer. Reading past `count` panics or returns other bytes.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Accessor {
+    /// Byte at which element 0 begins, counted from the start of the buffer.
+    pub offset: u32,
+    /// Bytes from the start of one element to the start of the next.
+    pub stride: u32,
+    pub component: Component,
+    /// Components per element: 1 to 4 in a scene (16 for the matrices that the loader reads).
+    pub components: u32,
+    /// Integers are mapped to [0, 1] (unsigned) or [-1, 1] (signed), as glTF 2.0, section 3.6.2.2, defines.
+    pub normalized: bool,
+    /// Number of elements.
+    pub count: u32,
+}
+
+impl Accessor {
+    /// `count` tightly packed f32 elements of `components` components each, which begin at byte `offset`.
+    pub fn packed_f32(offset: usize, components: u32, count: usize) -> Self {
+        Self {
+            offset: offset as u32,
+            stride: components * 4,
+            component: Component::F32,
+            components,
+            normalized: false,
+            count: count as u32,
+        }
+    }
+
+    fn raw<const N: usize>(&self, bytes: &[u8], element: u32, lane: u32) -> [u8; N] {
+        let at = self.offset as usize + element as usize * self.stride as usize + lane as usize * N;
+        bytes[at..at + N].try_into().expect("an accessor lies inside its buffer")
+    }
+
+    /// The bits of an f32 component; of an integer component, the bits of its exact value as f32. Not normalized.
+    pub fn f32_bits(&self, bytes: &[u8], element: u32, lane: u32) -> u32 {
+        match self.component {
+            Component::F32 => u32::from_le_bytes(self.raw(bytes, element, lane)),
+            _ => (self.integer(bytes, element, lane) as f32).to_bits(),
+        }
+    }
+
+    /// An integer component, not normalized. Of an f32 component it returns the bits.
+    pub fn integer(&self, bytes: &[u8], element: u32, lane: u32) -> i64 {
+        match self.component {
+            Component::I8 => i8::from_le_bytes(self.raw(bytes, element, lane)).into(),
+            Component::U8 => u8::from_le_bytes(self.raw(bytes, element, lane)).into(),
+            Component::I16 => i16::from_le_bytes(self.raw(bytes, element, lane)).into(),
+            Component::U16 => u16::from_le_bytes(self.raw(bytes, element, lane)).into(),
+            Component::U32 | Component::F32 => u32::from_le_bytes(self.raw(bytes, element, lane)).into(),
+        }
+    }
+
+    /// A component in f64, normalized where the accessor says so.
+    pub fn value(&self, bytes: &[u8], element: u32, lane: u32) -> f64 {
+        if self.component == Component::F32 {
+            return f32::from_bits(self.f32_bits(bytes, element, lane)).into();
+        }
+        let integer = self.integer(bytes, element, lane) as f64;
+        match (self.normalized, self.component) {
+            (false, _) => integer,
+            (true, Component::I8) => (integer / 127.0).max(-1.0),
+            (true, Component::U8) => integer / 255.0,
+            (true, Component::I16) => (integer / 32767.0).max(-1.0),
+            (true, Component::U16) => integer / 65535.0,
+            (true, _) => integer / 4_294_967_295.0,
+        }
+    }
+}

@@ -1,0 +1,53 @@
+//! Axis-aligned boxes.
+
+use glam::{DMat4, DVec3};
+
+/// Axis-aligned box in metres, both ends included. Empty when `min` exceeds `max` on any axis.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Bounds {
+    pub min: DVec3,
+    pub max: DVec3,
+}
+
+impl Default for Bounds {
+    fn default() -> Self {
+        Self::EMPTY
+    }
+}
+
+impl Bounds {
+    pub const EMPTY: Self = Self { min: DVec3::INFINITY, max: DVec3::NEG_INFINITY };
+
+    pub fn is_empty(&self) -> bool {
+        !self.min.cmple(self.max).all()
+    }
+
+    pub fn include(&mut self, point: DVec3) {
+        self.min = self.min.min(point);
+        self.max = self.max.max(point);
+    }
+
+    /// Includes `bounds`, grown by `margin` on every side and then transformed by `matrix`.
+    pub fn include_transformed(&mut self, matrix: &DMat4, placed: &Self, error_bound: f64) {
+        if !placed.is_empty() {
+            let grown = Self { min: placed.min - error_bound, max: placed.max + error_bound };
+            grown.corners().into_iter().for_each(|corner| self.include(matrix.transform_point3(corner)));
+        }
+    }
+
+    pub fn corners(&self) -> [DVec3; 8] {
+        std::array::from_fn(|i| {
+            let pick = |axis: usize| if i >> axis & 1 == 0 { self.min[axis] } else { self.max[axis] };
+            DVec3::new(pick(0), pick(1), pick(2))
+        })
+    }
+
+    pub fn center(&self) -> DVec3 {
+        if self.is_empty() { DVec3::ZERO } else { (self.min + self.max) * 0.5 }
+    }
+
+    /// Half the length of the diagonal; 0 when empty.
+    pub fn radius(&self) -> f64 {
+        if self.is_empty() { 0.0 } else { (self.max - self.min).length() * 0.5 }
+    }
+}

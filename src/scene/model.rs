@@ -1,0 +1,217 @@
+//! The model: primitives, materials and instances, and the bytes that they refer to.
+
+use glam::{DMat4, DVec3};
+
+use super::{
+    accessor::Accessor,
+    bounds::Bounds,
+    camera::Camera,
+    deformation::Deformation,
+    material::Material,
+    rig::Rig,
+    texture::Image,
+};
+
+/// How consecutive corners form triangles. A corner is a position in the index list, or in the vertex list without indices.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[repr(u32)]
+pub enum Topology {
+    List = 0,
+    Strip = 1,
+    Fan = 2,
+}
+
+impl Topology {
+    /// The number of triangles that `corners` corners form; left-over corners form none.
+    pub const fn triangles(self, corners: u32) -> u32 {
+        match self {
+            Self::List => corners / 3,
+            Self::Strip | Self::Fan => corners.saturating_sub(2),
+        }
+    }
+
+    /// The three corners of triangle `t`, in the winding order of glTF 2.0, section 3.7.2.1.
+    pub const fn corners(self, t: u32) -> [u32; 3] {
+        match self {
+            Self::List => [3 * t, 3 * t + 1, 3 * t + 2],
+            Self::Strip => [t, t + 1 + t % 2, t + 2 - t % 2],
+            Self::Fan => [t + 1, t + 2, 0],
+        }
+    }
+}
+
+/// Triangles that share attributes and a material.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Primitive {
+    /// Shown to people, for instance `mesh "Fox" primitive 0`.
+    pub name: String,
+    pub topology: Topology,
+    /// One unsigned integer component, in `Scene::index_bytes`. `None`: the corners are the vertices in order.
+    pub indices: Option<Accessor>,
+    /// Object space, three components, in `Scene::vertex_bytes` as all attributes are.
+    pub positions: Accessor,
+    /// Object space, three components. Not necessarily unit vectors.
+    pub normals: Accessor,
+    /// Linear RGB or RGBA, three or four components.
+    pub colors: Option<Accessor>,
+    /// Texture coordinates of the base colour and of the emission, two components each. Present wherever the material has
+    /// that texture.
+    pub texcoords: [Option<Accessor>; 2],
+    /// Index into `Scene::materials`.
+    pub material: usize,
+    /// Box of all finite vertex positions, in object space.
+    pub bounds: Bounds,
+    /// Length of the longest triangle edge in object space, or an upper bound of it.
+    pub longest_edge: f64,
+    /// True if no interpolated normal can be near zero ([`Primitive::normals_agree`]). False is always safe.
+    pub normals_agree: bool,
+    /// Joint influences and morph targets, if it has any.
+    pub deformation: Deformation,
+}
+
+impl Primitive {
+    pub fn vertex_count(&self) -> u32 {
+        self.positions.count
+    }
+
+    pub fn triangle_count(&self) -> u32 {
+        self.topology.triangles(self.indices.map_or(self.positions.count, |indices| indices.count))
+    }
+
+    /// The three vertex indices of triangle `t`.
+    pub fn corners(&self, scene: &Scene, t: u32) -> [u32; 3] {
+        let corners = self.topology.corners(t);
+        match &self.indices {
+            None => corners,
+            Some(indices) => corners.map(|c| indices.integer(&scene.index_bytes, c, 0) as u32),
+        }
+    }
+
+    /// Returns true if all normals are finite, have a length between 1/2 and 2, and lie within 90 degrees of each other in every
+    /// triangle. Their interpolations are then at least 1/4 long and never need a substitute.
+    pub fn normals_agree(&self, scene: &Scene) -> bool {
+        let normal = |vertex: u32| DVec3::from([0, 1, 2].map(|lane| self.normals.value(&scene.vertex_bytes, vertex, lane)));
+        let is_sound = |n: DVec3| (0.25..=4.0).contains(&n.length_squared());
+        (0..self.triangle_count()).all(|t| {
+            let [a, b, c] = self.corners(scene, t).map(normal);
+            is_sound(a) && is_sound(b) && is_sound(c) && a.dot(b) >= 0.0 && b.dot(c) >= 0.0 && c.dot(a) >= 0.0
+        })
+    }
+
+    /// Position of a vertex in object space as it is stored, normalized where the accessor says so.
+    pub fn position(&self, scene: &Scene, vertex: u32) -> [f32; 3] {
+        [0, 1, 2].map(|lane| self.positions.value(&scene.vertex_bytes, vertex, lane) as f32)
+    }
+}
+
+/// A primitive with its transform.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Instance {
+    /// Index into `Scene::primitives`.
+    pub primitive: usize,
+    /// Transform in the rest pose. The identity if it has a skin, whose joints place the vertices.
+    pub world_from_object: DMat4,
+    /// The node of `Scene::rig` whose transform and morph weights it uses. `None`: no clip moves it.
+    pub node: Option<usize>,
+    /// The skin of `Scene::rig` whose joints move its vertices.
+    pub skin: Option<usize>,
+}
+
+impl Instance {
+    /// An instance without a node or a skin.
+    pub fn fixed(primitive: usize, world_from_object: DMat4) -> Self {
+        Self { primitive, world_from_object, node: None, skin: None }
+    }
+}
+
+/// A camera that comes with the scene.
+#[derive(Clone, Debug, PartialEq)]
+pub struct SceneCamera {
+    pub name: String,
+    /// Position and lens in the rest pose.
+    pub pose: Camera,
+    /// The node of `Scene::rig` that moves it. `None`: it does not move.
+    pub node: Option<usize>,
+}
+
+impl SceneCamera {
+    /// The same lens at the transform of its node: it looks along -z, +y is up, and the distance of the target is kept.
+    pub fn carried(&self, scene_from_node: &DMat4) -> Camera {
+        let eye = scene_from_node.w_axis.truncate();
+        let forward = (-scene_from_node.z_axis.truncate()).try_normalize().unwrap_or_else(|| self.pose.forward());
+        let up = scene_from_node.y_axis.truncate().try_normalize().unwrap_or(self.pose.up);
+        Camera { eye, target: eye + forward * (self.pose.target - self.pose.eye).length(), up, ..self.pose }
+    }
+}
+
+/// Everything that can be drawn. Built by [`gltf::load`] or [`builtin::build`].
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Scene {
+    /// Shown to people: the file name without its extension, or the name of the builtin.
+    pub name: String,
+    /// All vertex attributes. Its length is a multiple of 4.
+    pub vertex_bytes: Vec<u8>,
+    /// All index lists. Its length is a multiple of 4.
+    pub index_bytes: Vec<u8>,
+    pub primitives: Vec<Primitive>,
+    pub materials: Vec<Material>,
+    /// The images that textures refer to.
+    pub images: Vec<Image>,
+    pub instances: Vec<Instance>,
+    /// The number of instances at the end of the list that are walls around the others. Walls cast no shadow and do not spin.
+    pub walls: usize,
+    pub cameras: Vec<SceneCamera>,
+    /// Nodes, skins and clips.
+    pub rig: Rig,
+    /// The primitive that holds the particle discs. Exactly one instance shows it.
+    pub particle_discs: Option<usize>,
+    /// Messages of the loader for the user, for instance about extensions that it ignores.
+    pub notes: Vec<String>,
+}
+
+impl Scene {
+    /// The index of the camera called `name`. `#2` is the camera at index 2, whatever its name.
+    pub fn camera(&self, name: &str) -> Option<usize> {
+        let by_place = || name.strip_prefix('#')?.parse().ok().filter(|&place: &usize| place < self.cameras.len());
+        self.cameras.iter().position(|camera| camera.name == name).or_else(by_place)
+    }
+
+    /// The number of triangles of all instances.
+    pub fn triangle_count(&self) -> u64 {
+        self.instances.iter().map(|instance| u64::from(self.primitives[instance.primitive].triangle_count())).sum()
+    }
+
+    /// The number of vertices of all instances.
+    pub fn vertex_count(&self) -> u64 {
+        self.instances.iter().map(|instance| u64::from(self.primitives[instance.primitive].vertex_count())).sum()
+    }
+
+    /// Returns true if an alpha cutoff can discard samples of any instance.
+    pub fn is_masked(&self) -> bool {
+        let materials = self.instances.iter().map(|instance| &self.materials[self.primitives[instance.primitive].material]);
+        materials.into_iter().any(|material| material.alpha_threshold().is_some())
+    }
+
+    /// The number of vertices of all instances whose primitives have joint influences or morph targets.
+    pub fn deformable_vertex_count(&self) -> u64 {
+        let soft = self.instances.iter().map(|instance| &self.primitives[instance.primitive]).filter(|p| !p.deformation.is_none());
+        soft.map(|primitive| u64::from(primitive.vertex_count())).sum()
+    }
+
+    /// World-space box of all instances. Of a scene with a rig, [`Rig::motion_bounds`].
+    pub fn bounds(&self) -> Bounds {
+        if !self.rig.is_empty() {
+            return self.rig.reach;
+        }
+        self.bounds_of(&self.instances)
+    }
+
+    /// World-space box of `instances` in their rest pose.
+    pub fn bounds_of(&self, instances: &[Instance]) -> Bounds {
+        let mut bounds = Bounds::EMPTY;
+        for instance in instances {
+            bounds.include_transformed(&instance.world_from_object, &self.primitives[instance.primitive].bounds, 0.0);
+        }
+        bounds
+    }
+}

@@ -1,0 +1,159 @@
+//! Views: a camera, a picture size and a scene's bounds as the matrices that a renderer needs, in f64.
+
+use std::sync::Arc;
+
+use glam::{DMat4, DVec3, DVec4};
+
+use super::{
+    bounds::Bounds,
+    camera::{Camera, Projection},
+    particle_discs::ParticleTimeline,
+    pose::Pose,
+    shadow_resolution::ShadowResolution,
+};
+use crate::math::{SUBPIXEL_BITS, view_from_world};
+
+/// A camera meeting a target of pixels and a scene: all that a renderer needs to know about the viewpoint.
+#[derive(Clone, Debug, PartialEq)]
+pub struct View {
+    /// Size of the picture in pixels; either may be 0.
+    pub width: u32,
+    pub height: u32,
+    pub clip_from_world: DMat4,
+    /// Placement of the whole scene (its spin).
+    pub world_from_scene: DMat4,
+    pub eye: DVec3,
+    pub forward: DVec3,
+    /// What one unit of normalized device x and y is in the world: per metre of depth for a perspective, else as it is.
+    pub ndc_axes: [DVec3; 2],
+    /// Metres at depth 1 and at depth 0 of a linear (orthographic) depth; none for a perspective, whose w is metres.
+    pub linear_depth_m: Option<[f64; 2]>,
+    /// Nearest and farthest distance along `forward` of the scene's box, at least `near_m` apart from the eye.
+    pub scene_range_m: [f64; 2],
+    /// Linear RGBA of pixels without an triangle id.
+    pub background: [f32; 4],
+    /// Vertices snap to 2^-bits px: 4, 8 as a rule, or 12.
+    pub subpixel_bits: u32,
+    /// Places are taken relative to the eye before they meet a matrix.
+    pub is_relative: bool,
+    /// How the scene stands; none: at rest.
+    pub pose: Option<Arc<Pose>>,
+    /// A line of the preset's own, before the scene is spun.
+    pub polyline: Arc<[[f32; 3]]>,
+    /// How finely shadows are drawn in it.
+    pub shadow: ShadowResolution,
+    /// Where things stand in the picture for which this view, a light's, draws a shadow map; none in a picture itself. A
+    /// light sees back faces too: they stop it as well.
+    pub picture_from_world: Option<DMat4>,
+    /// How far the particles have flown; none: they are where they begin.
+    pub particle_timeline: Option<Arc<ParticleTimeline>>,
+}
+
+impl View {
+    /// Meets `camera` with a `width` x `height` target and the scene's world-space box (before the spin).
+    pub fn new(camera: &Camera, width: u32, height: u32, bounds: &Bounds, world_from_scene: DMat4, background: [f32; 4]) -> Self {
+        let aspect = if height == 0 || width == 0 { 1.0 } else { f64::from(width) / f64::from(height) };
+        let forward = camera.forward();
+        let distances = bounds.corners().map(|c| (world_from_scene.transform_point3(c) - camera.eye).dot(forward));
+        let (mut nearest, mut farthest) = distances.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(n, f), d| (n.min(*d), f.max(*d)));
+        if bounds.is_empty() || !(nearest.is_finite() && farthest.is_finite()) {
+            (nearest, farthest) = (camera.near_m, camera.near_m + 1.0);
+        }
+        let margin = ((farthest - nearest) * 0.01).max(1e-3 * farthest.abs()).max(1e-6);
+        let (clip_from_view, linear_depth_m) = match camera.projection {
+            Projection::Perspective { fov_y_deg } => {
+                let focal = 1.0 / libm::tan(fov_y_deg.to_radians() * 0.5);
+                (infinite_reverse(focal / aspect, focal, camera.near_m), None)
+            }
+            Projection::Orthographic { height_m } => {
+                let (near, far) = (nearest - margin, farthest + margin);
+                let y = 2.0 / height_m;
+                (orthographic_reverse(y / aspect, y, near, far), Some([near, far]))
+            }
+        };
+        let clip_from_world = clip_from_view * view_from_world(camera.eye, camera.target, camera.up);
+        // A row of the matrix is an axis times its scale, so the inverse axis is the row over its squared length.
+        let ndc_axes = [0, 1].map(|i| clip_from_world.row(i).truncate()).map(|row| row / row.length_squared());
+        let from = if linear_depth_m.is_none() { nearest.max(camera.near_m) } else { nearest };
+        Self {
+            width,
+            height,
+            clip_from_world,
+            world_from_scene,
+            eye: camera.eye,
+            forward,
+            ndc_axes,
+            linear_depth_m,
+            scene_range_m: [from, farthest.max(from + margin)],
+            background,
+            subpixel_bits: SUBPIXEL_BITS,
+            is_relative: false,
+            pose: None,
+            polyline: Arc::default(),
+            shadow: ShadowResolution::default(),
+            picture_from_world: None,
+            particle_timeline: None,
+        }
+    }
+
+    /// Units of snapped positions in a pixel.
+    pub const fn units_per_pixel(&self) -> i32 {
+        1 << self.subpixel_bits
+    }
+
+    /// The same view in `factor` times as many pixels to a side, at least one.
+    #[must_use]
+    pub fn scaled(&self, factor: f64) -> Self {
+        let side = |side: u32| if side == 0 { 0 } else { (f64::from(side) * factor).ceil().min(f64::from(u32::MAX)).max(1.0) as u32 };
+        Self { width: side(self.width), height: side(self.height), ..self.clone() }
+    }
+
+    /// Is it a light that presets?
+    pub const fn is_light(&self) -> bool {
+        self.picture_from_world.is_some()
+    }
+
+    pub fn pixels(&self) -> usize {
+        self.width as usize * self.height as usize
+    }
+}
+
+/// z_c = near, w_c = -z_view: depth is near / w, 1 on the near plane and 0 at infinity.
+fn infinite_reverse(x: f64, y: f64, near: f64) -> DMat4 {
+    DMat4::from_cols(DVec4::X * x, DVec4::Y * y, DVec4::new(0.0, 0.0, 0.0, -1.0), DVec4::new(0.0, 0.0, near, 0.0))
+}
+
+/// Depth falls linearly from 1 at `near` to 0 at `far`; w is 1.
+fn orthographic_reverse(x: f64, y: f64, near: f64, far: f64) -> DMat4 {
+    let depth = 1.0 / (far - near);
+    DMat4::from_cols(DVec4::X * x, DVec4::Y * y, DVec4::Z * depth, DVec4::new(0.0, 0.0, far * depth, 1.0))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn unit_box() -> Bounds {
+        Bounds { min: DVec3::NEG_ONE, max: DVec3::ONE }
+    }
+
+    #[test]
+    fn framing_shows_every_corner_of_the_box() {
+        for (aspect, width, height) in [(2.0, 200, 100), (0.5, 100, 200)] {
+            let camera = Camera::framing(&unit_box(), DVec3::new(-1.0, -0.5, -2.0), aspect);
+            let view = View::new(&camera, width, height, &unit_box(), DMat4::IDENTITY, [0.0; 4]);
+            for corner in unit_box().corners() {
+                let clip = view.clip_from_world * corner.extend(1.0);
+                assert!(clip.x.abs() < clip.w && clip.y.abs() < clip.w && clip.z < clip.w, "{clip}");
+            }
+        }
+    }
+
+    #[test]
+    fn orthographic_depth_runs_from_one_to_zero_through_the_scene() {
+        let camera = Camera { projection: Projection::Orthographic { height_m: 4.0 }, ..Camera::default() };
+        let view = View::new(&camera, 64, 64, &unit_box(), DMat4::IDENTITY, [0.0; 4]);
+        let depths = unit_box().corners().map(|c| (view.clip_from_world * c.extend(1.0)).z);
+        assert!(depths.iter().all(|d| (0.0..=1.0).contains(d)), "{depths:?}");
+    }
+}
