@@ -20,7 +20,7 @@ use crate::{
     oracle,
     preset::{AccuracyRequest, Preset, SceneSource},
     preset_file::{self, PresetFile, Provenance},
-    scene::{Scene, camera::View},
+    scene::{Scene, view::View},
 };
 
 /// What names a scene: its source, and the preset it is relative to.

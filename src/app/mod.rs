@@ -52,7 +52,7 @@ use crate::{
     params::Field,
     preset::Preset,
     preset_file::PresetFile,
-    scene::{Scene, camera::View},
+    scene::{Scene, view::View},
 };
 use compare::Compare;
 use dialogs::Dialog;

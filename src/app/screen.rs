@@ -11,7 +11,7 @@ use crate::{
     effects::Stack,
     gpu::{Explanation, Gpu, RenderError, Renderer, Report},
     preset::AccuracyRequest,
-    scene::{Scene, camera::View},
+    scene::{Scene, view::View},
 };
 
 /// Everything a picture depends on.

@@ -16,8 +16,9 @@ use crate::{
     preset::Preset,
     scene::{
         Scene,
-        camera::{Camera, Projection, View},
+        camera::{Camera, Projection},
         pick,
+        view::View,
     },
 };
 use glam::DVec2;

@@ -22,7 +22,7 @@ use crate::{
     oracle,
     preset::SceneSource,
     preset_file::PresetFile,
-    scene::{Scene, camera::View},
+    scene::{Scene, view::View},
 };
 
 pub fn run(common: &Common, args: &Bench, streams: &mut Streams) -> Result<Exit, Fault> {

@@ -16,7 +16,7 @@ use crate::{
     measure::compare,
     oracle,
     plan::{Tolerance, predict::Prediction},
-    scene::{Scene, camera::View, sizes::SizeClasses},
+    scene::{Scene, sizes::SizeClasses, view::View},
 };
 
 pub fn run(common: &Common, args: &Explain, streams: &mut Streams) -> Result<Exit, Fault> {

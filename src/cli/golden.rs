@@ -83,7 +83,7 @@ pub fn scene_hash(scene: &Scene) -> Fnv {
     let mut hash = Fnv::new().bytes(&scene.vertex_bytes).bytes(&scene.index_bytes);
     for primitive in &scene.primitives {
         let mut accessor = |a: &crate::scene::Accessor| {
-            let words = [a.offset, a.stride, a.component as u32, a.components, a.normalized.into(), a.count];
+            let words = [a.offset, a.stride, a.component_type as u32, a.components, a.normalized.into(), a.count];
             hash = hash.words(&words);
         };
         [Some(&primitive.positions), Some(&primitive.normals), primitive.colors.as_ref(), primitive.indices.as_ref()]

@@ -10,7 +10,7 @@ use super::Effect;
 use crate::{
     choice, params,
     params::{Color, Flag},
-    scene::camera::View,
+    scene::view::View,
 };
 
 choice! {

@@ -4,7 +4,7 @@
 
 use crate::{
     params::{Field, Params},
-    scene::{Scene, camera::View, light::light_view, particle_discs::ParticleSettings},
+    scene::{Scene, light::light_view, particle_discs::ParticleSettings, view::View},
 };
 
 pub mod hooks;

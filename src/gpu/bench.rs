@@ -17,7 +17,7 @@ use crate::{
     measure::{ErrorStats, Verdict, compare, timing},
     plan::AccuracyRequest,
     preset::Preset,
-    scene::{Scene, camera::View},
+    scene::{Scene, view::View},
 };
 
 /// What to measure.

@@ -15,9 +15,9 @@ use crate::{
     accuracy::Culling,
     scene::{
         Scene,
-        camera::View,
         draw::Draw,
         meshlets::{Meshlet, Meshlets, center_and_half, rounded_up},
+        view::View,
     },
 };
 

@@ -4,7 +4,7 @@
 use std::{collections::HashMap, ops::Range};
 
 use super::uniforms::{GpuRecord, format_word, gpu_record};
-use crate::scene::{Accessor, Scene, draw::Draw, pose::JointTransforms, rig::Influences};
+use crate::scene::{Accessor, Scene, deformation::Influences, draw::Draw, joint_transforms::JointTransforms};
 
 gpu_record! {
     /// One draw that bends. Each member is explained in `shaders/common/bends.wgsl`.

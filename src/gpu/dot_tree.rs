@@ -8,8 +8,8 @@ use crate::{
     effects::dots::Dots,
     scene::{
         Scene,
-        camera::View,
         lines::{Lines, SegmentEnds},
+        view::View,
     },
 };
 

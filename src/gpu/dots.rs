@@ -19,9 +19,9 @@ use crate::{
     math::rounded_columns,
     scene::{
         Scene,
-        camera::View,
         draw::DrawError,
         lines::{Lines, Segment, SegmentEnds},
+        view::View,
     },
     shader::{key::KernelKey, pass::Pass},
 };

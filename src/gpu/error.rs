@@ -3,7 +3,7 @@
 use crate::{
     accuracy::RenderScale,
     plan::PlanError,
-    scene::{camera::View, draw::DrawError},
+    scene::{draw::DrawError, view::View},
     shader::{link::LinkError, reflect::ShaderError},
 };
 

@@ -3,7 +3,7 @@
 use super::{Gpu, RenderError, buffers::Buffers, pipelines::layout_entry, timer::Timer, uniforms::*};
 use crate::{
     effects::Stack,
-    scene::{Component, Primitive, Scene, Topology, camera::View, draw::draws},
+    scene::{ComponentType, Primitive, Scene, Topology, draw::draws, view::View},
     shader::{glue::uniform_bytes, key::KernelKey, library::Library, link, reflect},
 };
 
@@ -139,8 +139,10 @@ impl Hardware {
 fn obstacle(p: &Primitive) -> Option<String> {
     let reason = match () {
         () if p.topology != Topology::List => "is no triangle list",
-        () if p.positions.component != Component::F32 || p.normals.component != Component::F32 => "has attributes that are not f32",
-        () if p.indices.is_some_and(|i| i.component == Component::U8) => "has u8 indices",
+        () if p.positions.component_type != ComponentType::F32 || p.normals.component_type != ComponentType::F32 => {
+            "has attributes that are not f32"
+        }
+        () if p.indices.is_some_and(|i| i.component_type == ComponentType::U8) => "has u8 indices",
         () if p.colors.is_some() => "has vertex colours",
         () => return None,
     };
@@ -149,8 +151,8 @@ fn obstacle(p: &Primitive) -> Option<String> {
 
 fn call(p: &Primitive, instance: u32) -> Call {
     let indices = p.indices.map(|i| {
-        let format = if i.component == Component::U16 { wgpu::IndexFormat::Uint16 } else { wgpu::IndexFormat::Uint32 };
-        (format, u64::from(i.offset)..u64::from(i.offset) + u64::from(i.count) * u64::from(i.component.bytes()), i.count)
+        let format = if i.component_type == ComponentType::U16 { wgpu::IndexFormat::Uint16 } else { wgpu::IndexFormat::Uint32 };
+        (format, u64::from(i.offset)..u64::from(i.offset) + u64::from(i.count) * u64::from(i.component_type.bytes()), i.count)
     });
     Call {
         instance,

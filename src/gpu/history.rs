@@ -1,7 +1,7 @@
 //! The past: what a picture starts from of the one before it.
 
 use super::{Renderer, prepare::BACKGROUND_ROWS, uniforms::color_stride};
-use crate::{effects::Stack, scene::camera::View, shader::key::KernelKey};
+use crate::{effects::Stack, scene::view::View, shader::key::KernelKey};
 
 impl Renderer {
     /// Empties what culling remembers of the picture before, unless that was one like this.

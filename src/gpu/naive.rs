@@ -14,7 +14,7 @@ use super::{
 };
 use crate::{
     math::rounded_columns,
-    scene::{Scene, camera::View, draw::draws},
+    scene::{Scene, draw::draws, view::View},
     shader::{key::KernelKey, library::Library},
 };
 

@@ -16,8 +16,8 @@ use crate::{
     frame::{ParticleReadback, ParticleState},
     scene::{
         Scene,
-        camera::View,
         particle_discs::{PARTICLE_DISC_WORDS, ParticleTimeline},
+        view::View,
     },
     shader::{key::KernelKey, pass::Pass},
 };

@@ -17,9 +17,9 @@ use crate::{
     plan::{AccuracyRequest, Plan, plan},
     scene::{
         Scene,
-        camera::View,
         draw::{Draw, draws as drawn, totals},
         needs::Needs,
+        view::View,
     },
     shader::{
         glue::uniform_bytes,

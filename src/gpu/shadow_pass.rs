@@ -12,7 +12,7 @@ use crate::{
     effects::Stack,
     frame::LightMap,
     plan::{AccuracyRequest, Note, Plan, Tuning},
-    scene::camera::View,
+    scene::view::View,
     shader::library::Library,
 };
 

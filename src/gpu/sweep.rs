@@ -10,7 +10,7 @@ use crate::{
     measure::{References, ShadowErrors, Verdict, compare, timing},
     plan::AccuracyRequest,
     preset::Preset,
-    scene::{Scene, camera::View},
+    scene::{Scene, view::View},
 };
 
 /// What to measure.

@@ -9,7 +9,7 @@ use super::{
 use crate::{
     frame::{Counters, CullingStats, OrderStats},
     math::{rounded_columns, srgb_byte},
-    scene::{Accessor, Scene, camera::View, draw::Draw},
+    scene::{Accessor, Scene, draw::Draw, view::View},
 };
 
 /// Name and byte offset of every member, for the layout test.
@@ -297,7 +297,7 @@ impl FrameUniform {
 
 /// Component type in bits 0 to 2, normalized in bit 3 (`shaders/common/pull.wgsl`), lanes from bit 8.
 pub fn format_word(accessor: &Accessor) -> u32 {
-    (accessor.component as u32 - 5120) | u32::from(accessor.normalized) << 3 | accessor.components << 8
+    (accessor.component_type as u32 - 5120) | u32::from(accessor.normalized) << 3 | accessor.components << 8
 }
 
 impl DrawRecord {
@@ -328,7 +328,7 @@ impl DrawRecord {
                 | (draw.primitive as u32) << 8,
             topology: primitive.topology as u32,
             index_offset: primitive.indices.map_or(0, |i| i.offset),
-            index_format: primitive.indices.map_or(0, |i| i.component.bytes()),
+            index_format: primitive.indices.map_or(0, |i| i.component_type.bytes()),
             position_offset: positions.offset,
             position_stride: positions.stride,
             position_format: format_word(&positions),

@@ -13,7 +13,7 @@ use super::{
 use crate::{
     frame::{ClippedTriangle, Geometry, SnappedVertex, vertex_flags},
     math::GUARD_BAND,
-    scene::{Scene, camera::View, draw::Draw},
+    scene::{Scene, draw::Draw, view::View},
 };
 
 /// The planes in the order of clipping, each by its vertex flag.

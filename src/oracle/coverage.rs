@@ -14,8 +14,8 @@ use crate::{
     math::SMALL_EXTENT,
     scene::{
         Scene,
-        camera::View,
         draw::{Draw, totals},
+        view::View,
     },
 };
 

@@ -18,8 +18,8 @@ use crate::{
     frame::{ClippedTriangle, Geometry, SnappedVertex},
     scene::{
         Scene,
-        camera::View,
         draw::{Draw, totals},
+        view::View,
     },
 };
 

@@ -10,11 +10,12 @@ use crate::{
     frame::vertex_flags,
     measure::ErrorReport,
     scene::{
-        Accessor, Component, Primitive, Scene,
-        camera::View,
+        Accessor, ComponentType, Primitive, Scene,
+        deformation::MorphTarget,
         draw::{Draw, MAX_MAGNITUDE},
-        pose::{Deform, DualQuaternionJoint, JointMatrix, JointTransforms},
-        rig::Shape,
+        joint_transforms::{DualQuaternionJoint, JointMatrix, JointTransforms},
+        pose::Deform,
+        view::View,
     },
 };
 
@@ -161,7 +162,7 @@ fn unit(vector: &Bounded) -> Bounded {
 
 /// Relative error of a lane as it is pulled: normalized integers are divided.
 fn pull_error(accessor: &Accessor) -> f64 {
-    if accessor.normalized && accessor.component != Component::F32 { 3.0 * ROUNDING } else { 0.0 }
+    if accessor.normalized && accessor.component_type != ComponentType::F32 { 3.0 * ROUNDING } else { 0.0 }
 }
 
 /// A stored vector with what the shapes add to it.
@@ -172,7 +173,7 @@ fn mixed(
     vertex: u32,
     stored: DVec3,
     accessor: &Accessor,
-    lane_of: impl Fn(&Shape) -> Option<&Accessor>,
+    lane_of: impl Fn(&MorphTarget) -> Option<&Accessor>,
 ) -> Bounded {
     let (mut value, mut magnitude) = (stored, stored.abs() * (1.0 + pull_error(accessor)));
     let (mut pulled, mut terms) = (stored.abs() * pull_error(accessor), 0);

@@ -18,9 +18,9 @@ use crate::{
     measure::ErrorReport,
     scene::{
         Scene,
-        camera::View,
         draw::{Draw, DrawError},
         lines::{Lines, Segment, SegmentEnds},
+        view::View,
     },
 };
 

@@ -12,7 +12,7 @@ use crate::{
     },
     frame::Geometry,
     math::srgb_byte,
-    scene::{Scene, camera::View, draw::Draw},
+    scene::{Scene, draw::Draw, view::View},
 };
 
 /// The integers that a picture is coloured from, row-major.

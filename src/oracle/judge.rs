@@ -31,8 +31,8 @@ use crate::{
     measure::{ErrorReport, Verdict, compare},
     scene::{
         Scene,
-        camera::View,
         draw::{Draw, DrawError, draws},
+        view::View,
     },
 };
 

@@ -17,10 +17,15 @@ use super::{
     surface::{Triangle, encoded},
 };
 use crate::{
-    effects::{Stack, Surface, hooks::Layers, overdraw::Overdraw, xray, xray::Xray},
+    effects::{
+        Stack, Surface,
+        hooks::Layers,
+        overdraw::Overdraw,
+        xray::{self, Xray},
+    },
     frame::Geometry,
     math::linear_light,
-    scene::{Scene, camera::View, draw::Draw},
+    scene::{Scene, draw::Draw, view::View},
 };
 
 /// Bound of the error of a shaded f32 colour, of 1.

@@ -29,9 +29,9 @@ use crate::{
     measure::{ErrorReport, ShadowErrors},
     scene::{
         Scene,
-        camera::View,
         draw::{Draw, DrawError, draws},
-        light::ShadowResolution,
+        shadow_resolution::ShadowResolution,
+        view::View,
     },
 };
 

@@ -13,8 +13,8 @@ use crate::{
     frame::SnappedVertex,
     scene::{
         Primitive, Scene,
-        camera::View,
         texture::{Filter, Texture, Wrap, stored},
+        view::View,
     },
 };
 

@@ -58,9 +58,9 @@ use crate::{
     math::{GUARD_BAND, SUBPIXEL_BITS},
     scene::{
         Scene,
-        camera::View,
         draw::{DrawError, draws},
-        light::ShadowResolution,
+        shadow_resolution::ShadowResolution,
+        view::View,
     },
 };
 

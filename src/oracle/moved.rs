@@ -15,8 +15,8 @@ use crate::{
     math::rounded_columns,
     scene::{
         Scene,
-        camera::View,
         draw::{Draw, MAX_MAGNITUDE},
+        view::View,
     },
 };
 

@@ -9,7 +9,7 @@ use super::{
 use crate::{
     effects::{Stack, draw_order::Mode},
     frame::Geometry,
-    scene::{Scene, camera::View, draw::Draw},
+    scene::{Scene, draw::Draw, view::View},
 };
 
 /// Where the drawing stops.

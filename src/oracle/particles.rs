@@ -21,8 +21,8 @@ use crate::{
     math::{hash, hash_unit},
     scene::{
         Scene,
-        camera::View,
         particle_discs::{PARTICLE_DISC_WORDS, ParticleTimeline},
+        view::View,
     },
 };
 

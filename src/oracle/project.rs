@@ -12,7 +12,7 @@ use crate::{
     effects::Stack,
     frame::{Exactness, Geometry, SnappedVertex, vertex_flags},
     math::GUARD_BAND,
-    scene::{Accessor, Component, Scene, camera::View, draw::Draw},
+    scene::{Accessor, ComponentType, Scene, draw::Draw, view::View},
 };
 
 /// Homogeneous clip-space position (WebGPU: y up, z from 0 to w, reversed).
@@ -74,8 +74,8 @@ pub(super) fn gate(bits: u32) -> Result<f64, u32> {
 
 /// A lane of any attribute through the [`gate`]; integers always pass.
 pub(super) fn gated_lane(bytes: &[u8], accessor: &Accessor, element: u32, lane: u32) -> Result<f64, u32> {
-    match accessor.component {
-        Component::F32 => gate(accessor.f32_bits(bytes, element, lane)),
+    match accessor.component_type {
+        ComponentType::F32 => gate(accessor.f32_bits(bytes, element, lane)),
         _ => Ok(accessor.value(bytes, element, lane)),
     }
 }

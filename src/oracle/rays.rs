@@ -12,9 +12,9 @@ use crate::{
     effects::Stack,
     scene::{
         Scene,
-        camera::View,
         draw::{Draw, draws},
-        light::ShadowResolution,
+        shadow_resolution::ShadowResolution,
+        view::View,
     },
 };
 

@@ -12,7 +12,7 @@ use crate::{
     },
     frame::Geometry,
     math::UNITS_PER_PIXEL,
-    scene::{Scene, camera::View, draw::Draw},
+    scene::{Scene, draw::Draw, view::View},
 };
 
 /// The sample effects of a stack with what they settled per triangle.

@@ -12,8 +12,8 @@ use crate::{
     measure::References,
     scene::{
         Scene,
-        camera::View,
         draw::{DrawError, draws},
+        view::View,
     },
 };
 

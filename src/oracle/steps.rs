@@ -12,7 +12,7 @@ use super::{
 use crate::{
     effects::{Stack, hooks::Slot},
     frame::Geometry,
-    scene::{Scene, camera::View, draw::Draw},
+    scene::{Scene, draw::Draw, view::View},
 };
 
 /// How far from a step a value may lie for both sides to be right; values are about 1 at most. 2^-15: a shade is some

@@ -21,9 +21,9 @@ use crate::{
     frame::{Exactness, Geometry, SnappedVertex, vertex_flags},
     math::GUARD_BAND,
     scene::{
-        Component, Scene,
-        camera::View,
+        ComponentType, Scene,
         draw::{Draw, DrawError, draws},
+        view::View,
     },
 };
 
@@ -80,8 +80,8 @@ struct Clip {
 fn position(scene: &Scene, draw: &Draw, vertex: u32) -> Result<Clip, u32> {
     let primitive = &scene.primitives[draw.primitive];
     place(scene, draw, vertex)?;
-    let lane = |lane: u32| match primitive.positions.component {
-        Component::F32 => operand(f32::from_bits(primitive.positions.f32_bits(&scene.vertex_bytes, vertex, lane))),
+    let lane = |lane: u32| match primitive.positions.component_type {
+        ComponentType::F32 => operand(f32::from_bits(primitive.positions.f32_bits(&scene.vertex_bytes, vertex, lane))),
         _ => primitive.positions.value(&scene.vertex_bytes, vertex, lane) as f32,
     };
     // From the origin on; from 0, nothing changes.

@@ -17,7 +17,7 @@ use crate::{
     effects::{Stack, Surface, hooks::Shape},
     frame::{Geometry, SnappedVertex, vertex_flags},
     math::srgb,
-    scene::{Accessor, Scene, camera::View, draw::Draw},
+    scene::{Accessor, Scene, draw::Draw, view::View},
 };
 
 /// Below this squared length, at unit scale, a vector has no direction.

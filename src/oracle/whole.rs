@@ -10,7 +10,7 @@ use crate::{
     effects::{Stack, hooks::Shape},
     frame::{Exactness, Frame, Geometry, SnappedVertex},
     measure::ErrorReport,
-    scene::{Scene, camera::View, draw::Draw},
+    scene::{Scene, draw::Draw, view::View},
 };
 
 /// The adapter's picture against the oracle's own, from the matrix bits on.

@@ -17,9 +17,10 @@ use crate::{
     math::rotation_y,
     scene::{
         Bounds, Scene,
-        camera::{Camera, View},
-        light::ShadowResolution,
+        camera::Camera,
         pose::{Motion, Pose, scene_from_nodes},
+        shadow_resolution::ShadowResolution,
+        view::View,
     },
 };
 pub use animation::{Animation, Track};

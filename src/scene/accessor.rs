@@ -3,7 +3,7 @@
 /// Number format of one attribute component. The discriminant is glTF's `componentType`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[repr(u32)]
-pub enum Component {
+pub enum ComponentType {
     I8 = 5120,
     U8 = 5121,
     I16 = 5122,
@@ -12,7 +12,7 @@ pub enum Component {
     F32 = 5126,
 }
 
-impl Component {
+impl ComponentType {
     /// Size of one component in bytes: 1, 2 or 4.
     pub const fn bytes(self) -> u32 {
         match self {
@@ -33,7 +33,7 @@ pub struct Accessor {
     pub offset: u32,
     /// Bytes from the start of one element to the start of the next.
     pub stride: u32,
-    pub component: Component,
+    pub component_type: ComponentType,
     /// Components per element: 1 to 4 in a scene (16 for the matrices that the loader reads).
     pub components: u32,
     /// Integers are mapped to [0, 1] (unsigned) or [-1, 1] (signed), as glTF 2.0, section 3.6.2.2, defines.
@@ -48,7 +48,7 @@ impl Accessor {
         Self {
             offset: offset as u32,
             stride: components * 4,
-            component: Component::F32,
+            component_type: ComponentType::F32,
             components,
             normalized: false,
             count: count as u32,
@@ -62,35 +62,35 @@ impl Accessor {
 
     /// The bits of an f32 component; of an integer component, the bits of its exact value as f32. Not normalized.
     pub fn f32_bits(&self, bytes: &[u8], element: u32, lane: u32) -> u32 {
-        match self.component {
-            Component::F32 => u32::from_le_bytes(self.raw(bytes, element, lane)),
+        match self.component_type {
+            ComponentType::F32 => u32::from_le_bytes(self.raw(bytes, element, lane)),
             _ => (self.integer(bytes, element, lane) as f32).to_bits(),
         }
     }
 
     /// An integer component, not normalized. Of an f32 component it returns the bits.
     pub fn integer(&self, bytes: &[u8], element: u32, lane: u32) -> i64 {
-        match self.component {
-            Component::I8 => i8::from_le_bytes(self.raw(bytes, element, lane)).into(),
-            Component::U8 => u8::from_le_bytes(self.raw(bytes, element, lane)).into(),
-            Component::I16 => i16::from_le_bytes(self.raw(bytes, element, lane)).into(),
-            Component::U16 => u16::from_le_bytes(self.raw(bytes, element, lane)).into(),
-            Component::U32 | Component::F32 => u32::from_le_bytes(self.raw(bytes, element, lane)).into(),
+        match self.component_type {
+            ComponentType::I8 => i8::from_le_bytes(self.raw(bytes, element, lane)).into(),
+            ComponentType::U8 => u8::from_le_bytes(self.raw(bytes, element, lane)).into(),
+            ComponentType::I16 => i16::from_le_bytes(self.raw(bytes, element, lane)).into(),
+            ComponentType::U16 => u16::from_le_bytes(self.raw(bytes, element, lane)).into(),
+            ComponentType::U32 | ComponentType::F32 => u32::from_le_bytes(self.raw(bytes, element, lane)).into(),
         }
     }
 
     /// A component in f64, normalized where the accessor says so.
     pub fn value(&self, bytes: &[u8], element: u32, lane: u32) -> f64 {
-        if self.component == Component::F32 {
+        if self.component_type == ComponentType::F32 {
             return f32::from_bits(self.f32_bits(bytes, element, lane)).into();
         }
         let integer = self.integer(bytes, element, lane) as f64;
-        match (self.normalized, self.component) {
+        match (self.normalized, self.component_type) {
             (false, _) => integer,
-            (true, Component::I8) => (integer / 127.0).max(-1.0),
-            (true, Component::U8) => integer / 255.0,
-            (true, Component::I16) => (integer / 32767.0).max(-1.0),
-            (true, Component::U16) => integer / 65535.0,
+            (true, ComponentType::I8) => (integer / 127.0).max(-1.0),
+            (true, ComponentType::U8) => integer / 255.0,
+            (true, ComponentType::I16) => (integer / 32767.0).max(-1.0),
+            (true, ComponentType::U16) => integer / 65535.0,
             (true, _) => integer / 4_294_967_295.0,
         }
     }

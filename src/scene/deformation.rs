@@ -7,7 +7,7 @@ use super::{accessor::Accessor, bounds::Bounds};
 pub struct Deformation {
     /// Sets of four joints and weights per vertex: none without a skin, at most two.
     pub influences: Vec<Influences>,
-    pub morph_targets: Vec<Shape>,
+    pub morph_targets: Vec<MorphTarget>,
     /// For each joint, the object-space box of the vertices that it influences with a weight above 0. As long as the largest
     /// joint index requires.
     pub joint_bounds: Vec<Bounds>,
@@ -29,9 +29,9 @@ pub struct Influences {
 
 /// A morph target: the displacements that a weight of 1 adds to every vertex. In `Scene::vertex_bytes`.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Shape {
+pub struct MorphTarget {
     pub positions: Option<Accessor>,
     pub normals: Option<Accessor>,
     /// The largest displacement of any vertex along any axis at a weight of 1, in object space.
-    pub reach: f64,
+    pub max_displacement: f64,
 }

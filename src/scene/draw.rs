@@ -3,9 +3,10 @@
 use glam::{DMat4, DVec3, DVec4};
 
 use super::{
-    Bounds, Primitive, Scene,
-    camera::View,
+    bounds::Bounds,
+    model::{Instance, Primitive, Scene},
     pose::{Deform, Pose},
+    view::View,
 };
 use crate::math::rounded_columns;
 
@@ -100,7 +101,7 @@ pub fn draws(scene: &Scene, view: &View) -> Result<Vec<Draw>, DrawError> {
     // The view of a light leaves out the walls, which are last in the list.
     let drawn = if view.is_light() { scene.shadow_casters() } else { &scene.instances };
     let (mut first_vertex, mut first_triangle, mut first_deformable) = (0, 0, 0);
-    let place = |(index, instance): (usize, &super::Instance)| {
+    let place = |(index, instance): (usize, &Instance)| {
         let primitive = &scene.primitives[instance.primitive];
         let deform = pose.and_then(|pose| pose.deform(index)).cloned();
         let world_from_scene = if index < shadow_casters { view.world_from_scene } else { DMat4::IDENTITY };

@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use glam::{DMat3, DMat4, DQuat, DVec3};
 
-use super::pose::unit;
+use super::quaternion::unit;
 use crate::accuracy::Skinning;
 
 /// The upper three rows of the matrix from the mesh to the scene; the fourth row is 0 0 0 1.

@@ -4,9 +4,11 @@
 use glam::{DVec2, DVec3};
 
 use super::{
-    Bounds, Scene,
-    camera::{Camera, Projection, View},
+    bounds::Bounds,
+    camera::{Camera, Projection},
+    model::Scene,
     pose::Pose,
+    view::View,
 };
 
 /// Empty texels along every border: half the widest filter, and one for rounding.
@@ -73,7 +75,7 @@ impl Axes {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::scene::builtin;
+    use crate::scene::{builtin, shadow_resolution::ShadowResolution};
 
     #[test]
     fn every_corner_of_the_scene_lies_inside_the_map_and_its_border_is_empty() {

@@ -7,7 +7,11 @@ use std::collections::{HashMap, hash_map::Entry};
 
 use glam::{DMat4, DVec3};
 
-use super::{Primitive, Scene, draw::DrawError, pose::Pose};
+use super::{
+    draw::DrawError,
+    model::{Primitive, Scene},
+    pose::Pose,
+};
 
 /// Cosine of the sharpest turn between consecutive edges of a chain: 60 degrees.
 const SHARPEST: f64 = 0.5;

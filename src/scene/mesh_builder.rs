@@ -2,11 +2,15 @@
 
 use glam::DVec3;
 
-use crate::scene::{Accessor, Bounds, Component, Primitive, Scene, Topology};
+use crate::scene::{
+    accessor::{Accessor, ComponentType},
+    bounds::Bounds,
+    model::{Primitive, Scene, Topology},
+};
 
 /// A mesh under construction. Triangles are counter-clockwise seen from the outside, as in glTF.
 #[derive(Clone, Debug, Default)]
-pub struct Mesh {
+pub struct MeshBuilder {
     positions: Vec<[f32; 3]>,
     normals: Vec<[f32; 3]>,
     /// Linear RGBA; empty, or one per vertex.
@@ -23,7 +27,7 @@ pub struct Ring {
     pub count: u32,
 }
 
-impl Mesh {
+impl MeshBuilder {
     /// An empty mesh with reserved capacity.
     pub fn with_capacity(vertices: usize, triangles: usize) -> Self {
         Self {
@@ -122,7 +126,7 @@ impl Mesh {
         let byte_color = Accessor {
             offset: colors_at as u32,
             stride: 4,
-            component: Component::U8,
+            component_type: ComponentType::U8,
             components: 4,
             normalized: true,
             count: colors.len() as u32,
@@ -133,7 +137,7 @@ impl Mesh {
             indices: Some(Accessor {
                 offset: indices_at as u32,
                 stride: 4,
-                component: Component::U32,
+                component_type: ComponentType::U32,
                 components: 1,
                 normalized: false,
                 count: indices.len() as u32,

@@ -6,7 +6,12 @@
 
 use glam::DVec3;
 
-use super::{Bounds, Component, Primitive, Scene, draw::MAX_MAGNITUDE};
+use super::{
+    accessor::ComponentType,
+    bounds::Bounds,
+    draw::MAX_MAGNITUDE,
+    model::{Primitive, Scene},
+};
 
 /// The most triangles of a meshlet.
 pub const MESHLET_TRIANGLES: usize = 64;
@@ -50,7 +55,7 @@ impl Meshlets {
         let corners: Vec<[u32; 3]> =
             (0..primitive.triangle_count()).map(|t| primitive.corners(scene, t).map(|vertex| vertex.min(last))).collect();
         let places: Vec<[f32; 3]> = (0..primitive.vertex_count()).map(|vertex| primitive.position(scene, vertex)).collect();
-        let builder = Builder { places: &places, corners: &corners, is_exact: primitive.positions.component == Component::F32 };
+        let builder = Builder { places: &places, corners: &corners, is_exact: primitive.positions.component_type == ComponentType::F32 };
         let mut meshlets = Self::default();
         let mut stamps = vec![u32::MAX; places.len()];
         for patch in builder.patches(&primitive.bounds) {

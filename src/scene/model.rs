@@ -2,15 +2,7 @@
 
 use glam::{DMat4, DVec3};
 
-use super::{
-    accessor::Accessor,
-    bounds::Bounds,
-    camera::Camera,
-    deformation::Deformation,
-    material::Material,
-    rig::Rig,
-    texture::Image,
-};
+use super::{accessor::Accessor, bounds::Bounds, camera::Camera, deformation::Deformation, material::Material, rig::Rig, texture::Image};
 
 /// How consecutive corners form triangles. A corner is a position in the index list, or in the vertex list without indices.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -201,7 +193,7 @@ impl Scene {
     /// World-space box of all instances. Of a scene with a rig, [`Rig::motion_bounds`].
     pub fn bounds(&self) -> Bounds {
         if !self.rig.is_empty() {
-            return self.rig.reach;
+            return self.rig.motion_bounds;
         }
         self.bounds_of(&self.instances)
     }

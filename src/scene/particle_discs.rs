@@ -5,7 +5,13 @@ use std::{borrow::Cow, sync::Arc};
 
 use glam::{DMat4, DVec3};
 
-use super::{Accessor, Bounds, Component, Instance, Material, Primitive, Scene, Topology, rig::Deformation};
+use super::{
+    accessor::{Accessor, ComponentType},
+    bounds::Bounds,
+    deformation::Deformation,
+    material::Material,
+    model::{Instance, Primitive, Scene, Topology},
+};
 
 /// Bytes of a corner: position as three floats, colour as three normalized u16, normal as three normalized i16.
 pub const CORNER_BYTES: u32 = 24;
@@ -76,10 +82,10 @@ impl Scene {
         let first = scene.vertex_bytes.len();
         let corners = 3 * particle_settings.count as usize;
         scene.vertex_bytes.resize(first + corners * CORNER_BYTES as usize, 0);
-        let accessor = |offset: usize, component, normalized| Accessor {
+        let accessor = |offset: usize, component_type, normalized| Accessor {
             offset: (first + offset) as u32,
             stride: CORNER_BYTES,
-            component,
+            component_type,
             components: 3,
             normalized,
             count: corners as u32,
@@ -92,9 +98,9 @@ impl Scene {
             name: "particles".into(),
             topology: Topology::List,
             indices: None,
-            positions: accessor(0, Component::F32, false),
-            normals: accessor(18, Component::I16, true),
-            colors: Some(accessor(12, Component::U16, true)),
+            positions: accessor(0, ComponentType::F32, false),
+            normals: accessor(18, ComponentType::I16, true),
+            colors: Some(accessor(12, ComponentType::U16, true)),
             texcoords: [None, None],
             material: scene.materials.len(),
             bounds: particle_settings.reach(),
@@ -105,7 +111,7 @@ impl Scene {
         scene.materials.push(Material { name: "particles".into(), double_sided: true, ..Material::default() });
         if !scene.rig.is_empty() {
             let reach = particle_settings.reach();
-            [reach.min, reach.max].into_iter().for_each(|corner: DVec3| scene.rig.reach.include(corner));
+            [reach.min, reach.max].into_iter().for_each(|corner: DVec3| scene.rig.motion_bounds.include(corner));
         }
         Cow::Owned(scene)
     }

@@ -4,9 +4,9 @@ use glam::{DVec2, DVec3};
 use rayon::prelude::*;
 
 use super::{
-    Scene,
-    camera::View,
     draw::{Draw, draws},
+    model::Scene,
+    view::View,
 };
 
 /// The world-space point nearest to the eye on the ray through `screen` (0 to 1, right and down). `None` if the ray hits

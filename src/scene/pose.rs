@@ -7,11 +7,12 @@ use std::sync::Arc;
 
 use glam::{DMat4, DQuat, DVec3};
 
-use super::joint_transforms::rounded_rows;
-pub use super::joint_transforms::{DualQuaternionJoint, JointMatrix, JointTransforms};
 use super::{
-    Bounds, Primitive, Scene,
-    rig::{Interpolation, Local, Property, Rig, Sampler, Trs},
+    bounds::Bounds,
+    joint_transforms::{DualQuaternionJoint, JointTransforms, rounded_rows},
+    model::{Instance, Primitive, Scene},
+    quaternion::{slerp, unit},
+    rig::{Interpolation, LocalTransform, Property, Rig, Sampler, Skin, Trs},
 };
 use crate::accuracy::Skinning;
 
@@ -53,7 +54,7 @@ impl Pose {
         let rig = &scene.rig;
         let state = State::of(rig, motion);
         let scene_from_node = state.places(rig);
-        let joint_transforms = |skin: &super::rig::Skin| {
+        let joint_transforms = |skin: &Skin| {
             let matrices = skin.joints.iter().zip(&skin.joint_from_mesh).map(|(&node, inverse)| scene_from_node[node] * *inverse);
             match motion.skinning {
                 Skinning::Linear => JointTransforms::Linear(matrices.map(|matrix| rounded_rows(&matrix)).collect()),
@@ -61,14 +62,14 @@ impl Pose {
             }
         };
         let palettes: Vec<JointTransforms> = rig.skins.iter().map(joint_transforms).collect();
-        let deform = |instance: &super::Instance| {
+        let deform = |instance: &Instance| {
             let morph_targets = scene.primitives[instance.primitive].deformation.morph_targets.len();
             let joint_transforms = instance.skin.map(|skin| palettes[skin].clone());
             let given = instance.node.map_or(&[][..], |node| &state.weights[node]);
-            let weights: Arc<[f32]> = (0..morph_targets).map(|shape| given.get(shape).copied().unwrap_or(0.0)).collect();
+            let weights: Arc<[f32]> = (0..morph_targets).map(|morph_target| given.get(morph_target).copied().unwrap_or(0.0)).collect();
             (joint_transforms.is_some() || weights.iter().any(|&weight| weight != 0.0)).then_some(Deform { joint_transforms, weights })
         };
-        let place = |instance: &super::Instance| match (instance.skin, instance.node) {
+        let place = |instance: &Instance| match (instance.skin, instance.node) {
             // The joints alone place a skinned mesh; its node is ignored (glTF 2.0, section 3.7.3.2).
             (Some(_), _) => DMat4::IDENTITY,
             (None, Some(node)) => scene_from_node[node],
@@ -97,7 +98,7 @@ impl Pose {
     }
 
     /// A box of `first`, the leading instances of `scene`.
-    pub fn bounds_of(&self, scene: &Scene, first: &[super::Instance]) -> Bounds {
+    pub fn bounds_of(&self, scene: &Scene, first: &[Instance]) -> Bounds {
         let mut bounds = Bounds::EMPTY;
         for ((instance, place), deform) in first.iter().zip(&self.places).zip(&self.deforms) {
             let primitive = &scene.primitives[instance.primitive];
@@ -115,7 +116,7 @@ pub fn scene_from_nodes(rig: &Rig, motion: &Motion) -> Vec<DMat4> {
 
 /// A box of `scene` in its rest pose and at eight times of each clip. Of large scenes only some vertices and clips are
 /// sampled, so it is good for framing and not a strict bound.
-pub fn reach(scene: &Scene) -> Bounds {
+pub fn motion_bounds(scene: &Scene) -> Bounds {
     const MOMENTS: usize = 8;
     const MOST_NODES: usize = 1_000_000;
     const MOST_VERTICES: usize = 2_000_000;
@@ -129,20 +130,20 @@ pub fn reach(scene: &Scene) -> Bounds {
     let moments = (0..scene.rig.clips.len().min(most)).flat_map(|clip| (0..MOMENTS).map(move |at| moment(clip, at)));
     let motions: Vec<Motion> = std::iter::once(Motion::default()).chain(moments).collect();
     let stride = (scene.deformable_vertex_count() as usize * motions.len()).div_ceil(MOST_VERTICES).max(1);
-    let mut reach = Bounds::EMPTY;
+    let mut bounds = Bounds::EMPTY;
     for motion in &motions {
         let pose = Pose::at(scene, motion);
         for (index, instance) in scene.instances.iter().enumerate() {
             let (primitive, place) = (&scene.primitives[instance.primitive], pose.place(index));
             let Some(deform) = pose.deform(index) else {
-                reach.include_transformed(&place, &primitive.bounds, 0.0);
+                bounds.include_transformed(&place, &primitive.bounds, 0.0);
                 continue;
             };
             let vertices = (0..primitive.vertex_count()).step_by(stride);
-            vertices.for_each(|vertex| reach.include(place.transform_point3(deform.position(scene, primitive, vertex))));
+            vertices.for_each(|vertex| bounds.include(place.transform_point3(deform.position(scene, primitive, vertex))));
         }
     }
-    reach
+    bounds
 }
 
 impl Deform {
@@ -155,8 +156,12 @@ impl Deform {
     /// quaternions it may bulge beyond them by the radius of their box.
     pub fn bounds(&self, primitive: &Primitive) -> Bounds {
         let deformation = &primitive.deformation;
-        let error_bound =
-            self.weights.iter().zip(&deformation.morph_targets).map(|(weight, shape)| f64::from(weight.abs()) * shape.reach).sum();
+        let error_bound = self
+            .weights
+            .iter()
+            .zip(&deformation.morph_targets)
+            .map(|(weight, morph_target)| f64::from(weight.abs()) * morph_target.max_displacement)
+            .sum();
         let mut bounds = Bounds::EMPTY;
         let Some(joint_transforms) = &self.joint_transforms else {
             bounds.include_transformed(&DMat4::IDENTITY, &primitive.bounds, error_bound);
@@ -176,10 +181,14 @@ impl Deform {
     /// The deformed position of a vertex: morph targets, then linear skinning. For estimates; the picture uses other code.
     pub fn position(&self, scene: &Scene, primitive: &Primitive, vertex: u32) -> DVec3 {
         let bytes = &scene.vertex_bytes;
-        let vector = |accessor: &super::Accessor| DVec3::from([0, 1, 2].map(|lane| accessor.value(bytes, vertex, lane)));
-        let morph_targets =
-            self.weights.iter().zip(&primitive.deformation.morph_targets).filter_map(|(w, shape)| Some((w, shape.positions.as_ref()?)));
-        let place = morph_targets.fold(vector(&primitive.positions), |place, (&weight, shape)| place + vector(shape) * f64::from(weight));
+        let vector = |accessor: &super::accessor::Accessor| DVec3::from([0, 1, 2].map(|lane| accessor.value(bytes, vertex, lane)));
+        let morph_targets = self
+            .weights
+            .iter()
+            .zip(&primitive.deformation.morph_targets)
+            .filter_map(|(w, morph_target)| Some((w, morph_target.positions.as_ref()?)));
+        let place = morph_targets
+            .fold(vector(&primitive.positions), |place, (&weight, morph_target)| place + vector(morph_target) * f64::from(weight));
         let Some(joint_transforms) = &self.joint_transforms else { return place };
         let sets = primitive.deformation.influences.iter();
         let held = sets.flat_map(|set| {
@@ -197,7 +206,7 @@ impl Deform {
 
 /// The animated values of all nodes.
 struct State {
-    locals: Vec<Local>,
+    locals: Vec<LocalTransform>,
     weights: Vec<Vec<f32>>,
 }
 
@@ -235,7 +244,7 @@ impl State {
                 state.weights[channel.node] = (0..sampler.components).map(value).collect();
                 continue;
             }
-            let Local::Trs(parts) = &mut state.locals[channel.node] else { continue };
+            let LocalTransform::Trs(parts) = &mut state.locals[channel.node] else { continue };
             let vector = || DVec3::from([0, 1, 2].map(|lane| sampler.value(lane, time_s)));
             match channel.property {
                 Property::Translation => parts.translation = vector(),
@@ -249,7 +258,7 @@ impl State {
 
     fn blend(&mut self, other: &Self, share: f64) {
         for (a, b) in self.locals.iter_mut().zip(&other.locals) {
-            if let (Local::Trs(a), Local::Trs(b)) = (a, b) {
+            if let (LocalTransform::Trs(a), LocalTransform::Trs(b)) = (a, b) {
                 *a = Trs {
                     translation: a.translation.lerp(b.translation, share),
                     rotation: slerp(a.rotation, b.rotation, share),

@@ -14,7 +14,7 @@ pub struct Rig {
     /// Keyframes. Several channels may share a sampler.
     pub samplers: Vec<Sampler>,
     /// World-space box of sampled vertices in the rest pose and in the clips. Used to frame the camera; not a strict bound.
-    pub reach: Bounds,
+    pub motion_bounds: Bounds,
 }
 
 impl Rig {
@@ -35,14 +35,14 @@ pub struct Node {
     pub name: String,
     pub parent: Option<usize>,
     /// Transform relative to the parent in the rest pose.
-    pub rest: Local,
+    pub rest: LocalTransform,
     /// Morph weights of its mesh in the rest pose, one per morph target.
     pub weights: Vec<f32>,
 }
 
 /// A transform relative to the parent node.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Local {
+pub enum LocalTransform {
     /// A matrix from the file, which clips cannot animate.
     Matrix(DMat4),
     /// Separate translation, rotation and scale, which clips can animate.
@@ -64,7 +64,7 @@ impl Default for Trs {
     }
 }
 
-impl Local {
+impl LocalTransform {
     pub fn matrix(&self) -> DMat4 {
         match self {
             Self::Matrix(matrix) => *matrix,

@@ -2,7 +2,12 @@
 
 use glam::{DMat4, DVec3};
 
-use super::{Bounds, Instance, Material, Scene, builtin::Mesh};
+use super::{
+    bounds::Bounds,
+    material::Material,
+    mesh_builder::MeshBuilder,
+    model::{Instance, Scene},
+};
 
 /// Quads along each side of a wall, so that effects meet triangles of medium size.
 const CELLS: u32 = 8;
@@ -30,8 +35,8 @@ impl Scene {
         self.instances.push(Instance::fixed(primitive, DMat4::IDENTITY));
         self.walls += 1;
         if !self.rig.is_empty() {
-            self.rig.reach.include(room.min);
-            self.rig.reach.include(room.max);
+            self.rig.motion_bounds.include(room.min);
+            self.rig.motion_bounds.include(room.max);
         }
         self
     }
@@ -43,8 +48,8 @@ impl Scene {
 }
 
 /// Six walls whose front faces point inwards.
-fn walls(room: &Bounds) -> Mesh {
-    let mut mesh = Mesh::default();
+fn walls(room: &Bounds) -> MeshBuilder {
+    let mut mesh = MeshBuilder::default();
     let (center, half) = (room.center(), (room.max - room.min) * 0.5);
     for axis in 0..3 {
         for side in [-1.0, 1.0] {
@@ -54,7 +59,7 @@ fn walls(room: &Bounds) -> Mesh {
                 let share = |k: u32| 2.0 * f64::from(k) / f64::from(CELLS) - 1.0;
                 center + (u * share(i) + v * share(j) - inward) * half
             };
-            let row = |mesh: &mut Mesh, j: u32| (0..=CELLS).map(|i| mesh.vertex(at(i, j), inward)).collect::<Vec<_>>();
+            let row = |mesh: &mut MeshBuilder, j: u32| (0..=CELLS).map(|i| mesh.vertex(at(i, j), inward)).collect::<Vec<_>>();
             let rows: Vec<Vec<u32>> = (0..=CELLS).map(|j| row(&mut mesh, j)).collect();
             for (below, above) in rows.iter().zip(&rows[1..]) {
                 for i in 0..CELLS as usize {
@@ -70,7 +75,7 @@ fn walls(room: &Bounds) -> Mesh {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::scene::{Primitive, builtin};
+    use crate::scene::{builtin, model::Primitive};
 
     fn room_of(scene: &Scene) -> &Primitive {
         &scene.primitives[scene.instances.last().unwrap().primitive]

@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use glam::{DVec2, DVec3, DVec4};
 
-use super::{Scene, camera::View, draw::Draw};
+use super::{draw::Draw, model::Scene, view::View};
 use crate::math::hash_unit;
 
 /// The most triangles that are sampled. Fractions are then known to within a few percent at a constant cost.
@@ -18,14 +18,14 @@ pub struct TriangleSizes {
     /// The number of sampled triangles.
     pub sampled: u32,
     /// How many of the sampled triangles cross the near plane; their size is not known.
-    pub cut: u32,
+    pub near_clipped: u32,
     /// The sampled triangles that lie behind the near plane, face the viewer and are inside the picture.
-    seen: Arc<[Seen]>,
+    visible: Arc<[VisibleTriangle]>,
 }
 
 /// A sampled triangle that is visible.
 #[derive(Clone, Copy, Debug, PartialEq)]
-struct Seen {
+struct VisibleTriangle {
     /// The larger of the width and the height of its bounding box, pixels.
     extent_px: f32,
     /// Sample columns and rows inside the picture that its bounding box covers.
@@ -50,32 +50,32 @@ impl TriangleSizes {
     pub fn of(scene: &Scene, draws: &[Draw], view: &View) -> Self {
         let triangles: u64 = draws.iter().map(|draw| u64::from(scene.primitives[draw.primitive].triangle_count())).sum();
         let count = triangles.min(SAMPLED);
-        let (mut seen, mut cut) = (Vec::new(), 0);
+        let (mut visible, mut near_clipped) = (Vec::new(), 0);
         for k in 0..count {
             // One random position per stratum: a fixed step would alias with the order of a strip.
             let within = if triangles > SAMPLED { hash_unit(k as u32) } else { 0.0 };
             let id = ((k as f64 + within) * triangles as f64 / count as f64) as u64;
             let draw = &draws[draws.partition_point(|draw| u64::from(draw.first_triangle) <= id) - 1];
             match preset_file(scene, draw, view, id as u32 - draw.first_triangle) {
-                PresetFile::Seen(one) => seen.push(one),
-                PresetFile::Cut => cut += 1,
-                PresetFile::Unseen => {}
+                Visibility::VisibleTriangle(one) => visible.push(one),
+                Visibility::Cut => near_clipped += 1,
+                Visibility::Unseen => {}
             }
         }
-        Self { triangles, sampled: count as u32, cut, seen: seen.into() }
+        Self { triangles, sampled: count as u32, near_clipped, visible: visible.into() }
     }
 
     /// The number of sampled triangles that are visible and not cut by the near plane.
-    pub fn seen(&self) -> u32 {
-        self.seen.len() as u32
+    pub fn visible(&self) -> u32 {
+        self.visible.len() as u32
     }
 
     /// A histogram of [`Self::seen`] by powers of two: the upper end in pixels and the count, from the first to the last non-empty bin.
     pub fn bins(&self) -> Vec<(f64, u32)> {
-        let of = |seen: &Seen| libm::floor(libm::log2(f64::from(seen.extent_px.max(1.0 / 256.0)))) as i32 + 1;
-        let (Some(first), Some(last)) = (self.seen.iter().map(of).min(), self.seen.iter().map(of).max()) else { return Vec::new() };
+        let of = |visible: &VisibleTriangle| libm::floor(libm::log2(f64::from(visible.extent_px.max(1.0 / 256.0)))) as i32 + 1;
+        let (Some(first), Some(last)) = (self.visible.iter().map(of).min(), self.visible.iter().map(of).max()) else { return Vec::new() };
         let mut bins: Vec<(f64, u32)> = (first..=last).map(|power| (libm::exp2(power.into()), 0)).collect();
-        self.seen.iter().for_each(|seen| bins[(of(seen) - first) as usize].1 += 1);
+        self.visible.iter().for_each(|visible| bins[(of(visible) - first) as usize].1 += 1);
         bins
     }
 
@@ -83,10 +83,10 @@ impl TriangleSizes {
     /// `large_px` (large).
     pub fn classes(&self, max_small_samples: u32, max_small_side: u32, large_px: f64) -> SizeClasses {
         let mut classes = SizeClasses::default();
-        for seen in self.seen.iter().filter(|seen| seen.samples.iter().all(|count| *count > 0)) {
-            let [columns, rows] = seen.samples;
+        for visible in self.visible.iter().filter(|visible| visible.samples.iter().all(|count| *count > 0)) {
+            let [columns, rows] = visible.samples;
             let class = match () {
-                () if f64::from(seen.extent_px) > large_px => &mut classes.large,
+                () if f64::from(visible.extent_px) > large_px => &mut classes.large,
                 () if columns * rows > max_small_samples || columns.max(rows) > max_small_side => &mut classes.medium,
                 () => &mut classes.small,
             };
@@ -103,26 +103,27 @@ impl TriangleSizes {
     /// Estimated fraction of the picture's pixels that show another triangle when every edge moves by `shift_px`. An edge
     /// passes over samples in proportion to its length, and two triangles share it.
     pub fn changed_fraction(&self, shift_px: f64, pixels: f64) -> f64 {
-        if self.seen.is_empty() {
+        if self.visible.is_empty() {
             // No sampled triangle is visible; triangles that were not sampled may be small.
-            return if u64::from(self.sampled) == self.triangles && self.cut == 0 { 0.0 } else { (7.0 * shift_px).min(1.0) };
+            return if u64::from(self.sampled) == self.triangles && self.near_clipped == 0 { 0.0 } else { (7.0 * shift_px).min(1.0) };
         }
-        let area: f64 = self.seen.iter().map(|seen| f64::from(seen.area)).sum();
-        let passed: f64 = self.seen.iter().map(|seen| (f64::from(seen.outline) * shift_px * 0.5).min(f64::from(seen.area))).sum();
+        let area: f64 = self.visible.iter().map(|visible| f64::from(visible.area)).sum();
+        let passed: f64 =
+            self.visible.iter().map(|visible| (f64::from(visible.outline) * shift_px * 0.5).min(f64::from(visible.area))).sum();
         let each = self.triangles as f64 / f64::from(self.sampled.max(1));
-        let covered = if self.cut > 0 { 1.0 } else { (area * each / pixels.max(1.0)).min(1.0) };
+        let covered = if self.near_clipped > 0 { 1.0 } else { (area * each / pixels.max(1.0)).min(1.0) };
         if area > 0.0 { passed / area * covered } else { 0.0 }
     }
 }
 
-enum PresetFile {
-    Seen(Seen),
+enum Visibility {
+    VisibleTriangle(VisibleTriangle),
     Cut,
     /// Facing away, or outside the picture.
     Unseen,
 }
 
-fn preset_file(scene: &Scene, draw: &Draw, view: &View, triangle: u32) -> PresetFile {
+fn preset_file(scene: &Scene, draw: &Draw, view: &View, triangle: u32) -> Visibility {
     let primitive = &scene.primitives[draw.primitive];
     let place = |vertex: u32| match &draw.deform {
         Some(deform) => deform.position(scene, primitive, vertex),
@@ -130,13 +131,13 @@ fn preset_file(scene: &Scene, draw: &Draw, view: &View, triangle: u32) -> Preset
     };
     let clip: [DVec4; 3] = primitive.corners(scene, triangle).map(|vertex| draw.clip_point(place(vertex)));
     if clip.iter().any(|c| !c.is_finite()) {
-        return PresetFile::Unseen;
+        return Visibility::Unseen;
     }
     let is_before_near = |c: &&DVec4| c.w <= 0.0 || c.z > c.w;
     match clip.iter().filter(is_before_near).count() {
         0 => {}
-        3 => return PresetFile::Unseen,
-        _ => return PresetFile::Cut,
+        3 => return Visibility::Unseen,
+        _ => return Visibility::Cut,
     }
     let size = DVec2::new(view.width.into(), view.height.into());
     let [a, b, c] = clip.map(|c| DVec2::new(0.5 + 0.5 * c.x / c.w, 0.5 - 0.5 * c.y / c.w) * size);
@@ -146,7 +147,7 @@ fn preset_file(scene: &Scene, draw: &Draw, view: &View, triangle: u32) -> Preset
     let is_back = (doubled > 0.0) != draw.mirrored;
     let is_beside = high.x <= 0.0 || high.y <= 0.0 || low.x >= size.x || low.y >= size.y;
     if is_beside || doubled == 0.0 || is_back && !scene.materials[primitive.material].double_sided {
-        return PresetFile::Unseen;
+        return Visibility::Unseen;
     }
     let samples = [0, 1].map(|axis| {
         let (first, last) = ((low[axis] - 0.5).ceil().max(0.0), (high[axis] - 0.5).floor().min(size[axis] - 1.0));
@@ -154,7 +155,7 @@ fn preset_file(scene: &Scene, draw: &Draw, view: &View, triangle: u32) -> Preset
     });
     let inside = (high.min(size) - low.max(DVec2::ZERO)) / (high - low).max(DVec2::splat(f64::MIN_POSITIVE));
     let share = inside.x * inside.y;
-    PresetFile::Seen(Seen {
+    Visibility::VisibleTriangle(VisibleTriangle {
         extent_px: (high - low).max_element() as f32,
         samples,
         area: (0.5 * doubled.abs() * share) as f32,
@@ -183,9 +184,9 @@ mod tests {
     #[test]
     fn half_of_a_sphere_is_seen_and_covers_its_disc() {
         let few = sizes("sphere?triangles=2000", [640, 480]);
-        let share = f64::from(few.seen()) / f64::from(few.sampled);
+        let share = f64::from(few.visible()) / f64::from(few.sampled);
         assert!((0.35..0.5).contains(&share), "{share} of the triangles face the viewer");
-        assert_eq!(few.cut, 0);
+        assert_eq!(few.near_clipped, 0);
         // All pixels of the disc change when edges move as far as triangles are wide. The disc is that of a sphere of this radius
         // at this distance, with 45 degrees from the bottom of the picture to its top.
         let scene = builtin::build("sphere?triangles=2000").expect("a builtin");
@@ -215,7 +216,7 @@ mod tests {
         assert_eq!(u64::from(sizes.sampled), sizes.triangles);
         let classes = sizes.classes(32, 32, 128.0);
         assert!(classes.medium > 100.0 && classes.large == 0.0 && classes.error_bound == 0.0, "{classes:?}");
-        assert!(classes.small + classes.medium <= f64::from(sizes.seen()));
+        assert!(classes.small + classes.medium <= f64::from(sizes.visible()));
         assert_eq!(sizes.classes(1 << 20, 1 << 20, 1e9).small, classes.small + classes.medium);
     }
 }

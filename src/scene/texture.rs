@@ -5,7 +5,7 @@
 
 use glam::DVec2;
 
-use super::Accessor;
+use super::accessor::Accessor;
 use crate::math::linear_light;
 
 /// A picture for surfaces.

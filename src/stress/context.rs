@@ -12,7 +12,7 @@ use crate::{
     oracle,
     plan::{AccuracyRequest, Caps, Tier, Tuning},
     preset::{Preset, SceneSource},
-    scene::{Scene, builtin, camera::View, draw::DrawError},
+    scene::{Scene, builtin, draw::DrawError, view::View},
 };
 
 /// Why a case ends early.

@@ -13,7 +13,7 @@ use crate::{
     gpu::RenderError,
     math::srgb_byte,
     plan::AccuracyRequest,
-    scene::{Scene, camera::View},
+    scene::{Scene, view::View},
 };
 
 pub const CASES: &[Case] = &[

@@ -11,7 +11,7 @@ use crate::{
     params::Field,
     plan::{AccuracyRequest, Tuning},
     preset::{Preset, SceneSource},
-    scene::{Scene, camera::View, draw::DrawError},
+    scene::{Scene, draw::DrawError, view::View},
 };
 
 pub const CASES: &[Case] = &[

@@ -16,7 +16,7 @@ use crate::{
     frame::vertex_flags,
     gpu::{Capture, uniforms::Capacities},
     plan::Tuning,
-    scene::{Scene, camera::View},
+    scene::{Scene, view::View},
 };
 
 pub const CASES: &[Case] = &[

@@ -8,9 +8,10 @@ use crate::{
     math::hash,
     oracle,
     scene::{
-        Accessor, Bounds, Component, Instance, Material, Primitive, Scene, Topology,
-        camera::{Camera, View},
+        Accessor, Bounds, ComponentType, Instance, Material, Primitive, Scene, Topology,
+        camera::Camera,
         draw::{DrawError, draws},
+        view::View,
     },
 };
 
@@ -62,7 +63,7 @@ pub fn scene_of_meshes(parts: &[SimpleMesh]) -> Arc<Scene> {
         let indices = (!part.indices.is_empty()).then(|| {
             let (offset, count) = (scene.index_bytes.len() as u32, part.indices.len() as u32);
             scene.index_bytes.extend(part.indices.iter().flat_map(|i| i.to_le_bytes()));
-            Accessor { offset, stride: 4, component: Component::U32, components: 1, normalized: false, count }
+            Accessor { offset, stride: 4, component_type: ComponentType::U32, components: 1, normalized: false, count }
         });
         let mut bounds = Bounds::EMPTY;
         let finite = part.positions.iter().filter(|p| p.iter().all(|v| v.is_finite()));

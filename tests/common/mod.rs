@@ -24,7 +24,7 @@ use rasterlab::{
     oracle,
     plan::AccuracyRequest,
     preset::{Preset, SceneSource},
-    scene::{Scene, builtin, camera::View},
+    scene::{Scene, builtin, view::View},
     shader::library::Library,
     stress,
 };

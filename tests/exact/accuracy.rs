@@ -15,7 +15,8 @@ use rasterlab::{
     plan::Tuning,
     scene::{
         Scene,
-        camera::{Camera, Projection, View},
+        camera::{Camera, Projection},
+        view::View,
     },
 };
 

@@ -11,10 +11,7 @@ use rasterlab::{
     measure::{Verdict, compare},
     oracle,
     plan::{AccuracyRequest, PlanError, Tier},
-    scene::{
-        Scene,
-        camera::{Camera, View},
-    },
+    scene::{Scene, camera::Camera, view::View},
 };
 
 fn on(pins: PinnedOptions) -> AccuracyRequest {

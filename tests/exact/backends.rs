@@ -12,7 +12,7 @@ use rasterlab::{
     measure::compare,
     oracle,
     plan::Tuning,
-    scene::{Scene, builtin::BUILTINS, camera::View, draw::draws},
+    scene::{Scene, builtin::BUILTINS, draw::draws, view::View},
 };
 
 const SIZE: [u32; 2] = [256, 192];

@@ -13,8 +13,9 @@ use rasterlab::{
     plan::{AccuracyRequest, Tuning},
     scene::{
         Scene,
-        camera::{Camera, Projection, View},
+        camera::{Camera, Projection},
         meshlets::{MESHLET_TRIANGLES, Meshlets},
+        view::View,
     },
 };
 

@@ -11,8 +11,9 @@ use rasterlab::{
     oracle::{OrientedTriangle, Seen, cover, judge, owns, project, render, shade, triangles},
     scene::{
         Accessor, Bounds, Instance, Material, Primitive, Scene, Topology,
-        camera::{Camera, MIN_NEAR_M, Projection, View},
+        camera::{Camera, MIN_NEAR_M, Projection},
         draw::draws,
+        view::View,
     },
 };
 
@@ -50,7 +51,7 @@ fn scene(meshes: &[(Mesh, DMat4)]) -> Scene {
             Accessor {
                 offset,
                 stride: 4,
-                component: rasterlab::scene::Component::U32,
+                component_type: rasterlab::scene::ComponentType::U32,
                 components: 1,
                 normalized: false,
                 count: mesh.indices.len() as u32,

@@ -16,7 +16,8 @@ use rasterlab::{
     plan::{AccuracyRequest, Tuning},
     scene::{
         Scene,
-        camera::{Camera, Projection, View},
+        camera::{Camera, Projection},
+        view::View,
     },
     shader::library::Library,
 };

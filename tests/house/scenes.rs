@@ -8,7 +8,8 @@ use rasterlab::{
     scene::{
         Primitive, Scene,
         builtin::{self, BUILTINS},
-        camera::{Projection, View},
+        camera::Projection,
+        view::View,
     },
 };
 

@@ -16,7 +16,7 @@ use rasterlab::{
     oracle,
     plan::AccuracyRequest,
     preset::{Preset, SceneSource},
-    scene::{Scene, camera::View, draw::draws},
+    scene::{Scene, draw::draws, view::View},
 };
 
 const WAYS: [DotCulling; 3] = [DotCulling::Brute, DotCulling::Cpu, DotCulling::Gpu];

@@ -18,7 +18,7 @@ use rasterlab::{
     oracle,
     plan::{AccuracyRequest, Tuning},
     preset_file,
-    scene::{Scene, camera::View},
+    scene::{Scene, view::View},
 };
 
 /// A stack of effects with values: `"xray.weight=facing"`, or a name alone.

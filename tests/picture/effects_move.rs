@@ -19,8 +19,9 @@ use rasterlab::{
     plan::Tuning,
     scene::{
         Scene,
-        camera::{Camera, Projection, View},
+        camera::{Camera, Projection},
         draw::draws,
+        view::View,
     },
 };
 

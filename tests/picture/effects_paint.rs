@@ -17,7 +17,7 @@ use rasterlab::{
     oracle,
     params::ValueType,
     preset::{Clock, Preset, SceneSource},
-    scene::{Scene, camera::View},
+    scene::{Scene, view::View},
 };
 
 const PAINT: [&str; 7] = ["toon", "hatch", "fog", "posterize", "smear", "outline", "dither"];

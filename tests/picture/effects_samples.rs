@@ -10,7 +10,7 @@ use rasterlab::{
     frame::Geometry,
     measure::Budget,
     oracle::{self, SampleTests},
-    scene::{Scene, camera::View, draw::draws},
+    scene::{Scene, draw::draws, view::View},
 };
 
 /// A stack of one effect with some of its fields set.

@@ -21,10 +21,7 @@ use rasterlab::{
         Clock, PinnedOptions, Preset,
         animation::{Easing, Keyframe, Track},
     },
-    scene::{
-        Scene,
-        camera::{Camera, View},
-    },
+    scene::{Scene, camera::Camera, view::View},
     shader::Pass,
 };
 

@@ -15,8 +15,9 @@ use rasterlab::{
     preset::Preset,
     scene::{
         Scene,
-        camera::{Camera, Projection, View},
-        light::ShadowResolution,
+        camera::{Camera, Projection},
+        shadow_resolution::ShadowResolution,
+        view::View,
     },
     shader::{Fetch, KernelKey, library::Library, link},
 };

@@ -15,11 +15,11 @@ use rasterlab::{
     plan::AccuracyRequest,
     preset::{ClipPlayback, Clock, MissingInScene, PinnedOptions, Preset},
     scene::{
-        Accessor, Component, Scene,
-        camera::View,
+        Accessor, ComponentType, Scene,
         draw::draws,
         pose::{Deform, Motion, Pose},
-        rig::{Local, Node, Trs},
+        rig::{LocalTransform, Node, Trs},
+        view::View,
     },
 };
 
@@ -72,7 +72,7 @@ fn carried(scene: &Scene, place: DMat4) -> Scene {
     for node in &mut scene.rig.nodes {
         node.parent = Some(node.parent.map_or(0, |parent| parent + 1));
     }
-    scene.rig.nodes.insert(0, Node { name: "carrier".into(), parent: None, rest: Local::Matrix(place), weights: Vec::new() });
+    scene.rig.nodes.insert(0, Node { name: "carrier".into(), parent: None, rest: LocalTransform::Matrix(place), weights: Vec::new() });
     scene.rig.skins.iter_mut().flat_map(|skin| &mut skin.joints).for_each(|joint| *joint += 1);
     scene.rig.clips.iter_mut().flat_map(|clip| &mut clip.channels).for_each(|channel| channel.node += 1);
     scene.instances.iter_mut().for_each(|instance| instance.node = instance.node.map(|node| node + 1));
@@ -104,7 +104,7 @@ fn the_order_in_which_joints_are_named_does_not_matter() {
     for set in scene.primitives[0].deformation.influences.clone() {
         for vertex in 0..set.joints.count {
             let swap = |bytes: &mut [u8], accessor: &Accessor| {
-                let size = accessor.component.bytes() as usize;
+                let size = accessor.component_type.bytes() as usize;
                 let at = accessor.offset as usize + vertex as usize * accessor.stride as usize;
                 bytes[at..at + 4 * size].rotate_left((1 + vertex as usize % 3) * size);
             };
@@ -224,7 +224,7 @@ fn parts_that_a_clip_moves_are_placed_anew() {
     assert_ne!(a[0].world_from_object, b[0].world_from_object);
     assert_eq!(a[1], b[1], "what hangs on no node stays");
     let upper = scene.rig.nodes[0].rest.matrix();
-    assert_eq!(rounded_columns(&upper), rounded_columns(&Local::Trs(Trs::default()).matrix()));
+    assert_eq!(rounded_columns(&upper), rounded_columns(&LocalTransform::Trs(Trs::default()).matrix()));
 }
 
 // ---------------------------------------------------------------- on the adapter
@@ -341,7 +341,8 @@ fn quantized_places_are_drawn_and_bent_like_any() {
             scene.vertex_bytes.extend(place.iter().chain([&0]).flat_map(|v| v.to_le_bytes()));
         }
         let count = primitive.vertex_count();
-        scene.primitives[0].positions = Accessor { offset, stride: 8, component: Component::I16, components: 3, normalized, count };
+        scene.primitives[0].positions =
+            Accessor { offset, stride: 8, component_type: ComponentType::I16, components: 3, normalized, count };
         // Shapes and joints are of metres: quantized, the mesh stands still, and scaled by its place.
         let scale = if normalized { 2.5 } else { 1.0 / 2_000.0 };
         let mut placed = scene.clone();

@@ -12,7 +12,7 @@ use crate::{
         sweep::{Judged, Reference, SweepOptions, SweepRow, factors, sweep},
     },
     oracle,
-    scene::{Scene, camera::View},
+    scene::{Scene, view::View},
 };
 
 /// Measures every combination, on a device of its own.

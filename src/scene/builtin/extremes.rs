@@ -5,16 +5,17 @@ use std::f64::consts::TAU;
 use glam::{DVec2, DVec3};
 
 use super::{
-    BuiltinError, Mesh,
     plates::{PICTURE_PX, pixel_camera},
-    query::Values,
-    shapes::alone,
+    query::{BuiltinError, Values},
+    shapes::single_mesh_scene,
 };
+use crate::scene::mesh_builder::MeshBuilder;
 use crate::{
     math::{UNITS_PER_PIXEL, hash, hash_unit},
     scene::{
-        Material, Scene, SceneCamera,
         camera::{Camera, Projection},
+        material::Material,
+        model::{Scene, SceneCamera},
     },
 };
 
@@ -34,7 +35,7 @@ pub fn near(values: &Values) -> Result<Scene, BuiltinError> {
     const HALF_WIDTH_M: f64 = 1.6;
     const NEAR_M: f64 = 0.05;
     let reach = values.get("reach");
-    let mut mesh = Mesh::default();
+    let mut mesh = MeshBuilder::default();
     for (side, color) in [[0.16, 0.17, 0.2], [0.34, 0.31, 0.27], [0.13, 0.2, 0.24], [0.42, 0.4, 0.36]].into_iter().enumerate() {
         let (sin, cos) = [(0.0, 1.0), (1.0, 0.0), (0.0, -1.0), (-1.0, 0.0)][side];
         let inward = DVec3::new(cos, sin, 0.0);
@@ -62,20 +63,20 @@ pub fn near(values: &Values) -> Result<Scene, BuiltinError> {
         projection: Projection::Perspective { fov_y_deg: 75.0 },
         near_m: NEAR_M,
     };
-    let mut scene = alone(mesh, "hall", painted());
+    let mut scene = single_mesh_scene(mesh, "hall", painted());
     scene.cameras = vec![SceneCamera { name: "inside".into(), pose, node: None }];
     Ok(scene)
 }
 
 /// A closed ring of square cross-section around the z axis.
-fn hoop(mesh: &mut Mesh, z: f64, color: [f64; 3]) {
+fn hoop(mesh: &mut MeshBuilder, z: f64, color: [f64; 3]) {
     const SEGMENTS: u32 = 48;
     /// (radius, depth) of the corners of the cross-section, and the outward normal of the face that follows.
     const SECTION: [([f64; 2], [f64; 2]); 4] =
         [([1.2, 0.15], [-1.0, 0.0]), ([1.2, -0.15], [0.0, -1.0]), ([1.45, -0.15], [1.0, 0.0]), ([1.45, 0.15], [0.0, 1.0])];
     for face in 0..4 {
         let (_, out) = SECTION[face];
-        let edge = |mesh: &mut Mesh, [radius, depth]: [f64; 2]| {
+        let edge = |mesh: &mut MeshBuilder, [radius, depth]: [f64; 2]| {
             mesh.ring(SEGMENTS, |mesh, i| {
                 let (sin, cos) = libm::sincos(TAU * f64::from(i) / f64::from(SEGMENTS));
                 mesh.colored_vertex(
@@ -94,7 +95,7 @@ fn hoop(mesh: &mut Mesh, z: f64, color: [f64; 3]) {
 pub fn sizes(values: &Values) -> Result<Scene, BuiltinError> {
     const COPIES: [u32; 9] = [512, 512, 256, 256, 96, 10, 3, 2, 2];
     let seed = hash(values.whole("seed"));
-    let mut mesh = Mesh::default();
+    let mut mesh = MeshBuilder::default();
     let mut chance = seed;
     let mut next = || {
         chance = chance.wrapping_add(0x9e37_79b9);
@@ -114,7 +115,7 @@ pub fn sizes(values: &Values) -> Result<Scene, BuiltinError> {
             mesh.facet([corner(-0.5, -0.2887), corner(0.5, -0.2887), corner(0.0, 0.5774)], hue(step as u32));
         }
     }
-    let mut scene = alone(mesh, "sizes", painted());
+    let mut scene = single_mesh_scene(mesh, "sizes", painted());
     scene.cameras = vec![pixel_camera(PICTURE_PX, 100.0)];
     Ok(scene)
 }
@@ -122,7 +123,7 @@ pub fn sizes(values: &Values) -> Result<Scene, BuiltinError> {
 /// Needles from near the centre outwards; heights cycle through 1 to 8 units.
 pub fn slivers(values: &Values) -> Result<Scene, BuiltinError> {
     let (n, length) = (values.whole("n"), values.get("length"));
-    let mut mesh = Mesh::with_capacity(3 * n as usize, n as usize);
+    let mut mesh = MeshBuilder::with_capacity(3 * n as usize, n as usize);
     for i in 0..n {
         let (sin, cos) = libm::sincos(TAU * (f64::from(i) + 0.37) / f64::from(n));
         let (along, across) = (DVec3::new(cos, sin, 0.0), DVec3::new(-sin, cos, 0.0));
@@ -131,7 +132,7 @@ pub fn slivers(values: &Values) -> Result<Scene, BuiltinError> {
         let corners = [root, root + along * length - across * (0.5 * height), root + along * length + across * (0.5 * height)];
         mesh.facet(corners, hue(i));
     }
-    let mut scene = alone(mesh, "slivers", painted());
+    let mut scene = single_mesh_scene(mesh, "slivers", painted());
     scene.cameras = vec![pixel_camera(PICTURE_PX, 100.0)];
     Ok(scene)
 }
@@ -139,7 +140,7 @@ pub fn slivers(values: &Values) -> Result<Scene, BuiltinError> {
 /// Rotated squares, smallest and nearest first.
 pub fn stack(values: &Values) -> Result<Scene, BuiltinError> {
     let (layers, gap) = (values.whole("layers"), values.get("gap"));
-    let mut mesh = Mesh::with_capacity(4 * layers as usize, 2 * layers as usize);
+    let mut mesh = MeshBuilder::with_capacity(4 * layers as usize, 2 * layers as usize);
     for layer in 0..layers {
         // Later layers are larger, so each shows a rim behind the previous ones.
         let half = PICTURE_PX * (0.12 + 0.3 * f64::from(layer + 1) / f64::from(layers));
@@ -151,7 +152,7 @@ pub fn stack(values: &Values) -> Result<Scene, BuiltinError> {
         });
         mesh.quad(corners, hue(layer));
     }
-    let mut scene = alone(mesh, "stack", painted());
+    let mut scene = single_mesh_scene(mesh, "stack", painted());
     scene.cameras = vec![pixel_camera(PICTURE_PX, 100.0)];
     Ok(scene)
 }

@@ -2,12 +2,16 @@
 
 use glam::{DMat4, DQuat, DVec3};
 
-use super::{BuiltinError, MAX_TRIANGLES, query::Values, shapes};
+use super::{
+    query::{BuiltinError, MAX_TRIANGLES, Values},
+    shapes,
+};
 use crate::{
     math::{hash, hash_unit},
     scene::{
-        Instance, Material, Scene, SceneCamera,
         camera::{Camera, Projection},
+        material::Material,
+        model::{Instance, Scene, SceneCamera},
     },
 };
 
@@ -25,7 +29,9 @@ pub fn build(values: &Values) -> Result<Scene, BuiltinError> {
     let (count, seed) = (values.whole("count"), values.whole("seed"));
     let triangles = u64::from(values.whole("triangles")) * u64::from(count);
     if triangles > MAX_TRIANGLES {
-        return Err(BuiltinError(format!("field: {triangles} triangles in all; allowed: at most {MAX_TRIANGLES}. Lower count or triangles")));
+        return Err(BuiltinError(format!(
+            "field: {triangles} triangles in all; allowed: at most {MAX_TRIANGLES}. Lower count or triangles"
+        )));
     }
     let mut scene = shapes::sphere(values)?;
     scene.instances.clear();

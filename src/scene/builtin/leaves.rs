@@ -4,11 +4,16 @@ use std::f64::consts::TAU;
 
 use glam::DVec3;
 
-use super::{BuiltinError, Mesh, query::Values, shapes::alone};
+use super::{
+    query::{BuiltinError, Values},
+    shapes::single_mesh_scene,
+};
+use crate::scene::mesh_builder::MeshBuilder;
 use crate::{
     math::{cos_turns, hash, hash_unit, sin_turns, srgb_byte},
     scene::{
-        Material, Scene,
+        material::Material,
+        model::Scene,
         texture::{Image, Texture, Wrap},
     },
 };
@@ -19,7 +24,7 @@ const LENGTH_M: f64 = 0.62;
 /// `n` leaves on a crown about 2 m across, each with its own vertices.
 pub fn build(values: &Values) -> Result<Scene, BuiltinError> {
     let (leaves, seed) = (values.whole("n"), values.whole("seed"));
-    let mut mesh = Mesh::with_capacity(4 * leaves as usize, 2 * leaves as usize);
+    let mut mesh = MeshBuilder::with_capacity(4 * leaves as usize, 2 * leaves as usize);
     for leaf in 0..leaves {
         let unit = |salt: u32| hash_unit(hash(seed) ^ hash(8 * leaf + salt));
         // On a sunflower spiral over the sphere, slightly inside it, pointing out and down.
@@ -41,7 +46,7 @@ pub fn build(values: &Values) -> Result<Scene, BuiltinError> {
     let texture = Texture { wrap: [Wrap::Clamp; 2], ..Texture::plain(0) };
     let leaf =
         Material { name: "leaf".into(), base_texture: Some(texture), alpha_cutoff: Some(0.5), double_sided: true, ..Material::default() };
-    let mut scene = alone(mesh, "leaves", leaf);
+    let mut scene = single_mesh_scene(mesh, "leaves", leaf);
     scene.images.push(leaf_image(40, 60).with_mipmaps());
     Ok(scene)
 }

@@ -3,14 +3,9 @@
 //! Teapot, sphere, knot, cube-wall, tentacle, walker and chamber are meant to look good. The others stress one property of the
 //! rasterizer each and bring a camera for it. All are indexed, finite and identical on every machine.
 
-mod body;
 mod extremes;
 mod field;
-mod flesh;
-mod gait;
-mod hold;
 mod leaves;
-mod mesh;
 mod painted;
 mod plates;
 mod query;
@@ -18,48 +13,12 @@ mod shapes;
 mod teapot;
 mod tentacle;
 mod walker;
+mod weights;
 
-use std::ops::RangeInclusive;
+pub use query::{Builtin, BuiltinError, BuiltinParam, MAX_TRIANGLES};
+use query::{real, whole};
 
-pub use mesh::{Mesh, Ring};
-use query::Values;
-
-use super::Scene;
-
-/// A parameter of a builtin scene, as listings show it.
-#[derive(Clone, Debug)]
-pub struct BuiltinParam {
-    pub name: &'static str,
-    pub doc: &'static str,
-    pub default: f64,
-    pub range: RangeInclusive<f64>,
-    /// Only whole numbers are allowed.
-    pub whole: bool,
-}
-
-/// A builtin scene, as listings show it.
-pub struct Builtin {
-    pub name: &'static str,
-    pub about: &'static str,
-    pub params: &'static [BuiltinParam],
-    build: fn(&Values) -> Result<Scene, BuiltinError>,
-}
-
-/// An unknown builtin or parameter, or a value outside its range; one sentence.
-#[derive(Debug, thiserror::Error)]
-#[error("{0}")]
-pub struct BuiltinError(pub String);
-
-/// The most triangles of a builtin scene: its indices and its vertices stay below 128 MiB each.
-pub const MAX_TRIANGLES: u64 = 10_000_000;
-
-const fn whole(name: &'static str, doc: &'static str, default: f64, range: RangeInclusive<f64>) -> BuiltinParam {
-    BuiltinParam { name, doc, default, range, whole: true }
-}
-
-const fn real(name: &'static str, doc: &'static str, default: f64, range: RangeInclusive<f64>) -> BuiltinParam {
-    BuiltinParam { name, doc, default, range, whole: false }
-}
+use super::model::Scene;
 
 const SEED: BuiltinParam = whole("seed", "seed of the random arrangement", 0.0, 0.0..=4_294_967_295.0);
 
@@ -86,11 +45,7 @@ pub const BUILTINS: &[Builtin] = &[
     Builtin {
         name: "cube-wall",
         about: "a wall of coloured cubes, each an instance",
-        params: &[
-            whole("columns", "number of columns", 16.0, 1.0..=64.0),
-            whole("rows", "number of rows", 10.0, 1.0..=64.0),
-            SEED,
-        ],
+        params: &[whole("columns", "number of columns", 16.0, 1.0..=64.0), whole("rows", "number of rows", 10.0, 1.0..=64.0), SEED],
         build: shapes::cube_wall,
     },
     Builtin {
@@ -206,7 +161,7 @@ pub const BUILTINS: &[Builtin] = &[
 /// # Errors
 /// If the name or a parameter is unknown, a value is outside its range, or the values ask for too many triangles.
 pub fn build(query: &str) -> Result<Scene, BuiltinError> {
-    let (builtin, values) = query::parse(query)?;
+    let (builtin, values) = query::parse(BUILTINS, query)?;
     let mut scene = (builtin.build)(&values)?;
     scene.name = builtin.name.into();
     Ok(scene)

@@ -4,11 +4,16 @@ use std::f64::consts::{PI, TAU};
 
 use glam::{DMat4, DVec3, DVec4};
 
-use super::{BuiltinError, Mesh, query::Values, shapes::alone};
+use super::{
+    query::{BuiltinError, Values},
+    shapes::single_mesh_scene,
+};
+use crate::scene::mesh_builder::MeshBuilder;
 use crate::{
     math::{hash, rotation_y, srgb_byte},
     scene::{
-        Instance, Material, Scene,
+        material::Material,
+        model::{Instance, Scene},
         texture::{Filter, Image, MipFilter, Texture, Wrap},
     },
 };
@@ -17,7 +22,7 @@ use crate::{
 pub fn globe(values: &Values) -> Result<Scene, BuiltinError> {
     let tess = values.whole("tess");
     let (columns, rows) = (4 * tess, 2 * tess);
-    let mut mesh = Mesh::with_capacity(((columns + 1) * (rows + 1)) as usize, (2 * columns * (rows - 1)) as usize);
+    let mut mesh = MeshBuilder::with_capacity(((columns + 1) * (rows + 1)) as usize, (2 * columns * (rows - 1)) as usize);
     for row in 0..=rows {
         let (sin_v, cos_v) = libm::sincos(PI * f64::from(row) / f64::from(rows));
         for column in 0..=columns {
@@ -46,7 +51,7 @@ pub fn globe(values: &Values) -> Result<Scene, BuiltinError> {
     }
     let texture = Texture { wrap: [Wrap::Repeat, Wrap::Clamp], ..Texture::plain(0) };
     let map = Material { name: "map".into(), base_texture: Some(texture), ..Material::default() };
-    let mut scene = alone(mesh, "globe", map);
+    let mut scene = single_mesh_scene(mesh, "globe", map);
     scene.images.push(color_grid(256, 128, 16).with_mipmaps());
     Ok(scene)
 }
@@ -118,7 +123,7 @@ pub fn panels(values: &Values) -> Result<Scene, BuiltinError> {
     let repeats = values.get("repeats");
     for (place, Panel { material, span }) in ways(repeats).into_iter().enumerate() {
         let is_ground = place == 6;
-        let mut mesh = Mesh::with_capacity(4, 2);
+        let mut mesh = MeshBuilder::with_capacity(4, 2);
         let [[left, right], [top, bottom]] = span;
         for (x, y, u, v) in [(-1.0, -1.0, left, bottom), (1.0, -1.0, right, bottom), (1.0, 1.0, right, top), (-1.0, 1.0, left, top)] {
             mesh.textured_vertex(DVec3::new(x, y, 0.0), DVec3::Z, [u, v]);

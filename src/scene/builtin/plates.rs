@@ -8,12 +8,17 @@ use std::f64::consts::TAU;
 
 use glam::DVec3;
 
-use super::{BuiltinError, MAX_TRIANGLES, Mesh, query::Values, shapes::alone};
+use super::{
+    query::{BuiltinError, MAX_TRIANGLES, Values},
+    shapes::single_mesh_scene,
+};
+use crate::scene::mesh_builder::MeshBuilder;
 use crate::{
     math::{UNITS_PER_PIXEL, hash, hash_unit},
     scene::{
-        Material, Scene, SceneCamera,
         camera::{Camera, Projection},
+        material::Material,
+        model::{Scene, SceneCamera},
     },
 };
 
@@ -66,7 +71,7 @@ pub fn grid(values: &Values) -> Result<Scene, BuiltinError> {
             2.1 / cell
         )));
     }
-    let mut mesh = Mesh::with_capacity(((columns + 1) * (rows + 1)) as usize, triangles as usize);
+    let mut mesh = MeshBuilder::with_capacity(((columns + 1) * (rows + 1)) as usize, triangles as usize);
     for row in 0..=rows {
         for column in 0..=columns {
             let salt = hash(hash(seed) ^ (row as u32)).wrapping_add(2 * column as u32);
@@ -87,7 +92,7 @@ pub fn grid(values: &Values) -> Result<Scene, BuiltinError> {
             quad.into_iter().for_each(|t| mesh.triangle(t));
         }
     }
-    let mut scene = alone(mesh, "grid", plate_material());
+    let mut scene = single_mesh_scene(mesh, "grid", plate_material());
     scene.cameras = vec![pixel_camera(height, 100.0), perspective_camera(height)];
     Ok(scene)
 }
@@ -98,9 +103,12 @@ pub fn fan(values: &Values) -> Result<Scene, BuiltinError> {
     // Three units of rim per triangle: with fewer than two the snap could reorder the vertices of the rim.
     let most = TAU * radius * f64::from(UNITS_PER_PIXEL) / 3.0;
     if f64::from(n) > most {
-        return Err(BuiltinError(format!("fan: n={n} triangles would fold after the snap at radius={radius}; allowed: at most {}", most.floor())));
+        return Err(BuiltinError(format!(
+            "fan: n={n} triangles would fold after the snap at radius={radius}; allowed: at most {}",
+            most.floor()
+        )));
     }
-    let mut mesh = Mesh::with_capacity(n as usize + 1, n as usize);
+    let mut mesh = MeshBuilder::with_capacity(n as usize + 1, n as usize);
     let sample = DVec3::new(0.5, 0.5, 0.0);
     let start = hash_unit(hash(seed));
     let center = mesh.ring(1, |mesh, _| {
@@ -111,7 +119,7 @@ pub fn fan(values: &Values) -> Result<Scene, BuiltinError> {
         mesh.vertex(sample + DVec3::new(cos, sin, 0.0) * radius, DVec3::Z);
     });
     mesh.band(rim, center);
-    let mut scene = alone(mesh, "fan", plate_material());
+    let mut scene = single_mesh_scene(mesh, "fan", plate_material());
     scene.cameras = vec![pixel_camera(PICTURE_PX, 100.0)];
     Ok(scene)
 }

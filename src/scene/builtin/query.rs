@@ -1,6 +1,43 @@
-//! Queries: parses `name?parameter=value&parameter=value` and checks it against the table of builtin scenes.
+//! Builtin scenes as table rows, and their queries: parses `name?parameter=value&parameter=value` and checks it.
 
-use super::{BUILTINS, Builtin, BuiltinError, BuiltinParam};
+use std::ops::RangeInclusive;
+
+use crate::scene::model::Scene;
+
+/// A parameter of a builtin scene, as listings show it.
+#[derive(Clone, Debug)]
+pub struct BuiltinParam {
+    pub name: &'static str,
+    pub doc: &'static str,
+    pub default: f64,
+    pub range: RangeInclusive<f64>,
+    /// Only whole numbers are allowed.
+    pub whole: bool,
+}
+
+/// A builtin scene, as listings show it.
+pub struct Builtin {
+    pub name: &'static str,
+    pub about: &'static str,
+    pub params: &'static [BuiltinParam],
+    pub(super) build: fn(&Values) -> Result<Scene, BuiltinError>,
+}
+
+/// An unknown builtin or parameter, or a value outside its range; one sentence.
+#[derive(Debug, thiserror::Error)]
+#[error("{0}")]
+pub struct BuiltinError(pub String);
+
+/// The most triangles of a builtin scene: its indices and its vertices stay below 128 MiB each.
+pub const MAX_TRIANGLES: u64 = 10_000_000;
+
+pub(super) const fn whole(name: &'static str, doc: &'static str, default: f64, range: RangeInclusive<f64>) -> BuiltinParam {
+    BuiltinParam { name, doc, default, range, whole: true }
+}
+
+pub(super) const fn real(name: &'static str, doc: &'static str, default: f64, range: RangeInclusive<f64>) -> BuiltinParam {
+    BuiltinParam { name, doc, default, range, whole: false }
+}
 
 /// The values of all parameters of a builtin, each within its range.
 pub struct Values {
@@ -25,15 +62,16 @@ impl Values {
 }
 
 /// Finds the builtin of a query and checks every value.
-pub fn parse(query: &str) -> Result<(&'static Builtin, Values), BuiltinError> {
+pub fn parse(builtins: &'static [Builtin], query: &str) -> Result<(&'static Builtin, Values), BuiltinError> {
     let (name, pairs) = query.trim().split_once('?').unwrap_or((query.trim(), ""));
-    let builtin = BUILTINS
+    let builtin = builtins
         .iter()
         .find(|builtin| builtin.name == name)
-        .ok_or_else(|| BuiltinError(unknown("there is no builtin scene", name, BUILTINS.iter().map(|b| b.name).collect())))?;
+        .ok_or_else(|| BuiltinError(unknown("there is no builtin scene", name, builtins.iter().map(|b| b.name).collect())))?;
     let mut values: Vec<Option<f64>> = vec![None; builtin.params.len()];
     for pair in pairs.split('&').filter(|pair| !pair.is_empty()) {
-        let (key, text) = pair.split_once('=').ok_or_else(|| BuiltinError(format!("{name}: \"{pair}\" must have the form parameter=value")))?;
+        let (key, text) =
+            pair.split_once('=').ok_or_else(|| BuiltinError(format!("{name}: \"{pair}\" must have the form parameter=value")))?;
         let Some(at) = builtin.params.iter().position(|param| param.name == key) else {
             let known = builtin.params.iter().map(|param| param.name).collect();
             return Err(BuiltinError(unknown(&format!("{name} has no parameter"), key, known)));

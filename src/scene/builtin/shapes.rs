@@ -4,10 +4,14 @@ use std::f64::consts::{PI, TAU};
 
 use glam::{DMat4, DVec3};
 
-use super::{BuiltinError, Mesh, Ring, query::Values};
+use super::query::{BuiltinError, Values};
+use crate::scene::mesh_builder::{MeshBuilder, Ring};
 use crate::{
     math::hash_unit,
-    scene::{Instance, Material, Scene},
+    scene::{
+        material::Material,
+        model::{Instance, Scene},
+    },
 };
 
 /// Waves of the bumpy sphere: direction times frequency, and amplitude.
@@ -30,7 +34,7 @@ pub fn sphere(values: &Values) -> Result<Scene, BuiltinError> {
     let rings = (PI / step).round() as u32 - 1;
     // Sum of the lengths sin(k * step) of the first i rings.
     let length = |i: u32| libm::sin(0.5 * step * f64::from(i)) * libm::sin(0.5 * step * f64::from(i + 1)) / libm::sin(0.5 * step);
-    let mut mesh = Mesh::with_capacity(on_rings as usize + 2, 2 * on_rings as usize);
+    let mut mesh = MeshBuilder::with_capacity(on_rings as usize + 2, 2 * on_rings as usize);
     let mut below = mesh.ring(1, |mesh, _| bump(mesh, DVec3::NEG_Y));
     let mut given = 0;
     for i in 1..=rings {
@@ -47,11 +51,11 @@ pub fn sphere(values: &Values) -> Result<Scene, BuiltinError> {
     }
     let top = mesh.ring(1, |mesh, _| bump(mesh, DVec3::Y));
     mesh.band(below, top);
-    Ok(alone(mesh, "sphere", Material { name: "clay".into(), base_color: [0.42, 0.47, 0.52, 1.0], ..Material::default() }))
+    Ok(single_mesh_scene(mesh, "sphere", Material { name: "clay".into(), base_color: [0.42, 0.47, 0.52, 1.0], ..Material::default() }))
 }
 
 /// The surface over direction `d` (a unit vector): radius r(d) = 1 + waves, normal from the gradient of |p| - r(p / |p|).
-fn bump(mesh: &mut Mesh, d: DVec3) {
+fn bump(mesh: &mut MeshBuilder, d: DVec3) {
     let (mut radius, mut slope) = (1.0, DVec3::ZERO);
     for (wave, phase, amplitude) in WAVES {
         let (sin, cos) = libm::sincos(wave.dot(d) + phase);
@@ -70,7 +74,7 @@ pub fn knot(values: &Values) -> Result<Scene, BuiltinError> {
     const TONES: [[f64; 3]; 2] = [[0.86, 0.55, 0.16], [0.05, 0.22, 0.33]];
     let tess = values.whole("tess");
     let (along, round) = (24 * tess, 2 * tess);
-    let mut mesh = Mesh::with_capacity((along * round) as usize, (2 * along * round) as usize);
+    let mut mesh = MeshBuilder::with_capacity((along * round) as usize, (2 * along * round) as usize);
     let rings: Vec<Ring> = (0..along)
         .map(|i| {
             let turn = TAU * f64::from(i) / f64::from(along);
@@ -94,7 +98,7 @@ pub fn knot(values: &Values) -> Result<Scene, BuiltinError> {
     for (i, &ring) in rings.iter().enumerate() {
         mesh.band(ring, rings[(i + 1) % rings.len()]);
     }
-    Ok(alone(mesh, "knot", Material { name: "enamel".into(), ..Material::default() }))
+    Ok(single_mesh_scene(mesh, "knot", Material { name: "enamel".into(), ..Material::default() }))
 }
 
 /// Instances of one cube at depths that follow a wave. Its six primitives differ only in material.
@@ -133,8 +137,8 @@ pub fn cube_wall(values: &Values) -> Result<Scene, BuiltinError> {
 }
 
 /// The cube from -1 to 1 with flat faces.
-fn cube() -> Mesh {
-    let mut mesh = Mesh::default();
+fn cube() -> MeshBuilder {
+    let mut mesh = MeshBuilder::default();
     for axis in 0..3 {
         for side in [-1.0, 1.0] {
             let (out, u) = (DVec3::AXES[axis] * side, DVec3::AXES[(axis + 1) % 3]);
@@ -151,7 +155,7 @@ fn cube() -> Mesh {
 pub fn chamber(values: &Values) -> Result<Scene, BuiltinError> {
     const TONES: [[f64; 3]; 3] = [[0.012, 0.012, 0.02], [0.024, 0.024, 0.032], [0.008, 0.012, 0.02]];
     let half = values.get("half");
-    let mut mesh = Mesh::default();
+    let mut mesh = MeshBuilder::default();
     for (axis, tone) in TONES.into_iter().enumerate() {
         for side in [-1.0, 1.0] {
             let (inward, u) = (DVec3::AXES[axis] * -side, DVec3::AXES[(axis + 1) % 3]);
@@ -159,11 +163,11 @@ pub fn chamber(values: &Values) -> Result<Scene, BuiltinError> {
             mesh.quad([-u - v, u - v, u + v, v - u].map(|corner| (corner - inward) * half), tone);
         }
     }
-    Ok(alone(mesh, "chamber", Material { name: "plaster".into(), ..Material::default() }))
+    Ok(single_mesh_scene(mesh, "chamber", Material { name: "plaster".into(), ..Material::default() }))
 }
 
 /// A scene of one mesh with an identity transform.
-pub fn alone(mesh: Mesh, name: &str, material: Material) -> Scene {
+pub fn single_mesh_scene(mesh: MeshBuilder, name: &str, material: Material) -> Scene {
     let mut scene = Scene { materials: vec![material], ..Scene::default() };
     let primitive = mesh.append(&mut scene, name, 0);
     scene.instances.push(Instance::fixed(primitive, DMat4::IDENTITY));

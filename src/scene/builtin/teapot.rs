@@ -7,8 +7,12 @@
 
 use glam::{DVec2, DVec3};
 
-use super::{BuiltinError, Mesh, Ring, query::Values, shapes::alone};
-use crate::scene::{Material, Scene};
+use super::{
+    query::{BuiltinError, Values},
+    shapes::single_mesh_scene,
+};
+use crate::scene::mesh_builder::{MeshBuilder, Ring};
+use crate::scene::{material::Material, model::Scene};
 
 #[rustfmt::skip]
 /// Control points (radius, height), end to end: 3 per patch and one more. Rim, body (twice) and bottom.
@@ -61,17 +65,17 @@ const CENTER: DVec3 = DVec3::new(0.217, 0.0, 1.575);
 pub fn build(values: &Values) -> Result<Scene, BuiltinError> {
     let tess = values.whole("tess");
     let side = tess as usize;
-    let mut mesh = Mesh::with_capacity(36 * side * side, 64 * side * side);
+    let mut mesh = MeshBuilder::with_capacity(36 * side * side, 64 * side * side);
     revolve(&mut mesh, &POT, tess);
     revolve(&mut mesh, &LID, tess);
     tube(&mut mesh, &HANDLE, tess);
     tube(&mut mesh, &SPOUT, tess);
     let glaze = Material { name: "glaze".into(), base_color: [0.61, 0.235, 0.095, 1.0], double_sided: true, ..Material::default() };
-    Ok(alone(mesh, "teapot", glaze))
+    Ok(single_mesh_scene(mesh, "teapot", glaze))
 }
 
 /// Revolves a profile, given from top to bottom, around the axis.
-fn revolve(mesh: &mut Mesh, profile: &[[f64; 2]], tess: u32) {
+fn revolve(mesh: &mut MeshBuilder, profile: &[[f64; 2]], tess: u32) {
     let mut above: Option<Ring> = None;
     for row in 0..=(profile.len() as u32 - 1) / 3 * tess {
         let (point, slopes) = curve(profile.len(), row, tess, |i| DVec3::new(profile[i][0], 0.0, profile[i][1]));
@@ -91,7 +95,7 @@ fn revolve(mesh: &mut Mesh, profile: &[[f64; 2]], tess: u32) {
 }
 
 /// Sweeps control sections; the other half is the mirror image.
-fn tube(mesh: &mut Mesh, sections: &[Section], tess: u32) {
+fn tube(mesh: &mut MeshBuilder, sections: &[Section], tess: u32) {
     // A tube of two columns would be flat.
     let half = tess.max(2);
     let mut before: Option<Ring> = None;
@@ -114,7 +118,7 @@ fn tube(mesh: &mut Mesh, sections: &[Section], tess: u32) {
 }
 
 /// A point of the data, with z up, as a vertex with y up.
-fn place(mesh: &mut Mesh, p: DVec3, n: DVec3) {
+fn place(mesh: &mut MeshBuilder, p: DVec3, n: DVec3) {
     let p = (p - CENTER) * SCALE;
     mesh.vertex(DVec3::new(p.x, p.z, -p.y), DVec3::new(n.x, n.z, -n.y));
 }

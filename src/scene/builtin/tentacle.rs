@@ -5,13 +5,17 @@ use std::f64::consts::TAU;
 use glam::{DMat4, DVec3};
 
 use super::{
-    BuiltinError, MAX_TRIANGLES, Mesh, Ring,
-    hold::{self, Hold},
-    query::Values,
+    query::{BuiltinError, MAX_TRIANGLES, Values},
+    weights::{self, JointWeight},
 };
+use crate::scene::mesh_builder::{MeshBuilder, Ring};
 use crate::scene::{
-    Accessor, Instance, Material, Scene, pose,
-    rig::{Channel, Clip, Interpolation, Local, Node, Property, Sampler, Shape, Skin, Trs},
+    accessor::Accessor,
+    deformation::MorphTarget,
+    material::Material,
+    model::{Instance, Scene},
+    pose,
+    rig::{Channel, Clip, Interpolation, LocalTransform, Node, Property, Sampler, Skin, Trs},
 };
 
 /// Length of the tube, metres.
@@ -30,7 +34,9 @@ pub fn build(values: &Values) -> Result<Scene, BuiltinError> {
     let (around, along) = (4 + 2 * tess, 4 * tess);
     let triangles = u64::from(2 * around * along) * u64::from(instances);
     if triangles > MAX_TRIANGLES {
-        return Err(BuiltinError(format!("tentacle: {triangles} triangles in all; allowed: at most {MAX_TRIANGLES}. Lower tess or instances")));
+        return Err(BuiltinError(format!(
+            "tentacle: {triangles} triangles in all; allowed: at most {MAX_TRIANGLES}. Lower tess or instances"
+        )));
     }
     let mut scene = Scene { materials: vec![Material { name: "skin".into(), ..Material::default() }], ..Scene::default() };
     let heights = tube(&mut scene, around, along);
@@ -39,7 +45,7 @@ pub fn build(values: &Values) -> Result<Scene, BuiltinError> {
     for instance in 0..instances {
         stand(&mut scene, instance, instances, joints, &samplers);
     }
-    scene.rig.reach = pose::reach(&scene);
+    scene.rig.motion_bounds = pose::motion_bounds(&scene);
     Ok(scene)
 }
 
@@ -56,7 +62,7 @@ fn profile(share: f64, bulge: f64) -> [f64; 2] {
 /// Builds the tube along +y and returns the height of every vertex as a fraction.
 fn tube(scene: &mut Scene, around: u32, along: u32) -> Vec<f64> {
     const TONES: [[f64; 3]; 3] = [[0.05, 0.20, 0.28], [0.80, 0.30, 0.20], [0.95, 0.78, 0.52]];
-    let mut mesh = Mesh::with_capacity((around * (along + 1) + 2) as usize, (2 * around * along) as usize);
+    let mut mesh = MeshBuilder::with_capacity((around * (along + 1) + 2) as usize, (2 * around * along) as usize);
     let mut heights = Vec::new();
     let tone = |share: f64, turn: f64| {
         let belly = (3.0 * libm::cos(TAU * (turn - 0.6)) - 0.8).clamp(0.0, 1.0);
@@ -98,8 +104,9 @@ fn tube(scene: &mut Scene, around: u32, along: u32) -> Vec<f64> {
 
 /// Adds joints and weights to the tube, and the morph target of its bulge.
 fn soften(scene: &mut Scene, heights: &[f64], joints: u32, influences: usize) {
-    let held: Vec<Vec<Hold>> = heights.iter().map(|share| shares(share * f64::from(joints - 1).max(1.0), joints, influences)).collect();
-    hold::append(scene, 0, joints as usize, influences.div_ceil(4), &held);
+    let held: Vec<Vec<JointWeight>> =
+        heights.iter().map(|share| shares(share * f64::from(joints - 1).max(1.0), joints, influences)).collect();
+    weights::append(scene, 0, joints as usize, influences.div_ceil(4), &held);
     let primitive = scene.primitives[0].clone();
     let (mut moved, mut turned) = (Vec::<[f32; 3]>::new(), Vec::<[f32; 3]>::new());
     for (vertex, &share) in heights.iter().enumerate() {
@@ -118,12 +125,13 @@ fn soften(scene: &mut Scene, heights: &[f64], joints: u32, influences: usize) {
         Accessor::packed_f32(at, 3, components.len())
     };
     let (positions, normals) = (append(&moved), append(&turned));
-    let reach = moved.iter().flatten().fold(0.0f64, |most, v| most.max(f64::from(v.abs())));
-    scene.primitives[0].deformation.morph_targets = vec![Shape { positions: Some(positions), normals: Some(normals), reach }];
+    let max_displacement = moved.iter().flatten().fold(0.0f64, |most, v| most.max(f64::from(v.abs())));
+    scene.primitives[0].deformation.morph_targets =
+        vec![MorphTarget { positions: Some(positions), normals: Some(normals), max_displacement }];
 }
 
 /// The joints that influence a vertex at joint coordinate `along`, with weights of a uniform B-spline that sum to 65,535.
-fn shares(along: f64, joints: u32, influences: usize) -> Vec<Hold> {
+fn shares(along: f64, joints: u32, influences: usize) -> Vec<JointWeight> {
     // Cox-de Boor recursion up to the degree one below the number of influences.
     let shifted = along + 0.5 * (influences % 2) as f64;
     let (base, t) = (shifted.floor(), shifted - shifted.floor());
@@ -146,7 +154,7 @@ fn shares(along: f64, joints: u32, influences: usize) -> Vec<Hold> {
             None => held.push((joint, share)),
         }
     }
-    hold::whole(&held)
+    weights::to_integers(&held)
 }
 
 /// Samplers of the clips: one per phase and joint; of Breathe one per phase.
@@ -208,7 +216,7 @@ fn stand(scene: &mut Scene, instance: u32, of: u32, joints: u32, samplers: &Samp
     let (sin, cos) = libm::sincos(f64::from(instance) * 2.399_963_229_728_653);
     let foot = DVec3::new(reach * sin, 0.0, reach * cos);
     let rig = &mut scene.rig;
-    let part = |translation| Local::Trs(Trs { translation, ..Trs::default() });
+    let part = |translation| LocalTransform::Trs(Trs { translation, ..Trs::default() });
     let first = rig.nodes.len();
     let segment = LENGTH_M / f64::from(joints - 1).max(1.0);
     for joint in 0..joints as usize {

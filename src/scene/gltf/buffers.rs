@@ -1,15 +1,22 @@
-//! Buffers: the bytes of a model, and its accessors after all bounds checks.
+//! Buffers: the bytes of a model, its accessors after all bounds checks, and how both are copied into a scene.
 
-use std::borrow::Cow;
+use std::{borrow::Cow, collections::HashMap};
 
 use gltf::json::{
     self,
-    accessor::{ComponentType, Type},
+    accessor::{ComponentType as JsonComponentType, Type},
     validation::Checked,
 };
 
-use super::{LoadError, ReadFile, limits, uri};
-use crate::scene::{Accessor, Component};
+use super::{
+    document,
+    error::{LoadError, ReadFile},
+    limits, uri,
+};
+use crate::scene::{
+    accessor::{Accessor, ComponentType},
+    model::Scene,
+};
 
 /// All buffers, in memory.
 pub struct Buffers<'a> {
@@ -76,11 +83,11 @@ impl<'a> Buffers<'a> {
     }
 
     fn checked(&self, accessor: &json::Accessor) -> Result<Layout, LoadError> {
-        let (Checked::Valid(component), Checked::Valid(kind)) = (accessor.component_type, accessor.type_) else {
+        let (Checked::Valid(component_type), Checked::Valid(kind)) = (accessor.component_type, accessor.type_) else {
             return Err(LoadError::new("its type or componentType is not one of glTF 2.0"));
         };
-        let (component, components) = (component_of(component.0), lanes_of(kind));
-        let (size, element) = (u64::from(component.bytes()), u64::from(component.bytes() * components));
+        let (component_type, components) = (component_of(component_type.0), lanes_of(kind));
+        let (size, element) = (u64::from(component_type.bytes()), u64::from(component_type.bytes() * components));
         let (count, offset) = (accessor.count.0, accessor.byte_offset.unwrap_or_default().0);
         // Checked before any allocation: a sparse accessor can claim any count without having bytes.
         if count == 0 || count > 3 * limits::TRIANGLES {
@@ -95,12 +102,15 @@ impl<'a> Buffers<'a> {
             }
             let start = view.byte_offset.unwrap_or_default().0.checked_add(offset);
             if offset % size != 0 || start.is_none_or(|start| start % size != 0) {
-                return Err(LoadError::new(format!("byteOffset {offset}, added to that of its bufferView, must be a multiple of the component size, {size}")));
+                return Err(LoadError::new(format!(
+                    "byteOffset {offset}, added to that of its bufferView, must be a multiple of the component size, {size}"
+                )));
             }
             let length = self.view(index.value())?.len() as u64;
             let end = (count - 1).checked_mul(stride).and_then(|last| last.checked_add(offset)?.checked_add(element));
             if end.is_none_or(|end| end > length) {
-                let reason = format!("{count} elements of {stride} bytes from byte {offset} exceed bufferView {index}, which has {length} bytes");
+                let reason =
+                    format!("{count} elements of {stride} bytes from byte {offset} exceed bufferView {index}, which has {length} bytes");
                 return Err(LoadError::new(reason));
             }
         } else if accessor.sparse.is_none() {
@@ -109,7 +119,7 @@ impl<'a> Buffers<'a> {
         let accessor_in_view = Accessor {
             offset: offset as u32,
             stride: stride as u32,
-            component,
+            component_type,
             components,
             normalized: accessor.normalized,
             count: count as u32,
@@ -119,8 +129,8 @@ impl<'a> Buffers<'a> {
 
     /// The packed elements of an accessor: its buffer view, or zeros, with the sparse values applied.
     pub fn materialized(&self, index: usize, layout: &Layout) -> Result<Vec<u8>, LoadError> {
-        let Accessor { offset, stride, component, components, count, .. } = layout.accessor;
-        let element = (component.bytes() * components) as usize;
+        let Accessor { offset, stride, component_type, components, count, .. } = layout.accessor;
+        let element = (component_type.bytes() * components) as usize;
         if u64::from(count) * element as u64 > limits::BINDING_BYTES {
             return Err(LoadError::new(format!("accessor {index}: {count} elements exceed the limit of {} bytes", limits::BINDING_BYTES)));
         }
@@ -155,12 +165,15 @@ impl<'a> Buffers<'a> {
         };
         let indices = part("indices", sparse.indices.buffer_view.value(), sparse.indices.byte_offset.0, width.bytes().into())?;
         let values = part("values", sparse.values.buffer_view.value(), sparse.values.byte_offset.0, element as u64)?;
-        let reader = Accessor { offset: 0, stride: width.bytes(), component: width, components: 1, normalized: false, count: count as u32 };
+        let reader =
+            Accessor { offset: 0, stride: width.bytes(), component_type: width, components: 1, normalized: false, count: count as u32 };
         let mut previous = -1;
         for (i, value) in values.chunks_exact(element).enumerate() {
             let at = reader.integer(indices, i as u32, 0);
             if at <= previous || at >= elements as i64 {
-                return Err(LoadError::new(format!("index {at} is out of order or too large; indices must increase and stay below {elements}")));
+                return Err(LoadError::new(format!(
+                    "index {at} is out of order or too large; indices must increase and stay below {elements}"
+                )));
             }
             bytes[at as usize * element..][..element].copy_from_slice(value);
             previous = at;
@@ -169,18 +182,165 @@ impl<'a> Buffers<'a> {
     }
 }
 
-fn component_of(kind: ComponentType) -> Component {
+fn component_of(kind: JsonComponentType) -> ComponentType {
     match kind {
-        ComponentType::I8 => Component::I8,
-        ComponentType::U8 => Component::U8,
-        ComponentType::I16 => Component::I16,
-        ComponentType::U16 => Component::U16,
-        ComponentType::U32 => Component::U32,
-        ComponentType::F32 => Component::F32,
+        JsonComponentType::I8 => ComponentType::I8,
+        JsonComponentType::U8 => ComponentType::U8,
+        JsonComponentType::I16 => ComponentType::I16,
+        JsonComponentType::U16 => ComponentType::U16,
+        JsonComponentType::U32 => ComponentType::U32,
+        JsonComponentType::F32 => ComponentType::F32,
     }
 }
 
 /// Components per element. Padding between the columns of small matrices is not counted; no such matrix is read.
 fn lanes_of(kind: Type) -> u32 {
     kind.multiplicity() as u32
+}
+
+/// A component type, and whether integers are normalized.
+pub type Format = (ComponentType, bool);
+
+/// The formats of most attributes.
+pub const FLOAT: &[Format] = &[(ComponentType::F32, false)];
+/// The formats of colours and of texture coordinates.
+pub const FLOAT_OR_UNORM: &[Format] = &[(ComponentType::F32, false), (ComponentType::U8, true), (ComponentType::U16, true)];
+/// The formats of positions and texture coordinates under KHR_mesh_quantization.
+pub const QUANTIZED: &[Format] = &[
+    (ComponentType::F32, false),
+    (ComponentType::I8, false),
+    (ComponentType::I8, true),
+    (ComponentType::U8, false),
+    (ComponentType::U8, true),
+    (ComponentType::I16, false),
+    (ComponentType::I16, true),
+    (ComponentType::U16, false),
+    (ComponentType::U16, true),
+];
+/// The formats of normals under KHR_mesh_quantization.
+pub const QUANTIZED_NORMALS: &[Format] = &[(ComponentType::F32, false), (ComponentType::I8, true), (ComponentType::I16, true)];
+
+/// A scene under construction that receives bytes of the file, each buffer view and each sparse accessor once.
+pub struct SceneWriter<'a> {
+    buffers: &'a Buffers<'a>,
+    pub scene: Scene,
+    /// The file declares KHR_mesh_quantization: attributes may be small integers.
+    pub is_quantized: bool,
+    /// Where copied bytes begin in `Scene::vertex_bytes`.
+    vertex_offsets: HashMap<Source, u32>,
+    /// Where copied bytes begin in `Scene::index_bytes`.
+    index_offsets: HashMap<Source, u32>,
+}
+
+/// A source of bytes that several primitives may share.
+#[derive(Clone, Copy, PartialEq, Eq, Hash)]
+enum Source {
+    View(usize),
+    Accessor(usize),
+}
+
+impl<'a> SceneWriter<'a> {
+    /// Adds to `scene`.
+    pub fn new(buffers: &'a Buffers<'a>, scene: Scene) -> Self {
+        let is_quantized = buffers.root.extensions_used.iter().any(|name| name == document::QUANTIZATION);
+        Self { buffers, scene, is_quantized, vertex_offsets: HashMap::new(), index_offsets: HashMap::new() }
+    }
+
+    /// An accessor of the file after all checks; its offset counts from its buffer view.
+    pub fn accessor(&self, index: usize) -> Result<Accessor, LoadError> {
+        Ok(self.buffers.layout(index)?.accessor)
+    }
+
+    /// Copies an attribute of `count` vertices if its number of components and its format are allowed.
+    pub fn attribute(&mut self, index: usize, count: u32, components: &[u32], formats: &[Format]) -> Result<Accessor, LoadError> {
+        let accessor = self.accessor(index)?;
+        if !components.contains(&accessor.components) || !formats.contains(&(accessor.component_type, accessor.normalized)) {
+            return Err(wrong_type(index, &accessor));
+        }
+        if accessor.count != count {
+            return Err(LoadError::new(format!(
+                "accessor {index} has {} elements, but the primitive has {count} vertices",
+                accessor.count
+            )));
+        }
+        self.copy_attribute(index)
+    }
+
+    /// Copies an attribute that was checked before.
+    pub fn copy_attribute(&mut self, index: usize) -> Result<Accessor, LoadError> {
+        copy(self.buffers, index, &mut self.vertex_offsets, &mut self.scene.vertex_bytes)
+    }
+
+    /// Copies an index list.
+    pub fn indices(&mut self, index: usize) -> Result<Accessor, LoadError> {
+        let accessor = self.accessor(index)?;
+        let is_index = matches!(accessor.component_type, ComponentType::U8 | ComponentType::U16 | ComponentType::U32)
+            && accessor.components == 1
+            && !accessor.normalized;
+        if !is_index {
+            return Err(wrong_type(index, &accessor));
+        }
+        if accessor.stride != accessor.component_type.bytes() {
+            return Err(LoadError::new(format!("the bufferView of accessor {index} has a byteStride; indices must not have one")));
+        }
+        copy(self.buffers, index, &mut self.index_offsets, &mut self.scene.index_bytes)
+    }
+
+    /// Appends an attribute that the file does not have.
+    pub fn append_vectors(&mut self, vectors: &[[f32; 3]]) -> Result<Accessor, LoadError> {
+        let offset = append(&mut self.scene.vertex_bytes, bytemuck::cast_slice(vectors))?;
+        Ok(Accessor::packed_f32(offset as usize, 3, vectors.len()))
+    }
+}
+
+fn wrong_type(index: usize, accessor: &Accessor) -> LoadError {
+    let normalized = if accessor.normalized { " normalized" } else { "" };
+    let format = format!("{} x {:?}{normalized}", accessor.components, accessor.component_type);
+    LoadError::new(format!("accessor {index} has the type {format}, which glTF does not allow for it"))
+}
+
+/// Copies the buffer view of an accessor, or its sparse elements, unless that was done before.
+fn copy(buffers: &Buffers, index: usize, offsets: &mut HashMap<Source, u32>, bytes: &mut Vec<u8>) -> Result<Accessor, LoadError> {
+    let layout = buffers.layout(index)?;
+    let accessor = layout.accessor;
+    let (source, copied) = match layout.view {
+        Some(view) if !layout.is_sparse => (Source::View(view), accessor),
+        _ => (Source::Accessor(index), Accessor { offset: 0, stride: accessor.component_type.bytes() * accessor.components, ..accessor }),
+    };
+    let start = match offsets.get(&source) {
+        Some(&start) => start,
+        None => {
+            let start = match source {
+                Source::View(view) => append(bytes, buffers.view(view)?)?,
+                Source::Accessor(_) => append(bytes, &buffers.materialized(index, &layout)?)?,
+            };
+            offsets.insert(source, start);
+            start
+        }
+    };
+    Ok(Accessor { offset: start + copied.offset, ..copied })
+}
+
+/// Appends at a multiple of 4 bytes and pads to one; returns the offset.
+fn append(bytes: &mut Vec<u8>, more: &[u8]) -> Result<u32, LoadError> {
+    let total = bytes.len() as u64 + more.len().next_multiple_of(4) as u64;
+    if total > limits::BINDING_BYTES {
+        return Err(LoadError::new(format!(
+            "the model needs {total} bytes or more in one buffer; allowed: at most {}",
+            limits::BINDING_BYTES
+        )));
+    }
+    let start = bytes.len() as u32;
+    bytes.extend_from_slice(more);
+    bytes.resize(total as usize, 0);
+    Ok(start)
+}
+
+/// Checks that all values of a copied attribute are finite.
+pub fn check_finite(scene: &Scene, accessor: &Accessor) -> Result<(), LoadError> {
+    let value = |vertex, component| accessor.value(&scene.vertex_bytes, vertex, component);
+    match (0..accessor.count).find(|&vertex| (0..accessor.components).any(|component| !value(vertex, component).is_finite())) {
+        Some(vertex) => Err(LoadError::new(format!("vertex {vertex} has a value that is not finite"))),
+        None => Ok(()),
+    }
 }

@@ -9,14 +9,14 @@ use gltf::json::{
 };
 
 use super::{
-    LoadError,
     buffers::Buffers,
-    called, limits,
-    nodes::{LEAST_LENGTH, Tree, UNEVEN, node_name},
+    error::{LoadError, called},
+    limits,
+    nodes::{LENGTH_TOLERANCE, MIN_QUATERNION_LENGTH, Tree, node_name},
 };
 use crate::scene::{
-    Accessor, Component,
-    rig::{Channel, Clip, Interpolation, Local, Property, Rig, Sampler},
+    accessor::{Accessor, ComponentType},
+    rig::{Channel, Clip, Interpolation, LocalTransform, Property, Rig, Sampler},
 };
 
 /// Reads every animation into `rig`, whose nodes must be complete. `notes` receives messages about repairs.
@@ -26,7 +26,7 @@ pub fn read(buffers: &Buffers, tree: &Tree, rig: &mut Rig, notes: &mut Vec<Strin
     if channels > limits::CHANNELS {
         return Err(LoadError::new(format!("the animations have {channels} channels; allowed: at most {}", limits::CHANNELS)));
     }
-    let mut reader = Reader { buffers, rig, known: HashMap::new(), numbers: 0, uneven: 0 };
+    let mut reader = Reader { buffers, rig, known: HashMap::new(), numbers: 0, not_normalized: 0 };
     for (index, animation) in root.animations.iter().enumerate() {
         let name = called("clip", index, animation.name.as_deref());
         let mut clip = Clip { name: name_of(animation, index), duration_s: 0.0, channels: Vec::new() };
@@ -35,7 +35,10 @@ pub fn read(buffers: &Buffers, tree: &Tree, rig: &mut Rig, notes: &mut Vec<Strin
             let at = |error: LoadError| error.within(format!("{name} channel {place}"));
             let channel = reader.channel(tree, index, animation, channel).map_err(at)?;
             if !taken.insert((channel.node, channel.property.name())) {
-                return Err(at(LoadError::new(format!("another channel already animates the {} of its node; a clip may animate it once", channel.property.name()))));
+                return Err(at(LoadError::new(format!(
+                    "another channel already animates the {} of its node; a clip may animate it once",
+                    channel.property.name()
+                ))));
             }
             let last = reader.rig.samplers[channel.sampler].times.last();
             clip.duration_s = last.map_or(clip.duration_s, |&last| clip.duration_s.max(last.into()));
@@ -43,8 +46,8 @@ pub fn read(buffers: &Buffers, tree: &Tree, rig: &mut Rig, notes: &mut Vec<Strin
         }
         reader.rig.clips.push(clip);
     }
-    if reader.uneven > 0 {
-        notes.push(format!("{} rotation keyframes are not unit quaternions; they are normalized", reader.uneven));
+    if reader.not_normalized > 0 {
+        notes.push(format!("{} rotation keyframes are not unit quaternions; they are normalized", reader.not_normalized));
     }
     Ok(())
 }
@@ -63,7 +66,7 @@ struct Reader<'a> {
     /// Numbers read so far.
     numbers: usize,
     /// Rotation keyframes that are not unit quaternions.
-    uneven: usize,
+    not_normalized: usize,
 }
 
 impl Reader<'_> {
@@ -76,8 +79,11 @@ impl Reader<'_> {
     ) -> Result<Channel, LoadError> {
         let (target, at) = (channel.target.node.value(), channel.sampler.value());
         // The crate `gltf` does not check this index.
-        let node =
-            tree.place_of.get(target).copied().ok_or_else(|| LoadError::new(format!("its target is node {target}, which does not exist")))?;
+        let node = tree
+            .place_of
+            .get(target)
+            .copied()
+            .ok_or_else(|| LoadError::new(format!("its target is node {target}, which does not exist")))?;
         let (property, components) = match channel.target.path {
             Checked::Valid(Path::Translation) => (Property::Translation, 3),
             Checked::Valid(Path::Rotation) => (Property::Rotation, 4),
@@ -90,7 +96,7 @@ impl Reader<'_> {
         if property == Property::Weights && components == 0 {
             return Err(place(LoadError::new("the node has no mesh with morph targets")));
         }
-        if property != Property::Weights && matches!(self.rig.nodes[node].rest, Local::Matrix(_)) {
+        if property != Property::Weights && matches!(self.rig.nodes[node].rest, LocalTransform::Matrix(_)) {
             return Err(place(LoadError::new("the node has a matrix; only a node with translation, rotation and scale can be animated")));
         }
         let sampler = match self.known.get(&(clip, at, components)) {
@@ -116,16 +122,20 @@ impl Reader<'_> {
         let wanted = times.len() * parts * if property == Property::Weights { components } else { 1 };
         let values = self.values(from.output.value(), property, wanted).map_err(|error| error.within("output"))?;
         if let Some(at) = values.iter().position(|value| !value.is_finite()) {
-            return Err(LoadError::new(format!("keyframe {} has the value {}; it must be finite", at / (components * parts), values[at])).within("output"));
+            return Err(LoadError::new(format!("keyframe {} has the value {}; it must be finite", at / (components * parts), values[at]))
+                .within("output"));
         }
         if property == Property::Rotation {
             let keys = values.chunks_exact(4).skip(parts / 2).step_by(parts);
             for (key, q) in keys.enumerate() {
                 let length = q.iter().map(|&v| f64::from(v) * f64::from(v)).sum::<f64>().sqrt();
-                if length < LEAST_LENGTH {
-                    return Err(LoadError::new(format!("keyframe {key} is a quaternion of length {length:e}; it must be at least {LEAST_LENGTH:e}")).within("output"));
+                if length < MIN_QUATERNION_LENGTH {
+                    return Err(LoadError::new(format!(
+                        "keyframe {key} is a quaternion of length {length:e}; it must be at least {MIN_QUATERNION_LENGTH:e}"
+                    ))
+                    .within("output"));
                 }
-                self.uneven += usize::from((length - 1.0).abs() > UNEVEN);
+                self.not_normalized += usize::from((length - 1.0).abs() > LENGTH_TOLERANCE);
             }
         }
         Ok(Sampler { interpolation, times, values, components })
@@ -134,7 +144,7 @@ impl Reader<'_> {
     /// Keyframe times: finite, not negative and strictly increasing.
     fn times(&mut self, index: usize) -> Result<Vec<f32>, LoadError> {
         let about = self.buffers.layout(index)?.accessor;
-        if (about.component, about.components) != (Component::F32, 1) {
+        if (about.component_type, about.components) != (ComponentType::F32, 1) {
             return Err(LoadError::new("must be SCALAR of FLOAT"));
         }
         let times = self.numbers(index)?;
@@ -152,9 +162,9 @@ impl Reader<'_> {
     fn values(&mut self, index: usize, property: Property, wanted: usize) -> Result<Vec<f32>, LoadError> {
         let about = self.buffers.layout(index)?.accessor;
         let may_be_integer = matches!(property, Property::Rotation | Property::Weights);
-        let is_number = match about.component {
-            Component::F32 => !about.normalized,
-            Component::U32 => false,
+        let is_number = match about.component_type {
+            ComponentType::F32 => !about.normalized,
+            ComponentType::U32 => false,
             _ => about.normalized && may_be_integer,
         };
         let components = match property {
@@ -174,13 +184,17 @@ impl Reader<'_> {
     /// All components of an accessor, normalized where it says so.
     fn numbers(&mut self, index: usize) -> Result<Vec<f32>, LoadError> {
         let layout = self.buffers.layout(index)?;
-        let Accessor { component, components, count, .. } = layout.accessor;
+        let Accessor { component_type, components, count, .. } = layout.accessor;
         self.numbers += (count * components) as usize;
         if self.numbers > limits::KEY_NUMBERS {
-            return Err(LoadError::new(format!("the animations have {} numbers or more; allowed: at most {}", self.numbers, limits::KEY_NUMBERS)));
+            return Err(LoadError::new(format!(
+                "the animations have {} numbers or more; allowed: at most {}",
+                self.numbers,
+                limits::KEY_NUMBERS
+            )));
         }
         let bytes = self.buffers.materialized(index, &layout)?;
-        let packed = Accessor { offset: 0, stride: component.bytes() * components, ..layout.accessor };
+        let packed = Accessor { offset: 0, stride: component_type.bytes() * components, ..layout.accessor };
         let element = |element: u32| (0..components).map(move |lane| (element, lane));
         Ok((0..count).flat_map(element).map(|(element, lane)| packed.value(&bytes, element, lane) as f32).collect())
     }

@@ -16,9 +16,13 @@ use gltf::json::{
 };
 use image::{DynamicImage, ImageDecoder, ImageFormat, ImageReader, Limits};
 
-use super::{LoadError, ReadFile, buffers::Buffers, called, limits, quoted, uri};
+use super::{
+    buffers::Buffers,
+    error::{LoadError, ReadFile, called, quoted},
+    limits, uri,
+};
 use crate::scene::{
-    Material,
+    material::Material,
     texture::{Filter, Image, MipFilter, Texture, Wrap},
 };
 
@@ -249,10 +253,7 @@ fn decode(bytes: &[u8], format: ImageFormat, left: u64) -> Result<([u32; 2], Vec
     let decoded = 4 * u64::from(width) * u64::from(height);
     if decoded > left {
         let all = limits::IMAGES_BYTES - left + decoded;
-        return Err(LoadError::new(format!(
-            "with it the decoded images have {all} bytes; allowed: at most {}",
-            limits::IMAGES_BYTES
-        )));
+        return Err(LoadError::new(format!("with it the decoded images have {all} bytes; allowed: at most {}", limits::IMAGES_BYTES)));
     }
     let pixels = DynamicImage::from_decoder(decoder).map_err(failed)?.into_rgba8();
     Ok(([width, height], bytemuck::pod_collect_to_vec(pixels.as_raw())))

@@ -13,77 +13,31 @@ use gltf::json::{
 };
 
 use super::{
-    LoadError, ReadFile,
-    buffers::Buffers,
-    called, clips, container, limits, materials,
+    buffers::{Buffers, FLOAT, FLOAT_OR_UNORM, QUANTIZED, QUANTIZED_NORMALS, SceneWriter, check_finite},
+    deformation,
+    error::{LoadError, called},
+    limits, materials,
     nodes::{Tree, node_name},
-    quoted, skin, soft,
 };
 use crate::scene::{
-    Accessor, Bounds, Component, Instance, Material, Primitive, Scene, Topology, pose,
-    rig::{Deformation, Rig},
+    accessor::Accessor,
+    bounds::Bounds,
+    deformation::Deformation,
+    material::Material,
+    model::{Instance, Primitive, Scene, Topology},
+    rig::Rig,
     texture::{MAX_REPEATS, stored},
 };
 
-/// Reads a whole model.
-pub fn scene(bytes: &[u8], read: &mut ReadFile) -> Result<Scene, LoadError> {
-    let (json, binary) = container::split(bytes)?;
-    let root = container::root(json)?;
-    let mut buffers = Buffers::read(&root, binary, read)?;
-    materials::check_images(&buffers)?;
-    let tree = Tree::walk(&root)?;
-    let (mut rig, mut repairs) = (Rig::default(), Vec::from_iter(tree.uneven(&root)));
-    let (materials, images) = materials::read(&mut buffers, &tree.shown, read, &mut repairs)?;
-    if soft::moves(&root) {
-        rig.nodes = tree.rig_nodes(&root)?;
-        rig.skins = skin::skins(&buffers, &tree)?;
-        clips::read(&buffers, &tree, &mut rig, &mut repairs)?;
-    }
-    let mut loader = Loader::new(&buffers, &tree, Scene { materials, images, ..Scene::default() });
-    for &node in &tree.shown {
-        loader.place(node, &rig)?;
-    }
-    let Loader { mut scene, notes, .. } = loader;
-    scene.rig = rig;
-    if !scene.rig.is_empty() {
-        scene.rig.reach = pose::reach(&scene);
-    }
-    scene.notes = notes.into_iter().chain(repairs).chain(omissions(&root)).collect();
-    if scene.instances.is_empty() {
-        scene.notes.push("nothing to draw: the scene shows no triangles".into());
-    }
-    scene.cameras = tree.cameras(&root, &scene.bounds(), !scene.rig.is_empty(), &mut scene.notes);
-    scene.notes.truncate(limits::NOTES);
-    Ok(scene)
-}
-
-/// Messages about features of the file that are not drawn.
-fn omissions(root: &json::Root) -> Vec<String> {
-    let is_read = |name: &str| name == container::QUANTIZATION || materials::EXTENSIONS.contains(&name);
-    let ignored = root.extensions_used.iter().filter(|name| !is_read(name));
-    let mut notes: Vec<String> = ignored.map(|name| format!("the extension {} is not supported and is ignored", quoted(name))).collect();
-    let has_more = |material: &json::Material| {
-        let roughness = material.pbr_metallic_roughness.metallic_roughness_texture.is_some();
-        roughness || material.normal_texture.is_some() || material.occlusion_texture.is_some()
-    };
-    if root.materials.iter().any(has_more) {
-        notes.push("normal, occlusion and metallic-roughness textures are not drawn".into());
-    }
-    notes
-}
-
-pub(super) struct Loader<'a> {
-    pub(super) buffers: &'a Buffers<'a>,
+/// Reads meshes into a scene.
+pub struct Loader<'a> {
+    root: &'a json::Root,
     tree: &'a Tree,
-    pub(super) scene: Scene,
-    /// The file declares KHR_mesh_quantization: attributes may be small integers.
-    pub(super) is_quantized: bool,
-    notes: BTreeSet<String>,
-    /// Byte offset of each copied buffer view or sparse accessor in the scene's bytes.
-    vertex_places: HashMap<Source, u32>,
-    index_places: HashMap<Source, u32>,
+    pub writer: SceneWriter<'a>,
+    /// Messages about what was skipped or repaired, each once.
+    pub notes: BTreeSet<String>,
     /// The JSON of each primitive of the scene.
-    pub(super) origins: Vec<&'a json::mesh::Primitive>,
+    sources: Vec<&'a json::mesh::Primitive>,
     /// Primitives of each mesh that was read.
     meshes: HashMap<usize, Range<usize>>,
     default_material: Option<usize>,
@@ -91,25 +45,15 @@ pub(super) struct Loader<'a> {
     triangles: u64,
 }
 
-/// A source of bytes that several primitives may share.
-#[derive(Clone, Copy, PartialEq, Eq, Hash)]
-enum Source {
-    View(usize),
-    Accessor(usize),
-}
-
 impl<'a> Loader<'a> {
     /// A loader that adds to `scene`, which must have the file's materials and images.
-    fn new(buffers: &'a Buffers<'a>, tree: &'a Tree, scene: Scene) -> Self {
+    pub fn new(buffers: &'a Buffers<'a>, tree: &'a Tree, scene: Scene) -> Self {
         Self {
-            buffers,
+            root: buffers.root,
             tree,
-            scene,
-            is_quantized: buffers.root.extensions_used.iter().any(|name| name == container::QUANTIZATION),
+            writer: SceneWriter::new(buffers, scene),
             notes: BTreeSet::new(),
-            vertex_places: HashMap::new(),
-            index_places: HashMap::new(),
-            origins: Vec::new(),
+            sources: Vec::new(),
             meshes: HashMap::new(),
             default_material: None,
             vertices: 0,
@@ -118,29 +62,26 @@ impl<'a> Loader<'a> {
     }
 
     /// Adds the instances of a node. A skinned mesh ignores the transform of its node: its joints place it.
-    fn place(&mut self, node: usize, rig: &Rig) -> Result<(), LoadError> {
-        let about = &self.buffers.root.nodes[node];
+    pub fn add_instances(&mut self, node: usize, rig: &Rig) -> Result<(), LoadError> {
+        let about = &self.root.nodes[node];
         let Some(mesh) = about.mesh.map(|mesh| mesh.value()) else { return Ok(()) };
         let range = self.mesh(mesh)?;
-        if self.scene.instances.len() + range.len() > limits::INSTANCES {
-            return Err(
-                LoadError::new(format!("the nodes show more than {} primitives, which is the limit", limits::INSTANCES)).within(node_name(self.buffers.root, node))
-            );
+        if self.writer.scene.instances.len() + range.len() > limits::INSTANCES {
+            return Err(LoadError::new(format!("the nodes show more than {} primitives, which is the limit", limits::INSTANCES))
+                .within(node_name(self.root, node)));
         }
         let skin = about.skin.map(|skin| skin.value());
-        let place = (!rig.is_empty()).then(|| self.tree.place_of[node]);
+        let rig_node = (!rig.is_empty()).then(|| self.tree.place_of[node]);
         for primitive in range {
             if let Some(skin) = skin {
-                self.hold(primitive, skin, rig).map_err(|error| error.within(&self.scene.primitives[primitive].name))?;
+                let follow = deformation::follow_skin(&mut self.writer, primitive, self.sources[primitive], &rig.skins[skin]);
+                let notes = follow.map_err(|error| error.within(&self.writer.scene.primitives[primitive].name))?;
+                self.notes.extend(notes);
             }
             let world_from_object = if skin.is_some() { DMat4::IDENTITY } else { self.tree.world_from_node[node] };
-            self.scene.instances.push(Instance { primitive, world_from_object, node: place, skin });
+            self.writer.scene.instances.push(Instance { primitive, world_from_object, node: rig_node, skin });
         }
         Ok(())
-    }
-
-    pub(super) fn note(&mut self, note: String) {
-        self.notes.insert(note);
     }
 
     /// The primitives of a mesh, which is read on its first use.
@@ -148,9 +89,9 @@ impl<'a> Loader<'a> {
         if let Some(range) = self.meshes.get(&mesh) {
             return Ok(range.clone());
         }
-        let first = self.scene.primitives.len();
-        for (index, primitive) in self.buffers.root.meshes[mesh].primitives.iter().enumerate() {
-            let name = primitive_name(self.buffers.root, mesh, index);
+        let first = self.writer.scene.primitives.len();
+        for (index, primitive) in self.root.meshes[mesh].primitives.iter().enumerate() {
+            let name = primitive_name(self.root, mesh, index);
             let topology = match primitive.mode {
                 Checked::Valid(Mode::Triangles) => Topology::List,
                 Checked::Valid(Mode::TriangleStrip) => Topology::Strip,
@@ -160,14 +101,14 @@ impl<'a> Loader<'a> {
                     continue;
                 }
             };
-            let material = primitive.material.map(|material| &self.buffers.root.materials[material.value()]);
+            let material = primitive.material.map(|material| &self.root.materials[material.value()]);
             if material.is_some_and(materials::is_invisible) {
                 self.notes.insert(format!("{name} is skipped: the alpha of its material is below the cutoff everywhere"));
                 continue;
             }
             self.primitive(&name, topology, primitive).map_err(|LoadError(reason)| LoadError(format!("{name}{reason}")))?;
         }
-        let range = first..self.scene.primitives.len();
+        let range = first..self.writer.scene.primitives.len();
         self.meshes.insert(mesh, range.clone());
         Ok(range)
     }
@@ -178,15 +119,19 @@ impl<'a> Loader<'a> {
         let at = |place: &'static str| move |error: LoadError| LoadError(format!(" {place}: {error}"));
         let plain = |error: LoadError| LoadError(format!(": {error}"));
         let positions = attribute(Semantic::Positions).ok_or_else(|| plain(LoadError::new("it has no POSITION attribute")))?;
-        let count = self.buffers.layout(positions).map_err(at("POSITION"))?.accessor.count;
+        let count = self.writer.accessor(positions).map_err(at("POSITION"))?.count;
         self.budget_vertices(count.into()).map_err(at("POSITION"))?;
-        let (places, directions) = if self.is_quantized { (PLACES, DIRECTIONS) } else { (FLOAT, FLOAT) };
-        let positions = self.attribute(positions, count, &[3], places).map_err(at("POSITION"))?;
-        let normals = attribute(Semantic::Normals).map(|a| self.attribute(a, count, &[3], directions).map_err(at("NORMAL"))).transpose()?;
-        let colors = attribute(Semantic::Colors(0)).map(|a| self.attribute(a, count, &[3, 4], COLOR).map_err(at("COLOR_0"))).transpose()?;
+        let [position_formats, normal_formats] = if self.writer.is_quantized { [QUANTIZED, QUANTIZED_NORMALS] } else { [FLOAT; 2] };
+        let positions = self.writer.attribute(positions, count, &[3], position_formats).map_err(at("POSITION"))?;
+        let normals = attribute(Semantic::Normals)
+            .map(|a| self.writer.attribute(a, count, &[3], normal_formats).map_err(at("NORMAL")))
+            .transpose()?;
+        let colors = attribute(Semantic::Colors(0))
+            .map(|a| self.writer.attribute(a, count, &[3, 4], FLOAT_OR_UNORM).map_err(at("COLOR_0")))
+            .transpose()?;
         let material = self.material(about);
         let texcoords = self.texcoords(about, material, count)?;
-        let indices = about.indices.map(|a| self.indices(a.value()).map_err(at("indices"))).transpose()?;
+        let indices = about.indices.map(|a| self.writer.indices(a.value()).map_err(at("indices"))).transpose()?;
         let corners = indices.map_or(count, |indices| indices.count);
         self.budget_triangles(topology, corners).map_err(if indices.is_some() { at("indices") } else { at("POSITION") })?;
 
@@ -202,30 +147,33 @@ impl<'a> Loader<'a> {
             bounds: Bounds::EMPTY,
             longest_edge: 0.0,
             normals_agree: false,
-            deformation: Deformation { morph_targets: self.morph_targets(about, count)?, ..Deformation::default() },
+            deformation: Deformation {
+                morph_targets: deformation::morph_targets(&mut self.writer, about, count)?,
+                ..Deformation::default()
+            },
         };
-        check_indices(&self.scene, &primitive).map_err(at("indices"))?;
-        measure(&self.scene, &mut primitive).map_err(at("POSITION"))?;
+        check_indices(&self.writer.scene, &primitive).map_err(at("indices"))?;
+        measure(&self.writer.scene, &mut primitive).map_err(at("POSITION"))?;
         if normals.is_none() {
-            let smooth = smooth_normals(&self.scene, &primitive);
-            primitive.normals = self.append_vectors(&smooth).map_err(at("NORMAL"))?;
+            let smooth = smooth_normals(&self.writer.scene, &primitive);
+            primitive.normals = self.writer.append_vectors(&smooth).map_err(at("NORMAL"))?;
         } else {
-            check_finite(&self.scene, &primitive.normals).map_err(at("NORMAL"))?;
+            check_finite(&self.writer.scene, &primitive.normals).map_err(at("NORMAL"))?;
         }
-        primitive.normals_agree = primitive.normals_agree(&self.scene);
+        primitive.normals_agree = primitive.normals_agree(&self.writer.scene);
         if let Some(colors) = &primitive.colors {
-            check_finite(&self.scene, colors).map_err(at("COLOR_0"))?;
-            if colors.components == 4 && self.scene.materials[material].alpha_cutoff.is_some() {
+            check_finite(&self.writer.scene, colors).map_err(at("COLOR_0"))?;
+            if colors.components == 4 && self.writer.scene.materials[material].alpha_cutoff.is_some() {
                 self.notes.insert(format!("{name}: alpha masking uses the alpha of the image, not that of the vertex colours"));
             }
         }
-        self.scene.primitives.push(primitive);
-        self.origins.push(about);
+        self.writer.scene.primitives.push(primitive);
+        self.sources.push(about);
         Ok(())
     }
 
     fn material(&mut self, about: &json::mesh::Primitive) -> usize {
-        let materials = &mut self.scene.materials;
+        let materials = &mut self.writer.scene.materials;
         about.material.map(|material| material.value()).unwrap_or_else(|| {
             *self.default_material.get_or_insert_with(|| {
                 materials.push(Material::default());
@@ -236,17 +184,17 @@ impl<'a> Loader<'a> {
 
     /// The texture coordinates of a material's textures. Errors begin as those of attributes do.
     fn texcoords(&mut self, about: &json::mesh::Primitive, material: usize, count: u32) -> Result<[Option<Accessor>; 2], LoadError> {
-        let textures = self.scene.materials[material].textures().map(|texture| texture.copied());
+        let textures = self.writer.scene.materials[material].textures().map(|texture| texture.copied());
         let mut texcoords = [None; 2];
         for (texcoords, texture) in texcoords.iter_mut().zip(textures) {
             let Some(texture) = texture else { continue };
             let at = |error: LoadError| LoadError(format!(" TEXCOORD_{}: {error}", texture.set));
             let index = about.attributes.get(&Checked::Valid(Semantic::TexCoords(texture.set)));
             let index = index.ok_or_else(|| at(LoadError::new("it is missing, although a texture of the material uses it")))?;
-            let kinds = if self.is_quantized { QUANTIZED_COORDS } else { COORDS };
-            let accessor = self.attribute(index.value(), count, &[2], kinds).map_err(at)?;
-            check_finite(&self.scene, &accessor).map_err(at)?;
-            let place = |vertex| texture.placed(stored(&accessor, &self.scene.vertex_bytes, vertex));
+            let formats = if self.writer.is_quantized { QUANTIZED } else { FLOAT_OR_UNORM };
+            let accessor = self.writer.attribute(index.value(), count, &[2], formats).map_err(at)?;
+            check_finite(&self.writer.scene, &accessor).map_err(at)?;
+            let place = |vertex| texture.placed(stored(&accessor, &self.writer.scene.vertex_bytes, vertex));
             if let Some(vertex) = (0..count).find(|&vertex| place(vertex).abs().max_element() > MAX_REPEATS) {
                 let place = place(vertex);
                 let reason =
@@ -284,119 +232,10 @@ impl<'a> Loader<'a> {
         }
         Ok(())
     }
-
-    /// Copies an attribute of `count` vertices if its type is among the allowed ones.
-    pub(super) fn attribute(
-        &mut self,
-        index: usize,
-        count: u32,
-        components: &[u32],
-        kinds: &[(Component, bool)],
-    ) -> Result<Accessor, LoadError> {
-        let layout = self.buffers.layout(index)?;
-        let accessor = layout.accessor;
-        if !components.contains(&accessor.components) || !kinds.contains(&(accessor.component, accessor.normalized)) {
-            return Err(LoadError::new(format!("accessor {index} has the type {}, which glTF does not allow for it", type_name(&accessor))));
-        }
-        if accessor.count != count {
-            return Err(LoadError::new(format!("accessor {index} has {} elements, but the primitive has {count} vertices", accessor.count)));
-        }
-        self.take_over(index)
-    }
-
-    pub(super) fn take_over(&mut self, index: usize) -> Result<Accessor, LoadError> {
-        take_over(self.buffers, index, &mut self.vertex_places, &mut self.scene.vertex_bytes)
-    }
-
-    fn indices(&mut self, index: usize) -> Result<Accessor, LoadError> {
-        let accessor = self.buffers.layout(index)?.accessor;
-        let is_index = matches!(accessor.component, Component::U8 | Component::U16 | Component::U32)
-            && accessor.components == 1
-            && !accessor.normalized;
-        if !is_index {
-            return Err(LoadError::new(format!("accessor {index} has the type {}, which glTF does not allow for it", type_name(&accessor))));
-        }
-        if accessor.stride != accessor.component.bytes() {
-            return Err(LoadError::new(format!("the bufferView of accessor {index} has a byteStride; indices must not have one")));
-        }
-        take_over(self.buffers, index, &mut self.index_places, &mut self.scene.index_bytes)
-    }
-
-    fn append_vectors(&mut self, vectors: &[[f32; 3]]) -> Result<Accessor, LoadError> {
-        let offset = append(&mut self.scene.vertex_bytes, bytemuck::cast_slice(vectors))?;
-        Ok(Accessor::packed_f32(offset as usize, 3, vectors.len()))
-    }
-}
-
-pub(super) const FLOAT: &[(Component, bool)] = &[(Component::F32, false)];
-/// Component types of positions under KHR_mesh_quantization.
-const PLACES: &[(Component, bool)] = &[
-    (Component::F32, false),
-    (Component::I8, false),
-    (Component::I8, true),
-    (Component::U8, false),
-    (Component::U8, true),
-    (Component::I16, false),
-    (Component::I16, true),
-    (Component::U16, false),
-    (Component::U16, true),
-];
-/// Component types of normals under KHR_mesh_quantization.
-const DIRECTIONS: &[(Component, bool)] = &[(Component::F32, false), (Component::I8, true), (Component::I16, true)];
-const COORDS: &[(Component, bool)] = &[(Component::F32, false), (Component::U8, true), (Component::U16, true)];
-/// Component types of texture coordinates under KHR_mesh_quantization.
-const QUANTIZED_COORDS: &[(Component, bool)] = PLACES;
-const COLOR: &[(Component, bool)] = &[(Component::F32, false), (Component::U8, true), (Component::U16, true)];
-
-fn type_name(accessor: &Accessor) -> String {
-    let normalized = if accessor.normalized { " normalized" } else { "" };
-    format!("{} x {:?}{normalized}", accessor.components, accessor.component)
 }
 
 fn primitive_name(root: &json::Root, mesh: usize, primitive: usize) -> String {
     format!("{} primitive {primitive}", called("mesh", mesh, root.meshes[mesh].name.as_deref()))
-}
-
-/// Copies the buffer view of an accessor (or its sparse elements) unless that was done before.
-fn take_over(buffers: &Buffers, index: usize, places: &mut HashMap<Source, u32>, bytes: &mut Vec<u8>) -> Result<Accessor, LoadError> {
-    let layout = buffers.layout(index)?;
-    let accessor = layout.accessor;
-    let (source, placed) = match layout.view {
-        Some(view) if !layout.is_sparse => (Source::View(view), accessor),
-        _ => (Source::Accessor(index), Accessor { offset: 0, stride: accessor.component.bytes() * accessor.components, ..accessor }),
-    };
-    let start = match places.get(&source) {
-        Some(&start) => start,
-        None => {
-            let start = match source {
-                Source::View(view) => append(bytes, buffers.view(view)?)?,
-                Source::Accessor(_) => append(bytes, &buffers.materialized(index, &layout)?)?,
-            };
-            places.insert(source, start);
-            start
-        }
-    };
-    Ok(Accessor { offset: start + placed.offset, ..placed })
-}
-
-/// Appends at a multiple of 4 bytes and pads to one; returns the offset.
-fn append(bytes: &mut Vec<u8>, more: &[u8]) -> Result<u32, LoadError> {
-    let total = bytes.len() as u64 + more.len().next_multiple_of(4) as u64;
-    if total > limits::BINDING_BYTES {
-        return Err(LoadError::new(format!("the model needs {total} bytes or more in one buffer; allowed: at most {}", limits::BINDING_BYTES)));
-    }
-    let start = bytes.len() as u32;
-    bytes.extend_from_slice(more);
-    bytes.resize(total as usize, 0);
-    Ok(start)
-}
-
-pub(super) fn check_finite(scene: &Scene, accessor: &Accessor) -> Result<(), LoadError> {
-    let value = |vertex, lane| accessor.value(&scene.vertex_bytes, vertex, lane);
-    match (0..accessor.count).find(|&vertex| (0..accessor.components).any(|lane| !value(vertex, lane).is_finite())) {
-        Some(vertex) => Err(LoadError::new(format!("vertex {vertex} has a value that is not finite"))),
-        None => Ok(()),
-    }
 }
 
 fn check_indices(scene: &Scene, primitive: &Primitive) -> Result<(), LoadError> {

@@ -3,12 +3,16 @@
 use glam::{DMat4, DVec3};
 use gltf::json::{self, camera::Type, validation::Checked};
 
-use super::{LoadError, called, limits, soft};
+use super::{
+    error::{LoadError, called},
+    limits,
+};
 use crate::scene::{
-    Bounds, SceneCamera,
+    bounds::Bounds,
     camera::{Camera, MIN_NEAR_M, Projection},
-    pose::unit,
-    rig::{Local, Node, Trs},
+    model::SceneCamera,
+    quaternion::unit,
+    rig::{LocalTransform, Node, Trs},
 };
 
 /// The node tree.
@@ -40,7 +44,9 @@ impl Tree {
             }
         })?;
         if all.len() < root.nodes.len() {
-            return Err(LoadError::new("it is its own ancestor; nodes must form a tree").within(node_name(root, on_a_cycle(&parents, &all))));
+            return Err(
+                LoadError::new("it is its own ancestor; nodes must form a tree").within(node_name(root, on_a_cycle(&parents, &all)))
+            );
         }
         let scene = root.scene.map(|scene| scene.value()).or((!root.scenes.is_empty()).then_some(0));
         let mut place_of = vec![0; all.len()];
@@ -50,10 +56,13 @@ impl Tree {
         let mut listed = tops.clone();
         listed.sort_unstable();
         if let Some(&node) = tops.iter().find(|&&node| parents[node].is_some()) {
-            return Err(LoadError::new(format!("{} has a parent; a scene lists root nodes only", node_name(root, node))).within(format!("scene {scene}")));
+            return Err(LoadError::new(format!("{} has a parent; a scene lists root nodes only", node_name(root, node)))
+                .within(format!("scene {scene}")));
         }
         if let Some(pair) = listed.windows(2).find(|pair| pair[0] == pair[1]) {
-            return Err(LoadError::new(format!("{} is listed twice; remove one entry", node_name(root, pair[0]))).within(format!("scene {scene}")));
+            return Err(
+                LoadError::new(format!("{} is listed twice; remove one entry", node_name(root, pair[0]))).within(format!("scene {scene}"))
+            );
         }
         let shown = visit(root, &tops, |_| Ok(()))?;
         Ok(Self { world_from_node, shown, order: all, place_of })
@@ -66,7 +75,7 @@ impl Tree {
         let node = |&index: &usize| {
             let node = &root.nodes[index];
             let place = |error: LoadError| error.within(node_name(root, index));
-            let weights = soft::weights(root, node).map_err(place)?;
+            let weights = morph_weights(root, node).map_err(place)?;
             weights_in_all += weights.len();
             if weights_in_all > limits::WEIGHTS {
                 let reason = format!("the nodes have {weights_in_all} morph weights or more; allowed: at most {}", limits::WEIGHTS);
@@ -83,10 +92,10 @@ impl Tree {
     }
 
     /// A message about rotations that are not unit quaternions, if there are any.
-    pub fn uneven(&self, root: &json::Root) -> Option<String> {
+    pub fn rotation_note(&self, root: &json::Root) -> Option<String> {
         let length = |q: &[f32; 4]| q.iter().map(|&v| f64::from(v) * f64::from(v)).sum::<f64>().sqrt();
-        let is_uneven = |&&node: &&usize| root.nodes[node].rotation.is_some_and(|q| (length(&q.0) - 1.0).abs() > UNEVEN);
-        let count = self.order.iter().filter(is_uneven).count();
+        let is_not_normalized = |&&node: &&usize| root.nodes[node].rotation.is_some_and(|q| (length(&q.0) - 1.0).abs() > LENGTH_TOLERANCE);
+        let count = self.order.iter().filter(is_not_normalized).count();
         (count > 0).then(|| format!("{count} node rotations are not unit quaternions; they are normalized"))
     }
 
@@ -137,7 +146,8 @@ fn visit(root: &json::Root, tops: &[usize], mut arrive: impl FnMut(usize) -> Res
     let mut open: Vec<(usize, usize)> = tops.iter().rev().map(|&node| (node, 1)).collect();
     while let Some((node, depth)) = open.pop() {
         if depth > limits::NODE_DEPTH {
-            return Err(LoadError::new(format!("it lies deeper than {} levels; flatten the hierarchy", limits::NODE_DEPTH)).within(node_name(root, node)));
+            return Err(LoadError::new(format!("it lies deeper than {} levels; flatten the hierarchy", limits::NODE_DEPTH))
+                .within(node_name(root, node)));
         }
         arrive(node)?;
         visited.push(node);
@@ -147,18 +157,18 @@ fn visit(root: &json::Root, tops: &[usize], mut arrive: impl FnMut(usize) -> Res
 }
 
 /// The smallest length of a quaternion that is normalized; shorter ones have no meaningful direction.
-pub const LEAST_LENGTH: f64 = 1e-6;
+pub const MIN_QUATERNION_LENGTH: f64 = 1e-6;
 
 /// Deviations from length 1 above this are reported.
-pub const UNEVEN: f64 = 0.01;
+pub const LENGTH_TOLERANCE: f64 = 0.01;
 
 /// The transform of a node relative to its parent.
-fn local(node: &json::Node) -> Result<Local, LoadError> {
+fn local(node: &json::Node) -> Result<LocalTransform, LoadError> {
     if let Some(matrix) = node.matrix {
         let matrix = DMat4::from_cols_array(&matrix.map(f64::from));
         let last_row = matrix.row(3);
         return if last_row == glam::DVec4::W {
-            Ok(Local::Matrix(matrix))
+            Ok(LocalTransform::Matrix(matrix))
         } else {
             Err(LoadError::new(format!("the last row of its matrix is {last_row}; it must be 0 0 0 1")))
         };
@@ -166,11 +176,39 @@ fn local(node: &json::Node) -> Result<Local, LoadError> {
     let vector = |v: Option<[f32; 3]>, default: DVec3| v.map_or(default, |v| v.map(f64::from).into());
     let rotation = node.rotation.unwrap_or_default().0.map(f64::from);
     let length = rotation.iter().map(|v| v * v).sum::<f64>().sqrt();
-    if !(length.is_finite() && length >= LEAST_LENGTH) {
-        return Err(LoadError::new("its rotation is a quaternion of length {length:e}; it must be finite and at least {LEAST_LENGTH:e}"));
+    if !(length.is_finite() && length >= MIN_QUATERNION_LENGTH) {
+        return Err(LoadError::new(
+            "its rotation is a quaternion of length {length:e}; it must be finite and at least {MIN_QUATERNION_LENGTH:e}",
+        ));
     }
     let (translation, scale) = (vector(node.translation, DVec3::ZERO), vector(node.scale, DVec3::ONE));
-    Ok(Local::Trs(Trs { translation, rotation: unit(rotation), scale }))
+    Ok(LocalTransform::Trs(Trs { translation, rotation: unit(rotation), scale }))
+}
+
+/// Morph weights of a node in the rest pose: its own, else those of its mesh, else zeros.
+fn morph_weights(root: &json::Root, node: &json::Node) -> Result<Vec<f32>, LoadError> {
+    let Some(mesh) = node.mesh.map(|mesh| &root.meshes[mesh.value()]) else { return Ok(Vec::new()) };
+    let counts = mesh.primitives.iter().map(|primitive| primitive.targets.as_ref().map_or(0, Vec::len));
+    let morph_targets = counts.clone().max().unwrap_or(0);
+    if morph_targets > limits::MORPH_TARGETS {
+        return Err(LoadError::new(format!("its mesh has {morph_targets} morph targets; allowed: at most {}", limits::MORPH_TARGETS)));
+    }
+    if let Some(fewer) = counts.clone().find(|&count| count != morph_targets) {
+        return Err(LoadError::new(format!(
+            "the primitives of its mesh have {fewer} and {morph_targets} morph targets; all must have the same number"
+        )));
+    }
+    let given = node.weights.as_ref().or(mesh.weights.as_ref()).filter(|weights| !weights.is_empty());
+    match given {
+        None => Ok(vec![0.0; morph_targets]),
+        Some(weights) if weights.len() != morph_targets => {
+            Err(LoadError::new(format!("it has {} weights for {morph_targets} morph targets; both numbers must be equal", weights.len())))
+        }
+        Some(weights) => match weights.iter().find(|weight| !weight.is_finite()) {
+            Some(weight) => Err(LoadError::new(format!("it has the morph weight {weight}; weights must be finite"))),
+            None => Ok(weights.clone()),
+        },
+    }
 }
 
 /// The name of camera `index` in menus and presets.

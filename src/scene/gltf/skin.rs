@@ -3,11 +3,22 @@
 use glam::DMat4;
 use gltf::json;
 
-use super::{LoadError, buffers::Buffers, called, limits, nodes::Tree};
-use crate::scene::{Accessor, Bounds, Component, Scene, rig::Influences, rig::Skin};
+use super::{
+    buffers::Buffers,
+    error::{LoadError, called},
+    limits,
+    nodes::Tree,
+};
+use crate::scene::{
+    accessor::{Accessor, ComponentType},
+    bounds::Bounds,
+    deformation::Influences,
+    model::Scene,
+    rig::Skin,
+};
 
 /// Reads every skin of the file.
-pub fn skins(buffers: &Buffers, tree: &Tree) -> Result<Vec<Skin>, LoadError> {
+pub fn read_skins(buffers: &Buffers, tree: &Tree) -> Result<Vec<Skin>, LoadError> {
     let joints: usize = buffers.root.skins.iter().map(|skin| skin.joints.len()).sum();
     if joints > limits::ALL_JOINTS {
         return Err(LoadError::new(format!("the skins have {joints} joints; allowed: at most {}", limits::ALL_JOINTS)));
@@ -39,11 +50,15 @@ fn read(buffers: &Buffers, tree: &Tree, skin: &json::Skin) -> Result<Skin, LoadE
 fn inverse_bind(buffers: &Buffers, index: usize, joints: usize) -> Result<Vec<DMat4>, LoadError> {
     let layout = buffers.layout(index)?;
     let about = layout.accessor;
-    if about.component != Component::F32 || about.components != 16 {
+    if about.component_type != ComponentType::F32 || about.components != 16 {
         return Err(LoadError::new("must be MAT4 of FLOAT"));
     }
     if (about.count as usize) < joints || about.count as usize > limits::JOINTS {
-        return Err(LoadError::new(format!("it has {} matrices for {joints} joints; it needs one for each and at most {}", about.count)));
+        return Err(LoadError::new(format!(
+            "it has {} matrices for {joints} joints; it needs one for each and at most {}",
+            about.count,
+            limits::JOINTS
+        )));
     }
     let bytes = buffers.materialized(index, &layout)?;
     let numbers = Accessor { offset: 0, stride: 64, ..about };
@@ -59,11 +74,11 @@ fn inverse_bind(buffers: &Buffers, index: usize, joints: usize) -> Result<Vec<DM
 
 /// Checks the type and the count of a JOINTS or WEIGHTS attribute.
 pub fn check_types(accessor: &Accessor, what: &str, count: u32) -> Result<(), LoadError> {
-    let kinds: &[(Component, bool)] = match what.starts_with("JOINTS") {
-        true => &[(Component::U8, false), (Component::U16, false)],
-        false => &[(Component::F32, false), (Component::U8, true), (Component::U16, true)],
+    let kinds: &[(ComponentType, bool)] = match what.starts_with("JOINTS") {
+        true => &[(ComponentType::U8, false), (ComponentType::U16, false)],
+        false => &[(ComponentType::F32, false), (ComponentType::U8, true), (ComponentType::U16, true)],
     };
-    if accessor.components != 4 || !kinds.contains(&(accessor.component, accessor.normalized)) {
+    if accessor.components != 4 || !kinds.contains(&(accessor.component_type, accessor.normalized)) {
         return Err(LoadError::new("must be VEC4 of a type that glTF allows for it").within(what));
     }
     if accessor.count != count {
@@ -73,19 +88,24 @@ pub fn check_types(accessor: &Accessor, what: &str, count: u32) -> Result<(), Lo
 }
 
 /// What checking the joints and weights of a mesh found.
-pub struct Held {
+pub struct CheckedInfluences {
     /// Box of the vertices of each joint, up to the largest joint in use.
-    pub bounds: Vec<Bounds>,
+    pub joint_bounds: Vec<Bounds>,
     /// The number of vertices whose weights are all 0; they follow their first joint.
     pub weightless: u32,
     /// The number of vertices whose weights do not sum to 1; they are normalized.
-    pub uneven: u32,
+    pub not_normalized: u32,
 }
 
 /// Checks that all joints are below `joint_count` and that all weights are finite and not negative.
-pub fn held(scene: &Scene, sets: &[Influences], positions: &Accessor, joint_count: usize) -> Result<Held, LoadError> {
+pub fn check_influences(
+    scene: &Scene,
+    sets: &[Influences],
+    positions: &Accessor,
+    joint_count: usize,
+) -> Result<CheckedInfluences, LoadError> {
     let bytes = &scene.vertex_bytes;
-    let mut held = Held { bounds: Vec::new(), weightless: 0, uneven: 0 };
+    let mut checked = CheckedInfluences { joint_bounds: Vec::new(), weightless: 0, not_normalized: 0 };
     for vertex in 0..positions.count {
         let place = [0, 1, 2].map(|lane| positions.value(bytes, vertex, lane)).into();
         let (mut sum, mut first) = (0.0, 0);
@@ -98,13 +118,14 @@ pub fn held(scene: &Scene, sets: &[Influences], positions: &Accessor, joint_coun
                         .within(format!("JOINTS_{set}")));
                 }
                 if !(weight.is_finite() && weight >= 0.0) {
-                    return Err(LoadError::new(format!("vertex {vertex} has the weight {weight}; weights must be finite and at least 0")).within(format!("WEIGHTS_{set}")));
+                    return Err(LoadError::new(format!("vertex {vertex} has the weight {weight}; weights must be finite and at least 0"))
+                        .within(format!("WEIGHTS_{set}")));
                 }
-                if joint >= held.bounds.len() {
-                    held.bounds.resize(joint + 1, Bounds::EMPTY);
+                if joint >= checked.joint_bounds.len() {
+                    checked.joint_bounds.resize(joint + 1, Bounds::EMPTY);
                 }
                 if weight > 0.0 {
-                    held.bounds[joint].include(place);
+                    checked.joint_bounds[joint].include(place);
                 }
                 if set == 0 && lane == 0 {
                     first = joint;
@@ -113,13 +134,13 @@ pub fn held(scene: &Scene, sets: &[Influences], positions: &Accessor, joint_coun
             }
         }
         if sum == 0.0 {
-            held.bounds[first].include(place);
-            held.weightless += 1;
+            checked.joint_bounds[first].include(place);
+            checked.weightless += 1;
         } else if sum > 1e30 {
             return Err(LoadError::new(format!("the weights of vertex {vertex} sum to {sum:e}; allowed: at most 1e30")).within("WEIGHTS_0"));
         } else if (sum - 1.0).abs() > 0.01 {
-            held.uneven += 1;
+            checked.not_normalized += 1;
         }
     }
-    Ok(held)
+    Ok(checked)
 }

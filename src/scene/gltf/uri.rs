@@ -8,7 +8,7 @@ use base64::{
     engine::{DecodePaddingMode, GeneralPurpose, GeneralPurposeConfig},
 };
 
-use super::{LoadError, ReadFile, quoted};
+use super::error::{LoadError, ReadFile, quoted};
 
 /// Real files often omit the padding.
 const BASE64: GeneralPurpose =
@@ -21,7 +21,10 @@ pub fn resolve(uri: &str, most: u64, read: &mut ReadFile) -> Result<Vec<u8>, Loa
         None => read(&relative(uri)?, most).map_err(|error| error.within(quoted(uri)))?,
     };
     if bytes.len() as u64 > most {
-        return Err(LoadError::new(format!("it has {} bytes, but only {most} of the limit for all files of a model are left", bytes.len())));
+        return Err(LoadError::new(format!(
+            "it has {} bytes, but only {most} of the limit for all files of a model are left",
+            bytes.len()
+        )));
     }
     Ok(bytes)
 }

@@ -2,14 +2,20 @@
 
 use glam::DVec3;
 
-use crate::scene::{Accessor, Bounds, Component, Scene, rig::Influences};
+use crate::scene::{
+    accessor::{Accessor, ComponentType},
+    bounds::Bounds,
+    deformation::Influences,
+    model::Scene,
+};
 
 /// A joint and its weight; the weights of a vertex sum to 65,535.
-pub type Hold = (u8, u16);
+pub type JointWeight = (u8, u16);
 
 /// Rounds weights that sum to about 1 to integers that sum to 65,535, largest first. The largest absorbs the rounding error.
-pub fn whole(held: &[(u8, f64)]) -> Vec<Hold> {
-    let mut rounded: Vec<Hold> = held.iter().map(|&(joint, share)| (joint, (share.clamp(0.0, 1.0) * 65_535.0).round() as u16)).collect();
+pub fn to_integers(held: &[(u8, f64)]) -> Vec<JointWeight> {
+    let mut rounded: Vec<JointWeight> =
+        held.iter().map(|&(joint, share)| (joint, (share.clamp(0.0, 1.0) * 65_535.0).round() as u16)).collect();
     rounded.sort_by_key(|&(joint, weight)| (std::cmp::Reverse(weight), joint));
     let sum: i32 = rounded.iter().map(|&(_, weight)| i32::from(weight)).sum();
     rounded[0].1 = (i32::from(rounded[0].1) + 65_535 - sum) as u16;
@@ -17,7 +23,7 @@ pub fn whole(held: &[(u8, f64)]) -> Vec<Hold> {
 }
 
 /// Appends joint indices and weights to a primitive: `sets` sets of four per vertex, `joints` joints in all.
-pub fn append(scene: &mut Scene, primitive: usize, joints: usize, sets: usize, held: &[Vec<Hold>]) {
+pub fn append(scene: &mut Scene, primitive: usize, joints: usize, sets: usize, held: &[Vec<JointWeight>]) {
     let mut bounds = vec![Bounds::EMPTY; joints];
     let (mut numbers, mut weights) = (vec![Vec::<u8>::new(); sets], vec![Vec::<u16>::new(); sets]);
     for (vertex, held) in held.iter().enumerate() {
@@ -37,10 +43,10 @@ pub fn append(scene: &mut Scene, primitive: usize, joints: usize, sets: usize, h
         scene.vertex_bytes.resize(scene.vertex_bytes.len().next_multiple_of(4), 0);
         at
     };
-    let accessor = |offset, component: Component, normalized| Accessor {
+    let accessor = |offset, component_type: ComponentType, normalized| Accessor {
         offset,
-        stride: 4 * component.bytes(),
-        component,
+        stride: 4 * component_type.bytes(),
+        component_type,
         components: 4,
         normalized,
         count: held.len() as u32,
@@ -49,8 +55,8 @@ pub fn append(scene: &mut Scene, primitive: usize, joints: usize, sets: usize, h
         .iter()
         .zip(&weights)
         .map(|(numbers, weights)| Influences {
-            joints: accessor(append(numbers), Component::U8, false),
-            weights: accessor(append(bytemuck::cast_slice(weights)), Component::U16, true),
+            joints: accessor(append(numbers), ComponentType::U8, false),
+            weights: accessor(append(bytemuck::cast_slice(weights)), ComponentType::U16, true),
         })
         .collect();
     let deformation = &mut scene.primitives[primitive].deformation;

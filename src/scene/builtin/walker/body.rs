@@ -5,8 +5,8 @@ use std::f64::consts::TAU;
 use glam::DVec3;
 
 use super::{
-    flesh::Bone,
     gait::{LEGS, SIDES_M, SPINE},
+    surface_net::Bone,
 };
 
 /// Radii of a hind leg and of a foreleg at their joints, metres.
@@ -52,7 +52,7 @@ pub fn bones() -> Vec<Bone> {
 }
 
 /// Colour of the hide: dark back, pale belly, bands over rump, tail and neck, dark feet, muzzle and eyes.
-pub fn tone(p: DVec3, normal: DVec3) -> [f64; 3] {
+pub fn hide_color(p: DVec3, normal: DVec3) -> [f64; 3] {
     const BACK: DVec3 = DVec3::new(0.52, 0.19, 0.06);
     const BELLY: DVec3 = DVec3::new(0.92, 0.74, 0.47);
     const BAND: DVec3 = DVec3::new(0.10, 0.045, 0.04);

@@ -1,76 +1,15 @@
-//! Container: reads files within limits, splits a GLB into its chunks, and parses the JSON with its version and extensions.
-
-use std::{fs, io::Read, path::Path};
+//! The JSON of a model: version and extensions are checked first, then it is parsed and validated.
 
 use gltf::json;
 use serde::Deserialize;
 
-use super::{LoadError, called, limits, quoted};
-
-/// Reads a regular file of at most `most` bytes. Pipes, devices and folders are refused before they are opened.
-pub fn read_regular(path: &Path, most: u64) -> Result<Vec<u8>, LoadError> {
-    let failed = |error: std::io::Error| LoadError::new(format!("cannot read the file: {error}"));
-    let about = fs::metadata(path).map_err(failed)?;
-    if !about.is_file() {
-        return Err(LoadError::new("it is not a regular file"));
-    }
-    let too_large = |bytes: u64| LoadError::new(format!("it has {bytes} bytes; allowed: at most {most}"));
-    if about.len() > most {
-        return Err(too_large(about.len()));
-    }
-    let mut bytes = Vec::with_capacity(about.len() as usize);
-    // The file may grow while it is read.
-    fs::File::open(path).and_then(|file| file.take(most + 1).read_to_end(&mut bytes)).map_err(failed)?;
-    if bytes.len() as u64 > most { Err(too_large(bytes.len() as u64)) } else { Ok(bytes) }
-}
-
-/// Reads `beside`, a relative path without `..`, from the folder of `model`. Symbolic links must not lead out of the folder.
-pub fn read_beside(model: &Path, beside: &Path, most: u64) -> Result<Vec<u8>, LoadError> {
-    let folder = model.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
-    let failed = |error: std::io::Error| LoadError::new(format!("cannot read the file: {error}"));
-    let folder = folder.canonicalize().map_err(failed)?;
-    let file = folder.join(beside).canonicalize().map_err(failed)?;
-    if !file.starts_with(&folder) {
-        return Err(LoadError::new("it lies outside the model's folder; copy it there"));
-    }
-    read_regular(&file, most)
-}
-
-/// The JSON and, of a GLB, the binary chunk.
-pub fn split(bytes: &[u8]) -> Result<(&[u8], Option<&[u8]>), LoadError> {
-    if !bytes.starts_with(b"glTF") {
-        return Ok((bytes, None));
-    }
-    let word = |at: usize| bytes.get(at..at + 4).map(|b| u32::from_le_bytes([b[0], b[1], b[2], b[3]]));
-    let (Some(version), Some(length)) = (word(4), word(8)) else {
-        return Err(LoadError::new(format!("the GLB header has {} of 12 bytes; the file is truncated", bytes.len())));
-    };
-    if version != 2 {
-        return Err(LoadError::new(format!("GLB version {version} is not supported; export as version 2")));
-    }
-    if (length as usize) < 12 || length as usize > bytes.len() {
-        return Err(LoadError::new(format!("the GLB header states {length} bytes, but the file has {}", bytes.len())));
-    }
-    let mut rest = &bytes[12..length as usize];
-    let mut chunk = |kind: &[u8; 4]| -> Result<Option<&[u8]>, LoadError> {
-        let Some((head, body)) = rest.split_at_checked(8) else { return Ok(None) };
-        let length = u32::from_le_bytes([head[0], head[1], head[2], head[3]]) as usize;
-        if &head[4..8] != kind {
-            return Ok(None);
-        }
-        let (body, after) = body
-            .split_at_checked(length)
-            .ok_or_else(|| LoadError::new(format!("a GLB chunk states {length} bytes, but only {} follow", body.len())))?;
-        rest = after;
-        Ok(Some(body))
-    };
-    let json = chunk(b"JSON")?.ok_or_else(|| LoadError::new("the first GLB chunk is not JSON"))?;
-    let binary = chunk(b"BIN\0")?;
-    Ok((json, binary))
-}
+use super::{
+    error::{LoadError, called, quoted},
+    limits,
+};
 
 /// Parses and validates the JSON with the crate `gltf`: all indices are in range and all enumerations known.
-pub fn root(json: &[u8]) -> Result<json::Root, LoadError> {
+pub fn parse_document(json: &[u8]) -> Result<json::Root, LoadError> {
     if json.len() as u64 > limits::JSON_BYTES {
         return Err(LoadError::new(format!("the JSON has {} bytes; allowed: at most {}", json.len(), limits::JSON_BYTES)));
     }
@@ -132,7 +71,7 @@ fn check_positions(root: &json::Root) -> Result<(), LoadError> {
 
 fn remedy(extension: &str) -> &'static str {
     match extension {
-        "KHR_draco_mesh_compression" | "EXT_meshopt_compression" | "KHR_meshopt_compression" => ; export the model without compression",
+        "KHR_draco_mesh_compression" | "EXT_meshopt_compression" | "KHR_meshopt_compression" => "; export the model without compression",
         _ => "",
     }
 }

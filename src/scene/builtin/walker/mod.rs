@@ -1,18 +1,24 @@
 //! Walker: a long-necked animal on four legs, alone or in a herd, with a clip for each gait.
 
+mod body;
+mod gait;
+mod surface_net;
+
+use body::{bones, hide_color};
+use gait::{GAITS, Gait, JOINTS, Joint, joints, pose_at};
 use glam::{DMat4, DVec3};
+use surface_net::CapsuleBody;
 
 use super::{
-    BuiltinError, MAX_TRIANGLES, Mesh,
-    body::{bones, tone},
-    flesh::{Flesh, Skin as Surface},
-    gait::{GAITS, Gait, JOINTS, Joint, joints, moment},
-    hold,
-    query::Values,
+    query::{BuiltinError, MAX_TRIANGLES, Values},
+    weights,
 };
+use crate::scene::mesh_builder::MeshBuilder;
 use crate::scene::{
-    Instance, Material, Scene, pose,
-    rig::{Channel, Clip, Interpolation, Local, Node, Property, Sampler, Skin, Trs},
+    material::Material,
+    model::{Instance, Scene},
+    pose,
+    rig::{Channel, Clip, Interpolation, LocalTransform, Node, Property, Sampler, Skin, Trs},
 };
 
 /// Keyframes per cycle, and phases at which an animal may start, so that neighbours are out of step.
@@ -23,26 +29,26 @@ pub fn build(values: &Values) -> Result<Scene, BuiltinError> {
     let (tess, instances) = (values.whole("tess"), values.whole("instances"));
     let mut scene = Scene { materials: vec![Material { name: "hide".into(), ..Material::default() }], ..Scene::default() };
     let cell = 0.1 / f64::from(tess);
-    let flesh = Flesh { bones: bones(), thinnest: 0.6 * cell };
-    let Surface { vertices, triangles } = flesh.skin(cell);
+    let body = CapsuleBody { bones: bones(), min_radius: 0.6 * cell };
+    let surface_net::Surface { vertices, triangles } = body.surface(cell);
     let all = triangles.len() as u64 * u64::from(instances);
     if all > MAX_TRIANGLES {
         return Err(BuiltinError(format!("walker: {all} triangles in all; allowed: at most {MAX_TRIANGLES}. Lower tess or instances")));
     }
-    let mut mesh = Mesh::with_capacity(vertices.len(), triangles.len());
+    let mut mesh = MeshBuilder::with_capacity(vertices.len(), triangles.len());
     for &[place, normal] in &vertices {
-        mesh.colored_vertex(place, normal, tone(place, normal));
+        mesh.colored_vertex(place, normal, hide_color(place, normal));
     }
     triangles.iter().for_each(|&corners| mesh.triangle(corners));
     mesh.append(&mut scene, "walker", 0);
-    let held: Vec<_> = vertices.iter().map(|[place, _]| flesh.held(*place)).collect();
-    hold::append(&mut scene, 0, JOINTS, 1, &held);
+    let held: Vec<_> = vertices.iter().map(|[place, _]| body.joint_weights(*place)).collect();
+    weights::append(&mut scene, 0, JOINTS, 1, &held);
     let clip = |gait: &Gait| Clip { name: gait.name.into(), duration_s: gait.period_s, channels: Vec::new() };
     scene.rig.clips = GAITS.iter().map(clip).collect();
     let first: Vec<Vec<usize>> =
         (0..PHASES.min(instances as usize)).map(|phase| GAITS.iter().map(|gait| record(&mut scene, gait, phase)).collect()).collect();
     (0..instances).for_each(|instance| stand(&mut scene, instance, instances, &first[instance as usize % PHASES]));
-    scene.rig.reach = pose::reach(&scene);
+    scene.rig.motion_bounds = pose::motion_bounds(&scene);
     Ok(scene)
 }
 
@@ -52,7 +58,7 @@ fn record(scene: &mut Scene, gait: &Gait, phase: usize) -> usize {
     let (first, times) = (scene.rig.samplers.len(), |key| (gait.period_s * key as f64 / KEYS as f64) as f32);
     let times: Vec<f32> = (0..=KEYS).map(times).collect();
     // The last keyframe equals the first, bit by bit.
-    let key = |key: usize| moment(gait, &rest, ((key + phase * KEYS / PHASES) % KEYS) as f64 / KEYS as f64);
+    let key = |key: usize| pose_at(gait, &rest, ((key + phase * KEYS / PHASES) % KEYS) as f64 / KEYS as f64);
     let keys: Vec<_> = (0..=KEYS).map(key).collect();
     let mut sampler = |components, values| {
         scene.rig.samplers.push(Sampler { interpolation: Interpolation::Linear, times: times.clone(), values, components })
@@ -69,7 +75,7 @@ fn stand(scene: &mut Scene, instance: u32, of: u32, samplers: &[usize]) {
     // Positions on a stretched sunflower spiral; a single animal stands at the origin.
     let reach = if of == 1 { 0.0 } else { (f64::from(instance) + 0.3).sqrt() };
     let (sin, cos) = libm::sincos(f64::from(instance) * 2.399_963_229_728_653);
-    let part = |translation| Local::Trs(Trs { translation, ..Trs::default() });
+    let part = |translation| LocalTransform::Trs(Trs { translation, ..Trs::default() });
     let (rest, first, rig) = (joints(), scene.rig.nodes.len() + 1, &mut scene.rig);
     let place = part(DVec3::new(2.3 * reach * sin, 0.0, 1.0 * reach * cos));
     rig.nodes.push(Node { name: format!("walker {instance}"), parent: None, rest: place, weights: Vec::new() });
@@ -100,8 +106,8 @@ fn stand(scene: &mut Scene, instance: u32, of: u32, samplers: &[usize]) {
 mod tests {
     use std::collections::HashSet;
 
-    use super::super::build as scene_of;
     use super::*;
+    use crate::scene::builtin::build as scene_of;
     use crate::{
         accuracy::Skinning,
         scene::pose::{Motion, Pose},
@@ -150,10 +156,10 @@ mod tests {
 
     #[test]
     fn weights_are_whole_and_soles_follow_their_foot_alone() {
-        let flesh = Flesh { bones: bones(), thinnest: 0.03 };
+        let body = CapsuleBody { bones: bones(), min_radius: 0.03 };
         let mut most = 0;
-        for [place, _] in flesh.skin(0.05).vertices {
-            let held = flesh.held(place);
+        for [place, _] in body.surface(0.05).vertices {
+            let held = body.joint_weights(place);
             most = most.max(held.len());
             assert!(held.len() <= 4 && held.iter().map(|&(_, weight)| u32::from(weight)).sum::<u32>() == 65_535, "{place}: {held:?}");
             assert!(place.y > 0.0 || (held.len() == 1 && joints()[usize::from(held[0].0)].name.ends_with("foot")), "{place}: {held:?}");
@@ -213,7 +219,7 @@ mod tests {
                 }
                 let sure = Pose::at(&scene, &Motion { clip: Some(index), time_s, ..Motion::default() }).bounds(&scene);
                 let [sure, framed] =
-                    [(sure, 1e-6), (scene.rig.reach, 0.02)].map(|(b, error_bound)| (b.min - error_bound, b.max + error_bound));
+                    [(sure, 1e-6), (scene.rig.motion_bounds, 0.02)].map(|(b, error_bound)| (b.min - error_bound, b.max + error_bound));
                 for (low, high) in [sure, framed] {
                     let beyond = places.iter().map(|p| (low - *p).max(*p - high).max_element()).fold(0.0, f64::max);
                     assert_eq!(beyond, 0.0, "{} at {time_s} s, m", clip.name);

@@ -151,7 +151,7 @@ fn step(gait: &Gait, girdle: usize, t: f64) -> Step {
 }
 
 /// Translation of the pelvis and rotation of every joint relative to its parent, at time `t`.
-pub fn moment(gait: &Gait, rest: &[Joint], t: f64) -> (DVec3, [DQuat; JOINTS]) {
+pub fn pose_at(gait: &Gait, rest: &[Joint], t: f64) -> (DVec3, [DQuat; JOINTS]) {
     let mut turns = [DQuat::IDENTITY; JOINTS];
     // Each girdle is lowest just after landing, and the side that lands is ahead.
     let bob = |girdle: usize| -gait.bob_m * wave(2.0 * (t - gait.landing[girdle] - 0.06));
@@ -209,7 +209,7 @@ mod tests {
         for gait in &GAITS {
             for at in 0..200 {
                 let t = f64::from(at) / 200.0;
-                let (shift, turns) = moment(gait, &rest, t);
+                let (shift, turns) = pose_at(gait, &rest, t);
                 let mut frames: Vec<(DVec3, DQuat)> = Vec::new();
                 for (joint, turn) in rest.iter().zip(turns) {
                     assert!((turn.length() - 1.0).abs() < 1e-12, "{} {t}: {turn}", joint.name);
@@ -236,7 +236,7 @@ mod tests {
         let rest = joints();
         for gait in &GAITS {
             for (at, leg) in (0..200).flat_map(|at| (0..4).map(move |leg| (at, leg))) {
-                let (_, turns) = moment(gait, &rest, f64::from(at) / 200.0);
+                let (_, turns) = pose_at(gait, &rest, f64::from(at) / 200.0);
                 let first = SPINE.len() + 4 * leg;
                 let [upper, lower] = [1, 2].map(|part| rest[first + part].at - rest[first + part - 1].at);
                 // The lower bone in the frame of the upper one.
@@ -254,7 +254,7 @@ mod tests {
         const STEP: f64 = 1.0 / 400.0;
         let rest = joints();
         for (gait, at) in GAITS.iter().flat_map(|gait| (0..400).map(move |at| (gait, f64::from(at) * STEP))) {
-            let [before, now, after] = [-STEP, 0.0, STEP].map(|late| moment(gait, &rest, at + late).1);
+            let [before, now, after] = [-STEP, 0.0, STEP].map(|late| pose_at(gait, &rest, at + late).1);
             for (joint, name) in rest.iter().map(|joint| &joint.name).enumerate() {
                 let near = |q: DQuat| if q.dot(now[joint]) < 0.0 { -q } else { q };
                 let change = 2.0 * (near(before[joint]) - now[joint] + (near(after[joint]) - now[joint])).length();

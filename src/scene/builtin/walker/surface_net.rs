@@ -4,7 +4,7 @@
 
 use glam::{DMat3, DVec3};
 
-use super::hold::{self, Hold};
+use crate::scene::builtin::weights::{self, JointWeight};
 
 /// A tapered capsule that follows a joint.
 #[derive(Clone, Copy, Debug)]
@@ -19,32 +19,32 @@ pub struct Bone {
 }
 
 /// All capsules, with a minimum radius that the mesh resolution can show.
-pub struct Flesh {
+pub struct CapsuleBody {
     pub bones: Vec<Bone>,
-    pub thinnest: f64,
+    pub min_radius: f64,
 }
 
 /// A surface mesh; triangles are counter-clockwise seen from the outside.
-pub struct Skin {
+pub struct Surface {
     /// Position and normal of every vertex.
     pub vertices: Vec<[DVec3; 2]>,
     pub triangles: Vec<[u32; 3]>,
 }
 
 /// Weights blend over this fraction of a limb's radius.
-const DEFORMATION: f64 = 0.8;
+const WEIGHT_BLEND: f64 = 0.8;
 const SOLE_M: f64 = 0.15;
 /// Upper bound of the slope of the distance field, which tapering makes steeper than 1.
 const MAX_SHADOW_SLOPE: f64 = 1.25;
 /// Upper bound of the bulge of the blends, metres.
-const BULGE_M: f64 = 0.05;
+const MAX_BULGE_M: f64 = 0.05;
 
-impl Flesh {
+impl CapsuleBody {
     /// Approximate signed distance to the surface of a capsule, and its radius there.
     fn distance(&self, bone: &Bone, p: DVec3) -> (f64, f64) {
         let axis = bone.ends[1] - bone.ends[0];
         let share = ((p - bone.ends[0]).dot(axis) / axis.length_squared()).clamp(0.0, 1.0);
-        let radius = (bone.radii[0] + (bone.radii[1] - bone.radii[0]) * share).max(self.thinnest);
+        let radius = (bone.radii[0] + (bone.radii[1] - bone.radii[0]) * share).max(self.min_radius);
         ((p - bone.ends[0] - axis * share).length() - radius, radius)
     }
 
@@ -66,10 +66,10 @@ impl Flesh {
     }
 
     /// The surface on a grid of cells of this size: a vertex in every cell that it crosses, a quad around every edge that it crosses.
-    pub fn skin(&self, cell: f64) -> Skin {
-        let ends = || self.bones.iter().flat_map(|bone| bone.ends.map(|end| (end, bone.radii[0].max(bone.radii[1]).max(self.thinnest))));
+    pub fn surface(&self, cell: f64) -> Surface {
+        let ends = || self.bones.iter().flat_map(|bone| bone.ends.map(|end| (end, bone.radii[0].max(bone.radii[1]).max(self.min_radius))));
         let most = |pick: &dyn Fn(DVec3, f64) -> f64| ends().map(|(end, radius)| pick(end, radius)).fold(f64::NEG_INFINITY, f64::max);
-        let cells = |length: f64| ((length + BULGE_M) / cell).ceil() + 1.0;
+        let cells = |length: f64| ((length + MAX_BULGE_M) / cell).ceil() + 1.0;
         // The ground plane and the plane of symmetry pass through the centres of cells.
         let (behind, aside) = (cells(most(&|end, radius| radius - end.x)), cells(most(&|end, radius| radius + end.z.abs())));
         let low = DVec3::new(-behind, -1.0, -aside) - 0.5;
@@ -87,13 +87,13 @@ impl Flesh {
             }
         }
         fill_pinches(&mut values, steps);
-        let mut skin = Skin { vertices: Vec::new(), triangles: Vec::new() };
+        let mut surface = Surface { vertices: Vec::new(), triangles: Vec::new() };
         let mut vertex_in = vec![u32::MAX; values.len()];
         let last = values.len() - steps.iter().sum::<usize>();
         for (at, vertex) in vertex_in.iter_mut().enumerate().take(last) {
             if let Some(middle) = crossing(&values, at, steps) {
-                *vertex = skin.vertices.len() as u32;
-                skin.vertices.push(self.settled((low + corner(at)) * cell, middle, cell));
+                *vertex = surface.vertices.len() as u32;
+                surface.vertices.push(self.on_surface((low + corner(at)) * cell, middle, cell));
             }
         }
         for at in steps[2] + steps[1] + 1..values.len() - steps[2] {
@@ -107,14 +107,14 @@ impl Flesh {
                 if beyond {
                     round.reverse();
                 }
-                skin.quadrilateral(round);
+                surface.quadrilateral(round);
             }
         }
-        skin
+        surface
     }
 
     /// Moves a vertex onto the surface by Newton steps, clamped to its cell so that neighbours stay apart.
-    fn settled(&self, corner: DVec3, middle: DVec3, cell: f64) -> [DVec3; 2] {
+    fn on_surface(&self, corner: DVec3, middle: DVec3, cell: f64) -> [DVec3; 2] {
         let mut p = corner + middle * cell;
         for _ in 0..4 {
             let slope = self.slope(p);
@@ -126,14 +126,14 @@ impl Flesh {
     }
 
     /// The up to four joints that influence a point of the surface: the nearest ones, weighted by distance.
-    pub fn held(&self, p: DVec3) -> Vec<Hold> {
+    pub fn joint_weights(&self, p: DVec3) -> Vec<JointWeight> {
         let joints = self.bones.iter().map(|bone| bone.joint + 1).max().unwrap_or(0);
         let nearest = self.bones.iter().map(|bone| self.distance(bone, p).0).fold(f64::INFINITY, f64::min);
         let mut held: Vec<(u8, f64)> = (0..joints).map(|joint| (joint as u8, 0.0)).collect();
         let above = (p.y / SOLE_M).min(1.0);
         for bone in &self.bones {
             let (distance, radius) = self.distance(bone, p);
-            let near = (1.0 - (distance - nearest) / (DEFORMATION * radius)).max(0.0);
+            let near = (1.0 - (distance - nearest) / (WEIGHT_BLEND * radius)).max(0.0);
             let weight = near * near * if bone.is_foot { 1.0 } else { above * above };
             let slot = &mut held[bone.joint].1;
             *slot = slot.max(weight);
@@ -146,7 +146,7 @@ impl Flesh {
         let sum: f64 = held.iter().map(|held| held.1).sum();
         held.iter_mut().for_each(|held| held.1 /= sum);
         held.retain(|held| held.1 > 0.0);
-        hold::whole(&held)
+        weights::to_integers(&held)
     }
 }
 
@@ -188,7 +188,7 @@ fn crossing(values: &[f64], at: usize, steps: [usize; 3]) -> Option<DVec3> {
     (count > 0.0).then(|| sum / count)
 }
 
-impl Skin {
+impl Surface {
     /// Adds a quad as two triangles that share its shorter diagonal.
     fn quadrilateral(&mut self, [a, b, c, d]: [u32; 4]) {
         let apart = |a: u32, b: u32| self.vertices[a as usize][0].distance_squared(self.vertices[b as usize][0]);

@@ -1,0 +1,36 @@
+//! Load errors, and how they name the things in a file.
+
+use std::{fmt::Display, path::Path};
+
+/// Why a model cannot be loaded; one sentence.
+#[derive(Debug, PartialEq, thiserror::Error)]
+#[error("{0}")]
+pub struct LoadError(pub String);
+
+impl LoadError {
+    pub(super) fn new(reason: impl Display) -> Self {
+        Self(reason.to_string())
+    }
+
+    /// Prepends the place of the error.
+    pub(super) fn within(self, place: impl Display) -> Self {
+        Self(format!("{place}: {}", self.0))
+    }
+}
+
+/// Reads a file next to the model, given its relative path and the largest size in bytes.
+pub type ReadFile<'a> = dyn FnMut(&Path, u64) -> Result<Vec<u8>, LoadError> + 'a;
+
+/// A name from a file, made safe for messages: quoted, escaped and at most 60 characters.
+pub(super) fn quoted(name: &str) -> String {
+    let short: String = name.chars().take(60).collect();
+    if short.len() < name.len() { format!("{:?}", short + "…") } else { format!("{short:?}") }
+}
+
+/// `kind "name"`, or `kind 3` if it has no name.
+pub(super) fn called(kind: &str, index: usize, name: Option<&str>) -> String {
+    match name {
+        Some(name) if !name.is_empty() => format!("{kind} {}", quoted(name)),
+        _ => format!("{kind} {index}"),
+    }
+}

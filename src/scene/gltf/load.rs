@@ -1,0 +1,158 @@
+//! Loads a model: reads its files, follows its parts in order, and assembles the scene.
+
+use std::{
+    fs,
+    io::Read,
+    panic::{AssertUnwindSafe, catch_unwind},
+    path::Path,
+};
+
+use gltf::json;
+
+use super::{
+    buffers::Buffers,
+    clips, deformation, document,
+    error::{LoadError, ReadFile, quoted},
+    limits, materials,
+    meshes::Loader,
+    nodes::Tree,
+    skin,
+};
+use crate::scene::{model::Scene, pose, rig::Rig};
+
+/// Loads a `.gltf` or `.glb` file. Only files in its folder and below are read.
+///
+/// # Errors
+/// If a file cannot be read, is malformed, or exceeds [`limits`]; the sentence begins with the file name.
+pub fn load(path: &Path) -> Result<Scene, LoadError> {
+    let file = path.file_name().unwrap_or(path.as_os_str()).to_string_lossy().into_owned();
+    let name = path.file_stem().map(|stem| stem.to_string_lossy().into_owned()).unwrap_or_default();
+    let open = || {
+        let bytes = read_regular(path, limits::FILE_BYTES)?;
+        parse(&bytes, &mut |beside, most| read_beside(path, beside, most))
+    };
+    match open() {
+        Ok(scene) => Ok(Scene { name, ..scene }),
+        Err(error) => Err(error.within(file)),
+    }
+}
+
+/// Loads a model from memory. `read` supplies the files that it refers to, by relative paths without `..`.
+///
+/// # Errors
+/// If the model is malformed, exceeds [`limits`], or `read` fails.
+pub fn parse(bytes: &[u8], read: &mut ReadFile) -> Result<Scene, LoadError> {
+    // A panic in the validation of the crate `gltf` must not close the window.
+    catch_unwind(AssertUnwindSafe(|| read_model(bytes, read)))
+        .unwrap_or_else(|_| Err(LoadError::new("the loader failed on this file, which is a bug: please report it")))
+}
+
+/// Reads a regular file of at most `most` bytes. Pipes, devices and folders are refused before they are opened.
+fn read_regular(path: &Path, most: u64) -> Result<Vec<u8>, LoadError> {
+    let failed = |error: std::io::Error| LoadError::new(format!("cannot read the file: {error}"));
+    let about = fs::metadata(path).map_err(failed)?;
+    if !about.is_file() {
+        return Err(LoadError::new("it is not a regular file"));
+    }
+    let too_large = |bytes: u64| LoadError::new(format!("it has {bytes} bytes; allowed: at most {most}"));
+    if about.len() > most {
+        return Err(too_large(about.len()));
+    }
+    let mut bytes = Vec::with_capacity(about.len() as usize);
+    // The file may grow while it is read.
+    fs::File::open(path).and_then(|file| file.take(most + 1).read_to_end(&mut bytes)).map_err(failed)?;
+    if bytes.len() as u64 > most { Err(too_large(bytes.len() as u64)) } else { Ok(bytes) }
+}
+
+/// Reads `beside`, a relative path without `..`, from the folder of `model`. Symbolic links must not lead out of the folder.
+fn read_beside(model: &Path, beside: &Path, most: u64) -> Result<Vec<u8>, LoadError> {
+    let folder = model.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
+    let failed = |error: std::io::Error| LoadError::new(format!("cannot read the file: {error}"));
+    let folder = folder.canonicalize().map_err(failed)?;
+    let file = folder.join(beside).canonicalize().map_err(failed)?;
+    if !file.starts_with(&folder) {
+        return Err(LoadError::new("it lies outside the model's folder; copy it there"));
+    }
+    read_regular(&file, most)
+}
+
+/// The JSON and, of a GLB, the binary chunk.
+fn split(bytes: &[u8]) -> Result<(&[u8], Option<&[u8]>), LoadError> {
+    if !bytes.starts_with(b"glTF") {
+        return Ok((bytes, None));
+    }
+    let word = |at: usize| bytes.get(at..at + 4).map(|b| u32::from_le_bytes([b[0], b[1], b[2], b[3]]));
+    let (Some(version), Some(length)) = (word(4), word(8)) else {
+        return Err(LoadError::new(format!("the GLB header has {} of 12 bytes; the file is truncated", bytes.len())));
+    };
+    if version != 2 {
+        return Err(LoadError::new(format!("GLB version {version} is not supported; export as version 2")));
+    }
+    if (length as usize) < 12 || length as usize > bytes.len() {
+        return Err(LoadError::new(format!("the GLB header states {length} bytes, but the file has {}", bytes.len())));
+    }
+    let mut rest = &bytes[12..length as usize];
+    let mut chunk = |kind: &[u8; 4]| -> Result<Option<&[u8]>, LoadError> {
+        let Some((head, body)) = rest.split_at_checked(8) else { return Ok(None) };
+        let length = u32::from_le_bytes([head[0], head[1], head[2], head[3]]) as usize;
+        if &head[4..8] != kind {
+            return Ok(None);
+        }
+        let (body, after) = body
+            .split_at_checked(length)
+            .ok_or_else(|| LoadError::new(format!("a GLB chunk states {length} bytes, but only {} follow", body.len())))?;
+        rest = after;
+        Ok(Some(body))
+    };
+    let json = chunk(b"JSON")?.ok_or_else(|| LoadError::new("the first GLB chunk is not JSON"))?;
+    let binary = chunk(b"BIN\0")?;
+    Ok((json, binary))
+}
+
+/// Reads a whole model.
+fn read_model(bytes: &[u8], read: &mut ReadFile) -> Result<Scene, LoadError> {
+    let (json, binary) = split(bytes)?;
+    let root = document::parse_document(json)?;
+    let mut buffers = Buffers::read(&root, binary, read)?;
+    materials::check_images(&buffers)?;
+    let tree = Tree::walk(&root)?;
+    let (mut rig, mut repairs) = (Rig::default(), Vec::from_iter(tree.rotation_note(&root)));
+    let (materials, images) = materials::read(&mut buffers, &tree.shown, read, &mut repairs)?;
+    if deformation::has_motion(&root) {
+        rig.nodes = tree.rig_nodes(&root)?;
+        rig.skins = skin::read_skins(&buffers, &tree)?;
+        clips::read(&buffers, &tree, &mut rig, &mut repairs)?;
+    }
+    let mut loader = Loader::new(&buffers, &tree, Scene { materials, images, ..Scene::default() });
+    for &node in &tree.shown {
+        loader.add_instances(node, &rig)?;
+    }
+    let Loader { writer, notes, .. } = loader;
+    let mut scene = writer.scene;
+    scene.rig = rig;
+    if !scene.rig.is_empty() {
+        scene.rig.motion_bounds = pose::motion_bounds(&scene);
+    }
+    scene.notes = notes.into_iter().chain(repairs).chain(omissions(&root)).collect();
+    if scene.instances.is_empty() {
+        scene.notes.push("nothing to draw: the scene shows no triangles".into());
+    }
+    scene.cameras = tree.cameras(&root, &scene.bounds(), !scene.rig.is_empty(), &mut scene.notes);
+    scene.notes.truncate(limits::NOTES);
+    Ok(scene)
+}
+
+/// Messages about features of the file that are not drawn.
+fn omissions(root: &json::Root) -> Vec<String> {
+    let is_read = |name: &str| name == document::QUANTIZATION || materials::EXTENSIONS.contains(&name);
+    let ignored = root.extensions_used.iter().filter(|name| !is_read(name));
+    let mut notes: Vec<String> = ignored.map(|name| format!("the extension {} is not supported and is ignored", quoted(name))).collect();
+    let has_more = |material: &json::Material| {
+        let roughness = material.pbr_metallic_roughness.metallic_roughness_texture.is_some();
+        roughness || material.normal_texture.is_some() || material.occlusion_texture.is_some()
+    };
+    if root.materials.iter().any(has_more) {
+        notes.push("normal, occlusion and metallic-roughness textures are not drawn".into());
+    }
+    notes
+}
