@@ -200,7 +200,7 @@ fn assert_sound(scene: &Scene) {
         let attributes = [Some(primitive.positions), Some(primitive.normals), primitive.colors];
         for accessor in attributes.into_iter().chain(shapes).chain(held).flatten() {
             assert_eq!(accessor.count, primitive.vertex_count());
-            assert!(accessor.offset % accessor.component.bytes() == 0 && accessor.stride % accessor.component.bytes() == 0);
+            assert!(accessor.offset % accessor.component_type.bytes() == 0 && accessor.stride % accessor.component_type.bytes() == 0);
             for vertex in 0..accessor.count {
                 assert!((0..accessor.components).all(|lane| accessor.value(&scene.vertex_bytes, vertex, lane).is_finite()));
             }
