@@ -1,7 +1,7 @@
 //! Dispatch: how many workgroups each pass of a frame takes, or where on the device that stands.
 
 use crate::{
-    scene::camera::View,
+    scene::view::View,
     shader::{
         key::KernelKey,
         pass::{Pass, TriangleSource},

@@ -45,7 +45,7 @@ impl SizesNote {
     fn new(plan: &Plan, counted: Option<[u32; 2]>) -> Self {
         let Plan { key, sizes, classes, .. } = plan;
         // What is cut comes back as pieces of any size, and what is hidden may never be queued.
-        let is_told = |_: &[u32; 2]| (!key.paths.has_clipping || sizes.cut == 0) && !key.options.culling.occludes();
+        let is_told = |_: &[u32; 2]| (!key.paths.has_clipping || sizes.near_clipped == 0) && !key.options.culling.occludes();
         let is_near = |c: SizeClasses, [medium, large]: [u32; 2]| {
             let near =
                 |predicted: f64, counted: u32| (predicted - f64::from(counted)).abs() <= c.error_bound + 0.02 * f64::from(counted) + 1.0;
@@ -56,8 +56,8 @@ impl SizesNote {
         Self {
             triangles: sizes.triangles,
             sampled: sizes.sampled,
-            seen: sizes.seen(),
-            cut: sizes.cut,
+            seen: sizes.visible(),
+            cut: sizes.near_clipped,
             bins: sizes.bins(),
             predicted: *classes,
             counted,

@@ -54,7 +54,7 @@ use crate::{
     effects::{Stack, draw_order, hooks::Layers, xray},
     frame::{Counters, CullingStats, OrderStats},
     plan::{AccuracyRequest, Plan, Tuning},
-    scene::{Scene, camera::View, needs::Needs, particle_discs::ParticleSettings},
+    scene::{Scene, needs::Needs, particle_discs::ParticleSettings, view::View},
     shader::{key::KernelKey, library::Library, pass::Pass},
 };
 

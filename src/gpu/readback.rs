@@ -18,7 +18,7 @@ use crate::{
     effects::{Stack, hooks::Layers},
     frame::{ClippedTriangle, Counters, Exactness, Frame, Geometry, SnappedVertex},
     plan::AccuracyRequest,
-    scene::camera::View,
+    scene::view::View,
     shader::{
         key::{FramebufferLayout, KernelKey},
         pass::RasterPhase,

@@ -4,7 +4,14 @@
 
 use glam::{DMat3, DMat4, DVec3, DVec4};
 
-use super::{Component, Primitive, Scene, Topology, camera::View, draw::Draw, light::ShadowResolution, sizes::TriangleSizes};
+use super::{
+    accessor::ComponentType,
+    draw::Draw,
+    model::{Primitive, Scene, Topology},
+    shadow_resolution::ShadowResolution,
+    sizes::TriangleSizes,
+    view::View,
+};
 use crate::{accuracy::Skinning, math::GUARD_BAND};
 
 /// See the module's first line.
@@ -78,7 +85,7 @@ impl Needs {
         let mut painted: Vec<usize> = drawn().map(|p| p.material).filter(|&material| !scene.materials[material].is_plain()).collect();
         painted.sort_unstable();
         painted.dedup();
-        let all_f32 = |pick: fn(&Primitive) -> Component| unbent().all(|p| pick(p) == Component::F32);
+        let all_f32 = |pick: fn(&Primitive) -> ComponentType| unbent().all(|p| pick(p) == ComponentType::F32);
         let largest_px = draws.iter().map(|draw| largest_px(&scene.primitives[draw.primitive], draw, view)).fold(0.0, f64::max);
         Self {
             size: [view.width, view.height],
@@ -86,10 +93,10 @@ impl Needs {
             vertices: scene.vertex_count(),
             draws: draws.len(),
             indexed: drawn().any(|p| p.indices.is_some()),
-            u32_indices: drawn().all(|p| p.indices.is_some_and(|i| i.component == Component::U32 && i.stride == 4)),
+            u32_indices: drawn().all(|p| p.indices.is_some_and(|i| i.component_type == ComponentType::U32 && i.stride == 4)),
             has_strips_or_fans: drawn().any(|p| p.topology != Topology::List),
-            f32_positions: all_f32(|p| p.positions.component),
-            f32_normals: all_f32(|p| p.normals.component),
+            f32_positions: all_f32(|p| p.positions.component_type),
+            f32_normals: all_f32(|p| p.normals.component_type),
             shadow: view.shadow,
             is_light: view.is_light(),
             colors: drawn().any(|p| p.colors.is_some()),

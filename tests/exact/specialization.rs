@@ -12,7 +12,7 @@ use rasterlab::{
     oracle,
     plan::{AccuracyRequest, Tuning},
     preset_file,
-    scene::{Scene, camera::View},
+    scene::{Scene, view::View},
     shader::{Fetch, key::AttributeFormat},
 };
 
