@@ -12,7 +12,7 @@ use super::App;
 use crate::{
     effects::particles::{self, EFFECT},
     params::Stored as _,
-    scene::{camera::View, particle_discs::ParticleTimeline},
+    scene::{particle_discs::ParticleTimeline, view::View},
 };
 
 /// See the module's first line.

@@ -18,7 +18,7 @@ use crate::{
     },
     oracle,
     params::did_you_mean,
-    scene::{Scene, camera::View},
+    scene::{Scene, view::View},
 };
 
 pub fn run(common: &Common, args: &Bench, streams: &mut Streams) -> Result<Exit, Fault> {
