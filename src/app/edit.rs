@@ -1,134 +1,188 @@
-//! Edits of the preset as a whole: opening, undo, resets, copy and paste. Each is a step of its own.
+//! Edits of the preset: each variant of [`Edit`] is carried out here.
 
-use std::path::PathBuf;
-
-use eframe::egui;
-
-use super::{App, FileId, Level, Playback, Timeline, UndoState, fields::Ask};
+use super::{command::Edit, orbit, session::Session};
 use crate::{
     effects::Effect,
-    preset_file::{self, PresetFile},
+    math::hash_unit,
+    params::ValueType,
+    preset::{Preset, SceneSource},
+    preset_file,
+    scene::{Bounds, camera::Camera},
 };
 
-impl App {
-    /// Makes `look` the open one, as a step of its own.
-    pub(super) fn open_preset(&mut self, preset_file: PresetFile) {
-        self.history.close();
-        for warning in &preset_file.warnings {
-            self.log.add(Level::Warning, warning.clone());
+impl Session {
+    /// Changes the preset. A value that breaks its setting's rule is ignored.
+    ///
+    /// # Errors
+    /// In a sentence for people.
+    pub fn edit(&mut self, edit: Edit) -> Result<(), String> {
+        let preset = &mut self.preset_file.preset;
+        match edit {
+            Edit::Setting(setting, value) => {
+                let before_s = preset.clock.time_s;
+                // While the user types, a value may break a rule; then the preset keeps the last valid one.
+                drop(setting.set(preset, &value));
+                if preset.clock.time_s != before_s {
+                    self.playback.show_own();
+                }
+            }
+            Edit::Parameter(parameter, value) => return self.set_parameter(parameter, &value),
+            Edit::Enable(effect) => drop(preset.stack.enable(effect)),
+            Edit::Disable(effect) => self.disable(effect.name),
+            Edit::Replace(other, effect) => {
+                self.disable(other);
+                self.preset_mut().stack.enable(effect);
+            }
+            Edit::Swap(a, b) if a.max(b) < preset.stack.0.len() => preset.stack.0.swap(a, b),
+            Edit::Swap(..) => {}
+            Edit::Builtin(name) => {
+                preset.scene = SceneSource::Builtin(name.into());
+                // A camera for one scene does not fit another.
+                preset.camera = None;
+                preset.scene_camera.clear();
+            }
+            Edit::BuiltinQuery(query) => preset.scene = SceneSource::Builtin(query),
+            Edit::SceneCamera(name) => {
+                preset.scene_camera = name;
+                preset.camera = None;
+            }
+            Edit::Play(play) => preset.playback = play,
+            Edit::Clock(clock) => preset.clock = clock,
+            Edit::Camera(camera) => preset.camera = camera,
+            Edit::FrameScene => {
+                if let Some(camera) = self.camera().map(|camera| self.framed(&camera)) {
+                    self.preset_mut().camera = Some(camera);
+                }
+            }
+            Edit::LookAlong(direction) => self.move_camera(|camera| orbit::look_along(camera, direction)),
+            Edit::ToggleOrthographic => self.move_camera(orbit::toggle_orthographic),
         }
-        self.files.insert(FileId::of(&preset_file), preset_file.clone());
-        self.muted.clear();
-        self.playback = Playback::default();
-        self.timeline = Timeline::default();
-        self.preset_file = preset_file;
-        self.observe(false);
-        self.history.close();
+        Ok(())
     }
 
-    /// Opens whatever a person may name or drop.
-    pub(super) fn open(&mut self, what: &str) {
-        match preset_file::open(what, self.options.presets_dir.as_deref()) {
-            Ok(preset_file) => {
-                let title = preset_file.title().to_owned();
-                self.open_preset(preset_file);
-                self.tell(Level::Info, format!("Opened {title}"));
-            }
-            Err(error) => self.tell(Level::Error, error.to_string()),
-        }
+    /// Takes an effect out of the stack, with its keys.
+    fn disable(&mut self, name: &str) {
+        self.preset_mut().disable(name);
+        self.muted.remove(name);
     }
 
-    /// Files dropped on the window. One is opened: a preset before a model before a picture, so that a model comes with
-    /// whatever lies beside it.
-    pub(super) fn take_drops(&mut self, ctx: &egui::Context) {
-        let mut dropped = ctx.input(|i| i.raw.dropped_files.iter().map(|file| file.path().to_owned()).collect::<Vec<_>>());
-        let rank = |path: &PathBuf| {
-            let extension = path.extension().map(|extension| extension.to_ascii_lowercase());
-            ["toml", "glb", "gltf", "png"].iter().position(|known| extension.as_ref().is_some_and(|e| e == known)).unwrap_or(usize::MAX)
-        };
-        dropped.sort_by_key(rank);
-        let Some(first) = dropped.first() else { return };
-        self.open(&first.to_string_lossy());
-        if dropped.len() > 1 {
-            let name = first.file_name().unwrap_or_default().to_string_lossy().into_owned();
-            self.tell(Level::Info, format!("{} files were dropped and one is opened at a time: {name}", dropped.len()));
-        }
-    }
-
-    pub(super) fn observe(&mut self, held: bool) {
-        let PresetFile { id, path, preset, .. } = &self.preset_file;
-        self.history.observe(&UndoState { file: FileId { id: id.clone(), path: path.clone() }, preset: preset.clone() }, self.now_s, held);
-    }
-
-    pub(super) fn restore(&mut self, moment: Option<UndoState>, what: &str) {
-        let Some(UndoState { file, preset }) = moment else {
-            return self.tell(Level::Info, format!("Nothing to {what}"));
-        };
-        if FileId::of(&self.preset_file) != file {
-            if let Some(preset_file) = self.files.get(&file) {
-                self.preset_file = preset_file.clone();
-            }
-            self.tell(Level::Info, format!("Back to {}", if preset.name.is_empty() { &file.id } else { &preset.name }));
-        }
-        self.preset_file.preset = preset;
-    }
-
-    /// Carries out what a person asked of a row.
-    pub(super) fn answer(&mut self, ctx: &egui::Context, ask: Ask) {
-        self.history.close();
-        let outcome = match ask {
-            Ask::Reset(path) => preset_file::unset(&mut self.preset_file, &path).map_err(|e| e.to_string()),
-            Ask::ResetGroup(group) => self.reset_group(&group),
-            Ask::Key(path) => {
-                self.toggle_key(&path);
-                Ok(())
-            }
-            Ask::Copy(text) => {
-                ctx.copy_text(text.clone());
-                self.tell(Level::Info, format!("Copied {text}"));
-                Ok(())
-            }
-            Ask::Paste(path) => {
-                self.paste_into = Some(path);
-                ctx.send_viewport_cmd(egui::ViewportCommand::RequestPaste);
-                Ok(())
-            }
-        };
-        if let Err(error) = outcome {
-            self.tell(Level::Error, error);
+    /// Disables every muted effect.
+    pub fn drop_muted(&mut self) {
+        for name in std::mem::take(&mut self.muted) {
+            self.preset_mut().disable(name);
         }
     }
 
-    pub(super) fn reset_group(&mut self, group: &str) -> Result<(), String> {
+    fn move_camera(&mut self, change: impl FnOnce(&mut Camera)) {
+        if let Some(mut camera) = self.camera() {
+            change(&mut camera);
+            if orbit::is_finite(&camera) {
+                self.preset_mut().camera = Some(camera);
+            }
+        }
+    }
+
+    /// `camera` moved along its own direction so that the whole scene shows.
+    pub fn framed(&self, camera: &Camera) -> Camera {
+        let Some(scene) = self.scene() else { return *camera };
+        let preset = self.shown_preset();
+        // The bounds turn with the scene's spin.
+        let turn = preset.view(scene, [1, 1]).world_from_scene;
+        let mut bounds = Bounds::EMPTY;
+        let corners = if scene.bounds().is_empty() { None } else { Some(scene.bounds().corners()) };
+        corners.into_iter().flatten().for_each(|corner| bounds.include(turn.transform_point3(corner)));
+        orbit::framing(camera, &bounds, super::session::aspect(preset.output.size))
+    }
+
+    /// Gives every parameter of the enabled effects a random value of its soft range. Returns the seed of the random
+    /// numbers; none if no effect is enabled.
+    pub fn randomize(&mut self) -> Option<u32> {
+        if self.preset().stack.0.is_empty() {
+            return None;
+        }
+        self.seed = self.seed.wrapping_add(1);
+        let seed = self.seed;
+        for enabled in &mut self.preset_mut().stack.0 {
+            randomize_words(enabled.effect, &mut enabled.words, seed);
+        }
+        Some(seed)
+    }
+
+    /// Resets all parameters of an effect, or all settings of a table, by its name.
+    ///
+    /// # Errors
+    /// In a sentence for people.
+    pub fn reset_group(&mut self, group: &str) -> Result<(), String> {
         match Effect::find(group) {
             Some(effect) => {
-                self.preset_file.preset.animation.remove_effect(group);
-                if let Some(enabled) = self.preset_file.preset.stack.get_mut(group) {
+                let Preset { animation, stack, .. } = self.preset_mut();
+                animation.remove_effect(group);
+                if let Some(enabled) = stack.get_mut(group) {
                     enabled.words = (effect.defaults)();
                 }
                 Ok(())
             }
-            None => preset_file::unset(&mut self.preset_file, group).map_err(|e| e.to_string()),
+            None => self.reset(group),
         }
     }
 
-    /// Text from the clipboard: a value for a row, or a preset.
-    pub(super) fn paste(&mut self, text: &str) {
-        self.history.close();
-        let row = self.paste_into.take().or_else(|| self.hovered_row.as_ref().map(|(path, _)| path.clone()));
-        let is_preset = text.trim_start().starts_with("rasterlab1:");
-        match row {
-            Some(path) if !is_preset => match self.put_text(&path, text.trim()) {
-                Ok(()) => self.tell(Level::Info, format!("{path} = {}", text.trim())),
-                Err(error) => self.tell(Level::Error, error.to_string()),
-            },
-            _ => match preset_file::from_line(text) {
-                Ok(preset_file) => {
-                    self.open_preset(preset_file);
-                    self.tell(Level::Info, "Pasted a preset");
+    /// Resets one value, by its path.
+    ///
+    /// # Errors
+    /// In a sentence for people.
+    pub fn reset(&mut self, path: &str) -> Result<(), String> {
+        let before_s = self.preset().clock.time_s;
+        let outcome = preset_file::unset(&mut self.preset_file, path).map_err(|error| error.to_string());
+        if self.preset().clock.time_s != before_s {
+            self.playback.show_own();
+        }
+        outcome
+    }
+}
+
+/// One random number per component, from the seed and the parameter's name, so that the order does not matter.
+fn randomize_words(effect: &Effect, words: &mut [u32], seed: u32) {
+    for field in effect.fields {
+        let salt =
+            effect.name.bytes().chain(field.name.bytes()).fold(seed.wrapping_mul(0x9e37_79b9), |h, b| h.rotate_left(5) ^ u32::from(b));
+        let [from, to] = field.soft;
+        let values: Vec<f64> = (0..field.value_type.components() as u32)
+            .map(|component| {
+                let t = hash_unit(salt.wrapping_add(component.wrapping_mul(0x85eb_ca6b)));
+                match field.value_type {
+                    ValueType::Color if component == 3 => 1.0,
+                    ValueType::U32 | ValueType::I32 | ValueType::Bool | ValueType::Choice(_) => {
+                        (from + t * (to - from + 1.0)).floor().min(to)
+                    }
+                    ValueType::F32 if field.log && from > 0.0 => from * (to / from).powf(t),
+                    _ => from + t * (to - from),
                 }
-                Err(error) => self.tell(Level::Error, error.to_string()),
-            },
+            })
+            .collect();
+        // The soft range lies within the hard one, so this is never refused.
+        let _ = field.set(words, &values);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::effects::EFFECTS;
+
+    #[test]
+    fn randomized_values_stay_in_their_soft_range_and_depend_on_the_seed() {
+        for effect in EFFECTS {
+            let draw = |seed| {
+                let mut words = (effect.defaults)();
+                randomize_words(effect, &mut words, seed);
+                words
+            };
+            assert_eq!(draw(7), draw(7));
+            assert_ne!(draw(7), draw(8), "{}", effect.name);
+            for field in effect.fields {
+                let [from, to] = field.soft;
+                assert!(field.get(&draw(7)).iter().all(|v| (from..=to).contains(v)), "{}.{}", effect.name, field.name);
+            }
         }
     }
 }

@@ -1,11 +1,12 @@
-//! Rows of the inspector: a label and the control that its form asks for. One function serves every key of a preset and
-//! every parameter of every effect.
+//! Rows: a label and the control for its type of value. One function serves every setting of a preset and every parameter of
+//! every effect.
 
 use eframe::egui::{self, Align, Align2, Color32, DragValue, Rect, RichText, Sense, Slider, SliderClamping, Ui, UiBuilder, pos2, vec2};
 
 use super::{
+    command::RowCommand,
     icons::{Icon, icon_button, key_button},
-    keying::Keying,
+    key_id::Keying,
     theme,
 };
 use crate::{
@@ -68,27 +69,13 @@ fn label(name: &str, unit: &str) -> String {
     stem.and_then(|(_, suffix)| name.strip_suffix(suffix)).unwrap_or(name).replace('_', " ")
 }
 
-/// What a person asked of a row besides changing its value.
-#[derive(Clone, Debug, PartialEq)]
-pub enum Ask {
-    Reset(String),
-    /// Reset everything that shares the part before the dot.
-    ResetGroup(String),
-    /// Put this text on the clipboard.
-    Copy(String),
-    /// Paste into this path.
-    Paste(String),
-    /// Set or remove a key of this parameter at the time that is shown.
-    Key(String),
-}
-
 /// What came of a row in this frame.
 #[derive(Default)]
 pub struct Outcome {
     pub value: Option<Value>,
-    pub ask: Option<Ask>,
-    /// The pointer is on this row: Ctrl+C and Ctrl+V mean its value.
-    pub hovered: bool,
+    pub command: Option<RowCommand>,
+    /// The pointer is over this row, so Ctrl+C and Ctrl+V apply to its value.
+    pub is_hovered: bool,
 }
 
 const BAR_WIDTH: f32 = 3.0;
@@ -111,7 +98,7 @@ pub fn row_ui(ui: &mut Ui, row: &Row, value: &Value) -> Outcome {
         let bar = Rect::from_min_size(rect.min + vec2(0.0, 4.0), vec2(BAR_WIDTH, rect.height() - 8.0));
         ui.painter().rect_filled(bar, 1.5, theme::ACCENT);
     }
-    outcome.ask = label_ui(ui, row, value, label_rect);
+    outcome.command = label_ui(ui, row, value, label_rect);
     let layout = egui::Layout::left_to_right(Align::Center);
     let mut control = ui.new_child(UiBuilder::new().id_salt(&row.path).max_rect(control_rect).layout(layout));
     control.spacing_mut().item_spacing.x = 6.0;
@@ -119,20 +106,20 @@ pub fn row_ui(ui: &mut Ui, row: &Row, value: &Value) -> Outcome {
     if row.modified {
         let mut reset = ui.new_child(UiBuilder::new().id_salt((&row.path, "reset")).max_rect(reset_rect).layout(layout));
         if icon_button(&mut reset, Icon::Reset, &format!("Reset {}", row.path)).clicked() {
-            outcome.ask = Some(Ask::Reset(row.path.clone()));
+            outcome.command = Some(RowCommand::Reset(row.path.clone()));
         }
     }
     if let Some(keying) = row.keying
         && key_button(ui, key_rect, keying, &row.path).clicked()
     {
-        outcome.ask = Some(Ask::Key(row.path.clone()));
+        outcome.command = Some(RowCommand::ToggleKey(row.path.clone()));
     }
-    outcome.hovered = ui.rect_contains_pointer(rect);
+    outcome.is_hovered = ui.rect_contains_pointer(rect);
     outcome
 }
 
 /// The label: tooltip, double click to reset, menu.
-fn label_ui(ui: &mut Ui, row: &Row, value: &Value, rect: Rect) -> Option<Ask> {
+fn label_ui(ui: &mut Ui, row: &Row, value: &Value, rect: Rect) -> Option<RowCommand> {
     let response = ui.interact(rect, egui::Id::unique((&row.path, "label")), Sense::click());
     let color = if row.modified || response.hovered() { theme::TEXT_STRONG } else { theme::TEXT };
     // Bold where the bundled fonts have no bold cut: the same text twice, half a pixel apart.
@@ -143,18 +130,18 @@ fn label_ui(ui: &mut Ui, row: &Row, value: &Value, rect: Rect) -> Option<Ask> {
     if row.modified {
         clipped.text(at + vec2(0.5, 0.0), Align2::LEFT_CENTER, &row.label, font, color);
     }
-    let mut ask = response.double_clicked().then(|| Ask::Reset(row.path.clone()));
+    let mut command = response.double_clicked().then(|| RowCommand::Reset(row.path.clone()));
     response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Label, true, &row.label));
     response.context_menu(|ui| {
         let group = row.path.split('.').next().unwrap_or_default();
         for (text, meaning) in [
-            ("Reset".to_owned(), Ask::Reset(row.path.clone())),
-            (format!("Reset all of {group}"), Ask::ResetGroup(group.into())),
-            ("Copy value".to_owned(), Ask::Copy(row.written(value))),
-            ("Paste value".to_owned(), Ask::Paste(row.path.clone())),
+            ("Reset".to_owned(), RowCommand::Reset(row.path.clone())),
+            (format!("Reset all of {group}"), RowCommand::ResetGroup(group.into())),
+            ("Copy value".to_owned(), RowCommand::Copy(row.written(value))),
+            ("Paste value".to_owned(), RowCommand::Paste(row.path.clone())),
         ] {
             if ui.button(text).clicked() {
-                ask = Some(meaning);
+                command = Some(meaning);
                 ui.close();
             }
         }
@@ -163,7 +150,7 @@ fn label_ui(ui: &mut Ui, row: &Row, value: &Value, rect: Rect) -> Option<Ask> {
         ui.label(RichText::new(row.param.doc).color(theme::TEXT_STRONG));
         ui.label(theme::weak(format!("{}   {}{}", row.path, row.param.allowed(), spaced(row.param.unit))));
     });
-    ask
+    command
 }
 
 fn spaced(unit: &str) -> String {

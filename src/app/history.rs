@@ -1,7 +1,7 @@
 //! Undo and redo: a list of whole states, one per gesture.
 //!
 //! A change opens a step; the step closes after [`REST_S`] without further change, or when the next gesture begins.
-//! A hand that holds still in the middle of a drag keeps the step open. Time is a number the caller passes in.
+//! A pause in the middle of a drag keeps the step open. The caller passes the time in.
 
 use std::collections::VecDeque;
 
@@ -33,21 +33,21 @@ impl<T: Clone + PartialEq> History<T> {
         Self { past: VecDeque::new(), present: state, future: Vec::new(), open: None }
     }
 
-    /// Shows the state of this frame at `now_s`; `held` while a hand is on it (a pointer button is down).
-    pub fn observe(&mut self, state: &T, now_s: f64, held: bool) {
+    /// Takes the state of this frame at `now_s`; `is_held` while a pointer button is down.
+    pub fn observe(&mut self, state: &T, now_s: f64, is_held: bool) {
         let changed = *state != *self.open.as_ref().map_or(&self.present, |open| &open.latest);
-        if changed || (held && self.open.is_some()) {
+        if changed || (is_held && self.open.is_some()) {
             self.open = Some(Open { latest: state.clone(), changed_at_s: now_s });
         } else if self.open.as_ref().is_some_and(|open| now_s - open.changed_at_s >= REST_S) {
             self.close();
         }
     }
 
-    /// Finishes the step being made, if any: what follows is a gesture of its own.
+    /// Closes the open step, if any: the next change begins another.
     pub fn close(&mut self) {
         let Some(Open { latest, .. }) = self.open.take() else { return };
         if latest == self.present {
-            return; // Dragged there and back again.
+            return; // The drag ended where it began.
         }
         self.past.push_back(std::mem::replace(&mut self.present, latest));
         self.future.clear();
@@ -64,7 +64,7 @@ impl<T: Clone + PartialEq> History<T> {
         Some(self.present.clone())
     }
 
-    /// The state that the last undo left.
+    /// The state before the last undo.
     pub fn redo(&mut self) -> Option<T> {
         self.close();
         let after = self.future.pop()?;
@@ -76,16 +76,12 @@ impl<T: Clone + PartialEq> History<T> {
         !self.past.is_empty() || self.open.as_ref().is_some_and(|open| open.latest != self.present)
     }
 
-    pub fn can_redo(&self) -> bool {
-        !self.future.is_empty() && self.open.as_ref().is_none_or(|open| open.latest == self.present)
-    }
-
     /// Number of steps that can be taken back, without the open one.
     pub fn steps(&self) -> usize {
         self.past.len()
     }
 
-    /// Seconds until the open step wants to be observed again, so that it closes without further input.
+    /// Seconds until the open step closes if nothing changes; it must be observed again then.
     pub fn wake_in_s(&self, now_s: f64) -> Option<f64> {
         self.open.as_ref().map(|open| (open.changed_at_s + REST_S - now_s).max(0.0))
     }
@@ -153,7 +149,7 @@ mod tests {
         gesture(&mut history, &mut clock, [2]);
         assert_eq!(history.undo(), Some(1));
         gesture(&mut history, &mut clock, [7]);
-        assert!(!history.can_redo());
+        assert_eq!(history.redo(), None);
         assert_eq!(history.undo(), Some(1));
     }
 

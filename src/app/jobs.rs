@@ -1,5 +1,5 @@
-//! Work that would make the window stutter, on threads of its own: loading scenes, judging pictures, drawing
-//! thumbnails, saving shots, waiting for file dialogs.
+//! Jobs: work that would make the window stutter, on other threads: loading scenes, judging pictures, drawing thumbnails,
+//! saving pictures, waiting for file dialogs.
 
 use std::{
     path::PathBuf,
@@ -9,46 +9,34 @@ use std::{
 use eframe::egui;
 
 use super::{
-    dialogs::Purpose,
-    overlays::Findings,
+    command::Purpose,
+    findings::Findings,
+    scene_loader::SceneKey,
     screen::Inputs,
-    sweep::{self, Point, Progress, Question},
+    sweep::{
+        measure,
+        point::Point,
+        request::{Progress, Request},
+    },
 };
 use crate::{
     effects::Stack,
     gpu::{Gpu, Renderer},
     oracle,
-    preset::{AccuracyRequest, Preset, SceneSource},
+    preset::{AccuracyRequest, Preset},
     preset_file::{self, PresetFile, Provenance},
     scene::{Scene, view::View},
 };
-
-/// What names a scene: its source, and the preset it is relative to.
-#[derive(Clone, Debug, PartialEq)]
-pub struct SceneKey {
-    pub source: SceneSource,
-    pub preset_path: Option<PathBuf>,
-    /// How wide the room round it is.
-    pub room: f64,
-}
-
-impl SceneKey {
-    pub fn of(preset: &Preset, preset_path: Option<&PathBuf>) -> Self {
-        // A builtin is the same wherever the preset lies.
-        let preset_path = if matches!(preset.scene, SceneSource::File(_)) { preset_path.cloned() } else { None };
-        Self { source: preset.scene.clone(), preset_path, room: preset.room }
-    }
-}
 
 /// Finished work. Errors are sentences for people.
 pub enum Done {
     Scene(SceneKey, Result<Arc<Scene>, String>),
     Verdict(Box<Inputs>, Result<Box<Findings>, String>),
-    /// Combinations of options, measured.
+    /// Measured combinations of accuracy options.
     Sweep(Result<Vec<Point>, String>),
     Thumbnail(String, Option<egui::ColorImage>),
-    Shot(PathBuf, Result<(), String>),
-    /// A path from the system's file dialog; none when it was cancelled or could not be shown.
+    Export(PathBuf, Result<(), String>),
+    /// The path from the system's file dialog; none if it was cancelled or could not be shown.
     Path(Purpose, Option<PathBuf>),
 }
 
@@ -73,7 +61,7 @@ impl Jobs {
     fn spawn(&self, name: &str, work: impl FnOnce() -> Done + Send + 'static) {
         let (sender, ctx) = (self.sender.clone(), self.ctx.clone());
         let started = std::thread::Builder::new().name(name.into()).spawn(move || {
-            // The window may be gone by now; then nobody wants to know.
+            // The window may be closed by now; then the result is dropped.
             if sender.send(work()).is_ok() {
                 ctx.request_repaint();
             }
@@ -92,7 +80,7 @@ impl Jobs {
         });
     }
 
-    /// Draws `inputs` once more with a renderer of its own, reads everything back and lets the oracle judge it.
+    /// Draws `inputs` with a second renderer, reads everything back and judges it with the oracle.
     pub fn verify(&self, gpu: Arc<Gpu>, inputs: Inputs) {
         self.spawn("verify", move || {
             let verdict = caught("judging the picture", || verify(gpu, &inputs));
@@ -100,12 +88,13 @@ impl Jobs {
         });
     }
 
-    /// Measures combinations of options on a device of its own, so that neither disturbs the other's figures for long.
-    pub fn measure(&self, adapter: String, scene: Arc<Scene>, question: Question, progress: Arc<Progress>) {
-        self.spawn("sweep", move || Done::Sweep(caught("measuring the trade", || sweep::measure(adapter, &scene, &question, &progress))));
+    /// Measures combinations of accuracy options on a second device, so that it disturbs the window's times little.
+    pub fn measure(&self, adapter: String, scene: Arc<Scene>, request: Request, progress: Arc<Progress>) {
+        let work = move || measure::measure(adapter, &scene, &request, &progress);
+        self.spawn("sweep", || Done::Sweep(caught("measuring the sweep", work)));
     }
 
-    /// Draws the picture of a preset with the oracle, which needs no device and so disturbs none.
+    /// Draws the picture of a preset with the oracle, which needs no device.
     pub fn thumbnail(&self, preset_file: PresetFile) {
         self.spawn("thumbnail", move || {
             let image = caught("drawing a thumbnail", || thumbnail(&preset_file).ok_or_else(String::new));
@@ -113,11 +102,11 @@ impl Jobs {
         });
     }
 
-    /// Draws `inputs`, and writes a PNG that carries the preset.
-    pub fn shot(&self, gpu: Arc<Gpu>, inputs: Inputs, preset_file: PresetFile, path: PathBuf) {
-        self.spawn("shot", move || {
-            let saved = caught("saving the picture", || shot(gpu, &inputs, &preset_file, &path));
-            Done::Shot(path, saved)
+    /// Draws `inputs` and writes a PNG that carries the preset.
+    pub fn export(&self, gpu: Arc<Gpu>, inputs: Inputs, preset_file: PresetFile, path: PathBuf) {
+        self.spawn("export", move || {
+            let saved = caught("saving the picture", || export(gpu, &inputs, &preset_file, &path));
+            Done::Export(path, saved)
         });
     }
 
@@ -128,7 +117,7 @@ impl Jobs {
             dialog = dialog.set_directory(folder);
         }
         let name = start.file_name().map(|name| name.to_string_lossy().into_owned()).unwrap_or_default();
-        for (label, extensions) in purpose.filters() {
+        for (label, extensions) in filters(purpose) {
             dialog = dialog.add_filter(*label, extensions);
         }
         let chosen: std::pin::Pin<Box<dyn Future<Output = Option<rfd::FileHandle>> + Send>> = match purpose {
@@ -139,10 +128,19 @@ impl Jobs {
     }
 }
 
-/// Runs `work`; a panic becomes its error, so that no button stays grey for ever.
+/// File types of the system's dialog: names and extensions.
+const fn filters(purpose: Purpose) -> &'static [(&'static str, &'static [&'static str])] {
+    match purpose {
+        Purpose::Open => &[("Presets, models, pictures", &["toml", "glb", "gltf", "png"])],
+        Purpose::SaveAs => &[("Presets", &["toml"])],
+        Purpose::Export => &[("Pictures", &["png"])],
+    }
+}
+
+/// Runs `work`. A panic becomes an error, so that the window does not wait for a result for ever.
 fn caught<T>(what: &str, work: impl FnOnce() -> Result<T, String>) -> Result<T, String> {
     std::panic::catch_unwind(std::panic::AssertUnwindSafe(work))
-        .unwrap_or_else(|_| Err(format!("{what} failed inside the program; the terminal says where")))
+        .unwrap_or_else(|_| Err(format!("{what} failed because of a bug; see the terminal for details")))
 }
 
 fn verify(gpu: Arc<Gpu>, Inputs { scene, view, stack, accuracy }: &Inputs) -> Result<Box<Findings>, String> {
@@ -155,7 +153,7 @@ fn verify(gpu: Arc<Gpu>, Inputs { scene, view, stack, accuracy }: &Inputs) -> Re
     verdict.map(|verdict| Box::new(Findings::new(capture, verdict, reference))).map_err(|e| e.to_string())
 }
 
-/// Triangle ids of all pixels that are drawn, in the exact picture on the finest grid.
+/// Triangle ids of all pixels in the exact picture on the finest grid.
 fn reference_ids(scene: &Scene, view: &View, stack: &Stack, accuracy: &AccuracyRequest) -> Result<Vec<u32>, String> {
     let factor = accuracy.scale().factor();
     let frame = oracle::render_finest(scene, &view.scaled(factor), &stack.scaled(factor)).map_err(|e| e.to_string())?;
@@ -165,7 +163,7 @@ fn reference_ids(scene: &Scene, view: &View, stack: &Stack, accuracy: &AccuracyR
 /// Size of a thumbnail in pixels; shown at half of it.
 pub const THUMBNAIL: [u32; 2] = [144, 108];
 
-/// More triangles than this are not worth a thumbnail's time.
+/// A scene with more triangles gets no thumbnail: it would take too long.
 const THUMBNAIL_TRIANGLES: u64 = 400_000;
 
 fn thumbnail(preset_file: &PresetFile) -> Option<egui::ColorImage> {
@@ -179,7 +177,7 @@ fn thumbnail(preset_file: &PresetFile) -> Option<egui::ColorImage> {
     Some(egui::ColorImage::from_rgba_unmultiplied([frame.width as usize, frame.height as usize], &bytes))
 }
 
-fn shot(
+fn export(
     gpu: Arc<Gpu>,
     Inputs { scene, view, stack, accuracy }: &Inputs,
     preset_file: &PresetFile,

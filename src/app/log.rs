@@ -1,13 +1,10 @@
-//! What the lab tells people: everything in the log, the outcome of what they just did also as a toast.
+//! Messages: all of them in the log, and the outcome of what the user just did as a toast too.
 
 use std::collections::VecDeque;
 
-use eframe::egui::{self, RichText};
+use eframe::egui::Color32;
 
-use super::{
-    icons::{Icon, icon_button},
-    theme,
-};
+use super::{text::first_line, theme};
 
 /// How serious a message is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -18,7 +15,7 @@ pub enum Level {
 }
 
 impl Level {
-    fn color(self) -> egui::Color32 {
+    pub fn color(self) -> Color32 {
         match self {
             Self::Info => theme::TEXT_WEAK,
             Self::Warning => theme::AMBER,
@@ -26,7 +23,7 @@ impl Level {
         }
     }
 
-    const fn word(self) -> &'static str {
+    pub const fn word(self) -> &'static str {
         match self {
             Self::Info => "info",
             Self::Warning => "warning",
@@ -35,7 +32,7 @@ impl Level {
     }
 }
 
-/// A message, and how often it came.
+/// A message, and how often it was logged.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Entry {
     pub level: Level,
@@ -43,17 +40,18 @@ pub struct Entry {
     pub count: u32,
 }
 
+/// A message that is shown over the picture for a while.
 #[derive(Clone, Debug)]
-struct Toast {
-    level: Level,
-    text: String,
+pub struct Toast {
+    pub level: Level,
+    pub text: String,
     until_s: f64,
 }
 
 /// Messages kept; older ones are dropped.
 const CAPACITY: usize = 500;
 
-/// How long a toast stays.
+/// Seconds for which a toast is shown.
 const TOAST_S: f64 = 4.0;
 const ERROR_TOAST_S: f64 = 8.0;
 
@@ -65,7 +63,7 @@ pub struct Log {
 }
 
 impl Log {
-    /// Adds a message; one that is there already is counted and moves to the end.
+    /// Logs a message. One that was logged before is counted and moves to the end.
     pub fn add(&mut self, level: Level, text: impl Into<String>) {
         let text = text.into();
         let known = self.entries.iter().position(|entry| entry.level == level && entry.text == text);
@@ -76,78 +74,42 @@ impl Log {
         }
     }
 
-    /// Adds a message and shows it for a while: the outcome of what the user just did.
-    pub fn tell(&mut self, level: Level, text: impl Into<String>, now_s: f64) {
+    /// Logs a message and shows its first line as a toast from `now_s` on.
+    pub fn notify(&mut self, level: Level, text: impl Into<String>, now_s: f64) {
         let text = text.into();
         let shown = first_line(&text);
-        self.toasts.retain(|toast| toast.text != shown);
+        self.toasts.retain(|toast| toast.text != shown && toast.until_s > now_s);
         let stay_s = if level == Level::Error { ERROR_TOAST_S } else { TOAST_S };
         self.toasts.push(Toast { level, text: shown, until_s: now_s + stay_s });
         self.add(level, text);
+    }
+
+    pub fn entries(&self) -> impl ExactSizeIterator<Item = &Entry> {
+        self.entries.iter()
+    }
+
+    pub fn clear(&mut self) {
+        self.entries.clear();
+    }
+
+    /// Toasts that are shown at `now_s`.
+    pub fn toasts(&self, now_s: f64) -> Vec<&Toast> {
+        self.toasts.iter().filter(|toast| toast.until_s > now_s).collect()
+    }
+
+    /// Seconds from `now_s` until the next toast ends; none without toasts.
+    pub fn next_toast_ends_in_s(&self, now_s: f64) -> Option<f64> {
+        self.toasts.iter().map(|toast| toast.until_s - now_s).filter(|left_s| *left_s > 0.0).reduce(f64::min)
     }
 
     /// The whole log as lines of text.
     pub fn to_text(&self) -> String {
         self.entries.iter().map(|Entry { level, text, count }| format!("{}: {text}{}\n", level.word(), times(*count))).collect()
     }
-
-    /// Shows what was just told in the lower left of `area`; asks to be shown again when the next toast ends.
-    pub fn toasts_ui(&mut self, ctx: &egui::Context, area: egui::Rect, now_s: f64) {
-        self.toasts.retain(|toast| toast.until_s > now_s);
-        let Some(next_s) = self.toasts.iter().map(|toast| toast.until_s).reduce(f64::min) else { return };
-        ctx.request_repaint_after_secs((next_s - now_s) as f32);
-        egui::Area::new(egui::Id::unique("toasts"))
-            .order(egui::Order::Foreground)
-            .pivot(egui::Align2::CENTER_BOTTOM)
-            .fixed_pos(area.center_bottom() - egui::vec2(0.0, 16.0))
-            .interactable(false)
-            .show(ctx, |ui| {
-                ui.set_max_width((area.width() - 32.0).clamp(200.0, 560.0));
-                for toast in &self.toasts {
-                    theme::toast_frame(toast.level.color()).show(ui, |ui| ui.label(RichText::new(&toast.text).color(theme::TEXT_STRONG)));
-                }
-            });
-    }
-
-    /// The log panel.
-    pub fn panel_ui(&mut self, ui: &mut egui::Ui) {
-        ui.horizontal(|ui| {
-            ui.label(theme::heading("Log"));
-            ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
-                if icon_button(ui, Icon::Cross, "Clear the log").clicked() {
-                    self.entries.clear();
-                }
-                if ui.small_button("Copy").on_hover_text("Copy the whole log").clicked() {
-                    ui.ctx().copy_text(self.to_text());
-                }
-            });
-        });
-        egui::ScrollArea::vertical().auto_shrink(false).stick_to_bottom(true).show(ui, |ui| {
-            if self.entries.is_empty() {
-                ui.label(theme::weak("Nothing to report. Loading, saving and every error end up here."));
-            }
-            for Entry { level, text, count } in &self.entries {
-                ui.horizontal_wrapped(|ui| {
-                    ui.spacing_mut().item_spacing.x = 8.0;
-                    ui.label(RichText::new(level.word()).monospace().color(level.color()));
-                    ui.label(RichText::new(text).monospace().color(theme::TEXT));
-                    ui.label(theme::weak(times(*count)));
-                });
-            }
-        });
-    }
-}
-
-/// What a toast says of a message of several lines, such as a shader's error with its snippet.
-pub fn first_line(text: &str) -> String {
-    match text.split_once('\n') {
-        Some((first, _)) => format!("{} (more in the log)", first.trim_end()),
-        None => text.to_owned(),
-    }
 }
 
 /// ` ×3`, or nothing for a single time.
-fn times(count: u32) -> String {
+pub fn times(count: u32) -> String {
     if count > 1 { format!(" ×{count}") } else { String::new() }
 }
 
@@ -167,7 +129,7 @@ mod tests {
     #[test]
     fn a_toast_has_one_line_and_the_log_has_them_all() {
         let mut log = Log::default();
-        log.tell(Level::Error, "shader error: no such word\n  ┌─ fog.wgsl:3:9", 0.0);
+        log.notify(Level::Error, "shader error: no such word\n  ┌─ fog.wgsl:3:9", 0.0);
         assert_eq!(log.toasts[0].text, "shader error: no such word (more in the log)");
         assert!(log.to_text().contains("fog.wgsl:3:9"));
     }

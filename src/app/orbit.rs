@@ -1,4 +1,4 @@
-//! Moving a camera by hand. Pure functions of a pose; every result is finite whatever the hand does.
+//! Camera moves: pure functions of a pose. Every result is finite for any input.
 
 use glam::DVec3;
 
@@ -7,11 +7,11 @@ use crate::scene::{
     camera::{Camera, MIN_NEAR_M, Projection},
 };
 
-/// Bounds of the distance between eye and target, metres: what keeps poses clear of the arithmetic's gate at 2^40.
+/// Range of the distance between eye and target, metres: keeps poses below the 2^40 that the kernels' arithmetic allows.
 const DISTANCE_M: [f64; 2] = [1e-5, 1e8];
 
 /// DepthReduce a target may be panned from the origin, metres.
-const REACH_M: f64 = 1e8;
+const MAX_COORDINATE_M: f64 = 1e8;
 
 /// Closest the direction of view comes to straight up or down, radians; beyond it, left and right would swap.
 const POLE_RAD: f64 = 1e-3;
@@ -24,6 +24,11 @@ pub const TOP: DVec3 = DVec3::NEG_Y;
 fn distance(camera: &Camera) -> f64 {
     let distance = (camera.eye - camera.target).length();
     if distance.is_finite() { distance.clamp(DISTANCE_M[0], DISTANCE_M[1]) } else { 1.0 }
+}
+
+/// True if every coordinate of the pose is finite.
+pub fn is_finite(camera: &Camera) -> bool {
+    camera.eye.is_finite() && camera.target.is_finite() && camera.up.is_finite()
 }
 
 /// Right and up of the picture, unit vectors.
@@ -41,7 +46,7 @@ fn turned(forward: DVec3, yaw_rad: f64, pitch_rad: f64) -> DVec3 {
     DVec3::new(yaw.sin() * pitch.cos(), pitch.sin(), -yaw.cos() * pitch.cos())
 }
 
-/// Turns the eye round the target: the picture follows the hand right and down.
+/// Turns the eye round the target; the picture moves right and down by these angles.
 pub fn orbit(camera: &mut Camera, right_rad: f64, down_rad: f64) {
     let distance = distance(camera);
     camera.up = DVec3::Y;
@@ -73,7 +78,7 @@ pub fn fly(camera: &mut Camera, right_m: f64, up_m: f64, forward_m: f64) {
 
 fn shift(camera: &mut Camera, by: DVec3) {
     let target = camera.target + by;
-    if target.is_finite() && target.abs().max_element() <= REACH_M {
+    if target.is_finite() && target.abs().max_element() <= MAX_COORDINATE_M {
         camera.target = target;
         camera.eye += by;
     }
@@ -84,7 +89,7 @@ pub fn zoom(camera: &mut Camera, factor: f64) {
     let factor = if factor.is_finite() { factor.clamp(0.1, 10.0) } else { 1.0 };
     let to = (distance(camera) * factor).clamp(DISTANCE_M[0], DISTANCE_M[1]);
     camera.eye = camera.target - camera.forward() * to;
-    // Else the near plane would swallow what the eye comes close to.
+    // Otherwise the near plane would cut off what the eye comes close to.
     camera.near_m = camera.near_m.min(to * 0.05).max(MIN_NEAR_M);
     if let Projection::Orthographic { height_m } = &mut camera.projection {
         *height_m = (*height_m * factor).clamp(DISTANCE_M[0], DISTANCE_M[1]);
@@ -98,7 +103,7 @@ pub fn look_along(camera: &mut Camera, direction: DVec3) {
     camera.eye = camera.target - direction * distance;
 }
 
-/// Changes between perspective and orthographic, keeping the size of what stands at the target.
+/// Switches between perspective and orthographic; an object at the target keeps its size.
 pub fn toggle_orthographic(camera: &mut Camera) {
     let distance = distance(camera);
     camera.projection = match camera.projection {
@@ -154,7 +159,7 @@ mod tests {
     }
 
     #[test]
-    fn pan_carries_a_point_at_the_target_along_with_the_hand() {
+    fn pan_moves_a_point_at_the_target_with_the_pointer() {
         let mut moved = camera();
         pan(&mut moved, 0.5, 0.0);
         let (right, _) = axes(&camera());

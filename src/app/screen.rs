@@ -1,5 +1,5 @@
-//! Screen: the picture in the window. Draws when an input changed and never otherwise; a failure leaves the last good
-//! picture where it is.
+//! Screen: a picture in the window and the renderer that draws it. It draws only when an input has changed; after a failure
+//! the last good picture stays.
 
 use std::sync::Arc;
 
@@ -30,18 +30,22 @@ impl PartialEq for Inputs {
     }
 }
 
-/// Draws of the same inputs, at most: a queue grows to what a picture needs in one or two.
+/// Most redraws of the same inputs. A queue that overflowed has the right size after one or two.
 const MAX_REDRAWS: u32 = 6;
 
-/// How long figures may take to arrive before nobody waits for them any more, seconds.
-const PATIENCE_S: f64 = 10.0;
+/// Seconds after which a report that has not arrived is given up.
+const REPORT_TIMEOUT_S: f64 = 10.0;
 
-/// The renderer of the window, and its newest picture.
+/// See the module's first line.
 pub struct Screen {
     pub gpu: Arc<Gpu>,
     renderer: Renderer,
     blitter: Blitter,
     picture: Option<Picture>,
+    /// The picture as it is asked for, at full size.
+    requested: Option<Inputs>,
+    divisor: u32,
+    /// What the newest picture was made from; smaller than requested while it moves on a slow adapter.
     drawn: Option<Inputs>,
     /// Inputs that could not be drawn; not tried again until they change.
     refused: Option<Inputs>,
@@ -49,7 +53,7 @@ pub struct Screen {
     explanation: Option<Explanation>,
     waiting_since_s: Option<f64>,
     redraws: u32,
-    /// The newest frame compiled pipelines: its time says nothing, so one more is drawn for the figures.
+    /// The newest frame compiled pipelines, so its time does not count and one more frame is drawn.
     cold: bool,
     draws: u64,
 }
@@ -72,6 +76,8 @@ impl Screen {
             gpu,
             blitter,
             picture: None,
+            requested: None,
+            divisor: 1,
             drawn: None,
             refused: None,
             report: None,
@@ -83,13 +89,13 @@ impl Screen {
         }
     }
 
-    /// Another screen on the same device, for another picture in the same window.
+    /// A second screen on the same device, for another picture in the same window.
     pub fn sibling(&self) -> Self {
         let Self { gpu, blitter, .. } = self;
         Self::with(gpu.clone(), blitter.clone())
     }
 
-    /// Has the device been lost? Asks it, since nothing else would while nothing is drawn.
+    /// True if the device was lost. Polls it, since nothing else does while nothing is drawn.
     pub fn is_lost(&self) -> bool {
         let _ = self.gpu.device.poll(wgpu::PollType::Poll);
         self.gpu.is_lost()
@@ -111,17 +117,22 @@ impl Screen {
         Some(self.blitter.difference(&self.gpu.device, views, gain))
     }
 
+    /// The picture as it is asked for, at full size; none before the first.
+    pub fn requested(&self) -> Option<&Inputs> {
+        self.requested.as_ref()
+    }
+
     /// What the newest picture was made from.
     pub fn drawn(&self) -> Option<&Inputs> {
         self.drawn.as_ref()
     }
 
-    /// Figures of the newest finished frame.
+    /// Times and counters of the newest finished frame.
     pub fn report(&self) -> Option<&Report> {
         self.report.as_ref()
     }
 
-    /// The options of the newest picture's kernel.
+    /// The accuracy options of the newest picture's kernel.
     pub fn options(&self) -> Option<AccuracyOptions> {
         self.renderer.key().map(|key| key.options)
     }
@@ -131,23 +142,36 @@ impl Screen {
         self.explanation.as_ref()
     }
 
-    /// Were these inputs tried and refused?
-    pub fn is_refused(&self, inputs: &Inputs) -> bool {
-        self.refused.as_ref() == Some(inputs)
+    /// True if the requested picture was tried and could not be drawn.
+    pub fn is_refused(&self) -> bool {
+        self.refused.is_some() && self.refused == self.requested
     }
 
-    /// Are figures still to come? Then show this window again soon.
+    /// True while a report is still to come; the window must be shown again soon.
     pub fn is_waiting(&self) -> bool {
         self.waiting_since_s.is_some()
     }
 
-    /// Draws `inputs`, unless they are what the picture shows already or what was refused.
-    pub fn show(&mut self, inputs: &Inputs, now_s: f64) -> Result<(), RenderError> {
-        if self.drawn.as_ref() == Some(inputs) || self.is_refused(inputs) {
+    /// Full pixels per drawn pixel along a side; above 1 while the picture moves on a slow adapter.
+    pub fn divisor(&self) -> u32 {
+        self.divisor
+    }
+
+    /// Draws `requested` at its size over `divisor`, unless that is what the picture shows or what could not be drawn.
+    ///
+    /// # Errors
+    /// If the scene or the effects cannot be drawn on this device.
+    pub fn show(&mut self, requested: Inputs, divisor: u32, now_s: f64) -> Result<(), RenderError> {
+        let mut inputs = requested.clone();
+        // The same frustum on fewer pixels, so that nothing jumps when the motion ends.
+        inputs.view.width = inputs.view.width.div_ceil(divisor);
+        inputs.view.height = inputs.view.height.div_ceil(divisor);
+        (self.requested, self.divisor) = (Some(requested), divisor);
+        if self.drawn.as_ref() == Some(&inputs) || self.refused.as_ref() == Some(&inputs) {
             return Ok(());
         }
         self.redraws = 0;
-        self.draw(inputs, now_s)
+        self.draw(&inputs, now_s)
     }
 
     fn draw(&mut self, inputs: &Inputs, now_s: f64) -> Result<(), RenderError> {
@@ -172,7 +196,7 @@ impl Screen {
         self.renderer.draw(view, stack, accuracy)
     }
 
-    /// Gives the renderer's texture to the window; cheap when it is the one the window has.
+    /// Gives the renderer's texture to the window, unless the window has it already.
     fn register(&mut self, size: [u32; 2]) {
         let Some(view) = self.renderer.texture_view() else { return };
         if let Some(picture) = self.picture.as_mut().filter(|picture| picture.view == *view) {
@@ -183,11 +207,14 @@ impl Screen {
         self.picture = Some(Picture { blit, view: view.clone(), size });
     }
 
-    /// Collects figures without waiting; draws again when a queue had overflowed and has grown.
+    /// Takes a report that has arrived, without waiting; draws again if a queue had overflowed and has grown.
+    ///
+    /// # Errors
+    /// If that draw fails.
     pub fn poll(&mut self, now_s: f64) -> Result<(), RenderError> {
         let Some(since_s) = self.waiting_since_s else { return Ok(()) };
         let Some(report) = self.renderer.report() else {
-            if now_s - since_s > PATIENCE_S {
+            if now_s - since_s > REPORT_TIMEOUT_S {
                 self.waiting_since_s = None;
             }
             return Ok(());

@@ -240,3 +240,15 @@ pub fn picture(lab: &mut Lab) -> image::RgbaImage {
     let [x, y, width, height] = [min.x, min.y, max.x - min.x, max.y - min.y].map(|v| v.round() as u32);
     image::imageops::crop_imm(&window, x, y, width, height).to_image()
 }
+
+pub fn error_lines(lab: &Lab) -> Vec<String> {
+    lab.state().log_text().lines().filter(|line| line.starts_with("error")).map(str::to_owned).collect()
+}
+
+/// The middle of the picture, clear of everything that lies over its borders.
+pub fn middle(lab: &mut Lab) -> image::RgbaImage {
+    lab.remove_cursor();
+    lab.run_steps(2);
+    let whole = picture(lab);
+    image::imageops::crop_imm(&whole, 0, 48, whole.width(), whole.height() - 208).to_image()
+}

@@ -4,7 +4,13 @@
 #[path = "../common/mod.rs"]
 mod common;
 
+mod compare;
+mod files;
 mod harness;
-mod panels;
+mod inspector;
+mod sweep;
+mod timeline;
+mod verify;
+mod viewport;
 #[cfg(target_os = "linux")]
 mod window;

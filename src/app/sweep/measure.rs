@@ -1,8 +1,11 @@
-//! The job behind the panel: the bench over combinations of options, with the oracle as its judge.
+//! The job of a sweep: the bench over combinations of options, judged by the oracle.
 
 use std::sync::Arc;
 
-use super::{Metric, Point, Progress, Question, SAMPLES};
+use super::{
+    point::{Metric, Point},
+    request::{Progress, Request, SAMPLES},
+};
 use crate::{
     accuracy::{Axis, PinnedOptions},
     effects::Stack,
@@ -15,13 +18,13 @@ use crate::{
     scene::{Scene, view::View},
 };
 
-/// Measures every combination, on a device of its own.
+/// Measures every combination, on a second device.
 ///
 /// # Errors
 /// In a sentence for people.
-pub fn measure(adapter: String, scene: &Arc<Scene>, question: &Question, progress: &Progress) -> Result<Vec<Point>, String> {
-    let Question { preset, size, axes, title } = question;
-    progress.tell(0, 1, "the true picture");
+pub fn measure(adapter: String, scene: &Arc<Scene>, request: &Request, progress: &Progress) -> Result<Vec<Point>, String> {
+    let Request { preset, size, axes, title } = request;
+    progress.report(0, 1, "the reference picture");
     let gpu = Gpu::open(&AdapterChoice::Named(adapter)).map_err(|e| e.to_string())?;
     let view = preset.view(scene, *size);
     let references = oracle::references(scene, &view, &preset.stack, &factors(preset, axes)).map_err(|e| e.to_string())?;
@@ -29,13 +32,13 @@ pub fn measure(adapter: String, scene: &Arc<Scene>, question: &Question, progres
         let (layers, previous) = (capture.layers.as_deref(), capture.previous.as_deref());
         let verdict = oracle::judge_after(scene, view, stack, &capture.frame, &capture.geometry, layers, previous);
         let light = oracle::shadow_errors(scene, view, stack, &capture.frame.triangle_id, &capture.geometry);
-        let known = "a scene that was drawn can be judged";
-        Judged { verdict: verdict.expect(known), light: light.expect(known) }
+        let reason = "a scene that was drawn can be judged";
+        Judged { verdict: verdict.expect(reason), light: light.expect(reason) }
     };
     let options = SweepOptions { size: *size, samples: SAMPLES, axes: axes.clone(), is_one_option_at_a_time: false };
-    let mut tell = |what: &str, done: usize, all: usize| progress.tell(done, all, what);
+    let mut report = |what: &str, done: usize, all: usize| progress.report(done, all, what);
     let reference = Reference { references: &references, judge: &judge };
-    let rows = sweep(&gpu, preset, scene, title, &options, &reference, &mut tell).map_err(|e| e.to_string())?;
+    let rows = sweep(&gpu, preset, scene, title, &options, &reference, &mut report).map_err(|e| e.to_string())?;
     Ok(rows.into_iter().map(|row| point(row, axes)).collect())
 }
 
@@ -59,11 +62,11 @@ fn point(row: SweepRow, axes: &[&'static Axis]) -> Point {
             ("corners moved px", error.moved_px),
             ("cracks per Mpx", error.cracks_per_mpx),
             ("queue entries lost", error.overflow as f64),
-            ("depth_without_id", error.depth_without_id as f64),
+            ("depths without id", error.depth_without_id as f64),
             ("buffers MiB", row.bytes as f64 / 1_048_576.0),
         ]
         .into_iter()
-        .chain(error.rms_light.map(|rms| ("light RMS, share", rms)))
+        .chain(error.rms_light.map(|rms| ("light RMS, fraction", rms)))
     });
     Point {
         pins,
@@ -71,7 +74,7 @@ fn point(row: SweepRow, axes: &[&'static Axis]) -> Point {
         samples: row.samples,
         errors,
         more: more.collect(),
-        is_idle: row.is_dominated,
+        is_dominated: row.is_dominated,
         note: row.note,
     }
 }

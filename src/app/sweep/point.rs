@@ -1,11 +1,11 @@
-//! What was measured of a combination of options, and which of them are worth their time.
+//! The points of a sweep: time and error of each combination, and which combinations are on the Pareto front.
 
 use crate::accuracy::{Axis, PinnedOptions};
 
 /// A kind of error. Each is 0 where the picture is exact.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Metric {
-    /// Pixels with another triangle id than the exact picture has.
+    /// Pixels that show another triangle than the exact picture.
     #[default]
     Wrong,
     /// Largest difference of a colour channel.
@@ -19,7 +19,7 @@ pub enum Metric {
 impl Metric {
     pub const ALL: [Self; 4] = [Self::Wrong, Self::Colour, Self::Coverage, Self::Light];
 
-    /// The kinds that mean something for these points: of light only where there is one.
+    /// The metrics that these points have: light only if the scene has one.
     pub fn of(points: &[Point]) -> Vec<Self> {
         Self::ALL.into_iter().filter(|metric| *metric != Self::Light || points.iter().any(|point| point.error(*metric).is_some())).collect()
     }
@@ -43,21 +43,21 @@ impl Metric {
     }
 }
 
-/// One combination: time beside error, never one without the other.
+/// The time and the error of one combination.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Point {
-    /// A option of every axis that was measured.
+    /// The option on every axis that was measured.
     pub pins: PinnedOptions,
     /// Median and 95th percentile, milliseconds; none where it could not run or has no timer.
     pub ms: Option<[f64; 2]>,
     pub samples: usize,
     /// In the order of [`Metric::ALL`].
     pub errors: [Option<f64>; Metric::ALL.len()],
-    /// Further figures, each with its name and unit.
+    /// Further numbers, each with its name and unit.
     pub more: Vec<(&'static str, f64)>,
-    /// Another combination is nowhere worse and not slower: what this one costs more gains nothing.
-    pub is_idle: bool,
-    /// Why it could not be drawn, or what beats it.
+    /// Another combination is at least as exact in every metric and not slower.
+    pub is_dominated: bool,
+    /// Why it could not be drawn, or what dominates it.
     pub note: Option<String>,
 }
 
@@ -67,15 +67,15 @@ impl Point {
     }
 
     /// Time and error, where both were measured.
-    pub fn place(&self, metric: Metric) -> Option<[f64; 2]> {
+    pub fn position(&self, metric: Metric) -> Option<[f64; 2]> {
         let ms = self.ms.map(|[p50, _]| p50).filter(|ms| ms.is_finite() && *ms > 0.0)?;
         Some([ms, self.error(metric)?.max(0.0)])
     }
 }
 
-/// Points that no other beats in both time and error, fast ones first.
+/// Indices of the points that no other dominates in time and error, fast ones first.
 pub fn front(points: &[Point], metric: Metric) -> Vec<usize> {
-    let mut order: Vec<(usize, [f64; 2])> = points.iter().enumerate().filter_map(|(i, p)| Some((i, p.place(metric)?))).collect();
+    let mut order: Vec<(usize, [f64; 2])> = points.iter().enumerate().filter_map(|(i, p)| Some((i, p.position(metric)?))).collect();
     order.sort_by(|(_, a), (_, b)| a[0].total_cmp(&b[0]).then(a[1].total_cmp(&b[1])));
     let mut least = f64::INFINITY;
     order.retain(|(_, [_, error])| {
@@ -99,13 +99,13 @@ pub fn csv(points: &[Point], axes: &[&'static Axis]) -> String {
     let mut text = head.join(",") + "\n";
     for point in points {
         let mut line: Vec<String> =
-            axes.iter().map(|axis| point.pins.get(axis).map_or(String::new(), |place| axis.words[place].to_owned())).collect();
+            axes.iter().map(|axis| point.pins.get(axis).map_or(String::new(), |option| axis.words[option].to_owned())).collect();
         let number = |value: Option<f64>| value.map_or_else(|| "not measured".into(), |value| value.to_string());
         line.extend([0, 1].map(|i| number(point.ms.map(|ms| ms[i]))));
         line.push(point.samples.to_string());
         line.extend(metrics.iter().map(|metric| number(point.errors[*metric as usize])));
-        let place = |i: usize| point.more.get(i).map(|(_, value)| *value);
-        line.extend((0..more.map_or(0, Vec::len)).map(|i| number(place(i))));
+        let further = |i: usize| point.more.get(i).map(|(_, value)| *value);
+        line.extend((0..more.map_or(0, Vec::len)).map(|i| number(further(i))));
         line.push(cell(point.note.as_deref().unwrap_or_default()));
         text += &(line.join(",") + "\n");
     }
@@ -125,7 +125,7 @@ mod tests {
             samples: 30,
             errors: [Some(wrong), Some(0.0), None, None],
             more: vec![("bytes", 7.0)],
-            is_idle: false,
+            is_dominated: false,
             note: None,
         }
     }
@@ -141,9 +141,9 @@ mod tests {
     }
 
     #[test]
-    fn the_front_holds_what_nothing_beats() {
+    fn the_front_holds_what_nothing_dominates() {
         assert_eq!(front(&points(), Metric::Wrong), [0, 1, 3]);
-        assert_eq!(front(&points(), Metric::Colour), [0], "all are exact, so the fastest stands alone");
+        assert_eq!(front(&points(), Metric::Colour), [0], "all are exact, so only the fastest is on the front");
         assert_eq!(front(&points(), Metric::Coverage), [0; 0], "not measured is no point");
     }
 

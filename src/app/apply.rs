@@ -1,0 +1,285 @@
+//! Carrying out commands, a function per subject.
+
+use std::path::{Path, PathBuf};
+
+use eframe::egui::{self, ViewportCommand};
+
+use super::{
+    command::{Command, FileCommand, KeyframeEdit, Purpose, RowCommand, Toggle, ViewCommand},
+    log::Level,
+    panels::{Panels, timeline::Timeline},
+    screen::Inputs,
+    session::UndoState,
+    state::State,
+};
+use crate::preset_file::{self, PresetFile};
+
+/// Carries out `command`.
+pub fn apply(ctx: &egui::Context, state: &mut State, panels: &mut Panels, command: Command) {
+    if command.begins_step() {
+        state.history.close();
+    }
+    match command {
+        Command::Perform(action) => apply(ctx, state, panels, action.into()),
+        Command::Undo => {
+            state.observe(false);
+            let before = state.history.undo();
+            restore(state, before, "undo");
+        }
+        Command::Redo => {
+            state.observe(false);
+            let after = state.history.redo();
+            restore(state, after, "redo");
+        }
+        Command::Quit => ctx.send_viewport_cmd(ViewportCommand::Close),
+        Command::Edit(edit) => report(state, |state| state.session.edit(edit)),
+        Command::Randomize => match state.session.randomize() {
+            Some(seed) => state.notify(Level::Info, format!("Randomized with seed {seed}")),
+            None => state.notify(Level::Info, "No effect is enabled, so there is nothing to randomize"),
+        },
+        Command::PinOptions(pins, axes) => {
+            let mut accuracy = state.session.preset().accuracy;
+            axes.iter().for_each(|axis| accuracy.pins.set(axis, pins.get(axis)));
+            state.session.preset_mut().accuracy = accuracy;
+            state.observe(false);
+            state.history.close();
+            state.notify(Level::Info, format!("Switched to {}", pins.words()));
+        }
+        Command::Keyframe(edit) => keyframe(state, &mut panels.timeline, edit),
+        Command::RemoveSelectedKey => match panels.timeline.selected.take() {
+            Some(key) => keyframe(state, &mut panels.timeline, KeyframeEdit::Remove(key)),
+            None => state.notify(Level::Info, "No key is selected. Click one on the timeline first."),
+        },
+        Command::Time(command) => {
+            if let Some(hint) = state.session.change_time(command) {
+                state.notify(Level::Info, hint);
+            }
+        }
+        Command::Row(command) => row(ctx, state, command),
+        Command::File(command) => file(ctx, state, panels, command),
+        Command::View(command) => view(state, panels, command),
+        Command::MeasureSweep(request, progress) => {
+            if let Some(scene) = state.session.scene() {
+                state.jobs.measure(state.screen.gpu.summary.name.clone(), scene.clone(), *request, progress);
+            }
+        }
+        Command::Toggle(which) => toggle(state, panels, which),
+        Command::Verify => verify(state, panels),
+        Command::Mute(effect, true) => drop(state.session.muted.insert(effect.name)),
+        Command::Mute(effect, false) => drop(state.session.muted.remove(effect.name)),
+        Command::HoverRow { path, value } => state.clipboard.hovered_row = Some((path, value)),
+        Command::CopyPreset => {
+            ctx.copy_text(preset_file::to_line(&state.session.preset_file));
+            state.notify(Level::Info, "Copied the preset as one line of text");
+        }
+        Command::Paste => ctx.send_viewport_cmd(ViewportCommand::RequestPaste),
+        Command::PasteText(text) => paste(state, panels, &text),
+        Command::ClearLog => state.log.clear(),
+        Command::Log(level, text) => state.log.add(level, text),
+        Command::Notify(level, text) => state.notify(level, text),
+    }
+}
+
+/// Notifies of an error of `change`.
+fn report(state: &mut State, change: impl FnOnce(&mut State) -> Result<(), String>) {
+    if let Err(error) = change(state) {
+        state.notify(Level::Error, error);
+    }
+}
+
+/// Goes to a state of the history; `what` names the step if there is none.
+fn restore(state: &mut State, to: Option<UndoState>, what: &str) {
+    match to.map(|to| state.session.restore(to)) {
+        None => state.notify(Level::Info, format!("Nothing to {what}")),
+        Some(Some(name)) => state.notify(Level::Info, format!("Back to {name}")),
+        Some(None) => {}
+    }
+}
+
+fn keyframe(state: &mut State, timeline: &mut Timeline, edit: KeyframeEdit) {
+    match state.session.edit_keyframe(edit) {
+        Ok(Some(key)) => timeline.selected = Some(key),
+        Ok(None) => {}
+        Err(error) => state.notify(Level::Error, error),
+    }
+}
+
+fn row(ctx: &egui::Context, state: &mut State, command: RowCommand) {
+    match command {
+        RowCommand::Reset(path) => report(state, |state| state.session.reset(&path)),
+        RowCommand::ResetGroup(group) => report(state, |state| state.session.reset_group(&group)),
+        RowCommand::ToggleKey(path) => report(state, |state| state.session.toggle_key(&path)),
+        RowCommand::Copy(text) => {
+            ctx.copy_text(text.clone());
+            state.notify(Level::Info, format!("Copied {text}"));
+        }
+        RowCommand::Paste(path) => {
+            state.clipboard.paste_into = Some(path);
+            ctx.send_viewport_cmd(ViewportCommand::RequestPaste);
+        }
+    }
+}
+
+/// Text from the clipboard: a preset, or a value for a row.
+fn paste(state: &mut State, panels: &mut Panels, text: &str) {
+    state.history.close();
+    let hovered = state.clipboard.hovered_row.as_ref().map(|(path, _)| path.clone());
+    let row = state.clipboard.paste_into.take().or(hovered);
+    let is_preset = text.trim_start().starts_with("rasterlab1:");
+    match row {
+        Some(path) if !is_preset => match state.session.set_text(&path, text.trim()) {
+            Ok(()) => state.notify(Level::Info, format!("{path} = {}", text.trim())),
+            Err(error) => state.notify(Level::Error, error),
+        },
+        _ => match preset_file::from_line(text) {
+            Ok(pasted) => {
+                open_preset(state, panels, pasted);
+                state.notify(Level::Info, "Pasted a preset");
+            }
+            Err(error) => state.notify(Level::Error, error.to_string()),
+        },
+    }
+}
+
+fn view(state: &mut State, panels: &mut Panels, command: ViewCommand) {
+    match command {
+        ViewCommand::ToggleOverlays => state.overlays.toggle(),
+        ViewCommand::ShowOverlay(overlay, on) => state.overlays.set(overlay, on),
+        ViewCommand::OverlayGain(gain) => state.overlays.gain = gain,
+        ViewCommand::CycleCompare => panels.viewport.compare.cycle(),
+        ViewCommand::FlipCompare => panels.viewport.compare.flip(),
+        ViewCommand::Pick(parameter) => state.picking = parameter,
+    }
+}
+
+fn toggle(state: &mut State, panels: &mut Panels, which: Toggle) {
+    let open = &mut state.open;
+    match which {
+        Toggle::Panels => {
+            let is_any = open.left || open.right || open.timeline;
+            (open.left, open.right, open.timeline) = (!is_any, !is_any, !is_any);
+        }
+        Toggle::Timeline => open.timeline = !open.timeline,
+        Toggle::Sweep => open.sweep = !open.sweep,
+        Toggle::Log => open.log = !open.log,
+        Toggle::CheatSheet => open.cheat_sheet = !open.cheat_sheet,
+        Toggle::Extremes => panels.extremes.toggle(),
+    }
+}
+
+/// Starts the oracle on the picture that is shown, and on the one it is compared with. Nothing while it runs.
+fn verify(state: &mut State, panels: &Panels) {
+    if state.verification.is_running() {
+        return;
+    }
+    verify_shown(state);
+    let compared = panels.viewport.compare.unjudged();
+    if let Some(inputs) = compared.filter(|inputs| Some(inputs) != state.screen.requested()) {
+        judge(state, inputs);
+    }
+}
+
+/// Starts the oracle on the picture that is shown.
+pub fn verify_shown(state: &mut State) {
+    if let Some(inputs) = state.screen.requested().cloned() {
+        judge(state, inputs);
+    }
+}
+
+fn judge(state: &mut State, inputs: Inputs) {
+    state.verification.started();
+    state.jobs.verify(state.screen.gpu.clone(), inputs);
+}
+
+/// Makes `opened` the open preset, as an undo step of its own.
+fn open_preset(state: &mut State, panels: &mut Panels, opened: PresetFile) {
+    state.history.close();
+    for warning in &opened.warnings {
+        state.log.add(Level::Warning, warning.clone());
+    }
+    state.session.open(opened);
+    panels.timeline = Timeline::default();
+    state.observe(false);
+    state.history.close();
+}
+
+fn file(ctx: &egui::Context, state: &mut State, panels: &mut Panels, command: FileCommand) {
+    match command {
+        FileCommand::Ask(purpose) => {
+            let output = state.session.preset().output.size;
+            let size = state.screen.requested().map_or(output, |inputs| [inputs.view.width, inputs.view.height]);
+            panels.dialogs.ask_path(purpose, &state.session, state.presets_dir.as_deref(), size);
+        }
+        FileCommand::Browse(purpose, path) => state.jobs.ask_path(purpose, path),
+        FileCommand::Open(what) => match preset_file::open(&what, state.presets_dir.as_deref()) {
+            Ok(opened) => open_and_notify(state, panels, opened),
+            Err(error) => state.notify(Level::Error, error.to_string()),
+        },
+        FileCommand::OpenPreset(opened) => open_and_notify(state, panels, *opened),
+        FileCommand::OpenNeighbour(step) => match panels.browser.neighbour(&state.session.preset_file.id, step).cloned() {
+            Some(neighbour) => open_and_notify(state, panels, neighbour),
+            None => state.notify(Level::Info, "There are no presets to open"),
+        },
+        FileCommand::Save => {
+            let open = &state.session.preset_file;
+            match open.path.clone().filter(|_| !open.read_only) {
+                Some(path) => save_to(state, panels, path),
+                None => file(ctx, state, panels, FileCommand::Ask(Purpose::SaveAs)),
+            }
+        }
+        FileCommand::SaveTo(path) => save_to(state, panels, path),
+        FileCommand::Write { path, drops_muted } => {
+            if drops_muted {
+                state.session.drop_muted();
+            }
+            write(state, panels, &path);
+        }
+        FileCommand::Export { path, size } => export(state, path, size),
+        FileCommand::DiscardAndQuit => {
+            state.may_quit = true;
+            ctx.send_viewport_cmd(ViewportCommand::Close);
+        }
+    }
+}
+
+fn open_and_notify(state: &mut State, panels: &mut Panels, opened: PresetFile) {
+    let title = opened.title().to_owned();
+    open_preset(state, panels, opened);
+    state.notify(Level::Info, format!("Opened {title}"));
+}
+
+/// Saves there; asks first if effects are muted.
+fn save_to(state: &mut State, panels: &mut Panels, path: PathBuf) {
+    if state.session.muted.is_empty() {
+        write(state, panels, &path);
+    } else {
+        panels.dialogs.ask_muted(path);
+    }
+}
+
+fn write(state: &mut State, panels: &mut Panels, path: &Path) {
+    if let Some(folder) = path.parent().filter(|folder| !folder.as_os_str().is_empty())
+        && let Err(error) = std::fs::create_dir_all(folder)
+    {
+        return state.notify(Level::Error, format!("{}: the folder cannot be created: {error}", folder.display()));
+    }
+    match preset_file::save(&mut state.session.preset_file, path) {
+        Ok(()) => {
+            let saved = state.session.preset_file.clone();
+            panels.browser.refresh(state.presets_dir.as_deref(), &saved.id);
+            state.session.remember(saved);
+            state.notify(Level::Info, format!("Saved {}", path.display()));
+        }
+        Err(error) => state.notify(Level::Error, error.to_string()),
+    }
+}
+
+fn export(state: &mut State, path: PathBuf, size: [u32; 2]) {
+    let (Some(scene), Some(requested)) = (state.session.scene(), state.screen.requested()) else {
+        return state.notify(Level::Error, "There is no picture to export yet");
+    };
+    let inputs = Inputs { view: state.session.view_at(scene, size), ..requested.clone() };
+    let mut exported = state.session.preset_file.clone();
+    exported.preset = state.session.shown_preset();
+    state.jobs.export(state.screen.gpu.clone(), inputs, exported, path);
+}

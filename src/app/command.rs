@@ -1,0 +1,263 @@
+//! Commands: everything a panel can ask of the window. A panel reads the state and sends commands; `App` carries them
+//! out when the panel has been shown.
+
+use std::{cell::RefCell, path::PathBuf, sync::Arc};
+
+use glam::DVec3;
+
+use super::{
+    action::Action,
+    key_id::KeyId,
+    log::Level,
+    overlay::Overlay,
+    sweep::request::{Progress, Request},
+};
+use crate::{
+    accuracy::{Axis, PinnedOptions},
+    effects::Effect,
+    params::{Field, Value},
+    preset::{ClipPlayback, Clock, animation::Easing, settings::Setting},
+    preset_file::PresetFile,
+    scene::camera::Camera,
+};
+
+/// A parameter of an effect.
+pub type Parameter = (&'static Effect, &'static Field);
+
+/// See the variants.
+pub enum Command {
+    /// Does what a key or a menu entry does, as an undo step of its own.
+    Perform(Action),
+    Undo,
+    Redo,
+    Quit,
+    Edit(Edit),
+    /// Gives every parameter of the enabled effects a random value of its soft range.
+    Randomize,
+    Keyframe(KeyframeEdit),
+    /// Removes the key that is selected on the timeline.
+    RemoveSelectedKey,
+    Time(TimeCommand),
+    Row(RowCommand),
+    File(FileCommand),
+    View(ViewCommand),
+    /// Measures every combination of the options of the request's axes.
+    MeasureSweep(Box<Request>, Arc<Progress>),
+    /// Pins the options of these axes, as an undo step of its own.
+    PinOptions(PinnedOptions, Vec<&'static Axis>),
+    Toggle(Toggle),
+    /// Starts the oracle on the picture that is shown, and on the one it is compared with.
+    Verify,
+    /// Hides an effect (true) or shows it again. Muting is a viewing aid and is not saved.
+    Mute(&'static Effect, bool),
+    /// The pointer is over the row of this parameter or setting: copy and paste apply to its value.
+    HoverRow {
+        path: String,
+        value: String,
+    },
+    /// Puts the preset on the clipboard.
+    CopyPreset,
+    /// Requests the clipboard's text.
+    Paste,
+    /// The clipboard's text: a preset, or a value for the row that a menu or the pointer chose.
+    PasteText(String),
+    ClearLog,
+    Log(Level, String),
+    /// Logs a message and shows it as a toast.
+    Notify(Level, String),
+}
+
+/// A change of the preset.
+pub enum Edit {
+    Setting(&'static Setting, Value),
+    /// Sets a parameter; an animated one gets a key at the time shown.
+    Parameter(Parameter, Value),
+    Enable(&'static Effect),
+    Disable(&'static Effect),
+    /// Disables the first effect and enables the second.
+    Replace(&'static str, &'static Effect),
+    /// Swaps two positions of the stack.
+    Swap(usize, usize),
+    /// Shows another built-in scene, without a camera.
+    Builtin(&'static str),
+    /// The same built-in scene with other parameters.
+    BuiltinQuery(String),
+    /// The name of the scene's own camera, without a camera of the preset; empty for the first.
+    SceneCamera(String),
+    Play(ClipPlayback),
+    Clock(Clock),
+    /// The camera of the preset; none for the automatic one.
+    Camera(Option<Camera>),
+    FrameScene,
+    LookAlong(DVec3),
+    ToggleOrthographic,
+}
+
+/// A change of the keys of an animated parameter.
+pub enum KeyframeEdit {
+    Move(KeyId, f64),
+    Ease(KeyId, Easing),
+    Remove(KeyId),
+}
+
+/// A change of the time that is shown. Seconds.
+pub enum TimeCommand {
+    Show(f64),
+    /// Shows the preset's own time.
+    ShowOwn,
+    /// Makes the time shown the preset's own.
+    Keep,
+    PlayOrPause,
+    Pause,
+    /// Frames to step by, negative for back.
+    Step(f64),
+    Rewind,
+    /// While true the time stands still, as a pointer holds it.
+    Hold(bool),
+}
+
+/// What a row of the inspector can be asked besides changing its value.
+#[derive(Clone, Debug, PartialEq)]
+pub enum RowCommand {
+    Reset(String),
+    /// Resets everything of the same effect or table.
+    ResetGroup(String),
+    /// Puts this text on the clipboard.
+    Copy(String),
+    /// Pastes into this path.
+    Paste(String),
+    /// Sets a key of this parameter at the time shown, or removes the one that is there.
+    ToggleKey(String),
+}
+
+/// What a file dialog is for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Purpose {
+    Open,
+    SaveAs,
+    Export,
+}
+
+pub enum FileCommand {
+    /// Shows the dialog for this purpose.
+    Ask(Purpose),
+    /// Shows the system's file dialog, beginning at this path.
+    Browse(Purpose, PathBuf),
+    /// Opens a preset, model or picture by path, id or `builtin:QUERY`.
+    Open(String),
+    OpenPreset(Box<PresetFile>),
+    /// Opens the preset so many places further in the gallery, wrapping round.
+    OpenNeighbour(isize),
+    /// Saves to the preset's own file, or asks for one.
+    Save,
+    /// Saves there; asks first if effects are muted.
+    SaveTo(PathBuf),
+    /// Saves there, without the muted effects if `drops_muted`.
+    Write {
+        path: PathBuf,
+        drops_muted: bool,
+    },
+    /// Draws the picture at this size and saves it as a PNG.
+    Export {
+        path: PathBuf,
+        size: [u32; 2],
+    },
+    /// Closes the window without saving.
+    DiscardAndQuit,
+}
+
+pub enum ViewCommand {
+    ToggleOverlays,
+    ShowOverlay(Overlay, bool),
+    OverlayGain(u8),
+    CycleCompare,
+    FlipCompare,
+    /// The next click on the model sets this point; none cancels.
+    Pick(Option<Parameter>),
+}
+
+/// What can be shown or hidden.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Toggle {
+    /// Left, right and timeline together.
+    Panels,
+    Timeline,
+    Sweep,
+    Log,
+    CheatSheet,
+    Extremes,
+}
+
+impl From<Action> for Command {
+    fn from(action: Action) -> Self {
+        use super::orbit::{FRONT, SIDE, TOP};
+        match action {
+            Action::Open => Self::File(FileCommand::Ask(Purpose::Open)),
+            Action::Save => Self::File(FileCommand::Save),
+            Action::SaveAs => Self::File(FileCommand::Ask(Purpose::SaveAs)),
+            Action::Export => Self::File(FileCommand::Ask(Purpose::Export)),
+            Action::CopyPreset => Self::CopyPreset,
+            Action::PastePreset => Self::Paste,
+            Action::Quit => Self::Quit,
+            Action::Undo => Self::Undo,
+            Action::Redo => Self::Redo,
+            Action::Randomize => Self::Randomize,
+            Action::PreviousPreset => Self::File(FileCommand::OpenNeighbour(-1)),
+            Action::NextPreset => Self::File(FileCommand::OpenNeighbour(1)),
+            Action::Frame => Self::Edit(Edit::FrameScene),
+            Action::Front => Self::Edit(Edit::LookAlong(FRONT)),
+            Action::Side => Self::Edit(Edit::LookAlong(SIDE)),
+            Action::Top => Self::Edit(Edit::LookAlong(TOP)),
+            Action::Orthographic => Self::Edit(Edit::ToggleOrthographic),
+            Action::Play => Self::Time(TimeCommand::PlayOrPause),
+            Action::StepBack => Self::Time(TimeCommand::Step(-1.0)),
+            Action::StepForward => Self::Time(TimeCommand::Step(1.0)),
+            Action::Rewind => Self::Time(TimeCommand::Rewind),
+            Action::RemoveKey => Self::RemoveSelectedKey,
+            Action::Verify => Self::Verify,
+            Action::Overlays => Self::View(ViewCommand::ToggleOverlays),
+            Action::Compare => Self::View(ViewCommand::CycleCompare),
+            Action::FlipAb => Self::View(ViewCommand::FlipCompare),
+            Action::Panels => Self::Toggle(Toggle::Panels),
+            Action::Timeline => Self::Toggle(Toggle::Timeline),
+            Action::Sweep => Self::Toggle(Toggle::Sweep),
+            Action::Log => Self::Toggle(Toggle::Log),
+            Action::CheatSheet => Self::Toggle(Toggle::CheatSheet),
+            Action::Extremes => Self::Toggle(Toggle::Extremes),
+        }
+    }
+}
+
+impl Command {
+    /// Does it end the undo step before it? Drags send edits in every frame and do not.
+    pub fn begins_step(&self) -> bool {
+        match self {
+            Self::Perform(action) => !matches!(action, Action::Undo | Action::Redo),
+            Self::Row(_) | Self::PinOptions(..) | Self::Keyframe(KeyframeEdit::Ease(..) | KeyframeEdit::Remove(_)) => true,
+            _ => false,
+        }
+    }
+}
+
+/// The commands that panels have sent and that wait to be carried out.
+#[derive(Default)]
+pub struct Commands(RefCell<Vec<Command>>);
+
+impl Commands {
+    pub fn send(&self, command: Command) {
+        self.0.borrow_mut().push(command);
+    }
+
+    pub fn edit(&self, edit: Edit) {
+        self.send(Command::Edit(edit));
+    }
+
+    pub fn perform(&self, action: Action) {
+        self.send(Command::Perform(action));
+    }
+
+    /// Those sent since the last call, in order.
+    pub fn take(&self) -> Vec<Command> {
+        self.0.take()
+    }
+}

@@ -1,0 +1,72 @@
+//! The device of the window: how it is opened, and how it presents.
+
+use std::sync::Arc;
+
+use anyhow::Context as _;
+use eframe::{egui, egui_wgpu, wgpu};
+
+use crate::gpu::{
+    Gpu,
+    device::{self, AdapterChoice},
+};
+
+/// Size and settings of the window.
+pub fn native_options(adapter: &AdapterChoice) -> eframe::NativeOptions {
+    eframe::NativeOptions {
+        viewport: egui::ViewportBuilder::default()
+            .with_title("rasterlab")
+            .with_app_id("rasterlab")
+            .with_inner_size([1280.0, 800.0])
+            .with_min_inner_size([900.0, 600.0])
+            .with_drag_and_drop(true),
+        wgpu_options: egui_wgpu::WgpuConfiguration { wgpu_setup: wgpu_setup(adapter), ..Default::default() },
+        // Dithering would change the bytes that the kernels drew.
+        dithering: false,
+        ..Default::default()
+    }
+}
+
+/// How the window and its tests open their device: the chosen adapter, the features and limits that the kernels need, and
+/// back ends that run compute.
+pub fn wgpu_setup(adapter: &AdapterChoice) -> egui_wgpu::WgpuSetup {
+    let mut setup = egui_wgpu::WgpuSetupCreateNew::without_display_handle();
+    setup.instance_descriptor.backends &= device::BACKENDS;
+    setup.device_descriptor = Arc::new(Gpu::descriptor);
+    let choice = adapter.clone();
+    setup.native_adapter_selector = Some(Arc::new(move |adapters, surface| select(adapters, surface, &choice)));
+    egui_wgpu::WgpuSetup::CreateNew(setup)
+}
+
+fn select(adapters: &[wgpu::Adapter], surface: Option<&wgpu::Surface<'_>>, choice: &AdapterChoice) -> Result<wgpu::Adapter, String> {
+    let mut suitable: Vec<&wgpu::Adapter> = adapters.iter().filter(|a| surface.is_none_or(|s| a.is_surface_supported(s))).collect();
+    suitable.sort_by_key(|adapter| match adapter.get_info().device_type {
+        wgpu::DeviceType::DiscreteGpu => 0,
+        wgpu::DeviceType::IntegratedGpu => 1,
+        wgpu::DeviceType::VirtualGpu => 2,
+        wgpu::DeviceType::Other => 3,
+        wgpu::DeviceType::Cpu => 4,
+    });
+    let names: Vec<String> = suitable.iter().map(|adapter| adapter.get_info().name).collect();
+    device::choose(choice, &names).map(|index| suitable[index].clone()).map_err(|error| error.to_string())
+}
+
+/// The window's device, for the kernels.
+///
+/// # Errors
+/// If the window has no wgpu device.
+pub fn adopt(cc: &eframe::CreationContext<'_>) -> anyhow::Result<(egui_wgpu::RenderState, Arc<Gpu>)> {
+    let window = cc.wgpu_render_state.clone().context("the window has no wgpu device")?;
+    let gpu = Gpu::adopt(&window.adapter, window.device.clone(), window.queue.clone());
+    Ok((window, gpu))
+}
+
+/// Presents without waiting for the display on a software adapter, which is slower than any display. Waiting would also
+/// start a thread in the driver that takes X11 events away from the window, which then does not react to them (seen with
+/// lavapipe of Mesa 22.3).
+pub fn tune(frame: &mut eframe::Frame, gpu: &Gpu) {
+    if gpu.summary.software
+        && let Some(config) = frame.wgpu_surface_config()
+    {
+        frame.set_wgpu_surface_config(egui_wgpu::SurfaceConfig { present_mode: wgpu::PresentMode::AutoNoVsync, ..config });
+    }
+}

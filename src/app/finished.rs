@@ -1,0 +1,54 @@
+//! Taking in what jobs have finished.
+
+use eframe::egui;
+
+use super::{
+    command::Commands, findings::Findings, jobs::Done, log::Level, measured::error_text, panels::Panels, screen::Inputs, state::State,
+    verification::Verdict,
+};
+
+/// Takes in the result of a job.
+pub fn finish(ctx: &egui::Context, state: &mut State, panels: &mut Panels, commands: &Commands, done: Done) {
+    match done {
+        Done::Scene(key, Ok(scene)) => {
+            for note in &scene.notes {
+                state.log.add(Level::Warning, format!("{}: {note}", scene.name));
+            }
+            state.session.scenes.arrived(key, Some(scene));
+        }
+        Done::Scene(key, Err(error)) => {
+            state.session.scenes.arrived(key, None);
+            state.notify(Level::Error, error);
+        }
+        Done::Verdict(inputs, findings) => verdict(state, panels, *inputs, findings),
+        Done::Sweep(points) => {
+            if let Some(error) = panels.sweep.arrived(points) {
+                state.log.add(Level::Error, error);
+            }
+        }
+        Done::Thumbnail(id, image) => panels.browser.thumbnail_arrived(ctx, id, image),
+        Done::Export(path, Ok(())) => state.notify(Level::Info, format!("Saved {}", path.display())),
+        Done::Export(_, Err(error)) => state.notify(Level::Error, error),
+        Done::Path(purpose, path) => {
+            panels.dialogs.path_arrived(purpose, path, state.session.preset_file.path.as_deref(), commands);
+        }
+    }
+}
+
+/// Keeps the verdict of the oracle on `of`: for A, for B, or for both if they are the same picture.
+fn verdict(state: &mut State, panels: &mut Panels, of: Inputs, findings: Result<Box<Findings>, String>) {
+    state.verification.ended();
+    match findings {
+        Ok(findings) => {
+            state.log.add(Level::Info, format!("verified {}: {}", state.session.title(), error_text(&findings.accuracy)));
+            let verdict = Verdict { of, findings: findings.into() };
+            if !panels.viewport.compare.take_verdict(&verdict) || state.screen.requested() == Some(&verdict.of) {
+                state.verification.set(verdict);
+            }
+        }
+        Err(error) => {
+            state.notify(Level::Error, error);
+            state.verification.fail(of);
+        }
+    }
+}

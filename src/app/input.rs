@@ -1,0 +1,61 @@
+//! Keyboard shortcuts, the clipboard and dropped files, as commands.
+
+use std::path::PathBuf;
+
+use eframe::egui::{self, Event, KeyboardShortcut};
+
+use super::{
+    action::{ACTIONS, Action},
+    command::{Command, Commands, FileCommand, RowCommand},
+    log::Level,
+    state::State,
+};
+
+/// Sends the actions whose shortcuts were pressed. Shortcuts without Ctrl do nothing while a widget has the focus or the
+/// camera flies; those with Ctrl do nothing while text is typed.
+pub fn shortcuts(ctx: &egui::Context, state: &State, commands: &Commands) {
+    let is_typing = ctx.text_edit_focused();
+    let is_focused = ctx.egui_wants_keyboard_input();
+    let is_flying = ctx.input(|i| i.pointer.secondary_down());
+    for (action, _, shortcuts) in ACTIONS {
+        let is_allowed = |k: &&KeyboardShortcut| if k.modifiers.command { !is_typing } else { !is_focused && !is_flying };
+        if shortcuts.iter().filter(is_allowed).any(|shortcut| ctx.input_mut(|i| i.consume_shortcut(shortcut))) {
+            commands.perform(*action);
+        }
+    }
+    if !is_typing {
+        clipboard(ctx, state, commands);
+    }
+}
+
+/// Copies the value of the row under the pointer, or the preset, and pastes.
+fn clipboard(ctx: &egui::Context, state: &State, commands: &Commands) {
+    for event in ctx.input(|i| i.events.clone()) {
+        match event {
+            Event::Copy => match &state.clipboard.hovered_row {
+                Some((_, value)) => commands.send(Command::Row(RowCommand::Copy(value.clone()))),
+                None => commands.perform(Action::CopyPreset),
+            },
+            Event::Paste(text) => commands.send(Command::PasteText(text)),
+            _ => {}
+        }
+    }
+}
+
+/// Opens one of the files that were dropped on the window: a preset before a model before a picture, since a model may be
+/// dropped with the files that it needs.
+pub fn dropped_files(ctx: &egui::Context, commands: &Commands) {
+    let mut dropped = ctx.input(|i| i.raw.dropped_files.iter().map(|file| file.path().to_owned()).collect::<Vec<_>>());
+    let rank = |path: &PathBuf| {
+        let extension = path.extension().map(|extension| extension.to_ascii_lowercase());
+        ["toml", "glb", "gltf", "png"].iter().position(|known| extension.as_ref().is_some_and(|e| e == known)).unwrap_or(usize::MAX)
+    };
+    dropped.sort_by_key(rank);
+    let Some(first) = dropped.first() else { return };
+    commands.send(Command::File(FileCommand::Open(first.to_string_lossy().into_owned())));
+    if dropped.len() > 1 {
+        let name = first.file_name().unwrap_or_default().to_string_lossy();
+        let text = format!("{} files were dropped. One is opened at a time: {name}", dropped.len());
+        commands.send(Command::Notify(Level::Info, text));
+    }
+}

@@ -1,0 +1,38 @@
+//! Names of keyframes, and what a row shows of them.
+
+use crate::{
+    effects::Effect,
+    preset::{Preset, animation::Track},
+};
+
+/// What the key button of a row shows.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Keying {
+    /// Not animated.
+    Still,
+    /// Animated, with no key at the time shown.
+    Between,
+    /// Animated, with a key at the time shown.
+    OnKey,
+}
+
+/// One key of one parameter.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct KeyId {
+    pub effect: &'static Effect,
+    pub field: &'static str,
+    pub time_s: f64,
+}
+
+impl KeyId {
+    /// `facet.front`.
+    pub fn path(&self) -> String {
+        format!("{}.{}", self.effect.name, self.field)
+    }
+
+    /// Its track and its index there.
+    pub fn find<'a>(&self, preset: &'a Preset) -> Option<(&'a Track, usize)> {
+        let track = preset.animation.get(self.effect.name, self.field)?;
+        Some((track, track.at(self.time_s)?))
+    }
+}

@@ -1,0 +1,257 @@
+//! Extreme cases: runs the table of the stress test on a second device, while the window stays responsive.
+
+use std::{
+    panic::{AssertUnwindSafe, catch_unwind},
+    sync::{
+        Arc, Mutex, MutexGuard,
+        atomic::{AtomicBool, Ordering},
+    },
+    time::Duration,
+};
+
+use eframe::egui::{self, Color32, RichText, Ui};
+
+use crate::{
+    app::{
+        command::{Command, Commands},
+        log::Level,
+        panel::Panel,
+        state::State,
+        theme,
+    },
+    gpu::{Gpu, Renderer, device::AdapterChoice},
+    stress::{self, Case, Outcome, Report},
+};
+
+/// The window, and the run that it started last.
+#[derive(Default)]
+pub struct Extremes {
+    is_open: bool,
+    filter: String,
+    seed: u32,
+    run: Option<Arc<Run>>,
+    /// The log says how the run ended.
+    is_reported: bool,
+}
+
+/// What the running thread and the window share.
+struct Run {
+    planned: usize,
+    stop: AtomicBool,
+    progress: Mutex<Progress>,
+}
+
+#[derive(Default)]
+struct Progress {
+    /// What is being drawn.
+    now: String,
+    reports: Vec<Report>,
+    /// Why there is no run.
+    error: Option<String>,
+    is_over: bool,
+}
+
+impl Run {
+    fn progress(&self) -> MutexGuard<'_, Progress> {
+        self.progress.lock().unwrap_or_else(|poisoned| poisoned.into_inner())
+    }
+
+    /// Draws the cases one after another on a device of their own.
+    fn draw(&self, cases: &[&Case], adapter: String, seed: u32, ctx: &egui::Context) -> Result<(), String> {
+        let gpu = Gpu::open(&AdapterChoice::Named(adapter)).map_err(|error| error.to_string())?;
+        let mut renderer = Renderer::new(gpu.clone());
+        for case in cases {
+            let report = case.run(&mut renderer, seed, &|what| {
+                self.progress().now = format!("{}: {what}", case.name);
+                ctx.request_repaint_after(Duration::from_millis(100));
+                !self.stop.load(Ordering::Relaxed)
+            });
+            let (is_failure, is_stopped) = (report.outcome.is_failure(), report.outcome == Outcome::Stopped);
+            self.progress().reports.push(report);
+            ctx.request_repaint();
+            if gpu.is_lost() {
+                return Err("the device that drew the cases was lost".into());
+            }
+            if is_stopped {
+                break;
+            }
+            if is_failure {
+                // A failure may leave wrong data in queues and caches.
+                renderer = Renderer::new(gpu.clone());
+            }
+        }
+        Ok(())
+    }
+}
+
+impl Extremes {
+    /// True while a run is under way.
+    pub fn is_running(&self) -> bool {
+        self.run.as_ref().is_some_and(|run| !run.progress().is_over)
+    }
+
+    fn start(&mut self, adapter: String, ctx: &egui::Context) {
+        let cases = stress::chosen(Some(&self.filter));
+        let run = Arc::new(Run { planned: cases.len(), stop: AtomicBool::new(false), progress: Mutex::default() });
+        let (seed, ctx, shared) = (self.seed, ctx.clone(), run.clone());
+        let work = move || {
+            let result = catch_unwind(AssertUnwindSafe(|| shared.draw(&cases, adapter, seed, &ctx)))
+                .unwrap_or_else(|_| Err("the run failed because of a bug; see the terminal for details".into()));
+            let mut progress = shared.progress();
+            progress.error = result.err();
+            progress.is_over = true;
+            ctx.request_repaint();
+        };
+        if let Err(error) = std::thread::Builder::new().name("extremes".into()).spawn(work) {
+            *run.progress() =
+                Progress { error: Some(format!("no thread could be started: {error}")), is_over: true, ..Progress::default() };
+        }
+        (self.run, self.is_reported) = (Some(run), false);
+    }
+
+    fn stop(&self) {
+        if let Some(run) = &self.run {
+            run.stop.store(true, Ordering::Relaxed);
+        }
+    }
+}
+
+impl Drop for Extremes {
+    fn drop(&mut self) {
+        self.stop();
+    }
+}
+
+/// `52 cases: 51 passed, 1 failed`, without outcomes that did not occur.
+fn summary(reports: &[Report]) -> String {
+    let mut words = Vec::new();
+    for report in reports {
+        let word = report.outcome.word().to_lowercase();
+        match words.iter_mut().find(|(known, _)| *known == word) {
+            Some((_, count)) => *count += 1,
+            None => words.push((word, 1)),
+        }
+    }
+    let counts: Vec<String> = words.iter().map(|(word, count)| format!("{count} {word}")).collect();
+    format!("{} {}: {}", reports.len(), if reports.len() == 1 { "case" } else { "cases" }, counts.join(", "))
+}
+
+impl Extremes {
+    /// Shows or hides the window.
+    pub fn toggle(&mut self) {
+        self.is_open = !self.is_open;
+    }
+
+    /// Reports in the log how a run ended, once.
+    fn report(&mut self, commands: &Commands) {
+        let Some(run) = self.run.clone().filter(|_| !self.is_reported) else { return };
+        let progress = run.progress();
+        if !progress.is_over {
+            return;
+        }
+        self.is_reported = true;
+        for report in progress.reports.iter().filter(|report| report.outcome.is_failure()) {
+            let seed = report.seed.map_or_else(String::new, |seed| format!(", seed {seed}"));
+            let why = report.outcome.why().unwrap_or_default();
+            commands.send(Command::Log(Level::Error, format!("extreme case {}, {}{seed}: {why}", report.number, report.name)));
+        }
+        commands.send(match &progress.error {
+            Some(error) => Command::Notify(Level::Error, format!("Extreme cases: {error}")),
+            None => Command::Notify(Level::Info, format!("Extreme cases: {}", summary(&progress.reports))),
+        });
+    }
+
+    fn start_ui(&mut self, ui: &mut Ui, adapter: &str) {
+        let about = "Slivers, ties, NaN, full queues, huge numbers: each case is compared with the oracle, on a second device.";
+        ui.label(theme::weak(about));
+        ui.add_space(theme::HALF);
+        let is_running = self.is_running();
+        ui.horizontal(|ui| {
+            let found = stress::chosen(Some(&self.filter)).len();
+            if is_running {
+                if ui.button("Stop the run").clicked() {
+                    self.stop();
+                }
+            } else {
+                let text = if found == 1 { "Run 1 case".to_owned() } else { format!("Run {found} cases") };
+                let button = egui::Button::new(text).fill(theme::ACCENT_GROUND);
+                if ui.add_enabled(found > 0, button).clicked() {
+                    self.start(adapter.to_owned(), ui.ctx());
+                }
+            }
+            let filter = egui::TextEdit::singleline(&mut self.filter).hint_text("All; a number or part of a name");
+            ui.add_enabled(!is_running, filter.desired_width(220.0)).accessible_name("Cases");
+            ui.label("Seed");
+            ui.add_enabled(!is_running, egui::DragValue::new(&mut self.seed)).accessible_name("Seed of the random cases");
+        });
+    }
+}
+
+impl Panel for Extremes {
+    fn ui(&mut self, ui: &mut Ui, state: &State, commands: &Commands) {
+        self.report(commands);
+        let mut is_open = self.is_open;
+        let area = ui.ctx().content_rect();
+        egui::Window::new("Extreme cases")
+            .open(&mut is_open)
+            .collapsible(false)
+            .resizable(false)
+            .default_width(560.0)
+            .pivot(egui::Align2::CENTER_CENTER)
+            .default_pos(area.center())
+            .show(ui.ctx(), |ui| {
+                ui.set_width(560.0);
+                self.start_ui(ui, &state.screen.gpu.summary.name);
+                if let Some(run) = &self.run {
+                    let height = (area.height() - 260.0).max(120.0);
+                    run_ui(ui, run, height);
+                }
+            });
+        self.is_open = is_open;
+    }
+}
+
+fn run_ui(ui: &mut Ui, run: &Run, height: f32) {
+    let progress = run.progress();
+    let done = progress.reports.len();
+    ui.add_space(theme::HALF);
+    if progress.is_over {
+        let failed = progress.reports.iter().any(|report| report.outcome.is_failure());
+        let color = if failed || progress.error.is_some() { theme::RED } else { theme::GREEN };
+        ui.label(RichText::new(summary(&progress.reports)).color(color));
+    } else {
+        ui.add(egui::ProgressBar::new(done as f32 / run.planned.max(1) as f32).text(format!("{done} of {}", run.planned)));
+        ui.add(egui::Label::new(theme::weak(progress.now.as_str())).truncate());
+    }
+    if let Some(error) = &progress.error {
+        theme::notice(ui, theme::RED, error);
+    }
+    egui::ScrollArea::vertical().max_height(height).auto_shrink([false, true]).show(ui, |ui| {
+        let (failed, others): (Vec<_>, Vec<_>) = progress.reports.iter().partition(|report| report.outcome.is_failure());
+        for report in failed.into_iter().chain(others) {
+            report_ui(ui, report);
+        }
+    });
+}
+
+fn report_ui(ui: &mut Ui, report: &Report) {
+    let color: Color32 = match report.outcome {
+        Outcome::Passed | Outcome::Refused(_) => theme::GREEN,
+        Outcome::Skipped(_) | Outcome::Stopped => theme::AMBER,
+        Outcome::Failed(_) => theme::RED,
+    };
+    ui.horizontal(|ui| {
+        ui.add_sized([24.0, 16.0], egui::Label::new(theme::weak(report.number.to_string())));
+        ui.add(egui::Label::new(RichText::new(report.name).color(theme::TEXT_STRONG)).truncate())
+            .on_hover_text(format!("{}\nExpected: {}", report.about, report.expectation));
+        ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
+            ui.label(theme::weak(format!("{:.0} ms", report.ms)));
+            ui.label(RichText::new(report.outcome.word().to_lowercase()).color(color));
+        });
+    });
+    let seed = report.seed.filter(|_| report.outcome.is_failure()).map(|seed| format!("Seed {seed}"));
+    let why = report.outcome.why().map(str::to_owned);
+    for text in why.into_iter().chain(seed).chain(report.notes.iter().cloned()) {
+        ui.label(theme::weak(text));
+    }
+}

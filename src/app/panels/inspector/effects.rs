@@ -1,0 +1,143 @@
+//! The effects of the inspector: the stack in order, with the parameters of each, then every effect that is not in it.
+
+use eframe::egui::{self, RichText, Ui};
+
+use super::rows::parameter_ui;
+use crate::{
+    app::{
+        action::Action,
+        command::{Command, Commands, Edit, Parameter, ViewCommand},
+        icons::{Icon, icon_button},
+        log::Level,
+        state::State,
+        theme,
+    },
+    effects::{EFFECTS, Effect},
+    params::ValueType,
+};
+
+pub fn effects_ui(ui: &mut Ui, state: &State, commands: &Commands) {
+    ui.horizontal(|ui| {
+        ui.label(theme::heading("Effects"));
+        ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
+            if icon_button(ui, Icon::Dice, "Randomize effects (R)").clicked() {
+                commands.perform(Action::Randomize);
+            }
+        });
+    });
+    let stack: Vec<&'static Effect> = state.session.preset().stack.0.iter().map(|enabled| enabled.effect).collect();
+    if stack.is_empty() {
+        ui.label(theme::weak("No effect is enabled, so the picture shows plain base colours. Enable one below."));
+        ui.add_space(theme::HALF);
+    }
+    for (index, effect) in stack.iter().enumerate() {
+        enabled_ui(ui, state, commands, effect, (index, stack.len()));
+    }
+    ui.add_space(theme::HALF);
+    for effect in EFFECTS.iter().copied().filter(|effect| !stack.contains(effect)) {
+        ui.horizontal(|ui| disabled_ui(ui, state, commands, effect));
+    }
+    ui.add_space(theme::GAP);
+}
+
+/// An effect of the stack at `index` of `count`.
+fn enabled_ui(ui: &mut Ui, state: &State, commands: &Commands, effect: &'static Effect, (index, count): (usize, usize)) {
+    let frame = egui::Frame::new().fill(theme::BAR).corner_radius(6.0).inner_margin(egui::Margin { left: 8, right: 4, top: 3, bottom: 5 });
+    let is_muted = state.session.muted.contains(effect.name);
+    frame.show(ui, |ui| {
+        ui.set_min_width(ui.available_width());
+        header_ui(ui, commands, effect, (index, count), is_muted);
+        ui.add_enabled_ui(!is_muted, |ui| parameters_ui(ui, state, commands, effect));
+    });
+    ui.add_space(theme::HALF);
+}
+
+fn header_ui(ui: &mut Ui, commands: &Commands, effect: &'static Effect, (index, count): (usize, usize), is_muted: bool) {
+    ui.horizontal(|ui| {
+        ui.set_min_height(theme::ROW);
+        let mut on = true;
+        let title = RichText::new(title(effect)).strong().color(theme::TEXT_STRONG);
+        if ui.checkbox(&mut on, title).on_hover_text(effect.about).accessible_name(effect.name).clicked() {
+            commands.edit(Edit::Disable(effect));
+        }
+        ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
+            ui.spacing_mut().item_spacing.x = 0.0;
+            let (icon, verb) = if is_muted { (Icon::EyeShut, "Show") } else { (Icon::Eye, "Mute") };
+            if icon_button(ui, icon, &format!("{verb} {}", effect.name)).clicked() {
+                commands.send(Command::Mute(effect, !is_muted));
+            }
+            for (icon, verb, to) in [(Icon::Down, "later", index + 1), (Icon::Up, "earlier", index.wrapping_sub(1))] {
+                let button = ui.add_enabled_ui(to < count, |ui| icon_button(ui, icon, &format!("Apply {} {verb}", effect.name)));
+                if button.inner.clicked() {
+                    commands.edit(Edit::Swap(index, to));
+                }
+            }
+        });
+    });
+}
+
+fn parameters_ui(ui: &mut Ui, state: &State, commands: &Commands, effect: &'static Effect) {
+    let Some(words) = state.session.shown_words(effect) else { return };
+    for field in effect.fields.iter().filter(|field| field.is_shown(effect.fields, &words)) {
+        parameter_ui(ui, &state.session, commands, (effect, field), &words);
+        // Directions are points without a unit, and extents are never negative.
+        if field.value_type == ValueType::Point && field.unit == "m" && field.hard[0] < 0.0 {
+            pick_ui(ui, state.picking, commands, (effect, field));
+        }
+    }
+}
+
+/// A button that lets the next click on the model set a point.
+fn pick_ui(ui: &mut Ui, picking: Option<Parameter>, commands: &Commands, (effect, field): Parameter) {
+    let is_picking = picking == Some((effect, field));
+    ui.horizontal(|ui| {
+        ui.add_space(theme::GAP);
+        let button = ui.selectable_label(is_picking, if is_picking { "Click on the model" } else { "Pick on the model" });
+        let button = button.on_hover_text("The next click in the picture sets this point");
+        if button.accessible_name(format!("Pick {}.{}", effect.name, field.name)).clicked() {
+            commands.send(Command::View(ViewCommand::Pick((!is_picking).then_some((effect, field)))));
+        }
+    });
+}
+
+/// An effect that is not in the stack, and the one that it would replace.
+fn disabled_ui(ui: &mut Ui, state: &State, commands: &Commands, effect: &'static Effect) {
+    ui.set_min_height(theme::ROW);
+    ui.add_space(theme::GAP);
+    let mut on = false;
+    let clicked = ui.checkbox(&mut on, title(effect)).on_hover_text(effect.about).accessible_name(effect.name).clicked();
+    let Some(conflict) = state.session.preset().stack.rival(effect) else {
+        if clicked {
+            commands.edit(Edit::Enable(effect));
+        }
+        return;
+    };
+    if clicked {
+        commands.send(Command::Notify(Level::Warning, conflict.to_string()));
+    }
+    let (name, other) = (effect.name, conflict.first);
+    let instead = ui.small_button(format!("instead of {other}")).accessible_name(format!("{name} instead of {other}"));
+    if instead.on_hover_text(format!("Disable {other} and enable {name}")).clicked() {
+        commands.edit(Edit::Replace(other, effect));
+    }
+}
+
+/// `triangle_id` as `Triangle id`.
+fn title(effect: &Effect) -> String {
+    let mut name = effect.name.replace('_', " ");
+    if let Some(first) = name.get_mut(..1) {
+        first.make_ascii_uppercase();
+    }
+    name
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn effects_read_as_words() {
+        let names: Vec<_> = EFFECTS.iter().map(|effect| title(effect)).collect();
+        assert!(names.contains(&"Triangle id".to_owned()), "{names:?}");
+    }
+}

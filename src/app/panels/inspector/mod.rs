@@ -1,0 +1,84 @@
+//! The inspector: every value of the preset in folders, from the registry that preset files and the command line use too.
+
+mod clips;
+mod effects;
+mod overlays;
+mod report;
+pub mod rows;
+mod scene;
+
+use eframe::egui::{self, Ui};
+
+use self::rows::{folder, setting_ui, settings_folder};
+use crate::{
+    accuracy::AXES,
+    app::{
+        action::Action,
+        command::{Commands, Edit},
+        panel::Panel,
+        state::State,
+        theme,
+    },
+    preset::{Tier, settings::CAMERA},
+};
+
+/// See the module's first line.
+pub struct Inspector;
+
+impl Panel for Inspector {
+    fn ui(&mut self, ui: &mut Ui, state: &State, commands: &Commands) {
+        egui::ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
+            ui.spacing_mut().item_spacing.y = 2.0;
+            effects::effects_ui(ui, state, commands);
+            scene::scene_ui(ui, state, commands);
+            clips::clips_ui(ui, state, commands);
+            camera_ui(ui, state, commands);
+            let clock = ["clock.time_s", "clock.range_s", "clock.loop", "clock.speed"];
+            settings_folder(ui, state, commands, ("Clock", false), &clock);
+            accuracy_ui(ui, state, commands);
+            folder(ui, "Overlays", false, |ui| overlays::overlays_ui(ui, state, commands));
+            folder(ui, "Timing", true, |ui| report::timing_ui(ui, state));
+            folder(ui, "Kernel", false, |ui| report::kernel_ui(ui, state));
+            settings_folder(ui, state, commands, ("Preset", false), &["name", "about", "output.size"]);
+            ui.add_space(16.0);
+        });
+    }
+}
+
+fn camera_ui(ui: &mut Ui, state: &State, commands: &Commands) {
+    folder(ui, "Camera", false, |ui| {
+        if state.session.preset().camera.is_none() {
+            ui.label(theme::weak("The whole scene is framed automatically. Move the camera in the picture, or set it to type numbers."));
+            if ui.button("Set the camera").clicked()
+                && let Some(camera) = state.session.camera()
+            {
+                commands.edit(Edit::Camera(Some(camera)));
+            }
+            return;
+        }
+        let settings = CAMERA.settings.iter().filter(|setting| setting.name != "up");
+        settings.for_each(|setting| setting_ui(ui, state, commands, &setting.path()));
+        ui.horizontal(|ui| {
+            if ui.button("Frame scene").clicked() {
+                commands.perform(Action::Frame);
+            }
+            if ui
+                .button("Automatic")
+                .on_hover_text("Remove the camera from the preset, so that the scene is framed automatically")
+                .clicked()
+            {
+                commands.edit(Edit::Camera(None));
+            }
+        });
+    });
+}
+
+fn accuracy_ui(ui: &mut Ui, state: &State, commands: &Commands) {
+    folder(ui, "Accuracy", true, |ui| {
+        setting_ui(ui, state, commands, "accuracy.tier");
+        AXES.iter().for_each(|axis| setting_ui(ui, state, commands, &format!("accuracy.{}", axis.name)));
+        if state.session.preset().accuracy.tier == Tier::Reference {
+            ui.label(theme::weak("Reference uses the most exact option on every axis."));
+        }
+    });
+}

@@ -1,0 +1,52 @@
+//! The folder of the overlays: which are shown, and how many pixels each paints.
+
+use eframe::egui::{self, RichText, Ui};
+
+use crate::app::{
+    command::{Command, Commands, ViewCommand},
+    icons::swatch,
+    overlay::Overlay,
+    state::State,
+    text::grouped,
+    theme,
+};
+
+pub fn overlays_ui(ui: &mut Ui, state: &State, commands: &Commands) {
+    let findings = state.findings();
+    for overlay in Overlay::listed() {
+        if overlay == Overlay::Ties {
+            ui.add_space(theme::HALF);
+        }
+        ui.horizontal(|ui| {
+            ui.set_min_height(theme::ROW);
+            ui.spacing_mut().item_spacing.x = 6.0;
+            let mut on = state.overlays.contains(overlay);
+            let label = format!("Overlay {}", overlay.name().to_lowercase());
+            if ui.checkbox(&mut on, overlay.name()).on_hover_text(overlay.doc()).accessible_name(label).clicked() {
+                commands.send(Command::View(ViewCommand::ShowOverlay(overlay, on)));
+            }
+            swatch(ui, overlay.color());
+            if overlay == Overlay::Colour {
+                gain_ui(ui, state.overlays.gain, commands);
+            }
+            if let Some(findings) = findings {
+                let count = findings.count(overlay);
+                let is_bad = overlay.is_error() && overlay.fault().is_some() && count > 0;
+                ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
+                    let text = RichText::new(grouped(count)).monospace();
+                    ui.label(text.color(if is_bad { theme::RED } else { theme::TEXT_WEAK })).on_hover_text("pixels");
+                });
+            }
+        });
+    }
+    if findings.is_none() {
+        ui.label(theme::weak("To count pixels, show an overlay or press Verify."));
+    }
+}
+
+fn gain_ui(ui: &mut Ui, mut gain: u8, commands: &Commands) {
+    let drag = egui::DragValue::new(&mut gain).range(1..=255).prefix("× ").speed(0.3);
+    if ui.add(drag).accessible_name("Overlay gain").on_hover_text("Factor of the colour difference").changed() {
+        commands.send(Command::View(ViewCommand::OverlayGain(gain)));
+    }
+}

@@ -1,0 +1,62 @@
+//! The log panel, and the toasts over the picture.
+
+use eframe::egui::{self, Rect, RichText, Ui};
+
+use crate::app::{
+    command::{Command, Commands},
+    icons::{Icon, icon_button},
+    log::{Entry, Log, times},
+    panel::Panel,
+    state::State,
+    theme,
+};
+
+/// Lists every message.
+pub struct LogPanel;
+
+impl Panel for LogPanel {
+    fn ui(&mut self, ui: &mut Ui, state: &State, commands: &Commands) {
+        let log = &state.log;
+        ui.horizontal(|ui| {
+            ui.label(theme::heading("Log"));
+            ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
+                if icon_button(ui, Icon::Cross, "Clear the log").clicked() {
+                    commands.send(Command::ClearLog);
+                }
+                if ui.small_button("Copy").on_hover_text("Copy the whole log").clicked() {
+                    ui.ctx().copy_text(log.to_text());
+                }
+            });
+        });
+        egui::ScrollArea::vertical().auto_shrink(false).stick_to_bottom(true).show(ui, |ui| {
+            if log.entries().len() == 0 {
+                ui.label(theme::weak("No messages yet. Loading, saving and every error are reported here."));
+            }
+            for Entry { level, text, count } in log.entries() {
+                ui.horizontal_wrapped(|ui| {
+                    ui.spacing_mut().item_spacing.x = 8.0;
+                    ui.label(RichText::new(level.word()).monospace().color(level.color()));
+                    ui.label(RichText::new(text).monospace().color(theme::TEXT));
+                    ui.label(theme::weak(times(*count)));
+                });
+            }
+        });
+    }
+}
+
+/// Shows the toasts at the lower edge of `area`, and repaints when the next one ends.
+pub fn toasts_ui(ctx: &egui::Context, log: &Log, area: Rect, now_s: f64) {
+    let Some(wait_s) = log.next_toast_ends_in_s(now_s) else { return };
+    ctx.request_repaint_after_secs(wait_s as f32);
+    egui::Area::new(egui::Id::unique("toasts"))
+        .order(egui::Order::Foreground)
+        .pivot(egui::Align2::CENTER_BOTTOM)
+        .fixed_pos(area.center_bottom() - egui::vec2(0.0, 16.0))
+        .interactable(false)
+        .show(ctx, |ui| {
+            ui.set_max_width((area.width() - 32.0).clamp(200.0, 560.0));
+            for toast in log.toasts(now_s) {
+                theme::toast_frame(toast.level.color()).show(ui, |ui| ui.label(RichText::new(&toast.text).color(theme::TEXT_STRONG)));
+            }
+        });
+}

@@ -1,0 +1,51 @@
+//! The panels of the window. Each owns its state, reads that of the window, and sends commands.
+
+pub mod cheat_sheet;
+pub mod dialogs;
+pub mod extremes;
+pub mod inspector;
+pub mod log;
+pub mod preset_browser;
+pub mod sweep;
+pub mod timeline;
+pub mod topbar;
+pub mod viewport;
+
+use std::path::Path;
+
+use self::{
+    cheat_sheet::CheatSheet, dialogs::Dialogs, extremes::Extremes, inspector::Inspector, log::LogPanel, preset_browser::PresetBrowser,
+    sweep::SweepPanel, timeline::Timeline, topbar::TopBar, viewport::Viewport,
+};
+
+/// All panels.
+pub struct Panels {
+    pub topbar: TopBar,
+    pub browser: PresetBrowser,
+    pub inspector: Inspector,
+    pub timeline: Timeline,
+    pub sweep: SweepPanel,
+    pub log: LogPanel,
+    pub viewport: Viewport,
+    pub dialogs: Dialogs,
+    pub cheat_sheet: CheatSheet,
+    pub extremes: Extremes,
+}
+
+impl Panels {
+    /// The panels at the start, with the presets of `presets_dir` in the gallery.
+    pub fn new(presets_dir: Option<&Path>) -> Self {
+        Self {
+            topbar: TopBar,
+            browser: PresetBrowser::new(presets_dir),
+            inspector: Inspector,
+            timeline: Timeline::default(),
+            sweep: SweepPanel::default(),
+            log: LogPanel,
+            viewport: Viewport::default(),
+            dialogs: Dialogs::default(),
+            cheat_sheet: CheatSheet::default(),
+            extremes: Extremes::default(),
+        }
+    }
+}

@@ -1,0 +1,128 @@
+//! The left panel: presets with thumbnails, and scenes with their parameters.
+
+mod entry;
+mod scenes;
+
+use std::{
+    collections::{HashMap, VecDeque},
+    path::Path,
+};
+
+use eframe::egui::{self, RichText, Ui, vec2};
+
+use crate::{
+    app::{
+        command::{Command, Commands, FileCommand},
+        log::Level,
+        panel::Panel,
+        state::State,
+        theme,
+    },
+    preset_file::{self, GalleryEntry, PresetFile},
+};
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Tab {
+    Presets,
+    Scene,
+}
+
+/// See the module's first line.
+pub struct PresetBrowser {
+    entries: Vec<GalleryEntry>,
+    /// Thumbnails by preset id.
+    thumbnails: HashMap<String, egui::TextureHandle>,
+    /// Ids of the presets that wait for a thumbnail; one is drawn at a time.
+    queue: VecDeque<String>,
+    drawing: Option<String>,
+    tab: Tab,
+}
+
+impl PresetBrowser {
+    /// The presets of `folder`, of the user's folder, and the built-in ones.
+    pub fn new(folder: Option<&Path>) -> Self {
+        let entries = preset_file::gallery(folder);
+        let queue = entries.iter().filter(|entry| entry.preset_file.is_ok()).map(|entry| entry.id.clone()).collect();
+        Self { entries, queue, thumbnails: HashMap::new(), drawing: None, tab: Tab::Presets }
+    }
+
+    /// True while thumbnails are still to come.
+    pub fn is_busy(&self) -> bool {
+        self.drawing.is_some() || !self.queue.is_empty()
+    }
+
+    /// Reads the folders again and redraws the thumbnail of the preset `changed`.
+    pub fn refresh(&mut self, folder: Option<&Path>, changed: &str) {
+        self.entries = preset_file::gallery(folder);
+        if self.entries.iter().any(|entry| entry.id == changed) && !self.queue.iter().any(|id| id == changed) {
+            self.queue.push_back(changed.to_owned());
+        }
+    }
+
+    /// The preset whose thumbnail is to be drawn next; none while one is being drawn.
+    pub fn next_thumbnail(&mut self) -> Option<PresetFile> {
+        if self.drawing.is_some() {
+            return None;
+        }
+        let id = self.queue.pop_front()?;
+        let found = self.entries.iter().find(|entry| entry.id == id)?.preset_file.as_ref().ok()?.clone();
+        self.drawing = Some(id);
+        Some(found)
+    }
+
+    /// Takes a thumbnail that was drawn; none if the scene is too large or broken.
+    pub fn thumbnail_arrived(&mut self, ctx: &egui::Context, id: String, image: Option<egui::ColorImage>) {
+        if self.drawing.as_ref() == Some(&id) {
+            self.drawing = None;
+        }
+        if let Some(image) = image {
+            let texture = ctx.load_texture(format!("preset {id}"), image, egui::TextureOptions::LINEAR);
+            self.thumbnails.insert(id, texture);
+        }
+    }
+
+    /// The preset `step` places after the one called `id`, wrapping round; the first if `id` is not in the gallery.
+    pub fn neighbour(&self, id: &str, step: isize) -> Option<&PresetFile> {
+        let good: Vec<&GalleryEntry> = self.entries.iter().filter(|entry| entry.preset_file.is_ok()).collect();
+        let here = good.iter().position(|entry| entry.id == id);
+        let there = here.map_or(0, |here| (here as isize + step).rem_euclid(good.len() as isize) as usize);
+        good.get(there)?.preset_file.as_ref().ok()
+    }
+
+    fn presets_ui(&self, ui: &mut Ui, state: &State, commands: &Commands) {
+        if self.entries.is_empty() {
+            ui.label(theme::weak("No presets found. Build one on the right and save it with Ctrl+S."));
+        }
+        let open = &state.session.preset_file;
+        for entry in &self.entries {
+            let is_open = entry.id == open.id && entry.path == open.path;
+            let is_modified = is_open && state.session.is_modified();
+            if !entry::entry_ui(ui, entry, self.thumbnails.get(&entry.id), is_open, is_modified).clicked() {
+                continue;
+            }
+            commands.send(match &entry.preset_file {
+                Ok(found) => Command::File(FileCommand::OpenPreset(Box::new(found.clone()))),
+                Err(error) => Command::Notify(Level::Error, error.to_string()),
+            });
+        }
+    }
+}
+
+impl Panel for PresetBrowser {
+    fn ui(&mut self, ui: &mut Ui, state: &State, commands: &Commands) {
+        ui.horizontal(|ui| {
+            ui.spacing_mut().item_spacing.x = 2.0;
+            for (tab, text) in [(Tab::Presets, "Presets"), (Tab::Scene, "Scene")] {
+                let button = egui::Button::selectable(self.tab == tab, RichText::new(text).strong()).min_size(vec2(72.0, theme::ROW));
+                if ui.add(button).clicked() {
+                    self.tab = tab;
+                }
+            }
+        });
+        ui.add_space(theme::HALF);
+        egui::ScrollArea::vertical().id_salt(self.tab as u8).auto_shrink(false).show(ui, |ui| match self.tab {
+            Tab::Presets => self.presets_ui(ui, state, commands),
+            Tab::Scene => scenes::scenes_ui(ui, state, commands),
+        });
+    }
+}

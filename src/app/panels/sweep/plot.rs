@@ -1,0 +1,230 @@
+//! The plot: error over milliseconds, both logarithmic, with a line for exact pictures below. egui_plot has no such axes, so
+//! points are plotted by their logarithms and ticks are labelled with the values themselves.
+
+use eframe::egui::{self, Rect, RichText, Sense, Ui, vec2};
+use egui_plot::{GridMark, HLine, Line, LineStyle, Plot, PlotPoint, PlotPoints, Points};
+
+use crate::app::{
+    sweep::point::{Metric, Point, front},
+    text::short,
+    theme,
+};
+
+/// How far below the least error zero is drawn, decades.
+const DROP: f64 = 0.8;
+
+/// The ranges of the axes, as logarithms.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Span {
+    x: [f64; 2],
+    y: [f64; 2],
+    /// Position of the line of exact pictures.
+    exact: f64,
+}
+
+impl Span {
+    fn of(positions: &[[f64; 2]]) -> Self {
+        let ends = |values: &mut dyn Iterator<Item = f64>| {
+            values.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], v| [low.min(v), high.max(v)])
+        };
+        let widened = |[low, high]: [f64; 2], least: f64| {
+            let air = (0.07 * (high - low)).max((least - (high - low)).max(0.0) / 2.0);
+            [low - air, high + air]
+        };
+        let x = ends(&mut positions.iter().map(|position| position[0].log10()));
+        let errors = ends(&mut positions.iter().filter(|position| position[1] > 0.0).map(|position| position[1].log10()));
+        let [low, high] = if errors[0].is_finite() { errors } else { [0.0, 0.0] };
+        let exact = low - DROP;
+        Self { x: widened(x, 0.25), y: [exact - 0.12 * (high - exact).max(1.0), high + 0.12 * (high - exact).max(1.0)], exact }
+    }
+
+    fn at(&self, [ms, error]: [f64; 2]) -> [f64; 2] {
+        [ms.log10(), if error > 0.0 { error.log10() } else { self.exact }]
+    }
+}
+
+/// Round values between two ends, at most eight.
+fn ticks(low: f64, high: f64) -> Vec<f64> {
+    let decades = |low: f64, high: f64| (low.log10().floor() as i32)..=(high.log10().ceil() as i32);
+    let within = |v: &f64| (low..=high).contains(v);
+    if high / low >= 3.0 {
+        let digits: &[f64] = match high / low {
+            ..12.0 => &[1.0, 2.0, 3.0, 5.0, 7.0],
+            12.0..2e3 => &[1.0, 2.0, 5.0],
+            _ => &[1.0],
+        };
+        return decades(low, high).flat_map(|e| digits.iter().map(move |d| d * 10f64.powi(e))).filter(within).collect();
+    }
+    let rough = (high - low) / 4.0;
+    let unit = 10f64.powf(rough.log10().floor());
+    let step = [1.0, 2.0, 5.0, 10.0].into_iter().map(|digit| digit * unit).find(|step| *step >= rough).unwrap_or(rough);
+    let first = (low / step).ceil() as i64;
+    (first..).map(|k| k as f64 * step).take_while(within).collect()
+}
+
+fn marks(span: [f64; 2]) -> Vec<GridMark> {
+    let step_size = (span[1] - span[0]) / 4.0;
+    ticks(10f64.powf(span[0]), 10f64.powf(span[1])).into_iter().map(|v| GridMark { value: v.log10(), step_size }).collect()
+}
+
+/// What a frame of the plot shows.
+pub struct Shown<'a> {
+    pub points: &'a [Point],
+    pub metric: Metric,
+    /// True for the combination that the picture uses.
+    pub current: &'a dyn Fn(&Point) -> bool,
+}
+
+/// Draws the plot into the available space. Returns the index of the point that was clicked.
+pub fn plot_ui(ui: &mut Ui, shown: &Shown<'_>) -> Option<usize> {
+    let Shown { points, metric, current } = *shown;
+    let plotted: Vec<(usize, [f64; 2])> = points.iter().enumerate().filter_map(|(i, p)| Some((i, p.position(metric)?))).collect();
+    if plotted.is_empty() {
+        let text = format!("No combination has both a time and its {}.", metric.name());
+        ui.centered_and_justified(|ui| ui.label(theme::weak(text)));
+        return None;
+    }
+    let span = Span::of(&plotted.iter().map(|(_, position)| *position).collect::<Vec<_>>());
+    let front = front(points, metric);
+    let along: PlotPoints<'_> = front.iter().filter_map(|&i| points[i].position(metric)).map(|position| span.at(position)).collect();
+    let style = |i: usize| match (front.contains(&i), points[i].is_dominated) {
+        (true, _) => (theme::ACCENT, true, 4.5),
+        (false, true) => (theme::TEXT_WEAK, false, 3.5),
+        (false, false) => (theme::TEXT, true, 3.5),
+    };
+    let response = Plot::new("sweep plot")
+        .allow_drag(false)
+        .allow_zoom(false)
+        .allow_scroll(false)
+        .allow_boxed_zoom(false)
+        .allow_axis_zoom_drag(false)
+        .allow_double_click_reset(false)
+        .show_x(false)
+        .show_y(false)
+        .show_background(false)
+        .grid_color(theme::LINE)
+        .grid_fade(0.0)
+        .sense(Sense::hover())
+        .label_formatter(|_| None)
+        .x_axis_label(RichText::new("milliseconds, median").size(11.0))
+        .y_axis_label(RichText::new(format!("{}, {}", metric.name(), metric.unit())).size(11.0))
+        .x_grid_spacer(|_| marks(span.x))
+        .y_grid_spacer(|_| {
+            let above = [span.exact + 0.5 * DROP, span.y[1]];
+            let mut marks = marks(above);
+            marks.push(GridMark { value: span.exact, step_size: 10.0 });
+            marks
+        })
+        .x_axis_formatter(|mark, _| short(10f64.powf(mark.value)))
+        .y_axis_formatter(
+            move |mark, _| {
+                if (mark.value - span.exact).abs() < 1e-9 { "exact".into() } else { short(10f64.powf(mark.value)) }
+            },
+        )
+        .y_axis_min_width(46.0)
+        .show(ui, |plot| {
+            plot.set_plot_bounds_x(span.x[0]..=span.x[1]);
+            plot.set_plot_bounds_y(span.y[0]..=span.y[1]);
+            let line = HLine::new("exact", span.exact).color(theme::GREEN.gamma_multiply(0.7)).width(1.0);
+            plot.hline(line.style(LineStyle::dashed_dense()).allow_hover(false));
+            plot.line(Line::new("front", along).color(theme::ACCENT.gamma_multiply(0.7)).width(1.5).allow_hover(false));
+            for &(i, position) in &plotted {
+                let (color, filled, radius) = style(i);
+                let at = span.at(position);
+                plot.points(Points::new("", vec![at]).color(color).filled(filled).radius(radius).allow_hover(false));
+                if current(&points[i]) {
+                    plot.points(Points::new("", vec![at]).color(theme::AMBER).filled(false).radius(8.0).allow_hover(false));
+                }
+            }
+        });
+    let mut clicked = None;
+    for &(i, position) in &plotted {
+        let [x, y] = span.at(position);
+        let at = response.transform.position_from_point(&PlotPoint::new(x, y));
+        let handle = ui.interact(Rect::from_center_size(at, vec2(15.0, 15.0)), egui::Id::unique(("sweep point", i)), Sense::click());
+        let words = points[i].pins.words();
+        handle.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Button, true, format!("Point {words}")));
+        if handle.hovered() || handle.has_focus() {
+            ui.painter().circle_stroke(at, 7.0, (1.5, theme::TEXT_STRONG));
+            ui.set_cursor_icon(egui::CursorIcon::PointingHand);
+        }
+        let role = match () {
+            () if current(&points[i]) => "used by this preset",
+            () if front.contains(&i) => "on the Pareto front: nothing faster is as exact. Click to use it.",
+            () if points[i].is_dominated => "dominated. Click to use it.",
+            () => "Click to use it.",
+        };
+        if handle.on_hover_ui(|ui| details_ui(ui, &points[i], role)).clicked() {
+            clicked = Some(i);
+        }
+    }
+    clicked
+}
+
+/// Options and numbers of a point.
+fn details_ui(ui: &mut Ui, point: &Point, role: &str) {
+    ui.label(RichText::new(point.pins.words().replace(' ', "\n")).monospace().color(theme::TEXT_STRONG));
+    let [p50, p95] = point.ms.map_or(["not timed".to_owned(), String::new()], |ms| ms.map(short));
+    ui.label(format!("{p50} ms median, {p95} ms at 95 %, {} samples", point.samples));
+    for metric in Metric::of(std::slice::from_ref(point)) {
+        let error = point.error(metric).map_or_else(|| "not measured".into(), |error| format!("{} {}", short(error), metric.unit()));
+        ui.label(format!("{}: {error}", metric.name()));
+    }
+    for (name, value) in &point.more {
+        ui.label(theme::weak(format!("{name}: {}", short(*value))));
+    }
+    if let Some(note) = &point.note {
+        ui.label(RichText::new(note).color(theme::AMBER));
+    }
+    ui.label(theme::weak(role));
+}
+
+/// The legend of the marks, from right to left.
+pub fn legend_ui(ui: &mut Ui) {
+    let marks = [
+        (theme::AMBER, false, 6.0, "this preset"),
+        (theme::TEXT_WEAK, false, 3.5, "dominated"),
+        (theme::TEXT, true, 3.5, "off the front"),
+        (theme::ACCENT, true, 4.0, "on the front"),
+    ];
+    ui.spacing_mut().item_spacing.x = 4.0;
+    for (color, filled, radius, text) in marks {
+        ui.label(RichText::new(text).size(11.0).color(theme::TEXT_WEAK));
+        let (rect, _) = ui.allocate_exact_size(vec2(14.0, 16.0), Sense::hover());
+        match filled {
+            true => ui.painter().circle_filled(rect.center(), radius, color),
+            false => ui.painter().circle_stroke(rect.center(), radius, (1.2, color)),
+        };
+        ui.add_space(theme::HALF);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn ticks_are_round_few_and_inside() {
+        assert_eq!(ticks(0.8, 130.0), [1.0, 2.0, 5.0, 10.0, 20.0, 50.0, 100.0]);
+        assert_eq!(ticks(66.0, 440.0), [70.0, 100.0, 200.0, 300.0]);
+        assert_eq!(ticks(0.5, 20_000.0), [1.0, 10.0, 100.0, 1_000.0, 10_000.0]);
+        for (low, high) in [(3.9, 5.3), (0.011, 0.012), (91.0, 180.0), (1.0, 11.0), (999.0, 1001.0)] {
+            let ticks = ticks(low, high);
+            assert!((2..=8).contains(&ticks.len()) && ticks.iter().all(|t| (low..=high).contains(t)), "{low}..{high}: {ticks:?}");
+        }
+    }
+
+    #[test]
+    fn exact_is_below_the_least_error_and_everything_is_finite() {
+        for positions in [vec![[2.0, 0.0]], vec![[2.0, 0.0], [1.0, 50.0], [0.5, 9e5]], vec![[1e-3, 1e-9], [1e4, 1.0]]] {
+            let span = Span::of(&positions);
+            let ends = [span.x, span.y].concat();
+            assert!(ends.iter().all(|v| v.is_finite()) && span.x[0] < span.x[1] && span.y[0] < span.y[1], "{span:?}");
+            for position in positions {
+                let [x, y] = span.at(position);
+                assert!((span.x[0]..=span.x[1]).contains(&x) && (span.y[0]..=span.y[1]).contains(&y), "{position:?} in {span:?}");
+                assert!(position[1] == 0.0 && y == span.exact || y > span.exact, "{position:?} in {span:?}");
+            }
+        }
+    }
+}

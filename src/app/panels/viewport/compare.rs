@@ -1,0 +1,164 @@
+//! Compare: A, the most exact picture of this preset or a picture that was kept, beside B, the preset as it is. Both have the
+//! same camera and time. They are shown with a divider that can be dragged, side by side, one instead of the other, or as
+//! their difference; below each are its time and its error.
+
+use eframe::egui::Rect;
+
+use crate::{
+    app::{
+        log::Level,
+        screen::{Inputs, Screen},
+        state::State,
+        verification::Verdict,
+    },
+    preset::{AccuracyRequest, Preset, Tier},
+};
+
+/// How A and B are shown.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Mode {
+    /// A on the left of the divider, B on the right.
+    Wipe,
+    /// All of A in the left half, all of B in the right.
+    SideBySide,
+    Difference,
+    A,
+    B,
+}
+
+/// How A and B differ, by their verdicts.
+pub struct Difference {
+    pub of: [Verdict; 2],
+    pub text: String,
+}
+
+/// The comparison. Closed, it has no renderer.
+pub struct Compare {
+    pub mode: Option<Mode>,
+    /// Position of the divider, as a fraction of the picture's width.
+    pub split: f32,
+    /// The preset that A shows; none for the reference.
+    pub kept: Option<Box<Preset>>,
+    pub screen: Option<Screen>,
+    pub verdict: Option<Verdict>,
+    /// Factor of the difference.
+    pub gain: u8,
+    /// The newest difference between verdicts on A and B.
+    pub difference: Option<Difference>,
+}
+
+impl Default for Compare {
+    fn default() -> Self {
+        Self { mode: None, split: 0.5, kept: None, screen: None, verdict: None, gain: 16, difference: None }
+    }
+}
+
+impl Compare {
+    pub fn is_open(&self) -> bool {
+        self.mode.is_some()
+    }
+
+    /// Position of the divider, as a fraction of the picture's width; none unless the wipe is open.
+    pub fn wipe_split(&self) -> Option<f32> {
+        (self.mode == Some(Mode::Wipe)).then_some(self.split)
+    }
+
+    /// The part of `rect` that B is fitted into.
+    pub fn side_b(&self, rect: Rect) -> Rect {
+        if self.mode == Some(Mode::SideBySide) { rect.split_left_right_at_fraction(0.5).1 } else { rect }
+    }
+
+    /// True if B cannot be seen.
+    pub fn hides_b(&self) -> bool {
+        matches!(self.mode, Some(Mode::A | Mode::Difference))
+    }
+
+    /// Goes on to the next of wipe, side by side, difference and closed.
+    pub fn cycle(&mut self) {
+        match self.mode {
+            Some(Mode::Wipe) => self.mode = Some(Mode::SideBySide),
+            Some(Mode::SideBySide) => self.mode = Some(Mode::Difference),
+            Some(Mode::Difference) => self.close(),
+            None | Some(Mode::A | Mode::B) => self.mode = Some(Mode::Wipe),
+        }
+    }
+
+    /// Shows A instead of B, or B instead of A.
+    pub fn flip(&mut self) {
+        self.mode = Some(if self.mode == Some(Mode::A) { Mode::B } else { Mode::A });
+    }
+
+    /// Drops A's renderer with all that it holds.
+    pub fn close(&mut self) {
+        *self = Self { split: self.split, gain: self.gain, kept: self.kept.take(), ..Self::default() };
+    }
+
+    /// What A shows, as `A` is labelled.
+    pub fn name(&self) -> &str {
+        match &self.kept {
+            None => "reference",
+            Some(kept) if kept.name.is_empty() => "kept preset",
+            Some(kept) => &kept.name,
+        }
+    }
+
+    /// True while a report on A is still to come.
+    pub fn is_waiting(&self) -> bool {
+        self.screen.as_ref().is_some_and(Screen::is_waiting)
+    }
+
+    /// Time of A's newest frame, milliseconds; 0 if there is none.
+    pub fn ms(&self) -> f64 {
+        let report = self.screen.as_ref().and_then(Screen::report);
+        if self.mode == Some(Mode::B) { 0.0 } else { report.and_then(|report| report.gpu_ms).unwrap_or(0.0) }
+    }
+
+    /// The picture of A as it is asked for.
+    pub fn requested(&self) -> Option<&Inputs> {
+        self.screen.as_ref().and_then(Screen::requested)
+    }
+
+    /// The picture of A, if it has no verdict yet.
+    pub fn unjudged(&self) -> Option<Inputs> {
+        let judged = self.verdict.as_ref().map(|verdict| &verdict.of);
+        self.mode.and(self.requested()).filter(|requested| judged != Some(requested)).cloned()
+    }
+
+    /// Keeps a verdict if it is on A. Returns true if so.
+    pub fn take_verdict(&mut self, verdict: &Verdict) -> bool {
+        let is_ours = self.requested() == Some(&verdict.of);
+        if is_ours {
+            self.verdict = Some(verdict.clone());
+        }
+        is_ours
+    }
+
+    /// What A shows at full size, under the camera of `live`: the preset's effects with the most exact options, or the kept
+    /// preset.
+    fn inputs(&self, state: &State, live: &Inputs) -> Inputs {
+        let full = [live.view.width, live.view.height];
+        let session = &state.session;
+        let Some(kept) = &self.kept else {
+            let accuracy = AccuracyRequest { tier: Tier::Reference, ..AccuracyRequest::default() };
+            return Inputs { view: session.view_at(&live.scene, full), accuracy, ..live.clone() };
+        };
+        let Preset { stack, animation, accuracy, .. } = (**kept).clone();
+        let preset = Preset { stack, animation, accuracy, ..session.shown_preset() };
+        let stack = preset.evaluated_stack();
+        Inputs { view: session.view_of(preset, &live.scene, full), stack, accuracy, scene: live.scene.clone() }
+    }
+
+    /// Draws A at the size of B.
+    pub fn draw(&mut self, state: &mut State) {
+        if matches!(self.mode, None | Some(Mode::B)) {
+            return;
+        }
+        let Some(live) = state.screen.requested() else { return };
+        let inputs = self.inputs(state, live);
+        let screen = self.screen.get_or_insert_with(|| state.screen.sibling());
+        let drawn = screen.poll(state.now_s).and_then(|()| screen.show(inputs, state.screen.divisor(), state.now_s));
+        if let Err(error) = drawn {
+            state.notify(Level::Error, format!("The comparison cannot be drawn: {error}"));
+        }
+    }
+}

@@ -1,0 +1,185 @@
+//! Viewport: the picture, its overlays and the comparison, and the pointer on the camera.
+
+mod camera_input;
+mod chips;
+mod compare;
+mod compare_bar;
+mod compare_plates;
+mod compare_ui;
+mod heat_legend;
+mod layout;
+mod light;
+mod overlay_image;
+mod overlay_legend;
+mod overlays;
+mod particle_input;
+mod pick_input;
+
+use eframe::egui::{self, Align2, FontId, Rect, Response, Sense, Ui, vec2};
+
+use self::{compare::Compare, layout::fitted, overlays::OverlayPainter};
+use crate::app::{
+    command::{Command, Commands, Edit, ViewCommand},
+    log::Level,
+    scene_loader::SceneKey,
+    screen::Inputs,
+    state::State,
+    theme,
+};
+
+/// After this long without motion the picture is drawn at full size, seconds.
+const REST_S: f64 = 0.2;
+
+/// A frame that takes longer makes moving pictures coarser, milliseconds.
+const SMOOTH_MS: f64 = 28.0;
+
+/// See the module's first line.
+#[derive(Default)]
+pub struct Viewport {
+    /// When the user last moved the picture, seconds; 0 for never.
+    last_motion_s: f64,
+    pub compare: Compare,
+    overlays: OverlayPainter,
+}
+
+/// Where the picture is, and what the pointer did there.
+pub struct Interaction {
+    pub response: Response,
+    /// Width and height, pixels.
+    pub size: [u32; 2],
+    /// The pointer moved the camera.
+    pub is_moved: bool,
+}
+
+impl Viewport {
+    /// Takes pointer and keys over the picture. What they change must be applied before [`Viewport::draw`].
+    pub fn interact(&mut self, ui: &mut Ui, state: &State, commands: &Commands) -> Interaction {
+        let rect = ui.available_rect_before_wrap();
+        let response = ui.allocate_rect(rect, Sense::click_and_drag());
+        response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Image, true, "Picture"));
+        let pixels = (rect.size() * ui.pixels_per_point()).round();
+        let max_side = state.screen.gpu.caps.max_texture_side;
+        let size = [pixels.x, pixels.y].map(|side| (side.max(0.0) as u32).min(max_side));
+        let camera = if particle_input::attract(&response, &state.session, commands) {
+            None
+        } else {
+            camera_input::navigate(ui, &response, &state.session, state.session.widening(size))
+        };
+        let is_moved = camera.is_some() && camera != state.session.preset().camera;
+        if camera.is_some() {
+            commands.edit(Edit::Camera(camera));
+        }
+        if let Some(parameter) = state.picking {
+            if ui.input(|i| i.key_pressed(egui::Key::Escape)) {
+                commands.send(Command::View(ViewCommand::Pick(None)));
+            }
+            pick_input::pick(&response, self.compare.side_b(rect), parameter, state, commands);
+        }
+        Interaction { response, size, is_moved }
+    }
+
+    /// Draws what the preset asks for, coarser while it moves on a slow adapter.
+    pub fn draw(&mut self, ctx: &egui::Context, state: &mut State, interaction: &Interaction) {
+        let now_s = state.now_s;
+        if let Err(error) = state.screen.poll(now_s) {
+            state.log.add(Level::Error, error.to_string());
+        }
+        // While the scene of another preset is shown there is nothing to draw.
+        let Some(scene) = state.session.scenes.shown_for(&SceneKey::of(&state.session.preset_file)).cloned() else { return };
+        let (stack, accuracy) = (state.session.visible_stack(), state.session.preset().accuracy);
+        let requested = Inputs { view: state.session.view_at(&scene, interaction.size), scene, stack, accuracy };
+        let is_held = ctx.input(|i| i.pointer.any_down());
+        let is_changed = state.screen.requested().is_some_and(|before| *before != requested);
+        if interaction.is_moved || state.session.playback.playing || (is_changed && is_held) {
+            self.last_motion_s = now_s;
+        }
+        let rest_in_s = self.rest_in_s(now_s).filter(|_| state.screen.requested().is_some());
+        let divisor = if rest_in_s.is_some() { self.divisor(state, interaction.size) } else { 1 };
+        if divisor > 1 {
+            ctx.request_repaint_after_secs(rest_in_s.unwrap_or(0.0) as f32 + 0.01);
+        }
+        if let Err(error) = state.screen.show(requested, divisor, now_s) {
+            state.log.notify(Level::Error, error.to_string(), now_s);
+        }
+        self.compare.draw(state);
+        if state.screen.is_waiting() || self.compare.is_waiting() {
+            ctx.request_repaint_after_secs(0.015);
+        }
+    }
+
+    /// Seconds until the picture counts as at rest; none when it does.
+    fn rest_in_s(&self, now_s: f64) -> Option<f64> {
+        let rest_s = REST_S - (now_s - self.last_motion_s);
+        (self.last_motion_s > 0.0 && rest_s > 0.0).then_some(rest_s)
+    }
+
+    /// By how much a moving picture of `full` pixels must be smaller along a side to stay smooth, from the time of the last one.
+    fn divisor(&self, state: &State, full: [u32; 2]) -> u32 {
+        let screen = &state.screen;
+        let Some(ms) = screen.report().and_then(|report| report.gpu_ms).map(|ms| ms + self.compare.ms()) else {
+            return if screen.gpu.summary.software { 2 } else { 1 };
+        };
+        let [width, height] = screen.picture().map_or(full, |(_, size)| size);
+        let pixels = |w: u32, h: u32| f64::from(w.max(1)) * f64::from(h.max(1));
+        // The part of the time that does not depend on the size is unknown; half is assumed to shrink.
+        let scale = 0.5 + 0.5 * pixels(full[0], full[1]) / pixels(width, height);
+        match ms * scale {
+            ms if ms <= SMOOTH_MS => 1,
+            ms if ms <= 4.0 * SMOOTH_MS => 2,
+            _ => 3,
+        }
+    }
+
+    /// True if overlays are shown and the picture is at rest but not judged; repaints when it comes to rest.
+    pub fn needs_verdict(&self, ctx: &egui::Context, state: &State) -> bool {
+        if state.overlays_are_ready() || state.verification.is_running() || state.session.playback.playing {
+            return false;
+        }
+        let screen = &state.screen;
+        let is_drawn = screen.requested().is_some() && screen.drawn() == screen.requested() && !screen.is_waiting();
+        if !is_drawn || ctx.input(|i| i.pointer.any_down()) {
+            return false; // Whatever ends this repaints.
+        }
+        let rest_in_s = self.rest_in_s(state.now_s);
+        if let Some(wait_s) = rest_in_s {
+            ctx.request_repaint_after_secs(wait_s as f32 + 0.01);
+        }
+        rest_in_s.is_none()
+    }
+
+    /// Shows the picture in `rect`, and everything over it.
+    pub fn show(&mut self, ui: &mut Ui, state: &State, commands: &Commands, rect: Rect) {
+        let at = picture_ui(ui, state, self.compare.side_b(rect));
+        let free = compare_ui::compare_ui(ui, &mut self.compare, state, (rect, at), &mut self.overlays);
+        chips::chips_ui(ui, state, commands, rect, self.compare.is_open());
+        light::light_ui(ui, &state.session, commands, at);
+        let free = if self.compare.hides_b() { free } else { overlay_legend::legend_ui(ui, state, free, at) };
+        if let Some(params) = state.session.visible_stack().params("overdraw") {
+            heat_legend::heat_ui(ui, free, &params);
+        }
+    }
+}
+
+/// The newest picture, or why there is none. Returns where the picture is.
+fn picture_ui(ui: &Ui, state: &State, rect: Rect) -> Rect {
+    let painter = ui.painter_at(rect);
+    if let Some((blit, size)) = state.screen.picture().filter(|(_, size)| size.iter().all(|&side| side > 0)) {
+        let at = fitted(rect, size);
+        if at != rect {
+            painter.rect_filled(rect, 0.0, theme::VIEW);
+        }
+        painter.add(blit.shape(at));
+        return at;
+    }
+    painter.rect_filled(rect, 0.0, theme::VIEW);
+    let (title, detail) = if state.session.scenes.has_failed() {
+        ("This scene cannot be shown", "See the log. Choose another scene on the left, or drop a .glb file here.")
+    } else if state.screen.is_refused() {
+        ("This picture cannot be drawn", "See the log.")
+    } else {
+        ("Loading the scene", "Large scenes take a moment.")
+    };
+    painter.text(rect.center() - vec2(0.0, 12.0), Align2::CENTER_CENTER, title, FontId::proportional(17.0), theme::TEXT);
+    painter.text(rect.center() + vec2(0.0, 12.0), Align2::CENTER_CENTER, detail, FontId::proportional(13.0), theme::TEXT_WEAK);
+    rect
+}

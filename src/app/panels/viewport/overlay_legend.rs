@@ -1,0 +1,146 @@
+//! The legend of the overlays: what each shows and on how many pixels. An overlay that paints nothing has no line.
+
+use eframe::egui::{self, Color32, Rect, RichText, Ui, pos2, vec2};
+
+use crate::app::{
+    findings::Findings,
+    icons::swatch,
+    overlay::{Overlay, OverlaySelection},
+    state::State,
+    text::grouped,
+    theme,
+};
+
+/// Height of a line, and the space round all of them, points.
+const LINE: f32 = 18.0;
+const MARGIN: f32 = 8.0;
+
+/// A line of the legend; a sentence has no swatch.
+#[derive(Clone, Debug, PartialEq)]
+struct Line {
+    swatch: Option<Color32>,
+    text: String,
+    color: Color32,
+}
+
+impl Line {
+    fn sentence(color: Color32, text: impl Into<String>) -> Self {
+        Self { swatch: None, text: text.into(), color }
+    }
+}
+
+/// The lines on a picture that was judged.
+fn lines(overlays: &OverlaySelection, found: &Findings) -> Vec<Line> {
+    let shown: Vec<Overlay> = Overlay::listed().filter(|overlay| overlays.contains(*overlay)).collect();
+    let mut lines: Vec<Line> = shown.iter().filter(|overlay| found.count(**overlay) > 0).map(|o| line(*o, overlays.gain, found)).collect();
+    let errors: Vec<Overlay> = shown.into_iter().filter(|overlay| overlay.is_error()).collect();
+    let pixels = grouped(found.faults.pixels() as u64);
+    if !errors.is_empty() && errors.iter().all(|overlay| found.count(*overlay) == 0) {
+        let what = if let [one] = errors[..] { format!("no {}", one.name().to_lowercase()) } else { "no errors".into() };
+        lines.push(Line::sentence(theme::GREEN, format!("{what}: 0 of {pixels} pixels")));
+    } else if lines.is_empty() {
+        lines.push(Line::sentence(theme::TEXT, format!("nothing to show in {pixels} pixels")));
+    }
+    lines
+}
+
+/// The line of one overlay.
+fn line(overlay: Overlay, gain: u8, found: &Findings) -> Line {
+    let (name, count) = (overlay.name().to_lowercase(), grouped(found.count(overlay)));
+    let text = match overlay {
+        Overlay::Colour => {
+            let max = found.faults.colour.iter().max().copied().unwrap_or(0);
+            format!("{name} × {gain}: {count} px, at most {max} of 255")
+        }
+        Overlay::Layers => format!("{name}: up to {}", found.layers.iter().max().copied().unwrap_or(0)),
+        Overlay::TriangleIds => format!("{name}: {count} px are covered"),
+        Overlay::Unsound => format!("{}: {count} px", overlay.name()),
+        _ => format!("{name}: {count} px"),
+    };
+    Line { swatch: Some(overlay.color()), text, color: theme::TEXT_STRONG }
+}
+
+/// What is known of the pixel under the pointer.
+fn hovered_line(ui: &Ui, state: &State, at: Rect) -> Option<Line> {
+    let found = state.findings().filter(|_| state.screen.divisor() == 1)?;
+    let pointer = ui.input(|i| i.pointer.hover_pos()).filter(|pointer| at.contains(*pointer) && ui.rect_contains_pointer(at))?;
+    let uv = (pointer - at.min) / at.size();
+    let [x, y] = [(uv.x, found.size[0]), (uv.y, found.size[1])].map(|(t, side)| ((t * side as f32) as u32).min(side - 1));
+    Some(Line::sentence(theme::TEXT_WEAK, format!("{x}, {y}: {}", found.pixel_text((y * found.size[0] + x) as usize))))
+}
+
+/// Shows the legend at the lower left of `free`; the picture is at `at`. Returns what of `free` it does not cover.
+pub fn legend_ui(ui: &mut Ui, state: &State, free: Rect, at: Rect) -> Rect {
+    if !state.overlays.is_any() || state.screen.picture().is_none() {
+        return free;
+    }
+    let mut lines = match state.findings() {
+        Some(found) if state.screen.divisor() == 1 => lines(&state.overlays, found),
+        _ if state.verification.is_running() => vec![Line::sentence(theme::TEXT, "Comparing this picture with the oracle")],
+        _ if state.overlays_are_ready() => vec![Line::sentence(theme::RED, "This picture could not be verified. See the log.")],
+        _ => vec![Line::sentence(theme::TEXT_WEAK, "Overlays appear when the picture is at rest")],
+    };
+    lines.extend(hovered_line(ui, state, at));
+    let height = lines.len() as f32 * LINE + 2.0 * MARGIN;
+    let plate = Rect::from_min_size(pos2(free.left() + 12.0, free.bottom() - 12.0 - height), vec2(400.0, height));
+    if plate.top() < free.top() + 44.0 || free.width() < 240.0 {
+        return free;
+    }
+    let mut child = ui.new_child(egui::UiBuilder::new().id_salt("overlay legend").max_rect(plate));
+    let frame = theme::toast_frame(theme::LINE).inner_margin(egui::Margin::symmetric(10, MARGIN as i8));
+    frame.show(&mut child, |ui| {
+        ui.spacing_mut().item_spacing = vec2(theme::GAP, 0.0);
+        ui.spacing_mut().interact_size.y = LINE;
+        for Line { swatch: color, text, color: ink } in &lines {
+            ui.horizontal(|ui| {
+                ui.set_height(LINE);
+                if let Some(color) = color {
+                    swatch(ui, *color);
+                }
+                ui.label(RichText::new(text).size(12.0).color(*ink));
+            });
+        }
+    });
+    Rect::from_min_max(free.min, pos2(free.right(), plate.top() + 4.0))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{
+        frame::Frame,
+        gpu::Capture,
+        measure::{
+            Verdict,
+            faults::{ErrorMap, PixelError},
+        },
+    };
+
+    fn found(marked: &[usize]) -> Findings {
+        let picture = [[9; 4]; 6];
+        let faults = ErrorMap::new(&picture, &picture, |i| {
+            if marked.contains(&i) { vec![PixelError::TriangleId, PixelError::Hole] } else { Vec::new() }
+        });
+        let frame = Frame { width: 3, height: 2, triangle_id: vec![0; 6], color: picture.to_vec(), ..Default::default() };
+        let capture = Capture { frame, geometry: Default::default(), layers: None, previous: None, shown: None };
+        Findings::new(capture, Verdict { faults, ..Default::default() }, None)
+    }
+
+    #[test]
+    fn the_legend_names_what_there_is_and_says_so_when_there_is_nothing() {
+        let mut overlays = OverlaySelection::default();
+        overlays.toggle();
+        let only = |overlay: Overlay| {
+            let mut overlays = OverlaySelection::default();
+            overlays.set(overlay, true);
+            overlays
+        };
+        let text =
+            |overlays: &OverlaySelection, found: &Findings| lines(overlays, found).into_iter().map(|line| line.text).collect::<Vec<_>>();
+        assert_eq!(text(&overlays, &found(&[])), ["no errors: 0 of 6 pixels"]);
+        assert_eq!(text(&overlays, &found(&[1, 4])), ["wrong triangle: 2 px", "holes: 2 px"]);
+        assert_eq!(text(&only(Overlay::WrongDepth), &found(&[1])), ["no wrong depth winner: 0 of 6 pixels"]);
+        assert_eq!(text(&only(Overlay::Edges), &found(&[1])), ["nothing to show in 6 pixels"]);
+        assert_eq!(text(&only(Overlay::TriangleIds), &found(&[1])), ["triangle ids: 6 px are covered"]);
+    }
+}

@@ -1,0 +1,52 @@
+//! The preset that the window opens with, and saving it when the device is lost.
+
+use std::path::{Path, PathBuf};
+
+use anyhow::Context as _;
+
+use super::log::{Level, Log};
+use crate::{
+    preset::SceneSource,
+    preset_file::{self, PresetFile},
+};
+
+/// The preset of a window that was opened without one.
+const FIRST_PRESET: &str = "teapot";
+
+/// The preset to begin with. If it cannot be opened, the error is logged and the teapot is shown.
+pub fn first_preset(open: Option<&str>, folder: Option<&Path>, log: &mut Log) -> PresetFile {
+    let what = open.unwrap_or(FIRST_PRESET);
+    match preset_file::open(what, folder) {
+        Ok(mut preset_file) => {
+            preset_file.warnings.iter().for_each(|warning| log.add(Level::Warning, warning.clone()));
+            // A recovered preset has no file of its own: Save asks for one.
+            preset_file.read_only |= preset_file.path.is_some() && preset_file.path == recovery_path();
+            preset_file
+        }
+        Err(error) => {
+            if open.is_some() {
+                log.notify(Level::Error, error.to_string(), 0.0);
+            }
+            PresetFile::of_scene("teapot", SceneSource::Builtin("teapot".into()))
+        }
+    }
+}
+
+/// The file that the preset is saved to when the device is lost.
+pub fn recovery_path() -> Option<PathBuf> {
+    Some(preset_file::user_folder()?.parent()?.join("recovery.toml"))
+}
+
+/// Saves the preset for the next start. Returns in words whether that worked.
+pub fn write_recovery(preset_file: &PresetFile) -> String {
+    let written = || -> anyhow::Result<PathBuf> {
+        let path = recovery_path().context("there is no folder for it")?;
+        std::fs::create_dir_all(path.parent().unwrap_or(Path::new(".")))?;
+        preset_file::save(&mut preset_file.clone(), &path)?;
+        Ok(path)
+    };
+    match written() {
+        Ok(path) => format!("the preset is saved in {}", path.display()),
+        Err(error) => format!("the preset could not be saved: {error:#}"),
+    }
+}

@@ -1,0 +1,93 @@
+//! Scene loader: the scene that is shown, the one that is loading, and recent ones to go back to without waiting.
+
+use std::{collections::VecDeque, path::PathBuf, sync::Arc};
+
+use crate::{
+    preset::{Preset, SceneSource},
+    preset_file::PresetFile,
+    scene::Scene,
+};
+
+/// Identifies a scene: its source, the folder it is relative to, and the room round it.
+#[derive(Clone, Debug, PartialEq)]
+pub struct SceneKey {
+    pub source: SceneSource,
+    /// The preset file that a relative path starts from; none for built-in scenes, which are the same everywhere.
+    pub preset_path: Option<PathBuf>,
+    /// Width of the room over that of the scene; 0 for none.
+    pub room: f64,
+}
+
+impl SceneKey {
+    pub fn of(preset_file: &PresetFile) -> Self {
+        let Preset { scene, room, .. } = &preset_file.preset;
+        let preset_path = if matches!(scene, SceneSource::File(_)) { preset_file.path.clone() } else { None };
+        Self { source: scene.clone(), preset_path, room: *room }
+    }
+}
+
+/// Scenes that are kept.
+const MAX_RECENT: usize = 4;
+
+/// See the module's first line.
+#[derive(Default)]
+pub struct SceneLoader {
+    shown: Option<(SceneKey, Arc<Scene>)>,
+    loading: Option<SceneKey>,
+    failed: Option<SceneKey>,
+    recent: VecDeque<(SceneKey, Arc<Scene>)>,
+}
+
+impl SceneLoader {
+    pub fn shown(&self) -> Option<&Arc<Scene>> {
+        self.shown.as_ref().map(|(_, scene)| scene)
+    }
+
+    /// The shown scene, if it is the one of `key`.
+    pub fn shown_for(&self, key: &SceneKey) -> Option<&Arc<Scene>> {
+        self.shown.as_ref().filter(|(shown, _)| shown == key).map(|(_, scene)| scene)
+    }
+
+    pub fn is_loading(&self) -> bool {
+        self.loading.is_some()
+    }
+
+    /// True if the scene that the preset asks for cannot be loaded.
+    pub fn has_failed(&self) -> bool {
+        self.failed.is_some()
+    }
+
+    /// Shows the scene of `key` if it is at hand. Returns true if it must be loaded, once per scene.
+    pub fn request(&mut self, key: &SceneKey) -> bool {
+        if self.shown_for(key).is_some() {
+            self.failed = None;
+        } else if let Some(found) = self.recent.iter().find(|(recent, _)| recent == key) {
+            self.shown = Some(found.clone());
+            self.failed = None;
+        } else if self.loading.as_ref() != Some(key) && self.failed.as_ref() != Some(key) {
+            self.loading = Some(key.clone());
+            return true;
+        }
+        false
+    }
+
+    /// Takes a scene that was loaded; none if that failed.
+    pub fn arrived(&mut self, key: SceneKey, scene: Option<Arc<Scene>>) {
+        if self.loading.as_ref() == Some(&key) {
+            self.loading = None;
+        }
+        match scene {
+            Some(scene) => {
+                self.recent.push_front((key, scene));
+                self.recent.truncate(MAX_RECENT);
+            }
+            None => self.failed = Some(key),
+        }
+    }
+}
+
+/// What a preset calls a clip: its name, or its index where an earlier clip has the same name.
+pub fn clip_id(scene: &Scene, index: usize) -> String {
+    let name = &scene.rig.clips[index].name;
+    if scene.rig.clip(name) == Some(index) { name.clone() } else { format!("#{index}") }
+}

@@ -1,0 +1,91 @@
+//! The state of the window besides its panels: the session, its history, the picture, and what several panels share.
+//! Panels read it; only `App` changes it.
+
+use std::{path::PathBuf, sync::Arc};
+
+use super::{
+    command::Parameter,
+    findings::Findings,
+    history::History,
+    jobs::Jobs,
+    log::{Level, Log},
+    overlay::OverlaySelection,
+    screen::Screen,
+    session::{Session, UndoState},
+    verification::Verification,
+};
+use crate::measure::ErrorReport;
+
+/// Which panels and windows are open.
+#[derive(Clone, Copy, Debug)]
+pub struct OpenPanels {
+    pub left: bool,
+    pub right: bool,
+    pub timeline: bool,
+    pub sweep: bool,
+    pub log: bool,
+    pub cheat_sheet: bool,
+}
+
+impl Default for OpenPanels {
+    fn default() -> Self {
+        Self { left: true, right: true, timeline: true, sweep: false, log: false, cheat_sheet: false }
+    }
+}
+
+/// What copy and paste apply to.
+#[derive(Clone, Debug, Default)]
+pub struct Clipboard {
+    /// Path and value of the row under the pointer.
+    pub hovered_row: Option<(String, String)>,
+    /// Path that the next paste goes to, if a menu asked for it.
+    pub paste_into: Option<String>,
+}
+
+/// See the module's first line.
+pub struct State {
+    /// Folder of presets from the command line.
+    pub presets_dir: Option<PathBuf>,
+    pub session: Session,
+    pub history: History<UndoState>,
+    pub jobs: Jobs,
+    pub screen: Screen,
+    pub verification: Verification,
+    pub overlays: OverlaySelection,
+    /// The point parameter that the next click on the model sets.
+    pub picking: Option<Parameter>,
+    pub clipboard: Clipboard,
+    pub log: Log,
+    pub open: OpenPanels,
+    /// The user agreed to quit without saving.
+    pub may_quit: bool,
+    /// Time of this frame, seconds since the start.
+    pub now_s: f64,
+}
+
+impl State {
+    /// The verdict on the picture that is drawn, as numbers.
+    pub fn accuracy(&self) -> Option<&ErrorReport> {
+        self.verification.verdict_on(self.screen.drawn()).map(|verdict| &verdict.findings.accuracy)
+    }
+
+    /// The verdict on the picture that is asked for, pixel by pixel.
+    pub fn findings(&self) -> Option<&Arc<Findings>> {
+        self.verification.verdict_on(self.screen.requested()).map(|verdict| &verdict.findings)
+    }
+
+    /// False while overlays are shown and the picture has not been judged.
+    pub fn overlays_are_ready(&self) -> bool {
+        !self.overlays.is_any() || self.findings().is_some() || self.verification.has_failed(self.screen.requested())
+    }
+
+    /// Logs a message and shows it as a toast.
+    pub fn notify(&mut self, level: Level, text: impl Into<String>) {
+        self.log.notify(level, text, self.now_s);
+    }
+
+    /// Records the preset for undo; `is_held` while a pointer button is down.
+    pub fn observe(&mut self, is_held: bool) {
+        self.history.observe(&self.session.undo_state(), self.now_s, is_held);
+    }
+}

@@ -1,0 +1,49 @@
+//! What a sweep measures, and how far it is.
+
+use std::sync::{
+    Mutex,
+    atomic::{AtomicBool, Ordering},
+};
+
+use crate::{accuracy::Axis, preset::Preset};
+
+/// Frames that every combination is drawn for.
+pub const SAMPLES: usize = 30;
+
+/// What is measured: the preset as it was, its size in pixels, and the axes.
+#[derive(Clone)]
+pub struct Request {
+    pub preset: Preset,
+    pub size: [u32; 2],
+    pub axes: Vec<&'static Axis>,
+    /// Name of the preset.
+    pub title: String,
+}
+
+/// How far a sweep is; shared with the thread that measures.
+#[derive(Default)]
+pub struct Progress {
+    is_cancelled: AtomicBool,
+    state: Mutex<(usize, usize, String)>,
+}
+
+impl Progress {
+    /// Says that `done` of `all` steps are done and what comes next. Returns false if the sweep was cancelled.
+    pub fn report(&self, done: usize, all: usize, what: &str) -> bool {
+        *self.state.lock().unwrap_or_else(|poisoned| poisoned.into_inner()) = (done, all, what.to_owned());
+        !self.is_cancelled()
+    }
+
+    pub fn cancel(&self) {
+        self.is_cancelled.store(true, Ordering::Relaxed);
+    }
+
+    pub fn is_cancelled(&self) -> bool {
+        self.is_cancelled.load(Ordering::Relaxed)
+    }
+
+    /// Steps done, all steps, and what is being done.
+    pub fn read(&self) -> (usize, usize, String) {
+        self.state.lock().unwrap_or_else(|poisoned| poisoned.into_inner()).clone()
+    }
+}

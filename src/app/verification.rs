@@ -1,0 +1,61 @@
+//! Verification: judging pictures with the oracle, and the newest verdict on the picture that is shown.
+
+use std::sync::Arc;
+
+use super::{findings::Findings, screen::Inputs};
+
+/// The oracle's verdict on a picture.
+#[derive(Clone)]
+pub struct Verdict {
+    pub of: Inputs,
+    pub findings: Arc<Findings>,
+}
+
+/// See the module's first line.
+#[derive(Default)]
+pub struct Verification {
+    verdict: Option<Verdict>,
+    /// Judgements under way.
+    running: u32,
+    /// The picture that could not be judged; it is not tried again.
+    failed: Option<Inputs>,
+}
+
+impl Verification {
+    /// The newest verdict, whatever picture is shown now.
+    pub fn verdict(&self) -> Option<&Verdict> {
+        self.verdict.as_ref()
+    }
+
+    /// The verdict on `inputs`, if that is the newest.
+    pub fn verdict_on(&self, inputs: Option<&Inputs>) -> Option<&Verdict> {
+        self.verdict.as_ref().filter(|verdict| inputs == Some(&verdict.of))
+    }
+
+    pub fn is_running(&self) -> bool {
+        self.running > 0
+    }
+
+    /// True if the judgement of `inputs` failed.
+    pub fn has_failed(&self, inputs: Option<&Inputs>) -> bool {
+        self.failed.as_ref() == inputs
+    }
+
+    /// A judgement was started.
+    pub fn started(&mut self) {
+        self.running += 1;
+    }
+
+    /// A judgement ended.
+    pub fn ended(&mut self) {
+        self.running = self.running.saturating_sub(1);
+    }
+
+    pub fn set(&mut self, verdict: Verdict) {
+        self.verdict = Some(verdict);
+    }
+
+    pub fn fail(&mut self, inputs: Inputs) {
+        self.failed = Some(inputs);
+    }
+}

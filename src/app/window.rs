@@ -1,0 +1,358 @@
+//! The window: its state and its panels, and what happens in a frame.
+
+use std::{
+    path::PathBuf,
+    sync::{
+        Arc,
+        atomic::{AtomicBool, Ordering},
+    },
+};
+
+use eframe::egui::{self, Ui, ViewportCommand};
+
+use super::{
+    apply,
+    command::Commands,
+    device,
+    finished::finish,
+    history::History,
+    input,
+    jobs::Jobs,
+    log::{Level, Log},
+    overlay::OverlaySelection,
+    panel::Panel,
+    panels::{Panels, log::toasts_ui},
+    recovery,
+    scene_loader::SceneKey,
+    screen::Screen,
+    session::Session,
+    state::{Clipboard, OpenPanels, State},
+    theme,
+    verification::Verification,
+};
+use crate::{
+    gpu::{Gpu, device::AdapterChoice},
+    measure::ErrorReport,
+    preset::Preset,
+    preset_file::PresetFile,
+    scene::view::View,
+};
+
+/// How the window is opened.
+#[derive(Clone, Debug, Default)]
+pub struct Options {
+    /// A preset's id or file, a model, an exported picture, or `builtin:QUERY`.
+    pub open: Option<String>,
+    pub adapter: AdapterChoice,
+    /// A folder of presets beside the user's own.
+    pub presets_dir: Option<PathBuf>,
+}
+
+/// Set when the window closes because its device was lost.
+#[derive(Clone, Debug, Default)]
+pub struct LossFlag(Arc<AtomicBool>);
+
+impl LossFlag {
+    pub fn set(&self) {
+        self.0.store(true, Ordering::Relaxed);
+    }
+
+    pub fn is_set(&self) -> bool {
+        self.0.load(Ordering::Relaxed)
+    }
+}
+
+/// The whole window.
+pub struct App {
+    state: State,
+    panels: Panels,
+    commands: Commands,
+    loss: LossFlag,
+    title: String,
+}
+
+/// What tests read.
+impl App {
+    /// The open preset with its file.
+    pub fn preset_file(&self) -> &PresetFile {
+        &self.state.session.preset_file
+    }
+
+    /// The open preset, to be changed as a panel would change it.
+    pub fn preset_mut(&mut self) -> &mut Preset {
+        self.state.session.preset_mut()
+    }
+
+    /// The time that is shown, seconds.
+    pub fn shown_time_s(&self) -> f64 {
+        self.state.session.shown_time_s()
+    }
+
+    /// Frames drawn so far; unchanged while nothing changes.
+    pub fn draws(&self) -> u64 {
+        self.state.screen.draws()
+    }
+
+    /// Number of steps that undo can take back.
+    pub fn undo_steps(&self) -> usize {
+        self.state.history.steps()
+    }
+
+    /// True if the picture shows the preset and nothing is still to come.
+    pub fn is_idle(&self) -> bool {
+        let State { session, screen, verification, .. } = &self.state;
+        let Panels { viewport, sweep, browser, .. } = &self.panels;
+        let is_shown = !session.scenes.is_loading() && session.scene().is_some() && !screen.is_waiting();
+        let is_judged = !verification.is_running() && self.state.overlays_are_ready();
+        is_shown && is_judged && !viewport.compare.is_waiting() && !sweep.is_measuring() && !browser.is_busy()
+    }
+
+    /// True if there is a picture, even one of an earlier preset.
+    pub fn has_picture(&self) -> bool {
+        self.state.screen.picture().is_some()
+    }
+
+    /// The log as text.
+    pub fn log_text(&self) -> String {
+        self.state.log.to_text()
+    }
+
+    /// The view that a picture of `size` pixels shows; none while there is no scene.
+    pub fn view(&self, size: [u32; 2]) -> Option<View> {
+        self.state.session.scene().map(|scene| self.state.session.view_at(scene, size))
+    }
+
+    pub fn gpu(&self) -> &Arc<Gpu> {
+        &self.state.screen.gpu
+    }
+
+    /// The measured error of the picture that is drawn; none if it was not measured.
+    pub fn accuracy(&self) -> Option<&ErrorReport> {
+        self.state.accuracy()
+    }
+
+    /// Position of the comparison's divider, as a fraction of the picture's width; none unless the wipe is open.
+    pub fn wipe_split(&self) -> Option<f32> {
+        self.panels.viewport.compare.wipe_split()
+    }
+
+    /// Number of points of the newest accuracy sweep.
+    pub fn sweep_points(&self) -> usize {
+        self.panels.sweep.points()
+    }
+}
+
+impl App {
+    /// The window's contents on a device that was opened with [`wgpu_setup`](super::wgpu_setup).
+    ///
+    /// # Errors
+    /// If the window has no wgpu device.
+    pub fn new(cc: &eframe::CreationContext<'_>, options: Options) -> anyhow::Result<Self> {
+        Self::with_loss_flag(cc, options, LossFlag::default())
+    }
+
+    /// The same; sets `loss` when the device is lost.
+    ///
+    /// # Errors
+    /// If the window has no wgpu device.
+    pub fn with_loss_flag(cc: &eframe::CreationContext<'_>, options: Options, loss: LossFlag) -> anyhow::Result<Self> {
+        theme::apply(&cc.egui_ctx);
+        let (window, gpu) = device::adopt(cc)?;
+        let mut log = Log::default();
+        let opened = recovery::first_preset(options.open.as_deref(), options.presets_dir.as_deref(), &mut log);
+        let summary = &gpu.summary;
+        log.add(Level::Info, format!("adapter: {}, {}, {}", summary.name, summary.backend, summary.driver));
+        let session = Session::new(opened);
+        Ok(Self {
+            panels: Panels::new(options.presets_dir.as_deref()),
+            state: State {
+                presets_dir: options.presets_dir,
+                history: History::new(session.undo_state()),
+                session,
+                jobs: Jobs::new(cc.egui_ctx.clone()),
+                screen: Screen::new(&window, gpu),
+                verification: Verification::default(),
+                overlays: OverlaySelection::default(),
+                picking: None,
+                clipboard: Clipboard::default(),
+                log,
+                open: OpenPanels::default(),
+                may_quit: false,
+                now_s: 0.0,
+            },
+            commands: Commands::default(),
+            loss,
+            title: String::new(),
+        })
+    }
+
+    /// Logs a message and shows it as a toast.
+    pub fn notify(&mut self, level: Level, text: impl Into<String>) {
+        self.state.notify(level, text);
+    }
+
+    /// Carries out the commands that were sent.
+    fn apply(&mut self, ctx: &egui::Context) {
+        for command in self.commands.take() {
+            apply::apply(ctx, &mut self.state, &mut self.panels, command);
+        }
+    }
+
+    /// Shows a panel and carries out its commands.
+    fn panel_ui(&mut self, ui: &mut Ui, panel: impl FnOnce(&mut Panels) -> &mut dyn Panel) {
+        panel(&mut self.panels).ui(ui, &self.state, &self.commands);
+        self.apply(ui.ctx());
+    }
+
+    /// Saves the preset for a new start of the window, once, and closes it.
+    fn rescue(&mut self, ctx: &egui::Context) {
+        if self.loss.is_set() {
+            return;
+        }
+        let saved = recovery::write_recovery(&self.state.session.preset_file);
+        eprintln!("rasterlab: the graphics device was lost; {saved}");
+        self.loss.set();
+        self.state.may_quit = true;
+        ctx.send_viewport_cmd(ViewportCommand::Close);
+    }
+
+    fn update_title(&mut self, ctx: &egui::Context) {
+        let session = &self.state.session;
+        let title = format!("{}{} - rasterlab", if session.is_modified() { "• " } else { "" }, session.title());
+        if title != self.title {
+            ctx.send_viewport_cmd(ViewportCommand::Title(title.clone()));
+            self.title = title;
+        }
+    }
+
+    /// Asks before the window closes with unsaved changes.
+    fn guard_close(&mut self, ctx: &egui::Context) {
+        if ctx.input(|i| i.viewport().close_requested()) && self.state.session.is_modified() && !self.state.may_quit {
+            ctx.send_viewport_cmd(ViewportCommand::CancelClose);
+            self.panels.dialogs.ask_unsaved();
+        }
+    }
+
+    /// Advances the time while the preset plays.
+    fn play(&mut self, ctx: &egui::Context) {
+        if self.state.session.playback.playing {
+            ctx.request_repaint();
+            let passed_s = f64::from(ctx.input(|i| i.stable_dt));
+            self.state.session.advance(passed_s);
+        }
+    }
+
+    /// Shows the scene of the preset, or loads it.
+    fn request_scene(&mut self) {
+        let key = SceneKey::of(&self.state.session.preset_file);
+        if self.state.session.scenes.request(&key) {
+            self.state.jobs.load_scene(key);
+        }
+    }
+
+    /// Starts drawing a thumbnail when nothing more urgent needs the processor.
+    fn request_thumbnail(&mut self) {
+        if self.state.session.scenes.is_loading() || self.state.screen.is_waiting() {
+            return;
+        }
+        if let Some(next) = self.panels.browser.next_thumbnail() {
+            self.state.jobs.thumbnail(next);
+        }
+    }
+
+    fn panels_ui(&mut self, ui: &mut Ui) {
+        egui::Panel::top("top")
+            .frame(theme::bar_frame())
+            .show_separator_line(false)
+            .show(ui, |ui| self.panel_ui(ui, |panels| &mut panels.topbar));
+        let height = self.panels.timeline.height(&self.state.session);
+        let timeline = egui::Panel::bottom("timeline").frame(theme::bar_frame()).exact_size(height).resizable(false).drag_to_open(false);
+        let mut is_open = self.state.open.timeline;
+        timeline.show_collapsible(ui, &mut is_open, |ui| self.panel_ui(ui, |panels| &mut panels.timeline));
+        self.state.open.timeline = is_open;
+        let sweep = egui::Panel::bottom("sweep").frame(theme::panel_frame()).resizable(true).default_size(304.0).min_size(190.0);
+        let mut is_open = self.state.open.sweep;
+        sweep.show_collapsible(ui, &mut is_open, |ui| self.panel_ui(ui, |panels| &mut panels.sweep));
+        // The panel has a button that closes it, too.
+        self.state.open.sweep &= is_open;
+        let log = egui::Panel::bottom("log").frame(theme::panel_frame()).resizable(true).default_size(150.0).min_size(72.0);
+        let mut is_open = self.state.open.log;
+        log.show_collapsible(ui, &mut is_open, |ui| self.panel_ui(ui, |panels| &mut panels.log));
+        self.state.open.log = is_open;
+        let left = egui::Panel::left("left").frame(theme::panel_frame()).default_size(264.0).size_range(200.0..=420.0);
+        let mut is_open = self.state.open.left;
+        left.show_collapsible(ui, &mut is_open, |ui| self.panel_ui(ui, |panels| &mut panels.browser));
+        self.state.open.left = is_open;
+        let right = egui::Panel::right("right").frame(theme::panel_frame()).default_size(344.0).size_range(272.0..=520.0);
+        let mut is_open = self.state.open.right;
+        right.show_collapsible(ui, &mut is_open, |ui| self.panel_ui(ui, |panels| &mut panels.inspector));
+        self.state.open.right = is_open;
+        let rect = egui::CentralPanel::no_frame().show(ui, |ui| self.viewport_ui(ui)).response.rect;
+        toasts_ui(ui.ctx(), &self.state.log, rect, self.state.now_s);
+    }
+
+    /// Takes input, draws the picture, and shows it.
+    fn viewport_ui(&mut self, ui: &mut Ui) {
+        let interaction = self.panels.viewport.interact(ui, &self.state, &self.commands);
+        self.apply(ui.ctx());
+        self.panels.viewport.draw(ui.ctx(), &mut self.state, &interaction);
+        if self.panels.viewport.needs_verdict(ui.ctx(), &self.state) {
+            apply::verify_shown(&mut self.state);
+        }
+        self.panels.viewport.show(ui, &self.state, &self.commands, interaction.response.rect);
+        self.apply(ui.ctx());
+    }
+}
+
+impl eframe::App for App {
+    fn logic(&mut self, ctx: &egui::Context, _: &mut eframe::Frame) {
+        while let Some(done) = self.state.jobs.next() {
+            finish(ctx, &mut self.state, &mut self.panels, &self.commands, done);
+            self.apply(ctx);
+        }
+        if self.state.screen.is_lost() {
+            self.rescue(ctx);
+        }
+        if let Some(error) = self.state.screen.gpu.take_error() {
+            self.state.log.add(Level::Error, format!("the graphics driver reports an error, which is a bug of rasterlab: {error}"));
+        }
+    }
+
+    fn ui(&mut self, ui: &mut Ui, frame: &mut eframe::Frame) {
+        if self.loss.is_set() {
+            return; // egui panics if it has something to paint on a lost device.
+        }
+        let ctx = ui.ctx().clone();
+        device::tune(frame, &self.state.screen.gpu);
+        let (now_s, is_pressed, is_held) = ctx.input(|i| (i.time, i.pointer.any_pressed(), i.pointer.any_down()));
+        self.state.now_s = now_s;
+        if is_pressed {
+            self.state.history.close(); // A press begins another gesture.
+        }
+        input::dropped_files(&ctx, &self.commands);
+        self.apply(&ctx);
+        if !self.panels.dialogs.is_open() {
+            input::shortcuts(&ctx, &self.state, &self.commands);
+            self.apply(&ctx);
+        }
+        self.state.clipboard.hovered_row = None;
+        self.play(&ctx);
+        self.request_scene();
+        self.state.session.follow_particles();
+        self.panels_ui(ui);
+        self.panel_ui(ui, |panels| &mut panels.dialogs);
+        self.panel_ui(ui, |panels| &mut panels.cheat_sheet);
+        self.panel_ui(ui, |panels| &mut panels.extremes);
+        self.request_thumbnail();
+        self.state.observe(is_held);
+        if let Some(wait_s) = self.state.history.wake_in_s(now_s).filter(|_| !is_held) {
+            ctx.request_repaint_after_secs(wait_s as f32 + 0.01);
+        }
+        self.guard_close(&ctx);
+        self.update_title(&ctx);
+    }
+
+    fn clear_color(&self, _: &egui::Visuals) -> [f32; 4] {
+        theme::PANEL.to_normalized_gamma_f32()
+    }
+}

@@ -1,0 +1,187 @@
+//! The inspector: every value has a control with a name, a drag is one undo step, and effects and clips are switched on and off.
+
+use eframe::egui::{self, Key, Modifiers, Role, vec2};
+use egui_kittest::kittest::Queryable as _;
+
+use crate::harness::*;
+
+#[test]
+fn every_widget_of_every_folder_and_dialog_has_a_name() {
+    let Some(mut lab) = lab("facet-sweep") else { return };
+    for folder in ["Camera", "Clock", "Kernel", "Preset"] {
+        lab.get_by_label(folder).click();
+        lab.run_steps(2);
+    }
+    lab.check_accessibility();
+    for tab in ["Scene", "Presets"] {
+        click(&mut lab, Role::Button, tab);
+    }
+    for row in ["Animate facet.front", "Animate lambert.sun", "Show the curve of facet.front", "Key facet.front 0.000 s"] {
+        click(&mut lab, Role::Button, row);
+    }
+    lab.get_by_label("Key facet.front 0.000 s").click_secondary();
+    lab.run_steps(3);
+    settle(&mut lab);
+    press(&mut lab, Modifiers::NONE, Key::Escape);
+    for (modifiers, key) in
+        [(Modifiers::NONE, Key::F1), (Modifiers::NONE, Key::L), (Modifiers::COMMAND, Key::O), (Modifiers::NONE, Key::F12)]
+    {
+        press(&mut lab, modifiers, key);
+        press(&mut lab, Modifiers::NONE, Key::Escape);
+    }
+}
+
+#[test]
+fn a_slider_drag_is_one_undo_step() {
+    let Some(mut lab) = lab("lambert") else { return };
+    let before = value(&lab, "lambert", "headlight");
+    let rail = slider(&lab, "lambert.headlight").rect();
+    drag(&mut lab, rail.left_center() + vec2(14.0, 0.0), rail.right_center() - vec2(10.0, 0.0));
+    let after = value(&lab, "lambert", "headlight");
+    assert!(after[0] > before[0] + 0.2, "{before:?} {after:?}");
+    assert_eq!(lab.state().undo_steps(), 1);
+    undo(&mut lab);
+    assert_eq!((value(&lab, "lambert", "headlight"), lab.state().undo_steps()), (before, 0));
+    press(&mut lab, Modifiers::COMMAND | Modifiers::SHIFT, Key::Z);
+    assert_eq!(value(&lab, "lambert", "headlight"), after);
+}
+
+#[test]
+fn enabling_an_effect_shows_its_sliders_and_disabling_hides_them() {
+    let Some(mut lab) = lab("lambert") else { return };
+    assert!(!has_slider(&lab, "facet.amount"));
+    click(&mut lab, Role::CheckBox, "facet");
+    assert!(has_slider(&lab, "facet.amount"));
+    assert!(!has_slider(&lab, "facet.radius_m"), "only the radial pattern has a radius");
+    assert_eq!(lab.state().undo_steps(), 1);
+    click(&mut lab, Role::CheckBox, "facet");
+    assert!(!has_slider(&lab, "facet.amount"));
+}
+
+#[test]
+fn a_changed_value_has_a_reset_button_that_leads_to_its_default() {
+    let Some(mut lab) = lab("lambert") else { return };
+    assert!(lab.query_by_label("Reset lambert.headlight").is_none());
+    let default = value(&lab, "lambert", "headlight");
+    let rail = slider(&lab, "lambert.headlight").rect();
+    drag(&mut lab, rail.left_center() + vec2(14.0, 0.0), rail.center());
+    assert_ne!(value(&lab, "lambert", "headlight"), default);
+    click(&mut lab, Role::Button, "Reset lambert.headlight");
+    assert_eq!(value(&lab, "lambert", "headlight"), default);
+    assert!(lab.query_by_label("Reset lambert.headlight").is_none());
+}
+
+#[test]
+fn muting_changes_the_picture_and_not_the_preset() {
+    let Some(mut lab) = lab("lambert") else { return };
+    let (preset, draws) = (lab.state().preset_file().preset.clone(), lab.state().draws());
+    click(&mut lab, Role::Button, "Mute lambert");
+    assert!(lab.state().draws() > draws);
+    assert_eq!(lab.state().preset_file().preset, preset);
+    assert_eq!(lab.state().undo_steps(), 0);
+}
+
+#[test]
+fn typing_a_number_does_not_trigger_shortcuts() {
+    let Some(mut lab) = lab("lambert") else { return };
+    let camera = lab.state().preset_file().preset.camera;
+    let field = lab.get_by_label("lambert.headlight value");
+    field.click();
+    lab.run_steps(2);
+    for text in ["0", ".", "7"] {
+        lab.event(egui::Event::Text(text.into()));
+        lab.key_press(if text == "7" { Key::Num7 } else { Key::Num0 });
+        lab.step();
+    }
+    lab.key_press(Key::Enter);
+    lab.run_steps(3);
+    settle(&mut lab);
+    assert_eq!(lab.state().preset_file().preset.camera, camera, "7 is the key of the top view");
+    assert_eq!(value(&lab, "lambert", "headlight"), [f64::from(0.7f32)]);
+}
+
+#[test]
+fn randomize_stays_within_soft_ranges_and_is_one_undo_step() {
+    let Some(mut lab) = lab("facet-sweep") else { return };
+    let before = lab.state().preset_file().preset.clone();
+    press(&mut lab, Modifiers::NONE, Key::R);
+    let after = lab.state().preset_file().preset.clone();
+    assert_ne!(before.stack, after.stack);
+    assert!(lab.state().log_text().contains("seed 1"));
+    for enabled in &after.stack.0 {
+        for field in enabled.effect.fields {
+            let lanes = field.get(&enabled.words);
+            assert!(lanes.iter().all(|lane| (field.soft[0]..=field.soft[1]).contains(lane)), "{}.{}", enabled.effect.name, field.name);
+        }
+    }
+    undo(&mut lab);
+    assert_eq!(lab.state().preset_file().preset, before);
+}
+
+#[test]
+fn a_second_effect_of_a_slot_is_refused_and_offered_instead_of_the_first() {
+    let Some(mut lab) = lab("xray") else { return };
+    let has = |lab: &Lab, name: &str| lab.state().preset_file().preset.stack.get(name).is_some();
+    click(&mut lab, Role::CheckBox, "overdraw");
+    assert!(has(&lab, "xray") && !has(&lab, "overdraw"), "nothing was switched");
+    let sentence = "xray and overdraw both take the visibility slot of the rasterizer; switch one of them off";
+    assert!(lab.state().log_text().contains(sentence), "{}", lab.state().log_text());
+    click(&mut lab, Role::Button, "overdraw instead of xray");
+    assert!(!has(&lab, "xray") && has(&lab, "overdraw"));
+    assert!(slider(&lab, "overdraw.full").rect().width() > 0.0);
+    undo(&mut lab);
+    assert!(has(&lab, "xray") && !has(&lab, "overdraw"), "one step");
+}
+
+#[test]
+fn clips_are_chosen_held_and_blended_in_their_folder() {
+    let Some(mut lab) = lab("builtin:tentacle?tess=3") else { return };
+    let play = |lab: &Lab| lab.state().preset_file().preset.playback.clone();
+    let choose = |lab: &mut Lab, menu: &str, entry: &str| {
+        click(lab, Role::ComboBox, menu);
+        lab.get_by_role_and_label(Role::Button, entry).click();
+        lab.run_steps(4);
+        settle(lab);
+    };
+    assert_eq!(play(&lab).clip, "");
+    assert!(lab.query_by_label("Hold the clip").is_none(), "at rest there is nothing to hold");
+    choose(&mut lab, "scene.clip", "Twist");
+    assert_eq!(play(&lab).clip, "Twist");
+    assert!(lab.state().preset_file().preset.is_moving());
+    choose(&mut lab, "scene.second_clip", "Sway");
+    assert_eq!(play(&lab).second_clip, "Sway");
+    assert!(has_slider(&lab, "scene.clip_blend"));
+    click(&mut lab, Role::CheckBox, "Hold the clip");
+    assert!(play(&lab).clip_time_s.is_some() && has_slider(&lab, "scene.pose_s"));
+    undo(&mut lab);
+    assert_eq!((play(&lab).clip_time_s, play(&lab).second_clip.as_str()), (None, "Sway"));
+
+    // The picture follows, and is what the oracle says.
+    let before = lab.state().draws();
+    lab.state_mut().preset_mut().playback.clip_time_s = Some(1.0);
+    settle(&mut lab);
+    assert!(lab.state().draws() > before);
+}
+
+#[test]
+fn the_scene_shows_its_images_and_lets_one_look_through_its_cameras() {
+    let Some(mut lab) = lab("builtin:grid?cell=16") else { return };
+    let chosen = |lab: &Lab| lab.state().preset_file().preset.scene_camera.clone();
+    let choose = |lab: &mut Lab, entry: &str| {
+        click(lab, Role::ComboBox, "scene.camera");
+        lab.get_by_role_and_label(Role::Button, entry).click();
+        lab.run_steps(4);
+        settle(lab);
+    };
+    let before = lab.state().draws();
+    choose(&mut lab, "pixels in perspective");
+    assert!(chosen(&lab) == "pixels in perspective" && lab.state().draws() > before);
+    choose(&mut lab, "pixels");
+    assert_eq!(chosen(&lab), "", "the first needs no name");
+    undo(&mut lab);
+    assert_eq!(chosen(&lab), "pixels in perspective");
+
+    let Some(lab) = self::lab("builtin:panels") else { return };
+    assert!(lab.query_by_label_contains("3 images, ").is_some());
+    assert!(lab.query_by_label("scene.camera").is_none(), "a scene without cameras has no menu of them");
+}

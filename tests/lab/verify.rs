@@ -1,0 +1,104 @@
+//! Verification: errors are measured, shown as overlays with a legend, and the extreme cases run beside the window.
+
+use std::time::{Duration, Instant};
+
+use eframe::egui::{Key, Modifiers, Role};
+use egui_kittest::kittest::Queryable as _;
+
+use crate::harness::*;
+
+#[test]
+fn verify_measures_the_picture_and_a_change_makes_the_result_stale() {
+    let Some(mut lab) = lab("facet-sweep") else { return };
+    assert!(lab.query_by_label("error not measured").is_some());
+    click(&mut lab, Role::Button, "Verify");
+    let accuracy = lab.state().accuracy().cloned().expect("a verdict on the picture as it is shown");
+    assert_eq!((accuracy.wrong_triangles, accuracy.holes, accuracy.double_hits), (0, 0, 0));
+    assert!(accuracy.pixels > 100_000 && accuracy.max_color_delta <= 2, "{accuracy:?}");
+    assert!(lab.query_all_by_label_contains("0 wrong triangles").count() > 0);
+    click(&mut lab, Role::Button, "Top view");
+    assert!(lab.state().accuracy().is_none());
+    assert!(lab.query_by_label_contains("stale").is_some());
+}
+
+#[test]
+fn the_extremes_run_beside_the_window_and_can_be_stopped() {
+    let Some(mut lab) = lab("facet") else { return };
+    click(&mut lab, Role::Button, "View");
+    click(&mut lab, Role::Button, "Run extreme cases…");
+    let run = |lab: &mut Lab, cases: &str, button: &str| {
+        lab.get_by_label("Cases").focus();
+        lab.run_steps(2);
+        press(lab, Modifiers::COMMAND, Key::A);
+        lab.get_by_label("Cases").type_text(cases);
+        lab.run_steps(3);
+        click(lab, Role::Button, button);
+    };
+    let until = |lab: &mut Lab, what: &str, is_there: &dyn Fn(&Lab) -> bool| {
+        let patience = Instant::now() + Duration::from_secs(120);
+        while !is_there(lab) {
+            assert!(Instant::now() < patience, "{what} never comes\n{}", lab.state().log_text());
+            lab.step();
+            std::thread::sleep(Duration::from_millis(5));
+        }
+    };
+    let draws = lab.state().draws();
+    run(&mut lab, "d3d-rectangle", "Run 1 case");
+    until(&mut lab, "the end", &|lab| lab.state().log_text().contains("Extreme cases: 1 case: 1 passed"));
+    lab.run_steps(3);
+    assert!(lab.query_by_label("d3d-rectangle").is_some() && lab.query_by_label("passed").is_some());
+    assert_eq!(lab.state().draws(), draws, "the picture is not drawn again for it");
+    lab.check_accessibility();
+
+    run(&mut lab, "near-plane-sweep", "Run 1 case");
+    until(&mut lab, "the first picture", &|lab| lab.query_by_label_contains("near-plane-sweep: step").is_some());
+    click(&mut lab, Role::Button, "Stop the run");
+    until(&mut lab, "the end", &|lab| lab.state().log_text().contains("Extreme cases: 1 case: 1 stopped"));
+}
+
+/// Switches an overlay on in its folder of the inspector.
+fn show_overlay(lab: &mut Lab, name: &str) {
+    if lab.query_by_role_and_label(Role::CheckBox, &format!("Overlay {name}")).is_none() {
+        lab.get_by_label("Overlays").scroll_to_me();
+        lab.run_steps(3);
+        lab.get_by_label("Overlays").click();
+        lab.run_steps(8);
+    }
+    click(lab, Role::CheckBox, &format!("Overlay {name}"));
+}
+
+#[test]
+fn overlays_are_laid_over_the_picture_and_counted_in_a_legend() {
+    let Some(mut lab) = lab("facet-sweep") else { return };
+    let (plain, draws) = (middle(&mut lab), lab.state().draws());
+    show_overlay(&mut lab, "triangle edges");
+    let edges = middle(&mut lab);
+    assert!(edges != plain, "the edges are to be seen");
+    assert!(lab.state().accuracy().is_some(), "the picture was judged without being asked to");
+    assert!(lab.query_by_label_contains("triangle edges: ").is_some(), "the legend counts them");
+    show_overlay(&mut lab, "triangle ids");
+    let both = middle(&mut lab);
+    assert!(both != edges);
+    show_overlay(&mut lab, "triangle edges");
+    let triangle_ids = middle(&mut lab);
+    assert!(triangle_ids != both && triangle_ids != plain, "any subset shows");
+    press(&mut lab, Modifiers::NONE, Key::O);
+    assert!(middle(&mut lab) == plain, "the key hides them all");
+    press(&mut lab, Modifiers::NONE, Key::O);
+    assert!(middle(&mut lab) == triangle_ids, "and brings back what was shown");
+    assert_eq!((lab.state().draws(), lab.state().undo_steps()), (draws, 0), "overlays draw no frame and are no part of the preset");
+}
+
+#[test]
+fn the_legend_says_that_nothing_is_wrong_where_nothing_is() {
+    let Some(mut lab) = lab("facet-sweep") else { return };
+    show_overlay(&mut lab, "wrong triangle");
+    show_overlay(&mut lab, "holes");
+    let pixels = lab.state().accuracy().expect("a verdict").pixels;
+    let sentence = format!("no errors: 0 of {},{:03} pixels", pixels / 1000, pixels % 1000);
+    assert!((1000..1_000_000).contains(&pixels) && lab.query_by_label(&sentence).is_some(), "{sentence}");
+    // Another picture is judged anew, as soon as it rests.
+    click(&mut lab, Role::Button, "Top view");
+    assert!(lab.state().accuracy().is_some());
+    assert!(lab.query_by_label_contains("no errors: 0 of ").is_some());
+}
