@@ -109,7 +109,7 @@ fn remarks(reports: &[Report]) -> Vec<String> {
     let of = |report: &&Report| {
         let why = match &report.outcome {
             Outcome::Failed(_) => Some(format!("FAILED {}", line(report))),
-            Outcome::Skipped(why) => Some(format!("{} {}: left out: {why}", report.number, report.name)),
+            Outcome::Skipped(why) => Some(format!("{} {}: skipped: {why}", report.number, report.name)),
             Outcome::Refused(why) => Some(format!("{} {}: refused: {why}", report.number, report.name)),
             Outcome::Passed | Outcome::Stopped => None,
         };

@@ -1,11 +1,11 @@
-//! Aim at trouble: triangles that pass samples, and vertices that pass ties of the snap, as closely as can be.
+//! Adversarial geometry: triangles whose edges pass samples, and vertices that lie near ties of the snap, as closely as possible.
 //!
-//! Random numbers hardly ever meet a tie. These generators do little else, in the manner of the exact predicates' own
-//! tests, which walk over neighbouring floats around a line (georust/robust, linebender/kurbo).
+//! Uniform random numbers almost never produce a tie. These generators do, in the manner of the tests of exact predicates
+//! that step through neighbouring floats around a line (georust/robust, linebender/kurbo).
 
 use super::scenes::Rng;
 
-/// `g`, `x` and `y` with a x + b y = g, the greatest common divisor up to its sign.
+/// `g`, `x` and `y` with a x + b y = g, the greatest common divisor up to its sign (extended Euclid).
 fn bezout(a: i64, b: i64) -> (i64, i64, i64) {
     if b == 0 {
         return (a, 1, 0);
@@ -14,11 +14,11 @@ fn bezout(a: i64, b: i64) -> (i64, i64, i64) {
     (g, y, x - a / b * y)
 }
 
-/// A flat triangle, units of 1/256 px, up to `extent` to a side. One edge passes a sample of a picture of `size` pixels
-/// as closely as its direction allows: on it, or one step of the edge function (for most, 1) to either side.
+/// A triangle in units of 1/256 px, up to `extent` wide and high. One edge passes a sample of a picture of `size` pixels as
+/// closely as its direction allows: through it, or one step of the edge function (mostly 1) to either side.
 pub fn near_miss_triangle(rng: &mut Rng, extent: i32, size: [i32; 2]) -> [[i32; 2]; 3] {
     let sample = size.map(|side| i64::from(256 * rng.between(0, side) + 128));
-    // A third of the edges have lattice points inside, which can lie on the sample.
+    // A third of the edges have lattice points inside, which can coincide with the sample.
     let factor = if rng.next_u32().is_multiple_of(3) { rng.between(2, 30) } else { 1 };
     let reach = (extent / factor).max(2);
     let mut side = || i64::from(factor * rng.between(-reach + 1, reach));
@@ -45,19 +45,19 @@ pub fn near_miss_triangle(rng: &mut Rng, extent: i32, size: [i32; 2]) -> [[i32; 
     [a, b, c].map(|corner| corner.map(|at| at.clamp(-8_388_607, 8_388_607) as i32))
 }
 
-/// The float `steps` representable ones from `value`, which is positive and far from both ends of its range.
+/// The float `steps` representable values away from `value`, which must be positive and far from the ends of its range.
 fn stepped(value: f32, steps: i32) -> f32 {
     f32::from_bits(value.to_bits().wrapping_add_signed(steps))
 }
 
-/// Most floats between a vertex and its tie.
+/// The most floats between a vertex and its tie.
 const NEIGHBOURS: i32 = 32;
 
-/// Most units of 1/256 px between a vertex and the sample that it is about.
+/// The most units of 1/256 px between a vertex and its sample.
 const FEW_UNITS: i32 = 3;
 
-/// A coordinate in pixels, above 0 and within a few units of the sample of pixel `pixel`: exactly on a tie of the snap,
-/// half-way between two units, or up to 32 floats to either side of it; one in four lies on a unit instead.
+/// A coordinate in pixels, within a few units of the sample of pixel `pixel`: on a tie of the snap (halfway between two
+/// units), or up to 32 floats to either side of it. One in four lies on a unit instead.
 fn near_tie_coordinate(rng: &mut Rng, pixel: i32) -> f32 {
     let unit = (256 * pixel + 128 + rng.between(-FEW_UNITS, FEW_UNITS + 1)) as f32;
     let half = if rng.next_u32().is_multiple_of(4) { 0.0 } else { 0.5 };
@@ -65,9 +65,9 @@ fn near_tie_coordinate(rng: &mut Rng, pixel: i32) -> f32 {
     stepped(tie, rng.between(-NEIGHBOURS, NEIGHBOURS + 1))
 }
 
-/// A sheet over a picture of `size` pixels, all of whose inner vertices are in trouble: each lies within a few units of a
-/// sample and within 32 floats of a tie of the snap. Cells of `cell` pixels, at least 2, and vertices of the rim outside
-/// the picture, so that every sample is covered, and exactly once: no cell can fold.
+/// A mesh that covers a picture of `size` pixels, each of whose inner vertices lies within a few units of a sample and within
+/// 32 floats of a tie of the snap. Cells are `cell` pixels wide, at least 2, and the rim lies outside the picture, so every
+/// sample is covered exactly once: no cell can fold.
 pub fn near_tie_mesh(rng: &mut Rng, size: [i32; 2], cell: i32) -> (Vec<[f32; 3]>, Vec<u32>) {
     let [columns, rows] = size.map(|side| side / cell + 1);
     let mut vertices = Vec::new();
@@ -88,7 +88,7 @@ pub fn near_tie_mesh(rng: &mut Rng, size: [i32; 2], cell: i32) -> (Vec<[f32; 3]>
         for column in 0..columns {
             let [a, b] = [vertex(column, row), vertex(column + 1, row)];
             let [c, d] = [vertex(column, row + 1), vertex(column + 1, row + 1)];
-            // Both diagonals, so that no slope is the only one.
+            // Random diagonals, so that edges have several slopes.
             let pair = if rng.next_u32().is_multiple_of(2) { [[a, c, b], [b, c, d]] } else { [[a, c, d], [a, d, b]] };
             indices.extend(pair.as_flattened());
         }
@@ -96,8 +96,8 @@ pub fn near_tie_mesh(rng: &mut Rng, size: [i32; 2], cell: i32) -> (Vec<[f32; 3]>
     (vertices, indices)
 }
 
-/// A triangle whose third corner lies within `NEIGHBOURS` floats of the line through the other two, near a sample: a sliver
-/// of next to no area, of either orientation.
+/// A triangle whose third corner lies within 32 floats of the line through the other two, near a sample: almost no area, of
+/// either orientation.
 pub fn near_collinear_triangle(rng: &mut Rng, size: [i32; 2]) -> [[f32; 2]; 3] {
     let mut corner = || {
         size.map(|side| {

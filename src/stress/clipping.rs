@@ -1,15 +1,13 @@
-//! Clipping: the guard band, w at and around zero, and the near plane on its way through a surface.
+//! Clipping: the guard band, w at and near zero, and the near plane moving through a surface.
 
 use std::sync::Arc;
 
 use glam::DVec3;
 
 use super::{
-    Case, CaseContext, EarlyEnd, Expectation,
-    context::once,
-    hold, pinned,
+    case::{Case, Expectation},
+    context::{CaseContext, EarlyEnd, check, once, pinned, stack},
     scenes::{pixel_view, scene_of_meshes, seen, sheet, square_perspective, units},
-    stack,
 };
 use crate::{
     math::GUARD_BAND,
@@ -20,22 +18,22 @@ pub const CASES: &[Case] = &[
     Case {
         number: 9,
         name: "guard-band",
-        about: "vertices at its end and one unit beyond, in all combinations: exact inside, no crack beyond",
+        about: "corners on the guard band and one unit beyond, in all combinations: exact inside, no cracks beyond",
         expectation: Expectation::Exact,
         run: guard_band,
     },
     Case {
         number: 10,
         name: "w-around-zero",
-        about: "w of 0, +-1e-30, near and its neighbours, mixed signs in a triangle: exact given the clipped pieces",
+        about: "w of 0, +-1e-30, the near distance and its neighbouring floats, mixed signs in a triangle: exact given the clipped triangles",
         expectation: Expectation::Exact,
         run: w_around_zero,
     },
     Case {
         number: 11,
         name: "near-plane-sweep",
-        about: "a thousand steps of the near plane through a closed shell and the ground under it",
-        expectation: Expectation::Bounded("pixels along a cut may be the neighbour's, at most one row of 48"),
+        about: "the near plane moves through a closed shell and the ground below it in 1,000 steps",
+        expectation: Expectation::Bounded("at most 48 pixels along a cut may show a neighbouring triangle"),
         run: near_plane_sweep,
     },
 ];
@@ -45,7 +43,7 @@ fn guard_band(context: &mut CaseContext) -> Result<(), EarlyEnd> {
     let center = [2125, 1971];
     let option = pinned(context.quick_option());
     let (mut whole, mut cut) = (0, 0);
-    // Each coordinate of four corners at the end of the guard band or one unit beyond.
+    // Each coordinate of four corners lies on the guard band or one unit beyond.
     for beyond in 0..256 {
         let corner = |i: usize, [x, y]: [i32; 2]| {
             let reach = |axis: usize| GUARD_BAND + (beyond >> (2 * i + axis) & 1);
@@ -63,13 +61,13 @@ fn guard_band(context: &mut CaseContext) -> Result<(), EarlyEnd> {
         once(&capture, &what)?;
         for (vertex, [x, y]) in capture.geometry.vertices.iter().zip(faces.as_flattened()) {
             let is_inside = x.abs().max(y.abs()) <= GUARD_BAND;
-            hold!((vertex.flags == 0) == is_inside, "{what}: {x}, {y} has the flags {}", vertex.flags);
-            hold!(!is_inside || (vertex.x, vertex.y) == (*x, *y), "{what}: {vertex:?} for {x}, {y}");
+            check!((vertex.flags == 0) == is_inside, "{what}: the vertex at {x}, {y} has the flags {}", vertex.flags);
+            check!(!is_inside || (vertex.x, vertex.y) == (*x, *y), "{what}: {vertex:?} for {x}, {y}");
         }
         let counters = capture.frame.counters;
         (whole, cut) = (whole + 4 - counters.clipped, cut + counters.clipped);
     }
-    hold!(whole >= 4 * 16 && cut > 512, "{whole} triangles whole, {cut} cut");
+    check!(whole >= 4 * 16 && cut > 512, "{whole} triangles whole, {cut} cut");
     Ok(())
 }
 
@@ -89,9 +87,9 @@ fn w_around_zero(context: &mut CaseContext) -> Result<(), EarlyEnd> {
         let what = format!("round {round}");
         let capture = context.exact_on_all(&scene_of_meshes(&[sheet(positions)]), &view, &what)?;
         let counters = capture.frame.counters;
-        hold!(counters.clipped > 20 && capture.frame.covered() > 2000, "{what}: {counters:?}");
+        check!(counters.clipped > 20 && capture.frame.covered() > 2000, "{what}: {counters:?}");
         let wild = capture.geometry.vertices.iter().find(|v| !(v.depth.is_finite() && v.inv_w.is_finite() && v.inv_w <= 129.0));
-        hold!(wild.is_none(), "{what}: {wild:?}");
+        check!(wild.is_none(), "{what}: {wild:?}");
     }
     Ok(())
 }
@@ -113,9 +111,9 @@ fn near_plane_sweep(context: &mut CaseContext) -> Result<(), EarlyEnd> {
         cut += u32::from(capture.frame.counters.clipped > 0);
         worst = worst.max(verdict.accuracy.explained_by_snap);
     }
-    hold!(cut > 300, "{cut} pictures were clipped");
-    // Clipped outlines may move by less than a pixel: at most a row along the longest cut.
-    hold!(worst <= 48, "{worst} pixels differ from the oracle's own picture");
-    context.note(format!("at most {worst} pixels of a picture differ from the oracle's own along a cut"));
+    check!(cut > 300, "{cut} pictures were clipped");
+    // Clipped outlines may move by less than a pixel: at most one row along the longest cut.
+    check!(worst <= 48, "{worst} pixels differ from the oracle's own picture");
+    context.note(format!("at most {worst} pixels of a picture differ from the oracle's along a cut"));
     Ok(())
 }

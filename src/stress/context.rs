@@ -1,4 +1,5 @@
-//! The lab of a case: draws on every option and tuning, lets the oracle judge, counts, and can be stopped between pictures.
+//! The context of a running case: draws with every option and work distribution, compares with the oracle, counts, and can
+//! be stopped between pictures.
 
 use std::sync::Arc;
 
@@ -19,9 +20,9 @@ use crate::{
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum EarlyEnd {
     Failed(String),
-    /// The adapter lacks something.
+    /// The adapter lacks what this sentence names.
     Skipped(String),
-    /// Somebody stopped the run.
+    /// The user stopped the run.
     Stopped,
 }
 
@@ -43,7 +44,18 @@ impl From<DrawError> for EarlyEnd {
     }
 }
 
-/// What a case has drawn.
+/// Fails the case with a sentence unless the condition holds.
+macro_rules! check {
+    ($condition:expr, $($sentence:tt)+) => {
+        let holds: bool = $condition;
+        if !holds {
+            return Err($crate::stress::EarlyEnd::Failed(format!($($sentence)+)));
+        }
+    };
+}
+pub(super) use check;
+
+/// How much a case has drawn.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Counts {
     pub pictures: u64,
@@ -51,7 +63,7 @@ pub struct Counts {
     pub triangles: u64,
 }
 
-/// What a case leaves behind.
+/// The result of a case besides its outcome.
 pub(super) struct Left {
     pub refusal: Option<String>,
     pub seed: Option<u32>,
@@ -59,7 +71,7 @@ pub(super) struct Left {
     pub counts: Counts,
 }
 
-/// Where a case works.
+/// What a case draws with.
 pub struct CaseContext<'a> {
     pub renderer: &'a mut Renderer,
     seed: u32,
@@ -68,36 +80,36 @@ pub struct CaseContext<'a> {
     counts: Counts,
     notes: Vec<String>,
     refusal: Option<String>,
-    /// The depth band may be of any size.
+    /// The number of depth-band pixels is not limited.
     allows_any_depth_band: bool,
     /// Pictures are drawn on the strict option, where there is one.
     strict: Option<Strict>,
 }
 
-/// What the pictures of a case come to on the strict option.
+/// Results of the pictures of a case drawn with strict accuracy.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Strict {
     pub pictures: u64,
-    /// Pictures that hang on floats, and were drawn as usual.
+    /// Pictures that depend on float arithmetic and were drawn with default accuracy.
     pub floats: u64,
     /// Hashes of all triangle ids and keys, one picture after another.
     pub adapter: u64,
     pub cpu: u64,
 }
 
-/// Largest share of pixels that may lie in the depth band, where two triangle ids are right; 16 pixels are always allowed.
+/// Largest fraction of pixels in the depth band, where two triangle ids are correct. 16 pixels are always allowed.
 pub const BAND_SHARE: f64 = 0.01;
 
-/// Nothing exact is wrong, colours are within one step, and the band is small.
+/// Checks that all integers are exact, colours are within one step, and the depth band is small.
 ///
 /// # Errors
-/// A sentence for everything that is wrong.
+/// A sentence for each violation.
 pub fn exactness(errors: &Errors) -> Result<(), String> {
     errors.within(&Budget { max_depth_band_pixels: ((errors.pixels as f64 * BAND_SHARE) as u64).max(16), ..Budget::default() })
 }
 
-/// Ways to share out work that use every kernel: all but the tiniest triangles by a workgroup each, the usual limits of
-/// a GPU, all by one invocation; with the resolve over all pixels or over listed tiles.
+/// Work distributions that together use every kernel: a workgroup for each triangle that is not tiny, the limits of a GPU with
+/// listed tiles, the same without, and one invocation for each triangle.
 pub fn tunings() -> [Tuning; 4] {
     [(1, 1, false), (64, 32, true), (64, 32, false), (128 * 128, 128, true)].map(|(max_small_samples, max_small_side, listed_tiles)| {
         Tuning {
@@ -122,15 +134,15 @@ pub fn quick_option(caps: &Caps) -> Visibility {
     if caps.int64_atomics { Visibility::Packed64 } else { Visibility::Split32 }
 }
 
-/// One option and no other.
+/// A request for one visibility option, all else planned.
 pub fn pinned(visibility: Visibility) -> AccuracyRequest {
     AccuracyRequest { pins: PinnedOptions::of(visibility), ..AccuracyRequest::default() }
 }
 
-/// A stack of effects with their defaults.
+/// A stack of effects with default parameters.
 ///
 /// # Panics
-/// When an effect does not exist.
+/// If an effect does not exist.
 pub fn stack(names: &[&str]) -> Stack {
     let mut stack = Stack::default();
     for name in names {
@@ -142,7 +154,7 @@ pub fn stack(names: &[&str]) -> Stack {
 /// Draws without judging.
 ///
 /// # Errors
-/// What the renderer or the device says.
+/// The error of the renderer or the device.
 pub fn captured(
     renderer: &mut Renderer,
     scene: &Arc<Scene>,
@@ -154,7 +166,7 @@ pub fn captured(
     renderer.set_scene(scene).map_err(|error| format!("{name}: {error}"))?;
     let capture = renderer.capture(view, stack, accuracy).map_err(|error| format!("{name}: {error}"))?;
     match renderer.gpu().take_error() {
-        Some(error) => Err(format!("{name}: the device says {error}")),
+        Some(error) => Err(format!("{name}: the device reports {error}")),
         None => Ok(capture),
     }
 }
@@ -162,7 +174,7 @@ pub fn captured(
 /// Draws and judges.
 ///
 /// # Errors
-/// What the renderer, the device or the oracle says.
+/// The error of the renderer, the device or the oracle.
 pub fn judged(
     renderer: &mut Renderer,
     scene: &Arc<Scene>,
@@ -177,16 +189,16 @@ pub fn judged(
     Ok((capture, verdict))
 }
 
-/// Hits of each pixel.
+/// The number of triangles that cover each pixel.
 pub(super) fn layers(capture: &Capture) -> &[u32] {
     capture.layers.as_deref().unwrap_or_default()
 }
 
-/// Fails unless every sample of the picture is covered exactly once.
+/// Fails unless every sample is covered exactly once.
 pub(super) fn once(capture: &Capture, what: &str) -> Result<(), EarlyEnd> {
     match layers(capture).iter().enumerate().find(|(_, hits)| **hits != 1) {
         None if !layers(capture).is_empty() => Ok(()),
-        None => Err(EarlyEnd::Failed(format!("{what}: nothing was counted"))),
+        None => Err(EarlyEnd::Failed(format!("{what}: no hits were counted"))),
         Some((pixel, hits)) => {
             let width = capture.frame.width.max(1) as usize;
             Err(EarlyEnd::Failed(format!("{what}: the sample of pixel {}, {} is covered {hits} times", pixel % width, pixel / width)))
@@ -194,9 +206,9 @@ pub(super) fn once(capture: &Capture, what: &str) -> Result<(), EarlyEnd> {
     }
 }
 
-/// Fails with both where they differ.
+/// Fails with both values if they differ.
 pub(super) fn equal<T: PartialEq + std::fmt::Debug>(found: &T, expected: &T, what: &str) -> Result<(), EarlyEnd> {
-    if found == expected { Ok(()) } else { Err(EarlyEnd::Failed(format!("{what}: {found:?}, where {expected:?} is right"))) }
+    if found == expected { Ok(()) } else { Err(EarlyEnd::Failed(format!("{what}: found {found:?}, expected {expected:?}"))) }
 }
 
 /// Fails where two pictures differ in an triangle id, a depth key or a number of hits.
@@ -231,38 +243,37 @@ impl<'a> CaseContext<'a> {
         }
     }
 
-    /// Leaves the renderer as it was found.
+    /// Restores the renderer.
     pub(super) fn leave(self) -> Left {
         let default = self.renderer.gpu().caps.tuning();
         self.renderer.set_tuning(default);
         Left { refusal: self.refusal, seed: self.is_seeded.then_some(self.seed), notes: self.notes, counts: self.counts }
     }
 
-    /// Chance for one purpose: another stream for every purpose, and another chance for every seed.
+    /// A random number generator; each stream and each seed gives other numbers.
     pub(super) fn rng(&mut self, stream: u32) -> Rng {
         self.is_seeded = true;
         Rng(stream ^ hash(self.seed))
     }
 
-    /// From now on any number of pixels may lie in the depth band, where two triangle ids are right: of a picture of a few pixels
-    /// many do.
+    /// From now on any number of pixels may be in the depth band. Needed for pictures of few pixels.
     pub(super) fn allow_any_depth_band(&mut self) {
         self.allows_any_depth_band = true;
     }
 
-    /// For people who read the report; said once.
+    /// Adds a remark to the report, once.
     pub(super) fn note(&mut self, sentence: String) {
         if !self.notes.contains(&sentence) {
             self.notes.push(sentence);
         }
     }
 
-    /// What was refused, as it should be.
+    /// Records an expected refusal.
     pub(super) fn refused(&mut self, sentence: impl std::fmt::Display) {
         self.refusal = Some(sentence.to_string());
     }
 
-    /// Before something that takes time: counts it, and ends the case when somebody wants that.
+    /// Counts a picture that is about to be drawn; ends the case if the user has stopped the run.
     pub(super) fn step(&mut self, scene: &Scene, view: &View, what: &str) -> Result<(), EarlyEnd> {
         self.counts.pictures += 1;
         self.counts.pixels += view.pixels() as u64;
@@ -270,7 +281,7 @@ impl<'a> CaseContext<'a> {
         if (self.keep_going)(what) { Ok(()) } else { Err(EarlyEnd::Stopped) }
     }
 
-    /// Runs a case on the strict option; what it remarks on it has remarked on before.
+    /// Runs a case with strict accuracy. Its remarks are dropped, since it made them before.
     pub(super) fn strictly(&mut self, name: &str, run: fn(&mut Self) -> Result<(), EarlyEnd>) -> Result<Strict, EarlyEnd> {
         let remarks = self.notes.len();
         self.strict = Some(Strict::default());
@@ -286,7 +297,7 @@ impl<'a> CaseContext<'a> {
         }
     }
 
-    /// The accuracy that a picture gets: the strict tier's while that is asked for and nothing hangs on floats.
+    /// The accuracy for a picture: strict where that is requested and the picture does not depend on floats.
     fn asked(&mut self, scene: &Arc<Scene>, view: &View, stack: &Stack, accuracy: &AccuracyRequest) -> Result<AccuracyRequest, EarlyEnd> {
         let Some(strict) = &mut self.strict else { return Ok(*accuracy) };
         let wanted = AccuracyRequest { tier: Tier::Strict, ..*accuracy };
@@ -300,7 +311,7 @@ impl<'a> CaseContext<'a> {
         }
     }
 
-    /// Holds a strict picture against the CPU's.
+    /// Compares a strict picture with the CPU's, bit by bit.
     fn hold_strict(&mut self, capture: &Capture, scene: &Scene, view: &View, stack: &Stack, what: &str) -> Result<(), EarlyEnd> {
         let Some(strict) = &mut self.strict else { return Ok(()) };
         let view = &View { is_relative: capture.geometry.is_relative, ..view.clone() };
@@ -318,12 +329,12 @@ impl<'a> CaseContext<'a> {
         }
     }
 
-    /// Is this a CPU adapter, to which a minute is what a second is to a card?
+    /// Returns true for a software adapter, which takes minutes where a GPU takes seconds.
     pub(super) fn is_software(&self) -> bool {
         self.renderer.gpu().caps.software
     }
 
-    /// Is it one that compiles slowly besides (SwiftShader)? It has two options that lose nothing.
+    /// Returns true for a software adapter that also compiles slowly (SwiftShader).
     pub(super) fn is_slow(&self) -> bool {
         self.is_software() && !self.renderer.gpu().caps.int64_atomics
     }
@@ -340,7 +351,7 @@ impl<'a> CaseContext<'a> {
         quick_option(&self.renderer.gpu().caps)
     }
 
-    /// A builtin scene by its query.
+    /// Builds a builtin scene.
     pub(super) fn scene(&self, query: &str) -> Result<Arc<Scene>, EarlyEnd> {
         builtin::build(query).map(Arc::new).map_err(|error| EarlyEnd::Failed(format!("{query}: {error}")))
     }
@@ -410,7 +421,7 @@ impl<'a> CaseContext<'a> {
         let last = self.quick_option();
         let options = self.options();
         let ways: Vec<_> = if self.is_slow() {
-            // Kernels take longer to compile than all their pictures to draw.
+            // Compiling kernels takes longer than drawing all their pictures.
             self.note("each option and each way to share out work is drawn once, since this adapter is slow".into());
             options.into_iter().zip([crowded, card].into_iter().cycle()).collect()
         } else {
@@ -427,7 +438,7 @@ impl<'a> CaseContext<'a> {
             }
         }
         self.renderer.set_tuning(default);
-        first.ok_or_else(|| EarlyEnd::Failed(format!("{what}: this adapter has no option")))
+        first.ok_or_else(|| EarlyEnd::Failed(format!("{what}: this adapter has no exact visibility option")))
     }
 
     pub(super) fn exact_on_all(&mut self, scene: &Arc<Scene>, view: &View, what: &str) -> Result<Capture, EarlyEnd> {

@@ -1,12 +1,10 @@
-//! Coverage: which samples triangles of every size and shape own.
+//! Coverage: which samples are covered by triangles of every size and shape.
 
 use super::{
-    Case, CaseContext, EarlyEnd, Expectation,
     adversarial::{near_collinear_triangle, near_miss_triangle, near_tie_mesh},
-    context::{equal, layers, once},
-    hold, pinned,
+    case::{Case, Expectation},
+    context::{CaseContext, EarlyEnd, check, equal, layers, once, pinned, stack, tunings},
     scenes::{Rng, SimpleMesh, pixel_view, reference, scene_of_meshes, sheet, units},
-    stack, tunings,
 };
 use crate::{math::GUARD_BAND, measure::compare};
 
@@ -14,49 +12,49 @@ pub const CASES: &[Case] = &[
     Case {
         number: 4,
         name: "translation",
-        about: "a soup of near misses moved by whole pixels: the mask moves, nothing else",
+        about: "near-miss triangles moved by whole pixels: the coverage moves along and does not change",
         expectation: Expectation::Exact,
         run: translation,
     },
     Case {
         number: 5,
         name: "sizes",
-        about: "triangles of 10^-3 to 10^9 px cover their half plane",
+        about: "triangles of 10^-3 to 10^9 px cover exactly the samples on the inner side of their edges",
         expectation: Expectation::Exact,
         run: sizes,
     },
     Case {
         number: 6,
         name: "dense-grids",
-        about: "cells of 0.1, 0.4 and 1 px: no hole, no double",
+        about: "cells of 0.1, 0.4 and 1 px: no hole and no double hit",
         expectation: Expectation::Exact,
         run: dense_grids,
     },
     Case {
         number: 7,
         name: "slivers",
-        about: "needles of a million to one share their edges",
+        about: "needles with a length of a million times their width share edges without holes or double hits",
         expectation: Expectation::Exact,
         run: slivers,
     },
     Case {
         number: 8,
-        name: "class-borders",
-        about: "boxes at the borders of every size class, and where i32 ends: no class shows",
+        name: "size-class-borders",
+        about: "triangles at the borders of every size class and at the limit of i32: the same picture on all paths",
         expectation: Expectation::Exact,
-        run: class_borders,
+        run: size_class_borders,
     },
     Case {
         number: 23,
         name: "near-misses",
-        about: "a million random triangles, each with an edge on a sample or one step beside it",
+        about: "a million random triangles, each with an edge through a sample or one step beside it",
         expectation: Expectation::Exact,
         run: near_misses,
     },
     Case {
         number: 23,
         name: "near-ties",
-        about: "meshes whose vertices lie within 32 floats of a tie of the snap, and next to samples: watertight",
+        about: "meshes whose vertices lie within 32 floats of a tie of the snap and next to samples are watertight",
         expectation: Expectation::Exact,
         run: near_ties,
     },
@@ -118,7 +116,7 @@ fn slivers(context: &mut CaseContext) -> Result<(), EarlyEnd> {
     let mut rng = context.rng(17);
     let guard = GUARD_BAND;
     for height in 1..=8 {
-        // Needles of a million to one, back to back: above them, below them and they themselves cover each sample once.
+        // Two adjacent needles; with the areas above and below them they cover each sample once.
         let (left, right) = (rng.between(2000, 14_000), rng.between(2000, 14_000));
         let [a, b] = [[-guard, left], [guard, right]];
         let [c, d] = [[-guard, left + height], [guard, right + height]];
@@ -133,10 +131,10 @@ fn slivers(context: &mut CaseContext) -> Result<(), EarlyEnd> {
     Ok(())
 }
 
-fn class_borders(context: &mut CaseContext) -> Result<(), EarlyEnd> {
+fn size_class_borders(context: &mut CaseContext) -> Result<(), EarlyEnd> {
     let mut rng = context.rng(23);
     let px = 256;
-    // Sides of boxes at the borders of all classes: 8 px and 32 px of one invocation, 64 px, 128 px of extent, and where i32 ends.
+    // Box sides at the borders of all classes: 8 px and 32 px of one invocation, 64 px, 128 px of extent, and the limit of i32.
     for extent in [8 * px, 11 * px, 32 * px, 33 * px, 64 * px, 65 * px, 128 * px - 1, 128 * px, 128 * px + 1, 46_340, 46_341, 65_536] {
         let mut triangles = Vec::new();
         for i in 0..24 {
@@ -147,14 +145,14 @@ fn class_borders(context: &mut CaseContext) -> Result<(), EarlyEnd> {
                 corners = corners.map(|[x, y]| [extent - x, y]);
             }
             if i % 3 == 0 {
-                // A box of that width and the least height, and the reverse.
+                // A box of that width and the smallest height, and the reverse.
                 corners = if i % 2 == 0 { [[0, 0], [extent, 128], [far, 256]] } else { [[0, 0], [128, extent], [256, near]] };
             }
             triangles.push((corners.map(|[x, y]| [x + at[0], y + at[1]]), 0.2 + 0.01 * i as f32));
         }
         context.exact_on_all(&scene_of_meshes(&[units(&triangles)]), &pixel_view(128, 128), &format!("extent {extent} units"))?;
     }
-    // Boxes of 63 to 65 and 127 to 129 samples, the most that one invocation walks.
+    // Boxes of 63 to 65 and 127 to 129 samples, the limits of one invocation.
     let boxes = [(7, 9), (8, 8), (5, 13), (1, 127), (8, 16), (3, 43), (64, 2), (2, 65)];
     let triangles = boxes.into_iter().enumerate().flat_map(|(i, (width, height))| {
         let place = |turned: bool| {
@@ -174,7 +172,7 @@ fn class_borders(context: &mut CaseContext) -> Result<(), EarlyEnd> {
 fn near_misses(context: &mut CaseContext) -> Result<(), EarlyEnd> {
     let option = context.quick_option();
     let view = pixel_view(64, 64);
-    // Extent in units, triangles in a picture, pictures: a million triangles altogether.
+    // Extent in units, triangles per picture, pictures: a million triangles altogether.
     for (extent, count, pictures) in [
         (300, 120_000, 5),
         (1500, 60_000, 6),
@@ -196,11 +194,11 @@ fn near_misses(context: &mut CaseContext) -> Result<(), EarlyEnd> {
             } else {
                 context.exact_on_all(&scene, &view, &what)?
             };
-            // Nothing moved on the way: the lattice is exact in f32.
+            // No vertex may move: the lattice is exact in f32.
             let placed = triangles.iter().flat_map(|(corners, _)| *corners);
             let moved = capture.geometry.vertices.iter().zip(placed).find(|(v, [x, y])| v.flags != 0 || (v.x, v.y) != (*x, *y));
-            hold!(moved.is_none(), "{what}: a vertex is not where it was put: {moved:?}");
-            // Flat triangles have their corners' depth, so no triangle id is left to a band.
+            check!(moved.is_none(), "{what}: a vertex has moved: {moved:?}");
+            // Flat triangles have the depth of their corners, so no pixel is in the depth band.
             let reference = reference(&scene, &view)?;
             equal(
                 &compare::triangle_ids(&capture.frame.triangle_id, &reference.triangle_ids()),
@@ -224,12 +222,12 @@ fn near_ties(context: &mut CaseContext) -> Result<(), EarlyEnd> {
         let shared = SimpleMesh { positions: positions.clone(), indices: indices.clone(), ..SimpleMesh::default() };
         let capture = context.exact_on_all(&scene_of_meshes(&[shared]), &view, &what)?;
         once(&capture, &what)?;
-        // Every triangle with corners of its own: the same bits go to the same unit wherever they stand.
+        // With separate corners for every triangle, equal positions must snap to equal units.
         let loose = sheet(indices.iter().map(|&i| positions[i as usize]).collect());
         let apart = context.exact_on_all(&scene_of_meshes(&[loose]), &view, &format!("{what}, triangles apart"))?;
         once(&apart, &format!("{what}, triangles apart"))?;
         let parted = indices.iter().zip(&apart.geometry.vertices).find(|(i, v)| capture.geometry.vertices[**i as usize] != **v);
-        hold!(parted.is_none(), "{what}: equal positions went to different places: {parted:?}");
+        check!(parted.is_none(), "{what}: equal positions were snapped differently: {parted:?}");
     }
     for round in 0..4u32 {
         let mut rng = context.rng(round.wrapping_mul(0xc2b2_ae35) ^ 0x51de);

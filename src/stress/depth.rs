@@ -1,13 +1,11 @@
-//! Depth: nine decades of it, layers one key apart, and w ratios within a triangle.
+//! Depth: eleven decades, layers one key apart, and large ratios of w within a triangle.
 
 use std::collections::BTreeSet;
 
 use super::{
-    Case, CaseContext, EarlyEnd, Expectation,
-    context::equal,
-    hold,
+    case::{Case, Expectation},
+    context::{CaseContext, EarlyEnd, check, equal, stack},
     scenes::{SimpleMesh, pixel_view, quad, scene_of_meshes, sheet, square_perspective, turned, units},
-    stack,
 };
 use crate::frame::NO_TRIANGLE;
 
@@ -15,21 +13,21 @@ pub const CASES: &[Case] = &[
     Case {
         number: 13,
         name: "depth-range",
-        about: "pairs a thousandth apart over eleven decades of depth: the nearer of each wins",
+        about: "pairs of layers 0.1 % apart over eleven decades of depth: the nearer one wins",
         expectation: Expectation::Exact,
         run: depth_range,
     },
     Case {
         number: 15,
         name: "coplanar-layers",
-        about: "layers one key apart, and equal ones: the nearest wins, equal keys go to the smaller id",
+        about: "layers one depth key apart: the nearest wins; of equal keys the smaller id wins",
         expectation: Expectation::Exact,
         run: coplanar_layers,
     },
     Case {
         number: 28,
         name: "w-ratios",
-        about: "w of 1 to 2, 10, 1,000 and 10^6 in one triangle: attributes and depth of every sample",
+        about: "w from 1 to 2, 10, 1,000 and 10^6 within a triangle: attributes and depth of every sample",
         expectation: Expectation::Bounded("depth within its stated relative error, colours within one step of 255"),
         run: w_ratios,
     },
@@ -39,7 +37,7 @@ fn depth_range(context: &mut CaseContext) -> Result<(), EarlyEnd> {
     for near in [1e-3, 1e-5] {
         let view = square_perspective(64, 64, near);
         let mut positions = Vec::new();
-        // The farther, the larger on screen; pairs a thousandth apart, the farther one first.
+        // Farther pairs are larger on the screen; the farther layer of a pair comes first.
         for decade in 0..11 {
             for nearer in [1.001, 1.0] {
                 let w = near * 1.5 * libm::pow(10.0, f64::from(decade)) * nearer;
@@ -49,8 +47,8 @@ fn depth_range(context: &mut CaseContext) -> Result<(), EarlyEnd> {
         let what = format!("near plane at {near:e}");
         let capture = context.exact_on_all_with(&scene_of_meshes(&[sheet(positions)]), &view, &stack(&["depth"]), &what)?;
         let seen: BTreeSet<u32> = capture.frame.triangle_id.iter().copied().filter(|&o| o != NO_TRIANGLE).collect();
-        hold!(seen.iter().all(|triangle_id| triangle_id % 4 >= 2), "{what}: the farther of a pair shows among {seen:?}");
-        hold!(seen.len() >= 20, "{what}: {} triangles show", seen.len());
+        check!(seen.iter().all(|triangle_id| triangle_id % 4 >= 2), "{what}: the farther of a pair shows among {seen:?}");
+        check!(seen.len() >= 20, "{what}: {} triangles show", seen.len());
     }
     Ok(())
 }
@@ -58,7 +56,7 @@ fn depth_range(context: &mut CaseContext) -> Result<(), EarlyEnd> {
 fn coplanar_layers(context: &mut CaseContext) -> Result<(), EarlyEnd> {
     let view = pixel_view(64, 64);
     let mut rng = context.rng(5);
-    // Full-screen layers in no order, one float after another: small triangles, and one that is large.
+    // Layers in random order, one float apart: small triangles, and large ones.
     for (what, corners) in [("small", [[0, 0], [24 * 256, 0], [0, 24 * 256]]), ("large", [[-60_000, -90_000], [90_000, 0], [0, 90_000]])] {
         let mut steps: Vec<u32> = (0..40).chain(10..20).collect();
         rng.shuffle(&mut steps);
@@ -69,12 +67,12 @@ fn coplanar_layers(context: &mut CaseContext) -> Result<(), EarlyEnd> {
         triangle_ids.dedup();
         equal(&triangle_ids, &vec![nearest as u32], &format!("{what} layers: triangle ids"))?;
         let top = 0.5f32.to_bits() + 39;
-        hold!(capture.frame.key.iter().all(|&key| key == 0 || key == top), "{what} layers: a depth key is not the nearest's");
+        check!(capture.frame.key.iter().all(|&key| key == 0 || key == top), "{what} layers: a depth key is not the nearest's");
 
-        // The nearest twice more: equal keys go to the smaller id.
+        // The nearest layer twice more: of equal keys the smaller id wins.
         let again: Vec<_> = layers.iter().chain([&layers[nearest]; 2]).copied().collect();
         let equals = context.exact_on_all(&scene_of_meshes(&[units(&again)]), &view, &format!("equal {what} layers"))?;
-        hold!(equals.frame.triangle_id == capture.frame.triangle_id, "equal {what} layers: a larger id wins");
+        check!(equals.frame.triangle_id == capture.frame.triangle_id, "equal {what} layers: a larger id wins");
     }
     Ok(())
 }
@@ -91,7 +89,7 @@ fn w_ratios(context: &mut CaseContext) -> Result<(), EarlyEnd> {
             let view = square_perspective(160, 160, 1.0 / 1024.0);
             let what = format!("ratio {ratio}, {effects:?}");
             let capture = context.exact_on_all_with(&scene, &view, &stack(effects), &what)?;
-            hold!(capture.frame.covered() > 5000, "{what}: {} pixels", capture.frame.covered());
+            check!(capture.frame.covered() > 5000, "{what}: {} pixels", capture.frame.covered());
         }
     }
     Ok(())

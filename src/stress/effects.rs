@@ -1,11 +1,10 @@
-//! Effects at their limits: layers without number, shares next to nothing and next to all, limits at both ends.
+//! Effects at their limits: vast numbers of layers, fills next to 0 and 1, draw limits at both ends.
 
 use std::sync::Arc;
 
 use super::{
-    Case, CaseContext, EarlyEnd, Expectation,
-    context::{equal, layers},
-    hold, pinned,
+    case::{Case, Expectation},
+    context::{CaseContext, EarlyEnd, check, equal, layers, pinned},
     scenes::{SimpleMesh, pixel_view, scene_of_meshes, units},
 };
 use crate::{
@@ -20,62 +19,62 @@ pub const CASES: &[Case] = &[
     Case {
         number: 16,
         name: "layers-on-one-pixel",
-        about: "257, 258, 65,537, 65,538, 10^6 and 1,048,833 layers: the average is right, with fewer bits where it must",
+        about: "257 to 1,048,833 layers on a pixel: the average is correct, with fewer bits per channel where sums would overflow",
         expectation: Expectation::Exact,
         run: layers_on_one_pixel,
     },
     Case {
         number: 25,
         name: "fill",
-        about: "shares of 0, 2^-24, 1/2, 1 - 2^-24 and 1 of large and sub-pixel triangles: exact sets, each within the next",
+        about: "fills of 0, 2^-24, 1/2, 1 - 2^-24 and 1 of large and sub-pixel triangles: exact sets, each a subset of the next",
         expectation: Expectation::Exact,
         run: fill,
     },
     Case {
         number: 25,
-        name: "fill-that-is-no-number",
-        about: "a share of NaN, below 0, above 1",
-        expectation: Expectation::Refused("a sentence with the field and its range"),
-        run: fill_that_is_no_number,
+        name: "fill-outside-its-range",
+        about: "a fill of NaN, below 0 or above 1",
+        expectation: Expectation::Refused("the message names the field and its range"),
+        run: fill_outside_its_range,
     },
     Case {
         number: 26,
         name: "draw-limit",
-        about: "limits of 0, 1, all but one, all, one more and 2^32 - 1 samples, in both orders",
+        about: "draw limits of 0, 1, all but one, all, all and one, and 2^32 - 1 samples, in both orders",
         expectation: Expectation::Exact,
         run: draw_limit,
     },
     Case {
         number: 26,
-        name: "more-than-2-to-the-32-samples",
-        about: "a draw order over more samples than a word counts",
+        name: "draw-order-over-32-bits",
+        about: "a draw order over more samples than 32 bits can count",
         expectation: Expectation::Exact,
-        run: more_than_a_word,
+        run: draw_order_over_32_bits,
     },
     Case {
         number: 26,
-        name: "more-tickets-than-2-to-the-32",
-        about: "the hardware's own order over more samples than a word counts",
-        expectation: Expectation::Refused("a sentence with the number of samples and what a word holds"),
-        run: more_tickets_than_a_word,
+        name: "scheduler-order-over-32-bits",
+        about: "the scheduler's order over more samples than 32 bits can count",
+        expectation: Expectation::Refused("the message names the number of samples and the limit"),
+        run: scheduler_order_over_32_bits,
     },
 ];
 
-/// Sets a field of an effect, which it switches on.
+/// Enables an effect and sets one of its fields.
 fn set(stack: &mut Stack, effect: &str, field: &str, value: f64) -> Result<(), EarlyEnd> {
     let effect = Effect::find(effect).ok_or_else(|| EarlyEnd::Failed(format!("there is no effect {effect}")))?;
     let about = effect.field(field).ok_or_else(|| EarlyEnd::Failed(format!("{} has no field {field}", effect.name)))?;
     about.set(&mut stack.enable(effect).words, &[value]).map_err(|error| EarlyEnd::Failed(format!("{}: {error}", effect.name)))
 }
 
-/// A stack of one effect with some of its fields set.
+/// A stack of one effect with some fields set.
 fn only(effect: &str, fields: &[(&str, f64)]) -> Result<Stack, EarlyEnd> {
     let mut stack = Stack::default();
     fields.iter().try_for_each(|(field, value)| set(&mut stack, effect, field, *value))?;
     Ok(stack)
 }
 
-/// `count` layers that cover every pixel, half of them of one colour and half of another, from six vertices.
+/// `count` layers that cover every pixel, half of them in each of two colours, from six vertices.
 fn pile(count: u32) -> Arc<Scene> {
     let corners = |depth: f32| [[-4.0, -4.0, depth], [40.0, -4.0, depth], [-4.0, 40.0, depth]];
     let colors = [[1.0, 0.0, 0.25, 1.0], [0.0, 1.0, 0.25, 1.0]];
@@ -89,7 +88,7 @@ fn pile(count: u32) -> Arc<Scene> {
 
 fn layers_on_one_pixel(context: &mut CaseContext) -> Result<(), EarlyEnd> {
     let view = pixel_view(2, 2);
-    // Layers, the choice of bits (auto, 16, 12, 10, 8), and the bits that they come to.
+    // Layers, the bits field (auto, 16, 12, 10, 8), and the resulting bits.
     for (count, choice, taken) in [
         (257, 0, 16),
         (258, 0, 16),
@@ -103,9 +102,9 @@ fn layers_on_one_pixel(context: &mut CaseContext) -> Result<(), EarlyEnd> {
         (1_000_000, 1, 12),
         (1_048_833, 0, 10),
     ] {
-        // Both ways to a million layers end in the same kernel, and the last number takes more of them.
+        // Both choices for a million layers use the same kernel, and the last number has more of them.
         if count == 1_000_000 && context.is_slow() {
-            context.note(format!("{count} layers are left out, since this adapter is slow"));
+            context.note(format!("{count} layers are skipped, since this adapter is slow"));
             continue;
         }
         let (scene, stack) = (pile(count), only("xray", &[("bits", f64::from(choice))])?);
@@ -113,7 +112,7 @@ fn layers_on_one_pixel(context: &mut CaseContext) -> Result<(), EarlyEnd> {
             context.options()
         } else {
             let option = context.quick_option();
-            context.note(format!("{count} layers are drawn on {} alone: they wait for one another", option.name()));
+            context.note(format!("{count} layers are drawn on {} only: they wait for one another", option.name()));
             vec![option]
         };
         for option in options {
@@ -126,8 +125,8 @@ fn layers_on_one_pixel(context: &mut CaseContext) -> Result<(), EarlyEnd> {
             let red = f64::from(count.div_ceil(2)) / f64::from(count);
             let wanted = [srgb_byte(red), srgb_byte(1.0 - red), srgb_byte(0.25), 255];
             let is_near = |color: &[u8; 4]| color.iter().zip(wanted).all(|(a, b)| a.abs_diff(b) <= 1);
-            // Steps of eight bits in linear light are coarser than bytes.
-            hold!(taken == 8 || capture.frame.color.iter().all(is_near), "{what}: {:?}, not {wanted:?}", capture.frame.color);
+            // Eight bits in linear light are coarser than sRGB bytes.
+            check!(taken == 8 || capture.frame.color.iter().all(is_near), "{what}: found {:?}, expected {wanted:?}", capture.frame.color);
         }
     }
     Ok(())
@@ -136,7 +135,7 @@ fn layers_on_one_pixel(context: &mut CaseContext) -> Result<(), EarlyEnd> {
 fn fill(context: &mut CaseContext) -> Result<(), EarlyEnd> {
     context.allow_any_depth_band();
     if context.is_slow() {
-        context.note("only the first mode is drawn on every option, since this adapter is slow".into());
+        context.note("only the first mode is drawn with every option, since this adapter is slow".into());
     }
     let least = f64::from(f32::from_bits(0x3380_0000)); // 2^-24
     let fills = [0.0, least, 0.5, 1.0 - least, 1.0];
@@ -156,25 +155,25 @@ fn fill(context: &mut CaseContext) -> Result<(), EarlyEnd> {
                 };
                 let now = layers(&capture).to_vec();
                 if let Some(before) = &before {
-                    hold!(before.iter().zip(&now).all(|(a, b)| a <= b), "{what}: a sample of a smaller share is missing");
+                    check!(before.iter().zip(&now).all(|(a, b)| a <= b), "{what}: a sample of a smaller fill is missing");
                 }
                 before = Some(now);
-                hold!(fill > 0.0 || capture.frame.covered() == 0, "{what}: {} pixels are drawn", capture.frame.covered());
-                hold!(fill < 1.0 || layers(&capture) == layers(&whole), "{what}: not all is drawn");
+                check!(fill > 0.0 || capture.frame.covered() == 0, "{what}: {} pixels are drawn", capture.frame.covered());
+                check!(fill < 1.0 || layers(&capture) == layers(&whole), "{what}: not all samples are drawn");
             }
         }
     }
     Ok(())
 }
 
-fn fill_that_is_no_number(context: &mut CaseContext) -> Result<(), EarlyEnd> {
+fn fill_outside_its_range(context: &mut CaseContext) -> Result<(), EarlyEnd> {
     for value in [f64::NAN, -1e-30, 1.0 + f64::EPSILON, f64::INFINITY, f64::NEG_INFINITY] {
         match only("dissolve", &[("fill", value)]) {
             Err(EarlyEnd::Failed(sentence)) => {
-                hold!(sentence.contains("fill") && sentence.contains("0..=1"), "{value}: {sentence}");
+                check!(sentence.contains("fill") && sentence.contains("0..=1"), "{value}: {sentence}");
                 context.refused(sentence);
             }
-            other => return Err(EarlyEnd::Failed(format!("a share of {value} was taken: {other:?}"))),
+            other => return Err(EarlyEnd::Failed(format!("a fill of {value} was accepted: {other:?}"))),
         }
     }
     Ok(())
@@ -204,7 +203,7 @@ fn draw_limit(context: &mut CaseContext) -> Result<(), EarlyEnd> {
                     if mode == draw_order::Mode::Submission {
                         let now = layers(&capture).to_vec();
                         let grows = before.is_none_or(|before| before.iter().zip(&now).all(|(a, b)| a <= b));
-                        hold!(grows, "{what}: a sample of a smaller limit is missing");
+                        check!(grows, "{what}: a sample of a smaller limit is missing");
                         before = Some(now);
                     }
                 }
@@ -214,20 +213,20 @@ fn draw_limit(context: &mut CaseContext) -> Result<(), EarlyEnd> {
     Ok(())
 }
 
-/// Sheets over a whole picture, of more than 2^32 samples together; with that number.
+/// Layers over a whole picture with more than 2^32 samples, and their number.
 fn sheets_of_a_word(context: &CaseContext) -> Result<(Arc<Scene>, View, u64), EarlyEnd> {
     if context.is_software() {
-        return Err(EarlyEnd::Skipped("2^32 samples take a software adapter minutes".into()));
+        return Err(EarlyEnd::Skipped("2^32 samples take minutes on a software adapter".into()));
     }
     let (side, times) = (4096u32, 260);
     let total = u64::from(side) * u64::from(side) * times;
-    hold!(total > u64::from(u32::MAX), "{total} samples are too few");
+    check!(total > u64::from(u32::MAX), "{total} samples are too few");
     let far = 8_388_607;
     let scene = scene_of_meshes(&[units(&(0..times).map(|i| ([[0, 0], [far, 0], [0, far]], 1e-3 * (i + 1) as f32)).collect::<Vec<_>>())]);
     Ok((scene, pixel_view(side, side), total))
 }
 
-fn more_tickets_than_a_word(context: &mut CaseContext) -> Result<(), EarlyEnd> {
+fn scheduler_order_over_32_bits(context: &mut CaseContext) -> Result<(), EarlyEnd> {
     let (scene, view, total) = sheets_of_a_word(context)?;
     let by_chance = f64::from(draw_order::Mode::Scheduler as u32);
     for (what, unit, amount) in [("a count", "limit", 1e6), ("a share", "share", 0.5)] {
@@ -238,20 +237,20 @@ fn more_tickets_than_a_word(context: &mut CaseContext) -> Result<(), EarlyEnd> {
         match context.renderer.draw_complete(&view, &stack, &AccuracyRequest::default()) {
             Err(error @ RenderError::Tickets(_)) => {
                 let text = error.to_string();
-                hold!(error.is_unsupported() && text.contains(&total.to_string()), "{what}: {text}");
+                check!(error.is_unsupported() && text.contains(&total.to_string()), "{what}: {text}");
                 context.refused(text);
             }
             Err(error) => return Err(EarlyEnd::Failed(format!("{what}: {error}"))),
-            Ok(_) => return Err(EarlyEnd::Failed(format!("{what}: {total} samples were drawn by tickets of one word"))),
+            Ok(_) => return Err(EarlyEnd::Failed(format!("{what}: {total} samples were drawn although 32 bits cannot count them"))),
         }
     }
     Ok(())
 }
 
-fn more_than_a_word(context: &mut CaseContext) -> Result<(), EarlyEnd> {
+fn draw_order_over_32_bits(context: &mut CaseContext) -> Result<(), EarlyEnd> {
     let (scene, view, total) = sheets_of_a_word(context)?;
     let share = f64::from(draw_order::Unit::Share as u32);
-    // All but one part in 2^24 is a limit beyond a word, too.
+    // The limit itself also exceeds 32 bits.
     for (what, fields, limit) in [
         ("a count", vec![("unit", 1.0), ("limit", 1e6)], 1_000_000),
         ("2^32 - 1", vec![("unit", 1.0), ("limit", f64::from(u32::MAX))], u64::from(u32::MAX)),

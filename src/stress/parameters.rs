@@ -1,8 +1,11 @@
-//! Parameters at both hard ends: one by one, all of an effect together, and with every effect on.
+//! Parameters at the ends of their hard ranges: one by one, all of an effect together, and with every effect enabled.
 
 use std::sync::Arc;
 
-use super::{Case, CaseContext, EarlyEnd, Expectation, hold};
+use super::{
+    case::{Case, Expectation},
+    context::{CaseContext, EarlyEnd, check},
+};
 use crate::{
     accuracy::{PinnedOptions, ShadowMapSize},
     effects::{EFFECTS, Effect, Stack, hooks::Slot, particles},
@@ -17,24 +20,24 @@ use crate::{
 pub const CASES: &[Case] = &[
     Case {
         number: 31,
-        name: "parameters-at-their-ends",
-        about: "every parameter of every effect at the least and the greatest value that it takes",
-        expectation: Expectation::Bounded("integers exact; colours within one step of 255 but for steps of colour"),
-        run: parameters_at_their_ends,
+        name: "parameters-at-range-ends",
+        about: "every parameter of every effect at its smallest and its largest allowed value",
+        expectation: Expectation::Bounded("integers exact; colours within one step of 255 except at discontinuities"),
+        run: parameters_at_range_ends,
     },
     Case {
         number: 31,
-        name: "every-effect-at-once",
-        about: "as many effects as the slots let stand together, all parameters at one end",
-        expectation: Expectation::Bounded("integers exact; colours within one step of 255 but for steps of colour"),
-        run: every_effect_at_once,
+        name: "all-effects-at-range-ends",
+        about: "as many effects as can be combined, all parameters at one end of their ranges",
+        expectation: Expectation::Bounded("integers exact; colours within one step of 255 except at discontinuities"),
+        run: all_effects_at_range_ends,
     },
 ];
 
-/// Particles of a picture: more of them, each as large as the picture, are a bench.
+/// The most particles of a picture: more of them, each as large as the picture, would be a benchmark.
 const MOST_PARTICLES: f64 = 2000.0;
 
-/// The ends of what a field takes, as its own type holds them.
+/// The ends of a field's range as its type can represent them.
 fn ends(field: &Field) -> [f64; 2] {
     if particles::EFFECT.field("count") == Some(field) {
         return [field.hard[0], MOST_PARTICLES];
@@ -57,13 +60,13 @@ fn set(stack: &mut Stack, effect: &'static Effect, field: &Field, end: usize) ->
     field.set(&mut stack.enable(effect).words, &values).map_err(|error| EarlyEnd::Failed(format!("{}: {error}", effect.name)))
 }
 
-/// Draws and judges; steps of colour may lie anywhere.
+/// Draws and judges. Colour discontinuities may be anywhere.
 fn judged(context: &mut CaseContext, stack: &Stack, turn: usize, what: &str) -> Result<(), EarlyEnd> {
-    // Few triangles: discs and boxes at their largest cover the picture once for each of them.
+    // Few triangles: at their largest, discs and boxes cover the picture once for each triangle.
     let query = ["sphere?triangles=200", "near", "cube-wall", "grid?cell=0.4&width=8&height=8"][turn % 4];
     let scene = context.scene(query)?;
     let what = format!("{what}, {query}");
-    // Depths range as far as particles fly.
+    // The depth range includes the particles.
     let view = match stack.particle_settings() {
         Some(_) => Preset { scene: SceneSource::Builtin(query.into()), stack: stack.clone(), ..Preset::default() }.view(&scene, [64, 48]),
         None => context.view(&scene, [64, 48]),
@@ -72,20 +75,20 @@ fn judged(context: &mut CaseContext, stack: &Stack, turn: usize, what: &str) -> 
     let stack = &drawable(context, &scene, &view, stack, accuracy, &what)?;
     let (capture, verdict) = context.judged(&scene, &view, stack, accuracy, &what)?;
     let sound = capture.geometry.vertices.iter().all(|v| v.depth.is_finite() && v.inv_w.is_finite());
-    hold!(sound, "{what}: a vertex is no number");
+    check!(sound, "{what}: a vertex is not finite");
     verdict
         .accuracy
         .within(&Budget { max_step_band_fraction: 1.0, ..Budget::default() })
         .map_err(|why| EarlyEnd::Failed(format!("{what}: {why}")))
 }
 
-/// As planned; a slow adapter would spend most of its time on texels of shadow maps.
+/// The default request; small shadow maps for slow adapters.
 fn accuracy(context: &CaseContext) -> AccuracyRequest {
     let pins = if context.is_slow() { PinnedOptions::of(ShadowMapSize::Side256) } else { PinnedOptions::default() };
     AccuracyRequest { pins, ..AccuracyRequest::default() }
 }
 
-/// The stack, without dots where more of them are asked for than one picture takes, which a sentence says.
+/// The stack, without dots where they exceed the limit of a picture, which is noted.
 fn drawable(
     context: &mut CaseContext,
     scene: &Arc<Scene>,
@@ -108,16 +111,16 @@ fn drawable(
     Ok(stack)
 }
 
-fn parameters_at_their_ends(context: &mut CaseContext) -> Result<(), EarlyEnd> {
+fn parameters_at_range_ends(context: &mut CaseContext) -> Result<(), EarlyEnd> {
     let default = context.renderer.gpu().caps.tuning();
-    // One scene for each effect, and a key that leaves nothing out: kernels are made once for all its pictures. Where vertices
-    // move, the values decide what the planner may leave out, and that is put to the test where kernels compile in time.
+    // One scene per effect and an unspecialized kernel key, so kernels are compiled once for all its pictures. Where vertices
+    // move, specialization depends on the values and is tested on adapters that compile fast.
     if context.is_slow() {
-        context.note("no kernel is specialised, and shadow maps have 256 texels a side, since this adapter is slow".into());
+        context.note("kernels are not specialized, and shadow maps have 256 x 256 texels, since this adapter is slow".into());
     }
     for (turn, effect) in EFFECTS.iter().enumerate() {
         context.renderer.set_tuning(Tuning { specialized: effect.hooks.vertex.is_some() && !context.is_slow(), ..default });
-        for (end, word) in [(0, "least"), (1, "greatest")] {
+        for (end, word) in [(0, "minimum"), (1, "maximum")] {
             for field in effect.fields {
                 let mut stack = Stack::default();
                 set(&mut stack, effect, field, end)?;
@@ -133,14 +136,14 @@ fn parameters_at_their_ends(context: &mut CaseContext) -> Result<(), EarlyEnd> {
     Ok(())
 }
 
-fn every_effect_at_once(context: &mut CaseContext) -> Result<(), EarlyEnd> {
+fn all_effects_at_range_ends(context: &mut CaseContext) -> Result<(), EarlyEnd> {
     if context.is_slow() {
-        context.note("one end for each choice of slots, and shadow maps of 256 texels a side, since this adapter is slow".into());
+        context.note("one end for each choice of slots, and shadow maps of 256 x 256 texels, since this adapter is slow".into());
     }
     if context.is_software() {
         context.note("dots no closer than a millimetre, since this is a software adapter".into());
     }
-    // Those of one slot take turns.
+    // Effects of the same slot take turns.
     let most = Slot::ALL.iter().map(|slot| EFFECTS.iter().filter(|effect| effect.hooks.slot == Some(*slot)).count()).max().unwrap_or(1);
     for choice in 0..most {
         let ends = [None, Some(0), Some(1)];
@@ -158,12 +161,12 @@ fn every_effect_at_once(context: &mut CaseContext) -> Result<(), EarlyEnd> {
                 }
             }
             if let Some(dots) = stack.get_mut("dots").filter(|_| context.is_software() && end == Some(0)) {
-                // Millions of dots are a bench on a CPU adapter.
+                // Millions of dots take too long on a software adapter.
                 let spacing = dots.effect.field("spacing_m").expect("dots have a spacing");
                 spacing.set(&mut dots.words, &[1e-3]).expect("a millimetre may be");
             }
             let names: Vec<_> = stack.0.iter().filter(|e| e.effect.hooks.slot.is_some()).map(|e| e.effect.name).collect();
-            let at = ["as they come", "at their least", "at their greatest"][end.map_or(0, |end| end + 1)];
+            let at = ["at their defaults", "at their minimum", "at their maximum"][end.map_or(0, |end| end + 1)];
             judged(context, &stack, choice, &format!("all effects {at}, in the slots {}", names.join(" and ")))?;
         }
     }

@@ -1,11 +1,9 @@
-//! Published fixtures of fill rules: answers that share no code with us.
+//! Published fixtures of fill rules, whose answers share no code with this project.
 
 use super::{
-    Case, CaseContext, EarlyEnd, Expectation,
-    context::{equal, exactness, layers, once},
-    hold, pinned,
+    case::{Case, Expectation},
+    context::{CaseContext, EarlyEnd, check, equal, exactness, layers, once, pinned, stack},
     scenes::{pixel_view, quad, scene_of_meshes, sheet, square_perspective, turned, units},
-    stack,
 };
 use crate::{accuracy::Visibility, frame::NO_TRIANGLE};
 
@@ -13,49 +11,49 @@ pub const CASES: &[Case] = &[
     Case {
         number: 1,
         name: "rotated-quads",
-        about: "4 x 4 turned quads, in one winding or both, with a w for each corner: no sample is drawn twice",
+        about: "4 x 4 rotated quads, with equal or opposite winding, and with a w for each corner: no sample is drawn twice",
         expectation: Expectation::Exact,
         run: rotated_quads,
     },
     Case {
         number: 1,
         name: "clipped-quads",
-        about: "a quad that reaches out of the picture or covers it, at 15 angles: no sample twice, none missing",
+        about: "a quad that extends beyond the picture or covers it, at 15 angles: no sample is drawn twice, none is missing",
         expectation: Expectation::Exact,
         run: clipped_quads,
     },
     Case {
         number: 1,
-        name: "quads-past-the-guard-band",
-        about: "the covering quad grown to 10^8 times the picture: exact given the clipped pieces, and no crack",
+        name: "quads-beyond-the-guard-band",
+        about: "a covering quad up to 10^8 times as large as the picture: exact given the clipped triangles, and no cracks",
         expectation: Expectation::Exact,
-        run: vast_quads,
+        run: quads_beyond_the_guard_band,
     },
     Case {
         number: 2,
-        name: "fan-about-a-sample",
-        about: "sub-pixel triangles round one sample: exactly one hit",
+        name: "fan-around-a-sample",
+        about: "sub-pixel triangles around one sample: exactly one hit",
         expectation: Expectation::Exact,
-        run: fan_about_a_sample,
+        run: fan_around_a_sample,
     },
     Case {
         number: 3,
         name: "d3d-rectangle",
-        about: "the rectangle (0, 0) to (5, 5) of two triangles: 15 and 10 pixels",
+        about: "the rectangle (0, 0) to (5, 5) as two triangles: 15 and 10 pixels",
         expectation: Expectation::Exact,
         run: d3d_rectangle,
     },
     Case {
         number: 3,
         name: "d3d-four-triangles",
-        about: "a rectangle of four triangles, off the samples and on them: the same eight pixels, each once",
+        about: "a rectangle of four triangles, off the samples and on them: the same eight pixels, each drawn once",
         expectation: Expectation::Exact,
         run: d3d_four_triangles,
     },
     Case {
         number: 3,
         name: "d3d-snap",
-        about: "positions half-way between two units go to the even one",
+        about: "positions halfway between two units snap to the even one",
         expectation: Expectation::Exact,
         run: d3d_snap,
     },
@@ -63,8 +61,8 @@ pub const CASES: &[Case] = &[
 
 /// The quads of `FillRuleTestInstance` in the Vulkan CTS (KhronosGroup/VK-GL-CTS,
 /// external/vulkancts/modules/vulkan/rasterization/vktRasterizationTests.cpp): 4 x 4 centres, half a side of 0.15, 32 angles
-/// over a quarter turn in two pictures of 256 x 256. Its `basic` winds the two triangles of a quad against each other,
-/// its `reversed` alike; `projected` gives each corner a w from 0.1 to 4.
+/// over a quarter turn in two pictures of 256 x 256. Its `basic` gives the two triangles of a quad opposite windings, its
+/// `reversed` equal ones; `projected` gives each corner a w from 0.1 to 4.
 fn rotated_quads(context: &mut CaseContext) -> Result<(), EarlyEnd> {
     let view = square_perspective(256, 256, 1.0 / 128.0);
     let mut rng = context.rng(0xabcd);
@@ -74,17 +72,17 @@ fn rotated_quads(context: &mut CaseContext) -> Result<(), EarlyEnd> {
             for place in 0..16 {
                 let center = [place % 4, place / 4].map(|k| (f64::from(k) + 0.5) / 2.0 - 1.0);
                 let angle = f64::from(16 * iteration + place) / 32.0 * std::f64::consts::FRAC_PI_2;
-                // Corners lie half a side along both axes: the square root of two times it away, half a quarter turn on.
+                // A corner is sqrt(2) times half a side from the centre, an eighth of a turn further.
                 let square = turned(center, 0.15 * std::f64::consts::SQRT_2, angle - std::f64::consts::FRAC_PI_4);
                 let w = square.map(|_| if kind == "projected" { rng.real(0.1, 4.0) } else { 1.0 });
                 corners.extend(order.map(|i| [square[i][0] * w[i], square[i][1] * w[i], -w[i]].map(|v| v as f32)));
             }
             let what = format!("{kind}, picture {}", iteration + 1);
             let capture = context.exact_on_all(&scene_of_meshes(&[sheet(corners)]), &view, &what)?;
-            hold!(layers(&capture).iter().all(|&hits| hits <= 1), "{what}: a sample is drawn twice");
+            check!(layers(&capture).iter().all(|&hits| hits <= 1), "{what}: a sample is drawn twice");
             // A square of 0.3 to a side fills 38.4 x 38.4 of 256 x 256 pixels, its outline at most 4 x 55 of them.
             let covered = capture.frame.covered();
-            hold!((16 * 1420..16 * 1530).contains(&covered), "{what}: {covered} pixels, where 16 x 1,474.6 are near");
+            check!((16 * 1420..16 * 1530).contains(&covered), "{what}: {covered} pixels, where 16 x 1,474.6 are near");
         }
     }
     Ok(())
@@ -101,7 +99,7 @@ fn clipped_quads(context: &mut CaseContext) -> Result<(), EarlyEnd> {
             let what = format!("{kind}, angle {} of 15", iteration + 1);
             let scene = scene_of_meshes(&[sheet(quad(square, [1.0; 4], false))]);
             let capture = context.exact_on_all(&scene, &view, &what)?;
-            hold!(layers(&capture).iter().all(|&hits| hits <= 1), "{what}: a sample is drawn twice");
+            check!(layers(&capture).iter().all(|&hits| hits <= 1), "{what}: a sample is drawn twice");
             if kind == "full" {
                 once(&capture, &what)?;
             }
@@ -110,19 +108,19 @@ fn clipped_quads(context: &mut CaseContext) -> Result<(), EarlyEnd> {
     Ok(())
 }
 
-fn vast_quads(context: &mut CaseContext) -> Result<(), EarlyEnd> {
+fn quads_beyond_the_guard_band(context: &mut CaseContext) -> Result<(), EarlyEnd> {
     let view = square_perspective(96, 64, 1.0 / 128.0);
     for turn in 0..15 {
         let angle = f64::from(turn) * std::f64::consts::FRAC_PI_2 / 15.0;
-        // Beyond every corner, then far past the guard band.
+        // Beyond every corner, then far beyond the guard band.
         for half in [2.5, 40.0, 1e5, 1e8] {
             let part = sheet(quad(turned([0.1, -0.2], half, angle), [1.0, 0.7, 2.0, 1.3], turn % 2 == 0));
             let what = format!("turn {turn}, half {half:e}");
             let (capture, mut verdict) =
                 context.judged(&scene_of_meshes(&[part]), &view, &stack(&[]), &pinned(Visibility::Split32), &what)?;
             if half > 1e6 {
-                // Cuts of f32 coordinates of 10^8 lie whole pixels apart: exact given the clipped pieces, and without a crack.
-                hold!(capture.frame.counters.clipped == 2 && !capture.geometry.pieces.is_empty(), "{what}: nothing was clipped");
+                // At 10^8 the cuts of f32 coordinates are off by whole pixels: exact given the clipped triangles, and without cracks.
+                check!(capture.frame.counters.clipped == 2 && !capture.geometry.pieces.is_empty(), "{what}: nothing was clipped");
                 verdict.accuracy.unexplained = 0;
             }
             exactness(&verdict.accuracy).map_err(|faults| EarlyEnd::Failed(format!("{what}: {faults}")))?;
@@ -133,7 +131,7 @@ fn vast_quads(context: &mut CaseContext) -> Result<(), EarlyEnd> {
 }
 
 /// After piglit's fans of triangles that meet in a point of the sample grid.
-fn fan_about_a_sample(context: &mut CaseContext) -> Result<(), EarlyEnd> {
+fn fan_around_a_sample(context: &mut CaseContext) -> Result<(), EarlyEnd> {
     for n in [3, 5, 8, 13, 40] {
         for seed in 0..3 {
             let what = format!("{n} triangles, seed {seed}");
@@ -148,8 +146,8 @@ fn fan_about_a_sample(context: &mut CaseContext) -> Result<(), EarlyEnd> {
     Ok(())
 }
 
-/// Direct3D's documents, "Rasterization SampleTests": the first triangle gets 15 pixels and the second 10, because the edge they
-/// share is a left edge of the first. Their samples lie at whole numbers, ours half a pixel further; both are drawn.
+/// Direct3D documentation, "Rasterization Rules": the first triangle gets 15 pixels and the second 10, because the edge that
+/// they share is a left edge of the first. Its samples are at integers, ours half a pixel further; both are drawn.
 fn d3d_rectangle(context: &mut CaseContext) -> Result<(), EarlyEnd> {
     for shift in [0, 128] {
         let [a, b, c, d] = [[0, 0], [5, 0], [5, 5], [0, 5]].map(|corner| corner.map(|v| 256 * v + shift));
@@ -159,24 +157,24 @@ fn d3d_rectangle(context: &mut CaseContext) -> Result<(), EarlyEnd> {
             let capture = context.exact_on_all(&scene, &pixel_view(8, 8), &what)?;
             let count = |triangle_id| capture.frame.triangle_id.iter().filter(|&&o| o == triangle_id).count();
             equal(&[count(0), count(1), count(NO_TRIANGLE)], &[15, 10, 39], &format!("{what}: pixels of each, and of none"))?;
-            hold!(layers(&capture).iter().all(|&hits| hits <= 1), "{what}: a sample is drawn twice");
+            check!(layers(&capture).iter().all(|&hits| hits <= 1), "{what}: a sample is drawn twice");
         }
     }
     Ok(())
 }
 
-/// From the same page: the rectangle (0.5, 0.5) to (2.5, 4.5), four triangles about its centre, needs no rule, since all its
-/// samples lie inside of triangles. Moved by half a pixel most of them lie on edges; the same pixels are affected.
+/// From the same page: the rectangle (0.5, 0.5) to (2.5, 4.5) as four triangles around its centre needs no rule, since all its
+/// samples lie inside triangles. Moved by half a pixel most samples lie on edges, and the same pixels are covered.
 fn d3d_four_triangles(context: &mut CaseContext) -> Result<(), EarlyEnd> {
     let mut covered = Vec::new();
     for (what, [left, top]) in [("off the samples", [128, 128]), ("on the samples", [256, 256])] {
-        // Our samples lie half a pixel further than theirs.
+        // Our samples are half a pixel further than Direct3D's.
         let at = |x: i32, y: i32| [left + 128 + x, top + 128 + y];
         let [a, b, c, d, middle] = [at(0, 0), at(512, 0), at(512, 1024), at(0, 1024), at(256, 512)];
         let faces = [[a, b, middle], [b, c, middle], [c, d, middle], [d, a, middle]];
         let scene = scene_of_meshes(&[units(&faces.map(|face| (face, 0.5)))]);
         let capture = context.exact_on_all(&scene, &pixel_view(8, 8), what)?;
-        hold!(layers(&capture).iter().all(|&hits| hits <= 1), "{what}: a sample is drawn twice");
+        check!(layers(&capture).iter().all(|&hits| hits <= 1), "{what}: a sample is drawn twice");
         covered.push(layers(&capture).to_vec());
     }
     let pixels: Vec<usize> = (0..64).filter(|&pixel| covered[0][pixel] == 1).collect();

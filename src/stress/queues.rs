@@ -1,15 +1,13 @@
-//! Queues: more workgroups than a dimension holds, queues that are exactly full or overflow, and great numbers of triangles.
+//! Queues: more workgroups than a dispatch dimension holds, queues that are exactly full or overflow, and millions of triangles.
 
 use std::sync::Arc;
 
 use glam::{DMat4, DVec3};
 
 use super::{
-    Case, CaseContext, EarlyEnd, Expectation,
-    context::{equal, layers},
-    hold, pinned,
+    case::{Case, Expectation},
+    context::{CaseContext, EarlyEnd, check, equal, layers, pinned, stack, tunings},
     scenes::{SimpleMesh, pixel_view, scene_of_meshes, units},
-    stack, tunings,
 };
 use crate::{
     accuracy::Visibility,
@@ -23,48 +21,48 @@ pub const CASES: &[Case] = &[
     Case {
         number: 18,
         name: "workgroups-direct",
-        about: "65,535 to 65,537 groups of triangles and of vertices, dispatched directly: the full picture",
+        about: "65,535 to 65,537 workgroups of triangles and of vertices, dispatched directly: the complete picture",
         expectation: Expectation::Exact,
         run: workgroups_direct,
     },
     Case {
         number: 18,
         name: "workgroups-indirect",
-        about: "as many medium and large triangles and tiles, whose dispatch the adapter sizes itself",
+        about: "as many medium and large triangles and tiles, dispatched indirectly",
         expectation: Expectation::Exact,
         run: workgroups_indirect,
     },
     Case {
         number: 19,
         name: "queues",
-        about: "each queue with room for its demand n, for n - 1 and for n / 10: counted, grown, drawn again, exact",
+        about: "each queue with capacities of its demand n, of n - 1, n / 10 and 1: overflow is counted, the queue grows, and the redraw is exact",
         expectation: Expectation::Exact,
         run: queues,
     },
     Case {
         number: 27,
-        name: "a-million-triangles",
-        about: "a sphere of a million triangles against the oracle",
+        name: "million-triangles",
+        about: "a sphere of a million triangles, compared with the oracle",
         expectation: Expectation::Exact,
-        run: a_million_triangles,
+        run: million_triangles,
     },
     Case {
         number: 27,
         name: "ten-million-triangles",
-        about: "ten million tiny triangles, whose triangle ids and hits can be counted",
+        about: "ten million tiny triangles with known triangle ids and hits",
         expectation: Expectation::Exact,
         run: ten_million_triangles,
     },
     Case {
         number: 27,
-        name: "a-thousand-full-screen-triangles",
-        about: "far larger than the picture, each of them over all of it",
+        name: "thousand-full-screen-triangles",
+        about: "triangles far larger than the picture, each of which covers all of it",
         expectation: Expectation::Exact,
-        run: full_screen_triangles,
+        run: thousand_full_screen_triangles,
     },
 ];
 
-/// Tiny triangles one after another over the pixels of a row, one hit each, all of them `times` over, later ones nearer.
+/// `count` tiny triangles, one hit each, one pixel after another in rows, instanced `times` times, later instances nearer.
 fn dots(indexed: bool, count: u32, times: u32) -> (Arc<Scene>, View) {
     let corner = |i: u32, c: usize| {
         let (x, y) = ((i % 64) as f32, (i / 64 % 64) as f32);
@@ -80,7 +78,7 @@ fn dots(indexed: bool, count: u32, times: u32) -> (Arc<Scene>, View) {
     (scene_of_meshes(&[part]), pixel_view(64, 64))
 }
 
-/// Hits of each pixel, and its triangle id: the last of those with the last placement's depth has the smallest id there.
+/// Checks the hits of each pixel, and its triangle id: the smallest id of the last, nearest instance.
 fn counted(capture: &Capture, count: u32, times: u32, what: &str) -> Result<(), EarlyEnd> {
     let rounds = |pixel: u32| (count - pixel).div_ceil(4096);
     for pixel in 0..4096.min(count) {
@@ -95,14 +93,14 @@ fn workgroups_direct(context: &mut CaseContext) -> Result<(), EarlyEnd> {
     // 64 triangles, or vertices, to a group: 65,535, 65,536 and 65,537 groups, the last one with a single lane at work.
     for groups in [65_535u32, 65_536, 65_537] {
         let triangles = 64 * (groups - 1) + 1;
-        // Three placements divide none of these evenly, so the list itself is as long as it must be.
+        // A single instance, so the triangle list itself has this length.
         let (scene, view) = dots(true, triangles, 1);
         let what = format!("{groups} groups of triangles");
         let capture = context.captured(&scene, &view, &stack(&[]), &option, &what)?;
         counted(&capture, triangles, 1, &what)?;
     }
     let (count, times) = (66_666, 21);
-    hold!(3 * count * times > 64 * 65_535, "too few vertices");
+    check!(3 * count * times > 64 * 65_535, "too few vertices");
     let (scene, view) = dots(false, count, times);
     let what = "65,626 groups of vertices";
     let capture = context.captured(&scene, &view, &stack(&[]), &option, what)?;
@@ -112,7 +110,7 @@ fn workgroups_direct(context: &mut CaseContext) -> Result<(), EarlyEnd> {
 fn workgroups_indirect(context: &mut CaseContext) -> Result<(), EarlyEnd> {
     let option = pinned(context.quick_option());
     let [crowded, _, card, _] = tunings();
-    // Medium triangles: one group each.
+    // Medium triangles: one workgroup each.
     let demands = [65_537u32, 65_535, 65_536];
     if context.is_slow() {
         context.note(format!("medium triangles: {} alone, since this adapter is slow", demands[0]));
@@ -127,9 +125,9 @@ fn workgroups_indirect(context: &mut CaseContext) -> Result<(), EarlyEnd> {
         context.renderer.set_tuning(crowded);
         let what = format!("{demand} medium triangles");
         context.exact(&scene, &pixel_view(64, 64), &stack(&[]), &option, &what)?;
-        hold!(context.renderer.capacities().medium >= demand, "{what}: {:?}", context.renderer.capacities());
+        check!(context.renderer.capacities().medium >= demand, "{what}: {:?}", context.renderer.capacities());
     }
-    // Large triangles and their tiles: one group each, one tile to a triangle; with room from the start, since it takes time.
+    // Large triangles and their tiles: one workgroup each, one tile per triangle. Capacities are set beforehand to save time.
     let needle = |i: i32| [[-20_000 - i % 7, i % 16_000], [40_000, i % 16_000 + 3], [40_000, i % 16_000 + 600]];
     let triangles: Vec<_> = (0..65_600).map(|i| (needle(i), 0.25 + 1e-6 * i as f32)).collect();
     let scene = scene_of_meshes(&[units(&triangles)]);
@@ -152,7 +150,7 @@ fn workgroups_indirect(context: &mut CaseContext) -> Result<(), EarlyEnd> {
 /// What a demand is called, what it comes to, the scene that makes it, and the capacity that must hold it.
 type Demand = (&'static str, Capacities, Arc<Scene>, fn(&mut Capacities) -> &mut u32);
 
-/// Each queue alone, with the demand that is known for it.
+/// Each queue with a scene that makes a known demand on it.
 fn demands() -> Vec<Demand> {
     let ample = Capacities { clip: 4096, pieces: 4096, medium: 4096, large: 4096, tiles: 4096, bins: 65_536, listed: 0 };
     let n = 40;
@@ -161,7 +159,7 @@ fn demands() -> Vec<Demand> {
         scene_of_meshes(&[units(&(0..n).map(moved).collect::<Vec<_>>())])
     };
     let demand = n as u32;
-    // One corner beyond the guard band leaves a quad of two pieces, both on screen.
+    // One corner beyond the guard band leaves a quad of two clipped triangles, both visible.
     let cut = many([[9_000_000, 300], [200, 9000], [300, 200]]);
     let small = many([[300, 300], [9000, 400], [400, 9000]]);
     let large = many([[-3000, -3000], [90_000, 4000], [4000, 90_000]]);
@@ -181,7 +179,7 @@ fn queues(context: &mut CaseContext) -> Result<(), EarlyEnd> {
     let view = pixel_view(128, 128);
     context.renderer.set_tuning(tunings()[0]);
     for option in context.options() {
-        // A tiled picture has lists, the others tiles of large triangles.
+        // The tiled option has lists per tile, the others have a queue of large triangles' tiles.
         let has = |queue: &str| queue != if option == Visibility::Tiled { "tiles" } else { "bins" };
         for (queue, exactly, scene, field) in demands().into_iter().filter(|(queue, ..)| has(queue)) {
             let demand = *field(&mut exactly.clone());
@@ -196,14 +194,14 @@ fn queues(context: &mut CaseContext) -> Result<(), EarlyEnd> {
                 equal(&report.counters.overflow, &(demand - capacity), &format!("{what}: entries lost"))?;
                 equal(&report.redraw, &(capacity < demand), &format!("{what}: drawn again"))?;
                 context.exact(&scene, &view, &stack(&[]), &pinned(option), &what)?;
-                hold!(*field(&mut context.renderer.capacities()) >= demand, "{what}: it has not grown");
+                check!(*field(&mut context.renderer.capacities()) >= demand, "{what}: the queue has not grown");
             }
         }
     }
     Ok(())
 }
 
-fn a_million_triangles(context: &mut CaseContext) -> Result<(), EarlyEnd> {
+fn million_triangles(context: &mut CaseContext) -> Result<(), EarlyEnd> {
     let sphere = context.scene("sphere?triangles=1000000")?;
     let view = context.view(&sphere, [256, 192]);
     let mut first: Option<Capture> = None;
@@ -213,7 +211,7 @@ fn a_million_triangles(context: &mut CaseContext) -> Result<(), EarlyEnd> {
             None => context.exact(&sphere, &view, &stack(&["lambert"]), &pinned(option), &what)?.0,
             Some(_) => context.captured(&sphere, &view, &stack(&["lambert"]), &pinned(option), &what)?,
         };
-        hold!(capture.frame.covered() > 7000, "{what}: {} pixels", capture.frame.covered());
+        check!(capture.frame.covered() > 7000, "{what}: {} pixels", capture.frame.covered());
         match &first {
             None => first = Some(capture),
             Some(first) => super::context::same(&capture, first, &what)?,
@@ -227,11 +225,11 @@ fn ten_million_triangles(context: &mut CaseContext) -> Result<(), EarlyEnd> {
     let caps = &context.renderer.gpu().caps;
     let room = caps.max_storage_binding_bytes.min(caps.max_buffer_bytes);
     if room < 12 * u64::from(count) {
-        return Err(EarlyEnd::Skipped(format!("their index list takes {} bytes, and this adapter binds {room}", 12 * count)));
+        return Err(EarlyEnd::Skipped(format!("the index list needs {} bytes, and this adapter binds at most {room}", 12 * count)));
     }
     let is_software = caps.software;
     for option in context.options() {
-        // Every pixel of a tile looks at every triangle on its list: 2.6 billion looks, which are minutes without a card.
+        // Every pixel of a tile tests every triangle on its list: 2.6 billion tests take minutes on a software adapter.
         let is_fewer = is_software && option == Visibility::Tiled;
         let count = if is_fewer { count / 10 } else { count };
         if is_fewer {
@@ -245,7 +243,7 @@ fn ten_million_triangles(context: &mut CaseContext) -> Result<(), EarlyEnd> {
     Ok(())
 }
 
-fn full_screen_triangles(context: &mut CaseContext) -> Result<(), EarlyEnd> {
+fn thousand_full_screen_triangles(context: &mut CaseContext) -> Result<(), EarlyEnd> {
     let mut rng = context.rng(3);
     let mut far = || rng.between(60_000, 8_000_000);
     let triangles: Vec<_> =
@@ -255,9 +253,9 @@ fn full_screen_triangles(context: &mut CaseContext) -> Result<(), EarlyEnd> {
     for option in context.options() {
         let what = format!("a thousand full-screen triangles on {}", option.name());
         let (capture, _) = context.exact(&scene, &pixel_view(128, 64), &stack(&[]), &pinned(option), &what)?;
-        hold!(layers(&capture).iter().all(|&hits| hits > 900), "{what}: a pixel with fewer than 900 layers");
+        check!(layers(&capture).iter().all(|&hits| hits > 900), "{what}: a pixel with fewer than 900 layers");
         let cut = capture.geometry.vertices.iter().any(|vertex| vertex.flags & vertex_flags::CLIPPED != 0);
-        hold!(!cut, "{what}: one was clipped");
+        check!(!cut, "{what}: a triangle was clipped");
     }
     Ok(())
 }

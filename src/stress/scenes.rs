@@ -1,4 +1,4 @@
-//! Hand-made scenes, and views in which every coordinate is known: what the cases, and tests of the renderer, draw.
+//! Scenes from explicit vertices, and views with known coordinates, for the cases and for tests of the renderer.
 
 use std::sync::Arc;
 
@@ -15,15 +15,15 @@ use crate::{
     },
 };
 
-/// Triangles in their own bytes; everything a hand-made scene needs.
+/// A mesh given by explicit vertices, with its instances.
 #[derive(Clone)]
 pub struct SimpleMesh {
     pub positions: Vec<[f32; 3]>,
-    /// Empty: (0, 0, 1) everywhere.
+    /// One per vertex, or empty: (0, 0, 1) everywhere.
     pub normals: Vec<[f32; 3]>,
-    /// Empty: none.
+    /// Linear RGBA, one per vertex, or empty: no vertex colours.
     pub colors: Vec<[f32; 4]>,
-    /// Empty: corners count upwards.
+    /// Three per triangle, or empty: the vertices in order.
     pub indices: Vec<u32>,
     pub double_sided: bool,
     pub placements: Vec<DMat4>,
@@ -36,18 +36,18 @@ impl Default for SimpleMesh {
     }
 }
 
-/// Loose triangles that show both sides.
+/// A double-sided mesh of separate triangles.
 pub fn sheet(positions: Vec<[f32; 3]>) -> SimpleMesh {
     SimpleMesh { positions, ..SimpleMesh::default() }
 }
 
-/// Loose triangles from units of 1/256 px and one depth each; exact on a [`pixel_view`] up to the guard band.
+/// Separate triangles with corners in units of 1/256 px and one depth each. Exact in a [`pixel_view`] up to the guard band.
 pub fn units(triangles: &[([[i32; 2]; 3], f32)]) -> SimpleMesh {
     let place = |[x, y]: [i32; 2], depth: f32| [x as f32 / 256.0, y as f32 / 256.0, depth];
     sheet(triangles.iter().flat_map(|(corners, depth)| corners.map(|corner| place(corner, *depth))).collect())
 }
 
-/// A scene of these parts.
+/// A scene of these meshes.
 pub fn scene_of_meshes(parts: &[SimpleMesh]) -> Arc<Scene> {
     let mut scene = Scene { name: "hand-made".into(), ..Scene::default() };
     for (i, part) in parts.iter().enumerate() {
@@ -96,7 +96,8 @@ pub fn scene_of_meshes(parts: &[SimpleMesh]) -> Arc<Scene> {
     Arc::new(scene)
 }
 
-/// Positions are pixels right and down, z is the depth itself: larger is nearer. Exact where sides are powers of two.
+/// A view in which positions are pixels right and down and z is the depth (larger is nearer). Exact for sides that are powers
+/// of two.
 pub fn pixel_view(width: u32, height: u32) -> View {
     let (w, h) = (f64::from(width), f64::from(height));
     View {
@@ -120,7 +121,7 @@ pub fn pixel_view(width: u32, height: u32) -> View {
     }
 }
 
-/// A perspective in which (x w, y w, -w) lands on (x, y) in normalized device coordinates.
+/// A perspective view in which (x w, y w, -w) lands on (x, y) in normalized device coordinates.
 pub fn square_perspective(width: u32, height: u32, near: f64) -> View {
     View {
         clip_from_world: DMat4::from_cols(DVec4::X, DVec4::Y, DVec4::new(0.0, 0.0, 0.0, -1.0), DVec4::new(0.0, 0.0, near, 0.0)),
@@ -132,22 +133,22 @@ pub fn square_perspective(width: u32, height: u32, near: f64) -> View {
     }
 }
 
-/// What `camera` sees of `scene`.
+/// The view of `scene` by `camera`.
 pub fn seen(scene: &Scene, camera: &Camera, [width, height]: [u32; 2]) -> View {
     View::new(camera, width, height, &scene.bounds(), DMat4::IDENTITY, [0.01, 0.02, 0.03, 1.0])
 }
 
-/// What the oracle makes of a scene all by itself: the reference that an adapter has not touched.
+/// The coverage that the oracle computes without any data of an adapter.
 ///
 /// # Errors
-/// When a placement or the number of triangles exceeds what the arithmetic holds.
+/// If the scene exceeds the arithmetic ([`DrawError`]).
 pub fn reference(scene: &Scene, view: &View) -> Result<oracle::Coverage, DrawError> {
     let draws = draws(scene, view)?;
     let (triangles, _) = oracle::triangles(scene, &draws, &oracle::project(scene, &draws, view));
     Ok(oracle::cover(&triangles, view, None))
 }
 
-/// Four corners of a square, turned.
+/// The four corners of a rotated square; `half` is half its diagonal.
 pub fn turned(center: [f64; 2], half: f64, angle: f64) -> [[f64; 2]; 4] {
     [0.0, 1.0, 2.0, 3.0].map(|quarter| {
         let (sin, cos) = libm::sincos(angle + quarter * std::f64::consts::FRAC_PI_2);
@@ -155,14 +156,14 @@ pub fn turned(center: [f64; 2], half: f64, angle: f64) -> [[f64; 2]; 4] {
     })
 }
 
-/// A quad through four corners in normalized device coordinates with a w for each, wound one way or the other.
+/// Two triangles through four corners in normalized device coordinates, with a w for each corner.
 pub fn quad(corners: [[f64; 2]; 4], w: [f64; 4], reversed: bool) -> Vec<[f32; 3]> {
     let place = |i: usize| [corners[i][0] * w[i], corners[i][1] * w[i], -w[i]].map(|v| v as f32);
     let order: [usize; 6] = if reversed { [0, 2, 1, 2, 0, 3] } else { [0, 1, 2, 2, 3, 0] };
     order.map(place).to_vec()
 }
 
-/// Numbers that preset random and are the same on every run.
+/// A small random number generator with the same sequence on every machine.
 pub struct Rng(pub u32);
 
 impl Rng {
@@ -181,7 +182,7 @@ impl Rng {
         low + (high - low) * f64::from(self.next_u32()) / 4_294_967_296.0
     }
 
-    /// Leaves the same things in another order.
+    /// Shuffles a list.
     pub fn shuffle<T>(&mut self, list: &mut [T]) {
         for last in (1..list.len()).rev() {
             list.swap(last, self.between(0, last as i32 + 1) as usize);

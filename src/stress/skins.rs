@@ -1,51 +1,54 @@
-//! Skins of files that nobody vouches for: drawn as the loader takes them, or refused in a sentence.
+//! Skins of untrusted files: unusual ones are drawn, invalid ones are refused with a message.
 
 use std::sync::Arc;
 
 use serde_json::json;
 
-use super::{Case, CaseContext, EarlyEnd, Expectation, context::same, hold, stack};
+use super::{
+    case::{Case, Expectation},
+    context::{CaseContext, EarlyEnd, check, same, stack},
+};
 use crate::scene::gltf;
 
 pub const CASES: &[Case] = &[
     Case {
         number: 30,
-        name: "skins-that-are-taken",
-        about: "weights of zero, of other sums than 1, next to nothing",
-        expectation: Expectation::Bounded("finite vertices, and the picture exact; else a sentence of the loader"),
-        run: skins_that_are_taken,
+        name: "unusual-skins",
+        about: "weights of 0, weights that do not sum to 1, and tiny weights",
+        expectation: Expectation::Bounded("finite vertices and an exact picture, or a message of the loader"),
+        run: unusual_skins,
     },
     Case {
         number: 30,
         name: "rotations-of-any-length",
-        about: "rotations of length 3, 10^-3 and 10^18: taken by their direction, with a note",
+        about: "rotations of length 3, 10^-3 and 10^18 are normalized, with a note",
         expectation: Expectation::Exact,
         run: rotations_of_any_length,
     },
     Case {
         number: 30,
-        name: "skins-that-cannot-be",
-        about: "joints that do not exist; weights that are negative or no numbers; rotations without a direction",
-        expectation: Expectation::Refused("a sentence of the loader with the attribute and the vertex"),
-        run: skins_that_cannot_be,
+        name: "invalid-skins",
+        about: "joints that do not exist, weights that are negative or not finite, rotations of length 0",
+        expectation: Expectation::Refused("the loader names the attribute and the vertex"),
+        run: invalid_skins,
     },
 ];
 
 struct Skin {
     joints: [u8; 4],
     weights: [f32; 4],
-    /// Of the second joint.
+    /// Rotation of the second joint.
     rotation: [f64; 4],
 }
 
 const SOUND: Skin = Skin { joints: [0, 1, 0, 0], weights: [0.5, 0.5, 0.0, 0.0], rotation: [0.0, 0.0, 0.0, 1.0] };
 
-/// Four triangles about a point, held by two joints.
+/// Four triangles around a vertex, with two joints.
 fn model(skin: &Skin) -> Result<crate::scene::Scene, gltf::LoadError> {
     let positions: [[f32; 3]; 5] = [[-1.0, -1.0, 0.0], [1.0, -1.0, 0.0], [1.0, 1.0, 0.0], [-1.0, 1.0, 0.0], [0.0, 0.0, 0.5]];
     let indices = [[0u16, 1, 4], [1, 2, 4], [2, 3, 4], [3, 0, 4]];
     let mut bytes: Vec<u8> = positions.iter().flatten().flat_map(|v| v.to_le_bytes()).collect();
-    // Only the vertex in the middle is in trouble.
+    // Only the vertex in the centre differs.
     bytes.extend((0..5).flat_map(|i| if i == 4 { skin.joints } else { SOUND.joints }));
     bytes.extend((0..5).flat_map(|i| if i == 4 { skin.weights } else { SOUND.weights }).flat_map(f32::to_le_bytes));
     bytes.extend(indices.as_flattened().iter().flat_map(|v| v.to_le_bytes()));
@@ -77,7 +80,7 @@ fn model(skin: &Skin) -> Result<crate::scene::Scene, gltf::LoadError> {
     gltf::parse(document.to_string().as_bytes(), &mut |_, _| Ok(bytes.clone()))
 }
 
-fn skins_that_are_taken(context: &mut CaseContext) -> Result<(), EarlyEnd> {
+fn unusual_skins(context: &mut CaseContext) -> Result<(), EarlyEnd> {
     let skins = [
         ("a sound skin", SOUND),
         ("weights of zero", Skin { weights: [0.0; 4], ..SOUND }),
@@ -88,13 +91,13 @@ fn skins_that_are_taken(context: &mut CaseContext) -> Result<(), EarlyEnd> {
         match model(&skin) {
             Ok(scene) => {
                 let bounds = scene.bounds();
-                hold!(bounds.min.is_finite() && bounds.max.is_finite(), "{what}: vertices of {bounds:?}");
+                check!(bounds.min.is_finite() && bounds.max.is_finite(), "{what}: vertices of {bounds:?}");
                 let view = context.view(&scene, [64, 48]);
                 let capture = context.exact_on_all_with(&Arc::new(scene), &view, &stack(&["lambert"]), what)?;
-                hold!(capture.frame.covered() > 300, "{what}: {} pixels", capture.frame.covered());
+                check!(capture.frame.covered() > 300, "{what}: {} pixels", capture.frame.covered());
             }
             Err(error) => {
-                hold!(i > 0, "{what} is refused: {error}");
+                check!(i > 0, "{what} is refused: {error}");
                 context.note(format!("{what}: {error}"));
             }
         }
@@ -102,27 +105,27 @@ fn skins_that_are_taken(context: &mut CaseContext) -> Result<(), EarlyEnd> {
     Ok(())
 }
 
-/// A rotation is its direction: however long it is, it turns as the unit quaternion does, and the loader says that it took it.
+/// A quaternion of any length rotates as its unit quaternion does, and the loader reports that it normalized it.
 fn rotations_of_any_length(context: &mut CaseContext) -> Result<(), EarlyEnd> {
     let half = std::f64::consts::FRAC_1_SQRT_2;
     let turned = |length: f64| Skin { rotation: [0.0, 0.0, half * length, half * length], ..SOUND };
     let taken = |length: f64| model(&turned(length)).map_err(|error| EarlyEnd::Failed(format!("a rotation of length {length}: {error}")));
     let sound = taken(1.0)?;
     let view = context.view(&sound, [64, 48]);
-    let says = |scene: &crate::scene::Scene| scene.notes.iter().any(|note| note.contains("rotation") && note.contains("direction"));
-    hold!(!says(&sound), "a unit quaternion is remarked on: {:?}", sound.notes);
+    let says = |scene: &crate::scene::Scene| scene.notes.iter().any(|note| note.contains("rotation") && note.contains("normalized"));
+    check!(!says(&sound), "a unit quaternion is reported: {:?}", sound.notes);
     let reference = context.exact_on_all_with(&Arc::new(sound), &view, &stack(&["lambert"]), "a rotation of length 1")?;
     for length in [3.0, 1e-3, 1e18] {
         let what = format!("a rotation of length {length:e}");
         let scene = taken(length)?;
-        hold!(says(&scene), "{what} is taken without a word: {:?}", scene.notes);
+        check!(says(&scene), "{what} is accepted without a note: {:?}", scene.notes);
         let capture = context.exact_on_all_with(&Arc::new(scene), &view, &stack(&["lambert"]), &what)?;
         same(&capture, &reference, &what)?;
     }
     Ok(())
 }
 
-fn skins_that_cannot_be(context: &mut CaseContext) -> Result<(), EarlyEnd> {
+fn invalid_skins(context: &mut CaseContext) -> Result<(), EarlyEnd> {
     for (what, skin, word) in [
         ("a joint out of range", Skin { joints: [0, 2, 0, 0], ..SOUND }, "joint 2"),
         ("the last joint that a byte names", Skin { joints: [255; 4], ..SOUND }, "joint 255"),
@@ -134,10 +137,10 @@ fn skins_that_cannot_be(context: &mut CaseContext) -> Result<(), EarlyEnd> {
     ] {
         match model(&skin) {
             Err(error) => {
-                hold!(error.to_string().contains(word), "{what}: {error}");
+                check!(error.to_string().contains(word), "{what}: {error}");
                 context.refused(error);
             }
-            Ok(_) => return Err(EarlyEnd::Failed(format!("{what} was taken"))),
+            Ok(_) => return Err(EarlyEnd::Failed(format!("{what} was accepted"))),
         }
     }
     Ok(())

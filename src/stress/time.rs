@@ -1,11 +1,10 @@
-//! Time: the same picture over and over, the same triangles in another order, and a clock that has run for a day.
+//! Repetition: the same picture many times, the same triangles in another order, and a clock that has run for a day.
 
 use std::sync::Arc;
 
 use super::{
-    Case, CaseContext, EarlyEnd, Expectation,
-    context::{equal, same},
-    hold, pinned, stack, tunings,
+    case::{Case, Expectation},
+    context::{CaseContext, EarlyEnd, check, equal, pinned, same, stack, tunings},
 };
 use crate::{
     effects::{Effect, EnabledEffect, Stack},
@@ -22,28 +21,28 @@ use crate::{
 pub const CASES: &[Case] = &[
     Case {
         number: 22,
-        name: "a-hundred-frames",
-        about: "the same picture a hundred times: every buffer equal to the bit",
+        name: "hundred-equal-frames",
+        about: "the same picture 100 times: every buffer is equal bit by bit",
         expectation: Expectation::Exact,
-        run: a_hundred_frames,
+        run: hundred_equal_frames,
     },
     Case {
         number: 22,
         name: "shuffled-triangles",
-        about: "triangles in another order, taking their ids along: the same picture to the bit",
+        about: "triangles in another order, with ids mapped back: the same picture bit by bit",
         expectation: Expectation::Exact,
         run: shuffled_triangles,
     },
     Case {
         number: 29,
-        name: "a-day-later",
+        name: "after-a-day",
         about: "spin, keyframes and a looping clock after 24 hours",
         expectation: Expectation::Bounded("the phase differs by at most a millionth of a period"),
-        run: a_day_later,
+        run: after_a_day,
     },
 ];
 
-fn a_hundred_frames(context: &mut CaseContext) -> Result<(), EarlyEnd> {
+fn hundred_equal_frames(context: &mut CaseContext) -> Result<(), EarlyEnd> {
     let hall = context.scene("near")?;
     let view = context.view(&hall, [80, 60]);
     context.renderer.set_tuning(tunings()[2]);
@@ -59,19 +58,19 @@ fn a_hundred_frames(context: &mut CaseContext) -> Result<(), EarlyEnd> {
                 let what = format!("frame {frame} on {}", option.name());
                 let capture = context.captured(&hall, &view, stack, &pinned(option), &what)?;
                 let Some(first) = &first else {
-                    hold!(!capture.geometry.pieces.is_empty(), "nothing was clipped");
+                    check!(!capture.geometry.pieces.is_empty(), "nothing was clipped");
                     first = Some(capture);
                     continue;
                 };
                 same(&capture, first, &what)?;
-                hold!(capture.frame == first.frame && capture.geometry == first.geometry, "{what} differs from the first");
+                check!(capture.frame == first.frame && capture.geometry == first.geometry, "{what} differs from the first");
             }
         }
     }
     Ok(())
 }
 
-/// The same triangles in another order, and for each its place in the order before.
+/// The same triangles in another order; `order` gives the previous index of each.
 fn shuffled(scene: &Scene, order: &[u32]) -> Arc<Scene> {
     let mut scene = scene.clone();
     let triangles: Vec<[u8; 12]> = scene.index_bytes.as_chunks().0.to_vec();
@@ -84,7 +83,7 @@ fn shuffled_triangles(context: &mut CaseContext) -> Result<(), EarlyEnd> {
     for query in ["sphere?triangles=5000", "knot?tess=6", "grid?cell=1", "sizes"] {
         let still = context.scene(query)?;
         let is_one_list = still.instances.len() == 1 && still.primitives[0].indices.is_some_and(|i| i.stride == 4 && i.offset == 0);
-        hold!(is_one_list, "{query}: it is not one list of 32-bit indices");
+        check!(is_one_list, "{query}: it is not one list of 32-bit indices");
         let view = context.view(&still, [192, 144]);
         for option in context.options() {
             let what = format!("{query} on {}", option.name());
@@ -98,20 +97,20 @@ fn shuffled_triangles(context: &mut CaseContext) -> Result<(), EarlyEnd> {
                     *triangle_id = order[*triangle_id as usize];
                 }
                 same(&after, &before, &what)?;
-                hold!(after.frame.color == before.frame.color, "{what}: colours differ");
+                check!(after.frame.color == before.frame.color, "{what}: colours differ");
             }
         }
     }
     Ok(())
 }
 
-/// Seconds of a day.
+/// Seconds in a day.
 const DAY_S: f64 = 86_400.0;
 
-/// Most of a period that a phase may be off.
+/// Largest error of a phase, in periods.
 const PHASE: f64 = 1e-6;
 
-fn a_day_later(context: &mut CaseContext) -> Result<(), EarlyEnd> {
+fn after_a_day(context: &mut CaseContext) -> Result<(), EarlyEnd> {
     let knot = context.scene("knot?tess=4")?;
     let facet = Effect::find("facet").ok_or_else(|| EarlyEnd::Failed("no effect facet".into()))?;
     let amount = facet.field("amount").ok_or_else(|| EarlyEnd::Failed("no field facet.amount".into()))?;
@@ -135,10 +134,10 @@ fn a_day_later(context: &mut CaseContext) -> Result<(), EarlyEnd> {
         libm::atan2(-x.z, x.x) / std::f64::consts::TAU
     };
     let off = (angle(&late) - angle(&fresh)).abs();
-    hold!(off <= PHASE, "the spin is {off:e} of a turn off");
+    check!(off <= PHASE, "the spin is {off:e} of a turn off");
     let value = |preset: &Preset| amount.get(&preset.evaluated_stack().0[0].words)[0];
     let ramp = (value(&late) - value(&fresh)).abs();
-    hold!(ramp <= PHASE && (value(&fresh) - 0.37).abs() <= PHASE, "the keyed value is {ramp:e} of its way off");
+    check!(ramp <= PHASE && (value(&fresh) - 0.37).abs() <= PHASE, "the keyed value is {ramp:e} of its way off");
 
     // A looping clock, frame by frame for a day at 60 frames a second.
     let clock = Clock { range_s: [0.0, 4.0], ..Clock::default() };
@@ -146,9 +145,9 @@ fn a_day_later(context: &mut CaseContext) -> Result<(), EarlyEnd> {
     for _ in 0..frames {
         time_s = clock.after(time_s, 1.0 / 60.0).0;
     }
-    // A day is a whole number of rounds.
+    // A day is a whole number of loops.
     let phase = (time_s / 4.0).min(1.0 - time_s / 4.0).abs();
-    hold!(phase <= PHASE, "after {frames} frames the clock is {phase:e} of a round off");
+    check!(phase <= PHASE, "after {frames} frames the clock is {phase:e} of a round off");
 
     let mut drawn = Vec::new();
     for (what, preset) in [("at the start", &fresh), ("a day later", &late)] {
@@ -158,7 +157,7 @@ fn a_day_later(context: &mut CaseContext) -> Result<(), EarlyEnd> {
     let changed = compare::triangle_ids(&drawn[1].frame.triangle_id, &drawn[0].frame.triangle_id).different;
     let vertices = drawn[0].geometry.vertices.iter().zip(&drawn[1].geometry.vertices);
     let moved = vertices.map(|(a, b)| a.x.abs_diff(b.x).max(a.y.abs_diff(b.y))).max().unwrap_or(0);
-    hold!(moved <= 1, "a vertex is {moved} units of 1/256 px off");
+    check!(moved <= 1, "a vertex is {moved} units of 1/256 px off");
     context.note(format!("spin off by {off:.1e} of a turn, clock by {phase:.1e} of a round, {changed} pixels of another triangle id"));
     equal(&drawn[0].frame.counters, &drawn[1].frame.counters, "counters a day later")
 }

@@ -1,15 +1,13 @@
-//! Values: what is no number, what has no area, and scales at both ends.
+//! Values: non-finite numbers, triangles without area, and extreme scales.
 
 use std::sync::Arc;
 
 use glam::{DMat4, DVec3};
 
 use super::{
-    Case, CaseContext, EarlyEnd, Expectation,
-    context::equal,
-    hold,
+    case::{Case, Expectation},
+    context::{CaseContext, EarlyEnd, check, equal, stack},
     scenes::{SimpleMesh, pixel_view, scene_of_meshes, seen, sheet, units},
-    stack,
 };
 use crate::{
     accuracy::{PinnedOptions, PositionFormat},
@@ -27,49 +25,49 @@ use crate::{
 pub const CASES: &[Case] = &[
     Case {
         number: 12,
-        name: "positions-that-are-no-numbers",
-        about: "NaN, infinities, FLT_MAX and subnormals in every coordinate: rejected by bits and counted, the rest exact",
+        name: "non-finite-positions",
+        about: "NaN, infinities, FLT_MAX and subnormals in every coordinate: such triangles are rejected and counted, the others are exact",
         expectation: Expectation::Exact,
-        run: bad_positions,
+        run: non_finite_positions,
     },
     Case {
         number: 12,
-        name: "attributes-that-are-no-numbers",
-        about: "the same in normals and colours: finite ones take their place",
+        name: "non-finite-attributes",
+        about: "NaN, infinities and extremes in normals and colours: finite values replace them",
         expectation: Expectation::Exact,
-        run: bad_attributes,
+        run: non_finite_attributes,
     },
     Case {
         number: 14,
         name: "scales-and-offsets",
-        about: "models at 10^4 to 10^8 units from the origin, scaled by 10^-6 to 10^6",
-        expectation: Expectation::Bounded("vertices within the forward error of f32; exact given the snapped vertices"),
+        about: "transforms by 10^4 to 10^8 units and scales of 10^-6 to 10^6",
+        expectation: Expectation::Bounded("vertices within the forward error bound of f32; exact given the snapped vertices"),
         run: scales_and_offsets,
     },
     Case {
         number: 14,
-        name: "offsets-taken-out",
-        about: "models whose vertices themselves lie 10^4 to 10^8 units away, relative to the eye: the offset is gone",
+        name: "relative-positions",
+        about: "meshes whose vertices lie 10^4 to 10^8 units from the origin, with positions relative to the eye: no error from the offset",
         expectation: Expectation::Exact,
-        run: offsets_taken_out,
+        run: relative_positions,
     },
     Case {
         number: 17,
-        name: "without-area",
-        about: "zero area, repeated vertices and indices, empty meshes, no meshes: counted, not drawn",
+        name: "degenerate-triangles",
+        about: "triangles without area, repeated vertices and indices, empty meshes, empty scenes: counted and not drawn",
         expectation: Expectation::Exact,
-        run: without_area,
+        run: degenerate_triangles,
     },
     Case {
         number: 24,
-        name: "mirrored",
-        about: "negative determinants, single- and double-sided: facing as glTF says",
+        name: "mirrored-transforms",
+        about: "transforms with a negative determinant, single- and double-sided: facing as in glTF",
         expectation: Expectation::Exact,
-        run: mirrored,
+        run: mirrored_transforms,
     },
 ];
 
-fn bad_positions(context: &mut CaseContext) -> Result<(), EarlyEnd> {
+fn non_finite_positions(context: &mut CaseContext) -> Result<(), EarlyEnd> {
     let view = pixel_view(64, 64);
     let good = [[4.0, 4.0, 0.25], [60.0, 8.0, 0.5], [8.0, 60.0, 0.75f32]];
     let huge = (1u64 << 40) as f32;
@@ -90,15 +88,15 @@ fn bad_positions(context: &mut CaseContext) -> Result<(), EarlyEnd> {
     let counters = capture.frame.counters;
     let counted = (counters.rejected_nonfinite, counters.rejected_range, counters.degenerate);
     equal(&counted, &(nonfinite, range, 0), "triangles rejected as not finite, as out of range, as without area")?;
-    hold!(
+    check!(
         capture.frame.triangle_id.iter().all(|&triangle_id| [0, last, NO_TRIANGLE].contains(&triangle_id)),
         "a rejected triangle owns a pixel"
     );
     let alone = scene_of_meshes(&[sheet([good, good_too].concat())]);
     let reference = context.exact_on_all(&alone, &view, "good positions alone")?;
-    hold!(capture.frame.key == reference.frame.key, "a rejected triangle leaves a trace in the depth keys");
+    check!(capture.frame.key == reference.frame.key, "a rejected triangle leaves a trace in the depth keys");
 
-    // The largest that pass the gate are clipped; what is subnormal is 0.
+    // The largest accepted coordinates are clipped; subnormals count as 0.
     let below = f32::from_bits(huge.to_bits() - 1);
     let vast = scene_of_meshes(&[sheet(vec![[-below, -below, 0.5], [below, -below, 0.5], [0.0, below, 0.5]])]);
     let capture = context.exact_on_all(&vast, &view, "just below 2^40")?;
@@ -106,11 +104,11 @@ fn bad_positions(context: &mut CaseContext) -> Result<(), EarlyEnd> {
     let with = |zero: f32| scene_of_meshes(&[sheet(vec![[zero, zero, 0.5], [50.0, zero, zero], [zero, 50.0, 0.25]])]);
     let zero = context.exact_on_all(&with(0.0), &view, "zero")?;
     let subnormal = context.exact_on_all(&with(f32::from_bits(0x007f_ffff)), &view, "subnormal")?;
-    hold!(zero.frame == subnormal.frame && zero.geometry == subnormal.geometry, "a subnormal is not 0");
+    check!(zero.frame == subnormal.frame && zero.geometry == subnormal.geometry, "a subnormal is not 0");
     Ok(())
 }
 
-fn bad_attributes(context: &mut CaseContext) -> Result<(), EarlyEnd> {
+fn non_finite_attributes(context: &mut CaseContext) -> Result<(), EarlyEnd> {
     let bad = [f32::NAN, f32::INFINITY, f32::NEG_INFINITY, f32::MAX, -f32::MAX, 1e-40, -1e-40, 0.0, 1e20, -3.0];
     let (mut positions, mut normals, mut colors) = (vec![], vec![], vec![]);
     for (i, value) in bad.into_iter().enumerate() {
@@ -140,7 +138,7 @@ fn bad_attributes(context: &mut CaseContext) -> Result<(), EarlyEnd> {
         for effects in [&["lambert"][..], &["normals"], &["facet", "lambert"]] {
             let what = format!("bad {what} under {}", effects.join(" and "));
             let capture = context.exact_on_all_with(&scene, &pixel_view(64, 64), &stack(effects), &what)?;
-            hold!(capture.frame.covered() > 700, "{what}: {} pixels", capture.frame.covered());
+            check!(capture.frame.covered() > 700, "{what}: {} pixels", capture.frame.covered());
         }
     }
     Ok(())
@@ -156,12 +154,12 @@ fn scales_and_offsets(context: &mut CaseContext) -> Result<(), EarlyEnd> {
         let view = seen(&placed, &camera, [96, 72]);
         let what = format!("offset {offset:e}, scale {scale:e}");
         let capture = context.exact_on_all_with(&Arc::new(placed), &view, &stack(&["depth", "lambert"]), &what)?;
-        hold!(capture.frame.covered() > 1500, "{what}: {} pixels", capture.frame.covered());
+        check!(capture.frame.covered() > 1500, "{what}: {} pixels", capture.frame.covered());
     }
     Ok(())
 }
 
-fn offsets_taken_out(context: &mut CaseContext) -> Result<(), EarlyEnd> {
+fn relative_positions(context: &mut CaseContext) -> Result<(), EarlyEnd> {
     let knot = context.scene("knot?tess=4")?;
     let mesh = &knot.primitives[0];
     let indices: Vec<u32> = (0..mesh.triangle_count()).flat_map(|triangle| mesh.corners(&knot, triangle)).collect();
@@ -170,7 +168,7 @@ fn offsets_taken_out(context: &mut CaseContext) -> Result<(), EarlyEnd> {
     let stored =
         AccuracyRequest { pins: PinnedOptions::of(PositionFormat::Stored).with(context.quick_option()), ..AccuracyRequest::default() };
     for offset in [1e4, 1e5, 1e6, 1e7, 1e8] {
-        // A hundred thousand times as far as it is large: a float has some 7 bits left for its shape.
+        // The distance is 100,000 times the size, which leaves about 7 bits of a float for the shape.
         let (scale, at) = (1e-5 * offset, DVec3::new(offset, -offset, 0.5 * offset));
         let far = |vertex| (DVec3::from_array(mesh.position(&knot, vertex).map(f64::from)) * scale + at).as_vec3().to_array();
         let positions = (0..mesh.vertex_count()).map(far).collect();
@@ -187,13 +185,13 @@ fn offsets_taken_out(context: &mut CaseContext) -> Result<(), EarlyEnd> {
         let what = format!("vertices {offset:e} units away");
         let (capture, _) = context.exact(&scene, &view, &Stack::default(), &relative, &what)?;
         let off = moved(&capture);
-        hold!(off <= 1.0, "{what}: a corner lies {off} units of 1/256 px from its place");
-        hold!(capture.frame.covered() > 1500, "{what}: {} pixels", capture.frame.covered());
+        check!(off <= 1.0, "{what}: a corner is {off} units of 1/256 px from its correct position");
+        check!(capture.frame.covered() > 1500, "{what}: {} pixels", capture.frame.covered());
         let (capture, _) = context.judged(&scene, &view, &Stack::default(), &stored, &format!("{what}, as they are stored"))?;
         let stored_off = moved(&capture);
-        hold!(stored_off > 8.0 * off, "{what}: as they are stored, corners move by no more than {stored_off} units");
+        check!(stored_off > 8.0 * off, "{what}: with stored positions corners move by only {stored_off} units");
         context.note(format!(
-            "{what}: corners move by up to {:.3} px as they are stored, {:.4} px relative",
+            "{what}: corners move by up to {:.3} px with stored positions, by {:.4} px with relative ones",
             stored_off / 256.0,
             off / 256.0
         ));
@@ -201,7 +199,7 @@ fn offsets_taken_out(context: &mut CaseContext) -> Result<(), EarlyEnd> {
     Ok(())
 }
 
-fn without_area(context: &mut CaseContext) -> Result<(), EarlyEnd> {
+fn degenerate_triangles(context: &mut CaseContext) -> Result<(), EarlyEnd> {
     let view = pixel_view(32, 32);
     let points = vec![[1.0, 1.0, 0.5], [30.0, 2.0, 0.5], [3.0, 30.0, 0.5], [15.5, 1.5, 0.5], [1.0, 1.0, 0.9]];
     let none =
@@ -209,7 +207,7 @@ fn without_area(context: &mut CaseContext) -> Result<(), EarlyEnd> {
     let capture = context.exact_on_all(&scene_of_meshes(std::slice::from_ref(&none)), &view, "repeated indices")?;
     equal(&(capture.frame.covered(), capture.frame.counters.degenerate), &(0, 5), "pixels and triangles without area")?;
 
-    // Far larger than a class of its own, and still a line; a speck that the snap makes a point.
+    // A very long line without area, and a tiny triangle that the snap collapses to a point.
     let line = units(&[([[-8_000_000, -8_000_000], [0, 0], [8_000_000, 8_000_000]], 0.5)]);
     let speck = sheet(vec![[9.5, 9.5, 0.5], [9.5001, 9.5, 0.5], [9.5, 9.5001, 0.5]]);
     let capture = context.exact_on_all(&scene_of_meshes(&[none, line, speck]), &view, "lines and specks")?;
@@ -235,7 +233,7 @@ fn without_area(context: &mut CaseContext) -> Result<(), EarlyEnd> {
     Ok(())
 }
 
-fn mirrored(context: &mut CaseContext) -> Result<(), EarlyEnd> {
+fn mirrored_transforms(context: &mut CaseContext) -> Result<(), EarlyEnd> {
     let camera = Camera { eye: DVec3::Z * 4.0, projection: Projection::Orthographic { height_m: 2.6 }, ..Camera::default() };
     for double_sided in [false, true] {
         let mut plain = Scene::clone(&*context.scene("sphere?triangles=900")?);
@@ -247,16 +245,16 @@ fn mirrored(context: &mut CaseContext) -> Result<(), EarlyEnd> {
             context.exact_on_all_with(&Arc::new(scene), &view, &stack(&["lambert"]), &format!("scale {scale}, double-sided {double_sided}"))
         };
         let straight = drawn(DVec3::ONE)?;
-        // Mirrored left to right the same triangles show, but for samples on edges, which have a left and a right.
+        // Mirrored left to right the same triangles are visible, except at samples on edges, where left and right differ.
         let left_right = drawn(DVec3::new(-1.0, 1.0, 1.0))?;
         let rows = straight.frame.triangle_id.chunks_exact(128).flat_map(|row| row.iter().rev());
         let different = rows.zip(&left_right.frame.triangle_id).filter(|(a, b)| a != b).count();
-        hold!(different <= 8, "mirrored left to right, {different} pixels show another triangle");
-        // Mirrored front to back its other side shows, from outside again.
+        check!(different <= 8, "mirrored left to right, {different} pixels show another triangle");
+        // Mirrored front to back its other side is visible, again from the outside.
         let turned = drawn(DVec3::new(1.0, 1.0, -1.0))?;
         let shared = turned.frame.triangle_id.iter().filter(|&o| *o != NO_TRIANGLE && straight.frame.triangle_id.contains(o)).count();
-        hold!(shared < turned.frame.covered() / 10, "mirrored front to back, {shared} pixels show the front");
-        hold!(turned.frame.covered() > 3000, "{} pixels", turned.frame.covered());
+        check!(shared < turned.frame.covered() / 10, "mirrored front to back, {shared} pixels show the front");
+        check!(turned.frame.covered() > 3000, "{} pixels", turned.frame.covered());
     }
     Ok(())
 }

@@ -1,14 +1,11 @@
-//! Targets: pictures without pixels, of one pixel, of odd sides and of the widest, pictures that change their size, and a
-//! device that is lost.
+//! Picture sizes: empty pictures, one pixel, odd sides and the largest ones, resizing, and a lost device.
 
 use std::time::{Duration, Instant};
 
 use super::{
-    Case, CaseContext, EarlyEnd, Expectation, captured,
-    context::{equal, same},
-    hold, pinned,
+    case::{Case, Expectation},
+    context::{CaseContext, EarlyEnd, captured, check, equal, pinned, same, stack},
     scenes::{SimpleMesh, pixel_view, scene_of_meshes},
-    stack,
 };
 use crate::{
     effects::{Stack, hooks::Layers},
@@ -20,57 +17,57 @@ pub const CASES: &[Case] = &[
     Case {
         number: 20,
         name: "without-pixels",
-        about: "0 x 0, 0 x 64 and 64 x 0 pixels: nothing is dispatched, and the next picture is whole",
+        about: "pictures of 0 x 0, 0 x 64 and 64 x 0 pixels: nothing is dispatched, and the next picture is complete",
         expectation: Expectation::Exact,
         run: without_pixels,
     },
     Case {
         number: 20,
         name: "odd-targets",
-        about: "1 x 1, 1 x 97, 97 x 1, 9 x 7, 65 x 63 and 129 x 127 pixels",
+        about: "pictures of 1 x 1, 1 x 97, 97 x 1, 9 x 7, 65 x 63 and 129 x 127 pixels",
         expectation: Expectation::Exact,
         run: odd_targets,
     },
     Case {
         number: 20,
         name: "wide-targets",
-        about: "8,192 and, where the adapter's textures reach that far, 16,384 pixels to a side",
+        about: "pictures 8,192 pixels wide or high, and 16,384 where the adapter supports it",
         expectation: Expectation::Exact,
         run: wide_targets,
     },
     Case {
         number: 20,
         name: "too-wide-a-target",
-        about: "a pixel more than the adapter's textures hold",
-        expectation: Expectation::Refused("a sentence with the size and the adapter's limit"),
+        about: "a picture one pixel wider than the adapter's largest texture",
+        expectation: Expectation::Refused("the message names the size and the adapter's limit"),
         run: too_wide_a_target,
     },
     Case {
         number: 20,
         name: "xray-at-5k",
-        about: "sums of layers for 5,120 x 2,880 pixels, 16 bytes each",
+        about: "an x-ray picture of 5,120 x 2,880 pixels, whose sums need 24 bytes per pixel",
         expectation: Expectation::Exact,
         run: xray_at_5k,
     },
     Case {
         number: 20,
         name: "more-than-a-binding",
-        about: "sums of layers for more pixels than one binding holds",
-        expectation: Expectation::Refused("a sentence with the buffer, its bytes and the adapter's limit"),
+        about: "an x-ray picture whose sums exceed the largest binding",
+        expectation: Expectation::Refused("the message names the buffer, its size and the adapter's limit"),
         run: more_than_a_binding,
     },
     Case {
         number: 21,
         name: "resized",
-        about: "a hundred sizes, one after another: no pixel of an earlier picture is left",
+        about: "100 picture sizes in sequence: no pixel of an earlier picture remains",
         expectation: Expectation::Exact,
         run: resized,
     },
     Case {
         number: 21,
         name: "device-lost",
-        about: "a device that is destroyed between two pictures; another one draws the same state",
-        expectation: Expectation::Refused("a sentence that says so, and nothing else is lost"),
+        about: "the device is destroyed between two pictures, and another device draws the same state",
+        expectation: Expectation::Refused("the message says that the device is lost; no state is lost"),
         run: device_lost,
     },
 ];
@@ -81,10 +78,10 @@ fn without_pixels(context: &mut CaseContext) -> Result<(), EarlyEnd> {
         let what = format!("{size:?} pixels");
         let capture = context.captured(&hall, &context.view(&hall, size), &stack(&["lambert"]), &AccuracyRequest::default(), &what)?;
         equal(&[capture.frame.width, capture.frame.height], &size, &what)?;
-        hold!(capture.frame.triangle_id.is_empty() && capture.frame.color.is_empty(), "{what}: it has pixels");
-        hold!(context.renderer.texture_view().is_none(), "{what}: there is a picture");
+        check!(capture.frame.triangle_id.is_empty() && capture.frame.color.is_empty(), "{what}: it has pixels");
+        check!(context.renderer.texture_view().is_none(), "{what}: there is a picture");
         context.exact(&hall, &context.view(&hall, [33, 17]), &stack(&["lambert"]), &AccuracyRequest::default(), "the next picture")?;
-        hold!(context.renderer.texture_view().is_some(), "after {what} there is no picture");
+        check!(context.renderer.texture_view().is_some(), "after {what} there is no picture");
     }
     Ok(())
 }
@@ -99,11 +96,11 @@ fn odd_targets(context: &mut CaseContext) -> Result<(), EarlyEnd> {
 
 fn wide_targets(context: &mut CaseContext) -> Result<(), EarlyEnd> {
     let most = context.renderer.gpu().caps.max_texture_side;
-    hold!(most >= 8192, "WebGPU promises 8,192 pixels to a side, this adapter has {most}");
+    check!(most >= 8192, "WebGPU guarantees 8,192 pixels along each side; this adapter has {most}");
     let teapot = context.scene("teapot?tess=4")?;
     for side in [8192, 16_384] {
         if side > most {
-            context.note(format!("left out: {side} pixels to a side; this adapter's textures end at {most}"));
+            context.note(format!("skipped: {side} pixels; this adapter supports at most {most}"));
             continue;
         }
         for size in [[side, 6], [6, side]] {
@@ -130,17 +127,17 @@ fn too_wide_a_target(context: &mut CaseContext) -> Result<(), EarlyEnd> {
             Err(error @ RenderError::TooWide { .. }) => {
                 let text = error.to_string();
                 let says = text.contains(&format!("{} x {}", size[0], size[1])) && text.contains(&most.to_string());
-                hold!(says && error.is_unsupported(), "{what}: {text}");
+                check!(says && error.is_unsupported(), "{what}: {text}");
                 context.refused(text);
             }
             Err(error) => return Err(EarlyEnd::Failed(format!("{what}: {error}"))),
-            Ok(()) => return Err(EarlyEnd::Failed(format!("{what} were drawn, and {most} are the most to a side"))),
+            Ok(()) => return Err(EarlyEnd::Failed(format!("{what} were drawn, although the limit is {most} along each side"))),
         }
     }
     Ok(())
 }
 
-/// Two layers over everything, of two colours.
+/// Two layers of different colours over the whole picture.
 fn veils() -> SimpleMesh {
     let corners = |depth: f32| [[-16.0, -16.0, depth], [40_000.0, -16.0, depth], [-16.0, 40_000.0, depth]];
     let colors = [[1.0, 0.0, 0.25, 1.0], [0.0, 1.0, 0.25, 1.0]];
@@ -158,12 +155,12 @@ fn xray_at_5k(context: &mut CaseContext) -> Result<(), EarlyEnd> {
     let caps = &context.renderer.gpu().caps;
     let room = caps.max_storage_binding_bytes.min(caps.max_buffer_bytes);
     if room < bytes {
-        return Err(EarlyEnd::Skipped(format!("its sums take {bytes} bytes in one binding, and this adapter binds {room}")));
+        return Err(EarlyEnd::Skipped(format!("its sums need a binding of {bytes} bytes, and this adapter binds at most {room}")));
     }
-    // Judged where it is small, the same to the bit where it is large: every pixel shows the same two layers.
+    // The oracle judges a small picture; every pixel of the large one must equal it.
     let (small, _) = context.exact(&scene, &pixel_view(64, 36), &stack, &accuracy, "64 x 36 pixels")?;
     let (color, count) = (small.frame.color[0], small.frame.counted[0]);
-    hold!(small.frame.color.iter().all(|c| *c == color), "the veils are not even");
+    check!(small.frame.color.iter().all(|c| *c == color), "the layers are not uniform");
     let what = "5,120 x 2,880 pixels";
     let large = context.captured(&scene, &pixel_view(width, height), &stack, &accuracy, what)?;
     let odd = large.frame.color.iter().zip(&large.frame.counted).filter(|found| *found != (&color, &count)).count();
@@ -176,22 +173,25 @@ fn more_than_a_binding(context: &mut CaseContext) -> Result<(), EarlyEnd> {
     let (room, most) = (caps.max_storage_binding_bytes.min(caps.max_buffer_bytes), caps.max_texture_side);
     let (scene, stack) = (scene_of_meshes(&[veils()]), stack(&["xray"]));
     if room >= 24 * u64::from(most) * u64::from(most) {
-        return Err(EarlyEnd::Skipped(format!("this adapter binds {room} bytes, which is room for any picture of {most} x {most} pixels")));
+        return Err(EarlyEnd::Skipped(format!("this adapter binds {room} bytes, enough for any picture up to {most} x {most} pixels")));
     }
     context.renderer.set_scene(&scene)?;
     match context.renderer.draw(&pixel_view(most, most), &stack, &AccuracyRequest::default()) {
         Err(error @ RenderError::TooLarge { .. }) => {
             let text = error.to_string();
-            hold!(error.is_unsupported() && text.contains(&room.to_string()), "{text}");
+            check!(error.is_unsupported() && text.contains(&room.to_string()), "{text}");
             context.refused(text);
-            // What was there before still works.
+            // The renderer still works.
             context.renderer.set_scene(&scene)?;
             context.exact(&scene, &pixel_view(64, 36), &stack, &AccuracyRequest::default(), "the next picture")?;
-            hold!(matches!(context.renderer.key().and_then(|key| key.framebuffer.layers), Some(Layers::Xray { .. })), "the effect is gone");
+            check!(
+                matches!(context.renderer.key().and_then(|key| key.framebuffer.layers), Some(Layers::Xray { .. })),
+                "the effect is gone"
+            );
             Ok(())
         }
         Err(error) => Err(EarlyEnd::Failed(format!("{most} x {most} pixels: {error}"))),
-        Ok(()) => Err(EarlyEnd::Failed(format!("{most} x {most} pixels were drawn, and {room} bytes are the most in a binding"))),
+        Ok(()) => Err(EarlyEnd::Failed(format!("{most} x {most} pixels were drawn, although a binding has at most {room} bytes"))),
     }
 }
 
@@ -210,7 +210,7 @@ fn resized(context: &mut CaseContext) -> Result<(), EarlyEnd> {
     Ok(())
 }
 
-/// How long a driver may take to say that its device is gone.
+/// How long a driver may take to report that its device is lost.
 const PATIENCE: Duration = Duration::from_secs(20);
 
 fn device_lost(context: &mut CaseContext) -> Result<(), EarlyEnd> {
@@ -226,18 +226,18 @@ fn device_lost(context: &mut CaseContext) -> Result<(), EarlyEnd> {
         context.step(&hall, &view, "a lost device")?;
         match renderer.draw(&view, &stack, &accuracy).and_then(|()| renderer.finish().map(|_| ())) {
             Err(error) if error.is_lost() => break error,
-            _ if began.elapsed() > PATIENCE => return Err(EarlyEnd::Failed("the renderer never says that its device is gone".into())),
+            _ if began.elapsed() > PATIENCE => return Err(EarlyEnd::Failed("the renderer never reports that its device is lost".into())),
             _ => std::thread::sleep(Duration::from_millis(5)),
         }
     };
-    hold!(gpu.is_lost(), "the device does not know that it is lost");
+    check!(gpu.is_lost(), "the device does not know that it is lost");
     let again = renderer.capture(&view, &stack, &accuracy);
-    hold!(again.is_err_and(|error| error.is_lost()), "a lost device draws");
+    check!(again.is_err_and(|error| error.is_lost()), "a lost device draws");
     drop(renderer);
-    // Scene, viewpoint and stack are not the device's: another one shows the same picture, to the bit.
+    // Scene, view and stack do not belong to the device: another one draws the same picture, bit by bit.
     let after = context.captured(&hall, &view, &stack, &accuracy, "the same on another device")?;
     same(&after, &before, "the same on another device")?;
-    hold!(after.frame.color == before.frame.color, "another device shows other colours");
+    check!(after.frame.color == before.frame.color, "another device shows other colours");
     context.refused(error);
     Ok(())
 }

@@ -1,9 +1,9 @@
-//! Against the adapter's own rasterizer: the same snapped positions through its render pipeline.
+//! Comparison with the adapter's fixed-function rasterizer: the same snapped positions through its render pipeline.
 
 use super::{
-    Case, CaseContext, EarlyEnd, Expectation,
     adversarial::near_miss_triangle,
-    hold,
+    case::{Case, Expectation},
+    context::{CaseContext, EarlyEnd, check},
     scenes::{pixel_view, scene_of_meshes, units},
 };
 use crate::frame::NO_TRIANGLE;
@@ -11,17 +11,17 @@ use crate::frame::NO_TRIANGLE;
 pub const CASES: &[Case] = &[Case {
     number: 32,
     name: "hardware-cross-check",
-    about: "the same snapped positions through the render pipeline, samples on an edge masked: the same triangle ids",
+    about: "the same snapped positions through the fixed-function pipeline give the same triangle ids, except on samples on an edge",
     expectation: Expectation::Exact,
     run: hardware_cross_check,
 }];
 
 const SIDE: u32 = 64;
 
-/// A flat triangle in units of 1/256 px with its depth.
+/// A triangle in units of 1/256 px with one depth.
 type Flat = ([[i32; 2]; 3], f32);
 
-/// The witness's picture: exact up to its own snap, since a picture of a power of two loses no bit on the way.
+/// The picture of the fixed-function pipeline. A power-of-two picture size keeps all positions exact up to its own snap.
 fn witness(context: &CaseContext, triangles: &[Flat]) -> Result<Vec<u32>, EarlyEnd> {
     let half = 128.0 * SIDE as f32;
     let place = |[x, y]: [i32; 2], depth: f32| [x as f32 / half - 1.0, 1.0 - y as f32 / half, depth];
@@ -29,12 +29,12 @@ fn witness(context: &CaseContext, triangles: &[Flat]) -> Result<Vec<u32>, EarlyE
     Ok(context.renderer.hardware_ids([SIDE, SIDE], &corners)?)
 }
 
-/// Units to which the witness snaps: 1 where edges one unit from a sample are told apart, else 16, since Vulkan asks for no
-/// more than 4 bits below the pixel.
+/// The snap grid of the pipeline in units of 1/256 px: 1 if it distinguishes edges one unit from a sample, else 16, since
+/// Vulkan guarantees only 4 subpixel bits.
 fn witness_grid(context: &CaseContext) -> Result<i32, EarlyEnd> {
     let sample = 256 * 32 + 128;
     let mut bars = Vec::new();
-    // A bar to a row, which ends or begins so many units from the sample.
+    // One bar per row, which ends or begins this many units from the sample.
     for (row, from_sample) in (-8..=8).enumerate() {
         for (half, [left, right]) in [[1024, sample + from_sample], [sample + from_sample, 15_360]].into_iter().enumerate() {
             let top = 256 * (2 * row as i32 + half as i32);
@@ -45,13 +45,13 @@ fn witness_grid(context: &CaseContext) -> Result<i32, EarlyEnd> {
     let triangle_ids = witness(context, &bars)?;
     let is_fine = (-8..=8).enumerate().all(|(row, from_sample)| {
         let drawn = [0, 1].map(|half| triangle_ids[(2 * row + half) * SIDE as usize + 32] != NO_TRIANGLE);
-        // Its left end is in, its right end is out.
+        // A left edge includes its samples, a right edge does not.
         drawn == [from_sample > 0, from_sample <= 0]
     });
     Ok(if is_fine { 1 } else { 16 })
 }
 
-/// Samples on an edge or a corner of a triangle, where a render pipeline may do as it likes: all it must cover lies inside.
+/// Samples on an edge or a corner of a triangle. APIs specify coverage only for samples inside or outside.
 fn mask(triangles: &[Flat]) -> Vec<bool> {
     let mut masked = vec![false; (SIDE * SIDE) as usize];
     for (corners, _) in triangles {
@@ -76,7 +76,7 @@ fn hardware_cross_check(context: &mut CaseContext) -> Result<(), EarlyEnd> {
         for picture in 0..4u32 {
             let mut rng = context.rng(extent as u32 ^ picture.wrapping_mul(0x27d4_eb2f));
             let mut flat = |i: usize| loop {
-                // Inside the picture: what a pipeline clips it also moves.
+                // Inside the picture, because clipping moves vertices.
                 let corners =
                     near_miss_triangle(&mut rng, extent, [SIDE as i32; 2]).map(|corner| corner.map(|v| (v + grid / 2) / grid * grid));
                 if corners.as_flattened().iter().all(|v| (0..=side).contains(v)) {
@@ -92,16 +92,19 @@ fn hardware_cross_check(context: &mut CaseContext) -> Result<(), EarlyEnd> {
             samples += masked.len();
             let pixels = ours.frame.triangle_id.iter().zip(&theirs).zip(&masked).enumerate();
             let wrong: Vec<_> = pixels.filter(|(_, ((a, b), is_masked))| a != b && !**is_masked).map(|(i, (pair, _))| (i, pair)).collect();
-            hold!(
+            check!(
                 wrong.is_empty(),
-                "{what}: {} pixels outside the mask have another triangle id in the render pipeline, first (pixel, (ours, theirs)) {:?}",
+                "{what}: {} pixels outside the mask have another triangle id in the fixed-function pipeline; first (pixel, (ours, theirs)): {:?}",
                 wrong.len(),
                 wrong[0]
             );
-            hold!(theirs.iter().any(|triangle_id| *triangle_id != NO_TRIANGLE), "{what}: the render pipeline drew nothing");
+            check!(theirs.iter().any(|triangle_id| *triangle_id != NO_TRIANGLE), "{what}: the fixed-function pipeline drew nothing");
         }
     }
-    hold!(masked_samples > 0 && masked_samples < samples / 2, "{masked_samples} of {samples} samples are masked");
-    context.note(format!("{masked_samples} of {samples} samples lie on an edge and are masked; positions on 1/{} px", 256 / grid));
+    check!(masked_samples > 0 && masked_samples < samples / 2, "{masked_samples} of {samples} samples are masked");
+    context.note(format!(
+        "{masked_samples} of {samples} samples lie on an edge and are masked; positions are multiples of 1/{} px",
+        256 / grid
+    ));
     Ok(())
 }
