@@ -16,31 +16,31 @@ use crate::{
 pub const CASES: &[Case] = &[
     Case {
         number: 20,
-        name: "without-pixels",
+        name: "empty-pictures",
         about: "pictures of 0 x 0, 0 x 64 and 64 x 0 pixels: nothing is dispatched, and the next picture is complete",
         expectation: Expectation::Exact,
-        run: without_pixels,
+        run: empty_pictures,
     },
     Case {
         number: 20,
-        name: "odd-targets",
+        name: "odd-picture-sizes",
         about: "pictures of 1 x 1, 1 x 97, 97 x 1, 9 x 7, 65 x 63 and 129 x 127 pixels",
         expectation: Expectation::Exact,
-        run: odd_targets,
+        run: odd_picture_sizes,
     },
     Case {
         number: 20,
-        name: "wide-targets",
+        name: "largest-pictures",
         about: "pictures 8,192 pixels wide or high, and 16,384 where the adapter supports it",
         expectation: Expectation::Exact,
-        run: wide_targets,
+        run: largest_pictures,
     },
     Case {
         number: 20,
-        name: "too-wide-a-target",
+        name: "picture-too-large",
         about: "a picture one pixel wider than the adapter's largest texture",
         expectation: Expectation::Refused("the message names the size and the adapter's limit"),
-        run: too_wide_a_target,
+        run: picture_too_large,
     },
     Case {
         number: 20,
@@ -51,17 +51,17 @@ pub const CASES: &[Case] = &[
     },
     Case {
         number: 20,
-        name: "more-than-a-binding",
+        name: "binding-too-large",
         about: "an x-ray picture whose sums exceed the largest binding",
         expectation: Expectation::Refused("the message names the buffer, its size and the adapter's limit"),
-        run: more_than_a_binding,
+        run: binding_too_large,
     },
     Case {
         number: 21,
-        name: "resized",
+        name: "resizing",
         about: "100 picture sizes in sequence: no pixel of an earlier picture remains",
         expectation: Expectation::Exact,
-        run: resized,
+        run: resizing,
     },
     Case {
         number: 21,
@@ -72,7 +72,7 @@ pub const CASES: &[Case] = &[
     },
 ];
 
-fn without_pixels(context: &mut CaseContext) -> Result<(), EarlyEnd> {
+fn empty_pictures(context: &mut CaseContext) -> Result<(), EarlyEnd> {
     let hall = context.scene("near")?;
     for size in [[0, 0], [0, 64], [64, 0]] {
         let what = format!("{size:?} pixels");
@@ -86,7 +86,7 @@ fn without_pixels(context: &mut CaseContext) -> Result<(), EarlyEnd> {
     Ok(())
 }
 
-fn odd_targets(context: &mut CaseContext) -> Result<(), EarlyEnd> {
+fn odd_picture_sizes(context: &mut CaseContext) -> Result<(), EarlyEnd> {
     let hall = context.scene("near")?;
     for size in [[1, 1], [1, 97], [97, 1], [9, 7], [65, 63], [129, 127]] {
         context.exact_on_all_with(&hall, &context.view(&hall, size), &stack(&["lambert"]), &format!("{size:?} pixels"))?;
@@ -94,7 +94,7 @@ fn odd_targets(context: &mut CaseContext) -> Result<(), EarlyEnd> {
     Ok(())
 }
 
-fn wide_targets(context: &mut CaseContext) -> Result<(), EarlyEnd> {
+fn largest_pictures(context: &mut CaseContext) -> Result<(), EarlyEnd> {
     let most = context.renderer.gpu().caps.max_texture_side;
     check!(most >= 8192, "WebGPU guarantees 8,192 pixels along each side; this adapter has {most}");
     let teapot = context.scene("teapot?tess=4")?;
@@ -116,7 +116,7 @@ fn wide_targets(context: &mut CaseContext) -> Result<(), EarlyEnd> {
     Ok(())
 }
 
-fn too_wide_a_target(context: &mut CaseContext) -> Result<(), EarlyEnd> {
+fn picture_too_large(context: &mut CaseContext) -> Result<(), EarlyEnd> {
     let most = context.renderer.gpu().caps.max_texture_side;
     let teapot = context.scene("teapot?tess=4")?;
     for size in [[most + 1, 6], [6, most + 1], [u32::MAX, u32::MAX]] {
@@ -168,7 +168,7 @@ fn xray_at_5k(context: &mut CaseContext) -> Result<(), EarlyEnd> {
     equal(&large.frame.covered(), &(width as usize * height as usize), &format!("{what}: pixels covered"))
 }
 
-fn more_than_a_binding(context: &mut CaseContext) -> Result<(), EarlyEnd> {
+fn binding_too_large(context: &mut CaseContext) -> Result<(), EarlyEnd> {
     let caps = &context.renderer.gpu().caps;
     let (room, most) = (caps.max_storage_binding_bytes.min(caps.max_buffer_bytes), caps.max_texture_side);
     let (scene, stack) = (scene_of_meshes(&[veils()]), stack(&["xray"]));
@@ -195,7 +195,7 @@ fn more_than_a_binding(context: &mut CaseContext) -> Result<(), EarlyEnd> {
     }
 }
 
-fn resized(context: &mut CaseContext) -> Result<(), EarlyEnd> {
+fn resizing(context: &mut CaseContext) -> Result<(), EarlyEnd> {
     context.allow_any_depth_band();
     let mut rng = context.rng(21);
     let hall = context.scene("near")?;
