@@ -9,9 +9,9 @@ fn main() -> ExitCode {
     let cli = Cli::parse();
     match cli::run(&cli) {
         Ok(exit) => exit.into(),
-        Err(fault) => {
-            cli::complain(&cli, &fault);
-            fault.exit.into()
+        Err(error) => {
+            cli::report_error(&cli, &error);
+            error.exit.into()
         }
     }
 }

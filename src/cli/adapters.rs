@@ -1,15 +1,15 @@
-//! `adapters`: what could draw here. Always ends with `cpu`.
+//! `adapters`: lists the adapters of this machine. The last one is always `cpu`, the oracle.
 
 use serde_json::{Value, json};
 
 use super::{
-    fault::{Exit, Fault},
-    painter::{adapter_json, usable_options},
+    backend::{adapter_json, usable_options},
+    error::{CliError, Exit},
     streams::{Streams, table},
 };
 use crate::gpu::device;
 
-pub fn run(streams: &mut Streams) -> Result<Exit, Fault> {
+pub fn run(streams: &mut Streams) -> Result<Exit, CliError> {
     let adapters = device::list();
     if streams.json {
         let mut results: Vec<Value> = adapters
@@ -44,7 +44,7 @@ pub fn run(streams: &mut Streams) -> Result<Exit, Fault> {
     rows.push(cpu.map(str::to_owned).to_vec());
     streams.text(&table(&rows))?;
     if adapters.is_empty() {
-        streams.note("no GPU adapter was found; --adapter cpu draws with the built-in oracle");
+        streams.note("there is no GPU adapter; --adapter cpu draws with the built-in oracle");
     }
     Ok(Exit::Done)
 }

@@ -1,4 +1,4 @@
-//! What can be typed.
+//! The command line's commands and flags.
 
 use std::path::PathBuf;
 
@@ -8,8 +8,8 @@ use clap::{Args, Parser, Subcommand, ValueEnum};
 #[derive(Parser, Debug)]
 #[command(name = "rasterlab", version, about, long_about = LONG)]
 pub struct Cli {
-    /// A preset, a model (.glb, .gltf) or a picture of ours to open in the window
-    #[arg(value_name = "LOOK|MODEL|SHOT.png")]
+    /// A preset, a model (.glb, .gltf) or a PNG saved by rasterlab, to open in the window
+    #[arg(value_name = "PRESET|MODEL|PICTURE.png")]
     pub open: Option<String>,
     #[command(flatten)]
     pub common: Common,
@@ -18,10 +18,10 @@ pub struct Cli {
 }
 
 const LONG: &str = "An effects lab around a compute-shader rasterizer, judged by an exact oracle.\n\n\
-    Without a command the window opens. A preset is an id of the gallery (rasterlab list), a .toml file, a .glb or .gltf \
-    model, a PNG saved by rasterlab, builtin:QUERY, or - for TOML from stdin.\n\n\
-    Exit codes: 0 done; 1 a comparison, check, stress case, promised accuracy or dry run failed; 2 usage, or a file that \
-    cannot be read or written; 3 no suitable adapter; 4 the device was lost.";
+    Without a command the window opens. A PRESET is an id of the gallery (rasterlab list presets), a .toml file, a .glb or \
+    .gltf model, a PNG saved by rasterlab, builtin:QUERY, or - for TOML from stdin.\n\n\
+    Exit codes: 0 done; 1 a comparison, check or stress case failed, a measured error exceeds its limit, or a dry run found \
+    changes; 2 wrong usage, or a file that cannot be read or written; 3 no suitable adapter; 4 the device was lost.";
 
 /// Flags that every command has.
 #[derive(Args, Debug, Default)]
@@ -29,22 +29,22 @@ pub struct Common {
     /// Part of an adapter's name, or cpu for the built-in oracle [env: RASTERLAB_ADAPTER]
     #[arg(long, global = true, value_name = "NAME")]
     pub adapter: Option<String>,
-    /// Folder of presets that comes before all others [env: RASTERLAB_PRESETS]
+    /// Folder of presets that is searched first [env: RASTERLAB_PRESETS]
     #[arg(long, global = true, value_name = "DIR")]
     pub presets: Option<PathBuf>,
-    /// Change a key of the preset, e.g. facet.amount=.5; an effect's name alone enables it
+    /// Change one value of the preset, e.g. facet.amount=.5; the name of an effect alone enables it
     #[arg(long, global = true, value_name = "PATH[=VALUE]")]
     pub set: Vec<String>,
-    /// Put a key back to its default; an effect's name takes it out
+    /// Reset one value to its default; the name of an effect disables it
     #[arg(long, global = true, value_name = "PATH")]
     pub unset: Vec<String>,
-    /// Print one JSON object
+    /// Print one JSON object to stdout
     #[arg(long, global = true)]
     pub json: bool,
-    /// No progress, no notes
+    /// Print neither progress nor notes
     #[arg(long, short, global = true)]
     pub quiet: bool,
-    /// Unknown keys in a preset are errors
+    /// Treat unknown keys in a preset as errors
     #[arg(long, global = true)]
     pub strict: bool,
     /// Overwrite existing files
@@ -53,12 +53,12 @@ pub struct Common {
 }
 
 impl Common {
-    /// `--presets`, or what the environment says.
+    /// `--presets`, or `RASTERLAB_PRESETS`.
     pub fn presets_dir(&self) -> Option<PathBuf> {
         self.presets.clone().or_else(|| std::env::var_os("RASTERLAB_PRESETS").filter(|dir| !dir.is_empty()).map(PathBuf::from))
     }
 
-    /// `--adapter`, or what the environment says.
+    /// `--adapter`, or `RASTERLAB_ADAPTER`.
     pub fn adapter_name(&self) -> Option<String> {
         self.adapter.clone().or_else(|| std::env::var("RASTERLAB_ADAPTER").ok().filter(|name| !name.is_empty()))
     }
@@ -66,31 +66,31 @@ impl Common {
 
 #[derive(Subcommand, Debug)]
 pub enum Command {
-    /// Presets, builtin scenes, effects and their parameters with ranges
+    /// List presets, effects with their parameters and ranges, builtin scenes and accuracy axes
     List(List),
-    /// Every adapter with backend, driver, limits and usable options
+    /// List adapters with backend, driver, limits and usable visibility options
     Adapters,
-    /// One picture of each preset
+    /// Draw one picture of each preset
     Render(Render),
-    /// A moving preset, frame by frame; finished frames are not drawn again
+    /// Draw an animated preset frame by frame; finished frames are not drawn again
     Sequence(Sequence),
-    /// Each preset on the adapter against the oracle, all buffers
+    /// Compare each preset on the adapter with the oracle, every buffer
     Verify(Verify),
-    /// Two pictures or presets against each other
+    /// Compare two pictures or presets with each other
     Compare(Compare),
-    /// Passes, buffers, and the reason for each
+    /// Show the passes and buffers of a preset, and the reason for each
     Explain(Explain),
     /// Redraw goldens with the oracle
     Bless(Bless),
-    /// Milliseconds beside error, option by option
+    /// Measure time and error of accuracy options and effects
     Bench(Bench),
-    /// The table of extreme cases, each against its expectation
+    /// Run the extreme cases, each with its expected outcome
     Stress(Stress),
-    /// The README's gallery: every effect with its pictures, as Markdown
+    /// Print the gallery of the README, every effect with its pictures, as Markdown
     Gallery(Gallery),
-    /// Validate looks; with --render also against their goldens
+    /// Validate presets; with --render also compare them with their goldens
     Check(Check),
-    /// Show how the current schema changes preset files; with --write change them
+    /// Show what the current schema changes in preset files; with --write change them
     Migrate(Migrate),
     /// Print a completion script
     Completions { shell: clap_complete::Shell },
@@ -119,32 +119,58 @@ impl Command {
 
 #[derive(Args, Debug)]
 pub struct Gallery {
-    /// Writes it between the marks of this file instead of to stdout
+    /// Write it between the gallery markers of this file instead of to stdout
     #[arg(long, value_name = "FILE")]
     pub into: Option<PathBuf>,
 }
 
 #[derive(Args, Debug)]
 pub struct List {
-    /// Only effects
-    #[arg(long)]
+    /// What to list; without any, everything
+    #[arg(value_enum)]
+    pub kinds: Vec<ListKind>,
+    #[arg(long, hide = true)]
     pub effects: bool,
-    /// Only presets
-    #[arg(long)]
-    pub preset_files: bool,
-    /// Only the accuracy axes: axes with their options, from fast to accurate
-    #[arg(long)]
+    #[arg(long, hide = true)]
+    pub looks: bool,
+    #[arg(long, hide = true)]
     pub axes: bool,
-    /// Only builtin scenes
-    #[arg(long)]
+    #[arg(long, hide = true)]
     pub scenes: bool,
+}
+
+/// What `list` can list.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum ListKind {
+    /// Presets of the gallery
+    Presets,
+    /// Effects with their parameters
+    Effects,
+    /// Builtin scenes with their parameters
+    Scenes,
+    /// Accuracy axes with their options, from fast to accurate
+    Axes,
+}
+
+impl List {
+    /// Is this kind listed?
+    pub fn has(&self, kind: ListKind) -> bool {
+        let flags = [
+            (self.looks, ListKind::Presets),
+            (self.effects, ListKind::Effects),
+            (self.scenes, ListKind::Scenes),
+            (self.axes, ListKind::Axes),
+        ];
+        let mut kinds = self.kinds.iter().copied().chain(flags.into_iter().filter_map(|(is_set, kind)| is_set.then_some(kind))).peekable();
+        kinds.peek().is_none() || kinds.any(|listed| listed == kind)
+    }
 }
 
 #[derive(Args, Debug)]
 pub struct Render {
-    #[arg(required = true, value_name = "LOOK")]
-    pub preset_files: Vec<String>,
-    /// Where to; - for stdout. Knows {preset} {effect} {n} {n:3} {adapter} {tier}
+    #[arg(required = true, value_name = "PRESET")]
+    pub inputs: Vec<String>,
+    /// File to write, - for stdout; may contain {preset} {effect} {n} {n:3} {adapter} {tier}
     #[arg(short, long, value_name = "FILE", default_value = "{preset}.png")]
     pub output: String,
     /// Size in pixels, e.g. 1920x1080
@@ -153,40 +179,40 @@ pub struct Render {
     /// Time of the picture in seconds
     #[arg(long, value_name = "S", allow_negative_numbers = true)]
     pub time: Option<f64>,
-    /// Named tolerance: draft, fast, precise, reference, strict
+    /// Named tolerance: draft, fast, precise, reference or strict
     #[arg(long, value_name = "T")]
     pub tier: Option<String>,
-    /// Leave look, version, adapter and driver out of the PNG
+    /// Leave preset, version, adapter and driver out of the PNG
     #[arg(long)]
     pub bare: bool,
 }
 
 #[derive(Args, Debug)]
 pub struct Sequence {
-    #[arg(value_name = "LOOK")]
-    pub preset_file: String,
-    /// A file per frame, e.g. 'frame_{frame:4}.png'. Knows {preset} {effect} {frame} {frame:4} {adapter} {tier}
+    #[arg(value_name = "PRESET")]
+    pub input: String,
+    /// A file per frame, e.g. 'frame_{frame:4}.png'; may contain {preset} {effect} {frame} {frame:4} {adapter} {tier}
     #[arg(short, long, value_name = "FILE", required_unless_present = "apng")]
     pub output: Option<String>,
-    /// All frames in one animated PNG
+    /// Write all frames into one animated PNG
     #[arg(long, value_name = "FILE")]
     pub apng: Option<PathBuf>,
-    /// Time of frame 0 in seconds; without it the preset's own range begins
+    /// Time of frame 0 in seconds; default: begin of the preset's range
     #[arg(long, value_name = "S", allow_negative_numbers = true)]
     pub from: Option<f64>,
-    /// Time at which the film is over, which is not drawn: it is the first moment of the next round
+    /// End time in seconds, which is not drawn; default: end of the preset's range
     #[arg(long, value_name = "S", allow_negative_numbers = true)]
     pub to: Option<f64>,
-    /// Frames in a second of film
+    /// Frames per second
     #[arg(long, value_name = "N", default_value_t = 30.0)]
     pub fps: f64,
-    /// Only these frames, B not among them: the share of one machine of many
+    /// Frames A..B, B excluded; use it to split a job
     #[arg(long, value_name = "A..B", value_parser = frames)]
     pub frames: Option<[Option<u32>; 2]>,
     /// Size in pixels, e.g. 1920x1080
     #[arg(long, value_name = "WxH", value_parser = size)]
     pub size: Option<[u32; 2]>,
-    /// Named tolerance: draft, fast, precise, reference, strict
+    /// Named tolerance: draft, fast, precise, reference or strict
     #[arg(long, value_name = "T")]
     pub tier: Option<String>,
 }
@@ -194,15 +220,15 @@ pub struct Sequence {
 #[derive(Args, Debug)]
 pub struct Verify {
     /// Presets; without any, every preset of the gallery that has a golden
-    #[arg(value_name = "LOOK")]
-    pub preset_files: Vec<String>,
-    /// Draw so many frames, which must be equal to the bit
+    #[arg(value_name = "PRESET")]
+    pub inputs: Vec<String>,
+    /// Number of frames to draw; all must be bit-identical
     #[arg(long, default_value_t = 1, value_parser = clap::value_parser!(u32).range(1..=10_000))]
     pub frames: u32,
     /// Size in pixels instead of the preset's own
     #[arg(long, value_name = "WxH", value_parser = size)]
     pub size: Option<[u32; 2]>,
-    /// Folder for pictures: expected, actual and difference side by side
+    /// Folder for pictures of expected, actual and difference side by side
     #[arg(short, long, value_name = "DIR")]
     pub output: Option<PathBuf>,
 }
@@ -213,26 +239,27 @@ pub struct Compare {
     pub a: String,
     /// A PNG or a preset
     pub b: String,
-    /// Picture of the differences
+    /// Write a picture of the differences
     #[arg(short, long, value_name = "FILE")]
     pub output: Option<String>,
-    /// Largest difference of a channel that passes, of 255
+    /// Largest allowed difference of a channel, of 255
     #[arg(long, default_value_t = 1)]
     pub max_channel: u8,
-    /// Pixels beyond it that pass
+    /// Allowed number of pixels that differ by more
     #[arg(long, default_value_t = 0)]
     pub max_pixels: u64,
-    /// Pixels with another triangle id that pass, between presets
-    #[arg(long, default_value_t = 0)]
+    /// Allowed number of pixels with another triangle, between presets
+    #[arg(long, alias = "max-wrong-owner", default_value_t = 0)]
     pub max_wrong_triangles: u64,
-    /// Size in pixels of presets instead of their own
+    /// Size in pixels instead of the presets' own
     #[arg(long, value_name = "WxH", value_parser = size)]
     pub size: Option<[u32; 2]>,
 }
 
 #[derive(Args, Debug)]
 pub struct Explain {
-    pub preset_file: String,
+    #[arg(value_name = "PRESET")]
+    pub input: String,
     /// Size in pixels instead of the preset's own
     #[arg(long, value_name = "WxH", value_parser = size)]
     pub size: Option<[u32; 2]>,
@@ -240,8 +267,8 @@ pub struct Explain {
 
 #[derive(Args, Debug)]
 pub struct Bless {
-    /// Presets of the preset folder, or effects whose first preset is to be made
-    #[arg(value_name = "LOOK|EFFECT")]
+    /// Presets of the preset folder, or effects that have no preset yet and get one
+    #[arg(value_name = "PRESET|EFFECT")]
     pub names: Vec<String>,
     /// Every preset that has a [test] table
     #[arg(long, conflicts_with = "names")]
@@ -256,41 +283,41 @@ pub struct Bless {
 
 #[derive(Args, Debug)]
 pub struct Bench {
-    /// Presets; without any, daylight on each --scene
-    #[arg(value_name = "LOOK")]
-    pub preset_files: Vec<String>,
-    /// A builtin scene by query or a model file, instead of the preset's own; may be repeated
+    /// Presets; without any, the lambert effect on each --scene
+    #[arg(value_name = "PRESET")]
+    pub inputs: Vec<String>,
+    /// A builtin scene by query, or a model file, instead of the preset's scene; may be repeated
     #[arg(long, value_name = "SCENE")]
     pub scene: Vec<String>,
-    /// What every effect costs: each alone, with the values of its canonical preset, beside none
+    /// Measure every effect alone, with the values of the preset of its name, and no effect
     #[arg(long)]
     pub effects: bool,
-    /// Axes of the accuracy axes, by commas: every combination of their options, milliseconds beside error
+    /// Accuracy axes, separated by commas: measure every combination of their options
     #[arg(long, value_name = "AXES", value_delimiter = ',', conflicts_with = "effects")]
     pub axes: Vec<String>,
-    /// With --axes: every option alone beside the preset as it is planned, instead of every combination; a row per option, a pair of
-    /// columns per scene
+    /// With --axes: measure one changed option at a time instead of every combination; a row per option, columns per scene
     #[arg(long, requires = "axes")]
     pub each: bool,
-    /// Size in pixels of every row
+    /// Size of the pictures in pixels
     #[arg(long, value_name = "WxH", value_parser = size, default_value = "1920x1080")]
     pub size: [u32; 2],
-    /// Timed frames per row
+    /// Number of timed frames per row
     #[arg(long, default_value_t = 30, value_parser = clap::value_parser!(u32).range(1..=100_000))]
     pub samples: u32,
+    /// Format of the output
     #[arg(long, value_enum, default_value_t = Format::Table)]
     pub format: Format,
 }
 
 #[derive(Args, Debug)]
 pub struct Stress {
-    /// Only cases of this number, or whose name contains this
+    /// Run only the case of this number, or the cases whose names contain this text
     #[arg(long, value_name = "F")]
     pub filter: Option<String>,
-    /// Seed of every case that throws dice
+    /// Changes the random cases
     #[arg(long, value_name = "N", default_value_t = 0)]
     pub seed: u32,
-    /// Draw nothing; show the cases
+    /// List the cases and draw nothing
     #[arg(long)]
     pub list: bool,
 }
@@ -318,10 +345,10 @@ pub struct Check {
     /// Presets; without any, the whole gallery
     #[arg(value_name = "FILE")]
     pub files: Vec<String>,
-    /// Also draw each on the adapter and compare it with its golden
+    /// Also draw each preset on the adapter and compare it with its golden
     #[arg(long)]
     pub render: bool,
-    /// One self-contained HTML file with all pictures
+    /// Write one self-contained HTML file with all pictures
     #[arg(long, value_name = "FILE", requires = "render")]
     pub report: Option<String>,
     /// Folder of the goldens
@@ -331,18 +358,18 @@ pub struct Check {
 
 /// `30..60`, `..60`, `30..`.
 fn frames(text: &str) -> Result<[Option<u32>; 2], String> {
-    let wrong = || format!("frames are A..B, A.. or ..B with whole numbers, B not among them, for instance 0..60; {text:?} is not");
+    let wrong = || format!("{text:?} is no range of frames; write A..B, A.. or ..B with whole numbers, B excluded, for instance 0..60");
     let (from, to) = text.split_once("..").ok_or_else(wrong)?;
     let end = |end: &str| if end.is_empty() { Ok(None) } else { end.parse().map(Some).map_err(|_| wrong()) };
     match [end(from)?, end(to)?] {
-        [Some(from), Some(to)] if from >= to => Err(format!("frames {text} hold no frame: {from} is not before {to}")),
+        [Some(from), Some(to)] if from >= to => Err(format!("{text} has no frame: {from} is not before {to}")),
         ends => Ok(ends),
     }
 }
 
 /// `1920x1080`.
 fn size(text: &str) -> Result<[u32; 2], String> {
-    let wrong = || format!("a size is WIDTHxHEIGHT, each 0 to 16384, for instance 1920x1080; {text:?} is not");
+    let wrong = || format!("{text:?} is no size; write WIDTHxHEIGHT, each 0 to 16384, for instance 1920x1080");
     let (width, height) = text.split_once(['x', 'X']).ok_or_else(wrong)?;
     let side = |side: &str| side.parse().ok().filter(|side| *side <= 16_384).ok_or_else(wrong);
     Ok([side(width)?, side(height)?])

@@ -1,4 +1,4 @@
-//! `bench`: milliseconds beside error, one row per scene and option. No row has a time without an error.
+//! `bench`: time and error, one row per scene and option. Every row with a time has an error.
 
 use std::sync::Arc;
 
@@ -6,9 +6,9 @@ use serde_json::Value;
 
 use super::{
     args::{Bench, Common, Format},
-    fault::{Exit, Fault},
+    backend::{Backend, scene_of},
+    error::{CliError, Exit},
     open,
-    painter::{Painter, scene_of},
     streams::{Streams, table},
     sweep,
 };
@@ -25,14 +25,14 @@ use crate::{
     scene::{Scene, view::View},
 };
 
-pub fn run(common: &Common, args: &Bench, streams: &mut Streams) -> Result<Exit, Fault> {
+pub fn run(common: &Common, args: &Bench, streams: &mut Streams) -> Result<Exit, CliError> {
     if !args.axes.is_empty() {
         return sweep::run(common, args, streams);
     }
     let subjects = subjects(common, args)?;
-    let painter = Painter::open(common, streams)?;
-    let Painter::Gpu(_, gpu) = &painter else {
-        return Err(Fault::usage("the oracle judges and is never ranked; bench needs a GPU adapter"));
+    let backend = Backend::open(common, streams)?;
+    let Backend::Gpu(_, gpu) = &backend else {
+        return Err(CliError::usage("bench needs a GPU adapter; the oracle is not measured"));
     };
     let options = BenchOptions { size: args.size, samples: args.samples as usize };
     let bar = streams.progress(0);
@@ -52,15 +52,15 @@ pub fn run(common: &Common, args: &Bench, streams: &mut Streams) -> Result<Exit,
         });
     }
     bar.finish_and_clear();
-    let results = || rows.iter().map(serde_json::to_value).collect::<Result<Vec<Value>, _>>().map_err(Fault::usage);
-    present(args, streams, &painter, &lines(&rows), results)?;
+    let results = || rows.iter().map(serde_json::to_value).collect::<Result<Vec<Value>, _>>().map_err(CliError::usage);
+    present(args, streams, &backend, &lines(&rows), results)?;
     rows.iter().filter_map(|row| row.note.as_ref()).for_each(|note| streams.note(note));
     let broken: Vec<_> = rows.iter().filter(|row| row.is_promised && !row.error.is_exact()).collect();
-    broken.iter().for_each(|row| streams.note(&format!("{} on {}: the error exceeds the promise", row.scene, row.option)));
+    broken.iter().for_each(|row| streams.note(&format!("{} with {}: the picture is not exact", row.scene, row.option)));
     Ok(Exit::failed_if(!broken.is_empty()))
 }
 
-/// The oracle's judgement of what an adapter drew of `scene` seen through `view`.
+/// Compares what an adapter drew of `scene` through `view` with the oracle.
 pub fn judge<'a>(scene: &'a Scene, view: &'a View) -> impl Fn(&Stack, &Capture) -> Verdict + use<'a> {
     move |stack, capture| {
         let (layers, previous) = (capture.layers.as_deref(), capture.previous.as_deref());
@@ -69,17 +69,17 @@ pub fn judge<'a>(scene: &'a Scene, view: &'a View) -> impl Fn(&Stack, &Capture) 
     }
 }
 
-/// Rows in the format that was asked for, and how they were measured.
+/// Prints rows in the chosen format, and a note on how they were measured.
 pub fn present(
     args: &Bench,
     streams: &mut Streams,
-    painter: &Painter,
+    backend: &Backend,
     lines: &[Vec<String>],
-    results: impl FnOnce() -> Result<Vec<Value>, Fault>,
-) -> Result<(), Fault> {
+    results: impl FnOnce() -> Result<Vec<Value>, CliError>,
+) -> Result<(), CliError> {
     let format = if streams.json { Format::Json } else { args.format };
     match format {
-        Format::Json => streams.object("bench", painter.json(), results()?)?,
+        Format::Json => streams.object("bench", backend.json(), results()?)?,
         Format::Table => streams.text(&table(lines))?,
         Format::Csv => streams.text(&csv(lines))?,
         Format::Md => streams.text(&markdown(lines))?,
@@ -89,8 +89,8 @@ pub fn present(
     Ok(())
 }
 
-/// No effect at all, and every effect alone with the values of its canonical preset.
-fn each_effect(common: &Common) -> Result<Vec<(String, Stack)>, Fault> {
+/// No effect, and every effect alone with the values of the preset of its name.
+fn each_effect(common: &Common) -> Result<Vec<(String, Stack)>, CliError> {
     let mut stacks = vec![("no effect".to_owned(), Stack::default())];
     for effect in EFFECTS {
         let preset_file = open(common, effect.name)?;
@@ -100,22 +100,22 @@ fn each_effect(common: &Common) -> Result<Vec<(String, Stack)>, Fault> {
     Ok(stacks)
 }
 
-/// Presets with their scenes: each named look on its own scene, or on each `--scene`.
-pub fn subjects(common: &Common, args: &Bench) -> Result<Vec<(PresetFile, Arc<Scene>)>, Fault> {
-    let named = args.preset_files.iter().map(|what| open(common, what)).collect::<Result<Vec<_>, _>>()?;
+/// Presets with their scenes: each preset with its own scene, or with each `--scene`.
+pub fn subjects(common: &Common, args: &Bench) -> Result<Vec<(PresetFile, Arc<Scene>)>, CliError> {
+    let named = args.inputs.iter().map(|what| open(common, what)).collect::<Result<Vec<_>, _>>()?;
     let mut preset_files = Vec::new();
     for scene in &args.scene {
-        let mut plain = open(common, &if is_model(scene) { scene.clone() } else { format!("builtin:{scene}") })?;
+        let mut base = open(common, &if is_model(scene) { scene.clone() } else { format!("builtin:{scene}") })?;
         if named.is_empty() {
-            plain.id.clone_from(scene);
-            preset_files.push(plain);
+            base.id.clone_from(scene);
+            preset_files.push(base);
             continue;
         }
         preset_files.extend(named.iter().map(|preset_file| {
             let mut preset_file = preset_file.clone();
             preset_file.id = format!("{} on {scene}", preset_file.id);
-            preset_file.preset.scene = plain.preset.scene.clone();
-            // The camera of a preset was placed for its own scene.
+            preset_file.preset.scene = base.preset.scene.clone();
+            // The camera of the preset is meant for the scene of the preset.
             preset_file.preset.camera = None;
             preset_file.preset.scene_camera.clear();
             preset_file
@@ -133,17 +133,17 @@ fn is_model(scene: &str) -> bool {
 }
 
 fn lines(rows: &[BenchRow]) -> Vec<Vec<String>> {
-    let head = ["SCENE", "TRIANGLES", "RUNG", "MS P50", "MS P95", "N", "OWNER", "SNAP", "HOLES", "DOUBLE", "MAX", "RMS", "ADAPTER"];
+    let head = ["SCENE", "TRIANGLES", "OPTION", "MS P50", "MS P95", "N", "WRONG", "SNAP", "HOLES", "DOUBLE", "MAX", "RMS", "ADAPTER"];
     let mut lines = vec![head.map(str::to_owned).to_vec()];
-    // Only where something bends is there a column for how well.
+    // Columns for deformed vertices and particles only where there are any.
     let deforms = rows.iter().any(|row| row.error.max_deform_px.is_some());
     let before_adapter = head.len() - 1;
     if deforms {
-        lines[0].insert(before_adapter, "BEND PX".into());
+        lines[0].insert(before_adapter, "DEFORM PX".into());
     }
-    let flies = rows.iter().any(|row| row.error.max_divergence_px.is_some());
-    if flies {
-        lines[0].insert(before_adapter, "ASTRAY PX".into());
+    let has_particles = rows.iter().any(|row| row.error.max_divergence_px.is_some());
+    if has_particles {
+        lines[0].insert(before_adapter, "DIVERGED PX".into());
     }
     let not_measured = || "not measured".to_owned();
     let ms = |ms: Option<f64>| ms.map_or_else(not_measured, |ms| format!("{ms:.3}"));
@@ -168,7 +168,7 @@ fn lines(rows: &[BenchRow]) -> Vec<Vec<String>> {
         if deforms {
             line.insert(before_adapter, e.max_deform_px.map_or_else(not_measured, |px| format!("{px:.5}")));
         }
-        if flies {
+        if has_particles {
             line.insert(before_adapter, e.max_divergence_px.map_or_else(not_measured, |px| format!("{px:.5}")));
         }
         line

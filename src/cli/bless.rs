@@ -1,4 +1,4 @@
-//! `bless`: redraws goldens with the oracle and says what changes. Nothing else may make a golden.
+//! `bless`: redraws goldens with the oracle and prints what changes. Only this command writes goldens.
 
 use std::path::{Path, PathBuf};
 
@@ -6,10 +6,10 @@ use serde_json::{Value, json};
 
 use super::{
     args::{Bless, Common},
-    fault::{Exit, Fault},
+    backend::scene_of,
+    error::{CliError, Exit},
     files,
     golden::{self, Golden},
-    painter::scene_of,
     streams::Streams,
 };
 use crate::{
@@ -19,12 +19,12 @@ use crate::{
     preset_file::{self, PresetFile},
 };
 
-pub fn run(common: &Common, args: &Bless, streams: &mut Streams) -> Result<Exit, Fault> {
+pub fn run(common: &Common, args: &Bless, streams: &mut Streams) -> Result<Exit, CliError> {
     if common.adapter.is_some() {
-        return Err(Fault::usage("goldens come from the oracle alone; bless takes no --adapter"));
+        return Err(CliError::usage("bless takes no --adapter: only the oracle draws goldens"));
     }
     if !(common.set.is_empty() && common.unset.is_empty()) {
-        return Err(Fault::usage("a golden is of the preset as it stands in its file; bless takes no --set"));
+        return Err(CliError::usage("bless takes no --set and no --unset: a golden is drawn from the preset file"));
     }
     let folder = common.presets_dir().unwrap_or_else(|| PathBuf::from("presets"));
     let preset_files = preset_files(args, &folder, streams)?;
@@ -36,11 +36,7 @@ pub fn run(common: &Common, args: &Bless, streams: &mut Streams) -> Result<Exit,
         let change = change(&golden, &args.snapshots, &preset_file.id);
         changed |= is_new || change["changes"] == json!(true);
         if !streams.json {
-            streams.text(&format!(
-                "{}{}\n",
-                line(&preset_file.id, &change),
-                if is_new { " (its first preset is made, too)" } else { "" }
-            ))?;
+            streams.text(&format!("{}{}\n", line(&preset_file.id, &change), if is_new { " (its preset is created, too)" } else { "" }))?;
         }
         if !args.dry_run {
             store(preset_file, is_new, &golden, args, &folder, change["changes"] == json!(true))?;
@@ -55,25 +51,25 @@ pub fn run(common: &Common, args: &Bless, streams: &mut Streams) -> Result<Exit,
     Ok(Exit::failed_if(args.dry_run && changed))
 }
 
-/// The presets to bless, each with whether it is yet to be made.
-fn preset_files(args: &Bless, folder: &Path, streams: &Streams) -> Result<Vec<(PresetFile, bool)>, Fault> {
+/// The presets to bless, each with whether it is new.
+fn preset_files(args: &Bless, folder: &Path, streams: &Streams) -> Result<Vec<(PresetFile, bool)>, CliError> {
     if !args.all && args.names.is_empty() {
-        return Err(Fault::usage("name presets or effects, or say --all"));
+        return Err(CliError::usage("name presets or effects, or use --all"));
     }
     if !args.all {
         return args.names.iter().map(|name| named(name, folder)).collect();
     }
-    let entries = std::fs::read_dir(folder).map_err(|e| Fault::from(e).during(format!("{} cannot be read", folder.display())))?;
+    let entries = std::fs::read_dir(folder).map_err(|e| CliError::from(e).during(format!("{} cannot be read", folder.display())))?;
     let mut files: Vec<PathBuf> =
         entries.flatten().map(|entry| entry.path()).filter(|path| path.extension().is_some_and(|e| e == "toml")).collect();
     files.sort();
-    let preset_files = files.iter().map(|file| Ok(preset_file::load(file)?.strict()?)).collect::<Result<Vec<_>, Fault>>()?;
+    let preset_files = files.iter().map(|file| Ok(preset_file::load(file)?.strict()?)).collect::<Result<Vec<_>, CliError>>()?;
     let (tested, bare): (Vec<_>, Vec<_>) = preset_files.into_iter().partition(|preset_file| preset_file.preset.test.is_some());
-    bare.iter().for_each(|preset_file| streams.note(&format!("{}: has no [test] table, so no golden", preset_file.id)));
+    bare.iter().for_each(|preset_file| streams.note(&format!("{}: has no [test] table and so no golden", preset_file.id)));
     Ok(tested.into_iter().map(|preset_file| (preset_file, false)).collect())
 }
 
-fn named(name: &str, folder: &Path) -> Result<(PresetFile, bool), Fault> {
+fn named(name: &str, folder: &Path) -> Result<(PresetFile, bool), CliError> {
     let file = folder.join(format!("{name}.toml"));
     if file.exists() {
         return Ok((preset_file::load(&file)?.strict()?, false));
@@ -81,10 +77,10 @@ fn named(name: &str, folder: &Path) -> Result<(PresetFile, bool), Fault> {
     if let Some(effect) = Effect::find(name) {
         return Ok((first_preset(effect), true));
     }
-    Err(Fault::usage(format!("{} is not there, and {name} is no effect", file.display())))
+    Err(CliError::usage(format!("{} does not exist, and {name} is no effect", file.display())))
 }
 
-/// The canonical preset of a new effect: on the teapot, with its defaults.
+/// The first preset of a new effect: on the teapot, with default parameters.
 fn first_preset(effect: &'static Effect) -> PresetFile {
     let mut preset = Preset {
         name: effect.name.replace('_', " "),
@@ -98,7 +94,7 @@ fn first_preset(effect: &'static Effect) -> PresetFile {
     PresetFile::new(effect.name, preset)
 }
 
-fn store(mut preset_file: PresetFile, is_new: bool, golden: &Golden, args: &Bless, folder: &Path, changes: bool) -> Result<(), Fault> {
+fn store(mut preset_file: PresetFile, is_new: bool, golden: &Golden, args: &Bless, folder: &Path, changes: bool) -> Result<(), CliError> {
     if is_new {
         let path = folder.join(format!("{}.toml", preset_file.id));
         preset_file::save(&mut preset_file, &path)?;
@@ -118,7 +114,7 @@ fn change(golden: &Golden, snapshots: &Path, id: &str) -> Value {
     let old_sidecar = std::fs::read_to_string(&sidecar).unwrap_or_default();
     let old: Value = serde_json::from_str(&old_sidecar).unwrap_or_default();
     let size = [golden.frame.width, golden.frame.height];
-    // A golden that cannot be read counts as absent.
+    // A golden that cannot be read counts as missing.
     let old_picture = preset_file::png_pixels(&png).ok();
     let delta = old_picture.as_ref().filter(|(_, old_size)| *old_size == size).map(|(color, _)| pictures(color, &golden.frame.color, 0));
     let same = delta.as_ref().is_some_and(|delta| delta.pixels_over_tolerance == 0) && old_sidecar == golden.sidecar;

@@ -1,4 +1,4 @@
-//! `check`: validates looks, and with `--render` holds the adapter's pictures against the goldens.
+//! `check`: validates presets, and with `--render` compares the adapter's pictures with the goldens.
 
 use std::path::Path;
 
@@ -6,11 +6,10 @@ use serde_json::{Value, json};
 
 use super::{
     args::{Check, Common},
-    fault::{Exit, Fault},
+    backend::{Backend, scene_of},
+    error::{CliError, Exit},
     files::{self, Names},
-    gallery_name, golden, open,
-    painter::{Painter, scene_of},
-    report,
+    gallery_name, golden, open, report,
     streams::Streams,
 };
 use crate::{
@@ -18,18 +17,18 @@ use crate::{
     preset_file::{self, PresetError, PresetFile},
 };
 
-/// What became of one preset.
+/// The result of one preset.
 pub struct Finding {
-    pub preset_file: String,
+    pub preset: String,
     pub exit: Exit,
-    /// One sentence each; empty when all is well.
-    pub faults: Vec<String>,
+    /// One sentence each; empty where the preset passes.
+    pub problems: Vec<String>,
     pub warnings: Vec<String>,
     pub position: Option<preset_file::Position>,
     pub drawn: Option<Drawn>,
 }
 
-/// A picture beside its golden.
+/// A picture with its golden.
 pub struct Drawn {
     pub size: [u32; 2],
     pub expected: Vec<[u8; 4]>,
@@ -37,27 +36,27 @@ pub struct Drawn {
     pub delta: PictureDelta,
 }
 
-pub fn run(common: &Common, args: &Check, streams: &mut Streams) -> Result<Exit, Fault> {
+pub fn run(common: &Common, args: &Check, streams: &mut Streams) -> Result<Exit, CliError> {
     let files = if args.files.is_empty() {
         preset_file::gallery(common.presets_dir().as_deref()).iter().map(gallery_name).collect()
     } else {
         args.files.clone()
     };
-    let mut painter = if args.render { Some(Painter::open(common, streams)?) } else { None };
+    let mut backend = if args.render { Some(Backend::open(common, streams)?) } else { None };
     let bar = streams.progress(files.len() as u64);
     let mut findings = Vec::new();
     for file in &files {
         bar.set_message(file.clone());
-        findings.push(check(common, args, file, painter.as_mut()));
+        findings.push(check(common, args, file, backend.as_mut()));
         bar.inc(1);
     }
     bar.finish_and_clear();
     if let Some(report) = &args.report {
         let path = files::target(report, &Names { preset: "report".into(), ..Names::default() }, common.force)?;
-        let adapter = painter.as_ref().map_or("none", Painter::name);
+        let adapter = backend.as_ref().map_or("none", Backend::name);
         files::write(&path, report::html(&findings, adapter)?.as_bytes())?;
     }
-    let adapter = painter.as_ref().map_or(Value::Null, Painter::json);
+    let adapter = backend.as_ref().map_or(Value::Null, Backend::json);
     if streams.json {
         streams.object("check", adapter, findings.iter().map(json_finding).collect())?;
     } else {
@@ -67,23 +66,23 @@ pub fn run(common: &Common, args: &Check, streams: &mut Streams) -> Result<Exit,
     Ok(findings.iter().fold(Exit::Done, |exit, finding| exit.and(finding.exit)))
 }
 
-fn check(common: &Common, args: &Check, file: &str, painter: Option<&mut Painter>) -> Finding {
+fn check(common: &Common, args: &Check, file: &str, backend: Option<&mut Backend>) -> Finding {
     let id = Path::new(file).file_stem().map_or_else(|| file.to_owned(), |stem| stem.to_string_lossy().into_owned());
-    let mut finding = Finding { preset_file: id, exit: Exit::Done, faults: Vec::new(), warnings: Vec::new(), position: None, drawn: None };
+    let mut finding = Finding { preset: id, exit: Exit::Done, problems: Vec::new(), warnings: Vec::new(), position: None, drawn: None };
     let outcome = open(common, file).and_then(|preset_file| {
         finding.warnings.clone_from(&preset_file.warnings);
         let scene = scene_of(&preset_file)?;
-        painter.map(|painter| drawn(args, &preset_file, &scene, painter)).transpose()
+        backend.map(|backend| drawn(args, &preset_file, &scene, backend)).transpose()
     });
     match outcome {
-        Ok(Some((drawn, faults))) => {
-            finding.exit = Exit::failed_if(!faults.is_empty());
-            (finding.faults, finding.drawn) = (faults, drawn);
+        Ok(Some((drawn, problems))) => {
+            finding.exit = Exit::failed_if(!problems.is_empty());
+            (finding.problems, finding.drawn) = (problems, drawn);
         }
         Ok(None) => {}
-        Err(fault) => {
-            finding.position = fault.error.downcast_ref::<PresetError>().and_then(PresetError::position);
-            (finding.exit, finding.faults) = (fault.exit, vec![fault.sentence()]);
+        Err(error) => {
+            finding.position = error.error.downcast_ref::<PresetError>().and_then(PresetError::position);
+            (finding.exit, finding.problems) = (error.exit, vec![error.sentence()]);
         }
     }
     finding
@@ -95,37 +94,37 @@ fn drawn(
     args: &Check,
     preset_file: &PresetFile,
     scene: &std::sync::Arc<crate::scene::Scene>,
-    painter: &mut Painter,
-) -> Result<Comparison, Fault> {
+    backend: &mut Backend,
+) -> Result<Comparison, CliError> {
     let Some(test) = &preset_file.preset.test else { return Ok((None, Vec::new())) };
-    let frame = painter.frame(&preset_file.preset, scene)?;
+    let frame = backend.frame(&preset_file.preset, scene)?;
     let size = [frame.width, frame.height];
     let [png, _] = golden::paths(&args.snapshots, &preset_file.id);
     if !png.exists() {
-        return Ok((None, vec![format!("{} is missing; rasterlab bless {} draws it", png.display(), preset_file.id)]));
+        return Ok((None, vec![format!("{} is missing; draw it with rasterlab bless {}", png.display(), preset_file.id)]));
     }
     let (expected, golden_size) = preset_file::png_pixels(&png)?;
     if golden_size != size {
-        return Ok((None, vec![format!("{} has another size than the preset", png.display())]));
+        return Ok((None, vec![format!("{} and the preset have different sizes", png.display())]));
     }
     let delta = pictures(&expected, &frame.color, test.max_channel);
-    let mut faults = Vec::new();
-    // A wrong triangle id is a wrong pixel.
+    let mut problems = Vec::new();
+    // A pixel with a wrong triangle has a wrong colour.
     let allowed = u64::from(test.max_pixels) + u64::from(test.max_wrong_triangles);
     if delta.pixels_over_tolerance > allowed {
-        faults.push(format!(
+        problems.push(format!(
             "{} pixels differ from the golden by more than {} of 255, the worst by {}; {allowed} are allowed",
             delta.pixels_over_tolerance, test.max_channel, delta.max_delta
         ));
     }
-    Ok((Some(Drawn { size, expected, actual: frame.color, delta }), faults))
+    Ok((Some(Drawn { size, expected, actual: frame.color, delta }), problems))
 }
 
 fn text(finding: &Finding) -> String {
-    match (&finding.faults[..], &finding.drawn) {
-        ([], Some(drawn)) => format!("ok    {}: largest difference {} of 255\n", finding.preset_file, drawn.delta.max_delta),
-        ([], None) => format!("ok    {}\n", finding.preset_file),
-        (faults, _) => faults.iter().map(|fault| format!("FAIL  {}: {fault}\n", finding.preset_file)).collect(),
+    match (&finding.problems[..], &finding.drawn) {
+        ([], Some(drawn)) => format!("ok    {}: largest difference {} of 255\n", finding.preset, drawn.delta.max_delta),
+        ([], None) => format!("ok    {}\n", finding.preset),
+        (problems, _) => problems.iter().map(|error| format!("FAIL  {}: {error}\n", finding.preset)).collect(),
     }
 }
 
@@ -136,8 +135,8 @@ fn json_finding(finding: &Finding) -> Value {
         json!({ "code": finding.exit as u8, "message": message, "file": file, "line": position.line })
     };
     json!({
-        "preset": finding.preset_file, "ok": finding.faults.is_empty(), "warnings": finding.warnings,
-        "errors": finding.faults.iter().map(error).collect::<Vec<_>>(),
+        "preset": finding.preset, "ok": finding.problems.is_empty(), "warnings": finding.warnings,
+        "errors": finding.problems.iter().map(error).collect::<Vec<_>>(),
         "max_color_delta": finding.drawn.as_ref().map(|drawn| drawn.delta.max_delta),
         "pixels_over_tolerance": finding.drawn.as_ref().map(|drawn| drawn.delta.pixels_over_tolerance),
     })

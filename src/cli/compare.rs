@@ -4,10 +4,10 @@ use serde_json::json;
 
 use super::{
     args::{Common, Compare},
-    fault::{Exit, Fault},
+    backend::{Backend, scene_of},
+    error::{CliError, Exit},
     files::{self, Names},
     open,
-    painter::{Painter, scene_of},
     streams::{Streams, number},
 };
 use crate::{
@@ -23,55 +23,58 @@ struct Side {
     triangle_id: Option<Vec<u32>>,
 }
 
-pub fn run(common: &Common, args: &Compare, streams: &mut Streams) -> Result<Exit, Fault> {
-    let mut painter = None;
-    let a = side(common, args, &args.a, &mut painter, streams)?;
-    let b = side(common, args, &args.b, &mut painter, streams)?;
+pub fn run(common: &Common, args: &Compare, streams: &mut Streams) -> Result<Exit, CliError> {
+    let mut backend = None;
+    let a = side(common, args, &args.a, &mut backend, streams)?;
+    let b = side(common, args, &args.b, &mut backend, streams)?;
     if a.size != b.size {
         let [[aw, ah], [bw, bh]] = [a.size, b.size];
-        return Err(Fault::usage(format!("{} is {aw}x{ah} pixels and {} is {bw}x{bh}; only pictures of one size compare", args.a, args.b)));
+        return Err(CliError::usage(format!(
+            "{} has {aw}x{ah} pixels and {} has {bw}x{bh}; compare pictures of the same size",
+            args.a, args.b
+        )));
     }
     let delta = pictures(&a.color, &b.color, args.max_channel);
-    let wrong_triangle = a.triangle_id.as_ref().zip(b.triangle_id.as_ref()).map(|(a, b)| triangle_ids(a, b).different);
-    let passes = delta.pixels_over_tolerance <= args.max_pixels && wrong_triangle.is_none_or(|wrong| wrong <= args.max_wrong_triangles);
+    let wrong_triangles = a.triangle_id.as_ref().zip(b.triangle_id.as_ref()).map(|(a, b)| triangle_ids(a, b).different);
+    let passes = delta.pixels_over_tolerance <= args.max_pixels && wrong_triangles.is_none_or(|wrong| wrong <= args.max_wrong_triangles);
     if let Some(output) = &args.output {
         let path = files::target(output, &Names { preset: "diff".into(), ..Names::default() }, common.force)?;
         files::write(&path, &preset_file::png_bytes(&difference_picture(&a.color, &b.color, 16), a.size)?)?;
     }
-    let places: Vec<_> = delta.mismatches.iter().map(|o| (o.place(a.size[0]), o.a, o.b)).collect();
+    let pixels: Vec<_> = delta.mismatches.iter().map(|o| (o.place(a.size[0]), o.a, o.b)).collect();
     if streams.json {
-        let mismatches: Vec<_> = places.iter().map(|(place, a, b)| json!({ "pixel": place, "a": a, "b": b })).collect();
+        let mismatches: Vec<_> = pixels.iter().map(|(pixel, a, b)| json!({ "pixel": pixel, "a": a, "b": b })).collect();
         let result = json!({
             "a": args.a, "b": args.b, "max_color_delta": delta.max_delta, "rms_color_delta": number(delta.rms),
-            "pixels_over_tolerance": delta.pixels_over_tolerance, "wrong_triangle": wrong_triangle, "ok": passes, "mismatches": mismatches,
+            "pixels_over_tolerance": delta.pixels_over_tolerance, "wrong_triangles": wrong_triangles, "ok": passes, "mismatches": mismatches,
         });
-        streams.object("compare", painter.map_or(json!(null), |painter| painter.json()), vec![result])?;
+        streams.object("compare", backend.map_or(json!(null), |backend| backend.json()), vec![result])?;
     } else {
-        let triangle_id = wrong_triangle.map_or_else(|| "not measured".into(), |wrong| wrong.to_string());
+        let wrong = wrong_triangles.map_or_else(|| "not measured".into(), |wrong| wrong.to_string());
         streams.text(&format!(
-            "largest difference {} of 255, rms {:.4}, pixels beyond {}: {}, wrong triangle ids: {triangle_id}: {}\n",
+            "largest difference {} of 255, RMS {:.4}, pixels that differ by more than {}: {}, pixels with another triangle: {wrong}: {}\n",
             delta.max_delta,
             delta.rms,
             args.max_channel,
             delta.pixels_over_tolerance,
             if passes { "ok" } else { "FAIL" },
         ))?;
-        places.iter().for_each(|([x, y], a, b)| streams.note(&format!("pixel {x},{y}: {a:?} against {b:?}")));
+        pixels.iter().for_each(|([x, y], a, b)| streams.note(&format!("pixel {x},{y}: {a:?} and {b:?}")));
     }
     Ok(Exit::failed_if(!passes))
 }
 
-fn side(common: &Common, args: &Compare, what: &str, painter: &mut Option<Painter>, streams: &Streams) -> Result<Side, Fault> {
+fn side(common: &Common, args: &Compare, what: &str, backend: &mut Option<Backend>, streams: &Streams) -> Result<Side, CliError> {
     if what.to_lowercase().ends_with(".png") {
         let (color, size) = preset_file::png_pixels(std::path::Path::new(what))?;
         return Ok(Side { size, color, triangle_id: None });
     }
     let mut preset_file = open(common, what)?;
     preset_file.preset.output.size = args.size.unwrap_or(preset_file.preset.output.size);
-    let painter = match painter {
-        Some(painter) => painter,
-        None => painter.insert(Painter::open(common, streams)?),
+    let backend = match backend {
+        Some(backend) => backend,
+        None => backend.insert(Backend::open(common, streams)?),
     };
-    let frame = painter.frame(&preset_file.preset, &scene_of(&preset_file)?)?;
+    let frame = backend.frame(&preset_file.preset, &scene_of(&preset_file)?)?;
     Ok(Side { size: [frame.width, frame.height], color: frame.color, triangle_id: Some(frame.triangle_id) })
 }

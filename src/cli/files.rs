@@ -1,17 +1,17 @@
-//! Files that commands write: names from templates, nothing overwritten unasked.
+//! Files that commands write: names from templates; nothing is overwritten without `--force`.
 
 use std::{
     io::Read as _,
     path::{Path, PathBuf},
 };
 
-use super::fault::Fault;
+use super::error::CliError;
 use crate::preset_file;
 
 /// Longest text taken from stdin, bytes.
 const MAX_STDIN: u64 = 1 << 20;
 
-/// What a template may name.
+/// What the placeholders of a template stand for.
 #[derive(Clone, Debug, Default)]
 pub struct Names {
     pub preset: String,
@@ -23,100 +23,106 @@ pub struct Names {
 }
 
 /// All of stdin as text.
-pub fn stdin_text() -> Result<String, Fault> {
+pub fn stdin_text() -> Result<String, CliError> {
     let mut bytes = Vec::new();
     std::io::stdin().lock().take(MAX_STDIN + 1).read_to_end(&mut bytes)?;
     if bytes.len() as u64 > MAX_STDIN {
-        return Err(Fault::usage("stdin: a preset is at most 1 MiB"));
+        return Err(CliError::usage("stdin: the preset is longer than 1 MiB"));
     }
-    String::from_utf8(bytes).map_err(|_| Fault::usage("stdin: a preset is UTF-8 text"))
+    String::from_utf8(bytes).map_err(|_| CliError::usage("stdin: the preset is not UTF-8 text"))
 }
 
-/// The file that `template` means: the first free number for `{n}`, and otherwise a name that is free or may be overwritten.
-pub fn target(template: &str, names: &Names, force: bool) -> Result<PathBuf, Fault> {
+/// The file that `template` names: with `{n}` the first free number, otherwise a file that is free or may be overwritten.
+///
+/// # Errors
+/// A malformed template, or an existing file without `force`.
+pub fn target(template: &str, names: &Names, force: bool) -> Result<PathBuf, CliError> {
     if has_number(template)? {
-        // Counting up is bounded so that a full disk of pictures ends in a sentence.
+        // Bounded, so that the search ends.
         for n in 1..1_000_000 {
             let path = PathBuf::from(expand(template, names, n)?);
             if !path.exists() {
                 return Ok(path);
             }
         }
-        return Err(Fault::usage(format!("{template}: no number is free")));
+        return Err(CliError::usage(format!("{template}: every number up to 999999 is taken")));
     }
     let path = PathBuf::from(expand(template, names, 0)?);
     if path.exists() && !force {
-        return Err(Fault::usage(format!("{} exists; --force overwrites it, or name it with {{n}}", path.display())));
+        return Err(CliError::usage(format!(
+            "{} exists; use --force to overwrite it, or {{n}} in the name to number files",
+            path.display()
+        )));
     }
     Ok(path)
 }
 
-/// The file of a frame of a sequence, taken or not.
-pub fn frame_path(template: &str, names: &Names) -> Result<PathBuf, Fault> {
+/// The file of a frame of a sequence; it may exist.
+pub fn frame_path(template: &str, names: &Names) -> Result<PathBuf, CliError> {
     Ok(PathBuf::from(expand(template, names, 0)?))
 }
 
 /// Does the template name the frame?
-pub fn has_frame(template: &str) -> Result<bool, Fault> {
-    Ok(pieces(template)?.iter().any(|piece| matches!(piece, ClippedTriangle::Place { name: "frame", .. })))
+pub fn has_frame(template: &str) -> Result<bool, CliError> {
+    Ok(parts(template)?.iter().any(|part| matches!(part, TemplatePart::Placeholder { name: "frame", .. })))
 }
 
-/// Writes whole or not at all.
-pub fn write(path: &Path, bytes: &[u8]) -> Result<(), Fault> {
+/// Writes the whole file or nothing.
+pub fn write(path: &Path, bytes: &[u8]) -> Result<(), CliError> {
     Ok(preset_file::write_atomically(path, bytes)?)
 }
 
-/// Does the template count by itself?
-pub fn has_number(template: &str) -> Result<bool, Fault> {
-    Ok(pieces(template)?.iter().any(|piece| matches!(piece, ClippedTriangle::Place { name: "n", .. })))
+/// Does the template number files?
+pub fn has_number(template: &str) -> Result<bool, CliError> {
+    Ok(parts(template)?.iter().any(|part| matches!(part, TemplatePart::Placeholder { name: "n", .. })))
 }
 
 /// Does the template name the preset?
-pub fn has_preset(template: &str) -> Result<bool, Fault> {
-    Ok(pieces(template)?.iter().any(|piece| matches!(piece, ClippedTriangle::Place { name: "preset", .. })))
+pub fn has_preset(template: &str) -> Result<bool, CliError> {
+    Ok(parts(template)?.iter().any(|part| matches!(part, TemplatePart::Placeholder { name: "preset", .. })))
 }
 
-enum ClippedTriangle<'a> {
+enum TemplatePart<'a> {
     Text(String),
-    Place { name: &'a str, width: usize },
+    Placeholder { name: &'a str, width: usize },
 }
 
-fn expand(template: &str, names: &Names, n: usize) -> Result<String, Fault> {
-    let pieces = pieces(template)?;
+fn expand(template: &str, names: &Names, n: usize) -> Result<String, CliError> {
+    let parts = parts(template)?;
     if names.frame.is_none() && has_frame(template)? {
-        return Err(Fault::usage(format!("{template}: only sequence has frames, and so {{frame}}")));
+        return Err(CliError::usage(format!("{template}: {{frame}} is for the command sequence only")));
     }
-    let text = |piece: ClippedTriangle<'_>| match piece {
-        ClippedTriangle::Text(text) => text,
-        ClippedTriangle::Place { name: "frame", width } => format!("{:0width$}", names.frame.unwrap_or_default()),
-        ClippedTriangle::Place { name: "preset", .. } => safe(&names.preset),
-        ClippedTriangle::Place { name: "effect", .. } => safe(&names.effect),
-        ClippedTriangle::Place { name: "adapter", .. } => safe(&names.adapter),
-        ClippedTriangle::Place { name: "tier", .. } => safe(&names.tier),
-        ClippedTriangle::Place { width, .. } => format!("{n:0width$}"),
+    let text = |part: TemplatePart<'_>| match part {
+        TemplatePart::Text(text) => text,
+        TemplatePart::Placeholder { name: "frame", width } => format!("{:0width$}", names.frame.unwrap_or_default()),
+        TemplatePart::Placeholder { name: "preset", .. } => safe(&names.preset),
+        TemplatePart::Placeholder { name: "effect", .. } => safe(&names.effect),
+        TemplatePart::Placeholder { name: "adapter", .. } => safe(&names.adapter),
+        TemplatePart::Placeholder { name: "tier", .. } => safe(&names.tier),
+        TemplatePart::Placeholder { width, .. } => format!("{n:0width$}"),
     };
-    Ok(pieces.into_iter().map(text).collect())
+    Ok(parts.into_iter().map(text).collect())
 }
 
-/// A name without anything that a path could take for a folder.
+/// A name without path separators and other special characters.
 fn safe(name: &str) -> String {
     let kept: String = name.chars().map(|c| if c.is_alphanumeric() || "-_.+".contains(c) { c } else { '-' }).collect();
     kept.trim_matches(['-', '.']).to_owned()
 }
 
-fn pieces(template: &str) -> Result<Vec<ClippedTriangle<'_>>, Fault> {
-    let (mut pieces, mut rest) = (Vec::new(), template);
+fn parts(template: &str) -> Result<Vec<TemplatePart<'_>>, CliError> {
+    let (mut parts, mut rest) = (Vec::new(), template);
     while let Some(at) = rest.find(['{', '}']) {
         let (before, from) = rest.split_at(at);
-        pieces.push(ClippedTriangle::Text(before.to_owned()));
+        parts.push(TemplatePart::Text(before.to_owned()));
         if from.starts_with("{{") || from.starts_with("}}") {
-            pieces.push(ClippedTriangle::Text(from[..1].to_owned()));
+            parts.push(TemplatePart::Text(from[..1].to_owned()));
             rest = &from[2..];
             continue;
         }
         let wrong = || {
-            Fault::usage(format!(
-                "{template}: {{preset}}, {{effect}}, {{n}}, {{n:3}}, {{frame:4}}, {{adapter}} and {{tier}} can be filled in; double a brace to write it"
+            CliError::usage(format!(
+                "{template}: unknown placeholder; use {{preset}}, {{effect}}, {{n}}, {{n:3}}, {{frame:4}}, {{adapter}} or {{tier}}, and double a brace to write it"
             ))
         };
         let (place, after) = from.strip_prefix('{').and_then(|from| from.split_once('}')).ok_or_else(wrong)?;
@@ -125,11 +131,11 @@ fn pieces(template: &str) -> Result<Vec<ClippedTriangle<'_>>, Fault> {
         if !["preset", "effect", "adapter", "tier", "n", "frame"].contains(&name) || (width > 0 && !["n", "frame"].contains(&name)) {
             return Err(wrong());
         }
-        pieces.push(ClippedTriangle::Place { name, width });
+        parts.push(TemplatePart::Placeholder { name, width });
         rest = after;
     }
-    pieces.push(ClippedTriangle::Text(rest.to_owned()));
-    Ok(pieces)
+    parts.push(TemplatePart::Text(rest.to_owned()));
+    Ok(parts)
 }
 
 #[cfg(test)]

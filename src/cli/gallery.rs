@@ -1,8 +1,8 @@
-//! `gallery`: the README's table of effects. Pictures are the goldens, so what it shows is what the lab draws.
+//! `gallery`: the table of effects in the README. Its pictures are the goldens.
 
 use super::{
     args::Gallery,
-    fault::{Exit, Fault},
+    error::{CliError, Exit},
     files,
     streams::Streams,
 };
@@ -11,34 +11,34 @@ use crate::{
     preset_file::BUILTIN_DIR,
 };
 
-/// Between these lines the table stands.
-pub const MARKS: [&str; 2] = ["<!-- gallery: rasterlab gallery --into README.md -->", "<!-- end of gallery -->"];
+/// The lines before and after the table.
+pub const MARKERS: [&str; 2] = ["<!-- gallery: rasterlab gallery --into README.md -->", "<!-- end of gallery -->"];
 
-pub fn run(args: &Gallery, streams: &mut Streams) -> Result<Exit, Fault> {
+pub fn run(args: &Gallery, streams: &mut Streams) -> Result<Exit, CliError> {
     let table = table();
     let Some(path) = &args.into else {
         streams.text(&table)?;
         return Ok(Exit::Done);
     };
     let shown = path.display();
-    let text = std::fs::read_to_string(path).map_err(|e| Fault::from(e).during(format!("{shown} cannot be read")))?;
+    let text = std::fs::read_to_string(path).map_err(|e| CliError::from(e).during(format!("{shown} cannot be read")))?;
     let new = replaced(&text, &table)
-        .ok_or_else(|| Fault::usage(format!("{shown} has no gallery: it needs the lines {:?} and {:?}", MARKS[0], MARKS[1])))?;
+        .ok_or_else(|| CliError::usage(format!("{shown} has no gallery markers; add the lines {:?} and {:?}", MARKERS[0], MARKERS[1])))?;
     if new != text {
         files::write(path, new.as_bytes())?;
     }
-    streams.note(&format!("{shown}: {}", if new == text { "the gallery is up to date" } else { "the gallery is new" }));
+    streams.note(&format!("{shown}: {}", if new == text { "the gallery is up to date" } else { "the gallery was updated" }));
     Ok(Exit::Done)
 }
 
-/// `text` with the table between its marks; none without marks.
+/// `text` with the table between its markers; none without markers.
 pub fn replaced(text: &str, table: &str) -> Option<String> {
-    let begin = text.find(MARKS[0])? + MARKS[0].len();
-    let end = begin + text[begin..].find(MARKS[1])?;
+    let begin = text.find(MARKERS[0])? + MARKERS[0].len();
+    let end = begin + text[begin..].find(MARKERS[1])?;
     Some(format!("{}\n{table}{}", &text[..begin], &text[end..]))
 }
 
-/// Three effects a row: picture, name, what it does, hooks, and its other presets.
+/// Three effects per row: picture, name, description, hooks, and further presets.
 pub fn table() -> String {
     let mut preset_files: Vec<String> =
         BUILTIN_DIR.files().filter_map(|file| Some(file.path().file_stem()?.to_string_lossy().into_owned())).collect();
@@ -54,12 +54,12 @@ pub fn table() -> String {
 
 fn cell(effect: &Effect, preset_files: &[String]) -> String {
     let name = effect.name;
-    let is_other = |id: &str| id != name && id.starts_with(&format!("{name}-"));
-    let others: Vec<String> =
-        preset_files.iter().filter(|id| is_other(id)).map(|id| format!("<a href=\"tests/snapshots/{id}.png\">{id}</a>")).collect();
-    let others = if others.is_empty() { String::new() } else { format!("<br><sub>also {}</sub>", others.join(", ")) };
+    let is_further = |id: &str| id != name && id.starts_with(&format!("{name}-"));
+    let further: Vec<String> =
+        preset_files.iter().filter(|id| is_further(id)).map(|id| format!("<a href=\"tests/snapshots/{id}.png\">{id}</a>")).collect();
+    let further = if further.is_empty() { String::new() } else { format!("<br><sub>also {}</sub>", further.join(", ")) };
     format!(
-        "<td valign=\"top\"><img src=\"tests/snapshots/{name}.png\" width=\"260\" alt=\"{name}\"><br><b>{name}</b> <sub>{}</sub><br>{}{others}</td>\n",
+        "<td valign=\"top\"><img src=\"tests/snapshots/{name}.png\" width=\"260\" alt=\"{name}\"><br><b>{name}</b> <sub>{}</sub><br>{}{further}</td>\n",
         effect.hooks.names(),
         effect.about,
     )

@@ -1,12 +1,12 @@
-//! Goldens: the oracle's stored picture of a preset, and a sidecar that says what it was drawn from.
+//! Goldens: the oracle's stored picture of a preset, and a JSON sidecar with the hashes of its inputs and buffers.
 //!
-//! Only the oracle makes them; any adapter may be held against them.
+//! Only the oracle draws them; the picture of any adapter may be compared with them.
 
 use std::path::{Path, PathBuf};
 
 use serde_json::{Value, json};
 
-use super::fault::Fault;
+use super::error::CliError;
 use crate::{
     frame::Frame,
     oracle,
@@ -20,38 +20,38 @@ pub const MAX_SIZE: [u32; 2] = [320, 240];
 /// Largest golden, bytes.
 pub const MAX_BYTES: usize = 64 << 10;
 
-/// A preset drawn by the oracle, as it is stored.
+/// A golden as it is stored.
 pub struct Golden {
     pub frame: Frame,
     pub png: Vec<u8>,
     pub sidecar: String,
 }
 
-/// Draws the golden of `look`.
+/// Draws the golden of a preset.
 ///
 /// # Errors
 /// A preset without `[test]` has none; a golden is at most 320x240 pixels and 64 KiB.
-pub fn draw(preset_file: &PresetFile, scene: &Scene) -> Result<Golden, Fault> {
+pub fn draw(preset_file: &PresetFile, scene: &Scene) -> Result<Golden, CliError> {
     let preset = &preset_file.preset;
     let [width, height] = preset.output.size;
     if preset.test.is_none() {
-        return Err(Fault::usage(format!("{}: a preset without a [test] table has no golden", preset_file.id)));
+        return Err(CliError::usage(format!("{}: the preset has no [test] table, so it has no golden; add [test]", preset_file.id)));
     }
     if width > MAX_SIZE[0] || height > MAX_SIZE[1] {
-        return Err(Fault::usage(format!("{}: output.size {width}x{height} is larger than a golden may be, 320x240", preset_file.id)));
+        return Err(CliError::usage(format!("{}: output.size is {width}x{height}; a golden has at most 320x240 pixels", preset_file.id)));
     }
     preset.stack.check()?;
     let moments = preset.moments(scene, preset.output.size);
     let frame = oracle::render_scaled(scene, &moments, preset.accuracy.scale().factor())?;
     let png = preset_file::png_bytes(&frame.color, preset.output.size)?;
     if png.len() > MAX_BYTES {
-        return Err(Fault::usage(format!("{}: its picture takes {} bytes; a golden is at most {MAX_BYTES}", preset_file.id, png.len())));
+        return Err(CliError::usage(format!("{}: the golden has {} bytes; at most {MAX_BYTES} are allowed", preset_file.id, png.len())));
     }
     let sidecar = format!("{:#}\n", sidecar(preset_file, scene, &frame));
     Ok(Golden { frame, png, sidecar })
 }
 
-/// Where the picture and the sidecar of a preset are kept.
+/// The files of the picture and the sidecar of a preset.
 pub fn paths(snapshots: &Path, id: &str) -> [PathBuf; 2] {
     [snapshots.join(format!("{id}.png")), snapshots.join(format!("{id}.json"))]
 }
@@ -59,7 +59,7 @@ pub fn paths(snapshots: &Path, id: &str) -> [PathBuf; 2] {
 fn sidecar(preset_file: &PresetFile, scene: &Scene, frame: &Frame) -> Value {
     let words = |words: &[u32]| hex(Fnv::new().words(words));
     json!({
-        "schema": 1,
+        "schema": 2,
         "preset": preset_file.id,
         "preset_hash": hex(preset_hash(&preset_file.preset)),
         "scene_hash": hex(scene_hash(scene)),
@@ -67,11 +67,11 @@ fn sidecar(preset_file: &PresetFile, scene: &Scene, frame: &Frame) -> Value {
         "size": [frame.width, frame.height],
         "covered": frame.covered(),
         "counters": frame.counters,
-        "digests": { "triangle_id": words(&frame.triangle_id), "key": words(&frame.key) },
+        "digests": { "triangle_id": words(&frame.triangle_id), "depth_key": words(&frame.key) },
     })
 }
 
-/// Hash of all that decides the picture: not of names, comments, budgets, or what happens at another time.
+/// Hash of everything that decides the picture, without names, comments, budgets and values at other times.
 pub fn preset_hash(preset: &Preset) -> Fnv {
     let clock = Clock { time_s: preset.clock.time_s, ..Clock::default() };
     let picture = Preset { name: String::new(), about: String::new(), tags: Vec::new(), test: None, clock, ..preset.evaluated() };
@@ -105,7 +105,7 @@ pub fn scene_hash(scene: &Scene) -> Fnv {
     if scene.rig.is_empty() { hash } else { rig_hash(hash, scene) }
 }
 
-/// What moves: nodes, skins, clips, and whom instances follow. Names decide nothing but the names of clips.
+/// Hash of nodes, skins, clips and the nodes of instances; only clips are named by presets.
 fn rig_hash(mut hash: Fnv, scene: &Scene) -> Fnv {
     let matrix = |hash: Fnv, m: &glam::DMat4| m.to_cols_array().iter().fold(hash, |hash, v| hash.bytes(&v.to_bits().to_le_bytes()));
     let floats = |hash: Fnv, values: &[f32]| values.iter().fold(hash, |hash, v| hash.words(&[v.to_bits()]));
@@ -131,7 +131,7 @@ pub fn hex(hash: Fnv) -> String {
     format!("{:016x}", hash.0)
 }
 
-/// FNV-1a of 64 bits (Fowler, Noll and Vo): against accidents, not against malice.
+/// FNV-1a of 64 bits (Fowler, Noll and Vo): detects accidental changes, not deliberate ones.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Fnv(pub u64);
 

@@ -1,10 +1,10 @@
-//! `list`: looks, builtin scenes, effects with every parameter and its range, and the accuracy axes.
+//! `list`: presets, builtin scenes, effects with every parameter and its range, and the accuracy axes.
 
 use serde_json::{Value, json};
 
 use super::{
-    args::{Common, List},
-    fault::{Exit, Fault},
+    args::{Common, List, ListKind},
+    error::{CliError, Exit},
     streams::{Streams, table},
 };
 use crate::{
@@ -15,12 +15,11 @@ use crate::{
     scene::builtin::BUILTINS,
 };
 
-pub fn run(common: &Common, args: &List, streams: &mut Streams) -> Result<Exit, Fault> {
-    let all = !(args.effects || args.preset_files || args.scenes || args.axes);
-    let entries = if all || args.preset_files { gallery(common.presets_dir().as_deref()) } else { Vec::new() };
-    let effects = if all || args.effects { EFFECTS } else { &[] };
-    let scenes = if all || args.scenes { BUILTINS } else { &[] };
-    let axes = if all || args.axes { AXES } else { &[] };
+pub fn run(common: &Common, args: &List, streams: &mut Streams) -> Result<Exit, CliError> {
+    let entries = if args.has(ListKind::Presets) { gallery(common.presets_dir().as_deref()) } else { Vec::new() };
+    let effects = if args.has(ListKind::Effects) { EFFECTS } else { &[] };
+    let scenes = if args.has(ListKind::Scenes) { BUILTINS } else { &[] };
+    let axes = if args.has(ListKind::Axes) { AXES } else { &[] };
     if streams.json {
         let preset_files = entries.iter().map(preset_json);
         let effects = effects.iter().map(|effect| effect_json(effect));
@@ -113,7 +112,7 @@ fn axes_text(axes: &[Axis]) -> String {
     if axes.is_empty() {
         return String::new();
     }
-    let mut rows = vec![["AXIS", "USUAL", "WHAT"].map(str::to_owned).to_vec()];
+    let mut rows = vec![["AXIS", "DEFAULT", "WHAT"].map(str::to_owned).to_vec()];
     for axis in axes {
         rows.push(vec![format!("accuracy.{}", axis.name), axis.words[axis.default].into(), axis.about.trim().into()]);
         rows.extend(

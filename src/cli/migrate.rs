@@ -6,16 +6,16 @@ use serde_json::{Value, json};
 
 use super::{
     args::Migrate,
-    fault::{Exit, Fault},
+    error::{CliError, Exit},
     files,
     streams::Streams,
 };
 use crate::preset_file::{self, Migrated, migrate::CURRENT};
 
-pub fn run(args: &Migrate, streams: &mut Streams) -> Result<Exit, Fault> {
+pub fn run(args: &Migrate, streams: &mut Streams) -> Result<Exit, CliError> {
     let mut results = Vec::new();
     // Every file is read before the first is written.
-    let files = args.files.iter().map(|file| Ok((file, preset_file::migrated(file)?))).collect::<Result<Vec<_>, Fault>>()?;
+    let files = args.files.iter().map(|file| Ok((file, preset_file::migrated(file)?))).collect::<Result<Vec<_>, CliError>>()?;
     for (file, migrated) in &files {
         let changes = migrated.before != migrated.after;
         if !streams.json {

@@ -1,21 +1,21 @@
-//! The command line: every subcommand over the same core as the window. None of them opens a window or touches a surface.
+//! The command line: subcommands over the same core as the window. None of them opens a window or a surface.
 //!
-//! stdout carries data only, stderr everything else; the exit code says what happened ([`Exit`]).
+//! stdout carries only data, stderr everything else; the exit code tells the outcome ([`Exit`]).
 
 mod adapters;
 mod args;
+mod backend;
 mod bench;
 mod bless;
 mod check;
 mod compare;
+mod error;
 mod explain;
-mod fault;
 mod files;
 pub mod gallery;
 pub mod golden;
 mod list;
 mod migrate;
-mod painter;
 mod render;
 mod report;
 mod sequence;
@@ -31,27 +31,32 @@ use serde_json::{Value, json};
 
 use args::Common;
 pub use args::{Cli, Command};
-pub use fault::{Exit, Fault};
+pub use error::{CliError, Exit};
 use streams::Streams;
 
 use crate::preset_file::{self, PresetError, PresetFile};
 
-/// Runs what was asked. Errors are for [`complain`].
-pub fn run(cli: &Cli) -> Result<Exit, Fault> {
+/// Runs the command.
+///
+/// # Errors
+/// What failed; [`report_error`] prints it.
+pub fn run(cli: &Cli) -> Result<Exit, CliError> {
     let Some(command) = &cli.command else { return window(cli) };
     if let Some(preset_file) = &cli.open {
-        return Err(Fault::usage(format!("{preset_file:?} stands before a command; a preset without a command opens the window")));
+        return Err(CliError::usage(format!(
+            "{preset_file:?} stands before a command; leave it out, or leave out the command to open it in the window"
+        )));
     }
     let mut streams = Streams::new(cli.common.quiet, cli.common.json);
-    let result = dispatch(&cli.common, command, &mut streams).and_then(|exit| streams.finish().map(|()| exit).map_err(Fault::from));
+    let result = dispatch(&cli.common, command, &mut streams).and_then(|exit| streams.finish().map(|()| exit).map_err(CliError::from));
     match result {
-        // The reader of a pipe has seen enough.
-        Err(fault) if fault.is_closed_pipe() => Ok(Exit::Done),
+        // A reader that closes the pipe early is no error.
+        Err(error) if error.is_closed_pipe() => Ok(Exit::Done),
         result => result,
     }
 }
 
-fn dispatch(common: &Common, command: &Command, streams: &mut Streams) -> Result<Exit, Fault> {
+fn dispatch(common: &Common, command: &Command, streams: &mut Streams) -> Result<Exit, CliError> {
     match command {
         Command::List(args) => list::run(common, args, streams),
         Command::Adapters => adapters::run(streams),
@@ -76,38 +81,38 @@ fn dispatch(common: &Common, command: &Command, streams: &mut Streams) -> Result
 }
 
 #[cfg(feature = "gui")]
-fn window(cli: &Cli) -> Result<Exit, Fault> {
+fn window(cli: &Cli) -> Result<Exit, CliError> {
     if let Some(what) = &cli.open {
-        // Said here, where a person reads it, rather than in a window that opens and shows nothing.
-        open(&cli.common, what).map_err(|fault| perhaps_a_command(fault, what))?;
+        // Reported on the terminal instead of in an empty window.
+        open(&cli.common, what).map_err(|error| suggest_command(error, what))?;
     }
-    let adapter = match painter::wanted(&cli.common) {
-        painter::Wanted::Cpu => {
-            return Err(Fault::usage("the window needs a GPU adapter; --adapter cpu serves render, verify, compare and check"));
+    let adapter = match backend::backend_choice(&cli.common) {
+        backend::BackendChoice::Oracle => {
+            return Err(CliError::usage("the window needs a GPU adapter; --adapter cpu serves render, verify, compare and check"));
         }
-        painter::Wanted::Gpu(choice) => choice,
+        backend::BackendChoice::Gpu(choice) => choice,
     };
     let options = crate::app::Options { open: cli.open.clone(), adapter, presets_dir: cli.common.presets_dir() };
-    crate::app::run(options).map_err(Fault::window)?;
+    crate::app::run(options).map_err(CliError::window)?;
     Ok(Exit::Done)
 }
 
-/// What is no preset may be a command with a slip of the finger.
+/// The name of a preset that does not exist may be a mistyped command.
 #[cfg(feature = "gui")]
-fn perhaps_a_command(fault: Fault, what: &str) -> Fault {
+fn suggest_command(error: CliError, what: &str) -> CliError {
     let names: Vec<String> = Cli::command().get_subcommands().map(|command| command.get_name().to_owned()).collect();
     let hint = crate::params::did_you_mean(what, names.iter().map(String::as_str));
-    let is_unknown = matches!(fault.error.downcast_ref(), Some(PresetError::NoPreset { .. }));
-    if hint.is_empty() || !is_unknown { fault } else { Fault::usage(format!("there is no preset and no command {what:?}{hint}")) }
+    let is_unknown = matches!(error.error.downcast_ref(), Some(PresetError::NoPreset { .. }));
+    if hint.is_empty() || !is_unknown { error } else { CliError::usage(format!("there is no preset and no command {what:?}{hint}")) }
 }
 
 #[cfg(not(feature = "gui"))]
-fn window(_: &Cli) -> Result<Exit, Fault> {
-    Err(Fault::usage("this build has no window; rasterlab --help lists the commands"))
+fn window(_: &Cli) -> Result<Exit, CliError> {
+    Err(CliError::usage("this build has no window; rasterlab --help lists the commands"))
 }
 
-/// Opens what a person named and applies `--unset`, then `--set`, in that order.
-fn open(common: &Common, what: &str) -> Result<PresetFile, Fault> {
+/// Opens a preset and applies `--unset`, then `--set`.
+fn open(common: &Common, what: &str) -> Result<PresetFile, CliError> {
     let mut preset_file = if what == "-" {
         preset_file::parse_file(&files::stdin_text()?, "stdin", "stdin")?
     } else {
@@ -126,8 +131,8 @@ fn open(common: &Common, what: &str) -> Result<PresetFile, Fault> {
     Ok(preset_file)
 }
 
-/// Every gallery look that has a golden, or those that were named.
-fn preset_files(common: &Common, names: &[String], streams: &Streams) -> Result<Vec<PresetFile>, Fault> {
+/// The named presets, or every preset of the gallery that has a golden.
+fn preset_files(common: &Common, names: &[String], streams: &Streams) -> Result<Vec<PresetFile>, CliError> {
     let preset_files: Vec<PresetFile> = if names.is_empty() {
         let entries = preset_file::gallery(common.presets_dir().as_deref());
         let preset_files = entries.iter().map(|entry| open(common, &gallery_name(entry))).collect::<Result<Vec<_>, _>>()?;
@@ -139,23 +144,23 @@ fn preset_files(common: &Common, names: &[String], streams: &Streams) -> Result<
     Ok(preset_files)
 }
 
-/// The path of a preset on disk, so that a file wins over whatever else has its name.
+/// The path of a preset on disk, or the id of a built-in one.
 fn gallery_name(entry: &preset_file::GalleryEntry) -> String {
     entry.path.as_ref().map_or_else(|| entry.id.clone(), |path| path.to_string_lossy().into_owned())
 }
 
-/// Says what went wrong: the error chain on stderr, one sentence per level, and as JSON on stdout where that was asked for.
-pub fn complain(cli: &Cli, fault: &Fault) {
-    // A reader who has gone away needs no error.
-    for (depth, cause) in fault.error.chain().enumerate() {
+/// Prints the error chain to stderr, one sentence per level, and with `--json` an object to stdout.
+pub fn report_error(cli: &Cli, error: &CliError) {
+    // A closed stderr leaves no place for an error.
+    for (depth, cause) in error.error.chain().enumerate() {
         let _ = writeln!(io::stderr(), "{}{cause}", if depth == 0 { "error: " } else { "  because " });
     }
     if cli.common.json {
-        let position = fault.error.downcast_ref::<PresetError>().and_then(PresetError::position).unwrap_or_default();
+        let position = error.error.downcast_ref::<PresetError>().and_then(PresetError::position).unwrap_or_default();
         let file = if position.file.is_empty() { Value::Null } else { json!(position.file) };
-        let error = json!({ "code": fault.exit as u8, "message": fault.sentence(), "file": file, "line": position.line });
+        let error = json!({ "code": error.exit as u8, "message": error.sentence(), "file": file, "line": position.line });
         let command = cli.command.as_ref().map(Command::name);
-        let object = json!({ "schema": 1, "command": command, "adapter": null, "results": [], "errors": [error] });
+        let object = json!({ "schema": streams::JSON_SCHEMA, "command": command, "adapter": null, "results": [], "errors": [error] });
         let _ = Streams::new(true, true).text(&format!("{object:#}\n"));
     }
 }

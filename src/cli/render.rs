@@ -4,30 +4,30 @@ use serde_json::json;
 
 use super::{
     args::{Common, Render},
-    fault::{Exit, Fault},
+    backend::{Backend, scene_of},
+    error::{CliError, Exit},
     files::{self, Names},
     open,
-    painter::{Painter, scene_of},
     streams::Streams,
 };
 use crate::preset_file::{self, PresetFile};
 
-pub fn run(common: &Common, args: &Render, streams: &mut Streams) -> Result<Exit, Fault> {
+pub fn run(common: &Common, args: &Render, streams: &mut Streams) -> Result<Exit, CliError> {
     let to_stdout = args.output == "-";
-    if to_stdout && (streams.json || args.preset_files.len() > 1) {
-        return Err(Fault::usage("-o - writes one PNG and nothing else to stdout; leave out --json and further looks"));
+    if to_stdout && (streams.json || args.inputs.len() > 1) {
+        return Err(CliError::usage("-o - writes one PNG to stdout; leave out --json and name one preset"));
     }
-    if args.preset_files.len() > 1 && !(files::has_preset(&args.output)? || files::has_number(&args.output)?) {
-        return Err(Fault::usage(format!("{}: several presets need {{preset}} or {{n}} in the name", args.output)));
+    if args.inputs.len() > 1 && !(files::has_preset(&args.output)? || files::has_number(&args.output)?) {
+        return Err(CliError::usage(format!("{}: put {{preset}} or {{n}} into the name, since there are several presets", args.output)));
     }
-    let preset_files = args.preset_files.iter().map(|what| preset_file(common, args, what)).collect::<Result<Vec<_>, _>>()?;
+    let preset_files = args.inputs.iter().map(|what| open_with_flags(common, args, what)).collect::<Result<Vec<_>, _>>()?;
     preset_files.iter().flat_map(|preset_file| &preset_file.warnings).for_each(|warning| streams.note(warning));
-    let mut painter = Painter::open(common, streams)?;
+    let mut backend = Backend::open(common, streams)?;
     if !to_stdout {
-        // A name that is taken is better said before the work than after it.
+        // Existing files are reported before anything is drawn.
         preset_files
             .iter()
-            .try_for_each(|preset_file| files::target(&args.output, &names(preset_file, &painter), common.force).map(drop))?;
+            .try_for_each(|preset_file| files::target(&args.output, &names(preset_file, &backend), common.force).map(drop))?;
     }
     let bar = streams.progress(preset_files.len() as u64);
     let mut results = Vec::new();
@@ -35,18 +35,18 @@ pub fn run(common: &Common, args: &Render, streams: &mut Streams) -> Result<Exit
         bar.set_message(preset_file.id.clone());
         let scene = scene_of(preset_file)?;
         scene.notes.iter().for_each(|note| streams.note(note));
-        let frame = painter.frame(&preset_file.preset, &scene)?;
+        let frame = backend.frame(&preset_file.preset, &scene)?;
         let png = if args.bare {
             preset_file::png_bytes(&frame.color, [frame.width, frame.height])?
         } else {
-            preset_file::png_with_preset(&frame, preset_file, &painter.provenance())?
+            preset_file::png_with_preset(&frame, preset_file, &backend.provenance())?
         };
         bar.inc(1);
         if to_stdout {
             streams.bytes(&png)?;
             continue;
         }
-        let path = files::target(&args.output, &names(preset_file, &painter), common.force)?;
+        let path = files::target(&args.output, &names(preset_file, &backend), common.force)?;
         files::write(&path, &png)?;
         results.push(json!({
             "preset": preset_file.id, "file": path.to_string_lossy(), "size": [frame.width, frame.height],
@@ -58,13 +58,13 @@ pub fn run(common: &Common, args: &Render, streams: &mut Streams) -> Result<Exit
     }
     bar.finish_and_clear();
     if streams.json {
-        streams.object("render", painter.json(), results)?;
+        streams.object("render", backend.json(), results)?;
     }
     Ok(Exit::Done)
 }
 
-/// The preset with `--size`, `--time` and `--tier`, which are short for `--set`.
-fn preset_file(common: &Common, args: &Render, what: &str) -> Result<PresetFile, Fault> {
+/// Opens a preset with `--size`, `--time` and `--tier`, which are short for `--set`.
+fn open_with_flags(common: &Common, args: &Render, what: &str) -> Result<PresetFile, CliError> {
     let mut preset_file = open(common, what)?;
     if let Some(size) = args.size {
         preset_file.preset.output.size = size;
@@ -78,12 +78,12 @@ fn preset_file(common: &Common, args: &Render, what: &str) -> Result<PresetFile,
     Ok(preset_file)
 }
 
-pub fn names(preset_file: &PresetFile, painter: &Painter) -> Names {
+pub fn names(preset_file: &PresetFile, backend: &Backend) -> Names {
     let effects: Vec<_> = preset_file.preset.stack.0.iter().map(|enabled| enabled.effect.name).collect();
     Names {
         preset: preset_file.id.clone(),
         effect: if effects.is_empty() { "plain".into() } else { effects.join("+") },
-        adapter: painter.name().into(),
+        adapter: backend.name().into(),
         tier: preset_file.preset.accuracy.tier.name().into(),
         frame: None,
     }

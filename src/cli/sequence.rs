@@ -1,7 +1,7 @@
-//! `sequence`: a moving preset, frame by frame, from one process and one device.
+//! `sequence`: draws an animated preset frame by frame in one process and on one device.
 //!
-//! Every frame carries a mark of all that decided it. A whole picture with the right mark is finished and is not drawn
-//! again, so an interrupted sequence goes on where it stopped, and machines that share a folder can each take a range.
+//! Every file carries a fingerprint of its inputs. A complete picture with the right fingerprint is not drawn again, so an
+//! interrupted sequence continues where it stopped, and several machines can each draw a range into a shared folder.
 
 use std::{
     ops::Range,
@@ -14,12 +14,11 @@ use serde_json::{Value, json};
 
 use super::{
     args::{Common, Sequence},
-    fault::{Exit, Fault},
+    backend::{Backend, scene_of},
+    error::{CliError, Exit},
     files::{self, Names},
     golden::{Fnv, hex, preset_hash, scene_hash},
-    open,
-    painter::{Painter, scene_of},
-    render,
+    open, render,
     streams::Streams,
 };
 use crate::{
@@ -29,112 +28,114 @@ use crate::{
     scene::Scene,
 };
 
-/// Most frames of a film: almost an hour at 30 a second.
+/// Largest number of frames: almost an hour at 30 per second.
 const MAX_FRAMES: u32 = 100_000;
 
-/// Most frames in a second; APNG counts thousandths.
+/// Largest number of frames per second; APNG counts milliseconds.
 const MAX_FPS: f64 = 1000.0;
 
-/// Bytes of finished pictures that may wait for the disk.
+/// Bytes of drawn pictures that may wait to be written.
 const BATCH_BYTES: u64 = 1 << 30;
 
-/// Which moments are drawn.
+/// The times of the frames.
 #[derive(Clone, Debug, PartialEq)]
 struct Schedule {
     from_s: f64,
     to_s: f64,
     fps: f64,
-    /// Seconds of the preset from frame to frame.
+    /// Seconds of the clock from frame to frame.
     step_s: f64,
-    /// Frames of the whole film.
+    /// Number of frames of the whole animation.
     total: u32,
-    /// Those to be drawn here.
+    /// The frames to draw.
     frames: Range<u32>,
 }
 
 impl Schedule {
-    fn of(args: &Sequence, preset: &Preset) -> Result<Self, Fault> {
+    fn of(args: &Sequence, preset: &Preset) -> Result<Self, CliError> {
         let [begin_s, end_s] = preset.clock.range_s;
         let (from_s, to_s, fps) = (args.from.unwrap_or(begin_s), args.to.unwrap_or(end_s), args.fps);
         for (name, time_s) in [("--from", from_s), ("--to", to_s)] {
             if !(-MAX_TIME_S..=MAX_TIME_S).contains(&time_s) {
-                return Err(Fault::usage(format!("{name} {time_s} lies outside -1e9..=1e9")));
+                return Err(CliError::usage(format!("{name} {time_s} lies outside -1e9..=1e9")));
             }
         }
         if to_s <= from_s {
-            return Err(Fault::usage(format!("--to {to_s} must come after --from {from_s}")));
+            return Err(CliError::usage(format!("--to {to_s} must come after --from {from_s}")));
         }
         if !(0.001..=MAX_FPS).contains(&fps) {
-            return Err(Fault::usage(format!("--fps {fps} lies outside 0.001..=1000")));
+            return Err(CliError::usage(format!("--fps {fps} lies outside 0.001..=1000")));
         }
         let step_s = preset.clock.speed / fps;
-        // A last frame that rounding alone puts before the end would be drawn twice in a loop.
+        // Without the margin, rounding could add a last frame at the end, which equals the first of the next round.
         let count = ((to_s - from_s) / step_s - 1e-6).ceil().max(1.0);
         if count > f64::from(MAX_FRAMES) {
-            return Err(Fault::usage(format!("{count} frames from {from_s} to {to_s} s are too many; at most {MAX_FRAMES} are drawn")));
+            return Err(CliError::usage(format!(
+                "{count} frames from {from_s} to {to_s} s are too many; at most {MAX_FRAMES} are allowed"
+            )));
         }
         let total = count as u32;
         let [first, end] = args.frames.unwrap_or_default();
         let frames = first.unwrap_or(0)..end.unwrap_or(total);
         if frames.is_empty() || frames.end > total {
             let Range { start, end } = frames;
-            return Err(Fault::usage(format!(
+            return Err(CliError::usage(format!(
                 "--frames {start}..{end} lies outside 0..{total}, the frames from {from_s} to {to_s} s at {fps} a second"
             )));
         }
         Ok(Self { from_s, to_s, fps, step_s, total, frames })
     }
 
-    /// From the frame's number alone, so that no error adds up and every machine finds the same moment.
+    /// Computed from the frame number, so that errors do not add up and every machine gets the same time.
     fn time_s(&self, frame: u32) -> f64 {
         self.from_s + f64::from(frame) * self.step_s
     }
 }
 
-/// A frame to be drawn, or kept.
-struct Shot {
+/// A frame to draw or to keep.
+struct FrameJob {
     frame: u32,
-    mark: String,
+    fingerprint: String,
     path: Option<PathBuf>,
-    /// A finished picture is there.
-    kept: bool,
+    /// Its file is finished and stays.
+    is_kept: bool,
 }
 
-pub fn run(common: &Common, args: &Sequence, streams: &mut Streams) -> Result<Exit, Fault> {
-    let preset_file = preset_file(common, args)?;
+pub fn run(common: &Common, args: &Sequence, streams: &mut Streams) -> Result<Exit, CliError> {
+    let preset_file = open_with_flags(common, args)?;
     preset_file.warnings.iter().for_each(|warning| streams.note(warning));
     let schedule = Schedule::of(args, &preset_file.preset)?;
     check_template(args, &schedule)?;
     let scene = scene_of(&preset_file)?;
     scene.notes.iter().for_each(|note| streams.note(note));
-    let mut painter = Painter::open(common, streams)?;
-    let mut shots = shots(args, &preset_file, &scene, &schedule, &painter)?;
-    survey(common, &mut shots, preset_file.preset.output.size, &painter, streams)?;
-    let mut film = film(common, args, &preset_file, &schedule, &shots, &painter)?;
-    if film.is_none() {
-        // The film is there already, and nothing else may want a frame.
-        shots.iter_mut().filter(|shot| shot.path.is_none()).for_each(|shot| shot.kept = true);
+    let mut backend = Backend::open(common, streams)?;
+    let mut jobs = jobs(args, &preset_file, &scene, &schedule, &backend)?;
+    find_finished(common, &mut jobs, preset_file.preset.output.size, &backend, streams)?;
+    let mut animation = animation(common, args, &preset_file, &schedule, &jobs, &backend)?;
+    if animation.is_none() {
+        // The animation is finished already, so frames without a file are not needed.
+        jobs.iter_mut().filter(|job| job.path.is_none()).for_each(|job| job.is_kept = true);
     }
-    let kept = shots.iter().filter(|shot| shot.kept).count();
-    let of = |shot: &Shot| at(&preset_file, &schedule, shot.frame);
-    draw(&shots, &of, preset_file.preset.output.size, &scene, &mut painter, &mut film, streams)?;
-    if let Some(film) = film {
-        film.finish()?;
+    let kept = jobs.iter().filter(|job| job.is_kept).count();
+    let of = |job: &FrameJob| at(&preset_file, &schedule, job.frame);
+    draw(&jobs, &of, preset_file.preset.output.size, &scene, &mut backend, &mut animation, streams)?;
+    if let Some(animation) = animation {
+        animation.finish()?;
     }
-    let drawn = shots.len() - kept;
-    let range = if shots.len() < schedule.total as usize {
+    let drawn = jobs.len() - kept;
+    let range = if jobs.len() < schedule.total as usize {
         format!(" of {}..{} of {}", schedule.frames.start, schedule.frames.end, schedule.total)
     } else {
         String::new()
     };
     streams.note(&format!("{drawn} {} drawn, {kept} kept{range}", if drawn == 1 { "frame" } else { "frames" }));
-    tell(args, &shots, &schedule, &painter, streams)?;
+    print_results(args, &jobs, &schedule, &backend, streams)?;
     Ok(Exit::Done)
 }
 
-/// The preset with `--size` and `--tier`, which are short for `--set`.
-fn preset_file(common: &Common, args: &Sequence) -> Result<PresetFile, Fault> {
-    let mut preset_file = open(common, &args.preset_file)?;
+/// Opens the preset with `--size` and `--tier`, which are short for `--set`.
+fn open_with_flags(common: &Common, args: &Sequence) -> Result<PresetFile, CliError> {
+    let mut preset_file = open(common, &args.input)?;
     if let Some(size) = args.size {
         preset_file.preset.output.size = size;
     }
@@ -143,109 +144,118 @@ fn preset_file(common: &Common, args: &Sequence) -> Result<PresetFile, Fault> {
     }
     let [width, height] = preset_file.preset.output.size;
     if width == 0 || height == 0 {
-        return Err(Fault::usage(format!("a picture of {width}x{height} pixels has none, and PNG cannot hold it")));
+        return Err(CliError::usage(format!(
+            "the size is {width}x{height}; PNG cannot hold a picture without pixels, so use --size with at least 1x1"
+        )));
     }
     Ok(preset_file)
 }
 
-fn check_template(args: &Sequence, schedule: &Schedule) -> Result<(), Fault> {
+fn check_template(args: &Sequence, schedule: &Schedule) -> Result<(), CliError> {
     let Some(template) = &args.output else { return Ok(()) };
     if template == "-" {
-        return Err(Fault::usage("-o -: a sequence is many files; --apng FILE makes it one"));
+        return Err(CliError::usage("-o -: a sequence has many files; use --apng FILE for a single file"));
     }
     if files::has_number(template)? {
-        return Err(Fault::usage(format!("{template}: frames are numbered with {{frame}}; {{n}} would never find the finished ones")));
+        return Err(CliError::usage(format!("{template}: use {{frame}} instead of {{n}}, so that finished frames are found again")));
     }
     if !files::has_frame(template)? && schedule.total > 1 {
-        return Err(Fault::usage(format!("{template}: {} frames need {{frame}} in the name", schedule.total)));
+        return Err(CliError::usage(format!("{template}: put {{frame}} into the name, since there are {} frames", schedule.total)));
     }
     Ok(())
 }
 
-fn shots(args: &Sequence, preset_file: &PresetFile, scene: &Scene, schedule: &Schedule, painter: &Painter) -> Result<Vec<Shot>, Fault> {
-    let (scene, names) = (scene_hash(scene), render::names(preset_file, painter));
-    let shot = |frame| {
+fn jobs(
+    args: &Sequence,
+    preset_file: &PresetFile,
+    scene: &Scene,
+    schedule: &Schedule,
+    backend: &Backend,
+) -> Result<Vec<FrameJob>, CliError> {
+    let (scene, names) = (scene_hash(scene), render::names(preset_file, backend));
+    let job = |frame| {
         let names = Names { frame: Some(frame), ..names.clone() };
         let path = args.output.as_ref().map(|template| files::frame_path(template, &names)).transpose()?;
-        Ok(Shot { frame, mark: mark(&at(preset_file, schedule, frame).preset, scene), path, kept: false })
+        Ok(FrameJob { frame, fingerprint: fingerprint(&at(preset_file, schedule, frame).preset, scene), path, is_kept: false })
     };
-    schedule.frames.clone().into_par_iter().map(shot).collect()
+    schedule.frames.clone().into_par_iter().map(job).collect()
 }
 
-/// The preset as a frame shows it.
+/// The preset at the time of a frame.
 fn at(preset_file: &PresetFile, schedule: &Schedule, frame: u32) -> PresetFile {
     let mut preset_file = preset_file.clone();
     preset_file.preset.clock.time_s = schedule.time_s(frame);
     preset_file
 }
 
-/// All that decides the picture but who draws it: the look at its time, the scene's bytes, and this program.
-fn mark(preset: &Preset, scene: Fnv) -> String {
-    // Where the scene lies differs from machine to machine; its bytes decide.
+/// Hash of the preset at its time, the scene's bytes and the version of this program; not of the adapter.
+fn fingerprint(preset: &Preset, scene: Fnv) -> String {
+    // The path of the scene differs between machines; the hash of its bytes replaces it.
     let anywhere = Preset { scene: SceneSource::Builtin(String::new()), ..preset.clone() };
     let hashes = [preset_hash(&anywhere).0, scene.0];
     let hash = hashes.iter().fold(Fnv::new().bytes(env!("CARGO_PKG_VERSION").as_bytes()), |hash, part| hash.bytes(&part.to_le_bytes()));
     hex(hash)
 }
 
-/// Finds the finished frames. A file that is something else is overwritten with `--force` alone.
-fn survey(common: &Common, shots: &mut [Shot], size: [u32; 2], painter: &Painter, streams: &Streams) -> Result<(), Fault> {
-    if let Some(folder) = shots.first().and_then(|shot| shot.path.as_deref()).and_then(Path::parent).filter(|f| !f.as_os_str().is_empty()) {
-        std::fs::create_dir_all(folder).map_err(|e| Fault::from(e).during(format!("{} cannot be made", folder.display())))?;
+/// Finds the finished frames. Any other file is overwritten only with `--force`.
+fn find_finished(common: &Common, jobs: &mut [FrameJob], size: [u32; 2], backend: &Backend, streams: &Streams) -> Result<(), CliError> {
+    if let Some(folder) = jobs.first().and_then(|job| job.path.as_deref()).and_then(Path::parent).filter(|f| !f.as_os_str().is_empty()) {
+        std::fs::create_dir_all(folder).map_err(|e| CliError::from(e).during(format!("{} cannot be created", folder.display())))?;
     }
-    shots.first().and_then(|shot| shot.path.as_deref()).into_iter().for_each(preset_file::remove_unfinished);
-    let found: Vec<FrameStatus> = shots
+    jobs.first().and_then(|job| job.path.as_deref()).into_iter().for_each(preset_file::remove_unfinished);
+    let found: Vec<FrameStatus> = jobs
         .par_iter()
-        .map(|shot| shot.path.as_ref().map_or(Ok(FrameStatus::Absent), |path| preset_file::frame_status(path, size, &shot.mark)))
+        .map(|job| job.path.as_ref().map_or(Ok(FrameStatus::Absent), |path| preset_file::frame_status(path, size, &job.fingerprint)))
         .collect::<Result<_, PresetError>>()?;
     let others: Vec<&Path> =
-        shots.iter().zip(&found).filter(|(_, found)| **found == FrameStatus::Other).filter_map(|(shot, _)| shot.path.as_deref()).collect();
+        jobs.iter().zip(&found).filter(|(_, found)| **found == FrameStatus::Other).filter_map(|(job, _)| job.path.as_deref()).collect();
     if let ([first, rest @ ..], false) = (&others[..], common.force) {
-        let more = if rest.is_empty() { String::new() } else { format!(", and so do {} more", rest.len()) };
+        let more = if rest.is_empty() { String::new() } else { format!(", as do {} more files", rest.len()) };
         let first = first.display();
-        return Err(Fault::usage(format!("{first} exists and is no frame of this preset{more}; --force overwrites")));
+        return Err(CliError::usage(format!("{first} exists and is no frame of this preset{more}; use --force to overwrite")));
     }
-    let mut strangers: Vec<&str> = Vec::new();
-    for (shot, found) in shots.iter_mut().zip(&found) {
+    let mut other_adapters: Vec<&str> = Vec::new();
+    for (job, found) in jobs.iter_mut().zip(&found) {
         let FrameStatus::Finished { adapter } = found else { continue };
-        let is_ours = adapter == painter.name();
-        shot.kept = is_ours || !common.force;
-        if !is_ours && shot.kept && !strangers.contains(&adapter.as_str()) {
-            strangers.push(adapter);
+        let is_ours = adapter == backend.name();
+        job.is_kept = is_ours || !common.force;
+        if !is_ours && job.is_kept && !other_adapters.contains(&adapter.as_str()) {
+            other_adapters.push(adapter);
         }
     }
-    if !strangers.is_empty() {
-        streams.note(&format!("some of the kept frames were drawn by {}; --force draws those again", strangers.join(", ")));
+    if !other_adapters.is_empty() {
+        streams.note(&format!("some of the kept frames were drawn by {}; use --force to draw them again", other_adapters.join(", ")));
     }
     Ok(())
 }
 
-/// Opens the film, if one is wanted and not there already.
-fn film(
+/// Begins the animated PNG, if there is to be one and it is not finished already.
+fn animation(
     common: &Common,
     args: &Sequence,
     preset_file: &PresetFile,
     schedule: &Schedule,
-    shots: &[Shot],
-    painter: &Painter,
-) -> Result<Option<AnimatedPng>, Fault> {
+    jobs: &[FrameJob],
+    backend: &Backend,
+) -> Result<Option<AnimatedPng>, CliError> {
     let Some(path) = &args.apng else { return Ok(None) };
     let clock = preset_file.preset.clock;
     let delay_s = delay(schedule.fps);
-    let reel = AnimationOptions { size: preset_file.preset.output.size, frames: shots.len() as u32, delay_s, is_looping: clock.is_looping };
-    let whole = shots.iter().fold(Fnv::new(), |hash, shot| hash.bytes(shot.mark.as_bytes()));
-    let mark = hex(whole.words(&[delay_s[0].into(), delay_s[1].into(), clock.is_looping.into()]));
-    match preset_file::frame_status(path, reel.size, &mark)? {
-        FrameStatus::Finished { adapter } if adapter == painter.name() => return Ok(None),
+    let options =
+        AnimationOptions { size: preset_file.preset.output.size, frames: jobs.len() as u32, delay_s, is_looping: clock.is_looping };
+    let all = jobs.iter().fold(Fnv::new(), |hash, job| hash.bytes(job.fingerprint.as_bytes()));
+    let fingerprint = hex(all.words(&[delay_s[0].into(), delay_s[1].into(), clock.is_looping.into()]));
+    match preset_file::frame_status(path, options.size, &fingerprint)? {
+        FrameStatus::Finished { adapter } if adapter == backend.name() => return Ok(None),
         FrameStatus::Finished { .. } | FrameStatus::Other if !common.force => {
-            return Err(Fault::usage(format!("{} exists; --force overwrites it", path.display())));
+            return Err(CliError::usage(format!("{} exists; use --force to overwrite it", path.display())));
         }
         _ => {}
     }
-    Ok(Some(AnimatedPng::begin(path, &reel, preset_file, &painter.provenance(), &mark)?))
+    Ok(Some(AnimatedPng::begin(path, &options, preset_file, &backend.provenance(), &fingerprint)?))
 }
 
-/// One frame's time as a fraction of seconds that APNG can hold, as near as it comes.
+/// The time of one frame in seconds as the closest fraction that APNG can hold.
 fn delay(fps: f64) -> [u16; 2] {
     let mut best = ([1, 1], f64::INFINITY);
     for numerator in 1..=1001u16 {
@@ -261,37 +271,39 @@ fn delay(fps: f64) -> [u16; 2] {
     best.0
 }
 
-/// Draws what is not kept, a batch at a time: drawing is one after the other on one device, packing is not.
+/// Draws the frames that are not kept, in batches: the device draws one at a time, and a batch is compressed in parallel.
 fn draw(
-    shots: &[Shot],
-    preset_of: &(impl Fn(&Shot) -> PresetFile + Sync),
+    jobs: &[FrameJob],
+    preset_of: &(impl Fn(&FrameJob) -> PresetFile + Sync),
     size: [u32; 2],
     scene: &Arc<Scene>,
-    painter: &mut Painter,
-    film: &mut Option<AnimatedPng>,
+    backend: &mut Backend,
+    animation: &mut Option<AnimatedPng>,
     streams: &Streams,
-) -> Result<(), Fault> {
-    let bar = streams.progress(shots.len() as u64);
-    let provenance = painter.provenance();
+) -> Result<(), CliError> {
+    let bar = streams.progress(jobs.len() as u64);
+    let provenance = backend.provenance();
     let frame_bytes = 4 * u64::from(size[0]) * u64::from(size[1]);
     let batch = (BATCH_BYTES / frame_bytes.max(1)).clamp(1, rayon::current_num_threads() as u64) as usize;
-    for shots in shots.chunks(batch) {
+    for jobs in jobs.chunks(batch) {
         let mut drawn: Vec<Option<Frame>> = Vec::new();
-        for shot in shots {
-            bar.set_message(shot.path.as_ref().map_or_else(|| format!("frame {}", shot.frame), |path| path.display().to_string()));
-            drawn.push(if !shot.kept { Some(painter.frame(&preset_of(shot).preset, scene)?) } else { None });
+        for job in jobs {
+            bar.set_message(job.path.as_ref().map_or_else(|| format!("frame {}", job.frame), |path| path.display().to_string()));
+            drawn.push(if !job.is_kept { Some(backend.frame(&preset_of(job).preset, scene)?) } else { None });
             bar.inc(1);
         }
-        shots.par_iter().zip(&drawn).try_for_each(|(shot, frame)| match (&shot.path, frame) {
-            (Some(path), Some(frame)) => files::write(path, &preset_file::png_of_frame(frame, &preset_of(shot), &provenance, &shot.mark)?),
+        jobs.par_iter().zip(&drawn).try_for_each(|(job, frame)| match (&job.path, frame) {
+            (Some(path), Some(frame)) => {
+                files::write(path, &preset_file::png_of_frame(frame, &preset_of(job), &provenance, &job.fingerprint)?)
+            }
             _ => Ok(()),
         })?;
-        let Some(film) = film.as_mut() else { continue };
-        for (shot, frame) in shots.iter().zip(drawn) {
-            match (frame, &shot.path) {
-                (Some(frame), _) => film.push(&frame.color)?,
-                (None, Some(path)) => film.push(&preset_file::png_pixels(path)?.0)?,
-                (None, None) => unreachable!("a frame without a file is drawn for the film"),
+        let Some(animation) = animation.as_mut() else { continue };
+        for (job, frame) in jobs.iter().zip(drawn) {
+            match (frame, &job.path) {
+                (Some(frame), _) => animation.push(&frame.color)?,
+                (None, Some(path)) => animation.push(&preset_file::png_pixels(path)?.0)?,
+                (None, None) => unreachable!("a frame without a file is drawn for the animation"),
             }
         }
     }
@@ -299,21 +311,27 @@ fn draw(
     Ok(())
 }
 
-fn tell(args: &Sequence, shots: &[Shot], schedule: &Schedule, painter: &Painter, streams: &mut Streams) -> Result<(), Fault> {
+fn print_results(
+    args: &Sequence,
+    jobs: &[FrameJob],
+    schedule: &Schedule,
+    backend: &Backend,
+    streams: &mut Streams,
+) -> Result<(), CliError> {
     if streams.json {
         let file = |path: Option<&Path>| path.map_or(Value::Null, |path| json!(path.to_string_lossy()));
-        let row = |shot: &Shot| {
+        let row = |job: &FrameJob| {
             json!({
-                "frame": shot.frame, "time_s": schedule.time_s(shot.frame), "file": file(shot.path.as_deref()),
-                "kept": shot.kept, "mark": shot.mark,
+                "frame": job.frame, "time_s": schedule.time_s(job.frame), "file": file(job.path.as_deref()),
+                "kept": job.is_kept, "fingerprint": job.fingerprint,
             })
         };
-        let apng = args.apng.iter().map(|path| json!({ "apng": file(Some(path)), "frames": shots.len(), "fps": schedule.fps }));
-        let results = shots.iter().map(row).chain(apng).collect();
-        streams.object("sequence", painter.json(), results)?;
+        let apng = args.apng.iter().map(|path| json!({ "apng": file(Some(path)), "frames": jobs.len(), "fps": schedule.fps }));
+        let results = jobs.iter().map(row).chain(apng).collect();
+        streams.object("sequence", backend.json(), results)?;
         return Ok(());
     }
-    let drawn = shots.iter().filter(|shot| !shot.kept).filter_map(|shot| shot.path.as_deref());
+    let drawn = jobs.iter().filter(|job| !job.is_kept).filter_map(|job| job.path.as_deref());
     for path in drawn.chain(args.apng.as_deref()) {
         streams.text(&format!("{}\n", path.display()))?;
     }

@@ -5,6 +5,9 @@ use std::io::{self, BufWriter, IsTerminal as _, StdoutLock, Write as _};
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use serde_json::{Value, json};
 
+/// Version of the JSON output.
+pub const JSON_SCHEMA: u32 = 2;
+
 /// Where output goes. stdout is locked and buffered; a closed pipe comes back as an error and never as a panic.
 pub struct Streams {
     out: BufWriter<StdoutLock<'static>>,
@@ -18,7 +21,7 @@ impl Streams {
         Self { out: BufWriter::new(io::stdout().lock()), quiet, json }
     }
 
-    /// Data.
+    /// Data, to stdout.
     pub fn bytes(&mut self, bytes: &[u8]) -> io::Result<()> {
         self.out.write_all(bytes)
     }
@@ -29,19 +32,19 @@ impl Streams {
 
     /// The one object of `--json`.
     pub fn object(&mut self, command: &str, adapter: Value, results: Vec<Value>) -> io::Result<()> {
-        let object = json!({ "schema": 1, "command": command, "adapter": adapter, "results": results });
+        let object = json!({ "schema": JSON_SCHEMA, "command": command, "adapter": adapter, "results": results });
         self.text(&format!("{object:#}\n"))
     }
 
-    /// A remark for people, on stderr.
+    /// A note for people, on stderr.
     pub fn note(&self, text: &str) {
         if !self.quiet {
-            // Nobody is left to be told that stderr is closed.
+            // A closed stderr leaves no place for an error.
             let _ = writeln!(io::stderr(), "{text}");
         }
     }
 
-    /// A bar of `steps` on stderr that vanishes when it is done; invisible off a terminal, with `--quiet` or on a dumb terminal.
+    /// A progress bar of `steps` on stderr that is removed at the end; hidden without a terminal and with `--quiet`.
     pub fn progress(&self, steps: u64) -> ProgressBar {
         let dumb = std::env::var_os("TERM").is_some_and(|term| term == "dumb");
         if self.quiet || dumb || !io::stderr().is_terminal() {
@@ -52,7 +55,7 @@ impl Streams {
         ProgressBar::with_draw_target(Some(steps), ProgressDrawTarget::stderr()).with_style(style)
     }
 
-    /// Data that somebody waits for: it leaves at once.
+    /// Data that is written at once, without buffering.
     pub fn text_now(&mut self, text: &str) -> io::Result<()> {
         self.text(text)?;
         self.out.flush()
@@ -63,18 +66,17 @@ impl Streams {
     }
 }
 
-/// Rows in aligned columns; the first row is the head. Numbers stand to the right.
+/// Rows in aligned columns; the first row is the head. Columns of numbers are aligned right.
 pub fn table(rows: &[Vec<String>]) -> String {
     let columns = Columns::of(rows);
     rows.iter().map(|row| columns.line(row)).collect()
 }
 
-/// Widths of a table's columns, for one that is written line by line.
+/// Widths and alignment of a table's columns, for a table that is written line by line.
 pub struct Columns(Vec<(usize, bool)>);
 
 impl Columns {
-    /// As wide as the widest of these rows, the first of which is the head; where all others are numbers, they stand to the
-    /// right.
+    /// As wide as the widest of these rows, the first of which is the head; a column of numbers is aligned right.
     pub fn of(rows: &[Vec<String>]) -> Self {
         let columns = rows.iter().map(Vec::len).max().unwrap_or(0);
         let cell = |row: &[String], column: usize| row.get(column).cloned().unwrap_or_default();
@@ -93,7 +95,7 @@ impl Columns {
     }
 }
 
-/// A float for JSON, which has no words for what is not finite.
+/// A float for JSON, which has no numbers that are not finite.
 pub fn number(value: f64) -> Value {
     match value {
         v if v.is_nan() => json!("NaN"),

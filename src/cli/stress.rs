@@ -1,11 +1,11 @@
-//! `stress`: the table of extreme cases on the adapter, each against its expectation.
+//! `stress`: runs the extreme cases on the adapter, each with its expected outcome.
 
 use serde_json::{Value, json};
 
 use super::{
     args::{Common, Stress},
-    fault::{Exit, Fault},
-    painter::Painter,
+    backend::Backend,
+    error::{CliError, Exit},
     streams::{Columns, Streams, table},
 };
 use crate::{
@@ -13,11 +13,11 @@ use crate::{
     stress::{Case, Outcome, Report, chosen},
 };
 
-pub fn run(common: &Common, args: &Stress, streams: &mut Streams) -> Result<Exit, Fault> {
+pub fn run(common: &Common, args: &Stress, streams: &mut Streams) -> Result<Exit, CliError> {
     let cases = chosen(args.filter.as_deref());
     if cases.is_empty() {
         let filter = args.filter.as_deref().unwrap_or_default();
-        return Err(Fault::usage(format!("no case has the number or the name {filter:?}; rasterlab stress --list shows all")));
+        return Err(CliError::usage(format!("no case has the number or name {filter:?}; rasterlab stress --list shows all")));
     }
     if args.list {
         let mut rows = vec![["CASE", "NAME", "EXPECTED", "WHAT"].map(str::to_owned).to_vec()];
@@ -27,9 +27,9 @@ pub fn run(common: &Common, args: &Stress, streams: &mut Streams) -> Result<Exit
         streams.text(&table(&rows))?;
         return Ok(Exit::Done);
     }
-    let mut painter = Painter::open(common, streams)?;
-    let Painter::Gpu(renderer, gpu) = &mut painter else {
-        return Err(Fault::usage("the oracle judges and is never stressed; stress needs a GPU adapter"));
+    let mut backend = Backend::open(common, streams)?;
+    let Backend::Gpu(renderer, gpu) = &mut backend else {
+        return Err(CliError::usage("stress needs a GPU adapter; the oracle is the reference"));
     };
     let bar = streams.progress(cases.len() as u64);
     let columns = columns(&cases);
@@ -49,12 +49,12 @@ pub fn run(common: &Common, args: &Stress, streams: &mut Streams) -> Result<Exit
             return Err(crate::gpu::RenderError::Lost.into());
         }
         if report.outcome.is_failure() {
-            // What a failure leaves in queues and caches is nobody's to trust.
+            // A failure may leave queues and caches in a wrong state.
             **renderer = Renderer::new(gpu.clone());
             bar.suspend(|| streams.note(&line(&report)));
         }
         if !streams.json {
-            // Some cases take minutes: each row leaves as soon as it is known.
+            // Some cases take minutes, so each row is printed at once.
             bar.suspend(|| streams.text_now(&columns.line(&row(&report))))?;
         }
         reports.push(report);
@@ -62,7 +62,7 @@ pub fn run(common: &Common, args: &Stress, streams: &mut Streams) -> Result<Exit
     bar.finish_and_clear();
     let failed = reports.iter().filter(|report| report.outcome.is_failure()).count();
     if streams.json {
-        streams.object("stress", painter.json(), reports.iter().map(result).collect())?;
+        streams.object("stress", backend.json(), reports.iter().map(result).collect())?;
     } else {
         remarks(&reports).iter().try_for_each(|remark| streams.text(&format!("{remark}\n")))?;
     }
@@ -72,16 +72,16 @@ pub fn run(common: &Common, args: &Stress, streams: &mut Streams) -> Result<Exit
     Ok(Exit::failed_if(failed > 0))
 }
 
-/// A failure in one line, with what draws it again.
+/// A failure in one line, with the command that repeats it.
 fn line(report: &Report) -> String {
     let Report { number, name, outcome, seed, .. } = report;
-    let seed = seed.map(|seed| format!(" (again with: rasterlab stress --filter {name} --seed {seed})")).unwrap_or_default();
+    let seed = seed.map(|seed| format!(" (repeat with: rasterlab stress --filter {name} --seed {seed})")).unwrap_or_default();
     format!("case {number}, {name}: {}{seed}", outcome.why().unwrap_or(outcome.word()))
 }
 
 const HEAD: [&str; 7] = ["CASE", "NAME", "EXPECTED", "OUTCOME", "PICTURES", "TRIANGLES", "MS"];
 
-/// Columns that hold every row to come.
+/// Columns that are wide enough for every row.
 fn columns(cases: &[&Case]) -> Columns {
     let most = |digits: usize| "0".repeat(digits);
     let outcome = Outcome::Refused(String::new()).word().to_owned();
@@ -103,7 +103,7 @@ fn row(report: &Report) -> Vec<String> {
     ]
 }
 
-/// What the table has no room for: failures first, then what was left out, refused or noted.
+/// Details that are not in the table: failures first, then cases that were left out or refused, and notes.
 fn remarks(reports: &[Report]) -> Vec<String> {
     let (failed, others): (Vec<_>, Vec<_>) = reports.iter().partition(|report| report.outcome.is_failure());
     let of = |report: &&Report| {

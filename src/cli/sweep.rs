@@ -1,12 +1,12 @@
-//! `bench --axes`: every combination of options on chosen axes of the accuracy axes, milliseconds beside error.
+//! `bench --axes`: time and error of every combination of options on chosen accuracy axes.
 
 use serde_json::Value;
 
 use super::{
     args::{Bench, Common},
+    backend::Backend,
     bench::{judge, present, subjects},
-    fault::{Exit, Fault},
-    painter::Painter,
+    error::{CliError, Exit},
     streams::Streams,
 };
 use crate::{
@@ -21,13 +21,13 @@ use crate::{
     scene::{Scene, view::View},
 };
 
-pub fn run(common: &Common, args: &Bench, streams: &mut Streams) -> Result<Exit, Fault> {
+pub fn run(common: &Common, args: &Bench, streams: &mut Streams) -> Result<Exit, CliError> {
     let axes = axes(&args.axes)?;
     let options = SweepOptions { size: args.size, samples: args.samples as usize, axes, is_one_option_at_a_time: args.each };
     let subjects = subjects(common, args)?;
-    let painter = Painter::open(common, streams)?;
-    let Painter::Gpu(_, gpu) = &painter else {
-        return Err(Fault::usage("the oracle judges and is never ranked; bench needs a GPU adapter"));
+    let backend = Backend::open(common, streams)?;
+    let Backend::Gpu(_, gpu) = &backend else {
+        return Err(CliError::usage("bench needs a GPU adapter; the oracle is not measured"));
     };
     let bar = streams.progress(0);
     let mut rows = Vec::new();
@@ -53,27 +53,31 @@ pub fn run(common: &Common, args: &Bench, streams: &mut Streams) -> Result<Exit,
         )?);
     }
     bar.finish_and_clear();
-    let results = || rows.iter().map(serde_json::to_value).collect::<Result<Vec<Value>, _>>().map_err(Fault::usage);
+    let results = || rows.iter().map(serde_json::to_value).collect::<Result<Vec<Value>, _>>().map_err(CliError::usage);
     let table = if args.each { prices(&rows) } else { lines(&rows) };
-    present(args, streams, &painter, &table, results)?;
+    present(args, streams, &backend, &table, results)?;
     rows.iter().filter(|row| row.error.is_none() || row.culled.is_some()).for_each(|row| {
         streams.note(&format!("{} {}: {}", row.scene, row.options, row.note.as_deref().unwrap_or("not drawn")));
     });
     Ok(Exit::Done)
 }
 
-/// What the oracle says of a picture, and of the light in it.
+/// The oracle's verdict on a picture and on its shadows.
 fn judged(scene: &Scene, view: &View, stack: &Stack, capture: &Capture) -> Judged {
     let light = oracle::shadow_errors(scene, view, stack, &capture.frame.triangle_id, &capture.geometry);
     Judged { verdict: judge(scene, view)(stack, capture), light: light.expect("a scene that was drawn can be judged") }
 }
 
 /// The axes of these names.
-fn axes(names: &[String]) -> Result<Vec<&'static Axis>, Fault> {
+fn axes(names: &[String]) -> Result<Vec<&'static Axis>, CliError> {
     let find = |name: &String| {
         Axis::find(name).ok_or_else(|| {
             let known: Vec<&str> = AXES.iter().map(|axis| axis.name).collect();
-            Fault::usage(format!("no axis is called {name:?}; there are {}{}", known.join(", "), did_you_mean(name, known.iter().copied())))
+            CliError::usage(format!(
+                "there is no axis {name:?}; the axes are {}{}",
+                known.join(", "),
+                did_you_mean(name, known.iter().copied())
+            ))
         })
     };
     let mut axes: Vec<&'static Axis> = Vec::new();
@@ -86,7 +90,7 @@ fn axes(names: &[String]) -> Result<Vec<&'static Axis>, Fault> {
     Ok(axes)
 }
 
-/// A row per option: for every scene the time with its ratio to the planned one, and the error.
+/// A row per option: for every scene the time, its ratio to the planned one, and the error.
 fn prices(rows: &[SweepRow]) -> Vec<Vec<String>> {
     let mut scenes: Vec<(&str, u64)> = rows.iter().map(|row| (row.scene.as_str(), row.triangles)).collect();
     scenes.dedup();
@@ -100,7 +104,7 @@ fn prices(rows: &[SweepRow]) -> Vec<Vec<String>> {
     let head = scenes
         .iter()
         .flat_map(|(_, triangles)| [format!("{triangles} TRIANGLES, MS"), "X".into(), "WRONG PPM".into(), "HOLES+DOUBLES".into()]);
-    let mut table = vec![std::iter::once("RUNG".to_owned()).chain(head).collect::<Vec<_>>()];
+    let mut table = vec![std::iter::once("OPTION".to_owned()).chain(head).collect::<Vec<_>>()];
     for option in options {
         let cells = scenes.iter().flat_map(|(scene, _)| {
             let missing = || ["-".to_owned(), "-".into(), "-".into(), "-".into()];
@@ -142,24 +146,24 @@ fn lines(rows: &[SweepRow]) -> Vec<Vec<String>> {
         "GAIN",
     ];
     let mut lines = vec![head.map(str::to_owned).to_vec()];
-    // Only where particles fly is there a column for how far they went astray.
-    let flies = rows.iter().any(|row| row.error.is_some_and(|error| error.max_divergence_px.is_some()));
+    // Columns for particles only where there are any.
+    let has_particles = rows.iter().any(|row| row.error.is_some_and(|error| error.max_divergence_px.is_some()));
     let before_bytes = head.len() - 2;
-    if flies {
-        ["ASTRAY PX", "MEAN M"].map(str::to_owned).into_iter().rev().for_each(|cell| lines[0].insert(before_bytes, cell));
+    if has_particles {
+        ["DIVERGED PX", "MEAN M"].map(str::to_owned).into_iter().rev().for_each(|cell| lines[0].insert(before_bytes, cell));
     }
     let not_measured = || "not measured".to_owned();
     let ms = |ms: Option<f64>| ms.map_or_else(not_measured, |ms| format!("{ms:.4}"));
-    // Only where a light casts shadows are there columns for how well.
+    // Columns for shadows only where a light casts any.
     let has_light = rows.iter().any(|row| row.error.is_some_and(|error| error.wrong_light_ppm.is_some()));
     let before_changed = head.iter().position(|name| *name == "CHANGED").expect("a column");
     if has_light {
         lines[0].splice(before_changed..before_changed, ["LIGHT PPM".to_owned(), "LIGHT RMS".to_owned()]);
     }
-    // Only where the CPU chooses is there a column for how long.
+    // A column for CPU time only where the CPU selects dots.
     let has_cpu = rows.iter().any(|row| row.cpu_ms_p50.is_some());
     if has_cpu {
-        lines[0].insert(5, "OF THAT CPU".into());
+        lines[0].insert(5, "CPU MS".into());
     }
     lines.extend(rows.iter().map(|row| {
         let figure = |figure: &dyn Fn(&SweepError) -> String| row.error.as_ref().map_or_else(not_measured, figure);
@@ -183,12 +187,13 @@ fn lines(rows: &[SweepRow]) -> Vec<Vec<String>> {
             format!("{:.1}", row.bytes as f64 / f64::from(1 << 20)),
             if row.is_dominated { "no gain" } else { "-" }.into(),
         ];
-        if flies {
+        if has_particles {
             line.insert(before_bytes, figure(&|e| e.mean_divergence_m.map_or_else(|| "-".into(), |m| format!("{m:.1e}"))));
             line.insert(before_bytes, figure(&|e| e.max_divergence_px.map_or_else(|| "-".into(), |px| format!("{px:.4}"))));
         }
         if has_light {
-            let light = |share: Option<f64>, digits: usize| share.map_or_else(not_measured, |share| format!("{share:.digits$}"));
+            let light =
+                |fraction: Option<f64>, digits: usize| fraction.map_or_else(not_measured, |fraction| format!("{fraction:.digits$}"));
             let cells = [figure(&|e| light(e.wrong_light_ppm, 1)), figure(&|e| light(e.rms_light, 4))];
             line.splice(before_changed..before_changed, cells);
         }

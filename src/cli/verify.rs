@@ -1,4 +1,4 @@
-//! `verify`: each preset on the adapter against the oracle, every buffer, on every visibility option the adapter has.
+//! `verify`: compares every buffer of each preset with the oracle, with every visibility option of the adapter.
 
 use std::path::Path;
 
@@ -6,9 +6,9 @@ use serde_json::{Value, json};
 
 use super::{
     args::{Common, Verify},
-    fault::{Exit, Fault},
+    backend::{Backend, scene_of},
+    error::{CliError, Exit},
     files::{self, Names},
-    painter::{Painter, scene_of},
     preset_files,
     streams::{Streams, number, table},
 };
@@ -26,114 +26,116 @@ use crate::{
     scene::{Scene, draw::draws},
 };
 
-/// One preset on one option.
+/// One preset with one option.
 struct Row {
-    preset_file: String,
+    preset: String,
     option: &'static str,
     accuracy: ErrorReport,
-    /// Pixels with a colour channel beyond the preset's budget.
+    /// Pixels with a color channel over the preset's budget.
     pixels_over_tolerance: u64,
     frames: u32,
     /// What failed, one sentence each.
     failures: Vec<String>,
-    /// Share of the volume that dual quaternions keep, by the linear blend: where joints hold a mesh.
+    /// Volume with linear skinning, as a fraction of that with dual quaternions; none without skins.
     volume: Option<f64>,
 }
 
-pub fn run(common: &Common, args: &Verify, streams: &mut Streams) -> Result<Exit, Fault> {
-    let preset_files = preset_files(common, &args.preset_files, streams)?;
-    let mut painter = Painter::open(common, streams)?;
+pub fn run(common: &Common, args: &Verify, streams: &mut Streams) -> Result<Exit, CliError> {
+    let preset_files = preset_files(common, &args.inputs, streams)?;
+    let mut backend = Backend::open(common, streams)?;
     if let Some(folder) = &args.output {
-        std::fs::create_dir_all(folder).map_err(|e| Fault::from(e).during(format!("{} cannot be made", folder.display())))?;
+        std::fs::create_dir_all(folder).map_err(|e| CliError::from(e).during(format!("{} cannot be created", folder.display())))?;
     }
     let bar = streams.progress(preset_files.len() as u64);
     let mut rows = Vec::new();
     for preset_file in &preset_files {
         bar.set_message(preset_file.id.clone());
-        rows.extend(verify(common, args, preset_file, &mut painter).map_err(|fault| fault.during(format!("look {}", preset_file.id)))?);
+        rows.extend(verify(common, args, preset_file, &mut backend).map_err(|error| error.during(format!("preset {}", preset_file.id)))?);
         bar.inc(1);
     }
     bar.finish_and_clear();
     if streams.json {
-        let results = rows.iter().map(|row| json_row(row, &painter)).collect();
-        streams.object("verify", painter.json(), results)?;
+        let results = rows.iter().map(|row| json_row(row, &backend)).collect();
+        streams.object("verify", backend.json(), results)?;
     } else {
-        streams.text(&text(&rows, painter.class()))?;
+        streams.text(&text(&rows, backend.class()))?;
     }
     rows.iter().filter(|row| row.accuracy.race_pixels > 0).for_each(|row| {
         streams.note(&format!(
-            "{} on {}: {} pixels were lost to the race, each to a triangle that covers it",
-            row.preset_file, row.option, row.accuracy.race_pixels
+            "{} with {}: {} pixels show the wrong one of the triangles that cover them, because of the race",
+            row.preset, row.option, row.accuracy.race_pixels
         ));
     });
     rows.iter().filter(|row| row.accuracy.deformed_vertices > 0).for_each(|row| {
         let a = &row.accuracy;
         streams.note(&format!(
-            "{} on {}: {} bent vertices, at most {:.5} px and {:.1} ulp from the oracle's{}",
-            row.preset_file,
+            "{} with {}: {} deformed vertices, at most {:.5} px and {:.1} ulp from the oracle's{}",
+            row.preset,
             row.option,
             a.deformed_vertices,
             a.max_deform_px,
             a.max_deform_ulp,
-            row.volume
-                .map_or_else(String::new, |share| format!("; linear skinning has {:.2} % of the volume that dual has", 100.0 * share))
+            row.volume.map_or_else(String::new, |fraction| format!(
+                "; linear skinning keeps {:.2} % of the volume with dual quaternions",
+                100.0 * fraction
+            ))
         ));
     });
     rows.iter().filter(|row| row.accuracy.particles > 0).for_each(|row| {
         let a = &row.accuracy;
         streams.note(&format!(
-            "{} on {}: {} particles, {} of them more than a pixel from their true flight, at most {:.5} px, on average {:.1e} m",
-            row.preset_file, row.option, a.particles, a.particles_diverged, a.max_divergence_px, a.mean_divergence_m
+            "{} with {}: {} particles, {} of them more than a pixel from the oracle's, at most {:.5} px, on average {:.1e} m",
+            row.preset, row.option, a.particles, a.particles_diverged, a.max_divergence_px, a.mean_divergence_m
         ));
     });
     rows.iter()
-        .for_each(|row| row.failures.iter().for_each(|failure| streams.note(&format!("{} on {}: {failure}", row.preset_file, row.option))));
+        .for_each(|row| row.failures.iter().for_each(|failure| streams.note(&format!("{} with {}: {failure}", row.preset, row.option))));
     Ok(Exit::failed_if(rows.iter().any(|row| !row.failures.is_empty())))
 }
 
-fn verify(common: &Common, args: &Verify, preset_file: &PresetFile, painter: &mut Painter) -> Result<Vec<Row>, Fault> {
+fn verify(common: &Common, args: &Verify, preset_file: &PresetFile, backend: &mut Backend) -> Result<Vec<Row>, CliError> {
     let mut preset = preset_file.preset.clone();
     preset.output.size = args.size.unwrap_or(preset.output.size);
     let scene = scene_of(preset_file)?;
     let (view, stack) = (preset.view(&scene, preset.output.size), preset.evaluated_stack());
     let budget = preset.test.clone().unwrap_or_default();
-    let volume = volume_share(&preset, &scene)?;
+    let volume = volume_fraction(&preset, &scene)?;
     let (mut rows, mut first): (Vec<Row>, Option<(&str, Frame)>) = (Vec::new(), None);
-    for option in painter.options(&preset) {
+    for option in backend.options(&preset) {
         let mut pinned = preset.clone();
         pinned.accuracy.pins = option.map_or(preset.accuracy.pins, |option| preset.accuracy.pins.with(option));
         let name = option.map_or("exact", Visibility::name);
-        let capture = painter.capture(&pinned, &scene)?;
+        let capture = backend.capture(&pinned, &scene)?;
         let layers = capture.layers.as_deref();
         let previous = capture.previous.as_deref();
         let verdict = oracle::judge_after(&scene, &view, &stack, &capture.frame, &capture.geometry, layers, previous)?;
-        // Where wrong triangle ids have a budget, their colours are theirs: colour is held where the triangle id is right.
-        let mut held = verdict.expected.color.clone();
+        // Where wrong triangles are allowed, colors are compared only where the triangle is right.
+        let mut expected = verdict.expected.color.clone();
         if budget.max_wrong_triangles > 0 {
             let wrong = capture.frame.triangle_id.iter().zip(&verdict.expected.triangle_id).enumerate().filter(|(_, (a, b))| a != b);
-            wrong.for_each(|(i, _)| held[i] = capture.frame.color[i]);
+            wrong.for_each(|(i, _)| expected[i] = capture.frame.color[i]);
         }
-        let pixels_over_tolerance = pictures(&capture.frame.color, &held, budget.max_channel).pixels_over_tolerance;
+        let pixels_over_tolerance = pictures(&capture.frame.color, &expected, budget.max_channel).pixels_over_tolerance;
         let mut failures = failures(&verdict.accuracy, &budget, pixels_over_tolerance);
-        failures.extend(scaling_fault(&capture));
+        failures.extend(scaling_failure(&capture));
         let is_repeatable = preset.stack.is_repeatable() && !preset.accuracy.is_left_to_chance();
         for repeat in 1..args.frames {
-            if is_repeatable && painter.capture(&pinned, &scene)?.frame != capture.frame {
-                failures.push(format!("frame {} is not equal to the first, to the bit", repeat + 1));
+            if is_repeatable && backend.capture(&pinned, &scene)?.frame != capture.frame {
+                failures.push(format!("frame {} is not bit-identical to the first", repeat + 1));
                 break;
             }
         }
         if let Some((other, frame)) = first.as_ref().filter(|_| is_repeatable) {
             let different = triangle_ids(&capture.frame.triangle_id, &frame.triangle_id).different;
             if different > u64::from(budget.max_wrong_triangles) {
-                failures.push(format!("{different} pixels have another triangle id than on {other}"));
+                failures.push(format!("{different} pixels have another triangle than with {other}"));
             }
         }
         if let Some(folder) = &args.output {
             triptych(folder, &format!("{}-{name}", preset_file.id), &verdict.expected, &capture.frame, common.force)?;
         }
         rows.push(Row {
-            preset_file: preset_file.id.clone(),
+            preset: preset_file.id.clone(),
             option: name,
             accuracy: verdict.accuracy,
             pixels_over_tolerance,
@@ -146,22 +148,22 @@ fn verify(common: &Common, args: &Verify, preset_file: &PresetFile, painter: &mu
     Ok(rows)
 }
 
-/// The pass from drawn to shown pixels, held against the oracle's.
-fn scaling_fault(capture: &Capture) -> Option<String> {
+/// Compares the scaling from drawn to shown pixels with the oracle's.
+fn scaling_failure(capture: &Capture) -> Option<String> {
     let shown = capture.shown.as_ref()?;
     let drawn = &capture.frame;
     let right = oracle::scaled(&drawn.color, [drawn.width, drawn.height], [shown.width, shown.height]);
     let delta = pictures(&shown.color, &right, 1);
     (delta.pixels_over_tolerance > 0)
-        .then(|| format!("{} shown pixels are off by up to {} of 255 from the drawn ones", delta.pixels_over_tolerance, delta.max_delta))
+        .then(|| format!("{} scaled pixels differ from the oracle's by up to {} of 255", delta.pixels_over_tolerance, delta.max_delta))
 }
 
-/// Volume by the linear blend, as a share of that by dual quaternions; none where no joint holds anything.
-fn volume_share(preset: &Preset, scene: &Scene) -> Result<Option<f64>, Fault> {
+/// Volume with linear skinning, as a fraction of that with dual quaternions; none without skins.
+fn volume_fraction(preset: &Preset, scene: &Scene) -> Result<Option<f64>, CliError> {
     if scene.rig.skins.is_empty() {
         return Ok(None);
     }
-    let volume = |skinning: Skinning| -> Result<f64, Fault> {
+    let volume = |skinning: Skinning| -> Result<f64, CliError> {
         let accuracy = crate::preset::AccuracyRequest { pins: preset.accuracy.pins.with(skinning), ..preset.accuracy };
         let view = Preset { accuracy, ..preset.clone() }.view(scene, [64, 64]);
         Ok(oracle::volume(scene, &draws(scene, &view)?))
@@ -170,7 +172,7 @@ fn volume_share(preset: &Preset, scene: &Scene) -> Result<Option<f64>, Fault> {
     Ok((dual != 0.0).then_some(linear / dual))
 }
 
-/// Exact things have no budget unless the preset asks for less; colour has the preset's.
+/// Integers must be exact unless the preset has a budget for wrong triangles; colors have the preset's budget.
 fn failures(accuracy: &ErrorReport, test: &GoldenTest, pixels_over_tolerance: u64) -> Vec<String> {
     let forgiven = pixels_over_tolerance <= u64::from(test.max_pixels);
     let max_color_delta = if forgiven { u8::MAX } else { test.max_channel };
@@ -178,8 +180,8 @@ fn failures(accuracy: &ErrorReport, test: &GoldenTest, pixels_over_tolerance: u6
     accuracy.within(&budget).err().map_or_else(Vec::new, |reasons| reasons.split("; ").map(str::to_owned).collect())
 }
 
-/// Expected, actual and difference side by side, with the triangle ids that differ in magenta.
-fn triptych(folder: &Path, name: &str, expected: &Frame, actual: &Frame, force: bool) -> Result<(), Fault> {
+/// Writes expected, actual and difference side by side; pixels with another triangle are magenta.
+fn triptych(folder: &Path, name: &str, expected: &Frame, actual: &Frame, force: bool) -> Result<(), CliError> {
     let path = files::target(&folder.join("{preset}.png").to_string_lossy(), &Names { preset: name.into(), ..Names::default() }, force)?;
     let mut difference = difference_picture(&expected.color, &actual.color, 16);
     for (pixel, (a, b)) in difference.iter_mut().zip(expected.triangle_id.iter().zip(&actual.triangle_id)) {
@@ -195,7 +197,7 @@ fn triptych(folder: &Path, name: &str, expected: &Frame, actual: &Frame, force: 
 }
 
 fn text(rows: &[Row], class: &str) -> String {
-    let head = ["LOOK", "RUNG", "CLASS", "OWNER", "SNAP", "HOLES", "DOUBLE", "ORPHANS", "OVERFLOW", "STEPS", "MAX", "RMS", "VERDICT"];
+    let head = ["PRESET", "OPTION", "CLASS", "WRONG", "SNAP", "HOLES", "DOUBLE", "NO ID", "OVERFLOW", "STEPS", "MAX", "RMS", "VERDICT"];
     let mut lines = vec![head.map(str::to_owned).to_vec()];
     lines.extend(rows.iter().map(|row| {
         let a = &row.accuracy;
@@ -209,7 +211,7 @@ fn text(rows: &[Row], class: &str) -> String {
             a.step_band_pixels,
             a.max_color_delta.into(),
         ];
-        let mut line = vec![row.preset_file.clone(), row.option.into(), class.into()];
+        let mut line = vec![row.preset.clone(), row.option.into(), class.into()];
         line.extend(counts.map(|count| count.to_string()));
         line.extend([format!("{:.4}", a.rms_color_delta), if row.failures.is_empty() { "ok" } else { "FAIL" }.into()]);
         line
@@ -217,10 +219,10 @@ fn text(rows: &[Row], class: &str) -> String {
     table(&lines)
 }
 
-/// The row with every figure of the judgement.
-fn json_row(row: &Row, painter: &Painter) -> Value {
+/// The row with every number of the error report.
+fn json_row(row: &Row, backend: &Backend) -> Value {
     let mut object = json!({
-        "preset": row.preset_file, "option": row.option, "adapter": painter.name(), "class": painter.class(),
+        "preset": row.preset, "option": row.option, "adapter": backend.name(), "class": backend.class(),
         "frames": row.frames, "pixels_over_tolerance": row.pixels_over_tolerance, "ok": row.failures.is_empty(), "failures": row.failures,
     });
     if let (Value::Object(object), Ok(Value::Object(stats))) = (&mut object, serde_json::to_value(&row.accuracy)) {

@@ -24,7 +24,7 @@ pub fn migrate(document: DocumentMut, from: i64) -> DocumentMut {
 }
 
 /// Keys that schema 2 renames: section or effect, old name, new name.
-const RENAMED_KEYS: &[(&str, &str, &str)] = &[
+pub const RENAMED_KEYS: &[(&str, &str, &str)] = &[
     ("scene", "pose_s", "clip_time_s"),
     ("scene", "clip_b", "second_clip"),
     ("scene", "blend", "clip_blend"),
@@ -46,7 +46,7 @@ const RENAMED_KEYS: &[(&str, &str, &str)] = &[
 ];
 
 /// Words that schema 2 renames: section or effect, new name of the key, old word, new word.
-const RENAMED_WORDS: &[(&str, &str, &str, &str)] = &[("accuracy", "render_scale", "whole", "full")];
+pub const RENAMED_WORDS: &[(&str, &str, &str, &str)] = &[("accuracy", "render_scale", "whole", "full")];
 
 /// Names in the vocabulary of computer graphics.
 fn to_schema_2(mut document: DocumentMut) -> DocumentMut {

@@ -50,7 +50,7 @@ fn piped(folder: &Path, args: &[&str], text: &str) -> Run {
 
 fn json(run: &Run) -> Value {
     let object: Value = serde_json::from_str(&run.out).unwrap_or_else(|e| panic!("stdout is not one JSON object: {e}\n{}", run.out));
-    assert_eq!(object["schema"], 1);
+    assert_eq!(object["schema"], 2);
     object
 }
 
@@ -61,9 +61,10 @@ fn list_shows_looks_effects_and_ranges_on_stdout_alone() {
     for wanted in ["facet-sweep", "Half cut", "facet.amount", "0..=1", "uniform | sweep | radial | random", "teapot", "?tess", "built in"] {
         assert!(list.out.contains(wanted), "{wanted:?} is missing in\n{}", list.out);
     }
-    let axes = run(&["list", "--axes"]).out;
+    let axes = run(&["list", "axes"]).out;
     assert!(axes.contains("accuracy.coverage") && axes.contains("float-top-left") && !axes.contains("lambert.sun"));
-    let effects = run(&["list", "--effects"]).out;
+    let effects = run(&["list", "effects"]).out;
+    assert_eq!(run(&["list", "--effects"]).out, effects, "the flags of before still work");
     assert!(effects.contains("lambert.sun") && !effects.contains("Half cut"));
 }
 
@@ -75,9 +76,9 @@ fn list_as_json_has_every_look_and_effect() {
         object["results"].as_array().unwrap().iter().filter(|r| r["kind"] == kind).map(|r| r["id"].clone()).collect::<Vec<_>>()
     };
     for effect in rasterlab::effects::EFFECTS {
-        assert!(of_kind("effect").contains(&effect.name.into()) && of_kind("preset_file").contains(&effect.name.into()));
+        assert!(of_kind("effect").contains(&effect.name.into()) && of_kind("preset").contains(&effect.name.into()));
     }
-    let preset_files = object["results"].as_array().unwrap().iter().filter(|r| r["kind"] == "preset_file");
+    let preset_files = object["results"].as_array().unwrap().iter().filter(|r| r["kind"] == "preset");
     preset_files.for_each(|preset_file| assert_eq!(preset_file["warnings"], Value::Array(vec![])));
 }
 
@@ -85,7 +86,7 @@ fn list_as_json_has_every_look_and_effect() {
 fn list_shows_which_look_shadows_which() {
     let folder = tempfile::tempdir().unwrap();
     fs::write(folder.path().join("facet.toml"), "schema = 2\nname = \"Mine\"\n").unwrap();
-    let list = run_in(folder.path(), &["list", "--looks", "--presets", "."]);
+    let list = run_in(folder.path(), &["list", "presets", "--presets", "."]);
     assert!(list.out.contains("--presets, shadows built in"), "{}", list.out);
 }
 
@@ -306,7 +307,7 @@ fn frames_of_another_look_are_overwritten_with_force_alone() {
     let refused = sequence(folder.path(), &changed);
     assert_eq!(refused.code, 2);
     assert!(
-        refused.err.contains("f_000.png exists and is no frame of this preset, and so do 7 more; --force overwrites"),
+        refused.err.contains("f_000.png exists and is no frame of this preset, as do 7 more files; use --force to overwrite"),
         "{}",
         refused.err
     );
@@ -419,7 +420,7 @@ fn nothing_is_overwritten_without_force() {
     let args = ["render", "lambert", "--adapter", "cpu", "--size", "8x8", "-o", "a.png"];
     let refused = run_in(folder.path(), &args);
     assert_eq!(refused.code, 2);
-    assert!(refused.err.contains("a.png exists; --force overwrites it"), "{}", refused.err);
+    assert!(refused.err.contains("a.png exists; use --force to overwrite it"), "{}", refused.err);
     assert_eq!(fs::read(&target).unwrap(), b"precious");
     assert_eq!(run_in(folder.path(), &[&args[..], &["--force"]].concat()).code, 0);
     assert!(fs::read(&target).unwrap().starts_with(b"\x89PNG"));
@@ -460,7 +461,7 @@ fn compare_exits_with_1_beyond_the_budget_and_0_within() {
     let over = compare(&["-o", "diff.png"]);
     assert_eq!(over.code, 1);
     assert!(over.out.contains("FAIL") && folder.path().join("diff.png").exists());
-    assert_eq!(compare(&["--max-channel", "255", "--max-wrong-owner", "99999"]).code, 0);
+    assert_eq!(compare(&["--max-channel", "255", "--max-wrong-triangles", "99999"]).code, 0);
     assert_eq!(compare(&["--max-pixels", "99999"]).code, 1, "triangle ids have a budget of their own");
     assert_eq!(run(&["compare", "facet", "facet", "--adapter", "cpu", "--size", "32x32"]).code, 0);
 }
@@ -478,10 +479,43 @@ fn check_finds_every_bad_look_and_lists_all() {
     assert!(loose.err.contains("typo.toml:3: unknown key effects.lambert.snu; did you mean \"sun\"?"), "{}", loose.err);
     let strict = run_in(folder.path(), &["check", "--strict", "good.toml", "typo.toml", "range.toml", "lost.toml"]);
     assert_eq!(strict.code, 2);
-    for wanted in ["ok    good", "FAIL  typo", "range.toml:3: effects.facet.amount 7 lies outside 0..=1", "absent.glb, which is not there"]
+    for wanted in
+        ["ok    good", "FAIL  typo", "range.toml:3: effects.facet.amount 7 lies outside 0..=1", "absent.glb of the preset does not exist"]
     {
         assert!(strict.out.contains(wanted), "{wanted:?} is missing in\n{}", strict.out);
     }
+}
+
+#[test]
+fn migrate_shows_the_changed_lines_and_writes_when_told() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("old.toml");
+    let old = "# mine\nschema = 1\n[accuracy]\nscale = \"whole\" # all of it\n";
+    fs::write(&path, old).unwrap();
+    let shown = run_in(folder.path(), &["migrate", "old.toml"]);
+    assert_eq!(shown.code, 0, "{}", shown.err);
+    for line in [
+        "--- old.toml (schema 1)",
+        "+++ old.toml (schema 2)",
+        "@@ line 4 @@",
+        "-scale = \"whole\" # all of it",
+        "+render_scale = \"full\" # all of it",
+    ] {
+        assert!(shown.out.lines().any(|shown| shown == line), "{line:?} is missing in\n{}", shown.out);
+    }
+    assert!(
+        !shown.out.contains("# mine") && shown.err.contains("1 of 1 files change to schema 2; --write changes the files"),
+        "{}",
+        shown.err
+    );
+    assert_eq!(fs::read_to_string(&path).unwrap(), old);
+    let written = run_in(folder.path(), &["migrate", "old.toml", "--write", "--json"]);
+    assert_eq!((written.code, &json(&written)["results"][0]["written"]), (0, &true.into()), "{}", written.err);
+    assert_eq!(fs::read_to_string(&path).unwrap(), "# mine\nschema = 2\n[accuracy]\nrender_scale = \"full\" # all of it\n");
+    assert_eq!(run_in(folder.path(), &["migrate", "old.toml"]).out, "");
+    fs::write(&path, "schema = 1\n[clock]\nspeed = 0\n").unwrap();
+    let broken = run_in(folder.path(), &["migrate", "old.toml", "--write"]);
+    assert!(broken.code == 2 && broken.err.contains("old.toml:3: clock.speed 0 lies outside"), "{}", broken.err);
 }
 
 #[test]

@@ -1,4 +1,4 @@
-//! Promise: looks survive a round trip to the bit, keep what they do not understand, and refuse what would do harm.
+//! Promise: presets survive a round trip to the bit, keep unknown keys, load from every older schema, and refuse harmful values.
 
 use std::path::{Path, PathBuf};
 
@@ -15,11 +15,11 @@ use rasterlab::{
 };
 
 fn parse(text: &str) -> PresetFile {
-    preset_file::parse(text, "preset_file").unwrap_or_else(|error| panic!("{error}"))
+    preset_file::parse(text, "preset").unwrap_or_else(|error| panic!("{error}"))
 }
 
 fn refusal(text: &str) -> String {
-    match preset_file::parse(text, "preset_file") {
+    match preset_file::parse(text, "preset") {
         Err(error) => error.to_string(),
         Ok(_) => panic!("this should have been refused:\n{text}"),
     }
@@ -118,7 +118,7 @@ why = "because"
 
 #[test]
 fn an_unmodified_look_is_written_byte_for_byte() {
-    let odd = "# mine\nschema=1\nname  =  'odd'   # spaced\n[effects]\n lambert = { sun = [1,1.0,0.50,1e0] } # inline\n\n[output]\nsize=[ 0x10, 1_0 ]\nx-own = 2024-01-01\n";
+    let odd = "# mine\nschema=2\nname  =  'odd'   # spaced\n[effects]\n lambert = { sun = [1,1.0,0.50,1e0] } # inline\n\n[output]\nsize=[ 0x10, 1_0 ]\nx-own = 2024-01-01\n";
     assert_eq!(preset_file::to_toml(&parse(odd)), odd);
     for path in preset_files() {
         let text = std::fs::read_to_string(&path).unwrap();
@@ -176,8 +176,8 @@ fn the_stack_key_is_written_only_where_order_is_unusual() {
 #[test]
 fn the_stack_key_names_each_enabled_effect_exactly_once() {
     let with = |stack: &str| format!("schema = 2\nstack = {stack}\n[effects.facet]\n[effects.lambert]\n");
-    assert_eq!(refusal(&with("[\"facet\"]")), "look.toml:2: stack leaves out lambert, which is enabled");
-    assert_eq!(refusal(&with("[\"facet\", \"lambert\", \"facet\"]")), "look.toml:2: stack names facet twice");
+    assert_eq!(refusal(&with("[\"facet\"]")), "preset.toml:2: stack leaves out lambert, which is enabled");
+    assert_eq!(refusal(&with("[\"facet\", \"lambert\", \"facet\"]")), "preset.toml:2: stack names facet twice");
     assert!(refusal(&with("[\"facet\", \"lambert\", \"depth\"]")).contains("names depth, which is not enabled"));
     assert!(refusal(&with("[\"fascet\", \"lambert\"]")).contains("did you mean \"facet\"?"));
     assert!(refusal(&with("\"facet\"")).contains("must be a list of effect names"));
@@ -186,47 +186,47 @@ fn the_stack_key_names_each_enabled_effect_exactly_once() {
 #[test]
 fn errors_name_line_key_value_and_range() {
     let cases = [
-        ("schema = 2\n[effects.facet]\namount = -1\n", "look.toml:3: effects.facet.amount -1 lies outside 0..=1"),
+        ("schema = 2\n[effects.facet]\namount = -1\n", "preset.toml:3: effects.facet.amount -1 lies outside 0..=1"),
         (
             "schema = 2\n[effects.facet]\namount = 1e39\n",
-            "look.toml:3: effects.facet.amount 1e39 is too large for a 32-bit float, which ends at 3.4028235e38",
+            "preset.toml:3: effects.facet.amount 1e39 is too large for a 32-bit float, which ends at 3.4028235e38",
         ),
-        ("schema = 2\n[effects.facet]\namount = nan\n", "look.toml:3: effects.facet.amount nan is not a finite number"),
-        ("schema = 2\n[effects.facet]\nseed = 1.5\n", "look.toml:3: effects.facet.seed 1.5 must be a whole number"),
-        ("schema = 2\n[effects.facet]\nseed = -1\n", "look.toml:3: effects.facet.seed -1 lies outside 0..=4294967295"),
+        ("schema = 2\n[effects.facet]\namount = nan\n", "preset.toml:3: effects.facet.amount nan is not a finite number"),
+        ("schema = 2\n[effects.facet]\nseed = 1.5\n", "preset.toml:3: effects.facet.seed 1.5 must be a whole number"),
+        ("schema = 2\n[effects.facet]\nseed = -1\n", "preset.toml:3: effects.facet.seed -1 lies outside 0..=4294967295"),
         (
             "schema = 2\n[effects.facet]\npattern = \"radail\"\n",
-            "look.toml:3: effects.facet.pattern \"radail\" is not one of uniform, sweep, radial, random; did you mean \"radial\"?",
+            "preset.toml:3: effects.facet.pattern \"radail\" is not one of uniform, sweep, radial, random; did you mean \"radial\"?",
         ),
         (
             "schema = 2\n[effects.facet]\ncenter = [1, 2]\n",
-            "look.toml:3: effects.facet.center must be a list of 3 numbers, not a list of 2",
+            "preset.toml:3: effects.facet.center must be a list of 3 numbers, not a list of 2",
         ),
-        ("schema = 2\n[effects.depth]\nfit = 1\n", "look.toml:3: effects.depth.fit must be true or false, not a number"),
-        ("schema = 2\n[output]\nsize = [16385, 1]\n", "look.toml:3: output.size 16385 lies outside 0..=16384"),
-        ("schema = 2\n[camera]\nfov_y_deg = 180\n", "look.toml:3: camera.fov_y_deg 180 lies outside 1..=179"),
-        ("schema = 2\n[camera]\neye = [0, inf, 0]\n", "look.toml:3: camera.eye inf is not a finite number"),
-        ("schema = 2\n[camera]\neye = [0, 1e10, 0]\n", "look.toml:3: camera.eye 1e10 lies outside -1e9..=1e9"),
+        ("schema = 2\n[effects.depth]\nfit = 1\n", "preset.toml:3: effects.depth.fit must be true or false, not a number"),
+        ("schema = 2\n[output]\nsize = [16385, 1]\n", "preset.toml:3: output.size 16385 lies outside 0..=16384"),
+        ("schema = 2\n[camera]\nfov_y_deg = 180\n", "preset.toml:3: camera.fov_y_deg 180 lies outside 1..=179"),
+        ("schema = 2\n[camera]\neye = [0, inf, 0]\n", "preset.toml:3: camera.eye inf is not a finite number"),
+        ("schema = 2\n[camera]\neye = [0, 1e10, 0]\n", "preset.toml:3: camera.eye 1e10 lies outside -1e9..=1e9"),
         (
             "schema = 2\n[accuracy]\ntier = 3\n",
-            "look.toml:3: accuracy.tier must be one of draft, fast, precise, reference, strict, not a number",
+            "preset.toml:3: accuracy.tier must be one of draft, fast, precise, reference, strict, not a number",
         ),
-        ("schema = 2\n[test]\nmax_pixels = 9\n", "look.toml:2: test.why must say why the budget is above the default"),
+        ("schema = 2\n[test]\nmax_pixels = 9\n", "preset.toml:2: test.why must say why the budget is above the default"),
         (
             "schema = 2\n[test]\nmax_wrong_owner = 9\nwhy = \"because\"\n",
-            "look.toml:2: test.max_wrong_triangles is for presets that pin a cheaper option or take the tier draft or fast; this one must be exact",
+            "preset.toml:2: test.max_wrong_triangles must be 0 here; it needs a pinned option that is not exact, or the tier draft or fast",
         ),
         (
             "schema = 2\n[accuracy]\nvisibility = \"race\"\n[test]\nmax_wrong_owner = 9\n",
-            "look.toml:4: test.why must say why the budget is above the default",
+            "preset.toml:4: test.why must say why the budget is above the default",
         ),
-        ("schema = 2\nname = \"\\u001b[31m\"\n", "look.toml:2: name contains the control character '\\u{1b}'"),
-        ("schema = 2\neffects = 3\n", "look.toml:2: effects must be a table, written [effects]"),
-        ("schema = 2\neffects.facet = true\n", "look.toml:2: effects.facet must be a table, written [effects.facet]"),
-        ("schema = 2\n[[camera]]\n", "look.toml:2: camera must be a table, written [camera]"),
-        ("schema = 0\n", "look.toml:1: schema must be a whole number from 1 up"),
-        ("schema = 2\n[scene]\npath = \"https://example.org/a.glb\"\n", "look.toml:3: scene.path must be a file, not an address"),
-        ("schema = 2\n[scene]\npath = \"a.glb\"\nbuiltin = \"knot\"\n", "look.toml:3: scene.path and scene.builtin exclude each other"),
+        ("schema = 2\nname = \"\\u001b[31m\"\n", "preset.toml:2: name contains the control character '\\u{1b}'"),
+        ("schema = 2\neffects = 3\n", "preset.toml:2: effects must be a table, written [effects]"),
+        ("schema = 2\neffects.facet = true\n", "preset.toml:2: effects.facet must be a table, written [effects.facet]"),
+        ("schema = 2\n[[camera]]\n", "preset.toml:2: camera must be a table, written [camera]"),
+        ("schema = 0\n", "preset.toml:1: schema must be a whole number from 1 up"),
+        ("schema = 2\n[scene]\npath = \"https://example.org/a.glb\"\n", "preset.toml:3: scene.path must be a file, not an address"),
+        ("schema = 2\n[scene]\npath = \"a.glb\"\nbuiltin = \"knot\"\n", "preset.toml:3: scene.path and scene.builtin exclude each other"),
     ];
     for (text, wanted) in cases {
         assert_eq!(refusal(text), wanted);
@@ -238,36 +238,36 @@ fn keys_that_cannot_be_are_refused_by_name() {
     let with = |keys: &str| format!("schema = 2\n[effects.facet]\n[animation.facet]\namount = {keys}\n");
     let many = format!("[{}]", (0..=MAX_KEYFRAMES).map(|i| format!("{{ time_s = {i}, value = 0 }}")).collect::<Vec<_>>().join(", "));
     for (text, wanted) in [
-        (with("[{ time_s = 0, value = 2 }]"), "look.toml:4: animation.facet.amount key 1: value 2 lies outside 0..=1"),
-        (with("[{ time_s = 0, value = nan }]"), "look.toml:4: animation.facet.amount key 1: value nan is not a finite number"),
+        (with("[{ time_s = 0, value = 2 }]"), "preset.toml:4: animation.facet.amount keyframe 1: value 2 lies outside 0..=1"),
+        (with("[{ time_s = 0, value = nan }]"), "preset.toml:4: animation.facet.amount keyframe 1: value nan is not a finite number"),
         (with("[{ time_s = 0, value = 1e-46 }]"), "value 1e-46 is too small for a 32-bit float"),
-        (with("[{ time_s = 2e9, value = 0 }]"), "key 1: time_s 2e9 lies outside -1e9..=1e9"),
+        (with("[{ time_s = 2e9, value = 0 }]"), "keyframe 1: time_s 2e9 lies outside -1e9..=1e9"),
         (
             with("[{ time_s = 0, value = 0 },\n { time_s = -0.0, value = 1 }]"),
-            "look.toml:5: animation.facet.amount key 2: time_s -0 has a key already",
+            "preset.toml:5: animation.facet.amount keyframe 2: there is already a keyframe at time_s -0",
         ),
         (
             with("[{ time_s = 0, value = 0, easing = \"smoth\" }]"),
             "\"smoth\" is not one of hold, linear, smooth, in, out; did you mean \"smooth\"?",
         ),
-        (with("[{ time_s = 0 }]"), "look.toml:4: animation.facet.amount key 1 must have time_s and value"),
-        (with("[{}]"), "animation.facet.amount key 1 must have time_s and value"),
-        (with("[]"), "look.toml:4: animation.facet.amount must be a list of 1 to 256 keys"),
-        (with(&many), "must be a list of 1 to 256 keys"),
-        (with("[0.5]"), "must be a list of 1 to 256 keys"),
-        (with("3"), "must be a list of 1 to 256 keys"),
+        (with("[{ time_s = 0 }]"), "preset.toml:4: animation.facet.amount keyframe 1 must have time_s and value"),
+        (with("[{}]"), "animation.facet.amount keyframe 1 must have time_s and value"),
+        (with("[]"), "preset.toml:4: animation.facet.amount must be a list of 1 to 256 keyframes"),
+        (with(&many), "must be a list of 1 to 256 keyframes"),
+        (with("[0.5]"), "must be a list of 1 to 256 keyframes"),
+        (with("3"), "must be a list of 1 to 256 keyframes"),
         (
             "schema = 2\n[effects.facet]\n[animation.facet]\nseed = [{ time_s = 0, value = 1, easing = \"linear\" }]\n".into(),
-            "key 1: easing linear cannot be",
+            "keyframe 1: easing must be hold, not linear",
         ),
         (
             "schema = 2\n[effects.facet]\n[animation.facet]\ncenter = [{ time_s = 0, value = 1 }]\n".into(),
             "value must be a list of 3 numbers",
         ),
-        ("schema = 2\nanimation = 3\n".into(), "look.toml:2: animation must be a table, written [animation]"),
-        ("schema = 2\n[animation]\nfacet = 3\n".into(), "look.toml:3: animation.facet must be a table, written [animation.facet]"),
-        ("schema = 2\n[clock]\nrange_s = [2, 2]\n".into(), "look.toml:3: clock.range_s must rise, but 2 is not before 2"),
-        ("schema = 2\n[clock]\nspeed = 0\n".into(), "look.toml:3: clock.speed 0 lies outside 0.01..=100"),
+        ("schema = 2\nanimation = 3\n".into(), "preset.toml:2: animation must be a table, written [animation]"),
+        ("schema = 2\n[animation]\nfacet = 3\n".into(), "preset.toml:3: animation.facet must be a table, written [animation.facet]"),
+        ("schema = 2\n[clock]\nrange_s = [2, 2]\n".into(), "preset.toml:3: clock.range_s must rise, but 2 is not before 2"),
+        ("schema = 2\n[clock]\nspeed = 0\n".into(), "preset.toml:3: clock.speed 0 lies outside 0.01..=100"),
     ] {
         let said = refusal(&text);
         assert!(said.contains(wanted), "{said}");
@@ -280,10 +280,10 @@ fn keys_of_what_is_not_there_warn_and_stay() {
     let preset_file = parse(text);
     let warnings = preset_file.warnings.join("\n");
     for wanted in [
-        "look.toml:2: animation.facet moves nothing; add [effects.facet]",
-        "look.toml:3: unknown key animation.facet.amount key 1: note",
-        "look.toml:4: unknown key animation.facet.amuont; did you mean \"amount\"?",
-        "look.toml:5: unknown key animation.fascet; did you mean \"facet\"?",
+        "preset.toml:2: animation.facet moves nothing; add [effects.facet]",
+        "preset.toml:3: unknown key animation.facet.amount keyframe 1: note",
+        "preset.toml:4: unknown key animation.facet.amuont; did you mean \"amount\"?",
+        "preset.toml:5: unknown key animation.fascet; did you mean \"facet\"?",
     ] {
         assert!(warnings.contains(wanted), "{wanted:?} is not among\n{warnings}");
     }
@@ -333,11 +333,11 @@ fn set_animates_and_a_value_set_by_hand_holds_still() {
     assert!(preset_file.preset.is_moving() && preset_file.preset.stack.get("facet").is_some());
     assert_eq!(parse(&preset_file::to_toml(&preset_file)).preset, preset_file.preset);
     for (path, value, wanted) in [
-        ("animation.facet.amount", "[{ time_s = 0, value = 9 }]", "key 1: value 9 lies outside 0..=1"),
+        ("animation.facet.amount", "[{ time_s = 0, value = 9 }]", "keyframe 1: value 9 lies outside 0..=1"),
         ("animation.facet.amount", "[", "--set animation.facet.amount=["),
         ("animation.facet", "1", "animation.facet takes no value"),
         ("animation.facet.amuont", "[]", "did you mean \"amount\"?"),
-        ("animation.camera.eye", "[]", "is unknown; parameters of effects can be animated"),
+        ("animation.camera.eye", "[]", "is unknown; only parameters of effects can be animated"),
         ("clock.range_s", "[2, 1]", "clock.range_s must rise"),
     ] {
         let error = preset_file::set(&mut preset_file, path, value).unwrap_err().to_string();
@@ -356,7 +356,7 @@ fn set_animates_and_a_value_set_by_hand_holds_still() {
 fn a_syntax_error_names_its_line() {
     for (text, line) in [("schema = 2\nname = \n", 2), ("schema = 2\n\n[effects.facet\n", 3), ("schema = 2\nschema = 2\n", 2)] {
         let message = refusal(text);
-        assert!(message.starts_with(&format!("look.toml:{line}: ")), "{message}");
+        assert!(message.starts_with(&format!("preset.toml:{line}: ")), "{message}");
         assert!(!message.contains('\n'), "{message}");
     }
 }
@@ -366,11 +366,11 @@ fn unknown_keys_warn_with_a_suggestion_and_strictness_refuses_them() {
     let preset_file = parse("schema = 2\nnmae = 1\n[effects.fascet]\n[effects.lambert]\nsnu = 1\n[camera]\nfov = 3\n[otuput]\n");
     let warnings = preset_file.warnings.join("\n");
     for wanted in [
-        "look.toml:2: unknown key nmae; did you mean \"name\"?",
-        "look.toml:3: unknown key effects.fascet; did you mean \"facet\"?",
-        "look.toml:5: unknown key effects.lambert.snu; did you mean \"sun\"?",
-        "look.toml:7: unknown key camera.fov",
-        "look.toml:8: unknown key otuput; did you mean \"output\"?",
+        "preset.toml:2: unknown key nmae; did you mean \"name\"?",
+        "preset.toml:3: unknown key effects.fascet; did you mean \"facet\"?",
+        "preset.toml:5: unknown key effects.lambert.snu; did you mean \"sun\"?",
+        "preset.toml:7: unknown key camera.fov",
+        "preset.toml:8: unknown key otuput; did you mean \"output\"?",
     ] {
         assert!(warnings.contains(wanted), "{wanted:?} is not among\n{warnings}");
     }
@@ -427,7 +427,7 @@ fn a_failed_save_keeps_the_old_file_and_the_unsaved_state() {
 #[test]
 fn saving_elsewhere_keeps_the_way_to_the_model() {
     let folder = tempfile::tempdir().unwrap();
-    let (preset_files, deeper) = (folder.path().join("preset_files"), folder.path().join("looks/a/b"));
+    let (preset_files, deeper) = (folder.path().join("presets"), folder.path().join("presets/a/b"));
     std::fs::create_dir_all(&deeper).unwrap();
     let model = folder.path().join("scenes/fox.glb");
     let mut preset_file = PresetFile::of_scene("fox", SceneSource::File(model));
@@ -436,7 +436,7 @@ fn saving_elsewhere_keeps_the_way_to_the_model() {
     preset_file::save(&mut preset_file, &deeper.join("fox.toml")).unwrap();
     assert_eq!(preset_file.preset.scene, SceneSource::File("../../../scenes/fox.glb".into()));
     let absent = preset_file::load_scene(&preset_file.preset, preset_file.path.as_deref()).unwrap_err().to_string();
-    assert!(absent.contains("fox.glb, which is not there"), "{absent}");
+    assert!(absent.contains("fox.glb of the preset does not exist"), "{absent}");
 }
 
 #[test]
@@ -469,6 +469,82 @@ fn set_obeys_the_rules_of_files() {
     preset_file::set(&mut preset_file, "camera.orthographic_height_m", "3").unwrap();
     preset_file::unset(&mut preset_file, "camera.orthographic_height_m").unwrap();
     assert_eq!(preset_file.preset.camera, Some(Camera::default()));
+}
+
+/// A preset of schema 1 with every key and word that schema 2 renames, and the same in schema 2.
+const SCHEMA_1: &str = include_str!("migrations/schema-1.toml");
+const SCHEMA_2: &str = include_str!("migrations/schema-2.toml");
+
+#[test]
+fn a_preset_of_schema_1_loads_and_is_written_as_schema_2_with_its_comments() {
+    let (old, new) = (parse(SCHEMA_1), parse(SCHEMA_2));
+    assert_eq!((&old.warnings, &new.warnings), (&Vec::new(), &Vec::new()));
+    assert_eq!(bits(&old.preset), bits(&new.preset));
+    assert_eq!(preset_file::to_toml(&old), SCHEMA_2);
+    assert!(!old.is_modified(), "a migration is no edit");
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("old.toml");
+    std::fs::write(&path, SCHEMA_1).unwrap();
+    let migrated = preset_file::migrated(&path).unwrap();
+    assert_eq!((migrated.from, migrated.before.as_str(), migrated.after.as_str()), (1, SCHEMA_1, SCHEMA_2));
+    assert_eq!(std::fs::read_to_string(&path).unwrap(), SCHEMA_1, "loading never rewrites a file");
+}
+
+#[test]
+fn the_fixture_has_every_key_and_word_that_a_migration_renames() {
+    for (owner, old, new) in preset_file::migrate::RENAMED_KEYS {
+        for (text, key) in [(SCHEMA_1, old), (SCHEMA_2, new)] {
+            let document: toml_edit::DocumentMut = text.parse().unwrap();
+            let tables = [document.get(owner), document.get("effects").and_then(|effects| effects.get(owner))];
+            assert!(tables.into_iter().flatten().any(|table| table.get(key).is_some()), "{owner}.{key} is missing in the fixture");
+        }
+    }
+    for (_, _, old, new) in preset_file::migrate::RENAMED_WORDS {
+        assert!(SCHEMA_1.contains(&format!("\"{old}\"")) && SCHEMA_2.contains(&format!("\"{new}\"")), "{old} -> {new}");
+    }
+}
+
+#[test]
+fn errors_of_an_older_schema_name_the_line_of_its_file() {
+    assert_eq!(refusal("schema = 1\n\n[clock] # time\nloops = false\nspeed = 0\n"), "preset.toml:5: clock.speed 0 lies outside 0.01..=100");
+    assert_eq!(
+        refusal("schema = 1\n[accuracy]\ntaps = \"2\"\n"),
+        "preset.toml:3: accuracy.shadow_taps \"2\" is not one of planned, 1, 9, 25"
+    );
+}
+
+#[test]
+fn a_line_and_a_picture_of_schema_1_load() {
+    use base64::Engine as _;
+    use std::io::Write as _;
+    let mut deflate = flate2::write::DeflateEncoder::new(Vec::new(), flate2::Compression::best());
+    deflate.write_all(SCHEMA_1.as_bytes()).unwrap();
+    let line = format!("rasterlab1:{}", base64::engine::general_purpose::STANDARD.encode(deflate.finish().unwrap()));
+    assert_eq!(preset_file::from_line(&line).unwrap().preset, parse(SCHEMA_2).preset);
+    // As schema 1 wrote it: under another keyword.
+    let mut bytes = Vec::new();
+    let mut encoder = png::Encoder::new(&mut bytes, 1, 1);
+    encoder.set_color(png::ColorType::Rgba);
+    encoder.add_itxt_chunk("rasterlab look".into(), SCHEMA_1.into()).unwrap();
+    let mut writer = encoder.write_header().unwrap();
+    writer.write_image_data(&[0; 4]).unwrap();
+    writer.finish().unwrap();
+    assert_eq!(preset_file::preset_from_png(&bytes, "old.png").unwrap().preset, parse(SCHEMA_2).preset);
+}
+
+#[test]
+fn set_with_a_name_of_an_older_schema_suggests_the_new_one() {
+    let mut preset_file = PresetFile::new("new", Preset::default());
+    for (path, value, wanted) in [
+        ("accuracy.vertices", "packed16", "accuracy.vertices is unknown; did you mean \"accuracy.position_format\"?"),
+        ("accuracy.taps", "9", "did you mean \"accuracy.shadow_taps\"?"),
+        ("accuracy.render_scale", "whole", "did you mean \"full\"?"),
+        ("clock.loops", "true", "did you mean \"clock.loop\"?"),
+    ] {
+        let error = preset_file::set(&mut preset_file, path, value).unwrap_err().to_string();
+        assert!(error.contains(wanted), "{error}");
+    }
+    assert_eq!(preset_file.preset, Preset::default());
 }
 
 #[test]
@@ -512,7 +588,7 @@ fn hostile_shared_lines_are_refused() {
     for path in ["../secret.glb", "/etc/passwd", "a/../../b.glb", "C:\\x.glb", "..\\x.glb"] {
         let line = pack(format!("schema = 2\n[scene]\npath = '{path}'\n").as_bytes());
         let error = preset_file::from_line(&line).unwrap_err().to_string();
-        assert!(error.contains("leaves the preset's own folder"), "{path}: {error}");
+        assert!(error.contains("leaves the folder of the preset"), "{path}: {error}");
     }
     for line in ["", "rasterlab2:AAAA", "rasterlab1:", "rasterlab1:!!", "rasterlab1:AAAA"] {
         assert!(preset_file::from_line(line).is_err() || line == "rasterlab1:", "{line}");

@@ -1,10 +1,10 @@
-//! Painter: whoever draws, an adapter or the oracle, behind one door.
+//! The backend that draws presets: an adapter or the oracle.
 
 use std::sync::Arc;
 
 use serde_json::{Value, json};
 
-use super::{args::Common, fault::Fault, streams::Streams};
+use super::{args::Common, error::CliError, streams::Streams};
 use crate::{
     frame::{Frame, Geometry},
     gpu::{
@@ -17,45 +17,48 @@ use crate::{
     scene::{Scene, draw::draws},
 };
 
-/// Which painter was asked for.
-pub enum Wanted {
-    Cpu,
+/// The backend that `--adapter` or the environment names.
+pub enum BackendChoice {
+    Oracle,
     Gpu(AdapterChoice),
 }
 
-/// What `--adapter` or the environment says; `cpu` is reserved.
-pub fn wanted(common: &Common) -> Wanted {
+/// Reads `--adapter` or the environment; `cpu` names the oracle.
+pub fn backend_choice(common: &Common) -> BackendChoice {
     match common.adapter_name() {
-        Some(name) if name.eq_ignore_ascii_case("cpu") => Wanted::Cpu,
-        Some(name) => Wanted::Gpu(AdapterChoice::Named(name)),
-        None => Wanted::Gpu(AdapterChoice::Any),
+        Some(name) if name.eq_ignore_ascii_case("cpu") => BackendChoice::Oracle,
+        Some(name) => BackendChoice::Gpu(AdapterChoice::Named(name)),
+        None => BackendChoice::Gpu(AdapterChoice::Any),
     }
 }
 
-/// Draws looks.
-pub enum Painter {
+/// Draws presets.
+pub enum Backend {
     /// The built-in oracle; needs no driver.
-    Cpu,
+    Oracle,
     Gpu(Box<Renderer>, Arc<Gpu>),
 }
 
-impl Painter {
-    /// Opens what was asked for and says on stderr what it is. Nothing falls back unasked.
-    pub fn open(common: &Common, streams: &Streams) -> Result<Self, Fault> {
-        let painter = match wanted(common) {
-            Wanted::Cpu => Self::Cpu,
-            Wanted::Gpu(choice) => {
+impl Backend {
+    /// Opens the chosen backend and names it on stderr. There is no fallback.
+    ///
+    /// # Errors
+    /// No suitable adapter, or several that match.
+    pub fn open(common: &Common, streams: &Streams) -> Result<Self, CliError> {
+        let backend = match backend_choice(common) {
+            BackendChoice::Oracle => Self::Oracle,
+            BackendChoice::Gpu(choice) => {
                 let gpu = Gpu::open(&choice)?;
                 Self::Gpu(Box::new(Renderer::new(gpu.clone())), gpu)
             }
         };
-        streams.note(&format!("adapter: {}", painter.describe()));
-        Ok(painter)
+        streams.note(&format!("adapter: {}", backend.describe()));
+        Ok(backend)
     }
 
     fn describe(&self) -> String {
         match self {
-            Self::Cpu => "cpu (the built-in oracle)".into(),
+            Self::Oracle => "cpu (the built-in oracle)".into(),
             Self::Gpu(_, gpu) => describe(&gpu.summary, &gpu.caps),
         }
     }
@@ -63,15 +66,15 @@ impl Painter {
     /// Name of the adapter, or `cpu`.
     pub fn name(&self) -> &str {
         match self {
-            Self::Cpu => "cpu",
+            Self::Oracle => "cpu",
             Self::Gpu(_, gpu) => &gpu.summary.name,
         }
     }
 
-    /// What a saved picture says about who made it.
+    /// What a saved picture says about the backend that drew it.
     pub fn provenance(&self) -> Provenance {
         let driver = match self {
-            Self::Cpu => format!("oracle {}", env!("CARGO_PKG_VERSION")),
+            Self::Oracle => format!("oracle {}", env!("CARGO_PKG_VERSION")),
             Self::Gpu(_, gpu) => format!("{} ({})", gpu.summary.driver, gpu.summary.backend),
         };
         Provenance { adapter: self.name().into(), driver }
@@ -80,7 +83,7 @@ impl Painter {
     /// The `adapter` of a JSON object.
     pub fn json(&self) -> Value {
         match self {
-            Self::Cpu => {
+            Self::Oracle => {
                 json!({ "name": "cpu", "backend": "cpu", "driver": self.provenance().driver, "software": true, "class": "oracle" })
             }
             Self::Gpu(_, gpu) => adapter_json(&gpu.summary, &gpu.caps),
@@ -90,36 +93,36 @@ impl Painter {
     /// `native-int64`, `portable` or `oracle`.
     pub fn class(&self) -> &'static str {
         match self {
-            Self::Cpu => "oracle",
+            Self::Oracle => "oracle",
             Self::Gpu(_, gpu) => gpu.caps.class(),
         }
     }
 
-    /// Visibility options this painter can draw `session` with: the pinned one, or all that the adapter has.
+    /// Visibility options this backend can draw `session` with: the pinned one, or all that the adapter has.
     pub fn options(&self, preset: &Preset) -> Vec<Option<Visibility>> {
         match (self, preset.accuracy.pins.option::<Visibility>()) {
-            (Self::Cpu, _) => vec![None],
+            (Self::Oracle, _) => vec![None],
             (_, Some(pinned)) => vec![Some(pinned)],
             (Self::Gpu(_, gpu), None) => usable_options(&gpu.caps).into_iter().map(Some).collect(),
         }
     }
 
     /// The picture of `session`.
-    pub fn frame(&mut self, preset: &Preset, scene: &Arc<Scene>) -> Result<Frame, Fault> {
+    pub fn frame(&mut self, preset: &Preset, scene: &Arc<Scene>) -> Result<Frame, CliError> {
         preset.stack.check()?;
         match self {
-            Self::Cpu => Ok(oracle::render_scaled(scene, &preset.moments(scene, preset.output.size), preset.accuracy.scale().factor())?),
+            Self::Oracle => Ok(oracle::render_scaled(scene, &preset.moments(scene, preset.output.size), preset.accuracy.scale().factor())?),
             Self::Gpu(..) => Ok(self.capture(preset, scene)?.into_shown()),
         }
     }
 
     /// The picture with everything that a judge needs.
-    pub fn capture(&mut self, preset: &Preset, scene: &Arc<Scene>) -> Result<Capture, Fault> {
+    pub fn capture(&mut self, preset: &Preset, scene: &Arc<Scene>) -> Result<Capture, CliError> {
         preset.stack.check()?;
         let moments = preset.moments(scene, preset.output.size);
         match self {
-            Self::Cpu => {
-                let ((view, stack), before) = moments.split_last().expect("a preset shows a moment");
+            Self::Oracle => {
+                let ((view, stack), before) = moments.split_last().expect("a preset has at least one frame");
                 let previous = if before.is_empty() { None } else { Some(oracle::render_sequence(scene, before)?.color) };
                 let frame = oracle::render_next(scene, view, stack, previous.as_deref())?;
                 let geometry: Geometry = oracle::project_moved(scene, &draws(scene, view)?, view, stack);
@@ -139,7 +142,7 @@ pub fn usable_options(caps: &Caps) -> Vec<Visibility> {
 }
 
 pub fn describe(summary: &AdapterSummary, caps: &Caps) -> String {
-    let software = if summary.software { ", software: its times say nothing about a graphics card" } else { "" };
+    let software = if summary.software { ", software; compare its timings only with those of software adapters" } else { "" };
     format!("{} ({}, {}, {}{software})", summary.name, summary.backend, summary.driver, caps.class())
 }
 
@@ -151,7 +154,7 @@ pub fn adapter_json(summary: &AdapterSummary, caps: &Caps) -> Value {
 }
 
 /// The scene of a preset.
-pub fn scene_of(preset_file: &PresetFile) -> Result<Arc<Scene>, Fault> {
+pub fn scene_of(preset_file: &PresetFile) -> Result<Arc<Scene>, CliError> {
     preset_file::load_scene(&preset_file.preset, preset_file.path.as_deref())
-        .map_err(|e| Fault::from(e).during(format!("look {}", preset_file.id)))
+        .map_err(|e| CliError::from(e).during(format!("preset {}", preset_file.id)))
 }

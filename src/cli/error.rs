@@ -1,4 +1,4 @@
-//! Exit codes, and errors that know theirs.
+//! Exit codes, and errors with their exit code.
 
 use std::process::ExitCode;
 
@@ -14,11 +14,11 @@ use crate::{
 #[repr(u8)]
 pub enum Exit {
     Done = 0,
-    /// A comparison, check, promised accuracy or dry run failed.
+    /// A comparison, check or stress case failed, an error exceeds its limit, or a dry run found changes.
     Failed = 1,
-    /// Usage, including files that cannot be read, parsed or written.
+    /// Wrong usage, or a file that cannot be read, parsed or written.
     Usage = 2,
-    /// No adapter, or none that can do what is asked.
+    /// No adapter, or none with the required features.
     NoAdapter = 3,
     DeviceLost = 4,
 }
@@ -42,17 +42,17 @@ impl Exit {
 
 /// An error with the exit code it leads to.
 #[derive(Debug)]
-pub struct Fault {
+pub struct CliError {
     pub exit: Exit,
     pub error: anyhow::Error,
 }
 
-impl Fault {
+impl CliError {
     pub fn usage(sentence: impl std::fmt::Display) -> Self {
         Self { exit: Exit::Usage, error: anyhow::anyhow!("{sentence}") }
     }
 
-    /// Why the window did not open: no adapter, a lost device, or something in its way.
+    /// The window did not open: no adapter, a lost device, or no display.
     pub fn window(error: anyhow::Error) -> Self {
         #[cfg(feature = "gui")]
         if error.downcast_ref::<crate::app::DeviceLost>().is_some() {
@@ -66,7 +66,7 @@ impl Fault {
         Self { exit, error }
     }
 
-    /// Says what was being done.
+    /// Adds what was being done.
     pub fn during(self, what: impl std::fmt::Display + Send + Sync + 'static) -> Self {
         Self { exit: self.exit, error: self.error.context(what) }
     }
@@ -93,21 +93,21 @@ fn exit_of_render(error: &RenderError) -> Exit {
     }
 }
 
-impl From<OpenError> for Fault {
+impl From<OpenError> for CliError {
     fn from(error: OpenError) -> Self {
         Self { exit: exit_of_open(&error), error: error.into() }
     }
 }
 
-impl From<RenderError> for Fault {
+impl From<RenderError> for CliError {
     fn from(error: RenderError) -> Self {
         Self { exit: exit_of_render(&error), error: error.into() }
     }
 }
 
-macro_rules! usage_faults {
+macro_rules! usage_errors {
     ($($error:ty),*) => {$(
-        impl From<$error> for Fault {
+        impl From<$error> for CliError {
             fn from(error: $error) -> Self {
                 Self { exit: Exit::Usage, error: error.into() }
             }
@@ -115,4 +115,4 @@ macro_rules! usage_faults {
     )*};
 }
 
-usage_faults![PresetError, SceneError, DrawError, Conflict, std::io::Error];
+usage_errors![PresetError, SceneError, DrawError, Conflict, std::io::Error];
