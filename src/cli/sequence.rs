@@ -344,7 +344,7 @@ mod tests {
     use crate::preset::Clock;
 
     fn args(from: Option<f64>, to: Option<f64>, fps: f64, frames: Option<[Option<u32>; 2]>) -> Sequence {
-        Sequence { preset_file: String::new(), output: None, apng: None, from, to, fps, frames, size: None, tier: None }
+        Sequence { input: String::new(), output: None, apng: None, from, to, fps, frames, size: None, tier: None }
     }
 
     #[test]
