@@ -233,8 +233,9 @@ fn long_lists_of_tiles_are_walked_to_their_end() {
     }
 }
 
+/// The case a-hundred-frames of `rasterlab stress` repeats more often.
 #[test]
-fn a_hundred_frames_are_equal_to_the_bit() {
+fn repeated_frames_are_equal_to_the_bit() {
     let Some(mut renderer) = renderer() else { return };
     let (scene, _) = hall();
     let view = view(&scene, [160, 120]);
@@ -243,7 +244,7 @@ fn a_hundred_frames_are_equal_to_the_bit() {
         let mut draw = || -> Capture { captured(&mut renderer, &scene, &view, &stack(&["facet", "lambert"]), &pinned(option)) };
         let first = draw();
         assert!(first.frame.counters.clipped > 0 && !first.geometry.pieces.is_empty(), "nothing was clipped");
-        for frame in 2..=100 {
+        for frame in 2..=25 {
             let again = draw();
             let what = format!("{} frame {frame}", option.name());
             assert_same(&again.frame, &first.frame, &what);

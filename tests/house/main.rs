@@ -6,6 +6,7 @@ mod cli;
 mod features;
 mod layout;
 mod loader;
+mod meshlets;
 mod mutants;
 mod presets;
 mod registry;
