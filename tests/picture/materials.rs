@@ -1,11 +1,9 @@
-//! Promise: what a material's images show arrives in the picture as the oracle has it, whichever way they are looked up; and a
-//! file's textures load as the standard has them, or are refused in a sentence. The pictures alone need an adapter.
+//! Promise: textures and alpha masks appear in the picture as in the oracle's, whichever way they are sampled.
 
 use std::sync::Arc;
 
 use crate::common::*;
 use glam::DVec3;
-use image::{ImageBuffer, ImageFormat, Rgba};
 use rasterlab::{
     accuracy::Visibility,
     effects::{EFFECTS, Effect, Stack},
@@ -13,27 +11,26 @@ use rasterlab::{
     measure::compare,
     oracle,
     plan::{AccuracyRequest, Tier},
-    preset::{ClipPlayback, Clock, Preset, SceneSource},
+    preset::{Preset, SceneSource},
     scene::{
-        Accessor, Material, Scene,
+        Accessor, Scene,
         camera::{Camera, Projection},
-        gltf::{self, LoadError, limits},
+        gltf,
         texture::{Filter, Image, MipFilter, Texture, Wrap},
         view::View,
     },
     shader::{Fetch, KernelKey, Pass, library::Library, link, reflect},
 };
-use serde_json::{Value, json};
 
 type Picture = Vec<[u8; 4]>;
 
 /// `scene` from `eye` to `target`.
 fn from_eye(scene: &Scene, eye: [f64; 3], target: [f64; 3], size: [u32; 2]) -> View {
     let camera = Camera { eye: eye.into(), target: target.into(), ..Camera::default() };
-    preset_file(scene, camera, size)
+    seen_by(scene, camera, size)
 }
 
-fn preset_file(scene: &Scene, camera: Camera, size: [u32; 2]) -> View {
+fn seen_by(scene: &Scene, camera: Camera, size: [u32; 2]) -> View {
     let scene_source = SceneSource::Builtin(scene.name.clone());
     Preset { scene: scene_source, camera: Some(camera), ..Preset::default() }.view(scene, size)
 }
@@ -54,7 +51,7 @@ fn images_look_as_the_oracle_has_them_on_every_rung_and_under_every_kind_of_effe
     // Over the ground, which is cut behind the eye and runs to the horizon.
     let low = from_eye(&panels, [0.3, -1.9, 1.5], [0.0, -2.2, -6.0], [200, 150]);
     let flat = Camera { eye: DVec3::new(2.0, 1.5, 5.0), projection: Projection::Orthographic { height_m: 5.0 }, ..Camera::default() };
-    let parallel = preset_file(&panels, flat, [160, 120]);
+    let parallel = seen_by(&panels, flat, [160, 120]);
     let globe = scene("globe?tess=6");
     let near = from_eye(&globe, [0.4, 0.5, 1.5], [0.0, 0.0, 0.0], [160, 120]);
     let stacks =
@@ -247,7 +244,7 @@ fn crowns(size: [u32; 2]) -> (Arc<Scene>, [(&'static str, View); 2]) {
     let scene = scene("leaves?n=60");
     let outside = from_eye(&scene, [0.6, 0.9, 3.6], [0.0, 0.0, 0.0], size);
     let camera = Camera { eye: DVec3::new(0.55, 0.1, 0.75), target: DVec3::new(-0.3, -0.1, 0.0), near_m: 0.2, ..Camera::default() };
-    let inside = preset_file(&scene, camera, size);
+    let inside = seen_by(&scene, camera, size);
     (scene, [("outside", outside), ("inside", inside)])
 }
 
@@ -460,409 +457,6 @@ fn another_scene_of_textures_brings_its_own() {
     }
 }
 
-// ---------------------------------------------------------------- files
-
-/// A square whose material looks up one PNG.
-struct Model {
-    json: Value,
-    bytes: Vec<u8>,
-}
-
-const U8: u32 = 5121;
-const I16: u32 = 5122;
-const U16: u32 = 5123;
-const F32: u32 = 5126;
-
-fn le<const N: usize>(values: impl IntoIterator<Item = [u8; N]>) -> Vec<u8> {
-    values.into_iter().flatten().collect()
-}
-
-fn floats(values: &[f32]) -> Vec<u8> {
-    le(values.iter().map(|v| v.to_le_bytes()))
-}
-
-/// 2 x 1 texels, red and translucent green.
-fn encoded(format: ImageFormat) -> Vec<u8> {
-    let picture = ImageBuffer::<Rgba<u8>, _>::from_raw(2, 1, vec![255, 0, 0, 255, 0, 200, 0, 100]).expect("eight bytes");
-    let mut bytes = std::io::Cursor::new(Vec::new());
-    match format {
-        ImageFormat::Png => picture.write_to(&mut bytes, format).expect("it is encoded"),
-        _ => image::DynamicImage::from(picture).into_rgb8().write_to(&mut bytes, format).expect("it is encoded"),
-    }
-    bytes.into_inner()
-}
-
-impl Model {
-    fn new() -> Self {
-        let mut model = Self {
-            json: json!({
-                "asset": { "version": "2.0" }, "buffers": [{ "byteLength": 0 }], "bufferViews": [], "accessors": [],
-                "meshes": [{ "name": "X", "primitives": [{ "attributes": { "POSITION": 0, "TEXCOORD_0": 1 }, "indices": 2, "material": 0 }] }],
-                "nodes": [{ "mesh": 0 }], "scenes": [{ "nodes": [0] }], "scene": 0,
-                "materials": [{ "name": "paper", "pbrMetallicRoughness": { "baseColorTexture": { "index": 0 } } }],
-                "textures": [{ "source": 0, "sampler": 0 }], "samplers": [{}],
-                "images": [{ "name": "flag", "bufferView": 3, "mimeType": "image/png" }],
-            }),
-            bytes: Vec::new(),
-        };
-        let square = [0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 1.0, 1.0, 0.0, 0.0, 1.0, 0.0];
-        let positions = model.accessor(&floats(&square), F32, "VEC3", 4);
-        (model.json["accessors"][positions]["min"], model.json["accessors"][positions]["max"]) = (json!([0, 0, 0]), json!([1, 1, 0]));
-        model.accessor(&floats(&[0.0, 0.0, 1.0, 0.0, 1.0, 1.0, 0.0, 1.0]), F32, "VEC2", 4);
-        model.accessor(&le([0u16, 1, 2, 0, 2, 3].map(u16::to_le_bytes)), U16, "SCALAR", 6);
-        assert_eq!(model.view(&encoded(ImageFormat::Png)), 3);
-        model
-    }
-
-    fn push(&mut self, list: &str, value: Value) -> usize {
-        let list = self.json[list].as_array_mut().expect("a list");
-        list.push(value);
-        list.len() - 1
-    }
-
-    fn view(&mut self, bytes: &[u8]) -> usize {
-        let offset = self.bytes.len();
-        self.bytes.extend_from_slice(bytes);
-        self.bytes.resize(self.bytes.len().next_multiple_of(4), 0);
-        self.json["buffers"][0]["byteLength"] = json!(self.bytes.len());
-        self.push("bufferViews", json!({ "buffer": 0, "byteOffset": offset, "byteLength": bytes.len() }))
-    }
-
-    fn accessor(&mut self, bytes: &[u8], component: u32, kind: &str, count: usize) -> usize {
-        let view = self.view(bytes);
-        self.push("accessors", json!({ "bufferView": view, "componentType": component, "type": kind, "count": count }))
-    }
-
-    fn with(mut self, pointer: &str, value: Value) -> Self {
-        let (parent, key) = pointer.rsplit_once('/').expect("a path");
-        let parent = self.json.pointer_mut(parent).unwrap_or_else(|| panic!("no {parent}"));
-        match parent {
-            Value::Array(list) => list[key.parse::<usize>().expect("a place")] = value,
-            _ => parent[key] = value,
-        }
-        self
-    }
-
-    /// With another image.
-    fn showing(mut self, bytes: &[u8]) -> Self {
-        let view = self.view(bytes);
-        self.with("/images/0/bufferView", json!(view))
-    }
-
-    fn glb(&self) -> Vec<u8> {
-        let mut text = self.json.to_string().into_bytes();
-        text.resize(text.len().next_multiple_of(4), b' ');
-        let length = (12 + 8 + text.len() + 8 + self.bytes.len()) as u32;
-        let word = |v: u32| v.to_le_bytes();
-        let head = [b"glTF".as_slice(), &word(2), &word(length), &word(text.len() as u32), b"JSON", &text].concat();
-        [&head[..], &word(self.bytes.len() as u32), b"BIN\0", &self.bytes].concat()
-    }
-
-    fn load(&self) -> Result<Scene, LoadError> {
-        gltf::parse(&self.glb(), &mut |path, _| panic!("{} was asked for", path.display()))
-    }
-
-    fn scene(&self) -> Scene {
-        self.load().unwrap_or_else(|error| panic!("{error}\n{}", self.json))
-    }
-
-    fn material(&self) -> Material {
-        let scene = self.scene();
-        scene.materials[scene.primitives[0].material].clone()
-    }
-
-    fn texture(&self) -> Texture {
-        self.material().base_texture.expect("a texture")
-    }
-
-    #[track_caller]
-    fn refused(&self, sentence: &str) {
-        let error = self.load().expect_err(sentence).to_string();
-        assert!(error.contains(sentence), "said: {error}\nnot:  {sentence}");
-        assert!(!error.contains('\n') && !error.contains("is a bug"), "{error}");
-    }
-}
-
-const BASE: &str = "/materials/0/pbrMetallicRoughness/baseColorTexture";
-
-#[test]
-fn images_come_as_png_or_jpeg_from_bytes_uris_and_files() {
-    let texels = vec![[255, 0, 0, 255], [0, 200, 0, 100]];
-    let scene = Model::new().scene();
-    assert_eq!((scene.images.len(), &scene.images[0].levels[0].texels), (1, &texels));
-    assert_eq!(scene.images[0].levels.len(), 2, "an open sampler mixes copies");
-    assert_eq!(Model::new().with("/samplers/0/minFilter", json!(9729)).scene().images[0].levels.len(), 1, "no sampler asks for copies");
-
-    let jpeg = Model::new().showing(&encoded(ImageFormat::Jpeg)).with("/images/0/mimeType", json!("image/jpeg")).scene();
-    assert_eq!(jpeg.images[0].size(), [2, 1]);
-    assert!(jpeg.notes.is_empty(), "{:?}", jpeg.notes);
-    let misnamed = Model::new().showing(&encoded(ImageFormat::Jpeg)).scene();
-    assert!(misnamed.notes.iter().any(|note| note.contains("image \"flag\" is image/jpeg, although the file declares \"image/png\"")));
-
-    use base64::{Engine, prelude::BASE64_STANDARD};
-    let data = format!("data:image/png;base64,{}", BASE64_STANDARD.encode(encoded(ImageFormat::Png)));
-    let data = Model::new().with("/images/0", json!({ "uri": data })).scene();
-    assert_eq!(data.images[0].levels[0].texels, texels);
-
-    let folder = tempfile::tempdir().expect("a temporary folder");
-    std::fs::create_dir(folder.path().join("inside")).expect("a folder");
-    for place in ["flag.png", "inside/flag one.png"] {
-        std::fs::write(folder.path().join(place), encoded(ImageFormat::Png)).expect("written");
-    }
-    let load = |uri: &str| {
-        let model = Model::new().with("/images/0", json!({ "uri": uri }));
-        std::fs::write(folder.path().join("inside/model.glb"), model.glb()).expect("written");
-        gltf::load(&folder.path().join("inside/model.glb"))
-    };
-    assert_eq!(load("flag%20one.png").expect("it lies beside the model").images[0].levels[0].texels, texels);
-    for (uri, sentence) in [
-        ("../flag.png", "image 0: URI \"../flag.png\" leads out of the model's folder"),
-        ("http://example.org/flag.png", "has a scheme"),
-        ("none.png", "image 0: \"none.png\": cannot read the file"),
-    ] {
-        let error = load(uri).expect_err(uri).to_string();
-        assert!(error.contains(sentence), "{error}");
-    }
-}
-
-#[test]
-fn only_images_that_something_drawn_looks_up_are_read() {
-    let broken = Model::new().with("/images/0", json!({ "uri": "../../etc/passwd" }));
-    broken.refused("leads out of the model's folder");
-    let unused = broken.with("/meshes/0/primitives/0", json!({ "attributes": { "POSITION": 0 }, "indices": 2 })).scene();
-    assert_eq!((unused.images.len(), unused.triangle_count()), (0, 2));
-    let twice =
-        Model::new().with("/materials/0/emissiveTexture", json!({ "index": 0 })).with("/materials/0/emissiveFactor", json!([1, 1, 1]));
-    assert_eq!(twice.scene().images.len(), 1, "an image is stored once");
-    let dark = Model::new().with("/materials/0/emissiveTexture", json!({ "index": 0 })).material();
-    assert_eq!(dark.emission_texture, None, "what does not shine needs no image");
-}
-
-#[test]
-fn samplers_keep_their_wraps_and_filters() {
-    let plain = Model::new().texture();
-    assert_eq!(plain, Texture::plain(0));
-    let all = Model::new().with("/samplers/0", json!({ "wrapS": 33648, "wrapT": 33071, "magFilter": 9728, "minFilter": 9985 })).texture();
-    let wrap = [Wrap::Mirrored, Wrap::Clamp];
-    assert_eq!(all, Texture { wrap, mag_filter: Filter::Nearest, min_filter: Filter::Linear, mip_filter: MipFilter::Nearest, ..plain });
-    for (filter, min_filter, mip_filter) in [
-        (9728, Filter::Nearest, MipFilter::Unused),
-        (9729, Filter::Linear, MipFilter::Unused),
-        (9984, Filter::Nearest, MipFilter::Nearest),
-        (9986, Filter::Nearest, MipFilter::Mixed),
-        (9987, Filter::Linear, MipFilter::Mixed),
-    ] {
-        let texture = Model::new().with("/samplers/0/minFilter", json!(filter)).texture();
-        assert_eq!((texture.min_filter, texture.mip_filter), (min_filter, mip_filter), "{filter}");
-    }
-    assert_eq!(Model::new().with("/textures/0", json!({ "source": 0 })).texture(), plain, "no sampler");
-}
-
-#[test]
-fn transforms_scale_turn_and_move_and_may_name_another_set() {
-    let mut model = Model::new();
-    let other = model.accessor(&le([0u16, 0, 65535, 0, 65535, 65535, 0, 65535].map(u16::to_le_bytes)), U16, "VEC2", 4);
-    model.json["accessors"][other]["normalized"] = json!(true);
-    let model = model.with("/meshes/0/primitives/0/attributes/TEXCOORD_3", json!(other));
-    let transform = json!({ "offset": [0.25, -1], "rotation": std::f64::consts::FRAC_PI_2, "scale": [2, 3], "texCoord": 3 });
-    let model = model.with(&format!("{BASE}/extensions"), json!({ "KHR_texture_transform": transform }));
-    let texture = model.texture();
-    assert_eq!(texture.set, 3);
-    // A quarter turn, counterclockwise with v down, takes u to -v and v to u.
-    for (stored, placed) in [([0.0, 0.0], [0.25, -1.0]), ([1.0, 0.0], [0.25, -3.0]), ([0.0, 1.0], [3.25, -1.0])] {
-        let place = texture.placed(stored.into());
-        assert!(place.abs_diff_eq(placed.into(), 1e-6), "{stored:?}: {place}");
-    }
-    assert_eq!(model.scene().primitives[0].texcoords[0].map(|texcoords| texcoords.normalized), Some(true));
-    let named = Model::new().with(&format!("{BASE}/texCoord"), json!(0));
-    assert_eq!(named.texture(), Texture::plain(0));
-}
-
-#[test]
-fn coordinates_come_in_every_width_of_the_standard_and_quantized_ones_where_the_file_says_so() {
-    let sets = [
-        (U8, true, vec![0, 0, 255, 0, 255, 255, 0, 255]),
-        (U16, true, le([0u16, 0, 65535, 0, 65535, 65535, 0, 65535].map(u16::to_le_bytes))),
-        (I16, false, le([0i16, 0, 1, 0, 1, 1, 0, 1].map(i16::to_le_bytes))),
-    ];
-    for (component, normalized, bytes) in sets {
-        let mut model = Model::new();
-        let texcoords = model.accessor(&bytes, component, "VEC2", 4);
-        model.json["accessors"][texcoords]["normalized"] = json!(normalized);
-        let mut model = model.with("/meshes/0/primitives/0/attributes/TEXCOORD_0", json!(texcoords));
-        if component == I16 {
-            model.refused("mesh \"X\" primitive 0 TEXCOORD_0: accessor 3 has the type 2 x I16, which glTF does not allow for it");
-            model = model
-                .with("/extensionsRequired", json!(["KHR_mesh_quantization"]))
-                .with("/extensionsUsed", json!(["KHR_mesh_quantization"]));
-        }
-        let scene = model.scene();
-        let texcoords = scene.primitives[0].texcoords[0].expect("coordinates");
-        let corner = |vertex| [0, 1].map(|lane| texcoords.value(&scene.vertex_bytes, vertex, lane));
-        assert_eq!([0, 1, 2, 3].map(corner), [[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]], "{component}");
-    }
-}
-
-#[test]
-fn materials_shine_and_stay_unlit_as_the_file_says() {
-    let shining = Model::new()
-        .with("/materials/0/emissiveFactor", json!([1, 0.5, 0]))
-        .with("/materials/0/extensions", json!({ "KHR_materials_emissive_strength": { "emissiveStrength": 4 } }))
-        .with("/extensionsUsed", json!(["KHR_materials_emissive_strength"]));
-    assert_eq!(shining.material().emission, [4.0, 2.0, 0.0]);
-    assert!(shining.scene().notes.is_empty(), "{:?}", shining.scene().notes);
-    let unlit = shining.with("/materials/0/extensions", json!({ "KHR_materials_unlit": {} })).material();
-    assert!(unlit.unlit && unlit.emission == [0.0; 3] && unlit.base_texture.is_some());
-}
-
-#[test]
-fn alpha_modes_say_what_is_cut_out() {
-    let with_mode = |mode: &str| Model::new().with("/materials/0/alphaMode", json!(mode));
-    assert_eq!(Model::new().material().alpha_cutoff, None, "an opaque material ignores alpha");
-    assert_eq!(with_mode("MASK").material().alpha_cutoff, Some(0.5));
-    let faint = with_mode("MASK")
-        .with("/materials/0/alphaCutoff", json!(0.25))
-        .with("/materials/0/pbrMetallicRoughness/baseColorFactor", json!([1, 1, 1, 0.5]));
-    let faint = faint.material();
-    assert_eq!((faint.alpha_cutoff, faint.base_color[3]), (Some(0.5), 1.0), "what is left is opaque");
-    assert_eq!(with_mode("MASK").with("/materials/0/alphaCutoff", json!(0)).material().alpha_cutoff, None);
-    with_mode("MASK")
-        .with("/materials/0/alphaCutoff", json!(-0.1))
-        .refused("material \"paper\": alphaCutoff -0.1 is not a number from 0 up");
-    with_mode("TRANSLUCENT").refused("alphaMode");
-
-    let blended = with_mode("BLEND").scene();
-    assert_eq!(blended.materials[0].alpha_cutoff, Some(0.5), "its image has a texel of 100 of 255");
-    let note = "material \"paper\": blending is not drawn; it is cut out where its alpha is below one half";
-    assert!(blended.notes.iter().any(|given| given == note), "{:?}", blended.notes);
-    let solid = with_mode("BLEND").showing(&encoded(ImageFormat::Jpeg)).scene();
-    assert!(
-        solid.materials[0].alpha_cutoff.is_none() && solid.notes.iter().any(|note| note.ends_with("blending is not drawn; it is opaque"))
-    );
-
-    let plain = |alpha: f64| {
-        let model = with_mode("MASK").with("/materials/0/pbrMetallicRoughness", json!({ "baseColorFactor": [1, 1, 1, alpha] }));
-        model.scene()
-    };
-    assert_eq!((plain(0.6).triangle_count(), plain(0.6).materials[0].base_color[3]), (2, 1.0));
-    let nothing = plain(0.4);
-    assert!(nothing.triangle_count() == 0 && nothing.notes[0].contains("is left out: the alpha of its material"), "{:?}", nothing.notes);
-}
-
-#[test]
-fn textures_that_do_not_fit_are_refused_by_name() {
-    let at = |place: &str, value: Value| Model::new().with(place, value);
-    at(&format!("{BASE}/index"), json!(9)).refused("baseColorTexture.index: Index out of bounds");
-    at("/textures/0/source", json!(9)).refused("textures[0].source: Index out of bounds");
-    at("/textures/0/sampler", json!(9)).refused("textures[0].sampler: Index out of bounds");
-    at("/textures/0", json!({ "sampler": 0 })).refused("source");
-    at("/samplers/0/wrapS", json!(1)).refused("wrapS");
-    at("/samplers/0/magFilter", json!(9985)).refused("magFilter");
-    at("/samplers/0/minFilter", json!(1)).refused("minFilter");
-    at("/images/0", json!({})).refused("image 0: it has neither a URI nor a bufferView");
-    at("/images/0/uri", json!("flag.png")).refused("image \"flag\": has both a URI and a bufferView");
-    at("/images/0/bufferView", json!(99)).refused("bufferView");
-    at("/bufferViews/3/byteLength", json!(100_000)).refused("image \"flag\": bufferView 3");
-    at(&format!("{BASE}/extensions"), json!({ "KHR_texture_transform": { "scale": [1e39, 1] } })).refused("KHR_texture_transform");
-    at("/materials/0/extensions", json!({ "KHR_materials_emissive_strength": { "emissiveStrength": -1 } }))
-        .refused("material \"paper\": emissiveStrength -1 lies outside 0..=65504");
-    for extension in ["KHR_texture_basisu", "EXT_texture_webp"] {
-        at("/extensionsRequired", json!([extension]))
-            .refused(&format!("it requires the extension \"{extension}\", which is not supported"));
-    }
-}
-
-#[test]
-fn images_that_are_none_are_refused_by_name() {
-    let place = "material \"paper\": baseColorTexture: image \"flag\": ";
-    let png = encoded(ImageFormat::Png);
-    Model::new().showing(b"RIFF....WEBP").refused(&format!("{place}is neither PNG nor JPEG"));
-    Model::new().showing(&[]).refused("is neither PNG nor JPEG");
-    for length in [8, 20, 40, png.len() - 16] {
-        Model::new().showing(&png[..length]).refused(&format!("{place}cannot be decoded"));
-    }
-    let mut flipped = png.clone();
-    flipped[20] ^= 64;
-    Model::new().showing(&flipped).refused("image \"flag\": ");
-    let jpeg = encoded(ImageFormat::Jpeg);
-    Model::new().showing(&jpeg[..60]).refused(&format!("{place}cannot be decoded"));
-}
-
-/// A PNG of one colour: a few bytes for any size.
-fn blank(width: u32, height: u32) -> Vec<u8> {
-    let mut bytes = Vec::new();
-    let mut encoder = png::Encoder::new(&mut bytes, width, height);
-    encoder.set_color(png::ColorType::Grayscale);
-    encoder.set_depth(png::BitDepth::One);
-    encoder.set_compression(png::Compression::High);
-    let mut writer = encoder.write_header().expect("a header");
-    writer.write_image_data(&vec![0; width.div_ceil(8) as usize * height as usize]).expect("texels");
-    writer.finish().expect("an end");
-    bytes
-}
-
-#[test]
-fn an_image_cannot_ask_for_more_than_the_budget() {
-    let bomb = blank(60_000, 60_000 / 50);
-    assert!(bomb.len() < 100_000, "{} bytes", bomb.len());
-    Model::new().showing(&bomb).refused("image \"flag\": is 60000 x 1200 texels; 1 to 8192 a side are read");
-    let side = limits::IMAGE_SIDE;
-    assert_eq!(Model::new().showing(&blank(side, 16)).with("/samplers/0/minFilter", json!(9729)).scene().images[0].size(), [side, 16]);
-    // Two of the largest fit, a third does not; its header is enough to know.
-    let mut model = Model::new();
-    let largest = model.view(&blank(side, side));
-    for place in 0..3 {
-        let image = model.push("images", json!({ "bufferView": largest, "mimeType": "image/png", "name": format!("large {place}") }));
-        let texture = model.push("textures", json!({ "source": image, "sampler": 0 }));
-        let material = model.push("materials", json!({ "pbrMetallicRoughness": { "baseColorTexture": { "index": texture } } }));
-        let primitive = json!({ "attributes": { "POSITION": 0, "TEXCOORD_0": 1 }, "indices": 2, "material": material });
-        model.json["meshes"][0]["primitives"].as_array_mut().expect("a list").push(primitive);
-    }
-    let model = model.with("/samplers/0/minFilter", json!(9729));
-    model.refused("image \"large 1\": brings the model's images to 536870920 bytes once decoded; at most 536870912 are read");
-}
-
-#[test]
-fn coordinates_that_do_not_fit_are_refused_by_name() {
-    let place = "mesh \"X\" primitive 0 TEXCOORD_0: ";
-    Model::new()
-        .with("/meshes/0/primitives/0/attributes", json!({ "POSITION": 0 }))
-        .refused(&format!("{place}is missing, and a texture of its material is looked up there"));
-    Model::new().with(&format!("{BASE}/texCoord"), json!(2)).refused("mesh \"X\" primitive 0 TEXCOORD_2: is missing");
-    for (values, sentence) in [
-        ([0.0, 0.0, f32::NAN, 0.0, 1.0, 1.0, 0.0, 1.0], "vertex 1 is not finite"),
-        ([0.0, 0.0, 1.0, 0.0, 1.0, f32::INFINITY, 0.0, 1.0], "vertex 2 is not finite"),
-        ([0.0, 0.0, 1e6, 0.0, 1.0, 1.0, 0.0, 1.0], "vertex 1 lies at 1000000 0 of the image, which is followed to 65536 repeats"),
-    ] {
-        let mut model = Model::new();
-        let texcoords = model.accessor(&floats(&values), F32, "VEC2", 4);
-        model.with("/meshes/0/primitives/0/attributes/TEXCOORD_0", json!(texcoords)).refused(&format!("{place}{sentence}"));
-    }
-    let mut short = Model::new();
-    let texcoords = short.accessor(&floats(&[0.0; 6]), F32, "VEC2", 3);
-    short.with("/meshes/0/primitives/0/attributes/TEXCOORD_0", json!(texcoords)).refused("accessor 3 has 3 elements for 4 vertices");
-    Model::new().with("/accessors/1/type", json!("SCALAR")).refused(place);
-    Model::new().with("/accessors/1/componentType", json!(U16)).refused(place);
-}
-
-#[test]
-fn broken_images_never_panic() {
-    let (png, jpeg) = (encoded(ImageFormat::Png), encoded(ImageFormat::Jpeg));
-    let mut loaded = 0;
-    for seed in 0..600u32 {
-        let mut bytes = if seed % 2 == 0 { png.clone() } else { jpeg.clone() };
-        for flip in 0..1 + seed % 3 {
-            let at = rasterlab::math::hash(8 * seed + flip) as usize % (8 * bytes.len());
-            bytes[at / 8] ^= 1 << (at % 8);
-        }
-        match Model::new().showing(&bytes).load() {
-            Ok(_) => loaded += 1,
-            Err(error) => assert!(!error.to_string().contains("is a bug"), "seed {seed}: a panic was caught"),
-        }
-    }
-    assert!(loaded > 20, "only {loaded} still load: the mutations are too rough");
-}
-
 #[test]
 fn textured_boxes_of_the_corpus_show_their_image() {
     let corpus = std::path::Path::new("/usr/share/assimp/models/glTF2");
@@ -891,154 +485,4 @@ fn textured_boxes_of_the_corpus_show_their_image() {
         pictures.iter().all(|picture| compare::pictures(picture, &pictures[0], 0).pixels_over_tolerance == 0),
         "three ways to store one box"
     );
-}
-
-// ---------------------------------------------------------------- the validator of the standard
-
-/// Classes of errors that we leave alone: what a file says about itself and nobody reads, and normals of any length.
-const UNREAD: [&str; 4] =
-    ["ACCESSOR_MIN_MISMATCH", "ACCESSOR_MAX_MISMATCH", "ACCESSOR_VECTOR3_NON_UNIT", "MESH_PRIMITIVE_NO_TANGENT_SPACE"];
-
-/// Reads every file named after it and prints a line of JSON each: the codes of its errors.
-const VALIDATE: &str = r#"
-const validator = require('gltf-validator'), fs = require('fs'), path = require('path');
-const beside = file => uri => new Promise((found, failed) =>
-    fs.readFile(path.resolve(path.dirname(file), decodeURIComponent(uri)), (error, bytes) => error ? failed(String(error)) : found(new Uint8Array(bytes))));
-const codes = report => report.issues.messages.filter(message => message.severity === 0).map(message => message.code);
-(async () => {
-    for (const file of process.argv.slice(1)) {
-        const options = { uri: path.basename(file), externalResourceFunction: beside(file) };
-        const found = await validator.validateBytes(new Uint8Array(fs.readFileSync(file)), options).then(codes, error => [String(error)]);
-        console.log(JSON.stringify(found));
-    }
-})();
-"#;
-
-/// Codes of the errors that the validator finds in every file; none where node or the validator is missing.
-fn validated(files: &[std::path::PathBuf]) -> Option<Vec<Vec<String>>> {
-    let node = |script: &str| {
-        let mut command = std::process::Command::new("node");
-        command.current_dir(env!("CARGO_MANIFEST_DIR")).args(["-e", script]);
-        command
-    };
-    let is_there = node("require('gltf-validator')").output().is_ok_and(|output| output.status.success());
-    if !is_there {
-        eprintln!("gltf-validator is not installed (npm install gltf-validator here, or NODE_PATH): nothing is held against it");
-        return None;
-    }
-    let output = node(VALIDATE).arg("--").args(files).output().expect("node runs");
-    let lines = String::from_utf8(output.stdout).expect("JSON");
-    let lines: Vec<Vec<String>> = lines.lines().map(|line| serde_json::from_str(line).expect("JSON")).collect();
-    assert_eq!(lines.len(), files.len(), "{}", String::from_utf8_lossy(&output.stderr));
-    Some(lines)
-}
-
-fn models_below(folder: &std::path::Path, found: &mut Vec<std::path::PathBuf>) {
-    for entry in std::fs::read_dir(folder).expect("the corpus can be read") {
-        let path = entry.expect("the corpus can be read").path();
-        if path.is_dir() {
-            models_below(&path, found);
-        } else if path.extension().is_some_and(|e| e == "gltf" || e == "glb") {
-            found.push(path);
-        }
-    }
-}
-
-#[test]
-fn what_we_accept_the_validator_accepts_and_the_malformed_are_refused_by_both() {
-    let corpus = std::path::Path::new("/usr/share/assimp/models/glTF2");
-    let mut files = Vec::new();
-    if corpus.is_dir() {
-        models_below(corpus, &mut files);
-    }
-    files.sort();
-    let from_corpus = files.len();
-    let folder = tempfile::tempdir().expect("a temporary folder");
-    let malformed: Vec<(&str, Model)> = malformed();
-    for (name, model) in &malformed {
-        let path = folder.path().join(format!("{name}.glb"));
-        std::fs::write(&path, model.glb()).expect("written");
-        files.push(path);
-    }
-    std::fs::write(folder.path().join("well.glb"), Model::new().glb()).expect("written");
-    files.push(folder.path().join("well.glb"));
-    let Some(errors) = validated(&files) else { return };
-    let mut disagreements = Vec::new();
-    for (place, (file, codes)) in files.iter().zip(&errors).enumerate() {
-        let codes: Vec<&String> = codes.iter().filter(|code| !UNREAD.contains(&code.as_str())).collect();
-        // Beyond the standard, or a schema of its own: extensions that we lack, and a scene that must have nodes.
-        let is_ours = ["techniqueWebGL", "draco", "SceneWithoutNodes"].iter().any(|name| file.to_string_lossy().contains(name));
-        match gltf::load(file) {
-            Ok(_) if !codes.is_empty() => disagreements.push(format!("{} is accepted, and the validator says {codes:?}", file.display())),
-            Err(error) if codes.is_empty() && !is_ours => disagreements.push(format!("the validator has nothing against it: {error}")),
-            _ => {}
-        }
-        if place >= from_corpus {
-            assert_eq!(gltf::load(file).is_err(), place < from_corpus + malformed.len(), "{}", file.display());
-        }
-    }
-    assert_eq!(disagreements, Vec::<String>::new());
-}
-
-/// Files that break a rule of the standard about textures, one each.
-fn malformed() -> Vec<(&'static str, Model)> {
-    let at = |place: &str, value: Value| Model::new().with(place, value);
-    let mut not_finite = Model::new();
-    let texcoords = not_finite.accessor(&floats(&[0.0, 0.0, f32::NAN, 0.0, 1.0, 1.0, 0.0, 1.0]), F32, "VEC2", 4);
-    let mut few = Model::new();
-    let three = few.accessor(&floats(&[0.0; 6]), F32, "VEC2", 3);
-    let set = "/meshes/0/primitives/0/attributes/TEXCOORD_0";
-    vec![
-        ("texture beyond the list", at(&format!("{BASE}/index"), json!(9))),
-        ("image beyond the list", at("/textures/0/source", json!(9))),
-        ("sampler beyond the list", at("/textures/0/sampler", json!(9))),
-        ("an image of nothing", at("/images/0", json!({}))),
-        ("an image of two things", at("/images/0/uri", json!("flag.png"))),
-        ("a view beyond its buffer", at("/bufferViews/3/byteLength", json!(100_000))),
-        ("no coordinates", at("/meshes/0/primitives/0/attributes", json!({ "POSITION": 0 }))),
-        ("coordinates of one lane", at("/accessors/1/type", json!("SCALAR"))),
-        ("coordinates that are no numbers", not_finite.with(set, json!(texcoords))),
-        ("fewer coordinates than vertices", few.with(set, json!(three))),
-        ("a negative cutoff", at("/materials/0/alphaMode", json!("MASK")).with("/materials/0/alphaCutoff", json!(-1))),
-    ]
-}
-
-// ---------------------------------------------------------------- cameras
-
-#[test]
-fn cameras_of_a_file_are_chosen_by_name_and_go_with_their_nodes() {
-    let mut model = Model::new();
-    let (times, places) = (model.accessor(&floats(&[0.0, 2.0]), F32, "SCALAR", 2), floats(&[0.0, 0.0, 5.0, 4.0, 0.0, 5.0]));
-    (model.json["accessors"][times]["min"], model.json["accessors"][times]["max"]) = (json!([0]), json!([2]));
-    let places = model.accessor(&places, F32, "VEC3", 2);
-    let lens = json!({ "type": "perspective", "perspective": { "yfov": 0.8, "znear": 0.1 } });
-    let model = model
-        .with("/cameras", json!([lens.clone(), lens]))
-        .with("/nodes", json!([{ "mesh": 0 }, { "children": [2] }, { "camera": 0, "name": "chase", "translation": [0, 1, 0] }, { "camera": 1, "name": "still", "translation": [0, 0, 9] }]))
-        .with("/scenes/0/nodes", json!([0, 1, 3]))
-        .with(
-            "/animations",
-            json!([{ "name": "Drive", "channels": [{ "sampler": 0, "target": { "node": 1, "path": "translation" } }], "samplers": [{ "input": times, "output": places }] }]),
-        );
-    let scene = model.scene();
-    let names: Vec<&str> = scene.cameras.iter().map(|camera| camera.name.as_str()).collect();
-    assert_eq!(names, ["chase", "still"]);
-    let eye = |camera: &str, clip: &str, time_s: f64| {
-        let play = ClipPlayback { clip: clip.into(), ..ClipPlayback::default() };
-        let preset =
-            Preset { scene_camera: camera.into(), playback: play, clock: Clock { time_s, ..Clock::default() }, ..Preset::default() };
-        preset.check(&scene).unwrap_or_else(|error| panic!("{error}"));
-        let view = preset.view(&scene, [64, 48]);
-        (view.eye, view.forward)
-    };
-    assert_eq!(eye("", "", 0.5).0, DVec3::new(0.0, 1.0, 0.0), "at rest its node stands in its parent's place");
-    assert_eq!(eye("", "Drive", 0.5), (DVec3::new(1.0, 1.0, 5.0), DVec3::NEG_Z), "the first, unasked");
-    assert_eq!(eye("chase", "Drive", 1.5).0, DVec3::new(3.0, 1.0, 5.0));
-    assert_eq!(eye("#1", "Drive", 1.5).0, DVec3::new(0.0, 0.0, 9.0));
-    assert_eq!(eye("still", "", 0.0).0, DVec3::new(0.0, 0.0, 9.0));
-    let lost = Preset { scene_camera: "crane".into(), ..Preset::default() };
-    assert_eq!(lost.check(&scene).unwrap_err().to_string(), "scene.camera: the scene has no camera \"crane\"; it has \"chase\", \"still\"");
-    let own = Camera { eye: DVec3::splat(7.0), ..Camera::default() };
-    let own = Preset { scene_camera: "still".into(), camera: Some(own), ..Preset::default() };
-    assert_eq!(own.view(&scene, [64, 48]).eye, DVec3::splat(7.0), "a preset's own camera comes first");
 }

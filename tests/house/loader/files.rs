@@ -1,0 +1,194 @@
+//! Promise: containers, URIs and files: only files in the model's folder are read, within limits.
+
+use std::{
+    fs,
+    path::{Path, PathBuf},
+};
+
+use base64::{Engine, prelude::BASE64_STANDARD};
+use rasterlab::scene::{
+    Scene,
+    gltf::{self, LoadError, limits},
+};
+use serde_json::json;
+
+use super::model::*;
+
+struct Folder(tempfile::TempDir);
+
+impl Folder {
+    fn new() -> Self {
+        Self(tempfile::tempdir().unwrap())
+    }
+
+    fn path(&self, name: &str) -> PathBuf {
+        self.0.path().join(name)
+    }
+
+    fn load(&self, model: &Model) -> Result<Scene, LoadError> {
+        fs::write(self.path("model.gltf"), model.json.to_string()).unwrap();
+        gltf::load(&self.path("model.gltf"))
+    }
+}
+
+#[test]
+fn buffers_come_from_data_uris_and_from_files_beside_the_model() {
+    let model = Model::square();
+    let data = format!("data:application/octet-stream;base64,{}", BASE64_STANDARD.encode(&model.bytes));
+    let embedded = model.clone().with("/buffers/0/uri", json!(data)).json.to_string();
+    let scene = gltf::parse(embedded.as_bytes(), &mut |_, _| unreachable!()).unwrap();
+    assert_eq!(triangles(&scene), square());
+
+    let folder = Folder::new();
+    fs::create_dir(folder.path("parts")).unwrap();
+    fs::write(folder.path("parts/my data.bin"), &model.bytes).unwrap();
+    let scene = folder.load(&model.with("/buffers/0/uri", json!("./parts/my%20data.bin"))).unwrap();
+    assert_eq!((triangles(&scene), scene.name.as_str()), (square(), "model"));
+}
+
+#[test]
+fn uris_that_lead_out_of_the_folder_are_refused_unread() {
+    // The bytes are there to be had: one folder up, and by absolute path.
+    let outer = Folder::new();
+    let model = Model::square();
+    fs::write(outer.path("secret.bin"), &model.bytes).unwrap();
+    fs::create_dir(outer.path("inner")).unwrap();
+    let absolute = outer.path("secret.bin").display().to_string();
+    let uris = [
+        "../secret.bin".into(),
+        "./../secret.bin".into(),
+        "a/../../secret.bin".into(),
+        "%2e%2e/secret.bin".into(),
+        "%2E%2E%2Fsecret.bin".into(),
+        "..\\secret.bin".into(),
+        "..%5csecret.bin".into(),
+        absolute.clone(),
+        format!("file:{absolute}"),
+        format!("file://{absolute}"),
+        format!("FILE://{absolute}"),
+        "http://localhost/secret.bin".into(),
+        "C:/secret.bin".into(),
+        "C%3A/secret.bin".into(),
+        "secret%FF.bin".into(),
+        "secret%.bin".into(),
+        "secret%+1.bin".into(),
+        "secret%00.bin".into(),
+        "".into(),
+        ".".into(),
+    ];
+    for uri in uris {
+        let text = model.clone().with("/buffers/0/uri", json!(uri)).json.to_string();
+        let error = gltf::parse(text.as_bytes(), &mut |path, _| panic!("{uri}: {} was asked for", path.display())).expect_err(&uri);
+        assert!(error.to_string().starts_with("buffer 0: URI "), "{error}");
+        let file = outer.path("inner/model.gltf");
+        fs::write(&file, text).unwrap();
+        assert!(gltf::load(&file).is_err(), "{uri}");
+    }
+}
+
+#[cfg(unix)]
+#[test]
+fn links_out_of_the_folder_are_refused() {
+    let (outer, inner) = (Folder::new(), Folder::new());
+    let model = Model::square().with("/buffers/0/uri", json!("data.bin"));
+    fs::write(outer.path("data.bin"), &model.bytes).unwrap();
+    std::os::unix::fs::symlink(outer.path("data.bin"), inner.path("data.bin")).unwrap();
+    let error = inner.load(&model).unwrap_err().to_string();
+    assert_eq!(error, "model.gltf: buffer 0: \"data.bin\": it lies outside the model's folder; copy it there");
+    // A link that stays inside is an ordinary file.
+    fs::remove_file(inner.path("data.bin")).unwrap();
+    fs::write(inner.path("real.bin"), &model.bytes).unwrap();
+    std::os::unix::fs::symlink("real.bin", inner.path("data.bin")).unwrap();
+    assert!(inner.load(&model).is_ok());
+}
+
+#[cfg(unix)]
+#[test]
+fn pipes_and_folders_are_refused_without_being_opened() {
+    let folder = Folder::new();
+    let model = Model::square().with("/buffers/0/uri", json!("data.bin"));
+    fs::create_dir(folder.path("data.bin")).unwrap();
+    assert!(folder.load(&model).unwrap_err().to_string().ends_with("it is not a regular file"));
+    fs::remove_dir(folder.path("data.bin")).unwrap();
+    // Opening a pipe that nobody writes to would wait for ever.
+    assert!(std::process::Command::new("mkfifo").arg(folder.path("data.bin")).status().unwrap().success());
+    assert!(folder.load(&model).unwrap_err().to_string().ends_with("it is not a regular file"));
+    assert!(std::process::Command::new("mkfifo").arg(folder.path("pipe.glb")).status().unwrap().success());
+    assert_eq!(gltf::load(&folder.path("pipe.glb")).unwrap_err().to_string(), "pipe.glb: it is not a regular file");
+    assert!(gltf::load(Path::new("/dev/zero")).is_err());
+}
+
+#[test]
+fn huge_and_absent_files_are_refused() {
+    let folder = Folder::new();
+    let model = Model::square().with("/buffers/0/uri", json!("data.bin"));
+    assert!(folder.load(&model).unwrap_err().to_string().starts_with("model.gltf: buffer 0: \"data.bin\": cannot read the file: "));
+    // Sparse on disk: no test writes 300 MiB.
+    fs::File::create(folder.path("data.bin")).unwrap().set_len(300 << 20).unwrap();
+    assert!(folder.load(&model).unwrap_err().to_string().ends_with("it has 314572800 bytes; allowed: at most 268435456"));
+    fs::File::create(folder.path("huge.glb")).unwrap().set_len(limits::FILE_BYTES + 1).unwrap();
+    assert_eq!(
+        gltf::load(&folder.path("huge.glb")).unwrap_err().to_string(),
+        "huge.glb: it has 268435457 bytes; allowed: at most 268435456"
+    );
+    assert!(gltf::load(&folder.path("absent.glb")).unwrap_err().to_string().starts_with("absent.glb: cannot read the file: "));
+}
+
+#[test]
+fn buffers_together_have_a_budget() {
+    let mut model = Model::square();
+    model.json["buffers"] = json!([{ "byteLength": 1, "uri": "a" }, { "byteLength": 1, "uri": "b" }, { "byteLength": 1, "uri": "c" }]);
+    let mut asked = Vec::new();
+    let error = gltf::parse(model.json.to_string().as_bytes(), &mut |path, most| {
+        asked.push((path.display().to_string(), most));
+        Ok(vec![0; most.min(200 << 20) as usize])
+    })
+    .unwrap_err();
+    assert_eq!(asked, [("a".into(), 256 << 20), ("b".into(), 256 << 20), ("c".into(), 112 << 20)]);
+    assert!(error.to_string().contains("bufferView 0 (48 bytes from byte 0) exceeds buffer 0, which has 1 bytes"), "{error}");
+}
+
+#[test]
+fn glb_lengths_are_checked_before_use() {
+    let good = Model::square().glb();
+    let refused = |bytes: &[u8], sentence: &str| {
+        let error = gltf::parse(bytes, &mut |_, _| unreachable!()).expect_err(sentence).to_string();
+        assert!(error.contains(sentence) && !error.contains("is a bug"), "said: {error}\nnot:  {sentence}");
+    };
+    let patched = |at: usize, value: u32| {
+        let mut bytes = good.clone();
+        bytes[at..at + 4].copy_from_slice(&value.to_le_bytes());
+        bytes
+    };
+    refused(b"glTF", "the GLB header has 4 of 12 bytes");
+    refused(&good[..11], "the GLB header has 11 of 12 bytes");
+    refused(&good[..12], "the GLB header states");
+    refused(&patched(4, 1), "GLB version 1 is not supported");
+    for length in [0, 11, u32::MAX, good.len() as u32 + 1] {
+        refused(&patched(8, length), &format!("the GLB header states {length} bytes"));
+    }
+    refused(&patched(8, 12), "the first GLB chunk is not JSON");
+    refused(&patched(12, u32::MAX), "a GLB chunk states 4294967295 bytes");
+    refused(&patched(16, 0), "the first GLB chunk is not JSON");
+    refused(b"", "not a glTF file");
+    refused(b"\x89PNG", "not a glTF file");
+    refused("[".repeat(200_000).as_bytes(), "not a glTF file");
+}
+
+#[test]
+fn versions_and_extensions_are_named() {
+    Model::square().with("/asset/version", json!("1.0")).refused("glTF version \"1.0\" is not supported");
+    Model::square().with("/asset", json!({})).refused("missing field `version`");
+    Model::square()
+        .with("/extensionsRequired", json!(["KHR_draco_mesh_compression"]))
+        .refused("it requires the extension \"KHR_draco_mesh_compression\", which is not supported; export the model without compression");
+    Model::square()
+        .with("/extensionsRequired", json!(["EXT_meshopt_compression"]))
+        .refused("it requires the extension \"EXT_meshopt_compression\", which is not supported; export the model without compression");
+    Model::square().with("/extensionsRequired", json!(["KHR_mesh_quantization"])).scene();
+    for accepted in
+        ["KHR_lights_punctual", "KHR_materials_unlit", "KHR_materials_ior", "KHR_materials_emissive_strength", "KHR_texture_transform"]
+    {
+        Model::square().with("/extensionsRequired", json!([accepted])).scene();
+    }
+}
