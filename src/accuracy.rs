@@ -1,38 +1,38 @@
-//! The accuracy axes: every axis on which a picture trades speed for accuracy, and its options, from fast to accurate.
+//! The accuracy axes: every way in which a picture trades speed for accuracy, and its options, from fast to accurate.
 //!
-//! A option is a file behind a slot of the kernels, or an override where only arithmetic changes. One list, [`AXES`], drives
-//! keys of presets, panels, benches and tests; which option is cheapest within a tolerance is the planner's affair.
+//! An option is another shader file, or an override where only arithmetic changes. One list, [`AXES`], drives the settings of
+//! presets, panels, benches and tests. The planner chooses the cheapest option within a tolerance.
 
 /// One option of an axis, known by its type.
 pub trait AxisOption: Copy {
-    /// Place of the axis in [`AXES`].
+    /// Index of the axis in [`AXES`].
     const AXIS: usize;
-    /// Place of the option on its axis.
-    fn place(self) -> usize;
-    /// The option at a place that [`AxisOption::place`] gave.
-    fn at(place: usize) -> Self;
+    /// Index of the option on its axis, 0 for the fastest.
+    fn index(self) -> usize;
+    /// The option with this index, which must be one of the axis.
+    fn from_index(index: usize) -> Self;
 }
 
 /// An axis: its name, what it decides, and its options.
 #[derive(Debug)]
 pub struct Axis {
-    /// Key in presets: `accuracy.<name>`.
+    /// Setting in presets: `accuracy.<name>`.
     pub name: &'static str,
     pub about: &'static str,
-    /// The options' words, fast ones first.
+    /// The names of the options, fast ones first.
     pub words: &'static [&'static str],
-    /// What a preset may say: "planned", or a option's word.
+    /// What a preset may say: "planned", or the name of an option.
     pub choices: &'static [&'static str],
     /// What each option does, in the same order.
     pub option_abouts: &'static [&'static str],
-    /// Place of the option that is taken unless something speaks for another.
+    /// Index of the default option.
     pub default: usize,
     get: fn(&AccuracyOptions) -> usize,
     set: fn(&mut AccuracyOptions, usize),
 }
 
 impl Axis {
-    /// Place of the axis in [`AXES`].
+    /// Index of the axis in [`AXES`].
     pub fn index(&self) -> usize {
         AXES.iter().position(|axis| axis.name == self.name).expect("an axis of the list")
     }
@@ -42,8 +42,9 @@ impl Axis {
     }
 }
 
-macro_rules! accuracy {
-    ($($(#[doc = $about:literal])+ $axis:ident: $name:ident = $key:literal, default $default:ident {
+/// Declares every axis: an enum of its options, its member of [`AccuracyOptions`], and its entry in [`AXES`].
+macro_rules! axes {
+    ($($(#[doc = $about:literal])+ $axis:ident: $name:ident, default $default:ident {
         $($(#[doc = $option_about:literal])+ $option:ident = $word:literal,)+
     })+) => {
         $(
@@ -64,183 +65,182 @@ macro_rules! accuracy {
             }
 
             impl AxisOption for $name {
-                const AXIS: usize = Place::$name as usize;
-                fn place(self) -> usize { self as usize }
-                fn at(place: usize) -> Self { Self::ALL[place] }
+                const AXIS: usize = AxisIndex::$name as usize;
+                fn index(self) -> usize { self as usize }
+                fn from_index(index: usize) -> Self { Self::ALL[index] }
             }
         )+
 
-        /// Places of the axes.
-        enum Place { $($name),+ }
+        enum AxisIndex { $($name),+ }
 
-        /// A option on every axis.
+        /// One option on every axis.
         #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
         pub struct AccuracyOptions { $($(#[doc = $about])+ pub $axis: $name,)+ }
 
-        /// Every axis, in the order in which people read about them.
+        /// Every axis, in the order in which they are listed.
         pub const AXES: &[Axis] = &[$(Axis {
-            name: $key,
+            name: stringify!($axis),
             about: concat!($($about),+),
             words: &[$($word),+],
             choices: &["planned", $($word),+],
             option_abouts: &[$(concat!($($option_about),+)),+],
             default: $name::$default as usize,
             get: |options| options.$axis as usize,
-            set: |options, place| options.$axis = $name::ALL[place],
+            set: |options, index| options.$axis = $name::ALL[index],
         }),+];
     };
 }
 
-accuracy! {
-    /// How it is decided which samples a triangle covers.
-    coverage: Coverage = "coverage", default Fixed8 {
-        /// Edges in f32, every edge inclusive: samples on a shared edge are drawn twice.
+axes! {
+    /// Which samples a triangle covers.
+    coverage: Coverage, default Fixed8 {
+        /// Edges in f32, all inclusive: samples on a shared edge are drawn twice.
         Float = "float",
         /// Edges in f32 with the top-left rule: rounding leaves holes and doubles.
         FloatTopLeft = "float-top-left",
-        /// Exact edges between corners on 1/16 px.
+        /// Exact edges between corners snapped to 1/16 px.
         Fixed4 = "fixed4",
-        /// Exact edges between corners on 1/256 px.
+        /// Exact edges between corners snapped to 1/256 px.
         Fixed8 = "fixed8",
-        /// Exact edges between corners on 1/4096 px, in pictures of at most 2,047 px a side.
+        /// Exact edges between corners snapped to 1/4096 px, in pictures of at most 2,047 px a side.
         Fixed12 = "fixed12",
     }
-    /// In how many bits vertices say where they are, and from where they count.
-    position_format: PositionFormat = "position_format", default Stored {
-        /// 10 bits an axis, evenly spaced in the box of each primitive: 4 bytes a vertex, and cracks between neighbours.
+    /// In how many bits positions are stored, and relative to what.
+    position_format: PositionFormat, default Stored {
+        /// 10 bits per axis, evenly spaced in the box of each primitive: 4 bytes per vertex, with cracks between neighbours.
         Packed10 = "packed10",
-        /// 16 bits an axis of the same: 8 bytes a vertex.
+        /// 16 bits per axis, in the same way: 8 bytes per vertex.
         Packed16 = "packed16",
-        /// As the file has them.
+        /// As the file stores them.
         Stored = "stored",
-        /// The same relative to the eye, which is taken out in f64 first: what lies far from its origin keeps its places.
+        /// As the file stores them, then relative to the eye, computed in f64: exact far from the origin, too.
         Relative = "relative",
     }
-    /// How vertices come to their place in the picture.
-    vertex_transform: VertexTransform = "vertex_transform", default Snapped {
-        /// Floats, with the viewport's shift in floats too, then snapped.
+    /// How vertices are projected and snapped.
+    vertex_transform: VertexTransform, default Snapped {
+        /// In floats, the shift of the viewport included, then snapped.
         Viewport = "viewport",
-        /// Floats relative to the centre of the picture, snapped once.
+        /// In floats relative to the centre of the picture, then snapped.
         Snapped = "snapped",
-        /// The same in integer arithmetic: the same bits on every adapter and on the CPU.
+        /// In integer arithmetic: the same bits on every adapter and on the CPU.
         Strict = "strict",
     }
-    /// How joints hold the vertices of a skin together.
-    skinning: Skinning = "skinning", default Linear {
-        /// The mean of their matrices, as glTF has it: where they twist or bend apart, volume is lost.
+    /// How the joints of a skin are blended.
+    skinning: Skinning, default Linear {
+        /// The mean of their matrices, as in glTF: where joints twist or bend, volume is lost.
         Linear = "linear",
-        /// The mean of their motions as dual quaternions: lengths are kept, and nearly all of the volume.
+        /// The mean of their motions as dual quaternions: lengths are kept, and nearly all volume.
         Dual = "dual",
     }
-    /// How the flow of particles is derived from noise.
-    curl_noise: CurlNoise = "curl_noise", default Analytic {
-        /// From six values about a point.
+    /// How the velocity field of particles is derived from noise.
+    curl_noise: CurlNoise, default Analytic {
+        /// From six samples around a point.
         Difference = "difference",
-        /// From the exact derivatives of the noise, which take one visit to its lattice.
+        /// From the exact derivatives of the noise, which take one lattice lookup.
         Analytic = "analytic",
     }
-    /// How particles are kept from one step to the next.
-    particle_storage: ParticleStorage = "particle_storage", default Float32 {
-        /// Places as 16-bit shares of the room, velocities as halves: 16 bytes a particle.
+    /// How particles are stored between steps.
+    particle_storage: ParticleStorage, default Float32 {
+        /// Positions as 16-bit fractions of their bounds, velocities as halves: 16 bytes per particle.
         Half16 = "half16",
-        /// All numbers as floats: 32 bytes a particle.
+        /// All numbers as floats: 32 bytes per particle.
         Float32 = "float32",
     }
-    /// What a depth is compared by.
-    depth: DepthFormat = "depth", default Reversed {
+    /// Which depth values are compared.
+    depth: DepthFormat, default Reversed {
         /// 16 bits, evenly spaced in normalized device depth.
         Ndc16 = "ndc16",
         /// 16 bits, evenly spaced in the (piecewise linear) logarithm of depth.
         Log16 = "log16",
         /// 24 bits of the same.
         Log24 = "log24",
-        /// All 32 bits of a float that is 0 at the near plane, as most pictures had it for decades.
+        /// Conventional float depth, 32 bits: 0 at the near plane, 1 far away.
         Standard = "standard",
-        /// All 32 bits of a float that is 1 at the near plane and 0 far away.
+        /// Reversed float depth, 32 bits: 1 at the near plane, 0 far away.
         Reversed = "reversed",
-        /// The same from a quotient of integers: the same bits wherever the corners are the same.
+        /// Reversed depth from a quotient of integers: the same bits wherever the corners are the same.
         Integer = "integer",
     }
-    /// Where depth and triangle id of a pixel meet.
-    visibility: Visibility = "visibility", default Packed64 {
-        /// Value loads and stores: samples that meet on a pixel lose each other.
+    /// How the nearest triangle of a pixel is found.
+    visibility: Visibility, default Packed64 {
+        /// Plain loads and stores: samples that meet on a pixel are lost.
         Race = "race",
-        /// One 32-bit atomic per sample, for as much of the depth as the id leaves room for.
+        /// One 32-bit atomic per sample, with as much of the depth as the triangle id leaves room for.
         Packed32 = "packed32",
         /// Portable: a depth pass, then an triangle id pass.
         Split32 = "split32",
         /// One 64-bit atomic per sample.
         Packed64 = "packed64",
-        /// Portable: lists of triangles per tile, and an invocation that owns its pixel, without atomics on pixels.
+        /// Portable: lists of triangles per tile, and one invocation per pixel, without atomics on pixels.
         Tiled = "tiled",
     }
-    /// How attributes run across a triangle.
-    perspective: Perspective = "perspective", default Exact {
-        /// Linear on the screen, as if every corner were equally far.
+    /// How attributes are interpolated across a triangle.
+    perspective: Perspective, default Exact {
+        /// Linearly on the screen, as if every corner were equally far.
         Affine = "affine",
         /// Divided by w at every sample.
         Exact = "exact",
     }
-    /// What becomes of triangles that reach before the near plane or beyond the guard band.
-    clipping: Clipping = "clipping", default Exact {
-        /// They are left out.
+    /// What happens to triangles that cross the near plane or the guard band.
+    clipping: Clipping, default Exact {
+        /// They are not drawn.
         Drop = "drop",
-        /// Those that reach before the near plane are left out, the others are cut.
+        /// Those that cross the near plane are not drawn, the others are clipped.
         Near = "near",
-        /// They are cut, and what lies inside is drawn.
+        /// They are clipped.
         Exact = "exact",
     }
-    /// What is left out before it is set up, since it cannot be seen.
-    culling: Culling = "culling", default None {
-        /// Nothing: every triangle finds out by itself.
+    /// What is skipped before its triangles are set up.
+    culling: Culling, default None {
+        /// Nothing: each triangle is tested on its own.
         None = "none",
         /// Instances and meshlets outside the picture, and meshlets that all face away.
         Frustum = "frustum",
-        /// Those, and what lies behind the picture before this one: what has come out from behind it is missing.
+        /// Those, and what the previous picture hides: what has just become visible is missing.
         Hiz = "hiz",
-        /// Those, and what lies behind this picture: first what was seen before is drawn, then what that does not hide.
+        /// Those, and what this picture hides: first what was visible before is drawn, then what that does not hide.
         TwoPass = "two-pass",
     }
     /// How a draw order counts samples.
-    sample_counter: SampleCounter = "sample_counter", default Prefix {
-        /// Load, test, add, as a beginner's kernel does it: it overshoots.
+    sample_counter: SampleCounter, default Prefix {
+        /// Load, test and add without atomics: it overshoots.
         Racy = "racy",
-        /// Prefix sums, or one ticket for each sample: exact.
+        /// Prefix sums, or one atomic per sample: exact.
         Prefix = "prefix",
     }
-    /// How an x-ray adds up the layers of a pixel.
-    xray_sums: XraySums = "xray_sums", default Four32 {
-        /// Two words of two halves, channels of 8 bits: up to 257 layers that count alike.
+    /// How an x-ray sums the layers of a pixel.
+    xray_sums: XraySums, default Four32 {
+        /// Two words of two halves, channels of 8 bits: up to 257 layers of equal weight.
         Packed16 = "packed16",
-        /// Three words, channels of 8 bits: up to 4,095 layers that count alike.
+        /// Three words, channels of 8 bits: up to 4,095 layers of equal weight.
         Three8 = "three8",
         /// Four words, channels of 8 to 16 bits: as many layers as the bits leave room for, with weights.
         Four32 = "four32",
     }
-    /// How many pixels are drawn for one that is shown.
-    render_scale: RenderScale = "render_scale", default Full {
-        /// A sixteenth: a quarter to a side, and light in between.
+    /// How many pixels are drawn per shown pixel.
+    render_scale: RenderScale, default Full {
+        /// A sixteenth (a quarter per side), then interpolated in linear light.
         Quarter = "quarter",
-        /// A quarter: half to a side, and light in between.
+        /// A quarter (half per side), then interpolated in linear light.
         Half = "half",
         /// One.
         Full = "full",
-        /// Four, two to a side, and the mean of their light.
+        /// Four (two per side), then averaged in linear light.
         Double = "double",
-        /// Sixteen, four to a side, and the mean of their light.
+        /// Sixteen (four per side), then averaged in linear light.
         Quadruple = "quadruple",
     }
-    /// How dots that nobody would see are left out.
-    dot_culling: DotCulling = "dot_culling", default Gpu {
-        /// They are not: every dot is placed and drawn.
+    /// How invisible dots are skipped.
+    dot_culling: DotCulling, default Gpu {
+        /// Not at all: every dot is projected and drawn.
         Brute = "brute",
-        /// The CPU searches a tree of lines, and hands over the dots that may show.
+        /// The CPU searches a tree of lines and uploads the dots that may be visible.
         Cpu = "cpu",
-        /// Lines are culled and thinned in compute, and what is left is drawn by an indirect dispatch.
+        /// Compute passes cull and thin the dots; an indirect dispatch draws the others.
         Gpu = "gpu",
     }
-    /// How finely a shadow map samples what its light sees.
-    shadow_map_size: ShadowMapSize = "shadow_map_size", default Side1024 {
+    /// Resolution of a shadow map.
+    shadow_map_size: ShadowMapSize, default Side1024 {
         /// 256 texels a side.
         Side256 = "256",
         /// 512 texels a side.
@@ -252,24 +252,24 @@ accuracy! {
         /// 4,096 texels a side.
         Side4096 = "4096",
     }
-    /// How many texels of a shadow map tell how much of the light arrives.
-    shadow_taps: ShadowTaps = "shadow_taps", default Nine {
-        /// The one under the sample: edges as hard and as jagged as the map.
+    /// How many texels of a shadow map are filtered.
+    shadow_taps: ShadowTaps, default Nine {
+        /// The one under the sample: hard edges, as jagged as the map.
         One = "1",
-        /// 3 by 3, their share smooth from texel to texel.
+        /// 3 by 3, weighted smoothly from texel to texel.
         Nine = "9",
         /// 5 by 5: softer edges.
         TwentyFive = "25",
     }
     /// How the effects' parameters reach the kernels.
-    parameters: Parameters = "parameters", default Uniform {
-        /// As constants in the text: a new text for every value.
+    parameters: Parameters, default Uniform {
+        /// As constants in the shader text: new text for every value.
         Baked = "baked",
         /// In a uniform buffer.
         Uniform = "uniform",
     }
-    /// Whether the compiler adds checks to our kernels.
-    shader_checks: ShaderChecks = "shader_checks", default Checked {
+    /// Whether the compiler adds checks to the kernels.
+    shader_checks: ShaderChecks, default Checked {
         /// None: loops and indices are trusted.
         Trusted = "trusted",
         /// Loops are bounded, indices clamped.
@@ -278,22 +278,22 @@ accuracy! {
 }
 
 impl Visibility {
-    /// The options that lose nothing.
+    /// The options that find the nearest triangle of every pixel.
     pub const EXACT: [Self; 3] = [Self::Split32, Self::Packed64, Self::Tiled];
 
-    /// Does it lose nothing?
+    /// Does it find the nearest triangle of every pixel?
     pub fn is_exact(self) -> bool {
         Self::EXACT.contains(&self)
     }
 
-    /// Does an adapter with or without 64-bit atomics have it?
-    pub fn is_there(self, int64_atomics: bool) -> bool {
+    /// Can an adapter with or without 64-bit atomics run it?
+    pub fn is_supported(self, int64_atomics: bool) -> bool {
         self != Self::Packed64 || int64_atomics
     }
 }
 
 impl PositionFormat {
-    /// Bits of a packed lane; none where positions are as the file has them.
+    /// Bits of a packed component; none where positions are stored as in the file.
     pub const fn packed_bits(self) -> Option<u32> {
         match self {
             Self::Packed10 => Some(10),
@@ -304,7 +304,7 @@ impl PositionFormat {
 }
 
 impl RenderScale {
-    /// Drawn pixels for one that is shown, along a side.
+    /// Drawn pixels per shown pixel, along a side.
     pub const fn factor(self) -> f64 {
         match self {
             Self::Quarter => 0.25,
@@ -317,7 +317,7 @@ impl RenderScale {
 }
 
 impl Culling {
-    /// Does it hold meshlets against depths that were drawn?
+    /// Does it test meshlets against depths that were drawn?
     pub const fn occludes(self) -> bool {
         matches!(self, Self::Hiz | Self::TwoPass)
     }
@@ -333,7 +333,7 @@ impl XraySums {
         }
     }
 
-    /// Layers that fit where they count alike, if that is a matter of the option alone.
+    /// Layers of equal weight that fit; none where that depends on the bits per channel.
     pub const fn capacity(self) -> Option<u64> {
         match self {
             Self::Packed16 => Some(257),
@@ -359,62 +359,62 @@ impl Coverage {
 }
 
 impl AccuracyOptions {
-    /// The option of an axis, by its place.
+    /// Index of the option on an axis.
     pub fn get(&self, axis: &Axis) -> usize {
         (axis.get)(self)
     }
 
-    /// Takes a option by its place, which must be one of the axis.
-    pub fn set(&mut self, axis: &Axis, place: usize) {
-        (axis.set)(self, place);
+    /// Takes the option with this index, which must be one of the axis.
+    pub fn set(&mut self, axis: &Axis, index: usize) {
+        (axis.set)(self, index);
     }
 
-    /// Axes that are not on their usual option, with the word they are on.
+    /// Axes that are not on their default option, each with the name of its option.
     pub fn non_default(&self) -> impl Iterator<Item = (&'static Axis, &'static str)> + use<> {
         let options = *self;
         AXES.iter()
             .map(move |axis| (axis, options.get(axis)))
-            .filter(|(axis, place)| *place != axis.default)
-            .map(|(axis, place)| (axis, axis.words[place]))
+            .filter(|(axis, index)| *index != axis.default)
+            .map(|(axis, index)| (axis, axis.words[index]))
     }
 }
 
-/// AccuracyOptions that a preset pins: they beat its tier.
+/// Options that a preset pins. They take precedence over its tier.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub struct PinnedOptions([Option<u8>; AXES.len()]);
 
 impl PinnedOptions {
-    /// No axis pinned but the one of this option.
-    pub fn of<R: AxisOption>(option: R) -> Self {
+    /// This option pinned, and no other axis.
+    pub fn of<O: AxisOption>(option: O) -> Self {
         Self::default().with(option)
     }
 
     #[must_use]
-    pub fn with<R: AxisOption>(mut self, option: R) -> Self {
-        self.0[R::AXIS] = Some(option.place() as u8);
+    pub fn with<O: AxisOption>(mut self, option: O) -> Self {
+        self.0[O::AXIS] = Some(option.index() as u8);
         self
     }
 
     /// The pinned option of a type.
-    pub fn option<R: AxisOption>(&self) -> Option<R> {
-        self.0[R::AXIS].map(|place| R::at(place.into()))
+    pub fn option<O: AxisOption>(&self) -> Option<O> {
+        self.0[O::AXIS].map(|index| O::from_index(index.into()))
     }
 
-    /// Place of the pinned option of an axis.
+    /// Index of the pinned option of an axis.
     pub fn get(&self, axis: &Axis) -> Option<usize> {
         self.0[axis.index()].map(usize::from)
     }
 
-    /// PinnedOptions an axis to the option at a place, or frees it.
-    pub fn set(&mut self, axis: &Axis, place: Option<usize>) {
-        self.0[axis.index()] = place.filter(|place| *place < axis.words.len()).map(|place| place as u8);
+    /// Pins an axis to the option with this index, or unpins it.
+    pub fn set(&mut self, axis: &Axis, index: Option<usize>) {
+        self.0[axis.index()] = index.filter(|index| *index < axis.words.len()).map(|index| index as u8);
     }
 
-    /// Puts every pinned axis of `options` on its pin.
+    /// Sets every pinned axis of `options` to its pinned option.
     pub fn apply(&self, options: &mut AccuracyOptions) {
         for (axis, pin) in AXES.iter().zip(self.0) {
-            if let Some(place) = pin {
-                options.set(axis, place.into());
+            if let Some(index) = pin {
+                options.set(axis, index.into());
             }
         }
     }
@@ -434,18 +434,18 @@ mod tests {
     fn every_axis_reads_back_what_it_is_set_to() {
         for axis in AXES {
             assert_eq!((axis.words.len(), axis.default), (axis.option_abouts.len(), AccuracyOptions::default().get(axis)), "{}", axis.name);
-            for place in 0..axis.words.len() {
+            for index in 0..axis.words.len() {
                 let (mut options, mut pins) = (AccuracyOptions::default(), PinnedOptions::default());
-                pins.set(axis, Some(place));
+                pins.set(axis, Some(index));
                 pins.apply(&mut options);
-                assert_eq!((options.get(axis), pins.get(axis)), (place, Some(place)), "{}", axis.name);
-                assert_eq!(options.non_default().count(), usize::from(place != axis.default), "{}", axis.name);
+                assert_eq!((options.get(axis), pins.get(axis)), (index, Some(index)), "{}", axis.name);
+                assert_eq!(options.non_default().count(), usize::from(index != axis.default), "{}", axis.name);
             }
         }
     }
 
     #[test]
-    fn pins_know_rungs_by_type() {
+    fn pins_know_options_by_type() {
         let pins = PinnedOptions::of(DepthFormat::Log16).with(Visibility::Split32);
         assert_eq!(
             (pins.option::<DepthFormat>(), pins.option::<Visibility>(), pins.option::<Coverage>()),

@@ -138,7 +138,7 @@ impl Backend {
 
 /// AccuracyOptions that an adapter of these capabilities has.
 pub fn usable_options(caps: &Caps) -> Vec<Visibility> {
-    Visibility::EXACT.into_iter().filter(|option| option.is_there(caps.int64_atomics)).collect()
+    Visibility::EXACT.into_iter().filter(|option| option.is_supported(caps.int64_atomics)).collect()
 }
 
 pub fn describe(summary: &AdapterSummary, caps: &Caps) -> String {

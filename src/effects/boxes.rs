@@ -5,7 +5,7 @@
 
 use glam::DVec3;
 
-use super::{Effect, Surface, SurfaceEffect, hooks::Slot};
+use super::{Effect, Surface, SurfaceEffect, SurfaceInput, hooks::Slot};
 use crate::{params, params::Color};
 
 params! {
@@ -19,6 +19,8 @@ pub const EFFECT: Effect =
     Effect::new::<Boxes>("boxes", "Boxes", "fills the whole bounding box of every triangle").in_slot(Slot::Coverage).on_surface::<Boxes>();
 
 impl SurfaceEffect for Boxes {
+    const INPUTS: &[SurfaceInput] = &[SurfaceInput::Barycentrics, SurfaceInput::Glow, SurfaceInput::Color];
+
     fn apply(mut s: Surface, p: &Self) -> Surface {
         // Beyond the triangle at least one share is held at zero.
         if s.barycentrics.min_element() <= 0.0 {

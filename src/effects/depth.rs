@@ -2,7 +2,7 @@
 
 use glam::{DVec3, DVec4};
 
-use super::{Effect, Surface, SurfaceEffect};
+use super::{Effect, Surface, SurfaceEffect, SurfaceInput};
 use crate::{
     params,
     params::{Color, Flag},
@@ -26,6 +26,8 @@ params! {
 pub const EFFECT: Effect = Effect::surface::<Depth>("depth", "Depth", "shades by distance from the eye");
 
 impl SurfaceEffect for Depth {
+    const INPUTS: &[SurfaceInput] = &[SurfaceInput::Depth, SurfaceInput::DepthRange, SurfaceInput::Color];
+
     fn apply(mut s: Surface, p: &Self) -> Surface {
         let way = if p.fit != 0 {
             (s.depth_m - s.depth_range_m.x) / (s.depth_range_m.y - s.depth_range_m.x)

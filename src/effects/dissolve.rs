@@ -6,7 +6,7 @@
 use glam::{DVec2, DVec3, DVec4};
 
 use super::{
-    Effect, Surface, SurfaceEffect,
+    Effect, Surface, SurfaceEffect, SurfaceInput,
     hooks::{TriangleSetup, Front, Pattern, Sample, SampleEffect, front_of},
 };
 use crate::{
@@ -150,6 +150,8 @@ impl SampleEffect for Dissolve {
 }
 
 impl SurfaceEffect for Dissolve {
+    const INPUTS: &[SurfaceInput] = &[SurfaceInput::Center, SurfaceInput::CenterScreen, SurfaceInput::TriangleId, SurfaceInput::Barycentrics, SurfaceInput::Color];
+
     /// A rim that glows where the triangle is about to go.
     fn apply(mut s: Surface, p: &Self) -> Surface {
         let fill = p.fill_of(s.center, s.center_screen, s.triangle_id).clamp(0.0, 1.0);

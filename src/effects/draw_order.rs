@@ -6,7 +6,7 @@
 
 use glam::DVec4;
 
-use super::{Effect, Surface, SurfaceEffect, hooks::Slot, read};
+use super::{Effect, Surface, SurfaceEffect, SurfaceInput, hooks::Slot, read};
 use crate::{choice, params, params::Color};
 
 choice! {
@@ -65,6 +65,8 @@ impl DrawOrder {
 }
 
 impl SurfaceEffect for DrawOrder {
+    const INPUTS: &[SurfaceInput] = &[SurfaceInput::Rank, SurfaceInput::Glow, SurfaceInput::Color];
+
     /// Heat by rank: which share of all samples came before the triangle.
     fn apply(mut s: Surface, p: &Self) -> Surface {
         let [first, last] = [p.first, p.last].map(|color| DVec4::from_array(color.map(f64::from)));

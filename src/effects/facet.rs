@@ -3,7 +3,7 @@
 //! The blend is one number per triangle, taken at its centre. At 0 and 1 the pure values come through to the bit.
 
 use super::{
-    Effect, Surface, SurfaceEffect,
+    Effect, Surface, SurfaceEffect, SurfaceInput,
     hooks::{Front, Pattern, front_of},
 };
 use crate::{params, params::Point};
@@ -37,6 +37,8 @@ pub const EFFECT: Effect =
     Effect::surface::<Facet>("facet", "Facet", "blends every triangle between smooth and flat, in normal and in depth");
 
 impl SurfaceEffect for Facet {
+    const INPUTS: &[SurfaceInput] = &[SurfaceInput::Center, SurfaceInput::CenterScreen, SurfaceInput::TriangleId, SurfaceInput::Depth, SurfaceInput::FlatDepth, SurfaceInput::Normal, SurfaceInput::FlatNormal];
+
     fn apply(mut s: Surface, p: &Self) -> Surface {
         let t = f64::from(p.amount) * p.front().reached(s.center, s.center_screen, s.triangle_id);
         if t <= 0.0 {

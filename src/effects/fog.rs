@@ -3,7 +3,7 @@
 //! What is left of the surface's own light is exp(-density · way), where the way is the depth beyond the start, and
 //! thinner above a level.
 
-use super::{Effect, Surface, SurfaceEffect, hooks::tone::rgb};
+use super::{Effect, Surface, SurfaceEffect, SurfaceInput, hooks::tone::rgb};
 use crate::{params, params::Color};
 
 params! {
@@ -24,6 +24,8 @@ params! {
 pub const EFFECT: Effect = Effect::surface::<Fog>("fog", "Fog", "blends towards a colour with distance");
 
 impl SurfaceEffect for Fog {
+    const INPUTS: &[SurfaceInput] = &[SurfaceInput::Position, SurfaceInput::Depth, SurfaceInput::Glow, SurfaceInput::Color];
+
     fn apply(mut s: Surface, p: &Self) -> Surface {
         let above = (s.position.y - f64::from(p.level_m)).max(0.0);
         let thickness = f64::from(p.density) * libm::exp(-above * f64::from(p.falloff));

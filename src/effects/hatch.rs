@@ -7,7 +7,7 @@
 use glam::DVec3;
 
 use super::{
-    Effect, Surface, SurfaceEffect,
+    Effect, Surface, SurfaceEffect, SurfaceInput,
     hooks::tone::{luminance, rgb, turned},
 };
 use crate::{choice, params, params::Color};
@@ -52,6 +52,8 @@ params! {
 pub const EFFECT: Effect = Effect::surface::<Hatch>("hatch", "Hatch", "cross-hatching in ink, whose lines grow as the tone darkens");
 
 impl SurfaceEffect for Hatch {
+    const INPUTS: &[SurfaceInput] = &[SurfaceInput::Color, SurfaceInput::Pixel, SurfaceInput::Normal, SurfaceInput::View, SurfaceInput::PixelSize, SurfaceInput::Position, SurfaceInput::Depth];
+
     fn apply(mut s: Surface, p: &Self) -> Surface {
         let base = s.color.truncate().max(DVec3::ZERO);
         let tone = luminance(base).sqrt().min(1.0) + s.nudge;

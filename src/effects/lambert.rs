@@ -2,7 +2,7 @@
 
 use glam::{DVec3, DVec4};
 
-use super::{Effect, Surface, SurfaceEffect};
+use super::{Effect, Surface, SurfaceEffect, SurfaceInput};
 use crate::{
     params,
     params::{Color, Point},
@@ -26,6 +26,8 @@ params! {
 pub const EFFECT: Effect = Effect::surface::<Lambert>("lambert", "Lambert", "diffuse light from sun, sky, ground and a lamp at the eye");
 
 impl SurfaceEffect for Lambert {
+    const INPUTS: &[SurfaceInput] = &[SurfaceInput::Normal, SurfaceInput::View, SurfaceInput::Color, SurfaceInput::Glow];
+
     fn apply(mut s: Surface, p: &Self) -> Surface {
         let toward = DVec3::new(p.toward[0].into(), p.toward[1].into(), p.toward[2].into());
         let sun = s.normal.dot(toward.try_normalize().unwrap_or(DVec3::Y)).max(0.0);

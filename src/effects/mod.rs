@@ -10,7 +10,7 @@ use crate::{
 pub mod hooks;
 
 use hooks::{Hooks, ImageEffect, ImageHook, Layers, Picture, Pixel, SampleEffect, SampleHook, Shape, Slot, VertexEffect, VertexHook};
-pub use hooks::{Surface, SurfaceEffect};
+pub use hooks::{Surface, SurfaceEffect, SurfaceInput};
 
 /// THE list. Adding an effect is its two files and one word here.
 macro_rules! effects {
@@ -81,6 +81,7 @@ impl Effect {
     /// The same effect, also on the surface hook.
     pub const fn on_surface<P: SurfaceEffect>(mut self) -> Self {
         self.hooks.surface = Some(|surface, words| P::apply(surface, &read(words)));
+        self.hooks.surface_inputs = P::INPUTS;
         self
     }
 
@@ -120,9 +121,9 @@ impl Effect {
         self
     }
 
-    /// The same effect, which asks how much of a light arrives at a sample.
-    pub const fn in_light(mut self) -> Self {
-        self.hooks.reads_light = true;
+    /// The same effect, which reads members of the surface in passes of its slot.
+    pub const fn reading(mut self, inputs: &'static [SurfaceInput]) -> Self {
+        self.hooks.surface_inputs = inputs;
         self
     }
 

@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 
-use super::{Effect, Surface, SurfaceEffect};
+use super::{Effect, Surface, SurfaceEffect, SurfaceInput};
 use crate::params;
 
 params! {
@@ -15,6 +15,8 @@ params! {
 pub const EFFECT: Effect = Effect::surface::<Normals>("normals", "Normals", "colours the surface by the direction it faces");
 
 impl SurfaceEffect for Normals {
+    const INPUTS: &[SurfaceInput] = &[SurfaceInput::Normal, SurfaceInput::Glow, SurfaceInput::Color];
+
     fn apply(mut s: Surface, p: &Self) -> Surface {
         let shade = s.normal * 0.5 + DVec3::splat(0.5);
         let base = s.color.truncate();

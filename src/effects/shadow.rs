@@ -7,7 +7,7 @@
 use glam::DVec3;
 
 use super::{
-    Effect, Surface, SurfaceEffect,
+    Effect, Surface, SurfaceEffect, SurfaceInput,
     hooks::tone::{rgb, turned},
 };
 use crate::{
@@ -49,7 +49,7 @@ params! {
 }
 
 pub const EFFECT: Effect =
-    Effect::surface::<Shadow>("shadow", "Shadow", "a directional light whose shadows the rasterizer draws itself").in_light().in_steps();
+    Effect::surface::<Shadow>("shadow", "Shadow", "a directional light whose shadows the rasterizer draws itself").in_steps();
 
 /// Largest tangent that counts, for the slope and for the plane of a triangle between taps.
 pub const MAX_SHADOW_SLOPE: f64 = 8.0;
@@ -63,6 +63,8 @@ impl Shadow {
 }
 
 impl SurfaceEffect for Shadow {
+    const INPUTS: &[SurfaceInput] = &[SurfaceInput::Normal, SurfaceInput::Lit, SurfaceInput::Color];
+
     fn apply(mut s: Surface, p: &Self) -> Surface {
         let facing = s.normal.dot(p.toward()).max(0.0);
         let arrives = 1.0 - f64::from(p.strength) * (1.0 - s.lit);

@@ -4,7 +4,7 @@
 //! All channels are scaled alike, so hue and saturation stay.
 
 use super::{
-    Effect, Surface, SurfaceEffect,
+    Effect, Surface, SurfaceEffect, SurfaceInput,
     hooks::tone::{rgb, smooth},
 };
 use crate::{params, params::Color};
@@ -29,6 +29,8 @@ params! {
 pub const EFFECT: Effect = Effect::surface::<Toon>("toon", "Toon", "light in a few flat steps with soft edges, and a rim").in_steps();
 
 impl SurfaceEffect for Toon {
+    const INPUTS: &[SurfaceInput] = &[SurfaceInput::Color, SurfaceInput::Normal, SurfaceInput::View];
+
     fn apply(mut s: Surface, p: &Self) -> Surface {
         let (steps, softness) = (f64::from(p.steps), f64::from(p.softness));
         let base = s.color.truncate();

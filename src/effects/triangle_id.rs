@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 
-use super::{Effect, Surface, SurfaceEffect};
+use super::{Effect, Surface, SurfaceEffect, SurfaceInput};
 use crate::{math::hash, params};
 
 params! {
@@ -17,6 +17,8 @@ params! {
 pub const EFFECT: Effect = Effect::surface::<TriangleId>("triangle_id", "TriangleId", "gives every triangle a colour of its own");
 
 impl SurfaceEffect for TriangleId {
+    const INPUTS: &[SurfaceInput] = &[SurfaceInput::TriangleId, SurfaceInput::Glow, SurfaceInput::Color];
+
     fn apply(mut s: Surface, p: &Self) -> Surface {
         let h = hash(s.triangle_id ^ p.seed.wrapping_mul(0x9e37_79b9));
         let byte = |shift: u32| f64::from(h >> shift & 255) / 255.0;

@@ -4,7 +4,7 @@
 //! against an integer, of which one is settled per triangle. Edges that only clipping made are not drawn.
 
 use super::{
-    Effect, Surface, SurfaceEffect,
+    Effect, Surface, SurfaceEffect, SurfaceInput,
     hooks::{TriangleSetup, Sample, SampleEffect},
 };
 use crate::{choice, params, params::Color};
@@ -55,6 +55,8 @@ impl SampleEffect for Wireframe {
 }
 
 impl SurfaceEffect for Wireframe {
+    const INPUTS: &[SurfaceInput] = &[SurfaceInput::EdgeDistance, SurfaceInput::Color];
+
     fn apply(mut s: Surface, p: &Self) -> Surface {
         let width = f64::from(p.width_px);
         // Where the faces are drawn too, the line ends softly, over one pixel.

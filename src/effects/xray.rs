@@ -5,7 +5,7 @@
 
 use glam::{DVec3, DVec4};
 
-use super::{Effect, Surface, hooks::Slot};
+use super::{Effect, Surface, SurfaceInput, hooks::Slot};
 use crate::{choice, params};
 
 choice! {
@@ -60,7 +60,7 @@ params! {
 }
 
 pub const EFFECT: Effect =
-    Effect::new::<Xray>("xray", "Xray", "averages all layers of a pixel in whole numbers, so that no order shows").in_slot(Slot::Visibility);
+    Effect::new::<Xray>("xray", "Xray", "averages all layers of a pixel in whole numbers, so that no order shows").in_slot(Slot::Visibility).reading(&[SurfaceInput::Normal, SurfaceInput::View, SurfaceInput::Depth, SurfaceInput::DepthRange]);
 
 /// Bits per channel that the sums may have, most first.
 pub const OPTIONS: [u32; 4] = [16, 12, 10, 8];

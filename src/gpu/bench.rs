@@ -190,7 +190,7 @@ impl Lab<'_> {
         for &visibility in Visibility::ALL {
             let mut renderer = Renderer::new(self.gpu.clone());
             renderer.set_scene(scene)?;
-            if !visibility.is_there(self.gpu.caps.int64_atomics) {
+            if !visibility.is_supported(self.gpu.caps.int64_atomics) {
                 missing.push((visibility.name().into(), "packed64 needs 64-bit atomics, which this adapter lacks".into()));
                 continue;
             }

@@ -43,7 +43,8 @@ pub struct SizesNote {
 
 impl SizesNote {
     fn new(plan: &Plan, counted: Option<[u32; 2]>) -> Self {
-        let Plan { key, sizes, classes, .. } = plan;
+        let Plan { key, needs, classes, .. } = plan;
+        let sizes = &needs.sizes;
         // What is cut comes back as pieces of any size, and what is hidden may never be queued.
         let is_told = |_: &[u32; 2]| (!key.paths.has_clipping || sizes.near_clipped == 0) && !key.options.culling.occludes();
         let is_near = |c: SizeClasses, [medium, large]: [u32; 2]| {
@@ -83,7 +84,7 @@ impl Renderer {
         };
         let own = plan.key.frame().into_iter().map(|pass| Note { name: pass.label(), why: pass_purpose(pass).into() });
         let light = || self.shadow_pass.iter();
-        let mut reasons = plan.reasons.clone();
+        let mut reasons = plan.reasons();
         if let Some([dots, lines]) = self.dots.as_ref().map(DotStore::sample_counts) {
             reasons.push(Note { name: "dots".into(), why: format!("{dots} dots on {lines} lines, as far as the lines are long") });
         }
@@ -94,7 +95,7 @@ impl Renderer {
             passes: light().flat_map(|shadow_pass| shadow_pass.passes()).chain(own).collect(),
             buffers: self.buffers.notes().into_iter().chain(texels).chain(light().flat_map(|shadow_pass| shadow_pass.buffers())).collect(),
             reasons,
-            omitted: plan.omitted.clone(),
+            omitted: plan.omissions(),
             sizes: Some(SizesNote::new(plan, self.demand)),
             prediction: Some(plan.prediction),
             tolerance: Some(plan.tolerance),

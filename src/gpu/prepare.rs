@@ -14,7 +14,7 @@ use crate::{
     accuracy::{Culling, PositionFormat, Visibility},
     effects::{Stack, draw_order, hooks::Layers},
     math::{SUBPIXEL_BITS, srgb_byte},
-    plan::{AccuracyRequest, Plan, plan},
+    plan::{AccuracyRequest, Plan, StackTraits, plan},
     scene::{
         Scene,
         draw::{Draw, draws as drawn, totals},
@@ -49,7 +49,8 @@ impl Renderer {
         if self.force_all_paths {
             (needs.clipping, needs.largest_px) = (true, f64::INFINITY);
         }
-        Ok(plan(&needs, stack, &self.gpu.caps, &self.tuning, accuracy)?)
+        let stack = StackTraits::of(stack, accuracy)?;
+        Ok(plan(&Arc::new(needs), &stack, &self.gpu.caps, &self.tuning, accuracy)?)
     }
 
     /// Plans the picture and makes its buffers hold what the passes will read.

@@ -1,103 +1,161 @@
-//! Explanation: why each part of a kernel key is as it is, and what a picture does without.
+//! Explanation: why each part of a plan is as it is, and what its frame omits. Built only when somebody reads it.
 
-use super::{Caps, Note};
+use super::{Note, Plan, costs, options::Cause, predict::predict};
 use crate::{
-    accuracy::Visibility,
+    accuracy::{AXES, Axis, AxisOption, Culling, Visibility},
     effects::{
         dots::LineSource,
         hooks::{Layers, Shape},
         xray,
     },
-    scene::needs::Needs,
-    shader::key::KernelKey,
 };
 
-pub(super) fn note(name: &str, why: impl Into<String>) -> Note {
+fn note(name: &str, why: impl Into<String>) -> Note {
     Note { name: name.into(), why: why.into() }
 }
 
-pub(super) fn explain(needs: &Needs, is_default: bool, caps: &Caps, key: &KernelKey) -> (Vec<Note>, Vec<Note>) {
-    let mut reasons = Vec::new();
-    match (key.samples.shape, key.framebuffer.layers) {
-        (Shape::Boxes, _) => reasons.push(note("shape", "boxes: an effect fills the bounding boxes")),
-        (Shape::Points, _) => reasons.push(note("shape", "points: an effect draws corners as discs")),
-        (_, Some(Layers::Race)) => {
-            reasons.push(note("visibility", "the effect race takes the slot: one pass of plain loads and stores, and what is lost is lost"))
-        }
-        _ => {}
+impl Plan {
+    /// Why each part of the key is as it is.
+    pub fn reasons(&self) -> Vec<Note> {
+        let options = AXES.iter().enumerate().filter_map(|(index, axis)| self.option_reason(index, axis));
+        let parts = [
+            self.shape_reason(),
+            Some(self.fetch_reason()),
+            Some(self.small_reason()),
+            self.list_reason(),
+            self.culling_reason(),
+            self.vertex_effects_reason(),
+            self.material_reason(),
+            self.mask_reason(),
+            self.image_reason(),
+            self.dots_reason(),
+            self.layers_reason(),
+        ];
+        options.chain(parts.into_iter().flatten()).collect()
     }
-    reasons.extend([
-        note("fetch", if needs.indexed { "the scene has index lists" } else { "no primitive has indices" }),
-        note(
-            "small",
-            format!(
-                "one invocation walks up to {} samples: {}",
-                key.paths.max_small_samples,
-                match (is_default, caps.software) {
-                    (false, _) => "as the tuning asks",
-                    (true, true) => "a CPU adapter runs lanes in turn",
-                    (true, false) => "a workgroup takes over early on a GPU",
-                }
-            ),
-        ),
-    ]);
-    if key.options.visibility == Visibility::Tiled && key.work.max_list_entries < u32::MAX {
-        let most = key.work.max_list_entries;
-        reasons
-            .push(note("lists of tiles", format!("a list of more than {most} triangles takes another dispatch: drivers end long loops")));
+
+    /// The parts of the frame that the key omits, each with the reason.
+    pub fn omissions(&self) -> Vec<Note> {
+        self.key.omissions(&self.needs).into_iter().map(|(name, why)| note(name, why)).collect()
     }
-    if key.culls() && key.deforms() {
-        reasons
-            .push(note("culling of what bends", "its meshlets have no bounds of their own: they are left out with their whole instance"));
-    }
-    if key.moves() {
-        let why = if key.unshares_vertices() { "triangles part, three projected records each" } else { "triangles keep sharing vertices" };
-        let movers: Vec<_> = key.effects.list.iter().filter(|effect| effect.hooks.vertex.is_some()).map(|effect| effect.name).collect();
-        reasons.push(note("movement", format!("vertices are moved by {}: {why}", movers.join(", "))));
-    }
-    if key.surface.has_material_atlas {
-        let why = match needs.textured {
-            0 => format!("atlas: {} materials shine or stay unlit, which the words of a texture tell", needs.material_count),
-            textured => {
+
+    /// Why an axis is on its option; none where the picture has nothing that it decides about.
+    fn option_reason(&self, index: usize, axis: &Axis) -> Option<Note> {
+        let option = self.key.options.get(axis);
+        let word = axis.words[option];
+        let why = match self.causes[index] {
+            Cause::Unused => return None,
+            Cause::Pinned => format!("{word}: pinned by the preset"),
+            Cause::Default => {
+                let about = axis.option_abouts[option].trim().trim_end_matches('.');
+                format!("{word}: {}", lowercase_first(about))
+            }
+            Cause::Cheaper => {
+                let (fraction, own) = (costs::of(axis, option, &self.needs, &self.caps), predict(index, option, &self.needs));
                 format!(
-                    "atlas: {textured} of {} materials look up an image, texel by texel and mixed in linear light",
-                    needs.material_count
+                    "{word}: {fraction:.2} of the default's time, predicted error {:.0} of {:.0} ppm, {:.1} of {} in colour",
+                    own.wrong_ppm, self.tolerance.wrong_ppm, own.channel, self.tolerance.channel
                 )
             }
+            Cause::FarFromOrigin(stored) => format!(
+                "relative: so far from the origin, rounding moves a stored corner by up to {:.2} px, predicted to cost {:.0} of {:.0} ppm",
+                self.needs.rounding_px[0], stored.wrong_ppm, self.tolerance.wrong_ppm
+            ),
+            Cause::Limited { asked, why } => format!("{} instead of {}: {why}", Culling::from_index(option).name(), asked.name()),
         };
-        reasons.push(note("material atlas", why));
+        Some(note(axis.name, why))
     }
-    if key.samples.has_mask {
-        let why = "the alpha of an image leaves samples out: corners are placed in it once, in 1/256 of a texel, and integers decide";
-        reasons.push(note("mask", why));
+
+    fn shape_reason(&self) -> Option<Note> {
+        match (self.key.samples.shape, self.key.framebuffer.layers) {
+            (Shape::Boxes, _) => Some(note("shape", "boxes: an effect fills the bounding boxes")),
+            (Shape::Points, _) => Some(note("shape", "points: an effect draws corners as discs")),
+            (Shape::Triangles, Some(Layers::Race)) => {
+                Some(note("visibility", "the effect race takes the slot: one pass of plain loads and stores, which lose samples"))
+            }
+            (Shape::Triangles, _) => None,
+        }
     }
-    if key.finishes_pixels() {
-        reasons.push(note("finish", "an image effect finishes every pixel, empty ones too, so no tile is skipped"));
+
+    fn fetch_reason(&self) -> Note {
+        note("fetch", if self.needs.indexed { "the scene has index lists" } else { "no primitive has indices" })
     }
-    if let Some(line_source) = key.effects.dots {
-        let lines = match line_source {
+
+    fn small_reason(&self) -> Note {
+        let why = match (self.has_default_tuning, self.caps.software) {
+            (false, _) => "as the tuning says",
+            (true, true) => "a CPU adapter runs invocations one after another",
+            (true, false) => "a workgroup takes over early on a GPU",
+        };
+        note("small", format!("one invocation walks up to {} samples: {why}", self.key.paths.max_small_samples))
+    }
+
+    fn list_reason(&self) -> Option<Note> {
+        let most = self.key.work.max_list_entries;
+        let is_split = self.key.options.visibility == Visibility::Tiled && most < u32::MAX;
+        let why = || format!("a list of more than {most} triangles takes another dispatch, since drivers end long loops");
+        is_split.then(|| note("lists of tiles", why()))
+    }
+
+    fn culling_reason(&self) -> Option<Note> {
+        let why = "deformed meshes have no bounds per meshlet, so they are culled by instance";
+        (self.key.culls() && self.key.deforms()).then(|| note("culling of deformed meshes", why))
+    }
+
+    fn vertex_effects_reason(&self) -> Option<Note> {
+        let effects = self.key.effects.list.iter().filter(|effect| effect.hooks.vertex.is_some());
+        let names: Vec<_> = effects.map(|effect| effect.name).collect();
+        let why = if self.key.unshares_vertices() {
+            "triangles move apart, with three projected vertices each"
+        } else {
+            "triangles keep sharing vertices"
+        };
+        (!names.is_empty()).then(|| note("vertex effects", format!("{} move vertices: {why}", names.join(", "))))
+    }
+
+    fn material_reason(&self) -> Option<Note> {
+        let count = self.needs.material_count;
+        let why = match self.needs.textured {
+            0 => format!("{count} materials emit light or are unlit, which the atlas stores"),
+            textured => format!("{textured} of {count} materials have textures, read texel by texel and filtered in linear light"),
+        };
+        self.key.surface.has_material_atlas.then(|| note("material atlas", why))
+    }
+
+    fn mask_reason(&self) -> Option<Note> {
+        let why = "a texture's alpha discards samples: its corners are snapped once, to 1/256 of a texel, and integers decide";
+        self.key.samples.has_mask.then(|| note("mask", why))
+    }
+
+    fn image_reason(&self) -> Option<Note> {
+        let why = "an image effect finishes every pixel, empty ones too, so no tile is skipped";
+        self.key.finishes_pixels().then(|| note("image effects", why))
+    }
+
+    fn dots_reason(&self) -> Option<Note> {
+        let lines = match self.key.effects.dots? {
             LineSource::Edges => "the edges of all meshes",
             LineSource::Creases => "the creases of all meshes",
             LineSource::Polyline => "the preset's polyline",
         };
-        reasons.push(note("dots", format!("an effect strings them along {lines}, over every pixel, so no tile is skipped")));
+        Some(note("dots", format!("an effect draws them along {lines}, over every pixel, so no tile is skipped")))
     }
-    reasons.extend(layers_note(needs, key));
-    let omitted = key.omissions(needs).into_iter().map(|(name, why)| note(name, why)).collect();
-    (reasons, omitted)
+
+    /// Why the samples of a pixel are summed or counted, and in how many bits.
+    fn layers_reason(&self) -> Option<Note> {
+        Some(match self.key.framebuffer.layers? {
+            Layers::Xray { bits } => {
+                let (most, triangles) = (xray::capacity(bits), self.needs.triangles);
+                note("layers", format!("xray: sums of {bits} bits a channel hold {most} full weights; the scene has {triangles} triangles"))
+            }
+            Layers::Overdraw => note("layers", "overdraw: one more raster pass counts every covered sample"),
+            Layers::Race => note("layers", "race: the picture depends on chance, so it is not reproducible"),
+        })
+    }
 }
 
-/// Why the samples of a pixel are added up or counted, and in how many bits.
-fn layers_note(needs: &Needs, key: &KernelKey) -> Option<Note> {
-    Some(match key.framebuffer.layers? {
-        Layers::Xray { bits } => {
-            let most = xray::capacity(bits);
-            note(
-                "layers",
-                format!("xray: sums of {bits} bits a channel hold {most} full weights; the scene has {} triangles", needs.triangles),
-            )
-        }
-        Layers::Overdraw => note("layers", "overdraw: one more raster pass counts every covered sample"),
-        Layers::Race => note("layers", "race: the picture depends on chance, so it is not reproducible"),
-    })
+/// The sentence as it continues after a colon.
+fn lowercase_first(sentence: &str) -> String {
+    let mut letters = sentence.chars();
+    letters.next().map_or_else(String::new, |first| first.to_lowercase().chain(letters).collect())
 }

@@ -1,51 +1,47 @@
-//! Loops: how far one invocation may walk where a driver counts.
+//! Loops: how many iterations one invocation may make where a driver limits them.
 //!
-//! Mesa's software rasterizer ends all loops of an invocation after 65,535 iterations together, without a word
-//! (`LP_MAX_TGSI_LOOP_ITERATIONS` in its `lp_bld_limits.h`). Kernels that visit samples one after another therefore share them
-//! out among more invocations where a sample has loops of its own.
+//! Mesa's software rasterizer silently ends all loops of an invocation after 65,535 iterations together
+//! (`LP_MAX_TGSI_LOOP_ITERATIONS` in its `lp_bld_limits.h`). Kernels that visit samples one after another therefore divide them
+//! among more invocations where a sample has loops itself.
 
-use super::Caps;
+use super::caps::Caps;
 use crate::{
     accuracy::AccuracyOptions,
-    effects::{
-        Stack,
-        hooks::{Layers, Shape},
-    },
+    effects::hooks::{Layers, Shape},
 };
 
-/// Iterations that an invocation may make at its samples; the rest is for what comes before them.
-pub const MOST: u32 = 64_000;
+/// Iterations that an invocation may make for its samples; the others are for what precedes them.
+pub const MAX_ITERATIONS: u32 = 64_000;
 
-/// Most samples under the discs of a triangle, and rows of them: three of 64 px, the largest that `points` draws.
-const DISCS: u32 = 3 * (66 * 66 + 66);
+/// Most samples and rows under the discs of a triangle: three of 64 px, the largest that `points` draws.
+const DISC_SAMPLES: u32 = 3 * (66 * 66 + 66);
 
 /// Most iterations that the effects of a sample and of a surface make: `stipple` four, `hatch` four.
-const EFFECTS: u32 = 8;
+const EFFECT_ITERATIONS: u32 = 8;
 
 /// Most iterations of all loops that a covered sample takes: in the walk itself, in a mask, in effects and, where every layer is
-/// shaded, in the light's filter and on what clipping left.
+/// shaded, in the filter of the shadow map and over clipped triangles.
 pub fn of_a_sample(has_mask: bool, layers: Option<Layers>, options: &AccuracyOptions) -> u32 {
     // Two quotients, of two guesses and eight corrections each.
     let mask = if has_mask { 20 } else { 0 };
     let taps = options.shadow_taps.side();
     let shading = if matches!(layers, Some(Layers::Xray { .. })) { taps * (taps + 1) + 6 } else { 0 };
-    1 + mask + EFFECTS + shading
+    1 + mask + EFFECT_ITERATIONS + shading
 }
 
-/// Most iterations that a tile makes for a triangle on its list, where it asks each time whether a sample is drawn: then the
-/// draw of the triangle is searched for, too.
+/// Most iterations that a tile makes for a triangle on its list: it tests a sample, and searches for the triangle's draw.
 pub fn of_an_entry(has_mask: bool, draws: usize, options: &AccuracyOptions) -> u32 {
     of_a_sample(has_mask, None, options) + if draws > 1 { 32 } else { 0 }
 }
 
 /// Most samples that one invocation walks on this adapter.
 pub fn samples(caps: &Caps, loops: u32) -> u32 {
-    if caps.software { MOST / loops } else { u32::MAX }
+    if caps.software { MAX_ITERATIONS / loops } else { u32::MAX }
 }
 
-/// Among how many invocations the discs of one triangle are shared out.
-pub fn invocations_per_triangle(caps: &Caps, stack: &Stack, loops: u32) -> u32 {
-    if caps.software && stack.shape() == Shape::Points { (DISCS * loops).div_ceil(MOST) } else { 1 }
+/// Among how many invocations the discs of one triangle are divided.
+pub fn invocations_per_triangle(caps: &Caps, shape: Shape, loops: u32) -> u32 {
+    if caps.software && shape == Shape::Points { (DISC_SAMPLES * loops).div_ceil(MAX_ITERATIONS) } else { 1 }
 }
 
 #[cfg(test)]
@@ -54,11 +50,11 @@ mod tests {
     use crate::accuracy::ShadowTaps;
 
     #[test]
-    fn what_a_workgroup_walks_of_a_triangle_never_ends_early() {
+    fn no_walk_of_a_triangle_reaches_the_limit() {
         let options = AccuracyOptions { shadow_taps: ShadowTaps::TwentyFive, ..AccuracyOptions::default() };
         let loops = of_a_sample(true, Some(Layers::Xray { bits: 8 }), &options);
-        // A lane of 64 visits up to 17 x 17 samples of a box of 128 px, row after row.
-        assert!(17 * (17 * loops + 1) < MOST, "{loops} loops a sample");
-        assert!(DISCS * loops < MOST * 66, "a row of a disc is the least share");
+        // One invocation of 64 visits up to 17 x 17 samples of a box of 128 px, row after row.
+        assert!(17 * (17 * loops + 1) < MAX_ITERATIONS, "{loops} loops a sample");
+        assert!(DISC_SAMPLES * loops < MAX_ITERATIONS * 66, "a row of a disc is the least that one invocation walks");
     }
 }

@@ -1,5 +1,5 @@
-//! Predictions: how far a option will be off in a scene, before anything is drawn. Bounds where there is one, estimates where
-//! not; what was measured is held against them and a wrong prediction is shown.
+//! Predictions: how far an option will be off in a scene, before anything is drawn. Where there is a bound it is the bound, else an
+//! estimate; measurements are compared with them, and a wrong prediction is shown.
 
 use crate::{
     accuracy::{
@@ -9,12 +9,12 @@ use crate::{
     scene::needs::Needs,
 };
 
-/// Error of a picture against the oracle's, as far as it can be told before it is drawn.
+/// Error of a picture against the oracle's, as predicted before it is drawn.
 #[derive(Clone, Copy, Debug, Default, PartialEq, serde::Serialize)]
 pub struct Prediction {
-    /// Pixels with the wrong triangle id, per million.
+    /// Pixels with the wrong triangle, per million.
     pub wrong_ppm: f64,
-    /// Difference of a colour channel where the triangle id is right, of 255.
+    /// Difference of a colour channel where the triangle is right, of 255.
     pub channel: f64,
 }
 
@@ -29,21 +29,21 @@ impl Prediction {
     }
 }
 
-/// What the option at `place` of `axis` adds to the error of a picture. Infinite where nothing can be said.
-pub fn predict(axis: usize, place: usize, needs: &Needs) -> Prediction {
+/// What an option adds to the error of a picture, given the indices of axis and option. Infinite where nothing is known.
+pub fn predict(axis: usize, option: usize, needs: &Needs) -> Prediction {
     debug_assert!(axis < AXES.len(), "an axis of the list");
     match axis {
-        Coverage::AXIS => coverage(Coverage::at(place), needs),
-        VertexTransform::AXIS => vertex(VertexTransform::at(place), needs),
-        PositionFormat::AXIS => vertices(PositionFormat::at(place), needs),
-        DepthFormat::AXIS => depth(DepthFormat::at(place), needs),
-        Perspective::AXIS => perspective(Perspective::at(place), needs),
-        Clipping::AXIS => clipping(Clipping::at(place), needs),
-        RenderScale::AXIS => scale(RenderScale::at(place)),
-        // What comes out from behind something is missing for a picture, however much that is.
-        Culling::AXIS if Culling::at(place) == Culling::Hiz => Prediction::wrong(f64::INFINITY),
-        XraySums::AXIS => sums(XraySums::at(place), needs),
-        Visibility::AXIS => visibility(Visibility::at(place), needs),
+        Coverage::AXIS => coverage(Coverage::from_index(option), needs),
+        VertexTransform::AXIS => vertex(VertexTransform::from_index(option), needs),
+        PositionFormat::AXIS => vertices(PositionFormat::from_index(option), needs),
+        DepthFormat::AXIS => depth(DepthFormat::from_index(option), needs),
+        Perspective::AXIS => perspective(Perspective::from_index(option), needs),
+        Clipping::AXIS => clipping(Clipping::from_index(option), needs),
+        RenderScale::AXIS => scale(RenderScale::from_index(option)),
+        // What comes out from behind something is missing for one picture, and may be any number of pixels.
+        Culling::AXIS if Culling::from_index(option) == Culling::Hiz => Prediction::wrong(f64::INFINITY),
+        XraySums::AXIS => sums(XraySums::from_index(option), needs),
+        Visibility::AXIS => visibility(Visibility::from_index(option), needs),
         _ => Prediction::default(),
     }
 }
@@ -54,7 +54,7 @@ pub fn predict_all(options: &AccuracyOptions, needs: &Needs) -> Prediction {
     each.fold(Prediction::default(), Prediction::and)
 }
 
-/// Pixels that change triangle id when edges of triangles move by a share of a pixel, per million.
+/// Pixels that change their triangle when edges move by a fraction of a pixel, per million.
 fn moved_ppm(shift_px: f64, needs: &Needs) -> f64 {
     1e6 * needs.sizes.changed_fraction(shift_px, needs.size.into_iter().map(f64::from).product())
 }

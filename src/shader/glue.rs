@@ -5,7 +5,6 @@ use std::fmt::Write;
 use crate::{
     effects::{Effect, EnabledEffect},
     params::{Field, ValueType, WgslType},
-    shader::library::Library,
 };
 
 /// Bytes from the start of one effect's parameters to the next are a multiple of this (WGSL, uniform address space).
@@ -133,12 +132,6 @@ impl Chain {
         text.push_str(tail);
         text
     }
-}
-
-/// Does the effect's WGSL read this member of the surface?
-pub fn reads(library: &Library, effect: &Effect, member: &str) -> bool {
-    // Without its text the effect cannot be linked; then it hardly matters.
-    library.text(&format!("effects/{}", effect.name)).is_none_or(|text| text.contains(&format!(".{member}")))
 }
 
 /// Bytes of the `Effects` uniform for this stack; empty when there is none.

@@ -252,7 +252,7 @@ impl KernelKey {
 
     /// Does an effect ask how much of a light arrives?
     pub fn reads_light(&self) -> bool {
-        self.effects.list.iter().any(|effect| effect.hooks.reads_light)
+        self.effects.list.iter().any(|effect| effect.hooks.reads_light())
     }
 
     /// Does an effect read the previous picture?

@@ -126,7 +126,7 @@ pub fn tunings() -> [Tuning; 4] {
 
 /// The visibility options that lose nothing and that an adapter has.
 pub fn options(caps: &Caps) -> Vec<Visibility> {
-    Visibility::EXACT.into_iter().filter(|option| option.is_there(caps.int64_atomics)).collect()
+    Visibility::EXACT.into_iter().filter(|option| option.is_supported(caps.int64_atomics)).collect()
 }
 
 /// The exact option that a CPU adapter is quickest on, for what takes long.

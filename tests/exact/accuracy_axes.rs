@@ -359,7 +359,8 @@ fn the_strict_rung_takes_the_eye_out_to_the_bit_and_refuses_packed_places() {
     for (option, name) in [(PositionFormat::Packed10, "packed10"), (PositionFormat::Packed16, "packed16")] {
         let refused = renderer.capture(&view, &stack(&[]), &strict(option)).expect_err("floats unpack");
         let sentence = format!(
-            "vertex strict holds where integers decide, but vertices {name} unpacks places in floats; take it out, or another option"
+            "vertex_transform strict needs integers in every decision, but position_format {name} unpacks positions in floats; remove that, or use \
+             another option"
         );
         assert_eq!(refused.to_string(), sentence);
     }
@@ -410,7 +411,7 @@ fn packed_places_refuse_what_the_file_s_places_refuse_and_meshes_that_bend() {
         .capture(&view(&soft, [64, 48]), &stack(&[]), &on(PinnedOptions::of(PositionFormat::Packed10)))
         .expect_err("its skin bends");
     assert!(
-        refused.is_unsupported() && refused.to_string().starts_with("vertices packed10 packs meshes that keep their shape"),
+        refused.is_unsupported() && refused.to_string().starts_with("position_format packed10 packs meshes that keep their shape"),
         "{refused}"
     );
 }
@@ -521,7 +522,7 @@ fn what_no_kernel_can_draw_is_one_sentence() {
         renderer.capture(&view, &stack(names), &on(pins)).expect_err("it cannot be drawn")
     };
     let coarse = refused([64, 48], &["dissolve"], PinnedOptions::of(Coverage::Fixed4));
-    assert!(matches!(coarse, RenderError::Plan(PlanError::Grid { effect: "dissolve", .. })), "{coarse}");
+    assert!(matches!(coarse, RenderError::Plan(PlanError::SubpixelGrid { effect: "dissolve", .. })), "{coarse}");
     let wide = refused([2048, 16], &[], PinnedOptions::of(Coverage::Fixed12));
     assert_eq!(wide.to_string(), "coverage fixed12 holds pictures of at most 2047 px a side, and this one has 2048x16; use fixed8");
 }

@@ -159,7 +159,7 @@ fn all_layers_are_the_same_on_every_rung() {
         let view = view(&scene, SIZE);
         let reference = captured(&mut renderer, &scene, &view, &stack(&[effect]), &pinned(Visibility::Split32));
         let has_int64 = renderer.gpu().caps.int64_atomics;
-        for option in Visibility::ALL.iter().filter(|option| option.is_there(has_int64)) {
+        for option in Visibility::ALL.iter().filter(|option| option.is_supported(has_int64)) {
             let capture = captured(&mut renderer, &scene, &view, &stack(&[effect]), &pinned(*option));
             let what = format!("{effect} of {query} on {}", option.name());
             assert!(capture.frame.counted == reference.frame.counted, "{what}: counts");

@@ -448,7 +448,7 @@ fn a_picture_that_cannot_be_culled_says_why_and_is_drawn() {
         assert!(why.starts_with(got), "{effects:?}: {why}");
     }
     let Some((.., why)) = explained(query, &[], PinnedOptions::of(PositionFormat::Packed16).with(Culling::TwoPass)) else { return };
-    assert!(why.starts_with("none instead of two-pass: packed places"), "{why}");
+    assert!(why.starts_with("none instead of two-pass: packed positions"), "{why}");
     let Some((.., why)) = explained(query, &[], PinnedOptions::default()) else { return };
     assert!(why.starts_with("none: "), "culling gains nothing as a rule: {why}");
 }

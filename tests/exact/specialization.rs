@@ -219,7 +219,7 @@ fn only_a_stack_with_dots_has_their_passes_and_only_their_way_s_buffers() {
 #[test]
 fn vertices_and_pixels_take_sixteen_bytes_at_most() {
     let Some(gpu) = gpu() else { return };
-    for option in Visibility::EXACT.into_iter().filter(|option| option.is_there(gpu.caps.int64_atomics)) {
+    for option in Visibility::EXACT.into_iter().filter(|option| option.is_supported(gpu.caps.int64_atomics)) {
         let (explanation, scene, view) =
             explained("sphere?triangles=20000", [1280, 720], option, gpu.caps.tuning()).expect("there is an adapter");
         let bytes = |name: &str| explanation.buffers.iter().find(|buffer| buffer.name == name).map_or(0, |buffer| buffer.bytes);

@@ -12,3 +12,4 @@ mod presets;
 mod registry;
 mod scenes;
 mod shaders;
+mod surface_inputs;

@@ -384,7 +384,7 @@ fn the_tier_strict_takes_masks_unless_something_masked_is_cut() {
     assert_eq!((capture.frame.triangle_id, capture.frame.key), (triangle_ids, keys));
     renderer.set_scene(&scene).expect("it fits");
     let error = renderer.draw(&inside, &stack(&["lambert"]), &strict).expect_err("a cut leaf").to_string();
-    assert!(error.contains("the mask of a triangle that is cut is placed in floats"), "{error}");
+    assert!(error.contains("the mask of a clipped triangle is placed in floats"), "{error}");
 }
 
 // ---------------------------------------------------------------- nothing that a scene does not need

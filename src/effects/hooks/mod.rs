@@ -13,7 +13,7 @@ pub use front::{Front, Pattern};
 pub use image::{ImageEffect, ImageHook, Picture, Pixel};
 pub use sample::{Sample, SampleEffect, SampleHook, TriangleSetup};
 pub use slot::{Layers, Shape, Slot};
-pub use surface::{Surface, SurfaceEffect};
+pub use surface::{Surface, SurfaceEffect, SurfaceInput};
 pub use vertex::{ErrorBound, ROUNDING, Vertex, VertexEffect, VertexHook};
 
 use crate::scene::particle_discs::ParticleSettings;
@@ -37,8 +37,8 @@ pub struct Hooks {
     pub particle_settings: Option<fn(&[u32]) -> ParticleSettings>,
     /// Its colour has steps, decided on a value plus [`Surface::nudge`].
     pub has_steps: bool,
-    /// It reads [`Surface::lit`], so the scene is drawn from the light as well.
-    pub reads_light: bool,
+    /// The members of the surface that it reads.
+    pub surface_inputs: &'static [SurfaceInput],
 }
 
 impl Hooks {
@@ -51,8 +51,13 @@ impl Hooks {
         has_lines: false,
         particle_settings: None,
         has_steps: false,
-        reads_light: false,
+        surface_inputs: &[],
     };
+
+    /// Does it read [`Surface::lit`], so that the scene is drawn from the light as well?
+    pub fn reads_light(&self) -> bool {
+        self.surface_inputs.contains(&SurfaceInput::Lit)
+    }
 
     /// Names for listings: `sample + surface`.
     pub fn names(&self) -> String {

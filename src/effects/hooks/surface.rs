@@ -7,14 +7,14 @@ use crate::params::Params;
 /// What the rasterizer knows about a visible sample; a surface effect changes it and passes it on.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Surface {
-    /// Linear RGBA so far; begins as the material's base colour times the vertex colour and the texture, and what it emits.
+    /// Linear RGBA so far; begins as the material's base colour times the vertex colour and the texture, plus its emission.
     pub color: DVec4,
     /// The part of the colour that no light changes: what the material emits, or all of it where it is unlit. An effect that
-    /// paints over the colour leaves as much less of this.
+    /// paints over a fraction of the colour removes the same fraction of this.
     pub glow: DVec3,
-    /// World space, metres: on the ray of its pixel as far as `depth_m` says, whichever way corners have snapped.
+    /// World space, metres: on the ray of its pixel at `depth_m`, however the corners were snapped.
     pub position: DVec3,
-    /// Unit, towards the viewer's side: interpolated, then whatever earlier effects made of it.
+    /// Unit, towards the viewer's side: interpolated, then as earlier effects have changed it.
     pub normal: DVec3,
     /// Unit normal of the triangle's plane, towards the same side.
     pub flat_normal: DVec3,
@@ -22,14 +22,14 @@ pub struct Surface {
     pub view: DVec3,
     /// Mean of the triangle's corners, world space.
     pub center: DVec3,
-    /// Where that mean stands in the picture: 0 left and top, 1 right and bottom.
+    /// Position of that mean in the picture: 0 left and top, 1 right and bottom.
     pub center_screen: DVec2,
-    /// Where the sample stands in the picture.
+    /// Position of the sample in the picture.
     pub screen: DVec2,
     /// The same in pixels, right and down.
     pub pixel: DVec2,
-    /// Shares of the three corners at the sample, measured on the screen: 1 at the corner, 0 on the opposite edge. Of a
-    /// triangle that was clipped, measured on its plane.
+    /// Barycentric coordinates of the sample, measured on the screen: 1 at the corner, 0 on the opposite edge. Of a clipped
+    /// triangle, measured on its plane.
     pub barycentrics: DVec3,
     /// Distance of the sample from the edge opposite each corner, pixels.
     pub edge_distance_px: DVec3,
@@ -43,16 +43,75 @@ pub struct Surface {
     pub depth_range_m: DVec2,
     /// Global triangle id.
     pub triangle_id: u32,
-    /// Share of all samples that were drawn before the triangle id's first, where a draw order is kept; else 0.
+    /// Fraction of all samples that precede the triangle's first in a draw order; 0 without one.
     pub rank: f64,
-    /// Share of the light that arrives, 0 to 1, where an effect asks for it; else 0.
+    /// Fraction of the light that arrives, 0 to 1, where an effect reads it; else 0.
     pub lit: f64,
-    /// Added to whatever decides a step of colour; 0 but for a judge, who finds out with it which pixels lie so close to
-    /// a step that either answer is right.
+    /// Added to each value that decides a step of colour. It is 0 except for the judge, which finds with it the pixels so close
+    /// to a step that either answer is right.
     pub nudge: f64,
+}
+
+/// A member of [`Surface`] that an effect reads. What no effect reads need not be computed.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum SurfaceInput {
+    Color,
+    Glow,
+    Position,
+    Normal,
+    FlatNormal,
+    View,
+    Center,
+    CenterScreen,
+    Screen,
+    Pixel,
+    Barycentrics,
+    EdgeDistance,
+    Depth,
+    PixelSize,
+    FlatDepth,
+    DepthRange,
+    TriangleId,
+    Rank,
+    Lit,
+}
+
+impl SurfaceInput {
+    /// The member of the WGSL struct `Surface`.
+    pub const fn member(self) -> &'static str {
+        match self {
+            Self::Color => "color",
+            Self::Glow => "glow",
+            Self::Position => "position",
+            Self::Normal => "normal",
+            Self::FlatNormal => "flat_normal",
+            Self::View => "view",
+            Self::Center => "center",
+            Self::CenterScreen => "center_screen",
+            Self::Screen => "screen",
+            Self::Pixel => "pixel",
+            Self::Barycentrics => "barycentrics",
+            Self::EdgeDistance => "edge_distance_px",
+            Self::Depth => "depth_m",
+            Self::PixelSize => "pixel_size_m",
+            Self::FlatDepth => "flat_depth_m",
+            Self::DepthRange => "depth_range_m",
+            Self::TriangleId => "triangle_id",
+            Self::Rank => "rank",
+            Self::Lit => "lit",
+        }
+    }
+
+    /// Is it computed from the plane and the corners of the triangle?
+    pub const fn needs_planes(self) -> bool {
+        matches!(self, Self::FlatNormal | Self::FlatDepth | Self::Center)
+    }
 }
 
 /// The f64 side of an effect on the surface hook.
 pub trait SurfaceEffect: Params {
+    /// The members of the surface that both sides read.
+    const INPUTS: &'static [SurfaceInput];
+
     fn apply(surface: Surface, params: &Self) -> Surface;
 }

@@ -1,0 +1,59 @@
+//! Capabilities of an adapter, and how work is divided on it.
+
+/// What an adapter can do for us.
+#[derive(Clone, Copy, Debug, PartialEq, serde::Serialize)]
+pub struct Caps {
+    /// 64-bit atomic maximum on storage buffers: visibility `packed64`.
+    pub int64_atomics: bool,
+    /// GPU timestamps.
+    pub timestamps: bool,
+    pub max_storage_binding_bytes: u64,
+    pub max_buffer_bytes: u64,
+    pub max_texture_side: u32,
+    /// It runs on the CPU: pictures are right, times say nothing about a graphics card.
+    pub software: bool,
+}
+
+impl Caps {
+    /// `native-int64` or `portable`.
+    pub fn class(&self) -> &'static str {
+        if self.int64_atomics { "native-int64" } else { "portable" }
+    }
+
+    /// How work is divided on this adapter. On a GPU a whole workgroup takes over early, since one slow invocation delays its
+    /// neighbours; a CPU adapter runs invocations one after another, executes both sides of every branch, and gains nothing
+    /// by it.
+    pub fn tuning(&self) -> Tuning {
+        let (max_small_samples, max_small_side) = if self.software { (128 * 128, 128) } else { (32, 32) };
+        let group_size = if self.software { 64 } else { 256 };
+        Tuning {
+            max_small_samples,
+            max_small_side,
+            group_size,
+            max_list_entries: u32::MAX,
+            listed_tiles: self.software,
+            early_load: self.software,
+            specialized: true,
+        }
+    }
+}
+
+/// How the kernels divide their work: it changes speed alone, never a picture. [`Caps::tuning`] knows what suits an adapter;
+/// benches and tests try others.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Tuning {
+    /// Most candidate samples of a triangle that one invocation walks, at least 1.
+    pub max_small_samples: u32,
+    /// Most pixels per side of such a triangle's box, 1 to 128.
+    pub max_small_side: u32,
+    /// Invocations in a workgroup of the passes over vertices and triangles, 1 to 256.
+    pub group_size: u32,
+    /// Most entries of a tile's list that one dispatch walks, at least 1 (visibility `tiled` alone).
+    pub max_list_entries: u32,
+    /// The resolve visits only tiles that a triangle's box touches, without branches.
+    pub listed_tiles: bool,
+    /// Load before the depth atomic (visibility `split32` alone).
+    pub early_load: bool,
+    /// Omit what the scene does not need; else keep every path and every branch.
+    pub specialized: bool,
+}

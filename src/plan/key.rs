@@ -1,0 +1,105 @@
+//! The key of a plan: which paths, formats and limits the kernel of a picture takes.
+
+use super::{
+    caps::{Caps, Tuning},
+    loops,
+    traits::StackTraits,
+};
+use crate::{
+    accuracy::{AccuracyOptions, Clipping, Parameters, Visibility},
+    effects::hooks::{Layers, Shape},
+    math::SMALL_EXTENT,
+    scene::needs::Needs,
+    shader::key::{
+        AttributeFormat, EffectList, Fetch, Framebuffer, GeneratedVertices, KernelKey, ProjectionKind, RasterPaths, SampleRules,
+        SurfaceInputs, VertexInputs, ViewKind, WorkSharing,
+    },
+};
+
+/// The key of a kernel with these options and layers.
+pub(super) fn key_of(
+    options: AccuracyOptions,
+    layers: Option<Layers>,
+    needs: &Needs,
+    stack: &StackTraits,
+    (caps, tuning): (&Caps, &Tuning),
+) -> KernelKey {
+    // Boxes and discs show all of a material.
+    let has_mask = needs.masked && stack.shape == Shape::Triangles;
+    let loops = loops::of_a_sample(has_mask, layers, &options);
+    KernelKey {
+        options,
+        vertices: vertex_inputs(needs),
+        generated: GeneratedVertices {
+            has_joints: needs.skinning.is_some(),
+            has_morph_targets: needs.morph_targets,
+            has_particles: needs.particle_discs,
+        },
+        samples: SampleRules { shape: stack.shape, draw_order: stack.draw_order, has_mask },
+        paths: raster_paths(&options, needs, tuning, loops::samples(caps, loops)),
+        work: WorkSharing {
+            group_size: tuning.group_size,
+            invocations_per_triangle: loops::invocations_per_triangle(caps, stack.shape, loops),
+            max_list_entries: tuning.max_list_entries.min(loops::samples(caps, loops::of_an_entry(has_mask, needs.draws, &options))).max(1),
+            listed_tiles: tuning.listed_tiles && !stack.finishes_pixels() && stack.dots.is_none(),
+            early_load: tuning.early_load,
+        },
+        framebuffer: Framebuffer {
+            layers,
+            triangle_id_bits: if options.visibility == Visibility::Packed32 { bit_length(needs.triangles) } else { 0 },
+        },
+        surface: SurfaceInputs { has_material_atlas: needs.material_count > 0, has_planes: stack.reads_planes() || !needs.normals_agree },
+        view: ViewKind {
+            projection: if needs.perspective { ProjectionKind::Perspective } else { ProjectionKind::Orthographic },
+            is_light: needs.is_light,
+        },
+        effects: EffectList {
+            list: stack.effects.clone(),
+            baked: if options.parameters == Parameters::Baked { stack.baked.clone() } else { Vec::new() },
+            dots: stack.dots,
+        },
+    }
+}
+
+fn vertex_inputs(needs: &Needs) -> VertexInputs {
+    let format = |is_f32: bool| if is_f32 { AttributeFormat::F32 } else { AttributeFormat::Any };
+    VertexInputs {
+        fetch: match (needs.indexed, needs.u32_indices) {
+            (false, _) => Fetch::Direct,
+            (true, false) => Fetch::Indexed,
+            (true, true) => Fetch::IndexedU32,
+        },
+        positions: format(needs.f32_positions),
+        normals: format(needs.f32_normals),
+        has_colors: needs.colors,
+        only_triangle_lists: !needs.has_strips_or_fans,
+        is_single_draw: needs.draws == 1,
+    }
+}
+
+/// The paths that triangles of these sizes take, where one invocation may walk so many samples.
+fn raster_paths(options: &AccuracyOptions, needs: &Needs, tuning: &Tuning, walkable_samples: u32) -> RasterPaths {
+    // With `clipping = drop` no clip pass is needed; the triangles that are drawn may still be large.
+    let has_clipping = needs.clipping && options.clipping != Clipping::Drop;
+    let max_small_samples = tuning.max_small_samples.min(walkable_samples).max(1);
+    let max_small_side = tuning.max_small_side.clamp(1, 128);
+    // A box of n px touches at most n + 1 sample columns.
+    let widest = needs.largest_px.floor() + 1.0;
+    RasterPaths {
+        has_clipping,
+        has_medium: has_clipping || widest > f64::from(max_small_side) || widest * widest > f64::from(max_small_samples),
+        has_large: needs.largest_px >= large_px(options),
+        max_small_samples,
+        max_small_side,
+    }
+}
+
+/// Extent in pixels from which a triangle takes the path of large ones.
+pub(super) fn large_px(options: &AccuracyOptions) -> f64 {
+    f64::from(SMALL_EXTENT >> options.coverage.subpixel_bits())
+}
+
+/// Bits that tell so many triangles apart, and each from none.
+const fn bit_length(triangles: u64) -> u32 {
+    64 - (triangles | 1).leading_zeros()
+}
