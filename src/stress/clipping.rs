@@ -7,7 +7,7 @@ use glam::DVec3;
 use super::{
     case::{Case, Expectation},
     context::{CaseContext, EarlyEnd, check, once, pinned, stack},
-    scenes::{pixel_view, scene_of_meshes, seen, sheet, square_perspective, units},
+    scenes::{camera_view, pixel_view, scene_of_meshes, square_perspective, triangle_soup, triangle_soup_in_units},
 };
 use crate::{
     math::GUARD_BAND,
@@ -51,7 +51,7 @@ fn guard_band(context: &mut CaseContext) -> Result<(), EarlyEnd> {
         };
         let [a, b, c, d] = [corner(0, [-1, -1]), corner(1, [1, -1]), corner(2, [1, 1]), corner(3, [-1, 1])];
         let faces = [[center, a, b], [center, b, c], [center, c, d], [center, d, a]];
-        let scene = scene_of_meshes(&[units(&faces.map(|face| (face, 0.5)))]);
+        let scene = scene_of_meshes(&[triangle_soup_in_units(&faces.map(|face| (face, 0.5)))]);
         let what = format!("corners beyond: {beyond:08b}");
         let capture = match beyond {
             // All inside, one corner beyond in either axis, all beyond: on every option.
@@ -85,7 +85,7 @@ fn w_around_zero(context: &mut CaseContext) -> Result<(), EarlyEnd> {
         let positions: Vec<_> = (0..180).map(|_| corner()).collect();
         let view = square_perspective(64, 64, near.into());
         let what = format!("round {round}");
-        let capture = context.exact_on_all(&scene_of_meshes(&[sheet(positions)]), &view, &what)?;
+        let capture = context.exact_on_all(&scene_of_meshes(&[triangle_soup(positions)]), &view, &what)?;
         let counters = capture.frame.counters;
         check!(counters.clipped > 20 && capture.frame.covered() > 2000, "{what}: {counters:?}");
         let wild = capture.geometry.vertices.iter().find(|v| !(v.depth.is_finite() && v.inv_w.is_finite() && v.inv_w <= 129.0));
@@ -97,7 +97,7 @@ fn w_around_zero(context: &mut CaseContext) -> Result<(), EarlyEnd> {
 fn near_plane_sweep(context: &mut CaseContext) -> Result<(), EarlyEnd> {
     let mut shell = Scene::clone(&*context.scene("sphere?triangles=300")?);
     shell.materials[0].double_sided = true;
-    let ground = scene_of_meshes(&[sheet(vec![[-50.0, -0.5, -50.0], [-50.0, -0.5, 50.0], [50.0, -0.5, 50.0]])]);
+    let ground = scene_of_meshes(&[triangle_soup(vec![[-50.0, -0.5, -50.0], [-50.0, -0.5, 50.0], [50.0, -0.5, 50.0]])]);
     let shell = Arc::new(shell);
     let option = pinned(context.quick_option());
     let (mut cut, mut worst) = (0, 0);
@@ -106,7 +106,7 @@ fn near_plane_sweep(context: &mut CaseContext) -> Result<(), EarlyEnd> {
         let scene = if step % 4 == 0 { &ground } else { &shell };
         let eye = DVec3::new(0.3 - 0.4 * way, 0.9 - 1.6 * way, 1.7 - 1.4 * way);
         let camera = Camera { eye, target: DVec3::new(0.1, -0.2, -1.0), near_m: 0.1, ..Camera::default() };
-        let view = seen(scene, &camera, [48, 32]);
+        let view = camera_view(scene, &camera, [48, 32]);
         let (capture, verdict) = context.exact(scene, &view, &stack(&["depth"]), &option, &format!("step {step}"))?;
         cut += u32::from(capture.frame.counters.clipped > 0);
         worst = worst.max(verdict.accuracy.explained_by_snap);

@@ -4,7 +4,7 @@ use super::{
     adversarial::{near_collinear_triangle, near_miss_triangle, near_tie_mesh},
     case::{Case, Expectation},
     context::{CaseContext, EarlyEnd, check, equal, layers, once, pinned, stack, tunings},
-    scenes::{Rng, SimpleMesh, pixel_view, reference, scene_of_meshes, sheet, units},
+    scenes::{Rng, SimpleMesh, pixel_view, reference_coverage, scene_of_meshes, triangle_soup, triangle_soup_in_units},
 };
 use crate::{math::GUARD_BAND, measure::compare};
 
@@ -67,7 +67,7 @@ fn translation(context: &mut CaseContext) -> Result<(), EarlyEnd> {
     let view = pixel_view(128, 128);
     let mut drawn = |by: [i32; 2]| {
         let moved: Vec<_> = soup.iter().map(|(corners, z)| (corners.map(|[x, y]| [x + 256 * by[0], y + 256 * by[1]]), *z)).collect();
-        context.exact_on_all(&scene_of_meshes(&[units(&moved)]), &view, &format!("moved by {by:?}"))
+        context.exact_on_all(&scene_of_meshes(&[triangle_soup_in_units(&moved)]), &view, &format!("moved by {by:?}"))
     };
     let still = drawn([0, 0])?;
     for by in [[1, 0], [0, 1], [31, 17], [64, 96]] {
@@ -89,7 +89,7 @@ fn sizes(context: &mut CaseContext) -> Result<(), EarlyEnd> {
     for exponent in -3..=9 {
         let size = libm::pow(10.0, f64::from(exponent)) as f32;
         let (x, y) = (32.3f32, 31.7f32);
-        let scene = scene_of_meshes(&[sheet(vec![[x, y - size, 0.5], [x + size, y, 0.5], [x, y + size, 0.5]])]);
+        let scene = scene_of_meshes(&[triangle_soup(vec![[x, y - size, 0.5], [x + size, y, 0.5], [x, y + size, 0.5]])]);
         let capture = context.exact_on_all(&scene, &pixel_view(64, 64), &format!("10^{exponent} px"))?;
         for (pixel, &hits) in layers(&capture).iter().enumerate() {
             let (px, py) = ((pixel % 64) as f32 + 0.5, (pixel / 64) as f32 + 0.5);
@@ -123,7 +123,11 @@ fn slivers(context: &mut CaseContext) -> Result<(), EarlyEnd> {
         let [e, f, g, h] = [[-guard, -guard], [guard, -guard], [-guard, guard], [guard, guard]];
         let faces = [[e, f, a], [f, b, a], [a, b, c], [b, d, c], [c, d, g], [d, h, g]];
         let what = format!("height {height} of 256");
-        let capture = context.exact_on_all(&scene_of_meshes(&[units(&faces.map(|face| (face, 0.5)))]), &pixel_view(64, 64), &what)?;
+        let capture = context.exact_on_all(
+            &scene_of_meshes(&[triangle_soup_in_units(&faces.map(|face| (face, 0.5)))]),
+            &pixel_view(64, 64),
+            &what,
+        )?;
         once(&capture, &what)?;
     }
     let needles = context.scene("slivers?n=200&length=30000")?;
@@ -150,7 +154,11 @@ fn size_class_borders(context: &mut CaseContext) -> Result<(), EarlyEnd> {
             }
             triangles.push((corners.map(|[x, y]| [x + at[0], y + at[1]]), 0.2 + 0.01 * i as f32));
         }
-        context.exact_on_all(&scene_of_meshes(&[units(&triangles)]), &pixel_view(128, 128), &format!("extent {extent} units"))?;
+        context.exact_on_all(
+            &scene_of_meshes(&[triangle_soup_in_units(&triangles)]),
+            &pixel_view(128, 128),
+            &format!("extent {extent} units"),
+        )?;
     }
     // Boxes of 63 to 65 and 127 to 129 samples, the limits of one invocation.
     let boxes = [(7, 9), (8, 8), (5, 13), (1, 127), (8, 16), (3, 43), (64, 2), (2, 65)];
@@ -162,7 +170,7 @@ fn size_class_borders(context: &mut CaseContext) -> Result<(), EarlyEnd> {
         [(place(false), 0.2 + 0.02 * i as f32), (place(true), 0.21 + 0.02 * i as f32)]
     });
     context.exact_on_all(
-        &scene_of_meshes(&[units(&triangles.collect::<Vec<_>>())]),
+        &scene_of_meshes(&[triangle_soup_in_units(&triangles.collect::<Vec<_>>())]),
         &pixel_view(128, 128),
         "boxes of 63 to 130 samples",
     )?;
@@ -186,7 +194,7 @@ fn near_misses(context: &mut CaseContext) -> Result<(), EarlyEnd> {
             let mut rng = context.rng((picture as u32).wrapping_mul(0x9e37_79b1) ^ extent as u32);
             let depth = |rng: &mut Rng| rng.between(1, 1024) as f32 / 1024.0;
             let triangles: Vec<_> = (0..count).map(|_| (near_miss_triangle(&mut rng, extent, [64, 64]), depth(&mut rng))).collect();
-            let scene = scene_of_meshes(&[units(&triangles)]);
+            let scene = scene_of_meshes(&[triangle_soup_in_units(&triangles)]);
             let what = format!("extent {extent} units, picture {picture}");
             let capture = if count > 2000 {
                 context.renderer.set_tuning(tunings()[2]);
@@ -199,7 +207,7 @@ fn near_misses(context: &mut CaseContext) -> Result<(), EarlyEnd> {
             let moved = capture.geometry.vertices.iter().zip(placed).find(|(v, [x, y])| v.flags != 0 || (v.x, v.y) != (*x, *y));
             check!(moved.is_none(), "{what}: a vertex has moved: {moved:?}");
             // Flat triangles have the depth of their corners, so no pixel is in the depth band.
-            let reference = reference(&scene, &view)?;
+            let reference = reference_coverage(&scene, &view)?;
             equal(
                 &compare::triangle_ids(&capture.frame.triangle_id, &reference.triangle_ids()),
                 &Default::default(),
@@ -223,7 +231,7 @@ fn near_ties(context: &mut CaseContext) -> Result<(), EarlyEnd> {
         let capture = context.exact_on_all(&scene_of_meshes(&[shared]), &view, &what)?;
         once(&capture, &what)?;
         // With separate corners for every triangle, equal positions must snap to equal units.
-        let loose = sheet(indices.iter().map(|&i| positions[i as usize]).collect());
+        let loose = triangle_soup(indices.iter().map(|&i| positions[i as usize]));
         let apart = context.exact_on_all(&scene_of_meshes(&[loose]), &view, &format!("{what}, triangles apart"))?;
         once(&apart, &format!("{what}, triangles apart"))?;
         let parted = indices.iter().zip(&apart.geometry.vertices).find(|(i, v)| capture.geometry.vertices[**i as usize] != **v);
@@ -232,7 +240,7 @@ fn near_ties(context: &mut CaseContext) -> Result<(), EarlyEnd> {
     for round in 0..4u32 {
         let mut rng = context.rng(round.wrapping_mul(0xc2b2_ae35) ^ 0x51de);
         let slivers = (0..400).flat_map(|i| near_collinear_triangle(&mut rng, size).map(|[x, y]| [x, y, 0.2 + 0.001 * i as f32]));
-        let scene = scene_of_meshes(&[sheet(slivers.collect())]);
+        let scene = scene_of_meshes(&[triangle_soup(slivers)]);
         context.exact_on_all(&scene, &view, &format!("slivers of no width, round {round}"))?;
     }
     Ok(())

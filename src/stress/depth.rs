@@ -5,7 +5,9 @@ use std::collections::BTreeSet;
 use super::{
     case::{Case, Expectation},
     context::{CaseContext, EarlyEnd, check, equal, stack},
-    scenes::{SimpleMesh, pixel_view, quad, scene_of_meshes, sheet, square_perspective, turned, units},
+    scenes::{
+        SimpleMesh, Winding, pixel_view, quad, rotated_square, scene_of_meshes, square_perspective, triangle_soup, triangle_soup_in_units,
+    },
 };
 use crate::frame::NO_TRIANGLE;
 
@@ -41,11 +43,15 @@ fn depth_range(context: &mut CaseContext) -> Result<(), EarlyEnd> {
         for decade in 0..11 {
             for nearer in [1.001, 1.0] {
                 let w = near * 1.5 * libm::pow(10.0, f64::from(decade)) * nearer;
-                positions.extend(quad(turned([0.0, 0.0], 0.1 + 0.1 * f64::from(decade), 0.3 * f64::from(decade)), [w; 4], false));
+                positions.extend(quad(
+                    rotated_square([0.0, 0.0], 0.1 + 0.1 * f64::from(decade), 0.3 * f64::from(decade)),
+                    [w; 4],
+                    Winding::Forward,
+                ));
             }
         }
         let what = format!("near plane at {near:e}");
-        let capture = context.exact_on_all_with(&scene_of_meshes(&[sheet(positions)]), &view, &stack(&["depth"]), &what)?;
+        let capture = context.exact_on_all_with(&scene_of_meshes(&[triangle_soup(positions)]), &view, &stack(&["depth"]), &what)?;
         let seen: BTreeSet<u32> = capture.frame.triangle_id.iter().copied().filter(|&o| o != NO_TRIANGLE).collect();
         check!(seen.iter().all(|triangle_id| triangle_id % 4 >= 2), "{what}: the farther of a pair shows among {seen:?}");
         check!(seen.len() >= 20, "{what}: {} triangles show", seen.len());
@@ -61,7 +67,7 @@ fn coplanar_layers(context: &mut CaseContext) -> Result<(), EarlyEnd> {
         let mut steps: Vec<u32> = (0..40).chain(10..20).collect();
         rng.shuffle(&mut steps);
         let layers: Vec<_> = steps.iter().map(|step| (corners, f32::from_bits(0.5f32.to_bits() + step))).collect();
-        let capture = context.exact_on_all(&scene_of_meshes(&[units(&layers)]), &view, &format!("{what} layers"))?;
+        let capture = context.exact_on_all(&scene_of_meshes(&[triangle_soup_in_units(&layers)]), &view, &format!("{what} layers"))?;
         let nearest = steps.iter().position(|&step| step == 39).unwrap_or_default();
         let mut triangle_ids: Vec<u32> = capture.frame.triangle_id.iter().copied().filter(|&o| o != NO_TRIANGLE).collect();
         triangle_ids.dedup();
@@ -71,7 +77,7 @@ fn coplanar_layers(context: &mut CaseContext) -> Result<(), EarlyEnd> {
 
         // The nearest layer twice more: of equal keys the smaller id wins.
         let again: Vec<_> = layers.iter().chain([&layers[nearest]; 2]).copied().collect();
-        let equals = context.exact_on_all(&scene_of_meshes(&[units(&again)]), &view, &format!("equal {what} layers"))?;
+        let equals = context.exact_on_all(&scene_of_meshes(&[triangle_soup_in_units(&again)]), &view, &format!("equal {what} layers"))?;
         check!(equals.frame.triangle_id == capture.frame.triangle_id, "equal {what} layers: a larger id wins");
     }
     Ok(())

@@ -5,7 +5,7 @@ use std::sync::Arc;
 use super::{
     case::{Case, Expectation},
     context::{CaseContext, EarlyEnd, check, equal, layers, pinned},
-    scenes::{SimpleMesh, pixel_view, scene_of_meshes, units},
+    scenes::{SimpleMesh, pixel_view, scene_of_meshes, triangle_soup_in_units},
 };
 use crate::{
     effects::{Effect, Stack, dissolve::Mode, draw_order, hooks::Layers},
@@ -222,7 +222,9 @@ fn sheets_of_a_word(context: &CaseContext) -> Result<(Arc<Scene>, View, u64), Ea
     let total = u64::from(side) * u64::from(side) * times;
     check!(total > u64::from(u32::MAX), "{total} samples are too few");
     let far = 8_388_607;
-    let scene = scene_of_meshes(&[units(&(0..times).map(|i| ([[0, 0], [far, 0], [0, far]], 1e-3 * (i + 1) as f32)).collect::<Vec<_>>())]);
+    let scene = scene_of_meshes(&[triangle_soup_in_units(
+        &(0..times).map(|i| ([[0, 0], [far, 0], [0, far]], 1e-3 * (i + 1) as f32)).collect::<Vec<_>>(),
+    )]);
     Ok((scene, pixel_view(side, side), total))
 }
 

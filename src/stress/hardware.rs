@@ -4,7 +4,7 @@ use super::{
     adversarial::near_miss_triangle,
     case::{Case, Expectation},
     context::{CaseContext, EarlyEnd, check},
-    scenes::{pixel_view, scene_of_meshes, units},
+    scenes::{pixel_view, scene_of_meshes, triangle_soup_in_units},
 };
 use crate::frame::NO_TRIANGLE;
 
@@ -85,7 +85,7 @@ fn hardware_cross_check(context: &mut CaseContext) -> Result<(), EarlyEnd> {
             };
             let triangles: Vec<Flat> = (0..count).map(&mut flat).collect();
             let what = format!("extent {extent} units, picture {picture}");
-            let ours = context.exact_on_all(&scene_of_meshes(&[units(&triangles)]), &view, &what)?;
+            let ours = context.exact_on_all(&scene_of_meshes(&[triangle_soup_in_units(&triangles)]), &view, &what)?;
             let theirs = witness(context, &triangles)?;
             let masked = mask(&triangles);
             masked_samples += masked.iter().filter(|is_masked| **is_masked).count();

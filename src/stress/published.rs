@@ -3,7 +3,7 @@
 use super::{
     case::{Case, Expectation},
     context::{CaseContext, EarlyEnd, check, equal, exactness, layers, once, pinned, stack},
-    scenes::{pixel_view, quad, scene_of_meshes, sheet, square_perspective, turned, units},
+    scenes::{Winding, pixel_view, quad, rotated_square, scene_of_meshes, square_perspective, triangle_soup, triangle_soup_in_units},
 };
 use crate::{accuracy::Visibility, frame::NO_TRIANGLE};
 
@@ -73,12 +73,12 @@ fn rotated_quads(context: &mut CaseContext) -> Result<(), EarlyEnd> {
                 let center = [place % 4, place / 4].map(|k| (f64::from(k) + 0.5) / 2.0 - 1.0);
                 let angle = f64::from(16 * iteration + place) / 32.0 * std::f64::consts::FRAC_PI_2;
                 // A corner is sqrt(2) times half a side from the centre, an eighth of a turn further.
-                let square = turned(center, 0.15 * std::f64::consts::SQRT_2, angle - std::f64::consts::FRAC_PI_4);
+                let square = rotated_square(center, 0.15 * std::f64::consts::SQRT_2, angle - std::f64::consts::FRAC_PI_4);
                 let w = square.map(|_| if kind == "projected" { rng.real(0.1, 4.0) } else { 1.0 });
                 corners.extend(order.map(|i| [square[i][0] * w[i], square[i][1] * w[i], -w[i]].map(|v| v as f32)));
             }
             let what = format!("{kind}, picture {}", iteration + 1);
-            let capture = context.exact_on_all(&scene_of_meshes(&[sheet(corners)]), &view, &what)?;
+            let capture = context.exact_on_all(&scene_of_meshes(&[triangle_soup(corners)]), &view, &what)?;
             check!(layers(&capture).iter().all(|&hits| hits <= 1), "{what}: a sample is drawn twice");
             // A square of 0.3 to a side fills 38.4 x 38.4 of 256 x 256 pixels, its outline at most 4 x 55 of them.
             let covered = capture.frame.covered();
@@ -95,9 +95,9 @@ fn clipped_quads(context: &mut CaseContext) -> Result<(), EarlyEnd> {
     for (kind, center, half) in [("partial", [0.5, 0.5], 1.0), ("full", [0.0, 0.0], 2.0)] {
         for iteration in 0..15 {
             let angle = f64::from(iteration) / 14.0 * std::f64::consts::FRAC_PI_2;
-            let square = turned(center, half * std::f64::consts::SQRT_2, angle - std::f64::consts::FRAC_PI_4);
+            let square = rotated_square(center, half * std::f64::consts::SQRT_2, angle - std::f64::consts::FRAC_PI_4);
             let what = format!("{kind}, angle {} of 15", iteration + 1);
-            let scene = scene_of_meshes(&[sheet(quad(square, [1.0; 4], false))]);
+            let scene = scene_of_meshes(&[triangle_soup(quad(square, [1.0; 4], Winding::Forward))]);
             let capture = context.exact_on_all(&scene, &view, &what)?;
             check!(layers(&capture).iter().all(|&hits| hits <= 1), "{what}: a sample is drawn twice");
             if kind == "full" {
@@ -114,7 +114,11 @@ fn quads_beyond_the_guard_band(context: &mut CaseContext) -> Result<(), EarlyEnd
         let angle = f64::from(turn) * std::f64::consts::FRAC_PI_2 / 15.0;
         // Beyond every corner, then far beyond the guard band.
         for half in [2.5, 40.0, 1e5, 1e8] {
-            let part = sheet(quad(turned([0.1, -0.2], half, angle), [1.0, 0.7, 2.0, 1.3], turn % 2 == 0));
+            let part = triangle_soup(quad(
+                rotated_square([0.1, -0.2], half, angle),
+                [1.0, 0.7, 2.0, 1.3],
+                if turn % 2 == 0 { Winding::Reversed } else { Winding::Forward },
+            ));
             let what = format!("turn {turn}, half {half:e}");
             let (capture, mut verdict) =
                 context.judged(&scene_of_meshes(&[part]), &view, &stack(&[]), &pinned(Visibility::Split32), &what)?;
@@ -153,7 +157,7 @@ fn d3d_rectangle(context: &mut CaseContext) -> Result<(), EarlyEnd> {
         let [a, b, c, d] = [[0, 0], [5, 0], [5, 5], [0, 5]].map(|corner| corner.map(|v| 256 * v + shift));
         for (first, second) in [([a, b, c], [d, a, c]), ([c, b, a], [a, d, c])] {
             let what = format!("{first:?} and {second:?}");
-            let scene = scene_of_meshes(&[units(&[(first, 0.5), (second, 0.5)])]);
+            let scene = scene_of_meshes(&[triangle_soup_in_units(&[(first, 0.5), (second, 0.5)])]);
             let capture = context.exact_on_all(&scene, &pixel_view(8, 8), &what)?;
             let count = |triangle_id| capture.frame.triangle_id.iter().filter(|&&o| o == triangle_id).count();
             equal(&[count(0), count(1), count(NO_TRIANGLE)], &[15, 10, 39], &format!("{what}: pixels of each, and of none"))?;
@@ -172,7 +176,7 @@ fn d3d_four_triangles(context: &mut CaseContext) -> Result<(), EarlyEnd> {
         let at = |x: i32, y: i32| [left + 128 + x, top + 128 + y];
         let [a, b, c, d, middle] = [at(0, 0), at(512, 0), at(512, 1024), at(0, 1024), at(256, 512)];
         let faces = [[a, b, middle], [b, c, middle], [c, d, middle], [d, a, middle]];
-        let scene = scene_of_meshes(&[units(&faces.map(|face| (face, 0.5)))]);
+        let scene = scene_of_meshes(&[triangle_soup_in_units(&faces.map(|face| (face, 0.5)))]);
         let capture = context.exact_on_all(&scene, &pixel_view(8, 8), what)?;
         check!(layers(&capture).iter().all(|&hits| hits <= 1), "{what}: a sample is drawn twice");
         covered.push(layers(&capture).to_vec());
@@ -190,7 +194,7 @@ fn d3d_snap(context: &mut CaseContext) -> Result<(), EarlyEnd> {
     let even = |unit: i32| if unit % 2 == 0 { unit } else { unit + 1 };
     let corners: Vec<[f32; 3]> =
         ties.iter().flat_map(|&k| [[half(k), half(k), 0.5], [40.0 + half(k), 3.0, 0.5], [3.0, 40.0 + half(k), 0.5]]).collect();
-    let scene = scene_of_meshes(&[sheet(corners)]);
+    let scene = scene_of_meshes(&[triangle_soup(corners)]);
     let capture = context.exact_on_all(&scene, &pixel_view(128, 128), "ties of the snap")?;
     for (vertex, tie) in capture.geometry.vertices.as_chunks::<3>().0.iter().zip(ties) {
         let found = [[vertex[0].x, vertex[0].y], [vertex[1].x, vertex[1].y], [vertex[2].x, vertex[2].y]];

@@ -7,7 +7,7 @@ use glam::{DMat4, DVec3};
 use super::{
     case::{Case, Expectation},
     context::{CaseContext, EarlyEnd, check, equal, layers, pinned, stack, tunings},
-    scenes::{SimpleMesh, pixel_view, scene_of_meshes, units},
+    scenes::{SimpleMesh, pixel_view, scene_of_meshes, triangle_soup_in_units},
 };
 use crate::{
     accuracy::Visibility,
@@ -72,7 +72,7 @@ fn dots(indexed: bool, count: u32, times: u32) -> (Arc<Scene>, View) {
     let part = SimpleMesh {
         positions: (0..distinct).flat_map(|i| [0, 1, 2].map(|c| corner(i, c))).collect(),
         indices: if indexed { (0..count).flat_map(|i| [0, 1, 2].map(|c| 3 * (i % distinct) + c)).collect() } else { vec![] },
-        placements: (0..times).map(|i| DMat4::from_translation(DVec3::Z * f64::from(i + 1) / f64::from(times + 1))).collect(),
+        transforms: (0..times).map(|i| DMat4::from_translation(DVec3::Z * f64::from(i + 1) / f64::from(times + 1))).collect(),
         ..SimpleMesh::default()
     };
     (scene_of_meshes(&[part]), pixel_view(64, 64))
@@ -121,7 +121,7 @@ fn workgroups_indirect(context: &mut CaseContext) -> Result<(), EarlyEnd> {
             [[x, y], [x + 600, y], [x, y + 600]]
         };
         let triangles: Vec<_> = (0..demand).map(|i| (corners(i), 0.25 + 1e-6 * i as f32)).collect();
-        let scene = scene_of_meshes(&[units(&triangles)]);
+        let scene = scene_of_meshes(&[triangle_soup_in_units(&triangles)]);
         context.renderer.set_tuning(crowded);
         let what = format!("{demand} medium triangles");
         context.exact(&scene, &pixel_view(64, 64), &stack(&[]), &option, &what)?;
@@ -130,7 +130,7 @@ fn workgroups_indirect(context: &mut CaseContext) -> Result<(), EarlyEnd> {
     // Large triangles and their tiles: one workgroup each, one tile per triangle. Capacities are set beforehand to save time.
     let needle = |i: i32| [[-20_000 - i % 7, i % 16_000], [40_000, i % 16_000 + 3], [40_000, i % 16_000 + 600]];
     let triangles: Vec<_> = (0..65_600).map(|i| (needle(i), 0.25 + 1e-6 * i as f32)).collect();
-    let scene = scene_of_meshes(&[units(&triangles)]);
+    let scene = scene_of_meshes(&[triangle_soup_in_units(&triangles)]);
     context.renderer.set_tuning(card);
     context.renderer.set_scene(&scene)?;
     context.renderer.set_capacities(Capacities { large: 65_600, tiles: 65_600, ..Capacities::default() });
@@ -140,7 +140,7 @@ fn workgroups_indirect(context: &mut CaseContext) -> Result<(), EarlyEnd> {
     // Tiles of the resolve: 66,048 of 8 x 8 pixels.
     let [a, b, c, d] = [[0, 0], [2048 * 256, 0], [2048 * 256, 2064 * 256], [0, 2064 * 256]];
     context.renderer.set_tuning(Tuning { listed_tiles: true, ..card });
-    let scene = scene_of_meshes(&[units(&[([a, b, c], 0.5), ([a, c, d], 0.5)])]);
+    let scene = scene_of_meshes(&[triangle_soup_in_units(&[([a, b, c], 0.5), ([a, c, d], 0.5)])]);
     let view = pixel_view(2048, 2064);
     let what = "66,048 tiles of the picture";
     let (capture, _) = context.exact(&scene, &view, &stack(&["triangle_id"]), &pinned(Visibility::Split32), what)?;
@@ -156,7 +156,7 @@ fn demands() -> Vec<Demand> {
     let n = 40;
     let many = |triangle: [[i32; 2]; 3]| {
         let moved = |i: i32| (triangle.map(|[x, y]| [x, y + 97 * i]), 0.2 + 0.01 * i as f32);
-        scene_of_meshes(&[units(&(0..n).map(moved).collect::<Vec<_>>())])
+        scene_of_meshes(&[triangle_soup_in_units(&(0..n).map(moved).collect::<Vec<_>>())])
     };
     let demand = n as u32;
     // One corner beyond the guard band leaves a quad of two clipped triangles, both visible.
@@ -248,7 +248,7 @@ fn thousand_full_screen_triangles(context: &mut CaseContext) -> Result<(), Early
     let mut far = || rng.between(60_000, 8_000_000);
     let triangles: Vec<_> =
         (0..1000).map(|i| ([[-far(), -far()], [2 * far() / 2 + 40_000, -far()], [64 * 256, 8_388_607]], 1e-3 * (i % 997) as f32)).collect();
-    let scene = scene_of_meshes(&[units(&triangles)]);
+    let scene = scene_of_meshes(&[triangle_soup_in_units(&triangles)]);
     context.renderer.set_tuning(tunings()[2]);
     for option in context.options() {
         let what = format!("a thousand full-screen triangles on {}", option.name());

@@ -26,25 +26,33 @@ pub struct SimpleMesh {
     /// Three per triangle, or empty: the vertices in order.
     pub indices: Vec<u32>,
     pub double_sided: bool,
-    pub placements: Vec<DMat4>,
+    pub transforms: Vec<DMat4>,
 }
 
 impl Default for SimpleMesh {
     fn default() -> Self {
-        let placements = vec![DMat4::IDENTITY];
-        Self { positions: vec![], normals: vec![], colors: vec![], indices: vec![], double_sided: true, placements }
+        let transforms = vec![DMat4::IDENTITY];
+        Self { positions: vec![], normals: vec![], colors: vec![], indices: vec![], double_sided: true, transforms }
+    }
+}
+
+impl SimpleMesh {
+    /// The same mesh with one instance at this transform.
+    #[must_use]
+    pub fn at(self, world_from_object: DMat4) -> Self {
+        Self { transforms: vec![world_from_object], ..self }
     }
 }
 
 /// A double-sided mesh of separate triangles.
-pub fn sheet(positions: Vec<[f32; 3]>) -> SimpleMesh {
-    SimpleMesh { positions, ..SimpleMesh::default() }
+pub fn triangle_soup(positions: impl IntoIterator<Item = [f32; 3]>) -> SimpleMesh {
+    SimpleMesh { positions: positions.into_iter().collect(), ..SimpleMesh::default() }
 }
 
 /// Separate triangles with corners in units of 1/256 px and one depth each. Exact in a [`pixel_view`] up to the guard band.
-pub fn units(triangles: &[([[i32; 2]; 3], f32)]) -> SimpleMesh {
+pub fn triangle_soup_in_units(triangles: &[([[i32; 2]; 3], f32)]) -> SimpleMesh {
     let place = |[x, y]: [i32; 2], depth: f32| [x as f32 / 256.0, y as f32 / 256.0, depth];
-    sheet(triangles.iter().flat_map(|(corners, depth)| corners.map(|corner| place(corner, *depth))).collect())
+    triangle_soup(triangles.iter().flat_map(|(corners, depth)| corners.map(|corner| place(corner, *depth))))
 }
 
 /// A scene of these meshes.
@@ -91,7 +99,7 @@ pub fn scene_of_meshes(parts: &[SimpleMesh]) -> Arc<Scene> {
             normals_agree: false,
             deformation: Default::default(),
         });
-        scene.instances.extend(part.placements.iter().map(|&world_from_object| Instance::fixed(i, world_from_object)));
+        scene.instances.extend(part.transforms.iter().map(|&world_from_object| Instance::fixed(i, world_from_object)));
     }
     Arc::new(scene)
 }
@@ -134,7 +142,7 @@ pub fn square_perspective(width: u32, height: u32, near: f64) -> View {
 }
 
 /// The view of `scene` by `camera`.
-pub fn seen(scene: &Scene, camera: &Camera, [width, height]: [u32; 2]) -> View {
+pub fn camera_view(scene: &Scene, camera: &Camera, [width, height]: [u32; 2]) -> View {
     View::new(camera, width, height, &scene.bounds(), DMat4::IDENTITY, [0.01, 0.02, 0.03, 1.0])
 }
 
@@ -142,24 +150,36 @@ pub fn seen(scene: &Scene, camera: &Camera, [width, height]: [u32; 2]) -> View {
 ///
 /// # Errors
 /// If the scene exceeds the arithmetic ([`DrawError`]).
-pub fn reference(scene: &Scene, view: &View) -> Result<oracle::Coverage, DrawError> {
+pub fn reference_coverage(scene: &Scene, view: &View) -> Result<oracle::Coverage, DrawError> {
     let draws = draws(scene, view)?;
     let (triangles, _) = oracle::triangles(scene, &draws, &oracle::project(scene, &draws, view));
     Ok(oracle::cover(&triangles, view, None))
 }
 
 /// The four corners of a rotated square; `half` is half its diagonal.
-pub fn turned(center: [f64; 2], half: f64, angle: f64) -> [[f64; 2]; 4] {
+pub fn rotated_square(center: [f64; 2], half: f64, angle: f64) -> [[f64; 2]; 4] {
     [0.0, 1.0, 2.0, 3.0].map(|quarter| {
         let (sin, cos) = libm::sincos(angle + quarter * std::f64::consts::FRAC_PI_2);
         [center[0] + half * cos, center[1] + half * sin]
     })
 }
 
+/// The winding of triangles relative to the order of their corners.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Winding {
+    /// In the order of the corners.
+    Forward,
+    /// In the opposite order.
+    Reversed,
+}
+
 /// Two triangles through four corners in normalized device coordinates, with a w for each corner.
-pub fn quad(corners: [[f64; 2]; 4], w: [f64; 4], reversed: bool) -> Vec<[f32; 3]> {
+pub fn quad(corners: [[f64; 2]; 4], w: [f64; 4], winding: Winding) -> Vec<[f32; 3]> {
     let place = |i: usize| [corners[i][0] * w[i], corners[i][1] * w[i], -w[i]].map(|v| v as f32);
-    let order: [usize; 6] = if reversed { [0, 2, 1, 2, 0, 3] } else { [0, 1, 2, 2, 3, 0] };
+    let order: [usize; 6] = match winding {
+        Winding::Forward => [0, 1, 2, 2, 3, 0],
+        Winding::Reversed => [0, 2, 1, 2, 0, 3],
+    };
     order.map(place).to_vec()
 }
 
@@ -167,6 +187,7 @@ pub fn quad(corners: [[f64; 2]; 4], w: [f64; 4], reversed: bool) -> Vec<[f32; 3]
 pub struct Rng(pub u32);
 
 impl Rng {
+    /// Any of the 2^32 values.
     pub fn next_u32(&mut self) -> u32 {
         self.0 = self.0.wrapping_add(0x9e37_79b9);
         hash(self.0)

@@ -7,7 +7,7 @@ use glam::{DMat4, DVec3};
 use super::{
     case::{Case, Expectation},
     context::{CaseContext, EarlyEnd, check, equal, stack},
-    scenes::{SimpleMesh, pixel_view, scene_of_meshes, seen, sheet, units},
+    scenes::{SimpleMesh, camera_view, pixel_view, scene_of_meshes, triangle_soup, triangle_soup_in_units},
 };
 use crate::{
     accuracy::{PinnedOptions, PositionFormat},
@@ -84,7 +84,7 @@ fn non_finite_positions(context: &mut CaseContext) -> Result<(), EarlyEnd> {
     let good_too = good.map(|[x, y, z]| [64.0 - x, y, z]);
     positions.extend(good_too);
     let last = positions.len() as u32 / 3 - 1;
-    let capture = context.exact_on_all(&scene_of_meshes(&[sheet(positions)]), &view, "bad positions")?;
+    let capture = context.exact_on_all(&scene_of_meshes(&[triangle_soup(positions)]), &view, "bad positions")?;
     let counters = capture.frame.counters;
     let counted = (counters.rejected_nonfinite, counters.rejected_range, counters.degenerate);
     equal(&counted, &(nonfinite, range, 0), "triangles rejected as not finite, as out of range, as without area")?;
@@ -92,16 +92,16 @@ fn non_finite_positions(context: &mut CaseContext) -> Result<(), EarlyEnd> {
         capture.frame.triangle_id.iter().all(|&triangle_id| [0, last, NO_TRIANGLE].contains(&triangle_id)),
         "a rejected triangle owns a pixel"
     );
-    let alone = scene_of_meshes(&[sheet([good, good_too].concat())]);
+    let alone = scene_of_meshes(&[triangle_soup([good, good_too].concat())]);
     let reference = context.exact_on_all(&alone, &view, "good positions alone")?;
     check!(capture.frame.key == reference.frame.key, "a rejected triangle leaves a trace in the depth keys");
 
     // The largest accepted coordinates are clipped; subnormals count as 0.
     let below = f32::from_bits(huge.to_bits() - 1);
-    let vast = scene_of_meshes(&[sheet(vec![[-below, -below, 0.5], [below, -below, 0.5], [0.0, below, 0.5]])]);
+    let vast = scene_of_meshes(&[triangle_soup(vec![[-below, -below, 0.5], [below, -below, 0.5], [0.0, below, 0.5]])]);
     let capture = context.exact_on_all(&vast, &view, "just below 2^40")?;
     equal(&capture.frame.covered(), &(64 * 64), "pixels of a triangle just below 2^40")?;
-    let with = |zero: f32| scene_of_meshes(&[sheet(vec![[zero, zero, 0.5], [50.0, zero, zero], [zero, 50.0, 0.25]])]);
+    let with = |zero: f32| scene_of_meshes(&[triangle_soup(vec![[zero, zero, 0.5], [50.0, zero, zero], [zero, 50.0, 0.25]])]);
     let zero = context.exact_on_all(&with(0.0), &view, "zero")?;
     let subnormal = context.exact_on_all(&with(f32::from_bits(0x007f_ffff)), &view, "subnormal")?;
     check!(zero.frame == subnormal.frame && zero.geometry == subnormal.geometry, "a subnormal is not 0");
@@ -151,7 +151,7 @@ fn scales_and_offsets(context: &mut CaseContext) -> Result<(), EarlyEnd> {
         let at = DVec3::new(offset, -offset, 0.5 * offset);
         placed.instances[0].world_from_object = DMat4::from_translation(at) * DMat4::from_scale(DVec3::splat(scale));
         let camera = Camera { eye: at + DVec3::new(1.0, 1.0, 4.0) * scale, target: at, near_m: scale.max(1e-6), ..Camera::default() };
-        let view = seen(&placed, &camera, [96, 72]);
+        let view = camera_view(&placed, &camera, [96, 72]);
         let what = format!("offset {offset:e}, scale {scale:e}");
         let capture = context.exact_on_all_with(&Arc::new(placed), &view, &stack(&["depth", "lambert"]), &what)?;
         check!(capture.frame.covered() > 1500, "{what}: {} pixels", capture.frame.covered());
@@ -174,7 +174,7 @@ fn relative_positions(context: &mut CaseContext) -> Result<(), EarlyEnd> {
         let positions = (0..mesh.vertex_count()).map(far).collect();
         let scene = scene_of_meshes(&[SimpleMesh { positions, indices: indices.clone(), ..SimpleMesh::default() }]);
         let camera = Camera { eye: at + DVec3::new(1.0, 1.0, 4.0) * scale, target: at, near_m: scale.max(1e-6) * 0.1, ..Camera::default() };
-        let view = seen(&scene, &camera, [96, 72]);
+        let view = camera_view(&scene, &camera, [96, 72]);
         let corners = oracle::project_finest(&scene, &view, &Stack::default())?;
         let moved = |capture: &Capture| {
             let twins = capture.geometry.vertices.iter().zip(&corners.vertices).filter(|(a, b)| a.flags | b.flags == 0);
@@ -208,15 +208,15 @@ fn degenerate_triangles(context: &mut CaseContext) -> Result<(), EarlyEnd> {
     equal(&(capture.frame.covered(), capture.frame.counters.degenerate), &(0, 5), "pixels and triangles without area")?;
 
     // A very long line without area, and a tiny triangle that the snap collapses to a point.
-    let line = units(&[([[-8_000_000, -8_000_000], [0, 0], [8_000_000, 8_000_000]], 0.5)]);
-    let speck = sheet(vec![[9.5, 9.5, 0.5], [9.5001, 9.5, 0.5], [9.5, 9.5001, 0.5]]);
+    let line = triangle_soup_in_units(&[([[-8_000_000, -8_000_000], [0, 0], [8_000_000, 8_000_000]], 0.5)]);
+    let speck = triangle_soup(vec![[9.5, 9.5, 0.5], [9.5001, 9.5, 0.5], [9.5, 9.5001, 0.5]]);
     let capture = context.exact_on_all(&scene_of_meshes(&[none, line, speck]), &view, "lines and specks")?;
     equal(&(capture.frame.covered(), capture.frame.counters.degenerate), &(0, 7), "pixels and triangles without area")?;
 
     // Meshes without triangles, without vertices, alone and among others; a scene without meshes.
     let empty = SimpleMesh { positions: vec![[1.0, 1.0, 0.5]; 2], ..SimpleMesh::default() };
     let nothing = SimpleMesh::default();
-    let whole = sheet(points[..3].to_vec());
+    let whole = triangle_soup(points[..3].to_vec());
     for (parts, covered) in [
         (vec![], false),
         (vec![nothing.clone()], false),
@@ -241,7 +241,7 @@ fn mirrored_transforms(context: &mut CaseContext) -> Result<(), EarlyEnd> {
         let mut drawn = |scale: DVec3| {
             let mut scene = plain.clone();
             scene.instances[0].world_from_object = DMat4::from_scale(scale);
-            let view = seen(&scene, &camera, [128, 96]);
+            let view = camera_view(&scene, &camera, [128, 96]);
             context.exact_on_all_with(&Arc::new(scene), &view, &stack(&["lambert"]), &format!("scale {scale}, double-sided {double_sided}"))
         };
         let straight = drawn(DVec3::ONE)?;

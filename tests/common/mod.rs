@@ -13,7 +13,7 @@ use std::{
 pub use rasterlab::stress::{
     adversarial::near_miss_triangle,
     exactness, pinned,
-    scenes::{Rng, SimpleMesh, pixel_view, scene_of_meshes, seen, sheet, units},
+    scenes::{Rng, SimpleMesh, camera_view, pixel_view, scene_of_meshes, triangle_soup, triangle_soup_in_units},
     stack, tunings,
 };
 use rasterlab::{
@@ -274,5 +274,5 @@ fn copy_folder(from: &Path, to: &Path) {
 
 /// What the oracle makes of a scene all by itself: the reference that an adapter has not touched.
 pub fn reference(scene: &Scene, view: &View) -> oracle::Coverage {
-    stress::scenes::reference(scene, view).expect("a scene that fits")
+    stress::scenes::reference_coverage(scene, view).expect("a scene that fits")
 }

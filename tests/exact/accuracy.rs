@@ -55,7 +55,8 @@ fn every_size_of_picture_is_within_tolerance() {
 fn viewpoints() -> Vec<(String, Arc<Scene>, View)> {
     const SIZE: [u32; 2] = [200, 150];
     let mut cases: Vec<(String, Arc<Scene>, View)> = Vec::new();
-    let mut add = |what: &str, scene: &Arc<Scene>, camera: &Camera| cases.push((what.into(), scene.clone(), seen(scene, camera, SIZE)));
+    let mut add =
+        |what: &str, scene: &Arc<Scene>, camera: &Camera| cases.push((what.into(), scene.clone(), camera_view(scene, camera, SIZE)));
     let double_sided = |query: &str| {
         let mut scene = Scene::clone(&scene(query));
         scene.materials.iter_mut().for_each(|material| material.double_sided = true);
@@ -142,7 +143,7 @@ fn dense_grids_have_no_hole_where_the_beginners_kernel_has_thousands() {
     for (query, naive_holes) in [("grid?cell=1", 5_000..40_000), ("grid?cell=0.4", 65_000..65_537)] {
         let scene = scene(query);
         for camera in scene.cameras.iter().map(|camera| camera.pose) {
-            let view = seen(&scene, &camera, [256, 256]);
+            let view = camera_view(&scene, &camera, [256, 256]);
             for option in options(&renderer) {
                 let (capture, _) = exact(&mut renderer, &scene, &view, &stack(&[]), &pinned(option), query);
                 let layers = capture.layers.expect("layers are counted");
@@ -208,11 +209,13 @@ fn mutants() -> Vec<Mutant> {
         let scene = scene_of_meshes(&[part]);
         let camera =
             Camera { eye: DVec3::ZERO, target: DVec3::NEG_Z, projection: Projection::Perspective { fov_y_deg: 90.0 }, ..Camera::default() };
-        let view = seen(&scene, &camera, [128, 96]);
+        let view = camera_view(&scene, &camera, [128, 96]);
         (scene, view)
     };
     // Its upper edge spans the guard band, so edge functions in the picture pass 2^39.
-    let vast = || (scene_of_meshes(&[units(&[([[-8_388_607, 10], [8_388_607, 10], [0, 8_388_607]], 0.5)])]), pixel_view(256, 256));
+    let vast = || {
+        (scene_of_meshes(&[triangle_soup_in_units(&[([[-8_388_607, 10], [8_388_607, 10], [0, 8_388_607]], 0.5)])]), pixel_view(256, 256))
+    };
     let mutant = |what, file, from, to, (scene, view): (Arc<Scene>, View), shown_by| Mutant {
         what,
         file,
@@ -227,7 +230,7 @@ fn mutants() -> Vec<Mutant> {
     let close = || {
         let mut rng = Rng(1);
         let triangles: Vec<_> = (0..400).map(|i| (near_miss_triangle(&mut rng, 128 * 256, [64, 64]), 0.1 + 0.002 * i as f32)).collect();
-        (scene_of_meshes(&[units(&triangles)]), pixel_view(64, 64))
+        (scene_of_meshes(&[triangle_soup_in_units(&triangles)]), pixel_view(64, 64))
     };
     let rule = "return select(1, 0, d.y < 0 || (d.y == 0 && d.x > 0));";
     vec![

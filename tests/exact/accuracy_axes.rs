@@ -113,7 +113,7 @@ fn few_bits_of_depth_confuse_layers_that_lie_close() {
     let Some(mut renderer) = renderer() else { return };
     // Two plates, the nearer one by half a step of 16 bits and the later one in order.
     let plate = |depth: f32| ([[0, 0], [64 * 256, 0], [0, 64 * 256]], depth);
-    let scene = scene_of_meshes(&[units(&[plate(0.5), plate(0.500_004)])]);
+    let scene = scene_of_meshes(&[triangle_soup_in_units(&[plate(0.5), plate(0.500_004)])]);
     let wrong = [DepthFormat::Ndc16, DepthFormat::Log16, DepthFormat::Log24, DepthFormat::Standard, DepthFormat::Reversed].map(|depth| {
         judged(&mut renderer, &scene, &pixel_view(64, 64), &stack(&[]), &on(PinnedOptions::of(depth))).1.accuracy.wrong_nearest
     });
@@ -182,7 +182,7 @@ fn narrow_sums_of_layers_err_by_steps_of_8_bits_and_say_when_they_are_full() {
     }
     // 300 sheets behind one another are more than 257, and fewer than 4,095.
     let sheets: Vec<_> = (0..300).map(|i| ([[0, 0], [64 * 256, 0], [0, 64 * 256]], 0.1 + 0.001 * i as f32)).collect();
-    let deep = scene_of_meshes(&[units(&sheets)]);
+    let deep = scene_of_meshes(&[triangle_soup_in_units(&sheets)]);
     let view = pixel_view(16, 16);
     captured(&mut renderer, &deep, &view, &xray, &on(PinnedOptions::of(XraySums::Three8)));
     let full = renderer.capture(&view, &xray, &on(PinnedOptions::of(XraySums::Packed16))).expect_err("257 layers fit");
@@ -270,7 +270,7 @@ fn neighbours_in_boxes_of_their_own_crack_when_they_are_packed() {
             let ([a, b], [x0, x1]) = ([border(i), border(i + 1)], [border(i)[0], border(i + 1)[0]]);
             [[a[0], a[1]], [b[0], b[1]], [x0, far], [b[0], b[1]], [x1, far], [x0, far]].map(|[x, y]| [x, y, 0.5])
         };
-        rasterlab::stress::scenes::sheet((0..136).flat_map(quad).collect())
+        rasterlab::stress::scenes::triangle_soup((0..136).flat_map(quad))
     };
     let scene = scene_of_meshes(&[sheet(-1000.0), sheet(300.0)]);
     let view = pixel_view(256, 256);
@@ -296,7 +296,7 @@ fn modelled_far_away(offset: f64, size: [u32; 2]) -> (std::sync::Arc<Scene>, Vie
     };
     let scene = scene_of_meshes(&[part]);
     let camera = Camera { eye: at + glam::DVec3::new(1.0, 1.0, 4.0), target: at, ..Camera::default() };
-    let view = rasterlab::stress::scenes::seen(&scene, &camera, size);
+    let view = rasterlab::stress::scenes::camera_view(&scene, &camera, size);
     (scene, view)
 }
 
@@ -397,7 +397,7 @@ fn packed_places_refuse_what_the_file_s_places_refuse_and_meshes_that_bend() {
         corners[corner][corner] = value;
         positions.extend(corners);
     }
-    let scene = scene_of_meshes(&[rasterlab::stress::scenes::sheet(positions)]);
+    let scene = scene_of_meshes(&[rasterlab::stress::scenes::triangle_soup(positions)]);
     for option in [PositionFormat::Packed10, PositionFormat::Packed16] {
         let (capture, verdict) = judged(&mut renderer, &scene, &pixel_view(64, 64), &stack(&[]), &on(PinnedOptions::of(option)));
         let counters = capture.frame.counters;

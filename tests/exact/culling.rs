@@ -372,9 +372,9 @@ fn more_meshlets_than_one_row_of_workgroups_are_all_drawn() {
     const SIDE: u32 = 257;
     // One triangle over one sample, 66,049 times: as many meshlets, and more than 65,535 workgroups.
     let corner = |x: f32, y: f32| [x / 4.0, y / 4.0, 0.5];
-    let placements = (0..SIDE * SIDE).map(|i| DMat4::from_translation(DVec3::new((i % SIDE).into(), (i / SIDE).into(), 0.0)));
+    let transforms = (0..SIDE * SIDE).map(|i| DMat4::from_translation(DVec3::new((i % SIDE).into(), (i / SIDE).into(), 0.0)));
     let positions = vec![corner(1.0, 1.0), corner(1.0, 3.0), corner(3.0, 2.0)];
-    let scene = scene_of_meshes(&[SimpleMesh { placements: placements.collect(), ..sheet(positions) }]);
+    let scene = scene_of_meshes(&[SimpleMesh { transforms: transforms.collect(), ..triangle_soup(positions) }]);
     let usual = renderer.gpu().caps.tuning();
     renderer.set_tuning(Tuning { group_size: 64, ..usual });
     renderer.set_scene(&scene).expect("it fits");

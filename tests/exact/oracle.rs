@@ -6,89 +6,28 @@ use proptest::prelude::*;
 use rasterlab::{
     effects::{Effect, Stack},
     frame::{ClippedTriangle, Counters, Frame, Geometry, NO_TRIANGLE, SnappedVertex, vertex_flags},
-    math::{GUARD_BAND, SMALL_EXTENT, hash},
+    math::{GUARD_BAND, SMALL_EXTENT},
     measure::{Budget, ErrorReport},
     oracle::{OrientedTriangle, Seen, cover, judge, owns, project, render, shade, triangles},
     scene::{
-        Accessor, Bounds, Instance, Material, Primitive, Scene, Topology,
+        Scene,
         camera::{Camera, MIN_NEAR_M, Projection},
         draw::draws,
         view::View,
     },
+    stress::scenes::{Rng, SimpleMesh, Winding, pixel_view, quad, rotated_square, scene_of_meshes, square_perspective, triangle_soup},
 };
 
 // ---------------------------------------------------------------- hand-made scenes and views
 
-/// Triangles with their own normals and colours; everything a hand-made scene needs.
-#[derive(Clone, Default)]
-struct Mesh {
-    positions: Vec<[f32; 3]>,
-    /// Empty: (0, 0, 1) everywhere.
-    normals: Vec<[f32; 3]>,
-    /// Empty: none.
-    colors: Vec<[f32; 4]>,
-    /// Empty: corners count upwards.
-    indices: Vec<u32>,
-    double_sided: bool,
-}
-
-fn scene(meshes: &[(Mesh, DMat4)]) -> Scene {
-    let mut scene = Scene { name: "hand-made".into(), ..Default::default() };
-    for (i, (mesh, world_from_object)) in meshes.iter().enumerate() {
-        let count = mesh.positions.len();
-        let mut push = |components: u32, values: &[f32]| {
-            let offset = scene.vertex_bytes.len();
-            scene.vertex_bytes.extend(values.iter().flat_map(|v| v.to_le_bytes()));
-            Accessor::packed_f32(offset, components, values.len() / components as usize)
-        };
-        let positions = push(3, mesh.positions.as_flattened());
-        let normals = if mesh.normals.is_empty() { vec![[0.0, 0.0, 1.0]; count] } else { mesh.normals.clone() };
-        let normals = push(3, normals.as_flattened());
-        let colors = (!mesh.colors.is_empty()).then(|| push(4, mesh.colors.as_flattened()));
-        let indices = (!mesh.indices.is_empty()).then(|| {
-            let offset = scene.index_bytes.len() as u32;
-            scene.index_bytes.extend(mesh.indices.iter().flat_map(|i| i.to_le_bytes()));
-            Accessor {
-                offset,
-                stride: 4,
-                component_type: rasterlab::scene::ComponentType::U32,
-                components: 1,
-                normalized: false,
-                count: mesh.indices.len() as u32,
-            }
-        });
-        let mut bounds = Bounds::EMPTY;
-        let finite = mesh.positions.iter().filter(|p| p.iter().all(|v| v.is_finite()));
-        finite.for_each(|p| bounds.include(DVec3::from_array(p.map(f64::from))));
-        scene.primitives.push(Primitive {
-            name: format!("mesh {i}"),
-            topology: Topology::List,
-            indices,
-            positions,
-            normals,
-            colors,
-            texcoords: [None; 2],
-            material: i,
-            bounds,
-            longest_edge: 2.0 * bounds.radius(),
-            normals_agree: false,
-            deformation: Default::default(),
-        });
-        scene.materials.push(Material { double_sided: mesh.double_sided, ..Default::default() });
-        scene.instances.push(Instance::fixed(i, *world_from_object));
-    }
-    scene
-}
-
-/// Loose triangles that show both sides.
-fn sheet(positions: &[[f32; 3]]) -> Mesh {
-    Mesh { positions: positions.to_vec(), double_sided: true, ..Default::default() }
+fn scene(meshes: &[SimpleMesh]) -> Scene {
+    Scene::clone(&scene_of_meshes(meshes))
 }
 
 /// A closed sphere of `2 * rows * rows` quads, smooth and coloured by direction.
-fn sphere(rows: u32) -> Mesh {
+fn sphere(rows: u32) -> SimpleMesh {
     let columns = 2 * rows;
-    let mut mesh = Mesh::default();
+    let mut mesh = SimpleMesh { double_sided: false, ..Default::default() };
     for row in 0..=rows {
         for column in 0..=columns {
             let (v, u) = (f64::from(row) / f64::from(rows), f64::from(column % columns) / f64::from(columns));
@@ -110,47 +49,17 @@ fn sphere(rows: u32) -> Mesh {
 }
 
 /// A ground of one square, `half` metres to each side at height `y`.
-fn ground(half: f32, y: f32) -> Mesh {
+fn ground(half: f32, y: f32) -> SimpleMesh {
     let [a, b, c, d] = [[-half, y, -half], [-half, y, half], [half, y, half], [half, y, -half]];
-    Mesh { positions: vec![a, b, c, a, c, d], normals: vec![[0.0, 1.0, 0.0]; 6], double_sided: true, ..Default::default() }
+    SimpleMesh { positions: vec![a, b, c, a, c, d], normals: vec![[0.0, 1.0, 0.0]; 6], double_sided: true, ..Default::default() }
 }
 
 /// A sphere over a ground that reaches behind the eye, seen in perspective.
 fn still_life(size: [u32; 2]) -> (Scene, View) {
-    let scene = scene(&[(sphere(12), DMat4::IDENTITY), (ground(50.0, -1.0), DMat4::IDENTITY)]);
+    let scene = scene(&[sphere(12), ground(50.0, -1.0)]);
     let camera = Camera { eye: DVec3::new(1.0, 1.5, 4.0), ..Default::default() };
     let view = View::new(&camera, size[0], size[1], &scene.bounds(), DMat4::IDENTITY, [0.01, 0.02, 0.03, 1.0]);
     (scene, view)
-}
-
-/// Positions are pixels right and down, z is the depth itself. Exact for sizes that are powers of two.
-fn flat_view(width: u32, height: u32) -> View {
-    let (w, h) = (f64::from(width), f64::from(height));
-    View {
-        ndc_axes: [DVec3::X, DVec3::Y],
-        width,
-        height,
-        clip_from_world: DMat4::from_cols(DVec4::X * 2.0 / w, DVec4::Y * -2.0 / h, DVec4::Z, DVec4::new(-1.0, 1.0, 0.0, 1.0)),
-        world_from_scene: DMat4::IDENTITY,
-        eye: DVec3::Z,
-        forward: DVec3::NEG_Z,
-        linear_depth_m: Some([0.0, 1.0]),
-        scene_range_m: [0.0, 1.0],
-        background: [0.0; 4],
-        subpixel_bits: 8,
-        is_relative: false,
-        pose: None,
-        polyline: Default::default(),
-        shadow: Default::default(),
-        picture_from_world: None,
-        particle_timeline: None,
-    }
-}
-
-/// A perspective in which (x w, y w, -w) lands on (x, y) in NDC.
-fn square_perspective(width: u32, height: u32, near: f64) -> View {
-    let clip_from_world = DMat4::from_cols(DVec4::X, DVec4::Y, DVec4::new(0.0, 0.0, 0.0, -1.0), DVec4::new(0.0, 0.0, near, 0.0));
-    View { clip_from_world, eye: DVec3::ZERO, linear_depth_m: None, scene_range_m: [near, near + 10.0], ..flat_view(width, height) }
 }
 
 fn all_effects() -> Stack {
@@ -164,21 +73,6 @@ fn all_effects() -> Stack {
 /// What a picture is coloured from.
 fn seen(frame: &Frame) -> Seen<'_> {
     Seen { triangle_ids: &frame.triangle_id, keys: &frame.key, dots: &frame.dots, previous: None }
-}
-
-/// Numbers that preset random and are the same on every run.
-struct Rng(u32);
-
-impl Rng {
-    fn next_u32(&mut self) -> u32 {
-        self.0 = self.0.wrapping_add(0x9e37_79b9);
-        hash(self.0)
-    }
-
-    /// From `low` up to but without `high`.
-    fn between(&mut self, low: i32, high: i32) -> i32 {
-        low + ((u64::from(self.next_u32()) * u64::from(high.abs_diff(low))) >> 32) as i32
-    }
 }
 
 #[test]
@@ -215,7 +109,7 @@ fn triangle(id: u32, mut points: [[i32; 2]; 3], depth: f32) -> Option<OrientedTr
 }
 
 fn layers(triangles: &[OrientedTriangle], width: u32, height: u32) -> Vec<u32> {
-    cover(triangles, &flat_view(width, height), None).layers()
+    cover(triangles, &pixel_view(width, height), None).layers()
 }
 
 /// Projects, clips, assembles and covers.
@@ -274,7 +168,7 @@ proptest! {
 fn rectangle_of_the_d3d11_rules_owns_fifteen_and_ten_pixels() {
     let [a, b, c, d] = [[0, 0], [5 * 256, 0], [5 * 256, 5 * 256], [0, 5 * 256]];
     let halves = [triangle(0, [a, b, c], 0.5).unwrap(), triangle(1, [a, c, d], 0.5).unwrap()];
-    let coverage = cover(&halves, &flat_view(8, 8), None);
+    let coverage = cover(&halves, &pixel_view(8, 8), None);
     let count = |triangle_id| coverage.samples.iter().filter(|sample| sample.triangle_id == triangle_id).count();
     assert_eq!((count(0), count(1), coverage.layers().iter().max()), (15, 10, Some(&1)));
 }
@@ -294,20 +188,6 @@ fn fan_about_a_sample_hits_it_exactly_once() {
     }
 }
 
-/// A quad through four NDC corners with a w for each, as two triangles that wind one way or the other.
-fn quad(corners: [[f64; 2]; 4], w: [f64; 4], reversed: bool) -> Mesh {
-    let place = |i: usize| [corners[i][0] * w[i], corners[i][1] * w[i], -w[i]].map(|v| v as f32);
-    let order: [usize; 6] = if reversed { [0, 2, 1, 2, 0, 3] } else { [0, 1, 2, 2, 3, 0] };
-    sheet(&order.map(place))
-}
-
-fn turned(center: [f64; 2], half: f64, angle: f64) -> [[f64; 2]; 4] {
-    [0.0, 1.0, 2.0, 3.0].map(|quarter| {
-        let (sin, cos) = libm::sincos(angle + quarter * std::f64::consts::FRAC_PI_2);
-        [center[0] + half * cos, center[1] + half * sin]
-    })
-}
-
 /// The fill-rule cases of VK-GL-CTS: small quads, plain, reversed and with a w of their own at each corner.
 #[test]
 fn rotated_quads_cover_each_sample_once_and_miss_none() {
@@ -318,11 +198,14 @@ fn rotated_quads_cover_each_sample_once_and_miss_none() {
         let quads: Vec<[[f64; 2]; 4]> = (0..16)
             .map(|i| {
                 let center = [-0.75 + 0.5 * f64::from(i % 4), -0.75 + 0.5 * f64::from(i / 4)];
-                turned(center, 0.15, f64::from(i) * std::f64::consts::FRAC_PI_2 / 16.0)
+                rotated_square(center, 0.15, f64::from(i) * std::f64::consts::FRAC_PI_2 / 16.0)
             })
             .collect();
         let mut w = || if projective { 0.1 + 3.9 * f64::from(rng.next_u32()) / 4_294_967_296.0 } else { 1.0 };
-        let meshes: Vec<_> = quads.iter().map(|&corners| (quad(corners, [w(), w(), w(), w()], reversed), DMat4::IDENTITY)).collect();
+        let meshes: Vec<_> = quads
+            .iter()
+            .map(|&corners| triangle_soup(quad(corners, [w(), w(), w(), w()], if reversed { Winding::Reversed } else { Winding::Forward })))
+            .collect();
         let (layers, _) = covered(&scene(&meshes), &view);
         for (pixel, hits) in layers.into_iter().enumerate() {
             let ndc = [pixel as u32 % SIZE, pixel as u32 / SIZE].map(|k| (f64::from(k) + 0.5) * 2.0 / f64::from(SIZE) - 1.0);
@@ -353,8 +236,12 @@ fn quad_larger_than_the_view_covers_everything_once() {
         let angle = f64::from(turn) * std::f64::consts::FRAC_PI_2 / 15.0;
         // Once beyond every corner, then far past the guard band.
         for half in [2.5, 40.0, 1e5, 1e8] {
-            let mesh = quad(turned([0.1, -0.2], half, angle), [1.0, 0.7, 2.0, 1.3], turn % 2 == 0);
-            let (layers, _) = covered(&scene(&[(mesh, DMat4::IDENTITY)]), &view);
+            let mesh = triangle_soup(quad(
+                rotated_square([0.1, -0.2], half, angle),
+                [1.0, 0.7, 2.0, 1.3],
+                if turn % 2 == 0 { Winding::Reversed } else { Winding::Forward },
+            ));
+            let (layers, _) = covered(&scene(&[mesh]), &view);
             assert!(layers.iter().all(|&hits| hits == 1), "turn {turn}, half {half}");
         }
     }
@@ -368,7 +255,7 @@ fn whole_pixel_translation_moves_every_owner() {
     let triangle_ids = |dx: i32, dy: i32| {
         let moved = |p: [i32; 2]| [p[0] + 256 * dx, p[1] + 256 * dy];
         let mesh: Vec<_> = soup.iter().enumerate().filter_map(|(i, t)| triangle(i as u32, t.map(moved), 0.1 + 0.01 * (i as f32))).collect();
-        cover(&mesh, &flat_view(64, 64), None).triangle_ids()
+        cover(&mesh, &pixel_view(64, 64), None).triangle_ids()
     };
     let still = triangle_ids(0, 0);
     for (dx, dy) in [(1, 0), (0, 1), (31, 17), (32, 32)] {
@@ -410,12 +297,12 @@ fn infinitesimal_step_is_the_top_left_rule() {
 /// One edge runs through the picture, the rest of the triangle is as large as it likes.
 #[test]
 fn triangles_of_every_size_cover_their_half_plane() {
-    let view = flat_view(64, 64);
+    let view = pixel_view(64, 64);
     for exponent in -3..=9 {
         let size = libm::pow(10.0, f64::from(exponent)) as f32;
         let (x, y) = (32.3f32, 31.7f32);
-        let mesh = sheet(&[[x, y - size, 0.5], [x + size, y, 0.5], [x, y + size, 0.5]]);
-        let (layers, _) = covered(&scene(&[(mesh, DMat4::IDENTITY)]), &view);
+        let mesh = triangle_soup([[x, y - size, 0.5], [x + size, y, 0.5], [x, y + size, 0.5]]);
+        let (layers, _) = covered(&scene(&[mesh]), &view);
         for (pixel, hits) in layers.into_iter().enumerate() {
             let (px, py) = ((pixel % 64) as f32 + 0.5, (pixel / 64) as f32 + 0.5);
             let error_bound = (size - (py - y).abs() - (px - x)).min(px - x);
@@ -468,7 +355,7 @@ fn depth_at_a_vertex_is_the_vertex_depth_and_never_leaves_the_corners() {
     for z in depths {
         // The top left corner owns its sample, and the other samples lie between the corners.
         let corners = [at(128, 128, z[0]), at(128 + 2048, 128, z[1]), at(128 + 256, 128 + 2048, z[2])];
-        let coverage = cover(&[OrientedTriangle::clockwise(0, corners)], &flat_view(9, 9), None);
+        let coverage = cover(&[OrientedTriangle::clockwise(0, corners)], &pixel_view(9, 9), None);
         assert_eq!(coverage.samples[0].key, z[0].to_bits());
         let (low, high) = (z[0].min(z[1]).min(z[2]), z[0].max(z[1]).max(z[2]));
         let keys = coverage.samples.iter().filter(|sample| sample.layers == 1).map(|sample| sample.key);
@@ -484,23 +371,23 @@ fn nearest_layer_wins_and_equal_layers_go_to_the_smaller_id() {
     };
     let one_key_apart = |id: u32| f32::from_bits(0.5f32.to_bits() + id);
     for ids in [[0, 1, 2, 3], [3, 2, 1, 0], [2, 0, 3, 1]] {
-        let nearest = cover(&stack(&ids, &one_key_apart), &flat_view(4, 4), None).samples[0];
+        let nearest = cover(&stack(&ids, &one_key_apart), &pixel_view(4, 4), None).samples[0];
         assert_eq!((nearest.triangle_id, nearest.key, nearest.layers), (3, one_key_apart(3).to_bits(), 4));
-        let equal = cover(&stack(&ids, &|_| 0.5), &flat_view(4, 4), None).samples[0];
+        let equal = cover(&stack(&ids, &|_| 0.5), &pixel_view(4, 4), None).samples[0];
         assert_eq!((equal.triangle_id, equal.is_band()), (0, false), "flat triangles have exact keys, so nothing is ambiguous");
     }
 }
 
 #[test]
 fn depth_of_zero_still_has_a_key() {
-    let far = cover(&[triangle(4, [[0, 0], [0, 900], [900, 0]], 0.0).unwrap()], &flat_view(1, 1), None).samples[0];
+    let far = cover(&[triangle(4, [[0, 0], [0, 900], [900, 0]], 0.0).unwrap()], &pixel_view(1, 1), None).samples[0];
     assert_eq!((far.triangle_id, far.key), (4, 1));
 }
 
 #[test]
 fn crossing_surfaces_are_ambiguous_only_where_they_cross() {
     let slope = |id, left, right| OrientedTriangle::clockwise(id, [at(0, -9000, left), at(65 * 256, 0, right), at(0, 30_000, left)]);
-    let coverage = cover(&[slope(0, 0.25, 0.75), slope(1, 0.75, 0.25)], &flat_view(65, 16), None);
+    let coverage = cover(&[slope(0, 0.25, 0.75), slope(1, 0.75, 0.25)], &pixel_view(65, 16), None);
     let band: Vec<usize> = (0..coverage.samples.len()).filter(|&i| coverage.samples[i].is_band()).map(|i| i % 65).collect();
     assert!(!band.is_empty() && band.iter().all(|&x| x == 32), "{band:?}");
 }
@@ -510,23 +397,24 @@ fn crossing_surfaces_are_ambiguous_only_where_they_cross() {
 #[test]
 fn snap_is_symmetric_about_the_centre_and_rounds_to_even() {
     let half = 1.0 / 512.0;
-    let mesh = sheet(&[[32.0 + half, 32.0 + half, 0.5], [32.0 - half, 32.0 - half, 0.5], [32.0 + 3.0 * half, 32.0 - 3.0 * half, 0.5]]);
-    let (scene, view) = (scene(&[(mesh, DMat4::IDENTITY)]), flat_view(64, 64));
+    let mesh =
+        triangle_soup([[32.0 + half, 32.0 + half, 0.5], [32.0 - half, 32.0 - half, 0.5], [32.0 + 3.0 * half, 32.0 - 3.0 * half, 0.5]]);
+    let (scene, view) = (scene(&[mesh]), pixel_view(64, 64));
     let vertices = project(&scene, &draws(&scene, &view).unwrap(), &view).vertices;
     assert_eq!(vertices.iter().map(|v| (v.x - 8192, v.y - 8192)).collect::<Vec<_>>(), [(0, 0), (0, 0), (2, -2)]);
 }
 
 #[test]
 fn mesh_through_the_guard_band_has_no_cracks() {
-    let view = flat_view(64, 64);
+    let view = pixel_view(64, 64);
     let guard = f64::from(GUARD_BAND) / 256.0;
     for beyond in [0.0, 1.0 / 256.0, 1.0, 5e3, 1e6, 1e9] {
         let far = (guard + beyond) as f32;
         for hub in [[31.3f32, 12.9], [0.5, 0.5], [63.99, 40.25]] {
             let rim = [[-far, -far], [far, -far], [far, far], [-far, far]];
             let wedge = |i: usize| [[hub[0], hub[1], 0.25], [rim[i][0], rim[i][1], 0.5], [rim[(i + 1) % 4][0], rim[(i + 1) % 4][1], 0.75]];
-            let mesh = sheet((0..4).map(wedge).collect::<Vec<_>>().as_flattened());
-            let (layers, counters) = covered(&scene(&[(mesh, DMat4::IDENTITY)]), &view);
+            let mesh = triangle_soup((0..4).map(wedge).flatten());
+            let (layers, counters) = covered(&scene(&[mesh]), &view);
             assert!(layers.iter().all(|&hits| hits == 1), "beyond {beyond}, hub {hub:?}");
             assert_eq!(counters.clipped, if beyond == 0.0 { 0 } else { 4 });
         }
@@ -536,13 +424,13 @@ fn mesh_through_the_guard_band_has_no_cracks() {
 /// One long edge runs through the picture and ends beyond a side of the guard band; it must still run where it ran.
 #[test]
 fn edges_cut_by_the_guard_band_keep_their_course() {
-    let view = flat_view(64, 64);
+    let view = pixel_view(64, 64);
     let center = DVec3::new(32.3, 31.7, 0.5);
     for step in 0..64 {
         let (sin, cos) = libm::sincos(f64::from(step) * std::f64::consts::TAU / 64.0 + 0.01);
         let (along, across) = (DVec3::new(cos, sin, 0.0), DVec3::new(-sin, cos, 0.0));
         let corners = [center - along * 2e4, center + along * 3e5, center + across * 3e5].map(|p| p.as_vec3().to_array());
-        let (layers, counters) = covered(&scene(&[(sheet(&corners), DMat4::IDENTITY)]), &view);
+        let (layers, counters) = covered(&scene(&[triangle_soup(corners)]), &view);
         assert_eq!(counters.clipped, 1);
         for (pixel, hits) in layers.into_iter().enumerate() {
             let sample = DVec3::new((pixel % 64) as f64 + 0.5, (pixel / 64) as f64 + 0.5, 0.5);
@@ -556,7 +444,7 @@ fn edges_cut_by_the_guard_band_keep_their_course() {
 #[test]
 fn folded_pieces_are_dropped_and_counted() {
     let corners = [[0.0, 0.0, 0.5], [16.0, 0.0, 0.5], [40_000.0, 40_000.0, 0.5]];
-    let (scene, view) = (scene(&[(sheet(&corners), DMat4::IDENTITY)]), flat_view(16, 16));
+    let (scene, view) = (scene(&[triangle_soup(corners)]), pixel_view(16, 16));
     let draws = draws(&scene, &view).unwrap();
     let mut geometry = project(&scene, &draws, &view);
     let fan = geometry.pieces.clone();
@@ -578,7 +466,7 @@ fn pieces_stay_inside_the_guard_band_with_planes_set_exactly() {
     let mut rng = Rng(29);
     let mut number = |scale: f32| rng.between(-1_000_000, 1_000_001) as f32 * 1e-6 * scale;
     let soup: Vec<[f32; 3]> = (0..3000).map(|_| [number(3.0), number(3.0), number(2.0)]).collect();
-    let scene = scene(&[(sheet(&soup), DMat4::IDENTITY)]);
+    let scene = scene(&[triangle_soup(soup)]);
     let geometry = project(&scene, &draws(&scene, &view).unwrap(), &view);
     assert!(geometry.pieces.len() > 500 && geometry.pieces.is_sorted_by_key(|piece| piece.parent));
     let corners: Vec<_> = geometry.pieces.iter().flat_map(|piece| piece.corners).collect();
@@ -596,7 +484,7 @@ fn near_plane_takes_at_most_a_row_too_much() {
         let d = 0.2 + 1.6 * f64::from(step) / 1000.0;
         let corner = |x: f32, y: f32| [x, y, -(d + 0.7 * f64::from(y)) as f32];
         let [a, b, c, e] = [corner(-100.0, -100.0), corner(100.0, -100.0), corner(100.0, 100.0), corner(-100.0, 100.0)];
-        let (layers, counters) = covered(&scene(&[(sheet(&[a, b, c, a, c, e]), DMat4::IDENTITY)]), &view);
+        let (layers, counters) = covered(&scene(&[triangle_soup([a, b, c, a, c, e])]), &view);
         assert_eq!(counters.clipped, 2);
         for (pixel, hits) in layers.into_iter().enumerate() {
             // w = d + 0.7 y w along the ray, and w >= 1 is kept.
@@ -614,8 +502,8 @@ fn w_at_and_around_zero_stays_inside_its_picture() {
     let ws = [0.0, 1e-30, -1e-30, near as f32, -(near as f32), f32::from_bits((near as f32).to_bits() - 1), 1.0, -1.0];
     for (i, wa) in ws.iter().enumerate() {
         for (j, wb) in ws.iter().enumerate() {
-            let mesh = sheet(&[[0.3, -0.2, -wa], [-0.4, 0.1, -wb], [0.1, 0.6, -1.0]]);
-            let scene = scene(&[(mesh, DMat4::IDENTITY)]);
+            let mesh = triangle_soup([[0.3, -0.2, -wa], [-0.4, 0.1, -wb], [0.1, 0.6, -1.0]]);
+            let scene = scene(&[mesh]);
             let frame = render(&scene, &view, &all_effects()).unwrap();
             let geometry = project(&scene, &draws(&scene, &view).unwrap(), &view);
             let verdict = judge(&scene, &view, &all_effects(), &frame, &geometry, None).unwrap();
@@ -640,16 +528,16 @@ fn rejected_vertices_take_only_their_own_triangles_along() {
         for lane in 0..3 {
             let mut broken = [[1.0, 2.0, 0.5], [3.0, 4.0, 0.5], [5.0, 1.0, 0.5]];
             broken[1][lane] = bad;
-            let mesh = sheet(&[good, broken].concat());
-            let (layers, counters) = covered(&scene(&[(mesh, DMat4::IDENTITY)]), &flat_view(16, 16));
+            let mesh = triangle_soup([good, broken].concat());
+            let (layers, counters) = covered(&scene(&[mesh]), &pixel_view(16, 16));
             assert_eq!((counters.rejected_nonfinite, counters.rejected_range), (nonfinite, range), "{bad} in lane {lane}");
             assert!(layers[0] >= 1 && layers[255] == 0);
         }
     }
-    let subnormal = sheet(&[[0.0, 0.0, 0.5], [f32::from_bits(0x007f_ffff), 16.0, 0.5], [16.0, 0.0, 0.5]]);
-    let zero = sheet(&[[0.0, 0.0, 0.5], [0.0, 16.0, 0.5], [16.0, 0.0, 0.5]]);
-    let view = flat_view(16, 16);
-    let [a, b] = [subnormal, zero].map(|mesh| render(&scene(&[(mesh, DMat4::IDENTITY)]), &view, &Stack::default()).unwrap());
+    let subnormal = triangle_soup([[0.0, 0.0, 0.5], [f32::from_bits(0x007f_ffff), 16.0, 0.5], [16.0, 0.0, 0.5]]);
+    let zero = triangle_soup([[0.0, 0.0, 0.5], [0.0, 16.0, 0.5], [16.0, 0.0, 0.5]]);
+    let view = pixel_view(16, 16);
+    let [a, b] = [subnormal, zero].map(|mesh| render(&scene(&[mesh]), &view, &Stack::default()).unwrap());
     assert_eq!(a, b);
 }
 
@@ -657,11 +545,11 @@ fn rejected_vertices_take_only_their_own_triangles_along() {
 fn degenerate_triangles_are_counted_and_leave_no_trace() {
     let p = [3.0, 3.0, 0.5];
     let line = [[0.0, 0.0, 0.5], [4.0, 4.0, 0.5], [8.0, 8.0, 0.5]];
-    let mesh = sheet(&[[p, p, p], [p, p, [9.0, 1.0, 0.5]], line].concat());
-    let (layers, counters) = covered(&scene(&[(mesh, DMat4::IDENTITY)]), &flat_view(16, 16));
+    let mesh = triangle_soup([[p, p, p], [p, p, [9.0, 1.0, 0.5]], line].concat());
+    let (layers, counters) = covered(&scene(&[mesh]), &pixel_view(16, 16));
     assert_eq!((counters.degenerate, layers.iter().max()), (3, Some(&0)));
-    let empty = scene(&[(Mesh::default(), DMat4::IDENTITY)]);
-    let frame = render(&empty, &flat_view(4, 4), &Stack::default()).unwrap();
+    let empty = scene(&[SimpleMesh::default()]);
+    let frame = render(&empty, &pixel_view(4, 4), &Stack::default()).unwrap();
     assert_eq!((frame.covered(), frame.counters), (0, Counters::default()));
 }
 
@@ -696,10 +584,10 @@ fn normal_bytes(n: DVec3) -> [u8; 4] {
 
 #[test]
 fn mirrored_placement_keeps_fronts_in_front() {
-    let mesh = Mesh { double_sided: false, ..sphere(8) };
+    let mesh = SimpleMesh { double_sided: false, ..sphere(8) };
     let view_of = |scene: &Scene| View::new(&Camera::default(), 48, 48, &scene.bounds(), DMat4::IDENTITY, [0.0; 4]);
-    let plain = scene(&[(mesh.clone(), DMat4::IDENTITY)]);
-    let mirrored = scene(&[(mesh, DMat4::from_scale(DVec3::new(-1.0, 1.0, 1.0)))]);
+    let plain = scene(&[mesh.clone()]);
+    let mirrored = scene(&[mesh.at(DMat4::from_scale(DVec3::new(-1.0, 1.0, 1.0)))]);
     let stack = only("normals", &[]);
     let [a, b] = [plain, mirrored].map(|scene| render(&scene, &view_of(&scene), &stack).unwrap());
     assert!(a.covered() > 300);
@@ -720,14 +608,14 @@ fn mirrored_placement_keeps_fronts_in_front() {
 fn backs_show_only_when_double_sided_and_with_turned_normals() {
     let back = [[0.0, 0.0, 0.5], [16.0, 0.0, 0.5], [0.0, 16.0, 0.5]];
     let front = [back[0], back[2], back[1]];
-    let view = flat_view(16, 16);
+    let view = pixel_view(16, 16);
     let toward = normal_bytes(DVec3::Z);
     for (corners, double_sided, expected) in [(front, false, Some(toward)), (front, true, Some(toward)), (back, false, None)] {
-        let mesh = Mesh { double_sided, ..sheet(&corners) };
-        let frame = render(&scene(&[(mesh, DMat4::IDENTITY)]), &view, &only("normals", &[])).unwrap();
+        let mesh = SimpleMesh { double_sided, ..triangle_soup(corners) };
+        let frame = render(&scene(&[mesh]), &view, &only("normals", &[])).unwrap();
         assert_eq!((frame.triangle_id[0] != NO_TRIANGLE).then_some(frame.color[0]), expected);
     }
-    let frame = render(&scene(&[(sheet(&back), DMat4::IDENTITY)]), &view, &only("normals", &[])).unwrap();
+    let frame = render(&scene(&[triangle_soup(back)]), &view, &only("normals", &[])).unwrap();
     assert_eq!(frame.color[0], normal_bytes(DVec3::NEG_Z), "the stored normal (0, 0, 1), turned over");
 }
 
@@ -737,9 +625,9 @@ fn normals_follow_skewed_and_mirrored_placements() {
     let n = [0.6f32, 0.0, 0.8];
     let positions = [[-4.0, -9.0, 3.0], [4.0, -9.0, -3.0], [-4.0, 9.0, 3.0]];
     for placement in [DVec3::new(3.0, 1.0, 0.5), DVec3::new(-1.0, 1.0, 1.0), DVec3::new(0.25, -2.0, 1.0)] {
-        let mesh = Mesh { normals: vec![n; 3], ..sheet(&positions) };
+        let mesh = SimpleMesh { normals: vec![n; 3], ..triangle_soup(positions) };
         let world_from_object = DMat4::from_scale(placement);
-        let scene = scene(&[(mesh, world_from_object)]);
+        let scene = scene(&[mesh.at(world_from_object)]);
         let camera = Camera { eye: DVec3::Z * 30.0, ..Default::default() };
         let view = View::new(&camera, 64, 64, &scene.bounds(), DMat4::IDENTITY, [0.0; 4]);
         let reference = (DVec3::from_array(n.map(f64::from)) / placement).normalize();
@@ -762,16 +650,16 @@ fn normals_follow_skewed_and_mirrored_placements() {
 #[test]
 fn broken_normals_and_colours_take_finite_defaults() {
     let positions = [[0.0, 0.0, 0.5], [0.0, 16.0, 0.5], [16.0, 0.0, 0.5]];
-    let view = flat_view(16, 16);
+    let view = pixel_view(16, 16);
     // Pixel coordinates run downwards, so this sheet's front looks along -z; its stored normal would say +z.
     let flat = normal_bytes(DVec3::NEG_Z);
     for bad in [[f32::NAN, 0.0, 1.0], [f32::INFINITY, 1.0, 0.0], [f32::MAX, 0.0, 0.0], [0.0; 3], [f32::from_bits(1); 3]] {
-        let mesh = Mesh { normals: vec![bad; 3], ..sheet(&positions) };
-        let frame = render(&scene(&[(mesh, DMat4::IDENTITY)]), &view, &only("normals", &[])).unwrap();
+        let mesh = SimpleMesh { normals: vec![bad; 3], ..triangle_soup(positions) };
+        let frame = render(&scene(&[mesh]), &view, &only("normals", &[])).unwrap();
         assert_eq!(frame.color[0], flat, "{bad:?}");
     }
-    let mesh = Mesh { colors: vec![[f32::NAN, 0.0, f32::NEG_INFINITY, 1.0]; 3], ..sheet(&positions) };
-    let frame = render(&scene(&[(mesh, DMat4::IDENTITY)]), &view, &Stack::default()).unwrap();
+    let mesh = SimpleMesh { colors: vec![[f32::NAN, 0.0, f32::NEG_INFINITY, 1.0]; 3], ..triangle_soup(positions) };
+    let frame = render(&scene(&[mesh]), &view, &Stack::default()).unwrap();
     // One bad lane spoils the vertex: white, as without colours.
     assert_eq!(frame.color[0], [255; 4]);
 }
@@ -781,7 +669,7 @@ fn broken_normals_and_colours_take_finite_defaults() {
 fn cut_ground_is_shaded_as_its_rays_say() {
     let mut mesh = ground(8.0, -1.0);
     mesh.colors = mesh.positions.iter().map(|p| [0.5 + p[0] / 16.0, 0.5 + p[2] / 16.0, 0.25, 1.0]).collect();
-    let scene = scene(&[(mesh, DMat4::IDENTITY)]);
+    let scene = scene(&[mesh]);
     let camera = Camera { eye: DVec3::new(0.3, 0.5, 5.0), target: DVec3::new(0.0, -0.6, 0.0), ..Default::default() };
     let view = View::new(&camera, 80, 60, &scene.bounds(), DMat4::IDENTITY, [0.0; 4]);
     let world_from_clip = view.clip_from_world.inverse();
@@ -810,7 +698,7 @@ fn cut_ground_is_shaded_as_its_rays_say() {
 fn whole_ground_is_shaded_as_its_rays_say() {
     let mut mesh = ground(2.0, -1.0);
     mesh.colors = mesh.positions.iter().map(|p| [0.5 + p[0] / 4.0, 0.5 + p[2] / 4.0, 0.25, 1.0]).collect();
-    let scene = scene(&[(mesh, DMat4::IDENTITY)]);
+    let scene = scene(&[mesh]);
     let camera = Camera { eye: DVec3::new(0.2, -0.4, 2.6), target: DVec3::NEG_Y, ..Default::default() };
     let view = View::new(&camera, 256, 192, &scene.bounds(), DMat4::IDENTITY, [0.0; 4]);
     let frame = render(&scene, &view, &Stack::default()).unwrap();
@@ -845,7 +733,7 @@ fn by_depth(far_m: f32) -> Stack {
 
 #[test]
 fn flat_shading_is_one_value_per_triangle() {
-    let scene = scene(&[(sphere(10), DMat4::from_scale(DVec3::new(1.0, 1.3, 0.8)))]);
+    let scene = scene(&[sphere(10).at(DMat4::from_scale(DVec3::new(1.0, 1.3, 0.8)))]);
     let camera = Camera { eye: DVec3::new(0.4, 0.8, 3.0), near_m: 0.1, ..Default::default() };
     let view = View::new(&camera, 96, 96, &scene.bounds(), DMat4::IDENTITY, [0.0; 4]);
     let object = |triangle_id: u32| {
@@ -875,7 +763,7 @@ fn flat_shading_is_one_value_per_triangle() {
 
 #[test]
 fn cut_ground_faces_the_viewer_and_knows_its_centre() {
-    let scene = scene(&[(ground(8.0, -1.0), DMat4::IDENTITY)]);
+    let scene = scene(&[ground(8.0, -1.0)]);
     for (eye_y, up) in [(0.5, DVec3::Y), (-2.5, DVec3::NEG_Y)] {
         let camera = Camera { eye: DVec3::new(0.3, eye_y, 5.0), target: DVec3::new(0.0, -1.0, 0.0), ..Default::default() };
         let view = View::new(&camera, 40, 30, &scene.bounds(), DMat4::IDENTITY, [0.0; 4]);
@@ -902,7 +790,7 @@ fn cut_ground_faces_the_viewer_and_knows_its_centre() {
 
 #[test]
 fn orthographic_depth_is_in_metres_too() {
-    let scene = scene(&[(sphere(16), DMat4::IDENTITY)]);
+    let scene = scene(&[sphere(16)]);
     let projection = Projection::Orthographic { height_m: 3.0 };
     let camera = Camera { eye: DVec3::Z * 4.0, projection, ..Default::default() };
     let view = View::new(&camera, 65, 65, &scene.bounds(), DMat4::IDENTITY, [0.0; 4]);
@@ -1017,7 +905,7 @@ fn lattice() -> (Scene, View) {
             corners.extend([a, b, c, a, c, d]);
         }
     }
-    (scene(&[(sheet(&corners), DMat4::IDENTITY)]), flat_view(16, 16))
+    (scene(&[triangle_soup(corners)]), pixel_view(16, 16))
 }
 
 #[test]
@@ -1154,7 +1042,7 @@ fn wrong_depth_key_is_caught() {
 #[test]
 fn either_owner_is_right_in_the_depth_band_and_nowhere_else() {
     let sheets = [[0.0, -70.0, 0.25], [0.0, 140.0, 0.25], [65.0, 0.0, 0.75], [0.0, -70.0, 0.75], [0.0, 140.0, 0.75], [65.0, 0.0, 0.25]];
-    let fixture = (scene(&[(sheet(&sheets), DMat4::IDENTITY)]), flat_view(64, 16));
+    let fixture = (scene(&[triangle_soup(sheets)]), pixel_view(64, 16));
     let other = |x: usize| {
         judged(
             &fixture,
@@ -1182,7 +1070,7 @@ fn either_owner_is_right_in_the_depth_band_and_nowhere_else() {
 
 #[test]
 fn affine_weights_are_caught() {
-    let scene = scene(&[(ground(2.0, -1.0), DMat4::IDENTITY)]);
+    let scene = scene(&[ground(2.0, -1.0)]);
     let camera = Camera { eye: DVec3::new(0.0, -0.5, 2.5), target: DVec3::NEG_Y, ..Default::default() };
     let view = View::new(&camera, 64, 48, &scene.bounds(), DMat4::IDENTITY, [0.0; 4]);
     let stack = only("depth", &[]);
@@ -1214,7 +1102,7 @@ fn vertices_one_unit_apart_are_explained_and_counted() {
 fn crossing_line_that_moves_with_the_snap_is_explained() {
     let right = 65.0 + 1.0 / 256.0;
     let sheets = [[0.0, -70.0, 0.25], [0.0, 140.0, 0.25], [right, 0.0, 0.75], [0.0, -70.0, 0.75], [0.0, 140.0, 0.75], [right, 0.0, 0.25]];
-    let fixture = (scene(&[(sheet(&sheets), DMat4::IDENTITY)]), flat_view(64, 16));
+    let fixture = (scene(&[triangle_soup(sheets)]), pixel_view(64, 16));
     // The sheets cross half a unit to the right of the samples of column 32, then half a unit to the left.
     let shift = |geometry: &mut Geometry| geometry.vertices.iter_mut().for_each(|vertex| vertex.x -= 1);
     let accuracy = judged(&fixture, &Adapter::default(), shift, |_, _| {});
@@ -1256,7 +1144,7 @@ fn single_precision_vertices_stay_within_their_bounds() {
         let mut mesh = sphere(12);
         mesh.positions.iter_mut().flatten().for_each(|v| *v += away as f32);
         let world_from_object = DMat4::from_translation(offset - DVec3::splat(away));
-        let scene = scene(&[(mesh, world_from_object), (ground(50.0, -1.0), DMat4::from_translation(offset))]);
+        let scene = scene(&[mesh.at(world_from_object), ground(50.0, -1.0).at(DMat4::from_translation(offset))]);
         let camera = Camera { eye: offset + DVec3::new(1.0, 1.5, 4.0), target: offset, ..Default::default() };
         let view = View::new(&camera, 96, 72, &scene.bounds(), DMat4::IDENTITY, [0.0; 4]);
         let fixture = (scene, view);

@@ -213,8 +213,8 @@ fn about_the_eye(seed: u32, is_indexed: bool) -> Vec<SimpleMesh> {
     let placed = |scale: DVec3, turn: f64| {
         DMat4::from_scale(scale) * DMat4::from_cols_array_2d(&rasterlab::math::rotation_y(turn).to_cols_array_2d())
     };
-    let placements = vec![DMat4::IDENTITY, placed(DVec3::new(-0.3, 0.7, 1.1), 0.4), placed(DVec3::splat(1e-3), 2.0)];
-    let loose = SimpleMesh { positions: positions.clone(), placements, ..SimpleMesh::default() };
+    let transforms = vec![DMat4::IDENTITY, placed(DVec3::new(-0.3, 0.7, 1.1), 0.4), placed(DVec3::splat(1e-3), 2.0)];
+    let loose = SimpleMesh { positions: positions.clone(), transforms, ..SimpleMesh::default() };
     // A second draw with backs that do not show, and corners that are no numbers.
     let mut broken = positions.split_off(1200);
     broken[5][1] = f32::NAN;
@@ -260,7 +260,7 @@ fn pictures() -> Vec<Picture> {
         ("parallel", 5, true, parallel, [320, 240]),
     ] {
         let scene = scene_of_meshes(&about_the_eye(seed, is_indexed));
-        let view = seen(&scene, &camera, size);
+        let view = camera_view(&scene, &camera, size);
         pictures.push(Picture::new(name, scene, view, &[]));
     }
     pictures

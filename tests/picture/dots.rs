@@ -80,7 +80,7 @@ fn close_views_leave_most_lines_out_and_no_dot() {
     let scene = scene("knot?tess=12");
     for (eye, target) in [([0.2, 0.1, 0.6], [1.0, 0.3, 0.0]), ([0.0, 0.0, 0.0], [0.4, 1.0, 0.1]), ([3.0, 0.2, 0.0], [0.0, 0.0, 0.0])] {
         let camera = rasterlab::scene::camera::Camera { eye: eye.into(), target: target.into(), ..Default::default() };
-        let view = seen(&scene, &camera, [160, 120]);
+        let view = camera_view(&scene, &camera, [160, 120]);
         three_ways(&mut renderer, &scene, &view, &dotted(&[("spacing_m", 0.003), ("gap_px", 2.0)], &[]), &format!("from {eye:?}"));
     }
 }
@@ -270,7 +270,7 @@ fn largest_jump(fade: f64, steps: u32) -> f64 {
     let mean = |step: u32| {
         let eye = [0.0, 0.0, 3.0 * (f64::from(step) / f64::from(steps)).exp2()].into();
         let camera = rasterlab::scene::camera::Camera { eye, target: [0.0; 3].into(), ..Default::default() };
-        let view = View { polyline: zigzag.as_slice().into(), ..seen(&scene, &camera, [160, 120]) };
+        let view = View { polyline: zigzag.as_slice().into(), ..camera_view(&scene, &camera, [160, 120]) };
         let records = oracle::dot_records(&scene, &draws(&scene, &view).expect("it fits"), &view, &stack).expect("they fit");
         let strengths = oracle::dot_strengths(&view, &stack, &records, &vec![0; view.pixels()]);
         strengths.iter().map(|s| f64::from(*s)).sum::<f64>() / strengths.len() as f64 / f64::from(FULL)

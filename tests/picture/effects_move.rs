@@ -117,7 +117,7 @@ fn all_moving_effects_together_are_exact_far_from_the_origin_inside_and_in_paral
         ("inside the mesh", scene("sphere?triangles=3000"), inside),
     ];
     for (what, scene, camera) in cases {
-        let view = seen(&scene, &camera, [200, 150]);
+        let view = camera_view(&scene, &camera, [200, 150]);
         let mut stack = lit(stack(&MOVING));
         set(&mut stack, "explode", "amount_m", &[0.1]);
         for (pattern, name) in ["uniform", "sweep", "radial", "random"].iter().enumerate() {
@@ -168,7 +168,7 @@ fn telescope() -> (Arc<Scene>, View) {
         projection: Projection::Perspective { fov_y_deg: 0.4 },
         ..Camera::default()
     };
-    let view = seen(&scene, &camera, [512, 512]);
+    let view = camera_view(&scene, &camera, [512, 512]);
     (scene, view)
 }
 

@@ -111,7 +111,7 @@ fn p_per_cent_of_a_triangle_are_p_per_cent_of_its_area() {
     let poses = [[[10, 7], [230, 60], [90, 220]], [[3, 200], [250, 190], [128, 9]], [[250, 250], [20, 240], [240, 11]]];
     for corners in poses {
         let corners: [[i32; 2]; 3] = corners.map(|corner: [i32; 2]| corner.map(|at| at * 256 + 61));
-        let (scene, view) = (scene_of_meshes(&[units(&[(corners, 0.5)])]), pixel_view(256, 256));
+        let (scene, view) = (scene_of_meshes(&[triangle_soup_in_units(&[(corners, 0.5)])]), pixel_view(256, 256));
         let plain = Drawn::of(&scene, &view, &Stack::default());
         let covered = sum(&plain.layers(&view, &Stack::default())) as f64;
         for mode in MODES {
@@ -165,7 +165,7 @@ fn triangles_of_a_sample_or_none_dissolve_without_bias() {
 #[test]
 fn stipple_draws_its_share_of_every_matrix() {
     let [a, b, c, d] = [[0, 0], [64 * 256, 0], [64 * 256, 64 * 256], [0, 64 * 256]];
-    let (scene, view) = (scene_of_meshes(&[units(&[([a, b, c], 0.5), ([a, c, d], 0.5)])]), pixel_view(64, 64));
+    let (scene, view) = (scene_of_meshes(&[triangle_soup_in_units(&[([a, b, c], 0.5), ([a, c, d], 0.5)])]), pixel_view(64, 64));
     for (matrix, levels) in [(0.0, 4.0), (1.0, 16.0), (2.0, 64.0)] {
         for cell in [1.0, 2.0, 4.0] {
             for level in 0..=8 {
@@ -184,7 +184,7 @@ fn wires_are_as_wide_as_they_say_whatever_the_edge() {
     for _ in 0..30 {
         let mut corner = || [rng.between(-4000, 20_000), rng.between(-4000, 20_000)];
         let corners = [corner(), corner(), corner()];
-        let (scene, view) = (scene_of_meshes(&[units(&[(corners, 0.5)])]), pixel_view(64, 64));
+        let (scene, view) = (scene_of_meshes(&[triangle_soup_in_units(&[(corners, 0.5)])]), pixel_view(64, 64));
         for width in [1.0, 2.5, 9.0] {
             let stack = only("wireframe", &[("width_px", width), ("hidden", 0.0)]);
             let plain = Drawn::of(&scene, &view, &Stack::default()).layers(&view, &Stack::default());

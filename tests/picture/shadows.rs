@@ -46,7 +46,7 @@ fn on(view: &View, map: ShadowMapSize, taps: ShadowTaps) -> View {
 fn plate(half: f32, height: f32) -> SimpleMesh {
     let corner = |x: f32, z: f32| [half * x, height, half * z];
     let [a, b, c, d] = [corner(-1.0, 1.0), corner(1.0, 1.0), corner(1.0, -1.0), corner(-1.0, -1.0)];
-    SimpleMesh { normals: vec![[0.0, 1.0, 0.0]; 6], ..sheet(vec![a, b, c, a, c, d]) }
+    SimpleMesh { normals: vec![[0.0, 1.0, 0.0]; 6], ..triangle_soup(vec![a, b, c, a, c, d]) }
 }
 
 /// A smooth unit sphere.
@@ -59,11 +59,11 @@ fn ball() -> Arc<Scene> {
     };
     let cell = |i: u32, j: u32| [at(i, j), at(i, j + 1), at(i + 1, j + 1), at(i, j), at(i + 1, j + 1), at(i + 1, j)];
     let positions: Vec<[f32; 3]> = (0..ROWS).flat_map(|j| (0..2 * ROWS).flat_map(move |i| cell(i, j))).collect();
-    scene_of_meshes(&[SimpleMesh { normals: positions.clone(), double_sided: false, ..sheet(positions) }])
+    scene_of_meshes(&[SimpleMesh { normals: positions.clone(), double_sided: false, ..triangle_soup(positions) }])
 }
 
 fn slanted(scene: &Scene, size: [u32; 2]) -> View {
-    seen(scene, &Camera { eye: DVec3::new(1.5, 4.0, 5.0), ..Camera::default() }, size)
+    camera_view(scene, &Camera { eye: DVec3::new(1.5, 4.0, 5.0), ..Camera::default() }, size)
 }
 
 fn boxed(query: &str) -> Arc<Scene> {
@@ -114,7 +114,7 @@ fn what_nothing_covers_is_lit_and_what_is_covered_is_dark() {
     let Some(mut renderer) = renderer() else { return };
     let above = [("shadow", "elevation_deg", 90.0)];
     let (alone, covered) = (scene_of_meshes(&[plate(1.0, 0.0)]), scene_of_meshes(&[plate(1.0, 0.0), plate(1.5, 1.5)]));
-    let low = |scene: &Scene| seen(scene, &Camera { eye: DVec3::new(0.5, 0.8, 6.0), ..Camera::default() }, [160, 120]);
+    let low = |scene: &Scene| camera_view(scene, &Camera { eye: DVec3::new(0.5, 0.8, 6.0), ..Camera::default() }, [160, 120]);
     for map in [ShadowMapSize::Side256, ShadowMapSize::Side1024] {
         for taps in [ShadowTaps::One, ShadowTaps::Nine, ShadowTaps::TwentyFive] {
             for (scene, byte) in [(&alone, 255), (&covered, 0)] {
@@ -166,7 +166,7 @@ fn a_light_that_looks_as_the_eye_does_sees_all_that_the_eye_sees() {
     let towards = [("shadow", "azimuth_deg", 30.0), ("shadow", "elevation_deg", 35.0)];
     let toward = read::<Shadow>(&light_alone(&towards).0[0].words).toward();
     let camera = Camera { eye: toward * 4.0, projection: Projection::Orthographic { height_m: 2.4 }, ..Camera::default() };
-    let view = seen(&scene, &camera, [160, 120]);
+    let view = camera_view(&scene, &camera, [160, 120]);
     let [unshaded, shaded] = [light_alone(&[&towards[..], &[("shadow", "strength", 0.0)]].concat()), light_alone(&towards)]
         .map(|stack| captured(&mut renderer, &scene, &view, &stack, &AccuracyRequest::default()));
     assert_eq!(acne(&unshaded, &shaded), 0);

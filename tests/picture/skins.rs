@@ -218,7 +218,10 @@ fn parts_that_a_clip_moves_are_placed_anew() {
     scene.instances[0].node = Some(1);
     let view = |time_s| {
         let motion = Motion { clip: scene.rig.clip("Sway"), time_s, ..Motion::default() };
-        View { pose: Some(Arc::new(Pose::at(&scene, &motion))), ..seen(&scene, &rasterlab::scene::camera::Camera::default(), [64, 48]) }
+        View {
+            pose: Some(Arc::new(Pose::at(&scene, &motion))),
+            ..camera_view(&scene, &rasterlab::scene::camera::Camera::default(), [64, 48])
+        }
     };
     let [a, b] = [0.0, 1.0].map(|time_s| draws(&scene, &view(time_s)).expect("it fits"));
     assert_ne!(a[0].world_from_object, b[0].world_from_object);
