@@ -14,7 +14,7 @@ use crate::{
     math::linear_light,
     scene::{
         Accessor, Primitive, Scene,
-        texture::{Texture, stored},
+        texture::{Texture, texcoord},
     },
 };
 
@@ -199,7 +199,7 @@ fn corners(scene: &Scene, first: &mut usize) -> Vec<Corners> {
         let masked = material.base_texture.as_ref().filter(|_| material.alpha_threshold().is_some()).zip(primitive.texcoords[0]);
         let words = masked.map_or(Vec::new(), |(texture, texcoords)| {
             let size = scene.images[texture.image].size();
-            let units = |vertex| texture.units(size, stored(&texcoords, &scene.vertex_bytes, vertex)).map(|v| v as u32);
+            let units = |vertex| texture.units(size, texcoord(&texcoords, &scene.vertex_bytes, vertex)).map(|v| v as u32);
             (0..primitive.vertex_count()).flat_map(units).collect()
         });
         let corners = Corners { first: *first as u32, words };

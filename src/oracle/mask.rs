@@ -13,7 +13,7 @@ use crate::{
     frame::SnappedVertex,
     scene::{
         Primitive, Scene,
-        texture::{Filter, Texture, Wrap, stored},
+        texture::{Filter, Texture, Wrap, texcoord},
         view::View,
     },
 };
@@ -49,7 +49,7 @@ impl Places {
         let texcoords = primitive.texcoords[0].as_ref()?;
         let size = scene.images[texture.image].size();
         let whole =
-            corners.map(|corner| DVec2::from(texture.units(size, stored(texcoords, &scene.vertex_bytes, corner.vertex)).map(f64::from)));
+            corners.map(|corner| DVec2::from(texture.units(size, texcoord(texcoords, &scene.vertex_bytes, corner.vertex)).map(f64::from)));
         let Some(records) = piece else { return Some(Self(whole.map(|place| (place, DVec2::ZERO)))) };
         let clip = corners.map(|corner| vertex_evaluator.clip(corner).expect("positions have passed the gate"));
         let v = clip.map(|p| DVec3::new(p.x, p.y, p.w));

@@ -10,7 +10,7 @@ use crate::{
     math::linear_light,
     scene::{
         Primitive, Scene,
-        texture::{Filter, Level, MipFilter, Texture, Wrap, stored},
+        texture::{Filter, Level, MipFilter, Texture, Wrap, texcoord},
     },
 };
 
@@ -56,10 +56,14 @@ impl<'a> Material<'a> {
         }
         let preset_file = |slot: usize| {
             let (texture, texcoords) = material.textures()[slot].zip(primitive.texcoords[slot].as_ref())?;
-            let at = corners.map(|corner| stored(texcoords, &scene.vertex_bytes, corner));
+            let at = corners.map(|corner| texcoord(texcoords, &scene.vertex_bytes, corner));
             let magnitudes = texture.image_from_texcoord.map(|row| row.map(|v| f64::from(v).abs()));
             let terms = at.map(|at| DVec2::from(magnitudes.map(|[u, v, offset]| u * at.x.abs() + v * at.y.abs() + offset)));
-            Some(TextureLookup { texture, corners: at.map(|at| texture.placed(at)), terms: terms[0].max(terms[1]).max(terms[2]) })
+            Some(TextureLookup {
+                texture,
+                corners: at.map(|at| texture.image_coordinates(at)),
+                terms: terms[0].max(terms[1]).max(terms[2]),
+            })
         };
         let emission = DVec3::from(material.emission.map(f64::from));
         Some(Self { scene, base: preset_file(0), emission, glow: preset_file(1), is_unlit: material.unlit })

@@ -55,36 +55,36 @@ impl Accessor {
         }
     }
 
-    fn raw<const N: usize>(&self, bytes: &[u8], element: u32, lane: u32) -> [u8; N] {
-        let at = self.offset as usize + element as usize * self.stride as usize + lane as usize * N;
+    fn raw<const N: usize>(&self, bytes: &[u8], element: u32, component: u32) -> [u8; N] {
+        let at = self.offset as usize + element as usize * self.stride as usize + component as usize * N;
         bytes[at..at + N].try_into().expect("an accessor lies inside its buffer")
     }
 
     /// The bits of an f32 component; of an integer component, the bits of its exact value as f32. Not normalized.
-    pub fn f32_bits(&self, bytes: &[u8], element: u32, lane: u32) -> u32 {
+    pub fn f32_bits(&self, bytes: &[u8], element: u32, component: u32) -> u32 {
         match self.component_type {
-            ComponentType::F32 => u32::from_le_bytes(self.raw(bytes, element, lane)),
-            _ => (self.integer(bytes, element, lane) as f32).to_bits(),
+            ComponentType::F32 => u32::from_le_bytes(self.raw(bytes, element, component)),
+            _ => (self.integer(bytes, element, component) as f32).to_bits(),
         }
     }
 
     /// An integer component, not normalized. Of an f32 component it returns the bits.
-    pub fn integer(&self, bytes: &[u8], element: u32, lane: u32) -> i64 {
+    pub fn integer(&self, bytes: &[u8], element: u32, component: u32) -> i64 {
         match self.component_type {
-            ComponentType::I8 => i8::from_le_bytes(self.raw(bytes, element, lane)).into(),
-            ComponentType::U8 => u8::from_le_bytes(self.raw(bytes, element, lane)).into(),
-            ComponentType::I16 => i16::from_le_bytes(self.raw(bytes, element, lane)).into(),
-            ComponentType::U16 => u16::from_le_bytes(self.raw(bytes, element, lane)).into(),
-            ComponentType::U32 | ComponentType::F32 => u32::from_le_bytes(self.raw(bytes, element, lane)).into(),
+            ComponentType::I8 => i8::from_le_bytes(self.raw(bytes, element, component)).into(),
+            ComponentType::U8 => u8::from_le_bytes(self.raw(bytes, element, component)).into(),
+            ComponentType::I16 => i16::from_le_bytes(self.raw(bytes, element, component)).into(),
+            ComponentType::U16 => u16::from_le_bytes(self.raw(bytes, element, component)).into(),
+            ComponentType::U32 | ComponentType::F32 => u32::from_le_bytes(self.raw(bytes, element, component)).into(),
         }
     }
 
     /// A component in f64, normalized where the accessor says so.
-    pub fn value(&self, bytes: &[u8], element: u32, lane: u32) -> f64 {
+    pub fn value(&self, bytes: &[u8], element: u32, component: u32) -> f64 {
         if self.component_type == ComponentType::F32 {
-            return f32::from_bits(self.f32_bits(bytes, element, lane)).into();
+            return f32::from_bits(self.f32_bits(bytes, element, component)).into();
         }
-        let integer = self.integer(bytes, element, lane) as f64;
+        let integer = self.integer(bytes, element, component) as f64;
         match (self.normalized, self.component_type) {
             (false, _) => integer,
             (true, ComponentType::I8) => (integer / 127.0).max(-1.0),

@@ -101,13 +101,13 @@ pub fn draws(scene: &Scene, view: &View) -> Result<Vec<Draw>, DrawError> {
     // The view of a light leaves out the walls, which are last in the list.
     let drawn = if view.is_light() { scene.shadow_casters() } else { &scene.instances };
     let (mut first_vertex, mut first_triangle, mut first_deformable) = (0, 0, 0);
-    let place = |(index, instance): (usize, &Instance)| {
+    let make_draw = |(index, instance): (usize, &Instance)| {
         let primitive = &scene.primitives[instance.primitive];
         let deform = pose.and_then(|pose| pose.deform(index)).cloned();
         let world_from_scene = if index < shadow_casters { view.world_from_scene } else { DMat4::IDENTITY };
-        let world_from_object = world_from_scene * pose.map_or(instance.world_from_object, |pose| pose.place(index));
-        let reach = deform.as_ref().map_or(primitive.bounds, |deform| deform.bounds(primitive));
-        let origin = if view.is_relative { nearest(&reach, world_from_object.inverse().transform_point3(view.eye)) } else { [0.0; 3] };
+        let world_from_object = world_from_scene * pose.map_or(instance.world_from_object, |pose| pose.instance_transform(index));
+        let bounds = deform.as_ref().map_or(primitive.bounds, |deform| deform.bounds(primitive));
+        let origin = if view.is_relative { nearest(&bounds, world_from_object.inverse().transform_point3(view.eye)) } else { [0.0; 3] };
         let moved = DMat4::from_translation(DVec3::from_array(origin.map(f64::from)));
         let clip_from_object = rounded_columns(&(view.clip_from_world * world_from_object * moved));
         let entries = clip_from_object.iter().flatten().map(|&v| f64::from(v)).chain(world_from_object.to_cols_array());
@@ -134,5 +134,5 @@ pub fn draws(scene: &Scene, view: &View) -> Result<Vec<Draw>, DrawError> {
         first_triangle += primitive.triangle_count();
         Ok(draw)
     };
-    drawn.iter().enumerate().map(place).collect()
+    drawn.iter().enumerate().map(make_draw).collect()
 }

@@ -14,10 +14,10 @@ use super::{
 };
 
 /// Cosine of the sharpest turn between consecutive edges of a chain: 60 degrees.
-const SHARPEST: f64 = 0.5;
+const MIN_TURN_COSINE: f64 = 0.5;
 
 /// The most triangles whose edges are collected; beyond, it would take minutes and gigabytes.
-const MAX_TRIANGLES: u64 = 1 << 23;
+const MAX_EDGE_TRIANGLES: u64 = 1 << 23;
 
 /// The end points of a segment.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -61,8 +61,10 @@ impl Lines {
     /// One line through `points`. Repeated points add no segment.
     pub fn polyline(points: &[[f32; 3]]) -> Self {
         let mut lines = Self::default();
-        let place = |p: [f32; 3]| DVec3::from(p.map(f64::from));
-        lines.walk(points.windows(2).map(|pair| (SegmentEnds::Points([pair[0], pair[1]]), (place(pair[1]) - place(pair[0])).length())));
+        let position = |p: [f32; 3]| DVec3::from(p.map(f64::from));
+        lines.chain(
+            points.windows(2).map(|pair| (SegmentEnds::Points([pair[0], pair[1]]), (position(pair[1]) - position(pair[0])).length())),
+        );
         lines
     }
 
@@ -73,27 +75,28 @@ impl Lines {
     /// If the scene has more than 2^23 triangles.
     pub fn edges(scene: &Scene, crease_deg: Option<f64>) -> Result<Self, DrawError> {
         let count = scene.triangle_count();
-        if count > MAX_TRIANGLES {
-            return Err(DrawError::TooMany { what: "triangles with dots along their edges", count, limit: MAX_TRIANGLES });
+        if count > MAX_EDGE_TRIANGLES {
+            return Err(DrawError::TooMany { what: "triangles with dots along their edges", count, limit: MAX_EDGE_TRIANGLES });
         }
         let pose = Pose::at_rest(scene);
-        let mut known: HashMap<usize, Vec<Walk>> = HashMap::new();
+        let mut known: HashMap<usize, Vec<Chain>> = HashMap::new();
         let mut lines = Self::default();
         // Particle discs have no edges.
         let meshes = scene.instances.iter().enumerate().filter(|(_, instance)| scene.particle_discs != Some(instance.primitive));
         for (draw, instance) in meshes {
-            let walks = known.entry(instance.primitive).or_insert_with(|| walks(scene, &scene.primitives[instance.primitive], crease_deg));
-            let place = pose.as_ref().map_or(instance.world_from_object, |pose| pose.place(draw));
+            let chains =
+                known.entry(instance.primitive).or_insert_with(|| chains(scene, &scene.primitives[instance.primitive], crease_deg));
+            let position = pose.as_ref().map_or(instance.world_from_object, |pose| pose.instance_transform(draw));
             // The first joint gives the scale of a skinned mesh.
             let joint_transforms = pose.as_ref().and_then(|pose| pose.deform(draw)).and_then(|deform| deform.joint_transforms.as_ref());
-            let place = place
+            let position = position
                 * joint_transforms
                     .filter(|joint_transforms| !joint_transforms.is_empty())
                     .map_or(DMat4::IDENTITY, |joint_transforms| joint_transforms.matrix(0));
-            for walk in walks.iter() {
-                lines.walk(walk.iter().map(|step| {
-                    let ends = SegmentEnds::Edge { draw: draw as u32, vertices: step.vertices, triangle: step.triangle };
-                    (ends, place.transform_vector3(step.way).length())
+            for chain in chains.iter() {
+                lines.chain(chain.iter().map(|edge| {
+                    let ends = SegmentEnds::Edge { draw: draw as u32, vertices: edge.vertices, triangle: edge.triangle };
+                    (ends, position.transform_vector3(edge.direction).length())
                 }));
             }
         }
@@ -101,7 +104,7 @@ impl Lines {
     }
 
     /// Adds a line. Segments whose length is 0 or not finite are left out.
-    fn walk(&mut self, segments: impl Iterator<Item = (SegmentEnds, f64)>) {
+    fn chain(&mut self, segments: impl Iterator<Item = (SegmentEnds, f64)>) {
         let (first, mut start_m) = (self.segments.len(), 0.0);
         for (ends, length_m) in segments.filter(|(_, length_m)| length_m.is_finite() && *length_m > 0.0) {
             self.segments.push(Segment { ends, start_m, length_m });
@@ -114,97 +117,98 @@ impl Lines {
 }
 
 /// Connected edges in order.
-type Walk = Vec<Step>;
+type Chain = Vec<DirectedEdge>;
 
 /// An edge with the direction in which its chain runs.
 #[derive(Clone, Copy, Debug)]
-struct Step {
+struct DirectedEdge {
     vertices: [u32; 2],
     triangle: u32,
     /// From the first vertex to the second, object space.
-    way: DVec3,
+    direction: DVec3,
 }
 
 /// An edge with what is known of its faces. Vertices with equal positions count as one, whatever their indices.
 struct Edge {
-    step: Step,
+    edge: DirectedEdge,
     /// Identifiers of the positions of its ends.
-    places: [u32; 2],
+    position_ids: [u32; 2],
     faces: u32,
     normal: DVec3,
     /// The smallest cosine between the normal of the first face and those of the others.
-    deform: f64,
+    min_cosine: f64,
 }
 
 /// The edges of a mesh, joined into chains that turn as little as possible.
-fn walks(scene: &Scene, primitive: &Primitive, crease_deg: Option<f64>) -> Vec<Walk> {
+fn chains(scene: &Scene, primitive: &Primitive, crease_deg: Option<f64>) -> Vec<Chain> {
     let mut edges = edges(scene, primitive);
     if let Some(degrees) = crease_deg {
         let most = libm::cos(degrees.to_radians());
-        edges.retain(|edge| edge.faces != 2 || edge.deform <= most);
+        edges.retain(|edge| edge.faces != 2 || edge.min_cosine <= most);
     }
     let mut at: HashMap<u32, Vec<u32>> = HashMap::new();
     for (i, edge) in edges.iter().enumerate() {
-        edge.places.iter().for_each(|place| at.entry(*place).or_default().push(i as u32));
+        edge.position_ids.iter().for_each(|position| at.entry(*position).or_default().push(i as u32));
     }
     let mut is_used = vec![false; edges.len()];
-    let mut walks = Vec::new();
+    let mut chains = Vec::new();
     for first in 0..edges.len() {
         if is_used[first] {
             continue;
         }
         is_used[first] = true;
-        let mut walk = vec![edges[first].step];
+        let mut chain = vec![edges[first].edge];
         // Extend at the end, reverse, extend at the other end, reverse.
         for end in [1, 0] {
-            let (mut place, mut way) = (edges[first].places[end], edges[first].step.way * if end == 1 { 1.0 } else { -1.0 });
-            while let Some((next, step)) = straightest(&edges, &at[&place], &is_used, place, way) {
+            let (mut position, mut direction) =
+                (edges[first].position_ids[end], edges[first].edge.direction * if end == 1 { 1.0 } else { -1.0 });
+            while let Some((next, edge)) = straightest(&edges, &at[&position], &is_used, position, direction) {
                 is_used[next] = true;
-                place = edges[next].places[usize::from(edges[next].places[0] == place)];
-                way = step.way;
-                walk.push(step);
+                position = edges[next].position_ids[usize::from(edges[next].position_ids[0] == position)];
+                direction = edge.direction;
+                chain.push(edge);
             }
-            walk = walk.into_iter().rev().map(Step::reversed).collect();
+            chain = chain.into_iter().rev().map(DirectedEdge::reversed).collect();
         }
-        walks.push(walk);
+        chains.push(chain);
     }
-    walks
+    chains
 }
 
 /// Of the unused edges at a position, the one that continues with the smallest turn.
-fn straightest(edges: &[Edge], at: &[u32], is_used: &[bool], place: u32, way: DVec3) -> Option<(usize, Step)> {
-    let mut best: Option<(f64, usize, Step)> = None;
+fn straightest(edges: &[Edge], at: &[u32], is_used: &[bool], position: u32, direction: DVec3) -> Option<(usize, DirectedEdge)> {
+    let mut best: Option<(f64, usize, DirectedEdge)> = None;
     for &i in at {
         let i = i as usize;
         if is_used[i] {
             continue;
         }
-        let step = if edges[i].places[0] == place { edges[i].step } else { edges[i].step.reversed() };
-        let cosine = way.dot(step.way) / (way.length() * step.way.length());
-        if cosine > best.as_ref().map_or(SHARPEST, |best| best.0) {
-            best = Some((cosine, i, step));
+        let edge = if edges[i].position_ids[0] == position { edges[i].edge } else { edges[i].edge.reversed() };
+        let cosine = direction.dot(edge.direction) / (direction.length() * edge.direction.length());
+        if cosine > best.as_ref().map_or(MIN_TURN_COSINE, |best| best.0) {
+            best = Some((cosine, i, edge));
         }
     }
-    best.map(|(_, i, step)| (i, step))
+    best.map(|(_, i, edge)| (i, edge))
 }
 
-impl Step {
+impl DirectedEdge {
     fn reversed(self) -> Self {
         let [a, b] = self.vertices;
-        Self { vertices: [b, a], way: -self.way, ..self }
+        Self { vertices: [b, a], direction: -self.direction, ..self }
     }
 }
 
 /// Every edge between two different positions, in the order in which triangles first use it.
 fn edges(scene: &Scene, primitive: &Primitive) -> Vec<Edge> {
-    let mut places: HashMap<[u32; 3], u32> = HashMap::new();
+    let mut position_ids: HashMap<[u32; 3], u32> = HashMap::new();
     let positions: Vec<[f32; 3]> = (0..primitive.vertex_count()).map(|vertex| primitive.position(scene, vertex)).collect();
-    let place_of: Vec<u32> = positions
+    let position_id_of: Vec<u32> = positions
         .iter()
         .map(|p| {
-            let next = places.len() as u32;
+            let next = position_ids.len() as u32;
             // Adding 0 turns -0 into 0.
-            *places.entry(p.map(|lane| (lane + 0.0).to_bits())).or_insert(next)
+            *position_ids.entry(p.map(|component| (component + 0.0).to_bits())).or_insert(next)
         })
         .collect();
     let mut at: HashMap<[u32; 2], usize> = HashMap::new();
@@ -218,20 +222,26 @@ fn edges(scene: &Scene, primitive: &Primitive) -> Vec<Edge> {
         let normal = (b - a).cross(c - a).normalize_or_zero();
         for side in 0..3 {
             let vertices = [corners[side], corners[(side + 1) % 3]];
-            let ends = vertices.map(|vertex| place_of[vertex as usize]);
+            let ends = vertices.map(|vertex| position_id_of[vertex as usize]);
             if ends[0] == ends[1] {
                 continue;
             }
             match at.entry([ends[0].min(ends[1]), ends[0].max(ends[1])]) {
                 Entry::Vacant(entry) => {
                     entry.insert(edges.len());
-                    let way = [b - a, c - b, a - c][side];
-                    edges.push(Edge { step: Step { vertices, triangle, way }, places: ends, faces: 1, normal, deform: 1.0 });
+                    let direction = [b - a, c - b, a - c][side];
+                    edges.push(Edge {
+                        edge: DirectedEdge { vertices, triangle, direction },
+                        position_ids: ends,
+                        faces: 1,
+                        normal,
+                        min_cosine: 1.0,
+                    });
                 }
                 Entry::Occupied(entry) => {
                     let edge = &mut edges[*entry.get()];
                     edge.faces += 1;
-                    edge.deform = edge.deform.min(edge.normal.dot(normal));
+                    edge.min_cosine = edge.min_cosine.min(edge.normal.dot(normal));
                 }
             }
         }
@@ -250,7 +260,7 @@ mod tests {
     fn ends(scene: &Scene, segment: &Segment) -> [[u32; 3]; 2] {
         let SegmentEnds::Edge { draw, vertices, .. } = segment.ends else { panic!("an edge") };
         let primitive = &scene.primitives[scene.instances[draw as usize].primitive];
-        let mut ends = vertices.map(|vertex| primitive.position(scene, vertex).map(|lane| (lane + 0.0).to_bits()));
+        let mut ends = vertices.map(|vertex| primitive.position(scene, vertex).map(|component| (component + 0.0).to_bits()));
         ends.sort_unstable();
         ends
     }
@@ -271,7 +281,7 @@ mod tests {
     #[test]
     fn a_walk_goes_from_end_to_end() {
         let scene = builtin::build("knot?tess=4").expect("a scene");
-        let place = |vertex: u32| scene.primitives[0].position(&scene, vertex).map(|lane| (lane + 0.0).to_bits());
+        let position = |vertex: u32| scene.primitives[0].position(&scene, vertex).map(|component| (component + 0.0).to_bits());
         for (_, line) in Lines::edges(&scene, None).expect("few triangles").each() {
             let mut length_m = 0.0;
             for (i, segment) in line.iter().enumerate() {
@@ -280,7 +290,7 @@ mod tests {
                 if let (SegmentEnds::Edge { vertices: a, .. }, Some(SegmentEnds::Edge { vertices: b, .. })) =
                     (segment.ends, line.get(i + 1).map(|next| next.ends))
                 {
-                    assert_eq!(place(a[1]), place(b[0]));
+                    assert_eq!(position(a[1]), position(b[0]));
                 }
             }
         }
@@ -299,7 +309,7 @@ mod tests {
         let mut scene = builtin::build("sphere?triangles=5000").expect("a scene");
         scene.instances = vec![scene.instances[0].clone(); 1680];
         let error = Lines::edges(&scene, None).expect_err("too many").to_string();
-        assert!(error.contains(&scene.triangle_count().to_string()) && error.contains(&MAX_TRIANGLES.to_string()), "{error}");
+        assert!(error.contains(&scene.triangle_count().to_string()) && error.contains(&MAX_EDGE_TRIANGLES.to_string()), "{error}");
     }
 
     #[test]

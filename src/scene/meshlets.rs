@@ -54,24 +54,25 @@ impl Meshlets {
         let last = primitive.vertex_count().max(1) - 1;
         let corners: Vec<[u32; 3]> =
             (0..primitive.triangle_count()).map(|t| primitive.corners(scene, t).map(|vertex| vertex.min(last))).collect();
-        let places: Vec<[f32; 3]> = (0..primitive.vertex_count()).map(|vertex| primitive.position(scene, vertex)).collect();
-        let builder = Builder { places: &places, corners: &corners, is_exact: primitive.positions.component_type == ComponentType::F32 };
+        let positions: Vec<[f32; 3]> = (0..primitive.vertex_count()).map(|vertex| primitive.position(scene, vertex)).collect();
+        let builder =
+            Builder { positions: &positions, corners: &corners, is_exact: primitive.positions.component_type == ComponentType::F32 };
         let mut meshlets = Self::default();
-        let mut stamps = vec![u32::MAX; places.len()];
-        for patch in builder.patches(&primitive.bounds) {
-            builder.finish(patch, &mut meshlets, &mut stamps);
+        let mut stamps = vec![u32::MAX; positions.len()];
+        for cluster in builder.clusters(&primitive.bounds) {
+            builder.finish(cluster, &mut meshlets, &mut stamps);
         }
         meshlets
     }
 }
 
 /// Returns true if a vertex can be drawn: the same test as in the projection.
-fn is_sound(place: [f32; 3]) -> bool {
-    place.iter().all(|v| f64::from(v.abs()) < MAX_MAGNITUDE)
+fn is_drawable(position: [f32; 3]) -> bool {
+    position.iter().all(|v| f64::from(v.abs()) < MAX_MAGNITUDE)
 }
 
-fn wide(place: [f32; 3]) -> DVec3 {
-    place.map(f64::from).into()
+fn to_f64(position: [f32; 3]) -> DVec3 {
+    position.map(f64::from).into()
 }
 
 /// The smallest f32 that is not below `value`.
@@ -81,7 +82,7 @@ pub fn rounded_up(value: f64) -> f32 {
 }
 
 /// Centre and half extents of a box, grown by `margin` times its coordinates and rounded outwards.
-pub fn center_and_half(bounds: &Bounds, share: f64) -> ([f32; 3], [f32; 3]) {
+pub fn center_and_half(bounds: &Bounds, fraction: f64) -> ([f32; 3], [f32; 3]) {
     if bounds.is_empty() {
         return ([0.0; 3], [0.0; 3]);
     }
@@ -90,12 +91,12 @@ pub fn center_and_half(bounds: &Bounds, share: f64) -> ([f32; 3], [f32; 3]) {
     let (min, max) = (bounds.min.clamp(-limit, limit), bounds.max.clamp(-limit, limit));
     let center = ((min + max) * 0.5).as_vec3();
     let middle = center.as_dvec3();
-    let half = (max - middle).max(middle - min) + min.abs().max(max.abs()) * (share + 1e-15);
+    let half = (max - middle).max(middle - min) + min.abs().max(max.abs()) * (fraction + 1e-15);
     (center.into(), half.to_array().map(rounded_up))
 }
 
 struct Builder<'a> {
-    places: &'a [[f32; 3]],
+    positions: &'a [[f32; 3]],
     corners: &'a [[u32; 3]],
     /// Positions are stored as f32; integers are normalized on reading, with rounding.
     is_exact: bool,
@@ -103,57 +104,57 @@ struct Builder<'a> {
 
 impl Builder<'_> {
     /// All triangles, divided into clusters of at most [`MESHLET_TRIANGLES`].
-    fn patches(&self, bounds: &Bounds) -> Vec<Vec<u32>> {
-        let (firsts, sharers) = self.sharers();
+    fn clusters(&self, bounds: &Bounds) -> Vec<Vec<u32>> {
+        let (first_triangles, triangles_around) = self.triangles_around();
         let mut is_taken = vec![false; self.corners.len()];
-        let mut patches = Vec::with_capacity(self.corners.len() / 48 + 1);
-        let (mut patch, mut grown) = (Vec::with_capacity(MESHLET_TRIANGLES), 0);
+        let mut clusters = Vec::with_capacity(self.corners.len() / 48 + 1);
+        let (mut cluster, mut grown) = (Vec::with_capacity(MESHLET_TRIANGLES), 0);
         for seed in self.morton_order(bounds) {
             if is_taken[seed as usize] {
                 continue;
             }
-            if patch.len() == MESHLET_TRIANGLES || patch.len() >= MESHLET_TRIANGLES / 4 && self.is_far(&patch, seed) {
-                patches.push(std::mem::replace(&mut patch, Vec::with_capacity(MESHLET_TRIANGLES)));
+            if cluster.len() == MESHLET_TRIANGLES || cluster.len() >= MESHLET_TRIANGLES / 4 && self.is_far(&cluster, seed) {
+                clusters.push(std::mem::replace(&mut cluster, Vec::with_capacity(MESHLET_TRIANGLES)));
                 grown = 0;
             }
             is_taken[seed as usize] = true;
-            patch.push(seed);
+            cluster.push(seed);
             // Breadth-first: the cluster is its own queue.
-            while grown < patch.len() {
-                for vertex in self.corners[patch[grown] as usize] {
-                    let [first, end] = [vertex, vertex + 1].map(|vertex| firsts[vertex as usize] as usize);
-                    for &neighbour in &sharers[first..end] {
-                        if patch.len() < MESHLET_TRIANGLES && !is_taken[neighbour as usize] {
+            while grown < cluster.len() {
+                for vertex in self.corners[cluster[grown] as usize] {
+                    let [first, end] = [vertex, vertex + 1].map(|vertex| first_triangles[vertex as usize] as usize);
+                    for &neighbour in &triangles_around[first..end] {
+                        if cluster.len() < MESHLET_TRIANGLES && !is_taken[neighbour as usize] {
                             is_taken[neighbour as usize] = true;
-                            patch.push(neighbour);
+                            cluster.push(neighbour);
                         }
                     }
                 }
                 grown += 1;
             }
         }
-        if !patch.is_empty() {
-            patches.push(patch);
+        if !cluster.is_empty() {
+            clusters.push(cluster);
         }
-        patches
+        clusters
     }
 
     /// The triangles around each vertex: the first index of each vertex's list, and all lists concatenated.
-    fn sharers(&self) -> (Vec<u32>, Vec<u32>) {
-        let mut firsts = vec![0u32; self.places.len() + 2];
-        self.corners.iter().flatten().for_each(|&vertex| firsts[vertex as usize + 2] += 1);
-        for vertex in 2..firsts.len() {
-            firsts[vertex] += firsts[vertex - 1];
+    fn triangles_around(&self) -> (Vec<u32>, Vec<u32>) {
+        let mut first_triangles = vec![0u32; self.positions.len() + 2];
+        self.corners.iter().flatten().for_each(|&vertex| first_triangles[vertex as usize + 2] += 1);
+        for vertex in 2..first_triangles.len() {
+            first_triangles[vertex] += first_triangles[vertex - 1];
         }
-        let mut sharers = vec![0u32; 3 * self.corners.len()];
+        let mut triangles_around = vec![0u32; 3 * self.corners.len()];
         for (triangle, corners) in self.corners.iter().enumerate() {
             for &vertex in corners {
-                let slot = &mut firsts[vertex as usize + 1];
-                sharers[*slot as usize] = triangle as u32;
+                let slot = &mut first_triangles[vertex as usize + 1];
+                triangles_around[*slot as usize] = triangle as u32;
                 *slot += 1;
             }
         }
-        (firsts, sharers)
+        (first_triangles, triangles_around)
     }
 
     /// Triangles in Morton order of their first corner, by 21 bits of each coordinate.
@@ -164,9 +165,9 @@ impl Builder<'_> {
             .iter()
             .enumerate()
             .map(|(triangle, corners)| {
-                let place = (wide(self.places[corners[0] as usize]) - bounds.min) / sides * f64::from((1 << 21) - 1);
+                let position = (to_f64(self.positions[corners[0] as usize]) - bounds.min) / sides * f64::from((1 << 21) - 1);
                 // NaN becomes 0.
-                let bits = [place.x, place.y, place.z].map(|v| spread(v as u64));
+                let bits = [position.x, position.y, position.z].map(|v| spread(v as u64));
                 (bits[0] | bits[1] << 1 | bits[2] << 2, triangle as u32)
             })
             .collect();
@@ -175,37 +176,37 @@ impl Builder<'_> {
     }
 
     /// Returns true if a triangle is farther from the cluster than the cluster is wide.
-    fn is_far(&self, patch: &[u32], triangle: u32) -> bool {
+    fn is_far(&self, cluster: &[u32], triangle: u32) -> bool {
         let mut hull = Bounds::EMPTY;
-        patch.iter().flat_map(|&t| self.corners[t as usize]).for_each(|vertex| hull.include(wide(self.places[vertex as usize])));
-        let place = wide(self.places[self.corners[triangle as usize][0] as usize]);
-        (place.clamp(hull.min, hull.max) - place).length() > 2.0 * hull.radius()
+        cluster.iter().flat_map(|&t| self.corners[t as usize]).for_each(|vertex| hull.include(to_f64(self.positions[vertex as usize])));
+        let position = to_f64(self.positions[self.corners[triangle as usize][0] as usize]);
+        (position.clamp(hull.min, hull.max) - position).length() > 2.0 * hull.radius()
     }
 
     /// Computes the bounds of a cluster and appends it.
-    fn finish(&self, mut patch: Vec<u32>, meshlets: &mut Meshlets, stamps: &mut [u32]) {
-        patch.sort_unstable();
+    fn finish(&self, mut cluster: Vec<u32>, meshlets: &mut Meshlets, stamps: &mut [u32]) {
+        cluster.sort_unstable();
         let (number, first_vertex) = (meshlets.list.len() as u32, meshlets.vertices.len() as u32);
         let mut bounds = Bounds::EMPTY;
         let mut faces = Faces::default();
-        for corners in patch.iter().map(|&triangle| self.corners[triangle as usize]) {
+        for corners in cluster.iter().map(|&triangle| self.corners[triangle as usize]) {
             for vertex in corners {
                 if stamps[vertex as usize] != number {
                     stamps[vertex as usize] = number;
                     meshlets.vertices.push(vertex);
                 }
             }
-            let places = corners.map(|vertex| self.places[vertex as usize]);
-            if places.into_iter().all(is_sound) {
-                places.into_iter().for_each(|place| bounds.include(wide(place)));
-                faces.add(places);
+            let positions = corners.map(|vertex| self.positions[vertex as usize]);
+            if positions.into_iter().all(is_drawable) {
+                positions.into_iter().for_each(|position| bounds.include(to_f64(position)));
+                faces.add(positions);
             }
         }
         let (center, half) = center_and_half(&bounds, if self.is_exact { 0.0 } else { 1.0 / f64::from(1 << 20) });
         let (axis, cos, sin, altitude) = faces.cone();
         meshlets.list.push(Meshlet {
             first_triangle: meshlets.triangles.len() as u32,
-            triangle_count: patch.len() as u32,
+            triangle_count: cluster.len() as u32,
             first_vertex,
             vertex_count: meshlets.vertices.len() as u32 - first_vertex,
             center,
@@ -215,7 +216,7 @@ impl Builder<'_> {
             sin,
             altitude,
         });
-        meshlets.triangles.append(&mut patch);
+        meshlets.triangles.append(&mut cluster);
     }
 }
 
@@ -237,12 +238,12 @@ struct Faces {
 }
 
 impl Faces {
-    fn add(&mut self, places: [[f32; 3]; 3]) {
+    fn add(&mut self, positions: [[f32; 3]; 3]) {
         // A triangle with two equal corners never has an area.
-        if places[0] == places[1] || places[1] == places[2] || places[2] == places[0] {
+        if positions[0] == positions[1] || positions[1] == positions[2] || positions[2] == positions[0] {
             return;
         }
-        let [a, b, c] = places.map(wide);
+        let [a, b, c] = positions.map(to_f64);
         let doubled = (b - a).cross(c - a);
         let longest = a.distance(b).max(b.distance(c)).max(c.distance(a));
         let altitude = doubled.length() / longest;

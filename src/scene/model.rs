@@ -82,7 +82,7 @@ impl Primitive {
     /// Returns true if all normals are finite, have a length between 1/2 and 2, and lie within 90 degrees of each other in every
     /// triangle. Their interpolations are then at least 1/4 long and never need a substitute.
     pub fn normals_agree(&self, scene: &Scene) -> bool {
-        let normal = |vertex: u32| DVec3::from([0, 1, 2].map(|lane| self.normals.value(&scene.vertex_bytes, vertex, lane)));
+        let normal = |vertex: u32| DVec3::from([0, 1, 2].map(|component| self.normals.value(&scene.vertex_bytes, vertex, component)));
         let is_sound = |n: DVec3| (0.25..=4.0).contains(&n.length_squared());
         (0..self.triangle_count()).all(|t| {
             let [a, b, c] = self.corners(scene, t).map(normal);
@@ -92,7 +92,7 @@ impl Primitive {
 
     /// Position of a vertex in object space as it is stored, normalized where the accessor says so.
     pub fn position(&self, scene: &Scene, vertex: u32) -> [f32; 3] {
-        [0, 1, 2].map(|lane| self.positions.value(&scene.vertex_bytes, vertex, lane) as f32)
+        [0, 1, 2].map(|component| self.positions.value(&scene.vertex_bytes, vertex, component) as f32)
     }
 }
 
@@ -164,8 +164,8 @@ pub struct Scene {
 impl Scene {
     /// The index of the camera called `name`. `#2` is the camera at index 2, whatever its name.
     pub fn camera(&self, name: &str) -> Option<usize> {
-        let by_place = || name.strip_prefix('#')?.parse().ok().filter(|&place: &usize| place < self.cameras.len());
-        self.cameras.iter().position(|camera| camera.name == name).or_else(by_place)
+        let by_index = || name.strip_prefix('#')?.parse().ok().filter(|&index: &usize| index < self.cameras.len());
+        self.cameras.iter().position(|camera| camera.name == name).or_else(by_index)
     }
 
     /// The number of triangles of all instances.

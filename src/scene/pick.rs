@@ -37,11 +37,11 @@ impl Ray {
     fn nearest(&self, scene: &Scene, draw: &Draw) -> Option<f64> {
         let primitive = &scene.primitives[draw.primitive];
         let corner = |vertex: u32| {
-            let place = match &draw.deform {
+            let position = match &draw.deform {
                 Some(deform) => deform.position(scene, primitive, vertex),
                 None => primitive.position(scene, vertex).map(f64::from).into(),
             };
-            draw.world_from_object.transform_point3(place)
+            draw.world_from_object.transform_point3(position)
         };
         let hit = |triangle: u32| self.meets(primitive.corners(scene, triangle).map(corner));
         (0..primitive.triangle_count()).into_par_iter().filter_map(hit).reduce_with(f64::min)

@@ -34,7 +34,7 @@ pub struct Motion {
 #[derive(Clone, Debug, PartialEq)]
 pub struct Pose {
     /// World transform of every instance.
-    places: Vec<DMat4>,
+    instance_transforms: Vec<DMat4>,
     /// Deformation of every instance that has one.
     deforms: Vec<Option<Deform>>,
 }
@@ -53,7 +53,7 @@ impl Pose {
     pub fn at(scene: &Scene, motion: &Motion) -> Self {
         let rig = &scene.rig;
         let state = State::of(rig, motion);
-        let scene_from_node = state.places(rig);
+        let scene_from_node = state.node_transforms(rig);
         let joint_transforms = |skin: &Skin| {
             let matrices = skin.joints.iter().zip(&skin.joint_from_mesh).map(|(&node, inverse)| scene_from_node[node] * *inverse);
             match motion.skinning {
@@ -75,7 +75,7 @@ impl Pose {
             (None, Some(node)) => scene_from_node[node],
             (None, None) => instance.world_from_object,
         };
-        Self { places: scene.instances.iter().map(place).collect(), deforms: scene.instances.iter().map(deform).collect() }
+        Self { instance_transforms: scene.instances.iter().map(place).collect(), deforms: scene.instances.iter().map(deform).collect() }
     }
 
     /// The rest pose. `None` for a scene without a rig, whose instance transforms are constant.
@@ -83,9 +83,9 @@ impl Pose {
         (!scene.rig.is_empty()).then(|| Self::at(scene, &Motion::default()))
     }
 
-    pub fn place(&self, instance: usize) -> DMat4 {
+    pub fn instance_transform(&self, instance: usize) -> DMat4 {
         // Instances that were added after the pose was computed (particle discs) do not move.
-        self.places.get(instance).copied().unwrap_or(DMat4::IDENTITY)
+        self.instance_transforms.get(instance).copied().unwrap_or(DMat4::IDENTITY)
     }
 
     pub fn deform(&self, instance: usize) -> Option<&Deform> {
@@ -100,7 +100,7 @@ impl Pose {
     /// A box of `first`, the leading instances of `scene`.
     pub fn bounds_of(&self, scene: &Scene, first: &[Instance]) -> Bounds {
         let mut bounds = Bounds::EMPTY;
-        for ((instance, place), deform) in first.iter().zip(&self.places).zip(&self.deforms) {
+        for ((instance, place), deform) in first.iter().zip(&self.instance_transforms).zip(&self.deforms) {
             let primitive = &scene.primitives[instance.primitive];
             let object = deform.as_ref().map_or(primitive.bounds, |deform| deform.bounds(primitive));
             bounds.include_transformed(place, &object, 0.0);
@@ -111,7 +111,7 @@ impl Pose {
 
 /// The transform of every node of a rig.
 pub fn scene_from_nodes(rig: &Rig, motion: &Motion) -> Vec<DMat4> {
-    State::of(rig, motion).places(rig)
+    State::of(rig, motion).node_transforms(rig)
 }
 
 /// A box of `scene` in its rest pose and at eight times of each clip. Of large scenes only some vertices and clips are
@@ -134,7 +134,7 @@ pub fn motion_bounds(scene: &Scene) -> Bounds {
     for motion in &motions {
         let pose = Pose::at(scene, motion);
         for (index, instance) in scene.instances.iter().enumerate() {
-            let (primitive, place) = (&scene.primitives[instance.primitive], pose.place(index));
+            let (primitive, place) = (&scene.primitives[instance.primitive], pose.instance_transform(index));
             let Some(deform) = pose.deform(index) else {
                 bounds.include_transformed(&place, &primitive.bounds, 0.0);
                 continue;
@@ -170,7 +170,7 @@ impl Deform {
         joint_transforms
             .matrices()
             .zip(&deformation.joint_bounds)
-            .for_each(|(matrix, held)| bounds.include_transformed(&matrix, held, error_bound));
+            .for_each(|(matrix, influences)| bounds.include_transformed(&matrix, influences, error_bound));
         if matches!(joint_transforms, JointTransforms::Dual(_)) && !bounds.is_empty() {
             let bulge = bounds.radius();
             (bounds.min, bounds.max) = (bounds.min - bulge, bounds.max + bulge);
@@ -181,7 +181,8 @@ impl Deform {
     /// The deformed position of a vertex: morph targets, then linear skinning. For estimates; the picture uses other code.
     pub fn position(&self, scene: &Scene, primitive: &Primitive, vertex: u32) -> DVec3 {
         let bytes = &scene.vertex_bytes;
-        let vector = |accessor: &super::accessor::Accessor| DVec3::from([0, 1, 2].map(|lane| accessor.value(bytes, vertex, lane)));
+        let vector =
+            |accessor: &super::accessor::Accessor| DVec3::from([0, 1, 2].map(|component| accessor.value(bytes, vertex, component)));
         let morph_targets = self
             .weights
             .iter()
@@ -191,11 +192,12 @@ impl Deform {
             .fold(vector(&primitive.positions), |place, (&weight, morph_target)| place + vector(morph_target) * f64::from(weight));
         let Some(joint_transforms) = &self.joint_transforms else { return place };
         let sets = primitive.deformation.influences.iter();
-        let held = sets.flat_map(|set| {
-            [0, 1, 2, 3].map(|lane| (set.joints.integer(bytes, vertex, lane) as usize, set.weights.value(bytes, vertex, lane)))
+        let influences = sets.flat_map(|set| {
+            [0, 1, 2, 3]
+                .map(|component| (set.joints.integer(bytes, vertex, component) as usize, set.weights.value(bytes, vertex, component)))
         });
         let (mut sum, mut total, mut first) = (DVec3::ZERO, 0.0, None);
-        for (joint, weight) in held {
+        for (joint, weight) in influences {
             first.get_or_insert(joint);
             sum += joint_transforms.matrix(joint).transform_point3(place) * weight;
             total += weight;
@@ -220,7 +222,7 @@ impl State {
     }
 
     /// Transforms of all nodes. Parents come before their children.
-    fn places(&self, rig: &Rig) -> Vec<DMat4> {
+    fn node_transforms(&self, rig: &Rig) -> Vec<DMat4> {
         let mut scene_from_node: Vec<DMat4> = Vec::with_capacity(rig.nodes.len());
         for (node, local) in rig.nodes.iter().zip(&self.locals) {
             let parent = node.parent.map_or(DMat4::IDENTITY, |parent| scene_from_node[parent]);
@@ -240,12 +242,12 @@ impl State {
         for channel in &clip.channels {
             let sampler = &rig.samplers[channel.sampler];
             if channel.property == Property::Weights {
-                let value = |lane| sampler.value(lane, time_s) as f32;
+                let value = |component| sampler.value(component, time_s) as f32;
                 state.weights[channel.node] = (0..sampler.components).map(value).collect();
                 continue;
             }
             let LocalTransform::Trs(parts) = &mut state.locals[channel.node] else { continue };
-            let vector = || DVec3::from([0, 1, 2].map(|lane| sampler.value(lane, time_s)));
+            let vector = || DVec3::from([0, 1, 2].map(|component| sampler.value(component, time_s)));
             match channel.property {
                 Property::Translation => parts.translation = vector(),
                 Property::Scale => parts.scale = vector(),
@@ -256,18 +258,18 @@ impl State {
         state
     }
 
-    fn blend(&mut self, other: &Self, share: f64) {
+    fn blend(&mut self, other: &Self, fraction: f64) {
         for (a, b) in self.locals.iter_mut().zip(&other.locals) {
             if let (LocalTransform::Trs(a), LocalTransform::Trs(b)) = (a, b) {
                 *a = Trs {
-                    translation: a.translation.lerp(b.translation, share),
-                    rotation: slerp(a.rotation, b.rotation, share),
-                    scale: a.scale.lerp(b.scale, share),
+                    translation: a.translation.lerp(b.translation, fraction),
+                    rotation: slerp(a.rotation, b.rotation, fraction),
+                    scale: a.scale.lerp(b.scale, fraction),
                 };
             }
         }
         for (a, b) in self.weights.iter_mut().flatten().zip(other.weights.iter().flatten()) {
-            *a = (f64::from(*a) + (f64::from(*b) - f64::from(*a)) * share) as f32;
+            *a = (f64::from(*a) + (f64::from(*b) - f64::from(*a)) * fraction) as f32;
         }
     }
 }
@@ -285,21 +287,22 @@ impl Sampler {
     }
 
     /// A number of a keyframe: `part` 0 is the in-tangent, 1 the value, 2 the out-tangent.
-    fn number(&self, key: usize, part: usize, lane: usize) -> f64 {
+    fn number(&self, key: usize, part: usize, component: usize) -> f64 {
         let at = if self.interpolation == Interpolation::Cubic { 3 * key + part } else { key };
-        self.values[at * self.components + lane].into()
+        self.values[at * self.components + component].into()
     }
 
     /// One component at `time_s` (glTF 2.0, appendix C).
-    pub fn value(&self, lane: usize, time_s: f64) -> f64 {
+    pub fn value(&self, component: usize, time_s: f64) -> f64 {
         let (key, segment) = self.segment(time_s);
-        let a = self.number(key, 1, lane);
+        let a = self.number(key, 1, component);
         let Some((t, seconds)) = segment else { return a };
         match self.interpolation {
             Interpolation::Step => a,
-            Interpolation::Linear => a + (self.number(key + 1, 1, lane) - a) * t,
+            Interpolation::Linear => a + (self.number(key + 1, 1, component) - a) * t,
             Interpolation::Cubic => {
-                let (out, into, b) = (self.number(key, 2, lane), self.number(key + 1, 0, lane), self.number(key + 1, 1, lane));
+                let (out, into, b) =
+                    (self.number(key, 2, component), self.number(key + 1, 0, component), self.number(key + 1, 1, component));
                 let (t2, t3) = (t * t, t * t * t);
                 (2.0 * t3 - 3.0 * t2 + 1.0) * a
                     + seconds * (t3 - 2.0 * t2 + t) * out
@@ -313,11 +316,11 @@ impl Sampler {
     pub fn rotation(&self, time_s: f64) -> DQuat {
         let (key, segment) = self.segment(time_s);
         match (self.interpolation, segment) {
-            (Interpolation::Linear, Some((share, _))) => {
-                let [a, b] = [key, key + 1].map(|key| unit([0, 1, 2, 3].map(|lane| self.number(key, 1, lane))));
-                slerp(a, b, share)
+            (Interpolation::Linear, Some((fraction, _))) => {
+                let [a, b] = [key, key + 1].map(|key| unit([0, 1, 2, 3].map(|component| self.number(key, 1, component))));
+                slerp(a, b, fraction)
             }
-            _ => unit([0, 1, 2, 3].map(|lane| self.value(lane, time_s))),
+            _ => unit([0, 1, 2, 3].map(|component| self.value(component, time_s))),
         }
     }
 }
@@ -352,10 +355,10 @@ mod tests {
         let turn = [0.0, 0.0, 0.0, 1.0, -3.0 * sin as f32, 0.0, 0.0, -3.0 * cos as f32];
         let sampler = sampler(Interpolation::Linear, 4, &turn);
         for step in 0..=8 {
-            let share = f64::from(step) / 8.0;
-            let q = sampler.rotation(1.0 + 2.0 * share);
-            let (sin, cos) = libm::sincos(0.6 * share);
-            assert!((q.x.abs() - sin).abs() < 1e-7 && (q.w.abs() - cos).abs() < 1e-7 && q.x * q.w >= 0.0, "{share}: {q}");
+            let fraction = f64::from(step) / 8.0;
+            let q = sampler.rotation(1.0 + 2.0 * fraction);
+            let (sin, cos) = libm::sincos(0.6 * fraction);
+            assert!((q.x.abs() - sin).abs() < 1e-7 && (q.w.abs() - cos).abs() < 1e-7 && q.x * q.w >= 0.0, "{fraction}: {q}");
             assert!((q.length_squared() - 1.0).abs() < 1e-14);
         }
     }

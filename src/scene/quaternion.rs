@@ -14,15 +14,15 @@ pub fn unit(q: [f64; 4]) -> DQuat {
 }
 
 /// Spherical interpolation along the shorter arc (Shoemake 1985). It uses libm, so every host computes the same bits.
-pub fn slerp(a: DQuat, b: DQuat, share: f64) -> DQuat {
+pub fn slerp(a: DQuat, b: DQuat, fraction: f64) -> DQuat {
     let b = if a.dot(b) < 0.0 { -b } else { b };
     let (apart, together) = ((a - b).length(), (a + b).length());
     let angle = 2.0 * libm::atan2(apart, together);
     let (from, to) = if angle < 1e-8 {
-        (1.0 - share, share)
+        (1.0 - fraction, fraction)
     } else {
         let whole = libm::sin(angle);
-        (libm::sin((1.0 - share) * angle) / whole, libm::sin(share * angle) / whole)
+        (libm::sin((1.0 - fraction) * angle) / whole, libm::sin(fraction * angle) / whole)
     };
     unit((a * from + b * to).to_array())
 }

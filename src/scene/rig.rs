@@ -24,8 +24,8 @@ impl Rig {
 
     /// The index of the clip called `name`. `#2` is the clip at index 2, whatever its name.
     pub fn clip(&self, name: &str) -> Option<usize> {
-        let by_place = || name.strip_prefix('#')?.parse().ok().filter(|&place: &usize| place < self.clips.len());
-        self.clips.iter().position(|clip| clip.name == name).or_else(by_place)
+        let by_index = || name.strip_prefix('#')?.parse().ok().filter(|&index: &usize| index < self.clips.len());
+        self.clips.iter().position(|clip| clip.name == name).or_else(by_index)
     }
 }
 

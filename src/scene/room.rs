@@ -56,8 +56,8 @@ fn walls(room: &Bounds) -> MeshBuilder {
             let inward = DVec3::AXES[axis] * -side;
             let (u, v) = (DVec3::AXES[(axis + 1) % 3], inward.cross(DVec3::AXES[(axis + 1) % 3]));
             let at = |i: u32, j: u32| {
-                let share = |k: u32| 2.0 * f64::from(k) / f64::from(CELLS) - 1.0;
-                center + (u * share(i) + v * share(j) - inward) * half
+                let fraction = |k: u32| 2.0 * f64::from(k) / f64::from(CELLS) - 1.0;
+                center + (u * fraction(i) + v * fraction(j) - inward) * half
             };
             let row = |mesh: &mut MeshBuilder, j: u32| (0..=CELLS).map(|i| mesh.vertex(at(i, j), inward)).collect::<Vec<_>>();
             let rows: Vec<Vec<u32>> = (0..=CELLS).map(|j| row(&mut mesh, j)).collect();

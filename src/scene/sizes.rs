@@ -57,9 +57,9 @@ impl TriangleSizes {
             let id = ((k as f64 + within) * triangles as f64 / count as f64) as u64;
             let draw = &draws[draws.partition_point(|draw| u64::from(draw.first_triangle) <= id) - 1];
             match preset_file(scene, draw, view, id as u32 - draw.first_triangle) {
-                Visibility::VisibleTriangle(one) => visible.push(one),
-                Visibility::Cut => near_clipped += 1,
-                Visibility::Unseen => {}
+                Sampled::VisibleTriangle(one) => visible.push(one),
+                Sampled::Cut => near_clipped += 1,
+                Sampled::Unseen => {}
             }
         }
         Self { triangles, sampled: count as u32, near_clipped, visible: visible.into() }
@@ -116,28 +116,28 @@ impl TriangleSizes {
     }
 }
 
-enum Visibility {
+enum Sampled {
     VisibleTriangle(VisibleTriangle),
     Cut,
     /// Facing away, or outside the picture.
     Unseen,
 }
 
-fn preset_file(scene: &Scene, draw: &Draw, view: &View, triangle: u32) -> Visibility {
+fn preset_file(scene: &Scene, draw: &Draw, view: &View, triangle: u32) -> Sampled {
     let primitive = &scene.primitives[draw.primitive];
-    let place = |vertex: u32| match &draw.deform {
+    let position = |vertex: u32| match &draw.deform {
         Some(deform) => deform.position(scene, primitive, vertex),
         None => DVec3::from_array(primitive.position(scene, vertex).map(f64::from)),
     };
-    let clip: [DVec4; 3] = primitive.corners(scene, triangle).map(|vertex| draw.clip_point(place(vertex)));
+    let clip: [DVec4; 3] = primitive.corners(scene, triangle).map(|vertex| draw.clip_point(position(vertex)));
     if clip.iter().any(|c| !c.is_finite()) {
-        return Visibility::Unseen;
+        return Sampled::Unseen;
     }
     let is_before_near = |c: &&DVec4| c.w <= 0.0 || c.z > c.w;
     match clip.iter().filter(is_before_near).count() {
         0 => {}
-        3 => return Visibility::Unseen,
-        _ => return Visibility::Cut,
+        3 => return Sampled::Unseen,
+        _ => return Sampled::Cut,
     }
     let size = DVec2::new(view.width.into(), view.height.into());
     let [a, b, c] = clip.map(|c| DVec2::new(0.5 + 0.5 * c.x / c.w, 0.5 - 0.5 * c.y / c.w) * size);
@@ -147,19 +147,19 @@ fn preset_file(scene: &Scene, draw: &Draw, view: &View, triangle: u32) -> Visibi
     let is_back = (doubled > 0.0) != draw.mirrored;
     let is_beside = high.x <= 0.0 || high.y <= 0.0 || low.x >= size.x || low.y >= size.y;
     if is_beside || doubled == 0.0 || is_back && !scene.materials[primitive.material].double_sided {
-        return Visibility::Unseen;
+        return Sampled::Unseen;
     }
     let samples = [0, 1].map(|axis| {
         let (first, last) = ((low[axis] - 0.5).ceil().max(0.0), (high[axis] - 0.5).floor().min(size[axis] - 1.0));
         (last - first + 1.0).max(0.0) as u32
     });
     let inside = (high.min(size) - low.max(DVec2::ZERO)) / (high - low).max(DVec2::splat(f64::MIN_POSITIVE));
-    let share = inside.x * inside.y;
-    Visibility::VisibleTriangle(VisibleTriangle {
+    let fraction = inside.x * inside.y;
+    Sampled::VisibleTriangle(VisibleTriangle {
         extent_px: (high - low).max_element() as f32,
         samples,
-        area: (0.5 * doubled.abs() * share) as f32,
-        outline: ((a.distance(b) + b.distance(c) + c.distance(a)) * share.sqrt()) as f32,
+        area: (0.5 * doubled.abs() * fraction) as f32,
+        outline: ((a.distance(b) + b.distance(c) + c.distance(a)) * fraction.sqrt()) as f32,
     })
 }
 
@@ -184,8 +184,8 @@ mod tests {
     #[test]
     fn half_of_a_sphere_is_seen_and_covers_its_disc() {
         let few = sizes("sphere?triangles=2000", [640, 480]);
-        let share = f64::from(few.visible()) / f64::from(few.sampled);
-        assert!((0.35..0.5).contains(&share), "{share} of the triangles face the viewer");
+        let fraction = f64::from(few.visible()) / f64::from(few.sampled);
+        assert!((0.35..0.5).contains(&fraction), "{fraction} of the triangles face the viewer");
         assert_eq!(few.near_clipped, 0);
         // All pixels of the disc change when edges move as far as triangles are wide. The disc is that of a sphere of this radius
         // at this distance, with 45 degrees from the bottom of the picture to its top.

@@ -66,11 +66,12 @@ impl Level {
         // The smallest linear value that rounds to each byte.
         let least: [f64; 256] = std::array::from_fn(|byte| linear_light((byte as f64 - 0.5).max(0.0) / 255.0));
         let size = self.size.map(|side| (side / 2).max(1));
-        let shares = [0, 1].map(|axis| (0..size[axis]).map(|at| shares(at, size[axis], self.size[axis])).collect::<Vec<_>>());
+        let covered_texels =
+            [0, 1].map(|axis| (0..size[axis]).map(|at| covered_texels(at, size[axis], self.size[axis])).collect::<Vec<_>>());
         let texel = |x: usize, y: usize| {
             let mut sum = [0.0; 4];
-            for &(row, high) in &shares[1][y] {
-                for &(column, wide) in &shares[0][x] {
+            for &(row, high) in &covered_texels[1][y] {
+                for &(column, wide) in &covered_texels[0][x] {
                     let texel = self.texels[row * self.size[0] as usize + column];
                     (0..3).for_each(|c| sum[c] += light[usize::from(texel[c])] * high * wide);
                     sum[3] += f64::from(texel[3]) * high * wide;
@@ -85,12 +86,12 @@ impl Level {
 }
 
 /// The texels, of `of` in a row, that texel `at` of `side` in a row covers, each with its fraction.
-fn shares(at: u32, side: u32, of: u32) -> Vec<(usize, f64)> {
+fn covered_texels(at: u32, side: u32, of: u32) -> Vec<(usize, f64)> {
     let scale = f64::from(of) / f64::from(side);
     let (from, to) = (f64::from(at) * scale, f64::from(at + 1) * scale);
     let part = |texel: u32| ((f64::from(texel) + 1.0).min(to) - f64::from(texel).max(from)) / scale;
     let range = from.floor() as u32..(to.ceil() as u32).min(of);
-    range.map(|texel| (texel as usize, part(texel))).filter(|(_, share)| *share > 1e-9).collect()
+    range.map(|texel| (texel as usize, part(texel))).filter(|(_, fraction)| *fraction > 1e-9).collect()
 }
 
 /// How coordinates beyond the edges of an image are wrapped.
@@ -164,10 +165,10 @@ impl Texture {
     }
 
     /// Image coordinates of stored texture coordinates.
-    pub fn placed(&self, stored: DVec2) -> DVec2 {
+    pub fn image_coordinates(&self, texcoord: DVec2) -> DVec2 {
         DVec2::from(self.image_from_texcoord.map(|row| {
             let [u, v, offset] = row.map(f64::from);
-            u * stored.x + v * stored.y + offset
+            u * texcoord.x + v * texcoord.y + offset
         }))
     }
 }
@@ -181,15 +182,15 @@ pub const MAX_REPEATS: f64 = 65_536.0;
 impl Texture {
     /// Stored texture coordinates in units of 1/256 texel of an image of this size, from which integer decisions are made.
     /// Clamped to ±2^29 units, two million texels.
-    pub fn units(&self, size: [u32; 2], stored: DVec2) -> [i32; 2] {
+    pub fn units(&self, size: [u32; 2], texcoord: DVec2) -> [i32; 2] {
         const FARTHEST: f64 = (1 << 29) as f64;
-        let place = self.placed(stored) * DVec2::from(size.map(f64::from)) * UNITS_PER_TEXEL;
-        place.to_array().map(|v| v.clamp(-FARTHEST, FARTHEST).round_ties_even() as i32)
+        let units = self.image_coordinates(texcoord) * DVec2::from(size.map(f64::from)) * UNITS_PER_TEXEL;
+        units.to_array().map(|v| v.clamp(-FARTHEST, FARTHEST).round_ties_even() as i32)
     }
 }
 
 /// The texture coordinates of a vertex as they are stored.
-pub fn stored(texcoords: &Accessor, bytes: &[u8], vertex: u32) -> DVec2 {
+pub fn texcoord(texcoords: &Accessor, bytes: &[u8], vertex: u32) -> DVec2 {
     DVec2::new(texcoords.value(bytes, vertex, 0), texcoords.value(bytes, vertex, 1))
 }
 

@@ -32,8 +32,8 @@ pub fn near_miss_triangle(rng: &mut Rng, extent: i32, size: [i32; 2]) -> [[i32; 
     let (fx, fy) = (-t * y, t * x);
     let g = g.abs();
     let along = (i128::from(fx * dx + fy * dy) * i128::from(g)).div_euclid(i128::from(dx * dx + dy * dy)) as i64;
-    let place = i64::from(rng.between(0, i32::try_from(g.min(1 << 30)).expect("a small number"))) - along;
-    let (fx, fy) = (fx + place * (dx / g), fy + place * (dy / g));
+    let coordinate = i64::from(rng.between(0, i32::try_from(g.min(1 << 30)).expect("a small number"))) - along;
+    let (fx, fy) = (fx + coordinate * (dx / g), fy + coordinate * (dy / g));
     let a = [sample[0] - fx, sample[1] - fy];
     let b = [a[0] + dx, a[1] + dy];
     let mut third = |axis: usize| {
@@ -73,12 +73,12 @@ pub fn near_tie_mesh(rng: &mut Rng, size: [i32; 2], cell: i32) -> (Vec<[f32; 3]>
     let mut vertices = Vec::new();
     for row in 0..=rows {
         for column in 0..=columns {
-            let mut place = |index: i32, last: i32, side: i32| match index {
+            let mut coordinate = |index: i32, last: i32, side: i32| match index {
                 0 => -2.0,
                 _ if index == last => side as f32 + 2.0,
                 _ => near_tie_coordinate(rng, (index - 1) * cell + cell / 2),
             };
-            let at = [place(column, columns, size[0]), place(row, rows, size[1])];
+            let at = [coordinate(column, columns, size[0]), coordinate(row, rows, size[1])];
             vertices.push([at[0], at[1], 0.25 + 0.5 * rng.real(0.0, 1.0) as f32]);
         }
     }
@@ -106,9 +106,9 @@ pub fn near_collinear_triangle(rng: &mut Rng, size: [i32; 2]) -> [[f32; 2]; 3] {
         })
     };
     let (a, b) = (corner(), corner());
-    let share = rng.real(0.0, 1.0);
+    let fraction = rng.real(0.0, 1.0);
     let c = [0, 1].map(|axis| {
-        let on_line = (f64::from(a[axis]) * (1.0 - share) + f64::from(b[axis]) * share) as f32;
+        let on_line = (f64::from(a[axis]) * (1.0 - fraction) + f64::from(b[axis]) * fraction) as f32;
         stepped(on_line, rng.between(-NEIGHBOURS, NEIGHBOURS + 1))
     });
     [a, b, c]

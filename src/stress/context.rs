@@ -298,16 +298,22 @@ impl<'a> CaseContext<'a> {
     }
 
     /// The accuracy for a picture: strict where that is requested and the picture does not depend on floats.
-    fn asked(&mut self, scene: &Arc<Scene>, view: &View, stack: &Stack, accuracy: &AccuracyRequest) -> Result<AccuracyRequest, EarlyEnd> {
+    fn requested(
+        &mut self,
+        scene: &Arc<Scene>,
+        view: &View,
+        stack: &Stack,
+        accuracy: &AccuracyRequest,
+    ) -> Result<AccuracyRequest, EarlyEnd> {
         let Some(strict) = &mut self.strict else { return Ok(*accuracy) };
-        let wanted = AccuracyRequest { tier: Tier::Strict, ..*accuracy };
+        let expected = AccuracyRequest { tier: Tier::Strict, ..*accuracy };
         self.renderer.set_scene(scene)?;
-        match self.renderer.draw(view, stack, &wanted) {
+        match self.renderer.draw(view, stack, &expected) {
             Err(RenderError::Plan(_)) => {
                 strict.floats += 1;
                 Ok(*accuracy)
             }
-            _ => Ok(wanted),
+            _ => Ok(expected),
         }
     }
 
@@ -371,7 +377,7 @@ impl<'a> CaseContext<'a> {
         what: &str,
     ) -> Result<Capture, EarlyEnd> {
         self.step(scene, view, what)?;
-        let accuracy = &self.asked(scene, view, stack, accuracy)?;
+        let accuracy = &self.requested(scene, view, stack, accuracy)?;
         captured(self.renderer, scene, view, stack, accuracy).map_err(|error| EarlyEnd::Failed(format!("{what}: {error}")))
     }
 
@@ -385,7 +391,7 @@ impl<'a> CaseContext<'a> {
         what: &str,
     ) -> Result<(Capture, Verdict), EarlyEnd> {
         self.step(scene, view, what)?;
-        let accuracy = &self.asked(scene, view, stack, accuracy)?;
+        let accuracy = &self.requested(scene, view, stack, accuracy)?;
         let judged = judged(self.renderer, scene, view, stack, accuracy).map_err(|error| EarlyEnd::Failed(format!("{what}: {error}")))?;
         if accuracy.tier == Tier::Strict && view.pixels() > 0 {
             self.hold_strict(&judged.0, scene, view, stack, what)?;

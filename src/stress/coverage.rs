@@ -163,11 +163,11 @@ fn size_class_borders(context: &mut CaseContext) -> Result<(), EarlyEnd> {
     // Boxes of 63 to 65 and 127 to 129 samples, the limits of one invocation.
     let boxes = [(7, 9), (8, 8), (5, 13), (1, 127), (8, 16), (3, 43), (64, 2), (2, 65)];
     let triangles = boxes.into_iter().enumerate().flat_map(|(i, (width, height))| {
-        let place = |turned: bool| {
+        let corners_of = |turned: bool| {
             let (w, h) = if turned { (height, width) } else { (width, height) };
             [[0, 0], [px * w, 0], [px * w, px * h]].map(|[x, y]: [i32; 2]| [x + 40 * i as i32, y + 17 * i as i32])
         };
-        [(place(false), 0.2 + 0.02 * i as f32), (place(true), 0.21 + 0.02 * i as f32)]
+        [(corners_of(false), 0.2 + 0.02 * i as f32), (corners_of(true), 0.21 + 0.02 * i as f32)]
     });
     context.exact_on_all(
         &scene_of_meshes(&[triangle_soup_in_units(&triangles.collect::<Vec<_>>())]),

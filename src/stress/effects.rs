@@ -123,10 +123,10 @@ fn layers_on_one_pixel(context: &mut CaseContext) -> Result<(), EarlyEnd> {
             equal(&capture.frame.counted, &vec![count; 4], &format!("{what}: layers of each pixel"))?;
             equal(&capture.frame.counters.full_pixels, &0, &format!("{what}: pixels that overflowed"))?;
             let red = f64::from(count.div_ceil(2)) / f64::from(count);
-            let wanted = [srgb_byte(red), srgb_byte(1.0 - red), srgb_byte(0.25), 255];
-            let is_near = |color: &[u8; 4]| color.iter().zip(wanted).all(|(a, b)| a.abs_diff(b) <= 1);
+            let expected = [srgb_byte(red), srgb_byte(1.0 - red), srgb_byte(0.25), 255];
+            let is_near = |color: &[u8; 4]| color.iter().zip(expected).all(|(a, b)| a.abs_diff(b) <= 1);
             // Eight bits in linear light are coarser than sRGB bytes.
-            check!(taken == 8 || capture.frame.color.iter().all(is_near), "{what}: found {:?}, expected {wanted:?}", capture.frame.color);
+            check!(taken == 8 || capture.frame.color.iter().all(is_near), "{what}: found {:?}, expected {expected:?}", capture.frame.color);
         }
     }
     Ok(())

@@ -24,8 +24,8 @@ type Flat = ([[i32; 2]; 3], f32);
 /// The picture of the fixed-function pipeline. A power-of-two picture size keeps all positions exact up to its own snap.
 fn witness(context: &CaseContext, triangles: &[Flat]) -> Result<Vec<u32>, EarlyEnd> {
     let half = 128.0 * SIDE as f32;
-    let place = |[x, y]: [i32; 2], depth: f32| [x as f32 / half - 1.0, 1.0 - y as f32 / half, depth];
-    let corners: Vec<_> = triangles.iter().flat_map(|(corners, depth)| corners.map(|corner| place(corner, *depth))).collect();
+    let to_ndc = |[x, y]: [i32; 2], depth: f32| [x as f32 / half - 1.0, 1.0 - y as f32 / half, depth];
+    let corners: Vec<_> = triangles.iter().flat_map(|(corners, depth)| corners.map(|corner| to_ndc(corner, *depth))).collect();
     Ok(context.renderer.hardware_ids([SIDE, SIDE], &corners)?)
 }
 

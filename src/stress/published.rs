@@ -69,9 +69,9 @@ fn rotated_quads(context: &mut CaseContext) -> Result<(), EarlyEnd> {
     for (kind, order) in [("basic", [0, 1, 2, 2, 0, 3]), ("reversed", [0, 1, 2, 0, 2, 3]), ("projected", [0, 1, 2, 2, 0, 3])] {
         for iteration in 0..2 {
             let mut corners = Vec::new();
-            for place in 0..16 {
-                let center = [place % 4, place / 4].map(|k| (f64::from(k) + 0.5) / 2.0 - 1.0);
-                let angle = f64::from(16 * iteration + place) / 32.0 * std::f64::consts::FRAC_PI_2;
+            for index in 0..16 {
+                let center = [index % 4, index / 4].map(|k| (f64::from(k) + 0.5) / 2.0 - 1.0);
+                let angle = f64::from(16 * iteration + index) / 32.0 * std::f64::consts::FRAC_PI_2;
                 // A corner is sqrt(2) times half a side from the centre, an eighth of a turn further.
                 let square = rotated_square(center, 0.15 * std::f64::consts::SQRT_2, angle - std::f64::consts::FRAC_PI_4);
                 let w = square.map(|_| if kind == "projected" { rng.real(0.1, 4.0) } else { 1.0 });
@@ -198,8 +198,8 @@ fn d3d_snap(context: &mut CaseContext) -> Result<(), EarlyEnd> {
     let capture = context.exact_on_all(&scene, &pixel_view(128, 128), "ties of the snap")?;
     for (vertex, tie) in capture.geometry.vertices.as_chunks::<3>().0.iter().zip(ties) {
         let found = [[vertex[0].x, vertex[0].y], [vertex[1].x, vertex[1].y], [vertex[2].x, vertex[2].y]];
-        let wanted = [[even(tie); 2], [40 * 256 + even(tie), 3 * 256], [3 * 256, 40 * 256 + even(tie)]];
-        equal(&found, &wanted, &format!("{tie} and a half units"))?;
+        let expected = [[even(tie); 2], [40 * 256 + even(tie), 3 * 256], [3 * 256, 40 * 256 + even(tie)]];
+        equal(&found, &expected, &format!("{tie} and a half units"))?;
     }
     Ok(())
 }

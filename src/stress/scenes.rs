@@ -51,40 +51,40 @@ pub fn triangle_soup(positions: impl IntoIterator<Item = [f32; 3]>) -> SimpleMes
 
 /// Separate triangles with corners in units of 1/256 px and one depth each. Exact in a [`pixel_view`] up to the guard band.
 pub fn triangle_soup_in_units(triangles: &[([[i32; 2]; 3], f32)]) -> SimpleMesh {
-    let place = |[x, y]: [i32; 2], depth: f32| [x as f32 / 256.0, y as f32 / 256.0, depth];
-    triangle_soup(triangles.iter().flat_map(|(corners, depth)| corners.map(|corner| place(corner, *depth))))
+    let position = |[x, y]: [i32; 2], depth: f32| [x as f32 / 256.0, y as f32 / 256.0, depth];
+    triangle_soup(triangles.iter().flat_map(|(corners, depth)| corners.map(|corner| position(corner, *depth))))
 }
 
 /// A scene of these meshes.
-pub fn scene_of_meshes(parts: &[SimpleMesh]) -> Arc<Scene> {
+pub fn scene_of_meshes(meshes: &[SimpleMesh]) -> Arc<Scene> {
     let mut scene = Scene { name: "hand-made".into(), ..Scene::default() };
-    for (i, part) in parts.iter().enumerate() {
+    for (i, mesh) in meshes.iter().enumerate() {
         let mut push = |components: u32, values: &[f32]| {
             let offset = scene.vertex_bytes.len();
             scene.vertex_bytes.extend(values.iter().flat_map(|v| v.to_le_bytes()));
             Accessor::packed_f32(offset, components, values.len() / components as usize)
         };
-        let positions = push(3, part.positions.as_flattened());
-        let normals = if part.normals.is_empty() { vec![[0.0, 0.0, 1.0]; part.positions.len()] } else { part.normals.clone() };
+        let positions = push(3, mesh.positions.as_flattened());
+        let normals = if mesh.normals.is_empty() { vec![[0.0, 0.0, 1.0]; mesh.positions.len()] } else { mesh.normals.clone() };
         let normals = push(3, normals.as_flattened());
-        let colors = (!part.colors.is_empty()).then(|| push(4, part.colors.as_flattened()));
-        let indices = (!part.indices.is_empty()).then(|| {
-            let (offset, count) = (scene.index_bytes.len() as u32, part.indices.len() as u32);
-            scene.index_bytes.extend(part.indices.iter().flat_map(|i| i.to_le_bytes()));
+        let colors = (!mesh.colors.is_empty()).then(|| push(4, mesh.colors.as_flattened()));
+        let indices = (!mesh.indices.is_empty()).then(|| {
+            let (offset, count) = (scene.index_bytes.len() as u32, mesh.indices.len() as u32);
+            scene.index_bytes.extend(mesh.indices.iter().flat_map(|i| i.to_le_bytes()));
             Accessor { offset, stride: 4, component_type: ComponentType::U32, components: 1, normalized: false, count }
         });
         let mut bounds = Bounds::EMPTY;
-        let finite = part.positions.iter().filter(|p| p.iter().all(|v| v.is_finite()));
+        let finite = mesh.positions.iter().filter(|p| p.iter().all(|v| v.is_finite()));
         finite.for_each(|p| bounds.include(DVec3::from_array(p.map(f64::from))));
-        let corner = |place: usize| {
-            let vertex = part.indices.get(place).map_or(place, |&i| i as usize);
-            DVec3::from_array(part.positions[vertex].map(f64::from))
+        let corner = |position: usize| {
+            let vertex = mesh.indices.get(position).map_or(position, |&i| i as usize);
+            DVec3::from_array(mesh.positions[vertex].map(f64::from))
         };
-        let corners = if part.indices.is_empty() { part.positions.len() } else { part.indices.len() };
+        let corners = if mesh.indices.is_empty() { mesh.positions.len() } else { mesh.indices.len() };
         let edges = (0..corners / 3).flat_map(|t| [(0, 1), (1, 2), (2, 0)].map(|(a, b)| corner(3 * t + a).distance(corner(3 * t + b))));
         let longest_edge = edges.filter(|edge| edge.is_finite()).fold(0.0, f64::max);
         let material = scene.materials.len();
-        scene.materials.push(Material { double_sided: part.double_sided, ..Material::default() });
+        scene.materials.push(Material { double_sided: mesh.double_sided, ..Material::default() });
         scene.primitives.push(Primitive {
             name: format!("part {i}"),
             topology: Topology::List,
@@ -99,7 +99,7 @@ pub fn scene_of_meshes(parts: &[SimpleMesh]) -> Arc<Scene> {
             normals_agree: false,
             deformation: Default::default(),
         });
-        scene.instances.extend(part.transforms.iter().map(|&world_from_object| Instance::fixed(i, world_from_object)));
+        scene.instances.extend(mesh.transforms.iter().map(|&world_from_object| Instance::fixed(i, world_from_object)));
     }
     Arc::new(scene)
 }
@@ -175,12 +175,12 @@ pub enum Winding {
 
 /// Two triangles through four corners in normalized device coordinates, with a w for each corner.
 pub fn quad(corners: [[f64; 2]; 4], w: [f64; 4], winding: Winding) -> Vec<[f32; 3]> {
-    let place = |i: usize| [corners[i][0] * w[i], corners[i][1] * w[i], -w[i]].map(|v| v as f32);
+    let position = |i: usize| [corners[i][0] * w[i], corners[i][1] * w[i], -w[i]].map(|v| v as f32);
     let order: [usize; 6] = match winding {
         Winding::Forward => [0, 1, 2, 2, 3, 0],
         Winding::Reversed => [0, 2, 1, 2, 0, 3],
     };
-    order.map(place).to_vec()
+    order.map(position).to_vec()
 }
 
 /// A small random number generator with the same sequence on every machine.

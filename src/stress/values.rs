@@ -74,9 +74,9 @@ fn non_finite_positions(context: &mut CaseContext) -> Result<(), EarlyEnd> {
     let bad = [f32::NAN, -f32::NAN, f32::from_bits(0x7f80_0001), f32::INFINITY, f32::NEG_INFINITY, f32::MAX, -f32::MAX, huge, -huge];
     let (mut positions, mut nonfinite, mut range) = (good.to_vec(), 0, 0);
     for value in bad {
-        for place in 0..9 {
+        for index in 0..9 {
             let mut corners = good.map(|p| [p[0], p[1], 0.9]);
-            corners[place / 3][place % 3] = value;
+            corners[index / 3][index % 3] = value;
             positions.extend(corners);
             if value.is_finite() { range += 1 } else { nonfinite += 1 }
         }
@@ -112,13 +112,13 @@ fn non_finite_attributes(context: &mut CaseContext) -> Result<(), EarlyEnd> {
     let bad = [f32::NAN, f32::INFINITY, f32::NEG_INFINITY, f32::MAX, -f32::MAX, 1e-40, -1e-40, 0.0, 1e20, -3.0];
     let (mut positions, mut normals, mut colors) = (vec![], vec![], vec![]);
     for (i, value) in bad.into_iter().enumerate() {
-        for lane in 0..4 {
-            let (x, y) = (6.0 * i as f32 + 1.0, 10.0 * lane as f32 + 1.0);
+        for component in 0..4 {
+            let (x, y) = (6.0 * i as f32 + 1.0, 10.0 * component as f32 + 1.0);
             for (corner, [dx, dy]) in [[0.0, 0.0], [5.0, 0.0], [0.0, 9.0]].into_iter().enumerate() {
                 let (mut normal, mut color) = ([0.3, 0.2, 0.9], [0.9, 0.5, 0.2, 1.0f32]);
-                if corner == lane % 3 {
-                    color[lane] = value;
-                    if lane < 3 { normal[lane] = value } else { normal = [value; 3] }
+                if corner == component % 3 {
+                    color[component] = value;
+                    if component < 3 { normal[component] = value } else { normal = [value; 3] }
                 }
                 positions.push([x + dx, y + dy, 0.5]);
                 normals.push(normal);

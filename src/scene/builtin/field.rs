@@ -49,12 +49,12 @@ pub fn build(values: &Values) -> Result<Scene, BuiltinError> {
     let middle = 0.5 * f64::from(side - 1);
     for i in 0..count {
         let chance = |salt: u32| hash_unit(i.wrapping_mul(8).wrapping_add(salt) ^ hash(seed));
-        let place = [i % side, i / side % side, i / (side * side)].map(|at| (f64::from(at) - middle) * SPACING_M);
+        let position = [i % side, i / side % side, i / (side * side)].map(|at| (f64::from(at) - middle) * SPACING_M);
         let axis = DVec3::new(chance(0) - 0.5, chance(1) - 0.5, chance(2) - 0.5).normalize_or(DVec3::Y);
         let (sin, cos) = libm::sincos(chance(3) * std::f64::consts::PI);
         let turn = DQuat::from_xyzw(axis.x * sin, axis.y * sin, axis.z * sin, cos);
         let scale = DVec3::splat(0.7 + 0.3 * chance(4));
-        let placement = DMat4::from_scale_rotation_translation(scale, turn, place.into());
+        let placement = DMat4::from_scale_rotation_translation(scale, turn, position.into());
         let tone = (chance(5) * TONES.len() as f64) as usize;
         scene.instances.push(Instance::fixed(tone, placement));
     }

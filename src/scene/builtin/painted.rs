@@ -121,8 +121,8 @@ struct Panel {
 pub fn panels(values: &Values) -> Result<Scene, BuiltinError> {
     let mut scene = Scene { images: vec![arrow().with_mipmaps(), gravel().with_mipmaps(), windows().with_mipmaps()], ..Scene::default() };
     let repeats = values.get("repeats");
-    for (place, Panel { material, span }) in ways(repeats).into_iter().enumerate() {
-        let is_ground = place == 6;
+    for (index, Panel { material, span }) in panel_list(repeats).into_iter().enumerate() {
+        let is_ground = index == 6;
         let mut mesh = MeshBuilder::with_capacity(4, 2);
         let [[left, right], [top, bottom]] = span;
         for (x, y, u, v) in [(-1.0, -1.0, left, bottom), (1.0, -1.0, right, bottom), (1.0, 1.0, right, top), (-1.0, 1.0, left, top)] {
@@ -132,12 +132,12 @@ pub fn panels(values: &Values) -> Result<Scene, BuiltinError> {
         mesh.triangle([0, 2, 3]);
         let name = material.name.clone();
         scene.materials.push(material);
-        let primitive = mesh.append(&mut scene, &name, place);
+        let primitive = mesh.append(&mut scene, &name, index);
         let world_from_object = if is_ground {
             // Rotated to face up.
             DMat4::from_cols(DVec4::X * 6.0, DVec4::NEG_Z * 6.0, DVec4::Y, DVec4::new(0.0, -2.3, -3.0, 1.0))
         } else {
-            let (column, row) = ((place % 3) as f64, (place / 3) as f64);
+            let (column, row) = ((index % 3) as f64, (index / 3) as f64);
             DMat4::from_translation(DVec3::new(2.3 * (column - 1.0), 1.15 - 2.3 * row, 0.0)) * rotation_y(0.35 * (1.0 - column))
         };
         scene.instances.push(Instance::fixed(primitive, world_from_object));
@@ -146,7 +146,7 @@ pub fn panels(values: &Values) -> Result<Scene, BuiltinError> {
 }
 
 /// The six panels and the ground.
-fn ways(repeats: f64) -> Vec<Panel> {
+fn panel_list(repeats: f64) -> Vec<Panel> {
     let paper = |name: &str, texture: Texture| Material {
         name: name.into(),
         base_texture: Some(texture),

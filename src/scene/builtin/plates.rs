@@ -75,12 +75,12 @@ pub fn grid(values: &Values) -> Result<Scene, BuiltinError> {
     for row in 0..=rows {
         for column in 0..=columns {
             let salt = hash(hash(seed) ^ (row as u32)).wrapping_add(2 * column as u32);
-            let place = |at: u64, count: u64, salt: u32| {
+            let jittered = |at: u64, count: u64, salt: u32| {
                 let straight = (at as f64 - 0.5 * count as f64) * cell;
                 let moved = straight + 0.8 * error_bound * (2.0 * hash_unit(salt) - 1.0);
                 if lattice > 0.0 { (moved * lattice).round() / lattice } else { moved }
             };
-            mesh.vertex(DVec3::new(place(column, columns, salt), place(row, rows, salt + 1), 0.0), DVec3::Z);
+            mesh.vertex(DVec3::new(jittered(column, columns, salt), jittered(row, rows, salt + 1), 0.0), DVec3::Z);
         }
     }
     let stride = columns as u32 + 1;

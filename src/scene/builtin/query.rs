@@ -99,12 +99,12 @@ fn checked(builtin: &str, param: &BuiltinParam, text: &str) -> Result<f64, Built
 }
 
 /// A sentence with the unknown name, the most similar known one, and all known names.
-fn unknown(what: &str, asked: &str, known: Vec<&str>) -> String {
-    let near = known.iter().map(|name| (strsim::damerau_levenshtein(name, asked), name)).min();
+fn unknown(what: &str, requested: &str, known: Vec<&str>) -> String {
+    let near = known.iter().map(|name| (strsim::damerau_levenshtein(name, requested), name)).min();
     let hint = match near {
         Some((distance, name)) if distance <= 2.max(name.len() / 3) => format!("; did you mean \"{name}\"?"),
         _ => String::new(),
     };
     let list = if known.is_empty() { "none".into() } else { known.join(", ") };
-    format!("{what} \"{asked}\"{hint} (known: {list})")
+    format!("{what} \"{requested}\"{hint} (known: {list})")
 }

@@ -86,7 +86,7 @@ fn revolve(mesh: &mut MeshBuilder, profile: &[[f64; 2]], tess: u32) {
             // The derivative around the axis omits its factor, the radius, so that poles have a normal too.
             let normal =
                 slopes.iter().map(|d| DVec3::new(d.x * arc.x, d.x * arc.y, d.z).cross(along.extend(0.0)).normalize_or_zero()).sum();
-            place(mesh, position, normal);
+            add_vertex(mesh, position, normal);
         });
         if let Some(above) = above.replace(ring) {
             mesh.band(ring, above);
@@ -109,7 +109,7 @@ fn tube(mesh: &mut MeshBuilder, sections: &[Section], tess: u32) {
             };
             let (position, along) = curve(sections.len(), row, tess, |i| across(&sections[i], bernstein(v)));
             let (round, _) = curve(sections.len(), row, tess, |i| across(&sections[i], bernstein_slope(v)) * mirror);
-            place(mesh, position, along.iter().map(|d| round.cross(*d).normalize_or_zero()).sum());
+            add_vertex(mesh, position, along.iter().map(|d| round.cross(*d).normalize_or_zero()).sum());
         });
         if let Some(before) = before.replace(ring) {
             mesh.band(before, ring);
@@ -118,7 +118,7 @@ fn tube(mesh: &mut MeshBuilder, sections: &[Section], tess: u32) {
 }
 
 /// A point of the data, with z up, as a vertex with y up.
-fn place(mesh: &mut MeshBuilder, p: DVec3, n: DVec3) {
+fn add_vertex(mesh: &mut MeshBuilder, p: DVec3, n: DVec3) {
     let p = (p - CENTER) * SCALE;
     mesh.vertex(DVec3::new(p.x, p.z, -p.y), DVec3::new(n.x, n.z, -n.y));
 }

@@ -40,22 +40,22 @@ pub fn build(values: &Values) -> Result<Scene, BuiltinError> {
     }
     let mut scene = Scene { materials: vec![Material { name: "skin".into(), ..Material::default() }], ..Scene::default() };
     let heights = tube(&mut scene, around, along);
-    soften(&mut scene, &heights, joints, values.whole("influences") as usize);
+    add_deformation(&mut scene, &heights, joints, values.whole("influences") as usize);
     let samplers = clips(&mut scene, joints);
     for instance in 0..instances {
-        stand(&mut scene, instance, instances, joints, &samplers);
+        add_instance(&mut scene, instance, instances, joints, &samplers);
     }
     scene.rig.motion_bounds = pose::motion_bounds(&scene);
     Ok(scene)
 }
 
 /// Radius and slope of the tube at a fraction of its height; `bulge` (0 to 1) adds the bulge.
-fn profile(share: f64, bulge: f64) -> [f64; 2] {
+fn profile(fraction: f64, bulge: f64) -> [f64; 2] {
     let taper = RADII_M[1] - RADII_M[0];
-    let (sin, cos) = libm::sincos(TAU * 5.0 * share);
-    let hump = libm::exp(-(share - 0.42) * (share - 0.42) * 60.0);
-    let radius = RADII_M[0] + taper * share + 0.008 * sin + bulge * 0.16 * hump;
-    let slope = taper + 0.008 * TAU * 5.0 * cos - bulge * 0.16 * hump * 120.0 * (share - 0.42);
+    let (sin, cos) = libm::sincos(TAU * 5.0 * fraction);
+    let hump = libm::exp(-(fraction - 0.42) * (fraction - 0.42) * 60.0);
+    let radius = RADII_M[0] + taper * fraction + 0.008 * sin + bulge * 0.16 * hump;
+    let slope = taper + 0.008 * TAU * 5.0 * cos - bulge * 0.16 * hump * 120.0 * (fraction - 0.42);
     [radius, slope / LENGTH_M]
 }
 
@@ -64,11 +64,11 @@ fn tube(scene: &mut Scene, around: u32, along: u32) -> Vec<f64> {
     const TONES: [[f64; 3]; 3] = [[0.05, 0.20, 0.28], [0.80, 0.30, 0.20], [0.95, 0.78, 0.52]];
     let mut mesh = MeshBuilder::with_capacity((around * (along + 1) + 2) as usize, (2 * around * along) as usize);
     let mut heights = Vec::new();
-    let tone = |share: f64, turn: f64| {
+    let tone = |fraction: f64, turn: f64| {
         let belly = (3.0 * libm::cos(TAU * (turn - 0.6)) - 0.8).clamp(0.0, 1.0);
-        let band = 0.5 + 0.5 * libm::sin(TAU * 5.0 * share);
+        let band = 0.5 + 0.5 * libm::sin(TAU * 5.0 * fraction);
         std::array::from_fn(|c| {
-            let back = TONES[0][c] + (TONES[1][c] - TONES[0][c]) * share * (0.55 + 0.45 * band);
+            let back = TONES[0][c] + (TONES[1][c] - TONES[0][c]) * fraction * (0.55 + 0.45 * band);
             back + (TONES[2][c] - back) * belly * 0.8
         })
     };
@@ -76,20 +76,20 @@ fn tube(scene: &mut Scene, around: u32, along: u32) -> Vec<f64> {
     for row in 0..=along + 2 {
         // Poles below the bottom and above the tip close the tube.
         let is_pole = row == 0 || row == along + 2;
-        let share = f64::from(row.clamp(1, along + 1) - 1) / f64::from(along);
-        let [radius, slope] = profile(share, 0.0);
+        let fraction = f64::from(row.clamp(1, along + 1) - 1) / f64::from(along);
+        let [radius, slope] = profile(fraction, 0.0);
         let ring = mesh.ring(if is_pole { 1 } else { around }, |mesh, i| {
             let turn = f64::from(i) / f64::from(around);
             let (sin, cos) = libm::sincos(TAU * turn);
-            heights.push(share);
+            heights.push(fraction);
             if is_pole {
                 let up = if row == 0 { -DVec3::Y } else { DVec3::Y };
-                mesh.colored_vertex(DVec3::Y * (LENGTH_M * share) + up * (0.3 * radius), up, tone(share, turn));
+                mesh.colored_vertex(DVec3::Y * (LENGTH_M * fraction) + up * (0.3 * radius), up, tone(fraction, turn));
             } else {
                 mesh.colored_vertex(
-                    DVec3::new(radius * sin, LENGTH_M * share, radius * cos),
+                    DVec3::new(radius * sin, LENGTH_M * fraction, radius * cos),
                     DVec3::new(sin, -slope, cos),
-                    tone(share, turn),
+                    tone(fraction, turn),
                 );
             }
         });
@@ -103,35 +103,35 @@ fn tube(scene: &mut Scene, around: u32, along: u32) -> Vec<f64> {
 }
 
 /// Adds joints and weights to the tube, and the morph target of its bulge.
-fn soften(scene: &mut Scene, heights: &[f64], joints: u32, influences: usize) {
-    let held: Vec<Vec<JointWeight>> =
-        heights.iter().map(|share| shares(share * f64::from(joints - 1).max(1.0), joints, influences)).collect();
-    weights::append(scene, 0, joints as usize, influences.div_ceil(4), &held);
+fn add_deformation(scene: &mut Scene, heights: &[f64], joints: u32, influences: usize) {
+    let weights_of: Vec<Vec<JointWeight>> =
+        heights.iter().map(|fraction| basis_weights(fraction * f64::from(joints - 1).max(1.0), joints, influences)).collect();
+    weights::append(scene, 0, joints as usize, influences.div_ceil(4), &weights_of);
     let primitive = scene.primitives[0].clone();
-    let (mut moved, mut turned) = (Vec::<[f32; 3]>::new(), Vec::<[f32; 3]>::new());
-    for (vertex, &share) in heights.iter().enumerate() {
-        let place = DVec3::from(primitive.position(scene, vertex as u32).map(f64::from));
-        let normal = DVec3::from([0, 1, 2].map(|lane| primitive.normals.value(&scene.vertex_bytes, vertex as u32, lane)));
-        let aside = DVec3::new(place.x, 0.0, place.z);
-        let [[plain, _], [full, slope]] = [0.0, 1.0].map(|bulge| profile(share, bulge));
+    let (mut displacements, mut normal_changes) = (Vec::<[f32; 3]>::new(), Vec::<[f32; 3]>::new());
+    for (vertex, &fraction) in heights.iter().enumerate() {
+        let position = DVec3::from(primitive.position(scene, vertex as u32).map(f64::from));
+        let normal = DVec3::from([0, 1, 2].map(|component| primitive.normals.value(&scene.vertex_bytes, vertex as u32, component)));
+        let aside = DVec3::new(position.x, 0.0, position.z);
+        let [[plain, _], [full, slope]] = [0.0, 1.0].map(|bulge| profile(fraction, bulge));
         let is_pole = aside.length() < 1e-9;
         let bulged = if is_pole { normal } else { (aside.normalize() - DVec3::Y * slope).normalize() };
-        moved.push((aside * ((full - plain) / plain)).as_vec3().into());
-        turned.push((bulged - normal).as_vec3().into());
+        displacements.push((aside * ((full - plain) / plain)).as_vec3().into());
+        normal_changes.push((bulged - normal).as_vec3().into());
     }
     let mut append = |components: &[[f32; 3]]| {
         let at = scene.vertex_bytes.len();
         scene.vertex_bytes.extend_from_slice(bytemuck::cast_slice(components));
         Accessor::packed_f32(at, 3, components.len())
     };
-    let (positions, normals) = (append(&moved), append(&turned));
-    let max_displacement = moved.iter().flatten().fold(0.0f64, |most, v| most.max(f64::from(v.abs())));
+    let (positions, normals) = (append(&displacements), append(&normal_changes));
+    let max_displacement = displacements.iter().flatten().fold(0.0f64, |most, v| most.max(f64::from(v.abs())));
     scene.primitives[0].deformation.morph_targets =
         vec![MorphTarget { positions: Some(positions), normals: Some(normals), max_displacement }];
 }
 
 /// The joints that influence a vertex at joint coordinate `along`, with weights of a uniform B-spline that sum to 65,535.
-fn shares(along: f64, joints: u32, influences: usize) -> Vec<JointWeight> {
+fn basis_weights(along: f64, joints: u32, influences: usize) -> Vec<JointWeight> {
     // Cox-de Boor recursion up to the degree one below the number of influences.
     let shifted = along + 0.5 * (influences % 2) as f64;
     let (base, t) = (shifted.floor(), shifted - shifted.floor());
@@ -146,15 +146,15 @@ fn shares(along: f64, joints: u32, influences: usize) -> Vec<JointWeight> {
         }
         basis = next;
     }
-    let mut held: Vec<(u8, f64)> = Vec::new();
-    for (i, &share) in basis.iter().enumerate() {
+    let mut weights_of: Vec<(u8, f64)> = Vec::new();
+    for (i, &fraction) in basis.iter().enumerate() {
         let joint = (base as i64 + i as i64 - (influences as i64 - 1) / 2).clamp(0, i64::from(joints) - 1) as u8;
-        match held.iter_mut().find(|(other, _)| *other == joint) {
-            Some((_, sum)) => *sum += share,
-            None => held.push((joint, share)),
+        match weights_of.iter_mut().find(|(other, _)| *other == joint) {
+            Some((_, sum)) => *sum += fraction,
+            None => weights_of.push((joint, fraction)),
         }
     }
-    weights::to_integers(&held)
+    weights::to_integers(&weights_of)
 }
 
 /// Samplers of the clips: one per phase and joint; of Breathe one per phase.
@@ -210,7 +210,7 @@ fn clips(scene: &mut Scene, joints: u32) -> Samplers {
 }
 
 /// Adds one tentacle: its nodes, skin, channels in every clip, and instance.
-fn stand(scene: &mut Scene, instance: u32, of: u32, joints: u32, samplers: &Samplers) {
+fn add_instance(scene: &mut Scene, instance: u32, of: u32, joints: u32, samplers: &Samplers) {
     // Positions on a sunflower spiral; a single tentacle stands at the origin.
     let reach = if of == 1 { 0.0 } else { 0.9 * (f64::from(instance) + 0.3).sqrt() };
     let (sin, cos) = libm::sincos(f64::from(instance) * 2.399_963_229_728_653);
@@ -253,10 +253,13 @@ mod tests {
         for influences in 1..=8 {
             let mut before: Option<Vec<f64>> = None;
             for step in 0..=7_000 {
-                let held = shares(f64::from(step) / 1000.0, 8, influences);
-                assert!(held.len() <= influences && held.iter().map(|&(_, weight)| u32::from(weight)).sum::<u32>() == 65_535, "{held:?}");
+                let weights_of = basis_weights(f64::from(step) / 1000.0, 8, influences);
+                assert!(
+                    weights_of.len() <= influences && weights_of.iter().map(|&(_, weight)| u32::from(weight)).sum::<u32>() == 65_535,
+                    "{weights_of:?}"
+                );
                 let mut dense = vec![0.0; 8];
-                held.iter().for_each(|&(joint, weight)| dense[usize::from(joint)] += f64::from(weight) / 65_535.0);
+                weights_of.iter().for_each(|&(joint, weight)| dense[usize::from(joint)] += f64::from(weight) / 65_535.0);
                 if let Some(before) = before.filter(|_| influences > 1) {
                     assert!(before.iter().zip(&dense).all(|(a, b)| (a - b).abs() < 2e-3), "{influences} at {step}");
                 }

@@ -13,9 +13,9 @@ use crate::scene::{
 pub type JointWeight = (u8, u16);
 
 /// Rounds weights that sum to about 1 to integers that sum to 65,535, largest first. The largest absorbs the rounding error.
-pub fn to_integers(held: &[(u8, f64)]) -> Vec<JointWeight> {
+pub fn to_integers(joint_weights: &[(u8, f64)]) -> Vec<JointWeight> {
     let mut rounded: Vec<JointWeight> =
-        held.iter().map(|&(joint, share)| (joint, (share.clamp(0.0, 1.0) * 65_535.0).round() as u16)).collect();
+        joint_weights.iter().map(|&(joint, fraction)| (joint, (fraction.clamp(0.0, 1.0) * 65_535.0).round() as u16)).collect();
     rounded.sort_by_key(|&(joint, weight)| (std::cmp::Reverse(weight), joint));
     let sum: i32 = rounded.iter().map(|&(_, weight)| i32::from(weight)).sum();
     rounded[0].1 = (i32::from(rounded[0].1) + 65_535 - sum) as u16;
@@ -23,17 +23,17 @@ pub fn to_integers(held: &[(u8, f64)]) -> Vec<JointWeight> {
 }
 
 /// Appends joint indices and weights to a primitive: `sets` sets of four per vertex, `joints` joints in all.
-pub fn append(scene: &mut Scene, primitive: usize, joints: usize, sets: usize, held: &[Vec<JointWeight>]) {
+pub fn append(scene: &mut Scene, primitive: usize, joints: usize, sets: usize, joint_weights: &[Vec<JointWeight>]) {
     let mut bounds = vec![Bounds::EMPTY; joints];
     let (mut numbers, mut weights) = (vec![Vec::<u8>::new(); sets], vec![Vec::<u16>::new(); sets]);
-    for (vertex, held) in held.iter().enumerate() {
-        let place = DVec3::from(scene.primitives[primitive].position(scene, vertex as u32).map(f64::from));
+    for (vertex, joint_weights) in joint_weights.iter().enumerate() {
+        let position = DVec3::from(scene.primitives[primitive].position(scene, vertex as u32).map(f64::from));
         for slot in 0..4 * sets {
-            let (joint, weight) = held.get(slot).copied().unwrap_or((0, 0));
+            let (joint, weight) = joint_weights.get(slot).copied().unwrap_or((0, 0));
             numbers[slot / 4].push(joint);
             weights[slot / 4].push(weight);
             if weight > 0 {
-                bounds[usize::from(joint)].include(place);
+                bounds[usize::from(joint)].include(position);
             }
         }
     }
@@ -49,7 +49,7 @@ pub fn append(scene: &mut Scene, primitive: usize, joints: usize, sets: usize, h
         component_type,
         components: 4,
         normalized,
-        count: held.len() as u32,
+        count: joint_weights.len() as u32,
     };
     let influences = numbers
         .iter()

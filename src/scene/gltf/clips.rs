@@ -31,8 +31,8 @@ pub fn read(buffers: &Buffers, tree: &Tree, rig: &mut Rig, notes: &mut Vec<Strin
         let name = called("clip", index, animation.name.as_deref());
         let mut clip = Clip { name: name_of(animation, index), duration_s: 0.0, channels: Vec::new() };
         let mut taken = HashSet::new();
-        for (place, channel) in animation.channels.iter().enumerate() {
-            let at = |error: LoadError| error.within(format!("{name} channel {place}"));
+        for (in_property, channel) in animation.channels.iter().enumerate() {
+            let at = |error: LoadError| error.within(format!("{name} channel {in_property}"));
             let channel = reader.channel(tree, index, animation, channel).map_err(at)?;
             if !taken.insert((channel.node, channel.property.name())) {
                 return Err(at(LoadError::new(format!(
@@ -80,7 +80,7 @@ impl Reader<'_> {
         let (target, at) = (channel.target.node.value(), channel.sampler.value());
         // The crate `gltf` does not check this index.
         let node = tree
-            .place_of
+            .rig_index
             .get(target)
             .copied()
             .ok_or_else(|| LoadError::new(format!("its target is node {target}, which does not exist")))?;
@@ -92,17 +92,19 @@ impl Reader<'_> {
             Checked::Invalid => return Err(LoadError::new("its target path must be translation, rotation, scale or weights")),
         };
         let name = node_name(self.buffers.root, target);
-        let place = |error: LoadError| error.within(format!("{} of {name}", property.name()));
+        let in_property = |error: LoadError| error.within(format!("{} of {name}", property.name()));
         if property == Property::Weights && components == 0 {
-            return Err(place(LoadError::new("the node has no mesh with morph targets")));
+            return Err(in_property(LoadError::new("the node has no mesh with morph targets")));
         }
         if property != Property::Weights && matches!(self.rig.nodes[node].rest, LocalTransform::Matrix(_)) {
-            return Err(place(LoadError::new("the node has a matrix; only a node with translation, rotation and scale can be animated")));
+            return Err(in_property(LoadError::new(
+                "the node has a matrix; only a node with translation, rotation and scale can be animated",
+            )));
         }
         let sampler = match self.known.get(&(clip, at, components)) {
             Some(&sampler) => sampler,
             None => {
-                let sampler = self.sampler(&from.samplers[at], property, components).map_err(place)?;
+                let sampler = self.sampler(&from.samplers[at], property, components).map_err(in_property)?;
                 self.rig.samplers.push(sampler);
                 self.known.insert((clip, at, components), self.rig.samplers.len() - 1);
                 self.rig.samplers.len() - 1
@@ -119,8 +121,8 @@ impl Reader<'_> {
             Checked::Invalid => return Err(LoadError::new("its interpolation must be STEP, LINEAR or CUBICSPLINE")),
         };
         let times = self.times(from.input.value()).map_err(|error| error.within("input"))?;
-        let wanted = times.len() * parts * if property == Property::Weights { components } else { 1 };
-        let values = self.values(from.output.value(), property, wanted).map_err(|error| error.within("output"))?;
+        let expected = times.len() * parts * if property == Property::Weights { components } else { 1 };
+        let values = self.values(from.output.value(), property, expected).map_err(|error| error.within("output"))?;
         if let Some(at) = values.iter().position(|value| !value.is_finite()) {
             return Err(LoadError::new(format!("keyframe {} has the value {}; it must be finite", at / (components * parts), values[at]))
                 .within("output"));
@@ -159,7 +161,7 @@ impl Reader<'_> {
         Ok(times)
     }
 
-    fn values(&mut self, index: usize, property: Property, wanted: usize) -> Result<Vec<f32>, LoadError> {
+    fn values(&mut self, index: usize, property: Property, expected: usize) -> Result<Vec<f32>, LoadError> {
         let about = self.buffers.layout(index)?.accessor;
         let may_be_integer = matches!(property, Property::Rotation | Property::Weights);
         let is_number = match about.component_type {
@@ -175,8 +177,8 @@ impl Reader<'_> {
         if !is_number || about.components != components {
             return Err(LoadError::new("has a type that glTF does not allow for this property"));
         }
-        if about.count as usize != wanted {
-            return Err(LoadError::new(format!("has {} elements; its keyframes need {wanted}", about.count)));
+        if about.count as usize != expected {
+            return Err(LoadError::new(format!("has {} elements; its keyframes need {expected}", about.count)));
         }
         self.numbers(index)
     }
@@ -195,7 +197,7 @@ impl Reader<'_> {
         }
         let bytes = self.buffers.materialized(index, &layout)?;
         let packed = Accessor { offset: 0, stride: component_type.bytes() * components, ..layout.accessor };
-        let element = |element: u32| (0..components).map(move |lane| (element, lane));
-        Ok((0..count).flat_map(element).map(|(element, lane)| packed.value(&bytes, element, lane) as f32).collect())
+        let element = |element: u32| (0..components).map(move |component| (element, component));
+        Ok((0..count).flat_map(element).map(|(element, component)| packed.value(&bytes, element, component) as f32).collect())
     }
 }

@@ -13,8 +13,8 @@ impl LoadError {
     }
 
     /// Prepends the place of the error.
-    pub(super) fn within(self, place: impl Display) -> Self {
-        Self(format!("{place}: {}", self.0))
+    pub(super) fn within(self, context: impl Display) -> Self {
+        Self(format!("{context}: {}", self.0))
     }
 }
 

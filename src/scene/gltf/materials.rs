@@ -63,10 +63,10 @@ pub fn read(
 /// Checks the sources of all images, even of unused ones.
 pub fn check_images(buffers: &Buffers) -> Result<(), LoadError> {
     for (index, image) in buffers.root.images.iter().enumerate() {
-        let place = |error: LoadError| error.within(called("image", index, image.name.as_deref()));
+        let in_image = |error: LoadError| error.within(called("image", index, image.name.as_deref()));
         match (image.buffer_view, &image.uri) {
-            (Some(view), _) => drop(buffers.view(view.value()).map_err(place)?),
-            (None, None) => return Err(place(LoadError::new("it has neither a URI nor a bufferView"))),
+            (Some(view), _) => drop(buffers.view(view.value()).map_err(in_image)?),
+            (None, None) => return Err(in_image(LoadError::new("it has neither a URI nor a bufferView"))),
             (None, Some(_)) => {}
         }
     }
@@ -183,8 +183,8 @@ impl Reader<'_, '_, '_> {
 
     /// The index of an image, which is decoded on its first use.
     fn image(&mut self, index: usize) -> Result<usize, LoadError> {
-        if let Some(&place) = self.known.get(&index) {
-            return Ok(place);
+        if let Some(&in_image) = self.known.get(&index) {
+            return Ok(in_image);
         }
         let about = &self.buffers.root.images[index];
         let name = called("image", index, about.name.as_deref());

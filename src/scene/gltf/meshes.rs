@@ -26,7 +26,7 @@ use crate::scene::{
     material::Material,
     model::{Instance, Primitive, Scene, Topology},
     rig::Rig,
-    texture::{MAX_REPEATS, stored},
+    texture::{MAX_REPEATS, texcoord},
 };
 
 /// Reads meshes into a scene.
@@ -71,7 +71,7 @@ impl<'a> Loader<'a> {
                 .within(node_name(self.root, node)));
         }
         let skin = about.skin.map(|skin| skin.value());
-        let rig_node = (!rig.is_empty()).then(|| self.tree.place_of[node]);
+        let rig_node = (!rig.is_empty()).then(|| self.tree.rig_index[node]);
         for primitive in range {
             if let Some(skin) = skin {
                 let follow = deformation::follow_skin(&mut self.writer, primitive, self.sources[primitive], &rig.skins[skin]);
@@ -116,7 +116,7 @@ impl<'a> Loader<'a> {
     /// Reads a primitive. Errors begin with ` ATTRIBUTE: ` or `: `, to follow the primitive's name.
     fn primitive(&mut self, name: &str, topology: Topology, about: &'a json::mesh::Primitive) -> Result<(), LoadError> {
         let attribute = |semantic: Semantic| about.attributes.get(&Checked::Valid(semantic)).map(|accessor| accessor.value());
-        let at = |place: &'static str| move |error: LoadError| LoadError(format!(" {place}: {error}"));
+        let at = |coordinates: &'static str| move |error: LoadError| LoadError(format!(" {coordinates}: {error}"));
         let plain = |error: LoadError| LoadError(format!(": {error}"));
         let positions = attribute(Semantic::Positions).ok_or_else(|| plain(LoadError::new("it has no POSITION attribute")))?;
         let count = self.writer.accessor(positions).map_err(at("POSITION"))?.count;
@@ -194,11 +194,13 @@ impl<'a> Loader<'a> {
             let formats = if self.writer.is_quantized { QUANTIZED } else { FLOAT_OR_UNORM };
             let accessor = self.writer.attribute(index.value(), count, &[2], formats).map_err(at)?;
             check_finite(&self.writer.scene, &accessor).map_err(at)?;
-            let place = |vertex| texture.placed(stored(&accessor, &self.writer.scene.vertex_bytes, vertex));
-            if let Some(vertex) = (0..count).find(|&vertex| place(vertex).abs().max_element() > MAX_REPEATS) {
-                let place = place(vertex);
-                let reason =
-                    format!("vertex {vertex} has the image coordinates {} {}; allowed: magnitudes up to {MAX_REPEATS}", place.x, place.y);
+            let coordinates = |vertex| texture.image_coordinates(texcoord(&accessor, &self.writer.scene.vertex_bytes, vertex));
+            if let Some(vertex) = (0..count).find(|&vertex| coordinates(vertex).abs().max_element() > MAX_REPEATS) {
+                let coordinates = coordinates(vertex);
+                let reason = format!(
+                    "vertex {vertex} has the image coordinates {} {}; allowed: magnitudes up to {MAX_REPEATS}",
+                    coordinates.x, coordinates.y
+                );
                 return Err(at(LoadError::new(reason)));
             }
             *texcoords = Some(accessor);
@@ -215,12 +217,12 @@ impl<'a> Loader<'a> {
     }
 
     fn budget_triangles(&mut self, topology: Topology, corners: u32) -> Result<(), LoadError> {
-        let (fits, wanted) = match topology {
+        let (fits, expected) = match topology {
             Topology::List => (corners.is_multiple_of(3), "a multiple of 3"),
             Topology::Strip | Topology::Fan => (corners >= 3, "at least 3"),
         };
         if !fits {
-            return Err(LoadError::new(format!("{corners} corners do not form whole triangles; their number must be {wanted}")));
+            return Err(LoadError::new(format!("{corners} corners do not form whole triangles; their number must be {expected}")));
         }
         self.triangles += u64::from(topology.triangles(corners));
         if self.triangles > limits::TRIANGLES {

@@ -23,7 +23,7 @@ pub struct Tree {
     /// All nodes, parents before children.
     order: Vec<usize>,
     /// Position of every node in `order`, which is its index in the rig.
-    pub place_of: Vec<usize>,
+    pub rig_index: Vec<usize>,
 }
 
 impl Tree {
@@ -49,9 +49,9 @@ impl Tree {
             );
         }
         let scene = root.scene.map(|scene| scene.value()).or((!root.scenes.is_empty()).then_some(0));
-        let mut place_of = vec![0; all.len()];
-        all.iter().enumerate().for_each(|(place, &node)| place_of[node] = place);
-        let Some(scene) = scene else { return Ok(Self { world_from_node, shown: all.clone(), order: all, place_of }) };
+        let mut rig_index = vec![0; all.len()];
+        all.iter().enumerate().for_each(|(in_node, &node)| rig_index[node] = in_node);
+        let Some(scene) = scene else { return Ok(Self { world_from_node, shown: all.clone(), order: all, rig_index }) };
         let tops: Vec<usize> = root.scenes[scene].nodes.iter().map(|node| node.value()).collect();
         let mut listed = tops.clone();
         listed.sort_unstable();
@@ -65,7 +65,7 @@ impl Tree {
             );
         }
         let shown = visit(root, &tops, |_| Ok(()))?;
-        Ok(Self { world_from_node, shown, order: all, place_of })
+        Ok(Self { world_from_node, shown, order: all, rig_index })
     }
 
     /// The nodes of the rig.
@@ -74,17 +74,17 @@ impl Tree {
         let mut weights_in_all = 0;
         let node = |&index: &usize| {
             let node = &root.nodes[index];
-            let place = |error: LoadError| error.within(node_name(root, index));
-            let weights = morph_weights(root, node).map_err(place)?;
+            let in_node = |error: LoadError| error.within(node_name(root, index));
+            let weights = morph_weights(root, node).map_err(in_node)?;
             weights_in_all += weights.len();
             if weights_in_all > limits::WEIGHTS {
                 let reason = format!("the nodes have {weights_in_all} morph weights or more; allowed: at most {}", limits::WEIGHTS);
-                return Err(place(LoadError::new(reason)));
+                return Err(in_node(LoadError::new(reason)));
             }
             Ok(Node {
                 name: node_name(root, index),
-                parent: parents[index].map(|parent| self.place_of[parent]),
-                rest: local(node).map_err(place)?,
+                parent: parents[index].map(|parent| self.rig_index[parent]),
+                rest: local(node).map_err(in_node)?,
                 weights,
             })
         };
@@ -108,7 +108,9 @@ impl Tree {
             let camera = &root.cameras[index.value()];
             let name = camera.name.clone().or_else(|| root.nodes[node].name.clone()).unwrap_or_else(|| format!("camera {}", index.value()));
             match pose(camera, &self.world_from_node[node], bounds) {
-                Ok(pose) => cameras.push(SceneCamera { name: shown(&name, cameras.len()), pose, node: moves.then(|| self.place_of[node]) }),
+                Ok(pose) => {
+                    cameras.push(SceneCamera { name: shown(&name, cameras.len()), pose, node: moves.then(|| self.rig_index[node]) })
+                }
                 Err(reason) => notes.push(format!("{} is skipped: {reason}", called("camera", index.value(), Some(&name)))),
             }
         }
@@ -212,9 +214,9 @@ fn morph_weights(root: &json::Root, node: &json::Node) -> Result<Vec<f32>, LoadE
 }
 
 /// The name of camera `index` in menus and presets.
-fn shown(name: &str, place: usize) -> String {
+fn shown(name: &str, in_node: usize) -> String {
     let name: String = name.chars().filter(|c| !c.is_control()).take(60).collect();
-    if name.trim().is_empty() { format!("camera {place}") } else { name }
+    if name.trim().is_empty() { format!("camera {in_node}") } else { name }
 }
 
 /// The camera at a node: it looks along -z with +y up. Scale does not affect it.

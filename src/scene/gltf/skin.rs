@@ -39,9 +39,9 @@ fn read(buffers: &Buffers, tree: &Tree, skin: &json::Skin) -> Result<Skin, LoadE
         None => vec![DMat4::IDENTITY; joints],
         Some(accessor) => inverse_bind(buffers, accessor.value(), joints).map_err(|error| error.within("inverseBindMatrices"))?,
     };
-    let nodes: Vec<usize> = skin.joints.iter().map(|joint| tree.place_of[joint.value()]).collect();
-    let place = |(joint, inverse): (&json::Index<json::Node>, &DMat4)| tree.world_from_node[joint.value()] * *inverse;
-    match skin.joints.iter().zip(&joint_from_mesh).position(|pair| !place(pair).is_finite()) {
+    let nodes: Vec<usize> = skin.joints.iter().map(|joint| tree.rig_index[joint.value()]).collect();
+    let position = |(joint, inverse): (&json::Index<json::Node>, &DMat4)| tree.world_from_node[joint.value()] * *inverse;
+    match skin.joints.iter().zip(&joint_from_mesh).position(|pair| !position(pair).is_finite()) {
         Some(joint) => Err(LoadError::new(format!("the matrix of joint {joint} is not finite"))),
         None => Ok(Skin { name: String::new(), joints: nodes, joint_from_mesh }),
     }
@@ -62,7 +62,7 @@ fn inverse_bind(buffers: &Buffers, index: usize, joints: usize) -> Result<Vec<DM
     }
     let bytes = buffers.materialized(index, &layout)?;
     let numbers = Accessor { offset: 0, stride: 64, ..about };
-    let matrix = |i: u32| DMat4::from_cols_array(&std::array::from_fn(|lane| numbers.value(&bytes, i, lane as u32)));
+    let matrix = |i: u32| DMat4::from_cols_array(&std::array::from_fn(|component| numbers.value(&bytes, i, component as u32)));
     let matrices: Vec<DMat4> = (0..joints as u32).map(matrix).collect();
     // Exporters that round leave small errors in the last row, 0 0 0 1.
     let is_affine = |m: &DMat4| m.row(3).abs_diff_eq(glam::DVec4::W, 1e-3);
@@ -107,12 +107,12 @@ pub fn check_influences(
     let bytes = &scene.vertex_bytes;
     let mut checked = CheckedInfluences { joint_bounds: Vec::new(), weightless: 0, not_normalized: 0 };
     for vertex in 0..positions.count {
-        let place = [0, 1, 2].map(|lane| positions.value(bytes, vertex, lane)).into();
+        let position = [0, 1, 2].map(|component| positions.value(bytes, vertex, component)).into();
         let (mut sum, mut first) = (0.0, 0);
         for (set, influences) in sets.iter().enumerate() {
-            for lane in 0..4 {
-                let joint = influences.joints.integer(bytes, vertex, lane) as usize;
-                let weight = influences.weights.value(bytes, vertex, lane);
+            for component in 0..4 {
+                let joint = influences.joints.integer(bytes, vertex, component) as usize;
+                let weight = influences.weights.value(bytes, vertex, component);
                 if joint >= joint_count {
                     return Err(LoadError::new(format!("vertex {vertex} refers to joint {joint}, but the skin has {joint_count} joints"))
                         .within(format!("JOINTS_{set}")));
@@ -125,16 +125,16 @@ pub fn check_influences(
                     checked.joint_bounds.resize(joint + 1, Bounds::EMPTY);
                 }
                 if weight > 0.0 {
-                    checked.joint_bounds[joint].include(place);
+                    checked.joint_bounds[joint].include(position);
                 }
-                if set == 0 && lane == 0 {
+                if set == 0 && component == 0 {
                     first = joint;
                 }
                 sum += weight;
             }
         }
         if sum == 0.0 {
-            checked.joint_bounds[first].include(place);
+            checked.joint_bounds[first].include(position);
             checked.weightless += 1;
         } else if sum > 1e30 {
             return Err(LoadError::new(format!("the weights of vertex {vertex} sum to {sum:e}; allowed: at most 1e30")).within("WEIGHTS_0"));

@@ -106,7 +106,7 @@ fn transforms_scale_turn_and_move_and_may_name_another_set() {
     assert_eq!(texture.set, 3);
     // A quarter turn, counterclockwise with v down, takes u to -v and v to u.
     for (stored, placed) in [([0.0, 0.0], [0.25, -1.0]), ([1.0, 0.0], [0.25, -3.0]), ([0.0, 1.0], [3.25, -1.0])] {
-        let place = texture.placed(stored.into());
+        let place = texture.image_coordinates(stored.into());
         assert!(place.abs_diff_eq(placed.into(), 1e-6), "{stored:?}: {place}");
     }
     assert_eq!(model.scene().primitives[0].texcoords[0].map(|texcoords| texcoords.normalized), Some(true));

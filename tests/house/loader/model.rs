@@ -229,7 +229,7 @@ pub fn assert_sound(scene: &Scene) {
             let pose = Pose::at(scene, &Motion { clip, time_s, ..Motion::default() });
             assert!(
                 (0..scene.instances.len())
-                    .all(|i| !pose.place(i).is_nan() && pose.deform(i).is_none_or(|b| b.weights.iter().all(|w| w.is_finite())))
+                    .all(|i| !pose.instance_transform(i).is_nan() && pose.deform(i).is_none_or(|b| b.weights.iter().all(|w| w.is_finite())))
             );
         }
         assert!(scene.rig.nodes.iter().enumerate().all(|(i, node)| node.parent.is_none_or(|parent| parent < i)));
@@ -273,7 +273,7 @@ pub fn posed(scene: &Scene, clip: Option<usize>, time_s: f64) -> Vec<[[f64; 3]; 
                 Some(deform) => deform.position(scene, primitive, vertex),
                 None => primitive.position(scene, vertex).map(f64::from).into(),
             };
-            pose.place(index).transform_point3(object).to_array()
+            pose.instance_transform(index).transform_point3(object).to_array()
         };
         triangles.extend((0..primitive.triangle_count()).map(|t| primitive.corners(scene, t).map(corner)));
     }

@@ -136,7 +136,7 @@ fn clips_blend_joint_by_joint() {
     model.push("animations", second);
     let scene = model.scene();
     let pose = Pose::at(&scene, &Motion { clip: Some(0), other: Some(1), blend: 0.25, time_s: 2.0, ..Motion::default() });
-    assert_eq!(pose.place(0).w_axis.truncate(), DVec3::new(10.0, 0.5, 3.0));
+    assert_eq!(pose.instance_transform(0).w_axis.truncate(), DVec3::new(10.0, 0.5, 3.0));
 }
 
 /// A square with two morph targets, the second sparse, and weights for them.

@@ -171,13 +171,13 @@ pub fn pose_at(gait: &Gait, rest: &[Joint], t: f64) -> (DVec3, [DQuat; JOINTS]) 
         let tail = t - gait.landing[0] - late - 0.05;
         turns[6 + link] = turn(DVec3::Y, gait.tail * more * wave(tail)) * turn(DVec3::Z, 0.5 * gait.nod * more * wave(2.0 * tail));
     }
-    let places = [rest[0].at + shift, rest[0].at + shift + girdles[0] * (rest[1].at - rest[0].at)];
+    let girdle_positions = [rest[0].at + shift, rest[0].at + shift + girdles[0] * (rest[1].at - rest[0].at)];
     for leg in 0..4 {
         let (girdle, first) = (leg % 2, SPINE.len() + 4 * leg);
         let [hip, knee, hock, foot] = [0, 1, 2, 3].map(|part| rest[first + part].at);
         let Step { at: [ahead, up], pitch, lean } = step(gait, girdle, t - gait.landing[leg]);
         let (lean, pitch) = (turn(DVec3::Z, -lean), turn(DVec3::Z, -pitch));
-        let at = places[girdle] + girdles[girdle] * (hip - rest[girdle].at);
+        let at = girdle_positions[girdle] + girdles[girdle] * (hip - rest[girdle].at);
         let goal = DVec3::new(foot.x + ahead, up, foot.z) + lean * (hock - foot) - at;
         // Two-bone inverse kinematics: the knee lies in the plane of the goal and the forward direction.
         let (thigh, shank) = (knee - hip, hock - knee);
@@ -216,8 +216,8 @@ mod tests {
                     let frame = if frames.is_empty() {
                         (joint.at + shift, turn)
                     } else {
-                        let (place, parent) = frames[joint.parent];
-                        (place + parent * (joint.at - rest[joint.parent].at), parent * turn)
+                        let (position, parent) = frames[joint.parent];
+                        (position + parent * (joint.at - rest[joint.parent].at), parent * turn)
                     };
                     frames.push(frame);
                 }

@@ -36,24 +36,24 @@ pub fn build(values: &Values) -> Result<Scene, BuiltinError> {
         return Err(BuiltinError(format!("walker: {all} triangles in all; allowed: at most {MAX_TRIANGLES}. Lower tess or instances")));
     }
     let mut mesh = MeshBuilder::with_capacity(vertices.len(), triangles.len());
-    for &[place, normal] in &vertices {
-        mesh.colored_vertex(place, normal, hide_color(place, normal));
+    for &[position, normal] in &vertices {
+        mesh.colored_vertex(position, normal, hide_color(position, normal));
     }
     triangles.iter().for_each(|&corners| mesh.triangle(corners));
     mesh.append(&mut scene, "walker", 0);
-    let held: Vec<_> = vertices.iter().map(|[place, _]| body.joint_weights(*place)).collect();
-    weights::append(&mut scene, 0, JOINTS, 1, &held);
+    let joint_weights: Vec<_> = vertices.iter().map(|[position, _]| body.joint_weights(*position)).collect();
+    weights::append(&mut scene, 0, JOINTS, 1, &joint_weights);
     let clip = |gait: &Gait| Clip { name: gait.name.into(), duration_s: gait.period_s, channels: Vec::new() };
     scene.rig.clips = GAITS.iter().map(clip).collect();
     let first: Vec<Vec<usize>> =
-        (0..PHASES.min(instances as usize)).map(|phase| GAITS.iter().map(|gait| record(&mut scene, gait, phase)).collect()).collect();
-    (0..instances).for_each(|instance| stand(&mut scene, instance, instances, &first[instance as usize % PHASES]));
+        (0..PHASES.min(instances as usize)).map(|phase| GAITS.iter().map(|gait| add_samplers(&mut scene, gait, phase)).collect()).collect();
+    (0..instances).for_each(|instance| add_instance(&mut scene, instance, instances, &first[instance as usize % PHASES]));
     scene.rig.motion_bounds = pose::motion_bounds(&scene);
     Ok(scene)
 }
 
 /// Adds the samplers of a gait shifted by `phase`: the pelvis translation, then the rotation of every joint. Returns the first.
-fn record(scene: &mut Scene, gait: &Gait, phase: usize) -> usize {
+fn add_samplers(scene: &mut Scene, gait: &Gait, phase: usize) -> usize {
     let rest = joints();
     let (first, times) = (scene.rig.samplers.len(), |key| (gait.period_s * key as f64 / KEYS as f64) as f32);
     let times: Vec<f32> = (0..=KEYS).map(times).collect();
@@ -71,14 +71,14 @@ fn record(scene: &mut Scene, gait: &Gait, phase: usize) -> usize {
 }
 
 /// Adds one animal: its nodes, skin, channels in every clip, and instance.
-fn stand(scene: &mut Scene, instance: u32, of: u32, samplers: &[usize]) {
+fn add_instance(scene: &mut Scene, instance: u32, of: u32, samplers: &[usize]) {
     // Positions on a stretched sunflower spiral; a single animal stands at the origin.
     let reach = if of == 1 { 0.0 } else { (f64::from(instance) + 0.3).sqrt() };
     let (sin, cos) = libm::sincos(f64::from(instance) * 2.399_963_229_728_653);
     let part = |translation| LocalTransform::Trs(Trs { translation, ..Trs::default() });
     let (rest, first, rig) = (joints(), scene.rig.nodes.len() + 1, &mut scene.rig);
-    let place = part(DVec3::new(2.3 * reach * sin, 0.0, 1.0 * reach * cos));
-    rig.nodes.push(Node { name: format!("walker {instance}"), parent: None, rest: place, weights: Vec::new() });
+    let position = part(DVec3::new(2.3 * reach * sin, 0.0, 1.0 * reach * cos));
+    rig.nodes.push(Node { name: format!("walker {instance}"), parent: None, rest: position, weights: Vec::new() });
     for (joint, Joint { name, parent, at }) in rest.iter().enumerate() {
         let (parent, from) = if joint == 0 { (first - 1, DVec3::ZERO) } else { (first + parent, rest[*parent].at) };
         rig.nodes.push(Node {
@@ -158,11 +158,17 @@ mod tests {
     fn weights_are_whole_and_soles_follow_their_foot_alone() {
         let body = CapsuleBody { bones: bones(), min_radius: 0.03 };
         let mut most = 0;
-        for [place, _] in body.surface(0.05).vertices {
-            let held = body.joint_weights(place);
-            most = most.max(held.len());
-            assert!(held.len() <= 4 && held.iter().map(|&(_, weight)| u32::from(weight)).sum::<u32>() == 65_535, "{place}: {held:?}");
-            assert!(place.y > 0.0 || (held.len() == 1 && joints()[usize::from(held[0].0)].name.ends_with("foot")), "{place}: {held:?}");
+        for [position, _] in body.surface(0.05).vertices {
+            let joint_weights = body.joint_weights(position);
+            most = most.max(joint_weights.len());
+            assert!(
+                joint_weights.len() <= 4 && joint_weights.iter().map(|&(_, weight)| u32::from(weight)).sum::<u32>() == 65_535,
+                "{position}: {joint_weights:?}"
+            );
+            assert!(
+                position.y > 0.0 || (joint_weights.len() == 1 && joints()[usize::from(joint_weights[0].0)].name.ends_with("foot")),
+                "{position}: {joint_weights:?}"
+            );
         }
         assert_eq!(most, 4, "joints blend");
     }
@@ -176,16 +182,16 @@ mod tests {
         }
         for (index, clip) in scene.rig.clips.iter().enumerate() {
             let apart = |a: f64, b: f64| {
-                let [a, b] = [a, b].map(|share| deformed(&scene, index, share * clip.duration_s, Skinning::Linear));
+                let [a, b] = [a, b].map(|fraction| deformed(&scene, index, fraction * clip.duration_s, Skinning::Linear));
                 a.iter().zip(&b).map(|(a, b)| a.distance(*b)).fold(0.0, f64::max)
             };
             assert!(apart(0.0, 1.0) < 1e-6 && apart(0.25, 4.25) < 1e-6 && apart(0.0, 0.25) > 0.05, "{}", clip.name);
         }
         // Animals out of step make the same steps: the second is an eighth of a round ahead.
         let [a, b] = [0, 1].map(|instance| {
-            let place = scene.rig.nodes[scene.instances[instance].node.unwrap()].rest.matrix().w_axis.truncate();
+            let position = scene.rig.nodes[scene.instances[instance].node.unwrap()].rest.matrix().w_axis.truncate();
             let (count, late) = (scene.primitives[0].vertex_count() as usize, 0.1875 * (1 - instance) as f64);
-            deformed(&scene, 0, 0.3 + late, Skinning::Linear)[instance * count..][..count].iter().map(|p| *p - place).collect::<Vec<_>>()
+            deformed(&scene, 0, 0.3 + late, Skinning::Linear)[instance * count..][..count].iter().map(|p| *p - position).collect::<Vec<_>>()
         });
         assert!(a.iter().zip(&b).all(|(a, b)| a.distance(*b) < 1e-5));
     }
@@ -209,19 +215,19 @@ mod tests {
         let mut longest: f64 = 0.0;
         for (index, clip) in scene.rig.clips.iter().enumerate() {
             for time_s in moments(clip) {
-                let places = deformed(&scene, index, time_s, Skinning::Linear);
+                let positions = deformed(&scene, index, time_s, Skinning::Linear);
                 for [a, b, c] in (0..primitive.triangle_count()).map(|triangle| primitive.corners(&scene, triangle)) {
                     for [a, b] in [[a, b], [b, c], [c, a]] {
                         // The shortest edges are exempt: a cell is 5 cm wide.
-                        let stretched = places[a as usize].distance(places[b as usize]) / rest(a).distance(rest(b)).max(0.02);
+                        let stretched = positions[a as usize].distance(positions[b as usize]) / rest(a).distance(rest(b)).max(0.02);
                         longest = longest.max(stretched);
                     }
                 }
-                let sure = Pose::at(&scene, &Motion { clip: Some(index), time_s, ..Motion::default() }).bounds(&scene);
-                let [sure, framed] =
-                    [(sure, 1e-6), (scene.rig.motion_bounds, 0.02)].map(|(b, error_bound)| (b.min - error_bound, b.max + error_bound));
-                for (low, high) in [sure, framed] {
-                    let beyond = places.iter().map(|p| (low - *p).max(*p - high).max_element()).fold(0.0, f64::max);
+                let bounds = Pose::at(&scene, &Motion { clip: Some(index), time_s, ..Motion::default() }).bounds(&scene);
+                let [bounds, framed] =
+                    [(bounds, 1e-6), (scene.rig.motion_bounds, 0.02)].map(|(b, error_bound)| (b.min - error_bound, b.max + error_bound));
+                for (low, high) in [bounds, framed] {
+                    let beyond = positions.iter().map(|p| (low - *p).max(*p - high).max_element()).fold(0.0, f64::max);
                     assert_eq!(beyond, 0.0, "{} at {time_s} s, m", clip.name);
                 }
             }

@@ -43,9 +43,9 @@ impl CapsuleBody {
     /// Approximate signed distance to the surface of a capsule, and its radius there.
     fn distance(&self, bone: &Bone, p: DVec3) -> (f64, f64) {
         let axis = bone.ends[1] - bone.ends[0];
-        let share = ((p - bone.ends[0]).dot(axis) / axis.length_squared()).clamp(0.0, 1.0);
-        let radius = (bone.radii[0] + (bone.radii[1] - bone.radii[0]) * share).max(self.min_radius);
-        ((p - bone.ends[0] - axis * share).length() - radius, radius)
+        let fraction = ((p - bone.ends[0]).dot(axis) / axis.length_squared()).clamp(0.0, 1.0);
+        let radius = (bone.radii[0] + (bone.radii[1] - bone.radii[0]) * fraction).max(self.min_radius);
+        ((p - bone.ends[0] - axis * fraction).length() - radius, radius)
     }
 
     /// The distance field of the whole body; negative inside.
@@ -129,24 +129,24 @@ impl CapsuleBody {
     pub fn joint_weights(&self, p: DVec3) -> Vec<JointWeight> {
         let joints = self.bones.iter().map(|bone| bone.joint + 1).max().unwrap_or(0);
         let nearest = self.bones.iter().map(|bone| self.distance(bone, p).0).fold(f64::INFINITY, f64::min);
-        let mut held: Vec<(u8, f64)> = (0..joints).map(|joint| (joint as u8, 0.0)).collect();
+        let mut joint_weights: Vec<(u8, f64)> = (0..joints).map(|joint| (joint as u8, 0.0)).collect();
         let above = (p.y / SOLE_M).min(1.0);
         for bone in &self.bones {
             let (distance, radius) = self.distance(bone, p);
             let near = (1.0 - (distance - nearest) / (WEIGHT_BLEND * radius)).max(0.0);
             let weight = near * near * if bone.is_foot { 1.0 } else { above * above };
-            let slot = &mut held[bone.joint].1;
+            let slot = &mut joint_weights[bone.joint].1;
             *slot = slot.max(weight);
         }
-        held.sort_by(|a, b| b.1.total_cmp(&a.1));
+        joint_weights.sort_by(|a, b| b.1.total_cmp(&a.1));
         // Subtracting the fifth weight makes it fade out smoothly.
-        let fifth = held.get(4).map_or(0.0, |held| held.1);
-        held.truncate(4);
-        held.iter_mut().for_each(|held| held.1 -= fifth);
-        let sum: f64 = held.iter().map(|held| held.1).sum();
-        held.iter_mut().for_each(|held| held.1 /= sum);
-        held.retain(|held| held.1 > 0.0);
-        weights::to_integers(&held)
+        let fifth = joint_weights.get(4).map_or(0.0, |joint_weights| joint_weights.1);
+        joint_weights.truncate(4);
+        joint_weights.iter_mut().for_each(|joint_weights| joint_weights.1 -= fifth);
+        let sum: f64 = joint_weights.iter().map(|joint_weights| joint_weights.1).sum();
+        joint_weights.iter_mut().for_each(|joint_weights| joint_weights.1 /= sum);
+        joint_weights.retain(|joint_weights| joint_weights.1 > 0.0);
+        weights::to_integers(&joint_weights)
     }
 }
 
@@ -178,9 +178,9 @@ fn crossing(values: &[f64], at: usize, steps: [usize; 3]) -> Option<DVec3> {
             let [a, b] = [values[from], values[from + steps[axis]]];
             if (a < 0.0) != (b < 0.0) {
                 // A skipped corner is far outside.
-                let share = if a.is_finite() { a / (a - b) } else { 1.0 };
+                let fraction = if a.is_finite() { a / (a - b) } else { 1.0 };
                 let [x, y, z] = [DVec3::AXES[axis], DVec3::AXES[u], DVec3::AXES[v]];
-                sum += DMat3::from_cols(x, y, z) * DVec3::new(share, along_u as f64, along_v as f64);
+                sum += DMat3::from_cols(x, y, z) * DVec3::new(fraction, along_u as f64, along_v as f64);
                 count += 1.0;
             }
         }
