@@ -21,7 +21,7 @@ use rasterlab::{
 };
 
 #[test]
-fn every_builtin_scene_is_within_tolerance_on_every_rung() {
+fn every_builtin_scene_is_within_tolerance_with_every_option() {
     let Some(mut renderer) = renderer() else { return };
     let mut failures = Vec::new();
     for query in SCENES {

@@ -32,7 +32,7 @@ fn wrong_pixels(renderer: &mut Renderer, scene: &std::sync::Arc<Scene>, view: &V
 }
 
 #[test]
-fn every_rung_draws_every_scene_or_says_why_not() {
+fn every_option_draws_every_scene_or_says_why_not() {
     let Some(mut renderer) = renderer() else { return };
     for query in ["teapot?tess=8", "sphere?triangles=5000", "cube-wall", "sizes", "near", "stack"] {
         let scene = scene(query);
@@ -217,7 +217,7 @@ fn baking_leaves_the_uniform_out() {
 }
 
 #[test]
-fn a_float_viewport_moves_few_owners() {
+fn a_float_viewport_changes_few_triangle_ids() {
     let Some(mut renderer) = renderer() else { return };
     let scene = scene("sphere?triangles=20000");
     let view = view(&scene, [320, 240]);
@@ -236,7 +236,7 @@ fn moved_px(capture: &Capture, scene: &Scene, view: &View) -> f64 {
 }
 
 #[test]
-fn packed_places_move_corners_by_half_a_step_at_most() {
+fn packed_positions_move_corners_by_half_a_step_at_most() {
     let Some(mut renderer) = renderer() else { return };
     let scene = scene("teapot?tess=8");
     let view = view(&scene, [320, 240]);
@@ -301,7 +301,7 @@ fn modelled_far_away(offset: f64, size: [u32; 2]) -> (std::sync::Arc<Scene>, Vie
 }
 
 #[test]
-fn places_relative_to_the_eye_forget_how_far_they_are() {
+fn positions_relative_to_the_eye_lose_no_precision_far_away() {
     let Some(mut renderer) = renderer() else { return };
     let (scene, view) = modelled_far_away(1e5, [320, 240]);
     for visibility in options(&renderer) {
@@ -333,7 +333,7 @@ fn the_planner_takes_the_eye_out_where_a_scene_lies_far_away() {
 }
 
 #[test]
-fn culling_is_left_out_where_packed_places_are_not_those_of_its_bounds() {
+fn culling_is_left_out_where_packed_positions_leave_its_bounds() {
     let Some(mut renderer) = renderer() else { return };
     let scene = scene("sphere?triangles=5000");
     let view = view(&scene, [160, 120]);
@@ -349,7 +349,7 @@ fn culling_is_left_out_where_packed_places_are_not_those_of_its_bounds() {
 }
 
 #[test]
-fn the_strict_rung_takes_the_eye_out_to_the_bit_and_refuses_packed_places() {
+fn strict_vertices_subtract_the_eye_to_the_bit_and_refuse_packed_positions() {
     let Some(mut renderer) = renderer() else { return };
     let (scene, view) = modelled_far_away(1e6, [96, 72]);
     let strict = |option: PositionFormat| AccuracyRequest { tier: Tier::Strict, ..on(PinnedOptions::of(option)) };
@@ -367,7 +367,7 @@ fn the_strict_rung_takes_the_eye_out_to_the_bit_and_refuses_packed_places() {
 }
 
 #[test]
-fn packed_places_take_their_bytes_only_while_they_are_used() {
+fn packed_positions_take_their_bytes_only_while_they_are_used() {
     let Some(gpu) = gpu() else { return };
     let mut renderer = Renderer::new(gpu);
     let scene = scene("sphere?triangles=5000");
@@ -388,7 +388,7 @@ fn packed_places_take_their_bytes_only_while_they_are_used() {
 }
 
 #[test]
-fn packed_places_refuse_what_the_file_s_places_refuse_and_meshes_that_bend() {
+fn packed_positions_refuse_what_stored_ones_refuse_and_deformed_meshes() {
     let Some(mut renderer) = renderer() else { return };
     let good = [[4.0, 4.0, 0.25], [60.0, 8.0, 0.5], [8.0, 60.0, 0.75f32]];
     let mut positions = good.to_vec();

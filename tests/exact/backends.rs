@@ -67,7 +67,7 @@ fn the_scenes_of_these_tests_include_every_builtin() {
 }
 
 #[test]
-fn every_exact_backend_gives_the_same_owners_and_keys() {
+fn every_exact_backend_gives_the_same_triangle_ids_and_depth_keys() {
     let Some(mut renderer) = renderer() else { return };
     let options = options(&renderer);
     if !options.contains(&Visibility::Packed64) {
@@ -152,7 +152,7 @@ fn a_race_may_lose_the_nearest_and_nothing_else() {
 }
 
 #[test]
-fn all_layers_are_the_same_on_every_rung() {
+fn all_layers_are_the_same_with_every_option() {
     let Some(mut renderer) = renderer() else { return };
     for (query, effect) in [("knot?tess=24", "xray"), ("near", "xray"), ("near", "overdraw"), ("sizes", "overdraw")] {
         let scene = scene(query);
@@ -274,7 +274,7 @@ fn shuffled(scene: &Scene, seed: u32) -> (Arc<Scene>, Vec<u32>) {
 }
 
 #[test]
-fn shuffled_triangles_own_the_pixels_they_owned_before() {
+fn shuffled_triangles_draw_the_pixels_they_drew_before() {
     let Some(mut renderer) = renderer() else { return };
     renderer.set_tuning(GRAPHICS_CARD);
     for query in ["sphere?triangles=5000", "sphere?triangles=200", "knot?tess=6", "grid?cell=1", "sizes"] {

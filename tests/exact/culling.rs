@@ -192,7 +192,7 @@ fn two_passes_lose_nothing_on_any_walk() {
 }
 
 #[test]
-fn every_rung_of_other_axes_keeps_its_picture() {
+fn culling_keeps_the_picture_with_every_option_of_other_axes() {
     let Some(mut renderer) = renderer() else { return };
     let (mut rng, scene) = (Rng(3), scene("field?count=64&triangles=600"));
     let grids = Coverage::ALL.iter().map(|&option| PinnedOptions::of(option));
@@ -407,7 +407,7 @@ fn explained(query: &str, effects: &[&str], pins: PinnedOptions) -> Option<(Vec<
 }
 
 #[test]
-fn only_a_rung_that_culls_has_passes_and_buffers_for_it() {
+fn only_an_option_that_culls_has_passes_and_buffers_for_it() {
     const PASSES: [&str; 6] = ["cull", "cull early", "cull late", "project_meshlets", "depth_reduce", "rounds"];
     const BUFFERS: [&str; 6] = ["culling", "instances", "meshlets", "meshlet_lists", "seen", "hiz"];
     let split = PinnedOptions::of(Visibility::Split32);
@@ -501,7 +501,7 @@ fn the_picture_before_hides_what_has_come_out_since() {
 }
 
 #[test]
-fn nobody_bends_what_lies_outside_the_picture() {
+fn what_lies_outside_the_picture_is_not_deformed() {
     let scene = scene("tentacle?tess=1&instances=60");
     let bounds = scene.bounds();
     let middle = bounds.center();

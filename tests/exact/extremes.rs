@@ -128,7 +128,7 @@ fn a_panic_in_a_case_is_a_failure_of_that_case_alone() {
 }
 
 #[test]
-fn another_seed_throws_other_dice_and_is_named() {
+fn another_seed_gives_other_cases_and_is_named() {
     let Some(mut renderer) = renderer() else { return };
     let [first, second] = [1, 0xffff_0000].map(|seed| case("near-ties").run(&mut renderer, seed, &|_| true));
     assert_eq!([first.seed, second.seed], [Some(1), Some(0xffff_0000)]);

@@ -108,7 +108,7 @@ fn names(explanation: &Explanation) -> (Vec<&str>, Vec<&str>) {
 }
 
 #[test]
-fn a_scene_of_small_triangles_has_no_queues_arguments_or_pieces() {
+fn a_scene_of_small_triangles_has_no_queues_arguments_or_clipped_triangles() {
     let tuning = Tuning {
         max_small_samples: 64,
         max_small_side: 32,
@@ -161,7 +161,7 @@ fn a_scene_of_small_triangles_has_no_queues_arguments_or_pieces() {
 }
 
 #[test]
-fn only_a_scene_that_bends_has_the_pass_and_only_the_buffers_that_it_needs() {
+fn only_a_deformed_scene_has_the_skin_pass_and_only_the_buffers_that_it_needs() {
     let Some(gpu) = gpu() else { return };
     let tuning = gpu.caps.tuning();
     let explained = |query| explained(query, [160, 120], Visibility::Split32, tuning).expect("there is an adapter").0;

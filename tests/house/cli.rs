@@ -55,7 +55,7 @@ fn json(run: &Run) -> Value {
 }
 
 #[test]
-fn list_shows_looks_effects_and_ranges_on_stdout_alone() {
+fn list_shows_presets_effects_and_ranges_on_stdout_alone() {
     let list = run(&["list"]);
     assert_eq!((list.code, list.err.as_str()), (0, ""));
     for wanted in ["facet-sweep", "Half cut", "facet.amount", "0..=1", "uniform | sweep | radial | random", "teapot", "?tess", "built in"] {
@@ -69,7 +69,7 @@ fn list_shows_looks_effects_and_ranges_on_stdout_alone() {
 }
 
 #[test]
-fn list_as_json_has_every_look_and_effect() {
+fn list_as_json_has_every_preset_and_effect() {
     let object = json(&run(&["list", "--json"]));
     assert_eq!(object["command"], "list");
     let of_kind = |kind: &str| {
@@ -83,7 +83,7 @@ fn list_as_json_has_every_look_and_effect() {
 }
 
 #[test]
-fn list_shows_which_look_shadows_which() {
+fn list_shows_which_preset_shadows_which() {
     let folder = tempfile::tempdir().unwrap();
     fs::write(folder.path().join("facet.toml"), "schema = 2\nname = \"Mine\"\n").unwrap();
     let list = run_in(folder.path(), &["list", "presets", "--presets", "."]);
@@ -161,7 +161,7 @@ fn errors_as_json_have_code_message_file_and_line() {
 }
 
 #[test]
-fn render_on_the_cpu_writes_a_picture_that_restores_its_look() {
+fn render_on_the_cpu_writes_a_picture_that_restores_its_preset() {
     let folder = tempfile::tempdir().unwrap();
     let first = run_in(
         folder.path(),
@@ -179,7 +179,7 @@ fn render_on_the_cpu_writes_a_picture_that_restores_its_look() {
 }
 
 #[test]
-fn the_same_look_gives_the_same_bytes() {
+fn the_same_preset_gives_the_same_bytes() {
     let args = ["render", "facet-random", "--adapter", "cpu", "--size", "40x30", "-o", "-", "--quiet"];
     let (a, b) = (run(&args), run(&args));
     assert_eq!((a.code, a.err.as_str()), (0, ""));
@@ -258,7 +258,7 @@ fn a_sequence_goes_on_where_it_stopped() {
 }
 
 #[test]
-fn machines_share_a_sequence_by_ranges() {
+fn machines_divide_a_sequence_by_ranges() {
     let (whole, shared) = (studio(), studio());
     sequence(whole.path(), &[]);
     assert!(sequence(shared.path(), &["--frames", "5.."]).err.contains("3 frames drawn, 0 kept of 5..8 of 8"));
@@ -300,7 +300,7 @@ fn a_film_shows_the_frames() {
 }
 
 #[test]
-fn frames_of_another_look_are_overwritten_with_force_alone() {
+fn frames_of_another_preset_are_overwritten_with_force_alone() {
     let folder = studio();
     sequence(folder.path(), &[]);
     let changed = ["--set", "lambert.headlight=0.5"];
@@ -377,7 +377,7 @@ fn an_interrupted_sequence_leaves_whole_files_alone() {
 }
 
 #[test]
-fn every_command_draws_the_look_at_its_time() {
+fn every_command_draws_the_preset_at_its_time() {
     let folder = studio();
     let held = MOVING.split("[animation").next().unwrap().to_owned() + "[output]\nsize = [24, 18]\n";
     fs::write(folder.path().join("held.toml"), held.replace("[effects.facet]\n", "[effects.facet]\namount = 0.5\n")).unwrap();
@@ -402,7 +402,7 @@ fn a_bare_picture_carries_no_text() {
 }
 
 #[test]
-fn a_look_comes_from_stdin() {
+fn a_preset_comes_from_stdin() {
     let folder = tempfile::tempdir().unwrap();
     let text = "schema = 2\n[scene]\nbuiltin = \"knot?tess=3\"\n[effects.normals]\n[output]\nsize = [20, 10]\n";
     let run = piped(folder.path(), &["render", "-", "--adapter", "cpu", "-o", "-"], text);
@@ -467,7 +467,7 @@ fn compare_exits_with_1_beyond_the_budget_and_0_within() {
 }
 
 #[test]
-fn check_finds_every_bad_look_and_lists_all() {
+fn check_finds_every_bad_preset_and_lists_all() {
     let folder = tempfile::tempdir().unwrap();
     let write = |name: &str, text: &str| fs::write(folder.path().join(name), text).unwrap();
     write("good.toml", "schema = 2\n[effects.lambert]\n");
@@ -546,7 +546,7 @@ fn bless_draws_what_check_then_accepts() {
 }
 
 #[test]
-fn blessing_an_effect_without_a_look_makes_its_first() {
+fn blessing_an_effect_without_a_preset_makes_its_first() {
     let folder = tempfile::tempdir().unwrap();
     fs::create_dir(folder.path().join("presets")).unwrap();
     let blessed = run_in(folder.path(), &["bless", "normals"]);
@@ -594,7 +594,7 @@ fn stress_says_what_it_expected_and_what_became_of_it() {
 }
 
 #[test]
-fn explain_tells_a_look_without_an_adapter() {
+fn explain_describes_a_preset_without_an_adapter() {
     let explained = run(&["explain", "facet", "--adapter", "cpu"]);
     assert_eq!(explained.code, 0, "{}", explained.err);
     assert!(explained.out.contains("facet (surface), lambert (surface)"), "{}", explained.out);

@@ -58,7 +58,7 @@ fn twins_open_with_the_same_sentence() {
 }
 
 #[test]
-fn every_effect_has_a_canonical_look_that_enables_it() {
+fn every_effect_has_a_canonical_preset_that_enables_it() {
     let preset_files = preset_files();
     for effect in effects() {
         let preset_file = preset_files
@@ -70,7 +70,7 @@ fn every_effect_has_a_canonical_look_that_enables_it() {
 }
 
 #[test]
-fn every_look_loads_strictly_and_has_a_name_a_sentence_tags_and_a_test() {
+fn every_preset_loads_strictly_and_has_a_name_a_sentence_tags_and_a_test() {
     for preset_file in preset_files() {
         assert_eq!(preset_file.warnings, Vec::<String>::new(), "{}", preset_file.id);
         let preset = &preset_file.preset;
@@ -86,7 +86,7 @@ fn every_look_loads_strictly_and_has_a_name_a_sentence_tags_and_a_test() {
 }
 
 #[test]
-fn every_look_finds_its_scene() {
+fn every_preset_finds_its_scene() {
     for preset_file in preset_files() {
         let scene =
             preset_file::load_scene(&preset_file.preset, preset_file.path.as_deref()).unwrap_or_else(|e| panic!("{}: {e}", preset_file.id));
@@ -95,14 +95,14 @@ fn every_look_finds_its_scene() {
 }
 
 #[test]
-fn names_of_looks_are_unique() {
+fn names_of_presets_are_unique() {
     let preset_files = preset_files();
     let names: BTreeSet<&str> = preset_files.iter().map(|preset_file| preset_file.preset.name.as_str()).collect();
     assert_eq!(names.len(), preset_files.len());
 }
 
 #[test]
-fn the_program_carries_every_look_of_the_folder() {
+fn the_program_embeds_every_preset_of_the_folder() {
     let embedded: BTreeSet<String> = BUILTIN_DIR
         .files()
         .filter(|file| file.path().extension().is_some_and(|e| e == "toml"))
@@ -125,7 +125,7 @@ fn no_effect_is_named_like_a_section_or_key() {
 }
 
 #[test]
-fn every_golden_has_its_look_and_sidecar_and_every_tested_look_its_golden() {
+fn every_golden_has_its_preset_and_sidecar_and_every_tested_preset_its_golden() {
     let tested: BTreeSet<String> =
         preset_files().into_iter().filter(|preset_file| preset_file.preset.test.is_some()).map(|preset_file| preset_file.id).collect();
     let transient = |stem: &String| [".new", ".diff", ".old"].iter().any(|end| stem.ends_with(end));

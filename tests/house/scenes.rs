@@ -265,7 +265,7 @@ fn grid_perspective_camera_keeps_the_scale() {
 }
 
 #[test]
-fn fan_gives_its_middle_sample_one_owner() {
+fn a_fan_draws_its_middle_sample_once() {
     for query in ["fan", "fan?n=3&radius=0.1", "fan?n=8&radius=0.4", "fan?n=1000&seed=3", "fan?n=16384&radius=100"] {
         let triangles = snapped(&scene(query), 256, 256);
         assert!(triangles.iter().all(|&t| doubled_area(t) >= 0), "{query} folds");
@@ -322,7 +322,7 @@ fn near_crosses_the_near_plane_and_all_sides_of_the_guard_band() {
 }
 
 #[test]
-fn cube_wall_places_one_cube_many_times() {
+fn the_cube_wall_places_one_cube_many_times() {
     let scene = scene("cube-wall?columns=20&rows=9");
     assert_eq!((scene.instances.len(), scene.triangle_count()), (180, 12 * 180));
     assert_eq!(scene.vertex_bytes.len(), 24 * 24, "the primitives share the bytes of one cube");

@@ -102,7 +102,7 @@ fn two_effects_in_one_slot_are_refused_in_one_sentence_that_names_both() {
 // ---------------------------------------------------------------- x-ray
 
 #[test]
-fn the_average_is_bit_equal_in_any_order_on_every_run_rung_and_tuning() {
+fn the_average_is_bit_equal_in_any_order_on_every_run_option_and_tuning() {
     let Some(mut renderer) = renderer() else { return };
     let triangles = soup(1, 300, 64, 1.0);
     let view = pixel_view(64, 64);

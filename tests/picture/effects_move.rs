@@ -268,7 +268,7 @@ fn vertex(rng: &mut Rng) -> Vertex {
 }
 
 #[test]
-fn a_wobbling_normal_is_the_numerical_derivative_of_the_place() {
+fn a_wobbling_normal_is_the_numerical_derivative_of_the_position() {
     let mut rng = Rng(3);
     for case in 0..200 {
         let mut stack = stack(&["wobble"]);

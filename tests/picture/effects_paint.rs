@@ -58,7 +58,7 @@ fn shake(stack: &mut Stack, name: &str, rng: &mut Rng) {
 // ---------------------------------------------------------------- every effect against the oracle
 
 #[test]
-fn every_effect_is_exact_on_every_scene_and_rung() {
+fn every_effect_is_exact_on_every_scene_with_every_option() {
     let Some(mut renderer) = renderer() else { return };
     let mut most = 0.0f64;
     for query in SCENES {
@@ -366,7 +366,7 @@ fn spinning(fade: f64) -> Preset {
 }
 
 #[test]
-fn a_trail_is_exact_bit_equal_on_repeats_and_on_every_rung() {
+fn a_trail_is_exact_and_bit_equal_on_repeats_and_with_every_option() {
     let Some(mut renderer) = renderer() else { return };
     let scene = scene("knot?tess=6");
     let preset = spinning(0.2);

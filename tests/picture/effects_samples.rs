@@ -163,7 +163,7 @@ fn triangles_of_a_sample_or_none_dissolve_without_bias() {
 }
 
 #[test]
-fn stipple_draws_its_share_of_every_matrix() {
+fn stipple_draws_its_fraction_of_every_matrix() {
     let [a, b, c, d] = [[0, 0], [64 * 256, 0], [64 * 256, 64 * 256], [0, 64 * 256]];
     let (scene, view) = (scene_of_meshes(&[triangle_soup_in_units(&[([a, b, c], 0.5), ([a, c, d], 0.5)])]), pixel_view(64, 64));
     for (matrix, levels) in [(0.0, 4.0), (1.0, 16.0), (2.0, 64.0)] {
@@ -260,7 +260,7 @@ fn stacks() -> Vec<(String, Stack)> {
 }
 
 #[test]
-fn every_rung_and_tuning_draws_what_the_oracle_draws() {
+fn every_option_and_tuning_draws_what_the_oracle_draws() {
     let Some(mut renderer) = renderer() else { return };
     let options = options(&renderer);
     let scenes = ["teapot?tess=4", "sphere?triangles=200", "near", "sizes", "grid?cell=0.4", "cube-wall"];

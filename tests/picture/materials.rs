@@ -45,7 +45,7 @@ fn panels(size: [u32; 2]) -> (Arc<Scene>, View) {
 // ---------------------------------------------------------------- pictures
 
 #[test]
-fn images_look_as_the_oracle_has_them_on_every_rung_and_under_every_kind_of_effect() {
+fn images_look_as_in_the_oracle_with_every_option_and_every_kind_of_effect() {
     let Some(mut renderer) = renderer() else { return };
     let (panels, front) = panels([200, 150]);
     // Over the ground, which is cut behind the eye and runs to the horizon.
@@ -249,7 +249,7 @@ fn crowns(size: [u32; 2]) -> (Arc<Scene>, [(&'static str, View); 2]) {
 }
 
 #[test]
-fn masks_leave_out_the_same_samples_on_every_rung_in_every_kernel_and_in_the_oracle() {
+fn masks_leave_out_the_same_samples_with_every_option_in_every_kernel_and_in_the_oracle() {
     let Some(mut renderer) = renderer() else { return };
     let (scene, views) = crowns([160, 120]);
     let stacks =

@@ -176,7 +176,7 @@ fn a_disc_is_the_ellipse_that_touches_the_sides_in_their_middles() {
 // ---------------------------------------------------------------- on an adapter
 
 #[test]
-fn every_step_is_within_its_bound_on_every_rung() {
+fn every_step_is_within_its_bound_with_every_option() {
     let Some(mut renderer) = renderer() else { return };
     let scene = scene("chamber");
     let preset_files: [&[(&str, &[f64])]; 5] = [
@@ -279,7 +279,7 @@ fn lives_end_and_begin_again_inside_the_room() {
 }
 
 #[test]
-fn for_a_second_the_flight_agrees_with_the_true_one_and_rough_rungs_drift() {
+fn for_a_second_particles_follow_the_reference_and_rough_options_drift() {
     let Some(mut renderer) = renderer() else { return };
     let scene = scene("chamber");
     let preset = preset_file(&[("life_s", &[30.0]), ("life_spread", &[0.1]), ("room_m", &[4.0])]);
@@ -311,7 +311,7 @@ fn for_a_second_the_flight_agrees_with_the_true_one_and_rough_rungs_drift() {
 }
 
 #[test]
-fn discs_of_every_size_are_the_oracles_on_every_rung_and_tuning() {
+fn discs_of_every_size_are_the_oracle_s_with_every_option_and_tuning() {
     let Some(mut renderer) = renderer() else { return };
     let scene = scene("chamber");
     // Less than a pixel, ordinary, larger than a tile, and as large as the picture with the eye among them.

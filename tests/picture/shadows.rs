@@ -198,7 +198,7 @@ fn cases() -> Vec<(Arc<Scene>, Stack)> {
 }
 
 #[test]
-fn every_case_is_what_the_oracle_says_on_every_rung() {
+fn every_case_is_what_the_oracle_draws_with_every_option() {
     let Some(mut renderer) = renderer() else { return };
     for (scene, stack) in cases() {
         let names: Vec<&str> = stack.0.iter().map(|enabled| enabled.effect.name).collect();
@@ -217,7 +217,7 @@ fn every_case_is_what_the_oracle_says_on_every_rung() {
 }
 
 #[test]
-fn every_size_of_map_and_filter_is_what_the_oracle_says() {
+fn every_size_of_map_and_filter_is_what_the_oracle_draws() {
     let Some(mut renderer) = renderer() else { return };
     let scene = boxed("knot?tess=6");
     let quick = quick_option(&renderer);
@@ -315,7 +315,7 @@ fn rays_know_a_plate_from_the_sky() {
 // ---------------------------------------------------------------- what is not there
 
 #[test]
-fn a_look_without_a_light_has_no_pass_buffer_or_text_of_it() {
+fn a_preset_without_a_light_has_no_pass_buffer_or_text_of_it() {
     let key = |effects: Vec<&'static Effect>| KernelKey::complete(Fetch::Indexed, Visibility::Split32, effects);
     let shadow = Effect::find("shadow").expect("an effect");
     for (effects, is_there) in [(vec![], false), (vec![Effect::find("lambert").expect("an effect")], false), (vec![shadow], true)] {
@@ -349,7 +349,7 @@ fn a_look_without_a_light_has_no_pass_buffer_or_text_of_it() {
 }
 
 #[test]
-fn a_look_pins_size_and_taps() {
+fn a_preset_pins_size_and_taps() {
     let pins = PinnedOptions::of(ShadowMapSize::Side2048).with(ShadowTaps::One);
     let preset = Preset { accuracy: AccuracyRequest { pins, ..AccuracyRequest::default() }, ..Preset::default() };
     let view = preset.view(&scene("teapot?tess=2"), [8, 8]);

@@ -152,7 +152,7 @@ fn the_linear_blend_loses_volume_and_dual_quaternions_hardly_any() {
 }
 
 #[test]
-fn a_bent_mesh_stays_in_its_box() {
+fn a_deformed_mesh_stays_in_its_box() {
     for query in ["tentacle?tess=3", "tentacle?tess=2&influences=8&joints=20", "tentacle?tess=1&instances=5"] {
         let scene = scene(query);
         for (clip, skinning) in
@@ -172,7 +172,7 @@ fn a_bent_mesh_stays_in_its_box() {
 
 /// What [`Deform::position`] gives, which picking uses, is what the oracle says.
 #[test]
-fn a_click_lands_on_the_bent_mesh() {
+fn a_click_lands_on_the_deformed_mesh() {
     let scene = scene("tentacle?tess=4&influences=8");
     let view = moment(&scene, ["Curl", "Breathe"], 1.4, Skinning::Linear, [64, 48]);
     let deform: &Deform = view.pose.as_ref().and_then(|pose| pose.deform(0)).expect("it bends");
@@ -186,7 +186,7 @@ fn a_click_lands_on_the_bent_mesh() {
 }
 
 #[test]
-fn a_look_names_its_clips_holds_them_and_says_which_there_are() {
+fn a_preset_names_its_clips_and_an_unknown_clip_lists_those_there_are() {
     let scene = scene("tentacle?tess=1");
     let play = |clip: &str, other: &str| ClipPlayback { clip: clip.into(), second_clip: other.into(), ..ClipPlayback::default() };
     assert_eq!(play("Sway", "#2").check(&scene), Ok(()));
@@ -210,7 +210,7 @@ fn a_look_names_its_clips_holds_them_and_says_which_there_are() {
 }
 
 #[test]
-fn parts_that_a_clip_moves_are_placed_anew() {
+fn nodes_that_a_clip_moves_are_placed_again() {
     // A cube wall whose first cube hangs on a node.
     let mut scene = (*scene("cube-wall?columns=2&rows=1")).clone();
     let tower = (*crate::common::scene("tentacle?tess=1&joints=2")).clone();
@@ -241,7 +241,7 @@ fn insist(renderer: &mut Renderer, scene: &Arc<Scene>, view: &View, stack: &Stac
 }
 
 #[test]
-fn every_rung_bends_as_the_oracle_does() {
+fn every_option_deforms_as_the_oracle_does() {
     let Some(mut renderer) = renderer() else { return };
     let stack = stack(&["lambert", "depth"]);
     let mut largest: f64 = 0.0;
@@ -263,7 +263,7 @@ fn every_rung_bends_as_the_oracle_does() {
 }
 
 #[test]
-fn effects_work_on_bent_meshes() {
+fn effects_work_on_deformed_meshes() {
     let Some(mut renderer) = renderer() else { return };
     let scene = scene("tentacle?tess=4");
     for skinning in Skinning::ALL {
@@ -332,7 +332,7 @@ fn weights_that_are_zero_or_do_not_sum_to_one_are_put_right_alike() {
 }
 
 #[test]
-fn quantized_places_are_drawn_and_bent_like_any() {
+fn quantized_positions_are_drawn_and_deformed_like_any() {
     let Some(mut renderer) = renderer() else { return };
     for normalized in [false, true] {
         let mut scene = (*scene("tentacle?tess=3")).clone();

@@ -202,7 +202,7 @@ fn every_preset_is_exact_and_looks_like_its_golden_with_every_option() {
 
 /// Corners on half pixels: with edges in floats and all of them inclusive, samples on edges are drawn twice.
 #[test]
-fn a_look_that_pins_a_lossy_rung_is_verified_within_the_owners_that_it_may_lose() {
+fn a_preset_that_pins_a_lossy_option_is_verified_within_its_budget_of_wrong_triangles() {
     if renderer().is_none() {
         return;
     }
@@ -246,7 +246,7 @@ fn blessing_everything_again_changes_nothing() {
 }
 
 #[test]
-fn every_file_among_the_snapshots_belongs_to_a_look() {
+fn every_file_among_the_snapshots_belongs_to_a_preset() {
     let tested: BTreeSet<String> = preset_files().into_iter().map(|preset_file| preset_file.id).collect();
     let dead: Vec<String> = fs::read_dir(snapshots())
         .expect("the snapshots folder can be read")
@@ -372,7 +372,7 @@ fn a_missing_triangle_is_caught_even_the_least_one() {
 }
 
 #[test]
-fn exchanged_owners_a_wrong_seed_and_a_reversed_stack_are_caught() {
+fn exchanged_triangle_ids_a_wrong_seed_and_a_reversed_stack_are_caught() {
     let preset_file = preset_file("triangle_id");
     let scene = scene_of(&preset_file);
     let view = preset_file.preset.view(&scene, preset_file.preset.output.size);

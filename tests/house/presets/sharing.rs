@@ -5,7 +5,7 @@ use rasterlab::preset_file::{self};
 use super::*;
 
 #[test]
-fn a_shared_line_gives_the_look_back() {
+fn a_shared_line_gives_the_preset_back() {
     let mut preset_file = parse("schema = 2\nname = \"Tinte ✒\"\n[effects.facet]\namount = 0.1\n# kept\n");
     preset_file.preset.clock.time_s = 0.1;
     let line = preset_file::to_line(&preset_file);
@@ -38,7 +38,7 @@ fn hostile_shared_lines_are_refused() {
 }
 
 #[test]
-fn a_saved_picture_gives_its_look_back_and_a_bare_one_says_so() {
+fn a_saved_picture_gives_its_preset_back_and_a_bare_one_says_so() {
     let preset_file = parse("schema = 2\nname = \"Tinte ✒\"\n[effects.facet]\namount = 0.1\n");
     let frame = rasterlab::frame::Frame { width: 2, height: 1, color: vec![[1, 2, 3, 255], [4, 5, 6, 255]], ..Default::default() };
     let provenance = preset_file::Provenance { adapter: "cpu".into(), driver: "none".into() };

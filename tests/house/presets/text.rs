@@ -95,7 +95,7 @@ why = "because"
 }
 
 #[test]
-fn an_unmodified_look_is_written_byte_for_byte() {
+fn an_unmodified_preset_is_written_byte_for_byte() {
     let odd = "# mine\nschema=2\nname  =  'odd'   # spaced\n[effects]\n lambert = { sun = [1,1.0,0.50,1e0] } # inline\n\n[output]\nsize=[ 0x10, 1_0 ]\nx-own = 2024-01-01\n";
     assert_eq!(preset_file::to_toml(&parse(odd)), odd);
     for path in preset_files() {
