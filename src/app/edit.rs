@@ -87,7 +87,7 @@ impl Session {
         let Some(scene) = self.scene() else { return *camera };
         let preset = self.shown_preset();
         // The bounds turn with the scene's spin.
-        let turn = preset.view(scene, [1, 1]).world_from_scene;
+        let turn = preset.view(scene, [1, 1]).scene_state.world_from_scene;
         let mut bounds = Bounds::EMPTY;
         let corners = if scene.bounds().is_empty() { None } else { Some(scene.bounds().corners()) };
         corners.into_iter().flatten().for_each(|corner| bounds.include(turn.transform_point3(corner)));

@@ -23,7 +23,7 @@ pub struct Trail {
 impl Trail {
     /// The recorded timeline, if it belongs to the frame that `view` shows.
     pub fn particle_timeline(&self, view: &View) -> Option<Arc<ParticleTimeline>> {
-        let shown = view.particle_timeline.as_ref()?;
+        let shown = view.scene_state.particles.as_ref()?;
         self.particle_timeline.clone().filter(|trail| trail.frame == shown.frame)
     }
 

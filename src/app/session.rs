@@ -175,7 +175,7 @@ impl Session {
     pub fn view_at(&self, scene: &Scene, size: [u32; 2]) -> View {
         let mut view = self.view_of(self.shown_preset(), scene, size);
         if let Some(particle_timeline) = self.trail.particle_timeline(&view) {
-            view.particle_timeline = Some(particle_timeline);
+            view.scene_state.particles = Some(particle_timeline);
         }
         view
     }

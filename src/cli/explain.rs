@@ -83,7 +83,7 @@ impl ParticleErrors {
         let a = oracle::judge_after(scene, view, stack, &capture.frame, &capture.geometry, layers, previous)?.accuracy;
         Ok(Some(Self {
             count: a.particles,
-            steps: view.particle_timeline.as_ref().map_or(0, |particle_timeline| particle_timeline.frame),
+            steps: view.scene_state.particles.as_ref().map_or(0, |particle_timeline| particle_timeline.frame),
             over_a_pixel: a.particles_diverged,
             max_px: a.max_divergence_px,
             mean_m: a.mean_divergence_m,

@@ -98,7 +98,7 @@ impl DotTree {
 
     /// DotRun and place of every dot that may show.
     pub fn choose(&self, dot_runs: &[DotRunRecord], dots: &Dots, view: &View) -> Vec<[u32; 2]> {
-        let clip_from_scene = view.clip_from_world * view.world_from_scene;
+        let clip_from_scene = view.clip_from_world * view.scene_state.world_from_scene;
         let planes = Planes::new(&clip_from_scene, dots, view);
         let (fade_from, row) = (dots.fade_from(view), clip_from_scene.row(3));
         // The level below which dots have surely faded at a point.

@@ -190,7 +190,7 @@ impl Renderer {
         let source = Source {
             line_source,
             crease: if line_source == LineSource::Creases { dots.crease_deg.to_bits() } else { 0 },
-            polyline: if line_source == LineSource::Polyline { view.polyline.clone() } else { Arc::default() },
+            polyline: if line_source == LineSource::Polyline { view.scene_state.polyline.clone() } else { Arc::default() },
         };
         let known = self.dots.take().filter(|store| store.source == source);
         let mut store = known.map_or_else(|| DotStore::new(&scene, source), Ok)?;
@@ -205,7 +205,7 @@ impl Renderer {
             buffers.fill_room(gpu, "dot_runs", records, ROOM.max(records.len() as u64), STORAGE, why)?;
         }
         store.frame = DotFrame {
-            clip_from_scene: rounded_columns(&(view.clip_from_world * view.world_from_scene)),
+            clip_from_scene: rounded_columns(&(view.clip_from_world * view.scene_state.world_from_scene)),
             ink: encoded(dots.color).to_array().map(|lane| lane as f32),
             center: [view.width, view.height].map(|pixels| (128 * pixels) as f32),
             dots: store.dots,

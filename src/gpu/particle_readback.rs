@@ -81,7 +81,7 @@ impl Flying {
         let words = &stack.get(particles::EFFECT.name)?.words;
         let count = stack.particle_settings()?.count;
         let particle_timeline =
-            view.particle_timeline.as_deref().filter(|particle_timeline| particle_timeline.stride == words.len()).cloned();
+            view.scene_state.particles.as_deref().filter(|particle_timeline| particle_timeline.stride == words.len()).cloned();
         Some(Self {
             count,
             particle_timeline: particle_timeline.unwrap_or_else(|| particles::constant_timeline(words, 0)),
@@ -101,7 +101,7 @@ impl Flying {
     }
 
     fn uniform(&self, scene: &Scene, view: &View, first_frame: Option<u32>, last_frame: u32) -> ParticleStepUniform {
-        let scene_from_world = view.world_from_scene.inverse();
+        let scene_from_world = view.scene_state.world_from_scene.inverse();
         let [right, up] = view.ndc_axes.map(|axis| axis.normalize_or_zero());
         let [right, up, toward] = [right, up, -view.forward].map(|axis| scene_from_world.transform_vector3(axis).normalize_or_zero());
         let wide = |v: glam::DVec3| [v.x as f32, v.y as f32, v.z as f32, 0.0];

@@ -67,11 +67,11 @@ impl Renderer {
         let options = &plan.key.options;
         let (subpixel_bits, is_relative) = (options.coverage.subpixel_bits(), options.position_format == PositionFormat::Relative);
         let asked = view;
-        let view = &View { subpixel_bits, is_relative, ..view.clone() };
+        let view = &view.with_grid(subpixel_bits, is_relative);
         if is_relative {
             draws = drawn(&scene, view)?;
         }
-        if is_relative || view.subpixel_bits != SUBPIXEL_BITS {
+        if is_relative || view.precision.subpixel_bits != SUBPIXEL_BITS {
             plan = self.planned(&scene, &draws, view, stack, accuracy)?;
         }
         let packed_bits = plan.key.options.position_format.packed_bits();

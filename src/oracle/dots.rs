@@ -45,7 +45,7 @@ impl<'a> Strings<'a> {
         let lines = match LineSource::of(dots.lines) {
             LineSource::Edges => Lines::edges(scene, None)?,
             LineSource::Creases => Lines::edges(scene, Some(dots.crease_deg.into()))?,
-            LineSource::Polyline => Lines::polyline(&view.polyline),
+            LineSource::Polyline => Lines::polyline(&view.scene_state.polyline),
         };
         let count = |line: &[Segment]| line.last().map_or(0, |last| dots.count(last.start_m + last.length_m));
         let all: u64 = lines.each().map(|(_, line)| count(line)).sum();
@@ -61,7 +61,8 @@ impl<'a> Strings<'a> {
                 ((first + segment) as u32, share.min(1.0))
             }));
         }
-        let clip_from_scene = rounded_columns(&(view.clip_from_world * view.world_from_scene)).map(|column| column.map(f64::from));
+        let clip_from_scene =
+            rounded_columns(&(view.clip_from_world * view.scene_state.world_from_scene)).map(|column| column.map(f64::from));
         let movers = draws.iter().map(|draw| VertexEvaluator::new(scene, draw, view, stack)).collect();
         Ok(Self { movers, lines, clip_from_scene, dots: placed })
     }
@@ -106,7 +107,7 @@ fn between(ends: &Option<[Bounded; 2]>, share: f64) -> Option<Bounded> {
 
 /// The grid of dots is that of 1/256 px, whatever triangles snap to.
 fn grid(view: &View) -> View {
-    View { subpixel_bits: SUBPIXEL_BITS, ..view.clone() }
+    view.with_grid(SUBPIXEL_BITS, view.precision.is_relative)
 }
 
 fn snapped(dot: &Option<Bounded>, view: &View) -> SnappedVertex {

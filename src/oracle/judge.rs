@@ -73,7 +73,7 @@ pub fn judge_after(
     previous: Option<&[[u8; 4]]>,
 ) -> Result<Verdict, DrawError> {
     // The adapter's grid, the origin of its places and the pixels that it draws are promises of its options, not faults.
-    let view = &View { subpixel_bits: geometry.subpixel_bits, is_relative: geometry.is_relative, ..view.scaled(geometry.scale) };
+    let view = &view.scaled(geometry.scale).with_grid(geometry.subpixel_bits, geometry.is_relative);
     let stack = &stack.scaled(geometry.scale);
     if view.pixels() == 0 {
         draws(scene, view)?;

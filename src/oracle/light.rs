@@ -43,7 +43,7 @@ const ULP: f64 = f32::EPSILON as f64;
 /// # Errors
 /// When a placement or the number of triangles exceeds what the arithmetic holds.
 pub fn shadow_map(scene: &Scene, view: &View, stack: &Stack) -> Result<Option<Box<LightMap>>, DrawError> {
-    if view.shadow == ShadowResolution::TRACED {
+    if view.precision.shadow == ShadowResolution::TRACED {
         return Ok(None);
     }
     let Some(view) = stack.light_view(scene, view) else { return Ok(None) };
@@ -80,7 +80,7 @@ pub(super) enum Light<'a> {
 impl<'a> Light<'a> {
     /// The light of `stack`, whose map `geometry` holds.
     pub fn of(scene: &Scene, view: &View, stack: &Stack, geometry: &'a Geometry) -> Option<Self> {
-        if view.shadow == ShadowResolution::TRACED {
+        if view.precision.shadow == ShadowResolution::TRACED {
             return Rays::of(scene, view, stack).map(Self::Traced);
         }
         Mapped::of(scene, view, stack, geometry).map(|mapped| Self::Mapped(Box::new(mapped)))
@@ -121,7 +121,7 @@ impl<'a> Mapped<'a> {
             keys,
             params,
             side: view.width.into(),
-            reach: i64::from(view.shadow.taps) / 2,
+            reach: i64::from(view.precision.shadow.taps) / 2,
             texel_m: 2.0 / (rows[0].length() * f64::from(view.width)),
             depth_range_m: 1.0 / rows[2].length(),
             axes: [right, -up, near],
@@ -228,7 +228,7 @@ pub fn shadow_errors(
     geometry: &Geometry,
 ) -> Result<Option<ShadowErrors>, DrawError> {
     let (view, stack) = (&view.scaled(geometry.scale), &stack.scaled(geometry.scale));
-    let view = &View { subpixel_bits: geometry.subpixel_bits, is_relative: geometry.is_relative, ..view.clone() };
+    let view = &view.with_grid(geometry.subpixel_bits, geometry.is_relative);
     let draws: Vec<Draw> = draws(scene, view)?;
     let (Some(mapped), false) = (Light::of(scene, view, stack, geometry), leaves_out(stack)) else { return Ok(None) };
     let (Some(rays), Some(light)) = (Rays::of(scene, view, stack), stack.light()) else { return Ok(None) };

@@ -101,7 +101,7 @@ fn finest(view: &View, stack: &Stack) -> View {
     // Sample effects measure triangles in 1/256 px.
     let is_measured = stack.each(|hooks| hooks.sample).next().is_some() || stack.point_radius() > 0;
     let subpixel_bits = if is_measured { SUBPIXEL_BITS } else { finest_bits(view) };
-    View { subpixel_bits, is_relative: true, ..view.clone() }
+    view.with_grid(subpixel_bits, true)
 }
 
 /// The same, with the light that arrives told by rays: what shadow maps are measured against. Where effects leave samples
@@ -115,7 +115,7 @@ pub fn render_reference(scene: &Scene, view: &View, stack: &Stack) -> Result<Fra
 
 fn traced(view: &View, stack: &Stack) -> View {
     let has_rays = stack.light().is_some() && !light::leaves_out(stack);
-    View { shadow: if has_rays { ShadowResolution::TRACED } else { view.shadow }, ..view.clone() }
+    view.with_shadow(if has_rays { ShadowResolution::TRACED } else { view.precision.shadow })
 }
 
 /// The true picture of `scene` that follows `previous`, a picture of the same size.

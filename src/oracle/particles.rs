@@ -64,7 +64,8 @@ fn shown(stack: &Stack) -> Particles {
 pub(super) fn flow_of(view: &View, stack: &Stack) -> ParticleTimeline {
     let default = (particles::EFFECT.defaults)();
     let words = stack.get(particles::EFFECT.name).map_or(&default, |enabled| &enabled.words);
-    view.particle_timeline
+    view.scene_state
+        .particles
         .as_deref()
         .filter(|particle_timeline| particle_timeline.stride == words.len())
         .cloned()
@@ -203,7 +204,7 @@ fn disc(p: &Particles, id: u32, flight: &ReferenceParticle) -> (f64, DVec3) {
 
 /// Axes of the picture plane and the way to the viewer, in the scene.
 fn facing(view: &View) -> [DVec3; 3] {
-    let scene_from_world = view.world_from_scene.inverse();
+    let scene_from_world = view.scene_state.world_from_scene.inverse();
     [view.ndc_axes[0], view.ndc_axes[1], -view.forward].map(|axis| scene_from_world.transform_vector3(axis).normalize_or_zero())
 }
 
@@ -245,7 +246,7 @@ pub(super) fn judged(view: &View, stack: &Stack, particle_readback: &ParticleRea
     assert_eq!(particle_readback.after.len(), reference.len(), "the particles are of another preset");
     let p: Particles = read(particle_timeline.words(particle_timeline.frame));
     let spread = Spread::new(&p, particle_readback, particle_timeline.frame);
-    let clip_from_scene = view.clip_from_world * view.world_from_scene;
+    let clip_from_scene = view.clip_from_world * view.scene_state.world_from_scene;
     let screen = |place: DVec3| {
         let clip = clip_from_scene * place.extend(1.0);
         let half = DVec2::new(f64::from(view.width), f64::from(view.height)) * 0.5;

@@ -43,7 +43,7 @@ pub fn project_moved(scene: &Scene, draws: &[Draw], view: &View, stack: &Stack) 
     };
     let vertices = movers.iter().flat_map(snapped).collect();
     let deformed = draws.iter().flat_map(|draw| deform::vertices(scene, draw)).collect();
-    let (has_unshared_vertices, subpixel_bits) = (stack.unshares_vertices(), view.subpixel_bits);
+    let (has_unshared_vertices, subpixel_bits) = (stack.unshares_vertices(), view.precision.subpixel_bits);
     let particle_discs = scene.particle_disc_ids();
     let mut geometry = Geometry { vertices, has_unshared_vertices, deformed, particle_discs, subpixel_bits, ..Geometry::default() };
     let pieces = |vertex_evaluator: &VertexEvaluator| {

@@ -55,7 +55,7 @@ impl Rays {
     /// What stands in the way of the light of `stack`; none where there is no light, or a matrix that does not hold.
     pub fn of(scene: &Scene, view: &View, stack: &Stack) -> Option<Self> {
         let toward = stack.light()?.toward();
-        let seen = stack.light_view(scene, &View { shadow: ShadowResolution::default(), ..view.clone() })?;
+        let seen = stack.light_view(scene, &view.with_shadow(ShadowResolution::default()))?;
         let draws = draws(scene, &seen).ok()?;
         let mut casters: Vec<Caster> = draws.iter().flat_map(|draw| casters(scene, draw, view, stack)).collect();
         let radius = scene.bounds_of(scene.shadow_casters()).radius().max(1e-9);

@@ -58,7 +58,7 @@ pub fn project_strict(scene: &Scene, draws: &[Draw], view: &View) -> Geometry {
     };
     let exact = Exactness { vertices: true, keys: false };
     let vertices = draws.iter().flat_map(records).collect();
-    let mut geometry = Geometry { vertices, exact, subpixel_bits: view.subpixel_bits, ..Geometry::default() };
+    let mut geometry = Geometry { vertices, exact, subpixel_bits: view.precision.subpixel_bits, ..Geometry::default() };
     let pieces = |draw: &Draw| {
         let clip = |corner: super::moved::Corner| position(scene, draw, corner.vertex).expect("a cut triangle has no rejected corner");
         clip::pieces(scene, draw, view, &geometry, clip)

@@ -20,7 +20,7 @@ use crate::{
         camera::Camera,
         pose::{Motion, Pose, scene_from_nodes},
         shadow_resolution::ShadowResolution,
-        view::View,
+        view::{SceneState, View},
     },
 };
 pub use animation::{Animation, Track};
@@ -336,13 +336,9 @@ impl Preset {
         }
         let pins = &self.accuracy.pins;
         let shadow = ShadowResolution::of(pins.option().unwrap_or_default(), pins.option().unwrap_or_default());
-        View {
-            pose,
-            shadow,
-            polyline: self.polyline.clone(),
-            particle_timeline: self.particle_timeline(),
-            ..View::new(&self.camera_for(scene, aspect), width, height, &bounds, spin, self.output.background)
-        }
+        let scene_state = SceneState { world_from_scene: spin, pose, polyline: self.polyline.clone(), particles: self.particle_timeline() };
+        let view = View::new(&self.camera_for(scene, aspect), width, height, &bounds, spin, self.output.background);
+        View { scene_state, ..view }.with_shadow(shadow)
     }
 }
 
@@ -371,7 +367,7 @@ mod tests {
         let scene = crate::scene::builtin::build("teapot?tess=2").expect("a scene");
         let turn = |time_s: f64| {
             let preset = Preset { clock: Clock { time_s, ..Clock::default() }, ..preset.clone() };
-            preset.view(&scene, [8, 8]).world_from_scene
+            preset.view(&scene, [8, 8]).scene_state.world_from_scene
         };
         let (fresh, late) = (turn(0.37), turn(86_400.0 + 0.37));
         let error = fresh.to_cols_array().iter().zip(late.to_cols_array()).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);

@@ -97,7 +97,7 @@ impl Needs {
             has_strips_or_fans: drawn().any(|p| p.topology != Topology::List),
             f32_positions: all_f32(|p| p.positions.component_type),
             f32_normals: all_f32(|p| p.normals.component_type),
-            shadow: view.shadow,
+            shadow: view.precision.shadow,
             is_light: view.is_light(),
             colors: drawn().any(|p| p.colors.is_some()),
             material_count: painted.len(),

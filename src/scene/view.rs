@@ -13,44 +13,64 @@ use super::{
 };
 use crate::math::{SUBPIXEL_BITS, view_from_world};
 
-/// A camera meeting a target of pixels and a scene: all that a renderer needs to know about the viewpoint.
+/// A camera, the size of the picture that it takes, and the moment and the precision in which it takes it: all that a renderer
+/// needs beside a scene and a stack.
 #[derive(Clone, Debug, PartialEq)]
 pub struct View {
     /// Size of the picture in pixels; either may be 0.
     pub width: u32,
     pub height: u32,
     pub clip_from_world: DMat4,
-    /// Placement of the whole scene (its spin).
-    pub world_from_scene: DMat4,
+    /// World space, metres.
     pub eye: DVec3,
+    /// Unit vector along the viewing direction, world space.
     pub forward: DVec3,
-    /// What one unit of normalized device x and y is in the world: per metre of depth for a perspective, else as it is.
+    /// The world-space vectors of one unit of normalized device x and y: per metre of depth for a perspective.
     pub ndc_axes: [DVec3; 2],
     /// Metres at depth 1 and at depth 0 of a linear (orthographic) depth; none for a perspective, whose w is metres.
     pub linear_depth_m: Option<[f64; 2]>,
-    /// Nearest and farthest distance along `forward` of the scene's box, at least `near_m` apart from the eye.
+    /// Nearest and farthest distance along `forward` of the scene's box; in a perspective not nearer than the near plane.
     pub scene_range_m: [f64; 2],
-    /// Linear RGBA of pixels without an triangle id.
+    /// Linear RGBA of pixels without a triangle.
     pub background: [f32; 4],
-    /// Vertices snap to 2^-bits px: 4, 8 as a rule, or 12.
-    pub subpixel_bits: u32,
-    /// Places are taken relative to the eye before they meet a matrix.
-    pub is_relative: bool,
-    /// How the scene stands; none: at rest.
-    pub pose: Option<Arc<Pose>>,
-    /// A line of the preset's own, before the scene is spun.
-    pub polyline: Arc<[[f32; 3]]>,
-    /// How finely shadows are drawn in it.
-    pub shadow: ShadowResolution,
-    /// Where things stand in the picture for which this view, a light's, draws a shadow map; none in a picture itself. A
-    /// light sees back faces too: they stop it as well.
+    /// Positions in the picture for which this view, a light's, draws a shadow map; none in a picture itself. A light sees back
+    /// faces too, since they stop it as well.
     pub picture_from_world: Option<DMat4>,
-    /// How far the particles have flown; none: they are where they begin.
-    pub particle_timeline: Option<Arc<ParticleTimeline>>,
+    pub scene_state: SceneState,
+    pub precision: ViewPrecision,
+}
+
+/// How the scene stands at the moment of a picture.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct SceneState {
+    /// Placement of the whole scene (its spin).
+    pub world_from_scene: DMat4,
+    /// The pose of its nodes, joints and morph targets; none: the rest pose.
+    pub pose: Option<Arc<Pose>>,
+    /// The preset's own line for dots, in the scene before its spin.
+    pub polyline: Arc<[[f32; 3]]>,
+    /// The steps that particles have taken; none: they are where they begin.
+    pub particles: Option<Arc<ParticleTimeline>>,
+}
+
+/// How finely a view resolves positions and shadows.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ViewPrecision {
+    /// Vertices snap to 2^-bits px: 4, 8 (the default) or 12.
+    pub subpixel_bits: u32,
+    /// Positions are taken relative to the eye before they meet a matrix.
+    pub is_relative: bool,
+    pub shadow: ShadowResolution,
+}
+
+impl Default for ViewPrecision {
+    fn default() -> Self {
+        Self { subpixel_bits: SUBPIXEL_BITS, is_relative: false, shadow: ShadowResolution::default() }
+    }
 }
 
 impl View {
-    /// Meets `camera` with a `width` x `height` target and the scene's world-space box (before the spin).
+    /// The view of `camera` with `width` x `height` pixels, given the scene's world-space box before its spin.
     pub fn new(camera: &Camera, width: u32, height: u32, bounds: &Bounds, world_from_scene: DMat4, background: [f32; 4]) -> Self {
         let aspect = if height == 0 || width == 0 { 1.0 } else { f64::from(width) / f64::from(height) };
         let forward = camera.forward();
@@ -79,26 +99,21 @@ impl View {
             width,
             height,
             clip_from_world,
-            world_from_scene,
             eye: camera.eye,
             forward,
             ndc_axes,
             linear_depth_m,
             scene_range_m: [from, farthest.max(from + margin)],
             background,
-            subpixel_bits: SUBPIXEL_BITS,
-            is_relative: false,
-            pose: None,
-            polyline: Arc::default(),
-            shadow: ShadowResolution::default(),
             picture_from_world: None,
-            particle_timeline: None,
+            scene_state: SceneState { world_from_scene, ..SceneState::default() },
+            precision: ViewPrecision::default(),
         }
     }
 
     /// Units of snapped positions in a pixel.
     pub const fn units_per_pixel(&self) -> i32 {
-        1 << self.subpixel_bits
+        1 << self.precision.subpixel_bits
     }
 
     /// The same view in `factor` times as many pixels to a side, at least one.
@@ -108,11 +123,24 @@ impl View {
         Self { width: side(self.width), height: side(self.height), ..self.clone() }
     }
 
-    /// Is it a light that presets?
+    /// The same view on another grid of snapped positions, relative to the eye or not.
+    #[must_use]
+    pub fn with_grid(&self, subpixel_bits: u32, is_relative: bool) -> Self {
+        Self { precision: ViewPrecision { subpixel_bits, is_relative, ..self.precision }, ..self.clone() }
+    }
+
+    /// The same view with shadows of another resolution.
+    #[must_use]
+    pub fn with_shadow(&self, shadow: ShadowResolution) -> Self {
+        Self { precision: ViewPrecision { shadow, ..self.precision }, ..self.clone() }
+    }
+
+    /// Is it a light's view?
     pub const fn is_light(&self) -> bool {
         self.picture_from_world.is_some()
     }
 
+    /// Pixels of the picture.
     pub fn pixels(&self) -> usize {
         self.width as usize * self.height as usize
     }

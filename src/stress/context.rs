@@ -320,7 +320,7 @@ impl<'a> CaseContext<'a> {
     /// Compares a strict picture with the CPU's, bit by bit.
     fn hold_strict(&mut self, capture: &Capture, scene: &Scene, view: &View, stack: &Stack, what: &str) -> Result<(), EarlyEnd> {
         let Some(strict) = &mut self.strict else { return Ok(()) };
-        let view = &View { is_relative: capture.geometry.is_relative, ..view.clone() };
+        let view = &view.with_grid(view.precision.subpixel_bits, capture.geometry.is_relative);
         let (triangle_id, key) = oracle::strict_frame(scene, view, stack)?;
         let folded = |hash: u64, [a, b]: [&[u32]; 2]| fnv1a(&[&[hash as u32, (hash >> 32) as u32], a, b].concat());
         strict.pictures += 1;

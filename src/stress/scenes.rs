@@ -112,20 +112,15 @@ pub fn pixel_view(width: u32, height: u32) -> View {
         width,
         height,
         clip_from_world: DMat4::from_cols(DVec4::X * 2.0 / w, DVec4::Y * -2.0 / h, DVec4::Z, DVec4::new(-1.0, 1.0, 0.0, 1.0)),
-        world_from_scene: DMat4::IDENTITY,
         eye: DVec3::new(w / 2.0, h / 2.0, 1.0),
         forward: DVec3::NEG_Z,
         ndc_axes: [DVec3::X * w / 2.0, DVec3::NEG_Y * h / 2.0],
         linear_depth_m: Some([0.0, 1.0]),
         scene_range_m: [0.0, 1.0],
         background: [0.0; 4],
-        pose: None,
-        polyline: Arc::default(),
-        shadow: Default::default(),
         picture_from_world: None,
-        particle_timeline: None,
-        subpixel_bits: 8,
-        is_relative: false,
+        scene_state: Default::default(),
+        precision: Default::default(),
     }
 }
 

@@ -130,7 +130,7 @@ fn after_a_day(context: &mut CaseContext) -> Result<(), EarlyEnd> {
     };
     let (fresh, late) = (preset_files(0.0)?, preset_files(DAY_S)?);
     let angle = |preset: &Preset| {
-        let x = preset.view(&knot, [8, 8]).world_from_scene.x_axis;
+        let x = preset.view(&knot, [8, 8]).scene_state.world_from_scene.x_axis;
         libm::atan2(-x.z, x.x) / std::f64::consts::TAU
     };
     let off = (angle(&late) - angle(&fresh)).abs();

@@ -39,7 +39,7 @@ fn light_alone(values: &[(&str, &str, f64)]) -> Stack {
 }
 
 fn on(view: &View, map: ShadowMapSize, taps: ShadowTaps) -> View {
-    View { shadow: ShadowResolution::of(map, taps), ..view.clone() }
+    view.with_shadow(ShadowResolution::of(map, taps))
 }
 
 /// A horizontal square, seen from both sides.
@@ -353,8 +353,8 @@ fn a_preset_pins_size_and_taps() {
     let pins = PinnedOptions::of(ShadowMapSize::Side2048).with(ShadowTaps::One);
     let preset = Preset { accuracy: AccuracyRequest { pins, ..AccuracyRequest::default() }, ..Preset::default() };
     let view = preset.view(&scene("teapot?tess=2"), [8, 8]);
-    assert_eq!(view.shadow, ShadowResolution { side: 2048, taps: 1 });
-    assert_eq!(view.shadow.options(), (ShadowMapSize::Side2048, ShadowTaps::One));
+    assert_eq!(view.precision.shadow, ShadowResolution { side: 2048, taps: 1 });
+    assert_eq!(view.precision.shadow.options(), (ShadowMapSize::Side2048, ShadowTaps::One));
 }
 
 #[test]
@@ -364,7 +364,8 @@ fn walls_catch_shadows_and_cast_none_and_stand_still() {
     let walls = u64::from(scene.primitives[scene.instances.last().expect("a room").primitive].vertex_count());
     let from_below = lit(&["shadow"], &[("shadow", "elevation_deg", -50.0)]);
     let coarse = on(&view(&scene, [96, 72]), ShadowMapSize::Side256, ShadowTaps::Nine);
-    let turned = View { world_from_scene: rasterlab::math::rotation_y(0.7), ..coarse };
+    let mut turned = coarse;
+    turned.scene_state.world_from_scene = rasterlab::math::rotation_y(0.7);
     let (capture, _) = exact(&mut renderer, &scene, &turned, &from_below, &AccuracyRequest::default(), "from below");
     let map = capture.geometry.light.expect("there is a map");
     assert_eq!(map.geometry.vertices.len() as u64 + walls, scene.vertex_count());

@@ -160,7 +160,7 @@ fn a_deformed_mesh_stays_in_its_box() {
         {
             for step in 0..7 {
                 let view = moment(&scene, [clip, ""], 0.6 * f64::from(step), skinning, [64, 64]);
-                let bounds = view.pose.as_ref().expect("it has a rig").bounds(&scene);
+                let bounds = view.scene_state.pose.as_ref().expect("it has a rig").bounds(&scene);
                 for deformed in deformed(&scene, &view) {
                     let p = place(&deformed);
                     assert!(p.cmpge(bounds.min - 1e-6).all() && p.cmple(bounds.max + 1e-6).all(), "{query} {clip} {p} {bounds:?}");
@@ -175,7 +175,7 @@ fn a_deformed_mesh_stays_in_its_box() {
 fn a_click_lands_on_the_deformed_mesh() {
     let scene = scene("tentacle?tess=4&influences=8");
     let view = moment(&scene, ["Curl", "Breathe"], 1.4, Skinning::Linear, [64, 48]);
-    let deform: &Deform = view.pose.as_ref().and_then(|pose| pose.deform(0)).expect("it bends");
+    let deform: &Deform = view.scene_state.pose.as_ref().and_then(|pose| pose.deform(0)).expect("it bends");
     for (vertex, deformed) in deformed(&scene, &view).iter().enumerate() {
         assert!(deform.position(&scene, &scene.primitives[0], vertex as u32).distance(place(deformed)) < 3e-7);
     }
@@ -218,10 +218,9 @@ fn nodes_that_a_clip_moves_are_placed_again() {
     scene.instances[0].node = Some(1);
     let view = |time_s| {
         let motion = Motion { clip: scene.rig.clip("Sway"), time_s, ..Motion::default() };
-        View {
-            pose: Some(Arc::new(Pose::at(&scene, &motion))),
-            ..camera_view(&scene, &rasterlab::scene::camera::Camera::default(), [64, 48])
-        }
+        let mut view = camera_view(&scene, &rasterlab::scene::camera::Camera::default(), [64, 48]);
+        view.scene_state.pose = Some(Arc::new(Pose::at(&scene, &motion)));
+        view
     };
     let [a, b] = [0.0, 1.0].map(|time_s| draws(&scene, &view(time_s)).expect("it fits"));
     assert_ne!(a[0].world_from_object, b[0].world_from_object);

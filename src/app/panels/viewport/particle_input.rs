@@ -35,7 +35,7 @@ pub fn attract(response: &Response, session: &Session, commands: &Commands) -> b
 /// Where the ray through `ndc` meets the plane through `through` that faces the viewer; both points in scene space.
 /// None if the plane is not in front of the camera.
 fn facing_point(view: &View, through: DVec3, ndc: [f64; 2]) -> Option<DVec3> {
-    let through = view.world_from_scene.transform_point3(through);
+    let through = view.scene_state.world_from_scene.transform_point3(through);
     let depth = (through - view.eye).dot(view.forward);
     let offset = view.ndc_axes[0] * ndc[0] + view.ndc_axes[1] * ndc[1];
     let point = match view.linear_depth_m {
@@ -43,7 +43,7 @@ fn facing_point(view: &View, through: DVec3, ndc: [f64; 2]) -> Option<DVec3> {
         None => view.eye + (view.forward + offset) * depth,
         Some(_) => view.eye + offset + view.forward * depth,
     };
-    Some(view.world_from_scene.inverse().transform_point3(point)).filter(|point| point.is_finite())
+    Some(view.scene_state.world_from_scene.inverse().transform_point3(point)).filter(|point| point.is_finite())
 }
 
 #[cfg(test)]
@@ -61,7 +61,7 @@ mod tests {
             let bounds = Bounds { min: DVec3::NEG_ONE, max: DVec3::ONE };
             let view = View::new(&camera, 300, 200, &bounds, crate::math::rotation_y(0.7), [0.0; 4]);
             let through = DVec3::new(0.3, -0.4, 0.1);
-            let clip = view.clip_from_world * view.world_from_scene * through.extend(1.0);
+            let clip = view.clip_from_world * view.scene_state.world_from_scene * through.extend(1.0);
             let point = facing_point(&view, through, [clip.x / clip.w, clip.y / clip.w]).expect("in front of the eye");
             assert!(point.distance(through) < 1e-9, "{projection:?}: {point}");
         }
