@@ -107,7 +107,8 @@ pub fn draws(scene: &Scene, view: &View) -> Result<Vec<Draw>, DrawError> {
         let world_from_scene = if index < shadow_casters { view.scene_state.world_from_scene } else { DMat4::IDENTITY };
         let world_from_object = world_from_scene * pose.map_or(instance.world_from_object, |pose| pose.instance_transform(index));
         let bounds = deform.as_ref().map_or(primitive.bounds, |deform| deform.bounds(primitive));
-        let origin = if view.precision.is_relative { nearest(&bounds, world_from_object.inverse().transform_point3(view.eye)) } else { [0.0; 3] };
+        let origin =
+            if view.precision.is_relative { nearest(&bounds, world_from_object.inverse().transform_point3(view.eye)) } else { [0.0; 3] };
         let moved = DMat4::from_translation(DVec3::from_array(origin.map(f64::from)));
         let clip_from_object = rounded_columns(&(view.clip_from_world * world_from_object * moved));
         let entries = clip_from_object.iter().flatten().map(|&v| f64::from(v)).chain(world_from_object.to_cols_array());
