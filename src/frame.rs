@@ -259,3 +259,22 @@ impl Frame {
         self.triangle_id.iter().filter(|&&triangle_id| triangle_id != NO_TRIANGLE).count()
     }
 }
+
+/// A picture that an adapter drew, with everything that a judge compares.
+#[derive(Clone, Copy, Debug)]
+pub struct AdapterPicture<'a> {
+    pub frame: &'a Frame,
+    /// What the frame was drawn through.
+    pub geometry: &'a Geometry,
+    /// Triangles drawn per sample, row-major; none if they were not counted.
+    pub layers: Option<&'a [u32]>,
+    /// The adapter's own picture before this one; none for the first.
+    pub previous: Option<&'a [[u8; 4]]>,
+}
+
+impl<'a> AdapterPicture<'a> {
+    /// A first picture without counted layers.
+    pub const fn new(frame: &'a Frame, geometry: &'a Geometry) -> Self {
+        Self { frame, geometry, layers: None, previous: None }
+    }
+}

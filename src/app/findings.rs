@@ -4,7 +4,7 @@ use super::{overlay::Overlay, text::grouped};
 use crate::{
     frame::NO_TRIANGLE,
     gpu::Capture,
-    measure::{ErrorReport, Verdict, faults::ErrorMap},
+    measure::{ErrorReport, Verdict, error_map::ErrorMap},
 };
 
 /// The oracle's judgement of a picture, and the data that overlays are painted from. All lists have one entry per pixel.
@@ -70,7 +70,7 @@ impl Findings {
             "{}{reference}, {layers} {}, Δ {}",
             name(self.triangle_ids[i]),
             if layers == 1 { "layer" } else { "layers" },
-            self.faults.colour[i]
+            self.faults.color_delta[i]
         )
     }
 

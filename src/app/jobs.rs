@@ -147,8 +147,7 @@ fn verify(gpu: Arc<Gpu>, Inputs { scene, view, stack, accuracy }: &Inputs) -> Re
     let mut renderer = Renderer::new(gpu);
     renderer.set_scene(scene).map_err(|e| e.to_string())?;
     let capture = renderer.capture(view, stack, accuracy).map_err(|e| e.to_string())?;
-    let (layers, previous) = (capture.layers.as_deref(), capture.previous.as_deref());
-    let verdict = oracle::judge_after(scene, view, stack, &capture.frame, &capture.geometry, layers, previous);
+    let verdict = oracle::judge(scene, view, stack, &capture.picture());
     let reference = if stack.is_repeatable() { Some(reference_ids(scene, view, stack, accuracy)?) } else { None };
     verdict.map(|verdict| Box::new(Findings::new(capture, verdict, reference))).map_err(|e| e.to_string())
 }

@@ -2,7 +2,7 @@
 
 use eframe::egui::Color32;
 
-use crate::measure::faults::PixelError;
+use crate::measure::error_map::PixelError;
 
 /// One overlay, from the lowest to the topmost.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -114,11 +114,11 @@ impl Overlay {
     /// The fault that it shows, if it shows one.
     pub const fn fault(self) -> Option<PixelError> {
         match self {
-            Self::WrongTriangle => Some(PixelError::TriangleId),
-            Self::WrongDepth => Some(PixelError::Depth),
+            Self::WrongTriangle => Some(PixelError::WrongTriangle),
+            Self::WrongDepth => Some(PixelError::WrongDepthOrder),
             Self::Holes => Some(PixelError::Hole),
-            Self::Doubles => Some(PixelError::Double),
-            Self::Ties => Some(PixelError::Tie),
+            Self::Doubles => Some(PixelError::DoubleHit),
+            Self::Ties => Some(PixelError::DepthBand),
             Self::Unsound => Some(PixelError::Unsound),
             Self::TriangleIds | Self::Layers | Self::Colour | Self::Edges | Self::NotReference => None,
         }

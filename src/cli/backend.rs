@@ -6,12 +6,12 @@ use serde_json::{Value, json};
 
 use super::{args::Common, error::CliError, streams::Streams};
 use crate::{
-    frame::{Frame, Geometry},
+    frame::Frame,
     gpu::{
         Capture, Gpu, Renderer,
         device::{AdapterChoice, AdapterSummary, Caps},
     },
-    oracle,
+    oracle::{self, Shot},
     preset::{Preset, Visibility},
     preset_file::{self, PresetFile, Provenance},
     scene::{Scene, draw::draws},
@@ -125,7 +125,7 @@ impl Backend {
                 let ((view, stack), before) = moments.split_last().expect("a preset has at least one frame");
                 let previous = if before.is_empty() { None } else { Some(oracle::render_sequence(scene, before)?.color) };
                 let frame = oracle::render_next(scene, view, stack, previous.as_deref())?;
-                let geometry: Geometry = oracle::project_moved(scene, &draws(scene, view)?, view, stack);
+                let geometry = oracle::project(&Shot::new(scene, &draws(scene, view)?, view, stack));
                 Ok(Capture { frame, geometry, layers: None, previous, shown: None })
             }
             Self::Gpu(renderer, _) => {

@@ -62,11 +62,7 @@ pub fn run(common: &Common, args: &Bench, streams: &mut Streams) -> Result<Exit,
 
 /// Compares what an adapter drew of `scene` through `view` with the oracle.
 pub fn judge<'a>(scene: &'a Scene, view: &'a View) -> impl Fn(&Stack, &Capture) -> Verdict + use<'a> {
-    move |stack, capture| {
-        let (layers, previous) = (capture.layers.as_deref(), capture.previous.as_deref());
-        oracle::judge_after(scene, view, stack, &capture.frame, &capture.geometry, layers, previous)
-            .expect("a scene that was drawn can be judged")
-    }
+    move |stack, capture| oracle::judge(scene, view, stack, &capture.picture()).expect("a scene that was drawn can be judged")
 }
 
 /// Prints rows in the chosen format, and a note on how they were measured.

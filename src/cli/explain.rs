@@ -79,8 +79,7 @@ impl ParticleErrors {
         if capture.geometry.particle_readback.is_none() {
             return Ok(None);
         }
-        let (layers, previous) = (capture.layers.as_deref(), capture.previous.as_deref());
-        let a = oracle::judge_after(scene, view, stack, &capture.frame, &capture.geometry, layers, previous)?.accuracy;
+        let a = oracle::judge(scene, view, stack, &capture.picture())?.accuracy;
         Ok(Some(Self {
             count: a.particles,
             steps: view.scene_state.particles.as_ref().map_or(0, |particle_timeline| particle_timeline.frame),

@@ -106,9 +106,7 @@ fn verify(common: &Common, args: &Verify, preset_file: &PresetFile, backend: &mu
         pinned.accuracy.pins = option.map_or(preset.accuracy.pins, |option| preset.accuracy.pins.with(option));
         let name = option.map_or("exact", Visibility::name);
         let capture = backend.capture(&pinned, &scene)?;
-        let layers = capture.layers.as_deref();
-        let previous = capture.previous.as_deref();
-        let verdict = oracle::judge_after(&scene, &view, &stack, &capture.frame, &capture.geometry, layers, previous)?;
+        let verdict = oracle::judge(&scene, &view, &stack, &capture.picture())?;
         // Where wrong triangles are allowed, colors are compared only where the triangle is right.
         let mut expected = verdict.expected.color.clone();
         if budget.max_wrong_triangles > 0 {
@@ -152,7 +150,7 @@ fn verify(common: &Common, args: &Verify, preset_file: &PresetFile, backend: &mu
 fn scaling_failure(capture: &Capture) -> Option<String> {
     let shown = capture.shown.as_ref()?;
     let drawn = &capture.frame;
-    let right = oracle::scaled(&drawn.color, [drawn.width, drawn.height], [shown.width, shown.height]);
+    let right = oracle::resampled(&drawn.color, [drawn.width, drawn.height], [shown.width, shown.height]);
     let delta = pictures(&shown.color, &right, 1);
     (delta.pixels_over_tolerance > 0)
         .then(|| format!("{} scaled pixels differ from the oracle's by up to {} of 255", delta.pixels_over_tolerance, delta.max_delta))

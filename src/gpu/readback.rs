@@ -16,7 +16,7 @@ use super::{
 use crate::{
     accuracy::{Culling, DepthFormat, PositionFormat, VertexTransform, XraySums},
     effects::{Stack, hooks::Layers},
-    frame::{ClippedTriangle, Counters, Exactness, Frame, Geometry, SnappedVertex},
+    frame::{AdapterPicture, ClippedTriangle, Counters, Exactness, Frame, Geometry, SnappedVertex},
     plan::AccuracyRequest,
     scene::view::View,
     shader::{
@@ -100,6 +100,12 @@ pub struct Capture {
 }
 
 impl Capture {
+    /// The picture with what a judge compares.
+    pub fn picture(&self) -> AdapterPicture<'_> {
+        let (layers, previous) = (self.layers.as_deref(), self.previous.as_deref());
+        AdapterPicture { frame: &self.frame, geometry: &self.geometry, layers, previous }
+    }
+
     /// The picture as it is shown.
     pub fn into_shown(self) -> Frame {
         self.shown.unwrap_or(self.frame)

@@ -1,7 +1,7 @@
 //! Measures of error and of time. Nothing here returns a time without an error beside it.
 
 pub mod compare;
-pub mod faults;
+pub mod error_map;
 pub mod timing;
 
 /// How wrong a picture is, against the oracle. Counts are pixels unless they say otherwise.
@@ -166,7 +166,7 @@ pub struct Verdict {
     /// Which pixels lie in the step band; empty for a preset without steps.
     pub step_band: Vec<bool>,
     /// Where it is wrong.
-    pub faults: faults::ErrorMap,
+    pub faults: error_map::ErrorMap,
 }
 
 /// What options are measured against.

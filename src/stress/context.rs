@@ -183,9 +183,7 @@ pub fn judged(
     accuracy: &AccuracyRequest,
 ) -> Result<(Capture, Verdict), String> {
     let capture = captured(renderer, scene, view, stack, accuracy)?;
-    let (layers, previous) = (capture.layers.as_deref(), capture.previous.as_deref());
-    let verdict = oracle::judge_after(scene, view, stack, &capture.frame, &capture.geometry, layers, previous)
-        .map_err(|error| format!("{}: {error}", scene.name))?;
+    let verdict = oracle::judge(scene, view, stack, &capture.picture()).map_err(|error| format!("{}: {error}", scene.name))?;
     Ok((capture, verdict))
 }
 

@@ -5,8 +5,9 @@ use std::sync::Arc;
 use glam::{DMat4, DVec3, DVec4};
 
 use crate::{
+    effects::Stack,
     math::hash,
-    oracle,
+    oracle::{self, Shot},
     scene::{
         Accessor, Bounds, ComponentType, Instance, Material, Primitive, Scene, Topology,
         camera::Camera,
@@ -147,8 +148,10 @@ pub fn camera_view(scene: &Scene, camera: &Camera, [width, height]: [u32; 2]) ->
 /// If the scene exceeds the arithmetic ([`DrawError`]).
 pub fn reference_coverage(scene: &Scene, view: &View) -> Result<oracle::Coverage, DrawError> {
     let draws = draws(scene, view)?;
-    let (triangles, _) = oracle::triangles(scene, &draws, &oracle::project(scene, &draws, view));
-    Ok(oracle::cover(&triangles, view, None))
+    let stack = Stack::default();
+    let shot = Shot::new(scene, &draws, view, &stack);
+    let (triangles, _) = oracle::triangles(&shot, &oracle::project(&shot));
+    Ok(oracle::cover(&triangles, view))
 }
 
 /// The four corners of a rotated square; `half` is half its diagonal.

@@ -195,9 +195,7 @@ fn verdict(scene: &Arc<Scene>, view: &View, stack: &Stack, capture: &Capture) ->
     if !is_by_bits && let Some(same) = latest().iter().find(is_same) {
         return same.verdict.clone();
     }
-    let (layers, previous) = (capture.layers.as_deref(), capture.previous.as_deref());
-    let verdict = oracle::judge_after(scene, view, stack, &capture.frame, &capture.geometry, layers, previous)
-        .unwrap_or_else(|error| panic!("{}: {error}", scene.name));
+    let verdict = oracle::judge(scene, view, stack, &capture.picture()).unwrap_or_else(|error| panic!("{}: {error}", scene.name));
     let mut latest = latest();
     latest.truncate(2 * RENDERERS);
     let judged = Judged { scene: scene.clone(), view: view.clone(), stack: stack.clone(), capture: capture.clone(), verdict };

@@ -11,7 +11,7 @@ use rasterlab::{
         Renderer,
         naive::{Naive, Viewport},
     },
-    measure::{ErrorReport as Errors, Verdict, faults::PixelError},
+    measure::{ErrorReport as Errors, Verdict, error_map::PixelError},
     plan::Tuning,
     scene::{
         Scene,
@@ -349,10 +349,11 @@ const GRAPHICS_CARD: Tuning = Tuning {
 /// largest difference of colour.
 fn map_agrees(verdict: &Verdict) -> Result<(), String> {
     let (a, map) = (&verdict.accuracy, &verdict.faults);
-    let triangle_ids = map.count(PixelError::TriangleId) == a.wrong_triangles && map.count(PixelError::Depth) == a.wrong_nearest;
-    let coverage = (map.count(PixelError::Hole) > 0) == (a.holes > 0) && (map.count(PixelError::Double) > 0) == (a.double_hits > 0);
-    let ties = map.count(PixelError::Tie) == a.depth_band_pixels;
-    let colours = map.colour.iter().max().copied().unwrap_or(0) >= a.max_color_delta;
+    let triangle_ids =
+        map.count(PixelError::WrongTriangle) == a.wrong_triangles && map.count(PixelError::WrongDepthOrder) == a.wrong_nearest;
+    let coverage = (map.count(PixelError::Hole) > 0) == (a.holes > 0) && (map.count(PixelError::DoubleHit) > 0) == (a.double_hits > 0);
+    let ties = map.count(PixelError::DepthBand) == a.depth_band_pixels;
+    let colours = map.color_delta.iter().max().copied().unwrap_or(0) >= a.max_color_delta;
     let marks = PixelError::ALL.map(|fault| map.count(fault));
     if triangle_ids && coverage && ties && colours { Ok(()) } else { Err(format!("the map has {marks:?} and the counts say {a:?}")) }
 }

@@ -440,7 +440,7 @@ fn scaled_pictures_are_exact_in_their_own_pixels_and_shown_at_the_size_that_was_
         );
         let Some(shown) = &capture.shown else { continue };
         assert_eq!(([shown.width, shown.height], shown.color.len(), shown.triangle_id.len()), (size, view.pixels(), view.pixels()));
-        let right = oracle::scaled(&drawn.color, [drawn.width, drawn.height], size);
+        let right = oracle::resampled(&drawn.color, [drawn.width, drawn.height], size);
         assert_eq!(compare::pictures(&shown.color, &right, 1).pixels_over_tolerance, 0, "{}: the pass against the oracle's", option.name());
         // All by itself the oracle shows the same, but for corners that snap apart.
         let golden = oracle::render_scaled(&scene, &[(view.clone(), effects.clone())], option.factor()).expect("a scene that fits");

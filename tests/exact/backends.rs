@@ -118,8 +118,9 @@ fn packed32_loses_depth_and_nothing_else() {
         assert_eq!(keys.different, 0, "{query}: keys, first {:?}", keys.mismatches.first());
         // Another triangle id than the nearest is one that a step of the key cannot tell from it: as deep when cut, and smaller.
         let (draws, geometry) = (draws(&scene, &view).expect("a builtin fits"), &capture.geometry);
-        let (triangles, _) = oracle::triangles(&scene, &draws, geometry);
-        let claimed = oracle::cover(&triangles, &view, Some(&frame.triangle_id));
+        let plain = stack(&[]);
+        let (triangles, _) = oracle::triangles(&oracle::Shot::new(&scene, &draws, &view, &plain), geometry);
+        let claimed = oracle::cover_claims(&oracle::SampleTests::default(), &triangles, &view, &frame.triangle_id);
         for (pixel, sample) in claimed.samples.iter().enumerate() {
             if frame.triangle_id[pixel] != reference.triangle_id[pixel] {
                 let [_, high] = sample.claimed.unwrap_or_else(|| panic!("{query}: pixel {pixel}"));

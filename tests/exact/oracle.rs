@@ -5,10 +5,10 @@ use glam::{DMat4, DVec3, DVec4};
 use proptest::prelude::*;
 use rasterlab::{
     effects::{Effect, Stack},
-    frame::{ClippedTriangle, Counters, Frame, Geometry, NO_TRIANGLE, SnappedVertex, vertex_flags},
+    frame::{AdapterPicture, ClippedTriangle, Counters, Frame, Geometry, NO_TRIANGLE, SnappedVertex, vertex_flags},
     math::{GUARD_BAND, SMALL_EXTENT},
     measure::{Budget, ErrorReport},
-    oracle::{OrientedTriangle, Seen, cover, judge, owns, project, render, shade, triangles},
+    oracle::{self, OrientedTriangle, ResolveInput, SampleTests, Shot, cover, cover_claims, judge, owns, render, shade},
     scene::{
         Scene,
         camera::{Camera, MIN_NEAR_M, Projection},
@@ -70,9 +70,24 @@ fn all_effects() -> Stack {
     stack
 }
 
+/// The geometry of a scene without effects.
+fn projected(scene: &Scene, view: &View) -> Geometry {
+    oracle::project(&Shot::new(scene, &draws(scene, view).unwrap(), view, &Stack::default()))
+}
+
+/// The triangles that are drawn of such a geometry.
+fn assembled(scene: &Scene, view: &View, geometry: &Geometry) -> (Vec<OrientedTriangle>, Counters) {
+    oracle::triangles(&Shot::new(scene, &draws(scene, view).unwrap(), view, &Stack::default()), geometry)
+}
+
+/// What covers every sample, with bounds and without claims.
+fn bounded(triangles: &[OrientedTriangle], view: &View) -> oracle::BoundedCoverage {
+    cover_claims(&SampleTests::default(), triangles, view, &vec![NO_TRIANGLE; view.pixels()])
+}
+
 /// What a picture is coloured from.
-fn seen(frame: &Frame) -> Seen<'_> {
-    Seen { triangle_ids: &frame.triangle_id, keys: &frame.key, dots: &frame.dots, previous: None }
+fn seen(frame: &Frame) -> ResolveInput<'_> {
+    ResolveInput { triangle_ids: &frame.triangle_id, keys: &frame.key, dots: &frame.dots, previous: None }
 }
 
 #[test]
@@ -80,10 +95,10 @@ fn an_honest_adapter_passes_every_stage() {
     let (scene, view) = still_life([96, 64]);
     let stack = all_effects();
     let frame = render(&scene, &view, &stack).unwrap();
-    let geometry = project(&scene, &draws(&scene, &view).unwrap(), &view);
+    let geometry = projected(&scene, &view);
     assert!(frame.covered() > 3000, "{}", frame.covered());
     assert!(frame.counters.clipped == 2 && !geometry.pieces.is_empty());
-    let verdict = judge(&scene, &view, &stack, &frame, &geometry, None).unwrap();
+    let verdict = judge(&scene, &view, &stack, &AdapterPicture::new(&frame, &geometry)).unwrap();
     assert_eq!(verdict.accuracy.within(&Budget::default()), Ok(()), "{:?}", verdict.accuracy);
     assert_eq!(verdict.expected, frame);
 }
@@ -109,14 +124,13 @@ fn triangle(id: u32, mut points: [[i32; 2]; 3], depth: f32) -> Option<OrientedTr
 }
 
 fn layers(triangles: &[OrientedTriangle], width: u32, height: u32) -> Vec<u32> {
-    cover(triangles, &pixel_view(width, height), None).layers()
+    cover(triangles, &pixel_view(width, height)).layers()
 }
 
 /// Projects, clips, assembles and covers.
 fn covered(scene: &Scene, view: &View) -> (Vec<u32>, Counters) {
-    let draws = draws(scene, view).unwrap();
-    let (drawn, counters) = triangles(scene, &draws, &project(scene, &draws, view));
-    (cover(&drawn, view, None).layers(), counters)
+    let (drawn, counters) = assembled(scene, view, &projected(scene, view));
+    (cover(&drawn, view).layers(), counters)
 }
 
 // ---------------------------------------------------------------- coverage
@@ -168,7 +182,7 @@ proptest! {
 fn rectangle_of_the_d3d11_rules_owns_fifteen_and_ten_pixels() {
     let [a, b, c, d] = [[0, 0], [5 * 256, 0], [5 * 256, 5 * 256], [0, 5 * 256]];
     let halves = [triangle(0, [a, b, c], 0.5).unwrap(), triangle(1, [a, c, d], 0.5).unwrap()];
-    let coverage = cover(&halves, &pixel_view(8, 8), None);
+    let coverage = cover(&halves, &pixel_view(8, 8));
     let count = |triangle_id| coverage.samples.iter().filter(|sample| sample.triangle_id == triangle_id).count();
     assert_eq!((count(0), count(1), coverage.layers().iter().max()), (15, 10, Some(&1)));
 }
@@ -255,7 +269,7 @@ fn whole_pixel_translation_moves_every_owner() {
     let triangle_ids = |dx: i32, dy: i32| {
         let moved = |p: [i32; 2]| [p[0] + 256 * dx, p[1] + 256 * dy];
         let mesh: Vec<_> = soup.iter().enumerate().filter_map(|(i, t)| triangle(i as u32, t.map(moved), 0.1 + 0.01 * (i as f32))).collect();
-        cover(&mesh, &pixel_view(64, 64), None).triangle_ids()
+        cover(&mesh, &pixel_view(64, 64)).triangle_ids()
     };
     let still = triangle_ids(0, 0);
     for (dx, dy) in [(1, 0), (0, 1), (31, 17), (32, 32)] {
@@ -355,7 +369,7 @@ fn depth_at_a_vertex_is_the_vertex_depth_and_never_leaves_the_corners() {
     for z in depths {
         // The top left corner owns its sample, and the other samples lie between the corners.
         let corners = [at(128, 128, z[0]), at(128 + 2048, 128, z[1]), at(128 + 256, 128 + 2048, z[2])];
-        let coverage = cover(&[OrientedTriangle::clockwise(0, corners)], &pixel_view(9, 9), None);
+        let coverage = cover(&[OrientedTriangle::clockwise(0, corners)], &pixel_view(9, 9));
         assert_eq!(coverage.samples[0].key, z[0].to_bits());
         let (low, high) = (z[0].min(z[1]).min(z[2]), z[0].max(z[1]).max(z[2]));
         let keys = coverage.samples.iter().filter(|sample| sample.layers == 1).map(|sample| sample.key);
@@ -371,23 +385,23 @@ fn nearest_layer_wins_and_equal_layers_go_to_the_smaller_id() {
     };
     let one_key_apart = |id: u32| f32::from_bits(0.5f32.to_bits() + id);
     for ids in [[0, 1, 2, 3], [3, 2, 1, 0], [2, 0, 3, 1]] {
-        let nearest = cover(&stack(&ids, &one_key_apart), &pixel_view(4, 4), None).samples[0];
+        let nearest = cover(&stack(&ids, &one_key_apart), &pixel_view(4, 4)).samples[0];
         assert_eq!((nearest.triangle_id, nearest.key, nearest.layers), (3, one_key_apart(3).to_bits(), 4));
-        let equal = cover(&stack(&ids, &|_| 0.5), &pixel_view(4, 4), None).samples[0];
-        assert_eq!((equal.triangle_id, equal.is_band()), (0, false), "flat triangles have exact keys, so nothing is ambiguous");
+        let equal = bounded(&stack(&ids, &|_| 0.5), &pixel_view(4, 4)).samples[0];
+        assert_eq!((equal.nearest.triangle_id, equal.is_band()), (0, false), "flat triangles have exact keys, so nothing is ambiguous");
     }
 }
 
 #[test]
 fn depth_of_zero_still_has_a_key() {
-    let far = cover(&[triangle(4, [[0, 0], [0, 900], [900, 0]], 0.0).unwrap()], &pixel_view(1, 1), None).samples[0];
+    let far = cover(&[triangle(4, [[0, 0], [0, 900], [900, 0]], 0.0).unwrap()], &pixel_view(1, 1)).samples[0];
     assert_eq!((far.triangle_id, far.key), (4, 1));
 }
 
 #[test]
 fn crossing_surfaces_are_ambiguous_only_where_they_cross() {
     let slope = |id, left, right| OrientedTriangle::clockwise(id, [at(0, -9000, left), at(65 * 256, 0, right), at(0, 30_000, left)]);
-    let coverage = cover(&[slope(0, 0.25, 0.75), slope(1, 0.75, 0.25)], &pixel_view(65, 16), None);
+    let coverage = bounded(&[slope(0, 0.25, 0.75), slope(1, 0.75, 0.25)], &pixel_view(65, 16));
     let band: Vec<usize> = (0..coverage.samples.len()).filter(|&i| coverage.samples[i].is_band()).map(|i| i % 65).collect();
     assert!(!band.is_empty() && band.iter().all(|&x| x == 32), "{band:?}");
 }
@@ -400,7 +414,7 @@ fn snap_is_symmetric_about_the_centre_and_rounds_to_even() {
     let mesh =
         triangle_soup([[32.0 + half, 32.0 + half, 0.5], [32.0 - half, 32.0 - half, 0.5], [32.0 + 3.0 * half, 32.0 - 3.0 * half, 0.5]]);
     let (scene, view) = (scene(&[mesh]), pixel_view(64, 64));
-    let vertices = project(&scene, &draws(&scene, &view).unwrap(), &view).vertices;
+    let vertices = projected(&scene, &view).vertices;
     assert_eq!(vertices.iter().map(|v| (v.x - 8192, v.y - 8192)).collect::<Vec<_>>(), [(0, 0), (0, 0), (2, -2)]);
 }
 
@@ -445,18 +459,17 @@ fn edges_cut_by_the_guard_band_keep_their_course() {
 fn folded_pieces_are_dropped_and_counted() {
     let corners = [[0.0, 0.0, 0.5], [16.0, 0.0, 0.5], [40_000.0, 40_000.0, 0.5]];
     let (scene, view) = (scene(&[triangle_soup(corners)]), pixel_view(16, 16));
-    let draws = draws(&scene, &view).unwrap();
-    let mut geometry = project(&scene, &draws, &view);
+    let mut geometry = projected(&scene, &view);
     let fan = geometry.pieces.clone();
     assert!(!fan.is_empty());
-    let whole = triangles(&scene, &draws, &geometry).0.len();
+    let whole = assembled(&scene, &view, &geometry).0.len();
     let mut folded = ClippedTriangle { parent: 0, corners: [at(0, 0, 0.5), at(600, 0, 0.5), at(0, 600, 0.5)], outline: 7 };
     if area(fan[0].corners.map(|c| [c.x, c.y])) > 0 {
         folded.corners.swap(1, 2);
     }
     let line = ClippedTriangle { parent: 0, corners: [at(0, 0, 0.5), at(600, 600, 0.5), at(900, 900, 0.5)], outline: 7 };
     geometry.pieces.extend([folded, line]);
-    let (drawn, counters) = triangles(&scene, &draws, &geometry);
+    let (drawn, counters) = assembled(&scene, &view, &geometry);
     assert_eq!((drawn.len(), counters.flipped_clips, counters.clipped), (whole, 2, 1));
 }
 
@@ -467,7 +480,7 @@ fn pieces_stay_inside_the_guard_band_with_planes_set_exactly() {
     let mut number = |scale: f32| rng.between(-1_000_000, 1_000_001) as f32 * 1e-6 * scale;
     let soup: Vec<[f32; 3]> = (0..3000).map(|_| [number(3.0), number(3.0), number(2.0)]).collect();
     let scene = scene(&[triangle_soup(soup)]);
-    let geometry = project(&scene, &draws(&scene, &view).unwrap(), &view);
+    let geometry = projected(&scene, &view);
     assert!(geometry.pieces.len() > 500 && geometry.pieces.is_sorted_by_key(|piece| piece.parent));
     let corners: Vec<_> = geometry.pieces.iter().flat_map(|piece| piece.corners).collect();
     assert!(corners.iter().all(|c| c.flags == 0 && c.x.abs() <= GUARD_BAND && c.y.abs() <= GUARD_BAND));
@@ -505,8 +518,8 @@ fn w_at_and_around_zero_stays_inside_its_picture() {
             let mesh = triangle_soup([[0.3, -0.2, -wa], [-0.4, 0.1, -wb], [0.1, 0.6, -1.0]]);
             let scene = scene(&[mesh]);
             let frame = render(&scene, &view, &all_effects()).unwrap();
-            let geometry = project(&scene, &draws(&scene, &view).unwrap(), &view);
-            let verdict = judge(&scene, &view, &all_effects(), &frame, &geometry, None).unwrap();
+            let geometry = projected(&scene, &view);
+            let verdict = judge(&scene, &view, &all_effects(), &AdapterPicture::new(&frame, &geometry)).unwrap();
             assert_eq!(verdict.accuracy.within(&Budget::default()), Ok(()), "w {i} {j}");
         }
     }
@@ -561,7 +574,7 @@ fn picture_without_pixels_is_empty() {
         let frame = render(&scene, &view, &all_effects()).unwrap();
         assert_eq!(([frame.width, frame.height], frame.triangle_id.len(), frame.color.len()), (size, 0, 0));
         // An adapter dispatches nothing, and so has no geometry either.
-        let verdict = judge(&scene, &view, &all_effects(), &frame, &Geometry::default(), None).unwrap();
+        let verdict = judge(&scene, &view, &all_effects(), &AdapterPicture::new(&frame, &Geometry::default())).unwrap();
         assert_eq!((verdict.accuracy, verdict.expected), (ErrorReport::default(), frame));
     }
 }
@@ -836,7 +849,7 @@ impl Adapter {
     /// Triangle ids, keys, layers and colours of `geometry`.
     fn draw(&self, scene: &Scene, view: &View, stack: &Stack, geometry: &Geometry) -> (Frame, Vec<u32>) {
         let draws = draws(scene, view).unwrap();
-        let (drawn, counters) = triangles(scene, &draws, geometry);
+        let (drawn, counters) = assembled(scene, view, geometry);
         let (width, pixels) = (view.width as usize, view.pixels());
         let mut frame = Frame {
             width: view.width,
@@ -857,7 +870,7 @@ impl Adapter {
                 }
             }
         }
-        frame.color = shade(scene, &draws, view, stack, &seen(&frame), geometry);
+        frame.color = shade(&Shot::new(scene, &draws, view, stack), &seen(&frame), geometry);
         frame.counters = counters;
         (frame, layers)
     }
@@ -888,11 +901,11 @@ fn judged(
     after: impl FnOnce(&mut Frame, &mut Vec<u32>),
 ) -> ErrorReport {
     let stack = all_effects();
-    let mut geometry = project(scene, &draws(scene, view).unwrap(), view);
+    let mut geometry = projected(scene, view);
     before(&mut geometry);
     let (mut frame, mut layers) = adapter.draw(scene, view, &stack, &geometry);
     after(&mut frame, &mut layers);
-    judge(scene, view, &stack, &frame, &geometry, Some(&layers)).unwrap().accuracy
+    judge(scene, view, &stack, &AdapterPicture { layers: Some(&layers), ..AdapterPicture::new(&frame, &geometry) }).unwrap().accuracy
 }
 
 /// Squares whose edges and diagonals run through samples, in layers one behind the other, some of them coplanar.
@@ -952,12 +965,7 @@ fn two_steps_of_255_are_caught_and_one_passes() {
 #[test]
 fn missing_triangle_is_caught() {
     let fixture = still_life([64, 48]);
-    let (frame, _) = Adapter::default().draw(
-        &fixture.0,
-        &fixture.1,
-        &Stack::default(),
-        &project(&fixture.0, &draws(&fixture.0, &fixture.1).unwrap(), &fixture.1),
-    );
+    let (frame, _) = Adapter::default().draw(&fixture.0, &fixture.1, &Stack::default(), &projected(&fixture.0, &fixture.1));
     let mut triangle_ids = frame.triangle_id.clone();
     triangle_ids.sort_unstable();
     triangle_ids.dedup();
@@ -1054,16 +1062,13 @@ fn either_owner_is_right_in_the_depth_band_and_nowhere_else() {
                 }
                 let (scene, view) = &fixture;
                 let draws = draws(scene, view).unwrap();
-                frame.color = shade(scene, &draws, view, &all_effects(), &seen(frame), &project(scene, &draws, view));
+                frame.color = shade(&Shot::new(scene, &draws, view, &all_effects()), &seen(frame), &projected(scene, view));
             },
         )
     };
     // The sheets cross at x = 32.5, on the samples of column 32.
     let columns: Vec<usize> = (0..64).filter(|&x| other(x).wrong_triangles == 0).collect();
-    let coverage = {
-        let draws = draws(&fixture.0, &fixture.1).unwrap();
-        cover(&triangles(&fixture.0, &draws, &project(&fixture.0, &draws, &fixture.1)).0, &fixture.1, None)
-    };
+    let coverage = { bounded(&assembled(&fixture.0, &fixture.1, &projected(&fixture.0, &fixture.1)).0, &fixture.1) };
     let band: Vec<usize> = (0..64).filter(|&x| coverage.samples[x].is_band()).collect();
     assert_eq!((columns, band), (vec![32], vec![32]));
 }
@@ -1075,12 +1080,13 @@ fn affine_weights_are_caught() {
     let view = View::new(&camera, 64, 48, &scene.bounds(), DMat4::IDENTITY, [0.0; 4]);
     let stack = only("depth", &[]);
     let draws = draws(&scene, &view).unwrap();
-    let geometry = project(&scene, &draws, &view);
+    let geometry = projected(&scene, &view);
     let (mut frame, layers) = Adapter::default().draw(&scene, &view, &stack, &geometry);
     let mut affine = geometry.clone();
     affine.vertices.iter_mut().for_each(|vertex| vertex.inv_w = 0.25);
-    frame.color = shade(&scene, &draws, &view, &stack, &seen(&frame), &affine);
-    let accuracy = judge(&scene, &view, &stack, &frame, &geometry, Some(&layers)).unwrap().accuracy;
+    frame.color = shade(&Shot::new(&scene, &draws, &view, &stack), &seen(&frame), &affine);
+    let accuracy =
+        judge(&scene, &view, &stack, &AdapterPicture { layers: Some(&layers), ..AdapterPicture::new(&frame, &geometry) }).unwrap().accuracy;
     assert!(geometry.pieces.is_empty() && accuracy.wrong_triangles == 0 && accuracy.max_color_delta > 20, "{accuracy:?}");
 }
 
@@ -1172,7 +1178,7 @@ fn vertex_outside_its_bound_is_caught() {
 #[test]
 fn lost_piece_of_a_cut_triangle_is_caught() {
     let fixture = still_life([64, 48]);
-    let count = project(&fixture.0, &draws(&fixture.0, &fixture.1).unwrap(), &fixture.1).pieces.len();
+    let count = projected(&fixture.0, &fixture.1).pieces.len();
     let unexplained =
         |lost: usize| judged(&fixture, &Adapter::default(), |geometry| _ = geometry.pieces.remove(lost), |_, _| {}).unexplained;
     assert!((0..count).any(|lost| unexplained(lost) > 50));

@@ -6,7 +6,7 @@ use crate::common::*;
 use rasterlab::{
     accuracy::{DotCulling, PinnedOptions, Visibility},
     effects::{Stack, hooks::Shape},
-    frame::Frame,
+    frame::{AdapterPicture, Frame},
     gpu::{Explanation, Renderer},
     measure::compare,
     oracle,
@@ -77,7 +77,7 @@ fn the_planned_kernel_and_the_one_that_leaves_nothing_out_draw_the_same() {
         assert_ne!(key, everything, "{what}: the planner spares nothing");
         spared += u32::from(!key.has_queues());
         let band = if stack.has_steps() || !scene.images.is_empty() {
-            let verdict = oracle::judge(&scene, &view, &stack, &planned.frame, &planned.geometry, planned.layers.as_deref());
+            let verdict = oracle::judge(&scene, &view, &stack, &AdapterPicture { previous: None, ..planned.picture() });
             verdict.unwrap_or_else(|error| panic!("{what}: {error}")).step_band
         } else {
             Vec::new()

@@ -12,7 +12,7 @@ use rasterlab::{
     gpu::{Gpu, Renderer, buffers},
     math::{fnv1a, hash},
     measure::compare,
-    oracle::{self, flushed},
+    oracle::{self, ftz},
     plan::{AccuracyRequest, Tuning},
     scene::{
         Scene,
@@ -124,10 +124,10 @@ fn differences(gpu: &Gpu, library: &Library, seed: u32, count: u32) -> Vec<Strin
     for (&[x, y], found) in pairs.iter().zip(calculated(gpu, library, &pairs)) {
         let (a, b) = (f32::from_bits(x), f32::from_bits(y));
         let expected = [
-            Some(flushed::sum(a, b)).filter(|v| v.is_finite()).map(f32::to_bits),
-            Some(flushed::product(a, b)).filter(|v| v.is_finite()).map(f32::to_bits),
-            Some(flushed::quotient(a, b)).filter(|v| v.is_finite()).map(f32::to_bits),
-            Some(flushed::round(a) as u32),
+            Some(ftz::sum(a, b)).filter(|v| v.is_finite()).map(f32::to_bits),
+            Some(ftz::product(a, b)).filter(|v| v.is_finite()).map(f32::to_bits),
+            Some(ftz::quotient(a, b)).filter(|v| v.is_finite()).map(f32::to_bits),
+            Some(ftz::round(a) as u32),
         ];
         for (name, (expected, found)) in ["+", "*", "/", "round"].into_iter().zip(expected.into_iter().zip(found)) {
             compared += u64::from(expected.is_some());

@@ -272,7 +272,8 @@ fn largest_jump(fade: f64, steps: u32) -> f64 {
         let camera = rasterlab::scene::camera::Camera { eye, target: [0.0; 3].into(), ..Default::default() };
         let mut view = camera_view(&scene, &camera, [160, 120]);
         view.scene_state.polyline = zigzag.as_slice().into();
-        let records = oracle::dot_records(&scene, &draws(&scene, &view).expect("it fits"), &view, &stack).expect("they fit");
+        let records =
+            oracle::dot_records(&oracle::Shot::new(&scene, &draws(&scene, &view).expect("it fits"), &view, &stack)).expect("they fit");
         let strengths = oracle::dot_strengths(&view, &stack, &records, &vec![0; view.pixels()]);
         strengths.iter().map(|s| f64::from(*s)).sum::<f64>() / strengths.len() as f64 / f64::from(FULL)
     };

@@ -304,7 +304,9 @@ fn the_judge_counts_what_a_race_lost_and_refuses_what_it_cannot_lose() {
     let (view, plain, racing) = (pixel_view(32, 32), stack(&[]), stack(&["race"]));
     let capture = captured(&mut renderer, &scene, &view, &plain, &AccuracyRequest::default());
     let judge = |frame: &rasterlab::frame::Frame, stack: &Stack| {
-        oracle::judge(&scene, &view, stack, frame, &capture.geometry, capture.layers.as_deref()).expect("it fits").accuracy
+        oracle::judge(&scene, &view, stack, &rasterlab::frame::AdapterPicture { frame, previous: None, ..capture.picture() })
+            .expect("it fits")
+            .accuracy
     };
     // Another triangle of the same pixel: what is drawn once the triangle id is gone.
     let pixel = capture.layers.as_ref().expect("counted").iter().position(|&layers| layers > 3).expect("a crowded pixel");

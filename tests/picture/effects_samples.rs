@@ -9,7 +9,7 @@ use rasterlab::{
     effects::{Effect, Stack, dissolve::Mode, draw_order::Unit},
     frame::Geometry,
     measure::Budget,
-    oracle::{self, SampleTests},
+    oracle::{self, SampleTests, Shot},
     scene::{Scene, draw::draws, view::View},
 };
 
@@ -39,23 +39,24 @@ struct Drawn {
 impl Drawn {
     fn of(scene: &Scene, view: &View, stack: &Stack) -> Self {
         let draws = draws(scene, view).expect("a scene that fits");
-        let mut geometry = oracle::project(scene, &draws, view);
-        geometry.sample_setups = oracle::decide(scene, &draws, view, stack, &geometry);
-        let (triangles, _) = oracle::triangles(scene, &draws, &geometry);
+        let shot = Shot::new(scene, &draws, view, stack);
+        let mut geometry = oracle::project(&Shot { stack: &Stack::default(), ..shot });
+        geometry.sample_setups = oracle::sample_setups(&shot, &geometry);
+        let (triangles, _) = oracle::triangles(&shot, &geometry);
         Self { geometry, triangles }
     }
 
     /// Layers of every pixel.
     fn layers(&self, view: &View, stack: &Stack) -> Vec<u32> {
-        let rules = SampleTests::of(stack, &self.geometry).ordered(stack, &self.triangles, view);
-        oracle::cover_with(&rules, &self.triangles, view, None).layers()
+        let tests = oracle::limited(SampleTests::of_effects(stack, &self.geometry), stack, &self.triangles, view);
+        oracle::cover_with(&tests, &self.triangles, view).layers()
     }
 
     /// Samples of each triangle, its pieces apart.
     fn samples(&self, view: &View, stack: &Stack) -> BTreeMap<usize, u64> {
-        let rules = SampleTests::of(stack, &self.geometry).ordered(stack, &self.triangles, view);
+        let tests = oracle::limited(SampleTests::of_effects(stack, &self.geometry), stack, &self.triangles, view);
         let one = |t: &oracle::OrientedTriangle| {
-            let layers = oracle::cover_with(&rules, std::slice::from_ref(t), view, None).layers();
+            let layers = oracle::cover_with(&tests, std::slice::from_ref(t), view).layers();
             (t.entry, layers.iter().map(|&count| u64::from(count)).sum())
         };
         self.triangles.iter().map(one).collect()

@@ -12,7 +12,7 @@ use rasterlab::{
         particles::{self, EFFECT, Particles},
         read,
     },
-    frame::{Geometry, ParticleReadback, ParticleState, SnappedVertex},
+    frame::{AdapterPicture, Geometry, ParticleReadback, ParticleState, SnappedVertex},
     gpu::{Capture, Gpu, Renderer},
     measure::{Budget, ErrorReport as Measured},
     oracle::{self, OrientedTriangle, SampleTests},
@@ -95,7 +95,7 @@ fn the_flow_has_no_sources_and_no_sinks() {
 }
 
 fn particles_flow(p: &Particles, place: DVec3) -> DVec3 {
-    oracle::particles::particle_timeline(p, place, 20)
+    oracle::particles::flow(p, place, 20)
 }
 
 #[test]
@@ -118,7 +118,7 @@ fn births_fill_the_ellipsoid_evenly_and_lives_begin_at_every_age() {
     let preset = preset_file(&[("count", &[20_000.0]), ("spread", &spread), ("origin", &[1.0, 2.0, 3.0])]);
     let p: Particles = preset.stack.params(EFFECT.name).expect("particles");
     let particle_states: Vec<_> = (0..20_000).map(|id| oracle::particles::first(&p, id)).collect();
-    let shares: Vec<DVec3> = particle_states.iter().map(|f| (f.place - DVec3::new(1.0, 2.0, 3.0)) / DVec3::from_array(spread)).collect();
+    let shares: Vec<DVec3> = particle_states.iter().map(|f| (f.position - DVec3::new(1.0, 2.0, 3.0)) / DVec3::from_array(spread)).collect();
     assert!(shares.iter().all(|share| share.length() <= 1.0));
     // A ball of half the radius has an eighth of the volume; one of 0.8, 0.512 of it. The last attempt, halved, adds 1 %.
     for (radius, volume) in [(0.5, 0.125), (0.8, 0.512)] {
@@ -140,7 +140,7 @@ fn disc(corners: [[i32; 2]; 3], view: &View) -> Vec<u32> {
     let corners = corners.map(|[x, y]| SnappedVertex { x, y, depth: 0.5, inv_w: 1.0, flags: 0 });
     let geometry = Geometry { particle_discs: 0..1, ..Geometry::default() };
     let stack = stack(&[]);
-    oracle::cover_with(&SampleTests::of(&stack, &geometry), &[OrientedTriangle::clockwise(0, corners)], view, None).layers()
+    oracle::cover_with(&SampleTests::of_effects(&stack, &geometry), &[OrientedTriangle::clockwise(0, corners)], view).layers()
 }
 
 #[test]
@@ -448,7 +448,7 @@ fn a_mistake_in_the_pass_is_found() {
             renderer.set_scene(&scene).expect("a builtin fits");
             let (view, stack) = (preset.view(&scene, SIZE), preset.evaluated_stack());
             let Ok(capture) = renderer.capture(&view, &stack, &AccuracyRequest::default()) else { return true };
-            let verdict = oracle::judge(&scene, &view, &stack, &capture.frame, &capture.geometry, capture.layers.as_deref());
+            let verdict = oracle::judge(&scene, &view, &stack, &AdapterPicture { previous: None, ..capture.picture() });
             verdict.expect("it can be judged").accuracy.within(&Budget::default()).is_err()
         });
         assert!(is_found, "{file}: {wrong:?} for {right:?} goes unnoticed");

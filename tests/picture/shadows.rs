@@ -280,7 +280,8 @@ fn finer_maps_are_nearer_to_the_rays() {
         let triangle_ids = oracle::render(&scene, &view, &stack).expect("a scene that fits").triangle_id;
         let draws = rasterlab::scene::draw::draws(&scene, &view).expect("a scene that fits");
         let light = oracle::shadow_map(&scene, &view, &stack).expect("a scene that fits");
-        let geometry = rasterlab::frame::Geometry { light, ..oracle::project(&scene, &draws, &view) };
+        let geometry =
+            rasterlab::frame::Geometry { light, ..oracle::project(&oracle::Shot::new(&scene, &draws, &view, &Stack::default())) };
         oracle::shadow_errors(&scene, &view, &stack, &triangle_ids, &geometry).expect("a scene that fits").expect("there is a light")
     };
     let [coarse, usual, fine] =

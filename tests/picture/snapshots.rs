@@ -392,9 +392,10 @@ fn exchanged_triangle_ids_a_wrong_seed_and_a_reversed_stack_are_caught() {
         })
         .collect();
     let draws = rasterlab::scene::draw::draws(&scene, &view).expect("a preset fits");
-    let seen = oracle::Seen { triangle_ids: &exchanged, keys: &whole.key, dots: &whole.dots, previous: None };
-    let colors =
-        oracle::shade(&scene, &draws, &view, &preset_file.preset.evaluated_stack(), &seen, &oracle::project(&scene, &draws, &view));
+    let input = oracle::ResolveInput { triangle_ids: &exchanged, keys: &whole.key, dots: &whole.dots, previous: None };
+    let (stack, plain) = (preset_file.preset.evaluated_stack(), rasterlab::effects::Stack::default());
+    let shot = oracle::Shot::new(&scene, &draws, &view, &stack);
+    let colors = oracle::shade(&shot, &input, &oracle::project(&oracle::Shot { stack: &plain, ..shot }));
     let changed = whole.triangle_id.iter().filter(|&&o| o == a || o == b).count() as u64;
     assert_eq!(triangle_ids(&exchanged, &whole.triangle_id).different, changed);
     assert!(complaint(&preset_file.preset, &colors, &whole.color).is_some(), "exchanged triangle ids");

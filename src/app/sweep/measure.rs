@@ -29,8 +29,7 @@ pub fn measure(adapter: String, scene: &Arc<Scene>, request: &Request, progress:
     let view = preset.view(scene, *size);
     let references = oracle::references(scene, &view, &preset.stack, &factors(preset, axes)).map_err(|e| e.to_string())?;
     let judge = |view: &View, stack: &Stack, capture: &Capture| {
-        let (layers, previous) = (capture.layers.as_deref(), capture.previous.as_deref());
-        let verdict = oracle::judge_after(scene, view, stack, &capture.frame, &capture.geometry, layers, previous);
+        let verdict = oracle::judge(scene, view, stack, &capture.picture());
         let light = oracle::shadow_errors(scene, view, stack, &capture.frame.triangle_id, &capture.geometry);
         let reason = "a scene that was drawn can be judged";
         Judged { verdict: verdict.expect(reason), light: light.expect(reason) }

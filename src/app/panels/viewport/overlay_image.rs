@@ -8,7 +8,7 @@ use crate::{
     effects::overdraw::Overdraw,
     frame::NO_TRIANGLE,
     math::hash,
-    measure::faults::PixelError,
+    measure::error_map::PixelError,
 };
 
 /// Brightness of the picture under errors, of 255, so that a single wrong pixel can be seen.
@@ -38,16 +38,16 @@ fn color(found: &Findings, overlay: Overlay, i: usize, gain: u8, heat: &Overdraw
         Overlay::TriangleIds => (found.triangle_ids[i] != NO_TRIANGLE).then(|| triangle_color(found.triangle_ids[i])),
         Overlay::Layers => (found.layers[i] > 0).then(|| layers_color(heat, found.layers[i])),
         Overlay::Colour => {
-            let delta = found.faults.colour[i].saturating_mul(gain);
+            let delta = found.faults.color_delta[i].saturating_mul(gain);
             (delta > 0).then(|| overlay.color().gamma_multiply(f32::from(delta) / 255.0))
         }
         Overlay::Edges => found.is_edge(i).then(|| overlay.color()),
         Overlay::NotReference => found.differs_from_reference(i).then(|| overlay.color()),
-        Overlay::Ties => has(PixelError::Tie).then(|| overlay.color()),
-        Overlay::Doubles => has(PixelError::Double).then(|| overlay.color()),
+        Overlay::Ties => has(PixelError::DepthBand).then(|| overlay.color()),
+        Overlay::Doubles => has(PixelError::DoubleHit).then(|| overlay.color()),
         Overlay::Holes => has(PixelError::Hole).then(|| overlay.color()),
-        Overlay::WrongTriangle => has(PixelError::TriangleId).then(|| overlay.color()),
-        Overlay::WrongDepth => has(PixelError::Depth).then(|| overlay.color()),
+        Overlay::WrongTriangle => has(PixelError::WrongTriangle).then(|| overlay.color()),
+        Overlay::WrongDepth => has(PixelError::WrongDepthOrder).then(|| overlay.color()),
         Overlay::Unsound => has(PixelError::Unsound).then(|| overlay.color()),
     }
 }
@@ -71,7 +71,7 @@ pub fn rings(found: &Findings, shown: &[Overlay]) -> Vec<(usize, Color32)> {
         let is_there = |&i: &usize| match overlay.fault() {
             Some(fault) => found.faults.has(i, fault),
             None if *overlay == Overlay::NotReference => found.differs_from_reference(i),
-            None => *overlay == Overlay::Colour && found.faults.colour[i] > 0,
+            None => *overlay == Overlay::Colour && found.faults.color_delta[i] > 0,
         };
         rings.extend((0..found.faults.pixels()).filter(is_there).map(|i| (i, overlay.color())));
     }

@@ -49,7 +49,7 @@ fn line(overlay: Overlay, gain: u8, found: &Findings) -> Line {
     let (name, count) = (overlay.name().to_lowercase(), grouped(found.count(overlay)));
     let text = match overlay {
         Overlay::Colour => {
-            let max = found.faults.colour.iter().max().copied().unwrap_or(0);
+            let max = found.faults.color_delta.iter().max().copied().unwrap_or(0);
             format!("{name} × {gain}: {count} px, at most {max} of 255")
         }
         Overlay::Layers => format!("{name}: up to {}", found.layers.iter().max().copied().unwrap_or(0)),
@@ -112,14 +112,14 @@ mod tests {
         gpu::Capture,
         measure::{
             Verdict,
-            faults::{ErrorMap, PixelError},
+            error_map::{ErrorMap, PixelError},
         },
     };
 
     fn found(marked: &[usize]) -> Findings {
         let picture = [[9; 4]; 6];
         let faults = ErrorMap::new(&picture, &picture, |i| {
-            if marked.contains(&i) { vec![PixelError::TriangleId, PixelError::Hole] } else { Vec::new() }
+            if marked.contains(&i) { vec![PixelError::WrongTriangle, PixelError::Hole] } else { Vec::new() }
         });
         let frame = Frame { width: 3, height: 2, triangle_id: vec![0; 6], color: picture.to_vec(), ..Default::default() };
         let capture = Capture { frame, geometry: Default::default(), layers: None, previous: None, shown: None };

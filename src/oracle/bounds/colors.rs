@@ -1,0 +1,78 @@
+//! Right colours where a step decides (`docs/exactness.md` §9): a value that f64 puts on one side of a step may lie on the other in
+//! f32, and then either answer is right.
+//!
+//! An effect decides a step on a value plus [`Perturbation::color_step`](super::super::perturbation::Perturbation), so shading with a small perturbation to either side finds
+//! the pixels that lie so near a step: the step band. It does not depend on the adapter's picture; it is counted, and an
+//! [`Budget`](crate::measure::Budget) limits it. Texture lookups are perturbed in the same way; there, values between the
+//! answers are right as well.
+
+use super::{
+    super::{
+        perturbation::Perturbation,
+        render::{
+            layers::LayerImage,
+            resolve::{ResolveInput, finish, shade_perturbed},
+        },
+        shot::Shot,
+    },
+    layers::LayerBounds,
+    perturbations::{color_steps, has_textures, perturbations},
+};
+use crate::frame::Geometry;
+
+/// The pictures that are right.
+pub struct AcceptedColors {
+    /// The exact picture first.
+    pictures: Vec<Vec<[u8; 4]>>,
+    /// Values between the pictures are right too.
+    is_span: bool,
+    /// Pictures that belong to the same perturbation of color steps.
+    per_step: usize,
+}
+
+impl AcceptedColors {
+    /// Of a picture that shows the nearest triangle of each pixel.
+    pub fn of_surfaces(shot: &Shot, input: &ResolveInput, geometry: &Geometry) -> Self {
+        let shaded = |perturbation: &Perturbation| shade_perturbed(shot, input, geometry, perturbation);
+        // Taps of a shadow map change one by one, so any fraction between the extremes is right.
+        let is_span = has_textures(shot.scene) || shot.stack.light().is_some();
+        Self { pictures: perturbations(shot.scene, shot.stack).iter().map(shaded).collect(), is_span, per_step: 1 }
+    }
+
+    /// Of a picture of layers.
+    pub fn of_layers(shot: &Shot, input: &ResolveInput, image: &LayerImage, bounds: &LayerBounds) -> Self {
+        let ends = [0, 1].map(|end| bounds.colors.iter().map(|bounds| bounds[end]).collect::<Vec<_>>());
+        let finished = |&step: &f64| [&image.colors, &ends[0], &ends[1]].map(|colors| finish(shot, input, colors, step));
+        Self { pictures: color_steps(shot.stack).iter().flat_map(finished).collect(), is_span: true, per_step: 3 }
+    }
+
+    /// The exact picture.
+    pub fn exact(&self) -> Vec<[u8; 4]> {
+        self.pictures[0].clone()
+    }
+
+    /// For every channel, the right answer nearest to the adapter's.
+    pub fn nearest(&self, adapter: &[[u8; 4]]) -> Vec<[u8; 4]> {
+        let channel = |i: usize, c: usize| {
+            let answers = self.pictures.iter().map(|picture| picture[i][c]);
+            if self.is_span {
+                let (least, most) = answers.fold((u8::MAX, u8::MIN), |(least, most), answer| (least.min(answer), most.max(answer)));
+                return adapter[i][c].clamp(least, most);
+            }
+            answers.min_by_key(|answer| answer.abs_diff(adapter[i][c])).expect("there is an answer")
+        };
+        (0..adapter.len()).map(|i| [0, 1, 2, 3].map(|c| channel(i, c))).collect()
+    }
+
+    /// The step band: pixels with answers more than 1 of 255 apart because of a step of colour. Empty without steps.
+    pub fn step_band(&self) -> Vec<bool> {
+        // Of layers, the exact picture of every step.
+        let answers: Vec<_> = self.pictures.iter().step_by(self.per_step).collect();
+        let [exact, others @ ..] = answers.as_slice() else { return Vec::new() };
+        if others.is_empty() {
+            return Vec::new();
+        }
+        let differs = |i: usize| others.iter().any(|other| (0..4).any(|c| other[i][c].abs_diff(exact[i][c]) > 1));
+        (0..exact.len()).map(differs).collect()
+    }
+}

@@ -1,0 +1,120 @@
+//! Coverage with the depth interval of every float renderer: where two triangles may both be nearest (`docs/exactness.md` §6 and
+//! §9).
+//!
+//! A float depth key may lie anywhere in the interval [low, high] round the f64 depth: its relative bound ([`depth_bound`]),
+//! clamped to the depths of the triangle's corners, to which every renderer clamps.
+
+use super::super::{
+    arithmetic::depth_key::depth_bound,
+    render::{
+        coverage::{Hit, Sample, scatter},
+        sample_tests::SampleTests,
+        triangles::OrientedTriangle,
+    },
+};
+use crate::scene::view::View;
+
+/// What is visible at the sample of one pixel, and what a float renderer may find instead.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct BoundedSample {
+    /// What f64 finds.
+    pub nearest: Sample,
+    /// Depth interval of the nearest triangle.
+    pub interval: [f64; 2],
+    /// Largest high end among the other triangles.
+    pub rival: f64,
+    /// Largest low end of all: a triangle that does not reach this depth is certainly hidden.
+    pub floor: f64,
+    /// Depth interval of the triangle that is claimed for this pixel, if it covers the sample.
+    pub claimed: Option<[f64; 2]>,
+}
+
+impl BoundedSample {
+    const EMPTY: Self = Self {
+        nearest: Sample::EMPTY,
+        interval: [f64::NEG_INFINITY; 2],
+        rival: f64::NEG_INFINITY,
+        floor: f64::NEG_INFINITY,
+        claimed: None,
+    };
+
+    /// Returns true in the depth band: two triangles lie so close that a float key may prefer either.
+    pub fn is_band(&self) -> bool {
+        self.nearest.layers > 1 && self.rival > self.interval[0]
+    }
+
+    /// Returns true if the claimed triangle may be in front: it covers the sample and reaches the [`Self::floor`].
+    pub fn claim_is_possible(&self) -> bool {
+        self.claimed.is_some_and(|[_, high]| high >= self.floor)
+    }
+
+    /// Returns true if a triangle id is right: the nearest, or in the depth band the claimed one.
+    pub fn allows(&self, triangle_id: u32) -> bool {
+        triangle_id == self.nearest.triangle_id || self.is_band() && self.claim_is_possible()
+    }
+
+    fn add(&mut self, id: u32, depth: f64, interval: [f64; 2], claim: u32) {
+        self.floor = self.floor.max(interval[0]);
+        if id == claim {
+            self.claimed = Some(interval);
+        }
+        let before = self.nearest.triangle_id;
+        let is_nearest = self.nearest.add(id, depth);
+        if id != before {
+            self.rival = self.rival.max(if is_nearest { self.interval[1] } else { interval[1] });
+        }
+        if is_nearest {
+            self.interval = interval;
+        }
+    }
+}
+
+/// One [`BoundedSample`] per pixel, row-major, top row first.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct BoundedCoverage {
+    pub samples: Vec<BoundedSample>,
+}
+
+impl BoundedCoverage {
+    pub fn triangle_ids(&self) -> Vec<u32> {
+        self.samples.iter().map(|sample| sample.nearest.triangle_id).collect()
+    }
+
+    pub fn keys(&self) -> Vec<u32> {
+        self.samples.iter().map(|sample| sample.nearest.key).collect()
+    }
+}
+
+/// Finds what covers every sample of `view`, with bounds; `claims` has the triangle id that a renderer found at each pixel.
+pub fn cover_claims(tests: &SampleTests, triangles: &[OrientedTriangle], view: &View, claims: &[u32]) -> BoundedCoverage {
+    let mut samples = vec![BoundedSample::EMPTY; view.pixels()];
+    scatter(tests, triangles, view, &mut samples, |triangle| {
+        move |sample: &mut BoundedSample, x: usize, y: usize, hit: Hit| {
+            sample.add(triangle.id, hit.depth, depth_interval(triangle, &hit), claims[y * view.width as usize + x]);
+        }
+    });
+    BoundedCoverage { samples }
+}
+
+/// The interval in which the nearest float key of every sample of `view` lies; negative infinities where nothing is.
+pub fn nearest_intervals(tests: &SampleTests, triangles: &[OrientedTriangle], view: &View) -> Vec<[f64; 2]> {
+    let mut intervals = vec![[f64::NEG_INFINITY; 2]; view.pixels()];
+    scatter(tests, triangles, view, &mut intervals, |triangle| {
+        move |nearest: &mut [f64; 2], _, _, hit: Hit| {
+            let interval = depth_interval(triangle, &hit);
+            // Any triangle whose interval reaches farthest may be in front.
+            *nearest = [0, 1].map(|end| nearest[end].max(interval[end]));
+        }
+    });
+    intervals
+}
+
+/// The depths between which a float renderer's depth of a hit lies.
+pub fn depth_interval(triangle: &OrientedTriangle, hit: &Hit) -> [f64; 2] {
+    if !hit.is_interpolated {
+        return [hit.depth; 2];
+    }
+    let [low, high] = triangle.depth_range();
+    let error = hit.depth.abs() * depth_bound(&triangle.corners);
+    [(hit.depth - error).max(low), (hit.depth + error).min(high)]
+}

@@ -1,0 +1,176 @@
+//! Which pictures of layers are right. An adapter sums f32 colours and weights rounded to whole numbers. Where either answer of a
+//! rounding is right, or a float key may lie on either side of the depth window, a pixel has an interval of right answers
+//! (`docs/exactness.md` §9), which does not depend on the adapter's answer.
+
+use glam::{DVec3, DVec4};
+
+use super::{
+    super::render::{
+        coverage::{Hit, scatter},
+        draw_order::ranks,
+        layers::{LayerImage, LayerInput, LayerMode, fixed_color, fixed_weight, steps, window_depth, xray_color},
+        shadow::Light,
+        surface::SurfaceTriangle,
+    },
+    coverage::depth_interval,
+    perturbations::perturbations,
+};
+use crate::effects::{Surface, xray, xray::Xray};
+
+/// Bound of the error of a shaded f32 colour, of 1.
+const COLOR_ERROR: f64 = 1.0 / (1 << 16) as f64;
+
+/// Bound of the error of an f32 weight, of 1.
+const WEIGHT_ERROR: f64 = 1.0 / (1 << 15) as f64;
+
+/// Right answers for a picture of layers. Images are row-major.
+pub struct LayerBounds {
+    /// Smallest and largest value of each channel before the last rounding.
+    pub colors: Vec<[DVec4; 2]>,
+    /// Smallest and largest sum of weights, or number of layers.
+    pub counted: Vec<[u64; 2]>,
+}
+
+/// The right answers round `image`.
+pub fn layer_bounds(input: &LayerInput, image: &LayerImage) -> LayerBounds {
+    let LayerMode::Xray { params, bits } = &image.mode else {
+        let colors = image.colors.iter().map(|&color| [color; 2]).collect();
+        return LayerBounds { colors, counted: image.counted.iter().map(|&layers| [layers.into(); 2]).collect() };
+    };
+    let sums = sums(input, params, *bits);
+    let color = |(i, sum): (usize, &SumBounds)| match image.counted[i] {
+        0 => [image.colors[i]; 2],
+        _ => sum.colors(input, params, *bits),
+    };
+    LayerBounds { colors: sums.iter().enumerate().map(color).collect(), counted: sums.iter().map(SumBounds::weights).collect() }
+}
+
+/// A layer whose weight has more than one right answer.
+struct AmbiguousLayer {
+    colors: [[u64; 3]; 2],
+    weights: [u64; 2],
+}
+
+/// Bounds of the sums of one pixel.
+#[derive(Default)]
+struct SumBounds {
+    /// Of the layers with a certain weight: smallest and largest sums.
+    certain: [[u64; 3]; 2],
+    certain_weight: u64,
+    ambiguous: Vec<AmbiguousLayer>,
+}
+
+/// A layer as f32 may have it.
+struct Layer {
+    /// Smallest and largest colour.
+    colors: [DVec3; 2],
+    weight: f64,
+    weight_error: f64,
+    /// It lies inside the depth window whichever way its depth is rounded.
+    is_certain: bool,
+}
+
+fn sums(input: &LayerInput, params: &Xray, bits: u32) -> Vec<SumBounds> {
+    let (view, stack) = (input.shot.view, input.shot.stack);
+    let mut sums: Vec<SumBounds> = (0..view.pixels()).map(|_| SumBounds::default()).collect();
+    let (ranks, light) = (ranks(&input.shot, input.geometry), Light::of(&input.shot, input.geometry));
+    let perturbations = perturbations(input.shot.scene, stack);
+    let (ranks, light, perturbations) = (&ranks, light.as_ref(), &perturbations);
+    scatter(input.tests, input.triangles, view, &mut sums, |triangle| {
+        let mut surface: Option<Option<SurfaceTriangle<'_>>> = None;
+        let rank = ranks.get(triangle.id as usize).copied().unwrap_or(0.0);
+        move |sum: &mut SumBounds, x: usize, y: usize, hit: Hit| {
+            let pixel = y * view.width as usize + x;
+            let threshold = window_depth(input, params, pixel);
+            let is_nearest = input.triangle_ids[pixel] == triangle.id;
+            // A depth too small for a normal float has key 1.
+            let [low, high] = depth_interval(triangle, &hit).map(|depth| depth.max(f64::from(f32::from_bits(1))));
+            if high < threshold && !is_nearest {
+                return;
+            }
+            let Some(known) = surface.get_or_insert_with(|| SurfaceTriangle::new(&input.shot, input.geometry, triangle.id)) else { return };
+            let lit_point = known.lit_point(&known.surface(x, y, [0.0; 3]));
+            let mut shaded = perturbations.iter().map(|perturbation| {
+                let step = perturbation.color_step;
+                let lit = light.map_or(0.0, |light| light.arrives(&lit_point, triangle.id, step));
+                stack.shade(Surface { rank, lit, nudge: step, ..known.surface(x, y, perturbation.texture) })
+            });
+            let exact = shaded.next().expect("the first perturbation is none");
+            let color = exact.color.truncate();
+            let colors = shaded.fold([color; 2], |[least, most], shaded| {
+                let color = shaded.color.truncate();
+                [least.min(color), most.max(color)]
+            });
+            // On a clipped triangle f32 has a sample's position only to some 2^-16 of its distance.
+            let weight_error = match (params.unit() > 1, triangle.is_clipped()) {
+                (false, _) => 0.0,
+                (true, false) => WEIGHT_ERROR,
+                (true, true) => 8.0 * WEIGHT_ERROR,
+            };
+            sum.add(&Layer { colors, weight: params.weight_of(&exact), weight_error, is_certain: is_nearest || low >= threshold }, bits);
+        }
+    });
+    sums
+}
+
+impl SumBounds {
+    fn add(&mut self, layer: &Layer, bits: u32) {
+        let error = layer.weight_error * f64::from(xray::FULL_WEIGHT);
+        let [low, high] = [-error, error].map(|error| fixed_weight(layer.weight, error));
+        let colors = [fixed_color(layer.colors[0], -COLOR_ERROR, bits), fixed_color(layer.colors[1], COLOR_ERROR, bits)];
+        if layer.is_certain && low == high {
+            for (sums, color) in self.certain.iter_mut().zip(colors) {
+                (0..3).for_each(|c| sums[c] += color[c] * low);
+            }
+            self.certain_weight += low;
+        } else {
+            self.ambiguous.push(AmbiguousLayer { colors, weights: [if layer.is_certain { low } else { 0 }, high] });
+        }
+    }
+
+    /// Smallest and largest sum of weights.
+    fn weights(&self) -> [u64; 2] {
+        [0, 1].map(|end| self.certain_weight + self.ambiguous.iter().map(|layer| layer.weights[end]).sum::<u64>())
+    }
+
+    /// Colours between which every right answer lies: both ends of the average with both ends of the weight.
+    fn colors(&self, input: &LayerInput, params: &Xray, bits: u32) -> [DVec4; 2] {
+        let average = |end: End| DVec3::from_array([0, 1, 2].map(|channel| self.average(channel, end) / steps(bits)));
+        let corners = [End::Least, End::Most].map(|end| self.weights().map(|weight| xray_color(input, params, average(end), weight)));
+        let all = corners.as_flattened();
+        let fold = |pick: fn(DVec4, DVec4) -> DVec4| all.iter().copied().reduce(pick).expect("four corners");
+        [fold(DVec4::min), fold(DVec4::max)]
+    }
+
+    /// Smallest or largest average of a channel, in steps. For the largest, layers above the average weigh as much and those below
+    /// as little as they may; for the smallest, the other way round. The average is found by iteration (Dinkelbach 1967).
+    fn average(&self, channel: usize, end: End) -> f64 {
+        let certain = self.certain[end as usize][channel];
+        let mut average = certain as f64 / self.certain_weight.max(1) as f64;
+        for _ in 0..32 {
+            let (mut sum, mut weight) = (certain, self.certain_weight);
+            for layer in &self.ambiguous {
+                let color = layer.colors[end as usize][channel];
+                let taken = layer.weights[usize::from((color as f64 > average) == (end == End::Most))];
+                (sum, weight) = (sum + color * taken, weight + taken);
+            }
+            let next = sum as f64 / weight.max(1) as f64;
+            if next == average {
+                break;
+            }
+            average = next;
+        }
+        // The last division rounds to the nearest step.
+        if self.ambiguous.is_empty() && self.certain[0][channel] == self.certain[1][channel] {
+            return xray::average(self.certain[0][channel], self.certain_weight) as f64;
+        }
+        if end == End::Most { (average + 0.5).floor() } else { (average - 0.5).ceil() }
+    }
+}
+
+/// An end of an interval.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum End {
+    Least = 0,
+    Most = 1,
+}

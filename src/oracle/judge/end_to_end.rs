@@ -1,0 +1,127 @@
+//! End to end: an adapter's picture against the oracle's own, from the matrix bits on. Only what snapped vertices explain may
+//! differ.
+
+use super::{
+    super::{
+        bounds::coverage::{BoundedCoverage, cover_claims},
+        render::{
+            draw_order::limited,
+            sample_setup::effects_with_setup,
+            sample_tests::{DrawLimit, SampleTests},
+            triangles::triangles,
+        },
+        shot::Shot,
+    },
+    freedom::Freedom,
+    outline::{Outline, SamplePosition},
+    vertices::VertexError,
+};
+use crate::{
+    effects::hooks::Shape,
+    frame::{Exactness, Frame, Geometry},
+    measure::ErrorReport,
+};
+
+/// An adapter's picture beside the oracle's own.
+pub struct EndToEnd<'a> {
+    pub shot: &'a Shot<'a>,
+    /// The oracle's geometry.
+    pub own: &'a Geometry,
+    /// The adapter's geometry.
+    pub adapter: &'a Geometry,
+    /// Where the adapter's draw order stops.
+    pub limit: Option<DrawLimit>,
+    pub vertices: &'a [VertexError],
+}
+
+impl EndToEnd<'_> {
+    /// Counts the pixels that differ from the oracle's own picture, explained by the snap or not. `coverage` is that of the
+    /// adapter's geometry.
+    pub fn judge(&self, report: &mut ErrorReport, coverage: &BoundedCoverage, frame: &Frame, freedom: Freedom) {
+        if freedom.is_scheduled() {
+            return;
+        }
+        let (triangles, _) = triangles(self.shot, self.own);
+        let tests = limited(SampleTests::new(self.shot, self.own), self.shot.stack, &triangles, self.shot.view);
+        let own = cover_claims(&tests, &triangles, self.shot.view, &frame.triangle_id);
+        for (pixel, (reference, sample)) in own.samples.iter().zip(&coverage.samples).enumerate() {
+            let triangle_id = frame.triangle_id[pixel];
+            let is_right = reference.allows(triangle_id) && (!self.is_strict() || frame.key[pixel] == reference.nearest.key);
+            // A triangle id that is wrong even for the adapter's own geometry has been counted before.
+            if is_right || !sample.allows(triangle_id) {
+                continue;
+            }
+            if !self.is_strict() && self.may_differ(pixel, reference.nearest.triangle_id, triangle_id, tests.limit()) {
+                report.explained_by_snap += 1;
+            } else {
+                report.unexplained += 1;
+            }
+        }
+    }
+
+    /// Records and keys are the same everywhere, so nothing may differ.
+    fn is_strict(&self) -> bool {
+        self.own.exact == Exactness { vertices: true, keys: true }
+    }
+
+    /// Returns true if the oracle may find triangle `own` at a pixel where the adapter finds `given`; `limit` is where the oracle's
+    /// draw order stops.
+    fn may_differ(&self, pixel: usize, own: u32, given: u32, limit: Option<DrawLimit>) -> bool {
+        self.adapter.is_rough || self.is_near_limit(given, limit) || self.is_near_limit(own, limit) || self.snap_explains(own, given, pixel)
+    }
+
+    /// Returns true for a triangle between the oracle's and the adapter's draw limit: one sample more or less moves the limit.
+    fn is_near_limit(&self, triangle_id: u32, own: Option<DrawLimit>) -> bool {
+        let boundaries = [self.limit, own].map(|limit| limit.map(|limit| limit.boundary_triangle));
+        match boundaries {
+            [Some(a), Some(b)] if self.limit != own => (a.min(b)..=a.max(b)).contains(&triangle_id),
+            _ => false,
+        }
+    }
+
+    /// Returns true if two triangles may take each other's place at a pixel because vertices moved: an outline passed over the
+    /// sample, or the two surfaces cross there.
+    fn snap_explains(&self, a: u32, b: u32, pixel: usize) -> bool {
+        let at = SamplePosition::of(self.shot.view, pixel);
+        let outlines: Vec<Outline> = [a, b].into_iter().filter_map(|id| self.outline(id)).collect();
+        if outlines.iter().any(|outline| outline.may_pass(&at)) {
+            return true;
+        }
+        // Sample effects test the inside of triangles, where a moved corner or another setup may change the result.
+        let may_test_differently = |id: u32| self.outline(id).is_some_and(|outline| outline.reach > 0.0) || self.has_other_setup(id);
+        if self.shot.stack.each(|hooks| hooks.sample).next().is_some() && [a, b].into_iter().any(may_test_differently) {
+            return true;
+        }
+        let depths: Option<Vec<[f64; 2]>> = outlines.iter().map(|outline| outline.depths(&at)).collect();
+        matches!(depths.as_deref(), Some([a, b]) if a[0] <= b[1] && b[0] <= a[1])
+    }
+
+    /// Returns true if the adapter's sample setups of a triangle are not the oracle's.
+    fn has_other_setup(&self, id: u32) -> bool {
+        let setups = effects_with_setup(self.shot.stack).len();
+        let of = |geometry: &Geometry| geometry.sample_setups.get(id as usize * setups..(id as usize + 1) * setups).map(<[_]>::to_vec);
+        of(self.adapter) != of(self.own)
+    }
+
+    /// Where a triangle is drawn and how far it may move: as far as its corners did; if it is clipped, a pixel and what vertex
+    /// effects err by at its corners.
+    fn outline(&self, id: u32) -> Option<Outline> {
+        let draw = self.shot.draw_of(id)?;
+        let records = self.shot.corner_records(draw, self.own, id);
+        let errors = self.shot.corner_indices(draw, self.own, id).map(|index| self.vertices[index]);
+        let is_whole = records.iter().all(|record| record.flags == 0);
+        let moved = f64::from(errors.iter().map(|error| error.delta).max().unwrap_or(0));
+        let pixel = f64::from(self.shot.view.units_per_pixel());
+        let reach = match errors.iter().any(|error| error.is_ill_conditioned) {
+            true => f64::INFINITY,
+            false if is_whole => 1.5 * moved,
+            false => errors.iter().map(|error| 1.5 * error.clipped_displacement).fold(pixel, f64::max),
+        };
+        // The oracle's clipped triangles are sorted by parent.
+        let clipped = &self.own.pieces;
+        let fan = clipped.partition_point(|t| t.parent < id)..clipped.partition_point(|t| t.parent <= id);
+        let is_disc = self.shot.stack.shape() == Shape::Triangles && self.own.particle_discs.contains(&id);
+        let triangles = if is_whole { vec![records] } else { clipped[fan].iter().map(|triangle| triangle.corners).collect() };
+        Some(Outline { is_disc, triangles, reach })
+    }
+}

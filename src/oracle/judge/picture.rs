@@ -1,0 +1,199 @@
+//! The verdict about one picture.
+//!
+//! Vertices are judged from the matrix bits with a forward error bound, coverage and triangle ids from the adapter's snapped
+//! vertices and clipped triangles, colours from the adapter's triangle ids. Finally the whole picture is compared with the
+//! oracle's own, where only what a snapped vertex explains may differ.
+
+use super::{
+    super::{
+        bounds::{
+            colors::AcceptedColors,
+            coverage::{BoundedCoverage, cover_claims},
+            layers::{LayerBounds, layer_bounds},
+        },
+        render::{
+            dots::dot_strengths,
+            draw_order::limited,
+            layers::{LayerImage, LayerInput, layer_image},
+            particles::scene_with_particles,
+            project::project,
+            resolve::ResolveInput,
+            sample_setup::sample_setups,
+            sample_tests::SampleTests,
+            strict::project_strict,
+            triangles::triangles,
+        },
+        shot::{Shot, drawn_view},
+    },
+    deform::judge_deformed,
+    dots::judge_dots,
+    end_to_end::EndToEnd,
+    error_map::error_map,
+    freedom::Freedom,
+    particles::judge_particles,
+    sample_setups::wrong_setups,
+    samples::{judge_layers, judge_samples},
+    shadow::judge_shadow_map,
+    vertices::{count_vertices, vertex_errors},
+};
+use crate::{
+    effects::Stack,
+    frame::{AdapterPicture, Counters, Exactness, Frame, Geometry},
+    measure::{ErrorReport, Verdict, compare},
+    scene::{
+        Scene,
+        draw::{DrawError, draws},
+        view::View,
+    },
+};
+
+/// Judges a picture that an adapter drew of `scene`.
+///
+/// # Errors
+/// [`DrawError`] if a transform or the number of triangles is out of range.
+///
+/// # Panics
+/// If an image or the geometry has another size than the view and the scene ask for.
+pub fn judge(scene: &Scene, view: &View, stack: &Stack, picture: &AdapterPicture) -> Result<Verdict, DrawError> {
+    let geometry = picture.geometry;
+    let (view, stack) = (&drawn_view(view, geometry), &stack.scaled(geometry.scale));
+    if view.pixels() == 0 {
+        draws(scene, view)?;
+        return Ok(Verdict { expected: Frame { width: view.width, height: view.height, ..Frame::default() }, ..Verdict::default() });
+    }
+    let words = geometry.particle_readback.as_ref().map(|readback| readback.words.as_slice());
+    let scene = &*scene_with_particles(scene, view, stack, words);
+    let draws = draws(scene, view)?;
+    let shot = Shot::new(scene, &draws, view, stack);
+    let own = own_geometry(&shot, geometry.exact);
+    check_sizes(&shot, picture, &own);
+
+    let mut report = ErrorReport { pixels: view.pixels() as u64, ..Default::default() };
+    let vertices = vertex_errors(&shot, geometry, &own);
+    count_vertices(&mut report, &vertices);
+    let dots = dot_strengths(view, stack, &geometry.dots, &picture.frame.key);
+    judge_geometry(&mut report, &shot, picture, &dots)?;
+
+    let (triangles, counters) = triangles(&shot, geometry);
+    let tests = SampleTests::new(&shot, geometry);
+    let freedom = Freedom::of(&shot, &tests, &triangles);
+    let tests = if freedom.is_scheduled() { tests } else { limited(tests, stack, &triangles, view) };
+    let coverage = cover_claims(&tests, &triangles, view, &picture.frame.triangle_id);
+    let end_to_end = EndToEnd { shot: &shot, own: &own, adapter: geometry, limit: tests.limit(), vertices: &vertices };
+    judge_samples(&mut report, &coverage, picture, freedom);
+    judge_counters(&mut report, &counters, picture.frame);
+    end_to_end.judge(&mut report, &coverage, picture.frame, freedom);
+
+    let (triangle_ids, keys) = (&picture.frame.triangle_id, &picture.frame.key);
+    let layer_input = LayerInput { shot, geometry, tests: &tests, triangles: &triangles, triangle_ids, keys };
+    let colors = JudgedColors::new(&layer_input, &coverage, picture, &dots);
+    let nearest = colors.judge(&mut report, picture, freedom);
+    let mut faults = error_map(&shot, &coverage, picture, &nearest, freedom);
+    let step_band = colors.accepted.step_band();
+    let (expected_colors, counted) = colors.expected(&shot, &coverage, picture, nearest);
+    faults.compare_again(&picture.frame.color, &expected_colors);
+    let expected = expected_frame(view, &coverage, expected_colors, counted, counters);
+    Ok(Verdict { accuracy: report, expected, step_band, faults })
+}
+
+/// The geometry that the oracle computes under the same promises.
+fn own_geometry(shot: &Shot, exact: Exactness) -> Geometry {
+    let geometry = if exact.vertices { project_strict(shot) } else { project(shot) };
+    let geometry = Geometry { exact, ..geometry };
+    Geometry { sample_setups: sample_setups(shot, &geometry), ..geometry }
+}
+
+fn check_sizes(shot: &Shot, picture: &AdapterPicture, own: &Geometry) {
+    let (frame, geometry) = (picture.frame, picture.geometry);
+    let sizes = [frame.triangle_id.len(), frame.key.len(), frame.color.len()];
+    assert_eq!(sizes, [shot.view.pixels(); 3], "the frame has another size");
+    let records = |geometry: &Geometry| (geometry.vertices.len(), geometry.has_unshared_vertices);
+    assert_eq!(records(geometry), records(own), "the geometry is of another scene or stack");
+    assert_eq!(geometry.light.is_some(), shot.stack.light().is_some(), "there is a shadow map if and only if there is a light");
+}
+
+/// Judges everything between the scene and coverage except the vertex records.
+fn judge_geometry(report: &mut ErrorReport, shot: &Shot, picture: &AdapterPicture, dots: &[u32]) -> Result<(), DrawError> {
+    let geometry = picture.geometry;
+    if let Some(readback) = &geometry.particle_readback {
+        judge_particles(report, shot.view, shot.stack, readback);
+    }
+    judge_deformed(report, shot, &geometry.deformed);
+    judge_dots(report, shot, &geometry.dots, &picture.frame.dots, dots)?;
+    // Setups that follow from approximate positions are approximate too.
+    report.sample_setups_wrong = if geometry.is_rough { 0 } else { wrong_setups(shot, geometry) };
+    match &geometry.light {
+        Some(map) => judge_shadow_map(report, shot, map),
+        None => Ok(()),
+    }
+}
+
+fn judge_counters(report: &mut ErrorReport, reference: &Counters, frame: &Frame) {
+    let judged = |c: &Counters| [c.rejected_nonfinite, c.rejected_range, c.degenerate];
+    report.counters_wrong = judged(reference).iter().zip(judged(&frame.counters)).filter(|(a, b)| *a != b).count() as u64;
+    report.overflow += u64::from(frame.counters.overflow);
+    report.depth_without_id = report.depth_without_id.max(frame.counters.depth_without_id.into());
+}
+
+/// The colours that are right for a picture, given its triangle ids.
+struct JudgedColors {
+    accepted: AcceptedColors,
+    /// Of a picture of layers.
+    layers: Option<(LayerImage, LayerBounds)>,
+}
+
+impl JudgedColors {
+    fn new(input: &LayerInput, coverage: &BoundedCoverage, picture: &AdapterPicture, dots: &[u32]) -> Self {
+        let resolve = ResolveInput { triangle_ids: input.triangle_ids, keys: input.keys, dots, previous: picture.previous };
+        let layers = || coverage.samples.iter().map(|sample| sample.nearest.layers).collect();
+        let layers = layer_image(input, layers).map(|image| {
+            let bounds = layer_bounds(input, &image);
+            (image, bounds)
+        });
+        let accepted = match &layers {
+            Some((image, bounds)) => AcceptedColors::of_layers(&input.shot, &resolve, image, bounds),
+            None => AcceptedColors::of_surfaces(&input.shot, &resolve, input.geometry),
+        };
+        Self { accepted, layers }
+    }
+
+    /// Judges the adapter's colours and returns the right ones nearest to them.
+    fn judge(&self, report: &mut ErrorReport, picture: &AdapterPicture, freedom: Freedom) -> Vec<[u8; 4]> {
+        let frame = picture.frame;
+        // Only the adapter's scheduler knows which layers it drew.
+        let nearest =
+            if freedom.is_scheduled() && self.layers.is_some() { frame.color.clone() } else { self.accepted.nearest(&frame.color) };
+        if let (Some((_, bounds)), false) = (&self.layers, freedom.is_scheduled()) {
+            judge_layers(report, bounds, picture);
+        }
+        let delta = compare::pictures(&nearest, &frame.color, 0);
+        (report.max_color_delta, report.rms_color_delta) = (delta.max_delta, delta.rms);
+        report.step_band_pixels = self.accepted.step_band().iter().filter(|is_band| **is_band).count() as u64;
+        nearest
+    }
+
+    /// Colours and counts of the picture with the oracle's triangle ids; `nearest` are the colours with the adapter's.
+    fn expected(
+        self,
+        shot: &Shot,
+        coverage: &BoundedCoverage,
+        picture: &AdapterPicture,
+        nearest: Vec<[u8; 4]>,
+    ) -> (Vec<[u8; 4]>, Vec<u32>) {
+        if let Some((image, _)) = self.layers {
+            return (self.accepted.exact(), image.counted);
+        }
+        let (triangle_ids, keys) = (&coverage.triangle_ids(), &coverage.keys());
+        if *triangle_ids == picture.frame.triangle_id {
+            return (nearest, Vec::new());
+        }
+        let dots = &dot_strengths(shot.view, shot.stack, &picture.geometry.dots, keys);
+        let input = ResolveInput { triangle_ids, keys, dots, previous: picture.previous };
+        (AcceptedColors::of_surfaces(shot, &input, picture.geometry).nearest(&picture.frame.color), Vec::new())
+    }
+}
+
+fn expected_frame(view: &View, coverage: &BoundedCoverage, color: Vec<[u8; 4]>, counted: Vec<u32>, counters: Counters) -> Frame {
+    let (triangle_id, key) = (coverage.triangle_ids(), coverage.keys());
+    Frame { width: view.width, height: view.height, triangle_id, key, color, counted, counters, ..Frame::default() }
+}

@@ -1,0 +1,46 @@
+//! Judges the sample setups of an adapter.
+
+use rayon::prelude::*;
+
+use super::super::{
+    bounds::{mask, sample_setup::with_center_error},
+    render::sample_setup::{SetupEntry, effects_with_setup, entries, mask_records},
+    shot::Shot,
+};
+use crate::{
+    effects::hooks::{SampleHook, TriangleSetup},
+    frame::Geometry,
+    scene::draw::totals,
+};
+
+/// Number of setups that are wrong: a first word is outside its bound, or another word does not follow from it.
+///
+/// # Panics
+/// If `geometry` has setups of another scene or stack.
+pub fn wrong_setups(shot: &Shot, geometry: &Geometry) -> u64 {
+    let (effects, masks) = (effects_with_setup(shot.stack), mask_records(shot.scene, shot.stack));
+    let records = effects.len() + masks;
+    if records == 0 {
+        return 0;
+    }
+    let entries_of_scene = totals(shot.scene, shot.draws)[1] as usize + geometry.pieces.len();
+    assert_eq!(geometry.sample_setups.len(), records * entries_of_scene, "the sample setups are of another scene");
+    let wrong = |(entry, given): (Option<SetupEntry>, &[[u32; 4]])| {
+        let Some(SetupEntry { setup, mask }) = entry else { return 0 };
+        let setup = with_center_error(shot, setup);
+        let mask_is_wrong = match (masks, mask) {
+            (0, _) => false,
+            (_, None) => given[records - 1][2] != 0,
+            (_, Some((_, coords))) => !mask::allows(&coords, &given[effects.len()..]),
+        };
+        let wrong = effects.iter().zip(given).filter(|(effect, given)| is_wrong(&setup, effect, **given)).count();
+        (wrong + usize::from(mask_is_wrong)) as u64
+    };
+    entries(shot, geometry).zip(geometry.sample_setups.par_chunks(records)).map(wrong).sum()
+}
+
+fn is_wrong(setup: &TriangleSetup, (hook, words): &(SampleHook, &[u32]), given: [u32; 4]) -> bool {
+    let reference = (hook.decide)(setup, words, None);
+    let is_near = f64::from(reference[0].abs_diff(given[0])) <= (hook.error_bound)(setup, words);
+    !is_near || (hook.decide)(setup, words, Some(given[0])) != given
+}

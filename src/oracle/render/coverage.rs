@@ -1,0 +1,207 @@
+//! What covers each sample: exact integer coverage, and the depth that chooses among triangles (`docs/exactness.md` §3 and §6).
+//!
+//! Every pixel of a triangle's bounding box is evaluated on its own, so nothing depends on the order of evaluation.
+
+use std::ops::Range;
+
+use rayon::prelude::*;
+
+use super::{
+    super::arithmetic::{
+        depth_key::{depth_key, integer_key},
+        edge::{edge, owns},
+    },
+    sample_tests::SampleTests,
+    triangles::OrientedTriangle,
+};
+use crate::{
+    effects::hooks::Shape,
+    frame::{NO_TRIANGLE, SnappedVertex},
+    scene::view::View,
+};
+
+/// What is visible at the sample of one pixel.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Sample {
+    /// Nearest triangle, the smaller id at equal keys; [`NO_TRIANGLE`] without one.
+    pub triangle_id: u32,
+    /// Bits of its depth rounded to f32, at least 1; 0 without a triangle.
+    pub key: u32,
+    /// Drawn triangles that cover the sample, in front or behind.
+    pub layers: u32,
+}
+
+impl Sample {
+    pub const EMPTY: Self = Self { triangle_id: NO_TRIANGLE, key: 0, layers: 0 };
+
+    /// Adds a triangle that covers the sample; returns true if it is the nearest so far.
+    pub fn add(&mut self, id: u32, depth: f64) -> bool {
+        self.layers += 1;
+        let key = depth_key(depth);
+        let is_nearest = key > self.key || key == self.key && id < self.triangle_id;
+        if is_nearest {
+            (self.triangle_id, self.key) = (id, key);
+        }
+        is_nearest
+    }
+}
+
+/// One [`Sample`] per pixel, row-major, top row first.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Coverage {
+    pub samples: Vec<Sample>,
+}
+
+impl Coverage {
+    pub fn triangle_ids(&self) -> Vec<u32> {
+        self.samples.iter().map(|sample| sample.triangle_id).collect()
+    }
+
+    pub fn keys(&self) -> Vec<u32> {
+        self.samples.iter().map(|sample| sample.key).collect()
+    }
+
+    pub fn layers(&self) -> Vec<u32> {
+        self.samples.iter().map(|sample| sample.layers).collect()
+    }
+}
+
+/// Finds what covers every sample of `view`.
+pub fn cover(triangles: &[OrientedTriangle], view: &View) -> Coverage {
+    cover_with(&SampleTests::default(), triangles, view)
+}
+
+/// The same, where `tests` may leave samples out.
+pub fn cover_with(tests: &SampleTests, triangles: &[OrientedTriangle], view: &View) -> Coverage {
+    let mut samples = vec![Sample::EMPTY; view.pixels()];
+    scatter(tests, triangles, view, &mut samples, |triangle| {
+        move |sample: &mut Sample, _, _, hit: Hit| _ = sample.add(triangle.id, hit.depth)
+    });
+    Coverage { samples }
+}
+
+/// The nearest depth at every sample of `view`; negative infinity where nothing is.
+pub fn nearest_depths(tests: &SampleTests, triangles: &[OrientedTriangle], view: &View) -> Vec<f64> {
+    let mut depths = vec![f64::NEG_INFINITY; view.pixels()];
+    scatter(tests, triangles, view, &mut depths, |_| |depth: &mut f64, _, _, hit: Hit| *depth = depth.max(hit.depth));
+    depths
+}
+
+/// Where a triangle covers a sample.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Hit {
+    pub depth: f64,
+    /// The depth is interpolated, so that f32 renderers round it; other depths are exact.
+    pub is_interpolated: bool,
+}
+
+/// Visits every drawn sample of `view`, triangle by triangle, with the cell of its pixel; `visitor` makes the visitor of a
+/// triangle. Parallel by bands of rows, so a triangle may have several visitors, each sample one visit.
+pub fn scatter<'a, T: Send, V: FnMut(&mut T, usize, usize, Hit)>(
+    tests: &SampleTests,
+    triangles: &'a [OrientedTriangle],
+    view: &View,
+    cells: &mut [T],
+    visitor: impl Fn(&'a OrientedTriangle) -> V + Sync,
+) {
+    const ROWS: usize = 8;
+    let (width, height) = (view.width as usize, view.height as usize);
+    if cells.is_empty() {
+        return;
+    }
+    let mut bands: Vec<Vec<&'a OrientedTriangle>> = vec![Vec::new(); height.div_ceil(ROWS)];
+    for triangle in triangles {
+        let (_, rows) = triangle.bounds(view, tests);
+        if !rows.is_empty() {
+            bands[rows.start / ROWS..=(rows.end - 1) / ROWS].iter_mut().for_each(|band| band.push(triangle));
+        }
+    }
+    cells.par_chunks_mut(ROWS * width).zip(bands).enumerate().for_each(|(band, (cells, triangles))| {
+        let first_row = band * ROWS;
+        for triangle in triangles {
+            let (columns, rows) = triangle.bounds(view, tests);
+            let mut visit = visitor(triangle);
+            for y in rows.start.max(first_row)..rows.end.min(first_row + ROWS) {
+                for x in columns.clone() {
+                    let Some(hit) = triangle.at(x, y, tests) else { continue };
+                    visit(&mut cells[(y - first_row) * width + x], x, y, hit);
+                }
+            }
+        }
+    });
+}
+
+impl OrientedTriangle {
+    /// Columns and rows of the pixels whose samples may be covered, within the view. None for a clipped triangle if corners are
+    /// drawn as points.
+    pub fn bounds(&self, view: &View, tests: &SampleTests) -> (Range<usize>, Range<usize>) {
+        if tests.shape == Shape::Points && self.is_clipped() {
+            return (0..0, 0..0);
+        }
+        // Samples lie at the centres of pixels.
+        let unit = tests.unit;
+        let range = |at: [i32; 3], pixels: u32| {
+            let [low, high] = [at[0].min(at[1]).min(at[2]), at[0].max(at[1]).max(at[2])].map(i64::from);
+            let first = (low - tests.radius + unit / 2 - 1).div_euclid(unit).max(0);
+            let end = ((high + tests.radius - unit / 2).div_euclid(unit) + 1).min(i64::from(pixels));
+            first as usize..end.max(first) as usize
+        };
+        (range(self.corners.map(|c| c.x), view.width), range(self.corners.map(|c| c.y), view.height))
+    }
+
+    /// The triangle at the centre of a pixel; none if it is not drawn there.
+    pub fn at(&self, x: usize, y: usize, tests: &SampleTests) -> Option<Hit> {
+        let [a, b, c] = &self.corners;
+        let [px, py] = [x, y].map(|k| tests.unit * k as i64 + tests.unit / 2);
+        let opposite = [(b, c), (c, a), (a, b)];
+        let weights = opposite.map(|(from, to)| edge(from, to, px, py));
+        let exact = |depth: f32| Hit { depth: depth.into(), is_interpolated: false };
+        let hit = match tests.shape {
+            Shape::Triangles => {
+                let inside = |i: usize| owns(weights[i], opposite[i].1.x - opposite[i].0.x, opposite[i].1.y - opposite[i].0.y);
+                if !(inside(0) && inside(1) && inside(2)) {
+                    return None;
+                }
+                if tests.has_integer_keys {
+                    // The key holds the bits of a float.
+                    exact(f32::from_bits(integer_key(self.corners.map(|corner| corner.depth), weights)))
+                } else {
+                    Hit { depth: self.depth(weights), is_interpolated: true }
+                }
+            }
+            Shape::Boxes => self.fills_box(px, py).then(|| exact(self.corners.iter().fold(0.0, |nearest, c| c.depth.max(nearest))))?,
+            Shape::Points => exact(self.corners[self.corner_under(px, py, tests.radius)?].depth),
+        };
+        tests.is_drawn(self, x as u32, y as u32, weights).then_some(hit)
+    }
+
+    /// Returns true in the bounding box, including its left and top borders and excluding the right and bottom ones.
+    fn fills_box(&self, x: i64, y: i64) -> bool {
+        let within = |at: [i32; 3], p: i64| at.iter().any(|&k| i64::from(k) <= p) && at.iter().any(|&k| p < i64::from(k));
+        within(self.corners.map(|c| c.x), x) && within(self.corners.map(|c| c.y), y)
+    }
+
+    /// The nearest corner whose disc contains a point; of equally near ones the first in the order of the file.
+    pub fn corner_under(&self, x: i64, y: i64, radius: i64) -> Option<usize> {
+        let contains = |corner: &SnappedVertex| {
+            let (dx, dy) = (x - i64::from(corner.x), y - i64::from(corner.y));
+            dx * dx + dy * dy <= radius * radius
+        };
+        let under = self.in_file_order([0, 1, 2]).into_iter().filter(|&k| contains(&self.corners[k]));
+        under.reduce(|nearest, k| if self.corners[k].depth > self.corners[nearest].depth { k } else { nearest })
+    }
+
+    /// Depth is linear on the screen: corner depths weighted by the doubled areas opposite them, clamped to their range.
+    fn depth(&self, weights: [i64; 3]) -> f64 {
+        let z = self.corners.map(|corner| f64::from(corner.depth));
+        let [low, high] = self.depth_range();
+        let [e0, e1, e2] = weights.map(|e| e as f64);
+        ((e0 * z[0] + e1 * z[1] + e2 * z[2]) / (e0 + e1 + e2)).max(low).min(high)
+    }
+
+    /// Smallest and largest depth of the corners.
+    pub fn depth_range(&self) -> [f64; 2] {
+        let z = self.corners.map(|corner| f64::from(corner.depth));
+        [z[0].min(z[1]).min(z[2]), z[0].max(z[1]).max(z[2])]
+    }
+}

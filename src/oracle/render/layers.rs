@@ -1,0 +1,148 @@
+//! Layers: pictures in which a pixel shows more than its nearest triangle (`docs/exactness.md` §7). Every covered sample is shaded
+//! in f64, rounded to whole steps, and summed in u64.
+
+use glam::{DVec3, DVec4};
+
+use super::{
+    super::shot::Shot,
+    coverage::{Hit, scatter},
+    draw_order::ranks,
+    resolve::background,
+    sample_tests::SampleTests,
+    shadow::Light,
+    surface::{SurfaceTriangle, encoded},
+    triangles::OrientedTriangle,
+};
+use crate::{
+    effects::{Surface, hooks::Layers, overdraw::Overdraw, xray, xray::Xray},
+    frame::Geometry,
+    math::linear_light,
+};
+
+/// A picture of layers. Images are row-major.
+pub struct LayerImage {
+    /// Gamma-encoded RGBA, each from 0 to 1.
+    pub colors: Vec<DVec4>,
+    /// Sums of weights, or numbers of layers.
+    pub counted: Vec<u32>,
+    /// How the layers were combined.
+    pub mode: LayerMode,
+}
+
+/// How layers are combined.
+pub enum LayerMode {
+    /// Averaged, in fixed point of this many bits.
+    Xray { params: Xray, bits: u32 },
+    /// Counted.
+    Overdraw,
+}
+
+/// What is drawn, and what is nearest at each pixel.
+pub struct LayerInput<'a> {
+    pub shot: Shot<'a>,
+    pub geometry: &'a Geometry,
+    pub tests: &'a SampleTests<'a>,
+    pub triangles: &'a [OrientedTriangle],
+    pub triangle_ids: &'a [u32],
+    pub keys: &'a [u32],
+}
+
+/// The picture that the effect in the visibility slot makes, given the number of layers per pixel; none if the nearest triangle is
+/// shown.
+pub fn layer_image(input: &LayerInput, layers: impl FnOnce() -> Vec<u32>) -> Option<LayerImage> {
+    let stack = input.shot.stack;
+    match stack.layers(input.shot.scene.triangle_count())? {
+        Layers::Xray { bits } => Some(averaged(input, stack.params("xray")?, bits)),
+        Layers::Overdraw => Some(heat(input, layers(), &stack.params("overdraw")?)),
+        Layers::Race => None,
+    }
+}
+
+fn heat(input: &LayerInput, layers: Vec<u32>, params: &Overdraw) -> LayerImage {
+    let background = background(input.shot.view);
+    let color = |layers: u32| if layers == 0 { background } else { params.color(params.heat(layers)).extend(1.0) };
+    LayerImage { colors: layers.iter().map(|&layers| color(layers)).collect(), counted: layers, mode: LayerMode::Overdraw }
+}
+
+fn averaged(input: &LayerInput, params: Xray, bits: u32) -> LayerImage {
+    let sums = sums(input, &params, bits);
+    let largest = sums.iter().map(|sum| sum.weight).max().unwrap_or(0);
+    // An overflow in any pixel draws the whole picture again with fewer bits.
+    if let (true, Some(fewer)) = (largest > xray::capacity(bits).into(), xray::fewer(bits)) {
+        return averaged(input, params, fewer);
+    }
+    let pixel = |sum: &LayerSum| match sum.weight {
+        0 => background(input.shot.view),
+        weight => {
+            let average = sum.sums.map(|channel| xray::average(channel, weight) as f64 / steps(bits));
+            xray_color(input, &params, DVec3::from_array(average), weight)
+        }
+    };
+    LayerImage {
+        colors: sums.iter().map(pixel).collect(),
+        counted: sums.iter().map(|sum| u32::try_from(sum.weight).unwrap_or(u32::MAX)).collect(),
+        mode: LayerMode::Xray { params, bits },
+    }
+}
+
+/// The gamma-encoded colour of a pixel whose layers have this average and sum of weights.
+pub fn xray_color(input: &LayerInput, params: &Xray, average: DVec3, weight: u64) -> DVec4 {
+    // Pictures hold the background in bytes, and so it shines through.
+    let bytes = background(input.shot.view);
+    let [red, green, blue] = [bytes.x, bytes.y, bytes.z].map(linear_light);
+    encoded(params.seen(average, DVec4::new(red, green, blue, bytes.w), weight as f64))
+}
+
+/// Largest value of a channel in fixed point.
+pub fn steps(bits: u32) -> f64 {
+    f64::from((1u32 << bits) - 1)
+}
+
+/// Smallest depth that the depth window of a pixel contains.
+pub fn window_depth(input: &LayerInput, params: &Xray, pixel: usize) -> f64 {
+    f64::from(f32::from_bits(params.threshold(input.keys[pixel], input.shot.view.linear_depth_m.is_none())))
+}
+
+/// Sums of one pixel.
+#[derive(Clone, Default)]
+struct LayerSum {
+    sums: [u64; 3],
+    weight: u64,
+}
+
+fn sums(input: &LayerInput, params: &Xray, bits: u32) -> Vec<LayerSum> {
+    let Shot { view, stack, .. } = input.shot;
+    let mut sums = vec![LayerSum::default(); view.pixels()];
+    let (ranks, light) = (ranks(&input.shot, input.geometry), Light::of(&input.shot, input.geometry));
+    let (ranks, light) = (&ranks, light.as_ref());
+    scatter(input.tests, input.triangles, view, &mut sums, |triangle| {
+        let mut surface: Option<Option<SurfaceTriangle<'_>>> = None;
+        let rank = ranks.get(triangle.id as usize).copied().unwrap_or(0.0);
+        move |sum: &mut LayerSum, x: usize, y: usize, hit: Hit| {
+            let pixel = y * view.width as usize + x;
+            let is_nearest = input.triangle_ids[pixel] == triangle.id;
+            if !is_nearest && hit.depth < window_depth(input, params, pixel) {
+                return;
+            }
+            let Some(known) = surface.get_or_insert_with(|| SurfaceTriangle::new(&input.shot, input.geometry, triangle.id)) else { return };
+            let surface = known.surface(x, y, [0.0; 3]);
+            let lit = light.map_or(0.0, |light| light.arrives(&known.lit_point(&surface), triangle.id, 0.0));
+            let shaded = stack.shade(Surface { rank, lit, ..surface });
+            let weight = fixed_weight(params.weight_of(&shaded), 0.0);
+            let color = fixed_color(shaded.color.truncate(), 0.0, bits);
+            (0..3).for_each(|c| sum.sums[c] += color[c] * weight);
+            sum.weight += weight;
+        }
+    });
+    sums
+}
+
+/// A colour plus an error, rounded to whole steps.
+pub fn fixed_color(color: DVec3, error: f64, bits: u32) -> [u64; 3] {
+    color.to_array().map(|c| ((c + error).clamp(0.0, 1.0) * steps(bits) + 0.5).floor() as u64)
+}
+
+/// A weight plus an error, rounded to a whole number, at least 1.
+pub fn fixed_weight(weight: f64, error: f64) -> u64 {
+    (weight + error + 0.5).floor().max(1.0) as u64
+}

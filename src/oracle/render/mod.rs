@@ -1,0 +1,31 @@
+//! Draws exact pictures. Files in the order of the pipeline: vertices, triangles, samples, colours, pictures.
+
+pub mod deform;
+pub mod particles;
+pub mod snap;
+pub mod vertex;
+
+pub mod clip;
+pub mod project;
+pub mod strict;
+pub mod triangles;
+
+pub mod coverage;
+pub mod draw_order;
+pub mod mask;
+pub mod sample_setup;
+pub mod sample_tests;
+pub mod screen;
+
+pub mod dots;
+pub mod layers;
+pub mod material;
+pub mod rays;
+pub mod resolve;
+pub mod shadow;
+pub mod surface;
+pub mod weights;
+
+pub mod picture;
+pub mod references;
+pub mod resample;

@@ -1,0 +1,96 @@
+//! Whole pictures: from a scene to a frame.
+
+use super::{
+    super::shot::Shot,
+    coverage::cover_with,
+    dots::{dot_records, dot_strengths},
+    draw_order::limited,
+    layers::{LayerInput, layer_image},
+    particles::scene_with_particles,
+    project::project,
+    resolve::{ResolveInput, finish, shade},
+    sample_setup::sample_setups,
+    sample_tests::SampleTests,
+    shadow::shadow_map,
+    strict::project_strict,
+    triangles::triangles,
+};
+use crate::{
+    effects::Stack,
+    frame::Frame,
+    scene::{
+        Scene,
+        draw::{DrawError, draws},
+        view::View,
+    },
+};
+
+/// The exact picture of `scene`, the first of its sequence; empty if `view` has no pixels.
+///
+/// # Errors
+/// [`DrawError`] if a transform or the number of triangles is out of range.
+pub fn render(scene: &Scene, view: &View, stack: &Stack) -> Result<Frame, DrawError> {
+    render_next(scene, view, stack, None)
+}
+
+/// The exact picture of `scene` that follows `previous`, a picture of the same size.
+///
+/// # Errors
+/// As [`render`].
+pub fn render_next(scene: &Scene, view: &View, stack: &Stack, previous: Option<&[[u8; 4]]>) -> Result<Frame, DrawError> {
+    if view.pixels() == 0 {
+        draws(scene, view)?;
+        return Ok(Frame { width: view.width, height: view.height, ..Frame::default() });
+    }
+    let scene = &*scene_with_particles(scene, view, stack, None);
+    let draws = draws(scene, view)?;
+    let shot = Shot::new(scene, &draws, view, stack);
+    let mut geometry = project(&shot);
+    geometry.sample_setups = sample_setups(&shot, &geometry);
+    geometry.dots = dot_records(&shot)?;
+    geometry.light = shadow_map(scene, view, stack)?;
+    let (triangles, counters) = triangles(&shot, &geometry);
+    let tests = limited(SampleTests::new(&shot, &geometry), stack, &triangles, view);
+    let coverage = cover_with(&tests, &triangles, view);
+    let (triangle_ids, keys) = (&coverage.triangle_ids(), &coverage.keys());
+    let dots = dot_strengths(view, stack, &geometry.dots, keys);
+    let input = ResolveInput { triangle_ids, keys, dots: &dots, previous };
+    let layer_input = LayerInput { shot, geometry: &geometry, tests: &tests, triangles: &triangles, triangle_ids, keys };
+    let (color, counted) = match layer_image(&layer_input, || coverage.layers()) {
+        Some(image) => (finish(&shot, &input, &image.colors, 0.0), image.counted),
+        None => (shade(&shot, &input, &geometry), Vec::new()),
+    };
+    let (triangle_id, key) = (coverage.triangle_ids(), coverage.keys());
+    Ok(Frame { width: view.width, height: view.height, triangle_id, key, color, counted, dots, counters, ..Frame::default() })
+}
+
+/// The exact picture of the last of `sequence`, drawn after those before it, all of the same size.
+///
+/// # Errors
+/// As [`render`].
+///
+/// # Panics
+/// If `sequence` is empty.
+pub fn render_sequence(scene: &Scene, sequence: &[(View, Stack)]) -> Result<Frame, DrawError> {
+    let mut last: Option<Frame> = None;
+    for (view, stack) in sequence {
+        last = Some(render_next(scene, view, stack, last.as_ref().map(|frame| frame.color.as_slice()))?);
+    }
+    Ok(last.expect("a sequence has a picture"))
+}
+
+/// Triangle id and depth key of every pixel with strict vertices and integer keys, which every adapter must match to the bit
+/// (`docs/exactness.md` §10); `stack` must move no vertices.
+///
+/// # Errors
+/// As [`render`].
+pub fn strict_frame(scene: &Scene, view: &View, stack: &Stack) -> Result<(Vec<u32>, Vec<u32>), DrawError> {
+    let draws = draws(scene, view)?;
+    let shot = Shot::new(scene, &draws, view, stack);
+    let mut geometry = project_strict(&shot);
+    geometry.exact.keys = true;
+    geometry.sample_setups = sample_setups(&shot, &geometry);
+    let (triangles, _) = triangles(&shot, &geometry);
+    let coverage = cover_with(&limited(SampleTests::new(&shot, &geometry), stack, &triangles, view), &triangles, view);
+    Ok((coverage.triangle_ids(), coverage.keys()))
+}

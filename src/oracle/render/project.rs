@@ -1,0 +1,35 @@
+//! The vertex stage of a picture in f64: deform, move, project, snap once, and clip.
+
+use rayon::prelude::*;
+
+use super::{super::shot::Shot, clip, deform, snap::snap, vertex::VertexEvaluator};
+use crate::frame::{Geometry, SnappedVertex};
+
+/// Everything between the stored scene and integer coverage: one record per vertex of each draw, or three per triangle if the
+/// stack unshares vertices, and the clipped triangles of every triangle that the near plane or the guard band cuts, including
+/// those that flip.
+pub fn project(shot: &Shot) -> Geometry {
+    let Shot { scene, draws, view, stack } = *shot;
+    let evaluators: Vec<VertexEvaluator> = draws.iter().map(|draw| VertexEvaluator::new(scene, draw, view, stack)).collect();
+    let records = |evaluator: &VertexEvaluator| {
+        let record = |corner| match evaluator.clip(corner) {
+            Ok(position) => snap(&position, view),
+            Err(flags) => SnappedVertex { flags, ..Default::default() },
+        };
+        evaluator.corners().into_par_iter().map(record).collect::<Vec<_>>()
+    };
+    let mut geometry = Geometry {
+        vertices: evaluators.iter().flat_map(records).collect(),
+        has_unshared_vertices: stack.unshares_vertices(),
+        deformed: draws.iter().flat_map(|draw| deform::vertices(scene, draw)).collect(),
+        particle_discs: scene.particle_disc_ids(),
+        subpixel_bits: view.precision.subpixel_bits,
+        ..Geometry::default()
+    };
+    let clipped = |evaluator: &VertexEvaluator| {
+        let position = |corner| evaluator.clip(corner).expect("a triangle that is clipped has no rejected corner");
+        clip::clipped_triangles(shot, evaluator.draw, &geometry, position)
+    };
+    geometry.pieces = evaluators.iter().flat_map(clipped).collect();
+    geometry
+}

@@ -1,0 +1,83 @@
+//! Resolve: from surface colours to the bytes of the picture. Dots, image effects, and the one rounding.
+
+use glam::DVec4;
+use rayon::prelude::*;
+
+use super::{
+    super::{perturbation::Perturbation, shot::Shot},
+    surface::surface_colors,
+};
+use crate::{
+    effects::{
+        dots::{Dots, FULL},
+        hooks::{Picture, Pixel, tone::encoded},
+    },
+    frame::Geometry,
+    math::srgb_byte,
+    scene::view::View,
+};
+
+/// The images that a picture is coloured from, row-major.
+#[derive(Clone, Copy, Debug)]
+pub struct ResolveInput<'a> {
+    /// Global triangle id per pixel, [`NO_TRIANGLE`](crate::frame::NO_TRIANGLE) without one.
+    pub triangle_ids: &'a [u32],
+    /// Depth key per pixel, 0 without a triangle.
+    pub keys: &'a [u32],
+    /// Strength of the strongest dot per pixel; empty without dots.
+    pub dots: &'a [u32],
+    /// The previous picture; none for the first.
+    pub previous: Option<&'a [[u8; 4]]>,
+}
+
+/// Bytes of all pixels, row-major, gamma-encoded.
+pub fn shade(shot: &Shot, input: &ResolveInput, geometry: &Geometry) -> Vec<[u8; 4]> {
+    shade_perturbed(shot, input, geometry, &Perturbation::default())
+}
+
+/// The same under a perturbation.
+pub fn shade_perturbed(shot: &Shot, input: &ResolveInput, geometry: &Geometry, perturbation: &Perturbation) -> Vec<[u8; 4]> {
+    let colors = surface_colors(shot, input.triangle_ids, background(shot.view), geometry, perturbation);
+    finish(shot, input, &colors, perturbation.color_step)
+}
+
+/// Bytes of a picture from its gamma-encoded surface colours: dots and image effects, whose steps are moved by `color_step`.
+pub fn finish(shot: &Shot, input: &ResolveInput, colors: &[DVec4], color_step: f64) -> Vec<[u8; 4]> {
+    let Shot { draws, view, stack, .. } = *shot;
+    let first_triangles: Vec<u32> = draws.iter().map(|draw| draw.first_triangle).collect();
+    let picture = Picture {
+        width: view.width,
+        height: view.height,
+        triangle_ids: input.triangle_ids,
+        keys: input.keys,
+        draws: &first_triangles,
+        previous: input.previous,
+        background: background(view),
+    };
+    let dots = stack.dots().filter(|_| !input.dots.is_empty());
+    let finished = |(i, &color): (usize, &DVec4)| {
+        let color = dots.as_ref().map_or(color, |dots| dotted(dots, color, picture.background, input.dots[i]));
+        let pixel = Pixel { color, x: i as u32 % view.width, y: i as u32 / view.width, nudge: color_step };
+        bytes(if stack.finishes() { stack.finish(pixel, &picture).color } else { color })
+    };
+    colors.par_iter().enumerate().map(finished).collect()
+}
+
+/// A pixel with a dot over its surface, or over the background if the effect hides the model.
+fn dotted(dots: &Dots, color: DVec4, background: DVec4, strength: u32) -> DVec4 {
+    let beneath = if dots.model != 0 { color } else { background };
+    let opacity = f64::from(strength) / f64::from(FULL) * f64::from(dots.color[3]);
+    beneath + (encoded(dots.color).truncate().extend(1.0) - beneath) * opacity
+}
+
+/// The background, gamma-encoded and rounded to the bytes that a picture holds.
+pub fn background(view: &View) -> DVec4 {
+    let [r, g, b, alpha] = view.background.map(f64::from);
+    let [r, g, b] = [r, g, b].map(|c| f64::from(srgb_byte(c)) / 255.0);
+    DVec4::new(r, g, b, alpha.clamp(0.0, 1.0))
+}
+
+/// Rounds to bytes, halves away from zero.
+pub fn bytes(color: DVec4) -> [u8; 4] {
+    color.to_array().map(|c| (255.0 * c.clamp(0.0, 1.0) + 0.5).floor() as u8)
+}

@@ -1,0 +1,167 @@
+//! Sample tests: which covered samples are drawn, by the sample effects of the stack, masks, discs and the draw order. Integers
+//! alone decide.
+
+use std::ops::Range;
+
+use super::{
+    super::shot::{Shot, draw_of},
+    mask,
+    triangles::OrientedTriangle,
+};
+use crate::{
+    effects::{
+        Stack,
+        hooks::{Sample, SampleHook, Shape},
+    },
+    frame::Geometry,
+    math::UNITS_PER_PIXEL,
+    scene::{Scene, draw::Draw},
+};
+
+/// The sample tests of a stack, with what they know of each triangle.
+pub struct SampleTests<'a> {
+    effects: Vec<EffectTest<'a>>,
+    sample_setups: &'a [[u32; 4]],
+    /// Setups of effects per entry; those of masks follow them.
+    effect_setups: usize,
+    /// The scene whose materials may mask samples out.
+    masked: Option<(&'a Scene, &'a [Draw])>,
+    /// What triangles cover.
+    pub shape: Shape,
+    /// Radius of discs round corners, in sub-pixel units.
+    pub radius: i64,
+    /// Ids of the triangles of which only the inscribed disc is drawn: particles.
+    discs: Range<u32>,
+    /// Sub-pixel units in a pixel.
+    pub unit: i64,
+    /// Depth keys are quotients of integers.
+    pub has_integer_keys: bool,
+    /// Where a draw order stops, in a picture of this many pixels a row.
+    limit: Option<(DrawLimit, u32)>,
+}
+
+struct EffectTest<'a> {
+    hook: SampleHook,
+    words: &'a [u32],
+    /// Index among the setups of an entry; none for an effect without one.
+    setup: Option<usize>,
+}
+
+/// Where a draw order stops.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct DrawLimit {
+    /// Triangles before this one are drawn completely, those after it not at all.
+    pub boundary_triangle: u32,
+    /// Of its own samples, those before this pixel (row-major) are drawn.
+    pub pixel: usize,
+    /// Number of samples that are drawn.
+    pub limit: u64,
+    /// Number of samples there are.
+    pub total: u64,
+}
+
+impl Default for SampleTests<'_> {
+    /// Draws every covered sample of plain triangles.
+    fn default() -> Self {
+        Self {
+            effects: Vec::new(),
+            sample_setups: &[],
+            effect_setups: 0,
+            masked: None,
+            shape: Shape::default(),
+            radius: 0,
+            discs: 0..0,
+            unit: UNITS_PER_PIXEL.into(),
+            has_integer_keys: false,
+            limit: None,
+        }
+    }
+}
+
+impl<'a> SampleTests<'a> {
+    /// The tests of a picture, with the setups that `geometry` carries.
+    pub fn new(shot: &Shot<'a>, geometry: &'a Geometry) -> Self {
+        let masked = mask::is_masked(shot.scene, shot.stack).then_some((shot.scene, shot.draws));
+        Self { masked, ..Self::of_effects(shot.stack, geometry) }
+    }
+
+    /// The tests of a stack alone, without masks.
+    pub fn of_effects(stack: &'a Stack, geometry: &'a Geometry) -> Self {
+        let mut effect_setups = 0;
+        let effects = stack
+            .each(|hooks| hooks.sample)
+            .map(|(hook, words)| {
+                let setup = hook.has_setup.then_some(effect_setups);
+                effect_setups += usize::from(hook.has_setup);
+                EffectTest { hook, words, setup }
+            })
+            .collect();
+        Self {
+            effects,
+            sample_setups: &geometry.sample_setups,
+            effect_setups,
+            shape: stack.shape(),
+            radius: stack.point_radius().into(),
+            // Boxes and points replace triangles, so there are no discs.
+            discs: if stack.shape() == Shape::Triangles { geometry.particle_discs.clone() } else { 0..0 },
+            unit: 1 << geometry.subpixel_bits,
+            has_integer_keys: geometry.exact.keys,
+            ..Self::default()
+        }
+    }
+
+    /// The same tests up to a draw limit, in a picture `width` pixels wide.
+    pub fn up_to(self, limit: Option<DrawLimit>, width: u32) -> Self {
+        Self { limit: limit.map(|limit| (limit, width)), ..self }
+    }
+
+    /// Where a draw order stops.
+    pub fn limit(&self) -> Option<DrawLimit> {
+        self.limit.map(|(limit, _)| limit)
+    }
+
+    fn is_within_limit(&self, id: u32, x: u32, y: u32) -> bool {
+        self.limit.is_none_or(|(limit, width)| {
+            let pixel = y as usize * width as usize + x as usize;
+            id < limit.boundary_triangle || id == limit.boundary_triangle && pixel < limit.pixel
+        })
+    }
+
+    /// Returns true if a covered sample is drawn. `weights` are the doubled areas opposite the corners of the oriented triangle.
+    pub fn is_drawn(&self, triangle: &OrientedTriangle, x: u32, y: u32, weights: [i64; 3]) -> bool {
+        if !self.is_within_limit(triangle.id, x, y) {
+            return false;
+        }
+        let is_disc = self.discs.contains(&triangle.id);
+        if self.effects.is_empty() && self.masked.is_none() && !is_disc {
+            return true;
+        }
+        let area: i64 = weights.iter().sum();
+        let shift = (64 - area.unsigned_abs().leading_zeros()).saturating_sub(31);
+        let parts = triangle.in_file_order(weights.map(|weight| (weight.max(0) >> shift) as u32));
+        // A disc that would have to be clipped is not drawn.
+        if is_disc && (triangle.is_clipped() || !is_in_disc(parts)) {
+            return false;
+        }
+        let records = self.effect_setups + if self.masked.is_some() { mask::RECORDS } else { 0 };
+        let setups = &self.sample_setups[triangle.entry * records..][..records];
+        let passes = |effect: &EffectTest| {
+            let decided = effect.setup.map_or([0; 4], |index| setups[index]);
+            (effect.hook.is_drawn)(&Sample { x, y, triangle: triangle.id, parts, decided }, effect.words)
+        };
+        let passes_mask = |(scene, draws): (&Scene, &[Draw])| {
+            let draw = draw_of(scene, draws, triangle.id).expect("a triangle belongs to a draw");
+            mask::is_drawn(scene, &scene.primitives[draw.primitive], triangle, parts, &setups[self.effect_setups..])
+        };
+        self.effects.iter().all(passes) && self.masked.is_none_or(passes_mask)
+    }
+}
+
+/// Returns true in the ellipse that touches the sides of a triangle at their midpoints, given the areas opposite the corners.
+/// The fractions a, b, c of the whole are then at most as unequal as at such a midpoint, 1/2, 1/2 and 0:
+/// a² + b² + c² <= (a + b + c)² / 2.
+fn is_in_disc(parts: [u32; 3]) -> bool {
+    let squares: u128 = parts.iter().map(|&part| u128::from(part).pow(2)).sum();
+    let whole: u128 = parts.iter().map(|&part| u128::from(part)).sum();
+    2 * squares <= whole * whole
+}

@@ -1,0 +1,273 @@
+//! Shading in f64: what is known of the surface at a sample, and the surface effects on it (`docs/exactness.md` §7).
+
+use glam::{DMat3, DVec2, DVec3, DVec4};
+use rayon::prelude::*;
+
+use super::{
+    super::{
+        arithmetic::{
+            bits,
+            vector::{DEGENERATE, plane_normal},
+        },
+        perturbation::{Perturbation, TexturePerturbation},
+        shot::Shot,
+    },
+    deform,
+    draw_order::ranks,
+    material::{SampleWeights, TriangleMaterial},
+    screen::ScreenTriangle,
+    shadow::{Light, LitPoint, position_error_m},
+    triangles::OrientedTriangle,
+    vertex::{Corner, VertexEvaluator},
+    weights::{SamplePoint, Weights},
+};
+use crate::{
+    effects::{Surface, hooks::Shape},
+    frame::{Geometry, SnappedVertex},
+    math::srgb,
+    scene::{Accessor, Scene, view::View},
+};
+
+/// Surface colours of all pixels, given the triangle of each; `background` without one. Row-major, gamma-encoded.
+///
+/// `geometry` supplies the snapped corners from which weights follow; triangles that were clipped are weighted in clip space.
+pub fn surface_colors(
+    shot: &Shot,
+    triangle_ids: &[u32],
+    background: DVec4,
+    geometry: &Geometry,
+    perturbation: &Perturbation,
+) -> Vec<DVec4> {
+    let ranks = ranks(shot, geometry);
+    let light = Light::of(shot, geometry);
+    each_surface(shot, triangle_ids, geometry, perturbation.texture, |found| {
+        let Some((triangle, surface)) = found else { return background };
+        let id = surface.triangle_id;
+        let rank = ranks.get(id as usize).copied().unwrap_or(0.0);
+        let lit = light.as_ref().map_or(0.0, |light| light.arrives(&triangle.lit_point(&surface), id, perturbation.color_step));
+        encoded(shot.stack.shade(Surface { rank, lit, nudge: perturbation.color_step, ..surface }).color)
+    })
+}
+
+/// Visits the surface of every pixel before any surface effect, given the triangle of each; none without one. Row-major.
+pub fn each_surface<T: Send>(
+    shot: &Shot,
+    triangle_ids: &[u32],
+    geometry: &Geometry,
+    texture: TexturePerturbation,
+    visit: impl Fn(Option<(&SurfaceTriangle, Surface)>) -> T + Sync,
+) -> Vec<T> {
+    let width = shot.view.width.max(1) as usize;
+    let row = |(y, ids): (usize, &[u32])| {
+        let mut triangle: Option<SurfaceTriangle> = None;
+        let pixel = |(x, &id): (usize, &u32)| {
+            // Neighbours usually show the same triangle.
+            if triangle.as_ref().is_none_or(|triangle| triangle.id != id) {
+                triangle = SurfaceTriangle::new(shot, geometry, id);
+            }
+            visit(triangle.as_ref().map(|triangle| (triangle, triangle.surface(x, y, texture))))
+        };
+        ids.iter().enumerate().map(pixel).collect::<Vec<_>>()
+    };
+    triangle_ids.par_chunks(width).enumerate().flat_map_iter(row).collect()
+}
+
+/// Linear RGBA as sRGB, each channel from 0 to 1; alpha is not gamma-encoded.
+pub fn encoded(color: DVec4) -> DVec4 {
+    DVec4::new(srgb(color.x), srgb(color.y), srgb(color.z), color.w.clamp(0.0, 1.0))
+}
+
+/// Everything about a triangle's surface that does not change from sample to sample.
+pub struct SurfaceTriangle<'a> {
+    id: u32,
+    view: &'a View,
+    weights: Weights,
+    positions: [DVec3; 3],
+    /// Mean of the corners before any vertex effect.
+    center: DVec3,
+    colors: [DVec4; 3],
+    /// None for a material that is only a base colour.
+    material: Option<TriangleMaterial<'a>>,
+    /// In object space; none if a corner has no finite normal.
+    normals: Option<[DVec3; 3]>,
+    /// Transforms object normals to world space, of any length; negated for a back face.
+    world_from_normal: DMat3,
+    /// Unit, world space; none if the triangle has no plane.
+    flat_normal: Option<DVec3>,
+    depths_m: [f64; 3],
+    /// None behind the eye: then each sample uses its own position.
+    center_screen: Option<DVec2>,
+    shape: Shape,
+    /// If corners are drawn as points: their records, and the radius of their discs in sub-pixel units.
+    points: Option<([SnappedVertex; 3], i64)>,
+}
+
+impl<'a> SurfaceTriangle<'a> {
+    /// Triangle `id`; none if there is no such triangle, or if it has a rejected corner and so covers nothing.
+    pub fn new(shot: &Shot<'a>, geometry: &Geometry, id: u32) -> Option<Self> {
+        let Shot { scene, view, stack, .. } = *shot;
+        let draw = shot.draw_of(id)?;
+        let evaluator = VertexEvaluator::new(scene, draw, view, stack);
+        let primitive = &scene.primitives[draw.primitive];
+        let material = &scene.materials[primitive.material];
+        let triangle = id - draw.first_triangle;
+        let vertices = primitive.corners(scene, triangle);
+        let [Ok(a), Ok(b), Ok(c)] = vertices.map(|vertex| deform::position(scene, draw, vertex)) else { return None };
+        let object = [a, b, c];
+
+        let records = shot.corner_records(draw, geometry, id);
+        let corners = vertices.map(|vertex| Corner { vertex, triangle });
+        let screen = ScreenTriangle::of(&evaluator, view, &records, corners);
+
+        let base = DVec4::from_array(material.base_color.map(f64::from));
+        let color = |vertex| base * primitive.colors.map_or(DVec4::ONE, |colors| color(scene, &colors, vertex));
+        let [n0, n1, n2] = vertices.map(|vertex| deform::normal(scene, draw, vertex));
+        let side = if material.double_sided && screen.is_back { -1.0 } else { 1.0 };
+        let world_from_normal = evaluator.world_from_normal * side;
+        let mut triangle = Self {
+            id,
+            view,
+            weights: screen.weights,
+            center: draw.world_from_object.transform_point3(object.iter().sum::<DVec3>() / 3.0),
+            positions: object.map(|position| draw.world_from_object.transform_point3(position)),
+            colors: vertices.map(color),
+            material: TriangleMaterial::of(scene, primitive, vertices),
+            normals: n0.zip(n1).zip(n2).map(|((n0, n1), n2)| [n0, n1, n2]),
+            world_from_normal,
+            flat_normal: plane_normal(object).and_then(|normal| (world_from_normal * normal).try_normalize()),
+            depths_m: screen.depths_m,
+            center_screen: screen.center,
+            shape: stack.shape(),
+            points: (stack.shape() == Shape::Points).then_some((records, stack.point_radius().into())),
+        };
+        if evaluator.moves {
+            triangle.apply_vertex_effects(&evaluator, corners, side);
+        }
+        Some(triangle)
+    }
+
+    /// Moves positions and normals as the vertex effects do; `side` turns normals to the viewer. The centre does not move, so that
+    /// the fronts of several effects meet.
+    ///
+    /// A triangle whose corners are displaced alike keeps its plane, and normals that no effect changes keep their bits.
+    fn apply_vertex_effects(&mut self, evaluator: &VertexEvaluator, corners: [Corner; 3], side: f64) {
+        let moved = corners.map(|corner| evaluator.moved(corner));
+        for (position, vertex) in self.positions.iter_mut().zip(&moved) {
+            *position += vertex.offset;
+        }
+        if moved.iter().any(|vertex| vertex.offset != moved[0].offset) {
+            let side = if evaluator.draw.mirrored { -side } else { side };
+            self.flat_normal = plane_normal(self.positions).and_then(|normal| (normal * side).try_normalize());
+        }
+        let has_new_normals = moved.iter().zip(corners).any(|(vertex, corner)| vertex.normal != evaluator.unmoved(corner).normal);
+        if has_new_normals && self.normals.is_some() {
+            // The lengths of the file's normals weigh them in interpolation, so they are kept.
+            self.normals = Some([0, 1, 2].map(|k| moved[k].normal * evaluator.world_normal(corners[k].vertex).length()));
+            self.world_from_normal = DMat3::from_diagonal(DVec3::splat(side));
+        }
+    }
+
+    /// The surface at the centre of a pixel.
+    pub fn surface(&self, x: usize, y: usize, texture: TexturePerturbation) -> Surface {
+        let view = self.view;
+        let point = self.sample_point(DVec2::new(x as f64 + 0.5, y as f64 + 0.5));
+        let weights = self.weights.at(&point);
+        let (barycentrics, edge_distance_px) = self.weights.on_screen(&point, view);
+        let depth_m = mixed(weights, self.depths_m);
+        // Not the weighted mean of the corners: snapping moves that by up to half a sub-pixel unit.
+        let position = on_ray(view, point.screen, depth_m);
+        let toward_eye = match view.linear_depth_m {
+            Some(_) => -view.forward,
+            None => (view.eye - position).try_normalize().unwrap_or(-view.forward),
+        };
+        let smooth = self.normals.and_then(|normals| self.smooth_normal(weights, normals));
+        let normal = smooth.or(self.flat_normal).unwrap_or(toward_eye);
+        let base = mixed(weights, self.colors);
+        let textured =
+            self.material.as_ref().map(|material| material.color(base.truncate(), &self.sample_weights(weights, &point), texture));
+        let (color, glow) = textured.unwrap_or((base.truncate(), DVec3::ZERO));
+        let across_m = view.ndc_axes[1].length() * 2.0 / f64::from(view.height);
+        Surface {
+            color: color.extend(base.w),
+            glow,
+            position,
+            normal,
+            flat_normal: self.flat_normal.unwrap_or(normal),
+            view: toward_eye,
+            center: self.center,
+            center_screen: self.center_screen.unwrap_or(point.screen),
+            screen: point.screen,
+            pixel: point.pixel,
+            barycentrics,
+            edge_distance_px,
+            depth_m,
+            pixel_size_m: across_m * if view.linear_depth_m.is_some() { 1.0 } else { depth_m },
+            flat_depth_m: self.depths_m.iter().sum::<f64>() / 3.0,
+            depth_range_m: DVec2::from_array(view.scene_range_m),
+            triangle_id: self.id,
+            rank: 0.0,
+            lit: 0.0,
+            nudge: 0.0,
+        }
+    }
+
+    fn sample_point(&self, pixel: DVec2) -> SamplePoint {
+        let screen = pixel / DVec2::new(self.view.width.into(), self.view.height.into());
+        let corner = self.points.and_then(|(records, radius)| {
+            let at = pixel * f64::from(self.view.units_per_pixel());
+            OrientedTriangle::clockwise(self.id, records).corner_under(at.x as i64, at.y as i64, radius)
+        });
+        SamplePoint { pixel, screen, shape: self.shape, corner }
+    }
+
+    /// Weights for texture lookups. In boxes and discs they are taken to be constant.
+    fn sample_weights(&self, weights: [f64; 3], point: &SamplePoint) -> SampleWeights {
+        let slopes = if self.shape == Shape::Triangles { self.weights.slopes(weights, point, self.view) } else { [[0.0; 3]; 2] };
+        SampleWeights { weights, slopes, errors: self.weights.errors(weights, point) }
+    }
+
+    /// Where a sample with this surface lies, for a light.
+    pub fn lit_point(&self, surface: &Surface) -> LitPoint {
+        let on_ray = surface.position;
+        let on_triangle = match self.shape {
+            Shape::Triangles => {
+                let point = SamplePoint { pixel: surface.pixel, screen: surface.screen, shape: self.shape, corner: None };
+                mixed(self.weights.at(&point), self.positions)
+            }
+            // Outside the triangle only the ray of the pixel is defined.
+            Shape::Boxes | Shape::Points => on_ray,
+        };
+        let is_clipped = matches!(self.weights, Weights::Homogeneous { .. });
+        LitPoint { on_ray, on_triangle, flat_normal: surface.flat_normal, error_m: position_error_m(self.view, on_ray, is_clipped) }
+    }
+
+    /// Interpolated in object space; none if the corner normals cancel out.
+    fn smooth_normal(&self, weights: [f64; 3], normals: [DVec3; 3]) -> Option<DVec3> {
+        let largest = normals.iter().map(|normal| normal.abs().max_element()).fold(0.0, f64::max);
+        let normal = mixed(weights, normals) / largest;
+        // A division by zero makes NaN, for which the comparison is false.
+        if normal.length_squared() >= DEGENERATE { (self.world_from_normal * normal).try_normalize() } else { None }
+    }
+}
+
+/// The point at a depth along the viewing direction, on the ray through a point of the picture (as a fraction of it).
+fn on_ray(view: &View, screen: DVec2, depth_m: f64) -> DVec3 {
+    let across = view.ndc_axes[0] * (2.0 * screen.x - 1.0) + view.ndc_axes[1] * (1.0 - 2.0 * screen.y);
+    match view.linear_depth_m {
+        None => view.eye + (view.forward + across) * depth_m,
+        Some(_) => view.eye + across + view.forward * depth_m,
+    }
+}
+
+fn mixed<T: std::ops::Mul<f64, Output = T> + std::ops::Add<Output = T>>(weights: [f64; 3], [a, b, c]: [T; 3]) -> T {
+    a * weights[0] + b * weights[1] + c * weights[2]
+}
+
+/// Linear RGBA of a vertex, opaque if it has three components; white if a component is refused.
+fn color(scene: &Scene, colors: &Accessor, vertex: u32) -> DVec4 {
+    let component = |i: u32| if i < colors.components { bits::component(&scene.vertex_bytes, colors, vertex, i) } else { Ok(1.0) };
+    match [0, 1, 2, 3].map(component) {
+        [Ok(r), Ok(g), Ok(b), Ok(a)] => DVec4::new(r, g, b, a),
+        _ => DVec4::ONE,
+    }
+}

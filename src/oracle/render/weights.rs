@@ -1,0 +1,132 @@
+//! Weights of a triangle's corners at a sample: perspective-correct interpolation (`docs/exactness.md` §3), from snapped corners,
+//! or in homogeneous space for triangles that were clipped (Olano and Greer 1997).
+
+use glam::{DVec2, DVec3};
+
+use crate::{effects::hooks::Shape, scene::view::View};
+
+/// How the weights of a triangle's corners follow from the position of a sample.
+pub enum Weights {
+    /// Snapped corners: x and y in pixels, and 1/w. Weights are screen-space areas times 1/w.
+    Snapped([DVec3; 3]),
+    /// In clip space, valid even for w <= 0.
+    Homogeneous {
+        /// Cross products of the other two corners' (x, y, w), with the sign that makes them positive inside.
+        rows: [DVec3; 3],
+        /// Sums of the magnitudes of their terms.
+        terms: [DVec3; 3],
+    },
+}
+
+/// The sample of a pixel.
+#[derive(Clone, Copy, Debug)]
+pub struct SamplePoint {
+    /// Pixels right and down from the top left.
+    pub pixel: DVec2,
+    /// The same as a fraction of the picture.
+    pub screen: DVec2,
+    /// What triangles cover.
+    pub shape: Shape,
+    /// If corners are drawn as discs, the corner whose disc contains the sample.
+    pub corner: Option<usize>,
+}
+
+impl SamplePoint {
+    /// In normalized device coordinates, with z = 1.
+    fn ndc(&self) -> DVec3 {
+        DVec3::new(2.0 * self.screen.x - 1.0, 1.0 - 2.0 * self.screen.y, 1.0)
+    }
+}
+
+impl Weights {
+    /// Perspective-correct weights at a sample, which sum to 1; equal weights if the triangle has no extent. In a box no weight is
+    /// negative, and a disc belongs completely to its corner.
+    pub fn at(&self, point: &SamplePoint) -> [f64; 3] {
+        let terms = match self {
+            Self::Snapped(corners) => {
+                let areas = areas(corners, point);
+                [0, 1, 2].map(|k| areas[k] * corners[k].z)
+            }
+            Self::Homogeneous { rows, .. } => {
+                let p = point.ndc();
+                // A snapped clipped triangle may cover a sample slightly outside, where the sum vanishes near a horizon.
+                rows.map(|row| p.dot(row).max(0.0))
+            }
+        };
+        let sum: f64 = terms.iter().sum();
+        let weights = terms.map(|term| term / sum);
+        if weights.iter().all(|weight| weight.is_finite()) { weights } else { [1.0 / 3.0; 3] }
+    }
+
+    /// Bounds of the errors of `weights` in f32.
+    pub fn errors(&self, weights: [f64; 3], point: &SamplePoint) -> [f64; 3] {
+        // Fifteen roundings of numbers of the same sign.
+        const SNAPPED: f64 = 15.0 / (1 << 23) as f64;
+        match self {
+            Self::Snapped(_) => weights.map(|weight| weight * SNAPPED),
+            Self::Homogeneous { rows, terms } => {
+                let p = point.ndc();
+                let sum: f64 = rows.iter().map(|row| p.dot(*row)).sum();
+                // The terms have either sign: an error is proportional to their magnitudes, not to their sum.
+                terms.map(|terms| p.abs().dot(terms) / sum.abs() / f64::from(1 << 20))
+            }
+        }
+    }
+
+    /// Differences of `weights` to the next pixel on the right and to the next one below: the derivative of a quotient whose
+    /// numerator and denominator are linear on the screen.
+    pub fn slopes(&self, weights: [f64; 3], point: &SamplePoint, view: &View) -> [[f64; 3]; 2] {
+        let (terms, steps) = match self {
+            Self::Snapped(corners) => {
+                let at = |pixel: DVec2| {
+                    let [a, b, c] = corners.map(|corner| corner.truncate() - pixel);
+                    let areas = [b.perp_dot(c), c.perp_dot(a), a.perp_dot(b)];
+                    DVec3::from([0, 1, 2].map(|k| areas[k] * corners[k].z))
+                };
+                let here = at(point.pixel);
+                (here, [DVec2::X, DVec2::Y].map(|step| at(point.pixel + step) - here))
+            }
+            Self::Homogeneous { rows, .. } => {
+                let p = point.ndc();
+                let terms = DVec3::from(rows.map(|row| p.dot(row)));
+                let right = DVec3::from(rows.map(|row| row.x * 2.0 / f64::from(view.width)));
+                (terms, [right, DVec3::from(rows.map(|row| row.y * -2.0 / f64::from(view.height)))])
+            }
+        };
+        let (weights, sum) = (DVec3::from(weights), terms.element_sum());
+        steps.map(|step| ((step - weights * step.element_sum()) / sum).to_array())
+    }
+
+    /// Barycentric coordinates on the screen (of a clipped triangle: on its plane), and the distances of a sample from the edges
+    /// opposite the corners, in pixels.
+    pub fn on_screen(&self, point: &SamplePoint, view: &View) -> (DVec3, DVec3) {
+        match self {
+            Self::Snapped(corners) => {
+                let [a, b, c] = corners.map(|corner| corner.truncate());
+                let areas = areas(corners, point);
+                let lengths = [(b, c), (c, a), (a, b)].map(|(from, to)| (to - from).length());
+                let sum: f64 = areas.iter().sum();
+                let edge_distance_px = [0, 1, 2].map(|k| areas[k] / lengths[k]);
+                (DVec3::from_array(areas) / sum, DVec3::from_array(edge_distance_px))
+            }
+            Self::Homogeneous { rows, .. } => {
+                let p = point.ndc();
+                let steps = DVec2::new(2.0 / f64::from(view.width), 2.0 / f64::from(view.height));
+                let edge_distance_px = rows.map(|row| p.dot(row).abs() / (row.truncate() * steps).length().max(1e-30));
+                (DVec3::from_array(self.at(point)), DVec3::from_array(edge_distance_px))
+            }
+        }
+    }
+}
+
+/// Doubled areas opposite the corners at a sample, positive inside for either winding.
+fn areas(corners: &[DVec3; 3], point: &SamplePoint) -> [f64; 3] {
+    let [a, b, c] = corners.map(|corner| corner.truncate() - point.pixel);
+    let areas = [b.perp_dot(c), c.perp_dot(a), a.perp_dot(b)];
+    let winding = areas.iter().sum::<f64>().signum();
+    match (point.shape, point.corner) {
+        (Shape::Points, Some(corner)) => [0, 1, 2].map(|k| f64::from(u8::from(k == corner))),
+        (Shape::Boxes, _) => areas.map(|area| (area * winding).max(0.0)),
+        _ => areas.map(|area| area * winding),
+    }
+}

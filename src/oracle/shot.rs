@@ -1,0 +1,55 @@
+//! What a picture shows, and how global triangle ids lead to draws and corner records.
+
+use crate::{
+    effects::Stack,
+    frame::{Geometry, SnappedVertex},
+    scene::{Scene, draw::Draw, view::View},
+};
+
+/// Everything that determines a picture: a scene, its draws for a view, and the effect stack.
+#[derive(Clone, Copy)]
+pub struct Shot<'a> {
+    pub scene: &'a Scene,
+    /// [`draws`](crate::scene::draw::draws) of `scene` for `view`.
+    pub draws: &'a [Draw],
+    pub view: &'a View,
+    pub stack: &'a Stack,
+}
+
+impl<'a> Shot<'a> {
+    pub const fn new(scene: &'a Scene, draws: &'a [Draw], view: &'a View, stack: &'a Stack) -> Self {
+        Self { scene, draws, view, stack }
+    }
+
+    /// The draw with triangle `id`, a global id; none if there is no such triangle.
+    pub fn draw_of(&self, id: u32) -> Option<&'a Draw> {
+        draw_of(self.scene, self.draws, id)
+    }
+
+    /// Corner records of triangle `id` of `draw`, in the order of the file.
+    pub fn corner_records(&self, draw: &Draw, geometry: &Geometry, id: u32) -> [SnappedVertex; 3] {
+        self.corner_indices(draw, geometry, id).map(|index| geometry.vertices[index])
+    }
+
+    /// Indices of those records in the geometry.
+    pub fn corner_indices(&self, draw: &Draw, geometry: &Geometry, id: u32) -> [usize; 3] {
+        if geometry.has_unshared_vertices {
+            return [0, 1, 2].map(|k| 3 * id as usize + k);
+        }
+        let corners = self.scene.primitives[draw.primitive].corners(self.scene, id - draw.first_triangle);
+        corners.map(|corner| (draw.first_vertex + corner) as usize)
+    }
+}
+
+/// As [`Shot::draw_of`].
+pub(super) fn draw_of<'a>(scene: &Scene, draws: &'a [Draw], id: u32) -> Option<&'a Draw> {
+    // Draws without triangles share their first id with the next draw, which is the last of the prefix.
+    let draw = &draws[..draws.partition_point(|draw| draw.first_triangle <= id)].last()?;
+    (id - draw.first_triangle < scene.primitives[draw.primitive].triangle_count()).then_some(draw)
+}
+
+/// The view as an adapter drew it: the grid, the origin of positions and the render scale are promises of its accuracy options, so
+/// the oracle adopts them.
+pub fn drawn_view(view: &View, geometry: &Geometry) -> View {
+    view.scaled(geometry.scale).with_grid(geometry.subpixel_bits, geometry.is_relative)
+}
