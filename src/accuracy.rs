@@ -11,6 +11,10 @@ pub trait AxisOption: Copy {
     fn index(self) -> usize;
     /// The option with this index, which must be one of the axis.
     fn from_index(index: usize) -> Self;
+    /// The pinned option of the axis.
+    fn pinned(pins: &PinnedOptions) -> Option<Self>;
+    /// Pins the axis to this option.
+    fn pin(self, pins: &mut PinnedOptions);
 }
 
 /// An axis: its name, what it decides, and its options.
@@ -29,6 +33,8 @@ pub struct Axis {
     pub default: usize,
     get: fn(&AccuracyOptions) -> usize,
     set: fn(&mut AccuracyOptions, usize),
+    pinned: fn(&PinnedOptions) -> Option<usize>,
+    pin: fn(&mut PinnedOptions, Option<usize>),
 }
 
 impl Axis {
@@ -42,7 +48,7 @@ impl Axis {
     }
 }
 
-/// Declares every axis: an enum of its options, its member of [`AccuracyOptions`], and its entry in [`AXES`].
+/// Declares every axis: an enum of its options, its members of [`AccuracyOptions`] and [`PinnedOptions`], and its entry in [`AXES`].
 macro_rules! axes {
     ($($(#[doc = $about:literal])+ $axis:ident: $name:ident, default $default:ident {
         $($(#[doc = $option_about:literal])+ $option:ident = $word:literal,)+
@@ -68,6 +74,8 @@ macro_rules! axes {
                 const AXIS: usize = AxisIndex::$name as usize;
                 fn index(self) -> usize { self as usize }
                 fn from_index(index: usize) -> Self { Self::ALL[index] }
+                fn pinned(pins: &PinnedOptions) -> Option<Self> { pins.$axis }
+                fn pin(self, pins: &mut PinnedOptions) { pins.$axis = Some(self); }
             }
         )+
 
@@ -76,6 +84,10 @@ macro_rules! axes {
         /// One option on every axis.
         #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
         pub struct AccuracyOptions { $($(#[doc = $about])+ pub $axis: $name,)+ }
+
+        /// Options that a preset pins. They take precedence over its tier.
+        #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+        pub struct PinnedOptions { $($axis: Option<$name>,)+ }
 
         /// Every axis, in the order in which they are listed.
         pub const AXES: &[Axis] = &[$(Axis {
@@ -87,6 +99,8 @@ macro_rules! axes {
             default: $name::$default as usize,
             get: |options| options.$axis as usize,
             set: |options, index| options.$axis = $name::ALL[index],
+            pinned: |pins| pins.$axis.map(AxisOption::index),
+            pin: |pins, index| pins.$axis = index.and_then(|index| $name::ALL.get(index).copied()),
         }),+];
     };
 }
@@ -379,10 +393,6 @@ impl AccuracyOptions {
     }
 }
 
-/// Options that a preset pins. They take precedence over its tier.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
-pub struct PinnedOptions([Option<u8>; AXES.len()]);
-
 impl PinnedOptions {
     /// This option pinned, and no other axis.
     pub fn of<O: AxisOption>(option: O) -> Self {
@@ -391,37 +401,37 @@ impl PinnedOptions {
 
     #[must_use]
     pub fn with<O: AxisOption>(mut self, option: O) -> Self {
-        self.0[O::AXIS] = Some(option.index() as u8);
+        option.pin(&mut self);
         self
     }
 
     /// The pinned option of a type.
     pub fn option<O: AxisOption>(&self) -> Option<O> {
-        self.0[O::AXIS].map(|index| O::from_index(index.into()))
+        O::pinned(self)
     }
 
     /// Index of the pinned option of an axis.
     pub fn get(&self, axis: &Axis) -> Option<usize> {
-        self.0[axis.index()].map(usize::from)
+        (axis.pinned)(self)
     }
 
     /// Pins an axis to the option with this index, or unpins it.
     pub fn set(&mut self, axis: &Axis, index: Option<usize>) {
-        self.0[axis.index()] = index.filter(|index| *index < axis.words.len()).map(|index| index as u8);
+        (axis.pin)(self, index);
     }
 
     /// Sets every pinned axis of `options` to its pinned option.
     pub fn apply(&self, options: &mut AccuracyOptions) {
-        for (axis, pin) in AXES.iter().zip(self.0) {
-            if let Some(index) = pin {
-                options.set(axis, index.into());
+        for axis in AXES {
+            if let Some(index) = self.get(axis) {
+                options.set(axis, index);
             }
         }
     }
 
     /// `coverage=float depth=log16`, or nothing.
     pub fn words(&self) -> String {
-        let pinned = AXES.iter().zip(self.0).filter_map(|(axis, pin)| Some(format!("{}={}", axis.name, axis.words[usize::from(pin?)])));
+        let pinned = AXES.iter().filter_map(|axis| Some(format!("{}={}", axis.name, axis.words[self.get(axis)?])));
         pinned.collect::<Vec<_>>().join(" ")
     }
 }

@@ -9,32 +9,16 @@ use super::{
     backend::{Backend, scene_of},
     error::{CliError, Exit},
     files::{self, Names},
-    gallery_name, golden, open, report,
+    finding::{Drawn, Finding},
+    golden,
+    open::{gallery_name, open},
+    report,
     streams::Streams,
 };
 use crate::{
-    measure::compare::{PictureDelta, pictures},
+    measure::compare::pictures,
     preset_file::{self, PresetError, PresetFile},
 };
-
-/// The result of one preset.
-pub struct Finding {
-    pub preset: String,
-    pub exit: Exit,
-    /// One sentence each; empty where the preset passes.
-    pub problems: Vec<String>,
-    pub warnings: Vec<String>,
-    pub position: Option<preset_file::Position>,
-    pub drawn: Option<Drawn>,
-}
-
-/// A picture with its golden.
-pub struct Drawn {
-    pub size: [u32; 2],
-    pub expected: Vec<[u8; 4]>,
-    pub actual: Vec<[u8; 4]>,
-    pub delta: PictureDelta,
-}
 
 pub fn run(common: &Common, args: &Check, streams: &mut Streams) -> Result<Exit, CliError> {
     let files = if args.files.is_empty() {

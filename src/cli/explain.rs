@@ -6,7 +6,7 @@ use super::{
     args::{Common, Explain},
     backend::{Backend, scene_of},
     error::{CliError, Exit},
-    open,
+    open::open,
     streams::{Streams, table},
 };
 use crate::{

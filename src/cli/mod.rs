@@ -12,10 +12,13 @@ mod compare;
 mod error;
 mod explain;
 mod files;
+mod finding;
 pub mod gallery;
 pub mod golden;
 mod list;
+mod measured;
 mod migrate;
+mod open;
 mod render;
 mod report;
 mod sequence;
@@ -34,7 +37,7 @@ pub use args::{Cli, Command};
 pub use error::{CliError, Exit};
 use streams::Streams;
 
-use crate::preset_file::{self, PresetError, PresetFile};
+use crate::preset_file::PresetError;
 
 /// Runs the command.
 ///
@@ -84,7 +87,7 @@ fn dispatch(common: &Common, command: &Command, streams: &mut Streams) -> Result
 fn window(cli: &Cli) -> Result<Exit, CliError> {
     if let Some(what) = &cli.open {
         // Reported on the terminal instead of in an empty window.
-        open(&cli.common, what).map_err(|error| suggest_command(error, what))?;
+        open::open(&cli.common, what).map_err(|error| suggest_command(error, what))?;
     }
     let adapter = match backend::backend_choice(&cli.common) {
         backend::BackendChoice::Oracle => {
@@ -109,44 +112,6 @@ fn suggest_command(error: CliError, what: &str) -> CliError {
 #[cfg(not(feature = "gui"))]
 fn window(_: &Cli) -> Result<Exit, CliError> {
     Err(CliError::usage("this build has no window; rasterlab --help lists the commands"))
-}
-
-/// Opens a preset and applies `--unset`, then `--set`.
-fn open(common: &Common, what: &str) -> Result<PresetFile, CliError> {
-    let mut preset_file = if what == "-" {
-        preset_file::parse_file(&files::stdin_text()?, "stdin", "stdin")?
-    } else {
-        preset_file::open(what, common.presets_dir().as_deref())?
-    };
-    if common.strict {
-        preset_file = preset_file.strict()?;
-    }
-    for path in &common.unset {
-        preset_file::unset(&mut preset_file, path)?;
-    }
-    for set in &common.set {
-        let (path, value) = set.split_once('=').unwrap_or((set, ""));
-        preset_file::set(&mut preset_file, path.trim(), value)?;
-    }
-    Ok(preset_file)
-}
-
-/// The named presets, or every preset of the gallery that has a golden.
-fn preset_files(common: &Common, names: &[String], streams: &Streams) -> Result<Vec<PresetFile>, CliError> {
-    let preset_files: Vec<PresetFile> = if names.is_empty() {
-        let entries = preset_file::gallery(common.presets_dir().as_deref());
-        let preset_files = entries.iter().map(|entry| open(common, &gallery_name(entry))).collect::<Result<Vec<_>, _>>()?;
-        preset_files.into_iter().filter(|preset_file| preset_file.preset.test.is_some()).collect()
-    } else {
-        names.iter().map(|name| open(common, name)).collect::<Result<_, _>>()?
-    };
-    preset_files.iter().flat_map(|preset_file| &preset_file.warnings).for_each(|warning| streams.note(warning));
-    Ok(preset_files)
-}
-
-/// The path of a preset on disk, or the id of a built-in one.
-fn gallery_name(entry: &preset_file::GalleryEntry) -> String {
-    entry.path.as_ref().map_or_else(|| entry.id.clone(), |path| path.to_string_lossy().into_owned())
 }
 
 /// Prints the error chain to stderr, one sentence per level, and with `--json` an object to stdout.

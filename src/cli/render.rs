@@ -7,7 +7,7 @@ use super::{
     backend::{Backend, scene_of},
     error::{CliError, Exit},
     files::{self, Names},
-    open,
+    open::open,
     streams::Streams,
 };
 use crate::preset_file::{self, PresetFile};

@@ -3,8 +3,8 @@
 use base64::{Engine as _, engine::general_purpose::STANDARD};
 
 use super::{
-    check::{Drawn, Finding},
     error::CliError,
+    finding::{Drawn, Finding},
 };
 use crate::{measure::compare::difference_picture, preset_file};
 

@@ -18,7 +18,8 @@ use super::{
     error::{CliError, Exit},
     files::{self, Names},
     golden::{Fnv, hex, preset_hash, scene_hash},
-    open, render,
+    open::open,
+    render,
     streams::Streams,
 };
 use crate::{

@@ -5,8 +5,8 @@ use serde_json::Value;
 use super::{
     args::{Bench, Common},
     backend::Backend,
-    bench::{judge, present, subjects},
     error::{CliError, Exit},
+    measured::{judge, print_rows, subjects},
     streams::Streams,
 };
 use crate::{
@@ -55,7 +55,7 @@ pub fn run(common: &Common, args: &Bench, streams: &mut Streams) -> Result<Exit,
     bar.finish_and_clear();
     let results = || rows.iter().map(serde_json::to_value).collect::<Result<Vec<Value>, _>>().map_err(CliError::usage);
     let table = if args.each { prices(&rows) } else { lines(&rows) };
-    present(args, streams, &backend, &table, results)?;
+    print_rows(args, streams, &backend, &table, results)?;
     rows.iter().filter(|row| row.error.is_none() || row.culled.is_some()).for_each(|row| {
         streams.note(&format!("{} {}: {}", row.scene, row.options, row.note.as_deref().unwrap_or("not drawn")));
     });

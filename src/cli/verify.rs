@@ -9,7 +9,7 @@ use super::{
     backend::{Backend, scene_of},
     error::{CliError, Exit},
     files::{self, Names},
-    preset_files,
+    open::presets,
     streams::{Streams, number, table},
 };
 use crate::{
@@ -41,7 +41,7 @@ struct Row {
 }
 
 pub fn run(common: &Common, args: &Verify, streams: &mut Streams) -> Result<Exit, CliError> {
-    let preset_files = preset_files(common, &args.inputs, streams)?;
+    let preset_files = presets(common, &args.inputs, streams)?;
     let mut backend = Backend::open(common, streams)?;
     if let Some(folder) = &args.output {
         std::fs::create_dir_all(folder).map_err(|e| CliError::from(e).during(format!("{} cannot be created", folder.display())))?;

@@ -1,0 +1,90 @@
+//! What `bench` and `bench --axes` share: the measured presets, the judge, and the output of rows.
+
+use std::sync::Arc;
+
+use serde_json::Value;
+
+use super::{
+    args::{Bench, Common, Format},
+    backend::{Backend, scene_of},
+    error::CliError,
+    open::open,
+    streams::{Streams, table},
+};
+use crate::{
+    effects::Stack,
+    gpu::Capture,
+    measure::Verdict,
+    oracle,
+    preset::SceneSource,
+    preset_file::PresetFile,
+    scene::{Scene, view::View},
+};
+
+/// Presets with their scenes: each preset with its own scene, or with each `--scene`.
+pub fn subjects(common: &Common, args: &Bench) -> Result<Vec<(PresetFile, Arc<Scene>)>, CliError> {
+    let named = args.inputs.iter().map(|what| open(common, what)).collect::<Result<Vec<_>, _>>()?;
+    let mut preset_files = Vec::new();
+    for scene in &args.scene {
+        let mut base = open(common, &if is_model(scene) { scene.clone() } else { format!("builtin:{scene}") })?;
+        if named.is_empty() {
+            base.id.clone_from(scene);
+            preset_files.push(base);
+            continue;
+        }
+        preset_files.extend(named.iter().map(|preset_file| {
+            let mut preset_file = preset_file.clone();
+            preset_file.id = format!("{} on {scene}", preset_file.id);
+            preset_file.preset.scene = base.preset.scene.clone();
+            // The camera of the preset is meant for the scene of the preset.
+            preset_file.preset.camera = None;
+            preset_file.preset.scene_camera.clear();
+            preset_file
+        }));
+    }
+    if args.scene.is_empty() {
+        preset_files = if named.is_empty() { vec![PresetFile::of_scene("teapot", SceneSource::Builtin("teapot".into()))] } else { named };
+    }
+    preset_files.into_iter().map(|preset_file| Ok((preset_file.clone(), scene_of(&preset_file)?))).collect()
+}
+
+fn is_model(scene: &str) -> bool {
+    let lower = scene.to_lowercase();
+    lower.ends_with(".glb") || lower.ends_with(".gltf")
+}
+
+/// Compares what an adapter drew of `scene` through `view` with the oracle.
+pub fn judge<'a>(scene: &'a Scene, view: &'a View) -> impl Fn(&Stack, &Capture) -> Verdict + use<'a> {
+    move |stack, capture| oracle::judge(scene, view, stack, &capture.picture()).expect("a scene that was drawn can be judged")
+}
+
+/// Prints rows in the chosen format, and a note on how they were measured.
+pub fn print_rows(
+    args: &Bench,
+    streams: &mut Streams,
+    backend: &Backend,
+    lines: &[Vec<String>],
+    results: impl FnOnce() -> Result<Vec<Value>, CliError>,
+) -> Result<(), CliError> {
+    let format = if streams.json { Format::Json } else { args.format };
+    match format {
+        Format::Json => streams.object("bench", backend.json(), results()?)?,
+        Format::Table => streams.text(&table(lines))?,
+        Format::Csv => streams.text(&csv(lines))?,
+        Format::Md => streams.text(&markdown(lines))?,
+    }
+    let [width, height] = args.size;
+    streams.note(&format!("{width}x{height} pixels; clocks are not locked; GPU time by timestamps where the adapter has them"));
+    Ok(())
+}
+
+fn csv(lines: &[Vec<String>]) -> String {
+    let cell = |text: &String| if text.contains([',', '"', '\n']) { format!("\"{}\"", text.replace('"', "\"\"")) } else { text.clone() };
+    lines.iter().map(|line| format!("{}\n", line.iter().map(cell).collect::<Vec<_>>().join(","))).collect()
+}
+
+fn markdown(lines: &[Vec<String>]) -> String {
+    let row = |line: &Vec<String>| format!("| {} |\n", line.join(" | "));
+    let rule = format!("|{}\n", "---|".repeat(lines[0].len()));
+    lines.iter().enumerate().map(|(i, line)| if i == 0 { row(line) + &rule } else { row(line) }).collect()
+}
