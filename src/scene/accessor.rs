@@ -33,6 +33,7 @@ pub struct Accessor {
     pub offset: u32,
     /// Bytes from the start of one element to the start of the next.
     pub stride: u32,
+    /// Number format of the components.
     pub component_type: ComponentType,
     /// Components per element: 1 to 4 in a scene (16 for the matrices that the loader reads).
     pub components: u32,

@@ -5,7 +5,9 @@ use glam::{DMat4, DVec3};
 /// Axis-aligned box in metres, both ends included. Empty when `min` exceeds `max` on any axis.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Bounds {
+    /// The smallest coordinates.
     pub min: DVec3,
+    /// The largest coordinates.
     pub max: DVec3,
 }
 
@@ -16,12 +18,15 @@ impl Default for Bounds {
 }
 
 impl Bounds {
+    /// A box without points.
     pub const EMPTY: Self = Self { min: DVec3::INFINITY, max: DVec3::NEG_INFINITY };
 
+    /// Returns true if the box contains no point.
     pub fn is_empty(&self) -> bool {
         !self.min.cmple(self.max).all()
     }
 
+    /// Grows the box to contain `point`.
     pub fn include(&mut self, point: DVec3) {
         self.min = self.min.min(point);
         self.max = self.max.max(point);
@@ -35,6 +40,7 @@ impl Bounds {
         }
     }
 
+    /// The eight corners.
     pub fn corners(&self) -> [DVec3; 8] {
         std::array::from_fn(|i| {
             let pick = |axis: usize| if i >> axis & 1 == 0 { self.min[axis] } else { self.max[axis] };
@@ -42,6 +48,7 @@ impl Bounds {
         })
     }
 
+    /// The centre; the origin when empty.
     pub fn center(&self) -> DVec3 {
         if self.is_empty() { DVec3::ZERO } else { (self.min + self.max) * 0.5 }
     }

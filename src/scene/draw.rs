@@ -28,6 +28,7 @@ pub struct Draw {
     /// Columns, for positions relative to `origin`. Multiplied in f64 and rounded once, so that every renderer and the oracle
     /// start from the same bits.
     pub clip_from_object: [[f32; 4]; 4],
+    /// From object space to the world, with the scene's spin.
     pub world_from_object: DMat4,
     /// Back faces are drawn.
     pub double_sided: bool,

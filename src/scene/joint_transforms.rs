@@ -14,7 +14,9 @@ pub type JointMatrix = [[f32; 4]; 3];
 #[derive(Clone, Copy, Debug, Default, PartialEq, bytemuck::Pod, bytemuck::Zeroable)]
 #[repr(C)]
 pub struct DualQuaternionJoint {
+    /// The rotation, a unit quaternion (x, y, z, w).
     pub real: [f32; 4],
+    /// Half the translation times the rotation.
     pub dual: [f32; 4],
     /// Rows of a 3 x 3 matrix; the fourth entry of each is 0.
     pub stretch: [[f32; 4]; 3],
@@ -28,6 +30,7 @@ pub enum JointTransforms {
 }
 
 impl JointTransforms {
+    /// The number of joints.
     pub fn len(&self) -> usize {
         match self {
             Self::Linear(joints) => joints.len(),
@@ -35,10 +38,12 @@ impl JointTransforms {
         }
     }
 
+    /// Returns true if there are no joints.
     pub fn is_empty(&self) -> bool {
         self.len() == 0
     }
 
+    /// The skinning method that these transforms are for.
     pub fn skinning(&self) -> Skinning {
         match self {
             Self::Linear(_) => Skinning::Linear,
@@ -54,6 +59,7 @@ impl JointTransforms {
         }
     }
 
+    /// The matrices of all joints.
     pub fn matrices(&self) -> impl Iterator<Item = DMat4> {
         (0..self.len()).map(|joint| self.matrix(joint))
     }

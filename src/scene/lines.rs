@@ -31,6 +31,7 @@ pub enum SegmentEnds {
 /// A straight segment of a line.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Segment {
+    /// Where it begins and ends.
     pub ends: SegmentEnds,
     /// Distance of its start from the start of its line, metres.
     pub start_m: f64,
@@ -41,6 +42,7 @@ pub struct Segment {
 /// All lines, in an order that is the same on every machine.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Lines {
+    /// The segments of all lines, line after line.
     pub segments: Vec<Segment>,
     /// Index of the first segment of each line.
     pub first_segments: Vec<u32>,
@@ -62,7 +64,7 @@ impl Lines {
     pub fn polyline(points: &[[f32; 3]]) -> Self {
         let mut lines = Self::default();
         let position = |p: [f32; 3]| DVec3::from(p.map(f64::from));
-        lines.chain(
+        lines.push_line(
             points.windows(2).map(|pair| (SegmentEnds::Points([pair[0], pair[1]]), (position(pair[1]) - position(pair[0])).length())),
         );
         lines
@@ -94,7 +96,7 @@ impl Lines {
                     .filter(|joint_transforms| !joint_transforms.is_empty())
                     .map_or(DMat4::IDENTITY, |joint_transforms| joint_transforms.matrix(0));
             for chain in chains.iter() {
-                lines.chain(chain.iter().map(|edge| {
+                lines.push_line(chain.iter().map(|edge| {
                     let ends = SegmentEnds::Edge { draw: draw as u32, vertices: edge.vertices, triangle: edge.triangle };
                     (ends, position.transform_vector3(edge.direction).length())
                 }));
@@ -104,7 +106,7 @@ impl Lines {
     }
 
     /// Adds a line. Segments whose length is 0 or not finite are left out.
-    fn chain(&mut self, segments: impl Iterator<Item = (SegmentEnds, f64)>) {
+    fn push_line(&mut self, segments: impl Iterator<Item = (SegmentEnds, f64)>) {
         let (first, mut start_m) = (self.segments.len(), 0.0);
         for (ends, length_m) in segments.filter(|(_, length_m)| length_m.is_finite() && *length_m > 0.0) {
             self.segments.push(Segment { ends, start_m, length_m });
@@ -122,6 +124,7 @@ type Chain = Vec<DirectedEdge>;
 /// An edge with the direction in which its chain runs.
 #[derive(Clone, Copy, Debug)]
 struct DirectedEdge {
+    /// Start and end, within the primitive.
     vertices: [u32; 2],
     triangle: u32,
     /// From the first vertex to the second, object space.

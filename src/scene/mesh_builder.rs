@@ -23,7 +23,9 @@ pub struct MeshBuilder {
 /// A closed loop of consecutive vertices. One vertex is a pole.
 #[derive(Clone, Copy, Debug)]
 pub struct Ring {
+    /// Index of its first vertex.
     pub first: u32,
+    /// The number of its vertices.
     pub count: u32,
 }
 

@@ -41,6 +41,7 @@ pub struct Meshlet {
 /// The meshlets of a primitive.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Meshlets {
+    /// All meshlets.
     pub list: Vec<Meshlet>,
     /// Triangle indices within the primitive; each occurs once.
     pub triangles: Vec<u32>,

@@ -37,6 +37,7 @@ impl Topology {
 pub struct Primitive {
     /// Shown to people, for instance `mesh "Fox" primitive 0`.
     pub name: String,
+    /// How corners form triangles.
     pub topology: Topology,
     /// One unsigned integer component, in `Scene::index_bytes`. `None`: the corners are the vertices in order.
     pub indices: Option<Accessor>,
@@ -62,10 +63,12 @@ pub struct Primitive {
 }
 
 impl Primitive {
+    /// The number of vertices.
     pub fn vertex_count(&self) -> u32 {
         self.positions.count
     }
 
+    /// The number of triangles.
     pub fn triangle_count(&self) -> u32 {
         self.topology.triangles(self.indices.map_or(self.positions.count, |indices| indices.count))
     }
@@ -145,13 +148,17 @@ pub struct Scene {
     pub vertex_bytes: Vec<u8>,
     /// All index lists. Its length is a multiple of 4.
     pub index_bytes: Vec<u8>,
+    /// Meshes with one material each.
     pub primitives: Vec<Primitive>,
+    /// The materials that primitives refer to.
     pub materials: Vec<Material>,
     /// The images that textures refer to.
     pub images: Vec<Image>,
+    /// What is drawn, in order.
     pub instances: Vec<Instance>,
     /// The number of instances at the end of the list that are walls around the others. Walls cast no shadow and do not spin.
     pub walls: usize,
+    /// Cameras that come with the scene.
     pub cameras: Vec<SceneCamera>,
     /// Nodes, skins and clips.
     pub rig: Rig,

@@ -8,6 +8,7 @@ use std::sync::Arc;
 use glam::{DMat4, DQuat, DVec3};
 
 use super::{
+    accessor::Accessor,
     bounds::Bounds,
     joint_transforms::{DualQuaternionJoint, JointTransforms, rounded_rows},
     model::{Instance, Primitive, Scene},
@@ -27,6 +28,7 @@ pub struct Motion {
     pub blend: f64,
     /// Time in both clips, seconds. Beyond the end of a clip it wraps around.
     pub time_s: f64,
+    /// How joints are blended.
     pub skinning: Skinning,
 }
 
@@ -61,21 +63,21 @@ impl Pose {
                 Skinning::Dual => JointTransforms::Dual(matrices.map(|matrix| DualQuaternionJoint::of(&matrix)).collect()),
             }
         };
-        let palettes: Vec<JointTransforms> = rig.skins.iter().map(joint_transforms).collect();
+        let joints_of_skins: Vec<JointTransforms> = rig.skins.iter().map(joint_transforms).collect();
         let deform = |instance: &Instance| {
             let morph_targets = scene.primitives[instance.primitive].deformation.morph_targets.len();
-            let joint_transforms = instance.skin.map(|skin| palettes[skin].clone());
+            let joint_transforms = instance.skin.map(|skin| joints_of_skins[skin].clone());
             let given = instance.node.map_or(&[][..], |node| &state.weights[node]);
             let weights: Arc<[f32]> = (0..morph_targets).map(|morph_target| given.get(morph_target).copied().unwrap_or(0.0)).collect();
             (joint_transforms.is_some() || weights.iter().any(|&weight| weight != 0.0)).then_some(Deform { joint_transforms, weights })
         };
-        let place = |instance: &Instance| match (instance.skin, instance.node) {
+        let transform = |instance: &Instance| match (instance.skin, instance.node) {
             // The joints alone place a skinned mesh; its node is ignored (glTF 2.0, section 3.7.3.2).
             (Some(_), _) => DMat4::IDENTITY,
             (None, Some(node)) => scene_from_node[node],
             (None, None) => instance.world_from_object,
         };
-        Self { instance_transforms: scene.instances.iter().map(place).collect(), deforms: scene.instances.iter().map(deform).collect() }
+        Self { instance_transforms: scene.instances.iter().map(transform).collect(), deforms: scene.instances.iter().map(deform).collect() }
     }
 
     /// The rest pose. `None` for a scene without a rig, whose instance transforms are constant.
@@ -83,11 +85,13 @@ impl Pose {
         (!scene.rig.is_empty()).then(|| Self::at(scene, &Motion::default()))
     }
 
+    /// The transform of an instance, before the scene's spin.
     pub fn instance_transform(&self, instance: usize) -> DMat4 {
         // Instances that were added after the pose was computed (particle discs) do not move.
         self.instance_transforms.get(instance).copied().unwrap_or(DMat4::IDENTITY)
     }
 
+    /// What deforms an instance, if anything does.
     pub fn deform(&self, instance: usize) -> Option<&Deform> {
         self.deforms.get(instance).and_then(Option::as_ref)
     }
@@ -100,10 +104,10 @@ impl Pose {
     /// A box of `first`, the leading instances of `scene`.
     pub fn bounds_of(&self, scene: &Scene, first: &[Instance]) -> Bounds {
         let mut bounds = Bounds::EMPTY;
-        for ((instance, place), deform) in first.iter().zip(&self.instance_transforms).zip(&self.deforms) {
+        for ((instance, transform), deform) in first.iter().zip(&self.instance_transforms).zip(&self.deforms) {
             let primitive = &scene.primitives[instance.primitive];
             let object = deform.as_ref().map_or(primitive.bounds, |deform| deform.bounds(primitive));
-            bounds.include_transformed(place, &object, 0.0);
+            bounds.include_transformed(transform, &object, 0.0);
         }
         bounds
     }
@@ -117,30 +121,30 @@ pub fn scene_from_nodes(rig: &Rig, motion: &Motion) -> Vec<DMat4> {
 /// A box of `scene` in its rest pose and at eight times of each clip. Of large scenes only some vertices and clips are
 /// sampled, so it is good for framing and not a strict bound.
 pub fn motion_bounds(scene: &Scene) -> Bounds {
-    const MOMENTS: usize = 8;
-    const MOST_NODES: usize = 1_000_000;
-    const MOST_VERTICES: usize = 2_000_000;
+    const TIMES_PER_CLIP: usize = 8;
+    const MAX_NODES: usize = 1_000_000;
+    const MAX_VERTICES: usize = 2_000_000;
     // Of thousands of clips over thousands of nodes only the first are sampled.
-    let most = (MOST_NODES / (MOMENTS * (scene.rig.nodes.len() + scene.instances.len()).max(1))).max(1);
-    let moment = |clip: usize, moment: usize| Motion {
+    let most = (MAX_NODES / (TIMES_PER_CLIP * (scene.rig.nodes.len() + scene.instances.len()).max(1))).max(1);
+    let motion = |clip: usize, time: usize| Motion {
         clip: Some(clip),
-        time_s: scene.rig.clips[clip].duration_s * (moment as f64 + 0.5) / MOMENTS as f64,
+        time_s: scene.rig.clips[clip].duration_s * (time as f64 + 0.5) / TIMES_PER_CLIP as f64,
         ..Motion::default()
     };
-    let moments = (0..scene.rig.clips.len().min(most)).flat_map(|clip| (0..MOMENTS).map(move |at| moment(clip, at)));
-    let motions: Vec<Motion> = std::iter::once(Motion::default()).chain(moments).collect();
-    let stride = (scene.deformable_vertex_count() as usize * motions.len()).div_ceil(MOST_VERTICES).max(1);
+    let times = (0..scene.rig.clips.len().min(most)).flat_map(|clip| (0..TIMES_PER_CLIP).map(move |time| motion(clip, time)));
+    let motions: Vec<Motion> = std::iter::once(Motion::default()).chain(times).collect();
+    let stride = (scene.deformable_vertex_count() as usize * motions.len()).div_ceil(MAX_VERTICES).max(1);
     let mut bounds = Bounds::EMPTY;
     for motion in &motions {
         let pose = Pose::at(scene, motion);
         for (index, instance) in scene.instances.iter().enumerate() {
-            let (primitive, place) = (&scene.primitives[instance.primitive], pose.instance_transform(index));
+            let (primitive, transform) = (&scene.primitives[instance.primitive], pose.instance_transform(index));
             let Some(deform) = pose.deform(index) else {
-                bounds.include_transformed(&place, &primitive.bounds, 0.0);
+                bounds.include_transformed(&transform, &primitive.bounds, 0.0);
                 continue;
             };
             let vertices = (0..primitive.vertex_count()).step_by(stride);
-            vertices.for_each(|vertex| bounds.include(place.transform_point3(deform.position(scene, primitive, vertex))));
+            vertices.for_each(|vertex| bounds.include(transform.transform_point3(deform.position(scene, primitive, vertex))));
         }
     }
     bounds
@@ -156,7 +160,7 @@ impl Deform {
     /// quaternions it may bulge beyond them by the radius of their box.
     pub fn bounds(&self, primitive: &Primitive) -> Bounds {
         let deformation = &primitive.deformation;
-        let error_bound = self
+        let margin = self
             .weights
             .iter()
             .zip(&deformation.morph_targets)
@@ -164,13 +168,13 @@ impl Deform {
             .sum();
         let mut bounds = Bounds::EMPTY;
         let Some(joint_transforms) = &self.joint_transforms else {
-            bounds.include_transformed(&DMat4::IDENTITY, &primitive.bounds, error_bound);
+            bounds.include_transformed(&DMat4::IDENTITY, &primitive.bounds, margin);
             return bounds;
         };
         joint_transforms
             .matrices()
             .zip(&deformation.joint_bounds)
-            .for_each(|(matrix, influences)| bounds.include_transformed(&matrix, influences, error_bound));
+            .for_each(|(matrix, joint_bounds)| bounds.include_transformed(&matrix, joint_bounds, margin));
         if matches!(joint_transforms, JointTransforms::Dual(_)) && !bounds.is_empty() {
             let bulge = bounds.radius();
             (bounds.min, bounds.max) = (bounds.min - bulge, bounds.max + bulge);
@@ -181,16 +185,15 @@ impl Deform {
     /// The deformed position of a vertex: morph targets, then linear skinning. For estimates; the picture uses other code.
     pub fn position(&self, scene: &Scene, primitive: &Primitive, vertex: u32) -> DVec3 {
         let bytes = &scene.vertex_bytes;
-        let vector =
-            |accessor: &super::accessor::Accessor| DVec3::from([0, 1, 2].map(|component| accessor.value(bytes, vertex, component)));
+        let vector = |accessor: &Accessor| DVec3::from([0, 1, 2].map(|component| accessor.value(bytes, vertex, component)));
         let morph_targets = self
             .weights
             .iter()
             .zip(&primitive.deformation.morph_targets)
             .filter_map(|(w, morph_target)| Some((w, morph_target.positions.as_ref()?)));
-        let place = morph_targets
-            .fold(vector(&primitive.positions), |place, (&weight, morph_target)| place + vector(morph_target) * f64::from(weight));
-        let Some(joint_transforms) = &self.joint_transforms else { return place };
+        let morphed = morph_targets
+            .fold(vector(&primitive.positions), |position, (&weight, morph_target)| position + vector(morph_target) * f64::from(weight));
+        let Some(joint_transforms) = &self.joint_transforms else { return morphed };
         let sets = primitive.deformation.influences.iter();
         let influences = sets.flat_map(|set| {
             [0, 1, 2, 3]
@@ -199,10 +202,10 @@ impl Deform {
         let (mut sum, mut total, mut first) = (DVec3::ZERO, 0.0, None);
         for (joint, weight) in influences {
             first.get_or_insert(joint);
-            sum += joint_transforms.matrix(joint).transform_point3(place) * weight;
+            sum += joint_transforms.matrix(joint).transform_point3(morphed) * weight;
             total += weight;
         }
-        if total > 0.0 { sum / total } else { first.map_or(place, |joint| joint_transforms.matrix(joint).transform_point3(place)) }
+        if total > 0.0 { sum / total } else { first.map_or(morphed, |joint| joint_transforms.matrix(joint).transform_point3(morphed)) }
     }
 }
 

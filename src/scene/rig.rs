@@ -9,7 +9,9 @@ use super::bounds::Bounds;
 pub struct Rig {
     /// Every parent comes before its children.
     pub nodes: Vec<Node>,
+    /// Skins, which instances refer to.
     pub skins: Vec<Skin>,
+    /// Named animations.
     pub clips: Vec<Clip>,
     /// Keyframes. Several channels may share a sampler.
     pub samplers: Vec<Sampler>,
@@ -18,6 +20,7 @@ pub struct Rig {
 }
 
 impl Rig {
+    /// Returns true if nothing in the scene can move.
     pub fn is_empty(&self) -> bool {
         self.nodes.is_empty()
     }
@@ -33,6 +36,7 @@ impl Rig {
 #[derive(Clone, Debug, PartialEq)]
 pub struct Node {
     pub name: String,
+    /// Index of its parent in `Rig::nodes`.
     pub parent: Option<usize>,
     /// Transform relative to the parent in the rest pose.
     pub rest: LocalTransform,
@@ -52,9 +56,11 @@ pub enum LocalTransform {
 #[derive(Clone, Copy, Debug, PartialEq)]
 /// Translation, rotation and scale; a vertex is scaled first and translated last.
 pub struct Trs {
+    /// Metres.
     pub translation: DVec3,
     /// A unit quaternion.
     pub rotation: DQuat,
+    /// Factor along each axis.
     pub scale: DVec3,
 }
 
@@ -65,6 +71,7 @@ impl Default for Trs {
 }
 
 impl LocalTransform {
+    /// The transform as a matrix.
     pub fn matrix(&self) -> DMat4 {
         match self {
             Self::Matrix(matrix) => *matrix,
@@ -89,14 +96,17 @@ pub struct Clip {
     pub name: String,
     /// Time of the last keyframe of any channel, seconds.
     pub duration_s: f64,
+    /// What it animates.
     pub channels: Vec<Channel>,
 }
 
 /// The animation of one property of one node.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Channel {
+    /// Index into `Rig::nodes`.
     pub node: usize,
     pub property: Property,
+    /// Index into `Rig::samplers`.
     pub sampler: usize,
 }
 
@@ -109,6 +119,7 @@ pub enum Property {
 }
 
 impl Property {
+    /// Its name in glTF.
     pub const fn name(self) -> &'static str {
         match self {
             Self::Translation => "translation",
@@ -136,5 +147,6 @@ pub struct Sampler {
     pub times: Vec<f32>,
     /// `components` numbers per keyframe, three times as many for a cubic spline. All finite.
     pub values: Vec<f32>,
+    /// Numbers per value: 3, 4, or the number of morph targets.
     pub components: usize,
 }

@@ -35,6 +35,7 @@ impl ShadowResolution {
     /// No map but one shadow ray per sample. Only the oracle supports it.
     pub const TRACED: Self = Self { side: 0, taps: 0 };
 
+    /// The resolution that these options select.
     pub const fn of(map: ShadowMapSize, taps: ShadowTaps) -> Self {
         Self { side: map.side(), taps: taps.side() }
     }

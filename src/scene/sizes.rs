@@ -8,7 +8,7 @@ use super::{draw::Draw, model::Scene, view::View};
 use crate::math::hash_unit;
 
 /// The most triangles that are sampled. Fractions are then known to within a few percent at a constant cost.
-const SAMPLED: u64 = 2048;
+const MAX_SAMPLES: u64 = 2048;
 
 /// A sample of the triangles of a picture with their sizes.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -30,16 +30,20 @@ struct VisibleTriangle {
     extent_px: f32,
     /// Sample columns and rows inside the picture that its bounding box covers.
     samples: [u32; 2],
-    /// The parts of its area (square pixels) and of its perimeter (pixels) inside the picture.
+    /// The part of its area inside the picture, square pixels.
     area: f32,
-    outline: f32,
+    /// The part of its perimeter inside the picture, pixels.
+    perimeter: f32,
 }
 
 /// Estimated numbers of triangles for each raster path.
 #[derive(Clone, Copy, Debug, Default, PartialEq, serde::Serialize)]
 pub struct SizeClasses {
+    /// Drawn by one invocation.
     pub small: f64,
+    /// Drawn by one workgroup.
     pub medium: f64,
+    /// Divided into tiles.
     pub large: f64,
     /// Error of each number: three standard deviations of the sampling, 0 if all triangles were sampled.
     pub error_bound: f64,
@@ -49,17 +53,17 @@ impl TriangleSizes {
     /// Samples triangles of `scene` as `view` sees it through `draws`, spread evenly over their list.
     pub fn of(scene: &Scene, draws: &[Draw], view: &View) -> Self {
         let triangles: u64 = draws.iter().map(|draw| u64::from(scene.primitives[draw.primitive].triangle_count())).sum();
-        let count = triangles.min(SAMPLED);
+        let count = triangles.min(MAX_SAMPLES);
         let (mut visible, mut near_clipped) = (Vec::new(), 0);
         for k in 0..count {
             // One random position per stratum: a fixed step would alias with the order of a strip.
-            let within = if triangles > SAMPLED { hash_unit(k as u32) } else { 0.0 };
+            let within = if triangles > MAX_SAMPLES { hash_unit(k as u32) } else { 0.0 };
             let id = ((k as f64 + within) * triangles as f64 / count as f64) as u64;
             let draw = &draws[draws.partition_point(|draw| u64::from(draw.first_triangle) <= id) - 1];
-            match preset_file(scene, draw, view, id as u32 - draw.first_triangle) {
-                Sampled::VisibleTriangle(one) => visible.push(one),
-                Sampled::Cut => near_clipped += 1,
-                Sampled::Unseen => {}
+            match classify(scene, draw, view, id as u32 - draw.first_triangle) {
+                Sampled::Visible(one) => visible.push(one),
+                Sampled::CrossesNear => near_clipped += 1,
+                Sampled::Hidden => {}
             }
         }
         Self { triangles, sampled: count as u32, near_clipped, visible: visible.into() }
@@ -70,7 +74,7 @@ impl TriangleSizes {
         self.visible.len() as u32
     }
 
-    /// A histogram of [`Self::seen`] by powers of two: the upper end in pixels and the count, from the first to the last non-empty bin.
+    /// A histogram of [`Self::visible`] by powers of two: the upper end in pixels and the count, from the first to the last non-empty bin.
     pub fn bins(&self) -> Vec<(f64, u32)> {
         let of = |visible: &VisibleTriangle| libm::floor(libm::log2(f64::from(visible.extent_px.max(1.0 / 256.0)))) as i32 + 1;
         let (Some(first), Some(last)) = (self.visible.iter().map(of).min(), self.visible.iter().map(of).max()) else { return Vec::new() };
@@ -109,21 +113,23 @@ impl TriangleSizes {
         }
         let area: f64 = self.visible.iter().map(|visible| f64::from(visible.area)).sum();
         let passed: f64 =
-            self.visible.iter().map(|visible| (f64::from(visible.outline) * shift_px * 0.5).min(f64::from(visible.area))).sum();
+            self.visible.iter().map(|visible| (f64::from(visible.perimeter) * shift_px * 0.5).min(f64::from(visible.area))).sum();
         let each = self.triangles as f64 / f64::from(self.sampled.max(1));
         let covered = if self.near_clipped > 0 { 1.0 } else { (area * each / pixels.max(1.0)).min(1.0) };
         if area > 0.0 { passed / area * covered } else { 0.0 }
     }
 }
 
+/// What is known of a sampled triangle.
 enum Sampled {
-    VisibleTriangle(VisibleTriangle),
-    Cut,
+    Visible(VisibleTriangle),
+    /// Crosses the near plane.
+    CrossesNear,
     /// Facing away, or outside the picture.
-    Unseen,
+    Hidden,
 }
 
-fn preset_file(scene: &Scene, draw: &Draw, view: &View, triangle: u32) -> Sampled {
+fn classify(scene: &Scene, draw: &Draw, view: &View, triangle: u32) -> Sampled {
     let primitive = &scene.primitives[draw.primitive];
     let position = |vertex: u32| match &draw.deform {
         Some(deform) => deform.position(scene, primitive, vertex),
@@ -131,13 +137,13 @@ fn preset_file(scene: &Scene, draw: &Draw, view: &View, triangle: u32) -> Sample
     };
     let clip: [DVec4; 3] = primitive.corners(scene, triangle).map(|vertex| draw.clip_point(position(vertex)));
     if clip.iter().any(|c| !c.is_finite()) {
-        return Sampled::Unseen;
+        return Sampled::Hidden;
     }
     let is_before_near = |c: &&DVec4| c.w <= 0.0 || c.z > c.w;
     match clip.iter().filter(is_before_near).count() {
         0 => {}
-        3 => return Sampled::Unseen,
-        _ => return Sampled::Cut,
+        3 => return Sampled::Hidden,
+        _ => return Sampled::CrossesNear,
     }
     let size = DVec2::new(view.width.into(), view.height.into());
     let [a, b, c] = clip.map(|c| DVec2::new(0.5 + 0.5 * c.x / c.w, 0.5 - 0.5 * c.y / c.w) * size);
@@ -145,9 +151,9 @@ fn preset_file(scene: &Scene, draw: &Draw, view: &View, triangle: u32) -> Sample
     // y points down, so clockwise on the screen is a back face.
     let doubled = (b - a).perp_dot(c - a);
     let is_back = (doubled > 0.0) != draw.mirrored;
-    let is_beside = high.x <= 0.0 || high.y <= 0.0 || low.x >= size.x || low.y >= size.y;
-    if is_beside || doubled == 0.0 || is_back && !scene.materials[primitive.material].double_sided {
-        return Sampled::Unseen;
+    let is_outside = high.x <= 0.0 || high.y <= 0.0 || low.x >= size.x || low.y >= size.y;
+    if is_outside || doubled == 0.0 || is_back && !scene.materials[primitive.material].double_sided {
+        return Sampled::Hidden;
     }
     let samples = [0, 1].map(|axis| {
         let (first, last) = ((low[axis] - 0.5).ceil().max(0.0), (high[axis] - 0.5).floor().min(size[axis] - 1.0));
@@ -155,11 +161,11 @@ fn preset_file(scene: &Scene, draw: &Draw, view: &View, triangle: u32) -> Sample
     });
     let inside = (high.min(size) - low.max(DVec2::ZERO)) / (high - low).max(DVec2::splat(f64::MIN_POSITIVE));
     let fraction = inside.x * inside.y;
-    Sampled::VisibleTriangle(VisibleTriangle {
+    Sampled::Visible(VisibleTriangle {
         extent_px: (high - low).max_element() as f32,
         samples,
         area: (0.5 * doubled.abs() * fraction) as f32,
-        outline: ((a.distance(b) + b.distance(c) + c.distance(a)) * fraction.sqrt()) as f32,
+        perimeter: ((a.distance(b) + b.distance(c) + c.distance(a)) * fraction.sqrt()) as f32,
     })
 }
 

@@ -22,6 +22,7 @@ pub struct Image {
 pub struct Level {
     /// Width and height, each at least 1.
     pub size: [u32; 2],
+    /// `width * height` texels.
     pub texels: Vec<[u8; 4]>,
 }
 
@@ -142,6 +143,7 @@ pub struct Texture {
     pub mag_filter: Filter,
     /// Filter where a pixel covers more than a texel.
     pub min_filter: Filter,
+    /// Which mip levels are read.
     pub mip_filter: MipFilter,
     /// The set of texture coordinates: n of `TEXCOORD_n`.
     pub set: u32,
@@ -183,9 +185,9 @@ impl Texture {
     /// Stored texture coordinates in units of 1/256 texel of an image of this size, from which integer decisions are made.
     /// Clamped to ±2^29 units, two million texels.
     pub fn units(&self, size: [u32; 2], texcoord: DVec2) -> [i32; 2] {
-        const FARTHEST: f64 = (1 << 29) as f64;
+        const MAX_UNITS: f64 = (1 << 29) as f64;
         let units = self.image_coordinates(texcoord) * DVec2::from(size.map(f64::from)) * UNITS_PER_TEXEL;
-        units.to_array().map(|v| v.clamp(-FARTHEST, FARTHEST).round_ties_even() as i32)
+        units.to_array().map(|v| v.clamp(-MAX_UNITS, MAX_UNITS).round_ties_even() as i32)
     }
 }
 
@@ -200,7 +202,7 @@ mod tests {
     use crate::math::{hash, srgb};
 
     #[test]
-    fn copies_halve_down_to_a_texel_and_keep_the_mean_of_their_light() {
+    fn mip_levels_halve_down_to_a_texel_and_keep_the_mean_of_their_light() {
         for size in [[1, 1], [8, 8], [7, 3], [1, 9], [16, 5]] {
             let noise = |i: u32| hash(i).to_le_bytes();
             let image = Image::new("noise", size, (0..size[0] * size[1]).map(noise).collect()).with_mipmaps();

@@ -38,6 +38,7 @@ pub struct Case {
     /// What it draws and checks, in one line.
     pub about: &'static str,
     pub expectation: Expectation,
+    /// Draws and checks.
     pub(super) run: fn(&mut CaseContext) -> Result<(), EarlyEnd>,
 }
 
@@ -76,6 +77,7 @@ impl Outcome {
         }
     }
 
+    /// Returns true if the expectation does not hold.
     pub const fn is_failure(&self) -> bool {
         matches!(self, Self::Failed(_))
     }
@@ -93,6 +95,7 @@ pub struct Report {
     pub seed: Option<u32>,
     /// Remarks of the case, for instance what was skipped on this adapter.
     pub notes: Vec<String>,
+    /// Duration of the case, milliseconds.
     pub ms: f64,
     pub counts: Counts,
 }

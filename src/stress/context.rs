@@ -343,6 +343,7 @@ impl<'a> CaseContext<'a> {
         self.is_software() && !self.renderer.gpu().caps.int64_atomics
     }
 
+    /// The exact visibility options of this adapter.
     pub(super) fn options(&self) -> Vec<Visibility> {
         if self.strict.is_some() {
             return vec![self.quick_option()];
@@ -445,6 +446,7 @@ impl<'a> CaseContext<'a> {
         first.ok_or_else(|| EarlyEnd::Failed(format!("{what}: this adapter has no exact visibility option")))
     }
 
+    /// [`Self::exact_on_all_with`] without effects.
     pub(super) fn exact_on_all(&mut self, scene: &Arc<Scene>, view: &View, what: &str) -> Result<Capture, EarlyEnd> {
         self.exact_on_all_with(scene, view, &Stack::default(), what)
     }

@@ -90,7 +90,7 @@ fn counted(capture: &Capture, count: u32, times: u32, what: &str) -> Result<(), 
 
 fn workgroups_direct(context: &mut CaseContext) -> Result<(), EarlyEnd> {
     let option = pinned(context.quick_option());
-    // 64 triangles, or vertices, to a group: 65,535, 65,536 and 65,537 groups, the last one with a single lane at work.
+    // 64 triangles, or vertices, to a group: 65,535, 65,536 and 65,537 groups, the last one with a single active invocation.
     for groups in [65_535u32, 65_536, 65_537] {
         let triangles = 64 * (groups - 1) + 1;
         // A single instance, so the triangle list itself has this length.

@@ -19,6 +19,7 @@ use crate::{
 /// A mesh given by explicit vertices, with its instances.
 #[derive(Clone)]
 pub struct SimpleMesh {
+    /// Object space.
     pub positions: Vec<[f32; 3]>,
     /// One per vertex, or empty: (0, 0, 1) everywhere.
     pub normals: Vec<[f32; 3]>,
@@ -26,7 +27,9 @@ pub struct SimpleMesh {
     pub colors: Vec<[f32; 4]>,
     /// Three per triangle, or empty: the vertices in order.
     pub indices: Vec<u32>,
+    /// Back faces are drawn; true by default.
     pub double_sided: bool,
+    /// One per instance; a single identity by default.
     pub transforms: Vec<DMat4>,
 }
 

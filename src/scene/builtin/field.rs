@@ -18,6 +18,7 @@ use crate::{
 /// Distance between neighbours, metres; spheres have a radius of about 1.
 const SPACING_M: f64 = 2.4;
 
+/// Builds the scene `field`.
 pub fn build(values: &Values) -> Result<Scene, BuiltinError> {
     const TONES: [(&str, [f32; 3]); 5] = [
         ("clay", [0.42, 0.47, 0.52]),

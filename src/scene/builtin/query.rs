@@ -8,8 +8,11 @@ use crate::scene::model::Scene;
 #[derive(Clone, Debug)]
 pub struct BuiltinParam {
     pub name: &'static str,
+    /// One line for listings.
     pub doc: &'static str,
+    /// Value if the query does not give one.
     pub default: f64,
+    /// Allowed values.
     pub range: RangeInclusive<f64>,
     /// Only whole numbers are allowed.
     pub whole: bool,
@@ -18,6 +21,7 @@ pub struct BuiltinParam {
 /// A builtin scene, as listings show it.
 pub struct Builtin {
     pub name: &'static str,
+    /// One line for listings.
     pub about: &'static str,
     pub params: &'static [BuiltinParam],
     pub(super) build: fn(&Values) -> Result<Scene, BuiltinError>,
@@ -31,10 +35,12 @@ pub struct BuiltinError(pub String);
 /// The most triangles of a builtin scene: its indices and its vertices stay below 128 MiB each.
 pub const MAX_TRIANGLES: u64 = 10_000_000;
 
+/// A parameter of whole numbers.
 pub(super) const fn whole(name: &'static str, doc: &'static str, default: f64, range: RangeInclusive<f64>) -> BuiltinParam {
     BuiltinParam { name, doc, default, range, whole: true }
 }
 
+/// A parameter of real numbers.
 pub(super) const fn real(name: &'static str, doc: &'static str, default: f64, range: RangeInclusive<f64>) -> BuiltinParam {
     BuiltinParam { name, doc, default, range, whole: false }
 }

@@ -62,6 +62,7 @@ const SCALE: f64 = 0.4;
 /// Middle of the data's box.
 const CENTER: DVec3 = DVec3::new(0.217, 0.0, 1.575);
 
+/// Builds the scene `teapot`.
 pub fn build(values: &Values) -> Result<Scene, BuiltinError> {
     let tess = values.whole("tess");
     let side = tess as usize;

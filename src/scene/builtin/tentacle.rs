@@ -29,6 +29,7 @@ const PHASES: usize = 8;
 /// Keyframes per cycle of a linear sampler.
 const KEYS: usize = 16;
 
+/// Builds the scene `tentacle`.
 pub fn build(values: &Values) -> Result<Scene, BuiltinError> {
     let (joints, tess, instances) = (values.whole("joints"), values.whole("tess"), values.whole("instances"));
     let (around, along) = (4 + 2 * tess, 4 * tess);

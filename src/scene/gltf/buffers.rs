@@ -20,6 +20,7 @@ use crate::scene::{
 
 /// All buffers, in memory.
 pub struct Buffers<'a> {
+    /// The parsed JSON.
     pub root: &'a json::Root,
     bytes: Vec<Cow<'a, [u8]>>,
     /// Bytes that the model may still read from files.
@@ -33,6 +34,7 @@ pub struct Layout {
     pub accessor: Accessor,
     /// The buffer view. `None`: all elements are zero except sparse ones.
     pub view: Option<usize>,
+    /// Some elements are replaced by sparse values.
     pub is_sparse: bool,
 }
 
@@ -223,6 +225,7 @@ pub const QUANTIZED_NORMALS: &[Format] = &[(ComponentType::F32, false), (Compone
 /// A scene under construction that receives bytes of the file, each buffer view and each sparse accessor once.
 pub struct SceneWriter<'a> {
     buffers: &'a Buffers<'a>,
+    /// What has been read so far.
     pub scene: Scene,
     /// The file declares KHR_mesh_quantization: attributes may be small integers.
     pub is_quantized: bool,

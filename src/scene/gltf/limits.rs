@@ -5,6 +5,7 @@ const MIB: u64 = 1 << 20;
 pub const FILE_BYTES: u64 = 256 * MIB;
 /// Total size of all files of a model.
 pub const TOTAL_BYTES: u64 = 512 * MIB;
+/// Size of the JSON.
 pub const JSON_BYTES: u64 = 64 * MIB;
 /// JSON objects; each may need hundreds of bytes once parsed.
 pub const JSON_OBJECTS: usize = 1_000_000;

@@ -17,6 +17,7 @@ use crate::scene::{
 
 /// The node tree.
 pub struct Tree {
+    /// World transform of each node in the rest pose.
     pub world_from_node: Vec<DMat4>,
     /// Nodes of the default scene (else of the first scene, else all), parents before children.
     pub shown: Vec<usize>,
@@ -118,6 +119,7 @@ impl Tree {
     }
 }
 
+/// A node as error messages name it.
 pub fn node_name(root: &json::Root, node: usize) -> String {
     called("node", node, root.nodes[node].name.as_deref())
 }

@@ -23,6 +23,7 @@ pub const LEGS: [[[f64; 2]; 4]; 2] =
 const PARTS: [[&str; 4]; 2] = [["hip", "knee", "hock", "foot"], ["shoulder", "elbow", "wrist", "foot"]];
 /// Sideways offset of the left hind, left fore, right hind and right fore leg, metres.
 pub const SIDES_M: [f64; 4] = [-0.15, -0.14, 0.15, 0.14];
+/// The number of joints.
 pub const JOINTS: usize = SPINE.len() + 16;
 /// Toe tip and heel, relative to the foot's joint.
 const SOLE: [[f64; 2]; 2] = [[0.13, -0.08], [-0.05, -0.08]];
@@ -35,6 +36,7 @@ const TRUNK_M: f64 = 0.8;
 /// Parameters of a gait. Angles are in radians, times in cycles.
 pub struct Gait {
     pub name: &'static str,
+    /// Duration of a cycle, seconds.
     pub period_s: f64,
     /// Fraction of the cycle during which a foot is on the ground.
     duty: f64,
@@ -71,7 +73,9 @@ pub const GAITS: [Gait; 3] = [
 /// A joint in the rest pose.
 pub struct Joint {
     pub name: String,
+    /// Index of its parent.
     pub parent: usize,
+    /// Rest position, metres.
     pub at: DVec3,
 }
 

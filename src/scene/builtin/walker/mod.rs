@@ -25,6 +25,7 @@ use crate::scene::{
 const KEYS: usize = 64;
 const PHASES: usize = 8;
 
+/// Builds the scene `walker`.
 pub fn build(values: &Values) -> Result<Scene, BuiltinError> {
     let (tess, instances) = (values.whole("tess"), values.whole("instances"));
     let mut scene = Scene { materials: vec![Material { name: "hide".into(), ..Material::default() }], ..Scene::default() };
@@ -187,7 +188,7 @@ mod tests {
             };
             assert!(apart(0.0, 1.0) < 1e-6 && apart(0.25, 4.25) < 1e-6 && apart(0.0, 0.25) > 0.05, "{}", clip.name);
         }
-        // Animals out of step make the same steps: the second is an eighth of a round ahead.
+        // Animals out of step move alike: the second is an eighth of a cycle ahead.
         let [a, b] = [0, 1].map(|instance| {
             let position = scene.rig.nodes[scene.instances[instance].node.unwrap()].rest.matrix().w_axis.truncate();
             let (count, late) = (scene.primitives[0].vertex_count() as usize, 0.1875 * (1 - instance) as f64);

@@ -9,8 +9,11 @@ use crate::scene::builtin::weights::{self, JointWeight};
 /// A tapered capsule that follows a joint.
 #[derive(Clone, Copy, Debug)]
 pub struct Bone {
+    /// Index of the joint that moves it.
     pub joint: usize,
+    /// End points of its axis in the rest pose, metres.
     pub ends: [DVec3; 2],
+    /// Radii at its ends, metres.
     pub radii: [f64; 2],
     /// Radius of the smooth blend into the capsules before it, metres.
     pub blend: f64,
@@ -21,6 +24,7 @@ pub struct Bone {
 /// All capsules, with a minimum radius that the mesh resolution can show.
 pub struct CapsuleBody {
     pub bones: Vec<Bone>,
+    /// Smallest radius, metres.
     pub min_radius: f64,
 }
 
