@@ -33,9 +33,9 @@ impl Bounds {
     }
 
     /// Includes `bounds`, grown by `margin` on every side and then transformed by `matrix`.
-    pub fn include_transformed(&mut self, matrix: &DMat4, placed: &Self, error_bound: f64) {
-        if !placed.is_empty() {
-            let grown = Self { min: placed.min - error_bound, max: placed.max + error_bound };
+    pub fn include_transformed(&mut self, matrix: &DMat4, bounds: &Self, margin: f64) {
+        if !bounds.is_empty() {
+            let grown = Self { min: bounds.min - margin, max: bounds.max + margin };
             grown.corners().into_iter().for_each(|corner| self.include(matrix.transform_point3(corner)));
         }
     }

@@ -41,7 +41,7 @@ impl Default for Camera {
 }
 
 impl Camera {
-    /// The nearest pose that presets along `direction` at the middle of `bounds` and shows all of it with a little air.
+    /// The nearest camera that looks along `direction` at the centre of `bounds` and shows all of it with a small margin.
     pub fn framing(bounds: &Bounds, direction: DVec3, aspect: f64) -> Self {
         let fov_y_deg: f64 = 45.0;
         let tan_y = libm::tan(fov_y_deg.to_radians() * 0.5) * 0.92;

@@ -38,8 +38,8 @@ pub fn near_miss_triangle(rng: &mut Rng, extent: i32, size: [i32; 2]) -> [[i32; 
     let b = [a[0] + dx, a[1] + dy];
     let mut third = |axis: usize| {
         let (low, high) = (a[axis].min(b[axis]), a[axis].max(b[axis]));
-        let error_bound = (i64::from(extent) - (high - low)).max(0) as i32;
-        low - i64::from(rng.between(0, error_bound + 1)) + i64::from(rng.between(0, extent + 1))
+        let room = (i64::from(extent) - (high - low)).max(0) as i32;
+        low - i64::from(rng.between(0, room + 1)) + i64::from(rng.between(0, extent + 1))
     };
     let c = [third(0), third(1)];
     [a, b, c].map(|corner| corner.map(|at| at.clamp(-8_388_607, 8_388_607) as i32))

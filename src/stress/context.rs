@@ -361,7 +361,7 @@ impl<'a> CaseContext<'a> {
         builtin::build(query).map(Arc::new).map_err(|error| EarlyEnd::Failed(format!("{query}: {error}")))
     }
 
-    /// A scene as a preset without a camera shows it.
+    /// The view of a scene with the default camera.
     pub(super) fn view(&self, scene: &Scene, size: [u32; 2]) -> View {
         Preset { scene: SceneSource::Builtin(scene.name.clone()), ..Preset::default() }.view(scene, size)
     }

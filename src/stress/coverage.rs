@@ -93,9 +93,9 @@ fn sizes(context: &mut CaseContext) -> Result<(), EarlyEnd> {
         let capture = context.exact_on_all(&scene, &pixel_view(64, 64), &format!("10^{exponent} px"))?;
         for (pixel, &hits) in layers(&capture).iter().enumerate() {
             let (px, py) = ((pixel % 64) as f32 + 0.5, (pixel / 64) as f32 + 0.5);
-            let error_bound = (size - (py - y).abs() - (px - x)).min(px - x);
-            if error_bound.abs() > 1.0 / 128.0 {
-                equal(&hits, &u32::from(error_bound > 0.0), &format!("10^{exponent} px, hits of pixel {pixel}"))?;
+            let inside_by = (size - (py - y).abs() - (px - x)).min(px - x);
+            if inside_by.abs() > 1.0 / 128.0 {
+                equal(&hits, &u32::from(inside_by > 0.0), &format!("10^{exponent} px, hits of pixel {pixel}"))?;
             }
         }
     }

@@ -47,7 +47,7 @@ fn hundred_equal_frames(context: &mut CaseContext) -> Result<(), EarlyEnd> {
     let view = context.view(&hall, [80, 60]);
     context.renderer.set_tuning(tunings()[2]);
     if context.is_slow() {
-        context.note("one preset on each option, since this adapter is slow".into());
+        context.note("one stack of effects for each option, since this adapter is slow".into());
     }
     for (i, option) in context.options().into_iter().enumerate() {
         let stacks = [stack(&["facet", "lambert"]), stack(&["lambert", "xray"])];
@@ -58,7 +58,7 @@ fn hundred_equal_frames(context: &mut CaseContext) -> Result<(), EarlyEnd> {
                 let what = format!("frame {frame} on {}", option.name());
                 let capture = context.captured(&hall, &view, stack, &pinned(option), &what)?;
                 let Some(first) = &first else {
-                    check!(!capture.geometry.pieces.is_empty(), "nothing was clipped");
+                    check!(!capture.geometry.clipped_triangles.is_empty(), "nothing was clipped");
                     first = Some(capture);
                     continue;
                 };
@@ -117,7 +117,7 @@ fn after_a_day(context: &mut CaseContext) -> Result<(), EarlyEnd> {
     let key = |time_s: f64, value: f64| Keyframe { time_s, value: vec![value], easing: Easing::Linear };
     let sentence = |error: crate::preset::animation::KeyframeError| EarlyEnd::Failed(error.to_string());
     // A ramp of a second that begins a day after the start, and spin of a quarter turn a second.
-    let preset_files = |late_s: f64| -> Result<Preset, EarlyEnd> {
+    let preset_at = |late_s: f64| -> Result<Preset, EarlyEnd> {
         let mut animation = Animation::default();
         animation.put(Track::new(facet, amount, vec![key(late_s, 0.0), key(late_s + 1.0, 1.0)]).map_err(sentence)?);
         Ok(Preset {
@@ -128,7 +128,7 @@ fn after_a_day(context: &mut CaseContext) -> Result<(), EarlyEnd> {
             ..Preset::default()
         })
     };
-    let (fresh, late) = (preset_files(0.0)?, preset_files(DAY_S)?);
+    let (fresh, late) = (preset_at(0.0)?, preset_at(DAY_S)?);
     let angle = |preset: &Preset| {
         let x = preset.view(&knot, [8, 8]).scene_state.world_from_scene.x_axis;
         libm::atan2(-x.z, x.x) / std::f64::consts::TAU

@@ -64,8 +64,8 @@ pub fn grid(values: &Values) -> Result<Scene, BuiltinError> {
         )));
     }
     let lattice_step = if lattice > 0.0 { 1.0 / lattice } else { 0.0 };
-    let error_bound = 0.25 * cell - 0.5 * lattice_step - 0.5 / f64::from(UNITS_PER_PIXEL);
-    if error_bound <= 0.0 {
+    let max_jitter = 0.25 * cell - 0.5 * lattice_step - 0.5 / f64::from(UNITS_PER_PIXEL);
+    if max_jitter <= 0.0 {
         return Err(BuiltinError(format!(
             "grid: lattice={lattice} is too coarse for cell={cell}, cells would fold; lattice must be above {:.1}",
             2.1 / cell
@@ -77,7 +77,7 @@ pub fn grid(values: &Values) -> Result<Scene, BuiltinError> {
             let salt = hash(hash(seed) ^ (row as u32)).wrapping_add(2 * column as u32);
             let jittered = |at: u64, count: u64, salt: u32| {
                 let straight = (at as f64 - 0.5 * count as f64) * cell;
-                let moved = straight + 0.8 * error_bound * (2.0 * hash_unit(salt) - 1.0);
+                let moved = straight + 0.8 * max_jitter * (2.0 * hash_unit(salt) - 1.0);
                 if lattice > 0.0 { (moved * lattice).round() / lattice } else { moved }
             };
             mesh.vertex(DVec3::new(jittered(column, columns, salt), jittered(row, rows, salt + 1), 0.0), DVec3::Z);

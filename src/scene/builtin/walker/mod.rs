@@ -226,7 +226,7 @@ mod tests {
                 }
                 let bounds = Pose::at(&scene, &Motion { clip: Some(index), time_s, ..Motion::default() }).bounds(&scene);
                 let [bounds, framed] =
-                    [(bounds, 1e-6), (scene.rig.motion_bounds, 0.02)].map(|(b, error_bound)| (b.min - error_bound, b.max + error_bound));
+                    [(bounds, 1e-6), (scene.rig.motion_bounds, 0.02)].map(|(b, margin)| (b.min - margin, b.max + margin));
                 for (low, high) in [bounds, framed] {
                     let beyond = positions.iter().map(|p| (low - *p).max(*p - high).max_element()).fold(0.0, f64::max);
                     assert_eq!(beyond, 0.0, "{} at {time_s} s, m", clip.name);
