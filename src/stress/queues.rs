@@ -135,7 +135,7 @@ fn workgroups_indirect(context: &mut CaseContext) -> Result<(), EarlyEnd> {
     context.renderer.set_scene(&scene)?;
     context.renderer.set_capacities(Capacities { large: 65_600, tiles: 65_600, ..Capacities::default() });
     context.exact(&scene, &pixel_view(64, 64), &stack(&[]), &option, "65,600 large triangles")?;
-    let foreseen = Capacities { clip: 1, clipped_triangles: 1, medium: 1, large: 65_600, tiles: 65_600, bins: 1, listed: 0 };
+    let foreseen = Capacities { clip: 1, pieces: 1, medium: 1, large: 65_600, tiles: 65_600, bins: 1, listed: 0 };
     equal(&context.renderer.capacities(), &foreseen, "65,600 large triangles: room in the queues")?;
     // Tiles of the resolve: 66,048 of 8 x 8 pixels.
     let [a, b, c, d] = [[0, 0], [2048 * 256, 0], [2048 * 256, 2064 * 256], [0, 2064 * 256]];
@@ -152,7 +152,7 @@ type Demand = (&'static str, Capacities, Arc<Scene>, fn(&mut Capacities) -> &mut
 
 /// Each queue with a scene that makes a known demand on it.
 fn demands() -> Vec<Demand> {
-    let ample = Capacities { clip: 4096, clipped_triangles: 4096, medium: 4096, large: 4096, tiles: 4096, bins: 65_536, listed: 0 };
+    let ample = Capacities { clip: 4096, pieces: 4096, medium: 4096, large: 4096, tiles: 4096, bins: 65_536, listed: 0 };
     let n = 40;
     let many = |triangle: [[i32; 2]; 3]| {
         let moved = |i: i32| (triangle.map(|[x, y]| [x, y + 97 * i]), 0.2 + 0.01 * i as f32);
@@ -165,7 +165,7 @@ fn demands() -> Vec<Demand> {
     let large = many([[-3000, -3000], [90_000, 4000], [4000, 90_000]]);
     vec![
         ("clip", Capacities { clip: demand, ..ample }, cut.clone(), |c| &mut c.clip),
-        ("clipped_triangles", Capacities { clipped_triangles: 2 * demand, ..ample }, cut, |c| &mut c.clipped_triangles),
+        ("clipped_triangles", Capacities { pieces: 2 * demand, ..ample }, cut, |c| &mut c.pieces),
         ("medium", Capacities { medium: demand, ..ample }, small, |c| &mut c.medium),
         ("large", Capacities { large: demand, ..ample }, large.clone(), |c| &mut c.large),
         // A picture of 128 x 128 has four tiles.
