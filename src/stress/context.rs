@@ -98,30 +98,57 @@ pub(super) struct Strict {
 }
 
 /// Largest fraction of pixels in the depth band, where two triangle ids are correct. 16 pixels are always allowed.
-pub const BAND_SHARE: f64 = 0.01;
+pub const MAX_DEPTH_BAND_FRACTION: f64 = 0.01;
 
 /// Checks that all integers are exact, colours are within one step, and the depth band is small.
 ///
 /// # Errors
 /// A sentence for each violation.
 pub fn exactness(errors: &Errors) -> Result<(), String> {
-    errors.within(&Budget { max_depth_band_pixels: ((errors.pixels as f64 * BAND_SHARE) as u64).max(16), ..Budget::default() })
+    errors.within(&Budget { max_depth_band_pixels: ((errors.pixels as f64 * MAX_DEPTH_BAND_FRACTION) as u64).max(16), ..Budget::default() })
 }
 
-/// Work distributions that together use every kernel: a workgroup for each triangle that is not tiny, the limits of a GPU with
-/// listed tiles, the same without, and one invocation for each triangle.
-pub fn tunings() -> [Tuning; 4] {
-    [(1, 1, false), (64, 32, true), (64, 32, false), (128 * 128, 128, true)].map(|(max_small_samples, max_small_side, listed_tiles)| {
+/// How triangles are distributed over invocations and workgroups.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum WorkDistribution {
+    /// A workgroup for each triangle that is not tiny.
+    WorkgroupEach,
+    /// The limits of a graphics card, with a resolve over listed tiles.
+    CardListedTiles,
+    /// The limits of a graphics card, with a resolve over all pixels.
+    Card,
+    /// One invocation for each triangle.
+    InvocationEach,
+}
+
+impl WorkDistribution {
+    /// Together they use every kernel.
+    pub const ALL: [Self; 4] = [Self::WorkgroupEach, Self::CardListedTiles, Self::Card, Self::InvocationEach];
+
+    /// The tuning that distributes work in this way.
+    pub fn tuning(self) -> Tuning {
+        let is_card = matches!(self, Self::CardListedTiles | Self::Card);
+        let [max_small_samples, max_small_side] = match self {
+            Self::WorkgroupEach => [1, 1],
+            Self::CardListedTiles | Self::Card => [64, 32],
+            Self::InvocationEach => [128 * 128, 128],
+        };
+        let listed_tiles = matches!(self, Self::CardListedTiles | Self::InvocationEach);
         Tuning {
             max_small_samples,
-            group_size: if max_small_samples == 64 { 256 } else { 64 },
-            max_list_entries: if max_small_samples == 64 { 100 } else { u32::MAX },
+            group_size: if is_card { 256 } else { 64 },
+            max_list_entries: if is_card { 100 } else { u32::MAX },
             max_small_side,
             listed_tiles,
             early_load: listed_tiles,
             specialized: true,
         }
-    })
+    }
+}
+
+/// The tunings of all work distributions.
+pub fn tunings() -> [Tuning; 4] {
+    WorkDistribution::ALL.map(WorkDistribution::tuning)
 }
 
 /// The visibility options that lose nothing and that an adapter has.
@@ -209,10 +236,10 @@ pub(super) fn equal<T: PartialEq + std::fmt::Debug>(found: &T, expected: &T, wha
     if found == expected { Ok(()) } else { Err(EarlyEnd::Failed(format!("{what}: found {found:?}, expected {expected:?}"))) }
 }
 
-/// Fails where two pictures differ in an triangle id, a depth key or a number of hits.
+/// Fails where two pictures differ in a triangle id, a depth key or a number of hits.
 pub(super) fn same(found: &Capture, expected: &Capture, what: &str) -> Result<(), EarlyEnd> {
     let images = [
-        ("triangle_ids", compare::triangle_ids(&found.frame.triangle_id, &expected.frame.triangle_id)),
+        ("triangle ids", compare::triangle_ids(&found.frame.triangle_id, &expected.frame.triangle_id)),
         ("depth keys", compare::triangle_ids(&found.frame.key, &expected.frame.key)),
         ("numbers of hits", compare::triangle_ids(layers(found), layers(expected))),
     ];
@@ -415,22 +442,23 @@ impl<'a> CaseContext<'a> {
         }
     }
 
-    /// Draws on every option with work shared out as on a graphics card, and on the last option as the adapter likes it and
-    /// with a workgroup for all but the tiniest triangles. Each is exact, and all are the same; the first is handed over.
+    /// Draws with every exact option and the work distribution of a graphics card, and with the quickest option also with a
+    /// workgroup for each triangle and with the adapter's default. Every picture must be exact and equal to the first, which is
+    /// returned.
     pub(super) fn exact_on_all_with(&mut self, scene: &Arc<Scene>, view: &View, stack: &Stack, what: &str) -> Result<Capture, EarlyEnd> {
         if self.strict.is_some() {
             return Ok(self.exact(scene, view, stack, &pinned(self.quick_option()), what)?.0);
         }
         let default = self.renderer.gpu().caps.tuning();
-        let [crowded, _, card, _] = tunings();
+        let [workgroup_each, card] = [WorkDistribution::WorkgroupEach, WorkDistribution::Card].map(WorkDistribution::tuning);
         let last = self.quick_option();
         let options = self.options();
         let ways: Vec<_> = if self.is_slow() {
             // Compiling kernels takes longer than drawing all their pictures.
             self.note("each option and each way to share out work is drawn once, since this adapter is slow".into());
-            options.into_iter().zip([crowded, card].into_iter().cycle()).collect()
+            options.into_iter().zip([workgroup_each, card].into_iter().cycle()).collect()
         } else {
-            options.into_iter().map(|option| (option, card)).chain([(last, crowded), (last, default)]).collect()
+            options.into_iter().map(|option| (option, card)).chain([(last, workgroup_each), (last, default)]).collect()
         };
         let mut first: Option<Capture> = None;
         for (option, tuning) in ways {

@@ -3,7 +3,7 @@
 use super::{
     adversarial::{near_collinear_triangle, near_miss_triangle, near_tie_mesh},
     case::{Case, Expectation},
-    context::{CaseContext, EarlyEnd, check, equal, layers, once, pinned, stack, tunings},
+    context::{CaseContext, EarlyEnd, WorkDistribution, check, equal, layers, once, pinned, stack},
     scenes::{Rng, SimpleMesh, pixel_view, reference_coverage, scene_of_meshes, triangle_soup, triangle_soup_in_units},
 };
 use crate::{math::GUARD_BAND, measure::compare};
@@ -197,7 +197,7 @@ fn near_misses(context: &mut CaseContext) -> Result<(), EarlyEnd> {
             let scene = scene_of_meshes(&[triangle_soup_in_units(&triangles)]);
             let what = format!("extent {extent} units, picture {picture}");
             let capture = if count > 2000 {
-                context.renderer.set_tuning(tunings()[2]);
+                context.renderer.set_tuning(WorkDistribution::Card.tuning());
                 context.exact(&scene, &view, &stack(&[]), &pinned(option), &what)?.0
             } else {
                 context.exact_on_all(&scene, &view, &what)?

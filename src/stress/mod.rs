@@ -23,7 +23,9 @@ mod time;
 mod values;
 
 pub use case::{Case, Expectation, Outcome, Report};
-pub use context::{CaseContext, Counts, EarlyEnd, captured, exactness, judged, options, pinned, quick_option, stack, tunings};
+pub use context::{
+    CaseContext, Counts, EarlyEnd, WorkDistribution, captured, exactness, judged, options, pinned, quick_option, stack, tunings,
+};
 
 /// All cases, sorted by number.
 pub fn cases() -> Vec<&'static Case> {

@@ -6,7 +6,7 @@ use glam::{DMat4, DVec3};
 
 use super::{
     case::{Case, Expectation},
-    context::{CaseContext, EarlyEnd, check, equal, layers, pinned, stack, tunings},
+    context::{CaseContext, EarlyEnd, WorkDistribution, check, equal, layers, pinned, stack},
     scenes::{SimpleMesh, pixel_view, scene_of_meshes, triangle_soup_in_units},
 };
 use crate::{
@@ -62,30 +62,60 @@ pub const CASES: &[Case] = &[
     },
 ];
 
-/// `count` tiny triangles, one hit each, one pixel after another in rows, instanced `times` times, later instances nearer.
-fn dots(indexed: bool, count: u32, times: u32) -> (Arc<Scene>, View) {
-    let corner = |i: u32, c: usize| {
-        let (x, y) = ((i % 64) as f32, (i / 64 % 64) as f32);
-        [[x + 0.25, y + 0.25, 0.0], [x + 0.75, y + 0.5, 0.0], [x + 0.25, y + 0.75, 0.0]][c]
-    };
-    let distinct = if indexed { 4096.min(count) } else { count };
-    let part = SimpleMesh {
-        positions: (0..distinct).flat_map(|i| [0, 1, 2].map(|c| corner(i, c))).collect(),
-        indices: if indexed { (0..count).flat_map(|i| [0, 1, 2].map(|c| 3 * (i % distinct) + c)).collect() } else { vec![] },
-        transforms: (0..times).map(|i| DMat4::from_translation(DVec3::Z * f64::from(i + 1) / f64::from(times + 1))).collect(),
-        ..SimpleMesh::default()
-    };
-    (scene_of_meshes(&[part]), pixel_view(64, 64))
+/// Tiny triangles, one hit each, one pixel after another in rows of a 64 x 64 picture; later instances are nearer.
+#[derive(Clone, Copy)]
+struct TinyTriangles {
+    /// Triangles of the mesh.
+    count: u32,
+    instances: u32,
+    vertices: Vertices,
 }
 
-/// Checks the hits of each pixel, and its triangle id: the smallest id of the last, nearest instance.
-fn counted(capture: &Capture, count: u32, times: u32, what: &str) -> Result<(), EarlyEnd> {
-    let rounds = |pixel: u32| (count - pixel).div_ceil(4096);
-    for pixel in 0..4096.min(count) {
-        let found = (layers(capture)[pixel as usize], capture.frame.triangle_id[pixel as usize]);
-        equal(&found, &(times * rounds(pixel), (times - 1) * count + pixel), &format!("{what}: hits and triangle id of pixel {pixel}"))?;
+/// Whether triangles share vertices.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Vertices {
+    /// Triangles on the same pixel share their vertices by an index list.
+    Shared,
+    /// Each triangle has three vertices of its own.
+    Separate,
+}
+
+impl TinyTriangles {
+    const PIXELS: u32 = 64 * 64;
+
+    fn scene(self) -> (Arc<Scene>, View) {
+        let Self { count, instances, vertices } = self;
+        let corner = |i: u32, c: usize| {
+            let (x, y) = ((i % 64) as f32, (i / 64 % 64) as f32);
+            [[x + 0.25, y + 0.25, 0.0], [x + 0.75, y + 0.5, 0.0], [x + 0.25, y + 0.75, 0.0]][c]
+        };
+        let (distinct, indices) = match vertices {
+            Vertices::Shared => {
+                let distinct = Self::PIXELS.min(count);
+                (distinct, (0..count).flat_map(|i| [0, 1, 2].map(|c| 3 * (i % distinct) + c)).collect())
+            }
+            Vertices::Separate => (count, vec![]),
+        };
+        let transform = |i: u32| DMat4::from_translation(DVec3::Z * f64::from(i + 1) / f64::from(instances + 1));
+        let mesh = SimpleMesh {
+            positions: (0..distinct).flat_map(|i| [0, 1, 2].map(|c| corner(i, c))).collect(),
+            indices,
+            transforms: (0..instances).map(transform).collect(),
+            ..SimpleMesh::default()
+        };
+        (scene_of_meshes(&[mesh]), pixel_view(64, 64))
     }
-    Ok(())
+
+    /// Checks the hits of each pixel, and its triangle id: the smallest id of the last, nearest instance.
+    fn check(self, capture: &Capture, what: &str) -> Result<(), EarlyEnd> {
+        let Self { count, instances, .. } = self;
+        for pixel in 0..Self::PIXELS.min(count) {
+            let found = (layers(capture)[pixel as usize], capture.frame.triangle_id[pixel as usize]);
+            let hits = instances * (count - pixel).div_ceil(Self::PIXELS);
+            equal(&found, &(hits, (instances - 1) * count + pixel), &format!("{what}: hits and triangle id of pixel {pixel}"))?;
+        }
+        Ok(())
+    }
 }
 
 fn workgroups_direct(context: &mut CaseContext) -> Result<(), EarlyEnd> {
@@ -94,22 +124,23 @@ fn workgroups_direct(context: &mut CaseContext) -> Result<(), EarlyEnd> {
     for groups in [65_535u32, 65_536, 65_537] {
         let triangles = 64 * (groups - 1) + 1;
         // A single instance, so the triangle list itself has this length.
-        let (scene, view) = dots(true, triangles, 1);
+        let tiny = TinyTriangles { count: triangles, instances: 1, vertices: Vertices::Shared };
+        let (scene, view) = tiny.scene();
         let what = format!("{groups} groups of triangles");
         let capture = context.captured(&scene, &view, &stack(&[]), &option, &what)?;
-        counted(&capture, triangles, 1, &what)?;
+        tiny.check(&capture, &what)?;
     }
-    let (count, times) = (66_666, 21);
-    check!(3 * count * times > 64 * 65_535, "too few vertices");
-    let (scene, view) = dots(false, count, times);
+    let tiny = TinyTriangles { count: 66_666, instances: 21, vertices: Vertices::Separate };
+    check!(3 * tiny.count * tiny.instances > 64 * 65_535, "too few vertices");
+    let (scene, view) = tiny.scene();
     let what = "65,626 groups of vertices";
     let capture = context.captured(&scene, &view, &stack(&[]), &option, what)?;
-    counted(&capture, count, times, what)
+    tiny.check(&capture, what)
 }
 
 fn workgroups_indirect(context: &mut CaseContext) -> Result<(), EarlyEnd> {
     let option = pinned(context.quick_option());
-    let [crowded, _, card, _] = tunings();
+    let [workgroup_each, card] = [WorkDistribution::WorkgroupEach, WorkDistribution::Card].map(WorkDistribution::tuning);
     // Medium triangles: one workgroup each.
     let demands = [65_537u32, 65_535, 65_536];
     if context.is_slow() {
@@ -122,7 +153,7 @@ fn workgroups_indirect(context: &mut CaseContext) -> Result<(), EarlyEnd> {
         };
         let triangles: Vec<_> = (0..demand).map(|i| (corners(i), 0.25 + 1e-6 * i as f32)).collect();
         let scene = scene_of_meshes(&[triangle_soup_in_units(&triangles)]);
-        context.renderer.set_tuning(crowded);
+        context.renderer.set_tuning(workgroup_each);
         let what = format!("{demand} medium triangles");
         context.exact(&scene, &pixel_view(64, 64), &stack(&[]), &option, &what)?;
         check!(context.renderer.capacities().medium >= demand, "{what}: {:?}", context.renderer.capacities());
@@ -147,45 +178,60 @@ fn workgroups_indirect(context: &mut CaseContext) -> Result<(), EarlyEnd> {
     equal(&capture.frame.covered(), &(2048 * 2064), &format!("{what}: pixels"))
 }
 
-/// What a demand is called, what it comes to, the scene that makes it, and the capacity that must hold it.
-type Demand = (&'static str, Capacities, Arc<Scene>, fn(&mut Capacities) -> &mut u32);
+/// A known demand on one queue.
+struct Demand {
+    queue: &'static str,
+    /// Exactly enough for the demand, and plenty in all other queues.
+    capacities: Capacities,
+    /// The scene that makes the demand.
+    scene: Arc<Scene>,
+    /// The capacity of the queue.
+    capacity: fn(&mut Capacities) -> &mut u32,
+}
 
-/// Each queue with a scene that makes a known demand on it.
+impl Demand {
+    fn new(queue: &'static str, entries: u32, scene: &Arc<Scene>, capacity: fn(&mut Capacities) -> &mut u32) -> Self {
+        let mut capacities = Capacities { clip: 4096, pieces: 4096, medium: 4096, large: 4096, tiles: 4096, bins: 65_536, listed: 0 };
+        *capacity(&mut capacities) = entries;
+        Self { queue, capacities, scene: scene.clone(), capacity }
+    }
+}
+
+/// A demand on each queue.
 fn demands() -> Vec<Demand> {
-    let ample = Capacities { clip: 4096, pieces: 4096, medium: 4096, large: 4096, tiles: 4096, bins: 65_536, listed: 0 };
     let n = 40;
     let many = |triangle: [[i32; 2]; 3]| {
         let moved = |i: i32| (triangle.map(|[x, y]| [x, y + 97 * i]), 0.2 + 0.01 * i as f32);
         scene_of_meshes(&[triangle_soup_in_units(&(0..n).map(moved).collect::<Vec<_>>())])
     };
-    let demand = n as u32;
+    let n = n as u32;
     // One corner beyond the guard band leaves a quad of two clipped triangles, both visible.
     let cut = many([[9_000_000, 300], [200, 9000], [300, 200]]);
     let small = many([[300, 300], [9000, 400], [400, 9000]]);
     let large = many([[-3000, -3000], [90_000, 4000], [4000, 90_000]]);
     vec![
-        ("clip", Capacities { clip: demand, ..ample }, cut.clone(), |c| &mut c.clip),
-        ("clipped_triangles", Capacities { pieces: 2 * demand, ..ample }, cut, |c| &mut c.pieces),
-        ("medium", Capacities { medium: demand, ..ample }, small, |c| &mut c.medium),
-        ("large", Capacities { large: demand, ..ample }, large.clone(), |c| &mut c.large),
+        Demand::new("clip", n, &cut, |c| &mut c.clip),
+        Demand::new("clipped triangles", 2 * n, &cut, |c| &mut c.pieces),
+        Demand::new("medium", n, &small, |c| &mut c.medium),
+        Demand::new("large", n, &large, |c| &mut c.large),
         // A picture of 128 x 128 has four tiles.
-        ("tiles", Capacities { tiles: 4 * demand, ..ample }, large.clone(), |c| &mut c.tiles),
+        Demand::new("tiles", 4 * n, &large, |c| &mut c.tiles),
         // And 64 of the tiles that have lists.
-        ("bins", Capacities { bins: 64 * demand, ..ample }, large, |c| &mut c.bins),
+        Demand::new("bins", 64 * n, &large, |c| &mut c.bins),
     ]
 }
 
 fn queues(context: &mut CaseContext) -> Result<(), EarlyEnd> {
     let view = pixel_view(128, 128);
-    context.renderer.set_tuning(tunings()[0]);
+    context.renderer.set_tuning(WorkDistribution::WorkgroupEach.tuning());
     for option in context.options() {
         // The tiled option has lists per tile, the others have a queue of large triangles' tiles.
         let has = |queue: &str| queue != if option == Visibility::Tiled { "tiles" } else { "bins" };
-        for (queue, exactly, scene, field) in demands().into_iter().filter(|(queue, ..)| has(queue)) {
-            let demand = *field(&mut exactly.clone());
+        for Demand { queue, capacities, scene, capacity: field } in demands().into_iter().filter(|demand| has(demand.queue)) {
+            let demand = *field(&mut capacities.clone());
             for capacity in [demand, demand - 1, demand / 10, 1] {
-                let what = format!("{queue} on {}: demand {demand}, room for {capacity}", option.name());
-                let mut capacities = exactly;
+                let what = format!("{queue} on {}: demand {demand}, capacity {capacity}", option.name());
+                let mut capacities = capacities;
                 *field(&mut capacities) = capacity;
                 context.renderer.set_scene(&scene)?;
                 context.renderer.set_capacities(capacities);
@@ -235,10 +281,11 @@ fn ten_million_triangles(context: &mut CaseContext) -> Result<(), EarlyEnd> {
         if is_fewer {
             context.note(format!("{} with {count} triangles, since this is a software adapter", option.name()));
         }
-        let (scene, view) = dots(true, count, 1);
+        let tiny = TinyTriangles { count, instances: 1, vertices: Vertices::Shared };
+        let (scene, view) = tiny.scene();
         let what = format!("{count} triangles on {}", option.name());
         let capture = context.captured(&scene, &view, &stack(&[]), &pinned(option), &what)?;
-        counted(&capture, count, 1, &what)?;
+        tiny.check(&capture, &what)?;
     }
     Ok(())
 }
@@ -249,7 +296,7 @@ fn thousand_full_screen_triangles(context: &mut CaseContext) -> Result<(), Early
     let triangles: Vec<_> =
         (0..1000).map(|i| ([[-far(), -far()], [2 * far() / 2 + 40_000, -far()], [64 * 256, 8_388_607]], 1e-3 * (i % 997) as f32)).collect();
     let scene = scene_of_meshes(&[triangle_soup_in_units(&triangles)]);
-    context.renderer.set_tuning(tunings()[2]);
+    context.renderer.set_tuning(WorkDistribution::Card.tuning());
     for option in context.options() {
         let what = format!("a thousand full-screen triangles on {}", option.name());
         let (capture, _) = context.exact(&scene, &pixel_view(128, 64), &stack(&[]), &pinned(option), &what)?;

@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use super::{
     case::{Case, Expectation},
-    context::{CaseContext, EarlyEnd, check, equal, pinned, same, stack, tunings},
+    context::{CaseContext, EarlyEnd, WorkDistribution, check, equal, pinned, same, stack},
 };
 use crate::{
     effects::{Effect, EnabledEffect, Stack},
@@ -45,7 +45,7 @@ pub const CASES: &[Case] = &[
 fn hundred_equal_frames(context: &mut CaseContext) -> Result<(), EarlyEnd> {
     let hall = context.scene("near")?;
     let view = context.view(&hall, [80, 60]);
-    context.renderer.set_tuning(tunings()[2]);
+    context.renderer.set_tuning(WorkDistribution::Card.tuning());
     if context.is_slow() {
         context.note("one stack of effects for each option, since this adapter is slow".into());
     }
@@ -79,7 +79,7 @@ fn shuffled(scene: &Scene, order: &[u32]) -> Arc<Scene> {
 }
 
 fn shuffled_triangles(context: &mut CaseContext) -> Result<(), EarlyEnd> {
-    context.renderer.set_tuning(tunings()[2]);
+    context.renderer.set_tuning(WorkDistribution::Card.tuning());
     for query in ["sphere?triangles=5000", "knot?tess=6", "grid?cell=1", "sizes"] {
         let still = context.scene(query)?;
         let is_one_list = still.instances.len() == 1 && still.primitives[0].indices.is_some_and(|i| i.stride == 4 && i.offset == 0);
