@@ -83,7 +83,7 @@ const GUARDED: &[(&str, &[&str])] = &[
 ];
 
 struct Source {
-    /// `src/oracle/clip.rs`.
+    /// `src/oracle/render/clip.rs`.
     name: String,
     room: String,
     /// Without comments and without text in quotes.
