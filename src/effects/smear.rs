@@ -47,10 +47,3 @@ impl ImageEffect for Smear {
         pixel
     }
 }
-
-impl Smear {
-    /// The smear of a stack with it.
-    pub fn of(stack: &super::Stack) -> Option<Self> {
-        stack.get(EFFECT.name).map(|enabled| super::read(&enabled.words))
-    }
-}

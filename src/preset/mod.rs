@@ -13,7 +13,7 @@ use std::{path::PathBuf, sync::Arc};
 use glam::{DMat4, DVec3};
 
 use crate::{
-    effects::{Stack, smear::Smear},
+    effects::Stack,
     math::rotation_y,
     scene::{
         Bounds, Scene,
@@ -305,7 +305,7 @@ impl Preset {
     /// What the pictures show that lead up to this one, each a view and a stack, and last this one itself: more than one
     /// where an effect keeps the picture before.
     pub fn moments(&self, scene: &Scene, size: [u32; 2]) -> Vec<(View, Stack)> {
-        let (frames, step_s) = Smear::of(&self.evaluated_stack()).map_or((0, 0.0), |smear| (smear.frames, f64::from(smear.step_s)));
+        let (frames, step_s) = self.evaluated_stack().smear().map_or((0, 0.0), |smear| (smear.frames, f64::from(smear.step_s)));
         let moment = |before: u32| {
             let clock = Clock { time_s: self.clock.time_s - f64::from(before) * step_s, ..self.clock };
             let then = Self { clock, ..self.clone() };

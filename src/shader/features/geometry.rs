@@ -1,6 +1,6 @@
 //! Geometry features: vertex formats, generated vertices, vertex effects, culling and clipping.
 
-use super::{Feature, Part, flag, word_if};
+use super::feature::{Feature, Part, flag, word_if};
 use crate::{
     accuracy::{Clipping, Culling, PositionFormat, VertexTransform},
     frame::vertex_flags,

@@ -1,38 +1,16 @@
 //! Features: one table says what every part of the kernel key means: which shader files it selects, which overrides it sets,
 //! how it reads in the key's label, and which part of the frame is omitted without it.
 
+mod feature;
 mod geometry;
 mod raster;
 mod shading;
 
 use std::fmt;
 
+use self::feature::Feature;
 use super::{key::KernelKey, pass::Pass};
 use crate::scene::needs::Needs;
-
-/// One row of the table.
-struct Feature {
-    /// What it adds to the key's label; empty where it adds nothing.
-    label: fn(&KernelKey) -> String,
-    /// A part of the frame that exists only with this feature.
-    part: Option<Part>,
-    /// Parts that stages leave open, and the stem of the file that a pass takes for each.
-    variants: &'static [(&'static str, fn(&KernelKey, Pass) -> &'static str)],
-    /// Overrides, and their values in a pass.
-    constants: &'static [(&'static str, fn(&KernelKey, Pass) -> f64)],
-}
-
-impl Feature {
-    const NONE: Self = Self { label: |_| String::new(), part: None, variants: &[], constants: &[] };
-}
-
-/// A part of the frame that can be omitted.
-struct Part {
-    name: &'static str,
-    is_used: fn(&KernelKey) -> bool,
-    /// Why it is omitted, where it is.
-    why_omitted: fn(&Needs) -> String,
-}
 
 /// Every feature, in the order of the frame.
 fn features() -> impl Iterator<Item = &'static Feature> {
@@ -64,14 +42,4 @@ impl fmt::Display for KernelKey {
         let words: Vec<String> = features().map(|feature| (feature.label)(self)).filter(|words| !words.is_empty()).collect();
         write!(f, "raster[{}]", words.join(" "))
     }
-}
-
-/// The word if the condition holds, else nothing.
-fn word_if(is_there: bool, word: &str) -> String {
-    if is_there { word.into() } else { String::new() }
-}
-
-/// The value of a boolean override.
-fn flag(value: bool) -> f64 {
-    f64::from(u8::from(value))
 }

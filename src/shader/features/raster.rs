@@ -1,6 +1,6 @@
 //! Raster features: coverage, depth, framebuffer, size classes, tiles, draw order and sample tests.
 
-use super::{Feature, Part, flag, word_if};
+use super::feature::{Feature, Part, flag, word_if};
 use crate::{
     accuracy::{AXES, AxisOption, Coverage, DepthFormat, SampleCounter, Visibility},
     effects::{draw_order, hooks::Shape},

@@ -1,6 +1,6 @@
 //! Shading features: surface inputs, light, layers, dots, image effects and the size of the picture.
 
-use super::{Feature, Part, flag, word_if};
+use super::feature::{Feature, Part, flag, word_if};
 use crate::{
     accuracy::{DotCulling, Perspective},
     effects::{dots::LineSource, hooks::Layers, shadow::MAX_SHADOW_SLOPE},

@@ -1,0 +1,142 @@
+//! Effects: what the catalogue says about one of them, built from its functions.
+
+use super::hooks::{Hooks, ImageEffect, ImageHook, SampleEffect, SampleHook, Slot, SurfaceEffect, SurfaceInput, VertexEffect, VertexHook};
+use crate::{
+    params::{Field, Params},
+    scene::particle_discs::ParticleSettings,
+};
+
+/// One entry of the catalogue.
+pub struct Effect {
+    /// File stem, WGSL function, uniform member, preset table, `--set` prefix.
+    pub name: &'static str,
+    /// One line for listings and tooltips.
+    pub about: &'static str,
+    pub hooks: Hooks,
+    pub fields: &'static [Field],
+    /// Parameter words with every default.
+    pub defaults: fn() -> Vec<u32>,
+    /// Name of the WGSL struct.
+    pub wgsl_struct: &'static str,
+    /// Does every frame come out the same with these parameter words?
+    pub is_repeatable: fn(&[u32]) -> bool,
+}
+
+impl Effect {
+    /// An effect with parameters `P` and no hook yet.
+    pub const fn new<P: Params>(name: &'static str, wgsl_struct: &'static str, about: &'static str) -> Self {
+        Self { name, about, hooks: Hooks::NONE, fields: P::FIELDS, defaults: defaults::<P>, wgsl_struct, is_repeatable: |_| true }
+    }
+
+    /// An effect on the surface hook alone.
+    pub const fn surface<P: SurfaceEffect>(name: &'static str, wgsl_struct: &'static str, about: &'static str) -> Self {
+        Self::new::<P>(name, wgsl_struct, about).on_surface::<P>()
+    }
+
+    /// The same effect, also on the surface hook.
+    pub const fn on_surface<P: SurfaceEffect>(mut self) -> Self {
+        self.hooks.surface = Some(|surface, words| P::apply(surface, &read(words)));
+        self.hooks.surface_inputs = P::INPUTS;
+        self
+    }
+
+    /// The same effect, also on the vertex hook.
+    pub const fn on_vertex<P: VertexEffect>(mut self) -> Self {
+        self.hooks.vertex = Some(VertexHook {
+            needs_triangle: P::NEEDS_TRIANGLE,
+            moved: |vertex, words| P::moved(vertex, &read(words)),
+            error_bound: |vertex, error_bound, words| P::error_bound(vertex, error_bound, &read(words)),
+            max_displacement_m: |radius_m, words| P::max_displacement_m(radius_m, &read(words)),
+        });
+        self
+    }
+
+    /// The same effect, also on the sample hook.
+    pub const fn on_sample<P: SampleEffect>(mut self) -> Self {
+        self.hooks.sample = Some(SampleHook {
+            has_setup: P::HAS_SETUP,
+            error_bound: |setup, words| P::error_bound(setup, &read(words)),
+            is_from_floats: |words| P::is_from_floats(&read(words)),
+            decide: |setup, words, first| P::decide(setup, &read(words), first),
+            is_drawn: |sample, words| P::is_drawn(sample, &read(words)),
+        });
+        self
+    }
+
+    /// The same effect, also on the image hook.
+    pub const fn on_image<P: ImageEffect>(mut self) -> Self {
+        self.hooks.image =
+            Some(ImageHook { reads_previous: P::READS_PREVIOUS, finish: |pixel, picture, words| P::finish(pixel, picture, &read(words)) });
+        self
+    }
+
+    /// The same effect, with steps in its colour: a judge then accepts either side of a step that is very near.
+    pub const fn in_steps(mut self) -> Self {
+        self.hooks.has_steps = true;
+        self
+    }
+
+    /// The same effect, which reads members of the surface in passes of its slot.
+    pub const fn reading(mut self, inputs: &'static [SurfaceInput]) -> Self {
+        self.hooks.surface_inputs = inputs;
+        self
+    }
+
+    /// The same effect, also in a slot of the rasterizer.
+    pub const fn in_slot(mut self, slot: Slot) -> Self {
+        self.hooks.slot = Some(slot);
+        self
+    }
+
+    /// The same effect, which draws along lines.
+    pub const fn with_lines(mut self) -> Self {
+        self.hooks.has_lines = true;
+        self
+    }
+
+    /// The same effect, which puts a cloud beside the scene.
+    pub const fn with_particles(mut self, particle_settings: fn(&[u32]) -> ParticleSettings) -> Self {
+        self.hooks.particle_settings = Some(particle_settings);
+        self
+    }
+
+    /// The same effect, which leaves something to the hardware's own order unless `is_repeatable` says otherwise.
+    pub const fn repeatable_if(mut self, is_repeatable: fn(&[u32]) -> bool) -> Self {
+        self.is_repeatable = is_repeatable;
+        self
+    }
+
+    /// The field called `name`.
+    pub fn field(&self, name: &str) -> Option<&'static Field> {
+        self.fields.iter().find(|field| field.name == name)
+    }
+}
+
+impl std::fmt::Debug for Effect {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.write_str(self.name)
+    }
+}
+
+impl PartialEq for Effect {
+    fn eq(&self, other: &Self) -> bool {
+        self.name == other.name
+    }
+}
+
+impl Eq for Effect {}
+
+impl std::hash::Hash for Effect {
+    fn hash<H: std::hash::Hasher>(&self, state: &mut H) {
+        self.name.hash(state);
+    }
+}
+
+/// Parameter words as the struct they were made from.
+pub fn read<P: Params>(words: &[u32]) -> P {
+    bytemuck::pod_read_unaligned(bytemuck::cast_slice(words))
+}
+
+fn defaults<P: Params>() -> Vec<u32> {
+    bytemuck::pod_collect_to_vec(&[P::default()])
+}

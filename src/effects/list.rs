@@ -1,0 +1,24 @@
+//! The list of effects.
+
+use super::effect::Effect;
+
+macro_rules! list {
+    ($($name:ident),* $(,)?) => {
+        /// Every effect, in the order in which a preset without a `stack` setting applies them.
+        pub const EFFECTS: &[&Effect] = &[$(&super::$name::EFFECT),*];
+    };
+}
+
+for_each_effect!(list);
+
+impl Effect {
+    /// The effect called `name`.
+    pub fn find(name: &str) -> Option<&'static Self> {
+        EFFECTS.iter().copied().find(|effect| effect.name == name)
+    }
+
+    /// Index in [`EFFECTS`].
+    pub fn rank(&self) -> usize {
+        EFFECTS.iter().position(|effect| effect.name == self.name).expect("every effect is listed")
+    }
+}

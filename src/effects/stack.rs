@@ -1,0 +1,253 @@
+//! Stacks: the enabled effects with their values, in the order in which they apply.
+
+use super::{
+    dots, draw_order,
+    effect::{Effect, read},
+    hooks::{self, Hooks, Layers, Picture, Pixel, Shape, Slot, Surface},
+    points, race, shadow, smear, xray,
+};
+use crate::{
+    params::Params,
+    scene::{Scene, light::light_view, particle_discs::ParticleSettings, view::View},
+};
+
+/// An effect with its values.
+#[derive(Clone, Debug, PartialEq)]
+pub struct EnabledEffect {
+    pub effect: &'static Effect,
+    /// Parameter words, laid out by `effect.fields`.
+    pub words: Vec<u32>,
+}
+
+impl EnabledEffect {
+    pub fn new(effect: &'static Effect) -> Self {
+        Self { effect, words: (effect.defaults)() }
+    }
+}
+
+/// The enabled effects, in the order in which they apply.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Stack(pub Vec<EnabledEffect>);
+
+impl Stack {
+    pub fn get(&self, name: &str) -> Option<&EnabledEffect> {
+        self.0.iter().find(|enabled| enabled.effect.name == name)
+    }
+
+    pub fn get_mut(&mut self, name: &str) -> Option<&mut EnabledEffect> {
+        self.0.iter_mut().find(|enabled| enabled.effect.name == name)
+    }
+
+    /// Puts `effect` in with defaults, in front of the first one that follows it in [`EFFECTS`]; keeps one already there.
+    pub fn enable(&mut self, effect: &'static Effect) -> &mut EnabledEffect {
+        let at = match self.0.iter().position(|enabled| enabled.effect == effect) {
+            Some(at) => at,
+            None => {
+                let at = self.0.iter().position(|enabled| enabled.effect.rank() > effect.rank()).unwrap_or(self.0.len());
+                self.0.insert(at, EnabledEffect::new(effect));
+                at
+            }
+        };
+        &mut self.0[at]
+    }
+
+    /// The stack for a picture of `factor` times as many pixels to a side: lengths in pixels keep their share of it, as far as
+    /// their ranges and whole pixels go.
+    #[must_use]
+    pub fn scaled(&self, factor: f64) -> Self {
+        let mut stack = self.clone();
+        for EnabledEffect { effect, words } in stack.0.iter_mut().filter(|_| factor != 1.0) {
+            for field in effect.fields.iter().filter(|field| field.unit == "px") {
+                let [low, high] = field.hard;
+                let length = |v: f64| (v * factor).clamp(low, high);
+                let lanes: Vec<f64> = field
+                    .get(words)
+                    .into_iter()
+                    .map(|v| if !field.value_type.is_continuous() { length(v).round() } else { length(v) })
+                    .collect();
+                field.set(words, &lanes).expect("within its range");
+            }
+        }
+        stack
+    }
+
+    pub fn disable(&mut self, name: &str) {
+        self.0.retain(|enabled| enabled.effect.name != name);
+    }
+
+    /// Do the effects stand in the order of [`EFFECTS`]?
+    pub fn is_canonical(&self) -> bool {
+        self.0.is_sorted_by_key(|enabled| enabled.effect.rank())
+    }
+
+    /// Applies every surface effect in order.
+    pub fn shade(&self, surface: Surface) -> Surface {
+        self.each(|hooks| hooks.surface).fold(surface, |surface, (apply, words)| apply(surface, words))
+    }
+
+    /// Moves a vertex by every vertex effect in order.
+    pub fn moved(&self, vertex: hooks::Vertex) -> hooks::Vertex {
+        self.each(|hooks| hooks.vertex).fold(vertex, |vertex, (hook, words)| (hook.moved)(vertex, words))
+    }
+
+    /// How far an f32 twin of [`Stack::moved`] may err, given the slack of what it starts from.
+    pub fn error_bound(&self, vertex: hooks::Vertex, error_bound: hooks::ErrorBound) -> hooks::ErrorBound {
+        let each = self.each(|hooks| hooks.vertex);
+        each.fold((vertex, error_bound), |(vertex, error_bound), (hook, words)| {
+            ((hook.moved)(vertex, words), (hook.error_bound)(&vertex, error_bound, words))
+        })
+        .1
+    }
+
+    /// How far a vertex of a model of this radius may move.
+    pub fn max_displacement_m(&self, radius_m: f64) -> f64 {
+        self.each(|hooks| hooks.vertex).fold(0.0, |reach, (hook, words)| reach + (hook.max_displacement_m)(radius_m + reach, words))
+    }
+
+    /// Finishes a pixel by every image effect in order.
+    pub fn finish(&self, pixel: Pixel, picture: &Picture) -> Pixel {
+        self.each(|hooks| hooks.image).fold(pixel, |pixel, (hook, words)| (hook.finish)(pixel, picture, words))
+    }
+
+    /// Does an effect finish pixels?
+    pub fn finishes(&self) -> bool {
+        self.each(|hooks| hooks.image).next().is_some()
+    }
+
+    /// Does an effect read the picture before this one?
+    pub fn reads_previous(&self) -> bool {
+        self.each(|hooks| hooks.image).any(|(hook, _)| hook.reads_previous)
+    }
+
+    /// Does an effect's colour have steps?
+    pub fn has_steps(&self) -> bool {
+        self.0.iter().any(|enabled| enabled.effect.hooks.has_steps)
+    }
+
+    /// Effects with a certain hook, in order: the hook and the parameter words.
+    pub fn each<H>(&self, hook: impl Fn(&Hooks) -> Option<H>) -> impl Iterator<Item = (H, &[u32])> {
+        self.0.iter().filter_map(move |enabled| Some((hook(&enabled.effect.hooks)?, enabled.words.as_slice())))
+    }
+
+    /// Does an effect move vertices?
+    pub fn moves(&self) -> bool {
+        self.each(|hooks| hooks.vertex).next().is_some()
+    }
+
+    /// Does an effect move corners by their triangle, so that triangles share none?
+    pub fn unshares_vertices(&self) -> bool {
+        self.each(|hooks| hooks.vertex).any(|(hook, _)| hook.needs_triangle)
+    }
+
+    /// The cloud that an effect puts beside the scene.
+    pub fn particle_settings(&self) -> Option<ParticleSettings> {
+        self.each(|hooks| hooks.particle_settings)
+            .map(|(particle_settings, words)| particle_settings(words))
+            .find(|particle_settings| particle_settings.count > 0)
+    }
+
+    /// The effect in a slot of the rasterizer.
+    pub fn in_slot(&self, slot: Slot) -> Option<&EnabledEffect> {
+        self.0.iter().find(|enabled| enabled.effect.hooks.slot == Some(slot))
+    }
+
+    /// What triangles cover in this stack.
+    pub fn shape(&self) -> Shape {
+        match self.in_slot(Slot::Coverage) {
+            None => Shape::Triangles,
+            Some(enabled) if enabled.effect == &points::EFFECT => Shape::Points,
+            Some(_) => Shape::Boxes,
+        }
+    }
+
+    /// The light that casts shadows.
+    pub fn light(&self) -> Option<shadow::Shadow> {
+        self.params(shadow::EFFECT.name)
+    }
+
+    /// What that light sees of `scene` as `view` shows it.
+    pub fn light_view(&self, scene: &Scene, view: &View) -> Option<View> {
+        Some(light_view(self.light()?.toward(), scene, view, self.max_displacement_m(scene.bounds_of(scene.shadow_casters()).radius())))
+    }
+
+    /// What of the stack decides which samples stop a light, and where they are.
+    pub fn casting(&self) -> Self {
+        let casts = |enabled: &&EnabledEffect| enabled.effect.hooks.vertex.is_some() || enabled.effect.hooks.sample.is_some();
+        Self(self.0.iter().filter(casts).cloned().collect())
+    }
+
+    /// Radius of discs about corners, units of 1/256 px; 0 without them.
+    pub fn point_radius(&self) -> u32 {
+        self.get(points::EFFECT.name).map_or(0, |enabled| read::<points::Points>(&enabled.words).radius())
+    }
+
+    /// The draw order that the stack keeps.
+    pub fn draw_order(&self) -> Option<draw_order::DrawOrder> {
+        self.in_slot(Slot::Order).map(|enabled| read(&enabled.words))
+    }
+
+    /// Is every picture of this stack the same, to the bit, on one adapter?
+    pub fn is_repeatable(&self) -> bool {
+        self.0.iter().all(|enabled| (enabled.effect.is_repeatable)(&enabled.words))
+    }
+
+    /// Parameters of the effect called `name`, if it is on; `P` must be its own.
+    pub fn params<P: Params>(&self, name: &str) -> Option<P> {
+        self.get(name).map(|enabled| read(&enabled.words))
+    }
+
+    /// The dots that are strung on lines, if any are.
+    pub fn dots(&self) -> Option<dots::Dots> {
+        self.params(dots::EFFECT.name)
+    }
+
+    /// How many previous pictures show through, if any do.
+    pub fn smear(&self) -> Option<smear::Smear> {
+        self.params(smear::EFFECT.name)
+    }
+
+    /// What becomes of the samples of a pixel in a scene of so many triangles; none: the nearest is shown.
+    pub fn layers(&self, triangles: u64) -> Option<Layers> {
+        let EnabledEffect { effect, words } = self.in_slot(Slot::Visibility)?;
+        Some(match effect.name {
+            "xray" => Layers::Xray { bits: read::<xray::Xray>(words).first_bits(triangles) },
+            "overdraw" => Layers::Overdraw,
+            _ => Layers::Race,
+        })
+    }
+
+    /// Do the triangles of a pixel race for it?
+    pub fn is_racing(&self) -> bool {
+        self.get(race::EFFECT.name).is_some()
+    }
+
+    /// What stands against switching `effect` on: another one in its slot.
+    pub fn rival(&self, effect: &Effect) -> Option<Conflict> {
+        let slot = effect.hooks.slot?;
+        let first = self.in_slot(slot).map(|enabled| enabled.effect).filter(|first| *first != effect)?;
+        Some(Conflict { slot: slot.name(), first: first.name, second: effect.name })
+    }
+
+    /// Checks that no two effects take one slot.
+    ///
+    /// # Errors
+    /// Names the first two that do.
+    pub fn check(&self) -> Result<(), Conflict> {
+        for slot in Slot::ALL {
+            let mut takers = self.0.iter().map(|enabled| enabled.effect).filter(|effect| effect.hooks.slot == Some(slot));
+            if let (Some(first), Some(second)) = (takers.next(), takers.next()) {
+                return Err(Conflict { slot: slot.name(), first: first.name, second: second.name });
+            }
+        }
+        Ok(())
+    }
+}
+
+/// Two effects that take one slot of the rasterizer.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("{first} and {second} both take the {slot} slot of the rasterizer; switch one of them off")]
+pub struct Conflict {
+    pub slot: &'static str,
+    pub first: &'static str,
+    pub second: &'static str,
+}
