@@ -34,8 +34,8 @@ fn flight_born(c: u32, id: u32, births: u32) -> ParticleState {
         if attempt == 5u { at /= 2; }
     }
     let room = vec3f(step_params[c].p.room_m);
-    let offset = clamp(vec3f(at) / 32768.0 * step_params[c].p.spread.xyz, -room, room);
-    return ParticleState(step_params[c].p.origin.xyz + offset, vec3f(0.0), 0u, births);
+    let offset = clamp(vec3f(at) / 32768.0 * step_params[c].p.half_axes.xyz, -room, room);
+    return ParticleState(step_params[c].p.center.xyz + offset, vec3f(0.0), 0u, births);
 }
 
 // In frame 0 lives are already on their way.
@@ -55,7 +55,7 @@ fn flight_step(c: u32, id: u32, f: ParticleState, step: u32) -> ParticleState {
     let carried = step_params[c].p.drag * flight_flow(c, f.place, step);
     let velocity = (f.velocity + dt * (carried + pull)) / (1.0 + dt * step_params[c].p.drag);
     let place = f.place + dt * velocity;
-    if any(abs(place - step_params[c].p.origin.xyz) > vec3f(step_params[c].p.room_m)) { return flight_born(c, id, f.births + 1u); }
+    if any(abs(place - step_params[c].p.center.xyz) > vec3f(step_params[c].p.room_m)) { return flight_born(c, id, f.births + 1u); }
     return ParticleState(place, velocity, f.age + 1u, f.births);
 }
 

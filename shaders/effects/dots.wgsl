@@ -6,12 +6,12 @@ struct Dots {
     crease_deg: f32,
     spacing_m: f32,
     size_px: f32,
-    gap_px: f32,
+    min_gap_px: f32,
     levels: u32,
     fade: f32,
-    hidden: f32,
+    hidden_opacity: f32,
     bias: f32,
-    model: u32,
+    show_model: u32,
 }
 
 const DOTS_FULL = 256u;

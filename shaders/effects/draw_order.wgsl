@@ -7,7 +7,7 @@ struct DrawOrder {
     mode: u32,
     unit: u32,
     limit: u32,
-    share: f32,
+    fraction: f32,
 }
 
 fn draw_order(surface: Surface, p: DrawOrder) -> Surface {

@@ -5,7 +5,7 @@
 struct Hatch {
     ink: vec4f,
     paper: vec4f,
-    lie: u32,
+    space: u32,
     spacing_px: f32,
     spacing_m: f32,
     angle_deg: f32,
@@ -42,7 +42,7 @@ fn hatch_line(s: Surface, p: Hatch, layer: u32, share: f32) -> f32 {
     let along = tone_turned(p.angle_deg + f32(layer & 1u) * 90.0 + f32(layer >> 1u) * 45.0);
     var place = (s.pixel.y * along.x - s.pixel.x * along.y) / p.spacing_px;
     var spacing_px = p.spacing_px;
-    if p.lie == HATCH_LIE_SURFACE {
+    if p.space == HATCH_SPACE_SURFACE {
         let across = normalize(vec3f(-along.y, along.x, f32(layer >> 1u)));
         // How far the planes' distance changes from pixel to pixel; held where the surface lies along the planes or is
         // seen edge-on, and where f32 has no finer places in the world.

@@ -5,14 +5,14 @@ struct Lambert {
     sun: vec4f,
     sky: vec4f,
     ground: vec4f,
-    toward: vec4f,
+    sun_direction: vec4f,
     headlight: f32,
 }
 
 fn lambert(surface: Surface, p: Lambert) -> Surface {
     var s = surface;
-    let squared = dot(p.toward.xyz, p.toward.xyz);
-    let toward = select(vec3f(0.0, 1.0, 0.0), p.toward.xyz / sqrt(squared), squared > 0.0);
+    let squared = dot(p.sun_direction.xyz, p.sun_direction.xyz);
+    let toward = select(vec3f(0.0, 1.0, 0.0), p.sun_direction.xyz / sqrt(squared), squared > 0.0);
     let sun = max(dot(s.normal, toward), 0.0);
     let lamp = max(dot(s.normal, s.view), 0.0) * p.headlight;
     let up = 0.5 + 0.5 * s.normal.y;

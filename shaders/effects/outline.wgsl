@@ -9,7 +9,7 @@ struct Outline {
     silhouette: u32,
     objects: u32,
     depth: u32,
-    jump: f32,
+    depth_threshold: f32,
 }
 
 fn outline(pixel: Pixel, p: Outline) -> Pixel {
@@ -47,7 +47,7 @@ fn outline_is_edge(p: Outline, at: vec2i, here: vec3u, step: vec2i) -> bool {
     if beyond.z != here.z || beyond.x == IMAGE_NO_TRIANGLE { return false; }
     // What bends away from a straight slope; a slope alone is no jump. Keys end at the bits of 1.0: it fits.
     let curvature = i32(there.y) + i32(beyond.y) - 2 * i32(here.y);
-    let jump = i32(p.jump * 8388608.0);
+    let jump = i32(p.depth_threshold * 8388608.0);
     switch p.side {
         case OUTLINE_SIDE_OUTSIDE: { return curvature > jump; }
         case OUTLINE_SIDE_INSIDE: { return curvature < -jump; }

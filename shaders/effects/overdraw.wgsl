@@ -1,7 +1,7 @@
 // Overdraw: how many layers each pixel has, as heat.
 
 struct Overdraw {
-    full: u32,
+    max_layers: u32,
     scale: u32,
     palette: u32,
 }
@@ -15,7 +15,7 @@ const OVERDRAW_STOPS = array<u32, 27>(
 // Heat of so many layers: 0 for one, 1 at full heat.
 fn overdraw_heat(layers: u32, p: Overdraw) -> f32 {
     let some = f32(max(layers, 1u));
-    let full = f32(max(p.full, 2u));
+    let full = f32(max(p.max_layers, 2u));
     let heat = select((some - 1.0) / (full - 1.0), log2(some) / log2(full), p.scale == OVERDRAW_SCALE_LOG);
     return min(heat, 1.0);
 }

@@ -6,14 +6,14 @@ struct Stipple {
     opacity: f32,
     matrix: u32,
     cell_px: u32,
-    is_shifted: u32,
+    shift_per_triangle: u32,
     seed: u32,
 }
 
 fn stipple(s: Sample, p: Stipple) -> bool {
     let bits = p.matrix + 1u;
     var at = s.at / p.cell_px;
-    if p.is_shifted != 0u {
+    if p.shift_per_triangle != 0u {
         let shift = hash(s.triangle ^ p.seed);
         at += vec2u(shift & 7u, (shift >> 3u) & 7u);
     }

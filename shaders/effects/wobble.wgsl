@@ -3,7 +3,7 @@
 //@ use common/sine
 
 struct Wobble {
-    toward: vec4f,
+    direction: vec4f,
     sway: vec4f,
     amplitude_m: f32,
     wavelength_m: f32,
@@ -12,14 +12,14 @@ struct Wobble {
 
 fn wobble(vertex: Vertex, p: Wobble) -> Vertex {
     var v = vertex;
-    let toward = wobble_unit(p.toward.xyz, vec3f(0.0, 1.0, 0.0));
+    let direction = wobble_unit(p.direction.xyz, vec3f(0.0, 1.0, 0.0));
     let sway = wobble_unit(p.sway.xyz, vec3f(1.0, 0.0, 0.0));
-    let turns = dot(v.position + v.offset, toward) / p.wavelength_m - p.phase_turns;
+    let turns = dot(v.position + v.offset, direction) / p.wavelength_m - p.phase_turns;
     v.offset += sway * (p.amplitude_m * sine_turns(turns));
 
-    // The displacement changes along `toward` by `slope`; normals go with the cofactors of its Jacobian, 1 + slope sway toward'.
+    // The displacement changes along `direction` by `slope`; normals go with the cofactors of its Jacobian, 1 + slope sway direction'.
     let slope = 6.28318531 * (p.amplitude_m / p.wavelength_m) * cosine_turns(turns);
-    let turned = v.normal + (v.normal * dot(sway, toward) - toward * dot(sway, v.normal)) * slope;
+    let turned = v.normal + (v.normal * dot(sway, direction) - direction * dot(sway, v.normal)) * slope;
     let squared = dot(turned, turned);
     if slope != 0.0 && squared > 1e-12 { v.normal = turned / sqrt(squared); }
     return v;

@@ -2,7 +2,7 @@
 //@ use common/surface
 
 struct Xray {
-    reach: u32,
+    layers: u32,
     window: u32,
     weight: u32,
     opacity: f32,
@@ -24,7 +24,7 @@ fn xray_weight(s: Surface, p: Xray) -> u32 {
 
 // Least depth key that counts behind a front; integers alone, so that both twins give the same.
 fn xray_threshold(front: u32, is_perspective: bool, p: Xray) -> u32 {
-    if p.reach == XRAY_REACH_ALL { return 1u; }
+    if p.layers == XRAY_LAYERS_ALL { return 1u; }
     if !is_perspective {
         let step = u32(bitcast<f32>(front) * 1048576.0);
         let window = (p.window << 20u) / 1000u;

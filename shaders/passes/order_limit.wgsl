@@ -49,7 +49,7 @@ fn order_limit(@builtin(local_invocation_index) lane: u32) {
     let total = order_scan(lane);
     if lane == 0u {
         var wanted = Wide(0u, effects.draw_order.limit);
-        if effects.draw_order.unit == DRAW_ORDER_UNIT_SHARE { wanted = order_share(total, u32(round(effects.draw_order.share * 16777216.0))); }
+        if effects.draw_order.unit == DRAW_ORDER_UNIT_FRACTION { wanted = order_share(total, u32(round(effects.draw_order.fraction * 16777216.0))); }
         if fixed_is_less(total, wanted) { wanted = total; }
         limit = wanted;
         found = ORDER_NOBODY;

@@ -36,8 +36,8 @@ fn splat_store(id: u32, f: ParticleState) {
     let share = f32(f.age) / f32(flight_life(c, base));
     let fade = step_params[c].p.fade;
     let grown = smoothstep(0.0, 1.0, share / fade) * smoothstep(0.0, 1.0, (1.0 - share) / fade);
-    let radius = step_params[c].p.size_m * (1.0 - step_params[c].p.size_spread * hash_unit(base + 14u)) * grown;
-    let heat = clamp(length(f.velocity) / step_params[c].p.bright_mps, 0.0, 1.0);
+    let radius = step_params[c].p.radius_m * (1.0 - step_params[c].p.radius_variation * hash_unit(base + 14u)) * grown;
+    let heat = clamp(length(f.velocity) / step_params[c].p.fast_mps, 0.0, 1.0);
     let color = mix(step_params[c].p.slow.rgb, step_params[c].p.fast.rgb, heat);
 
     splat_corner(particle_step.target_word + 18u * id, f.place, radius, vec2f(-PARTICLES_SQRT_3, -1.0), color);

@@ -38,17 +38,17 @@ params! {
         /// Diameter of the dots.
         size_px: f32 = 2.5, hard 1.0..=64.0, soft 1.0..=16.0, unit "px";
         /// The gap on the screen below which every second dot begins to fade.
-        gap_px: f32 = 6.0, hard 0.25..=1024.0, soft 1.0..=64.0, log true, unit "px";
+        min_gap_px: f32 = 6.0, hard 0.25..=1024.0, soft 1.0..=64.0, log true, unit "px";
         /// How often the dots may be halved; 0: all are drawn however they crowd.
         levels: u32 = 20, hard 0.0..=24.0;
         /// Share of the way from one halving to the next over which dots fade.
         fade: f32 = 1.0, hard 0.0625..=1.0;
         /// What is left of dots behind the model.
-        hidden: f32 = 0.2, hard 0.0..=1.0;
+        hidden_opacity: f32 = 0.2, hard 0.0..=1.0;
         /// How far behind the surface a dot still counts as on it, as a share of its distance.
         bias: f32 = 0.01, hard 0.0..=0.5, soft 0.0001..=0.1, log true;
         /// The model shows beneath the dots; without it, it only hides them.
-        model: Flag = 1;
+        show_model: Flag = 1;
     }
 }
 
@@ -74,10 +74,10 @@ impl Dots {
         (f64::from(self.size_px) * 128.0).round_ties_even() as u32
     }
 
-    /// Bits of the f32 nearest to the 1/w at which dots of level 0 begin to fade: there they lie `gap_px` apart.
+    /// Bits of the f32 nearest to the 1/w at which dots of level 0 begin to fade: there they lie `min_gap_px` apart.
     pub fn fade_from(&self, view: &View) -> u32 {
         let pixel_size_m = view.ndc_axes[1].length() * 2.0 / f64::from(view.height.max(1));
-        ((pixel_size_m * f64::from(self.gap_px) / f64::from(self.spacing_m)).clamp(1e-30, 1e30) as f32).to_bits()
+        ((pixel_size_m * f64::from(self.min_gap_px) / f64::from(self.spacing_m)).clamp(1e-30, 1e30) as f32).to_bits()
     }
 
     /// How fast dots fade, in strengths per level.
@@ -87,7 +87,7 @@ impl Dots {
 
     /// What is left of a hidden dot, of [`FULL`].
     pub fn hidden_share(&self) -> u32 {
-        (f64::from(self.hidden) * f64::from(FULL)).round() as u32
+        (f64::from(self.hidden_opacity) * f64::from(FULL)).round() as u32
     }
 
     /// The bias as a difference of depths' bits, which are a logarithm in straight pieces.

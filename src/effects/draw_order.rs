@@ -22,8 +22,8 @@ choice! {
 choice! {
     /// How the limit is given.
     pub enum Unit {
-        /// A share of all samples.
-        Share = "share",
+        /// A fraction of all samples.
+        Fraction = "fraction",
         /// A number of samples.
         Count = "count",
     }
@@ -31,18 +31,18 @@ choice! {
 
 params! {
     pub struct DrawOrder {
-        /// Colour of what is drawn first; the last lane is its share against the surface's own.
+        /// Colour of what is drawn first; the last lane is its weight against the surface's own color.
         first: Color = [0.05, 0.1, 0.5, 0.0];
-        /// Colour of what is drawn last; the last lane is its share against the surface's own.
+        /// Colour of what is drawn last; the last lane is its weight against the surface's own color.
         last: Color = [1.0, 0.35, 0.05, 0.0];
         /// Whose order counts.
         mode: Mode = Mode::Submission as u32;
         /// How the limit is given.
-        unit: Unit = Unit::Share as u32;
+        unit: Unit = Unit::Fraction as u32;
         /// Samples to draw.
         limit: u32 = 20000, soft 0.0..=200000.0, when ("unit", &["count"]);
-        /// Share of all samples to draw.
-        share: f32 = 0.5, hard 0.0..=1.0, when ("unit", &["share"]);
+        /// Fraction of all samples to draw.
+        fraction: f32 = 0.5, hard 0.0..=1.0, when ("unit", &["fraction"]);
     }
 }
 
@@ -56,9 +56,9 @@ impl DrawOrder {
     pub fn limit_of(&self, total: u64) -> u64 {
         match Unit::of(self.unit) {
             Unit::Count => total.min(self.limit.into()),
-            Unit::Share => {
-                let share = (f64::from(self.share) * f64::from(1 << 24)).round_ties_even() as u128;
-                ((u128::from(total) * share + (1 << 23)) >> 24) as u64
+            Unit::Fraction => {
+                let fraction = (f64::from(self.fraction) * f64::from(1 << 24)).round_ties_even() as u128;
+                ((u128::from(total) * fraction + (1 << 23)) >> 24) as u64
             }
         }
     }
@@ -67,7 +67,7 @@ impl DrawOrder {
 impl SurfaceEffect for DrawOrder {
     const INPUTS: &[SurfaceInput] = &[SurfaceInput::Rank, SurfaceInput::Glow, SurfaceInput::Color];
 
-    /// Heat by rank: which share of all samples came before the triangle.
+    /// Heat by rank: which fraction of all samples came before the triangle.
     fn apply(mut s: Surface, p: &Self) -> Surface {
         let [first, last] = [p.first, p.last].map(|color| DVec4::from_array(color.map(f64::from)));
         let heat = first.lerp(last, s.rank);

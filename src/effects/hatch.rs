@@ -13,8 +13,8 @@ use super::{
 use crate::{choice, params, params::Color};
 
 choice! {
-    /// Where the lines lie.
-    pub enum Lie {
+    /// The space in which the lines are drawn.
+    pub enum LineSpace {
         /// In the picture.
         Screen = "screen",
         /// On the surface, as cuts of planes through the world.
@@ -28,12 +28,12 @@ params! {
         ink: Color = [0.012, 0.014, 0.03, 1.0];
         /// Colour between the lines, linear.
         paper: Color = [0.86, 0.82, 0.72, 1.0];
-        /// Where the lines lie.
-        lie: Lie = Lie::Screen as u32;
+        /// The space in which the lines are drawn.
+        space: LineSpace = LineSpace::Screen as u32;
         /// Distance of two lines in the picture.
-        spacing_px: f32 = 6.0, hard 2.0..=64.0, soft 3.0..=24.0, unit "px", when ("lie", &["screen"]);
+        spacing_px: f32 = 6.0, hard 2.0..=64.0, soft 3.0..=24.0, unit "px", when ("space", &["screen"]);
         /// Distance of two planes.
-        spacing_m: f32 = 0.06, hard 0.001..=1e3, soft 0.01..=0.5, unit "m", log true, when ("lie", &["surface"]);
+        spacing_m: f32 = 0.06, hard 0.001..=1e3, soft 0.01..=0.5, unit "m", log true, when ("space", &["surface"]);
         /// Direction of the first layer; the second crosses it, two more lie between.
         angle_deg: f32 = 35.0, hard -360.0..=360.0, soft -90.0..=90.0, unit "°";
         /// Layers that come in one after the other.
@@ -80,9 +80,9 @@ impl Hatch {
     fn line(&self, s: &Surface, layer: u32, share: f64) -> f64 {
         // Crossed, then between.
         let along = turned(f64::from(self.angle_deg) + [0.0, 90.0, 45.0, 135.0][layer as usize & 3]);
-        let (place, spacing_px) = match Lie::of(self.lie) {
-            Lie::Screen => ((s.pixel.y * along.x - s.pixel.x * along.y) / f64::from(self.spacing_px), f64::from(self.spacing_px)),
-            Lie::Surface => {
+        let (place, spacing_px) = match LineSpace::of(self.space) {
+            LineSpace::Screen => ((s.pixel.y * along.x - s.pixel.x * along.y) / f64::from(self.spacing_px), f64::from(self.spacing_px)),
+            LineSpace::Surface => {
                 let across = DVec3::new(-along.y, along.x, if layer < 2 { 0.0 } else { 1.0 }).normalize();
                 // How far the planes' distance changes from pixel to pixel; held where the surface lies along the planes or
                 // is seen edge-on, and where f32 has no finer places in the world.

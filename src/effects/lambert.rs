@@ -17,7 +17,7 @@ params! {
         /// Light from straight below, linear.
         ground: Color = [0.07, 0.055, 0.045, 1.0];
         /// Direction towards the sun, of any length.
-        toward: Point = [0.55, 0.8, 0.6, 0.0], hard -1e3..=1e3, soft -1.0..=1.0;
+        sun_direction: Point = [0.55, 0.8, 0.6, 0.0], hard -1e3..=1e3, soft -1.0..=1.0;
         /// Strength of a white lamp at the eye.
         headlight: f32 = 0.08, hard 0.0..=10.0, soft 0.0..=1.0;
     }
@@ -29,7 +29,7 @@ impl SurfaceEffect for Lambert {
     const INPUTS: &[SurfaceInput] = &[SurfaceInput::Normal, SurfaceInput::View, SurfaceInput::Color, SurfaceInput::Glow];
 
     fn apply(mut s: Surface, p: &Self) -> Surface {
-        let toward = DVec3::new(p.toward[0].into(), p.toward[1].into(), p.toward[2].into());
+        let toward = DVec3::new(p.sun_direction[0].into(), p.sun_direction[1].into(), p.sun_direction[2].into());
         let sun = s.normal.dot(toward.try_normalize().unwrap_or(DVec3::Y)).max(0.0);
         let lamp = s.normal.dot(s.view).max(0.0) * f64::from(p.headlight);
         let up = 0.5 + 0.5 * s.normal.y;

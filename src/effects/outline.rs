@@ -39,7 +39,7 @@ params! {
         /// Lines where the depth jumps within an object.
         depth: Flag = 1;
         /// The least jump that counts, as a share of the distance.
-        jump: f32 = 0.05, hard 0.0001..=1.0, soft 0.001..=0.5, log true;
+        depth_threshold: f32 = 0.05, hard 0.0001..=1.0, soft 0.001..=0.5, log true;
     }
 }
 
@@ -85,7 +85,7 @@ impl Outline {
         let Some(beyond) = beyond().filter(|beyond| self.depth != 0 && beyond.0.is_some() && beyond.2 == here.2) else { return false };
         // What bends away from a straight slope; a slope alone is no jump.
         let curvature = i64::from(there.1) + i64::from(beyond.1) - 2 * i64::from(here.1);
-        let jump = (f64::from(self.jump) * f64::from(1 << 23)) as i64;
+        let jump = (f64::from(self.depth_threshold) * f64::from(1 << 23)) as i64;
         match side {
             Side::Outside => curvature > jump,
             Side::Inside => curvature < -jump,

@@ -29,8 +29,8 @@ choice! {
 
 params! {
     pub struct Overdraw {
-        /// Layers at full heat; more preset the same.
-        full: u32 = 12, hard 1.0..=1e9, soft 1.0..=100.0, log true;
+        /// Layers at full heat; more look the same.
+        max_layers: u32 = 12, hard 1.0..=1e9, soft 1.0..=100.0, log true;
         /// How layers become heat.
         scale: Scale = Scale::Linear as u32;
         /// The colours of heat.
@@ -79,7 +79,7 @@ const GREY: [[u8; 3]; 9] = [
 impl Overdraw {
     /// Heat of so many layers: 0 for one, 1 at full heat.
     pub fn heat(&self, layers: u32) -> f64 {
-        let (layers, full) = (f64::from(layers.max(1)), f64::from(self.full.max(2)));
+        let (layers, full) = (f64::from(layers.max(1)), f64::from(self.max_layers.max(2)));
         let heat = match Scale::of(self.scale) {
             Scale::Linear => (layers - 1.0) / (full - 1.0),
             Scale::Log => libm::log2(layers) / libm::log2(full),
@@ -89,7 +89,7 @@ impl Overdraw {
 
     /// Layers that have this heat.
     pub fn layers_at(&self, heat: f64) -> f64 {
-        let full = f64::from(self.full.max(2));
+        let full = f64::from(self.max_layers.max(2));
         match Scale::of(self.scale) {
             Scale::Linear => 1.0 + heat * (full - 1.0),
             Scale::Log => libm::exp2(heat * libm::log2(full)),
@@ -117,13 +117,13 @@ mod tests {
     #[test]
     fn heat_runs_from_one_layer_to_the_full_number() {
         for scale in [Scale::Linear, Scale::Log] {
-            let heat = Overdraw { full: 16, scale: scale as u32, ..Overdraw::default() };
+            let heat = Overdraw { max_layers: 16, scale: scale as u32, ..Overdraw::default() };
             assert_eq!([heat.heat(1), heat.heat(16), heat.heat(1000)], [0.0, 1.0, 1.0]);
             for layers in 1..=16 {
                 assert!((heat.layers_at(heat.heat(layers)) - f64::from(layers)).abs() < 1e-9);
             }
         }
-        assert!(Overdraw { full: 1, ..Overdraw::default() }.heat(2) == 1.0, "a full heat of one layer divides by nothing");
+        assert!(Overdraw { max_layers: 1, ..Overdraw::default() }.heat(2) == 1.0, "a full heat of one layer divides by nothing");
     }
 
     #[test]

@@ -5,14 +5,14 @@
 //! **Random numbers.** Number k of particle i in its life b (counted from 0) is `hash(base + k)` with
 //! `base = hash(hash(hash(seed) + i) ^ b)`, all in u32.
 //!
-//! **Life.** At most `L = max(1, round(life_s rate))` steps, of which `round(L life_spread)`, at most L - 1, are left to
+//! **Life.** At most `L = max(1, round(lifetime_s rate))` steps, of which `round(L lifetime_variation)`, at most L - 1, are left to
 //! chance: L - n steps, where n is the upper word of random number 12 times (that many + 1). In frame 0 a particle is as
 //! old as the upper word of random number 13 times its life says. With every step it ages by one; who has come to the end
 //! of its life, or would leave the room, is born again instead.
 //!
 //! **Birth.** Numbers 2t and 2t + 1 give attempt t three coordinates: the lower and upper half of the first word and the
 //! lower half of the second, less 32768. The first of six attempts inside the ball of radius 32768 counts, else the last
-//! one halved. Coordinates over 32768, times `spread`, held within the room, are the place about `origin`. Velocity is 0.
+//! one halved. Coordinates over 32768, times `half_axes`, held within the room, are the place about `center`. Velocity is 0.
 //!
 //! **Step.** dt = 1 / rate. With place p and velocity v of the frame before, away = attractor - p and
 //! pull = attraction 2 r away / (away² + r²), r = `attractor_m`: v' = (v + dt (drag u + pull)) / (1 + dt drag), p' = p + dt v'.
@@ -24,8 +24,8 @@
 //! them blended by t³(6t² - 15t + 10) along each axis. A curl has no divergence, so nothing piles up.
 //!
 //! **Disc.** With x the share of its life that has passed, a disc has the radius
-//! `size_m` (1 - `size_spread` n) s(x / fade) s((1 - x) / fade), s the smoothstep and n random number 14 as a fraction of 24 bits. Its colour goes from
-//! `slow` to `fast` as the speed goes from 0 to `bright_mps`. Its triangle faces the picture plane, its lower side
+//! `radius_m` (1 - `radius_variation` n) s(x / fade) s((1 - x) / fade), s the smoothstep and n random number 14 as a fraction of 24 bits. Its colour goes from
+//! `slow` to `fast` as the speed goes from 0 to `fast_mps`. Its triangle faces the picture plane, its lower side
 //! level; normals lean outwards by 0.7 `roundness` at the rim.
 
 use glam::DVec3;
@@ -47,9 +47,9 @@ params! {
         /// Colour of what is fast.
         fast: Color = [1.0, 0.5, 0.12, 1.0];
         /// Middle of the cloud.
-        origin: Point = [0.0; 4], hard -1000.0..=1000.0, soft -3.0..=3.0, unit "m";
+        center: Point = [0.0; 4], hard -1000.0..=1000.0, soft -3.0..=3.0, unit "m";
         /// Half axes of the ellipsoid in which particles are born.
-        spread: Point = [1.0, 1.0, 1.0, 0.0], hard 0.0..=1000.0, soft 0.0..=3.0, unit "m";
+        half_axes: Point = [1.0, 1.0, 1.0, 0.0], hard 0.0..=1000.0, soft 0.0..=3.0, unit "m";
         /// Where particles are drawn to; a drag over the picture with Ctrl held leads it.
         attractor: Point = [0.0; 4], hard -1000.0..=1000.0, soft -3.0..=3.0, unit "m";
         /// How many there are.
@@ -61,9 +61,9 @@ params! {
         /// Half the side of the room; who would leave it is born again.
         room_m: f32 = 2.5, hard 0.01..=1000.0, soft 0.5..=5.0, unit "m";
         /// Longest life.
-        life_s: f32 = 4.0, hard 0.01..=200.0, soft 0.25..=12.0, unit "s";
+        lifetime_s: f32 = 4.0, hard 0.01..=200.0, soft 0.25..=12.0, unit "s";
         /// Share of it that is left to chance.
-        life_spread: f32 = 0.6, hard 0.0..=1.0;
+        lifetime_variation: f32 = 0.6, hard 0.0..=1.0;
         /// Speed of the flow, about.
         speed_mps: f32 = 0.6, hard 0.0..=100.0, soft 0.0..=3.0, unit "m/s";
         /// Size of the largest swirls.
@@ -81,17 +81,17 @@ params! {
         /// Distance from the attractor at which it draws most.
         attractor_m: f32 = 0.5, hard 0.01..=1000.0, soft 0.05..=2.0, unit "m";
         /// How long the attraction takes to follow its point.
-        follow_s: f32 = 0.15, hard 0.0..=60.0, soft 0.0..=1.0, unit "s";
+        attractor_lag_s: f32 = 0.15, hard 0.0..=60.0, soft 0.0..=1.0, unit "s";
         /// Largest radius of a disc.
-        size_m: f32 = 0.008, hard 0.0..=10.0, soft 0.001..=0.05, unit "m";
+        radius_m: f32 = 0.008, hard 0.0..=10.0, soft 0.001..=0.05, unit "m";
         /// Share of it that is left to chance.
-        size_spread: f32 = 0.5, hard 0.0..=1.0;
+        radius_variation: f32 = 0.5, hard 0.0..=1.0;
         /// Share of its life in which a disc grows, and in which it shrinks.
         fade: f32 = 0.3, hard 0.001..=0.5;
         /// How far the rim of a disc turns from the viewer: 0 flat, 1 by 35 degrees.
         roundness: f32 = 1.0, hard 0.0..=1.0;
         /// Speed of the fast colour.
-        bright_mps: f32 = 0.9, hard 0.001..=1000.0, soft 0.05..=4.0, unit "m/s";
+        fast_mps: f32 = 0.9, hard 0.001..=1000.0, soft 0.05..=4.0, unit "m/s";
     }
 }
 
@@ -120,21 +120,21 @@ pub fn frame_at(particles: &Particles, time_s: f64) -> u32 {
 }
 
 fn particle_settings(p: &Particles) -> ParticleSettings {
-    let origin = DVec3::new(p.origin[0].into(), p.origin[1].into(), p.origin[2].into());
+    let origin = DVec3::new(p.center[0].into(), p.center[1].into(), p.center[2].into());
     let room = DVec3::splat(p.room_m.into());
     let bounds = Bounds { min: origin - room, max: origin + room };
-    ParticleSettings { count: p.count, bounds, radius_m: p.size_m.into() }
+    ParticleSettings { count: p.count, bounds, radius_m: p.radius_m.into() }
 }
 
 /// Longest life in steps, and how many of them are left to chance.
 pub fn life_steps(p: &Particles) -> [u32; 2] {
-    let steps = (f64::from(p.life_s) * f64::from(p.rate)).round_ties_even().max(1.0);
-    [steps as u32, ((steps * f64::from(p.life_spread)).round_ties_even() as u32).min(steps as u32 - 1)]
+    let steps = (f64::from(p.lifetime_s) * f64::from(p.rate)).round_ties_even().max(1.0);
+    [steps as u32, ((steps * f64::from(p.lifetime_variation)).round_ties_even() as u32).min(steps as u32 - 1)]
 }
 
 /// Does a parameter tell how particles look, and not where they fly?
 pub fn affects_only_appearance(field: &Field) -> bool {
-    matches!(field.name, "slow" | "fast" | "count" | "size_m" | "size_spread" | "fade" | "roundness" | "bright_mps")
+    matches!(field.name, "slow" | "fast" | "count" | "radius_m" | "radius_variation" | "fade" | "roundness" | "fast_mps")
 }
 
 /// The words by which particles fly, with what only tells how they look as it comes.
@@ -156,9 +156,9 @@ pub fn along(steps: impl Iterator<Item = Vec<u32>>, frame: u32) -> ParticleTimel
     let mut followed: Option<[f64; 3]> = None;
     for words in steps {
         let mut words = of_flight(&words);
-        let Particles { attractor, rate, follow_s, .. } = read(&words);
+        let Particles { attractor, rate, attractor_lag_s, .. } = read(&words);
         let goal = [0, 1, 2].map(|axis: usize| f64::from(attractor[axis]));
-        let share = 1.0 / (1.0 + f64::from(follow_s) * f64::from(rate));
+        let share = 1.0 / (1.0 + f64::from(attractor_lag_s) * f64::from(rate));
         let from = followed.unwrap_or(goal);
         let at = [0, 1, 2].map(|axis: usize| from[axis] + (goal[axis] - from[axis]) * share);
         followed = Some(at);

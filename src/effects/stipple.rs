@@ -27,7 +27,7 @@ params! {
         /// Side of one cell of the matrix.
         cell_px: u32 = 1, hard 1.0..=64.0, soft 1.0..=8.0, unit "px";
         /// Shifts the matrix from triangle to triangle, so that layers do not hide behind each other.
-        is_shifted: Flag = 0;
+        shift_per_triangle: Flag = 0;
         /// Seed of the shifts.
         seed: u32 = 1, soft 0.0..=999.0;
     }
@@ -45,7 +45,7 @@ impl SampleEffect for Stipple {
 
     fn is_drawn(s: &Sample, p: &Self) -> bool {
         let bits = p.matrix.min(2) + 1;
-        let shift = if p.is_shifted == 0 { 0 } else { hash(s.triangle ^ p.seed) };
+        let shift = if p.shift_per_triangle == 0 { 0 } else { hash(s.triangle ^ p.seed) };
         let x = s.x / p.cell_px.max(1) + (shift & 7);
         let y = s.y / p.cell_px.max(1) + (shift >> 3 & 7);
         // Bayer (1973): bits of x xor y and of y interleaved, the lowest first.

@@ -1,7 +1,7 @@
 //! Wobble: a wave runs through the model and sways it, normals and all.
 //!
-//! The displacement is u(x) = sway A sin(2π (toward·x / λ - phase)), its Jacobian I + slope sway towardᵀ, and a normal goes
-//! with the cofactors of that: n (1 + slope sway·toward) - toward slope (sway·n). The phase is given in turns and kept
+//! The displacement is u(x) = sway A sin(2π (direction·x / λ - phase)), its Jacobian I + slope sway towardᵀ, and a normal goes
+//! with the cofactors of that: n (1 + slope sway·direction) - direction slope (sway·n). The phase is given in turns and kept
 //! within one, so a wave that has run for a day is as exact as a new one.
 
 use glam::DVec3;
@@ -19,7 +19,7 @@ use crate::{
 params! {
     pub struct Wobble {
         /// Direction in which the wave runs, of any length.
-        toward: Point = [0.0, 1.0, 0.0, 0.0], hard -1e3..=1e3, soft -1.0..=1.0;
+        direction: Point = [0.0, 1.0, 0.0, 0.0], hard -1e3..=1e3, soft -1.0..=1.0;
         /// Direction in which it sways the model, of any length.
         sway: Point = [1.0, 0.0, 0.0, 0.0], hard -1e3..=1e3, soft -1.0..=1.0;
         /// How far it sways to either side.
@@ -38,13 +38,13 @@ const DEGENERATE: f64 = 1e-12;
 
 /// The wave at one vertex.
 struct Wave {
-    toward: DVec3,
+    direction: DVec3,
     sway: DVec3,
     amplitude: f64,
-    /// Distance along `toward`, wavelengths.
+    /// Distance along `direction`, wavelengths.
     distance: f64,
     turns: f64,
-    /// Change of the displacement along `toward`.
+    /// Change of the displacement along `direction`.
     slope: f64,
     /// The normal after the turn, of any length.
     turned: DVec3,
@@ -52,13 +52,13 @@ struct Wave {
 
 impl Wave {
     fn at(v: &Vertex, p: &Wobble) -> Self {
-        let (toward, sway) = (unit(p.toward, DVec3::Y), unit(p.sway, DVec3::X));
+        let (direction, sway) = (unit(p.direction, DVec3::Y), unit(p.sway, DVec3::X));
         let (amplitude, wavelength) = (f64::from(p.amplitude_m), f64::from(p.wavelength_m));
-        let distance = (v.position + v.offset).dot(toward) / wavelength;
+        let distance = (v.position + v.offset).dot(direction) / wavelength;
         let turns = distance - f64::from(p.phase_turns);
         let slope = std::f64::consts::TAU * amplitude / wavelength * cos_turns(turns);
-        let turned = v.normal * (1.0 + slope * sway.dot(toward)) - toward * (slope * sway.dot(v.normal));
-        Self { toward, sway, amplitude, distance, turns, slope, turned }
+        let turned = v.normal * (1.0 + slope * sway.dot(direction)) - direction * (slope * sway.dot(v.normal));
+        Self { direction, sway, amplitude, distance, turns, slope, turned }
     }
 }
 
@@ -79,11 +79,11 @@ impl VertexEffect for Wobble {
         if wave.amplitude == 0.0 {
             return error_bound;
         }
-        let (place, toward) = (v.position + v.offset, wave.toward.abs());
+        let (place, direction) = (v.position + v.offset, wave.direction.abs());
         let wavelength = f64::from(p.wavelength_m);
         let given = error_bound.position_m + error_bound.offset_m + ROUNDING * place.abs().max_element();
         // A unit vector errs by ten roundings, the sum of products by four.
-        let along = given * toward.element_sum() + 14.0 * ROUNDING * toward.dot(place.abs());
+        let along = given * direction.element_sum() + 14.0 * ROUNDING * direction.dot(place.abs());
         let turns = along / wavelength + ROUNDING * (4.0 * wave.distance.abs() + f64::from(p.phase_turns));
         let sine = (std::f64::consts::TAU * turns + SINE_ERROR).min(2.0);
         error_bound.offset_m += wave.amplitude * (sine + 14.0 * ROUNDING) + ROUNDING * v.offset.abs().max_element();

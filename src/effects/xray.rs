@@ -47,9 +47,9 @@ choice! {
 params! {
     pub struct Xray {
         /// Which layers count: all, or those within a window behind the front one.
-        reach: Reach = Reach::All as u32;
+        layers: Reach = Reach::All as u32;
         /// Depth of the window in thousandths: of the front's distance, or of the scene's depth where all rays are parallel.
-        window: u32 = 20, hard 0.0..=4000.0, soft 0.0..=400.0, unit "‰", when ("reach", &["window"]);
+        window: u32 = 20, hard 0.0..=4000.0, soft 0.0..=400.0, unit "‰", when ("layers", &["window"]);
         /// Which layers count for more.
         weight: Weighting = Weighting::Equal as u32;
         /// Share of the light behind it that one layer of full weight stops; at 1 the background is hidden.
@@ -112,7 +112,7 @@ impl Xray {
     /// In a perspective distances are quotients of depths: the significand times 1000/(1000 + window), of 16 bits. Where all
     /// rays are parallel depth is linear, and the window a number of its steps of 2^-20.
     pub fn threshold(&self, front: u32, is_perspective: bool) -> u32 {
-        if Reach::of(self.reach) == Reach::All {
+        if Reach::of(self.layers) == Reach::All {
             return 1;
         }
         if !is_perspective {
@@ -157,7 +157,7 @@ mod tests {
 
     #[test]
     fn a_window_is_a_share_of_the_distance() {
-        let window = |window| Xray { reach: Reach::Window as u32, window, ..Xray::default() };
+        let window = |window| Xray { layers: Reach::Window as u32, window, ..Xray::default() };
         for front in [1.0f32, 0.7, 0.013, 1.0 / 3.0, 1e-6] {
             assert_eq!(window(0).threshold(front.to_bits(), true), front.to_bits(), "nothing but the front");
             for n in [1, 10, 333, 1000, 4000] {

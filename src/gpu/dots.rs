@@ -217,7 +217,7 @@ impl Renderer {
             radius: dots.radius(),
             bias: dots.bias_steps(),
             hidden: dots.hidden_share(),
-            model: dots.model,
+            model: dots.show_model,
             first_probed: 0,
             zero: 0,
         };

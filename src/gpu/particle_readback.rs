@@ -259,7 +259,7 @@ fn whole(words: &[u32]) -> ParticleState {
 fn rough(words: &[u32], p: &Particles) -> ParticleState {
     let share = |word: u32| (f32::from(word as u16 as i16) / 32767.0).max(-1.0);
     let shares = [share(words[0]), share(words[0] >> 16), share(words[1])];
-    let place = [0, 1, 2].map(|axis| p.origin[axis] + p.room_m * shares[axis]);
+    let place = [0, 1, 2].map(|axis| p.center[axis] + p.room_m * shares[axis]);
     let velocity = [half(words[2]), half(words[2] >> 16), half(words[3])];
     ParticleState { place, velocity, age: words[1] >> 16, births: words[3] >> 16 }
 }

@@ -216,7 +216,7 @@ fn check_xray(options: &AccuracyOptions, stack: &StackTraits) -> Result<(), Plan
     if options.xray_sums != XraySums::Four32 && xray.unit() != 1 {
         return Err(PlanError::XrayWeights { option: options.xray_sums.name() });
     }
-    if !matches!(options.depth, DepthFormat::Reversed | DepthFormat::Integer) && Reach::of(xray.reach) == Reach::Window {
+    if !matches!(options.depth, DepthFormat::Reversed | DepthFormat::Integer) && Reach::of(xray.layers) == Reach::Window {
         return Err(PlanError::XrayWindow { option: options.depth.name() });
     }
     Ok(())

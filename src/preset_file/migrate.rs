@@ -43,10 +43,30 @@ pub const RENAMED_KEYS: &[(&str, &str, &str)] = &[
     ("accuracy", "taps", "shadow_taps"),
     ("accuracy", "checks", "shader_checks"),
     ("test", "max_wrong_owner", "max_wrong_triangles"),
+    ("draw_order", "share", "fraction"),
+    ("particles", "origin", "center"),
+    ("particles", "spread", "half_axes"),
+    ("particles", "life_s", "lifetime_s"),
+    ("particles", "life_spread", "lifetime_variation"),
+    ("particles", "size_m", "radius_m"),
+    ("particles", "size_spread", "radius_variation"),
+    ("particles", "follow_s", "attractor_lag_s"),
+    ("particles", "bright_mps", "fast_mps"),
+    ("wobble", "toward", "direction"),
+    ("stipple", "is_shifted", "shift_per_triangle"),
+    ("lambert", "toward", "sun_direction"),
+    ("hatch", "lie", "space"),
+    ("xray", "reach", "layers"),
+    ("overdraw", "full", "max_layers"),
+    ("dots", "gap_px", "min_gap_px"),
+    ("dots", "hidden", "hidden_opacity"),
+    ("dots", "model", "show_model"),
+    ("outline", "jump", "depth_threshold"),
 ];
 
 /// Words that schema 2 renames: section or effect, new name of the key, old word, new word.
-pub const RENAMED_WORDS: &[(&str, &str, &str, &str)] = &[("accuracy", "render_scale", "whole", "full")];
+pub const RENAMED_WORDS: &[(&str, &str, &str, &str)] =
+    &[("accuracy", "render_scale", "whole", "full"), ("draw_order", "unit", "share", "fraction")];
 
 /// Names in the vocabulary of computer graphics.
 fn to_schema_2(mut document: DocumentMut) -> DocumentMut {

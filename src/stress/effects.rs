@@ -231,8 +231,8 @@ fn sheets_of_a_word(context: &CaseContext) -> Result<(Arc<Scene>, View, u64), Ea
 fn scheduler_order_over_32_bits(context: &mut CaseContext) -> Result<(), EarlyEnd> {
     let (scene, view, total) = sheets_of_a_word(context)?;
     let by_chance = f64::from(draw_order::Mode::Scheduler as u32);
-    for (what, unit, amount) in [("a count", "limit", 1e6), ("a share", "share", 0.5)] {
-        let kind = if unit == "limit" { draw_order::Unit::Count } else { draw_order::Unit::Share };
+    for (what, unit, amount) in [("a count", "limit", 1e6), ("a fraction", "fraction", 0.5)] {
+        let kind = if unit == "limit" { draw_order::Unit::Count } else { draw_order::Unit::Fraction };
         let stack = only("draw_order", &[("mode", by_chance), ("unit", f64::from(kind as u32)), (unit, amount)])?;
         context.step(&scene, &view, what)?;
         context.renderer.set_scene(&scene)?;
@@ -251,12 +251,12 @@ fn scheduler_order_over_32_bits(context: &mut CaseContext) -> Result<(), EarlyEn
 
 fn draw_order_over_32_bits(context: &mut CaseContext) -> Result<(), EarlyEnd> {
     let (scene, view, total) = sheets_of_a_word(context)?;
-    let share = f64::from(draw_order::Unit::Share as u32);
+    let fraction = f64::from(draw_order::Unit::Fraction as u32);
     // The limit itself also exceeds 32 bits.
     for (what, fields, limit) in [
         ("a count", vec![("unit", 1.0), ("limit", 1e6)], 1_000_000),
         ("2^32 - 1", vec![("unit", 1.0), ("limit", f64::from(u32::MAX))], u64::from(u32::MAX)),
-        ("all", vec![("unit", share), ("share", 1.0)], total),
+        ("all", vec![("unit", fraction), ("fraction", 1.0)], total),
     ] {
         let stack = only("draw_order", &fields)?;
         context.step(&scene, &view, what)?;

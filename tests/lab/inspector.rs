@@ -128,7 +128,7 @@ fn a_second_effect_of_a_slot_is_refused_and_offered_instead_of_the_first() {
     assert!(lab.state().log_text().contains(sentence), "{}", lab.state().log_text());
     click(&mut lab, Role::Button, "overdraw instead of xray");
     assert!(!has(&lab, "xray") && has(&lab, "overdraw"));
-    assert!(slider(&lab, "overdraw.full").rect().width() > 0.0);
+    assert!(slider(&lab, "overdraw.max_layers").rect().width() > 0.0);
     undo(&mut lab);
     assert!(has(&lab, "xray") && !has(&lab, "overdraw"), "one step");
 }

@@ -60,9 +60,9 @@ fn three_ways_of_choosing_dots_give_the_oracle_s_picture() {
     let Some(mut renderer) = renderer() else { return };
     let cases: [(&str, &[(&str, f64)]); 6] = [
         ("teapot?tess=8", &[("spacing_m", 0.02)]),
-        ("knot?tess=6", &[("spacing_m", 0.004), ("gap_px", 3.0), ("fade", 0.25), ("model", 0.0)]),
-        ("cube-wall", &[("lines", 1.0), ("spacing_m", 0.05), ("size_px", 5.0), ("hidden", 0.0)]),
-        ("near", &[("spacing_m", 5.0), ("levels", 24.0), ("gap_px", 20.0)]),
+        ("knot?tess=6", &[("spacing_m", 0.004), ("min_gap_px", 3.0), ("fade", 0.25), ("show_model", 0.0)]),
+        ("cube-wall", &[("lines", 1.0), ("spacing_m", 0.05), ("size_px", 5.0), ("hidden_opacity", 0.0)]),
+        ("near", &[("spacing_m", 5.0), ("levels", 24.0), ("min_gap_px", 20.0)]),
         ("grid?cell=4", &[("spacing_m", 1.5), ("levels", 0.0), ("size_px", 1.0)]),
         ("slivers", &[("spacing_m", 3.0)]),
     ];
@@ -81,7 +81,7 @@ fn close_views_leave_most_lines_out_and_no_dot() {
     for (eye, target) in [([0.2, 0.1, 0.6], [1.0, 0.3, 0.0]), ([0.0, 0.0, 0.0], [0.4, 1.0, 0.1]), ([3.0, 0.2, 0.0], [0.0, 0.0, 0.0])] {
         let camera = rasterlab::scene::camera::Camera { eye: eye.into(), target: target.into(), ..Default::default() };
         let view = camera_view(&scene, &camera, [160, 120]);
-        three_ways(&mut renderer, &scene, &view, &dotted(&[("spacing_m", 0.003), ("gap_px", 2.0)], &[]), &format!("from {eye:?}"));
+        three_ways(&mut renderer, &scene, &view, &dotted(&[("spacing_m", 0.003), ("min_gap_px", 2.0)], &[]), &format!("from {eye:?}"));
     }
 }
 
@@ -265,7 +265,15 @@ fn a_dot_covers_its_area() {
 fn largest_jump(fade: f64, steps: u32) -> f64 {
     // A zigzag, so that dots lie in all ways to the pixels.
     let zigzag: Vec<[f32; 3]> = (0..20u8).map(|i| [if i % 2 == 0 { -0.6 } else { 0.6 }, f32::from(i) * 0.067 - 0.6, 0.0]).collect();
-    let values = [("lines", 2.0), ("spacing_m", 0.04), ("gap_px", 4.0), ("size_px", 2.0), ("model", 0.0), ("hidden", 1.0), ("fade", fade)];
+    let values = [
+        ("lines", 2.0),
+        ("spacing_m", 0.04),
+        ("min_gap_px", 4.0),
+        ("size_px", 2.0),
+        ("show_model", 0.0),
+        ("hidden_opacity", 1.0),
+        ("fade", fade),
+    ];
     let (scene, stack) = (scene("stack?layers=1"), dotted(&values, &[]));
     let mean = |step: u32| {
         let eye = [0.0, 0.0, 3.0 * (f64::from(step) / f64::from(steps)).exp2()].into();
@@ -300,7 +308,7 @@ fn every_mistake_in_the_dots_shows() {
     let Some(gpu) = gpu() else { return };
     let scene = scene("cube-wall");
     let view = view(&scene, [160, 120]);
-    let stack = dotted(&[("lines", 1.0), ("spacing_m", 0.03), ("gap_px", 8.0), ("size_px", 3.0)], &["lambert"]);
+    let stack = dotted(&[("lines", 1.0), ("spacing_m", 0.03), ("min_gap_px", 8.0), ("size_px", 3.0)], &["lambert"]);
     let mistakes = [
         ("common/dots", "vec4f(f32(place) * s.step)", "vec4f(f32(place + 1u) * s.step)"),
         ("common/dots", "scaled * vec2i(1, -1);", "scaled * vec2i(1, -1) + vec2i(256, 0);"),

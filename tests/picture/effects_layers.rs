@@ -87,7 +87,7 @@ fn two_effects_in_one_slot_are_refused_in_one_sentence_that_names_both() {
     assert_eq!(error, format!("both.toml:2: effects {sentence}"));
 
     let mut preset_file = preset_file::parse("schema = 2\n[effects.xray]\n", "one").expect("one effect");
-    for (path, value) in [("overdraw", ""), ("overdraw.full", "4")] {
+    for (path, value) in [("overdraw", ""), ("overdraw.max_layers", "4")] {
         let error = preset_file::set(&mut preset_file, path, value).expect_err("a second effect").to_string();
         assert!(error.starts_with(&format!("--set {path}")) && error.ends_with(&format!("effects {sentence}")), "{error}");
     }
@@ -201,7 +201,7 @@ fn windows_weights_and_opacities_are_the_oracles() {
     let hall = scene("near");
     let cut = (hall.clone(), view(&hall, [96, 72]));
     let windows =
-        ["xray.reach=all", "xray.reach=window,xray.window=0", "xray.reach=window,xray.window=30", "xray.reach=window,xray.window=500"];
+        ["xray.layers=all", "xray.layers=window,xray.window=0", "xray.layers=window,xray.window=30", "xray.layers=window,xray.window=500"];
     for weight in ["equal", "facing", "grazing", "near"] {
         for (i, window) in windows.iter().enumerate() {
             let weight = format!("xray.weight={weight}");
@@ -227,7 +227,7 @@ fn windows_weights_and_opacities_are_the_oracles() {
     let (scene, view) = &deep;
     let bare = captured(&mut renderer, scene, view, &with(&["normals"]), &AccuracyRequest::default()).frame;
     let front =
-        captured(&mut renderer, scene, view, &with(&["normals", "xray.reach=window", "xray.window=0"]), &AccuracyRequest::default()).frame;
+        captured(&mut renderer, scene, view, &with(&["normals", "xray.layers=window", "xray.window=0"]), &AccuracyRequest::default()).frame;
     assert_eq!(front.triangle_id, bare.triangle_id);
     let delta = rasterlab::measure::compare::pictures(&front.color, &bare.color, 1);
     assert!(delta.pixels_over_tolerance < 8, "{} pixels", delta.pixels_over_tolerance);
@@ -410,7 +410,7 @@ fn mutants() -> Vec<Mutant> {
             "slots/visibility/sum",
             "if key < xray_threshold",
             "if key <= xray_threshold",
-            &["xray.reach=window", "xray.window=0"],
+            &["xray.layers=window", "xray.window=0"],
             COUNTS,
         ),
         mutant(
@@ -418,7 +418,7 @@ fn mutants() -> Vec<Mutant> {
             "effects/xray",
             "let window = (p.window << 20u) / 1000u;",
             "let window = ((p.window + 1u) << 20u) / 1000u;",
-            &["xray.reach=window", "xray.window=100"],
+            &["xray.layers=window", "xray.window=100"],
             COUNTS,
         ),
         mutant(

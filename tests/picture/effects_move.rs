@@ -272,7 +272,7 @@ fn a_wobbling_normal_is_the_numerical_derivative_of_the_position() {
     let mut rng = Rng(3);
     for case in 0..200 {
         let mut stack = stack(&["wobble"]);
-        set(&mut stack, "wobble", "toward", &[rng.real(-1.0, 1.0), rng.real(-1.0, 1.0), rng.real(-1.0, 1.0)]);
+        set(&mut stack, "wobble", "direction", &[rng.real(-1.0, 1.0), rng.real(-1.0, 1.0), rng.real(-1.0, 1.0)]);
         set(&mut stack, "wobble", "sway", &[rng.real(-1.0, 1.0), rng.real(-1.0, 1.0), rng.real(-1.0, 1.0)]);
         set(&mut stack, "wobble", "amplitude_m", &[rng.real(0.0, 0.4)]);
         set(&mut stack, "wobble", "wavelength_m", &[rng.real(0.5, 3.0)]);

@@ -92,7 +92,7 @@ fn random_parameters_in_random_company_are_exact() {
                     if name == "hatch" && *query == "near" {
                         // Of triangles that the near plane cuts, f32 knows places to 1e-5 of their distance.
                         let hatch = stack.get_mut(name).expect("just enabled");
-                        let lie = hatch.effect.field("lie").expect("hatch has it");
+                        let lie = hatch.effect.field("space").expect("hatch has it");
                         lie.set(&mut hatch.words, &[0.0]).expect("a legal choice");
                     }
                 }
@@ -220,7 +220,7 @@ fn toon_has_as_many_tones_as_steps_and_keeps_the_hue() {
 #[test]
 fn hatch_is_darker_where_the_tone_is_and_bare_where_it_is_bright() {
     for lie in [0.0, 1.0] {
-        let stack = with(&[("hatch", "lie", lie), ("hatch", "ink", 0.0), ("hatch", "paper", 1.0), ("hatch", "layers", 4.0)]);
+        let stack = with(&[("hatch", "space", lie), ("hatch", "ink", 0.0), ("hatch", "paper", 1.0), ("hatch", "layers", 4.0)]);
         let mean = |tone: f64| {
             let at = |i: u32| {
                 let (x, y) = (f64::from(i % 64), f64::from(i / 64));
@@ -347,7 +347,7 @@ fn a_slope_is_no_jump_and_a_step_of_depth_is() {
         let keys: Vec<u32> = (0..64).map(|i| depth(i % 8).to_bits()).collect();
         let picture =
             Picture { width: 8, height: 8, triangle_ids: &triangle_ids, keys: &keys, draws: &[0], previous: None, background: DVec4::ONE };
-        let stack = with(&[("outline", "width_px", 1.0), ("outline", "jump", jump)]);
+        let stack = with(&[("outline", "width_px", 1.0), ("outline", "depth_threshold", jump)]);
         (0..8).filter(|&x| stack.finish(Pixel { color: DVec4::ONE, x, y: 4, nudge: 0.0 }, &picture).color.x < 0.5).collect()
     };
     assert_eq!(line(|x| 0.5 + 0.05 * x as f32, 0.01), Vec::<u32>::new(), "a slope of a tenth");

@@ -239,18 +239,18 @@ fn stacks() -> Vec<(String, Stack)> {
             stacks.push((format!("dissolve {mode:?} {pattern}"), only("dissolve", &fields)));
         }
     }
-    stacks.push(("stipple".into(), only("stipple", &[("opacity", 0.4), ("is_shifted", 1.0), ("matrix", 1.0)])));
+    stacks.push(("stipple".into(), only("stipple", &[("opacity", 0.4), ("shift_per_triangle", 1.0), ("matrix", 1.0)])));
     stacks.push(("wireframe shown".into(), only("wireframe", &[("hidden", 0.0), ("width_px", 2.0)])));
     stacks.push(("wireframe removed".into(), only("wireframe", &[("hidden", 1.0), ("width_px", 1.5)])));
     for share in [0.0, 0.37, 0.81, 1.0] {
-        stacks.push((format!("draw_order {share}"), only("draw_order", &[("share", share), ("first", 0.6)])));
+        stacks.push((format!("draw_order {share}"), only("draw_order", &[("fraction", share), ("first", 0.6)])));
     }
     stacks.push(("boxes".into(), only("boxes", &[("tint", 0.5)])));
     stacks.push(("points".into(), only("points", &[("size_px", 5.5)])));
     let mut all = only("dissolve", &[("mode", 3.0), ("fill", 0.7)]);
     set(&mut all, "stipple", &[("opacity", 0.6)]);
     set(&mut all, "wireframe", &[("hidden", 0.0), ("width_px", 6.0)]);
-    set(&mut all, "draw_order", &[("share", 0.5)]);
+    set(&mut all, "draw_order", &[("fraction", 0.5)]);
     stacks.push(("all together".into(), all.clone()));
     set(&mut all, "boxes", &[]);
     stacks.push(("all together in boxes".into(), all.clone()));
@@ -358,21 +358,21 @@ fn kernels_with_a_mistake_are_caught() {
             "slots/order/submission",
             "pixel < order.cut",
             "pixel <= order.cut",
-            only("draw_order", &[("share", 0.4)]),
+            only("draw_order", &[("fraction", 0.4)]),
         ),
         (
             "triangles in another order",
             "slots/order/submission",
             "t.id < order.straddler",
             "t.id > order.straddler",
-            only("draw_order", &[("share", 0.4)]),
+            only("draw_order", &[("fraction", 0.4)]),
         ),
         (
             "a block is not summed",
             "passes/order_sums",
             "for (var i = 0u; i < 4u;",
             "for (var i = 1u; i < 4u;",
-            only("draw_order", &[("share", 0.7)]),
+            only("draw_order", &[("fraction", 0.7)]),
         ),
         (
             "the matrix is transposed",

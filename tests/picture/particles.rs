@@ -31,7 +31,7 @@ const SIZE: [u32; 2] = [96, 72];
 fn preset_file(fields: &[(&str, &[f64])]) -> Preset {
     let mut preset = Preset::default();
     let words = &mut preset.stack.enable(&EFFECT).words;
-    for (name, value) in [("count", &[500.0][..]), ("size_m", &[0.03])].iter().chain(fields) {
+    for (name, value) in [("count", &[500.0][..]), ("radius_m", &[0.03])].iter().chain(fields) {
         let field = EFFECT.field(name).unwrap_or_else(|| panic!("no field {name}"));
         field.set(words, value).unwrap_or_else(|error| panic!("{error}"));
     }
@@ -115,7 +115,7 @@ fn the_flow_is_about_as_fast_as_it_says_and_nowhere_jumps() {
 #[test]
 fn births_fill_the_ellipsoid_evenly_and_lives_begin_at_every_age() {
     let spread = [0.5, 1.0, 2.0];
-    let preset = preset_file(&[("count", &[20_000.0]), ("spread", &spread), ("origin", &[1.0, 2.0, 3.0])]);
+    let preset = preset_file(&[("count", &[20_000.0]), ("half_axes", &spread), ("center", &[1.0, 2.0, 3.0])]);
     let p: Particles = preset.stack.params(EFFECT.name).expect("particles");
     let particle_states: Vec<_> = (0..20_000).map(|id| oracle::particles::first(&p, id)).collect();
     let shares: Vec<DVec3> = particle_states.iter().map(|f| (f.position - DVec3::new(1.0, 2.0, 3.0)) / DVec3::from_array(spread)).collect();
@@ -183,8 +183,8 @@ fn every_step_is_within_its_bound_with_every_option() {
         &[],
         &[("octaves", &[6.0]), ("persistence", &[0.9]), ("swirl_m", &[0.2]), ("speed_mps", &[3.0]), ("seed", &[77.0])],
         &[("drag", &[0.0]), ("attraction", &[12.0]), ("attractor_m", &[0.05]), ("attractor", &[0.3, -0.2, 0.1])],
-        &[("life_s", &[0.1]), ("life_spread", &[1.0]), ("rate", &[30.0]), ("evolve", &[3.0])],
-        &[("room_m", &[0.6]), ("spread", &[0.3, 0.9, 0.6]), ("speed_mps", &[4.0]), ("origin", &[40.0, -3.0, 7.0])],
+        &[("lifetime_s", &[0.1]), ("lifetime_variation", &[1.0]), ("rate", &[30.0]), ("evolve", &[3.0])],
+        &[("room_m", &[0.6]), ("half_axes", &[0.3, 0.9, 0.6]), ("speed_mps", &[4.0]), ("center", &[40.0, -3.0, 7.0])],
     ];
     for (number, fields) in preset_files.iter().enumerate() {
         for (curl, state) in particle_options() {
@@ -204,7 +204,7 @@ fn a_frame_is_the_same_however_it_was_reached() {
     let scene = scene("chamber");
     for (curl, state) in particle_options() {
         let accuracy = on(curl, state);
-        let preset = preset_file(&[("life_s", &[0.4]), ("count", &[333.0])]);
+        let preset = preset_file(&[("lifetime_s", &[0.4]), ("count", &[333.0])]);
         let fresh = |gpu: &Arc<Gpu>| Renderer::new(gpu.clone());
         let (jumped, reference) = flown(&mut fresh(&gpu), &scene, &preset, 45, &accuracy);
         assert!(reference.after.iter().any(|flight| flight.births > 1));
@@ -226,7 +226,7 @@ fn a_frame_is_the_same_however_it_was_reached() {
         flown(&mut renderer, &scene, &preset_file(&[("count", &[70.0]), ("seed", &[9.0])]), 12, &accuracy);
         assert!(flown(&mut renderer, &scene, &preset, 45, &accuracy).1 == reference);
         let other =
-            flown(&mut renderer, &scene, &preset_file(&[("life_s", &[0.4]), ("count", &[333.0]), ("seed", &[2.0])]), 45, &accuracy).1;
+            flown(&mut renderer, &scene, &preset_file(&[("lifetime_s", &[0.4]), ("count", &[333.0]), ("seed", &[2.0])]), 45, &accuracy).1;
         assert!(other != reference, "the seed changes nothing");
     }
 }
@@ -237,7 +237,7 @@ fn none_few_and_odd_numbers_of_particles_are_drawn() {
     let scene = scene("chamber");
     let bare = captured(&mut renderer, &scene, &Preset::default().view(&scene, SIZE), &stack(&[]), &AccuracyRequest::default());
     for count in [0u32, 1, 2, 63, 65, 257] {
-        let preset = at(&preset_file(&[("count", &[f64::from(count)]), ("size_m", &[0.1])]), 20);
+        let preset = at(&preset_file(&[("count", &[f64::from(count)]), ("radius_m", &[0.1])]), 20);
         let view = preset.view(&scene, SIZE);
         let (capture, verdict) = judged(&mut renderer, &scene, &view, &preset.evaluated_stack(), &AccuracyRequest::default());
         exactness(&verdict.accuracy).unwrap_or_else(|why| panic!("{count}: {why}"));
@@ -263,7 +263,7 @@ fn captured_of(renderer: &mut Renderer, scene: &Arc<Scene>, view: &View) -> Capt
 fn lives_end_and_begin_again_inside_the_room() {
     let Some(mut renderer) = renderer() else { return };
     let scene = scene("chamber");
-    let preset = preset_file(&[("life_s", &[0.25]), ("room_m", &[0.8]), ("spread", &[0.4, 0.4, 0.4]), ("speed_mps", &[5.0])]);
+    let preset = preset_file(&[("lifetime_s", &[0.25]), ("room_m", &[0.8]), ("half_axes", &[0.4, 0.4, 0.4]), ("speed_mps", &[5.0])]);
     let p: Particles = preset.stack.params(EFFECT.name).expect("particles");
     let [longest, _] = particles::life_steps(&p);
     assert_eq!(longest, 15);
@@ -282,7 +282,7 @@ fn lives_end_and_begin_again_inside_the_room() {
 fn for_a_second_particles_follow_the_reference_and_rough_options_drift() {
     let Some(mut renderer) = renderer() else { return };
     let scene = scene("chamber");
-    let preset = preset_file(&[("life_s", &[30.0]), ("life_spread", &[0.1]), ("room_m", &[4.0])]);
+    let preset = preset_file(&[("lifetime_s", &[30.0]), ("lifetime_variation", &[0.1]), ("room_m", &[4.0])]);
     let drift = |renderer: &mut Renderer, frame: u32, curl: CurlNoise, state: ParticleStorage| {
         let (_, accuracy) = measured(renderer, &scene, &preset, frame, &on(curl, state));
         eprintln!(
@@ -316,7 +316,8 @@ fn discs_of_every_size_are_the_oracle_s_with_every_option_and_tuning() {
     let scene = scene("chamber");
     // Less than a pixel, ordinary, larger than a tile, and as large as the picture with the eye among them.
     for (size, effects) in [(0.004, &[][..]), (0.03, &["xray"]), (0.5, &["dissolve"]), (3.0, &["overdraw"]), (9.0, &[])] {
-        let mut preset = at(&preset_file(&[("size_m", &[size]), ("count", &[60.0]), ("spread", &[3.0, 3.0, 3.0]), ("room_m", &[6.0])]), 25);
+        let mut preset =
+            at(&preset_file(&[("radius_m", &[size]), ("count", &[60.0]), ("half_axes", &[3.0, 3.0, 3.0]), ("room_m", &[6.0])]), 25);
         for name in effects {
             preset.stack.enable(Effect::find(name).expect("an effect"));
         }
@@ -354,7 +355,7 @@ fn what_fills_boxes_or_draws_corners_shows_no_discs() {
 fn keys_lead_the_attractor_and_a_frame_of_them_is_the_same_however_it_was_reached() {
     let Some(mut renderer) = renderer() else { return };
     let scene = scene("chamber");
-    let mut preset = preset_file(&[("attraction", &[9.0]), ("drag", &[1.0]), ("life_s", &[9.0])]);
+    let mut preset = preset_file(&[("attraction", &[9.0]), ("drag", &[1.0]), ("lifetime_s", &[9.0])]);
     let key = |time_s: f64, x: f64| Keyframe { time_s, value: vec![x, 0.0, 0.0], easing: Easing::Linear };
     let field = EFFECT.field("attractor").expect("an attractor");
     preset.animation.put(Track::new(&EFFECT, field, vec![key(0.0, -2.0), key(0.5, 2.0)]).expect("sound keys"));
@@ -424,7 +425,7 @@ fn too_many_particles_are_refused_with_a_sentence() {
 fn a_mistake_in_the_pass_is_found() {
     let Some(gpu) = gpu() else { return };
     let scene = scene("chamber");
-    let preset = preset_file(&[("life_s", &[0.3]), ("attraction", &[2.0]), ("size_m", &[0.1])]);
+    let preset = preset_file(&[("lifetime_s", &[0.3]), ("attraction", &[2.0]), ("radius_m", &[0.1])]);
     for (file, right, wrong) in [
         ("common/flight", "if f.age + 1u >=", "if f.age + 2u >="),
         ("common/flight", "hash(base + 13u)", "hash(base + 14u)"),

@@ -19,7 +19,7 @@ fn state_kept(frame_number: u32, f: ParticleState) -> ParticleState {
 
 fn state_packed(frame_number: u32, f: ParticleState) -> vec4u {
     let c = step_params_of(frame_number);
-    let at = (f.place - step_params[c].p.origin.xyz) / step_params[c].p.room_m;
+    let at = (f.place - step_params[c].p.center.xyz) / step_params[c].p.room_m;
     let v = state_halves(f.velocity);
     return vec4u(
         pack2x16snorm(at.xy),
@@ -32,7 +32,7 @@ fn state_unpacked(frame_number: u32, words: vec4u) -> ParticleState {
     let c = step_params_of(frame_number);
     let at = vec3f(unpack2x16snorm(words.x), unpack2x16snorm(words.y).x);
     let v = state_floats(vec3u(words.z, words.z >> 16u, words.w));
-    return ParticleState(step_params[c].p.origin.xyz + step_params[c].p.room_m * at, v, words.y >> 16u, words.w >> 16u);
+    return ParticleState(step_params[c].p.center.xyz + step_params[c].p.room_m * at, v, words.y >> 16u, words.w >> 16u);
 }
 
 // Floats as halves, rounded to the nearest; those below 2^-14 are 0, and none is infinite.

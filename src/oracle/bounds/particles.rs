@@ -48,7 +48,7 @@ impl<'a> StepBounds<'a> {
     ) -> bool {
         let Some(moved) = moved else { return is_near(born, given, &self.born_error()) };
         let error = self.step_error(before, moved);
-        let origin = DVec3::new(self.p.origin[0].into(), self.p.origin[1].into(), self.p.origin[2].into());
+        let origin = DVec3::new(self.p.center[0].into(), self.p.center[1].into(), self.p.center[2].into());
         let beyond = (moved.position - origin).abs().max_element() - f64::from(self.p.room_m);
         let wall = error.position + 4.0 * ROUNDING * (f64::from(self.p.room_m) + origin.abs().max_element());
         beyond <= wall && is_near(moved, given, &error) || beyond >= -wall && is_near(born, given, &self.born_error())
@@ -66,7 +66,7 @@ impl<'a> StepBounds<'a> {
 
     /// Largest coordinate in the room.
     fn reach(&self) -> f64 {
-        let origin = self.p.origin.map(|at| f64::from(at).abs());
+        let origin = self.p.center.map(|at| f64::from(at).abs());
         origin[0].max(origin[1]).max(origin[2]) + f64::from(self.p.room_m)
     }
 

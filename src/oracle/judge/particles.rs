@@ -77,7 +77,7 @@ fn projected(view: &View, position: DVec3) -> Option<DVec2> {
 
 /// Returns true if the words of a disc are within their bounds.
 fn disc_fits(given: &[u32], reference: &[u32; PARTICLE_DISC_WORDS], p: &Particles, particle: &ReferenceParticle) -> bool {
-    let size = f64::from(p.size_m);
+    let size = f64::from(p.radius_m);
     let position_error = 16.0 * ROUNDING * (particle.position.abs().max_element() + 4.0 * size)
         + size * 64.0 * ROUNDING * (1.0 + 1.0 / f64::from(p.fade))
         + f64::from(f32::MIN_POSITIVE);

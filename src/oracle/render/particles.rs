@@ -111,8 +111,8 @@ pub fn born(p: &Particles, id: u32, births: u32) -> ReferenceParticle {
     let is_inside = |at: &I64Vec3| at.dot(*at) <= 1 << 30;
     let at = (0..6).map(attempt).find(is_inside).unwrap_or_else(|| attempt(5) / 2);
     let room = DVec3::splat(p.room_m.into());
-    let offset = (at.as_dvec3() / 32768.0 * vector(p.spread)).clamp(-room, room);
-    ReferenceParticle { position: vector(p.origin) + offset, velocity: DVec3::ZERO, age: 0, births }
+    let offset = (at.as_dvec3() / 32768.0 * vector(p.half_axes)).clamp(-room, room);
+    ReferenceParticle { position: vector(p.center) + offset, velocity: DVec3::ZERO, age: 0, births }
 }
 
 /// A particle in frame 0, which has a random age.
@@ -124,7 +124,7 @@ pub fn first(p: &Particles, id: u32) -> ReferenceParticle {
 /// A particle one step later.
 pub fn stepped(p: &Particles, id: u32, particle: &ReferenceParticle, step: u32) -> ReferenceParticle {
     let Some(next) = moved(p, id, particle, step) else { return born(p, id, particle.births + 1) };
-    let is_outside = (next.position - vector(p.origin)).abs().max_element() > f64::from(p.room_m);
+    let is_outside = (next.position - vector(p.center)).abs().max_element() > f64::from(p.room_m);
     if is_outside { born(p, id, particle.births + 1) } else { next }
 }
 
@@ -199,8 +199,8 @@ fn radius_and_color(p: &Particles, id: u32, particle: &ReferenceParticle) -> (f6
     let smooth = |x: f64| x.clamp(0.0, 1.0).powi(2) * (3.0 - 2.0 * x.clamp(0.0, 1.0));
     let (age, fade) = (f64::from(particle.age) / f64::from(life(p, base)), f64::from(p.fade));
     let grown = smooth(age / fade) * smooth((1.0 - age) / fade);
-    let radius = f64::from(p.size_m) * (1.0 - f64::from(p.size_spread) * hash_unit(base.wrapping_add(14))) * grown;
-    let heat = (particle.velocity.length() / f64::from(p.bright_mps)).min(1.0);
+    let radius = f64::from(p.radius_m) * (1.0 - f64::from(p.radius_variation) * hash_unit(base.wrapping_add(14))) * grown;
+    let heat = (particle.velocity.length() / f64::from(p.fast_mps)).min(1.0);
     (radius, vector(p.slow).lerp(vector(p.fast), heat))
 }
 

@@ -65,7 +65,7 @@ pub fn finish(shot: &Shot, input: &ResolveInput, colors: &[DVec4], color_step: f
 
 /// A pixel with a dot over its surface, or over the background if the effect hides the model.
 fn dotted(dots: &Dots, color: DVec4, background: DVec4, strength: u32) -> DVec4 {
-    let beneath = if dots.model != 0 { color } else { background };
+    let beneath = if dots.show_model != 0 { color } else { background };
     let opacity = f64::from(strength) / f64::from(FULL) * f64::from(dots.color[3]);
     beneath + (encoded(dots.color).truncate().extend(1.0) - beneath) * opacity
 }

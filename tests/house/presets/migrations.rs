@@ -10,32 +10,39 @@ use super::*;
 /// A preset of schema 1 with every key and word that schema 2 renames, and the same in schema 2.
 const SCHEMA_1: &str = include_str!("../migrations/schema-1.toml");
 const SCHEMA_2: &str = include_str!("../migrations/schema-2.toml");
+/// The same for an effect that excludes another of the first fixture.
+const FIXTURES: [(&str, &str); 2] =
+    [(SCHEMA_1, SCHEMA_2), (include_str!("../migrations/overdraw-1.toml"), include_str!("../migrations/overdraw-2.toml"))];
 
 #[test]
 fn a_preset_of_schema_1_loads_and_is_written_as_schema_2_with_its_comments() {
-    let (old, new) = (parse(SCHEMA_1), parse(SCHEMA_2));
-    assert_eq!((&old.warnings, &new.warnings), (&Vec::new(), &Vec::new()));
-    assert_eq!(bits(&old.preset), bits(&new.preset));
-    assert_eq!(preset_file::to_toml(&old), SCHEMA_2);
-    assert!(!old.is_modified(), "a migration is no edit");
-    let folder = tempfile::tempdir().unwrap();
-    let path = folder.path().join("old.toml");
-    std::fs::write(&path, SCHEMA_1).unwrap();
-    let migrated = preset_file::migrated(&path).unwrap();
-    assert_eq!((migrated.from, migrated.before.as_str(), migrated.after.as_str()), (1, SCHEMA_1, SCHEMA_2));
-    assert_eq!(std::fs::read_to_string(&path).unwrap(), SCHEMA_1, "loading never rewrites a file");
+    for (before, after) in FIXTURES {
+        let (old, new) = (parse(before), parse(after));
+        assert_eq!((&old.warnings, &new.warnings), (&Vec::new(), &Vec::new()));
+        assert_eq!(bits(&old.preset), bits(&new.preset));
+        assert_eq!(preset_file::to_toml(&old), after);
+        assert!(!old.is_modified(), "a migration is no edit");
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("old.toml");
+        std::fs::write(&path, before).unwrap();
+        let migrated = preset_file::migrated(&path).unwrap();
+        assert_eq!((migrated.from, migrated.before.as_str(), migrated.after.as_str()), (1, before, after));
+        assert_eq!(std::fs::read_to_string(&path).unwrap(), before, "loading never rewrites a file");
+    }
 }
 
 #[test]
-fn the_fixture_has_every_key_and_word_that_a_migration_renames() {
+fn the_fixtures_have_every_key_and_word_that_a_migration_renames() {
+    let has_key = |text: &str, owner: &str, key: &str| {
+        let document: toml_edit::DocumentMut = text.parse().unwrap();
+        let tables = [document.get(owner), document.get("effects").and_then(|effects| effects.get(owner))];
+        tables.into_iter().flatten().any(|table| table.get(key).is_some())
+    };
     for (owner, old, new) in preset_file::migrate::RENAMED_KEYS {
-        for (text, key) in [(SCHEMA_1, old), (SCHEMA_2, new)] {
-            let document: toml_edit::DocumentMut = text.parse().unwrap();
-            let tables = [document.get(owner), document.get("effects").and_then(|effects| effects.get(owner))];
-            assert!(tables.into_iter().flatten().any(|table| table.get(key).is_some()), "{owner}.{key} is missing in the fixture");
-        }
+        let is_there = FIXTURES.iter().any(|(before, after)| has_key(before, owner, old) && has_key(after, owner, new));
+        assert!(is_there, "{owner}.{old} -> {new} is missing in the fixtures");
     }
-    for (_, _, old, new) in preset_file::migrate::RENAMED_WORDS {
+    for (.., old, new) in preset_file::migrate::RENAMED_WORDS {
         assert!(SCHEMA_1.contains(&format!("\"{old}\"")) && SCHEMA_2.contains(&format!("\"{new}\"")), "{old} -> {new}");
     }
 }
