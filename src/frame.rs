@@ -76,9 +76,9 @@ pub struct ParticleReadback {
     /// Corners with colour and normal, as they lie among the scene's bytes.
     pub words: Vec<u32>,
     /// Flights are kept in 16 bits a number.
-    pub is_rough: bool,
+    pub has_half_precision: bool,
     /// The flow's curl comes from differences.
-    pub is_difference: bool,
+    pub has_difference_curl: bool,
 }
 
 /// Everything the rasterizer proper sees: what stands between the float vertex stage and integer coverage.
@@ -96,7 +96,7 @@ pub struct Geometry {
     /// Ids of the triangles that are splats.
     pub particle_discs: std::ops::Range<u32>,
     /// Fan pieces of clipped triangles; pieces of one parent stand in fan order.
-    pub pieces: Vec<ClippedTriangle>,
+    pub clipped_triangles: Vec<ClippedTriangle>,
     /// What sample effects settled: for every triangle by id, then for every piece, one entry per effect that decides.
     pub sample_setups: Vec<[u32; 4]>,
     /// One per dot of all lines, always in units of 1/256 px.
@@ -109,19 +109,19 @@ pub struct Geometry {
     pub is_relative: bool,
     /// Places were rounded to fewer bits than the scene has, where the preset asks for that: how far off they are is measured,
     /// and no fault.
-    pub is_rough: bool,
+    pub has_approximate_positions: bool,
     /// What its maker promises about it, and about the keys of a frame drawn through it.
     pub exact: Exactness,
     /// What the light sees, where an effect asks.
-    pub light: Option<Box<LightMap>>,
+    pub shadow_map: Option<Box<ShadowMap>>,
 }
 
 /// A shadow map with what it was drawn from.
 #[derive(Clone, Debug, PartialEq)]
-pub struct LightMap {
+pub struct ShadowMap {
     /// Depth key of every texel, row-major, top row first: bits of the reversed depth, larger is nearer to the light, 0 is
     /// empty.
-    pub keys: Vec<u32>,
+    pub depth_keys: Vec<u32>,
     /// The scene as the light sees it.
     pub geometry: Geometry,
 }
@@ -137,14 +137,14 @@ impl Default for Geometry {
             deformed,
             particle_readback: None,
             particle_discs: 0..0,
-            pieces,
+            clipped_triangles: pieces,
             sample_setups,
             dots,
             subpixel_bits,
             is_relative: false,
-            is_rough: false,
+            has_approximate_positions: false,
             exact,
-            light: None,
+            shadow_map: None,
         }
     }
 }
@@ -230,7 +230,7 @@ pub struct Frame {
     /// Global triangle id per pixel, or [`NO_TRIANGLE`].
     pub triangle_id: Vec<u32>,
     /// Depth key per pixel: bits of the reversed depth, larger is nearer, 0 is empty.
-    pub key: Vec<u32>,
+    pub depth_key: Vec<u32>,
     /// Keys are cut short, or another sample's, where the preset asks for that; they promise nothing and are not judged.
     pub depth_keys_are_approximate: bool,
     /// Gamma-encoded sRGB and alpha.
@@ -250,8 +250,8 @@ impl Frame {
             .flat_map(|y| (0..width).map(move |x| under(y, height, self.height) * self.width as usize + under(x, width, self.width)))
             .collect();
         let of = |words: &[u32]| if words.is_empty() { Vec::new() } else { places.iter().map(|&at| words[at]).collect() };
-        let (triangle_id, key, counted, dots) = (of(&self.triangle_id), of(&self.key), of(&self.counted), of(&self.dots));
-        Self { width, height, triangle_id, key, color, counted, dots, ..*self }
+        let (triangle_id, key, counted, dots) = (of(&self.triangle_id), of(&self.depth_key), of(&self.counted), of(&self.dots));
+        Self { width, height, triangle_id, depth_key: key, color, counted, dots, ..*self }
     }
 
     /// Number of pixels that have an triangle id.

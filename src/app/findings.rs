@@ -27,9 +27,9 @@ impl Findings {
     pub fn new(capture: Capture, verdict: Verdict, reference: Option<Vec<u32>>) -> Self {
         let pixels = capture.frame.triangle_id.len();
         let mut found = Self {
-            accuracy: verdict.accuracy,
+            accuracy: verdict.report,
             size: [capture.frame.width, capture.frame.height],
-            faults: verdict.faults,
+            faults: verdict.error_map,
             triangle_ids: capture.frame.triangle_id,
             color: capture.frame.color,
             reference: reference.filter(|reference| reference.len() == pixels),
@@ -93,7 +93,7 @@ mod tests {
         capture.frame.triangle_id = vec![1, 1, 2, 1, 1, 1];
         capture.frame.color = vec![[0; 4]; 6];
         let faults = ErrorMap::new(&capture.frame.color, &capture.frame.color, |_| Vec::new());
-        let found = Findings::new(capture, Verdict { faults, ..Default::default() }, Some(vec![1, 1, 2, 1, 7, 1]));
+        let found = Findings::new(capture, Verdict { error_map: faults, ..Default::default() }, Some(vec![1, 1, 2, 1, 7, 1]));
         let edges: Vec<_> = (0..6).filter(|&i| found.is_edge(i)).collect();
         assert_eq!(edges, [1, 2]);
         assert_eq!((found.count(Overlay::Edges), found.count(Overlay::NotReference)), (2, 1));

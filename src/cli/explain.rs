@@ -79,7 +79,7 @@ impl ParticleErrors {
         if capture.geometry.particle_readback.is_none() {
             return Ok(None);
         }
-        let a = oracle::judge(scene, view, stack, &capture.picture())?.accuracy;
+        let a = oracle::judge(scene, view, stack, &capture.picture())?.report;
         Ok(Some(Self {
             count: a.particles,
             steps: view.scene_state.particles.as_ref().map_or(0, |particle_timeline| particle_timeline.frame),

@@ -67,7 +67,7 @@ fn sidecar(preset_file: &PresetFile, scene: &Scene, frame: &Frame) -> Value {
         "size": [frame.width, frame.height],
         "covered": frame.covered(),
         "counters": frame.counters,
-        "digests": { "triangle_id": words(&frame.triangle_id), "depth_key": words(&frame.key) },
+        "digests": { "triangle_id": words(&frame.triangle_id), "depth_key": words(&frame.depth_key) },
     })
 }
 

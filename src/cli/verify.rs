@@ -114,7 +114,7 @@ fn verify(common: &Common, args: &Verify, preset_file: &PresetFile, backend: &mu
             wrong.for_each(|(i, _)| expected[i] = capture.frame.color[i]);
         }
         let pixels_over_tolerance = pictures(&capture.frame.color, &expected, budget.max_channel).pixels_over_tolerance;
-        let mut failures = failures(&verdict.accuracy, &budget, pixels_over_tolerance);
+        let mut failures = failures(&verdict.report, &budget, pixels_over_tolerance);
         failures.extend(scaling_failure(&capture));
         let is_repeatable = preset.stack.is_repeatable() && !preset.accuracy.is_left_to_chance();
         for repeat in 1..args.frames {
@@ -135,7 +135,7 @@ fn verify(common: &Common, args: &Verify, preset_file: &PresetFile, backend: &mu
         rows.push(Row {
             preset: preset_file.id.clone(),
             option: name,
-            accuracy: verdict.accuracy,
+            accuracy: verdict.report,
             pixels_over_tolerance,
             frames: args.frames,
             failures,

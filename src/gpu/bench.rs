@@ -128,7 +128,7 @@ pub fn bench_stacks(
         renderer.set_scene(scene)?;
         let verdict = judge(stack, &renderer.capture(&lab.view, stack, &AccuracyRequest::default())?);
         let contender = Contender::Stacked(name.clone(), Box::new((stack.clone(), renderer)));
-        entries.push(Entry::new(contender, (&verdict.accuracy).into()));
+        entries.push(Entry::new(contender, (&verdict.report).into()));
     }
     lab.measure(scene, &scene.name, entries, Vec::new(), options.samples, progress)
 }
@@ -196,7 +196,7 @@ impl Lab<'_> {
             }
             let capture = renderer.capture(&self.view, &self.preset.stack, &pinned(visibility))?;
             let verdict = judge(&self.preset.stack, &capture);
-            entries.push(Entry::new(Contender::Ours(visibility, Box::new(renderer)), (&verdict.accuracy).into()));
+            entries.push(Entry::new(Contender::Ours(visibility, Box::new(renderer)), (&verdict.report).into()));
             expected = Some(verdict.expected);
         }
         let (Some(expected), Some(key)) = (expected, self.first_key(&entries)) else { return Ok((entries, missing)) };

@@ -236,8 +236,8 @@ impl Renderer {
             before: frame.checked_sub(1).map(particle_states).unwrap_or_default(),
             after: particle_states(frame),
             words: bytemuck::pod_collect_to_vec(&all[range]),
-            is_rough: kept.options.1 == ParticleStorage::Half16,
-            is_difference: kept.options.0 == CurlNoise::Difference,
+            has_half_precision: kept.options.1 == ParticleStorage::Half16,
+            has_difference_curl: kept.options.0 == CurlNoise::Difference,
         }))
     }
 }

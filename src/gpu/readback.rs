@@ -159,7 +159,7 @@ impl Renderer {
         };
         let (key, counters) = if key.culls() { self.draw_unculled(asked, stack, accuracy, counters)? } else { (key, counters) };
         let mut geometry = self.read_geometry(&key)?;
-        (geometry.dots, geometry.light) = (dot_places, light);
+        (geometry.dots, geometry.shadow_map) = (dot_places, light);
         let layers =
             if key.framebuffer.layers == Some(Layers::Overdraw) { self.read_counted(&key, view)? } else { self.count_layers(&key, view)? };
         let depth_keys_are_approximate =
@@ -168,7 +168,7 @@ impl Renderer {
             width: view.width,
             height: view.height,
             triangle_id,
-            key: depth,
+            depth_key: depth,
             color,
             counted,
             dots,
@@ -294,12 +294,12 @@ impl Renderer {
         Ok(Geometry {
             vertices: records.chunks_exact(4).map(vertex).collect(),
             sample_setups: order.flat_map(|entry| of_entry(entry).chunks_exact(4).map(|w| [w[0], w[1], w[2], w[3]])).collect(),
-            pieces: pieces.into_iter().map(|(_, _, piece)| piece).collect(),
+            clipped_triangles: pieces.into_iter().map(|(_, _, piece)| piece).collect(),
             has_unshared_vertices: key.unshares_vertices(),
             subpixel_bits: key.options.coverage.subpixel_bits(),
             scale: key.options.render_scale.factor(),
             is_relative: key.options.position_format == PositionFormat::Relative,
-            is_rough: key.options.position_format.packed_bits().is_some(),
+            has_approximate_positions: key.options.position_format.packed_bits().is_some(),
             dots: Vec::new(),
             exact: Exactness {
                 vertices: key.options.vertex_transform == VertexTransform::Strict,
@@ -308,7 +308,7 @@ impl Renderer {
             particle_readback: self.read_particles(key)?,
             particle_discs: scene.particle_disc_ids(),
             deformed: self.read_deformed(scene.vertex_bytes.len() as u64)?,
-            light: None,
+            shadow_map: None,
         })
     }
 

@@ -10,7 +10,7 @@ use super::{
 use crate::{
     accuracy::{Culling, PinnedOptions, Visibility},
     effects::Stack,
-    frame::LightMap,
+    frame::ShadowMap,
     plan::{AccuracyRequest, Note, Plan, Tuning},
     scene::view::View,
     shader::library::Library,
@@ -96,9 +96,9 @@ impl ShadowPass {
     }
 
     /// The map, and the scene as the light sees it.
-    pub fn read(&self) -> Result<LightMap, RenderError> {
+    pub fn read(&self) -> Result<ShadowMap, RenderError> {
         let keys = self.renderer.words("depth_keys", self.view.pixels() as u64)?;
-        Ok(LightMap { keys, geometry: self.renderer.read_geometry(&self.plan.key)? })
+        Ok(ShadowMap { depth_keys: keys, geometry: self.renderer.read_geometry(&self.plan.key)? })
     }
 
     /// Its passes with their purposes.

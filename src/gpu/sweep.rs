@@ -303,7 +303,7 @@ impl SweepError {
             None => compare::pictures(&frame.color, &picture.color, 0),
         };
         let differs = |i: &usize| frame.triangle_id[*i] != again.triangle_id[*i] || frame.color[*i] != again.color[*i];
-        let a = &judged.verdict.accuracy;
+        let a = &judged.verdict.report;
         let moved_px = moved_px(&capture.geometry, corners, [frame.width, frame.height]);
         Self {
             wrong_ppm: per_million(compare::triangle_ids(&frame.triangle_id, &picture.triangle_id).different),

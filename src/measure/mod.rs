@@ -160,13 +160,13 @@ impl ErrorStats {
 /// What a judge says of a picture.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Verdict {
-    pub accuracy: ErrorReport,
+    pub report: ErrorReport,
     /// What the oracle draws from the same snapped vertices; in the step band, the right answer nearest to the picture.
     pub expected: crate::frame::Frame,
     /// Which pixels lie in the step band; empty for a preset without steps.
     pub step_band: Vec<bool>,
     /// Where it is wrong.
-    pub faults: error_map::ErrorMap,
+    pub error_map: error_map::ErrorMap,
 }
 
 /// What options are measured against.

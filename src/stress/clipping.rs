@@ -109,7 +109,7 @@ fn near_plane_sweep(context: &mut CaseContext) -> Result<(), EarlyEnd> {
         let view = camera_view(scene, &camera, [48, 32]);
         let (capture, verdict) = context.exact(scene, &view, &stack(&["depth"]), &option, &format!("step {step}"))?;
         cut += u32::from(capture.frame.counters.clipped > 0);
-        worst = worst.max(verdict.accuracy.explained_by_snap);
+        worst = worst.max(verdict.report.explained_by_snap);
     }
     check!(cut > 300, "{cut} pictures were clipped");
     // Clipped outlines may move by less than a pixel: at most one row along the longest cut.

@@ -240,7 +240,7 @@ pub(super) fn equal<T: PartialEq + std::fmt::Debug>(found: &T, expected: &T, wha
 pub(super) fn same(found: &Capture, expected: &Capture, what: &str) -> Result<(), EarlyEnd> {
     let images = [
         ("triangle ids", compare::triangle_ids(&found.frame.triangle_id, &expected.frame.triangle_id)),
-        ("depth keys", compare::triangle_ids(&found.frame.key, &expected.frame.key)),
+        ("depth keys", compare::triangle_ids(&found.frame.depth_key, &expected.frame.depth_key)),
         ("numbers of hits", compare::triangle_ids(layers(found), layers(expected))),
     ];
     match images.iter().find(|(_, delta)| delta.different > 0) {
@@ -349,10 +349,10 @@ impl<'a> CaseContext<'a> {
         let (triangle_id, key) = oracle::strict_frame(scene, view, stack)?;
         let folded = |hash: u64, [a, b]: [&[u32]; 2]| fnv1a(&[&[hash as u32, (hash >> 32) as u32], a, b].concat());
         strict.pictures += 1;
-        strict.adapter = folded(strict.adapter, [&capture.frame.triangle_id, &capture.frame.key]);
+        strict.adapter = folded(strict.adapter, [&capture.frame.triangle_id, &capture.frame.depth_key]);
         strict.cpu = folded(strict.cpu, [&triangle_id, &key]);
-        let different =
-            [(&capture.frame.triangle_id, &triangle_id), (&capture.frame.key, &key)].map(|(a, b)| compare::triangle_ids(a, b).different);
+        let different = [(&capture.frame.triangle_id, &triangle_id), (&capture.frame.depth_key, &key)]
+            .map(|(a, b)| compare::triangle_ids(a, b).different);
         if different == [0, 0] {
             Ok(())
         } else {
@@ -435,7 +435,7 @@ impl<'a> CaseContext<'a> {
         what: &str,
     ) -> Result<(Capture, Verdict), EarlyEnd> {
         let (capture, verdict) = self.judged(scene, view, stack, accuracy, what)?;
-        let judgement = if self.allows_any_depth_band { verdict.accuracy.within(&Budget::default()) } else { exactness(&verdict.accuracy) };
+        let judgement = if self.allows_any_depth_band { verdict.report.within(&Budget::default()) } else { exactness(&verdict.report) };
         match judgement {
             Ok(()) => Ok((capture, verdict)),
             Err(faults) => Err(EarlyEnd::Failed(format!("{what}: {faults}"))),

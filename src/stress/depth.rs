@@ -73,7 +73,7 @@ fn coplanar_layers(context: &mut CaseContext) -> Result<(), EarlyEnd> {
         triangle_ids.dedup();
         equal(&triangle_ids, &vec![nearest as u32], &format!("{what} layers: triangle ids"))?;
         let top = 0.5f32.to_bits() + 39;
-        check!(capture.frame.key.iter().all(|&key| key == 0 || key == top), "{what} layers: a depth key is not the nearest's");
+        check!(capture.frame.depth_key.iter().all(|&key| key == 0 || key == top), "{what} layers: a depth key is not the nearest's");
 
         // The nearest layer twice more: of equal keys the smaller id wins.
         let again: Vec<_> = layers.iter().chain([&layers[nearest]; 2]).copied().collect();

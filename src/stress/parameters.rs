@@ -77,7 +77,7 @@ fn judged(context: &mut CaseContext, stack: &Stack, turn: usize, what: &str) -> 
     let sound = capture.geometry.vertices.iter().all(|v| v.depth.is_finite() && v.inv_w.is_finite());
     check!(sound, "{what}: a vertex is not finite");
     verdict
-        .accuracy
+        .report
         .within(&Budget { max_step_band_fraction: 1.0, ..Budget::default() })
         .map_err(|why| EarlyEnd::Failed(format!("{what}: {why}")))
 }

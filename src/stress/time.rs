@@ -58,7 +58,7 @@ fn hundred_equal_frames(context: &mut CaseContext) -> Result<(), EarlyEnd> {
                 let what = format!("frame {frame} on {}", option.name());
                 let capture = context.captured(&hall, &view, stack, &pinned(option), &what)?;
                 let Some(first) = &first else {
-                    check!(!capture.geometry.pieces.is_empty(), "nothing was clipped");
+                    check!(!capture.geometry.clipped_triangles.is_empty(), "nothing was clipped");
                     first = Some(capture);
                     continue;
                 };

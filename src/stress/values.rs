@@ -94,7 +94,7 @@ fn non_finite_positions(context: &mut CaseContext) -> Result<(), EarlyEnd> {
     );
     let alone = scene_of_meshes(&[triangle_soup([good, good_too].concat())]);
     let reference = context.exact_on_all(&alone, &view, "good positions alone")?;
-    check!(capture.frame.key == reference.frame.key, "a rejected triangle leaves a trace in the depth keys");
+    check!(capture.frame.depth_key == reference.frame.depth_key, "a rejected triangle leaves a trace in the depth keys");
 
     // The largest accepted coordinates are clipped; subnormals count as 0.
     let below = f32::from_bits(huge.to_bits() - 1);

@@ -229,8 +229,8 @@ pub fn exact(
     what: &str,
 ) -> (Capture, Verdict) {
     let (capture, verdict) = judged(renderer, scene, view, stack, accuracy);
-    if let Err(faults) = exactness(&verdict.accuracy) {
-        panic!("{what}: {faults}\n{:?}\n{:?}", verdict.accuracy, capture.frame.counters);
+    if let Err(faults) = exactness(&verdict.report) {
+        panic!("{what}: {faults}\n{:?}\n{:?}", verdict.report, capture.frame.counters);
     }
     (capture, verdict)
 }

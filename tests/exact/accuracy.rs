@@ -29,8 +29,8 @@ fn every_builtin_scene_is_within_tolerance_with_every_option() {
         let view = view(&scene, [320, 240]);
         for option in options(&renderer) {
             let (capture, verdict) = judged(&mut renderer, &scene, &view, &stack(&["facet", "lambert"]), &pinned(option));
-            eprintln!("{query} {}: {:?} {:?}", option.name(), verdict.accuracy, capture.frame.counters);
-            failures.extend(exactness(&verdict.accuracy).err().map(|faults| format!("{query} {}: {faults}", option.name())));
+            eprintln!("{query} {}: {:?} {:?}", option.name(), verdict.report, capture.frame.counters);
+            failures.extend(exactness(&verdict.report).err().map(|faults| format!("{query} {}: {faults}", option.name())));
         }
     }
     assert_eq!(failures, Vec::<String>::new());
@@ -129,7 +129,7 @@ fn every_viewpoint_is_within_tolerance() {
                 _ => assert!(capture.frame.covered() > 500, "{what}: {} pixels", capture.frame.covered()),
             }
             if what == "placed far away" {
-                assert!(verdict.accuracy.max_snap_delta <= 1, "{what}: camera and placement meet in f64");
+                assert!(verdict.report.max_snap_delta <= 1, "{what}: camera and placement meet in f64");
             }
         }
     }
@@ -348,7 +348,7 @@ const GRAPHICS_CARD: Tuning = Tuning {
 /// The map of faults shows what the counts count: as many wrong triangle ids, holes and doubles just where there are any, and the
 /// largest difference of colour.
 fn map_agrees(verdict: &Verdict) -> Result<(), String> {
-    let (a, map) = (&verdict.accuracy, &verdict.faults);
+    let (a, map) = (&verdict.report, &verdict.error_map);
     let triangle_ids =
         map.count(PixelError::WrongTriangle) == a.wrong_triangles && map.count(PixelError::WrongDepthOrder) == a.wrong_nearest;
     let coverage = (map.count(PixelError::Hole) > 0) == (a.holes > 0) && (map.count(PixelError::DoubleHit) > 0) == (a.double_hits > 0);
@@ -371,9 +371,9 @@ fn kernels_with_a_mistake_are_caught() {
         let mut wrong = Renderer::with_library(healthy.gpu().clone(), library.shaders());
         wrong.set_tuning(GRAPHICS_CARD);
         let (_, verdict) = judged(&mut wrong, scene, view, &stack(&[]), &pinned(*option));
-        eprintln!("{what}: {}", exactness(&verdict.accuracy).err().unwrap_or_default());
-        if exactness(&verdict.accuracy).is_ok() || shown_by(&verdict.accuracy) == 0 {
-            failures.push(format!("{what} does not show in {figure}: {:?}", verdict.accuracy));
+        eprintln!("{what}: {}", exactness(&verdict.report).err().unwrap_or_default());
+        if exactness(&verdict.report).is_ok() || shown_by(&verdict.report) == 0 {
+            failures.push(format!("{what} does not show in {figure}: {:?}", verdict.report));
         }
         if let Err(sentence) = map_agrees(&verdict) {
             failures.push(format!("{what}: {sentence}"));

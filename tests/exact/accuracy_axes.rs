@@ -74,7 +74,7 @@ fn exact_grids_are_exact_given_their_own_corners() {
         for coverage in [Coverage::Fixed4, Coverage::Fixed8, Coverage::Fixed12] {
             for visibility in options(&renderer) {
                 let (_, verdict) = verdict(&mut renderer, query, [200, 150], PinnedOptions::of(coverage).with(visibility));
-                let a = &verdict.accuracy;
+                let a = &verdict.report;
                 let faults =
                     [a.wrong_triangles, a.holes, a.double_hits, a.depth_without_id, a.overflow, a.key_outside_bound, a.snap_outside_bound];
                 assert_eq!(faults, [0; 7], "{query} on {} {}: {a:?}", coverage.name(), visibility.name());
@@ -100,7 +100,7 @@ fn float_edges_leave_doubles_and_the_top_left_rule_mends_most() {
     // Corners on 1/2 px: every other sample lies on an edge.
     let query = "grid?cell=4&lattice=2&width=256&height=256";
     let errors = |renderer: &mut Renderer, option: Coverage| {
-        let accuracy = verdict(renderer, query, [256, 256], PinnedOptions::of(option)).1.accuracy;
+        let accuracy = verdict(renderer, query, [256, 256], PinnedOptions::of(option)).1.report;
         (accuracy.holes, accuracy.double_hits)
     };
     let [float, top_left, fixed] = [Coverage::Float, Coverage::FloatTopLeft, Coverage::Fixed8].map(|option| errors(&mut renderer, option));
@@ -114,9 +114,8 @@ fn few_bits_of_depth_confuse_layers_that_lie_close() {
     // Two plates, the nearer one by half a step of 16 bits and the later one in order.
     let plate = |depth: f32| ([[0, 0], [64 * 256, 0], [0, 64 * 256]], depth);
     let scene = scene_of_meshes(&[triangle_soup_in_units(&[plate(0.5), plate(0.500_004)])]);
-    let wrong = [DepthFormat::Ndc16, DepthFormat::Log16, DepthFormat::Log24, DepthFormat::Standard, DepthFormat::Reversed].map(|depth| {
-        judged(&mut renderer, &scene, &pixel_view(64, 64), &stack(&[]), &on(PinnedOptions::of(depth))).1.accuracy.wrong_nearest
-    });
+    let wrong = [DepthFormat::Ndc16, DepthFormat::Log16, DepthFormat::Log24, DepthFormat::Standard, DepthFormat::Reversed]
+        .map(|depth| judged(&mut renderer, &scene, &pixel_view(64, 64), &stack(&[]), &on(PinnedOptions::of(depth))).1.report.wrong_nearest);
     assert!(wrong[0] > 1000 && wrong[1] == wrong[0], "16 bits tell the plates apart: {wrong:?}");
     assert_eq!(wrong[2..], [0; 3], "24 bits and more confuse the plates");
 }
@@ -243,7 +242,7 @@ fn packed_positions_move_corners_by_half_a_step_at_most() {
     let mut of = |option: PositionFormat| {
         let (capture, verdict) = judged(&mut renderer, &scene, &view, &stack(&["lambert"]), &on(PinnedOptions::of(option)));
         // Given its own corners, every option covers and compares as exactly as any.
-        let a = &verdict.accuracy;
+        let a = &verdict.report;
         assert_eq!(
             [a.wrong_triangles, a.holes, a.double_hits, a.depth_without_id, a.key_outside_bound, a.snap_outside_bound],
             [0; 6],
@@ -307,8 +306,8 @@ fn positions_relative_to_the_eye_lose_no_precision_far_away() {
     for visibility in options(&renderer) {
         let mut of = |option: PositionFormat| {
             let (capture, verdict) = judged(&mut renderer, &scene, &view, &stack(&[]), &on(PinnedOptions::of(option).with(visibility)));
-            assert_eq!(exactness(&verdict.accuracy), Ok(()), "{option:?} on {}", visibility.name());
-            (moved_px(&capture, &scene, &view), verdict.accuracy.max_snap_delta)
+            assert_eq!(exactness(&verdict.report), Ok(()), "{option:?} on {}", visibility.name());
+            (moved_px(&capture, &scene, &view), verdict.report.max_snap_delta)
         };
         let [stored, relative] = [PositionFormat::Stored, PositionFormat::Relative].map(&mut of);
         assert!(stored.0 > 0.1, "{stored:?}");
@@ -356,7 +355,7 @@ fn strict_vertices_subtract_the_eye_to_the_bit_and_refuse_packed_positions() {
     let capture = captured(&mut renderer, &scene, &view, &stack(&[]), &strict(PositionFormat::Relative));
     let reference =
         oracle::strict_frame(&scene, &view.with_grid(view.precision.subpixel_bits, true), &stack(&[])).expect("a scene that fits");
-    assert_eq!((capture.frame.triangle_id, capture.frame.key), reference);
+    assert_eq!((capture.frame.triangle_id, capture.frame.depth_key), reference);
     for (option, name) in [(PositionFormat::Packed10, "packed10"), (PositionFormat::Packed16, "packed16")] {
         let refused = renderer.capture(&view, &stack(&[]), &strict(option)).expect_err("floats unpack");
         let sentence = format!(
@@ -403,7 +402,7 @@ fn packed_positions_refuse_what_stored_ones_refuse_and_deformed_meshes() {
         let (capture, verdict) = judged(&mut renderer, &scene, &pixel_view(64, 64), &stack(&[]), &on(PinnedOptions::of(option)));
         let counters = capture.frame.counters;
         assert_eq!((counters.rejected_nonfinite, counters.rejected_range), (2, 1), "{option:?}");
-        assert_eq!((verdict.accuracy.snap_outside_bound, verdict.accuracy.counters_wrong), (0, 0), "{option:?}");
+        assert_eq!((verdict.report.snap_outside_bound, verdict.report.counters_wrong), (0, 0), "{option:?}");
         assert!(capture.frame.covered() > 1000, "{option:?}");
     }
     let soft = self::scene("tentacle?tess=2");
@@ -426,7 +425,7 @@ fn scaled_pictures_are_exact_in_their_own_pixels_and_shown_at_the_size_that_was_
     let effects = stack(&["lambert", "wireframe", "outline"]);
     for option in RenderScale::ALL.iter().copied() {
         let (capture, verdict) = judged(&mut renderer, &scene, &view, &effects, &on(PinnedOptions::of(option)));
-        assert_eq!(exactness(&verdict.accuracy), Ok(()), "{}", option.name());
+        assert_eq!(exactness(&verdict.report), Ok(()), "{}", option.name());
         let drawn = &capture.frame;
         let side = |side: u32| (f64::from(side) * option.factor()).ceil() as u32;
         assert_eq!([drawn.width, drawn.height], size.map(side), "{}", option.name());

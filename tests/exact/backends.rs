@@ -21,7 +21,7 @@ const SIZE: [u32; 2] = [256, 192];
 fn assert_same(a: &Frame, b: &Frame, what: &str) {
     let triangle_ids = compare::triangle_ids(&a.triangle_id, &b.triangle_id);
     assert_eq!(triangle_ids.different, 0, "{what}: triangle ids differ, first {:?}", triangle_ids.mismatches.first());
-    let keys = compare::triangle_ids(&a.key, &b.key);
+    let keys = compare::triangle_ids(&a.depth_key, &b.depth_key);
     assert_eq!(keys.different, 0, "{what}: keys differ, first {:?}", keys.mismatches.first());
     let colors = compare::pictures(&a.color, &b.color, 0);
     assert_eq!(colors.pixels_over_tolerance, 0, "{what}: colours differ, first {:?}", colors.mismatches.first());
@@ -110,11 +110,11 @@ fn packed32_loses_depth_and_nothing_else() {
         let view = view(&scene, SIZE);
         let reference = captured(&mut renderer, &scene, &view, &stack(&[]), &pinned(Visibility::Split32)).frame;
         let (capture, verdict) = judged(&mut renderer, &scene, &view, &stack(&[]), &pinned(Visibility::Packed32));
-        let (frame, errors) = (&capture.frame, &verdict.accuracy);
+        let (frame, errors) = (&capture.frame, &verdict.report);
         assert_eq!([errors.holes, errors.double_hits, errors.depth_without_id], [0; 3], "{query}");
         assert_eq!(errors.wrong_triangles, errors.wrong_nearest, "{query}: an triangle id does not cover its pixel");
-        let cut: Vec<u32> = reference.key.iter().map(|&key| cut_key(key, scene.triangle_count())).collect();
-        let keys = compare::triangle_ids(&frame.key, &cut);
+        let cut: Vec<u32> = reference.depth_key.iter().map(|&key| cut_key(key, scene.triangle_count())).collect();
+        let keys = compare::triangle_ids(&frame.depth_key, &cut);
         assert_eq!(keys.different, 0, "{query}: keys, first {:?}", keys.mismatches.first());
         // Another triangle id than the nearest is one that a step of the key cannot tell from it: as deep when cut, and smaller.
         let (draws, geometry) = (draws(&scene, &view).expect("a builtin fits"), &capture.geometry);
@@ -141,12 +141,12 @@ fn a_race_may_lose_the_nearest_and_nothing_else() {
         let view = view(&scene, SIZE);
         let reference = captured(&mut renderer, &scene, &view, &stack(&[]), &pinned(Visibility::Split32));
         let (capture, verdict) = judged(&mut renderer, &scene, &view, &stack(&[]), &pinned(Visibility::Race));
-        let errors = &verdict.accuracy;
+        let errors = &verdict.report;
         assert_eq!([errors.holes, errors.double_hits, errors.depth_without_id], [0; 3], "{query}");
         assert_eq!(errors.wrong_triangles, errors.wrong_nearest, "{query}: an triangle id does not cover its pixel");
         let layers = capture.layers.as_deref().expect("layers are counted");
         for pixel in (0..layers.len()).filter(|&pixel| layers[pixel] < 2) {
-            let [here, there] = [&capture.frame, &reference.frame].map(|frame| (frame.triangle_id[pixel], frame.key[pixel]));
+            let [here, there] = [&capture.frame, &reference.frame].map(|frame| (frame.triangle_id[pixel], frame.depth_key[pixel]));
             assert_eq!(here, there, "{query}: pixel {pixel} has no rival");
         }
     }
@@ -196,7 +196,7 @@ fn lists_of_tiles_hold_their_demand_to_the_last_entry() {
     let (_, frame) = tiled(&mut wrong, demand);
     assert_ne!(
         compare::triangle_ids(&frame.triangle_id, &reference.triangle_id).different
-            + compare::triangle_ids(&frame.key, &reference.key).different,
+            + compare::triangle_ids(&frame.depth_key, &reference.depth_key).different,
         0
     );
 }
@@ -244,7 +244,7 @@ fn repeated_frames_are_equal_to_the_bit() {
     for option in options(&renderer) {
         let mut draw = || -> Capture { captured(&mut renderer, &scene, &view, &stack(&["facet", "lambert"]), &pinned(option)) };
         let first = draw();
-        assert!(first.frame.counters.clipped > 0 && !first.geometry.pieces.is_empty(), "nothing was clipped");
+        assert!(first.frame.counters.clipped > 0 && !first.geometry.clipped_triangles.is_empty(), "nothing was clipped");
         for frame in 2..=25 {
             let again = draw();
             let what = format!("{} frame {frame}", option.name());
@@ -395,7 +395,7 @@ fn tiles_with_a_mistake_are_caught() {
         let mut wrong = Renderer::with_library(renderer.gpu().clone(), library.shaders());
         wrong.set_tuning(Tuning { specialized: false, ..GRAPHICS_CARD });
         let frame = captured(&mut wrong, &scene, &view, &stack(&[]), &pinned(Visibility::Tiled)).frame;
-        let [triangle_ids, keys] = [(&frame.triangle_id, &reference.triangle_id), (&frame.key, &reference.key)]
+        let [triangle_ids, keys] = [(&frame.triangle_id, &reference.triangle_id), (&frame.depth_key, &reference.depth_key)]
             .map(|(a, b)| compare::triangle_ids(a, b).different);
         eprintln!("{what}: {triangle_ids} triangle ids, {keys} keys differ");
         if triangle_ids + keys == 0 {

@@ -28,7 +28,7 @@ fn on(pins: PinnedOptions) -> AccuracyRequest {
 fn assert_same(a: &Frame, b: &Frame, what: &str) {
     let triangle_ids = compare::triangle_ids(&a.triangle_id, &b.triangle_id);
     assert_eq!(triangle_ids.different, 0, "{what}: triangle ids differ, first {:?}", triangle_ids.mismatches.first());
-    let keys = compare::triangle_ids(&a.key, &b.key);
+    let keys = compare::triangle_ids(&a.depth_key, &b.depth_key);
     assert_eq!(keys.different, 0, "{what}: keys differ, first {:?}", keys.mismatches.first());
     assert_eq!(compare::pictures(&a.color, &b.color, 0).pixels_over_tolerance, 0, "{what}: colours differ");
 }
@@ -142,7 +142,7 @@ fn followed(renderer: &mut Renderer, scene: &Arc<Scene>, views: &[View], pins: P
         let (culled, stats) = drawn(renderer, view, pins);
         let whole = whole(renderer, scene, view, pins);
         let triangle_ids = compare::triangle_ids(&culled.frame.triangle_id, &whole.triangle_id);
-        let keys = compare::triangle_ids(&culled.frame.key, &whole.key);
+        let keys = compare::triangle_ids(&culled.frame.depth_key, &whole.depth_key);
         if triangle_ids.different + keys.different > 0 {
             let (what, pixel) = (pins.words(), triangle_ids.mismatches.first());
             return Err(format!(

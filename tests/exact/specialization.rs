@@ -42,7 +42,7 @@ fn pictures(options: &[Visibility]) -> Vec<(String, Arc<Scene>, View, Stack, Vis
 }
 
 fn assert_same(a: &Frame, b: &Frame, band: &[bool], what: &str) {
-    for (image, a, b) in [("triangle_ids", &a.triangle_id, &b.triangle_id), ("keys", &a.key, &b.key)] {
+    for (image, a, b) in [("triangle_ids", &a.triangle_id, &b.triangle_id), ("keys", &a.depth_key, &b.depth_key)] {
         let delta = compare::triangle_ids(a, b);
         assert_eq!(delta.different, 0, "{what}: {image} differ, first {:?}", delta.mismatches.first());
     }

@@ -73,7 +73,7 @@ fn random_stacks_draw_the_same_integers_on_the_adapter_and_in_the_oracle() {
         renderer.set_tuning(tunings()[rng.between(0, 4) as usize]);
         let option = options[rng.between(0, options.len() as i32) as usize];
         let (_, verdict) = judged(&mut renderer, &scene, &view, &stack, &pinned(option));
-        if let Err(faults) = verdict.accuracy.within(&Budget::default()) {
+        if let Err(faults) = verdict.report.within(&Budget::default()) {
             failures.push(format!("RASTERLAB_SEED={seed}: {} on {}: {faults}\n{}", scene.name, option.name(), as_preset(&stack)));
         }
     }

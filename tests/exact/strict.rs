@@ -305,10 +305,11 @@ fn ways(renderer: &Renderer) -> [(Tuning, Visibility); 2] {
 fn stray(renderer: &mut Renderer, picture: &Picture, line: &str, (tuning, option): (Tuning, Visibility)) -> Option<String> {
     renderer.set_tuning(tuning);
     let frame = captured(renderer, &picture.scene, &picture.view, &picture.stack, &strict(option)).frame;
-    (picture.line(&frame.triangle_id, &frame.key) != line).then(|| {
+    (picture.line(&frame.triangle_id, &frame.depth_key) != line).then(|| {
         let (triangle_ids, keys) = picture.reference();
-        let [triangle_ids, keys] = [compare::triangle_ids(&frame.triangle_id, &triangle_ids), compare::triangle_ids(&frame.key, &keys)]
-            .map(|images| format!("{} differ, first {:?}", images.different, images.mismatches.first()));
+        let [triangle_ids, keys] =
+            [compare::triangle_ids(&frame.triangle_id, &triangle_ids), compare::triangle_ids(&frame.depth_key, &keys)]
+                .map(|images| format!("{} differ, first {:?}", images.different, images.mismatches.first()));
         format!("{} {} {tuning:?}: triangle ids: {triangle_ids}; keys: {keys}", picture.name, option.name())
     })
 }
@@ -334,9 +335,9 @@ fn the_judge_finds_nothing_to_excuse_in_strict_pictures() {
         let option = Visibility::Split32;
         let Picture { name, scene, view, stack } = &picture;
         let (capture, verdict) = exact(&mut renderer, scene, view, stack, &strict(option), name);
-        let a = &verdict.accuracy;
+        let a = &verdict.report;
         assert_eq!([a.depth_band_pixels, a.ill_conditioned, a.explained_by_snap, a.max_snap_delta.into()], [0; 4], "{name}");
-        assert_eq!(verdict.expected.key, capture.frame.key, "{name}");
+        assert_eq!(verdict.expected.depth_key, capture.frame.depth_key, "{name}");
     }
 }
 
@@ -350,9 +351,9 @@ fn integer_keys_alone_leave_no_depth_band() {
             renderer.set_tuning(tuning);
             let accuracy = AccuracyRequest { pins: PinnedOptions::of(option).with(DepthFormat::Integer), ..AccuracyRequest::default() };
             let (capture, verdict) = exact(&mut renderer, &scene, &view, &stack(&["depth"]), &accuracy, query);
-            assert_eq!(verdict.accuracy.depth_band_pixels, 0, "{query}");
+            assert_eq!(verdict.report.depth_band_pixels, 0, "{query}");
             assert_eq!(verdict.expected.triangle_id, capture.frame.triangle_id, "{query}");
-            assert_eq!(verdict.expected.key, capture.frame.key, "{query}");
+            assert_eq!(verdict.expected.depth_key, capture.frame.depth_key, "{query}");
         }
     }
 }

@@ -161,7 +161,7 @@ fn dots_beyond_65_535_workgroups_are_all_drawn() {
         assert_eq!(brute.geometry.dots.len(), count);
         let in_view = |dot: &SnappedVertex| dot.flags == 0 && (0..64 * 256).contains(&dot.x) && (0..48 * 256).contains(&dot.y);
         assert!(brute.geometry.dots.iter().all(in_view), "{count}: some dots lie outside the view");
-        let expected = oracle::dot_strengths(&view, &stack, &brute.geometry.dots, &brute.frame.key);
+        let expected = oracle::dot_strengths(&view, &stack, &brute.geometry.dots, &brute.frame.depth_key);
         assert!(brute.frame.dots == expected && gpu.frame.dots == expected, "{count}: not the dots that there are");
     }
 }
@@ -334,7 +334,7 @@ fn every_mistake_in_the_dots_shows() {
         let wrong = mutated(file, from, to);
         let mut renderer = Renderer::with_library(gpu.clone(), wrong.shaders());
         let (_, verdict) = judged(&mut renderer, &scene, &view, &stack, &AccuracyRequest::default());
-        assert!(exactness(&verdict.accuracy).is_err(), "{file}: {from:?} as {to:?} passes");
+        assert!(exactness(&verdict.report).is_err(), "{file}: {from:?} as {to:?} passes");
     }
     assert!(options(&Renderer::new(gpu)).contains(&Visibility::Split32));
 }

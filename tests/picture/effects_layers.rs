@@ -212,7 +212,7 @@ fn windows_weights_and_opacities_are_the_oracles() {
                 for option in options(&renderer).into_iter().skip(i % 2) {
                     let what = format!("{what} {} {values:?}", option.name());
                     let (_, verdict) = exact(&mut renderer, scene, view, &stack, &pinned(option), &what);
-                    let a = &verdict.accuracy;
+                    let a = &verdict.report;
                     assert!(
                         a.ambiguous_layer_pixels <= a.pixels / 10,
                         "{what}: {} of {} pixels are open",
@@ -283,7 +283,7 @@ fn a_race_is_exact_where_one_layer_covers_and_elsewhere_a_covering_triangle_wins
     let view_of = |scene: &Arc<Scene>| view(scene, [160, 120]);
     let (capture, verdict) = exact(&mut renderer, &lonely, &view_of(&lonely), &stack(&["race"]), &AccuracyRequest::default(), "one layer");
     let alone = captured(&mut renderer, &lonely, &view_of(&lonely), &stack(&[]), &AccuracyRequest::default()).frame;
-    assert_eq!((verdict.accuracy.race_pixels, &capture.frame.triangle_id), (0, &alone.triangle_id));
+    assert_eq!((verdict.report.race_pixels, &capture.frame.triangle_id), (0, &alone.triangle_id));
 
     let crowded = scene_from(&soup(5, 400, 64, 1.0));
     let view = pixel_view(64, 64);
@@ -292,7 +292,7 @@ fn a_race_is_exact_where_one_layer_covers_and_elsewhere_a_covering_triangle_wins
         for delay in [0, 4] {
             let stack = with(&["race", &format!("race.delay={delay}")]);
             let (_, verdict) = exact(&mut renderer, &crowded, &view, &stack, &AccuracyRequest::default(), &format!("{tuning:?}"));
-            eprintln!("delay {delay}, {tuning:?}: {} of {} pixels lost", verdict.accuracy.race_pixels, verdict.accuracy.pixels);
+            eprintln!("delay {delay}, {tuning:?}: {} of {} pixels lost", verdict.report.race_pixels, verdict.report.pixels);
         }
     }
 }
@@ -306,7 +306,7 @@ fn the_judge_counts_what_a_race_lost_and_refuses_what_it_cannot_lose() {
     let judge = |frame: &rasterlab::frame::Frame, stack: &Stack| {
         oracle::judge(&scene, &view, stack, &rasterlab::frame::AdapterPicture { frame, previous: None, ..capture.picture() })
             .expect("it fits")
-            .accuracy
+            .report
     };
     // Another triangle of the same pixel: what is drawn once the triangle id is gone.
     let pixel = capture.layers.as_ref().expect("counted").iter().position(|&layers| layers > 3).expect("a crowded pixel");
@@ -477,9 +477,9 @@ fn layers_with_a_mistake_are_caught() {
         let mut wrong = Renderer::with_library(healthy.gpu().clone(), library.shaders());
         wrong.set_tuning(tuning);
         let (_, verdict) = judged(&mut wrong, &scene, &view, &stack, &pinned(Visibility::Split32));
-        eprintln!("{what}: {}", exactness(&verdict.accuracy).err().unwrap_or_default());
-        if exactness(&verdict.accuracy).is_ok() || shown_by(&verdict.accuracy) == 0 {
-            failures.push(format!("{what} does not show in {figure}: {:?}", verdict.accuracy));
+        eprintln!("{what}: {}", exactness(&verdict.report).err().unwrap_or_default());
+        if exactness(&verdict.report).is_ok() || shown_by(&verdict.report) == 0 {
+            failures.push(format!("{what} does not show in {figure}: {:?}", verdict.report));
         }
     }
     assert!(failures.is_empty(), "{}", failures.join("\n"));

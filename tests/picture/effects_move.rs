@@ -90,10 +90,10 @@ fn every_builtin_scene_is_exact_under_every_moving_effect() {
                 renderer.set_tuning(*tuning);
                 let (_, verdict) = judged(&mut renderer, &scene, &view, &stack, &pinned(*option));
                 let what = format!("{query} {effect} {} small={}", option.name(), tuning.max_small_samples);
-                failures.extend(exactness(&verdict.accuracy).err().map(|faults| format!("{what}: {faults}")));
-                let ill = verdict.accuracy.ill_conditioned;
-                if ill * 100 > verdict.accuracy.vertices {
-                    failures.push(format!("{what}: {ill} of {} corners are not judged", verdict.accuracy.vertices));
+                failures.extend(exactness(&verdict.report).err().map(|faults| format!("{what}: {faults}")));
+                let ill = verdict.report.ill_conditioned;
+                if ill * 100 > verdict.report.vertices {
+                    failures.push(format!("{what}: {ill} of {} corners are not judged", verdict.report.vertices));
                 }
             }
             turn += 1;
@@ -138,8 +138,8 @@ fn an_effect_that_moves_nothing_changes_nothing() {
         for effect in MOVING {
             let resting = oracle::render(&scene, &view, &lit(resting(effect, &scene))).expect("a builtin fits");
             assert_eq!(
-                (&resting.triangle_id, &resting.key, &resting.color),
-                (&none.triangle_id, &none.key, &none.color),
+                (&resting.triangle_id, &resting.depth_key, &resting.color),
+                (&none.triangle_id, &none.depth_key, &none.color),
                 "{query} {effect}"
             );
         }
@@ -244,7 +244,7 @@ fn any_parameters_within_the_hard_ranges_are_drawn_exactly() {
         let (capture, verdict) = judged(&mut renderer, scene, &view, &stack, &Default::default());
         let sound = capture.geometry.vertices.iter().all(|v| v.depth.is_finite() && v.inv_w.is_finite());
         assert!(sound, "{what}: a corner is no number");
-        if let Err(faults) = verdict.accuracy.within(&Budget::default()) {
+        if let Err(faults) = verdict.report.within(&Budget::default()) {
             panic!("{what}: {faults}");
         }
     }
@@ -405,7 +405,7 @@ fn kernels_that_move_wrongly_are_caught() {
         let library = mutated(file, from, to);
         let mut wrong = Renderer::with_library(healthy.gpu().clone(), library.shaders());
         let (_, verdict) = judged(&mut wrong, &scene, &view, &stack, &pinned(Visibility::Split32));
-        match exactness(&verdict.accuracy) {
+        match exactness(&verdict.report) {
             Ok(()) => failures.push(what),
             Err(faults) => eprintln!("{what}: {faults}"),
         }

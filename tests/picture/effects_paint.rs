@@ -68,7 +68,7 @@ fn every_effect_is_exact_on_every_scene_with_every_option() {
             for option in options(&renderer) {
                 let what = format!("{name} on {query}, {}", option.name());
                 let (_, verdict) = exact(&mut renderer, &scene, &view, &stack(&["lambert", name]), &pinned(option), &what);
-                most = most.max(verdict.accuracy.step_band_pixels as f64 / verdict.accuracy.pixels as f64);
+                most = most.max(verdict.report.step_band_pixels as f64 / verdict.report.pixels as f64);
             }
         }
     }
@@ -101,7 +101,7 @@ fn random_parameters_in_random_company_are_exact() {
             let option = options[rng.next_u32() as usize % options.len()];
             let (_, verdict) = judged(&mut renderer, &scene, &view, &stack, &pinned(option));
             // Of a hundred levels many pixels lie near one; together they may still not be many.
-            let errors = &verdict.accuracy;
+            let errors = &verdict.report;
             let judgement = errors.within(&Budget { max_step_band_fraction: 0.5, ..Budget::default() });
             judgement.unwrap_or_else(|why| panic!("round {round}, {query}, {}: {why}\n{stack:?}\n{errors:?}", option.name()));
             shares.push(errors.step_band_pixels as f64 / errors.pixels as f64);
@@ -320,14 +320,14 @@ fn outlines_of_a_mirrored_picture_are_mirrored_and_as_wide_as_asked() {
     for side in [0.0, 1.0, 2.0] {
         for width_px in [1.0, 3.0, 8.0] {
             let stack = with(&[("outline", "side", side), ("outline", "width_px", width_px)]);
-            let there = lines(&frame.triangle_id, &frame.key, &stack);
-            let back = lines(&mirrored(&frame.triangle_id, width), &mirrored(&frame.key, width), &stack);
+            let there = lines(&frame.triangle_id, &frame.depth_key, &stack);
+            let back = lines(&mirrored(&frame.triangle_id, width), &mirrored(&frame.depth_key, width), &stack);
             assert!(there.contains(&1) && mirrored(&back, width) == there, "side {side}, {width_px} px");
         }
     }
     // A line outside lies on empty pixels alone where only silhouettes are drawn, within its width of an triangle id.
     let only = with(&[("outline", "objects", 0.0), ("outline", "depth", 0.0), ("outline", "width_px", 2.0)]);
-    let drawn = lines(&frame.triangle_id, &frame.key, &only);
+    let drawn = lines(&frame.triangle_id, &frame.depth_key, &only);
     let owned = |x: i64, y: i64| {
         let is_inside = (0..i64::from(SIZE[0])).contains(&x) && (0..i64::from(SIZE[1])).contains(&y);
         is_inside && frame.triangle_id[y as usize * width + x as usize] != NO_TRIANGLE
@@ -377,7 +377,7 @@ fn a_trail_is_exact_and_bit_equal_on_repeats_and_with_every_option() {
     assert!(trail > 200, "{trail} pixels of trail");
     for option in options(&renderer) {
         let (capture, verdict) = judged_preset(&mut renderer, &scene, &preset, &pinned(option));
-        exactness(&verdict.accuracy).unwrap_or_else(|why| panic!("{}: {why}", option.name()));
+        exactness(&verdict.report).unwrap_or_else(|why| panic!("{}: {why}", option.name()));
         let far = pictures(&capture.frame.color, &reference.color, 1);
         assert!(far.pixels_over_tolerance <= 2, "the oracle replays the same: {far:?}");
         let (again, _) = judged_preset(&mut renderer, &scene, &preset, &pinned(option));
@@ -458,6 +458,6 @@ fn effects_with_a_mistake_are_caught() {
         } else {
             judged(&mut wrong, &scene, &view, &stack, &pinned(Visibility::Split32))
         };
-        assert!(verdict.accuracy.max_color_delta > 1, "{name}, {to:?}: {:?}", verdict.accuracy);
+        assert!(verdict.report.max_color_delta > 1, "{name}, {to:?}: {:?}", verdict.report);
     }
 }

@@ -277,8 +277,8 @@ fn every_option_and_tuning_draws_what_the_oracle_draws() {
             let option = options[turn / 4 % options.len()];
             let (_, verdict) = judged(&mut renderer, &scene, &view, &stack, &pinned(option));
             // Boxes and coplanar layers fill the depth band; it is counted and either triangle id is right there.
-            if let Err(faults) = verdict.accuracy.within(&Budget::default()) {
-                panic!("{what} of {query} on {}: {faults}\n{:?}", option.name(), verdict.accuracy);
+            if let Err(faults) = verdict.report.within(&Budget::default()) {
+                panic!("{what} of {query} on {}: {faults}\n{:?}", option.name(), verdict.report);
             }
         }
     }
@@ -401,7 +401,7 @@ fn kernels_with_a_mistake_are_caught() {
         let mut wrong = rasterlab::gpu::Renderer::with_library(healthy.gpu().clone(), library.shaders());
         wrong.set_tuning(card);
         let (_, verdict) = judged(&mut wrong, &scene, &view, &stack, &option);
-        if exactness(&verdict.accuracy).is_ok() {
+        if exactness(&verdict.report).is_ok() {
             failures.push(what);
         }
     }

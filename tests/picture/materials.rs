@@ -229,7 +229,7 @@ fn mistakes_in_looking_up_texels_are_caught() {
         let library = mutated(file, from, to);
         let mut wrong = Renderer::with_library(healthy.gpu().clone(), library.shaders());
         let (_, verdict) = judged(&mut wrong, &scene, &view, &stack, &option);
-        match exactness(&verdict.accuracy) {
+        match exactness(&verdict.report) {
             Ok(()) => missed.push(what),
             Err(why) => eprintln!("{what}: {why}"),
         }
@@ -265,7 +265,7 @@ fn masks_leave_out_the_same_samples_with_every_option_in_every_kernel_and_in_the
                     renderer.set_tuning(tuning);
                     let about = format!("{what} {names:?} {}", option.name());
                     let (capture, _) = exact(&mut renderer, &scene, view, &stack, &pinned(option), &about);
-                    cut += capture.geometry.pieces.len();
+                    cut += capture.geometry.clipped_triangles.len();
                 }
             }
         }
@@ -365,7 +365,7 @@ fn mistakes_in_masks_are_caught() {
     for (what, file, from, to) in mistakes {
         let library = mutated(file, from, to);
         let mut wrong = Renderer::with_library(healthy.gpu().clone(), library.shaders());
-        let why = views.iter().find_map(|(_, view)| exactness(&judged(&mut wrong, &scene, view, &stack, &option).1.accuracy).err());
+        let why = views.iter().find_map(|(_, view)| exactness(&judged(&mut wrong, &scene, view, &stack, &option).1.report).err());
         match why {
             None => missed.push(what),
             Some(why) => eprintln!("{what}: {why}"),
@@ -381,7 +381,7 @@ fn the_tier_strict_takes_masks_unless_something_masked_is_cut() {
     let strict = AccuracyRequest { tier: Tier::Strict, ..AccuracyRequest::default() };
     let (capture, _) = exact(&mut renderer, &scene, &outside, &stack(&["lambert"]), &strict, "strict");
     let (triangle_ids, keys) = oracle::strict_frame(&scene, &outside, &stack(&["lambert"])).expect("it fits");
-    assert_eq!((capture.frame.triangle_id, capture.frame.key), (triangle_ids, keys));
+    assert_eq!((capture.frame.triangle_id, capture.frame.depth_key), (triangle_ids, keys));
     renderer.set_scene(&scene).expect("it fits");
     let error = renderer.draw(&inside, &stack(&["lambert"]), &strict).expect_err("a cut leaf").to_string();
     assert!(error.contains("the mask of a clipped triangle is placed in floats"), "{error}");

@@ -69,7 +69,7 @@ fn flown(
 fn measured(renderer: &mut Renderer, scene: &Arc<Scene>, preset: &Preset, frame: u32, accuracy: &AccuracyRequest) -> (Capture, Measured) {
     let preset = at(preset, frame);
     let (capture, verdict) = judged(renderer, scene, &preset.view(scene, SIZE), &preset.evaluated_stack(), accuracy);
-    (capture, verdict.accuracy)
+    (capture, verdict.report)
 }
 
 // ---------------------------------------------------------------- the oracle alone
@@ -240,10 +240,10 @@ fn none_few_and_odd_numbers_of_particles_are_drawn() {
         let preset = at(&preset_file(&[("count", &[f64::from(count)]), ("radius_m", &[0.1])]), 20);
         let view = preset.view(&scene, SIZE);
         let (capture, verdict) = judged(&mut renderer, &scene, &view, &preset.evaluated_stack(), &AccuracyRequest::default());
-        exactness(&verdict.accuracy).unwrap_or_else(|why| panic!("{count}: {why}"));
+        exactness(&verdict.report).unwrap_or_else(|why| panic!("{count}: {why}"));
         let particle_readback =
             capture.geometry.particle_readback.as_ref().map_or(0, |particle_readback| particle_readback.after.len() as u32);
-        assert_eq!((particle_readback, verdict.accuracy.particles), (count, count.into()));
+        assert_eq!((particle_readback, verdict.report.particles), (count, count.into()));
         let first = scene.triangle_count() as u32;
         let shown = capture.frame.triangle_id.iter().filter(|&&triangle_id| triangle_id != u32::MAX && triangle_id >= first).count();
         assert!(count < 60 || shown > 20, "{count}: {shown} pixels show particles");
@@ -332,7 +332,7 @@ fn discs_of_every_size_are_the_oracle_s_with_every_option_and_tuning() {
                 let what = format!("size {size}, {} {tuning:?}", option.name());
                 let (capture, _) = exact(&mut renderer, &scene, &view, &stack, &pinned(option), &what);
                 let first = first.get_or_insert_with(|| capture.clone());
-                assert!(capture.frame.triangle_id == first.frame.triangle_id && capture.frame.key == first.frame.key, "{what}");
+                assert!(capture.frame.triangle_id == first.frame.triangle_id && capture.frame.depth_key == first.frame.depth_key, "{what}");
             }
         }
         let cut = first.expect("a option").frame.counters.clipped;
@@ -450,7 +450,7 @@ fn a_mistake_in_the_pass_is_found() {
             let (view, stack) = (preset.view(&scene, SIZE), preset.evaluated_stack());
             let Ok(capture) = renderer.capture(&view, &stack, &AccuracyRequest::default()) else { return true };
             let verdict = oracle::judge(&scene, &view, &stack, &AdapterPicture { previous: None, ..capture.picture() });
-            verdict.expect("it can be judged").accuracy.within(&Budget::default()).is_err()
+            verdict.expect("it can be judged").report.within(&Budget::default()).is_err()
         });
         assert!(is_found, "{file}: {wrong:?} for {right:?} goes unnoticed");
     }

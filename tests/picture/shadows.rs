@@ -208,7 +208,7 @@ fn every_case_is_what_the_oracle_draws_with_every_option() {
             let what = format!("{} {names:?} {}", scene.name, option.name());
             let (capture, _) = exact(&mut renderer, &scene, &view, &stack, &pinned(option), &what);
             if let Some(first) = &first {
-                assert_eq!(capture.geometry.light, first.geometry.light, "{what}: the map");
+                assert_eq!(capture.geometry.shadow_map, first.geometry.shadow_map, "{what}: the map");
                 assert_eq!(compare::pictures(&capture.frame.color, &first.frame.color, 0).max_delta, 0, "{what}: the picture");
             }
             first.get_or_insert(capture);
@@ -225,7 +225,7 @@ fn every_size_of_map_and_filter_is_what_the_oracle_draws() {
         for &taps in ShadowTaps::ALL {
             let view = on(&view(&scene, [96, 72]), map, taps);
             let (capture, _) = exact(&mut renderer, &scene, &view, &lit(&["shadow"], &[]), &pinned(quick), &format!("{map:?} {taps:?}"));
-            let keys = &capture.geometry.light.expect("there is a map").keys;
+            let keys = &capture.geometry.shadow_map.expect("there is a map").depth_keys;
             assert_eq!(keys.len(), (map.side() * map.side()) as usize);
         }
     }
@@ -244,7 +244,7 @@ fn the_light_may_stand_anywhere() {
     for (bias, slope) in [(-64.0, 64.0), (64.0, -64.0), (0.0, 0.0)] {
         let stack = lit(&["shadow"], &[("shadow", "bias", bias), ("shadow", "slope", slope)]);
         let (_, verdict) = judged(&mut renderer, &scene, &coarse(&scene), &stack, &pinned(quick));
-        let a = &verdict.accuracy;
+        let a = &verdict.report;
         assert!(a.max_color_delta <= 1 && a.wrong_triangles + a.key_outside_bound == 0, "{bias} {slope}: {a:?}");
     }
 }
@@ -256,16 +256,16 @@ fn the_map_is_the_picture_that_the_light_sees() {
     for (scene, stack) in cases().into_iter().filter(|(scene, _)| scene.triangle_count() > 0) {
         let view = on(&view(&scene, [64, 48]), ShadowMapSize::Side256, ShadowTaps::One);
         let capture = captured(&mut renderer, &scene, &view, &stack, &AccuracyRequest::default());
-        let map = capture.geometry.light.expect("there is a map");
+        let map = capture.geometry.shadow_map.expect("there is a map");
         let (light, casting) = (stack.light_view(&scene, &view).expect("there is a light"), stack.casting());
         let (seen, verdict) = judged(&mut renderer, &scene, &light, &casting, &pinned(Visibility::Split32));
         // A map has depths and no triangle ids, and layers a quantum apart are all in the band.
-        verdict.accuracy.within(&Budget::default()).unwrap_or_else(|faults| panic!("{}: {faults}", scene.name));
-        assert!(seen.frame.key == map.keys, "{}: the map has other depths", scene.name);
+        verdict.report.within(&Budget::default()).unwrap_or_else(|faults| panic!("{}: {faults}", scene.name));
+        assert!(seen.frame.depth_key == map.depth_keys, "{}: the map has other depths", scene.name);
         assert_eq!(seen.geometry.vertices, map.geometry.vertices, "{}", scene.name);
         let own = oracle::shadow_map(&scene, &view, &stack).expect("a scene that fits").expect("there is a light");
-        let differs = own.keys.iter().zip(&map.keys).filter(|(a, b)| (**a == 0) != (**b == 0)).count();
-        assert!(differs * 200 <= own.keys.len(), "{}: {differs} texels of {}", scene.name, own.keys.len());
+        let differs = own.depth_keys.iter().zip(&map.depth_keys).filter(|(a, b)| (**a == 0) != (**b == 0)).count();
+        assert!(differs * 200 <= own.depth_keys.len(), "{}: {differs} texels of {}", scene.name, own.depth_keys.len());
     }
 }
 
@@ -280,8 +280,10 @@ fn finer_maps_are_nearer_to_the_rays() {
         let triangle_ids = oracle::render(&scene, &view, &stack).expect("a scene that fits").triangle_id;
         let draws = rasterlab::scene::draw::draws(&scene, &view).expect("a scene that fits");
         let light = oracle::shadow_map(&scene, &view, &stack).expect("a scene that fits");
-        let geometry =
-            rasterlab::frame::Geometry { light, ..oracle::project(&oracle::Shot::new(&scene, &draws, &view, &Stack::default())) };
+        let geometry = rasterlab::frame::Geometry {
+            shadow_map: light,
+            ..oracle::project(&oracle::Shot::new(&scene, &draws, &view, &Stack::default()))
+        };
         oracle::shadow_errors(&scene, &view, &stack, &triangle_ids, &geometry).expect("a scene that fits").expect("there is a light")
     };
     let [coarse, usual, fine] =
@@ -368,9 +370,9 @@ fn walls_catch_shadows_and_cast_none_and_stand_still() {
     let mut turned = coarse;
     turned.scene_state.world_from_scene = rasterlab::math::rotation_y(0.7);
     let (capture, _) = exact(&mut renderer, &scene, &turned, &from_below, &AccuracyRequest::default(), "from below");
-    let map = capture.geometry.light.expect("there is a map");
+    let map = capture.geometry.shadow_map.expect("there is a map");
     assert_eq!(map.geometry.vertices.len() as u64 + walls, scene.vertex_count());
-    assert!(map.keys.contains(&0) && map.keys.iter().any(|&key| key != 0));
+    assert!(map.depth_keys.contains(&0) && map.depth_keys.iter().any(|&key| key != 0));
     let draws = rasterlab::scene::draw::draws(&scene, &turned).expect("a scene that fits");
     assert_eq!(draws.last().expect("a room").world_from_object, DMat4::IDENTITY);
 }
@@ -402,6 +404,6 @@ fn mistakes_in_the_light_are_found() {
         let view = on(&view(&scene, [120, 90]), ShadowMapSize::Side512, ShadowTaps::Nine);
         let option = if options(&renderer).contains(&Visibility::Packed64) { Visibility::Packed64 } else { Visibility::Tiled };
         let (_, verdict) = judged(&mut renderer, &scene, &view, stack, &pinned(option));
-        assert!(exactness(&verdict.accuracy).is_err(), "{from:?} as {to:?} in {file} passes: {:?}", verdict.accuracy);
+        assert!(exactness(&verdict.report).is_err(), "{from:?} as {to:?} in {file} passes: {:?}", verdict.report);
     }
 }

@@ -234,7 +234,7 @@ fn nodes_that_a_clip_moves_are_placed_again() {
 /// What every picture here must keep.
 fn insist(renderer: &mut Renderer, scene: &Arc<Scene>, view: &View, stack: &Stack, option: Visibility, what: &str) -> f64 {
     let (_, verdict) = exact(renderer, scene, view, stack, &pinned(option), what);
-    let a = &verdict.accuracy;
+    let a = &verdict.report;
     assert!(a.deformed_vertices > 0 && a.max_deform_px < 0.01 && a.max_deform_ulp < 100.0, "{what}: {a:?}");
     a.max_deform_ulp
 }
@@ -290,7 +290,7 @@ fn a_camera_among_the_joints_is_clipped_like_any() {
     let preset = Preset { camera: Some(camera), playback: play, clock: Clock { time_s: 0.7, ..Clock::default() }, ..Preset::default() };
     let view = preset.view(&scene, [160, 120]);
     let (capture, verdict) = exact(&mut renderer, &scene, &view, &stack(&["lambert"]), &pinned(Visibility::Split32), "inside");
-    assert!(capture.frame.counters.clipped > 0 && verdict.accuracy.deformed_vertices > 0, "{:?}", capture.frame.counters);
+    assert!(capture.frame.counters.clipped > 0 && verdict.report.deformed_vertices > 0, "{:?}", capture.frame.counters);
 }
 
 #[test]
@@ -411,7 +411,7 @@ fn mistakes_in_the_pass_are_found() {
             let view = moment(&scene, clips, time_s, skinning, [120, 90]);
             let mut renderer = Renderer::with_library(gpu.clone(), mutant.shaders());
             let (_, verdict) = judged(&mut renderer, &scene, &view, &stack, &pinned(Visibility::Split32));
-            let faults = verdict.accuracy.within(&Budget::default());
+            let faults = verdict.report.within(&Budget::default());
             found |= faults.is_err_and(|faults| faults.contains("bent vertices lie outside their bound"));
         }
         assert!(found, "{what} was not found");

@@ -174,7 +174,7 @@ fn every_preset_is_exact_and_looks_like_its_golden_with_every_option() {
             let as_asked = AccuracyRequest { pins: preset.accuracy.pins.with(option), ..preset.accuracy };
             if own_option.is_none_or(|own| own == option) && !is_golden_wrong {
                 let (capture, verdict) = judged_preset(&mut renderer, &scene, preset, &as_asked);
-                within_budget(&verdict.accuracy, preset).unwrap_or_else(|why| panic!("{id} {}: {why}", option.name()));
+                within_budget(&verdict.report, preset).unwrap_or_else(|why| panic!("{id} {}: {why}", option.name()));
                 // Steps of colour and edges of texels leave some pixels two right answers; the judge says which, and that one of
                 // them was met.
                 let mut outcome = snapshot.check(preset, &capture.frame.color, &verdict.step_band);
@@ -392,7 +392,7 @@ fn exchanged_triangle_ids_a_wrong_seed_and_a_reversed_stack_are_caught() {
         })
         .collect();
     let draws = rasterlab::scene::draw::draws(&scene, &view).expect("a preset fits");
-    let input = oracle::ResolveInput { triangle_ids: &exchanged, keys: &whole.key, dots: &whole.dots, previous: None };
+    let input = oracle::ResolveInput { triangle_ids: &exchanged, depth_keys: &whole.depth_key, dots: &whole.dots, previous: None };
     let (stack, plain) = (preset_file.preset.evaluated_stack(), rasterlab::effects::Stack::default());
     let shot = oracle::Shot::new(&scene, &draws, &view, &stack);
     let colors = oracle::shade(&shot, &input, &oracle::project(&oracle::Shot { stack: &plain, ..shot }));

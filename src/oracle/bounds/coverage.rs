@@ -80,8 +80,8 @@ impl BoundedCoverage {
         self.samples.iter().map(|sample| sample.nearest.triangle_id).collect()
     }
 
-    pub fn keys(&self) -> Vec<u32> {
-        self.samples.iter().map(|sample| sample.nearest.key).collect()
+    pub fn depth_keys(&self) -> Vec<u32> {
+        self.samples.iter().map(|sample| sample.nearest.depth_key).collect()
     }
 }
 

@@ -29,7 +29,7 @@ struct StepError {
 
 impl<'a> StepBounds<'a> {
     pub fn new(p: &'a Particles, readback: &ParticleReadback, frame: u32) -> Self {
-        Self { p, frame, is_rough: readback.is_rough, is_difference: readback.is_difference }
+        Self { p, frame, is_rough: readback.has_half_precision, is_difference: readback.has_difference_curl }
     }
 
     /// Returns true if an adapter's particle may be the one of frame 0.

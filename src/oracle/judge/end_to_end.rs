@@ -46,7 +46,7 @@ impl EndToEnd<'_> {
         let own = cover_claims(&tests, &triangles, self.shot.view, &frame.triangle_id);
         for (pixel, (reference, sample)) in own.samples.iter().zip(&coverage.samples).enumerate() {
             let triangle_id = frame.triangle_id[pixel];
-            let is_right = reference.allows(triangle_id) && (!self.is_strict() || frame.key[pixel] == reference.nearest.key);
+            let is_right = reference.allows(triangle_id) && (!self.is_strict() || frame.depth_key[pixel] == reference.nearest.depth_key);
             // A triangle id that is wrong even for the adapter's own geometry has been counted before.
             if is_right || !sample.allows(triangle_id) {
                 continue;
@@ -67,7 +67,10 @@ impl EndToEnd<'_> {
     /// Returns true if the oracle may find triangle `own` at a pixel where the adapter finds `given`; `limit` is where the oracle's
     /// draw order stops.
     fn may_differ(&self, pixel: usize, own: u32, given: u32, limit: Option<DrawLimit>) -> bool {
-        self.adapter.is_rough || self.is_near_limit(given, limit) || self.is_near_limit(own, limit) || self.snap_explains(own, given, pixel)
+        self.adapter.has_approximate_positions
+            || self.is_near_limit(given, limit)
+            || self.is_near_limit(own, limit)
+            || self.snap_explains(own, given, pixel)
     }
 
     /// Returns true for a triangle between the oracle's and the adapter's draw limit: one sample more or less moves the limit.
@@ -118,7 +121,7 @@ impl EndToEnd<'_> {
             false => errors.iter().map(|error| 1.5 * error.clipped_displacement).fold(pixel, f64::max),
         };
         // The oracle's clipped triangles are sorted by parent.
-        let clipped = &self.own.pieces;
+        let clipped = &self.own.clipped_triangles;
         let fan = clipped.partition_point(|t| t.parent < id)..clipped.partition_point(|t| t.parent <= id);
         let is_disc = self.shot.stack.shape() == Shape::Triangles && self.own.particle_discs.contains(&id);
         let triangles = if is_whole { vec![records] } else { clipped[fan].iter().map(|triangle| triangle.corners).collect() };

@@ -27,7 +27,7 @@ pub fn error_map(shot: &Shot, coverage: &BoundedCoverage, picture: &AdapterPictu
             (PixelError::Hole, !freedom.is_scheduled() && drawn < expected),
             (PixelError::DoubleHit, drawn > expected),
             (PixelError::DepthBand, sample.is_band()),
-            (PixelError::Unsound, is_unsound(frame.key[pixel]) || unsound.binary_search(&triangle_id).is_ok()),
+            (PixelError::Unsound, is_unsound(frame.depth_key[pixel]) || unsound.binary_search(&triangle_id).is_ok()),
         ];
         errors.into_iter().filter(|(_, is_there)| *is_there).map(|(error, _)| error).collect()
     })

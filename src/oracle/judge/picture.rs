@@ -71,7 +71,7 @@ pub fn judge(scene: &Scene, view: &View, stack: &Stack, picture: &AdapterPicture
     let mut report = ErrorReport { pixels: view.pixels() as u64, ..Default::default() };
     let vertices = vertex_errors(&shot, geometry, &own);
     count_vertices(&mut report, &vertices);
-    let dots = dot_strengths(view, stack, &geometry.dots, &picture.frame.key);
+    let dots = dot_strengths(view, stack, &geometry.dots, &picture.frame.depth_key);
     judge_geometry(&mut report, &shot, picture, &dots)?;
 
     let (triangles, counters) = triangles(&shot, geometry);
@@ -84,8 +84,8 @@ pub fn judge(scene: &Scene, view: &View, stack: &Stack, picture: &AdapterPicture
     judge_counters(&mut report, &counters, picture.frame);
     end_to_end.judge(&mut report, &coverage, picture.frame, freedom);
 
-    let (triangle_ids, keys) = (&picture.frame.triangle_id, &picture.frame.key);
-    let layer_input = LayerInput { shot, geometry, tests: &tests, triangles: &triangles, triangle_ids, keys };
+    let (triangle_ids, keys) = (&picture.frame.triangle_id, &picture.frame.depth_key);
+    let layer_input = LayerInput { shot, geometry, tests: &tests, triangles: &triangles, triangle_ids, depth_keys: keys };
     let colors = JudgedColors::new(&layer_input, &coverage, picture, &dots);
     let nearest = colors.judge(&mut report, picture, freedom);
     let mut faults = error_map(&shot, &coverage, picture, &nearest, freedom);
@@ -93,7 +93,7 @@ pub fn judge(scene: &Scene, view: &View, stack: &Stack, picture: &AdapterPicture
     let (expected_colors, counted) = colors.expected(&shot, &coverage, picture, nearest);
     faults.compare_again(&picture.frame.color, &expected_colors);
     let expected = expected_frame(view, &coverage, expected_colors, counted, counters);
-    Ok(Verdict { accuracy: report, expected, step_band, faults })
+    Ok(Verdict { report, expected, step_band, error_map: faults })
 }
 
 /// The geometry that the oracle computes under the same promises.
@@ -105,11 +105,11 @@ fn own_geometry(shot: &Shot, exact: Exactness) -> Geometry {
 
 fn check_sizes(shot: &Shot, picture: &AdapterPicture, own: &Geometry) {
     let (frame, geometry) = (picture.frame, picture.geometry);
-    let sizes = [frame.triangle_id.len(), frame.key.len(), frame.color.len()];
+    let sizes = [frame.triangle_id.len(), frame.depth_key.len(), frame.color.len()];
     assert_eq!(sizes, [shot.view.pixels(); 3], "the frame has another size");
     let records = |geometry: &Geometry| (geometry.vertices.len(), geometry.has_unshared_vertices);
     assert_eq!(records(geometry), records(own), "the geometry is of another scene or stack");
-    assert_eq!(geometry.light.is_some(), shot.stack.light().is_some(), "there is a shadow map if and only if there is a light");
+    assert_eq!(geometry.shadow_map.is_some(), shot.stack.light().is_some(), "there is a shadow map if and only if there is a light");
 }
 
 /// Judges everything between the scene and coverage except the vertex records.
@@ -121,8 +121,8 @@ fn judge_geometry(report: &mut ErrorReport, shot: &Shot, picture: &AdapterPictur
     judge_deformed(report, shot, &geometry.deformed);
     judge_dots(report, shot, &geometry.dots, &picture.frame.dots, dots)?;
     // Setups that follow from approximate positions are approximate too.
-    report.sample_setups_wrong = if geometry.is_rough { 0 } else { wrong_setups(shot, geometry) };
-    match &geometry.light {
+    report.sample_setups_wrong = if geometry.has_approximate_positions { 0 } else { wrong_setups(shot, geometry) };
+    match &geometry.shadow_map {
         Some(map) => judge_shadow_map(report, shot, map),
         None => Ok(()),
     }
@@ -144,7 +144,7 @@ struct JudgedColors {
 
 impl JudgedColors {
     fn new(input: &LayerInput, coverage: &BoundedCoverage, picture: &AdapterPicture, dots: &[u32]) -> Self {
-        let resolve = ResolveInput { triangle_ids: input.triangle_ids, keys: input.keys, dots, previous: picture.previous };
+        let resolve = ResolveInput { triangle_ids: input.triangle_ids, depth_keys: input.depth_keys, dots, previous: picture.previous };
         let layers = || coverage.samples.iter().map(|sample| sample.nearest.layers).collect();
         let layers = layer_image(input, layers).map(|image| {
             let bounds = layer_bounds(input, &image);
@@ -183,17 +183,17 @@ impl JudgedColors {
         if let Some((image, _)) = self.layers {
             return (self.accepted.exact(), image.counted);
         }
-        let (triangle_ids, keys) = (&coverage.triangle_ids(), &coverage.keys());
+        let (triangle_ids, keys) = (&coverage.triangle_ids(), &coverage.depth_keys());
         if *triangle_ids == picture.frame.triangle_id {
             return (nearest, Vec::new());
         }
         let dots = &dot_strengths(shot.view, shot.stack, &picture.geometry.dots, keys);
-        let input = ResolveInput { triangle_ids, keys, dots, previous: picture.previous };
+        let input = ResolveInput { triangle_ids, depth_keys: keys, dots, previous: picture.previous };
         (AcceptedColors::of_surfaces(shot, &input, picture.geometry).nearest(&picture.frame.color), Vec::new())
     }
 }
 
 fn expected_frame(view: &View, coverage: &BoundedCoverage, color: Vec<[u8; 4]>, counted: Vec<u32>, counters: Counters) -> Frame {
-    let (triangle_id, key) = (coverage.triangle_ids(), coverage.keys());
-    Frame { width: view.width, height: view.height, triangle_id, key, color, counted, counters, ..Frame::default() }
+    let (triangle_id, key) = (coverage.triangle_ids(), coverage.depth_keys());
+    Frame { width: view.width, height: view.height, triangle_id, depth_key: key, color, counted, counters, ..Frame::default() }
 }

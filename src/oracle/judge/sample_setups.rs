@@ -23,7 +23,7 @@ pub fn wrong_setups(shot: &Shot, geometry: &Geometry) -> u64 {
     if records == 0 {
         return 0;
     }
-    let entries_of_scene = totals(shot.scene, shot.draws)[1] as usize + geometry.pieces.len();
+    let entries_of_scene = totals(shot.scene, shot.draws)[1] as usize + geometry.clipped_triangles.len();
     assert_eq!(geometry.sample_setups.len(), records * entries_of_scene, "the sample setups are of another scene");
     let wrong = |(entry, given): (Option<SetupEntry>, &[[u32; 4]])| {
         let Some(SetupEntry { setup, mask }) = entry else { return 0 };

@@ -38,7 +38,7 @@ impl Hits {
 pub fn judge_samples(report: &mut ErrorReport, coverage: &BoundedCoverage, picture: &AdapterPicture, freedom: Freedom) {
     let frame = picture.frame;
     for (pixel, sample) in coverage.samples.iter().enumerate() {
-        let (triangle_id, key) = (frame.triangle_id[pixel], frame.key[pixel]);
+        let (triangle_id, key) = (frame.triangle_id[pixel], frame.depth_key[pixel]);
         report.depth_without_id += u64::from(triangle_id == NO_TRIANGLE && key != 0);
         let is_wrong = freedom.is_wrong(sample, triangle_id);
         report.wrong_triangles += u64::from(is_wrong);

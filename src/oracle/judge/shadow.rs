@@ -19,7 +19,7 @@ use super::{
 };
 use crate::{
     effects::Stack,
-    frame::{Geometry, LightMap},
+    frame::{Geometry, ShadowMap},
     measure::{ErrorReport, ShadowErrors},
     scene::{
         Scene,
@@ -35,7 +35,7 @@ use crate::{
 ///
 /// # Panics
 /// If the map is of another scene or stack.
-pub fn judge_shadow_map(report: &mut ErrorReport, shot: &Shot, map: &LightMap) -> Result<(), DrawError> {
+pub fn judge_shadow_map(report: &mut ErrorReport, shot: &Shot, map: &ShadowMap) -> Result<(), DrawError> {
     let Some(view) = shot.stack.light_view(shot.scene, shot.view) else { return Ok(()) };
     let (draws, casting) = (draws(shot.scene, &view)?, shot.stack.casting());
     let shot = Shot::new(shot.scene, &draws, &view, &casting);
@@ -43,7 +43,7 @@ pub fn judge_shadow_map(report: &mut ErrorReport, shot: &Shot, map: &LightMap) -
     assert_eq!(map.geometry.vertices.len(), own.vertices.len(), "the shadow map is of another scene or stack");
     let (triangles, _) = triangles(&shot, &map.geometry);
     let intervals = nearest_intervals(&SampleTests::new(&shot, &map.geometry), &triangles, &view);
-    for (interval, &key) in intervals.iter().zip(&map.keys) {
+    for (interval, &key) in intervals.iter().zip(&map.depth_keys) {
         let is_covered = interval[1] > f64::NEG_INFINITY;
         report.holes += u64::from(is_covered && key == 0);
         report.double_hits += u64::from(!is_covered && key != 0);

@@ -39,7 +39,7 @@ pub fn vertex_errors(shot: &Shot, adapter: &Geometry, own: &Geometry) -> Vec<Ver
     if adapter.exact.vertices {
         return pairs.map(|(adapter, own)| strict_error(adapter, own)).collect();
     }
-    if adapter.is_rough {
+    if adapter.has_approximate_positions {
         return pairs.map(|(adapter, own)| approximate_error(adapter, own)).collect();
     }
     bounded_errors(shot, adapter, own)

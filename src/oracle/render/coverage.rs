@@ -26,21 +26,21 @@ pub struct Sample {
     /// Nearest triangle, the smaller id at equal keys; [`NO_TRIANGLE`] without one.
     pub triangle_id: u32,
     /// Bits of its depth rounded to f32, at least 1; 0 without a triangle.
-    pub key: u32,
+    pub depth_key: u32,
     /// Drawn triangles that cover the sample, in front or behind.
     pub layers: u32,
 }
 
 impl Sample {
-    pub const EMPTY: Self = Self { triangle_id: NO_TRIANGLE, key: 0, layers: 0 };
+    pub const EMPTY: Self = Self { triangle_id: NO_TRIANGLE, depth_key: 0, layers: 0 };
 
     /// Adds a triangle that covers the sample; returns true if it is the nearest so far.
     pub fn add(&mut self, id: u32, depth: f64) -> bool {
         self.layers += 1;
         let key = depth_key(depth);
-        let is_nearest = key > self.key || key == self.key && id < self.triangle_id;
+        let is_nearest = key > self.depth_key || key == self.depth_key && id < self.triangle_id;
         if is_nearest {
-            (self.triangle_id, self.key) = (id, key);
+            (self.triangle_id, self.depth_key) = (id, key);
         }
         is_nearest
     }
@@ -57,8 +57,8 @@ impl Coverage {
         self.samples.iter().map(|sample| sample.triangle_id).collect()
     }
 
-    pub fn keys(&self) -> Vec<u32> {
-        self.samples.iter().map(|sample| sample.key).collect()
+    pub fn depth_keys(&self) -> Vec<u32> {
+        self.samples.iter().map(|sample| sample.depth_key).collect()
     }
 
     pub fn layers(&self) -> Vec<u32> {

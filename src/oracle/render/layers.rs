@@ -44,7 +44,7 @@ pub struct LayerInput<'a> {
     pub tests: &'a SampleTests<'a>,
     pub triangles: &'a [OrientedTriangle],
     pub triangle_ids: &'a [u32],
-    pub keys: &'a [u32],
+    pub depth_keys: &'a [u32],
 }
 
 /// The picture that the effect in the visibility slot makes, given the number of layers per pixel; none if the nearest triangle is
@@ -100,7 +100,7 @@ pub fn steps(bits: u32) -> f64 {
 
 /// Smallest depth that the depth window of a pixel contains.
 pub fn window_depth(input: &LayerInput, params: &Xray, pixel: usize) -> f64 {
-    f64::from(f32::from_bits(params.threshold(input.keys[pixel], input.shot.view.linear_depth_m.is_none())))
+    f64::from(f32::from_bits(params.threshold(input.depth_keys[pixel], input.shot.view.linear_depth_m.is_none())))
 }
 
 /// Sums of one pixel.

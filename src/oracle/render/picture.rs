@@ -48,20 +48,20 @@ pub fn render_next(scene: &Scene, view: &View, stack: &Stack, previous: Option<&
     let mut geometry = project(&shot);
     geometry.sample_setups = sample_setups(&shot, &geometry);
     geometry.dots = dot_records(&shot)?;
-    geometry.light = shadow_map(scene, view, stack)?;
+    geometry.shadow_map = shadow_map(scene, view, stack)?;
     let (triangles, counters) = triangles(&shot, &geometry);
     let tests = limited(SampleTests::new(&shot, &geometry), stack, &triangles, view);
     let coverage = cover_with(&tests, &triangles, view);
-    let (triangle_ids, keys) = (&coverage.triangle_ids(), &coverage.keys());
+    let (triangle_ids, keys) = (&coverage.triangle_ids(), &coverage.depth_keys());
     let dots = dot_strengths(view, stack, &geometry.dots, keys);
-    let input = ResolveInput { triangle_ids, keys, dots: &dots, previous };
-    let layer_input = LayerInput { shot, geometry: &geometry, tests: &tests, triangles: &triangles, triangle_ids, keys };
+    let input = ResolveInput { triangle_ids, depth_keys: keys, dots: &dots, previous };
+    let layer_input = LayerInput { shot, geometry: &geometry, tests: &tests, triangles: &triangles, triangle_ids, depth_keys: keys };
     let (color, counted) = match layer_image(&layer_input, || coverage.layers()) {
         Some(image) => (finish(&shot, &input, &image.colors, 0.0), image.counted),
         None => (shade(&shot, &input, &geometry), Vec::new()),
     };
-    let (triangle_id, key) = (coverage.triangle_ids(), coverage.keys());
-    Ok(Frame { width: view.width, height: view.height, triangle_id, key, color, counted, dots, counters, ..Frame::default() })
+    let (triangle_id, key) = (coverage.triangle_ids(), coverage.depth_keys());
+    Ok(Frame { width: view.width, height: view.height, triangle_id, depth_key: key, color, counted, dots, counters, ..Frame::default() })
 }
 
 /// The exact picture of the last of `sequence`, drawn after those before it, all of the same size.
@@ -92,5 +92,5 @@ pub fn strict_frame(scene: &Scene, view: &View, stack: &Stack) -> Result<(Vec<u3
     geometry.sample_setups = sample_setups(&shot, &geometry);
     let (triangles, _) = triangles(&shot, &geometry);
     let coverage = cover_with(&limited(SampleTests::new(&shot, &geometry), stack, &triangles, view), &triangles, view);
-    Ok((coverage.triangle_ids(), coverage.keys()))
+    Ok((coverage.triangle_ids(), coverage.depth_keys()))
 }

@@ -30,6 +30,6 @@ pub fn project(shot: &Shot) -> Geometry {
         let position = |corner| evaluator.clip(corner).expect("a triangle that is clipped has no rejected corner");
         clip::clipped_triangles(shot, evaluator.draw, &geometry, position)
     };
-    geometry.pieces = evaluators.iter().flat_map(clipped).collect();
+    geometry.clipped_triangles = evaluators.iter().flat_map(clipped).collect();
     geometry
 }

@@ -23,7 +23,7 @@ pub struct ResolveInput<'a> {
     /// Global triangle id per pixel, [`NO_TRIANGLE`](crate::frame::NO_TRIANGLE) without one.
     pub triangle_ids: &'a [u32],
     /// Depth key per pixel, 0 without a triangle.
-    pub keys: &'a [u32],
+    pub depth_keys: &'a [u32],
     /// Strength of the strongest dot per pixel; empty without dots.
     pub dots: &'a [u32],
     /// The previous picture; none for the first.
@@ -49,7 +49,7 @@ pub fn finish(shot: &Shot, input: &ResolveInput, colors: &[DVec4], color_step: f
         width: view.width,
         height: view.height,
         triangle_ids: input.triangle_ids,
-        keys: input.keys,
+        keys: input.depth_keys,
         draws: &first_triangles,
         previous: input.previous,
         background: background(view),

@@ -68,7 +68,7 @@ pub fn entries<'a>(shot: &'a Shot<'a>, geometry: &'a Geometry) -> impl IndexedPa
         let is_drawn = doubled_area(&triangle.corners) != 0;
         is_drawn.then(|| entry(shot, geometry, triangle.parent, &Drawn::Clipped(triangle))).flatten()
     };
-    (0..totals(shot.scene, shot.draws)[1] as u32).into_par_iter().map(whole).chain(geometry.pieces.par_iter().map(clipped))
+    (0..totals(shot.scene, shot.draws)[1] as u32).into_par_iter().map(whole).chain(geometry.clipped_triangles.par_iter().map(clipped))
 }
 
 /// What is drawn of a triangle.

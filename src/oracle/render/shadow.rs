@@ -26,7 +26,7 @@ use crate::{
         hooks::ROUNDING,
         shadow::{MAX_SHADOW_SLOPE, Shadow},
     },
-    frame::{Geometry, LightMap},
+    frame::{Geometry, ShadowMap},
     scene::{
         Scene,
         draw::{DrawError, draws},
@@ -39,7 +39,7 @@ use crate::{
 ///
 /// # Errors
 /// [`DrawError`] if a transform or the number of triangles is out of range.
-pub fn shadow_map(scene: &Scene, view: &View, stack: &Stack) -> Result<Option<Box<LightMap>>, DrawError> {
+pub fn shadow_map(scene: &Scene, view: &View, stack: &Stack) -> Result<Option<Box<ShadowMap>>, DrawError> {
     if view.precision.shadow == ShadowResolution::TRACED {
         return Ok(None);
     }
@@ -51,7 +51,7 @@ pub fn shadow_map(scene: &Scene, view: &View, stack: &Stack) -> Result<Option<Bo
     let (triangles, _) = triangles(&shot, &geometry);
     let depths = nearest_depths(&SampleTests::new(&shot, &geometry), &triangles, &view);
     let keys = depths.iter().map(|depth| if depth.is_finite() { depth_key(*depth) } else { 0 }).collect();
-    Ok(Some(Box::new(LightMap { keys, geometry })))
+    Ok(Some(Box::new(ShadowMap { depth_keys: keys, geometry })))
 }
 
 /// A sample for which the light that arrives is asked.
@@ -118,7 +118,7 @@ pub struct ShadowLookup<'a> {
 
 impl<'a> ShadowLookup<'a> {
     fn of(shot: &Shot, geometry: &'a Geometry) -> Option<Self> {
-        let (params, keys) = (shot.stack.light()?, &geometry.light.as_ref()?.keys);
+        let (params, keys) = (shot.stack.light()?, &geometry.shadow_map.as_ref()?.depth_keys);
         let view = shot.stack.light_view(shot.scene, shot.view)?;
         assert_eq!(keys.len(), view.pixels(), "the shadow map is of another view");
         let rows = [0, 1, 2].map(|row| view.clip_from_world.row(row).truncate());

@@ -46,7 +46,7 @@ pub fn project_strict(shot: &Shot) -> Geometry {
         let position = |corner: Corner| position(scene, draw, corner.vertex).expect("a triangle that is clipped has no rejected corner");
         clip::clipped_triangles(shot, draw, &geometry, position)
     };
-    geometry.pieces = draws.iter().flat_map(clipped).collect();
+    geometry.clipped_triangles = draws.iter().flat_map(clipped).collect();
     geometry
 }
 

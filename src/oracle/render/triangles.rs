@@ -49,7 +49,7 @@ impl OrientedTriangle {
 /// triangles, flipped in the snap and is dropped.
 pub fn triangles(shot: &Shot, geometry: &Geometry) -> (Vec<OrientedTriangle>, Counters) {
     const CHUNK: u32 = 1 << 16;
-    let mut clipped: Vec<(usize, &ClippedTriangle)> = geometry.pieces.iter().enumerate().collect();
+    let mut clipped: Vec<(usize, &ClippedTriangle)> = geometry.clipped_triangles.iter().enumerate().collect();
     clipped.sort_by_key(|(_, triangle)| triangle.parent);
     let clipped_entries = totals(shot.scene, shot.draws)[1] as usize;
     let mut drawn = Vec::new();

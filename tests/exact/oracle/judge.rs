@@ -9,9 +9,9 @@ fn an_honest_adapter_passes_every_stage() {
     let frame = render(&scene, &view, &stack).unwrap();
     let geometry = projected(&scene, &view);
     assert!(frame.covered() > 3000, "{}", frame.covered());
-    assert!(frame.counters.clipped == 2 && !geometry.pieces.is_empty());
+    assert!(frame.counters.clipped == 2 && !geometry.clipped_triangles.is_empty());
     let verdict = judge(&scene, &view, &stack, &AdapterPicture::new(&frame, &geometry)).unwrap();
-    assert_eq!(verdict.accuracy.within(&Budget::default()), Ok(()), "{:?}", verdict.accuracy);
+    assert_eq!(verdict.report.within(&Budget::default()), Ok(()), "{:?}", verdict.report);
     assert_eq!(verdict.expected, frame);
 }
 
@@ -43,7 +43,7 @@ impl Adapter {
             width: view.width,
             height: view.height,
             triangle_id: vec![NO_TRIANGLE; pixels],
-            key: vec![0; pixels],
+            depth_key: vec![0; pixels],
             ..Default::default()
         };
         let mut layers = vec![0; pixels];
@@ -53,8 +53,8 @@ impl Adapter {
                 let Some(key) = self.hit(triangle, x, y) else { continue };
                 *layers += 1;
                 let tie = if self.larger_id_wins { triangle.id > frame.triangle_id[pixel] } else { triangle.id < frame.triangle_id[pixel] };
-                if key > frame.key[pixel] || key == frame.key[pixel] && tie {
-                    (frame.key[pixel], frame.triangle_id[pixel]) = (key, triangle.id);
+                if key > frame.depth_key[pixel] || key == frame.depth_key[pixel] && tie {
+                    (frame.depth_key[pixel], frame.triangle_id[pixel]) = (key, triangle.id);
                 }
             }
         }
@@ -93,7 +93,7 @@ fn judged(
     before(&mut geometry);
     let (mut frame, mut layers) = adapter.draw(scene, view, &stack, &geometry);
     after(&mut frame, &mut layers);
-    judge(scene, view, &stack, &AdapterPicture { layers: Some(&layers), ..AdapterPicture::new(&frame, &geometry) }).unwrap().accuracy
+    judge(scene, view, &stack, &AdapterPicture { layers: Some(&layers), ..AdapterPicture::new(&frame, &geometry) }).unwrap().report
 }
 
 /// Squares whose edges and diagonals run through samples, in layers one behind the other, some of them coplanar.
@@ -126,7 +126,7 @@ fn one_pixel_shift_is_caught() {
         |_| {},
         |frame, layers| {
             frame.triangle_id.rotate_right(1);
-            frame.key.rotate_right(1);
+            frame.depth_key.rotate_right(1);
             frame.color.rotate_right(1);
             layers.rotate_right(1);
         },
@@ -218,7 +218,7 @@ fn wrong_depth_key_is_caught() {
             |_| {},
             |frame, _| {
                 let pixel = 24 * 64 + 32;
-                frame.key[pixel] = frame.key[pixel].wrapping_add_signed(steps);
+                frame.depth_key[pixel] = frame.depth_key[pixel].wrapping_add_signed(steps);
             },
         );
         assert_eq!(accuracy.key_outside_bound, 1);
@@ -229,7 +229,7 @@ fn wrong_depth_key_is_caught() {
         |_| {},
         |frame, _| {
             let empty = frame.triangle_id.iter().position(|&triangle_id| triangle_id == NO_TRIANGLE).unwrap();
-            frame.key[empty] = 7;
+            frame.depth_key[empty] = 7;
         },
     );
     assert_eq!(orphan.depth_without_id, 1);
@@ -274,8 +274,8 @@ fn affine_weights_are_caught() {
     affine.vertices.iter_mut().for_each(|vertex| vertex.inv_w = 0.25);
     frame.color = shade(&Shot::new(&scene, &draws, &view, &stack), &seen(&frame), &affine);
     let accuracy =
-        judge(&scene, &view, &stack, &AdapterPicture { layers: Some(&layers), ..AdapterPicture::new(&frame, &geometry) }).unwrap().accuracy;
-    assert!(geometry.pieces.is_empty() && accuracy.wrong_triangles == 0 && accuracy.max_color_delta > 20, "{accuracy:?}");
+        judge(&scene, &view, &stack, &AdapterPicture { layers: Some(&layers), ..AdapterPicture::new(&frame, &geometry) }).unwrap().report;
+    assert!(geometry.clipped_triangles.is_empty() && accuracy.wrong_triangles == 0 && accuracy.max_color_delta > 20, "{accuracy:?}");
 }
 
 #[test]
@@ -366,13 +366,17 @@ fn vertex_outside_its_bound_is_caught() {
 #[test]
 fn lost_clipped_triangle_is_caught() {
     let fixture = still_life([64, 48]);
-    let count = projected(&fixture.0, &fixture.1).pieces.len();
+    let count = projected(&fixture.0, &fixture.1).clipped_triangles.len();
     let unexplained =
-        |lost: usize| judged(&fixture, &Adapter::default(), |geometry| _ = geometry.pieces.remove(lost), |_, _| {}).unexplained;
+        |lost: usize| judged(&fixture, &Adapter::default(), |geometry| _ = geometry.clipped_triangles.remove(lost), |_, _| {}).unexplained;
     assert!((0..count).any(|lost| unexplained(lost) > 50));
     // The same pieces in another fan order of parents are the same picture.
-    let shuffled =
-        judged(&fixture, &Adapter::default(), |geometry| geometry.pieces.sort_by_key(|piece: &ClippedTriangle| !piece.parent), |_, _| {});
+    let shuffled = judged(
+        &fixture,
+        &Adapter::default(),
+        |geometry| geometry.clipped_triangles.sort_by_key(|piece: &ClippedTriangle| !piece.parent),
+        |_, _| {},
+    );
     assert_eq!(shuffled.within(&Budget::default()), Ok(()));
 }
 

@@ -99,7 +99,7 @@ fn bounded(triangles: &[OrientedTriangle], view: &View) -> oracle::BoundedCovera
 
 /// What a picture is coloured from.
 fn seen(frame: &Frame) -> ResolveInput<'_> {
-    ResolveInput { triangle_ids: &frame.triangle_id, keys: &frame.key, dots: &frame.dots, previous: None }
+    ResolveInput { triangle_ids: &frame.triangle_id, depth_keys: &frame.depth_key, dots: &frame.dots, previous: None }
 }
 
 /// A snapped vertex that is ready to be drawn.

@@ -54,7 +54,7 @@ fn flipped_clipped_triangles_are_dropped_and_counted() {
     let corners = [[0.0, 0.0, 0.5], [16.0, 0.0, 0.5], [40_000.0, 40_000.0, 0.5]];
     let (scene, view) = (scene(&[triangle_soup(corners)]), pixel_view(16, 16));
     let mut geometry = projected(&scene, &view);
-    let fan = geometry.pieces.clone();
+    let fan = geometry.clipped_triangles.clone();
     assert!(!fan.is_empty());
     let whole = assembled(&scene, &view, &geometry).0.len();
     let mut folded = ClippedTriangle { parent: 0, corners: [at(0, 0, 0.5), at(600, 0, 0.5), at(0, 600, 0.5)], outline: 7 };
@@ -62,7 +62,7 @@ fn flipped_clipped_triangles_are_dropped_and_counted() {
         folded.corners.swap(1, 2);
     }
     let line = ClippedTriangle { parent: 0, corners: [at(0, 0, 0.5), at(600, 600, 0.5), at(900, 900, 0.5)], outline: 7 };
-    geometry.pieces.extend([folded, line]);
+    geometry.clipped_triangles.extend([folded, line]);
     let (drawn, counters) = assembled(&scene, &view, &geometry);
     assert_eq!((drawn.len(), counters.flipped_clips, counters.clipped), (whole, 2, 1));
 }
@@ -75,8 +75,8 @@ fn clipped_triangles_stay_inside_the_guard_band_with_planes_set_exactly() {
     let soup: Vec<[f32; 3]> = (0..3000).map(|_| [number(3.0), number(3.0), number(2.0)]).collect();
     let scene = scene(&[triangle_soup(soup)]);
     let geometry = projected(&scene, &view);
-    assert!(geometry.pieces.len() > 500 && geometry.pieces.is_sorted_by_key(|piece| piece.parent));
-    let corners: Vec<_> = geometry.pieces.iter().flat_map(|piece| piece.corners).collect();
+    assert!(geometry.clipped_triangles.len() > 500 && geometry.clipped_triangles.is_sorted_by_key(|piece| piece.parent));
+    let corners: Vec<_> = geometry.clipped_triangles.iter().flat_map(|piece| piece.corners).collect();
     assert!(corners.iter().all(|c| c.flags == 0 && c.x.abs() <= GUARD_BAND && c.y.abs() <= GUARD_BAND));
     assert!(corners.iter().all(|c| c.depth > 0.0 && c.depth <= 1.0 && c.inv_w <= 2.0));
     assert!(corners.iter().filter(|c| c.depth == 1.0).count() > 500, "cuts by the near plane lie on it");
@@ -114,7 +114,7 @@ fn w_at_and_around_zero_stays_inside_its_picture() {
             let frame = render(&scene, &view, &all_effects()).unwrap();
             let geometry = projected(&scene, &view);
             let verdict = judge(&scene, &view, &all_effects(), &AdapterPicture::new(&frame, &geometry)).unwrap();
-            assert_eq!(verdict.accuracy.within(&Budget::default()), Ok(()), "w {i} {j}");
+            assert_eq!(verdict.report.within(&Budget::default()), Ok(()), "w {i} {j}");
         }
     }
 }
@@ -169,6 +169,6 @@ fn picture_without_pixels_is_empty() {
         assert_eq!(([frame.width, frame.height], frame.triangle_id.len(), frame.color.len()), (size, 0, 0));
         // An adapter dispatches nothing, and so has no geometry either.
         let verdict = judge(&scene, &view, &all_effects(), &AdapterPicture::new(&frame, &Geometry::default())).unwrap();
-        assert_eq!((verdict.accuracy, verdict.expected), (ErrorReport::default(), frame));
+        assert_eq!((verdict.report, verdict.expected), (ErrorReport::default(), frame));
     }
 }

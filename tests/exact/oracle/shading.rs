@@ -17,12 +17,12 @@ fn mirrored_placement_keeps_fronts_in_front() {
     let stack = only("normals", &[]);
     let [a, b] = [plain, mirrored].map(|scene| render(&scene, &view_of(&scene), &stack).unwrap());
     assert!(a.covered() > 300);
-    let keys = |frame: &Frame| frame.key.chunks(48).map(|row| row.to_vec()).collect::<Vec<_>>();
+    let keys = |frame: &Frame| frame.depth_key.chunks(48).map(|row| row.to_vec()).collect::<Vec<_>>();
     // The front half shows in both, seen in a mirror; the picture is symmetric, its triangles are not.
     let flipped: Vec<Vec<u32>> = keys(&b).into_iter().map(|row| row.into_iter().rev().collect()).collect();
     let differing = keys(&a).concat().iter().zip(flipped.concat()).filter(|(a, b)| (**a == 0) != (*b == 0)).count();
     assert!(differing <= 4, "{differing} pixels of the outline differ");
-    let nearest = |frame: &Frame| *frame.key.iter().max().unwrap();
+    let nearest = |frame: &Frame| *frame.depth_key.iter().max().unwrap();
     assert!(rasterlab::math::ulp_distance(f32::from_bits(nearest(&a)), f32::from_bits(nearest(&b))) < 1 << 12);
     // Normals point outward, to the eye, in both.
     for frame in [&a, &b] {

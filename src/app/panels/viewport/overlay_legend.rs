@@ -123,7 +123,7 @@ mod tests {
         });
         let frame = Frame { width: 3, height: 2, triangle_id: vec![0; 6], color: picture.to_vec(), ..Default::default() };
         let capture = Capture { frame, geometry: Default::default(), layers: None, previous: None, shown: None };
-        Findings::new(capture, Verdict { faults, ..Default::default() }, None)
+        Findings::new(capture, Verdict { error_map: faults, ..Default::default() }, None)
     }
 
     #[test]
