@@ -2,7 +2,7 @@
 #![allow(dead_code, unused_imports, reason = "each test file uses its own part")]
 
 use std::{
-    collections::VecDeque,
+    collections::{BTreeMap, VecDeque},
     fs,
     ops::{Deref, DerefMut},
     path::Path,
@@ -154,8 +154,19 @@ pub fn quick_option(renderer: &Renderer) -> Visibility {
     stress::quick_option(&renderer.gpu().caps)
 }
 
+/// A builtin; small ones are built once for all tests of a process.
 pub fn scene(query: &str) -> Arc<Scene> {
-    Arc::new(builtin::build(query).unwrap_or_else(|error| panic!("{query}: {error}")))
+    const LARGE: u64 = 100_000;
+    static BUILT: Mutex<BTreeMap<String, Arc<Scene>>> = Mutex::new(BTreeMap::new());
+    let built = || BUILT.lock().unwrap_or_else(|poisoned| poisoned.into_inner());
+    if let Some(scene) = built().get(query) {
+        return scene.clone();
+    }
+    let scene = Arc::new(builtin::build(query).unwrap_or_else(|error| panic!("{query}: {error}")));
+    if scene.triangle_count() > LARGE {
+        return scene;
+    }
+    built().entry(query.to_owned()).or_insert(scene).clone()
 }
 
 /// A scene as a preset without a camera shows it.
@@ -182,6 +193,8 @@ struct Judged {
 /// What the judge says about a picture. Options and tunings that draw the same picture to the last bit, geometry included, are judged
 /// once: the verdict follows from nothing else.
 fn verdict(scene: &Arc<Scene>, view: &View, stack: &Stack, capture: &Capture) -> Verdict {
+    /// Of all verdicts that are kept.
+    const MOST_PIXELS: usize = 1 << 20;
     static LATEST: Mutex<VecDeque<Judged>> = Mutex::new(VecDeque::new());
     let latest = || LATEST.lock().unwrap_or_else(|poisoned| poisoned.into_inner());
     let is_same = |judged: &&Judged| {
@@ -197,7 +210,11 @@ fn verdict(scene: &Arc<Scene>, view: &View, stack: &Stack, capture: &Capture) ->
     }
     let verdict = oracle::judge(scene, view, stack, &capture.picture()).unwrap_or_else(|error| panic!("{}: {error}", scene.name));
     let mut latest = latest();
-    latest.truncate(2 * RENDERERS);
+    let mut pixels = view.pixels();
+    latest.retain(|judged| {
+        pixels += judged.view.pixels();
+        pixels <= MOST_PIXELS
+    });
     let judged = Judged { scene: scene.clone(), view: view.clone(), stack: stack.clone(), capture: capture.clone(), verdict };
     let verdict = judged.verdict.clone();
     latest.push_front(judged);

@@ -34,30 +34,34 @@ fn wrong_pixels(renderer: &mut Renderer, scene: &std::sync::Arc<Scene>, view: &V
 #[test]
 fn every_option_draws_every_scene_or_says_why_not() {
     let Some(mut renderer) = renderer() else { return };
-    for query in ["teapot?tess=8", "sphere?triangles=5000", "cube-wall", "sizes", "near", "stack"] {
+    let exact = ["teapot?tess=8", "sphere?triangles=5000", "cube-wall", "sizes", "near", "stack"].map(|query| {
         let scene = scene(query);
         let view = view(&scene, [160, 120]);
-        let exact = captured(&mut renderer, &scene, &view, &stack(&["lambert"]), &AccuracyRequest::default());
-        for axis in AXES {
-            for place in 0..axis.words.len() {
-                let mut pins = PinnedOptions::default();
-                pins.set(axis, Some(place));
-                renderer.set_scene(&scene).unwrap();
-                match renderer.capture(&view, &stack(&["lambert"]), &on(pins)) {
+        let capture = captured(&mut renderer, &scene, &view, &stack(&["lambert"]), &AccuracyRequest::default());
+        (query, scene, view, capture.frame.triangle_id)
+    });
+    for axis in AXES {
+        for index in 0..axis.words.len() {
+            let mut pins = PinnedOptions::default();
+            pins.set(axis, Some(index));
+            // All scenes share the kernels of an option.
+            for (query, scene, view, triangle_ids) in &exact {
+                renderer.set_scene(scene).unwrap();
+                match renderer.capture(view, &stack(&["lambert"]), &on(pins)) {
                     Ok(capture) => {
                         let seen = capture.shown.as_ref().unwrap_or(&capture.frame);
-                        let different = compare::triangle_ids(&seen.triangle_id, &exact.frame.triangle_id).different;
-                        let share = different as f64 / view.pixels() as f64;
+                        let different = compare::triangle_ids(&seen.triangle_id, triangle_ids).different;
+                        let fraction = different as f64 / view.pixels() as f64;
                         // Dropping what would be clipped may leave nothing of a scene that is all before the near plane, and a
                         // race may lose anything.
                         let is_any = axis.name == "clipping"
                             || pins.option() == Some(Visibility::Race)
                             // A box that reaches far beyond the picture has steps of pixels.
-                            || pins.option::<PositionFormat>().is_some_and(|option| option.packed_bits().is_some()) && ["sizes", "near"].contains(&query)
+                            || pins.option::<PositionFormat>().is_some_and(|option| option.packed_bits().is_some()) && ["sizes", "near"].contains(query)
                             // Other pixels have other triangle ids.
                             || pins.option::<RenderScale>().is_some_and(|option| option != RenderScale::Full);
                         let most = if is_any { 1.0 } else { 0.1 };
-                        assert!(share <= most, "{query} on {}: {:.1} % of the triangle ids differ", pins.words(), 100.0 * share);
+                        assert!(fraction <= most, "{query} on {}: {:.1} % of the triangle ids differ", pins.words(), 100.0 * fraction);
                     }
                     Err(error) => assert!(error.is_unsupported() && !error.to_string().is_empty(), "{query} on {}: {error}", pins.words()),
                 }
@@ -70,9 +74,10 @@ fn every_option_draws_every_scene_or_says_why_not() {
 #[test]
 fn exact_grids_are_exact_given_their_own_corners() {
     let Some(mut renderer) = renderer() else { return };
-    for query in ["teapot?tess=8", "sphere?triangles=200", "cube-wall", "grid?cell=1", "grid?cell=0.4", "sizes", "slivers", "near"] {
-        for coverage in [Coverage::Fixed4, Coverage::Fixed8, Coverage::Fixed12] {
-            for visibility in options(&renderer) {
+    for coverage in [Coverage::Fixed4, Coverage::Fixed8, Coverage::Fixed12] {
+        for visibility in options(&renderer) {
+            for query in ["teapot?tess=8", "sphere?triangles=200", "cube-wall", "grid?cell=1", "grid?cell=0.4", "sizes", "slivers", "near"]
+            {
                 let (_, verdict) = verdict(&mut renderer, query, [200, 150], PinnedOptions::of(coverage).with(visibility));
                 let a = &verdict.report;
                 let faults =

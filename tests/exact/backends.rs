@@ -17,6 +17,16 @@ use rasterlab::{
 
 const SIZE: [u32; 2] = [256, 192];
 
+/// Builtins with their own views.
+fn scenes_with_views(queries: &[&str]) -> Vec<(Arc<Scene>, View)> {
+    let with_view = |query: &&str| {
+        let scene = scene(query);
+        let view = view(&scene, SIZE);
+        (scene, view)
+    };
+    queries.iter().map(with_view).collect()
+}
+
 /// Every image of `a` is that of `b`, bit for bit.
 fn assert_same(a: &Frame, b: &Frame, what: &str) {
     let triangle_ids = compare::triangle_ids(&a.triangle_id, &b.triangle_id);
@@ -73,17 +83,18 @@ fn every_exact_backend_gives_the_same_triangle_ids_and_depth_keys() {
     if !options.contains(&Visibility::Packed64) {
         eprintln!("NOT RUN: this adapter has no 64-bit atomics, so there is no packed64 to compare with");
     }
-    for query in SCENES.iter().chain(DEFORMED_SCENES) {
-        let scene = scene(query);
-        let view = view(&scene, SIZE);
-        for tuning in [renderer.gpu().caps.tuning(), GRAPHICS_CARD] {
-            renderer.set_tuning(tuning);
-            let mut draw = |option| captured(&mut renderer, &scene, &view, &stack(&["facet", "lambert"]), &pinned(option));
-            let split = draw(Visibility::Split32);
-            assert!(split.frame.covered() > 0, "{query} shows nothing");
-            for &option in &options[1..] {
-                let other = draw(option);
-                let what = format!("{query} {}", option.name());
+    let scenes = [scenes_with_views(SCENES), scenes_with_views(DEFORMED_SCENES)].concat();
+    let stack = stack(&["facet", "lambert"]);
+    for tuning in [renderer.gpu().caps.tuning(), GRAPHICS_CARD] {
+        renderer.set_tuning(tuning);
+        // All scenes share the kernels of an option.
+        let mut draw = |(scene, view): &(Arc<Scene>, View), option| captured(&mut renderer, scene, view, &stack, &pinned(option));
+        let split: Vec<Capture> = scenes.iter().map(|scene| draw(scene, Visibility::Split32)).collect();
+        for &option in &options[1..] {
+            for (scene, split) in scenes.iter().zip(&split) {
+                assert!(split.frame.covered() > 0, "{} shows nothing", scene.0.name);
+                let other = draw(scene, option);
+                let what = format!("{} {}", scene.0.name, option.name());
                 assert_same(&other.frame, &split.frame, &what);
                 assert_eq!(other.geometry, split.geometry, "{what}: geometry");
                 assert_eq!(other.layers, split.layers, "{what}: layers");
@@ -319,16 +330,20 @@ fn equal_keys_go_to_the_smaller_id() {
 #[test]
 fn size_classes_and_listed_tiles_do_not_show() {
     let Some(mut renderer) = renderer() else { return };
-    for query in SCENES {
-        let scene = scene(query);
-        let view = view(&scene, SIZE);
-        for option in options(&renderer) {
-            let mut first: Option<Capture> = None;
-            for tuning in tunings() {
-                renderer.set_tuning(tuning);
-                let capture = captured(&mut renderer, &scene, &view, &stack(&["facet", "depth", "lambert"]), &pinned(option));
-                let first = first.get_or_insert_with(|| capture.clone());
-                let what = format!("{query} {} {tuning:?}", option.name());
+    let scenes: Vec<(Arc<Scene>, View)> = scenes_with_views(SCENES);
+    let stack = stack(&["facet", "depth", "lambert"]);
+    for option in options(&renderer) {
+        let mut first: Vec<Capture> = Vec::new();
+        // All scenes share the kernels of a tuning.
+        for tuning in tunings() {
+            renderer.set_tuning(tuning);
+            for (i, (scene, view)) in scenes.iter().enumerate() {
+                let capture = captured(&mut renderer, scene, view, &stack, &pinned(option));
+                let Some(first) = first.get(i) else {
+                    first.push(capture);
+                    continue;
+                };
+                let what = format!("{} {} {tuning:?}", scene.name, option.name());
                 assert_same(&capture.frame, &first.frame, &what);
                 assert_eq!(capture.layers, first.layers, "{what}: layers");
                 assert_eq!(capture.frame.counters, first.frame.counters, "{what}: counters");
