@@ -60,38 +60,38 @@ impl Default for ClipPlayback {
     }
 }
 
-/// A clip or camera that a scene does not have; one sentence.
+/// A clip or camera that a scene does not have.
 #[derive(Debug, PartialEq, thiserror::Error)]
-#[error("{key}: the scene has no {what} {asked:?}{known}")]
+#[error("{key}: the scene has no {what} {name:?}{known}")]
 pub struct MissingInScene {
     pub key: &'static str,
     pub what: &'static str,
-    pub asked: String,
+    pub name: String,
     /// `; it has "Walk", "Run"`.
     pub known: String,
 }
 
-/// `; it has "Walk", "Run"`, or what to say where there are none.
+/// `; it has "Walk", "Run"`, or `; <none>` where there are no names.
 fn known<'a>(names: impl Iterator<Item = &'a String>, none: &str) -> String {
     let names: Vec<String> = names.take(12).map(|name| format!("{name:?}")).collect();
     if names.is_empty() { format!("; {none}") } else { format!("; it has {}", names.join(", ")) }
 }
 
 impl ClipPlayback {
-    /// Does it go with the clock?
+    /// Does a clip play with the clock?
     pub fn is_moving(&self) -> bool {
         !self.clip.is_empty() && self.clip_time_s.is_none() && self.speed != 0.0
     }
 
-    /// Are the clips there?
+    /// Does the scene have the clips?
     ///
     /// # Errors
-    /// With the first that is not.
+    /// The first clip that is missing.
     pub fn check(&self, scene: &Scene) -> Result<(), MissingInScene> {
         for (key, name) in [("scene.clip", &self.clip), ("scene.second_clip", &self.second_clip)] {
             if !name.is_empty() && scene.rig.clip(name).is_none() {
-                let known = known(scene.rig.clips.iter().map(|clip| &clip.name), "nothing in it moves");
-                return Err(MissingInScene { key, what: "clip", asked: name.clone(), known });
+                let known = known(scene.rig.clips.iter().map(|clip| &clip.name), "it has no clips");
+                return Err(MissingInScene { key, what: "clip", name: name.clone(), known });
             }
         }
         Ok(())
@@ -101,13 +101,13 @@ impl ClipPlayback {
 /// The time of a preset.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Clock {
-    /// The moment that a picture shows.
+    /// Time of the picture.
     pub time_s: f64,
-    /// What the timeline spans and a sequence draws: from the first, up to and without the second, which is later.
+    /// Begin and end of the timeline and of a sequence; the end comes later than the begin and is not drawn.
     pub range_s: [f64; 2],
-    /// After the end of the range comes its beginning.
+    /// Starts again at the begin of the range after its end.
     pub is_looping: bool,
-    /// Seconds of the preset that pass in one second of film, above 0.
+    /// Seconds of the clock that pass in one second of playback, above 0.
     pub speed: f64,
 }
 
@@ -118,8 +118,8 @@ impl Default for Clock {
 }
 
 impl Clock {
-    /// Where the clock stands `passed_s` seconds of film after it stood at `time_s`, and whether it goes on from there.
-    /// A moment outside the range runs into it from the side it is on.
+    /// The time of the clock `passed_s` seconds of playback after `time_s`, and whether it continues from there. A time before the
+    /// range runs into it.
     pub fn after(&self, time_s: f64, passed_s: f64) -> (f64, bool) {
         let [from_s, to_s] = self.range_s;
         let next_s = time_s + passed_s * self.speed;
@@ -129,13 +129,13 @@ impl Clock {
         if !self.is_looping {
             return (to_s, false);
         }
-        // The remainder of a tiny negative number may round up to the whole range.
+        // The remainder of a tiny negative number may round up to the length of the range.
         let wrapped_s = from_s + (next_s - from_s).rem_euclid(to_s - from_s);
         (if wrapped_s < to_s { wrapped_s } else { from_s }, true)
     }
 }
 
-/// The picture to be made.
+/// Size and background of the picture.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Output {
     /// Width and height in pixels, each 0 to 16,384.
@@ -150,14 +150,14 @@ impl Default for Output {
     }
 }
 
-/// What a golden of this preset may differ by; a preset without it has no golden.
+/// How far a picture may differ from the golden; a preset without it has no golden.
 #[derive(Clone, Debug, PartialEq)]
 pub struct GoldenTest {
-    /// Largest difference of a channel of 255.
+    /// Largest difference of a color channel, of 255.
     pub max_channel: u8,
-    /// Pixels that may differ by more.
+    /// Number of pixels that may differ by more.
     pub max_pixels: u32,
-    /// Pixels that may have another triangle id than the true one, where a cheaper option is pinned.
+    /// Number of pixels that may show another triangle than the reference, where an option that is not exact is pinned.
     pub max_wrong_triangles: u32,
     /// Why a budget above the default is needed.
     pub why: String,
@@ -169,7 +169,7 @@ impl Default for GoldenTest {
     }
 }
 
-/// A preset.
+/// The state of a preset.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Preset {
     /// Shown; the file stem is the id.
@@ -177,22 +177,22 @@ pub struct Preset {
     pub about: String,
     pub tags: Vec<String>,
     pub scene: SceneSource,
-    /// A room round the scene, so many times as wide as it; 0: none.
+    /// Distance of the walls of a room around the scene, as a multiple of the scene's width; 0: no room.
     pub room: f64,
     /// Turns the whole scene about +y.
     pub spin_deg_per_s: f64,
-    /// What moves the scene's own joints and parts.
+    /// The animation clips of the scene.
     pub playback: ClipPlayback,
-    /// A line of the preset's own, for effects that draw along lines; it turns with the scene.
+    /// A polyline for effects that draw along lines; it turns with the scene.
     pub polyline: Arc<[[f32; 3]]>,
-    /// None: the scene's own, or framed so that all of it shows.
+    /// None: a camera of the scene, or one that frames the whole scene.
     pub camera: Option<Camera>,
-    /// Name of the scene's camera to look through where the preset has none of its own; empty: its first.
+    /// Name of the scene's camera to use without a `camera`; empty: the first.
     pub scene_camera: String,
     pub clock: Clock,
-    /// The effects with the values that no key moves.
+    /// The effects with their values; keyframes change some of them with the time.
     pub stack: Stack,
-    /// What moves with the clock.
+    /// The keyframes.
     pub animation: Animation,
     pub accuracy: AccuracyRequest,
     pub output: Output,
@@ -222,11 +222,11 @@ impl Default for Preset {
     }
 }
 
-/// Where a preset without a camera stands: in front, a little to the right and above.
+/// The view direction of a camera that frames the scene: from the front, slightly right and above.
 pub const FRAMING_DIRECTION: DVec3 = DVec3::new(-0.45, -0.42, -1.0);
 
 impl Preset {
-    /// The stack at the time of the clock: what is drawn.
+    /// The stack at the time of the clock, which is drawn.
     pub fn evaluated_stack(&self) -> Stack {
         self.stack_at(self.clock.time_s)
     }
@@ -236,8 +236,8 @@ impl Preset {
         self.animation.evaluate(&self.stack, time_s)
     }
 
-    /// The preset with its values as they stand at its time, and nothing that moves them but what particles flew by: the same
-    /// picture.
+    /// The preset with its values at its time and without keyframes, except those that change the particle simulation. It gives
+    /// the same picture.
     pub fn evaluated(&self) -> Self {
         Self { stack: self.evaluated_stack(), animation: self.animation.only(Track::changes_simulation), ..self.clone() }
     }
@@ -245,17 +245,17 @@ impl Preset {
     /// Does the picture depend on the time?
     pub fn is_moving(&self) -> bool {
         let keyed = self.animation.tracks().iter().any(|t| t.keys().len() > 1 && self.stack.get(t.effect().name).is_some());
-        let flies = self.stack.particle_settings().is_some();
-        keyed || flies || self.spin_deg_per_s != 0.0 || self.playback.is_moving()
+        let has_particles = self.stack.particle_settings().is_some();
+        keyed || has_particles || self.spin_deg_per_s != 0.0 || self.playback.is_moving()
     }
 
-    /// Takes an effect out, with all that moves it.
+    /// Removes an effect and its keyframes.
     pub fn disable(&mut self, effect: &str) {
         self.stack.disable(effect);
         self.animation.remove_effect(effect);
     }
 
-    /// Which moment of which clips of `scene` the clock shows.
+    /// The clips of `scene` and their time at the time of the clock.
     fn motion(&self, scene: &Scene) -> Motion {
         let clip = |name: &str| scene.rig.clip(name).filter(|_| !name.is_empty());
         Motion {
@@ -267,7 +267,7 @@ impl Preset {
         }
     }
 
-    /// A box that holds another and the room of the particles.
+    /// The union of `bounds` and the bounds of the particles.
     fn with_particles(&self, mut bounds: Bounds) -> Bounds {
         if let Some(particle_settings) = self.evaluated_stack().particle_settings() {
             let reach = particle_settings.reach();
@@ -276,24 +276,24 @@ impl Preset {
         bounds
     }
 
-    /// How `scene` stands at the time of the clock; none where nothing in it can move.
+    /// The pose of `scene` at the time of the clock; none for a scene without nodes.
     pub fn pose(&self, scene: &Scene) -> Option<Arc<Pose>> {
         (!scene.rig.is_empty()).then(|| Arc::new(Pose::at(scene, &self.motion(scene))))
     }
 
-    /// Has `scene` what the preset names of it?
+    /// Does `scene` have the clips and the camera that the preset names?
     ///
     /// # Errors
-    /// With the first clip or camera that is not there.
+    /// The first that is missing.
     pub fn check(&self, scene: &Scene) -> Result<(), MissingInScene> {
         if !self.scene_camera.is_empty() && scene.camera(&self.scene_camera).is_none() {
-            let known = known(scene.cameras.iter().map(|camera| &camera.name), "there is none in it");
-            return Err(MissingInScene { key: "scene.camera", what: "camera", asked: self.scene_camera.clone(), known });
+            let known = known(scene.cameras.iter().map(|camera| &camera.name), "it has no cameras");
+            return Err(MissingInScene { key: "scene.camera", what: "camera", name: self.scene_camera.clone(), known });
         }
         self.playback.check(scene)
     }
 
-    /// The camera of the preset, else that of the scene where its node carries it, else the pose that frames `scene`.
+    /// The camera of the preset, else that of the scene at its node, else one that frames `scene`.
     pub fn camera_for(&self, scene: &Scene, aspect: f64) -> Camera {
         let own = || {
             let camera = scene.cameras.get(scene.camera(&self.scene_camera).unwrap_or(0))?;
@@ -302,8 +302,8 @@ impl Preset {
         self.camera.or_else(own).unwrap_or_else(|| Camera::framing(&self.with_particles(scene.bounds()), FRAMING_DIRECTION, aspect))
     }
 
-    /// What the pictures show that lead up to this one, each a view and a stack, and last this one itself: more than one
-    /// where an effect keeps the picture before.
+    /// The view and stack of every frame that this picture depends on, in order; the last is the picture itself. There are several
+    /// where an effect reads the previous frame.
     pub fn moments(&self, scene: &Scene, size: [u32; 2]) -> Vec<(View, Stack)> {
         let (frames, step_s) = self.evaluated_stack().smear().map_or((0, 0.0), |smear| (smear.frames, f64::from(smear.step_s)));
         let moment = |before: u32| {
@@ -314,7 +314,7 @@ impl Preset {
         (0..=frames).rev().map(moment).collect()
     }
 
-    /// The view of `scene` on a target of `size` pixels, its depths ranging as far as the effects may move anything.
+    /// The view of `scene` on a target of `size` pixels. Its depth range holds everything that effects may move.
     pub fn view(&self, scene: &Scene, [width, height]: [u32; 2]) -> View {
         let aspect = f64::from(width.max(1)) / f64::from(height.max(1));
         // Reduced before the trigonometry, so that a day of spinning costs no precision.
@@ -329,7 +329,7 @@ impl Preset {
             let max_displacement_m = self.evaluated_stack().max_displacement_m(bounds.radius());
             (bounds.min, bounds.max) = (bounds.min - max_displacement_m, bounds.max + max_displacement_m);
             if scene.walls > 0 {
-                // Walls stand still while the box is turned; this one holds them at any angle.
+                // Walls do not turn with the scene; this box holds them at every angle.
                 let aside = DVec3::new(std::f64::consts::SQRT_2, 1.0, std::f64::consts::SQRT_2);
                 (bounds.min, bounds.max) = (bounds.min * aside, bounds.max * aside);
             }

@@ -197,7 +197,7 @@ fn a_preset_names_its_clips_and_an_unknown_clip_lists_those_there_are() {
     );
     assert_eq!(
         play("Walk", "").check(&crate::common::scene("teapot?tess=1")).unwrap_err().to_string(),
-        "scene.clip: the scene has no clip \"Walk\"; nothing in it moves"
+        "scene.clip: the scene has no clip \"Walk\"; it has no clips"
     );
     let at = |play: ClipPlayback, time_s: f64| Preset { playback: play, clock: Clock { time_s, ..Clock::default() }, ..Preset::default() };
     let moving = at(play("Sway", ""), 1.0);
