@@ -193,7 +193,7 @@ fn a_preset_names_its_clips_and_an_unknown_clip_lists_those_there_are() {
     let known = "; it has \"Sway\", \"Curl\", \"Twist\", \"Breathe\"".to_owned();
     assert_eq!(
         play("Sway", "sway").check(&scene),
-        Err(MissingInScene { key: "scene.second_clip", what: "clip", asked: "sway".into(), known })
+        Err(MissingInScene { key: "scene.second_clip", what: "clip", name: "sway".into(), known })
     );
     assert_eq!(
         play("Walk", "").check(&crate::common::scene("teapot?tess=1")).unwrap_err().to_string(),
