@@ -3,12 +3,17 @@
 use std::sync::Arc;
 
 use super::{
-    Gpu, RenderError, Renderer, buffers,
+    buffers::{self, Buffers, color_stride},
+    capture::Capture,
+    device::Gpu,
+    error::RenderError,
+    frame_stats::{Pending, StatSources},
     hardware::Hardware,
     naive::{Naive, Viewport},
-    readback::{Capture, Pending},
+    particles::Wait,
+    renderer::Renderer,
+    resource_id::BufferId,
     timer::{Detail, Timer, Times},
-    uniforms::color_stride,
 };
 use crate::{
     accuracy::{PinnedOptions, Visibility},
@@ -226,7 +231,7 @@ impl Lab<'_> {
 
     fn first_key(&self, entries: &[Entry]) -> Option<crate::shader::KernelKey> {
         entries.iter().find_map(|entry| match &entry.contender {
-            Contender::Ours(_, renderer) => renderer.last.as_ref().map(|plan| plan.key.clone()),
+            Contender::Ours(_, renderer) => renderer.key().cloned(),
             _ => None,
         })
     }
@@ -239,7 +244,7 @@ impl Lab<'_> {
             _ => None,
         };
         if let Some((renderer, stack, accuracy)) = ours {
-            renderer.draw_timed(&self.view, stack, &accuracy, detail, true)?;
+            renderer.draw_timed(&self.view, stack, &accuracy, detail, Wait::Simulation)?;
             let report = renderer.finish()?;
             return Ok(Times { total_ms: report.gpu_ms, passes: report.passes });
         }
@@ -248,33 +253,27 @@ impl Lab<'_> {
             timer.begin(&mut encoder, detail);
         }
         match contender {
-            Contender::Naive(_, naive) => naive.record(self.gpu, &mut encoder, self.timer.as_mut()),
-            Contender::Hardware(hardware) => hardware.record(&mut encoder, self.timer.as_mut()),
+            Contender::Naive(_, naive) => naive.record(&mut encoder, self.timer.as_mut()),
+            Contender::Hardware(hardware) => hardware.record(&mut encoder, self.timer.as_mut())?,
             Contender::Ours(..) | Contender::Stacked(..) => {}
         }
-        let pending = Pending::stage(self.gpu, &mut encoder, [None; 3], self.timer.as_ref());
+        let pending = Pending::stage(self.gpu, &mut encoder, StatSources::default(), self.timer.as_ref());
         self.gpu.queue.submit([encoder.finish()]);
         let pending = pending.begin();
         buffers::wait(self.gpu)?;
-        pending.read(self.timer.as_ref()).map(|(_, _, times)| times).ok_or(RenderError::Lost)
+        pending.read(self.timer.as_ref()).map(|(_, times)| times).ok_or(RenderError::Lost)
     }
 
     fn hardware_picture(&self, hardware: &Hardware) -> Result<Vec<[u8; 4]>, RenderError> {
-        let buffer = self.gpu.device.create_buffer(&wgpu::BufferDescriptor {
-            label: Some("hardware picture"),
-            size: self.picture_bytes(),
-            usage: wgpu::BufferUsages::COPY_DST | wgpu::BufferUsages::COPY_SRC,
-            mapped_at_creation: false,
-        });
+        let mut held = Buffers::default();
+        let bytes = 4 * u64::from(color_stride(self.view.width)) * u64::from(self.view.height);
+        held.ensure(self.gpu, BufferId::Color, bytes)?;
+        let buffer = held.get(BufferId::Color)?;
         let mut encoder = self.gpu.device.create_command_encoder(&Default::default());
-        hardware.record(&mut encoder, None);
-        hardware.copy_color(&mut encoder, &buffer);
+        hardware.record(&mut encoder, None)?;
+        hardware.copy_color(&mut encoder, buffer);
         self.gpu.queue.submit([encoder.finish()]);
-        buffers::read_picture(self.gpu, &buffer, [self.view.width, self.view.height])
-    }
-
-    fn picture_bytes(&self) -> u64 {
-        4 * u64::from(color_stride(self.view.width)) * u64::from(self.view.height)
+        buffers::read_picture(self.gpu, buffer, [self.view.width, self.view.height])
     }
 }
 

@@ -1,8 +1,11 @@
-//! Buffers by the name that the shaders give them: made at need, kept while they fit, listed with their reason.
+//! Buffers on the device by their [`BufferId`]: made when first needed, kept while they fit, listed with their purpose.
 
-use std::collections::BTreeMap;
+use std::{
+    collections::BTreeMap,
+    sync::atomic::{AtomicU64, Ordering},
+};
 
-use super::{Gpu, RenderError, uniforms::color_stride};
+use super::{device::Gpu, error::RenderError, resource_id::BufferId};
 
 /// One buffer of the picture, for `explain`.
 #[derive(Clone, Debug, PartialEq, serde::Serialize)]
@@ -15,156 +18,119 @@ pub struct BufferNote {
 struct Held {
     buffer: wgpu::Buffer,
     bytes: u64,
-    why: &'static str,
-}
-
-/// A picture of 32-bit words.
-struct Texels {
-    texture: wgpu::Texture,
-    view: wgpu::TextureView,
-    side: u32,
-    why: &'static str,
+    purpose: &'static str,
 }
 
 /// See the module's first line.
 #[derive(Default)]
 pub struct Buffers {
-    held: BTreeMap<&'static str, Held>,
-    texels: BTreeMap<&'static str, Texels>,
+    held: BTreeMap<BufferId, Held>,
+    /// Changes whenever a buffer is made or dropped; no two lists of buffers ever have the same, but for 0, which is empty.
+    revision: u64,
+}
+
+/// A number that was never given before.
+pub fn next_revision() -> u64 {
+    static NEXT: AtomicU64 = AtomicU64::new(1);
+    NEXT.fetch_add(1, Ordering::Relaxed)
 }
 
 impl Buffers {
-    /// Makes `name` at least `bytes` long (and at least 16); true if it was made anew and so holds zeros.
-    /// A buffer four times too large is made smaller.
-    pub fn ensure(
-        &mut self,
-        gpu: &Gpu,
-        name: &'static str,
-        bytes: u64,
-        usage: wgpu::BufferUsages,
-        why: &'static str,
-    ) -> Result<bool, RenderError> {
+    /// Makes a buffer at least `bytes` long (and at least 16); true if it was made anew and so holds zeros.
+    /// A buffer more than four times too large is made smaller.
+    ///
+    /// # Errors
+    /// When the adapter binds no buffer of this size, or has no memory for it.
+    pub fn ensure(&mut self, gpu: &Gpu, id: BufferId, bytes: u64) -> Result<bool, RenderError> {
+        self.ensure_for(gpu, id, bytes, id.purpose())
+    }
+
+    /// [`Self::ensure`] with another purpose than the usual one.
+    ///
+    /// # Errors
+    /// As [`Self::ensure`].
+    pub fn ensure_for(&mut self, gpu: &Gpu, id: BufferId, bytes: u64, purpose: &'static str) -> Result<bool, RenderError> {
         let bytes = bytes.max(16).next_multiple_of(16);
-        if let Some(held) = self.held.get_mut(name)
+        if let Some(held) = self.held.get_mut(&id)
             && (bytes..=bytes.saturating_mul(4)).contains(&held.bytes)
         {
-            held.why = why;
+            held.purpose = purpose;
             return Ok(false);
         }
         let limit = gpu.caps.max_storage_binding_bytes.min(gpu.caps.max_buffer_bytes);
         if bytes > limit {
-            return Err(RenderError::TooLarge { buffer: name, bytes, limit });
+            return Err(RenderError::TooLarge { buffer: id.name(), bytes, limit });
         }
-        self.held.remove(name);
+        self.held.remove(&id);
+        self.revision = next_revision();
         let scope = gpu.device.push_error_scope(wgpu::ErrorFilter::OutOfMemory);
-        let usage = usage | wgpu::BufferUsages::COPY_SRC | wgpu::BufferUsages::COPY_DST;
-        let buffer = gpu.device.create_buffer(&wgpu::BufferDescriptor { label: Some(name), size: bytes, usage, mapped_at_creation: false });
+        let usage = id.usage() | wgpu::BufferUsages::COPY_SRC | wgpu::BufferUsages::COPY_DST;
+        let descriptor = wgpu::BufferDescriptor { label: Some(id.name()), size: bytes, usage, mapped_at_creation: false };
+        let buffer = gpu.device.create_buffer(&descriptor);
         if pollster::block_on(scope.pop()).is_some() {
-            return Err(RenderError::OutOfMemory { buffer: name, bytes });
+            return Err(RenderError::OutOfMemory { buffer: id.name(), bytes });
         }
-        self.held.insert(name, Held { buffer, bytes, why });
+        self.held.insert(id, Held { buffer, bytes, purpose });
         Ok(true)
     }
 
-    /// Makes `name` and fills its beginning.
-    pub fn fill(
-        &mut self,
-        gpu: &Gpu,
-        name: &'static str,
-        data: &[u8],
-        usage: wgpu::BufferUsages,
-        why: &'static str,
-    ) -> Result<(), RenderError> {
-        self.fill_room(gpu, name, data, data.len() as u64, usage, why)
+    /// Makes a buffer that holds `data` and writes it.
+    ///
+    /// # Errors
+    /// As [`Self::ensure`].
+    pub fn fill(&mut self, gpu: &Gpu, id: BufferId, data: &[u8]) -> Result<(), RenderError> {
+        self.ensure(gpu, id, data.len() as u64)?;
+        self.write_at(gpu, id, 0, data)
     }
 
-    /// The same with room for so many bytes in all.
-    pub fn fill_room(
-        &mut self,
-        gpu: &Gpu,
-        name: &'static str,
-        data: &[u8],
-        room: u64,
-        usage: wgpu::BufferUsages,
-        why: &'static str,
-    ) -> Result<(), RenderError> {
-        self.ensure(gpu, name, room, usage, why)?;
-        gpu.queue.write_buffer(self.get(name), 0, data);
+    /// Writes `data` from a byte on.
+    ///
+    /// # Errors
+    /// When there is no such buffer.
+    pub fn write_at(&self, gpu: &Gpu, id: BufferId, offset: u64, data: &[u8]) -> Result<(), RenderError> {
+        let buffer = self.get(id)?;
+        if !data.is_empty() {
+            gpu.queue.write_buffer(buffer, offset, data);
+        }
         Ok(())
     }
 
-    /// Makes a square texture of 32-bit words.
-    pub fn ensure_texels(&mut self, gpu: &Gpu, name: &'static str, side: u32, why: &'static str) -> Result<(), RenderError> {
-        if self.texels.get(name).is_some_and(|held| held.side == side) {
-            return Ok(());
-        }
-        let scope = gpu.device.push_error_scope(wgpu::ErrorFilter::OutOfMemory);
-        let texture = gpu.device.create_texture(&wgpu::TextureDescriptor {
-            label: Some(name),
-            size: wgpu::Extent3d { width: side, height: side, depth_or_array_layers: 1 },
-            mip_level_count: 1,
-            sample_count: 1,
-            dimension: wgpu::TextureDimension::D2,
-            format: wgpu::TextureFormat::R32Uint,
-            usage: wgpu::TextureUsages::COPY_DST | wgpu::TextureUsages::TEXTURE_BINDING,
-            view_formats: &[],
-        });
-        let view = texture.create_view(&Default::default());
-        if pollster::block_on(scope.pop()).is_some() {
-            return Err(RenderError::OutOfMemory { buffer: name, bytes: 4 * u64::from(side) * u64::from(side) });
-        }
-        self.texels.insert(name, Texels { texture, view, side, why });
-        Ok(())
-    }
-
-    /// Copies a buffer of as many words into the texture called `name`; rows are multiples of 256 bytes.
-    pub fn fill_texels(&self, encoder: &mut wgpu::CommandEncoder, name: &str, from: &wgpu::Buffer) {
-        let Texels { texture, side, .. } = &self.texels[name];
-        let layout = wgpu::TexelCopyBufferLayout { offset: 0, bytes_per_row: Some(4 * side), rows_per_image: None };
-        let source = wgpu::TexelCopyBufferInfo { buffer: from, layout };
-        encoder.copy_buffer_to_texture(source, texture.as_image_copy(), texture.size());
-    }
-
-    /// Takes over the buffer called `name` of another list, to be used by both.
-    pub fn share(&mut self, name: &'static str, other: &Self) {
-        if let Some(Held { buffer, bytes, why }) = other.held.get(name) {
-            self.held.insert(name, Held { buffer: buffer.clone(), bytes: *bytes, why });
+    /// Drops every buffer that is not needed.
+    pub fn keep(&mut self, is_needed: impl Fn(BufferId) -> bool) {
+        let before = self.held.len();
+        self.held.retain(|id, _| is_needed(*id));
+        if self.held.len() != before {
+            self.revision = next_revision();
         }
     }
 
-    /// Gives up every buffer and texture that `is_needed` does not name.
-    pub fn keep(&mut self, is_needed: impl Fn(&str) -> bool) {
-        self.held.retain(|name, _| is_needed(name));
-        self.texels.retain(|name, _| is_needed(name));
+    pub fn has(&self, id: BufferId) -> bool {
+        self.held.contains_key(&id)
     }
 
-    pub fn has(&self, name: &str) -> bool {
-        self.held.contains_key(name)
+    /// Equal numbers, equal buffers.
+    pub fn revision(&self) -> u64 {
+        self.revision
     }
 
-    /// The buffer called `name`; asking for one that was not made means that we erred.
-    pub fn get(&self, name: &str) -> &wgpu::Buffer {
-        match self.held.get(name) {
-            Some(held) => &held.buffer,
-            None => panic!("a pass uses the buffer {name:?}, which this frame does not have"),
-        }
+    /// A buffer of this frame.
+    ///
+    /// # Errors
+    /// When there is none: the layout of the frame and its passes disagree.
+    pub fn get(&self, id: BufferId) -> Result<&wgpu::Buffer, RenderError> {
+        self.held.get(&id).map(|held| &held.buffer).ok_or(RenderError::NoResource { name: id.name() })
     }
 
-    /// The buffer or texture called `name`, to be bound.
-    pub fn resource(&self, name: &str) -> wgpu::BindingResource<'_> {
-        match self.texels.get(name) {
-            Some(held) => wgpu::BindingResource::TextureView(&held.view),
-            None => self.get(name).as_entire_binding(),
-        }
-    }
-
-    /// Every buffer by name, then every texture.
+    /// Every buffer, in the order of the table.
     pub fn notes(&self) -> Vec<BufferNote> {
-        let note = |name: &str, bytes: u64, why: &str| BufferNote { name: name.into(), bytes, why: why.into() };
-        let buffers = self.held.iter().map(|(name, held)| note(name, held.bytes, held.why));
-        let texels = self.texels.iter().map(|(name, held)| note(name, 4 * u64::from(held.side) * u64::from(held.side), held.why));
-        buffers.chain(texels).collect()
+        let note = |(id, held): (&BufferId, &Held)| BufferNote { name: id.name().into(), bytes: held.bytes, why: held.purpose.into() };
+        self.held.iter().map(note).collect()
     }
+}
+
+/// Pixels from one row of the colour buffer to the next: rows begin at multiples of 256 bytes, as texture copies demand.
+pub fn color_stride(width: u32) -> u32 {
+    width.next_multiple_of(64)
 }
 
 /// Copies a buffer back and waits for it.

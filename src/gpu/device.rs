@@ -5,7 +5,7 @@ use std::sync::{
     atomic::{AtomicBool, Ordering},
 };
 
-use super::pipelines::PipelineStore;
+use super::pipeline_store::PipelineStore;
 pub use crate::plan::Caps;
 
 /// Which adapter a person asked for.

@@ -3,7 +3,7 @@
 use glam::{DMat4, DVec3, DVec4};
 use rstar::{AABB, RTree, RTreeObject, SelectionFunction};
 
-use super::dots::DotRunRecord;
+use super::records::DotRunRecord;
 use crate::{
     effects::dots::Dots,
     scene::{

@@ -24,6 +24,8 @@ pub enum RenderError {
     Scaled { option: RenderScale, shown: [u32; 2], drawn: [u32; 2], why: Box<RenderError> },
     #[error("checks trusted is for the shaders inside this program, not for those of a folder; use checked")]
     Untrusted,
+    #[error("a pass binds {name}, which this frame does not have; this is a fault of rasterlab")]
+    NoResource { name: &'static str },
     #[error("the device was lost")]
     Lost,
     #[error("no scene has been set")]

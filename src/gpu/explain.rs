@@ -1,10 +1,11 @@
 //! Explanation: which passes and buffers the last picture has, which it does without, and why.
 
-use super::{BufferNote, Note, Renderer, dots::DotStore};
+use super::{
+    buffers::BufferNote, pass_purpose::pass_purpose, recording::Resources, shadow_pass::ShadowPass, view_resources::ViewResources,
+};
 use crate::{
-    plan::{Plan, Tolerance, predict::Prediction},
+    plan::{Note, Plan, Tolerance, predict::Prediction},
     scene::sizes::SizeClasses,
-    shader::pass::{CullPhase, Pass, RasterPhase, TriangleSource},
 };
 
 /// Which passes and buffers exist for the last picture, and why.
@@ -67,14 +68,18 @@ impl SizesNote {
     }
 }
 
-impl Renderer {
-    /// What exists for the last picture, and why.
-    pub fn explain(&self) -> Explanation {
-        let Some(plan) = &self.last else {
-            return Explanation {
+impl Explanation {
+    /// What exists for the last frame of `picture`. `others` are resources that it shares, and `counted` is how many medium and large
+    /// triangles its queues counted.
+    pub fn new(picture: &ViewResources, others: &Resources<'_>, shadow: Option<&ShadowPass>, counted: Option<[u32; 2]>) -> Self {
+        let mut buffers: Vec<BufferNote> = others.with(&picture.buffers).notes();
+        buffers.sort_by(|a, b| a.name.cmp(&b.name));
+        buffers.extend(shadow.into_iter().flat_map(ShadowPass::notes));
+        let Ok(frame) = picture.frame() else {
+            return Self {
                 key: "nothing drawn yet".into(),
                 passes: Vec::new(),
-                buffers: self.buffers.notes(),
+                buffers,
                 reasons: Vec::new(),
                 omitted: Vec::new(),
                 sizes: None,
@@ -82,75 +87,22 @@ impl Renderer {
                 tolerance: None,
             };
         };
+        let plan = &frame.plan;
         let own = plan.key.frame().into_iter().map(|pass| Note { name: pass.label(), why: pass_purpose(pass).into() });
-        let light = || self.shadow_pass.iter();
         let mut reasons = plan.reasons();
-        if let Some([dots, lines]) = self.dots.as_ref().map(DotStore::sample_counts) {
-            reasons.push(Note { name: "dots".into(), why: format!("{dots} dots on {lines} lines, as far as the lines are long") });
+        if let Some(dots) = &picture.dots {
+            let why = format!("{} dots on {} lines, as far as the lines are long", dots.counts().dots, dots.line_count());
+            reasons.push(Note { name: "dots".into(), why });
         }
-        let why = "a texture of words: what the materials of primitives are, and the levels of their images";
-        let texels = self.texels.as_ref().map(|texels| BufferNote { name: "texels".into(), bytes: texels.bytes, why: why.into() });
-        Explanation {
+        Self {
             key: plan.key.to_string(),
-            passes: light().flat_map(|shadow_pass| shadow_pass.passes()).chain(own).collect(),
-            buffers: self.buffers.notes().into_iter().chain(texels).chain(light().flat_map(|shadow_pass| shadow_pass.buffers())).collect(),
+            passes: shadow.into_iter().flat_map(ShadowPass::passes).chain(own).collect(),
+            buffers,
             reasons,
             omitted: plan.omissions(),
-            sizes: Some(SizesNote::new(plan, self.demand)),
+            sizes: Some(SizesNote::new(plan, counted)),
             prediction: Some(plan.prediction),
             tolerance: Some(plan.tolerance),
         }
-    }
-}
-
-pub(super) fn pass_purpose(pass: Pass) -> &'static str {
-    match pass {
-        Pass::Particles => "takes every particle one step on and writes the triangle of its disc",
-        Pass::Skin => "mixes shapes and follows joints, once per vertex of every mesh that bends",
-        Pass::Project => "pulls, transforms and snaps every vertex once",
-        Pass::Cull(CullPhase::FrustumOnly) => "leaves out meshlets outside the picture and those that face away, lists the others",
-        Pass::Cull(CullPhase::PreviousFrame) => "leaves out those too that the picture before hides",
-        Pass::Cull(CullPhase::Early) => "lists the meshlets that were seen in the picture before",
-        Pass::Cull(CullPhase::Late) => "lists those of the others that the first round does not hide",
-        Pass::ProjectMeshlets => "pulls, transforms and snaps the vertices of the meshlets that are left",
-        Pass::DepthReduce => "finds the farthest depth of every tile, behind which meshlets hide",
-        Pass::AdvanceQueues { reopens_queues: false } => "ends the first round: what follows takes up what is listed from here on",
-        Pass::AdvanceQueues { reopens_queues: true } => "opens the lists of both rounds again",
-        Pass::RasterSmall(RasterPhase::CountSamples) => "culls and classifies every triangle, counts the samples of the small ones",
-        Pass::RasterSmall(RasterPhase::BoundaryTriangle) => "marks the samples of the triangle in which the drawing stops",
-        Pass::RasterSmall(RasterPhase::TriangleId) => "visits the small triangles again for the triangle id of each nearest key",
-        Pass::RasterSmall(RasterPhase::Sum) => "visits the small triangles again and adds every layer's colour",
-        Pass::RasterSmall(RasterPhase::Count) => "visits the small triangles again and counts layers",
-        Pass::RasterSmall(RasterPhase::BinCount) => "culls and classifies every triangle, counts the tiles of the small ones",
-        Pass::RasterSmall(RasterPhase::BinFill) => "puts the small triangles on the lists of their tiles",
-        Pass::RasterSmall(_) => "culls and classifies every triangle, draws the small ones on the spot",
-        Pass::SampleSetup(TriangleSource::Triangles) => "settles once per triangle what sample effects hold against",
-        Pass::SampleSetup(TriangleSource::ClippedTriangles) => "settles the same for the pieces that clipping left",
-        Pass::OrderSums => "adds up the samples of every 1,024 triangles",
-        Pass::OrderLimit => "finds how many samples there are, how many to draw, and in which triangle that number is reached",
-        Pass::OrderRanks => "tells which share of all samples comes before each triangle",
-        Pass::OrderCut => "finds the pixel at which the drawing stops",
-        Pass::BinMedium(RasterPhase::BinFill) => "puts medium triangles on the lists of their tiles",
-        Pass::BinMedium(_) => "counts the tiles of medium triangles, one workgroup each",
-        Pass::BinLarge(RasterPhase::BinFill) => "puts large triangles on the lists of their tiles",
-        Pass::BinLarge(_) => "counts the tiles of large triangles, one workgroup each",
-        Pass::BinScan => "finds where the list of each tile begins",
-        Pass::RasterTiles => "one workgroup per tile of 16 x 16 pixels walks its list, one invocation owns a pixel",
-        Pass::RasterPoints(RasterPhase::BinCount) => "counts the tiles of the corners of every shown triangle",
-        Pass::RasterPoints(RasterPhase::BinFill) => "puts triangles on the lists of their corners' tiles",
-        Pass::RasterPoints(_) => "draws the corners of every shown triangle as discs",
-        Pass::Args => "turns queue demand into dispatch sizes",
-        Pass::Clip => "cuts triangles at the near plane and the guard band",
-        Pass::TileLarge => "finds the tiles of each large triangle",
-        Pass::RasterMedium(_) => "one workgroup per triangle of up to 128 px",
-        Pass::RasterLarge(_) => "one workgroup per 64 x 64 tile of a large triangle",
-        Pass::DotsEnds => "takes both ends of every segment of a line to clip space",
-        Pass::DotsCull => "leaves out lines beyond the view, thins the others, lists the dots that may show",
-        Pass::DotsArgs => "turns the number of listed dots into a dispatch size",
-        Pass::DotsDraw => "draws dots, one invocation each: the strongest on every pixel",
-        Pass::DotsProbe => "reads back where every dot lies",
-        Pass::ListTiles => "gathers the tiles that hold something",
-        Pass::Resolve => "shades every pixel once",
-        Pass::Scale => "brings the pixels that were drawn to the size that is shown",
     }
 }

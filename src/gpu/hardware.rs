@@ -1,6 +1,16 @@
 //! The hardware baseline: an ordinary render pipeline that draws the same buffers, kept as a yardstick.
 
-use super::{Gpu, RenderError, buffers::Buffers, pipelines::layout_entry, timer::Timer, uniforms::*};
+use super::{
+    attributes::AttributeLayout,
+    buffers::{Buffers, color_stride},
+    device::Gpu,
+    error::RenderError,
+    hardware_pipeline::{self, HardwarePipeline},
+    pipelines::layout_entry,
+    records::{DrawRecord, FrameUniform},
+    resource_id::{BufferId, ResourceId},
+    timer::Timer,
+};
 use crate::{
     effects::Stack,
     scene::{ComponentType, Primitive, Scene, Topology, draw::draws, view::View},
@@ -24,7 +34,7 @@ pub struct Hardware {
     group: wgpu::BindGroup,
     calls: Vec<Call>,
     color: wgpu::Texture,
-    depth: wgpu::TextureView,
+    depth: wgpu::Texture,
 }
 
 impl Hardware {
@@ -54,65 +64,39 @@ impl Hardware {
             return Ok(Err("the primitives differ in stride or sidedness, which takes several pipelines".into()));
         }
         let draws = draws(scene, view)?;
-        let records: Vec<DrawRecord> = draws.iter().map(|draw| DrawRecord::new(draw, scene)).collect();
-        let uniform = FrameUniform::new(view, scene, draws.len(), &Capacities::default());
+        let attributes = AttributeLayout::new(scene, None);
+        let records: Vec<DrawRecord> = draws.iter().map(|draw| DrawRecord::new(draw, scene, &attributes)).collect();
+        let uniform = FrameUniform { draw_count: draws.len() as u32, ..FrameUniform::of_view(view) };
         let parameters = uniform_bytes(&stack.0);
-        let storage = wgpu::BufferUsages::STORAGE;
         let mut buffers = Buffers::default();
-        buffers.fill(gpu, "frame", bytemuck::bytes_of(&uniform), wgpu::BufferUsages::UNIFORM, "viewpoint")?;
-        buffers.fill(gpu, "draws", bytemuck::cast_slice(&records), storage, "matrices")?;
-        buffers.fill(gpu, "effects", &parameters, wgpu::BufferUsages::UNIFORM, "parameters")?;
-        buffers.fill(gpu, "vertex_bytes", &scene.vertex_bytes, wgpu::BufferUsages::VERTEX, "attributes")?;
-        buffers.fill(gpu, "index_bytes", &scene.index_bytes, wgpu::BufferUsages::INDEX, "indices")?;
+        buffers.fill(gpu, BufferId::Frame, bytemuck::bytes_of(&uniform))?;
+        buffers.fill(gpu, BufferId::Draws, bytemuck::cast_slice(&records))?;
+        buffers.fill(gpu, BufferId::Effects, &parameters)?;
+        buffers.fill(gpu, BufferId::VertexBytes, &scene.vertex_bytes)?;
+        buffers.fill(gpu, BufferId::IndexBytes, &scene.index_bytes)?;
         let calls = draws.iter().zip(0..).map(|(draw, instance)| call(&scene.primitives[draw.primitive], instance)).collect();
-        let (pipeline, layout, names) = pipeline(gpu, key, strides(first))?;
-        let entries: Vec<_> = names
-            .iter()
-            .map(|binding| wgpu::BindGroupEntry { binding: binding.index, resource: buffers.get(&binding.name).as_entire_binding() })
-            .collect();
-        let group =
-            gpu.device.create_bind_group(&wgpu::BindGroupDescriptor { label: Some("hardware"), layout: &layout, entries: &entries });
-        let target = |format, usage| {
-            gpu.device.create_texture(&wgpu::TextureDescriptor {
-                label: Some("hardware"),
-                size: wgpu::Extent3d { width: view.width, height: view.height, depth_or_array_layers: 1 },
-                mip_level_count: 1,
-                sample_count: 1,
-                dimension: wgpu::TextureDimension::D2,
-                format,
-                usage,
-                view_formats: &[],
-            })
-        };
-        let attachment = wgpu::TextureUsages::RENDER_ATTACHMENT;
-        let depth = target(wgpu::TextureFormat::Depth32Float, attachment).create_view(&Default::default());
-        let color = target(wgpu::TextureFormat::Rgba8Unorm, attachment | wgpu::TextureUsages::COPY_SRC);
+        let (pipeline, group) = pipeline(gpu, key, &buffers, strides(first))?;
+        let [color, depth] = hardware_pipeline::targets(gpu, [view.width, view.height], wgpu::TextureFormat::Rgba8Unorm);
         Ok(Ok(Self { buffers, pipeline, group, calls, color, depth }))
     }
 
     /// Records one frame.
-    pub fn record(&self, encoder: &mut wgpu::CommandEncoder, timer: Option<&mut Timer>) {
+    pub fn record(&self, encoder: &mut wgpu::CommandEncoder, timer: Option<&mut Timer>) -> Result<(), RenderError> {
         let view = self.color.create_view(&Default::default());
         let timestamp_writes = timer.and_then(|timer| timer.render("hardware", true));
+        let depth = self.depth.create_view(&Default::default());
+        let color = hardware_pipeline::cleared(&view, wgpu::Color::TRANSPARENT);
+        let depth_stencil_attachment = Some(hardware_pipeline::cleared_depth(&depth));
         let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
             label: Some("hardware"),
-            color_attachments: &[Some(wgpu::RenderPassColorAttachment {
-                view: &view,
-                depth_slice: None,
-                resolve_target: None,
-                ops: wgpu::Operations { load: wgpu::LoadOp::Clear(wgpu::Color::TRANSPARENT), store: wgpu::StoreOp::Store },
-            })],
-            depth_stencil_attachment: Some(wgpu::RenderPassDepthStencilAttachment {
-                view: &self.depth,
-                depth_ops: Some(wgpu::Operations { load: wgpu::LoadOp::Clear(0.0), store: wgpu::StoreOp::Store }),
-                stencil_ops: None,
-            }),
+            color_attachments: &[Some(color)],
+            depth_stencil_attachment,
             timestamp_writes,
             ..Default::default()
         });
         pass.set_pipeline(&self.pipeline);
         pass.set_bind_group(0, &self.group, &[]);
-        let attributes = self.buffers.get("vertex_bytes");
+        let attributes = self.buffers.get(BufferId::VertexBytes)?;
         for call in &self.calls {
             pass.set_vertex_buffer(0, attributes.slice(call.position_offset..));
             pass.set_vertex_buffer(1, attributes.slice(call.normal_offset..));
@@ -120,11 +104,12 @@ impl Hardware {
             match &call.indices {
                 None => pass.draw(0..call.vertices, instances),
                 Some((format, bytes, count)) => {
-                    pass.set_index_buffer(self.buffers.get("index_bytes").slice(bytes.clone()), *format);
+                    pass.set_index_buffer(self.buffers.get(BufferId::IndexBytes)?.slice(bytes.clone()), *format);
                     pass.draw_indexed(0..*count, 0, instances);
                 }
             }
         }
+        Ok(())
     }
 
     /// Copies the picture to a buffer, rows `color_stride` apart; alpha is 0 where nothing was drawn.
@@ -163,26 +148,37 @@ fn call(p: &Primitive, instance: u32) -> Call {
     }
 }
 
-type Built = (wgpu::RenderPipeline, wgpu::BindGroupLayout, Vec<reflect::Binding>);
-
-fn pipeline(gpu: &Gpu, key: &KernelKey, (position_stride, normal_stride, double_sided): (u32, u32, bool)) -> Result<Built, RenderError> {
-    let linked = link::link(
-        &Library::from_env(),
-        "baselines/hardware",
-        key,
-        &[("draws", "slots/draws/many".into()), ("image", "slots/image/none".into())],
-    )?;
+fn pipeline(
+    gpu: &Gpu,
+    key: &KernelKey,
+    buffers: &Buffers,
+    (position_stride, normal_stride, double_sided): (u32, u32, bool),
+) -> Result<(wgpu::RenderPipeline, wgpu::BindGroup), RenderError> {
+    let slots = [("draws", "slots/draws/many".into()), ("image", "slots/image/none".into())];
+    let linked = link::link(&Library::from_env(), "baselines/hardware", key, &slots)?;
     let reflected = reflect::reflect(&linked, gpu.caps.int64_atomics)?;
     let mut bindings = reflected.bindings("hardware_vertex");
     bindings.extend(reflected.bindings("hardware_fragment"));
     bindings.sort_by_key(|binding| binding.index);
     bindings.dedup();
-    let module = gpu.device.create_shader_module(wgpu::ShaderModuleDescriptor {
-        label: Some("hardware"),
-        source: wgpu::ShaderSource::Wgsl(linked.text.into()),
-    });
+    let label = Some("hardware");
     let entries: Vec<_> = bindings.iter().map(|binding| layout_entry(binding, wgpu::ShaderStages::VERTEX_FRAGMENT)).collect();
-    let layout = gpu.device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor { label: Some("hardware"), entries: &entries });
+    let layout = gpu.device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor { label, entries: &entries });
+    let resource = |name: &str| match ResourceId::of_binding(name) {
+        Some(ResourceId::Buffer(id)) => buffers.get(id),
+        _ => Err(RenderError::Pipeline { label: "hardware".into(), reason: format!("it binds {name}, which is no buffer") }),
+    };
+    let entries = bindings
+        .iter()
+        .map(|binding| Ok(wgpu::BindGroupEntry { binding: binding.index, resource: resource(&binding.name)?.as_entire_binding() }));
+    let entries: Vec<_> = entries.collect::<Result<_, RenderError>>()?;
+    let group = gpu.device.create_bind_group(&wgpu::BindGroupDescriptor { label, layout: &layout, entries: &entries });
+    let bind_group_layouts = [Some(&layout)];
+    let layout = gpu.device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
+        label,
+        bind_group_layouts: &bind_group_layouts,
+        ..Default::default()
+    });
     let attribute = |location| [wgpu::VertexAttribute { format: wgpu::VertexFormat::Float32x3, offset: 0, shader_location: location }];
     let (positions, normals) = (attribute(0), attribute(1));
     let buffer = |stride: u32, attributes| wgpu::VertexBufferLayout {
@@ -190,36 +186,14 @@ fn pipeline(gpu: &Gpu, key: &KernelKey, (position_stride, normal_stride, double_
         step_mode: wgpu::VertexStepMode::Vertex,
         attributes,
     };
-    let pipeline = gpu.device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
-        label: Some("hardware"),
-        layout: Some(&gpu.device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
-            label: Some("hardware"),
-            bind_group_layouts: &[Some(&layout)],
-            ..Default::default()
-        })),
-        vertex: wgpu::VertexState {
-            module: &module,
-            entry_point: Some("hardware_vertex"),
-            compilation_options: Default::default(),
-            buffers: &[Some(buffer(position_stride, &positions)), Some(buffer(normal_stride, &normals))],
-        },
-        primitive: wgpu::PrimitiveState { cull_mode: (!double_sided).then_some(wgpu::Face::Back), ..Default::default() },
-        depth_stencil: Some(wgpu::DepthStencilState {
-            format: wgpu::TextureFormat::Depth32Float,
-            depth_write_enabled: Some(true),
-            depth_compare: Some(wgpu::CompareFunction::Greater),
-            stencil: Default::default(),
-            bias: Default::default(),
-        }),
-        multisample: Default::default(),
-        fragment: Some(wgpu::FragmentState {
-            module: &module,
-            entry_point: Some("hardware_fragment"),
-            compilation_options: Default::default(),
-            targets: &[Some(wgpu::TextureFormat::Rgba8Unorm.into())],
-        }),
-        multiview_mask: None,
-        cache: None,
-    });
-    Ok((pipeline, layout, bindings))
+    let pipeline = HardwarePipeline {
+        label: "hardware",
+        text: &linked.text,
+        entries: ["hardware_vertex", "hardware_fragment"],
+        layout: Some(&layout),
+        buffers: &[Some(buffer(position_stride, &positions)), Some(buffer(normal_stride, &normals))],
+        cull_mode: (!double_sided).then_some(wgpu::Face::Back),
+        format: wgpu::TextureFormat::Rgba8Unorm,
+    };
+    Ok((pipeline.build(gpu), group))
 }

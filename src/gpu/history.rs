@@ -1,51 +1,129 @@
-//! The past: what a picture starts from of the one before it.
+//! Temporal history: what a picture starts from of the one before it.
 
-use super::{Renderer, prepare::BACKGROUND_ROWS, uniforms::color_stride};
-use crate::{effects::Stack, scene::view::View, shader::key::KernelKey};
+use super::{
+    buffers::Buffers,
+    error::RenderError,
+    frame_layout::{BACKGROUND_ROWS, FrameLayout, Region},
+    resource_id::{BufferId, ClearedBy},
+    view_resources::ViewResources,
+};
+use crate::{
+    effects::{Stack, hooks::Layers, xray},
+    scene::view::View,
+    shader::key::KernelKey,
+};
 
-impl Renderer {
-    /// Empties what culling remembers of the picture before, unless that was one like this.
-    pub(super) fn keep_occluders(&mut self, encoder: &mut wgpu::CommandEncoder, key: &KernelKey, view: &View, stack: &Stack) {
-        if self.is_judged {
-            return;
-        }
+/// See the module's first line.
+#[derive(Default)]
+pub struct History {
+    /// What the colour buffer shows, where an effect reads it as the previous picture.
+    previous: Option<(View, Stack)>,
+    /// Size and stack of the picture whose depths and meshlets the next one may start from.
+    occluders: Option<([u32; 2], Stack)>,
+    /// The last picture.
+    last: Option<(View, Stack)>,
+    /// The last picture whose sums of layers overflowed, and the bits per channel that it gets instead.
+    full_sums: Option<(View, Stack, u32)>,
+}
+
+impl History {
+    /// Forgets what the next picture would start from: background comes before it.
+    pub fn clear(&mut self) {
+        (self.previous, self.occluders) = (None, None);
+    }
+
+    /// Forgets all pictures of a scene.
+    pub fn change_scene(&mut self) {
+        self.clear();
+        self.full_sums = None;
+    }
+
+    /// Remembers the picture that was drawn.
+    pub fn finish(&mut self, view: &View, stack: &Stack) {
+        self.last = Some((view.clone(), stack.clone()));
+    }
+
+    /// Bits per channel of the x-ray's sums, where those of this picture overflowed with more.
+    pub fn fewer_bits(&self, view: &View, stack: &Stack) -> Option<u32> {
+        self.full_sums.as_ref().filter(|(of, with, _)| (of, with) == (view, stack)).map(|(.., bits)| *bits)
+    }
+
+    /// Gives the last picture, whose sums overflowed, fewer bits per channel next time; false where it has the fewest.
+    pub fn take_fewer_bits(&mut self, key: &KernelKey) -> bool {
+        let bits = match key.framebuffer.layers {
+            Some(Layers::Xray { bits }) => xray::fewer(bits),
+            _ => None,
+        };
+        let Some((bits, (view, stack))) = bits.zip(self.last.clone()) else { return false };
+        self.full_sums = Some((view, stack, bits));
+        true
+    }
+
+    /// Clears the depths and meshlets that culling starts from, unless they are of a picture like this one.
+    ///
+    /// # Errors
+    /// When a buffer is missing.
+    pub fn keep_occluders(
+        &mut self,
+        encoder: &mut wgpu::CommandEncoder,
+        resources: &ViewResources,
+        view: &View,
+        stack: &Stack,
+    ) -> Result<(), RenderError> {
         let now = ([view.width, view.height], stack.clone());
         if self.occluders.as_ref() != Some(&now) {
-            self.clear(encoder, &["meshlet_visibility", "hiz"]);
+            resources.clear(encoder, |occasion| occasion == ClearedBy::History)?;
         }
-        self.occluders = key.options.culling.occludes().then_some(now);
+        self.occluders = resources.frame()?.plan.key.options.culling.occludes().then_some(now);
+        Ok(())
     }
 
-    /// Makes the colour buffer hold the picture before this one where an effect reads it, and a copy that outlives the
-    /// resolve. A picture that is drawn again stands after the same one as before.
-    pub(super) fn keep_previous(&mut self, encoder: &mut wgpu::CommandEncoder, key: &KernelKey, view: &View, stack: &Stack) {
-        if !key.reads_previous() {
-            self.history = None;
-            return;
+    /// Makes the colour buffer hold the previous picture where an effect reads it, and a copy that the resolve does not overwrite.
+    /// A picture that is drawn again starts from the same one as before.
+    ///
+    /// # Errors
+    /// When a buffer is missing.
+    pub fn keep_previous(
+        &mut self,
+        encoder: &mut wgpu::CommandEncoder,
+        resources: &ViewResources,
+        view: &View,
+        stack: &Stack,
+    ) -> Result<(), RenderError> {
+        let frame = resources.frame()?;
+        if !frame.plan.key.reads_previous() {
+            self.previous = None;
+            return Ok(());
         }
         let now = (view.clone(), stack.clone());
-        let bytes = 4 * u64::from(color_stride(view.width)) * u64::from(view.height);
-        match &self.history {
-            Some(history) if *history == now => {
-                encoder.copy_buffer_to_buffer(self.buffers.get("previous"), 0, self.buffers.get("color"), 0, bytes);
-            }
-            history => {
-                if history.as_ref().is_none_or(|(history, _)| [history.width, history.height] != [view.width, view.height]) {
-                    self.fill_background(encoder, view);
+        let buffers = &resources.buffers;
+        let (previous, color) = (buffers.get(BufferId::Previous)?, buffers.get(BufferId::Color)?);
+        let bytes = frame.layout.region(Region::Pixels).map_or(0, |span| span.bytes.end);
+        match &self.previous {
+            Some(previous_picture) if *previous_picture == now => encoder.copy_buffer_to_buffer(previous, 0, color, 0, bytes),
+            other => {
+                if other.as_ref().is_none_or(|(other, _)| [other.width, other.height] != [view.width, view.height]) {
+                    fill_background(encoder, buffers, &frame.layout)?;
                 }
-                encoder.copy_buffer_to_buffer(self.buffers.get("color"), 0, self.buffers.get("previous"), 0, bytes);
+                encoder.copy_buffer_to_buffer(color, 0, previous, 0, bytes);
             }
         }
-        self.history = Some(now);
+        self.previous = Some(now);
+        Ok(())
     }
+}
 
-    /// Copies rows of background over the picture, for resolves that leave empty tiles alone, or what they come after.
-    pub(super) fn fill_background(&self, encoder: &mut wgpu::CommandEncoder, view: &View) {
-        let (from, to) = (self.buffers.get("background"), self.buffers.get("color"));
-        let row = 4 * u64::from(color_stride(view.width));
-        for first in (0..view.height).step_by(BACKGROUND_ROWS as usize) {
-            let rows = BACKGROUND_ROWS.min(view.height - first);
-            encoder.copy_buffer_to_buffer(from, 0, to, row * u64::from(first), row * u64::from(rows));
-        }
+/// Copies rows of background over the picture, for resolves that leave empty tiles alone, and for what a first picture starts from.
+///
+/// # Errors
+/// When a buffer is missing.
+pub fn fill_background(encoder: &mut wgpu::CommandEncoder, buffers: &Buffers, layout: &FrameLayout) -> Result<(), RenderError> {
+    let (from, to) = (buffers.get(BufferId::Background)?, buffers.get(BufferId::Color)?);
+    let bytes = layout.region(Region::Pixels).map_or(0, |span| span.bytes.end);
+    let height = u64::from(layout.size[1].max(1));
+    let step = bytes / height * u64::from(BACKGROUND_ROWS);
+    for first in (0..bytes).step_by(step.max(1) as usize) {
+        encoder.copy_buffer_to_buffer(from, 0, to, first, step.min(bytes - first));
     }
+    Ok(())
 }

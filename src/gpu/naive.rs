@@ -5,12 +5,16 @@ use std::sync::Arc;
 use glam::DMat4;
 
 use super::{
-    Gpu, RenderError,
-    buffers::{self, Buffers},
-    dispatch::folded,
-    pipelines::{Pipeline, Pipelines},
+    buffers::{self, Buffers, color_stride},
+    device::Gpu,
+    error::RenderError,
+    frame_layout::folded,
+    pipeline_store::Pipeline,
+    pipelines::Pipelines,
+    recording::Resources,
+    records::NaiveUniform,
+    resource_id::BufferId,
     timer::Timer,
-    uniforms::color_stride,
 };
 use crate::{
     math::rounded_columns,
@@ -27,20 +31,11 @@ pub enum Viewport {
     Folded,
 }
 
-#[derive(Clone, Copy, bytemuck::Pod, bytemuck::Zeroable)]
-#[repr(C)]
-struct NaiveUniform {
-    clip_from_object: [[f32; 4]; 4],
-    size: [u32; 2],
-    corner_count: u32,
-    stride: u32,
-}
-
 /// The exhibit, set up for one scene and view.
 pub struct Naive {
     size: [u32; 2],
     buffers: Buffers,
-    passes: Vec<(Arc<Pipeline>, [u32; 2])>,
+    passes: Vec<(Arc<Pipeline>, wgpu::BindGroup, [u32; 2])>,
 }
 
 impl Naive {
@@ -58,29 +53,35 @@ impl Naive {
             corner_count: (corners.len() / 3) as u32,
             stride: color_stride(view.width),
         };
-        let (storage, pixels) = (wgpu::BufferUsages::STORAGE, view.pixels() as u64);
+        let pixels = view.pixels() as u64;
         let mut buffers = Buffers::default();
-        buffers.fill(gpu, "naive", bytemuck::bytes_of(&uniform), wgpu::BufferUsages::UNIFORM, "matrix and size")?;
-        buffers.fill(gpu, "corners", bytemuck::cast_slice(&corners), storage, "de-indexed positions")?;
-        buffers.ensure(gpu, "channels", 12 * pixels, storage, "three minima per pixel")?;
-        buffers.ensure(gpu, "color", 4 * u64::from(uniform.stride) * u64::from(view.height), storage, "the picture")?;
+        buffers.fill(gpu, BufferId::NaiveFrame, bytemuck::bytes_of(&uniform))?;
+        buffers.fill(gpu, BufferId::Corners, bytemuck::cast_slice(&corners))?;
+        buffers.ensure(gpu, BufferId::Channels, 12 * pixels)?;
+        buffers.ensure(gpu, BufferId::Color, 4 * u64::from(uniform.stride) * u64::from(view.height))?;
         let mut pipelines = Pipelines::new(Library::from_env());
-        let mut build = |entry: &str| pipelines.build(gpu, "baselines/naive", entry, entry, key, &[], &[]);
+        let mut build = |entry: &str, groups: [u32; 2]| {
+            let pipeline = pipelines.build(gpu, "baselines/naive", entry, entry, key, &[], &[])?;
+            let resources = Resources { buffers: vec![&buffers], textures: Vec::new() };
+            let group = resources.bind_group(gpu, &pipeline)?;
+            Ok::<_, RenderError>((pipeline, group, groups))
+        };
         let passes = vec![
-            (build("naive_clear")?, folded((3 * view.width * view.height).div_ceil(256))),
-            (build("naive_raster")?, folded((uniform.corner_count / 3).div_ceil(256))),
-            (build("naive_resolve")?, [view.width.div_ceil(8), view.height.div_ceil(8)]),
+            build("naive_clear", folded((3 * view.width * view.height).div_ceil(256)))?,
+            build("naive_raster", folded((uniform.corner_count / 3).div_ceil(256)))?,
+            build("naive_resolve", [view.width.div_ceil(8), view.height.div_ceil(8)])?,
         ];
         Ok(Self { size: uniform.size, buffers, passes })
     }
 
     /// Records one frame.
-    pub fn record(&self, gpu: &Gpu, encoder: &mut wgpu::CommandEncoder, mut timer: Option<&mut Timer>) {
-        for (i, (pipeline, [x, y])) in self.passes.iter().enumerate() {
+    pub fn record(&self, encoder: &mut wgpu::CommandEncoder, mut timer: Option<&mut Timer>) {
+        for (i, (pipeline, group, [x, y])) in self.passes.iter().enumerate() {
             let is_last = i + 1 == self.passes.len();
             let timestamp_writes = timer.as_mut().and_then(|timer| timer.compute(&pipeline.label, is_last));
             let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor { label: Some(&pipeline.label), timestamp_writes });
-            pipeline.bind(gpu, &mut pass, |name| self.buffers.resource(name));
+            pass.set_pipeline(&pipeline.pipeline);
+            pass.set_bind_group(0, group, &[]);
             pass.dispatch_workgroups(*x, *y, 1);
         }
     }
@@ -88,14 +89,9 @@ impl Naive {
     /// Draws once and waits for the picture, row-major; alpha is 0 where nothing was drawn.
     pub fn picture(&self, gpu: &Gpu) -> Result<Vec<[u8; 4]>, RenderError> {
         let mut encoder = gpu.device.create_command_encoder(&Default::default());
-        self.record(gpu, &mut encoder, None);
+        self.record(&mut encoder, None);
         gpu.queue.submit([encoder.finish()]);
-        buffers::read_picture(gpu, self.color(), self.size)
-    }
-
-    /// The picture's buffer, rows `color_stride` apart; alpha is 0 where nothing was drawn.
-    pub fn color(&self) -> &wgpu::Buffer {
-        self.buffers.get("color")
+        buffers::read_picture(gpu, self.buffers.get(BufferId::Color)?, self.size)
     }
 }
 

@@ -3,121 +3,36 @@
 
 use std::{
     collections::HashMap,
-    sync::{
-        Arc, Mutex, MutexGuard, Weak,
-        atomic::{AtomicU64, Ordering},
-    },
+    sync::{Arc, Weak, atomic::AtomicU64},
 };
 
 use rayon::prelude::*;
 
-use super::{Gpu, RenderError};
+use super::{
+    device::Gpu,
+    error::RenderError,
+    pipeline_store::{Identity, Pipeline},
+    resource_id::ResourceId,
+};
 use crate::{
     accuracy::ShaderChecks,
     shader::{
         key::KernelKey,
         library::Library,
-        link::{self, Linked},
+        link,
         pass::Pass,
-        reflect::{self, Binding, BindingKind},
+        reflect::{Binding, BindingKind},
     },
 };
 
-/// A compute pipeline that knows its buffers by name.
-pub struct Pipeline {
-    pub label: String,
-    pipeline: wgpu::ComputePipeline,
-    layout: wgpu::BindGroupLayout,
-    bindings: Vec<Binding>,
-    /// When it was asked for last, by the store's own count.
-    used: AtomicU64,
-}
-
 /// Pipelines that are kept on a graphics card, and on a CPU adapter, whose compiled kernels take 10 MB and more each.
 const MOST_KEPT: [usize; 2] = [1024, 96];
-
-/// Interfaces that are kept, with a text of some 30 KB each.
-const MOST_INTERFACES: usize = 1024;
-
-/// What tells one pipeline from another: its text and its constants.
-#[derive(Clone, PartialEq, Eq, Hash)]
-struct Identity {
-    text: String,
-    entry: String,
-    constants: Vec<(String, u64)>,
-    is_trusted: bool,
-}
 
 /// What is to be compiled.
 struct PipelineDesc {
     label: String,
     identity: Identity,
     bindings: Vec<Binding>,
-}
-
-/// What a pipeline needs to know of its text: the names of its overrides, and what its entry point binds.
-struct Interface {
-    overrides: Vec<String>,
-    bindings: Vec<Binding>,
-}
-
-/// The compiled pipelines of a device. All renderers on it share them, so that one with other shaders compiles only what differs.
-#[derive(Default)]
-pub struct PipelineStore {
-    state: Mutex<StoreState>,
-    /// Counts what was asked for.
-    clock: AtomicU64,
-}
-
-#[derive(Default)]
-struct StoreState {
-    built: HashMap<Identity, Arc<Pipeline>>,
-    /// By text and entry point.
-    interfaces: HashMap<(String, String), Arc<Interface>>,
-}
-
-impl PipelineStore {
-    fn state(&self) -> MutexGuard<'_, StoreState> {
-        self.state.lock().unwrap_or_else(|poisoned| poisoned.into_inner())
-    }
-
-    fn find(&self, identity: &Identity) -> Option<Arc<Pipeline>> {
-        self.state().built.get(identity).cloned()
-    }
-
-    /// Stores a compiled pipeline, or returns the one that another renderer stored in the meantime. Above `most` pipelines, the half
-    /// that was not asked for longest is dropped.
-    fn keep(&self, identity: Identity, pipeline: Pipeline, most: usize) -> Arc<Pipeline> {
-        let mut state = self.state();
-        if state.built.len() >= most {
-            let used = |pipeline: &Arc<Pipeline>| pipeline.used.load(Ordering::Relaxed);
-            let mut times: Vec<u64> = state.built.values().map(used).collect();
-            let (_, &mut median, _) = times.select_nth_unstable(most / 2);
-            state.built.retain(|_, pipeline| used(pipeline) >= median);
-        }
-        state.built.entry(identity).or_insert_with(|| Arc::new(pipeline)).clone()
-    }
-
-    /// The interface of an entry point.
-    fn interface(&self, linked: &Linked, entry: &str, has_int64: bool) -> Result<Arc<Interface>, RenderError> {
-        let name = (linked.text.clone(), entry.to_owned());
-        if let Some(interface) = self.state().interfaces.get(&name) {
-            return Ok(interface.clone());
-        }
-        let reflected = reflect::reflect(linked, has_int64)?;
-        let overrides = reflected.module.overrides.iter().filter_map(|(_, one)| one.name.clone()).collect();
-        let interface = Arc::new(Interface { overrides, bindings: reflected.bindings(entry) });
-        let mut state = self.state();
-        if state.interfaces.len() >= MOST_INTERFACES {
-            state.interfaces.clear();
-        }
-        Ok(state.interfaces.entry(name).or_insert(interface).clone())
-    }
-
-    /// Notes that a pipeline is in use, so that others are dropped before it.
-    fn mark(&self, pipeline: &Pipeline) {
-        pipeline.used.store(self.clock.fetch_add(1, Ordering::Relaxed) + 1, Ordering::Relaxed);
-    }
 }
 
 /// The pipelines of a renderer, by what asks for them.
@@ -270,6 +185,14 @@ fn trusted(gpu: &Gpu, descriptor: wgpu::ShaderModuleDescriptor<'_>) -> wgpu::Sha
 
 fn compile(gpu: &Gpu, desc: &PipelineDesc) -> Result<Pipeline, RenderError> {
     let PipelineDesc { label, identity, bindings } = desc;
+    let resource = |binding: &Binding| match ResourceId::of_binding(&binding.name) {
+        Some(id) => Ok((binding.index, id)),
+        None => {
+            let reason = format!("it binds {}, which is no resource of rasterlab; src/gpu/resource_id.rs lists all", binding.name);
+            Err(RenderError::Pipeline { label: label.clone(), reason })
+        }
+    };
+    let resources = bindings.iter().map(resource).collect::<Result<_, _>>()?;
     let constants: Vec<(&str, f64)> = identity.constants.iter().map(|(name, bits)| (name.as_str(), f64::from_bits(*bits))).collect();
     let scope = gpu.device.push_error_scope(wgpu::ErrorFilter::Validation);
     let source = wgpu::ShaderSource::Wgsl(identity.text.as_str().into());
@@ -293,7 +216,7 @@ fn compile(gpu: &Gpu, desc: &PipelineDesc) -> Result<Pipeline, RenderError> {
     });
     match pollster::block_on(scope.pop()) {
         Some(error) => Err(RenderError::Pipeline { label: label.clone(), reason: error.to_string() }),
-        None => Ok(Pipeline { label: label.clone(), pipeline, layout, bindings: bindings.clone(), used: AtomicU64::new(0) }),
+        None => Ok(Pipeline { label: label.clone(), pipeline, layout, bindings: resources, used: AtomicU64::new(0) }),
     }
 }
 
@@ -310,16 +233,4 @@ pub fn layout_entry(binding: &Binding, visibility: wgpu::ShaderStages) -> wgpu::
         },
     };
     wgpu::BindGroupLayoutEntry { binding: binding.index, visibility, ty, count: None }
-}
-
-impl Pipeline {
-    /// Binds what the shader names, and sets the pipeline.
-    pub fn bind<'a>(&self, gpu: &Gpu, pass: &mut wgpu::ComputePass<'_>, resource: impl Fn(&str) -> wgpu::BindingResource<'a>) {
-        let entry = |binding: &Binding| wgpu::BindGroupEntry { binding: binding.index, resource: resource(&binding.name) };
-        let entries: Vec<_> = self.bindings.iter().map(entry).collect();
-        let group =
-            gpu.device.create_bind_group(&wgpu::BindGroupDescriptor { label: Some(&self.label), layout: &self.layout, entries: &entries });
-        pass.set_pipeline(&self.pipeline);
-        pass.set_bind_group(0, &group, &[]);
-    }
 }

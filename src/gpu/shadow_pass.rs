@@ -1,115 +1,131 @@
-//! The lamp: a renderer inside the renderer, which draws what a directional light sees, depth alone, into the map by which
-//! the picture is shaded. It reads the scene's buffers, bent as the picture bends them, and has all others to itself.
+//! The shadow pass: a second view of the scene, as a directional light sees it. Depths alone are drawn, into the map by which the
+//! picture is shaded. The scene's buffers are read as the picture's passes deformed them.
 
 use super::{
-    BufferNote, RenderError, Renderer,
-    explain::pass_purpose,
-    prepare::{first_capacities, recorded_capacities},
-    uniforms::{CounterRecord, LightUniform},
+    buffers::{BufferNote, Buffers},
+    device::Gpu,
+    error::RenderError,
+    frame_layout::Target,
+    pass_purpose::pass_purpose,
+    queues::recorded_capacities,
+    recording::{Device, Resources, Timing},
+    records::{CounterRecord, ShadowMapUniform},
+    resource_id::{BufferId, ClearedBy, TextureId},
+    scene_resources::SceneResources,
+    textures::WordTexture,
+    timer::Timer,
+    view_resources::{Request, ViewResources},
 };
 use crate::{
     accuracy::{Culling, PinnedOptions, Visibility},
     effects::Stack,
-    frame::ShadowMap,
-    plan::{AccuracyRequest, Note, Plan, Tuning},
+    plan::{AccuracyRequest, Note},
     scene::view::View,
-    shader::library::Library,
+    shader::pass::Pass,
 };
 
-/// See the module's first line.
-pub(super) struct ShadowPass {
-    renderer: Renderer,
-    plan: Plan,
-    view: View,
-}
-
-/// Buffers that the lamp has from the picture.
-const SHARED: [&str; 2] = ["vertex_bytes", "index_bytes"];
-
-impl Renderer {
-    /// Plans what the light of the stack sees, if it has one, and makes room for it.
-    pub(super) fn prepare_shadow_pass(&mut self, view: &View, stack: &Stack) -> Result<(), RenderError> {
-        let scene = self.scene.clone().ok_or(RenderError::NoScene)?;
-        let Some(meshlet_visibility) = stack.light_view(&scene, view) else {
-            self.shadow_pass = None;
-            self.buffers.keep(|name| !matches!(name, "light" | "shadow_map"));
-            return Ok(());
-        };
-        let casting = stack.casting();
-        let mut renderer = match self.shadow_pass.take() {
-            Some(shadow_pass) => shadow_pass.renderer,
-            // The picture's own pipelines and stamps are lent to it while it records.
-            None => Self { timer: None, is_shadow_pass: true, ..Self::with_library(self.gpu.clone(), Library::default()) },
-        };
-        if renderer.scene.is_none() {
-            renderer.capacities = first_capacities(&scene);
-        }
-        renderer.tuning = Tuning { listed_tiles: false, ..self.tuning };
-        renderer.scene = Some(scene);
-        renderer.texels = self.texels.clone();
-        SHARED.iter().for_each(|name| renderer.buffers.share(name, &self.buffers));
-        let accuracy = AccuracyRequest { pins: PinnedOptions::of(Visibility::Split32).with(Culling::None), ..AccuracyRequest::default() };
-        let plan = renderer.prepare(&meshlet_visibility, &casting, &accuracy)?;
-        let uniform = LightUniform::new(&meshlet_visibility);
-        let usage = wgpu::BufferUsages::UNIFORM;
-        self.buffers.fill(&self.gpu, "light", bytemuck::bytes_of(&uniform), usage, "what takes places to the shadow map")?;
-        self.buffers.ensure_texels(
-            &self.gpu,
-            "shadow_map",
-            meshlet_visibility.width,
-            "nearest depth key to the light per texel, 4 bytes",
-        )?;
-        self.shadow_pass = Some(Box::new(ShadowPass { renderer, plan, view: meshlet_visibility }));
-        Ok(())
-    }
-
-    /// Draws what the light sees, and copies it to where the shading reads it.
-    pub(super) fn record_shadow_pass(&mut self, encoder: &mut wgpu::CommandEncoder) -> Result<(), RenderError> {
-        let Some(mut shadow_pass) = self.shadow_pass.take() else { return Ok(()) };
-        let inner = &mut shadow_pass.renderer;
-        std::mem::swap(&mut inner.pipelines, &mut self.pipelines);
-        std::mem::swap(&mut inner.timer, &mut self.timer);
-        inner.clear(encoder, &["counters", "depth_keys"]);
-        let recorded = inner.record(encoder, &shadow_pass.plan.key, &shadow_pass.plan.key.light_frame(), &shadow_pass.view, false);
-        std::mem::swap(&mut inner.pipelines, &mut self.pipelines);
-        std::mem::swap(&mut inner.timer, &mut self.timer);
-        self.buffers.fill_texels(encoder, "shadow_map", inner.buffers.get("depth_keys"));
-        self.shadow_pass = Some(shadow_pass);
-        recorded
-    }
-
-    /// How many entries the lamp's queues lost; they grow, so that the next picture is whole.
-    pub(super) fn collect_shadow_stats(&mut self, record: &CounterRecord) -> u32 {
-        let Some(shadow_pass) = &mut self.shadow_pass else { return 0 };
-        let lost = record.counters(&recorded_capacities(&shadow_pass.plan.key, &shadow_pass.renderer.capacities)).overflow;
-        if lost > 0 {
-            let key = shadow_pass.plan.key.clone();
-            shadow_pass.renderer.grow_queues(&key, record);
-        }
-        lost
-    }
+/// See the module's first lines.
+pub struct ShadowPass {
+    pub resources: ViewResources,
+    /// The scene as the light sees it.
+    pub view: View,
+    /// The uniform that maps positions to the shadow map.
+    pub uniform: Buffers,
+    pub map: WordTexture,
 }
 
 impl ShadowPass {
-    pub fn counters(&self) -> &wgpu::Buffer {
-        self.renderer.buffers.get("counters")
+    /// Plans what the light of the stack sees and makes room for it, with the resources of the pass before it; none where no effect
+    /// asks for shadows.
+    ///
+    /// # Errors
+    /// When the map or the scene does not fit.
+    pub fn prepare(
+        previous: Option<Self>,
+        device: &mut Device,
+        scene: &mut SceneResources,
+        view: &View,
+        stack: &Stack,
+    ) -> Result<Option<Self>, RenderError> {
+        let Some(view) = stack.light_view(scene.scene(), view) else { return Ok(None) };
+        let (mut resources, mut uniform, map) = match previous {
+            Some(Self { resources, uniform, map, .. }) => (resources, uniform, Some(map)),
+            None => (ViewResources::new(Target::ShadowMap, Some(scene.scene())), Buffers::default(), None),
+        };
+        let pins = PinnedOptions::of(Visibility::Split32).with(Culling::None);
+        let accuracy = AccuracyRequest { pins, ..AccuracyRequest::default() };
+        let shown = [view.width, view.height];
+        let request = Request { view: &view, stack: &stack.casting(), accuracy: &accuracy, shown, fewer_bits: None };
+        resources.prepare(device, scene, &request)?;
+        uniform.fill(&device.gpu, BufferId::ShadowMapView, bytemuck::bytes_of(&ShadowMapUniform::new(&view)))?;
+        let map = match map.filter(|map| map.texture.width() == view.width) {
+            Some(map) => map,
+            None => new_map(&device.gpu, view.width)?,
+        };
+        let passes = resources.frame()?.plan.key.light_frame();
+        resources.prepare_passes(device, passes, &Resources::of_scene(scene))?;
+        Ok(Some(Self { resources, view, uniform, map }))
     }
 
-    /// The map, and the scene as the light sees it.
-    pub fn read(&self) -> Result<ShadowMap, RenderError> {
-        let keys = self.renderer.words("depth_keys", self.view.pixels() as u64)?;
-        Ok(ShadowMap { depth_keys: keys, geometry: self.renderer.read_geometry(&self.plan.key)? })
+    /// Draws what the light sees, and copies it to the map.
+    ///
+    /// # Errors
+    /// When a buffer is missing.
+    pub fn record(&self, encoder: &mut wgpu::CommandEncoder, timer: Option<&mut Timer>) -> Result<(), RenderError> {
+        self.resources.clear(encoder, |occasion| occasion != ClearedBy::History)?;
+        self.resources.record_all(encoder, Timing { timer, ends_frame: false })?;
+        // Rows of the map are multiples of 256 bytes.
+        let layout = wgpu::TexelCopyBufferLayout { offset: 0, bytes_per_row: Some(4 * self.view.width), rows_per_image: None };
+        let source = wgpu::TexelCopyBufferInfo { buffer: self.resources.buffers.get(BufferId::DepthKeys)?, layout };
+        encoder.copy_buffer_to_texture(source, self.map.texture.as_image_copy(), self.map.texture.size());
+        Ok(())
+    }
+
+    /// How many entries the queues lost; they grow, so that the next picture is complete.
+    pub fn collect_stats(&mut self, record: &CounterRecord) -> u32 {
+        let Ok(frame) = self.resources.frame() else { return 0 };
+        let lost = record.counters(&recorded_capacities(&frame.plan.key, &self.resources.capacities)).overflow;
+        if lost > 0 {
+            self.resources.grow_queues(record);
+        }
+        lost
     }
 
     /// Its passes with their purposes.
-    pub fn passes(&self) -> impl Iterator<Item = Note> {
-        let why = |pass| format!("for the light: {}", pass_purpose(pass));
-        self.plan.key.light_frame().into_iter().map(move |pass| Note { name: format!("light {}", pass.label()), why: why(pass) })
+    pub fn passes(&self) -> Vec<Note> {
+        let passes = self.resources.frame().map(|frame| frame.plan.key.light_frame()).unwrap_or_default();
+        let note = |pass: Pass| Note { name: format!("light {}", pass.label()), why: format!("for the light: {}", pass_purpose(pass)) };
+        passes.into_iter().map(note).collect()
     }
 
-    /// What it holds besides the scene.
-    pub fn buffers(&self) -> impl Iterator<Item = BufferNote> {
-        let own = self.renderer.buffers.notes().into_iter().filter(|note| !SHARED.contains(&note.name.as_str()));
-        own.map(|note| BufferNote { name: format!("light {}", note.name), why: format!("for the light: {}", note.why), ..note })
+    /// What it holds for itself.
+    pub fn notes(&self) -> Vec<BufferNote> {
+        let own = self.resources.buffers.notes().into_iter();
+        own.map(|note| BufferNote { name: format!("light {}", note.name), why: format!("for the light: {}", note.why), ..note }).collect()
+    }
+}
+
+fn new_map(gpu: &Gpu, side: u32) -> Result<WordTexture, RenderError> {
+    let size = wgpu::Extent3d { width: side, height: side, depth_or_array_layers: 1 };
+    WordTexture::new(gpu, TextureId::ShadowMap, size, wgpu::TextureViewDimension::D2)
+}
+
+impl ShadowMapUniform {
+    /// The uniform of a light's view.
+    pub fn new(view: &View) -> Self {
+        let half = f64::from(view.width) * 0.5;
+        let row = |i: usize| view.clip_from_world.row(i);
+        let rounded = |row: glam::DVec4| row.to_array().map(|v| v as f32);
+        // Half a picture is one unit of normalized device coordinates, whose y points up.
+        let [column, down, depth] = [(row(0) + row(3)) * half, (row(3) - row(1)) * half, row(2)];
+        Self {
+            column: rounded(column),
+            row: rounded(down),
+            depth: rounded(depth),
+            texel_m: (1.0 / column.truncate().length()) as f32,
+            range_m: (1.0 / depth.truncate().length()) as f32,
+            side: view.width,
+            spare: 0,
+        }
     }
 }

@@ -2,7 +2,7 @@
 
 use std::{collections::HashSet, sync::Arc};
 
-use super::{Capture, Gpu, RenderError, Renderer, timer::Detail};
+use super::{capture::Capture, device::Gpu, error::RenderError, particles::Wait, renderer::Renderer, timer::Detail};
 use crate::{
     accuracy::{AXES, Axis, AxisOption, PinnedOptions, RenderScale},
     effects::Stack,
@@ -253,8 +253,8 @@ impl Entry {
     /// Draws twice without a pause and waits for the second: an idle device lowers its clocks, and others' frames empty its caches.
     fn sample(&mut self, preset: &Preset, is_kept: bool) -> Result<(), RenderError> {
         let accuracy = AccuracyRequest { pins: self.pins, ..preset.accuracy };
-        self.renderer.draw_timed(&self.view, &preset.stack, &accuracy, Detail::Whole, true)?;
-        self.renderer.draw_timed(&self.view, &preset.stack, &accuracy, Detail::Whole, true)?;
+        self.renderer.draw_timed(&self.view, &preset.stack, &accuracy, Detail::Whole, Wait::Simulation)?;
+        self.renderer.draw_timed(&self.view, &preset.stack, &accuracy, Detail::Whole, Wait::Simulation)?;
         let report = self.renderer.finish()?;
         match report.gpu_ms {
             Some(ms) if is_kept => {

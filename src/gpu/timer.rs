@@ -1,6 +1,6 @@
 //! GPU timestamps: one span per pass, and the whole frame from before the clears to the end of the last pass.
 
-use super::Gpu;
+use super::device::Gpu;
 
 /// Most spans in one frame.
 const MAX_SPANS: u32 = 64;

@@ -12,7 +12,7 @@ use super::{
 use crate::{
     accuracy::Visibility,
     frame::vertex_flags,
-    gpu::{Capture, uniforms::Capacities},
+    gpu::{Capacities, Capture},
     plan::Tuning,
     scene::{Scene, view::View},
 };
@@ -166,7 +166,7 @@ fn workgroups_indirect(context: &mut CaseContext) -> Result<(), EarlyEnd> {
     context.renderer.set_scene(&scene)?;
     context.renderer.set_capacities(Capacities { large: 65_600, tiles: 65_600, ..Capacities::default() });
     context.exact(&scene, &pixel_view(64, 64), &stack(&[]), &option, "65,600 large triangles")?;
-    let foreseen = Capacities { clip: 1, pieces: 1, medium: 1, large: 65_600, tiles: 65_600, bins: 1, listed: 0 };
+    let foreseen = Capacities { clip: 1, clipped_triangles: 1, medium: 1, large: 65_600, tiles: 65_600, bins: 1, listed: 0 };
     equal(&context.renderer.capacities(), &foreseen, "65,600 large triangles: room in the queues")?;
     // Tiles of the resolve: 66,048 of 8 x 8 pixels.
     let [a, b, c, d] = [[0, 0], [2048 * 256, 0], [2048 * 256, 2064 * 256], [0, 2064 * 256]];
@@ -191,7 +191,8 @@ struct Demand {
 
 impl Demand {
     fn new(queue: &'static str, entries: u32, scene: &Arc<Scene>, capacity: fn(&mut Capacities) -> &mut u32) -> Self {
-        let mut capacities = Capacities { clip: 4096, pieces: 4096, medium: 4096, large: 4096, tiles: 4096, bins: 65_536, listed: 0 };
+        let mut capacities =
+            Capacities { clip: 4096, clipped_triangles: 4096, medium: 4096, large: 4096, tiles: 4096, bins: 65_536, listed: 0 };
         *capacity(&mut capacities) = entries;
         Self { queue, capacities, scene: scene.clone(), capacity }
     }
@@ -211,7 +212,7 @@ fn demands() -> Vec<Demand> {
     let large = many([[-3000, -3000], [90_000, 4000], [4000, 90_000]]);
     vec![
         Demand::new("clip", n, &cut, |c| &mut c.clip),
-        Demand::new("clipped triangles", 2 * n, &cut, |c| &mut c.pieces),
+        Demand::new("clipped triangles", 2 * n, &cut, |c| &mut c.clipped_triangles),
         Demand::new("medium", n, &small, |c| &mut c.medium),
         Demand::new("large", n, &large, |c| &mut c.large),
         // A picture of 128 x 128 has four tiles.

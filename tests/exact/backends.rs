@@ -8,7 +8,7 @@ use glam::{DMat4, DVec3};
 use rasterlab::{
     accuracy::Visibility,
     frame::{Frame, NO_TRIANGLE},
-    gpu::{Capture, Renderer, uniforms::Capacities},
+    gpu::{Capacities, Capture, Renderer},
     measure::compare,
     oracle,
     plan::Tuning,

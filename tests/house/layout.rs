@@ -1,75 +1,141 @@
-//! Promise: every struct shared by Rust and WGSL agrees by name, order, kind and offset. Needs no adapter.
+//! Promise: every struct shared by Rust and WGSL agrees by name, order, kind, offset and size, and every binding has a resource. Needs
+//! no adapter.
 
+use std::collections::BTreeSet;
+
+use naga::{Module, TypeInner};
 use rasterlab::{
-    accuracy::Visibility,
-    effects::{EFFECTS, Effect},
-    gpu::culling::{CullingUniform, InstanceRecord, MeshletRecord},
-    gpu::deforms::{DeformRecord, ShapeRecord},
-    gpu::dots::{DotFrame, DotRunRecord},
-    gpu::particle_readback::{ParticleStepUniform, StepParams},
-    gpu::texels::{LookupRecord, MaterialRecord},
-    gpu::uniforms::{CounterRecord, DrawRecord, FrameUniform, GpuRecord, LightUniform, ScalingUniform},
+    accuracy::{Culling, DotCulling, Visibility},
+    effects::{EFFECTS, Effect, dots::LineSource, draw_order::Mode},
+    gpu::{ResourceId, records::RECORDS},
     shader::{
         Fetch, KernelKey, Pass,
         library::Library,
         link,
-        pass::{CullPhase, RasterPhase},
         reflect::{self, Reflected},
     },
 };
 
-fn reflected(pass: Pass, effects: Vec<&'static Effect>) -> Reflected {
-    let key = KernelKey::complete(Fetch::Indexed, Visibility::Split32, effects);
-    let linked = link::link(&Library::Embedded, &format!("passes/{}", pass.stem()), &key, &key.variants(pass)).expect("links");
-    reflect::reflect(&linked, false).expect("validates")
+fn reflected(key: &KernelKey, pass: Pass) -> Reflected {
+    let linked = link::link(&Library::Embedded, &format!("passes/{}", pass.stem()), key, &key.variants(pass)).expect("links");
+    reflect::reflect(&linked, true).expect("validates")
 }
 
-fn check_twin<T: GpuRecord>(reflected: &Reflected) {
-    let (span, members) = reflected.layout(T::WGSL).unwrap_or_else(|| panic!("no WGSL struct {}", T::WGSL));
-    let wgsl: Vec<_> = members.iter().map(|m| (m.name.as_str(), m.offset)).collect();
-    assert_eq!(wgsl, T::MEMBERS, "{}: WGSL on the left, Rust on the right", T::WGSL);
-    assert!(span.abs_diff(size_of::<T>()) < 16, "{}: WGSL spans {span} bytes, Rust {}", T::WGSL, size_of::<T>());
+fn whole(visibility: Visibility, effects: &[&'static Effect]) -> KernelKey {
+    KernelKey::complete(Fetch::Indexed, visibility, effects.to_vec())
+}
+
+/// Keys that together bind every resource and declare every shared struct.
+fn keys() -> Vec<KernelKey> {
+    let plain = whole(Visibility::Split32, &[]);
+    let mut culling = plain.clone();
+    culling.options.culling = Culling::TwoPass;
+    let mut ordered = whole(Visibility::Packed64, &[&rasterlab::effects::draw_order::EFFECT]);
+    ordered.samples.draw_order = Some(Mode::Submission);
+    let dots = |line_source, dot_culling| {
+        let mut key = whole(Visibility::Split32, &[&rasterlab::effects::dots::EFFECT]);
+        (key.effects.dots, key.options.dot_culling) = (Some(line_source), dot_culling);
+        key
+    };
+    let one = |effect| whole(Visibility::Split32, &[effect]);
+    vec![
+        plain,
+        culling,
+        ordered,
+        dots(LineSource::Edges, DotCulling::Gpu),
+        dots(LineSource::Polyline, DotCulling::Cpu),
+        one(&rasterlab::effects::shadow::EFFECT),
+        one(&rasterlab::effects::overdraw::EFFECT),
+        one(&rasterlab::effects::xray::EFFECT),
+        whole(Visibility::Tiled, &[]),
+        whole(Visibility::Packed32, &[]),
+    ]
+}
+
+/// Every pass of those keys, with those that only some pictures have, and the naive baseline.
+fn modules() -> Vec<(String, Reflected, Vec<reflect::Binding>)> {
+    let mut modules = Vec::new();
+    for key in keys() {
+        let mut passes = key.frame();
+        passes.extend([Pass::Skin, Pass::Particles, Pass::Scale]);
+        passes.extend(key.effects.dots.map(|_| Pass::DotsProbe));
+        let mut seen = BTreeSet::new();
+        for pass in passes.into_iter().filter(|pass| seen.insert(pass.label())) {
+            let module = reflected(&key, pass);
+            let bindings = module.bindings(pass.entry());
+            assert!(!bindings.is_empty(), "{key} {}: no bindings", pass.label());
+            modules.push((format!("{key} {}", pass.label()), module, bindings));
+        }
+    }
+    let key = whole(Visibility::Split32, &[]);
+    let naive = link::link(&Library::Embedded, "baselines/naive", &key, &[]).expect("links");
+    let naive = reflect::reflect(&naive, false).expect("validates");
+    let bindings = ["naive_clear", "naive_raster", "naive_resolve"].iter().flat_map(|entry| naive.bindings(entry)).collect();
+    modules.push(("naive".into(), naive, bindings));
+    modules
+}
+
+/// Bytes from one element to the next, where a binding is an array, and the name of its struct, where it has one.
+fn element(module: &Module, binding: u32) -> (Option<usize>, Option<String>) {
+    let is_it = |v: &naga::GlobalVariable| v.binding.as_ref().is_some_and(|b| b.binding == binding);
+    let (_, variable) = module.global_variables.iter().find(|(_, v)| is_it(v)).expect("a binding is a variable");
+    let (stride, ty) = match module.types[variable.ty].inner {
+        TypeInner::Array { base, stride, .. } => (Some(stride as usize), base),
+        _ => (None, variable.ty),
+    };
+    let ty = &module.types[ty];
+    (stride, matches!(ty.inner, TypeInner::Struct { .. }).then(|| ty.name.clone()).flatten())
 }
 
 #[test]
-fn uniforms_and_records_agree() {
-    let small = reflected(Pass::RasterSmall(RasterPhase::Depth), vec![]);
-    check_twin::<FrameUniform>(&small);
-    check_twin::<DrawRecord>(&small);
-    check_twin::<CounterRecord>(&small);
-    check_twin::<ScalingUniform>(&reflected(Pass::Scale, vec![]));
-    let dots = reflected(Pass::DotsDraw, vec![]);
-    check_twin::<DotFrame>(&dots);
-    check_twin::<DotRunRecord>(&dots);
-    check_twin::<LightUniform>(&reflected(Pass::Resolve, vec![&rasterlab::effects::shadow::EFFECT]));
-    let skin = reflected(Pass::Skin, vec![]);
-    check_twin::<DeformRecord>(&skin);
-    check_twin::<ShapeRecord>(&skin);
-    let cull = reflected(Pass::Cull(CullPhase::Late), vec![]);
-    check_twin::<MeshletRecord>(&cull);
-    check_twin::<InstanceRecord>(&cull);
-    check_twin::<CullingUniform>(&cull);
-    // Read word by word, in the order of their members.
-    let resolve = reflected(Pass::Resolve, vec![]);
-    check_twin::<LookupRecord>(&resolve);
-    check_twin::<MaterialRecord>(&resolve);
-    let particles = reflected(Pass::Particles, vec![]);
-    check_twin::<ParticleStepUniform>(&particles);
-    check_twin::<StepParams>(&particles);
+fn every_shared_struct_agrees_by_name_order_kind_offset_and_size() {
+    let mut seen = BTreeSet::new();
+    for (what, module, _) in modules() {
+        for record in RECORDS {
+            let Some((span, members)) = module.layout(record.wgsl) else { continue };
+            let wgsl: Vec<_> = members.iter().map(|m| (m.name.as_str(), m.offset, m.kind.as_str())).collect();
+            let rust: Vec<_> = record.members.iter().map(|m| (m.name, m.offset, m.kind)).collect();
+            assert_eq!(wgsl, rust, "{what}, {}: WGSL on the left, Rust on the right", record.wgsl);
+            // A struct of vectors spans more than its members in WGSL.
+            assert!(span.abs_diff(record.size) < 16, "{what}, {}: WGSL spans {span} bytes, Rust {}", record.wgsl, record.size);
+            seen.insert(record.wgsl);
+        }
+    }
+    let missing: Vec<_> = RECORDS.iter().map(|record| record.wgsl).filter(|name| !seen.contains(name)).collect();
+    assert!(missing.is_empty(), "no pass declares {missing:?}");
 }
 
 #[test]
-fn arrays_of_records_have_one_stride() {
-    let (span, _) = reflected(Pass::Project, vec![]).layout("Draw").expect("there");
-    assert_eq!(span, size_of::<DrawRecord>());
-    let (span, _) = reflected(Pass::Particles, vec![]).layout("StepParams").expect("there");
-    assert_eq!(span, size_of::<StepParams>());
+fn every_binding_has_a_resource_and_every_bound_struct_is_shared() {
+    let mut bound = BTreeSet::new();
+    for (what, module, bindings) in modules() {
+        for binding in bindings {
+            let resource = ResourceId::of_binding(&binding.name);
+            bound.extend(resource);
+            assert!(resource.is_some(), "{what} binds {}, which src/gpu/resource_id.rs does not list", binding.name);
+            let (stride, name) = element(&module.module, binding.index);
+            // The parameters of effects are compared with the effects below.
+            let Some(name) = name.filter(|name| name != "Effects") else { continue };
+            let record = RECORDS.iter().find(|record| record.wgsl == name);
+            let record = record.unwrap_or_else(|| panic!("{what} binds {name}, which src/gpu/records.rs does not list"));
+            assert!(
+                stride.is_none_or(|stride| stride == record.size),
+                "{what}: {name} lies {stride:?} bytes apart, Rust has {}",
+                record.size
+            );
+        }
+    }
+    // Kernels bind neither what is only copied nor what only a draw of the hardware reads.
+    let copied = ["background", "previous"];
+    let all = ResourceId::all().filter(|id| !copied.contains(&id.name()));
+    let idle: Vec<_> = all.filter(|id| !bound.contains(id)).map(ResourceId::name).collect();
+    assert!(idle.is_empty(), "no pass binds {idle:?}");
 }
 
 #[test]
 fn every_effect_has_the_same_fields_on_both_sides() {
     for effect in EFFECTS {
-        let reflected = reflected(Pass::Resolve, vec![effect]);
+        let reflected = reflected(&whole(Visibility::Split32, &[effect]), Pass::Resolve);
         let (_, members) = reflected.layout(effect.wgsl_struct).unwrap_or_else(|| panic!("no WGSL struct {}", effect.wgsl_struct));
         let wgsl: Vec<_> = members.iter().map(|m| (m.name.as_str(), m.offset, m.kind.as_str())).collect();
         let rust: Vec<_> = effect.fields.iter().map(|f| (f.name, f.offset, f.wgsl.name())).collect();

@@ -1,5 +1,4 @@
-//! Culling: meshlets of the scene's meshes, and what a picture knows of every instance. Mirrors of the structs in
-//! `shaders/common/{meshlets,instances,culling}.wgsl`.
+//! Meshlets of the scene's meshes as the culling pass reads them, and the record that it reads of every instance.
 
 use std::collections::BTreeSet;
 
@@ -7,58 +6,15 @@ use glam::{DMat3, DMat4, DVec3, DVec4};
 use rayon::prelude::*;
 
 use super::{
-    Gpu, RenderError, STORAGE,
-    buffers::Buffers,
-    uniforms::{GpuRecord, gpu_record},
+    frame_layout::SceneCounts,
+    records::{InstanceRecord, MeshletRecord},
 };
-use crate::{
-    accuracy::Culling,
-    scene::{
-        Scene,
-        draw::Draw,
-        meshlets::{Meshlet, Meshlets, center_and_half, rounded_up},
-        view::View,
-    },
+use crate::scene::{
+    Scene,
+    draw::Draw,
+    meshlets::{Meshlet, Meshlets, center_and_half, rounded_up},
+    view::View,
 };
-
-gpu_record! {
-    /// One meshlet. Each member is explained in `shaders/common/meshlets.wgsl`.
-    pub struct MeshletRecord = "Meshlet" {
-        pub center: [f32; 4],
-        pub half: [f32; 4],
-        pub axis: [f32; 4],
-        pub first_triangle: u32,
-        pub first_vertex: u32,
-        pub triangles: u32,
-        pub vertices: u32,
-    }
-}
-
-gpu_record! {
-    /// One draw, for culling. Each member is explained in `shaders/common/instances.wgsl`.
-    pub struct InstanceRecord = "Instance" {
-        pub eye: [f32; 4],
-        pub center: [f32; 4],
-        pub half: [f32; 4],
-        pub first: u32,
-        pub first_meshlet: u32,
-        pub flags: u32,
-        pub spare: u32,
-    }
-}
-
-gpu_record! {
-    /// Numbers of a picture. Each member is explained in `shaders/common/culling.wgsl`.
-    pub struct CullingUniform = "Culling" {
-        pub meshlet_count: u32,
-        pub first_visible: u32,
-        pub hiz_width: u32,
-        pub hiz_first_block: u32,
-    }
-}
-
-/// Words of a survivor.
-const VISIBLE_MESHLET_WORDS: u64 = 4;
 
 /// `INSTANCE_FACES` and `INSTANCE_DEFORMS` of the shaders.
 const FACES: u32 = 1;
@@ -67,16 +23,17 @@ const DEFORMS: u32 = 2;
 /// The meshlets of a scene's primitives, as the kernels read them.
 #[derive(Default)]
 pub struct MeshletBuffers {
-    records: Vec<MeshletRecord>,
+    pub records: Vec<MeshletRecord>,
     /// Triangles and vertices of all meshlets.
-    lists: Vec<u32>,
-    /// First record of each primitive, and how many; none for one that nobody shows.
+    pub lists: Vec<u32>,
+    /// First record of each primitive, and how many; none for a primitive without instances.
     spans: Vec<(u32, u32)>,
     /// Meshlets of all instances.
-    pub count: u32,
+    count: u32,
 }
 
 impl MeshletBuffers {
+    /// Divides every primitive that has an instance.
     pub fn of(scene: &Scene) -> Self {
         let shown: BTreeSet<usize> = scene.instances.iter().map(|instance| instance.primitive).collect();
         let divided: Vec<(usize, Meshlets)> =
@@ -94,8 +51,14 @@ impl MeshletBuffers {
         meshlet_buffers
     }
 
-    /// What a picture knows of every draw; one record at least.
-    fn instances(&self, scene: &Scene, draws: &[Draw], view: &View) -> Vec<InstanceRecord> {
+    /// How many meshlets there are.
+    pub fn counts(&self) -> SceneCounts {
+        let (meshlet_records, meshlet_words) = (self.records.len() as u64, self.lists.len() as u32);
+        SceneCounts { meshlets: self.count, meshlet_records, meshlet_words, ..SceneCounts::default() }
+    }
+
+    /// A record of every draw as `view` sees it; one at least.
+    pub fn instances(&self, scene: &Scene, draws: &[Draw], view: &View) -> Vec<InstanceRecord> {
         let mut first = 0;
         let mut records: Vec<InstanceRecord> = draws
             .iter()
@@ -126,7 +89,7 @@ fn record(meshlet: &Meshlet, first_triangle: u32, first_vertex: u32) -> MeshletR
 
 fn instance(scene: &Scene, draw: &Draw, view: &View) -> InstanceRecord {
     let primitive = &scene.primitives[draw.primitive];
-    // Floats bend a vertex within 2^-18 of the places to which its joints take it; the box holds those.
+    // In floats, joints take a vertex to within 2^-18 of its exact position; the box holds both.
     let (center, half) = center_and_half(&draw.object_bounds(primitive), 1.0 / f64::from(1 << 16));
     let deforms = draw.deform.is_some();
     let sight = if deforms || draw.double_sided { None } else { Sight::of(draw, view) };
@@ -185,59 +148,5 @@ impl Sight {
         let length = (lengths[0] * lengths[0] + lengths[1] * lengths[1]).sqrt() * (1.0 + 1e-5);
         let is_usable = eye.is_finite() && eye.abs().max_element() < 1e12 && (1e-24..1e24).contains(&area) && length < 1e24;
         is_usable.then(|| Self { eye: eye.as_vec4().into(), area: area as f32, length: rounded_up(length) })
-    }
-}
-
-/// Whole blocks of 64 x 64 pixels.
-fn blocks(view: &View) -> [u32; 2] {
-    [view.width.div_ceil(64), view.height.div_ceil(64)]
-}
-
-impl Buffers {
-    /// Makes everything that culling reads hold this picture. The meshlets themselves stay while the scene does.
-    pub(super) fn fill_culling(
-        &mut self,
-        gpu: &Gpu,
-        meshlet_buffers: &MeshletBuffers,
-        option: Culling,
-        (scene, draws, view): (&Scene, &[Draw], &View),
-    ) -> Result<(), RenderError> {
-        let [across, down] = blocks(view);
-        let (tiles, lists) = (64 * across * down, meshlet_buffers.lists.len() as u64);
-        let uniform = CullingUniform {
-            meshlet_count: meshlet_buffers.count,
-            first_visible: lists as u32,
-            hiz_width: 8 * across,
-            hiz_first_block: tiles,
-        };
-        self.fill(gpu, "culling", bytemuck::bytes_of(&uniform), wgpu::BufferUsages::UNIFORM, "how many meshlets there are")?;
-        let instances = meshlet_buffers.instances(scene, draws, view);
-        self.fill(gpu, "instances", bytemuck::cast_slice(&instances), STORAGE, "a box round every instance, and from where it is seen")?;
-        if !self.has("meshlets") {
-            self.fill(
-                gpu,
-                "meshlets",
-                bytemuck::cast_slice(&meshlet_buffers.records),
-                STORAGE,
-                "bounds of meshlet_buffers of up to 64 triangles",
-            )?;
-            let room = 4 * (lists + VISIBLE_MESHLET_WORDS * u64::from(meshlet_buffers.count));
-            let why = "triangles and vertices of every meshlet, and behind them the meshlets that culling left";
-            self.fill_room(gpu, "meshlet_lists", bytemuck::cast_slice(&meshlet_buffers.lists), room, STORAGE, why)?;
-        }
-        if option == Culling::TwoPass {
-            self.ensure(
-                gpu,
-                "meshlet_visibility",
-                4 * u64::from(meshlet_buffers.count),
-                STORAGE,
-                "which meshlets nothing hid in the picture before",
-            )?;
-        }
-        if option.occludes() {
-            let words = u64::from(tiles) + u64::from(across * down);
-            self.ensure(gpu, "hiz", 4 * words, STORAGE, "the farthest depth of every 8 x 8 and every 64 x 64 pixels")?;
-        }
-        Ok(())
     }
 }

@@ -7,8 +7,12 @@
 use std::mem::size_of;
 
 use super::{
-    Gpu, RenderError,
-    uniforms::{GpuRecord, format_word, gpu_record},
+    attributes::format_word,
+    device::Gpu,
+    error::RenderError,
+    records::{LookupRecord, MaterialRecord},
+    resource_id::TextureId,
+    textures::{self, WordTexture},
 };
 use crate::{
     math::linear_light,
@@ -21,36 +25,6 @@ use crate::{
 /// Words in a line, and lines in a layer.
 pub const WIDTH: u32 = 4096;
 
-gpu_record! {
-    /// How a texture is looked up. Each member is explained in `shaders/common/texels.wgsl`.
-    pub struct LookupRecord = "Lookup" {
-        pub levels: u32,
-        pub size: u32,
-        pub sampling: u32,
-        pub format: u32,
-        pub offset: u32,
-        pub stride: u32,
-        pub u_per_u: f32,
-        pub u_per_v: f32,
-        pub u_offset: f32,
-        pub v_per_u: f32,
-        pub v_per_v: f32,
-        pub v_offset: f32,
-    }
-}
-
-gpu_record! {
-    /// The material of one primitive. Each member is explained in `shaders/common/texels.wgsl`.
-    pub struct MaterialRecord = "Paint" {
-        pub flags: u32,
-        pub red: f32,
-        pub green: f32,
-        pub blue: f32,
-        pub alpha_threshold: u32,
-        pub first_corner: u32,
-    }
-}
-
 /// Words of a primitive's record: its paint, and how base colour and emission are looked up.
 pub const RECORD_WORDS: usize = (size_of::<MaterialRecord>() + 2 * size_of::<LookupRecord>()) / 4;
 
@@ -60,53 +34,32 @@ const EMISSION_TEXTURE: u32 = 2;
 const UNLIT: u32 = 4;
 const MASKED: u32 = 8;
 
-/// The texture on a device.
-#[derive(Clone)]
-pub struct Texels {
-    pub view: wgpu::TextureView,
-    pub bytes: u64,
-}
-
-impl Texels {
-    /// Uploads what `scene` needs.
-    pub fn new(gpu: &Gpu, scene: &Scene) -> Result<Self, RenderError> {
-        let mut words = words(scene);
-        let line = WIDTH as usize;
-        words.resize(words.len().next_multiple_of(line), 0);
-        let lines = (words.len() / line) as u32;
-        let (height, layers) = (lines.min(WIDTH), lines.div_ceil(WIDTH));
-        let bytes = 4 * u64::from(WIDTH) * u64::from(height) * u64::from(layers);
-        let most = gpu.device.limits().max_texture_array_layers;
-        if layers > most {
-            let limit = 4 * u64::from(WIDTH) * u64::from(WIDTH) * u64::from(most);
-            return Err(RenderError::TooLarge { buffer: "texels", bytes, limit });
-        }
-        let scope = gpu.device.push_error_scope(wgpu::ErrorFilter::OutOfMemory);
-        let texture = gpu.device.create_texture(&wgpu::TextureDescriptor {
-            label: Some("texels"),
-            size: wgpu::Extent3d { width: WIDTH, height, depth_or_array_layers: layers },
-            mip_level_count: 1,
-            sample_count: 1,
-            dimension: wgpu::TextureDimension::D2,
-            format: wgpu::TextureFormat::R32Uint,
-            usage: wgpu::TextureUsages::COPY_DST | wgpu::TextureUsages::TEXTURE_BINDING,
-            view_formats: &[],
-        });
-        if pollster::block_on(scope.pop()).is_some() {
-            return Err(RenderError::OutOfMemory { buffer: "texels", bytes });
-        }
-        for (layer, words) in words.chunks(line * WIDTH as usize).enumerate() {
-            let rows = (words.len() / line) as u32;
-            let origin = wgpu::Origin3d { x: 0, y: 0, z: layer as u32 };
-            let target = wgpu::TexelCopyTextureInfo { origin, ..texture.as_image_copy() };
-            let layout = wgpu::TexelCopyBufferLayout { offset: 0, bytes_per_row: Some(4 * WIDTH), rows_per_image: None };
-            let size = wgpu::Extent3d { width: WIDTH, height: rows, depth_or_array_layers: 1 };
-            gpu.queue.write_texture(target, bytemuck::cast_slice(words), layout, size);
-        }
-        let view = texture
-            .create_view(&wgpu::TextureViewDescriptor { dimension: Some(wgpu::TextureViewDimension::D2Array), ..Default::default() });
-        Ok(Self { view, bytes })
+/// Uploads what the materials of `scene` need.
+///
+/// # Errors
+/// When they take more layers than the adapter's textures have, or more memory than there is.
+pub fn upload(gpu: &Gpu, scene: &Scene) -> Result<WordTexture, RenderError> {
+    let id = TextureId::MaterialAtlas;
+    let mut words = words(scene);
+    let line = WIDTH as usize;
+    words.resize(words.len().next_multiple_of(line), 0);
+    let lines = (words.len() / line) as u32;
+    let size = wgpu::Extent3d { width: WIDTH, height: lines.min(WIDTH), depth_or_array_layers: lines.div_ceil(WIDTH) };
+    let most = gpu.device.limits().max_texture_array_layers;
+    if size.depth_or_array_layers > most {
+        let limit = textures::bytes_of(wgpu::Extent3d { width: WIDTH, height: WIDTH, depth_or_array_layers: most });
+        return Err(RenderError::TooLarge { buffer: id.name(), bytes: textures::bytes_of(size), limit });
     }
+    let atlas = WordTexture::new(gpu, id, size, wgpu::TextureViewDimension::D2Array)?;
+    for (layer, words) in words.chunks(line * WIDTH as usize).enumerate() {
+        let rows = (words.len() / line) as u32;
+        let origin = wgpu::Origin3d { x: 0, y: 0, z: layer as u32 };
+        let target = wgpu::TexelCopyTextureInfo { origin, ..atlas.texture.as_image_copy() };
+        let layout = wgpu::TexelCopyBufferLayout { offset: 0, bytes_per_row: Some(4 * WIDTH), rows_per_image: None };
+        let size = wgpu::Extent3d { width: WIDTH, height: rows, depth_or_array_layers: 1 };
+        gpu.queue.write_texture(target, bytemuck::cast_slice(words), layout, size);
+    }
+    Ok(atlas)
 }
 
 /// Everything, word after word.

@@ -1,0 +1,60 @@
+//! The layout of `vertex_bytes`: attributes as the file has them, then vertices that joints and morph targets deform, then packed
+//! positions.
+
+use super::packing;
+use crate::scene::{Accessor, Scene};
+
+/// Bytes of a deformed vertex: position and normal, three floats each.
+pub const DEFORMED_BYTES: u32 = 24;
+
+/// Bytes of each part.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct AttributeLayout {
+    file: u64,
+    deformed: u64,
+    packed: u64,
+    /// Bits per axis of packed positions, where there are any.
+    pub packed_bits: Option<u32>,
+}
+
+impl AttributeLayout {
+    /// The layout of a scene with positions packed to so many bits per axis, if any.
+    pub fn new(scene: &Scene, packed_bits: Option<u32>) -> Self {
+        Self {
+            file: scene.vertex_bytes.len() as u64,
+            deformed: u64::from(DEFORMED_BYTES) * scene.deformable_vertex_count(),
+            packed: packed_bits.map_or(0, |bits| packing::bytes_of(scene, bits)),
+            packed_bits,
+        }
+    }
+
+    /// Bytes in all.
+    pub const fn bytes(&self) -> u64 {
+        self.file + self.deformed + self.packed
+    }
+
+    /// First byte of a vertex that may be deformed, by its index among all of those.
+    pub const fn deformed_vertex(&self, index: u32) -> u64 {
+        self.file + DEFORMED_BYTES as u64 * index as u64
+    }
+
+    /// First byte of the packed positions.
+    pub const fn first_packed(&self) -> u64 {
+        self.file + self.deformed
+    }
+
+    /// What the buffer holds, for `explain`.
+    pub const fn purpose(&self) -> &'static str {
+        match (self.deformed, self.packed_bits) {
+            (0, None) => "attributes as the file has them",
+            (0, Some(10)) => "attributes as the file has them, then packed positions, 4 bytes each",
+            (0, Some(_)) => "attributes as the file has them, then packed positions, 8 bytes each",
+            _ => "attributes as the file has them, then deformed vertices, 24 bytes each",
+        }
+    }
+}
+
+/// Component type in bits 0 to 2, normalized in bit 3 (`shaders/common/pull.wgsl`), number of components from bit 8.
+pub fn format_word(accessor: &Accessor) -> u32 {
+    (accessor.component_type as u32 - 5120) | u32::from(accessor.normalized) << 3 | accessor.components << 8
+}

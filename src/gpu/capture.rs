@@ -1,0 +1,198 @@
+//! Captures: whole pictures with all that decided them, for a judge.
+
+use super::{
+    buffers,
+    error::RenderError,
+    frame_layout::Target,
+    particles::Wait,
+    queues::recorded_capacities,
+    readback::{Readback, count_layers, shadow_map},
+    recording::Timing,
+    records::CounterRecord,
+    renderer::{Renderer, shared},
+    resource_id::{BufferId, ClearedBy},
+    timer::Detail,
+    view_resources::{Request, ViewResources},
+};
+use crate::{
+    accuracy::{Culling, DepthFormat},
+    effects::{Stack, hooks::Layers},
+    frame::{AdapterPicture, Counters, Frame, Geometry},
+    plan::AccuracyRequest,
+    scene::view::View,
+};
+
+/// How often a picture is drawn again because a queue overflowed.
+const MOST_REDRAWS: usize = 11;
+
+/// A picture with the integers that decided it.
+#[derive(Clone, Debug)]
+pub struct Capture {
+    pub frame: Frame,
+    pub geometry: Geometry,
+    /// Layers per pixel, each covered sample counted before the depth test.
+    pub layers: Option<Vec<u32>>,
+    /// The picture before this one, where an effect reads it.
+    pub previous: Option<Vec<[u8; 4]>>,
+    /// The picture at the size that is shown, where it was drawn at another.
+    pub shown: Option<Frame>,
+}
+
+impl Capture {
+    /// The picture with what a judge compares.
+    pub fn picture(&self) -> AdapterPicture<'_> {
+        let (layers, previous) = (self.layers.as_deref(), self.previous.as_deref());
+        AdapterPicture { frame: &self.frame, geometry: &self.geometry, layers, previous }
+    }
+
+    /// The picture as it is shown.
+    pub fn into_shown(self) -> Frame {
+        self.shown.unwrap_or(self.frame)
+    }
+}
+
+impl Renderer {
+    /// The last of `moments`, drawn after those before it, as [`Self::capture`] does.
+    ///
+    /// # Errors
+    /// As [`Self::draw_complete`].
+    ///
+    /// # Panics
+    /// Without a moment.
+    pub fn capture_last(&mut self, moments: &[(View, Stack)], accuracy: &AccuracyRequest) -> Result<Capture, RenderError> {
+        let ((view, stack), before) = moments.split_last().expect("a picture shows a moment");
+        self.clear_history();
+        for (view, stack) in before {
+            self.draw_complete(view, stack, accuracy)?;
+        }
+        self.capture_next(view, stack, accuracy)
+    }
+
+    /// Draws a picture with no history, waits, draws again with larger queues while one overflows, and reads everything back.
+    ///
+    /// # Errors
+    /// As [`Self::draw_complete`].
+    pub fn capture(&mut self, view: &View, stack: &Stack, accuracy: &AccuracyRequest) -> Result<Capture, RenderError> {
+        self.clear_history();
+        self.capture_next(view, stack, accuracy)
+    }
+
+    /// The same of a picture that comes after the last one.
+    ///
+    /// # Errors
+    /// As [`Self::draw_complete`].
+    pub fn capture_next(&mut self, view: &View, stack: &Stack, accuracy: &AccuracyRequest) -> Result<Capture, RenderError> {
+        let mut counters = self.draw_complete(view, stack, accuracy)?;
+        let shown = [view.width, view.height];
+        if view.pixels() == 0 {
+            let frame = Frame { width: view.width, height: view.height, ..Frame::default() };
+            return Ok(Capture { frame, geometry: Geometry::default(), layers: Some(Vec::new()), previous: None, shown: None });
+        }
+        let key = self.picture.frame()?.plan.key.clone();
+        let mut judge = if key.culls() { Some(self.redraw_unculled(view, stack, accuracy, &mut counters)?) } else { None };
+        let scene = self.scene.as_ref().ok_or(RenderError::NoScene)?;
+        let gpu = &self.device.gpu;
+        let picture = Readback { gpu, scene, view: &self.picture };
+        // The judge asks for all triangles, culled ones too.
+        let all = Readback { view: judge.as_ref().unwrap_or(&self.picture), ..picture };
+        let [width, height] = self.picture.frame()?.layout.size;
+        let (triangle_id, depth) = picture.visibility()?;
+        let depth_keys_are_approximate =
+            !key.options.visibility.is_exact() || !matches!(key.options.depth, DepthFormat::Reversed | DepthFormat::Integer);
+        let frame = Frame {
+            width,
+            height,
+            triangle_id,
+            depth_key: depth,
+            color: picture.picture(BufferId::Color, [width, height])?,
+            counted: picture.layer_sums()?,
+            dots: picture.dot_strengths()?,
+            counters,
+            depth_keys_are_approximate,
+        };
+        let read = |id, size| self.picture.buffers.get(id).and_then(|buffer| buffers::read_picture(gpu, buffer, size));
+        let previous = key.reads_previous().then(|| read(BufferId::Previous, [width, height])).transpose()?;
+        let scaled = key.is_scaled().then(|| read(BufferId::ScaledColor, shown)).transpose()?;
+        let mut geometry = all.geometry(Some(&self.particles))?;
+        geometry.shadow_map = self.shadow.as_ref().map(|shadow| shadow_map(gpu, scene, shadow)).transpose()?.map(Box::new);
+        let is_counted = key.framebuffer.layers == Some(Layers::Overdraw);
+        let mut layers = if is_counted { Some(all.layer_sums()?) } else { None };
+        let others = shared(scene, &self.particles, self.shadow.as_ref());
+        if let Some(dots) = &self.picture.dots {
+            geometry.dots = dots.read(&mut self.device, &key, &mut self.picture.buffers, &others)?;
+        }
+        if layers.is_none() {
+            layers = Some(count_layers(&mut self.device, judge.as_mut().unwrap_or(&mut self.picture), &others)?);
+        }
+        let shown = scaled.map(|picture| frame.shown(shown, picture));
+        Ok(Capture { frame, geometry, layers, previous, shown })
+    }
+
+    /// Draws a culled picture once more as another view, for the judge, who asks for the vertices, clipped triangles and layers of all
+    /// triangles and for the counts of those that were rejected. Neither the picture nor what the next one starts from changes.
+    fn redraw_unculled(
+        &mut self,
+        view: &View,
+        stack: &Stack,
+        accuracy: &AccuracyRequest,
+        counters: &mut Counters,
+    ) -> Result<ViewResources, RenderError> {
+        let (shown, factor) = ([view.width, view.height], accuracy.scale().factor());
+        let (view, stack) = (view.scaled(factor), stack.scaled(factor));
+        let accuracy = AccuracyRequest { pins: accuracy.pins.with(Culling::None), ..*accuracy };
+        let request =
+            Request { view: &view, stack: &stack, accuracy: &accuracy, shown, fewer_bits: self.history.fewer_bits(&view, &stack) };
+        let Self { device, scene, picture, shadow, particles, .. } = self;
+        let scene = scene.as_mut().ok_or(RenderError::NoScene)?;
+        let mut judge = ViewResources::new(Target::Judge, None);
+        (judge.capacities, judge.force_all_paths) = (picture.capacities, picture.force_all_paths);
+        let mut lost = 0;
+        for _ in 0..MOST_REDRAWS {
+            judge.prepare(device, scene, &request)?;
+            let key = &judge.frame()?.plan.key;
+            let (room, passes) = (recorded_capacities(key, &judge.capacities), key.passes(&key.phases()));
+            judge.prepare_passes(device, passes, &shared(scene, particles, shadow.as_ref()))?;
+            let mut encoder = device.gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor { label: Some("judge") });
+            judge.clear(&mut encoder, |occasion| occasion != ClearedBy::History)?;
+            judge.record_all(&mut encoder, Timing { timer: None, ends_frame: true })?;
+            device.gpu.queue.submit([encoder.finish()]);
+            let bytes = buffers::read(&device.gpu, judge.buffers.get(BufferId::Counters)?, size_of::<CounterRecord>() as u64)?;
+            let record: CounterRecord = bytemuck::pod_read_unaligned(&bytes);
+            let all = record.counters(&room);
+            if all.overflow == 0 {
+                let Counters { overflow, depth_without_id, full_pixels, .. } = *counters;
+                *counters = Counters { overflow, depth_without_id, full_pixels, ..all };
+                return Ok(judge);
+            }
+            lost = all.overflow;
+            judge.grow_queues(&record);
+        }
+        Err(RenderError::Overflow(lost))
+    }
+
+    /// Draws until neither a queue nor a sum of layers overflows.
+    ///
+    /// # Errors
+    /// When the picture cannot be drawn on this adapter, one overflows for ever, or the device is lost.
+    pub fn draw_complete(&mut self, view: &View, stack: &Stack, accuracy: &AccuracyRequest) -> Result<Counters, RenderError> {
+        let mut lost = 0;
+        for _ in 0..MOST_REDRAWS {
+            self.draw_timed(view, stack, accuracy, Detail::Passes, Wait::Simulation)?;
+            if view.pixels() == 0 {
+                return Ok(Counters::default());
+            }
+            let report = self.finish()?;
+            if !report.redraw && report.counters.full_pixels > 0 {
+                return Err(RenderError::FullSums(report.counters.full_pixels));
+            }
+            if let Some(order) = report.order.filter(|order| !report.redraw && order.exceeds_sample_counter()) {
+                return Err(RenderError::Tickets(order.covered));
+            }
+            if !report.redraw {
+                return Ok(report.counters);
+            }
+            lost = report.counters.overflow;
+        }
+        Err(RenderError::Overflow(lost))
+    }
+}

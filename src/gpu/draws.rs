@@ -1,0 +1,148 @@
+//! Draw data: what a view's passes read about every instance, computed on the CPU when the scene, the viewpoint or the format of the
+//! positions change.
+
+use std::{ops::Range, sync::Arc};
+
+use glam::DMat3;
+
+use super::{
+    attributes::{AttributeLayout, DEFORMED_BYTES, format_word},
+    deforms::{Deforms, deformed_ranges},
+    frame_layout::SceneCounts,
+    meshlets::{MeshletBuffers, is_outside},
+    packing::PackedBox,
+    records::{DrawRecord, InstanceRecord},
+};
+use crate::{
+    math::rounded_columns,
+    scene::{
+        Accessor, Scene,
+        draw::{Draw, totals},
+        view::View,
+    },
+};
+
+/// What draw data follow from; equal inputs give equal data.
+#[derive(Clone, Debug, PartialEq)]
+pub struct DrawInputs {
+    pub view: View,
+    pub attributes: AttributeLayout,
+    /// Meshlets are culled, so every instance needs its record.
+    pub culls: bool,
+    /// Draws outside the picture are deformed too.
+    pub deforms_offscreen: bool,
+}
+
+/// See the module's first lines.
+pub struct DrawData {
+    scene: Arc<Scene>,
+    inputs: DrawInputs,
+    pub records: Vec<DrawRecord>,
+    pub deforms: Deforms,
+    /// Which of all vertices that may be deformed are deformed.
+    pub deformed: Vec<Range<u32>>,
+    pub instances: Vec<InstanceRecord>,
+    pub counts: SceneCounts,
+}
+
+impl DrawData {
+    /// Of the draws of `scene` as the view has them. `boxes` are those of packed positions, one per primitive.
+    pub fn new(scene: &Arc<Scene>, draws: &[Draw], inputs: DrawInputs, boxes: &[PackedBox], meshlets: Option<&MeshletBuffers>) -> Self {
+        let attributes = &inputs.attributes;
+        let record = |draw: &Draw| {
+            let record = DrawRecord::new(draw, scene, attributes);
+            boxes.get(draw.primitive).map_or(record, |packed| record.packed(packed, attributes.first_packed() as u32))
+        };
+        let mut records: Vec<DrawRecord> = draws.iter().map(record).collect();
+        // A binding holds an element at least, even where nothing is to be drawn.
+        records.resize(draws.len().max(1), DrawRecord::default());
+        // Nothing outside the picture is drawn, so it need not be deformed, unless its shadow may fall into the picture.
+        let is_deformed = |draw: &&Draw| inputs.deforms_offscreen || !is_outside(draw, scene);
+        let deforms = Deforms::of(scene, attributes, draws.iter().filter(is_deformed));
+        let deformed = deformed_ranges(scene, draws);
+        let instances = meshlets.map_or_else(Vec::new, |meshlets| meshlets.instances(scene, draws, &inputs.view));
+        let [vertices, triangles] = totals(scene, draws);
+        let counts = SceneCounts {
+            vertices,
+            triangles,
+            draws: draws.len() as u64,
+            deformable: deformed.last().map_or(0, |range| range.end),
+            deforms: deforms.records.len() as u64,
+            joint_vectors: deforms.joints.len() as u64,
+            morph_targets: deforms.morph_targets.len() as u64,
+            particles: 0,
+            ..meshlets.map_or_else(SceneCounts::default, MeshletBuffers::counts)
+        };
+        Self { scene: scene.clone(), inputs, records, deforms, deformed, instances, counts }
+    }
+
+    /// Would these inputs give the same data?
+    pub fn is_of(&self, scene: &Arc<Scene>, inputs: &DrawInputs) -> bool {
+        Arc::ptr_eq(&self.scene, scene) && self.inputs == *inputs
+    }
+}
+
+impl DrawRecord {
+    /// The record of a draw whose attributes lie as `attributes` says.
+    pub fn new(draw: &Draw, scene: &Scene, attributes: &AttributeLayout) -> Self {
+        let [x, y, z] = draw.origin;
+        let primitive = &scene.primitives[draw.primitive];
+        let material = &scene.materials[primitive.material];
+        let color = primitive.colors.as_ref();
+        let deformed = |part: usize| {
+            let offset = attributes.deformed_vertex(draw.first_deformable) as usize + 12 * part;
+            Accessor { stride: DEFORMED_BYTES, ..Accessor::packed_f32(offset, 3, primitive.vertex_count() as usize) }
+        };
+        let [positions, normals] =
+            if draw.deform.is_some() { [deformed(0), deformed(1)] } else { [primitive.positions, primitive.normals] };
+        Self {
+            clip_from_object: draw.clip_from_object,
+            world_from_object: rounded_columns(&draw.world_from_object),
+            normal_from_object: normal_from_object(draw),
+            base_color: material.base_color,
+            origin: [x, y, z, 0.0],
+            step: [0.0; 4],
+            first_vertex: draw.first_vertex,
+            vertex_count: primitive.vertex_count(),
+            first_triangle: draw.first_triangle,
+            flags: u32::from(draw.double_sided)
+                | u32::from(draw.mirrored) << 1
+                | u32::from(scene.particle_discs == Some(draw.primitive)) << 2
+                | (draw.primitive as u32) << 8,
+            topology: primitive.topology as u32,
+            index_offset: primitive.indices.map_or(0, |i| i.offset),
+            index_format: primitive.indices.map_or(0, |i| i.component_type.bytes()),
+            position_offset: positions.offset,
+            position_stride: positions.stride,
+            position_format: format_word(&positions),
+            normal_offset: normals.offset,
+            normal_stride: normals.stride,
+            normal_format: format_word(&normals),
+            color_offset: color.map_or(0, |c| c.offset),
+            color_stride: color.map_or(0, |c| c.stride),
+            color_format: color.map_or(0, format_word),
+        }
+    }
+}
+
+impl DrawRecord {
+    /// The same with positions in steps of a box, which begin `first` bytes into the attributes.
+    fn packed(self, packed: &PackedBox, first: u32) -> Self {
+        let wide = |[x, y, z]: [f32; 3]| [x, y, z, 0.0];
+        Self { origin: wide(packed.origin), step: wide(packed.step), position_offset: first + 4 * packed.first_word, ..self }
+    }
+}
+
+/// Cofactors of the placement, in the direction of its inverse transpose, scaled so that the largest entry is 1.
+fn normal_from_object(draw: &Draw) -> [[f32; 4]; 4] {
+    let m = DMat3::from_mat4(draw.world_from_object);
+    let mut cofactors = DMat3::from_cols(m.y_axis.cross(m.z_axis), m.z_axis.cross(m.x_axis), m.x_axis.cross(m.y_axis));
+    if draw.mirrored {
+        cofactors *= -1.0;
+    }
+    let largest = cofactors.to_cols_array().iter().fold(0.0, |max: f64, v| max.max(v.abs()));
+    if largest > 0.0 {
+        cofactors *= 1.0 / largest;
+    }
+    rounded_columns(&glam::DMat4::from_mat3(cofactors))
+}

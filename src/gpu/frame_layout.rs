@@ -1,0 +1,567 @@
+//! The layout of a frame, computed once from the kernel key, the scene's counts, the size of the picture and the room in the queues:
+//! which buffers it has and how large they are, what lies where in them, which bytes are cleared, and how many workgroups each
+//! pass takes. Buffers, uniforms, passes and readback all go by it.
+
+use std::{collections::BTreeMap, mem::offset_of, ops::Range};
+
+use super::{
+    buffers::color_stride,
+    queues::Capacities,
+    records::{
+        ClippedTriangleRecord, CounterRecord, CullingUniform, DeformRecord, DispatchArgs, DispatchSize, DotFrame, DotPoints, DotRunRecord,
+        DrawRecord, FrameUniform, InstanceRecord, MeshletRecord, MorphTargetRecord, OrderRecord, ScalingUniform, VertexRecord,
+    },
+    resource_id::{BufferId, ClearedBy},
+};
+use crate::{
+    accuracy::{Culling, DotCulling, Visibility},
+    effects::{draw_order::Mode, hooks::Layers},
+    math::{rounded_columns, srgb_byte},
+    scene::view::View,
+    shader::{
+        key::{FramebufferLayout, KernelKey},
+        pass::{Pass, TriangleSource},
+    },
+};
+
+/// For whom a view is drawn.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Target {
+    /// The picture that is shown.
+    Picture,
+    /// Depths alone, as a light sees the scene.
+    ShadowMap,
+    /// Geometry, counters and layers of all triangles, for the judge of a culled picture.
+    Judge,
+}
+
+/// What is drawn, in numbers.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct SceneCounts {
+    /// Vertices and triangles of all draws.
+    pub vertices: u64,
+    pub triangles: u64,
+    pub draws: u64,
+    /// End of the vertices that joints and morph targets deform, counted over all draws that may.
+    pub deformable: u32,
+    /// Records of what deforms, of joints and of morph targets.
+    pub deforms: u64,
+    pub joint_vectors: u64,
+    pub morph_targets: u64,
+    /// Meshlets of all instances.
+    pub meshlets: u32,
+    /// Meshlets of all primitives, and words that list their triangles and vertices.
+    pub meshlet_records: u64,
+    pub meshlet_words: u32,
+    pub particles: u32,
+}
+
+/// Dots of a picture, in numbers.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct DotCounts {
+    pub dots: u32,
+    pub runs: u32,
+    pub segments: u32,
+    /// Bytes that hold the ends of all segments.
+    pub segment_bytes: u64,
+    /// Dots that the CPU chose, where it does.
+    pub chosen: u32,
+}
+
+/// Everything that a layout follows from.
+#[derive(Clone, Debug)]
+pub struct LayoutInputs<'a> {
+    pub key: &'a KernelKey,
+    pub target: Target,
+    /// Pixels that are drawn, and that are shown.
+    pub size: [u32; 2],
+    pub shown: [u32; 2],
+    pub scene: SceneCounts,
+    pub dots: Option<DotCounts>,
+    /// Bytes of the effects' parameters; 0 where no uniform carries them.
+    pub effect_bytes: u64,
+    /// Room in the queues that the key's passes have.
+    pub capacities: Capacities,
+}
+
+/// A part of a buffer that holds one thing where the buffer holds several, one behind the other.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Region {
+    /// Projected vertices, then what sample effects and masks set up per triangle, then the rank of every triangle in a draw order.
+    VertexRecords,
+    SampleSetups,
+    TriangleRanks,
+    /// Depths and triangle ids of the nearest samples, then the x-ray's sums.
+    Nearest,
+    XraySums,
+    /// The picture, then the list of tiles that the resolve visits, or the strongest dot on every pixel.
+    Pixels,
+    TileList,
+    DotStrengths,
+    /// Two words for each tile, then the triangles on all lists.
+    TileHeads,
+    TileEntries,
+    ClipQueue,
+    MediumQueue,
+    LargeQueue,
+    TileQueue,
+    /// Triangles and vertices of all meshlets, then the visible meshlets.
+    MeshletWords,
+    VisibleMeshlets,
+    /// Farthest depths of tiles of 8 x 8 pixels, then of blocks of 64 x 64.
+    HizTiles,
+    HizBlocks,
+}
+
+/// Where a region lies.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Span {
+    pub buffer: BufferId,
+    pub bytes: Range<u64>,
+}
+
+/// A buffer of a frame.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct BufferSpec {
+    pub bytes: u64,
+    /// What it holds, for `explain`.
+    pub purpose: &'static str,
+    /// Bytes that are filled with zeros when [`BufferId::cleared_by`] says.
+    pub cleared: Range<u64>,
+}
+
+/// How many workgroups a pass takes.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Dispatch {
+    /// So many, `times` over.
+    Direct { groups: [u32; 2], times: u32 },
+    /// As many as a buffer says at this byte.
+    Indirect { buffer: BufferId, offset: u64 },
+}
+
+/// Bytes of a word, of an entry in the queue of tiles, and of a visible meshlet.
+const WORD: u64 = 4;
+const TILE_ENTRY: u64 = 8;
+const VISIBLE_MESHLET: u64 = 16;
+
+/// Side of the tiles that the resolve can be dispatched over one by one, of those of the tiled rasterizer, and of a block of depths
+/// that hide meshlets; pixels.
+const RESOLVE_TILE: u32 = 8;
+const RASTER_TILE: u32 = 16;
+const HIZ_BLOCK: u32 = 64;
+
+/// Triangles whose samples are added up by one workgroup.
+const ORDER_BLOCK: u64 = 1024;
+
+/// Rows of the background that are kept, to be copied all over the picture.
+pub const BACKGROUND_ROWS: u32 = 32;
+
+/// See the module's first lines.
+#[derive(Clone, Debug, PartialEq)]
+pub struct FrameLayout {
+    buffers: BTreeMap<BufferId, BufferSpec>,
+    regions: BTreeMap<Region, Span>,
+    pub target: Target,
+    pub size: [u32; 2],
+    pub shown: [u32; 2],
+    pub scene: SceneCounts,
+    pub dots: Option<DotCounts>,
+    /// Room in the queues that the key's passes have.
+    pub capacities: Capacities,
+}
+
+impl FrameLayout {
+    pub fn new(inputs: &LayoutInputs<'_>) -> Self {
+        let LayoutInputs { key, target, size, shown, scene, dots, effect_bytes, capacities } = inputs.clone();
+        let mut layout = Self { buffers: BTreeMap::new(), regions: BTreeMap::new(), target, size, shown, scene, dots, capacities };
+        layout.add_uniforms(key, effect_bytes);
+        layout.add_geometry(key);
+        layout.add_queues(key);
+        if key.culls() {
+            layout.add_culling(key);
+        }
+        if key.samples.draw_order.is_some() {
+            layout.add_draw_order(key);
+        }
+        layout.add_visibility(key);
+        if target == Target::Picture {
+            layout.add_picture(key);
+            layout.add_dots(key);
+        }
+        layout
+    }
+
+    /// Every buffer of the frame.
+    pub fn buffers(&self) -> impl Iterator<Item = (BufferId, &BufferSpec)> {
+        self.buffers.iter().map(|(id, spec)| (*id, spec))
+    }
+
+    pub fn has(&self, id: BufferId) -> bool {
+        self.buffers.contains_key(&id)
+    }
+
+    /// Where a region lies; none where the frame has no such region.
+    pub fn region(&self, region: Region) -> Option<&Span> {
+        self.regions.get(&region)
+    }
+
+    /// First byte of a region within its buffer; 0 where there is none.
+    fn first_byte(&self, region: Region) -> u64 {
+        self.region(region).map_or(0, |span| span.bytes.start)
+    }
+
+    /// First word of a region within its buffer; 0 where there is none.
+    pub fn first_word(&self, region: Region) -> u32 {
+        (self.first_byte(region) / WORD) as u32
+    }
+
+    /// First record of 16 bytes of a region within its buffer; 0 where there is none.
+    pub fn first_record(&self, region: Region) -> u32 {
+        (self.first_byte(region) / size_of::<VertexRecord>() as u64) as u32
+    }
+
+    /// What is cleared on an occasion.
+    pub fn cleared(&self, occasion: impl Fn(ClearedBy) -> bool) -> impl Iterator<Item = (BufferId, Range<u64>)> {
+        let cleared = self.buffers.iter().filter(move |(id, spec)| occasion(id.cleared_by()) && !spec.cleared.is_empty());
+        cleared.map(|(id, spec)| (*id, spec.cleared.clone()))
+    }
+
+    fn pixels(&self) -> u64 {
+        u64::from(self.size[0]) * u64::from(self.size[1])
+    }
+
+    /// Tiles of `side` pixels a side, over the width and the height.
+    fn tiles(&self, side: u32) -> [u32; 2] {
+        self.size.map(|pixels| pixels.div_ceil(side))
+    }
+
+    fn tile_count(&self, side: u32) -> u64 {
+        self.tiles(side).map(u64::from).iter().product()
+    }
+
+    fn add(&mut self, id: BufferId, bytes: u64) {
+        self.buffers.insert(id, BufferSpec { bytes, purpose: id.purpose(), cleared: 0..bytes });
+    }
+
+    /// A buffer of regions of so many bytes, one behind the other.
+    fn add_regions(&mut self, id: BufferId, regions: &[(Region, u64)]) {
+        let mut end = 0;
+        for &(region, bytes) in regions {
+            self.regions.insert(region, Span { buffer: id, bytes: end..end + bytes });
+            end += bytes;
+        }
+        self.add(id, end);
+    }
+
+    fn describe(&mut self, id: BufferId, purpose: &'static str) {
+        if let Some(spec) = self.buffers.get_mut(&id) {
+            spec.purpose = purpose;
+        }
+    }
+
+    /// Clears nothing but one region of a buffer.
+    fn clear_only(&mut self, id: BufferId, region: Option<Region>) {
+        let cleared = region.and_then(|region| self.region(region)).map_or(0..0, |span| span.bytes.clone());
+        if let Some(spec) = self.buffers.get_mut(&id) {
+            spec.cleared = cleared;
+        }
+    }
+
+    fn add_uniforms(&mut self, key: &KernelKey, effect_bytes: u64) {
+        self.add(BufferId::Frame, size_of::<FrameUniform>() as u64);
+        if effect_bytes > 0 {
+            self.add(BufferId::Effects, effect_bytes);
+        }
+        self.add(BufferId::Counters, size_of::<CounterRecord>() as u64);
+        if key.is_scaled() && self.target == Target::Picture {
+            self.add(BufferId::Scaling, size_of::<ScalingUniform>() as u64);
+        }
+    }
+
+    fn add_geometry(&mut self, key: &KernelKey) {
+        let scene = self.scene;
+        // A binding holds an element at least, even where nothing is to be drawn.
+        self.add(BufferId::Draws, scene.draws.max(1) * size_of::<DrawRecord>() as u64);
+        // A shadow map is drawn of the vertices that were deformed for the picture.
+        if self.target != Target::ShadowMap {
+            if key.deforms() {
+                self.add(BufferId::Deforms, scene.deforms * size_of::<DeformRecord>() as u64);
+            }
+            if key.generated.has_joints {
+                self.add(BufferId::Joints, scene.joint_vectors * size_of::<[f32; 4]>() as u64);
+            }
+            if key.generated.has_morph_targets {
+                self.add(BufferId::MorphTargets, scene.morph_targets.max(1) * size_of::<MorphTargetRecord>() as u64);
+            }
+        }
+        let record = size_of::<VertexRecord>() as u64;
+        let setups = u64::from(key.sample_setups()) * (scene.triangles + u64::from(self.capacities.clipped_triangles));
+        let ranks = if key.samples.draw_order.is_none() { 0 } else { scene.triangles.div_ceil(4) };
+        self.add_regions(
+            BufferId::Vertices,
+            &[
+                (Region::VertexRecords, record * vertex_records(key, &scene)),
+                (Region::SampleSetups, record * setups),
+                (Region::TriangleRanks, record * ranks),
+            ],
+        );
+        if setups + ranks > 0 {
+            self.describe(BufferId::Vertices, "projected vertices, setups of sample effects, ranks of triangles; 16 bytes a record");
+        }
+    }
+
+    fn add_queues(&mut self, key: &KernelKey) {
+        let room = self.capacities;
+        if key.has_queues() {
+            self.add_regions(
+                BufferId::Queues,
+                &[
+                    (Region::ClipQueue, WORD * u64::from(room.clip)),
+                    (Region::MediumQueue, WORD * u64::from(room.medium)),
+                    (Region::LargeQueue, WORD * u64::from(room.large)),
+                    (Region::TileQueue, TILE_ENTRY * u64::from(room.tiles)),
+                ],
+            );
+        }
+        if key.has_queues() || key.work.listed_tiles || key.culls() {
+            self.add(BufferId::DispatchArgs, size_of::<DispatchArgs>() as u64);
+        }
+        if key.paths.has_clipping {
+            self.add(BufferId::ClippedTriangles, u64::from(room.clipped_triangles) * size_of::<ClippedTriangleRecord>() as u64);
+        }
+    }
+
+    fn add_culling(&mut self, key: &KernelKey) {
+        let (draws, meshlets) = (self.scene.draws.max(1), u64::from(self.scene.meshlets));
+        self.add(BufferId::Culling, size_of::<CullingUniform>() as u64);
+        self.add(BufferId::Instances, draws * size_of::<InstanceRecord>() as u64);
+        self.add(BufferId::Meshlets, self.scene.meshlet_records * size_of::<MeshletRecord>() as u64);
+        let words = WORD * u64::from(self.scene.meshlet_words);
+        self.add_regions(BufferId::MeshletLists, &[(Region::MeshletWords, words), (Region::VisibleMeshlets, VISIBLE_MESHLET * meshlets)]);
+        if key.options.culling == Culling::TwoPass {
+            self.add(BufferId::MeshletVisibility, WORD * meshlets);
+        }
+        let blocks = self.tile_count(HIZ_BLOCK);
+        let tiles = blocks * u64::from(HIZ_BLOCK / RESOLVE_TILE).pow(2);
+        if key.options.culling.occludes() {
+            self.add_regions(BufferId::Hiz, &[(Region::HizTiles, WORD * tiles), (Region::HizBlocks, WORD * blocks)]);
+        }
+    }
+
+    fn add_draw_order(&mut self, key: &KernelKey) {
+        let triangles = self.scene.triangles;
+        self.add(BufferId::DrawOrder, size_of::<OrderRecord>() as u64);
+        self.add(BufferId::SampleCounts, WORD * triangles);
+        self.add(BufferId::BlockSums, 2 * WORD * triangles.div_ceil(ORDER_BLOCK));
+        if key.samples.draw_order == Some(Mode::Submission) {
+            self.add(BufferId::BoundarySamples, WORD * self.pixels().div_ceil(32));
+        }
+    }
+
+    /// Depths, triangle ids and layers of every pixel.
+    fn add_visibility(&mut self, key: &KernelKey) {
+        let pixels = self.pixels();
+        let is_summed = matches!(key.framebuffer.layers, Some(Layers::Xray { .. }));
+        let sums = if is_summed { WORD * u64::from(key.options.xray_sums.words()) * pixels } else { 0 };
+        let (nearest, words, with_sums) = match key.framebuffer_layout() {
+            FramebufferLayout::Split32 => (BufferId::DepthKeys, 1, "nearest depth key per pixel, 4 bytes, then the sums of its layers"),
+            FramebufferLayout::Packed64 => {
+                (BufferId::DepthAndId, 2, "depth key and triangle id per pixel, 8 bytes, then the sums of its layers")
+            }
+            FramebufferLayout::Packed32 => {
+                (BufferId::PackedDepthId, 1, "part of the depth key and triangle id per pixel, 4 bytes, then the sums of its layers")
+            }
+        };
+        self.add_regions(nearest, &[(Region::Nearest, words * WORD * pixels), (Region::XraySums, sums)]);
+        if is_summed {
+            self.describe(nearest, with_sums);
+        }
+        if key.framebuffer_layout() == FramebufferLayout::Split32 && self.target != Target::ShadowMap {
+            self.add(BufferId::TriangleIds, WORD * pixels);
+        }
+        if key.work.listed_tiles {
+            self.add(BufferId::TileMask, WORD * self.tile_count(RESOLVE_TILE));
+        }
+        if key.framebuffer.layers == Some(Layers::Overdraw) {
+            self.add(BufferId::LayerCounts, WORD * pixels);
+        }
+        if key.options.visibility == Visibility::Tiled {
+            let heads = 2 * WORD * self.tile_count(RASTER_TILE);
+            let entries = WORD * u64::from(self.capacities.bins);
+            self.add_regions(BufferId::Bins, &[(Region::TileHeads, heads), (Region::TileEntries, entries)]);
+            self.clear_only(BufferId::Bins, Some(Region::TileHeads));
+        }
+    }
+
+    /// The picture, and what its resolve reads and writes.
+    fn add_picture(&mut self, key: &KernelKey) {
+        let rows = |[width, height]: [u32; 2]| WORD * u64::from(color_stride(width)) * u64::from(height);
+        let picture = rows(self.size);
+        let tiles = if key.work.listed_tiles { WORD * self.tile_count(RESOLVE_TILE) } else { 0 };
+        if key.effects.dots.is_some() {
+            self.add_regions(BufferId::Color, &[(Region::Pixels, picture), (Region::DotStrengths, WORD * self.pixels())]);
+            self.describe(BufferId::Color, "the picture, 4 bytes per pixel, and as many for the strongest dot on each");
+            self.clear_only(BufferId::Color, Some(Region::DotStrengths));
+        } else {
+            self.add_regions(BufferId::Color, &[(Region::Pixels, picture), (Region::TileList, tiles)]);
+            self.describe(BufferId::Color, "the picture, 4 bytes per pixel, and the list of tiles to resolve");
+            self.clear_only(BufferId::Color, None);
+        }
+        if key.is_scaled() {
+            self.add(BufferId::ScaledColor, rows(self.shown));
+        }
+        if key.reads_previous() {
+            self.add(BufferId::Previous, picture);
+        }
+        if key.work.listed_tiles || key.reads_previous() {
+            self.add(BufferId::Background, rows([self.size[0], BACKGROUND_ROWS]));
+        }
+    }
+
+    fn add_dots(&mut self, key: &KernelKey) {
+        let Some(dots) = self.dots else { return };
+        self.add(BufferId::DotFrame, size_of::<DotFrame>() as u64);
+        self.add(BufferId::DotSegments, dots.segment_bytes.max(size_of::<DotPoints>() as u64));
+        self.add(BufferId::DotRuns, u64::from(dots.runs.max(1)) * size_of::<DotRunRecord>() as u64);
+        self.add(BufferId::DotEnds, u64::from(dots.segments) * size_of::<DotPoints>() as u64);
+        if key.options.dot_culling != DotCulling::Brute {
+            // Room for all of them: no list overflows, whatever is visible.
+            self.add(BufferId::DotList, u64::from(dots.dots) * size_of::<[u32; 2]>() as u64);
+            self.add(BufferId::DotCount, WORD);
+        }
+        if key.options.dot_culling == DotCulling::Gpu {
+            self.add(BufferId::DotArgs, size_of::<DispatchSize>() as u64);
+        } else {
+            // The CPU writes the number of dots.
+            self.clear_only(BufferId::DotCount, None);
+        }
+    }
+
+    /// The frame uniform of a picture of `view`.
+    pub fn frame_uniform(&self, view: &View, point_radius: u32) -> FrameUniform {
+        let room = &self.capacities;
+        FrameUniform {
+            vertex_count: self.first_record(Region::SampleSetups),
+            triangle_count: self.scene.triangles as u32,
+            draw_count: self.scene.draws as u32,
+            clip_capacity: room.clip,
+            clipped_triangle_capacity: room.clipped_triangles,
+            medium_capacity: room.medium,
+            large_capacity: room.large,
+            tile_capacity: room.tiles,
+            bin_capacity: room.bins,
+            medium_first: self.first_word(Region::MediumQueue),
+            large_first: self.first_word(Region::LargeQueue),
+            tile_first: self.first_word(Region::TileQueue),
+            point_radius,
+            first_rank: self.first_record(Region::TriangleRanks),
+            deform_count: self.scene.deforms as u32,
+            ..FrameUniform::of_view(view)
+        }
+    }
+
+    /// The culling uniform.
+    pub fn culling_uniform(&self) -> CullingUniform {
+        CullingUniform {
+            meshlet_count: self.scene.meshlets,
+            first_visible: self.first_word(Region::VisibleMeshlets),
+            hiz_width: self.tiles(HIZ_BLOCK)[0] * (HIZ_BLOCK / RESOLVE_TILE),
+            hiz_first_block: self.first_word(Region::HizBlocks),
+        }
+    }
+
+    /// How many workgroups a pass takes.
+    pub fn dispatch(&self, key: &KernelKey, pass: Pass) -> Dispatch {
+        let scene = &self.scene;
+        let (triangles, group) = (scene.triangles as u32, key.work.group_size);
+        let over = |count: u32| Dispatch::once(folded(count.div_ceil(group)));
+        let dots = self.dots.unwrap_or_default();
+        let over_dots = |count: u32| Dispatch::once(folded(count.div_ceil(DOT_GROUP)));
+        match pass {
+            Pass::Particles => over(scene.particles),
+            Pass::Skin => over(scene.deformable),
+            Pass::Project => over(vertex_records(key, scene) as u32),
+            Pass::Cull(_) => over(scene.meshlets),
+            Pass::DepthReduce => Dispatch::once(self.tiles(HIZ_BLOCK)),
+            Pass::ProjectMeshlets => Dispatch::args(offset_of!(DispatchArgs, meshlets)),
+            Pass::RasterSmall(_) if key.culls() => Dispatch::args(offset_of!(DispatchArgs, meshlets)),
+            Pass::RasterPoints(phase) if !phase.is_bin() => over(triangles.saturating_mul(key.work.invocations_per_triangle)),
+            Pass::RasterSmall(_) | Pass::RasterPoints(_) | Pass::SampleSetup(TriangleSource::Triangles) => over(triangles),
+            Pass::SampleSetup(TriangleSource::ClippedTriangles) => Dispatch::args(offset_of!(DispatchArgs, pieces)),
+            Pass::OrderSums | Pass::OrderRanks => Dispatch::once(folded(triangles.div_ceil(ORDER_BLOCK as u32))),
+            Pass::OrderLimit | Pass::OrderCut | Pass::Args | Pass::AdvanceQueues { .. } | Pass::BinScan | Pass::DotsArgs => {
+                Dispatch::once([1, 1])
+            }
+            Pass::Clip => Dispatch::args(offset_of!(DispatchArgs, clip)),
+            Pass::RasterMedium(_) | Pass::BinMedium(_) => Dispatch::args(offset_of!(DispatchArgs, medium)),
+            Pass::TileLarge | Pass::BinLarge(_) => Dispatch::args(offset_of!(DispatchArgs, large)),
+            Pass::RasterLarge(_) => Dispatch::args(offset_of!(DispatchArgs, tiles)),
+            // A list may be longer than one dispatch walks.
+            Pass::RasterTiles => Dispatch::Direct {
+                groups: self.tiles(RASTER_TILE),
+                times: self.capacities.listed.div_ceil(key.work.max_list_entries).max(1),
+            },
+            Pass::DotsEnds => over_dots(dots.segments),
+            Pass::DotsCull => over_dots(dots.runs),
+            Pass::DotsDraw | Pass::DotsProbe => match key.options.dot_culling {
+                DotCulling::Brute => over_dots(dots.dots),
+                DotCulling::Cpu => over_dots(dots.chosen),
+                DotCulling::Gpu => Dispatch::Indirect { buffer: BufferId::DotArgs, offset: 0 },
+            },
+            Pass::ListTiles => Dispatch::once(folded((self.tile_count(RESOLVE_TILE) as u32).div_ceil(TILE_GROUP))),
+            Pass::Resolve if key.work.listed_tiles => Dispatch::args(offset_of!(DispatchArgs, resolve)),
+            Pass::Resolve => Dispatch::once(self.tiles(key.tile_side())),
+            Pass::Scale => Dispatch::once(self.shown.map(|side| side.div_ceil(RESOLVE_TILE))),
+        }
+    }
+}
+
+/// Invocations of a workgroup of the passes over dots, and of the one that lists tiles.
+pub const DOT_GROUP: u32 = 64;
+const TILE_GROUP: u32 = 64;
+
+impl Dispatch {
+    fn once(groups: [u32; 2]) -> Self {
+        Self::Direct { groups, times: 1 }
+    }
+
+    /// By a member of [`DispatchArgs`].
+    fn args(offset: usize) -> Self {
+        Self::Indirect { buffer: BufferId::DispatchArgs, offset: offset as u64 }
+    }
+}
+
+/// Projected records: one per vertex of each draw, or three per triangle where effects move triangles apart.
+fn vertex_records(key: &KernelKey, scene: &SceneCounts) -> u64 {
+    if key.unshares_vertices() { 3 * scene.triangles } else { scene.vertices }
+}
+
+/// Folds more than 65,535 workgroups into two dimensions; the kernel guards the tail.
+pub fn folded(groups: u32) -> [u32; 2] {
+    [groups.min(65_535), groups.div_ceil(65_535)]
+}
+
+impl FrameUniform {
+    /// Size and viewpoint of a picture; what its layout adds is 0.
+    pub fn of_view(view: &View) -> Self {
+        let is_perspective = view.linear_depth_m.is_none();
+        let [r, g, b, alpha] = view.background;
+        let encoded = [r, g, b].map(|c| f32::from(srgb_byte(f64::from(c))) / 255.0);
+        let wide = |v: glam::DVec3, w: f32| [v.x as f32, v.y as f32, v.z as f32, w];
+        Self {
+            background: [encoded[0], encoded[1], encoded[2], alpha],
+            eye: wide(view.eye, f32::from(u8::from(is_perspective))),
+            forward: wide(view.forward, 0.0),
+            ndc_x: wide(view.ndc_axes[0], 0.0),
+            ndc_y: wide(view.ndc_axes[1], 0.0),
+            clip_from_world: rounded_columns(&view.clip_from_world),
+            picture_from_world: rounded_columns(&view.picture_from_world.unwrap_or(view.clip_from_world)),
+            center: [view.width, view.height].map(|pixels| (pixels as i32 * view.units_per_pixel() / 2) as f32),
+            range_m: view.scene_range_m.map(|d| d as f32),
+            linear_depth_m: view.linear_depth_m.unwrap_or_default().map(|d| d as f32),
+            size: [view.width, view.height],
+            stride: color_stride(view.width),
+            ..Self::default()
+        }
+    }
+}

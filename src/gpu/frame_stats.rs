@@ -1,0 +1,87 @@
+//! Statistics of a frame: its counters and timestamps, read back when the device has finished it.
+
+use std::{
+    mem::offset_of,
+    sync::{
+        Arc,
+        atomic::{AtomicBool, Ordering},
+    },
+};
+
+use super::{
+    device::Gpu,
+    records::{CounterRecord, OrderRecord},
+    timer::{Timer, Times},
+};
+
+/// What a frame counted; zeros where it has no shadow map or no draw order.
+#[derive(Clone, Copy, Debug, Default, bytemuck::Pod, bytemuck::Zeroable)]
+#[repr(C)]
+pub struct FrameStats {
+    pub picture: CounterRecord,
+    pub shadow: CounterRecord,
+    pub order: OrderRecord,
+}
+
+/// The buffers that hold what a frame counted.
+#[derive(Clone, Copy, Default)]
+pub struct StatSources<'a> {
+    pub picture: Option<&'a wgpu::Buffer>,
+    pub shadow: Option<&'a wgpu::Buffer>,
+    pub order: Option<&'a wgpu::Buffer>,
+}
+
+/// Statistics of a frame in flight.
+pub struct Pending {
+    staging: wgpu::Buffer,
+    labels: Vec<String>,
+    ready: Arc<AtomicBool>,
+}
+
+/// Timestamps lie behind the counters.
+const FIRST_STAMP: u64 = size_of::<FrameStats>() as u64;
+
+impl Pending {
+    /// Records the copies that end a frame.
+    pub fn stage(gpu: &Gpu, encoder: &mut wgpu::CommandEncoder, sources: StatSources<'_>, timer: Option<&Timer>) -> Self {
+        let staging = gpu.device.create_buffer(&wgpu::BufferDescriptor {
+            label: Some("frame stats"),
+            size: FIRST_STAMP + Timer::BYTES,
+            usage: wgpu::BufferUsages::MAP_READ | wgpu::BufferUsages::COPY_DST,
+            mapped_at_creation: false,
+        });
+        let copies = [
+            (sources.picture, offset_of!(FrameStats, picture), size_of::<CounterRecord>()),
+            (sources.shadow, offset_of!(FrameStats, shadow), size_of::<CounterRecord>()),
+            (sources.order, offset_of!(FrameStats, order), size_of::<OrderRecord>()),
+        ];
+        for (source, offset, bytes) in copies {
+            if let Some(source) = source {
+                encoder.copy_buffer_to_buffer(source, 0, &staging, offset as u64, bytes as u64);
+            }
+        }
+        if let Some(timer) = timer {
+            timer.end(encoder, &staging, FIRST_STAMP);
+        }
+        Self { staging, labels: timer.map(Timer::labels).unwrap_or_default(), ready: Arc::default() }
+    }
+
+    /// Asks for the bytes, after the frame was submitted.
+    pub fn begin(self) -> Self {
+        let ready = self.ready.clone();
+        self.staging.map_async(wgpu::MapMode::Read, .., move |result| ready.store(result.is_ok(), Ordering::Release));
+        self
+    }
+
+    pub fn is_ready(&self) -> bool {
+        self.ready.load(Ordering::Acquire)
+    }
+
+    /// What the frame counted, and its times; none when the device was lost.
+    pub fn read(&self, timer: Option<&Timer>) -> Option<(FrameStats, Times)> {
+        let bytes = self.staging.get_mapped_range(..).ok()?;
+        let (stats, stamps) = bytes.split_at(FIRST_STAMP as usize);
+        let times = timer.map(|timer| timer.times(stamps, &self.labels)).unwrap_or_default();
+        Some((bytemuck::pod_read_unaligned(stats), times))
+    }
+}

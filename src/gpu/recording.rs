@@ -1,0 +1,180 @@
+//! Recording: the passes of a view with their pipelines, bindings and dispatch sizes, recorded one after another. What does not
+//! change from frame to frame is kept in a [`CommandList`].
+
+use std::{ops::Range, sync::Arc};
+
+use super::{
+    buffers::{BufferNote, Buffers},
+    device::Gpu,
+    error::RenderError,
+    frame_layout::{Dispatch, FrameLayout},
+    pipeline_store::{Pipeline, PipelineStore},
+    pipelines::Pipelines,
+    resource_id::{ResourceId, TextureId},
+    scene_resources::SceneResources,
+    textures::WordTexture,
+    timer::Timer,
+};
+use crate::{
+    plan::Tuning,
+    shader::{key::KernelKey, pass::Pass},
+};
+
+/// What all scenes and views share.
+pub struct Device {
+    pub gpu: Arc<Gpu>,
+    pub pipelines: Pipelines,
+    /// None where the adapter has no timestamps.
+    pub timer: Option<Timer>,
+    pub tuning: Tuning,
+}
+
+/// Where passes find what they bind: the first of these that has it.
+#[derive(Clone, Default)]
+pub struct Resources<'a> {
+    pub buffers: Vec<&'a Buffers>,
+    pub textures: Vec<(TextureId, &'a WordTexture)>,
+}
+
+impl<'a> Resources<'a> {
+    fn get(&self, id: ResourceId) -> Result<wgpu::BindingResource<'a>, RenderError> {
+        let found = match id {
+            ResourceId::Buffer(id) => {
+                self.buffers.iter().find(|buffers| buffers.has(id)).map(|buffers| buffers.get(id).map(wgpu::Buffer::as_entire_binding))
+            }
+            ResourceId::Texture(id) => {
+                let texture = self.textures.iter().find(|(other, _)| *other == id);
+                texture.map(|(_, texture)| Ok(wgpu::BindingResource::TextureView(&texture.view)))
+            }
+        };
+        found.unwrap_or(Err(RenderError::NoResource { name: id.name() }))
+    }
+
+    /// What every view of a scene shares.
+    pub fn of_scene(scene: &'a SceneResources) -> Self {
+        let atlas = scene.material_atlas.iter().map(|atlas| (TextureId::MaterialAtlas, atlas));
+        Self { buffers: vec![&scene.buffers], textures: atlas.collect() }
+    }
+
+    /// The same, with `first` before all others.
+    pub fn with<'b>(&self, first: &'b Buffers) -> Resources<'b>
+    where
+        'a: 'b,
+    {
+        let buffers = std::iter::once(first).chain(self.buffers.iter().copied()).collect();
+        Resources { buffers, textures: self.textures.clone() }
+    }
+
+    /// Every buffer and texture, for `explain`.
+    pub fn notes(&self) -> Vec<BufferNote> {
+        let texture = |(id, texture): &(TextureId, &WordTexture)| BufferNote {
+            name: id.name().into(),
+            bytes: texture.bytes(),
+            why: id.purpose().into(),
+        };
+        self.buffers.iter().flat_map(|buffers| buffers.notes()).chain(self.textures.iter().map(texture)).collect()
+    }
+
+    /// A bind group for a pipeline.
+    ///
+    /// # Errors
+    /// When something that the kernel binds is not here.
+    pub fn bind_group(&self, gpu: &Gpu, pipeline: &Pipeline) -> Result<wgpu::BindGroup, RenderError> {
+        pipeline.bind_group(&gpu.device, |id| self.get(id))
+    }
+
+    fn revisions(&self) -> Vec<u64> {
+        let buffers = self.buffers.iter().map(|buffers| buffers.revision());
+        buffers.chain(self.textures.iter().map(|(_, texture)| texture.revision)).collect()
+    }
+}
+
+/// A pass, ready to be recorded.
+struct Command {
+    pass: Pass,
+    label: String,
+    pipeline: Arc<Pipeline>,
+    group: wgpu::BindGroup,
+}
+
+/// Passes with their pipelines and bind groups, for as long as neither the key nor a resource changes.
+pub struct CommandList {
+    key: KernelKey,
+    passes: Vec<Pass>,
+    revisions: Vec<u64>,
+    commands: Vec<Command>,
+}
+
+/// How the passes of a list are timed.
+pub struct Timing<'a> {
+    pub timer: Option<&'a mut Timer>,
+    /// The frame ends with the last pass.
+    pub ends_frame: bool,
+}
+
+impl CommandList {
+    /// Compiles pipelines that are missing, and binds what each pass reads and writes. `prefix` begins the label of every pass.
+    ///
+    /// # Errors
+    /// When a kernel cannot be compiled, or binds what is not there.
+    pub fn new(
+        device: &mut Device,
+        key: &KernelKey,
+        passes: Vec<Pass>,
+        prefix: &str,
+        resources: &Resources<'_>,
+    ) -> Result<Self, RenderError> {
+        let Device { gpu, pipelines, .. } = device;
+        pipelines.prepare(gpu, key, &passes)?;
+        let command = |&pass: &Pass| {
+            let pipeline = pipelines.get(gpu, key, pass)?;
+            let group = resources.bind_group(gpu, &pipeline)?;
+            Ok(Command { pass, label: format!("{prefix}{}", pass.label()), pipeline, group })
+        };
+        let commands = passes.iter().map(command).collect::<Result<_, RenderError>>()?;
+        Ok(Self { key: key.clone(), passes, revisions: resources.revisions(), commands })
+    }
+
+    /// Is it still the list for these passes and resources?
+    pub fn is_for(&self, key: &KernelKey, passes: &[Pass], resources: &Resources<'_>) -> bool {
+        self.revisions == resources.revisions() && self.passes == passes && self.key == *key
+    }
+
+    /// Number of its passes.
+    pub fn len(&self) -> usize {
+        self.commands.len()
+    }
+
+    /// Notes that its pipelines are in use.
+    pub fn mark(&self, store: &PipelineStore) {
+        self.commands.iter().for_each(|command| store.mark(&command.pipeline));
+    }
+
+    /// Records a part of the list. `buffers` holds the sizes of indirect dispatches.
+    ///
+    /// # Errors
+    /// When there is no buffer for an indirect dispatch.
+    pub fn record(
+        &self,
+        part: Range<usize>,
+        encoder: &mut wgpu::CommandEncoder,
+        layout: &FrameLayout,
+        buffers: &Buffers,
+        mut timing: Timing<'_>,
+    ) -> Result<(), RenderError> {
+        let last = part.end;
+        for (i, command) in part.clone().zip(&self.commands[part]) {
+            let is_last = timing.ends_frame && i + 1 == last;
+            let label = Some(command.label.as_str());
+            let timestamp_writes = timing.timer.as_mut().and_then(|timer| timer.compute(&command.label, is_last));
+            let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor { label, timestamp_writes });
+            pass.set_pipeline(&command.pipeline.pipeline);
+            pass.set_bind_group(0, &command.group, &[]);
+            match layout.dispatch(&self.key, command.pass) {
+                Dispatch::Direct { groups: [x, y], times } => (0..times).for_each(|_| pass.dispatch_workgroups(x, y, 1)),
+                Dispatch::Indirect { buffer, offset } => pass.dispatch_workgroups_indirect(buffers.get(buffer)?, offset),
+            }
+        }
+        Ok(())
+    }
+}

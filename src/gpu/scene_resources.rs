@@ -1,0 +1,183 @@
+//! A scene on the device: attributes and index lists as the file has them, with room for what passes write behind them, and its
+//! materials. Every view of the scene reads the same.
+
+use std::{borrow::Cow, sync::Arc};
+
+use super::{
+    attributes::AttributeLayout,
+    buffers::Buffers,
+    device::Gpu,
+    error::RenderError,
+    material_atlas,
+    meshlets::MeshletBuffers,
+    packing::{PackedBox, Packing},
+    records::VertexRecord,
+    resource_id::BufferId,
+    textures::WordTexture,
+};
+use crate::{
+    effects::Stack,
+    scene::{Scene, particle_discs::ParticleSettings},
+};
+
+/// See the module's first lines.
+pub struct SceneResources {
+    /// The scene as it was set.
+    base: Arc<Scene>,
+    /// The base and the particle discs that the stack adds to it: what is on the device.
+    scene: Arc<Scene>,
+    particle_settings: Option<ParticleSettings>,
+    pub buffers: Buffers,
+    attributes: AttributeLayout,
+    /// Boxes of packed positions, one per primitive; empty where positions are stored as the file has them.
+    packed_boxes: Vec<PackedBox>,
+    pub material_atlas: Option<WordTexture>,
+    /// Meshlets of all primitives, once a view culls.
+    meshlets: Option<Arc<MeshletBuffers>>,
+}
+
+impl SceneResources {
+    /// Uploads a scene.
+    ///
+    /// # Errors
+    /// When the adapter has no memory for it.
+    pub fn new(gpu: &Gpu, scene: &Arc<Scene>) -> Result<Self, RenderError> {
+        let mut resources = Self {
+            base: scene.clone(),
+            scene: scene.clone(),
+            particle_settings: None,
+            buffers: Buffers::default(),
+            attributes: AttributeLayout::default(),
+            packed_boxes: Vec::new(),
+            material_atlas: None,
+            meshlets: None,
+        };
+        resources.upload(gpu)?;
+        Ok(resources)
+    }
+
+    /// Checks that the buffers of a scene, and the projected vertices of a picture of it, are no larger than the adapter binds.
+    ///
+    /// # Errors
+    /// Names the first buffer that is.
+    pub fn check(gpu: &Gpu, scene: &Scene) -> Result<(), RenderError> {
+        let limit = gpu.caps.max_storage_binding_bytes.min(gpu.caps.max_buffer_bytes);
+        let sizes = [
+            (BufferId::VertexBytes, AttributeLayout::new(scene, None).bytes()),
+            (BufferId::IndexBytes, scene.index_bytes.len() as u64),
+            (BufferId::Vertices, size_of::<VertexRecord>() as u64 * scene.vertex_count()),
+        ];
+        match sizes.into_iter().find(|(_, bytes)| *bytes > limit) {
+            Some((buffer, bytes)) => Err(RenderError::TooLarge { buffer: buffer.name(), bytes, limit }),
+            None => Ok(()),
+        }
+    }
+
+    /// Was this scene set?
+    pub fn is_of(&self, scene: &Arc<Scene>) -> bool {
+        Arc::ptr_eq(&self.base, scene)
+    }
+
+    /// The scene on the device, with its particle discs.
+    pub fn scene(&self) -> &Arc<Scene> {
+        &self.scene
+    }
+
+    /// How `vertex_bytes` is laid out.
+    pub fn attributes(&self) -> AttributeLayout {
+        self.attributes
+    }
+
+    /// Boxes of packed positions, one per primitive; empty where positions are not packed.
+    pub fn packed_boxes(&self) -> &[PackedBox] {
+        &self.packed_boxes
+    }
+
+    pub fn particle_count(&self) -> u32 {
+        self.particle_settings.map_or(0, |settings| settings.count)
+    }
+
+    /// The meshlets of the scene, which are found at the first call.
+    pub fn meshlets(&mut self) -> Arc<MeshletBuffers> {
+        self.meshlets.get_or_insert_with(|| Arc::new(MeshletBuffers::of(&self.scene))).clone()
+    }
+
+    /// Are the particle discs of a stack in the scene already?
+    pub fn has_particles_of(&self, stack: &Stack) -> bool {
+        stack.particle_settings() == self.particle_settings
+    }
+
+    /// Puts the particle discs of a stack beside the scene, or takes them away; true if that changed the vertices.
+    ///
+    /// # Errors
+    /// When the scene with its particles does not fit.
+    pub fn attach_particles(&mut self, gpu: &Gpu, stack: &Stack) -> Result<bool, RenderError> {
+        let settings = stack.particle_settings();
+        if settings == self.particle_settings {
+            return Ok(false);
+        }
+        let scene = match self.base.with_particles(settings.as_ref()) {
+            Cow::Borrowed(_) => self.base.clone(),
+            Cow::Owned(scene) => Arc::new(scene),
+        };
+        // As many particles in another box have the same bytes.
+        let is_other = settings.map(|settings| settings.count) != self.particle_settings.map(|settings| settings.count);
+        if is_other {
+            Self::check(gpu, &scene)?;
+        }
+        (self.scene, self.particle_settings) = (scene, settings);
+        if is_other {
+            self.upload(gpu)?;
+        }
+        Ok(is_other)
+    }
+
+    /// Stores positions as the file has them, or beside that in so many bits per axis.
+    ///
+    /// # Errors
+    /// When they do not fit.
+    pub fn pack_positions(&mut self, gpu: &Gpu, bits: Option<u32>) -> Result<(), RenderError> {
+        if self.attributes.packed_bits == bits && self.buffers.has(BufferId::VertexBytes) {
+            Ok(())
+        } else {
+            self.upload_attributes(gpu, bits)
+        }
+    }
+
+    /// Uploads the materials where they are looked up, else drops them.
+    ///
+    /// # Errors
+    /// When they do not fit.
+    pub fn keep_materials(&mut self, gpu: &Gpu, are_needed: bool) -> Result<(), RenderError> {
+        match (are_needed, &self.material_atlas) {
+            (true, None) => self.material_atlas = Some(material_atlas::upload(gpu, &self.scene)?),
+            (false, Some(_)) => self.material_atlas = None,
+            _ => {}
+        }
+        Ok(())
+    }
+
+    fn upload(&mut self, gpu: &Gpu) -> Result<(), RenderError> {
+        self.buffers.keep(|id| !matches!(id, BufferId::VertexBytes | BufferId::IndexBytes));
+        (self.material_atlas, self.meshlets) = (None, None);
+        self.upload_attributes(gpu, None)?;
+        if !self.scene.index_bytes.is_empty() {
+            self.buffers.fill(gpu, BufferId::IndexBytes, &self.scene.index_bytes)?;
+        }
+        Ok(())
+    }
+
+    /// Uploads the bytes of all attributes, with room for deformed vertices, and positions in `packed_bits` per axis if any.
+    fn upload_attributes(&mut self, gpu: &Gpu, packed_bits: Option<u32>) -> Result<(), RenderError> {
+        let packing = packed_bits.map(|bits| Packing::new(&self.scene, bits)).unwrap_or_default();
+        // Until all is there, nothing is.
+        self.attributes = AttributeLayout::default();
+        self.buffers.keep(|id| id != BufferId::VertexBytes);
+        let attributes = AttributeLayout::new(&self.scene, packed_bits);
+        self.buffers.ensure_for(gpu, BufferId::VertexBytes, attributes.bytes(), attributes.purpose())?;
+        self.buffers.write_at(gpu, BufferId::VertexBytes, 0, &self.scene.vertex_bytes)?;
+        self.buffers.write_at(gpu, BufferId::VertexBytes, attributes.first_packed(), bytemuck::cast_slice(&packing.words))?;
+        (self.attributes, self.packed_boxes) = (attributes, packing.boxes);
+        Ok(())
+    }
+}

@@ -1,0 +1,46 @@
+//! Textures of 32-bit words, which kernels read texel by texel: they take none of the few storage buffers that a pass may bind.
+
+use super::{buffers::next_revision, device::Gpu, error::RenderError, resource_id::TextureId};
+
+/// A texture on the device.
+pub struct WordTexture {
+    pub texture: wgpu::Texture,
+    pub view: wgpu::TextureView,
+    /// Equal numbers, equal textures.
+    pub revision: u64,
+}
+
+impl WordTexture {
+    /// Makes a texture of so many columns, rows and layers. Kernels see layers where `dimension` says so.
+    ///
+    /// # Errors
+    /// When there is no memory for it.
+    pub fn new(gpu: &Gpu, id: TextureId, size: wgpu::Extent3d, dimension: wgpu::TextureViewDimension) -> Result<Self, RenderError> {
+        let scope = gpu.device.push_error_scope(wgpu::ErrorFilter::OutOfMemory);
+        let texture = gpu.device.create_texture(&wgpu::TextureDescriptor {
+            label: Some(id.name()),
+            size,
+            mip_level_count: 1,
+            sample_count: 1,
+            dimension: wgpu::TextureDimension::D2,
+            format: wgpu::TextureFormat::R32Uint,
+            usage: wgpu::TextureUsages::COPY_DST | wgpu::TextureUsages::TEXTURE_BINDING,
+            view_formats: &[],
+        });
+        let view = texture.create_view(&wgpu::TextureViewDescriptor { dimension: Some(dimension), ..Default::default() });
+        if pollster::block_on(scope.pop()).is_some() {
+            return Err(RenderError::OutOfMemory { buffer: id.name(), bytes: bytes_of(size) });
+        }
+        Ok(Self { texture, view, revision: next_revision() })
+    }
+
+    /// Bytes that it takes.
+    pub fn bytes(&self) -> u64 {
+        bytes_of(self.texture.size())
+    }
+}
+
+/// Bytes of a texture of words of this size.
+pub fn bytes_of(size: wgpu::Extent3d) -> u64 {
+    [size.width, size.height, size.depth_or_array_layers].into_iter().fold(4, |bytes, side| bytes * u64::from(side))
+}

@@ -1,0 +1,373 @@
+//! A view on the device: the plan and the layout of its frames, its buffers, and the passes that draw it. The picture, a shadow map
+//! and the judge's redraw of a culled picture are views of the same scene.
+
+use std::{ops::Range, sync::Arc};
+
+use super::{
+    buffers::{Buffers, color_stride},
+    device::Gpu,
+    dots::DotStore,
+    draws::{DrawData, DrawInputs},
+    error::RenderError,
+    frame_layout::{BACKGROUND_ROWS, FrameLayout, LayoutInputs, Target},
+    queues::{Capacities, first_capacities, recorded_capacities},
+    recording::{CommandList, Device, Resources, Timing},
+    records::{CounterRecord, ScalingUniform},
+    resource_id::{BufferId, ClearedBy},
+    scene_resources::SceneResources,
+};
+use crate::{
+    accuracy::PositionFormat,
+    effects::{Stack, hooks::Layers},
+    math::{SUBPIXEL_BITS, srgb_byte},
+    plan::{AccuracyRequest, Plan, Planner, Tuning},
+    scene::{
+        Scene,
+        draw::{Draw, draws as draws_of},
+        needs::Needs,
+        view::View,
+    },
+    shader::{glue::uniform_bytes, key::KernelKey, pass::Pass},
+};
+
+/// What is to be drawn.
+#[derive(Clone, Copy, Debug)]
+pub struct Request<'a> {
+    pub view: &'a View,
+    pub stack: &'a Stack,
+    pub accuracy: &'a AccuracyRequest,
+    /// Pixels of the picture that is shown.
+    pub shown: [u32; 2],
+    /// Bits per channel of the x-ray's sums, where more of them overflowed.
+    pub fewer_bits: Option<u32>,
+}
+
+/// A frame for which every buffer is ready.
+pub struct PreparedFrame {
+    pub plan: Arc<Plan>,
+    /// The view that was asked for, on the grid and with the origin that the plan takes.
+    pub view: View,
+    pub layout: FrameLayout,
+}
+
+/// The draws of a scene as a view has them, and what they require of the kernels.
+struct Seen {
+    scene: Arc<Scene>,
+    view: View,
+    draws: Arc<[Draw]>,
+    needs: Arc<Needs>,
+    /// The same where every path is kept.
+    needs_all_paths: Arc<Needs>,
+}
+
+/// See the module's first lines.
+pub struct ViewResources {
+    target: Target,
+    pub buffers: Buffers,
+    /// Room in the queues.
+    pub capacities: Capacities,
+    /// The size estimate was wrong once: queues and clipping are kept for this scene.
+    pub force_all_paths: bool,
+    /// Requirements of the last views: one for the default grid, one for the grid that the plan then took.
+    seen: Vec<Seen>,
+    planner: Planner,
+    draw_data: Option<DrawData>,
+    pub dots: Option<DotStore>,
+    /// Colour and width of the rows in the background buffer.
+    background: Option<([u8; 4], u32)>,
+    frame: Option<PreparedFrame>,
+    commands: Option<CommandList>,
+}
+
+impl ViewResources {
+    /// A view of a scene with an ordinary number of triangles in its queues.
+    pub fn new(target: Target, scene: Option<&Scene>) -> Self {
+        Self {
+            target,
+            buffers: Buffers::default(),
+            capacities: scene.map_or_else(Capacities::default, first_capacities),
+            force_all_paths: false,
+            seen: Vec::new(),
+            planner: Planner::default(),
+            draw_data: None,
+            dots: None,
+            background: None,
+            frame: None,
+            commands: None,
+        }
+    }
+
+    /// The frame that was prepared last.
+    ///
+    /// # Errors
+    /// When there was none.
+    pub fn frame(&self) -> Result<&PreparedFrame, RenderError> {
+        self.frame.as_ref().ok_or(RenderError::NoScene)
+    }
+
+    /// Which of all vertices that may be deformed the last frame deformed.
+    pub fn deformed(&self) -> &[Range<u32>] {
+        self.draw_data.as_ref().map_or(&[], |data| &data.deformed)
+    }
+
+    /// Begins with another scene: what depends on the old one is dropped.
+    pub fn change_scene(&mut self, scene: &Scene) {
+        let of_scene = [BufferId::Vertices, BufferId::Meshlets, BufferId::MeshletLists, BufferId::MeshletVisibility, BufferId::Hiz];
+        self.release_commands();
+        self.buffers.keep(|id| !of_scene.contains(&id));
+        (self.capacities, self.force_all_paths) = (first_capacities(scene), false);
+        (self.draw_data, self.dots) = (None, None);
+        self.seen.clear();
+    }
+
+    /// Drops bind groups, which would hold buffers that are about to be made anew.
+    pub fn release_commands(&mut self) {
+        self.commands = None;
+    }
+
+    /// Plans a frame and makes the buffers hold what its passes will read. Nothing but uniforms is written where only parameters
+    /// of effects changed.
+    ///
+    /// # Errors
+    /// When the adapter cannot draw what is asked for, or has no memory for it.
+    pub fn prepare(&mut self, device: &Device, scene: &mut SceneResources, request: &Request<'_>) -> Result<(), RenderError> {
+        let gpu = &*device.gpu;
+        let (View { width, height, .. }, limit) = (request.view, gpu.caps.max_texture_side);
+        if *width.max(height) > limit {
+            return Err(RenderError::TooWide { width: *width, height: *height, limit });
+        }
+        let (plan, view, draws) = self.plan(device, scene.scene(), request)?;
+        let key = &plan.key;
+        let packed_bits = key.options.position_format.packed_bits();
+        if self.target == Target::Picture {
+            if scene.attributes().packed_bits != packed_bits {
+                self.release_commands();
+            }
+            scene.pack_positions(gpu, packed_bits)?;
+            scene.keep_materials(gpu, key.surface.has_material_atlas)?;
+        }
+        let is_changed = self.update_draw_data(scene, key, &view, &draws, request.stack);
+        if self.target == Target::Picture {
+            self.dots = DotStore::update(self.dots.take(), scene.scene(), &view, request.stack, key)?;
+        }
+        let parameters = uniform_bytes(&request.stack.0);
+        let has_parameters = !parameters.is_empty() && key.effects.baked.is_empty();
+        let layout = FrameLayout::new(&LayoutInputs {
+            key,
+            target: self.target,
+            size: [view.width, view.height],
+            shown: request.shown,
+            scene: self.draw_data.as_ref().map(|data| data.counts).unwrap_or_default(),
+            dots: self.dots.as_ref().map(DotStore::counts),
+            effect_bytes: if has_parameters { parameters.len() as u64 } else { 0 },
+            capacities: recorded_capacities(key, &self.capacities),
+        });
+        let new = self.allocate(gpu, &layout)?;
+        self.write_draw_data(gpu, scene, &layout, &new, is_changed)?;
+        self.write_uniforms(gpu, &layout, &view, request.stack.point_radius(), &parameters)?;
+        self.write_background(gpu, &layout, &view, new.contains(&BufferId::Background))?;
+        if let Some(dots) = &mut self.dots {
+            dots.write(gpu, &self.buffers, |id| new.contains(&id))?;
+        }
+        self.frame = Some(PreparedFrame { plan, view, layout });
+        Ok(())
+    }
+
+    /// The plan of a frame, with the view on its grid and that view's draws.
+    fn plan(&mut self, device: &Device, scene: &Arc<Scene>, request: &Request<'_>) -> Result<(Arc<Plan>, View, Arc<[Draw]>), RenderError> {
+        let mut view = request.view.clone();
+        let mut seen = self.see(scene, &view)?;
+        let mut plan = self.plan_of(device, seen, request)?;
+        // Another grid has its guard band elsewhere, and another origin its matrices, so their needs are their own.
+        let options = &plan.key.options;
+        let (subpixel_bits, is_relative) = (options.coverage.subpixel_bits(), options.position_format == PositionFormat::Relative);
+        view = view.with_grid(subpixel_bits, is_relative);
+        if is_relative || subpixel_bits != SUBPIXEL_BITS {
+            seen = self.see(scene, &view)?;
+            plan = self.plan_of(device, seen, request)?;
+        }
+        if let (Some(Layers::Xray { bits }), Some(fewer)) = (plan.key.framebuffer.layers, request.fewer_bits) {
+            Arc::make_mut(&mut plan).key.framebuffer.layers = Some(Layers::Xray { bits: bits.min(fewer) });
+        }
+        Ok((plan, view, self.seen[seen].draws.clone()))
+    }
+
+    /// Position in `seen` of a scene as a view sees it.
+    fn see(&mut self, scene: &Arc<Scene>, view: &View) -> Result<usize, RenderError> {
+        if let Some(known) = self.seen.iter().position(|seen| Arc::ptr_eq(&seen.scene, scene) && seen.view == *view) {
+            return Ok(known);
+        }
+        let draws: Arc<[Draw]> = draws_of(scene, view)?.into();
+        let needs = Needs::of(scene, &draws, view);
+        let needs_all_paths = Arc::new(Needs { clipping: true, largest_px: f64::INFINITY, ..needs.clone() });
+        self.seen.truncate(1);
+        self.seen.insert(0, Seen { scene: scene.clone(), view: view.clone(), draws, needs: Arc::new(needs), needs_all_paths });
+        Ok(0)
+    }
+
+    /// The plan for a view in `seen`; the same as before where nothing that it depends on changed.
+    fn plan_of(&mut self, device: &Device, seen: usize, request: &Request<'_>) -> Result<Arc<Plan>, RenderError> {
+        let seen = &self.seen[seen];
+        let needs = if self.force_all_paths { &seen.needs_all_paths } else { &seen.needs };
+        // A shadow map has no picture whose tiles could be listed.
+        let listed_tiles = device.tuning.listed_tiles && self.target != Target::ShadowMap;
+        let tuning = Tuning { listed_tiles, ..device.tuning };
+        Ok(self.planner.plan(needs, request.stack, &device.gpu.caps, &tuning, request.accuracy)?)
+    }
+
+    /// Computes what the passes read about every instance, unless it is known; true if it changed.
+    fn update_draw_data(&mut self, scene: &mut SceneResources, key: &KernelKey, view: &View, draws: &[Draw], stack: &Stack) -> bool {
+        let inputs = DrawInputs {
+            view: view.clone(),
+            attributes: scene.attributes(),
+            culls: key.culls(),
+            deforms_offscreen: !key.culls() || stack.light().is_some(),
+        };
+        if self.draw_data.as_ref().is_some_and(|data| data.is_of(scene.scene(), &inputs)) {
+            return false;
+        }
+        let meshlets = key.culls().then(|| scene.meshlets());
+        let boxes = if key.options.position_format.packed_bits().is_some() { scene.packed_boxes() } else { &[] };
+        let mut data = DrawData::new(scene.scene(), draws, inputs, boxes, meshlets.as_deref());
+        data.counts.particles = scene.particle_count();
+        self.draw_data = Some(data);
+        true
+    }
+
+    /// Makes and drops buffers so that those of the layout are there; returns the new ones.
+    fn allocate(&mut self, gpu: &Gpu, layout: &FrameLayout) -> Result<Vec<BufferId>, RenderError> {
+        if self.frame.as_ref().is_none_or(|frame| frame.layout != *layout) {
+            self.release_commands();
+        }
+        self.buffers.keep(|id| layout.has(id));
+        let mut new = Vec::new();
+        for (id, spec) in layout.buffers() {
+            if self.buffers.ensure_for(gpu, id, spec.bytes, spec.purpose)? {
+                new.push(id);
+            }
+        }
+        Ok(new)
+    }
+
+    /// Writes draw data that changed, or whose buffers are new.
+    fn write_draw_data(
+        &self,
+        gpu: &Gpu,
+        scene: &mut SceneResources,
+        layout: &FrameLayout,
+        new: &[BufferId],
+        is_changed: bool,
+    ) -> Result<(), RenderError> {
+        let Some(data) = &self.draw_data else { return Ok(()) };
+        let contents: [(BufferId, &[u8]); 5] = [
+            (BufferId::Draws, bytemuck::cast_slice(&data.records)),
+            (BufferId::Deforms, bytemuck::cast_slice(&data.deforms.records)),
+            (BufferId::Joints, bytemuck::cast_slice(&data.deforms.joints)),
+            (BufferId::MorphTargets, bytemuck::cast_slice(&data.deforms.morph_targets)),
+            (BufferId::Instances, bytemuck::cast_slice(&data.instances)),
+        ];
+        for (id, bytes) in contents.into_iter().filter(|(id, _)| layout.has(*id) && (is_changed || new.contains(id))) {
+            self.buffers.write_at(gpu, id, 0, bytes)?;
+        }
+        if new.contains(&BufferId::Meshlets) || new.contains(&BufferId::MeshletLists) {
+            let meshlets = scene.meshlets();
+            self.buffers.write_at(gpu, BufferId::Meshlets, 0, bytemuck::cast_slice(&meshlets.records))?;
+            self.buffers.write_at(gpu, BufferId::MeshletLists, 0, bytemuck::cast_slice(&meshlets.lists))?;
+        }
+        Ok(())
+    }
+
+    fn write_uniforms(
+        &self,
+        gpu: &Gpu,
+        layout: &FrameLayout,
+        view: &View,
+        point_radius: u32,
+        parameters: &[u8],
+    ) -> Result<(), RenderError> {
+        let scaling = ScalingUniform { size: layout.shown, stride: color_stride(layout.shown[0]), spare: 0 };
+        let (frame, culling) = (layout.frame_uniform(view, point_radius), layout.culling_uniform());
+        let uniforms: [(BufferId, &[u8]); 4] = [
+            (BufferId::Frame, bytemuck::bytes_of(&frame)),
+            (BufferId::Effects, parameters),
+            (BufferId::Culling, bytemuck::bytes_of(&culling)),
+            (BufferId::Scaling, bytemuck::bytes_of(&scaling)),
+        ];
+        uniforms.into_iter().filter(|(id, _)| layout.has(*id)).try_for_each(|(id, bytes)| self.buffers.write_at(gpu, id, 0, bytes))
+    }
+
+    /// Writes the rows of background that are copied over the picture, where they changed.
+    fn write_background(&mut self, gpu: &Gpu, layout: &FrameLayout, view: &View, is_new: bool) -> Result<(), RenderError> {
+        if !layout.has(BufferId::Background) {
+            return Ok(());
+        }
+        let [r, g, b, alpha] = view.background.map(f64::from);
+        // As the resolve packs it.
+        let word = [srgb_byte(r), srgb_byte(g), srgb_byte(b), (alpha.clamp(0.0, 1.0) * 255.0 + 0.5) as u8];
+        let background = (word, color_stride(view.width));
+        if is_new || self.background != Some(background) {
+            let rows = word.repeat((background.1 * BACKGROUND_ROWS) as usize);
+            self.buffers.write_at(gpu, BufferId::Background, 0, &rows)?;
+            self.background = Some(background);
+        }
+        Ok(())
+    }
+
+    /// Fills with zeros what is cleared on these occasions.
+    ///
+    /// # Errors
+    /// When a buffer is missing.
+    pub fn clear(&self, encoder: &mut wgpu::CommandEncoder, occasion: impl Fn(ClearedBy) -> bool) -> Result<(), RenderError> {
+        for (id, bytes) in self.frame()?.layout.cleared(occasion) {
+            encoder.clear_buffer(self.buffers.get(id)?, bytes.start, Some(bytes.end - bytes.start));
+        }
+        Ok(())
+    }
+
+    /// Makes the passes of the frame ready to be recorded, unless they are. `others` are resources that the view shares.
+    ///
+    /// # Errors
+    /// When a kernel cannot be compiled, or binds what is not there.
+    pub fn prepare_passes(&mut self, device: &mut Device, passes: Vec<Pass>, others: &Resources<'_>) -> Result<(), RenderError> {
+        let key = &self.frame.as_ref().ok_or(RenderError::NoScene)?.plan.key;
+        let resources = others.with(&self.buffers);
+        match &self.commands {
+            Some(commands) if commands.is_for(key, &passes, &resources) => commands.mark(&device.gpu.pipelines),
+            _ => {
+                let prefix = if self.target == Target::ShadowMap { "light " } else { "" };
+                let commands = CommandList::new(device, key, passes, prefix, &resources)?;
+                self.commands = Some(commands);
+            }
+        }
+        Ok(())
+    }
+
+    /// Records a part of the passes that were prepared.
+    ///
+    /// # Errors
+    /// When none were.
+    pub fn record(&self, part: Range<usize>, encoder: &mut wgpu::CommandEncoder, timing: Timing<'_>) -> Result<(), RenderError> {
+        let commands = self.commands.as_ref().ok_or(RenderError::NoScene)?;
+        commands.record(part, encoder, &self.frame()?.layout, &self.buffers, timing)
+    }
+
+    /// Records all passes that were prepared.
+    ///
+    /// # Errors
+    /// When none were.
+    pub fn record_all(&self, encoder: &mut wgpu::CommandEncoder, timing: Timing<'_>) -> Result<(), RenderError> {
+        self.record(0..self.commands.as_ref().map_or(0, CommandList::len), encoder, timing)
+    }
+
+    /// Makes room for what the queues lost, or gives up an estimate that was wrong; true if either may help.
+    pub fn grow_queues(&mut self, record: &CounterRecord) -> bool {
+        let is_estimate_wrong = self.frame.as_ref().is_some_and(|frame| {
+            let key = &frame.plan.key;
+            record.clip > 0 && !key.paths.has_clipping
+                || record.medium > 0 && !key.paths.has_medium
+                || record.large > 0 && !key.paths.has_large
+        });
+        self.force_all_paths |= is_estimate_wrong;
+        self.capacities.grow(record) || is_estimate_wrong
+    }
+}
