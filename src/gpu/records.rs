@@ -132,7 +132,7 @@ gpu_record! {
 
 gpu_record! {
     /// What takes places to the shadow map. Each member is explained in `shaders/slots/light/mapped.wgsl`.
-    pub struct ShadowMapUniform = "Light" {
+    pub struct ShadowMapUniform = "ShadowMapView" {
         pub column: [f32; 4],
         pub row: [f32; 4],
         pub depth: [f32; 4],
@@ -171,7 +171,7 @@ gpu_record! {
 
 gpu_record! {
     /// One shape of one draw. Each member is explained in `shaders/slots/shapes/kept.wgsl`.
-    pub struct MorphTargetRecord = "Shape" {
+    pub struct MorphTargetRecord = "MorphTarget" {
         pub weight: f32,
         pub position_offset: u32,
         pub position_stride: u32,
@@ -268,7 +268,7 @@ gpu_record! {
 
 gpu_record! {
     /// What one step goes by. Each member is explained in `shaders/common/course.wgsl`.
-    pub struct StepParams = "Course" {
+    pub struct StepParams = "StepParams" {
         pub p: Particles,
         pub life_steps: u32,
         pub life_chance: u32,

@@ -3,7 +3,7 @@
 //@ use glue/surface
 
 // What takes a place in the world to the shadow map. Mirror of `gpu::uniforms::LightUniform`.
-struct Light {
+struct ShadowMapView {
     column: vec4f, // texels to the right, of a place (x, y, z, 1)
     row: vec4f,    // texels down
     depth: vec4f,  // reversed depth: 1 near the light
@@ -13,7 +13,7 @@ struct Light {
     spare: u32,
 }
 
-@group(0) @binding(30) var<uniform> light: Light;
+@group(0) @binding(30) var<uniform> light: ShadowMapView;
 @group(0) @binding(31) var shadow_map: texture_2d<u32>;
 
 // Texels a side of the filter: 1, 3 or 5.

@@ -2,7 +2,7 @@
 //@ use common/bends
 //@ use common/normal
 
-struct Shape {
+struct MorphTarget {
     weight: f32,
     position_offset: u32,
     position_stride: u32,
@@ -13,7 +13,7 @@ struct Shape {
     spare: u32,
 }
 
-@group(0) @binding(18) var<storage, read> shapes: array<Shape>;
+@group(0) @binding(18) var<storage, read> shapes: array<MorphTarget>;
 
 // What is stored for a vertex; zero where a lane is refused, or nothing stored.
 fn shapes_stored(format: u32, byte: u32) -> vec3f {
