@@ -1,8 +1,9 @@
 // Hardware: an ordinary render pipeline over the same vertex and index bytes, as a yardstick. The same effects shade it;
 // what only a rasterizer of our own knows (flat normal, triangle id, centre) it leaves at the interpolated values.
-//@ use common/draws
-//@ use common/surface
-//@ use common/color
+//@ use lib/frame
+//@ use lib/triangle
+//@ use lib/surface
+//@ use lib/color
 //@ use glue/surface
 
 struct Varyings {

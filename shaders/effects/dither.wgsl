@@ -1,7 +1,6 @@
 // Dither: ordered dithering (Bayer 1973), so that few levels look like many.
-//@ use common/image
-//@ use common/color
-//@ use common/tone
+//@ use lib/image
+//@ use lib/color
 
 struct Dither {
     ink: vec4f,
@@ -19,7 +18,7 @@ fn dither(pixel: Pixel, p: Dither) -> Pixel {
     let last = f32(p.levels - 1u);
     let base = q.color.rgb;
     var value = base;
-    if p.palette == DITHER_PALETTE_DUOTONE { value = vec3f(tone_luminance(base)); }
+    if p.palette == DITHER_PALETTE_DUOTONE { value = vec3f(color_luminance(base)); }
     let level = clamp(floor(value * last + threshold) / last, vec3f(0.0), vec3f(1.0));
     var color = level;
     if p.palette == DITHER_PALETTE_DUOTONE {
@@ -30,7 +29,7 @@ fn dither(pixel: Pixel, p: Dither) -> Pixel {
     return q;
 }
 
-// Place of a cell in the order in which a matrix of 2^bits a side fills up: of every bit, the checkerboard first.
+// Rank of a cell in the order in which a matrix with a side of 2^bits fills up: for every bit, the checkerboard first.
 fn dither_rank(x: u32, y: u32, bits: u32) -> u32 {
     var rank = 0u;
     for (var bit = 0u; bit < bits; bit += 1u) {

@@ -1,5 +1,5 @@
 // Draw order: stops the picture after a number of samples, so that one sees the order in which it is drawn.
-//@ use common/surface
+//@ use lib/surface
 
 struct DrawOrder {
     first: vec4f,

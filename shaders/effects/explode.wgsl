@@ -1,7 +1,8 @@
 // Explode: triangles fly out along their own normals, turning about them and shrinking as they go.
-//@ use common/moved
-//@ use common/front
-//@ use common/sine
+//@ use lib/vertex
+//@ use lib/front
+//@ use lib/hash
+//@ use lib/angle
 
 struct Explode {
     center: vec4f,
@@ -21,17 +22,16 @@ struct Explode {
 
 fn explode(vertex: Vertex, p: Explode) -> Vertex {
     var v = vertex;
-    let front = Front(p.pattern, p.front, p.width, vec2f(p.along_x, p.along_y), p.center.xyz, p.radius_m, p.width_m, p.seed);
-    let reached = front_reached(front, v.center, v.center_screen, v.triangle);
-    let share = reached * (1.0 - p.scatter * hash_unit(v.triangle ^ (p.seed * 0x85ebca6bu)));
-    let sine = sine_turns(p.spin_turns * share);
-    let half_sine = sine_turns(p.spin_turns * share * 0.5);
+    let reached = front_reached(explode_front(p), v.center, v.center_screen, v.triangle);
+    let progress = reached * (1.0 - p.scatter * hash_unit(v.triangle ^ (p.seed * 0x85ebca6bu)));
+    let sine = sine_turns(p.spin_turns * progress);
+    let half_sine = sine_turns(p.spin_turns * progress * 0.5);
     let versine = 2.0 * half_sine * half_sine; // 1 - cosine, without a difference
     let n = v.flat_normal;
 
     let arm = v.arm + v.offset;
     let turn = explode_turn(n, arm, sine, versine);
-    v.offset += n * (p.amount_m * share) + turn - (arm + turn) * (p.shrink * share);
+    v.offset += n * (p.amount_m * progress) + turn - (arm + turn) * (p.shrink * progress);
     v.normal += explode_turn(n, v.normal, sine, versine);
     return v;
 }

@@ -1,6 +1,6 @@
 // Facet: blends every triangle between smooth and flat, in normal and in depth.
-//@ use common/surface
-//@ use common/front
+//@ use lib/surface
+//@ use lib/front
 
 struct Facet {
     center: vec4f,
@@ -17,8 +17,7 @@ struct Facet {
 
 fn facet(surface: Surface, p: Facet) -> Surface {
     var s = surface;
-    let front = Front(p.pattern, p.front, p.width, vec2f(p.along_x, p.along_y), p.center.xyz, p.radius_m, p.width_m, p.seed);
-    let t = p.amount * front_reached(front, s.center, s.center_screen, s.triangle_id);
+    let t = p.amount * front_reached(facet_front(p), s.center, s.center_screen, s.triangle_id);
     if t <= 0.0 { return s; }
     s.depth_m += (s.flat_depth_m - s.depth_m) * t;
     let blended = s.normal + (s.flat_normal - s.normal) * t;

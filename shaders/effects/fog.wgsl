@@ -1,5 +1,5 @@
 // Fog: blends towards a colour with distance (Beer–Lambert).
-//@ use common/surface
+//@ use lib/surface
 
 struct Fog {
     color: vec4f,
@@ -13,8 +13,8 @@ fn fog(surface: Surface, p: Fog) -> Surface {
     var s = surface;
     let above = max(s.position.y - p.level_m, 0.0);
     let thickness = p.density * exp(-above * p.falloff);
-    let share = 1.0 - exp(-thickness * max(s.depth_m - p.start_m, 0.0));
-    s.glow *= 1.0 - share;
-    s.color = vec4f(s.color.rgb + (p.color.rgb - s.color.rgb) * share, s.color.a);
+    let fraction = 1.0 - exp(-thickness * max(s.depth_m - p.start_m, 0.0));
+    s.glow *= 1.0 - fraction;
+    s.color = vec4f(s.color.rgb + (p.color.rgb - s.color.rgb) * fraction, s.color.a);
     return s;
 }

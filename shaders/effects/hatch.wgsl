@@ -1,6 +1,7 @@
 // Hatch: cross-hatching in ink, whose lines grow as the tone darkens.
-//@ use common/surface
-//@ use common/tone
+//@ use lib/surface
+//@ use lib/color
+//@ use lib/angle
 
 struct Hatch {
     ink: vec4f,
@@ -19,41 +20,41 @@ struct Hatch {
 fn hatch(surface: Surface, p: Hatch) -> Surface {
     var s = surface;
     let base = max(s.color.rgb, vec3f(0.0));
-    let tone = min(sqrt(tone_luminance(base)), 1.0);
+    let tone = min(sqrt(color_luminance(base)), 1.0);
     let darkness = 1.0 - clamp((tone - p.dark) / max(p.bright - p.dark, 0.2), 0.0, 1.0);
     var bare = 1.0;
     for (var layer = 0u; layer < p.layers; layer += 1u) {
-        let share = clamp(darkness * f32(p.layers) - f32(layer), 0.0, 1.0) * p.width;
-        bare *= 1.0 - hatch_line(s, p, layer, share);
+        let width = clamp(darkness * f32(p.layers) - f32(layer), 0.0, 1.0) * p.width;
+        bare *= 1.0 - hatch_line(s, p, layer, width);
     }
     let brightest = max(max(base.r, base.g), base.b);
     var hue = vec3f(1.0);
     if brightest > 1e-6 { hue = base / brightest; }
     let paper = p.paper.rgb + (p.paper.rgb * hue - p.paper.rgb) * p.tint;
-    // Mixed as the eye sees it, as the tone was taken: in linear light a trace of paper would outshine the ink.
+    // Mixed in the scale of the tone, close to perception: in linear light a trace of paper would outshine the ink.
     let mixed = mix(sqrt(p.ink.rgb), sqrt(paper), bare);
     s.color = vec4f(mixed * mixed, s.color.a);
     return s;
 }
 
-// How much of the pixel the lines of a layer take that are `share` of their spacing wide.
-fn hatch_line(s: Surface, p: Hatch, layer: u32, share: f32) -> f32 {
-    // Crossed, then between.
-    let along = tone_turned(p.angle_deg + f32(layer & 1u) * 90.0 + f32(layer >> 1u) * 45.0);
-    var place = (s.pixel.y * along.x - s.pixel.x * along.y) / p.spacing_px;
+// Fraction of the pixel under the lines of a layer, whose width is a fraction of their spacing.
+fn hatch_line(s: Surface, p: Hatch, layer: u32, width: f32) -> f32 {
+    // Two crossed layers, then two between them.
+    let along = direction_degrees(p.angle_deg + f32(layer & 1u) * 90.0 + f32(layer >> 1u) * 45.0);
+    var position = (s.pixel.y * along.x - s.pixel.x * along.y) / p.spacing_px;
     var spacing_px = p.spacing_px;
     if p.space == HATCH_SPACE_SURFACE {
         let across = normalize(vec3f(-along.y, along.x, f32(layer >> 1u)));
-        // How far the planes' distance changes from pixel to pixel; held where the surface lies along the planes or is
-        // seen edge-on, and where f32 has no finer places in the world.
+        // Change of the distance to the planes from pixel to pixel; limited where the surface is parallel to the planes or
+        // seen edge-on, and by the resolution of f32 in the world.
         let change = across - s.normal * (dot(across, s.view) / max(dot(s.normal, s.view), 0.1));
         let per_px = max(s.pixel_size_m * max(length(change), 0.4), 1.5e-4 * (length(s.position) + s.depth_m));
-        place = dot(s.position, across) / p.spacing_m;
+        position = dot(s.position, across) / p.spacing_m;
         spacing_px = p.spacing_m / per_px;
     }
-    let distance = abs(place - floor(place) - 0.5) * spacing_px;
-    let half = 0.5 * share * spacing_px;
+    let distance = abs(position - floor(position) - 0.5) * spacing_px;
+    let half = 0.5 * width * spacing_px;
     let covered = clamp(min(distance + 0.5, half) - max(distance - 0.5, -half), 0.0, 1.0);
-    // Lines that no pixel can tell apart become their mean.
-    return share + (covered - share) * clamp(spacing_px - 1.0, 0.0, 1.0);
+    // Lines closer than a pixel become their mean.
+    return width + (covered - width) * clamp(spacing_px - 1.0, 0.0, 1.0);
 }

@@ -1,5 +1,5 @@
 // Inflate: every vertex moves along its own normal, so that a smooth surface swells or shrinks without a tear.
-//@ use common/moved
+//@ use lib/vertex
 
 struct Inflate {
     amount_m: f32,

@@ -1,5 +1,5 @@
 // Normals: colours the surface by the direction it faces, x red, y green, z blue.
-//@ use common/surface
+//@ use lib/surface
 
 struct Normals {
     amount: f32,

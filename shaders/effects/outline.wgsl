@@ -1,6 +1,6 @@
 // Outline: lines where the picture's integers change: at silhouettes, between objects, at steps of depth.
-//@ use common/image
-//@ use common/color
+//@ use lib/image
+//@ use lib/color
 
 struct Outline {
     color: vec4f,
@@ -28,7 +28,7 @@ fn outline(pixel: Pixel, p: Outline) -> Pixel {
     return q;
 }
 
-// Does a line run at a pixel because of another? Each is triangle id, key and draw.
+// Is there a line at a pixel because of another? Each is triangle id, depth bits and draw.
 fn outline_is_edge(p: Outline, at: vec2i, here: vec3u, step: vec2i) -> bool {
     if !image_has(at.x + step.x, at.y + step.y) { return false; }
     let there = image_at(at.x + step.x, at.y + step.y);
@@ -38,14 +38,14 @@ fn outline_is_edge(p: Outline, at: vec2i, here: vec3u, step: vec2i) -> bool {
         return p.silhouette != 0u && here.x != there.x && is_right_side;
     }
     if here.z != there.z {
-        // Equal keys: the later object counts as behind.
+        // At equal depths, the later object counts as behind.
         let is_behind = here.y < there.y || (here.y == there.y && here.z > there.z);
         return p.objects != 0u && (p.side == OUTLINE_SIDE_BOTH || is_behind == (p.side == OUTLINE_SIDE_OUTSIDE));
     }
     if p.depth == 0u || !image_has(at.x - step.x, at.y - step.y) { return false; }
     let beyond = image_at(at.x - step.x, at.y - step.y);
     if beyond.z != here.z || beyond.x == IMAGE_NO_TRIANGLE { return false; }
-    // What bends away from a straight slope; a slope alone is no jump. Keys end at the bits of 1.0: it fits.
+    // Deviation from a straight slope; a slope alone is no jump. Depths end at the bits of 1.0, so the sum fits.
     let curvature = i32(there.y) + i32(beyond.y) - 2 * i32(here.y);
     let jump = i32(p.depth_threshold * 8388608.0);
     switch p.side {

@@ -1,5 +1,5 @@
 // Particles: a cloud of discs that a flow without sources or sinks carries along.
-// How they move and look is said in src/effects/particles.rs; no hook of the stack is theirs.
+// src/effects/particles.rs defines how they move and look; they use no hook of the stack.
 
 struct Particles {
     slow: vec4f,

@@ -1,5 +1,5 @@
 // Posterize: few levels of colour, evenly spaced to the eye.
-//@ use common/image
+//@ use lib/image
 
 struct Posterize {
     by: u32,

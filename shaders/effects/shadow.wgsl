@@ -1,6 +1,6 @@
 // Shadow: a directional light with a shadow map, drawn by the rasterizer itself from where the light stands.
-//@ use common/surface
-//@ use common/tone
+//@ use lib/surface
+//@ use lib/angle
 
 struct Shadow {
     light: vec4f,
@@ -15,8 +15,8 @@ struct Shadow {
 }
 
 fn shadow_toward(p: Shadow) -> vec3f {
-    let azimuth = tone_turned(p.azimuth_deg);
-    let elevation = tone_turned(p.elevation_deg);
+    let azimuth = direction_degrees(p.azimuth_deg);
+    let elevation = direction_degrees(p.elevation_deg);
     return vec3f(elevation.x * azimuth.y, elevation.y, elevation.x * azimuth.x);
 }
 
@@ -26,7 +26,7 @@ fn shadow(surface: Surface, p: Shadow) -> Surface {
     let arrives = 1.0 - p.strength * (1.0 - s.lit);
     let up = 0.5 + 0.5 * s.normal.y;
     var shade = p.light.rgb * (facing * arrives) + p.ground.rgb + (p.sky.rgb - p.ground.rgb) * up;
-    // Where the light only grazes a surface, it was dim before.
+    // A surface that the light only grazes is dim already.
     if p.shading == SHADOW_SHADING_DIM { shade = vec3f(1.0 - p.strength * (1.0 - s.lit * min(4.0 * facing, 1.0))); }
     s.color = vec4f(s.color.rgb * shade, s.color.a);
     return s;

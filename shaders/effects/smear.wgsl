@@ -1,5 +1,5 @@
 // Smear: where nothing is drawn the picture before stays, and fades towards the background.
-//@ use common/image
+//@ use lib/image
 
 struct Smear {
     fade: f32,
@@ -12,10 +12,10 @@ fn smear(pixel: Pixel, p: Smear) -> Pixel {
     if image_at(i32(q.x), i32(q.y)).x != IMAGE_NO_TRIANGLE { return q; }
     let background = vec4i(clamp(image_background(), vec4f(0.0), vec4f(1.0)) * 255.0 + 0.5);
     let previous = vec4i(image_previous(q));
-    // In units of 2^-16; a trail that fades at all takes a step at least, so it comes to its end.
-    let share = i32(p.fade * 65536.0);
+    // In units of 2^-16. A trail that fades changes by at least one step per frame, so it ends.
+    let fraction = i32(p.fade * 65536.0);
     let gap = background - previous;
-    let faded = previous + sign(gap) * ((abs(gap) * share + 65535) >> vec4u(16u));
+    let faded = previous + sign(gap) * ((abs(gap) * fraction + 65535) >> vec4u(16u));
     q.color = vec4f(faded) / 255.0;
     return q;
 }

@@ -1,6 +1,6 @@
 // Stipple: screen-door transparency by an ordered integer matrix.
-//@ use common/sample
-//@ use common/hash
+//@ use lib/sample
+//@ use lib/hash
 
 struct Stipple {
     opacity: f32,
@@ -17,7 +17,7 @@ fn stipple(s: Sample, p: Stipple) -> bool {
         let shift = hash(s.triangle ^ p.seed);
         at += vec2u(shift & 7u, (shift >> 3u) & 7u);
     }
-    // Bayer (1973): bits of x xor y and of y interleaved, the lowest first.
+    // Bayer (1973): bits of x xor y and of y interleaved, lowest first.
     var rank = 0u;
     for (var i = 0u; i < bits; i += 1u) {
         let x = ((at.x ^ at.y) >> i) & 1u;

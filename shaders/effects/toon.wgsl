@@ -1,5 +1,5 @@
 // Toon: light in a few flat steps with soft edges, and a rim.
-//@ use common/surface
+//@ use lib/surface
 
 struct Toon {
     rim: vec4f,
@@ -15,8 +15,8 @@ fn toon(surface: Surface, p: Toon) -> Surface {
     let steps = f32(p.steps);
     let brightest = max(max(max(s.color.r, s.color.g), s.color.b), 0.0);
     // The soft edge of a step is its upper end.
-    let place = min(sqrt(brightest), 1.0) * steps;
-    let step = min(floor(place) + smoothstep(1.0 - p.softness, 1.0, place - floor(place)), steps - 1.0);
+    let position = min(sqrt(brightest), 1.0) * steps;
+    let step = min(floor(position) + smoothstep(1.0 - p.softness, 1.0, position - floor(position)), steps - 1.0);
     let tone = p.light - (p.light - p.shadow) * (steps - 1.0 - step) / max(steps - 1.0, 1.0);
     var flat = vec3f(tone * tone);
     if brightest > 1e-6 { flat = s.color.rgb * (tone * tone / brightest); }

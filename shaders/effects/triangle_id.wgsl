@@ -1,6 +1,6 @@
 // Triangle id: gives every triangle a colour of its own.
-//@ use common/surface
-//@ use common/hash
+//@ use lib/surface
+//@ use lib/hash
 
 struct TriangleId {
     amount: f32,

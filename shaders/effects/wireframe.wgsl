@@ -1,7 +1,7 @@
 // Wireframe: draws the edges of triangles at a constant width in pixels.
-//@ use common/surface
-//@ use common/sample
-//@ use common/fixed
+//@ use lib/surface
+//@ use lib/sample
+//@ use lib/fixed
 
 struct Wireframe {
     ink: vec4f,
@@ -10,8 +10,9 @@ struct Wireframe {
     hidden: u32,
 }
 
-// How near the edge opposite each corner a sample must be, less one; 0 never. Of an edge's width each triangle draws half.
-fn wireframe_decide(t: TriangleSetup, p: Wireframe) -> vec4u {
+// For the edge opposite each corner: the area from which a sample is too far away; 0 draws nothing. Each triangle draws half of
+// an edge's width.
+fn wireframe_sample_setup(t: TriangleSetup, p: Wireframe) -> vec4u {
     let half_width = u32(round(p.width_px * 128.0));
     let shift = fixed_shift(fixed_abs(fixed_edge(t.a, t.b, t.c)));
     return vec4u(
@@ -23,18 +24,18 @@ fn wireframe_decide(t: TriangleSetup, p: Wireframe) -> vec4u {
 fn wireframe_reach(edge: vec2i, half_width: u32, shift: u32) -> u32 {
     let squared = fixed_add(fixed_mul(edge.x, edge.x), fixed_mul(edge.y, edge.y));
     let reach = fixed_umul(fixed_root(squared), half_width);
-    // A reach beyond 31 bits is beyond every part.
+    // A reach above 31 bits is above every area.
     return select(fixed_down(reach, shift), 0x7fffffffu, fixed_shift(reach) > shift) + 1u;
 }
 
 fn wireframe_sample(s: Sample, p: Wireframe) -> bool {
-    return p.hidden == WIREFRAME_HIDDEN_REMOVED || any(s.parts < s.decided.xyz);
+    return p.hidden == WIREFRAME_HIDDEN_REMOVED || any(s.areas < s.setup.xyz);
 }
 
 fn wireframe_surface(surface: Surface, p: Wireframe) -> Surface {
     var s = surface;
     let distance = min(min(s.edge_distance_px.x, s.edge_distance_px.y), s.edge_distance_px.z);
-    // Where the faces are drawn too, the line ends softly, over one pixel.
+    // Where the faces are drawn too, the line fades over one pixel.
     var line = 1.0;
     if p.hidden == WIREFRAME_HIDDEN_REMOVED { line = clamp(0.5 * p.width_px + 0.5 - distance, 0.0, 1.0); }
     let face = mix(s.color.rgb, p.paper.rgb, p.paper.a);

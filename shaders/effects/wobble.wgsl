@@ -1,6 +1,6 @@
 // Wobble: a wave runs through the model and sways it, normals and all.
-//@ use common/moved
-//@ use common/sine
+//@ use lib/vertex
+//@ use lib/angle
 
 struct Wobble {
     direction: vec4f,
@@ -17,7 +17,7 @@ fn wobble(vertex: Vertex, p: Wobble) -> Vertex {
     let turns = dot(v.position + v.offset, direction) / p.wavelength_m - p.phase_turns;
     v.offset += sway * (p.amplitude_m * sine_turns(turns));
 
-    // The displacement changes along `direction` by `slope`; normals go with the cofactors of its Jacobian, 1 + slope sway direction'.
+    // The displacement changes along `direction` by `slope`; normals transform with the cofactors of its Jacobian, 1 + slope sway direction'.
     let slope = 6.28318531 * (p.amplitude_m / p.wavelength_m) * cosine_turns(turns);
     let turned = v.normal + (v.normal * dot(sway, direction) - direction * dot(sway, v.normal)) * slope;
     let squared = dot(turned, turned);

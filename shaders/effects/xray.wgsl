@@ -1,5 +1,5 @@
 // X-ray: the average of all layers on a pixel instead of the nearest, in linear light and in whole numbers.
-//@ use common/surface
+//@ use lib/surface
 
 struct Xray {
     layers: u32,
@@ -12,17 +12,17 @@ struct Xray {
 // Weight of a layer: 1 where all count alike, else 1 to 255.
 fn xray_weight(s: Surface, p: Xray) -> u32 {
     let facing = abs(dot(s.normal, s.view));
-    var share = facing;
+    var fraction = facing;
     switch p.weight {
         case XRAY_WEIGHT_EQUAL: { return 1u; }
-        case XRAY_WEIGHT_GRAZING: { share = 1.0 - facing; }
-        case XRAY_WEIGHT_NEAR: { share = (s.depth_range_m.y - s.depth_m) / (s.depth_range_m.y - s.depth_range_m.x); }
+        case XRAY_WEIGHT_GRAZING: { fraction = 1.0 - facing; }
+        case XRAY_WEIGHT_NEAR: { fraction = (s.depth_range_m.y - s.depth_m) / (s.depth_range_m.y - s.depth_range_m.x); }
         default: {}
     }
-    return u32(clamp(share * 255.0, 1.0, 255.0) + 0.5);
+    return u32(clamp(fraction * 255.0, 1.0, 255.0) + 0.5);
 }
 
-// Least depth key that counts behind a front; integers alone, so that both twins give the same.
+// Least depth key that counts behind a front; in integers, so that the oracle computes the same.
 fn xray_threshold(front: u32, is_perspective: bool, p: Xray) -> u32 {
     if p.layers == XRAY_LAYERS_ALL { return 1u; }
     if !is_perspective {
@@ -30,7 +30,7 @@ fn xray_threshold(front: u32, is_perspective: bool, p: Xray) -> u32 {
         let window = (p.window << 20u) / 1000u;
         return max(bitcast<u32>(f32(step - min(step, window)) * 0.00000095367431640625), 1u);
     }
-    // The significand times a factor of 16 bits, in two parts, so that nothing exceeds 32 bits.
+    // The significand times a factor of 16 bits, in two parts, so that no product exceeds 32 bits.
     let exponent = front >> 23u;
     let significand = (front & 0x7fffffu) | 0x800000u;
     let factor = 65536000u / (1000u + p.window);
@@ -40,13 +40,13 @@ fn xray_threshold(front: u32, is_perspective: bool, p: Xray) -> u32 {
     return ((exponent - shift) << 23u) | ((scaled << shift) & 0x7fffffu);
 }
 
-// Sum over count, to the nearest whole number, halves up.
+// Sum over count, rounded to the nearest integer, halves up.
 fn xray_average(sum: u32, count: u32) -> u32 {
     let whole = max(count, 1u);
     return sum / whole + select(0u, 1u, 2u * (sum % whole) >= whole);
 }
 
-// through to the power of weight / unit: whole powers by squaring, since drivers' logarithms are coarse.
+// `through` to the power of weight / unit: integer powers by squaring, because logarithms of drivers are coarse.
 fn xray_clear(through: f32, weight: u32, unit: u32) -> f32 {
     let rest = weight % unit;
     var clear = select(1.0, exp2(log2(max(through, 1e-30)) * f32(rest) / f32(unit)), rest > 0u);
@@ -58,8 +58,8 @@ fn xray_clear(through: f32, weight: u32, unit: u32) -> f32 {
     return select(clear, 0.0, through <= 0.0 && weight > 0u);
 }
 
-// The average over the background, as dense as its layers are many.
-fn xray_seen(average: vec3f, background: vec4f, weight: u32, p: Xray) -> vec4f {
+// The average over the background, with an opacity that grows with the number of layers.
+fn xray_over(average: vec3f, background: vec4f, weight: u32, p: Xray) -> vec4f {
     let clear = xray_clear(1.0 - p.opacity, weight, select(255u, 1u, p.weight == XRAY_WEIGHT_EQUAL));
     return vec4f(average + (background.rgb - average) * clear, 1.0 + (background.a - 1.0) * clear);
 }

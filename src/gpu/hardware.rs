@@ -14,7 +14,12 @@ use super::{
 use crate::{
     effects::Stack,
     scene::{ComponentType, Primitive, Scene, Topology, draw::draws, view::View},
-    shader::{glue::uniform_bytes, key::KernelKey, library::Library, link, reflect},
+    shader::{
+        glue::uniform_bytes,
+        key::{KernelKey, VertexInputs},
+        library::Library,
+        link, reflect,
+    },
 };
 
 /// One indexed or plain draw call.
@@ -154,8 +159,10 @@ fn pipeline(
     buffers: &Buffers,
     (position_stride, normal_stride, double_sided): (u32, u32, bool),
 ) -> Result<(wgpu::RenderPipeline, wgpu::BindGroup), RenderError> {
-    let slots = [("draws", "slots/draws/many".into()), ("image", "slots/image/none".into())];
-    let linked = link::link(&Library::from_env(), "baselines/hardware", key, &slots)?;
+    // Every draw is an instance of a storage buffer here.
+    let vertices = VertexInputs { is_single_draw: false, ..key.vertices.clone() };
+    let key = KernelKey { vertices, ..key.clone() };
+    let linked = link::link(&Library::from_env(), "baselines/hardware", &key, &[])?;
     let reflected = reflect::reflect(&linked, gpu.caps.int64_atomics)?;
     let mut bindings = reflected.bindings("hardware_vertex");
     bindings.extend(reflected.bindings("hardware_fragment"));

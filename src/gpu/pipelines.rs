@@ -78,10 +78,10 @@ impl Pipelines {
         label: &str,
         entry: &str,
         key: &KernelKey,
-        slots: &[(&str, String)],
+        variants: &[(&str, &str)],
         constants: &[(&str, f64)],
     ) -> Result<Arc<Pipeline>, RenderError> {
-        let desc = self.desc(gpu, root, label, entry, key, slots, constants)?;
+        let desc = self.desc(gpu, root, label, entry, key, variants, constants)?;
         self.found_or_compiled(gpu, desc)
     }
 
@@ -138,8 +138,7 @@ impl Pipelines {
     }
 
     fn desc_of(&self, gpu: &Gpu, key: &KernelKey, pass: Pass) -> Result<PipelineDesc, RenderError> {
-        let root = format!("passes/{}", pass.stem());
-        self.desc(gpu, &root, &pass.label(), pass.entry(), key, &key.variants(pass), &key.constants(pass))
+        self.desc(gpu, &pass.path(), &pass.label(), pass.stem(), key, &key.variants(pass), &key.constants(pass))
     }
 
     #[allow(clippy::too_many_arguments, reason = "as `build`")]
@@ -150,14 +149,14 @@ impl Pipelines {
         label: &str,
         entry: &str,
         key: &KernelKey,
-        slots: &[(&str, String)],
+        variants: &[(&str, &str)],
         constants: &[(&str, f64)],
     ) -> Result<PipelineDesc, RenderError> {
         let is_trusted = key.options.shader_checks == ShaderChecks::Trusted;
         if is_trusted && !matches!(self.library, Library::Embedded) {
             return Err(RenderError::Untrusted);
         }
-        let linked = link::link(&self.library, root, key, slots)?;
+        let linked = link::link(&self.library, root, key, variants)?;
         let interface = gpu.pipelines.interface(&linked, entry, gpu.caps.int64_atomics)?;
         let declared = constants.iter().filter(|(name, _)| interface.overrides.iter().any(|declared| declared == name));
         let identity = Identity {

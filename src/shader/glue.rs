@@ -1,10 +1,12 @@
-//! Glue: the only generated WGSL. The `Effects` uniform, constants for choices, and one call chain per hook.
+//! Glue: generated WGSL. The parameters of the stack's effects with constants for their choices, one call chain per hook, and
+//! buffers that a kernel key declares in one of several ways.
 
 use std::fmt::Write;
 
 use crate::{
     effects::{Effect, EnabledEffect},
     params::{Field, ValueType, WgslType},
+    shader::key::{Fetch, KernelKey},
 };
 
 /// Bytes from the start of one effect's parameters to the next are a multiple of this (WGSL, uniform address space).
@@ -12,7 +14,7 @@ const MEMBER_ALIGN: usize = 16;
 
 /// Constants and the `Effects` struct for the enabled effects, in order. With none there is no struct and no binding; with
 /// `baked` parameters there is a constant instead of a binding.
-pub fn glue(effects: &[&'static Effect], baked: &[Vec<u32>]) -> String {
+pub fn effects(effects: &[&'static Effect], baked: &[Vec<u32>]) -> String {
     let mut text = String::new();
     for effect in effects {
         for field in effect.fields {
@@ -48,8 +50,8 @@ fn constructor(effect: &Effect, words: &[u32]) -> String {
         WgslType::U32 => format!("{word}u"),
     };
     let member = |field: &Field| {
-        let lanes: Vec<String> = words[field.offset / 4..][..field.wgsl.words()].iter().map(|&word| literal(field.wgsl, word)).collect();
-        if lanes.len() == 1 { lanes[0].clone() } else { format!("vec4f({})", lanes.join(", ")) }
+        let components: Vec<String> = words[field.offset / 4..][..field.wgsl.words()].iter().map(|&word| literal(field.wgsl, word)).collect();
+        if components.len() == 1 { components[0].clone() } else { format!("vec4f({})", components.join(", ")) }
     };
     let members: Vec<String> = effect.fields.iter().map(member).collect();
     format!("{}({})", effect.wgsl_struct, members.join(", "))
@@ -60,7 +62,7 @@ fn constructor(effect: &Effect, words: &[u32]) -> String {
 pub enum Chain {
     Vertex,
     Sample,
-    /// What the sample effects settle per triangle.
+    /// What sample effects compute once per triangle.
     SampleSetup,
     Surface,
     Image,
@@ -74,13 +76,18 @@ impl Chain {
         match self {
             Self::Vertex => "vertex",
             Self::Sample => "sample",
-            Self::SampleSetup => "decide",
+            Self::SampleSetup => "sample_setup",
             Self::Surface => "surface",
             Self::Image => "image",
         }
     }
 
-    /// Is the effect a link of this chain?
+    /// The effects of a stack that this chain calls, in order.
+    pub fn effects(self, effects: &[&'static Effect]) -> impl Iterator<Item = &'static Effect> {
+        effects.iter().copied().filter(move |effect| self.has(effect))
+    }
+
+    /// Does this chain call the effect?
     fn has(self, effect: &Effect) -> bool {
         let hooks = &effect.hooks;
         match self {
@@ -98,33 +105,31 @@ impl Chain {
         if functions == 1 { effect.name.into() } else { format!("{}_{}", effect.name, self.name()) }
     }
 
-    /// The generated function `glue_<hook>` that calls every link in stack order.
+    /// The generated function `glue_<hook>` that calls every effect in stack order.
     pub fn text(self, effects: &[&'static Effect]) -> String {
-        let links: Vec<(String, &str)> =
-            effects.iter().filter(|effect| self.has(effect)).map(|effect| (self.function(effect), effect.name)).collect();
-        let mut text = String::new();
         let (head, tail) = match self {
             Self::Vertex => ("fn glue_vertex(vertex: Vertex) -> Vertex {\n    var v = vertex;\n", "    return v;\n}\n"),
             Self::Sample => ("fn glue_sample(sample: Sample, entry: u32) -> bool {\n    var s = sample;\n", "    return true;\n}\n"),
-            Self::SampleSetup => ("fn glue_decide(facts: TriangleSetup, entry: u32) {\n", "}\n"),
+            Self::SampleSetup => ("fn glue_sample_setup(setup: TriangleSetup, entry: u32) {\n", "}\n"),
             Self::Surface => ("fn glue_surface(surface: Surface) -> Surface {\n    var s = surface;\n", "    return s;\n}\n"),
             Self::Image => ("fn glue_image(pixel: Pixel) -> Pixel {\n    var q = pixel;\n", "    return q;\n}\n"),
         };
-        text.push_str(head);
-        let decided: Vec<&str> = effects.iter().filter(|effect| Self::SampleSetup.has(effect)).map(|effect| effect.name).collect();
-        let place = |name: &str| decided.iter().position(|other| *other == name);
-        for (function, name) in links {
+        let with_setup: Vec<&Effect> = Self::SampleSetup.effects(effects).collect();
+        let setup_of = |effect: &Effect| with_setup.iter().position(|other| other.name == effect.name);
+        let mut text = head.to_owned();
+        for effect in self.effects(effects) {
+            let (function, name) = (self.function(effect), effect.name);
             let line = match self {
                 Self::Vertex => format!("    v = {function}(v, effects.{name});"),
                 Self::Surface => format!("    s = {function}(s, effects.{name});"),
                 Self::Image => format!("    q = {function}(q, effects.{name});"),
                 Self::Sample => {
-                    let load = place(name).map_or(String::new(), |place| format!("    s.decided = decisions_load(entry, {place}u);\n"));
+                    let load = setup_of(effect).map_or(String::new(), |index| format!("    s.setup = sample_setup_load(entry, {index}u);\n"));
                     format!("{load}    if !{function}(s, effects.{name}) {{ return false; }}")
                 }
                 Self::SampleSetup => {
-                    let place = place(name).expect("a link of this chain decides");
-                    format!("    decisions_store(entry, {place}u, {function}(facts, effects.{name}));")
+                    let index = setup_of(effect).expect("an effect of this chain has a setup");
+                    format!("    sample_setup_store(entry, {index}u, {function}(setup, effects.{name}));")
                 }
             };
             writeln!(text, "{line}").expect("writing to a string");

@@ -17,9 +17,24 @@ pub enum Library {
 }
 
 impl Library {
-    /// The folder named by `RASTERLAB_SHADERS`, for whoever edits shaders; else the embedded files.
+    /// The folder named by `RASTERLAB_SHADERS`, for people who edit shaders; else the embedded files.
     pub fn from_env() -> Self {
         std::env::var_os("RASTERLAB_SHADERS").map_or(Self::Embedded, |folder| Self::Folder(folder.into()))
+    }
+
+    /// Name and text of every embedded file.
+    pub(super) fn embedded() -> impl Iterator<Item = (String, &'static str)> {
+        fn files(folder: &'static Dir<'static>, found: &mut Vec<(String, &'static str)>) {
+            for file in folder.files() {
+                if let (Some(name), Some(text)) = (file.path().with_extension("").to_str(), file.contents_utf8()) {
+                    found.push((name.replace('\\', "/"), text));
+                }
+            }
+            folder.dirs().for_each(|folder| files(folder, found));
+        }
+        let mut found = Vec::new();
+        files(&EMBEDDED, &mut found);
+        found.into_iter()
     }
 
     /// Text of `name` (a path below `shaders`, without `.wgsl`), if there is such a file.

@@ -9,6 +9,7 @@ pub mod library;
 pub mod link;
 pub mod pass;
 pub mod reflect;
+mod source;
 
 pub use key::{Fetch, KernelKey};
 pub use pass::Pass;

@@ -1,6 +1,6 @@
 //! Passes: the entry points of a frame, and what each raster pass writes.
 
-/// One entry point of a frame. Its file in `shaders/passes` is [`Pass::stem`], its name for profilers [`Pass::label`].
+/// One entry point of a frame. Its file in `shaders/stages` is [`Pass::path`], its name for profilers [`Pass::label`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Pass {
     /// Simulates particles and writes their discs.
@@ -145,24 +145,24 @@ impl RasterPhase {
 }
 
 impl Pass {
-    /// Stem of the file in `shaders/passes`.
+    /// Stem of the file below `shaders/stages`, and name of the entry point in it.
     pub const fn stem(self) -> &'static str {
         match self {
-            Self::Particles => "particles",
-            Self::Skin => "skin",
+            Self::Particles => "simulate_particles",
+            Self::Skin => "deform",
             Self::Project => "project",
             Self::Cull(_) => "cull",
             Self::ProjectMeshlets => "project_meshlets",
             Self::DepthReduce => "depth_reduce",
-            Self::AdvanceQueues { .. } => "rounds",
-            Self::SampleSetup(_) => "decide",
+            Self::AdvanceQueues { .. } => "advance_queues",
+            Self::SampleSetup(_) => "sample_setup",
             Self::OrderSums => "order_sums",
             Self::OrderLimit => "order_limit",
             Self::OrderRanks => "order_ranks",
             Self::OrderCut => "order_cut",
             Self::RasterSmall(_) => "raster_small",
             Self::RasterPoints(_) => "raster_points",
-            Self::Args => "args",
+            Self::Args => "dispatch_args",
             Self::Clip => "clip",
             Self::TileLarge => "tile_large",
             Self::RasterMedium(_) => "raster_medium",
@@ -181,12 +181,18 @@ impl Pass {
         }
     }
 
-    /// The entry point in that file.
-    pub const fn entry(self) -> &'static str {
-        match self {
-            Self::Args => "args_write",
-            other => other.stem(),
-        }
+    /// The file below `shaders`, without `.wgsl`.
+    pub fn path(self) -> String {
+        let folder = match self {
+            Self::Particles | Self::Skin | Self::Project | Self::ProjectMeshlets | Self::Cull(_) | Self::DepthReduce => "geometry",
+            Self::AdvanceQueues { .. } | Self::SampleSetup(_) | Self::Args | Self::Clip => "geometry",
+            Self::RasterSmall(_) | Self::RasterPoints(_) | Self::RasterMedium(_) | Self::RasterLarge(_) | Self::TileLarge => "raster",
+            Self::BinMedium(_) | Self::BinLarge(_) | Self::BinScan | Self::RasterTiles => "raster",
+            Self::OrderSums | Self::OrderLimit | Self::OrderRanks | Self::OrderCut => "order",
+            Self::DotsEnds | Self::DotsCull | Self::DotsArgs | Self::DotsDraw | Self::DotsProbe => "lines",
+            Self::ListTiles | Self::Resolve | Self::Scale => "shade",
+        };
+        format!("stages/{folder}/{}", self.stem())
     }
 
     /// Does it run over dots?

@@ -234,12 +234,12 @@ fn mutants() -> Vec<Mutant> {
     };
     let rule = "return select(1, 0, d.y < 0 || (d.y == 0 && d.x > 0));";
     vec![
-        mutant("bias 0 everywhere", "common/fixed", rule, "return 0;", ties(), DOUBLES),
-        mutant("bias 1 everywhere", "common/fixed", rule, "return 1;", ties(), HOLES),
-        mutant("bottom-right rule", "common/fixed", rule, "return select(1, 0, d.y > 0 || (d.y == 0 && d.x < 0));", ties(), TRIANGLE_IDS),
+        mutant("bias 0 everywhere", "lib/fixed", rule, "return 0;", ties(), DOUBLES),
+        mutant("bias 1 everywhere", "lib/fixed", rule, "return 1;", ties(), HOLES),
+        mutant("bottom-right rule", "lib/fixed", rule, "return select(1, 0, d.y > 0 || (d.y == 0 && d.x < 0));", ties(), TRIANGLE_IDS),
         mutant(
             "float edges",
-            "slots/coverage/fixed",
+            "variants/coverage/fixed",
             "coverage.row = dx * from_y - dy * from_x - bias;",
             "coverage.row = vec3i(vec3f(dx) * vec3f(from_y)) - vec3i(vec3f(dy) * vec3f(from_x)) - bias;",
             close(),
@@ -247,7 +247,7 @@ fn mutants() -> Vec<Mutant> {
         ),
         mutant(
             "sample at the pixel corner",
-            "slots/coverage/fixed",
+            "variants/coverage/fixed",
             "let p = grid_sample(first);",
             "let p = grid_sample(first) - 128;",
             ties(),
@@ -255,16 +255,16 @@ fn mutants() -> Vec<Mutant> {
         ),
         mutant(
             "sample at the pixel corner of large triangles",
-            "passes/raster_large",
+            "stages/raster/raster_large",
             "* 16);\n        let edge",
             "* 16) - 128;\n        let edge",
             sizes(),
             TRIANGLE_IDS,
         ),
-        mutant("affine weights", "common/shade", "let share = select(e * inv_w, e, IS_AFFINE);", "let share = e;", receding(), COLORS),
+        mutant("affine weights", "lib/shade", "let terms = select(e * inv_w, e, IS_AFFINE);", "let terms = e;", receding(), COLORS),
         mutant(
             "the larger id wins ties",
-            "slots/visibility/split32_owner",
+            "variants/framebuffer_write/triangle_id",
             "atomicMax(&triangle_ids[pixel], ~id);",
             "loop {
                 let held = atomicLoad(&triangle_ids[pixel]);
@@ -274,18 +274,18 @@ fn mutants() -> Vec<Mutant> {
             builtin("stack?layers=5", [128, 128]),
             TRIANGLE_IDS,
         ),
-        mutant("one rebased block is skipped", "passes/raster_large", "for (var block = 0;", "for (var block = 1;", sizes(), HOLES),
+        mutant("one rebased block is skipped", "stages/raster/raster_large", "for (var block = 0;", "for (var block = 1;", sizes(), HOLES),
         mutant(
             "saturation at 2^31",
-            "slots/blocks/rebased",
-            "const BLOCKS_SATURATED = 1073741824;",
-            "const BLOCKS_SATURATED = 2147483647;",
+            "variants/large_edges/rebased",
+            "const BLOCK_SATURATED = 1073741824;",
+            "const BLOCK_SATURATED = 2147483647;",
             vast(),
             HOLES,
         ),
         mutant(
             "one triangle is missing",
-            "passes/raster_small",
+            "stages/raster/raster_small",
             "if id >= frame.triangle_count { return; }",
             "if id >= frame.triangle_count || id == 7u { return; }",
             builtin("fan?n=13", [128, 128]),
@@ -293,7 +293,7 @@ fn mutants() -> Vec<Mutant> {
         ),
         mutant(
             "one pixel to the right",
-            "common/vertex",
+            "lib/snap",
             "return vec2i(center) +",
             "return vec2i(256, 0) + vec2i(center) +",
             ties(),
@@ -301,23 +301,23 @@ fn mutants() -> Vec<Mutant> {
         ),
         mutant(
             "depth of another corner",
-            "slots/keys/float",
-            "weights.z * keys.depth.z",
-            "weights.z * keys.depth.y",
+            "variants/depth/float",
+            "weights.z * plane.depth.z",
+            "weights.z * plane.depth.y",
             builtin("sphere?triangles=200", [128, 128]),
             KEYS,
         ),
         mutant(
             "a piece of what was clipped is missing",
-            "passes/clip",
-            "let slot = atomicAdd(&counters.pieces, 1u);",
-            "if i == 2u { continue; }\n        let slot = atomicAdd(&counters.pieces, 1u);",
+            "stages/geometry/clip",
+            "let slot = atomicAdd(&counters.clipped_triangles, 1u);",
+            "if i == 2u { continue; }\n        let slot = atomicAdd(&counters.clipped_triangles, 1u);",
             hall(),
             UNEXPLAINED,
         ),
         mutant(
             "a medium triangle stops a block early",
-            "passes/raster_medium",
+            "stages/raster/raster_medium",
             "x <= pixels.z; x += 8",
             "x + 8 <= pixels.z; x += 8",
             builtin("sphere?triangles=200", [128, 128]),
@@ -325,7 +325,7 @@ fn mutants() -> Vec<Mutant> {
         ),
         mutant(
             "a tile is forgotten",
-            "passes/tile_large",
+            "stages/raster/tile_large",
             "let tiles = pixels.zw / 64 - first + 1;",
             "let tiles = max(pixels.zw / 64 - first, vec2i(1));",
             sizes(),

@@ -202,7 +202,7 @@ fn lists_of_tiles_hold_their_demand_to_the_last_entry() {
         assert_eq!((report.counters.overflow, report.redraw), (demand - bins, bins < demand), "room for {bins} of {demand}");
         assert_same(&frame, &reference, &format!("room for {bins} of {demand}"));
     }
-    let library = mutated("passes/raster_tiles", "vec2u(frame.bin_capacity)", "vec2u(frame.bin_capacity / 2u)");
+    let library = mutated("stages/raster/raster_tiles", "vec2u(frame.bin_capacity)", "vec2u(frame.bin_capacity / 2u)");
     let mut wrong = Renderer::with_library(renderer.gpu().clone(), library.shaders());
     let (_, frame) = tiled(&mut wrong, demand);
     assert_ne!(
@@ -237,7 +237,7 @@ fn long_lists_of_tiles_are_walked_to_their_end() {
         ("list.x + bins[tiles_count() + tile]", "list.x + 0u"),
         ("if MAX_LIST_ENTRIES != 0xffffffffu && range.x", "if MAX_LIST_ENTRIES == 0u && range.x"),
     ] {
-        let library = mutated("passes/raster_tiles", from, to);
+        let library = mutated("stages/raster/raster_tiles", from, to);
         let mut wrong = Renderer::with_library(renderer.gpu().clone(), library.shaders());
         wrong.set_tuning(Tuning { max_list_entries: 100, ..usual });
         let frame = captured(&mut wrong, &scene, &view, &stack(&[]), &pinned(Visibility::Tiled)).frame;
@@ -368,29 +368,29 @@ fn the_early_load_does_not_show() {
 
 /// Mistakes in the tiled kernels that a picture must show: file, what stands there, what stands there instead, scene.
 const TILED_MUTANTS: &[[&str; 5]] = &[
-    ["a tile is forgotten", "common/bins", "pixels.zw / 16 - first + 1", "max(pixels.zw / 16 - first, vec2i(1))", "sphere?triangles=200"],
-    ["a tile is given up too soon", "common/bins", "(d.y < 0), (d.x > 0)", "(d.y > 0), (d.x < 0)", "sphere?triangles=200"],
+    ["a tile is forgotten", "lib/tile_lists", "pixels.zw / 16 - first + 1", "max(pixels.zw / 16 - first, vec2i(1))", "sphere?triangles=200"],
+    ["a tile is given up too soon", "lib/tile_lists", "(d.y < 0), (d.x > 0)", "(d.y > 0), (d.x < 0)", "sphere?triangles=200"],
     [
         "the same of large triangles",
-        "common/bins",
-        "fixed_edge(a, b, inner)) < fixed_bias(d)",
-        "fixed_edge(a, b, inner)) < 1 + fixed_bias(d)",
+        "lib/queued_triangle",
+        "fixed_edge(a, b, innermost)) < fixed_bias(d)",
+        "fixed_edge(a, b, innermost)) < 1 + fixed_bias(d)",
         "sizes",
     ],
-    ["the larger id wins ties", "passes/raster_tiles", "sample.x > nearest.x", "sample.x < nearest.x", "stack?layers=5"],
-    ["the farther one wins", "passes/raster_tiles", "sample.y > nearest.y", "nearest.y == 0u", "near"],
+    ["the larger id wins ties", "stages/raster/raster_tiles", "sample.x > nearest.x", "sample.x < nearest.x", "stack?layers=5"],
+    ["the farther one wins", "stages/raster/raster_tiles", "sample.y > nearest.y", "nearest.y == 0u", "near"],
     [
         "the last of a list is left out",
-        "passes/raster_tiles",
+        "stages/raster/raster_tiles",
         "list = min(vec2u(begin, bins[tile])",
         "list = min(vec2u(begin, max(bins[tile], 1u) - 1u)",
         "near",
     ],
-    ["a list begins at its neighbour's", "passes/raster_tiles", "bins[max(tile, 1u) - 1u], 0u", "bins[tile], 0u", "near"],
-    ["the last column of a box is left out", "common/cells", "(box.z << 8u)", "((max(box.z, 1u) - 1u) << 8u)", "sphere?triangles=200"],
+    ["a list begins at its neighbour's", "stages/raster/raster_tiles", "bins[max(tile, 1u) - 1u], 0u", "bins[tile], 0u", "near"],
+    ["the last column of a box is left out", "lib/tile_box", "(box.z << 8u)", "((max(box.z, 1u) - 1u) << 8u)", "sphere?triangles=200"],
     [
         "edges of large triangles from elsewhere",
-        "slots/cells/all",
+        "variants/tile_triangle/all",
         "let p = grid_sample(first);",
         "let p = grid_sample(first + 1);",
         "sizes",

@@ -138,36 +138,36 @@ fn another_seed_gives_other_cases_and_is_named() {
 
 /// What is wrong, where, from what, to what, and the case that must see it.
 const MUTANTS: &[(&str, &str, &str, &str, &str)] = &[
-    ("every edge owns its samples", "common/fixed", "return select(1, 0, d.y < 0 || (d.y == 0 && d.x > 0));", "return 0;", "d3d-rectangle"),
+    ("every edge owns its samples", "lib/fixed", "return select(1, 0, d.y < 0 || (d.y == 0 && d.x > 0));", "return 0;", "d3d-rectangle"),
     (
         "the rule of the other side",
-        "common/fixed",
+        "lib/fixed",
         "return select(1, 0, d.y < 0 || (d.y == 0 && d.x > 0));",
         "return select(1, 0, d.y > 0 || (d.y == 0 && d.x < 0));",
         "d3d-four-triangles",
     ),
-    ("one pixel to the right", "common/vertex", "return vec2i(center) +", "return vec2i(256, 0) + vec2i(center) +", "d3d-snap"),
-    ("sample at the pixel corner", "slots/coverage/fixed", "let p = grid_sample(first);", "let p = first * grid_unit();", "sizes"),
+    ("one pixel to the right", "lib/snap", "return vec2i(center) +", "return vec2i(256, 0) + vec2i(center) +", "d3d-snap"),
+    ("sample at the pixel corner", "variants/coverage/fixed", "let p = grid_sample(first);", "let p = first * grid_unit();", "sizes"),
     (
         "float edges",
-        "slots/coverage/fixed",
+        "variants/coverage/fixed",
         "coverage.row = dx * from_y - dy * from_x - bias;",
         "coverage.row = vec3i(vec3f(dx) * vec3f(from_y)) - vec3i(vec3f(dy) * vec3f(from_x)) - bias;",
         "near-misses",
     ),
-    ("no edge owns its samples", "common/fixed", "return select(1, 0, d.y < 0 || (d.y == 0 && d.x > 0));", "return 1;", "dense-grids"),
-    ("one rebased block is skipped", "passes/raster_large", "for (var block = 0;", "for (var block = 1;", "slivers"),
+    ("no edge owns its samples", "lib/fixed", "return select(1, 0, d.y < 0 || (d.y == 0 && d.x > 0));", "return 1;", "dense-grids"),
+    ("one rebased block is skipped", "stages/raster/raster_large", "for (var block = 0;", "for (var block = 1;", "slivers"),
     (
         "a piece of what was clipped is missing",
-        "passes/clip",
-        "let slot = atomicAdd(&counters.pieces, 1u);",
-        "if i == 1u { continue; }\n        let slot = atomicAdd(&counters.pieces, 1u);",
+        "stages/geometry/clip",
+        "let slot = atomicAdd(&counters.clipped_triangles, 1u);",
+        "if i == 1u { continue; }\n        let slot = atomicAdd(&counters.clipped_triangles, 1u);",
         "guard-band",
     ),
-    ("depth of another corner", "slots/keys/float", "weights.z * keys.depth.z", "weights.z * keys.depth.y", "scales-and-offsets"),
+    ("depth of another corner", "variants/depth/float", "weights.z * plane.depth.z", "weights.z * plane.depth.y", "scales-and-offsets"),
     (
         "the larger id wins ties",
-        "slots/visibility/split32_owner",
+        "variants/framebuffer_write/triangle_id",
         "atomicMax(&triangle_ids[pixel], ~id);",
         "loop {
             let held = atomicLoad(&triangle_ids[pixel]);
@@ -178,7 +178,7 @@ const MUTANTS: &[(&str, &str, &str, &str, &str)] = &[
     ),
     (
         "65,535 groups at most",
-        "passes/args",
+        "stages/geometry/dispatch_args",
         "return Dispatch(min(groups, 65535u), (groups + 65534u) / 65535u, 1u);",
         "return Dispatch(min(groups, 65535u), 1u, 1u);",
         "workgroups-indirect",
@@ -191,7 +191,7 @@ const MUTANTS: &[(&str, &str, &str, &str, &str)] = &[
         "layers-on-one-pixel",
     ),
     ("one sample of a row too many", "effects/dissolve", "(u32(span.x) + rest)", "(u32(span.x) + rest + 1u)", "fill"),
-    ("a limit that is off by one", "slots/order/submission", "pixel < order.cut", "pixel <= order.cut", "draw-limit"),
+    ("a limit that is off by one", "variants/sample_test/draw_order", "pixel < order.cut", "pixel <= order.cut", "draw-limit"),
     ("another triangle's name", "baselines/hardware_ids", "corner / 3u", "corner / 3u + 1u", "hardware-cross-check"),
     (
         "the witness is moved by a sample",

@@ -33,13 +33,13 @@ fn calculate(@builtin(workgroup_id) group: vec3u, @builtin(num_workgroups) group
     let i = (group.y * groups.x + group.x) * 64u + lane;
     let x = pairs[i].x;
     let y = pairs[i].y;
-    results[i] = vec4u(soft_add(x, y), soft_multiply(x, y), soft_divide(x, y), bitcast<u32>(soft_round(x)));
+    results[i] = vec4u(softfloat_add(x, y), softfloat_multiply(x, y), softfloat_divide(x, y), bitcast<u32>(softfloat_round(x)));
 }
 ";
 
 /// Sum, product, quotient and the first rounded, of each pair, by the shaders of `library` on the adapter.
 fn calculated(gpu: &Gpu, library: &Library, pairs: &[[u32; 2]]) -> Vec<[u32; 4]> {
-    let text = format!("{}{KERNEL}", library.text("common/soft").expect("the file is there"));
+    let text = format!("{}{KERNEL}", library.text("lib/softfloat").expect("the file is there"));
     let module = gpu
         .device
         .create_shader_module(wgpu::ShaderModuleDescriptor { label: Some("soft"), source: wgpu::ShaderSource::Wgsl(text.into()) });
@@ -162,9 +162,9 @@ fn a_soft_float_with_one_mistake_is_told_from_the_cpu() {
         ("bits >= 0x800000", "bits >= 0"),
         ("(1u << behind) - 1u + is_odd", "0u"),
         ("(1u << behind) - 1u + is_odd", "(1u << behind)"),
-        ("select(a & SOFT_SIGN, 0u, is_minus)", "0u"),
+        ("select(a & SOFTFLOAT_SIGN, 0u, is_minus)", "0u"),
     ] {
-        let mutant = mutated("common/soft", from, to);
+        let mutant = mutated("lib/softfloat", from, to);
         assert!(!differences(&gpu, &mutant.shaders(), 1, 1 << 17).is_empty(), "{from:?} -> {to:?} makes no difference");
     }
 }
@@ -364,34 +364,34 @@ fn a_strict_picture_with_one_mistake_differs_from_the_list() {
     let pictures = pictures();
     let way = (Tuning { max_small_samples: 64, max_small_side: 32, ..healthy.gpu().caps.tuning() }, Visibility::Split32);
     for (what, name, file, from, to) in [
-        ("one bit is rounded up", "teapot?tess=8", "common/soft", "+ 127u + (kept & 1u)", "+ 128u"),
-        ("sums drop what is shifted out", "teapot?tess=8", "common/soft", "| select(0u, 1u, is_lossy)", ""),
-        ("division drops its remainder", "teapot?tess=8", "common/soft", "| select(0u, 1u, rest != 0u)", ""),
-        ("truncation in place of rounding", "teapot?tess=8", "common/soft", "(1u << behind) - 1u + is_odd", "0u"),
+        ("one bit is rounded up", "teapot?tess=8", "lib/softfloat", "+ 127u + (kept & 1u)", "+ 128u"),
+        ("sums drop what is shifted out", "teapot?tess=8", "lib/softfloat", "| select(0u, 1u, is_lossy)", ""),
+        ("division drops its remainder", "teapot?tess=8", "lib/softfloat", "| select(0u, 1u, rest != 0u)", ""),
+        ("truncation in place of rounding", "teapot?tess=8", "lib/softfloat", "(1u << behind) - 1u + is_odd", "0u"),
         (
             "another order of the sum",
             "teapot?tess=8",
-            "slots/projection/strict",
-            "soft_add(soft_add(sum, soft_multiply(row.z, p.z)), row.w)",
-            "soft_add(soft_add(sum, row.w), soft_multiply(row.z, p.z))",
+            "variants/projection/strict",
+            "softfloat_add(softfloat_add(sum, softfloat_multiply(row.z, p.z)), row.w)",
+            "softfloat_add(softfloat_add(sum, row.w), softfloat_multiply(row.z, p.z))",
         ),
         (
             "another order of the product",
             "teapot?tess=8",
-            "slots/projection/strict",
-            "soft_multiply(soft_multiply(clip.x, inv_w), center.x)",
-            "soft_multiply(soft_multiply(clip.x, center.x), inv_w)",
+            "variants/projection/strict",
+            "softfloat_multiply(softfloat_multiply(clip.x, inv_w), center.x)",
+            "softfloat_multiply(softfloat_multiply(clip.x, center.x), inv_w)",
         ),
-        ("small keys from biased edges", "teapot?tess=8", "slots/coverage/fixed", "edges + coverage.bias", "edges"),
+        ("small keys from biased edges", "teapot?tess=8", "variants/coverage/fixed", "edges + coverage.bias", "edges"),
         (
             "large keys from biased edges",
             "direct",
-            "slots/block_keys/integer",
+            "variants/large_depth/integer",
             "fixed_edge(begin, end, p);",
             "fixed_sub(fixed_edge(begin, end, p), Wide(0u, u32(fixed_bias(end - begin))));",
         ),
-        ("the float's guess is taken", "teapot?tess=8", "slots/keys/integer", "select(0u, 1u, left < 0)", "0u"),
-        ("the cut goes outside in", "direct", "passes/clip", "cut(plane, inside, outside)", "cut(plane, outside, inside)"),
+        ("the float's guess is taken", "teapot?tess=8", "variants/depth/integer", "select(0u, 1u, left < 0)", "0u"),
+        ("the cut goes outside in", "direct", "stages/geometry/clip", "cut(plane, inside, outside)", "cut(plane, outside, inside)"),
     ] {
         let mutant = mutated(file, from, to);
         let mut wrong = Renderer::with_library(healthy.gpu().clone(), mutant.shaders());

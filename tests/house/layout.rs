@@ -17,7 +17,7 @@ use rasterlab::{
 };
 
 fn reflected(key: &KernelKey, pass: Pass) -> Reflected {
-    let linked = link::link(&Library::Embedded, &format!("passes/{}", pass.stem()), key, &key.variants(pass)).expect("links");
+    let linked = link::link(&Library::Embedded, &pass.path(), key, &key.variants(pass)).expect("links");
     reflect::reflect(&linked, true).expect("validates")
 }
 
@@ -62,7 +62,7 @@ fn modules() -> Vec<(String, Reflected, Vec<reflect::Binding>)> {
         let mut seen = BTreeSet::new();
         for pass in passes.into_iter().filter(|pass| seen.insert(pass.label())) {
             let module = reflected(&key, pass);
-            let bindings = module.bindings(pass.entry());
+            let bindings = module.bindings(pass.stem());
             assert!(!bindings.is_empty(), "{key} {}: no bindings", pass.label());
             modules.push((format!("{key} {}", pass.label()), module, bindings));
         }

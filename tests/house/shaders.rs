@@ -1,5 +1,6 @@
-//! Promise: every slot choice, with no effect, each, all and every pair of effects, links and validates, with 64-bit
-//! atomics only where a option asks for them, within eight storage buffers. Needs no adapter.
+//! Promise: every choice of variants, with no effect, each, all and every pair of effects, links and validates, with 64-bit
+//! atomics only where an option asks for them, within eight storage buffers; every file names only what it and the files that
+//! it uses declare; and few files must be opened to read a pass. Needs no adapter.
 
 use rasterlab::{
     accuracy::{AXES, Culling, DotCulling, Parameters, Visibility},
@@ -45,7 +46,7 @@ fn slot_stacks() -> Vec<Vec<&'static Effect>> {
 }
 
 fn linked(key: &KernelKey, pass: Pass) -> Linked {
-    link::link(&Library::Embedded, &format!("passes/{}", pass.stem()), key, &key.variants(pass)).expect("every file is there")
+    link::link(&Library::Embedded, &pass.path(), key, &key.variants(pass)).unwrap_or_else(|error| panic!("{} of {key}: {error}", pass.label()))
 }
 
 /// Validates one pass and returns the number of storage buffers it binds.
@@ -53,13 +54,13 @@ fn validate(key: &KernelKey, pass: Pass) -> usize {
     let int64 = pass.phase() == Some(RasterPhase::Packed);
     let linked = linked(key, pass);
     let reflected = reflect::reflect(&linked, int64).unwrap_or_else(|error| panic!("{} of {key}: {error}", pass.label()));
-    let bindings = reflected.bindings(pass.entry());
-    assert!(!bindings.is_empty(), "{} has no entry point {}", pass.stem(), pass.entry());
+    let bindings = reflected.bindings(pass.stem());
+    assert!(!bindings.is_empty(), "{} has no entry point {}", pass.stem(), pass.stem());
     bindings.iter().filter(|b| matches!(b.kind, BindingKind::Storage { .. })).count()
 }
 
 #[test]
-fn every_slot_choice_links_and_validates_within_eight_storage_buffers() {
+fn every_variant_links_and_validates_within_eight_storage_buffers() {
     for fetch in [Fetch::Direct, Fetch::Indexed] {
         for visibility in Visibility::EXACT {
             for has_queues in [false, true] {
@@ -79,7 +80,7 @@ fn every_slot_choice_links_and_validates_within_eight_storage_buffers() {
     }
 }
 
-/// The kernel with the most slots of all: what a tile looks at differs by shape, what it asks by order and by effects.
+/// The pass with the most variants: what a tile knows of a triangle differs by shape, its sample tests by order and by effects.
 #[test]
 fn tiles_validate_within_eight_storage_buffers_for_every_shape_and_order() {
     for shape in [Shape::Triangles, Shape::Boxes, Shape::Points] {
@@ -97,9 +98,9 @@ fn tiles_validate_within_eight_storage_buffers_for_every_shape_and_order() {
     }
 }
 
-/// Every option of every axis, alone and with the effects that meddle with the same slots.
+/// Every option of every axis, alone and with the effects that choose among the same variants.
 #[test]
-fn every_rung_of_the_ladder_links_and_validates() {
+fn every_option_of_every_axis_links_and_validates() {
     let effect = |name| Effect::find(name).expect("an effect");
     let stacks =
         [vec![], vec![effect("overdraw"), effect("outline")], vec![effect("dissolve"), effect("draw_order")], vec![effect("xray")]];
@@ -172,7 +173,7 @@ fn a_stack_that_moves_nothing_leaves_no_trace_of_movement() {
         assert!(!key.to_string().contains("vertex_effects"), "{key}");
         for pass in all_passes(&key) {
             let text = linked(&key, pass).text;
-            for trace in ["struct Vertex", "glue_vertex", "movement_corner"] {
+            for trace in ["struct Vertex {", "glue_vertex", "vertex_effects_corner"] {
                 assert!(!text.contains(trace), "{}: {trace}", pass.label());
             }
         }
@@ -205,14 +206,14 @@ fn portable_sources_hold_no_enable_and_no_requires() {
 fn an_error_names_the_file_and_line_a_person_wrote() {
     let folder = tempfile::tempdir().expect("a temporary folder");
     let shaders = folder.path();
-    for below in ["passes", "effects"] {
+    for below in ["stages", "effects"] {
         std::fs::create_dir(shaders.join(below)).expect("a folder");
     }
-    std::fs::write(shaders.join("passes/project.wgsl"), "//@ use effects/wrong\n@compute @workgroup_size(1)\nfn project() { wrong(); }\n")
+    std::fs::write(shaders.join("stages/project.wgsl"), "//@ use effects/wrong\n@compute @workgroup_size(1)\nfn project() { wrong(); }\n")
         .expect("written");
     std::fs::write(shaders.join("effects/wrong.wgsl"), "// A mistake\nfn wrong() { let x: u32 = 1.5; }\n").expect("written");
     let key = key(Fetch::Direct, Visibility::Split32, false, vec![]);
-    let linked = link::link(&Library::Folder(shaders.into()), "passes/project", &key, &[]).expect("links");
+    let linked = link::link(&Library::Folder(shaders.into()), "stages/project", &key, &[]).expect("links");
     let Err(error) = reflect::reflect(&linked, false) else { panic!("a wrong type was accepted") };
     assert!(error.to_string().starts_with("shaders/effects/wrong.wgsl:2:"), "{error}");
 }
@@ -231,6 +232,71 @@ fn every_way_of_choosing_dots_validates_for_every_line_and_backend() {
                     assert!(storage <= 8, "{} of {key} binds {storage} storage buffers", pass.label());
                 }
             }
+        }
+    }
+}
+
+/// For one who edits shaders: every complaint about the files of the folder RASTERLAB_SHADERS.
+#[test]
+#[ignore = "temporary"]
+fn temporary() {
+    let library = Library::from_env();
+    let mut complaints = std::collections::BTreeMap::new();
+    let mut passes = 0;
+    let mut check = |key: &KernelKey| {
+        for pass in all_passes(key) {
+            passes += 1;
+            let complaint = match link::link(&library, &pass.path(), key, &key.variants(pass)) {
+                Err(error) => error.to_string(),
+                Ok(linked) => match reflect::reflect(&linked, pass.phase() == Some(RasterPhase::Packed)) {
+                    Err(error) => error.to_string(),
+                    Ok(reflected) => {
+                        let bindings = reflected.bindings(pass.stem());
+                        let storage = bindings.iter().filter(|b| matches!(b.kind, BindingKind::Storage { .. })).count();
+                        if storage > 8 { format!("{storage} storage buffers in {}", pass.label()) } else { continue }
+                    }
+                },
+            };
+            *complaints.entry(complaint).or_insert(0) += 1;
+        }
+    };
+    for axis in AXES {
+        for index in 0..axis.words.len() {
+            for names in [vec![], vec!["overdraw", "outline"], vec!["dissolve", "draw_order"], vec!["xray"], vec!["race"], vec!["explode", "wobble", "wireframe", "shadow", "dots", "smear"]] {
+                let effects: Vec<_> = names.iter().map(|name| Effect::find(name).expect("an effect")).collect();
+                for has_mask in [false, true] {
+                    let mut key = key(Fetch::Indexed, Visibility::Split32, true, effects.clone());
+                    key.options.set(axis, index);
+                    key.samples.has_mask = has_mask;
+                    key.samples.draw_order = names.contains(&"draw_order").then_some(Mode::Submission);
+                    check(&key);
+                }
+            }
+        }
+    }
+    for shape in [Shape::Triangles, Shape::Boxes, Shape::Points] {
+        for draw_order in [None, Some(Mode::Submission), Some(Mode::Scheduler)] {
+            for has_large in [false, true] {
+                for visibility in Visibility::ALL {
+                    let effects = ["dissolve", "draw_order", "xray"].map(|name| Effect::find(name).expect("a listed effect")).to_vec();
+                    let mut key = key(Fetch::Direct, *visibility, has_large, effects);
+                    (key.samples.shape, key.samples.draw_order, key.paths.has_large) = (shape, draw_order, has_large);
+                    key.vertices.is_single_draw = has_large;
+                    check(&key);
+                }
+            }
+        }
+    }
+    for (complaint, count) in &complaints {
+        eprintln!("--- {count} times: {complaint}");
+    }
+    eprintln!("{passes} modules, {} complaints", complaints.len());
+    let mut key = key(Fetch::Indexed, Visibility::Split32, true, vec![]);
+    key.work.listed_tiles = false;
+    (key.generated.has_particles, key.surface.has_material_atlas) = (false, false);
+    for pass in all_passes(&key) {
+        if let Ok(linked) = link::link(&library, &pass.path(), &key, &key.variants(pass)) {
+            eprintln!("{}: {} files: {:?}", pass.label(), linked.sources().count(), linked.sources().collect::<Vec<_>>());
         }
     }
 }

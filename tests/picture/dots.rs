@@ -310,23 +310,23 @@ fn every_mistake_in_the_dots_shows() {
     let view = view(&scene, [160, 120]);
     let stack = dotted(&[("lines", 1.0), ("spacing_m", 0.03), ("min_gap_px", 8.0), ("size_px", 3.0)], &["lambert"]);
     let mistakes = [
-        ("common/dots", "vec4f(f32(place) * s.step)", "vec4f(f32(place + 1u) * s.step)"),
-        ("common/dots", "scaled * vec2i(1, -1);", "scaled * vec2i(1, -1) + vec2i(256, 0);"),
+        ("lib/dots", "vec4f(f32(index) * r.step)", "vec4f(f32(index + 1u) * r.step)"),
+        ("lib/dots", "scaled * vec2i(1, -1);", "scaled * vec2i(1, -1) + vec2i(256, 0);"),
         (
             "effects/dots",
             "return min(u32(max(i32((radius + 256u) * radius) - squared, 0)) / (2u * radius), DOTS_FULL);",
             "return select(0u, DOTS_FULL, squared <= i32(radius * radius));",
         ),
-        ("effects/dots", "let wanted = halved >> DOTS_STEPS;", "let wanted = (halved >> DOTS_STEPS) + 1u;"),
-        ("effects/dots", "select(0u, fading, level == wanted)", "select(0u, DOTS_FULL, level == wanted)"),
-        ("passes/dots_draw", "depth + dot_frame.bias >= depth_bits(key)", "depth >= depth_bits(key)"),
-        ("passes/dots_draw", "atomicMax(&color[", "atomicAdd(&color["),
-        ("passes/dots_draw", "i32(dot_frame.radius) + 128;", "i32(dot_frame.radius) - 128;"),
-        ("passes/dots_cull", "let stride = 1u << level;", "let stride = 2u << level;"),
-        ("passes/dots_cull", "dot_list[first_slot + slot] = entry;", "dot_list[slot] = entry;"),
-        ("passes/dots_cull", "if at > 0u { before = sums[at - 1u]; }", ""),
-        ("passes/dots_args", "(dot_count + 63u) / 64u", "dot_count / 64u"),
-        ("slots/dots/over", "strength * dot_frame.ink.a", "strength * strength * dot_frame.ink.a"),
+        ("effects/dots", "let shown_level = halved >> DOTS_STEPS;", "let shown_level = (halved >> DOTS_STEPS) + 1u;"),
+        ("effects/dots", "select(0u, fading, level == shown_level)", "select(0u, DOTS_FULL, level == shown_level)"),
+        ("stages/lines/dots_draw", "depth + dot_frame.bias >= depth_bits(key)", "depth >= depth_bits(key)"),
+        ("stages/lines/dots_draw", "atomicMax(&color[", "atomicAdd(&color["),
+        ("stages/lines/dots_draw", "i32(dot_frame.radius) + 128;", "i32(dot_frame.radius) - 128;"),
+        ("stages/lines/dots_cull", "let stride = 1u << level;", "let stride = 2u << level;"),
+        ("stages/lines/dots_cull", "dot_list[first_slot + slot] = entry;", "dot_list[slot] = entry;"),
+        ("stages/lines/dots_cull", "if at > 0u { before = sums[at - 1u]; }", ""),
+        ("stages/lines/dots_args", "(dot_count + 63u) / 64u", "dot_count / 64u"),
+        ("variants/finish_step/dots", "strength * dot_frame.ink.a", "strength * strength * dot_frame.ink.a"),
     ];
     let right = captured(&mut Renderer::new(gpu.clone()), &scene, &view, &stack, &AccuracyRequest::default());
     assert!(right.frame.dots.iter().any(|strength| (1..FULL).contains(strength)));

@@ -383,7 +383,7 @@ fn mutants() -> Vec<Mutant> {
     vec![
         mutant(
             "sums of 8 bits",
-            "slots/totals/four32",
+            "lib/xray_sums",
             "* f32(whole))) * weight",
             "* 255.0)) * (whole / 255u) * weight",
             &["xray"],
@@ -391,9 +391,9 @@ fn mutants() -> Vec<Mutant> {
         ),
         mutant(
             "count 1 for a merged group",
-            "slots/totals/four32",
-            "let before = sums_add(pixel, 3u, weight);",
-            "let before = sums_add(pixel, 3u, select(weight, 0u, pixel % 32u == 31u));",
+            "variants/framebuffer_write/xray",
+            "xray_buffer_add(SUM_WORDS * pixel + i, layer[i])",
+            "xray_buffer_add(SUM_WORDS * pixel + i, select(layer[i], 0u, i == 3u && pixel % 32u == 31u))",
             &["xray"],
             COUNTS,
         ),
@@ -407,7 +407,7 @@ fn mutants() -> Vec<Mutant> {
         ),
         mutant(
             "window off by one",
-            "slots/visibility/sum",
+            "variants/framebuffer_write/xray",
             "if key < xray_threshold",
             "if key <= xray_threshold",
             &["xray.layers=window", "xray.window=0"],
@@ -424,14 +424,14 @@ fn mutants() -> Vec<Mutant> {
         mutant(
             "weights of 7 bits",
             "effects/xray",
-            "clamp(share * 255.0, 1.0, 255.0)",
+            "clamp(fraction * 255.0, 1.0, 255.0)",
             "2.0 * clamp(share * 127.0, 1.0, 127.0)",
             &["xray.weight=facing"],
             COUNTS,
         ),
         mutant(
             "gamma before the sum",
-            "slots/visibility/sum",
+            "variants/framebuffer_write/xray",
             "clamp(surface.color.rgb, vec3f(0.0), vec3f(1.0))",
             "pow(clamp(surface.color.rgb, vec3f(0.0), vec3f(1.0)), vec3f(0.45))",
             &["xray"],
@@ -439,7 +439,7 @@ fn mutants() -> Vec<Mutant> {
         ),
         mutant(
             "a layer is counted twice",
-            "slots/visibility/count",
+            "variants/framebuffer_write/layers",
             "atomicAdd(&layers[pixel], 1u);",
             "atomicAdd(&layers[pixel], select(1u, 2u, id == 7u));",
             &["overdraw"],
@@ -455,7 +455,7 @@ fn mutants() -> Vec<Mutant> {
         ),
         mutant(
             "a race that stores another's triangle id",
-            "slots/visibility/race",
+            "variants/framebuffer_write/race",
             "depth_and_id[2u * pixel] = ~id;",
             "depth_and_id[2u * pixel] = ~(id + 1u);",
             &["race"],

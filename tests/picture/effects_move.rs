@@ -373,29 +373,29 @@ fn kernels_that_move_wrongly_are_caught() {
         (
             "corners take their neighbour's record",
             "explode",
-            "slots/corners/own",
-            "return 3u * id + vec3u(0u, 1u, 2u);",
-            "return 3u * id + vec3u(0u, 1u, 3u);",
+            "lib/triangle",
+            "var at = 3u * id + vec3u(0u, 1u, 2u);",
+            "var at = 3u * id + vec3u(0u, 1u, 3u);",
         ),
         (
             "movement is forgotten where triangles are clipped",
             "explode",
-            "common/transform",
-            "return movement_clip(draw, vertex, id, vertex_position(transform_bits(draw, vertex), 0u));",
-            "return transform_clip(draw, vertex_position(transform_bits(draw, vertex), 0u));",
+            "variants/vertex_effects/applied",
+            "return vertex_effects_clip(draw, vertex, id, floats_of_class(position_bits(draw, vertex), 0u));",
+            "return transform_clip(draw, floats_of_class(position_bits(draw, vertex), 0u));",
         ),
-        ("the plane stays behind", "wobble", "slots/shape/moved", "if shape.is_deformed {", "if false {"),
-        ("the last term of the sine is halved", "wobble", "common/sine", "y * 39.5367061", "y * 20.0"),
+        ("the plane stays behind", "wobble", "variants/vertex_effects/applied", "if moved.is_deformed {", "if false {"),
+        ("the last term of the sine is halved", "wobble", "lib/angle", "y * 39.5367061", "y * 20.0"),
     ];
     let mut failures = Vec::new();
     for (what, effect, file, from, to) in mutants {
-        let (scene, view) = match file {
-            "common/sine" => telescope(),
-            "common/transform" => still_life("near"),
+        let (scene, view) = match (effect, file) {
+            (_, "lib/angle") => telescope(),
+            ("explode", "variants/vertex_effects/applied") => still_life("near"),
             _ => still_life("sphere?triangles=200"),
         };
         let mut stack = lit(suited(effect, &scene));
-        if file == "slots/shape/moved" {
+        if (effect, file) == ("wobble", "variants/vertex_effects/applied") {
             stack.enable(Effect::find("facet").expect("there are facets"));
         }
         if effect == "wobble" {

@@ -442,12 +442,12 @@ fn effects_with_a_mistake_are_caught() {
     let mutants = [
         ("fog", "exp(-thickness *", "exp2(-thickness *"),
         ("toon", "sqrt(brightest)", "brightest"),
-        ("hatch", "0.5 * share", "0.47 * share"),
+        ("hatch", "0.5 * width", "0.47 * width"),
         ("posterize", "last + 0.5) / last, vec3f", "last + 0.49) / last, vec3f"),
         ("dither", "((x ^ y) >> bit)", "(x >> bit)"),
         ("outline", "squared <= reach * reach", "squared < reach * reach"),
-        ("outline", "bend > jump", "bend > jump / 2"),
-        ("smear", "share + 65535", "share * 2 + 65535"),
+        ("outline", "curvature > jump", "curvature > jump / 2"),
+        ("smear", "fraction + 65535", "fraction * 2 + 65535"),
     ];
     for (name, from, to) in mutants {
         let library = mutated(&format!("effects/{name}"), from, to);

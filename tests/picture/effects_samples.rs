@@ -355,21 +355,21 @@ fn kernels_with_a_mistake_are_caught() {
         ),
         (
             "the limit is off by one",
-            "slots/order/submission",
+            "variants/sample_test/draw_order",
             "pixel < order.cut",
             "pixel <= order.cut",
             only("draw_order", &[("fraction", 0.4)]),
         ),
         (
             "triangles in another order",
-            "slots/order/submission",
+            "variants/sample_test/draw_order",
             "t.id < order.straddler",
             "t.id > order.straddler",
             only("draw_order", &[("fraction", 0.4)]),
         ),
         (
             "a block is not summed",
-            "passes/order_sums",
+            "stages/order/order_sums",
             "for (var i = 0u; i < 4u;",
             "for (var i = 1u; i < 4u;",
             only("draw_order", &[("fraction", 0.7)]),
@@ -384,12 +384,12 @@ fn kernels_with_a_mistake_are_caught() {
         ("twice the width", "effects/wireframe", "p.width_px * 128.0", "p.width_px * 256.0", only("wireframe", &[("hidden", 0.0)])),
         (
             "discs without their right end",
-            "common/points",
+            "lib/shape",
             "d.x * d.x + d.y * d.y <= r * r",
             "d.x * d.x + d.y * d.y <= r * r && d.x < r / 2",
             only("points", &[("size_px", 6.0)]),
         ),
-        ("boxes at the far corner", "slots/coverage/boxes", "max(max(a.z, b.z), c.z)", "min(min(a.z, b.z), c.z)", only("boxes", &[])),
+        ("boxes at the far corner", "variants/coverage/boxes", "max(max(a.z, b.z), c.z)", "min(min(a.z, b.z), c.z)", only("boxes", &[])),
     ];
     let scene = scene("sphere?triangles=5000");
     let view = view(&scene, [128, 96]);

@@ -200,29 +200,29 @@ fn mistakes_in_looking_up_texels_are_caught() {
     let (scene, view) = panels([200, 150]);
     let (stack, option) = (stack(&["lambert"]), pinned(Visibility::Split32));
     exact(&mut healthy, &scene, &view, &stack, &option, "without a mistake");
-    let decoded = "return vec3f(texels_float(texel & 255u), texels_float((texel >> 8u) & 255u), texels_float((texel >> 16u) & 255u));";
+    let decoded = "return vec3f(atlas_float(texel & 255u), atlas_float((texel >> 8u) & 255u), atlas_float((texel >> 16u) & 255u));";
     let mistakes = [
-        ("half a texel aside", "common/texels", "clamp(place * vec2f(size),", "clamp(place * vec2f(size) + 0.5,"),
-        ("a hundredth of a texel aside", "common/texels", "clamp(place * vec2f(size),", "clamp(place * vec2f(size) + 0.01,"),
-        ("no decoding", "common/texels", decoded, "return vec3f(vec3u(texel, texel >> 8u, texel >> 16u) & vec3u(255u)) / 255.0;"),
-        ("mirrored is repeated", "common/texels", "period - 1 - within", "within - side"),
-        ("clamped a texel early", "common/texels", "clamp(at, 0, side - 1)", "clamp(at, 0, side - 2)"),
-        ("down as across", "common/texels", "size.y, (look.sampling >> 2u) & 3u", "size.y, look.sampling & 3u"),
-        ("always mixed", "common/texels", "((look.sampling >> 4u) & 1u) != 0u", "true"),
-        ("no copies", "common/texels", "if copies != COPIES_MIXED {", "if true {"),
-        ("a copy twice", "common/texels", "u32(low) + 1u", "u32(low)"),
-        ("a copy too small", "slots/texels/atlas", "0.5 * log2(", "0.125 + 0.5 * log2("),
+        ("half a texel aside", "lib/material_atlas", "clamp(uv * vec2f(size),", "clamp(uv * vec2f(size) + 0.5,"),
+        ("a hundredth of a texel aside", "lib/material_atlas", "clamp(uv * vec2f(size),", "clamp(uv * vec2f(size) + 0.01,"),
+        ("no decoding", "lib/material_atlas", decoded, "return vec3f(vec3u(texel, texel >> 8u, texel >> 16u) & vec3u(255u)) / 255.0;"),
+        ("mirrored is repeated", "lib/material_atlas", "period - 1 - within", "within - side"),
+        ("clamped a texel early", "lib/material_atlas", "clamp(at, 0, side - 1)", "clamp(at, 0, side - 2)"),
+        ("down as across", "lib/material_atlas", "size.y, (lookup.sampling >> 2u) & 3u", "size.y, lookup.sampling & 3u"),
+        ("always mixed", "lib/material_atlas", "((lookup.sampling >> 4u) & 1u) != 0u", "true"),
+        ("no copies", "lib/material_atlas", "if mip_filter != MIP_LINEAR {", "if true {"),
+        ("a copy twice", "lib/material_atlas", "u32(low) + 1u", "u32(low)"),
+        ("a copy too small", "variants/shade_step/textures", "0.5 * log2(", "0.125 + 0.5 * log2("),
         (
             "scale without perspective",
-            "common/slopes",
+            "variants/shade_step/textures",
             "select(bitcast<vec3f>(vec3u(t.a.w, t.b.w, t.c.w)), vec3f(1.0), IS_AFFINE)",
             "vec3f(1.0)",
         ),
-        ("scale across alone", "slots/texels/atlas", "max(dot(right, right), dot(down, down))", "dot(right, right)"),
-        ("turned the other way", "slots/texels/atlas", "look.u_per_v * stored.y", "look.v_per_u * stored.y"),
+        ("scale across alone", "variants/shade_step/textures", "max(dot(right, right), dot(down, down))", "dot(right, right)"),
+        ("turned the other way", "variants/shade_step/textures", "lookup.u_per_v * stored.y", "lookup.v_per_u * stored.y"),
         ("emission is lit", "effects/lambert", "(s.color.rgb - s.glow) * light + s.glow", "s.color.rgb * light"),
-        ("emission without its image", "slots/texels/atlas", "glow *= texels_at", "glow += 0.0 * texels_at"),
-        ("another primitive's material", "slots/texels/atlas", "texels_record(t.draw)", "texels_record(t.draw ^ 1u)"),
+        ("emission without its image", "variants/shade_step/textures", "glow *= texture_at", "glow += 0.0 * texture_at"),
+        ("another primitive's material", "variants/shade_step/textures", "atlas_record(t.draw)", "atlas_record(t.draw ^ 1u)"),
     ];
     let mut missed = Vec::new();
     for (what, file, from, to) in mistakes {
@@ -338,25 +338,25 @@ fn mistakes_in_masks_are_caught() {
     let (scene, views) = crowns([200, 150]);
     let (stack, option) = (stack(&[]), pinned(Visibility::Split32));
     let mistakes = [
-        ("half a texel aside", "slots/mask/asked", "let corner = place - 128;", "let corner = place;"),
-        ("the nearest texel", "slots/mask/asked", "if ((look.sampling >> 4u) & 1u) == 0u {", "if true {"),
+        ("half a texel aside", "variants/sample_test/alpha_mask", "let corner = position - 128;", "let corner = position;"),
+        ("the nearest texel", "variants/sample_test/alpha_mask", "if ((lookup.sampling >> 4u) & 1u) == 0u {", "if true {"),
         (
             "without perspective",
-            "slots/mask/asked",
+            "variants/sample_test/alpha_mask",
             "fixed_umul(spread.x, near.x).hi, fixed_umul(spread.y, near.y).hi, fixed_umul(spread.z, near.z).hi",
             "spread",
         ),
-        ("another channel", "slots/mask/asked", ">> 24u", ">> 16u & 255u"),
-        ("mirrored", "slots/mask/asked", "vec3u(first.x, first.z, last.x)", "vec3u(first.z, first.x, last.x)"),
-        ("a piece placed as its parent", "slots/mask/settled", "corners[1] = a +", "corners[1] = b + 0 *"),
-        ("upside down", "slots/mask/settled", "-ndc.y", "ndc.y"),
+        ("another channel", "variants/sample_test/alpha_mask", ">> 24u", ">> 16u & 255u"),
+        ("mirrored", "variants/sample_test/alpha_mask", "vec3u(first.x, first.z, last.x)", "vec3u(first.z, first.x, last.x)"),
+        ("a piece placed as its parent", "variants/setup_step/alpha_mask", "corners[1] = a +", "corners[1] = b + 0 *"),
+        ("upside down", "variants/setup_step/alpha_mask", "-ndc.y", "ndc.y"),
         (
             "settled two units aside",
-            "slots/mask/settled",
+            "variants/setup_step/alpha_mask",
             "var corners = array<vec2i, 3>(a, b, c);",
             "var corners = array<vec2i, 3>(a + 2, b, c);",
         ),
-        ("not asked in the second pass", "common/gate", "mask_is_drawn(t, at) && order", "order"),
+        ("not asked in the second pass", "variants/sample_test/alpha_mask", "if last.z == 0u {", "if true {"),
     ];
     for (what, view) in &views {
         exact(&mut healthy, &scene, view, &stack, &option, &format!("without a mistake {what}"));
@@ -400,7 +400,7 @@ fn a_scene_of_plain_colours_has_no_texture_and_no_word_of_one() {
         plain.surface.has_material_atlas = false;
         assert!(!plain.to_string().contains("material_atlas"));
         for pass in plain.frame() {
-            let root = format!("passes/{}", pass.stem());
+            let root = pass.path();
             let linked = link::link(&Library::Embedded, &root, &plain, &plain.variants(pass)).expect("every file is there");
             for trace in ["texture", "Lookup", "Slopes", "alpha_threshold", "fn mask_alpha"] {
                 assert!(!linked.text.contains(trace), "{}: {trace}", pass.label());
@@ -409,7 +409,7 @@ fn a_scene_of_plain_colours_has_no_texture_and_no_word_of_one() {
         let mut painted = plain;
         painted.surface.has_material_atlas = true;
         let text = |key: &KernelKey, pass: Pass| {
-            let root = format!("passes/{}", pass.stem());
+            let root = pass.path();
             link::link(&Library::Embedded, &root, key, &key.variants(pass)).expect("every file is there").text
         };
         // What a mask adds are a texture and records behind the vertices; storage buffers stay within the portable eight.
@@ -417,14 +417,14 @@ fn a_scene_of_plain_colours_has_no_texture_and_no_word_of_one() {
         masked.samples.has_mask = true;
         for pass in masked.frame() {
             assert!(!text(&painted, pass).contains("mask_alpha"), "{}", pass.label());
-            let root = format!("passes/{}", pass.stem());
+            let root = pass.path();
             let linked = link::link(&Library::Embedded, &root, &masked, &masked.variants(pass)).expect("every file is there");
             let reflected = reflect::reflect(&linked, false).unwrap_or_else(|error| panic!("{}: {error}", pass.label()));
-            let bindings = reflected.bindings(pass.entry());
+            let bindings = reflected.bindings(pass.stem());
             let storage = bindings.iter().filter(|binding| matches!(binding.kind, reflect::BindingKind::Storage { .. })).count();
             assert!(storage <= 8, "{} binds {storage} storage buffers", pass.label());
         }
-        let root = format!("passes/{}", Pass::Resolve.stem());
+        let root = Pass::Resolve.path();
         let linked = link::link(&Library::Embedded, &root, &painted, &painted.variants(Pass::Resolve)).expect("every file is there");
         let reflected = reflect::reflect(&linked, false).expect("valid");
         let textures =

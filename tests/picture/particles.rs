@@ -389,7 +389,7 @@ fn a_scene_without_particles_has_nothing_of_them() {
     for without in [Preset::default(), preset_file(&[("count", &[0.0])])] {
         let (explanation, key) = explained(&without);
         assert!(!key.generated.has_particles && !key.frame().contains(&Pass::Particles));
-        assert!(key.variants(Pass::Project).iter().any(|(slot, file)| *slot == "particle_discs" && file == "slots/splats/none"));
+        assert!(!key.variants(Pass::Project).contains(&("sample_test", "particle_disc")));
         assert!(
             !explanation
                 .buffers
@@ -427,20 +427,20 @@ fn a_mistake_in_the_pass_is_found() {
     let scene = scene("chamber");
     let preset = preset_file(&[("lifetime_s", &[0.3]), ("attraction", &[2.0]), ("radius_m", &[0.1])]);
     for (file, right, wrong) in [
-        ("common/flight", "if f.age + 1u >=", "if f.age + 2u >="),
-        ("common/flight", "hash(base + 13u)", "hash(base + 14u)"),
-        ("common/flight", "* 2.0 * r /", "* r /"),
-        ("common/flight", "salt + octave)", "salt)"),
-        ("common/flight", "0.4375", "0.4376"),
-        ("common/flight", "return ParticleState(place, velocity,", "return ParticleState(place, f.velocity,"),
-        ("slots/curl/analytic", "by_x.y - by_y.x", "by_x.y + by_y.x"),
-        ("slots/curl/analytic", "(t - 1.0) * (t - 1.0)", "(t - 1.0) * t"),
-        ("slots/state/float32", "(frame_number & 1u) * particle_step.count + id);\n    particle_states", "id);\n    particle_states"),
-        ("passes/particles", "vec2f(0.0, 2.0)", "vec2f(0.0, 1.99)"),
-        ("passes/particles", "PARTICLES_LEAN = 0.7", "PARTICLES_LEAN = 0.8"),
-        ("passes/particles", "hash_unit(base + 14u)", "hash_unit(base + 15u)"),
-        ("slots/splats/discs", "parts.x + parts.y", "parts.x + parts.z"),
-        ("slots/splats/discs", "2u * parts.x", "parts.x"),
+        ("lib/particle", "if f.age + 1u >=", "if f.age + 2u >="),
+        ("lib/particle", "hash(seed + 13u)", "hash(seed + 14u)"),
+        ("lib/particle", "* 2.0 * r /", "* r /"),
+        ("lib/particle", "salt + octave)", "salt)"),
+        ("lib/particle", "0.4375", "0.4376"),
+        ("lib/particle", "return ParticleState(position, velocity,", "return ParticleState(position, f.velocity,"),
+        ("variants/curl/analytic", "by_x.y - by_y.x", "by_x.y + by_y.x"),
+        ("variants/curl/analytic", "(t - 1.0) * (t - 1.0)", "(t - 1.0) * t"),
+        ("variants/particle_state/float32", "(frame_number & 1u) * particle_step.count + id);\n    particle_states", "id);\n    particle_states"),
+        ("stages/geometry/simulate_particles", "vec2f(0.0, 2.0)", "vec2f(0.0, 1.99)"),
+        ("stages/geometry/simulate_particles", "PARTICLE_LEAN = 0.7", "PARTICLE_LEAN = 0.8"),
+        ("stages/geometry/simulate_particles", "hash_unit(seed + 14u)", "hash_unit(seed + 15u)"),
+        ("variants/sample_test/particle_disc", "areas.x + areas.y", "areas.x + areas.z"),
+        ("variants/sample_test/particle_disc", "2u * areas.x", "areas.x"),
     ] {
         let mutant = mutated(file, right, wrong);
         let mut renderer = Renderer::with_library(gpu.clone(), mutant.shaders());

@@ -324,7 +324,7 @@ fn a_preset_without_a_light_has_no_pass_buffer_or_text_of_it() {
     for (effects, is_there) in [(vec![], false), (vec![Effect::find("lambert").expect("an effect")], false), (vec![shadow], true)] {
         let key = key(effects);
         for pass in key.frame() {
-            let linked = link::link(&Library::Embedded, &format!("passes/{}", pass.stem()), &key, &key.variants(pass)).expect("links");
+            let linked = link::link(&Library::Embedded, &pass.path(), &key, &key.variants(pass)).expect("links");
             let has_text = linked.text.contains("shadow_map");
             assert!(!has_text || is_there, "{} of {key}", pass.label());
             assert_eq!(has_text, is_there && pass.stem() == "resolve", "{} of {key}", pass.label());
@@ -387,17 +387,17 @@ fn mistakes_in_the_light_are_found() {
     let scene = boxed("knot?tess=6");
     let sweep = [("explode", "pattern", 1.0), ("explode", "width", 1.0), ("explode", "front", 0.5)];
     let (plain, parted) = (lit(&["shadow"], &[]), lit(&["explode", "shadow"], &sweep));
-    let mapped = "slots/light/mapped";
+    let mapped = "variants/shade_step/shadow_map";
     for (file, from, to, stack) in [
         (mapped, "+ (effects.shadow.bias", "- (effects.shadow.bias", &plain),
-        (mapped, "x <= reach", "x < reach", &plain),
+        (mapped, "x <= radius", "x < radius", &plain),
         (mapped, "vec2i(first) + texel", "vec2i(first) + texel + vec2i(1, 0)", &plain),
         (mapped, "vec2i(first) + texel", "vec2i(first) + texel.yx", &plain),
-        (mapped, "-slant * (held", "slant * (held", &plain),
-        (mapped, "select(1.0, fraction, tap == reach)", "select(1.0, 1.0, tap == reach)", &plain),
+        (mapped, "-slant * (clamped", "slant * (clamped", &plain),
+        (mapped, "select(1.0, fraction, tap == radius)", "select(1.0, 1.0, tap == radius)", &plain),
         (mapped, "max(depth, 1e-9)) >= key", "max(depth, 1e-9)) < key", &plain),
-        ("slots/visibility/split32_depth", "atomicMax(&depth_keys[pixel], key)", "atomicMin(&depth_keys[pixel], key)", &plain),
-        ("slots/screen/picture", "vec4f(center, 1.0)", "vec4f(center.zyx, 1.0)", &parted),
+        ("variants/framebuffer_write/depth", "atomicMax(&depth_keys[pixel], key)", "atomicMin(&depth_keys[pixel], key)", &plain),
+        ("lib/geometry", "picture_from_world * vec4f(center, 1.0)", "picture_from_world * vec4f(center.zyx, 1.0)", &parted),
     ] {
         let mutated = mutated(file, from, to);
         let mut renderer = Renderer::with_library(gpu.clone(), mutated.shaders());

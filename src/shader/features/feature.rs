@@ -5,13 +5,26 @@ use crate::{
     shader::{key::KernelKey, pass::Pass},
 };
 
+/// Takes no file of a folder of steps.
+pub(super) const NO_STEP: &str = "";
+
+/// The stem if the condition holds, else the interface of the folder, which defines its default.
+pub(super) const fn stem_if(condition: bool, stem: &'static str) -> &'static str {
+    if condition { stem } else { "interface" }
+}
+
+/// The step if the condition holds.
+pub(super) const fn step_if(condition: bool, stem: &'static str) -> &'static str {
+    if condition { stem } else { NO_STEP }
+}
+
 /// What one part of the kernel key means.
 pub(super) struct Feature {
     /// What it adds to the key's label; empty where it adds nothing.
     pub label: fn(&KernelKey) -> String,
     /// A part of the frame that exists only with this feature.
     pub part: Option<Part>,
-    /// Parts that stages leave open, and the stem of the file that a pass takes for each.
+    /// Folders of `shaders/variants`, and the stem of the file that a pass takes from each; [`NO_STEP`] where it takes none.
     pub variants: &'static [(&'static str, fn(&KernelKey, Pass) -> &'static str)],
     /// Overrides, and their values in a pass.
     pub constants: &'static [(&'static str, fn(&KernelKey, Pass) -> f64)],

@@ -1,6 +1,6 @@
 //! Geometry features: vertex formats, generated vertices, vertex effects, culling and clipping.
 
-use super::feature::{Feature, Part, flag, word_if};
+use super::feature::{Feature, Part, flag, stem_if, step_if, word_if};
 use crate::{
     accuracy::{Clipping, Culling, PositionFormat, VertexTransform},
     frame::vertex_flags,
@@ -34,28 +34,26 @@ const PARTICLES: Feature = Feature {
         why_omitted: |_| "no effect puts particles into the scene".into(),
     }),
     variants: &[
-        ("splats", |key, _| if key.has_discs() { "discs" } else { "none" }),
         ("curl", |key, _| key.options.curl_noise.name()),
-        ("state", |key, _| key.options.particle_storage.name()),
+        ("particle_state", |key, _| key.options.particle_storage.name()),
     ],
     ..Feature::NONE
 };
 
 const JOINTS: Feature = Feature {
     label: |key| word_if(key.generated.has_joints, "joints"),
-    variants: &[("skinning", |key, _| if key.generated.has_joints { key.options.skinning.name() } else { "none" })],
+    variants: &[("skinning", |key, _| stem_if(key.generated.has_joints, key.options.skinning.name()))],
     ..Feature::NONE
 };
 
 const MORPH_TARGETS: Feature = Feature {
     label: |key| word_if(key.generated.has_morph_targets, "morph_targets"),
-    variants: &[("shapes", |key, _| if key.generated.has_morph_targets { "kept" } else { "none" })],
+    variants: &[("morph_targets", |key, _| stem_if(key.generated.has_morph_targets, "weighted"))],
     ..Feature::NONE
 };
 
 const DEFORMATION: Feature = Feature {
     part: Some(Part { name: "skin", is_used: KernelKey::deforms, why_omitted: |_| "no mesh has joints or morph weights".into() }),
-    variants: &[("bytes", |_, pass| if matches!(pass, Pass::Particles | Pass::Skin) { "write" } else { "read" })],
     ..Feature::NONE
 };
 
@@ -63,12 +61,8 @@ const VERTEX_EFFECTS: Feature = Feature {
     label: |key| word_if(key.moves(), "vertex_effects"),
     part: Some(Part { name: "vertex effects", is_used: KernelKey::moves, why_omitted: |_| "no effect of the stack moves a vertex".into() }),
     variants: &[
-        ("movement", |key, _| match (key.moves(), key.unshares_vertices()) {
-            (false, _) => "none",
-            (true, false) => "vertices",
-            (true, true) => "triangles",
-        }),
-        ("shape", |key, _| if key.moves() { "moved" } else { "still" }),
+        ("vertex_effects", |key, _| stem_if(key.moves(), "applied")),
+        ("corner_step", |key, _| step_if(key.unshares_vertices(), "triangle")),
     ],
     ..Feature::NONE
 };
@@ -80,13 +74,9 @@ const UNSHARED_VERTICES: Feature = Feature {
         is_used: KernelKey::unshares_vertices,
         why_omitted: |_| "no effect moves triangles apart, so neighbours share projected vertices".into(),
     }),
-    variants: &[("corners", vertex_records), ("sources", vertex_records)],
-    ..Feature::NONE
+    variants: &[("vertex_records", |key, _| stem_if(key.unshares_vertices(), "unshared"))],
+    constants: &[("UNSHARES_VERTICES", |key, _| flag(key.unshares_vertices()))],
 };
-
-fn vertex_records(key: &KernelKey, _: Pass) -> &'static str {
-    if key.unshares_vertices() { "own" } else { "shared" }
-}
 
 const CULLING: Feature = Feature {
     part: Some(Part {
@@ -95,12 +85,12 @@ const CULLING: Feature = Feature {
         why_omitted: |_| "culling = none, so each triangle is tested on its own".into(),
     }),
     variants: &[
-        ("share", |key, _| if key.culls() { "meshlets" } else { "all" }),
+        ("triangle_source", |key, _| stem_if(key.culls(), "meshlets")),
         ("occlusion", |_, pass| match pass {
-            Pass::Cull(CullPhase::PreviousFrame) => "before",
-            Pass::Cull(CullPhase::Early) => "seen",
-            Pass::Cull(CullPhase::Late) => "behind",
-            _ => "none",
+            Pass::Cull(CullPhase::PreviousFrame) => "previous_frame",
+            Pass::Cull(CullPhase::Early) => "early",
+            Pass::Cull(CullPhase::Late) => "late",
+            _ => "interface",
         }),
     ],
     constants: &[
@@ -122,7 +112,7 @@ const CLIPPING: Feature = Feature {
             false => "the scene's box lies beyond the near plane and inside the guard band".into(),
         },
     }),
-    variants: &[("pieces", |key, _| if key.paths.has_clipping { "kept" } else { "none" })],
+    variants: &[],
     constants: &[
         ("HAS_CLIPPING", |key, _| flag(key.paths.has_clipping)),
         // Flags of a corner for which a triangle is dropped instead of clipped.
@@ -140,22 +130,14 @@ const VERTEX_FORMATS: Feature = Feature {
         is_used: |key| key.vertices.fetch != Fetch::Direct,
         why_omitted: |_| "no primitive has indices".into(),
     }),
-    variants: &[
-        ("fetch", |key, _| match key.vertices.fetch {
-            Fetch::Direct => "direct",
-            Fetch::Indexed | Fetch::IndexedU32 => "indexed",
-        }),
-        ("draws", |key, _| if key.vertices.is_single_draw { "one" } else { "many" }),
-        ("positions", |key, _| match key.options.position_format {
-            PositionFormat::Stored | PositionFormat::Relative => "stored",
-            packed => packed.name(),
-        }),
-    ],
     constants: &[
         ("ONLY_TRIANGLE_LISTS", |key, _| flag(key.vertices.only_triangle_lists)),
+        ("HAS_INDICES", |key, _| flag(key.vertices.fetch != Fetch::Direct)),
         ("U32_INDICES", |key, _| flag(key.vertices.fetch == Fetch::IndexedU32)),
         ("F32_POSITIONS", |key, _| flag(key.vertices.positions == AttributeFormat::F32)),
         ("F32_NORMALS", |key, _| flag(key.vertices.normals == AttributeFormat::F32)),
+        ("PACKED_POSITION_BITS", |key, _| key.options.position_format.packed_bits().unwrap_or(0).into()),
+        ("SINGLE_DRAW", |key, _| flag(key.vertices.is_single_draw)),
     ],
     ..Feature::NONE
 };
@@ -178,6 +160,6 @@ const PROJECTION: Feature = Feature {
 
 const LIGHT_VIEW: Feature = Feature {
     label: |key| word_if(key.view.is_light, "light"),
-    variants: &[("screen", |key, _| if key.view.is_light { "picture" } else { "own" })],
+    constants: &[("IS_SHADOW_MAP", |key, _| flag(key.view.is_light))],
     ..Feature::NONE
 };

@@ -8,7 +8,7 @@ mod shading;
 
 use std::fmt;
 
-use self::feature::Feature;
+use self::feature::{Feature, NO_STEP};
 use super::{key::KernelKey, pass::Pass};
 use crate::scene::needs::Needs;
 
@@ -18,11 +18,11 @@ fn features() -> impl Iterator<Item = &'static Feature> {
 }
 
 impl KernelKey {
-    /// The file below `shaders` for each part that the stage of a pass leaves open.
-    pub fn variants(&self, pass: Pass) -> Vec<(&'static str, String)> {
-        let file = |slot, stem: &str| (slot, format!("slots/{slot}/{stem}"));
-        let variants = features().flat_map(|feature| feature.variants.iter().map(|(slot, stem)| file(*slot, stem(self, pass))));
-        variants.chain(raster::visibility_stem(pass).map(|stem| file("visibility", stem))).collect()
+    /// The stem of the file that a pass takes from each folder of `shaders/variants`. A folder of steps has an entry for each
+    /// step, in the order in which they are called.
+    pub fn variants(&self, pass: Pass) -> Vec<(&'static str, &'static str)> {
+        let all = features().flat_map(|feature| feature.variants.iter().map(|(folder, stem)| (*folder, stem(self, pass))));
+        all.filter(|(_, stem)| *stem != NO_STEP).collect()
     }
 
     /// Values of the overrides. Those that a pass does not declare are dropped by the pipeline builder.

@@ -1,9 +1,10 @@
 //! Raster features: coverage, depth, framebuffer, size classes, tiles, draw order and sample tests.
 
-use super::feature::{Feature, Part, flag, word_if};
+use super::feature::{Feature, NO_STEP, Part, flag, stem_if, step_if, word_if};
 use crate::{
     accuracy::{AXES, AxisOption, Coverage, DepthFormat, SampleCounter, Visibility},
     effects::{draw_order, hooks::Shape},
+    math::SMALL_EXTENT,
     scene::needs::Needs,
     shader::{
         key::{Fetch, FramebufferLayout, KernelKey},
@@ -30,11 +31,12 @@ const COVERAGE: Feature = Feature {
             _ if key.options.coverage.is_float() => "float",
             _ => "fixed",
         }),
-        ("blocks", |key, _| if key.options.coverage.is_float() { "float" } else { "rebased" }),
+        ("large_edges", |key, _| if key.options.coverage.is_float() { "float" } else { "rebased" }),
     ],
     constants: &[
         ("IS_TOP_LEFT", |key, _| flag(key.options.coverage != Coverage::Float)),
         ("SUBPIXEL_BITS", |key, _| key.options.coverage.subpixel_bits().into()),
+        ("SMALL_EXTENT", |_, _| SMALL_EXTENT.into()),
     ],
     ..Feature::NONE
 };
@@ -44,7 +46,11 @@ const FRAMEBUFFER: Feature = Feature {
         Visibility::Packed32 => format!("visibility=packed32/{}", key.framebuffer.triangle_id_bits),
         other => format!("visibility={}", other.name()),
     },
-    variants: &[("owner", framebuffer_layout), ("sums", framebuffer_layout)],
+    variants: &[
+        ("framebuffer_write", framebuffer_write),
+        ("framebuffer_read", framebuffer_layout),
+        ("xray_buffer", framebuffer_layout),
+    ],
     constants: &[
         ("EARLY_LOAD", |key, _| flag(key.work.early_load)),
         ("ID_BITS", |key, _| key.framebuffer.triangle_id_bits.into()),
@@ -62,20 +68,20 @@ fn framebuffer_layout(key: &KernelKey, _: Pass) -> &'static str {
     }
 }
 
-/// What a raster pass does with a sample.
-pub(super) fn visibility_stem(pass: Pass) -> Option<&'static str> {
-    Some(match pass.phase()? {
-        RasterPhase::Packed => "packed64",
-        RasterPhase::Packed32 => "packed32",
-        RasterPhase::Depth => "split32_depth",
-        RasterPhase::TriangleId => "split32_owner",
-        RasterPhase::Count => "count",
-        RasterPhase::CountSamples => "tally",
-        RasterPhase::BoundaryTriangle => "straddle",
-        RasterPhase::Sum => "sum",
-        RasterPhase::Race => "race",
-        RasterPhase::BinCount | RasterPhase::BinFill | RasterPhase::Tiles => return None,
-    })
+/// What a raster pass does with a sample. Passes that list triangles by tile write none.
+fn framebuffer_write(_: &KernelKey, pass: Pass) -> &'static str {
+    match pass.phase() {
+        Some(RasterPhase::Packed) => "packed64",
+        Some(RasterPhase::Packed32) => "packed32",
+        Some(RasterPhase::Depth) => "depth",
+        Some(RasterPhase::TriangleId) => "triangle_id",
+        Some(RasterPhase::Count) => "layers",
+        Some(RasterPhase::CountSamples) => "sample_counts",
+        Some(RasterPhase::BoundaryTriangle) => "boundary_samples",
+        Some(RasterPhase::Sum) => "xray",
+        Some(RasterPhase::Race) => "race",
+        Some(RasterPhase::BinCount | RasterPhase::BinFill | RasterPhase::Tiles) | None => NO_STEP,
+    }
 }
 
 const SMALL_PATH: Feature = Feature {
@@ -98,15 +104,25 @@ const OTHER_OPTIONS: Feature = Feature {
 };
 
 const DEPTH: Feature = Feature {
-    variants: &[("depth", |key, _| key.options.depth.name()), ("keys", depth_keys), ("block_keys", depth_keys), ("cell_keys", depth_keys)],
+    variants: &[("depth", depth_interpolation), ("large_depth", depth_interpolation)],
+    constants: &[
+        // As variants/depth/float numbers them; integer depth has the keys of reversed depth.
+        ("DEPTH_FORMAT", |key, _| match key.options.depth {
+            DepthFormat::Reversed | DepthFormat::Integer => 0.0,
+            DepthFormat::Standard => 1.0,
+            DepthFormat::Ndc16 => 2.0,
+            DepthFormat::Log16 | DepthFormat::Log24 => 3.0,
+        }),
+        ("DEPTH_LOG_STEP", |key, _| if key.options.depth == DepthFormat::Log16 { 4096.0 } else { 16.0 }),
+    ],
     ..Feature::NONE
 };
 
-fn depth_keys(key: &KernelKey, _: Pass) -> &'static str {
+fn depth_interpolation(key: &KernelKey, _: Pass) -> &'static str {
     if key.options.depth == DepthFormat::Integer { "integer" } else { "float" }
 }
 
-const QUEUES: Feature = Feature { variants: &[("queues", |key, _| if key.has_queues() { "kept" } else { "none" })], ..Feature::NONE };
+const QUEUES: Feature = Feature { constants: &[("HAS_QUEUES", |key, _| flag(key.has_queues()))], ..Feature::NONE };
 
 const MEDIUM_PATH: Feature = Feature {
     label: |key| word_if(key.paths.has_medium, "medium"),
@@ -127,35 +143,34 @@ fn largest_triangle(needs: &Needs) -> String {
 
 const BINS: Feature = Feature {
     variants: &[
-        ("walk", walk),
-        ("discs", walk),
-        ("bins", |_, pass| if pass.phase() == Some(RasterPhase::BinFill) { "fill" } else { "count" }),
-        ("cells", |key, _| match key.samples.shape {
+        ("small_triangle", drawn_or_listed),
+        ("discs", drawn_or_listed),
+        ("tile_triangle", |key, _| match key.samples.shape {
             Shape::Points => "points",
             Shape::Triangles if key.paths.has_large => "all",
             Shape::Triangles | Shape::Boxes => "small",
         }),
     ],
     constants: &[
+        ("FILLS_LISTS", |_, pass| flag(pass.phase() == Some(RasterPhase::BinFill))),
         ("IS_LARGE", |_, pass| flag(matches!(pass, Pass::BinLarge(_)))),
         ("MAX_LIST_ENTRIES", |key, _| key.work.max_list_entries.into()),
     ],
     ..Feature::NONE
 };
 
-fn walk(_: &KernelKey, pass: Pass) -> &'static str {
-    if pass.phase().is_some_and(RasterPhase::is_bin) { "tiles" } else { "samples" }
+fn drawn_or_listed(_: &KernelKey, pass: Pass) -> &'static str {
+    stem_if(pass.phase().is_some_and(RasterPhase::is_bin), "tiles")
 }
 
 /// The list of the tiles that a triangle touches, which the resolve then visits.
 const TILE_LIST: Feature = Feature {
     variants: &[
-        ("marks", |key, pass| {
+        ("mark_tiles", |key, pass| {
             use RasterPhase::{BoundaryTriangle, Count, CountSamples, Sum, TriangleId};
             let is_repeated = matches!(pass.phase(), Some(TriangleId | Count | Sum | CountSamples | BoundaryTriangle));
-            if key.work.listed_tiles && !is_repeated { "kept" } else { "none" }
+            step_if(key.work.listed_tiles && !is_repeated, "marked")
         }),
-        ("pixels", |key, _| if key.work.listed_tiles { "listed" } else { "all" }),
     ],
     constants: &[("IS_BRANCHLESS", |key, _| flag(key.work.listed_tiles)), ("TILE_SIDE", |key, _| key.tile_side().into())],
     ..Feature::NONE
@@ -182,7 +197,7 @@ const SAMPLE_SETUPS: Feature = Feature {
         is_used: |key| key.sample_setups() > 0,
         why_omitted: |_| "neither effects nor masks need anything per triangle".into(),
     }),
-    variants: &[("records", |_, pass| if matches!(pass, Pass::SampleSetup(_) | Pass::OrderRanks) { "write" } else { "read" })],
+    variants: &[("setup_step", |key, _| step_if(key.samples.has_mask, "alpha_mask"))],
     constants: &[
         ("IS_CLIPPED_TRIANGLES", |_, pass| flag(pass == Pass::SampleSetup(TriangleSource::ClippedTriangles))),
         ("SAMPLE_SETUPS", |key, _| key.sample_setups().into()),
@@ -201,19 +216,38 @@ const DRAW_ORDER: Feature = Feature {
         is_used: |key| key.samples.draw_order.is_some(),
         why_omitted: |_| "every sample is drawn".into(),
     }),
-    variants: &[("order", order), ("ranks", |key, _| if key.samples.draw_order.is_some() { "kept" } else { "none" })],
-    constants: &[("TESTS_EVERY_SAMPLE", |key, _| flag(key.samples.draw_order == Some(draw_order::Mode::Scheduler)))],
+    constants: &[
+        ("TESTS_EVERY_SAMPLE", |key, _| flag(key.samples.draw_order == Some(draw_order::Mode::Scheduler))),
+        ("HAS_RANKS", |key, _| flag(key.samples.draw_order.is_some())),
+        // As variants/sample_test/draw_order numbers them.
+        ("ORDER_TEST", |key, pass| match order(key, pass) {
+            None | Some(OrderTest::Submission) => 0.0,
+            Some(OrderTest::Scheduler) => 1.0,
+            Some(OrderTest::Racy) => 2.0,
+            Some(OrderTest::Boundary) => 3.0,
+        }),
+    ],
+    ..Feature::NONE
 };
 
-/// Counting phases count every sample; of two passes over the same samples, only the first takes numbers from the counter.
-fn order(key: &KernelKey, pass: Pass) -> &'static str {
+/// How a pass decides which samples come first.
+enum OrderTest {
+    Submission,
+    Scheduler,
+    Racy,
+    Boundary,
+}
+
+/// The test of a pass, if it has one. Counting phases count every sample; of two passes over the same samples, only the first
+/// takes numbers from the counter.
+fn order(key: &KernelKey, pass: Pass) -> Option<OrderTest> {
     use draw_order::Mode::{Scheduler, Submission};
     match (key.samples.draw_order, pass.phase()) {
-        (_, Some(RasterPhase::BoundaryTriangle)) => "straddler",
-        (None, _) | (_, Some(RasterPhase::CountSamples)) | (Some(Scheduler), Some(RasterPhase::TriangleId)) => "free",
-        _ if key.options.sample_counter == SampleCounter::Racy => "racy",
-        (Some(Submission), _) => "submission",
-        (Some(Scheduler), _) => "scheduler",
+        (_, Some(RasterPhase::BoundaryTriangle)) => Some(OrderTest::Boundary),
+        (None, _) | (_, Some(RasterPhase::CountSamples)) | (Some(Scheduler), Some(RasterPhase::TriangleId)) => None,
+        _ if key.options.sample_counter == SampleCounter::Racy => Some(OrderTest::Racy),
+        (Some(Submission), _) => Some(OrderTest::Submission),
+        (Some(Scheduler), _) => Some(OrderTest::Scheduler),
     }
 }
 
@@ -231,13 +265,12 @@ const SAMPLE_EFFECTS: Feature = Feature {
         is_used: KernelKey::has_sample_effects,
         why_omitted: |_| "no effect discards samples".into(),
     }),
+    // In the order in which they are called.
     variants: &[
-        ("samples", |key, _| if key.has_sample_effects() { "hooked" } else { "all" }),
-        ("mask", |key, pass| match (key.samples.has_mask, pass) {
-            (false, _) => "none",
-            (true, Pass::SampleSetup(_)) => "settled",
-            (true, _) => "asked",
-        }),
+        ("sample_test", |key, _| step_if(key.has_sample_effects(), "effects")),
+        ("sample_test", |key, _| step_if(key.has_discs(), "particle_disc")),
+        ("sample_test", |key, _| step_if(key.samples.has_mask, "alpha_mask")),
+        ("sample_test", |key, pass| step_if(order(key, pass).is_some(), "draw_order")),
     ],
     ..Feature::NONE
 };

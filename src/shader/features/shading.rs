@@ -1,10 +1,10 @@
 //! Shading features: surface inputs, light, layers, dots, image effects and the size of the picture.
 
-use super::feature::{Feature, Part, flag, word_if};
+use super::feature::{Feature, Part, flag, step_if, word_if};
 use crate::{
     accuracy::{DotCulling, Perspective},
     effects::{dots::LineSource, hooks::Layers, shadow::MAX_SHADOW_SLOPE},
-    shader::{key::KernelKey, pass::Pass},
+    shader::key::KernelKey,
 };
 
 pub(super) const FEATURES: &[Feature] =
@@ -18,13 +18,11 @@ const LAYERS: Feature = Feature {
     },
     variants: &[
         ("shading", |key, _| match key.framebuffer.layers {
-            Some(Layers::Xray { .. }) => "average",
-            Some(Layers::Overdraw) => "heat",
-            Some(Layers::Race) | None => "owner",
+            Some(Layers::Xray { .. }) => "xray",
+            Some(Layers::Overdraw) => "overdraw",
+            Some(Layers::Race) | None => "nearest",
         }),
-        ("totals", |key, _| key.options.xray_sums.name()),
-        ("average", |key, _| key.options.xray_sums.name()),
-        ("delay", |key, _| if key.framebuffer.layers == Some(Layers::Race) { "raced" } else { "none" }),
+        ("store_step", |key, _| step_if(key.framebuffer.layers == Some(Layers::Race), "race")),
     ],
     constants: &[
         ("SUM_WORDS", |key, _| key.options.xray_sums.words().into()),
@@ -61,7 +59,7 @@ const MATERIAL_ATLAS: Feature = Feature {
         is_used: |key| key.surface.has_material_atlas,
         why_omitted: |_| "no material is more than a base colour".into(),
     }),
-    variants: &[("texels", |key, _| if key.surface.has_material_atlas { "atlas" } else { "none" })],
+    variants: &[("shade_step", |key, _| step_if(key.surface.has_material_atlas, "textures"))],
     ..Feature::NONE
 };
 
@@ -72,7 +70,7 @@ const MASK: Feature = Feature {
 };
 
 const LIGHT: Feature = Feature {
-    variants: &[("light", |key, _| if key.reads_light() { "mapped" } else { "none" })],
+    variants: &[("shade_step", |key, _| step_if(key.reads_light(), "shadow_map"))],
     constants: &[("SHADOW_TAPS_SIDE", |key, _| key.options.shadow_taps.side().into()), ("MAX_SHADOW_SLOPE", |_, _| MAX_SHADOW_SLOPE)],
     ..Feature::NONE
 };
@@ -81,9 +79,9 @@ const DOTS: Feature = Feature {
     label: |key| word_if(key.effects.dots.is_some(), "dots"),
     part: Some(Part { name: "dots", is_used: |key| key.effects.dots.is_some(), why_omitted: |_| "no effect draws dots".into() }),
     variants: &[
-        ("dots", |key, _| if key.effects.dots.is_some() { "over" } else { "none" }),
-        ("dot_ends", |key, _| if key.effects.dots == Some(LineSource::Polyline) { "points" } else { "edges" }),
-        ("dot_list", |key, _| if key.options.dot_culling == DotCulling::Brute { "every" } else { "kept" }),
+        ("finish_step", |key, _| step_if(key.effects.dots.is_some(), "dots")),
+        ("dot_segments", |key, _| if key.effects.dots == Some(LineSource::Polyline) { "polyline" } else { "edges" }),
+        ("dot_list", |key, _| if key.options.dot_culling == DotCulling::Brute { "all" } else { "listed" }),
     ],
     ..Feature::NONE
 };
@@ -95,15 +93,11 @@ const IMAGE_EFFECTS: Feature = Feature {
         is_used: KernelKey::finishes_pixels,
         why_omitted: |_| "no effect of the stack finishes pixels".into(),
     }),
-    variants: &[
-        ("finish", |key, _| if key.finishes_pixels() { "image" } else { "none" }),
-        ("image", |_, pass| if pass == Pass::Resolve { "seen" } else { "none" }),
-    ],
+    variants: &[("finish_step", |key, _| step_if(key.finishes_pixels(), "effects"))],
     ..Feature::NONE
 };
 
 const RENDER_SCALE: Feature = Feature {
-    variants: &[("scaling", |key, _| if key.options.render_scale.factor() > 1.0 { "average" } else { "between" })],
     constants: &[("SCALE_SIDE", |key, _| key.options.render_scale.factor().max(1.0))],
     ..Feature::NONE
 };

@@ -1,0 +1,42 @@
+// The picture as image effects see it: the pixel to finish, and the triangle ids and depths of all pixels, which are final
+// when the picture is resolved. Mirrors `effects::hooks::{Pixel, Picture}`, which explain each member.
+//@ use lib/frame
+//@ use lib/triangle
+//@ use lib/color
+//@ use variants/depth
+//@ use variants/framebuffer_read
+
+struct Pixel {
+    color: vec4f,   // gamma-encoded
+    x: u32,
+    y: u32,
+}
+
+const IMAGE_NO_TRIANGLE = 0xffffffffu;
+
+// Is the pixel inside the picture?
+fn image_has(x: i32, y: i32) -> bool {
+    return all(vec2i(x, y) >= vec2i(0)) && all(vec2i(x, y) < vec2i(frame.size));
+}
+
+fn image_background() -> vec4f {
+    return frame.background;
+}
+
+// Triangle id, depth bits and draw of a pixel; those of the nearest pixel of the picture for one outside.
+fn image_at(x: i32, y: i32) -> vec3u {
+    let at = vec2u(clamp(vec2i(x, y), vec2i(0), vec2i(frame.size) - 1));
+    let found = framebuffer_load(at.y * frame.size.x + at.x);
+    if found.x == 0u { return vec3u(IMAGE_NO_TRIANGLE, image_depth(found.y), frame.draw_count); }
+    return vec3u(~found.x, image_depth(found.y), draws_of_triangle(~found.x) + 1u);
+}
+
+// Bits of the reversed depth that a key means; 0 for an empty pixel.
+fn image_depth(key: u32) -> u32 {
+    return select(depth_bits(key), 0u, key == 0u);
+}
+
+// Bytes of this pixel in the previous picture: they are still where its own will be written.
+fn image_previous(pixel: Pixel) -> vec4u {
+    return (vec4u(color[pixel.y * frame.stride + pixel.x]) >> vec4u(0u, 8u, 16u, 24u)) & vec4u(255u);
+}

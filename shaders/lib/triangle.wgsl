@@ -1,0 +1,171 @@
+// Triangles: the draws that they belong to, the vertices that they join, and their three snapped vertices.
+// Mirrors `gpu::uniforms::DrawRecord` and `frame::SnappedVertex`.
+//@ use lib/frame
+//@ use lib/fixed
+//@ use glue/draws
+//@ use glue/index_bytes
+//@ binding @group(0) @binding(4) var<storage, read> vertices: array<vec4u>;
+
+// ---- Draws. `draws` is a uniform where the scene has one draw, else a storage buffer: the glue declares it.
+
+struct Draw {
+    clip_from_object: mat4x4f,
+    world_from_object: mat4x4f,
+    normal_from_object: mat4x4f, // cofactors, which keep the direction of plane normals
+    base_color: vec4f,
+    origin: vec4f,               // object-space origin of packed and of eye-relative positions
+    step: vec4f,                 // one step of a packed position
+    first_vertex: u32,
+    vertex_count: u32,
+    first_triangle: u32,
+    flags: u32,                  // DRAW_* bits; from bit 8 on the index of its primitive
+    topology: u32,
+    index_offset: u32,
+    index_format: u32,           // bytes per index; 0 without indices
+    position_offset: u32,
+    position_stride: u32,
+    position_format: u32,
+    normal_offset: u32,
+    normal_stride: u32,
+    normal_format: u32,
+    color_offset: u32,
+    color_stride: u32,
+    color_format: u32,           // component count in bits 8 and up; 0 without colours
+}
+
+const DRAW_DOUBLE_SIDED = 1u;
+const DRAW_MIRRORED = 2u;
+const DRAW_PARTICLES = 4u;
+const DRAW_PRIMITIVE_SHIFT = 8u;
+
+// The scene has one draw.
+override SINGLE_DRAW: bool = false;
+
+fn draws_of_triangle(id: u32) -> u32 {
+    if SINGLE_DRAW { return 0u; }
+    var search = search_begin(frame.draw_count);
+    for (var i = 0u; i < SEARCH_STEPS && search_is_open(search); i += 1u) {
+        search = search_narrow(search, draws[search_middle(search)].first_triangle <= id);
+    }
+    return search.low;
+}
+
+fn draws_of_vertex(id: u32) -> u32 {
+    if SINGLE_DRAW { return 0u; }
+    var search = search_begin(frame.draw_count);
+    for (var i = 0u; i < SEARCH_STEPS && search_is_open(search); i += 1u) {
+        search = search_narrow(search, draws[search_middle(search)].first_vertex <= id);
+    }
+    return search.low;
+}
+
+// ---- Topology. Indices are u8, u16 or u32, as the file stores them; the glue declares `index_bytes`.
+
+override HAS_INDICES: bool = true;
+// Every draw has u32 indices.
+override U32_INDICES: bool = false;
+// No draw is a strip or a fan.
+override ONLY_TRIANGLE_LISTS: bool = false;
+
+const TOPOLOGY_STRIP = 1u;
+const TOPOLOGY_FAN = 2u;
+
+// Vertex within its draw at a position of the draw's index list; an index out of range means the last vertex.
+fn index_at(draw: u32, position: u32) -> u32 {
+    if !HAS_INDICES { return position; }
+    let first = draws[draw].index_offset;
+    if U32_INDICES { return min(index_bytes[first / 4u + position], draws[draw].vertex_count - 1u); }
+    let bytes = draws[draw].index_format;
+    if bytes == 0u { return position; }
+    let byte = first + position * bytes;
+    let index = extractBits(index_bytes[byte / 4u], (byte % 4u) * 8u, bytes * 8u);
+    return min(index, draws[draw].vertex_count - 1u);
+}
+
+// Vertices within the draw of the corners of its triangle `t`, in glTF's order.
+fn triangle_vertices(draw: u32, t: u32) -> vec3u {
+    var positions = vec3u(3u * t, 3u * t + 1u, 3u * t + 2u);
+    if !ONLY_TRIANGLE_LISTS {
+        let topology = draws[draw].topology;
+        if topology == TOPOLOGY_STRIP { positions = vec3u(t, t + 1u + (t & 1u), t + 2u - (t & 1u)); }
+        if topology == TOPOLOGY_FAN { positions = vec3u(t + 1u, t + 2u, 0u); }
+    }
+    return vec3u(index_at(draw, positions.x), index_at(draw, positions.y), index_at(draw, positions.z));
+}
+
+// ---- Snapped vertices, 16 bytes each: x << 8 | flags, y << 8, bits of depth, bits of 1/w.
+
+const VERTEX_NONFINITE = 1u;
+const VERTEX_OUT_OF_RANGE = 2u;
+const VERTEX_NEAR = 4u;     // in front of the near plane
+const VERTEX_LEFT = 8u;     // outside the guard band
+const VERTEX_RIGHT = 16u;
+const VERTEX_TOP = 32u;
+const VERTEX_BOTTOM = 64u;
+const VERTEX_REJECTED = 3u;
+const VERTEX_CLIPPED = 124u;
+
+// Position of a snapped vertex, in units.
+fn vertex_at(record: vec4u) -> vec2i {
+    return bitcast<vec2i>(record.xy) >> vec2u(8u);
+}
+
+// ---- Triangles.
+
+// Vertex effects move corners triangle by triangle, so every triangle has three snapped vertices that it shares with no other.
+override UNSHARES_VERTICES: bool = false;
+// Some triangle may need clipping.
+override HAS_CLIPPING: bool = false;
+
+struct Triangle {
+    a: vec4u,
+    b: vec4u,
+    c: vec4u,
+    id: u32,
+    draw: u32,
+    entry: u32,    // index among all triangles and, behind them, all clipped triangles
+    outline: u32,  // bit k: the edge opposite corner k is not a cut
+}
+
+fn triangle_load(id: u32) -> Triangle {
+    return triangle_of(draws_of_triangle(id), id);
+}
+
+// The same where the draw is known.
+fn triangle_of(draw: u32, id: u32) -> Triangle {
+    var at = 3u * id + vec3u(0u, 1u, 2u);
+    if !UNSHARES_VERTICES { at = draws[draw].first_vertex + triangle_vertices(draw, id - draws[draw].first_triangle); }
+    return Triangle(vertices[at.x], vertices[at.y], vertices[at.z], id, draw, id, 7u);
+}
+
+// Is a triangle of this orientation drawn, given the flags of its draw? Clockwise on screen (area > 0) is the back of a glTF
+// triangle.
+fn triangle_is_shown(flags: u32, is_clockwise: bool) -> bool {
+    let is_back = is_clockwise != ((flags & DRAW_MIRRORED) != 0u);
+    return (flags & DRAW_DOUBLE_SIDED) != 0u || !is_back;
+}
+
+// First and last candidate pixel of a box in units, clamped to the picture; empty where the last precedes the first.
+fn triangle_pixels(low: vec2i, high: vec2i) -> vec4i {
+    let first = max(grid_first(low), vec2i(0));
+    let last = min(grid_last(high), vec2i(frame.size) - 1);
+    return vec4i(first, last);
+}
+
+// Counts a triangle with a corner that is not finite or out of range. Returns whether the triangle is rejected; `any_flag`
+// combines the flags of all corners.
+fn triangle_rejected(any_flag: u32) -> bool {
+    if (any_flag & VERTEX_NONFINITE) != 0u {
+        atomicAdd(&counters.rejected_nonfinite, 1u);
+    } else if (any_flag & VERTEX_OUT_OF_RANGE) != 0u {
+        atomicAdd(&counters.rejected_range, 1u);
+    }
+    return (any_flag & VERTEX_REJECTED) != 0u;
+}
+
+// The vertex that a snapped vertex is the projection of.
+struct VertexSource {
+    draw: u32,
+    vertex: u32,   // within the draw
+    triangle: u32, // where triangles share no vertices, else 0
+}

@@ -1,5 +1,0 @@
-// Ranks, none: no order is kept.
-
-fn ranks_of(id: u32) -> f32 {
-    return 0.0;
-}

@@ -1,5 +1,0 @@
-// Samples, all: every covered sample is drawn.
-
-fn samples_is_drawn(t: Triangle, at: vec2u) -> bool {
-    return true;
-}

@@ -1,0 +1,74 @@
+// Depth, integer: the depth at a sample is a quotient of integers, packed like a float: the same bits on every adapter, whatever
+// the order of corners or the size of the triangle. Keys order like the bits of a float, never leave the range of the corners'
+// depths, and are a corner's bits at the corner.
+//@ use lib/fixed
+
+fn depth_key(z: f32) -> u32 {
+    return max(bitcast<u32>(z), 1u);
+}
+
+fn depth_bits(key: u32) -> u32 {
+    return key;
+}
+
+struct DepthPlane {
+    z: vec3u,       // corner depths, fixed point: the nearest one's leading bit is bit 31
+    exponent: i32,  // of the nearest corner, biased as in a float
+    shift: u32,     // bits by which edge functions are shifted down, so that their sum fits 31 bits
+    depth: vec3f,   // z over that sum, for an estimate
+    inverse: f32,   // 1 over that sum
+}
+
+fn depth_plane(depths: vec3u, area: i32) -> DepthPlane {
+    return depth_plane_wide(depths, Wide(0u, u32(area)));
+}
+
+fn depth_plane_wide(depths: vec3u, area: Wide) -> DepthPlane {
+    // A depth that is subnormal or below 0 is 0.
+    let exponents = select((depths >> vec3u(23u)) & vec3u(255u), vec3u(0u), depths >= vec3u(0x80000000u));
+    let largest = max(max(exponents.x, exponents.y), exponents.z);
+    let apart = vec3u(largest) - exponents;
+    let significands = ((depths & vec3u(0x7fffffu)) | vec3u(0x800000u)) << vec3u(8u);
+    let is_zero = (apart > vec3u(31u)) | (exponents == vec3u(0u));
+    let z = select(significands >> min(apart, vec3u(31u)), vec3u(0u), is_zero);
+    let shift = fixed_shift(area);
+    let inverse = 1.0 / f32(fixed_down(area, shift));
+    return DepthPlane(z, i32(largest), shift, vec3f(z) * inverse, inverse);
+}
+
+// Bits 16 to 47 of a product, without the carry from the low halves: see `depth_quotient`.
+fn depth_middle(x: u32, y: u32) -> u32 {
+    let xh = x >> 16u;
+    let yh = y >> 16u;
+    return (((x & 0xffffu) * (y & 0xffffu)) >> 16u) + (x & 0xffffu) * yh + xh * (y & 0xffffu) + ((xh * yh) << 16u);
+}
+
+// floor((e0 z0 + e1 z1 + e2 z2) / (e0 + e1 + e2)), where the sum of the edges is 1 to 2^31 - 1.
+fn depth_quotient(plane: DepthPlane, e: vec3u) -> u32 {
+    let z = plane.z;
+    let sum = e.x + e.y + e.z;
+    // Estimated in f32, within 2^13 in spite of rounding: terms are positive, and no z is above 0xffffff00.
+    let weights = vec3f(e);
+    let estimate = u32(min(weights.x * plane.depth.x + weights.y * plane.depth.y + weights.z * plane.depth.z, 4294967040.0));
+    // The remainder, |rest| < 2^45, from words that wrap: its lowest 32 bits, and bits 16 to 47.
+    let low = e.x * z.x + e.y * z.y + e.z * z.z - estimate * sum;
+    let halves = ((e.x * z.x) & 0xffffu) + ((e.y * z.y) & 0xffffu) + ((e.z * z.z) & 0xffffu) + 0x10000u - ((estimate * sum) & 0xffffu);
+    let middle = depth_middle(e.x, z.x) + depth_middle(e.y, z.y) + depth_middle(e.z, z.z) - depth_middle(estimate, sum)
+        + (halves >> 16u) - 1u;
+    let rest = f32(bitcast<i32>(middle)) * 65536.0 + f32(low & 0xffffu);
+    // The corrected estimate is within 0.6 of the quotient, so it is the quotient or one more.
+    let correction = i32(floor(rest * plane.inverse + 0.5));
+    let left = bitcast<i32>(low - bitcast<u32>(correction) * sum);
+    return estimate + bitcast<u32>(correction) - select(0u, 1u, left < 0);
+}
+
+fn depth_packed(plane: DepthPlane, quotient: u32) -> u32 {
+    let zeros = countLeadingZeros(quotient);
+    let exponent = plane.exponent - i32(zeros);
+    let key = (u32(exponent) << 23u) | (((quotient << (zeros & 31u)) >> 8u) & 0x7fffffu);
+    return select(key, 1u, quotient == 0u || exponent < 1);
+}
+
+fn depth_at(plane: DepthPlane, edges: vec3i) -> u32 {
+    return depth_packed(plane, depth_quotient(plane, vec3u(edges)));
+}

@@ -1,0 +1,24 @@
+// Framebuffer, x-ray: every layer adds its weighted colour, in linear light and as integers, and its weight. Sums commute, so
+// the order of layers does not matter. Pixels whose sums may have overflowed are counted.
+//@ use lib/frame
+//@ use lib/geometry
+//@ use lib/shade
+//@ use lib/xray_sums
+//@ use effects/xray
+//@ use glue/effects
+//@ use glue/surface
+//@ use variants/xray_buffer
+
+fn framebuffer_begin(id: u32) {
+    shade_begin(id);
+}
+
+fn framebuffer_write(pixel: u32, key: u32, id: u32) {
+    if key < xray_threshold(xray_buffer_front(pixel), IS_PERSPECTIVE, effects.xray) { return; }
+    let surface = glue_surface(shade_surface(vec2u(pixel % frame.size.x, pixel / frame.size.x)));
+    let weight = xray_weight(surface, effects.xray);
+    let layer = xray_sums_layer(clamp(surface.color.rgb, vec3f(0.0), vec3f(1.0)), weight);
+    var before: vec4u;
+    for (var i = 0u; i < SUM_WORDS; i += 1u) { before[i] = xray_buffer_add(SUM_WORDS * pixel + i, layer[i]); }
+    if xray_sums_overflow(before, weight) { atomicAdd(&counters.full_pixels, 1u); }
+}

@@ -1,0 +1,13 @@
+// Large depth: depth keys of large triangles at the samples of a block of 16x16 pixels.
+// Chosen with the accuracy axis `depth_format`: integer for that option, float for all others. Default: float.
+//
+// raster_large has sixteen blocks in a workgroup, and three edges to a block: before a barrier it calls, for each of the 48
+// edges, with p the sample of the block's first pixel:
+//@ declare fn large_depth_prepare(index: u32, begin: vec2i, end: vec2i, p: vec2i)
+// raster_tiles has one block, and keeps in registers what the depth needs, for a clockwise triangle:
+//@ declare struct BlockDepth
+//@ declare fn block_depth(plane: DepthPlane, a: vec2i, b: vec2i, c: vec2i, p: vec2i) -> BlockDepth
+// What raster_large has prepared for the block whose edges begin at an index.
+//@ declare fn block_depth_prepared(plane: DepthPlane, index: u32) -> BlockDepth
+// Key at a covered sample, `step` as in large_edges.
+//@ declare fn block_depth_key(depth: BlockDepth, e0: BlockEdge, e1: BlockEdge, e2: BlockEdge, step: vec3i, bias: vec3i) -> u32

@@ -1,0 +1,85 @@
+// Vertex effects, applied: effects tell how far a corner moves, not where it ends, so that a vertex which stays keeps its bits,
+// and one far from the origin loses none.
+//@ use lib/frame
+//@ use lib/triangle
+//@ use lib/vertex
+//@ use lib/attributes
+//@ use lib/geometry
+//@ use steps/corner_step
+//@ use glue/vertex
+
+// The stored normal in world space, of any length; zero where there is none.
+fn vertex_effects_stored_normal(draw: u32, vertex: u32) -> vec3f {
+    let stored = normal_from_bits(normal_bits(draw, vertex));
+    return (draws[draw].normal_from_object * vec4f(stored.xyz, 0.0)).xyz;
+}
+
+// A corner after the effects.
+fn vertex_effects_corner(draw: u32, vertex: u32, id: u32, p: vec3f) -> Vertex {
+    var v: Vertex;
+    v.position = clamp_world((draws[draw].world_from_object * vec4f(p, 1.0)).xyz);
+    v.normal = normal_direction(vertex_effects_stored_normal(draw, vertex));
+    v.center = v.position;
+    return glue_vertex(corner_step(v, draw, id, p));
+}
+
+fn vertex_effects_clip(draw: u32, vertex: u32, id: u32, p: vec3f) -> vec4f {
+    let offset = clamp_world(vertex_effects_corner(draw, vertex, id, p).offset);
+    let m = frame.clip_from_world;
+    let clip = transform_clip(draw, p) + (m[0] * offset.x + m[1] * offset.y + m[2] * offset.z);
+    // An orthographic depth beyond the far plane is clamped to it: there are no depths below 0.
+    return vec4f(clip.xy, max(clip.z, 0.0), clip.w);
+}
+
+fn vertex_effects_clip_of(draw: u32, vertex: u32, id: u32) -> vec4f {
+    return vertex_effects_clip(draw, vertex, id, floats_of_class(position_bits(draw, vertex), 0u));
+}
+
+// What the samples of a triangle share.
+struct MovedNormals {
+    is_deformed: bool,     // the plane is no longer the file's
+    flat_normal: vec3f,
+    is_turned: bool,       // the corners' normals are no longer the file's
+    a: vec4f,              // as returned by `normal_from_bits`
+    b: vec4f,
+    c: vec4f,
+}
+
+var<private> moved: MovedNormals;
+
+fn vertex_effects_begin(id: u32, draw: u32, at: vec3u) {
+    let pa = floats_of_class(position_bits(draw, at.x), 0u);
+    let pb = floats_of_class(position_bits(draw, at.y), 0u);
+    let pc = floats_of_class(position_bits(draw, at.z), 0u);
+    // A loop, because compilers inline the vertex effects wherever they are called.
+    var corners: array<Vertex, 3>;
+    var positions = array(pa, pb, pc);
+    for (var i = 0u; i < 3u; i += 1u) { corners[i] = vertex_effects_corner(draw, at[i], id, positions[i]); }
+    let a = corners[0];
+    let b = corners[1];
+    let c = corners[2];
+    moved.is_deformed = any(a.offset != b.offset) || any(a.offset != c.offset);
+    let m = draws[draw].world_from_object;
+    let ab = (m * vec4f(pb - pa, 0.0)).xyz + (b.offset - a.offset);
+    let ac = (m * vec4f(pc - pa, 0.0)).xyz + (c.offset - a.offset);
+    let plane = normal_direction(normal_of_plane(vec3f(0.0), ab, ac));
+    moved.flat_normal = select(plane, -plane, (draws[draw].flags & DRAW_MIRRORED) != 0u);
+
+    let na = vertex_effects_stored_normal(draw, at.x);
+    let nb = vertex_effects_stored_normal(draw, at.y);
+    let nc = vertex_effects_stored_normal(draw, at.z);
+    moved.is_turned = any(a.normal != normal_direction(na)) || any(b.normal != normal_direction(nb)) || any(c.normal != normal_direction(nc));
+    // Turned normals keep the lengths by which the file weights them.
+    moved.a = vec4f(a.normal * length(na), normal_from_bits(normal_bits(draw, at.x)).w);
+    moved.b = vec4f(b.normal * length(nb), normal_from_bits(normal_bits(draw, at.y)).w);
+    moved.c = vec4f(c.normal * length(nc), normal_from_bits(normal_bits(draw, at.z)).w);
+}
+
+// What no effect changes keeps its bits: the plane of a triangle that is only carried along, and the interpolated normal where
+// no corner's normal is turned.
+fn vertex_effects_normals(smooth_normal: vec3f, flat_normal: vec3f, weights: vec3f) -> mat2x3f {
+    var normals = mat2x3f(smooth_normal, flat_normal);
+    if moved.is_deformed { normals[1] = moved.flat_normal; }
+    if moved.is_turned { normals[0] = normal_direction(normal_interpolated(moved.a, moved.b, moved.c, weights)); }
+    return normals;
+}

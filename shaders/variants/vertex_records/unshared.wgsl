@@ -1,0 +1,9 @@
+// Vertex records, unshared: three records per triangle, one for each corner.
+//@ use lib/triangle
+
+fn vertex_source(id: u32) -> VertexSource {
+    let triangle = id / 3u;
+    let draw = draws_of_triangle(triangle);
+    let at = triangle_vertices(draw, triangle - draws[draw].first_triangle);
+    return VertexSource(draw, at[id % 3u], triangle);
+}
