@@ -139,6 +139,47 @@ impl Chain {
     }
 }
 
+/// Buffers that [`binding`] declares.
+pub const BINDINGS: [&str; 4] = ["draws", "index_bytes", "queues", "clipped_triangles"];
+
+/// The declaration of a buffer whose form depends on the key. Where the key has no such buffer, a private variable stands in for
+/// it, which code that runs never touches.
+pub fn binding(name: &str, key: &KernelKey) -> Option<String> {
+    let binding = |index: u32, access: &str, kind: &str| format!("@group(0) @binding({index}) var<{access}> {name}: {kind};\n");
+    let or_none = |exists: bool, index: u32, access: &str, element: &str| match exists {
+        true => binding(index, access, &format!("array<{element}>")),
+        false => format!("var<private> {name}: array<{element}, 1>;\n"),
+    };
+    match name {
+        "draws" if key.vertices.is_single_draw => Some(binding(1, "uniform", "array<Draw, 1>")),
+        "draws" => Some(binding(1, "storage, read", "array<Draw>")),
+        "index_bytes" => Some(or_none(key.vertices.fetch != Fetch::Direct, 3, "storage, read", "u32")),
+        "queues" => Some(or_none(key.has_queues(), 8, "storage, read_write", "u32")),
+        "clipped_triangles" => Some(or_none(key.paths.has_clipping, 9, "storage, read", "ClippedTriangle")),
+        _ => None,
+    }
+}
+
+/// `<effect>_front(p)`, for an effect that has the parameters of a front.
+pub fn front(effect: &Effect) -> String {
+    const PARAMETERS: [&str; 9] = ["pattern", "front", "width", "along_x", "along_y", "center", "radius_m", "width_m", "seed"];
+    if !PARAMETERS.iter().all(|name| effect.fields.iter().any(|field| field.name == *name)) {
+        return String::new();
+    }
+    format!(
+        "fn {}_front(p: {}) -> Front {{\n    return Front(p.pattern, p.front, p.width, vec2f(p.along_x, p.along_y), p.center.xyz, \
+         p.radius_m, p.width_m, p.seed);\n}}\n",
+        effect.name, effect.wgsl_struct
+    )
+}
+
+/// The declaration of a struct in the text of an effect.
+pub fn struct_text<'a>(text: &'a str, name: &str) -> &'a str {
+    let head = format!("struct {name} {{");
+    let Some(begin) = text.find(&head) else { return "" };
+    text[begin..].find("}\n").map_or("", |end| &text[begin..begin + end + 2])
+}
+
 /// Bytes of the `Effects` uniform for this stack; empty when there is none.
 pub fn uniform_bytes(stack: &[EnabledEffect]) -> Vec<u8> {
     let mut bytes = Vec::new();
