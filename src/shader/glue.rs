@@ -50,7 +50,8 @@ fn constructor(effect: &Effect, words: &[u32]) -> String {
         WgslType::U32 => format!("{word}u"),
     };
     let member = |field: &Field| {
-        let components: Vec<String> = words[field.offset / 4..][..field.wgsl.words()].iter().map(|&word| literal(field.wgsl, word)).collect();
+        let components: Vec<String> =
+            words[field.offset / 4..][..field.wgsl.words()].iter().map(|&word| literal(field.wgsl, word)).collect();
         if components.len() == 1 { components[0].clone() } else { format!("vec4f({})", components.join(", ")) }
     };
     let members: Vec<String> = effect.fields.iter().map(member).collect();
@@ -124,7 +125,8 @@ impl Chain {
                 Self::Surface => format!("    s = {function}(s, effects.{name});"),
                 Self::Image => format!("    q = {function}(q, effects.{name});"),
                 Self::Sample => {
-                    let load = setup_of(effect).map_or(String::new(), |index| format!("    s.setup = sample_setup_load(entry, {index}u);\n"));
+                    let load =
+                        setup_of(effect).map_or(String::new(), |index| format!("    s.setup = sample_setup_load(entry, {index}u);\n"));
                     format!("{load}    if !{function}(s, effects.{name}) {{ return false; }}")
                 }
                 Self::SampleSetup => {
@@ -140,7 +142,7 @@ impl Chain {
 }
 
 /// Buffers that [`binding`] declares.
-pub const BINDINGS: [&str; 4] = ["draws", "index_bytes", "queues", "clipped_triangles"];
+pub const BINDINGS: [&str; 4] = ["draws", "index_bytes", "queues", "pieces"];
 
 /// The declaration of a buffer whose form depends on the key. Where the key has no such buffer, a private variable stands in for
 /// it, which code that runs never touches.
@@ -155,7 +157,7 @@ pub fn binding(name: &str, key: &KernelKey) -> Option<String> {
         "draws" => Some(binding(1, "storage, read", "array<Draw>")),
         "index_bytes" => Some(or_none(key.vertices.fetch != Fetch::Direct, 3, "storage, read", "u32")),
         "queues" => Some(or_none(key.has_queues(), 8, "storage, read_write", "u32")),
-        "clipped_triangles" => Some(or_none(key.paths.has_clipping, 9, "storage, read", "ClippedTriangle")),
+        "pieces" => Some(or_none(key.paths.has_clipping, 9, "storage, read", "ClippedTriangle")),
         _ => None,
     }
 }

@@ -140,9 +140,7 @@ impl Linker<'_> {
                 "stages" => return Err(LinkError::UsesStage { user: name.into(), line, name: used.into() }),
                 "variants" => self.take_variant(rest, name)?,
                 "steps" => self.take_steps(rest, name)?,
-                "glue" => {
-                    self.take_glue(rest).ok_or_else(|| LinkError::UnknownUse { user: name.into(), line, name: used.into() })??
-                }
+                "glue" => self.take_glue(rest).ok_or_else(|| LinkError::UnknownUse { user: name.into(), line, name: used.into() })??,
                 _ => self.take(used, name)?,
             }
         }

@@ -291,14 +291,7 @@ fn mutants() -> Vec<Mutant> {
             builtin("fan?n=13", [128, 128]),
             HOLES,
         ),
-        mutant(
-            "one pixel to the right",
-            "lib/snap",
-            "return vec2i(center) +",
-            "return vec2i(256, 0) + vec2i(center) +",
-            ties(),
-            SNAPS,
-        ),
+        mutant("one pixel to the right", "lib/snap", "return vec2i(center) +", "return vec2i(256, 0) + vec2i(center) +", ties(), SNAPS),
         mutant(
             "depth of another corner",
             "variants/depth/float",
@@ -310,8 +303,8 @@ fn mutants() -> Vec<Mutant> {
         mutant(
             "a piece of what was clipped is missing",
             "stages/geometry/clip",
-            "let slot = atomicAdd(&counters.clipped_triangles, 1u);",
-            "if i == 2u { continue; }\n        let slot = atomicAdd(&counters.clipped_triangles, 1u);",
+            "let slot = atomicAdd(&counters.pieces, 1u);",
+            "if i == 2u { continue; }\n        let slot = atomicAdd(&counters.pieces, 1u);",
             hall(),
             UNEXPLAINED,
         ),

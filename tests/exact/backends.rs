@@ -368,7 +368,13 @@ fn the_early_load_does_not_show() {
 
 /// Mistakes in the tiled kernels that a picture must show: file, what stands there, what stands there instead, scene.
 const TILED_MUTANTS: &[[&str; 5]] = &[
-    ["a tile is forgotten", "lib/tile_lists", "pixels.zw / 16 - first + 1", "max(pixels.zw / 16 - first, vec2i(1))", "sphere?triangles=200"],
+    [
+        "a tile is forgotten",
+        "lib/tile_lists",
+        "pixels.zw / 16 - first + 1",
+        "max(pixels.zw / 16 - first, vec2i(1))",
+        "sphere?triangles=200",
+    ],
     ["a tile is given up too soon", "lib/tile_lists", "(d.y < 0), (d.x > 0)", "(d.y > 0), (d.x < 0)", "sphere?triangles=200"],
     [
         "the same of large triangles",

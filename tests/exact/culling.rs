@@ -298,7 +298,15 @@ fn mistakes_of_culling_are_seen() {
             &through,
         ),
         ("the near plane is further off", "lib/extent", "e.near < 0.0", "e.near < 1.5", Culling::Frustum, &field, &through),
-        ("cones are too narrow", "stages/geometry/cull", "let across = sqrt(", "let across = 0.3 * sqrt(", Culling::Frustum, &field, &through),
+        (
+            "cones are too narrow",
+            "stages/geometry/cull",
+            "let across = sqrt(",
+            "let across = 0.3 * sqrt(",
+            Culling::Frustum,
+            &field,
+            &through,
+        ),
         (
             "the wrong side is the back",
             "stages/geometry/cull",
@@ -308,7 +316,15 @@ fn mistakes_of_culling_are_seen() {
             &field,
             &through,
         ),
-        ("the snap is forgotten", "stages/geometry/cull", "let shift = extent_shift(e);", "let shift = 0.0;", Culling::Frustum, &sheet, &edge_on),
+        (
+            "the snap is forgotten",
+            "stages/geometry/cull",
+            "let shift = extent_shift(e);",
+            "let shift = 0.0;",
+            Culling::Frustum,
+            &sheet,
+            &edge_on,
+        ),
         (
             "nearest and farthest are exchanged",
             "stages/geometry/depth_reduce",

@@ -46,7 +46,8 @@ fn slot_stacks() -> Vec<Vec<&'static Effect>> {
 }
 
 fn linked(key: &KernelKey, pass: Pass) -> Linked {
-    link::link(&Library::Embedded, &pass.path(), key, &key.variants(pass)).unwrap_or_else(|error| panic!("{} of {key}: {error}", pass.label()))
+    link::link(&Library::Embedded, &pass.path(), key, &key.variants(pass))
+        .unwrap_or_else(|error| panic!("{} of {key}: {error}", pass.label()))
 }
 
 /// Validates one pass and returns the number of storage buffers it binds.
@@ -262,7 +263,14 @@ fn temporary() {
     };
     for axis in AXES {
         for index in 0..axis.words.len() {
-            for names in [vec![], vec!["overdraw", "outline"], vec!["dissolve", "draw_order"], vec!["xray"], vec!["race"], vec!["explode", "wobble", "wireframe", "shadow", "dots", "smear"]] {
+            for names in [
+                vec![],
+                vec!["overdraw", "outline"],
+                vec!["dissolve", "draw_order"],
+                vec!["xray"],
+                vec!["race"],
+                vec!["explode", "wobble", "wireframe", "shadow", "dots", "smear"],
+            ] {
                 let effects: Vec<_> = names.iter().map(|name| Effect::find(name).expect("an effect")).collect();
                 for has_mask in [false, true] {
                     let mut key = key(Fetch::Indexed, Visibility::Split32, true, effects.clone());

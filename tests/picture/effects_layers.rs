@@ -381,14 +381,7 @@ struct Mutant {
 fn mutants() -> Vec<Mutant> {
     let mutant = |what, file, from, to, values: &[&str], shown_by| Mutant { what, file, from, to, stack: with(values), shown_by };
     vec![
-        mutant(
-            "sums of 8 bits",
-            "lib/xray_sums",
-            "* f32(whole))) * weight",
-            "* 255.0)) * (whole / 255u) * weight",
-            &["xray"],
-            COLORS,
-        ),
+        mutant("sums of 8 bits", "lib/xray_sums", "* f32(whole))) * weight", "* 255.0)) * (whole / 255u) * weight", &["xray"], COLORS),
         mutant(
             "count 1 for a merged group",
             "variants/framebuffer_write/xray",

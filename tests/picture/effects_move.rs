@@ -367,8 +367,8 @@ fn kernels_that_move_wrongly_are_caught() {
             "a wave turns normals the wrong way",
             "wobble",
             "effects/wobble",
-            "- toward * dot(sway, v.normal)",
-            "+ toward * dot(sway, v.normal)",
+            "- direction * dot(sway, v.normal)",
+            "+ direction * dot(sway, v.normal)",
         ),
         (
             "corners take their neighbour's record",

@@ -435,7 +435,11 @@ fn a_mistake_in_the_pass_is_found() {
         ("lib/particle", "return ParticleState(position, velocity,", "return ParticleState(position, f.velocity,"),
         ("variants/curl/analytic", "by_x.y - by_y.x", "by_x.y + by_y.x"),
         ("variants/curl/analytic", "(t - 1.0) * (t - 1.0)", "(t - 1.0) * t"),
-        ("variants/particle_state/float32", "(frame_number & 1u) * particle_step.count + id);\n    particle_states", "id);\n    particle_states"),
+        (
+            "variants/particle_state/float32",
+            "(frame_number & 1u) * particle_step.count + id);\n    particle_states",
+            "id);\n    particle_states",
+        ),
         ("stages/geometry/simulate_particles", "vec2f(0.0, 2.0)", "vec2f(0.0, 1.99)"),
         ("stages/geometry/simulate_particles", "PARTICLE_LEAN = 0.7", "PARTICLE_LEAN = 0.8"),
         ("stages/geometry/simulate_particles", "hash_unit(seed + 14u)", "hash_unit(seed + 15u)"),

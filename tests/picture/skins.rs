@@ -385,14 +385,24 @@ fn mistakes_in_the_pass_are_found() {
     let mutants = [
         ("joint off by one", "lib/deform", "min(u32(pull_component(format, byte))", "min(u32(pull_component(format, byte)) + 1u"),
         ("weights as they are", "lib/deform", "weight / select(1.0, sum, sum > 0.0)", "weight"),
-        ("only the first four are followed", "variants/skinning/linear", "i < 4u * deforms[deform].sets", "i < 4u * min(1u, deforms[deform].sets)"),
+        (
+            "only the first four are followed",
+            "variants/skinning/linear",
+            "i < 4u * deforms[deform].sets",
+            "i < 4u * min(1u, deforms[deform].sets)",
+        ),
         (
             "shapes after joints",
             "stages/geometry/deform",
             "skinning_position(skinning, morph_targets_position(draw, vertex, floats_of_class(position, class_of_bits)))",
             "morph_targets_position(draw, vertex, skinning_position(skinning, floats_of_class(position, class_of_bits)))",
         ),
-        ("normals left as they were", "stages/geometry/deform", "skinning_normal(skinning, morph_targets_normal(draw, vertex, normal.xyz))", "normal.xyz"),
+        (
+            "normals left as they were",
+            "stages/geometry/deform",
+            "skinning_normal(skinning, morph_targets_normal(draw, vertex, normal.xyz))",
+            "normal.xyz",
+        ),
         ("normals by the wrong cofactors", "variants/skinning/linear", "cross(s.y.xyz, s.z.xyz)", "cross(s.z.xyz, s.y.xyz)"),
         ("a rotation's opposite taken as another", "variants/skinning/dual", "select(weight, -weight,", "select(weight, weight,"),
         ("the shift left out", "variants/skinning/dual", "skinning_rotated(s, stretched) + shift", "skinning_rotated(s, stretched)"),

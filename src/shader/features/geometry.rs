@@ -33,10 +33,7 @@ const PARTICLES: Feature = Feature {
         is_used: |key| key.generated.has_particles,
         why_omitted: |_| "no effect puts particles into the scene".into(),
     }),
-    variants: &[
-        ("curl", |key, _| key.options.curl_noise.name()),
-        ("particle_state", |key, _| key.options.particle_storage.name()),
-    ],
+    variants: &[("curl", |key, _| key.options.curl_noise.name()), ("particle_state", |key, _| key.options.particle_storage.name())],
     ..Feature::NONE
 };
 

@@ -46,11 +46,7 @@ const FRAMEBUFFER: Feature = Feature {
         Visibility::Packed32 => format!("visibility=packed32/{}", key.framebuffer.triangle_id_bits),
         other => format!("visibility={}", other.name()),
     },
-    variants: &[
-        ("framebuffer_write", framebuffer_write),
-        ("framebuffer_read", framebuffer_layout),
-        ("xray_buffer", framebuffer_layout),
-    ],
+    variants: &[("framebuffer_write", framebuffer_write), ("framebuffer_read", framebuffer_layout), ("xray_buffer", framebuffer_layout)],
     constants: &[
         ("EARLY_LOAD", |key, _| flag(key.work.early_load)),
         ("ID_BITS", |key, _| key.framebuffer.triangle_id_bits.into()),
@@ -165,13 +161,11 @@ fn drawn_or_listed(_: &KernelKey, pass: Pass) -> &'static str {
 
 /// The list of the tiles that a triangle touches, which the resolve then visits.
 const TILE_LIST: Feature = Feature {
-    variants: &[
-        ("mark_tiles", |key, pass| {
-            use RasterPhase::{BoundaryTriangle, Count, CountSamples, Sum, TriangleId};
-            let is_repeated = matches!(pass.phase(), Some(TriangleId | Count | Sum | CountSamples | BoundaryTriangle));
-            step_if(key.work.listed_tiles && !is_repeated, "marked")
-        }),
-    ],
+    variants: &[("mark_tiles", |key, pass| {
+        use RasterPhase::{BoundaryTriangle, Count, CountSamples, Sum, TriangleId};
+        let is_repeated = matches!(pass.phase(), Some(TriangleId | Count | Sum | CountSamples | BoundaryTriangle));
+        step_if(key.work.listed_tiles && !is_repeated, "marked")
+    })],
     constants: &[("IS_BRANCHLESS", |key, _| flag(key.work.listed_tiles)), ("TILE_SIDE", |key, _| key.tile_side().into())],
     ..Feature::NONE
 };

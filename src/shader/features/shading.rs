@@ -97,10 +97,8 @@ const IMAGE_EFFECTS: Feature = Feature {
     ..Feature::NONE
 };
 
-const RENDER_SCALE: Feature = Feature {
-    constants: &[("SCALE_SIDE", |key, _| key.options.render_scale.factor().max(1.0))],
-    ..Feature::NONE
-};
+const RENDER_SCALE: Feature =
+    Feature { constants: &[("SCALE_SIDE", |key, _| key.options.render_scale.factor().max(1.0))], ..Feature::NONE };
 
 const EFFECTS: Feature = Feature {
     label: |key| key.effects.list.iter().map(|effect| format!("+{}", effect.name)).collect::<Vec<_>>().join(" "),
