@@ -38,7 +38,7 @@ struct Counters {
     medium: atomic<u32>,
     large: atomic<u32>,
     tiles: atomic<u32>,
-    pieces: atomic<u32>,
+    clipped_triangles: atomic<u32>,
     rejected_nonfinite: atomic<u32>,
     rejected_range: atomic<u32>,
     degenerate: atomic<u32>,

@@ -3,7 +3,7 @@
 // could not check it. Mirrors `gpu::texels::{MaterialRecord, LookupRecord}`.
 //@ use lib/triangle
 
-@group(0) @binding(32) var texels: texture_2d_array<u32>;
+@group(0) @binding(32) var material_atlas: texture_2d_array<u32>;
 
 // Words before the records: linear light of every byte value.
 const ATLAS_RECORDS = 256u;
@@ -12,7 +12,7 @@ const ATLAS_MATERIAL = 6u;
 const ATLAS_LOOKUP = 12u;   // and the lookups of its base colour and its emission
 
 // The material of a primitive.
-struct Paint {
+struct Material {
     flags: u32,        // MATERIAL_* bits
     red: f32,          // emitted light
     green: f32,
@@ -49,7 +49,7 @@ const MIP_LINEAR = 2u;
 
 // A word by its index: 4096 words in a row, 4096 rows in a layer.
 fn atlas_word(index: u32) -> u32 {
-    return textureLoad(texels, vec2u(index & 4095u, (index >> 12u) & 4095u), index >> 24u, 0).x;
+    return textureLoad(material_atlas, vec2u(index & 4095u, (index >> 12u) & 4095u), index >> 24u, 0).x;
 }
 
 fn atlas_float(index: u32) -> f32 { return bitcast<f32>(atlas_word(index)); }
@@ -59,8 +59,8 @@ fn atlas_record(draw: u32) -> u32 {
     return ATLAS_RECORDS + ATLAS_RECORD * (draws[draw].flags >> DRAW_PRIMITIVE_SHIFT);
 }
 
-fn atlas_material(record: u32) -> Paint {
-    return Paint(
+fn atlas_material(record: u32) -> Material {
+    return Material(
         atlas_word(record), atlas_float(record + 1u), atlas_float(record + 2u), atlas_float(record + 3u),
         atlas_word(record + 4u), atlas_word(record + 5u));
 }

@@ -17,7 +17,7 @@ struct ParticleStep {
     is_fresh: u32,     // no states are stored: begin in frame 0
 }
 
-struct Course {
+struct StepParams {
     p: Particles,
     life_steps: u32,   // longest life
     life_chance: u32,  // steps of it that vary at random
@@ -27,7 +27,7 @@ struct Course {
 
 @group(0) @binding(20) var<uniform> particle_step: ParticleStep;
 // Behind the parameters of the steps, the parameters with which particles are drawn.
-@group(0) @binding(21) var<storage, read> step_params: array<Course>;
+@group(0) @binding(21) var<storage, read> step_params: array<StepParams>;
 
 // Index of the parameters of the step that leads to a frame.
 fn step_params_of(frame_number: u32) -> u32 {

@@ -3,7 +3,7 @@
 //@ use lib/frame
 //@ use lib/fixed
 //@ use lib/triangle
-//@ use glue/pieces
+//@ use glue/clipped_triangles
 
 struct ClippedTriangle {
     a: vec4u,
@@ -18,7 +18,7 @@ const CLIPPED_ENTRY = 0x80000000u;
 fn queued_triangle(entry: u32) -> Triangle {
     if HAS_CLIPPING && (entry & CLIPPED_ENTRY) != 0u {
         let index = entry & ~CLIPPED_ENTRY;
-        let clipped = pieces[index];
+        let clipped = clipped_triangles[index];
         return Triangle(
             clipped.a, clipped.b, clipped.c, clipped.parent.x, clipped.parent.y, frame.triangle_count + index, clipped.parent.w);
     }

@@ -487,7 +487,7 @@ impl FrameLayout {
             Pass::RasterSmall(_) if key.culls() => Dispatch::args(offset_of!(DispatchArgs, meshlets)),
             Pass::RasterPoints(phase) if !phase.is_bin() => over(triangles.saturating_mul(key.work.invocations_per_triangle)),
             Pass::RasterSmall(_) | Pass::RasterPoints(_) | Pass::SampleSetup(TriangleSource::Triangles) => over(triangles),
-            Pass::SampleSetup(TriangleSource::ClippedTriangles) => Dispatch::args(offset_of!(DispatchArgs, pieces)),
+            Pass::SampleSetup(TriangleSource::ClippedTriangles) => Dispatch::args(offset_of!(DispatchArgs, clipped_triangles)),
             Pass::OrderSums | Pass::OrderRanks => Dispatch::once(folded(triangles.div_ceil(ORDER_BLOCK as u32))),
             Pass::OrderLimit | Pass::OrderCut | Pass::Args | Pass::AdvanceQueues { .. } | Pass::BinScan | Pass::DotsArgs => {
                 Dispatch::once([1, 1])

@@ -31,7 +31,7 @@ impl Capacities {
     pub fn grow(&mut self, demand: &CounterRecord) -> bool {
         let pairs = [
             (&mut self.clip, demand.clip),
-            (&mut self.clipped_triangles, demand.pieces),
+            (&mut self.clipped_triangles, demand.clipped_triangles),
             (&mut self.medium, demand.medium),
             (&mut self.large, demand.large),
             (&mut self.tiles, demand.tiles),
@@ -86,7 +86,7 @@ impl CounterRecord {
     pub fn counters(&self, capacities: &Capacities) -> Counters {
         let beyond = [
             self.clip.saturating_sub(capacities.clip),
-            self.pieces.saturating_sub(capacities.clipped_triangles),
+            self.clipped_triangles.saturating_sub(capacities.clipped_triangles),
             self.medium.saturating_sub(capacities.medium),
             self.large.saturating_sub(capacities.large),
             self.tiles.saturating_sub(capacities.tiles),

@@ -100,7 +100,7 @@ impl Readback<'_> {
             return Ok(Vec::new());
         }
         let counters: Vec<CounterRecord> = self.elements(BufferId::Counters, 1)?;
-        let demand = counters.first().map_or(0, |counters| counters.pieces);
+        let demand = counters.first().map_or(0, |counters| counters.clipped_triangles);
         let room = frame.layout.capacities.clipped_triangles;
         let records: Vec<ClippedTriangleRecord> = self.elements(BufferId::ClippedTriangles, demand.min(room).into())?;
         let mut records: Vec<_> = records.into_iter().enumerate().collect();

@@ -76,7 +76,7 @@ gpu_record! {
         pub medium: u32,
         pub large: u32,
         pub tiles: u32,
-        pub pieces: u32,
+        pub clipped_triangles: u32,
         pub rejected_nonfinite: u32,
         pub rejected_range: u32,
         pub degenerate: u32,
@@ -297,7 +297,7 @@ gpu_record! {
 
 gpu_record! {
     /// The material of one primitive. Each member is explained in `shaders/common/texels.wgsl`.
-    pub struct MaterialRecord = "Paint" {
+    pub struct MaterialRecord = "Material" {
         pub flags: u32,
         pub red: f32,
         pub green: f32,
@@ -324,7 +324,7 @@ gpu_record! {
         pub large: DispatchSize,
         pub tiles: DispatchSize,
         pub resolve: DispatchSize,
-        pub pieces: DispatchSize,
+        pub clipped_triangles: DispatchSize,
         pub meshlets: DispatchSize,
     }
 }

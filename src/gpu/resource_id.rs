@@ -63,7 +63,7 @@ buffers! {
     IndexBytes = "index_bytes", STORAGE.union(BufferUsages::INDEX), Nothing, "index lists as the file has them";
     Deforms = "deforms", STORAGE, Nothing, "byte offsets of every mesh that joints or morph targets deform";
     Joints = "joints", STORAGE, Nothing, "joint transforms of every skin: three matrix rows each, or a dual quaternion and a scale";
-    MorphTargets = "shapes", STORAGE, Nothing, "weights and byte offsets of morph targets";
+    MorphTargets = "morph_targets", STORAGE, Nothing, "weights and byte offsets of morph targets";
     ParticleStates = "particle_states", STORAGE, Nothing, "particles before and after the last step";
     StepParams = "step_params", STORAGE, Nothing, "parameters of every particle step, and of how particles look";
     ParticleStep = "particle_step", UNIFORM, Nothing, "which steps the particles take";
@@ -71,7 +71,7 @@ buffers! {
     Counters = "counters", STORAGE, PictureAndCount, "demand of the queues, and what was not drawn";
     Queues = "queues", STORAGE, Nothing, "triangles waiting for clip, medium, large and tile kernels";
     DispatchArgs = "args", STORAGE.union(INDIRECT), Nothing, "dispatch sizes written on the GPU";
-    ClippedTriangles = "pieces", STORAGE, Nothing, "triangles that clipping makes";
+    ClippedTriangles = "clipped_triangles", STORAGE, Nothing, "triangles that clipping makes";
     Culling = "culling", UNIFORM, Nothing, "how many meshlets there are";
     Instances = "instances", STORAGE, Nothing, "bounding box of every instance, and from where it is seen";
     Meshlets = "meshlets", STORAGE, Nothing, "bounds of clusters of up to 64 triangles";
@@ -123,7 +123,7 @@ impl TextureId {
     /// Name of the variable in WGSL, label on the device, name in `explain`.
     pub const fn name(self) -> &'static str {
         match self {
-            Self::MaterialAtlas => "texels",
+            Self::MaterialAtlas => "material_atlas",
             Self::ShadowMap => "shadow_map",
         }
     }

@@ -142,7 +142,7 @@ impl Chain {
 }
 
 /// Buffers that [`binding`] declares.
-pub const BINDINGS: [&str; 4] = ["draws", "index_bytes", "queues", "pieces"];
+pub const BINDINGS: [&str; 4] = ["draws", "index_bytes", "queues", "clipped_triangles"];
 
 /// The declaration of a buffer whose form depends on the key. Where the key has no such buffer, a private variable stands in for
 /// it, which code that runs never touches.
@@ -157,7 +157,7 @@ pub fn binding(name: &str, key: &KernelKey) -> Option<String> {
         "draws" => Some(binding(1, "storage, read", "array<Draw>")),
         "index_bytes" => Some(or_none(key.vertices.fetch != Fetch::Direct, 3, "storage, read", "u32")),
         "queues" => Some(or_none(key.has_queues(), 8, "storage, read_write", "u32")),
-        "pieces" => Some(or_none(key.paths.has_clipping, 9, "storage, read", "ClippedTriangle")),
+        "clipped_triangles" => Some(or_none(key.paths.has_clipping, 9, "storage, read", "ClippedTriangle")),
         _ => None,
     }
 }

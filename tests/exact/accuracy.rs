@@ -303,8 +303,8 @@ fn mutants() -> Vec<Mutant> {
         mutant(
             "a piece of what was clipped is missing",
             "stages/geometry/clip",
-            "let slot = atomicAdd(&counters.pieces, 1u);",
-            "if i == 2u { continue; }\n        let slot = atomicAdd(&counters.pieces, 1u);",
+            "let slot = atomicAdd(&counters.clipped_triangles, 1u);",
+            "if i == 2u { continue; }\n        let slot = atomicAdd(&counters.clipped_triangles, 1u);",
             hall(),
             UNEXPLAINED,
         ),

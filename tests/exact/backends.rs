@@ -264,7 +264,7 @@ fn repeated_frames_are_equal_to_the_bit() {
             assert_eq!(again.layers, first.layers, "{what}: layers");
             assert_eq!(again.frame.counters, first.frame.counters, "{what}: counters");
         }
-        is_drawn_by(&renderer, &["project", "raster_small", "args", "clip", "resolve"]);
+        is_drawn_by(&renderer, &["project", "raster_small", "dispatch_args", "clip", "resolve"]);
         is_drawn_by(&renderer, if option == Visibility::Tiled { TILED } else { &["tile_large", "raster_medium", "raster_large"] });
     }
 }

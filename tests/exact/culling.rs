@@ -424,7 +424,7 @@ fn explained(query: &str, effects: &[&str], pins: PinnedOptions) -> Option<(Vec<
 
 #[test]
 fn only_an_option_that_culls_has_passes_and_buffers_for_it() {
-    const PASSES: [&str; 6] = ["cull", "cull early", "cull late", "project_meshlets", "depth_reduce", "rounds"];
+    const PASSES: [&str; 6] = ["cull", "cull early", "cull late", "project_meshlets", "depth_reduce", "advance_queues"];
     const BUFFERS: [&str; 6] = ["culling", "instances", "meshlets", "meshlet_lists", "seen", "hiz"];
     let split = PinnedOptions::of(Visibility::Split32);
     let of =
@@ -435,7 +435,7 @@ fn only_an_option_that_culls_has_passes_and_buffers_for_it() {
         (Culling::Hiz, &["cull", "project_meshlets", "depth_reduce"], &["culling", "hiz", "instances", "meshlet_lists", "meshlets"]),
         (
             Culling::TwoPass,
-            &["cull early", "project_meshlets", "depth_reduce", "rounds", "cull late", "project_meshlets", "rounds"],
+            &["cull early", "project_meshlets", "depth_reduce", "advance_queues", "cull late", "project_meshlets", "advance_queues"],
             &["culling", "hiz", "instances", "meshlet_lists", "meshlets", "seen"],
         ),
     ] {

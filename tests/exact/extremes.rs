@@ -160,8 +160,8 @@ const MUTANTS: &[(&str, &str, &str, &str, &str)] = &[
     (
         "a piece of what was clipped is missing",
         "stages/geometry/clip",
-        "let slot = atomicAdd(&counters.pieces, 1u);",
-        "if i == 1u { continue; }\n        let slot = atomicAdd(&counters.pieces, 1u);",
+        "let slot = atomicAdd(&counters.clipped_triangles, 1u);",
+        "if i == 1u { continue; }\n        let slot = atomicAdd(&counters.clipped_triangles, 1u);",
         "guard-band",
     ),
     ("depth of another corner", "variants/depth/float", "weights.z * plane.depth.z", "weights.z * plane.depth.y", "scales-and-offsets"),

@@ -125,14 +125,14 @@ fn a_scene_of_small_triangles_has_no_queues_arguments_or_clipped_triangles() {
     for spared in [
         "queues",
         "args",
-        "pieces",
+        "clipped_triangles",
         "marks",
         "background",
         "layers",
         "depth_and_id",
         "deforms",
         "joints",
-        "shapes",
+        "morph_targets",
         "meshlets",
         "instances",
     ] {
@@ -147,17 +147,17 @@ fn a_scene_of_small_triangles_has_no_queues_arguments_or_clipped_triangles() {
     for (query, tuning) in [("sphere?triangles=20000", Tuning { specialized: false, ..tuning }), ("near", tuning)] {
         let (all, ..) = explained(query, tuning).expect("there was an adapter");
         let (passes, buffers) = names(&all);
-        for pass in ["clip", "args", "tile_large", "raster_medium depth", "raster_large triangle id"] {
+        for pass in ["clip", "dispatch_args", "tile_large", "raster_medium depth", "raster_large triangle id"] {
             assert!(passes.contains(&pass), "{query}: no {pass} in {passes:?}");
         }
-        for buffer in ["queues", "args", "pieces"] {
+        for buffer in ["queues", "args", "clipped_triangles"] {
             assert!(buffers.contains(&buffer), "{query}: no {buffer} in {buffers:?}");
         }
     }
 
     let (listed, ..) = explained("sphere?triangles=20000", Tuning { listed_tiles: true, ..tuning }).expect("there was an adapter");
     let (passes, buffers) = names(&listed);
-    assert!(passes.contains(&"list_tiles") && buffers.contains(&"marks") && buffers.contains(&"args") && !buffers.contains(&"queues"));
+    assert!(passes.contains(&"list_tiles") && buffers.contains(&"tile_mask") && buffers.contains(&"args") && !buffers.contains(&"queues"));
 }
 
 #[test]
@@ -168,7 +168,7 @@ fn only_a_deformed_scene_has_the_skin_pass_and_only_the_buffers_that_it_needs() 
     let still = explained("teapot?tess=4");
     let (passes, buffers) = names(&still);
     assert!(
-        !passes.contains(&"skin") && !["deforms", "joints", "shapes"].iter().any(|name| buffers.contains(name)),
+        !passes.contains(&"deform") && !["deforms", "joints", "morph_targets"].iter().any(|name| buffers.contains(name)),
         "{passes:?} {buffers:?}"
     );
     assert!(still.omitted.iter().any(|note| note.name == "skin" && note.why.contains("no mesh has joints or morph weights")));
@@ -179,7 +179,7 @@ fn only_a_deformed_scene_has_the_skin_pass_and_only_the_buffers_that_it_needs() 
     let deformed = explained("tentacle?tess=2");
     let (passes, buffers) = names(&deformed);
     assert_eq!(passes[..2], ["skin", "project"]);
-    assert!(buffers.contains(&"deforms") && buffers.contains(&"joints") && !buffers.contains(&"shapes"), "{buffers:?}");
+    assert!(buffers.contains(&"deforms") && buffers.contains(&"joints") && !buffers.contains(&"morph_targets"), "{buffers:?}");
     assert!(deformed.reasons.iter().any(|note| note.name == "skinning" && note.why.starts_with("linear: ")));
 }
 

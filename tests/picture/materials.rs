@@ -429,7 +429,7 @@ fn a_scene_of_plain_colours_has_no_texture_and_no_word_of_one() {
         let reflected = reflect::reflect(&linked, false).expect("valid");
         let textures =
             reflected.bindings("resolve").into_iter().filter(|binding| binding.kind == (reflect::BindingKind::Texture { layered: true }));
-        assert_eq!(textures.map(|binding| binding.name).collect::<Vec<_>>(), ["texels"]);
+        assert_eq!(textures.map(|binding| binding.name).collect::<Vec<_>>(), ["material_atlas"]);
     }
     let Some(mut renderer) = renderer() else { return };
     let mut buffers = |query: &str| {
@@ -439,7 +439,7 @@ fn a_scene_of_plain_colours_has_no_texture_and_no_word_of_one() {
         let explained = renderer.explain();
         let said =
             explained.omitted.iter().chain(&explained.reasons).find(|note| note.name == "material atlas").map(|note| note.why.clone());
-        (explained.buffers.iter().find(|buffer| buffer.name == "texels").map(|buffer| buffer.bytes), said.expect("a line about it"))
+        (explained.buffers.iter().find(|buffer| buffer.name == "material_atlas").map(|buffer| buffer.bytes), said.expect("a line about it"))
     };
     assert_eq!(buffers("teapot?tess=4"), (None, "no material is more than a base colour".into()));
     let (bytes, why) = buffers("panels");

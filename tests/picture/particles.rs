@@ -399,7 +399,7 @@ fn a_scene_without_particles_has_nothing_of_them() {
         assert!(explanation.omitted.iter().any(|note| note.name == "particles"));
     }
     let (explanation, key) = explained(&preset_file(&[]));
-    assert!(key.generated.has_particles && explanation.passes[0].name == "particles");
+    assert!(key.generated.has_particles && explanation.passes[0].name == "simulate_particles");
     let bytes = |name: &str| explanation.buffers.iter().find(|buffer| buffer.name == name).map_or(0, |buffer| buffer.bytes);
     assert_eq!(bytes("particle_states"), 2 * 32 * 500, "two frames of 32 bytes a particle");
 }

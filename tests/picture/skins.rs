@@ -300,7 +300,7 @@ fn a_thousand_skinned_instances_are_exact() {
     let view = moment(&scene, ["Sway", "Breathe"], 1.7, Skinning::Linear, [160, 120]);
     insist(&mut renderer, &scene, &view, &stack(&["lambert"]), Visibility::Split32, "a thousand");
     let passes = renderer.explain().passes;
-    assert_eq!(passes[0].name, "skin", "{passes:?}");
+    assert_eq!(passes[0].name, "deform", "{passes:?}");
 }
 
 /// The tentacle with weights as they come in files: some zero, some that do not sum to 1.

@@ -8,7 +8,7 @@
 //@ use lib/queued_triangle
 //@ use variants/projection
 
-@group(0) @binding(9) var<storage, read_write> pieces: array<ClippedTriangle>;
+@group(0) @binding(9) var<storage, read_write> clipped_triangles: array<ClippedTriangle>;
 
 // A corner of the polygon.
 struct Corner {
@@ -84,12 +84,12 @@ fn emit(polygon: Polygon, t: Triangle) {
             continue;
         }
         if !triangle_is_shown(draws[t.draw].flags, sign > 0) { continue; }
-        let slot = atomicAdd(&counters.pieces, 1u);
+        let slot = atomicAdd(&counters.clipped_triangles, 1u);
         if slot >= frame.clipped_triangle_capacity { continue; }
         let is_first = i == 1u && polygon.corners[0].is_edge;
         let is_last = i + 2u == polygon.count && polygon.corners[i + 1u].is_edge;
         let outline = select(0u, 1u, polygon.corners[i].is_edge) | select(0u, 2u, is_last) | select(0u, 4u, is_first);
-        pieces[slot] = ClippedTriangle(records[0], records[i], records[i + 1u], vec4u(t.id, t.draw, i, outline));
+        clipped_triangles[slot] = ClippedTriangle(records[0], records[i], records[i + 1u], vec4u(t.id, t.draw, i, outline));
         let low = min(min(a, b), c);
         let high = max(max(a, b), c);
         let pixels = triangle_pixels(low, high);

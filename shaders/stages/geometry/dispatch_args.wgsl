@@ -11,7 +11,7 @@ struct Args {
     large: Dispatch,
     tiles: Dispatch,
     resolve: Dispatch,
-    pieces: Dispatch,
+    clipped_triangles: Dispatch,
     meshlets: Dispatch,
 }
 
@@ -27,8 +27,8 @@ fn dispatch_args() {
     args.medium = folded(queues_medium_count() - atomicLoad(&counters.medium_done));
     args.large = folded(queues_large_count() - atomicLoad(&counters.large_done));
     args.tiles = folded(queues_tiles_count() - atomicLoad(&counters.tiles_done));
-    let pieces = min(atomicLoad(&counters.pieces), frame.clipped_triangle_capacity);
-    args.pieces = folded((pieces + GROUP_SIZE - 1u) / GROUP_SIZE);
+    let clipped_triangles = min(atomicLoad(&counters.clipped_triangles), frame.clipped_triangle_capacity);
+    args.clipped_triangles = folded((clipped_triangles + GROUP_SIZE - 1u) / GROUP_SIZE);
     args.resolve = folded(atomicLoad(&counters.marked_tiles));
     let meshlets = atomicLoad(&counters.visible_meshlets) - atomicLoad(&counters.visible_meshlets_done);
     args.meshlets = folded((meshlets * MESHLET_TRIANGLES + GROUP_SIZE - 1u) / GROUP_SIZE);

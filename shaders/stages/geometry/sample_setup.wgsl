@@ -19,7 +19,7 @@ fn sample_setup(
 ) {
     let index = frame_invocation(workgroup, workgroups, invocation_index, GROUP_SIZE);
     var count = frame.triangle_count;
-    if IS_CLIPPED_TRIANGLES { count = min(atomicLoad(&counters.pieces), frame.clipped_triangle_capacity); }
+    if IS_CLIPPED_TRIANGLES { count = min(atomicLoad(&counters.clipped_triangles), frame.clipped_triangle_capacity); }
     if index >= count { return; }
     let t = queued_triangle(index | select(0u, CLIPPED_ENTRY, IS_CLIPPED_TRIANGLES));
     let at = triangle_vertices(t.draw, t.id - draws[t.draw].first_triangle);

@@ -2,7 +2,7 @@
 //@ use lib/attributes
 //@ use lib/deform
 
-struct Shape {
+struct MorphTarget {
     weight: f32,
     position_offset: u32,
     position_stride: u32,
@@ -13,7 +13,7 @@ struct Shape {
     spare: u32,
 }
 
-@group(0) @binding(18) var<storage, read> morph_targets: array<Shape>;
+@group(0) @binding(18) var<storage, read> morph_targets: array<MorphTarget>;
 
 // The stored offset of a vertex; zero where there is none or a component is rejected.
 fn morph_targets_stored(format: u32, byte: u32) -> vec3f {

@@ -7,7 +7,7 @@
 //@ use glue/effects
 
 // The transform from world space to the shadow map.
-struct Light {
+struct ShadowMapView {
     column: vec4f, // texels to the right, of a point (x, y, z, 1)
     row: vec4f,    // texels down
     depth: vec4f,  // reversed depth: 1 near the light
@@ -17,7 +17,7 @@ struct Light {
     spare: u32,
 }
 
-@group(0) @binding(30) var<uniform> light: Light;
+@group(0) @binding(30) var<uniform> light: ShadowMapView;
 @group(0) @binding(31) var shadow_map: texture_2d<u32>;
 
 // Texels along a side of the filter: 1, 3 or 5.
