@@ -191,7 +191,7 @@ fn judge(state: &mut State, inputs: Inputs) {
     state.jobs.verify(state.screen.gpu.clone(), inputs);
 }
 
-/// Makes `opened` the open preset, as an undo step of its own.
+/// Makes `opened` the open preset, as a separate undo step.
 fn open_preset(state: &mut State, panels: &mut Panels, opened: PresetFile) {
     state.history.close();
     for warning in &opened.warnings {

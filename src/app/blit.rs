@@ -1,6 +1,6 @@
-//! Blit: puts the renderer's texture on the window as it is, texel by texel.
+//! Blit: copies the renderer's texture to the window, texel by texel.
 //!
-//! egui can show a texture too, but its general shader costs a software adapter more than the whole rasterizer does.
+//! egui can show a texture too, but on a software adapter its general shader takes longer than the whole rasterizer.
 
 use eframe::{egui, egui_wgpu, wgpu};
 
@@ -29,7 +29,7 @@ fn texel_of(color: vec3f) -> vec4f {
     return vec4f(color, 1.0);
 }";
 
-/// What two pictures differ by, channel by channel, times a gain.
+/// The difference of two pictures, channel by channel, times a gain.
 const DIFFERENCE: &str = "
 @group(0) @binding(1) var other: texture_2d<f32>;
 @group(0) @binding(2) var<uniform> gain: vec4f;
@@ -55,7 +55,7 @@ impl Blitter {
         let device = &window.device;
         let source = wgpu::ShaderSource::Wgsl(format!("{SHADER}{DIFFERENCE}").into());
         let module = device.create_shader_module(wgpu::ShaderModuleDescriptor { label: Some("blit"), source });
-        // An sRGB window would encode bytes that are encoded already.
+        // The texture holds sRGB bytes, and an sRGB window would encode them again.
         let to_linear = f64::from(u8::from(window.target_format.is_srgb()));
         let made = |entry: &str| {
             device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
@@ -83,7 +83,7 @@ impl Blitter {
         Self { pipeline: made("texel"), difference: made("differing") }
     }
 
-    /// What shows `view`, again and again.
+    /// A blit of `view`.
     pub fn blit(&self, device: &wgpu::Device, view: &wgpu::TextureView) -> Blit {
         let binding = device.create_bind_group(&wgpu::BindGroupDescriptor {
             label: Some("blit"),
@@ -93,7 +93,7 @@ impl Blitter {
         Blit { pipeline: self.pipeline.clone(), binding }
     }
 
-    /// What shows how two views differ, times `gain`.
+    /// A blit of the difference of two views, times `gain`.
     pub fn difference(&self, device: &wgpu::Device, [a, b]: [&wgpu::TextureView; 2], gain: u8) -> Blit {
         let contents = bytemuck::bytes_of(&[f32::from(gain), 0.0, 0.0, 0.0]).to_vec();
         let uniform = wgpu::util::BufferInitDescriptor { label: Some("gain"), contents: &contents, usage: wgpu::BufferUsages::UNIFORM };
@@ -107,7 +107,7 @@ impl Blitter {
     }
 }
 
-/// A picture, ready to be put anywhere in the window.
+/// A picture that can be drawn anywhere in the window.
 #[derive(Clone)]
 pub struct Blit {
     pipeline: wgpu::RenderPipeline,

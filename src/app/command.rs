@@ -24,9 +24,9 @@ use crate::{
 /// A parameter of an effect.
 pub type Parameter = (&'static Effect, &'static Field);
 
-/// See the variants.
+/// What a panel, a shortcut or a dropped file asks the window to do.
 pub enum Command {
-    /// Does what a key or a menu entry does, as an undo step of its own.
+    /// Does what a key or a menu entry does, as a separate undo step.
     Perform(Action),
     Undo,
     Redo,
@@ -43,7 +43,7 @@ pub enum Command {
     View(ViewCommand),
     /// Measures every combination of the options of the request's axes.
     MeasureSweep(Box<Request>, Arc<Progress>),
-    /// Pins the options of these axes, as an undo step of its own.
+    /// Pins the options of these axes, as a separate undo step.
     PinOptions(PinnedOptions, Vec<&'static Axis>),
     Toggle(Toggle),
     /// Starts the oracle on the picture that is shown, and on the one it is compared with.
@@ -112,11 +112,11 @@ pub enum TimeCommand {
     /// Frames to step by, negative for back.
     Step(f64),
     Rewind,
-    /// While true the time stands still, as a pointer holds it.
+    /// True while the pointer holds the playhead: playing does not advance the time.
     Hold(bool),
 }
 
-/// What a row of the inspector can be asked besides changing its value.
+/// What a row of the inspector does besides changing its value.
 #[derive(Clone, Debug, PartialEq)]
 pub enum RowCommand {
     Reset(String),
@@ -146,7 +146,7 @@ pub enum FileCommand {
     /// Opens a preset, model or picture by path, id or `builtin:QUERY`.
     Open(String),
     OpenPreset(Box<PresetFile>),
-    /// Opens the preset so many places further in the gallery, wrapping round.
+    /// Opens the preset this many entries further in the gallery, wrapping round.
     OpenNeighbour(isize),
     /// Saves to the preset's own file, or asks for one.
     Save,

@@ -63,13 +63,13 @@ impl Row {
     }
 }
 
-/// `radius_m` in metres is a `radius`; the unit stands behind the number.
+/// The name without its unit, as the unit is shown after the number: `radius_m` in metres is `radius`.
 fn label(name: &str, unit: &str) -> String {
     let stem = [("m", "_m"), ("°", "_deg"), ("°/s", "_deg_per_s"), ("s", "_s")].iter().find(|(u, _)| *u == unit);
     stem.and_then(|(_, suffix)| name.strip_suffix(suffix)).unwrap_or(name).replace('_', " ")
 }
 
-/// What came of a row in this frame.
+/// What the user did with a row in this frame.
 #[derive(Default)]
 pub struct Outcome {
     pub value: Option<Value>,
@@ -83,7 +83,7 @@ const RESET_WIDTH: f32 = 22.0;
 const KEY_WIDTH: f32 = 18.0;
 const NUMBER_WIDTH: f32 = 66.0;
 
-/// Shows `row` with `value`; the outcome holds what changed.
+/// Shows `row` with `value`. Returns what the user did with it.
 pub fn row_ui(ui: &mut Ui, row: &Row, value: &Value) -> Outcome {
     let mut outcome = Outcome::default();
     let width = ui.available_width();
@@ -122,7 +122,7 @@ pub fn row_ui(ui: &mut Ui, row: &Row, value: &Value) -> Outcome {
 fn label_ui(ui: &mut Ui, row: &Row, value: &Value, rect: Rect) -> Option<RowCommand> {
     let response = ui.interact(rect, egui::Id::unique((&row.path, "label")), Sense::click());
     let color = if row.modified || response.hovered() { theme::TEXT_STRONG } else { theme::TEXT };
-    // Bold where the bundled fonts have no bold cut: the same text twice, half a pixel apart.
+    // The bundled fonts have no bold cut, so bold is the same text twice, half a pixel apart.
     let clipped = ui.painter_at(rect.expand(1.0));
     let font = egui::TextStyle::Body.resolve(ui.style());
     let at = pos2(rect.left(), rect.center().y);
@@ -134,14 +134,14 @@ fn label_ui(ui: &mut Ui, row: &Row, value: &Value, rect: Rect) -> Option<RowComm
     response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Label, true, &row.label));
     response.context_menu(|ui| {
         let group = row.path.split('.').next().unwrap_or_default();
-        for (text, meaning) in [
+        for (text, chosen) in [
             ("Reset".to_owned(), RowCommand::Reset(row.path.clone())),
             (format!("Reset all of {group}"), RowCommand::ResetGroup(group.into())),
             ("Copy value".to_owned(), RowCommand::Copy(row.written(value))),
             ("Paste value".to_owned(), RowCommand::Paste(row.path.clone())),
         ] {
             if ui.button(text).clicked() {
-                command = Some(meaning);
+                command = Some(chosen);
                 ui.close();
             }
         }
@@ -242,9 +242,9 @@ fn decimals(soft: Option<[f64; 2]>) -> usize {
 fn slider_ui(ui: &mut Ui, row: &Row, value: f64, [from, to]: [f64; 2], whole: bool) -> f64 {
     let (mut now, fine) = (value, ui.input(|i| i.modifiers.shift));
     let rail = ui.spacing().slider_width;
-    let set = |wanted: Option<f64>| {
-        if let Some(wanted) = wanted {
-            now = wanted;
+    let set = |value: Option<f64>| {
+        if let Some(value) = value {
+            now = value;
         }
         now
     };

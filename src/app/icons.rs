@@ -1,4 +1,4 @@
-//! The few icons the lab needs, drawn with lines, so that no font decides how they look.
+//! The icons of the lab, drawn with lines, so that they look the same with every font.
 
 use eframe::egui::{self, Color32, Pos2, Rect, Response, Sense, Shape, Stroke, Ui, pos2, vec2};
 
@@ -13,7 +13,7 @@ pub enum Icon {
     Down,
     Left,
     Right,
-    /// An arrow that turns back.
+    /// A circular arrow.
     Reset,
     Cross,
     /// Four corners of a frame.
@@ -21,7 +21,7 @@ pub enum Icon {
     Dice,
     Play,
     Pause,
-    /// A triangle that points back, to a bar.
+    /// A triangle that points left, to a bar.
     ToStart,
     StepBack,
     StepForward,
@@ -61,12 +61,12 @@ fn bare_button(ui: &mut Ui, icon: Icon, color: impl FnOnce(&Ui, &Response) -> Co
     response
 }
 
-/// The diamond beside a value: an outline where nothing is animated, in the accent where it is, filled on a key.
+/// The diamond beside a value: a grey outline if it is not animated, an outline in the accent colour if it is, filled on a key.
 pub fn key_button(ui: &mut Ui, rect: Rect, keying: Keying, path: &str) -> Response {
     let response = ui.interact(rect, egui::Id::unique((path, "key")), Sense::click());
     let (name, hint) = match keying {
-        Keying::Still => (format!("Animate {path}"), "Animate: set a first key here, at the time that is shown"),
-        Keying::Between => (format!("Key {path}"), "Set a key at the time that is shown; changing the value does so too"),
+        Keying::Still => (format!("Animate {path}"), "Animate this value: set its first key at the time shown"),
+        Keying::Between => (format!("Key {path}"), "Set a key at the time shown. Changing the value does the same."),
         Keying::OnKey => (format!("Remove key of {path}"), "Remove the key at this time"),
     };
     let near = response.hovered() || response.has_focus();
@@ -82,7 +82,7 @@ pub fn key_button(ui: &mut Ui, rect: Rect, keying: Keying, path: &str) -> Respon
     response.on_hover_text(hint)
 }
 
-/// The sign of a key, `r` points to its corners.
+/// The mark of a key: a diamond with corners `r` points from its centre.
 pub fn paint_diamond(painter: &egui::Painter, at: Pos2, r: f32, fill: Color32, edge: Color32) {
     let points = [(0.0, -r), (r, 0.0), (0.0, r), (-r, 0.0)].map(|(x, y)| at + vec2(x, y)).to_vec();
     painter.add(Shape::convex_polygon(points, fill, Stroke::new(1.3, edge)));

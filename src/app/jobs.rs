@@ -40,7 +40,7 @@ pub enum Done {
     Path(Purpose, Option<PathBuf>),
 }
 
-/// Threads at work, and where their results arrive.
+/// Starts threads and receives their results.
 pub struct Jobs {
     ctx: egui::Context,
     sender: mpsc::Sender<Done>,
@@ -67,7 +67,7 @@ impl Jobs {
             }
         });
         if let Err(error) = started {
-            eprintln!("rasterlab: no thread for {name}: {error}");
+            eprintln!("rasterlab: no thread could be started for {name}: {error}");
         }
     }
 
@@ -88,7 +88,7 @@ impl Jobs {
         });
     }
 
-    /// Measures combinations of accuracy options on a second device, so that it disturbs the window's times little.
+    /// Measures combinations of accuracy options on a second device, so that the window stays responsive.
     pub fn measure(&self, adapter: String, scene: Arc<Scene>, request: Request, progress: Arc<Progress>) {
         let work = move || measure::measure(adapter, &scene, &request, &progress);
         self.spawn("sweep", || Done::Sweep(caught("measuring the sweep", work)));
@@ -102,7 +102,7 @@ impl Jobs {
         });
     }
 
-    /// Draws `inputs` and writes a PNG that carries the preset.
+    /// Draws `inputs` and writes a PNG that contains the preset.
     pub fn export(&self, gpu: Arc<Gpu>, inputs: Inputs, preset_file: PresetFile, path: PathBuf) {
         self.spawn("export", move || {
             let saved = caught("saving the picture", || export(gpu, &inputs, &preset_file, &path));
@@ -137,7 +137,7 @@ const fn filters(purpose: Purpose) -> &'static [(&'static str, &'static [&'stati
     }
 }
 
-/// Runs `work`. A panic becomes an error, so that the window does not wait for a result for ever.
+/// Runs `work`. A panic becomes an error, so that the window does not wait for a result that never comes.
 fn caught<T>(what: &str, work: impl FnOnce() -> Result<T, String>) -> Result<T, String> {
     std::panic::catch_unwind(std::panic::AssertUnwindSafe(work))
         .unwrap_or_else(|_| Err(format!("{what} failed because of a bug; see the terminal for details")))

@@ -1,4 +1,4 @@
-//! Keyframes by hand: values become keys at the time shown, and keys are moved, eased and removed.
+//! Edits of keyframes: values become keys at the time shown, and keys are moved, eased and removed.
 
 use super::{
     command::{KeyframeEdit, Parameter},

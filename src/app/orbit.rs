@@ -10,13 +10,13 @@ use crate::scene::{
 /// Range of the distance between eye and target, metres: keeps poses below the 2^40 that the kernels' arithmetic allows.
 const DISTANCE_M: [f64; 2] = [1e-5, 1e8];
 
-/// DepthReduce a target may be panned from the origin, metres.
+/// Largest coordinate of a target that is panned, metres.
 const MAX_COORDINATE_M: f64 = 1e8;
 
-/// Closest the direction of view comes to straight up or down, radians; beyond it, left and right would swap.
+/// Least angle between the direction of view and straight up or down, radians. Beyond the pole, left and right would swap.
 const POLE_RAD: f64 = 1e-3;
 
-/// Directions of the numbered views: where the camera looks.
+/// Directions of view of the numbered views.
 pub const FRONT: DVec3 = DVec3::NEG_Z;
 pub const SIDE: DVec3 = DVec3::NEG_X;
 pub const TOP: DVec3 = DVec3::NEG_Y;

@@ -19,7 +19,7 @@ pub fn first_preset(open: Option<&str>, folder: Option<&Path>, log: &mut Log) ->
     match preset_file::open(what, folder) {
         Ok(mut preset_file) => {
             preset_file.warnings.iter().for_each(|warning| log.add(Level::Warning, warning.clone()));
-            // A recovered preset has no file of its own: Save asks for one.
+            // A recovered preset is not saved to the recovery file: Save asks for another.
             preset_file.read_only |= preset_file.path.is_some() && preset_file.path == recovery_path();
             preset_file
         }

@@ -1,4 +1,4 @@
-//! Scene loader: the scene that is shown, the one that is loading, and recent ones to go back to without waiting.
+//! Scene loader: the scene that is shown, the one that is loading, and recent ones that are kept in memory.
 
 use std::{collections::VecDeque, path::PathBuf, sync::Arc};
 
@@ -26,7 +26,7 @@ impl SceneKey {
     }
 }
 
-/// Scenes that are kept.
+/// Number of recent scenes that are kept in memory.
 const MAX_RECENT: usize = 4;
 
 /// See the module's first line.
@@ -52,12 +52,12 @@ impl SceneLoader {
         self.loading.is_some()
     }
 
-    /// True if the scene that the preset asks for cannot be loaded.
+    /// True if the scene of the preset cannot be loaded.
     pub fn has_failed(&self) -> bool {
         self.failed.is_some()
     }
 
-    /// Shows the scene of `key` if it is at hand. Returns true if it must be loaded, once per scene.
+    /// Shows the scene of `key` if it is in memory. Otherwise returns true the first time: the scene must be loaded then.
     pub fn request(&mut self, key: &SceneKey) -> bool {
         if self.shown_for(key).is_some() {
             self.failed = None;

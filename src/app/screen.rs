@@ -42,7 +42,7 @@ pub struct Screen {
     renderer: Renderer,
     blitter: Blitter,
     picture: Option<Picture>,
-    /// The picture as it is asked for, at full size.
+    /// The inputs that were requested last, at full size.
     requested: Option<Inputs>,
     divisor: u32,
     /// What the newest picture was made from; smaller than requested while it moves on a slow adapter.
@@ -117,7 +117,7 @@ impl Screen {
         Some(self.blitter.difference(&self.gpu.device, views, gain))
     }
 
-    /// The picture as it is asked for, at full size; none before the first.
+    /// The inputs that were requested last, at full size; none before the first.
     pub fn requested(&self) -> Option<&Inputs> {
         self.requested.as_ref()
     }

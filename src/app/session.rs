@@ -1,5 +1,5 @@
-//! The session: the open preset, its scene, and the time and effects that are shown of it. Everything here can be read by
-//! every panel; only commands change it.
+//! The session: the open preset, its scene, the time that is shown, and the effects that are muted. Every panel can read it;
+//! only commands change it.
 
 use std::{
     collections::{BTreeSet, HashMap},
@@ -86,7 +86,7 @@ impl Session {
         self.scenes.shown()
     }
 
-    /// Makes `look` the open preset, with nothing muted and at its own time.
+    /// Makes `preset_file` the open preset, with no effect muted and at the preset's own time.
     pub fn open(&mut self, preset_file: PresetFile) {
         self.remember(preset_file.clone());
         self.muted.clear();
@@ -161,7 +161,7 @@ impl Session {
         self.shown_words(effect).map(|words| field.get(&words))
     }
 
-    /// The camera as it stands, whether the preset's own, the scene's or the automatic one; none without a scene.
+    /// The camera that is used: the preset's own, the scene's, or the automatic one. None without a scene.
     pub fn camera(&self) -> Option<Camera> {
         Some(self.preset().camera_for(self.scene()?, aspect(self.preset().output.size)))
     }

@@ -38,7 +38,7 @@ impl Default for OpenPanels {
 pub struct Clipboard {
     /// Path and value of the row under the pointer.
     pub hovered_row: Option<(String, String)>,
-    /// Path that the next paste goes to, if a menu asked for it.
+    /// Path that the next paste goes to, if the menu of a row requested it.
     pub paste_into: Option<String>,
 }
 
@@ -69,7 +69,7 @@ impl State {
         self.verification.verdict_on(self.screen.drawn()).map(|verdict| &verdict.findings.accuracy)
     }
 
-    /// The verdict on the picture that is asked for, pixel by pixel.
+    /// The verdict on the requested picture, pixel by pixel.
     pub fn findings(&self) -> Option<&Arc<Findings>> {
         self.verification.verdict_on(self.screen.requested()).map(|verdict| &verdict.findings)
     }

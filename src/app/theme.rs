@@ -23,20 +23,20 @@ pub const TEXT_WEAK: Color32 = Color32::from_rgb(143, 148, 158);
 
 /// The one accent: selection, changed values, focus.
 pub const ACCENT: Color32 = Color32::from_rgb(94, 168, 255);
-/// The accent as a ground for text.
+/// The accent as a background of text.
 pub const ACCENT_GROUND: Color32 = Color32::from_rgb(33, 66, 112);
 pub const AMBER: Color32 = Color32::from_rgb(240, 178, 74);
 pub const RED: Color32 = Color32::from_rgb(255, 115, 108);
 pub const GREEN: Color32 = Color32::from_rgb(122, 201, 143);
 
-/// Half a grid step: between things that belong together.
+/// Half a grid step: between parts of a group.
 pub const HALF: f32 = 4.0;
 /// The grid.
 pub const GAP: f32 = 8.0;
 /// Height of a row of controls.
 pub const ROW: f32 = 24.0;
 
-/// Puts the theme on, in both of egui's slots, so that a light desktop does not mix in.
+/// Applies the theme to egui's dark and light styles, so that a light desktop does not change it.
 pub fn apply(ctx: &egui::Context) {
     ctx.set_theme(egui::Theme::Dark);
     ctx.all_styles_mut(|style| {
@@ -114,8 +114,8 @@ pub fn weak(text: impl Into<String>) -> RichText {
     RichText::new(text).color(TEXT_WEAK)
 }
 
-/// Frame of a side panel. It has no ground: the window is cleared to [`PANEL`], and on a software adapter every pixel
-/// painted twice is felt.
+/// Frame of a side panel. It has no background: the window is cleared to [`PANEL`], and painting pixels twice is slow on a
+/// software adapter.
 pub fn panel_frame() -> egui::Frame {
     egui::Frame::new().inner_margin(Margin::symmetric(12, 10))
 }
@@ -134,7 +134,7 @@ pub fn toast_frame(edge: Color32) -> egui::Frame {
         .inner_margin(Margin::symmetric(12, 8))
 }
 
-/// A line of a panel that stands for a warning or an error.
+/// A warning or an error in a panel.
 pub fn notice(ui: &mut egui::Ui, color: Color32, text: &str) {
     egui::Frame::new().fill(color.gamma_multiply(0.12)).corner_radius(4.0).inner_margin(Margin::symmetric(8, 6)).show(ui, |ui| {
         ui.set_min_width(ui.available_width());

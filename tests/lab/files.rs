@@ -188,7 +188,7 @@ fn undo_after_saving_is_an_unsaved_change_again() {
     assert!(preset_file::load(&path).expect("a preset").preset.stack.get("facet").is_none());
 }
 
-/// Run by the next test in a process of its own, whose environment says where a rescued look goes.
+/// Run by the next test in a separate process, whose environment decides where the recovered preset is saved.
 #[test]
 #[ignore = "run by a_lost_device_rescues_the_preset_and_closes_the_window"]
 fn child_that_loses_its_device() {

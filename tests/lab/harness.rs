@@ -1,4 +1,4 @@
-//! The window without a screen: the whole app in a harness that presses and drags as a hand does, on the adapter under test.
+//! The window without a display: the whole app in a harness that sends pointer and key events, on the adapter under test.
 
 use std::{
     iter,
@@ -56,7 +56,7 @@ impl TestRenderer for Window {
     }
 }
 
-/// A device without a surface, as the program asks for it.
+/// A device without a surface, opened with the program's settings.
 fn device(adapter: &AdapterChoice) -> RenderState {
     let setup = wgpu_setup(adapter);
     let instance = pollster::block_on(setup.new_instance());
@@ -138,7 +138,7 @@ pub fn lab(open: &str) -> Option<Lab> {
     lab_in(open, None)
 }
 
-/// Steps until pictures, figures and thumbnails have arrived, and then until every gesture is closed.
+/// Steps until pictures, reports and thumbnails have arrived, and then until every undo step is closed.
 pub fn settle(lab: &mut Lab) {
     let patience = Instant::now() + Duration::from_secs(120);
     loop {
@@ -153,7 +153,7 @@ pub fn settle(lab: &mut Lab) {
     lab.check_accessibility();
 }
 
-/// Drags from one place to another in several moves, as a hand does.
+/// Drags from one position to another in several moves.
 pub fn drag(lab: &mut Lab, from: Pos2, to: Pos2) {
     lab.hover_at(from);
     lab.step();
@@ -226,10 +226,10 @@ pub fn key_times(lab: &Lab, effect: &str, field: &str) -> Vec<f64> {
     track.map_or(Vec::new(), |track| track.keys().iter().map(|key| key.time_s).collect())
 }
 
-/// Drags the hand of the clock to a share of the ruler.
+/// Drags the playhead from one fraction of the ruler to another.
 pub fn scrub(lab: &mut Lab, from: f32, to: f32) {
     let ruler = lab.get_by_role_and_label(Role::Slider, "Timeline").rect();
-    let at = |share: f32| Pos2::new(ruler.left() + share * ruler.width(), ruler.center().y);
+    let at = |t: f32| Pos2::new(ruler.left() + t * ruler.width(), ruler.center().y);
     drag(lab, at(from), at(to));
 }
 

@@ -110,8 +110,8 @@ fn randomize_stays_within_soft_ranges_and_is_one_undo_step() {
     assert!(lab.state().log_text().contains("seed 1"));
     for enabled in &after.stack.0 {
         for field in enabled.effect.fields {
-            let lanes = field.get(&enabled.words);
-            assert!(lanes.iter().all(|lane| (field.soft[0]..=field.soft[1]).contains(lane)), "{}.{}", enabled.effect.name, field.name);
+            let components = field.get(&enabled.words);
+            assert!(components.iter().all(|value| (field.soft[0]..=field.soft[1]).contains(value)), "{}.{}", enabled.effect.name, field.name);
         }
     }
     undo(&mut lab);

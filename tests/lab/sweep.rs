@@ -45,7 +45,7 @@ fn a_measured_combination_is_a_point_and_a_click_on_it_switches_the_preset_in_on
         copied.starts_with("depth,ms p50,ms p95,samples,wrong pixels ppm,") && copied.lines().count() == 1 + DepthFormat::ALL.len(),
         "{copied}"
     );
-    // Another camera makes another picture, and the figures are not about that one.
+    // Another camera makes another picture, so the points are stale.
     assert!(lab.query_by_label_contains("stale: ").is_none());
     click(&mut lab, Role::Button, "Top view");
     assert!(lab.query_by_label_contains("stale: ").is_some());

@@ -77,7 +77,7 @@ fn dragging_a_mark_moves_its_key_in_one_undo_step() {
     assert_eq!(lab.state().undo_steps(), 1);
     undo(&mut lab);
     assert_eq!((key_times(&lab, "facet", "amount"), lab.state().undo_steps()), (vec![0.0, 1.0, 3.0], 0));
-    // It never passes its neighbours, however far the hand goes.
+    // It never passes its neighbours, however far it is dragged.
     drag(&mut lab, mark, mark + vec2(900.0, 0.0));
     let times = key_times(&lab, "facet", "amount");
     assert!(times[1] > 2.9 && times[1] < 3.0, "{times:?}");
@@ -143,9 +143,9 @@ fn play_without_loop_stops_at_the_end() {
 fn time_is_stepped_by_frames_and_kept_on_request() {
     let folder = tempfile::tempdir().expect("a temporary folder");
     let Some(mut lab) = lab_of(folder.path(), MOVING) else { return };
-    for (key, wanted) in [(Key::Period, 1.0), (Key::Period, 2.0), (Key::Comma, 1.0), (Key::Comma, 0.0), (Key::Comma, -1.0)] {
+    for (key, frame) in [(Key::Period, 1.0), (Key::Period, 2.0), (Key::Comma, 1.0), (Key::Comma, 0.0), (Key::Comma, -1.0)] {
         press(&mut lab, Modifiers::NONE, key);
-        assert!((lab.state().shown_time_s() - wanted / 30.0).abs() < 1e-9, "{} s", lab.state().shown_time_s());
+        assert!((lab.state().shown_time_s() - frame / 30.0).abs() < 1e-9, "{} s", lab.state().shown_time_s());
     }
     scrub(&mut lab, 0.1, 0.5);
     assert_eq!((lab.state().preset_file().preset.clock.time_s, lab.state().undo_steps()), (0.0, 0));

@@ -74,7 +74,7 @@ fn overlays_are_laid_over_the_picture_and_counted_in_a_legend() {
     show_overlay(&mut lab, "triangle edges");
     let edges = middle(&mut lab);
     assert!(edges != plain, "the edges are to be seen");
-    assert!(lab.state().accuracy().is_some(), "the picture was judged without being asked to");
+    assert!(lab.state().accuracy().is_some(), "overlays judge the picture automatically");
     assert!(lab.query_by_label_contains("triangle edges: ").is_some(), "the legend counts them");
     show_overlay(&mut lab, "triangle ids");
     let both = middle(&mut lab);
@@ -97,7 +97,7 @@ fn the_legend_says_that_nothing_is_wrong_where_nothing_is() {
     let pixels = lab.state().accuracy().expect("a verdict").pixels;
     let sentence = format!("no errors: 0 of {},{:03} pixels", pixels / 1000, pixels % 1000);
     assert!((1000..1_000_000).contains(&pixels) && lab.query_by_label(&sentence).is_some(), "{sentence}");
-    // Another picture is judged anew, as soon as it rests.
+    // Another picture is judged as soon as it is at rest.
     click(&mut lab, Role::Button, "Top view");
     assert!(lab.state().accuracy().is_some());
     assert!(lab.query_by_label_contains("no errors: 0 of ").is_some());

@@ -1,4 +1,4 @@
-//! A real window on a display of its own (Xvfb): it opens, draws, follows a hand, saves a preset and closes.
+//! A real window on a virtual display (Xvfb): it opens, draws, follows the pointer, saves a preset and closes.
 
 use std::{
     io::{BufRead as _, BufReader},
@@ -100,8 +100,8 @@ impl Display {
         let setup = self.x.setup();
         let (low, high) = (setup.min_keycode, setup.max_keycode);
         let map = self.x.get_keyboard_mapping(low, high - low + 1).expect("a request").reply().expect("a keyboard map");
-        let place = map.keysyms.chunks(map.keysyms_per_keycode.into()).position(|symbols| symbols.contains(&keysym));
-        low + place.unwrap_or_else(|| panic!("no key for keysym {keysym:#x}")) as u8
+        let index = map.keysyms.chunks(map.keysyms_per_keycode.into()).position(|symbols| symbols.contains(&keysym));
+        low + index.unwrap_or_else(|| panic!("no key for keysym {keysym:#x}")) as u8
     }
 
     /// The lab's window.
@@ -147,7 +147,7 @@ fn start(display: &Display, home: &Path, arguments: &[&str]) -> Owned {
 fn wait_for(what: &str, lab: &mut Owned, mut reached: impl FnMut() -> bool) {
     let patience = Instant::now() + PATIENCE;
     while !reached() {
-        if let Some(status) = lab.0.try_wait().expect("a child of ours") {
+        if let Some(status) = lab.0.try_wait().expect("the status of a child process") {
             panic!("the lab ended with {status} before {what}");
         }
         assert!(Instant::now() < patience, "{what}: it did not happen within {} s", PATIENCE.as_secs());
@@ -158,7 +158,7 @@ fn wait_for(what: &str, lab: &mut Owned, mut reached: impl FnMut() -> bool) {
 fn wait_for_exit(lab: &mut Owned) -> ExitStatus {
     let patience = Instant::now() + PATIENCE;
     loop {
-        if let Some(status) = lab.0.try_wait().expect("a child of ours") {
+        if let Some(status) = lab.0.try_wait().expect("the status of a child process") {
             return status;
         }
         assert!(Instant::now() < patience, "the lab did not end");
@@ -196,7 +196,7 @@ fn a_real_window_opens_draws_follows_the_hand_saves_and_closes() {
     wait_for("the picture appeared", &mut lab, || drawn(&display.view()) > 5_000);
 
     let before = display.view();
-    wait_for("the picture followed the hand", &mut lab, || {
+    wait_for("the picture followed the pointer", &mut lab, || {
         // Again and again: a drag that begins and ends within one slow frame is none.
         display.drag([600, 400], [120, 50]);
         let after = display.view();

@@ -74,7 +74,7 @@ struct PathDialog {
 }
 
 impl PathDialog {
-    /// Sends the command that the path was asked for. Returns false, with a sentence in the dialog, if it cannot be used.
+    /// Sends the command of the dialog with its path. Returns false, with an error in the dialog, if the path cannot be used.
     fn accept(&mut self, own_path: Option<&Path>, commands: &Commands) -> bool {
         let typed = self.text.trim();
         if typed.is_empty() {
@@ -305,8 +305,8 @@ mod tests {
 
     #[test]
     fn a_typed_name_gets_its_extension_once() {
-        assert_eq!(with_extension(Path::new("a/look"), Some("toml")), Path::new("a/look.toml"));
-        assert_eq!(with_extension(Path::new("look.v2"), Some("toml")), Path::new("look.v2.toml"));
-        assert_eq!(with_extension(Path::new("look.TOML"), Some("toml")), Path::new("look.TOML"));
+        assert_eq!(with_extension(Path::new("a/preset"), Some("toml")), Path::new("a/preset.toml"));
+        assert_eq!(with_extension(Path::new("preset.v2"), Some("toml")), Path::new("preset.v2.toml"));
+        assert_eq!(with_extension(Path::new("preset.TOML"), Some("toml")), Path::new("preset.TOML"));
     }
 }

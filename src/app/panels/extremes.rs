@@ -34,7 +34,7 @@ pub struct Extremes {
     is_reported: bool,
 }
 
-/// What the running thread and the window share.
+/// Shared by the running thread and the window.
 struct Run {
     planned: usize,
     stop: AtomicBool,

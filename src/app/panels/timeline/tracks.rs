@@ -199,7 +199,7 @@ fn bars(ui: &Ui, track: &Track, span: &Span, rail: Rect) {
     }
 }
 
-/// How values become heights.
+/// Maps values to heights.
 struct Curve {
     low: f64,
     high: f64,
@@ -207,7 +207,7 @@ struct Curve {
 }
 
 impl Curve {
-    /// Just as high as the values of the keys: all easings stay between them.
+    /// The range is that of the keys' values: no easing leaves it.
     fn of(track: &Track, rect: Rect) -> Self {
         let values = track.keys().iter().flat_map(|key| &key.value);
         let (low, high) = values.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), v| (low.min(*v), high.max(*v)));
@@ -238,7 +238,7 @@ impl Curve {
     }
 }
 
-/// x y z and r g b are told apart; a single number has the accent.
+/// Red, green and blue for x, y, z and for r, g, b; the accent for a single number.
 fn component_color(component: usize, components: usize) -> Color32 {
     if components == 1 {
         theme::ACCENT.gamma_multiply(0.7)

@@ -113,7 +113,7 @@ impl Compare {
         if self.mode == Some(Mode::B) { 0.0 } else { report.and_then(|report| report.gpu_ms).unwrap_or(0.0) }
     }
 
-    /// The picture of A as it is asked for.
+    /// The inputs that were requested for A, at full size.
     pub fn requested(&self) -> Option<&Inputs> {
         self.screen.as_ref().and_then(Screen::requested)
     }

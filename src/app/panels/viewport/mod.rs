@@ -78,7 +78,7 @@ impl Viewport {
         Interaction { response, size, is_moved }
     }
 
-    /// Draws what the preset asks for, coarser while it moves on a slow adapter.
+    /// Draws the preset, at a lower resolution while it moves on a slow adapter.
     pub fn draw(&mut self, ctx: &egui::Context, state: &mut State, interaction: &Interaction) {
         let now_s = state.now_s;
         if let Err(error) = state.screen.poll(now_s) {
