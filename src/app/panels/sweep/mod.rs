@@ -126,7 +126,7 @@ impl SweepPanel {
             for (axis, chosen) in AXES.iter().zip(&mut self.chosen) {
                 ui.horizontal(|ui| {
                     let hint = format!("{}\n{}", axis.about.trim(), axis.words.join(", "));
-                    let checkbox = egui::Checkbox::new(chosen, axis.name);
+                    let checkbox = egui::Checkbox::new(chosen, axis.name.replace('_', " "));
                     ui.add_enabled(!is_measuring, checkbox).on_hover_text(hint).accessible_name(format!("Measure {}", axis.name));
                     ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
                         ui.label(theme::weak(format!("{} options", axis.words.len())).size(11.0));
