@@ -111,7 +111,12 @@ fn randomize_stays_within_soft_ranges_and_is_one_undo_step() {
     for enabled in &after.stack.0 {
         for field in enabled.effect.fields {
             let components = field.get(&enabled.words);
-            assert!(components.iter().all(|value| (field.soft[0]..=field.soft[1]).contains(value)), "{}.{}", enabled.effect.name, field.name);
+            assert!(
+                components.iter().all(|value| (field.soft[0]..=field.soft[1]).contains(value)),
+                "{}.{}",
+                enabled.effect.name,
+                field.name
+            );
         }
     }
     undo(&mut lab);

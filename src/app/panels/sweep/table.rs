@@ -22,7 +22,9 @@ pub fn table_ui(ui: &mut Ui, points: &[Point], axes: &[&'static Axis], metric: M
         egui::Grid::new("sweep table").num_columns(4 + metrics.len()).spacing([14.0, 3.0]).show(ui, |ui| {
             let options = if let [one] = axes { one.name.replace('_', " ") } else { "options".to_owned() };
             let errors = ["wrong ppm", "colour", "holes+doubles", "light ppm"];
-            for heading in [options.as_str(), "ms", "95 %"].into_iter().chain(metrics.iter().map(|metric| errors[*metric as usize])).chain([""]) {
+            for heading in
+                [options.as_str(), "ms", "95 %"].into_iter().chain(metrics.iter().map(|metric| errors[*metric as usize])).chain([""])
+            {
                 ui.label(theme::weak(heading).size(11.0));
             }
             ui.end_row();
