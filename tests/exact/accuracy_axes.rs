@@ -325,7 +325,7 @@ fn the_planner_takes_the_eye_out_where_a_scene_lies_far_away() {
     let Some(mut renderer) = renderer() else { return };
     let mut planned = |scene: &std::sync::Arc<Scene>, view: &View| {
         captured(&mut renderer, scene, view, &stack(&[]), &AccuracyRequest::default());
-        let why = renderer.explain().reasons.into_iter().find(|note| note.name == "vertices").expect("a reason for every axis").why;
+        let why = renderer.explain().reasons.into_iter().find(|note| note.name == "position_format").expect("a reason for every axis").why;
         (renderer.key().expect("something was drawn").options.position_format, why)
     };
     let near = scene("knot?tess=6");

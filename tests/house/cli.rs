@@ -581,7 +581,7 @@ fn stress_says_what_it_expected_and_what_became_of_it() {
     assert_eq!(lines[1][..4], ["3", "d3d-rectangle", "exact", "passed"]);
     assert!(table.err.contains("adapter: ") && table.err.contains("1 case in ") && table.err.contains("0 failed"), "{}", table.err);
 
-    let refused = run(&["stress", "--filter", "too-wide", "--json", "--quiet", "--seed", "7"]);
+    let refused = run(&["stress", "--filter", "picture-too-large", "--json", "--quiet", "--seed", "7"]);
     assert_eq!(refused.code, 0, "{}", refused.err);
     let object = json(&refused);
     assert_eq!(object["command"], "stress");
