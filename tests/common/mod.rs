@@ -1,4 +1,4 @@
-//! What GPU tests share: the adapter (never silently missing), scenes by query, pictures with their verdict.
+//! What GPU tests share: devices and renderers, scenes by query, pictures with their verdict, shaders with mistakes.
 #![allow(dead_code, unused_imports, reason = "each test file uses its own part")]
 
 use std::{
@@ -50,7 +50,7 @@ pub const SCENES: &[&str] = &[
     "chamber",
 ];
 
-/// Scenes whose meshes bend, which the strict vertex stage refuses.
+/// Scenes with deformed meshes, which the strict vertex stage refuses.
 pub const DEFORMED_SCENES: &[&str] = &["tentacle?tess=3", "walker?tess=1"];
 
 /// The adapter under test: `RASTERLAB_ADAPTER` (a part of its name) or the best there is. A missing one fails the test;
@@ -193,7 +193,7 @@ struct Judged {
 /// What the judge says about a picture. Options and tunings that draw the same picture to the last bit, geometry included, are judged
 /// once: the verdict follows from nothing else.
 fn verdict(scene: &Arc<Scene>, view: &View, stack: &Stack, capture: &Capture) -> Verdict {
-    /// Of all verdicts that are kept.
+    /// Pixels of all stored verdicts together.
     const MOST_PIXELS: usize = 1 << 20;
     static LATEST: Mutex<VecDeque<Judged>> = Mutex::new(VecDeque::new());
     let latest = || LATEST.lock().unwrap_or_else(|poisoned| poisoned.into_inner());
@@ -203,7 +203,7 @@ fn verdict(scene: &Arc<Scene>, view: &View, stack: &Stack, capture: &Capture) ->
             && (&judged.view, &judged.stack) == (view, stack)
             && (&a.frame, &a.geometry, &a.layers, &a.previous) == (&b.frame, &b.geometry, &b.layers, &b.previous)
     };
-    // Strict vertices are held against the oracle's bit by bit, and zeros of either sign are equal here.
+    // The judge compares strict vertices bit by bit, but `==` does not tell 0.0 from -0.0.
     let is_by_bits = capture.geometry.exact.vertices;
     if !is_by_bits && let Some(same) = latest().iter().find(is_same) {
         return same.verdict.clone();
@@ -287,7 +287,7 @@ fn copy_folder(from: &Path, to: &Path) {
     }
 }
 
-/// What the oracle makes of a scene all by itself: the reference that an adapter has not touched.
+/// The oracle's own picture of a scene, from its own vertices.
 pub fn reference(scene: &Scene, view: &View) -> oracle::Coverage {
     stress::scenes::reference_coverage(scene, view).expect("a scene that fits")
 }

@@ -173,7 +173,7 @@ struct Mutant {
     scene: Arc<Scene>,
     view: View,
     option: Visibility,
-    /// Which figure of the judge shows it.
+    /// Which number of the report shows it.
     shown_by: (&'static str, fn(&Errors) -> u64),
 }
 
@@ -327,7 +327,7 @@ fn mutants() -> Vec<Mutant> {
     ]
 }
 
-/// Like a graphics card, so that every kernel has its share.
+/// As on a graphics card, so that every kernel runs.
 const GRAPHICS_CARD: Tuning = Tuning {
     max_small_samples: 64,
     max_small_side: 32,

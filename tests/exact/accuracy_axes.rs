@@ -230,7 +230,7 @@ fn a_float_viewport_changes_few_triangle_ids() {
     assert!(viewport <= 2 * snapped + 20, "{viewport} against {snapped}");
 }
 
-/// Furthest that a corner of a capture lies from its place on the oracle's finest grid, pixels.
+/// Largest distance of a captured corner from its position on the oracle's finest grid, in pixels.
 fn moved_px(capture: &Capture, scene: &Scene, view: &View) -> f64 {
     let reference = oracle::project_finest(scene, view, &stack(&[])).expect("a scene that fits");
     let px = |at: i32, bits: u32| f64::from(at) / f64::from(1 << bits);
@@ -446,7 +446,7 @@ fn scaled_pictures_are_exact_in_their_own_pixels_and_shown_at_the_size_that_was_
         assert_eq!(([shown.width, shown.height], shown.color.len(), shown.triangle_id.len()), (size, view.pixels(), view.pixels()));
         let right = oracle::resampled(&drawn.color, [drawn.width, drawn.height], size);
         assert_eq!(compare::pictures(&shown.color, &right, 1).pixels_over_tolerance, 0, "{}: the pass against the oracle's", option.name());
-        // All by itself the oracle shows the same, but for corners that snap apart.
+        // The oracle alone shows the same, except where corners snap differently.
         let golden = oracle::render_scaled(&scene, &[(view.clone(), effects.clone())], option.factor()).expect("a scene that fits");
         let beyond = compare::pictures(&shown.color, &golden.color, 1).pixels_over_tolerance;
         assert!(beyond * 200 < view.pixels() as u64, "{}: {beyond} pixels are not the golden's", option.name());
@@ -492,7 +492,7 @@ fn a_scale_that_the_adapter_cannot_hold_says_what_it_would_draw() {
     captured(&mut renderer, &scene, &pixel_view(16, 8), &stack(&[]), &on(PinnedOptions::of(RenderScale::Double)));
 }
 
-/// The planner's look at some triangles, held against what the queues of the frame counted.
+/// The planner's estimate from some triangles, compared with what the queues of the frame counted.
 #[test]
 fn predicted_sizes_are_those_that_the_queues_count() {
     let Some(gpu) = gpu() else { return };

@@ -123,7 +123,7 @@ fn packed32_loses_depth_and_nothing_else() {
         let (capture, verdict) = judged(&mut renderer, &scene, &view, &stack(&[]), &pinned(Visibility::Packed32));
         let (frame, errors) = (&capture.frame, &verdict.report);
         assert_eq!([errors.holes, errors.double_hits, errors.depth_without_id], [0; 3], "{query}");
-        assert_eq!(errors.wrong_triangles, errors.wrong_nearest, "{query}: an triangle id does not cover its pixel");
+        assert_eq!(errors.wrong_triangles, errors.wrong_nearest, "{query}: a triangle id does not cover its pixel");
         let cut: Vec<u32> = reference.depth_key.iter().map(|&key| cut_key(key, scene.triangle_count())).collect();
         let keys = compare::triangle_ids(&frame.depth_key, &cut);
         assert_eq!(keys.different, 0, "{query}: keys, first {:?}", keys.mismatches.first());
@@ -154,7 +154,7 @@ fn a_race_may_lose_the_nearest_and_nothing_else() {
         let (capture, verdict) = judged(&mut renderer, &scene, &view, &stack(&[]), &pinned(Visibility::Race));
         let errors = &verdict.report;
         assert_eq!([errors.holes, errors.double_hits, errors.depth_without_id], [0; 3], "{query}");
-        assert_eq!(errors.wrong_triangles, errors.wrong_nearest, "{query}: an triangle id does not cover its pixel");
+        assert_eq!(errors.wrong_triangles, errors.wrong_nearest, "{query}: a triangle id does not cover its pixel");
         let layers = capture.layers.as_deref().expect("layers are counted");
         for pixel in (0..layers.len()).filter(|&pixel| layers[pixel] < 2) {
             let [here, there] = [&capture.frame, &reference.frame].map(|frame| (frame.triangle_id[pixel], frame.depth_key[pixel]));
@@ -269,7 +269,7 @@ fn repeated_frames_are_equal_to_the_bit() {
     }
 }
 
-/// The same triangles in another order, and for each its place in the order before.
+/// The same triangles in another order, and for each its index in the order before.
 fn shuffled(scene: &Scene, seed: u32) -> (Arc<Scene>, Vec<u32>) {
     let mut scene = scene.clone();
     assert_eq!(scene.instances.len(), 1, "ids of one draw are shuffled");

@@ -39,7 +39,7 @@ fn drawn(renderer: &mut Renderer, view: &View, pins: PinnedOptions) -> (Capture,
     (capture, renderer.culled().unwrap_or_default())
 }
 
-/// Scenes of every kind: closed and open, one and many, clipped, mirrored, double-sided, bent.
+/// Scenes of every kind: closed and open, one and many, clipped, mirrored, double-sided, deformed.
 fn scenes() -> Vec<(String, Arc<Scene>)> {
     let queries =
         ["field?count=64&triangles=600", "near", "cube-wall", "teapot?tess=6", "tentacle?tess=3&instances=12", "sizes", "slivers"];
@@ -400,16 +400,12 @@ fn more_meshlets_than_one_row_of_workgroups_are_all_drawn() {
             let (culled, stats) = drawn(&mut renderer, &view, PinnedOptions::of(option).with(visibility));
             assert_eq!((culled.frame.covered() as u32, stats.drawn), (SIDE * SIDE, SIDE * SIDE), "{}", visibility.name());
             let triangle_ids = culled.frame.triangle_id.iter().filter(|triangle_id| **triangle_id != rasterlab::frame::NO_TRIANGLE);
-            assert!(
-                triangle_ids.zip(0..).all(|(&triangle_id, id)| triangle_id == id),
-                "{}: an triangle id is another's",
-                visibility.name()
-            );
+            assert!(triangle_ids.zip(0..).all(|(&triangle_id, id)| triangle_id == id), "{}: a triangle id is another's", visibility.name());
         }
     }
 }
 
-/// What a renderer of its own makes for one picture.
+/// Passes, buffers and the reason for culling, as a new renderer explains one picture.
 fn explained(query: &str, effects: &[&str], pins: PinnedOptions) -> Option<(Vec<String>, Vec<String>, String)> {
     let mut renderer = Renderer::new(gpu()?);
     let scene = scene(query);

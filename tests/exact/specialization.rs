@@ -90,7 +90,7 @@ fn the_planned_kernel_and_the_one_that_leaves_nothing_out_draw_the_same() {
     assert!(spared > 0, "no picture does without queues");
 }
 
-/// What a renderer of its own makes for one picture.
+/// How a new renderer explains one picture.
 fn explained(query: &str, size: [u32; 2], option: Visibility, tuning: Tuning) -> Option<(Explanation, Arc<Scene>, View)> {
     let mut renderer = Renderer::new(gpu()?);
     renderer.set_tuning(tuning);

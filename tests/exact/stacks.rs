@@ -29,7 +29,7 @@ fn value(rng: &mut Rng, field: &Field) -> Vec<f64> {
     (0..field.value_type.components()).map(|_| lane()).collect()
 }
 
-/// Up to five effects, at most one of them in each slot, in an order of their own.
+/// Up to five effects, at most one in each slot, in random order.
 fn random_stack(rng: &mut Rng) -> Stack {
     let mut stack = Stack::default();
     for _ in 0..rng.between(1, 6) {

@@ -295,7 +295,7 @@ fn the_oracle_finds_the_hashes_of_the_list() {
     assert_eq!(text, HASHES, "the oracle on the left, the list on the right; UPDATE_SNAPSHOTS=1 writes it");
 }
 
-/// Nearly every triangle by a workgroup of its own on one option, as the adapter likes it on the other.
+/// One option draws nearly every triangle with its own workgroup, the other uses the adapter's tuning.
 fn ways(renderer: &Renderer) -> [(Tuning, Visibility); 2] {
     let options = options(renderer);
     [(tunings()[0], options[0]), (renderer.gpu().caps.tuning(), options[options.len() - 1])]

@@ -285,7 +285,7 @@ fn a_film_shows_the_frames() {
         assert_eq!(pixels, frame.concat(), "frame {i}");
     }
     assert!(rasterlab::preset_file::preset_from_png(&bytes, "film").is_ok());
-    // From kept frames, and without any files, the same film comes out.
+    // The film is the same with and without frame files.
     fs::remove_file(folder.path().join("film.apng")).unwrap();
     assert!(sequence(folder.path(), &["--apng", "film.apng"]).err.contains("0 frames drawn, 8 kept"));
     let alone = studio();

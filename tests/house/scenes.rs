@@ -1,4 +1,4 @@
-//! Builtin scenes are what they say: closed, fold-free, finite, of the size asked for, and kind to mistyped queries.
+//! Promise: builtin scenes are closed, fold-free, finite and of the size asked for; a mistyped query gets a helpful message.
 
 use std::collections::{HashMap, HashSet};
 
@@ -116,7 +116,7 @@ fn every_builtin_is_finite_and_indexes_its_own_vertices() {
 
 #[test]
 fn every_builtin_builds_at_both_ends_of_each_range() {
-    // The tallest grids and the narrowest fans are refused with a sentence of their own, tested below.
+    // The tallest grids and the narrowest fans are refused with their own messages, tested below.
     for builtin in BUILTINS.iter().filter(|b| b.name != "grid" && b.name != "fan") {
         for param in builtin.params.iter().filter(|p| *p.range.end() <= 1e6) {
             for value in [param.range.start(), param.range.end()] {

@@ -260,7 +260,7 @@ fn a_dot_covers_its_area() {
     }
 }
 
-/// Largest change of the mean strength from one picture to the next, as a share of the first, from 3 m away to 6 m in so
+/// Largest change of the mean strength from one picture to the next, as a fraction of the first, from 3 m away to 6 m in so
 /// many steps: the gap halves once, everywhere at the same time.
 fn largest_jump(fade: f64, steps: u32) -> f64 {
     // A zigzag, so that dots lie in all ways to the pixels.

@@ -34,7 +34,7 @@ fn with(values: &[&str]) -> Stack {
 /// Position, normal, colour.
 type Corner = ([f32; 3], [f32; 3], [f32; 4]);
 
-/// Triangles all over a picture of `side` pixels, each in colours, normals and depths of its own.
+/// Triangles all over a picture of `side` pixels, each with its own colours, normals and depths.
 fn soup(seed: u32, count: usize, side: i32, darkest: f64) -> Vec<[Corner; 3]> {
     let mut rng = Rng(seed);
     let corner = |rng: &mut Rng| {
@@ -182,7 +182,7 @@ fn more_layers_than_any_sum_holds_are_a_sentence_and_a_mark_never_silent() {
         }
         other => panic!("{:?} of {count} layers", other.map(|capture| capture.frame.color)),
     }
-    // Asynchronously, as a window draws: with 8 bits it is over, and the figures say so.
+    // Asynchronously, as a window draws: with 8 bits it overflows, and the counters say so.
     renderer.draw(&view, &stack, &AccuracyRequest::default()).expect("a frame");
     let report = renderer.finish().expect("stats");
     assert_eq!((report.counters.full_pixels, report.redraw), (4, false));

@@ -90,7 +90,7 @@ fn random_parameters_in_random_company_are_exact() {
                     stack.enable(Effect::find(name).expect("a listed effect"));
                     shake(&mut stack, name, &mut rng);
                     if name == "hatch" && *query == "near" {
-                        // Of triangles that the near plane cuts, f32 knows places to 1e-5 of their distance.
+                        // On triangles that the near plane clips, f32 positions are exact to 1e-5 of their distance.
                         let hatch = stack.get_mut(name).expect("just enabled");
                         let lie = hatch.effect.field("space").expect("hatch has it");
                         lie.set(&mut hatch.words, &[0.0]).expect("a legal choice");
@@ -325,7 +325,7 @@ fn outlines_of_a_mirrored_picture_are_mirrored_and_as_wide_as_asked() {
             assert!(there.contains(&1) && mirrored(&back, width) == there, "side {side}, {width_px} px");
         }
     }
-    // A line outside lies on empty pixels alone where only silhouettes are drawn, within its width of an triangle id.
+    // A line outside lies on empty pixels alone where only silhouettes are drawn, within its width of a triangle id.
     let only = with(&[("outline", "objects", 0.0), ("outline", "depth", 0.0), ("outline", "width_px", 2.0)]);
     let drawn = lines(&frame.triangle_id, &frame.depth_key, &only);
     let owned = |x: i64, y: i64| {

@@ -52,7 +52,7 @@ impl Drawn {
         oracle::cover_with(&tests, &self.triangles, view).layers()
     }
 
-    /// Samples of each triangle, its pieces apart.
+    /// Samples of each triangle, clipped ones one by one.
     fn samples(&self, view: &View, stack: &Stack) -> BTreeMap<usize, u64> {
         let tests = oracle::limited(SampleTests::of_effects(stack, &self.geometry), stack, &self.triangles, view);
         let one = |t: &oracle::OrientedTriangle| {

@@ -1,4 +1,4 @@
-//! Promises about pictures: effects, materials, skins, shadows, particles and dots look as the oracle has them.
+//! Promises about pictures: effects, materials, skins, shadows, particles and dots look as in the oracle.
 
 #[path = "../common/mod.rs"]
 mod common;

@@ -163,7 +163,7 @@ fn a_disc_is_the_ellipse_that_touches_the_sides_in_their_middles() {
         assert_eq!(wrong.count(), 0, "radius {radius}");
         assert!(radius < 1.0 || layers.contains(&1));
     }
-    // Corners in any order make the same disc, and half a triangle's share of the area is pi / (3 sqrt 3).
+    // Corners in any order make the same disc, and half a triangle's fraction of the area is pi / (3 sqrt 3).
     let [a, b, c] = [[1000, 900], [31_000, 5_000], [9_000, 30_000]];
     let count = |corners| disc(corners, &view).iter().sum::<u32>();
     let (one, two) = (disc([a, b, c], &view), disc([b, c, a], &view));
@@ -335,7 +335,7 @@ fn discs_of_every_size_are_the_oracle_s_with_every_option_and_tuning() {
                 assert!(capture.frame.triangle_id == first.frame.triangle_id && capture.frame.depth_key == first.frame.depth_key, "{what}");
             }
         }
-        let cut = first.expect("a option").frame.counters.clipped;
+        let cut = first.expect("an option").frame.counters.clipped;
         assert!(size < 9.0 || cut > 0, "nothing is cut by the near plane");
     }
 }

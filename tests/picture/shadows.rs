@@ -22,7 +22,7 @@ use rasterlab::{
     shader::{Fetch, KernelKey, library::Library, link},
 };
 
-/// A stack with the light, the fields of its effects set as told.
+/// A stack with the light and with fields of its effects set.
 fn lit(effects: &[&str], values: &[(&str, &str, f64)]) -> Stack {
     let mut stack = stack(effects);
     for (effect, field, value) in values {
@@ -174,7 +174,7 @@ fn a_light_that_looks_as_the_eye_does_sees_all_that_the_eye_sees() {
 
 // ---------------------------------------------------------------- the oracle's twin
 
-/// Scenes and stacks that take every path of a shadow: queues, pieces, effects that move or leave out, layers, skins.
+/// Scenes and stacks that take every path of a shadow: queues, clipped triangles, effects that move or discard, layers, skins.
 fn cases() -> Vec<(Arc<Scene>, Stack)> {
     let sweep = [("explode", "pattern", 1.0), ("explode", "width", 1.0), ("explode", "front", 0.5)];
     let front = [("dissolve", "pattern", 1.0), ("dissolve", "width", 1.0), ("dissolve", "front", 0.5)];

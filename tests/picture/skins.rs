@@ -1,4 +1,4 @@
-//! Promise: skins, shapes and clips bend meshes as glTF and the oracle have it, by both options of skinning, and mistakes in
+//! Promise: skins, morph targets and clips deform meshes as in glTF and the oracle, with both options of skinning, and mistakes in
 //! the pass are found. The second half needs an adapter.
 
 use std::sync::Arc;
@@ -36,7 +36,7 @@ fn moment(scene: &Scene, clips: [&str; 2], time_s: f64, skinning: Skinning, size
     .view(scene, size)
 }
 
-/// Every vertex of all draws as the oracle bends it, by its f32 rounding: position and normal.
+/// Every vertex of all draws as the oracle deforms it, rounded to f32: position and normal.
 fn deformed(scene: &Scene, view: &View) -> Vec<[f32; 6]> {
     oracle::project(&oracle::Shot::new(scene, &draws(scene, view).expect("a builtin fits"), view, &Stack::default())).deformed
 }
@@ -53,7 +53,7 @@ fn normal(deformed: &[f32; 6]) -> DVec3 {
 
 #[test]
 fn a_skeleton_that_stands_as_it_was_bound_leaves_every_bit() {
-    // Of nine joints, all places are sums of quarters, so that no matrix rounds.
+    // Of nine joints, all positions are sums of quarters, so that no matrix rounds.
     for influences in [1, 4, 8] {
         let scene = scene(&format!("tentacle?joints=9&tess=3&influences={influences}"));
         for skinning in Skinning::ALL {
@@ -85,7 +85,7 @@ fn joints_that_all_move_alike_move_the_mesh_as_a_whole() {
     let rigid = DMat4::from_rotation_translation(DQuat::from_axis_angle(DVec3::new(2.0, -1.0, 2.0) / 3.0, 1.9), DVec3::new(3.0, -4.0, 5.0));
     let moved = carried(&still, rigid);
     for skinning in Skinning::ALL {
-        // At rest, and bent as far as it goes.
+        // At rest, and deformed as far as possible.
         for clips in [["", ""], ["Curl", "Breathe"]] {
             let [a, b] = [&*still, &moved].map(|scene| deformed(scene, &moment(scene, clips, 1.5, *skinning, [64, 64])));
             for (a, b) in a.iter().zip(&b) {
@@ -345,7 +345,7 @@ fn quantized_positions_are_drawn_and_deformed_like_any() {
         let count = primitive.vertex_count();
         scene.primitives[0].positions =
             Accessor { offset, stride: 8, component_type: ComponentType::I16, components: 3, normalized, count };
-        // Shapes and joints are of metres: quantized, the mesh stands still, and scaled by its place.
+        // Morph targets and joints are in metres: the quantized mesh is rigid and scaled by its instance.
         let scale = if normalized { 2.5 } else { 1.0 / 2_000.0 };
         let mut placed = scene.clone();
         placed.rig = Default::default();

@@ -1,7 +1,7 @@
 //! Promise: every preset with a `[test]` table looks like its golden, and goldens are the oracle's. Needs an adapter for
 //! the pictures alone.
 //!
-//! `UPDATE_SNAPSHOTS=1` redraws the goldens of failing looks, `UPDATE_SNAPSHOTS=force` all of them: always by the
+//! `UPDATE_SNAPSHOTS=1` redraws the goldens of failing presets, `UPDATE_SNAPSHOTS=force` all of them: always by the
 //! oracle, with the code of `rasterlab bless`, so an adapter that is wrong stays wrong.
 
 use std::{
@@ -107,7 +107,7 @@ impl Snapshot {
         [".new.png", ".diff.png", ".old.png"].iter().for_each(|end| drop(fs::remove_file(self.path(end))));
     }
 
-    /// Stores the oracle's picture as the golden; an earlier one is kept as `.old.png`.
+    /// Stores the oracle's picture as the golden; the earlier one is renamed to `.old.png`.
     fn bless(&self, golden: &Golden) {
         let [picture, sidecar] = golden::paths(&self.folder, &self.id);
         if picture.exists() {
@@ -219,7 +219,7 @@ fn a_preset_that_pins_a_lossy_option_is_verified_within_its_budget_of_wrong_tria
         let rows = object["results"].as_array().expect("rows").iter();
         let stats = rows
             .flat_map(|row| ["wrong_triangles", "double_hits", "holes", "unexplained"].map(|name| row[name].as_u64().expect("a count")));
-        (run.status.code(), stats.max().expect("a option"))
+        (run.status.code(), stats.max().expect("an option"))
     };
     let (exit, wrong) = verify("");
     assert!(exit == Some(1) && wrong > 100, "{exit:?}, {wrong} without a budget");
