@@ -1,8 +1,8 @@
 #!/bin/sh
-# Installs what building, drawing and testing need on Debian and Ubuntu: only what is missing, and it says what.
-# The second run does nothing.
+# Installs the packages that building, drawing and testing need on Debian and Ubuntu: only missing ones, which it lists.
+# A second run installs nothing.
 #
-#   sh scripts/setup.sh                 all that cargo run and cargo test need
+#   sh scripts/setup.sh                 everything that cargo run and cargo test need
 #   sh scripts/setup.sh --swiftshader   and Chromium, whose libvk_swiftshader.so is a second Vulkan driver for the tests
 set -eu
 
@@ -17,7 +17,7 @@ for argument in "$@"; do
     esac
 done
 
-# A name matched by a pattern that matches nothing stays the pattern itself.
+# Does any of these files exist? The shell leaves a pattern without matches as it is.
 exists() {
     for path in "$@"; do
         if [ -e "$path" ]; then return 0; fi
@@ -25,7 +25,7 @@ exists() {
     return 1
 }
 
-# The loader that every Vulkan program opens.
+# The Vulkan loader.
 packages="libvulkan1"
 
 # A driver that runs on the CPU, unless a GPU and a driver are both here.
@@ -33,13 +33,13 @@ if ! exists /dev/nvidia0 /dev/dri/renderD* || ! exists /usr/share/vulkan/icd.d/*
     packages="$packages mesa-vulkan-drivers"
 fi
 
-# What a window opens at run time: X11 and keyboards.
+# Libraries that a window loads at run time: X11 and keyboards.
 packages="$packages libx11-6 libx11-xcb1 libxcursor1 libxi6 libxrandr2 libxkbcommon0 libxkbcommon-x11-0"
 
 # A screen for the window test where there is none, and models for the loader's tests.
 packages="$packages xvfb xauth assimp-testmodels"
 
-# The linker that Rust calls.
+# The linker that rustc calls.
 if ! command -v cc >/dev/null 2>&1; then
     packages="$packages gcc libc6-dev"
 fi
@@ -81,7 +81,7 @@ fi
 
 echo "setup: installing$missing"
 $as_root apt-get update -q
-# $missing is a list of words.
+# $missing is a list of words, which the shell must split.
 # shellcheck disable=SC2086
 $as_root env DEBIAN_FRONTEND=noninteractive apt-get install -y -q --no-install-recommends $missing
 echo "setup: done"
