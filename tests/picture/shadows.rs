@@ -330,7 +330,7 @@ fn a_preset_without_a_light_has_no_pass_buffer_or_text_of_it() {
             assert_eq!(has_text, is_there && pass.stem() == "resolve", "{} of {key}", pass.label());
         }
     }
-    let Some(gpu) = gpu() else { return };
+    let Some(gpu) = own_gpu() else { return };
     let mut renderer = Renderer::new(gpu);
     // Small triangles, whose kernels are the same in every map.
     let scene = scene("sphere?triangles=5000");
