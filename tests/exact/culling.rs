@@ -421,7 +421,7 @@ fn explained(query: &str, effects: &[&str], pins: PinnedOptions) -> Option<(Vec<
 #[test]
 fn only_an_option_that_culls_has_passes_and_buffers_for_it() {
     const PASSES: [&str; 6] = ["cull", "cull early", "cull late", "project_meshlets", "depth_reduce", "advance_queues"];
-    const BUFFERS: [&str; 6] = ["culling", "instances", "meshlets", "meshlet_lists", "seen", "hiz"];
+    const BUFFERS: [&str; 6] = ["culling", "instances", "meshlets", "meshlet_lists", "meshlet_visibility", "hiz"];
     let split = PinnedOptions::of(Visibility::Split32);
     let of =
         |names: &[String], known: &[&str]| -> Vec<String> { names.iter().filter(|name| known.contains(&name.as_str())).cloned().collect() };
@@ -432,7 +432,7 @@ fn only_an_option_that_culls_has_passes_and_buffers_for_it() {
         (
             Culling::TwoPass,
             &["cull early", "project_meshlets", "depth_reduce", "advance_queues", "cull late", "project_meshlets", "advance_queues"],
-            &["culling", "hiz", "instances", "meshlet_lists", "meshlets", "seen"],
+            &["culling", "hiz", "instances", "meshlet_lists", "meshlet_visibility", "meshlets"],
         ),
     ] {
         let Some((all_passes, all_buffers, _)) = explained("field?count=8&triangles=200", &["lambert"], split.with(option)) else { return };

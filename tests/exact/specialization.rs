@@ -7,7 +7,7 @@ use rasterlab::{
     accuracy::{DotCulling, PinnedOptions, Visibility},
     effects::{Stack, hooks::Shape},
     frame::{AdapterPicture, Frame},
-    gpu::{Explanation, Renderer},
+    gpu::{Explanation, Renderer, ResourceId},
     measure::compare,
     oracle,
     plan::{AccuracyRequest, Tuning},
@@ -126,7 +126,7 @@ fn a_scene_of_small_triangles_has_no_queues_arguments_or_clipped_triangles() {
         "queues",
         "args",
         "clipped_triangles",
-        "marks",
+        "tile_mask",
         "background",
         "layers",
         "depth_and_id",
@@ -136,6 +136,7 @@ fn a_scene_of_small_triangles_has_no_queues_arguments_or_clipped_triangles() {
         "meshlets",
         "instances",
     ] {
+        assert!(ResourceId::of_binding(spared).is_some(), "no buffer is ever called {spared}");
         assert!(!buffers.contains(&spared), "{spared} exists: {buffers:?}");
     }
     for (part, why) in [("clip", "near plane"), ("raster_medium", "px"), ("tile_large, raster_large", "px")] {
@@ -167,6 +168,7 @@ fn only_a_deformed_scene_has_the_skin_pass_and_only_the_buffers_that_it_needs() 
     let explained = |query| explained(query, [160, 120], Visibility::Split32, tuning).expect("there is an adapter").0;
     let still = explained("teapot?tess=4");
     let (passes, buffers) = names(&still);
+    assert!(["deforms", "joints", "morph_targets"].iter().all(|name| ResourceId::of_binding(name).is_some()));
     assert!(
         !passes.contains(&"deform") && !["deforms", "joints", "morph_targets"].iter().any(|name| buffers.contains(name)),
         "{passes:?} {buffers:?}"
@@ -195,16 +197,16 @@ fn only_a_stack_with_dots_has_their_passes_and_only_their_way_s_buffers() {
     };
     let bare = explained(&stack(&["lambert"]), DotCulling::Gpu);
     let (passes, buffers) = names(&bare);
-    assert!(passes.iter().chain(&buffers).all(|name| !name.contains("dot") && *name != "stretches"), "{passes:?} {buffers:?}");
+    assert!(passes.iter().chain(&buffers).all(|name| !name.contains("dot")), "{passes:?} {buffers:?}");
     assert!(bare.omitted.iter().any(|note| note.name == "dots" && note.why.contains("no effect draws dots")));
     assert!(bare.reasons.iter().all(|note| !["dots", "dot_culling"].contains(&note.name.as_str())));
     let ways: [(DotCulling, &[&str], &[&str]); 3] = [
-        (DotCulling::Brute, &["dots_ends", "dots_draw"], &["dot_ends", "dot_frame", "dot_segments"]),
-        (DotCulling::Cpu, &["dots_ends", "dots_draw"], &["dot_count", "dot_ends", "dot_frame", "dot_list", "dot_segments"]),
+        (DotCulling::Brute, &["dots_ends", "dots_draw"], &["dot_ends", "dot_frame", "dot_runs", "dot_segments"]),
+        (DotCulling::Cpu, &["dots_ends", "dots_draw"], &["dot_count", "dot_ends", "dot_frame", "dot_list", "dot_runs", "dot_segments"]),
         (
             DotCulling::Gpu,
             &["dots_ends", "dots_cull", "dots_args", "dots_draw"],
-            &["dot_args", "dot_count", "dot_ends", "dot_frame", "dot_list", "dot_segments"],
+            &["dot_args", "dot_count", "dot_ends", "dot_frame", "dot_list", "dot_runs", "dot_segments"],
         ),
     ];
     for (way, its_passes, its_buffers) in ways {
