@@ -1,4 +1,4 @@
-// Dissolve: fills every triangle to a share of its area, exactly that share, and lets a front of it travel over the model.
+// Dissolve: fills every triangle to a fraction of its area, exactly, and lets a front travel over the model.
 //@ use lib/surface
 //@ use lib/sample
 //@ use lib/front
@@ -6,28 +6,20 @@
 //@ use lib/fixed
 
 struct Dissolve {
+    spread: Front,
     rim: vec4f,
-    center: vec4f,
     fill: f32,
     mode: u32,
     corner: u32,
     rim_width: f32,
-    pattern: u32,
-    front: f32,
-    width: f32,
-    along_x: f32,
-    along_y: f32,
-    radius_m: f32,
-    width_m: f32,
-    seed: u32,
 }
 
 const DISSOLVE_ONE = 16777216u; // 2^24: the whole triangle
 const DISSOLVE_BY_HASH = 1u;
 
 fn dissolve_fill(p: Dissolve, center: vec3f, center_screen: vec2f, triangle: u32) -> f32 {
-    if p.pattern == DISSOLVE_PATTERN_UNIFORM { return p.fill; }
-    return 1.0 - (1.0 - p.fill) * front_reached(dissolve_front(p), center, center_screen, triangle);
+    if p.spread.pattern == DISSOLVE_PATTERN_UNIFORM { return p.fill; }
+    return 1.0 - (1.0 - p.fill) * front_reached(p.spread, center, center_screen, triangle);
 }
 
 // round(sqrt(x / 2^24) * 2^16); 65,537 for x = 2^24.
@@ -79,7 +71,7 @@ fn dissolve_sample_setup(t: TriangleSetup, p: Dissolve) -> vec4u {
 
 fn dissolve_sample(s: Sample, p: Dissolve) -> bool {
     let pixel = (s.at.y << 16u) | s.at.x;
-    if s.setup.z == DISSOLVE_BY_HASH { return (hash(hash(s.triangle ^ p.seed) ^ pixel) >> 8u) < s.setup.x; }
+    if s.setup.z == DISSOLVE_BY_HASH { return (hash(hash(s.triangle ^ p.spread.seed) ^ pixel) >> 8u) < s.setup.x; }
     if p.mode == DISSOLVE_MODE_SCANLINE { return pixel < s.setup.y; }
     let whole = sample_total_area(s);
     let part = select(select(s.areas.x, s.areas.y, p.corner == 1u), s.areas.z, p.corner == 2u);

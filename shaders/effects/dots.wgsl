@@ -1,4 +1,4 @@
-// Dots: strings dots along the edges of the meshes, or along a polyline, evenly in the world.
+// Dots: draws dots along the edges of the meshes, or along a polyline, evenly spaced in the world.
 
 struct Dots {
     color: vec4f,

@@ -5,25 +5,17 @@
 //@ use lib/angle
 
 struct Explode {
-    center: vec4f,
+    spread: Front,
     amount_m: f32,
     scatter: f32,
     spin_turns: f32,
     shrink: f32,
-    pattern: u32,
-    front: f32,
-    width: f32,
-    along_x: f32,
-    along_y: f32,
-    radius_m: f32,
-    width_m: f32,
-    seed: u32,
 }
 
 fn explode(vertex: Vertex, p: Explode) -> Vertex {
     var v = vertex;
-    let reached = front_reached(explode_front(p), v.center, v.center_screen, v.triangle);
-    let progress = reached * (1.0 - p.scatter * hash_unit(v.triangle ^ (p.seed * 0x85ebca6bu)));
+    let reached = front_reached(p.spread, v.center, v.center_screen, v.triangle);
+    let progress = reached * (1.0 - p.scatter * hash_unit(v.triangle ^ (p.spread.seed * 0x85ebca6bu)));
     let sine = sine_turns(p.spin_turns * progress);
     let half_sine = sine_turns(p.spin_turns * progress * 0.5);
     let versine = 2.0 * half_sine * half_sine; // 1 - cosine, without a difference

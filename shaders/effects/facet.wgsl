@@ -3,21 +3,13 @@
 //@ use lib/front
 
 struct Facet {
-    center: vec4f,
+    spread: Front,
     amount: f32,
-    pattern: u32,
-    front: f32,
-    width: f32,
-    along_x: f32,
-    along_y: f32,
-    radius_m: f32,
-    width_m: f32,
-    seed: u32,
 }
 
 fn facet(surface: Surface, p: Facet) -> Surface {
     var s = surface;
-    let t = p.amount * front_reached(facet_front(p), s.center, s.center_screen, s.triangle_id);
+    let t = p.amount * front_reached(p.spread, s.center, s.center_screen, s.triangle_id);
     if t <= 0.0 { return s; }
     s.depth_m += (s.flat_depth_m - s.depth_m) * t;
     let blended = s.normal + (s.flat_normal - s.normal) * t;

@@ -1,4 +1,4 @@
-// Outline: lines where the picture's integers change: at silhouettes, between objects, at steps of depth.
+// Outline: lines where the integers of the picture change: at silhouettes, between objects, at steps of depth.
 //@ use lib/image
 //@ use lib/color
 

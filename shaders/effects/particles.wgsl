@@ -1,4 +1,4 @@
-// Particles: a cloud of discs that a flow without sources or sinks carries along.
+// Particles: discs that a divergence-free flow carries through the scene.
 // src/effects/particles.rs defines how they move and look; they use no hook of the stack.
 
 struct Particles {

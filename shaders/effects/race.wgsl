@@ -1,4 +1,4 @@
-// Race: what goes wrong without atomics, live: load the depth, compare, store depth and triangle id, and hope.
+// Race: what goes wrong without atomics, live: load the depth, compare, store depth and triangle id.
 //@ use lib/hash
 
 struct Race {

@@ -1,4 +1,4 @@
-// Shadow: a directional light with a shadow map, drawn by the rasterizer itself from where the light stands.
+// Shadow: a directional light with a shadow map, which the rasterizer itself draws from the light.
 //@ use lib/surface
 //@ use lib/angle
 

@@ -1,4 +1,4 @@
-// Smear: where nothing is drawn the picture before stays, and fades towards the background.
+// Smear: where nothing is drawn, the previous picture remains and fades towards the background.
 //@ use lib/image
 
 struct Smear {

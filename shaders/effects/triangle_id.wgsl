@@ -1,4 +1,4 @@
-// Triangle id: gives every triangle a colour of its own.
+// Triangle id: gives every triangle its own colour.
 //@ use lib/surface
 //@ use lib/hash
 

@@ -1,7 +1,7 @@
 //! Boxes: fills the whole bounding box of every triangle, as a rasterizer without its inside test would.
 //!
 //! The box lies at the depth of the triangle's nearest corner, so that boxes hide each other one by one. Beyond the
-//! triangle its surface goes on as it is on the nearest edge.
+//! triangle its surface continues as it is on the nearest edge.
 
 use glam::DVec3;
 
@@ -10,7 +10,7 @@ use crate::{params, params::Color};
 
 params! {
     pub struct Boxes {
-        /// Colour of what lies beyond the triangle; the last lane is its share against the surface's own.
+        /// Colour of what lies beyond the triangle; alpha is its weight against the surface's colour.
         tint: Color = [1.0, 0.2, 0.1, 0.0];
     }
 }
@@ -22,11 +22,11 @@ impl SurfaceEffect for Boxes {
     const INPUTS: &[SurfaceInput] = &[SurfaceInput::Barycentrics, SurfaceInput::Glow, SurfaceInput::Color];
 
     fn apply(mut s: Surface, p: &Self) -> Surface {
-        // Beyond the triangle at least one share is held at zero.
+        // Beyond the triangle at least one barycentric coordinate is clamped to zero.
         if s.barycentrics.min_element() <= 0.0 {
-            let [red, green, blue, share] = p.tint.map(f64::from);
-            s.glow *= 1.0 - share;
-            s.color = s.color.truncate().lerp(DVec3::new(red, green, blue), share).extend(s.color.w);
+            let [red, green, blue, weight] = p.tint.map(f64::from);
+            s.glow *= 1.0 - weight;
+            s.color = s.color.truncate().lerp(DVec3::new(red, green, blue), weight).extend(s.color.w);
         }
         s
     }

@@ -18,7 +18,7 @@ params! {
         fit: Flag = 1;
         /// Without fit: how much of the way to the far colour one metre takes.
         scale: f32 = 0.2, hard -1e6..=1e6, soft 0.0..=2.0, unit "per m";
-        /// Without fit: where on the way between the colours the eye stands.
+        /// Without fit: position of the eye between the two colours, 0 near and 1 far.
         offset: f32 = 0.0, hard -1e6..=1e6, soft -2.0..=2.0;
     }
 }

@@ -1,4 +1,4 @@
-//! Dissolve: fills every triangle to a share of its area, exactly that share, and lets a front of it travel over the model.
+//! Dissolve: fills every triangle to a fraction of its area, exactly, and lets a front travel over the model.
 //!
 //! Sweeps are of equal area: from an edge the filled part reaches 1 - √(1 - p) of the height, from a corner or the
 //! centroid √p of the way, so that p per cent mean p per cent. Integers decide, sample by sample.
@@ -7,13 +7,13 @@ use glam::{DVec2, DVec3, DVec4};
 
 use super::{
     Effect, Surface, SurfaceEffect, SurfaceInput,
-    hooks::{TriangleSetup, Front, Pattern, Sample, SampleEffect, front_of},
+    hooks::{TriangleSetup, Front, Pattern, Sample, SampleEffect},
 };
 use crate::{
     choice,
     math::hash,
     params,
-    params::{Color, Point},
+    params::Color,
 };
 
 choice! {
@@ -34,64 +34,44 @@ choice! {
 
 params! {
     pub struct Dissolve {
-        /// Colour of the glowing rim, its strength in the last lane.
+        ..spread: Front = Front { seed: 0, ..Front::default() }, always_shown "seed";
+        /// Colour of the glowing rim, alpha is its strength.
         rim: Color = [1.0, 0.45, 0.1, 0.0];
-        /// Centre of the radial front, world space.
-        center: Point = [0.0, 0.0, 0.0, 0.0], soft -3.0..=3.0, unit "m", when ("pattern", &["radial"]);
-        /// Share of a triangle that stays: 0 nothing, 1 everything; behind the front where there is one.
+        /// Fraction of a triangle that stays: 0 nothing, 1 everything; behind the front where there is one.
         fill: f32 = 0.5, hard 0.0..=1.0;
         /// How a triangle fills.
         mode: Mode = Mode::Corner as u32;
         /// Which of the three corners the sweep is about.
         corner: u32 = 0, hard 0.0..=2.0, when ("mode", &["edge", "corner"]);
-        /// Width of the glowing rim, as a share of the way.
+        /// Width of the glowing rim, as a fraction of the path.
         rim_width: f32 = 0.25, hard 0.001..=10.0, soft 0.01..=1.0, log true;
-        /// How the dissolve is spread over the triangles.
-        pattern: Pattern = Pattern::Uniform as u32;
-        /// Progress of the front: 0 before the first triangle, 1 past the last.
-        front: f32 = 0.5, hard 0.0..=1.0, when ("pattern", &["sweep", "random"]);
-        /// Softness of the front, as a fraction of its path.
-        width: f32 = 0.25, hard 0.001..=100.0, soft 0.001..=2.0, log true, when ("pattern", &["sweep", "random"]);
-        /// Direction of the sweep in the picture: part to the right.
-        along_x: f32 = 1.0, hard -1.0..=1.0, when ("pattern", &["sweep"]);
-        /// Direction of the sweep in the picture: part downwards.
-        along_y: f32 = 0.0, hard -1.0..=1.0, when ("pattern", &["sweep"]);
-        /// Distance of the front from the centre.
-        radius_m: f32 = 1.0, hard 0.0..=1e6, soft 0.0..=5.0, unit "m", when ("pattern", &["radial"]);
-        /// Thickness of the front.
-        width_m: f32 = 0.5, hard 0.001..=1e6, soft 0.01..=5.0, unit "m", log true, when ("pattern", &["radial"]);
-        /// Seed of the random times and pixels.
-        seed: u32 = 0, soft 0.0..=999.0;
     }
 }
 
 pub const EFFECT: Effect =
-    Effect::new::<Dissolve>("dissolve", "Dissolve", "fills every triangle to a share of its area").on_sample::<Dissolve>().on_surface::<Dissolve>();
+    Effect::new::<Dissolve>("dissolve", "Dissolve", "fills every triangle to a fraction of its area").on_sample::<Dissolve>().on_surface::<Dissolve>();
 
-/// All of a triangle, in the units of a share.
+/// The whole triangle, in units of the fractions.
 const ONE: u32 = 1 << 24;
 /// In the third word of a decision: the hash tells.
 const BY_HASH: u32 = 1;
 
 impl Dissolve {
     fn fill_of(&self, center: DVec3, center_screen: DVec2, triangle: u32) -> f64 {
-        if Pattern::of(self.pattern) == Pattern::Uniform {
+        if self.spread.pattern() == Pattern::Uniform {
             return self.fill.into();
         }
-        1.0 - (1.0 - f64::from(self.fill)) * self.front().reached(center, center_screen, triangle)
+        1.0 - (1.0 - f64::from(self.fill)) * self.spread.reached(center, center_screen, triangle)
     }
 
-    fn front(&self) -> Front {
-        front_of!(self)
-    }
 }
 
-/// round(√(share / 2^24) · 2^16); 65,537, which every way is short of, where the share is all.
-fn root(share: u32) -> u32 {
-    if share >= ONE {
+/// round(√(fraction / 2^24) · 2^16); 65,537, beyond every path, where the fraction is 1.
+fn root(fraction: u32) -> u32 {
+    if fraction >= ONE {
         return 65_537;
     }
-    let n = share << 8;
+    let n = fraction << 8;
     let root = n.isqrt();
     root + u32::from(n - root * root > root)
 }
@@ -100,49 +80,49 @@ impl SampleEffect for Dissolve {
     const HAS_SETUP: bool = true;
 
     fn error_bound(setup: &TriangleSetup, p: &Self) -> f64 {
-        if Pattern::of(p.pattern) == Pattern::Uniform {
+        if p.spread.pattern() == Pattern::Uniform {
             return 0.0;
         }
-        let error_bound = p.front().error_bound(setup.center, setup.center_screen, setup.triangle, &setup.error_bound());
+        let error_bound = p.spread.error_bound(setup.center, setup.center_screen, setup.triangle, &setup.error_bound());
         error_bound * f64::from(ONE) + 2.0
     }
 
     fn is_from_floats(p: &Self) -> bool {
-        Pattern::of(p.pattern) != Pattern::Uniform
+        p.spread.pattern() != Pattern::Uniform
     }
 
-    fn decide(setup: &TriangleSetup, p: &Self, first: Option<u32>) -> [u32; 4] {
+    fn sample_setup(setup: &TriangleSetup, p: &Self, first: Option<u32>) -> [u32; 4] {
         let fill = p.fill_of(setup.center, setup.center_screen, setup.triangle).clamp(0.0, 1.0);
-        let share = first.unwrap_or((fill * f64::from(ONE)).round_ties_even() as u32);
+        let fraction = first.unwrap_or((fill * f64::from(ONE)).round_ties_even() as u32);
         let mode = Mode::of(p.mode);
         let samples = if mode == Mode::Hash { 0 } else { setup.samples().take(if mode == Mode::Scanline { usize::MAX } else { 2 }).count() };
         if samples < 2 {
-            return [share, 0, BY_HASH, 0];
+            return [fraction, 0, BY_HASH, 0];
         }
         let threshold = match mode {
-            Mode::Edge if share == ONE => 65_537,
-            Mode::Edge => 65_536 - root(ONE - share).min(65_536),
-            Mode::Corner | Mode::Centroid => root(share),
+            Mode::Edge if fraction == ONE => 65_537,
+            Mode::Edge => 65_536 - root(ONE - fraction).min(65_536),
+            Mode::Corner | Mode::Centroid => root(fraction),
             Mode::Scanline => {
-                let wanted = (u64::from(share) * samples as u64 + (1 << 23)) >> 24;
-                setup.samples().nth(wanted as usize).map_or(u32::MAX, |[x, y]| y << 16 | x)
+                let sample_count = (u64::from(fraction) * samples as u64 + (1 << 23)) >> 24;
+                setup.samples().nth(sample_count as usize).map_or(u32::MAX, |[x, y]| y << 16 | x)
             }
             Mode::Hash => unreachable!("it took the hash"),
         };
-        [share, threshold, 0, 0]
+        [fraction, threshold, 0, 0]
     }
 
     fn is_drawn(s: &Sample, p: &Self) -> bool {
         let pixel = s.y << 16 | s.x;
-        let [share, threshold, kind, _] = s.decided;
+        let [fraction, threshold, kind, _] = s.setup;
         if kind == BY_HASH {
-            return hash(hash(s.triangle ^ p.seed) ^ pixel) >> 8 < share;
+            return hash(hash(s.triangle ^ p.spread.seed) ^ pixel) >> 8 < fraction;
         }
-        let (whole, part) = (s.whole(), s.parts[p.corner.min(2) as usize]);
+        let (whole, part) = (s.total_area(), s.areas[p.corner.min(2) as usize]);
         let way = match Mode::of(p.mode) {
             Mode::Edge => part,
             Mode::Corner => whole.wrapping_sub(part),
-            Mode::Centroid => whole.wrapping_sub(s.parts.iter().min().expect("three parts") * 3),
+            Mode::Centroid => whole.wrapping_sub(s.areas.iter().min().expect("three areas") * 3),
             Mode::Scanline | Mode::Hash => return pixel < threshold,
         };
         u64::from(way) << 16 < u64::from(threshold) * u64::from(whole)

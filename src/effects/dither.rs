@@ -74,7 +74,7 @@ impl ImageEffect for Dither {
     }
 }
 
-/// Place of a cell in the order in which a matrix of 2^bits a side fills up: of every bit, the checkerboard first.
+/// Rank of a cell in the order in which a matrix of 2^bits per side is filled: for every bit, the checkerboard first.
 fn rank(x: u32, y: u32, bits: u32) -> u32 {
     (0..bits).fold(0, |rank, bit| rank << 2 | ((x ^ y) >> bit & 1) << 1 | y >> bit & 1)
 }

@@ -1,8 +1,8 @@
-//! Dots: strings dots along the edges of the meshes, or along a polyline, evenly in the world.
+//! Dots: draws dots along the edges of the meshes, or along a polyline, evenly spaced in the world.
 //!
 //! A dot's level is how often its number can be halved: every second dot is of level 0, every fourth of level 1 and so on.
 //! Where dots would crowd on the screen, those of the lowest level fade until they are gone when the gap has halved, then
-//! the next ones begin; so the pattern thins as the camera moves away, and nothing ever jumps. The place of a dot is a
+//! the next ones begin; so the pattern thins continuously as the camera moves away. The position of a dot is a
 //! float that is snapped once; its level, its fading and the samples that it covers are integers from there on. Of several
 //! dots on a pixel the strongest shows, in whatever order they are drawn.
 
@@ -14,7 +14,7 @@ use crate::{
 };
 
 choice! {
-    /// What dots are strung on.
+    /// The lines along which dots are drawn.
     pub enum LineSource {
         /// Every edge of every mesh, once.
         Edges = "edges",
@@ -29,7 +29,7 @@ params! {
     pub struct Dots {
         /// Colour of the dots, linear; its alpha is their strength.
         color: Color = [1.0, 0.55, 0.15, 1.0];
-        /// What dots are strung on.
+        /// The lines along which dots are drawn.
         lines: LineSource = LineSource::Edges as u32;
         /// The least angle between two faces that counts as a crease.
         crease_deg: f32 = 25.0, hard 0.0..=180.0, soft 1.0..=90.0, unit "°", when ("lines", &["creases"]);
@@ -41,18 +41,18 @@ params! {
         min_gap_px: f32 = 6.0, hard 0.25..=1024.0, soft 1.0..=64.0, log true, unit "px";
         /// How often the dots may be halved; 0: all are drawn however they crowd.
         levels: u32 = 20, hard 0.0..=24.0;
-        /// Share of the way from one halving to the next over which dots fade.
+        /// Fraction of the distance from one halving to the next over which dots fade.
         fade: f32 = 1.0, hard 0.0625..=1.0;
-        /// What is left of dots behind the model.
+        /// Strength of dots behind the model, relative to visible ones.
         hidden_opacity: f32 = 0.2, hard 0.0..=1.0;
-        /// How far behind the surface a dot still counts as on it, as a share of its distance.
+        /// How far behind the surface a dot still counts as on it, as a fraction of its distance.
         bias: f32 = 0.01, hard 0.0..=0.5, soft 0.0001..=0.1, log true;
         /// The model shows beneath the dots; without it, it only hides them.
         show_model: Flag = 1;
     }
 }
 
-pub const EFFECT: Effect = Effect::new::<Dots>("dots", "Dots", "strings dots along edges or a polyline").with_lines();
+pub const EFFECT: Effect = Effect::new::<Dots>("dots", "Dots", "draws dots along edges or a polyline").with_lines();
 
 /// Most dots of a picture: 8 bytes each fit the binding of every adapter.
 pub const MAX_DOTS: u64 = 1 << 24;
@@ -85,12 +85,12 @@ impl Dots {
         (f64::from(FULL) / f64::from(self.fade)).round() as u32
     }
 
-    /// What is left of a hidden dot, of [`FULL`].
+    /// Strength of a hidden dot, of [`FULL`].
     pub fn hidden_share(&self) -> u32 {
         (f64::from(self.hidden_opacity) * f64::from(FULL)).round() as u32
     }
 
-    /// The bias as a difference of depths' bits, which are a logarithm in straight pieces.
+    /// The bias as a difference of the bits of two depths, which are a piecewise linear logarithm.
     pub fn bias_steps(&self) -> u32 {
         (f64::from(self.bias) * f64::from(1u32 << STEPS)) as u32
     }
@@ -110,8 +110,8 @@ impl Dots {
         }
     }
 
-    /// Share of a pixel that a dot covers whose middle is so far from the sample, given the square of the distance: half of it
-    /// at the radius, falling about a pixel wide and evenly with the square, so that all shares together are the dot's area.
+    /// How much of a pixel a dot covers, of [`FULL`], given the squared distance of its centre from the sample: half at the radius,
+    /// falling over about a pixel and linearly with the square, so that all covers sum to the dot's area.
     pub fn cover(&self, squared: u64) -> u32 {
         let radius = u64::from(self.radius());
         (((radius + 256) * radius).saturating_sub(squared) / (2 * radius)).min(u64::from(FULL)) as u32

@@ -1,4 +1,4 @@
-//! Effects: what the catalogue says about one of them, built from its functions.
+//! One effect: its names, parameters and hooks, built from its functions.
 
 use super::hooks::{Hooks, ImageEffect, ImageHook, SampleEffect, SampleHook, Slot, SurfaceEffect, SurfaceInput, VertexEffect, VertexHook};
 use crate::{
@@ -18,7 +18,7 @@ pub struct Effect {
     pub defaults: fn() -> Vec<u32>,
     /// Name of the WGSL struct.
     pub wgsl_struct: &'static str,
-    /// Does every frame come out the same with these parameter words?
+    /// Is every frame the same with these parameter words?
     pub is_repeatable: fn(&[u32]) -> bool,
 }
 
@@ -57,7 +57,7 @@ impl Effect {
             has_setup: P::HAS_SETUP,
             error_bound: |setup, words| P::error_bound(setup, &read(words)),
             is_from_floats: |words| P::is_from_floats(&read(words)),
-            decide: |setup, words, first| P::decide(setup, &read(words), first),
+            sample_setup: |setup, words, first| P::sample_setup(setup, &read(words), first),
             is_drawn: |sample, words| P::is_drawn(sample, &read(words)),
         });
         self
@@ -70,7 +70,7 @@ impl Effect {
         self
     }
 
-    /// The same effect, with steps in its colour: a judge then accepts either side of a step that is very near.
+    /// The same effect, with steps in its colour: the judge then accepts either side of a step that is very near.
     pub const fn in_steps(mut self) -> Self {
         self.hooks.has_steps = true;
         self
@@ -94,13 +94,13 @@ impl Effect {
         self
     }
 
-    /// The same effect, which puts a cloud beside the scene.
+    /// The same effect, which adds particles to the scene.
     pub const fn with_particles(mut self, particle_settings: fn(&[u32]) -> ParticleSettings) -> Self {
         self.hooks.particle_settings = Some(particle_settings);
         self
     }
 
-    /// The same effect, which leaves something to the hardware's own order unless `is_repeatable` says otherwise.
+    /// The same effect, whose pictures depend on the order of the hardware unless `is_repeatable` holds.
     pub const fn repeatable_if(mut self, is_repeatable: fn(&[u32]) -> bool) -> Self {
         self.is_repeatable = is_repeatable;
         self

@@ -1,6 +1,6 @@
 //! Fog: blends towards a colour with distance (Beer–Lambert).
 //!
-//! What is left of the surface's own light is exp(-density · way), where the way is the depth beyond the start, and
+//! The surface's light is multiplied by exp(-density · path), where the path is the depth beyond the start, and
 //! thinner above a level.
 
 use super::{Effect, Surface, SurfaceEffect, SurfaceInput, hooks::tone::rgb};
@@ -29,11 +29,11 @@ impl SurfaceEffect for Fog {
     fn apply(mut s: Surface, p: &Self) -> Surface {
         let above = (s.position.y - f64::from(p.level_m)).max(0.0);
         let thickness = f64::from(p.density) * libm::exp(-above * f64::from(p.falloff));
-        let way = (s.depth_m - f64::from(p.start_m)).max(0.0);
-        let share = 1.0 - libm::exp(-thickness * way);
+        let path = (s.depth_m - f64::from(p.start_m)).max(0.0);
+        let fog = 1.0 - libm::exp(-thickness * path);
         let base = s.color.truncate();
-        s.glow *= 1.0 - share;
-        s.color = (base + (rgb(p.color) - base) * share).extend(s.color.w);
+        s.glow *= 1.0 - fog;
+        s.color = (base + (rgb(p.color) - base) * fog).extend(s.color.w);
         s
     }
 }

@@ -2,7 +2,7 @@
 //!
 //! Layers of parallel lines come in one after the other; each line is filtered over its pixel, so that nothing flickers.
 //! Lines lie in the picture, or are cuts of parallel planes through the world, as an engraver follows the form. Those on a
-//! triangle that the near plane cuts waver by a fraction of a pixel: there f32 knows places to 1e-5 of their distance.
+//! triangle that the near plane cuts waver by a fraction of a pixel: there f32 resolves positions to 1e-5 of their distance.
 
 use glam::DVec3;
 
@@ -38,7 +38,7 @@ params! {
         angle_deg: f32 = 35.0, hard -360.0..=360.0, soft -90.0..=90.0, unit "°";
         /// Layers that come in one after the other.
         layers: u32 = 3, hard 1.0..=4.0;
-        /// Width of a full line, as a share of the spacing.
+        /// Width of a full line, as a fraction of the spacing.
         width: f32 = 0.55, hard 0.05..=1.0;
         /// Tone at which every layer is full, as the eye sees it.
         dark: f32 = 0.05, hard 0.0..=1.0;
@@ -61,8 +61,8 @@ impl SurfaceEffect for Hatch {
         let darkness = 1.0 - ((tone - dark) / (bright - dark).max(0.2)).clamp(0.0, 1.0);
         let mut bare = 1.0;
         for layer in 0..p.layers {
-            let share = (darkness * f64::from(p.layers) - f64::from(layer)).clamp(0.0, 1.0) * f64::from(p.width);
-            bare *= 1.0 - p.line(&s, layer, share);
+            let width = (darkness * f64::from(p.layers) - f64::from(layer)).clamp(0.0, 1.0) * f64::from(p.width);
+            bare *= 1.0 - p.line(&s, layer, width);
         }
         let paper = rgb(p.paper);
         let hue = if base.max_element() > 1e-6 { base / base.max_element() } else { DVec3::ONE };
@@ -76,26 +76,26 @@ impl SurfaceEffect for Hatch {
 }
 
 impl Hatch {
-    /// How much of the pixel the lines of a layer take that are `share` of their spacing wide.
-    fn line(&self, s: &Surface, layer: u32, share: f64) -> f64 {
+    /// How much of the pixel the lines of a layer take that are `width` of their spacing wide.
+    fn line(&self, s: &Surface, layer: u32, width: f64) -> f64 {
         // Crossed, then between.
         let along = turned(f64::from(self.angle_deg) + [0.0, 90.0, 45.0, 135.0][layer as usize & 3]);
-        let (place, spacing_px) = match LineSpace::of(self.space) {
+        let (position, spacing_px) = match LineSpace::of(self.space) {
             LineSpace::Screen => ((s.pixel.y * along.x - s.pixel.x * along.y) / f64::from(self.spacing_px), f64::from(self.spacing_px)),
             LineSpace::Surface => {
                 let across = DVec3::new(-along.y, along.x, if layer < 2 { 0.0 } else { 1.0 }).normalize();
-                // How far the planes' distance changes from pixel to pixel; held where the surface lies along the planes or
-                // is seen edge-on, and where f32 has no finer places in the world.
+                // How far the planes' distance changes from pixel to pixel; clamped where the surface lies along the planes or
+                // is seen edge-on, and where f32 resolves no finer positions in the world.
                 let change = across - s.normal * (across.dot(s.view) / s.normal.dot(s.view).max(0.1));
                 let per_px = (s.pixel_size_m * change.length().max(0.4)).max(1.5e-4 * (s.position.length() + s.depth_m));
                 (s.position.dot(across) / f64::from(self.spacing_m), f64::from(self.spacing_m) / per_px)
             }
         };
-        // A place on a surface errs by some thousandths of a pixel.
-        let distance = (place - place.floor() - 0.5).abs() * spacing_px + 64.0 * s.nudge;
-        let half = 0.5 * share * spacing_px;
+        // A position on a surface errs by a few thousandths of a pixel.
+        let distance = (position - position.floor() - 0.5).abs() * spacing_px + 64.0 * s.nudge;
+        let half = 0.5 * width * spacing_px;
         let covered = ((distance + 0.5).min(half) - (distance - 0.5).max(-half)).clamp(0.0, 1.0);
         // Lines that no pixel can tell apart become their mean.
-        share + (covered - share) * (spacing_px - 1.0).clamp(0.0, 1.0)
+        width + (covered - width) * (spacing_px - 1.0).clamp(0.0, 1.0)
     }
 }

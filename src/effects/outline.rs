@@ -1,7 +1,7 @@
-//! Outline: lines where the picture's integers change: at silhouettes, between objects, at steps of depth.
+//! Outline: lines where the integers of the picture change: at silhouettes, between objects, at steps of depth.
 //!
 //! Triangle ids and depth keys alone decide, so a line is the same on every adapter that has the same keys. The bits of a float
-//! are a logarithm in straight pieces: a relative step of depth is a difference of keys.
+//! are a piecewise linear logarithm: a relative step of depth is a difference of depth keys.
 
 use super::{
     Effect,
@@ -38,7 +38,7 @@ params! {
         objects: Flag = 1;
         /// Lines where the depth jumps within an object.
         depth: Flag = 1;
-        /// The least jump that counts, as a share of the distance.
+        /// The least jump that counts, as a fraction of the distance.
         depth_threshold: f32 = 0.05, hard 0.0001..=1.0, soft 0.001..=0.5, log true;
     }
 }

@@ -103,10 +103,10 @@ impl Overdraw {
             Palette::Reef => &REEF,
             Palette::Grey => &GREY,
         };
-        let place = heat.clamp(0.0, 1.0) * 8.0;
-        let first = (place.floor() as usize).min(7);
+        let position = heat.clamp(0.0, 1.0) * 8.0;
+        let first = (position.floor() as usize).min(7);
         let [low, high] = [stops[first], stops[first + 1]].map(|stop| DVec3::from_array(stop.map(f64::from)));
-        (low + (high - low) * (place - first as f64)) / 255.0
+        (low + (high - low) * (position - first as f64)) / 255.0
     }
 }
 
@@ -131,12 +131,12 @@ mod tests {
         for palette in [Palette::Ember, Palette::Reef, Palette::Grey] {
             let heat = Overdraw { palette: palette as u32, ..Overdraw::default() };
             let linear = |v: f64| if v <= 0.04045 { v / 12.92 } else { libm::pow((v + 0.055) / 1.055, 2.4) };
-            let lightness = |place: usize| {
-                let c = heat.color(place as f64 / 8.0);
+            let lightness = |position: usize| {
+                let c = heat.color(position as f64 / 8.0);
                 let y = 0.2126 * linear(c.x) + 0.7152 * linear(c.y) + 0.0722 * linear(c.z);
                 if y > 216.0 / 24389.0 { 116.0 * libm::cbrt(y) - 16.0 } else { y * 24389.0 / 27.0 }
             };
-            let steps: Vec<f64> = (0..8).map(|place| lightness(place + 1) - lightness(place)).collect();
+            let steps: Vec<f64> = (0..8).map(|position| lightness(position + 1) - lightness(position)).collect();
             let mean = steps.iter().sum::<f64>() / 8.0;
             assert!(steps.iter().all(|step| (0.7..1.35).contains(&(step / mean))), "{palette:?}: {steps:?} L* between stops");
         }

@@ -1,4 +1,4 @@
-//! Particles: a cloud of discs that a flow without sources or sinks carries along.
+//! Particles: discs that a divergence-free flow carries through the scene.
 //!
 //! What is said here both sides follow, the kernels in f32 and the oracle in f64.
 //!
@@ -7,14 +7,14 @@
 //!
 //! **Life.** At most `L = max(1, round(lifetime_s rate))` steps, of which `round(L lifetime_variation)`, at most L - 1, are left to
 //! chance: L - n steps, where n is the upper word of random number 12 times (that many + 1). In frame 0 a particle is as
-//! old as the upper word of random number 13 times its life says. With every step it ages by one; who has come to the end
+//! old as the upper word of random number 13 times its life says. With every step it ages by one; a particle at the end
 //! of its life, or would leave the room, is born again instead.
 //!
 //! **Birth.** Numbers 2t and 2t + 1 give attempt t three coordinates: the lower and upper half of the first word and the
 //! lower half of the second, less 32768. The first of six attempts inside the ball of radius 32768 counts, else the last
-//! one halved. Coordinates over 32768, times `half_axes`, held within the room, are the place about `center`. Velocity is 0.
+//! one halved. Coordinates over 32768, times `half_axes`, held within the room, are the position relative to `center`. Velocity is 0.
 //!
-//! **Step.** dt = 1 / rate. With place p and velocity v of the frame before, away = attractor - p and
+//! **Step.** dt = 1 / rate. With position p and velocity v of the previous frame, away = attractor - p and
 //! pull = attraction 2 r away / (away² + r²), r = `attractor_m`: v' = (v + dt (drag u + pull)) / (1 + dt drag), p' = p + dt v'.
 //!
 //! **ParticleTimeline.** u = `speed_mps` [`SPEED_NORMALIZER`] Σ persistence^o curl ψ_o(q) / Σ persistence^o over the octaves o, where
@@ -23,7 +23,7 @@
 //! `hash(hash(hash(x + salt) + y) + z)`, b as (2 b + 1) / 1024 - 1, with `salt = hash(seed ^ 0x9e3779b9) + o`; between
 //! them blended by t³(6t² - 15t + 10) along each axis. A curl has no divergence, so nothing piles up.
 //!
-//! **Disc.** With x the share of its life that has passed, a disc has the radius
+//! **Disc.** With x the fraction of its life that has passed, a disc has the radius
 //! `radius_m` (1 - `radius_variation` n) s(x / fade) s((1 - x) / fade), s the smoothstep and n random number 14 as a fraction of 24 bits. Its colour goes from
 //! `slow` to `fast` as the speed goes from 0 to `fast_mps`. Its triangle faces the picture plane, its lower side
 //! level; normals lean outwards by 0.7 `roundness` at the rim.
@@ -46,11 +46,11 @@ params! {
         slow: Color = [0.02, 0.1, 0.65, 1.0];
         /// Colour of what is fast.
         fast: Color = [1.0, 0.5, 0.12, 1.0];
-        /// Middle of the cloud.
+        /// Centre of the particles.
         center: Point = [0.0; 4], hard -1000.0..=1000.0, soft -3.0..=3.0, unit "m";
         /// Half axes of the ellipsoid in which particles are born.
         half_axes: Point = [1.0, 1.0, 1.0, 0.0], hard 0.0..=1000.0, soft 0.0..=3.0, unit "m";
-        /// Where particles are drawn to; a drag over the picture with Ctrl held leads it.
+        /// The point that attracts particles; a drag over the picture with Ctrl moves it.
         attractor: Point = [0.0; 4], hard -1000.0..=1000.0, soft -3.0..=3.0, unit "m";
         /// How many there are.
         count: u32 = 100000, hard 0.0..=4000000.0, soft 0.0..=200000.0;
@@ -58,11 +58,11 @@ params! {
         seed: u32 = 1, soft 0.0..=999.0;
         /// Steps per second of the preset.
         rate: u32 = 60, hard 1.0..=240.0, soft 24.0..=120.0, unit "/s";
-        /// Half the side of the room; who would leave it is born again.
+        /// Half the side of the bounds; a particle that would leave them is born again.
         room_m: f32 = 2.5, hard 0.01..=1000.0, soft 0.5..=5.0, unit "m";
         /// Longest life.
         lifetime_s: f32 = 4.0, hard 0.01..=200.0, soft 0.25..=12.0, unit "s";
-        /// Share of it that is left to chance.
+        /// Random fraction of it.
         lifetime_variation: f32 = 0.6, hard 0.0..=1.0;
         /// Speed of the flow, about.
         speed_mps: f32 = 0.6, hard 0.0..=100.0, soft 0.0..=3.0, unit "m/s";
@@ -70,7 +70,7 @@ params! {
         swirl_m: f32 = 0.9, hard 0.05..=1000.0, soft 0.1..=4.0, unit "m";
         /// Layers of noise, each of half the size of the one before.
         octaves: u32 = 3, hard 1.0..=6.0;
-        /// Speed of each layer as a share of that of the one before.
+        /// Speed of each layer as a fraction of that of the previous one.
         persistence: f32 = 0.45, hard 0.0..=1.0;
         /// How fast the flow itself changes.
         evolve: f32 = 0.25, hard 0.0..=10.0, soft 0.0..=2.0, unit "/s";
@@ -84,9 +84,9 @@ params! {
         attractor_lag_s: f32 = 0.15, hard 0.0..=60.0, soft 0.0..=1.0, unit "s";
         /// Largest radius of a disc.
         radius_m: f32 = 0.008, hard 0.0..=10.0, soft 0.001..=0.05, unit "m";
-        /// Share of it that is left to chance.
+        /// Random fraction of it.
         radius_variation: f32 = 0.5, hard 0.0..=1.0;
-        /// Share of its life in which a disc grows, and in which it shrinks.
+        /// Fraction of its life in which a disc grows, and in which it shrinks.
         fade: f32 = 0.3, hard 0.001..=0.5;
         /// How far the rim of a disc turns from the viewer: 0 flat, 1 by 35 degrees.
         roundness: f32 = 1.0, hard 0.0..=1.0;
@@ -96,7 +96,7 @@ params! {
 }
 
 pub const EFFECT: Effect =
-    Effect::new::<Particles>("particles", "Particles", "puts a cloud of drifting discs into the scene").with_particles(|words| particle_settings(&read(words)));
+    Effect::new::<Particles>("particles", "Particles", "adds drifting discs to the scene").with_particles(|words| particle_settings(&read(words)));
 
 /// Between the lattices of one octave and the next.
 pub const LATTICE_SHIFT: [f64; 3] = [0.3125, 0.4375, 0.71875];
@@ -132,22 +132,22 @@ pub fn life_steps(p: &Particles) -> [u32; 2] {
     [steps as u32, ((steps * f64::from(p.lifetime_variation)).round_ties_even() as u32).min(steps as u32 - 1)]
 }
 
-/// Does a parameter tell how particles look, and not where they fly?
+/// Does a parameter change only how particles look, not how they move?
 pub fn affects_only_appearance(field: &Field) -> bool {
     matches!(field.name, "slow" | "fast" | "count" | "radius_m" | "radius_variation" | "fade" | "roundness" | "fast_mps")
 }
 
-/// The words by which particles fly, with what only tells how they look as it comes.
-fn of_flight(words: &[u32]) -> Vec<u32> {
-    let mut flight = words.to_vec();
+/// The parameter words of a step; parameters that affect only the appearance have their defaults.
+fn step_words(words: &[u32]) -> Vec<u32> {
+    let mut step = words.to_vec();
     let default = (EFFECT.defaults)();
-    EFFECT.fields.iter().filter(|field| affects_only_appearance(field)).for_each(|field| field.copy(&default, &mut flight));
-    flight
+    EFFECT.fields.iter().filter(|field| affects_only_appearance(field)).for_each(|field| field.copy(&default, &mut step));
+    step
 }
 
 /// A flow at a frame, whose parameters do not change on the way.
 pub fn constant_timeline(words: &[u32], frame: u32) -> ParticleTimeline {
-    ParticleTimeline { frame, step_params: of_flight(words).into(), stride: words.len() }
+    ParticleTimeline { frame, step_params: step_words(words).into(), stride: words.len() }
 }
 
 /// A flow whose steps go by these words, one after another. The attraction follows its point behind.
@@ -155,12 +155,12 @@ pub fn along(steps: impl Iterator<Item = Vec<u32>>, frame: u32) -> ParticleTimel
     let (mut step_params, mut stride) = (Vec::new(), 0);
     let mut followed: Option<[f64; 3]> = None;
     for words in steps {
-        let mut words = of_flight(&words);
+        let mut words = step_words(&words);
         let Particles { attractor, rate, attractor_lag_s, .. } = read(&words);
         let goal = [0, 1, 2].map(|axis: usize| f64::from(attractor[axis]));
-        let share = 1.0 / (1.0 + f64::from(attractor_lag_s) * f64::from(rate));
+        let approach = 1.0 / (1.0 + f64::from(attractor_lag_s) * f64::from(rate));
         let from = followed.unwrap_or(goal);
-        let at = [0, 1, 2].map(|axis: usize| from[axis] + (goal[axis] - from[axis]) * share);
+        let at = [0, 1, 2].map(|axis: usize| from[axis] + (goal[axis] - from[axis]) * approach);
         followed = Some(at);
         let field = EFFECT.field("attractor").expect("an attractor");
         // Between two points that the field takes, it takes every point.

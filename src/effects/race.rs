@@ -1,6 +1,6 @@
-//! Race: what goes wrong without atomics, live: load the depth, compare, store depth and triangle id, and hope.
+//! Race: what goes wrong without atomics, live: load the depth, compare, store depth and triangle id.
 //!
-//! Two invocations that meet on a pixel both see the old depth, and whoever stores last stays, near or far. The true
+//! Two invocations that meet on a pixel both see the old depth, and the last store remains, near or far. The true
 //! picture is the one without the race; the oracle draws that, and the judge counts the pixels that were lost.
 
 use super::{Effect, hooks::Slot};

@@ -1,4 +1,4 @@
-//! Shadow: a directional light with a shadow map, drawn by the rasterizer itself from where the light stands.
+//! Shadow: a directional light with a shadow map, which the rasterizer itself draws from the light.
 //!
 //! Where a sample lies deeper than what the light sees there, light does not arrive. A tap asks that of one texel, of the
 //! plane of the sample's triangle at the middle of that texel, moved towards the light by a bias: a constant, and a slope

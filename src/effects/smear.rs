@@ -1,4 +1,4 @@
-//! Smear: where nothing is drawn the picture before stays, and fades towards the background.
+//! Smear: where nothing is drawn, the previous picture remains and fades towards the background.
 //!
 //! Whole bytes fade by whole steps, so that a trail is the same on every adapter. A picture of its own stands after
 //! `frames` earlier ones, `step_s` apart, the first of which stands after nothing but background; a window that lets time
@@ -35,13 +35,13 @@ impl ImageEffect for Smear {
             return pixel;
         }
         let background = picture.background.to_array().map(|c| (255.0 * c + 0.5).floor() as i64);
-        let place = pixel.y as usize * picture.width as usize + pixel.x as usize;
-        let previous = picture.previous.map_or(background, |previous| previous[place].map(i64::from));
+        let index = pixel.y as usize * picture.width as usize + pixel.x as usize;
+        let previous = picture.previous.map_or(background, |previous| previous[index].map(i64::from));
         // In units of 2^-16; a trail that fades at all takes a step at least, so it comes to its end.
-        let share = (f64::from(p.fade) * 65536.0) as i64;
+        let step = (f64::from(p.fade) * 65536.0) as i64;
         let faded = |c: usize| {
             let gap = background[c] - previous[c];
-            previous[c] + gap.signum() * ((gap.abs() * share + 65535) >> 16)
+            previous[c] + gap.signum() * ((gap.abs() * step + 65535) >> 16)
         };
         pixel.color = DVec4::from_array([0, 1, 2, 3].map(|c| faded(c) as f64 / 255.0));
         pixel

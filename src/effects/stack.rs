@@ -38,7 +38,7 @@ impl Stack {
         self.0.iter_mut().find(|enabled| enabled.effect.name == name)
     }
 
-    /// Puts `effect` in with defaults, in front of the first one that follows it in [`EFFECTS`]; keeps one already there.
+    /// Enables `effect` with its defaults, before the first one that follows it in the canonical order; keeps one already there.
     pub fn enable(&mut self, effect: &'static Effect) -> &mut EnabledEffect {
         let at = match self.0.iter().position(|enabled| enabled.effect == effect) {
             Some(at) => at,
@@ -51,8 +51,8 @@ impl Stack {
         &mut self.0[at]
     }
 
-    /// The stack for a picture of `factor` times as many pixels to a side: lengths in pixels keep their share of it, as far as
-    /// their ranges and whole pixels go.
+    /// The stack for a picture of `factor` times as many pixels to a side: lengths in pixels scale with it, within
+    /// their ranges and in whole pixels where they are whole.
     #[must_use]
     pub fn scaled(&self, factor: f64) -> Self {
         let mut stack = self.clone();
@@ -60,12 +60,12 @@ impl Stack {
             for field in effect.fields.iter().filter(|field| field.unit == "px") {
                 let [low, high] = field.hard;
                 let length = |v: f64| (v * factor).clamp(low, high);
-                let lanes: Vec<f64> = field
+                let components: Vec<f64> = field
                     .get(words)
                     .into_iter()
                     .map(|v| if !field.value_type.is_continuous() { length(v).round() } else { length(v) })
                     .collect();
-                field.set(words, &lanes).expect("within its range");
+                field.set(words, &components).expect("within its range");
             }
         }
         stack
@@ -75,7 +75,7 @@ impl Stack {
         self.0.retain(|enabled| enabled.effect.name != name);
     }
 
-    /// Do the effects stand in the order of [`EFFECTS`]?
+    /// Are the effects in the canonical order?
     pub fn is_canonical(&self) -> bool {
         self.0.is_sorted_by_key(|enabled| enabled.effect.rank())
     }
@@ -90,7 +90,7 @@ impl Stack {
         self.each(|hooks| hooks.vertex).fold(vertex, |vertex, (hook, words)| (hook.moved)(vertex, words))
     }
 
-    /// How far an f32 twin of [`Stack::moved`] may err, given the slack of what it starts from.
+    /// How far the f32 side of [`Stack::moved`] may err, given the error bound of what it starts from.
     pub fn error_bound(&self, vertex: hooks::Vertex, error_bound: hooks::ErrorBound) -> hooks::ErrorBound {
         let each = self.each(|hooks| hooks.vertex);
         each.fold((vertex, error_bound), |(vertex, error_bound), (hook, words)| {
@@ -114,7 +114,7 @@ impl Stack {
         self.each(|hooks| hooks.image).next().is_some()
     }
 
-    /// Does an effect read the picture before this one?
+    /// Does an effect read the previous picture?
     pub fn reads_previous(&self) -> bool {
         self.each(|hooks| hooks.image).any(|(hook, _)| hook.reads_previous)
     }
@@ -139,7 +139,7 @@ impl Stack {
         self.each(|hooks| hooks.vertex).any(|(hook, _)| hook.needs_triangle)
     }
 
-    /// The cloud that an effect puts beside the scene.
+    /// The particles that an effect adds to the scene.
     pub fn particle_settings(&self) -> Option<ParticleSettings> {
         self.each(|hooks| hooks.particle_settings)
             .map(|(particle_settings, words)| particle_settings(words))
@@ -165,13 +165,13 @@ impl Stack {
         self.params(shadow::EFFECT.name)
     }
 
-    /// What that light sees of `scene` as `view` shows it.
+    /// The view of that light, for its shadow map of `scene` in `view`.
     pub fn light_view(&self, scene: &Scene, view: &View) -> Option<View> {
         Some(light_view(self.light()?.toward(), scene, view, self.max_displacement_m(scene.bounds_of(scene.shadow_casters()).radius())))
     }
 
-    /// What of the stack decides which samples stop a light, and where they are.
-    pub fn casting(&self) -> Self {
+    /// The effects that decide which samples stop a light, and where they are.
+    pub fn shadow_casters(&self) -> Self {
         let casts = |enabled: &&EnabledEffect| enabled.effect.hooks.vertex.is_some() || enabled.effect.hooks.sample.is_some();
         Self(self.0.iter().filter(casts).cloned().collect())
     }
@@ -181,7 +181,7 @@ impl Stack {
         self.get(points::EFFECT.name).map_or(0, |enabled| read::<points::Points>(&enabled.words).radius())
     }
 
-    /// The draw order that the stack keeps.
+    /// The draw order of the stack, if it has one.
     pub fn draw_order(&self) -> Option<draw_order::DrawOrder> {
         self.in_slot(Slot::Order).map(|enabled| read(&enabled.words))
     }
@@ -196,12 +196,12 @@ impl Stack {
         self.get(name).map(|enabled| read(&enabled.words))
     }
 
-    /// The dots that are strung on lines, if any are.
+    /// The dots that are drawn along lines, if any are.
     pub fn dots(&self) -> Option<dots::Dots> {
         self.params(dots::EFFECT.name)
     }
 
-    /// How many previous pictures show through, if any do.
+    /// The smear of previous pictures, if there is one.
     pub fn smear(&self) -> Option<smear::Smear> {
         self.params(smear::EFFECT.name)
     }
@@ -216,13 +216,13 @@ impl Stack {
         })
     }
 
-    /// Do the triangles of a pixel race for it?
+    /// Is the race on, in which the triangles of a pixel lose samples?
     pub fn is_racing(&self) -> bool {
         self.get(race::EFFECT.name).is_some()
     }
 
-    /// What stands against switching `effect` on: another one in its slot.
-    pub fn rival(&self, effect: &Effect) -> Option<Conflict> {
+    /// The conflict that enabling `effect` would cause: another effect in its slot.
+    pub fn conflict_with(&self, effect: &Effect) -> Option<Conflict> {
         let slot = effect.hooks.slot?;
         let first = self.in_slot(slot).map(|enabled| enabled.effect).filter(|first| *first != effect)?;
         Some(Conflict { slot: slot.name(), first: first.name, second: effect.name })

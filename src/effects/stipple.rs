@@ -20,7 +20,7 @@ choice! {
 
 params! {
     pub struct Stipple {
-        /// Share of the samples that are drawn.
+        /// Fraction of the samples that are drawn.
         opacity: f32 = 0.5, hard 0.0..=1.0;
         /// Matrix whose order the samples follow: the larger, the more levels.
         matrix: Matrix = Matrix::Eight as u32;
@@ -39,7 +39,7 @@ pub const EFFECT: Effect =
 impl SampleEffect for Stipple {
     const HAS_SETUP: bool = false;
 
-    fn decide(_: &TriangleSetup, _: &Self, _: Option<u32>) -> [u32; 4] {
+    fn sample_setup(_: &TriangleSetup, _: &Self, _: Option<u32>) -> [u32; 4] {
         [0; 4]
     }
 

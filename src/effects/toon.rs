@@ -15,7 +15,7 @@ params! {
         rim: Color = [1.0, 0.96, 0.88, 0.0];
         /// Number of flat tones.
         steps: u32 = 3, hard 1.0..=16.0, soft 1.0..=8.0;
-        /// Width of the edge between two tones, as a share of a step.
+        /// Width of the edge between two tones, as a fraction of a step.
         softness: f32 = 0.12, hard 0.05..=1.0;
         /// Tone of the darkest step, as the eye sees it.
         shadow: f32 = 0.3, hard 0.0..=1.0;
@@ -36,8 +36,8 @@ impl SurfaceEffect for Toon {
         let base = s.color.truncate();
         let brightest = base.max_element().max(0.0);
         // The soft edge of a step is its upper end.
-        let place = (brightest.sqrt().min(1.0) + s.nudge).max(0.0) * steps;
-        let step = (place.floor() + smooth(1.0 - softness, 1.0, place - place.floor())).min(steps - 1.0);
+        let level = (brightest.sqrt().min(1.0) + s.nudge).max(0.0) * steps;
+        let step = (level.floor() + smooth(1.0 - softness, 1.0, level - level.floor())).min(steps - 1.0);
         let (shadow, light) = (f64::from(p.shadow), f64::from(p.light));
         let tone = light - (light - shadow) * (steps - 1.0 - step) / (steps - 1.0).max(1.0);
         let flat = if brightest > 1e-6 { base * (tone * tone / brightest) } else { glam::DVec3::splat(tone * tone) };

@@ -1,4 +1,4 @@
-//! Triangle id: gives every triangle a colour of its own.
+//! Triangle id: gives every triangle its own colour.
 
 use glam::DVec3;
 
@@ -14,7 +14,7 @@ params! {
     }
 }
 
-pub const EFFECT: Effect = Effect::surface::<TriangleId>("triangle_id", "TriangleId", "gives every triangle a colour of its own");
+pub const EFFECT: Effect = Effect::surface::<TriangleId>("triangle_id", "TriangleId", "gives every triangle its own colour");
 
 impl SurfaceEffect for TriangleId {
     const INPUTS: &[SurfaceInput] = &[SurfaceInput::TriangleId, SurfaceInput::Glow, SurfaceInput::Color];

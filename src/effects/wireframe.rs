@@ -1,7 +1,7 @@
 //! Wireframe: draws the edges of triangles at a constant width in pixels.
 //!
-//! A sample lies within w of an edge of length l when its doubled area with the edge is at most w·l: an integer held
-//! against an integer, of which one is settled per triangle. Edges that only clipping made are not drawn.
+//! A sample lies within w of an edge of length l when its doubled area with the edge is at most w·l: one integer is compared
+//! with another, which is computed once per triangle. Edges that clipping added are not drawn.
 
 use super::{
     Effect, Surface, SurfaceEffect, SurfaceInput,
@@ -21,9 +21,9 @@ choice! {
 
 params! {
     pub struct Wireframe {
-        /// Colour of the lines; the last lane is its share against the surface's own.
+        /// Colour of the lines; alpha is its weight against the surface's colour.
         ink: Color = [0.9, 0.95, 1.0, 1.0];
-        /// Colour of the faces; the last lane is its share against the surface's own.
+        /// Colour of the faces; alpha is its weight against the surface's colour.
         paper: Color = [0.01, 0.012, 0.02, 1.0], when ("hidden", &["removed"]);
         /// Width of the lines.
         width_px: f32 = 1.5, hard 0.0..=64.0, soft 0.5..=8.0, unit "px";
@@ -40,7 +40,7 @@ impl SampleEffect for Wireframe {
     const HAS_SETUP: bool = true;
 
     /// How near the edge opposite each corner a sample must be, less one; 0 never. Each triangle draws half of a width.
-    fn decide(setup: &TriangleSetup, p: &Self, first: Option<u32>) -> [u32; 4] {
+    fn sample_setup(setup: &TriangleSetup, p: &Self, first: Option<u32>) -> [u32; 4] {
         let half_width = (f64::from(p.width_px) * 128.0).round_ties_even() as u64;
         let reach = |k: usize| match setup.outline >> k & 1 {
             0 => 0,
@@ -50,7 +50,7 @@ impl SampleEffect for Wireframe {
     }
 
     fn is_drawn(s: &Sample, p: &Self) -> bool {
-        Hidden::of(p.hidden) == Hidden::Removed || (0..3).any(|k| s.parts[k] < s.decided[k])
+        Hidden::of(p.hidden) == Hidden::Removed || (0..3).any(|k| s.areas[k] < s.setup[k])
     }
 }
 
@@ -65,7 +65,7 @@ impl SurfaceEffect for Wireframe {
             Hidden::Removed => (0.5 * width + 0.5 - s.edge_distance_px.min_element()).clamp(0.0, 1.0),
         };
         let (own, alpha) = (s.color.truncate(), s.color.w);
-        let tinted = |[red, green, blue, share]: [f32; 4]| own.lerp([red, green, blue].map(f64::from).into(), share.into());
+        let tinted = |[red, green, blue, weight]: [f32; 4]| own.lerp([red, green, blue].map(f64::from).into(), weight.into());
         s.color = tinted(p.paper).lerp(tinted(p.ink), line).extend(alpha);
         s
     }

@@ -1,6 +1,6 @@
 //! Wobble: a wave runs through the model and sways it, normals and all.
 //!
-//! The displacement is u(x) = sway A sin(2π (direction·x / λ - phase)), its Jacobian I + slope sway towardᵀ, and a normal goes
+//! The displacement is u(x) = sway A sin(2π (direction·x / λ - phase)), its Jacobian I + slope sway directionᵀ, and a normal goes
 //! with the cofactors of that: n (1 + slope sway·direction) - direction slope (sway·n). The phase is given in turns and kept
 //! within one, so a wave that has run for a day is as exact as a new one.
 
@@ -79,11 +79,11 @@ impl VertexEffect for Wobble {
         if wave.amplitude == 0.0 {
             return error_bound;
         }
-        let (place, direction) = (v.position + v.offset, wave.direction.abs());
+        let (position, direction) = (v.position + v.offset, wave.direction.abs());
         let wavelength = f64::from(p.wavelength_m);
-        let given = error_bound.position_m + error_bound.offset_m + ROUNDING * place.abs().max_element();
+        let given = error_bound.position_m + error_bound.offset_m + ROUNDING * position.abs().max_element();
         // A unit vector errs by ten roundings, the sum of products by four.
-        let along = given * direction.element_sum() + 14.0 * ROUNDING * direction.dot(place.abs());
+        let along = given * direction.element_sum() + 14.0 * ROUNDING * direction.dot(position.abs());
         let turns = along / wavelength + ROUNDING * (4.0 * wave.distance.abs() + f64::from(p.phase_turns));
         let sine = (std::f64::consts::TAU * turns + SINE_ERROR).min(2.0);
         error_bound.offset_m += wave.amplitude * (sine + 14.0 * ROUNDING) + ROUNDING * v.offset.abs().max_element();
@@ -101,8 +101,8 @@ impl VertexEffect for Wobble {
     }
 }
 
-/// Direction of a parameter; `otherwise` where it has none. Lanes below the normal floats are 0, as on a GPU.
+/// Direction of a parameter; `otherwise` where it has none. Components below the normal floats are 0, as on a GPU.
 fn unit(point: [f32; 4], otherwise: DVec3) -> DVec3 {
-    let lane = |k: usize| if point[k].is_normal() { f64::from(point[k]) } else { 0.0 };
-    DVec3::new(lane(0), lane(1), lane(2)).try_normalize().unwrap_or(otherwise)
+    let component = |k: usize| if point[k].is_normal() { f64::from(point[k]) } else { 0.0 };
+    DVec3::new(component(0), component(1), component(2)).try_normalize().unwrap_or(otherwise)
 }

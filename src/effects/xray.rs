@@ -52,7 +52,7 @@ params! {
         window: u32 = 20, hard 0.0..=4000.0, soft 0.0..=400.0, unit "‰", when ("layers", &["window"]);
         /// Which layers count for more.
         weight: Weighting = Weighting::Equal as u32;
-        /// Share of the light behind it that one layer of full weight stops; at 1 the background is hidden.
+        /// Fraction of the light behind it that a layer of full weight stops; at 1 the background is hidden.
         opacity: f32 = 1.0, hard 0.0..=1.0;
         /// Bits per channel in the sums to begin with; fewer are taken where more layers must fit.
         bits: Bits = Bits::Auto as u32;
@@ -63,7 +63,7 @@ pub const EFFECT: Effect =
     Effect::new::<Xray>("xray", "Xray", "averages all layers of a pixel in whole numbers, so that no order shows").in_slot(Slot::Visibility).reading(&[SurfaceInput::Normal, SurfaceInput::View, SurfaceInput::Depth, SurfaceInput::DepthRange]);
 
 /// Bits per channel that the sums may have, most first.
-pub const OPTIONS: [u32; 4] = [16, 12, 10, 8];
+pub const CHANNEL_BITS: [u32; 4] = [16, 12, 10, 8];
 
 /// Weight of a layer that counts in full, where layers have weights.
 pub const FULL_WEIGHT: u32 = 255;
@@ -75,7 +75,7 @@ pub const fn capacity(bits: u32) -> u32 {
 
 /// The next smaller number of bits after an overflow.
 pub fn fewer(bits: u32) -> Option<u32> {
-    OPTIONS.into_iter().find(|option| *option < bits)
+    CHANNEL_BITS.into_iter().find(|option| *option < bits)
 }
 
 impl Xray {
@@ -98,13 +98,13 @@ impl Xray {
     /// Weight of a layer before it is rounded, at most [`Self::unit`]; at least 1, so that every layer counts.
     pub fn weight_of(&self, s: &Surface) -> f64 {
         let facing = s.normal.dot(s.view).abs();
-        let share = match Weighting::of(self.weight) {
+        let weight = match Weighting::of(self.weight) {
             Weighting::Equal => return 1.0,
             Weighting::Facing => facing,
             Weighting::Grazing => 1.0 - facing,
             Weighting::Near => (s.depth_range_m.y - s.depth_m) / (s.depth_range_m.y - s.depth_range_m.x),
         };
-        (share * f64::from(FULL_WEIGHT)).clamp(1.0, f64::from(FULL_WEIGHT))
+        (weight * f64::from(FULL_WEIGHT)).clamp(1.0, f64::from(FULL_WEIGHT))
     }
 
     /// Least depth key that counts on a pixel whose front has the key `front`. Integers alone: kernels do the same.
@@ -147,7 +147,7 @@ mod tests {
 
     #[test]
     fn capacities_are_the_published_ones() {
-        assert_eq!(OPTIONS.map(capacity), [65_537, 1_048_832, 4_198_404, 16_843_009]);
+        assert_eq!(CHANNEL_BITS.map(capacity), [65_537, 1_048_832, 4_198_404, 16_843_009]);
     }
 
     #[test]
@@ -162,8 +162,8 @@ mod tests {
             assert_eq!(window(0).threshold(front.to_bits(), true), front.to_bits(), "nothing but the front");
             for n in [1, 10, 333, 1000, 4000] {
                 let least = f64::from(f32::from_bits(window(n).threshold(front.to_bits(), true)));
-                let wanted = f64::from(front) * 1000.0 / f64::from(1000 + n);
-                assert!((least / wanted - 1.0).abs() < 1e-4, "{front} {n}: {least} for {wanted}");
+                let expected = f64::from(front) * 1000.0 / f64::from(1000 + n);
+                assert!((least / expected - 1.0).abs() < 1e-4, "{front} {n}: {least} for {expected}");
             }
         }
         assert_eq!(window(250).threshold(0.75f32.to_bits(), false), 0.5f32.to_bits());

@@ -55,7 +55,7 @@ impl ShadowPass {
         let pins = PinnedOptions::of(Visibility::Split32).with(Culling::None);
         let accuracy = AccuracyRequest { pins, ..AccuracyRequest::default() };
         let shown = [view.width, view.height];
-        let request = Request { view: &view, stack: &stack.casting(), accuracy: &accuracy, shown, fewer_bits: None };
+        let request = Request { view: &view, stack: &stack.shadow_casters(), accuracy: &accuracy, shown, fewer_bits: None };
         resources.prepare(device, scene, &request)?;
         uniform.fill(&device.gpu, BufferId::ShadowMapView, bytemuck::bytes_of(&ShadowMapUniform::new(&view)))?;
         let map = match map.filter(|map| map.texture.width() == view.width) {

@@ -123,6 +123,17 @@ pub struct Field {
     pub wgsl: WgslType,
     /// Byte offset in the struct, in Rust and in WGSL.
     pub offset: usize,
+    /// The member of the struct that holds it, where effects share a group of parameters.
+    pub group: Option<Group>,
+}
+
+/// A member of an effect's struct that is a struct itself: parameters that several effects share.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Group {
+    /// Name of the member, in Rust and in WGSL.
+    pub member: &'static str,
+    /// Name of its WGSL struct.
+    pub wgsl_struct: &'static str,
 }
 
 impl Deref for Field {
@@ -136,7 +147,29 @@ impl Deref for Field {
 impl Field {
     /// The parameter at `offset`. Every parameter of an effect has a slider.
     pub const fn new(param: Param, wgsl: WgslType, offset: usize) -> Self {
-        Self { param: Param { has_slider: true, ..param }, wgsl, offset }
+        Self { param: Param { has_slider: true, ..param }, wgsl, offset, group: None }
+    }
+
+    /// An effect's own fields, then those of a group that its struct holds at its beginning. The field `always_shown` of the group
+    /// is shown whatever the choice is on which the group's declaration makes it depend.
+    pub const fn with_group<const N: usize>(own: &[Self], group: Group, shared: &[Self], always_shown: &str) -> [Self; N] {
+        assert!(own.len() + shared.len() == N, "N is the number of all fields");
+        let mut fields = [own[0]; N];
+        let mut index = 0;
+        while index < N {
+            if index < own.len() {
+                fields[index] = own[index];
+            } else {
+                let mut field = shared[index - own.len()];
+                field.group = Some(group);
+                if is_same_text(field.param.name, always_shown) {
+                    field.param.when = None;
+                }
+                fields[index] = field;
+            }
+            index += 1;
+        }
+        fields
     }
 
     fn words_range(&self) -> std::ops::Range<usize> {
@@ -298,9 +331,44 @@ macro_rules! choice {
     };
 }
 
-/// Declares a parameter struct: a doc line, a type, a default and options per field.
+const fn is_same_text(a: &str, b: &str) -> bool {
+    let (a, b) = (a.as_bytes(), b.as_bytes());
+    let mut index = 0;
+    while index < a.len() && index < b.len() && a[index] == b[index] {
+        index += 1;
+    }
+    index == a.len() && index == b.len()
+}
+
+/// Declares a parameter struct: a doc line, a type, a default and options per field. `..name: Type = default, always_shown "field";`
+/// at the beginning puts a group of parameters that several effects share into the struct.
 #[macro_export]
 macro_rules! params {
+    ($(#[$meta:meta])* pub struct $name:ident {
+        ..$group:ident : $group_ty:ty = $group_default:expr, always_shown $always:literal;
+        $($(#[doc = $doc:literal])+ $field:ident : $ty:ty = $default:expr $(, $key:ident $value:expr)*;)*
+    }) => {
+        $(#[$meta])*
+        #[derive(Clone, Copy, Debug, PartialEq, bytemuck::Pod, bytemuck::Zeroable)]
+        #[repr(C)]
+        pub struct $name { pub $group: $group_ty, $($(#[doc = $doc])+ pub $field: <$ty as $crate::params::ParamType>::Raw,)* }
+
+        impl Default for $name {
+            fn default() -> Self {
+                Self { $group: $group_default, $($field: $default),* }
+            }
+        }
+
+        impl $crate::params::Params for $name {
+            const FIELDS: &'static [$crate::params::Field] = {
+                const OWN: &[$crate::params::Field] = &[$($crate::params!(@field $name $field, $ty, concat!($($doc),+) $(, $key $value)*)),*];
+                const SHARED: &[$crate::params::Field] = <$group_ty as $crate::params::Params>::FIELDS;
+                const NAMES: $crate::params::Group =
+                    $crate::params::Group { member: stringify!($group), wgsl_struct: stringify!($group_ty) };
+                &$crate::params::Field::with_group::<{ OWN.len() + SHARED.len() }>(OWN, NAMES, SHARED, $always)
+            };
+        }
+    };
     ($(#[$meta:meta])* pub struct $name:ident {
         $($(#[doc = $doc:literal])+ $field:ident : $ty:ty = $default:expr $(, $key:ident $value:expr)*;)*
     }) => {
@@ -316,14 +384,15 @@ macro_rules! params {
         }
 
         impl $crate::params::Params for $name {
-            const FIELDS: &'static [$crate::params::Field] = &[$(
-                $crate::params::Field::new(
-                    $crate::params::Param::new(stringify!($field), concat!($($doc),+), <$ty as $crate::params::ParamType>::TYPE)
-                        $(.$key($value))*,
-                    <$ty as $crate::params::ParamType>::WGSL,
-                    std::mem::offset_of!($name, $field),
-                )
-            ),*];
+            const FIELDS: &'static [$crate::params::Field] =
+                &[$($crate::params!(@field $name $field, $ty, concat!($($doc),+) $(, $key $value)*)),*];
         }
+    };
+    (@field $name:ident $field:ident, $ty:ty, $doc:expr $(, $key:ident $value:expr)*) => {
+        $crate::params::Field::new(
+            $crate::params::Param::new(stringify!($field), $doc, <$ty as $crate::params::ParamType>::TYPE)$(.$key($value))*,
+            <$ty as $crate::params::ParamType>::WGSL,
+            std::mem::offset_of!($name, $field),
+        )
     };
 }

@@ -1,4 +1,4 @@
-//! Explanation: why each part of a plan is as it is, and what its frame omits. Built only when somebody reads it.
+//! Explanation: why each part of a plan is as it is, and what its frame omits. Built only when asked for.
 
 use super::{Note, Plan, costs, options::Cause, predict::predict};
 use crate::{

@@ -97,7 +97,7 @@ pub(super) fn choose(inputs: &Inputs) -> Result<Choice, PlanError> {
     Ok(Choice { options, causes, prediction: predict_all(&options, needs) })
 }
 
-/// The options before any is left for a gain: the tier's, the pinned ones, and those that scene, stack and view settle.
+/// The options to start from: the tier's, the pinned ones, and those that scene, stack and view decide.
 fn base_options(inputs: &Inputs) -> AccuracyOptions {
     let Inputs { needs, stack, caps, request, .. } = *inputs;
     let visibility = if caps.int64_atomics { Visibility::Packed64 } else { Visibility::Split32 };

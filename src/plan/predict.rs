@@ -102,7 +102,7 @@ fn depth(option: DepthFormat, needs: &Needs) -> Prediction {
     let [nearest, farthest] = needs.depth_m;
     let span = (farthest - nearest).max(f64::MIN_POSITIVE);
     // Smallest distance that always gives another key, at the far end: surfaces nearer to each other than that are confused,
-    // and of a scene as deep as its box that share of pixels has one behind so close.
+    // and in a scene as deep as its box, that fraction of the pixels has another surface so close behind.
     let step_m = match option {
         DepthFormat::Ndc16 => needs.depth_unit_m(farthest) / 65_536.0,
         DepthFormat::Log16 => needs.doubling_span_m(farthest) / 2048.0,

@@ -270,7 +270,7 @@ impl Preset {
     /// The union of `bounds` and the bounds of the particles.
     fn with_particles(&self, mut bounds: Bounds) -> Bounds {
         if let Some(particle_settings) = self.evaluated_stack().particle_settings() {
-            let reach = particle_settings.reach();
+            let reach = particle_settings.disc_bounds();
             [reach.min, reach.max].into_iter().for_each(|corner| bounds.include(corner));
         }
         bounds

@@ -100,7 +100,7 @@ pub fn set(preset_file: &mut PresetFile, path: &str, value: &str) -> Result<(), 
     let has_unknown_effect = |name: &str| preset_file.has_effect_table(name);
     let preset = &preset_file.preset;
     if let Target::Effect(effect) | Target::Field(effect, _) | Target::Animation(Some(effect), _) = target
-        && let Some(conflict) = preset.stack.rival(effect)
+        && let Some(conflict) = preset.stack.conflict_with(effect)
     {
         return Err(PresetError::value(at, "effects", conflict.to_string()));
     }

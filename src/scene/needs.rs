@@ -80,7 +80,7 @@ impl Needs {
     /// Reads `scene` as `view` sees it through `draws`.
     pub fn of(scene: &Scene, draws: &[Draw], view: &View) -> Self {
         let drawn = || draws.iter().map(|draw| &scene.primitives[draw.primitive]);
-        // Deformed vertices are kept as f32, whatever they were.
+        // Deformed vertices are stored as f32, whatever they were.
         let unbent = || draws.iter().filter(|draw| draw.deform.is_none()).map(|draw| &scene.primitives[draw.primitive]);
         let mut painted: Vec<usize> = drawn().map(|p| p.material).filter(|&material| !scene.materials[material].is_plain()).collect();
         painted.sort_unstable();
@@ -189,11 +189,11 @@ fn rounding_px(scene: &Scene, draws: &[Draw], view: &View) -> [f64; 2] {
         let eye = draw.world_from_object.inverse().transform_point3(view.eye);
         let origin = if eye.is_finite() { eye.clamp(bounds.min, bounds.max) } else { DVec3::ZERO };
         let moved = m * DMat4::from_translation(origin);
-        let places = bounds.corners().into_iter().chain([bounds.center()]);
-        let bound = |m: &DMat4, place: DVec3, clip: DVec4| {
+        let points = bounds.corners().into_iter().chain([bounds.center()]);
+        let bound = |m: &DMat4, point: DVec3, clip: DVec4| {
             let sums = |row: usize| {
                 let row = m.row(row).abs();
-                row.x * place.x.abs() + row.y * place.y.abs() + row.z * place.z.abs() + row.w
+                row.x * point.x.abs() + row.y * point.y.abs() + row.z * point.z.abs() + row.w
             };
             let w = clip.w;
             let along = |axis: usize| {
@@ -202,13 +202,13 @@ fn rounding_px(scene: &Scene, draws: &[Draw], view: &View) -> [f64; 2] {
             };
             along(0).max(along(1))
         };
-        places.fold([0.0f64; 2], |[stored, relative], place| {
-            let clip = m * place.extend(1.0);
+        points.fold([0.0f64; 2], |[stored, relative], point| {
+            let clip = m * point.extend(1.0);
             let is_seen = clip.w > 0.0 && clip.z <= clip.w && clip.x.abs() <= 1.5 * clip.w && clip.y.abs() <= 1.5 * clip.w;
             if !is_seen {
                 return [stored, relative];
             }
-            [stored.max(bound(&m, place, clip)), relative.max(bound(&moved, place - origin, clip))]
+            [stored.max(bound(&m, point, clip)), relative.max(bound(&moved, point - origin, clip))]
         })
     };
     // Of a great many, some are enough.

@@ -1,5 +1,5 @@
-//! Splats: a cloud of discs beside a scene's meshes. Each is a triangle that faces the viewer, of which only the ellipse is
-//! drawn that touches its sides in their middles; a pass writes its corners anew for every picture.
+//! Particle discs: discs beside a scene's meshes. Each is a triangle that faces the viewer, of which only the ellipse is
+//! drawn that touches the middles of its sides; a pass writes the corners for every picture.
 
 use std::{borrow::Cow, sync::Arc};
 
@@ -16,29 +16,29 @@ use super::{
 /// Bytes of a corner: position as three floats, colour as three normalized u16, normal as three normalized i16.
 pub const CORNER_BYTES: u32 = 24;
 
-/// Words of a splat.
+/// Words of a disc.
 pub const PARTICLE_DISC_WORDS: usize = 3 * CORNER_BYTES as usize / 4;
 
-/// How many splats there are and where they stay.
+/// How many particles there are, and their bounds.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ParticleSettings {
     pub count: u32,
-    /// Holds the middle of every splat, before the scene is spun.
+    /// They hold the centre of every disc, in the scene before its spin.
     pub bounds: Bounds,
-    /// No disc is larger.
+    /// Largest radius of a disc.
     pub radius_m: f64,
 }
 
 impl ParticleSettings {
     /// Box that holds every corner.
-    pub fn reach(&self) -> Bounds {
-        // Corners lie two radii away; the rest is for the rounding of floats.
-        let error_bound = 2.0 * self.radius_m + 1e-5 * (self.bounds.min.abs().max(self.bounds.max.abs()).max_element() + self.radius_m);
-        Bounds { min: self.bounds.min - error_bound, max: self.bounds.max + error_bound }
+    pub fn disc_bounds(&self) -> Bounds {
+        // Corners lie two radii away; the other term covers the rounding of floats.
+        let margin = 2.0 * self.radius_m + 1e-5 * (self.bounds.min.abs().max(self.bounds.max.abs()).max_element() + self.radius_m);
+        Bounds { min: self.bounds.min - margin, max: self.bounds.max + margin }
     }
 }
 
-/// A moment of a flow that carries a cloud: which frame it is, and what its steps went by.
+/// The steps that particles have taken up to a frame, and the parameters of every step.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ParticleTimeline {
     /// Steps since the beginning.
@@ -52,11 +52,11 @@ impl ParticleTimeline {
     /// Parameter words of the step that leads to frame `step`, counted from 1.
     pub fn words(&self, step: u32) -> &[u32] {
         let last = self.step_params.len() / self.stride - 1;
-        let place = (step.max(1) as usize - 1).min(last);
-        &self.step_params[place * self.stride..][..self.stride]
+        let index = (step.max(1) as usize - 1).min(last);
+        &self.step_params[index * self.stride..][..self.stride]
     }
 
-    /// Steps with words of their own.
+    /// Steps that have words.
     pub fn len(&self) -> usize {
         self.step_params.len() / self.stride
     }
@@ -65,7 +65,7 @@ impl ParticleTimeline {
         self.step_params.is_empty()
     }
 
-    /// Did the other flow take the same first `frames` steps?
+    /// Do both take the same first `frames` steps?
     pub fn shares_steps_with(&self, other: &Self, frames: u32) -> bool {
         let steps = self.len().max(other.len()).min(frames.max(1) as usize) as u32;
         self.stride == other.stride && (1..=steps).all(|step| self.words(step) == other.words(step))
@@ -73,7 +73,7 @@ impl ParticleTimeline {
 }
 
 impl Scene {
-    /// The scene with a cloud beside its meshes, its last instance but for walls. Its bytes are zeros until somebody writes them.
+    /// The scene with particles beside its meshes, as its last instance but for walls. Their bytes are zeros until a pass writes them.
     pub fn with_particles(&self, particle_settings: Option<&ParticleSettings>) -> Cow<'_, Self> {
         let Some(particle_settings) = particle_settings.filter(|particle_settings| particle_settings.count > 0) else {
             return Cow::Borrowed(self);
@@ -92,8 +92,8 @@ impl Scene {
         };
         scene.particle_discs = Some(scene.primitives.len());
         // Walls come last, since they cast no shadows.
-        let place = scene.instances.len() - scene.walls;
-        scene.instances.insert(place, Instance::fixed(scene.primitives.len(), DMat4::IDENTITY));
+        let index = scene.instances.len() - scene.walls;
+        scene.instances.insert(index, Instance::fixed(scene.primitives.len(), DMat4::IDENTITY));
         scene.primitives.push(Primitive {
             name: "particles".into(),
             topology: Topology::List,
@@ -103,20 +103,20 @@ impl Scene {
             colors: Some(accessor(12, ComponentType::U16, true)),
             texcoords: [None, None],
             material: scene.materials.len(),
-            bounds: particle_settings.reach(),
-            longest_edge: 2.0 * 3f64.sqrt() * particle_settings.radius_m * (1.0 + 1e-5) + 1e-5 * particle_settings.reach().radius(),
+            bounds: particle_settings.disc_bounds(),
+            longest_edge: 2.0 * 3f64.sqrt() * particle_settings.radius_m * (1.0 + 1e-5) + 1e-5 * particle_settings.disc_bounds().radius(),
             normals_agree: true,
             deformation: Deformation::default(),
         });
         scene.materials.push(Material { name: "particles".into(), double_sided: true, ..Material::default() });
         if !scene.rig.is_empty() {
-            let reach = particle_settings.reach();
-            [reach.min, reach.max].into_iter().for_each(|corner: DVec3| scene.rig.motion_bounds.include(corner));
+            let bounds = particle_settings.disc_bounds();
+            [bounds.min, bounds.max].into_iter().for_each(|corner: DVec3| scene.rig.motion_bounds.include(corner));
         }
         Cow::Owned(scene)
     }
 
-    /// Where the words of the splats lie among the scene's bytes; empty where there are none.
+    /// Range of the discs among the scene's bytes; empty where there are none.
     pub fn particle_disc_bytes(&self) -> std::ops::Range<usize> {
         self.particle_discs.map_or(0..0, |primitive| {
             let positions = &self.primitives[primitive].positions;
@@ -125,7 +125,7 @@ impl Scene {
         })
     }
 
-    /// Ids of the triangles that are splats; empty where there are none.
+    /// Ids of the triangles that are discs; empty where there are none.
     pub fn particle_disc_ids(&self) -> std::ops::Range<u32> {
         let count = |instance: &Instance| self.primitives[instance.primitive].triangle_count();
         let mut first = 0;

@@ -54,8 +54,13 @@ fn constructor(effect: &Effect, words: &[u32]) -> String {
             words[field.offset / 4..][..field.wgsl.words()].iter().map(|&word| literal(field.wgsl, word)).collect();
         if components.len() == 1 { components[0].clone() } else { format!("vec4f({})", components.join(", ")) }
     };
-    let members: Vec<String> = effect.fields.iter().map(member).collect();
-    format!("{}({})", effect.wgsl_struct, members.join(", "))
+    let mut fields: Vec<&Field> = effect.fields.iter().collect();
+    fields.sort_by_key(|field| field.offset);
+    let members = fields.chunk_by(|a, b| a.group.is_some() && a.group == b.group).map(|fields| {
+        let members = fields.iter().map(|field| member(field)).collect::<Vec<_>>().join(", ");
+        fields[0].group.map_or(members.clone(), |group| format!("{}({members})", group.wgsl_struct))
+    });
+    format!("{}({})", effect.wgsl_struct, members.collect::<Vec<_>>().join(", "))
 }
 
 /// A hook as the kernels call it.
@@ -162,20 +167,7 @@ pub fn binding(name: &str, key: &KernelKey) -> Option<String> {
     }
 }
 
-/// `<effect>_front(p)`, for an effect that has the parameters of a front.
-pub fn front(effect: &Effect) -> String {
-    const PARAMETERS: [&str; 9] = ["pattern", "front", "width", "along_x", "along_y", "center", "radius_m", "width_m", "seed"];
-    if !PARAMETERS.iter().all(|name| effect.fields.iter().any(|field| field.name == *name)) {
-        return String::new();
-    }
-    format!(
-        "fn {}_front(p: {}) -> Front {{\n    return Front(p.pattern, p.front, p.width, vec2f(p.along_x, p.along_y), p.center.xyz, \
-         p.radius_m, p.width_m, p.seed);\n}}\n",
-        effect.name, effect.wgsl_struct
-    )
-}
-
-/// The declaration of a struct in the text of an effect.
+/// The declaration of a struct in the text of a file.
 pub fn struct_text<'a>(text: &'a str, name: &str) -> &'a str {
     let head = format!("struct {name} {{");
     let Some(begin) = text.find(&head) else { return "" };

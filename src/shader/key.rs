@@ -34,7 +34,7 @@ pub struct KernelKey {
     pub surface: SurfaceInputs,
     /// From where and how the scene is projected.
     pub view: ViewKind,
-    /// The effects and what of their parameters stands in the text.
+    /// The effects, and the parameters that are constants of the text.
     pub effects: EffectList,
 }
 
@@ -54,7 +54,7 @@ pub enum Fetch {
 pub enum AttributeFormat {
     /// All of them as f32.
     F32,
-    /// Each draw in a format of its own.
+    /// Each draw in its own format.
     Any,
 }
 
@@ -166,15 +166,15 @@ pub enum ProjectionKind {
 #[derive(Clone, Debug, PartialEq, Eq, Hash)]
 pub struct ViewKind {
     pub projection: ProjectionKind,
-    /// The view is a light's: effects ask where things stand in the picture for which it draws a shadow map.
+    /// The view is a light's: effects read positions in the picture for which it draws a shadow map.
     pub is_light: bool,
 }
 
-/// The effects of a stack, in order, and what of their parameters stands in the text.
+/// The effects of a stack, in order, and the parameters that are constants of the text.
 #[derive(Clone, Debug, PartialEq, Eq, Hash)]
 pub struct EffectList {
     pub list: Vec<&'static Effect>,
-    /// Parameter words of each that stand in the text; empty where a uniform brings them.
+    /// Parameter words of each that are constants of the text; empty where a uniform holds them.
     pub baked: Vec<Vec<u32>>,
     /// The lines along which an effect draws dots.
     pub dots: Option<LineSource>,
@@ -310,7 +310,7 @@ impl KernelKey {
         }
     }
 
-    /// Triangle id and depth key of a pixel from the word that they share, as `shaders/common/packed.wgsl` packs them.
+    /// Triangle id and depth key of a pixel from the word that they share, as `shaders/lib/packed32.wgsl` packs them.
     pub fn unpack(&self, word: u32) -> (u32, u32) {
         let (key_bits, least_key) = self.depth_key_range();
         let id_bits = self.framebuffer.triangle_id_bits;

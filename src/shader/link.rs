@@ -250,9 +250,17 @@ impl Linker<'_> {
         let mut text = glue::effects(&self.key.effects.list, &self.key.effects.baked);
         for effect in &self.key.effects.list {
             let name = format!("effects/{}", effect.name);
-            match self.files.contains_key(&name) {
-                true => text.push_str(&glue::front(effect)),
-                false => text.push_str(glue::struct_text(&self.load(&name, "the stack")?.text, effect.wgsl_struct)),
+            if !self.files.contains_key(&name) {
+                text.push_str(glue::struct_text(&self.load(&name, "the stack")?.text, effect.wgsl_struct));
+            }
+        }
+        // The structs of parameters that several effects share, where their files are not part of the module.
+        let groups: BTreeSet<&str> =
+            self.key.effects.list.iter().flat_map(|effect| effect.fields).filter_map(|field| Some(field.group?.wgsl_struct)).collect();
+        for group in groups {
+            let name = format!("lib/{}", group.to_lowercase());
+            if !self.files.contains_key(&name) {
+                text.push_str(glue::struct_text(&self.load(&name, "the stack")?.text, group));
             }
         }
         self.append(&format!("glue {GENERATED}"), &text);

@@ -137,11 +137,22 @@ fn every_effect_has_the_same_fields_on_both_sides() {
     for effect in EFFECTS {
         let reflected = reflected(&whole(Visibility::Split32, &[effect]), Pass::Resolve);
         let (_, members) = reflected.layout(effect.wgsl_struct).unwrap_or_else(|| panic!("no WGSL struct {}", effect.wgsl_struct));
-        let wgsl: Vec<_> = members.iter().map(|m| (m.name.as_str(), m.offset, m.kind.as_str())).collect();
-        let rust: Vec<_> = effect.fields.iter().map(|f| (f.name, f.offset, f.wgsl.name())).collect();
-        assert_eq!(wgsl, rust, "{}: WGSL on the left, Rust on the right", effect.name);
+        // A group of parameters that several effects share is a struct of its own, at the beginning.
+        let is_group = |kind: &str| effect.fields.iter().any(|field| field.group.is_some_and(|group| group.wgsl_struct == kind));
+        let (groups, own): (Vec<_>, Vec<_>) = members.into_iter().partition(|member| is_group(&member.kind));
+        let of_groups = groups.iter().flat_map(|group| {
+            let (_, members) = reflected.layout(&group.kind).expect("a group is a struct");
+            members.into_iter().map(|m| (group.name.clone(), m.name, group.offset + m.offset, m.kind)).collect::<Vec<_>>()
+        });
+        let wgsl: Vec<_> = of_groups.chain(own.into_iter().map(|m| (String::new(), m.name, m.offset, m.kind))).collect();
+        let mut fields: Vec<_> = effect.fields.iter().collect();
+        fields.sort_by_key(|field| field.offset);
+        let rust = fields.iter().map(|f| {
+            (f.group.map_or(String::new(), |group| group.member.to_owned()), f.name.to_owned(), f.offset, f.wgsl.name().to_owned())
+        });
+        assert_eq!(wgsl, rust.collect::<Vec<_>>(), "{}: WGSL on the left, Rust on the right", effect.name);
         let words = (effect.defaults)();
-        let last = effect.fields.last().expect("an effect has fields");
+        let last = fields.last().expect("an effect has fields");
         assert_eq!(words.len() * 4, last.offset + last.wgsl.words() * 4, "{}: padding at the end", effect.name);
     }
 }

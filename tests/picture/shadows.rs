@@ -257,7 +257,7 @@ fn the_map_is_the_picture_that_the_light_sees() {
         let view = on(&view(&scene, [64, 48]), ShadowMapSize::Side256, ShadowTaps::One);
         let capture = captured(&mut renderer, &scene, &view, &stack, &AccuracyRequest::default());
         let map = capture.geometry.shadow_map.expect("there is a map");
-        let (light, casting) = (stack.light_view(&scene, &view).expect("there is a light"), stack.casting());
+        let (light, casting) = (stack.light_view(&scene, &view).expect("there is a light"), stack.shadow_casters());
         let (seen, verdict) = judged(&mut renderer, &scene, &light, &casting, &pinned(Visibility::Split32));
         // A map has depths and no triangle ids, and layers a quantum apart are all in the band.
         verdict.report.within(&Budget::default()).unwrap_or_else(|faults| panic!("{}: {faults}", scene.name));

@@ -11,11 +11,11 @@ pub struct Pixel {
     pub color: DVec4,
     pub x: u32,
     pub y: u32,
-    /// As [`super::Surface::nudge`].
+    /// As the `nudge` of a surface.
     pub nudge: f64,
 }
 
-/// What an image effect may look up: the integers of the whole picture, row-major.
+/// What an image effect may read: the integers of the whole picture, row-major.
 pub struct Picture<'a> {
     pub width: u32,
     pub height: u32,
@@ -25,9 +25,9 @@ pub struct Picture<'a> {
     pub keys: &'a [u32],
     /// First triangle of every draw, rising.
     pub draws: &'a [u32],
-    /// The picture before this one, gamma-encoded; none for the first.
+    /// The previous picture, gamma-encoded; none for the first.
     pub previous: Option<&'a [[u8; 4]]>,
-    /// Gamma-encoded RGBA where nothing is; its colour is that of whole bytes.
+    /// Gamma-encoded RGBA of the background; its colour is that of whole bytes.
     pub background: DVec4,
 }
 
@@ -56,7 +56,7 @@ pub struct ImageHook {
 
 /// The f64 side of an effect on the image hook.
 pub trait ImageEffect: Params {
-    /// It reads [`Picture::previous`], so the picture before must be kept.
+    /// It reads [`Picture::previous`], so the previous picture must be kept.
     const READS_PREVIOUS: bool = false;
 
     fn finish(pixel: Pixel, picture: &Picture, params: &Self) -> Pixel;

@@ -8,7 +8,6 @@ mod surface;
 pub mod tone;
 mod vertex;
 
-pub(crate) use front::front_of;
 pub use front::{Front, Pattern};
 pub use image::{ImageEffect, ImageHook, Picture, Pixel};
 pub use sample::{Sample, SampleEffect, SampleHook, TriangleSetup};
@@ -31,11 +30,11 @@ pub struct Hooks {
     pub image: Option<ImageHook>,
     /// The part of the rasterizer that the effect replaces.
     pub slot: Option<Slot>,
-    /// It draws along lines, in passes of its own before pixels are shaded.
+    /// It draws along lines, in separate passes before pixels are shaded.
     pub has_lines: bool,
-    /// It puts something beside the scene: a cloud of splats.
+    /// It adds particles to the scene.
     pub particle_settings: Option<fn(&[u32]) -> ParticleSettings>,
-    /// Its colour has steps, decided on a value plus [`Surface::nudge`].
+    /// Its colour has steps, decided by a value plus [`Surface::nudge`].
     pub has_steps: bool,
     /// The members of the surface that it reads.
     pub surface_inputs: &'static [SurfaceInput],

@@ -1,13 +1,13 @@
-//! Slots: parts of the rasterizer that an effect replaces. One effect to a slot.
+//! Slots: parts of the rasterizer that an effect replaces. A slot takes one effect.
 
 /// See the module's first line.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Slot {
     /// Which samples a triangle covers.
     Coverage,
-    /// How many samples are drawn, and in which order they count.
+    /// How many samples are drawn, and in which order they are counted.
     Order,
-    /// What becomes of the samples of one pixel.
+    /// What the picture shows of the samples of one pixel.
     Visibility,
 }
 
@@ -30,9 +30,9 @@ pub enum Shape {
     /// Its own samples, by the top-left rule.
     #[default]
     Triangles,
-    /// Those of its bounding box.
+    /// The samples of its bounding box.
     Boxes,
-    /// Discs about its corners.
+    /// Discs around its corners.
     Points,
 }
 
@@ -43,7 +43,7 @@ pub enum Layers {
     Xray { bits: u32 },
     /// Their number.
     Overdraw,
-    /// The nearest, if nobody interferes.
+    /// The nearest, unless invocations interfere.
     Race,
 }
 

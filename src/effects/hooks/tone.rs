@@ -21,12 +21,12 @@ pub fn smooth(low: f64, high: f64, x: f64) -> f64 {
     t * t * (3.0 - 2.0 * t)
 }
 
-/// Share of light that the eye sees of linear RGB (Rec. 709).
+/// Relative luminance of linear RGB (Rec. 709).
 pub fn luminance(linear: DVec3) -> f64 {
     linear.dot(DVec3::new(0.2126, 0.7152, 0.0722))
 }
 
-/// Cosine and sine of an angle in degrees. Its twin in `shaders/common/tone.wgsl` is a polynomial, since the functions
+/// Cosine and sine of an angle in degrees. Its mirror in `shaders/lib/angle.wgsl` is a polynomial, since the functions
 /// built into WGSL may err by 2^-11, which is a sixth of a pixel across a small picture.
 pub fn turned(degrees: f64) -> DVec2 {
     let quarters = (degrees / 90.0).round();

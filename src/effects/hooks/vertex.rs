@@ -9,27 +9,28 @@ use crate::params::Params;
 pub struct Vertex {
     /// World space before any vertex effect, metres.
     pub position: DVec3,
-    /// How far the effects so far have moved it, metres: it stands at `position + offset`. Kept apart, so that a vertex
-    /// that stays keeps its bits.
+    /// How far the effects so far have moved it, metres: it lies at `position + offset`. The two are separate, so that a vertex
+    /// that does not move keeps its bits.
     pub offset: DVec3,
-    /// Unit, world space, as the file says; zero where it has none.
+    /// Unit, world space, as the file has it; zero where it has none.
     pub normal: DVec3,
-    /// Unit normal of the triangle before any vertex effect; zero where it has no plane, or for an effect that does not
-    /// ask for triangles.
+    /// Unit normal of the triangle before any vertex effect; zero where it has no plane, or where no
+    /// effect needs triangles.
     pub flat_normal: DVec3,
-    /// Mean of the triangle's corners before any vertex effect; the position itself where nobody asks for triangles.
+    /// Mean of the triangle's corners before any vertex effect; the position itself where no effect needs
+    /// triangles.
     pub center: DVec3,
-    /// From the centre to the position, metres: a difference taken in the model, so that a place far from the origin costs
-    /// it nothing.
+    /// From the centre to the position, metres: a difference taken in the model, so that it is as exact far
+    /// from the origin.
     pub arm: DVec3,
-    /// Where that mean stands in the picture, 0 to 1; the middle where it lies behind the eye. Zero where nobody asks for
+    /// Position of that mean in the picture, 0 to 1; the middle where it lies behind the eye. Zero where no effect needs
     /// triangles.
     pub center_screen: DVec2,
-    /// Global triangle id; 0 where nobody asks for triangles.
+    /// Global triangle id; 0 where no effect needs triangles.
     pub triangle: u32,
 }
 
-/// How far the members of an f32 twin's [`Vertex`] may be from the reference, along any axis.
+/// How far the members of the f32 side's [`Vertex`] may be from the f64 ones, along any axis.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct ErrorBound {
     pub position_m: f64,
@@ -41,13 +42,13 @@ pub struct ErrorBound {
     pub center_screen: f64,
 }
 
-/// Largest relative error of one f32 addition or multiplication, whichever way it rounds.
+/// Largest relative error of one f32 addition or multiplication, in any rounding mode.
 pub const ROUNDING: f64 = 1.0 / (1 << 23) as f64;
 
 /// A vertex effect's functions over its parameter words.
 #[derive(Clone, Copy)]
 pub struct VertexHook {
-    /// It reads the triangle, so corners cannot be shared between triangles.
+    /// It reads the triangle, so triangles cannot share vertices.
     pub needs_triangle: bool,
     pub moved: fn(Vertex, &[u32]) -> Vertex,
     pub error_bound: fn(&Vertex, ErrorBound, &[u32]) -> ErrorBound,
@@ -62,10 +63,10 @@ pub trait VertexEffect: Params {
     /// Changes `offset` and `normal` alone.
     fn moved(vertex: Vertex, params: &Self) -> Vertex;
 
-    /// ErrorBound of what an f32 twin makes of `vertex`, whatever rounding, order and fusion WGSL allows, where `slack` is that
-    /// of what it is given. Parameters that move nothing add nothing.
+    /// Error bound of what the f32 side makes of `vertex` under any rounding, order and fusion that WGSL allows, given the bound
+    /// of its input. Parameters that move nothing add nothing.
     fn error_bound(vertex: &Vertex, error_bound: ErrorBound, params: &Self) -> ErrorBound;
 
-    /// How far it moves a vertex of a model of this radius at most.
+    /// The farthest that it moves a vertex of a model of this radius, metres.
     fn max_displacement_m(radius_m: f64, params: &Self) -> f64;
 }

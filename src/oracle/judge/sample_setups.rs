@@ -40,7 +40,7 @@ pub fn wrong_setups(shot: &Shot, geometry: &Geometry) -> u64 {
 }
 
 fn is_wrong(setup: &TriangleSetup, (hook, words): &(SampleHook, &[u32]), given: [u32; 4]) -> bool {
-    let reference = (hook.decide)(setup, words, None);
+    let reference = (hook.sample_setup)(setup, words, None);
     let is_near = f64::from(reference[0].abs_diff(given[0])) <= (hook.error_bound)(setup, words);
-    !is_near || (hook.decide)(setup, words, Some(given[0])) != given
+    !is_near || (hook.sample_setup)(setup, words, Some(given[0])) != given
 }

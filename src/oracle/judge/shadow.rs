@@ -37,7 +37,7 @@ use crate::{
 /// If the map is of another scene or stack.
 pub fn judge_shadow_map(report: &mut ErrorReport, shot: &Shot, map: &ShadowMap) -> Result<(), DrawError> {
     let Some(view) = shot.stack.light_view(shot.scene, shot.view) else { return Ok(()) };
-    let (draws, casting) = (draws(shot.scene, &view)?, shot.stack.casting());
+    let (draws, casting) = (draws(shot.scene, &view)?, shot.stack.shadow_casters());
     let shot = Shot::new(shot.scene, &draws, &view, &casting);
     let own = project(&shot);
     assert_eq!(map.geometry.vertices.len(), own.vertices.len(), "the shadow map is of another scene or stack");

@@ -29,7 +29,7 @@ pub fn sample_setups(shot: &Shot, geometry: &Geometry) -> Vec<[u32; 4]> {
     }
     let records = |entry: Option<SetupEntry>| {
         let of_effect =
-            |(hook, words): &(SampleHook, &[u32])| entry.as_ref().map_or([0; 4], |entry| (hook.decide)(&entry.setup, words, None));
+            |(hook, words): &(SampleHook, &[u32])| entry.as_ref().map_or([0; 4], |entry| (hook.sample_setup)(&entry.setup, words, None));
         let of_mask = entry
             .as_ref()
             .and_then(|entry| entry.mask.as_ref())

@@ -146,8 +146,8 @@ impl<'a> SampleTests<'a> {
         let records = self.effect_setups + if self.masked.is_some() { mask::RECORDS } else { 0 };
         let setups = &self.sample_setups[triangle.entry * records..][..records];
         let passes = |effect: &EffectTest| {
-            let decided = effect.setup.map_or([0; 4], |index| setups[index]);
-            (effect.hook.is_drawn)(&Sample { x, y, triangle: triangle.id, parts, decided }, effect.words)
+            let setup = effect.setup.map_or([0; 4], |index| setups[index]);
+            (effect.hook.is_drawn)(&Sample { x, y, triangle: triangle.id, areas: parts, setup }, effect.words)
         };
         let passes_mask = |(scene, draws): (&Scene, &[Draw])| {
             let draw = draw_of(scene, draws, triangle.id).expect("a triangle belongs to a draw");

@@ -44,7 +44,7 @@ pub fn shadow_map(scene: &Scene, view: &View, stack: &Stack) -> Result<Option<Bo
         return Ok(None);
     }
     let Some(view) = stack.light_view(scene, view) else { return Ok(None) };
-    let (draws, casting) = (draws(scene, &view)?, stack.casting());
+    let (draws, casting) = (draws(scene, &view)?, stack.shadow_casters());
     let shot = Shot::new(scene, &draws, &view, &casting);
     let mut geometry = project(&shot);
     geometry.sample_setups = sample_setups(&shot, &geometry);

@@ -132,7 +132,7 @@ prop_compose! {
         let mut stack = rasterlab::effects::Stack::default();
         for (index, seed) in effects {
             // A preset has no two effects in one slot.
-            if stack.rival(EFFECTS[index]).is_none() {
+            if stack.conflict_with(EFFECTS[index]).is_none() {
                 stack.enable(EFFECTS[index]).words = filled(EFFECTS[index], seed);
             }
         }

@@ -106,7 +106,7 @@ fn disabled_ui(ui: &mut Ui, state: &State, commands: &Commands, effect: &'static
     ui.add_space(theme::GAP);
     let mut on = false;
     let clicked = ui.checkbox(&mut on, title(effect)).on_hover_text(effect.about).accessible_name(effect.name).clicked();
-    let Some(conflict) = state.session.preset().stack.rival(effect) else {
+    let Some(conflict) = state.session.preset().stack.conflict_with(effect) else {
         if clicked {
             commands.edit(Edit::Enable(effect));
         }
