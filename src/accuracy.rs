@@ -89,6 +89,13 @@ macro_rules! axes {
         #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
         pub struct PinnedOptions { $($axis: Option<$name>,)+ }
 
+        impl PinnedOptions {
+            /// Sets every pinned axis of `options` to its pinned option.
+            pub fn apply(&self, options: &mut AccuracyOptions) {
+                $(options.$axis = self.$axis.unwrap_or(options.$axis);)+
+            }
+        }
+
         /// Every axis, in the order in which they are listed.
         pub const AXES: &[Axis] = &[$(Axis {
             name: stringify!($axis),
@@ -418,15 +425,6 @@ impl PinnedOptions {
     /// Pins an axis to the option with this index, or unpins it.
     pub fn set(&mut self, axis: &Axis, index: Option<usize>) {
         (axis.pin)(self, index);
-    }
-
-    /// Sets every pinned axis of `options` to its pinned option.
-    pub fn apply(&self, options: &mut AccuracyOptions) {
-        for axis in AXES {
-            if let Some(index) = self.get(axis) {
-                options.set(axis, index);
-            }
-        }
     }
 
     /// `coverage=float depth=log16`, or nothing.

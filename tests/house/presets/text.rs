@@ -266,3 +266,16 @@ fn schema_json_is_up_to_date() {
         "presets/schema.json is stale; UPDATE_SNAPSHOTS=1 cargo test --release --test presets writes it"
     );
 }
+
+#[test]
+fn an_edit_of_one_value_neither_prints_nor_parses_a_whole_preset() {
+    let source = include_str!("../../../src/preset_file/edit.rs");
+    for name in ["to_toml(", "parse(text", "parse_file(", "DocumentMut"] {
+        assert!(!source.contains(name), "src/preset_file/edit.rs uses {name}");
+    }
+    // The text of an effect that only a newer program knows counts for the order all the same.
+    let mut preset_file = parse("schema = 2\n[effects.facet]\n[effects.lambert]\n[effects.later]\n");
+    preset_file::set(&mut preset_file, "stack", "[\"lambert\", \"later\", \"facet\"]").unwrap();
+    assert_eq!(preset_file.preset.stack.0.iter().map(|enabled| enabled.effect.name).collect::<Vec<_>>(), ["lambert", "facet"]);
+    assert!(preset_file::set(&mut preset_file, "stack", "[\"lambert\", \"never\", \"facet\"]").is_err());
+}
