@@ -74,7 +74,7 @@ pub(super) fn encoder<W: Write>(
     texts: &[(&str, String)],
 ) -> Result<png::Encoder<'static, W>, PresetError> {
     if width == 0 || height == 0 {
-        return Err(failed(format!("a picture of {width}x{height} pixels has none, and PNG cannot hold it")));
+        return Err(failed(format!("the size is {width}x{height}; PNG cannot hold a picture without pixels")));
     }
     let mut encoder = png::Encoder::new(to, width, height);
     encoder.set_color(png::ColorType::Rgba);

@@ -332,13 +332,13 @@ fn a_sequence_that_cannot_be_is_one_sentence() {
         (&["--fps", "0"], "--fps 0 lies outside 0.001..=1000"),
         (&["--fps", "nan"], "--fps NaN lies outside"),
         (&["--to", "1e6", "--fps", "1000"], "are too many; at most 100000 "),
-        (&["--frames", "3..3"], "hold no frame"),
-        (&["--frames", "3"], "frames are A..B"),
+        (&["--frames", "3..3"], "has no frame"),
+        (&["--frames", "3"], "write A..B"),
         (&["--frames", "0..9"], "--frames 0..9 lies outside 0..8, the frames from 0 to 1 s at 8 a second"),
-        (&["-o", "f.png"], "8 frames need {frame} in the name"),
-        (&["-o", "f_{n}.png"], "frames are numbered with {frame}"),
-        (&["-o", "-"], "--apng FILE makes it one"),
-        (&["--size", "0x4"], "PNG cannot hold it"),
+        (&["-o", "f.png"], "put {frame} into the name, since there are 8 frames"),
+        (&["-o", "f_{n}.png"], "use {frame} instead of {n}"),
+        (&["-o", "-"], "use --apng FILE for a single file"),
+        (&["--size", "0x4"], "PNG cannot hold"),
     ];
     for (args, wanted) in cases {
         let folder = studio();
@@ -603,7 +603,7 @@ fn explain_describes_a_preset_without_an_adapter() {
 #[test]
 fn a_picture_of_no_pixels_is_a_sentence() {
     let run = run(&["render", "facet", "--adapter", "cpu", "--size", "0x10"]);
-    assert!(run.code == 2 && run.err.contains("PNG cannot hold it"), "{}", run.err);
+    assert!(run.code == 2 && run.err.contains("PNG cannot hold"), "{}", run.err);
 }
 
 #[test]

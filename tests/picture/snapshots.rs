@@ -223,7 +223,7 @@ fn a_preset_that_pins_a_lossy_option_is_verified_within_its_budget_of_wrong_tria
     };
     let (exit, wrong) = verify("");
     assert!(exit == Some(1) && wrong > 100, "{exit:?}, {wrong} without a budget");
-    let budget = |most: u64| format!("[test]\nmax_wrong_owner = {most}\nwhy = \"edges that touch a sample draw it twice\"\n");
+    let budget = |most: u64| format!("[test]\nmax_wrong_triangles = {most}\nwhy = \"edges that touch a sample draw it twice\"\n");
     assert_eq!(verify(&budget(wrong)).0, Some(0));
     assert_eq!(verify(&budget(wrong - 1)).0, Some(1));
 }

@@ -37,11 +37,11 @@ fn errors_name_line_key_value_and_range() {
         ),
         ("schema = 2\n[test]\nmax_pixels = 9\n", "preset.toml:2: test.why must say why the budget is above the default"),
         (
-            "schema = 2\n[test]\nmax_wrong_owner = 9\nwhy = \"because\"\n",
+            "schema = 2\n[test]\nmax_wrong_triangles = 9\nwhy = \"because\"\n",
             "preset.toml:2: test.max_wrong_triangles must be 0 here; it needs a pinned option that is not exact, or the tier draft or fast",
         ),
         (
-            "schema = 2\n[accuracy]\nvisibility = \"race\"\n[test]\nmax_wrong_owner = 9\n",
+            "schema = 2\n[accuracy]\nvisibility = \"race\"\n[test]\nmax_wrong_triangles = 9\n",
             "preset.toml:4: test.why must say why the budget is above the default",
         ),
         ("schema = 2\nname = \"\\u001b[31m\"\n", "preset.toml:2: name contains the control character '\\u{1b}'"),
