@@ -93,7 +93,7 @@ fn drawn(
     }
     let delta = pictures(&expected, &frame.color, test.max_channel);
     let mut problems = Vec::new();
-    // A pixel with a wrong triangle has a wrong colour.
+    // A pixel with a wrong triangle has a wrong color.
     let allowed = u64::from(test.max_pixels) + u64::from(test.max_wrong_triangles);
     if delta.pixels_over_tolerance > allowed {
         problems.push(format!(

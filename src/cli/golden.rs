@@ -167,7 +167,7 @@ mod tests {
     }
 
     #[test]
-    fn a_name_does_not_change_the_hash_and_a_colour_does() {
+    fn a_name_does_not_change_the_hash_and_a_color_does() {
         let plain = Preset::default();
         let named = Preset { name: "x".into(), ..plain.clone() };
         let mut tinted = plain.clone();

@@ -163,7 +163,7 @@ pub enum Value {
     Bool(bool),
     /// Index of the word.
     Choice(usize),
-    /// The components of a number, size, point or colour; every u32, i32 and f32 is an f64, too.
+    /// The components of a number, size, point or color; every u32, i32 and f32 is an f64, too.
     Numbers(Vec<f64>),
     Text(String),
     TextList(Vec<String>),

@@ -400,7 +400,7 @@ const ACCURACY_SETTINGS: [Setting; TOLERANCES + AXES.len()] = {
     settings[2] = Setting::new(
         "max_channel",
         ValueType::U32,
-        "Tolerance instead of the tier's: difference of a colour channel, of 255",
+        "Tolerance instead of the tier's: difference of a color channel, of 255",
         option!(accuracy.channel),
     )
     .range(0.0, 255.0);
@@ -419,7 +419,7 @@ pub static OUTPUT: Section = Section {
         "output",
         [
             Setting::new("size", ValueType::Size, "Width and height in pixels", field!(output.size)).range(0.0, 16_384.0),
-            Setting::new("background", ValueType::Color, "Colour where there is no triangle, linear RGBA", field!(output.background)),
+            Setting::new("background", ValueType::Color, "Color where there is no triangle, linear RGBA", field!(output.background)),
         ],
     ),
     presence: None,
@@ -431,7 +431,7 @@ pub static TEST: Section = Section {
     settings: &in_section(
         "test",
         [
-            Setting::new("max_channel", ValueType::U32, "Largest difference of a colour channel, of 255", section_field!(test.max_channel))
+            Setting::new("max_channel", ValueType::U32, "Largest difference of a color channel, of 255", section_field!(test.max_channel))
                 .range(0.0, 255.0),
             Setting::new("max_pixels", ValueType::U32, "Number of pixels that may differ by more", section_field!(test.max_pixels)),
             Setting::new(
