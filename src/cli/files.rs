@@ -125,8 +125,8 @@ fn parts(template: &str) -> Result<Vec<TemplatePart<'_>>, CliError> {
                 "{template}: unknown placeholder; use {{preset}}, {{effect}}, {{n}}, {{n:3}}, {{frame:4}}, {{adapter}} or {{tier}}, and double a brace to write it"
             ))
         };
-        let (place, after) = from.strip_prefix('{').and_then(|from| from.split_once('}')).ok_or_else(wrong)?;
-        let (name, width) = place.split_once(':').unwrap_or((place, "0"));
+        let (placeholder, after) = from.strip_prefix('{').and_then(|from| from.split_once('}')).ok_or_else(wrong)?;
+        let (name, width) = placeholder.split_once(':').unwrap_or((placeholder, "0"));
         let width = width.parse().ok().filter(|width| *width <= 9).ok_or_else(wrong)?;
         if !["preset", "effect", "adapter", "tier", "n", "frame"].contains(&name) || (width > 0 && !["n", "frame"].contains(&name)) {
             return Err(wrong());
@@ -166,7 +166,7 @@ mod tests {
     }
 
     #[test]
-    fn nothing_is_overwritten_unasked() {
+    fn nothing_is_overwritten_without_force() {
         let folder = tempfile::tempdir().unwrap();
         let at = |name: &str| folder.path().join(name).to_string_lossy().into_owned();
         std::fs::write(at("a.png"), "x").unwrap();

@@ -1,12 +1,12 @@
-//! A polyline as a preset writes it: a point of three numbers to a line, or between semicolons.
+//! Polylines as text: points of three numbers, one per line or separated by semicolons.
 
 /// Largest coordinate, metres.
 const FARTHEST_M: f32 = 1e9;
 
-/// Reads a polyline; nothing at all is none. The error completes a sentence that begins with its key.
+/// Reads a polyline; an empty text has no points.
 ///
 /// # Errors
-/// With the first point that is none, or that adds nothing to the line.
+/// The first point that is malformed or repeats the one before. Completes a sentence that begins with the setting's name.
 pub fn parse(text: &str) -> Result<Vec<[f32; 3]>, String> {
     let mut points: Vec<[f32; 3]> = Vec::new();
     for written in text.split([';', '\n']).map(str::trim).filter(|written| !written.is_empty()) {
@@ -17,24 +17,24 @@ pub fn parse(text: &str) -> Result<Vec<[f32; 3]>, String> {
             .map_err(|numbers: Vec<&str>| format!("has {} numbers in point {number}, {written:?}; it needs 3", numbers.len()))?;
         let mut point = [0.0; 3];
         for (number, written) in point.iter_mut().zip(numbers) {
-            let value: f32 = written.parse().map_err(|_| format!("has {written:?} in point {number}, which is no number"))?;
+            let value: f32 = written.parse().map_err(|_| format!("has {written:?} in point {number}, which is not a number"))?;
             if !value.is_finite() || value.abs() > FARTHEST_M {
                 return Err(format!("has {written} in point {number}; coordinates must lie within -1e9..=1e9"));
             }
             *number = value;
         }
         if points.last() == Some(&point) {
-            return Err(format!("has point {number} in the place of the one before, {written:?}; leave one of them out"));
+            return Err(format!("has point {number} equal to the one before, {written:?}; remove one of them"));
         }
         points.push(point);
     }
     match points.len() {
-        1 => Err("has a single point; a line needs two".into()),
+        1 => Err("has one point; a line needs at least two".into()),
         _ => Ok(points),
     }
 }
 
-/// What [`parse`] takes back to the same bits.
+/// The text that [`parse`] reads back to the same bits.
 pub fn to_text(points: &[[f32; 3]]) -> String {
     points.iter().map(|[x, y, z]| format!("{x} {y} {z}")).collect::<Vec<_>>().join("; ")
 }
@@ -64,10 +64,10 @@ mod tests {
         refused("0 0 0; nan 0 0", "has nan in point 2");
         refused("0 0 0; 1 inf 0", "within -1e9..=1e9");
         refused("0 0 0; 1e39 0 0", "point 2");
-        refused("0 0 0; x 0 0", "has \"x\" in point 2, which is no number");
+        refused("0 0 0; x 0 0", "has \"x\" in point 2, which is not a number");
         refused("0 0 0; 1 0", "has 2 numbers in point 2");
-        refused("0 0 0; 1 0 0; 1 0 0", "point 3 in the place of the one before");
-        refused("0 0 0; -0 0 0", "point 2 in the place of the one before");
-        refused("0 0 0", "a line needs two");
+        refused("0 0 0; 1 0 0; 1 0 0", "point 3 equal to the one before");
+        refused("0 0 0; -0 0 0", "point 2 equal to the one before");
+        refused("0 0 0", "a line needs at least two");
     }
 }

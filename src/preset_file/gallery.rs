@@ -74,7 +74,7 @@ fn builtin_entries() -> impl Iterator<Item = GalleryEntry> {
     })
 }
 
-/// Where a person's own presets are kept: `rasterlab/presets` in the system's place for configuration.
+/// The folder of the user's presets: `rasterlab/presets` in the configuration folder of the system.
 pub fn user_folder() -> Option<PathBuf> {
     let variable = |name: &str| std::env::var_os(name).map(PathBuf::from).filter(|path| path.is_absolute());
     let config = if cfg!(windows) {
