@@ -173,14 +173,14 @@ fn only_a_deformed_scene_has_the_skin_pass_and_only_the_buffers_that_it_needs() 
         !passes.contains(&"deform") && !["deforms", "joints", "morph_targets"].iter().any(|name| buffers.contains(name)),
         "{passes:?} {buffers:?}"
     );
-    assert!(still.omitted.iter().any(|note| note.name == "skin" && note.why.contains("no mesh has joints or morph weights")));
+    assert!(still.omitted.iter().any(|note| note.name == "deform" && note.why.contains("no mesh has joints or morph weights")));
     let bytes = |explanation: &Explanation| explanation.buffers.iter().find(|buffer| buffer.name == "vertex_bytes").map_or(0, |b| b.bytes);
     assert!(bytes(&still) < scene("teapot?tess=4").vertex_bytes.len() as u64 + 16, "a rigid mesh has no room for bent vertices");
 
     // At rest its shape has no weight, so nothing is mixed.
     let deformed = explained("tentacle?tess=2");
     let (passes, buffers) = names(&deformed);
-    assert_eq!(passes[..2], ["skin", "project"]);
+    assert_eq!(passes[..2], ["deform", "project"]);
     assert!(buffers.contains(&"deforms") && buffers.contains(&"joints") && !buffers.contains(&"morph_targets"), "{buffers:?}");
     assert!(deformed.reasons.iter().any(|note| note.name == "skinning" && note.why.starts_with("linear: ")));
 }
