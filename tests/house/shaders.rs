@@ -2,8 +2,10 @@
 //! atomics only where an option asks for them, within eight storage buffers; every file names only what it and the files that
 //! it uses declare; and few files must be opened to read a pass. Needs no adapter.
 
+use std::{collections::BTreeMap, sync::Mutex};
+
 use rasterlab::{
-    accuracy::{AXES, Culling, DotCulling, Parameters, Visibility},
+    accuracy::{AXES, Axis, Culling, DotCulling, Parameters, Visibility},
     effects::{
         EFFECTS, Effect,
         dots::LineSource,
@@ -50,14 +52,22 @@ fn linked(key: &KernelKey, pass: Pass) -> Linked {
         .unwrap_or_else(|error| panic!("{} of {key}: {error}", pass.label()))
 }
 
-/// Validates one pass and returns the number of storage buffers it binds.
+/// Validates one pass and returns the number of storage buffers it binds. Most keys share most texts: each text is validated once.
 fn validate(key: &KernelKey, pass: Pass) -> usize {
+    static VALID: Mutex<BTreeMap<(String, &str, bool), usize>> = Mutex::new(BTreeMap::new());
+    let valid = || VALID.lock().unwrap_or_else(|poisoned| poisoned.into_inner());
     let int64 = pass.phase() == Some(RasterPhase::Packed);
     let linked = linked(key, pass);
+    let identity = (linked.text.clone(), pass.stem(), int64);
+    if let Some(&storage) = valid().get(&identity) {
+        return storage;
+    }
     let reflected = reflect::reflect(&linked, int64).unwrap_or_else(|error| panic!("{} of {key}: {error}", pass.label()));
     let bindings = reflected.bindings(pass.stem());
     assert!(!bindings.is_empty(), "{} has no entry point {}", pass.stem(), pass.stem());
-    bindings.iter().filter(|b| matches!(b.kind, BindingKind::Storage { .. })).count()
+    let storage = bindings.iter().filter(|b| matches!(b.kind, BindingKind::Storage { .. })).count();
+    valid().insert(identity, storage);
+    storage
 }
 
 #[test]
@@ -105,13 +115,13 @@ fn every_option_of_every_axis_links_and_validates() {
     let effect = |name| Effect::find(name).expect("an effect");
     let stacks =
         [vec![], vec![effect("overdraw"), effect("outline")], vec![effect("dissolve"), effect("draw_order")], vec![effect("xray")]];
+    // Only these choose among the variants in which the stacks differ.
+    let with_stacks = ["visibility", "sample_counter", "xray_sums", "depth", "culling"].map(|name| Axis::find(name).expect("an axis").name);
     for axis in AXES {
-        for place in 0..axis.words.len() {
-            // Only some axes meddle with what the stacks differ in.
-            let is_meddling = matches!(axis.name, "visibility" | "counting" | "sums" | "depth" | "culling");
-            for effects in if is_meddling { &stacks[..] } else { &stacks[1..2] } {
+        for index in 0..axis.words.len() {
+            for effects in if with_stacks.contains(&axis.name) { &stacks[..] } else { &stacks[1..2] } {
                 let mut key = key(Fetch::Indexed, Visibility::Split32, true, effects.clone());
-                key.options.set(axis, place);
+                key.options.set(axis, index);
                 key.samples.draw_order = effects.contains(&effect("draw_order")).then_some(Mode::Submission);
                 if key.options.parameters == Parameters::Baked {
                     key.effects.baked = effects.iter().map(|effect| (effect.defaults)()).collect();
