@@ -4,7 +4,7 @@
 //! Where dots would crowd on the screen, those of the lowest level fade until they are gone when the gap has halved, then
 //! the next ones begin; so the pattern thins continuously as the camera moves away. The position of a dot is a
 //! float that is snapped once; its level, its fading and the samples that it covers are integers from there on. Of several
-//! dots on a pixel the strongest shows, in whatever order they are drawn.
+//! dots on a pixel the strongest shows, in any drawing order.
 
 use super::Effect;
 use crate::{
@@ -39,7 +39,7 @@ params! {
         size_px: f32 = 2.5, hard 1.0..=64.0, soft 1.0..=16.0, unit "px";
         /// The gap on the screen below which every second dot begins to fade.
         min_gap_px: f32 = 6.0, hard 0.25..=1024.0, soft 1.0..=64.0, log true, unit "px";
-        /// How often the dots may be halved; 0: all are drawn however they crowd.
+        /// How often the dots may be halved; 0: all are drawn, however dense.
         levels: u32 = 20, hard 0.0..=24.0;
         /// Fraction of the distance from one halving to the next over which dots fade.
         fade: f32 = 1.0, hard 0.0625..=1.0;
@@ -57,7 +57,7 @@ pub const EFFECT: Effect = Effect::new::<Dots>("dots", "Dots", "draws dots along
 /// Most dots of a picture: 8 bytes each fit the binding of every adapter.
 pub const MAX_DOTS: u64 = 1 << 24;
 
-/// A dot that hides whatever is beneath it; strengths are from 0 to this.
+/// Strength of an opaque dot; strengths range from 0 to this.
 pub const FULL: u32 = 256;
 
 /// Bits of a float's fraction: so many steps lead from a power of two to the next.

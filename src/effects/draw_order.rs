@@ -1,8 +1,8 @@
 //! Draw order: stops the picture after a number of samples, so that one sees the order in which it is drawn.
 //!
 //! Covered samples count before any depth test, overdraw included. In submission order the first of them are drawn,
-//! triangle by triangle and row by row: the same ones on every adapter. In the scheduler's order each sample draws a
-//! ticket; how many are drawn is exact, which ones is the hardware's own affair.
+//! triangle by triangle and row by row: the same ones on every adapter. In the scheduler's order each sample takes
+//! a number from a counter: how many are drawn is exact, which ones depends on the hardware.
 
 use glam::DVec4;
 
@@ -10,11 +10,11 @@ use super::{Effect, Surface, SurfaceEffect, SurfaceInput, hooks::Slot, read};
 use crate::{choice, params, params::Color};
 
 choice! {
-    /// Whose order counts.
+    /// In which order samples are counted.
     pub enum Mode {
-        /// That of the triangles; repeatable.
+        /// In the order of the triangles; repeatable.
         Submission = "submission",
-        /// That in which the hardware comes to them; never quite the same.
+        /// In the order of the hardware, which differs from frame to frame.
         Scheduler = "scheduler",
     }
 }
@@ -35,7 +35,7 @@ params! {
         first: Color = [0.05, 0.1, 0.5, 0.0];
         /// Colour of what is drawn last; alpha is its weight against the surface's colour.
         last: Color = [1.0, 0.35, 0.05, 0.0];
-        /// Whose order counts.
+        /// In which order samples are counted.
         mode: Mode = Mode::Submission as u32;
         /// How the limit is given.
         unit: Unit = Unit::Fraction as u32;
@@ -67,7 +67,7 @@ impl DrawOrder {
 impl SurfaceEffect for DrawOrder {
     const INPUTS: &[SurfaceInput] = &[SurfaceInput::Rank, SurfaceInput::Glow, SurfaceInput::Color];
 
-    /// Heat by rank: which fraction of all samples came before the triangle.
+    /// Heat by rank: the fraction of all samples that precede the triangle.
     fn apply(mut s: Surface, p: &Self) -> Surface {
         let [first, last] = [p.first, p.last].map(|color| DVec4::from_array(color.map(f64::from)));
         let heat = first.lerp(last, s.rank);

@@ -20,7 +20,7 @@ params! {
         amount_m: f32 = 0.3, hard -1e3..=1e3, soft -1.0..=2.0, unit "m";
         /// How much the distances differ: at 0 all triangles move equally far, at 1 some do not move at all.
         scatter: f32 = 0.0, hard 0.0..=1.0;
-        /// Turns that a triangle makes about its normal on its way.
+        /// Turns that a triangle makes about its normal on its path.
         spin_turns: f32 = 0.0, hard -100.0..=100.0, soft -1.0..=1.0, unit "turns";
         /// Fraction of its size that a triangle loses on its path.
         shrink: f32 = 0.0, hard 0.0..=1.0;
@@ -110,7 +110,7 @@ impl Spin {
 }
 
 impl Explode {
-    /// How much of its way a triangle has gone.
+    /// How far a triangle has moved along its path, 0 to 1.
     fn progress(&self, v: &Vertex) -> f64 {
         let reached = self.spread.reached(v.center, v.center_screen, v.triangle);
         reached * (1.0 - f64::from(self.scatter) * hash_unit(v.triangle ^ self.spread.seed.wrapping_mul(0x85eb_ca6b)))

@@ -1,6 +1,6 @@
 //! Hatch: cross-hatching in ink, whose lines grow as the tone darkens.
 //!
-//! Layers of parallel lines come in one after the other; each line is filtered over its pixel, so that nothing flickers.
+//! Layers of parallel lines appear one after the other; each line is filtered over its pixel, so that nothing flickers.
 //! Lines lie in the picture, or are cuts of parallel planes through the world, as an engraver follows the form. Those on a
 //! triangle that the near plane cuts waver by a fraction of a pixel: there f32 resolves positions to 1e-5 of their distance.
 
@@ -36,7 +36,7 @@ params! {
         spacing_m: f32 = 0.06, hard 0.001..=1e3, soft 0.01..=0.5, unit "m", log true, when ("space", &["surface"]);
         /// Direction of the first layer; the second crosses it, two more lie between.
         angle_deg: f32 = 35.0, hard -360.0..=360.0, soft -90.0..=90.0, unit "°";
-        /// Layers that come in one after the other.
+        /// Layers that appear one after the other.
         layers: u32 = 3, hard 1.0..=4.0;
         /// Width of a full line, as a fraction of the spacing.
         width: f32 = 0.55, hard 0.05..=1.0;
@@ -76,7 +76,7 @@ impl SurfaceEffect for Hatch {
 }
 
 impl Hatch {
-    /// How much of the pixel the lines of a layer take that are `width` of their spacing wide.
+    /// Coverage of the pixel by the lines of a layer, which are `width` of their spacing wide.
     fn line(&self, s: &Surface, layer: u32, width: f64) -> f64 {
         // Crossed, then between.
         let along = turned(f64::from(self.angle_deg) + [0.0, 90.0, 45.0, 135.0][layer as usize & 3]);
@@ -95,7 +95,7 @@ impl Hatch {
         let distance = (position - position.floor() - 0.5).abs() * spacing_px + 64.0 * s.nudge;
         let half = 0.5 * width * spacing_px;
         let covered = ((distance + 0.5).min(half) - (distance - 0.5).max(-half)).clamp(0.0, 1.0);
-        // Lines that no pixel can tell apart become their mean.
+        // Lines too dense for the pixels become their mean.
         width + (covered - width) * (spacing_px - 1.0).clamp(0.0, 1.0)
     }
 }

@@ -15,7 +15,7 @@ use crate::{
 choice! {
     /// Which side of an edge the line lies on.
     pub enum Side {
-        /// The farther: round what is in front.
+        /// The farther: around what is in front.
         Outside = "outside",
         /// The nearer: within what is in front.
         Inside = "inside",
@@ -70,7 +70,7 @@ impl ImageEffect for Outline {
 }
 
 impl Outline {
-    /// Does a line run at a pixel because of another, whose opposite lies `beyond`?
+    /// Is there a line at a pixel because of its neighbour `there`? `beyond` is the neighbour on the opposite side.
     fn is_edge(&self, here: Seen, there: Seen, beyond: impl Fn() -> Option<Seen>) -> bool {
         let side = Side::of(self.side);
         if here.0.is_none() || there.0.is_none() {
@@ -83,7 +83,7 @@ impl Outline {
             return self.objects != 0 && (side == Side::Both || is_behind == (side == Side::Outside));
         }
         let Some(beyond) = beyond().filter(|beyond| self.depth != 0 && beyond.0.is_some() && beyond.2 == here.2) else { return false };
-        // What bends away from a straight slope; a slope alone is no jump.
+        // The second difference: a constant slope is no jump.
         let curvature = i64::from(there.1) + i64::from(beyond.1) - 2 * i64::from(here.1);
         let jump = (f64::from(self.depth_threshold) * f64::from(1 << 23)) as i64;
         match side {

@@ -1,6 +1,6 @@
 //! Particles: discs that a divergence-free flow carries through the scene.
 //!
-//! What is said here both sides follow, the kernels in f32 and the oracle in f64.
+//! This is the definition for both sides, the kernels in f32 and the oracle in f64.
 //!
 //! **Random numbers.** Number k of particle i in its life b (counted from 0) is `hash(base + k)` with
 //! `base = hash(hash(hash(seed) + i) ^ b)`, all in u32.
@@ -8,16 +8,16 @@
 //! **Life.** At most `L = max(1, round(lifetime_s rate))` steps, of which `round(L lifetime_variation)`, at most L - 1, are left to
 //! chance: L - n steps, where n is the upper word of random number 12 times (that many + 1). In frame 0 a particle is as
 //! old as the upper word of random number 13 times its life says. With every step it ages by one; a particle at the end
-//! of its life, or would leave the room, is born again instead.
+//! of its life, or would leave the bounds, is born again instead.
 //!
 //! **Birth.** Numbers 2t and 2t + 1 give attempt t three coordinates: the lower and upper half of the first word and the
 //! lower half of the second, less 32768. The first of six attempts inside the ball of radius 32768 counts, else the last
-//! one halved. Coordinates over 32768, times `half_axes`, held within the room, are the position relative to `center`. Velocity is 0.
+//! one halved. Coordinates over 32768, times `half_axes`, clamped to the bounds, are the position relative to `center`. Velocity is 0.
 //!
 //! **Step.** dt = 1 / rate. With position p and velocity v of the previous frame, away = attractor - p and
 //! pull = attraction 2 r away / (away² + r²), r = `attractor_m`: v' = (v + dt (drag u + pull)) / (1 + dt drag), p' = p + dt v'.
 //!
-//! **ParticleTimeline.** u = `speed_mps` [`SPEED_NORMALIZER`] Σ persistence^o curl ψ_o(q) / Σ persistence^o over the octaves o, where
+//! **Flow.** u = `speed_mps` [`SPEED_NORMALIZER`] Σ persistence^o curl ψ_o(q) / Σ persistence^o over the octaves o, where
 //! q = p 2^o / swirl_m + (o + 1) [`LATTICE_SHIFT`] + (step dt evolve) [`LATTICE_DRIFT`], and ψ_o is value noise: three numbers at
 //! every point (x, y, z) of the integer lattice, from the bits 0 to 9, 10 to 19 and 20 to 29 of
 //! `hash(hash(hash(x + salt) + y) + z)`, b as (2 b + 1) / 1024 - 1, with `salt = hash(seed ^ 0x9e3779b9) + o`; between
@@ -98,16 +98,16 @@ params! {
 pub const EFFECT: Effect =
     Effect::new::<Particles>("particles", "Particles", "adds drifting discs to the scene").with_particles(|words| particle_settings(&read(words)));
 
-/// Between the lattices of one octave and the next.
+/// Offset between the lattices of one octave and the next.
 pub const LATTICE_SHIFT: [f64; 3] = [0.3125, 0.4375, 0.71875];
 
-/// What makes one octave's mean speed about 1.
+/// Factor that makes one octave's mean speed about 1.
 pub const SPEED_NORMALIZER: f64 = 0.625;
 
-/// Which way lattices drift.
+/// Direction in which lattices drift.
 pub const LATTICE_DRIFT: [f64; 3] = [0.25, -0.5, 0.375];
 
-/// Frames of a flow; the next one is the first again.
+/// Frames of a simulation, which then begins again.
 pub const FRAMES: u32 = 36_000;
 
 /// How much a normal leans outwards at the rim of a disc, at most.
@@ -145,12 +145,12 @@ fn step_words(words: &[u32]) -> Vec<u32> {
     step
 }
 
-/// A flow at a frame, whose parameters do not change on the way.
+/// The timeline up to a frame, with parameters that do not change.
 pub fn constant_timeline(words: &[u32], frame: u32) -> ParticleTimeline {
     ParticleTimeline { frame, step_params: step_words(words).into(), stride: words.len() }
 }
 
-/// A flow whose steps go by these words, one after another. The attraction follows its point behind.
+/// The timeline with these parameter words for each step. The attraction follows its point with a lag.
 pub fn along(steps: impl Iterator<Item = Vec<u32>>, frame: u32) -> ParticleTimeline {
     let (mut step_params, mut stride) = (Vec::new(), 0);
     let mut followed: Option<[f64; 3]> = None;
@@ -163,7 +163,7 @@ pub fn along(steps: impl Iterator<Item = Vec<u32>>, frame: u32) -> ParticleTimel
         let at = [0, 1, 2].map(|axis: usize| from[axis] + (goal[axis] - from[axis]) * approach);
         followed = Some(at);
         let field = EFFECT.field("attractor").expect("an attractor");
-        // Between two points that the field takes, it takes every point.
+        // The range of the field is convex, so it holds every point between two of its points.
         let _ = field.set(&mut words, &at);
         stride = words.len();
         step_params.extend(words);

@@ -7,9 +7,9 @@ use super::{
 use crate::{choice, params};
 
 choice! {
-    /// What falls into levels.
+    /// What is quantized.
     pub enum By {
-        /// Red, green and blue, each for itself.
+        /// Red, green and blue, each separately.
         Channels = "channels",
         /// The brightest channel; the others keep their ratio to it, so hue stays.
         Brightness = "brightness",
@@ -18,11 +18,11 @@ choice! {
 
 params! {
     pub struct Posterize {
-        /// What falls into levels.
+        /// What is quantized.
         by: By = By::Channels as u32;
         /// Number of levels, black and white included.
         levels: u32 = 5, hard 2.0..=256.0, soft 2.0..=16.0;
-        /// How much of the way to the level is gone.
+        /// How far colours move to their level: 0 not at all, 1 entirely.
         amount: f32 = 1.0, hard 0.0..=1.0;
     }
 }

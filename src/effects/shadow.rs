@@ -1,7 +1,7 @@
 //! Shadow: a directional light with a shadow map, which the rasterizer itself draws from the light.
 //!
-//! Where a sample lies deeper than what the light sees there, light does not arrive. A tap asks that of one texel, of the
-//! plane of the sample's triangle at the middle of that texel, moved towards the light by a bias: a constant, and a slope
+//! Light does not reach a sample that is deeper than what the light sees there. A tap compares one texel with the plane of the
+//! sample's triangle at the centre of that texel, moved towards the light by a bias: a constant, and a slope
 //! that grows with the tangent of the angle at which light meets the plane, both in texels.
 
 use glam::DVec3;
@@ -35,11 +35,11 @@ params! {
         ground: Color = [0.08, 0.065, 0.055, 1.0], when ("shading", &["lambert"]);
         /// Where the light comes from: 0 in front of the scene, 90 from its right.
         azimuth_deg: f32 = 40.0, hard -36000.0..=36000.0, soft -180.0..=180.0, unit "°";
-        /// How high the light stands: 90 straight above.
+        /// Elevation of the light: 90 straight above.
         elevation_deg: f32 = 48.0, hard -90.0..=90.0, unit "°";
         /// What the light does.
         shading: Shading = Shading::Lambert as u32;
-        /// Share of the light that a shadow takes away.
+        /// Fraction of the light that a shadow removes.
         strength: f32 = 1.0, hard 0.0..=1.0;
         /// How many texels a surface is moved towards the light before it is compared.
         bias: f32 = 0.5, hard -64.0..=64.0, soft 0.0..=4.0;
@@ -73,7 +73,7 @@ impl SurfaceEffect for Shadow {
                 let up = 0.5 + 0.5 * s.normal.y;
                 rgb(p.light) * (facing * arrives) + rgb(p.ground) + (rgb(p.sky) - rgb(p.ground)) * up
             }
-            // Where the light only grazes a surface, it was dim before.
+            // A surface that the light grazes was dim before.
             Shading::Dim => DVec3::splat(1.0 - f64::from(p.strength) * (1.0 - s.lit * (4.0 * facing).min(1.0))),
         };
         s.color = (s.color.truncate() * light).extend(s.color.w);

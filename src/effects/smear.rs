@@ -1,8 +1,8 @@
 //! Smear: where nothing is drawn, the previous picture remains and fades towards the background.
 //!
-//! Whole bytes fade by whole steps, so that a trail is the same on every adapter. A picture of its own stands after
-//! `frames` earlier ones, `step_s` apart, the first of which stands after nothing but background; a window that lets time
-//! run keeps the pictures that it showed.
+//! Whole bytes fade by whole steps, so that a trail is the same on every adapter. A single picture follows
+//! `frames` earlier ones, `step_s` apart, the first of which follows plain background; the window, while time runs, uses the
+//! pictures that it showed.
 
 use glam::DVec4;
 
@@ -14,9 +14,9 @@ use crate::params;
 
 params! {
     pub struct Smear {
-        /// How much of the way to the background a trail goes from one picture to the next: 1 leaves none, 0 never ends.
+        /// Fraction of the difference to the background that a trail loses from one picture to the next: 1 leaves no trail, 0 never fades.
         fade: f32 = 0.12, hard 0.0..=1.0, soft 0.0..=0.5;
-        /// Earlier pictures that a single one is drawn after.
+        /// Earlier pictures that are drawn before a single one.
         frames: u32 = 12, hard 0.0..=32.0;
         /// Time from one of them to the next.
         step_s: f32 = 0.04, hard 0.0..=60.0, soft 0.01..=0.5, unit "s";
@@ -37,7 +37,7 @@ impl ImageEffect for Smear {
         let background = picture.background.to_array().map(|c| (255.0 * c + 0.5).floor() as i64);
         let index = pixel.y as usize * picture.width as usize + pixel.x as usize;
         let previous = picture.previous.map_or(background, |previous| previous[index].map(i64::from));
-        // In units of 2^-16; a trail that fades at all takes a step at least, so it comes to its end.
+        // In units of 2^-16; a trail that fades takes at least one step, so it ends.
         let step = (f64::from(p.fade) * 65536.0) as i64;
         let faded = |c: usize| {
             let gap = background[c] - previous[c];

@@ -1,8 +1,8 @@
 //! Wobble: a wave runs through the model and sways it, normals and all.
 //!
 //! The displacement is u(x) = sway A sin(2π (direction·x / λ - phase)), its Jacobian I + slope sway directionᵀ, and a normal goes
-//! with the cofactors of that: n (1 + slope sway·direction) - direction slope (sway·n). The phase is given in turns and kept
-//! within one, so a wave that has run for a day is as exact as a new one.
+//! with the cofactors of that: n (1 + slope sway·direction) - direction slope (sway·n). The phase is given in turns within
+//! one turn, so a wave that has run for a day is as exact as a new one.
 
 use glam::DVec3;
 
@@ -33,7 +33,7 @@ params! {
 
 pub const EFFECT: Effect = Effect::new::<Wobble>("wobble", "Wobble", "a wave runs through the model and sways it").on_vertex::<Wobble>();
 
-/// Below this squared length a turned normal has no direction and stays as it was.
+/// Below this squared length a turned normal has no direction and is not changed.
 const DEGENERATE: f64 = 1e-12;
 
 /// The wave at one vertex.

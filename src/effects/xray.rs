@@ -19,9 +19,9 @@ choice! {
 }
 
 choice! {
-    /// Which layers count for more.
+    /// Which layers have more weight.
     pub enum Weighting {
-        /// None does.
+        /// All layers alike.
         Equal = "equal",
         /// Those that face the eye.
         Facing = "facing",
@@ -50,7 +50,7 @@ params! {
         layers: Reach = Reach::All as u32;
         /// Depth of the window in thousandths: of the front's distance, or of the scene's depth where all rays are parallel.
         window: u32 = 20, hard 0.0..=4000.0, soft 0.0..=400.0, unit "‰", when ("layers", &["window"]);
-        /// Which layers count for more.
+        /// Which layers have more weight.
         weight: Weighting = Weighting::Equal as u32;
         /// Fraction of the light behind it that a layer of full weight stops; at 1 the background is hidden.
         opacity: f32 = 1.0, hard 0.0..=1.0;
@@ -127,7 +127,7 @@ impl Xray {
         if exponent <= shift { 1 } else { ((exponent - shift) << 23) | ((scaled << shift) & 0x7f_ffff) }
     }
 
-    /// What a pixel shows: the average over the background, as dense as its layers are many.
+    /// Colour of a pixel: the average over the background, the denser the more layers it has.
     pub fn seen(&self, average: DVec3, background: DVec4, weight: f64) -> DVec4 {
         let clear = libm::pow(1.0 - f64::from(self.opacity), weight / f64::from(self.unit()));
         let color = average + (background.truncate() - average) * clear;

@@ -1,6 +1,6 @@
-//! What a scene, seen from here, requires of the kernels; the planner leaves out whatever is not needed.
+//! Needs: what a scene in a view requires of the kernels. The planner omits what is not needed.
 //!
-//! Bounds are conservative: they may ask for a path that stays idle, never leave one out that a triangle takes.
+//! Bounds are conservative: they may require a path that no triangle takes, and never omit one that a triangle takes.
 
 use glam::{DMat3, DMat4, DVec3, DVec4};
 
@@ -37,17 +37,17 @@ pub struct Needs {
     pub material_count: usize,
     /// Of those, materials with a texture.
     pub textured: usize,
-    /// The alpha of an image leaves out a part of something.
+    /// The alpha of a texture discards samples of some material.
     pub masked: bool,
     /// How finely shadows are drawn.
     pub shadow: ShadowResolution,
-    /// A light looks, not the eye.
+    /// The view is a light's.
     pub is_light: bool,
-    /// Some mesh is mixed from shapes.
+    /// Morph targets deform some mesh.
     pub morph_targets: bool,
-    /// Some triangles are splats.
+    /// Some triangles are particle discs.
     pub particle_discs: bool,
-    /// How joints hold meshes, where any do.
+    /// How joints are blended, where any deform a mesh.
     pub skinning: Option<Skinning>,
     /// Clips may move parts of the scene.
     pub moves: bool,
@@ -61,12 +61,12 @@ pub struct Needs {
     pub clipping: bool,
     /// No triangle is wider or higher than this, in pixels; infinite where clipping is needed.
     pub largest_px: f64,
-    /// How large triangles are, by a look at some of them.
+    /// How large triangles are, from a sample of them.
     pub sizes: TriangleSizes,
-    /// The most pixels that the box of a primitive spans on an axis; infinite where it may reach before the near plane.
+    /// The most pixels that the box of a primitive spans on an axis; infinite where it may cross the near plane.
     pub box_px: f64,
-    /// How far rounding may move a corner in the picture, pixels: as it is stored, and relative to the eye. A bound where it
-    /// was looked for, at the boxes of some instances.
+    /// How far rounding may move a corner in the picture, pixels: from stored positions, and from positions relative to the eye. A bound
+    /// at the boxes of a sample of the instances.
     pub rounding_px: [f64; 2],
     /// Distances of the nearest and farthest corner of the scene's box along the viewing direction.
     pub depth_m: [f64; 2],
@@ -211,7 +211,7 @@ fn rounding_px(scene: &Scene, draws: &[Draw], view: &View) -> [f64; 2] {
             [stored.max(bound(&m, point, clip)), relative.max(bound(&moved, point - origin, clip))]
         })
     };
-    // Of a great many, some are enough.
+    // Of many draws, a sample is enough.
     const SAMPLED: usize = 1024;
     let some = draws.iter().step_by(draws.len().div_ceil(SAMPLED).max(1));
     some.map(of_draw).fold([0.0; 2], |[a, b], [c, d]| [a.max(c), b.max(d)])
@@ -239,7 +239,7 @@ fn largest_px(primitive: &Primitive, draw: &Draw, view: &View) -> f64 {
     if bounds.is_empty() {
         return 0.0;
     }
-    // Of a bent mesh, no edge is longer than its box.
+    // No edge of a deformed mesh is longer than its box.
     let longest_edge = if draw.deform.is_some() { 2.0 * bounds.radius() } else { primitive.longest_edge };
     let clip_from_object = DMat4::from_cols_array_2d(&draw.clip_from_object.map(|column| column.map(f64::from)));
     let corners = bounds.corners().map(|corner| draw.clip_point(corner));
