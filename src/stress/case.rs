@@ -5,7 +5,8 @@ use std::{
     time::Instant,
 };
 
-use super::context::{CaseContext, Counts, EarlyEnd};
+use super::checks::EarlyEnd;
+use super::context::{CaseContext, Counts};
 use crate::gpu::Renderer;
 
 /// The expected outcome of a case.

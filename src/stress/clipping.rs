@@ -6,7 +6,9 @@ use glam::DVec3;
 
 use super::{
     case::{Case, Expectation},
-    context::{CaseContext, EarlyEnd, check, once, pinned, stack},
+    checks::{EarlyEnd, check, once},
+    context::CaseContext,
+    drawing::{pinned, stack},
     scenes::{camera_view, pixel_view, scene_of_meshes, square_perspective, triangle_soup, triangle_soup_in_units},
 };
 use crate::{

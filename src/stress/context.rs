@@ -3,57 +3,22 @@
 
 use std::sync::Arc;
 
-use super::scenes::Rng;
+use super::{
+    checks::{EarlyEnd, same},
+    drawing::{self, WorkDistribution, exactness, pinned},
+    scenes::Rng,
+};
 use crate::{
-    accuracy::{PinnedOptions, Visibility},
-    effects::{Effect, Stack},
+    accuracy::Visibility,
+    effects::Stack,
     gpu::{Capture, RenderError, Renderer},
     math::{fnv1a, hash},
-    measure::{Budget, ErrorReport as Errors, Verdict, compare},
+    measure::{Budget, Verdict, compare},
     oracle,
-    plan::{AccuracyRequest, Caps, Tier, Tuning},
+    plan::{AccuracyRequest, Tier},
     preset::{Preset, SceneSource},
-    scene::{Scene, builtin, draw::DrawError, view::View},
+    scene::{Scene, builtin, view::View},
 };
-
-/// Why a case ends early.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub enum EarlyEnd {
-    Failed(String),
-    /// The adapter lacks what this sentence names.
-    Skipped(String),
-    /// The user stopped the run.
-    Stopped,
-}
-
-impl From<String> for EarlyEnd {
-    fn from(why: String) -> Self {
-        Self::Failed(why)
-    }
-}
-
-impl From<RenderError> for EarlyEnd {
-    fn from(error: RenderError) -> Self {
-        Self::Failed(error.to_string())
-    }
-}
-
-impl From<DrawError> for EarlyEnd {
-    fn from(error: DrawError) -> Self {
-        Self::Failed(error.to_string())
-    }
-}
-
-/// Fails the case with a sentence unless the condition holds.
-macro_rules! check {
-    ($condition:expr, $($sentence:tt)+) => {
-        let holds: bool = $condition;
-        if !holds {
-            return Err($crate::stress::EarlyEnd::Failed(format!($($sentence)+)));
-        }
-    };
-}
-pub(super) use check;
 
 /// How much a case has drawn.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -64,7 +29,7 @@ pub struct Counts {
 }
 
 /// The result of a case besides its outcome.
-pub(super) struct Left {
+pub(super) struct CaseResult {
     pub refusal: Option<String>,
     pub seed: Option<u32>,
     pub notes: Vec<String>,
@@ -97,160 +62,6 @@ pub(super) struct Strict {
     pub cpu: u64,
 }
 
-/// Largest fraction of pixels in the depth band, where two triangle ids are correct. 16 pixels are always allowed.
-pub const MAX_DEPTH_BAND_FRACTION: f64 = 0.01;
-
-/// Checks that all integers are exact, colours are within one step, and the depth band is small.
-///
-/// # Errors
-/// A sentence for each violation.
-pub fn exactness(errors: &Errors) -> Result<(), String> {
-    errors.within(&Budget { max_depth_band_pixels: ((errors.pixels as f64 * MAX_DEPTH_BAND_FRACTION) as u64).max(16), ..Budget::default() })
-}
-
-/// How triangles are distributed over invocations and workgroups.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum WorkDistribution {
-    /// A workgroup for each triangle that is not tiny.
-    WorkgroupEach,
-    /// The limits of a graphics card, with a resolve over listed tiles.
-    CardListedTiles,
-    /// The limits of a graphics card, with a resolve over all pixels.
-    Card,
-    /// One invocation for each triangle.
-    InvocationEach,
-}
-
-impl WorkDistribution {
-    /// Together they use every kernel.
-    pub const ALL: [Self; 4] = [Self::WorkgroupEach, Self::CardListedTiles, Self::Card, Self::InvocationEach];
-
-    /// The tuning that distributes work in this way.
-    pub fn tuning(self) -> Tuning {
-        let is_card = matches!(self, Self::CardListedTiles | Self::Card);
-        let [max_small_samples, max_small_side] = match self {
-            Self::WorkgroupEach => [1, 1],
-            Self::CardListedTiles | Self::Card => [64, 32],
-            Self::InvocationEach => [128 * 128, 128],
-        };
-        let listed_tiles = matches!(self, Self::CardListedTiles | Self::InvocationEach);
-        Tuning {
-            max_small_samples,
-            group_size: if is_card { 256 } else { 64 },
-            max_list_entries: if is_card { 100 } else { u32::MAX },
-            max_small_side,
-            listed_tiles,
-            early_load: listed_tiles,
-            specialized: true,
-        }
-    }
-}
-
-/// The tunings of all work distributions.
-pub fn tunings() -> [Tuning; 4] {
-    WorkDistribution::ALL.map(WorkDistribution::tuning)
-}
-
-/// The visibility options that lose nothing and that an adapter has.
-pub fn options(caps: &Caps) -> Vec<Visibility> {
-    Visibility::EXACT.into_iter().filter(|option| option.is_supported(caps.int64_atomics)).collect()
-}
-
-/// The exact option that a CPU adapter is quickest on, for what takes long.
-pub fn quick_option(caps: &Caps) -> Visibility {
-    if caps.int64_atomics { Visibility::Packed64 } else { Visibility::Split32 }
-}
-
-/// A request for one visibility option, all else planned.
-pub fn pinned(visibility: Visibility) -> AccuracyRequest {
-    AccuracyRequest { pins: PinnedOptions::of(visibility), ..AccuracyRequest::default() }
-}
-
-/// A stack of effects with default parameters.
-///
-/// # Panics
-/// If an effect does not exist.
-pub fn stack(names: &[&str]) -> Stack {
-    let mut stack = Stack::default();
-    for name in names {
-        stack.enable(Effect::find(name).unwrap_or_else(|| panic!("no effect {name}")));
-    }
-    stack
-}
-
-/// Draws without judging.
-///
-/// # Errors
-/// The error of the renderer or the device.
-pub fn captured(
-    renderer: &mut Renderer,
-    scene: &Arc<Scene>,
-    view: &View,
-    stack: &Stack,
-    accuracy: &AccuracyRequest,
-) -> Result<Capture, String> {
-    let name = &scene.name;
-    renderer.set_scene(scene).map_err(|error| format!("{name}: {error}"))?;
-    let capture = renderer.capture(view, stack, accuracy).map_err(|error| format!("{name}: {error}"))?;
-    match renderer.gpu().take_error() {
-        Some(error) => Err(format!("{name}: the device reports {error}")),
-        None => Ok(capture),
-    }
-}
-
-/// Draws and judges.
-///
-/// # Errors
-/// The error of the renderer, the device or the oracle.
-pub fn judged(
-    renderer: &mut Renderer,
-    scene: &Arc<Scene>,
-    view: &View,
-    stack: &Stack,
-    accuracy: &AccuracyRequest,
-) -> Result<(Capture, Verdict), String> {
-    let capture = captured(renderer, scene, view, stack, accuracy)?;
-    let verdict = oracle::judge(scene, view, stack, &capture.picture()).map_err(|error| format!("{}: {error}", scene.name))?;
-    Ok((capture, verdict))
-}
-
-/// The number of triangles that cover each pixel.
-pub(super) fn layers(capture: &Capture) -> &[u32] {
-    capture.layers.as_deref().unwrap_or_default()
-}
-
-/// Fails unless every sample is covered exactly once.
-pub(super) fn once(capture: &Capture, what: &str) -> Result<(), EarlyEnd> {
-    match layers(capture).iter().enumerate().find(|(_, hits)| **hits != 1) {
-        None if !layers(capture).is_empty() => Ok(()),
-        None => Err(EarlyEnd::Failed(format!("{what}: no hits were counted"))),
-        Some((pixel, hits)) => {
-            let width = capture.frame.width.max(1) as usize;
-            Err(EarlyEnd::Failed(format!("{what}: the sample of pixel {}, {} is covered {hits} times", pixel % width, pixel / width)))
-        }
-    }
-}
-
-/// Fails with both values if they differ.
-pub(super) fn equal<T: PartialEq + std::fmt::Debug>(found: &T, expected: &T, what: &str) -> Result<(), EarlyEnd> {
-    if found == expected { Ok(()) } else { Err(EarlyEnd::Failed(format!("{what}: found {found:?}, expected {expected:?}"))) }
-}
-
-/// Fails where two pictures differ in a triangle id, a depth key or a number of hits.
-pub(super) fn same(found: &Capture, expected: &Capture, what: &str) -> Result<(), EarlyEnd> {
-    let images = [
-        ("triangle ids", compare::triangle_ids(&found.frame.triangle_id, &expected.frame.triangle_id)),
-        ("depth keys", compare::triangle_ids(&found.frame.depth_key, &expected.frame.depth_key)),
-        ("numbers of hits", compare::triangle_ids(layers(found), layers(expected))),
-    ];
-    match images.iter().find(|(_, delta)| delta.different > 0) {
-        None => Ok(()),
-        Some((which, delta)) => {
-            Err(EarlyEnd::Failed(format!("{what}: {} pixels have other {which}: {:?}", delta.different, delta.mismatches)))
-        }
-    }
-}
-
 impl<'a> CaseContext<'a> {
     pub(super) fn new(renderer: &'a mut Renderer, seed: u32, keep_going: &'a dyn Fn(&str) -> bool) -> Self {
         let default = renderer.gpu().caps.tuning();
@@ -269,10 +80,10 @@ impl<'a> CaseContext<'a> {
     }
 
     /// Restores the renderer.
-    pub(super) fn leave(self) -> Left {
+    pub(super) fn leave(self) -> CaseResult {
         let default = self.renderer.gpu().caps.tuning();
         self.renderer.set_tuning(default);
-        Left { refusal: self.refusal, seed: self.is_seeded.then_some(self.seed), notes: self.notes, counts: self.counts }
+        CaseResult { refusal: self.refusal, seed: self.is_seeded.then_some(self.seed), notes: self.notes, counts: self.counts }
     }
 
     /// A random number generator; each stream and each seed gives other numbers.
@@ -375,12 +186,12 @@ impl<'a> CaseContext<'a> {
         if self.strict.is_some() {
             return vec![self.quick_option()];
         }
-        options(&self.renderer.gpu().caps)
+        drawing::options(&self.renderer.gpu().caps)
     }
 
     /// The exact option that a CPU adapter is quickest on.
     pub(super) fn quick_option(&self) -> Visibility {
-        quick_option(&self.renderer.gpu().caps)
+        drawing::quick_option(&self.renderer.gpu().caps)
     }
 
     /// Builds a builtin scene.
@@ -404,7 +215,7 @@ impl<'a> CaseContext<'a> {
     ) -> Result<Capture, EarlyEnd> {
         self.step(scene, view, what)?;
         let accuracy = &self.requested(scene, view, stack, accuracy)?;
-        captured(self.renderer, scene, view, stack, accuracy).map_err(|error| EarlyEnd::Failed(format!("{what}: {error}")))
+        drawing::captured(self.renderer, scene, view, stack, accuracy).map_err(|error| EarlyEnd::Failed(format!("{what}: {error}")))
     }
 
     /// Draws and judges.
@@ -418,7 +229,8 @@ impl<'a> CaseContext<'a> {
     ) -> Result<(Capture, Verdict), EarlyEnd> {
         self.step(scene, view, what)?;
         let accuracy = &self.requested(scene, view, stack, accuracy)?;
-        let judged = judged(self.renderer, scene, view, stack, accuracy).map_err(|error| EarlyEnd::Failed(format!("{what}: {error}")))?;
+        let judged =
+            drawing::judged(self.renderer, scene, view, stack, accuracy).map_err(|error| EarlyEnd::Failed(format!("{what}: {error}")))?;
         if accuracy.tier == Tier::Strict && view.pixels() > 0 {
             self.hold_strict(&judged.0, scene, view, stack, what)?;
         }

@@ -3,7 +3,9 @@
 use super::{
     adversarial::{near_collinear_triangle, near_miss_triangle, near_tie_mesh},
     case::{Case, Expectation},
-    context::{CaseContext, EarlyEnd, WorkDistribution, check, equal, layers, once, pinned, stack},
+    checks::{EarlyEnd, check, equal, layers, once},
+    context::CaseContext,
+    drawing::{WorkDistribution, pinned, stack},
     scenes::{Rng, SimpleMesh, pixel_view, reference_coverage, scene_of_meshes, triangle_soup, triangle_soup_in_units},
 };
 use crate::{math::GUARD_BAND, measure::compare};

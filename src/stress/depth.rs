@@ -4,7 +4,9 @@ use std::collections::BTreeSet;
 
 use super::{
     case::{Case, Expectation},
-    context::{CaseContext, EarlyEnd, check, equal, stack},
+    checks::{EarlyEnd, check, equal},
+    context::CaseContext,
+    drawing::stack,
     scenes::{
         SimpleMesh, Winding, pixel_view, quad, rotated_square, scene_of_meshes, square_perspective, triangle_soup, triangle_soup_in_units,
     },

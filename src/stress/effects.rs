@@ -4,7 +4,9 @@ use std::sync::Arc;
 
 use super::{
     case::{Case, Expectation},
-    context::{CaseContext, EarlyEnd, check, equal, layers, pinned},
+    checks::{EarlyEnd, check, equal, layers},
+    context::CaseContext,
+    drawing::pinned,
     scenes::{SimpleMesh, pixel_view, scene_of_meshes, triangle_soup_in_units},
 };
 use crate::{

@@ -3,7 +3,8 @@
 use super::{
     adversarial::near_miss_triangle,
     case::{Case, Expectation},
-    context::{CaseContext, EarlyEnd, check},
+    checks::{EarlyEnd, check},
+    context::CaseContext,
     scenes::{pixel_view, scene_of_meshes, triangle_soup_in_units},
 };
 use crate::frame::NO_TRIANGLE;

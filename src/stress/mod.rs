@@ -5,10 +5,12 @@
 
 pub mod adversarial;
 mod case;
+mod checks;
 mod clipping;
 mod context;
 mod coverage;
 mod depth;
+mod drawing;
 mod effects;
 mod hardware;
 mod parameters;
@@ -23,9 +25,9 @@ mod time;
 mod values;
 
 pub use case::{Case, Expectation, Outcome, Report};
-pub use context::{
-    CaseContext, Counts, EarlyEnd, WorkDistribution, captured, exactness, judged, options, pinned, quick_option, stack, tunings,
-};
+pub use checks::EarlyEnd;
+pub use context::{CaseContext, Counts};
+pub use drawing::{WorkDistribution, captured, exactness, judged, options, pinned, quick_option, stack, tunings};
 
 /// All cases, sorted by number.
 pub fn cases() -> Vec<&'static Case> {

@@ -4,7 +4,8 @@ use std::sync::Arc;
 
 use super::{
     case::{Case, Expectation},
-    context::{CaseContext, EarlyEnd, check},
+    checks::{EarlyEnd, check},
+    context::CaseContext,
 };
 use crate::{
     accuracy::{PinnedOptions, ShadowMapSize},

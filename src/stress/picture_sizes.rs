@@ -4,7 +4,9 @@ use std::time::{Duration, Instant};
 
 use super::{
     case::{Case, Expectation},
-    context::{CaseContext, EarlyEnd, captured, check, equal, pinned, same, stack},
+    checks::{EarlyEnd, check, equal, same},
+    context::CaseContext,
+    drawing::{captured, pinned, stack},
     scenes::{SimpleMesh, pixel_view, scene_of_meshes},
 };
 use crate::{

@@ -2,7 +2,9 @@
 
 use super::{
     case::{Case, Expectation},
-    context::{CaseContext, EarlyEnd, check, equal, exactness, layers, once, pinned, stack},
+    checks::{EarlyEnd, check, equal, layers, once},
+    context::CaseContext,
+    drawing::{exactness, pinned, stack},
     scenes::{Winding, pixel_view, quad, rotated_square, scene_of_meshes, square_perspective, triangle_soup, triangle_soup_in_units},
 };
 use crate::{accuracy::Visibility, frame::NO_TRIANGLE};

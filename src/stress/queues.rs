@@ -6,7 +6,9 @@ use glam::{DMat4, DVec3};
 
 use super::{
     case::{Case, Expectation},
-    context::{CaseContext, EarlyEnd, WorkDistribution, check, equal, layers, pinned, stack},
+    checks::{EarlyEnd, check, equal, layers, same},
+    context::CaseContext,
+    drawing::{WorkDistribution, pinned, stack},
     scenes::{SimpleMesh, pixel_view, scene_of_meshes, triangle_soup_in_units},
 };
 use crate::{
@@ -261,7 +263,7 @@ fn million_triangles(context: &mut CaseContext) -> Result<(), EarlyEnd> {
         check!(capture.frame.covered() > 7000, "{what}: {} pixels", capture.frame.covered());
         match &first {
             None => first = Some(capture),
-            Some(first) => super::context::same(&capture, first, &what)?,
+            Some(first) => same(&capture, first, &what)?,
         }
     }
     Ok(())

@@ -6,7 +6,9 @@ use serde_json::json;
 
 use super::{
     case::{Case, Expectation},
-    context::{CaseContext, EarlyEnd, check, same, stack},
+    checks::{EarlyEnd, check, same},
+    context::CaseContext,
+    drawing::stack,
 };
 use crate::scene::gltf;
 

@@ -2,7 +2,8 @@
 
 use super::{
     case::{Case, Expectation},
-    context::{CaseContext, EarlyEnd, check},
+    checks::{EarlyEnd, check},
+    context::CaseContext,
     table,
 };
 

@@ -4,7 +4,9 @@ use std::sync::Arc;
 
 use super::{
     case::{Case, Expectation},
-    context::{CaseContext, EarlyEnd, WorkDistribution, check, equal, pinned, same, stack},
+    checks::{EarlyEnd, check, equal, same},
+    context::CaseContext,
+    drawing::{WorkDistribution, pinned, stack},
 };
 use crate::{
     effects::{Effect, EnabledEffect, Stack},

@@ -6,7 +6,9 @@ use glam::{DMat4, DVec3};
 
 use super::{
     case::{Case, Expectation},
-    context::{CaseContext, EarlyEnd, check, equal, stack},
+    checks::{EarlyEnd, check, equal},
+    context::CaseContext,
+    drawing::stack,
     scenes::{SimpleMesh, camera_view, pixel_view, scene_of_meshes, triangle_soup, triangle_soup_in_units},
 };
 use crate::{
