@@ -17,7 +17,7 @@ fn case(name: &str) -> &'static stress::Case {
     stress::cases().into_iter().find(|case| case.name == name).unwrap_or_else(|| panic!("no case {name}"))
 }
 
-/// Draws one case. Left out is no failure, but it is said.
+/// Runs one case. A skipped case is no failure, but is reported.
 fn check(name: &str) {
     let Some(mut renderer) = renderer() else { return };
     let report = case(name).run(&mut renderer, seed(), &|_| true);
@@ -124,7 +124,7 @@ fn a_case_can_be_stopped_between_pictures() {
         heard.get() < 3
     });
     assert_eq!((report.outcome, heard.get(), report.counts.pictures), (Outcome::Stopped, 3, 3));
-    assert_eq!(case("d3d-rectangle").run(&mut renderer, 0, &|_| true).outcome, Outcome::Passed, "the next case is none the worse");
+    assert_eq!(case("d3d-rectangle").run(&mut renderer, 0, &|_| true).outcome, Outcome::Passed, "the next case is not affected");
 }
 
 #[test]
@@ -141,10 +141,10 @@ fn another_seed_gives_other_cases_and_is_named() {
     let [first, second] = [1, 0xffff_0000].map(|seed| case("near-ties").run(&mut renderer, seed, &|_| true));
     assert_eq!([first.seed, second.seed], [Some(1), Some(0xffff_0000)]);
     assert_eq!([&first.outcome, &second.outcome], [&Outcome::Passed; 2]);
-    assert_eq!(case("d3d-rectangle").run(&mut renderer, 1, &|_| true).seed, None, "no dice, no seed");
+    assert_eq!(case("d3d-rectangle").run(&mut renderer, 1, &|_| true).seed, None, "a case without random numbers reports no seed");
 }
 
-/// What is wrong, where, from what, to what, and the case that must see it.
+/// The mistake, the shader file, the text that it replaces, the replacement, and the case that must find it.
 const MUTANTS: &[(&str, &str, &str, &str, &str)] = &[
     ("every edge owns its samples", "lib/fixed", "return select(1, 0, d.y < 0 || (d.y == 0 && d.x > 0));", "return 0;", "d3d-rectangle"),
     (

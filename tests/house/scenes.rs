@@ -28,7 +28,7 @@ fn position(scene: &Scene, primitive: &Primitive, vertex: u32) -> DVec3 {
 }
 
 fn normal(scene: &Scene, primitive: &Primitive, vertex: u32) -> DVec3 {
-    DVec3::from_array([0, 1, 2].map(|lane| primitive.normals.value(&scene.vertex_bytes, vertex, lane)))
+    DVec3::from_array([0, 1, 2].map(|component| primitive.normals.value(&scene.vertex_bytes, vertex, component)))
 }
 
 /// Directed edges that have no partner in the opposite direction; panics when two triangles run the same way along one.
@@ -64,7 +64,7 @@ fn doubled_area([a, b, c]: [[i64; 2]; 3]) -> i64 {
     (b[1] - a[1]) * (c[0] - a[0]) - (b[0] - a[0]) * (c[1] - a[1])
 }
 
-/// How often each sample of the picture is covered under the top-left rule, in i64.
+/// How often each sample of the picture is covered under the top-left rule, computed in i64.
 fn hits(triangles: &[[[i64; 2]; 3]], width: i64, height: i64) -> Vec<u32> {
     let mut hits = vec![0; (width * height) as usize];
     for &triangle in triangles {
@@ -161,7 +161,7 @@ fn sphere_has_no_slivers() {
     }
 }
 
-/// The mesh falls apart only at its true rims: pot, lid, and both ends of handle and spout.
+/// Open edges occur only at the rims: pot, lid, and both ends of handle and spout.
 #[test]
 fn teapot_patches_share_their_vertices() {
     for tess in [1, 2, 16] {
@@ -208,7 +208,7 @@ fn teapot_poles_look_straight_up_and_down() {
     }
 }
 
-/// The fold limit, in integers, where the judge of holes and double hits stands.
+/// The grid does not fold after the snap, checked in integers.
 #[test]
 fn grid_is_fold_free_after_the_snap() {
     for (query, width, height) in [

@@ -23,7 +23,7 @@ use rasterlab::{
     },
 };
 
-/// A moment of one or two clips of a scene, as a preset without a camera shows it.
+/// The default view of a scene at a time of one or two clips.
 fn moment(scene: &Scene, clips: [&str; 2], time_s: f64, skinning: Skinning, size: [u32; 2]) -> View {
     let [clip, other] = clips.map(str::to_owned);
     let blend = if other.is_empty() { 0.0 } else { 0.5 };
@@ -66,7 +66,7 @@ fn a_skeleton_that_stands_as_it_was_bound_leaves_every_bit() {
     }
 }
 
-/// The scene with all its nodes hung on one more, which stands at `place`.
+/// The scene with all its nodes below a new root node with the transform `place`.
 fn carried(scene: &Scene, place: DMat4) -> Scene {
     let mut scene = scene.clone();
     for node in &mut scene.rig.nodes {
@@ -170,7 +170,7 @@ fn a_deformed_mesh_stays_in_its_box() {
     }
 }
 
-/// What [`Deform::position`] gives, which picking uses, is what the oracle says.
+/// [`Deform::position`], which picking uses, agrees with the oracle.
 #[test]
 fn a_click_lands_on_the_deformed_mesh() {
     let scene = scene("tentacle?tess=4&influences=8");
@@ -205,7 +205,7 @@ fn a_preset_names_its_clips_and_an_unknown_clip_lists_those_there_are() {
     let held = |time_s| at(ClipPlayback { clip_time_s: Some(0.5), ..play("Sway", "") }, time_s);
     assert!(!held(1.0).is_moving() && held(1.0).pose(&scene) == held(2.0).pose(&scene));
     assert_eq!(at(ClipPlayback { speed: 0.5, ..play("Sway", "") }, 1.0).pose(&scene), held(0.0).pose(&scene));
-    assert_eq!(at(play("Sway", ""), 1.0).pose(&scene), at(play("Sway", ""), 4e6 + 1.0).pose(&scene), "a clip goes round for ever");
+    assert_eq!(at(play("Sway", ""), 1.0).pose(&scene), at(play("Sway", ""), 4e6 + 1.0).pose(&scene), "a clip loops forever");
     assert_eq!(Preset::default().pose(&crate::common::scene("teapot?tess=1")), None);
 }
 
@@ -224,14 +224,14 @@ fn nodes_that_a_clip_moves_are_placed_again() {
     };
     let [a, b] = [0.0, 1.0].map(|time_s| draws(&scene, &view(time_s)).expect("it fits"));
     assert_ne!(a[0].world_from_object, b[0].world_from_object);
-    assert_eq!(a[1], b[1], "what hangs on no node stays");
+    assert_eq!(a[1], b[1], "an instance without a node does not move");
     let upper = scene.rig.nodes[0].rest.matrix();
     assert_eq!(rounded_columns(&upper), rounded_columns(&LocalTransform::Trs(Trs::default()).matrix()));
 }
 
 // ---------------------------------------------------------------- on the adapter
 
-/// What every picture here must keep.
+/// Checks every picture of this file.
 fn insist(renderer: &mut Renderer, scene: &Arc<Scene>, view: &View, stack: &Stack, option: Visibility, what: &str) -> f64 {
     let (_, verdict) = exact(renderer, scene, view, stack, &pinned(option), what);
     let a = &verdict.report;
@@ -303,7 +303,7 @@ fn a_thousand_skinned_instances_are_exact() {
     assert_eq!(passes[0].name, "deform", "{passes:?}");
 }
 
-/// The tentacle with weights as they come in files: some zero, some that do not sum to 1.
+/// The tentacle with weights as files have them: some 0, some that do not sum to 1.
 fn careless() -> Arc<Scene> {
     let mut scene = (*scene("tentacle?tess=3&influences=8")).clone();
     for set in scene.primitives[0].deformation.influences.clone() {

@@ -63,7 +63,7 @@ fn interleaved_bytes_stay_as_the_file_has_them() {
     let primitive = &scene.primitives[0];
     assert_eq!((primitive.positions.stride, primitive.positions.offset), (28, 20));
     let color = primitive.colors.unwrap();
-    assert_eq!([0, 1, 2, 3].map(|lane| color.value(&scene.vertex_bytes, 3, lane) * 255.0), [30.0, 20.0, 30.0, 255.0]);
+    assert_eq!([0, 1, 2, 3].map(|component| color.value(&scene.vertex_bytes, 3, component) * 255.0), [30.0, 20.0, 30.0, 255.0]);
 }
 
 #[test]
@@ -156,7 +156,7 @@ fn vertex_colours_come_in_three_widths() {
     let read = |model: Model| {
         let scene = model.scene();
         let color = scene.primitives[0].colors.unwrap();
-        (color.components, [0, 1, 2].map(|lane| color.value(&scene.vertex_bytes, 2, lane)))
+        (color.components, [0, 1, 2].map(|component| color.value(&scene.vertex_bytes, 2, component)))
     };
     let add = |normalized: bool, make: &dyn Fn(&mut Model) -> usize| {
         let mut model = Model::square();

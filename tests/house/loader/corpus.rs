@@ -165,7 +165,7 @@ fn malformed() -> Vec<(&'static str, Model)> {
         ("an image of two things", at("/images/0/uri", json!("flag.png"))),
         ("a view beyond its buffer", at("/bufferViews/3/byteLength", json!(100_000))),
         ("no coordinates", at("/meshes/0/primitives/0/attributes", json!({ "POSITION": 0 }))),
-        ("coordinates of one lane", at("/accessors/1/type", json!("SCALAR"))),
+        ("coordinates of one component", at("/accessors/1/type", json!("SCALAR"))),
         ("coordinates that are no numbers", not_finite.with(set, json!(texcoords))),
         ("fewer coordinates than vertices", few.with(set, json!(three))),
         ("a negative cutoff", at("/materials/0/alphaMode", json!("MASK")).with("/materials/0/alphaCutoff", json!(-1))),

@@ -134,7 +134,7 @@ fn coordinates_come_in_every_width_of_the_standard_and_quantized_ones_where_the_
         }
         let scene = model.scene();
         let texcoords = scene.primitives[0].texcoords[0].expect("coordinates");
-        let corner = |vertex| [0, 1].map(|lane| texcoords.value(&scene.vertex_bytes, vertex, lane));
+        let corner = |vertex| [0, 1].map(|component| texcoords.value(&scene.vertex_bytes, vertex, component));
         assert_eq!([0, 1, 2, 3].map(corner), [[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]], "{component}");
     }
 }

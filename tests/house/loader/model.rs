@@ -246,7 +246,7 @@ pub fn assert_sound(scene: &Scene) {
             assert_eq!(accessor.count, primitive.vertex_count());
             assert!(accessor.offset % accessor.component_type.bytes() == 0 && accessor.stride % accessor.component_type.bytes() == 0);
             for vertex in 0..accessor.count {
-                assert!((0..accessor.components).all(|lane| accessor.value(&scene.vertex_bytes, vertex, lane).is_finite()));
+                assert!((0..accessor.components).all(|component| accessor.value(&scene.vertex_bytes, vertex, component).is_finite()));
             }
         }
         for vertex in 0..primitive.vertex_count() {
