@@ -588,7 +588,7 @@ fn stress_says_what_it_expected_and_what_became_of_it() {
     assert!(object["adapter"]["name"].is_string());
     let result = &object["results"][0];
     assert_eq!((&result["number"], &result["name"]), (&20.into(), &"picture-too-large".into()));
-    assert_eq!(result["outcome"], "refused as stated");
+    assert_eq!(result["outcome"], "refused as expected");
     assert!(result["why"].as_str().is_some_and(|why| why.contains("textures end at")), "{result}");
     assert!(result["ms"].as_f64().is_some_and(|ms| ms > 0.0) && result["seed"].is_null() && result["notes"].is_array(), "{result}");
 }
