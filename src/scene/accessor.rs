@@ -25,7 +25,7 @@ impl ComponentType {
 
 /// Where the elements of an attribute or of an index list lie in a byte buffer.
 ///
-/// Every constructor of a [`Scene`] guarantees (the glTF loader checks it) that `offset` and `stride` are multiples of the
+/// Every constructor of a [`Scene`](super::model::Scene) guarantees (the glTF loader checks it) that `offset` and `stride` are multiples of the
 /// component size and that the last element ends inside the buffer. Reading past `count` panics or returns other bytes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Accessor {

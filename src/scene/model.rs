@@ -139,7 +139,7 @@ impl SceneCamera {
     }
 }
 
-/// Everything that can be drawn. Built by [`gltf::load`] or [`builtin::build`].
+/// Everything that can be drawn. Built by [`gltf::load`](super::gltf::load) or [`builtin::build`](super::builtin::build).
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Scene {
     /// Shown to people: the file name without its extension, or the name of the builtin.

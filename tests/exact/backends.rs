@@ -245,7 +245,7 @@ fn long_lists_of_tiles_are_walked_to_their_end() {
     }
 }
 
-/// The case a-hundred-frames of `rasterlab stress` repeats more often.
+/// The case hundred-equal-frames of `rasterlab stress` repeats more often.
 #[test]
 fn repeated_frames_are_equal_to_the_bit() {
     let Some(mut renderer) = renderer() else { return };

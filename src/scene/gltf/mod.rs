@@ -6,7 +6,7 @@
 //!
 //! Supported: triangle lists, strips and fans, all index widths, interleaved, sparse and quantized accessors, base colour and
 //! emission with their textures, vertex colours, the nodes and cameras of the default scene, skins, morph targets and clips.
-//! Skipped with an entry in [`Scene::notes`]: points, lines, normal maps and the rest of physically based shading.
+//! Skipped with an entry in [`Scene::notes`](crate::scene::Scene::notes): points, lines, normal maps and the rest of physically based shading.
 
 mod buffers;
 mod clips;
