@@ -181,9 +181,9 @@ fn local(node: &json::Node) -> Result<LocalTransform, LoadError> {
     let rotation = node.rotation.unwrap_or_default().0.map(f64::from);
     let length = rotation.iter().map(|v| v * v).sum::<f64>().sqrt();
     if !(length.is_finite() && length >= MIN_QUATERNION_LENGTH) {
-        return Err(LoadError::new(
-            "its rotation is a quaternion of length {length:e}; it must be finite and at least {MIN_QUATERNION_LENGTH:e}",
-        ));
+        return Err(LoadError::new(format!(
+            "its rotation is a quaternion of length {length:e}; it must be finite and at least {MIN_QUATERNION_LENGTH:e}"
+        )));
     }
     let (translation, scale) = (vector(node.translation, DVec3::ZERO), vector(node.scale, DVec3::ONE));
     Ok(LocalTransform::Trs(Trs { translation, rotation: unit(rotation), scale }))

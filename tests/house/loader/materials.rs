@@ -164,7 +164,7 @@ fn alpha_modes_say_what_is_cut_out() {
     assert_eq!(with_mode("MASK").with("/materials/0/alphaCutoff", json!(0)).material().alpha_cutoff, None);
     with_mode("MASK")
         .with("/materials/0/alphaCutoff", json!(-0.1))
-        .refused("material \"paper\": alphaCutoff -0.1 is not a number from 0 up");
+        .refused("material \"paper\": alphaCutoff is -0.1; it must be finite and at least 0");
     with_mode("TRANSLUCENT").refused("alphaMode");
 
     let blended = with_mode("BLEND").scene();

@@ -91,7 +91,7 @@ fn clip(path: &str, interpolation: &str, kind: &str, values: &[f32]) -> Model {
     let mut model = Model::square();
     let input = model.floats("SCALAR", &[1.0, 3.0]);
     let output = model.floats(kind, values);
-    model.with("/nodes", json!([{ "children": [1], "translation": [10, 0, 0] }, { "mesh": 0, "name": "SimpleMesh" }])).with(
+    model.with("/nodes", json!([{ "children": [1], "translation": [10, 0, 0] }, { "mesh": 0, "name": "Part" }])).with(
         "/animations",
         json!([{
             "name": "Move", "channels": [{ "sampler": 0, "target": { "node": 1, "path": path } }],
