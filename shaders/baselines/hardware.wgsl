@@ -36,7 +36,7 @@ fn hardware_fragment(v: Varyings, @builtin(front_facing) is_front: bool) -> @loc
     s.center_screen = s.screen;
     s.depth_m = v.depth_m;
     s.flat_depth_m = v.depth_m;
-    s.depth_range_m = frame.depth_range_m;
+    s.depth_range_m = frame.range_m;
     let shaded = glue_surface(s);
     return vec4f(color_encode(shaded.color.rgb), shaded.color.a);
 }

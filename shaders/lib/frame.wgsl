@@ -10,7 +10,7 @@ struct Frame {
     clip_from_world: mat4x4f, // for the offsets of vertex effects
     picture_from_world: mat4x4f, // clip_from_world of the picture, while a shadow map is drawn for it
     center: vec2f,           // half the picture in subpixel units
-    depth_range_m: vec2f,    // depth of the nearest and farthest corner of the scene's bounding box
+    range_m: vec2f,          // depth of the nearest and farthest corner of the scene's bounding box
     linear_depth_m: vec2f,   // metres at depth 1 and at depth 0; used only where eye.w is 0
     size: vec2u,             // pixels
     stride: u32,             // pixels from one row of the colour buffer to the next

@@ -143,7 +143,7 @@ fn shade_surface(pixel: vec2u) -> Surface {
     s.depth_m = position.depth;
     s.pixel_size_m = length(frame.ndc_y.xyz) * 2.0 / f32(frame.size.y) * select(1.0, position.depth, IS_PERSPECTIVE);
     s.flat_depth_m = dot(position.corner_depths, vec3f(1.0 / 3.0));
-    s.depth_range_m = frame.depth_range_m;
+    s.depth_range_m = frame.range_m;
     // The sample lies on the ray of its pixel, so its depth determines its position.
     let ndc = vec2f(s.screen.x * 2.0 - 1.0, 1.0 - s.screen.y * 2.0);
     let aside = frame.ndc_x.xyz * ndc.x + frame.ndc_y.xyz * ndc.y;

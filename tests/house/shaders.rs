@@ -15,7 +15,7 @@ use rasterlab::{
     shader::{
         Fetch, KernelKey, Pass,
         library::Library,
-        link::{self, Linked},
+        link::{self, LinkError, Linked},
         pass::RasterPhase,
         reflect::{self, BindingKind},
     },
@@ -247,74 +247,113 @@ fn every_way_of_choosing_dots_validates_for_every_line_and_backend() {
     }
 }
 
-/// For one who edits shaders: every complaint about the files of the folder RASTERLAB_SHADERS.
-#[test]
-#[ignore = "temporary"]
-fn temporary() {
-    let library = Library::from_env();
-    let mut complaints = std::collections::BTreeMap::new();
-    let mut passes = 0;
-    let mut check = |key: &KernelKey| {
-        for pass in all_passes(key) {
-            passes += 1;
-            let complaint = match link::link(&library, &pass.path(), key, &key.variants(pass)) {
-                Err(error) => error.to_string(),
-                Ok(linked) => match reflect::reflect(&linked, pass.phase() == Some(RasterPhase::Packed)) {
-                    Err(error) => error.to_string(),
-                    Ok(reflected) => {
-                        let bindings = reflected.bindings(pass.stem());
-                        let storage = bindings.iter().filter(|b| matches!(b.kind, BindingKind::Storage { .. })).count();
-                        if storage > 8 { format!("{storage} storage buffers in {}", pass.label()) } else { continue }
-                    }
-                },
-            };
-            *complaints.entry(complaint).or_insert(0) += 1;
-        }
-    };
-    for axis in AXES {
-        for index in 0..axis.words.len() {
-            for names in [
-                vec![],
-                vec!["overdraw", "outline"],
-                vec!["dissolve", "draw_order"],
-                vec!["xray"],
-                vec!["race"],
-                vec!["explode", "wobble", "wireframe", "shadow", "dots", "smear"],
-            ] {
-                let effects: Vec<_> = names.iter().map(|name| Effect::find(name).expect("an effect")).collect();
-                for has_mask in [false, true] {
-                    let mut key = key(Fetch::Indexed, Visibility::Split32, true, effects.clone());
-                    key.options.set(axis, index);
-                    key.samples.has_mask = has_mask;
-                    key.samples.draw_order = names.contains(&"draw_order").then_some(Mode::Submission);
-                    check(&key);
-                }
-            }
-        }
-    }
-    for shape in [Shape::Triangles, Shape::Boxes, Shape::Points] {
-        for draw_order in [None, Some(Mode::Submission), Some(Mode::Scheduler)] {
-            for has_large in [false, true] {
-                for visibility in Visibility::ALL {
-                    let effects = ["dissolve", "draw_order", "xray"].map(|name| Effect::find(name).expect("a listed effect")).to_vec();
-                    let mut key = key(Fetch::Direct, *visibility, has_large, effects);
-                    (key.samples.shape, key.samples.draw_order, key.paths.has_large) = (shape, draw_order, has_large);
-                    key.vertices.is_single_draw = has_large;
-                    check(&key);
-                }
-            }
-        }
-    }
-    for (complaint, count) in &complaints {
-        eprintln!("--- {count} times: {complaint}");
-    }
-    eprintln!("{passes} modules, {} complaints", complaints.len());
+/// A scene of plain indexed meshes with the default options, on a graphics card.
+fn plain_key() -> KernelKey {
     let mut key = key(Fetch::Indexed, Visibility::Split32, true, vec![]);
     key.work.listed_tiles = false;
     (key.generated.has_particles, key.surface.has_material_atlas) = (false, false);
-    for pass in all_passes(&key) {
-        if let Ok(linked) = link::link(&library, &pass.path(), &key, &key.variants(pass)) {
-            eprintln!("{}: {} files: {:?}", pass.label(), linked.sources().count(), linked.sources().collect::<Vec<_>>());
+    key
+}
+
+#[test]
+fn a_pass_is_read_in_few_files() {
+    for (pass, most) in [(Pass::RasterSmall(RasterPhase::Depth), 10), (Pass::Resolve, 14)] {
+        let linked = linked(&plain_key(), pass);
+        let files: Vec<&str> = linked.sources().collect();
+        assert!(files.len() <= most, "{} files for {}: {files:?}", files.len(), pass.label());
+    }
+}
+
+fn copy_folder(from: &std::path::Path, to: &std::path::Path) {
+    std::fs::create_dir_all(to).expect("a folder");
+    for entry in std::fs::read_dir(from).expect("shaders can be read") {
+        let path = entry.expect("an entry").path();
+        let target = to.join(path.file_name().expect("a name"));
+        if path.is_dir() {
+            copy_folder(&path, &target)
+        } else {
+            let _ = std::fs::copy(&path, target).expect("copied");
         }
     }
+}
+
+/// A copy of the shaders, to make mistakes in.
+fn copied_shaders() -> tempfile::TempDir {
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    copy_folder(&std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("shaders"), folder.path());
+    folder
+}
+
+#[test]
+fn every_use_line_is_needed_and_a_missing_one_is_refused() {
+    let folder = copied_shaders();
+    let library = Library::Folder(folder.path().into());
+    let effects = ["dissolve", "explode", "shadow", "outline"].map(|name| Effect::find(name).expect("an effect")).to_vec();
+    let mut full = key(Fetch::Indexed, Visibility::Split32, true, effects);
+    full.samples.has_mask = true;
+    let mut tiled = key(Fetch::Indexed, Visibility::Tiled, true, vec![]);
+    tiled.work.listed_tiles = false;
+    let mut seen = std::collections::BTreeSet::new();
+    let mut refused_by_linker = 0;
+    for (key, passes) in [(plain_key(), plain_key().frame()), (full.clone(), full.frame()), (tiled.clone(), tiled.frame())] {
+        for pass in passes {
+            for name in linked(&key, pass).sources().map(str::to_owned).collect::<Vec<_>>() {
+                let path = folder.path().join(format!("{name}.wgsl"));
+                let text = std::fs::read_to_string(&path).expect("a shader");
+                for line in text.lines().filter(|line| line.starts_with("//@ use ")) {
+                    if !seen.insert((name.clone(), line.to_owned())) {
+                        continue;
+                    }
+                    std::fs::write(&path, text.replacen(line, "//", 1)).expect("written");
+                    match link::link(&library, &pass.path(), &key, &key.variants(pass)) {
+                        Err(LinkError::Undeclared { file, name: missing, .. }) => {
+                            refused_by_linker += 1;
+                            assert!(file == name && !missing.is_empty(), "{name} without {line}: {file} is blamed");
+                        }
+                        Err(error) => panic!("{name} without {line}: {error}"),
+                        // A file that nothing else uses is not linked at all.
+                        Ok(linked) => assert!(reflect::reflect(&linked, false).is_err(), "{name} does not need {line}"),
+                    }
+                }
+                std::fs::write(&path, &text).expect("written");
+            }
+        }
+    }
+    assert!(seen.len() > 150 && refused_by_linker > 100, "{} lines, {refused_by_linker} refused", seen.len());
+}
+
+#[test]
+fn an_undeclared_name_is_refused_with_file_line_and_name() {
+    let folder = copied_shaders();
+    let path = folder.path().join("variants/coverage/fixed.wgsl");
+    let text = std::fs::read_to_string(&path).expect("a shader");
+    let line = text.lines().position(|line| line.contains("fn coverage_at")).expect("the function") + 2;
+    let wrong = text.replacen("    return coverage.row + ", "    return vec3i(i32(frame.size.x)) + coverage.row + ", 1);
+    std::fs::write(&path, wrong).expect("written");
+    let (key, pass) = (plain_key(), Pass::RasterMedium(RasterPhase::Depth));
+    let error = link::link(&Library::Folder(folder.path().into()), &pass.path(), &key, &key.variants(pass)).expect_err("refused");
+    let expected = format!("shaders/variants/coverage/fixed.wgsl:{line}: names frame, which lib/frame declares; add //@ use for it");
+    assert_eq!(error.to_string(), expected);
+}
+
+#[test]
+fn no_file_can_use_a_stage() {
+    let folder = copied_shaders();
+    let path = folder.path().join("variants/coverage/fixed.wgsl");
+    let text = std::fs::read_to_string(&path).expect("a shader");
+    std::fs::write(&path, format!("//@ use stages/raster/raster_small\n{text}")).expect("written");
+    let (key, pass) = (plain_key(), Pass::RasterMedium(RasterPhase::Depth));
+    let error = link::link(&Library::Folder(folder.path().into()), &pass.path(), &key, &key.variants(pass)).expect_err("refused");
+    assert!(matches!(error, LinkError::UsesStage { line: 1, .. }), "{error}");
+}
+
+#[test]
+fn a_variant_that_lacks_what_its_interface_declares_is_refused() {
+    let folder = copied_shaders();
+    let path = folder.path().join("variants/coverage/fixed.wgsl");
+    let text = std::fs::read_to_string(&path).expect("a shader");
+    std::fs::write(&path, text.replace("area: i32, first: vec2i", "area: u32, first: vec2i")).expect("written");
+    let (key, pass) = (plain_key(), Pass::RasterMedium(RasterPhase::Depth));
+    let error = link::link(&Library::Folder(folder.path().into()), &pass.path(), &key, &key.variants(pass)).expect_err("refused");
+    assert!(matches!(&error, LinkError::Incomplete { signature, .. } if signature.contains("coverage_begin")), "{error}");
 }
