@@ -1,6 +1,5 @@
-//! What a renderer produces and a judge compares: integer images, snapped geometry and counters.
-//!
-//! The oracle and the GPU both fill these plain types and never see each other.
+//! What a renderer produces and the oracle judges: integer images, snapped geometry and counters. The oracle and the GPU renderer
+//! both fill these plain types and never import each other.
 
 use crate::math::SUBPIXEL_BITS;
 
@@ -26,8 +25,10 @@ pub mod vertex_flags {
 /// A vertex after projection and the one snap, as every later stage reads it.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct SnappedVertex {
-    /// Position right and down from the top left corner, in units: 1/256 px unless the geometry says otherwise. Meaningless when `flags` is not 0.
+    /// Right from the top left corner of the picture, in units of 2^-[`Geometry::subpixel_bits`] px. Without meaning unless `flags`
+    /// is 0; so are the next three.
     pub x: i32,
+    /// Down, in the same units.
     pub y: i32,
     /// Reversed depth z_c / w_c: 1 on the near plane, 0 at infinity.
     pub depth: f32,
@@ -37,29 +38,31 @@ pub struct SnappedVertex {
     pub flags: u32,
 }
 
-/// One triangle left over from clipping `parent`.
+/// One of the triangles into which clipping cuts a triangle.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct ClippedTriangle {
+    /// Global id of the triangle that was clipped.
     pub parent: u32,
     pub corners: [SnappedVertex; 3],
-    /// Bit k: the edge opposite corner k lies on an edge of the parent, not on a cut or inside.
+    /// Bit k is set if the edge opposite corner k lies on an edge of the parent, not on a clipping plane or inside.
     pub outline: u32,
 }
 
-/// What of a picture comes from integer arithmetic alone, so that it is the same on every adapter.
+/// Which buffers come from integer arithmetic alone and so are equal, bit by bit, on every adapter.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Exactness {
-    /// Vertex records and pieces, from the bits of positions and matrices on.
+pub struct BitExact {
+    /// Vertex records and clipped triangles, given the bits of positions and matrices.
     pub vertices: bool,
     /// Depth keys, given the records.
-    pub keys: bool,
+    pub depth_keys: bool,
 }
 
 /// A particle between two steps.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct ParticleState {
     /// In the scene, metres.
-    pub place: [f32; 3],
+    pub position: [f32; 3],
+    /// Metres per second.
     pub velocity: [f32; 3],
     /// Steps since it was born.
     pub age: u32,
@@ -73,50 +76,50 @@ pub struct ParticleReadback {
     /// Empty in the first frame, which no step leads to.
     pub before: Vec<ParticleState>,
     pub after: Vec<ParticleState>,
-    /// Corners with colour and normal, as they lie among the scene's bytes.
+    /// The discs that were drawn: corners with colour and normal, as they lie in the scene's vertex bytes.
     pub words: Vec<u32>,
-    /// Flights are kept in 16 bits a number.
+    /// States are stored in 16 bits per number.
     pub has_half_precision: bool,
-    /// The flow's curl comes from differences.
+    /// The curl of the flow comes from finite differences, not from derivatives.
     pub has_difference_curl: bool,
 }
 
-/// Everything the rasterizer proper sees: what stands between the float vertex stage and integer coverage.
+/// The input of integer coverage: what the float vertex stage leaves behind.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Geometry {
-    /// One per vertex of each draw, in draw order (`Draw::first_vertex` indexes it); or, with `has_unshared_vertices`, three per
-    /// triangle in order of their ids.
+    /// One per vertex of each draw, in draw order, beginning at `Draw::first_vertex`; with `has_unshared_vertices` three per
+    /// triangle, by rising id.
     pub vertices: Vec<SnappedVertex>,
-    /// Effects part the triangles, so that they share no vertices.
+    /// Effects move triangles apart, so triangles share no vertices.
     pub has_unshared_vertices: bool,
-    /// Position and normal, in object space, of every vertex of the draws that bend, in draw order.
+    /// Position and normal, in object space, of every vertex of the draws that deform, in draw order.
     pub deformed: Vec<[f32; 6]>,
-    /// The particles that the picture shows, and how they came there; none without particles.
+    /// The particles of the picture and their last step; none without particles.
     pub particle_readback: Option<ParticleReadback>,
-    /// Ids of the triangles that are splats.
+    /// Ids of the triangles of which only the inscribed disc is drawn: particles.
     pub particle_discs: std::ops::Range<u32>,
-    /// Fan pieces of clipped triangles; pieces of one parent stand in fan order.
+    /// What clipping made; those of one parent are in fan order.
     pub clipped_triangles: Vec<ClippedTriangle>,
-    /// What sample effects settled: for every triangle by id, then for every piece, one entry per effect that decides.
+    /// The integers that sample effects and masks test against: for every triangle by id, then for every clipped triangle, one
+    /// entry per effect with a setup, then those of masks.
     pub sample_setups: Vec<[u32; 4]>,
-    /// One per dot of all lines, always in units of 1/256 px.
+    /// One record per dot of all lines, always in units of 1/256 px.
     pub dots: Vec<SnappedVertex>,
-    /// Positions are in units of 2^-bits px.
+    /// Bits of the fraction of snapped positions.
     pub subpixel_bits: u32,
-    /// Drawn pixels for one that is shown, along a side: the picture and its effects' lengths are this many times as large.
+    /// Render scale: drawn pixels per shown pixel along a side. Lengths of effects in pixels are scaled alike.
     pub scale: f64,
-    /// Places were taken relative to the eye before they met a matrix.
+    /// Positions were taken relative to the eye before they met a matrix.
     pub is_relative: bool,
-    /// Places were rounded to fewer bits than the scene has, where the preset asks for that: how far off they are is measured,
-    /// and no fault.
+    /// Positions were stored in fewer bits than the scene has, as the preset asks: their error is measured and not judged.
     pub has_approximate_positions: bool,
-    /// What its maker promises about it, and about the keys of a frame drawn through it.
-    pub exact: Exactness,
-    /// What the light sees, where an effect asks.
+    /// Which of these buffers, and of the frame drawn from them, are bit-exact.
+    pub bit_exact: BitExact,
+    /// The shadow map; none if no effect reads it.
     pub shadow_map: Option<Box<ShadowMap>>,
 }
 
-/// A shadow map with what it was drawn from.
+/// A shadow map with the geometry that it was drawn from.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ShadowMap {
     /// Depth key of every texel, row-major, top row first: bits of the reversed depth, larger is nearer to the light, 0 is
@@ -128,28 +131,26 @@ pub struct ShadowMap {
 
 impl Default for Geometry {
     fn default() -> Self {
-        let (vertices, deformed, pieces, sample_setups, dots) = (Vec::new(), Vec::new(), Vec::new(), Vec::new(), Vec::new());
-        let (subpixel_bits, exact) = (SUBPIXEL_BITS, Exactness::default());
         Self {
-            vertices,
-            scale: 1.0,
+            vertices: Vec::new(),
             has_unshared_vertices: false,
-            deformed,
+            deformed: Vec::new(),
             particle_readback: None,
             particle_discs: 0..0,
-            clipped_triangles: pieces,
-            sample_setups,
-            dots,
-            subpixel_bits,
+            clipped_triangles: Vec::new(),
+            sample_setups: Vec::new(),
+            dots: Vec::new(),
+            subpixel_bits: SUBPIXEL_BITS,
+            scale: 1.0,
             is_relative: false,
             has_approximate_positions: false,
-            exact,
+            bit_exact: BitExact::default(),
             shadow_map: None,
         }
     }
 }
 
-/// Counts of what a frame did not draw, and of what went wrong. All zero in a plain healthy picture.
+/// Counts of what a frame did not draw and of errors; most pictures have none.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, serde::Serialize)]
 pub struct Counters {
     /// Triangles with a NaN or infinite vertex.
@@ -160,16 +161,16 @@ pub struct Counters {
     pub degenerate: u32,
     /// Triangles that took the clipping path.
     pub clipped: u32,
-    /// Clipped pieces that turned over or vanished in the snap, and were dropped.
+    /// Clipped triangles that flipped or lost their area in the snap, and were dropped.
     pub flipped_clips: u32,
-    /// Triangles left out because they would have to be clipped, where the preset asks for that.
+    /// Triangles dropped because they would have to be clipped, as the preset asks.
     #[serde(skip_serializing_if = "is_zero")]
     pub dropped: u32,
-    /// Queue entries that did not fit; the frame is incomplete unless 0.
+    /// Queue entries that did not fit; the frame is incomplete unless this is 0.
     pub overflow: u32,
     /// Pixels with a depth but no triangle id; must be 0.
     pub depth_without_id: u32,
-    /// Pixels with more layers than the x-ray's sums hold; their averages are wrong unless 0.
+    /// Pixels with more layers than the sums of the x-ray hold; their averages are wrong.
     #[serde(skip_serializing_if = "is_zero")]
     pub full_pixels: u32,
 }
@@ -178,51 +179,51 @@ fn is_zero(count: &u32) -> bool {
     *count == 0
 }
 
-/// What a draw order let through.
+/// How many samples a draw order drew.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, serde::Serialize)]
 pub struct OrderStats {
     /// Samples drawn.
     pub drawn: u64,
     /// Samples that should have been drawn.
     pub limit: u64,
-    /// Samples that there are.
+    /// Samples that are covered.
     pub covered: u64,
-    /// The hardware chose, by tickets that are one word each.
-    pub is_chosen: bool,
+    /// The scheduler chose the samples, counted with one 32-bit counter.
+    pub is_scheduler_order: bool,
 }
 
 impl OrderStats {
-    /// Are there more samples than tickets? Then nobody knows how many were drawn.
+    /// Returns true if there are more samples than the counter holds, so that the number of drawn samples is unknown.
     pub const fn exceeds_sample_counter(&self) -> bool {
-        self.is_chosen && self.covered > u32::MAX as u64
+        self.is_scheduler_order && self.covered > u32::MAX as u64
     }
 }
 
-/// Meshlets that culling left, and those that it left out.
+/// How many meshlets culling kept and removed.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, serde::Serialize)]
 pub struct CullingStats {
     pub drawn: u32,
     /// Outside the picture.
     pub outside: u32,
-    /// All their triangles face away.
+    /// All of whose triangles face away.
     pub backfacing: u32,
-    /// Behind what was drawn.
+    /// Behind what was drawn before.
     pub hidden: u32,
 }
 
 impl CullingStats {
-    /// All meshlets there are.
+    /// Number of all meshlets.
     pub fn all(&self) -> u32 {
         self.drawn + self.outside + self.backfacing + self.hidden
     }
 
-    /// For people: how many were left out, and why.
+    /// How many were removed and why, as text.
     pub fn reasons(&self) -> String {
         format!("{} outside, {} turned away, {} hidden", self.outside, self.backfacing, self.hidden)
     }
 }
 
-/// One finished picture with the integers that decided it. Images are row-major, top row first, `width * height` long.
+/// A finished picture with its integer images. Images are row-major, top row first, `width * height` long.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Frame {
     pub width: u32,
@@ -231,32 +232,32 @@ pub struct Frame {
     pub triangle_id: Vec<u32>,
     /// Depth key per pixel: bits of the reversed depth, larger is nearer, 0 is empty.
     pub depth_key: Vec<u32>,
-    /// Keys are cut short, or another sample's, where the preset asks for that; they promise nothing and are not judged.
+    /// Depth keys are truncated or may be those of another triangle, as the preset asks; they are not judged.
     pub depth_keys_are_approximate: bool,
     /// Gamma-encoded sRGB and alpha.
     pub color: Vec<[u8; 4]>,
-    /// What an effect in the visibility slot added up per pixel: weights of layers, or their number. Empty without one.
-    pub counted: Vec<u32>,
+    /// Sum of the weights of all layers of a pixel, or their number, if an effect fills the visibility slot; otherwise empty.
+    pub layer_sums: Vec<u32>,
     /// Strength of the strongest dot per pixel, 0 to 256. Empty without dots.
     pub dots: Vec<u32>,
     pub counters: Counters,
 }
 
 impl Frame {
-    /// The same picture at another size in these colours; a pixel has the integers of the drawn one under its middle.
+    /// The picture at another size with these colours; each pixel has the integers of the drawn pixel under its centre.
     pub fn shown(&self, [width, height]: [u32; 2], color: Vec<[u8; 4]>) -> Self {
         let under = |at: u32, shown: u32, drawn: u32| ((2 * u64::from(at) + 1) * u64::from(drawn) / (2 * u64::from(shown))) as usize;
-        let places: Vec<usize> = (0..height)
+        let drawn: Vec<usize> = (0..height)
             .flat_map(|y| (0..width).map(move |x| under(y, height, self.height) * self.width as usize + under(x, width, self.width)))
             .collect();
-        let of = |words: &[u32]| if words.is_empty() { Vec::new() } else { places.iter().map(|&at| words[at]).collect() };
-        let (triangle_id, key, counted, dots) = (of(&self.triangle_id), of(&self.depth_key), of(&self.counted), of(&self.dots));
-        Self { width, height, triangle_id, depth_key: key, color, counted, dots, ..*self }
+        let of = |words: &[u32]| if words.is_empty() { Vec::new() } else { drawn.iter().map(|&at| words[at]).collect() };
+        let (triangle_id, depth_key) = (of(&self.triangle_id), of(&self.depth_key));
+        Self { width, height, triangle_id, depth_key, color, layer_sums: of(&self.layer_sums), dots: of(&self.dots), ..*self }
     }
 
-    /// Number of pixels that have an triangle id.
+    /// Number of pixels with a triangle.
     pub fn covered(&self) -> usize {
-        self.triangle_id.iter().filter(|&&triangle_id| triangle_id != NO_TRIANGLE).count()
+        self.triangle_id.iter().filter(|&&id| id != NO_TRIANGLE).count()
     }
 }
 

@@ -105,7 +105,7 @@ impl Renderer {
             triangle_id,
             depth_key: depth,
             color: picture.picture(BufferId::Color, [width, height])?,
-            counted: picture.layer_sums()?,
+            layer_sums: picture.layer_sums()?,
             dots: picture.dot_strengths()?,
             counters,
             depth_keys_are_approximate,

@@ -252,7 +252,7 @@ struct Float32State {
 impl Float32State {
     fn state(&self) -> ParticleState {
         let Self { place, age, velocity, births } = *self;
-        ParticleState { place, velocity, age, births }
+        ParticleState { position: place, velocity, age, births }
     }
 }
 
@@ -270,7 +270,7 @@ impl Half16State {
     fn state(&self, p: &Particles) -> ParticleState {
         let fraction = |v: i16| (f32::from(v) / 32767.0).max(-1.0);
         let place = [0, 1, 2].map(|axis| p.center[axis] + p.room_m * fraction(self.place[axis]));
-        ParticleState { place, velocity: self.velocity.map(half), age: self.age.into(), births: self.births.into() }
+        ParticleState { position: place, velocity: self.velocity.map(half), age: self.age.into(), births: self.births.into() }
     }
 }
 

@@ -16,7 +16,7 @@ use super::{
 use crate::{
     accuracy::{DepthFormat, PositionFormat, VertexTransform, XraySums},
     effects::hooks::Layers,
-    frame::{Exactness, Geometry, ShadowMap},
+    frame::{BitExact, Geometry, ShadowMap},
     shader::{
         key::{FramebufferLayout, KernelKey},
         pass::RasterPhase,
@@ -130,7 +130,10 @@ impl Readback<'_> {
             is_relative: options.position_format == PositionFormat::Relative,
             has_approximate_positions: options.position_format.packed_bits().is_some(),
             dots: Vec::new(),
-            exact: Exactness { vertices: options.vertex_transform == VertexTransform::Strict, keys: options.depth == DepthFormat::Integer },
+            bit_exact: BitExact {
+                vertices: options.vertex_transform == VertexTransform::Strict,
+                depth_keys: options.depth == DepthFormat::Integer,
+            },
             particle_readback: particles.map(|particles| particles.read(self.gpu, self.scene, key)).transpose()?.flatten(),
             particle_discs: scene.particle_disc_ids(),
             deformed: self.deformed()?,

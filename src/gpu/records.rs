@@ -435,7 +435,7 @@ impl OrderRecord {
         let wide = |hi: u32, lo: u32| u64::from(hi) << 32 | u64::from(lo);
         let limit = wide(self.limit_hi, self.limit_lo);
         let drawn = if is_chosen { limit.min(next_sample_index.into()) } else { wide(self.drawn_hi, self.drawn_lo) };
-        OrderStats { drawn, limit, covered: wide(self.total_hi, self.total_lo), is_chosen }
+        OrderStats { drawn, limit, covered: wide(self.total_hi, self.total_lo), is_scheduler_order: is_chosen }
     }
 }
 

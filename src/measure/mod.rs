@@ -1,25 +1,25 @@
-//! Measures of error and of time. Nothing here returns a time without an error beside it.
+//! Error reports and statistics of timings. No time is reported without the error of the picture beside it.
 
 pub mod compare;
 pub mod error_map;
 pub mod timing;
 
-/// How wrong a picture is, against the oracle. Counts are pixels unless they say otherwise.
+/// How far a picture is from the oracle. Counts are pixels unless stated otherwise.
 #[derive(Clone, Debug, Default, PartialEq, serde::Serialize)]
 pub struct ErrorReport {
     /// Pixels of the picture.
     pub pixels: u64,
     /// Pixels whose triangle id is wrong outside every named band.
     pub wrong_triangles: u64,
-    /// Of those, pixels whose triangle id covers the sample but is not the nearest that does.
+    /// Of those, pixels whose triangle covers the sample but is not the nearest that does.
     pub wrong_nearest: u64,
     /// Pixels that differ from the oracle's own picture only because vertices snapped apart, within their bounds.
     pub explained_by_snap: u64,
-    /// Pixels that differ from the oracle's own picture although the snap does not explain it.
+    /// Pixels that differ from the oracle's own picture although no snap explains it.
     pub unexplained: u64,
     /// Pixels where two triangle ids are right: depths closer than the float key's bound.
     pub depth_band_pixels: u64,
-    /// Pixels where either side of a step of colour is right: so near that f32 and f64 may fall apart.
+    /// Pixels so near a step of colour that f32 and f64 may fall on different sides, where either answer is right.
     pub step_band_pixels: u64,
     /// Samples that a triangle covers and that were not drawn.
     pub holes: u64,
@@ -27,13 +27,13 @@ pub struct ErrorReport {
     pub double_hits: u64,
     /// Pixels with a depth but no triangle id.
     pub depth_without_id: u64,
-    /// Queue entries lost; not 0 means an incomplete picture.
+    /// Queue entries that were lost; the picture is incomplete unless this is 0.
     pub overflow: u64,
     /// Pixels whose depth key lies outside its relative bound.
     pub key_outside_bound: u64,
     /// Vertices of all draws.
     pub vertices: u64,
-    /// Vertices whose place rounding alone decides; they are not judged.
+    /// Vertices whose position depends on rounding alone; they are not judged.
     pub ill_conditioned: u64,
     /// Vertices that snapped more than their forward error bound away from the oracle's, or with other flags.
     pub snap_outside_bound: u64,
@@ -43,25 +43,26 @@ pub struct ErrorReport {
     pub attribute_outside_bound: u64,
     /// Largest distance between a snapped vertex and the oracle's, in units of 1/256 px, among well-conditioned vertices.
     pub max_snap_delta: u32,
-    /// Vertices that joints or shapes bend.
+    /// Vertices that joints or morph targets deform.
     pub deformed_vertices: u64,
     /// Deformed vertices whose position or normal lies outside its forward error bound.
     pub deformed_outside_bound: u64,
-    /// Largest distance between a bent vertex and the oracle's, in units of the last place of its largest coordinate.
+    /// Largest distance between a deformed vertex and the oracle's, in units of the last place of its largest coordinate.
     pub max_deform_ulp: f64,
-    /// The same as it appears in the picture, pixels, of vertices that the near plane keeps.
+    /// The same in the picture, in pixels, of vertices behind the near plane.
     pub max_deform_px: f64,
     /// Particles of the picture.
     pub particles: u64,
     /// Particles whose last step, or whose disc, lies outside its forward error bound.
     pub particles_outside_bound: u64,
-    /// Particles more than a pixel away from where their true flight has taken them; chaos, not judged.
+    /// Particles more than a pixel away from the ones that the oracle simulates from the first frame. The flow is chaotic, so this is
+    /// not judged.
     pub particles_diverged: u64,
-    /// Largest such distance in the picture, pixels.
+    /// Largest of these distances, in pixels.
     pub max_divergence_px: f64,
-    /// Its mean in the scene, metres.
+    /// Mean of these distances in the scene, in metres.
     pub mean_divergence_m: f64,
-    /// Decisions of sample effects beyond their bound, or that do not follow from their first word.
+    /// Sample setups outside their bound, or with words that do not follow from the first.
     pub sample_setups_wrong: u64,
     /// Dots of all lines.
     #[serde(skip_serializing_if = "is_zero")]
@@ -69,16 +70,16 @@ pub struct ErrorReport {
     /// Dots that lie outside their forward error bound.
     #[serde(skip_serializing_if = "is_zero")]
     pub dots_outside_bound: u64,
-    /// Pixels whose strongest dot is not what follows from the records of all dots.
+    /// Pixels whose strongest dot does not follow from the records of all dots.
     #[serde(skip_serializing_if = "is_zero")]
     pub dot_pixels_wrong: u64,
     /// Pixels whose number of layers, or sum of their weights, is wrong.
     pub layer_counts_wrong: u64,
-    /// Pixels of layers where several colours are right, because a weight or the depth window is at the edge of a step.
+    /// Pixels of layers with several right colours, because a weight or the depth window lies at a step.
     pub ambiguous_layer_pixels: u64,
-    /// Pixels where a race lost the nearest triangle; only the effect that shows this has any.
+    /// Pixels where a race lost the nearest triangle; 0 without the effect `race`.
     pub race_pixels: u64,
-    /// Counters of rejected and degenerate triangles that are not the oracle's.
+    /// Counters of rejected and degenerate triangles that differ from the oracle's.
     pub counters_wrong: u64,
     /// Largest difference of a colour channel from the nearest right answer, of 255.
     pub max_color_delta: u8,
@@ -90,17 +91,17 @@ fn is_zero(count: &u64) -> bool {
     *count == 0
 }
 
-/// How far a shadow map is from rays, over the pixels that face the light.
+/// How far the light by a shadow map is from traced light, over the pixels that face the light.
 #[derive(Clone, Copy, Debug, Default, PartialEq, serde::Serialize)]
 pub struct ShadowErrors {
     pub pixels: u64,
-    /// Those where the map errs by more than half of the light.
+    /// Pixels with an error of more than half of the light.
     pub wrong: u64,
-    /// Root mean square of the share of the light that is too much or too little.
+    /// Root mean square of the error, as a fraction of the light.
     pub rms: f64,
 }
 
-/// Error as a bench row states it; none reads "not measured", never 0.
+/// The errors that a bench row states; none means "not measured", never 0.
 #[derive(Clone, Debug, Default, PartialEq, serde::Serialize)]
 pub struct ErrorStats {
     pub wrong_triangles: Option<u64>,
@@ -115,16 +116,16 @@ pub struct ErrorStats {
     pub max_color_delta: Option<u8>,
     /// Of 255; where both drew.
     pub rms_color_delta: Option<f64>,
-    /// Largest error of a vertex that joints or shapes bend, pixels; none where nothing bends.
+    /// Largest error of a deformed vertex, in pixels; none if nothing deforms.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub max_deform_px: Option<f64>,
     /// The same in units of the last place.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub max_deform_ulp: Option<f64>,
-    /// Largest distance of a particle from its true flight, pixels; none without particles.
+    /// Largest distance of a particle from the simulated one, in pixels; none without particles.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub max_divergence_px: Option<f64>,
-    /// Share of the particles that are more than a pixel away from it.
+    /// Fraction of the particles that are more than a pixel away from it.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub diverged_fraction: Option<f64>,
 }
@@ -150,58 +151,58 @@ impl From<&ErrorReport> for ErrorStats {
 }
 
 impl ErrorStats {
-    /// Is everything measured and exact, and the colour within one step?
+    /// Returns true if everything was measured and is exact, and colours differ by at most 1 of 255.
     pub fn is_exact(&self) -> bool {
         let exact = [self.wrong_triangles, self.holes, self.double_hits, self.depth_without_id, self.overflow];
         exact.iter().all(|count| *count == Some(0)) && self.max_color_delta.is_some_and(|delta| delta <= 1)
     }
 }
 
-/// What a judge says of a picture.
+/// The result of judging a picture.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Verdict {
     pub report: ErrorReport,
     /// What the oracle draws from the same snapped vertices; in the step band, the right answer nearest to the picture.
     pub expected: crate::frame::Frame,
-    /// Which pixels lie in the step band; empty for a preset without steps.
+    /// Pixels in the step band; empty if no effect has steps.
     pub step_band: Vec<bool>,
-    /// Where it is wrong.
+    /// What is wrong at each pixel.
     pub error_map: error_map::ErrorMap,
 }
 
-/// What options are measured against.
+/// The exact pictures against which accuracy options are measured.
 #[derive(Clone, Debug, Default)]
 pub struct References {
-    /// For every number of drawn pixels to a side of a shown one: the true picture, and where its corners lie.
+    /// For every render scale, the exact picture and its geometry.
     pub pictures: Vec<(f64, crate::frame::Frame, crate::frame::Geometry)>,
-    /// The true picture with eight by eight samples to a pixel; none where all pictures are drawn as they are shown.
+    /// The exact picture with eight by eight samples per pixel; none if there is only one render scale.
     pub smooth: Option<Vec<[u8; 4]>>,
 }
 
 impl References {
-    /// At so many drawn pixels to a side of a shown one.
+    /// The picture and geometry at a render scale.
     pub fn at(&self, factor: f64) -> Option<(&crate::frame::Frame, &crate::frame::Geometry)> {
         self.pictures.iter().find(|(known, ..)| *known == factor).map(|(_, frame, geometry)| (frame, geometry))
     }
 }
 
-/// What may differ in a picture that still passes. Everything that is judged as exact has no budget.
+/// Limits within which a picture passes. Everything that must be exact has no budget.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Budget {
     /// Largest difference of a colour channel, of 255.
     pub max_color_delta: u8,
-    /// Most pixels with a wrong triangle id, most samples not drawn or drawn too often: where the preset asks for less than exactness.
+    /// Most pixels with a wrong triangle id, and most samples not drawn or drawn too often, for presets that are not exact.
     pub max_wrong_triangles: u64,
     /// Most pixels in the depth band.
     pub max_depth_band_pixels: u64,
     /// Most pixels explained by the snap.
     pub max_explained: u64,
-    /// Largest share of the pixels that may lie in the band of colour steps.
+    /// Largest fraction of the pixels that may lie in the step band.
     pub max_step_band_fraction: f64,
 }
 
 impl Default for Budget {
-    /// One step of a channel; a small share of pixels near colour steps; other bands are counted and not capped.
+    /// One step of a channel and a small fraction of pixels in the step band; other bands are counted and not limited.
     fn default() -> Self {
         Self {
             max_color_delta: 1,
@@ -214,10 +215,10 @@ impl Default for Budget {
 }
 
 impl ErrorReport {
-    /// Passes when nothing exact is wrong and the rest stays within `budget`.
+    /// Passes if everything that must be exact is, and the rest is within `budget`.
     ///
     /// # Errors
-    /// A sentence for everything that fails, separated by semicolons.
+    /// A phrase for each limit that is exceeded, separated by semicolons.
     pub fn within(&self, budget: &Budget) -> Result<(), String> {
         let most = [
             (self.wrong_triangles, budget.max_wrong_triangles, "pixels have the wrong triangle id"),
@@ -228,18 +229,18 @@ impl ErrorReport {
             (self.key_outside_bound, 0, "depth keys lie outside their bound"),
             (self.snap_outside_bound, 0, "vertices snapped outside their bound"),
             (self.attribute_outside_bound, 0, "vertices have a depth or 1/w outside its bound"),
-            (self.deformed_outside_bound, 0, "bent vertices lie outside their bound"),
+            (self.deformed_outside_bound, 0, "deformed vertices lie outside their bound"),
             (self.particles_outside_bound, 0, "particles took a step outside its bound"),
             (self.unexplained, budget.max_wrong_triangles, "pixels differ from the oracle's own picture without a reason"),
-            (self.sample_setups_wrong, 0, "decisions of sample effects are wrong"),
+            (self.sample_setups_wrong, 0, "sample setups are wrong"),
             (self.dots_outside_bound, 0, "dots lie outside their bound"),
             (self.dot_pixels_wrong, 0, "pixels have a wrong strength of dots"),
             (self.layer_counts_wrong, 0, "pixels have a wrong number of layers, or a wrong sum of weights"),
             (self.counters_wrong, 0, "counters of rejected or degenerate triangles are wrong"),
             (self.explained_by_snap, budget.max_explained, "pixels differ because vertices snapped apart"),
             (self.depth_band_pixels, budget.max_depth_band_pixels, "pixels lie in the depth band"),
-            (self.step_band_pixels, (self.pixels as f64 * budget.max_step_band_fraction) as u64, "pixels lie in the band of colour steps"),
-            (self.max_color_delta.into(), budget.max_color_delta.into(), "of 255 is the largest colour difference"),
+            (self.step_band_pixels, (self.pixels as f64 * budget.max_step_band_fraction) as u64, "pixels lie in the step band of colors"),
+            (self.max_color_delta.into(), budget.max_color_delta.into(), "of 255 is the largest color difference"),
         ];
         let sentence = |&(count, limit, what): &(u64, u64, &str)| {
             (count > limit).then(|| if limit == 0 { format!("{count} {what}") } else { format!("{count} {what} (at most {limit})") })

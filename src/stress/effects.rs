@@ -122,7 +122,7 @@ fn layers_on_one_pixel(context: &mut CaseContext) -> Result<(), EarlyEnd> {
             let (capture, _) = context.exact(&scene, &view, &stack, &pinned(option), &what)?;
             let found = context.renderer.key().and_then(|key| key.framebuffer.layers);
             equal(&found, &Some(Layers::Xray { bits: taken }), &format!("{what}: kernel"))?;
-            equal(&capture.frame.counted, &vec![count; 4], &format!("{what}: layers of each pixel"))?;
+            equal(&capture.frame.layer_sums, &vec![count; 4], &format!("{what}: layers of each pixel"))?;
             equal(&capture.frame.counters.full_pixels, &0, &format!("{what}: pixels that overflowed"))?;
             let red = f64::from(count.div_ceil(2)) / f64::from(count);
             let expected = [srgb_byte(red), srgb_byte(1.0 - red), srgb_byte(0.25), 255];

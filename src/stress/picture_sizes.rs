@@ -161,11 +161,11 @@ fn xray_at_5k(context: &mut CaseContext) -> Result<(), EarlyEnd> {
     }
     // The oracle judges a small picture; every pixel of the large one must equal it.
     let (small, _) = context.exact(&scene, &pixel_view(64, 36), &stack, &accuracy, "64 x 36 pixels")?;
-    let (color, count) = (small.frame.color[0], small.frame.counted[0]);
+    let (color, count) = (small.frame.color[0], small.frame.layer_sums[0]);
     check!(small.frame.color.iter().all(|c| *c == color), "the layers are not uniform");
     let what = "5,120 x 2,880 pixels";
     let large = context.captured(&scene, &pixel_view(width, height), &stack, &accuracy, what)?;
-    let odd = large.frame.color.iter().zip(&large.frame.counted).filter(|found| *found != (&color, &count)).count();
+    let odd = large.frame.color.iter().zip(&large.frame.layer_sums).filter(|found| *found != (&color, &count)).count();
     equal(&odd, &0, &format!("{what}: pixels that show something else"))?;
     equal(&large.frame.covered(), &(width as usize * height as usize), &format!("{what}: pixels covered"))
 }

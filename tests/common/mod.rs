@@ -204,7 +204,7 @@ fn verdict(scene: &Arc<Scene>, view: &View, stack: &Stack, capture: &Capture) ->
             && (&a.frame, &a.geometry, &a.layers, &a.previous) == (&b.frame, &b.geometry, &b.layers, &b.previous)
     };
     // The judge compares strict vertices bit by bit, but `==` does not tell 0.0 from -0.0.
-    let is_by_bits = capture.geometry.exact.vertices;
+    let is_by_bits = capture.geometry.bit_exact.vertices;
     if !is_by_bits && let Some(same) = latest().iter().find(is_same) {
         return same.verdict.clone();
     }

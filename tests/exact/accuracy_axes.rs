@@ -179,7 +179,7 @@ fn narrow_sums_of_layers_err_by_steps_of_8_bits_and_say_when_they_are_full() {
         for visibility in options(&renderer) {
             let pins = PinnedOptions::of(sums).with(visibility);
             let narrow = captured(&mut renderer, &scene, &view, &xray, &on(pins)).frame;
-            assert_eq!(narrow.counted, wide.counted, "{}: layers", pins.words());
+            assert_eq!(narrow.layer_sums, wide.layer_sums, "{}: layers", pins.words());
             let delta = compare::pictures(&narrow.color, &wide.color, 8);
             assert!(delta.max_delta > 0 && delta.pixels_over_tolerance == 0, "{}: {delta:?}", pins.words());
         }

@@ -483,7 +483,7 @@ fn effects_and_layers_keep_their_picture() {
                 let culled = draw(Culling::TwoPass);
                 let whole = draw(Culling::None);
                 assert_same(&culled.frame, &whole.frame, &format!("{effects:?} on {}", visibility.name()));
-                assert_eq!(culled.frame.counted, whole.frame.counted, "{effects:?} on {}: layers", visibility.name());
+                assert_eq!(culled.frame.layer_sums, whole.frame.layer_sums, "{effects:?} on {}: layers", visibility.name());
             }
         }
     }

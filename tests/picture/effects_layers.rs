@@ -109,7 +109,7 @@ fn the_average_is_bit_equal_in_any_order_on_every_run_option_and_tuning() {
     for stack in [with(&["xray"]), with(&["lambert", "xray.weight=facing"])] {
         let draw = |renderer: &mut Renderer, scene: &Arc<Scene>, option| {
             let frame = captured(renderer, scene, &view, &stack, &pinned(option)).frame;
-            (frame.color, frame.counted)
+            (frame.color, frame.layer_sums)
         };
         let scene = scene_from(&triangles);
         let first = draw(&mut renderer, &scene, Visibility::Split32);
@@ -159,7 +159,7 @@ fn any_number_of_layers_gives_the_right_average_with_fewer_bits_where_it_must() 
         let what = format!("{count} layers from {bits} bits");
         let (capture, verdict) = exact(&mut renderer, &scene, &view, &stack, &AccuracyRequest::default(), &what);
         assert_eq!(renderer.key().and_then(|key| key.framebuffer.layers), Some(Layers::Xray { bits: taken }), "{what}");
-        assert_eq!((capture.frame.counted, capture.frame.counters.full_pixels), (vec![count; 4], 0), "{what}");
+        assert_eq!((capture.frame.layer_sums, capture.frame.counters.full_pixels), (vec![count; 4], 0), "{what}");
         let expected = pile_color(count);
         let near = |color: &[u8; 4]| color.iter().zip(expected).all(|(a, b)| a.abs_diff(b) <= 1);
         // Steps of eight bits in linear light are coarser than bytes.
@@ -189,7 +189,7 @@ fn more_layers_than_any_sum_holds_are_a_sentence_and_a_mark_never_silent() {
     // One layer fewer than too many is right.
     let scene = pile(count - 2);
     let (capture, _) = exact(&mut renderer, &scene, &view, &stack, &AccuracyRequest::default(), "as many as fit");
-    assert_eq!(capture.frame.counted, vec![(count - 2) * xray::FULL_WEIGHT; 4]);
+    assert_eq!(capture.frame.layer_sums, vec![(count - 2) * xray::FULL_WEIGHT; 4]);
 }
 
 #[test]
@@ -248,11 +248,11 @@ fn every_builtin_scene_is_exact_in_layers() {
             let is_weighted = stack.params::<Xray>("xray").is_some_and(|xray| xray.unit() > 1);
             if !is_weighted {
                 assert_eq!(
-                    Some(&capture.frame.counted),
+                    Some(&capture.frame.layer_sums),
                     capture.layers.as_ref(),
                     "{what}: what the picture shows and what the judge counts"
                 );
-                assert_eq!(capture.frame.counted, verdict.expected.counted, "{what}");
+                assert_eq!(capture.frame.layer_sums, verdict.expected.layer_sums, "{what}");
             }
         }
     }

@@ -294,7 +294,7 @@ fn an_alpha_of_just_the_cutoff_is_drawn_whatever_the_byte() {
 fn a_higher_cutoff_draws_a_part_of_what_a_lower_one_does() {
     let (scene, [(_, view), _]) = crowns([200, 150]);
     let stack = stack(&["xray"]);
-    let layers = |alpha_cutoff| oracle::render(&cut_at(&scene, alpha_cutoff), &view, &stack).expect("it fits").counted;
+    let layers = |alpha_cutoff| oracle::render(&cut_at(&scene, alpha_cutoff), &view, &stack).expect("it fits").layer_sums;
     let cutoffs = [None, Some(0.0), Some(0.2), Some(0.5), Some(0.51), Some(0.9), Some(1.0), Some(1.5)];
     let counts: Vec<Vec<u32>> = cutoffs.iter().map(|&alpha_cutoff| layers(alpha_cutoff)).collect();
     for pair in counts.windows(2) {

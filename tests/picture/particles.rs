@@ -269,11 +269,11 @@ fn lives_end_and_begin_again_inside_the_room() {
     assert_eq!(longest, 15);
     for (curl, state) in particle_options() {
         let particle_readback = flown(&mut renderer, &scene, &preset, 100, &on(curl, state)).1;
-        let held = |flight: &ParticleState| flight.place.iter().all(|at| at.abs() <= 0.8 + 1e-5);
+        let held = |flight: &ParticleState| flight.position.iter().all(|at| at.abs() <= 0.8 + 1e-5);
         assert!(particle_readback.after.iter().all(|flight| held(flight) && flight.age < longest && flight.births >= 100 / longest - 1));
         let reborn = particle_readback.after.iter().filter(|flight| flight.age == 0).count();
         assert!((10..200).contains(&reborn), "{reborn} of 500 were born in this very step");
-        let ball = |flight: &ParticleState| flight.place.iter().map(|at| at * at).sum::<f32>().sqrt() <= 0.4 + 1e-4;
+        let ball = |flight: &ParticleState| flight.position.iter().map(|at| at * at).sum::<f32>().sqrt() <= 0.4 + 1e-4;
         assert!(particle_readback.after.iter().filter(|flight| flight.age == 0).all(ball));
     }
 }

@@ -417,7 +417,7 @@ fn mistakes_in_the_pass_are_found() {
             let mut renderer = Renderer::with_library(gpu.clone(), mutant.shaders());
             let (_, verdict) = judged(&mut renderer, &scene, &view, &stack, &pinned(Visibility::Split32));
             let faults = verdict.report.within(&Budget::default());
-            found |= faults.is_err_and(|faults| faults.contains("bent vertices lie outside their bound"));
+            found |= faults.is_err_and(|faults| faults.contains("deformed vertices lie outside their bound"));
         }
         assert!(found, "{what} was not found");
     }

@@ -18,7 +18,7 @@ use super::{
 };
 use crate::{
     effects::hooks::Shape,
-    frame::{Exactness, Frame, Geometry},
+    frame::{BitExact, Frame, Geometry},
     measure::ErrorReport,
 };
 
@@ -61,7 +61,7 @@ impl EndToEnd<'_> {
 
     /// Records and keys are the same everywhere, so nothing may differ.
     fn is_strict(&self) -> bool {
-        self.own.exact == Exactness { vertices: true, keys: true }
+        self.own.bit_exact == BitExact { vertices: true, depth_keys: true }
     }
 
     /// Returns true if the oracle may find triangle `own` at a pixel where the adapter finds `given`; `limit` is where the oracle's

@@ -38,7 +38,7 @@ use super::{
 };
 use crate::{
     effects::Stack,
-    frame::{AdapterPicture, Counters, Exactness, Frame, Geometry},
+    frame::{AdapterPicture, BitExact, Counters, Frame, Geometry},
     measure::{ErrorReport, Verdict, compare},
     scene::{
         Scene,
@@ -65,7 +65,7 @@ pub fn judge(scene: &Scene, view: &View, stack: &Stack, picture: &AdapterPicture
     let scene = &*scene_with_particles(scene, view, stack, words);
     let draws = draws(scene, view)?;
     let shot = Shot::new(scene, &draws, view, stack);
-    let own = own_geometry(&shot, geometry.exact);
+    let own = own_geometry(&shot, geometry.bit_exact);
     check_sizes(&shot, picture, &own);
 
     let mut report = ErrorReport { pixels: view.pixels() as u64, ..Default::default() };
@@ -97,9 +97,9 @@ pub fn judge(scene: &Scene, view: &View, stack: &Stack, picture: &AdapterPicture
 }
 
 /// The geometry that the oracle computes under the same promises.
-fn own_geometry(shot: &Shot, exact: Exactness) -> Geometry {
+fn own_geometry(shot: &Shot, exact: BitExact) -> Geometry {
     let geometry = if exact.vertices { project_strict(shot) } else { project(shot) };
-    let geometry = Geometry { exact, ..geometry };
+    let geometry = Geometry { bit_exact: exact, ..geometry };
     Geometry { sample_setups: sample_setups(shot, &geometry), ..geometry }
 }
 
@@ -195,5 +195,5 @@ impl JudgedColors {
 
 fn expected_frame(view: &View, coverage: &BoundedCoverage, color: Vec<[u8; 4]>, counted: Vec<u32>, counters: Counters) -> Frame {
     let (triangle_id, key) = (coverage.triangle_ids(), coverage.depth_keys());
-    Frame { width: view.width, height: view.height, triangle_id, depth_key: key, color, counted, counters, ..Frame::default() }
+    Frame { width: view.width, height: view.height, triangle_id, depth_key: key, color, layer_sums: counted, counters, ..Frame::default() }
 }

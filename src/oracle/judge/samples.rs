@@ -68,7 +68,7 @@ pub fn judge_samples(report: &mut ErrorReport, coverage: &BoundedCoverage, pictu
 /// # Panics
 /// If the counts have another size.
 pub fn judge_layers(report: &mut ErrorReport, bounds: &LayerBounds, picture: &AdapterPicture) {
-    let counted = &picture.frame.counted;
+    let counted = &picture.frame.layer_sums;
     assert_eq!(counted.len(), bounds.counted.len(), "the counts of layers have another size");
     let is_wrong = |(count, [least, most]): &(&u32, &[u64; 2])| !(*least..=*most).contains(&u64::from(**count));
     report.layer_counts_wrong = counted.iter().zip(&bounds.counted).filter(is_wrong).count() as u64;

@@ -36,7 +36,7 @@ pub struct VertexError {
 /// Compares an adapter's records with the oracle's.
 pub fn vertex_errors(shot: &Shot, adapter: &Geometry, own: &Geometry) -> Vec<VertexError> {
     let pairs = adapter.vertices.iter().zip(&own.vertices);
-    if adapter.exact.vertices {
+    if adapter.bit_exact.vertices {
         return pairs.map(|(adapter, own)| strict_error(adapter, own)).collect();
     }
     if adapter.has_approximate_positions {

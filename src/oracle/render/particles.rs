@@ -36,7 +36,7 @@ pub struct ReferenceParticle {
 
 impl From<&ParticleState> for ReferenceParticle {
     fn from(state: &ParticleState) -> Self {
-        let [position, velocity] = [state.place, state.velocity].map(|v| DVec3::from_array(v.map(f64::from)));
+        let [position, velocity] = [state.position, state.velocity].map(|v| DVec3::from_array(v.map(f64::from)));
         Self { position, velocity, age: state.age, births: state.births }
     }
 }

@@ -61,7 +61,17 @@ pub fn render_next(scene: &Scene, view: &View, stack: &Stack, previous: Option<&
         None => (shade(&shot, &input, &geometry), Vec::new()),
     };
     let (triangle_id, key) = (coverage.triangle_ids(), coverage.depth_keys());
-    Ok(Frame { width: view.width, height: view.height, triangle_id, depth_key: key, color, counted, dots, counters, ..Frame::default() })
+    Ok(Frame {
+        width: view.width,
+        height: view.height,
+        triangle_id,
+        depth_key: key,
+        color,
+        layer_sums: counted,
+        dots,
+        counters,
+        ..Frame::default()
+    })
 }
 
 /// The exact picture of the last of `sequence`, drawn after those before it, all of the same size.
@@ -88,7 +98,7 @@ pub fn strict_frame(scene: &Scene, view: &View, stack: &Stack) -> Result<(Vec<u3
     let draws = draws(scene, view)?;
     let shot = Shot::new(scene, &draws, view, stack);
     let mut geometry = project_strict(&shot);
-    geometry.exact.keys = true;
+    geometry.bit_exact.depth_keys = true;
     geometry.sample_setups = sample_setups(&shot, &geometry);
     let (triangles, _) = triangles(&shot, &geometry);
     let coverage = cover_with(&limited(SampleTests::new(&shot, &geometry), stack, &triangles, view), &triangles, view);

@@ -105,7 +105,7 @@ impl<'a> SampleTests<'a> {
             // Boxes and points replace triangles, so there are no discs.
             discs: if stack.shape() == Shape::Triangles { geometry.particle_discs.clone() } else { 0..0 },
             unit: 1 << geometry.subpixel_bits,
-            has_integer_keys: geometry.exact.keys,
+            has_integer_keys: geometry.bit_exact.depth_keys,
             ..Self::default()
         }
     }

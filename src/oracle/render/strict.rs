@@ -19,7 +19,7 @@ use super::{
     vertex::Corner,
 };
 use crate::{
-    frame::{Exactness, Geometry, SnappedVertex, vertex_flags},
+    frame::{BitExact, Geometry, SnappedVertex, vertex_flags},
     math::GUARD_BAND,
     scene::{ComponentType, Scene, draw::Draw, view::View},
 };
@@ -39,9 +39,9 @@ pub fn project_strict(shot: &Shot) -> Geometry {
         let vertices = 0..scene.primitives[draw.primitive].vertex_count();
         vertices.into_par_iter().map(|vertex| record(draw, vertex)).collect::<Vec<_>>()
     };
-    let exact = Exactness { vertices: true, keys: false };
+    let exact = BitExact { vertices: true, depth_keys: false };
     let vertices = draws.iter().flat_map(records).collect();
-    let mut geometry = Geometry { vertices, exact, subpixel_bits: view.precision.subpixel_bits, ..Geometry::default() };
+    let mut geometry = Geometry { vertices, bit_exact: exact, subpixel_bits: view.precision.subpixel_bits, ..Geometry::default() };
     let clipped = |draw: &Draw| {
         let position = |corner: Corner| position(scene, draw, corner.vertex).expect("a triangle that is clipped has no rejected corner");
         clip::clipped_triangles(shot, draw, &geometry, position)
