@@ -1,25 +1,25 @@
-//! Exact little tools: ULP distance, sub-pixel snapping constants, and f64 matrices rounded once to f32.
+//! Constants of the sub-pixel grid, distances between floats, f64 matrices rounded once to f32, gamma encoding and hashes.
 //!
-//! Matrices are named by the spaces they join, so that neighbours cancel by eye:
+//! A matrix is named after the spaces it connects, so that adjacent names cancel:
 //! `clip_from_object = clip_from_world * world_from_object`.
 
 use glam::{DMat4, DVec3};
 
-/// Bits of the fraction of a snapped position unless a option says otherwise (16.8 fixed point).
+/// Bits of the fraction of a snapped position by default (16.8 fixed point).
 pub const SUBPIXEL_BITS: u32 = 8;
 
-/// Sub-pixel units in one pixel of that kind.
+/// Sub-pixel units in a pixel with that many bits.
 pub const UNITS_PER_PIXEL: i32 = 1 << SUBPIXEL_BITS;
 
 /// Largest |x| and |y| of a snapped vertex that needs no guard-band clipping, in units of 1/256 px
 /// (32,767.996 px; symmetric, and exact in an f32).
 pub const GUARD_BAND: i32 = 8_388_607;
 
-/// Side of the largest square in which every edge function fits an i32, in units of 1/256 px, rounded down to
-/// whole blocks: 128 px (`EXACT_I32` itself is 181 px; the rest is room for blocks that overhang).
+/// Side of a square in which every edge function fits an i32, in units of 1/256 px: 128 px, a whole number of blocks. The limit is
+/// 181 px; the difference leaves room for blocks that overhang.
 pub const SMALL_EXTENT: i32 = 128 * UNITS_PER_PIXEL;
 
-/// Distance between two floats in units in the last place; 0 for equal values (also +0 and -0), `u32::MAX` with a NaN.
+/// Distance between two floats in units in the last place: 0 for equal values and for +0 and -0, `u32::MAX` if one is NaN.
 pub fn ulp_distance(a: f32, b: f32) -> u32 {
     if a.is_nan() || b.is_nan() {
         return u32::MAX;
@@ -37,7 +37,7 @@ pub fn rounded_columns(m: &DMat4) -> [[f32; 4]; 4] {
 }
 
 /// Rigid view matrix (right-handed, looking down -z). `eye` and `target` must differ and `up` must not be parallel
-/// to the view direction; otherwise another up axis is taken, so the result is always finite.
+/// to the view direction; otherwise another up axis is used, so the result is always finite.
 pub fn view_from_world(eye: DVec3, target: DVec3, up: DVec3) -> DMat4 {
     let back = (eye - target).try_normalize().unwrap_or(DVec3::Z);
     let right = [up, DVec3::Y, DVec3::X].into_iter().find_map(|up| up.cross(back).try_normalize()).unwrap_or(DVec3::X);
@@ -50,7 +50,7 @@ pub fn view_from_world(eye: DVec3, target: DVec3, up: DVec3) -> DMat4 {
     )
 }
 
-/// Rotation about +y by `radians`, from the pure-Rust maths library, so that every host gives the same bits.
+/// Rotation about +y by `radians`, computed by a pure-Rust maths library, so that every host gets the same bits.
 pub fn rotation_y(radians: f64) -> DMat4 {
     let (sin, cos) = libm::sincos(radians);
     DMat4::from_cols(
@@ -61,7 +61,7 @@ pub fn rotation_y(radians: f64) -> DMat4 {
     )
 }
 
-/// A gamma-encoded value, 0 to 1, as linear light (IEC 61966-2-1).
+/// A gamma-encoded value from 0 to 1 as linear light (IEC 61966-2-1).
 pub fn linear_light(encoded: f64) -> f64 {
     if encoded <= 0.040_45 { encoded / 12.92 } else { libm::pow((encoded + 0.055) / 1.055, 2.4) }
 }
@@ -84,18 +84,18 @@ pub fn hash(x: u32) -> u32 {
     x ^ (x >> 16)
 }
 
-/// FNV-1a, 64 bits, of the bytes of words, the lowest first (Fowler, Noll and Vo).
+/// FNV-1a with 64 bits (Fowler, Noll and Vo) of the bytes of words, the lowest byte first.
 pub fn fnv1a(words: &[u32]) -> u64 {
     let bytes = words.iter().flat_map(|word| word.to_le_bytes());
     bytes.fold(0xcbf2_9ce4_8422_2325, |hash, byte| (hash ^ u64::from(byte)).wrapping_mul(0x0100_0000_01b3))
 }
 
-/// A hash as a number in [0, 1) of 24 bits, exact in f32.
+/// A hash as a number in [0, 1) with 24 bits, exact in f32.
 pub fn hash_unit(x: u32) -> f64 {
     f64::from(hash(x) >> 8) / f64::from(1 << 24)
 }
 
-/// Sine of an angle in turns, which are reduced first, so that whole turns cost no precision.
+/// Sine of an angle in turns; whole turns are subtracted first, so that they cost no precision.
 pub fn sin_turns(turns: f64) -> f64 {
     libm::sin((turns - turns.round()) * std::f64::consts::TAU)
 }

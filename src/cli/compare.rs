@@ -41,7 +41,7 @@ pub fn run(common: &Common, args: &Compare, streams: &mut Streams) -> Result<Exi
         let path = files::target(output, &Names { preset: "diff".into(), ..Names::default() }, common.force)?;
         files::write(&path, &preset_file::png_bytes(&difference_picture(&a.color, &b.color, 16), a.size)?)?;
     }
-    let pixels: Vec<_> = delta.mismatches.iter().map(|o| (o.place(a.size[0]), o.a, o.b)).collect();
+    let pixels: Vec<_> = delta.mismatches.iter().map(|o| (o.pixel(a.size[0]), o.a, o.b)).collect();
     if streams.json {
         let mismatches: Vec<_> = pixels.iter().map(|(pixel, a, b)| json!({ "pixel": pixel, "a": a, "b": b })).collect();
         let result = json!({

@@ -1,6 +1,6 @@
-//! Picture against picture, in integers: no blur, no perceptual metric, no tolerance that is not stated.
+//! Comparison of pictures in integers: no blur, no perceptual metric, no implicit tolerance.
 
-/// Offenders that a comparison names at most.
+/// Most mismatches that a comparison lists.
 pub const MAX_MISMATCHES: usize = 16;
 
 /// Difference of two pictures.
@@ -10,16 +10,16 @@ pub struct PictureDelta {
     pub max_delta: u8,
     /// Root mean square over all channels, of 255.
     pub rms: f64,
-    /// Pixels with a channel that differs by more than allowed.
+    /// Pixels with a channel that differs by more than the tolerance.
     pub pixels_over_tolerance: u64,
     /// The first of them, at most [`MAX_MISMATCHES`].
     pub mismatches: Vec<Mismatch<[u8; 4]>>,
 }
 
-/// A pixel that two images disagree about.
+/// A pixel that differs between two images.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Mismatch<T> {
-    /// Place in the image, row-major.
+    /// Index in the image, row-major.
     pub index: usize,
     pub a: T,
     pub b: T,
@@ -27,15 +27,16 @@ pub struct Mismatch<T> {
 
 impl<T> Mismatch<T> {
     /// Column and row in an image `width` pixels wide.
-    pub fn place(&self, width: u32) -> [usize; 2] {
+    pub fn pixel(&self, width: u32) -> [usize; 2] {
         let width = width.max(1) as usize;
         [self.index % width, self.index / width]
     }
 }
 
-/// Compares two pictures of one size; a pixel is beyond when a channel (alpha too) differs by more than `max_channel`.
+/// Compares two pictures of the same size; a pixel is over tolerance if a channel (including alpha) differs by more than
+/// `max_channel`.
 ///
-/// Pictures of different lengths are different: what one has too many is beyond, with the largest difference.
+/// If one picture has more pixels, the surplus is over tolerance, with the largest difference.
 pub fn pictures(a: &[[u8; 4]], b: &[[u8; 4]], max_channel: u8) -> PictureDelta {
     let mut delta = PictureDelta::default();
     let mut squares = 0u64;
@@ -65,21 +66,21 @@ pub fn pictures(a: &[[u8; 4]], b: &[[u8; 4]], max_channel: u8) -> PictureDelta {
 /// Difference of two triangle id images.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct TriangleDelta {
-    /// Pixels with different triangle ids; the surplus of a longer image counts.
+    /// Pixels with different triangle ids, including the surplus of a longer image.
     pub different: u64,
     /// The first of them, at most [`MAX_MISMATCHES`].
     pub mismatches: Vec<Mismatch<u32>>,
 }
 
-/// Compares two triangle id images (or images of depth keys) of one size, exactly.
+/// Compares two images of triangle ids, or of depth keys, of the same size.
 pub fn triangle_ids(a: &[u32], b: &[u32]) -> TriangleDelta {
     let mismatches = a.iter().zip(b).enumerate().filter(|(_, (a, b))| a != b).map(|(index, (&a, &b))| Mismatch { index, a, b });
     let different = mismatches.clone().count() + a.len().abs_diff(b.len());
     TriangleDelta { different: different as u64, mismatches: mismatches.take(MAX_MISMATCHES).collect() }
 }
 
-/// Differences of two pictures made visible: each channel's difference times `gain`, opaque; black where they agree.
-/// A difference of alpha alone shows as grey.
+/// An opaque picture of the differences of two pictures: each channel's difference times `gain`, black where they agree. A
+/// difference of alpha alone is grey.
 pub fn difference_picture(a: &[[u8; 4]], b: &[[u8; 4]], gain: u8) -> Vec<[u8; 4]> {
     let pixel = |(a, b): (&[u8; 4], &[u8; 4])| {
         let [red, green, blue, alpha] = std::array::from_fn(|c| a[c].abs_diff(b[c]).saturating_mul(gain));
@@ -101,7 +102,7 @@ mod tests {
         let delta = pictures(&a, &b, 1);
         assert_eq!((delta.max_delta, delta.pixels_over_tolerance), (2, 1));
         assert_eq!(delta.mismatches, [Mismatch { index: 4, a: a[4], b: b[4] }]);
-        assert_eq!(delta.mismatches[0].place(3), [1, 1]);
+        assert_eq!(delta.mismatches[0].pixel(3), [1, 1]);
         assert!((delta.rms - (5.0f64 / 24.0).sqrt()).abs() < 1e-15);
         assert_eq!(pictures(&a, &b, 2).pixels_over_tolerance, 0);
     }

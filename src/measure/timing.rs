@@ -1,18 +1,18 @@
-//! Samples of time, summed up without hiding any.
+//! Statistics of timings.
 
 /// The `p`-quantile (0 to 1) by linear interpolation between the sorted samples; none without samples.
 pub fn percentile(samples: &[f64], p: f64) -> Option<f64> {
     let mut sorted = samples.to_vec();
     sorted.sort_by(f64::total_cmp);
     let last = sorted.len().checked_sub(1)?;
-    let place = p.clamp(0.0, 1.0) * last as f64;
-    let (low, high) = (sorted[place.floor() as usize], sorted[place.ceil() as usize]);
-    Some(low + (high - low) * place.fract())
+    let position = p.clamp(0.0, 1.0) * last as f64;
+    let (low, high) = (sorted[position.floor() as usize], sorted[position.ceil() as usize]);
+    Some(low + (high - low) * position.fract())
 }
 
 /// Samples more than five (scaled) median absolute deviations from the median.
 pub fn outliers(samples: &[f64]) -> usize {
-    // The MAD of a normal distribution is its deviation over this.
+    // The standard deviation of a normal distribution, in median absolute deviations.
     const NORMAL: f64 = 1.4826;
     let Some(median) = percentile(samples, 0.5) else { return 0 };
     let distances: Vec<f64> = samples.iter().map(|sample| (sample - median).abs()).collect();

@@ -76,7 +76,7 @@ fn complaint_but(preset: &Preset, actual: &Picture, golden: &Picture, band: &[bo
     if delta.pixels_over_tolerance <= allowed {
         return None;
     }
-    let first = delta.mismatches.first().map(|o| format!(", first at {:?}: {:?} for {:?}", o.place(preset.output.size[0]), o.a, o.b));
+    let first = delta.mismatches.first().map(|o| format!(", first at {:?}: {:?} for {:?}", o.pixel(preset.output.size[0]), o.a, o.b));
     Some(format!(
         "{} pixels differ by more than {} of 255 (at most {} may), largest {}{}",
         delta.pixels_over_tolerance,

@@ -73,8 +73,8 @@ mod tests {
             let low = depths.iter().copied().fold(1.0, f32::min);
             let high = depths.iter().copied().fold(0.0, f32::max);
             assert!((low.to_bits()..=high.to_bits()).contains(&key), "{depths:?} {weights:?}");
-            let truth: f64 = (0..3).map(|i| f64::from(depths[i]) * weights[i] as f64).sum::<f64>() / weights.iter().sum::<i64>() as f64;
-            assert!((f64::from(f32::from_bits(key)) / truth - 1.0).abs() < 12.0 * f64::from(f32::EPSILON), "{depths:?} {weights:?}");
+            let exact: f64 = (0..3).map(|i| f64::from(depths[i]) * weights[i] as f64).sum::<f64>() / weights.iter().sum::<i64>() as f64;
+            assert!((f64::from(f32::from_bits(key)) / exact - 1.0).abs() < 12.0 * f64::from(f32::EPSILON), "{depths:?} {weights:?}");
         }
     }
 }

@@ -1,10 +1,10 @@
-//! Right colours where a step decides (`docs/exactness.md` §9): a value that f64 puts on one side of a step may lie on the other in
+//! Right colours near steps of colour (`docs/exactness.md` §9): a value that f64 puts on one side of a step may lie on the other in
 //! f32, and then either answer is right.
 //!
-//! An effect decides a step on a value plus [`Perturbation::color_step`](super::super::perturbation::Perturbation), so shading with a small perturbation to either side finds
-//! the pixels that lie so near a step: the step band. It does not depend on the adapter's picture; it is counted, and an
-//! [`Budget`](crate::measure::Budget) limits it. Texture lookups are perturbed in the same way; there, values between the
-//! answers are right as well.
+//! An effect decides a step on a value plus [`Perturbation::color_step`], so shading with a small perturbation to either side finds
+//! the pixels that lie so near a step: the step band. It does not depend on the adapter's picture; it is counted, and a
+//! [`Budget`](crate::measure::Budget) limits it. Texture lookups are perturbed in the same way; there, values between the answers
+//! are right as well.
 
 use super::{
     super::{

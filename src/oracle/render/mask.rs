@@ -1,4 +1,4 @@
-//! Alpha masks: which samples the alpha of a material's texture leaves out (`docs/exactness.md` §7). Integers decide, from texture
+//! Alpha masks: which samples the alpha of a material's texture leaves out (`docs/exactness.md` §7), tested in integers from texture
 //! coordinates of the corners in 1/256 of a texel. Of a clipped triangle a float renderer computes these coordinates, within the
 //! bound of [`super::super::bounds::mask`].
 

@@ -54,7 +54,7 @@ pub fn shadow_map(scene: &Scene, view: &View, stack: &Stack) -> Result<Option<Bo
     Ok(Some(Box::new(ShadowMap { depth_keys: keys, geometry })))
 }
 
-/// A sample for which the light that arrives is asked.
+/// A sample whose illumination is computed.
 #[derive(Clone, Copy, Debug)]
 pub struct LitPoint {
     /// On the ray of its pixel, whichever way corners have snapped.

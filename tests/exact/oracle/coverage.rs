@@ -18,14 +18,14 @@ proptest! {
         // A corner that stays within a quarter of a cell cannot cross a diagonal.
         let jitter = (cell / 5 - lattice).max(0);
         // Vertices on the border move along it only.
-        let mut place = |column: usize, row: usize| {
+        let mut corner = |column: usize, row: usize| {
             let mut axis = |k: usize, origin: i32| {
                 let moved = if k == 0 || k == n { 0 } else { rng.between(-jitter, jitter + 1) };
                 (origin + k as i32 * cell + moved).div_euclid(lattice) * lattice
             };
             [axis(column, origin[0]), axis(row, origin[1])]
         };
-        let points: Vec<Vec<[i32; 2]>> = (0..=n).map(|row| (0..=n).map(|column| place(column, row)).collect()).collect();
+        let points: Vec<Vec<[i32; 2]>> = (0..=n).map(|row| (0..=n).map(|column| corner(column, row)).collect()).collect();
         let mut mesh = Vec::new();
         for (row, column) in (0..n).flat_map(|row| (0..n).map(move |column| (row, column))) {
             let [a, b, c, d] = [points[row][column], points[row][column + 1], points[row + 1][column + 1], points[row + 1][column]];

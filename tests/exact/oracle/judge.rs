@@ -370,11 +370,11 @@ fn lost_clipped_triangle_is_caught() {
     let unexplained =
         |lost: usize| judged(&fixture, &Adapter::default(), |geometry| _ = geometry.clipped_triangles.remove(lost), |_, _| {}).unexplained;
     assert!((0..count).any(|lost| unexplained(lost) > 50));
-    // The same pieces in another fan order of parents are the same picture.
+    // The clipped triangles of other parents may come in any order.
     let shuffled = judged(
         &fixture,
         &Adapter::default(),
-        |geometry| geometry.clipped_triangles.sort_by_key(|piece: &ClippedTriangle| !piece.parent),
+        |geometry| geometry.clipped_triangles.sort_by_key(|triangle: &ClippedTriangle| !triangle.parent),
         |_, _| {},
     );
     assert_eq!(shuffled.within(&Budget::default()), Ok(()));

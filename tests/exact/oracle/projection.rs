@@ -75,8 +75,8 @@ fn clipped_triangles_stay_inside_the_guard_band_with_planes_set_exactly() {
     let soup: Vec<[f32; 3]> = (0..3000).map(|_| [number(3.0), number(3.0), number(2.0)]).collect();
     let scene = scene(&[triangle_soup(soup)]);
     let geometry = projected(&scene, &view);
-    assert!(geometry.clipped_triangles.len() > 500 && geometry.clipped_triangles.is_sorted_by_key(|piece| piece.parent));
-    let corners: Vec<_> = geometry.clipped_triangles.iter().flat_map(|piece| piece.corners).collect();
+    assert!(geometry.clipped_triangles.len() > 500 && geometry.clipped_triangles.is_sorted_by_key(|triangle| triangle.parent));
+    let corners: Vec<_> = geometry.clipped_triangles.iter().flat_map(|triangle| triangle.corners).collect();
     assert!(corners.iter().all(|c| c.flags == 0 && c.x.abs() <= GUARD_BAND && c.y.abs() <= GUARD_BAND));
     assert!(corners.iter().all(|c| c.depth > 0.0 && c.depth <= 1.0 && c.inv_w <= 2.0));
     assert!(corners.iter().filter(|c| c.depth == 1.0).count() > 500, "cuts by the near plane lie on it");
@@ -132,12 +132,12 @@ fn rejected_vertices_take_only_their_own_triangles_along() {
         (f32::from_bits(1), 0, 0),
         (1.0e12, 0, 0),
     ] {
-        for lane in 0..3 {
+        for component in 0..3 {
             let mut broken = [[1.0, 2.0, 0.5], [3.0, 4.0, 0.5], [5.0, 1.0, 0.5]];
-            broken[1][lane] = bad;
+            broken[1][component] = bad;
             let mesh = triangle_soup([good, broken].concat());
             let (layers, counters) = covered(&scene(&[mesh]), &pixel_view(16, 16));
-            assert_eq!((counters.rejected_nonfinite, counters.rejected_range), (nonfinite, range), "{bad} in lane {lane}");
+            assert_eq!((counters.rejected_nonfinite, counters.rejected_range), (nonfinite, range), "{bad} in component {component}");
             assert!(layers[0] >= 1 && layers[255] == 0);
         }
     }

@@ -86,7 +86,7 @@ fn broken_normals_and_colours_take_finite_defaults() {
     }
     let mesh = SimpleMesh { colors: vec![[f32::NAN, 0.0, f32::NEG_INFINITY, 1.0]; 3], ..triangle_soup(positions) };
     let frame = render(&scene(&[mesh]), &view, &Stack::default()).unwrap();
-    // One bad lane spoils the vertex: white, as without colours.
+    // A vertex with one bad component is white, as without colours.
     assert_eq!(frame.color[0], [255; 4]);
 }
 
@@ -164,10 +164,10 @@ fn flat_shading_is_one_value_per_triangle() {
     let view = View::new(&camera, 96, 96, &scene.bounds(), DMat4::IDENTITY, [0.0; 4]);
     let object = |triangle_id: u32| {
         let primitive = &scene.primitives[0];
-        let place = scene.instances[0].world_from_object;
+        let world_from_object = scene.instances[0].world_from_object;
         primitive
             .corners(&scene, triangle_id)
-            .map(|v| place.transform_point3(DVec3::from_array(primitive.position(&scene, v).map(f64::from))))
+            .map(|v| world_from_object.transform_point3(DVec3::from_array(primitive.position(&scene, v).map(f64::from))))
     };
     for (mut stack, reference) in [
         (only("normals", &[]), &(|[a, b, c]: [DVec3; 3]| normal_bytes((b - a).cross(c - a).normalize())) as &dyn Fn([DVec3; 3]) -> [u8; 4]),
