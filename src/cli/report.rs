@@ -51,7 +51,7 @@ fn section(finding: &Finding) -> Result<String, CliError> {
              <figcaption><input type=range min=0 max=100 value=50 aria-label=\"wipe\"> wipe <button>blink</button></figcaption></figure></div>\n"
         );
         for offender in delta.mismatches.iter().take(10) {
-            let [x, y] = offender.place(size[0]);
+            let [x, y] = offender.pixel(size[0]);
             html += &format!("<code>pixel {x},{y}: expected {:?}, actual {:?}</code><br>\n", offender.a, offender.b);
         }
     }
