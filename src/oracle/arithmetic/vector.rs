@@ -13,13 +13,12 @@ pub fn plane_normal([a, b, c]: [DVec3; 3]) -> Option<DVec3> {
     (normal.length_squared() >= DEGENERATE).then_some(normal)
 }
 
-/// The matrix that transforms normals where `m` transforms points, up to a positive factor: the cofactors of `m`, negated if `m`
-/// mirrors.
-pub fn normal_matrix(m: DMat3, mirrored: bool) -> DMat3 {
+/// The matrix that transforms normals where `m` transforms points, up to a factor: the cofactors of `m`, scaled to entries of at
+/// most 1. The factor is negative if `m` mirrors.
+pub fn normal_matrix(m: DMat3) -> DMat3 {
     let cofactors = cofactors(&m);
     let largest = cofactors.to_cols_array().into_iter().fold(0.0, |largest: f64, entry| largest.max(entry.abs()));
-    let scale = if largest > 0.0 { 1.0 / largest } else { 0.0 };
-    cofactors * if mirrored { -scale } else { scale }
+    cofactors * if largest > 0.0 { 1.0 / largest } else { 0.0 }
 }
 
 /// Cofactors of a matrix: cross products of its columns.

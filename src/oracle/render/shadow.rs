@@ -67,13 +67,6 @@ pub struct LitPoint {
     pub error_m: f64,
 }
 
-/// Bound of the error of a sample's position in f32: weights of small triangles err by 9 steps of 2^-23, those of large ones by
-/// 15, and the point on the ray by a few more; on a clipped triangle by 2^-15 of the distance.
-pub fn position_error_m(view: &View, position: DVec3, is_clipped: bool) -> f64 {
-    let (from_eye, from_origin) = ((position - view.eye).length(), view.eye.length());
-    if is_clipped { (from_eye + from_origin) / f64::from(1 << 15) } else { (24.0 * from_eye + 4.0 * from_origin) * ROUNDING }
-}
-
 /// A directional light with its shadows.
 pub enum Light<'a> {
     Mapped(Box<ShadowLookup<'a>>),

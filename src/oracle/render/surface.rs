@@ -16,7 +16,7 @@ use super::{
     draw_order::ranks,
     material::{SampleWeights, TriangleMaterial},
     screen::ScreenTriangle,
-    shadow::{Light, LitPoint, position_error_m},
+    shadow::{Light, LitPoint},
     triangles::OrientedTriangle,
     vertex::{Corner, VertexEvaluator},
     weights::{SamplePoint, Weights},
@@ -237,8 +237,7 @@ impl<'a> SurfaceTriangle<'a> {
             // Outside the triangle only the ray of the pixel is defined.
             Shape::Boxes | Shape::Points => on_ray,
         };
-        let is_clipped = matches!(self.weights, Weights::Homogeneous { .. });
-        LitPoint { on_ray, on_triangle, flat_normal: surface.flat_normal, error_m: position_error_m(self.view, on_ray, is_clipped) }
+        LitPoint { on_ray, on_triangle, flat_normal: surface.flat_normal, error_m: self.weights.position_error_m(self.view, on_ray) }
     }
 
     /// Interpolated in object space; none if the corner normals cancel out.

@@ -45,6 +45,7 @@ pub struct VertexEvaluator<'a> {
 
 impl<'a> VertexEvaluator<'a> {
     pub fn new(scene: &'a Scene, draw: &'a Draw, view: &'a View, stack: &'a Stack) -> Self {
+        let normal_matrix = normal_matrix(DMat3::from_mat4(draw.world_from_object));
         Self {
             scene,
             draw,
@@ -52,7 +53,7 @@ impl<'a> VertexEvaluator<'a> {
             moves: stack.moves(),
             has_unshared_vertices: stack.unshares_vertices(),
             clip_from_world: rounded(&view.clip_from_world),
-            world_from_normal: normal_matrix(DMat3::from_mat4(draw.world_from_object), draw.mirrored),
+            world_from_normal: if draw.mirrored { -normal_matrix } else { normal_matrix },
             picture_from_world: view.picture_from_world.as_ref().map(rounded),
         }
     }
