@@ -31,7 +31,7 @@ proptest! {
             let [a, b, c, d] = [points[row][column], points[row][column + 1], points[row + 1][column + 1], points[row + 1][column]];
             let halves = if rng.next_u32() & 1 == 0 { [[a, b, c], [a, c, d]] } else { [[a, b, d], [b, c, d]] };
             for half in halves {
-                // Fold-free: proven, not hoped.
+                // No triangle of the mesh flips.
                 prop_assert!(area(half) >= 0);
                 mesh.extend(triangle(mesh.len() as u32, half, 0.5));
             }
@@ -69,7 +69,7 @@ fn fan_around_a_sample_hits_it_exactly_once() {
     }
 }
 
-/// The fill-rule cases of VK-GL-CTS: small quads, plain, reversed and with a w of their own at each corner.
+/// The fill-rule cases of VK-GL-CTS: small quads, plain, reversed, and with a different w at each corner.
 #[test]
 fn rotated_quads_cover_each_sample_once_and_miss_none() {
     const SIZE: u32 = 128;
@@ -147,7 +147,7 @@ fn whole_pixel_translation_moves_every_triangle_id() {
     }
 }
 
-/// The other way to say it: one unit of bias on every edge that is neither top nor left.
+/// The same rule with a bias: one unit on every edge that is neither top nor left.
 fn owns_by_bias(e: i64, dx: i32, dy: i32) -> bool {
     let is_top_left = dy < 0 || dy == 0 && dx > 0;
     e - i64::from(!is_top_left) >= 0
@@ -175,7 +175,7 @@ fn infinitesimal_step_is_the_top_left_rule() {
     assert!(ties > 100_000, "{ties} ties");
 }
 
-/// One edge runs through the picture, the rest of the triangle is as large as it likes.
+/// One edge runs through the picture; the other two are outside of it.
 #[test]
 fn triangles_of_every_size_cover_their_half_plane() {
     let view = pixel_view(64, 64);

@@ -8,7 +8,7 @@ fn depth_at_a_vertex_is_the_vertex_depth_and_never_leaves_the_corners() {
     let mut depth = || libm::ldexpf(rng.between(1, 1 << 24) as f32, -24 - rng.between(0, 20));
     let depths: Vec<[f32; 3]> = (0..500).map(|_| [depth(), depth(), depth()]).collect();
     for z in depths {
-        // The top left corner owns its sample, and the other samples lie between the corners.
+        // The top left corner lies on a sample and covers it; the other samples lie between the corners.
         let corners = [at(128, 128, z[0]), at(128 + 2048, 128, z[1]), at(128 + 256, 128 + 2048, z[2])];
         let coverage = cover(&[OrientedTriangle::clockwise(0, corners)], &pixel_view(9, 9));
         assert_eq!(coverage.samples[0].depth_key, z[0].to_bits());

@@ -15,15 +15,15 @@ fn an_honest_adapter_passes_every_stage() {
     assert_eq!(verdict.expected, frame);
 }
 
-/// A plain rasterizer of its own kind, with a knob for every classic mistake.
+/// A plain rasterizer that shares no coverage code with the oracle, with an option for every classic mistake.
 #[derive(Clone)]
 struct Adapter {
     /// Bias of edges that are top or left, and of the others.
     bias: [i64; 2],
-    /// Where in its pixel a sample lies, in units.
+    /// Position of the sample in its pixel, in sub-pixel units.
     sample: i64,
     larger_id_wins: bool,
-    /// A triangle that got lost.
+    /// A triangle that is not drawn.
     lost: Option<u32>,
 }
 
@@ -81,7 +81,7 @@ impl Adapter {
     }
 }
 
-/// Draws with `adapter` after `tamper` had its way with the geometry, and again with the result.
+/// Draws with `adapter` and judges the result; `before` changes the geometry, `after` the frame and the layers.
 fn judged(
     (scene, view): &(Scene, View),
     adapter: &Adapter,

@@ -74,7 +74,7 @@ fn all_effects() -> Stack {
     stack
 }
 
-/// A stack that paints one effect's view of the surface, parameters given as words from the front.
+/// A stack of one effect, with parameter words by index.
 fn only(name: &str, words: &[(usize, f32)]) -> Stack {
     let mut stack = Stack::default();
     let enabled = stack.enable(Effect::find(name).expect("a listed effect"));

@@ -29,7 +29,7 @@ fn mesh_through_the_guard_band_has_no_cracks() {
     }
 }
 
-/// One long edge runs through the picture and ends beyond a side of the guard band; it must still run where it ran.
+/// One long edge runs through the picture and ends beyond a side of the guard band; clipping must not move it.
 #[test]
 fn edges_cut_by_the_guard_band_keep_their_course() {
     let view = pixel_view(64, 64);
@@ -167,7 +167,7 @@ fn picture_without_pixels_is_empty() {
         let view = View::new(&Camera::default(), size[0], size[1], &scene.bounds(), DMat4::IDENTITY, [0.0; 4]);
         let frame = render(&scene, &view, &all_effects()).unwrap();
         assert_eq!(([frame.width, frame.height], frame.triangle_id.len(), frame.color.len()), (size, 0, 0));
-        // An adapter dispatches nothing, and so has no geometry either.
+        // An adapter dispatches nothing and has no geometry.
         let verdict = judge(&scene, &view, &all_effects(), &AdapterPicture::new(&frame, &Geometry::default())).unwrap();
         assert_eq!((verdict.report, verdict.expected), (ErrorReport::default(), frame));
     }

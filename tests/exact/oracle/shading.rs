@@ -18,7 +18,7 @@ fn mirrored_placement_keeps_fronts_in_front() {
     let [a, b] = [plain, mirrored].map(|scene| render(&scene, &view_of(&scene), &stack).unwrap());
     assert!(a.covered() > 300);
     let keys = |frame: &Frame| frame.depth_key.chunks(48).map(|row| row.to_vec()).collect::<Vec<_>>();
-    // The front half shows in both, seen in a mirror; the picture is symmetric, its triangles are not.
+    // Both show the front half, one of them mirrored; the picture is symmetric, its triangles are not.
     let flipped: Vec<Vec<u32>> = keys(&b).into_iter().map(|row| row.into_iter().rev().collect()).collect();
     let differing = keys(&a).concat().iter().zip(flipped.concat()).filter(|(a, b)| (**a == 0) != (*b == 0)).count();
     assert!(differing <= 4, "{differing} pixels of the outline differ");
@@ -137,7 +137,7 @@ fn whole_ground_is_shaded_as_its_rays_say() {
         let hit = view.eye + ray * ((-1.0 - view.eye.y) / ray.y);
         let byte = rasterlab::math::srgb_byte;
         let expected = [byte(0.5 + hit.x / 4.0), byte(0.5 + hit.z / 4.0), byte(0.25), 255];
-        // Corners snap by half a unit, which dark bytes feel.
+        // Corners snap by half a unit, which changes dark bytes most.
         let delta = (0..4).map(|c| frame.color[pixel][c].abs_diff(expected[c])).max().unwrap();
         assert!(delta <= 3, "pixel {pixel}: {:?} for {expected:?}", frame.color[pixel]);
     }
