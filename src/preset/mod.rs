@@ -6,6 +6,8 @@
 pub mod animation;
 mod particle_timeline;
 pub mod polyline;
+mod rules;
+mod setting;
 pub mod settings;
 
 use std::{path::PathBuf, sync::Arc};

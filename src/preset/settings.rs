@@ -2,95 +2,26 @@
 //!
 //! The reader and writer of preset files, `--set`, the JSON schema, listings and the inspector loop over [`SECTIONS`].
 
-use std::{ops::Deref, path::PathBuf};
+use std::path::PathBuf;
 
-use super::{Preset, SceneSource, polyline};
+pub use super::setting::{Presence, Section, Setting};
+use super::{
+    Preset, SceneSource, polyline,
+    rules::{encloses_scene, is_file, is_polyline, rises},
+    setting::Storage,
+};
 use crate::{
-    accuracy::{AXES, Axis},
-    params::{Param, Stored, Value, ValueError, ValueType, format_number},
+    accuracy::AXES,
+    params::{Stored, Value, ValueError, ValueType},
     plan::Tier,
     scene::camera::{Camera, MIN_NEAR_M, Projection},
 };
 
-/// One setting of a preset.
-pub struct Setting {
-    pub param: Param,
-    /// Name of its section; empty for the top of the file.
-    pub section: &'static str,
-    /// The setting of the same section that says the same in another way; a file has one of them.
-    pub alternative: Option<&'static str>,
-    rule: Option<Rule>,
-    storage: Storage,
-}
-
-/// A condition on a value that a range cannot say; the error completes a sentence that begins with the setting's name.
-type Rule = fn(&Value) -> Result<(), String>;
-
-/// Where a preset keeps the value of a setting.
-#[derive(Clone, Copy)]
-enum Storage {
-    State {
-        /// None where the setting does not apply to the preset.
-        get: fn(&Preset) -> Option<Value>,
-        set: fn(&mut Preset, &Value) -> Result<(), ValueError>,
-        /// Removes an optional value; none where the default is a value like any other.
-        clear: Option<fn(&mut Preset)>,
-    },
-    /// A pinned accuracy axis; choice 0 leaves the option to the planner.
-    Axis(&'static Axis),
-}
-
-impl Deref for Setting {
-    type Target = Param;
-
-    fn deref(&self) -> &Param {
-        &self.param
-    }
-}
-
 impl Setting {
-    /// `camera.eye`, `name`.
-    pub fn path(&self) -> String {
-        if self.section.is_empty() { self.name.into() } else { format!("{}.{}", self.section, self.name) }
-    }
-
     /// The setting at `path`.
     pub fn find(path: &str) -> Option<&'static Self> {
         let (section, name) = path.split_once('.').unwrap_or(("", path));
         Section::find(section)?.setting(name)
-    }
-
-    /// The value in `preset`; none where the setting does not apply.
-    pub fn get(&self, preset: &Preset) -> Option<Value> {
-        match self.storage {
-            Storage::State { get, .. } => get(preset),
-            Storage::Axis(axis) => Some(Value::Choice(preset.accuracy.pins.get(axis).map_or(0, |index| index + 1))),
-        }
-    }
-
-    /// Gives the setting a value.
-    ///
-    /// # Errors
-    /// The value has another type, lies outside the range or breaks the setting's rule; then nothing is changed.
-    pub fn set(&self, preset: &mut Preset, value: &Value) -> Result<(), ValueError> {
-        self.check(value)?;
-        match (self.storage, value) {
-            (Storage::State { set, .. }, value) => set(preset, value),
-            (Storage::Axis(axis), Value::Choice(index)) => {
-                preset.accuracy.pins.set(axis, index.checked_sub(1));
-                Ok(())
-            }
-            (Storage::Axis(_), _) => unreachable!("only a choice passes the check of an axis"),
-        }
-    }
-
-    /// Would [`Setting::set`] take this value?
-    ///
-    /// # Errors
-    /// As [`Setting::set`].
-    pub fn check(&self, value: &Value) -> Result<(), ValueError> {
-        self.param.check(value)?;
-        self.rule.map_or(Ok(()), |rule| rule(value).map_err(ValueError::Rule))
     }
 
     /// Gives the setting its default. One that has none gives way to its alternative's.
@@ -115,67 +46,11 @@ impl Setting {
     pub fn is_modified(&self, preset: &Preset) -> bool {
         self.get(preset) != self.get(&baseline(preset))
     }
-
-    const fn new(name: &'static str, value_type: ValueType, doc: &'static str, storage: Storage) -> Self {
-        Self { param: Param::new(name, doc, value_type), section: "", alternative: None, rule: None, storage }
-    }
-
-    const fn range(self, low: f64, high: f64) -> Self {
-        Self { param: self.param.hard(low..=high), ..self }
-    }
-
-    const fn slider(self, low: f64, high: f64) -> Self {
-        Self { param: self.param.soft(low..=high), ..self }
-    }
-
-    const fn unit(self, unit: &'static str) -> Self {
-        Self { param: self.param.unit(unit), ..self }
-    }
-
-    const fn rule(self, rule: Rule) -> Self {
-        Self { rule: Some(rule), ..self }
-    }
-
-    const fn or(self, alternative: &'static str) -> Self {
-        Self { alternative: Some(alternative), ..self }
-    }
-
-    const fn of_axis(axis: &'static Axis) -> Self {
-        Self::new(axis.name, ValueType::Choice(axis.choices), axis.about, Storage::Axis(axis))
-    }
-}
-
-/// A table of a preset file with settings; the top of the file has no name.
-pub struct Section {
-    pub name: &'static str,
-    pub doc: &'static str,
-    pub settings: &'static [Setting],
-    /// None for a table that means nothing by being there.
-    pub presence: Option<Presence>,
-}
-
-/// How a preset says that an optional section is there.
-pub struct Presence {
-    pub is_present: fn(&Preset) -> bool,
-    /// Adds the section with defaults, if it is missing.
-    pub add: fn(&mut Preset),
-    pub remove: fn(&mut Preset),
 }
 
 impl Section {
     pub fn find(name: &str) -> Option<&'static Self> {
         SECTIONS.iter().copied().find(|section| section.name == name)
-    }
-
-    pub fn setting(&self, name: &str) -> Option<&'static Setting> {
-        self.settings.iter().find(|setting| setting.name == name)
-    }
-
-    /// Adds the section with defaults, if it is optional and missing.
-    pub fn add(&self, preset: &mut Preset) {
-        if let Some(presence) = &self.presence {
-            (presence.add)(preset);
-        }
     }
 
     /// Removes an optional section, and resets every setting of another.
@@ -509,29 +384,6 @@ const TIER: Storage = Storage::State {
 
 fn camera(preset: &mut Preset) -> &mut Camera {
     preset.camera.get_or_insert_default()
-}
-
-fn rises(range: &Value) -> Result<(), String> {
-    let [begin, end] = <[f64; 2]>::from_value(range).map_err(|error| error.to_string())?;
-    let [shown_begin, shown_end] = [begin, end].map(format_number);
-    if begin < end { Ok(()) } else { Err(format!("must rise, but {shown_begin} is not before {shown_end}")) }
-}
-
-fn encloses_scene(room: &Value) -> Result<(), String> {
-    let room = f64::from_value(room).map_err(|error| error.to_string())?;
-    if room == 0.0 || room >= 1.0 {
-        return Ok(());
-    }
-    Err(format!("{} is narrower than the scene; it must be 0 or 1..=100", format_number(room)))
-}
-
-fn is_polyline(text: &Value) -> Result<(), String> {
-    polyline::parse(&String::from_value(text).map_err(|error| error.to_string())?).map(drop)
-}
-
-fn is_file(path: &Value) -> Result<(), String> {
-    let path = String::from_value(path).map_err(|error| error.to_string())?;
-    if path.contains("://") { Err("must be a file, not an address".into()) } else { Ok(()) }
 }
 
 #[cfg(test)]
