@@ -240,7 +240,8 @@ impl FrameLayout {
     }
 
     fn add(&mut self, id: BufferId, bytes: u64) {
-        self.buffers.insert(id, BufferSpec { bytes, purpose: id.purpose(), cleared: 0..bytes });
+        let cleared = if id.cleared_by() == ClearedBy::Nothing { 0..0 } else { 0..bytes };
+        self.buffers.insert(id, BufferSpec { bytes, purpose: id.purpose(), cleared });
     }
 
     /// A buffer of regions of so many bytes, one behind the other.

@@ -100,7 +100,7 @@ buffers! {
     DotRuns = "dot_runs", STORAGE, Nothing, "up to 64 dots of one segment each, 20 bytes";
     DotEnds = "dot_ends", STORAGE, Nothing, "ends of segments in clip space, 32 bytes";
     DotList = "dot_list", STORAGE, Nothing, "dots that may be visible, room for all, 8 bytes each";
-    DotCount = "dot_count", STORAGE, Nothing, "number of dots that may be visible";
+    DotCount = "dot_count", STORAGE, Picture, "number of dots that may be visible";
     DotArgs = "dot_args", STORAGE.union(INDIRECT), Nothing, "dispatch size of dots, written on the GPU";
     DotRecords = "dot_records", STORAGE, Nothing, "projected dots, only while verifying";
     NaiveFrame = "naive", UNIFORM, Nothing, "matrix and size for the naive baseline";
