@@ -222,8 +222,7 @@ impl FrameLayout {
 
     /// What is cleared on an occasion.
     pub fn cleared(&self, occasion: impl Fn(ClearedBy) -> bool) -> impl Iterator<Item = (BufferId, Range<u64>)> {
-        let is_cleared = move |id: &BufferId| id.cleared_by() != ClearedBy::Nothing && occasion(id.cleared_by());
-        let cleared = self.buffers.iter().filter(move |(id, spec)| is_cleared(id) && !spec.cleared.is_empty());
+        let cleared = self.buffers.iter().filter(move |(id, spec)| occasion(id.cleared_by()) && !spec.cleared.is_empty());
         cleared.map(|(id, spec)| (*id, spec.cleared.clone()))
     }
 
