@@ -16,12 +16,12 @@ pub fn parse(text: &str) -> Result<Vec<[f32; 3]>, String> {
             .try_into()
             .map_err(|numbers: Vec<&str>| format!("has {} numbers in point {number}, {written:?}; it needs 3", numbers.len()))?;
         let mut point = [0.0; 3];
-        for (number, written) in point.iter_mut().zip(numbers) {
+        for (coordinate, written) in point.iter_mut().zip(numbers) {
             let value: f32 = written.parse().map_err(|_| format!("has {written:?} in point {number}, which is not a number"))?;
             if !value.is_finite() || value.abs() > FARTHEST_M {
                 return Err(format!("has {written} in point {number}; coordinates must lie within -1e9..=1e9"));
             }
-            *number = value;
+            *coordinate = value;
         }
         if points.last() == Some(&point) {
             return Err(format!("has point {number} equal to the one before, {written:?}; remove one of them"));

@@ -92,9 +92,12 @@ fn rename_in(item: Option<&mut Item>, owner: &str) {
         match item {
             Item::Table(table) => rename_key(table, old, new),
             Item::Value(Value::InlineTable(table)) => {
+                // A comment behind the table is part of its decor, which the way through a table drops.
+                let decor = table.decor().clone();
                 let mut entries = std::mem::take(table).into_table();
                 rename_key(&mut entries, old, new);
                 *table = entries.into_inline_table();
+                *table.decor_mut() = decor;
             }
             _ => {}
         }

@@ -66,7 +66,9 @@ pub const CASES: &[Case] = &[
 fn set(stack: &mut Stack, effect: &str, field: &str, value: f64) -> Result<(), EarlyEnd> {
     let effect = Effect::find(effect).ok_or_else(|| EarlyEnd::Failed(format!("there is no effect {effect}")))?;
     let about = effect.field(field).ok_or_else(|| EarlyEnd::Failed(format!("{} has no field {field}", effect.name)))?;
-    about.set(&mut stack.enable(effect).words, &[value]).map_err(|error| EarlyEnd::Failed(format!("{}: {error}", effect.name)))
+    about
+        .set(&mut stack.enable(effect).words, &[value])
+        .map_err(|error| EarlyEnd::Failed(format!("{}.{}: {error}", effect.name, about.name)))
 }
 
 /// A stack of one effect with some fields set.

@@ -58,7 +58,9 @@ fn enable(stack: &mut Stack, effect: &'static Effect) {
 fn set(stack: &mut Stack, effect: &'static Effect, field: &Field, end: usize) -> Result<(), EarlyEnd> {
     let values = vec![ends(field)[end]; field.value_type.components()];
     enable(stack, effect);
-    field.set(&mut stack.enable(effect).words, &values).map_err(|error| EarlyEnd::Failed(format!("{}: {error}", effect.name)))
+    field
+        .set(&mut stack.enable(effect).words, &values)
+        .map_err(|error| EarlyEnd::Failed(format!("{}.{}: {error}", effect.name, field.name)))
 }
 
 /// Draws and judges. Colour discontinuities may be anywhere.

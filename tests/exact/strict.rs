@@ -409,7 +409,7 @@ fn what_floats_decide_is_refused_by_name() {
     let accuracy = AccuracyRequest { pins: PinnedOptions::of(VertexTransform::Strict), ..AccuracyRequest::default() };
     for name in ["explode", "inflate", "wobble", "race"] {
         let error = renderer.draw(&view, &stack(&["lambert", name]), &accuracy).expect_err(name).to_string();
-        assert!(error.starts_with("vertex strict ") && error.contains(&format!("the effect {name} ")), "{error}");
+        assert!(error.starts_with("vertex_transform strict ") && error.contains(&format!("the effect {name} ")), "{error}");
     }
     renderer.draw(&view, &stack(&["dissolve", "lambert", "xray"]), &accuracy).expect("integers decide here");
 }

@@ -418,7 +418,7 @@ fn mutants() -> Vec<Mutant> {
             "weights of 7 bits",
             "effects/xray",
             "clamp(fraction * 255.0, 1.0, 255.0)",
-            "2.0 * clamp(share * 127.0, 1.0, 127.0)",
+            "2.0 * clamp(fraction * 127.0, 1.0, 127.0)",
             &["xray.weight=facing"],
             COUNTS,
         ),

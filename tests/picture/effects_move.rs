@@ -47,7 +47,7 @@ fn suited(effect: &str, scene: &Scene) -> Stack {
         }
         "inflate" => set(&mut stack, effect, "amount_m", &[0.05 * step]),
         _ => {
-            set(&mut stack, effect, "toward", &[0.3, 1.0, 0.2]);
+            set(&mut stack, effect, "direction", &[0.3, 1.0, 0.2]);
             set(&mut stack, effect, "sway", &[1.0, 0.2, 0.4]);
             set(&mut stack, effect, "amplitude_m", &[0.05 * step]);
             set(&mut stack, effect, "wavelength_m", &[0.7 * size]);

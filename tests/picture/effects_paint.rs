@@ -198,7 +198,7 @@ fn fog_takes_more_the_farther_and_the_lower_and_nothing_before_its_start() {
 #[test]
 fn toon_has_as_many_tones_as_steps_and_keeps_the_hue() {
     for steps in [1usize, 2, 3, 7] {
-        let stack = with(&[("toon", "steps", steps as f64), ("toon", "deformation", 0.05)]);
+        let stack = with(&[("toon", "steps", steps as f64), ("toon", "softness", 0.05)]);
         let tones: Vec<f64> =
             (0..=1000).map(|i| shaded(&stack, surface(DVec3::splat(f64::from(i) / 1000.0))).x).map(|x| (x * 1e9).round() / 1e9).collect();
         assert!(tones.is_sorted(), "{steps} steps");

@@ -349,7 +349,7 @@ fn kernels_with_a_mistake_are_caught() {
         (
             "another hash",
             "effects/dissolve",
-            "hash(hash(s.triangle ^ p.seed) ^ pixel)",
+            "hash(hash(s.triangle ^ p.spread.seed) ^ pixel)",
             "hash(s.triangle ^ pixel)",
             dissolved(Mode::Hash, 0.5),
         ),

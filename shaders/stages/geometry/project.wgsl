@@ -1,7 +1,6 @@
 // project: pulls every vertex, transforms it, classifies it against the near plane and the guard band, snaps it and stores 16
 // bytes. Where triangles share no vertices, that is every corner of every triangle.
 //@ use lib/frame
-//@ use lib/triangle
 //@ use variants/projection
 //@ use variants/vertex_records
 
