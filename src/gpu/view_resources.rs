@@ -30,6 +30,9 @@ use crate::{
     shader::{glue::uniform_bytes, key::KernelKey, pass::Pass},
 };
 
+/// The plan of a frame, the view on its grid, and that view's draws.
+type PlannedView = (Arc<Plan>, View, Arc<[Draw]>);
+
 /// What is to be drawn.
 #[derive(Clone, Copy, Debug)]
 pub struct Request<'a> {
@@ -174,7 +177,7 @@ impl ViewResources {
     }
 
     /// The plan of a frame, with the view on its grid and that view's draws.
-    fn plan(&mut self, device: &Device, scene: &Arc<Scene>, request: &Request<'_>) -> Result<(Arc<Plan>, View, Arc<[Draw]>), RenderError> {
+    fn plan(&mut self, device: &Device, scene: &Arc<Scene>, request: &Request<'_>) -> Result<PlannedView, RenderError> {
         let mut view = request.view.clone();
         let mut seen = self.see(scene, &view)?;
         let mut plan = self.plan_of(device, seen, request)?;

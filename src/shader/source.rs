@@ -218,7 +218,7 @@ impl Source {
     /// Does a function with this signature stand in the file? Where the signature has no parameters, any function of its name.
     pub fn defines(&self, signature: &Signature) -> bool {
         match signature.text.contains('(') {
-            true => self.functions.iter().any(|function| *function == signature.text),
+            true => self.functions.contains(&signature.text),
             false => self.declared.contains(&signature.name),
         }
     }

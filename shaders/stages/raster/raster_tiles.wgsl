@@ -2,7 +2,6 @@
 // the nearest key and id in registers, so no pixel needs an atomic. The invocations set up a batch of the list together, one
 // triangle each.
 //@ use lib/frame
-//@ use lib/triangle
 //@ use lib/tiles
 //@ use lib/queued_triangle
 //@ use variants/tile_triangle

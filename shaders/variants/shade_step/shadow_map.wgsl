@@ -3,7 +3,6 @@
 //@ use lib/triangle
 //@ use lib/surface
 //@ use lib/shade
-//@ use effects/shadow
 //@ use glue/effects
 
 // The transform from world space to the shadow map.

@@ -4,7 +4,6 @@
 //@ use lib/fixed
 //@ use lib/triangle
 //@ use lib/attributes
-//@ use lib/geometry
 //@ use lib/shape
 //@ use lib/surface
 //@ use lib/shade

@@ -18,6 +18,12 @@ pub(super) const fn step_if(condition: bool, stem: &'static str) -> &'static str
     if condition { stem } else { NO_STEP }
 }
 
+/// A folder of variants, and the stem of the file that a pass takes from it.
+pub(super) type VariantChoice = (&'static str, fn(&KernelKey, Pass) -> &'static str);
+
+/// An override, and its value in a pass.
+pub(super) type ConstantChoice = (&'static str, fn(&KernelKey, Pass) -> f64);
+
 /// What one part of the kernel key means.
 pub(super) struct Feature {
     /// What it adds to the key's label; empty where it adds nothing.
@@ -25,9 +31,9 @@ pub(super) struct Feature {
     /// A part of the frame that exists only with this feature.
     pub part: Option<Part>,
     /// Folders of `shaders/variants`, and the stem of the file that a pass takes from each; [`NO_STEP`] where it takes none.
-    pub variants: &'static [(&'static str, fn(&KernelKey, Pass) -> &'static str)],
+    pub variants: &'static [VariantChoice],
     /// Overrides, and their values in a pass.
-    pub constants: &'static [(&'static str, fn(&KernelKey, Pass) -> f64)],
+    pub constants: &'static [ConstantChoice],
 }
 
 impl Feature {
