@@ -21,7 +21,7 @@ fn mesh_through_the_guard_band_has_no_cracks() {
         for hub in [[31.3f32, 12.9], [0.5, 0.5], [63.99, 40.25]] {
             let rim = [[-far, -far], [far, -far], [far, far], [-far, far]];
             let wedge = |i: usize| [[hub[0], hub[1], 0.25], [rim[i][0], rim[i][1], 0.5], [rim[(i + 1) % 4][0], rim[(i + 1) % 4][1], 0.75]];
-            let mesh = triangle_soup((0..4).map(wedge).flatten());
+            let mesh = triangle_soup((0..4).flat_map(wedge));
             let (layers, counters) = covered(&scene(&[mesh]), &view);
             assert!(layers.iter().all(|&hits| hits == 1), "beyond {beyond}, hub {hub:?}");
             assert_eq!(counters.clipped, if beyond == 0.0 { 0 } else { 4 });

@@ -12,7 +12,7 @@ fn normal_bytes(n: DVec3) -> [u8; 4] {
 fn mirrored_placement_keeps_fronts_in_front() {
     let mesh = SimpleMesh { double_sided: false, ..sphere(8) };
     let view_of = |scene: &Scene| View::new(&Camera::default(), 48, 48, &scene.bounds(), DMat4::IDENTITY, [0.0; 4]);
-    let plain = scene(&[mesh.clone()]);
+    let plain = scene(std::slice::from_ref(&mesh));
     let mirrored = scene(&[mesh.at(DMat4::from_scale(DVec3::new(-1.0, 1.0, 1.0)))]);
     let stack = only("normals", &[]);
     let [a, b] = [plain, mirrored].map(|scene| render(&scene, &view_of(&scene), &stack).unwrap());
