@@ -1,4 +1,4 @@
-//! Buffers on the device by their [`BufferId`]: made when first needed, kept while they fit, listed with their purpose.
+//! Buffers on the device by their `BufferId`: made when first needed, kept while they fit, listed with their purpose.
 
 use std::{
     collections::BTreeMap,

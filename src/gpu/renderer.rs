@@ -364,7 +364,7 @@ impl Renderer {
         Explanation::new(&self.picture, &others, self.shadow.as_ref(), self.demand)
     }
 
-    /// Draws loose triangles with the adapter's own rasterizer: see [`hardware_ids::triangle_ids`].
+    /// Draws loose triangles with the adapter's own rasterizer: see `hardware_ids::triangle_ids`.
     ///
     /// # Errors
     /// When the corners take more than a buffer holds, or the device is lost.

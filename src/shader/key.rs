@@ -1,6 +1,6 @@
 //! The kernel key: everything that decides which shader text runs and with which constants. Equal keys, equal pipelines.
 //!
-//! What each member means for the shader files, the overrides, the label and the passes is one table: [`super::features`].
+//! What each member means for the shader files, the overrides, the label and the passes is one table: `super::features`.
 
 use crate::{
     accuracy::{AccuracyOptions, Culling, DepthFormat, RenderScale, Visibility},

@@ -14,7 +14,7 @@ pub fn doubled_area([a, b, c]: &[SnappedVertex; 3]) -> i64 {
     edge(a, b, i64::from(c.x), i64::from(c.y))
 }
 
-/// Returns true if a sample belongs to the inner side of a directed edge (dx, dy), where `e` is [`edge`] at the sample.
+/// Returns true if a sample belongs to the inner side of a directed edge (dx, dy), where `e` is `edge` at the sample.
 ///
 /// A sample on the edge belongs to the side onto which it falls when it is moved by an infinitesimal step to the right and a far
 /// smaller one down: this is the top-left rule without a bias. The steps are 2^-30 and 2^-60, which no integer distance can
