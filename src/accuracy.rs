@@ -128,7 +128,7 @@ axes! {
     }
     /// In how many bits positions are stored, and relative to what.
     position_format: PositionFormat, default Stored {
-        /// 10 bits per axis, evenly spaced in the box of each primitive: 4 bytes per vertex, with cracks between neighbours.
+        /// 10 bits per axis, evenly spaced in the box of each primitive: 4 bytes per vertex, with cracks between neighbors.
         Packed10 = "packed10",
         /// 16 bits per axis, in the same way: 8 bytes per vertex.
         Packed16 = "packed16",
@@ -141,7 +141,7 @@ axes! {
     vertex_transform: VertexTransform, default Snapped {
         /// In floats, the shift of the viewport included, then snapped.
         Viewport = "viewport",
-        /// In floats relative to the centre of the picture, then snapped.
+        /// In floats relative to the center of the picture, then snapped.
         Snapped = "snapped",
         /// In integer arithmetic: the same bits on every adapter and on the CPU.
         Strict = "strict",

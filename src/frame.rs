@@ -32,7 +32,7 @@ pub struct SnappedVertex {
     pub y: i32,
     /// Reversed depth z_c / w_c: 1 on the near plane, 0 at infinity.
     pub depth: f32,
-    /// 1 / w_c, per metre.
+    /// 1 / w_c, per meter.
     pub inv_w: f32,
     /// [`vertex_flags`].
     pub flags: u32,
@@ -60,9 +60,9 @@ pub struct BitExact {
 /// A particle between two steps.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct ParticleState {
-    /// In the scene, metres.
+    /// In the scene, meters.
     pub position: [f32; 3],
-    /// Metres per second.
+    /// Meters per second.
     pub velocity: [f32; 3],
     /// Steps since it was born.
     pub age: u32,
@@ -76,7 +76,7 @@ pub struct ParticleReadback {
     /// Empty in the first frame, which no step leads to.
     pub before: Vec<ParticleState>,
     pub after: Vec<ParticleState>,
-    /// The discs that were drawn: corners with colour and normal, as they lie in the scene's vertex bytes.
+    /// The discs that were drawn: corners with color and normal, as they lie in the scene's vertex bytes.
     pub words: Vec<u32>,
     /// States are stored in 16 bits per number.
     pub has_half_precision: bool,
@@ -244,7 +244,7 @@ pub struct Frame {
 }
 
 impl Frame {
-    /// The picture at another size with these colours; each pixel has the integers of the drawn pixel under its centre.
+    /// The picture at another size with these colors; each pixel has the integers of the drawn pixel under its center.
     pub fn shown(&self, [width, height]: [u32; 2], color: Vec<[u8; 4]>) -> Self {
         let under = |at: u32, shown: u32, drawn: u32| ((2 * u64::from(at) + 1) * u64::from(drawn) / (2 * u64::from(shown))) as usize;
         let drawn: Vec<usize> = (0..height)

@@ -1,5 +1,5 @@
 // Hardware: an ordinary render pipeline over the same vertex and index bytes, as a yardstick. The same effects shade it;
-// what only a rasterizer of our own knows (flat normal, triangle id, centre) it leaves at the interpolated values.
+// what only a rasterizer of our own knows (flat normal, triangle id, center) it leaves at the interpolated values.
 //@ use lib/frame
 //@ use lib/triangle
 //@ use lib/surface
@@ -36,7 +36,7 @@ fn hardware_fragment(v: Varyings, @builtin(front_facing) is_front: bool) -> @loc
     s.center_screen = s.screen;
     s.depth_m = v.depth_m;
     s.flat_depth_m = v.depth_m;
-    s.depth_range_m = frame.range_m;
+    s.depth_range_m = frame.depth_range_m;
     let shaded = glue_surface(s);
     return vec4f(color_encode(shaded.color.rgb), shaded.color.a);
 }

@@ -1,5 +1,5 @@
 // Naive: the beginner's compute rasterizer, rebuilt from its description as a yardstick. One invocation a triangle over
-// de-indexed corners, a loop over the bounding box, float barycentrics, three 8-bit minima; depth is the colour.
+// de-indexed corners, a loop over the bounding box, float barycentrics, three 8-bit minima; depth is the color.
 // Its defects are kept; only indices are clamped, so that it cannot reach outside its buffers.
 
 struct Naive {
@@ -50,11 +50,11 @@ fn naive_raster(@builtin(workgroup_id) group: vec3u, @builtin(num_workgroups) gr
         for (var y = low.y; y <= min(high.y, naive.size.y); y += 1u) {
             let weights = barycentric(a, b, c, vec2f(vec2u(x, y)));
             if any(weights < vec3f(0.0)) { continue; }
-            let grey = u32(clamp(50.0 * dot(weights, vec3f(a.z, b.z, c.z)) - 400.0, 0.0, 254.0));
+            let gray = u32(clamp(50.0 * dot(weights, vec3f(a.z, b.z, c.z)) - 400.0, 0.0, 254.0));
             let pixel = min(y * naive.size.x + x, naive.size.x * naive.size.y - 1u);
-            atomicMin(&channels[3u * pixel], grey);
-            atomicMin(&channels[3u * pixel + 1u], grey);
-            atomicMin(&channels[3u * pixel + 2u], grey);
+            atomicMin(&channels[3u * pixel], gray);
+            atomicMin(&channels[3u * pixel + 1u], gray);
+            atomicMin(&channels[3u * pixel + 2u], gray);
         }
     }
 }

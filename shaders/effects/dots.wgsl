@@ -32,7 +32,7 @@ fn dots_strength(number: u32, halved: u32, fade_rate: u32) -> u32 {
     return select(select(0u, fading, level == shown_level), DOTS_FULL, level > shown_level);
 }
 
-// Coverage of a pixel, 0 to DOTS_FULL, by a dot whose centre lies at distance d from the sample, in units of 1/256 px: one half at
+// Coverage of a pixel, 0 to DOTS_FULL, by a dot whose center lies at distance d from the sample, in units of 1/256 px: one half at
 // the radius.
 fn dots_cover(d: vec2i, radius: u32) -> u32 {
     let squared = d.x * d.x + d.y * d.y;

@@ -1,4 +1,4 @@
-// Fog: blends towards a colour with distance (Beer–Lambert).
+// Fog: blends towards a color with distance (Beer–Lambert).
 //@ use lib/surface
 
 struct Fog {

@@ -1,4 +1,4 @@
-// Lambert: diffuse light from a sun, a sky above and ground below, and a lamp at the eye.
+// Lambert: diffuse light from a sun, a sky above and ground below, and a headlight.
 //@ use lib/surface
 
 struct Lambert {

@@ -1,4 +1,4 @@
-// Normals: colours the surface by the direction it faces, x red, y green, z blue.
+// Normals: colors the surface by the direction it faces, x red, y green, z blue.
 //@ use lib/surface
 
 struct Normals {

@@ -6,7 +6,7 @@ struct Overdraw {
     palette: u32,
 }
 
-// Colours from cold to hot at equal steps of heat, gamma-encoded, red in the lowest byte: ember, reef, grey.
+// Colors from cold to hot at equal steps of heat, gamma-encoded, red in the lowest byte: ember, reef, gray.
 const OVERDRAW_STOPS = array<u32, 27>(
     0x3a1416u, 0x691a3eu, 0x821f70u, 0x8428a5u, 0x733bd7u, 0x565cf9u, 0x4293fcu, 0x4dc0fdu, 0x94e8fcu,
     0x4a1234u, 0x6d2d39u, 0x804d2fu, 0x896b24u, 0x89891cu, 0x7da728u, 0x60c35cu, 0x3cd8a6u, 0x3ce6f6u,
@@ -20,7 +20,7 @@ fn overdraw_heat(layers: u32, p: Overdraw) -> f32 {
     return min(heat, 1.0);
 }
 
-// Colour of a heat from 0 to 1, gamma-encoded.
+// Color of a heat from 0 to 1, gamma-encoded.
 fn overdraw_color(heat: f32, p: Overdraw) -> vec3f {
     var stops = OVERDRAW_STOPS;
     let position = clamp(heat, 0.0, 1.0) * 8.0;

@@ -1,4 +1,4 @@
-// Posterize: few levels of colour, evenly spaced to the eye.
+// Posterize: few levels of color, evenly spaced to the eye.
 //@ use lib/image
 
 struct Posterize {

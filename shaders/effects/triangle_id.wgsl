@@ -1,4 +1,4 @@
-// Triangle id: gives every triangle its own colour.
+// Triangle id: gives every triangle its own color.
 //@ use lib/surface
 //@ use lib/hash
 

@@ -118,10 +118,10 @@ fn normal_from_bits(bits: vec3u) -> vec4f {
     return vec4f(floats_of_class(bits, class_of_bits), select(0.0, 1.0, class_of_bits == 0u));
 }
 
-// Some draw has vertex colours.
+// Some draw has vertex colors.
 override HAS_COLORS: bool = false;
 
-// Colour of a vertex, RGBA; white where a component is not finite or 2^40 and more.
+// Color of a vertex, RGBA; white where a component is not finite or 2^40 and more.
 fn vertex_color(draw: u32, vertex: u32) -> vec4f {
     let format = draws[draw].color_format;
     if !HAS_COLORS || format == 0u { return vec4f(1.0); }

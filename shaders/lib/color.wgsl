@@ -1,4 +1,4 @@
-// Colour: linear light to gamma-encoded bytes and back (IEC 61966-2-1), and the picture: packed pixels, `frame.stride` per row.
+// Color: linear light to gamma-encoded bytes and back (IEC 61966-2-1), and the picture: packed pixels, `frame.stride` per row.
 // Behind the pixels stands the list of marked tiles, or the strength of dots on every pixel: portable adapters bind eight
 // storage buffers to a pass, and the resolve pass has no ninth.
 //@ use lib/frame

@@ -5,15 +5,15 @@ struct Frame {
     background: vec4f,       // gamma-encoded
     eye: vec4f,              // world space; w is 1 for a perspective projection, 0 for an orthographic one
     forward: vec4f,          // viewing direction, unit length, world space
-    ndc_x: vec4f,            // world-space vector of one unit of NDC x, per metre of depth for a perspective projection
+    ndc_x: vec4f,            // world-space vector of one unit of NDC x, per meter of depth for a perspective projection
     ndc_y: vec4f,            // the same for NDC y
     clip_from_world: mat4x4f, // for the offsets of vertex effects
     picture_from_world: mat4x4f, // clip_from_world of the picture, while a shadow map is drawn for it
     center: vec2f,           // half the picture in subpixel units
-    range_m: vec2f,          // depth of the nearest and farthest corner of the scene's bounding box
-    linear_depth_m: vec2f,   // metres at depth 1 and at depth 0; used only where eye.w is 0
+    depth_range_m: vec2f,    // depth of the nearest and farthest corner of the scene's bounding box
+    linear_depth_m: vec2f,   // meters at depth 1 and at depth 0; used only where eye.w is 0
     size: vec2u,             // pixels
-    stride: u32,             // pixels from one row of the colour buffer to the next
+    stride: u32,             // pixels from one row of the color buffer to the next
     vertex_count: u32,       // snapped vertices
     triangle_count: u32,
     draw_count: u32,

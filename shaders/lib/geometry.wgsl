@@ -1,11 +1,11 @@
-// Geometry of triangles: object space to clip space, centres, and normals.
+// Geometry of triangles: object space to clip space, centers, and normals.
 //@ use lib/frame
 //@ use lib/triangle
 //@ use lib/attributes
 
 // Positions are taken relative to the draw's origin, which lies near the eye, before the matrix is applied.
 override IS_RELATIVE: bool = false;
-// w is metres along the viewing direction and clip-space z the same everywhere; else depth is linear and w is 1.
+// w is meters along the viewing direction and clip-space z the same everywhere; else depth is linear and w is 1.
 override IS_PERSPECTIVE: bool = true;
 
 // Clip-space position of an object-space position.
@@ -16,7 +16,7 @@ fn transform_clip(draw: u32, position: vec3f) -> vec4f {
     return m[0] * p.x + m[1] * p.y + m[2] * p.z + m[3];
 }
 
-// ---- Centres: means of a triangle's corners, in world space and on screen.
+// ---- Centers: means of a triangle's corners, in world space and on screen.
 
 fn center_world(draw: u32, at: vec3u) -> vec3f {
     let a = floats_of_class(position_bits(draw, at.x), 0u);
@@ -30,14 +30,14 @@ fn center_of(draw: u32, a: vec3f, b: vec3f, c: vec3f) -> vec3f {
     return (draws[draw].world_from_object * vec4f((a + b + c) / 3.0, 1.0)).xyz;
 }
 
-// 0 to 1 across the picture, for a triangle that is not clipped: corners are weighted by w, as the centre of the plane is.
+// 0 to 1 across the picture, for a triangle that is not clipped: corners are weighted by w, as the center of the plane is.
 fn center_unclipped(a: vec4u, b: vec4u, c: vec4u) -> vec2f {
     let w = 1.0 / bitcast<vec3f>(vec3u(a.w, b.w, c.w));
     let sum = vec2f(vertex_at(a)) * w.x + vec2f(vertex_at(b)) * w.y + vec2f(vertex_at(c)) * w.z;
     return sum / ((w.x + w.y + w.z) * 2.0 * frame.center);
 }
 
-// The same from clip-space corners; `otherwise` where the centre lies behind the eye.
+// The same from clip-space corners; `otherwise` where the center lies behind the eye.
 fn center_clipped(a: vec4f, b: vec4f, c: vec4f, otherwise: vec2f) -> vec2f {
     let w = a.w + b.w + c.w;
     let ndc = (a.xy + b.xy + c.xy) / select(1.0, w, w > 0.0);

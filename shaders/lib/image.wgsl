@@ -2,6 +2,7 @@
 // when the picture is resolved. Mirrors `effects::hooks::{Pixel, Picture}`, which explain each member.
 //@ use lib/frame
 //@ use lib/triangle
+//@ use variants/draw_search
 //@ use lib/color
 //@ use variants/depth
 //@ use variants/framebuffer_read
@@ -28,7 +29,7 @@ fn image_at(x: i32, y: i32) -> vec3u {
     let at = vec2u(clamp(vec2i(x, y), vec2i(0), vec2i(frame.size) - 1));
     let found = framebuffer_load(at.y * frame.size.x + at.x);
     if found.x == 0u { return vec3u(IMAGE_NO_TRIANGLE, image_depth(found.y), frame.draw_count); }
-    return vec3u(~found.x, image_depth(found.y), draws_of_triangle(~found.x) + 1u);
+    return vec3u(~found.x, image_depth(found.y), draw_of_triangle(~found.x) + 1u);
 }
 
 // Bits of the reversed depth that a key means; 0 for an empty pixel.

@@ -9,7 +9,7 @@
 const ATLAS_RECORDS = 256u;
 const ATLAS_RECORD = 30u;   // words per primitive: its material,
 const ATLAS_MATERIAL = 6u;
-const ATLAS_LOOKUP = 12u;   // and the lookups of its base colour and its emission
+const ATLAS_LOOKUP = 12u;   // and the lookups of its base color and its emission
 
 // The material of a primitive.
 struct Material {

@@ -13,7 +13,7 @@ struct Culling {
 @group(0) @binding(25) var<uniform> culling: Culling;
 
 struct Meshlet {
-    center: vec4f,        // centre of its bounding box; w: cosine of the half angle of its normal cone
+    center: vec4f,        // center of its bounding box; w: cosine of the half angle of its normal cone
     half: vec4f,          // half the box's sides; w: sine of that angle
     axis: vec4f,          // axis of the normal cone; w: least altitude of a triangle, 0 where the cone tells nothing
     first_triangle: u32,  // word of `meshlet_lists`
@@ -26,8 +26,8 @@ struct Meshlet {
 
 struct Instance {
     eye: vec4f,          // object space, relative to the draw's origin where positions are. w: 1 or -1, the side from which triangles are seen; 0: xyz is the viewing direction
-    center: vec4f,       // centre of its bounding box, object space. w: screen area of a unit of area at w = 1 that faces the eye
-    half: vec4f,         // half the box's sides. w: largest length on screen, in units, of a metre within the box at w = 1
+    center: vec4f,       // center of its bounding box, object space. w: screen area of a unit of area at w = 1 that faces the eye
+    half: vec4f,         // half the box's sides. w: largest length on screen, in units, of a meter within the box at w = 1
     first: u32,          // its first meshlet, counted over all instances
     first_meshlet: u32,  // record of that meshlet
     flags: u32,

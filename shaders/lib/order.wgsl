@@ -2,7 +2,7 @@
 // raster passes. Mirrors `gpu::uniforms::OrderRecord`.
 
 struct Order {
-    straddler: u32,   // id of the boundary triangle: triangles before it are drawn, later ones are not
+    boundary_triangle: u32,   // id of the boundary triangle: triangles before it are drawn, later ones are not
     cut: u32,         // of the boundary triangle's samples, those at pixels before this one are drawn, counted row by row
     limit_hi: u32,    // samples to draw, a 64-bit number as are those below
     limit_lo: u32,

@@ -10,7 +10,7 @@
 //@ use variants/vertex_effects
 //@ use steps/shade_step
 
-// Plane normals and centres are computed; without them every corner normal is known to be valid.
+// Plane normals and centers are computed; without them every corner normal is known to be valid.
 override HAS_PLANES: bool = true;
 // Some triangle may be large.
 override HAS_LARGE: bool = true;
@@ -22,7 +22,7 @@ override HAS_RANKS: bool = false;
 // A sample's position in its triangle.
 struct SamplePosition {
     weights: vec3f,       // perspective-correct barycentrics, sum 1
-    depth: f32,           // metres along the viewing direction
+    depth: f32,           // meters along the viewing direction
     corner_depths: vec3f, // depths of the corners
     center_screen: vec2f,
     barycentrics: vec3f,  // on screen, as in `Surface`
@@ -63,7 +63,7 @@ fn sample_in_shape(e: vec3f, t: Triangle, p: vec2i) -> vec3f {
     return orientation * vec3f(vec3<bool>(corner == 0u, corner == 1u, corner == 2u));
 }
 
-// Metres of an orthographic depth.
+// Meters of an orthographic depth.
 fn linear_depths(z: vec3f) -> vec3f {
     return z * (frame.linear_depth_m.x - frame.linear_depth_m.y) + frame.linear_depth_m.y;
 }
@@ -143,7 +143,7 @@ fn shade_surface(pixel: vec2u) -> Surface {
     s.depth_m = position.depth;
     s.pixel_size_m = length(frame.ndc_y.xyz) * 2.0 / f32(frame.size.y) * select(1.0, position.depth, IS_PERSPECTIVE);
     s.flat_depth_m = dot(position.corner_depths, vec3f(1.0 / 3.0));
-    s.depth_range_m = frame.range_m;
+    s.depth_range_m = frame.depth_range_m;
     // The sample lies on the ray of its pixel, so its depth determines its position.
     let ndc = vec2f(s.screen.x * 2.0 - 1.0, 1.0 - s.screen.y * 2.0);
     let aside = frame.ndc_x.xyz * ndc.x + frame.ndc_y.xyz * ndc.y;

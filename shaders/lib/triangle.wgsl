@@ -4,6 +4,7 @@
 //@ use lib/fixed
 //@ use glue/draws
 //@ use glue/index_bytes
+//@ use variants/draw_search
 //@ binding @group(0) @binding(4) var<storage, read> vertices: array<vec4u>;
 
 // ---- Draws. `draws` is a uniform where the scene has one draw, else a storage buffer: the glue declares it.
@@ -30,34 +31,13 @@ struct Draw {
     normal_format: u32,
     color_offset: u32,
     color_stride: u32,
-    color_format: u32,           // component count in bits 8 and up; 0 without colours
+    color_format: u32,           // component count in bits 8 and up; 0 without colors
 }
 
 const DRAW_DOUBLE_SIDED = 1u;
 const DRAW_MIRRORED = 2u;
 const DRAW_PARTICLES = 4u;
 const DRAW_PRIMITIVE_SHIFT = 8u;
-
-// The scene has one draw.
-override SINGLE_DRAW: bool = false;
-
-fn draws_of_triangle(id: u32) -> u32 {
-    if SINGLE_DRAW { return 0u; }
-    var search = search_begin(frame.draw_count);
-    for (var i = 0u; i < SEARCH_STEPS && search_is_open(search); i += 1u) {
-        search = search_narrow(search, draws[search_middle(search)].first_triangle <= id);
-    }
-    return search.low;
-}
-
-fn draws_of_vertex(id: u32) -> u32 {
-    if SINGLE_DRAW { return 0u; }
-    var search = search_begin(frame.draw_count);
-    for (var i = 0u; i < SEARCH_STEPS && search_is_open(search); i += 1u) {
-        search = search_narrow(search, draws[search_middle(search)].first_vertex <= id);
-    }
-    return search.low;
-}
 
 // ---- Topology. Indices are u8, u16 or u32, as the file stores them; the glue declares `index_bytes`.
 
@@ -128,7 +108,7 @@ struct Triangle {
 }
 
 fn triangle_load(id: u32) -> Triangle {
-    return triangle_of(draws_of_triangle(id), id);
+    return triangle_of(draw_of_triangle(id), id);
 }
 
 // The same where the draw is known.

@@ -1,4 +1,4 @@
-// X-ray sums: the words in which a pixel sums the weighted colours of its layers. SUM_WORDS tells the format:
+// X-ray sums: the words in which a pixel sums the weighted colors of its layers. SUM_WORDS tells the format:
 // 4, four32: a word for each channel and one for the weights · 2, packed16: two words of two halves: red and green, blue and
 // the number of layers, 8 bits per channel · 3, three8: three words for 8-bit channels; the number of layers stands above the
 // first channel, in 12 bits.
@@ -41,7 +41,7 @@ fn xray_sums_weight(words: vec4u) -> u32 {
     return words.x >> 20u;
 }
 
-// Weighted mean of the colours, divided in integers.
+// Weighted mean of the colors, divided in integers.
 fn xray_sums_color(words: vec4u) -> vec3f {
     let weight = xray_sums_weight(words);
     var sums = words.xyz;

@@ -216,8 +216,8 @@ fn file(ctx: &egui::Context, state: &mut State, panels: &mut Panels, command: Fi
             Err(error) => state.notify(Level::Error, error.to_string()),
         },
         FileCommand::OpenPreset(opened) => open_and_notify(state, panels, *opened),
-        FileCommand::OpenNeighbour(step) => match panels.browser.neighbour(&state.session.preset_file.id, step).cloned() {
-            Some(neighbour) => open_and_notify(state, panels, neighbour),
+        FileCommand::OpenNeighbor(step) => match panels.browser.neighbor(&state.session.preset_file.id, step).cloned() {
+            Some(neighbor) => open_and_notify(state, panels, neighbor),
             None => state.notify(Level::Info, "There are no presets to open"),
         },
         FileCommand::Save => {

@@ -147,7 +147,7 @@ pub enum FileCommand {
     Open(String),
     OpenPreset(Box<PresetFile>),
     /// Opens the preset this many entries further in the gallery, wrapping round.
-    OpenNeighbour(isize),
+    OpenNeighbor(isize),
     /// Saves to the preset's own file, or asks for one.
     Save,
     /// Saves there; asks first if effects are muted.
@@ -202,8 +202,8 @@ impl From<Action> for Command {
             Action::Undo => Self::Undo,
             Action::Redo => Self::Redo,
             Action::Randomize => Self::Randomize,
-            Action::PreviousPreset => Self::File(FileCommand::OpenNeighbour(-1)),
-            Action::NextPreset => Self::File(FileCommand::OpenNeighbour(1)),
+            Action::PreviousPreset => Self::File(FileCommand::OpenNeighbor(-1)),
+            Action::NextPreset => Self::File(FileCommand::OpenNeighbor(1)),
             Action::Frame => Self::Edit(Edit::FrameScene),
             Action::Front => Self::Edit(Edit::LookAlong(FRONT)),
             Action::Side => Self::Edit(Edit::LookAlong(SIDE)),

@@ -63,7 +63,7 @@ impl Row {
     }
 }
 
-/// The name without its unit, as the unit is shown after the number: `radius_m` in metres is `radius`.
+/// The name without its unit, as the unit is shown after the number: `radius_m` in meters is `radius`.
 fn label(name: &str, unit: &str) -> String {
     let stem = [("m", "_m"), ("°", "_deg"), ("°/s", "_deg_per_s"), ("s", "_s")].iter().find(|(u, _)| *u == unit);
     stem.and_then(|(_, suffix)| name.strip_suffix(suffix)).unwrap_or(name).replace('_', " ")
@@ -197,7 +197,7 @@ fn word_ui(ui: &mut Ui, row: &Row, words: &[&str], chosen: usize) -> Option<Valu
 fn color_ui(ui: &mut Ui, row: &Row, components: &[f64]) -> Option<Value> {
     let mut color: [f32; 4] = std::array::from_fn(|i| components[i] as f32);
     ui.spacing_mut().interact_size.x = 44.0;
-    let response = ui.color_edit_button_rgba_unmultiplied(&mut color).accessible_name(&row.path).on_hover_text("Choose the colour");
+    let response = ui.color_edit_button_rgba_unmultiplied(&mut color).accessible_name(&row.path).on_hover_text("Choose the color");
     let [r, g, b, a] = egui::Rgba::from_rgba_unmultiplied(color[0], color[1], color[2], color[3]).to_srgba_unmultiplied();
     let alpha = if a == 255 { String::new() } else { format!(" {:.0}%", f64::from(a) / 2.55) };
     ui.label(RichText::new(format!("#{r:02x}{g:02x}{b:02x}{alpha}")).monospace().color(theme::TEXT_WEAK));

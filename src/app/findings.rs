@@ -41,7 +41,7 @@ impl Findings {
             (_, Some(fault)) => found.faults.count(fault),
             (Overlay::TriangleIds, _) => found.triangle_ids.iter().filter(|triangle_id| **triangle_id != NO_TRIANGLE).count() as u64,
             (Overlay::Layers, _) => found.layers.iter().filter(|layers| **layers > 0).count() as u64,
-            (Overlay::Colour, _) => found.faults.differing(),
+            (Overlay::Color, _) => found.faults.differing(),
             (Overlay::NotReference, _) => (0..pixels).filter(|&i| found.differs_from_reference(i)).count() as u64,
             _ => (0..pixels).filter(|&i| found.is_edge(i)).count() as u64,
         });

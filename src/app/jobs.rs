@@ -36,7 +36,7 @@ pub enum Done {
     Sweep(Result<Vec<Point>, String>),
     Thumbnail(String, Option<egui::ColorImage>),
     Export(PathBuf, Result<(), String>),
-    /// The path from the system's file dialog; none if it was cancelled or could not be shown.
+    /// The path from the system's file dialog; none if it was canceled or could not be shown.
     Path(Purpose, Option<PathBuf>),
 }
 

@@ -1,4 +1,4 @@
-//! Time and error of a picture in words and colours, as the top bar, the comparison and the inspector show them.
+//! Time and error of a picture in words and colors, as the top bar, the comparison and the inspector show them.
 
 use eframe::egui::Color32;
 
@@ -14,7 +14,7 @@ pub fn time_text(report: Option<&Report>) -> String {
     }
 }
 
-/// The error of the picture `shown`: its colour, a few words, and the details.
+/// The error of the picture `shown`: its color, a few words, and the details.
 pub fn error_line(verdict: Option<&Verdict>, shown: Option<&Inputs>) -> (Color32, String, String) {
     let Some(Verdict { of, findings }) = verdict else {
         return (theme::TEXT_WEAK, "error not measured".into(), "Verify compares every pixel with the oracle".into());
@@ -38,7 +38,7 @@ pub fn error_text(report: &ErrorReport) -> String {
 fn details(report: &ErrorReport) -> String {
     format!(
         "{} pixels compared with the oracle: {} wrong triangles, {} explained by a vertex one snap unit away, {} depth ties, {} holes, \
-         {} drawn twice; colour max Δ {} and RMS {:.3} of 255",
+         {} drawn twice; color max Δ {} and RMS {:.3} of 255",
         report.pixels,
         report.wrong_triangles,
         report.explained_by_snap,

@@ -7,10 +7,10 @@ use crate::scene::{
     camera::{Camera, MIN_NEAR_M, Projection},
 };
 
-/// Range of the distance between eye and target, metres: keeps poses below the 2^40 that the kernels' arithmetic allows.
+/// Range of the distance between eye and target, meters: keeps poses below the 2^40 that the kernels' arithmetic allows.
 const DISTANCE_M: [f64; 2] = [1e-5, 1e8];
 
-/// Largest coordinate of a target that is panned, metres.
+/// Largest coordinate of a target that is panned, meters.
 const MAX_COORDINATE_M: f64 = 1e8;
 
 /// Least angle between the direction of view and straight up or down, radians. Beyond the pole, left and right would swap.
@@ -70,7 +70,7 @@ pub fn pan(camera: &mut Camera, right: f64, down: f64) {
     shift(camera, (y * down - x * right) * height_m);
 }
 
-/// Moves eye and target together by metres right, up and forward.
+/// Moves eye and target together by meters right, up and forward.
 pub fn fly(camera: &mut Camera, right_m: f64, up_m: f64, forward_m: f64) {
     let (x, y) = axes(camera);
     shift(camera, x * right_m + y * up_m + camera.forward() * forward_m);

@@ -9,7 +9,7 @@ use crate::measure::error_map::PixelError;
 pub enum Overlay {
     TriangleIds,
     Layers,
-    Colour,
+    Color,
     Edges,
     Ties,
     NotReference,
@@ -20,17 +20,17 @@ pub enum Overlay {
     Unsound,
 }
 
-/// Each with its name, what it shows, and its colour.
+/// Each with its name, what it shows, and its color.
 const TABLE: [(Overlay, &str, &str, Color32); 11] = [
-    (Overlay::TriangleIds, "Triangle ids", "One colour per triangle, at the pixels it covers", Color32::from_rgb(150, 120, 210)),
+    (Overlay::TriangleIds, "Triangle ids", "One color per triangle, at the pixels it covers", Color32::from_rgb(150, 120, 210)),
     (Overlay::Layers, "Layers", "How many triangles cover each pixel, visible or hidden", Color32::from_rgb(214, 86, 60)),
     (
-        Overlay::Colour,
-        "Colour difference",
-        "The largest difference of a channel from the oracle's colour, times the gain",
+        Overlay::Color,
+        "Color difference",
+        "The largest difference of a channel from the oracle's color, times the gain",
         Color32::from_rgb(126, 255, 142),
     ),
-    (Overlay::Edges, "Triangle edges", "Where neighbouring pixels show different triangles", Color32::from_rgb(150, 154, 164)),
+    (Overlay::Edges, "Triangle edges", "Where neighboring pixels show different triangles", Color32::from_rgb(150, 154, 164)),
     (
         Overlay::Ties,
         "Depth ties",
@@ -61,7 +61,7 @@ const TABLE: [(Overlay, &str, &str, Color32); 11] = [
     (
         Overlay::Unsound,
         "NaN, infinite, negative",
-        "Found in the depth, or in the depth, 1/w, normal or colour at the triangle's corners",
+        "Found in the depth, or in the depth, 1/w, normal or color at the triangle's corners",
         Color32::from_rgb(255, 48, 48),
     ),
 ];
@@ -73,7 +73,7 @@ const FIRST: [Overlay; 7] = [
     Overlay::WrongDepth,
     Overlay::Holes,
     Overlay::Doubles,
-    Overlay::Colour,
+    Overlay::Color,
     Overlay::Unsound,
 ];
 
@@ -82,7 +82,7 @@ impl Overlay {
     pub const ALL: [Self; 11] = [
         Self::TriangleIds,
         Self::Layers,
-        Self::Colour,
+        Self::Color,
         Self::Edges,
         Self::Ties,
         Self::NotReference,
@@ -120,7 +120,7 @@ impl Overlay {
             Self::Doubles => Some(PixelError::DoubleHit),
             Self::Ties => Some(PixelError::DepthBand),
             Self::Unsound => Some(PixelError::Unsound),
-            Self::TriangleIds | Self::Layers | Self::Colour | Self::Edges | Self::NotReference => None,
+            Self::TriangleIds | Self::Layers | Self::Color | Self::Edges | Self::NotReference => None,
         }
     }
 
@@ -136,7 +136,7 @@ pub struct OverlaySelection {
     shown: Vec<Overlay>,
     /// Those that the shortcut shows again.
     last: Vec<Overlay>,
-    /// Factor of the colour difference.
+    /// Factor of the color difference.
     pub gain: u8,
 }
 

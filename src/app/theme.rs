@@ -1,4 +1,4 @@
-//! The visual style of the lab: dark neutral greys that leave the colours to the picture, one accent, an 8-point grid.
+//! The visual style of the lab: dark neutral grays that leave the colors to the picture, one accent, an 8-point grid.
 
 use eframe::egui::{self, Color32, CornerRadius, FontFamily, FontId, Margin, RichText, Stroke, TextStyle, vec2};
 

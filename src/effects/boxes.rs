@@ -10,7 +10,7 @@ use crate::{params, params::Color};
 
 params! {
     pub struct Boxes {
-        /// Colour of what lies beyond the triangle; alpha is its weight against the surface's colour.
+        /// Color of what lies beyond the triangle; alpha is its weight against the surface's color.
         tint: Color = [1.0, 0.2, 0.1, 0.0];
     }
 }

@@ -10,15 +10,15 @@ use crate::{
 
 params! {
     pub struct Depth {
-        /// Colour at the near end, linear.
+        /// Color at the near end, linear.
         near: Color = [1.0, 0.93, 0.8, 1.0];
-        /// Colour at the far end, linear.
+        /// Color at the far end, linear.
         far: Color = [0.015, 0.03, 0.07, 1.0];
-        /// Spread the two colours over the depth range of the scene.
+        /// Spread the two colors over the depth range of the scene.
         fit: Flag = 1;
-        /// Without fit: how much of the way to the far colour one metre takes.
+        /// Without fit: how much of the way to the far color one meter takes.
         scale: f32 = 0.2, hard -1e6..=1e6, soft 0.0..=2.0, unit "per m";
-        /// Without fit: position of the eye between the two colours, 0 near and 1 far.
+        /// Without fit: position of the eye between the two colors, 0 near and 1 far.
         offset: f32 = 0.0, hard -1e6..=1e6, soft -2.0..=2.0;
     }
 }

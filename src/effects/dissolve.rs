@@ -35,7 +35,7 @@ choice! {
 params! {
     pub struct Dissolve {
         ..spread: Front = Front { seed: 0, ..Front::default() }, always_shown "seed";
-        /// Colour of the glowing rim, alpha is its strength.
+        /// Color of the glowing rim, alpha is its strength.
         rim: Color = [1.0, 0.45, 0.1, 0.0];
         /// Fraction of a triangle that stays: 0 nothing, 1 everything; behind the front where there is one.
         fill: f32 = 0.5, hard 0.0..=1.0;

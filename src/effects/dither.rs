@@ -22,24 +22,24 @@ choice! {
 }
 
 choice! {
-    /// Which colours the levels have.
+    /// Which colors the levels have.
     pub enum Palette {
         /// Red, green and blue have levels each for themselves.
         Rgb = "rgb",
-        /// From one colour to another, by luminance.
+        /// From one color to another, by luminance.
         Duotone = "duotone",
     }
 }
 
 params! {
     pub struct Dither {
-        /// Colour of the lowest level, linear.
+        /// Color of the lowest level, linear.
         ink: Color = [0.02, 0.03, 0.05, 1.0], when ("palette", &["duotone"]);
-        /// Colour of the highest level, linear.
+        /// Color of the highest level, linear.
         paper: Color = [0.8, 0.82, 0.7, 1.0], when ("palette", &["duotone"]);
         /// Number of levels, lowest and highest included.
         levels: u32 = 256, hard 2.0..=256.0;
-        /// Which colours the levels have.
+        /// Which colors the levels have.
         palette: Palette = Palette::Rgb as u32;
         /// Size of the matrix.
         matrix: Matrix = Matrix::Bayer8 as u32;
@@ -60,7 +60,7 @@ impl ImageEffect for Dither {
         };
         let threshold = (f64::from(rank(pixel.x / p.cell_px, pixel.y / p.cell_px, bits)) + 0.5) / f64::from(1 << (2 * bits));
         let last = f64::from(p.levels - 1);
-        let level = |value: f64| (((value + pixel.nudge) * last + threshold).floor() / last).clamp(0.0, 1.0);
+        let level = |value: f64| (((value + pixel.step_offset) * last + threshold).floor() / last).clamp(0.0, 1.0);
         let base = pixel.color.truncate();
         let color = match Palette::of(p.palette) {
             Palette::Rgb => base.map(level),

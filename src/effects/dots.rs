@@ -27,7 +27,7 @@ choice! {
 
 params! {
     pub struct Dots {
-        /// Colour of the dots, linear; its alpha is their strength.
+        /// Color of the dots, linear; its alpha is their strength.
         color: Color = [1.0, 0.55, 0.15, 1.0];
         /// The lines along which dots are drawn.
         lines: LineSource = LineSource::Edges as u32;
@@ -110,7 +110,7 @@ impl Dots {
         }
     }
 
-    /// How much of a pixel a dot covers, of [`FULL`], given the squared distance of its centre from the sample: half at the radius,
+    /// How much of a pixel a dot covers, of [`FULL`], given the squared distance of its center from the sample: half at the radius,
     /// falling over about a pixel and linearly with the square, so that all covers sum to the dot's area.
     pub fn cover(&self, squared: u64) -> u32 {
         let radius = u64::from(self.radius());

@@ -31,9 +31,9 @@ choice! {
 
 params! {
     pub struct DrawOrder {
-        /// Colour of what is drawn first; alpha is its weight against the surface's colour.
+        /// Color of what is drawn first; alpha is its weight against the surface's color.
         first: Color = [0.05, 0.1, 0.5, 0.0];
-        /// Colour of what is drawn last; alpha is its weight against the surface's colour.
+        /// Color of what is drawn last; alpha is its weight against the surface's color.
         last: Color = [1.0, 0.35, 0.05, 0.0];
         /// In which order samples are counted.
         mode: Mode = Mode::Submission as u32;

@@ -70,7 +70,7 @@ impl Effect {
         self
     }
 
-    /// The same effect, with steps in its colour: the judge then accepts either side of a step that is very near.
+    /// The same effect, with steps in its color: the judge then accepts either side of a step that is very near.
     pub const fn in_steps(mut self) -> Self {
         self.hooks.has_steps = true;
         self

@@ -72,7 +72,7 @@ impl VertexEffect for Explode {
 
     fn max_displacement_m(radius_m: f64, p: &Self) -> f64 {
         let turned = if p.spin_turns == 0.0 { 0.0 } else { 2.0 };
-        // No corner is farther from its triangle's centre than the model is wide.
+        // No corner is farther from its triangle's center than the model is wide.
         f64::from(p.amount_m).abs() + (turned + f64::from(p.shrink)) * 2.0 * radius_m
     }
 }

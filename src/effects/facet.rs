@@ -1,6 +1,6 @@
 //! Facet: blends every triangle between smooth and flat, in normal and in depth.
 //!
-//! The blend is one number per triangle, taken at its centre. At 0 and 1 the pure values come through to the bit.
+//! The blend is one number per triangle, taken at its center. At 0 and 1 the pure values come through to the bit.
 
 use super::{
     Effect, Surface, SurfaceEffect, SurfaceInput,

@@ -1,4 +1,4 @@
-//! Fog: blends towards a colour with distance (Beer–Lambert).
+//! Fog: blends towards a color with distance (Beer–Lambert).
 //!
 //! The surface's light is multiplied by exp(-density · path), where the path is the depth beyond the start, and
 //! thinner above a level.
@@ -8,9 +8,9 @@ use crate::{params, params::Color};
 
 params! {
     pub struct Fog {
-        /// Colour of the fog, linear.
+        /// Color of the fog, linear.
         color: Color = [0.36, 0.44, 0.55, 1.0];
-        /// Extinction: how much one metre takes away.
+        /// Extinction: how much one meter takes away.
         density: f32 = 0.35, hard 0.0..=1e4, soft 0.0..=2.0, unit "per m";
         /// Depth at which the fog begins.
         start_m: f32 = 3.0, hard 0.0..=1e6, soft 0.0..=20.0, unit "m";
@@ -21,7 +21,7 @@ params! {
     }
 }
 
-pub const EFFECT: Effect = Effect::surface::<Fog>("fog", "Fog", "blends towards a colour with distance");
+pub const EFFECT: Effect = Effect::surface::<Fog>("fog", "Fog", "blends towards a color with distance");
 
 impl SurfaceEffect for Fog {
     const INPUTS: &[SurfaceInput] = &[SurfaceInput::Position, SurfaceInput::Depth, SurfaceInput::Glow, SurfaceInput::Color];

@@ -24,9 +24,9 @@ choice! {
 
 params! {
     pub struct Hatch {
-        /// Colour of the lines, linear.
+        /// Color of the lines, linear.
         ink: Color = [0.012, 0.014, 0.03, 1.0];
-        /// Colour between the lines, linear.
+        /// Color between the lines, linear.
         paper: Color = [0.86, 0.82, 0.72, 1.0];
         /// The space in which the lines are drawn.
         space: LineSpace = LineSpace::Screen as u32;
@@ -56,7 +56,7 @@ impl SurfaceEffect for Hatch {
 
     fn apply(mut s: Surface, p: &Self) -> Surface {
         let base = s.color.truncate().max(DVec3::ZERO);
-        let tone = luminance(base).sqrt().min(1.0) + s.nudge;
+        let tone = luminance(base).sqrt().min(1.0) + s.step_offset;
         let (dark, bright) = (f64::from(p.dark), f64::from(p.bright));
         let darkness = 1.0 - ((tone - dark) / (bright - dark).max(0.2)).clamp(0.0, 1.0);
         let mut bare = 1.0;
@@ -92,7 +92,7 @@ impl Hatch {
             }
         };
         // A position on a surface errs by a few thousandths of a pixel.
-        let distance = (position - position.floor() - 0.5).abs() * spacing_px + 64.0 * s.nudge;
+        let distance = (position - position.floor() - 0.5).abs() * spacing_px + 64.0 * s.step_offset;
         let half = 0.5 * width * spacing_px;
         let covered = ((distance + 0.5).min(half) - (distance - 0.5).max(-half)).clamp(0.0, 1.0);
         // Lines too dense for the pixels become their mean.

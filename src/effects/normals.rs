@@ -1,4 +1,4 @@
-//! Normals: colours the surface by the direction it faces, x red, y green, z blue.
+//! Normals: colors the surface by the direction it faces, x red, y green, z blue.
 
 use glam::DVec3;
 
@@ -7,12 +7,12 @@ use crate::params;
 
 params! {
     pub struct Normals {
-        /// How much of the base colour is replaced.
+        /// How much of the base color is replaced.
         amount: f32 = 1.0, hard 0.0..=1.0;
     }
 }
 
-pub const EFFECT: Effect = Effect::surface::<Normals>("normals", "Normals", "colours the surface by the direction it faces");
+pub const EFFECT: Effect = Effect::surface::<Normals>("normals", "Normals", "colors the surface by the direction it faces");
 
 impl SurfaceEffect for Normals {
     const INPUTS: &[SurfaceInput] = &[SurfaceInput::Normal, SurfaceInput::Glow, SurfaceInput::Color];

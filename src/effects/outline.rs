@@ -26,7 +26,7 @@ choice! {
 
 params! {
     pub struct Outline {
-        /// Colour of the line, linear; its alpha is the strength.
+        /// Color of the line, linear; its alpha is the strength.
         color: Color = [0.004, 0.004, 0.008, 1.0];
         /// Width of the line.
         width_px: u32 = 2, hard 1.0..=8.0, unit "px";
@@ -70,7 +70,7 @@ impl ImageEffect for Outline {
 }
 
 impl Outline {
-    /// Is there a line at a pixel because of its neighbour `there`? `beyond` is the neighbour on the opposite side.
+    /// Is there a line at a pixel because of its neighbor `there`? `beyond` is the neighbor on the opposite side.
     fn is_edge(&self, here: Seen, there: Seen, beyond: impl Fn() -> Option<Seen>) -> bool {
         let side = Side::of(self.side);
         if here.0.is_none() || there.0.is_none() {

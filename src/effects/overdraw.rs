@@ -16,7 +16,7 @@ choice! {
 }
 
 choice! {
-    /// The colours of heat.
+    /// The colors of heat.
     pub enum Palette {
         /// Night blue, magenta, orange, pale yellow.
         Ember = "ember",
@@ -33,7 +33,7 @@ params! {
         max_layers: u32 = 12, hard 1.0..=1e9, soft 1.0..=100.0, log true;
         /// How layers become heat.
         scale: Scale = Scale::Linear as u32;
-        /// The colours of heat.
+        /// The colors of heat.
         palette: Palette = Palette::Ember as u32;
     }
 }
@@ -41,7 +41,7 @@ params! {
 pub const EFFECT: Effect =
     Effect::new::<Overdraw>("overdraw", "Overdraw", "paints how many layers each pixel has, as heat").in_slot(Slot::Visibility);
 
-/// Colours of a palette from cold to hot at equal steps of heat, as gamma-encoded bytes: lightness rises evenly.
+/// Colors of a palette from cold to hot at equal steps of heat, as gamma-encoded bytes: lightness rises evenly.
 const EMBER: [[u8; 3]; 9] = [
     [22, 20, 58],
     [62, 26, 105],
@@ -96,7 +96,7 @@ impl Overdraw {
         }
     }
 
-    /// Colour of a heat from 0 to 1, gamma-encoded, 0 to 1.
+    /// Color of a heat from 0 to 1, gamma-encoded, 0 to 1.
     pub fn color(&self, heat: f64) -> DVec3 {
         let stops = match Palette::of(self.palette) {
             Palette::Ember => &EMBER,

@@ -24,7 +24,7 @@
 //! them blended by t³(6t² - 15t + 10) along each axis. A curl has no divergence, so nothing piles up.
 //!
 //! **Disc.** With x the fraction of its life that has passed, a disc has the radius
-//! `radius_m` (1 - `radius_variation` n) s(x / fade) s((1 - x) / fade), s the smoothstep and n random number 14 as a fraction of 24 bits. Its colour goes from
+//! `radius_m` (1 - `radius_variation` n) s(x / fade) s((1 - x) / fade), s the smoothstep and n random number 14 as a fraction of 24 bits. Its color goes from
 //! `slow` to `fast` as the speed goes from 0 to `fast_mps`. Its triangle faces the picture plane, its lower side
 //! level; normals lean outwards by 0.7 `roundness` at the rim.
 
@@ -42,11 +42,11 @@ use crate::{
 
 params! {
     pub struct Particles {
-        /// Colour of what hardly moves.
+        /// Color of what hardly moves.
         slow: Color = [0.02, 0.1, 0.65, 1.0];
-        /// Colour of what is fast.
+        /// Color of what is fast.
         fast: Color = [1.0, 0.5, 0.12, 1.0];
-        /// Centre of the particles.
+        /// Center of the particles.
         center: Point = [0.0; 4], hard -1000.0..=1000.0, soft -3.0..=3.0, unit "m";
         /// Half axes of the ellipsoid in which particles are born.
         half_axes: Point = [1.0, 1.0, 1.0, 0.0], hard 0.0..=1000.0, soft 0.0..=3.0, unit "m";
@@ -90,7 +90,7 @@ params! {
         fade: f32 = 0.3, hard 0.001..=0.5;
         /// How far the rim of a disc turns from the viewer: 0 flat, 1 by 35 degrees.
         roundness: f32 = 1.0, hard 0.0..=1.0;
-        /// Speed of the fast colour.
+        /// Speed of the fast color.
         fast_mps: f32 = 0.9, hard 0.001..=1000.0, soft 0.05..=4.0, unit "m/s";
     }
 }

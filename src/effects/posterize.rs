@@ -1,4 +1,4 @@
-//! Posterize: few levels of colour, evenly spaced to the eye.
+//! Posterize: few levels of color, evenly spaced to the eye.
 
 use super::{
     Effect,
@@ -22,18 +22,18 @@ params! {
         by: By = By::Channels as u32;
         /// Number of levels, black and white included.
         levels: u32 = 5, hard 2.0..=256.0, soft 2.0..=16.0;
-        /// How far colours move to their level: 0 not at all, 1 entirely.
+        /// How far colors move to their level: 0 not at all, 1 entirely.
         amount: f32 = 1.0, hard 0.0..=1.0;
     }
 }
 
 pub const EFFECT: Effect =
-    Effect::new::<Posterize>("posterize", "Posterize", "few levels of colour, evenly spaced to the eye").on_image::<Posterize>().in_steps();
+    Effect::new::<Posterize>("posterize", "Posterize", "few levels of color, evenly spaced to the eye").on_image::<Posterize>().in_steps();
 
 impl ImageEffect for Posterize {
     fn finish(mut pixel: Pixel, _: &Picture, p: &Self) -> Pixel {
         let last = f64::from(p.levels - 1);
-        let level = |value: f64| (((value + pixel.nudge) * last + 0.5).floor() / last).clamp(0.0, 1.0);
+        let level = |value: f64| (((value + pixel.step_offset) * last + 0.5).floor() / last).clamp(0.0, 1.0);
         let base = pixel.color.truncate();
         let flat = match By::of(p.by) {
             By::Channels => base.map(level),

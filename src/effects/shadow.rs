@@ -1,7 +1,7 @@
 //! Shadow: a directional light with a shadow map, which the rasterizer itself draws from the light.
 //!
 //! Light does not reach a sample that is deeper than what the light sees there. A tap compares one texel with the plane of the
-//! sample's triangle at the centre of that texel, moved towards the light by a bias: a constant, and a slope
+//! sample's triangle at the center of that texel, moved towards the light by a bias: a constant, and a slope
 //! that grows with the tangent of the angle at which light meets the plane, both in texels.
 
 use glam::DVec3;
@@ -27,7 +27,7 @@ choice! {
 
 params! {
     pub struct Shadow {
-        /// Colour of the light, linear.
+        /// Color of the light, linear.
         light: Color = [0.92, 0.84, 0.70, 1.0], when ("shading", &["lambert"]);
         /// Light from straight above that nothing stops, linear.
         sky: Color = [0.16, 0.19, 0.24, 1.0], when ("shading", &["lambert"]);

@@ -119,7 +119,7 @@ impl Stack {
         self.each(|hooks| hooks.image).any(|(hook, _)| hook.reads_previous)
     }
 
-    /// Does an effect's colour have steps?
+    /// Does an effect's color have steps?
     pub fn has_steps(&self) -> bool {
         self.0.iter().any(|enabled| enabled.effect.hooks.has_steps)
     }

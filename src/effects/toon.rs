@@ -11,7 +11,7 @@ use crate::{params, params::Color};
 
 params! {
     pub struct Toon {
-        /// Colour of the rim, linear; its alpha is the strength.
+        /// Color of the rim, linear; its alpha is the strength.
         rim: Color = [1.0, 0.96, 0.88, 0.0];
         /// Number of flat tones.
         steps: u32 = 3, hard 1.0..=16.0, soft 1.0..=8.0;
@@ -36,7 +36,7 @@ impl SurfaceEffect for Toon {
         let base = s.color.truncate();
         let brightest = base.max_element().max(0.0);
         // The soft edge of a step is its upper end.
-        let level = (brightest.sqrt().min(1.0) + s.nudge).max(0.0) * steps;
+        let level = (brightest.sqrt().min(1.0) + s.step_offset).max(0.0) * steps;
         let step = (level.floor() + smooth(1.0 - softness, 1.0, level - level.floor())).min(steps - 1.0);
         let (shadow, light) = (f64::from(p.shadow), f64::from(p.light));
         let tone = light - (light - shadow) * (steps - 1.0 - step) / (steps - 1.0).max(1.0);

@@ -1,4 +1,4 @@
-//! Triangle id: gives every triangle its own colour.
+//! Triangle id: gives every triangle its own color.
 
 use glam::DVec3;
 
@@ -7,14 +7,14 @@ use crate::{math::hash, params};
 
 params! {
     pub struct TriangleId {
-        /// How much of the base colour is replaced.
+        /// How much of the base color is replaced.
         amount: f32 = 1.0, hard 0.0..=1.0;
-        /// Another seed, other colours.
+        /// Another seed, other colors.
         seed: u32 = 0, soft 0.0..=999.0;
     }
 }
 
-pub const EFFECT: Effect = Effect::surface::<TriangleId>("triangle_id", "TriangleId", "gives every triangle its own colour");
+pub const EFFECT: Effect = Effect::surface::<TriangleId>("triangle_id", "TriangleId", "gives every triangle its own color");
 
 impl SurfaceEffect for TriangleId {
     const INPUTS: &[SurfaceInput] = &[SurfaceInput::TriangleId, SurfaceInput::Glow, SurfaceInput::Color];

@@ -21,9 +21,9 @@ choice! {
 
 params! {
     pub struct Wireframe {
-        /// Colour of the lines; alpha is its weight against the surface's colour.
+        /// Color of the lines; alpha is its weight against the surface's color.
         ink: Color = [0.9, 0.95, 1.0, 1.0];
-        /// Colour of the faces; alpha is its weight against the surface's colour.
+        /// Color of the faces; alpha is its weight against the surface's color.
         paper: Color = [0.01, 0.012, 0.02, 1.0], when ("hidden", &["removed"]);
         /// Width of the lines.
         width_px: f32 = 1.5, hard 0.0..=64.0, soft 0.5..=8.0, unit "px";

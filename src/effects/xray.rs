@@ -1,6 +1,6 @@
 //! X-ray: the average of all layers on a pixel instead of the nearest, in linear light and in whole numbers.
 //!
-//! Every covered sample adds its weighted colour and its weight to four integers; integers commute, so the picture does
+//! Every covered sample adds its weighted color and its weight to four integers; integers commute, so the picture does
 //! not depend on the order in which samples arrive, to the bit.
 
 use glam::{DVec3, DVec4};
@@ -127,7 +127,7 @@ impl Xray {
         if exponent <= shift { 1 } else { ((exponent - shift) << 23) | ((scaled << shift) & 0x7f_ffff) }
     }
 
-    /// Colour of a pixel: the average over the background, the denser the more layers it has.
+    /// Color of a pixel: the average over the background, the denser the more layers it has.
     pub fn seen(&self, average: DVec3, background: DVec4, weight: f64) -> DVec4 {
         let clear = libm::pow(1.0 - f64::from(self.opacity), weight / f64::from(self.unit()));
         let color = average + (background.truncate() - average) * clear;

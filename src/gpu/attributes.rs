@@ -54,7 +54,7 @@ impl AttributeLayout {
     }
 }
 
-/// Component type in bits 0 to 2, normalized in bit 3 (`shaders/common/pull.wgsl`), number of components from bit 8.
+/// Component type in bits 0 to 2, normalized in bit 3 (`shaders/lib/attributes.wgsl`), number of components from bit 8.
 pub fn format_word(accessor: &Accessor) -> u32 {
     (accessor.component_type as u32 - 5120) | u32::from(accessor.normalized) << 3 | accessor.components << 8
 }

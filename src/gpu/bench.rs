@@ -286,7 +286,7 @@ fn picture_error(picture: &[[u8; 4]], expected: &Frame) -> ErrorStats {
     let is_drawn = |i: usize| picture[i][3] != 0;
     let is_owned = |i: usize| expected.triangle_id[i] != NO_TRIANGLE;
     let count = |wrong: &dyn Fn(usize) -> bool| (0..picture.len()).filter(|&i| wrong(i)).count() as u64;
-    // Only pixels that both drew: a hole is counted as one, not as a colour.
+    // Only pixels that both drew: a hole is counted as one, not as a color.
     let both: Vec<usize> = (0..picture.len()).filter(|&i| is_drawn(i) && is_owned(i)).collect();
     let opaque = |c: [u8; 4]| [c[0], c[1], c[2], 255];
     let ours: Vec<_> = both.iter().map(|&i| opaque(picture[i])).collect();

@@ -128,7 +128,7 @@ impl Buffers {
     }
 }
 
-/// Pixels from one row of the colour buffer to the next: rows begin at multiples of 256 bytes, as texture copies demand.
+/// Pixels from one row of the color buffer to the next: rows begin at multiples of 256 bytes, as texture copies demand.
 pub fn color_stride(width: u32) -> u32 {
     width.next_multiple_of(64)
 }

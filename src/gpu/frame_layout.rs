@@ -558,7 +558,7 @@ impl FrameUniform {
             clip_from_world: rounded_columns(&view.clip_from_world),
             picture_from_world: rounded_columns(&view.picture_from_world.unwrap_or(view.clip_from_world)),
             center: [view.width, view.height].map(|pixels| (pixels as i32 * view.units_per_pixel() / 2) as f32),
-            range_m: view.scene_range_m.map(|d| d as f32),
+            depth_range_m: view.depth_range_m.map(|d| d as f32),
             linear_depth_m: view.linear_depth_m.unwrap_or_default().map(|d| d as f32),
             size: [view.width, view.height],
             stride: color_stride(view.width),

@@ -133,7 +133,7 @@ fn obstacle(p: &Primitive) -> Option<String> {
             "has attributes that are not f32"
         }
         () if p.indices.is_some_and(|i| i.component_type == ComponentType::U8) => "has u8 indices",
-        () if p.colors.is_some() => "has vertex colours",
+        () if p.colors.is_some() => "has vertex colors",
         () => return None,
     };
     Some(format!("{} {reason}", p.name))

@@ -21,7 +21,7 @@ pub fn targets(gpu: &Gpu, [width, height]: [u32; 2], format: wgpu::TextureFormat
     })
 }
 
-/// A colour target that begins with one value.
+/// A color target that begins with one value.
 pub fn cleared(view: &wgpu::TextureView, value: wgpu::Color) -> wgpu::RenderPassColorAttachment<'_> {
     let ops = wgpu::Operations { load: wgpu::LoadOp::Clear(value), store: wgpu::StoreOp::Store };
     wgpu::RenderPassColorAttachment { view, depth_slice: None, resolve_target: None, ops }

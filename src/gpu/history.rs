@@ -16,7 +16,7 @@ use crate::{
 /// See the module's first line.
 #[derive(Default)]
 pub struct History {
-    /// What the colour buffer shows, where an effect reads it as the previous picture.
+    /// What the color buffer shows, where an effect reads it as the previous picture.
     previous: Option<(View, Stack)>,
     /// Size and stack of the picture whose depths and meshlets the next one may start from.
     occluders: Option<([u32; 2], Stack)>,
@@ -78,7 +78,7 @@ impl History {
         Ok(())
     }
 
-    /// Makes the colour buffer hold the previous picture where an effect reads it, and a copy that the resolve does not overwrite.
+    /// Makes the color buffer hold the previous picture where an effect reads it, and a copy that the resolve does not overwrite.
     /// A picture that is drawn again starts from the same one as before.
     ///
     /// # Errors

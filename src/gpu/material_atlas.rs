@@ -1,8 +1,8 @@
-//! Texels: what the resolve knows of materials that are more than a base colour, in one texture that costs no storage buffer.
+//! Texels: what the resolve knows of materials that are more than a base color, in one texture that costs no storage buffer.
 //!
 //! The texture is used as a row of words, folded to [`WIDTH`] words a line and as many lines a layer: sRGB decoded, a word per
 //! byte; a record per primitive; where the vertices of masked ones lie in their images; then where the
-//! levels of each image begin, and the levels of all images, a texel a word. Mirrors of `shaders/common/texels.wgsl`.
+//! levels of each image begin, and the levels of all images, a texel a word. Mirrors of `shaders/lib/material_atlas.wgsl`.
 
 use std::mem::size_of;
 
@@ -25,7 +25,7 @@ use crate::{
 /// Words in a line, and lines in a layer.
 pub const WIDTH: u32 = 4096;
 
-/// Words of a primitive's record: its paint, and how base colour and emission are looked up.
+/// Words of a primitive's record: its paint, and how base color and emission are looked up.
 pub const RECORD_WORDS: usize = (size_of::<MaterialRecord>() + 2 * size_of::<LookupRecord>()) / 4;
 
 /// Bits of [`MaterialRecord::flags`].

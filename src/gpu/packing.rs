@@ -1,4 +1,4 @@
-//! Packing: positions in fewer bits, evenly spaced in the box of each primitive. Read by `shaders/slots/positions/packed*.wgsl`.
+//! Packing: positions in fewer bits, evenly spaced in the box of each primitive. Read by `shaders/lib/attributes.wgsl`.
 
 use rayon::prelude::*;
 

@@ -176,7 +176,7 @@ pub fn count_layers(device: &mut Device, view: &mut ViewResources, others: &Reso
     Ok(bytemuck::pod_collect_to_vec(&layers))
 }
 
-/// Weight of all layers of a pixel, as `shaders/slots/sums` and `average` add it up.
+/// Weight of all layers of a pixel, as `shaders/variants/xray_buffer` adds it up.
 fn xray_weight(sums: XraySums, words: &[u32]) -> u32 {
     match (sums, words) {
         (XraySums::Packed16, [_, last]) => last >> 16,

@@ -9,7 +9,7 @@ use crate::{
 };
 
 gpu_record! {
-    /// One picture: size, viewpoint, capacities. Each member is explained in `shaders/common/frame.wgsl`.
+    /// One picture: size, viewpoint, capacities. Each member is explained in `shaders/lib/frame.wgsl`.
     pub struct FrameUniform = "Frame" {
         pub background: [f32; 4],
         pub eye: [f32; 4],
@@ -19,7 +19,7 @@ gpu_record! {
         pub clip_from_world: [[f32; 4]; 4],
         pub picture_from_world: [[f32; 4]; 4],
         pub center: [f32; 2],
-        pub range_m: [f32; 2],
+        pub depth_range_m: [f32; 2],
         pub linear_depth_m: [f32; 2],
         pub size: [u32; 2],
         pub stride: u32,
@@ -106,7 +106,7 @@ gpu_record! {
 gpu_record! {
     /// Where the drawing stops. Each member is explained in `shaders/common/order.wgsl`.
     pub struct OrderRecord = "Order" {
-        pub straddler: u32,
+        pub boundary_triangle: u32,
         pub cut: u32,
         pub limit_hi: u32,
         pub limit_lo: u32,

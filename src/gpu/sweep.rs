@@ -36,7 +36,7 @@ pub struct SweepError {
     pub double_hits_per_mpx: f64,
     /// Pixels whose triangle id covers them but is not the nearest, per million.
     pub wrong_depth_ppm: f64,
-    /// Largest difference of a colour channel from the oracle's picture, of 255; where sizes are compared, from its picture of
+    /// Largest difference of a color channel from the oracle's picture, of 255; where sizes are compared, from its picture of
     /// eight by eight samples to a pixel.
     pub max_color_delta: u8,
     pub rms_color_delta: f64,
@@ -51,14 +51,14 @@ pub struct SweepError {
     pub changed_pixels: u64,
     /// Furthest that a corner in the picture lies from where it is on the oracle's finest grid, pixels.
     pub moved_px: f64,
-    /// Pixels that were left empty well inside what the oracle's picture covers, per million: cracks between neighbours.
+    /// Pixels that were left empty well inside what the oracle's picture covers, per million: cracks between neighbors.
     pub cracks_per_mpx: f64,
     pub overflow: u64,
     pub depth_without_id: u64,
     /// Largest distance of a particle from its true flight, pixels; none without particles.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub max_divergence_px: Option<f64>,
-    /// Mean of that in the scene, metres.
+    /// Mean of that in the scene, meters.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub mean_divergence_m: Option<f64>,
 }
@@ -296,7 +296,7 @@ impl SweepError {
         let (picture, corners) = reference.references.at(scale).expect("a reference at every size that is drawn");
         let pixels = (frame.triangle_id.len() as f64).max(1.0);
         let per_million = |count: u64| count as f64 * 1e6 / pixels;
-        // Where sizes are compared, colours are held against many samples a pixel, else against the true picture's.
+        // Where sizes are compared, colors are held against many samples a pixel, else against the true picture's.
         let shown = capture.shown.as_ref().unwrap_or(frame);
         let colors = match &reference.references.smooth {
             Some(smooth) => compare::pictures(&shown.color, smooth, 0),

@@ -65,7 +65,7 @@ impl Timer {
         encoder.begin_compute_pass(&wgpu::ComputePassDescriptor { label: Some("begin"), timestamp_writes });
     }
 
-    /// Indices of the stamps of the next span, labelled. A pass's two stamps must be neighbours: wgpu resets the whole
+    /// Indices of the stamps of the next span, labeled. A pass's two stamps must be neighbors: wgpu resets the whole
     /// range between them, and a stamp that was reset makes some drivers wait for ever.
     fn span(&mut self, label: &str, is_last: bool) -> Option<(Option<u32>, Option<u32>)> {
         let slot = self.labels.len() as u32;

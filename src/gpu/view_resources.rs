@@ -76,7 +76,7 @@ pub struct ViewResources {
     planner: Planner,
     draw_data: Option<DrawData>,
     pub dots: Option<DotStore>,
-    /// Colour and width of the rows in the background buffer.
+    /// Color and width of the rows in the background buffer.
     background: Option<([u8; 4], u32)>,
     frame: Option<PreparedFrame>,
     commands: Option<CommandList>,

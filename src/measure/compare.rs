@@ -80,7 +80,7 @@ pub fn triangle_ids(a: &[u32], b: &[u32]) -> TriangleDelta {
 }
 
 /// An opaque picture of the differences of two pictures: each channel's difference times `gain`, black where they agree. A
-/// difference of alpha alone is grey.
+/// difference of alpha alone is gray.
 pub fn difference_picture(a: &[[u8; 4]], b: &[[u8; 4]], gain: u8) -> Vec<[u8; 4]> {
     let pixel = |(a, b): (&[u8; 4], &[u8; 4])| {
         let [red, green, blue, alpha] = std::array::from_fn(|c| a[c].abs_diff(b[c]).saturating_mul(gain));

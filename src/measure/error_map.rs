@@ -30,19 +30,19 @@ impl PixelError {
 pub struct ErrorMap {
     /// A bit for each [`PixelError`].
     errors: Vec<u8>,
-    /// Largest difference of a colour channel from the nearest right answer, of 255.
+    /// Largest difference of a color channel from the nearest right answer, of 255.
     pub color_delta: Vec<u8>,
 }
 
 impl ErrorMap {
-    /// The map whose pixel `i` has the errors `of(i)`; colours are compared with `expected`.
+    /// The map whose pixel `i` has the errors `of(i)`; colors are compared with `expected`.
     pub fn new(picture: &[[u8; 4]], expected: &[[u8; 4]], of: impl Fn(usize) -> Vec<PixelError>) -> Self {
         let errors = (0..picture.len()).map(|i| of(i).into_iter().fold(0, |bits, error| bits | error.bit())).collect();
         let color_delta = picture.iter().zip(expected).map(|(a, b)| largest_delta(a, b)).collect();
         Self { errors, color_delta }
     }
 
-    /// Where the triangle id is wrong, compares colours with `expected`, those of the right triangle.
+    /// Where the triangle id is wrong, compares colors with `expected`, those of the right triangle.
     pub fn compare_again(&mut self, picture: &[[u8; 4]], expected: &[[u8; 4]]) {
         for i in 0..self.errors.len() {
             if self.has(i, PixelError::WrongTriangle) {
@@ -65,7 +65,7 @@ impl ErrorMap {
         self.errors.iter().filter(|errors| *errors & error.bit() != 0).count() as u64
     }
 
-    /// Number of pixels whose colour differs at all.
+    /// Number of pixels whose color differs at all.
     pub fn differing(&self) -> u64 {
         self.color_delta.iter().filter(|delta| **delta > 0).count() as u64
     }
@@ -100,7 +100,7 @@ mod tests {
     }
 
     #[test]
-    fn a_wrong_owner_is_held_against_the_right_one_s_colour() {
+    fn a_wrong_owner_is_held_against_the_right_one_s_color() {
         let picture = [[10, 10, 10, 255]; 3];
         let of = |i: usize| if i == 1 { vec![PixelError::WrongTriangle, PixelError::WrongDepthOrder] } else { Vec::new() };
         let mut faults = ErrorMap::new(&picture, &[[11, 10, 10, 255]; 3], of);

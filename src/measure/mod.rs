@@ -19,7 +19,7 @@ pub struct ErrorReport {
     pub unexplained: u64,
     /// Pixels where two triangle ids are right: depths closer than the float key's bound.
     pub depth_band_pixels: u64,
-    /// Pixels so near a step of colour that f32 and f64 may fall on different sides, where either answer is right.
+    /// Pixels so near a step of color that f32 and f64 may fall on different sides, where either answer is right.
     pub step_band_pixels: u64,
     /// Samples that a triangle covers and that were not drawn.
     pub holes: u64,
@@ -60,7 +60,7 @@ pub struct ErrorReport {
     pub particles_diverged: u64,
     /// Largest of these distances, in pixels.
     pub max_divergence_px: f64,
-    /// Mean of these distances in the scene, in metres.
+    /// Mean of these distances in the scene, in meters.
     pub mean_divergence_m: f64,
     /// Sample setups outside their bound, or with words that do not follow from the first.
     pub sample_setups_wrong: u64,
@@ -75,13 +75,13 @@ pub struct ErrorReport {
     pub dot_pixels_wrong: u64,
     /// Pixels whose number of layers, or sum of their weights, is wrong.
     pub layer_counts_wrong: u64,
-    /// Pixels of layers with several right colours, because a weight or the depth window lies at a step.
+    /// Pixels of layers with several right colors, because a weight or the depth window lies at a step.
     pub ambiguous_layer_pixels: u64,
     /// Pixels where a race lost the nearest triangle; 0 without the effect `race`.
     pub race_pixels: u64,
     /// Counters of rejected and degenerate triangles that differ from the oracle's.
     pub counters_wrong: u64,
-    /// Largest difference of a colour channel from the nearest right answer, of 255.
+    /// Largest difference of a color channel from the nearest right answer, of 255.
     pub max_color_delta: u8,
     /// Root mean square of that over all channels, of 255.
     pub rms_color_delta: f64,
@@ -151,7 +151,7 @@ impl From<&ErrorReport> for ErrorStats {
 }
 
 impl ErrorStats {
-    /// Returns true if everything was measured and is exact, and colours differ by at most 1 of 255.
+    /// Returns true if everything was measured and is exact, and colors differ by at most 1 of 255.
     pub fn is_exact(&self) -> bool {
         let exact = [self.wrong_triangles, self.holes, self.double_hits, self.depth_without_id, self.overflow];
         exact.iter().all(|count| *count == Some(0)) && self.max_color_delta.is_some_and(|delta| delta <= 1)
@@ -189,7 +189,7 @@ impl References {
 /// Limits within which a picture passes. Everything that must be exact has no budget.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Budget {
-    /// Largest difference of a colour channel, of 255.
+    /// Largest difference of a color channel, of 255.
     pub max_color_delta: u8,
     /// Most pixels with a wrong triangle id, and most samples not drawn or drawn too often, for presets that are not exact.
     pub max_wrong_triangles: u64,

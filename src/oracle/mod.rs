@@ -14,7 +14,7 @@
 //!
 //! [`project`] deforms, moves, projects and snaps vertices and clips triangles; [`triangles`] assembles and orients them;
 //! [`sample_setups`] computes what sample effects test against; [`cover_with`] finds the nearest triangle of each sample; [`shade`]
-//! colours it; [`judge`] compares a frame that an adapter drew with all of that. The arithmetic is specified in
+//! colors it; [`judge`] compares a frame that an adapter drew with all of that. The arithmetic is specified in
 //! `docs/exactness.md`.
 
 mod arithmetic;

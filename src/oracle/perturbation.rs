@@ -1,14 +1,14 @@
 //! Perturbation: shading at the edge of what f32 may do.
 //!
-//! Where a colour has a step, a value that f64 puts on one side may lie on the other in f32; where a texture or a shadow map is
-//! looked up, f32 may meet the neighbouring texel. The oracle shades a picture again with every such quantity moved by its error
+//! Where a color has a step, a value that f64 puts on one side may lie on the other in f32; where a texture or a shadow map is
+//! looked up, f32 may meet the neighboring texel. The oracle shades a picture again with every such quantity moved by its error
 //! bound; answers between those pictures are right (`docs/exactness.md` §9). The bounds themselves stand where the quantity is
 //! computed.
 
 /// By how much a picture differs from the straight one, in error bounds. Zero draws the picture itself.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Perturbation {
-    /// Added to every value that decides a step of colour; its sign also moves shadow map lookups.
+    /// Added to every value that decides a step of color; its sign also moves shadow map lookups.
     pub color_step: f64,
     pub texture: TexturePerturbation,
 }

@@ -21,7 +21,7 @@ impl Caps {
     }
 
     /// How work is divided on this adapter. On a GPU a whole workgroup takes over early, since one slow invocation delays its
-    /// neighbours; a CPU adapter runs invocations one after another, executes both sides of every branch, and gains nothing
+    /// neighbors; a CPU adapter runs invocations one after another, executes both sides of every branch, and gains nothing
     /// by it.
     pub fn tuning(&self) -> Tuning {
         let (max_small_samples, max_small_side) = if self.software { (128 * 128, 128) } else { (32, 32) };

@@ -53,7 +53,7 @@ impl Plan {
             Cause::Cheaper => {
                 let (fraction, own) = (costs::of(axis, option, &self.needs, &self.caps), predict(index, option, &self.needs));
                 format!(
-                    "{word}: {fraction:.2} of the default's time, predicted error {:.0} of {:.0} ppm, {:.1} of {} in colour",
+                    "{word}: {fraction:.2} of the default's time, predicted error {:.0} of {:.0} ppm, {:.1} of {} in color",
                     own.wrong_ppm, self.tolerance.wrong_ppm, own.channel, self.tolerance.channel
                 )
             }

@@ -14,7 +14,7 @@ use crate::{
 pub struct Prediction {
     /// Pixels with the wrong triangle, per million.
     pub wrong_ppm: f64,
-    /// Difference of a colour channel where the triangle is right, of 255.
+    /// Difference of a color channel where the triangle is right, of 255.
     pub channel: f64,
 }
 
@@ -77,7 +77,7 @@ fn coverage(option: Coverage, needs: &Needs) -> Prediction {
 
 fn vertex(option: VertexTransform, needs: &Needs) -> Prediction {
     match option {
-        // 1.4 % of the corners lie one unit off at 1080p, where centre-relative ones are at 0.65 %.
+        // 1.4 % of the corners lie one unit off at 1080p, where center-relative ones are at 0.65 %.
         VertexTransform::Viewport => Prediction::wrong(moved_ppm(0.014 / 256.0, needs)),
         _ => Prediction::default(),
     }

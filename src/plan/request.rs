@@ -61,7 +61,7 @@ impl Tier {
 pub struct Tolerance {
     /// Pixels with the wrong triangle, per million.
     pub wrong_ppm: f64,
-    /// Difference of a colour channel, of 255.
+    /// Difference of a color channel, of 255.
     pub channel: u8,
 }
 
@@ -83,7 +83,7 @@ pub struct AccuracyRequest {
     pub pins: PinnedOptions,
     /// Tolerance instead of the tier's: pixels with the wrong triangle, per million.
     pub wrong_ppm: Option<f64>,
-    /// Tolerance instead of the tier's: difference of a colour channel, of 255.
+    /// Tolerance instead of the tier's: difference of a color channel, of 255.
     pub channel: Option<u8>,
 }
 

@@ -1,6 +1,6 @@
 //! Polylines as text: points of three numbers, one per line or separated by semicolons.
 
-/// Largest coordinate, metres.
+/// Largest coordinate, meters.
 const FARTHEST_M: f32 = 1e9;
 
 /// Reads a polyline; an empty text has no points.

@@ -185,7 +185,7 @@ pub static SCENE: Section = Section {
             Setting::new(
                 "polyline",
                 ValueType::Text { max_chars: 200_000 },
-                "A line for dots to follow: points of three numbers in metres, one per text line or separated by semicolons",
+                "A line for dots to follow: points of three numbers in meters, one per text line or separated by semicolons",
                 POLYLINE,
             )
             .rule(is_polyline),

@@ -2,7 +2,7 @@
 
 use glam::{DMat4, DVec3};
 
-/// Axis-aligned box in metres, both ends included. Empty when `min` exceeds `max` on any axis.
+/// Axis-aligned box in meters, both ends included. Empty when `min` exceeds `max` on any axis.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Bounds {
     /// The smallest coordinates.
@@ -48,7 +48,7 @@ impl Bounds {
         })
     }
 
-    /// The centre; the origin when empty.
+    /// The center; the origin when empty.
     pub fn center(&self) -> DVec3 {
         if self.is_empty() { DVec3::ZERO } else { (self.min + self.max) * 0.5 }
     }

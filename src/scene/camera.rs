@@ -13,18 +13,18 @@ pub const MIN_NEAR_M: f64 = 1.0 / (1 << 20) as f64;
 pub enum Projection {
     /// Vertical field of view in degrees, within (0, 180).
     Perspective { fov_y_deg: f64 },
-    /// Height of the visible box in metres.
+    /// Height of the visible box in meters.
     Orthographic { height_m: f64 },
 }
 
-/// A pose: right-handed, y up, metres.
+/// A pose: right-handed, y up, meters.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Camera {
     pub eye: DVec3,
     pub target: DVec3,
     pub up: DVec3,
     pub projection: Projection,
-    /// Distance of the near plane in metres, at least [`MIN_NEAR_M`]. Only a perspective clips there.
+    /// Distance of the near plane in meters, at least [`MIN_NEAR_M`]. Only a perspective clips there.
     pub near_m: f64,
 }
 
@@ -41,7 +41,7 @@ impl Default for Camera {
 }
 
 impl Camera {
-    /// The nearest camera that looks along `direction` at the centre of `bounds` and shows all of it with a small margin.
+    /// The nearest camera that looks along `direction` at the center of `bounds` and shows all of it with a small margin.
     pub fn framing(bounds: &Bounds, direction: DVec3, aspect: f64) -> Self {
         let fov_y_deg: f64 = 45.0;
         let tan_y = libm::tan(fov_y_deg.to_radians() * 0.5) * 0.92;

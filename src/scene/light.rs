@@ -15,7 +15,7 @@ use super::{
 const BORDER: f64 = 3.0;
 
 /// The view from a light in direction `toward` (a unit vector that points to the light) of `scene` as `view` shows it: a
-/// square orthographic picture of the shadow casters' box, grown by `reach_m`, the largest displacement by effects in metres.
+/// square orthographic picture of the shadow casters' box, grown by `reach_m`, the largest displacement by effects in meters.
 ///
 /// The side of the square is rounded up to 1/32 of a power of two and its position to whole texels, so that shadows do not
 /// flicker while their casters move slowly.

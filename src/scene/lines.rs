@@ -33,9 +33,9 @@ pub enum SegmentEnds {
 pub struct Segment {
     /// Where it begins and ends.
     pub ends: SegmentEnds,
-    /// Distance of its start from the start of its line, metres.
+    /// Distance of its start from the start of its line, meters.
     pub start_m: f64,
-    /// Its length in metres, above 0.
+    /// Its length in meters, above 0.
     pub length_m: f64,
 }
 
@@ -55,7 +55,7 @@ impl Lines {
         self.first_segments.iter().zip(ends).map(|(&first, end)| (first as usize, &self.segments[first as usize..end]))
     }
 
-    /// The total length of all lines, metres.
+    /// The total length of all lines, meters.
     pub fn length_m(&self) -> f64 {
         self.each().filter_map(|(_, line)| line.last()).map(|last| last.start_m + last.length_m).sum()
     }
@@ -273,7 +273,7 @@ mod tests {
         for query in ["sphere?triangles=2000", "knot?tess=4"] {
             let scene = builtin::build(query).expect("a scene");
             let lines = Lines::edges(&scene, None).expect("few triangles");
-            // Each triangle has three edges and shares each with one neighbour.
+            // Each triangle has three edges and shares each with one neighbor.
             assert_eq!(lines.segments.len() as u64, scene.triangle_count() * 3 / 2, "{query}");
             let all: BTreeSet<_> = lines.segments.iter().map(|segment| ends(&scene, segment)).collect();
             assert_eq!(all.len(), lines.segments.len(), "{query}: an edge is walked twice");

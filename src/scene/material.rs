@@ -2,13 +2,13 @@
 
 use super::texture::Texture;
 
-/// How a surface is shaded. Colours are linear.
+/// How a surface is shaded. Colors are linear.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Material {
     pub name: String,
     /// Linear RGBA, each in [0, 1].
     pub base_color: [f32; 4],
-    /// Multiplies the base colour. Its alpha is used only with an `alpha_cutoff`.
+    /// Multiplies the base color. Its alpha is used only with an `alpha_cutoff`.
     pub base_texture: Option<Texture>,
     /// Samples are drawn only where the alpha of the base texture is at least this. From 0 up; nothing is drawn above 1.
     pub alpha_cutoff: Option<f32>,
@@ -16,14 +16,14 @@ pub struct Material {
     pub emission: [f32; 3],
     /// Multiplies the emission.
     pub emission_texture: Option<Texture>,
-    /// Lights do not change its colour.
+    /// Lights do not change its color.
     pub unlit: bool,
     /// Back faces are drawn too, with the normal flipped towards the viewer.
     pub double_sided: bool,
 }
 
 impl Material {
-    /// The textures of the base colour and of the emission.
+    /// The textures of the base color and of the emission.
     pub fn textures(&self) -> [Option<&Texture>; 2] {
         [self.base_texture.as_ref(), self.emission_texture.as_ref()]
     }
@@ -35,7 +35,7 @@ impl Material {
         Some((f64::from(alpha_cutoff) * 255.0 * 65_536.0 - 0.5).ceil() as u32)
     }
 
-    /// Returns true if the material has a base colour and nothing else: no texture, no emission, affected by light.
+    /// Returns true if the material has a base color and nothing else: no texture, no emission, affected by light.
     pub fn is_plain(&self) -> bool {
         self.textures() == [None, None] && self.emission == [0.0; 3] && !self.unlit
     }

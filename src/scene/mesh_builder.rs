@@ -15,7 +15,7 @@ pub struct MeshBuilder {
     normals: Vec<[f32; 3]>,
     /// Linear RGBA; empty, or one per vertex.
     colors: Vec<[u8; 4]>,
-    /// Texture coordinates, for base colour and emission; empty, or one per vertex.
+    /// Texture coordinates, for base color and emission; empty, or one per vertex.
     texcoords: Vec<[f32; 2]>,
     indices: Vec<u32>,
 }
@@ -48,7 +48,7 @@ impl MeshBuilder {
         self.positions.len() as u32 - 1
     }
 
-    /// Adds a vertex with a linear colour, each channel in [0, 1]. Either all vertices of a mesh have a colour, or none.
+    /// Adds a vertex with a linear color, each channel in [0, 1]. Either all vertices of a mesh have a color, or none.
     pub fn colored_vertex(&mut self, position: DVec3, normal: DVec3, color: [f64; 3]) -> u32 {
         let byte = |channel: f64| (channel.clamp(0.0, 1.0) * 255.0).round() as u8;
         self.colors.push([byte(color[0]), byte(color[1]), byte(color[2]), 255]);

@@ -25,7 +25,7 @@ pub struct Meshlet {
     /// Its range of [`Meshlets::vertices`].
     pub first_vertex: u32,
     pub vertex_count: u32,
-    /// Centre and half extents of a box of all drawable triangles, rounded outwards.
+    /// Center and half extents of a box of all drawable triangles, rounded outwards.
     pub center: [f32; 3],
     pub half: [f32; 3],
     /// Axis of a cone that contains the normals of all triangles.
@@ -82,7 +82,7 @@ pub fn rounded_up(value: f64) -> f32 {
     if f64::from(near) < value { near.next_up() } else { near }
 }
 
-/// Centre and half extents of a box, grown by `margin` times its coordinates and rounded outwards.
+/// Center and half extents of a box, grown by `margin` times its coordinates and rounded outwards.
 pub fn center_and_half(bounds: &Bounds, fraction: f64) -> ([f32; 3], [f32; 3]) {
     if bounds.is_empty() {
         return ([0.0; 3], [0.0; 3]);
@@ -124,10 +124,10 @@ impl Builder<'_> {
             while grown < cluster.len() {
                 for vertex in self.corners[cluster[grown] as usize] {
                     let [first, end] = [vertex, vertex + 1].map(|vertex| first_triangles[vertex as usize] as usize);
-                    for &neighbour in &triangles_around[first..end] {
-                        if cluster.len() < MESHLET_TRIANGLES && !is_taken[neighbour as usize] {
-                            is_taken[neighbour as usize] = true;
-                            cluster.push(neighbour);
+                    for &neighbor in &triangles_around[first..end] {
+                        if cluster.len() < MESHLET_TRIANGLES && !is_taken[neighbor as usize] {
+                            is_taken[neighbor as usize] = true;
+                            cluster.push(neighbor);
                         }
                     }
                 }

@@ -47,7 +47,7 @@ pub struct Primitive {
     pub normals: Accessor,
     /// Linear RGB or RGBA, three or four components.
     pub colors: Option<Accessor>,
-    /// Texture coordinates of the base colour and of the emission, two components each. Present wherever the material has
+    /// Texture coordinates of the base color and of the emission, two components each. Present wherever the material has
     /// that texture.
     pub texcoords: [Option<Accessor>; 2],
     /// Index into `Scene::materials`.

@@ -33,7 +33,7 @@ pub struct Needs {
     /// Normals are all f32.
     pub f32_normals: bool,
     pub colors: bool,
-    /// Materials that are more than a base colour.
+    /// Materials that are more than a base color.
     pub material_count: usize,
     /// Of those, materials with a texture.
     pub textured: usize,
@@ -55,7 +55,7 @@ pub struct Needs {
     pub joints: usize,
     /// No interpolated normal ever needs a substitute.
     pub normals_agree: bool,
-    /// w is metres; else depth is linear and w is 1.
+    /// w is meters; else depth is linear and w is 1.
     pub perspective: bool,
     /// Some vertex may lie before the near plane or beyond the guard band.
     pub clipping: bool,
@@ -123,18 +123,18 @@ impl Needs {
             sizes: TriangleSizes::of(scene, draws, view),
             box_px: draws.iter().map(|draw| box_px(&scene.primitives[draw.primitive], draw, view)).fold(0.0, f64::max),
             rounding_px: rounding_px(scene, draws, view),
-            depth_m: view.scene_range_m,
+            depth_m: view.depth_range_m,
             near_m: view.clip_from_world.w_axis.z.abs(),
             w_ratio: w_ratio(largest_px, view),
         }
     }
 
-    /// Metres that one unit of the depth buffer spans at a distance.
+    /// Meters that one unit of the depth buffer spans at a distance.
     pub fn depth_unit_m(&self, at_m: f64) -> f64 {
         if self.perspective { at_m * at_m / self.near_m.max(f64::MIN_POSITIVE) } else { self.depth_m[1] - self.depth_m[0] }
     }
 
-    /// Metres that a depth twice as far spans from a distance on: what a logarithm divides evenly.
+    /// Meters that a depth twice as far spans from a distance on: what a logarithm divides evenly.
     pub fn doubling_span_m(&self, at_m: f64) -> f64 {
         if self.perspective { at_m } else { self.depth_m[1] - self.depth_m[0] }
     }

@@ -13,7 +13,7 @@ use super::{
     model::{Instance, Primitive, Scene, Topology},
 };
 
-/// Bytes of a corner: position as three floats, colour as three normalized u16, normal as three normalized i16.
+/// Bytes of a corner: position as three floats, color as three normalized u16, normal as three normalized i16.
 pub const CORNER_BYTES: u32 = 24;
 
 /// Words of a disc.
@@ -23,7 +23,7 @@ pub const PARTICLE_DISC_WORDS: usize = 3 * CORNER_BYTES as usize / 4;
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ParticleSettings {
     pub count: u32,
-    /// They hold the centre of every disc, in the scene before its spin.
+    /// They hold the center of every disc, in the scene before its spin.
     pub bounds: Bounds,
     /// Largest radius of a disc.
     pub radius_m: f64,

@@ -70,7 +70,7 @@ mod tests {
     use crate::scene::{builtin, camera::Camera};
 
     #[test]
-    fn the_middle_of_a_sphere_is_picked_in_front_of_its_centre_and_its_corner_of_the_picture_is_empty() {
+    fn the_middle_of_a_sphere_is_picked_in_front_of_its_center_and_its_corner_of_the_picture_is_empty() {
         let scene = builtin::build("sphere?triangles=2000").unwrap();
         let camera = Camera::framing(&scene.bounds(), DVec3::new(-0.4, -0.4, -1.0), 4.0 / 3.0);
         let view = View::new(&camera, 64, 48, &scene.bounds(), DMat4::IDENTITY, [0.0; 4]);

@@ -56,7 +56,7 @@ pub enum LocalTransform {
 #[derive(Clone, Copy, Debug, PartialEq)]
 /// Translation, rotation and scale; a vertex is scaled first and translated last.
 pub struct Trs {
-    /// Metres.
+    /// Meters.
     pub translation: DVec3,
     /// A unit quaternion.
     pub rotation: DQuat,

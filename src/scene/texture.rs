@@ -108,7 +108,7 @@ pub enum Wrap {
     Clamp = 2,
 }
 
-/// How a value between texel centres is found.
+/// How a value between texel centers is found.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[repr(u32)]
 pub enum Filter {

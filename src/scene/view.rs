@@ -21,16 +21,16 @@ pub struct View {
     pub width: u32,
     pub height: u32,
     pub clip_from_world: DMat4,
-    /// World space, metres.
+    /// World space, meters.
     pub eye: DVec3,
     /// Unit vector along the viewing direction, world space.
     pub forward: DVec3,
-    /// The world-space vectors of one unit of normalized device x and y: per metre of depth for a perspective.
+    /// The world-space vectors of one unit of normalized device x and y: per meter of depth for a perspective.
     pub ndc_axes: [DVec3; 2],
-    /// Metres at depth 1 and at depth 0 of a linear (orthographic) depth; none for a perspective, whose w is metres.
+    /// Meters at depth 1 and at depth 0 of a linear (orthographic) depth; none for a perspective, whose w is meters.
     pub linear_depth_m: Option<[f64; 2]>,
     /// Nearest and farthest distance along `forward` of the scene's box; in a perspective not nearer than the near plane.
-    pub scene_range_m: [f64; 2],
+    pub depth_range_m: [f64; 2],
     /// Linear RGBA of pixels without a triangle.
     pub background: [f32; 4],
     /// Positions in the picture for which this view, a light's, draws a shadow map; none in a picture itself. A light sees back
@@ -103,7 +103,7 @@ impl View {
             forward,
             ndc_axes,
             linear_depth_m,
-            scene_range_m: [from, farthest.max(from + margin)],
+            depth_range_m: [from, farthest.max(from + margin)],
             background,
             picture_from_world: None,
             scene_state: SceneState { world_from_scene, ..SceneState::default() },

@@ -30,7 +30,7 @@ pub struct KernelKey {
     pub work: WorkSharing,
     /// What a pixel holds.
     pub framebuffer: Framebuffer,
-    /// What shading computes for the effects beyond the base colour.
+    /// What shading computes for the effects beyond the base color.
     pub surface: SurfaceInputs,
     /// From where and how the scene is projected.
     pub view: ViewKind,
@@ -64,7 +64,7 @@ pub struct VertexInputs {
     pub fetch: Fetch,
     pub positions: AttributeFormat,
     pub normals: AttributeFormat,
-    /// Some vertices have colours.
+    /// Some vertices have colors.
     pub has_colors: bool,
     /// No primitive is a strip or a fan.
     pub only_triangle_lists: bool,
@@ -144,19 +144,19 @@ pub enum FramebufferLayout {
     Packed64,
 }
 
-/// What shading computes for the effects beyond the base colour.
+/// What shading computes for the effects beyond the base color.
 #[derive(Clone, Debug, PartialEq, Eq, Hash)]
 pub struct SurfaceInputs {
-    /// Some material is more than a base colour.
+    /// Some material is more than a base color.
     pub has_material_atlas: bool,
-    /// Plane normals and triangle centres: an effect reads them, or a normal may need a substitute.
+    /// Plane normals and triangle centers: an effect reads them, or a normal may need a substitute.
     pub has_planes: bool,
 }
 
 /// How a view maps depth.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum ProjectionKind {
-    /// w is metres.
+    /// w is meters.
     Perspective,
     /// Depth is linear and w is 1.
     Orthographic,

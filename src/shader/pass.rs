@@ -100,7 +100,7 @@ pub enum RasterPhase {
     TriangleId,
     /// Layers per pixel: for the heat map, and for the judge.
     Count,
-    /// Weighted colours of all layers.
+    /// Weighted colors of all layers.
     Sum,
     /// Depth key and triangle id without atomics.
     Race,

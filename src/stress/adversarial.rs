@@ -1,7 +1,7 @@
 //! Adversarial geometry: triangles whose edges pass samples, and vertices that lie near ties of the snap, as closely as possible.
 //!
 //! Uniform random numbers almost never produce a tie. These generators do, in the manner of the tests of exact predicates
-//! that step through neighbouring floats around a line (georust/robust, linebender/kurbo).
+//! that step through neighboring floats around a line (georust/robust, linebender/kurbo).
 
 use super::scenes::Rng;
 

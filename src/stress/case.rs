@@ -12,7 +12,7 @@ use crate::gpu::Renderer;
 /// The expected outcome of a case.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Expectation {
-    /// Every integer equals the oracle's, with every exact option and work distribution; colours are within one step of 255.
+    /// Every integer equals the oracle's, with every exact option and work distribution; colors are within one step of 255.
     Exact,
     /// Correct within this bound.
     Bounded(&'static str),

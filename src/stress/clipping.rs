@@ -27,7 +27,7 @@ pub const CASES: &[Case] = &[
     Case {
         number: 10,
         name: "w-around-zero",
-        about: "w of 0, +-1e-30, the near distance and its neighbouring floats, mixed signs in a triangle: exact given the clipped triangles",
+        about: "w of 0, +-1e-30, the near distance and its neighboring floats, mixed signs in a triangle: exact given the clipped triangles",
         expectation: Expectation::Exact,
         run: w_around_zero,
     },
@@ -35,7 +35,7 @@ pub const CASES: &[Case] = &[
         number: 11,
         name: "near-plane-sweep",
         about: "the near plane moves through a closed shell and the ground below it in 1,000 steps",
-        expectation: Expectation::Bounded("at most 48 pixels along a cut may show a neighbouring triangle"),
+        expectation: Expectation::Bounded("at most 48 pixels along a cut may show a neighboring triangle"),
         run: near_plane_sweep,
     },
 ];

@@ -32,7 +32,7 @@ pub const CASES: &[Case] = &[
         number: 28,
         name: "w-ratios",
         about: "w from 1 to 2, 10, 1,000 and 10^6 within a triangle: attributes and depth of every sample",
-        expectation: Expectation::Bounded("depth within its stated relative error, colours within one step of 255"),
+        expectation: Expectation::Bounded("depth within its stated relative error, colors within one step of 255"),
         run: w_ratios,
     },
 ];

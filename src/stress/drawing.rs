@@ -15,7 +15,7 @@ use crate::{
 /// Largest fraction of pixels in the depth band, where two triangle ids are correct. 16 pixels are always allowed.
 pub const MAX_DEPTH_BAND_FRACTION: f64 = 0.01;
 
-/// Checks that all integers are exact, colours are within one step, and the depth band is small.
+/// Checks that all integers are exact, colors are within one step, and the depth band is small.
 ///
 /// # Errors
 /// A sentence for each violation.

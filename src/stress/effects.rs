@@ -78,7 +78,7 @@ fn only(effect: &str, fields: &[(&str, f64)]) -> Result<Stack, EarlyEnd> {
     Ok(stack)
 }
 
-/// `count` layers that cover every pixel, half of them in each of two colours, from six vertices.
+/// `count` layers that cover every pixel, half of them in each of two colors, from six vertices.
 fn pile(count: u32) -> Arc<Scene> {
     let corners = |depth: f32| [[-4.0, -4.0, depth], [40.0, -4.0, depth], [-4.0, 40.0, depth]];
     let colors = [[1.0, 0.0, 0.25, 1.0], [0.0, 1.0, 0.25, 1.0]];

@@ -23,14 +23,14 @@ pub const CASES: &[Case] = &[
         number: 31,
         name: "parameters-at-range-ends",
         about: "every parameter of every effect at its smallest and its largest allowed value",
-        expectation: Expectation::Bounded("integers exact; colours within one step of 255 except at discontinuities"),
+        expectation: Expectation::Bounded("integers exact; colors within one step of 255 except at discontinuities"),
         run: parameters_at_range_ends,
     },
     Case {
         number: 31,
         name: "all-effects-at-range-ends",
         about: "as many effects as can be combined, all parameters at one end of their ranges",
-        expectation: Expectation::Bounded("integers exact; colours within one step of 255 except at discontinuities"),
+        expectation: Expectation::Bounded("integers exact; colors within one step of 255 except at discontinuities"),
         run: all_effects_at_range_ends,
     },
 ];
@@ -63,7 +63,7 @@ fn set(stack: &mut Stack, effect: &'static Effect, field: &Field, end: usize) ->
         .map_err(|error| EarlyEnd::Failed(format!("{}.{}: {error}", effect.name, field.name)))
 }
 
-/// Draws and judges. Colour discontinuities may be anywhere.
+/// Draws and judges. Color discontinuities may be anywhere.
 fn judged(context: &mut CaseContext, stack: &Stack, turn: usize, what: &str) -> Result<(), EarlyEnd> {
     // Few triangles: at their largest, discs and boxes cover the picture once for each triangle.
     let query = ["sphere?triangles=200", "near", "cube-wall", "grid?cell=0.4&width=8&height=8"][turn % 4];
@@ -144,7 +144,7 @@ fn all_effects_at_range_ends(context: &mut CaseContext) -> Result<(), EarlyEnd> 
         context.note("one end for each choice of slots, and shadow maps of 256 x 256 texels, since this adapter is slow".into());
     }
     if context.is_software() {
-        context.note("dots no closer than a millimetre, since this is a software adapter".into());
+        context.note("dots no closer than a millimeter, since this is a software adapter".into());
     }
     // Effects of the same slot take turns.
     let most = Slot::ALL.iter().map(|slot| EFFECTS.iter().filter(|effect| effect.hooks.slot == Some(*slot)).count()).max().unwrap_or(1);
@@ -166,7 +166,7 @@ fn all_effects_at_range_ends(context: &mut CaseContext) -> Result<(), EarlyEnd> 
             if let Some(dots) = stack.get_mut("dots").filter(|_| context.is_software() && end == Some(0)) {
                 // Millions of dots take too long on a software adapter.
                 let spacing = dots.effect.field("spacing_m").expect("dots have a spacing");
-                spacing.set(&mut dots.words, &[1e-3]).expect("a millimetre may be");
+                spacing.set(&mut dots.words, &[1e-3]).expect("a millimeter may be");
             }
             let names: Vec<_> = stack.0.iter().filter(|e| e.effect.hooks.slot.is_some()).map(|e| e.effect.name).collect();
             let at = ["at their defaults", "at their minimum", "at their maximum"][end.map_or(0, |end| end + 1)];

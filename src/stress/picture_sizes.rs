@@ -139,7 +139,7 @@ fn picture_too_large(context: &mut CaseContext) -> Result<(), EarlyEnd> {
     Ok(())
 }
 
-/// Two layers of different colours over the whole picture.
+/// Two layers of different colors over the whole picture.
 fn veils() -> SimpleMesh {
     let corners = |depth: f32| [[-16.0, -16.0, depth], [40_000.0, -16.0, depth], [-16.0, 40_000.0, depth]];
     let colors = [[1.0, 0.0, 0.25, 1.0], [0.0, 1.0, 0.25, 1.0]];
@@ -239,7 +239,7 @@ fn device_lost(context: &mut CaseContext) -> Result<(), EarlyEnd> {
     // Scene, view and stack do not belong to the device: another one draws the same picture, bit by bit.
     let after = context.captured(&hall, &view, &stack, &accuracy, "the same on another device")?;
     same(&after, &before, "the same on another device")?;
-    check!(after.frame.color == before.frame.color, "another device shows other colours");
+    check!(after.frame.color == before.frame.color, "another device shows other colors");
     context.refused(error);
     Ok(())
 }

@@ -62,7 +62,7 @@ pub const CASES: &[Case] = &[
 ];
 
 /// The quads of `FillRuleTestInstance` in the Vulkan CTS (KhronosGroup/VK-GL-CTS,
-/// external/vulkancts/modules/vulkan/rasterization/vktRasterizationTests.cpp): 4 x 4 centres, half a side of 0.15, 32 angles
+/// external/vulkancts/modules/vulkan/rasterization/vktRasterizationTests.cpp): 4 x 4 centers, half a side of 0.15, 32 angles
 /// over a quarter turn in two pictures of 256 x 256. Its `basic` gives the two triangles of a quad opposite windings, its
 /// `reversed` equal ones; `projected` gives each corner a w from 0.1 to 4.
 fn rotated_quads(context: &mut CaseContext) -> Result<(), EarlyEnd> {
@@ -74,7 +74,7 @@ fn rotated_quads(context: &mut CaseContext) -> Result<(), EarlyEnd> {
             for index in 0..16 {
                 let center = [index % 4, index / 4].map(|k| (f64::from(k) + 0.5) / 2.0 - 1.0);
                 let angle = f64::from(16 * iteration + index) / 32.0 * std::f64::consts::FRAC_PI_2;
-                // A corner is sqrt(2) times half a side from the centre, an eighth of a turn further.
+                // A corner is sqrt(2) times half a side from the center, an eighth of a turn further.
                 let square = rotated_square(center, 0.15 * std::f64::consts::SQRT_2, angle - std::f64::consts::FRAC_PI_4);
                 let w = square.map(|_| if kind == "projected" { rng.real(0.1, 4.0) } else { 1.0 });
                 corners.extend(order.map(|i| [square[i][0] * w[i], square[i][1] * w[i], -w[i]].map(|v| v as f32)));
@@ -172,7 +172,7 @@ fn d3d_rectangle(context: &mut CaseContext) -> Result<(), EarlyEnd> {
     Ok(())
 }
 
-/// From the same page: the rectangle (0.5, 0.5) to (2.5, 4.5) as four triangles around its centre needs no rule, since all its
+/// From the same page: the rectangle (0.5, 0.5) to (2.5, 4.5) as four triangles around its center needs no rule, since all its
 /// samples lie inside triangles. Moved by half a pixel most samples lie on edges, and the same pixels are covered.
 fn d3d_four_triangles(context: &mut CaseContext) -> Result<(), EarlyEnd> {
     let mut covered = Vec::new();

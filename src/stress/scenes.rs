@@ -23,7 +23,7 @@ pub struct SimpleMesh {
     pub positions: Vec<[f32; 3]>,
     /// One per vertex, or empty: (0, 0, 1) everywhere.
     pub normals: Vec<[f32; 3]>,
-    /// Linear RGBA, one per vertex, or empty: no vertex colours.
+    /// Linear RGBA, one per vertex, or empty: no vertex colors.
     pub colors: Vec<[f32; 4]>,
     /// Three per triangle, or empty: the vertices in order.
     pub indices: Vec<u32>,
@@ -120,7 +120,7 @@ pub fn pixel_view(width: u32, height: u32) -> View {
         forward: DVec3::NEG_Z,
         ndc_axes: [DVec3::X * w / 2.0, DVec3::NEG_Y * h / 2.0],
         linear_depth_m: Some([0.0, 1.0]),
-        scene_range_m: [0.0, 1.0],
+        depth_range_m: [0.0, 1.0],
         background: [0.0; 4],
         picture_from_world: None,
         scene_state: Default::default(),
@@ -135,7 +135,7 @@ pub fn square_perspective(width: u32, height: u32, near: f64) -> View {
         eye: DVec3::ZERO,
         ndc_axes: [DVec3::X, DVec3::Y],
         linear_depth_m: None,
-        scene_range_m: [near, near + 10.0],
+        depth_range_m: [near, near + 10.0],
         ..pixel_view(width, height)
     }
 }

@@ -50,7 +50,7 @@ fn model(skin: &Skin) -> Result<crate::scene::Scene, gltf::LoadError> {
     let positions: [[f32; 3]; 5] = [[-1.0, -1.0, 0.0], [1.0, -1.0, 0.0], [1.0, 1.0, 0.0], [-1.0, 1.0, 0.0], [0.0, 0.0, 0.5]];
     let indices = [[0u16, 1, 4], [1, 2, 4], [2, 3, 4], [3, 0, 4]];
     let mut bytes: Vec<u8> = positions.iter().flatten().flat_map(|v| v.to_le_bytes()).collect();
-    // Only the vertex in the centre differs.
+    // Only the vertex in the center differs.
     bytes.extend((0..5).flat_map(|i| if i == 4 { skin.joints } else { SOUND.joints }));
     bytes.extend((0..5).flat_map(|i| if i == 4 { skin.weights } else { SOUND.weights }).flat_map(f32::to_le_bytes));
     bytes.extend(indices.as_flattened().iter().flat_map(|v| v.to_le_bytes()));

@@ -99,7 +99,7 @@ fn shuffled_triangles(context: &mut CaseContext) -> Result<(), EarlyEnd> {
                     *triangle_id = order[*triangle_id as usize];
                 }
                 same(&after, &before, &what)?;
-                check!(after.frame.color == before.frame.color, "{what}: colours differ");
+                check!(after.frame.color == before.frame.color, "{what}: colors differ");
             }
         }
     }

@@ -35,7 +35,7 @@ pub const CASES: &[Case] = &[
     Case {
         number: 12,
         name: "non-finite-attributes",
-        about: "NaN, infinities and extremes in normals and colours: finite values replace them",
+        about: "NaN, infinities and extremes in normals and colors: finite values replace them",
         expectation: Expectation::Exact,
         run: non_finite_attributes,
     },
@@ -136,7 +136,7 @@ fn non_finite_attributes(context: &mut CaseContext) -> Result<(), EarlyEnd> {
             ..SimpleMesh::default()
         }])
     };
-    for (what, scene) in [("normals", both(&normals, &[])), ("colours", both(&[], &colors)), ("both", both(&normals, &colors))] {
+    for (what, scene) in [("normals", both(&normals, &[])), ("colors", both(&[], &colors)), ("both", both(&normals, &colors))] {
         for effects in [&["lambert"][..], &["normals"], &["facet", "lambert"]] {
             let what = format!("bad {what} under {}", effects.join(" and "));
             let capture = context.exact_on_all_with(&scene, &pixel_view(64, 64), &stack(effects), &what)?;

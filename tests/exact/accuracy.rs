@@ -180,7 +180,7 @@ struct Mutant {
 const HOLES: (&str, fn(&Errors) -> u64) = ("holes", |e| e.holes);
 const DOUBLES: (&str, fn(&Errors) -> u64) = ("double hits", |e| e.double_hits);
 const TRIANGLE_IDS: (&str, fn(&Errors) -> u64) = ("wrong triangle ids", |e| e.wrong_triangles);
-const COLORS: (&str, fn(&Errors) -> u64) = ("colours", |e| u64::from(e.max_color_delta > 1));
+const COLORS: (&str, fn(&Errors) -> u64) = ("colors", |e| u64::from(e.max_color_delta > 1));
 const KEYS: (&str, fn(&Errors) -> u64) = ("depth keys", |e| e.key_outside_bound);
 const SNAPS: (&str, fn(&Errors) -> u64) = ("snapped vertices", |e| e.snap_outside_bound);
 const UNEXPLAINED: (&str, fn(&Errors) -> u64) = ("unexplained pixels", |e| e.unexplained);
@@ -339,16 +339,16 @@ const GRAPHICS_CARD: Tuning = Tuning {
 };
 
 /// The map of faults shows what the counts count: as many wrong triangle ids, holes and doubles just where there are any, and the
-/// largest difference of colour.
+/// largest difference of color.
 fn map_agrees(verdict: &Verdict) -> Result<(), String> {
     let (a, map) = (&verdict.report, &verdict.error_map);
     let triangle_ids =
         map.count(PixelError::WrongTriangle) == a.wrong_triangles && map.count(PixelError::WrongDepthOrder) == a.wrong_nearest;
     let coverage = (map.count(PixelError::Hole) > 0) == (a.holes > 0) && (map.count(PixelError::DoubleHit) > 0) == (a.double_hits > 0);
     let ties = map.count(PixelError::DepthBand) == a.depth_band_pixels;
-    let colours = map.color_delta.iter().max().copied().unwrap_or(0) >= a.max_color_delta;
+    let colors = map.color_delta.iter().max().copied().unwrap_or(0) >= a.max_color_delta;
     let marks = PixelError::ALL.map(|fault| map.count(fault));
-    if triangle_ids && coverage && ties && colours { Ok(()) } else { Err(format!("the map has {marks:?} and the counts say {a:?}")) }
+    if triangle_ids && coverage && ties && colors { Ok(()) } else { Err(format!("the map has {marks:?} and the counts say {a:?}")) }
 }
 
 #[test]

@@ -265,7 +265,7 @@ fn packed_positions_move_corners_by_half_a_step_at_most() {
 }
 
 #[test]
-fn neighbours_in_boxes_of_their_own_crack_when_they_are_packed() {
+fn neighbors_in_boxes_of_their_own_crack_when_they_are_packed() {
     let Some(mut renderer) = renderer() else { return };
     // Two sheets that share a jagged border, the upper one much higher than the lower one.
     let border = |i: u32| [i as f32 * 2.0 - 4.0, 128.0 + (rasterlab::math::hash(i) % 2048) as f32 / 128.0];

@@ -34,7 +34,7 @@ fn assert_same(a: &Frame, b: &Frame, what: &str) {
     let keys = compare::triangle_ids(&a.depth_key, &b.depth_key);
     assert_eq!(keys.different, 0, "{what}: keys differ, first {:?}", keys.mismatches.first());
     let colors = compare::pictures(&a.color, &b.color, 0);
-    assert_eq!(colors.pixels_over_tolerance, 0, "{what}: colours differ, first {:?}", colors.mismatches.first());
+    assert_eq!(colors.pixels_over_tolerance, 0, "{what}: colors differ, first {:?}", colors.mismatches.first());
 }
 
 /// The hall from inside: clipping, and triangles of every class.
@@ -175,7 +175,7 @@ fn all_layers_are_the_same_with_every_option() {
             let capture = captured(&mut renderer, &scene, &view, &stack(&[effect]), &pinned(*option));
             let what = format!("{effect} of {query} on {}", option.name());
             assert!(capture.frame.layer_sums == reference.frame.layer_sums, "{what}: counts");
-            assert!(capture.frame.color == reference.frame.color, "{what}: colours");
+            assert!(capture.frame.color == reference.frame.color, "{what}: colors");
         }
     }
 }
@@ -392,7 +392,7 @@ const TILED_MUTANTS: &[[&str; 5]] = &[
         "list = min(vec2u(begin, max(bins[tile], 1u) - 1u)",
         "near",
     ],
-    ["a list begins at its neighbour's", "stages/raster/raster_tiles", "bins[max(tile, 1u) - 1u], 0u", "bins[tile], 0u", "near"],
+    ["a list begins at its neighbor's", "stages/raster/raster_tiles", "bins[max(tile, 1u) - 1u], 0u", "bins[tile], 0u", "near"],
     ["the last column of a box is left out", "lib/tile_box", "(box.z << 8u)", "((max(box.z, 1u) - 1u) << 8u)", "sphere?triangles=200"],
     [
         "edges of large triangles from elsewhere",

@@ -30,7 +30,7 @@ fn assert_same(a: &Frame, b: &Frame, what: &str) {
     assert_eq!(triangle_ids.different, 0, "{what}: triangle ids differ, first {:?}", triangle_ids.mismatches.first());
     let keys = compare::triangle_ids(&a.depth_key, &b.depth_key);
     assert_eq!(keys.different, 0, "{what}: keys differ, first {:?}", keys.mismatches.first());
-    assert_eq!(compare::pictures(&a.color, &b.color, 0).pixels_over_tolerance, 0, "{what}: colours differ");
+    assert_eq!(compare::pictures(&a.color, &b.color, 0).pixels_over_tolerance, 0, "{what}: colors differ");
 }
 
 /// The next picture, and what was left out of it.

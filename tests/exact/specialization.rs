@@ -47,11 +47,11 @@ fn assert_same(a: &Frame, b: &Frame, band: &[bool], what: &str) {
         assert_eq!(delta.different, 0, "{what}: {image} differ, first {:?}", delta.mismatches.first());
     }
     // What decides is equal to the bit. Shading may round otherwise where a guard or a wide product is left out.
-    // At a step of colour that may show; there the judge says which pixels have two right answers.
+    // At a step of color that may show; there the judge says which pixels have two right answers.
     let held: Vec<[u8; 4]> =
         b.color.iter().enumerate().map(|(i, &color)| if band.get(i) == Some(&true) { a.color[i] } else { color }).collect();
     let colors = compare::pictures(&a.color, &held, 1);
-    assert_eq!(colors.pixels_over_tolerance, 0, "{what}: colours differ by more than a step, first {:?}", colors.mismatches.first());
+    assert_eq!(colors.pixels_over_tolerance, 0, "{what}: colors differ by more than a step, first {:?}", colors.mismatches.first());
 }
 
 #[test]

@@ -346,7 +346,7 @@ fn mistyped_queries_get_a_helpful_error() {
              (known: teapot, sphere, knot, cube-wall, field, tentacle, walker, chamber, globe, panels, leaves, near, grid, fan, sizes, slivers, stack)",
         ),
         ("teapot?tes=4", "teapot has no parameter \"tes\"; did you mean \"tess\"? (known: tess)"),
-        ("knot?colour=4", "knot has no parameter \"colour\" (known: tess)"),
+        ("knot?color=4", "knot has no parameter \"color\" (known: tess)"),
         ("teapot?tess=0", "teapot: tess=0 must be a whole number from 1 to 256"),
         ("teapot?tess=1e9", "teapot: tess=1e9 must be a whole number from 1 to 256"),
         ("teapot?tess=2.5", "teapot: tess=2.5 must be a whole number from 1 to 256"),

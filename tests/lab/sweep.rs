@@ -52,7 +52,7 @@ fn a_measured_combination_is_a_point_and_a_click_on_it_switches_the_preset_in_on
 }
 
 #[test]
-fn a_measurement_is_cancelled_and_leaves_nothing_behind() {
+fn a_measurement_is_canceled_and_leaves_nothing_behind() {
     let Some(mut lab) = lab("facet-sweep") else { return };
     press(&mut lab, Modifiers::NONE, Key::M);
     lab.get_by_role_and_label(Role::CheckBox, "Measure depth").click();

@@ -77,7 +77,7 @@ fn dragging_a_mark_moves_its_key_in_one_undo_step() {
     assert_eq!(lab.state().undo_steps(), 1);
     undo(&mut lab);
     assert_eq!((key_times(&lab, "facet", "amount"), lab.state().undo_steps()), (vec![0.0, 1.0, 3.0], 0));
-    // It never passes its neighbours, however far it is dragged.
+    // It never passes its neighbors, however far it is dragged.
     drag(&mut lab, mark, mark + vec2(900.0, 0.0));
     let times = key_times(&lab, "facet", "amount");
     assert!(times[1] > 2.9 && times[1] < 3.0, "{times:?}");

@@ -166,7 +166,7 @@ fn wait_for_exit(lab: &mut Owned) -> ExitStatus {
     }
 }
 
-/// Pixels that differ clearly from the most frequent colour.
+/// Pixels that differ clearly from the most frequent color.
 fn drawn(view: &[[u8; 3]]) -> usize {
     let mut counts = std::collections::HashMap::new();
     view.iter().for_each(|pixel| *counts.entry(*pixel).or_insert(0usize) += 1);

@@ -130,7 +130,7 @@ fn a_tree_of_lines_refuses_lines_that_move() {
 #[test]
 fn no_number_of_dots_is_lost() {
     let Some(mut renderer) = renderer() else { return };
-    // A line along the middle of the picture: so many metres hold so many dots.
+    // A line along the middle of the picture: so many meters hold so many dots.
     for count in [1u64, 2, 63, 64, 65, 4096, 4097] {
         let length = (count - 1).max(1) as f32;
         let (scene, view) = flat(&[[0.0; 3], [length, 0.0, 0.0]], [64, 48]);

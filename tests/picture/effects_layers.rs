@@ -31,10 +31,10 @@ fn with(values: &[&str]) -> Stack {
     preset_file.preset.stack
 }
 
-/// Position, normal, colour.
+/// Position, normal, color.
 type Corner = ([f32; 3], [f32; 3], [f32; 4]);
 
-/// Triangles all over a picture of `side` pixels, each with its own colours, normals and depths.
+/// Triangles all over a picture of `side` pixels, each with its own colors, normals and depths.
 fn soup(seed: u32, count: usize, side: i32, darkest: f64) -> Vec<[Corner; 3]> {
     let mut rng = Rng(seed);
     let corner = |rng: &mut Rng| {
@@ -57,7 +57,7 @@ fn scene_from(triangles: &[[Corner; 3]]) -> Arc<Scene> {
     }])
 }
 
-/// `count` layers that cover every pixel, half of them of one colour and half of another, from six vertices.
+/// `count` layers that cover every pixel, half of them of one color and half of another, from six vertices.
 fn pile(count: u32) -> Arc<Scene> {
     let corners = |depth: f32| [[-4.0, -4.0, depth], [40.0, -4.0, depth], [-4.0, 40.0, depth]];
     let colors = [[1.0, 0.0, 0.25, 1.0], [0.0, 1.0, 0.25, 1.0]];

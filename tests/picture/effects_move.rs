@@ -159,7 +159,7 @@ fn an_effect_that_moves_nothing_changes_nothing() {
     }
 }
 
-/// A few corners of a pebble, so close that a unit is a fraction of a micrometre.
+/// A few corners of a pebble, so close that a unit is a fraction of a micrometer.
 fn telescope() -> (Arc<Scene>, View) {
     let scene = scene("sphere?triangles=3000");
     let camera = Camera {
@@ -371,7 +371,7 @@ fn kernels_that_move_wrongly_are_caught() {
             "+ direction * dot(sway, v.normal)",
         ),
         (
-            "corners take their neighbour's record",
+            "corners take their neighbor's record",
             "explode",
             "lib/triangle",
             "var at = 3u * id + vec3u(0u, 1u, 2u);",

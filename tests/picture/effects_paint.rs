@@ -72,7 +72,7 @@ fn every_effect_is_exact_on_every_scene_with_every_option() {
             }
         }
     }
-    eprintln!("largest share in the band of colour steps: {most:.5}");
+    eprintln!("largest share in the band of color steps: {most:.5}");
     assert!(most < 0.02);
 }
 
@@ -108,7 +108,7 @@ fn random_parameters_in_random_company_are_exact() {
         }
     }
     let mean = shares.iter().sum::<f64>() / shares.len() as f64;
-    eprintln!("mean share in the band of colour steps: {mean:.5}");
+    eprintln!("mean share in the band of color steps: {mean:.5}");
     assert!(mean < 0.03);
 }
 
@@ -148,7 +148,7 @@ fn what_is_off_leaves_no_trace_to_the_bit() {
 
 // ---------------------------------------------------------------- effects on a surface
 
-/// A surface that looks at the eye from two metres.
+/// A surface that looks at the eye from two meters.
 fn surface(color: DVec3) -> Surface {
     Surface {
         color: color.extend(1.0),
@@ -170,7 +170,7 @@ fn surface(color: DVec3) -> Surface {
         triangle_id: 0,
         rank: 0.0,
         lit: 1.0,
-        nudge: 0.0,
+        step_offset: 0.0,
     }
 }
 
@@ -248,7 +248,7 @@ fn empty(side: u32, triangle_ids: &[u32]) -> Picture<'_> {
 
 fn finished(stack: &Stack, color: DVec4, x: u32, y: u32) -> DVec4 {
     let triangle_ids = [NO_TRIANGLE; 64 * 64];
-    stack.finish(Pixel { color, x, y, nudge: 0.0 }, &empty(64, &triangle_ids)).color
+    stack.finish(Pixel { color, x, y, step_offset: 0.0 }, &empty(64, &triangle_ids)).color
 }
 
 #[test]
@@ -313,7 +313,7 @@ fn outlines_of_a_mirrored_picture_are_mirrored_and_as_wide_as_asked() {
     let lines = |triangle_ids: &[u32], keys: &[u32], stack: &Stack| -> Vec<u32> {
         let [width, height] = SIZE;
         let picture = Picture { width, height, triangle_ids, keys, draws: &draws, previous: None, background: DVec4::ONE };
-        let pixel = |i: u32| Pixel { color: DVec4::ONE, x: i % width, y: i / width, nudge: 0.0 };
+        let pixel = |i: u32| Pixel { color: DVec4::ONE, x: i % width, y: i / width, step_offset: 0.0 };
         (0..width * height).map(|i| u32::from(stack.finish(pixel(i), &picture).color.x < 0.5)).collect()
     };
     let width = SIZE[0] as usize;
@@ -348,7 +348,7 @@ fn a_slope_is_no_jump_and_a_step_of_depth_is() {
         let picture =
             Picture { width: 8, height: 8, triangle_ids: &triangle_ids, keys: &keys, draws: &[0], previous: None, background: DVec4::ONE };
         let stack = with(&[("outline", "width_px", 1.0), ("outline", "depth_threshold", jump)]);
-        (0..8).filter(|&x| stack.finish(Pixel { color: DVec4::ONE, x, y: 4, nudge: 0.0 }, &picture).color.x < 0.5).collect()
+        (0..8).filter(|&x| stack.finish(Pixel { color: DVec4::ONE, x, y: 4, step_offset: 0.0 }, &picture).color.x < 0.5).collect()
     };
     assert_eq!(line(|x| 0.5 + 0.05 * x as f32, 0.01), Vec::<u32>::new(), "a slope of a tenth");
     assert_eq!(line(|x| if x < 4 { 0.6 } else { 0.5 }, 0.05), [4], "on the far side");

@@ -363,8 +363,8 @@ fn kernels_with_a_mistake_are_caught() {
         (
             "triangles in another order",
             "variants/sample_test/draw_order",
-            "t.id < order.straddler",
-            "t.id > order.straddler",
+            "t.id < order.boundary_triangle",
+            "t.id > order.boundary_triangle",
             only("draw_order", &[("fraction", 0.4)]),
         ),
         (

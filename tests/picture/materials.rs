@@ -390,7 +390,7 @@ fn the_tier_strict_takes_masks_unless_something_masked_is_cut() {
 // ---------------------------------------------------------------- nothing that a scene does not need
 
 #[test]
-fn a_scene_of_plain_colours_has_no_texture_and_no_word_of_one() {
+fn a_scene_of_plain_colors_has_no_texture_and_no_word_of_one() {
     for effects in [
         vec![],
         EFFECTS.iter().copied().filter(|effect| effect.hooks.slot.is_none() && effect.name != "shadow").collect::<Vec<&'static Effect>>(),
@@ -441,7 +441,7 @@ fn a_scene_of_plain_colours_has_no_texture_and_no_word_of_one() {
             explained.omitted.iter().chain(&explained.reasons).find(|note| note.name == "material atlas").map(|note| note.why.clone());
         (explained.buffers.iter().find(|buffer| buffer.name == "material_atlas").map(|buffer| buffer.bytes), said.expect("a line about it"))
     };
-    assert_eq!(buffers("teapot?tess=4"), (None, "no material is more than a base colour".into()));
+    assert_eq!(buffers("teapot?tess=4"), (None, "no material is more than a base color".into()));
     let (bytes, why) = buffers("panels");
     assert!(bytes.is_some_and(|bytes| bytes >= 4 * 64 * 64) && why.starts_with("7 of 7 materials"), "{bytes:?} {why}");
     assert_eq!(buffers("teapot?tess=4").0, None, "a texture outlives its scene");
@@ -478,7 +478,7 @@ fn textured_boxes_of_the_corpus_show_their_image() {
         let view = view(&scene, [96, 72]);
         let frame = oracle::render(&scene, &view, &Stack::default()).expect("it fits");
         let colors: std::collections::BTreeSet<[u8; 4]> = frame.color.iter().copied().collect();
-        assert!(colors.len() > 100, "{file} shows {} colours", colors.len());
+        assert!(colors.len() > 100, "{file} shows {} colors", colors.len());
         pictures.push(frame.color);
     }
     assert!(

@@ -109,7 +109,7 @@ fn the_flow_is_about_as_fast_as_it_says_and_nowhere_jumps() {
     // Along a line through many cells of the lattice.
     let along = |i: i32| particles_flow(&p, DVec3::new(0.31, -0.2, 0.05) + DVec3::new(1.0, 0.61, 0.37) * (f64::from(i) * 1e-4));
     let jump = (0..30_000).map(|i| along(i).distance(along(i + 1))).fold(0.0, f64::max);
-    assert!(jump < 0.02, "{jump} m/s between neighbours a tenth of a millimetre apart");
+    assert!(jump < 0.02, "{jump} m/s between neighbors a tenth of a millimeter apart");
 }
 
 #[test]

@@ -345,7 +345,7 @@ fn quantized_positions_are_drawn_and_deformed_like_any() {
         let count = primitive.vertex_count();
         scene.primitives[0].positions =
             Accessor { offset, stride: 8, component_type: ComponentType::I16, components: 3, normalized, count };
-        // Morph targets and joints are in metres: the quantized mesh is rigid and scaled by its instance.
+        // Morph targets and joints are in meters: the quantized mesh is rigid and scaled by its instance.
         let scale = if normalized { 2.5 } else { 1.0 / 2_000.0 };
         let mut placed = scene.clone();
         placed.rig = Default::default();

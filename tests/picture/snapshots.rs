@@ -175,7 +175,7 @@ fn every_preset_is_exact_and_looks_like_its_golden_with_every_option() {
             if own_option.is_none_or(|own| own == option) && !is_golden_wrong {
                 let (capture, verdict) = judged_preset(&mut renderer, &scene, preset, &as_asked);
                 within_budget(&verdict.report, preset).unwrap_or_else(|why| panic!("{id} {}: {why}", option.name()));
-                // Steps of colour and edges of texels leave some pixels two right answers; the judge says which, and that one of
+                // Steps of color and edges of texels leave some pixels two right answers; the judge says which, and that one of
                 // them was met.
                 let mut outcome = snapshot.check(preset, &capture.frame.color, &verdict.step_band);
                 if outcome.is_err() && update == "1" {

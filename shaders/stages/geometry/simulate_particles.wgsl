@@ -52,7 +52,7 @@ fn disc_store(id: u32, f: ParticleState) {
     disc_corner_store(particle_step.target_word + 18u * id + 12u, f.position, radius, vec2f(0.0, 2.0), color);
 }
 
-// A corner lies two radii from the centre.
+// A corner lies two radii from the center.
 fn disc_corner_store(word: u32, center: vec3f, radius: f32, aside: vec2f, color: vec3f) {
     let offset = aside.x * particle_step.right.xyz + aside.y * particle_step.up.xyz;
     let position = bitcast<vec3u>(center + radius * offset);

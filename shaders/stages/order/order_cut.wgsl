@@ -26,7 +26,7 @@ fn order_cut(@builtin(local_invocation_index) invocation_index: u32) {
             sum += here;
         }
         // There is no boundary triangle: everything is drawn, or there is nothing to draw.
-        if order.straddler == frame.triangle_count {
+        if order.boundary_triangle == frame.triangle_count {
             order.cut = 0u;
             order.drawn_hi = order.before_hi;
             order.drawn_lo = order.before_lo;

@@ -72,7 +72,7 @@ fn order_limit(@builtin(local_invocation_index) invocation_index: u32) {
     let block = found;
     if block == ORDER_NONE {
         if invocation_index == 0u {
-            order.straddler = frame.triangle_count;
+            order.boundary_triangle = frame.triangle_count;
             order.before_hi = order.total_hi;
             order.before_lo = order.total_lo;
         }
@@ -91,7 +91,7 @@ fn order_limit(@builtin(local_invocation_index) invocation_index: u32) {
     for (var id = begin; id < min(begin + 4u, frame.triangle_count); id += 1u) {
         let next = fixed_add(sum, Wide(0u, sample_counts[id]));
         if !fixed_is_less(limit, sum) && fixed_is_less(limit, next) {
-            order.straddler = id;
+            order.boundary_triangle = id;
             order.before_hi = sum.hi;
             order.before_lo = sum.lo;
         }

@@ -15,10 +15,10 @@ struct Scaling {
 // Drawn pixels per shown pixel, along a side, where more are drawn than shown; else 1.
 override SCALE_SIDE: u32 = 1u;
 
-// A sum of weighted colours of drawn pixels in linear light.
+// A sum of weighted colors of drawn pixels in linear light.
 struct ColorSum {
-    opaque: vec4f, // colour times opacity, and opacity
-    plain: vec3f,  // colour alone, for where nothing is opaque
+    opaque: vec4f, // color times opacity, and opacity
+    plain: vec3f,  // color alone, for where nothing is opaque
 }
 
 fn color_sum_add(sum: ColorSum, at: vec2u, weight: f32) -> ColorSum {

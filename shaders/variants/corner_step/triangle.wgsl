@@ -1,4 +1,4 @@
-// Corner step, triangle: normal and centre of the corner's triangle, before any effect. `p` is the corner in object space.
+// Corner step, triangle: normal and center of the corner's triangle, before any effect. `p` is the corner in object space.
 //@ use lib/triangle
 //@ use lib/vertex
 //@ use lib/attributes

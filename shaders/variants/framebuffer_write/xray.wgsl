@@ -1,4 +1,4 @@
-// Framebuffer, x-ray: every layer adds its weighted colour, in linear light and as integers, and its weight. Sums commute, so
+// Framebuffer, x-ray: every layer adds its weighted color, in linear light and as integers, and its weight. Sums commute, so
 // the order of layers does not matter. Pixels whose sums may have overflowed are counted.
 //@ use lib/frame
 //@ use lib/geometry

@@ -20,7 +20,7 @@ const ORDER_TEST_RACY = 2u;
 
 fn sample_test_draw_order(t: Triangle, at: vec2u, pixel: u32) -> bool {
     if ORDER_TEST == ORDER_TEST_SUBMISSION {
-        return t.id < order.straddler || (t.id == order.straddler && pixel < order.cut);
+        return t.id < order.boundary_triangle || (t.id == order.boundary_triangle && pixel < order.cut);
     }
     if ORDER_TEST == ORDER_TEST_SCHEDULER {
         var index = 0u;
@@ -38,5 +38,5 @@ fn sample_test_draw_order(t: Triangle, at: vec2u, pixel: u32) -> bool {
         atomicAdd(&counters.next_sample_index, 1u);
         return true;
     }
-    return t.id == order.straddler;
+    return t.id == order.boundary_triangle;
 }

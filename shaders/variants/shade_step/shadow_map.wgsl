@@ -11,7 +11,7 @@ struct ShadowMapView {
     row: vec4f,    // texels down
     depth: vec4f,  // reversed depth: 1 near the light
     texel_m: f32,
-    range_m: f32,  // metres from depth 0 to depth 1
+    range_m: f32,  // meters from depth 0 to depth 1
     side: u32,     // texels
     spare: u32,
 }

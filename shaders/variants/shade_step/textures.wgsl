@@ -1,5 +1,5 @@
-// Shade step, textures: the base colour texture multiplies the colour, and emitted light is added. The number of texels that a
-// pixel spans follows exactly from the triangle's own plane, not from neighbouring invocations.
+// Shade step, textures: the base color texture multiplies the color, and emitted light is added. The number of texels that a
+// pixel spans follows exactly from the triangle's own plane, not from neighboring invocations.
 //@ use lib/frame
 //@ use lib/fixed
 //@ use lib/triangle

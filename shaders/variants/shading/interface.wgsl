@@ -1,4 +1,4 @@
-// Shading: the colour that the resolve pass shows for a pixel.
+// Shading: the color that the resolve pass shows for a pixel.
 // Chosen by effects that show all layers. Default: nearest.
 //
 // Linear RGBA of a pixel, given the id of its nearest triangle.

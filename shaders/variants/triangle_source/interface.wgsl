@@ -3,10 +3,11 @@
 // every triangle of the scene.
 //@ use lib/frame
 //@ use lib/triangle
+//@ use variants/draw_search
 
 // x: the triangle's id, or one past the last triangle where there is none. y: its draw. z: an id that exists in any case.
 //@ declare fn triangle_source(invocation: u32) -> vec3u
 fn triangle_source(invocation: u32) -> vec3u {
     let existing = min(invocation, frame.triangle_count - 1u);
-    return vec3u(invocation, draws_of_triangle(existing), existing);
+    return vec3u(invocation, draw_of_triangle(existing), existing);
 }

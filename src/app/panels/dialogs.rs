@@ -136,7 +136,7 @@ impl Dialogs {
         self.0 = Some(Dialog::Unsaved);
     }
 
-    /// Takes the answer of the system's dialog; none if it was cancelled.
+    /// Takes the answer of the system's dialog; none if it was canceled.
     pub fn path_arrived(&mut self, purpose: Purpose, path: Option<PathBuf>, own_path: Option<&Path>, commands: &Commands) {
         let Some(Dialog::Path(dialog)) = &mut self.0 else { return };
         if dialog.purpose != purpose {

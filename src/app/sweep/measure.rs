@@ -48,7 +48,7 @@ fn point(row: SweepRow, axes: &[&'static Axis]) -> Point {
         let error = row.error.as_ref()?;
         Some(match metric {
             Metric::Wrong => error.wrong_ppm,
-            Metric::Colour => error.max_color_delta.into(),
+            Metric::Color => error.max_color_delta.into(),
             Metric::Light => error.wrong_light_ppm?,
             Metric::Coverage => error.holes_per_mpx + error.double_hits_per_mpx,
         })
@@ -56,7 +56,7 @@ fn point(row: SweepRow, axes: &[&'static Axis]) -> Point {
     let more = row.error.iter().flat_map(|error| {
         [
             ("wrong depth winners ppm", error.wrong_depth_ppm),
-            ("colour RMS of 255", error.rms_color_delta),
+            ("color RMS of 255", error.rms_color_delta),
             ("pixels that change between equal frames", error.changed_pixels as f64),
             ("corners moved px", error.moved_px),
             ("cracks per Mpx", error.cracks_per_mpx),

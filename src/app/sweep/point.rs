@@ -8,8 +8,8 @@ pub enum Metric {
     /// Pixels that show another triangle than the exact picture.
     #[default]
     Wrong,
-    /// Largest difference of a colour channel.
-    Colour,
+    /// Largest difference of a color channel.
+    Color,
     /// Samples that are covered and not drawn, or drawn more often than covered.
     Coverage,
     /// Pixels that face a light and get more than half of it too much or too little.
@@ -17,7 +17,7 @@ pub enum Metric {
 }
 
 impl Metric {
-    pub const ALL: [Self; 4] = [Self::Wrong, Self::Colour, Self::Coverage, Self::Light];
+    pub const ALL: [Self; 4] = [Self::Wrong, Self::Color, Self::Coverage, Self::Light];
 
     /// The metrics that these points have: light only if the scene has one.
     pub fn of(points: &[Point]) -> Vec<Self> {
@@ -27,7 +27,7 @@ impl Metric {
     pub const fn name(self) -> &'static str {
         match self {
             Self::Wrong => "wrong pixels",
-            Self::Colour => "colour difference",
+            Self::Color => "color difference",
             Self::Coverage => "holes and doubles",
             Self::Light => "wrong light",
         }
@@ -36,7 +36,7 @@ impl Metric {
     pub const fn unit(self) -> &'static str {
         match self {
             Self::Wrong => "ppm",
-            Self::Colour => "of 255",
+            Self::Color => "of 255",
             Self::Coverage => "per Mpx",
             Self::Light => "ppm",
         }
@@ -143,7 +143,7 @@ mod tests {
     #[test]
     fn the_front_holds_what_nothing_dominates() {
         assert_eq!(front(&points(), Metric::Wrong), [0, 1, 3]);
-        assert_eq!(front(&points(), Metric::Colour), [0], "all are exact, so only the fastest is on the front");
+        assert_eq!(front(&points(), Metric::Color), [0], "all are exact, so only the fastest is on the front");
         assert_eq!(front(&points(), Metric::Coverage), [0; 0], "not measured is no point");
     }
 
@@ -157,7 +157,7 @@ mod tests {
         let lines: Vec<_> = text.lines().collect();
         assert_eq!(
             lines[0],
-            "coverage,depth,ms p50,ms p95,samples,wrong pixels ppm,colour difference of 255,holes and doubles per Mpx,bytes,note"
+            "coverage,depth,ms p50,ms p95,samples,wrong pixels ppm,color difference of 255,holes and doubles per Mpx,bytes,note"
         );
         assert_eq!(lines[1], "float,ndc16,1,2,30,500,0,not measured,7,\"a, b\"");
     }

@@ -23,23 +23,23 @@ pub struct Request {
 /// How far a sweep is; shared with the thread that measures.
 #[derive(Default)]
 pub struct Progress {
-    is_cancelled: AtomicBool,
+    is_canceled: AtomicBool,
     state: Mutex<(usize, usize, String)>,
 }
 
 impl Progress {
-    /// Says that `done` of `all` steps are done and what comes next. Returns false if the sweep was cancelled.
+    /// Says that `done` of `all` steps are done and what comes next. Returns false if the sweep was canceled.
     pub fn report(&self, done: usize, all: usize, what: &str) -> bool {
         *self.state.lock().unwrap_or_else(|poisoned| poisoned.into_inner()) = (done, all, what.to_owned());
-        !self.is_cancelled()
+        !self.is_canceled()
     }
 
     pub fn cancel(&self) {
-        self.is_cancelled.store(true, Ordering::Relaxed);
+        self.is_canceled.store(true, Ordering::Relaxed);
     }
 
-    pub fn is_cancelled(&self) -> bool {
-        self.is_cancelled.load(Ordering::Relaxed)
+    pub fn is_canceled(&self) -> bool {
+        self.is_canceled.load(Ordering::Relaxed)
     }
 
     /// Steps done, all steps, and what is being done.

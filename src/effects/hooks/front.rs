@@ -22,7 +22,7 @@ choice! {
 params! {
     /// How an effect is spread over the triangles, and where its front stands. Mirror of the struct in `shaders/lib/front.wgsl`.
     pub struct Front {
-        /// Centre of the radial front, world space.
+        /// Center of the radial front, world space.
         center: Point = [0.0, 0.0, 0.0, 0.0], soft -3.0..=3.0, unit "m", when ("pattern", &["radial"]);
         /// How the effect is spread over the triangles.
         pattern: Pattern = Pattern::Uniform as u32;
@@ -34,7 +34,7 @@ params! {
         along_x: f32 = 1.0, hard -1.0..=1.0, when ("pattern", &["sweep"]);
         /// Direction of the sweep in the picture: part downwards.
         along_y: f32 = 0.0, hard -1.0..=1.0, when ("pattern", &["sweep"]);
-        /// Distance of the front from the centre.
+        /// Distance of the front from the center.
         radius_m: f32 = 1.0, hard 0.0..=1e6, soft 0.0..=5.0, unit "m", when ("pattern", &["radial"]);
         /// Thickness of the front.
         width_m: f32 = 0.5, hard 0.001..=1e6, soft 0.01..=5.0, unit "m", log true, when ("pattern", &["radial"]);
@@ -76,7 +76,7 @@ impl Front {
         (self.along().x.abs() + self.along().y.abs()).max(1e-3)
     }
 
-    /// Distance from the centre of the radial front, metres.
+    /// Distance from the center of the radial front, meters.
     fn distance(&self, center: DVec3) -> f64 {
         (center - DVec3::new(self.center[0].into(), self.center[1].into(), self.center[2].into())).length()
     }

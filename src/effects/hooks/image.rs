@@ -4,15 +4,15 @@ use glam::DVec4;
 
 use crate::params::Params;
 
-/// A finished pixel of the picture; an image effect changes its colour and passes it on.
+/// A finished pixel of the picture; an image effect changes its color and passes it on.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Pixel {
     /// Gamma-encoded RGBA so far, each 0 to 1: what the picture will hold, before it is rounded to bytes.
     pub color: DVec4,
     pub x: u32,
     pub y: u32,
-    /// As the `nudge` of a surface.
-    pub nudge: f64,
+    /// As the `step_offset` of a surface.
+    pub step_offset: f64,
 }
 
 /// What an image effect may read: the integers of the whole picture, row-major.
@@ -27,7 +27,7 @@ pub struct Picture<'a> {
     pub draws: &'a [u32],
     /// The previous picture, gamma-encoded; none for the first.
     pub previous: Option<&'a [[u8; 4]]>,
-    /// Gamma-encoded RGBA of the background; its colour is that of whole bytes.
+    /// Gamma-encoded RGBA of the background; its color is that of whole bytes.
     pub background: DVec4,
 }
 

@@ -24,7 +24,7 @@ pub struct Hooks {
     pub vertex: Option<VertexHook>,
     /// Is this sample drawn?
     pub sample: Option<SampleHook>,
-    /// What colour is it?
+    /// What color is it?
     pub surface: Option<fn(Surface, &[u32]) -> Surface>,
     /// Finish the pixel.
     pub image: Option<ImageHook>,
@@ -34,7 +34,7 @@ pub struct Hooks {
     pub has_lines: bool,
     /// It adds particles to the scene.
     pub particle_settings: Option<fn(&[u32]) -> ParticleSettings>,
-    /// Its colour has steps, decided by a value plus [`Surface::nudge`].
+    /// Its color has steps, decided by a value plus [`Surface::step_offset`].
     pub has_steps: bool,
     /// The members of the surface that it reads.
     pub surface_inputs: &'static [SurfaceInput],

@@ -21,8 +21,8 @@ pub struct TriangleSetup {
     pub size: [u32; 2],
     /// Mean of the parent triangle's corners, world space.
     pub center: DVec3,
-    /// Bound of its error in f32 along any axis, metres.
-    pub center_slack_m: f64,
+    /// Bound of its error in f32 along any axis, meters.
+    pub center_error_m: f64,
     /// Position of that mean in the picture, 0 to 1; the middle where it lies behind the eye.
     pub center_screen: DVec2,
 }
@@ -34,13 +34,13 @@ impl TriangleSetup {
         ((bx - ax) * (cy - ay) - (by - ay) * (cx - ax)).unsigned_abs()
     }
 
-    /// How far the centre of the f32 side may be from the f64 one, in the world and in the picture.
+    /// How far the center of the f32 side may be from the f64 one, in the world and in the picture.
     pub fn error_bound(&self) -> ErrorBound {
         // A few operations on numbers up to the largest corner's position, as fractions of the picture.
         let reach = self.corners.as_flattened().iter().map(|at| f64::from(*at).abs()).fold(0.0, f64::max);
         let shortest = f64::from(self.size[0].min(self.size[1]).max(1));
         let center_screen = 24.0 * ROUNDING * (1.0 + reach / (256.0 * shortest));
-        ErrorBound { center_m: self.center_slack_m, center_screen, ..ErrorBound::default() }
+        ErrorBound { center_m: self.center_error_m, center_screen, ..ErrorBound::default() }
     }
 
     /// Samples that the triangle covers in the picture, row by row, each tested on its own.
@@ -58,11 +58,11 @@ impl TriangleSetup {
     fn covers(&self, x: i64, y: i64) -> bool {
         let [a, b, c] = self.corners.map(|corner| corner.map(i128::from));
         let (px, py) = (i128::from(256 * x + 128), i128::from(256 * y + 128));
-        let nudged = |[ax, ay]: [i128; 2], [bx, by]: [i128; 2]| {
+        let offset_cross = |[ax, ay]: [i128; 2], [bx, by]: [i128; 2]| {
             let (dx, dy) = (bx - ax, by - ay);
             ((dx * (py - ay) - dy * (px - ax)) << 60) - (dy << 30) + dx
         };
-        let signs = [nudged(b, c), nudged(c, a), nudged(a, b)].map(i128::signum);
+        let signs = [offset_cross(b, c), offset_cross(c, a), offset_cross(a, b)].map(i128::signum);
         // Clockwise all are positive, counterclockwise all negative: a tie is broken alike for both sides of an edge.
         signs == [1; 3] || signs == [-1; 3]
     }

@@ -1,4 +1,4 @@
-//! The surface hook: what colour is it?
+//! The surface hook: what color is it?
 
 use glam::{DVec2, DVec3, DVec4};
 
@@ -7,12 +7,12 @@ use crate::params::Params;
 /// What the rasterizer knows about a visible sample; a surface effect changes it and passes it on.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Surface {
-    /// Linear RGBA so far; begins as the material's base colour times the vertex colour and the texture, plus its emission.
+    /// Linear RGBA so far; begins as the material's base color times the vertex color and the texture, plus its emission.
     pub color: DVec4,
-    /// The part of the colour that no light changes: what the material emits, or all of it where it is unlit. An effect that
-    /// paints over a fraction of the colour removes the same fraction of this.
+    /// The part of the color that no light changes: what the material emits, or all of it where it is unlit. An effect that
+    /// paints over a fraction of the color removes the same fraction of this.
     pub glow: DVec3,
-    /// World space, metres: on the ray of its pixel at `depth_m`, however the corners were snapped.
+    /// World space, meters: on the ray of its pixel at `depth_m`, however the corners were snapped.
     pub position: DVec3,
     /// Unit, towards the viewer's side: interpolated, then as earlier effects have changed it.
     pub normal: DVec3,
@@ -33,9 +33,9 @@ pub struct Surface {
     pub barycentrics: DVec3,
     /// Distance of the sample from the edge opposite each corner, pixels.
     pub edge_distance_px: DVec3,
-    /// Distance from the eye along the viewing direction, metres.
+    /// Distance from the eye along the viewing direction, meters.
     pub depth_m: f64,
-    /// Side of a pixel at the sample's depth, metres, across the view.
+    /// Side of a pixel at the sample's depth, meters, across the view.
     pub pixel_size_m: f64,
     /// Mean of `depth_m` over the triangle's corners.
     pub flat_depth_m: f64,
@@ -47,9 +47,9 @@ pub struct Surface {
     pub rank: f64,
     /// Fraction of the light that arrives, 0 to 1, where an effect reads it; else 0.
     pub lit: f64,
-    /// Added to each value that decides a step of colour. It is 0 except for the judge, which finds with it the pixels so close
+    /// Added to each value that decides a step of color. It is 0 except for the judge, which finds with it the pixels so close
     /// to a step that either answer is right.
-    pub nudge: f64,
+    pub step_offset: f64,
 }
 
 /// A member of [`Surface`] that an effect reads. What no effect reads need not be computed.

@@ -1,15 +1,15 @@
-//! Tones and colours that several effects compute alike.
+//! Tones and colors that several effects compute alike.
 
 use glam::{DVec2, DVec3, DVec4};
 
 use crate::math::srgb;
 
-/// A colour parameter, linear.
+/// A color parameter, linear.
 pub fn rgb(c: [f32; 4]) -> DVec3 {
     DVec3::new(c[0].into(), c[1].into(), c[2].into())
 }
 
-/// A colour parameter, gamma-encoded; alpha as it is.
+/// A color parameter, gamma-encoded; alpha as it is.
 pub fn encoded(c: [f32; 4]) -> DVec4 {
     let [r, g, b, alpha] = c.map(f64::from);
     DVec4::new(srgb(r), srgb(g), srgb(b), alpha)

@@ -7,9 +7,9 @@ use crate::params::Params;
 /// A corner of a triangle before it is projected; a vertex effect moves it and passes it on.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Vertex {
-    /// World space before any vertex effect, metres.
+    /// World space before any vertex effect, meters.
     pub position: DVec3,
-    /// How far the effects so far have moved it, metres: it lies at `position + offset`. The two are separate, so that a vertex
+    /// How far the effects so far have moved it, meters: it lies at `position + offset`. The two are separate, so that a vertex
     /// that does not move keeps its bits.
     pub offset: DVec3,
     /// Unit, world space, as the file has it; zero where it has none.
@@ -20,7 +20,7 @@ pub struct Vertex {
     /// Mean of the triangle's corners before any vertex effect; the position itself where no effect needs
     /// triangles.
     pub center: DVec3,
-    /// From the centre to the position, metres: a difference taken in the model, so that it is as exact far
+    /// From the center to the position, meters: a difference taken in the model, so that it is as exact far
     /// from the origin.
     pub arm: DVec3,
     /// Position of that mean in the picture, 0 to 1; the middle where it lies behind the eye. Zero where no effect needs
@@ -67,6 +67,6 @@ pub trait VertexEffect: Params {
     /// of its input. Parameters that move nothing add nothing.
     fn error_bound(vertex: &Vertex, error_bound: ErrorBound, params: &Self) -> ErrorBound;
 
-    /// The farthest that it moves a vertex of a model of this radius, metres.
+    /// The farthest that it moves a vertex of a model of this radius, meters.
     fn max_displacement_m(radius_m: f64, params: &Self) -> f64;
 }

@@ -1,4 +1,4 @@
-//! Right colours near steps of colour (`docs/exactness.md` §9): a value that f64 puts on one side of a step may lie on the other in
+//! Right colors near steps of color (`docs/exactness.md` §9): a value that f64 puts on one side of a step may lie on the other in
 //! f32, and then either answer is right.
 //!
 //! An effect decides a step on a value plus [`Perturbation::color_step`], so shading with a small perturbation to either side finds
@@ -64,7 +64,7 @@ impl AcceptedColors {
         (0..adapter.len()).map(|i| [0, 1, 2, 3].map(|c| channel(i, c))).collect()
     }
 
-    /// The step band: pixels with answers more than 1 of 255 apart because of a step of colour. Empty without steps.
+    /// The step band: pixels with answers more than 1 of 255 apart because of a step of color. Empty without steps.
     pub fn step_band(&self) -> Vec<bool> {
         // Of layers, the exact picture of every step.
         let answers: Vec<_> = self.pictures.iter().step_by(self.per_step).collect();

@@ -1,4 +1,4 @@
-//! Which pictures of layers are right. An adapter sums f32 colours and weights rounded to whole numbers. Where either answer of a
+//! Which pictures of layers are right. An adapter sums f32 colors and weights rounded to whole numbers. Where either answer of a
 //! rounding is right, or a float key may lie on either side of the depth window, a pixel has an interval of right answers
 //! (`docs/exactness.md` §9), which does not depend on the adapter's answer.
 
@@ -17,7 +17,7 @@ use super::{
 };
 use crate::effects::{Surface, xray, xray::Xray};
 
-/// Bound of the error of a shaded f32 colour, of 1.
+/// Bound of the error of a shaded f32 color, of 1.
 const COLOR_ERROR: f64 = 1.0 / (1 << 16) as f64;
 
 /// Bound of the error of an f32 weight, of 1.
@@ -62,7 +62,7 @@ struct SumBounds {
 
 /// A layer as f32 may have it.
 struct Layer {
-    /// Smallest and largest colour.
+    /// Smallest and largest color.
     colors: [DVec3; 2],
     weight: f64,
     weight_error: f64,
@@ -93,7 +93,7 @@ fn sums(input: &LayerInput, params: &Xray, bits: u32) -> Vec<SumBounds> {
             let mut shaded = perturbations.iter().map(|perturbation| {
                 let step = perturbation.color_step;
                 let lit = light.map_or(0.0, |light| light.arrives(&lit_point, triangle.id, step));
-                stack.shade(Surface { rank, lit, nudge: step, ..known.surface(x, y, perturbation.texture) })
+                stack.shade(Surface { rank, lit, step_offset: step, ..known.surface(x, y, perturbation.texture) })
             });
             let exact = shaded.next().expect("the first perturbation is none");
             let color = exact.color.truncate();
@@ -133,7 +133,7 @@ impl SumBounds {
         [0, 1].map(|end| self.certain_weight + self.ambiguous.iter().map(|layer| layer.weights[end]).sum::<u64>())
     }
 
-    /// Colours between which every right answer lies: both ends of the average with both ends of the weight.
+    /// Colors between which every right answer lies: both ends of the average with both ends of the weight.
     fn colors(&self, input: &LayerInput, params: &Xray, bits: u32) -> [DVec4; 2] {
         let average = |end: End| DVec3::from_array([0, 1, 2].map(|channel| self.average(channel, end) / steps(bits)));
         let corners = [End::Least, End::Most].map(|end| self.weights().map(|weight| xray_color(input, params, average(end), weight)));

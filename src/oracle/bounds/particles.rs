@@ -20,7 +20,7 @@ pub struct StepBounds<'a> {
     is_difference: bool,
 }
 
-/// Errors of position (metres) and velocity (metres per second).
+/// Errors of position (meters) and velocity (meters per second).
 #[derive(Clone, Copy)]
 struct StepError {
     position: f64,

@@ -1,15 +1,15 @@
-//! How far a float renderer may be from the centre of a triangle, from which sample setups follow.
+//! How far a float renderer may be from the center of a triangle, from which sample setups follow.
 
 use super::{super::shot::Shot, deform};
 use crate::effects::hooks::{ROUNDING, TriangleSetup};
 
-/// The setup of a triangle with the bound of its centre's error.
+/// The setup of a triangle with the bound of its center's error.
 pub fn with_center_error(shot: &Shot, setup: TriangleSetup) -> TriangleSetup {
     let error = center_error_m(shot, setup.triangle);
-    TriangleSetup { center_slack_m: error.unwrap_or(f64::INFINITY), ..setup }
+    TriangleSetup { center_error_m: error.unwrap_or(f64::INFINITY), ..setup }
 }
 
-/// Bound along any axis, in metres; none for a triangle with a rejected corner.
+/// Bound along any axis, in meters; none for a triangle with a rejected corner.
 fn center_error_m(shot: &Shot, id: u32) -> Option<f64> {
     let draw = shot.draw_of(id)?;
     let vertices = shot.scene.primitives[draw.primitive].corners(shot.scene, id - draw.first_triangle);

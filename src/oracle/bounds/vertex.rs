@@ -74,7 +74,7 @@ impl<'a> VertexBounds<'a> {
         self.displacement(corner).0 * (row(0).max(row(1)) + row(3)) / w
     }
 
-    /// Bound of the error of a corner's displacement in metres, and the displacement.
+    /// Bound of the error of a corner's displacement in meters, and the displacement.
     fn displacement(&self, corner: Corner) -> (f64, DVec3) {
         let unmoved = self.evaluator.unmoved(corner);
         let stack = self.evaluator.stack;
@@ -170,8 +170,8 @@ impl<'a> VertexBounds<'a> {
         }
     }
 
-    /// Error of the projection of a triangle's centre, as a fraction of the picture; infinite if the centre may be behind the eye.
-    /// `magnitudes` are those of the centre's terms, `given` the bound of the corners' errors.
+    /// Error of the projection of a triangle's center, as a fraction of the picture; infinite if the center may be behind the eye.
+    /// `magnitudes` are those of the center's terms, `given` the bound of the corners' errors.
     fn screen_error(&self, center: DVec3, magnitudes: DVec3, given: DVec3) -> f64 {
         let (evaluator, draw) = (self.evaluator, self.evaluator.draw);
         let origin = draw.origin();

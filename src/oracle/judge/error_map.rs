@@ -13,7 +13,7 @@ use crate::{
     scene::Accessor,
 };
 
-/// What is wrong at each pixel of a picture, whose colours are compared with `colors`.
+/// What is wrong at each pixel of a picture, whose colors are compared with `colors`.
 pub fn error_map(shot: &Shot, coverage: &BoundedCoverage, picture: &AdapterPicture, colors: &[[u8; 4]], freedom: Freedom) -> ErrorMap {
     let frame = picture.frame;
     let unsound = unsound_triangles(shot, picture.geometry, &frame.triangle_id);
@@ -33,7 +33,7 @@ pub fn error_map(shot: &Shot, coverage: &BoundedCoverage, picture: &AdapterPictu
     })
 }
 
-/// Triangles with a corner whose depth, 1/w, normal or colour is NaN, infinite or negative by its bits; sorted. Corners that are
+/// Triangles with a corner whose depth, 1/w, normal or color is NaN, infinite or negative by its bits; sorted. Corners that are
 /// clipped or rejected are never read; normals may be negative.
 fn unsound_triangles(shot: &Shot, geometry: &Geometry, triangle_ids: &[u32]) -> Vec<u32> {
     let scene = shot.scene;

@@ -68,7 +68,7 @@ fn particle_errors(view: &View, stack: &Stack, readback: &ParticleReadback) -> V
     readback.after.par_iter().zip(&references).enumerate().map(judged).collect()
 }
 
-/// A position of the scene in the picture, in pixels from its centre; none in front of the near plane.
+/// A position of the scene in the picture, in pixels from its center; none in front of the near plane.
 fn projected(view: &View, position: DVec3) -> Option<DVec2> {
     let clip = view.clip_from_world * view.scene_state.world_from_scene * position.extend(1.0);
     let half = DVec2::new(f64::from(view.width), f64::from(view.height)) * 0.5;
@@ -84,7 +84,7 @@ fn disc_fits(given: &[u32], reference: &[u32; PARTICLE_DISC_WORDS], p: &Particle
     let position_fits = |a: u32, b: u32| classified(a).is_ok_and(|a| (a - f64::from(f32::from_bits(b))).abs() <= position_error);
     let halves_fit = |a: u32, b: u32| {
         let halves = |word: u32| [i32::from(word as u16 as i16), i32::from((word >> 16) as u16 as i16)];
-        // The difference of unsigned 16-bit colours is taken modulo 65536: two colours this far apart are never neighbours.
+        // The difference of unsigned 16-bit colors is taken modulo 65536: two colors this far apart are never neighbors.
         halves(a).into_iter().zip(halves(b)).all(|(a, b)| (a - b).abs().min(65536 - (a - b).abs()) <= 1)
     };
     given.iter().zip(reference).enumerate().all(|(index, (&a, &b))| match index % 6 {

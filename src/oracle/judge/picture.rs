@@ -1,7 +1,7 @@
 //! The verdict about one picture.
 //!
 //! Vertices are judged from the matrix bits with a forward error bound, coverage and triangle ids from the adapter's snapped
-//! vertices and clipped triangles, colours from the adapter's triangle ids. Finally the whole picture is compared with the
+//! vertices and clipped triangles, colors from the adapter's triangle ids. Finally the whole picture is compared with the
 //! oracle's own, where only what a snapped vertex explains may differ.
 
 use super::{
@@ -135,7 +135,7 @@ fn judge_counters(report: &mut ErrorReport, reference: &Counters, frame: &Frame)
     report.depth_without_id = report.depth_without_id.max(frame.counters.depth_without_id.into());
 }
 
-/// The colours that are right for a picture, given its triangle ids.
+/// The colors that are right for a picture, given its triangle ids.
 struct JudgedColors {
     accepted: AcceptedColors,
     /// Of a picture of layers.
@@ -157,7 +157,7 @@ impl JudgedColors {
         Self { accepted, layers }
     }
 
-    /// Judges the adapter's colours and returns the right ones nearest to them.
+    /// Judges the adapter's colors and returns the right ones nearest to them.
     fn judge(&self, report: &mut ErrorReport, picture: &AdapterPicture, freedom: Freedom) -> Vec<[u8; 4]> {
         let frame = picture.frame;
         // Only the adapter's scheduler knows which layers it drew.
@@ -172,7 +172,7 @@ impl JudgedColors {
         nearest
     }
 
-    /// Colours and counts of the picture with the oracle's triangle ids; `nearest` are the colours with the adapter's.
+    /// Colors and counts of the picture with the oracle's triangle ids; `nearest` are the colors with the adapter's.
     fn expected(
         self,
         shot: &Shot,

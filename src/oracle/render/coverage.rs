@@ -138,7 +138,7 @@ impl OrientedTriangle {
         if tests.shape == Shape::Points && self.is_clipped() {
             return (0..0, 0..0);
         }
-        // Samples lie at the centres of pixels.
+        // Samples lie at the centers of pixels.
         let unit = tests.unit;
         let range = |at: [i32; 3], pixels: u32| {
             let [low, high] = [at[0].min(at[1]).min(at[2]), at[0].max(at[1]).max(at[2])].map(i64::from);
@@ -149,7 +149,7 @@ impl OrientedTriangle {
         (range(self.corners.map(|c| c.x), view.width), range(self.corners.map(|c| c.y), view.height))
     }
 
-    /// The triangle at the centre of a pixel; none if it is not drawn there.
+    /// The triangle at the center of a pixel; none if it is not drawn there.
     pub fn at(&self, x: usize, y: usize, tests: &SampleTests) -> Option<Hit> {
         let [a, b, c] = &self.corners;
         let [px, py] = [x, y].map(|k| tests.unit * k as i64 + tests.unit / 2);

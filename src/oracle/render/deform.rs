@@ -61,7 +61,7 @@ pub fn vertex_count(scene: &Scene, draw: &Draw) -> u32 {
     if draw.deform.is_some() { scene.primitives[draw.primitive].vertex_count() } else { 0 }
 }
 
-/// Volume that the deformed meshes of a picture enclose, in cubic metres, by the divergence theorem: skinning may lose some of
+/// Volume that the deformed meshes of a picture enclose, in cubic meters, by the divergence theorem: skinning may lose some of
 /// it. Of a mesh with holes the value means nothing.
 pub fn volume(scene: &Scene, draws: &[Draw]) -> f64 {
     let of_draw = |draw: &Draw| {

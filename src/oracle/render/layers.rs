@@ -85,7 +85,7 @@ fn averaged(input: &LayerInput, params: Xray, bits: u32) -> LayerImage {
     }
 }
 
-/// The gamma-encoded colour of a pixel whose layers have this average and sum of weights.
+/// The gamma-encoded color of a pixel whose layers have this average and sum of weights.
 pub fn xray_color(input: &LayerInput, params: &Xray, average: DVec3, weight: u64) -> DVec4 {
     // Pictures hold the background in bytes, and so it shines through.
     let bytes = background(input.shot.view);
@@ -137,7 +137,7 @@ fn sums(input: &LayerInput, params: &Xray, bits: u32) -> Vec<LayerSum> {
     sums
 }
 
-/// A colour plus an error, rounded to whole steps.
+/// A color plus an error, rounded to whole steps.
 pub fn fixed_color(color: DVec3, error: f64, bits: u32) -> [u64; 3] {
     color.to_array().map(|c| ((c + error).clamp(0.0, 1.0) * steps(bits) + 0.5).floor() as u64)
 }

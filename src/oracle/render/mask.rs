@@ -119,7 +119,7 @@ pub fn is_drawn(scene: &Scene, primitive: &Primitive, triangle: &OrientedTriangl
     let alpha_at = match texture.mag_filter {
         Filter::Nearest => alpha(at[0].div_euclid(256), at[1].div_euclid(256)) << 16,
         Filter::Linear => {
-            // A texel's value lies at its centre.
+            // A texel's value lies at its center.
             let [(x, right), (y, down)] = at.map(|at| ((at - 128).div_euclid(256), (at - 128).rem_euclid(256) as u64));
             let row = |y: i64| alpha(x, y) * (256 - right) + alpha(x + 1, y) * right;
             row(y) * (256 - down) + row(y + 1) * down

@@ -39,7 +39,7 @@ pub struct SampleWeights {
 }
 
 impl<'a> TriangleMaterial<'a> {
-    /// None for a material that is only a base colour.
+    /// None for a material that is only a base color.
     pub fn of(scene: &'a Scene, primitive: &'a Primitive, corners: [u32; 3]) -> Option<Self> {
         let material = &scene.materials[primitive.material];
         if material.is_plain() {
@@ -60,7 +60,7 @@ impl<'a> TriangleMaterial<'a> {
         Some(Self { scene, base: lookup(0), emission, emissive: lookup(1), is_unlit: material.unlit })
     }
 
-    /// Colour of a surface with the base colour `base`, and the part of it that no light changes.
+    /// Color of a surface with the base color `base`, and the part of it that no light changes.
     pub fn color(&self, base: DVec3, at: &SampleWeights, perturbation: TexturePerturbation) -> (DVec3, DVec3) {
         let looked_up =
             |lookup: &Option<TextureLookup>| lookup.as_ref().map_or(DVec3::ONE, |lookup| lookup.color(self.scene, at, perturbation));
@@ -89,7 +89,7 @@ impl TextureLookup<'_> {
         self.filtered(levels, uv + uv_error * DVec2::new(across, down), detail + level * detail_error)
     }
 
-    /// The filtered colour at texture coordinates `uv`, where a pixel spans 2^detail texels.
+    /// The filtered color at texture coordinates `uv`, where a pixel spans 2^detail texels.
     fn filtered(&self, levels: &[Level], uv: DVec2, detail: f64) -> DVec3 {
         let at = |level: f64, filter: Filter| self.level(&levels[level as usize], uv, filter);
         let last = levels.len() as f64 - 1.0;
@@ -113,7 +113,7 @@ impl TextureLookup<'_> {
         match filter {
             Filter::Nearest => self.texel(level, at.x.floor(), at.y.floor()),
             Filter::Linear => {
-                // Texels lie at the centres of their squares.
+                // Texels lie at the centers of their squares.
                 let (x, y) = (at.x - 0.5, at.y - 0.5);
                 let (left, top) = (x.floor(), y.floor());
                 let row = |row: f64| self.texel(level, left, row).lerp(self.texel(level, left + 1.0, row), x - left);

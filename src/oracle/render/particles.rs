@@ -24,9 +24,9 @@ use crate::{
 /// A particle between two steps.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct ReferenceParticle {
-    /// In the scene, metres.
+    /// In the scene, meters.
     pub position: DVec3,
-    /// Metres per second.
+    /// Meters per second.
     pub velocity: DVec3,
     /// Steps since it was born.
     pub age: u32,
@@ -193,7 +193,7 @@ fn discs(particles: &[ReferenceParticle], p: &Particles, view: &View) -> Vec<u32
     particles.par_iter().enumerate().flat_map_iter(|(id, particle)| disc(p, id as u32, particle, view)).collect()
 }
 
-/// Radius and colour of a disc.
+/// Radius and color of a disc.
 fn radius_and_color(p: &Particles, id: u32, particle: &ReferenceParticle) -> (f64, DVec3) {
     let base = base(p, id, particle.births);
     let smooth = |x: f64| x.clamp(0.0, 1.0).powi(2) * (3.0 - 2.0 * x.clamp(0.0, 1.0));
@@ -210,7 +210,7 @@ fn facing(view: &View) -> [DVec3; 3] {
     [view.ndc_axes[0], view.ndc_axes[1], -view.forward].map(|axis| scene_from_world.transform_vector3(axis).normalize_or_zero())
 }
 
-/// Words of the triangle whose inscribed circle is a particle's disc: positions, colour and normals of its corners.
+/// Words of the triangle whose inscribed circle is a particle's disc: positions, color and normals of its corners.
 pub fn disc(p: &Particles, id: u32, particle: &ReferenceParticle, view: &View) -> [u32; PARTICLE_DISC_WORDS] {
     let (radius, color) = radius_and_color(p, id, particle);
     let [right, up, toward] = facing(view);

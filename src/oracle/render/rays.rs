@@ -128,7 +128,7 @@ fn casters(shot: &Shot, draw: &Draw) -> Vec<Caster> {
     (0..primitive.triangle_count()).into_par_iter().filter_map(caster).collect()
 }
 
-/// Splits a run of triangles at the median along the longest side of their centres' bounding box until it fits a leaf.
+/// Splits a run of triangles at the median along the longest side of their centers' bounding box until it fits a leaf.
 fn build(casters: &mut [Caster], run: Range<usize>, nodes: &mut Vec<Node>) {
     let bounds = |points: &mut dyn Iterator<Item = DVec3>| {
         points.fold((DVec3::INFINITY, DVec3::NEG_INFINITY), |(low, high), point| (low.min(point), high.max(point)))

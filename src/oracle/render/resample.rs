@@ -60,7 +60,7 @@ impl LightSum {
         }
     }
 
-    /// The sum as a gamma-encoded pixel; without alpha it has the colours of its transparent pixels.
+    /// The sum as a gamma-encoded pixel; without alpha it has the colors of its transparent pixels.
     pub fn bytes(&self) -> [u8; 4] {
         let [r, g, b] = if self.alpha > 0.0 { self.opaque.map(|v| v / self.alpha) } else { self.plain };
         [srgb_byte(r), srgb_byte(g), srgb_byte(b), (self.alpha.min(1.0) * 255.0 + 0.5) as u8]
@@ -81,7 +81,7 @@ mod tests {
     }
 
     #[test]
-    fn transparent_pixels_add_no_colour() {
+    fn transparent_pixels_add_no_color() {
         let edge = vec![[255, 0, 0, 255], [0, 255, 0, 0], [255, 0, 0, 255], [0, 255, 0, 0]];
         assert_eq!(resampled(&edge, [2, 2], [1, 1]), [[255, 0, 0, 128]]);
         assert_eq!(resampled(&[[9, 8, 7, 0]; 4], [2, 2], [1, 1]), [[9, 8, 7, 0]]);

@@ -1,4 +1,4 @@
-//! Resolve: from surface colours to the bytes of the picture. Dots, image effects, and the one rounding.
+//! Resolve: from surface colors to the bytes of the picture. Dots, image effects, and the one rounding.
 
 use glam::DVec4;
 use rayon::prelude::*;
@@ -17,7 +17,7 @@ use crate::{
     scene::view::View,
 };
 
-/// The images that a picture is coloured from, row-major.
+/// The images that a picture is colored from, row-major.
 #[derive(Clone, Copy, Debug)]
 pub struct ResolveInput<'a> {
     /// Global triangle id per pixel, [`NO_TRIANGLE`](crate::frame::NO_TRIANGLE) without one.
@@ -41,7 +41,7 @@ pub fn shade_perturbed(shot: &Shot, input: &ResolveInput, geometry: &Geometry, p
     finish(shot, input, &colors, perturbation.color_step)
 }
 
-/// Bytes of a picture from its gamma-encoded surface colours: dots and image effects, whose steps are moved by `color_step`.
+/// Bytes of a picture from its gamma-encoded surface colors: dots and image effects, whose steps are moved by `color_step`.
 pub fn finish(shot: &Shot, input: &ResolveInput, colors: &[DVec4], color_step: f64) -> Vec<[u8; 4]> {
     let Shot { draws, view, stack, .. } = *shot;
     let first_triangles: Vec<u32> = draws.iter().map(|draw| draw.first_triangle).collect();
@@ -57,7 +57,7 @@ pub fn finish(shot: &Shot, input: &ResolveInput, colors: &[DVec4], color_step: f
     let dots = stack.dots().filter(|_| !input.dots.is_empty());
     let finished = |(i, &color): (usize, &DVec4)| {
         let color = dots.as_ref().map_or(color, |dots| dotted(dots, color, picture.background, input.dots[i]));
-        let pixel = Pixel { color, x: i as u32 % view.width, y: i as u32 / view.width, nudge: color_step };
+        let pixel = Pixel { color, x: i as u32 % view.width, y: i as u32 / view.width, step_offset: color_step };
         bytes(if stack.finishes() { stack.finish(pixel, &picture).color } else { color })
     };
     colors.par_iter().enumerate().map(finished).collect()

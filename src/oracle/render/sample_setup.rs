@@ -41,7 +41,7 @@ pub fn sample_setups(shot: &Shot, geometry: &Geometry) -> Vec<[u32; 4]> {
 
 /// What is known of a triangle or clipped triangle.
 pub struct SetupEntry {
-    /// Without the error of the centre.
+    /// Without the error of the center.
     pub setup: TriangleSetup,
     /// Mask coordinates with the number of the primitive; none without a mask.
     pub mask: Option<(usize, MaskCoords)>,
@@ -101,7 +101,7 @@ fn entry(shot: &Shot, geometry: &Geometry, id: u32, drawn: &Drawn) -> Option<Set
         outline,
         size: [view.width, view.height],
         center,
-        center_slack_m: 0.0,
+        center_error_m: 0.0,
         center_screen: evaluator.in_picture(center).unwrap_or_else(on_screen),
     };
     Some(SetupEntry { setup, mask: mask.map(|mask| (draw.primitive, mask)) })

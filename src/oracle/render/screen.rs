@@ -17,7 +17,7 @@ use crate::{
 pub struct ScreenTriangle {
     pub weights: Weights,
     pub is_back: bool,
-    /// Depths of the corners along the viewing direction, in metres.
+    /// Depths of the corners along the viewing direction, in meters.
     pub depths_m: [f64; 3],
     /// Projection of the mean of the corners, as a fraction of the picture; none if it is behind the eye.
     pub center: Option<DVec2>,
@@ -60,12 +60,12 @@ impl ScreenTriangle {
     }
 }
 
-/// [`ScreenTriangle::center`] of a triangle; the middle of the picture if the centre is behind the eye.
+/// [`ScreenTriangle::center`] of a triangle; the middle of the picture if the center is behind the eye.
 pub fn center_screen(evaluator: &VertexEvaluator, view: &View, records: &[SnappedVertex; 3], corners: [Corner; 3]) -> DVec2 {
     ScreenTriangle::of(evaluator, view, records, corners).center.unwrap_or(DVec2::splat(0.5))
 }
 
-/// Depth in metres from an orthographic depth; none in perspective.
+/// Depth in meters from an orthographic depth; none in perspective.
 fn linear_depth(view: &View, depth: f64) -> Option<f64> {
     view.linear_depth_m.map(|[near, far]| far + depth * (near - far))
 }

@@ -1,7 +1,7 @@
 //! Shadows: the shadow map in f64, and the fraction of a directional light that arrives at a sample.
 //!
-//! The map holds, for the centre of every texel, the depth of the nearest triangle as the light sees the scene. A tap finds a texel
-//! lit if the plane of the sample's triangle, at the centre of that texel and moved towards the light by bias + slope · tan, is not
+//! The map holds, for the center of every texel, the depth of the nearest triangle as the light sees the scene. A tap finds a texel
+//! lit if the plane of the sample's triangle, at the center of that texel and moved towards the light by bias + slope · tan, is not
 //! behind the depth in the map; tan, of the angle between light and normal, counts up to [`MAX_SHADOW_SLOPE`]. With n taps a side the
 //! sample uses those round its own texel; the weights of the outermost are 1 - f and f, where f is the sample's position in its
 //! texel, and those of the others 1.
@@ -101,9 +101,9 @@ pub struct ShadowLookup<'a> {
     side: i64,
     /// Taps on each side of the middle one.
     reach: i64,
-    /// Metres from texel to texel.
+    /// Meters from texel to texel.
     texel_m: f64,
-    /// Metres from depth 0 to depth 1.
+    /// Meters from depth 0 to depth 1.
     depth_range_m: f64,
     /// Unit vectors to the right and down in the map, and towards the light.
     axes: [DVec3; 3],

@@ -17,7 +17,7 @@ pub struct ClipPosition {
 
 /// The record of a vertex: only [`vertex_flags::NEAR`] in front of the near plane, otherwise position, depth and 1/w.
 ///
-/// Positions are rounded relative to the centre of the picture and to even, so mirror images snap to mirror images.
+/// Positions are rounded relative to the center of the picture and to even, so mirror images snap to mirror images.
 pub fn snap(position: &ClipPosition, view: &View) -> SnappedVertex {
     if position.z <= position.w && position.w > 0.0 {
         snap_inside(position, view)
@@ -40,7 +40,7 @@ pub fn with_guard_flags(x: i32, y: i32, depth: f32, inv_w: f32) -> SnappedVertex
     SnappedVertex { x, y, depth, inv_w, flags }
 }
 
-/// Half the picture in sub-pixel units: the position of its centre, and units per unit of normalized device coordinates.
+/// Half the picture in sub-pixel units: the position of its center, and units per unit of normalized device coordinates.
 pub fn half_size(view: &View) -> [i32; 2] {
     [view.width, view.height].map(|pixels| view.units_per_pixel() / 2 * pixels as i32)
 }

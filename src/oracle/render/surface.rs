@@ -28,7 +28,7 @@ use crate::{
     scene::{Accessor, Scene, view::View},
 };
 
-/// Surface colours of all pixels, given the triangle of each; `background` without one. Row-major, gamma-encoded.
+/// Surface colors of all pixels, given the triangle of each; `background` without one. Row-major, gamma-encoded.
 ///
 /// `geometry` supplies the snapped corners from which weights follow; triangles that were clipped are weighted in clip space.
 pub fn surface_colors(
@@ -45,7 +45,7 @@ pub fn surface_colors(
         let id = surface.triangle_id;
         let rank = ranks.get(id as usize).copied().unwrap_or(0.0);
         let lit = light.as_ref().map_or(0.0, |light| light.arrives(&triangle.lit_point(&surface), id, perturbation.color_step));
-        encoded(shot.stack.shade(Surface { rank, lit, nudge: perturbation.color_step, ..surface }).color)
+        encoded(shot.stack.shade(Surface { rank, lit, step_offset: perturbation.color_step, ..surface }).color)
     })
 }
 
@@ -61,7 +61,7 @@ pub fn each_surface<T: Send>(
     let row = |(y, ids): (usize, &[u32])| {
         let mut triangle: Option<SurfaceTriangle> = None;
         let pixel = |(x, &id): (usize, &u32)| {
-            // Neighbours usually show the same triangle.
+            // Neighbors usually show the same triangle.
             if triangle.as_ref().is_none_or(|triangle| triangle.id != id) {
                 triangle = SurfaceTriangle::new(shot, geometry, id);
             }
@@ -86,7 +86,7 @@ pub struct SurfaceTriangle<'a> {
     /// Mean of the corners before any vertex effect.
     center: DVec3,
     colors: [DVec4; 3],
-    /// None for a material that is only a base colour.
+    /// None for a material that is only a base color.
     material: Option<TriangleMaterial<'a>>,
     /// In object space; none if a corner has no finite normal.
     normals: Option<[DVec3; 3]>,
@@ -146,7 +146,7 @@ impl<'a> SurfaceTriangle<'a> {
         Some(triangle)
     }
 
-    /// Moves positions and normals as the vertex effects do; `side` turns normals to the viewer. The centre does not move, so that
+    /// Moves positions and normals as the vertex effects do; `side` turns normals to the viewer. The center does not move, so that
     /// the fronts of several effects meet.
     ///
     /// A triangle whose corners are displaced alike keeps its plane, and normals that no effect changes keep their bits.
@@ -167,7 +167,7 @@ impl<'a> SurfaceTriangle<'a> {
         }
     }
 
-    /// The surface at the centre of a pixel.
+    /// The surface at the center of a pixel.
     pub fn surface(&self, x: usize, y: usize, texture: TexturePerturbation) -> Surface {
         let view = self.view;
         let point = self.sample_point(DVec2::new(x as f64 + 0.5, y as f64 + 0.5));
@@ -203,11 +203,11 @@ impl<'a> SurfaceTriangle<'a> {
             depth_m,
             pixel_size_m: across_m * if view.linear_depth_m.is_some() { 1.0 } else { depth_m },
             flat_depth_m: self.depths_m.iter().sum::<f64>() / 3.0,
-            depth_range_m: DVec2::from_array(view.scene_range_m),
+            depth_range_m: DVec2::from_array(view.depth_range_m),
             triangle_id: self.id,
             rank: 0.0,
             lit: 0.0,
-            nudge: 0.0,
+            step_offset: 0.0,
         }
     }
 

@@ -76,7 +76,7 @@ impl Weights {
         }
     }
 
-    /// Bound of the error in f32 of a sample's position in metres. Weights of small triangles err by 9 steps of 2^-23, those of large
+    /// Bound of the error in f32 of a sample's position in meters. Weights of small triangles err by 9 steps of 2^-23, those of large
     /// ones by 15, and the point on the ray by a few more; on a clipped triangle the error is 2^-15 of the distance.
     pub fn position_error_m(&self, view: &View, position: DVec3) -> f64 {
         let (from_eye, from_origin) = ((position - view.eye).length(), view.eye.length());

@@ -19,7 +19,7 @@ use crate::{
     },
 };
 
-/// A saturated colour for each number; consecutive numbers differ clearly.
+/// A saturated color for each number; consecutive numbers differ clearly.
 fn hue(i: u32) -> [f64; 3] {
     let turn = f64::from(i) * 0.618_033_988_75;
     [0.0, 1.0 / 3.0, 2.0 / 3.0].map(|shift| 0.42 + 0.36 * libm::cos(TAU * (turn + shift)))
@@ -30,7 +30,7 @@ fn painted() -> Material {
 }
 
 /// A hall along z around the camera. Rings stand across it, one of them in the near plane. Four walls of two triangles each
-/// extend `reach` metres in every direction and cross the near plane. Planks leave the guard band on each side.
+/// extend `reach` meters in every direction and cross the near plane. Planks leave the guard band on each side.
 pub fn near(values: &Values) -> Result<Scene, BuiltinError> {
     const HALF_WIDTH_M: f64 = 1.6;
     const NEAR_M: f64 = 0.05;
@@ -91,7 +91,7 @@ fn hoop(mesh: &mut MeshBuilder, z: f64, color: [f64; 3]) {
     }
 }
 
-/// Triangles of nine sizes, a metre apart in depth. Small ones are scattered over the picture; one edge of each large one crosses it.
+/// Triangles of nine sizes, a meter apart in depth. Small ones are scattered over the picture; one edge of each large one crosses it.
 pub fn sizes(values: &Values) -> Result<Scene, BuiltinError> {
     const COPIES: [u32; 9] = [512, 512, 256, 256, 96, 10, 3, 2, 2];
     let seed = hash(values.whole("seed"));
@@ -106,7 +106,7 @@ pub fn sizes(values: &Values) -> Result<Scene, BuiltinError> {
         for copy in 0..copies {
             let (sin, cos) = libm::sincos(TAU * next());
             let offset = DVec2::new(next() - 0.5, next() - 0.5) * PICTURE_PX;
-            // 0.2887 is the distance from the centre of an equilateral triangle of side 1 to its sides.
+            // 0.2887 is the distance from the center of an equilateral triangle of side 1 to its sides.
             let middle = if side > PICTURE_PX { 0.5 * offset + DVec2::new(sin, -cos) * (0.2887 * side) } else { offset };
             let corner = |x: f64, y: f64| {
                 let turned = DVec2::new(cos * x - sin * y, sin * x + cos * y);
@@ -120,7 +120,7 @@ pub fn sizes(values: &Values) -> Result<Scene, BuiltinError> {
     Ok(scene)
 }
 
-/// Needles from near the centre outwards; heights cycle through 1 to 8 units.
+/// Needles from near the center outwards; heights cycle through 1 to 8 units.
 pub fn slivers(values: &Values) -> Result<Scene, BuiltinError> {
     let (n, length) = (values.whole("n"), values.get("length"));
     let mut mesh = MeshBuilder::with_capacity(3 * n as usize, n as usize);

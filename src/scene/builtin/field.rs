@@ -1,4 +1,4 @@
-//! Field: a lattice of randomly rotated bumpy spheres seen from its centre; most are outside the picture or occluded.
+//! Field: a lattice of randomly rotated bumpy spheres seen from its center; most are outside the picture or occluded.
 
 use glam::{DMat4, DQuat, DVec3};
 
@@ -15,7 +15,7 @@ use crate::{
     },
 };
 
-/// Distance between neighbours, metres; spheres have a radius of about 1.
+/// Distance between neighbors, meters; spheres have a radius of about 1.
 const SPACING_M: f64 = 2.4;
 
 /// Builds the scene `field`.
@@ -45,7 +45,7 @@ pub fn build(values: &Values) -> Result<Scene, BuiltinError> {
         }
         scene.primitives[material].material = material;
     }
-    // The smallest cube that contains them all, filled plane by plane. An even side leaves a gap at the centre.
+    // The smallest cube that contains them all, filled plane by plane. An even side leaves a gap at the center.
     let side = (1..).find(|side: &u32| side.pow(3) >= count).unwrap_or(1);
     let middle = 0.5 * f64::from(side - 1);
     for i in 0..count {

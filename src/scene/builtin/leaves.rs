@@ -18,7 +18,7 @@ use crate::{
     },
 };
 
-/// Length of a leaf, metres.
+/// Length of a leaf, meters.
 const LENGTH_M: f64 = 0.62;
 
 /// `n` leaves on a crown about 2 m across, each with its own vertices.

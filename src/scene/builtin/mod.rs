@@ -38,19 +38,19 @@ pub const BUILTINS: &[Builtin] = &[
     },
     Builtin {
         name: "knot",
-        about: "a closed trefoil tube in two colours",
+        about: "a closed trefoil tube in two colors",
         params: &[whole("tess", "tessellation; the tube has 96 * tess^2 triangles", 16.0, 2.0..=256.0)],
         build: shapes::knot,
     },
     Builtin {
         name: "cube-wall",
-        about: "a wall of coloured cubes, each an instance",
+        about: "a wall of colored cubes, each an instance",
         params: &[whole("columns", "number of columns", 16.0, 1.0..=64.0), whole("rows", "number of rows", 10.0, 1.0..=64.0), SEED],
         build: shapes::cube_wall,
     },
     Builtin {
         name: "field",
-        about: "a lattice of bumpy spheres seen from its centre; most are outside the picture or occluded",
+        about: "a lattice of bumpy spheres seen from its center; most are outside the picture or occluded",
         params: &[
             whole("count", "number of spheres", 216.0, 1.0..=5_000.0),
             whole("triangles", "triangles of each; an odd number is rounded down", 2_000.0, 100.0..=40_000.0),
@@ -81,12 +81,12 @@ pub const BUILTINS: &[Builtin] = &[
     Builtin {
         name: "chamber",
         about: "six walls visible only from the inside, so that the camera can look in from anywhere; for particles",
-        params: &[real("half", "half the length of a wall, metres", 2.0, 0.1..=1000.0)],
+        params: &[real("half", "half the length of a wall, meters", 2.0, 0.1..=1000.0)],
         build: shapes::chamber,
     },
     Builtin {
         name: "globe",
-        about: "a globe with a texture of coloured cells",
+        about: "a globe with a texture of colored cells",
         params: &[whole("tess", "tessellation; it has 16 * tess^2 - 8 * tess triangles", 12.0, 2.0..=512.0)],
         build: painted::globe,
     },
@@ -105,7 +105,7 @@ pub const BUILTINS: &[Builtin] = &[
     Builtin {
         name: "near",
         about: "inside a hall of rings and very long walls that cross the near plane and every side of the guard band",
-        params: &[real("reach", "half the length of the walls, metres", 1e5, 10.0..=1e6)],
+        params: &[real("reach", "half the length of the walls, meters", 1e5, 10.0..=1e6)],
         build: extremes::near,
     },
     Builtin {
@@ -147,10 +147,10 @@ pub const BUILTINS: &[Builtin] = &[
     },
     Builtin {
         name: "stack",
-        about: "layers that all cover the centre of the picture",
+        about: "layers that all cover the center of the picture",
         params: &[
             whole("layers", "number of layers", 8.0, 1.0..=1_000_000.0),
-            real("gap", "distance between layers, metres; 0: coplanar, the smaller id wins", 0.0, 0.0..=1.0),
+            real("gap", "distance between layers, meters; 0: coplanar, the smaller id wins", 0.0, 0.0..=1.0),
         ],
         build: extremes::stack,
     },

@@ -18,7 +18,7 @@ use crate::{
     },
 };
 
-/// A globe with a grid of colours: the hue changes with longitude, and every second cell is pale.
+/// A globe with a grid of colors: the hue changes with longitude, and every second cell is pale.
 pub fn globe(values: &Values) -> Result<Scene, BuiltinError> {
     let tess = values.whole("tess");
     let (columns, rows) = (4 * tess, 2 * tess);
@@ -27,7 +27,7 @@ pub fn globe(values: &Values) -> Result<Scene, BuiltinError> {
         let (sin_v, cos_v) = libm::sincos(PI * f64::from(row) / f64::from(rows));
         for column in 0..=columns {
             let (sin_u, cos_u) = libm::sincos(TAU * f64::from(column % columns) / f64::from(columns));
-            // Each triangle at a pole has its own vertex, at the centre of its part of the texture.
+            // Each triangle at a pole has its own vertex, at the center of its part of the texture.
             let aside = if row == 0 || row == rows { 0.5 } else { 0.0 };
             let normal = match row {
                 0 => DVec3::Y,
@@ -76,10 +76,10 @@ fn color_grid(width: u32, height: u32, cell: u32) -> Image {
         };
         [channel(0.02), channel(0.37), channel(0.66), 255]
     };
-    Image::new("colour grid", [width, height], (0..height).flat_map(|y| (0..width).map(move |x| texel(x, y))).collect())
+    Image::new("color grid", [width, height], (0..height).flat_map(|y| (0..width).map(move |x| texel(x, y))).collect())
 }
 
-/// An image of odd size without any symmetry: an arrow to the right on two colours.
+/// An image of odd size without any symmetry: an arrow to the right on two colors.
 fn arrow() -> Image {
     const ROWS: [&[u8; 11]; 7] =
         [b".....#.....", b".....##....", b"########...", b".....##..oo", b"+++++#...oo", b"+++++++++++", b"..........."];
@@ -92,11 +92,11 @@ fn arrow() -> Image {
     Image::new("arrow", [11, 7], ROWS.iter().flat_map(|row| row.iter().map(tone)).collect())
 }
 
-/// Gravel: every texel has a random grey, so that wrong scales are visible.
+/// Gravel: every texel has a random gray, so that wrong scales are visible.
 fn gravel() -> Image {
     let texel = |at: u32| {
-        let grey = 70 + (hash(at) % 120) as u8;
-        [grey, grey - 12, grey - 30, 255]
+        let gray = 70 + (hash(at) % 120) as u8;
+        [gray, gray - 12, gray - 30, 255]
     };
     Image::new("gravel", [64, 64], (0..64 * 64).map(texel).collect())
 }

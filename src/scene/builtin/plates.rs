@@ -1,8 +1,8 @@
 //! Plates: flat meshes measured in pixels, for counting holes and double hits.
 //!
-//! One metre is one pixel: the camera is orthographic and `height_m` high, so cells have their size only in a picture of
-//! `height` (and `width`) pixels. The origin is the centre of the picture, x points right, y up. With even sizes pixel
-//! centres lie on odd multiples of half a metre.
+//! One meter is one pixel: the camera is orthographic and `height_m` high, so cells have their size only in a picture of
+//! `height` (and `width`) pixels. The origin is the center of the picture, x points right, y up. With even sizes pixel
+//! centers lie on odd multiples of half a meter.
 
 use std::f64::consts::TAU;
 
@@ -25,7 +25,7 @@ use crate::{
 /// Height in pixels of the picture for plates that do not specify one.
 pub const PICTURE_PX: f64 = 256.0;
 
-/// A camera for which one metre is one pixel in a picture `height_px` high, `distance_m` in front of the origin.
+/// A camera for which one meter is one pixel in a picture `height_px` high, `distance_m` in front of the origin.
 pub fn pixel_camera(height_px: f64, distance_m: f64) -> SceneCamera {
     let pose = Camera {
         eye: DVec3::Z * distance_m,
@@ -97,7 +97,7 @@ pub fn grid(values: &Values) -> Result<Scene, BuiltinError> {
     Ok(scene)
 }
 
-/// `n` triangles around the sample to the right of and above the centre of the picture.
+/// `n` triangles around the sample to the right of and above the center of the picture.
 pub fn fan(values: &Values) -> Result<Scene, BuiltinError> {
     let (n, radius, seed) = (values.whole("n"), values.get("radius"), values.whole("seed"));
     // Three units of rim per triangle: with fewer than two the snap could reorder the vertices of the rim.

@@ -127,7 +127,7 @@ pub fn cube_wall(values: &Values) -> Result<Scene, BuiltinError> {
             let chance = |salt: u32| hash_unit((row * columns + column).wrapping_mul(4).wrapping_add(salt) ^ crate::math::hash(seed));
             let (x, y) = (f64::from(column) - 0.5 * f64::from(columns - 1), f64::from(row) - 0.5 * f64::from(rows - 1));
             let z = 0.7 * libm::sin(0.55 * x + 0.8) * libm::cos(0.6 * y) + 0.9 * chance(0) * chance(1);
-            // Colours change gradually across the wall; random numbers mix neighbours.
+            // Colors change gradually across the wall; random numbers mix neighbors.
             let tone = (f64::from(column) / f64::from(columns) * 4.0 + 2.0 * chance(2)) as usize % PALETTE.len();
             let placement = DMat4::from_translation(DVec3::new(x, y, z)) * DMat4::from_scale(DVec3::new(0.47, 0.47, 0.9));
             scene.instances.push(Instance::fixed(first + tone, placement));

@@ -1,7 +1,7 @@
 //! The Utah teapot (M. Newell, 1975) from its 32 bicubic Bézier patches.
 //!
 //! Newell's 306 control points are stored as what they describe: profiles revolved around the axis in four quarter arcs of
-//! kappa 0.56, and two tubes mirrored in the plane y = 0 (z is up in the data). Neighbouring patches therefore share their
+//! kappa 0.56, and two tubes mirrored in the plane y = 0 (z is up in the data). Neighboring patches therefore share their
 //! vertices, and the poles of lid and bottom have exact normals. The knob's published value 0.45 is 0.448 here, so that its
 //! rings have the same shape as all others.
 
@@ -57,7 +57,7 @@ const SPOUT: [Section; 7] = [
 
 /// Handle length of a Bézier quarter arc in Newell's data (a true circle needs 0.5523).
 const KAPPA: f64 = 0.56;
-/// Metres per unit of the data; the pot becomes 2.6 m wide.
+/// Meters per unit of the data; the pot becomes 2.6 m wide.
 const SCALE: f64 = 0.4;
 /// Middle of the data's box.
 const CENTER: DVec3 = DVec3::new(0.217, 0.0, 1.575);

@@ -18,13 +18,13 @@ use crate::scene::{
     rig::{Channel, Clip, Interpolation, LocalTransform, Node, Property, Sampler, Skin, Trs},
 };
 
-/// Length of the tube, metres.
+/// Length of the tube, meters.
 const LENGTH_M: f64 = 2.0;
-/// Radii at the bottom and at the tip, metres.
+/// Radii at the bottom and at the tip, meters.
 const RADII_M: [f64; 2] = [0.26, 0.07];
 /// Duration of every clip, seconds.
 const PERIOD_S: f64 = 4.0;
-/// Phases at which an instance may start, so that neighbours move differently.
+/// Phases at which an instance may start, so that neighbors move differently.
 const PHASES: usize = 8;
 /// Keyframes per cycle of a linear sampler.
 const KEYS: usize = 16;

@@ -205,7 +205,7 @@ pub type Format = (ComponentType, bool);
 
 /// The formats of most attributes.
 pub const FLOAT: &[Format] = &[(ComponentType::F32, false)];
-/// The formats of colours and of texture coordinates.
+/// The formats of colors and of texture coordinates.
 pub const FLOAT_OR_UNORM: &[Format] = &[(ComponentType::F32, false), (ComponentType::U8, true), (ComponentType::U16, true)];
 /// The formats of positions and texture coordinates under KHR_mesh_quantization.
 pub const QUANTIZED: &[Format] = &[

@@ -1,4 +1,4 @@
-//! Materials: colours, textures with their samplers and transforms, and the images that they use.
+//! Materials: colors, textures with their samplers and transforms, and the images that they use.
 //!
 //! Only images that a visible primitive uses are decoded, within [`limits`] and only at the size in their header.
 

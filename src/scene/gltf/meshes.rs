@@ -164,7 +164,7 @@ impl<'a> Loader<'a> {
         if let Some(colors) = &primitive.colors {
             check_finite(&self.writer.scene, colors).map_err(at("COLOR_0"))?;
             if colors.components == 4 && self.writer.scene.materials[material].alpha_cutoff.is_some() {
-                self.notes.insert(format!("{name}: alpha masking uses the alpha of the image, not that of the vertex colours"));
+                self.notes.insert(format!("{name}: alpha masking uses the alpha of the image, not that of the vertex colors"));
             }
         }
         self.writer.scene.primitives.push(primitive);

@@ -100,7 +100,7 @@ impl Tree {
         (count > 0).then(|| format!("{count} node rotations are not unit quaternions; they are normalized"))
     }
 
-    /// The cameras of the shown nodes. Their targets are as far away as the centre of `bounds`. With `moves` they follow their
+    /// The cameras of the shown nodes. Their targets are as far away as the center of `bounds`. With `moves` they follow their
     /// nodes.
     pub fn cameras(&self, root: &json::Root, bounds: &Bounds, moves: bool, notes: &mut Vec<String>) -> Vec<SceneCamera> {
         let mut cameras = Vec::new();

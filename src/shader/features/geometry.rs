@@ -69,7 +69,7 @@ const UNSHARED_VERTICES: Feature = Feature {
     part: Some(Part {
         name: "unshared vertices",
         is_used: KernelKey::unshares_vertices,
-        why_omitted: |_| "no effect moves triangles apart, so neighbours share projected vertices".into(),
+        why_omitted: |_| "no effect moves triangles apart, so neighbors share projected vertices".into(),
     }),
     variants: &[("vertex_records", |key, _| stem_if(key.unshares_vertices(), "unshared"))],
     constants: &[("UNSHARES_VERTICES", |key, _| flag(key.unshares_vertices()))],
@@ -127,6 +127,7 @@ const VERTEX_FORMATS: Feature = Feature {
         is_used: |key| key.vertices.fetch != Fetch::Direct,
         why_omitted: |_| "no primitive has indices".into(),
     }),
+    variants: &[("draw_search", |key, _| stem_if(!key.vertices.is_single_draw, "binary"))],
     constants: &[
         ("ONLY_TRIANGLE_LISTS", |key, _| flag(key.vertices.only_triangle_lists)),
         ("HAS_INDICES", |key, _| flag(key.vertices.fetch != Fetch::Direct)),
@@ -134,7 +135,6 @@ const VERTEX_FORMATS: Feature = Feature {
         ("F32_POSITIONS", |key, _| flag(key.vertices.positions == AttributeFormat::F32)),
         ("F32_NORMALS", |key, _| flag(key.vertices.normals == AttributeFormat::F32)),
         ("PACKED_POSITION_BITS", |key, _| key.options.position_format.packed_bits().unwrap_or(0).into()),
-        ("SINGLE_DRAW", |key, _| flag(key.vertices.is_single_draw)),
     ],
     ..Feature::NONE
 };

@@ -92,7 +92,7 @@ const SMALL_PATH: Feature = Feature {
 /// Options of the axes that have no label of their own.
 const OTHER_OPTIONS: Feature = Feature {
     label: |key| {
-        let is_other = |axis: &str| ![Coverage::AXIS, Visibility::AXIS].iter().any(|labelled| AXES[*labelled].name == axis);
+        let is_other = |axis: &str| ![Coverage::AXIS, Visibility::AXIS].iter().any(|labeled| AXES[*labeled].name == axis);
         let others = key.options.non_default().filter(|(axis, _)| is_other(axis.name));
         others.map(|(axis, option)| format!("{}={option}", axis.name)).collect::<Vec<_>>().join(" ")
     },

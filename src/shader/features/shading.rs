@@ -34,7 +34,7 @@ const LAYERS: Feature = Feature {
 const PLANES: Feature = Feature {
     label: |key| word_if(key.surface.has_planes, "planes"),
     part: Some(Part {
-        name: "plane normals and centres",
+        name: "plane normals and centers",
         is_used: |key| key.surface.has_planes,
         why_omitted: |_| "no effect reads them and no normal needs a substitute".into(),
     }),
@@ -44,7 +44,7 @@ const PLANES: Feature = Feature {
 
 const COLORS: Feature = Feature {
     label: |key| word_if(key.vertices.has_colors, "colors"),
-    part: Some(Part { name: "vertex colours", is_used: |key| key.vertices.has_colors, why_omitted: |_| "no primitive has them".into() }),
+    part: Some(Part { name: "vertex colors", is_used: |key| key.vertices.has_colors, why_omitted: |_| "no primitive has them".into() }),
     constants: &[("HAS_COLORS", |key, _| flag(key.vertices.has_colors))],
     ..Feature::NONE
 };
@@ -57,7 +57,7 @@ const MATERIAL_ATLAS: Feature = Feature {
     part: Some(Part {
         name: "material atlas",
         is_used: |key| key.surface.has_material_atlas,
-        why_omitted: |_| "no material is more than a base colour".into(),
+        why_omitted: |_| "no material is more than a base color".into(),
     }),
     variants: &[("shade_step", |key, _| step_if(key.surface.has_material_atlas, "textures"))],
     ..Feature::NONE

@@ -34,7 +34,7 @@ impl Default for Adapter {
 }
 
 impl Adapter {
-    /// Triangle ids, keys, layers and colours of `geometry`.
+    /// Triangle ids, keys, layers and colors of `geometry`.
     fn draw(&self, scene: &Scene, view: &View, stack: &Stack, geometry: &Geometry) -> (Frame, Vec<u32>) {
         let draws = draws(scene, view).unwrap();
         let (drawn, counters) = assembled(scene, view, geometry);

@@ -28,7 +28,7 @@ fn scene(meshes: &[SimpleMesh]) -> Scene {
     Scene::clone(&scene_of_meshes(meshes))
 }
 
-/// A closed sphere of `2 * rows * rows` quads, smooth and coloured by direction.
+/// A closed sphere of `2 * rows * rows` quads, smooth and colored by direction.
 fn sphere(rows: u32) -> SimpleMesh {
     let columns = 2 * rows;
     let mut mesh = SimpleMesh { double_sided: false, ..Default::default() };
@@ -52,7 +52,7 @@ fn sphere(rows: u32) -> SimpleMesh {
     mesh
 }
 
-/// A ground of one square, `half` metres to each side at height `y`.
+/// A ground of one square, `half` meters to each side at height `y`.
 fn ground(half: f32, y: f32) -> SimpleMesh {
     let [a, b, c, d] = [[-half, y, -half], [-half, y, half], [half, y, half], [half, y, -half]];
     SimpleMesh { positions: vec![a, b, c, a, c, d], normals: vec![[0.0, 1.0, 0.0]; 6], double_sided: true, ..Default::default() }
@@ -97,7 +97,7 @@ fn bounded(triangles: &[OrientedTriangle], view: &View) -> oracle::BoundedCovera
     cover_claims(&SampleTests::default(), triangles, view, &vec![NO_TRIANGLE; view.pixels()])
 }
 
-/// What a picture is coloured from.
+/// What a picture is colored from.
 fn seen(frame: &Frame) -> ResolveInput<'_> {
     ResolveInput { triangle_ids: &frame.triangle_id, depth_keys: &frame.depth_key, dots: &frame.dots, previous: None }
 }

@@ -3,7 +3,7 @@
 use super::*;
 
 #[test]
-fn snap_is_symmetric_about_the_centre_and_rounds_to_even() {
+fn snap_is_symmetric_about_the_center_and_rounds_to_even() {
     let half = 1.0 / 512.0;
     let mesh =
         triangle_soup([[32.0 + half, 32.0 + half, 0.5], [32.0 - half, 32.0 - half, 0.5], [32.0 + 3.0 * half, 32.0 - 3.0 * half, 0.5]]);

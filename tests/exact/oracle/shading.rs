@@ -74,7 +74,7 @@ fn normals_follow_skewed_and_mirrored_placements() {
 }
 
 #[test]
-fn broken_normals_and_colours_take_finite_defaults() {
+fn broken_normals_and_colors_take_finite_defaults() {
     let positions = [[0.0, 0.0, 0.5], [0.0, 16.0, 0.5], [16.0, 0.0, 0.5]];
     let view = pixel_view(16, 16);
     // Pixel coordinates run downwards, so this sheet's front looks along -z; its stored normal would say +z.
@@ -86,11 +86,11 @@ fn broken_normals_and_colours_take_finite_defaults() {
     }
     let mesh = SimpleMesh { colors: vec![[f32::NAN, 0.0, f32::NEG_INFINITY, 1.0]; 3], ..triangle_soup(positions) };
     let frame = render(&scene(&[mesh]), &view, &Stack::default()).unwrap();
-    // A vertex with one bad component is white, as without colours.
+    // A vertex with one bad component is white, as without colors.
     assert_eq!(frame.color[0], [255; 4]);
 }
 
-/// Colours of a ground that carries its own coordinates, from the ray through each pixel.
+/// Colors of a ground that carries its own coordinates, from the ray through each pixel.
 #[test]
 fn cut_ground_is_shaded_as_its_rays_say() {
     let mut mesh = ground(8.0, -1.0);
@@ -112,10 +112,10 @@ fn cut_ground_is_shaded_as_its_rays_say() {
         let ray = through.truncate() / through.w - view.eye;
         let hit = view.eye + ray * ((-1.0 - view.eye.y) / ray.y);
         let expected = [byte(0.5 + hit.x / 16.0), byte(0.5 + hit.z / 16.0), byte(0.25), 255];
-        let metres = byte(0.1 * (hit - view.eye).dot(view.forward));
+        let meters = byte(0.1 * (hit - view.eye).dot(view.forward));
         let delta = (0..4).map(|c| plain.color[pixel][c].abs_diff(expected[c])).max().unwrap();
         assert!(delta <= 1, "pixel {pixel}: {:?} for {expected:?}", plain.color[pixel]);
-        assert!(depth.color[pixel][0].abs_diff(metres) <= 1, "pixel {pixel}: {:?} for {metres}", depth.color[pixel]);
+        assert!(depth.color[pixel][0].abs_diff(meters) <= 1, "pixel {pixel}: {:?} for {meters}", depth.color[pixel]);
     }
 }
 
@@ -188,7 +188,7 @@ fn flat_shading_is_one_value_per_triangle() {
 }
 
 #[test]
-fn cut_ground_faces_the_viewer_and_knows_its_centre() {
+fn cut_ground_faces_the_viewer_and_knows_its_center() {
     let scene = scene(&[ground(8.0, -1.0)]);
     for (eye_y, up) in [(0.5, DVec3::Y), (-2.5, DVec3::NEG_Y)] {
         let camera = Camera { eye: DVec3::new(0.3, eye_y, 5.0), target: DVec3::new(0.0, -1.0, 0.0), ..Default::default() };
@@ -196,7 +196,7 @@ fn cut_ground_faces_the_viewer_and_knows_its_centre() {
         let frame = render(&scene, &view, &only("normals", &[])).unwrap();
         let mut owned = frame.triangle_id.iter().zip(&frame.color).filter(|(triangle_id, _)| **triangle_id != NO_TRIANGLE);
         assert!(frame.counters.clipped == 2 && owned.all(|(_, color)| *color == normal_bytes(up)));
-        // Both triangles have their centre on the ground's side of the picture; a sweep from there makes them flat.
+        // Both triangles have their center on the ground's side of the picture; a sweep from there makes them flat.
         for (along_y, flat) in [(up.y as f32, false), (-up.y as f32, true)] {
             let mut stack = by_depth(20.0);
             for (field, value) in [("along_x", 0.0), ("along_y", along_y), ("front", 0.5), ("width", 0.001)] {
@@ -209,13 +209,13 @@ fn cut_ground_faces_the_viewer_and_knows_its_centre() {
             let mut colors: Vec<_> =
                 (0..1200).filter(|&i| frame.triangle_id[i] == frame.triangle_id[seen]).map(|i| frame.color[i]).collect();
             colors.dedup();
-            assert_eq!(colors.len() == 1, flat, "eye {eye_y}, along {along_y}: {} colours", colors.len());
+            assert_eq!(colors.len() == 1, flat, "eye {eye_y}, along {along_y}: {} colors", colors.len());
         }
     }
 }
 
 #[test]
-fn orthographic_depth_is_in_metres_too() {
+fn orthographic_depth_is_in_meters_too() {
     let scene = scene(&[sphere(16)]);
     let projection = Projection::Orthographic { height_m: 3.0 };
     let camera = Camera { eye: DVec3::Z * 4.0, projection, ..Default::default() };

@@ -141,7 +141,7 @@ fn missing_normals_are_flat_without_indices_and_smooth_with_them() {
 }
 
 #[test]
-fn base_colour_and_double_sides_come_from_the_material() {
+fn base_color_and_double_sides_come_from_the_material() {
     let material = json!({ "name": "red", "doubleSided": true, "pbrMetallicRoughness": { "baseColorFactor": [0.8, 0.1, 0.2, 1.0] } });
     let model = Model::square().with("/materials", json!([material])).with("/meshes/0/primitives/0/material", json!(0));
     let scene = model.scene();
@@ -152,7 +152,7 @@ fn base_colour_and_double_sides_come_from_the_material() {
 }
 
 #[test]
-fn vertex_colours_come_in_three_widths() {
+fn vertex_colors_come_in_three_widths() {
     let read = |model: Model| {
         let scene = model.scene();
         let color = scene.primitives[0].colors.unwrap();

@@ -225,7 +225,7 @@ fn images_that_are_none_are_refused_by_name() {
     Model::textured().showing(&jpeg[..60]).refused(&format!("{place}cannot decode the image"));
 }
 
-/// A PNG of one colour: a few bytes for any size.
+/// A PNG of one color: a few bytes for any size.
 fn blank(width: u32, height: u32) -> Vec<u8> {
     let mut bytes = Vec::new();
     let mut encoder = png::Encoder::new(&mut bytes, width, height);

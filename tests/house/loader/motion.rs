@@ -44,7 +44,7 @@ fn a_skin_at_rest_places_its_mesh_by_the_joints_alone() {
 #[test]
 fn a_skin_away_from_its_bind_pose_deforms_its_mesh() {
     let scene = skinned(8.0).scene();
-    assert_eq!(posed(&scene, None, 0.0)[0], [[3.0, 0.0, 0.0], [4.0, 0.0, 8.0], [4.0, 1.0, 4.0]], "weights are normalised, and blend");
+    assert_eq!(posed(&scene, None, 0.0)[0], [[3.0, 0.0, 0.0], [4.0, 0.0, 8.0], [4.0, 1.0, 4.0]], "weights are normalized, and blend");
     assert!(scene.notes.iter().any(|note| note.contains("1 vertices have weights that do not sum to 1")), "{:?}", scene.notes);
 }
 

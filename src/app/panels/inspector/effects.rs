@@ -27,7 +27,7 @@ pub fn effects_ui(ui: &mut Ui, state: &State, commands: &Commands) {
     });
     let stack: Vec<&'static Effect> = state.session.preset().stack.0.iter().map(|enabled| enabled.effect).collect();
     if stack.is_empty() {
-        ui.label(theme::weak("No effect is enabled, so the picture shows plain base colours. Enable one below."));
+        ui.label(theme::weak("No effect is enabled, so the picture shows plain base colors. Enable one below."));
         ui.add_space(theme::HALF);
     }
     for (index, effect) in stack.iter().enumerate() {

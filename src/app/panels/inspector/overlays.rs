@@ -26,7 +26,7 @@ pub fn overlays_ui(ui: &mut Ui, state: &State, commands: &Commands) {
                 commands.send(Command::View(ViewCommand::ShowOverlay(overlay, on)));
             }
             swatch(ui, overlay.color());
-            if overlay == Overlay::Colour {
+            if overlay == Overlay::Color {
                 gain_ui(ui, state.overlays.gain, commands);
             }
             if let Some(findings) = findings {
@@ -46,7 +46,7 @@ pub fn overlays_ui(ui: &mut Ui, state: &State, commands: &Commands) {
 
 fn gain_ui(ui: &mut Ui, mut gain: u8, commands: &Commands) {
     let drag = egui::DragValue::new(&mut gain).range(1..=255).prefix("× ").speed(0.3);
-    if ui.add(drag).accessible_name("Overlay gain").on_hover_text("Factor of the colour difference").changed() {
+    if ui.add(drag).accessible_name("Overlay gain").on_hover_text("Factor of the color difference").changed() {
         commands.send(Command::View(ViewCommand::OverlayGain(gain)));
     }
 }

@@ -82,7 +82,7 @@ impl PresetBrowser {
     }
 
     /// The preset `step` entries after the one called `id`, wrapping round; the first if `id` is not in the gallery.
-    pub fn neighbour(&self, id: &str, step: isize) -> Option<&PresetFile> {
+    pub fn neighbor(&self, id: &str, step: isize) -> Option<&PresetFile> {
         let good: Vec<&GalleryEntry> = self.entries.iter().filter(|entry| entry.preset_file.is_ok()).collect();
         let here = good.iter().position(|entry| entry.id == id);
         let there = here.map_or(0, |here| (here as isize + step).rem_euclid(good.len() as isize) as usize);

@@ -82,7 +82,7 @@ impl SweepPanel {
         let (request, progress) = self.running.take()?;
         self.error = None;
         match points {
-            _ if progress.is_cancelled() => {}
+            _ if progress.is_canceled() => {}
             Ok(points) => self.measured = Some(Measured { request, points }),
             Err(error) => {
                 self.error = Some(first_line(&error));
@@ -242,12 +242,12 @@ impl Panel for SweepPanel {
 fn progress_ui(ui: &mut Ui, progress: &Progress) {
     let (done, all, what) = progress.read();
     let fraction = if all > 0 { done as f32 / all as f32 } else { 0.0 };
-    let is_cancelled = progress.is_cancelled();
-    let text = if is_cancelled { "Stopping".into() } else { format!("{:.0} %  {what}", 100.0 * fraction) };
+    let is_canceled = progress.is_canceled();
+    let text = if is_canceled { "Stopping".into() } else { format!("{:.0} %  {what}", 100.0 * fraction) };
     ui.horizontal(|ui| {
         let bar = egui::ProgressBar::new(fraction).desired_width(AXES_WIDTH - 76.0).text(RichText::new(text).size(11.0));
         ui.add(bar.fill(theme::ACCENT_GROUND));
-        if ui.add_enabled(!is_cancelled, egui::Button::new("Cancel")).clicked() {
+        if ui.add_enabled(!is_canceled, egui::Button::new("Cancel")).clicked() {
             progress.cancel();
         }
     });

@@ -1,5 +1,5 @@
 //! The plot: error over milliseconds, both logarithmic, with a line for exact pictures below. egui_plot has no such axes, so
-//! points are plotted by their logarithms and ticks are labelled with the values themselves.
+//! points are plotted by their logarithms and ticks are labeled with the values themselves.
 
 use eframe::egui::{self, Rect, RichText, Sense, Ui, vec2};
 use egui_plot::{GridMark, HLine, Line, LineStyle, Plot, PlotPoint, PlotPoints, Points};

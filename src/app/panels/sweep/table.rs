@@ -21,7 +21,7 @@ pub fn table_ui(ui: &mut Ui, points: &[Point], axes: &[&'static Axis], metric: M
     egui::ScrollArea::both().id_salt("sweep table").auto_shrink(false).show(ui, |ui| {
         egui::Grid::new("sweep table").num_columns(4 + metrics.len()).spacing([14.0, 3.0]).show(ui, |ui| {
             let options = if let [one] = axes { one.name.replace('_', " ") } else { "options".to_owned() };
-            let errors = ["wrong ppm", "colour", "holes+doubles", "light ppm"];
+            let errors = ["wrong ppm", "color", "holes+doubles", "light ppm"];
             for heading in
                 [options.as_str(), "ms", "95 %"].into_iter().chain(metrics.iter().map(|metric| errors[*metric as usize])).chain([""])
             {

@@ -9,7 +9,7 @@ use crate::app::{
     theme,
 };
 
-/// Least distance between labelled ticks, points.
+/// Least distance between labeled ticks, points.
 const TICK_POINTS: f32 = 64.0;
 
 /// 1, 2 or 5 times a power of ten, at least `least`.

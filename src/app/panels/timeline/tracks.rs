@@ -121,14 +121,14 @@ impl Tracks<'_> {
         });
     }
 
-    /// Moves the selected key with the pointer, between its neighbours, on the grid of frames unless Shift is down.
+    /// Moves the selected key with the pointer, between its neighbors, on the grid of frames unless Shift is down.
     fn drag_mark(&self, ui: &Ui, keys: &[Keyframe], index: usize) {
         let (origin, now, is_free) = ui.input(|i| (i.pointer.press_origin(), i.pointer.interact_pos(), i.modifiers.shift));
         let (Some(selected), Some(grabbed_s), Some(origin), Some(now)) = (*self.selected, *self.grabbed_s, origin, now) else { return };
         let pointed_s = grabbed_s + f64::from(now.x - origin.x) * self.span.seconds_per_point();
         let [from_s, _] = self.session.preset().clock.range_s;
         let snapped_s = if is_free { pointed_s } else { from_s + ((pointed_s - from_s) / STEP_S).round() * STEP_S };
-        let limit = |neighbour: Option<&Keyframe>, gap_s: f64, edge_s: f64| neighbour.map_or(edge_s, |key| key.time_s + gap_s);
+        let limit = |neighbor: Option<&Keyframe>, gap_s: f64, edge_s: f64| neighbor.map_or(edge_s, |key| key.time_s + gap_s);
         let [first_s, last_s] = self.span.ends_s();
         let low = limit(index.checked_sub(1).map(|i| &keys[i]), 1e-3, first_s);
         let high = limit(keys.get(index + 1), -1e-3, last_s);

@@ -34,7 +34,7 @@ pub fn chips_ui(ui: &mut Ui, state: &State, commands: &Commands, rect: Rect, is_
     }
 }
 
-/// What is unusual about the picture, each with its colour.
+/// What is unusual about the picture, each with its color.
 fn states(state: &State) -> Vec<(Color32, String)> {
     let (session, screen) = (&state.session, &state.screen);
     let mut states = Vec::new();

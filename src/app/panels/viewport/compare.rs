@@ -93,7 +93,7 @@ impl Compare {
         *self = Self { split: self.split, gain: self.gain, kept: self.kept.take(), ..Self::default() };
     }
 
-    /// What A shows, as `A` is labelled.
+    /// What A shows, as `A` is labeled.
     pub fn name(&self) -> &str {
         match &self.kept {
             None => "reference",

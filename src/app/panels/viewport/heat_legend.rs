@@ -10,10 +10,10 @@ const BAR: [f32; 2] = [168.0, 8.0];
 /// Space round the bar and its text, points.
 const MARGIN: f32 = 10.0;
 
-/// Segments of the bar; colours are interpolated between their ends.
+/// Segments of the bar; colors are interpolated between their ends.
 const SEGMENTS: usize = 8;
 
-/// A bar from one layer to the hottest colour, with numbers at its ends and middle; `free` is what it may cover.
+/// A bar from one layer to the hottest color, with numbers at its ends and middle; `free` is what it may cover.
 pub fn heat_ui(ui: &Ui, free: Rect, params: &Overdraw) {
     let size = vec2(BAR[0] + 2.0 * MARGIN, BAR[1] + 2.0 * MARGIN + 24.0);
     if free.width() < size.x + 40.0 || free.height() < size.y + 80.0 {
@@ -46,7 +46,7 @@ pub fn heat_ui(ui: &Ui, free: Rect, params: &Overdraw) {
     }
 }
 
-/// `12`, `6.5`, `12+`: the hottest colour means that many or more.
+/// `12`, `6.5`, `12+`: the hottest color means that many or more.
 fn number(layers: f64, is_last: bool) -> String {
     let digits = usize::from(layers < 100.0 && (layers - layers.round()).abs() > 0.05);
     format!("{layers:.digits$}{}", if is_last { "+" } else { "" })

@@ -37,7 +37,7 @@ fn color(found: &Findings, overlay: Overlay, i: usize, gain: u8, heat: &Overdraw
     match overlay {
         Overlay::TriangleIds => (found.triangle_ids[i] != NO_TRIANGLE).then(|| triangle_color(found.triangle_ids[i])),
         Overlay::Layers => (found.layers[i] > 0).then(|| layers_color(heat, found.layers[i])),
-        Overlay::Colour => {
+        Overlay::Color => {
             let delta = found.faults.color_delta[i].saturating_mul(gain);
             (delta > 0).then(|| overlay.color().gamma_multiply(f32::from(delta) / 255.0))
         }
@@ -52,7 +52,7 @@ fn color(found: &Findings, overlay: Overlay, i: usize, gain: u8, heat: &Overdraw
     }
 }
 
-/// A colour for every triangle, bright and different from that of its neighbours.
+/// A color for every triangle, bright and different from that of its neighbors.
 fn triangle_color(triangle_id: u32) -> Color32 {
     let h = hash(triangle_id);
     let channel = |shift: u32| 40 + ((h >> shift & 255) * 3 / 4) as u8;
@@ -64,14 +64,14 @@ pub fn layers_color(heat: &Overdraw, layers: u32) -> Color32 {
     Color32::from_rgb(r, g, b)
 }
 
-/// Pixels that get a ring, by index, with its colour: those of overlays that paint few.
+/// Pixels that get a ring, by index, with its color: those of overlays that paint few.
 pub fn rings(found: &Findings, shown: &[Overlay]) -> Vec<(usize, Color32)> {
     let mut rings = Vec::new();
     for overlay in shown.iter().filter(|overlay| found.count(**overlay) as usize <= MAX_RINGS) {
         let is_there = |&i: &usize| match overlay.fault() {
             Some(fault) => found.faults.has(i, fault),
             None if *overlay == Overlay::NotReference => found.differs_from_reference(i),
-            None => *overlay == Overlay::Colour && found.faults.color_delta[i] > 0,
+            None => *overlay == Overlay::Color && found.faults.color_delta[i] > 0,
         };
         rings.extend((0..found.faults.pixels()).filter(is_there).map(|i| (i, overlay.color())));
     }

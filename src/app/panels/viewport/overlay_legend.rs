@@ -48,7 +48,7 @@ fn lines(overlays: &OverlaySelection, found: &Findings) -> Vec<Line> {
 fn line(overlay: Overlay, gain: u8, found: &Findings) -> Line {
     let (name, count) = (overlay.name().to_lowercase(), grouped(found.count(overlay)));
     let text = match overlay {
-        Overlay::Colour => {
+        Overlay::Color => {
             let max = found.faults.color_delta.iter().max().copied().unwrap_or(0);
             format!("{name} × {gain}: {count} px, at most {max} of 255")
         }

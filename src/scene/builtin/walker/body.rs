@@ -1,4 +1,4 @@
-//! The walker's body: the capsules on its joints and the colours of its hide.
+//! The walker's body: the capsules on its joints and the colors of its hide.
 
 use std::f64::consts::TAU;
 
@@ -9,7 +9,7 @@ use super::{
     surface_net::Bone,
 };
 
-/// Radii of a hind leg and of a foreleg at their joints, metres.
+/// Radii of a hind leg and of a foreleg at their joints, meters.
 const LEG_RADII_M: [[f64; 4]; 2] = [[0.16, 0.092, 0.052, 0.046], [0.125, 0.076, 0.054, 0.046]];
 
 /// All capsules.
@@ -51,7 +51,7 @@ pub fn bones() -> Vec<Bone> {
     bones
 }
 
-/// Colour of the hide: dark back, pale belly, bands over rump, tail and neck, dark feet, muzzle and eyes.
+/// Color of the hide: dark back, pale belly, bands over rump, tail and neck, dark feet, muzzle and eyes.
 pub fn hide_color(p: DVec3, normal: DVec3) -> [f64; 3] {
     const BACK: DVec3 = DVec3::new(0.52, 0.19, 0.06);
     const BELLY: DVec3 = DVec3::new(0.92, 0.74, 0.47);

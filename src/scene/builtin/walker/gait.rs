@@ -4,7 +4,7 @@ use std::f64::consts::TAU;
 
 use glam::{DMat3, DQuat, DVec3};
 
-/// Spine and tail: name, parent and rest position (x, y) in metres. The animal faces +x. The joints of the legs follow.
+/// Spine and tail: name, parent and rest position (x, y) in meters. The animal faces +x. The joints of the legs follow.
 pub const SPINE: [(&str, usize, [f64; 2]); 10] = [
     ("pelvis", 0, [-0.42, 1.00]),
     ("chest", 0, [0.02, 1.01]),
@@ -21,7 +21,7 @@ pub const SPINE: [(&str, usize, [f64; 2]); 10] = [
 pub const LEGS: [[[f64; 2]; 4]; 2] =
     [[[-0.42, 0.92], [-0.26, 0.65], [-0.48, 0.38], [-0.45, 0.08]], [[0.43, 0.88], [0.27, 0.63], [0.35, 0.36], [0.35, 0.08]]];
 const PARTS: [[&str; 4]; 2] = [["hip", "knee", "hock", "foot"], ["shoulder", "elbow", "wrist", "foot"]];
-/// Sideways offset of the left hind, left fore, right hind and right fore leg, metres.
+/// Sideways offset of the left hind, left fore, right hind and right fore leg, meters.
 pub const SIDES_M: [f64; 4] = [-0.15, -0.14, 0.15, 0.14];
 /// The number of joints.
 pub const JOINTS: usize = SPINE.len() + 16;
@@ -30,7 +30,7 @@ const SOLE: [[f64; 2]; 2] = [[0.13, -0.08], [-0.05, -0.08]];
 /// Forward lean in radians of the lowest bone of a hind leg and of a foreleg: at landing, at mid-stance, at lift-off, and
 /// twice in the air.
 const LEANS: [[f64; 5]; 2] = [[-0.28, 0.0, 0.55, 0.80, 0.25], [-0.28, 0.0, 0.45, 1.00, 0.50]];
-/// Distance between hips and shoulders, metres.
+/// Distance between hips and shoulders, meters.
 const TRUNK_M: f64 = 0.8;
 
 /// Parameters of a gait. Angles are in radians, times in cycles.
@@ -75,7 +75,7 @@ pub struct Joint {
     pub name: String,
     /// Index of its parent.
     pub parent: usize,
-    /// Rest position, metres.
+    /// Rest position, meters.
     pub at: DVec3,
 }
 

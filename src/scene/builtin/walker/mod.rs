@@ -21,7 +21,7 @@ use crate::scene::{
     rig::{Channel, Clip, Interpolation, LocalTransform, Node, Property, Sampler, Skin, Trs},
 };
 
-/// Keyframes per cycle, and phases at which an animal may start, so that neighbours are out of step.
+/// Keyframes per cycle, and phases at which an animal may start, so that neighbors are out of step.
 const KEYS: usize = 64;
 const PHASES: usize = 8;
 

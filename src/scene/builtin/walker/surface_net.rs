@@ -11,11 +11,11 @@ use crate::scene::builtin::weights::{self, JointWeight};
 pub struct Bone {
     /// Index of the joint that moves it.
     pub joint: usize,
-    /// End points of its axis in the rest pose, metres.
+    /// End points of its axis in the rest pose, meters.
     pub ends: [DVec3; 2],
-    /// Radii at its ends, metres.
+    /// Radii at its ends, meters.
     pub radii: [f64; 2],
-    /// Radius of the smooth blend into the capsules before it, metres.
+    /// Radius of the smooth blend into the capsules before it, meters.
     pub blend: f64,
     /// It is a foot: no other joint influences its sole.
     pub is_foot: bool,
@@ -24,7 +24,7 @@ pub struct Bone {
 /// All capsules, with a minimum radius that the mesh resolution can show.
 pub struct CapsuleBody {
     pub bones: Vec<Bone>,
-    /// Smallest radius, metres.
+    /// Smallest radius, meters.
     pub min_radius: f64,
 }
 
@@ -40,7 +40,7 @@ const WEIGHT_BLEND: f64 = 0.8;
 const SOLE_M: f64 = 0.15;
 /// Upper bound of the slope of the distance field, which tapering makes steeper than 1.
 const MAX_SHADOW_SLOPE: f64 = 1.25;
-/// Upper bound of the bulge of the blends, metres.
+/// Upper bound of the bulge of the blends, meters.
 const MAX_BULGE_M: f64 = 0.05;
 
 impl CapsuleBody {
@@ -74,7 +74,7 @@ impl CapsuleBody {
         let ends = || self.bones.iter().flat_map(|bone| bone.ends.map(|end| (end, bone.radii[0].max(bone.radii[1]).max(self.min_radius))));
         let most = |pick: &dyn Fn(DVec3, f64) -> f64| ends().map(|(end, radius)| pick(end, radius)).fold(f64::NEG_INFINITY, f64::max);
         let cells = |length: f64| ((length + MAX_BULGE_M) / cell).ceil() + 1.0;
-        // The ground plane and the plane of symmetry pass through the centres of cells.
+        // The ground plane and the plane of symmetry pass through the centers of cells.
         let (behind, aside) = (cells(most(&|end, radius| radius - end.x)), cells(most(&|end, radius| radius + end.z.abs())));
         let low = DVec3::new(-behind, -1.0, -aside) - 0.5;
         let tall = [cells(most(&|end, radius| end.x + radius)) + behind, cells(most(&|end, radius| end.y + radius)) + 1.0, 2.0 * aside];
@@ -117,7 +117,7 @@ impl CapsuleBody {
         surface
     }
 
-    /// Moves a vertex onto the surface by Newton steps, clamped to its cell so that neighbours stay apart.
+    /// Moves a vertex onto the surface by Newton steps, clamped to its cell so that neighbors stay apart.
     fn on_surface(&self, corner: DVec3, middle: DVec3, cell: f64) -> [DVec3; 2] {
         let mut p = corner + middle * cell;
         for _ in 0..4 {
