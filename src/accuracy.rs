@@ -188,7 +188,7 @@ axes! {
         Race = "race",
         /// One 32-bit atomic per sample, with as much of the depth as the triangle id leaves room for.
         Packed32 = "packed32",
-        /// Portable: a depth pass, then an triangle id pass.
+        /// Portable: a depth pass, then a triangle id pass.
         Split32 = "split32",
         /// One 64-bit atomic per sample.
         Packed64 = "packed64",

@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use eframe::egui::{self, ViewportCommand};
 
 use super::{
-    command::{Command, FileCommand, KeyframeEdit, Purpose, RowCommand, Toggle, ViewCommand},
+    command::{Command, Commands, FileCommand, KeyframeEdit, Purpose, RowCommand, Toggle, ViewCommand},
     log::Level,
     panels::{Panels, timeline::Timeline},
     screen::Inputs,
@@ -14,8 +14,15 @@ use super::{
 };
 use crate::preset_file::{self, PresetFile};
 
+/// Carries out the commands that were sent, in order.
+pub fn apply_all(ctx: &egui::Context, state: &mut State, panels: &mut Panels, commands: &Commands) {
+    for command in commands.take() {
+        apply(ctx, state, panels, command);
+    }
+}
+
 /// Carries out `command`.
-pub fn apply(ctx: &egui::Context, state: &mut State, panels: &mut Panels, command: Command) {
+fn apply(ctx: &egui::Context, state: &mut State, panels: &mut Panels, command: Command) {
     if command.begins_step() {
         state.history.close();
     }

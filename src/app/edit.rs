@@ -1,16 +1,33 @@
 //! Edits of the preset: each variant of [`Edit`] is carried out here.
 
-use super::{command::Edit, orbit, session::Session};
+use super::{
+    command::{Edit, Parameter},
+    orbit,
+    session::Session,
+};
 use crate::{
     effects::Effect,
     math::hash_unit,
-    params::ValueType,
+    params::{Value, ValueType},
     preset::{Preset, SceneSource},
     preset_file,
     scene::{Bounds, camera::Camera},
 };
 
 impl Session {
+    /// Gives a parameter a value: an animated one at the time shown, any other at all times.
+    ///
+    /// # Errors
+    /// In a sentence that names the parameter.
+    pub fn set_parameter(&mut self, (effect, field): Parameter, value: &Value) -> Result<(), String> {
+        if self.preset().animation.get(effect.name, field.name).is_some() {
+            self.playback.playing = false; // Otherwise every frame would set a keyframe.
+            return self.set_keyframe((effect, field), value.components());
+        }
+        let Some(enabled) = self.preset_mut().stack.get_mut(effect.name) else { return Ok(()) };
+        field.set_value(&mut enabled.words, value).map_err(|error| format!("{}.{}: {error}", effect.name, field.name))
+    }
+
     /// Changes the preset. A value that breaks its setting's rule is ignored.
     ///
     /// # Errors

@@ -4,14 +4,13 @@
 use eframe::egui::{self, Align, Align2, Color32, DragValue, Rect, RichText, Sense, Slider, SliderClamping, Ui, UiBuilder, pos2, vec2};
 
 use super::{
-    command::RowCommand,
+    command::{Command, Commands, Edit, Parameter, RowCommand},
     icons::{Icon, icon_button, key_button},
     key_id::Keying,
     theme,
 };
 use crate::{
-    effects::Effect,
-    params::{Field, Param, Value, ValueType},
+    params::{Param, Value, ValueType},
     preset::{Preset, settings::Setting},
     preset_file::toml_value,
 };
@@ -26,12 +25,21 @@ pub struct Row {
     pub modified: bool,
     /// Whether it has keyframes; none for what cannot be animated.
     pub keying: Option<Keying>,
+    edited: Edited,
+}
+
+/// What a row edits.
+#[derive(Clone, Copy)]
+enum Edited {
+    Setting(&'static Setting),
+    Parameter(Parameter),
 }
 
 impl Row {
     /// The row of an effect's parameter.
-    pub fn of_field(effect: &Effect, field: &Field, words: &[u32]) -> Self {
-        Self::new(format!("{}.{}", effect.name, field.name), field.param, !field.same(words, &(effect.defaults)()))
+    pub fn of_parameter((effect, field): Parameter, words: &[u32]) -> Self {
+        let (path, modified) = (format!("{}.{}", effect.name, field.name), !field.same(words, &(effect.defaults)()));
+        Self::new(path, field.param, modified, Edited::Parameter((effect, field)))
     }
 
     /// The row of a parameter that can be animated. Keyframes are a difference from the default, whatever their values.
@@ -40,12 +48,20 @@ impl Row {
     }
 
     /// The row of a setting of the preset.
-    pub fn of_setting(setting: &Setting, preset: &Preset) -> Self {
-        Self::new(setting.path(), setting.param, setting.is_modified(preset))
+    pub fn of_setting(setting: &'static Setting, preset: &Preset) -> Self {
+        Self::new(setting.path(), setting.param, setting.is_modified(preset), Edited::Setting(setting))
     }
 
-    fn new(path: String, param: Param, modified: bool) -> Self {
-        Self { path, label: label(param.name, param.unit), param, modified, keying: None }
+    fn new(path: String, param: Param, modified: bool, edited: Edited) -> Self {
+        Self { path, label: label(param.name, param.unit), param, modified, keying: None, edited }
+    }
+
+    /// The edit after which the row shows `value`.
+    fn edit(&self, value: Value) -> Edit {
+        match self.edited {
+            Edited::Setting(setting) => Edit::Setting(setting, value),
+            Edited::Parameter(parameter) => Edit::Parameter(parameter, value),
+        }
     }
 
     /// The value as TOML, as copied and pasted.
@@ -69,23 +85,13 @@ fn label(name: &str, unit: &str) -> String {
     stem.and_then(|(_, suffix)| name.strip_suffix(suffix)).unwrap_or(name).replace('_', " ")
 }
 
-/// What the user did with a row in this frame.
-#[derive(Default)]
-pub struct Outcome {
-    pub value: Option<Value>,
-    pub command: Option<RowCommand>,
-    /// The pointer is over this row, so Ctrl+C and Ctrl+V apply to its value.
-    pub is_hovered: bool,
-}
-
 const BAR_WIDTH: f32 = 3.0;
 const RESET_WIDTH: f32 = 22.0;
 const KEY_WIDTH: f32 = 18.0;
 const NUMBER_WIDTH: f32 = 66.0;
 
-/// Shows `row` with `value`. Returns what the user did with it.
-pub fn row_ui(ui: &mut Ui, row: &Row, value: &Value) -> Outcome {
-    let mut outcome = Outcome::default();
+/// Shows `row` with `value`, and sends what the user does with it.
+pub fn row_ui(ui: &mut Ui, commands: &Commands, row: &Row, value: &Value) {
     let width = ui.available_width();
     let (rect, _) = ui.allocate_exact_size(vec2(width, theme::ROW), Sense::hover());
     let split = rect.left() + (width * 0.34).clamp(72.0, 140.0);
@@ -98,24 +104,32 @@ pub fn row_ui(ui: &mut Ui, row: &Row, value: &Value) -> Outcome {
         let bar = Rect::from_min_size(rect.min + vec2(0.0, 4.0), vec2(BAR_WIDTH, rect.height() - 8.0));
         ui.painter().rect_filled(bar, 1.5, theme::ACCENT);
     }
-    outcome.command = label_ui(ui, row, value, label_rect);
+    let mut command = label_ui(ui, row, value, label_rect);
     let layout = egui::Layout::left_to_right(Align::Center);
     let mut control = ui.new_child(UiBuilder::new().id_salt(&row.path).max_rect(control_rect).layout(layout));
     control.spacing_mut().item_spacing.x = 6.0;
-    outcome.value = control_ui(&mut control, row, value);
+    let changed = control_ui(&mut control, row, value);
     if row.modified {
         let mut reset = ui.new_child(UiBuilder::new().id_salt((&row.path, "reset")).max_rect(reset_rect).layout(layout));
         if icon_button(&mut reset, Icon::Reset, &format!("Reset {}", row.path)).clicked() {
-            outcome.command = Some(RowCommand::Reset(row.path.clone()));
+            command = Some(RowCommand::Reset(row.path.clone()));
         }
     }
     if let Some(keying) = row.keying
         && key_button(ui, key_rect, keying, &row.path).clicked()
     {
-        outcome.command = Some(RowCommand::ToggleKey(row.path.clone()));
+        command = Some(RowCommand::ToggleKey(row.path.clone()));
     }
-    outcome.is_hovered = ui.rect_contains_pointer(rect);
-    outcome
+    if ui.rect_contains_pointer(rect) {
+        commands.send(Command::HoverRow { path: row.path.clone(), value: row.written(value) });
+    }
+    if let Some(command) = command {
+        commands.send(Command::Row(command));
+    }
+    // A row command ends the step of undo that an edit continues, so the edit comes last.
+    if let Some(value) = changed {
+        commands.edit(row.edit(value));
+    }
 }
 
 /// The label: tooltip, double click to reset, menu.
@@ -296,9 +310,9 @@ mod tests {
 
     #[test]
     fn no_row_of_an_effect_with_defaults_is_marked_as_modified() {
-        for effect in EFFECTS {
+        for &effect in EFFECTS {
             let words = (effect.defaults)();
-            assert!(effect.fields.iter().all(|field| !Row::of_field(effect, field, &words).modified), "{}", effect.name);
+            assert!(effect.fields.iter().all(|field| !Row::of_parameter((effect, field), &words).modified), "{}", effect.name);
         }
     }
 }

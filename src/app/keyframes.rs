@@ -7,7 +7,7 @@ use super::{
 };
 use crate::{
     effects::Effect,
-    params::{Field, Value},
+    params::Field,
     preset::{
         Preset,
         animation::{Keyframe, KeyframeError, Track, default_easing},
@@ -53,20 +53,13 @@ impl Session {
         }
     }
 
-    /// Gives a parameter a value: an animated one at the time shown, any other at all times.
+    /// Sets a keyframe of a parameter at the time shown.
     ///
     /// # Errors
     /// In a sentence that names the parameter.
-    pub fn set_parameter(&mut self, (effect, field): Parameter, value: &Value) -> Result<(), String> {
+    pub fn set_keyframe(&mut self, (effect, field): Parameter, value: Vec<f64>) -> Result<(), String> {
         let now_s = self.shown_time_s();
-        let outcome = if self.preset().animation.get(effect.name, field.name).is_some() {
-            self.playback.playing = false; // Otherwise every frame would set a key.
-            set_key(self.preset_mut(), now_s, (effect, field), value.components()).map_err(|error| error.to_string())
-        } else {
-            let enabled = self.preset_mut().stack.get_mut(effect.name);
-            enabled.map_or(Ok(()), |enabled| field.set_value(&mut enabled.words, value).map_err(|error| error.to_string()))
-        };
-        outcome.map_err(|error| format!("{}.{}: {error}", effect.name, field.name))
+        set_key(self.preset_mut(), now_s, (effect, field), value).map_err(|error| format!("{}.{}: {error}", effect.name, field.name))
     }
 
     /// Sets a key of the parameter at `path` at the time shown, or removes the one that is there.
@@ -84,7 +77,7 @@ impl Session {
             return self.remove_key(key);
         }
         let Some(value) = self.shown_value(effect, field) else { return Ok(()) };
-        set_key(self.preset_mut(), now_s, (effect, field), value).map_err(|error| format!("{path}: {error}"))
+        self.set_keyframe((effect, field), value)
     }
 
     /// Removes a key. The value of the last one stays.

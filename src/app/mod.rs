@@ -40,5 +40,6 @@ mod verification;
 mod window;
 
 pub use device::{adopt, wgpu_setup};
+pub use recovery::FIRST_PRESET;
 pub use run::{DeviceLost, run};
 pub use window::{App, Options};

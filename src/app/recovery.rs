@@ -11,12 +11,13 @@ use crate::{
 };
 
 /// The preset of a window that was opened without one.
-const FIRST_PRESET: &str = "teapot";
+pub const FIRST_PRESET: &str = "teapot";
 
-/// The preset to begin with. If it cannot be opened, the error is logged and the teapot is shown.
-pub fn first_preset(open: Option<&str>, folder: Option<&Path>, log: &mut Log) -> PresetFile {
+/// The preset to begin with: one that is open already, or `open`. If it cannot be opened, the error is logged and the teapot is
+/// shown.
+pub fn first_preset(opened: Option<PresetFile>, open: Option<&str>, folder: Option<&Path>, log: &mut Log) -> PresetFile {
     let what = open.unwrap_or(FIRST_PRESET);
-    match preset_file::open(what, folder) {
+    match opened.map_or_else(|| preset_file::open(what, folder), Ok) {
         Ok(mut preset_file) => {
             preset_file.warnings.iter().for_each(|warning| log.add(Level::Warning, warning.clone()));
             // A recovered preset is not saved to the recovery file: Save asks for another.

@@ -33,6 +33,7 @@ pub fn run(options: Options) -> anyhow::Result<()> {
         if !loss.is_set() {
             return closed.map_err(|error| anyhow::anyhow!("{error}")).context("the window could not be opened");
         }
+        options.opened = None;
         options.open = recovery_path().filter(|path| path.exists()).map(|path| path.to_string_lossy().into_owned());
     }
     let recovered = recovery_path().map_or_else(String::new, |path| format!("; the preset is saved in {}", path.display()));

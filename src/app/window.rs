@@ -43,6 +43,8 @@ use crate::{
 pub struct Options {
     /// A preset's id or file, a model, an exported picture, or `builtin:QUERY`.
     pub open: Option<String>,
+    /// What `open` names, where it has been read, perhaps with changes.
+    pub opened: Option<PresetFile>,
     pub adapter: AdapterChoice,
     /// A folder of presets beside the user's own.
     pub presets_dir: Option<PathBuf>,
@@ -159,7 +161,7 @@ impl App {
         theme::apply(&cc.egui_ctx);
         let (window, gpu) = device::adopt(cc)?;
         let mut log = Log::default();
-        let opened = recovery::first_preset(options.open.as_deref(), options.presets_dir.as_deref(), &mut log);
+        let opened = recovery::first_preset(options.opened, options.open.as_deref(), options.presets_dir.as_deref(), &mut log);
         let summary = &gpu.summary;
         log.add(Level::Info, format!("adapter: {}, {}, {}", summary.name, summary.backend, summary.driver));
         let session = Session::new(opened);
@@ -193,9 +195,7 @@ impl App {
 
     /// Carries out the commands that were sent.
     fn apply(&mut self, ctx: &egui::Context) {
-        for command in self.commands.take() {
-            apply::apply(ctx, &mut self.state, &mut self.panels, command);
-        }
+        apply::apply_all(ctx, &mut self.state, &mut self.panels, &self.commands);
     }
 
     /// Shows a panel and carries out its commands.

@@ -85,17 +85,16 @@ fn dispatch(common: &Common, command: &Command, streams: &mut Streams) -> Result
 
 #[cfg(feature = "gui")]
 fn window(cli: &Cli) -> Result<Exit, CliError> {
-    if let Some(what) = &cli.open {
-        // Reported on the terminal instead of in an empty window.
-        open::open(&cli.common, what).map_err(|error| suggest_command(error, what))?;
-    }
+    // Errors are reported on the terminal instead of in an empty window.
+    let what = cli.open.as_deref().unwrap_or(crate::app::FIRST_PRESET);
+    let opened = open::open(&cli.common, what).map_err(|error| suggest_command(error, what))?;
     let adapter = match backend::backend_choice(&cli.common) {
         backend::BackendChoice::Oracle => {
             return Err(CliError::usage("the window needs a GPU adapter; --adapter cpu serves render, verify, compare and check"));
         }
         backend::BackendChoice::Gpu(choice) => choice,
     };
-    let options = crate::app::Options { open: cli.open.clone(), adapter, presets_dir: cli.common.presets_dir() };
+    let options = crate::app::Options { open: cli.open.clone(), opened: Some(opened), adapter, presets_dir: cli.common.presets_dir() };
     crate::app::run(options).map_err(CliError::window)?;
     Ok(Exit::Done)
 }

@@ -18,7 +18,9 @@ use crate::{
         glue::uniform_bytes,
         key::{KernelKey, VertexInputs},
         library::Library,
-        link, reflect,
+        link,
+        pass::Pass,
+        reflect,
     },
 };
 
@@ -162,7 +164,7 @@ fn pipeline(
     // Every draw is an instance of a storage buffer here.
     let vertices = VertexInputs { is_single_draw: false, ..key.vertices.clone() };
     let key = KernelKey { vertices, ..key.clone() };
-    let linked = link::link(&Library::from_env(), "baselines/hardware", &key, &[])?;
+    let linked = link::link(&Library::from_env(), "baselines/hardware", &key, &key.variants(Pass::Resolve))?;
     let reflected = reflect::reflect(&linked, gpu.caps.int64_atomics)?;
     let mut bindings = reflected.bindings("hardware_vertex");
     bindings.extend(reflected.bindings("hardware_fragment"));

@@ -25,23 +25,6 @@ pub struct Pipeline {
     pub used: AtomicU64,
 }
 
-impl Pipeline {
-    /// A bind group of what the kernel names.
-    ///
-    /// # Errors
-    /// As `resource`, which finds what is bound.
-    pub fn bind_group<'a>(
-        &self,
-        device: &wgpu::Device,
-        resource: impl Fn(ResourceId) -> Result<wgpu::BindingResource<'a>, RenderError>,
-    ) -> Result<wgpu::BindGroup, RenderError> {
-        let entry = |&(binding, id): &(u32, ResourceId)| Ok(wgpu::BindGroupEntry { binding, resource: resource(id)? });
-        let entries: Vec<_> = self.bindings.iter().map(entry).collect::<Result<_, RenderError>>()?;
-        let descriptor = wgpu::BindGroupDescriptor { label: Some(&self.label), layout: &self.layout, entries: &entries };
-        Ok(device.create_bind_group(&descriptor))
-    }
-}
-
 /// Interfaces that are kept, with a text of some 30 KB each.
 const MOST_INTERFACES: usize = 1024;
 

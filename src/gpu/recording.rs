@@ -80,7 +80,10 @@ impl<'a> Resources<'a> {
     /// # Errors
     /// When something that the kernel binds is not here.
     pub fn bind_group(&self, gpu: &Gpu, pipeline: &Pipeline) -> Result<wgpu::BindGroup, RenderError> {
-        pipeline.bind_group(&gpu.device, |id| self.get(id))
+        let entry = |&(binding, id): &(u32, ResourceId)| Ok(wgpu::BindGroupEntry { binding, resource: self.get(id)? });
+        let entries: Vec<_> = pipeline.bindings.iter().map(entry).collect::<Result<_, RenderError>>()?;
+        let descriptor = wgpu::BindGroupDescriptor { label: Some(&pipeline.label), layout: &pipeline.layout, entries: &entries };
+        Ok(gpu.device.create_bind_group(&descriptor))
     }
 
     fn revisions(&self) -> Vec<u64> {

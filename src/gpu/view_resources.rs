@@ -80,6 +80,8 @@ pub struct ViewResources {
     background: Option<([u8; 4], u32)>,
     frame: Option<PreparedFrame>,
     commands: Option<CommandList>,
+    /// The last call of `prepare` succeeded.
+    is_prepared: bool,
 }
 
 impl ViewResources {
@@ -97,6 +99,7 @@ impl ViewResources {
             background: None,
             frame: None,
             commands: None,
+            is_prepared: false,
         }
     }
 
@@ -139,6 +142,11 @@ impl ViewResources {
         if *width.max(height) > limit {
             return Err(RenderError::TooWide { width: *width, height: *height, limit });
         }
+        if !std::mem::take(&mut self.is_prepared) {
+            // A frame that could not be prepared may have left buffers unwritten.
+            (self.draw_data, self.dots, self.background) = (None, None, None);
+            self.buffers.keep(|id| !matches!(id, BufferId::Meshlets | BufferId::MeshletLists));
+        }
         let (plan, view, draws) = self.plan(device, scene.scene(), request)?;
         let key = &plan.key;
         let packed_bits = key.options.position_format.packed_bits();
@@ -173,6 +181,7 @@ impl ViewResources {
             dots.write(gpu, &self.buffers, |id| new.contains(&id))?;
         }
         self.frame = Some(PreparedFrame { plan, view, layout });
+        self.is_prepared = true;
         Ok(())
     }
 

@@ -171,7 +171,7 @@ fn fill(context: &mut CaseContext) -> Result<(), EarlyEnd> {
 }
 
 fn fill_outside_its_range(context: &mut CaseContext) -> Result<(), EarlyEnd> {
-    for value in [f64::NAN, -1e-30, 1.0 + f64::EPSILON, f64::INFINITY, f64::NEG_INFINITY] {
+    for value in [f64::NAN, -1e-30, f64::from(1f32.next_up()), f64::INFINITY, f64::NEG_INFINITY] {
         match only("dissolve", &[("fill", value)]) {
             Err(EarlyEnd::Failed(sentence)) => {
                 check!(sentence.contains("fill") && sentence.contains("0..=1"), "{value}: {sentence}");

@@ -7,11 +7,12 @@ use crate::common::*;
 use glam::{DMat4, DVec3};
 use rasterlab::{
     accuracy::Visibility,
+    effects::{Stack, dots},
     frame::{Frame, NO_TRIANGLE},
     gpu::{Capacities, Capture, Renderer},
     measure::compare,
     oracle,
-    plan::Tuning,
+    plan::{AccuracyRequest, Tuning},
     scene::{Scene, builtin::BUILTINS, draw::draws, view::View},
 };
 
@@ -267,6 +268,26 @@ fn repeated_frames_are_equal_to_the_bit() {
         is_drawn_by(&renderer, &["project", "raster_small", "dispatch_args", "clip", "resolve"]);
         is_drawn_by(&renderer, if option == Visibility::Tiled { TILED } else { &["tile_large", "raster_medium", "raster_large"] });
     }
+}
+
+/// Returns true if drawing `stack` is refused.
+fn is_refused(renderer: &mut Renderer, view: &View, stack: &Stack) -> bool {
+    renderer.draw(view, stack, &AccuracyRequest::default()).is_err()
+}
+
+#[test]
+fn a_refused_frame_leaves_the_next_one_whole() {
+    let Some(mut renderer) = renderer() else { return };
+    let (scene, first) = hall();
+    let other = view(&scene, [160, 90]);
+    let accuracy = AccuracyRequest::default();
+    exact(&mut renderer, &scene, &first, &Stack::default(), &accuracy, "before");
+    let mut dense = Stack::default();
+    let dots = dense.enable(&dots::EFFECT);
+    let spacing = dots.effect.field("spacing_m").expect("dots have a spacing");
+    spacing.set(&mut dots.words, &[1e-5]).expect("inside the range");
+    assert!(is_refused(&mut renderer, &other, &dense), "so many dots are drawn");
+    exact(&mut renderer, &scene, &other, &Stack::default(), &accuracy, "after a refused frame of the same view");
 }
 
 /// The same triangles in another order, and for each its index in the order before.

@@ -21,7 +21,7 @@ pub struct Picture<'a> {
     pub height: u32,
     /// Global triangle id per pixel, `u32::MAX` without one.
     pub triangle_ids: &'a [u32],
-    /// Depth key per pixel, 0 without an triangle id.
+    /// Depth key per pixel, 0 without a triangle id.
     pub keys: &'a [u32],
     /// First triangle of every draw, rising.
     pub draws: &'a [u32],

@@ -2,11 +2,11 @@
 
 use eframe::egui::{self, RichText, Ui};
 
-use super::rows::parameter_ui;
 use crate::{
     app::{
         action::Action,
         command::{Command, Commands, Edit, Parameter, ViewCommand},
+        fields::{Row, row_ui},
         icons::{Icon, icon_button},
         log::Level,
         state::State,
@@ -79,7 +79,8 @@ fn header_ui(ui: &mut Ui, commands: &Commands, effect: &'static Effect, (index, 
 fn parameters_ui(ui: &mut Ui, state: &State, commands: &Commands, effect: &'static Effect) {
     let Some(words) = state.session.shown_words(effect) else { return };
     for field in effect.fields.iter().filter(|field| field.is_shown(effect.fields, &words)) {
-        parameter_ui(ui, &state.session, commands, (effect, field), &words);
+        let row = Row::of_parameter((effect, field), &words).keyed(state.session.keying(effect, field));
+        row_ui(ui, commands, &row, &field.value(&words));
         // Directions are points without a unit, and extents are never negative.
         if field.value_type == ValueType::Point && field.unit == "m" && field.hard[0] < 0.0 {
             pick_ui(ui, state.picking, commands, (effect, field));
