@@ -217,7 +217,7 @@ axes! {
         None = "none",
         /// Instances and meshlets outside the picture, and meshlets that all face away.
         Frustum = "frustum",
-        /// Those, and what the previous picture hides: what has just become visible is missing.
+        /// Those, and what the previous frame hides: what has just become visible is missing.
         Hiz = "hiz",
         /// Those, and what this picture hides: first what was visible before is drawn, then what that does not hide.
         TwoPass = "two-pass",

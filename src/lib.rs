@@ -8,6 +8,8 @@
 //! * [`scene`]: meshes as the file has them, cameras, what a scene requires
 //! * [`params`](mod@params), [`effects`]: one table of parameters per effect, one list of effects, their f64 reference
 //! * [`shader`], [`plan`]: choose and link the kernels
+//! * [`evaluator`]: evaluates WGSL functions on the CPU
+//! * [`effect_files`]: effects that anyone can write, one WGSL file each
 //! * [`preset`]: the state of a picture, and its animation
 //! * [`oracle`]: the exact CPU renderer that judges the kernels and makes the goldens
 //! * [`gpu`]: runs the kernels
@@ -23,7 +25,9 @@ pub mod accuracy;
 #[cfg(feature = "gui")]
 pub mod app;
 pub mod cli;
+pub mod effect_files;
 pub mod effects;
+pub mod evaluator;
 pub mod frame;
 pub mod gpu;
 pub mod math;

@@ -16,7 +16,7 @@ pub const UNITS_PER_PIXEL: i32 = 1 << SUBPIXEL_BITS;
 pub const GUARD_BAND: i32 = 8_388_607;
 
 /// Side of a square in which every edge function fits an i32, in units of 1/256 px: 128 px, a whole number of blocks. The limit is
-/// 181 px; the difference leaves room for blocks that overhang.
+/// 181 px; the difference allows for blocks that overhang.
 pub const SMALL_EXTENT: i32 = 128 * UNITS_PER_PIXEL;
 
 /// Distance between two floats in units in the last place: 0 for equal values and for +0 and -0, `u32::MAX` if one is NaN.
@@ -105,7 +105,7 @@ pub fn cos_turns(turns: f64) -> f64 {
     libm::cos((turns - turns.round()) * std::f64::consts::TAU)
 }
 
-/// Bound of the error of `shaders/common/sine.wgsl`, given its argument: the polynomial's 3.4e-9 (Remez, degree 9 on a
+/// Bound of the error of `shaders/lib/angle.wgsl`, given its argument: the polynomial's 3.4e-9 (Remez, degree 9 on a
 /// quarter turn) and ten roundings of terms whose magnitudes sum to 2.4.
 pub const SINE_ERROR: f64 = 24.0 / (1 << 23) as f64;
 

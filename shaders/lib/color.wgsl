@@ -1,13 +1,4 @@
-// Color: linear light to gamma-encoded bytes and back (IEC 61966-2-1), and the picture: packed pixels, `frame.stride` per row.
-// Behind the pixels stands the list of marked tiles, or the strength of dots on every pixel: portable adapters bind eight
-// storage buffers to a pass, and the resolve pass has no ninth.
-//@ use lib/frame
-//@ binding @group(0) @binding(11) var<storage, read_write> color: array<u32>;
-
-// Word of the picture behind its last row.
-fn color_end() -> u32 {
-    return frame.stride * frame.size.y;
-}
+// Color: linear light to gamma-encoded values and back (IEC 61966-2-1), luminance, and packed bytes.
 
 fn color_encode(linear: vec3f) -> vec3f {
     let c = clamp(linear, vec3f(0.0), vec3f(1.0));

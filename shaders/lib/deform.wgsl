@@ -1,5 +1,5 @@
 // Deformed draws: those whose vertices follow joints or morph targets, and where their bytes are.
-// Mirrors `gpu::deforms::DeformRecord`.
+// Mirrors `gpu::records::DeformRecord`.
 //@ use lib/frame
 //@ use lib/attributes
 

@@ -1,5 +1,5 @@
 // Dots: numbered along all lines. A dot run is a sequence of dots on one segment; a dot is a run and its index in it. Where a
-// dot lies on screen follows from the clip-space ends of its segment. Mirrors `gpu::dots::{DotFrame, DotRunRecord}`.
+// dot lies on screen follows from the clip-space ends of its segment. Mirrors `gpu::records::{DotFrame, DotRunRecord}`.
 //@ use lib/frame
 //@ use lib/triangle
 //@ use lib/snap
@@ -48,13 +48,13 @@ fn dots_clip(run: u32, index: u32) -> vec4f {
     return begin + dots_rounded((dot_ends[2u * r.segment + 1u] - begin) * fraction);
 }
 
-// Bound on the rounding of the clip-space positions of a run's dots, whatever order and fusion a pass uses.
+// Bound on the rounding of the clip-space positions of a run's dots, for every order and fusion that a pass may use.
 fn dots_error(run: u32) -> vec4f {
     let segment = dot_runs[run].segment;
     return (abs(dot_ends[2u * segment]) + abs(dot_ends[2u * segment + 1u])) * 1e-6;
 }
 
-// A dot as a snapped vertex; only flags where it lies in front of the near plane or behind the far plane.
+// A dot as a snapped vertex; only flags where it lies between the eye and the near plane or beyond the far plane.
 fn dots_record(clip: vec4f) -> vec4u {
     let is_between = clip.z <= clip.w && clip.w > 0.0 && clip.z >= 0.0;
     let inv_w = 1.0 / select(1.0, clip.w, is_between);

@@ -48,7 +48,7 @@ fn extent_sides(column: vec4f) -> vec4f {
     return vec4f(column.w + column.x, column.w - column.x, column.w + column.y, column.w - column.y);
 }
 
-// Does the box lie outside a side of the view volume, or in front of the near plane?
+// Does the box lie outside a side of the view volume, or between the eye and the near plane?
 fn extent_is_outside(e: Extent) -> bool {
     return any(e.sides < vec4f(0.0)) || e.near < 0.0;
 }

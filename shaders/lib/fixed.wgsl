@@ -1,6 +1,6 @@
 // Fixed-point positions and exact edge functions. A pixel is 2^SUBPIXEL_BITS units wide, its sample in the middle; y points
-// down. Small triangles have an extent of at most 32,768 units (128 px at 8 bits), so an edge function fits an i32 even where
-// intermediate results wrap. For large ones, 64-bit products are built from 16-bit limbs.
+// down. Small triangles have an extent of at most 32,768 units (128 px at 8 bits), so an edge function is exact in i32;
+// intermediate products may wrap. For large ones, 64-bit products are built from 16-bit limbs.
 
 override SUBPIXEL_BITS: u32 = 8u;
 

@@ -1,5 +1,5 @@
 // The frame: its uniform, its counters, the index of an invocation, and the search for the record that an id belongs to.
-// Mirrors `gpu::uniforms::{FrameUniform, CounterRecord}`.
+// Mirrors `gpu::records::{FrameUniform, CounterRecord}`.
 
 struct Frame {
     background: vec4f,       // gamma-encoded

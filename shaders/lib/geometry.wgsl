@@ -62,7 +62,7 @@ fn is_finite(v: vec3f) -> bool {
     return all(exponents != vec3u(0x7f800000u));
 }
 
-// Direction of `v`, whatever its length; zero where it has none.
+// Direction of `v`, which may have any length; zero where it has none.
 fn normal_direction(v: vec3f) -> vec3f {
     let scale = max(max(abs(v.x), abs(v.y)), abs(v.z));
     if !(scale > 0.0) || !is_finite(v) { return vec3f(0.0); }

@@ -1,4 +1,4 @@
-// Hi-Z: the farthest depth key of every 8x8 and of every 64x64 pixels. Whatever is farther than all that it could cover is
+// Hi-Z: the farthest depth key of every 8x8 and of every 64x64 pixels. A meshlet that is farther than every depth that it could cover is
 // hidden (hierarchical z-buffers: Greene, Kass and Miller 1993).
 //@ use lib/frame
 //@ use lib/fixed

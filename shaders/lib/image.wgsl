@@ -3,7 +3,7 @@
 //@ use lib/frame
 //@ use lib/triangle
 //@ use variants/draw_search
-//@ use lib/color
+//@ use lib/picture
 //@ use variants/depth
 //@ use variants/framebuffer_read
 

@@ -1,6 +1,6 @@
-// The material atlas: images, and the records of materials that look them up, as words of one texture (`gpu::texels`). Values
+// The material atlas: images, and the records of materials that look them up, as words of one texture (`gpu::material_atlas`). Values
 // are filtered here, in linear light, from whole texels: the arithmetic of hardware samplers is not specified, so the oracle
-// could not check it. Mirrors `gpu::texels::{MaterialRecord, LookupRecord}`.
+// could not check it. Mirrors `gpu::records::{MaterialRecord, LookupRecord}`.
 //@ use lib/triangle
 
 @group(0) @binding(32) var material_atlas: texture_2d_array<u32>;

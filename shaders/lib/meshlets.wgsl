@@ -1,5 +1,5 @@
 // Meshlets: clusters of a mesh's triangles with bounds in object space, the instances that show them, and the list of visible
-// meshlets. Mirrors `gpu::culling::{CullingUniform, MeshletRecord, InstanceRecord}`.
+// meshlets. Mirrors `gpu::records::{CullingUniform, MeshletRecord, InstanceRecord}`.
 //@ use lib/frame
 //@ binding @group(0) @binding(26) var<storage, read> meshlet_lists: array<u32>;
 

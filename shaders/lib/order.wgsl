@@ -1,5 +1,5 @@
 // The draw order: after how many samples drawing stops. Written by the passes that count samples, read as a uniform by the
-// raster passes. Mirrors `gpu::uniforms::OrderRecord`.
+// raster passes. Mirrors `gpu::records::OrderRecord`.
 
 struct Order {
     boundary_triangle: u32,   // id of the boundary triangle: triangles before it are drawn, later ones are not

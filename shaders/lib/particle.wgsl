@@ -1,5 +1,5 @@
 // Particles: the state of one and the steps that it takes, as src/effects/particles.rs defines them. `c` is the index of a step's
-// parameters. Mirrors `gpu::particle_readback::{ParticleStepUniform, StepParams}`.
+// parameters. Mirrors `gpu::records::{ParticleStepUniform, StepParams}`.
 //@ use lib/fixed
 //@ use lib/hash
 //@ use effects/particles

@@ -1,5 +1,5 @@
 // The triangle that a queue entry names: a triangle of the scene, or, with CLIPPED_ENTRY set, a triangle that clipping made.
-// Mirrors `gpu::uniforms::ClippedTriangleRecord`.
+// Mirrors `gpu::records::ClippedTriangleRecord`.
 //@ use lib/frame
 //@ use lib/fixed
 //@ use lib/triangle

@@ -31,7 +31,7 @@ fn snap_pack(at: vec2i, depth: u32, inv_w: u32, flags: u32) -> vec4u {
     return vec4u((bitcast<u32>(kept.x) << 8u) | flags, bitcast<u32>(kept.y) << 8u, depth, inv_w);
 }
 
-// The record of a vertex: only flags where it is rejected (`bit_class` is not 0) or in front of the near plane.
+// The record of a vertex: only flags where it is rejected (`bit_class` is not 0) or between the eye and the near plane.
 fn snap_record(bit_class: u32, is_behind_near: bool, at: vec2i, depth: u32, inv_w: u32) -> vec4u {
     let flags = select(bit_class, select(VERTEX_NEAR, snap_guard(at), is_behind_near), bit_class == 0u);
     let is_known = bit_class == 0u && is_behind_near;

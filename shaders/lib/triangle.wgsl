@@ -1,5 +1,5 @@
 // Triangles: the draws that they belong to, the vertices that they join, and their three snapped vertices.
-// Mirrors `gpu::uniforms::DrawRecord` and `frame::SnappedVertex`.
+// Mirrors `gpu::records::DrawRecord` and `frame::SnappedVertex`.
 //@ use lib/frame
 //@ use lib/fixed
 //@ use glue/draws
@@ -77,7 +77,7 @@ fn triangle_vertices(draw: u32, t: u32) -> vec3u {
 
 const VERTEX_NONFINITE = 1u;
 const VERTEX_OUT_OF_RANGE = 2u;
-const VERTEX_NEAR = 4u;     // in front of the near plane
+const VERTEX_NEAR = 4u;     // between the eye and the near plane
 const VERTEX_LEFT = 8u;     // outside the guard band
 const VERTEX_RIGHT = 16u;
 const VERTEX_TOP = 32u;
@@ -104,7 +104,7 @@ struct Triangle {
     id: u32,
     draw: u32,
     entry: u32,    // index among all triangles and, behind them, all clipped triangles
-    outline: u32,  // bit k: the edge opposite corner k is not a cut
+    outline: u32,  // bit k is set if the edge opposite corner k belongs to the original triangle (not made by clipping)
 }
 
 fn triangle_load(id: u32) -> Triangle {

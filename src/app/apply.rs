@@ -215,10 +215,10 @@ fn file(ctx: &egui::Context, state: &mut State, panels: &mut Panels, command: Fi
         FileCommand::Ask(purpose) => {
             let output = state.session.preset().output.size;
             let size = state.screen.requested().map_or(output, |inputs| [inputs.view.width, inputs.view.height]);
-            panels.dialogs.ask_path(purpose, &state.session, state.presets_dir.as_deref(), size);
+            panels.dialogs.ask_path(purpose, &state.session, state.folders.presets.as_deref(), size);
         }
         FileCommand::Browse(purpose, path) => state.jobs.ask_path(purpose, path),
-        FileCommand::Open(what) => match preset_file::open(&what, state.presets_dir.as_deref()) {
+        FileCommand::Open(what) => match preset_file::open(&what, &state.folders) {
             Ok(opened) => open_and_notify(state, panels, opened),
             Err(error) => state.notify(Level::Error, error.to_string()),
         },
@@ -273,7 +273,7 @@ fn write(state: &mut State, panels: &mut Panels, path: &Path) {
     match preset_file::save(&mut state.session.preset_file, path) {
         Ok(()) => {
             let saved = state.session.preset_file.clone();
-            panels.browser.refresh(state.presets_dir.as_deref(), &saved.id);
+            panels.browser.refresh(&state.folders, &saved.id);
             state.session.remember(saved);
             state.notify(Level::Info, format!("Saved {}", path.display()));
         }

@@ -1,5 +1,8 @@
 //! Commands: everything a panel can ask of the window. A panel reads the state and sends commands; `App` carries them
 //! out when the panel has been shown.
+//!
+//! An [`Action`] is an entry of the table of shortcuts and menu entries; `Command::from` turns it into the command that carries it
+//! out. An [`Edit`] is a change of the preset, the payload of [`Command::Edit`].
 
 use std::{cell::RefCell, path::PathBuf, sync::Arc};
 
@@ -35,7 +38,7 @@ pub enum Command {
     /// Gives every parameter of the enabled effects a random value of its soft range.
     Randomize,
     Keyframe(KeyframeEdit),
-    /// Removes the key that is selected on the timeline.
+    /// Removes the keyframe that is selected on the timeline.
     RemoveSelectedKey,
     Time(TimeCommand),
     Row(RowCommand),
@@ -70,7 +73,7 @@ pub enum Command {
 /// A change of the preset.
 pub enum Edit {
     Setting(&'static Setting, Value),
-    /// Sets a parameter; an animated one gets a key at the time shown.
+    /// Sets a parameter; an animated one gets a keyframe at the time shown.
     Parameter(Parameter, Value),
     Enable(&'static Effect),
     Disable(&'static Effect),
@@ -82,7 +85,7 @@ pub enum Edit {
     Builtin(&'static str),
     /// The same built-in scene with other parameters.
     BuiltinQuery(String),
-    /// The name of the scene's own camera, without a camera of the preset; empty for the first.
+    /// Removes the preset's camera and uses the scene camera of this name; empty = the first.
     SceneCamera(String),
     Play(ClipPlayback),
     Clock(Clock),
@@ -93,7 +96,7 @@ pub enum Edit {
     ToggleOrthographic,
 }
 
-/// A change of the keys of an animated parameter.
+/// A change of the keyframes of an animated parameter.
 pub enum KeyframeEdit {
     Move(KeyId, f64),
     Ease(KeyId, Easing),
@@ -103,9 +106,9 @@ pub enum KeyframeEdit {
 /// A change of the time that is shown. Seconds.
 pub enum TimeCommand {
     Show(f64),
-    /// Shows the preset's own time.
+    /// Goes to `clock.time_s`.
     ShowOwn,
-    /// Makes the time shown the preset's own.
+    /// Writes the shown time to `clock.time_s`.
     Keep,
     PlayOrPause,
     Pause,
@@ -126,7 +129,7 @@ pub enum RowCommand {
     Copy(String),
     /// Pastes into this path.
     Paste(String),
-    /// Sets a key of this parameter at the time shown, or removes the one that is there.
+    /// Sets a keyframe of this parameter at the time shown, or removes the one that is there.
     ToggleKey(String),
 }
 
@@ -179,7 +182,7 @@ pub enum ViewCommand {
 /// What can be shown or hidden.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Toggle {
-    /// Left, right and timeline together.
+    /// The side panels and the timeline.
     Panels,
     Timeline,
     Sweep,

@@ -61,7 +61,7 @@ fn bare_button(ui: &mut Ui, icon: Icon, color: impl FnOnce(&Ui, &Response) -> Co
     response
 }
 
-/// The diamond beside a value: a gray outline if it is not animated, an outline in the accent color if it is, filled on a key.
+/// The diamond beside a value: a gray outline if it is not animated, an outline in the accent color if it is, filled at a keyframe.
 pub fn key_button(ui: &mut Ui, rect: Rect, keying: Keying, path: &str) -> Response {
     let response = ui.interact(rect, egui::Id::unique((path, "key")), Sense::click());
     let (name, hint) = match keying {
@@ -82,7 +82,7 @@ pub fn key_button(ui: &mut Ui, rect: Rect, keying: Keying, path: &str) -> Respon
     response.on_hover_text(hint)
 }
 
-/// The mark of a key: a diamond with corners `r` points from its center.
+/// The mark of a keyframe: a diamond with corners `r` points from its center.
 pub fn paint_diamond(painter: &egui::Painter, at: Pos2, r: f32, fill: Color32, edge: Color32) {
     let points = [(0.0, -r), (r, 0.0), (0.0, r), (-r, 0.0)].map(|(x, y)| at + vec2(x, y)).to_vec();
     painter.add(Shape::convex_polygon(points, fill, Stroke::new(1.3, edge)));

@@ -5,18 +5,18 @@ use crate::{
     preset::{Preset, animation::Track},
 };
 
-/// What the key button of a row shows.
+/// What the keyframe button of a row shows.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Keying {
     /// Not animated.
     Still,
-    /// Animated, with no key at the time shown.
+    /// Animated, with no keyframe at the time shown.
     Between,
-    /// Animated, with a key at the time shown.
+    /// Animated, with a keyframe at the time shown.
     OnKey,
 }
 
-/// One key of one parameter.
+/// One keyframe of one parameter.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct KeyId {
     pub effect: &'static Effect,

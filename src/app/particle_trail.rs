@@ -10,7 +10,7 @@ use crate::{
     scene::{particle_discs::ParticleTimeline, view::View},
 };
 
-/// See the module's first line.
+/// How the pointer led the particles while the preset played.
 #[derive(Default)]
 pub struct Trail {
     /// Parameter words of every step so far; empty while the particles move as the preset says.

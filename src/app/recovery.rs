@@ -7,7 +7,7 @@ use anyhow::Context as _;
 use super::log::{Level, Log};
 use crate::{
     preset::SceneSource,
-    preset_file::{self, PresetFile},
+    preset_file::{self, Folders, PresetFile},
 };
 
 /// The preset of a window that was opened without one.
@@ -15,9 +15,9 @@ pub const FIRST_PRESET: &str = "teapot";
 
 /// The preset to begin with: one that is open already, or `open`. If it cannot be opened, the error is logged and the teapot is
 /// shown.
-pub fn first_preset(opened: Option<PresetFile>, open: Option<&str>, folder: Option<&Path>, log: &mut Log) -> PresetFile {
+pub fn first_preset(opened: Option<PresetFile>, open: Option<&str>, folders: &Folders, log: &mut Log) -> PresetFile {
     let what = open.unwrap_or(FIRST_PRESET);
-    match opened.map_or_else(|| preset_file::open(what, folder), Ok) {
+    match opened.map_or_else(|| preset_file::open(what, folders), Ok) {
         Ok(mut preset_file) => {
             preset_file.warnings.iter().for_each(|warning| log.add(Level::Warning, warning.clone()));
             // A recovered preset is not saved to the recovery file: Save asks for another.

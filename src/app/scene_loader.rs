@@ -29,7 +29,7 @@ impl SceneKey {
 /// Number of recent scenes that are kept in memory.
 const MAX_RECENT: usize = 4;
 
-/// See the module's first line.
+/// The scene that is shown, the one that is loading, and recent ones that are kept in memory.
 #[derive(Default)]
 pub struct SceneLoader {
     shown: Option<(SceneKey, Arc<Scene>)>,

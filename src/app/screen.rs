@@ -36,7 +36,7 @@ const MAX_REDRAWS: u32 = 6;
 /// Seconds after which a report that has not arrived is given up.
 const REPORT_TIMEOUT_S: f64 = 10.0;
 
-/// See the module's first line.
+/// A picture in the window and the renderer that draws it.
 pub struct Screen {
     pub gpu: Arc<Gpu>,
     renderer: Renderer,

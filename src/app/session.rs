@@ -40,7 +40,7 @@ pub struct UndoState {
     pub preset: Preset,
 }
 
-/// See the module's first line.
+/// The open preset, its scene, the time that is shown, and the effects that are muted.
 pub struct Session {
     pub preset_file: PresetFile,
     /// Every preset that was opened or saved since the start, as its file has it.

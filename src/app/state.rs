@@ -1,7 +1,7 @@
 //! The state of the window besides its panels: the session, its history, the picture, and what several panels share.
 //! Panels read it; only `App` changes it.
 
-use std::{path::PathBuf, sync::Arc};
+use std::sync::Arc;
 
 use super::{
     command::Parameter,
@@ -14,7 +14,7 @@ use super::{
     session::{Session, UndoState},
     verification::Verification,
 };
-use crate::measure::ErrorReport;
+use crate::{measure::ErrorReport, preset_file::Folders};
 
 /// Which panels and windows are open.
 #[derive(Clone, Copy, Debug)]
@@ -42,10 +42,10 @@ pub struct Clipboard {
     pub paste_into: Option<String>,
 }
 
-/// See the module's first line.
+/// The state of the window besides its panels: the session, its history, the picture, and what several panels share.
 pub struct State {
     /// Folder of presets from the command line.
-    pub presets_dir: Option<PathBuf>,
+    pub folders: Folders,
     pub session: Session,
     pub history: History<UndoState>,
     pub jobs: Jobs,

@@ -11,7 +11,7 @@ pub struct Verdict {
     pub findings: Arc<Findings>,
 }
 
-/// See the module's first line.
+/// Judges pictures with the oracle, and keeps the newest verdict on the picture that is shown.
 #[derive(Default)]
 pub struct Verification {
     verdict: Option<Verdict>,
@@ -22,7 +22,7 @@ pub struct Verification {
 }
 
 impl Verification {
-    /// The newest verdict, whatever picture is shown now.
+    /// The newest verdict, even if another picture is shown now.
     pub fn verdict(&self) -> Option<&Verdict> {
         self.verdict.as_ref()
     }

@@ -1,11 +1,8 @@
 //! The window: its state and its panels, and what happens in a frame.
 
-use std::{
-    path::PathBuf,
-    sync::{
-        Arc,
-        atomic::{AtomicBool, Ordering},
-    },
+use std::sync::{
+    Arc,
+    atomic::{AtomicBool, Ordering},
 };
 
 use eframe::egui::{self, Ui, ViewportCommand};
@@ -34,7 +31,7 @@ use crate::{
     gpu::{Gpu, device::AdapterChoice},
     measure::ErrorReport,
     preset::Preset,
-    preset_file::PresetFile,
+    preset_file::{Folders, PresetFile},
     scene::view::View,
 };
 
@@ -46,8 +43,8 @@ pub struct Options {
     /// What `open` names, where it has been read, perhaps with changes.
     pub opened: Option<PresetFile>,
     pub adapter: AdapterChoice,
-    /// A folder of presets beside the user's own.
-    pub presets_dir: Option<PathBuf>,
+    /// Where presets and effects are, beside the user's own presets.
+    pub folders: Folders,
 }
 
 /// Set when the window closes because its device was lost.
@@ -161,14 +158,14 @@ impl App {
         theme::apply(&cc.egui_ctx);
         let (window, gpu) = device::adopt(cc)?;
         let mut log = Log::default();
-        let opened = recovery::first_preset(options.opened, options.open.as_deref(), options.presets_dir.as_deref(), &mut log);
+        let opened = recovery::first_preset(options.opened, options.open.as_deref(), &options.folders, &mut log);
         let summary = &gpu.summary;
         log.add(Level::Info, format!("adapter: {}, {}, {}", summary.name, summary.backend, summary.driver));
         let session = Session::new(opened);
         Ok(Self {
-            panels: Panels::new(options.presets_dir.as_deref()),
+            panels: Panels::new(&options.folders),
             state: State {
-                presets_dir: options.presets_dir,
+                folders: options.folders,
                 history: History::new(session.undo_state()),
                 session,
                 jobs: Jobs::new(cc.egui_ctx.clone()),

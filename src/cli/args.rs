@@ -4,6 +4,8 @@ use std::path::PathBuf;
 
 use clap::{Args, Parser, Subcommand, ValueEnum};
 
+use crate::{effect_files::Hook, preset_file::Folders};
+
 /// An effects lab around a compute-shader rasterizer, judged by an exact oracle.
 #[derive(Parser, Debug)]
 #[command(name = "rasterlab", version, about, long_about = LONG)]
@@ -32,6 +34,9 @@ pub struct Common {
     /// Folder of presets that is searched first [env: RASTERLAB_PRESETS]
     #[arg(long, global = true, value_name = "DIR")]
     pub presets: Option<PathBuf>,
+    /// Folder of effect files [default: effects], beside that of the user and `effects` beside a preset
+    #[arg(long, global = true, value_name = "DIR")]
+    pub effects: Option<PathBuf>,
     /// Change one value of the preset, e.g. facet.amount=.5; the name of an effect alone enables it
     #[arg(long, global = true, value_name = "PATH[=VALUE]")]
     pub set: Vec<String>,
@@ -58,6 +63,16 @@ impl Common {
         self.presets.clone().or_else(|| std::env::var_os("RASTERLAB_PRESETS").filter(|dir| !dir.is_empty()).map(PathBuf::from))
     }
 
+    /// `--effects`, or `effects` in the current folder.
+    pub fn effects_dir(&self) -> PathBuf {
+        self.effects.clone().unwrap_or_else(|| "effects".into())
+    }
+
+    /// Where presets and effects are looked for.
+    pub fn folders(&self) -> Folders {
+        Folders::new(self.presets_dir(), &self.effects_dir())
+    }
+
     /// `--adapter`, or `RASTERLAB_ADAPTER`.
     pub fn adapter_name(&self) -> Option<String> {
         self.adapter.clone().or_else(|| std::env::var("RASTERLAB_ADAPTER").ok().filter(|name| !name.is_empty()))
@@ -66,7 +81,7 @@ impl Common {
 
 #[derive(Subcommand, Debug)]
 pub enum Command {
-    /// List presets, effects with their parameters and ranges, builtin scenes and accuracy axes
+    /// List presets, effects with their parameters and ranges, built-in scenes and accuracy axes
     List(List),
     /// List adapters with backend, driver, limits and usable visibility options
     Adapters,
@@ -92,6 +107,8 @@ pub enum Command {
     Check(Check),
     /// Show what the current schema changes in preset files; with --write change them
     Migrate(Migrate),
+    /// Write a commented effect file to begin with
+    NewEffect(NewEffect),
     /// Print a completion script
     Completions { shell: clap_complete::Shell },
 }
@@ -112,9 +129,19 @@ impl Command {
             Self::Gallery(_) => "gallery",
             Self::Check(_) => "check",
             Self::Migrate(_) => "migrate",
+            Self::NewEffect(_) => "new-effect",
             Self::Completions { .. } => "completions",
         }
     }
+}
+
+#[derive(Args, Debug)]
+pub struct NewEffect {
+    /// Name of the effect, in small letters
+    pub name: String,
+    /// What the effect does: surface (what color is it), vertex (where is it), sample (is it drawn), pixel (finish the picture)
+    #[arg(long, default_value = "surface", value_parser = Hook::parse)]
+    pub hook: Hook,
 }
 
 #[derive(Args, Debug)]
@@ -146,7 +173,7 @@ pub enum ListKind {
     Presets,
     /// Effects with their parameters
     Effects,
-    /// Builtin scenes with their parameters
+    /// Built-in scenes with their parameters
     Scenes,
     /// Accuracy axes with their options, from fast to accurate
     Axes,
@@ -286,7 +313,7 @@ pub struct Bench {
     /// Presets; without any, the lambert effect on each --scene
     #[arg(value_name = "PRESET")]
     pub inputs: Vec<String>,
-    /// A builtin scene by query, or a model file, instead of the preset's scene; may be repeated
+    /// A built-in scene by query, or a model file, instead of the preset's scene; may be repeated
     #[arg(long, value_name = "SCENE")]
     pub scene: Vec<String>,
     /// Measure every effect alone, with the values of the preset of its name, and no effect

@@ -21,11 +21,8 @@ use crate::{
 };
 
 pub fn run(common: &Common, args: &Check, streams: &mut Streams) -> Result<Exit, CliError> {
-    let files = if args.files.is_empty() {
-        preset_file::gallery(common.presets_dir().as_deref()).iter().map(gallery_name).collect()
-    } else {
-        args.files.clone()
-    };
+    let files =
+        if args.files.is_empty() { preset_file::gallery(&common.folders()).iter().map(gallery_name).collect() } else { args.files.clone() };
     let mut backend = if args.render { Some(Backend::open(common, streams)?) } else { None };
     let bar = streams.progress(files.len() as u64);
     let mut findings = Vec::new();

@@ -1,4 +1,4 @@
-//! `list`: presets, builtin scenes, effects with every parameter and its range, and the accuracy axes.
+//! `list`: presets, built-in scenes, effects with every parameter and its range, and the accuracy axes.
 
 use serde_json::{Value, json};
 
@@ -9,15 +9,16 @@ use super::{
 };
 use crate::{
     accuracy::{AXES, Axis},
-    effects::{EFFECTS, Effect},
+    effects::Effect,
     params::{Field, format_number},
     preset_file::{self, GalleryEntry, gallery, toml_value},
     scene::builtin::BUILTINS,
 };
 
 pub fn run(common: &Common, args: &List, streams: &mut Streams) -> Result<Exit, CliError> {
-    let entries = if args.has(ListKind::Presets) { gallery(common.presets_dir().as_deref()) } else { Vec::new() };
-    let effects = if args.has(ListKind::Effects) { EFFECTS } else { &[] };
+    let entries = if args.has(ListKind::Presets) { gallery(&common.folders()) } else { Vec::new() };
+    let folders = common.folders();
+    let effects: Vec<&Effect> = if args.has(ListKind::Effects) { folders.effects.effects().collect() } else { Vec::new() };
     let scenes = if args.has(ListKind::Scenes) { BUILTINS } else { &[] };
     let axes = if args.has(ListKind::Axes) { AXES } else { &[] };
     if streams.json {
@@ -28,7 +29,7 @@ pub fn run(common: &Common, args: &List, streams: &mut Streams) -> Result<Exit, 
             .map(|scene| json!({ "kind": "scene", "id": scene.name, "about": scene.about, "parameters": scene_parameters(scene.params) }));
         streams.object("list", Value::Null, preset_files.chain(effects).chain(scenes).chain(axes.iter().map(axis_json)).collect())?;
     } else {
-        let parts = [presets_text(&entries), effects_text(effects), scenes_text(scenes), axes_text(axes)];
+        let parts = [presets_text(&entries), effects_text(&effects), scenes_text(scenes), axes_text(axes)];
         streams.text(&parts.into_iter().filter(|part| !part.is_empty()).collect::<Vec<_>>().join("\n"))?;
     }
     entries.iter().filter_map(|entry| entry.preset_file.as_ref().err()).for_each(|error| streams.note(&format!("warning: {error}")));
@@ -54,7 +55,7 @@ fn presets_text(entries: &[GalleryEntry]) -> String {
     if entries.is_empty() {
         return String::new();
     }
-    let mut rows = vec![["LOOK", "NAME", "EFFECTS", "FROM"].map(str::to_owned).to_vec()];
+    let mut rows = vec![["PRESET", "NAME", "EFFECTS", "FROM"].map(str::to_owned).to_vec()];
     rows.extend(entries.iter().map(|entry| match &entry.preset_file {
         Ok(preset_file) => vec![entry.id.clone(), preset_file.title().to_owned(), effect_names(preset_file).join(" + "), origin(entry)],
         Err(_) => vec![entry.id.clone(), "(cannot be read)".into(), String::new(), origin(entry)],

@@ -18,6 +18,7 @@ pub mod golden;
 mod list;
 mod measured;
 mod migrate;
+mod new_effect;
 mod open;
 mod render;
 mod report;
@@ -73,6 +74,7 @@ fn dispatch(common: &Common, command: &Command, streams: &mut Streams) -> Result
         Command::Stress(args) => stress::run(common, args, streams),
         Command::Gallery(args) => gallery::run(args, streams),
         Command::Check(args) => check::run(common, args, streams),
+        Command::NewEffect(args) => new_effect::run(common, args, streams),
         Command::Migrate(args) => migrate::run(args, streams),
         Command::Completions { shell } => {
             let mut script = Vec::new();
@@ -94,7 +96,7 @@ fn window(cli: &Cli) -> Result<Exit, CliError> {
         }
         backend::BackendChoice::Gpu(choice) => choice,
     };
-    let options = crate::app::Options { open: cli.open.clone(), opened: Some(opened), adapter, presets_dir: cli.common.presets_dir() };
+    let options = crate::app::Options { open: cli.open.clone(), opened: Some(opened), adapter, folders: cli.common.folders() };
     crate::app::run(options).map_err(CliError::window)?;
     Ok(Exit::Done)
 }

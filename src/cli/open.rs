@@ -6,9 +6,9 @@ use crate::preset_file::{self, GalleryEntry, PresetFile};
 /// Opens a preset and applies `--unset`, then `--set`.
 pub fn open(common: &Common, what: &str) -> Result<PresetFile, CliError> {
     let mut preset_file = if what == "-" {
-        preset_file::parse_file(&files::stdin_text()?, "stdin", "stdin")?
+        preset_file::parse_with(&files::stdin_text()?, "stdin", "stdin", &common.folders().effects)?
     } else {
-        preset_file::open(what, common.presets_dir().as_deref())?
+        preset_file::open(what, &common.folders())?
     };
     if common.strict {
         preset_file = preset_file.strict()?;
@@ -26,7 +26,7 @@ pub fn open(common: &Common, what: &str) -> Result<PresetFile, CliError> {
 /// The named presets, or every preset of the gallery that has a golden.
 pub fn presets(common: &Common, names: &[String], streams: &Streams) -> Result<Vec<PresetFile>, CliError> {
     let preset_files: Vec<PresetFile> = if names.is_empty() {
-        let entries = preset_file::gallery(common.presets_dir().as_deref());
+        let entries = preset_file::gallery(&common.folders());
         let preset_files = entries.iter().map(|entry| open(common, &gallery_name(entry))).collect::<Result<Vec<_>, _>>()?;
         preset_files.into_iter().filter(|preset_file| preset_file.preset.test.is_some()).collect()
     } else {

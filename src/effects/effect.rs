@@ -6,7 +6,7 @@ use crate::{
     scene::particle_discs::ParticleSettings,
 };
 
-/// One entry of the catalogue.
+/// One entry of the list of effects.
 pub struct Effect {
     /// File stem, WGSL function, uniform member, preset table, `--set` prefix.
     pub name: &'static str,
@@ -15,9 +15,11 @@ pub struct Effect {
     pub hooks: Hooks,
     pub fields: &'static [Field],
     /// Parameter words with every default.
-    pub defaults: fn() -> Vec<u32>,
+    pub defaults: &'static (dyn Fn() -> Vec<u32> + Sync),
     /// Name of the WGSL struct.
     pub wgsl_struct: &'static str,
+    /// The WGSL text of an effect that a file brings; none for a built-in effect, whose text is in `shaders/effects`.
+    pub source: Option<&'static EffectSource>,
     /// Is every frame the same with these parameter words?
     pub is_repeatable: fn(&[u32]) -> bool,
 }
@@ -25,7 +27,16 @@ pub struct Effect {
 impl Effect {
     /// An effect with parameters `P` and no hook yet.
     pub const fn new<P: Params>(name: &'static str, wgsl_struct: &'static str, about: &'static str) -> Self {
-        Self { name, about, hooks: Hooks::NONE, fields: P::FIELDS, defaults: defaults::<P>, wgsl_struct, is_repeatable: |_| true }
+        Self {
+            name,
+            about,
+            hooks: Hooks::NONE,
+            fields: P::FIELDS,
+            defaults: &defaults::<P>,
+            wgsl_struct,
+            source: None,
+            is_repeatable: |_| true,
+        }
     }
 
     /// An effect on the surface hook alone.
@@ -35,7 +46,7 @@ impl Effect {
 
     /// The same effect, also on the surface hook.
     pub const fn on_surface<P: SurfaceEffect>(mut self) -> Self {
-        self.hooks.surface = Some(|surface, words| P::apply(surface, &read(words)));
+        self.hooks.surface = Some(&|surface, words| P::apply(surface, &read(words)));
         self.hooks.surface_inputs = P::INPUTS;
         self
     }
@@ -44,9 +55,9 @@ impl Effect {
     pub const fn on_vertex<P: VertexEffect>(mut self) -> Self {
         self.hooks.vertex = Some(VertexHook {
             needs_triangle: P::NEEDS_TRIANGLE,
-            moved: |vertex, words| P::moved(vertex, &read(words)),
-            error_bound: |vertex, error_bound, words| P::error_bound(vertex, error_bound, &read(words)),
-            max_displacement_m: |radius_m, words| P::max_displacement_m(radius_m, &read(words)),
+            moved: &|vertex, words| P::moved(vertex, &read(words)),
+            error_bound: &|vertex, error_bound, words| P::error_bound(vertex, error_bound, &read(words)),
+            max_displacement_m: &|radius_m, words| P::max_displacement_m(radius_m, &read(words)),
         });
         self
     }
@@ -55,10 +66,10 @@ impl Effect {
     pub const fn on_sample<P: SampleEffect>(mut self) -> Self {
         self.hooks.sample = Some(SampleHook {
             has_setup: P::HAS_SETUP,
-            error_bound: |setup, words| P::error_bound(setup, &read(words)),
-            is_from_floats: |words| P::is_from_floats(&read(words)),
-            sample_setup: |setup, words, first| P::sample_setup(setup, &read(words), first),
-            is_drawn: |sample, words| P::is_drawn(sample, &read(words)),
+            error_bound: &|setup, words| P::error_bound(setup, &read(words)),
+            is_from_floats: &|words| P::is_from_floats(&read(words)),
+            sample_setup: &|setup, words, first| P::sample_setup(setup, &read(words), first),
+            is_drawn: &|sample, words| P::is_drawn(sample, &read(words)),
         });
         self
     }
@@ -66,7 +77,7 @@ impl Effect {
     /// The same effect, also on the image hook.
     pub const fn on_image<P: ImageEffect>(mut self) -> Self {
         self.hooks.image =
-            Some(ImageHook { reads_previous: P::READS_PREVIOUS, finish: |pixel, picture, words| P::finish(pixel, picture, &read(words)) });
+            Some(ImageHook { reads_previous: P::READS_PREVIOUS, finish: &|pixel, picture, words| P::finish(pixel, picture, &read(words)) });
         self
     }
 
@@ -106,6 +117,11 @@ impl Effect {
         self
     }
 
+    /// Name of the WGSL file below `effects`.
+    pub fn file_stem(&self) -> &str {
+        self.source.map_or(self.name, |source| &source.stem)
+    }
+
     /// The field called `name`.
     pub fn field(&self, name: &str) -> Option<&'static Field> {
         self.fields.iter().find(|field| field.name == name)
@@ -120,7 +136,7 @@ impl std::fmt::Debug for Effect {
 
 impl PartialEq for Effect {
     fn eq(&self, other: &Self) -> bool {
-        self.name == other.name
+        self.name == other.name && self.source == other.source
     }
 }
 
@@ -129,7 +145,31 @@ impl Eq for Effect {}
 impl std::hash::Hash for Effect {
     fn hash<H: std::hash::Hasher>(&self, state: &mut H) {
         self.name.hash(state);
+        self.source.hash(state);
     }
+}
+
+/// The WGSL text of an effect that a file brings.
+#[derive(Clone, Debug, PartialEq, Eq, Hash)]
+pub struct EffectSource {
+    /// Name of the file without `.wgsl`.
+    pub stem: String,
+    /// The file as its author wrote it.
+    pub written: String,
+    /// The text that is linked: without attributes, its names made unique, its loops bounded.
+    pub linked: String,
+    /// The function on each hook.
+    pub functions: HookFunctions,
+}
+
+/// Names of an effect's WGSL functions in its linked text.
+#[derive(Clone, Debug, Default, PartialEq, Eq, Hash)]
+pub struct HookFunctions {
+    pub vertex: Option<String>,
+    pub sample: Option<String>,
+    pub sample_setup: Option<String>,
+    pub surface: Option<String>,
+    pub image: Option<String>,
 }
 
 /// Parameter words as the struct they were made from.

@@ -10,7 +10,7 @@ params! {
     pub struct Fog {
         /// Color of the fog, linear.
         color: Color = [0.36, 0.44, 0.55, 1.0];
-        /// Extinction: how much one meter takes away.
+        /// Extinction coefficient: light falls as exp(-density · path).
         density: f32 = 0.35, hard 0.0..=1e4, soft 0.0..=2.0, unit "per m";
         /// Depth at which the fog begins.
         start_m: f32 = 3.0, hard 0.0..=1e6, soft 0.0..=20.0, unit "m";

@@ -17,8 +17,8 @@ impl Effect {
         EFFECTS.iter().copied().find(|effect| effect.name == name)
     }
 
-    /// Index in [`EFFECTS`].
+    /// Index in [`EFFECTS`]; an effect of a file comes after all of them.
     pub fn rank(&self) -> usize {
-        EFFECTS.iter().position(|effect| effect.name == self.name).expect("every effect is listed")
+        EFFECTS.iter().position(|effect| *effect == self).unwrap_or(EFFECTS.len())
     }
 }

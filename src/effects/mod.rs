@@ -48,7 +48,7 @@ mod list;
 mod stack;
 
 pub use self::{
-    effect::{Effect, read},
+    effect::{Effect, EffectSource, HookFunctions, read},
     hooks::{Surface, SurfaceEffect, SurfaceInput},
     list::EFFECTS,
     stack::{Conflict, EnabledEffect, Stack},

@@ -101,7 +101,7 @@ struct Lab<'a> {
     timer: Option<Timer>,
 }
 
-/// Measures every option that the adapter has, and the baselines. Rows keep their order whatever the figures.
+/// Measures every option that the adapter has, and the baselines. Rows keep their order for all figures.
 pub fn bench(
     gpu: &Arc<Gpu>,
     preset: &Preset,

@@ -21,7 +21,7 @@ struct Held {
     purpose: &'static str,
 }
 
-/// See the module's first line.
+/// Buffers on the device by their `BufferId`: made when first needed, kept while they fit, listed with their purpose.
 #[derive(Default)]
 pub struct Buffers {
     held: BTreeMap<BufferId, Held>,

@@ -62,7 +62,7 @@ fn instance() -> wgpu::Instance {
     let mut descriptor = wgpu::InstanceDescriptor::new_without_display_handle_from_env();
     descriptor.backends &= BACKENDS;
     // Checked indirect dispatches cost a dispatch and two barriers each. Ours are folded and clamped by the kernel that
-    // writes them (`shaders/passes/args.wgsl`), and tested past 65,535 workgroups.
+    // writes them (`shaders/stages/geometry/dispatch_args.wgsl`), and tested past 65,535 workgroups.
     descriptor.flags.remove(wgpu::InstanceFlags::VALIDATION_INDIRECT_CALL);
     wgpu::Instance::new(descriptor)
 }
@@ -181,7 +181,7 @@ impl Gpu {
         self.lost.load(Ordering::Relaxed)
     }
 
-    /// The first error that nobody caught since the last call; it means that we erred.
+    /// The first uncaught error since the last call; it means that rasterlab made a mistake.
     pub fn take_error(&self) -> Option<String> {
         self.error.lock().unwrap_or_else(|p| p.into_inner()).take()
     }

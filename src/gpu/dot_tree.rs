@@ -33,7 +33,7 @@ impl RTreeObject for Leaf {
     }
 }
 
-/// See the module's first line.
+/// A tree of dot runs in space, which the CPU asks for the dots that may show. It keeps a few too many, never one too few.
 pub struct DotTree {
     tree: RTree<Leaf>,
     /// First and last dot of every stretch, in the scene before it is spun.

@@ -33,7 +33,7 @@ pub struct DrawInputs {
     pub deforms_offscreen: bool,
 }
 
-/// See the module's first lines.
+/// What a view's passes read about every instance, computed on the CPU when the scene, the viewpoint or the position format changes.
 pub struct DrawData {
     scene: Arc<Scene>,
     inputs: DrawInputs,

@@ -1,4 +1,4 @@
-//! The layout of a frame, computed once from the kernel key, the scene's counts, the size of the picture and the room in the queues:
+//! The layout of a frame, computed once from the kernel key, the scene's counts, the size of the picture and the capacity of the queues:
 //! which buffers it has and how large they are, what lies where in them, which bytes are cleared, and how many workgroups each
 //! pass takes. Buffers, uniforms, passes and readback all go by it.
 
@@ -38,20 +38,24 @@ pub enum Target {
 /// What is drawn, in numbers.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct SceneCounts {
-    /// Vertices and triangles of all draws.
+    /// Vertices of all draws.
     pub vertices: u64,
+    /// Triangles of all draws.
     pub triangles: u64,
     pub draws: u64,
-    /// End of the vertices that joints and morph targets deform, counted over all draws that may.
+    /// Vertices in all draws that joints or morph targets can deform; the dispatch size of `deform`.
     pub deformable: u32,
-    /// Records of what deforms, of joints and of morph targets.
+    /// Deformed draws: one record each.
     pub deforms: u64,
+    /// Vectors of four floats that hold the joint transforms.
     pub joint_vectors: u64,
+    /// Morph targets of all deformed draws whose weight is not 0: one record each.
     pub morph_targets: u64,
     /// Meshlets of all instances.
     pub meshlets: u32,
-    /// Meshlets of all primitives, and words that list their triangles and vertices.
+    /// Meshlets of all primitives: one record each.
     pub meshlet_records: u64,
+    /// Words that list the triangles and vertices of all primitives' meshlets.
     pub meshlet_words: u32,
     pub particles: u32,
 }
@@ -73,43 +77,52 @@ pub struct DotCounts {
 pub struct LayoutInputs<'a> {
     pub key: &'a KernelKey,
     pub target: Target,
-    /// Pixels that are drawn, and that are shown.
+    /// Width and height that are drawn, pixels.
     pub size: [u32; 2],
+    /// Width and height that are shown, pixels.
     pub shown: [u32; 2],
     pub scene: SceneCounts,
     pub dots: Option<DotCounts>,
     /// Bytes of the effects' parameters; 0 where no uniform carries them.
     pub effect_bytes: u64,
-    /// Room in the queues that the key's passes have.
+    /// Capacity of the queues that the key's passes have.
     pub capacities: Capacities,
 }
 
 /// A part of a buffer that holds one thing where the buffer holds several, one behind the other.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Region {
-    /// Projected vertices, then what sample effects and masks set up per triangle, then the rank of every triangle in a draw order.
+    /// Projected vertices.
     VertexRecords,
+    /// What sample effects and masks set up per triangle; behind the vertex records.
     SampleSetups,
+    /// The rank of every triangle in a draw order; behind the sample setups.
     TriangleRanks,
-    /// Depths and triangle ids of the nearest samples, then the x-ray's sums.
+    /// Depths and triangle ids of the nearest samples.
     Nearest,
+    /// The sums of the x-ray; behind the nearest samples.
     XraySums,
-    /// The picture, then the list of tiles that the resolve visits, or the strongest dot on every pixel.
+    /// The picture.
     Pixels,
+    /// Tiles that the resolve visits; behind the picture.
     TileList,
+    /// The strongest dot on every pixel; behind the picture.
     DotStrengths,
-    /// Two words for each tile, then the triangles on all lists.
+    /// Two words for each tile.
     TileHeads,
+    /// The triangles on the lists of all tiles; behind the heads.
     TileEntries,
     ClipQueue,
     MediumQueue,
     LargeQueue,
     TileQueue,
-    /// Triangles and vertices of all meshlets, then the visible meshlets.
+    /// Triangles and vertices of all meshlets.
     MeshletWords,
+    /// The visible meshlets; behind the words.
     VisibleMeshlets,
-    /// Farthest depths of tiles of 8 x 8 pixels, then of blocks of 64 x 64.
+    /// Farthest depth of every tile of 8 x 8 pixels.
     HizTiles,
+    /// Farthest depth of every block of 64 x 64 pixels; behind the tiles.
     HizBlocks,
 }
 
@@ -139,15 +152,18 @@ pub enum Dispatch {
     Indirect { buffer: BufferId, offset: u64 },
 }
 
-/// Bytes of a word, of an entry in the queue of tiles, and of a visible meshlet.
+/// Bytes of a word.
 const WORD: u64 = 4;
+/// Bytes of an entry in the queue of tiles.
 const TILE_ENTRY: u64 = 8;
+/// Bytes of a visible meshlet.
 const VISIBLE_MESHLET: u64 = 16;
 
-/// Side of the tiles that the resolve can be dispatched over one by one, of those of the tiled rasterizer, and of a block of depths
-/// that hide meshlets; pixels.
+/// Side of a tile of the resolve, which can be dispatched over listed tiles alone; pixels.
 const RESOLVE_TILE: u32 = 8;
+/// Side of a tile of the tiled rasterizer, pixels.
 const RASTER_TILE: u32 = 16;
+/// Side of a block of Hi-Z depths, pixels.
 const HIZ_BLOCK: u32 = 64;
 
 /// Triangles whose samples are added up by one workgroup.
@@ -156,7 +172,7 @@ const ORDER_BLOCK: u64 = 1024;
 /// Rows of the background that are kept, to be copied all over the picture.
 pub const BACKGROUND_ROWS: u32 = 32;
 
-/// See the module's first lines.
+/// The layout of a frame: its buffers, their regions and cleared bytes, and the workgroups of every pass.
 #[derive(Clone, Debug, PartialEq)]
 pub struct FrameLayout {
     buffers: BTreeMap<BufferId, BufferSpec>,
@@ -166,7 +182,7 @@ pub struct FrameLayout {
     pub shown: [u32; 2],
     pub scene: SceneCounts,
     pub dots: Option<DotCounts>,
-    /// Room in the queues that the key's passes have.
+    /// Capacity of the queues that the key's passes have.
     pub capacities: Capacities,
 }
 
@@ -281,9 +297,9 @@ impl FrameLayout {
 
     fn add_geometry(&mut self, key: &KernelKey) {
         let scene = self.scene;
-        // A binding holds an element at least, even where nothing is to be drawn.
+        // A binding needs at least one element, even for an empty scene.
         self.add(BufferId::Draws, scene.draws.max(1) * size_of::<DrawRecord>() as u64);
-        // A shadow map is drawn of the vertices that were deformed for the picture.
+        // The shadow map reuses the deformed vertices of the picture.
         if self.target != Target::ShadowMap {
             if key.deforms() {
                 self.add(BufferId::Deforms, scene.deforms * size_of::<DeformRecord>() as u64);
@@ -426,7 +442,7 @@ impl FrameLayout {
         self.add(BufferId::DotRuns, u64::from(dots.runs.max(1)) * size_of::<DotRunRecord>() as u64);
         self.add(BufferId::DotEnds, u64::from(dots.segments) * size_of::<DotPoints>() as u64);
         if key.options.dot_culling != DotCulling::Brute {
-            // Room for all of them: no list overflows, whatever is visible.
+            // The capacity is the number of all dots, so the list never overflows.
             self.add(BufferId::DotList, u64::from(dots.dots) * size_of::<[u32; 2]>() as u64);
             self.add(BufferId::DotCount, WORD);
         }
@@ -517,8 +533,9 @@ impl FrameLayout {
     }
 }
 
-/// Invocations of a workgroup of the passes over dots, and of the one that lists tiles.
+/// Invocations of a workgroup of the passes over dots.
 pub const DOT_GROUP: u32 = 64;
+/// Invocations of a workgroup of the pass that lists tiles.
 const TILE_GROUP: u32 = 64;
 
 impl Dispatch {

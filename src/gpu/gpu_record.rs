@@ -1,5 +1,5 @@
-//! Structs shared with the kernels: each lists the name, offset and WGSL type of its members, so that `tests/layout.rs` can compare
-//! it with what naga reads from the shaders.
+//! Structs shared with the kernels: each lists the name, offset and WGSL type of its members, so that `tests/house/layout.rs` can
+//! compare it with what naga reads from the shaders.
 
 /// A Rust type that WGSL has too, by the name that naga gives it.
 pub trait WgslType {

@@ -13,7 +13,7 @@ use crate::{
     shader::key::KernelKey,
 };
 
-/// See the module's first line.
+/// What a picture starts from of the one before it.
 #[derive(Default)]
 pub struct History {
     /// What the color buffer shows, where an effect reads it as the previous picture.

@@ -1,4 +1,4 @@
-//! The queues of triangles that wait for the clip, medium, large and tile kernels: how many entries each has room for, and what a
+//! The queues of triangles that wait for the clip, medium, large and tile kernels: the capacity of each, and what a
 //! frame demanded.
 
 use super::records::CounterRecord;
@@ -27,7 +27,7 @@ impl Capacities {
         Self { clip, clipped_triangles, medium, large, tiles, bins, listed }
     }
 
-    /// Grows whatever the demand exceeded, by powers of two, the lists of tiles by a quarter; true if anything grew.
+    /// Grows every queue that the demand exceeded, by powers of two, the lists of tiles by a quarter; true if anything grew.
     pub fn grow(&mut self, demand: &CounterRecord) -> bool {
         let pairs = [
             (&mut self.clip, demand.clip),

@@ -1,5 +1,5 @@
-//! Every struct that Rust and the kernels share, with the same members in the same order on both sides. `tests/layout.rs` compares
-//! all of [`RECORDS`] with what naga reads from the shaders: names, offsets, types and sizes. What a member means is explained
+//! Every struct that Rust and the kernels share, with the same members in the same order on both sides. `tests/house/layout.rs`
+//! compares all of [`RECORDS`] with what naga reads from the shaders: names, offsets, types and sizes. What a member means is explained
 //! beside the WGSL struct of the name in quotes.
 
 use super::gpu_record::{GpuRecord, RecordLayout, WgslType, gpu_record};
@@ -42,7 +42,7 @@ gpu_record! {
 }
 
 gpu_record! {
-    /// One draw. Each member is explained in `shaders/common/draws.wgsl`.
+    /// One draw. Each member is explained in `shaders/lib/triangle.wgsl`.
     pub struct DrawRecord = "Draw" {
         pub clip_from_object: [[f32; 4]; 4],
         pub world_from_object: [[f32; 4]; 4],
@@ -70,7 +70,7 @@ gpu_record! {
 }
 
 gpu_record! {
-    /// Demand of the queues and what was not drawn. Each member is explained in `shaders/common/counters.wgsl`.
+    /// Demand of the queues and what was not drawn. Each member is explained in `shaders/lib/frame.wgsl`.
     pub struct CounterRecord = "Counters" {
         pub clip: u32,
         pub medium: u32,
@@ -104,7 +104,7 @@ gpu_record! {
 }
 
 gpu_record! {
-    /// Where the drawing stops. Each member is explained in `shaders/common/order.wgsl`.
+    /// Where the drawing stops. Each member is explained in `shaders/lib/order.wgsl`.
     pub struct OrderRecord = "Order" {
         pub boundary_triangle: u32,
         pub cut: u32,
@@ -122,7 +122,7 @@ gpu_record! {
 }
 
 gpu_record! {
-    /// What is shown of a picture that is drawn at another size. Each member is explained in `shaders/passes/scale.wgsl`.
+    /// What is shown of a picture that is drawn at another size. Each member is explained in `shaders/stages/shade/scale.wgsl`.
     pub struct ScalingUniform = "Scaling" {
         pub size: [u32; 2],
         pub stride: u32,
@@ -131,7 +131,7 @@ gpu_record! {
 }
 
 gpu_record! {
-    /// What takes places to the shadow map. Each member is explained in `shaders/slots/light/mapped.wgsl`.
+    /// The transform from positions to the shadow map. Each member is explained in `shaders/variants/shade_step/shadow_map.wgsl`.
     pub struct ShadowMapUniform = "ShadowMapView" {
         pub column: [f32; 4],
         pub row: [f32; 4],
@@ -144,7 +144,7 @@ gpu_record! {
 }
 
 gpu_record! {
-    /// One draw that bends. Each member is explained in `shaders/common/bends.wgsl`.
+    /// One deformed draw. Each member is explained in `shaders/lib/deform.wgsl`.
     pub struct DeformRecord = "Deform" {
         pub first: u32,
         pub count: u32,
@@ -170,7 +170,7 @@ gpu_record! {
 }
 
 gpu_record! {
-    /// One shape of one draw. Each member is explained in `shaders/slots/shapes/kept.wgsl`.
+    /// One morph target of one draw. Each member is explained in `shaders/variants/morph_targets/weighted.wgsl`.
     pub struct MorphTargetRecord = "MorphTarget" {
         pub weight: f32,
         pub position_offset: u32,
@@ -184,7 +184,7 @@ gpu_record! {
 }
 
 gpu_record! {
-    /// One meshlet. Each member is explained in `shaders/common/meshlets.wgsl`.
+    /// One meshlet. Each member is explained in `shaders/lib/meshlets.wgsl`.
     pub struct MeshletRecord = "Meshlet" {
         pub center: [f32; 4],
         pub half: [f32; 4],
@@ -197,7 +197,7 @@ gpu_record! {
 }
 
 gpu_record! {
-    /// One draw, for culling. Each member is explained in `shaders/common/instances.wgsl`.
+    /// One draw, for culling. Each member is explained in `shaders/lib/meshlets.wgsl`.
     pub struct InstanceRecord = "Instance" {
         pub eye: [f32; 4],
         pub center: [f32; 4],
@@ -210,7 +210,7 @@ gpu_record! {
 }
 
 gpu_record! {
-    /// Numbers of a picture. Each member is explained in `shaders/common/culling.wgsl`.
+    /// The culling uniform. Each member is explained in `shaders/lib/meshlets.wgsl`.
     pub struct CullingUniform = "Culling" {
         pub meshlet_count: u32,
         pub first_visible: u32,
@@ -220,7 +220,7 @@ gpu_record! {
 }
 
 gpu_record! {
-    /// What of a picture concerns its dots. Each member is explained in `shaders/common/dot_frame.wgsl`.
+    /// The uniform of the passes over dots. Each member is explained in `shaders/lib/dots.wgsl`.
     pub struct DotFrame = "DotFrame" {
         pub clip_from_scene: [[f32; 4]; 4],
         pub ink: [f32; 4],
@@ -241,7 +241,7 @@ gpu_record! {
 }
 
 gpu_record! {
-    /// Consecutive dots of one segment. Each member is explained in `shaders/common/dots.wgsl`.
+    /// Consecutive dots of one segment. Each member is explained in `shaders/lib/dots.wgsl`.
     pub struct DotRunRecord = "DotRun" {
         pub segment: u32,
         pub first: u32,
@@ -252,7 +252,7 @@ gpu_record! {
 }
 
 gpu_record! {
-    /// Which steps to take. Each member is explained in `shaders/common/course.wgsl`.
+    /// Which steps to take. Each member is explained in `shaders/lib/particle.wgsl`.
     pub struct ParticleStepUniform = "ParticleStep" {
         pub right: [f32; 4],
         pub up: [f32; 4],
@@ -267,7 +267,7 @@ gpu_record! {
 }
 
 gpu_record! {
-    /// What one step goes by. Each member is explained in `shaders/common/course.wgsl`.
+    /// The parameters of one step. Each member is explained in `shaders/lib/particle.wgsl`.
     pub struct StepParams = "StepParams" {
         pub p: Particles,
         pub life_steps: u32,
@@ -278,7 +278,7 @@ gpu_record! {
 }
 
 gpu_record! {
-    /// How a texture is looked up. Each member is explained in `shaders/common/texels.wgsl`.
+    /// How a texture is looked up. Each member is explained in `shaders/lib/material_atlas.wgsl`.
     pub struct LookupRecord = "Lookup" {
         pub levels: u32,
         pub size: u32,
@@ -296,7 +296,7 @@ gpu_record! {
 }
 
 gpu_record! {
-    /// The material of one primitive. Each member is explained in `shaders/common/texels.wgsl`.
+    /// The material of one primitive. Each member is explained in `shaders/lib/material_atlas.wgsl`.
     pub struct MaterialRecord = "Material" {
         pub flags: u32,
         pub red: f32,
@@ -387,7 +387,7 @@ pub const RECORDS: &[RecordLayout] = &[
     NaiveUniform::LAYOUT,
 ];
 
-/// A projected vertex or dot as the kernels store it, a `vec4u` of `shaders/common/vertex.wgsl`.
+/// A projected vertex or dot as the kernels store it, a `vec4u` of `shaders/lib/triangle.wgsl`.
 #[derive(Clone, Copy, Debug, Default, PartialEq, bytemuck::Pod, bytemuck::Zeroable)]
 #[repr(C)]
 pub struct VertexRecord {

@@ -104,7 +104,7 @@ impl Renderer {
         self.device.tuning = tuning;
     }
 
-    /// Sets the room in the queues, at least 1 entry each, for the next picture of the current scene; queues that overflow grow and the
+    /// Sets the capacity of the queues, at least 1 entry each, for the next picture of the current scene; queues that overflow grow and the
     /// picture is drawn again.
     pub fn set_capacities(&mut self, capacities: Capacities) {
         self.picture.capacities = capacities.at_least_one();
@@ -179,7 +179,7 @@ impl Renderer {
         self.draw_pixels(&drawn, &stack, accuracy, shown, detail, wait).map_err(|error| error.at_scale(scale, view, &drawn))
     }
 
-    /// Draws as many pixels as `view` has, whatever the size at which they are shown.
+    /// Draws as many pixels as `view` has, independent of the size at which they are shown.
     fn draw_pixels(
         &mut self,
         view: &View,

@@ -1,4 +1,4 @@
-//! A scene on the device: attributes and index lists as the file has them, with room for what passes write behind them, and its
+//! A scene on the device: attributes and index lists as the file has them, with space behind them for what passes write, and its
 //! materials. Every view of the scene reads the same.
 
 use std::{borrow::Cow, sync::Arc};
@@ -20,7 +20,7 @@ use crate::{
     scene::{Scene, particle_discs::ParticleSettings},
 };
 
-/// See the module's first lines.
+/// A scene on the device: its attributes, index lists and materials. Every view of the scene reads the same.
 pub struct SceneResources {
     /// The scene as it was set.
     base: Arc<Scene>,
@@ -167,7 +167,7 @@ impl SceneResources {
         Ok(())
     }
 
-    /// Uploads the bytes of all attributes, with room for deformed vertices, and positions in `packed_bits` per axis if any.
+    /// Uploads the bytes of all attributes, with space for deformed vertices, and positions in `packed_bits` per axis if any.
     fn upload_attributes(&mut self, gpu: &Gpu, packed_bits: Option<u32>) -> Result<(), RenderError> {
         let packing = packed_bits.map(|bits| Packing::new(&self.scene, bits)).unwrap_or_default();
         // Until all is there, nothing is.

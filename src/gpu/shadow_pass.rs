@@ -24,7 +24,7 @@ use crate::{
     shader::pass::Pass,
 };
 
-/// See the module's first lines.
+/// A second view of the scene, as a directional light sees it. Depths alone are drawn, into the shadow map.
 pub struct ShadowPass {
     pub resources: ViewResources,
     /// The scene as the light sees it.
@@ -35,7 +35,7 @@ pub struct ShadowPass {
 }
 
 impl ShadowPass {
-    /// Plans what the light of the stack sees and makes room for it, with the resources of the pass before it; none where no effect
+    /// Plans what the light of the stack sees and allocates its buffers, with the resources of the pass before it; none where no effect
     /// asks for shadows.
     ///
     /// # Errors

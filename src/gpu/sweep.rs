@@ -98,7 +98,7 @@ pub struct SweepRow {
     pub note: Option<String>,
 }
 
-/// What pictures are held against: the oracle's, which this room never sees.
+/// What pictures are held against: the oracle's, which this module never sees.
 pub struct Reference<'a> {
     /// Pictures on the oracle's finest grid, at every size of [`factors`], their shadows by rays.
     pub references: &'a References,

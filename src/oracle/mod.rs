@@ -1,9 +1,9 @@
 //! The oracle: an exact CPU renderer that judges adapters and makes the golden images.
 //!
 //! Coverage and triangle ids are computed in i64 and i128, afresh at every pixel of a triangle's bounding box; projection,
-//! clipping, depth and shading are f64. The oracle shares scene bytes, matrix bits, effect parameters and plain data types with the
-//! renderers that it judges, and none of their code: no shader text, no planner, no SIMD maths in a comparison that decides, no
-//! maths function of the platform. Work is parallel by rows and triangles; no result depends on the order of threads.
+//! clipping, depth and shading are f64. The oracle runs no kernel text, planner or GPU layout, no SIMD math in a
+//! comparison that decides, and no math function of the platform; both sides use `math`, `scene` and effect parameters. Work is
+//! parallel by rows and triangles; no result depends on the order of threads.
 //!
 //! Imports run one way, from each of these to those before it:
 //!

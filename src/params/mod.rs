@@ -151,7 +151,7 @@ impl Field {
     }
 
     /// An effect's own fields, then those of a group that its struct holds at its beginning. The field `always_shown` of the group
-    /// is shown whatever the choice is on which the group's declaration makes it depend.
+    /// is always shown, although the group's declaration makes it depend on a choice.
     pub const fn with_group<const N: usize>(own: &[Self], group: Group, shared: &[Self], always_shown: &str) -> [Self; N] {
         assert!(own.len() + shared.len() == N, "N is the number of all fields");
         let mut fields = [own[0]; N];

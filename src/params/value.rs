@@ -1,4 +1,4 @@
-//! Values of parameters and their types: what a parameter may hold, whoever sets it.
+//! Values of parameters and their types: what a parameter may hold, for every way of setting it.
 
 use glam::DVec3;
 

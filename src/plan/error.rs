@@ -2,7 +2,7 @@
 
 use crate::effects::Conflict;
 
-/// See the module's first line.
+/// Why no kernel can draw a picture as it was asked for.
 #[derive(Debug, thiserror::Error)]
 pub enum PlanError {
     #[error("visibility packed64 needs 64-bit atomics, which this adapter lacks; use split32 or leave it out")]

@@ -34,7 +34,7 @@ const PACKED32_TRIANGLES: u64 = (1 << 24) - 1;
 #[derive(Clone, Copy)]
 pub(super) struct Inputs<'a> {
     pub needs: &'a Needs,
-    /// Positions of the scene are all f32, whatever the tuning makes of it.
+    /// Positions of the scene are all f32, even if the tuning chooses another format.
     pub f32_positions: bool,
     pub stack: &'a StackTraits,
     pub layers: Option<Layers>,
@@ -68,7 +68,7 @@ pub(super) struct Choice {
     pub prediction: Prediction,
 }
 
-/// Chooses an option on every axis: pins first, then whatever saves time and still fits the tolerance.
+/// Chooses an option on every axis: pins first, then the options that save time and fit the tolerance.
 pub(super) fn choose(inputs: &Inputs) -> Result<Choice, PlanError> {
     let Inputs { needs, request, .. } = *inputs;
     let mut options = base_options(inputs);

@@ -14,7 +14,7 @@ use crate::{
 
 use super::{error::PlanError, request::AccuracyRequest};
 
-/// See the module's first line. Equal traits have equal plans.
+/// What planning reads of a stack. Equal traits have equal plans.
 #[derive(Clone, Debug, PartialEq)]
 pub struct StackTraits {
     /// The enabled effects, in order.

@@ -305,7 +305,7 @@ impl Preset {
     }
 
     /// The view and stack of every frame that this picture depends on, in order; the last is the picture itself. There are several
-    /// where an effect reads the previous frame.
+    /// where an effect reads the previous picture.
     pub fn moments(&self, scene: &Scene, size: [u32; 2]) -> Vec<(View, Stack)> {
         let (frames, step_s) = self.evaluated_stack().smear().map_or((0, 0.0), |smear| (smear.frames, f64::from(smear.step_s)));
         let moment = |before: u32| {

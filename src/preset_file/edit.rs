@@ -10,7 +10,8 @@ use super::{
     toml_value,
 };
 use crate::{
-    effects::{EFFECTS, Effect},
+    effect_files::Catalog,
+    effects::Effect,
     params::{Field, Param, Value, ValueType, did_you_mean, suggestion},
     preset::{
         Animation,
@@ -29,14 +30,14 @@ enum Target {
     Animation(Option<&'static Effect>, Option<&'static Field>),
 }
 
-fn target(path: &str) -> Result<Target, String> {
+fn target(path: &str, catalog: &Catalog) -> Result<Target, String> {
     match path {
         "stack" => return Ok(Target::Stack),
         "animation" => return Ok(Target::Animation(None, None)),
         _ => {}
     }
     if let Some(rest) = path.strip_prefix("animation.") {
-        return match target(rest)? {
+        return match target(rest, catalog)? {
             Target::Effect(effect) => Ok(Target::Animation(Some(effect), None)),
             Target::Field(effect, field) => Ok(Target::Animation(Some(effect), Some(field))),
             _ => Err("is unknown; only parameters of effects can be animated".into()),
@@ -50,7 +51,8 @@ fn target(path: &str) -> Result<Target, String> {
     }
     let short = path.strip_prefix("effects.").unwrap_or(path);
     let (name, field) = short.split_once('.').map_or((short, None), |(name, field)| (name, Some(field)));
-    let Some(effect) = Effect::find(name) else { return Err(format!("is unknown{}", suggestion_for_path(short))) };
+    let found = catalog.find(name).map_err(|error| format!("cannot be used: {error}"))?;
+    let Some(effect) = found else { return Err(format!("is unknown{}", suggestion_for_path(short, catalog))) };
     let Some(field) = field else { return Ok(Target::Effect(effect)) };
     let unknown = || match migrate::renamed_key(short) {
         Some(new) => format!("is unknown{}", suggestion(&new)),
@@ -60,12 +62,12 @@ fn target(path: &str) -> Result<Target, String> {
 }
 
 /// The new name of a path of an older schema, or the closest of all paths.
-fn suggestion_for_path(path: &str) -> String {
+fn suggestion_for_path(path: &str, catalog: &Catalog) -> String {
     if let Some(new) = migrate::renamed_key(path) {
         return suggestion(&new);
     }
-    let fields = EFFECTS.iter().flat_map(|e| e.fields.iter().map(move |f| format!("{}.{}", e.name, f.name)));
-    let known: Vec<String> = settings().map(Setting::path).chain(fields).chain(EFFECTS.iter().map(|e| e.name.to_owned())).collect();
+    let fields = catalog.effects().flat_map(|e| e.fields.iter().map(move |f| format!("{}.{}", e.name, f.name)));
+    let known: Vec<String> = settings().map(Setting::path).chain(fields).chain(catalog.names().map(str::to_owned)).collect();
     did_you_mean(path, known.iter().map(String::as_str))
 }
 
@@ -96,7 +98,8 @@ pub fn set(preset_file: &mut PresetFile, path: &str, value: &str) -> Result<(), 
     let argument = if value.is_empty() { format!("--set {path}") } else { format!("--set {path}={value}") };
     let at = Position { file: argument.clone(), line: None };
     let wrong = |reason: String| PresetError::value(at.clone(), path, reason);
-    let target = target(path).map_err(wrong)?;
+    let catalog = preset_file.effects.clone();
+    let target = target(path, &catalog).map_err(wrong)?;
     let has_unknown_effect = |name: &str| preset_file.has_effect_table(name);
     let preset = &preset_file.preset;
     if let Target::Effect(effect) | Target::Field(effect, _) | Target::Animation(Some(effect), _) = target
@@ -115,7 +118,7 @@ pub fn set(preset_file: &mut PresetFile, path: &str, value: &str) -> Result<(), 
             preset.animation.remove(effect.name, field.name);
         }
         Target::Animation(Some(effect), Some(field)) => {
-            let mut reader = Reader { file: &argument, text: None, warnings: Vec::new() };
+            let mut reader = Reader { file: &argument, text: None, catalog: &catalog, warnings: Vec::new() };
             let track = keyframes::read_track(&mut reader, None, effect, field, &Item::Value(command_line_value(value)))?;
             preset_file.preset.stack.enable(effect);
             preset_file.preset.animation.put(track);
@@ -126,7 +129,7 @@ pub fn set(preset_file: &mut PresetFile, path: &str, value: &str) -> Result<(), 
             setting.set(&mut preset_file.preset, &value).map_err(|error| wrong(error.to_string()))?;
         }
         Target::Stack => {
-            let order = order::read(Some(&command_line_value(value)), &preset.stack, &has_unknown_effect).map_err(wrong)?;
+            let order = order::read(Some(&command_line_value(value)), &preset.stack, &catalog, &has_unknown_effect).map_err(wrong)?;
             preset_file.preset.stack = order;
         }
     }
@@ -140,7 +143,7 @@ pub fn set(preset_file: &mut PresetFile, path: &str, value: &str) -> Result<(), 
 pub fn unset(preset_file: &mut PresetFile, path: &str) -> Result<(), PresetError> {
     let at = Position { file: format!("--unset {path}"), line: None };
     let preset = &mut preset_file.preset;
-    match target(path).map_err(|reason| PresetError::value(at, path, reason))? {
+    match target(path, &preset_file.effects).map_err(|reason| PresetError::value(at, path, reason))? {
         Target::Effect(effect) => preset.disable(effect.name),
         Target::Animation(None, _) => preset.animation = Animation::default(),
         Target::Animation(Some(effect), None) => preset.animation.remove_effect(effect.name),

@@ -6,6 +6,7 @@ use toml_edit::DocumentMut;
 
 use super::{atomic::write_atomically, error::PresetError, write};
 use crate::{
+    effect_files::Catalog,
     effects::lambert,
     preset::{Preset, SceneSource},
 };
@@ -20,6 +21,8 @@ pub struct PresetFile {
     pub preset: Preset,
     /// What the reader warns of, each with its line.
     pub warnings: Vec<String>,
+    /// The effects that it may use.
+    pub effects: Catalog,
     /// Built in, or written by a newer program.
     pub read_only: bool,
     /// Written by a newer program: parts of it may be unknown here, so it is never written back.
@@ -38,6 +41,7 @@ impl PresetFile {
             path: None,
             preset,
             warnings: Vec::new(),
+            effects: Catalog::default(),
             read_only: false,
             is_newer: false,
             document: DocumentMut::new(),
@@ -45,7 +49,7 @@ impl PresetFile {
         }
     }
 
-    /// The default preset for a model or builtin scene: daylight and no other effect.
+    /// The default preset for a model or built-in scene: daylight and no other effect.
     pub fn of_scene(id: &str, scene: SceneSource) -> Self {
         let mut preset = Preset { name: id.into(), scene, ..Preset::default() };
         preset.stack.enable(&lambert::EFFECT);
@@ -78,7 +82,7 @@ impl PresetFile {
 pub fn to_toml(preset_file: &PresetFile) -> String {
     let mut document = preset_file.document.clone();
     if !preset_file.is_newer {
-        write::patch(&mut document, &preset_file.saved, &preset_file.preset);
+        write::patch(&mut document, &preset_file.effects, &preset_file.saved, &preset_file.preset);
     }
     document.to_string()
 }

@@ -7,10 +7,10 @@ use include_dir::{Dir, include_dir};
 use super::{
     error::PresetError,
     file::{PresetFile, stem},
-    load::{load, parse_file, read_capped},
+    load::{load_with, parse_file, read_capped},
     picture::{MAX_FILE_BYTES, preset_from_png},
 };
-use crate::{params::did_you_mean, preset::SceneSource};
+use crate::{effect_files::Catalog, params::did_you_mean, preset::SceneSource};
 
 /// The presets inside the binary.
 pub static BUILTIN_DIR: Dir<'static> = include_dir!("$CARGO_MANIFEST_DIR/presets");
@@ -41,13 +41,35 @@ pub struct GalleryEntry {
     pub shadows: Vec<Origin>,
 }
 
+/// Where presets and effects are looked for, beside the built-in ones.
+#[derive(Clone, Debug, Default)]
+pub struct Folders {
+    /// `--presets DIR`.
+    pub presets: Option<PathBuf>,
+    /// Effects of `--effects DIR` and of the user.
+    pub effects: Catalog,
+}
+
+impl Folders {
+    /// These folders, and the effects in the user's own folder.
+    pub fn new(presets: Option<PathBuf>, effects: &Path) -> Self {
+        let user = user_effects_folder();
+        Self { presets, effects: Catalog::of_folders(user.as_deref().into_iter().chain([effects])) }
+    }
+}
+
+/// The folder of the user's effects: `effects` beside [`user_folder`].
+pub fn user_effects_folder() -> Option<PathBuf> {
+    Some(user_folder()?.with_file_name("effects"))
+}
+
 /// Every preset, sorted by id.
-pub fn gallery(chosen: Option<&Path>) -> Vec<GalleryEntry> {
+pub fn gallery(sources: &Folders) -> Vec<GalleryEntry> {
     let beside = std::env::current_exe().ok().and_then(|exe| Some(exe.parent()?.join("presets")));
-    let folders = [(Origin::Chosen, chosen.map(Path::to_owned)), (Origin::Beside, beside), (Origin::User, user_folder())];
+    let folders = [(Origin::Chosen, sources.presets.clone()), (Origin::Beside, beside), (Origin::User, user_folder())];
     let mut entries: Vec<GalleryEntry> = Vec::new();
     let on_disk = folders.into_iter().filter_map(|(origin, folder)| Some((origin, folder?)));
-    for entry in on_disk.flat_map(|(origin, folder)| folder_entries(origin, &folder)).chain(builtin_entries()) {
+    for entry in on_disk.flat_map(|(origin, folder)| folder_entries(origin, &folder, &sources.effects)).chain(builtin_entries()) {
         match entries.iter_mut().find(|winner| winner.id == entry.id) {
             Some(winner) => winner.shadows.push(entry.origin),
             None => entries.push(entry),
@@ -57,11 +79,11 @@ pub fn gallery(chosen: Option<&Path>) -> Vec<GalleryEntry> {
     entries
 }
 
-fn folder_entries(origin: Origin, folder: &Path) -> Vec<GalleryEntry> {
+fn folder_entries(origin: Origin, folder: &Path, effects: &Catalog) -> Vec<GalleryEntry> {
     let files = std::fs::read_dir(folder).into_iter().flatten().flatten().map(|entry| entry.path());
     let preset_files = files.filter(|path| has_extension(path, "toml") && path.is_file());
     preset_files
-        .map(|path| GalleryEntry { id: stem(&path), origin, preset_file: load(&path), path: Some(path), shadows: Vec::new() })
+        .map(|path| GalleryEntry { id: stem(&path), origin, preset_file: load_with(&path, effects), path: Some(path), shadows: Vec::new() })
         .collect()
 }
 
@@ -91,14 +113,14 @@ pub fn user_folder() -> Option<PathBuf> {
 ///
 /// # Errors
 /// No such preset or file, or a file that cannot be read.
-pub fn open(what: &str, chosen: Option<&Path>) -> Result<PresetFile, PresetError> {
+pub fn open(what: &str, folders: &Folders) -> Result<PresetFile, PresetError> {
     if let Some(query) = what.strip_prefix("builtin:") {
         let name = query.split('?').next().unwrap_or(query);
-        return Ok(PresetFile::of_scene(name, SceneSource::Builtin(query.into())));
+        return Ok(PresetFile { effects: folders.effects.clone(), ..PresetFile::of_scene(name, SceneSource::Builtin(query.into())) });
     }
     let path = Path::new(what);
     if has_extension(path, "toml") {
-        return load(path);
+        return load_with(path, &folders.effects);
     }
     if has_extension(path, "png") {
         let preset_file = preset_from_png(&read_capped(path, MAX_FILE_BYTES)?, what)?;
@@ -106,11 +128,14 @@ pub fn open(what: &str, chosen: Option<&Path>) -> Result<PresetFile, PresetError
     }
     if has_extension(path, "glb") || has_extension(path, "gltf") {
         let absolute = std::path::absolute(path).map_err(|e| PresetError::Read { file: what.into(), reason: e.to_string() })?;
-        return Ok(PresetFile::of_scene(&stem(path), SceneSource::File(absolute)));
+        return Ok(PresetFile { effects: folders.effects.clone(), ..PresetFile::of_scene(&stem(path), SceneSource::File(absolute)) });
     }
-    let entries = gallery(chosen);
+    let entries = gallery(folders);
     match entries.iter().position(|entry| entry.id == what) {
-        Some(index) => entries.into_iter().nth(index).expect("the index was just found").preset_file,
+        Some(index) => {
+            let opened = entries.into_iter().nth(index).expect("the index was just found").preset_file?;
+            Ok(PresetFile { effects: opened.effects.joined(&folders.effects), ..opened })
+        }
         None => {
             let hint = did_you_mean(what, entries.iter().map(|entry| entry.id.as_str()));
             let hint = if hint.is_empty() { "; rasterlab list shows all of them".into() } else { hint };

@@ -9,7 +9,8 @@ use super::{
     toml_value,
 };
 use crate::{
-    effects::{EFFECTS, Effect},
+    effect_files::Catalog,
+    effects::Effect,
     params::{Field, Param, Value, ValueType},
     preset::{
         Animation, Preset,
@@ -44,8 +45,8 @@ pub fn entry_params(field: &Field) -> [Param; 3] {
 pub fn read(reader: &mut Reader<'_>, effects: &dyn TableLike, preset: &mut Preset) -> Result<(), PresetError> {
     for (name, _) in effects.iter() {
         let Some(table) = reader.table(effects, "animation.", name)? else { continue };
-        let Some(effect) = Effect::find(name) else {
-            reader.unknown(effects, "animation.", name, EFFECTS.iter().map(|effect| effect.name));
+        let Some(effect) = reader.effect(effects, "animation.", name)? else {
+            reader.unknown(effects, "animation.", name, reader.catalog.names());
             continue;
         };
         if preset.stack.get(name).is_none() {
@@ -131,7 +132,7 @@ fn entries(item: &Item) -> Option<Vec<&dyn TableLike>> {
 }
 
 /// Patches `root`, whose animation describes `saved`, so that it describes `now`. An unchanged track keeps its text.
-pub fn patch(root: &mut Table, saved: &Animation, now: &Animation) {
+pub fn patch(root: &mut Table, catalog: &Catalog, saved: &Animation, now: &Animation) {
     if saved == now {
         return;
     }
@@ -139,7 +140,7 @@ pub fn patch(root: &mut Table, saved: &Animation, now: &Animation) {
         root.insert("animation", Item::Table(implicit()));
     }
     let tables = root.get_mut("animation").and_then(Item::as_table_like_mut).expect("the animation was read as a table");
-    for effect in EFFECTS {
+    for effect in catalog.effects() {
         for field in effect.fields {
             let [before, after] = [saved, now].map(|animation| animation.get(effect.name, field.name));
             match after {
@@ -238,7 +239,7 @@ fn put(entry: &mut InlineTable, param: &Param, value: &Value) {
     }
 }
 
-/// Do both have the same value, to the bit, in whatever spelling?
+/// Do both have the same value, to the bit, in any spelling?
 fn same(a: &Toml, b: &Toml) -> bool {
     match (number(a), number(b)) {
         (Some(a), Some(b)) => a.to_bits() == b.to_bits(),

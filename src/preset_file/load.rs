@@ -9,6 +9,7 @@ use super::{
     file::{PresetFile, stem},
     migrate, read, reader,
 };
+use crate::effect_files::Catalog;
 
 /// Longest preset that is read, bytes.
 pub const MAX_BYTES: usize = 1 << 20;
@@ -26,17 +27,35 @@ pub fn parse(text: &str, id: &str) -> Result<PresetFile, PresetError> {
 /// # Errors
 /// No TOML, or a value that is not allowed, with its line.
 pub fn parse_file(text: &str, id: &str, file: &str) -> Result<PresetFile, PresetError> {
+    parse_with(text, id, file, &Catalog::default())
+}
+
+/// [`parse_file`] for a preset that may use the effects of `catalog`.
+///
+/// # Errors
+/// As [`parse_file`], or an effect whose file is faulty.
+pub fn parse_with(text: &str, id: &str, file: &str, catalog: &Catalog) -> Result<PresetFile, PresetError> {
     let original = document(text, file)?;
     let mut warnings = Vec::new();
     let schema = schema(&original, file, &mut warnings)?;
     // A migration changes names inside their lines, so the lines of the migrated text are those of the file.
     let current =
         if schema < migrate::CURRENT { document(&migrate::migrate(original.into_mut(), schema).to_string(), file)? } else { original };
-    let read = read::read(&current, file)?;
+    let read = read::read(&current, file, catalog)?;
     warnings.extend(read.warnings);
     let (preset, is_newer) = (read.preset, schema > migrate::CURRENT);
     let document = current.into_mut();
-    Ok(PresetFile { id: id.into(), path: None, saved: preset.clone(), preset, warnings, read_only: is_newer, is_newer, document })
+    Ok(PresetFile {
+        id: id.into(),
+        path: None,
+        saved: preset.clone(),
+        preset,
+        warnings,
+        read_only: is_newer,
+        is_newer,
+        document,
+        effects: catalog.clone(),
+    })
 }
 
 /// Reads a preset from a `.toml` file.
@@ -44,7 +63,17 @@ pub fn parse_file(text: &str, id: &str, file: &str) -> Result<PresetFile, Preset
 /// # Errors
 /// The file cannot be read, or as [`parse_file`].
 pub fn load(path: &Path) -> Result<PresetFile, PresetError> {
-    let preset_file = parse_file(&read_text(path)?, &stem(path), &path.display().to_string())?;
+    load_with(path, &Catalog::default())
+}
+
+/// [`load`] for a preset that may use the effects of `catalog`, and those in the folder `effects` beside it.
+///
+/// # Errors
+/// As [`load`], or an effect whose file is faulty.
+pub fn load_with(path: &Path, catalog: &Catalog) -> Result<PresetFile, PresetError> {
+    let mut catalog = catalog.clone();
+    catalog.add_folder(&path.with_file_name("effects"));
+    let preset_file = parse_with(&read_text(path)?, &stem(path), &path.display().to_string(), &catalog)?;
     Ok(PresetFile { path: Some(path.to_owned()), ..preset_file })
 }
 

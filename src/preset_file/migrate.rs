@@ -6,7 +6,7 @@
 
 use toml_edit::{DocumentMut, Item, Key, Table, Value};
 
-/// `MIGRATIONS[n]` takes schema `n + 1` to `n + 2`. Each comes with a before and an after fixture in `tests/house/presets.rs`.
+/// `MIGRATIONS[n]` takes schema `n + 1` to `n + 2`. Each comes with a before and an after fixture in `tests/house/presets/migrations.rs`.
 pub const MIGRATIONS: &[fn(DocumentMut) -> DocumentMut] = &[to_schema_2];
 
 /// The schema that this program writes.

@@ -5,7 +5,8 @@ use toml_edit::{Document, TableLike};
 
 use super::{error::PresetError, keyframes, order, reader::Reader};
 use crate::{
-    effects::{Conflict, EFFECTS, Effect, EnabledEffect, Stack},
+    effect_files::Catalog,
+    effects::{Conflict, EnabledEffect, Stack},
     preset::{
         GoldenTest, Preset,
         settings::{SECTIONS, Section},
@@ -21,9 +22,9 @@ pub struct ReadPreset {
     pub warnings: Vec<String>,
 }
 
-/// Reads a whole preset; `file` is what errors and warnings call it.
-pub fn read(document: &Document<String>, file: &str) -> Result<ReadPreset, PresetError> {
-    let mut reader = Reader { file, text: Some(document.raw()), warnings: Vec::new() };
+/// Reads a whole preset that may use the effects of `catalog`; `file` is what errors and warnings call it.
+pub fn read(document: &Document<String>, file: &str, catalog: &Catalog) -> Result<ReadPreset, PresetError> {
+    let mut reader = Reader { file, text: Some(document.raw()), catalog, warnings: Vec::new() };
     let (root, mut preset) = (document.as_table(), Preset::default());
     for section in SECTIONS {
         let table = if section.name.is_empty() { Some(root as &dyn TableLike) } else { reader.table(root, "", section.name)? };
@@ -42,7 +43,8 @@ pub fn read(document: &Document<String>, file: &str) -> Result<ReadPreset, Prese
     }
     if let Some(item) = root.get("stack") {
         let has_table = |name: &str| root.get("effects").and_then(|effects| effects.get(name)).is_some();
-        preset.stack = order::read(item.as_value(), &preset.stack, &has_table).map_err(|reason| reader.error(root, "", "stack", reason))?;
+        preset.stack =
+            order::read(item.as_value(), &preset.stack, catalog, &has_table).map_err(|reason| reader.error(root, "", "stack", reason))?;
     }
     check_budget(&reader, root, &preset)?;
     Ok(ReadPreset { preset, warnings: reader.warnings })
@@ -71,9 +73,9 @@ fn read_section(reader: &mut Reader<'_>, table: &dyn TableLike, section: &Sectio
 fn read_effects(reader: &mut Reader<'_>, effects: &dyn TableLike, stack: &mut Stack) -> Result<(), PresetError> {
     for (name, _) in effects.iter() {
         let Some(table) = reader.table(effects, "effects.", name)? else { continue };
-        match Effect::find(name) {
+        match reader.effect(effects, "effects.", name)? {
             Some(effect) => read_effect(reader, table, stack.enable(effect))?,
-            None => reader.unknown(effects, "effects.", name, EFFECTS.iter().map(|effect| effect.name)),
+            None => reader.unknown(effects, "effects.", name, reader.catalog.names()),
         }
     }
     Ok(())

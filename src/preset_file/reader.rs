@@ -6,7 +6,11 @@ use super::{
     error::{Position, PresetError},
     toml_value,
 };
-use crate::params::{Param, Value, did_you_mean};
+use crate::{
+    effect_files::Catalog,
+    effects::Effect,
+    params::{Param, Value, did_you_mean},
+};
 
 /// What every part of the reader shares.
 pub struct Reader<'a> {
@@ -14,6 +18,8 @@ pub struct Reader<'a> {
     pub file: &'a str,
     /// The text that spans point into; none for a value that did not come from a file.
     pub text: Option<&'a str>,
+    /// The effects that may be named.
+    pub catalog: &'a Catalog,
     pub warnings: Vec<String>,
 }
 
@@ -32,6 +38,11 @@ impl Reader<'_> {
         let path = format!("{prefix}{name}");
         let reason = format!("must be a table, written [{path}]");
         item.as_table_like().map(Some).ok_or_else(|| PresetError::value(self.position(parent, name), path, reason))
+    }
+
+    /// The effect called `name`, which is a key of `table`; none if it is unknown.
+    pub fn effect(&self, table: &dyn TableLike, prefix: &str, name: &str) -> Result<Option<&'static Effect>, PresetError> {
+        self.catalog.find(name).map_err(|error| self.error(table, prefix, name, format!("cannot be used: {error}")))
     }
 
     /// The value of `param`, which stands in `table` as `item`.

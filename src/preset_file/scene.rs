@@ -24,7 +24,7 @@ pub enum SceneError {
 /// Builds or loads the scene of a preset; a relative model path starts at the folder of `preset_path`.
 ///
 /// # Errors
-/// No such builtin scene or model, a model that cannot be read, or a clip or camera that the scene does not have.
+/// No such built-in scene or model, a model that cannot be read, or a clip or camera that the scene does not have.
 pub fn load_scene(preset: &Preset, preset_path: Option<&Path>) -> Result<Arc<Scene>, SceneError> {
     let scene = match &preset.scene {
         SceneSource::Builtin(query) => builtin::build(query)?,

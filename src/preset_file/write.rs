@@ -5,7 +5,8 @@ use toml_edit::{DocumentMut, Item, Table, TableLike, Value as Toml};
 
 use super::{keyframes, migrate, toml_value};
 use crate::{
-    effects::{EFFECTS, Effect, EnabledEffect, Stack},
+    effect_files::Catalog,
+    effects::{EnabledEffect, Stack},
     params::{Param, Value},
     preset::{
         Preset,
@@ -36,7 +37,7 @@ static PARTS: [Part; 10] = [
 ];
 
 /// Patches `document`, which describes `saved`, so that it describes `now`. Only differences from defaults are written.
-pub fn patch(document: &mut DocumentMut, saved: &Preset, now: &Preset) {
+pub fn patch(document: &mut DocumentMut, catalog: &Catalog, saved: &Preset, now: &Preset) {
     if document.get("schema").is_none() {
         document.insert("schema", migrate::CURRENT.into());
     }
@@ -45,9 +46,9 @@ pub fn patch(document: &mut DocumentMut, saved: &Preset, now: &Preset) {
         match part {
             Part::Section(section) if section.name.is_empty() => patch_settings(root, section, saved, now),
             Part::Section(section) => patch_section(root, section, saved, now),
-            Part::Stack => patch_order(root, &saved.stack, &now.stack),
-            Part::Effects => patch_effects(root, &saved.stack, &now.stack),
-            Part::Animation => keyframes::patch(root, &saved.animation, &now.animation),
+            Part::Stack => patch_order(root, catalog, &saved.stack, &now.stack),
+            Part::Effects => patch_effects(root, catalog, &saved.stack, &now.stack),
+            Part::Animation => keyframes::patch(root, catalog, &saved.animation, &now.animation),
         }
     }
 }
@@ -76,7 +77,7 @@ fn patch_settings(table: &mut dyn TableLike, section: &Section, saved: &Preset, 
     }
 }
 
-fn patch_effects(root: &mut Table, saved: &Stack, now: &Stack) {
+fn patch_effects(root: &mut Table, catalog: &Catalog, saved: &Stack, now: &Stack) {
     if root.get("effects").is_none() {
         if now.0.is_empty() {
             return;
@@ -86,7 +87,7 @@ fn patch_effects(root: &mut Table, saved: &Stack, now: &Stack) {
         root.insert("effects", Item::Table(effects));
     }
     let tables = root.get_mut("effects").and_then(Item::as_table_like_mut).expect("effects were read as a table");
-    for effect in EFFECTS {
+    for effect in catalog.effects() {
         match now.get(effect.name) {
             None => drop(tables.remove(effect.name)),
             Some(enabled) => {
@@ -110,7 +111,7 @@ fn patch_effect(table: &mut dyn TableLike, saved: Option<&EnabledEffect>, now: &
 }
 
 /// Writes `stack` only where the order is not the default one.
-fn patch_order(root: &mut Table, saved: &Stack, now: &Stack) {
+fn patch_order(root: &mut Table, catalog: &Catalog, saved: &Stack, now: &Stack) {
     let names = |stack: &Stack| -> Vec<&str> { stack.0.iter().map(|enabled| enabled.effect.name).collect() };
     if names(saved) == names(now) {
         return;
@@ -122,7 +123,7 @@ fn patch_order(root: &mut Table, saved: &Stack, now: &Stack) {
         .into_iter()
         .flatten()
         .filter_map(Toml::as_str)
-        .filter(|name| Effect::find(name).is_none())
+        .filter(|name| !catalog.names().any(|known| known == *name))
         .map(str::to_owned)
         .collect();
     let order: Toml = names(now).into_iter().chain(unknown.iter().map(String::as_str)).collect();

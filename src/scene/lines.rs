@@ -131,7 +131,7 @@ struct DirectedEdge {
     direction: DVec3,
 }
 
-/// An edge with what is known of its faces. Vertices with equal positions count as one, whatever their indices.
+/// An edge with what is known of its faces. Vertices with equal positions count as one, even if their indices differ.
 struct Edge {
     edge: DirectedEdge,
     /// Identifiers of the positions of its ends.

@@ -142,7 +142,7 @@ impl SceneCamera {
 /// Everything that can be drawn. Built by [`gltf::load`](super::gltf::load) or [`builtin::build`](super::builtin::build).
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Scene {
-    /// Shown to people: the file name without its extension, or the name of the builtin.
+    /// Shown to people: the file name without its extension, or the name of the built-in scene.
     pub name: String,
     /// All vertex attributes. Its length is a multiple of 4.
     pub vertex_bytes: Vec<u8>,
@@ -169,7 +169,7 @@ pub struct Scene {
 }
 
 impl Scene {
-    /// The index of the camera called `name`. `#2` is the camera at index 2, whatever its name.
+    /// The index of the camera called `name`. `#2` is the camera at index 2, under any name.
     pub fn camera(&self, name: &str) -> Option<usize> {
         let by_index = || name.strip_prefix('#')?.parse().ok().filter(|&index: &usize| index < self.cameras.len());
         self.cameras.iter().position(|camera| camera.name == name).or_else(by_index)

@@ -14,7 +14,7 @@ use super::{
 };
 use crate::{accuracy::Skinning, math::GUARD_BAND};
 
-/// See the module's first line.
+/// What a scene in a view requires of the kernels.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Needs {
     /// Pixels of the picture.
@@ -80,7 +80,7 @@ impl Needs {
     /// Reads `scene` as `view` sees it through `draws`.
     pub fn of(scene: &Scene, draws: &[Draw], view: &View) -> Self {
         let drawn = || draws.iter().map(|draw| &scene.primitives[draw.primitive]);
-        // Deformed vertices are stored as f32, whatever they were.
+        // Deformed vertices are stored as f32, in place of any other format.
         let unbent = || draws.iter().filter(|draw| draw.deform.is_none()).map(|draw| &scene.primitives[draw.primitive]);
         let mut painted: Vec<usize> = drawn().map(|p| p.material).filter(|&material| !scene.materials[material].is_plain()).collect();
         painted.sort_unstable();

@@ -25,7 +25,7 @@ impl Rig {
         self.nodes.is_empty()
     }
 
-    /// The index of the clip called `name`. `#2` is the clip at index 2, whatever its name.
+    /// The index of the clip called `name`. `#2` is the clip at index 2, under any name.
     pub fn clip(&self, name: &str) -> Option<usize> {
         let by_index = || name.strip_prefix('#')?.parse().ok().filter(|&index: &usize| index < self.clips.len());
         self.clips.iter().position(|clip| clip.name == name).or_else(by_index)

@@ -20,7 +20,7 @@ pub fn effects(effects: &[&'static Effect], baked: &[Vec<u32>]) -> String {
         for field in effect.fields {
             if let ValueType::Choice(words) = field.value_type {
                 for (index, word) in words.iter().enumerate() {
-                    let name = format!("{}_{}_{word}", effect.name, field.name).to_uppercase().replace('-', "_");
+                    let name = format!("{}_{}_{word}", effect.file_stem(), field.name).to_uppercase().replace('-', "_");
                     writeln!(text, "const {name} = {index}u;").expect("writing to a string");
                 }
             }
@@ -107,6 +107,17 @@ impl Chain {
 
     /// The effect's WGSL function: `<stem>` for an effect of one function, else `<stem>_<hook>`.
     fn function(self, effect: &Effect) -> String {
+        if let Some(source) = effect.source {
+            let functions = &source.functions;
+            let name = match self {
+                Self::Vertex => &functions.vertex,
+                Self::Sample => &functions.sample,
+                Self::SampleSetup => &functions.sample_setup,
+                Self::Surface => &functions.surface,
+                Self::Image => &functions.image,
+            };
+            return name.clone().unwrap_or_default();
+        }
         let functions = Self::ALL.iter().filter(|chain| chain.has(effect)).count();
         if functions == 1 { effect.name.into() } else { format!("{}_{}", effect.name, self.name()) }
     }
@@ -165,6 +176,12 @@ pub fn binding(name: &str, key: &KernelKey) -> Option<String> {
         "clipped_triangles" => Some(or_none(key.paths.has_clipping, 9, "storage, read", "ClippedTriangle")),
         _ => None,
     }
+}
+
+/// The struct of an effect's parameters, from its fields.
+pub fn struct_of(effect: &Effect) -> String {
+    let members: Vec<String> = effect.fields.iter().map(|field| format!("    {}: {},\n", field.name, field.wgsl.name())).collect();
+    format!("struct {} {{\n{}}}\n", effect.wgsl_struct, members.concat())
 }
 
 /// The declaration of a struct in the text of a file.

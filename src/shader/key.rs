@@ -13,7 +13,7 @@ use crate::{
     frame::NO_TRIANGLE,
 };
 
-/// See the module's first line.
+/// Everything that decides which shader text runs and with which constants. Equal keys, equal pipelines.
 #[derive(Clone, Debug, PartialEq, Eq, Hash)]
 pub struct KernelKey {
     /// One option on every accuracy axis.

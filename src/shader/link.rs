@@ -20,10 +20,12 @@ use std::{
 
 use super::{
     glue::{self, Chain},
-    key::KernelKey,
+    key::{Fetch, KernelKey},
     library::Library,
+    pass::Pass,
     source::{Directive, Signature, Source},
 };
+use crate::{accuracy::Visibility, effects::Effect};
 
 /// A linked module with the way back to its files.
 #[derive(Clone, Debug)]
@@ -109,6 +111,24 @@ pub fn link(library: &Library, root: &str, key: &KernelKey, variants: &[(&str, &
     Ok(linker.linked)
 }
 
+/// Puts together the module of one effect alone: its functions and what they use.
+///
+/// # Errors
+/// As [`link`].
+pub fn link_effect(library: &Library, effect: &'static Effect) -> Result<Linked, LinkError> {
+    let key = KernelKey::complete(Fetch::Indexed, Visibility::Split32, vec![effect]);
+    let variants = key.variants(Pass::Resolve);
+    let linked = Linked { text: String::new(), files: Vec::new() };
+    let mut linker =
+        Linker { library, key: &key, variants: &variants, linked, files: BTreeMap::new(), generated: BTreeMap::new(), has_effects: true };
+    let root = format!("effects/{}", effect.file_stem());
+    linker.take(&root, "the program")?;
+    linker.declare_bindings(&root);
+    linker.append_effects()?;
+    linker.check()?;
+    Ok(linker.linked)
+}
+
 struct Linker<'a> {
     library: &'a Library,
     key: &'a KernelKey,
@@ -123,6 +143,13 @@ struct Linker<'a> {
 
 impl Linker<'_> {
     fn load(&self, name: &str, user: &str) -> Result<Arc<File>, LinkError> {
+        let custom = name.strip_prefix("effects/").and_then(|stem| {
+            let sources = self.key.effects.list.iter().filter_map(|effect| effect.source);
+            sources.into_iter().find(|source| source.stem == stem)
+        });
+        if let Some(source) = custom {
+            return Ok(Arc::new(File::new(source.linked.clone())));
+        }
         file(self.library, name).ok_or_else(|| LinkError::Missing { user: user.into(), name: name.into() })
     }
 
@@ -215,7 +242,7 @@ impl Linker<'_> {
             self.append(&part, &chain.text(&self.key.effects.list));
             self.generated.insert(format!("glue_{name}"), format!("glue/{name}"));
             for effect in chain.effects(&self.key.effects.list) {
-                if let Err(error) = self.take(&format!("effects/{}", effect.name), &format!("glue/{name}")) {
+                if let Err(error) = self.take(&format!("effects/{}", effect.file_stem()), &format!("glue/{name}")) {
                     return Some(Err(error));
                 }
             }
@@ -249,9 +276,12 @@ impl Linker<'_> {
         self.generated.insert("effects".into(), "glue/effects".into());
         let mut text = glue::effects(&self.key.effects.list, &self.key.effects.baked);
         for effect in &self.key.effects.list {
-            let name = format!("effects/{}", effect.name);
+            let name = format!("effects/{}", effect.file_stem());
             if !self.files.contains_key(&name) {
-                text.push_str(glue::struct_text(&self.load(&name, "the stack")?.text, effect.wgsl_struct));
+                match effect.source {
+                    Some(_) => text.push_str(&glue::struct_of(effect)),
+                    None => text.push_str(glue::struct_text(&self.load(&name, "the stack")?.text, effect.wgsl_struct)),
+                }
             }
         }
         // The structs of parameters that several effects share, where their files are not part of the module.

@@ -103,7 +103,7 @@ pub struct Report {
 
 impl Case {
     /// Runs the case. `keep_going` receives what is drawn next and may stop the run by returning false. The renderer can be used
-    /// for the next case whatever happens.
+    /// for the next case after every outcome.
     pub fn run(&self, renderer: &mut Renderer, seed: u32, keep_going: &dyn Fn(&str) -> bool) -> Report {
         let began = Instant::now();
         let mut context = CaseContext::new(renderer, seed, keep_going);

@@ -194,7 +194,7 @@ impl<'a> CaseContext<'a> {
         drawing::quick_option(&self.renderer.gpu().caps)
     }
 
-    /// Builds a builtin scene.
+    /// Builds a built-in scene.
     pub(super) fn scene(&self, query: &str) -> Result<Arc<Scene>, EarlyEnd> {
         builtin::build(query).map(Arc::new).map_err(|error| EarlyEnd::Failed(format!("{query}: {error}")))
     }

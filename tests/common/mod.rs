@@ -154,7 +154,7 @@ pub fn quick_option(renderer: &Renderer) -> Visibility {
     stress::quick_option(&renderer.gpu().caps)
 }
 
-/// A builtin; small ones are built once for all tests of a process.
+/// A built-in scene; small ones are built once for all tests of a process.
 pub fn scene(query: &str) -> Arc<Scene> {
     const LARGE: u64 = 100_000;
     static BUILT: Mutex<BTreeMap<String, Arc<Scene>>> = Mutex::new(BTreeMap::new());

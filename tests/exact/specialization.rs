@@ -16,7 +16,7 @@ use rasterlab::{
     shader::{Fetch, key::AttributeFormat},
 };
 
-/// Every builtin scene on every option, and every preset on one: the resolve of its effects hardly knows the option.
+/// Every built-in scene on every option, and every preset on one: the resolve of its effects hardly knows the option.
 fn pictures(options: &[Visibility]) -> Vec<(String, Arc<Scene>, View, Stack, Visibility)> {
     let mut pictures = Vec::new();
     for query in SCENES {
@@ -68,7 +68,7 @@ fn the_planned_kernel_and_the_one_that_leaves_nothing_out_draw_the_same() {
             (capture, renderer.key().expect("something was drawn").clone())
         });
         let k = &everything;
-        // Discs about corners need no path for large triangles, whatever the scene holds.
+        // Discs about corners need no path for large triangles, in any scene.
         let has_paths = k.paths.has_clipping && k.paths.has_medium && k.paths.has_large || k.samples.shape == Shape::Points;
         assert!(has_paths && k.surface.has_planes && k.vertices.has_colors, "{k}");
         let vertices = &k.vertices;
@@ -173,7 +173,7 @@ fn only_a_deformed_scene_has_the_skin_pass_and_only_the_buffers_that_it_needs() 
         !passes.contains(&"deform") && !["deforms", "joints", "morph_targets"].iter().any(|name| buffers.contains(name)),
         "{passes:?} {buffers:?}"
     );
-    assert!(still.omitted.iter().any(|note| note.name == "deform" && note.why.contains("no mesh has joints or morph weights")));
+    assert!(still.omitted.iter().any(|note| note.name == "deform" && note.why.contains("no mesh has joints or morph targets")));
     let bytes = |explanation: &Explanation| explanation.buffers.iter().find(|buffer| buffer.name == "vertex_bytes").map_or(0, |b| b.bytes);
     assert!(bytes(&still) < scene("teapot?tess=4").vertex_bytes.len() as u64 + 16, "a rigid mesh has no room for bent vertices");
 

@@ -18,14 +18,17 @@ const MAY_KNOW: &[(&str, &[&str])] = &[
     ("effects", &["math", "params", "scene"]),
     ("shader", &["effects", "frame", "accuracy", "math", "params", "scene"]),
     ("plan", &["effects", "accuracy", "math", "params", "scene", "shader"]),
+    ("evaluator", &[]),
+    ("effect_files", &["effects", "evaluator", "math", "params", "shader"]),
     ("preset", &["effects", "accuracy", "math", "params", "plan", "scene", "shader"]),
     ("oracle", &["effects", "frame", "math", "measure", "params", "scene"]),
     ("gpu", &["effects", "frame", "accuracy", "math", "measure", "params", "plan", "scene", "preset", "shader"]),
-    ("preset_file", &["effects", "frame", "accuracy", "math", "params", "plan", "scene", "preset", "shader"]),
+    ("preset_file", &["effect_files", "effects", "frame", "accuracy", "math", "params", "plan", "scene", "preset", "shader"]),
     ("stress", &["effects", "frame", "gpu", "accuracy", "math", "measure", "oracle", "params", "plan", "scene", "preset"]),
     (
         "app",
         &[
+            "effect_files",
             "effects",
             "frame",
             "gpu",
@@ -46,6 +49,7 @@ const MAY_KNOW: &[(&str, &[&str])] = &[
         "cli",
         &[
             "app",
+            "effect_files",
             "effects",
             "frame",
             "gpu",

@@ -3,7 +3,7 @@
 //! An import is a `use` or a path in the code that leads to something another file of the same room defines. Paths are
 //! followed through `self`, `super`, `crate::room` and re-exports to the file that defines the name, so
 //! `use super::Scene` in `scene/draw.rs` means `scene/mod.rs` only if `mod.rs` itself defines `Scene`. `mod name;` alone is no
-//! import, and unit tests (`#[cfg(test)] mod …`) are not looked at: they may name whatever they test.
+//! import, and unit tests (`#[cfg(test)] mod …`) are not looked at: they may name everything that they test.
 //!
 //! A failure shows one circle as a path of files, each arrow with the name it is there for:
 //! `src/scene/draw.rs -[Bounds]-> src/scene/mod.rs -[draws]-> src/scene/draw.rs`. Cut the arrow that points upwards: move what

@@ -11,7 +11,7 @@ use rasterlab::{
     stress::scenes::Rng,
 };
 
-/// Divides the first mesh of a builtin.
+/// Divides the first mesh of a built-in scene.
 fn divided(query: &str) -> (Arc<Scene>, Meshlets) {
     let scene = Arc::new(builtin::build(query).unwrap_or_else(|error| panic!("{query}: {error}")));
     let meshlets = Meshlets::of(&scene, &scene.primitives[0]);

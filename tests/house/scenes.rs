@@ -1,4 +1,4 @@
-//! Promise: builtin scenes are closed, fold-free, finite and of the size asked for; a mistyped query gets a helpful message.
+//! Promise: built-in scenes are closed, fold-free, finite and of the size asked for; a mistyped query gets a helpful message.
 
 use std::collections::{HashMap, HashSet};
 
@@ -342,7 +342,7 @@ fn mistyped_queries_get_a_helpful_error() {
     for (query, sentence) in [
         (
             "teapto",
-            "there is no builtin scene \"teapto\"; did you mean \"teapot\"? \
+            "there is no built-in scene \"teapto\"; did you mean \"teapot\"? \
              (known: teapot, sphere, knot, cube-wall, field, tentacle, walker, chamber, globe, panels, leaves, near, grid, fan, sizes, slivers, stack)",
         ),
         ("teapot?tes=4", "teapot has no parameter \"tes\"; did you mean \"tess\"? (known: tess)"),

@@ -1,4 +1,4 @@
-//! The comparison: a reference or a kept preset beside the live one, as a wipe, side by side, or as their difference.
+//! Promise: the comparison shows a reference or a kept preset beside the live one, as a wipe, side by side, or as their difference.
 
 use eframe::egui::{Key, Modifiers, Role, vec2};
 use egui_kittest::kittest::Queryable as _;

@@ -1,4 +1,4 @@
-//! Files: presets, models and pictures are opened, dropped, saved and exported, and nothing is lost when the device is.
+//! Promise: presets, models and pictures are opened, dropped, saved and exported, and nothing is lost when the device is.
 
 use std::{
     path::Path,
@@ -7,7 +7,10 @@ use std::{
 
 use eframe::egui::{self, Key, Modifiers, Role, vec2};
 use egui_kittest::kittest::Queryable as _;
-use rasterlab::{preset::SceneSource, preset_file};
+use rasterlab::{
+    preset::SceneSource,
+    preset_file::{self, Folders},
+};
 
 use crate::harness::*;
 
@@ -111,7 +114,7 @@ fn dropped_presets_and_exported_pictures_are_opened() {
     drop_files(&mut lab, &[&toml]);
     assert_eq!((lab.state().preset_file().id.as_str(), lab.state().preset_file().preset.animation.tracks().len()), ("moving", 3));
     let png = folder.path().join("shot.png");
-    let preset_file = preset_file::open("facet-knot", None).expect("a built-in preset");
+    let preset_file = preset_file::open("facet-knot", &Folders::default()).expect("a built-in preset");
     let frame = rasterlab::frame::Frame { width: 1, height: 1, color: vec![[9; 4]], ..Default::default() };
     std::fs::write(&png, preset_file::png_with_preset(&frame, &preset_file, &preset_file::Provenance::default()).expect("a picture"))
         .expect("a file");
@@ -176,7 +179,7 @@ fn an_exported_picture_contains_its_preset() {
 fn undo_after_saving_is_an_unsaved_change_again() {
     let folder = tempfile::tempdir().expect("a temporary folder");
     let path = folder.path().join("mine.toml");
-    let mut preset_file = preset_file::open("lambert", None).expect("a built-in preset");
+    let mut preset_file = preset_file::open("lambert", &Folders::default()).expect("a built-in preset");
     preset_file::save(&mut preset_file, &path).expect("a file");
     let Some(mut lab) = lab_in(&path.to_string_lossy(), Some(folder.path())) else { return };
     click(&mut lab, Role::CheckBox, "facet");

@@ -16,6 +16,7 @@ use egui_kittest::{Harness, Node, TestRenderer, kittest::Queryable as _};
 use rasterlab::{
     app::{App, Options, wgpu_setup},
     gpu::device::AdapterChoice,
+    preset_file::Folders,
 };
 
 /// The app in a harness, and the device that draws it.
@@ -123,7 +124,12 @@ pub fn lab_in(open: &str, presets_dir: Option<&Path>) -> Option<Lab> {
     crate::common::gpu()?; // Fails with one sentence when there is none.
     let adapter = std::env::var("RASTERLAB_ADAPTER").map_or(AdapterChoice::Any, AdapterChoice::Named);
     let window = device(&adapter);
-    let options = Options { open: Some(open.into()), opened: None, adapter, presets_dir: presets_dir.map(Path::to_owned) };
+    let options = Options {
+        open: Some(open.into()),
+        opened: None,
+        adapter,
+        folders: Folders { presets: presets_dir.map(Path::to_owned), ..Folders::default() },
+    };
     let harness = Harness::builder()
         .with_size([1280.0, 800.0])
         .renderer(Window(window.clone()))

@@ -1,4 +1,4 @@
-//! The accuracy sweep: combinations of options are measured, shown as points, and pinned by a click.
+//! Promise: in the accuracy sweep combinations of options are measured, shown as points, and pinned by a click.
 
 use eframe::egui::{self, Key, Modifiers, Role};
 use egui_kittest::kittest::Queryable as _;

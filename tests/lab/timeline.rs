@@ -1,4 +1,4 @@
-//! The timeline: values are animated by keys, keys are moved, eased and removed, and time plays, loops and is scrubbed.
+//! Promise: on the timeline values are animated by keyframes, keyframes are moved, eased and removed, and time plays, loops and is scrubbed.
 
 use std::time::Duration;
 

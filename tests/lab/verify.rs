@@ -1,4 +1,4 @@
-//! Verification: errors are measured, shown as overlays with a legend, and the extreme cases run beside the window.
+//! Promise: errors are measured, shown as overlays with a legend, and the extreme cases run beside the window.
 
 use std::time::{Duration, Instant};
 

@@ -1,10 +1,14 @@
-//! The viewport: the window shows the picture of the oracle, draws only when something changes, and follows the pointer.
+//! Promise: the window shows the picture of the oracle, draws only when something changes, and follows the pointer.
 
 use std::time::Duration;
 
 use eframe::egui::{self, Key, Modifiers, Pos2, Role, vec2};
 use egui_kittest::kittest::Queryable as _;
-use rasterlab::{oracle, preset::SceneSource, preset_file};
+use rasterlab::{
+    oracle,
+    preset::SceneSource,
+    preset_file::{self, Folders},
+};
 
 use crate::harness::*;
 
@@ -60,7 +64,7 @@ fn undo_of_a_preset_brings_its_name_back() {
 #[test]
 fn brackets_walk_through_the_gallery() {
     let Some(mut lab) = lab("lambert") else { return };
-    let ids: Vec<String> = preset_file::gallery(None).into_iter().map(|entry| entry.id).collect();
+    let ids: Vec<String> = preset_file::gallery(&Folders::default()).into_iter().map(|entry| entry.id).collect();
     let here = ids.iter().position(|id| id == "lambert").expect("a preset of the gallery");
     press(&mut lab, Modifiers::NONE, Key::CloseBracket);
     assert_eq!(lab.state().preset_file().id, ids[here + 1]);
@@ -99,7 +103,7 @@ fn a_scene_that_cannot_be_loaded_keeps_the_last_picture_and_is_reported_once() {
     let reports: Vec<_> = log.lines().filter(|line| line.contains("no-such-scene")).collect();
     assert!(matches!(reports[..], [one] if !one.contains('×')), "{log}");
     undo(&mut lab);
-    assert_eq!(lab.state().preset_file().preset.scene, preset_file::open("lambert", None).unwrap().preset.scene);
+    assert_eq!(lab.state().preset_file().preset.scene, preset_file::open("lambert", &Folders::default()).unwrap().preset.scene);
 }
 
 #[test]

@@ -1,4 +1,4 @@
-//! A real window on a virtual display (Xvfb): it opens, draws, follows the pointer, saves a preset and closes.
+//! Promise: a real window on a virtual display (Xvfb) opens, draws, follows the pointer, saves a preset and closes.
 
 use std::{
     io::{BufRead as _, BufReader},
@@ -7,7 +7,7 @@ use std::{
     time::{Duration, Instant},
 };
 
-use rasterlab::preset_file;
+use rasterlab::preset_file::{self, Folders};
 use x11rb::{
     connection::Connection as _,
     protocol::{
@@ -213,7 +213,7 @@ fn a_real_window_opens_draws_follows_the_hand_saves_and_closes() {
     });
     let preset_file = preset_file::load(&saved).expect("the saved preset loads");
     assert!(preset_file.preset.camera.is_some() && preset_file.warnings.is_empty());
-    let built_in = preset_file::open("facet-knot", None).expect("a built-in preset").preset;
+    let built_in = preset_file::open("facet-knot", &Folders::default()).expect("a built-in preset").preset;
     assert_eq!(preset_file.preset.stack, built_in.stack);
     assert_ne!(preset_file.preset.camera, built_in.camera);
 

@@ -223,7 +223,7 @@ fn windows_weights_and_opacities_are_the_oracles() {
             }
         }
     }
-    // A window of nothing is the front alone, whatever lies behind.
+    // A window of nothing is the front alone, for everything behind it.
     let (scene, view) = &deep;
     let bare = captured(&mut renderer, scene, view, &with(&["normals"]), &AccuracyRequest::default()).frame;
     let front =

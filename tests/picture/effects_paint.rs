@@ -1,4 +1,4 @@
-//! Promise: the effects on surface and image are exact. Each is judged on every builtin scene and option, with its defaults
+//! Promise: the effects on surface and image are exact. Each is judged on every built-in scene and option, with its defaults
 //! and with random parameters, and keeps its own small promises. Needs an adapter for the pictures alone.
 
 use std::sync::Arc;

@@ -7,7 +7,7 @@
 
 @group(0) @binding(26) var<storage, read_write> meshlet_lists: array<u32>;
 
-// The last phase counts what is left out.
+// The last phase counts the meshlets that are not drawn.
 override COUNTS_CULLED: bool = true;
 
 // Invocations of the workgroup per verdict.

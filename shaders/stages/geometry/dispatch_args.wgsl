@@ -1,5 +1,5 @@
 // dispatch_args: converts the demand of every queue into workgroup counts, folded to two dimensions above 65,535 workgroups.
-// Mirrors `gpu::uniforms::DispatchArgs`.
+// Mirrors `gpu::records::DispatchArgs`.
 //@ use lib/frame
 //@ use lib/queues
 

@@ -1,5 +1,5 @@
-// sample_setup: computes, once per triangle or clipped triangle, the integers that sample tests compare samples with. Whatever
-// comes from floats is rounded here and nowhere else, so all passes agree.
+// sample_setup: computes, once per triangle or clipped triangle, the integers that sample tests compare samples with. Values
+// from floats are rounded here and nowhere else, so all passes agree.
 //@ use lib/frame
 //@ use lib/triangle
 //@ use lib/geometry

@@ -21,7 +21,7 @@ fn raster_small(
     @builtin(workgroup_id) workgroup: vec3u, @builtin(num_workgroups) workgroups: vec3u,
     @builtin(local_invocation_index) invocation_index: u32
 ) {
-    // Loads come before the first branch: what all invocations load alike is then loaded once, even where branches are masks.
+    // Loads come before the first branch, so uniform loads are done once, even on CPU drivers that turn branches into lane masks.
     let source = triangle_source(frame_invocation(workgroup, workgroups, invocation_index, GROUP_SIZE));
     let id = source.x;
     let t = triangle_of(source.y, source.z);
@@ -61,7 +61,7 @@ fn raster_small(
     small_triangle(t, area, pixels);
 }
 
-// A corner was rejected, or lies in front of the near plane or outside the guard band.
+// A corner was rejected, or lies between the eye and the near plane or outside the guard band.
 fn queue_unprojected(t: Triangle, any_flag: u32) {
     if triangle_rejected(any_flag) { return; }
     if (any_flag & DROPPED_FLAGS) != 0u {

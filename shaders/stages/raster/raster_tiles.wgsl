@@ -32,7 +32,7 @@ fn raster_tiles(
         // Filling the lists moved every begin to its end, which is where the next list begins.
         let begin = select(bins[max(tile, 1u) - 1u], 0u, tile == 0u);
         list = min(vec2u(begin, bins[tile]), vec2u(frame.bin_capacity));
-        // Earlier dispatches came this far; no index leaves the list, whatever its end.
+        // Earlier dispatches came this far. The clamp keeps every index inside the list.
         list.x = min(list.x + bins[tiles_count() + tile], list.y);
         list.y = list.x + min(list.y - list.x, MAX_LIST_ENTRIES);
         bins[tiles_count() + tile] += list.y - list.x;

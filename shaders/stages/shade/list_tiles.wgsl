@@ -1,6 +1,6 @@
 // list_tiles: lists the marked tiles of 8x8 pixels, so that the resolve pass is dispatched over those alone.
 //@ use lib/frame
-//@ use lib/color
+//@ use lib/picture
 
 @group(0) @binding(13) var<storage, read> tile_mask: array<u32>;
 

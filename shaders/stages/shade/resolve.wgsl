@@ -2,6 +2,7 @@
 // writes gamma-encoded bytes.
 //@ use lib/frame
 //@ use lib/color
+//@ use lib/picture
 //@ use variants/framebuffer_read
 //@ use variants/shading
 //@ use steps/finish_step

@@ -1,6 +1,7 @@
-// scale: converts the picture as drawn to the picture as shown, where they differ in size. Mirrors `gpu::uniforms::ScalingUniform`.
+// scale: converts the picture as drawn to the picture as shown, where they differ in size. Mirrors `gpu::records::ScalingUniform`.
 //@ use lib/frame
 //@ use lib/color
+//@ use lib/picture
 
 // The picture as shown.
 struct Scaling {

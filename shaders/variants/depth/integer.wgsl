@@ -1,5 +1,5 @@
-// Depth, integer: the depth at a sample is a quotient of integers, packed like a float: the same bits on every adapter, whatever
-// the order of corners or the size of the triangle. Keys order like the bits of a float, never leave the range of the corners'
+// Depth, integer: the depth at a sample is a quotient of integers, packed like a float: the same bits on every adapter, for
+// every order of corners and every size of the triangle. Keys order like the bits of a float, never leave the range of the corners'
 // depths, and are a corner's bits at the corner.
 //@ use lib/fixed
 

@@ -1,6 +1,6 @@
 // Depth: keys of reversed depths, which are 1 at the near plane and 0 far away, and their interpolation over a triangle. A
 // larger key is nearer; every key is at least 1.
-// Chosen by the accuracy axis `depth_format`. Default: float.
+// Chosen by the accuracy axis `depth`. Default: float.
 //
 // Key of a reversed depth from 0 to 1.
 //@ declare fn depth_key(z: f32) -> u32

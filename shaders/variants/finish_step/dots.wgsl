@@ -1,6 +1,6 @@
 // Finish step, dots: the strongest dot of a pixel over its surface, or over the background alone.
 //@ use lib/frame
-//@ use lib/color
+//@ use lib/picture
 //@ use lib/dots
 
 fn finish_step_dots(encoded: vec4f, pixel: vec2u) -> vec4f {

@@ -1,5 +1,5 @@
 // Large depth: depth keys of large triangles at the samples of a block of 16x16 pixels.
-// Chosen with the accuracy axis `depth_format`: integer for that option, float for all others. Default: float.
+// Chosen with the accuracy axis `depth`: integer for that option, float for all others. Default: float.
 //
 // raster_large has sixteen blocks in a workgroup, and three edges to a block: before a barrier it calls, for each of the 48
 // edges, with p the sample of the block's first pixel:

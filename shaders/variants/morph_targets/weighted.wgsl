@@ -1,4 +1,4 @@
-// Morph targets, weighted: each adds its offset times its weight. Mirrors `gpu::deforms::ShapeRecord`.
+// Morph targets, weighted: each adds its offset times its weight. Mirrors `gpu::records::MorphTargetRecord`.
 //@ use lib/attributes
 //@ use lib/deform
 

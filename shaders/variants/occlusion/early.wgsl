@@ -1,5 +1,5 @@
-// Occlusion, early: the first of two phases draws what was visible in the previous picture. Whatever `meshlet_visibility` holds,
-// the late phase corrects it.
+// Occlusion, early: the first of two phases draws what was visible in the previous frame. `meshlet_visibility` may hold
+// anything: the late phase corrects it.
 //@ use lib/meshlets
 //@ use lib/extent
 

@@ -1,4 +1,4 @@
-// Occlusion, previous frame: what the previous picture hides is left out, as if nothing had moved.
+// Occlusion, previous frame: what the depths of the previous frame hide is left out, as if nothing had moved.
 //@ use lib/meshlets
 //@ use lib/extent
 //@ use lib/hiz

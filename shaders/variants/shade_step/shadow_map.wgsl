@@ -1,5 +1,5 @@
 // Shade step, shadow map: the fraction of a directional light that reaches a sample, from the depths that the light sees.
-// Mirrors `gpu::uniforms::LightUniform`.
+// Mirrors `gpu::records::ShadowMapUniform`.
 //@ use lib/triangle
 //@ use lib/surface
 //@ use lib/shade

@@ -22,7 +22,7 @@ fn small_triangle(t: Triangle, area: i32, pixels: vec4i) {
     var pixel = u32(pixels.y) * frame.size.x + u32(pixels.x);
     var x = 0;
     var y = pixels.y;
-    // One flat loop over the box, so that neighboring invocations stay together whatever the shapes of their boxes.
+    // One flat loop over the box, so that neighboring invocations stay together for boxes of all shapes.
     for (var i = 0; i < count; i += 1) {
         if coverage_contains(coverage, edges) && sample_test(t, vec2u(vec2i(pixels.x + x, y)), pixel) {
             framebuffer_write(pixel, coverage_key(coverage, edges), t.id);

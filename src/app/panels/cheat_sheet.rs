@@ -10,7 +10,7 @@ use crate::app::{
     theme,
 };
 
-/// See the module's first line.
+/// Every action with its shortcut and its present value, to be searched.
 #[derive(Default)]
 pub struct CheatSheet {
     search: String,

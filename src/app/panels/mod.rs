@@ -11,12 +11,11 @@ pub mod timeline;
 pub mod topbar;
 pub mod viewport;
 
-use std::path::Path;
-
 use self::{
     cheat_sheet::CheatSheet, dialogs::Dialogs, extremes::Extremes, inspector::Inspector, log::LogPanel, preset_browser::PresetBrowser,
     sweep::SweepPanel, timeline::Timeline, topbar::TopBar, viewport::Viewport,
 };
+use crate::preset_file::Folders;
 
 /// All panels.
 pub struct Panels {
@@ -33,11 +32,11 @@ pub struct Panels {
 }
 
 impl Panels {
-    /// The panels at the start, with the presets of `presets_dir` in the gallery.
-    pub fn new(presets_dir: Option<&Path>) -> Self {
+    /// The panels at the start, with the presets of `folders` in the gallery.
+    pub fn new(folders: &Folders) -> Self {
         Self {
             topbar: TopBar,
-            browser: PresetBrowser::new(presets_dir),
+            browser: PresetBrowser::new(folders),
             inspector: Inspector,
             timeline: Timeline::default(),
             sweep: SweepPanel::default(),

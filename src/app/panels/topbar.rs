@@ -13,7 +13,7 @@ use crate::app::{
     theme,
 };
 
-/// See the module's first line.
+/// The bar at the top: menus, the open preset, the adapter, and the cost and error of the picture.
 pub struct TopBar;
 
 /// Menus with their entries; none is a separator.

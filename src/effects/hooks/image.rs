@@ -51,7 +51,7 @@ impl Picture<'_> {
 #[derive(Clone, Copy)]
 pub struct ImageHook {
     pub reads_previous: bool,
-    pub finish: fn(Pixel, &Picture, &[u32]) -> Pixel,
+    pub finish: &'static (dyn Fn(Pixel, &Picture<'_>, &[u32]) -> Pixel + Sync),
 }
 
 /// The f64 side of an effect on the image hook.

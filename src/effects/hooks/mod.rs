@@ -17,6 +17,9 @@ pub use vertex::{ErrorBound, ROUNDING, Vertex, VertexEffect, VertexHook};
 
 use crate::scene::particle_discs::ParticleSettings;
 
+/// A surface effect's function over its parameter words.
+pub type SurfaceFunction = dyn Fn(Surface, &[u32]) -> Surface + Sync;
+
 /// Every hook of one effect, each with its function over the parameter words.
 #[derive(Clone, Copy)]
 pub struct Hooks {
@@ -25,7 +28,7 @@ pub struct Hooks {
     /// Is this sample drawn?
     pub sample: Option<SampleHook>,
     /// What color is it?
-    pub surface: Option<fn(Surface, &[u32]) -> Surface>,
+    pub surface: Option<&'static SurfaceFunction>,
     /// Finish the pixel.
     pub image: Option<ImageHook>,
     /// The part of the rasterizer that the effect replaces.

@@ -106,11 +106,11 @@ pub struct SampleHook {
     /// It needs a setup per triangle.
     pub has_setup: bool,
     /// Bound of the error of the f32 side in the first word of a setup.
-    pub error_bound: fn(&TriangleSetup, &[u32]) -> f64,
+    pub error_bound: &'static (dyn Fn(&TriangleSetup, &[u32]) -> f64 + Sync),
     /// Its setup is rounded from floats, which differ from adapter to adapter.
-    pub is_from_floats: fn(&[u32]) -> bool,
-    pub sample_setup: fn(&TriangleSetup, &[u32], Option<u32>) -> [u32; 4],
-    pub is_drawn: fn(&Sample, &[u32]) -> bool,
+    pub is_from_floats: &'static (dyn Fn(&[u32]) -> bool + Sync),
+    pub sample_setup: &'static (dyn Fn(&TriangleSetup, &[u32], Option<u32>) -> [u32; 4] + Sync),
+    pub is_drawn: &'static (dyn Fn(&Sample, &[u32]) -> bool + Sync),
 }
 
 /// The integer side of an effect on the sample hook.

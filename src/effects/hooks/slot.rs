@@ -1,6 +1,6 @@
 //! Slots: parts of the rasterizer that an effect replaces. A slot takes one effect.
 
-/// See the module's first line.
+/// A part of the rasterizer that an effect replaces. A slot takes one effect.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Slot {
     /// Which samples a triangle covers.

@@ -77,6 +77,28 @@ pub enum SurfaceInput {
 }
 
 impl SurfaceInput {
+    pub const ALL: [Self; 19] = [
+        Self::Color,
+        Self::Glow,
+        Self::Position,
+        Self::Normal,
+        Self::FlatNormal,
+        Self::View,
+        Self::Center,
+        Self::CenterScreen,
+        Self::Screen,
+        Self::Pixel,
+        Self::Barycentrics,
+        Self::EdgeDistance,
+        Self::Depth,
+        Self::PixelSize,
+        Self::FlatDepth,
+        Self::DepthRange,
+        Self::TriangleId,
+        Self::Rank,
+        Self::Lit,
+    ];
+
     /// The member of the WGSL struct `Surface`.
     pub const fn member(self) -> &'static str {
         match self {

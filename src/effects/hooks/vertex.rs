@@ -50,9 +50,9 @@ pub const ROUNDING: f64 = 1.0 / (1 << 23) as f64;
 pub struct VertexHook {
     /// It reads the triangle, so triangles cannot share vertices.
     pub needs_triangle: bool,
-    pub moved: fn(Vertex, &[u32]) -> Vertex,
-    pub error_bound: fn(&Vertex, ErrorBound, &[u32]) -> ErrorBound,
-    pub max_displacement_m: fn(f64, &[u32]) -> f64,
+    pub moved: &'static (dyn Fn(Vertex, &[u32]) -> Vertex + Sync),
+    pub error_bound: &'static (dyn Fn(&Vertex, ErrorBound, &[u32]) -> ErrorBound + Sync),
+    pub max_displacement_m: &'static (dyn Fn(f64, &[u32]) -> f64 + Sync),
 }
 
 /// The f64 side of an effect on the vertex hook.

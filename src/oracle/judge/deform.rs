@@ -67,7 +67,7 @@ fn is_near(given: DVec3, reference: &Bounded) -> bool {
     (given - reference.value).abs().cmple(error).all()
 }
 
-/// An object-space position in the picture, in pixels from its center; none in front of the near plane.
+/// An object-space position in the picture, in pixels from its center; none between the eye and the near plane.
 fn projected(shot: &Shot, draw: &Draw, position: DVec3) -> Option<[f64; 2]> {
     let p = position - draw.origin();
     let row = |r: usize| {

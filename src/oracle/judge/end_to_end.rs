@@ -106,8 +106,8 @@ impl EndToEnd<'_> {
         of(self.adapter) != of(self.own)
     }
 
-    /// Where a triangle is drawn and how far it may move: as far as its corners did; if it is clipped, a pixel and what vertex
-    /// effects err by at its corners.
+    /// Where a triangle is drawn and how far it may move: 1.5 times as far as its corners did; if it is clipped, the larger of one
+    /// pixel and 1.5 times the vertex effects' error (1.5 is at least √2, for both axes).
     fn outline(&self, id: u32) -> Option<Outline> {
         let draw = self.shot.draw_of(id)?;
         let records = self.shot.corner_records(draw, self.own, id);

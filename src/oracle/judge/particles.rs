@@ -68,7 +68,7 @@ fn particle_errors(view: &View, stack: &Stack, readback: &ParticleReadback) -> V
     readback.after.par_iter().zip(&references).enumerate().map(judged).collect()
 }
 
-/// A position of the scene in the picture, in pixels from its center; none in front of the near plane.
+/// A position of the scene in the picture, in pixels from its center; none between the eye and the near plane.
 fn projected(view: &View, position: DVec3) -> Option<DVec2> {
     let clip = view.clip_from_world * view.scene_state.world_from_scene * position.extend(1.0);
     let half = DVec2::new(f64::from(view.width), f64::from(view.height)) * 0.5;

@@ -107,7 +107,7 @@ fn between([a, b]: &[ClipPosition; 2], fraction: f64) -> ClipPosition {
     ClipPosition { x: mix(a.x, b.x), y: mix(a.y, b.y), z: mix(a.z, b.z), w: mix(a.w, b.w) }
 }
 
-/// The view with the grid of dots, which is that of 1/256 px whatever triangles snap to.
+/// The view with the grid of dots, which is that of 1/256 px even if triangles snap to another.
 pub fn dot_grid(view: &View) -> View {
     view.with_grid(SUBPIXEL_BITS, view.precision.is_relative)
 }

@@ -15,7 +15,7 @@ pub struct ClipPosition {
     pub w: f64,
 }
 
-/// The record of a vertex: only [`vertex_flags::NEAR`] in front of the near plane, otherwise position, depth and 1/w.
+/// The record of a vertex: only [`vertex_flags::NEAR`] between the eye and the near plane, otherwise position, depth and 1/w.
 ///
 /// Positions are rounded relative to the center of the picture and to even, so mirror images snap to mirror images.
 pub fn snap(position: &ClipPosition, view: &View) -> SnappedVertex {

@@ -1,4 +1,4 @@
-//! Builtin scenes: meshes from formulas, selected by a query such as `sphere?triangles=160000`.
+//! Built-in scenes: meshes from formulas, selected by a query such as `sphere?triangles=160000`.
 //!
 //! Teapot, sphere, knot, cube-wall, tentacle, walker and chamber are meant to look good. The others stress one property of the
 //! rasterizer each and bring a camera for it. All are indexed, finite and identical on every machine.
@@ -22,7 +22,7 @@ use super::model::Scene;
 
 const SEED: BuiltinParam = whole("seed", "seed of the random arrangement", 0.0, 0.0..=4_294_967_295.0);
 
-/// Every builtin scene.
+/// Every built-in scene.
 pub const BUILTINS: &[Builtin] = &[
     Builtin {
         name: "teapot",

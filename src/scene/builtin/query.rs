@@ -1,10 +1,10 @@
-//! Builtin scenes as table rows, and their queries: parses `name?parameter=value&parameter=value` and checks it.
+//! Built-in scenes as table rows, and their queries: parses `name?parameter=value&parameter=value` and checks it.
 
 use std::ops::RangeInclusive;
 
 use crate::scene::model::Scene;
 
-/// A parameter of a builtin scene, as listings show it.
+/// A parameter of a built-in scene, as listings show it.
 #[derive(Clone, Debug)]
 pub struct BuiltinParam {
     pub name: &'static str,
@@ -18,7 +18,7 @@ pub struct BuiltinParam {
     pub whole: bool,
 }
 
-/// A builtin scene, as listings show it.
+/// A built-in scene, as listings show it.
 pub struct Builtin {
     pub name: &'static str,
     /// One line for listings.
@@ -27,12 +27,12 @@ pub struct Builtin {
     pub(super) build: fn(&Values) -> Result<Scene, BuiltinError>,
 }
 
-/// An unknown builtin or parameter, or a value outside its range; one sentence.
+/// An unknown built-in scene or parameter, or a value outside its range; one sentence.
 #[derive(Debug, thiserror::Error)]
 #[error("{0}")]
 pub struct BuiltinError(pub String);
 
-/// The most triangles of a builtin scene: its indices and its vertices stay below 128 MiB each.
+/// The most triangles of a built-in scene: its indices and its vertices stay below 128 MiB each.
 pub const MAX_TRIANGLES: u64 = 10_000_000;
 
 /// A parameter of whole numbers.
@@ -45,7 +45,7 @@ pub(super) const fn real(name: &'static str, doc: &'static str, default: f64, ra
     BuiltinParam { name, doc, default, range, whole: false }
 }
 
-/// The values of all parameters of a builtin, each within its range.
+/// The values of all parameters of a built-in scene, each within its range.
 pub struct Values {
     builtin: &'static Builtin,
     values: Vec<f64>,
@@ -55,7 +55,7 @@ impl Values {
     /// The value of the parameter `name`.
     ///
     /// # Panics
-    /// If the builtin has no such parameter.
+    /// If the scene has no such parameter.
     pub fn get(&self, name: &str) -> f64 {
         let at = self.builtin.params.iter().position(|param| param.name == name).expect("a builtin asks for parameters of its own table");
         self.values[at]
@@ -67,13 +67,13 @@ impl Values {
     }
 }
 
-/// Finds the builtin of a query and checks every value.
+/// Finds the built-in scene of a query and checks every value.
 pub fn parse(builtins: &'static [Builtin], query: &str) -> Result<(&'static Builtin, Values), BuiltinError> {
     let (name, pairs) = query.trim().split_once('?').unwrap_or((query.trim(), ""));
     let builtin = builtins
         .iter()
         .find(|builtin| builtin.name == name)
-        .ok_or_else(|| BuiltinError(unknown("there is no builtin scene", name, builtins.iter().map(|b| b.name).collect())))?;
+        .ok_or_else(|| BuiltinError(unknown("there is no built-in scene", name, builtins.iter().map(|b| b.name).collect())))?;
     let mut values: Vec<Option<f64>> = vec![None; builtin.params.len()];
     for pair in pairs.split('&').filter(|pair| !pair.is_empty()) {
         let (key, text) =

@@ -50,7 +50,7 @@ const MORPH_TARGETS: Feature = Feature {
 };
 
 const DEFORMATION: Feature = Feature {
-    part: Some(Part { name: "deform", is_used: KernelKey::deforms, why_omitted: |_| "no mesh has joints or morph weights".into() }),
+    part: Some(Part { name: "deform", is_used: KernelKey::deforms, why_omitted: |_| "no mesh has joints or morph targets".into() }),
     ..Feature::NONE
 };
 

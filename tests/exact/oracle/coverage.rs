@@ -5,7 +5,7 @@ use super::*;
 proptest! {
     #![proptest_config(ProptestConfig { cases: 96, failure_persistence: None, ..Default::default() })]
 
-    /// A rectangle cut into cells with random diagonals covers each of its samples once, whatever the cells' size.
+    /// A rectangle cut into cells with random diagonals covers each of its samples once, for every cell size.
     #[test]
     fn shared_edge_is_owned_exactly_once(
         seed in any::<u32>(),

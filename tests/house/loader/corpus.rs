@@ -75,7 +75,7 @@ const EXPECTED: &[(&str, &str)] = &[
     ("glTF2/wrongTypes", "malformed glTF: invalid type"),
 ];
 
-/// Classes of errors that we leave alone: what a file says about itself and nobody reads, and normals of any length.
+/// Classes of errors that we leave alone: what a file says about itself and rasterlab does not read, and normals of any length.
 const UNREAD: [&str; 4] =
     ["ACCESSOR_MIN_MISMATCH", "ACCESSOR_MAX_MISMATCH", "ACCESSOR_VECTOR3_NON_UNIT", "MESH_PRIMITIVE_NO_TANGENT_SPACE"];
 

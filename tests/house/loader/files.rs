@@ -110,7 +110,7 @@ fn pipes_and_folders_are_refused_without_being_opened() {
     fs::create_dir(folder.path("data.bin")).unwrap();
     assert!(folder.load(&model).unwrap_err().to_string().ends_with("it is not a regular file"));
     fs::remove_dir(folder.path("data.bin")).unwrap();
-    // Opening a pipe that nobody writes to would wait for ever.
+    // Opening a pipe without a writer would wait for ever.
     assert!(std::process::Command::new("mkfifo").arg(folder.path("data.bin")).status().unwrap().success());
     assert!(folder.load(&model).unwrap_err().to_string().ends_with("it is not a regular file"));
     assert!(std::process::Command::new("mkfifo").arg(folder.path("pipe.glb")).status().unwrap().success());

@@ -3,10 +3,7 @@
 mod entry;
 mod scenes;
 
-use std::{
-    collections::{HashMap, VecDeque},
-    path::Path,
-};
+use std::collections::{HashMap, VecDeque};
 
 use eframe::egui::{self, RichText, Ui, vec2};
 
@@ -18,7 +15,7 @@ use crate::{
         state::State,
         theme,
     },
-    preset_file::{self, GalleryEntry, PresetFile},
+    preset_file::{self, Folders, GalleryEntry, PresetFile},
 };
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -27,7 +24,7 @@ enum Tab {
     Scene,
 }
 
-/// See the module's first line.
+/// The left panel: presets with thumbnails, and scenes with their parameters.
 pub struct PresetBrowser {
     entries: Vec<GalleryEntry>,
     /// Thumbnails by preset id.
@@ -39,9 +36,9 @@ pub struct PresetBrowser {
 }
 
 impl PresetBrowser {
-    /// The presets of `folder`, of the user's folder, and the built-in ones.
-    pub fn new(folder: Option<&Path>) -> Self {
-        let entries = preset_file::gallery(folder);
+    /// The presets of `folders`, of the user's folder, and the built-in ones.
+    pub fn new(folders: &Folders) -> Self {
+        let entries = preset_file::gallery(folders);
         let queue = entries.iter().filter(|entry| entry.preset_file.is_ok()).map(|entry| entry.id.clone()).collect();
         Self { entries, queue, thumbnails: HashMap::new(), drawing: None, tab: Tab::Presets }
     }
@@ -52,8 +49,8 @@ impl PresetBrowser {
     }
 
     /// Reads the folders again and redraws the thumbnail of the preset `changed`.
-    pub fn refresh(&mut self, folder: Option<&Path>, changed: &str) {
-        self.entries = preset_file::gallery(folder);
+    pub fn refresh(&mut self, folders: &Folders, changed: &str) {
+        self.entries = preset_file::gallery(folders);
         if self.entries.iter().any(|entry| entry.id == changed) && !self.queue.iter().any(|id| id == changed) {
             self.queue.push_back(changed.to_owned());
         }

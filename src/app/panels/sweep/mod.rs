@@ -40,7 +40,7 @@ struct Measured {
     points: Vec<Point>,
 }
 
-/// See the module's first line.
+/// The panel of the accuracy sweep: chooses axes, measures their options, and shows the error over the time.
 pub struct SweepPanel {
     /// Which axes are to be measured, in the order of [`AXES`].
     chosen: Vec<bool>,

@@ -1,4 +1,4 @@
-//! Timeline: play, step, scrub, loop and speed, and below them the keys of every animated parameter.
+//! Timeline: play, step, scrub, loop and speed, and below them the keyframes of every animated parameter.
 
 mod hints;
 mod ruler;
@@ -36,7 +36,7 @@ const RULER: f32 = 22.0;
 const MAX_TRACKS: f32 = 172.0;
 const TRANSPORT: f32 = 28.0;
 
-/// See the module's first line.
+/// Play, step, scrub, loop and speed, and below them the keyframes of every animated parameter.
 #[derive(Default)]
 pub struct Timeline {
     pub selected: Option<KeyId>,
@@ -44,7 +44,7 @@ pub struct Timeline {
     open: BTreeSet<String>,
     /// What is shown from left to right, seconds. Fixed while a button is down, so that a drag does not change its own scale.
     span_s: Option<[f64; 2]>,
-    /// Time of the dragged key when the drag began, seconds.
+    /// Time of the dragged keyframe when the drag began, seconds.
     grabbed_s: Option<f64>,
 }
 
@@ -63,7 +63,7 @@ impl Timeline {
         12.0 + 1.0 + TRANSPORT + RULER + tracks + 2.0 * theme::HALF
     }
 
-    /// Time and easing of the selected key.
+    /// Time and easing of the selected keyframe.
     fn selection_ui(&self, ui: &mut Ui, state: &State, commands: &Commands) {
         let Some(key) = self.selected else { return };
         let Some((track, index)) = key.find(state.session.preset()) else { return };

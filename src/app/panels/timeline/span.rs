@@ -40,7 +40,7 @@ impl Span {
     }
 }
 
-/// What the timeline shows: the range, and every key outside it.
+/// What the timeline shows: the range, and every keyframe outside it.
 pub fn extent([from_s, to_s]: [f64; 2], tracks: &[&Track]) -> [f64; 2] {
     let times = tracks.iter().flat_map(|track| track.keys()).map(|key| key.time_s);
     times.fold([from_s, to_s], |[low, high], time_s| [low.min(time_s), high.max(time_s)])

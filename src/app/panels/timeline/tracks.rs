@@ -1,4 +1,4 @@
-//! Tracks: a row per animated parameter, with a mark per key that can be dragged in time. An open row shows its curve.
+//! Tracks: a row per animated parameter, with a mark per keyframe that can be dragged in time. An open row shows its curve.
 
 use std::collections::BTreeSet;
 
@@ -41,7 +41,7 @@ pub struct Tracks<'a> {
     /// Paths of the tracks whose curve is shown.
     pub open: &'a mut BTreeSet<String>,
     pub selected: &'a mut Option<KeyId>,
-    /// Time of the dragged key when the drag began, seconds.
+    /// Time of the dragged keyframe when the drag began, seconds.
     pub grabbed_s: &'a mut Option<f64>,
 }
 
@@ -89,7 +89,7 @@ impl Tracks<'_> {
         }
     }
 
-    /// One key: a click selects it and shows its time, a drag moves it, the menu eases and removes it.
+    /// One keyframe: a click selects it and shows its time, a drag moves it, the menu eases and removes it.
     fn mark_ui(&mut self, ui: &mut Ui, track: &Track, index: usize, at: Pos2) {
         let key = &track.keys()[index];
         let id = KeyId { effect: track.effect(), field: track.field().name, time_s: key.time_s };
@@ -121,7 +121,7 @@ impl Tracks<'_> {
         });
     }
 
-    /// Moves the selected key with the pointer, between its neighbors, on the grid of frames unless Shift is down.
+    /// Moves the selected keyframe with the pointer, between its neighbors, on the grid of frames unless Shift is down.
     fn drag_mark(&self, ui: &Ui, keys: &[Keyframe], index: usize) {
         let (origin, now, is_free) = ui.input(|i| (i.pointer.press_origin(), i.pointer.interact_pos(), i.modifiers.shift));
         let (Some(selected), Some(grabbed_s), Some(origin), Some(now)) = (*self.selected, *self.grabbed_s, origin, now) else { return };
@@ -138,7 +138,7 @@ impl Tracks<'_> {
     }
 }
 
-/// The menu of a key.
+/// The menu of a keyframe.
 fn menu_ui(ui: &mut Ui, track: &Track, key: &Keyframe, id: KeyId) -> Option<KeyframeEdit> {
     let mut edit = None;
     ui.set_min_width(140.0);
@@ -189,7 +189,7 @@ fn paint_mark(ui: &Ui, at: Pos2, easing: Easing, is_selected: bool, is_near: boo
     ui.painter().add(shape);
 }
 
-/// A line from the first key to the last, brighter where the value moves.
+/// A line from the first keyframe to the last, brighter where the value moves.
 fn bars(ui: &Ui, track: &Track, span: &Span, rail: Rect) {
     let painter = ui.painter_at(rail);
     for pair in track.keys().windows(2) {
@@ -207,7 +207,7 @@ struct Curve {
 }
 
 impl Curve {
-    /// The range is that of the keys' values: no easing leaves it.
+    /// The range is that of the keyframes' values: no easing leaves it.
     fn of(track: &Track, rect: Rect) -> Self {
         let values = track.keys().iter().flat_map(|key| &key.value);
         let (low, high) = values.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), v| (low.min(*v), high.max(*v)));

@@ -33,7 +33,7 @@ const REST_S: f64 = 0.2;
 /// A frame that takes longer makes moving pictures coarser, milliseconds.
 const SMOOTH_MS: f64 = 28.0;
 
-/// See the module's first line.
+/// The picture, its overlays and the comparison, and the pointer on the camera.
 #[derive(Default)]
 pub struct Viewport {
     /// When the user last moved the picture, seconds; 0 for never.
@@ -138,7 +138,7 @@ impl Viewport {
         let screen = &state.screen;
         let is_drawn = screen.requested().is_some() && screen.drawn() == screen.requested() && !screen.is_waiting();
         if !is_drawn || ctx.input(|i| i.pointer.any_down()) {
-            return false; // Whatever ends this repaints.
+            return false; // The event that ends this state repaints.
         }
         let rest_in_s = self.rest_in_s(state.now_s);
         if let Some(wait_s) = rest_in_s {

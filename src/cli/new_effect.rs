@@ -1,0 +1,30 @@
+//! `new-effect`: writes a commented effect file, and says what to do next.
+
+use serde_json::{Value, json};
+
+use super::{
+    args::{Common, NewEffect},
+    error::{CliError, Exit},
+    files,
+    streams::Streams,
+};
+use crate::effect_files::{check_name, template};
+
+pub fn run(common: &Common, args: &NewEffect, streams: &mut Streams) -> Result<Exit, CliError> {
+    let name = &args.name;
+    check_name(name).map_err(|reason| CliError::usage(format!("{name:?} {reason}")))?;
+    let path = common.effects_dir().join(format!("{name}.wgsl"));
+    if path.exists() && !common.force {
+        return Err(CliError::usage(format!("{} exists; --force overwrites it", path.display())));
+    }
+    std::fs::create_dir_all(common.effects_dir())
+        .map_err(|error| CliError::usage(format!("{} cannot be made: {error}", common.effects_dir().display())))?;
+    files::write(&path, template(name, args.hook).as_bytes())?;
+    if streams.json {
+        streams.object("new-effect", Value::Null, vec![json!({ "file": path.to_string_lossy(), "hook": args.hook.name() })])?;
+    } else {
+        streams.text(&format!("{}\n", path.display()))?;
+    }
+    streams.note(&format!("edit it while the lab shows it: rasterlab teapot --set {name}"));
+    Ok(Exit::Done)
+}

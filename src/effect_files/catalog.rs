@@ -1,0 +1,112 @@
+//! The catalog: the effects that a preset may name. The built-in ones, then those of files.
+
+use std::{
+    collections::BTreeMap,
+    path::{Path, PathBuf},
+    sync::Arc,
+};
+
+use super::{EffectError, MAX_BYTES, error::Text, read};
+use crate::effects::{EFFECTS, Effect};
+
+/// An effect of a file: the effect, or what is wrong with the file.
+#[derive(Clone, Debug)]
+pub struct CustomEffect {
+    /// The file; none for an effect that came inside a preset.
+    pub path: Option<PathBuf>,
+    pub read: Result<&'static Effect, EffectError>,
+}
+
+/// The effects that a preset may name. Clones share the list.
+#[derive(Clone, Debug, Default)]
+pub struct Catalog {
+    custom: Arc<BTreeMap<String, CustomEffect>>,
+}
+
+impl Catalog {
+    /// The built-in effects and those of the `.wgsl` files in these folders. Where two files have one name, the later folder wins.
+    pub fn of_folders<'a>(folders: impl IntoIterator<Item = &'a Path>) -> Self {
+        let mut catalog = Self::default();
+        folders.into_iter().for_each(|folder| catalog.add_folder(folder));
+        catalog
+    }
+
+    /// Adds the files of a folder; a folder that does not exist has none.
+    pub fn add_folder(&mut self, folder: &Path) {
+        let Ok(entries) = std::fs::read_dir(folder) else { return };
+        let mut paths: Vec<PathBuf> = entries.flatten().map(|entry| entry.path()).collect();
+        paths.retain(|path| path.extension().is_some_and(|extension| extension == "wgsl") && path.is_file());
+        paths.sort();
+        for path in paths {
+            self.add_file(&path);
+        }
+    }
+
+    /// Adds the effect of one file, or what is wrong with it. A file whose text is known is not read anew.
+    pub fn add_file(&mut self, path: &Path) {
+        let stem = path.file_stem().unwrap_or_default().to_string_lossy().into_owned();
+        let file = path.display().to_string();
+        let text = Text { file: &file, text: "" };
+        let written = match std::fs::metadata(path) {
+            Ok(about) if about.len() > MAX_BYTES as u64 => {
+                Err(text.whole(format!("the file has {} bytes; an effect has at most {MAX_BYTES}", about.len())))
+            }
+            Ok(_) => std::fs::read_to_string(path).map_err(|error| text.whole(error.to_string())),
+            Err(error) => Err(text.whole(error.to_string())),
+        };
+        let read = written.and_then(|written| match self.find_custom(&stem) {
+            Some(Ok(known)) if known.source.is_some_and(|source| source.written == written) => Ok(known),
+            _ => read(&file, &stem, &written),
+        });
+        Arc::make_mut(&mut self.custom).insert(stem, CustomEffect { path: Some(path.to_owned()), read });
+    }
+
+    /// Adds the text of an effect that came inside a preset.
+    ///
+    /// # Errors
+    /// What is wrong with the text.
+    pub fn add_text(&mut self, stem: &str, written: &str) -> Result<(), EffectError> {
+        let read = read(&format!("{stem}.wgsl"), stem, written);
+        let error = read.clone().map(drop);
+        Arc::make_mut(&mut self.custom).insert(stem.into(), CustomEffect { path: None, read });
+        error
+    }
+
+    /// These effects and those of `other`; where both have a name, this one's effect stays.
+    #[must_use]
+    pub fn joined(&self, other: &Self) -> Self {
+        let mut custom = (*other.custom).clone();
+        custom.extend(self.custom.iter().map(|(name, effect)| (name.clone(), effect.clone())));
+        Self { custom: Arc::new(custom) }
+    }
+
+    fn find_custom(&self, name: &str) -> Option<Result<&'static Effect, &EffectError>> {
+        self.custom.get(name).map(|custom| custom.read.as_ref().map(|effect| *effect))
+    }
+
+    /// The effect called `name`; none if there is no such effect.
+    ///
+    /// # Errors
+    /// What is wrong with its file.
+    pub fn find(&self, name: &str) -> Result<Option<&'static Effect>, &EffectError> {
+        match Effect::find(name) {
+            Some(effect) => Ok(Some(effect)),
+            None => self.find_custom(name).transpose(),
+        }
+    }
+
+    /// Every effect that can be used: the built-in ones in their order, then those of files by name.
+    pub fn effects(&self) -> impl Iterator<Item = &'static Effect> + '_ {
+        EFFECTS.iter().copied().chain(self.custom.values().filter_map(|custom| custom.read.as_ref().ok().copied()))
+    }
+
+    /// Names of all effects, those of faulty files included.
+    pub fn names(&self) -> impl Iterator<Item = &str> {
+        EFFECTS.iter().map(|effect| effect.name).chain(self.custom.keys().map(String::as_str))
+    }
+
+    /// The effects of files, by name.
+    pub fn custom(&self) -> impl Iterator<Item = (&str, &CustomEffect)> {
+        self.custom.iter().map(|(name, custom)| (name.as_str(), custom))
+    }
+}

@@ -1,0 +1,286 @@
+//! Parameters: the struct of an effect file as fields of the registry. Documentation stands in the comment above a member, and
+//! type, range, unit, default and widget in its attributes.
+
+use std::{collections::BTreeSet, ops::Range, sync::Mutex};
+
+use super::{
+    attributes::{self, Attribute},
+    error::{EffectError, Text},
+    tokens::{Token, closing},
+};
+use crate::params::{Field, Param, ValueType, WgslType};
+
+/// Most members of the struct.
+const MAX_MEMBERS: usize = 64;
+/// Names that preset files use beside those of parameters.
+const RESERVED: [&str; 2] = ["effect", "on"];
+
+/// The struct of an effect's parameters.
+#[derive(Debug)]
+pub struct Parameters {
+    pub fields: &'static [Field],
+    /// Parameter words with every default.
+    pub defaults: Vec<u32>,
+    /// Byte ranges of attributes, which WGSL does not know.
+    pub attributes: Vec<Range<usize>>,
+}
+
+/// A text that lives as long as the program. Equal texts are kept once, so that reloading a file adds only what changed.
+pub fn intern(text: &str) -> &'static str {
+    static KEPT: Mutex<BTreeSet<&'static str>> = Mutex::new(BTreeSet::new());
+    let mut kept = KEPT.lock().unwrap_or_else(std::sync::PoisonError::into_inner);
+    if let Some(known) = kept.get(text) {
+        return known;
+    }
+    let new: &'static str = Box::leak(text.to_owned().into_boxed_str());
+    kept.insert(new);
+    new
+}
+
+/// Reads the members between the braces of a struct; `open` is the index of the opening one.
+///
+/// # Errors
+/// A member of a type that no parameter has, an unknown or contradictory attribute, or a range without its default.
+pub fn read(text: &Text<'_>, tokens: &[Token<'_>], open: usize) -> Result<Parameters, EffectError> {
+    let close = closing(tokens, open);
+    let (mut fields, mut defaults, mut ranges) = (Vec::new(), Vec::new(), Vec::new());
+    let mut at = open + 1;
+    while at < close {
+        let first = tokens[at];
+        let mut attributes: Vec<Attribute<'_>> = Vec::new();
+        while at < close && tokens[at].text == "@" {
+            let (attribute, behind) = attributes::read(text, tokens, at)?;
+            attributes::check_name(text, &attribute)?;
+            if attributes.iter().any(|other| other.name == attribute.name) {
+                return Err(attribute.error(text, format!("@{} stands twice before one parameter", attribute.name)));
+            }
+            ranges.push(attribute.begin..attribute.end);
+            attributes.push(attribute);
+            at = behind;
+        }
+        let (Some(name), Some(colon)) = (tokens.get(at).filter(|token| token.is_name()), tokens.get(at + 1)) else {
+            return Err(text.error(first.offset, 1, "a parameter has the form name: type"));
+        };
+        if colon.text != ":" || at + 2 >= close {
+            return Err(text.error(name.offset, name.text.len(), format!("the parameter {} needs a type", name.text)));
+        }
+        let end = (at + 2..close).find(|&index| tokens[index].text == ",").unwrap_or(close);
+        let kind = &text.text[tokens[at + 2].offset..tokens[end - 1].end()];
+        if RESERVED.contains(&name.text) {
+            return Err(text.error(
+                name.offset,
+                name.text.len(),
+                format!("a preset uses {} itself; give the parameter another name", name.text),
+            ));
+        }
+        if fields.iter().any(|field: &Field| field.name == name.text) {
+            return Err(text.error(name.offset, name.text.len(), format!("the parameter {} is declared twice", name.text)));
+        }
+        if fields.len() == MAX_MEMBERS {
+            return Err(text.error(name.offset, name.text.len(), format!("an effect has at most {MAX_MEMBERS} parameters")));
+        }
+        let member = Member { text, name: *name, kind, attributes: &attributes };
+        let (param, wgsl, numbers) = member.param(&fields, &documentation(text.text, first.offset))?;
+        let offset = (4 * defaults.len()).next_multiple_of(4 * wgsl.words());
+        defaults.resize(offset / 4 + wgsl.words(), 0);
+        let field = Field::new(param, wgsl, offset);
+        field.set(&mut defaults, &numbers).map_err(|error| member.error(format!("the default of {}: {error}", name.text)))?;
+        fields.push(field);
+        at = end + 1;
+    }
+    if fields.is_empty() {
+        return Err(text.error(tokens[open].offset, 1, "the struct of an effect's parameters needs at least one member"));
+    }
+    let align = if fields.iter().any(|field| field.wgsl == WgslType::Vec4F32) { 4 } else { 1 };
+    defaults.resize(defaults.len().next_multiple_of(align), 0);
+    Ok(Parameters { fields: Box::leak(fields.into_boxed_slice()), defaults, attributes: ranges })
+}
+
+/// The comment lines directly above byte `offset`, joined.
+fn documentation(text: &str, offset: usize) -> String {
+    let before = &text[..offset];
+    let begin = before.rfind('\n').map_or(0, |at| at + 1);
+    let mut lines: Vec<&str> = Vec::new();
+    for line in before[..begin].lines().rev() {
+        let Some(comment) = line.trim().strip_prefix("//").filter(|comment| !comment.starts_with('@')) else { break };
+        lines.push(comment.trim_start_matches(['/', '!']).trim());
+    }
+    lines.reverse();
+    lines.join(" ").trim().chars().take(400).collect()
+}
+
+/// One member of the struct.
+struct Member<'a> {
+    text: &'a Text<'a>,
+    name: Token<'a>,
+    /// Its type as it is written.
+    kind: &'a str,
+    attributes: &'a [Attribute<'a>],
+}
+
+impl<'a> Member<'a> {
+    fn error(&self, message: impl Into<String>) -> EffectError {
+        self.text.error(self.name.offset, self.name.text.len(), message)
+    }
+
+    fn attribute(&self, name: &str) -> Option<&'a Attribute<'a>> {
+        self.attributes.iter().find(|attribute| attribute.name == name)
+    }
+
+    /// The attribute that says which widget sets the parameter; exactly one of these.
+    fn widget(&self, allowed: &[&str], usage: &str) -> Result<&'a Attribute<'a>, EffectError> {
+        const WIDGETS: [&str; 5] = ["range", "color", "point", "toggle", "choice"];
+        let mut widgets = self.attributes.iter().filter(|attribute| WIDGETS.contains(&attribute.name));
+        let Some(first) = widgets.next() else { return Err(self.error(format!("{} is {}; it needs {usage}", self.name.text, self.kind))) };
+        if let Some(second) = widgets.next() {
+            return Err(second.error(self.text, format!("@{} and @{} exclude each other", first.name, second.name)));
+        }
+        if !allowed.contains(&first.name) {
+            return Err(first.error(self.text, format!("@{} does not fit {}; it needs {usage}", first.name, self.kind)));
+        }
+        Ok(first)
+    }
+
+    /// The registry's entry, the WGSL type, and the components of the default. `known` are the fields declared so far.
+    fn param(&self, known: &[Field], doc: &str) -> Result<(Param, WgslType, Vec<f64>), EffectError> {
+        let kind: String = self.kind.split_whitespace().collect();
+        let (value_type, wgsl, default) = match kind.as_str() {
+            "f32" => {
+                let (_, default) = self.range("@range(min, max, default)")?;
+                (ValueType::F32, WgslType::F32, vec![default])
+            }
+            "i32" => {
+                let (_, default) = self.range("@range(min, max, default)")?;
+                (ValueType::I32, WgslType::I32, vec![default])
+            }
+            "u32" => self.whole()?,
+            "vec4f" | "vec4<f32>" => {
+                let widget = self.widget(&["color", "point"], "@color(red, green, blue) or @point(x, y, z)")?;
+                if widget.name == "color" {
+                    let mut color = widget.numbers(self.text, (3, 4), "red, green, blue and perhaps alpha, each 0 to 1")?;
+                    color.resize(4, 1.0);
+                    (ValueType::Color, WgslType::Vec4F32, color)
+                } else {
+                    let point = widget.numbers(self.text, (3, 3), "x, y and z")?;
+                    (ValueType::Point, WgslType::Vec4F32, point)
+                }
+            }
+            other => {
+                let allowed = "f32, i32, u32 or vec4f";
+                return Err(self.error(format!("{} is {other}; a parameter is {allowed}", self.name.text)));
+            }
+        };
+        let mut param = Param::new(intern(self.name.text), intern(doc), value_type);
+        if self.attribute("range").is_some() {
+            let (range, _) = self.range("@range(min, max, default)")?;
+            param = param.hard(range[0]..=range[1]).soft(range[0]..=range[1]);
+        }
+        if let Some(hard) = self.attribute("hard") {
+            let ends = hard.numbers(self.text, (2, 2), "the least and the largest value that is allowed")?;
+            if !value_type.is_continuous() && !matches!(value_type, ValueType::U32 | ValueType::I32) || value_type == ValueType::Color {
+                return Err(hard.error(self.text, "@hard belongs to a number or a point"));
+            }
+            let soft = if value_type == ValueType::Point { [ends[0], ends[1]] } else { param.soft };
+            if !(ends[0] <= soft[0] && soft[1] <= ends[1] && ends[0] < ends[1]) {
+                return Err(hard.error(self.text, "the range of @hard must be ascending and contain that of @range"));
+            }
+            (param.hard, param.soft) = ([ends[0], ends[1]], soft);
+        }
+        if let Some(unit) = self.attribute("unit") {
+            let [unit_text] = unit.arguments[..] else { return Err(unit.error(self.text, "@unit takes one word, for instance m or px")) };
+            if unit_text.is_empty() || unit_text.chars().count() > 8 {
+                return Err(unit.error(self.text, "@unit takes one word of at most 8 characters"));
+            }
+            param = param.unit(intern(unit_text));
+        }
+        if let Some(log) = self.attribute("log") {
+            if value_type != ValueType::F32 || param.soft[0] <= 0.0 || !log.arguments.is_empty() {
+                return Err(log.error(self.text, "@log belongs to an f32 whose @range begins above 0, and takes nothing"));
+            }
+            param = param.log(true);
+        }
+        if let Some(default) = self.attribute("default")
+            && !matches!(value_type, ValueType::Choice(_))
+        {
+            return Err(default.error(self.text, "@default belongs to @choice; other widgets take the default themselves"));
+        }
+        if let Some(when) = self.attribute("when") {
+            param = param.when(self.condition(when, known)?);
+        }
+        Ok((param, wgsl, default))
+    }
+
+    /// Range and default of `@range`.
+    fn range(&self, usage: &str) -> Result<([f64; 2], f64), EffectError> {
+        let widget = self.widget(&["range"], usage)?;
+        let numbers = widget.numbers(self.text, (3, 4), "min, max, default and perhaps a step")?;
+        let (low, high, default) = (numbers[0], numbers[1], numbers[2]);
+        if low >= high {
+            return Err(widget.error(self.text, format!("the range {low}..={high} is empty; the first number must be the smaller one")));
+        }
+        if self.attribute("hard").is_none() && !(low..=high).contains(&default) {
+            return Err(widget.error(self.text, format!("the default {default} lies outside {low}..={high}")));
+        }
+        Ok(([low, high], default))
+    }
+
+    /// A `u32`: a number, a flag or a choice.
+    fn whole(&self) -> Result<(ValueType, WgslType, Vec<f64>), EffectError> {
+        let usage = "@range(min, max, default), @toggle(0) or @choice(word, word)";
+        let widget = self.widget(&["range", "toggle", "choice"], usage)?;
+        match widget.name {
+            "toggle" => match widget.arguments[..] {
+                ["0" | "false"] => Ok((ValueType::Bool, WgslType::U32, vec![0.0])),
+                ["1" | "true"] => Ok((ValueType::Bool, WgslType::U32, vec![1.0])),
+                _ => Err(widget.error(self.text, "@toggle takes 0 or 1")),
+            },
+            "choice" => {
+                let is_word = |word: &&str| {
+                    let is_letter = |c: char| c.is_ascii_lowercase() || c.is_ascii_digit() || c == '-' || c == '_';
+                    !word.is_empty()
+                        && word.chars().count() <= 40
+                        && word.starts_with(|c: char| c.is_ascii_lowercase())
+                        && word.chars().all(is_letter)
+                };
+                let words = &widget.arguments;
+                let is_repeated = words.iter().collect::<BTreeSet<_>>().len() < words.len();
+                if !(2..=32).contains(&words.len()) || !words.iter().all(is_word) || is_repeated {
+                    return Err(widget.error(self.text, "@choice takes 2 to 32 different words of small letters, digits, - and _"));
+                }
+                let chosen = match self.attribute("default") {
+                    None => 0,
+                    Some(default) => {
+                        let position = words.iter().position(|word| default.arguments == [*word]);
+                        position.ok_or_else(|| default.error(self.text, format!("@default takes one of {}", words.join(", "))))?
+                    }
+                };
+                let words: Vec<&'static str> = words.iter().map(|word| intern(word)).collect();
+                Ok((ValueType::Choice(Box::leak(words.into_boxed_slice())), WgslType::U32, vec![chosen as f64]))
+            }
+            _ => {
+                let (range, default) = self.range(usage)?;
+                if range[0] < 0.0 {
+                    return Err(widget.error(self.text, "the range of a u32 begins at 0 or above; use i32 for negative numbers"));
+                }
+                Ok((ValueType::U32, WgslType::U32, vec![default]))
+            }
+        }
+    }
+
+    /// `@when(mode, word, …)`.
+    fn condition(&self, when: &Attribute<'_>, known: &[Field]) -> Result<(&'static str, &'static [&'static str]), EffectError> {
+        let usage = "@when takes the name of a choice above and some of its words";
+        let Some((name, words)) = when.arguments.split_first().filter(|(_, words)| !words.is_empty()) else {
+            return Err(when.error(self.text, usage));
+        };
+        let choice = known.iter().find(|field| field.name == *name);
+        let Some((field, ValueType::Choice(allowed))) = choice.map(|field| (field, field.value_type)) else {
+            return Err(when.error(self.text, format!("{usage}; there is no choice {name} above")));
+        };
+        if let Some(unknown) = words.iter().find(|word| !allowed.contains(word)) {
+            return Err(when.error(self.text, format!("{name} has no word {unknown}; it has {}", allowed.join(", "))));
+        }
+        let words: Vec<&'static str> = words.iter().map(|word| intern(word)).collect();
+        Ok((field.name, Box::leak(words.into_boxed_slice())))
+    }
+}

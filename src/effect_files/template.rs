@@ -1,0 +1,49 @@
+//! Templates: the commented file that a new effect begins with.
+
+use crate::params::did_you_mean;
+
+/// The hook of a new effect.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Hook {
+    Vertex,
+    Sample,
+    Surface,
+    Pixel,
+}
+
+impl Hook {
+    pub const ALL: [Self; 4] = [Self::Surface, Self::Vertex, Self::Sample, Self::Pixel];
+
+    /// The word for it on the command line.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Vertex => "vertex",
+            Self::Sample => "sample",
+            Self::Surface => "surface",
+            Self::Pixel => "pixel",
+        }
+    }
+
+    /// The hook called `name`.
+    ///
+    /// # Errors
+    /// Names all hooks.
+    pub fn parse(name: &str) -> Result<Self, String> {
+        let names = Self::ALL.map(Self::name);
+        let found = Self::ALL.into_iter().find(|hook| hook.name() == name);
+        found.ok_or_else(|| format!("{name:?} is no hook; hooks are {}{}", names.join(", "), did_you_mean(name, names.into_iter())))
+    }
+}
+
+/// The text of a new effect called `name`.
+pub fn template(name: &str, hook: Hook) -> String {
+    let words = name.split('_').filter(|word| !word.is_empty());
+    let type_name: String = words.map(|word| word[..1].to_uppercase() + &word[1..]).collect();
+    let text = match hook {
+        Hook::Surface => include_str!("templates/surface.wgsl"),
+        Hook::Vertex => include_str!("templates/vertex.wgsl"),
+        Hook::Sample => include_str!("templates/sample.wgsl"),
+        Hook::Pixel => include_str!("templates/pixel.wgsl"),
+    };
+    text.replace("NAME", name).replace("Type", &type_name)
+}

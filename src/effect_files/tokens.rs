@@ -1,0 +1,107 @@
+//! Tokens of a WGSL text, with their places. Comments are left out.
+
+/// A word, a number or one mark.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Token<'a> {
+    pub text: &'a str,
+    /// Byte offset.
+    pub offset: usize,
+}
+
+impl Token<'_> {
+    /// Byte offset behind it.
+    pub fn end(&self) -> usize {
+        self.offset + self.text.len()
+    }
+
+    pub fn is_name(&self) -> bool {
+        self.text.starts_with(|c: char| c.is_alphabetic() || c == '_')
+    }
+}
+
+/// Is it part of a name or a number?
+fn is_word(c: char) -> bool {
+    c.is_alphanumeric() || c == '_'
+}
+
+/// Bytes that a comment at the start of `text` takes; none without one. Block comments nest; an open one goes to the end.
+fn comment_length(text: &str) -> Option<usize> {
+    if text.starts_with("//") {
+        return Some(text.find('\n').unwrap_or(text.len()));
+    }
+    if !text.starts_with("/*") {
+        return None;
+    }
+    let (mut depth, mut at) = (0, 0);
+    while at < text.len() {
+        let rest = &text[at..];
+        if rest.starts_with("/*") {
+            depth += 1;
+            at += 2;
+        } else if rest.starts_with("*/") {
+            depth -= 1;
+            at += 2;
+            if depth == 0 {
+                return Some(at);
+            }
+        } else {
+            at += rest.chars().next().map_or(1, char::len_utf8);
+        }
+    }
+    Some(text.len())
+}
+
+/// The tokens of `text`.
+pub fn tokens(text: &str) -> Vec<Token<'_>> {
+    let mut found = Vec::new();
+    let mut at = 0;
+    while let Some(first) = text[at..].chars().next() {
+        if let Some(length) = comment_length(&text[at..]) {
+            at += length;
+            continue;
+        }
+        let rest = &text[at..];
+        let length = if is_word(first) {
+            let is_number = first.is_ascii_digit();
+            rest.find(|c: char| !(is_word(c) || (is_number && c == '.'))).unwrap_or(rest.len())
+        } else {
+            first.len_utf8()
+        };
+        if !first.is_whitespace() {
+            found.push(Token { text: &rest[..length], offset: at });
+        }
+        at += length;
+    }
+    found
+}
+
+/// Index of the mark that closes the one at `open`, or of the last token if none does.
+pub fn closing(tokens: &[Token<'_>], open: usize) -> usize {
+    let mut depth = 0_usize;
+    for (index, token) in tokens.iter().enumerate().skip(open) {
+        match token.text {
+            "(" | "{" | "[" => depth += 1,
+            ")" | "}" | "]" => {
+                depth = depth.saturating_sub(1);
+                if depth == 0 {
+                    return index;
+                }
+            }
+            _ => {}
+        }
+    }
+    tokens.len().saturating_sub(1)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn comments_are_left_out_and_offsets_are_bytes() {
+        let text = "fn a /* b /* c */ d */ (x: f32) // é\n{ 1.5e3; }";
+        let words: Vec<&str> = tokens(text).iter().map(|token| token.text).collect();
+        assert_eq!(words, ["fn", "a", "(", "x", ":", "f32", ")", "{", "1.5e3", ";", "}"]);
+        assert!(tokens(text).iter().all(|token| &text[token.offset..token.end()] == token.text));
+    }
+}

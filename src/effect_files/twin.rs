@@ -1,0 +1,274 @@
+//! The f64 side of an effect file: its own text, evaluated on the CPU with integers exact and floats in f64.
+
+use std::{cell::RefCell, collections::HashMap};
+
+use glam::{DVec2, DVec3, DVec4};
+
+use super::rewrite::lengths;
+use crate::{
+    effects::hooks::{ErrorBound, ImageHook, Picture, Pixel, ROUNDING, Sample, SampleHook, Surface, SurfaceFunction, Vertex, VertexHook},
+    evaluator::{Host, LowerError, Machine, NoHost, Options, Precision, Program, Word},
+    math::hash,
+    params::{Field, WgslType},
+};
+
+/// Instructions of one call. The loops of an effect end long before.
+const MAX_STEPS: u64 = 100_000_000;
+/// Functions of `lib/image` that read the picture.
+const EXTERNALS: [&str; 4] = ["image_has", "image_at", "image_background", "image_previous"];
+/// How much the inputs of a color may be off on the f32 side, relative to the largest component of each.
+const INPUT_ERROR: f64 = 1.0 / (1 << 17) as f64;
+/// Machines that a thread keeps.
+const MAX_MACHINES: usize = 64;
+
+/// One function of a linked module.
+#[derive(Clone, Copy, Debug)]
+pub struct Function {
+    program: &'static Program,
+    fields: &'static [Field],
+}
+
+impl Function {
+    /// Lowers `name` of `module`, which was read from `text`.
+    ///
+    /// # Errors
+    /// The function uses what cannot be evaluated, or is too long with all that it calls.
+    pub fn new(module: &naga::Module, text: &str, name: &str, fields: &'static [Field], precision: Precision) -> Result<Self, LowerError> {
+        let mut options = Options { precision, source: Some(text), externals: EXTERNALS.map(str::to_owned).to_vec(), ..Options::default() };
+        options.limits.steps = MAX_STEPS;
+        let program = Box::leak(Box::new(Program::new(module, name, &options)?));
+        Ok(Self { program, fields })
+    }
+
+    /// Evaluates the function for arguments and parameter words; none if it does not end.
+    fn call<R>(&self, mut arguments: Vec<Word>, words: &[u32], host: &mut dyn Host, read: impl FnOnce(&mut Reader<'_>) -> R) -> Option<R> {
+        thread_local! {
+            static MACHINES: RefCell<HashMap<usize, Machine<'static>>> = RefCell::new(HashMap::new());
+        }
+        for field in self.fields {
+            let words = &words[field.offset / 4..][..field.wgsl.words()];
+            arguments.extend(words.iter().map(|&word| match field.wgsl {
+                WgslType::F32 | WgslType::Vec4F32 => Word::from_f64(f32::from_bits(word).into()),
+                WgslType::I32 | WgslType::U32 => Word::from_u32(word),
+            }));
+        }
+        MACHINES.with_borrow_mut(|machines| {
+            if machines.len() > MAX_MACHINES {
+                machines.clear();
+            }
+            let machine = machines.entry(std::ptr::from_ref(self.program) as usize).or_insert_with(|| self.program.machine());
+            let result = machine.call(&arguments, host).ok()?;
+            Some(read(&mut Reader(result)))
+        })
+    }
+}
+
+/// Scalars of a struct, in the order in which it declares them.
+#[derive(Default)]
+struct Writer(Vec<Word>);
+
+impl Writer {
+    fn floats<const N: usize>(&mut self, values: [f64; N]) -> &mut Self {
+        self.0.extend(values.map(Word::from_f64));
+        self
+    }
+
+    fn whole(&mut self, value: u32) -> &mut Self {
+        self.0.push(Word::from_u32(value));
+        self
+    }
+}
+
+/// Reads scalars in the same order.
+struct Reader<'a>(&'a [Word]);
+
+impl Reader<'_> {
+    fn word(&mut self) -> Word {
+        let (first, rest) = self.0.split_first().expect("a result has the scalars of its type");
+        self.0 = rest;
+        *first
+    }
+
+    fn floats<const N: usize>(&mut self) -> [f64; N] {
+        std::array::from_fn(|_| self.word().to_f64())
+    }
+}
+
+/// `values`, moved by `strength` times their largest magnitude, each up or down by a hash of its `index`. 0 changes nothing.
+fn perturbed<const N: usize>(values: [f64; N], index: u32, strength: f64) -> [f64; N] {
+    if strength == 0.0 {
+        return values;
+    }
+    let largest = values.iter().fold(0.0, |largest: f64, value| largest.max(value.abs()));
+    let sign = |component: usize| if hash(index * 4 + component as u32) & 1 == 0 { 1.0 } else { -1.0 };
+    std::array::from_fn(|component| values[component] + sign(component) * strength * largest)
+}
+
+/// The surface hook.
+pub fn surface(function: Function) -> &'static SurfaceFunction {
+    Box::leak(Box::new(move |mut s: Surface, words: &[u32]| {
+        let strength = INPUT_ERROR * if s.step_offset == 0.0 { 0.0 } else { s.step_offset.signum() };
+        let mut arguments = Writer::default();
+        arguments
+            .floats(perturbed(s.color.to_array(), 0, strength))
+            .floats(perturbed(s.glow.to_array(), 1, strength))
+            .floats(perturbed(s.position.to_array(), 2, strength))
+            .floats(perturbed(s.normal.to_array(), 3, strength))
+            .floats(perturbed(s.flat_normal.to_array(), 4, strength))
+            .floats(perturbed(s.view.to_array(), 5, strength))
+            .floats(perturbed(s.center.to_array(), 6, strength))
+            .floats(perturbed(s.center_screen.to_array(), 7, strength))
+            .floats(perturbed(s.screen.to_array(), 8, strength))
+            .floats(perturbed(s.pixel.to_array(), 9, strength))
+            .floats(perturbed(s.barycentrics.to_array(), 10, strength))
+            .floats(perturbed(s.edge_distance_px.to_array(), 11, strength))
+            .floats(perturbed([s.depth_m], 12, strength))
+            .floats(perturbed([s.pixel_size_m], 13, strength))
+            .floats(perturbed([s.flat_depth_m], 14, strength))
+            .floats(s.depth_range_m.to_array())
+            .whole(s.triangle_id)
+            .floats([s.rank, s.lit]);
+        let read = function.call(arguments.0, words, &mut NoHost, |result| {
+            s.color = DVec4::from_array(result.floats());
+            s.glow = DVec3::from_array(result.floats());
+            s.position = DVec3::from_array(result.floats());
+            s.normal = DVec3::from_array(result.floats());
+            s.flat_normal = DVec3::from_array(result.floats());
+            s.view = DVec3::from_array(result.floats());
+            s.center = DVec3::from_array(result.floats());
+            s.center_screen = DVec2::from_array(result.floats());
+            s.screen = DVec2::from_array(result.floats());
+            s.pixel = DVec2::from_array(result.floats());
+            s.barycentrics = DVec3::from_array(result.floats());
+            s.edge_distance_px = DVec3::from_array(result.floats());
+            [s.depth_m, s.pixel_size_m, s.flat_depth_m] = result.floats();
+            s
+        });
+        read.unwrap_or(Surface { color: DVec4::NAN, ..s })
+    }))
+}
+
+/// Answers what an image effect asks of the picture.
+struct PictureHost<'a>(&'a Picture<'a>, usize);
+
+impl Host for PictureHost<'_> {
+    fn external(&mut self, index: usize, arguments: &[Word], result: &mut [Word]) {
+        let Self(picture, pixel) = self;
+        let at = || (i64::from(arguments[0].to_i32()), i64::from(arguments[1].to_i32()));
+        match index {
+            0 => result[0] = Word::from_bool(picture.has(at().0, at().1)),
+            1 => {
+                let (id, key, draw) = picture.at(at().0, at().1);
+                result.copy_from_slice(&[id.unwrap_or(u32::MAX), key, draw].map(Word::from_u32));
+            }
+            2 => result.copy_from_slice(&picture.background.to_array().map(Word::from_f64)),
+            _ => {
+                let background = picture.background.to_array().map(|c| (255.0 * c + 0.5).floor() as u32);
+                let bytes = picture.previous.map_or(background, |previous| previous[*pixel].map(u32::from));
+                result.copy_from_slice(&bytes.map(Word::from_u32));
+            }
+        }
+    }
+}
+
+/// The image hook.
+pub fn image(function: Function, reads_previous: bool) -> ImageHook {
+    let finish = move |mut q: Pixel, picture: &Picture<'_>, words: &[u32]| {
+        let strength = INPUT_ERROR * if q.step_offset == 0.0 { 0.0 } else { q.step_offset.signum() };
+        let mut arguments = Writer::default();
+        arguments.floats(perturbed(q.color.to_array(), 0, strength)).whole(q.x).whole(q.y);
+        let mut host = PictureHost(picture, q.y as usize * picture.width as usize + q.x as usize);
+        let color = function.call(arguments.0, words, &mut host, |result| DVec4::from_array(result.floats()));
+        q.color = color.unwrap_or(DVec4::NAN);
+        q
+    };
+    ImageHook { reads_previous, finish: Box::leak(Box::new(finish)) }
+}
+
+/// The sample hook.
+pub fn sample(function: Function) -> SampleHook {
+    let is_drawn = move |s: &Sample, words: &[u32]| {
+        let mut arguments = Writer::default();
+        arguments.whole(s.x).whole(s.y).whole(s.triangle);
+        s.areas.iter().chain(&s.setup).for_each(|&word| arguments.0.push(Word::from_u32(word)));
+        function.call(arguments.0, words, &mut NoHost, |result| result.word().to_bool()).unwrap_or(true)
+    };
+    SampleHook {
+        has_setup: false,
+        error_bound: &|_, _| 0.0,
+        is_from_floats: &|_| false,
+        sample_setup: &|_, _, _| [0; 4],
+        is_drawn: Box::leak(Box::new(is_drawn)),
+    }
+}
+
+/// A corner with its members moved by up to `bound` times `strength`, by a hash of `turn`.
+fn moved_within(v: &Vertex, bound: &ErrorBound, turn: u32) -> Vertex {
+    let away = |values: DVec3, index: u32, by: f64| {
+        let sign = |component: u32| if hash(turn * 64 + index * 4 + component) & 1 == 0 { by } else { -by };
+        values + DVec3::new(sign(0), sign(1), sign(2))
+    };
+    let screen = away(v.center_screen.extend(0.0), 6, bound.center_screen);
+    Vertex {
+        position: away(v.position, 0, bound.position_m),
+        offset: away(v.offset, 1, bound.offset_m),
+        normal: away(v.normal, 2, bound.normal),
+        flat_normal: away(v.flat_normal, 3, bound.flat_normal),
+        center: away(v.center, 4, bound.center_m),
+        arm: away(v.arm, 5, bound.arm_m),
+        center_screen: screen.truncate(),
+        triangle: v.triangle,
+    }
+}
+
+/// The vertex hook: `double` in f64, `single` with every operation rounded to f32.
+pub fn vertex(double: Function, single: Function, needs_triangle: bool) -> VertexHook {
+    let evaluate = |function: Function, v: &Vertex, words: &[u32]| {
+        let mut arguments = Writer::default();
+        arguments
+            .floats(v.position.to_array())
+            .floats(v.offset.to_array())
+            .floats(v.normal.to_array())
+            .floats(v.flat_normal.to_array())
+            .floats(v.center.to_array())
+            .floats(v.arm.to_array())
+            .floats(v.center_screen.to_array())
+            .whole(v.triangle);
+        let read = function.call(arguments.0, words, &mut NoHost, |result| {
+            let _position: [f64; 3] = result.floats();
+            (DVec3::from_array(result.floats()), DVec3::from_array(result.floats()))
+        });
+        read.map_or(Vertex { offset: DVec3::NAN, ..*v }, |(offset, normal)| Vertex { offset, normal, ..*v })
+    };
+    let moved = move |v: Vertex, words: &[u32]| evaluate(double, &v, words);
+    // The text is evaluated at inputs at the ends of their bounds and in f32. Twice the largest difference is the bound.
+    let error_bound = move |v: &Vertex, bound: ErrorBound, words: &[u32]| {
+        let exact = evaluate(double, v, words);
+        let rounded = Vertex {
+            position: v.position.as_vec3().as_dvec3(),
+            offset: v.offset.as_vec3().as_dvec3(),
+            normal: v.normal.as_vec3().as_dvec3(),
+            flat_normal: v.flat_normal.as_vec3().as_dvec3(),
+            center: v.center.as_vec3().as_dvec3(),
+            arm: v.arm.as_vec3().as_dvec3(),
+            center_screen: v.center_screen.as_vec2().as_dvec2(),
+            triangle: v.triangle,
+        };
+        let others = (0..6).map(|turn| evaluate(double, &moved_within(v, &bound, turn), words)).chain([evaluate(single, &rounded, words)]);
+        let (mut offset_m, mut normal) = (0.0_f64, 0.0_f64);
+        for other in others {
+            offset_m = offset_m.max((other.offset - exact.offset).abs().max_element());
+            normal = normal.max((other.normal - exact.normal).abs().max_element());
+        }
+        let scale = v.position.abs().max_element() + exact.offset.abs().max_element();
+        ErrorBound { offset_m: 2.0 * offset_m + 16.0 * ROUNDING * scale, normal: 2.0 * normal + 16.0 * ROUNDING, ..bound }
+    };
+    let fields = double.fields;
+    let limit = move |_: f64, words: &[u32]| lengths(fields).map(|field| field.get(words)[0].abs()).sum();
+    VertexHook {
+        needs_triangle,
+        moved: Box::leak(Box::new(moved)),
+        error_bound: Box::leak(Box::new(error_bound)),
+        max_displacement_m: Box::leak(Box::new(limit)),
+    }
+}
