@@ -1,8 +1,7 @@
 // The picture as image effects see it: the pixel to finish, and the triangle ids and depths of all pixels, which are final
 // when the picture is resolved. Mirrors `effects::hooks::{Pixel, Picture}`, which explain each member.
 //@ use lib/frame
-//@ use lib/triangle
-//@ use variants/draw_search
+//@ use glue/draws
 //@ use lib/picture
 //@ use variants/depth
 //@ use variants/framebuffer_read

@@ -4,7 +4,6 @@
 //@ use lib/fixed
 //@ use glue/draws
 //@ use glue/index_bytes
-//@ use variants/draw_search
 //@ binding @group(0) @binding(4) var<storage, read> vertices: array<vec4u>;
 
 // ---- Draws. `draws` is a uniform where the scene has one draw, else a storage buffer: the glue declares it.

@@ -156,14 +156,6 @@ pub struct List {
     /// What to list; without any, everything
     #[arg(value_enum)]
     pub kinds: Vec<ListKind>,
-    #[arg(long, hide = true)]
-    pub effects: bool,
-    #[arg(long, hide = true)]
-    pub looks: bool,
-    #[arg(long, hide = true)]
-    pub axes: bool,
-    #[arg(long, hide = true)]
-    pub scenes: bool,
 }
 
 /// What `list` can list.
@@ -182,14 +174,7 @@ pub enum ListKind {
 impl List {
     /// Is this kind listed?
     pub fn has(&self, kind: ListKind) -> bool {
-        let flags = [
-            (self.looks, ListKind::Presets),
-            (self.effects, ListKind::Effects),
-            (self.scenes, ListKind::Scenes),
-            (self.axes, ListKind::Axes),
-        ];
-        let mut kinds = self.kinds.iter().copied().chain(flags.into_iter().filter_map(|(is_set, kind)| is_set.then_some(kind))).peekable();
-        kinds.peek().is_none() || kinds.any(|listed| listed == kind)
+        self.kinds.is_empty() || self.kinds.contains(&kind)
     }
 }
 
@@ -318,9 +303,9 @@ pub struct Bench {
     pub scene: Vec<String>,
     /// Measure every effect alone, with the values of the preset of its name, and no effect
     #[arg(long)]
-    pub effects: bool,
+    pub every_effect: bool,
     /// Accuracy axes, separated by commas: measure every combination of their options
-    #[arg(long, value_name = "AXES", value_delimiter = ',', conflicts_with = "effects")]
+    #[arg(long, value_name = "AXES", value_delimiter = ',', conflicts_with = "every_effect")]
     pub axes: Vec<String>,
     /// With --axes: measure one changed option at a time instead of every combination; a row per option, columns per scene
     #[arg(long, requires = "axes")]

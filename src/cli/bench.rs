@@ -37,7 +37,7 @@ pub fn run(common: &Common, args: &Bench, streams: &mut Streams) -> Result<Exit,
             bar.set_position(done as u64);
             bar.set_message(what.to_owned());
         };
-        rows.extend(match args.effects {
+        rows.extend(match args.every_effect {
             true => bench_stacks(gpu, preset, scene, &each_effect(common)?, &options, &mut progress, &judge)?,
             false => bench(gpu, preset, scene, &preset_file.id, &options, &mut progress, &judge)?,
         });

@@ -6,7 +6,10 @@ use std::{
     sync::Arc,
 };
 
-use super::{EffectError, MAX_BYTES, error::Text, read};
+use super::{
+    error::{EffectError, Text},
+    read::{MAX_BYTES, read},
+};
 use crate::effects::{EFFECTS, Effect};
 
 /// An effect of a file: the effect, or what is wrong with the file.

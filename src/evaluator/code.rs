@@ -1,6 +1,7 @@
 //! Code while it is being written: registers, constants and jumps.
 
 use std::collections::HashMap;
+use std::ops::Range;
 use std::rc::Rc;
 
 use crate::evaluator::instruction::{Instruction, Op};
@@ -80,6 +81,10 @@ pub(crate) struct Code {
     pub instructions: Vec<Instruction>,
     /// First value of every register.
     pub image: Vec<Word>,
+    /// Registers that one pure instruction writes, and that are no part of a variable.
+    pub is_temporary: Vec<bool>,
+    /// Registers of values that are read through an index.
+    pub indexed: Vec<Range<u32>>,
     precision: Precision,
     limits: Limits,
     is_constant: Vec<bool>,
@@ -94,6 +99,8 @@ impl Code {
         Code {
             instructions: Vec::new(),
             image: Vec::new(),
+            is_temporary: Vec::new(),
+            indexed: Vec::new(),
             precision,
             limits,
             is_constant: Vec::new(),
@@ -118,6 +125,7 @@ impl Code {
         }
         self.image.resize(end, Word::ZERO);
         self.is_constant.resize(end, false);
+        self.is_temporary.resize(end, false);
         Ok(start as u32)
     }
 
@@ -164,6 +172,7 @@ impl Code {
             return self.constant(word);
         }
         let d = self.allocate(1)?;
+        self.is_temporary[d as usize] = true;
         self.push(op, d, a, b, c)?;
         Ok(d)
     }

@@ -247,7 +247,7 @@ impl<'m> Walk<'_, 'm> {
             if start < from && from <= end {
                 break;
             }
-            let _ = end;
+            last = last.max(end);
             inside = parent;
         }
         last
@@ -265,12 +265,14 @@ impl<'m> Walk<'_, 'm> {
                     operands(expression, |operand| changed |= self.lives_as(operand, handle));
                 }
             }
-            for (arguments, result) in std::mem::take(&mut self.calls) {
-                for &argument in &arguments {
-                    changed |= self.lives_as(argument, result);
+            // The last first: arguments may be results of earlier calls.
+            let calls = std::mem::take(&mut self.calls);
+            for (arguments, result) in calls.iter().rev() {
+                for &argument in arguments {
+                    changed |= self.lives_as(argument, *result);
                 }
-                self.calls.push((arguments, result));
             }
+            self.calls = calls;
             if !changed {
                 return;
             }

@@ -17,6 +17,12 @@ pub(crate) fn sign(x: f64) -> f64 {
     }
 }
 
+/// Limited to `low` and then to `high`, also where `low` is above `high`; `low` for NaN.
+#[inline(always)]
+pub(crate) fn clamp(x: f64, low: f64, high: f64) -> f64 {
+    x.max(low).min(high)
+}
+
 /// (1 - t) of `a` and t of `b`.
 #[inline(always)]
 pub(crate) fn mix<const SINGLE: bool>(a: f64, b: f64, t: f64) -> f64 {
@@ -27,7 +33,7 @@ pub(crate) fn mix<const SINGLE: bool>(a: f64, b: f64, t: f64) -> f64 {
 #[inline(always)]
 pub(crate) fn smooth_step<const SINGLE: bool>(low: f64, high: f64, x: f64) -> f64 {
     let t = round::<SINGLE>(round::<SINGLE>(x - low) / round::<SINGLE>(high - low));
-    let t = t.max(0.0).min(1.0);
+    let t = clamp(t, 0.0, 1.0);
     round::<SINGLE>(round::<SINGLE>(t * t) * round::<SINGLE>(3.0 - round::<SINGLE>(2.0 * t)))
 }
 
@@ -103,6 +109,6 @@ pub(crate) fn from_half(bits: u32) -> f64 {
 
 /// Nearest integer to `x` * `scale` with halves up, as the packing functions of WGSL round; `x` is rounded to f32 and limited to [low, 1].
 pub(crate) fn normalized(x: f64, low: f64, scale: f64) -> i32 {
-    let x = f64::from(x as f32).max(low).min(1.0);
+    let x = clamp(f64::from(x as f32), low, 1.0);
     (0.5 + scale * x).floor() as i32
 }

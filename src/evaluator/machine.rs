@@ -29,6 +29,13 @@ pub struct Machine<'p> {
     registers: Vec<Word>,
 }
 
+impl Program {
+    /// Registers for calls from one thread.
+    pub fn machine(&self) -> Machine<'_> {
+        Machine::new(self)
+    }
+}
+
 impl<'p> Machine<'p> {
     pub(crate) fn new(program: &'p Program) -> Machine<'p> {
         Machine { program, registers: program.image.clone() }

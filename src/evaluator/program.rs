@@ -3,9 +3,7 @@
 use std::collections::HashMap;
 use std::ops::Range;
 
-use crate::evaluator::error::LowerError;
 use crate::evaluator::instruction::Instruction;
-use crate::evaluator::machine::Machine;
 use crate::evaluator::word::Word;
 
 /// How floats are computed.
@@ -46,8 +44,8 @@ pub struct Options<'a> {
     pub externals: Vec<String>,
     /// Module-scope variables that the host supplies by `Machine::set_global`. Private variables need not be supplied.
     pub globals: Vec<String>,
-    /// Text from which the module was parsed: with it literals keep more digits than an f32 has. Otherwise a literal is the shortest
-    /// decimal number that names its f32.
+    /// Text from which the module was parsed: with it a literal has all its digits. Without it, and for constants that are used by name or
+    /// that naga computed from others, a literal is the shortest decimal number that names its f32.
     pub source: Option<&'a str>,
 }
 
@@ -70,16 +68,6 @@ pub struct Program {
 }
 
 impl Program {
-    /// Lowers `function` of a module that naga's validator accepts.
-    pub fn new(module: &naga::Module, function: &str, options: &Options) -> Result<Program, LowerError> {
-        crate::evaluator::lower::lower(module, function, options)
-    }
-
-    /// Registers for calls from one thread.
-    pub fn machine(&self) -> Machine<'_> {
-        Machine::new(self)
-    }
-
     /// Scalars of all arguments, flattened in the order in which members, components, columns and elements are declared.
     pub fn argument_words(&self) -> usize {
         self.arguments.len()

@@ -1,6 +1,6 @@
 //! The pure instructions: one result from up to three words.
 
-use crate::evaluator::float::{fma, frexp, from_half, ldexp, mix, normalized, round, sign, smooth_step, to_half, to_i32, to_u32};
+use crate::evaluator::float::{clamp, fma, frexp, from_half, ldexp, mix, normalized, round, sign, smooth_step, to_half, to_i32, to_u32};
 use crate::evaluator::instruction::Op;
 use crate::evaluator::word::Word;
 
@@ -28,25 +28,25 @@ pub(crate) fn evaluate<const SINGLE: bool>(op: Op, a: impl Fn() -> Word, b: impl
         Op::RoundF => exact(af().round_ties_even()),
         Op::TruncF => exact(af().trunc()),
         Op::FractF => f(af() - af().floor()),
-        Op::SaturateF => exact(af().max(0.0).min(1.0)),
+        Op::SaturateF => exact(clamp(af(), 0.0, 1.0)),
         Op::SqrtF => f(af().sqrt()),
         Op::InverseSqrtF => f(1.0 / af().sqrt()),
-        Op::SinF => f(af().sin()),
-        Op::CosF => f(af().cos()),
-        Op::TanF => f(af().tan()),
-        Op::AsinF => f(af().asin()),
-        Op::AcosF => f(af().acos()),
-        Op::AtanF => f(af().atan()),
-        Op::SinhF => f(af().sinh()),
-        Op::CoshF => f(af().cosh()),
-        Op::TanhF => f(af().tanh()),
-        Op::AsinhF => f(af().asinh()),
-        Op::AcoshF => f(af().acosh()),
-        Op::AtanhF => f(af().atanh()),
-        Op::ExpF => f(af().exp()),
-        Op::Exp2F => f(af().exp2()),
-        Op::LogF => f(af().ln()),
-        Op::Log2F => f(af().log2()),
+        Op::SinF => f(libm::sin(af())),
+        Op::CosF => f(libm::cos(af())),
+        Op::TanF => f(libm::tan(af())),
+        Op::AsinF => f(libm::asin(af())),
+        Op::AcosF => f(libm::acos(af())),
+        Op::AtanF => f(libm::atan(af())),
+        Op::SinhF => f(libm::sinh(af())),
+        Op::CoshF => f(libm::cosh(af())),
+        Op::TanhF => f(libm::tanh(af())),
+        Op::AsinhF => f(libm::asinh(af())),
+        Op::AcoshF => f(libm::acosh(af())),
+        Op::AtanhF => f(libm::atanh(af())),
+        Op::ExpF => f(libm::exp(af())),
+        Op::Exp2F => f(libm::exp2(af())),
+        Op::LogF => f(libm::log(af())),
+        Op::Log2F => f(libm::log2(af())),
         Op::RadiansF => f(af().to_radians()),
         Op::DegreesF => f(af().to_degrees()),
         Op::ModfFractF => f(if af().is_infinite() { 0.0f64.copysign(af()) } else { af() - af().trunc() }),
@@ -93,8 +93,8 @@ pub(crate) fn evaluate<const SINGLE: bool>(op: Op, a: impl Fn() -> Word, b: impl
         Op::RemF => f(af() % bf()),
         Op::MinF => exact(af().min(bf())),
         Op::MaxF => exact(af().max(bf())),
-        Op::PowF => f(af().powf(bf())),
-        Op::Atan2F => f(af().atan2(bf())),
+        Op::PowF => f(libm::pow(af(), bf())),
+        Op::Atan2F => f(libm::atan2(af(), bf())),
         Op::StepF => exact(if af() <= bf() { 1.0 } else { 0.0 }),
         Op::LdexpF => f(ldexp(af(), bi())),
         Op::EqF => t(af() == bf()),
@@ -131,7 +131,7 @@ pub(crate) fn evaluate<const SINGLE: bool>(op: Op, a: impl Fn() -> Word, b: impl
         Op::FmaF => exact(fma::<SINGLE>(af(), bf(), cf())),
         Op::MixF => exact(mix::<SINGLE>(af(), bf(), cf())),
         Op::SmoothStepF => exact(smooth_step::<SINGLE>(af(), bf(), cf())),
-        Op::ClampF => exact(af().max(bf()).min(cf())),
+        Op::ClampF => exact(clamp(af(), bf(), cf())),
         Op::Select => {
             if a().to_bool() {
                 b()

@@ -160,6 +160,31 @@ impl Chain {
 /// Buffers that [`binding`] declares.
 pub const BINDINGS: [&str; 4] = ["draws", "index_bytes", "queues", "clipped_triangles"];
 
+/// Functions that come with the buffer of draws.
+pub const DRAW_FUNCTIONS: [&str; 2] = ["draw_of_triangle", "draw_of_vertex"];
+
+/// The draw that a triangle or a vertex belongs to. A scene of one draw has no search in its text: a loop that an override
+/// switches off still costs 6 % of a frame of ten million triangles (NVIDIA H200).
+pub fn draw_functions(key: &KernelKey) -> String {
+    let function = |name: &str, first: &str| {
+        if key.vertices.is_single_draw {
+            return format!("fn {name}(id: u32) -> u32 {{\n    return 0u;\n}}\n");
+        }
+        format!(
+            "fn {name}(id: u32) -> u32 {{
+    var search = search_begin(frame.draw_count);
+    for (var i = 0u; i < SEARCH_STEPS && search_is_open(search); i += 1u) {{
+        search = search_narrow(search, draws[search_middle(search)].{first} <= id);
+    }}
+    return search.low;
+}}
+"
+        )
+    };
+    let [of_triangle, of_vertex] = DRAW_FUNCTIONS;
+    function(of_triangle, "first_triangle") + &function(of_vertex, "first_vertex")
+}
+
 /// The declaration of a buffer whose form depends on the key. Where the key has no such buffer, a private variable stands in for
 /// it, which code that runs never touches.
 pub fn binding(name: &str, key: &KernelKey) -> Option<String> {

@@ -7,7 +7,7 @@
 //! | `//@ use variants/depth` | the file of that folder that the kernel key chooses, visible through the folder's interface |
 //! | `//@ use steps/sample_test` | a function that calls every chosen file of that folder, in order |
 //! | `//@ use glue/surface` | the effects of the stack on that hook, with their call chain |
-//! | `//@ use glue/draws` | a buffer that the key declares in one of several ways |
+//! | `//@ use glue/draws` | a buffer that the key declares in one of several ways, with the functions that depend on it |
 //!
 //! A file may name only what it declares itself, and what the files that it uses directly declare. Anything else is an
 //! error, so that each file can be read alone. No file can use a stage.
@@ -226,10 +226,16 @@ impl Linker<'_> {
             // Where the stage declares the buffer with another access, its declaration counts.
             let is_declared = self.files.values().any(|file| file.source.declared.contains(name));
             let part = format!("glue of {name} {GENERATED}");
-            if !is_declared && !self.linked.files.iter().any(|(taken, _)| *taken == part) {
-                self.append(&part, &declaration);
+            if !self.linked.files.iter().any(|(taken, _)| *taken == part) {
+                let mut text = if is_declared { String::new() } else { declaration };
+                if name == "draws" {
+                    glue::DRAW_FUNCTIONS.iter().for_each(|function| drop(self.generated.insert((*function).into(), "glue/draws".into())));
+                    text.push_str(&glue::draw_functions(self.key));
+                }
+                self.append(&part, &text);
             }
-            return Some(Ok(()));
+            // The record that the buffer holds.
+            return Some(if name == "draws" { self.take("lib/triangle", "glue/draws") } else { Ok(()) });
         }
         if name == "effects" {
             self.has_effects = true;

@@ -78,7 +78,7 @@ const LONG_FOR_A_REASON: &[(&str, &str)] = &[
 /// Crates that only some rooms may name.
 const GUARDED: &[(&str, &[&str])] = &[
     ("wgpu", &["gpu", "app"]),
-    ("naga", &["shader", "gpu"]),
+    ("naga", &["effect_files", "evaluator", "shader", "gpu"]),
     ("egui", &["app"]),
     ("eframe", &["app"]),
     ("egui_wgpu", &["app"]),

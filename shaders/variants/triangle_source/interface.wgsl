@@ -2,8 +2,7 @@
 // Chosen by the accuracy axis `culling`: meshlets where meshlets are culled. Default: the function below, an invocation for
 // every triangle of the scene.
 //@ use lib/frame
-//@ use lib/triangle
-//@ use variants/draw_search
+//@ use glue/draws
 
 // x: the triangle's id, or one past the last triangle where there is none. y: its draw. z: an id that exists in any case.
 //@ declare fn triangle_source(invocation: u32) -> vec3u

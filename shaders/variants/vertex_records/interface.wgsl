@@ -2,7 +2,7 @@
 // Chosen by the stack: unshared where vertex effects move corners triangle by triangle. Default: the function below, one record
 // per vertex of every draw, shared by all triangles that join it.
 //@ use lib/triangle
-//@ use variants/draw_search
+//@ use glue/draws
 
 //@ declare fn vertex_source(id: u32) -> VertexSource
 fn vertex_source(id: u32) -> VertexSource {

@@ -1,6 +1,6 @@
 // Vertex records, unshared: three records per triangle, one for each corner.
 //@ use lib/triangle
-//@ use variants/draw_search
+//@ use glue/draws
 
 fn vertex_source(id: u32) -> VertexSource {
     let triangle = id / 3u;

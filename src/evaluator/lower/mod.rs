@@ -85,7 +85,17 @@ struct Lowering<'m, 'o> {
     names: Vec<String>,
 }
 
-pub(crate) fn lower(module: &Module, function: &str, options: &Options) -> Result<Program, LowerError> {
+impl Program {
+    /// Lowers `function` of a module that naga's validator accepts.
+    ///
+    /// # Errors
+    /// The function uses what cannot be evaluated here, or more than the limits allow.
+    pub fn new(module: &Module, function: &str, options: &Options) -> Result<Self, LowerError> {
+        lower(module, function, options)
+    }
+}
+
+fn lower(module: &Module, function: &str, options: &Options) -> Result<Program, LowerError> {
     let named = module.functions.iter().find(|(_, candidate)| candidate.name.as_deref() == Some(function));
     let Some((handle, _)) = named else { return Err(LowerError::NoFunction(function.to_owned())) };
     let mut lowering = Lowering {
@@ -171,7 +181,7 @@ impl<'m> Lowering<'m, '_> {
             if self.module.types[argument.ty].inner.pointer_space().is_some() {
                 return Err(self.unsupported("a pointer as its argument"));
             }
-            words += self.words_of(argument.ty)?;
+            words = self.words_of(argument.ty)?.saturating_add(words);
         }
         let start = self.allocate(words)?;
         let mut at = start;
@@ -192,7 +202,7 @@ impl<'m> Lowering<'m, '_> {
         } as usize;
         let inputs = start as usize..(start + words) as usize;
         let result = result_start..result_start + result.len() as usize;
-        let (code, marks) = optimize(self.code.instructions, self.prologue, self.marks, result.clone(), self.code.image.len());
+        let (code, marks) = optimize(&mut self.code, self.prologue, self.marks, result.clone());
         Ok(Program {
             precision: self.options.precision,
             steps: self.options.limits.steps,

@@ -134,6 +134,7 @@ impl<'m> Lowering<'m, '_> {
         match value {
             Value::Words(all) => {
                 let from = self.adjacent(&all)?;
+                self.code.indexed.push(from..from + all.len());
                 let d = self.allocate(stride)?;
                 self.code.push(Op::LoadIndexed, d, from, offset, stride).map_err(|full| self.full(full))?;
                 Ok(Value::Words(Words::Range { start: d, len: stride }))

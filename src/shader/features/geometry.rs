@@ -127,7 +127,6 @@ const VERTEX_FORMATS: Feature = Feature {
         is_used: |key| key.vertices.fetch != Fetch::Direct,
         why_omitted: |_| "no primitive has indices".into(),
     }),
-    variants: &[("draw_search", |key, _| stem_if(!key.vertices.is_single_draw, "binary"))],
     constants: &[
         ("ONLY_TRIANGLE_LISTS", |key, _| flag(key.vertices.only_triangle_lists)),
         ("HAS_INDICES", |key, _| flag(key.vertices.fetch != Fetch::Direct)),

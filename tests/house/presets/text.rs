@@ -263,7 +263,7 @@ fn schema_json_is_up_to_date() {
     let stored = std::fs::read_to_string(&path).unwrap_or_default();
     assert!(
         stored == preset_file::schema::text(),
-        "presets/schema.json is stale; UPDATE_SNAPSHOTS=1 cargo test --release --test presets writes it"
+        "presets/schema.json is stale; UPDATE_SNAPSHOTS=1 cargo test --release --test house writes it"
     );
 }
 

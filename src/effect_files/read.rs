@@ -1,0 +1,135 @@
+//! Reading: the text of an effect file becomes an effect with the hooks that its functions are on.
+
+use super::{
+    check, declaration,
+    error::{EffectError, Text},
+    parameters::intern,
+    rewrite,
+    twin::{self, Function},
+};
+use crate::{
+    effects::{Effect, EffectSource, SurfaceInput, hooks::Hooks},
+    evaluator::Precision,
+};
+
+/// Largest effect file, bytes.
+pub const MAX_BYTES: usize = 64 << 10;
+/// Longest name of an effect.
+const MAX_NAME_CHARS: usize = 40;
+/// Names that mean something else in preset files and on the command line.
+pub const RESERVED_NAMES: [&str; 14] = [
+    "accuracy",
+    "animation",
+    "background",
+    "camera",
+    "clock",
+    "effects",
+    "light",
+    "output",
+    "playback",
+    "polyline",
+    "scene",
+    "schema",
+    "stack",
+    "test",
+];
+
+/// Is it a name that an effect may have?
+///
+/// # Errors
+/// Completes a sentence that begins with the name.
+pub fn check_name(name: &str) -> Result<(), String> {
+    let is_letter = |c: char| c.is_ascii_lowercase() || c.is_ascii_digit() || c == '_';
+    if !name.starts_with(|c: char| c.is_ascii_lowercase())
+        || !name.chars().all(is_letter)
+        || name.len() > MAX_NAME_CHARS
+        || name.contains("__")
+    {
+        return Err(format!(
+            "is no name for an effect; it begins with a small letter and has at most {MAX_NAME_CHARS} small letters, digits and single _"
+        ));
+    }
+    if Effect::find(name).is_some() {
+        return Err("is the name of a built-in effect; choose another".into());
+    }
+    if RESERVED_NAMES.contains(&name) {
+        return Err("has another meaning in presets; choose another name".into());
+    }
+    Ok(())
+}
+
+/// Reads the effect `stem` from the text of its file, which messages call `file`.
+///
+/// # Errors
+/// The first fault, at its line.
+pub fn read(file: &str, stem: &str, written: &str) -> Result<&'static Effect, EffectError> {
+    let text = Text { file, text: written };
+    check_name(stem).map_err(|reason| text.whole(format!("{stem:?} {reason}")))?;
+    if written.len() > MAX_BYTES {
+        return Err(text.whole(format!("the file has {} bytes; an effect has at most {MAX_BYTES}", written.len())));
+    }
+    let declaration = declaration::read(&text)?;
+    let needs_length = declaration.hooks.vertex.is_some() && rewrite::lengths(declaration.parameters.fields).next().is_none();
+    if needs_length {
+        return Err(
+            text.whole("a vertex effect needs an f32 parameter with @unit(m): it moves a vertex by at most the sum of these lengths")
+        );
+    }
+    let fields = declaration.parameters.fields;
+    let defaults = declaration.parameters.defaults.clone();
+    let base = Effect {
+        name: intern(stem),
+        about: intern(&declaration.about),
+        hooks: Hooks::NONE,
+        fields,
+        defaults: Box::leak(Box::new(move || defaults.clone())),
+        wgsl_struct: intern(declaration.struct_name),
+        source: None,
+        is_repeatable: |_| true,
+    };
+    // First the file as it stands, so that messages show the author's own names.
+    let plain = rewrite::plain(written, &declaration);
+    let source = EffectSource { stem: stem.into(), written: written.into(), linked: plain.clone(), functions: declaration.hooks.clone() };
+    check::check(&text, leak(Effect { source: Some(leak(source)), ..copy(&base) }))?;
+    let (linked, functions) = rewrite::linked(stem, &plain, &declaration);
+    let source = EffectSource { stem: stem.into(), written: written.into(), linked, functions };
+    let source: &'static EffectSource = leak(source);
+    let wgsl_struct = intern(&rewrite::unique(stem, declaration.struct_name));
+    let mut effect = Effect { source: Some(source), wgsl_struct, ..copy(&base) };
+    let checked = check::check(&text, leak(copy(&effect)))?;
+    let function = |name: &str, precision: Precision| {
+        let read = Function::new(&checked.module, &checked.linked.text, name, fields, precision);
+        read.map_err(|error| text.whole(error.to_string().replace(&rewrite::unique(stem, ""), "").replace('`', "")))
+    };
+    let members: Vec<&str> = declaration.tokens.windows(2).filter(|pair| pair[0].text == ".").map(|pair| pair[1].text).collect();
+    let hooks = &mut effect.hooks;
+    if let Some(name) = &source.functions.vertex {
+        let needs_triangle = ["flat_normal", "center", "arm", "center_screen", "triangle"].iter().any(|member| members.contains(member));
+        hooks.vertex = Some(twin::vertex(function(name, Precision::Double)?, function(name, Precision::Single)?, needs_triangle));
+    }
+    if let Some(name) = &source.functions.sample {
+        hooks.sample = Some(twin::sample(function(name, Precision::Double)?));
+    }
+    if let Some(name) = &source.functions.surface {
+        hooks.surface = Some(twin::surface(function(name, Precision::Double)?));
+        let inputs: Vec<SurfaceInput> =
+            SurfaceInput::ALL.into_iter().filter(|input| *input != SurfaceInput::Lit && members.contains(&input.member())).collect();
+        hooks.surface_inputs = Vec::leak(inputs);
+    }
+    if let Some(name) = &source.functions.image {
+        let reads_previous = declaration.tokens.iter().any(|token| token.text == "image_previous");
+        hooks.image = Some(twin::image(function(name, Precision::Double)?, reads_previous));
+    }
+    // Any comparison in the text may be a step of color.
+    hooks.has_steps = source.functions.surface.is_some() || source.functions.image.is_some();
+    Ok(leak(effect))
+}
+
+/// Keeps a value as long as the program runs. Effects are few, and a reload keeps only files that changed.
+fn leak<T>(value: T) -> &'static T {
+    Box::leak(Box::new(value))
+}
+
+fn copy(effect: &Effect) -> Effect {
+    Effect { ..*effect }
+}
