@@ -32,7 +32,7 @@ pub fn presets(common: &Common, names: &[String], streams: &Streams) -> Result<V
     } else {
         names.iter().map(|name| open(common, name)).collect::<Result<_, _>>()?
     };
-    preset_files.iter().flat_map(|preset_file| &preset_file.warnings).for_each(|warning| streams.note(warning));
+    preset_files.iter().flat_map(PresetFile::remarks).for_each(|remark| streams.note(&remark));
     Ok(preset_files)
 }
 

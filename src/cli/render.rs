@@ -21,7 +21,7 @@ pub fn run(common: &Common, args: &Render, streams: &mut Streams) -> Result<Exit
         return Err(CliError::usage(format!("{}: put {{preset}} or {{n}} into the name, since there are several presets", args.output)));
     }
     let preset_files = args.inputs.iter().map(|what| open_with_flags(common, args, what)).collect::<Result<Vec<_>, _>>()?;
-    preset_files.iter().flat_map(|preset_file| &preset_file.warnings).for_each(|warning| streams.note(warning));
+    preset_files.iter().flat_map(PresetFile::remarks).for_each(|remark| streams.note(&remark));
     let mut backend = Backend::open(common, streams)?;
     if !to_stdout {
         // Existing files are reported before anything is drawn.

@@ -104,7 +104,7 @@ struct FrameJob {
 
 pub fn run(common: &Common, args: &Sequence, streams: &mut Streams) -> Result<Exit, CliError> {
     let preset_file = open_with_flags(common, args)?;
-    preset_file.warnings.iter().for_each(|warning| streams.note(warning));
+    preset_file.remarks().iter().for_each(|remark| streams.note(remark));
     let schedule = Schedule::of(args, &preset_file.preset)?;
     check_template(args, &schedule)?;
     let scene = scene_of(&preset_file)?;

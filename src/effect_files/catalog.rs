@@ -8,9 +8,13 @@ use std::{
 
 use super::{
     error::{EffectError, Text},
-    read::{MAX_BYTES, read},
+    parameters::intern,
+    read::{MAX_BYTES, check_name, read},
 };
-use crate::effects::{EFFECTS, Effect};
+use crate::{
+    effects::{EFFECTS, Effect},
+    params::did_you_mean,
+};
 
 /// An effect of a file: the effect, or what is wrong with the file.
 #[derive(Clone, Debug)]
@@ -24,6 +28,8 @@ pub struct CustomEffect {
 #[derive(Clone, Debug, Default)]
 pub struct Catalog {
     custom: Arc<BTreeMap<String, CustomEffect>>,
+    /// Further instances of effects, under names of their own.
+    instances: Arc<BTreeMap<String, &'static Effect>>,
 }
 
 impl Catalog {
@@ -80,7 +86,34 @@ impl Catalog {
     pub fn joined(&self, other: &Self) -> Self {
         let mut custom = (*other.custom).clone();
         custom.extend(self.custom.iter().map(|(name, effect)| (name.clone(), effect.clone())));
-        Self { custom: Arc::new(custom) }
+        let mut instances = (*other.instances).clone();
+        instances.extend(self.instances.iter().map(|(name, effect)| (name.clone(), *effect)));
+        Self { custom: Arc::new(custom), instances: Arc::new(instances) }
+    }
+
+    /// Adds another instance of the effect `base`, called `name`.
+    ///
+    /// # Errors
+    /// Completes a sentence that begins with the name of the instance: no such effect, a faulty file, an effect that can stand in
+    /// a stack only once, or a name that another effect has.
+    pub fn add_instance(&mut self, name: &str, base: &str) -> Result<&'static Effect, String> {
+        if let Some(known) = self.instances.get(name).filter(|known| known.base.is_some_and(|known| known.name == base)) {
+            return Ok(known);
+        }
+        check_name(name)?;
+        if self.custom.contains_key(name) {
+            return Err("is the name of an effect file; choose another".into());
+        }
+        let found = self.find(base).map_err(|error| format!("cannot be used: {error}"))?;
+        let base = found
+            .filter(|effect| effect.base.is_none())
+            .ok_or_else(|| format!("is an instance of {base:?}, which is no effect{}", did_you_mean(base, self.names())))?;
+        if !base.has_instances() {
+            return Err(format!("is an instance of {}, which can stand in a stack only once", base.name));
+        }
+        let effect: &'static Effect = Box::leak(Box::new(Effect::instance(intern(name), base)));
+        Arc::make_mut(&mut self.instances).insert(name.into(), effect);
+        Ok(effect)
     }
 
     fn find_custom(&self, name: &str) -> Option<Result<&'static Effect, &EffectError>> {
@@ -94,18 +127,34 @@ impl Catalog {
     pub fn find(&self, name: &str) -> Result<Option<&'static Effect>, &EffectError> {
         match Effect::find(name) {
             Some(effect) => Ok(Some(effect)),
-            None => self.find_custom(name).transpose(),
+            None => match self.instances.get(name) {
+                Some(effect) => Ok(Some(effect)),
+                None => self.find_custom(name).transpose(),
+            },
         }
     }
 
-    /// Every effect that can be used: the built-in ones in their order, then those of files by name.
+    /// Every effect that can be used: the built-in ones in their order, then those of files and instances by name.
     pub fn effects(&self) -> impl Iterator<Item = &'static Effect> + '_ {
-        EFFECTS.iter().copied().chain(self.custom.values().filter_map(|custom| custom.read.as_ref().ok().copied()))
+        let custom = self.custom.values().filter_map(|custom| custom.read.as_ref().ok().copied());
+        EFFECTS.iter().copied().chain(custom).chain(self.instances.values().copied())
+    }
+
+    /// Every effect of the catalog and of `used`, each name once, in the same order.
+    pub fn effects_with(&self, used: impl Iterator<Item = &'static Effect>) -> Vec<&'static Effect> {
+        let mut all: Vec<&'static Effect> = self.effects().collect();
+        for effect in used {
+            if !all.iter().any(|known| known.name == effect.name) {
+                all.push(effect);
+            }
+        }
+        all[EFFECTS.len()..].sort_by_key(|effect| effect.name);
+        all
     }
 
     /// Names of all effects, those of faulty files included.
     pub fn names(&self) -> impl Iterator<Item = &str> {
-        EFFECTS.iter().map(|effect| effect.name).chain(self.custom.keys().map(String::as_str))
+        EFFECTS.iter().map(|effect| effect.name).chain(self.custom.keys().chain(self.instances.keys()).map(String::as_str))
     }
 
     /// The effects of files, by name.

@@ -85,6 +85,7 @@ pub fn read(file: &str, stem: &str, written: &str) -> Result<&'static Effect, Ef
         defaults: Box::leak(Box::new(move || defaults.clone())),
         wgsl_struct: intern(declaration.struct_name),
         source: None,
+        base: None,
         is_repeatable: |_| true,
     };
     // First the file as it stands, so that messages show the author's own names.

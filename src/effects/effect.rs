@@ -20,6 +20,8 @@ pub struct Effect {
     pub wgsl_struct: &'static str,
     /// The WGSL text of an effect that a file brings; none for a built-in effect, whose text is in `shaders/effects`.
     pub source: Option<&'static EffectSource>,
+    /// The effect that this is another instance of, under a name of its own.
+    pub base: Option<&'static Effect>,
     /// Is every frame the same with these parameter words?
     pub is_repeatable: fn(&[u32]) -> bool,
 }
@@ -35,6 +37,7 @@ impl Effect {
             defaults: &defaults::<P>,
             wgsl_struct,
             source: None,
+            base: None,
             is_repeatable: |_| true,
         }
     }
@@ -117,9 +120,25 @@ impl Effect {
         self
     }
 
+    /// Another instance of `base`, so that it can stand in a stack more than once.
+    pub const fn instance(name: &'static str, base: &'static Self) -> Self {
+        Self { name, base: Some(base), ..*base }
+    }
+
+    /// Can it stand in a stack more than once? Effects that the frame has one place for cannot.
+    pub fn has_instances(&self) -> bool {
+        let hooks = &self.hooks;
+        let is_alone = hooks.slot.is_some() || hooks.has_lines || hooks.particle_settings.is_some() || hooks.reads_light();
+        !is_alone && !hooks.image.is_some_and(|hook| hook.reads_previous)
+    }
+
     /// Name of the WGSL file below `effects`.
-    pub fn file_stem(&self) -> &str {
-        self.source.map_or(self.name, |source| &source.stem)
+    pub fn file_stem(&self) -> &'static str {
+        match (self.source, self.base) {
+            (Some(source), _) => &source.stem,
+            (None, Some(base)) => base.name,
+            (None, None) => self.name,
+        }
     }
 
     /// The field called `name`.

@@ -19,6 +19,7 @@ impl Effect {
 
     /// Index in [`EFFECTS`]; an effect of a file comes after all of them.
     pub fn rank(&self) -> usize {
-        EFFECTS.iter().position(|effect| *effect == self).unwrap_or(EFFECTS.len())
+        let original = self.base.unwrap_or(self);
+        EFFECTS.iter().position(|effect| *effect == original).unwrap_or(EFFECTS.len())
     }
 }

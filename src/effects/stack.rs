@@ -75,10 +75,9 @@ impl Stack {
         self.0.retain(|enabled| enabled.effect.name != name);
     }
 
-    /// Are the effects in the canonical order? Several effects of files have none.
+    /// Are the effects in the canonical order? Several effects of files, or instances of one effect, have none.
     pub fn is_canonical(&self) -> bool {
-        let customs = self.0.iter().filter(|enabled| enabled.effect.source.is_some()).count();
-        customs < 2 && self.0.is_sorted_by_key(|enabled| enabled.effect.rank())
+        self.0.is_sorted_by(|a, b| a.effect.rank() < b.effect.rank())
     }
 
     /// Applies every surface effect in order.

@@ -6,7 +6,7 @@ use super::{
     error::{Position, PresetError},
     file::PresetFile,
     keyframes, migrate, order,
-    reader::{Reader, number_text},
+    reader::{INSTANCE_KEY, Reader, number_text},
     toml_value,
 };
 use crate::{
@@ -98,6 +98,11 @@ pub fn set(preset_file: &mut PresetFile, path: &str, value: &str) -> Result<(), 
     let argument = if value.is_empty() { format!("--set {path}") } else { format!("--set {path}={value}") };
     let at = Position { file: argument.clone(), line: None };
     let wrong = |reason: String| PresetError::value(at.clone(), path, reason);
+    if let Some((name, INSTANCE_KEY)) = path.strip_prefix("effects.").unwrap_or(path).split_once('.') {
+        let effect = preset_file.effects.add_instance(name, value.trim().trim_matches('"')).map_err(|reason| wrong(reason))?;
+        preset_file.preset.stack.enable(effect);
+        return Ok(());
+    }
     let catalog = preset_file.effects.clone();
     let target = target(path, &catalog).map_err(wrong)?;
     let has_unknown_effect = |name: &str| preset_file.has_effect_table(name);
@@ -118,7 +123,7 @@ pub fn set(preset_file: &mut PresetFile, path: &str, value: &str) -> Result<(), 
             preset.animation.remove(effect.name, field.name);
         }
         Target::Animation(Some(effect), Some(field)) => {
-            let mut reader = Reader { file: &argument, text: None, catalog: &catalog, warnings: Vec::new() };
+            let mut reader = Reader { file: &argument, text: None, catalog: catalog.clone(), warnings: Vec::new() };
             let track = keyframes::read_track(&mut reader, None, effect, field, &Item::Value(command_line_value(value)))?;
             preset_file.preset.stack.enable(effect);
             preset_file.preset.animation.put(track);

@@ -2,7 +2,7 @@
 
 use std::path::{Component, Path, PathBuf};
 
-use toml_edit::DocumentMut;
+use toml_edit::{DocumentMut, Item, Table};
 
 use super::{atomic::write_atomically, error::PresetError, write};
 use crate::{
@@ -10,6 +10,9 @@ use crate::{
     effects::lambert,
     preset::{Preset, SceneSource},
 };
+
+/// The table that holds the texts of effects that a shared preset brings.
+pub(super) const EFFECT_FILES: &str = "effect_files";
 
 /// A preset with its file and the text that it was read from.
 #[derive(Clone, Debug)]
@@ -23,6 +26,8 @@ pub struct PresetFile {
     pub warnings: Vec<String>,
     /// The effects that it may use.
     pub effects: Catalog,
+    /// Names of the effects whose text came inside the preset: code that its reader has not seen yet.
+    pub brought_effects: Vec<String>,
     /// Built in, or written by a newer program.
     pub read_only: bool,
     /// Written by a newer program: parts of it may be unknown here, so it is never written back.
@@ -42,6 +47,7 @@ impl PresetFile {
             preset,
             warnings: Vec::new(),
             effects: Catalog::default(),
+            brought_effects: Vec::new(),
             read_only: false,
             is_newer: false,
             document: DocumentMut::new(),
@@ -59,6 +65,15 @@ impl PresetFile {
     /// The name, or the id of a preset without a name.
     pub fn title(&self) -> &str {
         if self.preset.name.is_empty() { &self.id } else { &self.preset.name }
+    }
+
+    /// What a person should know after opening it: warnings, and the code that it brings.
+    pub fn remarks(&self) -> Vec<String> {
+        let lines = |name: &str| {
+            self.effects.find(name).ok().flatten().and_then(|effect| effect.source).map_or(0, |source| source.written.lines().count())
+        };
+        let brought = self.brought_effects.iter().map(|name| format!("the preset brings the effect {name}, {} lines of WGSL", lines(name)));
+        self.warnings.iter().cloned().chain(brought).collect()
     }
 
     /// Would saving change the file?
@@ -83,6 +98,24 @@ pub fn to_toml(preset_file: &PresetFile) -> String {
     let mut document = preset_file.document.clone();
     if !preset_file.is_newer {
         write::patch(&mut document, &preset_file.effects, &preset_file.saved, &preset_file.preset);
+    }
+    document.to_string()
+}
+
+/// The preset as TOML with the effects of files that it uses, so that it can be opened elsewhere.
+pub fn to_shared_toml(preset_file: &PresetFile) -> String {
+    let sources = preset_file.preset.stack.0.iter().filter_map(|enabled| enabled.effect.source);
+    let mut document: DocumentMut = match to_toml(preset_file).parse() {
+        Ok(document) => document,
+        Err(_) => return to_toml(preset_file),
+    };
+    let mut table = Table::new();
+    for source in sources {
+        table.insert(&source.stem, toml_edit::value(source.written.as_str()));
+    }
+    match table.is_empty() {
+        true => drop(document.remove(EFFECT_FILES)),
+        false => drop(document.insert(EFFECT_FILES, Item::Table(table))),
     }
     document.to_string()
 }

@@ -46,7 +46,7 @@ pub fn read(reader: &mut Reader<'_>, effects: &dyn TableLike, preset: &mut Prese
     for (name, _) in effects.iter() {
         let Some(table) = reader.table(effects, "animation.", name)? else { continue };
         let Some(effect) = reader.effect(effects, "animation.", name)? else {
-            reader.unknown(effects, "animation.", name, reader.catalog.names());
+            reader.unknown_effect(effects, "animation.", name);
             continue;
         };
         if preset.stack.get(name).is_none() {
@@ -140,7 +140,7 @@ pub fn patch(root: &mut Table, catalog: &Catalog, saved: &Animation, now: &Anima
         root.insert("animation", Item::Table(implicit()));
     }
     let tables = root.get_mut("animation").and_then(Item::as_table_like_mut).expect("the animation was read as a table");
-    for effect in catalog.effects() {
+    for effect in catalog.effects_with([saved, now].into_iter().flat_map(|animation| animation.tracks().iter().map(Track::effect))) {
         for field in effect.fields {
             let [before, after] = [saved, now].map(|animation| animation.get(effect.name, field.name));
             match after {

@@ -54,7 +54,8 @@ pub fn parse_with(text: &str, id: &str, file: &str, catalog: &Catalog) -> Result
         read_only: is_newer,
         is_newer,
         document,
-        effects: catalog.clone(),
+        effects: read.catalog,
+        brought_effects: read.brought_effects,
     })
 }
 

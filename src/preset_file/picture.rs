@@ -7,7 +7,7 @@ use std::{
 
 use super::{
     error::PresetError,
-    file::{PresetFile, to_toml},
+    file::{PresetFile, to_shared_toml},
     load::{MAX_BYTES, parse_file, read_capped},
 };
 use crate::frame::Frame;
@@ -48,7 +48,7 @@ pub(super) fn texts(preset_file: &PresetFile, provenance: &Provenance, fingerpri
     let software = format!("rasterlab {}", env!("CARGO_PKG_VERSION"));
     let fingerprint = fingerprint.map(|fingerprint| (FINGERPRINT, fingerprint.to_owned()));
     let made_by = [("Software", software), (ADAPTER, adapter.clone()), ("rasterlab driver", driver.clone())];
-    made_by.into_iter().chain(fingerprint).chain([(PRESET, to_toml(preset_file))]).collect()
+    made_by.into_iter().chain(fingerprint).chain([(PRESET, to_shared_toml(preset_file))]).collect()
 }
 
 /// The picture without texts: `size` is width and height, `color` row-major RGBA.

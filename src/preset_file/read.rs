@@ -3,7 +3,12 @@
 
 use toml_edit::{Document, TableLike};
 
-use super::{error::PresetError, keyframes, order, reader::Reader};
+use super::{
+    error::PresetError,
+    file::EFFECT_FILES,
+    keyframes, order,
+    reader::{INSTANCE_KEY, Reader},
+};
 use crate::{
     effect_files::Catalog,
     effects::{Conflict, EnabledEffect, Stack},
@@ -14,17 +19,23 @@ use crate::{
 };
 
 /// Keys at the top of a file that are no settings, with the tables that are no sections.
-pub const OTHER_KEYS: [&str; 4] = ["schema", "stack", "effects", "animation"];
+pub const OTHER_KEYS: [&str; 5] = ["schema", "stack", "effects", EFFECT_FILES, "animation"];
+/// Most effects that a preset may bring.
+const MAX_BROUGHT: usize = 16;
 
 /// A preset with the warnings about its text.
 pub struct ReadPreset {
     pub preset: Preset,
     pub warnings: Vec<String>,
+    /// Names of the effects whose text it holds.
+    pub brought_effects: Vec<String>,
+    /// The effects that it may use, with the instances that it declares.
+    pub catalog: Catalog,
 }
 
 /// Reads a whole preset that may use the effects of `catalog`; `file` is what errors and warnings call it.
 pub fn read(document: &Document<String>, file: &str, catalog: &Catalog) -> Result<ReadPreset, PresetError> {
-    let mut reader = Reader { file, text: Some(document.raw()), catalog, warnings: Vec::new() };
+    let mut reader = Reader { file, text: Some(document.raw()), catalog: catalog.clone(), warnings: Vec::new() };
     let (root, mut preset) = (document.as_table(), Preset::default());
     for section in SECTIONS {
         let table = if section.name.is_empty() { Some(root as &dyn TableLike) } else { reader.table(root, "", section.name)? };
@@ -33,6 +44,10 @@ pub fn read(document: &Document<String>, file: &str, catalog: &Catalog) -> Resul
             read_section(&mut reader, table, section, &mut preset)?;
         }
     }
+    let brought_effects = match reader.table(root, "", EFFECT_FILES)? {
+        Some(table) => read_effect_files(&mut reader, table)?,
+        None => Vec::new(),
+    };
     if let Some(table) = reader.table(root, "", "effects")? {
         read_effects(&mut reader, table, &mut preset.stack)?;
         let error = |conflict: Conflict| PresetError::value(reader.position(table, conflict.second), "effects", conflict.to_string());
@@ -43,11 +58,11 @@ pub fn read(document: &Document<String>, file: &str, catalog: &Catalog) -> Resul
     }
     if let Some(item) = root.get("stack") {
         let has_table = |name: &str| root.get("effects").and_then(|effects| effects.get(name)).is_some();
-        preset.stack =
-            order::read(item.as_value(), &preset.stack, catalog, &has_table).map_err(|reason| reader.error(root, "", "stack", reason))?;
+        preset.stack = order::read(item.as_value(), &preset.stack, &reader.catalog, &has_table)
+            .map_err(|reason| reader.error(root, "", "stack", reason))?;
     }
     check_budget(&reader, root, &preset)?;
-    Ok(ReadPreset { preset, warnings: reader.warnings })
+    Ok(ReadPreset { preset, warnings: reader.warnings, brought_effects, catalog: reader.catalog })
 }
 
 /// Reads every setting of one section; at the top of the file, tables are left out.
@@ -70,12 +85,31 @@ fn read_section(reader: &mut Reader<'_>, table: &dyn TableLike, section: &Sectio
     Ok(())
 }
 
+/// Adds the effects whose text the preset holds; returns the names of those that were not known with this text.
+fn read_effect_files(reader: &mut Reader<'_>, table: &dyn TableLike) -> Result<Vec<String>, PresetError> {
+    let mut brought = Vec::new();
+    let prefix = format!("{EFFECT_FILES}.");
+    for (name, item) in table.iter() {
+        let Some(text) = item.as_str() else { return Err(reader.error(table, &prefix, name, "must be the text of an effect file")) };
+        if brought.len() == MAX_BROUGHT {
+            return Err(reader.error(table, &prefix, name, format!("is one effect too many; a preset brings at most {MAX_BROUGHT}")));
+        }
+        let known = reader.catalog.find(name).ok().flatten();
+        if known.is_some_and(|known| known.source.is_some_and(|source| source.written == text)) {
+            continue;
+        }
+        reader.catalog.add_text(name, text).map_err(|error| reader.error(table, &prefix, name, format!("cannot be used: {error}")))?;
+        brought.push(name.to_owned());
+    }
+    Ok(brought)
+}
+
 fn read_effects(reader: &mut Reader<'_>, effects: &dyn TableLike, stack: &mut Stack) -> Result<(), PresetError> {
     for (name, _) in effects.iter() {
         let Some(table) = reader.table(effects, "effects.", name)? else { continue };
         match reader.effect(effects, "effects.", name)? {
             Some(effect) => read_effect(reader, table, stack.enable(effect))?,
-            None => reader.unknown(effects, "effects.", name, reader.catalog.names()),
+            None => reader.unknown_effect(effects, "effects.", name),
         }
     }
     Ok(())
@@ -84,6 +118,9 @@ fn read_effects(reader: &mut Reader<'_>, effects: &dyn TableLike, stack: &mut St
 fn read_effect(reader: &mut Reader<'_>, table: &dyn TableLike, enabled: &mut EnabledEffect) -> Result<(), PresetError> {
     let prefix = format!("effects.{}.", enabled.effect.name);
     for (name, item) in table.iter() {
+        if name == INSTANCE_KEY && enabled.effect.base.is_some() {
+            continue;
+        }
         let Some(field) = enabled.effect.field(name) else {
             reader.unknown(table, &prefix, name, enabled.effect.fields.iter().map(|field| field.name));
             continue;

@@ -12,6 +12,9 @@ use crate::{
     params::{Param, Value, did_you_mean},
 };
 
+/// In an effect's table: the effect that it is an instance of.
+pub const INSTANCE_KEY: &str = "effect";
+
 /// What every part of the reader shares.
 pub struct Reader<'a> {
     /// What errors call the file.
@@ -19,7 +22,7 @@ pub struct Reader<'a> {
     /// The text that spans point into; none for a value that did not come from a file.
     pub text: Option<&'a str>,
     /// The effects that may be named.
-    pub catalog: &'a Catalog,
+    pub catalog: Catalog,
     pub warnings: Vec<String>,
 }
 
@@ -40,8 +43,17 @@ impl Reader<'_> {
         item.as_table_like().map(Some).ok_or_else(|| PresetError::value(self.position(parent, name), path, reason))
     }
 
-    /// The effect called `name`, which is a key of `table`; none if it is unknown.
-    pub fn effect(&self, table: &dyn TableLike, prefix: &str, name: &str) -> Result<Option<&'static Effect>, PresetError> {
+    /// The effect called `name`, which is a key of `table`; none if it is unknown. Its own table may say which effect it is an
+    /// instance of.
+    pub fn effect(&mut self, table: &dyn TableLike, prefix: &str, name: &str) -> Result<Option<&'static Effect>, PresetError> {
+        let base = table.get(name).and_then(Item::as_table_like).and_then(|own| own.get(INSTANCE_KEY));
+        if let Some(base) = base {
+            let Some(base) = base.as_str() else {
+                return Err(self.error(table, prefix, name, "must name an effect as text in the key effect"));
+            };
+            let added = self.catalog.add_instance(name, base);
+            return added.map(Some).map_err(|reason| self.error(table, prefix, name, reason));
+        }
         self.catalog.find(name).map_err(|error| self.error(table, prefix, name, format!("cannot be used: {error}")))
     }
 
@@ -57,6 +69,12 @@ impl Reader<'_> {
     /// The error of the key `name` in `table`.
     pub fn error(&self, table: &dyn TableLike, prefix: &str, name: &str, reason: impl ToString) -> PresetError {
         PresetError::value(self.position(table, name), format!("{prefix}{name}"), reason.to_string())
+    }
+
+    /// Warns of an effect that is not in the catalog.
+    pub fn unknown_effect(&mut self, table: &dyn TableLike, prefix: &str, name: &str) {
+        let hint = did_you_mean(name, self.catalog.names());
+        self.warnings.push(format!("{}: unknown key {prefix}{name}{hint}", self.position(table, name)));
     }
 
     /// Warns of a key that is not one of `known`.

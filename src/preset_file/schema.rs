@@ -2,7 +2,7 @@
 
 use serde_json::{Map, Value as Json, json};
 
-use super::{keyframes::entry_params, migrate};
+use super::{file::EFFECT_FILES, keyframes::entry_params, migrate};
 use crate::{
     effects::{EFFECTS, Effect},
     params::{Param, Value, ValueType},
@@ -23,7 +23,7 @@ pub fn schema() -> Json {
         "stack".into(),
         json!({
             "description": "Order of the enabled effects, each named once; only where it differs from the default order",
-            "type": "array", "uniqueItems": true, "items": { "enum": names },
+            "type": "array", "uniqueItems": true, "items": { "anyOf": [{ "enum": names }, { "type": "string", "pattern": "^[a-z][a-z0-9_]*$" }] },
         }),
     );
     for section in SECTIONS.iter().filter(|section| !section.name.is_empty()) {
@@ -33,6 +33,8 @@ pub fn schema() -> Json {
     let effects: Map<String, Json> = EFFECTS.iter().map(|effect| (effect.name.to_owned(), effect_schema(effect))).collect();
     let doc = "Presence of a table enables the effect";
     properties.insert("effects".into(), json!({ "type": "object", "description": doc, "properties": effects }));
+    let doc = "Texts of effect files that a shared preset brings, by name";
+    properties.insert(EFFECT_FILES.into(), json!({ "type": "object", "description": doc, "additionalProperties": { "type": "string" } }));
     let animation: Map<String, Json> = EFFECTS.iter().map(|effect| (effect.name.to_owned(), animation_schema(effect))).collect();
     let doc = "Parameters that follow the clock, as lists of keyframes";
     properties.insert("animation".into(), json!({ "type": "object", "description": doc, "properties": animation }));

@@ -8,7 +8,7 @@ use flate2::{Compression, read::DeflateDecoder, write::DeflateEncoder};
 
 use super::{
     error::PresetError,
-    file::{PresetFile, to_toml},
+    file::{PresetFile, to_shared_toml},
     load::{MAX_BYTES, parse_file},
 };
 use crate::preset::SceneSource;
@@ -18,7 +18,7 @@ const PREFIX: &str = "rasterlab1:";
 /// The preset as one line.
 pub fn to_line(preset_file: &PresetFile) -> String {
     let mut deflate = DeflateEncoder::new(Vec::new(), Compression::best());
-    deflate.write_all(to_toml(preset_file).as_bytes()).expect("memory takes all bytes");
+    deflate.write_all(to_shared_toml(preset_file).as_bytes()).expect("memory takes all bytes");
     format!("{PREFIX}{}", STANDARD.encode(deflate.finish().expect("memory takes all bytes")))
 }
 

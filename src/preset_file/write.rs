@@ -3,7 +3,7 @@
 
 use toml_edit::{DocumentMut, Item, Table, TableLike, Value as Toml};
 
-use super::{keyframes, migrate, toml_value};
+use super::{keyframes, migrate, reader::INSTANCE_KEY, toml_value};
 use crate::{
     effect_files::Catalog,
     effects::{EnabledEffect, Stack},
@@ -87,7 +87,7 @@ fn patch_effects(root: &mut Table, catalog: &Catalog, saved: &Stack, now: &Stack
         root.insert("effects", Item::Table(effects));
     }
     let tables = root.get_mut("effects").and_then(Item::as_table_like_mut).expect("effects were read as a table");
-    for effect in catalog.effects() {
+    for effect in catalog.effects_with([saved, now].into_iter().flat_map(|stack| stack.0.iter().map(|enabled| enabled.effect))) {
         match now.get(effect.name) {
             None => drop(tables.remove(effect.name)),
             Some(enabled) => {
@@ -95,6 +95,9 @@ fn patch_effects(root: &mut Table, catalog: &Catalog, saved: &Stack, now: &Stack
                     tables.insert(effect.name, Item::Table(Table::new()));
                 }
                 let table = tables.get_mut(effect.name).and_then(Item::as_table_like_mut).expect("an effect was read as a table");
+                if let Some(base) = effect.base {
+                    table.insert(INSTANCE_KEY, toml_edit::value(base.name));
+                }
                 patch_effect(table, saved.get(effect.name), enabled);
             }
         }

@@ -16,7 +16,12 @@ const MEMBER_ALIGN: usize = 16;
 /// `baked` parameters there is a constant instead of a binding.
 pub fn effects(effects: &[&'static Effect], baked: &[Vec<u32>]) -> String {
     let mut text = String::new();
+    let mut files: Vec<&str> = Vec::new();
     for effect in effects {
+        if files.contains(&effect.file_stem()) {
+            continue;
+        }
+        files.push(effect.file_stem());
         for field in effect.fields {
             if let ValueType::Choice(words) = field.value_type {
                 for (index, word) in words.iter().enumerate() {
@@ -119,7 +124,7 @@ impl Chain {
             return name.clone().unwrap_or_default();
         }
         let functions = Self::ALL.iter().filter(|chain| chain.has(effect)).count();
-        if functions == 1 { effect.name.into() } else { format!("{}_{}", effect.name, self.name()) }
+        if functions == 1 { effect.file_stem().into() } else { format!("{}_{}", effect.file_stem(), self.name()) }
     }
 
     /// The generated function `glue_<hook>` that calls every effect in stack order.

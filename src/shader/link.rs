@@ -281,9 +281,10 @@ impl Linker<'_> {
         }
         self.generated.insert("effects".into(), "glue/effects".into());
         let mut text = glue::effects(&self.key.effects.list, &self.key.effects.baked);
+        let mut declared: BTreeSet<&str> = BTreeSet::new();
         for effect in &self.key.effects.list {
             let name = format!("effects/{}", effect.file_stem());
-            if !self.files.contains_key(&name) {
+            if !self.files.contains_key(&name) && declared.insert(effect.file_stem()) {
                 match effect.source {
                     Some(_) => text.push_str(&glue::struct_of(effect)),
                     None => text.push_str(glue::struct_text(&self.load(&name, "the stack")?.text, effect.wgsl_struct)),
