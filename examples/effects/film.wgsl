@@ -35,9 +35,9 @@ fn swirl(position: vec3f, p: Film) -> f32 {
 // A studio as the surface mirrors it: a wide lamp overhead, a narrow one at the side, a pale floor.
 fn studio(toward: vec3f) -> vec3f {
     let overhead = smoothstep(0.45, 0.8, toward.y + 0.25 * toward.z);
-    let side = smoothstep(0.1, 0.03, abs(toward.x + 0.72)) * smoothstep(-0.7, -0.2, toward.y);
-    let floor = 0.1 * smoothstep(0.1, -0.9, toward.y);
-    return vec3f(1.0, 0.96, 0.9) * overhead + vec3f(0.75, 0.87, 1.0) * side + vec3f(0.12 + floor);
+    let side = (1.0 - smoothstep(0.03, 0.1, abs(toward.x + 0.72))) * smoothstep(-0.7, -0.2, toward.y);
+    let pale = 0.1 * (1.0 - smoothstep(-0.9, 0.1, toward.y));
+    return vec3f(1.0, 0.96, 0.9) * overhead + vec3f(0.75, 0.87, 1.0) * side + vec3f(0.12 + pale);
 }
 
 fn film(surface: Surface, p: Film) -> Surface {

@@ -13,7 +13,7 @@ struct Ruffle {
     @range(0.0, 0.3, 0.06) @hard(0.0, 10.0) @unit(m) lift_m: f32,
     /// How far the tips are drawn out over the next scale.
     @range(0.0, 0.3, 0.05) @hard(0.0, 10.0) @unit(m) length_m: f32,
-    /// Distance from wave to wave.
+    /// Distance from wave to wave, meters. Not @unit(m): that is for lengths by which a vertex moves.
     @range(0.1, 5.0, 1.4) @hard(0.01, 1000.0) @log wave: f32,
     /// Where the waves stand. One turn is one wave.
     @range(0.0, 1.0, 0.0) phase: f32,

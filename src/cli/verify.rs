@@ -29,6 +29,8 @@ use crate::{
 /// One preset with one option.
 struct Row {
     preset: String,
+    /// Effects that have no independent twin.
+    judged_by_own_text: Vec<&'static str>,
     option: &'static str,
     accuracy: ErrorReport,
     /// Pixels with a color channel over the preset's budget.
@@ -59,6 +61,12 @@ pub fn run(common: &Common, args: &Verify, streams: &mut Streams) -> Result<Exit
         streams.object("verify", backend.json(), results)?;
     } else {
         streams.text(&text(&rows, backend.class()))?;
+    }
+    for preset_file in &preset_files {
+        let names = judged_by_own_text(&preset_file.preset).join(", ");
+        if !names.is_empty() {
+            streams.note(&format!("{}: {names} judged by its own text in f64, everything else by an independent twin", preset_file.id));
+        }
     }
     rows.iter().filter(|row| row.accuracy.race_pixels > 0).for_each(|row| {
         streams.note(&format!(
@@ -91,6 +99,11 @@ pub fn run(common: &Common, args: &Verify, streams: &mut Streams) -> Result<Exit
     rows.iter()
         .for_each(|row| row.failures.iter().for_each(|failure| streams.note(&format!("{} with {}: {failure}", row.preset, row.option))));
     Ok(Exit::failed_if(rows.iter().any(|row| !row.failures.is_empty())))
+}
+
+/// The effects of a preset that have no independent twin: the oracle evaluates their own text in f64.
+fn judged_by_own_text(preset: &Preset) -> Vec<&'static str> {
+    preset.stack.0.iter().map(|enabled| enabled.effect).filter(|effect| effect.source.is_some()).map(|effect| effect.name).collect()
 }
 
 fn verify(common: &Common, args: &Verify, preset_file: &PresetFile, backend: &mut Backend) -> Result<Vec<Row>, CliError> {
@@ -134,6 +147,7 @@ fn verify(common: &Common, args: &Verify, preset_file: &PresetFile, backend: &mu
         }
         rows.push(Row {
             preset: preset_file.id.clone(),
+            judged_by_own_text: judged_by_own_text(&preset),
             option: name,
             accuracy: verdict.report,
             pixels_over_tolerance,
@@ -222,6 +236,7 @@ fn json_row(row: &Row, backend: &Backend) -> Value {
     let mut object = json!({
         "preset": row.preset, "option": row.option, "adapter": backend.name(), "class": backend.class(),
         "frames": row.frames, "pixels_over_tolerance": row.pixels_over_tolerance, "ok": row.failures.is_empty(), "failures": row.failures,
+        "judged_by_own_text": row.judged_by_own_text,
     });
     if let (Value::Object(object), Ok(Value::Object(stats))) = (&mut object, serde_json::to_value(&row.accuracy)) {
         object.extend(stats);

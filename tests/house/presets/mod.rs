@@ -1,5 +1,6 @@
 //! Promise: presets survive a round trip to the bit, keep unknown keys, load from every older schema, and refuse harmful values.
 
+mod custom_effects;
 mod migrations;
 mod refused;
 mod round_trip;
