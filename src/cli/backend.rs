@@ -125,7 +125,8 @@ impl Backend {
                 let ((view, stack), before) = moments.split_last().expect("a preset has at least one frame");
                 let previous = if before.is_empty() { None } else { Some(oracle::render_sequence(scene, before)?.color) };
                 let frame = oracle::render_next(scene, view, stack, previous.as_deref())?;
-                let geometry = oracle::project(&Shot::new(scene, &draws(scene, view)?, view, stack));
+                let mut geometry = oracle::project(&Shot::new(scene, &draws(scene, view)?, view, stack));
+                geometry.shadow_map = oracle::shadow_map(scene, view, stack)?;
                 Ok(Capture { frame, geometry, layers: None, previous, shown: None })
             }
             Self::Gpu(renderer, _) => {

@@ -81,7 +81,7 @@ fn every_builtin_scene_is_exact_under_every_moving_effect() {
     let (mut failures, mut turn) = (Vec::new(), 0);
     for query in SCENES {
         let scene = scene(query);
-        let view = view(&scene, [320, 240]);
+        let view = view(&scene, [160, 120]);
         // Small scenes take every way through the kernels, large ones the next in turn.
         let count = if scene.triangle_count() <= 3000 { ways.len() } else { 1 };
         for effect in MOVING {

@@ -20,8 +20,7 @@ fn a_new_effect_of_every_hook_is_drawn_and_judged_without_a_driver() {
         assert_eq!((plain.code, inked.code), (0, 0), "{hook}: {}{}", plain.err, inked.err);
         let read = |name: &str| rasterlab::preset_file::png_pixels(&folder.path().join(name)).unwrap().0;
         assert_ne!(read("plain.png"), read("inked.png"), "{hook}: the effect changes the picture");
-        let verified =
-            run_in(folder.path(), &["verify", "builtin:knot", "--size", "64x48", "--adapter", "cpu", "--set", "ink", "--json"]);
+        let verified = run_in(folder.path(), &["verify", "builtin:knot", "--size", "64x48", "--adapter", "cpu", "--set", "ink", "--json"]);
         assert_eq!(verified.code, 0, "{hook}: {}", verified.err);
         assert_eq!(json(&verified)["results"][0]["judged_by_own_text"][0], "ink");
     }

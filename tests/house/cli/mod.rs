@@ -334,6 +334,12 @@ fn a_closed_pipe_ends_quietly() {
 }
 
 #[test]
+fn the_oracle_agrees_with_itself_on_shadows() {
+    let run = run(&["verify", "shadow-soft", "--size", "64x48", "--adapter", "cpu"]);
+    assert_eq!(run.code, 0, "{}", run.err);
+}
+
+#[test]
 fn the_oracle_agrees_with_itself() {
     let verify = run(&["verify", "facet-radial", "depth", "--adapter", "cpu", "--size", "64x48", "--frames", "2", "--json"]);
     assert_eq!(verify.code, 0, "{}", verify.err);
