@@ -7,7 +7,9 @@ use eframe::egui::{self, ViewportCommand};
 use super::{
     command::{Command, Commands, FileCommand, KeyframeEdit, Purpose, RowCommand, Toggle, ViewCommand},
     log::Level,
+    new_effect,
     panels::{Panels, timeline::Timeline},
+    reload,
     screen::Inputs,
     session::UndoState,
     state::State,
@@ -218,6 +220,9 @@ fn file(ctx: &egui::Context, state: &mut State, panels: &mut Panels, command: Fi
             panels.dialogs.ask_path(purpose, &state.session, state.folders.presets.as_deref(), size);
         }
         FileCommand::Browse(purpose, path) => state.jobs.ask_path(purpose, path),
+        FileCommand::Open(what) if Path::new(&what).extension().is_some_and(|extension| extension.eq_ignore_ascii_case("wgsl")) => {
+            reload::add_effect_file(state, Path::new(&what));
+        }
         FileCommand::Open(what) => match preset_file::open(&what, &state.folders) {
             Ok(opened) => open_and_notify(state, panels, opened),
             Err(error) => state.notify(Level::Error, error.to_string()),
@@ -242,6 +247,9 @@ fn file(ctx: &egui::Context, state: &mut State, panels: &mut Panels, command: Fi
             write(state, panels, &path);
         }
         FileCommand::Export { path, size } => export(state, path, size),
+        FileCommand::AskNewEffect => panels.dialogs.ask_new_effect(),
+        FileCommand::NewEffect { name, hook } => new_effect::create(state, &name, hook),
+        FileCommand::Reload(theirs) => reload::take_preset(state, panels, *theirs),
         FileCommand::DiscardAndQuit => {
             state.may_quit = true;
             ctx.send_viewport_cmd(ViewportCommand::Close);

@@ -17,6 +17,7 @@ use super::{
 };
 use crate::{
     accuracy::{Axis, PinnedOptions},
+    effect_files::Hook,
     effects::Effect,
     params::{Field, Value},
     preset::{ClipPlayback, Clock, animation::Easing, settings::Setting},
@@ -146,7 +147,7 @@ pub enum FileCommand {
     Ask(Purpose),
     /// Shows the system's file dialog, beginning at this path.
     Browse(Purpose, PathBuf),
-    /// Opens a preset, model or picture by path, id or `builtin:QUERY`.
+    /// Opens a preset, model or picture by path, id or `builtin:QUERY`, or enables the effect of a file.
     Open(String),
     OpenPreset(Box<PresetFile>),
     /// Opens the preset this many entries further in the gallery, wrapping round.
@@ -165,6 +166,15 @@ pub enum FileCommand {
         path: PathBuf,
         size: [u32; 2],
     },
+    /// Asks for the name and hook of a new effect.
+    AskNewEffect,
+    /// Writes a new effect for the user to change, and enables it.
+    NewEffect {
+        name: String,
+        hook: Hook,
+    },
+    /// Replaces the open preset by what its file has now.
+    Reload(Box<PresetFile>),
     /// Closes the window without saving.
     DiscardAndQuit,
 }

@@ -130,8 +130,8 @@ impl Session {
     /// # Errors
     /// In a sentence for people.
     pub fn reset_group(&mut self, group: &str) -> Result<(), String> {
-        match Effect::find(group) {
-            Some(effect) => {
+        match self.preset_file.effects.find(group) {
+            Ok(Some(effect)) => {
                 let Preset { animation, stack, .. } = self.preset_mut();
                 animation.remove_effect(group);
                 if let Some(enabled) = stack.get_mut(group) {
@@ -139,7 +139,7 @@ impl Session {
                 }
                 Ok(())
             }
-            None => self.reset(group),
+            _ => self.reset(group),
         }
     }
 

@@ -3,7 +3,15 @@
 use eframe::egui;
 
 use super::{
-    command::Commands, findings::Findings, jobs::Done, log::Level, measured::error_text, panels::Panels, screen::Inputs, state::State,
+    command::Commands,
+    findings::Findings,
+    jobs::Done,
+    log::Level,
+    measured::error_text,
+    panels::Panels,
+    reload::{compiled, model_reloaded},
+    screen::Inputs,
+    state::State,
     verification::Verdict,
 };
 
@@ -14,11 +22,15 @@ pub fn finish(ctx: &egui::Context, state: &mut State, panels: &mut Panels, comma
             for note in &scene.notes {
                 state.log.add(Level::Warning, format!("{}: {note}", scene.name));
             }
+            model_reloaded(state, &key, Ok(()));
             state.session.scenes.arrived(key, Some(scene));
         }
         Done::Scene(key, Err(error)) => {
+            let is_again = model_reloaded(state, &key, Err(&error));
             state.session.scenes.arrived(key, None);
-            state.notify(Level::Error, error);
+            if !is_again {
+                state.notify(Level::Error, error);
+            }
         }
         Done::Verdict(inputs, findings) => verdict(state, panels, *inputs, findings),
         Done::Sweep(points) => {
@@ -29,6 +41,11 @@ pub fn finish(ctx: &egui::Context, state: &mut State, panels: &mut Panels, comma
         Done::Thumbnail(id, image) => panels.browser.thumbnail_arrived(ctx, id, image),
         Done::Export(path, Ok(())) => state.notify(Level::Info, format!("Saved {}", path.display())),
         Done::Export(_, Err(error)) => state.notify(Level::Error, error),
+        Done::Compiled(reload, outcome) => compiled(state, panels, reload, outcome),
+        Done::NoEditor(path, reason) => {
+            let text = format!("{} could not be opened in an editor: {reason}", path.display());
+            state.notify(Level::Warning, text);
+        }
         Done::Path(purpose, path) => {
             panels.dialogs.path_arrived(purpose, path, state.session.preset_file.path.as_deref(), commands);
         }

@@ -72,6 +72,12 @@ impl<T: Clone + PartialEq> History<T> {
         Some(self.present.clone())
     }
 
+    /// Changes every state, so that `change` itself is no step.
+    pub fn change_all(&mut self, change: impl Fn(&mut T)) {
+        let open = self.open.iter_mut().map(|open| &mut open.latest);
+        self.past.iter_mut().chain([&mut self.present]).chain(&mut self.future).chain(open).for_each(change);
+    }
+
     pub fn can_undo(&self) -> bool {
         !self.past.is_empty() || self.open.as_ref().is_some_and(|open| open.latest != self.present)
     }

@@ -42,13 +42,13 @@ fn clipboard(ctx: &egui::Context, state: &State, commands: &Commands) {
     }
 }
 
-/// Opens one of the files that were dropped on the window: a preset before a model before a picture, since a model may be
+/// Opens one of the files that were dropped on the window: a preset before a model before a picture before an effect, since a model may be
 /// dropped with the files that it needs.
 pub fn dropped_files(ctx: &egui::Context, commands: &Commands) {
     let mut dropped = ctx.input(|i| i.raw.dropped_files.iter().map(|file| file.path().to_owned()).collect::<Vec<_>>());
     let rank = |path: &PathBuf| {
         let extension = path.extension().map(|extension| extension.to_ascii_lowercase());
-        ["toml", "glb", "gltf", "png"].iter().position(|known| extension.as_ref().is_some_and(|e| e == known)).unwrap_or(usize::MAX)
+        ["toml", "glb", "gltf", "png", "wgsl"].iter().position(|known| extension.as_ref().is_some_and(|e| e == known)).unwrap_or(usize::MAX)
     };
     dropped.sort_by_key(rank);
     let Some(first) = dropped.first() else { return };

@@ -11,6 +11,7 @@ use eframe::egui;
 use super::{
     command::Purpose,
     findings::Findings,
+    live::Reload,
     scene_loader::SceneKey,
     screen::Inputs,
     sweep::{
@@ -38,6 +39,10 @@ pub enum Done {
     Export(PathBuf, Result<(), String>),
     /// The path from the system's file dialog; none if it was canceled or could not be shown.
     Path(Purpose, Option<PathBuf>),
+    /// Pipelines for what was changed on disk.
+    Compiled(Reload, Result<(), String>),
+    /// A file that could not be opened in the user's editor.
+    NoEditor(PathBuf, String),
 }
 
 /// Starts threads and receives their results.
@@ -88,6 +93,46 @@ impl Jobs {
         });
     }
 
+    /// Compiles what `inputs` need, with the shaders as they are on disk now.
+    pub fn compile(&self, gpu: Arc<Gpu>, inputs: Inputs, reload: Reload) {
+        self.spawn("compile", move || {
+            let compiled = caught("compiling", || compile(gpu, &inputs));
+            Done::Compiled(reload, compiled)
+        });
+    }
+
+    /// Opens a file in the program that the system has for it.
+    pub fn open_editor(&self, path: PathBuf) {
+        let opener = if cfg!(windows) {
+            "explorer"
+        } else if cfg!(target_os = "macos") {
+            "open"
+        } else {
+            "xdg-open"
+        };
+        let failed = match std::process::Command::new(opener).arg(&path).stdin(std::process::Stdio::null()).spawn() {
+            Ok(mut child) => {
+                let sender = (self.sender.clone(), self.ctx.clone());
+                std::thread::spawn(move || {
+                    // Some systems start the editor as a part of the opener, so this may take as long as it is open. The explorer of
+                    // Windows always reports a failure.
+                    if !cfg!(windows)
+                        && let Ok(status) = child.wait()
+                        && !status.success()
+                        && sender.0.send(Done::NoEditor(path, format!("{opener} ended with {status}"))).is_ok()
+                    {
+                        sender.1.request_repaint();
+                    }
+                });
+                return;
+            }
+            Err(error) => format!("{opener}: {error}"),
+        };
+        // The receiver lives as long as `self`.
+        let _ = self.sender.send(Done::NoEditor(path, failed));
+        self.ctx.request_repaint();
+    }
+
     /// Measures combinations of accuracy options on a second device, so that the window stays responsive.
     pub fn measure(&self, adapter: String, scene: Arc<Scene>, request: Request, progress: Arc<Progress>) {
         let work = move || measure::measure(adapter, &scene, &request, &progress);
@@ -131,7 +176,7 @@ impl Jobs {
 /// File types of the system's dialog: names and extensions.
 const fn filters(purpose: Purpose) -> &'static [(&'static str, &'static [&'static str])] {
     match purpose {
-        Purpose::Open => &[("Presets, models, pictures", &["toml", "glb", "gltf", "png"])],
+        Purpose::Open => &[("Presets, models, pictures, effects", &["toml", "glb", "gltf", "png", "wgsl"])],
         Purpose::SaveAs => &[("Presets", &["toml"])],
         Purpose::Export => &[("Pictures", &["png"])],
     }
@@ -141,6 +186,13 @@ const fn filters(purpose: Purpose) -> &'static [(&'static str, &'static [&'stati
 fn caught<T>(what: &str, work: impl FnOnce() -> Result<T, String>) -> Result<T, String> {
     std::panic::catch_unwind(std::panic::AssertUnwindSafe(work))
         .unwrap_or_else(|_| Err(format!("{what} failed because of a bug; see the terminal for details")))
+}
+
+/// Draws `inputs` with a second renderer; all renderers of a device share their pipelines.
+fn compile(gpu: Arc<Gpu>, Inputs { scene, view, stack, accuracy }: &Inputs) -> Result<(), String> {
+    let mut renderer = Renderer::new(gpu);
+    renderer.set_scene(scene).map_err(|e| e.to_string())?;
+    renderer.draw(view, stack, accuracy).map_err(|e| e.to_string())
 }
 
 fn verify(gpu: Arc<Gpu>, Inputs { scene, view, stack, accuracy }: &Inputs) -> Result<Box<Findings>, String> {

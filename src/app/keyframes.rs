@@ -6,6 +6,7 @@ use super::{
     session::Session,
 };
 use crate::{
+    effect_files::Catalog,
     effects::Effect,
     params::Field,
     preset::{
@@ -19,9 +20,9 @@ use crate::{
 const SAME_S: f64 = 5e-4;
 
 /// `facet.front` as effect and field.
-fn parameter(path: &str) -> Option<Parameter> {
+fn parameter(path: &str, catalog: &Catalog) -> Option<Parameter> {
     let (effect, field) = path.split_once('.')?;
-    let effect = Effect::find(effect)?;
+    let effect = catalog.find(effect).ok()??;
     Some((effect, effect.field(field)?))
 }
 
@@ -67,7 +68,7 @@ impl Session {
     /// # Errors
     /// In a sentence that names the parameter.
     pub fn toggle_key(&mut self, path: &str) -> Result<(), String> {
-        let Some((effect, field)) = parameter(path) else { return Ok(()) };
+        let Some((effect, field)) = parameter(path, &self.preset_file.effects) else { return Ok(()) };
         let now_s = self.shown_time_s();
         let here = self.preset().animation.get(effect.name, field.name).and_then(|track| {
             let index = key_at(track, now_s)?;
@@ -134,7 +135,8 @@ impl Session {
     /// If the path is unknown or the text is not a value of it.
     pub fn set_text(&mut self, path: &str, text: &str) -> Result<(), String> {
         let short = path.strip_prefix("effects.").unwrap_or(path);
-        let animated = parameter(short).filter(|(effect, field)| self.preset().animation.get(effect.name, field.name).is_some());
+        let animated = parameter(short, &self.preset_file.effects)
+            .filter(|(effect, field)| self.preset().animation.get(effect.name, field.name).is_some());
         let sentence = |error: PresetError| error.to_string();
         let Some((effect, field)) = animated else { return preset_file::set(&mut self.preset_file, path, text).map_err(sentence) };
         let mut probe = self.preset_file.clone();

@@ -71,6 +71,13 @@ impl SceneLoader {
         false
     }
 
+    /// Loads the scene of `key` again, since its file has changed; the caller starts that. What is shown stays until it has loaded.
+    pub fn reload(&mut self, key: &SceneKey) {
+        self.recent.retain(|(recent, _)| recent != key);
+        self.failed = None;
+        self.loading = Some(key.clone());
+    }
+
     /// Takes a scene that was loaded; none if that failed.
     pub fn arrived(&mut self, key: SceneKey, scene: Option<Arc<Scene>>) {
         if self.loading.as_ref() == Some(&key) {
@@ -78,6 +85,9 @@ impl SceneLoader {
         }
         match scene {
             Some(scene) => {
+                if let Some((_, shown)) = self.shown.as_mut().filter(|(shown, _)| *shown == key) {
+                    *shown = scene.clone();
+                }
                 self.recent.push_front((key, scene));
                 self.recent.truncate(MAX_RECENT);
             }

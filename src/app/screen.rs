@@ -95,6 +95,12 @@ impl Screen {
         Self::with(gpu.clone(), blitter.clone())
     }
 
+    /// Draws the next picture with the shaders as they are now, and again if the last one could not be drawn.
+    pub fn reload_shaders(&mut self) {
+        self.renderer = Renderer::new(self.gpu.clone());
+        (self.drawn, self.refused, self.waiting_since_s) = (None, None, None);
+    }
+
     /// True if the device was lost. Polls it, since nothing else does while nothing is drawn.
     pub fn is_lost(&self) -> bool {
         let _ = self.gpu.device.poll(wgpu::PollType::Poll);

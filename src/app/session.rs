@@ -9,9 +9,10 @@ use std::{
 
 use super::{command::TimeCommand, particle_trail::Trail, playback::Playback, scene_loader::SceneLoader};
 use crate::{
+    effect_files::Catalog,
     effects::{Effect, Stack},
     params::Field,
-    preset::Preset,
+    preset::{Preset, rebind::Replaced},
     preset_file::PresetFile,
     scene::{
         Scene,
@@ -92,6 +93,24 @@ impl Session {
         self.muted.clear();
         self.playback = Playback::default();
         self.preset_file = preset_file;
+    }
+
+    /// Makes `preset_file`, the open preset as its file is now, the open preset. The time that is shown stays.
+    pub fn reload(&mut self, preset_file: PresetFile) {
+        self.remember(preset_file.clone());
+        self.muted.retain(|name| preset_file.preset.stack.get(name).is_some());
+        self.preset_file = preset_file;
+    }
+
+    /// Uses new effects in place of old ones in every preset that was opened; see [`Preset::rebind`]. `effects` are those that the open
+    /// preset may use from now on.
+    pub fn rebind(&mut self, replaced: &[Replaced], effects: &Catalog) {
+        let open = FileId::of(&self.preset_file);
+        for (file, preset_file) in &mut self.files {
+            let effects = if *file == open { effects.clone() } else { preset_file.effects.replaced(replaced) };
+            preset_file.rebind(replaced, effects);
+        }
+        self.preset_file.rebind(replaced, effects.clone());
     }
 
     /// Remembers how a file is now, after it was read or written.

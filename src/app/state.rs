@@ -8,6 +8,7 @@ use super::{
     findings::Findings,
     history::History,
     jobs::Jobs,
+    live::Live,
     log::{Level, Log},
     overlay::OverlaySelection,
     screen::Screen,
@@ -44,8 +45,10 @@ pub struct Clipboard {
 
 /// The state of the window besides its panels: the session, its history, the picture, and what several panels share.
 pub struct State {
-    /// Folder of presets from the command line.
+    /// Where presets and effects are, beside the user's own presets.
     pub folders: Folders,
+    /// What is watched on disk.
+    pub live: Live,
     pub session: Session,
     pub history: History<UndoState>,
     pub jobs: Jobs,

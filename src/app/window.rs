@@ -15,17 +15,19 @@ use super::{
     history::History,
     input,
     jobs::Jobs,
+    live::Live,
     log::{Level, Log},
     overlay::OverlaySelection,
     panel::Panel,
     panels::{Panels, log::toasts_ui},
-    recovery,
+    recovery, reload,
     scene_loader::SceneKey,
     screen::Screen,
     session::Session,
     state::{Clipboard, OpenPanels, State},
     theme,
     verification::Verification,
+    watch::Watcher,
 };
 use crate::{
     gpu::{Gpu, device::AdapterChoice},
@@ -45,6 +47,8 @@ pub struct Options {
     pub adapter: AdapterChoice,
     /// Where presets and effects are, beside the user's own presets.
     pub folders: Folders,
+    /// A new effect is opened in the user's editor.
+    pub opens_editor: bool,
 }
 
 /// Set when the window closes because its device was lost.
@@ -103,7 +107,7 @@ impl App {
         let Panels { viewport, sweep, browser, .. } = &self.panels;
         let is_shown = !session.scenes.is_loading() && session.scene().is_some() && !screen.is_waiting();
         let is_judged = !verification.is_running() && self.state.overlays_are_ready();
-        is_shown && is_judged && !viewport.compare.is_waiting() && !sweep.is_measuring() && !browser.is_busy()
+        is_shown && is_judged && !self.state.live.is_busy() && !viewport.compare.is_waiting() && !sweep.is_measuring() && !browser.is_busy()
     }
 
     /// True if there is a picture, even one of an earlier preset.
@@ -165,6 +169,7 @@ impl App {
         Ok(Self {
             panels: Panels::new(&options.folders),
             state: State {
+                live: Live::new(Watcher::new(cc.egui_ctx.clone(), session.preset_file.effects.clone()), options.opens_editor),
                 folders: options.folders,
                 history: History::new(session.undo_state()),
                 session,
@@ -307,6 +312,7 @@ impl eframe::App for App {
             finish(ctx, &mut self.state, &mut self.panels, &self.commands, done);
             self.apply(ctx);
         }
+        reload::take_changes(&mut self.state, &mut self.panels);
         if self.state.screen.is_lost() {
             self.rescue(ctx);
         }

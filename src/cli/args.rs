@@ -37,6 +37,9 @@ pub struct Common {
     /// Folder of effect files [default: effects], beside that of the user and `effects` beside a preset
     #[arg(long, global = true, value_name = "DIR")]
     pub effects: Option<PathBuf>,
+    /// Folder of shaders that replaces the built-in ones; the window watches it [env: RASTERLAB_SHADERS]
+    #[arg(long, global = true, value_name = "DIR")]
+    pub shaders: Option<PathBuf>,
     /// Change one value of the preset, e.g. facet.amount=.5; the name of an effect alone enables it
     #[arg(long, global = true, value_name = "PATH[=VALUE]")]
     pub set: Vec<String>,

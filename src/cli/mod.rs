@@ -38,13 +38,19 @@ pub use args::{Cli, Command};
 pub use error::{CliError, Exit};
 use streams::Streams;
 
-use crate::preset_file::PresetError;
+use crate::{preset_file::PresetError, shader::library::Library};
 
 /// Runs the command.
 ///
 /// # Errors
 /// What failed; [`report_error`] prints it.
 pub fn run(cli: &Cli) -> Result<Exit, CliError> {
+    if let Some(folder) = &cli.common.shaders {
+        if !folder.is_dir() {
+            return Err(CliError::usage(format!("--shaders {}: there is no such folder", folder.display())));
+        }
+        Library::choose(folder.clone());
+    }
     let Some(command) = &cli.command else { return window(cli) };
     if let Some(preset_file) = &cli.open {
         return Err(CliError::usage(format!(
@@ -96,7 +102,8 @@ fn window(cli: &Cli) -> Result<Exit, CliError> {
         }
         backend::BackendChoice::Gpu(choice) => choice,
     };
-    let options = crate::app::Options { open: cli.open.clone(), opened: Some(opened), adapter, folders: cli.common.folders() };
+    let options =
+        crate::app::Options { open: cli.open.clone(), opened: Some(opened), adapter, folders: cli.common.folders(), opens_editor: true };
     crate::app::run(options).map_err(CliError::window)?;
     Ok(Exit::Done)
 }

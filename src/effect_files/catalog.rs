@@ -17,7 +17,7 @@ use crate::{
 };
 
 /// An effect of a file: the effect, or what is wrong with the file.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct CustomEffect {
     /// The file; none for an effect that came inside a preset.
     pub path: Option<PathBuf>,
@@ -25,7 +25,7 @@ pub struct CustomEffect {
 }
 
 /// The effects that a preset may name. Clones share the list.
-#[derive(Clone, Debug, Default)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct Catalog {
     custom: Arc<BTreeMap<String, CustomEffect>>,
     /// Further instances of effects, under names of their own.
@@ -42,18 +42,59 @@ impl Catalog {
 
     /// Adds the files of a folder; a folder that does not exist has none.
     pub fn add_folder(&mut self, folder: &Path) {
-        let Ok(entries) = std::fs::read_dir(folder) else { return };
-        let mut paths: Vec<PathBuf> = entries.flatten().map(|entry| entry.path()).collect();
-        paths.retain(|path| path.extension().is_some_and(|extension| extension == "wgsl") && path.is_file());
-        paths.sort();
-        for path in paths {
+        for path in files_of(folder) {
             self.add_file(&path);
         }
     }
 
     /// Adds the effect of one file, or what is wrong with it. A file whose text is known is not read anew.
     pub fn add_file(&mut self, path: &Path) {
-        let stem = path.file_stem().unwrap_or_default().to_string_lossy().into_owned();
+        let (name, effect) = (stem(path), self.read_file(path));
+        Arc::make_mut(&mut self.custom).insert(name, effect);
+    }
+
+    /// The effects of the files that are in these folders now. A file whose text is known here is not read anew. Where two files have one
+    /// name, the later folder wins.
+    #[must_use]
+    pub fn reread<'a>(&self, folders: impl IntoIterator<Item = &'a Path>) -> Self {
+        let paths: BTreeMap<String, PathBuf> = folders.into_iter().flat_map(files_of).map(|path| (stem(&path), path)).collect();
+        Self { custom: Arc::new(paths.into_iter().map(|(name, path)| (name, self.read_file(&path))).collect()) }
+    }
+
+    /// These effects, with the effect of the same name in `earlier` in place of each faulty file.
+    #[must_use]
+    pub fn or_last_good(&self, earlier: &Self) -> Self {
+        let mut custom = (*self.custom).clone();
+        for (name, effect) in custom.iter_mut().filter(|(_, effect)| effect.read.is_err()) {
+            if let Some(Ok(good)) = earlier.find_custom(name) {
+                effect.read = Ok(good);
+            }
+        }
+        Self { custom: Arc::new(custom) }
+    }
+
+    /// These effects, with the second of each pair in place of the first.
+    #[must_use]
+    pub fn replaced(&self, pairs: &[(&'static Effect, &'static Effect)]) -> Self {
+        let mut custom = (*self.custom).clone();
+        for effect in custom.values_mut() {
+            let new = pairs.iter().find(|(old, _)| effect.read.as_ref().is_ok_and(|effect| effect == old));
+            if let Some((_, new)) = new {
+                effect.read = Ok(new);
+            }
+        }
+        Self { custom: Arc::new(custom) }
+    }
+
+    /// The effects for which `is_kept` is true.
+    #[must_use]
+    pub fn only(&self, is_kept: impl Fn(&str, &CustomEffect) -> bool) -> Self {
+        let kept = self.custom.iter().filter(|(name, effect)| is_kept(name, effect));
+        Self { custom: Arc::new(kept.map(|(name, effect)| (name.clone(), effect.clone())).collect()) }
+    }
+
+    fn read_file(&self, path: &Path) -> CustomEffect {
+        let name = stem(path);
         let file = path.display().to_string();
         let text = Text { file: &file, text: "" };
         let written = match std::fs::metadata(path) {
@@ -63,11 +104,11 @@ impl Catalog {
             Ok(_) => std::fs::read_to_string(path).map_err(|error| text.whole(error.to_string())),
             Err(error) => Err(text.whole(error.to_string())),
         };
-        let read = written.and_then(|written| match self.find_custom(&stem) {
+        let read = written.and_then(|written| match self.find_custom(&name) {
             Some(Ok(known)) if known.source.is_some_and(|source| source.written == written) => Ok(known),
-            _ => read(&file, &stem, &written),
+            _ => read(&file, &name, &written),
         });
-        Arc::make_mut(&mut self.custom).insert(stem, CustomEffect { path: Some(path.to_owned()), read });
+        CustomEffect { path: Some(path.to_owned()), read }
     }
 
     /// Adds the text of an effect that came inside a preset.
@@ -161,4 +202,18 @@ impl Catalog {
     pub fn custom(&self) -> impl Iterator<Item = (&str, &CustomEffect)> {
         self.custom.iter().map(|(name, custom)| (name.as_str(), custom))
     }
+}
+
+/// The `.wgsl` files of a folder, sorted; none if there is no such folder.
+fn files_of(folder: &Path) -> Vec<PathBuf> {
+    let entries = std::fs::read_dir(folder).into_iter().flatten().flatten();
+    let mut paths: Vec<PathBuf> = entries.map(|entry| entry.path()).collect();
+    paths.retain(|path| path.extension().is_some_and(|extension| extension == "wgsl") && path.is_file());
+    paths.sort();
+    paths
+}
+
+/// Name of the effect that a file holds.
+fn stem(path: &Path) -> String {
+    path.file_stem().unwrap_or_default().to_string_lossy().into_owned()
 }

@@ -278,7 +278,7 @@ impl Animation {
 
     /// Adds a track, in place of one of the same parameter.
     pub fn put(&mut self, track: Track) {
-        let rank = |track: &Track| (track.effect.rank(), track.field.offset);
+        let rank = |track: &Track| (track.effect.rank(), track.effect.name, track.field.offset);
         match self.0.binary_search_by_key(&rank(&track), rank) {
             Ok(index) => self.0[index] = track,
             Err(index) => self.0.insert(index, track),

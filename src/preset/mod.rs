@@ -6,6 +6,7 @@
 pub mod animation;
 mod particle_timeline;
 pub mod polyline;
+pub mod rebind;
 mod rules;
 mod setting;
 pub mod settings;

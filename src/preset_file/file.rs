@@ -120,7 +120,7 @@ pub fn to_shared_toml(preset_file: &PresetFile) -> String {
     document.to_string()
 }
 
-/// Writes the preset to `path`, whole or not at all, and makes that its file. An unmodified file is not written.
+/// Writes the preset to `path`, whole or not at all, and makes that its file. A file that has this text already is not written.
 /// A relative model path is rewritten so that it still leads to the model.
 ///
 /// # Errors
@@ -134,7 +134,8 @@ pub fn save(preset_file: &mut PresetFile, path: &Path) -> Result<(), PresetError
         next.preset.scene = SceneSource::File(rebase(model, preset_file.path.as_deref(), path));
     }
     let text = to_toml(&next);
-    if preset_file.path.as_deref() != Some(path) || text != preset_file.document.to_string() {
+    let is_there = preset_file.path.as_deref() == Some(path) && std::fs::read(path).is_ok_and(|there| there == text.as_bytes());
+    if !is_there {
         write_atomically(path, text.as_bytes())?;
     }
     next.document =

@@ -46,15 +46,17 @@ pub struct GalleryEntry {
 pub struct Folders {
     /// `--presets DIR`.
     pub presets: Option<PathBuf>,
-    /// Effects of `--effects DIR` and of the user.
+    /// Folders of effects: the user's, `--effects DIR`, then those of dropped files. A later one wins.
+    pub effect_folders: Vec<PathBuf>,
+    /// The effects in these folders.
     pub effects: Catalog,
 }
 
 impl Folders {
     /// These folders, and the effects in the user's own folder.
     pub fn new(presets: Option<PathBuf>, effects: &Path) -> Self {
-        let user = user_effects_folder();
-        Self { presets, effects: Catalog::of_folders(user.as_deref().into_iter().chain([effects])) }
+        let effect_folders: Vec<PathBuf> = user_effects_folder().into_iter().chain([effects.to_owned()]).collect();
+        Self { presets, effects: Catalog::of_folders(effect_folders.iter().map(PathBuf::as_path)), effect_folders }
     }
 }
 

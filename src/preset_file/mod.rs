@@ -16,6 +16,7 @@ mod order;
 mod picture;
 mod read;
 mod reader;
+mod rebind;
 mod scene;
 pub mod schema;
 mod share;

@@ -1,6 +1,6 @@
 //! The WGSL files: embedded in the program, or read from a folder while one edits them.
 
-use std::{borrow::Cow, path::PathBuf};
+use std::{borrow::Cow, path::PathBuf, sync::OnceLock};
 
 use include_dir::{Dir, include_dir};
 
@@ -16,10 +16,19 @@ pub enum Library {
     Folder(PathBuf),
 }
 
+/// The folder of `--shaders`.
+static CHOSEN: OnceLock<PathBuf> = OnceLock::new();
+
 impl Library {
-    /// The folder named by `RASTERLAB_SHADERS`, for people who edit shaders; else the embedded files.
+    /// The folder of `--shaders`, or else of `RASTERLAB_SHADERS`, for people who edit shaders; without either the embedded files.
     pub fn from_env() -> Self {
-        std::env::var_os("RASTERLAB_SHADERS").map_or(Self::Embedded, |folder| Self::Folder(folder.into()))
+        let folder = CHOSEN.get().cloned().or_else(|| std::env::var_os("RASTERLAB_SHADERS").map(PathBuf::from));
+        folder.map_or(Self::Embedded, Self::Folder)
+    }
+
+    /// Makes [`Library::from_env`] return this folder from now on. Only the first call counts.
+    pub fn choose(folder: PathBuf) {
+        CHOSEN.get_or_init(|| folder);
     }
 
     /// Name and text of every embedded file.

@@ -83,6 +83,7 @@ const GUARDED: &[(&str, &[&str])] = &[
     ("eframe", &["app"]),
     ("egui_wgpu", &["app"]),
     ("rfd", &["app"]),
+    ("notify", &["app"]),
     ("rstar", &["gpu"]),
     ("clap", &["cli", "main"]),
     ("indicatif", &["cli"]),

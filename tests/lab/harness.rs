@@ -129,6 +129,7 @@ pub fn lab_in(open: &str, presets_dir: Option<&Path>) -> Option<Lab> {
         opened: None,
         adapter,
         folders: Folders { presets: presets_dir.map(Path::to_owned), ..Folders::default() },
+        opens_editor: false,
     };
     let harness = Harness::builder()
         .with_size([1280.0, 800.0])

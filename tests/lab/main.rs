@@ -8,6 +8,7 @@ mod compare;
 mod files;
 mod harness;
 mod inspector;
+mod live;
 mod sweep;
 mod timeline;
 mod verify;

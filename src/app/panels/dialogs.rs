@@ -8,11 +8,12 @@ use crate::{
     app::{
         command::{Command, Commands, FileCommand, Purpose},
         panel::Panel,
+        panels::new_effect::{NewEffect, fields_ui},
         session::Session,
         state::State,
         theme,
     },
-    preset_file,
+    preset_file::{self, PresetFile},
 };
 
 impl Purpose {
@@ -26,7 +27,9 @@ impl Purpose {
 
     const fn hint(self) -> &'static str {
         match self {
-            Self::Open => "A preset (.toml), a model (.glb, .gltf), an exported picture (.png), a preset's id, or builtin:teapot",
+            Self::Open => {
+                "A preset (.toml), a model (.glb, .gltf), an exported picture (.png), an effect (.wgsl), a preset's id, or builtin:teapot"
+            }
             Self::SaveAs => "Presets in the suggested folder appear in the list on the left",
             Self::Export => "The picture contains the preset: open the picture to get it back",
         }
@@ -58,6 +61,9 @@ enum Dialog {
     },
     /// Quit with unsaved changes?
     Unsaved,
+    NewEffect(NewEffect),
+    /// Replace unsaved changes by what the preset's file has now?
+    Changed(Box<PresetFile>),
 }
 
 /// A dialog that asks for a path.
@@ -136,6 +142,16 @@ impl Dialogs {
         self.0 = Some(Dialog::Unsaved);
     }
 
+    /// Asks for the name and hook of a new effect.
+    pub fn ask_new_effect(&mut self) {
+        self.0 = Some(Dialog::NewEffect(NewEffect::default()));
+    }
+
+    /// Asks whether `theirs`, the open preset as its file has it now, replaces unsaved changes.
+    pub fn ask_changed(&mut self, theirs: Box<PresetFile>) {
+        self.0 = Some(Dialog::Changed(theirs));
+    }
+
     /// Takes the answer of the system's dialog; none if it was canceled.
     pub fn path_arrived(&mut self, purpose: Purpose, path: Option<PathBuf>, own_path: Option<&Path>, commands: &Commands) {
         let Some(Dialog::Path(dialog)) = &mut self.0 else { return };
@@ -153,7 +169,7 @@ impl Dialogs {
     }
 
     /// Carries out the choice of a button. The dialog stays open if the choice leads to another question in it.
-    fn choose(&mut self, choice: Choice, own_path: Option<&Path>, commands: &Commands) {
+    fn choose(&mut self, choice: Choice, open: &PresetFile, commands: &Commands) {
         let file = |command| commands.send(Command::File(command));
         match (choice, self.0.take()) {
             (Choice::Cancel, _) | (_, None) => {}
@@ -163,7 +179,7 @@ impl Dialogs {
                 self.0 = Some(Dialog::Path(dialog));
             }
             (Choice::Accept, Some(Dialog::Path(mut dialog))) => {
-                if !dialog.accept(own_path, commands) {
+                if !dialog.accept(open.path.as_deref(), commands) {
                     self.0 = Some(Dialog::Path(dialog));
                 }
             }
@@ -171,6 +187,14 @@ impl Dialogs {
             (Choice::DropMuted, Some(Dialog::Muted { path })) => file(FileCommand::Write { path, drops_muted: true }),
             (Choice::Save, Some(Dialog::Unsaved)) => file(FileCommand::Save),
             (Choice::Discard, Some(Dialog::Unsaved)) => file(FileCommand::DiscardAndQuit),
+            (Choice::Accept, Some(Dialog::NewEffect(mut dialog))) => {
+                if dialog.check(&open.effects) {
+                    file(FileCommand::NewEffect { name: dialog.name, hook: dialog.hook });
+                } else {
+                    self.0 = Some(Dialog::NewEffect(dialog));
+                }
+            }
+            (Choice::TakeTheirs, Some(Dialog::Changed(theirs))) => file(FileCommand::Reload(theirs)),
             (_, dialog) => self.0 = dialog,
         }
     }
@@ -187,13 +211,15 @@ impl Panel for Dialogs {
                 Dialog::Path(dialog) => path_ui(ui, dialog),
                 Dialog::Muted { .. } => muted_ui(ui, &state.session.muted.iter().copied().collect::<Vec<_>>()),
                 Dialog::Unsaved => unsaved_ui(ui, state.session.title()),
+                Dialog::NewEffect(dialog) => new_effect_ui(ui, dialog),
+                Dialog::Changed(theirs) => changed_ui(ui, theirs.title()),
             };
         });
         if chosen.is_none() && modal.should_close() {
             chosen = Some(Choice::Cancel);
         }
         if let Some(choice) = chosen {
-            self.choose(choice, state.session.preset_file.path.as_deref(), commands);
+            self.choose(choice, &state.session.preset_file, commands);
         }
     }
 }
@@ -215,6 +241,7 @@ enum Choice {
     DropMuted,
     Save,
     Discard,
+    TakeTheirs,
 }
 
 fn path_ui(ui: &mut Ui, dialog: &mut PathDialog) -> Option<Choice> {
@@ -268,6 +295,19 @@ fn unsaved_ui(ui: &mut Ui, title: &str) -> Option<Choice> {
     ui.add_space(theme::HALF);
     let options = [("Save", Choice::Save, true), ("Quit without saving", Choice::Discard, false), ("Cancel", Choice::Cancel, false)];
     buttons(ui, &options, |_| None)
+}
+
+fn changed_ui(ui: &mut Ui, title: &str) -> Option<Choice> {
+    ui.label(RichText::new("The preset's file has changed").size(15.0).color(theme::TEXT_STRONG).strong());
+    ui.label(format!("{title} has unsaved changes, and another program has changed its file."));
+    ui.add_space(theme::HALF);
+    buttons(ui, &[("Keep mine", Choice::Cancel, true), ("Take theirs", Choice::TakeTheirs, false)], |_| None)
+}
+
+fn new_effect_ui(ui: &mut Ui, dialog: &mut NewEffect) -> Option<Choice> {
+    let is_entered = fields_ui(ui, dialog);
+    let choice = buttons(ui, &[("Create", Choice::Accept, true), ("Cancel", Choice::Cancel, false)], |_| None);
+    if is_entered { Some(Choice::Accept) } else { choice }
 }
 
 /// Buttons from right to left, the main one emphasized; `left` adds one at the other end.

@@ -5,6 +5,7 @@ pub mod dialogs;
 pub mod extremes;
 pub mod inspector;
 pub mod log;
+pub mod new_effect;
 pub mod preset_browser;
 pub mod sweep;
 pub mod timeline;

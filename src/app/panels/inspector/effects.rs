@@ -5,7 +5,7 @@ use eframe::egui::{self, RichText, Ui};
 use crate::{
     app::{
         action::Action,
-        command::{Command, Commands, Edit, Parameter, ViewCommand},
+        command::{Command, Commands, Edit, FileCommand, Parameter, ViewCommand},
         fields::{Row, row_ui},
         icons::{Icon, icon_button},
         log::Level,
@@ -37,7 +37,33 @@ pub fn effects_ui(ui: &mut Ui, state: &State, commands: &Commands) {
     for effect in EFFECTS.iter().copied().filter(|effect| !stack.contains(effect)) {
         ui.horizontal(|ui| disabled_ui(ui, state, commands, effect));
     }
+    own_effects_ui(ui, state, commands, &stack);
     ui.add_space(theme::GAP);
+}
+
+/// The effects of files that are not in the stack, files that are faulty, and a button for a new one.
+fn own_effects_ui(ui: &mut Ui, state: &State, commands: &Commands, stack: &[&'static Effect]) {
+    ui.add_space(theme::HALF);
+    ui.horizontal(|ui| {
+        ui.label(theme::weak("Your effects"));
+        ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
+            if ui.small_button("New effect…").on_hover_text("Write an effect of your own, in one WGSL file").clicked() {
+                commands.send(Command::File(FileCommand::AskNewEffect));
+            }
+        });
+    });
+    let own = state.session.preset_file.effects.effects().filter(|effect| effect.source.is_some());
+    for effect in own.filter(|effect| !stack.iter().any(|enabled| enabled.name == effect.name)) {
+        ui.horizontal(|ui| disabled_ui(ui, state, commands, effect));
+    }
+    for (name, error) in state.live.effect_faults() {
+        ui.horizontal(|ui| {
+            ui.set_min_height(theme::ROW);
+            ui.add_space(theme::GAP);
+            let label = ui.label(RichText::new(format!("{name}.wgsl is faulty")).color(theme::RED));
+            label.on_hover_text(RichText::new(error).monospace());
+        });
+    }
 }
 
 /// An effect of the stack at `index` of `count`.

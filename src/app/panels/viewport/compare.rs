@@ -88,6 +88,11 @@ impl Compare {
         self.mode = Some(if self.mode == Some(Mode::A) { Mode::B } else { Mode::A });
     }
 
+    /// Draws A's next picture with the shaders as they are now.
+    pub fn reload_shaders(&mut self) {
+        self.screen.iter_mut().for_each(Screen::reload_shaders);
+    }
+
     /// Drops A's renderer with all that it holds.
     pub fn close(&mut self) {
         *self = Self { split: self.split, gain: self.gain, kept: self.kept.take(), ..Self::default() };

@@ -1,5 +1,6 @@
 //! Viewport: the picture, its overlays and the comparison, and the pointer on the camera.
 
+mod badges;
 mod camera_input;
 mod chips;
 mod compare;
@@ -157,6 +158,7 @@ impl Viewport {
         if let Some(params) = state.session.visible_stack().params("overdraw") {
             heat_legend::heat_ui(ui, free, &params);
         }
+        badges::badges_ui(ui, state, rect);
     }
 }
 

@@ -1,0 +1,36 @@
+//! Badges over the picture: what is wrong with files that it depends on, until that is mended.
+
+use eframe::egui::{self, Rect, RichText, Ui};
+
+use crate::app::{live::Subject, state::State, theme};
+
+/// Shows the badges at the lower left of `rect`.
+pub fn badges_ui(ui: &mut Ui, state: &State, rect: Rect) {
+    let stack = &state.session.preset().stack;
+    let faults: Vec<(&Subject, &str)> = state.live.shown_faults(|name| stack.get(name).is_some()).collect();
+    if faults.is_empty() {
+        return;
+    }
+    let area = rect.shrink(12.0);
+    let layout = egui::Layout::bottom_up(egui::Align::LEFT);
+    let mut badges = ui.new_child(egui::UiBuilder::new().id_salt("badges").max_rect(area).layout(layout));
+    for (subject, text) in faults {
+        theme::toast_frame(theme::RED).show(&mut badges, |ui| {
+            ui.set_max_width((area.width() - 24.0).max(160.0));
+            ui.with_layout(egui::Layout::top_down(egui::Align::LEFT), |ui| {
+                ui.label(RichText::new(title(subject)).color(theme::RED).strong());
+                ui.label(RichText::new(text).monospace().color(theme::TEXT_STRONG));
+            });
+        });
+    }
+}
+
+fn title(subject: &Subject) -> String {
+    match subject {
+        Subject::Effect(name) => format!("{name}.wgsl is faulty; the picture shows the last good version"),
+        Subject::Pipelines => "An effect cannot be compiled; the picture shows the last good version".into(),
+        Subject::Preset => "The preset's file is faulty; the picture shows the last good version".into(),
+        Subject::Model => "The model's file is faulty; the picture shows the last good version".into(),
+        Subject::Shaders => "The shaders are faulty; the picture shows the last good version".into(),
+    }
+}

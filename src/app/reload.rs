@@ -1,0 +1,278 @@
+//! Reloading what has changed on disk: effects, the open preset, the model and shaders. What cannot be used leaves the last good
+//! version in place, with a fault that is shown until it is mended.
+
+use std::path::{Path, PathBuf};
+
+use super::{
+    command::Edit,
+    live::{EffectReload, Reload, Subject},
+    log::Level,
+    panels::Panels,
+    scene_loader::SceneKey,
+    screen::Inputs,
+    state::State,
+    watch::{Change, Effects, Targets},
+};
+use crate::{
+    effects::Effect,
+    preset::{
+        SceneSource,
+        rebind::{Replaced, rebind_stack},
+    },
+    preset_file::PresetFile,
+    shader::library::Library,
+};
+
+/// Watches what the open preset uses, and takes in what has changed.
+pub fn take_changes(state: &mut State, panels: &mut Panels) {
+    state.live.watcher.watch(targets(state));
+    while let Some(change) = state.live.watcher.next() {
+        match change {
+            Change::Effects(effects) => effects_changed(state, panels, effects),
+            Change::Preset(path, read) => preset_changed(state, panels, &path, read),
+            Change::Model(path) => model_changed(state, &path),
+            Change::Shaders => shaders_changed(state, panels),
+        }
+    }
+    enable_waiting(state);
+}
+
+/// What is watched for the open preset.
+fn targets(state: &State) -> Targets {
+    let open = &state.session.preset_file;
+    let preset = open.path.clone().filter(|path| path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("toml")));
+    let model = match &open.preset.scene {
+        SceneSource::File(model) => Some(open.path.as_deref().and_then(Path::parent).unwrap_or(Path::new("")).join(model)),
+        SceneSource::Builtin(_) => None,
+    };
+    let shaders = match Library::from_env() {
+        Library::Folder(folder) => Some(folder),
+        Library::Embedded => None,
+    };
+    Targets { effect_folders: state.folders.effect_folders.clone(), preset, model, shaders }
+}
+
+/// Logs what is wrong with a file and shows it until it is mended.
+fn fault(state: &mut State, subject: Subject, text: String) {
+    if state.live.set_fault(subject, text.clone()) {
+        state.log.add(Level::Error, text);
+    }
+}
+
+fn effects_changed(state: &mut State, panels: &mut Panels, effects: Effects) {
+    let Effects { shared, open, faults } = effects;
+    let before = &state.session.preset_file.effects;
+    let stack = &state.session.preset().stack;
+    // Effects that came inside the preset stay, and so does one that is enabled and whose file is gone.
+    let kept =
+        before.only(|name, effect| effect.path.is_none() || open.custom().all(|(other, _)| other != name) && stack.get(name).is_some());
+    let gone: Vec<String> = kept.custom().filter(|(_, effect)| effect.path.is_some()).map(|(name, _)| name.to_owned()).collect();
+    let open = kept.joined(&open);
+    let good = |catalog: &crate::effect_files::Catalog, name: &str| catalog.find(name).ok().flatten();
+    let mut replaced: Vec<Replaced> = Vec::new();
+    for (old, new) in [(before, &open), (&state.folders.effects, &shared)] {
+        for (name, _) in new.custom() {
+            if let (Some(old), Some(new)) = (good(old, name), good(new, name))
+                && old != new
+                && !replaced.iter().any(|(known, _)| *known == old)
+            {
+                replaced.push((old, new));
+            }
+        }
+    }
+    let is_faulty = |name: &str| faults.iter().any(|(faulty, _)| faulty == name) || gone.iter().any(|gone| gone == name);
+    state.live.keep_effect_faults(is_faulty);
+    for (name, error) in faults {
+        fault(state, Subject::Effect(name), error.to_string());
+    }
+    for name in gone {
+        let text = format!("{name}.wgsl: the file is gone; the picture keeps the effect as it was");
+        fault(state, Subject::Effect(name), text);
+    }
+    let number = state.live.request();
+    let reload = Box::new(EffectReload { number, shared, open, replaced });
+    match compiled_inputs(state, &reload.replaced) {
+        Some(inputs) => {
+            state.live.compiling_effects = Some(number);
+            state.jobs.compile(state.screen.gpu.clone(), inputs, Reload::Effects(reload));
+        }
+        None => use_effects(state, panels, *reload),
+    }
+}
+
+/// What is to be drawn with the new effects; none if the picture shows none of them.
+fn compiled_inputs(state: &State, replaced: &[Replaced]) -> Option<Inputs> {
+    let requested = state.screen.requested()?;
+    let is_replaced = |effect: &Effect| replaced.iter().any(|(old, _)| *old == effect);
+    requested.stack.0.iter().find(|enabled| is_replaced(enabled.effect))?;
+    let mut inputs = requested.clone();
+    rebind_stack(&mut inputs.stack, replaced);
+    Some(inputs)
+}
+
+/// Takes in the result of compiling; an outdated one is dropped.
+pub fn compiled(state: &mut State, panels: &mut Panels, reload: Reload, outcome: Result<(), String>) {
+    match (reload, outcome) {
+        (Reload::Effects(reload), outcome) => {
+            if state.live.compiling_effects != Some(reload.number) {
+                return;
+            }
+            state.live.compiling_effects = None;
+            match outcome {
+                Ok(()) => use_effects(state, panels, *reload),
+                Err(error) => {
+                    let names: Vec<&str> = reload.replaced.iter().map(|(_, new)| new.name).collect();
+                    fault(state, Subject::Pipelines, format!("{}: {error}", names.join(", ")));
+                }
+            }
+        }
+        (Reload::Shaders(number), outcome) => {
+            if state.live.compiling_shaders != Some(number) {
+                return;
+            }
+            state.live.compiling_shaders = None;
+            match outcome {
+                Ok(()) => use_shaders(state, panels),
+                Err(error) => fault(state, Subject::Shaders, error),
+            }
+        }
+    }
+}
+
+/// Uses effects as their files have them now, in every preset that was opened and in every step of undo.
+fn use_effects(state: &mut State, panels: &mut Panels, reload: EffectReload) {
+    let EffectReload { number: _, shared, open, replaced } = reload;
+    state.live.clear_fault(&Subject::Pipelines);
+    state.folders.effects = shared;
+    state.session.rebind(&replaced, &open);
+    state.history.change_all(|step| step.preset.rebind(&replaced));
+    let is_replaced = |effect: &Effect| replaced.iter().any(|(old, _)| *old == effect);
+    if state.picking.is_some_and(|(effect, _)| is_replaced(effect)) {
+        state.picking = None;
+    }
+    if panels.timeline.selected.is_some_and(|key| is_replaced(key.effect)) {
+        panels.timeline.selected = None;
+    }
+    for (_, effect) in &replaced {
+        if state.session.preset().stack.get(effect.name).is_some() {
+            state.notify(Level::Info, format!("{} was reloaded", effect.name));
+        }
+    }
+    warn_of_other_file(state);
+}
+
+/// A file whose name another file has, in a folder that is searched later, cannot be enabled.
+fn warn_of_other_file(state: &mut State) {
+    let Some(path) = state.live.enable.clone() else { return };
+    let Some(name) = path.file_stem().map(|stem| stem.to_string_lossy().into_owned()) else { return };
+    let other = state.session.preset_file.effects.custom().find(|(known, _)| *known == name).map(|(_, effect)| effect.path.clone());
+    if let Some(other) = other.filter(|other| other.as_deref() != Some(&path)) {
+        state.live.enable = None;
+        let place = other.map_or_else(|| "the one inside the preset".into(), |other| other.display().to_string());
+        state.notify(Level::Warning, format!("{}: {place} has the same name and is used instead", path.display()));
+    }
+}
+
+/// Enables the effect of a new or dropped file when it has been read.
+fn enable_waiting(state: &mut State) {
+    let Some(path) = &state.live.enable else { return };
+    let found = state.session.preset_file.effects.custom().find(|(_, effect)| effect.path.as_ref() == Some(path));
+    let Some(effect) = found.and_then(|(_, effect)| effect.read.as_ref().ok().copied()) else { return };
+    state.live.enable = None;
+    state.history.close();
+    if let Err(error) = state.session.edit(Edit::Enable(effect)) {
+        state.notify(Level::Error, error);
+    }
+}
+
+/// Adds the folder of an effect file to those that are watched, and enables the effect.
+pub fn add_effect_file(state: &mut State, path: &Path) {
+    let Ok(path) = std::path::absolute(path) else { return };
+    if !path.is_file() {
+        return state.notify(Level::Error, format!("{}: there is no such file", path.display()));
+    }
+    let watched = state.live.watcher.targets();
+    let folders = watched.effect_folders.iter().cloned().chain(watched.preset_effects());
+    // A folder that is watched already may be written in another way.
+    let known = folders.into_iter().find(|folder| std::path::absolute(folder).ok().as_deref() == path.parent());
+    let folder = known.clone().or_else(|| path.parent().map(Path::to_owned)).unwrap_or_default();
+    if known.is_none() {
+        state.folders.effect_folders.push(folder.clone());
+    }
+    state.live.enable = path.file_name().map(|name| folder.join(name));
+}
+
+fn preset_changed(state: &mut State, panels: &mut Panels, path: &PathBuf, read: Result<Box<PresetFile>, String>) {
+    if state.session.preset_file.path.as_ref() != Some(path) {
+        return;
+    }
+    match read {
+        Err(error) => fault(state, Subject::Preset, error),
+        Ok(theirs) => {
+            state.live.clear_fault(&Subject::Preset);
+            if theirs.has_text_of(&state.session.preset_file) {
+                return; // It was saved here.
+            }
+            if state.session.is_modified() {
+                panels.dialogs.ask_changed(theirs);
+            } else {
+                take_preset(state, panels, *theirs);
+            }
+        }
+    }
+}
+
+/// Makes the open preset what its file has now, as a separate undo step.
+pub fn take_preset(state: &mut State, panels: &mut Panels, mut theirs: PresetFile) {
+    state.observe(false);
+    state.history.close();
+    for warning in &theirs.warnings {
+        state.log.add(Level::Warning, warning.clone());
+    }
+    let (id, title) = (theirs.id.clone(), theirs.title().to_owned());
+    theirs.effects = state.session.preset_file.effects.clone();
+    state.session.reload(theirs);
+    state.observe(false);
+    state.history.close();
+    panels.browser.refresh(&state.folders, &id);
+    state.notify(Level::Info, format!("{title} was reloaded"));
+}
+
+fn model_changed(state: &mut State, path: &Path) {
+    if state.live.watcher.targets().model.as_deref() != Some(path) {
+        return;
+    }
+    let key = SceneKey::of(&state.session.preset_file);
+    state.session.scenes.reload(&key);
+    state.jobs.load_scene(key);
+}
+
+/// Notes the outcome of loading a model again. Returns false if it was loaded for the first time.
+pub fn model_reloaded(state: &mut State, key: &SceneKey, outcome: Result<(), &str>) -> bool {
+    let is_again = state.session.scenes.shown_for(key).is_some();
+    match outcome {
+        Ok(()) => {
+            state.live.clear_fault(&Subject::Model);
+            if is_again {
+                state.notify(Level::Info, "The model was reloaded");
+            }
+        }
+        Err(error) if is_again => fault(state, Subject::Model, error.to_owned()),
+        Err(_) => {}
+    }
+    is_again
+}
+
+fn shaders_changed(state: &mut State, panels: &mut Panels) {
+    let Some(inputs) = state.screen.requested().cloned() else { return use_shaders(state, panels) };
+    let number = state.live.request();
+    state.live.compiling_shaders = Some(number);
+    state.jobs.compile(state.screen.gpu.clone(), inputs, Reload::Shaders(number));
+}
+
+fn use_shaders(state: &mut State, panels: &mut Panels) {
+    state.live.clear_fault(&Subject::Shaders);
+    state.screen.reload_shaders();
+    panels.viewport.compare.reload_shaders();
+    state.notify(Level::Info, "The shaders were reloaded");
+}

@@ -1,0 +1,219 @@
+//! Promise: what is edited on disk appears in the window when it is saved. What is faulty leaves the last good picture and says
+//! where the fault is, until it is mended.
+
+use std::{
+    path::Path,
+    time::{Duration, Instant},
+};
+
+use eframe::egui::Role;
+use egui_kittest::kittest::Queryable as _;
+
+use crate::harness::*;
+
+/// Paints everything in the color of a parameter.
+const INK: &str = "// Ink: paints the surface.\n//@ use lib/surface\n\nstruct Ink {\n    /// How much.\n    @range(0.0, 1.0, 1.0) amount: f32,\n}\n\n\
+    fn ink(surface: Surface, p: Ink) -> Surface {\n    var s = surface;\n    s.color = vec4f(p.amount, 0.0, 0.0, 1.0);\n    return s;\n}\n";
+
+const PRESET: &str = "schema = 2\n[scene]\nbuiltin = \"teapot\"\n[effects.ink]\n";
+
+fn write(path: &Path, text: &str) {
+    std::fs::create_dir_all(path.parent().expect("a folder")).expect("a folder");
+    std::fs::write(path, text).expect("a file");
+}
+
+/// Steps until `reached`, and then until everything is at rest.
+fn wait_for(lab: &mut Lab, what: &str, reached: impl Fn(&Lab) -> bool) {
+    let patience = Instant::now() + Duration::from_secs(60);
+    while !reached(lab) {
+        lab.step();
+        assert!(Instant::now() < patience, "{what}: it did not happen\n{}", lab.state().log_text());
+        std::thread::sleep(Duration::from_millis(5));
+    }
+    settle(lab);
+}
+
+fn count(lab: &Lab, text: &str) -> usize {
+    lab.state().log_text().lines().filter(|line| line.contains(text)).count()
+}
+
+/// How often a message was logged.
+fn times(lab: &Lab, text: &str) -> u32 {
+    let log = lab.state().log_text();
+    let line = log.lines().find(|line| line.contains(text));
+    line.map_or(0, |line| line.rsplit_once('×').and_then(|(_, count)| count.parse().ok()).unwrap_or(1))
+}
+
+fn has_badge(lab: &Lab, text: &str) -> bool {
+    lab.query_all_by_label_contains(text).next().is_some()
+}
+
+fn middle_pixel(lab: &mut Lab) -> [u8; 4] {
+    let seen = middle(lab);
+    seen.get_pixel(seen.width() / 2, seen.height() / 2).0
+}
+
+#[test]
+fn an_effect_that_is_edited_is_seen_breaks_and_heals() {
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    let file = folder.path().join("effects/ink.wgsl");
+    write(&file, INK);
+    let Some(mut lab) = lab_of(folder.path(), PRESET) else { return };
+    let red = middle_pixel(&mut lab);
+    assert!(red[0] > 250 && red[1] < 5 && red[2] < 5, "{red:?}\n{}", lab.state().log_text());
+
+    let green = INK.replace("vec4f(p.amount, 0.0,", "vec4f(0.0, p.amount,");
+    let saved = Instant::now();
+    write(&file, &green);
+    wait_for(&mut lab, "the edit is seen", |lab| times(lab, "ink was reloaded") == 1);
+    eprintln!("from save to picture: {:?}", saved.elapsed());
+    let seen = middle_pixel(&mut lab);
+    assert!(seen[1] > 250 && seen[0] < 5, "{seen:?}");
+    assert!(!lab.state().preset_file().is_modified(), "an edit of the effect is no edit of the preset");
+    assert_eq!(lab.state().undo_steps(), 0);
+
+    write(&file, &green.replace("return s;", "return t;"));
+    wait_for(&mut lab, "the fault is seen", |lab| has_badge(lab, "ink.wgsl is faulty; the picture"));
+    assert!(has_badge(&lab, "ink.wgsl:12:12:"), "the badge has no place");
+    assert!(has_badge(&lab, "^"), "the badge has no caret");
+    assert!(has_badge(&lab, "return t;"));
+    assert_eq!(count(&lab, "ink.wgsl:12:12:"), 1, "{}", lab.state().log_text());
+    assert_eq!(middle_pixel(&mut lab), seen, "the last good picture went away");
+    lab.run_steps(400); // It does not go away by itself.
+    assert!(has_badge(&lab, "ink.wgsl:12:12:"));
+
+    // By another file that takes its place, as many editors save.
+    let beside = folder.path().join("effects/.ink.swp");
+    write(&beside, &green.replace("0.0, p.amount, 0.0", "0.0, 0.0, p.amount"));
+    std::fs::rename(&beside, &file).expect("the file is replaced");
+    wait_for(&mut lab, "the effect is whole again", |lab| times(lab, "ink was reloaded") == 2);
+    assert!(!has_badge(&lab, "is faulty"), "the badge stays");
+    let blue = middle_pixel(&mut lab);
+    assert!(blue[2] > 250 && blue[0] < 5 && blue[1] < 5, "{blue:?}");
+
+    // A file that is removed leaves its effect in the picture.
+    std::fs::remove_file(&file).expect("the file is removed");
+    wait_for(&mut lab, "the loss is seen", |lab| has_badge(lab, "the file is gone"));
+    assert_eq!(middle_pixel(&mut lab), blue);
+    write(&file, INK);
+    wait_for(&mut lab, "the effect is back", |lab| times(lab, "ink was reloaded") == 3);
+    assert!(!has_badge(&lab, "the file is gone"));
+    assert_eq!(middle_pixel(&mut lab), red);
+}
+
+#[test]
+fn values_are_kept_by_name_when_parameters_come_and_go() {
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    let file = folder.path().join("effects/ink.wgsl");
+    let members =
+        |members: &str| INK.replace("    /// How much.\n    @range(0.0, 1.0, 1.0) amount: f32,\n", members).replace("p.amount", "0.5");
+    write(
+        &file,
+        &members(
+            "    /// A.\n    @range(0, 1, 0.5) a: f32,\n    /// B.\n    @range(0, 8, 2) b: f32,\n    /// C.\n    @range(0, 8, 1) c: f32,\n",
+        ),
+    );
+    let preset = format!(
+        "{PRESET}a = 0.25\nb = 7.0\nc = 6.0\n[animation.ink]\na = [{{ time_s = 0.0, value = 0.25 }}, {{ time_s = 1.0, value = 1.0 }}]\n"
+    );
+    let Some(mut lab) = lab_of(folder.path(), &preset) else { return };
+    assert_eq!([value(&lab, "ink", "a"), value(&lab, "ink", "b"), value(&lab, "ink", "c")], [[0.25], [7.0], [6.0]]);
+
+    // `b` is gone, `d` is new and stands first, `c` has a smaller range, and the keys of `a` no longer all fit.
+    write(
+        &file,
+        &members(
+            "    /// D.\n    @range(0, 9, 3) d: f32,\n    /// C.\n    @range(0, 4, 2) c: f32,\n    /// A.\n    @range(0, 0.5, 0.5) a: f32,\n",
+        ),
+    );
+    wait_for(&mut lab, "the edit is seen", |lab| times(lab, "ink was reloaded") == 1);
+    assert_eq!([value(&lab, "ink", "d"), value(&lab, "ink", "c"), value(&lab, "ink", "a")], [[3.0], [2.0], [0.25]]);
+    assert!(lab.state().preset_file().preset.stack.get("ink").is_some_and(|ink| ink.effect.field("b").is_none()));
+    assert_eq!(key_times(&lab, "ink", "a"), [0.0]);
+    assert!(has_slider(&lab, "ink.d") && !has_slider(&lab, "ink.b"));
+    assert_eq!((lab.state().undo_steps(), error_lines(&lab)), (0, vec![]));
+
+    // Undo crosses an edit of the file.
+    let rail = slider(&lab, "ink.d").rect();
+    drag(&mut lab, rail.left_center() + eframe::egui::vec2(8.0, 0.0), rail.right_center());
+    assert!(value(&lab, "ink", "d")[0] > 6.0);
+    write(&file, &members("    /// E.\n    @range(0, 1, 0.75) e: f32,\n    /// D.\n    @range(0, 9, 3) d: f32,\n"));
+    wait_for(&mut lab, "the edit is seen", |lab| times(lab, "ink was reloaded") == 2);
+    assert!(value(&lab, "ink", "d")[0] > 6.0);
+    undo(&mut lab);
+    assert_eq!([value(&lab, "ink", "e"), value(&lab, "ink", "d")], [[0.75], [3.0]]);
+    assert_eq!(error_lines(&lab), [""; 0]);
+}
+
+#[test]
+fn a_preset_that_is_edited_on_disk_is_reloaded_and_unsaved_changes_are_asked_about() {
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    let file = folder.path().join("mine.toml");
+    let text = "schema = 2\nname = \"Mine\"\n[scene]\nbuiltin = \"teapot\"\n[effects.facet]\namount = 0.25\n";
+    let Some(mut lab) = lab_of(folder.path(), text) else { return };
+    let amount = |lab: &Lab| value(lab, "facet", "amount")[0];
+    write(&file, &text.replace("0.25", "0.5"));
+    wait_for(&mut lab, "the file is read again", |lab| times(lab, "Mine was reloaded") == 1);
+    assert_eq!(amount(&lab), 0.5);
+    assert!(!lab.state().preset_file().is_modified());
+    undo(&mut lab); // The reload is a step.
+    assert_eq!(amount(&lab), 0.25);
+
+    // Now the preset differs from its file, so a change of the file is asked about.
+    write(&file, &text.replace("0.25", "0.75"));
+    wait_for(&mut lab, "the question is asked", |lab| lab.query_by_label("Take theirs").is_some());
+    assert_eq!(amount(&lab), 0.25);
+    click(&mut lab, Role::Button, "Keep mine");
+    assert_eq!(amount(&lab), 0.25);
+    write(&file, &text.replace("0.25", "0.875"));
+    wait_for(&mut lab, "the question is asked again", |lab| lab.query_by_label("Take theirs").is_some());
+    click(&mut lab, Role::Button, "Take theirs");
+    assert_eq!(amount(&lab), 0.875);
+    assert!(!lab.state().preset_file().is_modified());
+
+    // A faulty file keeps the preset.
+    write(&file, "schema = 2\n[effects.facet]\namount = 9\n");
+    wait_for(&mut lab, "the fault is seen", |lab| has_badge(lab, "The preset's file is faulty"));
+    assert!(has_badge(&lab, "mine.toml:3") && amount(&lab) == 0.875);
+    write(&file, &text.replace("0.25", "0.125"));
+    wait_for(&mut lab, "the file is read again", |lab| amount(lab) == 0.125);
+    assert!(!has_badge(&lab, "is faulty"));
+
+    // Saving is no change from outside.
+    let reloads = times(&lab, "Mine was reloaded");
+    let rail = slider(&lab, "facet.amount").rect();
+    drag(&mut lab, rail.left_center() + eframe::egui::vec2(8.0, 0.0), rail.center());
+    press(&mut lab, eframe::egui::Modifiers::COMMAND, eframe::egui::Key::S);
+    for _ in 0..100 {
+        lab.step();
+        std::thread::sleep(Duration::from_millis(5));
+    }
+    assert!(times(&lab, "Mine was reloaded") == reloads && lab.query_by_label("Take theirs").is_none());
+    assert!(!lab.state().preset_file().is_modified());
+}
+
+#[test]
+fn a_new_effect_is_written_beside_the_preset_and_enabled() {
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    let Some(mut lab) = lab_of(folder.path(), "schema = 2\n[scene]\nbuiltin = \"teapot\"\n") else { return };
+    click(&mut lab, Role::Button, "New effect…");
+    let field = lab.get_by_role_and_label(Role::TextInput, "Name");
+    field.focus();
+    lab.step();
+    lab.event(eframe::egui::Event::Text("fog".into()));
+    lab.run_steps(3);
+    click(&mut lab, Role::Button, "Create");
+    assert!(has_badge(&lab, "There is an effect fog already."));
+    lab.event(eframe::egui::Event::Text("gy".into()));
+    lab.run_steps(3);
+    lab.get_by_role_and_label(Role::TextInput, "Name").focus();
+    lab.step();
+    lab.event(eframe::egui::Event::Text("gy".into()));
+    lab.run_steps(3);
+    click(&mut lab, Role::Button, "Create");
+    let written: Vec<_> = std::fs::read_dir(folder.path().join("effects")).expect("the folder of effects").flatten().collect();
+    let [written] = &written[..] else { panic!("{written:?}") };
+    let name = written.path().file_stem().expect("a name").to_string_lossy().into_owned();
+    wait_for(&mut lab, "the effect is enabled", |lab| lab.state().preset_file().preset.stack.get(&name).is_some());
+    assert_eq!(error_lines(&lab), [""; 0]);
+}
