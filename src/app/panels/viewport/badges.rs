@@ -11,18 +11,19 @@ pub fn badges_ui(ui: &mut Ui, state: &State, rect: Rect) {
     if faults.is_empty() {
         return;
     }
-    let area = rect.shrink(12.0);
-    let layout = egui::Layout::bottom_up(egui::Align::LEFT);
-    let mut badges = ui.new_child(egui::UiBuilder::new().id_salt("badges").max_rect(area).layout(layout));
-    for (subject, text) in faults {
-        theme::toast_frame(theme::RED).show(&mut badges, |ui| {
-            ui.set_max_width((area.width() - 24.0).max(160.0));
-            ui.with_layout(egui::Layout::top_down(egui::Align::LEFT), |ui| {
-                ui.label(RichText::new(title(subject)).color(theme::RED).strong());
-                ui.label(RichText::new(text).monospace().color(theme::TEXT_STRONG));
-            });
+    egui::Area::new(egui::Id::unique("badges"))
+        .pivot(egui::Align2::LEFT_BOTTOM)
+        .fixed_pos(rect.left_bottom() + egui::vec2(12.0, -12.0))
+        .interactable(false)
+        .show(ui.ctx(), |ui| {
+            ui.set_max_width((rect.width() - 48.0).max(160.0));
+            for (subject, text) in faults {
+                theme::toast_frame(theme::RED).show(ui, |ui| {
+                    ui.label(RichText::new(title(subject)).color(theme::RED).strong());
+                    ui.label(RichText::new(text).monospace().color(theme::TEXT_STRONG));
+                });
+            }
         });
-    }
 }
 
 fn title(subject: &Subject) -> String {
