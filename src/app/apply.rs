@@ -201,11 +201,12 @@ fn judge(state: &mut State, inputs: Inputs) {
 }
 
 /// Makes `opened` the open preset, as a separate undo step.
-fn open_preset(state: &mut State, panels: &mut Panels, opened: PresetFile) {
+fn open_preset(state: &mut State, panels: &mut Panels, mut opened: PresetFile) {
     state.history.close();
-    for warning in &opened.warnings {
-        state.log.add(Level::Warning, warning.clone());
+    for remark in opened.remarks() {
+        state.log.add(Level::Warning, remark);
     }
+    opened.effects = opened.effects.joined(&state.folders.effects);
     state.session.open(opened);
     panels.timeline = Timeline::default();
     state.observe(false);

@@ -19,7 +19,7 @@ pub fn first_preset(opened: Option<PresetFile>, open: Option<&str>, folders: &Fo
     let what = open.unwrap_or(FIRST_PRESET);
     match opened.map_or_else(|| preset_file::open(what, folders), Ok) {
         Ok(mut preset_file) => {
-            preset_file.warnings.iter().for_each(|warning| log.add(Level::Warning, warning.clone()));
+            preset_file.remarks().into_iter().for_each(|remark| log.add(Level::Warning, remark));
             // A recovered preset is not saved to the recovery file: Save asks for another.
             preset_file.read_only |= preset_file.path.is_some() && preset_file.path == recovery_path();
             preset_file

@@ -14,6 +14,7 @@ use super::{
     watch::{Change, Effects, Targets},
 };
 use crate::{
+    effect_files::Catalog,
     effects::Effect,
     preset::{
         SceneSource,
@@ -68,7 +69,7 @@ fn effects_changed(state: &mut State, panels: &mut Panels, effects: Effects) {
         before.only(|name, effect| effect.path.is_none() || open.custom().all(|(other, _)| other != name) && stack.get(name).is_some());
     let gone: Vec<String> = kept.custom().filter(|(_, effect)| effect.path.is_some()).map(|(name, _)| name.to_owned()).collect();
     let open = kept.joined(&open);
-    let good = |catalog: &crate::effect_files::Catalog, name: &str| catalog.find(name).ok().flatten();
+    let good = |catalog: &Catalog, name: &str| catalog.find(name).ok().flatten();
     let mut replaced: Vec<Replaced> = Vec::new();
     for (old, new) in [(before, &open), (&state.folders.effects, &shared)] {
         for (name, _) in new.custom() {
@@ -80,13 +81,24 @@ fn effects_changed(state: &mut State, panels: &mut Panels, effects: Effects) {
             }
         }
     }
+    let instances: Vec<&'static Effect> = state.session.catalogs().flat_map(Catalog::instances).collect();
+    for instance in instances {
+        let of_base = replaced.iter().find(|(old, _)| instance.base == Some(old)).map(|(_, new)| *new);
+        if let Some(base) = of_base
+            && !replaced.iter().any(|(known, _)| *known == instance)
+        {
+            // Effects live as long as the program.
+            replaced.push((instance, Box::leak(Box::new(Effect::instance(instance.name, base)))));
+        }
+    }
+    let open = open.replaced(&replaced);
     let is_faulty = |name: &str| faults.iter().any(|(faulty, _)| faulty == name) || gone.iter().any(|gone| gone == name);
     state.live.keep_effect_faults(is_faulty);
     for (name, error) in faults {
         fault(state, Subject::Effect(name), error.to_string());
     }
     for name in gone {
-        let text = format!("{name}.wgsl: the file is gone; the picture keeps the effect as it was");
+        let text = format!("{name}.wgsl: no folder of effects has this file any more; the picture keeps the effect as it was");
         fault(state, Subject::Effect(name), text);
     }
     let number = state.live.request();
@@ -226,11 +238,11 @@ fn preset_changed(state: &mut State, panels: &mut Panels, path: &PathBuf, read: 
 pub fn take_preset(state: &mut State, panels: &mut Panels, mut theirs: PresetFile) {
     state.observe(false);
     state.history.close();
-    for warning in &theirs.warnings {
-        state.log.add(Level::Warning, warning.clone());
+    for remark in theirs.remarks() {
+        state.log.add(Level::Warning, remark);
     }
     let (id, title) = (theirs.id.clone(), theirs.title().to_owned());
-    theirs.effects = state.session.preset_file.effects.clone();
+    theirs.effects = theirs.effects.joined(&state.session.preset_file.effects);
     state.session.reload(theirs);
     state.observe(false);
     state.history.close();

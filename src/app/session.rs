@@ -102,6 +102,11 @@ impl Session {
         self.preset_file = preset_file;
     }
 
+    /// The effects of every preset that was opened.
+    pub fn catalogs(&self) -> impl Iterator<Item = &Catalog> {
+        self.files.values().map(|preset_file| &preset_file.effects).chain([&self.preset_file.effects])
+    }
+
     /// Uses new effects in place of old ones in every preset that was opened; see [`Preset::rebind`]. `effects` are those that the open
     /// preset may use from now on.
     pub fn rebind(&mut self, replaced: &[Replaced], effects: &Catalog) {

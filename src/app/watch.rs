@@ -144,6 +144,8 @@ struct Reader {
     preset: Option<(Vec<u8>, bool)>,
     model: Vec<Stamp>,
     shaders: Vec<Stamp>,
+    /// The targets are new, so the effects are reported even if they are the same.
+    is_new: bool,
     /// All files at the last look, for folders that the system does not watch.
     stamps: Vec<Stamp>,
 }
@@ -157,6 +159,7 @@ impl Reader {
             preset: None,
             model: Vec::new(),
             shaders: Vec::new(),
+            is_new: false,
             stamps: Vec::new(),
         }
     }
@@ -202,7 +205,7 @@ impl Reader {
         if targets.shaders != self.targets.shaders {
             self.shaders = shader_stamps(&targets);
         }
-        self.targets = targets;
+        (self.targets, self.is_new) = (targets, true);
     }
 
     /// Reads everything again and reports what differs. Returns false if the window is closed.
@@ -220,7 +223,8 @@ impl Reader {
             catalog.custom().filter_map(|(name, effect)| Some((name.to_owned(), effect.read.clone().err()?))).collect()
         };
         let effects = Effects { faults: faults(&open), shared: shared.or_last_good(&known), open: open.or_last_good(&known) };
-        if effects == self.effects {
+        let is_new = std::mem::take(&mut self.is_new);
+        if effects == self.effects && !is_new {
             return true;
         }
         self.effects = effects.clone();

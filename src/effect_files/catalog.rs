@@ -58,7 +58,8 @@ impl Catalog {
     #[must_use]
     pub fn reread<'a>(&self, folders: impl IntoIterator<Item = &'a Path>) -> Self {
         let paths: BTreeMap<String, PathBuf> = folders.into_iter().flat_map(files_of).map(|path| (stem(&path), path)).collect();
-        Self { custom: Arc::new(paths.into_iter().map(|(name, path)| (name, self.read_file(&path))).collect()) }
+        let custom = paths.into_iter().map(|(name, path)| (name, self.read_file(&path))).collect();
+        Self { custom: Arc::new(custom), instances: Arc::default() }
     }
 
     /// These effects, with the effect of the same name in `earlier` in place of each faulty file.
@@ -70,27 +71,28 @@ impl Catalog {
                 effect.read = Ok(good);
             }
         }
-        Self { custom: Arc::new(custom) }
+        Self { custom: Arc::new(custom), ..self.clone() }
     }
 
     /// These effects, with the second of each pair in place of the first.
     #[must_use]
     pub fn replaced(&self, pairs: &[(&'static Effect, &'static Effect)]) -> Self {
-        let mut custom = (*self.custom).clone();
-        for effect in custom.values_mut() {
-            let new = pairs.iter().find(|(old, _)| effect.read.as_ref().is_ok_and(|effect| effect == old));
-            if let Some((_, new)) = new {
-                effect.read = Ok(new);
+        let mut replaced = self.clone();
+        let customs = Arc::make_mut(&mut replaced.custom).values_mut().filter_map(|effect| effect.read.as_mut().ok());
+        for effect in customs.chain(Arc::make_mut(&mut replaced.instances).values_mut()) {
+            if let Some((_, new)) = pairs.iter().find(|(old, _)| effect == old) {
+                *effect = new;
             }
         }
-        Self { custom: Arc::new(custom) }
+        replaced
     }
 
-    /// The effects for which `is_kept` is true.
+    /// The instances, and the effects of files for which `is_kept` is true.
     #[must_use]
     pub fn only(&self, is_kept: impl Fn(&str, &CustomEffect) -> bool) -> Self {
         let kept = self.custom.iter().filter(|(name, effect)| is_kept(name, effect));
-        Self { custom: Arc::new(kept.map(|(name, effect)| (name.clone(), effect.clone())).collect()) }
+        let custom = kept.map(|(name, effect)| (name.clone(), effect.clone())).collect();
+        Self { custom: Arc::new(custom), ..self.clone() }
     }
 
     fn read_file(&self, path: &Path) -> CustomEffect {
@@ -196,6 +198,11 @@ impl Catalog {
     /// Names of all effects, those of faulty files included.
     pub fn names(&self) -> impl Iterator<Item = &str> {
         EFFECTS.iter().map(|effect| effect.name).chain(self.custom.keys().chain(self.instances.keys()).map(String::as_str))
+    }
+
+    /// Further instances of effects.
+    pub fn instances(&self) -> impl Iterator<Item = &'static Effect> + '_ {
+        self.instances.values().copied()
     }
 
     /// The effects of files, by name.

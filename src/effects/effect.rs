@@ -155,7 +155,7 @@ impl std::fmt::Debug for Effect {
 
 impl PartialEq for Effect {
     fn eq(&self, other: &Self) -> bool {
-        self.name == other.name && self.source == other.source
+        self.name == other.name && self.source == other.source && self.base == other.base
     }
 }
 
@@ -165,6 +165,7 @@ impl std::hash::Hash for Effect {
     fn hash<H: std::hash::Hasher>(&self, state: &mut H) {
         self.name.hash(state);
         self.source.hash(state);
+        self.base.map(|base| base.name).hash(state);
     }
 }
 

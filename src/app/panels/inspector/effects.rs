@@ -52,7 +52,7 @@ fn own_effects_ui(ui: &mut Ui, state: &State, commands: &Commands, stack: &[&'st
             }
         });
     });
-    let own = state.session.preset_file.effects.effects().filter(|effect| effect.source.is_some());
+    let own = state.session.preset_file.effects.effects().filter(|effect| effect.source.is_some() || effect.base.is_some());
     for effect in own.filter(|effect| !stack.iter().any(|enabled| enabled.name == effect.name)) {
         ui.horizontal(|ui| disabled_ui(ui, state, commands, effect));
     }
