@@ -28,7 +28,7 @@ impl egui::DroppedFile for Dropped {
     }
 }
 
-fn drop_files(lab: &mut Lab, paths: &[&Path]) {
+pub fn drop_files(lab: &mut Lab, paths: &[&Path]) {
     let files = paths.iter().map(|path| std::sync::Arc::new(Dropped(path.to_path_buf())) as egui::DroppedFileHandle);
     lab.input_mut().dropped_files.extend(files);
     lab.run_steps(3);
@@ -36,7 +36,7 @@ fn drop_files(lab: &mut Lab, paths: &[&Path]) {
 }
 
 /// A model of one triangle, as small as a .glb can be.
-fn tiny_glb() -> Vec<u8> {
+pub fn tiny_glb() -> Vec<u8> {
     let mut json = r#"{"asset":{"version":"2.0"},"scene":0,"scenes":[{"nodes":[0]}],"nodes":[{"mesh":0}],
         "meshes":[{"primitives":[{"attributes":{"POSITION":0}}]}],"buffers":[{"byteLength":36}],"bufferViews":[{"buffer":0,"byteLength":36}],
         "accessors":[{"bufferView":0,"componentType":5126,"count":3,"type":"VEC3","min":[0,0,0],"max":[1,1,0]}]}"#

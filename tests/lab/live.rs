@@ -8,8 +8,13 @@ use std::{
 
 use eframe::egui::Role;
 use egui_kittest::kittest::Queryable as _;
+use rasterlab::shader::library::Library;
 
-use crate::harness::*;
+use crate::{
+    common::mutated,
+    files::{drop_files, tiny_glb},
+    harness::*,
+};
 
 /// Paints everything in the color of a parameter.
 const INK: &str = "// Ink: paints the surface.\n//@ use lib/surface\n\nstruct Ink {\n    /// How much.\n    @range(0.0, 1.0, 1.0) amount: f32,\n}\n\n\
@@ -216,4 +221,63 @@ fn a_new_effect_is_written_beside_the_preset_and_enabled() {
     let name = written.path().file_stem().expect("a name").to_string_lossy().into_owned();
     wait_for(&mut lab, "the effect is enabled", |lab| lab.state().preset_file().preset.stack.get(&name).is_some());
     assert_eq!(error_lines(&lab), [""; 0]);
+}
+
+#[test]
+fn a_dropped_effect_is_enabled_and_a_model_that_changes_is_loaded_again() {
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    let (model, ink) = (folder.path().join("tri.glb"), folder.path().join("elsewhere/ink.wgsl"));
+    write(&ink, INK);
+    std::fs::write(&model, tiny_glb()).expect("a file");
+    let Some(mut lab) = lab(&model.to_string_lossy()) else { return };
+    drop_files(&mut lab, &[&ink]);
+    wait_for(&mut lab, "the effect is enabled", |lab| lab.state().preset_file().preset.stack.get("ink").is_some());
+    let red = |lab: &mut Lab| middle(lab).pixels().filter(|pixel| pixel.0[0] > 250 && pixel.0[1] < 5).count();
+    let before = red(&mut lab);
+    assert!(before > 1_000, "{before}");
+    std::fs::write(&model, b"no model").expect("a file");
+    wait_for(&mut lab, "the fault is seen", |lab| has_badge(lab, "The model's file is faulty"));
+    // The model of one triangle with a corner elsewhere.
+    let mut other = tiny_glb();
+    let at = other.len() - 8;
+    other[at..at + 4].copy_from_slice(&0.5f32.to_le_bytes());
+    std::fs::write(&model, other).expect("a file");
+    wait_for(&mut lab, "the model is loaded again", |lab| times(lab, "The model was reloaded") == 1);
+    assert!(!has_badge(&lab, "is faulty"));
+    assert!(red(&mut lab) < before, "the triangle is not smaller");
+}
+
+/// Run by the next test in a separate process, whose environment names the folder of shaders.
+#[test]
+#[ignore = "run by shaders_of_a_folder_are_reloaded"]
+fn child_whose_shaders_change() {
+    let file = std::path::PathBuf::from(std::env::var_os("RASTERLAB_SHADERS").expect("the parent's folder")).join("effects/lambert.wgsl");
+    let text = std::fs::read_to_string(&file).expect("a shader");
+    let mut lab = lab("lambert").expect("the parent has an adapter");
+    write(&file, &text.replace("return s;", "s.color = vec4f(0.0, 0.0, 1.0, 1.0);\n    return s;"));
+    wait_for(&mut lab, "the edit is seen", |lab| times(lab, "The shaders were reloaded") == 1);
+    let blue = middle_pixel(&mut lab);
+    assert!(blue[2] > 250 && blue[0] < 5, "{blue:?}");
+    write(&file, &text.replace("return s;", "return t;"));
+    wait_for(&mut lab, "the fault is seen", |lab| has_badge(lab, "The shaders are faulty"));
+    assert_eq!(middle_pixel(&mut lab), blue, "the last good picture went away");
+    write(&file, &text);
+    wait_for(&mut lab, "the shaders are whole again", |lab| times(lab, "The shaders were reloaded") == 2);
+    assert!(!has_badge(&lab, "is faulty") && middle_pixel(&mut lab) != blue);
+}
+
+#[test]
+fn shaders_of_a_folder_are_reloaded() {
+    if crate::common::gpu().is_none() {
+        return;
+    }
+    let copied = mutated("effects/lambert", "return s;", "return s;");
+    let Library::Folder(folder) = copied.shaders() else { unreachable!("a folder") };
+    let child = std::process::Command::new(std::env::current_exe().expect("this test"))
+        .args(["--exact", "live::child_whose_shaders_change", "--ignored"])
+        .env("RASTERLAB_SHADERS", folder)
+        .output()
+        .expect("the child starts");
+    let said = String::from_utf8_lossy(&child.stdout).into_owned() + &String::from_utf8_lossy(&child.stderr);
+    assert!(child.status.success(), "{said}");
 }
