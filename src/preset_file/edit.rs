@@ -99,7 +99,7 @@ pub fn set(preset_file: &mut PresetFile, path: &str, value: &str) -> Result<(), 
     let at = Position { file: argument.clone(), line: None };
     let wrong = |reason: String| PresetError::value(at.clone(), path, reason);
     if let Some((name, INSTANCE_KEY)) = path.strip_prefix("effects.").unwrap_or(path).split_once('.') {
-        let effect = preset_file.effects.add_instance(name, value.trim().trim_matches('"')).map_err(|reason| wrong(reason))?;
+        let effect = preset_file.effects.add_instance(name, value.trim().trim_matches('"')).map_err(wrong)?;
         preset_file.preset.stack.enable(effect);
         return Ok(());
     }

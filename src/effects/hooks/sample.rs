@@ -100,6 +100,9 @@ impl Sample {
     }
 }
 
+/// The setup of a triangle, given its first word where that is known.
+pub type SetupFunction = dyn Fn(&TriangleSetup, &[u32], Option<u32>) -> [u32; 4] + Sync;
+
 /// A sample effect's functions over its parameter words.
 #[derive(Clone, Copy)]
 pub struct SampleHook {
@@ -109,7 +112,7 @@ pub struct SampleHook {
     pub error_bound: &'static (dyn Fn(&TriangleSetup, &[u32]) -> f64 + Sync),
     /// Its setup is rounded from floats, which differ from adapter to adapter.
     pub is_from_floats: &'static (dyn Fn(&[u32]) -> bool + Sync),
-    pub sample_setup: &'static (dyn Fn(&TriangleSetup, &[u32], Option<u32>) -> [u32; 4] + Sync),
+    pub sample_setup: &'static SetupFunction,
     pub is_drawn: &'static (dyn Fn(&Sample, &[u32]) -> bool + Sync),
 }
 
