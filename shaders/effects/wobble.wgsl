@@ -18,7 +18,7 @@ fn wobble(vertex: Vertex, p: Wobble) -> Vertex {
     v.offset += sway * (p.amplitude_m * sine_turns(turns));
 
     // The displacement changes along `direction` by `slope`; normals transform with the cofactors of its Jacobian, 1 + slope sway direction'.
-    let slope = 6.28318531 * (p.amplitude_m / p.wavelength_m) * cosine_turns(turns);
+    let slope = 6.283185307179586 * (p.amplitude_m / p.wavelength_m) * cosine_turns(turns);
     let turned = v.normal + (v.normal * dot(sway, direction) - direction * dot(sway, v.normal)) * slope;
     let squared = dot(turned, turned);
     if slope != 0.0 && squared > 1e-12 { v.normal = turned / sqrt(squared); }

@@ -1,8 +1,9 @@
 // Color: linear light to gamma-encoded values and back (IEC 61966-2-1), luminance, and packed bytes.
+// 1 / 2.4 is written as a number: naga computes constants in f32.
 
 fn color_encode(linear: vec3f) -> vec3f {
     let c = clamp(linear, vec3f(0.0), vec3f(1.0));
-    let curve = 1.055 * pow(c, vec3f(1.0 / 2.4)) - 0.055;
+    let curve = 1.055 * pow(c, vec3f(0.4166666666666667)) - 0.055;
     return select(curve, 12.92 * c, c <= vec3f(0.0031308));
 }
 

@@ -9,7 +9,7 @@ use std::{
 use super::{
     error::{EffectError, Text},
     parameters::intern,
-    read::{MAX_BYTES, check_name, read},
+    read::{MAX_BYTES, check_name, decoded, read},
 };
 use crate::{
     effects::{EFFECTS, Effect},
@@ -103,7 +103,7 @@ impl Catalog {
             Ok(about) if about.len() > MAX_BYTES as u64 => {
                 Err(text.whole(format!("the file has {} bytes; an effect has at most {MAX_BYTES}", about.len())))
             }
-            Ok(_) => std::fs::read_to_string(path).map_err(|error| text.whole(error.to_string())),
+            Ok(_) => std::fs::read(path).map_err(|error| text.whole(error.to_string())).and_then(|bytes| decoded(&text, bytes)),
             Err(error) => Err(text.whole(error.to_string())),
         };
         let read = written.and_then(|written| match self.find_custom(&name) {

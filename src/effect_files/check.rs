@@ -6,7 +6,12 @@ use naga::{
     valid::{Capabilities, ValidationFlags, Validator},
 };
 
-use super::error::{EffectError, Place, Text};
+use super::{
+    declaration::{self, Declaration},
+    error::{EffectError, Text},
+    rewrite::{Rewritten, in_names_of_author},
+    tokens::Token,
+};
 use crate::{
     effects::Effect,
     shader::{
@@ -17,6 +22,8 @@ use crate::{
 
 /// Most bytes of a function's local variables.
 const MAX_LOCAL_BYTES: u32 = 4096;
+/// Most bytes of any type.
+const MAX_TYPE_BYTES: u32 = 1 << 16;
 
 /// The module of an effect alone.
 pub struct Checked {
@@ -25,39 +32,122 @@ pub struct Checked {
     pub linked: Linked,
 }
 
-/// Links and validates the effect; its file is `stem` below `effects`.
+/// An effect file with what was read of it and made of it.
+#[derive(Clone, Copy)]
+pub struct Parts<'a> {
+    pub text: &'a Text<'a>,
+    pub stem: &'a str,
+    pub declaration: &'a Declaration<'a>,
+    pub rewritten: &'a Rewritten,
+}
+
+/// Links and validates the effect.
 ///
 /// # Errors
 /// What the linker or naga refuses, at its line of the file.
-pub fn check(text: &Text<'_>, effect: &'static Effect) -> Result<Checked, EffectError> {
-    let linked = link::link_effect(&Library::from_env(), effect).map_err(|error| of_link(text, effect, &error))?;
-    let places = Places { text, linked: &linked, name: format!("effects/{}", effect.file_stem()) };
+pub fn check(parts: Parts<'_>, effect: &'static Effect) -> Result<Checked, EffectError> {
+    let linked = link::link_effect(&Library::from_env(), effect).map_err(|error| of_link(parts, &error))?;
     let module = naga::front::wgsl::parse_str(&linked.text).map_err(|error| {
-        let span = error.labels().next().and_then(|(span, _)| span.to_range());
+        let spans: Vec<naga::Span> = error.labels().map(|(span, _)| span).collect();
         let label = error.labels().next().map_or("", |(_, label)| label);
-        let detail = if label.is_empty() || error.message().contains(label) { String::new() } else { format!(" ({label})") };
-        places.error(span, &format!("{}{detail}", error.message()))
+        let adds_nothing = ["", "definition of", "unknown", "expected"].iter().any(|start| label.starts_with(start) && (!start.is_empty() || label.is_empty()));
+        let is_told = adds_nothing || error.message().contains(label.trim_matches('`'));
+        let detail = if is_told { String::new() } else { format!(" ({label})") };
+        error_at(parts, &linked, &spans, &format!("{}{detail}{}", error.message(), hint(error.message())))
     })?;
     let mut validator = Validator::new(ValidationFlags::all(), Capabilities::default());
     validator.validate(&module).map_err(|error| {
-        let span = error.spans().next().and_then(|(span, _)| span.to_range());
-        let mut message = error.as_inner().to_string();
+        // The shortest is the expression at fault; others are the function and what it calls.
+        let mut spans: Vec<naga::Span> = error.spans().map(|(span, _)| *span).collect();
+        spans.sort_by_key(|span| span.to_range().map_or(usize::MAX, |range| range.len()));
+        let mut causes = vec![error.as_inner().to_string()];
         let mut cause = std::error::Error::source(error.as_inner());
         while let Some(inner) = cause {
-            message = format!("{message}: {inner}");
+            causes.push(inner.to_string());
             cause = inner.source();
         }
-        places.error(span, &message)
+        error_at(parts, &linked, &spans, &told(&causes))
     })?;
-    check_locals(&places, &module)?;
+    check_types(parts, &linked, &module)?;
     Ok(Checked { module, linked })
 }
 
-/// Refuses local variables that take more memory than an invocation should have.
-fn check_locals(places: &Places<'_>, module: &Module) -> Result<(), EffectError> {
+/// The causes of a refusal in one sentence: those that name no index of naga's own.
+fn told(causes: &[String]) -> String {
+    let is_clear = |cause: &&String| !cause.contains('[') && !cause.contains("is invalid");
+    let clear: Vec<&str> = causes.iter().filter(is_clear).map(String::as_str).collect();
+    let last = causes.last().map_or("", String::as_str);
+    if let Some(plain) = in_plain_words(last) {
+        return plain;
+    }
+    match &clear[..] {
+        [] => causes.last().map_or_else(String::new, |last| without_indices(last.split(" (of type ").next().unwrap_or(last))),
+        all => all.join(": "),
+    }
+}
+
+/// Refusals that naga tells by the indices of its expressions.
+fn in_plain_words(cause: &str) -> Option<String> {
+    let number = |text: &str| text.split(|c: char| !c.is_ascii_digit()).find(|digits| !digits.is_empty()).and_then(|digits| digits.parse::<u32>().ok());
+    if let Some(rest) = cause.strip_prefix("Operation ") {
+        let operator = rest.split_whitespace().next().unwrap_or_default();
+        return Some(format!("the operator {operator} does not take values of these types; convert one of them"));
+    }
+    if cause.starts_with("The type of ") {
+        return Some("the value has another type than the variable that it is stored in; convert it".into());
+    }
+    if let Some(rest) = cause.strip_prefix("Requires ") {
+        let (takes, given) = rest.split_once("but")?;
+        return Some(format!("the function takes {} arguments, and {} are given", number(takes)?, number(given)?));
+    }
+    if cause.starts_with("Argument ") && cause.contains("doesn't match") {
+        return Some(format!("argument {} has another type than the function's parameter; convert it", number(cause)? + 1));
+    }
+    cause.starts_with("The `return` ").then(|| "what is returned has another type than the function's result; convert it".into())
+}
+
+/// Where an effect finds a name that it does not declare.
+fn hint(message: &str) -> String {
+    let name = message.strip_prefix("no definition in scope for identifier: `").and_then(|rest| rest.strip_suffix('`'));
+    let declares = |name: &str, file: &&str| {
+        let text = Library::Embedded.text(&format!("lib/{file}"));
+        text.is_some_and(|text| [format!("\nfn {name}("), format!("\nconst {name} "), format!("\nstruct {name} ")].iter().any(|head| text.contains(head)))
+    };
+    let file = name.and_then(|name| declaration::LIBRARY.into_iter().find(|file| declares(name, file)));
+    file.map_or(String::new(), |file| format!("; lib/{file} declares it: add the line //@ use lib/{file}"))
+}
+
+/// A message without `[12]`, the numbers by which naga calls expressions and types.
+fn without_indices(message: &str) -> String {
+    let mut rest = message;
+    let mut told = String::new();
+    while let Some((before, after)) = rest.split_once('[') {
+        let number = after.find(']').filter(|&end| after[..end].chars().all(|c| c.is_ascii_digit()));
+        told.push_str(if number.is_some() { before.trim_end() } else { before });
+        rest = match number {
+            Some(end) => &after[end + 1..],
+            None => {
+                told.push('[');
+                after
+            }
+        };
+    }
+    told + rest
+}
+
+/// Refuses types and local variables that take more memory than an invocation should have.
+fn check_types(parts: Parts<'_>, linked: &Linked, module: &Module) -> Result<(), EffectError> {
     let mut layouter = naga::proc::Layouter::default();
     if layouter.update(module.to_ctx()).is_err() {
-        return Err(places.text.whole("a type is too large"));
+        return Err(parts.text.whole("a type is too large"));
+    }
+    for (handle, ty) in module.types.iter() {
+        let bytes = layouter[handle].size;
+        if bytes > MAX_TYPE_BYTES {
+            let name = ty.name.as_deref().unwrap_or("a type");
+            let message = format!("{name} takes {bytes} bytes; a type of an effect takes at most {MAX_TYPE_BYTES}");
+            return Err(error_at(parts, linked, &[module.types.get_span(handle)], &message));
+        }
     }
     for (_, function) in module.functions.iter() {
         for (handle, local) in function.local_variables.iter() {
@@ -65,55 +155,50 @@ fn check_locals(places: &Places<'_>, module: &Module) -> Result<(), EffectError>
             if bytes > MAX_LOCAL_BYTES {
                 let name = local.name.as_deref().unwrap_or("a variable");
                 let message = format!("{name} takes {bytes} bytes; a variable of an effect takes at most {MAX_LOCAL_BYTES}");
-                return Err(places.error(function.local_variables.get_span(handle).to_range(), &message));
+                return Err(error_at(parts, linked, &[function.local_variables.get_span(handle)], &message));
             }
         }
     }
     Ok(())
 }
 
-/// Where lines of a linked text come from.
-struct Places<'a> {
-    text: &'a Text<'a>,
-    linked: &'a Linked,
-    /// The file as the linker calls it.
-    name: String,
-}
-
-impl Places<'_> {
-    /// An error at a byte range of the linked text, without line breaks in its message.
-    fn error(&self, span: Option<std::ops::Range<usize>>, message: &str) -> EffectError {
-        let message = message.split_whitespace().collect::<Vec<_>>().join(" ");
-        let message = message.trim_end_matches('.').to_owned();
-        let Some(span) = span else { return self.text.whole(message) };
-        let place = Place::of(&self.linked.text, span.start, span.len());
-        let line = place.line as usize - 1;
-        let file = self.linked.files.iter().rev().find(|(_, first)| *first <= line);
-        match file {
-            Some((name, first)) if *name == self.name && line - first < self.text.text.lines().count() => {
-                // Attributes are blank in the linked text, so the line is taken from the file.
-                let line_text = self.text.text.lines().nth(line - first).unwrap_or_default().trim_end().chars().take(200).collect();
-                let place = Place { line: (line - first) as u32 + 1, text: line_text, ..place };
-                EffectError { file: self.text.file.into(), place: Some(place), message }
-            }
-            _ => self.text.whole(message),
+/// An error at the first of these ranges of the linked text that comes from the file.
+pub fn error_at(parts: Parts<'_>, linked: &Linked, spans: &[naga::Span], message: &str) -> EffectError {
+    let Parts { text, stem, declaration, rewritten } = parts;
+    let message = in_names_of_author(stem, declaration, message);
+    let message = message.replace("`{AbstractFloat}`", "a number with a point").replace("`{AbstractInt}`", "a whole number");
+    let name = format!("effects/{stem}");
+    let first_line = linked.files.iter().find(|(file, _)| *file == name).map_or(0, |(_, line)| *line);
+    let begin: usize = linked.text.split_inclusive('\n').take(first_line).map(str::len).sum();
+    let place = spans.iter().filter_map(|span| span.to_range()).find_map(|range| {
+        let offset = rewritten.origin(range.start.checked_sub(begin)?)?;
+        let end = rewritten.origin(range.end.checked_sub(begin)?).unwrap_or(offset);
+        Some((offset, end.saturating_sub(offset).max(1)))
+    });
+    match place {
+        // What is missing at the end is missing behind the last token.
+        Some((offset, _)) if declaration.tokens.last().is_some_and(|last| offset >= last.end()) => {
+            let last = declaration.tokens.last().map_or(0, Token::end);
+            text.error(last.saturating_sub(1), 1, message)
         }
+        Some((offset, length)) => text.error(offset, length, message),
+        None => text.whole(message),
     }
 }
 
-fn of_link(text: &Text<'_>, effect: &Effect, error: &LinkError) -> EffectError {
-    let own = format!("effects/{}", effect.file_stem());
+fn of_link(parts: Parts<'_>, error: &LinkError) -> EffectError {
+    let Parts { text, stem, declaration, .. } = parts;
     match error {
-        LinkError::Undeclared { file, line, name, declared_in } if *file == own => {
-            let offset: usize = text.text.split_inclusive('\n').take(*line as usize - 1).map(str::len).sum();
-            let column = text.text[offset..].find(name.as_str()).unwrap_or(0);
-            let is_open = declared_in.strip_prefix("lib/").is_some_and(|file| super::declaration::LIBRARY.contains(&file));
+        LinkError::Undeclared { file, line, name, declared_in } if *file == format!("effects/{stem}") => {
+            let is_open = declared_in.strip_prefix("lib/").is_some_and(|file| declaration::LIBRARY.contains(&file));
             let message = match is_open {
                 true => format!("{name} is declared in {declared_in}; add the line //@ use {declared_in}"),
                 false => format!("{name} belongs to the kernels, and an effect cannot use it; choose another name"),
             };
-            text.error(offset + column, name.len(), message)
+            let begin: usize = text.text.split_inclusive('\n').take(*line as usize - 1).map(str::len).sum();
+            let token = declaration.tokens.iter().find(|token| token.offset >= begin && token.text == *name);
+            token.map_or_else(|| text.whole(&message), |token| text.error(token.offset, token.text.len(), &message))
         }
-        other => text.whole(other.to_string()),
+        other => text.whole(in_names_of_author(stem, declaration, &other.to_string())),
     }
 }

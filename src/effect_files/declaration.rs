@@ -3,14 +3,16 @@
 use std::collections::BTreeSet;
 
 use super::{
+    bounds,
     error::{EffectError, Text},
     parameters::{self, Parameters},
     tokens::{Token, closing, tokens},
+    words,
 };
 use crate::effects::HookFunctions;
 
 /// Files of `shaders/lib` that an effect file may use: pure functions and the types of hooks.
-pub const LIBRARY: [&str; 10] = ["angle", "color", "front", "geometry", "hash", "image", "lattice", "sample", "surface", "vertex"];
+pub const LIBRARY: [&str; 9] = ["angle", "color", "front", "hash", "image", "lattice", "sample", "surface", "vertex"];
 
 /// The hooks: type of the first parameter, type of the result, and the library file that declares the former.
 const HOOKS: [(&str, &str, &str); 4] =
@@ -26,8 +28,8 @@ pub struct Declaration<'a> {
     pub struct_name: &'a str,
     pub parameters: Parameters,
     pub hooks: HookFunctions,
-    /// Names declared at module scope.
-    pub declared: BTreeSet<&'a str>,
+    /// Names declared at module scope, and the constants of choices.
+    pub declared: BTreeSet<String>,
     /// Files that it uses, as `lib/surface`; those of its hooks' types are among them.
     pub uses: Vec<String>,
 }
@@ -37,74 +39,113 @@ struct Function<'a> {
     name: Token<'a>,
     /// Types of the parameters.
     parameters: Vec<String>,
+    /// Where the type of the last parameter begins.
+    last_type: Option<Token<'a>>,
     result: String,
 }
 
-/// Reads an effect file.
+/// Reads an effect file; its constants of choices begin with `stem`.
 ///
 /// # Errors
-/// A declaration that an effect cannot have, no hook, two functions on one hook, or as [`parameters::read`].
-pub fn read<'a>(text: &Text<'a>) -> Result<Declaration<'a>, EffectError> {
+/// A text out of bounds, a declaration that an effect cannot have, no hook, two functions on one hook, or as [`parameters::read`].
+pub fn read<'a>(text: &Text<'a>, stem: &str) -> Result<Declaration<'a>, EffectError> {
     let tokens = tokens(text.text);
-    refuse_names(text, &tokens)?;
+    bounds::check(text, &tokens)?;
     let uses = uses(text)?;
-    let (mut structs, mut functions, mut declared) = (Vec::new(), Vec::new(), BTreeSet::new());
+    let (mut structs, mut functions, mut declared) = (Vec::new(), Vec::new(), Vec::new());
     let mut at = 0;
     while at < tokens.len() {
         let token = tokens[at];
         let refuse = |message: &str| Err(text.error(token.offset, token.text.len(), message));
         let name = tokens.get(at + 1).copied().filter(Token::is_name);
+        let opening = tokens.get(at + 2).map_or("", |token| token.text);
         match (token.text, name) {
             (";", _) => at += 1,
             ("struct", Some(name)) => {
-                declared.insert(name.text);
+                if opening != "{" {
+                    return Err(text.error(name.offset, name.text.len(), format!("the struct {0} has no members; write struct {0} {{ … }}", name.text)));
+                }
+                declared.push(name);
                 structs.push((name, at + 2));
                 at = closing(&tokens, at + 2) + 1;
             }
             ("fn", Some(name)) => {
-                declared.insert(name.text);
-                let (function, body) = function(text, &tokens, at, name);
-                functions.push(function);
+                let body = match opening {
+                    "(" => (closing(&tokens, at + 2)..tokens.len()).find(|&index| ["{", ";", "fn", "struct"].contains(&tokens[index].text)),
+                    _ => None,
+                };
+                let Some(body) = body.filter(|&body| tokens[body].text == "{") else {
+                    let message = format!("the function {0} is incomplete; write fn {0}(parameters) -> type {{ … }}", name.text);
+                    return Err(text.error(name.offset, name.text.len(), message));
+                };
+                declared.push(name);
+                functions.push(function(text, &tokens, at, name, body));
                 at = closing(&tokens, body) + 1;
             }
             ("const" | "alias", Some(name)) => {
-                declared.insert(name.text);
-                at = (at..tokens.len()).find(|&index| tokens[index].text == ";").unwrap_or(tokens.len());
+                declared.push(name);
+                at = end_of_statement(text, &tokens, at)?;
             }
-            ("const_assert", _) => at = (at..tokens.len()).find(|&index| tokens[index].text == ";").unwrap_or(tokens.len()),
+            ("const_assert", _) => at = end_of_statement(text, &tokens, at)?,
+            ("struct" | "fn" | "const" | "alias", None) => return refuse(&format!("{} needs a name after it", token.text)),
             ("var", _) => return refuse("an effect declares no variable at module scope; its parameters are the members of its struct"),
             ("override", _) => return refuse("an effect declares no override; use const, or a parameter"),
-            ("enable" | "requires" | "diagnostic", _) => return refuse("an effect file has no directives of WGSL"),
+            ("enable" | "requires" | "diagnostic", _) => return refuse("an effect file has no directives of WGSL; remove this one"),
             ("@", _) => return refuse("attributes belong to the parameters of an effect; an effect has no entry point and no binding"),
-            _ => return refuse("expected a struct, a function or a constant"),
+            _ => return refuse(&format!("expected struct, fn, const or alias at the start of a declaration, and found {}", token.text)),
         }
     }
+    words::check_declared(text, &declared)?;
+    words::refuse(text, &tokens, &declared)?;
     let (hooks, struct_name) = hooks(text, &functions)?;
-    let Some((_, open)) = structs.iter().find(|(name, _)| name.text == struct_name) else {
-        return Err(
-            text.whole(format!("the hook takes {struct_name}, which this file does not declare; write struct {struct_name} {{ … }}"))
-        );
+    let Some((_, open)) = structs.iter().find(|(name, _)| name.text == struct_name.text) else {
+        let message =
+            format!("the hook takes {0}, which is no struct of this file; write struct {0} {{ … }} with the parameters", struct_name.text);
+        return Err(text.error(struct_name.offset, struct_name.text.len(), message));
     };
     let parameters = parameters::read(text, &tokens, *open)?;
     let mut uses = uses;
     for (kind, _, file) in HOOKS {
-        let is_named = tokens.iter().any(|token| token.text == kind);
         let path = format!("lib/{file}");
-        if is_named && !uses.contains(&path) {
+        if tokens.iter().any(|token| token.text == kind) && !uses.contains(&path) {
             uses.push(path);
         }
-        if declared.contains(kind) {
-            return Err(text.whole(format!("{kind} is the type of a hook, so an effect cannot declare it; choose another name")));
+        if let Some(name) = declared.iter().find(|name| name.text == kind) {
+            let message = format!("{kind} is the type of a hook; choose another name");
+            return Err(text.error(name.offset, name.text.len(), message));
         }
     }
+    // The library's file for pixels reads buffers, which passes with the other hooks do not have.
+    let has_others = hooks.vertex.is_some() || hooks.sample.is_some() || hooks.surface.is_some();
+    if has_others && uses.iter().any(|used| used == "lib/image") {
+        let name = functions.iter().map(|function| function.name).find(|name| hooks.image.as_deref() == Some(name.text));
+        let message = "only an effect with no other hook reads the picture; put the hook of Pixel and lib/image into a file of their own";
+        return Err(name.map_or_else(|| text.whole(message), |name| text.error(name.offset, name.text.len(), message)));
+    }
+    let constants = parameters::constants(text, stem, &parameters)?;
+    if let Some(name) = declared.iter().find(|name| constants.contains(name.text)) {
+        let message = format!("{} is the constant of a choice of this effect; choose another name", name.text);
+        return Err(text.error(name.offset, name.text.len(), message));
+    }
+    let declared = constants.into_iter().chain(declared.iter().map(|name| name.text.to_owned())).collect();
     let about = about(text.text);
-    Ok(Declaration { about, tokens, struct_name, parameters, hooks, declared, uses })
+    Ok(Declaration { about, tokens, struct_name: struct_name.text, parameters, hooks, declared, uses })
 }
 
-/// The head of the function whose `fn` is at `at`; also returns the index of the brace that opens its body.
-fn function<'a>(text: &Text<'a>, tokens: &[Token<'a>], at: usize, name: Token<'a>) -> (Function<'a>, usize) {
+/// Index behind the semicolon of the declaration at `at`.
+fn end_of_statement(text: &Text<'_>, tokens: &[Token<'_>], at: usize) -> Result<usize, EffectError> {
+    let marks = ["fn", "struct", "const", "alias", "{", ";"];
+    let end = (at + 1..tokens.len()).find(|&index| marks.contains(&tokens[index].text));
+    let closed = end.filter(|&end| tokens[end].text == ";");
+    closed.map(|end| end + 1).ok_or_else(|| {
+        let last = &tokens[end.map_or(tokens.len(), |end| end) - 1];
+        text.error(last.offset, last.text.len(), "a ; is missing after this")
+    })
+}
+
+/// The head of the function whose `fn` is at `at`, and whose body opens at `body`.
+fn function<'a>(text: &Text<'a>, tokens: &[Token<'a>], at: usize, name: Token<'a>, body: usize) -> Function<'a> {
     let close = closing(tokens, at + 2);
-    let body = (close..tokens.len()).find(|&index| tokens[index].text == "{").unwrap_or(tokens.len() - 1);
     let between = |from: usize, to: usize| -> String {
         let range = tokens.get(from..to).filter(|range| !range.is_empty());
         range.map_or(String::new(), |range| text.text[range[0].offset..range[range.len() - 1].end()].split_whitespace().collect())
@@ -120,17 +161,19 @@ fn function<'a>(text: &Text<'a>, tokens: &[Token<'a>], at: usize, name: Token<'a
             .unwrap_or(close)
     };
     let parameters = colons.iter().map(|&colon| between(colon + 1, end_of(colon))).collect();
+    let last_type = colons.last().and_then(|&colon| tokens.get(colon + 1)).copied().filter(Token::is_name);
     // The result follows `->`, which is two marks.
     let result = between(close + 3, body);
-    (Function { name, parameters, result }, body)
+    Function { name, parameters, last_type, result }
 }
 
 /// Which function is on which hook, and the struct of parameters that all of them take.
-fn hooks<'a>(text: &Text<'a>, functions: &[Function<'a>]) -> Result<(HookFunctions, &'a str), EffectError> {
+fn hooks<'a>(text: &Text<'a>, functions: &[Function<'a>]) -> Result<(HookFunctions, Token<'a>), EffectError> {
     let mut found: [Option<&Function<'a>>; 4] = [None; 4];
     for function in functions {
         let [first, second] = &function.parameters[..] else { continue };
-        let is_struct = second.starts_with(|c: char| c.is_ascii_uppercase()) && !HOOKS.iter().any(|(kind, ..)| kind == second);
+        let is_name = function.last_type.is_some_and(|name| name.text == second);
+        let is_struct = is_name && !words::is_predeclared(second) && !HOOKS.iter().any(|(kind, ..)| kind == second);
         let Some(hook) = HOOKS.iter().position(|(kind, result, _)| kind == first && *result == function.result) else {
             continue;
         };
@@ -147,6 +190,16 @@ fn hooks<'a>(text: &Text<'a>, functions: &[Function<'a>]) -> Result<(HookFunctio
         found[hook] = Some(function);
     }
     let Some(first) = found.iter().flatten().next() else {
+        let kind_of = |function: &Function<'_>| HOOKS.iter().find(|(kind, ..)| function.parameters.first().is_some_and(|first| first == kind));
+        if let Some((function, (kind, result, _))) = functions.iter().find_map(|function| Some((function, kind_of(function)?))) {
+            let name = function.name;
+            let message = format!(
+                "{0} takes a {kind} but is no hook; the signature of the hook is fn {0}(x: {kind}, p: Parameters) -> {result}, where \
+                 Parameters is a struct of this file",
+                name.text
+            );
+            return Err(text.error(name.offset, name.text.len(), message));
+        }
         let message = "no function has the signature of a hook: fn name(surface: Surface, p: Parameters) -> Surface, or the same with Vertex, \
                        with Pixel, or fn name(sample: Sample, p: Parameters) -> bool";
         return Err(text.whole(message));
@@ -160,8 +213,8 @@ fn hooks<'a>(text: &Text<'a>, functions: &[Function<'a>]) -> Result<(HookFunctio
     }
     let name = |hook: usize| found[hook].map(|function| function.name.text.to_owned());
     let hooks = HookFunctions { vertex: name(0), sample: name(1), sample_setup: None, surface: name(2), image: name(3) };
-    let at = text.text.find(&first.parameters[1]).unwrap_or(0);
-    Ok((hooks, &text.text[at..at + first.parameters[1].len()]))
+    let struct_name = first.last_type.expect("a hook's second parameter is a struct");
+    Ok((hooks, struct_name))
 }
 
 /// The lines `//@ use lib/NAME`.
@@ -186,59 +239,9 @@ fn uses(text: &Text<'_>) -> Result<Vec<String>, EffectError> {
     Ok(found)
 }
 
-/// Refuses what only kernels may do.
-fn refuse_names(text: &Text<'_>, tokens: &[Token<'_>]) -> Result<(), EffectError> {
-    const WORDS: [(&str, &str); 9] = [
-        ("workgroupBarrier", "barriers"),
-        ("storageBarrier", "barriers"),
-        ("textureBarrier", "barriers"),
-        ("workgroupUniformLoad", "workgroup memory"),
-        ("workgroup", "workgroup memory"),
-        ("storage", "bindings"),
-        ("uniform", "bindings"),
-        ("arrayLength", "bindings"),
-        ("private", "variables outside functions"),
-    ];
-    const BEGINNINGS: [(&str, &str); 8] = [
-        ("atomic", "atomics"),
-        ("texture", "textures"),
-        ("sampler", "textures"),
-        ("dpdx", "derivatives"),
-        ("dpdy", "derivatives"),
-        ("fwidth", "derivatives"),
-        ("subgroup", "subgroup operations"),
-        ("quad", "subgroup operations"),
-    ];
-    for (index, token) in tokens.iter().enumerate() {
-        let is_member = index > 0 && tokens[index - 1].text == ".";
-        // A word of the language stands before a parenthesis or inside angle brackets; anything else is a name of the author's.
-        let next = tokens.get(index + 1).map_or("", |token| token.text);
-        let before = if index > 0 { tokens[index - 1].text } else { "" };
-        let is_used = next == "(" || next == "<" || before == "<" || before == ":";
-        if is_member || !is_used || before == "fn" {
-            continue;
-        }
-        let word = WORDS.iter().find(|(word, _)| *word == token.text);
-        let begun = BEGINNINGS.iter().find(|(begin, _)| {
-            token
-                .text
-                .strip_prefix(begin)
-                .is_some_and(|rest| rest.is_empty() || rest.starts_with(|c: char| c.is_ascii_uppercase() || c == '_' || c.is_ascii_digit()))
-        });
-        if let Some((_, what)) = word.or(begun) {
-            return Err(text.error(
-                token.offset,
-                token.text.len(),
-                format!("{}: an effect has no {what}; it is a pure function of its arguments", token.text),
-            ));
-        }
-    }
-    Ok(())
-}
-
 /// The first sentence of the comment at the top of the file, without a leading `Name:`.
 fn about(text: &str) -> String {
-    let lines = text.lines().map(str::trim).skip_while(|line| line.is_empty());
+    let lines = text.trim_start_matches('\u{feff}').lines().map(str::trim).skip_while(|line| line.is_empty());
     let comment = lines.map_while(|line| line.strip_prefix("//").filter(|line| !line.starts_with('@')));
     let joined = comment.map(|line| line.trim_start_matches(['/', '!']).trim()).collect::<Vec<_>>().join(" ");
     let sentence = joined.split_inclusive(". ").next().unwrap_or_default().trim().trim_end_matches('.');

@@ -22,9 +22,16 @@ pub struct Place {
     pub column: u32,
     /// Characters that are marked, at least 1.
     pub length: u32,
-    /// The line of text.
+    /// The line of text, or the part of a long line around the place.
     pub text: String,
+    /// Characters of the line before `text`.
+    pub skipped: u32,
 }
+
+/// Characters of a line that messages show.
+const MAX_SHOWN: usize = 160;
+/// Characters of a message.
+const MAX_MESSAGE: usize = 600;
 
 impl Place {
     /// The place of `length` bytes at byte `offset` of `text`; an offset behind the end is the end.
@@ -35,12 +42,17 @@ impl Place {
         }
         let begin = text[..offset].rfind('\n').map_or(0, |at| at + 1);
         let end = text[offset..].find('\n').map_or(text.len(), |at| offset + at);
-        let marked = text.get(offset..(offset + length).min(end)).map_or(1, |marked| marked.chars().count().max(1));
+        let marked = text.get(offset..(offset + length).min(end)).map_or(1, |marked| marked.trim_end().chars().count().max(1));
+        let before = text[begin..offset].chars().count();
+        let skipped = if before + marked.min(MAX_SHOWN / 2) > MAX_SHOWN { before - MAX_SHOWN / 2 } else { 0 };
+        // One character takes one column, so that the caret stands below its place.
+        let shown = text[begin..end].trim_end().chars().skip(skipped).take(MAX_SHOWN);
         Self {
             line: text[..offset].matches('\n').count() as u32 + 1,
-            column: text[begin..offset].chars().count() as u32 + 1,
+            column: before as u32 + 1,
             length: marked as u32,
-            text: text[begin..end].trim_end().chars().take(200).collect(),
+            text: shown.map(|c| if c == '\t' { ' ' } else { c }).collect(),
+            skipped: skipped as u32,
         }
     }
 }
@@ -48,16 +60,26 @@ impl Place {
 impl fmt::Display for EffectError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let Some(place) = &self.place else { return write!(f, "{}: {}", self.file, self.message) };
-        let Place { line, column, length, text } = place;
+        let Place { line, column, length, text, skipped } = place;
         let number = line.to_string();
-        let (indent, dent) = (" ".repeat(number.len()), " ".repeat(*column as usize - 1));
+        let (indent, before) = (" ".repeat(number.len()), (*column - 1 - *skipped) as usize);
+        let dent = " ".repeat(before);
+        let marked = (*length as usize).min(MAX_SHOWN.saturating_sub(before)).max(1);
         writeln!(f, "{}:{line}:{column}: {}", self.file, self.message)?;
         writeln!(f, "  {number} | {text}")?;
-        write!(f, "  {indent} | {dent}{}", "^".repeat((*length).min(200) as usize))
+        write!(f, "  {indent} | {dent}{}", "^".repeat(marked))
     }
 }
 
 impl std::error::Error for EffectError {}
+
+/// A message in one line, without control characters and without a period at its end.
+fn sentence(message: &str) -> String {
+    let words = message.split(|c: char| c.is_whitespace() || c.is_control()).filter(|word| !word.is_empty());
+    let joined = words.collect::<Vec<_>>().join(" ");
+    let kept: String = joined.chars().take(MAX_MESSAGE).collect();
+    kept.trim_end_matches('.').to_owned()
+}
 
 /// A text that errors are about.
 #[derive(Clone, Copy, Debug)]
@@ -70,11 +92,16 @@ pub struct Text<'a> {
 impl Text<'_> {
     /// An error about `length` bytes at byte `offset`.
     pub fn error(&self, offset: usize, length: usize, message: impl Into<String>) -> EffectError {
-        EffectError { file: self.file.into(), place: Some(Place::of(self.text, offset, length)), message: message.into() }
+        EffectError { file: self.file.into(), place: Some(Place::of(self.text, offset, length)), message: sentence(&message.into()) }
+    }
+
+    /// The line, from 1, of byte `offset`.
+    pub fn line(&self, offset: usize) -> usize {
+        1 + self.text.bytes().take(offset).filter(|byte| *byte == b'\n').count()
     }
 
     /// An error about the file as a whole.
     pub fn whole(&self, message: impl Into<String>) -> EffectError {
-        EffectError { file: self.file.into(), place: None, message: message.into() }
+        EffectError { file: self.file.into(), place: None, message: sentence(&message.into()) }
     }
 }

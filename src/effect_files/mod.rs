@@ -2,21 +2,25 @@
 //! for the oracle.
 
 mod attributes;
+mod bounds;
 mod catalog;
 mod check;
 mod declaration;
 mod error;
+mod evaluated;
 mod parameters;
 mod read;
 mod rewrite;
 mod template;
 mod tokens;
 mod twin;
+mod words;
 
 pub use self::{
     catalog::{Catalog, CustomEffect},
     declaration::LIBRARY,
     error::{EffectError, Place},
+    evaluated::{EvaluatedError, evaluated},
     read::{MAX_BYTES, RESERVED_NAMES, check_name, read},
     rewrite::MAX_TURNS,
     template::{Hook, template},

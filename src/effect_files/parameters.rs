@@ -7,9 +7,15 @@ use super::{
     attributes::{self, Attribute},
     error::{EffectError, Text},
     tokens::{Token, closing},
+    words,
 };
-use crate::params::{Field, Param, ValueType, WgslType};
+use crate::{
+    effects::constant_name,
+    params::{Field, Param, ValueType, WgslType},
+};
 
+/// Longest name of a parameter.
+const MAX_NAME_CHARS: usize = 40;
 /// Most members of the struct.
 const MAX_MEMBERS: usize = 64;
 /// Names that preset files use beside those of parameters.
@@ -65,14 +71,15 @@ pub fn read(text: &Text<'_>, tokens: &[Token<'_>], open: usize) -> Result<Parame
             return Err(text.error(name.offset, name.text.len(), format!("the parameter {} needs a type", name.text)));
         }
         let end = (at + 2..close).find(|&index| tokens[index].text == ",").unwrap_or(close);
-        let kind = &text.text[tokens[at + 2].offset..tokens[end - 1].end()];
-        if RESERVED.contains(&name.text) {
-            return Err(text.error(
-                name.offset,
-                name.text.len(),
-                format!("a preset uses {} itself; give the parameter another name", name.text),
-            ));
+        if end == at + 2 {
+            return Err(text.error(name.offset, name.text.len(), format!("the parameter {} needs a type", name.text)));
         }
+        if let Some(other) = (at + 2..end).find(|&index| [":", ";", "@"].contains(&tokens[index].text)) {
+            let token = tokens[other];
+            return Err(text.error(token.offset, token.text.len(), format!("expected , between parameters, and found {}", token.text)));
+        }
+        check_name(text, *name)?;
+        let kind = &text.text[tokens[at + 2].offset..tokens[end - 1].end()];
         if fields.iter().any(|field: &Field| field.name == name.text) {
             return Err(text.error(name.offset, name.text.len(), format!("the parameter {} is declared twice", name.text)));
         }
@@ -94,6 +101,41 @@ pub fn read(text: &Text<'_>, tokens: &[Token<'_>], open: usize) -> Result<Parame
     let align = if fields.iter().any(|field| field.wgsl == WgslType::Vec4F32) { 4 } else { 1 };
     defaults.resize(defaults.len().next_multiple_of(align), 0);
     Ok(Parameters { fields: Box::leak(fields.into_boxed_slice()), defaults, attributes: ranges })
+}
+
+/// Refuses names that presets, the command line or WGSL could not write.
+fn check_name(text: &Text<'_>, name: Token<'_>) -> Result<(), EffectError> {
+    let is_letter = |c: char| c.is_ascii_alphanumeric() || c == '_';
+    let is_plain = name.text.starts_with(|c: char| c.is_ascii_alphabetic()) && name.text.chars().all(is_letter);
+    let message = if !is_plain || name.text.len() > MAX_NAME_CHARS {
+        format!("the name of a parameter begins with a letter and has at most {MAX_NAME_CHARS} letters a to z, digits and _")
+    } else if words::is_reserved(name.text) {
+        format!("{} is a reserved word of WGSL; give the parameter another name", name.text)
+    } else if RESERVED.contains(&name.text) {
+        format!("a preset uses {} itself; give the parameter another name", name.text)
+    } else {
+        return Ok(());
+    };
+    Err(text.error(name.offset, name.text.len(), message))
+}
+
+/// The constants that the choices of an effect called `stem` are given: `INK_MODE_DOTS`.
+///
+/// # Errors
+/// Two choices make the same name.
+pub fn constants(text: &Text<'_>, stem: &str, parameters: &Parameters) -> Result<BTreeSet<String>, EffectError> {
+    let mut constants = BTreeSet::new();
+    for field in parameters.fields {
+        let ValueType::Choice(words) = field.value_type else { continue };
+        for word in words {
+            let name = constant_name(stem, field.name, word);
+            if constants.contains(&name) {
+                return Err(text.whole(format!("two words of choices both have the constant {name}; change a word or the name of a parameter")));
+            }
+            constants.insert(name);
+        }
+    }
+    Ok(constants)
 }
 
 /// The comment lines directly above byte `offset`, joined.
@@ -173,6 +215,7 @@ impl<'a> Member<'a> {
         let mut param = Param::new(intern(self.name.text), intern(doc), value_type);
         if self.attribute("range").is_some() {
             let (range, _) = self.range("@range(min, max, default)")?;
+            self.check_ends("range", range, &param)?;
             param = param.hard(range[0]..=range[1]).soft(range[0]..=range[1]);
         }
         if let Some(hard) = self.attribute("hard") {
@@ -184,12 +227,14 @@ impl<'a> Member<'a> {
             if !(ends[0] <= soft[0] && soft[1] <= ends[1] && ends[0] < ends[1]) {
                 return Err(hard.error(self.text, "the range of @hard must be ascending and contain that of @range"));
             }
+            self.check_ends("hard", [ends[0], ends[1]], &Param::new("", "", value_type))?;
             (param.hard, param.soft) = ([ends[0], ends[1]], soft);
         }
         if let Some(unit) = self.attribute("unit") {
-            let [unit_text] = unit.arguments[..] else { return Err(unit.error(self.text, "@unit takes one word, for instance m or px")) };
-            if unit_text.is_empty() || unit_text.chars().count() > 8 {
-                return Err(unit.error(self.text, "@unit takes one word of at most 8 characters"));
+            let [unit_text] = unit.arguments[..] else { return Err(unit.error(self.text, "@unit takes one unit, for instance m or px")) };
+            let is_plain = !unit_text.contains("//") && !unit_text.contains("/*") && !unit_text.contains(char::is_control);
+            if unit_text.is_empty() || unit_text.chars().count() > 8 || !is_plain {
+                return Err(unit.error(self.text, "@unit takes a unit of at most 8 characters, for instance m or px"));
             }
             param = param.unit(intern(unit_text));
         }
@@ -208,6 +253,27 @@ impl<'a> Member<'a> {
             param = param.when(self.condition(when, known)?);
         }
         Ok((param, wgsl, default))
+    }
+
+    /// Refuses the ends of a range that the parameter's type does not have.
+    fn check_ends(&self, attribute: &str, [low, high]: [f64; 2], param: &Param) -> Result<(), EffectError> {
+        let is_whole = matches!(param.value_type, ValueType::I32 | ValueType::U32);
+        let (least, most) = match param.value_type {
+            ValueType::I32 => (f64::from(i32::MIN), f64::from(i32::MAX)),
+            ValueType::U32 => (0.0, f64::from(u32::MAX)),
+            _ => (f64::from(f32::MIN), f64::from(f32::MAX)),
+        };
+        let message = if is_whole && (low.fract() != 0.0 || high.fract() != 0.0) {
+            format!("the range of {} has whole numbers at its ends, because it is {}", self.name.text, self.kind)
+        } else if low < least || high > most {
+            format!("the range of {} lies within {least} and {most}, because it is {}", self.name.text, self.kind)
+        } else if !is_whole && low as f32 >= high as f32 {
+            format!("the range of {} is empty in f32; move its ends apart", self.name.text)
+        } else {
+            return Ok(());
+        };
+        let place = self.attribute(attribute);
+        Err(place.map_or_else(|| self.error(message.clone()), |place| place.error(self.text, message.clone())))
     }
 
     /// Range and default of `@range`.

@@ -1,11 +1,13 @@
 //! Reading: the text of an effect file becomes an effect with the hooks that its functions are on.
 
 use super::{
-    check, declaration,
+    check::{self, Parts},
+    declaration,
     error::{EffectError, Text},
     parameters::intern,
     rewrite,
     twin::{self, Function},
+    words,
 };
 use crate::{
     effects::{Effect, EffectSource, SurfaceInput, hooks::Hooks},
@@ -16,8 +18,8 @@ use crate::{
 pub const MAX_BYTES: usize = 64 << 10;
 /// Longest name of an effect.
 const MAX_NAME_CHARS: usize = 40;
-/// Names that mean something else in preset files and on the command line.
-pub const RESERVED_NAMES: [&str; 14] = [
+/// Names that mean something else in preset files, on the command line or in effect files.
+pub const RESERVED_NAMES: [&str; 18] = [
     "accuracy",
     "animation",
     "background",
@@ -26,12 +28,16 @@ pub const RESERVED_NAMES: [&str; 14] = [
     "effects",
     "light",
     "output",
+    "pixel",
     "playback",
     "polyline",
+    "sample",
     "scene",
     "schema",
     "stack",
+    "surface",
     "test",
+    "vertex",
 ];
 
 /// Is it a name that an effect may have?
@@ -44,16 +50,20 @@ pub fn check_name(name: &str) -> Result<(), String> {
         || !name.chars().all(is_letter)
         || name.len() > MAX_NAME_CHARS
         || name.contains("__")
+        || name.ends_with('_')
     {
         return Err(format!(
-            "is no name for an effect; it begins with a small letter and has at most {MAX_NAME_CHARS} small letters, digits and single _"
+            "is no name for an effect; it begins with a small letter and has at most {MAX_NAME_CHARS} small letters, digits and single _ between them"
         ));
+    }
+    if words::is_reserved(name) || words::is_predeclared(name) {
+        return Err("is a word of WGSL; choose another name".into());
     }
     if Effect::find(name).is_some() {
         return Err("is the name of a built-in effect; choose another".into());
     }
     if RESERVED_NAMES.contains(&name) {
-        return Err("has another meaning in presets; choose another name".into());
+        return Err("has another meaning in presets or effect files; choose another name".into());
     }
     Ok(())
 }
@@ -68,39 +78,42 @@ pub fn read(file: &str, stem: &str, written: &str) -> Result<&'static Effect, Ef
     if written.len() > MAX_BYTES {
         return Err(text.whole(format!("the file has {} bytes; an effect has at most {MAX_BYTES}", written.len())));
     }
-    let declaration = declaration::read(&text)?;
-    let needs_length = declaration.hooks.vertex.is_some() && rewrite::lengths(declaration.parameters.fields).next().is_none();
-    if needs_length {
-        return Err(
-            text.whole("a vertex effect needs an f32 parameter with @unit(m): it moves a vertex by at most the sum of these lengths")
-        );
-    }
+    let declaration = declaration::read(&text, stem)?;
     let fields = declaration.parameters.fields;
+    if let Some(vertex) = &declaration.hooks.vertex
+        && rewrite::lengths(fields).next().is_none()
+    {
+        let name = declaration.tokens.iter().find(|token| token.text == vertex);
+        let message = "a vertex effect needs an f32 parameter with @unit(m): it moves a vertex by at most the sum of these lengths";
+        return Err(name.map_or_else(|| text.whole(message), |name| text.error(name.offset, name.text.len(), message)));
+    }
     let defaults = declaration.parameters.defaults.clone();
-    let base = Effect {
+    let rewritten = rewrite::rewritten(stem, written, &declaration);
+    let source: &'static EffectSource = leak(EffectSource {
+        stem: stem.into(),
+        written: written.into(),
+        linked: rewritten.text.clone(),
+        functions: rewritten.functions.clone(),
+    });
+    let mut effect = Effect {
         name: intern(stem),
         about: intern(&declaration.about),
         hooks: Hooks::NONE,
         fields,
         defaults: Box::leak(Box::new(move || defaults.clone())),
-        wgsl_struct: intern(declaration.struct_name),
-        source: None,
+        wgsl_struct: intern(&EffectSource::unique(stem, declaration.struct_name)),
+        source: Some(source),
         base: None,
         is_repeatable: |_| true,
     };
-    // First the file as it stands, so that messages show the author's own names.
-    let plain = rewrite::plain(written, &declaration);
-    let source = EffectSource { stem: stem.into(), written: written.into(), linked: plain.clone(), functions: declaration.hooks.clone() };
-    check::check(&text, leak(Effect { source: Some(leak(source)), ..copy(&base) }))?;
-    let (linked, functions) = rewrite::linked(stem, &plain, &declaration);
-    let source = EffectSource { stem: stem.into(), written: written.into(), linked, functions };
-    let source: &'static EffectSource = leak(source);
-    let wgsl_struct = intern(&rewrite::unique(stem, declaration.struct_name));
-    let mut effect = Effect { source: Some(source), wgsl_struct, ..copy(&base) };
-    let checked = check::check(&text, leak(copy(&effect)))?;
+    let parts = Parts { text: &text, stem, declaration: &declaration, rewritten: &rewritten };
+    let checked = check::check(parts, leak(copy(&effect)))?;
     let function = |name: &str, precision: Precision| {
         let read = Function::new(&checked.module, &checked.linked.text, name, fields, precision);
-        read.map_err(|error| text.whole(error.to_string().replace(&rewrite::unique(stem, ""), "").replace('`', "")))
+        read.map_err(|error| {
+            let spans: Vec<naga::Span> = error.span().map(|span| naga::Span::new(span.start as u32, span.end as u32)).into_iter().collect();
+            check::error_at(parts, &checked.linked, &spans, &error.to_string())
+        })
     };
     let members: Vec<&str> = declaration.tokens.windows(2).filter(|pair| pair[0].text == ".").map(|pair| pair[1].text).collect();
     let hooks = &mut effect.hooks;
@@ -124,6 +137,19 @@ pub fn read(file: &str, stem: &str, written: &str) -> Result<&'static Effect, Ef
     // Any comparison in the text may be a step of color.
     hooks.has_steps = source.functions.surface.is_some() || source.functions.image.is_some();
     Ok(leak(effect))
+}
+
+/// The text of a file.
+///
+/// # Errors
+/// It is not UTF-8.
+pub fn decoded(text: &Text<'_>, bytes: Vec<u8>) -> Result<String, EffectError> {
+    String::from_utf8(bytes).map_err(|error| {
+        let valid = error.utf8_error().valid_up_to();
+        let lossy = String::from_utf8_lossy(error.as_bytes());
+        let message = "this byte is not UTF-8, and an effect file is UTF-8 text; save it in that encoding";
+        Text { text: &lossy, ..*text }.error(valid, 1, message)
+    })
 }
 
 /// Keeps a value as long as the program runs. Effects are few, and a reload keeps only files that changed.

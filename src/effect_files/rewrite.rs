@@ -5,49 +5,83 @@ use std::fmt::Write;
 
 use super::declaration::Declaration;
 use crate::{
-    effects::HookFunctions,
+    effects::{EffectSource, HookFunctions},
     params::{Field, ValueType},
 };
 
 /// Turns that the loops of one effect may take together in one invocation; every loop ends then.
 pub const MAX_TURNS: u32 = 4096;
 
-/// The text with its attributes blanked, so that lines and columns stay, and with the files that its hooks' types come from.
-pub fn plain(text: &str, declaration: &Declaration<'_>) -> String {
-    let mut bytes = text.as_bytes().to_vec();
+/// The text that is linked into kernels, and the way back from its bytes to those of the file.
+pub struct Rewritten {
+    pub text: String,
+    /// The functions on the hooks.
+    pub functions: HookFunctions,
+    pieces: Vec<Piece>,
+}
+
+/// A piece of the rewritten text that begins at byte `begin`.
+struct Piece {
+    begin: usize,
+    origin: Origin,
+}
+
+enum Origin {
+    /// Copied from the byte of the file.
+    Copied(usize),
+    /// Inserted at the byte of the file.
+    Inserted(usize),
+    /// Behind the end of the file.
+    Generated,
+}
+
+impl Rewritten {
+    /// The byte of the file that byte `offset` of the text comes from; none for generated text.
+    pub fn origin(&self, offset: usize) -> Option<usize> {
+        let piece = &self.pieces[self.pieces.partition_point(|piece| piece.begin <= offset).checked_sub(1)?];
+        match piece.origin {
+            Origin::Copied(from) => Some(from + offset - piece.begin),
+            Origin::Inserted(at) => Some(at),
+            Origin::Generated => None,
+        }
+    }
+
+    fn copy(&mut self, file: &str, from: usize, to: usize) {
+        self.pieces.push(Piece { begin: self.text.len(), origin: Origin::Copied(from) });
+        self.text.push_str(&file[from..to]);
+    }
+
+    fn insert(&mut self, text: &str, at: usize) {
+        self.pieces.push(Piece { begin: self.text.len(), origin: Origin::Inserted(at) });
+        self.text.push_str(text);
+    }
+}
+
+/// The text with spaces for comments and attributes: every token keeps its place.
+fn plain(text: &str, declaration: &Declaration<'_>) -> String {
+    let blank = |byte: u8| if byte == b'\n' { b'\n' } else { b' ' };
+    let mut bytes: Vec<u8> = text.bytes().map(blank).collect();
+    for token in &declaration.tokens {
+        bytes[token.offset..token.end()].copy_from_slice(token.text.as_bytes());
+    }
     for range in &declaration.parameters.attributes {
-        for byte in &mut bytes[range.clone()] {
-            if *byte != b'\n' {
-                *byte = b' ';
-            }
-        }
+        bytes[range.clone()].iter_mut().for_each(|byte| *byte = blank(*byte));
     }
-    let mut plain = String::from_utf8(bytes).expect("whole characters were replaced");
-    // Directives at the end move no line.
-    if !plain.ends_with('\n') {
-        plain.push('\n');
-    }
-    for used in &declaration.uses {
-        if !text
-            .lines()
-            .any(|line| line.trim().strip_prefix("//@").is_some_and(|rest| rest.trim().strip_prefix("use ").map(str::trim) == Some(used)))
-        {
-            writeln!(plain, "//@ use {used}").expect("writing to a string");
-        }
-    }
-    plain
+    String::from_utf8(bytes).expect("whole characters were replaced")
 }
 
-/// The name that `declared` of the file `stem` has in a linked module.
-pub fn unique(stem: &str, declared: &str) -> String {
-    format!("custom_{stem}_{declared}")
+/// The name of what the rewriting itself declares; no name of [`EffectSource::unique`] has this form.
+fn generated(stem: &str, what: &str) -> String {
+    format!("effect_{what}__{stem}")
 }
 
-/// The text that is linked into kernels, and its functions on the hooks. `plain` is the file after [`plain`].
-pub fn linked(stem: &str, plain: &str, declaration: &Declaration<'_>) -> (String, HookFunctions) {
+/// The text of the file `stem` as it is linked into kernels.
+pub fn rewritten(stem: &str, file: &str, declaration: &Declaration<'_>) -> Rewritten {
+    let plain = plain(file, declaration);
     let tokens = &declaration.tokens;
-    let counter = unique(stem, "turns");
-    let mut text = String::with_capacity(2 * plain.len());
+    let counter = generated(stem, "turns");
+    let text = String::with_capacity(2 * plain.len());
+    let mut result = Rewritten { text, functions: HookFunctions::default(), pieces: Vec::new() };
     let (mut copied, mut in_struct, mut has_loops) = (0, None, false);
     let mut loop_depth: Option<usize> = None;
     let mut depth = 0_usize;
@@ -59,7 +93,8 @@ pub fn linked(stem: &str, plain: &str, declaration: &Declaration<'_>) -> (String
             ")" | "]" => depth = depth.saturating_sub(1),
             "struct" if in_struct.is_none() => in_struct = Some(false),
             "}" => in_struct = None,
-            "loop" | "for" | "while" if before != "." => loop_depth = Some(depth),
+            ";" if loop_depth == Some(depth) => loop_depth = None,
+            "loop" | "for" | "while" if before != "." && in_struct.is_none() => loop_depth = Some(depth),
             _ => {}
         }
         if token.text == "{" {
@@ -67,28 +102,40 @@ pub fn linked(stem: &str, plain: &str, declaration: &Declaration<'_>) -> (String
                 *opened = true;
             }
             if loop_depth == Some(depth) {
-                text.push_str(&plain[copied..token.end()]);
-                write!(text, " {counter} += 1u; if {counter} > {MAX_TURNS}u {{ break; }}").expect("writing to a string");
+                result.copy(&plain, copied, token.end());
+                result.insert(&format!(" {counter} += 1u; if {counter} > {MAX_TURNS}u {{ break; }}"), token.end());
                 (copied, loop_depth, has_loops) = (token.end(), None, true);
             }
             continue;
         }
-        let is_attribute = declaration.parameters.attributes.iter().any(|range| range.contains(&token.offset));
+        let is_attribute = before == "@" || declaration.parameters.attributes.iter().any(|range| range.contains(&token.offset));
         let is_member_name = in_struct == Some(true) && next == ":";
         if token.is_name() && declaration.declared.contains(token.text) && before != "." && !is_member_name && !is_attribute {
-            text.push_str(&plain[copied..token.offset]);
-            text.push_str(&unique(stem, token.text));
-            copied = token.end();
+            result.copy(&plain, copied, token.offset);
+            let prefix = EffectSource::unique(stem, "");
+            result.insert(&prefix, token.offset);
+            copied = token.offset;
         }
     }
-    text.push_str(&plain[copied..]);
-    let reset = if has_loops { format!("    {counter} = 0u;\n") } else { String::new() };
-    if has_loops {
+    result.copy(&plain, copied, plain.len());
+    result.pieces.push(Piece { begin: result.text.len(), origin: Origin::Generated });
+    result.functions = append_hooks(stem, &mut result.text, declaration, has_loops.then_some(&counter));
+    result
+}
+
+/// Appends the files that are used, the counter of turns, and the functions that the kernels call.
+fn append_hooks(stem: &str, text: &mut String, declaration: &Declaration<'_>, counter: Option<&String>) -> HookFunctions {
+    text.push('\n');
+    for used in &declaration.uses {
+        writeln!(text, "//@ use {used}").expect("writing to a string");
+    }
+    if let Some(counter) = counter {
         writeln!(text, "var<private> {counter}: u32 = 0u;").expect("writing to a string");
     }
-    let parameters = unique(stem, declaration.struct_name);
+    let reset = counter.map_or(String::new(), |counter| format!("    {counter} = 0u;\n"));
+    let parameters = EffectSource::unique(stem, declaration.struct_name);
     let mut wrapped = |name: &Option<String>, hook: &str, kind: &str, result: &str| {
-        let (called, wrapper) = (unique(stem, name.as_ref()?), unique(stem, &format!("hook_{hook}")));
+        let (called, wrapper) = (EffectSource::unique(stem, name.as_ref()?), generated(stem, hook));
         let body = match hook {
             "vertex" => format!("    let moved = {called}(v, p);\n{}", limited(declaration)),
             _ => format!("    return {called}(v, p);\n"),
@@ -97,14 +144,24 @@ pub fn linked(stem: &str, plain: &str, declaration: &Declaration<'_>) -> (String
         Some(wrapper)
     };
     let hooks = &declaration.hooks;
-    let functions = HookFunctions {
+    HookFunctions {
         vertex: wrapped(&hooks.vertex, "vertex", "Vertex", "Vertex"),
         sample: wrapped(&hooks.sample, "sample", "Sample", "bool"),
         sample_setup: None,
         surface: wrapped(&hooks.surface, "surface", "Surface", "Surface"),
         image: wrapped(&hooks.image, "image", "Pixel", "Pixel"),
-    };
-    (text, functions)
+    }
+}
+
+/// A message about the linked text, with the names that the author wrote.
+pub fn in_names_of_author(stem: &str, declaration: &Declaration<'_>, message: &str) -> String {
+    let hooks = &declaration.hooks;
+    let named = [("vertex", &hooks.vertex), ("sample", &hooks.sample), ("surface", &hooks.surface), ("image", &hooks.image)];
+    let mut message = message.replace(&EffectSource::unique(stem, ""), "");
+    for (hook, name) in named {
+        message = message.replace(&generated(stem, hook), name.as_deref().unwrap_or(hook));
+    }
+    message.replace(&generated(stem, "turns"), "the counter of turns")
 }
 
 /// Lengths among the parameters: a vertex effect moves a vertex by at most their sum.

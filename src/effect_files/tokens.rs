@@ -24,10 +24,11 @@ fn is_word(c: char) -> bool {
     c.is_alphanumeric() || c == '_'
 }
 
-/// Bytes that a comment at the start of `text` takes; none without one. Block comments nest; an open one goes to the end.
-fn comment_length(text: &str) -> Option<usize> {
+/// Bytes that a comment at the start of `text` takes, none without one, and whether it is closed. Block comments nest; an open one goes
+/// to the end.
+fn comment(text: &str) -> Option<(usize, bool)> {
     if text.starts_with("//") {
-        return Some(text.find('\n').unwrap_or(text.len()));
+        return Some((text.find('\n').unwrap_or(text.len()), true));
     }
     if !text.starts_with("/*") {
         return None;
@@ -42,13 +43,27 @@ fn comment_length(text: &str) -> Option<usize> {
             depth -= 1;
             at += 2;
             if depth == 0 {
-                return Some(at);
+                return Some((at, true));
             }
         } else {
             at += rest.chars().next().map_or(1, char::len_utf8);
         }
     }
-    Some(text.len())
+    Some((text.len(), false))
+}
+
+/// Where a block comment begins that has no end.
+pub fn open_comment(text: &str) -> Option<usize> {
+    let mut at = 0;
+    while at < text.len() {
+        let rest = &text[at..];
+        match comment(rest) {
+            Some((_, false)) => return Some(at),
+            Some((length, true)) => at += length,
+            None => at += rest.chars().next().map_or(1, char::len_utf8),
+        }
+    }
+    None
 }
 
 /// The tokens of `text`.
@@ -56,7 +71,7 @@ pub fn tokens(text: &str) -> Vec<Token<'_>> {
     let mut found = Vec::new();
     let mut at = 0;
     while let Some(first) = text[at..].chars().next() {
-        if let Some(length) = comment_length(&text[at..]) {
+        if let Some((length, _)) = comment(&text[at..]) {
             at += length;
             continue;
         }
@@ -67,7 +82,8 @@ pub fn tokens(text: &str) -> Vec<Token<'_>> {
         } else {
             first.len_utf8()
         };
-        if !first.is_whitespace() {
+        let is_mark_of_order = at == 0 && first == '\u{feff}';
+        if !first.is_whitespace() && !is_mark_of_order {
             found.push(Token { text: &rest[..length], offset: at });
         }
         at += length;

@@ -6,7 +6,7 @@ use glam::{DVec2, DVec3, DVec4};
 
 use super::rewrite::lengths;
 use crate::{
-    effects::hooks::{ErrorBound, ImageHook, Picture, Pixel, ROUNDING, Sample, SampleHook, Surface, SurfaceFunction, Vertex, VertexHook},
+    effects::hooks::{ErrorBound, ImageHook, Picture, Pixel, ROUNDING, Sample, SampleHook, Surface, SurfaceFunction, TriangleSetup, Vertex, VertexHook},
     evaluator::{Host, LowerError, Machine, NoHost, Options, Precision, Program, Word},
     math::hash,
     params::{Field, WgslType},
@@ -25,6 +25,7 @@ const MAX_MACHINES: usize = 64;
 #[derive(Clone, Copy, Debug)]
 pub struct Function {
     program: &'static Program,
+    /// In the order of the struct.
     fields: &'static [Field],
 }
 
@@ -37,6 +38,9 @@ impl Function {
         let mut options = Options { precision, source: Some(text), externals: EXTERNALS.map(str::to_owned).to_vec(), ..Options::default() };
         options.limits.steps = MAX_STEPS;
         let program = Box::leak(Box::new(Program::new(module, name, &options)?));
+        let mut fields = fields.to_vec();
+        fields.sort_by_key(|field| field.offset);
+        let fields = Vec::leak(fields);
         Ok(Self { program, fields })
     }
 
@@ -142,6 +146,9 @@ pub fn surface(function: Function) -> &'static SurfaceFunction {
             s.barycentrics = DVec3::from_array(result.floats());
             s.edge_distance_px = DVec3::from_array(result.floats());
             [s.depth_m, s.pixel_size_m, s.flat_depth_m] = result.floats();
+            s.depth_range_m = DVec2::from_array(result.floats());
+            s.triangle_id = result.word().to_u32();
+            [s.rank, s.lit] = result.floats();
             s
         });
         read.unwrap_or(Surface { color: DVec4::NAN, ..s })
@@ -178,9 +185,12 @@ pub fn image(function: Function, reads_previous: bool) -> ImageHook {
         let mut arguments = Writer::default();
         arguments.floats(perturbed(q.color.to_array(), 0, strength)).whole(q.x).whole(q.y);
         let mut host = PictureHost(picture, q.y as usize * picture.width as usize + q.x as usize);
-        let color = function.call(arguments.0, words, &mut host, |result| DVec4::from_array(result.floats()));
-        q.color = color.unwrap_or(DVec4::NAN);
-        q
+        let read = function.call(arguments.0, words, &mut host, |result| {
+            q.color = DVec4::from_array(result.floats());
+            [q.x, q.y] = [result.word().to_u32(), result.word().to_u32()];
+            q
+        });
+        read.unwrap_or(Pixel { color: DVec4::NAN, ..q })
     };
     ImageHook { reads_previous, finish: Box::leak(Box::new(finish)) }
 }
@@ -200,6 +210,19 @@ pub fn sample(function: Function) -> SampleHook {
         sample_setup: &|_, _, _| [0; 4],
         is_drawn: Box::leak(Box::new(is_drawn)),
     }
+}
+
+/// What a sample effect computes for each triangle. The f64 side may be given the word that comes from floats; the text computes it anew.
+pub fn sample_setup(function: Function) -> &'static (dyn Fn(&TriangleSetup, &[u32], Option<u32>) -> [u32; 4] + Sync) {
+    Box::leak(Box::new(move |t: &TriangleSetup, words: &[u32], _: Option<u32>| {
+        let mut arguments = Writer::default();
+        arguments.whole(t.triangle);
+        t.corners.as_flattened().iter().for_each(|at| arguments.0.push(Word::from_i32(*at)));
+        arguments.whole(t.outline).whole(t.size[0]).whole(t.size[1]);
+        arguments.floats(t.center.to_array()).floats(t.center_screen.to_array());
+        let read = |result: &mut Reader<'_>| std::array::from_fn(|_| result.word().to_u32());
+        function.call(arguments.0, words, &mut NoHost, read).unwrap_or([0; 4])
+    }))
 }
 
 /// A corner with its members moved by up to `bound` times `strength`, by a hash of `turn`.

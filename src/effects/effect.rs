@@ -182,6 +182,18 @@ pub struct EffectSource {
     pub functions: HookFunctions,
 }
 
+/// The WGSL constant of one word of a choice: `HATCH_SPACE_SURFACE`.
+pub fn constant_name(stem: &str, field: &str, word: &str) -> String {
+    format!("{stem}_{field}_{word}").to_uppercase().replace('-', "_")
+}
+
+impl EffectSource {
+    /// The name that `declared` of the file `stem` has in a linked module. A stem has no `__`, so that no two files share a name.
+    pub fn unique(stem: &str, declared: &str) -> String {
+        format!("custom_{stem}__{declared}")
+    }
+}
+
 /// Names of an effect's WGSL functions in its linked text.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Hash)]
 pub struct HookFunctions {

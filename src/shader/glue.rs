@@ -4,7 +4,7 @@
 use std::fmt::Write;
 
 use crate::{
-    effects::{Effect, EnabledEffect},
+    effects::{Effect, EffectSource, EnabledEffect, constant_name},
     params::{Field, ValueType, WgslType},
     shader::key::{Fetch, KernelKey},
 };
@@ -25,7 +25,8 @@ pub fn effects(effects: &[&'static Effect], baked: &[Vec<u32>]) -> String {
         for field in effect.fields {
             if let ValueType::Choice(words) = field.value_type {
                 for (index, word) in words.iter().enumerate() {
-                    let name = format!("{}_{}_{word}", effect.file_stem(), field.name).to_uppercase().replace('-', "_");
+                    let name = constant_name(effect.file_stem(), field.name, word);
+                    let name = effect.source.map_or(name.clone(), |source| EffectSource::unique(&source.stem, &name));
                     writeln!(text, "const {name} = {index}u;").expect("writing to a string");
                 }
             }
@@ -111,7 +112,7 @@ impl Chain {
     }
 
     /// The effect's WGSL function: `<stem>` for an effect of one function, else `<stem>_<hook>`.
-    fn function(self, effect: &Effect) -> String {
+    pub fn function(self, effect: &Effect) -> String {
         if let Some(source) = effect.source {
             let functions = &source.functions;
             let name = match self {

@@ -7,6 +7,7 @@ mod accuracy;
 mod accuracy_axes;
 mod backends;
 mod culling;
+mod evaluator_gpu;
 mod extremes;
 mod oracle;
 mod specialization;

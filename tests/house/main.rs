@@ -3,6 +3,8 @@
 mod architecture;
 mod circles;
 mod cli;
+mod effect_files;
+mod evaluator;
 mod features;
 mod layout;
 mod loader;
@@ -13,3 +15,4 @@ mod registry;
 mod scenes;
 mod shaders;
 mod surface_inputs;
+mod twins;

@@ -21,14 +21,14 @@ use rasterlab::{
     },
 };
 
-fn key(fetch: Fetch, visibility: Visibility, has_queues: bool, effects: Vec<&'static Effect>) -> KernelKey {
+pub fn key(fetch: Fetch, visibility: Visibility, has_queues: bool, effects: Vec<&'static Effect>) -> KernelKey {
     let mut key = KernelKey::complete(fetch, visibility, effects);
     (key.paths.has_clipping, key.paths.has_medium, key.paths.has_large) = (has_queues, has_queues, has_queues);
     key.work.listed_tiles = has_queues;
     key
 }
 
-fn all_passes(key: &KernelKey) -> Vec<Pass> {
+pub fn all_passes(key: &KernelKey) -> Vec<Pass> {
     let mut passes = key.frame();
     passes.extend(key.passes(&[RasterPhase::Count]));
     if key.effects.dots.is_some() {
@@ -53,7 +53,7 @@ fn linked(key: &KernelKey, pass: Pass) -> Linked {
 }
 
 /// Validates one pass and returns the number of storage buffers it binds. Most keys share most texts: each text is validated once.
-fn validate(key: &KernelKey, pass: Pass) -> usize {
+pub fn validate(key: &KernelKey, pass: Pass) -> usize {
     static VALID: Mutex<BTreeMap<(String, &str, bool), usize>> = Mutex::new(BTreeMap::new());
     let valid = || VALID.lock().unwrap_or_else(|poisoned| poisoned.into_inner());
     let int64 = pass.phase() == Some(RasterPhase::Packed);

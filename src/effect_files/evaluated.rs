@@ -1,0 +1,62 @@
+//! Built-in effects by their own text: the hooks of an effect, evaluated in f64 from its WGSL as those of a file are. They are a third
+//! witness beside the kernels and the functions in Rust.
+
+use naga::valid::{Capabilities, ValidationFlags, Validator};
+
+use super::twin::{self, Function};
+use crate::{
+    effects::{
+        Effect,
+        hooks::{Hooks, SampleHook, VertexHook},
+    },
+    evaluator::{LowerError, Precision},
+    shader::{
+        glue::Chain,
+        library::Library,
+        link::{self, LinkError},
+    },
+};
+
+/// Why the text of an effect cannot be evaluated.
+#[derive(Debug, thiserror::Error)]
+pub enum EvaluatedError {
+    #[error(transparent)]
+    Link(#[from] LinkError),
+    #[error("{0}")]
+    Refused(String),
+    #[error(transparent)]
+    Lower(#[from] LowerError),
+}
+
+/// The hooks of `effect`, with each function of them evaluated from the text that the library has for it. Bounds stay as they are.
+///
+/// # Errors
+/// The text cannot be linked, is not valid, or uses what cannot be evaluated.
+pub fn evaluated(library: &Library, effect: &'static Effect) -> Result<Hooks, EvaluatedError> {
+    let linked = link::link_effect(library, effect)?;
+    let text = &linked.text;
+    let module = naga::front::wgsl::parse_str(text).map_err(|error| EvaluatedError::Refused(error.emit_to_string(text)))?;
+    let validated = Validator::new(ValidationFlags::all(), Capabilities::default()).validate(&module);
+    validated.map_err(|error| EvaluatedError::Refused(error.emit_to_string(text)))?;
+    let function = |chain: Chain, precision| Function::new(&module, text, &chain.function(effect), effect.fields, precision);
+    let mut hooks = effect.hooks;
+    if let Some(hook) = hooks.vertex {
+        let [double, single] = [Precision::Double, Precision::Single].map(|precision| function(Chain::Vertex, precision));
+        hooks.vertex = Some(VertexHook { moved: twin::vertex(double?, single?, hook.needs_triangle).moved, ..hook });
+    }
+    if let Some(hook) = hooks.sample {
+        let is_drawn = twin::sample(function(Chain::Sample, Precision::Double)?).is_drawn;
+        let sample_setup = match hook.has_setup {
+            true => twin::sample_setup(function(Chain::SampleSetup, Precision::Double)?),
+            false => hook.sample_setup,
+        };
+        hooks.sample = Some(SampleHook { is_drawn, sample_setup, ..hook });
+    }
+    if hooks.surface.is_some() {
+        hooks.surface = Some(twin::surface(function(Chain::Surface, Precision::Double)?));
+    }
+    if let Some(hook) = hooks.image {
+        hooks.image = Some(twin::image(function(Chain::Image, Precision::Double)?, hook.reads_previous));
+    }
+    Ok(hooks)
+}

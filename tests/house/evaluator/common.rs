@@ -1,0 +1,81 @@
+//! What the tests of the evaluator share: linked effects, and calls with typed values.
+
+use rasterlab::evaluator::{Limits, Machine, NoHost, Options, Precision, Program, Word};
+
+/// The text of a built-in effect with all that it uses.
+pub fn link(effect: &str) -> String {
+    let effect = rasterlab::effects::Effect::find(effect).expect("a built-in effect");
+    rasterlab::shader::link::link_effect(&rasterlab::shader::library::Library::Embedded, effect).expect("it links").text
+}
+
+/// A module that naga's validator accepts.
+pub fn parse(source: &str) -> naga::Module {
+    let module = naga::front::wgsl::parse_str(source).unwrap_or_else(|error| panic!("{}", error.emit_to_string(source)));
+    let validated = naga::valid::Validator::new(naga::valid::ValidationFlags::all(), naga::valid::Capabilities::all()).validate(&module);
+    if let Err(error) = validated {
+        panic!("{}", error.emit_to_string(source));
+    }
+    module
+}
+
+pub fn program_with(source: &str, function: &str, options: &Options) -> Program {
+    Program::new(&parse(source), function, options).unwrap_or_else(|error| panic!("{error}\n{source}"))
+}
+
+pub fn program(source: &str, function: &str) -> Program {
+    program_with(source, function, &Options::default())
+}
+
+pub fn single(source: &str, function: &str) -> Program {
+    program_with(source, function, &Options { precision: Precision::Single, ..Options::default() })
+}
+
+pub fn call(program: &Program, arguments: &[Word]) -> Vec<Word> {
+    let mut machine: Machine = program.machine();
+    machine.call(arguments, &mut NoHost).unwrap_or_else(|error| panic!("{error}")).to_vec()
+}
+
+pub fn floats(values: &[f64]) -> Vec<Word> {
+    values.iter().map(|&value| Word::from_f64(value)).collect()
+}
+
+pub fn to_floats(words: &[Word]) -> Vec<f64> {
+    words.iter().map(|word| word.to_f64()).collect()
+}
+
+pub fn limits(steps: u64) -> Limits {
+    Limits { steps, ..Limits::default() }
+}
+
+/// Random numbers that are the same in every run.
+pub struct Random(pub u64);
+
+impl Random {
+    pub fn bits(&mut self) -> u64 {
+        // Splitmix64.
+        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
+        let z = (self.0 ^ (self.0 >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+        let z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
+        z ^ (z >> 31)
+    }
+
+    /// In `low` to `high`, an f32.
+    pub fn float(&mut self, low: f64, high: f64) -> f64 {
+        let unit = (self.bits() >> 11) as f64 / (1u64 << 53) as f64;
+        f64::from((low + (high - low) * unit) as f32)
+    }
+
+    pub fn u32(&mut self, below: u32) -> u32 {
+        (self.bits() % u64::from(below)) as u32
+    }
+
+    pub fn unit_vector(&mut self) -> [f64; 3] {
+        loop {
+            let v = [self.float(-1.0, 1.0), self.float(-1.0, 1.0), self.float(-1.0, 1.0)];
+            let squared: f64 = v.iter().map(|x| x * x).sum();
+            if (0.01..1.0).contains(&squared) {
+                return v.map(|x| x / squared.sqrt());
+            }
+        }
+    }
+}
