@@ -72,7 +72,9 @@ fn check_brackets(text: &Text<'_>, tokens: &[Token<'_>]) -> Result<(), EffectErr
                 levels.push(Level { open: index, ..Level::default() });
                 let depth: usize = levels.iter().map(|level| 1 + level.branches).sum();
                 if depth > MAX_DEPTH + 1 {
-                    return error(format!("more than {MAX_DEPTH} brackets or else-if branches stand inside each other; move some into a function"));
+                    return error(format!(
+                        "more than {MAX_DEPTH} brackets or else-if branches stand inside each other; move some into a function"
+                    ));
                 }
             }
             ")" | "]" | "}" => {
@@ -163,9 +165,7 @@ fn check_arrays(text: &Text<'_>, tokens: &[Token<'_>]) -> Result<(), EffectError
         };
         if !elements.is_some_and(|elements| (1..=MAX_ELEMENTS).contains(&elements)) {
             let place = length.and_then(|length| length.first()).unwrap_or(token);
-            let message = format!(
-                "the length of an array is a whole number from 1 to {MAX_ELEMENTS}, or a const that is declared as one"
-            );
+            let message = format!("the length of an array is a whole number from 1 to {MAX_ELEMENTS}, or a const that is declared as one");
             return Err(text.error(place.offset, place.text.len(), message));
         }
         // Nested arrays multiply, and naga reads their types one inside the other.

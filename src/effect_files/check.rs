@@ -50,7 +50,9 @@ pub fn check(parts: Parts<'_>, effect: &'static Effect) -> Result<Checked, Effec
     let module = naga::front::wgsl::parse_str(&linked.text).map_err(|error| {
         let spans: Vec<naga::Span> = error.labels().map(|(span, _)| span).collect();
         let label = error.labels().next().map_or("", |(_, label)| label);
-        let adds_nothing = ["", "definition of", "unknown", "expected"].iter().any(|start| label.starts_with(start) && (!start.is_empty() || label.is_empty()));
+        let adds_nothing = ["", "definition of", "unknown", "expected"]
+            .iter()
+            .any(|start| label.starts_with(start) && (!start.is_empty() || label.is_empty()));
         let is_told = adds_nothing || error.message().contains(label.trim_matches('`'));
         let detail = if is_told { String::new() } else { format!(" ({label})") };
         error_at(parts, &linked, &spans, &format!("{}{detail}{}", error.message(), hint(error.message())))
@@ -88,7 +90,9 @@ fn told(causes: &[String]) -> String {
 
 /// Refusals that naga tells by the indices of its expressions.
 fn in_plain_words(cause: &str) -> Option<String> {
-    let number = |text: &str| text.split(|c: char| !c.is_ascii_digit()).find(|digits| !digits.is_empty()).and_then(|digits| digits.parse::<u32>().ok());
+    let number = |text: &str| {
+        text.split(|c: char| !c.is_ascii_digit()).find(|digits| !digits.is_empty()).and_then(|digits| digits.parse::<u32>().ok())
+    };
     if let Some(rest) = cause.strip_prefix("Operation ") {
         let operator = rest.split_whitespace().next().unwrap_or_default();
         return Some(format!("the operator {operator} does not take values of these types; convert one of them"));
@@ -98,7 +102,7 @@ fn in_plain_words(cause: &str) -> Option<String> {
     }
     if let Some(rest) = cause.strip_prefix("Requires ") {
         let (takes, given) = rest.split_once("but")?;
-        return Some(format!("the function takes {} arguments, and {} are given", number(takes)?, number(given)?));
+        return Some(format!("wrong number of arguments: the function takes {}, and {} are given", number(takes)?, number(given)?));
     }
     if cause.starts_with("Argument ") && cause.contains("doesn't match") {
         return Some(format!("argument {} has another type than the function's parameter; convert it", number(cause)? + 1));
@@ -111,7 +115,9 @@ fn hint(message: &str) -> String {
     let name = message.strip_prefix("no definition in scope for identifier: `").and_then(|rest| rest.strip_suffix('`'));
     let declares = |name: &str, file: &&str| {
         let text = Library::Embedded.text(&format!("lib/{file}"));
-        text.is_some_and(|text| [format!("\nfn {name}("), format!("\nconst {name} "), format!("\nstruct {name} ")].iter().any(|head| text.contains(head)))
+        text.is_some_and(|text| {
+            [format!("\nfn {name}("), format!("\nconst {name} "), format!("\nstruct {name} ")].iter().any(|head| text.contains(head))
+        })
     };
     let file = name.and_then(|name| declaration::LIBRARY.into_iter().find(|file| declares(name, file)));
     file.map_or(String::new(), |file| format!("; lib/{file} declares it: add the line //@ use lib/{file}"))

@@ -63,7 +63,11 @@ pub fn read<'a>(text: &Text<'a>, stem: &str) -> Result<Declaration<'a>, EffectEr
             (";", _) => at += 1,
             ("struct", Some(name)) => {
                 if opening != "{" {
-                    return Err(text.error(name.offset, name.text.len(), format!("the struct {0} has no members; write struct {0} {{ … }}", name.text)));
+                    return Err(text.error(
+                        name.offset,
+                        name.text.len(),
+                        format!("the struct {0} has no members; write struct {0} {{ … }}", name.text),
+                    ));
                 }
                 declared.push(name);
                 structs.push((name, at + 2));
@@ -190,7 +194,8 @@ fn hooks<'a>(text: &Text<'a>, functions: &[Function<'a>]) -> Result<(HookFunctio
         found[hook] = Some(function);
     }
     let Some(first) = found.iter().flatten().next() else {
-        let kind_of = |function: &Function<'_>| HOOKS.iter().find(|(kind, ..)| function.parameters.first().is_some_and(|first| first == kind));
+        let kind_of =
+            |function: &Function<'_>| HOOKS.iter().find(|(kind, ..)| function.parameters.first().is_some_and(|first| first == kind));
         if let Some((function, (kind, result, _))) = functions.iter().find_map(|function| Some((function, kind_of(function)?))) {
             let name = function.name;
             let message = format!(

@@ -130,7 +130,9 @@ pub fn constants(text: &Text<'_>, stem: &str, parameters: &Parameters) -> Result
         for word in words {
             let name = constant_name(stem, field.name, word);
             if constants.contains(&name) {
-                return Err(text.whole(format!("two words of choices both have the constant {name}; change a word or the name of a parameter")));
+                return Err(
+                    text.whole(format!("two words of choices both have the constant {name}; change a word or the name of a parameter"))
+                );
             }
             constants.insert(name);
         }

@@ -6,7 +6,9 @@ use glam::{DVec2, DVec3, DVec4};
 
 use super::rewrite::lengths;
 use crate::{
-    effects::hooks::{ErrorBound, ImageHook, Picture, Pixel, ROUNDING, Sample, SampleHook, Surface, SurfaceFunction, TriangleSetup, Vertex, VertexHook},
+    effects::hooks::{
+        ErrorBound, ImageHook, Picture, Pixel, ROUNDING, Sample, SampleHook, Surface, SurfaceFunction, TriangleSetup, Vertex, VertexHook,
+    },
     evaluator::{Host, LowerError, Machine, NoHost, Options, Precision, Program, Word},
     math::hash,
     params::{Field, WgslType},

@@ -41,7 +41,8 @@ pub(crate) fn evaluate<const SINGLE: bool>(op: Op, a: impl Fn() -> Word, b: impl
         Op::CoshF => f(libm::cosh(af())),
         Op::TanhF => f(libm::tanh(af())),
         Op::AsinhF => f(libm::asinh(af())),
-        Op::AcoshF => f(libm::acosh(af())),
+        // libm's is not NaN below 1.
+        Op::AcoshF => f(if af() < 1.0 { f64::NAN } else { libm::acosh(af()) }),
         Op::AtanhF => f(libm::atanh(af())),
         Op::ExpF => f(libm::exp(af())),
         Op::Exp2F => f(libm::exp2(af())),

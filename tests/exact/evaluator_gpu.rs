@@ -106,8 +106,25 @@ fn compare(kind: &str, expressions: &[&str], words: &[u32], is_same: impl Fn(usi
     assert!(faults.is_empty(), "{}", faults.join("\n"));
 }
 
-const WHOLE: [u32; 17] =
-    [0, 1, 2, 3, 7, 31, 32, 33, 100, 0x1234_5678, 0x5555_5555, 0x7fff_ffff, 0x8000_0000, 0x8000_0001, 0xffff_fff9, 0xffff_fffe, 0xffff_ffff];
+const WHOLE: [u32; 17] = [
+    0,
+    1,
+    2,
+    3,
+    7,
+    31,
+    32,
+    33,
+    100,
+    0x1234_5678,
+    0x5555_5555,
+    0x7fff_ffff,
+    0x8000_0000,
+    0x8000_0001,
+    0xffff_fff9,
+    0xffff_fffe,
+    0xffff_ffff,
+];
 
 #[test]
 fn whole_numbers_are_equal() {
@@ -141,13 +158,36 @@ fn whole_numbers_are_equal() {
         "f32(a)",
     ];
     let equal = |_: usize, _: [u32; 3], evaluated: u32, found: u32| evaluated == found;
-    compare("u32", &[&of_both[..], &["dot4U8Packed(a, b)", "pack4xU8(vec4u(a, b, c, a))", "unpack4xU8(a).y", "pack4xU8Clamp(vec4u(a, b, c, a))"]].concat(), &WHOLE, equal);
-    compare("i32", &[&of_both[..], &["-a", "sign(a)", "dot4I8Packed(u32(a), u32(b))", "pack4xI8(vec4i(a, b, c, a))", "unpack4xI8(u32(a)).y", "pack4xI8Clamp(vec4i(a, b, c, a))"]].concat(), &WHOLE, equal);
+    compare(
+        "u32",
+        &[&of_both[..], &["dot4U8Packed(a, b)", "pack4xU8(vec4u(a, b, c, a))", "unpack4xU8(a).y", "pack4xU8Clamp(vec4u(a, b, c, a))"]]
+            .concat(),
+        &WHOLE,
+        equal,
+    );
+    compare(
+        "i32",
+        &[
+            &of_both[..],
+            &[
+                "-a",
+                "sign(a)",
+                "dot4I8Packed(u32(a), u32(b))",
+                "pack4xI8(vec4i(a, b, c, a))",
+                "unpack4xI8(u32(a)).y",
+                "pack4xI8Clamp(vec4i(a, b, c, a))",
+            ],
+        ]
+        .concat(),
+        &WHOLE,
+        equal,
+    );
 }
 
 /// Values without subnormals, which adapters may flush.
 const FLOATS: [f32; 24] = [
-    0.0, 1.0, -1.0, 0.5, -0.5, 0.25, 1.5, -1.5, 2.5, -2.5, 0.1, -0.7, 0.999, 1.001, 3.3, -3.3, 7.75, 12.0, -31.5, 100.125, 1e-3, -1e-6, 1e4, 65536.0,
+    0.0, 1.0, -1.0, 0.5, -0.5, 0.25, 1.5, -1.5, 2.5, -2.5, 0.1, -0.7, 0.999, 1.001, 3.3, -3.3, 7.75, 12.0, -31.5, 100.125, 1e-3, -1e-6,
+    1e4, 65536.0,
 ];
 
 /// How far the adapter may be from the evaluator: (expression, allowed absolute difference at inputs a, b and c with result r; none
@@ -191,7 +231,17 @@ const WITHIN: &[Case] = &[
     ("a - b", |_, _, _, r| Some(ulp(r))),
     ("a * b", |_, _, _, r| Some(ulp(r))),
     ("a / b", |_, b, _, r| (b != 0.0).then(|| 2.5 * ulp(r))),
-    ("a % b", |a, b, _, _| (b != 0.0).then(|| 2.5 * ulp(a) + b.abs() * if (a / b).fract().abs() < 1e-6 || (a / b).abs() > 1e6 || (a / b).fract().abs() > 1.0 - 1e-6 { 1.0 + (a / b).abs() * 1e-6 } else { 1e-6 * (a / b).abs() })),
+    ("a % b", |a, b, _, _| {
+        (b != 0.0).then(|| {
+            2.5 * ulp(a)
+                + b.abs()
+                    * if (a / b).fract().abs() < 1e-6 || (a / b).abs() > 1e6 || (a / b).fract().abs() > 1.0 - 1e-6 {
+                        1.0 + (a / b).abs() * 1e-6
+                    } else {
+                        1e-6 * (a / b).abs()
+                    }
+        })
+    }),
     ("fract(a)", |a, _, _, _| Some(ulp(a))),
     ("modf(a).fract", |a, _, _, _| Some(ulp(a))),
     ("sqrt(abs(a))", |_, _, _, r| Some(5.0 * ulp(r))),

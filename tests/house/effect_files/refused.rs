@@ -70,7 +70,7 @@ fn statements_with_a_mistake() {
         ("var x: f16 = 1.0h;", ""),
         ("var x: «Missing;", "Missing"),
         ("let x = helper();", ""),
-        ("let x = «helper(1.0, 2.0);", "takes 1 arguments"),
+        ("let x = «helper(1.0, 2.0);", "takes 1, and 2"),
         ("let x = helper(true);", ""),
         ("helper(vec3f(1.0));", ""),
         ("let x = vec3f(1.0, 2.0);", ""),
@@ -124,7 +124,6 @@ fn statements_with_a_mistake() {
         ("s.color = «color[0];", "color"),
         ("let x = «hash(1u);", "//@ use lib/hash"),
         ("s.color = «color_pack(s.color);", ""),
-        ("let x = «custom_ink__helper(1.0);", ""),
     ];
     all(&cases, with_statements);
 }
@@ -361,7 +360,9 @@ fn hooks_with_a_mistake() {
     for empty in ["", "\n\n", "// nothing", "/* nothing */", "\u{feff}", "struct P { @range(0, 1, 0) x: f32 }"] {
         refused(empty, "no function has the signature");
     }
-    for (used, words) in [("lib/nothing", "may use"), ("stages/shade/resolve", "may use"), ("lib/frame", "may use"), ("glue/draws", "may use")] {
+    for (used, words) in
+        [("lib/nothing", "may use"), ("stages/shade/resolve", "may use"), ("lib/frame", "may use"), ("glue/draws", "may use")]
+    {
         refused(&format!("«//@ use {used}\n{}", with_declarations("")), words);
     }
     refused(&format!("«//@ binding var<uniform> x: u32;\n{}", with_declarations("")), "may use");
@@ -451,7 +452,8 @@ fn what_is_too_large_or_too_deep() {
     all(&arrays, |statement| with_statements(statement) + "const MANY = 5000;");
     let doubling: String = (1..30).map(|level| format!("struct S{level} {{ a: S{0}, b: S{0} }}\n", level - 1)).collect();
     refused(&with_declarations(&format!("struct S0 {{ x: vec4f }}\n{doubling}fn large(s: S29) -> f32 {{ return 1.0; }}")), "");
-    let tree: String = (1..40).map(|level| format!("fn t{level}(x: f32) -> f32 {{ return t{0}(x) + t{0}(x + 1.0); }}\n", level - 1)).collect();
+    let tree: String =
+        (1..40).map(|level| format!("fn t{level}(x: f32) -> f32 {{ return t{0}(x) + t{0}(x + 1.0); }}\n", level - 1)).collect();
     let text = with_statements("s.rank = t39(s.rank);") + "fn t0(x: f32) -> f32 { return x * x; }\n" + &tree;
     refused(&text, "needs more than");
     let chain: String = (1..1200).map(|level| format!("fn t{level}(x: f32) -> f32 {{ return t{}(x); }}\n", level - 1)).collect();

@@ -1,7 +1,7 @@
 //! Built-in functions that pack, and those of vectors and matrices, against formulas in plain Rust.
 
-use super::lattice::{Scalar, larger, one, smaller, two, vectors};
 use super::common::program;
+use super::lattice::{Scalar, larger, one, smaller, two, vectors};
 use rasterlab::evaluator::Word;
 
 #[test]

@@ -68,14 +68,4 @@ impl Random {
     pub fn u32(&mut self, below: u32) -> u32 {
         (self.bits() % u64::from(below)) as u32
     }
-
-    pub fn unit_vector(&mut self) -> [f64; 3] {
-        loop {
-            let v = [self.float(-1.0, 1.0), self.float(-1.0, 1.0), self.float(-1.0, 1.0)];
-            let squared: f64 = v.iter().map(|x| x * x).sum();
-            if (0.01..1.0).contains(&squared) {
-                return v.map(|x| x / squared.sqrt());
-            }
-        }
-    }
 }

@@ -1,8 +1,8 @@
 //! Random expressions on integers, against direct evaluation.
 
 use super::common::program;
-use rasterlab::evaluator::{NoHost, Word};
 use proptest::prelude::*;
+use rasterlab::evaluator::{NoHost, Word};
 
 #[derive(Clone, Debug)]
 enum Expr {

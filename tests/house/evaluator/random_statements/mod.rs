@@ -5,8 +5,8 @@ mod run;
 mod text;
 
 use super::common::{Random, program};
-use rasterlab::evaluator::{NoHost, Word};
 use proptest::prelude::*;
+use rasterlab::evaluator::{NoHost, Word};
 use run::{End, State, result, run};
 use text::{PRELUDE, RESULT, text};
 
