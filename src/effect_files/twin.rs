@@ -7,7 +7,8 @@ use glam::{DVec2, DVec3, DVec4};
 use super::rewrite::lengths;
 use crate::{
     effects::hooks::{
-        ErrorBound, ImageHook, Picture, Pixel, ROUNDING, Sample, SampleHook, Surface, SurfaceFunction, TriangleSetup, Vertex, VertexHook,
+        ErrorBound, ImageHook, Picture, Pixel, ROUNDING, Sample, SampleHook, SetupFunction, Surface, SurfaceFunction, TriangleSetup,
+        Vertex, VertexHook,
     },
     evaluator::{Host, LowerError, Machine, NoHost, Options, Precision, Program, Word},
     math::hash,
@@ -215,7 +216,7 @@ pub fn sample(function: Function) -> SampleHook {
 }
 
 /// What a sample effect computes for each triangle. The f64 side may be given the word that comes from floats; the text computes it anew.
-pub fn sample_setup(function: Function) -> &'static (dyn Fn(&TriangleSetup, &[u32], Option<u32>) -> [u32; 4] + Sync) {
+pub fn sample_setup(function: Function) -> &'static SetupFunction {
     Box::leak(Box::new(move |t: &TriangleSetup, words: &[u32], _: Option<u32>| {
         let mut arguments = Writer::default();
         arguments.whole(t.triangle);

@@ -255,8 +255,8 @@ const WITHIN: &[Case] = &[
         let log_error = if (0.5..=2.0).contains(&a.abs()) { 1.0 / 2_097_152.0 } else { 3.0 * ulp(log) };
         (a != 0.0).then(|| (3.0 + 2.0 * (b * log).abs() + 1.0) * ulp(r) + r.abs() * (b.abs() * log_error + ulp(b * log)))
     }),
-    ("sin(a)", |a, _, _, _| (a.abs() < 3.14159).then_some(1.0 / 2048.0)),
-    ("cos(a)", |a, _, _, _| (a.abs() < 3.14159).then_some(1.0 / 2048.0)),
+    ("sin(a)", |a, _, _, _| (a.abs() < std::f64::consts::PI).then_some(1.0 / 2048.0)),
+    ("cos(a)", |a, _, _, _| (a.abs() < std::f64::consts::PI).then_some(1.0 / 2048.0)),
     ("tan(a)", |a, _, _, r| (a.abs() < 1.1).then(|| (1.0 + r.abs()) / 2048.0 / a.cos().abs() + 2.5 * ulp(r))),
     ("asin(clamp(a, -1.0, 1.0))", |_, _, _, r| Some((4096.0 * ulp(r)).max(6.81e-5))),
     ("acos(clamp(a, -1.0, 1.0))", |_, _, _, r| Some((4096.0 * ulp(r)).max(6.81e-5))),

@@ -10,7 +10,7 @@ mod vertex;
 
 pub use front::{Front, Pattern};
 pub use image::{ImageEffect, ImageHook, Picture, Pixel};
-pub use sample::{Sample, SampleEffect, SampleHook, TriangleSetup};
+pub use sample::{Sample, SampleEffect, SampleHook, SetupFunction, TriangleSetup};
 pub use slot::{Layers, Shape, Slot};
 pub use surface::{Surface, SurfaceEffect, SurfaceInput};
 pub use vertex::{ErrorBound, ROUNDING, Vertex, VertexEffect, VertexHook};
