@@ -418,13 +418,13 @@ fn what_is_too_large_or_too_deep() {
             refused(&with_statements(&statement), "inside each other");
         }
         let statements = [
-            format!("let x = 1.0{};", " + 1.0".repeat(count.max(300).min(9000))),
+            format!("let x = 1.0{};", " + 1.0".repeat(count.clamp(300, 9000))),
             format!("let x = {}1.0;", "-".repeat(count.max(300))),
             format!("let x = {}true;", "!".repeat(count.max(300))),
             format!("let x = {}s;", "&*".repeat(count.max(300))),
             format!("let x = s{};", ".x".repeat(count.max(300))),
             format!("let x = s{};", "[0]".repeat(count.max(300))),
-            format!("let x = true{};", " && true".repeat(count.max(300).min(7000))),
+            format!("let x = true{};", " && true".repeat(count.clamp(300, 7000))),
         ];
         for statement in statements {
             refused(&with_statements(&statement), "operators");
