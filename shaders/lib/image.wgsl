@@ -19,6 +19,11 @@ fn image_has(x: i32, y: i32) -> bool {
     return all(vec2i(x, y) >= vec2i(0)) && all(vec2i(x, y) < vec2i(frame.size));
 }
 
+// Width and height of the picture, pixels.
+fn image_size() -> vec2u {
+    return frame.size;
+}
+
 fn image_background() -> vec4f {
     return frame.background;
 }

@@ -145,6 +145,9 @@ pub struct NewEffect {
     /// What the effect does: surface (what color is it), vertex (where is it), sample (is it drawn), pixel (finish the picture)
     #[arg(long, default_value = "surface", value_parser = Hook::parse)]
     pub hook: Hook,
+    /// Begin with the text of this effect instead
+    #[arg(long, value_name = "EFFECT", conflicts_with = "hook")]
+    pub from: Option<String>,
 }
 
 #[derive(Args, Debug)]

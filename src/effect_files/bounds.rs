@@ -34,7 +34,7 @@ fn check_characters(text: &Text<'_>) -> Result<(), EffectError> {
             '\n' | '\t' => true,
             '\r' => characters.peek().is_some_and(|(_, next)| *next == '\n'),
             '\u{feff}' => offset == 0,
-            '\u{2028}' | '\u{2029}' | '\u{200e}' | '\u{200f}' => false,
+            '\u{2028}' | '\u{2029}' | '\u{200e}' | '\u{200f}' | '\u{202a}'..='\u{202e}' | '\u{2066}'..='\u{2069}' => false,
             other => !other.is_control(),
         };
         if !is_allowed {

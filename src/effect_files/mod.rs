@@ -6,6 +6,7 @@ mod bounds;
 mod catalog;
 mod check;
 mod declaration;
+mod duplicate;
 mod error;
 mod evaluated;
 mod parameters;
@@ -19,6 +20,7 @@ mod words;
 pub use self::{
     catalog::{Catalog, CustomEffect},
     declaration::LIBRARY,
+    duplicate::duplicate,
     error::{EffectError, Place},
     evaluated::{EvaluatedError, evaluated},
     read::{MAX_BYTES, RESERVED_NAMES, check_name, read},

@@ -307,7 +307,7 @@ impl<'a> Member<'a> {
                     let is_letter = |c: char| c.is_ascii_lowercase() || c.is_ascii_digit() || c == '-' || c == '_';
                     !word.is_empty()
                         && word.chars().count() <= 40
-                        && word.starts_with(|c: char| c.is_ascii_lowercase())
+                        && word.starts_with(|c: char| c.is_ascii_lowercase() || c.is_ascii_digit())
                         && word.chars().all(is_letter)
                 };
                 let words = &widget.arguments;

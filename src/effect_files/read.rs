@@ -16,6 +16,9 @@ use crate::{
 
 /// Largest effect file, bytes.
 pub const MAX_BYTES: usize = 64 << 10;
+/// Most instructions of a hook that has loops, with all that it calls. Loops take [`rewrite::MAX_TURNS`] turns together, so that
+/// the product bounds what a pixel can cost.
+pub const MAX_LOOPED_INSTRUCTIONS: usize = 8192;
 /// Longest name of an effect.
 const MAX_NAME_CHARS: usize = 40;
 /// Names that mean something else in preset files, on the command line or in effect files.
@@ -110,10 +113,18 @@ pub fn read(file: &str, stem: &str, written: &str) -> Result<&'static Effect, Ef
     let checked = check::check(parts, leak(copy(&effect)))?;
     let function = |name: &str, precision: Precision| {
         let read = Function::new(&checked.module, &checked.linked.text, name, fields, precision);
-        read.map_err(|error| {
+        let function = read.map_err(|error| {
             let spans: Vec<naga::Span> = error.span().map(|span| naga::Span::new(span.start as u32, span.end as u32)).into_iter().collect();
             check::error_at(parts, &checked.linked, &spans, &error.to_string())
-        })
+        })?;
+        let length = function.instructions();
+        if rewritten.has_loops && length > MAX_LOOPED_INSTRUCTIONS {
+            let message = format!(
+                "the effect has {length} instructions with all that it calls; an effect with loops has at most {MAX_LOOPED_INSTRUCTIONS}"
+            );
+            return Err(text.whole(message));
+        }
+        Ok(function)
     };
     let members: Vec<&str> = declaration.tokens.windows(2).filter(|pair| pair[0].text == ".").map(|pair| pair[1].text).collect();
     let hooks = &mut effect.hooks;

@@ -17,6 +17,7 @@ pub struct Rewritten {
     pub text: String,
     /// The functions on the hooks.
     pub functions: HookFunctions,
+    pub has_loops: bool,
     pieces: Vec<Piece>,
 }
 
@@ -81,7 +82,7 @@ pub fn rewritten(stem: &str, file: &str, declaration: &Declaration<'_>) -> Rewri
     let tokens = &declaration.tokens;
     let counter = generated(stem, "turns");
     let text = String::with_capacity(2 * plain.len());
-    let mut result = Rewritten { text, functions: HookFunctions::default(), pieces: Vec::new() };
+    let mut result = Rewritten { text, functions: HookFunctions::default(), has_loops: false, pieces: Vec::new() };
     let (mut copied, mut in_struct, mut has_loops) = (0, None, false);
     let mut loop_depth: Option<usize> = None;
     let mut depth = 0_usize;
@@ -119,6 +120,7 @@ pub fn rewritten(stem: &str, file: &str, declaration: &Declaration<'_>) -> Rewri
     }
     result.copy(&plain, copied, plain.len());
     result.pieces.push(Piece { begin: result.text.len(), origin: Origin::Generated });
+    result.has_loops = has_loops;
     result.functions = append_hooks(stem, &mut result.text, declaration, has_loops.then_some(&counter));
     result
 }

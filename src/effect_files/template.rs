@@ -35,15 +35,19 @@ impl Hook {
     }
 }
 
+/// The name of the struct of an effect: `my_ink` is `MyInk`.
+pub fn type_name(name: &str) -> String {
+    let capital = |word: &str| word.chars().take(1).flat_map(char::to_uppercase).chain(word.chars().skip(1)).collect::<String>();
+    name.split('_').map(capital).collect()
+}
+
 /// The text of a new effect called `name`.
 pub fn template(name: &str, hook: Hook) -> String {
-    let words = name.split('_').filter(|word| !word.is_empty());
-    let type_name: String = words.map(|word| word[..1].to_uppercase() + &word[1..]).collect();
     let text = match hook {
         Hook::Surface => include_str!("templates/surface.wgsl"),
         Hook::Vertex => include_str!("templates/vertex.wgsl"),
         Hook::Sample => include_str!("templates/sample.wgsl"),
         Hook::Pixel => include_str!("templates/pixel.wgsl"),
     };
-    text.replace("NAME", name).replace("Type", &type_name)
+    text.replace("NAME", name).replace("Type", &type_name(name))
 }

@@ -18,7 +18,7 @@ use crate::{
 /// Instructions of one call. The loops of an effect end long before.
 const MAX_STEPS: u64 = 100_000_000;
 /// Functions of `lib/image` that read the picture.
-const EXTERNALS: [&str; 4] = ["image_has", "image_at", "image_background", "image_previous"];
+const EXTERNALS: [&str; 5] = ["image_has", "image_at", "image_background", "image_size", "image_previous"];
 /// How much the inputs of a color may be off on the f32 side, relative to the largest component of each.
 const INPUT_ERROR: f64 = 1.0 / (1 << 17) as f64;
 /// Machines that a thread keeps.
@@ -45,6 +45,11 @@ impl Function {
         fields.sort_by_key(|field| field.offset);
         let fields = Vec::leak(fields);
         Ok(Self { program, fields })
+    }
+
+    /// Length of the function with all that it calls.
+    pub fn instructions(&self) -> usize {
+        self.program.instructions()
     }
 
     /// Evaluates the function for arguments and parameter words; none if it does not end.
@@ -172,6 +177,7 @@ impl Host for PictureHost<'_> {
                 result.copy_from_slice(&[id.unwrap_or(u32::MAX), key, draw].map(Word::from_u32));
             }
             2 => result.copy_from_slice(&picture.background.to_array().map(Word::from_f64)),
+            3 => result.copy_from_slice(&[picture.width, picture.height].map(Word::from_u32)),
             _ => {
                 let background = picture.background.to_array().map(|c| (255.0 * c + 0.5).floor() as u32);
                 let bytes = picture.previous.map_or(background, |previous| previous[*pixel].map(u32::from));

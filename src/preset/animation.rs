@@ -244,6 +244,8 @@ pub fn default_easing(field: &Field) -> Easing {
 /// The keyframe with its value rounded as the field stores it.
 fn checked(effect: &Effect, field: &Field, key: Keyframe) -> Result<Keyframe, KeyframeError> {
     let Keyframe { time_s, value, easing } = key;
+    // -0 and 0 are one time.
+    let time_s = time_s + 0.0;
     if !(-MAX_TIME_S..=MAX_TIME_S).contains(&time_s) {
         return Err(KeyframeError::Time(time_s));
     }

@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use include_dir::{Dir, include_dir};
+use include_dir::{Dir, File, include_dir};
 
 use super::{
     error::PresetError,
@@ -66,12 +66,11 @@ pub fn user_effects_folder() -> Option<PathBuf> {
 }
 
 /// Every preset, sorted by id.
-pub fn gallery(sources: &Folders) -> Vec<GalleryEntry> {
-    let beside = std::env::current_exe().ok().and_then(|exe| Some(exe.parent()?.join("presets")));
-    let folders = [(Origin::Chosen, sources.presets.clone()), (Origin::Beside, beside), (Origin::User, user_folder())];
+pub fn gallery(folders: &Folders) -> Vec<GalleryEntry> {
     let mut entries: Vec<GalleryEntry> = Vec::new();
-    let on_disk = folders.into_iter().filter_map(|(origin, folder)| Some((origin, folder?)));
-    for entry in on_disk.flat_map(|(origin, folder)| folder_entries(origin, &folder, &sources.effects)).chain(builtin_entries()) {
+    let on_disk = places(folders).into_iter().flat_map(|(origin, folder)| folder_entries(origin, &folder, &folders.effects));
+    let built_in = BUILTIN_DIR.files().filter(|file| has_extension(file.path(), "toml")).map(builtin_entry);
+    for entry in on_disk.chain(built_in) {
         match entries.iter_mut().find(|winner| winner.id == entry.id) {
             Some(winner) => winner.shadows.push(entry.origin),
             None => entries.push(entry),
@@ -89,13 +88,18 @@ fn folder_entries(origin: Origin, folder: &Path, effects: &Catalog) -> Vec<Galle
         .collect()
 }
 
-fn builtin_entries() -> impl Iterator<Item = GalleryEntry> {
-    BUILTIN_DIR.files().filter(|file| has_extension(file.path(), "toml")).map(|file| {
-        let (id, name) = (stem(file.path()), format!("presets/{}", file.path().display()));
-        let text = file.contents_utf8().unwrap_or_default();
-        let preset_file = parse_file(text, &id, &name).map(|preset_file| PresetFile { read_only: true, ..preset_file });
-        GalleryEntry { id, origin: Origin::Builtin, path: None, preset_file, shadows: Vec::new() }
-    })
+fn builtin_entry(file: &File<'_>) -> GalleryEntry {
+    let (id, name) = (stem(file.path()), format!("presets/{}", file.path().display()));
+    let text = file.contents_utf8().unwrap_or_default();
+    let preset_file = parse_file(text, &id, &name).map(|preset_file| PresetFile { read_only: true, ..preset_file });
+    GalleryEntry { id, origin: Origin::Builtin, path: None, preset_file, shadows: Vec::new() }
+}
+
+/// The folders of presets on disk, in order of precedence.
+fn places(folders: &Folders) -> Vec<(Origin, PathBuf)> {
+    let beside = std::env::current_exe().ok().and_then(|exe| Some(exe.parent()?.join("presets")));
+    let places = [(Origin::Chosen, folders.presets.clone()), (Origin::Beside, beside), (Origin::User, user_folder())];
+    places.into_iter().filter_map(|(origin, folder)| Some((origin, folder?))).collect()
 }
 
 /// The folder of the user's presets: `rasterlab/presets` in the configuration folder of the system.
@@ -132,18 +136,27 @@ pub fn open(what: &str, folders: &Folders) -> Result<PresetFile, PresetError> {
         let absolute = std::path::absolute(path).map_err(|e| PresetError::Read { file: what.into(), reason: e.to_string() })?;
         return Ok(PresetFile { effects: folders.effects.clone(), ..PresetFile::of_scene(&stem(path), SceneSource::File(absolute)) });
     }
-    let entries = gallery(folders);
-    match entries.iter().position(|entry| entry.id == what) {
-        Some(index) => {
-            let opened = entries.into_iter().nth(index).expect("the index was just found").preset_file?;
-            Ok(PresetFile { effects: opened.effects.joined(&folders.effects), ..opened })
-        }
-        None => {
-            let hint = did_you_mean(what, entries.iter().map(|entry| entry.id.as_str()));
-            let hint = if hint.is_empty() { "; rasterlab list shows all of them".into() } else { hint };
-            Err(PresetError::NoPreset { what: what.into(), hint })
-        }
+    if let Some(found) = by_id(what, folders) {
+        return found;
     }
+    let entries = gallery(folders);
+    let hint = did_you_mean(what, entries.iter().map(|entry| entry.id.as_str()));
+    let hint = if hint.is_empty() { "; rasterlab list shows all of them".into() } else { hint };
+    Err(PresetError::NoPreset { what: what.into(), hint })
+}
+
+/// The preset called `id`, read from the first place that has it; no other preset is read.
+fn by_id(id: &str, folders: &Folders) -> Option<Result<PresetFile, PresetError>> {
+    if Path::new(id).file_name().is_none_or(|name| name != id) {
+        return None;
+    }
+    let file = format!("{id}.toml");
+    let on_disk = places(folders).into_iter().map(|(_, folder)| folder.join(&file)).find(|path| path.is_file());
+    if let Some(path) = on_disk {
+        return Some(load_with(&path, &folders.effects));
+    }
+    let built_in = builtin_entry(BUILTIN_DIR.get_file(&file)?).preset_file;
+    Some(built_in.map(|opened| PresetFile { effects: opened.effects.joined(&folders.effects), ..opened }))
 }
 
 fn has_extension(path: &Path, expected: &str) -> bool {

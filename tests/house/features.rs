@@ -6,7 +6,7 @@ use std::{collections::BTreeMap, process::Command};
 /// Features of every package, by name and version, that these edges of the dependency graph reach.
 fn features(edges: &str) -> BTreeMap<String, String> {
     let tree = Command::new(env!("CARGO"))
-        .args(["tree", "--offline", "--locked", "--prefix", "none", "--format", "{p}|{f}", "--edges", edges])
+        .args(["tree", "--color", "never", "--offline", "--locked", "--prefix", "none", "--format", "{p}|{f}", "--edges", edges])
         .current_dir(env!("CARGO_MANIFEST_DIR"))
         .output()
         .expect("cargo runs");

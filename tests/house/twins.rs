@@ -3,7 +3,7 @@
 
 use glam::{DVec2, DVec3, DVec4};
 use rasterlab::{
-    effect_files::evaluated,
+    effect_files::{duplicate, evaluated, read},
     effects::{
         EFFECTS, Effect,
         hooks::{Hooks, Picture, Pixel, Sample, Surface, TriangleSetup, Vertex},
@@ -259,4 +259,39 @@ fn image_functions_agree() {
             }
         },
     );
+}
+
+#[test]
+fn a_duplicate_of_an_effect_is_read_and_says_the_same() {
+    let (mut duplicates, mut refusals) = (0, Vec::new());
+    for effect in EFFECTS.iter().copied() {
+        let text = match duplicate(effect, "my_own") {
+            Ok(text) => text,
+            Err(reason) => {
+                refusals.push(format!("{} {reason}", effect.name));
+                continue;
+            }
+        };
+        let mine = read("my_own.wgsl", "my_own", &text).unwrap_or_else(|error| panic!("{}: {error}\n{text}", effect.name));
+        duplicates += 1;
+        assert_eq!(mine.fields.len(), effect.fields.len(), "{}", effect.name);
+        let (Some(expected), Some(given)) = (effect.hooks.surface, mine.hooks.surface) else { continue };
+        let mut rng = Rng(7);
+        for turn in 0..300 {
+            let words = parameters(&mut rng, effect, turn);
+            let mut own_words = (mine.defaults)();
+            for field in mine.fields {
+                let same = effect.field(field.name).unwrap_or_else(|| panic!("{}.{}", effect.name, field.name));
+                field.set(&mut own_words, &same.get(&words)).unwrap_or_else(|error| panic!("{}.{}: {error}", effect.name, field.name));
+            }
+            if turn == 0 {
+                assert_eq!(own_words, (mine.defaults)(), "{}: the defaults", effect.name);
+            }
+            let input = surface(&mut rng);
+            let [given, expected] = [given(input, &own_words), expected(input, &words)];
+            same(effect, "color", &given.color.to_array(), &expected.color.to_array(), &input);
+            same(effect, "normal", &given.normal.to_array(), &expected.normal.to_array(), &input);
+        }
+    }
+    assert!(duplicates >= 12, "{duplicates} duplicates; {refusals:#?}");
 }

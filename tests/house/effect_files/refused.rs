@@ -456,6 +456,12 @@ fn what_is_too_large_or_too_deep() {
         (1..40).map(|level| format!("fn t{level}(x: f32) -> f32 {{ return t{0}(x) + t{0}(x + 1.0); }}\n", level - 1)).collect();
     let text = with_statements("s.rank = t39(s.rank);") + "fn t0(x: f32) -> f32 { return x * x; }\n" + &tree;
     refused(&text, "needs more than");
+    // Long code may have no loops: together they would take too long on every pixel.
+    let looped = "for (var i = 0; i < 9; i += 1) { s.rank += t12(s.rank); }";
+    let text = with_statements(looped) + "fn t0(x: f32) -> f32 { return x * x; }\n" + &tree;
+    refused(&text, "an effect with loops has at most");
+    read_ink(&(with_statements("s.rank = t12(s.rank);") + "fn t0(x: f32) -> f32 { return x * x; }\n" + &tree))
+        .expect("without a loop it is read");
     let chain: String = (1..1200).map(|level| format!("fn t{level}(x: f32) -> f32 {{ return t{}(x); }}\n", level - 1)).collect();
     let text = with_statements("s.rank = t1199(s.rank);") + "fn t0(x: f32) -> f32 { return x * x; }\n" + &chain;
     refused(&text, "deep");
@@ -472,11 +478,12 @@ fn what_is_too_large_or_too_deep() {
 fn files_that_are_no_text() {
     let folder = tempfile::tempdir().expect("a folder");
     let mut catalog = Catalog::default();
-    let cases: [(&str, Vec<u8>, &str); 5] = [
+    let cases: [(&str, Vec<u8>, &str); 6] = [
         ("latin", b"// caf\xe9\nfn f() { }\n".to_vec(), "UTF-8"),
         ("wide", "fn f() { }".encode_utf16().flat_map(u16::to_le_bytes).collect(), "U+0000"),
         ("binary", (0..=255).collect(), ""),
         ("huge", vec![b' '; 1 << 20], "bytes"),
+        ("turned", "// \u{202e}hidden\n".into(), "U+202E"),
         ("nothing", Vec::new(), "no function"),
     ];
     for (name, bytes, words) in cases {
