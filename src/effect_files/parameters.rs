@@ -281,7 +281,7 @@ impl<'a> Member<'a> {
     /// Range and default of `@range`.
     fn range(&self, usage: &str) -> Result<([f64; 2], f64), EffectError> {
         let widget = self.widget(&["range"], usage)?;
-        let numbers = widget.numbers(self.text, (3, 4), "min, max, default and perhaps a step")?;
+        let numbers = widget.numbers(self.text, (3, 3), "min, max, default and nothing else")?;
         let (low, high, default) = (numbers[0], numbers[1], numbers[2]);
         if low >= high {
             return Err(widget.error(self.text, format!("the range {low}..={high} is empty; the first number must be the smaller one")));

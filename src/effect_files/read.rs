@@ -1,5 +1,7 @@
 //! Reading: the text of an effect file becomes an effect with the hooks that its functions are on.
 
+use std::{collections::BTreeMap, sync::Mutex};
+
 use super::{
     check::{self, Parts},
     declaration,
@@ -12,6 +14,7 @@ use super::{
 use crate::{
     effects::{Effect, EffectSource, SurfaceInput, hooks::Hooks},
     evaluator::Precision,
+    shader::library::Library,
 };
 
 /// Largest effect file, bytes.
@@ -22,14 +25,17 @@ pub const MAX_LOOPED_INSTRUCTIONS: usize = 8192;
 /// Longest name of an effect.
 const MAX_NAME_CHARS: usize = 40;
 /// Names that mean something else in preset files, on the command line or in effect files.
-pub const RESERVED_NAMES: [&str; 18] = [
+pub const RESERVED_NAMES: [&str; 22] = [
+    "about",
     "accuracy",
     "animation",
     "background",
     "camera",
     "clock",
+    "effect_files",
     "effects",
     "light",
+    "name",
     "output",
     "pixel",
     "playback",
@@ -39,6 +45,7 @@ pub const RESERVED_NAMES: [&str; 18] = [
     "schema",
     "stack",
     "surface",
+    "tags",
     "test",
     "vertex",
 ];
@@ -71,11 +78,25 @@ pub fn check_name(name: &str) -> Result<(), String> {
     Ok(())
 }
 
-/// Reads the effect `stem` from the text of its file, which messages call `file`.
+/// Reads the effect `stem` from the text of its file, which messages call `file`. Equal texts of one name give the same effect, which
+/// is checked once: every preset of a folder asks for the effects beside it.
 ///
 /// # Errors
 /// The first fault, at its line.
 pub fn read(file: &str, stem: &str, written: &str) -> Result<&'static Effect, EffectError> {
+    static READ: Mutex<BTreeMap<(String, String), &'static Effect>> = Mutex::new(BTreeMap::new());
+    let known = || READ.lock().unwrap_or_else(std::sync::PoisonError::into_inner);
+    // Files that use a folder of shaders are checked against that folder as it is now.
+    let is_kept = matches!(Library::from_env(), Library::Embedded);
+    let key = (stem.to_owned(), written.to_owned());
+    if let Some(effect) = known().get(&key).filter(|_| is_kept) {
+        return Ok(effect);
+    }
+    let effect = read_anew(file, stem, written)?;
+    Ok(if is_kept { known().entry(key).or_insert(effect) } else { effect })
+}
+
+fn read_anew(file: &str, stem: &str, written: &str) -> Result<&'static Effect, EffectError> {
     let text = Text { file, text: written };
     check_name(stem).map_err(|reason| text.whole(format!("{stem:?} {reason}")))?;
     if written.len() > MAX_BYTES {

@@ -139,7 +139,11 @@ pub fn open(what: &str, folders: &Folders) -> Result<PresetFile, PresetError> {
     if let Some(found) = by_id(what, folders) {
         return found;
     }
-    let entries = gallery(folders);
+    let mut entries = gallery(folders);
+    // A file whose extension is written in capitals, for instance.
+    if let Some(at) = entries.iter().position(|entry| entry.id == what) {
+        return entries.swap_remove(at).preset_file;
+    }
     let hint = did_you_mean(what, entries.iter().map(|entry| entry.id.as_str()));
     let hint = if hint.is_empty() { "; rasterlab list shows all of them".into() } else { hint };
     Err(PresetError::NoPreset { what: what.into(), hint })

@@ -8,6 +8,7 @@ use std::{
 
 use rasterlab::{
     cli::gallery,
+    effect_files::check_name,
     effects::EFFECTS,
     preset::settings::{SECTIONS, settings},
     preset_file::{self, BUILTIN_DIR, PresetFile},
@@ -164,4 +165,12 @@ fn parameters_are_documented_and_their_ranges_nest() {
             assert!(field.get(&defaults).iter().all(|lane| (low..=high).contains(lane)), "{name}: its default is outside its hard range");
         }
     }
+}
+
+#[test]
+fn no_effect_file_can_take_the_name_of_a_setting_or_a_section() {
+    let tops = settings().filter(|setting| setting.section.is_empty()).map(|setting| setting.name);
+    let names = SECTIONS.iter().map(|section| section.name).filter(|name| !name.is_empty()).chain(tops);
+    let free: Vec<&str> = names.filter(|name| check_name(name).is_ok()).collect();
+    assert!(free.is_empty(), "{free:?} would hide an effect file of that name from --set");
 }

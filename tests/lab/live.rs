@@ -84,7 +84,7 @@ fn an_effect_that_is_edited_is_seen_breaks_and_heals() {
     assert!(has_badge(&lab, "return t;"));
     assert_eq!(count(&lab, "ink.wgsl:12:12:"), 1, "{}", lab.state().log_text());
     assert_eq!(middle_pixel(&mut lab), seen, "the last good picture went away");
-    lab.run_steps(400); // It does not go away by itself.
+    lab.run_steps(400); // The badge stays until the file is mended.
     assert!(has_badge(&lab, "ink.wgsl:12:12:"));
 
     // By another file that takes its place, as many editors save.

@@ -34,7 +34,7 @@ struct Ink {
     @choice(plain, cross-hatch) @default(cross-hatch) mode: u32,
     @range(0.0, 1.0, 0.5) @hard(-4, 4) @unit(m) @when(mode, plain) amount: f32,
     @range(-8, 8, -3) offset: i32,
-    @range(1, 9, 3, 1) count: u32,
+    @range(1, 9, 3) count: u32,
     @toggle(1) helper: u32,
     @color(1.0, 0.5, 0.25) tint: vec4f,
     @point(1.0, -2.0, 3.5) at: vec4<f32>,

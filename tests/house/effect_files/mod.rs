@@ -1,4 +1,4 @@
-//! Promise: an effect file is read, or refused with one sentence at its place in the file, whatever it holds; and what is read links and
+//! Promise: an effect file is read, or refused with one sentence at its place in the file; and what is read links and
 //! validates in every pass, alone, beside effects that declare the same names, and beside all built-in effects. Needs no adapter.
 
 mod accepted;

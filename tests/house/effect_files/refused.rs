@@ -260,6 +260,7 @@ fn members_with_a_mistake() {
         ("«@range amount: f32,", "takes"),
         ("@range(0.0, 1.0, 0.5 amount: f32,", "must close"),
         ("«@range(0, 1, 0, 1, 2) amount: f32,", "takes"),
+        ("«@range(0, 1, 0, 0.1) amount: f32,", "takes min, max, default and nothing else"),
         ("«@range(0.5, 4, 1) count: u32,", "whole"),
         ("@range(0, 4, 1.5) «count: u32,", "whole"),
         ("«@range(-1, 4, 1) count: u32,", ""),
