@@ -25,7 +25,7 @@ use crate::{
     gpu::{Gpu, Renderer},
     oracle,
     preset::{AccuracyRequest, Preset},
-    preset_file::{self, PresetFile, Provenance},
+    preset_file::{self, Existing, PresetFile, Provenance},
     scene::{Scene, view::View},
 };
 
@@ -238,6 +238,7 @@ fn export(
     let mut renderer = Renderer::new(gpu);
     renderer.set_scene(scene).map_err(|e| e.to_string())?;
     let capture = renderer.capture(view, stack, accuracy).map_err(|e| e.to_string())?;
-    let png = preset_file::png_with_preset(&capture.into_shown(), preset_file, &provenance).map_err(|e| e.to_string())?;
-    preset_file::write_atomically(path, &png).map_err(|e| e.to_string())
+    let png =
+        preset_file::png_with_preset(&capture.into_shown(), &preset_file.for_picture(path), &provenance).map_err(|e| e.to_string())?;
+    preset_file::write_atomically(path, &png, Existing::Replace).map_err(|e| e.to_string())
 }

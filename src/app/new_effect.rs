@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use super::{log::Level, reload::add_effect_file, state::State};
 use crate::{
     effect_files::{Hook, template},
-    preset_file::{self, user_effects_folder},
+    preset_file::{self, Existing, user_effects_folder},
 };
 
 /// Writes the template of a new effect, enables it, and opens it in the user's editor.
@@ -15,8 +15,9 @@ pub fn create(state: &mut State, name: &str, hook: Hook) {
         return state.notify(Level::Error, format!("{} exists; choose another name", path.display()));
     }
     let made = path.parent().map_or(Ok(()), std::fs::create_dir_all).map_err(|error| error.to_string());
-    let written =
-        made.and_then(|()| preset_file::write_atomically(&path, template(name, hook).as_bytes()).map_err(|error| error.to_string()));
+    let written = made.and_then(|()| {
+        preset_file::write_atomically(&path, template(name, hook).as_bytes(), Existing::Keep).map_err(|error| error.to_string())
+    });
     if let Err(error) = written {
         return state.notify(Level::Error, format!("{}: it cannot be written: {error}", path.display()));
     }

@@ -16,7 +16,7 @@ use crate::{
     effects::Effect,
     measure::compare::pictures,
     preset::{GoldenTest, Output, Preset},
-    preset_file::{self, PresetFile},
+    preset_file::{self, Existing, PresetFile},
 };
 
 pub fn run(common: &Common, args: &Bless, streams: &mut Streams) -> Result<Exit, CliError> {
@@ -102,8 +102,8 @@ fn store(mut preset_file: PresetFile, is_new: bool, golden: &Golden, args: &Bles
     if changes {
         std::fs::create_dir_all(&args.snapshots)?;
         let [png, sidecar] = golden::paths(&args.snapshots, &preset_file.id);
-        files::write(&png, &golden.png)?;
-        files::write(&sidecar, golden.sidecar.as_bytes())?;
+        files::write(&png, &golden.png, Existing::Replace)?;
+        files::write(&sidecar, golden.sidecar.as_bytes(), Existing::Replace)?;
     }
     Ok(())
 }

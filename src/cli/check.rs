@@ -33,9 +33,9 @@ pub fn run(common: &Common, args: &Check, streams: &mut Streams) -> Result<Exit,
     }
     bar.finish_and_clear();
     if let Some(report) = &args.report {
-        let path = files::target(report, &Names { preset: "report".into(), ..Names::default() }, common.force)?;
         let adapter = backend.as_ref().map_or("none", Backend::name);
-        files::write(&path, report::html(&findings, adapter)?.as_bytes())?;
+        let names = Names { preset: "report".into(), ..Names::default() };
+        files::create(report, &names, common.force, report::html(&findings, adapter)?.as_bytes())?;
     }
     let adapter = backend.as_ref().map_or(Value::Null, Backend::json);
     if streams.json {

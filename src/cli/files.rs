@@ -6,10 +6,13 @@ use std::{
 };
 
 use super::error::CliError;
-use crate::preset_file;
+use crate::preset_file::{self, Existing, PresetError, is_taken};
 
 /// Longest text taken from stdin, bytes.
 const MAX_STDIN: u64 = 1 << 20;
+
+/// Largest number of a numbered file, so that the search for a free one ends.
+const MAX_NUMBER: usize = 999_999;
 
 /// What the placeholders of a template stand for.
 #[derive(Clone, Debug, Default)]
@@ -38,23 +41,49 @@ pub fn stdin_text() -> Result<String, CliError> {
 /// A malformed template, or an existing file without `force`.
 pub fn target(template: &str, names: &Names, force: bool) -> Result<PathBuf, CliError> {
     if has_number(template)? {
-        // Bounded, so that the search ends.
-        for n in 1..1_000_000 {
-            let path = PathBuf::from(expand(template, names, n)?);
-            if !path.exists() {
-                return Ok(path);
-            }
-        }
-        return Err(CliError::usage(format!("{template}: every number up to 999999 is taken")));
+        return free_number(template, names, 1).map(|(_, path)| path);
     }
     let path = PathBuf::from(expand(template, names, 0)?);
-    if path.exists() && !force {
-        return Err(CliError::usage(format!(
-            "{} exists; use --force to overwrite it, or {{n}} in the name to number files",
-            path.display()
-        )));
+    if is_taken(&path) && !force {
+        return Err(exists(&path));
     }
     Ok(path)
+}
+
+/// Writes the whole file or nothing under the name that `template` gives, and returns it. A file that another process wrote in the
+/// meantime stays: with `{n}` the next free number is taken.
+///
+/// # Errors
+/// As [`target`], or the file cannot be written.
+pub fn create(template: &str, names: &Names, force: bool, bytes: &[u8]) -> Result<PathBuf, CliError> {
+    if !has_number(template)? {
+        let path = PathBuf::from(expand(template, names, 0)?);
+        write(&path, bytes, if force { Existing::Replace } else { Existing::Keep })?;
+        return Ok(path);
+    }
+    let mut from = 1;
+    loop {
+        let (n, path) = free_number(template, names, from)?;
+        match preset_file::write_atomically(&path, bytes, Existing::Keep) {
+            Err(PresetError::Exists { .. }) => from = n + 1,
+            written => return Ok(written.map(|()| path)?),
+        }
+    }
+}
+
+/// The first number from `from` up whose name is free, with its file.
+fn free_number(template: &str, names: &Names, from: usize) -> Result<(usize, PathBuf), CliError> {
+    for n in from..=MAX_NUMBER {
+        let path = PathBuf::from(expand(template, names, n)?);
+        if !is_taken(&path) {
+            return Ok((n, path));
+        }
+    }
+    Err(CliError::usage(format!("{template}: every number up to {MAX_NUMBER} is taken")))
+}
+
+fn exists(path: &Path) -> CliError {
+    CliError::usage(format!("{} exists; use --force to overwrite it, or {{n}} in the name to number files", path.display()))
 }
 
 /// The file of a frame of a sequence; it may exist.
@@ -68,8 +97,11 @@ pub fn has_frame(template: &str) -> Result<bool, CliError> {
 }
 
 /// Writes the whole file or nothing.
-pub fn write(path: &Path, bytes: &[u8]) -> Result<(), CliError> {
-    Ok(preset_file::write_atomically(path, bytes)?)
+pub fn write(path: &Path, bytes: &[u8], existing: Existing) -> Result<(), CliError> {
+    preset_file::write_atomically(path, bytes, existing).map_err(|error| match error {
+        PresetError::Exists { .. } => exists(path),
+        error => error.into(),
+    })
 }
 
 /// Does the template number files?

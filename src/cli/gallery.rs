@@ -8,7 +8,7 @@ use super::{
 };
 use crate::{
     effects::{EFFECTS, Effect},
-    preset_file::BUILTIN_DIR,
+    preset_file::{BUILTIN_DIR, Existing},
 };
 
 /// The lines before and after the table.
@@ -25,7 +25,7 @@ pub fn run(args: &Gallery, streams: &mut Streams) -> Result<Exit, CliError> {
     let new = replaced(&text, &table)
         .ok_or_else(|| CliError::usage(format!("{shown} has no gallery markers; add the lines {:?} and {:?}", MARKERS[0], MARKERS[1])))?;
     if new != text {
-        files::write(path, new.as_bytes())?;
+        files::write(path, new.as_bytes(), Existing::Replace)?;
     }
     streams.note(&format!("{shown}: {}", if new == text { "the gallery is up to date" } else { "the gallery was updated" }));
     Ok(Exit::Done)

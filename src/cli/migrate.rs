@@ -10,7 +10,7 @@ use super::{
     files,
     streams::Streams,
 };
-use crate::preset_file::{self, Migrated, migrate::CURRENT};
+use crate::preset_file::{self, Existing, Migrated, migrate::CURRENT};
 
 pub fn run(args: &Migrate, streams: &mut Streams) -> Result<Exit, CliError> {
     let mut results = Vec::new();
@@ -22,7 +22,7 @@ pub fn run(args: &Migrate, streams: &mut Streams) -> Result<Exit, CliError> {
             streams.text(&diff(file, migrated))?;
         }
         if changes && args.write {
-            files::write(file, migrated.after.as_bytes())?;
+            files::write(file, migrated.after.as_bytes(), Existing::Replace)?;
         }
         results.push(json!({
             "file": file.to_string_lossy(), "from": migrated.from, "to": migrated.from.max(CURRENT), "changes": changes,

@@ -11,6 +11,7 @@ use super::{
 use crate::{
     effect_files::{check_name, duplicate, template},
     params::did_you_mean,
+    preset_file::Existing,
 };
 
 pub fn run(common: &Common, args: &NewEffect, streams: &mut Streams) -> Result<Exit, CliError> {
@@ -34,7 +35,7 @@ pub fn run(common: &Common, args: &NewEffect, streams: &mut Streams) -> Result<E
     }
     std::fs::create_dir_all(common.effects_dir())
         .map_err(|error| CliError::usage(format!("{} cannot be made: {error}", common.effects_dir().display())))?;
-    files::write(&path, text.as_bytes())?;
+    files::write(&path, text.as_bytes(), if common.force { Existing::Replace } else { Existing::Keep })?;
     if streams.json {
         streams.object("new-effect", Value::Null, vec![json!({ "file": path.to_string_lossy(), "hook": args.hook.name() })])?;
     } else {

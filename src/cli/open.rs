@@ -20,6 +20,9 @@ pub fn open(common: &Common, what: &str) -> Result<PresetFile, CliError> {
         let (path, value) = set.split_once('=').unwrap_or((set, ""));
         preset_file::set(&mut preset_file, path.trim(), value)?;
     }
+    if !(common.set.is_empty() && common.unset.is_empty()) {
+        preset_file.check_values()?;
+    }
     Ok(preset_file)
 }
 

@@ -36,18 +36,20 @@ pub fn run(common: &Common, args: &Render, streams: &mut Streams) -> Result<Exit
         let scene = scene_of(preset_file)?;
         scene.notes.iter().for_each(|note| streams.note(note));
         let frame = backend.frame(&preset_file.preset, &scene)?;
+        let names = names(preset_file, &backend);
+        let saved =
+            if to_stdout { preset_file.clone() } else { preset_file.for_picture(&files::target(&args.output, &names, common.force)?) };
         let png = if args.bare {
             preset_file::png_bytes(&frame.color, [frame.width, frame.height])?
         } else {
-            preset_file::png_with_preset(&frame, preset_file, &backend.provenance())?
+            preset_file::png_with_preset(&frame, &saved, &backend.provenance())?
         };
         bar.inc(1);
         if to_stdout {
             streams.bytes(&png)?;
             continue;
         }
-        let path = files::target(&args.output, &names(preset_file, &backend), common.force)?;
-        files::write(&path, &png)?;
+        let path = files::create(&args.output, &names, common.force, &png)?;
         results.push(json!({
             "preset": preset_file.id, "file": path.to_string_lossy(), "size": [frame.width, frame.height],
             "covered": frame.covered(), "counters": frame.counters,
@@ -74,6 +76,9 @@ fn open_with_flags(common: &Common, args: &Render, what: &str) -> Result<PresetF
     }
     if let Some(tier) = &args.tier {
         preset_file::set(&mut preset_file, "accuracy.tier", tier)?;
+    }
+    if !args.bare {
+        preset_file.check_savable()?;
     }
     Ok(preset_file)
 }

@@ -25,7 +25,7 @@ use super::{
 use crate::{
     frame::Frame,
     preset::{Preset, SceneSource, animation::MAX_TIME_S},
-    preset_file::{self, AnimatedPng, AnimationOptions, FrameStatus, PresetError, PresetFile},
+    preset_file::{self, AnimatedPng, AnimationOptions, Existing, FrameStatus, PresetError, PresetFile},
     scene::Scene,
 };
 
@@ -100,6 +100,8 @@ struct FrameJob {
     path: Option<PathBuf>,
     /// Its file is finished and stays.
     is_kept: bool,
+    /// What happens to a file that is there when the frame is written.
+    existing: Existing,
 }
 
 pub fn run(common: &Common, args: &Sequence, streams: &mut Streams) -> Result<Exit, CliError> {
@@ -109,6 +111,7 @@ pub fn run(common: &Common, args: &Sequence, streams: &mut Streams) -> Result<Ex
     check_template(args, &schedule)?;
     let scene = scene_of(&preset_file)?;
     scene.notes.iter().for_each(|note| streams.note(note));
+    at(&preset_file, &schedule, schedule.frames.end - 1).check_savable()?;
     let mut backend = Backend::open(common, streams)?;
     let mut jobs = jobs(args, &preset_file, &scene, &schedule, &backend)?;
     find_finished(common, &mut jobs, preset_file.preset.output.size, &backend, streams)?;
@@ -177,7 +180,13 @@ fn jobs(
     let job = |frame| {
         let names = Names { frame: Some(frame), ..names.clone() };
         let path = args.output.as_ref().map(|template| files::frame_path(template, &names)).transpose()?;
-        Ok(FrameJob { frame, fingerprint: fingerprint(&at(preset_file, schedule, frame).preset, scene), path, is_kept: false })
+        Ok(FrameJob {
+            frame,
+            fingerprint: fingerprint(&at(preset_file, schedule, frame).preset, scene),
+            path,
+            is_kept: false,
+            existing: Existing::Keep,
+        })
     };
     schedule.frames.clone().into_par_iter().map(job).collect()
 }
@@ -203,7 +212,6 @@ fn find_finished(common: &Common, jobs: &mut [FrameJob], size: [u32; 2], backend
     if let Some(folder) = jobs.first().and_then(|job| job.path.as_deref()).and_then(Path::parent).filter(|f| !f.as_os_str().is_empty()) {
         std::fs::create_dir_all(folder).map_err(|e| CliError::from(e).during(format!("{} cannot be created", folder.display())))?;
     }
-    jobs.first().and_then(|job| job.path.as_deref()).into_iter().for_each(preset_file::remove_unfinished);
     let found: Vec<FrameStatus> = jobs
         .par_iter()
         .map(|job| job.path.as_ref().map_or(Ok(FrameStatus::Absent), |path| preset_file::frame_status(path, size, &job.fingerprint)))
@@ -217,6 +225,7 @@ fn find_finished(common: &Common, jobs: &mut [FrameJob], size: [u32; 2], backend
     }
     let mut other_adapters: Vec<&str> = Vec::new();
     for (job, found) in jobs.iter_mut().zip(&found) {
+        job.existing = if *found == FrameStatus::Absent { Existing::Keep } else { Existing::Replace };
         let FrameStatus::Finished { adapter } = found else { continue };
         let is_ours = adapter == backend.name();
         job.is_kept = is_ours || !common.force;
@@ -246,14 +255,17 @@ fn animation(
         AnimationOptions { size: preset_file.preset.output.size, frames: jobs.len() as u32, delay_s, is_looping: clock.is_looping };
     let all = jobs.iter().fold(Fnv::new(), |hash, job| hash.bytes(job.fingerprint.as_bytes()));
     let fingerprint = hex(all.words(&[delay_s[0].into(), delay_s[1].into(), clock.is_looping.into()]));
-    match preset_file::frame_status(path, options.size, &fingerprint)? {
+    let found = preset_file::frame_status(path, options.size, &fingerprint)?;
+    match &found {
         FrameStatus::Finished { adapter } if adapter == backend.name() => return Ok(None),
         FrameStatus::Finished { .. } | FrameStatus::Other if !common.force => {
             return Err(CliError::usage(format!("{} exists; use --force to overwrite it", path.display())));
         }
         _ => {}
     }
-    Ok(Some(AnimatedPng::begin(path, &options, preset_file, &backend.provenance(), &fingerprint)?))
+    let existing = if found == FrameStatus::Absent { Existing::Keep } else { Existing::Replace };
+    let saved = preset_file.for_picture(path);
+    Ok(Some(AnimatedPng::begin(path, &options, &saved, &backend.provenance(), &fingerprint, existing)?))
 }
 
 /// The time of one frame in seconds as the closest fraction that APNG can hold.
@@ -295,7 +307,8 @@ fn draw(
         }
         jobs.par_iter().zip(&drawn).try_for_each(|(job, frame)| match (&job.path, frame) {
             (Some(path), Some(frame)) => {
-                files::write(path, &preset_file::png_of_frame(frame, &preset_of(job), &provenance, &job.fingerprint)?)
+                let png = preset_file::png_of_frame(frame, &preset_of(job).for_picture(path), &provenance, &job.fingerprint)?;
+                files::write(path, &png, job.existing)
             }
             _ => Ok(()),
         })?;

@@ -194,7 +194,6 @@ fn failures(accuracy: &ErrorReport, test: &GoldenTest, pixels_over_tolerance: u6
 
 /// Writes expected, actual and difference side by side; pixels with another triangle are magenta.
 fn triptych(folder: &Path, name: &str, expected: &Frame, actual: &Frame, force: bool) -> Result<(), CliError> {
-    let path = files::target(&folder.join("{preset}.png").to_string_lossy(), &Names { preset: name.into(), ..Names::default() }, force)?;
     let mut difference = difference_picture(&expected.color, &actual.color, 16);
     for (pixel, (a, b)) in difference.iter_mut().zip(expected.triangle_id.iter().zip(&actual.triangle_id)) {
         if a != b {
@@ -205,7 +204,9 @@ fn triptych(folder: &Path, name: &str, expected: &Frame, actual: &Frame, force: 
     let sides = [&expected.color, &actual.color, &difference];
     let rows = (0..expected.height as usize).flat_map(|y| sides.map(|side| side[y * width..][..width].to_vec()));
     let picture: Vec<[u8; 4]> = rows.flatten().collect();
-    files::write(&path, &preset_file::png_bytes(&picture, [expected.width * 3, expected.height])?)
+    let (template, names) = (folder.join("{preset}.png"), Names { preset: name.into(), ..Names::default() });
+    let png = preset_file::png_bytes(&picture, [expected.width * 3, expected.height])?;
+    files::create(&template.to_string_lossy(), &names, force, &png).map(drop)
 }
 
 fn text(rows: &[Row], class: &str) -> String {

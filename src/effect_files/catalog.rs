@@ -100,6 +100,7 @@ impl Catalog {
         let file = path.display().to_string();
         let text = Text { file: &file, text: "" };
         let written = match std::fs::metadata(path) {
+            Ok(about) if !about.is_file() => Err(text.whole("it is not a regular file")),
             Ok(about) if about.len() > MAX_BYTES as u64 => {
                 Err(text.whole(format!("the file has {} bytes; an effect has at most {MAX_BYTES}", about.len())))
             }

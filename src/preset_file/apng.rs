@@ -3,7 +3,7 @@
 use std::{fs::File, io::BufWriter, path::Path};
 
 use super::{
-    atomic::AtomicFile,
+    atomic::{AtomicFile, Existing},
     error::PresetError,
     file::PresetFile,
     picture::{Provenance, encoder, failed, texts},
@@ -33,17 +33,18 @@ impl AnimatedPng {
     /// Begins an animation of `options.frames` frames at `path`.
     ///
     /// # Errors
-    /// The file cannot be written, or the picture has no pixels.
+    /// The file cannot be written, or is kept as `existing` says, or the picture has no pixels.
     pub fn begin(
         path: &Path,
         options: &AnimationOptions,
         preset_file: &PresetFile,
         provenance: &Provenance,
         fingerprint: &str,
+        existing: Existing,
     ) -> Result<Self, PresetError> {
-        let file = AtomicFile::create(path)?;
+        let file = AtomicFile::create(path, existing)?;
         let handle = file.handle().map_err(|e| file.failed(e))?;
-        let mut encoder = encoder(BufWriter::new(handle), options.size, &texts(preset_file, provenance, Some(fingerprint)))?;
+        let mut encoder = encoder(BufWriter::new(handle), options.size, &texts(preset_file, provenance, Some(fingerprint))?)?;
         encoder.set_animated(options.frames, if options.is_looping { 0 } else { 1 }).map_err(failed)?;
         let [numerator, denominator] = options.delay_s;
         encoder.set_frame_delay(numerator, denominator).map_err(failed)?;

@@ -1,9 +1,12 @@
 //! Atomic files: written next to their target, then renamed, so that a reader sees the old file or the new one.
 
 use std::{
-    fs::{File, Metadata},
+    collections::HashSet,
+    ffi::OsStr,
+    fs::{File, Metadata, OpenOptions, TryLockError},
     io::{self, Write},
     path::{Path, PathBuf},
+    sync::Mutex,
     time::Duration,
 };
 
@@ -11,39 +14,72 @@ use tempfile::NamedTempFile;
 
 use super::error::PresetError;
 
-/// Prefix of the names of unfinished files.
+/// The names of unfinished files: prefix, random letters and digits, suffix.
 const PREFIX: &str = ".rasterlab-";
+const RANDOM: usize = 12;
+const SUFFIX: &str = ".tmp";
+
+/// An unfinished file that no process has locked is removed at this age. A younger one may be about to be locked.
+const UNLOCKED_STALE: Duration = Duration::from_secs(60);
+
+/// Where the file system has no locks, an unfinished file that did not change for this long is removed.
+const UNCHANGED_STALE: Duration = Duration::from_secs(3600);
+
+/// Links that are followed to a file; as many as Linux follows.
+const MAX_LINKS: usize = 40;
+
+/// What happens to a file that exists under the name.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Existing {
+    /// It stays, and the new file is refused with [`PresetError::Exists`], even if it appeared a moment ago.
+    Keep,
+    Replace,
+}
 
 /// A file that appears under its name on [`AtomicFile::commit`], and is removed when it is dropped before.
 pub struct AtomicFile {
+    /// Locked while it is written, so that no other process removes it.
     file: NamedTempFile,
     /// The path for error messages.
     name: String,
     target: PathBuf,
+    existing: Existing,
     /// The file that will be replaced.
     replaced: Option<Metadata>,
 }
 
 impl AtomicFile {
-    /// Begins a file that will be called `path`. An existing link stays a link.
+    /// Begins a file that will be called `path`. A symbolic link stays one: the file that it leads to is written.
     ///
     /// # Errors
-    /// The existing file is read-only, or its folder cannot be written.
-    pub fn create(path: &Path) -> Result<Self, PresetError> {
+    /// A file is there and `existing` keeps it; it is read-only, or a folder, device or pipe; or its folder cannot be written.
+    pub fn create(path: &Path, existing: Existing) -> Result<Self, PresetError> {
         let name = path.display().to_string();
         let failed = |reason: String| PresetError::Write { file: name.clone(), reason };
-        // Through a link, so that the link stays one.
-        let target = path.canonicalize().unwrap_or_else(|_| path.to_owned());
-        let replaced = std::fs::metadata(&target).ok();
-        if replaced.as_ref().is_some_and(|m| m.permissions().readonly()) {
-            return Err(failed("the file is read-only".into()));
+        if existing == Existing::Keep && is_taken(path) {
+            return Err(PresetError::Exists { file: name });
         }
+        let target = link_target(path).map_err(|e| failed(e.to_string()))?;
+        let replaced = std::fs::metadata(&target).ok();
+        if let Some(replaced) = &replaced {
+            if !replaced.is_file() {
+                let kind = if replaced.is_dir() { "is a folder" } else { "is a device, pipe or socket" };
+                return Err(failed(format!("it {kind}, not a regular file; name another file")));
+            }
+            if replaced.permissions().readonly() {
+                return Err(failed("the file is read-only".into()));
+            }
+        }
+        let folder = folder(&target);
+        remove_unfinished(folder);
         let mut builder = tempfile::Builder::new();
-        builder.prefix(PREFIX);
+        builder.prefix(PREFIX).rand_bytes(RANDOM).suffix(SUFFIX);
         #[cfg(unix)]
         builder.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o666));
-        let file = builder.tempfile_in(folder(&target)).map_err(|e| failed(e.to_string()))?;
-        Ok(Self { file, name, target, replaced })
+        let file = builder.tempfile_in(folder).map_err(|e| failed(e.to_string()))?;
+        // A file system without locks is covered by the longer age.
+        drop(file.as_file().try_lock());
+        Ok(Self { file, name, target, existing, replaced })
     }
 
     /// The error of a write, with the file's name.
@@ -59,19 +95,23 @@ impl AtomicFile {
     /// Flushes the file to the disk and renames it to its target.
     ///
     /// # Errors
-    /// The disk is full or the target cannot be replaced; then the target is unchanged.
+    /// The disk is full, the target cannot be replaced, or a file that is kept appeared there; then the target is unchanged.
     pub fn commit(self) -> Result<(), PresetError> {
-        let Self { file, name, target, replaced } = self;
-        let failed = |reason: String| PresetError::Write { file: name, reason };
+        let Self { file, name, target, existing, replaced } = self;
         let rename = || -> io::Result<()> {
             file.as_file().sync_all()?;
             if let Some(replaced) = replaced {
                 std::fs::set_permissions(file.path(), replaced.permissions())?;
             }
-            file.persist(&target).map_err(|e| e.error)?;
-            Ok(())
+            match existing {
+                Existing::Replace => file.persist(&target).map(drop).map_err(|e| e.error),
+                Existing::Keep => persist_new(file, &target),
+            }
         };
-        rename().map_err(|e| failed(e.to_string()))
+        rename().map_err(|error| match error.kind() {
+            io::ErrorKind::AlreadyExists if existing == Existing::Keep => PresetError::Exists { file: name },
+            _ => PresetError::Write { file: name, reason: error.to_string() },
+        })
     }
 }
 
@@ -89,25 +129,75 @@ impl Write for AtomicFile {
 ///
 /// # Errors
 /// As [`AtomicFile::create`] and [`AtomicFile::commit`].
-pub fn write_atomically(path: &Path, bytes: &[u8]) -> Result<(), PresetError> {
-    let mut file = AtomicFile::create(path)?;
+pub fn write_atomically(path: &Path, bytes: &[u8], existing: Existing) -> Result<(), PresetError> {
+    let mut file = AtomicFile::create(path, existing)?;
     file.write_all(bytes).map_err(|e| file.failed(e))?;
     file.commit()
+}
+
+/// Is there a file or anything else under this name? A symbolic link takes its name, even if it leads nowhere.
+pub fn is_taken(path: &Path) -> bool {
+    path.symlink_metadata().is_ok()
+}
+
+/// Gives the file its name unless the name is taken, in one step.
+fn persist_new(file: NamedTempFile, target: &Path) -> io::Result<()> {
+    let Err(failed) = file.persist_noclobber(target) else { return Ok(()) };
+    if failed.error.kind() == io::ErrorKind::AlreadyExists {
+        return Err(failed.error);
+    }
+    // File systems without hard links, such as FAT and some network shares: an empty file reserves the name.
+    OpenOptions::new().write(true).create_new(true).open(target)?;
+    failed.file.persist(target).map(drop).map_err(|e| {
+        drop(std::fs::remove_file(target));
+        e.error
+    })
+}
+
+/// The file that `path` leads to through symbolic links; it need not exist.
+fn link_target(path: &Path) -> io::Result<PathBuf> {
+    let mut target = path.to_owned();
+    for _ in 0..MAX_LINKS {
+        match target.symlink_metadata() {
+            Ok(about) if about.is_symlink() => target = folder(&target).join(std::fs::read_link(&target)?),
+            _ => return Ok(target),
+        }
+    }
+    Err(io::Error::other("its symbolic links lead in a circle"))
 }
 
 fn folder(path: &Path) -> &Path {
     path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."))
 }
 
-/// Removes unfinished files of killed processes in the folder of `path`. A file that changed in the last hour may belong to a
-/// running process and stays.
-pub fn remove_unfinished(path: &Path) {
-    let is_stale = |file: &Path| -> bool {
-        let unfinished = file.file_name().is_some_and(|name| name.to_string_lossy().starts_with(PREFIX));
-        let changed = File::open(file).and_then(|file| file.metadata()).and_then(|m| m.modified());
-        unfinished && changed.is_ok_and(|at| at.elapsed().is_ok_and(|age| age > Duration::from_secs(3600)))
-    };
-    let files = std::fs::read_dir(folder(path)).into_iter().flatten().flatten().map(|entry| entry.path());
+/// Removes unfinished files of killed processes in `folder`; once for each folder in the life of this process.
+fn remove_unfinished(folder: &Path) {
+    static SEEN: Mutex<Option<HashSet<PathBuf>>> = Mutex::new(None);
+    let Ok(mut seen) = SEEN.lock() else { return };
+    if !seen.get_or_insert_default().insert(folder.to_owned()) {
+        return;
+    }
+    drop(seen);
+    // Names and kinds are looked at first: opening a pipe would wait for its other end.
+    let files = std::fs::read_dir(folder).into_iter().flatten().flatten();
+    let unfinished = files.filter(|file| is_unfinished(&file.file_name()) && file.file_type().is_ok_and(|kind| kind.is_file()));
     // A file that cannot be removed does no harm.
-    files.filter(|file| is_stale(file)).for_each(|file| drop(std::fs::remove_file(file)));
+    unfinished.map(|file| file.path()).filter(|file| is_stale(file)).for_each(|file| drop(std::fs::remove_file(file)));
+}
+
+/// Is this the name of an unfinished file?
+fn is_unfinished(name: &OsStr) -> bool {
+    let random = name.to_str().and_then(|name| name.strip_prefix(PREFIX)?.strip_suffix(SUFFIX));
+    random.is_some_and(|random| random.len() == RANDOM && random.bytes().all(|byte| byte.is_ascii_alphanumeric()))
+}
+
+/// Does no process write this unfinished file any more?
+fn is_stale(path: &Path) -> bool {
+    let Ok(file) = OpenOptions::new().read(true).write(true).open(path) else { return false };
+    let age = file.metadata().and_then(|about| about.modified()).ok().and_then(|at| at.elapsed().ok()).unwrap_or_default();
+    match file.try_lock() {
+        Ok(()) => age > UNLOCKED_STALE,
+        Err(TryLockError::WouldBlock) => false,
+        Err(TryLockError::Error(_)) => age > UNCHANGED_STALE,
+    }
 }

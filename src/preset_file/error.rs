@@ -38,6 +38,9 @@ pub enum PresetError {
     NotOurs { what: String, reason: String },
     #[error("{id} cannot be changed: {reason}")]
     ReadOnly { id: String, reason: String },
+    /// A file of this name exists, and nobody asked to replace it.
+    #[error("{file} exists already")]
+    Exists { file: String },
     #[error("{file}: cannot be written: {reason}")]
     Write { file: String, reason: String },
 }
@@ -47,7 +50,7 @@ impl PresetError {
     pub fn position(&self) -> Option<Position> {
         match self {
             Self::Syntax { at, .. } | Self::Value { at, .. } => Some(at.clone()),
-            Self::Read { file, .. } | Self::Write { file, .. } => Some(Position { file: file.clone(), line: None }),
+            Self::Read { file, .. } | Self::Write { file, .. } | Self::Exists { file } => Some(Position { file: file.clone(), line: None }),
             _ => None,
         }
     }

@@ -4,7 +4,11 @@ use std::path::{Component, Path, PathBuf};
 
 use toml_edit::{DocumentMut, Item, Table};
 
-use super::{atomic::write_atomically, error::PresetError, write};
+use super::{
+    atomic::{Existing, write_atomically},
+    error::{Position, PresetError},
+    write,
+};
 use crate::{
     effect_files::Catalog,
     effects::lambert,
@@ -87,6 +91,38 @@ impl PresetFile {
         if self.warnings.is_empty() { Ok(self) } else { Err(PresetError::Strict(self.warnings)) }
     }
 
+    /// Could a file hold the changes? A picture or a copy then gives this preset back.
+    ///
+    /// # Errors
+    /// A changed preset of a newer schema, effects that exclude each other, or a test budget that no file may state.
+    pub fn check_savable(&self) -> Result<(), PresetError> {
+        if self.is_newer && self.is_modified() {
+            let reason = "its schema is newer than this program, so its changes cannot be saved; draw it as it is, or use --bare";
+            return Err(PresetError::ReadOnly { id: self.id.clone(), reason: reason.into() });
+        }
+        self.check_values()
+    }
+
+    /// The rules that hold between values, which a file is checked for when it is read.
+    ///
+    /// # Errors
+    /// As [`PresetFile::check_savable`], except for a newer schema.
+    pub fn check_values(&self) -> Result<(), PresetError> {
+        let at = Position { file: self.id.clone(), line: None };
+        self.preset.stack.check().map_err(|conflict| PresetError::value(at.clone(), "effects", conflict.to_string()))?;
+        self.preset.check_budget().map_err(|[key, reason]| PresetError::value(at, key, reason))
+    }
+
+    /// The preset as a picture saved at `picture` holds it: a relative model path starts at the folder of the picture.
+    #[must_use]
+    pub fn for_picture(&self, picture: &Path) -> Self {
+        let mut moved = self.clone();
+        if let SceneSource::File(model) = &self.preset.scene {
+            moved.preset.scene = SceneSource::File(rebase(model, self.path.as_deref(), picture));
+        }
+        moved
+    }
+
     /// Does the text have a table for this effect, known or not?
     pub(super) fn has_effect_table(&self, name: &str) -> bool {
         self.document.get("effects").and_then(|effects| effects.get(name)).is_some()
@@ -136,7 +172,7 @@ pub fn save(preset_file: &mut PresetFile, path: &Path) -> Result<(), PresetError
     let text = to_toml(&next);
     let is_there = preset_file.path.as_deref() == Some(path) && std::fs::read(path).is_ok_and(|there| there == text.as_bytes());
     if !is_there {
-        write_atomically(path, text.as_bytes())?;
+        write_atomically(path, text.as_bytes(), Existing::Replace)?;
     }
     next.document =
         text.parse().map_err(|e: toml_edit::TomlError| PresetError::Write { file: path.display().to_string(), reason: e.to_string() })?;

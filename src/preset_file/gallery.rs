@@ -7,8 +7,8 @@ use include_dir::{Dir, File, include_dir};
 use super::{
     error::PresetError,
     file::{PresetFile, stem},
-    load::{load_with, parse_file, read_capped},
-    picture::{MAX_FILE_BYTES, preset_from_png},
+    load::{load_with, parse_file},
+    picture::load_picture,
 };
 use crate::{effect_files::Catalog, params::did_you_mean, preset::SceneSource};
 
@@ -129,8 +129,7 @@ pub fn open(what: &str, folders: &Folders) -> Result<PresetFile, PresetError> {
         return load_with(path, &folders.effects);
     }
     if has_extension(path, "png") {
-        let preset_file = preset_from_png(&read_capped(path, MAX_FILE_BYTES)?, what)?;
-        return Ok(PresetFile { id: stem(path), path: Some(path.to_owned()), read_only: true, ..preset_file });
+        return load_picture(path);
     }
     if has_extension(path, "glb") || has_extension(path, "gltf") {
         let absolute = std::path::absolute(path).map_err(|e| PresetError::Read { file: what.into(), reason: e.to_string() })?;

@@ -104,9 +104,13 @@ fn read_text(path: &Path) -> Result<String, PresetError> {
     String::from_utf8(bytes).map_err(|_| PresetError::Read { file: path.display().to_string(), reason: "it is not UTF-8 text".into() })
 }
 
-/// The bytes of a file of at most `max_bytes`.
+/// The bytes of a regular file of at most `max_bytes`.
 pub(super) fn read_capped(path: &Path, max_bytes: u64) -> Result<Vec<u8>, PresetError> {
     let failed = |reason: String| PresetError::Read { file: path.display().to_string(), reason };
+    // A pipe would wait for its other end when it is opened.
+    if !std::fs::metadata(path).map_err(|e| failed(e.to_string()))?.is_file() {
+        return Err(failed("it is not a regular file".into()));
+    }
     let mut bytes = Vec::new();
     let file = std::fs::File::open(path).map_err(|e| failed(e.to_string()))?;
     file.take(max_bytes + 1).read_to_end(&mut bytes).map_err(|e| failed(e.to_string()))?;

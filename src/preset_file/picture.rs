@@ -7,22 +7,19 @@ use std::{
 
 use super::{
     error::PresetError,
-    file::{PresetFile, to_shared_toml},
+    file::{PresetFile, stem, to_shared_toml},
+    frame_status::{ADAPTER, FINGERPRINT, is_damaged},
     load::{MAX_BYTES, parse_file, read_capped},
+    share::stays_inside,
 };
-use crate::frame::Frame;
+use crate::{frame::Frame, preset::SceneSource};
 
 const PRESET: &str = "rasterlab preset";
 /// The keyword of the preset in pictures of schema 1.
 const PRESET_BEFORE: &str = "rasterlab look";
-const ADAPTER: &str = "rasterlab adapter";
-/// Hash of everything that decides the picture: a frame of a sequence is finished when it has the right one.
-const FINGERPRINT: &str = "rasterlab frame";
-/// The end of every complete PNG: the empty chunk IEND and its checksum.
-const END: [u8; 12] = [0, 0, 0, 0, b'I', b'E', b'N', b'D', 0xae, 0x42, 0x60, 0x82];
 
 /// Longest PNG that is read, bytes.
-pub const MAX_FILE_BYTES: u64 = 1 << 28;
+const MAX_FILE_BYTES: u64 = 1 << 28;
 
 /// What drew a picture.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
@@ -34,21 +31,26 @@ pub struct Provenance {
 
 /// The picture as a PNG that restores the preset when it is opened or dropped.
 pub fn png_with_preset(frame: &Frame, preset_file: &PresetFile, provenance: &Provenance) -> Result<Vec<u8>, PresetError> {
-    encode(&frame.color, [frame.width, frame.height], &texts(preset_file, provenance, None))
+    encode(&frame.color, [frame.width, frame.height], &texts(preset_file, provenance, None)?)
 }
 
 /// The picture as one frame of a sequence: as [`png_with_preset`], and with the `fingerprint` that recognizes it.
 pub fn png_of_frame(frame: &Frame, preset_file: &PresetFile, provenance: &Provenance, fingerprint: &str) -> Result<Vec<u8>, PresetError> {
-    encode(&frame.color, [frame.width, frame.height], &texts(preset_file, provenance, Some(fingerprint)))
+    encode(&frame.color, [frame.width, frame.height], &texts(preset_file, provenance, Some(fingerprint))?)
 }
 
 /// The texts that a picture carries.
-pub(super) fn texts(preset_file: &PresetFile, provenance: &Provenance, fingerprint: Option<&str>) -> Vec<(&'static str, String)> {
+pub(super) fn texts(
+    preset_file: &PresetFile,
+    provenance: &Provenance,
+    fingerprint: Option<&str>,
+) -> Result<Vec<(&'static str, String)>, PresetError> {
+    preset_file.check_savable()?;
     let Provenance { adapter, driver } = provenance;
     let software = format!("rasterlab {}", env!("CARGO_PKG_VERSION"));
     let fingerprint = fingerprint.map(|fingerprint| (FINGERPRINT, fingerprint.to_owned()));
     let made_by = [("Software", software), (ADAPTER, adapter.clone()), ("rasterlab driver", driver.clone())];
-    made_by.into_iter().chain(fingerprint).chain([(PRESET, to_shared_toml(preset_file))]).collect()
+    Ok(made_by.into_iter().chain(fingerprint).chain([(PRESET, to_shared_toml(preset_file))]).collect())
 }
 
 /// The picture without texts: `size` is width and height, `color` row-major RGBA.
@@ -86,56 +88,6 @@ pub(super) fn encoder<W: Write>(
     Ok(encoder)
 }
 
-/// Whether a file is a certain frame or animation.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub enum FrameStatus {
-    /// There is no such file, or it is empty, or a PNG that is cut off.
-    Absent,
-    /// Complete, of the right size, with the right fingerprint.
-    Finished {
-        /// Name of the adapter that drew it, or `cpu`.
-        adapter: String,
-    },
-    /// Complete, but something else.
-    Other,
-}
-
-/// Is the picture at `path` complete, of this `size` and with this `fingerprint`? Decodes it to the end, since a file with a
-/// correct header may be cut off.
-///
-/// # Errors
-/// The file cannot be read.
-pub fn frame_status(path: &Path, size: [u32; 2], fingerprint: &str) -> Result<FrameStatus, PresetError> {
-    if !path.exists() {
-        return Ok(FrameStatus::Absent);
-    }
-    let bytes = read_capped(path, MAX_FILE_BYTES)?;
-    let is_png = bytes.starts_with(b"\x89PNG\r\n\x1a\n");
-    if bytes.is_empty() || (is_png && !bytes.ends_with(&END)) {
-        return Ok(FrameStatus::Absent);
-    }
-    if !is_png {
-        return Ok(FrameStatus::Other);
-    }
-    let Ok(mut reader) = png::Decoder::new_with_limits(Cursor::new(&bytes), png::Limits { bytes: 2 << 30 }).read_info() else {
-        return Ok(FrameStatus::Absent);
-    };
-    let text = |reader: &png::Reader<_>, keyword: &str| {
-        let chunk = reader.info().utf8_text.iter().find(|chunk| chunk.keyword == keyword)?;
-        chunk.get_text().ok()
-    };
-    let is_expected = text(&reader, FINGERPRINT).as_deref() == Some(fingerprint) && [reader.info().width, reader.info().height] == size;
-    let adapter = text(&reader, ADAPTER).unwrap_or_default();
-    let frames = reader.info().animation_control().map_or(1, |control| control.num_frames);
-    let mut pixels = vec![0; reader.output_buffer_size().unwrap_or(0)];
-    let is_complete = (0..frames).all(|_| reader.next_frame(&mut pixels).is_ok());
-    Ok(match (is_complete, is_expected) {
-        (false, _) => FrameStatus::Absent,
-        (true, true) => FrameStatus::Finished { adapter },
-        (true, false) => FrameStatus::Other,
-    })
-}
-
 /// Pixels of any PNG as row-major RGBA, with width and height; at most 16,384 pixels a side.
 pub fn png_pixels(path: &Path) -> Result<(Vec<[u8; 4]>, [u32; 2]), PresetError> {
     let failed = |reason: String| PresetError::Read { file: path.display().to_string(), reason };
@@ -150,6 +102,29 @@ pub fn png_pixels(path: &Path) -> Result<(Vec<[u8; 4]>, [u32; 2]), PresetError> 
     Ok((bytemuck::pod_collect_to_vec(picture.as_raw()), size))
 }
 
+/// Reads the preset of the picture at `path`. Its model must lie in the folder of the picture or below: a picture may come from
+/// anyone, and must not name files elsewhere. Instead of a model elsewhere, one of its name beside the picture is taken.
+///
+/// # Errors
+/// The file cannot be read, as [`preset_from_png`], or its model lies elsewhere.
+pub fn load_picture(path: &Path) -> Result<PresetFile, PresetError> {
+    let file = path.display().to_string();
+    let mut preset_file = preset_from_png(&read_capped(path, MAX_FILE_BYTES)?, &file)?;
+    if let SceneSource::File(model) = &preset_file.preset.scene
+        && !stays_inside(model)
+    {
+        let shown = model.display();
+        let name = model.file_name().map(Path::new).filter(|name| stays_inside(name) && path.with_file_name(name).is_file());
+        let Some(name) = name else {
+            let reason = format!("its model {shown} lies outside of the folder of the picture; put a copy of the model beside the picture");
+            return Err(PresetError::NotOurs { what: file, reason });
+        };
+        preset_file.warnings.push(format!("{file}: its model {shown} lies elsewhere; {} beside the picture is used", name.display()));
+        preset_file.preset.scene = SceneSource::File(name.to_owned());
+    }
+    Ok(PresetFile { id: stem(path), path: Some(path.to_owned()), read_only: true, ..preset_file })
+}
+
 /// The preset inside a picture that rasterlab saved; `file` is what errors call it.
 ///
 /// # Errors
@@ -162,7 +137,11 @@ pub fn preset_from_png(bytes: &[u8], file: &str) -> Result<PresetFile, PresetErr
     let info = decoder.read_header_info().map(|_| ()).and_then(|()| decoder.read_info());
     let reader = info.map_err(|e| not_ours(format!("it is no readable PNG ({e})")))?;
     let chunk = reader.info().utf8_text.iter().find(|chunk| [PRESET, PRESET_BEFORE].contains(&chunk.keyword.as_str()));
-    let mut chunk = chunk.ok_or_else(|| not_ours("it was not saved by rasterlab, or saved with --bare".into()))?.clone();
+    let absent = || match is_damaged(bytes) {
+        true => not_ours("the file is damaged: it is cut off, or a checksum is wrong".into()),
+        false => not_ours("it was not saved by rasterlab, or saved with --bare".into()),
+    };
+    let mut chunk = chunk.ok_or_else(absent)?.clone();
     chunk.decompress_text_with_limit(MAX_BYTES).map_err(|_| not_ours("its preset is longer than 1 MiB or garbled".into()))?;
     let toml = chunk.get_text().map_err(|e| not_ours(e.to_string()))?;
     parse_file(&toml, "picture", file)

@@ -13,7 +13,7 @@ use crate::{
     effect_files::Catalog,
     effects::{Conflict, EnabledEffect, Stack},
     preset::{
-        GoldenTest, Preset,
+        Preset,
         settings::{SECTIONS, Section},
     },
 };
@@ -61,7 +61,7 @@ pub fn read(document: &Document<String>, file: &str, catalog: &Catalog) -> Resul
         preset.stack = order::read(item.as_value(), &preset.stack, &reader.catalog, &has_table)
             .map_err(|reason| reader.error(root, "", "stack", reason))?;
     }
-    check_budget(&reader, root, &preset)?;
+    preset.check_budget().map_err(|[key, reason]| PresetError::value(reader.position(root, "test"), key, reason))?;
     Ok(ReadPreset { preset, warnings: reader.warnings, brought_effects, catalog: reader.catalog })
 }
 
@@ -127,21 +127,6 @@ fn read_effect(reader: &mut Reader<'_>, table: &dyn TableLike, enabled: &mut Ena
         };
         let value = reader.value(table, &prefix, field, item)?;
         field.set_value(&mut enabled.words, &value).map_err(|error| reader.error(table, &prefix, name, error))?;
-    }
-    Ok(())
-}
-
-/// A budget above the default must be explained, and only a preset that may err can have wrong triangles.
-fn check_budget(reader: &Reader<'_>, root: &dyn TableLike, preset: &Preset) -> Result<(), PresetError> {
-    let (Some(test), default) = (&preset.test, GoldenTest::default()) else { return Ok(()) };
-    let error = |key: &str, reason: &str| Err(PresetError::value(reader.position(root, "test"), key, reason));
-    if test.max_wrong_triangles > 0 && !preset.accuracy.may_err() {
-        let reason = "must be 0 here; it needs a pinned option that is not exact, or the tier draft or fast";
-        return error("test.max_wrong_triangles", reason);
-    }
-    let is_wider = test.max_channel > default.max_channel || test.max_pixels > default.max_pixels || test.max_wrong_triangles > 0;
-    if is_wider && test.why.trim().is_empty() {
-        return error("test.why", "must say why the budget is above the default");
     }
     Ok(())
 }

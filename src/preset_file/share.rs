@@ -44,7 +44,8 @@ pub fn from_line(line: &str) -> Result<PresetFile, PresetError> {
     Ok(preset_file)
 }
 
-fn stays_inside(model: &Path) -> bool {
+/// Is this a path inside the folder that it starts at, on every system?
+pub(super) fn stays_inside(model: &Path) -> bool {
     let text = model.to_string_lossy();
     model.components().all(|part| matches!(part, Component::Normal(_) | Component::CurDir)) && !text.contains(['\\', ':'])
 }
