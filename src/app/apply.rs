@@ -248,8 +248,9 @@ fn file(ctx: &egui::Context, state: &mut State, panels: &mut Panels, command: Fi
             write(state, panels, &path);
         }
         FileCommand::Export { path, size } => export(state, path, size),
-        FileCommand::AskNewEffect => panels.dialogs.ask_new_effect(),
-        FileCommand::NewEffect { name, hook } => new_effect::create(state, &name, hook),
+        FileCommand::AskNewEffect(duplicated) => panels.dialogs.ask_new_effect(duplicated, &state.session.preset_file.effects),
+        FileCommand::NewEffect { name, origin } => new_effect::create(state, &name, origin),
+        FileCommand::Edit(path) => state.jobs.open_editor(path),
         FileCommand::Reload(theirs) => reload::take_preset(state, panels, *theirs),
         FileCommand::DiscardAndQuit => {
             state.may_quit = true;

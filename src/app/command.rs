@@ -80,6 +80,8 @@ pub enum Edit {
     Disable(&'static Effect),
     /// Disables the first effect and enables the second.
     Replace(&'static str, &'static Effect),
+    /// Uses the second effect in place of the first, with the same values and keyframes.
+    Rebind(&'static Effect, &'static Effect),
     /// Swaps two positions of the stack.
     Swap(usize, usize),
     /// Shows another built-in scene, without a camera.
@@ -142,6 +144,15 @@ pub enum Purpose {
     Export,
 }
 
+/// What a new effect begins as.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Origin {
+    /// A commented template.
+    Template(Hook),
+    /// The text of another effect, which it replaces in the stack.
+    Duplicate(&'static Effect),
+}
+
 pub enum FileCommand {
     /// Shows the dialog for this purpose.
     Ask(Purpose),
@@ -166,13 +177,15 @@ pub enum FileCommand {
         path: PathBuf,
         size: [u32; 2],
     },
-    /// Asks for the name and hook of a new effect.
-    AskNewEffect,
+    /// Asks for the name of a new effect, and for its hook unless it duplicates another effect.
+    AskNewEffect(Option<&'static Effect>),
     /// Writes a new effect for the user to change, and enables it.
     NewEffect {
         name: String,
-        hook: Hook,
+        origin: Origin,
     },
+    /// Opens a file in the user's editor.
+    Edit(PathBuf),
     /// Replaces the open preset by what its file has now.
     Reload(Box<PresetFile>),
     /// Closes the window without saving.

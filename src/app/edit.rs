@@ -50,6 +50,12 @@ impl Session {
                 self.disable(other);
                 self.preset_mut().stack.enable(effect);
             }
+            Edit::Rebind(old, new) => {
+                preset.rebind(&[(old, new)]);
+                if self.muted.remove(old.name) {
+                    self.muted.insert(new.name);
+                }
+            }
             Edit::Swap(a, b) if a.max(b) < preset.stack.0.len() => preset.stack.0.swap(a, b),
             Edit::Swap(..) => {}
             Edit::Builtin(name) => {

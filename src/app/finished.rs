@@ -8,6 +8,7 @@ use super::{
     jobs::Done,
     log::Level,
     measured::error_text,
+    new_effect,
     panels::Panels,
     reload::{compiled, model_reloaded},
     screen::Inputs,
@@ -42,6 +43,7 @@ pub fn finish(ctx: &egui::Context, state: &mut State, panels: &mut Panels, comma
         Done::Export(path, Ok(())) => state.notify(Level::Info, format!("Saved {}", path.display())),
         Done::Export(_, Err(error)) => state.notify(Level::Error, error),
         Done::Compiled(reload, outcome) => compiled(state, panels, reload, outcome),
+        Done::EffectWritten(path, origin, outcome) => new_effect::written(state, path, origin, outcome),
         Done::NoEditor(path, reason) => {
             let text = format!("{} could not be opened in an editor: {reason}", path.display());
             state.notify(Level::Warning, text);

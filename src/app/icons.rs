@@ -27,6 +27,8 @@ pub enum Icon {
     StepForward,
     /// Two arrows round a track.
     Loop,
+    /// Three dots: a menu.
+    More,
 }
 
 /// A square button without a frame; `name` is its tooltip and its accessible name.
@@ -159,6 +161,11 @@ pub fn paint(painter: &egui::Painter, icon: Icon, rect: Rect, color: Color32) {
             line(&[at(0.75, -0.05), at(1.02, 0.2), at(0.75, 0.45)]);
             line(&[at(1.1, 0.45), at(1.1, 0.8), at(0.0, 0.8)]);
             line(&[at(0.25, 0.55), at(-0.02, 0.8), at(0.25, 1.05)]);
+        }
+        Icon::More => {
+            for y in [0.05, 0.5, 0.95] {
+                painter.circle_filled(at(0.5, y), rect.width() * 0.13, color);
+            }
         }
         Icon::Dice => {
             painter.rect_stroke(rect, 2.0, stroke, egui::StrokeKind::Middle);

@@ -2,14 +2,14 @@
 //! saving pictures, waiting for file dialogs.
 
 use std::{
-    path::PathBuf,
+    path::{Path, PathBuf},
     sync::{Arc, mpsc},
 };
 
 use eframe::egui;
 
 use super::{
-    command::Purpose,
+    command::{Origin, Purpose},
     findings::Findings,
     live::Reload,
     scene_loader::SceneKey,
@@ -41,6 +41,8 @@ pub enum Done {
     Path(Purpose, Option<PathBuf>),
     /// Pipelines for what was changed on disk.
     Compiled(Reload, Result<(), String>),
+    /// The file of a new effect.
+    EffectWritten(PathBuf, Origin, Result<(), String>),
     /// A file that could not be opened in the user's editor.
     NoEditor(PathBuf, String),
 }
@@ -98,6 +100,14 @@ impl Jobs {
         self.spawn("compile", move || {
             let compiled = caught("compiling", || compile(gpu, &inputs));
             Done::Compiled(reload, compiled)
+        });
+    }
+
+    /// Writes the file of a new effect.
+    pub fn write_effect(&self, path: PathBuf, origin: Origin, write: impl FnOnce(&Path) -> Result<(), String> + Send + 'static) {
+        self.spawn("new effect", move || {
+            let outcome = caught("writing the effect", || write(&path));
+            Done::EffectWritten(path, origin, outcome)
         });
     }
 

@@ -3,7 +3,7 @@
 use std::{collections::BTreeMap, path::PathBuf};
 
 use super::watch::Watcher;
-use crate::{effect_files::Catalog, preset::rebind::Replaced};
+use crate::{effect_files::Catalog, effects::Effect, preset::rebind::Replaced};
 
 /// What a fault is about.
 #[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -35,6 +35,14 @@ pub struct EffectReload {
     pub replaced: Vec<Replaced>,
 }
 
+/// A new or dropped effect file that is enabled when it has been read.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Waiting {
+    pub path: PathBuf,
+    /// The effect of the stack that it replaces.
+    pub replaces: Option<&'static Effect>,
+}
+
 /// What is watched on disk, and its faults.
 pub struct Live {
     pub watcher: Watcher,
@@ -44,8 +52,7 @@ pub struct Live {
     pub compiling_effects: Option<u64>,
     pub compiling_shaders: Option<u64>,
     requests: u64,
-    /// A new or dropped effect file that is enabled when it has been read.
-    pub enable: Option<PathBuf>,
+    pub enable: Option<Waiting>,
     /// Files may be opened in the user's editor.
     pub opens_editor: bool,
 }
@@ -91,7 +98,7 @@ impl Live {
 
     /// What is wrong with files that the picture depends on; `is_used` tells it of effects.
     pub fn shown_faults(&self, is_used: impl Fn(&str) -> bool) -> impl Iterator<Item = (&Subject, &str)> {
-        let waiting = self.enable.as_deref().and_then(|path| path.file_stem()).map(|stem| stem.to_string_lossy().into_owned());
+        let waiting = self.enable.as_ref().and_then(|waiting| waiting.path.file_stem()).map(|stem| stem.to_string_lossy().into_owned());
         let is_shown = move |subject: &Subject| match subject {
             Subject::Effect(name) => is_used(name) || waiting.as_deref() == Some(name),
             _ => true,

@@ -1,27 +1,44 @@
-//! New effects: writes a commented file for the user to change.
+//! New effects: writes a file for the user to change, a commented template or the duplicate of another effect.
 
 use std::path::{Path, PathBuf};
 
-use super::{log::Level, reload::add_effect_file, state::State};
+use super::{command::Origin, log::Level, reload::add_effect_file, state::State};
 use crate::{
-    effect_files::{Hook, template},
+    effect_files::{duplicate, template},
     preset_file::{self, Existing, user_effects_folder},
 };
 
-/// Writes the template of a new effect, enables it, and opens it in the user's editor.
-pub fn create(state: &mut State, name: &str, hook: Hook) {
-    let path = folder(state).join(format!("{name}.wgsl"));
+/// Writes the file of a new effect on another thread; [`written`] takes the outcome.
+pub fn create(state: &mut State, name: &str, origin: Origin) {
+    let (path, name) = (folder(state).join(format!("{name}.wgsl")), name.to_owned());
+    state.jobs.write_effect(path, origin, move |path| {
+        let text = match origin {
+            Origin::Template(hook) => template(&name, hook),
+            Origin::Duplicate(effect) => duplicate(effect, &name).map_err(|reason| format!("{} {reason}", effect.name))?,
+        };
+        write(path, &text)
+    });
+}
+
+fn write(path: &Path, text: &str) -> Result<(), String> {
     if path.exists() {
-        return state.notify(Level::Error, format!("{} exists; choose another name", path.display()));
+        return Err(format!("{} exists; choose another name", path.display()));
     }
     let made = path.parent().map_or(Ok(()), std::fs::create_dir_all).map_err(|error| error.to_string());
-    let written = made.and_then(|()| {
-        preset_file::write_atomically(&path, template(name, hook).as_bytes(), Existing::Keep).map_err(|error| error.to_string())
-    });
-    if let Err(error) = written {
-        return state.notify(Level::Error, format!("{}: it cannot be written: {error}", path.display()));
+    let written =
+        made.and_then(|()| preset_file::write_atomically(path, text.as_bytes(), Existing::Keep).map_err(|error| error.to_string()));
+    written.map_err(|error| format!("{}: it cannot be written: {error}", path.display()))
+}
+
+/// Enables an effect that was written, in place of the one that it duplicates, and opens it in the user's editor.
+pub fn written(state: &mut State, path: PathBuf, origin: Origin, outcome: Result<(), String>) {
+    if let Err(error) = outcome {
+        return state.notify(Level::Error, error);
     }
     add_effect_file(state, &path);
+    if let (Some(waiting), Origin::Duplicate(effect)) = (&mut state.live.enable, origin) {
+        waiting.replaces = Some(effect);
+    }
     state.notify(Level::Info, format!("Wrote {}. Edit it, and the picture changes when you save it.", path.display()));
     if state.live.opens_editor {
         state.jobs.open_editor(path);

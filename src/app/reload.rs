@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 
 use super::{
     command::Edit,
-    live::{EffectReload, Reload, Subject},
+    live::{EffectReload, Reload, Subject, Waiting},
     log::Level,
     panels::Panels,
     scene_loader::SceneKey,
@@ -175,7 +175,7 @@ fn use_effects(state: &mut State, panels: &mut Panels, reload: EffectReload) {
 
 /// A file whose name another file has, in a folder that is searched later, cannot be enabled.
 fn warn_of_other_file(state: &mut State) {
-    let Some(path) = state.live.enable.clone() else { return };
+    let Some(Waiting { path, .. }) = state.live.enable.clone() else { return };
     let Some(name) = path.file_stem().map(|stem| stem.to_string_lossy().into_owned()) else { return };
     let other = state.session.preset_file.effects.custom().find(|(known, _)| *known == name).map(|(_, effect)| effect.path.clone());
     if let Some(other) = other.filter(|other| other.as_deref() != Some(&path)) {
@@ -187,12 +187,17 @@ fn warn_of_other_file(state: &mut State) {
 
 /// Enables the effect of a new or dropped file when it has been read.
 fn enable_waiting(state: &mut State) {
-    let Some(path) = &state.live.enable else { return };
-    let found = state.session.preset_file.effects.custom().find(|(_, effect)| effect.path.as_ref() == Some(path));
+    let Some(Waiting { path, replaces }) = &state.live.enable else { return };
+    let (path, replaces) = (path.as_path(), *replaces);
+    let found = state.session.preset_file.effects.custom().find(|(_, effect)| effect.path.as_deref() == Some(path));
     let Some(effect) = found.and_then(|(_, effect)| effect.read.as_ref().ok().copied()) else { return };
     state.live.enable = None;
     state.history.close();
-    if let Err(error) = state.session.edit(Edit::Enable(effect)) {
+    let edit = match replaces.filter(|old| state.session.preset().stack.get(old.name).is_some()) {
+        Some(old) => Edit::Rebind(old, effect),
+        None => Edit::Enable(effect),
+    };
+    if let Err(error) = state.session.edit(edit) {
         state.notify(Level::Error, error);
     }
 }
@@ -211,7 +216,7 @@ pub fn add_effect_file(state: &mut State, path: &Path) {
     if known.is_none() {
         state.folders.effect_folders.push(folder.clone());
     }
-    state.live.enable = path.file_name().map(|name| folder.join(name));
+    state.live.enable = path.file_name().map(|name| Waiting { path: folder.join(name), replaces: None });
 }
 
 fn preset_changed(state: &mut State, panels: &mut Panels, path: &PathBuf, read: Result<Box<PresetFile>, String>) {

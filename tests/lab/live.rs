@@ -28,7 +28,7 @@ fn write(path: &Path, text: &str) {
 }
 
 /// Steps until `reached`, and then until everything is at rest.
-fn wait_for(lab: &mut Lab, what: &str, reached: impl Fn(&Lab) -> bool) {
+pub fn wait_for(lab: &mut Lab, what: &str, reached: impl Fn(&Lab) -> bool) {
     let patience = Instant::now() + Duration::from_secs(60);
     while !reached(lab) {
         lab.step();

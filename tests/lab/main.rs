@@ -5,6 +5,7 @@
 mod common;
 
 mod compare;
+mod duplicates;
 mod files;
 mod harness;
 mod inspector;

@@ -6,13 +6,15 @@ use eframe::egui::{self, RichText, Ui};
 
 use crate::{
     app::{
-        command::{Command, Commands, FileCommand, Purpose},
+        command::{Command, Commands, FileCommand, Origin, Purpose},
         panel::Panel,
         panels::new_effect::{NewEffect, fields_ui},
         session::Session,
         state::State,
         theme,
     },
+    effect_files::Catalog,
+    effects::Effect,
     preset_file::{self, PresetFile},
 };
 
@@ -142,9 +144,9 @@ impl Dialogs {
         self.0 = Some(Dialog::Unsaved);
     }
 
-    /// Asks for the name and hook of a new effect.
-    pub fn ask_new_effect(&mut self) {
-        self.0 = Some(Dialog::NewEffect(NewEffect::default()));
+    /// Asks for the name of a new effect, and for its hook unless it is a duplicate of `duplicated`.
+    pub fn ask_new_effect(&mut self, duplicated: Option<&'static Effect>, catalog: &Catalog) {
+        self.0 = Some(Dialog::NewEffect(NewEffect::new(duplicated, catalog)));
     }
 
     /// Asks whether `theirs`, the open preset as its file has it now, replaces unsaved changes.
@@ -189,7 +191,7 @@ impl Dialogs {
             (Choice::Discard, Some(Dialog::Unsaved)) => file(FileCommand::DiscardAndQuit),
             (Choice::Accept, Some(Dialog::NewEffect(mut dialog))) => {
                 if dialog.check(&open.effects) {
-                    file(FileCommand::NewEffect { name: dialog.name, hook: dialog.hook });
+                    file(FileCommand::NewEffect { name: dialog.name, origin: dialog.origin });
                 } else {
                     self.0 = Some(Dialog::NewEffect(dialog));
                 }
@@ -306,7 +308,8 @@ fn changed_ui(ui: &mut Ui, title: &str) -> Option<Choice> {
 
 fn new_effect_ui(ui: &mut Ui, dialog: &mut NewEffect) -> Option<Choice> {
     let is_entered = fields_ui(ui, dialog);
-    let choice = buttons(ui, &[("Create", Choice::Accept, true), ("Cancel", Choice::Cancel, false)], |_| None);
+    let verb = if matches!(dialog.origin, Origin::Duplicate(_)) { "Duplicate" } else { "Create" };
+    let choice = buttons(ui, &[(verb, Choice::Accept, true), ("Cancel", Choice::Cancel, false)], |_| None);
     if is_entered { Some(Choice::Accept) } else { choice }
 }
 

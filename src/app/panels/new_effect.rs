@@ -3,20 +3,31 @@
 use eframe::egui::{self, RichText, Ui};
 
 use crate::{
-    app::theme,
+    app::{command::Origin, theme},
     effect_files::{Catalog, Hook, check_name},
+    effects::Effect,
 };
 
 /// What is chosen so far.
 pub struct NewEffect {
     pub name: String,
-    pub hook: Hook,
+    pub origin: Origin,
     pub error: Option<String>,
+    /// The suggested name is selected when the dialog opens, so that typing replaces it.
+    selects: bool,
 }
 
-impl Default for NewEffect {
-    fn default() -> Self {
-        Self { name: String::new(), hook: Hook::Surface, error: None }
+impl NewEffect {
+    /// A new effect without a name, or a duplicate with a name that is free.
+    pub fn new(duplicated: Option<&'static Effect>, catalog: &Catalog) -> Self {
+        let Some(effect) = duplicated else {
+            return Self { name: String::new(), origin: Origin::Template(Hook::Surface), error: None, selects: false };
+        };
+        let first = format!("my_{}", effect.name);
+        let further = (2..).map(|number| format!("{first}_{number}"));
+        let is_free = |name: &String| catalog.names().all(|known| known != name);
+        let name = std::iter::once(first.clone()).chain(further).find(is_free).unwrap_or(first);
+        Self { name, origin: Origin::Duplicate(effect), error: None, selects: true }
     }
 }
 
@@ -39,18 +50,36 @@ impl NewEffect {
 
 /// Shows the fields. Returns true if Enter was pressed in the name.
 pub fn fields_ui(ui: &mut Ui, dialog: &mut NewEffect) -> bool {
-    let NewEffect { name, hook, error } = dialog;
-    ui.label(RichText::new("New effect").size(15.0).color(theme::TEXT_STRONG).strong());
-    ui.label(theme::weak("Writes a commented WGSL file and opens it in your editor. The picture changes whenever you save the file."));
+    let NewEffect { name, origin, error, selects } = dialog;
+    let (title, about) = match origin {
+        Origin::Template(_) => (
+            "New effect".to_owned(),
+            "Writes a commented WGSL file and opens it in your editor. The picture changes whenever you save the file.".to_owned(),
+        ),
+        Origin::Duplicate(effect) => (
+            format!("Duplicate {} as my own", effect.name),
+            "Writes its text as a WGSL file of yours and opens it in your editor. The stack then uses your effect, with the same values."
+                .to_owned(),
+        ),
+    };
+    ui.label(RichText::new(title).size(15.0).color(theme::TEXT_STRONG).strong());
+    ui.label(theme::weak(about));
     ui.add_space(theme::HALF);
-    let field = ui.add(egui::TextEdit::singleline(name).hint_text("Name, for instance ink").desired_width(f32::INFINITY));
-    let field = field.accessible_name("Name");
+    let mut shown = egui::TextEdit::singleline(name).hint_text("Name, for instance ink").desired_width(f32::INFINITY).show(ui);
+    if std::mem::take(selects) {
+        let all = egui::text::CCursorRange::two(egui::text::CCursor::new(0), egui::text::CCursor::new(name.chars().count()));
+        shown.state.cursor.set_char_range(Some(all));
+        shown.state.store(ui.ctx(), shown.response.id);
+    }
+    let field = shown.response.response.accessible_name("Name");
     let is_entered = field.lost_focus() && ui.input(|i| i.key_pressed(egui::Key::Enter));
     if !is_entered && ui.memory(|memory| memory.focused().is_none()) {
         field.request_focus();
     }
-    for option in Hook::ALL {
-        ui.radio_value(hook, option, about(option)).accessible_name(option.name());
+    if let Origin::Template(hook) = origin {
+        for option in Hook::ALL {
+            ui.radio_value(hook, option, self::about(option)).accessible_name(option.name());
+        }
     }
     if let Some(error) = error {
         theme::notice(ui, theme::AMBER, error);

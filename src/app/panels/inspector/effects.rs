@@ -2,6 +2,7 @@
 
 use eframe::egui::{self, RichText, Ui};
 
+use super::effect_menu;
 use crate::{
     app::{
         action::Action,
@@ -48,7 +49,7 @@ fn own_effects_ui(ui: &mut Ui, state: &State, commands: &Commands, stack: &[&'st
         ui.label(theme::weak("Your effects"));
         ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
             if ui.small_button("New effect…").on_hover_text("Write an effect of your own, in one WGSL file").clicked() {
-                commands.send(Command::File(FileCommand::AskNewEffect));
+                commands.send(Command::File(FileCommand::AskNewEffect(None)));
             }
         });
     });
@@ -72,13 +73,13 @@ fn enabled_ui(ui: &mut Ui, state: &State, commands: &Commands, effect: &'static 
     let is_muted = state.session.muted.contains(effect.name);
     frame.show(ui, |ui| {
         ui.set_min_width(ui.available_width());
-        header_ui(ui, commands, effect, (index, count), is_muted);
+        header_ui(ui, state, commands, effect, (index, count), is_muted);
         ui.add_enabled_ui(!is_muted, |ui| parameters_ui(ui, state, commands, effect));
     });
     ui.add_space(theme::HALF);
 }
 
-fn header_ui(ui: &mut Ui, commands: &Commands, effect: &'static Effect, (index, count): (usize, usize), is_muted: bool) {
+fn header_ui(ui: &mut Ui, state: &State, commands: &Commands, effect: &'static Effect, (index, count): (usize, usize), is_muted: bool) {
     ui.horizontal(|ui| {
         ui.set_min_height(theme::ROW);
         let mut on = true;
@@ -88,6 +89,8 @@ fn header_ui(ui: &mut Ui, commands: &Commands, effect: &'static Effect, (index, 
         }
         ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
             ui.spacing_mut().item_spacing.x = 0.0;
+            let more = icon_button(ui, Icon::More, &format!("More of {}", effect.name));
+            egui::Popup::menu(&more).show(|ui| effect_menu::menu_ui(ui, state, commands, effect));
             let (icon, verb) = if is_muted { (Icon::EyeShut, "Show") } else { (Icon::Eye, "Mute") };
             if icon_button(ui, icon, &format!("{verb} {}", effect.name)).clicked() {
                 commands.send(Command::Mute(effect, !is_muted));
@@ -132,7 +135,9 @@ fn disabled_ui(ui: &mut Ui, state: &State, commands: &Commands, effect: &'static
     ui.set_min_height(theme::ROW);
     ui.add_space(theme::GAP);
     let mut on = false;
-    let clicked = ui.checkbox(&mut on, title(effect)).on_hover_text(effect.about).accessible_name(effect.name).clicked();
+    let box_ui = ui.checkbox(&mut on, title(effect)).on_hover_text(effect.about).accessible_name(effect.name);
+    box_ui.context_menu(|ui| effect_menu::menu_ui(ui, state, commands, effect));
+    let clicked = box_ui.clicked();
     let Some(conflict) = state.session.preset().stack.conflict_with(effect) else {
         if clicked {
             commands.edit(Edit::Enable(effect));
