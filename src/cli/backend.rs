@@ -109,7 +109,6 @@ impl Backend {
 
     /// The picture of `session`.
     pub fn frame(&mut self, preset: &Preset, scene: &Arc<Scene>) -> Result<Frame, CliError> {
-        preset.stack.check()?;
         match self {
             Self::Oracle => Ok(oracle::render_scaled(scene, &preset.moments(scene, preset.output.size), preset.accuracy.scale().factor())?),
             Self::Gpu(..) => Ok(self.capture(preset, scene)?.into_shown()),
@@ -118,7 +117,6 @@ impl Backend {
 
     /// The picture with everything that a judge needs.
     pub fn capture(&mut self, preset: &Preset, scene: &Arc<Scene>) -> Result<Capture, CliError> {
-        preset.stack.check()?;
         let moments = preset.moments(scene, preset.output.size);
         match self {
             Self::Oracle => {

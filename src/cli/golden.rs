@@ -40,7 +40,6 @@ pub fn draw(preset_file: &PresetFile, scene: &Scene) -> Result<Golden, CliError>
     if width > MAX_SIZE[0] || height > MAX_SIZE[1] {
         return Err(CliError::usage(format!("{}: output.size is {width}x{height}; a golden has at most 320x240 pixels", preset_file.id)));
     }
-    preset.stack.check()?;
     let moments = preset.moments(scene, preset.output.size);
     let frame = oracle::render_scaled(scene, &moments, preset.accuracy.scale().factor())?;
     let png = preset_file::png_bytes(&frame.color, preset.output.size)?;

@@ -11,7 +11,7 @@ use crate::{
         Effect, Stack,
         particles::{self, affects_only_appearance},
     },
-    params::{Field, ValueError},
+    params::{Field, ValueError, format_number},
 };
 
 /// Largest number of keyframes of a track.
@@ -84,9 +84,9 @@ pub struct Keyframe {
 /// Why a keyframe is refused.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum KeyframeError {
-    #[error(transparent)]
+    #[error("value {0}")]
     Value(#[from] ValueError),
-    #[error("time_s {0} lies outside -1e9..=1e9")]
+    #[error("time_s {} lies outside -1e9..=1e9", format_number(*.0))]
     Time(f64),
     #[error("there is already a keyframe at time_s {0}")]
     Taken(f64),

@@ -119,7 +119,9 @@ pub fn set(preset_file: &mut PresetFile, path: &str, value: &str) -> Result<(), 
         Target::Field(effect, field) => {
             let value = read_text(field, value).map_err(wrong)?;
             let preset = &mut preset_file.preset;
-            field.set_value(&mut preset.stack.enable(effect).words, &value).map_err(|error| wrong(error.to_string()))?;
+            let mut stack = preset.stack.clone();
+            field.set_value(&mut stack.enable(effect).words, &value).map_err(|error| wrong(error.to_string()))?;
+            preset.stack = stack;
             preset.animation.remove(effect.name, field.name);
         }
         Target::Animation(Some(effect), Some(field)) => {

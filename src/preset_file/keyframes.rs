@@ -84,18 +84,19 @@ pub fn read_track(
         let reason = format!("must be a list of 1 to {MAX_KEYFRAMES} keyframes such as {{ time_s = 0.0, value = … }}");
         wrong(here(reader), reason)
     })?;
-    let mut keyframes: Vec<Keyframe> = Vec::with_capacity(entries.len());
+    let mut track: Option<Track> = None;
     for (index, entry) in entries.into_iter().enumerate() {
-        let keyframe = read_keyframe(reader, entry, field, &format!("{path} keyframe {}: ", index + 1))?;
-        let at = || entry_position(reader, entry);
-        if keyframes.iter().any(|other| other.time_s == keyframe.time_s) {
-            return Err(wrong(at(), format!("keyframe {}: {}", index + 1, KeyframeError::Taken(keyframe.time_s))));
-        }
-        // Alone, so that the error is this entry's.
-        Track::new(effect, field, vec![keyframe.clone()]).map_err(|error| wrong(at(), format!("keyframe {}: {error}", index + 1)))?;
-        keyframes.push(keyframe);
+        let number = index + 1;
+        let keyframe = read_keyframe(reader, entry, field, &format!("{path} keyframe {number}: "))?;
+        let time_s = keyframe.time_s;
+        let added = match &mut track {
+            None => Track::new(effect, field, vec![keyframe]).map(|first| track = Some(first)),
+            Some(track) if track.at(time_s).is_some() => Err(KeyframeError::Taken(time_s)),
+            Some(track) => track.set(keyframe),
+        };
+        added.map_err(|error| wrong(entry_position(reader, entry), format!("keyframe {number}: {error}")))?;
     }
-    Track::new(effect, field, keyframes).map_err(|error| wrong(here(reader), error.to_string()))
+    Ok(track.expect("the list has an entry"))
 }
 
 fn read_keyframe(reader: &mut Reader<'_>, entry: &dyn TableLike, field: &Field, prefix: &str) -> Result<Keyframe, PresetError> {

@@ -11,7 +11,7 @@ use super::{
 };
 use crate::{
     effect_files::Catalog,
-    effects::{Conflict, EnabledEffect, Stack},
+    effects::{EnabledEffect, Stack},
     preset::{
         Preset,
         settings::{SECTIONS, Section},
@@ -50,8 +50,6 @@ pub fn read(document: &Document<String>, file: &str, catalog: &Catalog) -> Resul
     };
     if let Some(table) = reader.table(root, "", "effects")? {
         read_effects(&mut reader, table, &mut preset.stack)?;
-        let error = |conflict: Conflict| PresetError::value(reader.position(table, conflict.second), "effects", conflict.to_string());
-        preset.stack.check().map_err(error)?;
     }
     if let Some(table) = reader.table(root, "", "animation")? {
         keyframes::read(&mut reader, table, &mut preset)?;
@@ -108,7 +106,12 @@ fn read_effects(reader: &mut Reader<'_>, effects: &dyn TableLike, stack: &mut St
     for (name, _) in effects.iter() {
         let Some(table) = reader.table(effects, "effects.", name)? else { continue };
         match reader.effect(effects, "effects.", name)? {
-            Some(effect) => read_effect(reader, table, stack.enable(effect))?,
+            Some(effect) => {
+                if let Some(conflict) = stack.conflict_with(effect) {
+                    return Err(PresetError::value(reader.position(effects, name), "effects", conflict.to_string()));
+                }
+                read_effect(reader, table, stack.enable(effect))?;
+            }
             None => reader.unknown_effect(effects, "effects.", name),
         }
     }

@@ -57,7 +57,7 @@ impl Reader<'_> {
         self.catalog.find(name).map_err(|error| self.error(table, prefix, name, format!("cannot be used: {error}")))
     }
 
-    /// The value of `param`, which stands in `table` as `item`.
+    /// The value of `param`, which stands in `table` as `item`; its type is right, its range is not checked.
     pub fn value(&self, table: &dyn TableLike, prefix: &str, param: &Param, item: &Item) -> Result<Value, PresetError> {
         let read = match item.as_value() {
             Some(toml) => toml_value::read(param, toml, &|toml| number_text(toml, self.text)),

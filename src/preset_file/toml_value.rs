@@ -10,12 +10,12 @@ use crate::params::{Param, Value, ValueType, did_you_mean, suggestion};
 /// The text of a number as it stands in the file.
 pub type NumberText<'a> = &'a dyn Fn(&Toml) -> String;
 
-/// Reads the value of `param` and checks it; `text_of` gives the text of a number.
+/// Reads a value of `param`'s type; `text_of` gives the text of a number. What stores the value checks its range.
 ///
 /// # Errors
-/// Completes a sentence that begins with the parameter's name.
+/// The value has another type. Completes a sentence that begins with the parameter's name.
 pub fn read(param: &Param, toml: &Toml, text_of: NumberText<'_>) -> Result<Value, String> {
-    let value = match param.value_type {
+    Ok(match param.value_type {
         ValueType::Text { .. } => Value::Text(text(toml)?),
         ValueType::TextList { .. } => {
             let list = toml.as_array().ok_or_else(|| format!("must be a list of texts, not {}", description(toml)))?;
@@ -31,9 +31,7 @@ pub fn read(param: &Param, toml: &Toml, text_of: NumberText<'_>) -> Result<Value
                 Value::Numbers(list.iter().map(|item| number(item, &text_of(item), numbers)).collect::<Result<_, _>>()?)
             }
         },
-    };
-    param.check(&value).map_err(|error| error.to_string())?;
-    Ok(value)
+    })
 }
 
 /// The TOML that [`read`] takes back to the same bits. `value` must have this type.
@@ -132,7 +130,9 @@ mod tests {
 
     fn read_number(param: &Param, text: &str) -> Result<f64, String> {
         let toml: Toml = text.parse().expect("valid TOML");
-        read(param, &toml, &|_| text.to_owned()).map(|value| value.components()[0])
+        let value = read(param, &toml, &|_| text.to_owned())?;
+        param.check(&value).map_err(|error| error.to_string())?;
+        Ok(value.components()[0])
     }
 
     fn written(param: &Param, number: f64) -> String {
