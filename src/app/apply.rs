@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use eframe::egui::{self, ViewportCommand};
 
 use super::{
-    command::{Command, Commands, FileCommand, KeyframeEdit, Purpose, RowCommand, Toggle, ViewCommand},
+    command::{CodeUse, Command, Commands, FileCommand, KeyframeEdit, Purpose, RowCommand, Toggle, ViewCommand},
     log::Level,
     new_effect,
     panels::{Panels, timeline::Timeline},
@@ -141,10 +141,7 @@ fn paste(state: &mut State, panels: &mut Panels, text: &str) {
             Err(error) => state.notify(Level::Error, error),
         },
         _ => match preset_file::from_line(text) {
-            Ok(pasted) => {
-                open_preset(state, panels, pasted);
-                state.notify(Level::Info, "Pasted a preset");
-            }
+            Ok(pasted) => request_open(state, panels, pasted, "Pasted a preset".into()),
             Err(error) => state.notify(Level::Error, error.to_string()),
         },
     }
@@ -251,7 +248,8 @@ fn file(ctx: &egui::Context, state: &mut State, panels: &mut Panels, command: Fi
         FileCommand::AskNewEffect(duplicated) => panels.dialogs.ask_new_effect(duplicated, &state.session.preset_file.effects),
         FileCommand::NewEffect { name, origin } => new_effect::create(state, &name, origin),
         FileCommand::Edit(path) => state.jobs.open_editor(path),
-        FileCommand::Reload(theirs) => reload::take_preset(state, panels, *theirs),
+        FileCommand::Reload(theirs) => reload::offer_preset(state, panels, theirs),
+        FileCommand::UseCode { preset_file, then, runs } => use_code(state, panels, *preset_file, then, runs),
         FileCommand::DiscardAndQuit => {
             state.may_quit = true;
             ctx.send_viewport_cmd(ViewportCommand::Close);
@@ -260,9 +258,35 @@ fn file(ctx: &egui::Context, state: &mut State, panels: &mut Panels, command: Fi
 }
 
 fn open_and_notify(state: &mut State, panels: &mut Panels, opened: PresetFile) {
-    let title = opened.title().to_owned();
-    open_preset(state, panels, opened);
-    state.notify(Level::Info, format!("Opened {title}"));
+    let said = format!("Opened {}", opened.title());
+    request_open(state, panels, opened, said);
+}
+
+/// Opens a preset and says so. Asks first if it brings code that has not been allowed.
+fn request_open(state: &mut State, panels: &mut Panels, opened: PresetFile, said: String) {
+    if state.trust.allows(&opened, &state.folders.effects) {
+        open_preset(state, panels, opened);
+        state.notify(Level::Info, said);
+    } else {
+        panels.dialogs.ask_code(opened.into(), CodeUse::Open(said));
+    }
+}
+
+/// Goes on with a preset that brings effects: with them if they may run, or without.
+fn use_code(state: &mut State, panels: &mut Panels, brings: PresetFile, then: CodeUse, runs: bool) {
+    let decided = if runs {
+        state.trust.allow(&brings);
+        brings
+    } else {
+        brings.without_brought()
+    };
+    match then {
+        CodeUse::Open(said) => {
+            open_preset(state, panels, decided);
+            state.notify(Level::Info, if runs { said } else { format!("{said} without its effects") });
+        }
+        CodeUse::Reload => reload::take_preset(state, panels, decided),
+    }
 }
 
 /// Saves there; asks first if effects are muted.

@@ -144,6 +144,15 @@ pub enum Purpose {
     Export,
 }
 
+/// What happens to a preset that brings effects when the user has decided about them.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum CodeUse {
+    /// It is opened, and this is said.
+    Open(String),
+    /// It replaces the open preset, whose file has changed.
+    Reload,
+}
+
 /// What a new effect begins as.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Origin {
@@ -188,6 +197,12 @@ pub enum FileCommand {
     Edit(PathBuf),
     /// Replaces the open preset by what its file has now.
     Reload(Box<PresetFile>),
+    /// Goes on with a preset that brings effects, now that the user has decided whether they run.
+    UseCode {
+        preset_file: Box<PresetFile>,
+        then: CodeUse,
+        runs: bool,
+    },
     /// Closes the window without saving.
     DiscardAndQuit,
 }

@@ -43,6 +43,12 @@ pub fn finish(ctx: &egui::Context, state: &mut State, panels: &mut Panels, comma
         Done::Export(path, Ok(())) => state.notify(Level::Info, format!("Saved {}", path.display())),
         Done::Export(_, Err(error)) => state.notify(Level::Error, error),
         Done::Compiled(reload, outcome) => compiled(state, panels, reload, outcome),
+        Done::Golden(number, check) => {
+            if state.live.checking_golden == Some(number) {
+                state.live.checking_golden = None;
+                state.live.golden = check;
+            }
+        }
         Done::EffectWritten(path, origin, outcome) => new_effect::written(state, path, origin, outcome),
         Done::NoEditor(path, reason) => {
             let text = format!("{} could not be opened in an editor: {reason}", path.display());

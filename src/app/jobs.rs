@@ -11,6 +11,7 @@ use eframe::egui;
 use super::{
     command::{Origin, Purpose},
     findings::Findings,
+    golden_check::{self, GoldenCheck},
     live::Reload,
     scene_loader::SceneKey,
     screen::Inputs,
@@ -41,6 +42,8 @@ pub enum Done {
     Path(Purpose, Option<PathBuf>),
     /// Pipelines for what was changed on disk.
     Compiled(Reload, Result<(), String>),
+    /// The golden of a preset, compared again, by the number of its request; none if the preset has no golden.
+    Golden(u64, Option<GoldenCheck>),
     /// The file of a new effect.
     EffectWritten(PathBuf, Origin, Result<(), String>),
     /// A file that could not be opened in the user's editor.
@@ -100,6 +103,14 @@ impl Jobs {
         self.spawn("compile", move || {
             let compiled = caught("compiling", || compile(gpu, &inputs));
             Done::Compiled(reload, compiled)
+        });
+    }
+
+    /// Draws the golden of a preset again and compares.
+    pub fn check_golden(&self, number: u64, preset_file: PresetFile) {
+        self.spawn("golden", move || {
+            let checked = caught("drawing the golden", || Ok(golden_check::check(&preset_file)));
+            Done::Golden(number, checked.ok().flatten())
         });
     }
 

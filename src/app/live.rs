@@ -2,7 +2,7 @@
 
 use std::{collections::BTreeMap, path::PathBuf};
 
-use super::watch::Watcher;
+use super::{golden_check::GoldenCheck, watch::Watcher};
 use crate::{effect_files::Catalog, effects::Effect, preset::rebind::Replaced};
 
 /// What a fault is about.
@@ -51,6 +51,9 @@ pub struct Live {
     /// Numbers of the newest requests that are still compiled.
     pub compiling_effects: Option<u64>,
     pub compiling_shaders: Option<u64>,
+    /// The number of the newest golden that is still drawn, and the newest comparison.
+    pub checking_golden: Option<u64>,
+    pub golden: Option<GoldenCheck>,
     requests: u64,
     pub enable: Option<Waiting>,
     /// Files may be opened in the user's editor.
@@ -59,7 +62,17 @@ pub struct Live {
 
 impl Live {
     pub fn new(watcher: Watcher, opens_editor: bool) -> Self {
-        Self { watcher, faults: BTreeMap::new(), compiling_effects: None, compiling_shaders: None, requests: 0, enable: None, opens_editor }
+        Self {
+            watcher,
+            faults: BTreeMap::new(),
+            compiling_effects: None,
+            compiling_shaders: None,
+            checking_golden: None,
+            golden: None,
+            requests: 0,
+            enable: None,
+            opens_editor,
+        }
     }
 
     /// The number of a new request.
@@ -68,9 +81,9 @@ impl Live {
         self.requests
     }
 
-    /// True while something is compiled.
+    /// True while something is compiled or a golden is drawn.
     pub fn is_busy(&self) -> bool {
-        self.compiling_effects.is_some() || self.compiling_shaders.is_some()
+        self.compiling_effects.is_some() || self.compiling_shaders.is_some() || self.checking_golden.is_some()
     }
 
     /// Notes a fault. Returns false if it was known.

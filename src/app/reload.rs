@@ -4,7 +4,7 @@
 use std::path::{Path, PathBuf};
 
 use super::{
-    command::Edit,
+    command::{CodeUse, Edit},
     live::{EffectReload, Reload, Subject, Waiting},
     log::Level,
     panels::Panels,
@@ -170,7 +170,23 @@ fn use_effects(state: &mut State, panels: &mut Panels, reload: EffectReload) {
             state.notify(Level::Info, format!("{} was reloaded", effect.name));
         }
     }
+    if replaced.iter().any(|(_, new)| state.session.as_filed().preset.stack.get(new.name).is_some()) {
+        recheck_golden(state);
+    }
     warn_of_other_file(state);
+}
+
+/// Draws the golden of the open preset again, if it has one, and compares.
+fn recheck_golden(state: &mut State) {
+    let filed = state.session.as_filed();
+    if filed.preset.test.is_none() {
+        return;
+    }
+    let filed = filed.clone();
+    let number = state.live.request();
+    state.live.checking_golden = Some(number);
+    state.live.golden = None;
+    state.jobs.check_golden(number, filed);
 }
 
 /// A file whose name another file has, in a folder that is searched later, cannot be enabled.
@@ -233,9 +249,18 @@ fn preset_changed(state: &mut State, panels: &mut Panels, path: &PathBuf, read: 
             if state.session.is_modified() {
                 panels.dialogs.ask_changed(theirs);
             } else {
-                take_preset(state, panels, *theirs);
+                offer_preset(state, panels, theirs);
             }
         }
+    }
+}
+
+/// Makes the open preset what its file has now; asks first if that brings code that has not been allowed.
+pub fn offer_preset(state: &mut State, panels: &mut Panels, theirs: Box<PresetFile>) {
+    if state.trust.allows(&theirs, &state.folders.effects) {
+        take_preset(state, panels, *theirs);
+    } else {
+        panels.dialogs.ask_code(theirs, CodeUse::Reload);
     }
 }
 
@@ -253,6 +278,7 @@ pub fn take_preset(state: &mut State, panels: &mut Panels, mut theirs: PresetFil
     state.history.close();
     panels.browser.refresh(&state.folders, &id);
     state.notify(Level::Info, format!("{title} was reloaded"));
+    recheck_golden(state);
 }
 
 fn model_changed(state: &mut State, path: &Path) {
@@ -272,6 +298,7 @@ pub fn model_reloaded(state: &mut State, key: &SceneKey, outcome: Result<(), &st
             state.live.clear_fault(&Subject::Model);
             if is_again {
                 state.notify(Level::Info, "The model was reloaded");
+                recheck_golden(state);
             }
         }
         Err(error) if is_again => fault(state, Subject::Model, error.to_owned()),

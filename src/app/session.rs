@@ -87,6 +87,11 @@ impl Session {
         self.scenes.shown()
     }
 
+    /// The open preset as its file has it.
+    pub fn as_filed(&self) -> &PresetFile {
+        self.files.get(&FileId::of(&self.preset_file)).unwrap_or(&self.preset_file)
+    }
+
     /// Makes `preset_file` the open preset, with no effect muted and at the preset's own time.
     pub fn open(&mut self, preset_file: PresetFile) {
         self.remember(preset_file.clone());

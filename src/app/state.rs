@@ -13,6 +13,7 @@ use super::{
     overlay::OverlaySelection,
     screen::Screen,
     session::{Session, UndoState},
+    trust::Trust,
     verification::Verification,
 };
 use crate::{measure::ErrorReport, preset_file::Folders};
@@ -49,6 +50,8 @@ pub struct State {
     pub folders: Folders,
     /// What is watched on disk.
     pub live: Live,
+    /// Effects that came inside presets and may run.
+    pub trust: Trust,
     pub session: Session,
     pub history: History<UndoState>,
     pub jobs: Jobs,

@@ -9,7 +9,7 @@ use eframe::egui::{self, Ui, ViewportCommand};
 
 use super::{
     apply,
-    command::Commands,
+    command::{CodeUse, Commands},
     device,
     finished::finish,
     history::History,
@@ -26,6 +26,7 @@ use super::{
     session::Session,
     state::{Clipboard, OpenPanels, State},
     theme,
+    trust::Trust,
     verification::Verification,
     watch::Watcher,
 };
@@ -165,12 +166,23 @@ impl App {
         let opened = recovery::first_preset(options.opened, options.open.as_deref(), &options.folders, &mut log);
         let summary = &gpu.summary;
         log.add(Level::Info, format!("adapter: {}, {}, {}", summary.name, summary.backend, summary.driver));
+        let mut panels = Panels::new(&options.folders);
+        let trust = Trust::default();
+        let opened = if trust.allows(&opened, &options.folders.effects) {
+            opened
+        } else {
+            // Until the user decides, a preset without code is shown.
+            let said = format!("Opened {}", opened.title());
+            panels.dialogs.ask_code(opened.into(), CodeUse::Open(said));
+            recovery::first_preset(None, None, &options.folders, &mut log)
+        };
         let session = Session::new(opened);
         Ok(Self {
-            panels: Panels::new(&options.folders),
+            panels,
             state: State {
                 live: Live::new(Watcher::new(cc.egui_ctx.clone(), session.preset_file.effects.clone()), options.opens_editor),
                 folders: options.folders,
+                trust,
                 history: History::new(session.undo_state()),
                 session,
                 jobs: Jobs::new(cc.egui_ctx.clone()),

@@ -95,6 +95,15 @@ impl Catalog {
         Self { custom: Arc::new(custom), ..self.clone() }
     }
 
+    /// These effects without the effects of files called `names` and without instances of them.
+    #[must_use]
+    pub fn without(&self, names: &[String]) -> Self {
+        let is_named = |name: &str| names.iter().any(|named| named == name);
+        let mut left = self.only(|name, _| !is_named(name));
+        Arc::make_mut(&mut left.instances).retain(|_, effect| effect.base.is_none_or(|base| !is_named(base.name)));
+        left
+    }
+
     fn read_file(&self, path: &Path) -> CustomEffect {
         let name = stem(path);
         let file = path.display().to_string();

@@ -11,7 +11,7 @@ use super::{
 };
 use crate::{
     effect_files::Catalog,
-    effects::lambert,
+    effects::{Effect, lambert},
     preset::{Preset, SceneSource},
 };
 
@@ -78,6 +78,34 @@ impl PresetFile {
         };
         let brought = self.brought_effects.iter().map(|name| format!("the preset brings the effect {name}, {} lines of WGSL", lines(name)));
         self.warnings.iter().cloned().chain(brought).collect()
+    }
+
+    /// The effects whose text came inside the preset.
+    pub fn brought(&self) -> impl Iterator<Item = &'static Effect> + '_ {
+        self.brought_effects.iter().filter_map(|name| self.effects.find(name).ok().flatten())
+    }
+
+    /// The preset without the effects that it brings, their instances, keyframes and texts.
+    #[must_use]
+    pub fn without_brought(mut self) -> Self {
+        let brought = std::mem::take(&mut self.brought_effects);
+        let is_brought =
+            |effect: &Effect| brought.iter().any(|name| effect.name == name || effect.base.is_some_and(|base| base.name == name));
+        let used: Vec<&str> = self
+            .preset
+            .stack
+            .0
+            .iter()
+            .map(|enabled| enabled.effect)
+            .filter(|effect| is_brought(effect))
+            .map(|effect| effect.name)
+            .collect();
+        for name in used {
+            self.preset.disable(name);
+        }
+        self.effects = self.effects.without(&brought);
+        self.document.remove(EFFECT_FILES);
+        self
     }
 
     /// Would saving change the file?

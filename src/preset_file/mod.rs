@@ -28,7 +28,7 @@ pub use apng::{AnimatedPng, AnimationOptions};
 pub use atomic::{AtomicFile, Existing, is_taken, write_atomically};
 pub use edit::{set, unset};
 pub use error::{Position, PresetError};
-pub use file::{PresetFile, save, to_toml};
+pub use file::{PresetFile, save, to_shared_toml, to_toml};
 pub use frame_status::{FrameStatus, frame_status};
 pub use gallery::{BUILTIN_DIR, Folders, GalleryEntry, Origin, gallery, open, user_effects_folder, user_folder};
 pub use load::{Migrated, load, load_with, migrated, parse, parse_file, parse_with};

@@ -17,12 +17,12 @@ use crate::{
 };
 
 /// Paints everything in the color of a parameter.
-const INK: &str = "// Ink: paints the surface.\n//@ use lib/surface\n\nstruct Ink {\n    /// How much.\n    @range(0.0, 1.0, 1.0) amount: f32,\n}\n\n\
+pub const INK: &str = "// Ink: paints the surface.\n//@ use lib/surface\n\nstruct Ink {\n    /// How much.\n    @range(0.0, 1.0, 1.0) amount: f32,\n}\n\n\
     fn ink(surface: Surface, p: Ink) -> Surface {\n    var s = surface;\n    s.color = vec4f(p.amount, 0.0, 0.0, 1.0);\n    return s;\n}\n";
 
 const PRESET: &str = "schema = 2\n[scene]\nbuiltin = \"teapot\"\n[effects.ink]\n";
 
-fn write(path: &Path, text: &str) {
+pub fn write(path: &Path, text: &str) {
     std::fs::create_dir_all(path.parent().expect("a folder")).expect("a folder");
     std::fs::write(path, text).expect("a file");
 }

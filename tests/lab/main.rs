@@ -4,9 +4,11 @@
 #[path = "../common/mod.rs"]
 mod common;
 
+mod brought_code;
 mod compare;
 mod duplicates;
 mod files;
+mod goldens;
 mod harness;
 mod inspector;
 mod live;

@@ -6,9 +6,12 @@ use eframe::egui::{self, RichText, Ui};
 
 use crate::{
     app::{
-        command::{Command, Commands, FileCommand, Origin, Purpose},
+        command::{CodeUse, Command, Commands, FileCommand, Origin, Purpose},
         panel::Panel,
-        panels::new_effect::{NewEffect, fields_ui},
+        panels::{
+            brought_code::code_ui,
+            new_effect::{NewEffect, fields_ui},
+        },
         session::Session,
         state::State,
         theme,
@@ -64,6 +67,8 @@ enum Dialog {
     /// Quit with unsaved changes?
     Unsaved,
     NewEffect(NewEffect),
+    /// May the code that a preset brings run?
+    Code(Box<PresetFile>, CodeUse),
     /// Replace unsaved changes by what the preset's file has now?
     Changed(Box<PresetFile>),
 }
@@ -154,6 +159,11 @@ impl Dialogs {
         self.0 = Some(Dialog::Changed(theirs));
     }
 
+    /// Asks whether the effects that `preset_file` brings may run.
+    pub fn ask_code(&mut self, preset_file: Box<PresetFile>, then: CodeUse) {
+        self.0 = Some(Dialog::Code(preset_file, then));
+    }
+
     /// Takes the answer of the system's dialog; none if it was canceled.
     pub fn path_arrived(&mut self, purpose: Purpose, path: Option<PathBuf>, own_path: Option<&Path>, commands: &Commands) {
         let Some(Dialog::Path(dialog)) = &mut self.0 else { return };
@@ -196,6 +206,9 @@ impl Dialogs {
                     self.0 = Some(Dialog::NewEffect(dialog));
                 }
             }
+            (Choice::Run | Choice::OpenWithout, Some(Dialog::Code(preset_file, then))) => {
+                file(FileCommand::UseCode { preset_file, then, runs: choice == Choice::Run });
+            }
             (Choice::TakeTheirs, Some(Dialog::Changed(theirs))) => file(FileCommand::Reload(theirs)),
             (_, dialog) => self.0 = dialog,
         }
@@ -215,6 +228,7 @@ impl Panel for Dialogs {
                 Dialog::Unsaved => unsaved_ui(ui, state.session.title()),
                 Dialog::NewEffect(dialog) => new_effect_ui(ui, dialog),
                 Dialog::Changed(theirs) => changed_ui(ui, theirs.title()),
+                Dialog::Code(preset_file, _) => brought_ui(ui, preset_file),
             };
         });
         if chosen.is_none() && modal.should_close() {
@@ -244,6 +258,8 @@ enum Choice {
     Save,
     Discard,
     TakeTheirs,
+    Run,
+    OpenWithout,
 }
 
 fn path_ui(ui: &mut Ui, dialog: &mut PathDialog) -> Option<Choice> {
@@ -304,6 +320,16 @@ fn changed_ui(ui: &mut Ui, title: &str) -> Option<Choice> {
     ui.label(format!("{title} has unsaved changes, and another program has changed its file."));
     ui.add_space(theme::HALF);
     buttons(ui, &[("Keep mine", Choice::Cancel, true), ("Take theirs", Choice::TakeTheirs, false)], |_| None)
+}
+
+fn brought_ui(ui: &mut Ui, preset_file: &PresetFile) -> Option<Choice> {
+    code_ui(ui, preset_file);
+    let options = [
+        ("Run this code", Choice::Run, false),
+        ("Open without these effects", Choice::OpenWithout, true),
+        ("Cancel", Choice::Cancel, false),
+    ];
+    buttons(ui, &options, |_| None)
 }
 
 fn new_effect_ui(ui: &mut Ui, dialog: &mut NewEffect) -> Option<Choice> {

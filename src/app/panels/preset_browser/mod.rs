@@ -39,7 +39,9 @@ impl PresetBrowser {
     /// The presets of `folders`, of the user's folder, and the built-in ones.
     pub fn new(folders: &Folders) -> Self {
         let entries = preset_file::gallery(folders);
-        let queue = entries.iter().filter(|entry| entry.preset_file.is_ok()).map(|entry| entry.id.clone()).collect();
+        // The code of a preset runs only after the user has allowed it, so a preset that brings code has no thumbnail.
+        let has_no_code = |entry: &&GalleryEntry| entry.preset_file.as_ref().is_ok_and(|found| found.brought_effects.is_empty());
+        let queue = entries.iter().filter(has_no_code).map(|entry| entry.id.clone()).collect();
         Self { entries, queue, thumbnails: HashMap::new(), drawing: None, tab: Tab::Presets }
     }
 
@@ -51,7 +53,9 @@ impl PresetBrowser {
     /// Reads the folders again and redraws the thumbnail of the preset `changed`.
     pub fn refresh(&mut self, folders: &Folders, changed: &str) {
         self.entries = preset_file::gallery(folders);
-        if self.entries.iter().any(|entry| entry.id == changed) && !self.queue.iter().any(|id| id == changed) {
+        let is_there =
+            |entry: &GalleryEntry| entry.id == changed && entry.preset_file.as_ref().is_ok_and(|found| found.brought_effects.is_empty());
+        if self.entries.iter().any(is_there) && !self.queue.iter().any(|id| id == changed) {
             self.queue.push_back(changed.to_owned());
         }
     }

@@ -6,7 +6,9 @@ use crate::{
     app::{
         action::Action,
         command::Commands,
+        golden_check::Outcome,
         icons::{Icon, icon_button},
+        session::FileId,
         state::State,
         theme,
     },
@@ -22,6 +24,7 @@ pub fn chips_ui(ui: &mut Ui, state: &State, commands: &Commands, rect: Rect, is_
             .inner_margin(egui::Margin::symmetric(8, 4))
             .show(&mut left, |ui| ui.label(RichText::new(text).size(12.0).color(color)));
     }
+    golden_ui(&mut left, state);
     let corner = Rect::from_min_max(pos2(rect.right() - 320.0, rect.top() + 8.0), pos2(rect.right() - 10.0, rect.top() + 36.0));
     let layout = egui::Layout::right_to_left(egui::Align::Center);
     let mut right = ui.new_child(egui::UiBuilder::new().id_salt("views").max_rect(corner).layout(layout));
@@ -32,6 +35,16 @@ pub fn chips_ui(ui: &mut Ui, state: &State, commands: &Commands, rect: Rect, is_
         ui.painter().rect(rect.shrink(8.0), 8.0, fill, stroke, egui::StrokeKind::Inside);
         ui.painter().text(rect.center(), Align2::CENTER_CENTER, "Drop to open", FontId::proportional(20.0), theme::TEXT_STRONG);
     }
+}
+
+/// Whether the preset still gives its golden, after a file was reloaded.
+fn golden_ui(ui: &mut Ui, state: &State) {
+    let open = FileId::of(&state.session.preset_file);
+    let Some(check) = state.live.golden.as_ref().filter(|check| check.file == open) else { return };
+    let color = if check.outcome == Outcome::Same { theme::GREEN } else { theme::AMBER };
+    let frame = theme::toast_frame(theme::LINE).inner_margin(egui::Margin::symmetric(8, 4));
+    let badge = frame.show(ui, |ui| ui.label(RichText::new(check.text()).size(12.0).color(color)));
+    badge.inner.on_hover_text(check.hint());
 }
 
 /// What is unusual about the picture, each with its color.
