@@ -11,6 +11,7 @@ struct Varyings {
     @location(0) position: vec3f,
     @location(1) normal: vec3f,
     @location(2) depth_m: f32,
+    @location(3) @interpolate(flat) draw: u32,
 }
 
 @vertex
@@ -20,6 +21,7 @@ fn hardware_vertex(@location(0) position: vec3f, @location(1) normal: vec3f, @bu
     v.position = (draws[draw].world_from_object * vec4f(position, 1.0)).xyz;
     v.normal = (draws[draw].normal_from_object * vec4f(normal, 0.0)).xyz;
     v.depth_m = v.at.w;
+    v.draw = draw;
     return v;
 }
 
@@ -37,6 +39,6 @@ fn hardware_fragment(v: Varyings, @builtin(front_facing) is_front: bool) -> @loc
     s.depth_m = v.depth_m;
     s.flat_depth_m = v.depth_m;
     s.depth_range_m = frame.depth_range_m;
-    let shaded = glue_surface(s);
+    let shaded = glue_surface(s, v.draw);
     return vec4f(color_encode(shaded.color.rgb), shaded.color.a);
 }

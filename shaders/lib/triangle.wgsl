@@ -31,6 +31,10 @@ struct Draw {
     color_offset: u32,
     color_stride: u32,
     color_format: u32,           // component count in bits 8 and up; 0 without colors
+    scopes: u32,                 // bit k is set if the draw lies in scope k of the stack
+    spare_0: u32,
+    spare_1: u32,
+    spare_2: u32,
 }
 
 const DRAW_DOUBLE_SIDED = 1u;

@@ -52,7 +52,7 @@ pub struct Common {
     /// Print neither progress nor notes
     #[arg(long, short, global = true)]
     pub quiet: bool,
-    /// Treat unknown keys in a preset as errors
+    /// Treat unknown keys in a preset, and parts that its scene does not have, as errors
     #[arg(long, global = true)]
     pub strict: bool,
     /// Overwrite existing files
@@ -98,6 +98,8 @@ pub enum Command {
     Compare(Compare),
     /// Show the passes and buffers of a preset, and the reason for each
     Explain(Explain),
+    /// List the materials, nodes and meshes of a scene as patterns for the key `on` of effects
+    Parts(Parts),
     /// Redraw goldens with the oracle
     Bless(Bless),
     /// Measure time and error of accuracy options and effects
@@ -126,6 +128,7 @@ impl Command {
             Self::Verify(_) => "verify",
             Self::Compare(_) => "compare",
             Self::Explain(_) => "explain",
+            Self::Parts(_) => "parts",
             Self::Bless(_) => "bless",
             Self::Bench(_) => "bench",
             Self::Stress(_) => "stress",
@@ -281,6 +284,13 @@ pub struct Explain {
     /// Size in pixels instead of the preset's own
     #[arg(long, value_name = "WxH", value_parser = size)]
     pub size: Option<[u32; 2]>,
+}
+
+#[derive(Args, Debug)]
+pub struct Parts {
+    /// A preset, a model, or builtin:QUERY
+    #[arg(value_name = "SCENE")]
+    pub input: String,
 }
 
 #[derive(Args, Debug)]

@@ -13,8 +13,8 @@ use crate::{
     },
     oracle::{self, Shot},
     preset::{Preset, Visibility},
-    preset_file::{self, PresetFile, Provenance},
-    scene::{Scene, draw::draws},
+    preset_file::{self, PresetError, PresetFile, Provenance},
+    scene::Scene,
 };
 
 /// The backend that `--adapter` or the environment names.
@@ -123,7 +123,7 @@ impl Backend {
                 let ((view, stack), before) = moments.split_last().expect("a preset has at least one frame");
                 let previous = if before.is_empty() { None } else { Some(oracle::render_sequence(scene, before)?.color) };
                 let frame = oracle::render_next(scene, view, stack, previous.as_deref())?;
-                let mut geometry = oracle::project(&Shot::new(scene, &draws(scene, view)?, view, stack));
+                let mut geometry = oracle::project(&Shot::new(scene, &stack.draws(scene, view)?, view, stack));
                 geometry.shadow_map = oracle::shadow_map(scene, view, stack)?;
                 Ok(Capture { frame, geometry, layers: None, previous, shown: None })
             }
@@ -152,8 +152,27 @@ pub fn adapter_json(summary: &AdapterSummary, caps: &Caps) -> Value {
     })
 }
 
-/// The scene of a preset.
-pub fn scene_of(preset_file: &PresetFile) -> Result<Arc<Scene>, CliError> {
-    preset_file::load_scene(&preset_file.preset, preset_file.path.as_deref())
-        .map_err(|e| CliError::from(e).during(format!("preset {}", preset_file.id)))
+/// The scene of a preset. Warns of scopes that match no part of it.
+///
+/// # Errors
+/// The scene is not available, or `--strict` makes a warning an error.
+pub fn scene_of(common: &Common, preset_file: &PresetFile, streams: &Streams) -> Result<Arc<Scene>, CliError> {
+    let (scene, warnings) = scene_with_warnings(common, preset_file)?;
+    warnings.iter().for_each(|warning| streams.note(&format!("warning: {warning}")));
+    Ok(scene)
+}
+
+/// The scene of a preset, with warnings about scopes that match no part of it.
+///
+/// # Errors
+/// As [`scene_of`].
+pub fn scene_with_warnings(common: &Common, preset_file: &PresetFile) -> Result<(Arc<Scene>, Vec<String>), CliError> {
+    let scene = preset_file::load_scene(&preset_file.preset, preset_file.path.as_deref())
+        .map_err(|e| CliError::from(e).during(format!("preset {}", preset_file.id)))?;
+    let file = preset_file.path.as_ref().map_or_else(|| format!("{}.toml", preset_file.id), |path| path.display().to_string());
+    let warnings: Vec<String> = preset_file.preset.missing_parts(&scene).iter().map(|missing| format!("{file}: {missing}")).collect();
+    match common.strict && !warnings.is_empty() {
+        true => Err(PresetError::Strict(warnings).into()),
+        false => Ok((scene, warnings)),
+    }
 }

@@ -20,7 +20,7 @@ pub fn run(common: &Common, args: &Bench, streams: &mut Streams) -> Result<Exit,
     if !args.axes.is_empty() {
         return sweep::run(common, args, streams);
     }
-    let subjects = subjects(common, args)?;
+    let subjects = subjects(common, args, streams)?;
     let backend = Backend::open(common, streams)?;
     let Backend::Gpu(_, gpu) = &backend else {
         return Err(CliError::usage("bench needs a GPU adapter; the oracle is not measured"));

@@ -32,7 +32,7 @@ pub fn run(common: &Common, args: &Bless, streams: &mut Streams) -> Result<Exit,
     let (mut results, mut changed) = (Vec::new(), false);
     for (preset_file, is_new) in preset_files {
         bar.set_message(preset_file.id.clone());
-        let golden = golden::draw(&preset_file, &*scene_of(&preset_file)?)?;
+        let golden = golden::draw(&preset_file, &*scene_of(common, &preset_file, streams)?)?;
         let change = change(&golden, &args.snapshots, &preset_file.id);
         changed |= is_new || change["changes"] == json!(true);
         if !streams.json {

@@ -6,7 +6,7 @@ use serde_json::{Value, json};
 
 use super::{
     args::{Check, Common},
-    backend::{Backend, scene_of},
+    backend::{Backend, scene_with_warnings},
     error::{CliError, Exit},
     files::{self, Names},
     finding::{Drawn, Finding},
@@ -52,7 +52,8 @@ fn check(common: &Common, args: &Check, file: &str, backend: Option<&mut Backend
     let mut finding = Finding { preset: id, exit: Exit::Done, problems: Vec::new(), warnings: Vec::new(), position: None, drawn: None };
     let outcome = open(common, file).and_then(|preset_file| {
         finding.warnings.clone_from(&preset_file.warnings);
-        let scene = scene_of(&preset_file)?;
+        let (scene, missing) = scene_with_warnings(common, &preset_file)?;
+        finding.warnings.extend(missing);
         backend.map(|backend| drawn(args, &preset_file, &scene, backend)).transpose()
     });
     match outcome {

@@ -75,6 +75,6 @@ fn side(common: &Common, args: &Compare, what: &str, backend: &mut Option<Backen
         Some(backend) => backend,
         None => backend.insert(Backend::open(common, streams)?),
     };
-    let frame = backend.frame(&preset_file.preset, &scene_of(&preset_file)?)?;
+    let frame = backend.frame(&preset_file.preset, &scene_of(common, &preset_file, streams)?)?;
     Ok(Side { size: [frame.width, frame.height], color: frame.color, triangle_id: Some(frame.triangle_id) })
 }

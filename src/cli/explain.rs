@@ -10,19 +10,19 @@ use super::{
     streams::{Streams, table},
 };
 use crate::{
-    effects::Stack,
+    effects::{EnabledEffect, Stack},
     frame::Frame,
     gpu::{Capture, Explanation, SizesNote},
     measure::compare,
     oracle,
     plan::{Tolerance, predict::Prediction},
-    scene::{Scene, sizes::SizeClasses, view::View},
+    scene::{Scene, parts::PartPattern, sizes::SizeClasses, view::View},
 };
 
 pub fn run(common: &Common, args: &Explain, streams: &mut Streams) -> Result<Exit, CliError> {
     let mut preset_file = open(common, &args.input)?;
     preset_file.preset.output.size = args.size.unwrap_or(preset_file.preset.output.size);
-    let scene = scene_of(&preset_file)?;
+    let scene = scene_of(common, &preset_file, streams)?;
     // Without an adapter there is no plan, but the preset can be described.
     let backend = match Backend::open(common, streams) {
         Ok(backend) => Some(backend),
@@ -140,7 +140,10 @@ fn scene_json(scene: &Scene) -> Value {
 }
 
 fn effects_json(stack: &Stack) -> Vec<Value> {
-    stack.0.iter().map(|enabled| json!({ "effect": enabled.effect.name, "hook": enabled.effect.hooks.names() })).collect()
+    let on = |enabled: &EnabledEffect| enabled.on.patterns().iter().map(PartPattern::to_string).collect::<Vec<_>>();
+    let effect =
+        |enabled: &EnabledEffect| json!({ "effect": enabled.effect.name, "hook": enabled.effect.hooks.names(), "on": on(enabled) });
+    stack.0.iter().map(effect).collect()
 }
 
 fn text(
@@ -160,7 +163,11 @@ fn text(
 }
 
 fn preset_text(id: &str, scene: &Scene, stack: &Stack) -> String {
-    let effects: Vec<_> = stack.0.iter().map(|enabled| format!("{} ({})", enabled.effect.name, enabled.effect.hooks.names())).collect();
+    let effect = |enabled: &EnabledEffect| {
+        let on = if enabled.on.is_whole_scene() { String::new() } else { format!(" on {}", enabled.on) };
+        format!("{} ({}){on}", enabled.effect.name, enabled.effect.hooks.names())
+    };
+    let effects: Vec<_> = stack.0.iter().map(effect).collect();
     format!(
         "preset     {id}\nscene      {}: {} triangles, {} vertices, {} instances\nbounds     {}\neffects    {}\n",
         scene.name,

@@ -22,7 +22,7 @@ use crate::{
 };
 
 /// Presets with their scenes: each preset with its own scene, or with each `--scene`.
-pub fn subjects(common: &Common, args: &Bench) -> Result<Vec<(PresetFile, Arc<Scene>)>, CliError> {
+pub fn subjects(common: &Common, args: &Bench, streams: &Streams) -> Result<Vec<(PresetFile, Arc<Scene>)>, CliError> {
     let named = args.inputs.iter().map(|what| open(common, what)).collect::<Result<Vec<_>, _>>()?;
     let mut preset_files = Vec::new();
     for scene in &args.scene {
@@ -45,7 +45,7 @@ pub fn subjects(common: &Common, args: &Bench) -> Result<Vec<(PresetFile, Arc<Sc
     if args.scene.is_empty() {
         preset_files = if named.is_empty() { vec![PresetFile::of_scene("teapot", SceneSource::Builtin("teapot".into()))] } else { named };
     }
-    preset_files.into_iter().map(|preset_file| Ok((preset_file.clone(), scene_of(&preset_file)?))).collect()
+    preset_files.into_iter().map(|preset_file| Ok((preset_file.clone(), scene_of(common, &preset_file, streams)?))).collect()
 }
 
 fn is_model(scene: &str) -> bool {

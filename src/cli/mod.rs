@@ -20,6 +20,7 @@ mod measured;
 mod migrate;
 mod new_effect;
 mod open;
+mod parts;
 mod render;
 mod report;
 mod sequence;
@@ -75,6 +76,7 @@ fn dispatch(common: &Common, command: &Command, streams: &mut Streams) -> Result
         Command::Verify(args) => verify::run(common, args, streams),
         Command::Compare(args) => compare::run(common, args, streams),
         Command::Explain(args) => explain::run(common, args, streams),
+        Command::Parts(args) => parts::run(common, args, streams),
         Command::Bless(args) => bless::run(common, args, streams),
         Command::Bench(args) => bench::run(common, args, streams),
         Command::Stress(args) => stress::run(common, args, streams),

@@ -33,7 +33,7 @@ pub fn run(common: &Common, args: &Render, streams: &mut Streams) -> Result<Exit
     let mut results = Vec::new();
     for preset_file in &preset_files {
         bar.set_message(preset_file.id.clone());
-        let scene = scene_of(preset_file)?;
+        let scene = scene_of(common, preset_file, streams)?;
         scene.notes.iter().for_each(|note| streams.note(note));
         let frame = backend.frame(&preset_file.preset, &scene)?;
         let names = names(preset_file, &backend);

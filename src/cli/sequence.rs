@@ -109,7 +109,7 @@ pub fn run(common: &Common, args: &Sequence, streams: &mut Streams) -> Result<Ex
     preset_file.remarks().iter().for_each(|remark| streams.note(remark));
     let schedule = Schedule::of(args, &preset_file.preset)?;
     check_template(args, &schedule)?;
-    let scene = scene_of(&preset_file)?;
+    let scene = scene_of(common, &preset_file, streams)?;
     scene.notes.iter().for_each(|note| streams.note(note));
     at(&preset_file, &schedule, schedule.frames.end - 1).check_savable()?;
     let mut backend = Backend::open(common, streams)?;

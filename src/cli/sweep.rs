@@ -24,7 +24,7 @@ use crate::{
 pub fn run(common: &Common, args: &Bench, streams: &mut Streams) -> Result<Exit, CliError> {
     let axes = axes(&args.axes)?;
     let options = SweepOptions { size: args.size, samples: args.samples as usize, axes, is_one_option_at_a_time: args.each };
-    let subjects = subjects(common, args)?;
+    let subjects = subjects(common, args, streams)?;
     let backend = Backend::open(common, streams)?;
     let Backend::Gpu(_, gpu) = &backend else {
         return Err(CliError::usage("bench needs a GPU adapter; the oracle is not measured"));

@@ -2,6 +2,8 @@
 
 use std::path::Path;
 
+use std::sync::Arc;
+
 use serde_json::{Value, json};
 
 use super::{
@@ -52,7 +54,9 @@ pub fn run(common: &Common, args: &Verify, streams: &mut Streams) -> Result<Exit
     let mut rows = Vec::new();
     for preset_file in &preset_files {
         bar.set_message(preset_file.id.clone());
-        rows.extend(verify(common, args, preset_file, &mut backend).map_err(|error| error.during(format!("preset {}", preset_file.id)))?);
+        let scene = scene_of(common, preset_file, streams)?;
+        let verified = verify(common, args, preset_file, &scene, &mut backend);
+        rows.extend(verified.map_err(|error| error.during(format!("preset {}", preset_file.id)))?);
         bar.inc(1);
     }
     bar.finish_and_clear();
@@ -106,20 +110,25 @@ fn judged_by_own_text(preset: &Preset) -> Vec<&'static str> {
     preset.stack.0.iter().map(|enabled| enabled.effect).filter(|effect| effect.source.is_some()).map(|effect| effect.name).collect()
 }
 
-fn verify(common: &Common, args: &Verify, preset_file: &PresetFile, backend: &mut Backend) -> Result<Vec<Row>, CliError> {
+fn verify(
+    common: &Common,
+    args: &Verify,
+    preset_file: &PresetFile,
+    scene: &Arc<Scene>,
+    backend: &mut Backend,
+) -> Result<Vec<Row>, CliError> {
     let mut preset = preset_file.preset.clone();
     preset.output.size = args.size.unwrap_or(preset.output.size);
-    let scene = scene_of(preset_file)?;
-    let (view, stack) = (preset.view(&scene, preset.output.size), preset.evaluated_stack());
+    let (view, stack) = (preset.view(scene, preset.output.size), preset.evaluated_stack());
     let budget = preset.test.clone().unwrap_or_default();
-    let volume = volume_fraction(&preset, &scene)?;
+    let volume = volume_fraction(&preset, scene)?;
     let (mut rows, mut first): (Vec<Row>, Option<(&str, Frame)>) = (Vec::new(), None);
     for option in backend.options(&preset) {
         let mut pinned = preset.clone();
         pinned.accuracy.pins = option.map_or(preset.accuracy.pins, |option| preset.accuracy.pins.with(option));
         let name = option.map_or("exact", Visibility::name);
-        let capture = backend.capture(&pinned, &scene)?;
-        let verdict = oracle::judge(&scene, &view, &stack, &capture.picture())?;
+        let capture = backend.capture(&pinned, scene)?;
+        let verdict = oracle::judge(scene, &view, &stack, &capture.picture())?;
         // Where wrong triangles are allowed, colors are compared only where the triangle is right.
         let mut expected = verdict.expected.color.clone();
         if budget.max_wrong_triangles > 0 {
@@ -131,7 +140,7 @@ fn verify(common: &Common, args: &Verify, preset_file: &PresetFile, backend: &mu
         failures.extend(scaling_failure(&capture));
         let is_repeatable = preset.stack.is_repeatable() && !preset.accuracy.is_left_to_chance();
         for repeat in 1..args.frames {
-            if is_repeatable && backend.capture(&pinned, &scene)?.frame != capture.frame {
+            if is_repeatable && backend.capture(&pinned, scene)?.frame != capture.frame {
                 failures.push(format!("frame {} is not bit-identical to the first", repeat + 1));
                 break;
             }

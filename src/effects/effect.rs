@@ -132,6 +132,13 @@ impl Effect {
         !is_alone && !hooks.image.is_some_and(|hook| hook.reads_previous)
     }
 
+    /// Can it be limited to parts of a scene? Pixels, lines, slots of the rasterizer and particles belong to no draw.
+    pub const fn has_scope(&self) -> bool {
+        let hooks = &self.hooks;
+        let is_elsewhere = hooks.image.is_some() || hooks.slot.is_some() || hooks.has_lines || hooks.particle_settings.is_some();
+        !is_elsewhere && (hooks.vertex.is_some() || hooks.sample.is_some() || hooks.surface.is_some())
+    }
+
     /// Name of the WGSL file below `effects`.
     pub fn file_stem(&self) -> &'static str {
         match (self.source, self.base) {

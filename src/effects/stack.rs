@@ -8,7 +8,14 @@ use super::{
 };
 use crate::{
     params::Params,
-    scene::{Scene, light::light_view, particle_discs::ParticleSettings, view::View},
+    scene::{
+        Scene,
+        draw::{Draw, DrawError, scoped_draws},
+        light::light_view,
+        particle_discs::ParticleSettings,
+        parts::{MAX_SCOPES, Scope},
+        view::View,
+    },
 };
 
 /// An effect with its values.
@@ -17,11 +24,13 @@ pub struct EnabledEffect {
     pub effect: &'static Effect,
     /// Parameter words, laid out by `effect.fields`.
     pub words: Vec<u32>,
+    /// The parts of the scene that it changes.
+    pub on: Scope,
 }
 
 impl EnabledEffect {
     pub fn new(effect: &'static Effect) -> Self {
-        Self { effect, words: (effect.defaults)() }
+        Self { effect, words: (effect.defaults)(), on: Scope::default() }
     }
 }
 
@@ -56,7 +65,7 @@ impl Stack {
     #[must_use]
     pub fn scaled(&self, factor: f64) -> Self {
         let mut stack = self.clone();
-        for EnabledEffect { effect, words } in stack.0.iter_mut().filter(|_| factor != 1.0) {
+        for EnabledEffect { effect, words, .. } in stack.0.iter_mut().filter(|_| factor != 1.0) {
             for field in effect.fields.iter().filter(|field| field.unit == "px") {
                 let [low, high] = field.hard;
                 let length = |v: f64| (v * factor).clamp(low, high);
@@ -80,19 +89,42 @@ impl Stack {
         self.0.is_sorted_by(|a, b| a.effect.rank() < b.effect.rank())
     }
 
-    /// Applies every surface effect in order.
-    pub fn shade(&self, surface: Surface) -> Surface {
-        self.each(|hooks| hooks.surface).fold(surface, |surface, (apply, words)| apply(surface, words))
+    /// The scopes of the effects that have one, in order.
+    pub fn scopes(&self) -> Vec<Scope> {
+        self.0.iter().filter(|enabled| !enabled.on.is_whole_scene()).map(|enabled| enabled.on.clone()).collect()
     }
 
-    /// Moves a vertex by every vertex effect in order.
-    pub fn moved(&self, vertex: hooks::Vertex) -> hooks::Vertex {
-        self.each(|hooks| hooks.vertex).fold(vertex, |vertex, (hook, words)| (hook.moved)(vertex, words))
+    /// The bit of every effect in [`Draw::scopes`]; none for an effect on the whole scene.
+    pub fn scope_bits(&self) -> impl Iterator<Item = Option<u32>> {
+        let mut next = 0;
+        self.0.iter().map(move |enabled| {
+            let bit = (!enabled.on.is_whole_scene()).then_some(next);
+            next += u32::from(bit.is_some());
+            bit
+        })
+    }
+
+    /// The draws of `scene` as `view` sees it, with the scopes of this stack.
+    ///
+    /// # Errors
+    /// As [`draws`](crate::scene::draw::draws).
+    pub fn draws(&self, scene: &Scene, view: &View) -> Result<Vec<Draw>, DrawError> {
+        scoped_draws(scene, view, &self.scopes())
+    }
+
+    /// Applies every surface effect in order, as far as they act on a draw with these `scopes` ([`Draw::scopes`]).
+    pub fn shade(&self, surface: Surface, scopes: u32) -> Surface {
+        self.each_on(scopes, |hooks| hooks.surface).fold(surface, |surface, (apply, words)| apply(surface, words))
+    }
+
+    /// Moves a vertex of a draw with these `scopes` by every vertex effect in order.
+    pub fn moved(&self, vertex: hooks::Vertex, scopes: u32) -> hooks::Vertex {
+        self.each_on(scopes, |hooks| hooks.vertex).fold(vertex, |vertex, (hook, words)| (hook.moved)(vertex, words))
     }
 
     /// How far the f32 side of [`Stack::moved`] may err, given the error bound of what it starts from.
-    pub fn error_bound(&self, vertex: hooks::Vertex, error_bound: hooks::ErrorBound) -> hooks::ErrorBound {
-        let each = self.each(|hooks| hooks.vertex);
+    pub fn error_bound(&self, vertex: hooks::Vertex, error_bound: hooks::ErrorBound, scopes: u32) -> hooks::ErrorBound {
+        let each = self.each_on(scopes, |hooks| hooks.vertex);
         each.fold((vertex, error_bound), |(vertex, error_bound), (hook, words)| {
             ((hook.moved)(vertex, words), (hook.error_bound)(&vertex, error_bound, words))
         })
@@ -127,6 +159,13 @@ impl Stack {
     /// Effects with a certain hook, in order: the hook and the parameter words.
     pub fn each<H>(&self, hook: impl Fn(&Hooks) -> Option<H>) -> impl Iterator<Item = (H, &[u32])> {
         self.0.iter().filter_map(move |enabled| Some((hook(&enabled.effect.hooks)?, enabled.words.as_slice())))
+    }
+
+    /// Effects with a certain hook that act on a draw with these `scopes`, in order: the hook and the parameter words.
+    fn each_on<H>(&self, scopes: u32, hook: impl Fn(&Hooks) -> Option<H>) -> impl Iterator<Item = (H, &[u32])> {
+        let acts = move |bit: Option<u32>| bit.is_none_or(|bit| scopes >> bit & 1 == 1);
+        let active = self.0.iter().zip(self.scope_bits()).filter(move |(_, bit)| acts(*bit));
+        active.filter_map(move |(enabled, _)| Some((hook(&enabled.effect.hooks)?, enabled.words.as_slice())))
     }
 
     /// Does an effect move vertices?
@@ -208,7 +247,7 @@ impl Stack {
 
     /// What becomes of the samples of a pixel in a scene of so many triangles; none: the nearest is shown.
     pub fn layers(&self, triangles: u64) -> Option<Layers> {
-        let EnabledEffect { effect, words } = self.in_slot(Slot::Visibility)?;
+        let EnabledEffect { effect, words, .. } = self.in_slot(Slot::Visibility)?;
         Some(match effect.name {
             "xray" => Layers::Xray { bits: read::<xray::Xray>(words).first_bits(triangles) },
             "overdraw" => Layers::Overdraw,
@@ -221,33 +260,53 @@ impl Stack {
         self.get(race::EFFECT.name).is_some()
     }
 
-    /// The conflict that enabling `effect` would cause: another effect in its slot.
-    pub fn conflict_with(&self, effect: &Effect) -> Option<Conflict> {
+    /// The effect that enabling `effect` would conflict with: another one in its slot.
+    pub fn rival_of(&self, effect: &Effect) -> Option<&'static Effect> {
         let slot = effect.hooks.slot?;
-        let first = self.in_slot(slot).map(|enabled| enabled.effect).filter(|first| *first != effect)?;
-        Some(Conflict { slot: slot.name(), first: first.name, second: effect.name })
+        self.in_slot(slot).map(|enabled| enabled.effect).filter(|first| *first != effect)
     }
 
-    /// Checks that no two effects take one slot.
+    /// The conflict that enabling `effect` would cause.
+    pub fn conflict_with(&self, effect: &Effect) -> Option<Conflict> {
+        let slot = effect.hooks.slot?;
+        let first = self.rival_of(effect)?;
+        Some(Conflict::Slot { slot: slot.name(), first: first.name, second: effect.name })
+    }
+
+    /// Checks that no two effects take one slot, and that at most [`MAX_SCOPES`] effects have a scope.
     ///
     /// # Errors
-    /// Names the first two that do.
+    /// Names the effects.
     pub fn check(&self) -> Result<(), Conflict> {
+        let scoped: Vec<&EnabledEffect> = self.0.iter().filter(|enabled| !enabled.on.is_whole_scene()).collect();
+        if let Some(last) = scoped.get(MAX_SCOPES) {
+            return Err(Conflict::Scopes { count: scoped.len(), last: last.effect.name });
+        }
         for slot in Slot::ALL {
             let mut takers = self.0.iter().map(|enabled| enabled.effect).filter(|effect| effect.hooks.slot == Some(slot));
             if let (Some(first), Some(second)) = (takers.next(), takers.next()) {
-                return Err(Conflict { slot: slot.name(), first: first.name, second: second.name });
+                return Err(Conflict::Slot { slot: slot.name(), first: first.name, second: second.name });
             }
         }
         Ok(())
     }
 }
 
-/// Two effects that take one slot of the rasterizer.
+/// Effects that a stack cannot have together.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
-#[error("{first} and {second} both take the {slot} slot of the rasterizer; switch one of them off")]
-pub struct Conflict {
-    pub slot: &'static str,
-    pub first: &'static str,
-    pub second: &'static str,
+pub enum Conflict {
+    #[error("{first} and {second} both take the {slot} slot of the rasterizer; switch one of them off")]
+    Slot { slot: &'static str, first: &'static str, second: &'static str },
+    #[error("{count} effects are limited to parts of the scene, but at most {MAX_SCOPES} can be; remove on from {last} or another of them")]
+    Scopes { count: usize, last: &'static str },
+}
+
+impl Conflict {
+    /// The later of the effects.
+    pub const fn effect(&self) -> &'static str {
+        match self {
+            Self::Slot { second, .. } => second,
+            Self::Scopes { last, .. } => last,
+        }
+    }
 }

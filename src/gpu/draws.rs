@@ -18,6 +18,7 @@ use crate::{
     scene::{
         Accessor, Scene,
         draw::{Draw, totals},
+        parts::Scope,
         view::View,
     },
 };
@@ -31,6 +32,8 @@ pub struct DrawInputs {
     pub culls: bool,
     /// Draws outside the picture are deformed too.
     pub deforms_offscreen: bool,
+    /// Scopes of the stack.
+    pub scopes: Vec<Scope>,
 }
 
 /// What a view's passes read about every instance, computed on the CPU when the scene, the viewpoint or the position format changes.
@@ -121,6 +124,10 @@ impl DrawRecord {
             color_offset: color.map_or(0, |c| c.offset),
             color_stride: color.map_or(0, |c| c.stride),
             color_format: color.map_or(0, format_word),
+            scopes: draw.scopes,
+            spare_0: 0,
+            spare_1: 0,
+            spare_2: 0,
         }
     }
 }

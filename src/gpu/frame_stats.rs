@@ -13,6 +13,7 @@ use super::{
     records::{CounterRecord, OrderRecord},
     timer::{Timer, Times},
 };
+use crate::frame::CullingStats;
 
 /// What a frame counted; zeros where it has no shadow map or no draw order.
 #[derive(Clone, Copy, Debug, Default, bytemuck::Pod, bytemuck::Zeroable)]
@@ -83,5 +84,13 @@ impl Pending {
         let (stats, stamps) = bytes.split_at(FIRST_STAMP as usize);
         let times = timer.map(|timer| timer.times(stamps, &self.labels)).unwrap_or_default();
         Some((bytemuck::pod_read_unaligned(stats), times))
+    }
+}
+
+impl CounterRecord {
+    /// Meshlets that were drawn, and why the others were not.
+    pub fn culled(&self) -> CullingStats {
+        let Self { visible_meshlets: drawn, outside, backfacing, hidden, .. } = *self;
+        CullingStats { drawn, outside, backfacing, hidden }
     }
 }

@@ -13,7 +13,7 @@ use super::{
 };
 use crate::{
     effects::Stack,
-    scene::{ComponentType, Primitive, Scene, Topology, draw::draws, view::View},
+    scene::{ComponentType, Primitive, Scene, Topology, view::View},
     shader::{
         glue::uniform_bytes,
         key::{KernelKey, VertexInputs},
@@ -70,7 +70,7 @@ impl Hardware {
         if scene.primitives.iter().any(|p| strides(p) != strides(first)) {
             return Ok(Err("the primitives differ in stride or sidedness, which takes several pipelines".into()));
         }
-        let draws = draws(scene, view)?;
+        let draws = stack.draws(scene, view)?;
         let attributes = AttributeLayout::new(scene, None);
         let records: Vec<DrawRecord> = draws.iter().map(|draw| DrawRecord::new(draw, scene, &attributes)).collect();
         let uniform = FrameUniform { draw_count: draws.len() as u32, ..FrameUniform::of_view(view) };

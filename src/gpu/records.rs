@@ -5,7 +5,7 @@
 use super::gpu_record::{GpuRecord, RecordLayout, WgslType, gpu_record};
 use crate::{
     effects::particles::Particles,
-    frame::{ClippedTriangle, CullingStats, OrderStats, SnappedVertex},
+    frame::{ClippedTriangle, OrderStats, SnappedVertex},
 };
 
 gpu_record! {
@@ -66,6 +66,10 @@ gpu_record! {
         pub color_offset: u32,
         pub color_stride: u32,
         pub color_format: u32,
+        pub scopes: u32,
+        pub spare_0: u32,
+        pub spare_1: u32,
+        pub spare_2: u32,
     }
 }
 
@@ -436,13 +440,5 @@ impl OrderRecord {
         let limit = wide(self.limit_hi, self.limit_lo);
         let drawn = if is_chosen { limit.min(next_sample_index.into()) } else { wide(self.drawn_hi, self.drawn_lo) };
         OrderStats { drawn, limit, covered: wide(self.total_hi, self.total_lo), is_scheduler_order: is_chosen }
-    }
-}
-
-impl CounterRecord {
-    /// Meshlets that were drawn, and why the others were not.
-    pub fn culled(&self) -> CullingStats {
-        let Self { visible_meshlets: drawn, outside, backfacing, hidden, .. } = *self;
-        CullingStats { drawn, outside, backfacing, hidden }
     }
 }

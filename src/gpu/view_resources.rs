@@ -21,12 +21,7 @@ use crate::{
     effects::{Stack, hooks::Layers},
     math::{SUBPIXEL_BITS, srgb_byte},
     plan::{AccuracyRequest, Plan, Planner, Tuning},
-    scene::{
-        Scene,
-        draw::{Draw, draws as draws_of},
-        needs::Needs,
-        view::View,
-    },
+    scene::{Scene, draw::Draw, needs::Needs, parts::Scope, view::View},
     shader::{glue::uniform_bytes, key::KernelKey, pass::Pass},
 };
 
@@ -57,6 +52,8 @@ pub struct PreparedFrame {
 struct Seen {
     scene: Arc<Scene>,
     view: View,
+    /// Scopes of the stack that the draws are for.
+    scopes: Vec<Scope>,
     draws: Arc<[Draw]>,
     needs: Arc<Needs>,
     /// The same where every path is kept.
@@ -188,14 +185,14 @@ impl ViewResources {
     /// The plan of a frame, with the view on its grid and that view's draws.
     fn plan(&mut self, device: &Device, scene: &Arc<Scene>, request: &Request<'_>) -> Result<PlannedView, RenderError> {
         let mut view = request.view.clone();
-        let mut seen = self.see(scene, &view)?;
+        let mut seen = self.see(scene, &view, request.stack)?;
         let mut plan = self.plan_of(device, seen, request)?;
         // Another grid has its guard band elsewhere, and another origin its matrices, so their needs are their own.
         let options = &plan.key.options;
         let (subpixel_bits, is_relative) = (options.coverage.subpixel_bits(), options.position_format == PositionFormat::Relative);
         view = view.with_grid(subpixel_bits, is_relative);
         if is_relative || subpixel_bits != SUBPIXEL_BITS {
-            seen = self.see(scene, &view)?;
+            seen = self.see(scene, &view, request.stack)?;
             plan = self.plan_of(device, seen, request)?;
         }
         if let (Some(Layers::Xray { bits }), Some(fewer)) = (plan.key.framebuffer.layers, request.fewer_bits) {
@@ -204,16 +201,18 @@ impl ViewResources {
         Ok((plan, view, self.seen[seen].draws.clone()))
     }
 
-    /// Position in `seen` of a scene as a view sees it.
-    fn see(&mut self, scene: &Arc<Scene>, view: &View) -> Result<usize, RenderError> {
-        if let Some(known) = self.seen.iter().position(|seen| Arc::ptr_eq(&seen.scene, scene) && seen.view == *view) {
+    /// Position in `seen` of a scene as a view sees it, with the scopes of a stack.
+    fn see(&mut self, scene: &Arc<Scene>, view: &View, stack: &Stack) -> Result<usize, RenderError> {
+        let scopes = stack.scopes();
+        let is_known = |seen: &Seen| Arc::ptr_eq(&seen.scene, scene) && seen.view == *view && seen.scopes == scopes;
+        if let Some(known) = self.seen.iter().position(is_known) {
             return Ok(known);
         }
-        let draws: Arc<[Draw]> = draws_of(scene, view)?.into();
+        let draws: Arc<[Draw]> = stack.draws(scene, view)?.into();
         let needs = Needs::of(scene, &draws, view);
         let needs_all_paths = Arc::new(Needs { clipping: true, largest_px: f64::INFINITY, ..needs.clone() });
         self.seen.truncate(1);
-        self.seen.insert(0, Seen { scene: scene.clone(), view: view.clone(), draws, needs: Arc::new(needs), needs_all_paths });
+        self.seen.insert(0, Seen { scene: scene.clone(), view: view.clone(), scopes, draws, needs: Arc::new(needs), needs_all_paths });
         Ok(0)
     }
 
@@ -234,6 +233,7 @@ impl ViewResources {
             attributes: scene.attributes(),
             culls: key.culls(),
             deforms_offscreen: !key.culls() || stack.light().is_some(),
+            scopes: stack.scopes(),
         };
         if self.draw_data.as_ref().is_some_and(|data| data.is_of(scene.scene(), &inputs)) {
             return false;

@@ -25,6 +25,7 @@ impl Plan {
             self.list_reason(),
             self.culling_reason(),
             self.vertex_effects_reason(),
+            self.scopes_reason(),
             self.material_reason(),
             self.mask_reason(),
             self.image_reason(),
@@ -111,6 +112,13 @@ impl Plan {
             "triangles keep sharing vertices"
         };
         (!names.is_empty()).then(|| note("vertex effects", format!("{} move vertices: {why}", names.join(", "))))
+    }
+
+    fn scopes_reason(&self) -> Option<Note> {
+        let effects = &self.key.effects;
+        let names: Vec<_> = effects.list.iter().filter(|effect| effects.scope(effect).is_some()).map(|effect| effect.name).collect();
+        let why = "limited to parts of the scene: one bit per draw decides";
+        (!names.is_empty()).then(|| note("scopes", format!("{}: {why}", names.join(", "))))
     }
 
     fn material_reason(&self) -> Option<Note> {

@@ -56,6 +56,7 @@ pub(super) fn key_of(
         effects: EffectList {
             list: stack.effects.clone(),
             baked: if options.parameters == Parameters::Baked { stack.baked.clone() } else { Vec::new() },
+            scope_bits: stack.scope_bits.clone(),
             dots: stack.dots,
         },
     }

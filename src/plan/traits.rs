@@ -21,6 +21,8 @@ pub struct StackTraits {
     pub effects: Vec<&'static Effect>,
     /// Parameter words of every effect, where the request bakes them into the text.
     pub baked: Vec<Vec<u32>>,
+    /// The bit of every effect in the scopes of a draw; empty where no effect has a scope.
+    pub scope_bits: Vec<Option<u32>>,
     pub shape: Shape,
     /// Whose order counts where only a number of samples is drawn.
     pub draw_order: Option<draw_order::Mode>,
@@ -52,6 +54,7 @@ impl StackTraits {
         Ok(Self {
             effects: stack.0.iter().map(|enabled| enabled.effect).collect(),
             baked,
+            scope_bits: if stack.scopes().is_empty() { Vec::new() } else { stack.scope_bits().collect() },
             shape: stack.shape(),
             draw_order: stack.draw_order().map(|order| draw_order::Mode::of(order.mode)),
             dots: stack.dots().map(|dots| LineSource::of(dots.lines)),
@@ -94,7 +97,7 @@ impl StackTraits {
 }
 
 /// How the samples of an effect depend on floats or on chance, if they do.
-fn inexact(EnabledEffect { effect, words }: &EnabledEffect) -> Option<InexactEffect> {
+fn inexact(EnabledEffect { effect, words, .. }: &EnabledEffect) -> Option<InexactEffect> {
     let uses_floats = effect.hooks.sample.is_some_and(|hook| hook.has_setup && (hook.is_from_floats)(words));
     let why = match () {
         () if effect.hooks.vertex.is_some() => "moves vertices in floats",

@@ -4,6 +4,7 @@
 //! [`Preset::evaluated_stack`] is drawn, not the stack itself: keyframes change its values with the time.
 
 pub mod animation;
+mod missing_parts;
 mod particle_timeline;
 pub mod polyline;
 pub mod rebind;

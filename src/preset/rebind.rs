@@ -14,7 +14,7 @@ use crate::{
 pub type Replaced = (&'static Effect, &'static Effect);
 
 impl Preset {
-    /// Uses the new effect in place of each old one. A parameter keeps its value if the new effect has one of the same name and type
+    /// Uses the new effect in place of each old one, on the same parts of the scene. A parameter keeps its value if the new effect has one of the same name and type
     /// whose range contains it. Every other parameter has its new default, and so has one that had its old default, since files do not
     /// state defaults. Keyframes that do not fit are dropped.
     pub fn rebind(&mut self, replaced: &[Replaced]) {
@@ -49,6 +49,9 @@ fn find(old: &Effect, replaced: &[Replaced]) -> Option<&'static Effect> {
 fn rebound_effect(old: &EnabledEffect, effect: &'static Effect) -> EnabledEffect {
     let defaults = (old.effect.defaults)();
     let mut new = EnabledEffect::new(effect);
+    if effect.has_scope() {
+        new.on = old.on.clone();
+    }
     for field in effect.fields {
         if let Some(before) = old.effect.field(field.name).filter(|before| !before.same(&old.words, &defaults))
             && let Some(value) = converted(before, field, before.value(&old.words))

@@ -7,6 +7,7 @@ use super::{
     file::PresetFile,
     keyframes, migrate, order,
     reader::{INSTANCE_KEY, Reader, number_text},
+    scope::{self, SCOPE_KEY},
     toml_value,
 };
 use crate::{
@@ -17,12 +18,15 @@ use crate::{
         Animation,
         settings::{Section, Setting, settings},
     },
+    scene::parts::Scope,
 };
 
 /// What a `--set` or `--unset` path names.
 enum Target {
     Effect(&'static Effect),
     Field(&'static Effect, &'static Field),
+    /// The parts of the scene that an effect changes.
+    Scope(&'static Effect),
     Setting(&'static Setting),
     Section(&'static Section),
     Stack,
@@ -54,9 +58,12 @@ fn target(path: &str, catalog: &Catalog) -> Result<Target, String> {
     let found = catalog.find(name).map_err(|error| format!("cannot be used: {error}"))?;
     let Some(effect) = found else { return Err(format!("is unknown{}", suggestion_for_path(short, catalog))) };
     let Some(field) = field else { return Ok(Target::Effect(effect)) };
+    if field == SCOPE_KEY {
+        return Ok(Target::Scope(effect));
+    }
     let unknown = || match migrate::renamed_key(short) {
         Some(new) => format!("is unknown{}", suggestion(&new)),
-        None => format!("is unknown{}", did_you_mean(field, effect.fields.iter().map(|field| field.name))),
+        None => format!("is unknown{}", did_you_mean(field, effect.fields.iter().map(|field| field.name).chain([SCOPE_KEY]))),
     };
     effect.field(field).map(|field| Target::Field(effect, field)).ok_or_else(unknown)
 }
@@ -107,7 +114,7 @@ pub fn set(preset_file: &mut PresetFile, path: &str, value: &str) -> Result<(), 
     let target = target(path, &catalog).map_err(wrong)?;
     let has_unknown_effect = |name: &str| preset_file.has_effect_table(name);
     let preset = &preset_file.preset;
-    if let Target::Effect(effect) | Target::Field(effect, _) | Target::Animation(Some(effect), _) = target
+    if let Target::Effect(effect) | Target::Field(effect, _) | Target::Scope(effect) | Target::Animation(Some(effect), _) = target
         && let Some(conflict) = preset.stack.conflict_with(effect)
     {
         return Err(PresetError::value(at, "effects", conflict.to_string()));
@@ -123,6 +130,13 @@ pub fn set(preset_file: &mut PresetFile, path: &str, value: &str) -> Result<(), 
             field.set_value(&mut stack.enable(effect).words, &value).map_err(|error| wrong(error.to_string()))?;
             preset.stack = stack;
             preset.animation.remove(effect.name, field.name);
+        }
+        Target::Scope(effect) => {
+            let on = scope::read(&command_line_value(value), effect).map_err(wrong)?;
+            let mut stack = preset.stack.clone();
+            stack.enable(effect).on = on;
+            stack.check().map_err(|conflict| wrong(format!("cannot be set: {conflict}")))?;
+            preset_file.preset.stack = stack;
         }
         Target::Animation(Some(effect), Some(field)) => {
             let mut reader = Reader { file: &argument, text: None, catalog: catalog.clone(), warnings: Vec::new() };
@@ -155,6 +169,11 @@ pub fn unset(preset_file: &mut PresetFile, path: &str) -> Result<(), PresetError
         Target::Animation(None, _) => preset.animation = Animation::default(),
         Target::Animation(Some(effect), None) => preset.animation.remove_effect(effect.name),
         Target::Animation(Some(effect), Some(field)) => preset.animation.remove(effect.name, field.name),
+        Target::Scope(effect) => {
+            if let Some(enabled) = preset.stack.get_mut(effect.name) {
+                enabled.on = Scope::default();
+            }
+        }
         Target::Field(effect, field) => {
             preset.animation.remove(effect.name, field.name);
             if let Some(enabled) = preset.stack.get_mut(effect.name) {

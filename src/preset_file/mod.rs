@@ -20,6 +20,7 @@ mod reader;
 mod rebind;
 mod scene;
 pub mod schema;
+mod scope;
 mod share;
 pub mod toml_value;
 mod write;

@@ -8,10 +8,11 @@ use super::{
     file::EFFECT_FILES,
     keyframes, order,
     reader::{INSTANCE_KEY, Reader},
+    scope::{self, SCOPE_KEY},
 };
 use crate::{
     effect_files::Catalog,
-    effects::{EnabledEffect, Stack},
+    effects::{Conflict, EnabledEffect, Stack},
     preset::{
         Preset,
         settings::{SECTIONS, Section},
@@ -115,7 +116,9 @@ fn read_effects(reader: &mut Reader<'_>, effects: &dyn TableLike, stack: &mut St
             None => reader.unknown_effect(effects, "effects.", name),
         }
     }
-    Ok(())
+    // Slots are free by now, but there may be too many scopes.
+    let error = |conflict: Conflict| PresetError::value(reader.position(effects, conflict.effect()), "effects", conflict.to_string());
+    stack.check().map_err(error)
 }
 
 fn read_effect(reader: &mut Reader<'_>, table: &dyn TableLike, enabled: &mut EnabledEffect) -> Result<(), PresetError> {
@@ -124,8 +127,13 @@ fn read_effect(reader: &mut Reader<'_>, table: &dyn TableLike, enabled: &mut Ena
         if name == INSTANCE_KEY && enabled.effect.base.is_some() {
             continue;
         }
+        if name == SCOPE_KEY {
+            let toml = item.as_value().ok_or_else(|| reader.error(table, &prefix, name, "must be a list, not a table"))?;
+            enabled.on = scope::read(toml, enabled.effect).map_err(|reason| reader.error(table, &prefix, name, reason))?;
+            continue;
+        }
         let Some(field) = enabled.effect.field(name) else {
-            reader.unknown(table, &prefix, name, enabled.effect.fields.iter().map(|field| field.name));
+            reader.unknown(table, &prefix, name, enabled.effect.fields.iter().map(|field| field.name).chain([SCOPE_KEY]));
             continue;
         };
         let value = reader.value(table, &prefix, field, item)?;

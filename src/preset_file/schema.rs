@@ -2,7 +2,7 @@
 
 use serde_json::{Map, Value as Json, json};
 
-use super::{file::EFFECT_FILES, keyframes::entry_params, migrate};
+use super::{file::EFFECT_FILES, keyframes::entry_params, migrate, scope::SCOPE_KEY};
 use crate::{
     effects::{EFFECTS, Effect},
     params::{Param, Value, ValueType},
@@ -11,6 +11,7 @@ use crate::{
         animation::MAX_KEYFRAMES,
         settings::{SECTIONS, Section, TOP},
     },
+    scene::parts::{MAX_NAME_CHARS, MAX_PATTERNS},
 };
 
 /// The whole schema. `presets/schema.json` is this, and a test fails when it is stale.
@@ -59,9 +60,19 @@ fn section_schema(section: &Section) -> Map<String, Json> {
 
 fn effect_schema(effect: &Effect) -> Json {
     let defaults = (effect.defaults)();
-    let properties: Map<String, Json> =
+    let mut properties: Map<String, Json> =
         effect.fields.iter().map(|field| (field.name.to_owned(), param_schema(field, Some(field.value(&defaults))))).collect();
+    if effect.has_scope() {
+        properties.insert(SCOPE_KEY.into(), scope_schema());
+    }
     json!({ "type": "object", "description": effect.about, "properties": properties })
+}
+
+fn scope_schema() -> Json {
+    let pattern = format!("^(material|node|mesh):[^\\u0000-\\u001f]{{1,{MAX_NAME_CHARS}}}$");
+    let pattern = json!({ "type": "string", "pattern": pattern });
+    let doc = "Parts of the scene that the effect changes, by patterns such as material:Lens*; * is any text, ? any character";
+    json!({ "description": doc, "default": [], "anyOf": [pattern, { "type": "array", "maxItems": MAX_PATTERNS, "items": pattern }] })
 }
 
 fn animation_schema(effect: &Effect) -> Json {

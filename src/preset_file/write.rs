@@ -3,7 +3,12 @@
 
 use toml_edit::{DocumentMut, Item, Table, TableLike, Value as Toml};
 
-use super::{keyframes, migrate, reader::INSTANCE_KEY, toml_value};
+use super::{
+    keyframes, migrate,
+    reader::INSTANCE_KEY,
+    scope::{self, SCOPE_KEY},
+    toml_value,
+};
 use crate::{
     effect_files::Catalog,
     effects::{EnabledEffect, Stack},
@@ -107,6 +112,9 @@ fn patch_effects(root: &mut Table, catalog: &Catalog, saved: &Stack, now: &Stack
 fn patch_effect(table: &mut dyn TableLike, saved: Option<&EnabledEffect>, now: &EnabledEffect) {
     let defaults = EnabledEffect::new(now.effect);
     let saved = saved.unwrap_or(&defaults);
+    if saved.on != now.on {
+        put(table, SCOPE_KEY, scope::write(&now.on));
+    }
     for field in now.effect.fields {
         let value = |enabled: &EnabledEffect| Some(field.value(&enabled.words));
         patch_value(table, field, value(saved), value(now), value(&defaults));

@@ -5,6 +5,7 @@ use glam::{DMat4, DVec3, DVec4};
 use super::{
     bounds::Bounds,
     model::{Instance, Primitive, Scene},
+    parts::{Scope, scope_masks},
     pose::{Deform, Pose},
     view::View,
 };
@@ -38,6 +39,8 @@ pub struct Draw {
     pub deform: Option<Deform>,
     /// Index of its vertex 0 among the vertices of all draws that can deform.
     pub first_deformable: u32,
+    /// Bit k is set if it lies in scope k of the stack that is drawn.
+    pub scopes: u32,
 }
 
 impl Draw {
@@ -86,11 +89,19 @@ pub fn totals(scene: &Scene, draws: &[Draw]) -> [u64; 2] {
 /// The most triangles in a picture: an id shares its word with a flag, and one value means none.
 pub const MAX_TRIANGLES: u64 = (1 << 31) - 2;
 
-/// The draws of `scene` as `view` sees it, in instance order.
+/// The draws of `scene` as `view` sees it, in instance order, for a stack without scopes.
 ///
 /// # Errors
 /// If there are more than [`MAX_TRIANGLES`] triangles or vertices, or a matrix entry reaches [`MAX_MAGNITUDE`].
 pub fn draws(scene: &Scene, view: &View) -> Result<Vec<Draw>, DrawError> {
+    scoped_draws(scene, view, &[])
+}
+
+/// The draws of `scene` as `view` sees it, in instance order, for a stack with these scopes.
+///
+/// # Errors
+/// As [`draws`].
+pub fn scoped_draws(scene: &Scene, view: &View, scopes: &[Scope]) -> Result<Vec<Draw>, DrawError> {
     for (what, count) in [("triangles", scene.triangle_count()), ("vertices", scene.vertex_count())] {
         if count > MAX_TRIANGLES {
             return Err(DrawError::TooMany { what, count, limit: MAX_TRIANGLES });
@@ -101,6 +112,7 @@ pub fn draws(scene: &Scene, view: &View) -> Result<Vec<Draw>, DrawError> {
     let shadow_casters = scene.shadow_casters().len();
     // The view of a light leaves out the walls, which are last in the list.
     let drawn = if view.is_light() { scene.shadow_casters() } else { &scene.instances };
+    let masks = if scopes.is_empty() { Vec::new() } else { scope_masks(scene, scopes) };
     let (mut first_vertex, mut first_triangle, mut first_deformable) = (0, 0, 0);
     let make_draw = |(index, instance): (usize, &Instance)| {
         let primitive = &scene.primitives[instance.primitive];
@@ -130,6 +142,7 @@ pub fn draws(scene: &Scene, view: &View) -> Result<Vec<Draw>, DrawError> {
             mirrored: (world_from_object.determinant() < 0.0) != deform.as_ref().is_some_and(Deform::mirrors),
             deform,
             first_deformable,
+            scopes: masks.get(index).copied().unwrap_or_default(),
         };
         first_deformable += if primitive.deformation.is_none() { 0 } else { primitive.vertex_count() };
         first_vertex += primitive.vertex_count();

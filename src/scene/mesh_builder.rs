@@ -135,6 +135,7 @@ impl MeshBuilder {
         };
         scene.primitives.push(Primitive {
             name: name.into(),
+            mesh: name.into(),
             topology: Topology::List,
             indices: Some(Accessor {
                 offset: indices_at as u32,

@@ -19,6 +19,7 @@ pub mod meshlets;
 pub mod model;
 pub mod needs;
 pub mod particle_discs;
+pub mod parts;
 pub mod pick;
 pub mod pose;
 pub mod quaternion;

@@ -37,6 +37,8 @@ impl Topology {
 pub struct Primitive {
     /// Shown to people, for instance `mesh "Fox" primitive 0`.
     pub name: String,
+    /// Name of the mesh that it belongs to.
+    pub mesh: String,
     /// How corners form triangles.
     pub topology: Topology,
     /// One unsigned integer component, in `Scene::index_bytes`. `None`: the corners are the vertices in order.
@@ -110,13 +112,23 @@ pub struct Instance {
     pub node: Option<usize>,
     /// The skin of `Scene::rig` whose joints move its vertices.
     pub skin: Option<usize>,
+    /// The node of `Scene::named_nodes` that shows it.
+    pub named_node: Option<usize>,
 }
 
 impl Instance {
     /// An instance without a node or a skin.
     pub fn fixed(primitive: usize, world_from_object: DMat4) -> Self {
-        Self { primitive, world_from_object, node: None, skin: None }
+        Self { primitive, world_from_object, node: None, skin: None, named_node: None }
     }
+}
+
+/// The name of a node of the scene graph.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct NamedNode {
+    pub name: String,
+    /// Index of its parent in `Scene::named_nodes`, where parents come before their children.
+    pub parent: Option<usize>,
 }
 
 /// A camera that comes with the scene.
@@ -162,6 +174,8 @@ pub struct Scene {
     pub cameras: Vec<SceneCamera>,
     /// Nodes, skins and clips.
     pub rig: Rig,
+    /// The names of the nodes that instances come from.
+    pub named_nodes: Vec<NamedNode>,
     /// The primitive that holds the particle discs. Exactly one instance shows it.
     pub particle_discs: Option<usize>,
     /// Messages of the loader for the user, for instance about extensions that it ignores.

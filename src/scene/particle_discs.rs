@@ -13,6 +13,9 @@ use super::{
     model::{Instance, Primitive, Scene, Topology},
 };
 
+/// Name of the material, mesh and node of the discs.
+pub const PARTICLES: &str = "particles";
+
 /// Bytes of a corner: position as three floats, color as three normalized u16, normal as three normalized i16.
 pub const CORNER_BYTES: u32 = 24;
 
@@ -93,9 +96,11 @@ impl Scene {
         scene.particle_discs = Some(scene.primitives.len());
         // Walls come last, since they cast no shadows.
         let index = scene.instances.len() - scene.walls;
-        scene.instances.insert(index, Instance::fixed(scene.primitives.len(), DMat4::IDENTITY));
+        let named_node = Some(scene.add_named_node(PARTICLES));
+        scene.instances.insert(index, Instance { named_node, ..Instance::fixed(scene.primitives.len(), DMat4::IDENTITY) });
         scene.primitives.push(Primitive {
-            name: "particles".into(),
+            name: PARTICLES.into(),
+            mesh: PARTICLES.into(),
             topology: Topology::List,
             indices: None,
             positions: accessor(0, ComponentType::F32, false),
@@ -108,7 +113,7 @@ impl Scene {
             normals_agree: true,
             deformation: Deformation::default(),
         });
-        scene.materials.push(Material { name: "particles".into(), double_sided: true, ..Material::default() });
+        scene.materials.push(Material { name: PARTICLES.into(), double_sided: true, ..Material::default() });
         if !scene.rig.is_empty() {
             let bounds = particle_settings.disc_bounds();
             [bounds.min, bounds.max].into_iter().for_each(|corner: DVec3| scene.rig.motion_bounds.include(corner));

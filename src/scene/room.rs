@@ -32,7 +32,8 @@ impl Scene {
         self.materials.push(Material { name: "plaster".into(), base_color: [0.62, 0.6, 0.57, 1.0], ..Material::default() });
         let material = self.materials.len() - 1;
         let primitive = walls(&room).append(&mut self, "room", material);
-        self.instances.push(Instance::fixed(primitive, DMat4::IDENTITY));
+        let named_node = Some(self.add_named_node("room"));
+        self.instances.push(Instance { named_node, ..Instance::fixed(primitive, DMat4::IDENTITY) });
         self.walls += 1;
         if !self.rig.is_empty() {
             self.rig.motion_bounds.include(room.min);

@@ -6,7 +6,7 @@ use std::fmt::Write;
 use crate::{
     effects::{Effect, EffectSource, EnabledEffect, constant_name},
     params::{Field, ValueType, WgslType},
-    shader::key::{Fetch, KernelKey},
+    shader::key::{EffectList, Fetch, KernelKey},
 };
 
 /// Bytes from the start of one effect's parameters to the next are a multiple of this (WGSL, uniform address space).
@@ -94,6 +94,11 @@ impl Chain {
         }
     }
 
+    /// Are its effects called for parts of the scene? Setups of samples are computed for all triangles, and pixels belong to no part.
+    const fn is_scoped(self) -> bool {
+        matches!(self, Self::Vertex | Self::Sample | Self::Surface)
+    }
+
     /// The effects of a stack that this chain calls, in order.
     pub fn effects(self, effects: &[&'static Effect]) -> impl Iterator<Item = &'static Effect> {
         effects.iter().copied().filter(move |effect| self.has(effect))
@@ -128,18 +133,26 @@ impl Chain {
         if functions == 1 { effect.file_stem().into() } else { format!("{}_{}", effect.file_stem(), self.name()) }
     }
 
-    /// The generated function `glue_<hook>` that calls every effect in stack order.
-    pub fn text(self, effects: &[&'static Effect]) -> String {
+    /// The generated function `glue_<hook>` that calls every effect in stack order. An effect with a scope is called where its draw has
+    /// the scope's bit; text without scopes reads no such bits.
+    pub fn text(self, list: &EffectList) -> String {
+        let effects = list.list.as_slice();
         let (head, tail) = match self {
-            Self::Vertex => ("fn glue_vertex(vertex: Vertex) -> Vertex {\n    var v = vertex;\n", "    return v;\n}\n"),
-            Self::Sample => ("fn glue_sample(sample: Sample, entry: u32) -> bool {\n    var s = sample;\n", "    return true;\n}\n"),
+            Self::Vertex => ("fn glue_vertex(vertex: Vertex, draw: u32) -> Vertex {\n    var v = vertex;\n", "    return v;\n}\n"),
+            Self::Sample => {
+                ("fn glue_sample(sample: Sample, draw: u32, entry: u32) -> bool {\n    var s = sample;\n", "    return true;\n}\n")
+            }
             Self::SampleSetup => ("fn glue_sample_setup(setup: TriangleSetup, entry: u32) {\n", "}\n"),
-            Self::Surface => ("fn glue_surface(surface: Surface) -> Surface {\n    var s = surface;\n", "    return s;\n}\n"),
+            Self::Surface => ("fn glue_surface(surface: Surface, draw: u32) -> Surface {\n    var s = surface;\n", "    return s;\n}\n"),
             Self::Image => ("fn glue_image(pixel: Pixel) -> Pixel {\n    var q = pixel;\n", "    return q;\n}\n"),
         };
         let with_setup: Vec<&Effect> = Self::SampleSetup.effects(effects).collect();
         let setup_of = |effect: &Effect| with_setup.iter().position(|other| other.name == effect.name);
         let mut text = head.to_owned();
+        let scope = |effect: &Effect| if self.is_scoped() { list.scope(effect) } else { None };
+        if self.effects(effects).any(|effect| scope(effect).is_some()) {
+            text.push_str("    let scopes = draws[draw].scopes;\n");
+        }
         for effect in self.effects(effects) {
             let (function, name) = (self.function(effect), effect.name);
             let line = match self {
@@ -156,7 +169,11 @@ impl Chain {
                     format!("    sample_setup_store(entry, {index}u, {function}(setup, effects.{name}));")
                 }
             };
-            writeln!(text, "{line}").expect("writing to a string");
+            match scope(effect) {
+                Some(bit) => writeln!(text, "    if (scopes & {}u) != 0u {{\n{line}\n    }}", 1u32 << bit),
+                None => writeln!(text, "{line}"),
+            }
+            .expect("writing to a string");
         }
         text.push_str(tail);
         text

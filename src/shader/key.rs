@@ -176,6 +176,8 @@ pub struct EffectList {
     pub list: Vec<&'static Effect>,
     /// Parameter words of each that are constants of the text; empty where a uniform holds them.
     pub baked: Vec<Vec<u32>>,
+    /// The bit of every effect in the scopes of a draw, none for an effect on the whole scene; empty where no effect has a scope.
+    pub scope_bits: Vec<Option<u32>>,
     /// The lines along which an effect draws dots.
     pub dots: Option<LineSource>,
 }
@@ -184,6 +186,12 @@ pub struct EffectList {
 pub const MASK_SETUPS: u32 = 2;
 
 impl EffectList {
+    /// The bit of an effect in the scopes of a draw; none for an effect on the whole scene.
+    pub fn scope(&self, effect: &Effect) -> Option<u32> {
+        let at = self.list.iter().position(|other| other.name == effect.name)?;
+        self.scope_bits.get(at).copied().flatten()
+    }
+
     /// Effects whose sample test needs a setup per triangle.
     pub fn setup_count(&self) -> u32 {
         self.list.iter().filter(|effect| effect.hooks.sample.is_some_and(|hook| hook.has_setup)).count() as u32
@@ -220,6 +228,7 @@ impl KernelKey {
             effects: EffectList {
                 dots: effects.iter().any(|effect| effect.hooks.has_lines).then_some(LineSource::Edges),
                 baked: Vec::new(),
+                scope_bits: Vec::new(),
                 list: effects,
             },
         }

@@ -245,7 +245,7 @@ impl Linker<'_> {
         let part = format!("glue of {name} {GENERATED}");
         if !self.linked.files.iter().any(|(taken, _)| *taken == part) {
             self.has_effects = true;
-            self.append(&part, &chain.text(&self.key.effects.list));
+            self.append(&part, &chain.text(&self.key.effects));
             self.generated.insert(format!("glue_{name}"), format!("glue/{name}"));
             for effect in chain.effects(&self.key.effects.list) {
                 if let Err(error) = self.take(&format!("effects/{}", effect.file_stem()), &format!("glue/{name}")) {

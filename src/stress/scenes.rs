@@ -91,6 +91,7 @@ pub fn scene_of_meshes(meshes: &[SimpleMesh]) -> Arc<Scene> {
         scene.materials.push(Material { double_sided: mesh.double_sided, ..Material::default() });
         scene.primitives.push(Primitive {
             name: format!("part {i}"),
+            mesh: format!("part {i}"),
             topology: Topology::List,
             indices,
             positions,

@@ -13,6 +13,7 @@ mod mutants;
 mod presets;
 mod registry;
 mod scenes;
+mod scopes;
 mod shaders;
 mod surface_inputs;
 mod twins;

@@ -278,7 +278,7 @@ fn a_wobbling_normal_is_the_numerical_derivative_of_the_position() {
         set(&mut stack, "wobble", "wavelength_m", &[rng.real(0.5, 3.0)]);
         let here = vertex(&mut rng);
         let place = |p: DVec3| {
-            let moved = stack.moved(Vertex { position: p, ..here });
+            let moved = stack.moved(Vertex { position: p, ..here }, 0);
             moved.position + moved.offset
         };
         let step = 1e-5;
@@ -286,7 +286,7 @@ fn a_wobbling_normal_is_the_numerical_derivative_of_the_position() {
         let jacobian = DMat3::from_cols(along(DVec3::X), along(DVec3::Y), along(DVec3::Z));
         let [x, y, z] = [jacobian.x_axis, jacobian.y_axis, jacobian.z_axis];
         let expected = (DMat3::from_cols(y.cross(z), z.cross(x), x.cross(y)) * here.normal).normalize();
-        let found = stack.moved(here).normal;
+        let found = stack.moved(here, 0).normal;
         assert!(found.distance(expected) < 1e-6, "case {case}: {found} for {expected}");
     }
 }
@@ -320,7 +320,7 @@ fn exploding_and_turning_keeps_every_triangle_and_its_area() {
                 center_screen: DVec2::splat(0.5),
                 triangle: t,
             };
-            position + stack.moved(corner).offset
+            position + stack.moved(corner, 0).offset
         });
         let turned = (moved[1] - moved[0]).cross(moved[2] - moved[0]);
         assert!(turned.distance(normal) < 1e-12 * normal.length().max(1e-3), "triangle {t}: its plane or its area changed");
@@ -342,9 +342,9 @@ fn a_bound_grows_with_what_an_effect_is_given_and_with_what_it_does() {
         let still = resting(effect, &scene("sphere?triangles=200"));
         for _ in 0..100 {
             let here = vertex(&mut rng);
-            assert_eq!(still.error_bound(here, given), given, "{effect} at rest");
-            assert_eq!(still.moved(here), here, "{effect} at rest");
-            let (fine, coarse) = (moving.error_bound(here, given), moving.error_bound(here, coarser));
+            assert_eq!(still.error_bound(here, given, 0), given, "{effect} at rest");
+            assert_eq!(still.moved(here, 0), here, "{effect} at rest");
+            let (fine, coarse) = (moving.error_bound(here, given, 0), moving.error_bound(here, coarser, 0));
             assert!(fine.offset_m > 0.0 && fine.offset_m < 2e-5, "{effect}: {}", fine.offset_m);
             assert!(coarse.offset_m > fine.offset_m && coarse.normal >= fine.normal, "{effect}");
         }

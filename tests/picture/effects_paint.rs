@@ -175,7 +175,7 @@ fn surface(color: DVec3) -> Surface {
 }
 
 fn shaded(stack: &Stack, surface: Surface) -> DVec3 {
-    stack.shade(surface).color.truncate()
+    stack.shade(surface, 0).color.truncate()
 }
 
 #[test]

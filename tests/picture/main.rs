@@ -10,6 +10,7 @@ mod effects_paint;
 mod effects_samples;
 mod materials;
 mod particles;
+mod scopes;
 mod shadows;
 mod skins;
 mod snapshots;

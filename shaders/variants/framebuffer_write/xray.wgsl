@@ -15,7 +15,7 @@ fn framebuffer_begin(id: u32) {
 
 fn framebuffer_write(pixel: u32, key: u32, id: u32) {
     if key < xray_threshold(xray_buffer_front(pixel), IS_PERSPECTIVE, effects.xray) { return; }
-    let surface = glue_surface(shade_surface(vec2u(pixel % frame.size.x, pixel / frame.size.x)));
+    let surface = glue_surface(shade_surface(vec2u(pixel % frame.size.x, pixel / frame.size.x)), shaded.draw);
     let weight = xray_weight(surface, effects.xray);
     let layer = xray_sums_layer(clamp(surface.color.rgb, vec3f(0.0), vec3f(1.0)), weight);
     var before: vec4u;

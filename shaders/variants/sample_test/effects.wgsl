@@ -6,5 +6,5 @@
 //@ use glue/sample
 
 fn sample_test_effects(t: Triangle, at: vec2u, pixel: u32) -> bool {
-    return glue_sample(Sample(at, t.id, areas_at(t, at), vec4u()), t.entry);
+    return glue_sample(Sample(at, t.id, areas_at(t, at), vec4u()), t.draw, t.entry);
 }

@@ -4,5 +4,5 @@
 
 fn shading_color(id: u32, pixel: vec2u) -> vec4f {
     shade_begin(id);
-    return glue_surface(shade_surface(pixel)).color;
+    return glue_surface(shade_surface(pixel), shaded.draw).color;
 }

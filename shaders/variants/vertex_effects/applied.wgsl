@@ -20,7 +20,7 @@ fn vertex_effects_corner(draw: u32, vertex: u32, id: u32, p: vec3f) -> Vertex {
     v.position = clamp_world((draws[draw].world_from_object * vec4f(p, 1.0)).xyz);
     v.normal = normal_direction(vertex_effects_stored_normal(draw, vertex));
     v.center = v.position;
-    return glue_vertex(corner_step(v, draw, id, p));
+    return glue_vertex(corner_step(v, draw, id, p), draw);
 }
 
 fn vertex_effects_clip(draw: u32, vertex: u32, id: u32, p: vec3f) -> vec4f {

@@ -93,7 +93,8 @@ fn sums(input: &LayerInput, params: &Xray, bits: u32) -> Vec<SumBounds> {
             let mut shaded = perturbations.iter().map(|perturbation| {
                 let step = perturbation.color_step;
                 let lit = light.map_or(0.0, |light| light.arrives(&lit_point, triangle.id, step));
-                stack.shade(Surface { rank, lit, step_offset: step, ..known.surface(x, y, perturbation.texture) })
+                let surface = Surface { rank, lit, step_offset: step, ..known.surface(x, y, perturbation.texture) };
+                stack.shade(surface, known.scopes)
             });
             let exact = shaded.next().expect("the first perturbation is none");
             let color = exact.color.truncate();

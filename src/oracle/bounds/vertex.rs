@@ -77,8 +77,8 @@ impl<'a> VertexBounds<'a> {
     /// Bound of the error of a corner's displacement in meters, and the displacement.
     fn displacement(&self, corner: Corner) -> (f64, DVec3) {
         let unmoved = self.evaluator.unmoved(corner);
-        let stack = self.evaluator.stack;
-        (stack.error_bound(unmoved, self.unmoved(corner)).offset_m, stack.moved(unmoved).offset)
+        let (stack, scopes) = (self.evaluator.stack, self.evaluator.draw.scopes);
+        (stack.error_bound(unmoved, self.unmoved(corner), scopes).offset_m, stack.moved(unmoved, scopes).offset)
     }
 
     /// What an error of an object-space position adds to a row of its clip position.

@@ -40,11 +40,7 @@ use crate::{
     effects::Stack,
     frame::{AdapterPicture, BitExact, Counters, Frame, Geometry},
     measure::{ErrorReport, Verdict, compare},
-    scene::{
-        Scene,
-        draw::{DrawError, draws},
-        view::View,
-    },
+    scene::{Scene, draw::DrawError, view::View},
 };
 
 /// Judges a picture that an adapter drew of `scene`.
@@ -58,12 +54,12 @@ pub fn judge(scene: &Scene, view: &View, stack: &Stack, picture: &AdapterPicture
     let geometry = picture.geometry;
     let (view, stack) = (&drawn_view(view, geometry), &stack.scaled(geometry.scale));
     if view.pixels() == 0 {
-        draws(scene, view)?;
+        stack.draws(scene, view)?;
         return Ok(Verdict { expected: Frame { width: view.width, height: view.height, ..Frame::default() }, ..Verdict::default() });
     }
     let words = geometry.particle_readback.as_ref().map(|readback| readback.words.as_slice());
     let scene = &*scene_with_particles(scene, view, stack, words);
-    let draws = draws(scene, view)?;
+    let draws = stack.draws(scene, view)?;
     let shot = Shot::new(scene, &draws, view, stack);
     let own = own_geometry(&shot, geometry.bit_exact);
     check_sizes(&shot, picture, &own);

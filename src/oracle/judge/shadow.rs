@@ -21,11 +21,7 @@ use crate::{
     effects::Stack,
     frame::{Geometry, ShadowMap},
     measure::{ErrorReport, ShadowErrors},
-    scene::{
-        Scene,
-        draw::{DrawError, draws},
-        view::View,
-    },
+    scene::{Scene, draw::DrawError, view::View},
 };
 
 /// Compares the depths of a shadow map with those of the adapter's own records, and these records with their bounds.
@@ -37,7 +33,8 @@ use crate::{
 /// If the map is of another scene or stack.
 pub fn judge_shadow_map(report: &mut ErrorReport, shot: &Shot, map: &ShadowMap) -> Result<(), DrawError> {
     let Some(view) = shot.stack.light_view(shot.scene, shot.view) else { return Ok(()) };
-    let (draws, casting) = (draws(shot.scene, &view)?, shot.stack.shadow_casters());
+    let casting = shot.stack.shadow_casters();
+    let draws = casting.draws(shot.scene, &view)?;
     let shot = Shot::new(shot.scene, &draws, &view, &casting);
     let own = project(&shot);
     assert_eq!(map.geometry.vertices.len(), own.vertices.len(), "the shadow map is of another scene or stack");
@@ -67,7 +64,7 @@ pub fn shadow_errors(
     geometry: &Geometry,
 ) -> Result<Option<ShadowErrors>, DrawError> {
     let (view, stack) = (&drawn_view(view, geometry), &stack.scaled(geometry.scale));
-    let draws = draws(scene, view)?;
+    let draws = stack.draws(scene, view)?;
     let shot = Shot::new(scene, &draws, view, stack);
     let (Some(mapped), false) = (Light::of(&shot, geometry), leaves_samples_out(stack)) else { return Ok(None) };
     let (Some(rays), Some(light)) = (Rays::of(&shot), stack.light()) else { return Ok(None) };

@@ -127,7 +127,7 @@ fn sums(input: &LayerInput, params: &Xray, bits: u32) -> Vec<LayerSum> {
             let Some(known) = surface.get_or_insert_with(|| SurfaceTriangle::new(&input.shot, input.geometry, triangle.id)) else { return };
             let surface = known.surface(x, y, [0.0; 3]);
             let lit = light.map_or(0.0, |light| light.arrives(&known.lit_point(&surface), triangle.id, 0.0));
-            let shaded = stack.shade(Surface { rank, lit, ..surface });
+            let shaded = stack.shade(Surface { rank, lit, ..surface }, known.scopes);
             let weight = fixed_weight(params.weight_of(&shaded), 0.0);
             let color = fixed_color(shaded.color.truncate(), 0.0, bits);
             (0..3).for_each(|c| sum.sums[c] += color[c] * weight);

@@ -18,11 +18,7 @@ use super::{
 use crate::{
     effects::Stack,
     frame::Frame,
-    scene::{
-        Scene,
-        draw::{DrawError, draws},
-        view::View,
-    },
+    scene::{Scene, draw::DrawError, view::View},
 };
 
 /// The exact picture of `scene`, the first of its sequence; empty if `view` has no pixels.
@@ -39,11 +35,11 @@ pub fn render(scene: &Scene, view: &View, stack: &Stack) -> Result<Frame, DrawEr
 /// As [`render`].
 pub fn render_next(scene: &Scene, view: &View, stack: &Stack, previous: Option<&[[u8; 4]]>) -> Result<Frame, DrawError> {
     if view.pixels() == 0 {
-        draws(scene, view)?;
+        stack.draws(scene, view)?;
         return Ok(Frame { width: view.width, height: view.height, ..Frame::default() });
     }
     let scene = &*scene_with_particles(scene, view, stack, None);
-    let draws = draws(scene, view)?;
+    let draws = stack.draws(scene, view)?;
     let shot = Shot::new(scene, &draws, view, stack);
     let mut geometry = project(&shot);
     geometry.sample_setups = sample_setups(&shot, &geometry);
@@ -95,7 +91,7 @@ pub fn render_sequence(scene: &Scene, sequence: &[(View, Stack)]) -> Result<Fram
 /// # Errors
 /// As [`render`].
 pub fn strict_frame(scene: &Scene, view: &View, stack: &Stack) -> Result<(Vec<u32>, Vec<u32>), DrawError> {
-    let draws = draws(scene, view)?;
+    let draws = stack.draws(scene, view)?;
     let shot = Shot::new(scene, &draws, view, stack);
     let mut geometry = project_strict(&shot);
     geometry.bit_exact.depth_keys = true;

@@ -10,10 +10,7 @@ use super::{
     super::shot::Shot,
     vertex::{Corner, VertexEvaluator},
 };
-use crate::scene::{
-    draw::{Draw, draws},
-    shadow_resolution::ShadowResolution,
-};
+use crate::scene::{draw::Draw, shadow_resolution::ShadowResolution};
 
 /// A triangle that casts a shadow.
 struct Caster {
@@ -56,7 +53,7 @@ impl Rays {
         let Shot { scene, view, stack, .. } = *shot;
         let toward = stack.light()?.toward();
         let light_view = stack.light_view(scene, &view.with_shadow(ShadowResolution::default()))?;
-        let draws = draws(scene, &light_view).ok()?;
+        let draws = stack.draws(scene, &light_view).ok()?;
         let mut casters: Vec<Caster> = draws.iter().flat_map(|draw| casters(shot, draw)).collect();
         let radius = scene.bounds_of(scene.shadow_casters()).radius().max(1e-9);
         let mut nodes = Vec::new();

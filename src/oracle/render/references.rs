@@ -15,12 +15,7 @@ use crate::{
     frame::{Frame, Geometry},
     math::{GUARD_BAND, SUBPIXEL_BITS},
     measure::References,
-    scene::{
-        Scene,
-        draw::{DrawError, draws},
-        shadow_resolution::ShadowResolution,
-        view::View,
-    },
+    scene::{Scene, draw::DrawError, shadow_resolution::ShadowResolution, view::View},
 };
 
 /// The exact picture of the last of `sequence`, drawn with `factor` times as many pixels along a side and shown at the size of its
@@ -63,7 +58,7 @@ pub fn render_finest(scene: &Scene, view: &View, stack: &Stack) -> Result<Frame,
 /// As [`render`].
 pub fn project_finest(scene: &Scene, view: &View, stack: &Stack) -> Result<Geometry, DrawError> {
     let view = finest(view, stack);
-    Ok(project(&Shot::new(scene, &draws(scene, &view)?, &view, stack)))
+    Ok(project(&Shot::new(scene, &stack.draws(scene, &view)?, &view, stack)))
 }
 
 /// The picture of [`render_finest`] with traced shadows: the reference for shadow maps. If effects leave samples out, of which rays

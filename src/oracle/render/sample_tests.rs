@@ -26,6 +26,8 @@ pub struct SampleTests<'a> {
     effect_setups: usize,
     /// The scene whose materials may mask samples out.
     masked: Option<(&'a Scene, &'a [Draw])>,
+    /// The scene on whose parts effects with a scope act.
+    scoped: Option<(&'a Scene, &'a [Draw])>,
     /// What triangles cover.
     pub shape: Shape,
     /// Radius of discs round corners, in sub-pixel units.
@@ -45,6 +47,8 @@ struct EffectTest<'a> {
     words: &'a [u32],
     /// Index among the setups of an entry; none for an effect without one.
     setup: Option<usize>,
+    /// Its bit in [`Draw::scopes`]; none for an effect on the whole scene.
+    scope: Option<u32>,
 }
 
 /// Where a draw order stops.
@@ -68,6 +72,7 @@ impl Default for SampleTests<'_> {
             sample_setups: &[],
             effect_setups: 0,
             masked: None,
+            scoped: None,
             shape: Shape::default(),
             radius: 0,
             discs: 0..0,
@@ -82,18 +87,23 @@ impl<'a> SampleTests<'a> {
     /// The tests of a picture, with the setups that `geometry` carries.
     pub fn new(shot: &Shot<'a>, geometry: &'a Geometry) -> Self {
         let masked = mask::is_masked(shot.scene, shot.stack).then_some((shot.scene, shot.draws));
-        Self { masked, ..Self::of_effects(shot.stack, geometry) }
+        let tests = Self::of_effects(shot.stack, geometry);
+        let scoped = tests.effects.iter().any(|effect| effect.scope.is_some()).then_some((shot.scene, shot.draws));
+        Self { masked, scoped, ..tests }
     }
 
-    /// The tests of a stack alone, without masks.
+    /// The tests of a stack alone, without masks and without effects that have a scope.
     pub fn of_effects(stack: &'a Stack, geometry: &'a Geometry) -> Self {
         let mut effect_setups = 0;
         let effects = stack
-            .each(|hooks| hooks.sample)
-            .map(|(hook, words)| {
+            .0
+            .iter()
+            .zip(stack.scope_bits())
+            .filter_map(|(enabled, scope)| {
+                let hook = enabled.effect.hooks.sample?;
                 let setup = hook.has_setup.then_some(effect_setups);
                 effect_setups += usize::from(hook.has_setup);
-                EffectTest { hook, words, setup }
+                Some(EffectTest { hook, words: &enabled.words, setup, scope })
             })
             .collect();
         Self {
@@ -145,7 +155,11 @@ impl<'a> SampleTests<'a> {
         }
         let records = self.effect_setups + if self.masked.is_some() { mask::RECORDS } else { 0 };
         let setups = &self.sample_setups[triangle.entry * records..][..records];
+        let scopes = self.scoped.map_or(0, |(scene, draws)| draw_of(scene, draws, triangle.id).map_or(0, |draw| draw.scopes));
         let passes = |effect: &EffectTest| {
+            if effect.scope.is_some_and(|bit| scopes >> bit & 1 == 0) {
+                return true;
+            }
             let setup = effect.setup.map_or([0; 4], |index| setups[index]);
             (effect.hook.is_drawn)(&Sample { x, y, triangle: triangle.id, areas: parts, setup }, effect.words)
         };

@@ -27,12 +27,7 @@ use crate::{
         shadow::{MAX_SHADOW_SLOPE, Shadow},
     },
     frame::{Geometry, ShadowMap},
-    scene::{
-        Scene,
-        draw::{DrawError, draws},
-        shadow_resolution::ShadowResolution,
-        view::View,
-    },
+    scene::{Scene, draw::DrawError, shadow_resolution::ShadowResolution, view::View},
 };
 
 /// The shadow map of `scene` for the light of `stack`; none if no effect needs one, or if shadows are traced.
@@ -44,7 +39,8 @@ pub fn shadow_map(scene: &Scene, view: &View, stack: &Stack) -> Result<Option<Bo
         return Ok(None);
     }
     let Some(view) = stack.light_view(scene, view) else { return Ok(None) };
-    let (draws, casting) = (draws(scene, &view)?, stack.shadow_casters());
+    let casting = stack.shadow_casters();
+    let draws = casting.draws(scene, &view)?;
     let shot = Shot::new(scene, &draws, &view, &casting);
     let mut geometry = project(&shot);
     geometry.sample_setups = sample_setups(&shot, &geometry);

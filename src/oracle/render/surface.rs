@@ -45,7 +45,8 @@ pub fn surface_colors(
         let id = surface.triangle_id;
         let rank = ranks.get(id as usize).copied().unwrap_or(0.0);
         let lit = light.as_ref().map_or(0.0, |light| light.arrives(&triangle.lit_point(&surface), id, perturbation.color_step));
-        encoded(shot.stack.shade(Surface { rank, lit, step_offset: perturbation.color_step, ..surface }).color)
+        let surface = Surface { rank, lit, step_offset: perturbation.color_step, ..surface };
+        encoded(shot.stack.shade(surface, triangle.scopes).color)
     })
 }
 
@@ -80,6 +81,8 @@ pub fn encoded(color: DVec4) -> DVec4 {
 /// Everything about a triangle's surface that does not change from sample to sample.
 pub struct SurfaceTriangle<'a> {
     id: u32,
+    /// Those of its draw.
+    pub scopes: u32,
     view: &'a View,
     weights: Weights,
     positions: [DVec3; 3],
@@ -126,6 +129,7 @@ impl<'a> SurfaceTriangle<'a> {
         let world_from_normal = evaluator.world_from_normal * side;
         let mut triangle = Self {
             id,
+            scopes: draw.scopes,
             view,
             weights: screen.weights,
             center: draw.world_from_object.transform_point3(object.iter().sum::<DVec3>() / 3.0),

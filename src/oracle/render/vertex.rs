@@ -111,7 +111,7 @@ impl<'a> VertexEvaluator<'a> {
 
     /// A corner after all effects; its displacement is clamped to 2^40 m, as every coordinate is.
     pub fn moved(&self, corner: Corner) -> Vertex {
-        let mut vertex = self.stack.moved(self.unmoved(corner));
+        let mut vertex = self.stack.moved(self.unmoved(corner), self.draw.scopes);
         vertex.offset = clamped(vertex.offset);
         vertex
     }

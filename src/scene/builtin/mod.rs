@@ -164,5 +164,6 @@ pub fn build(query: &str) -> Result<Scene, BuiltinError> {
     let (builtin, values) = query::parse(BUILTINS, query)?;
     let mut scene = (builtin.build)(&values)?;
     scene.name = builtin.name.into();
+    scene.name_nodes();
     Ok(scene)
 }

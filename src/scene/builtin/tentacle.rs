@@ -242,7 +242,13 @@ fn add_instance(scene: &mut Scene, instance: u32, of: u32, joints: u32, samplers
     }
     rig.clips[3].channels.push(Channel { node: mesh, property: Property::Weights, sampler: samplers.breath[phase] });
     let skin = rig.skins.len() - 1;
-    scene.instances.push(Instance { primitive: 0, world_from_object: DMat4::IDENTITY, node: Some(mesh), skin: Some(skin) });
+    scene.instances.push(Instance {
+        primitive: 0,
+        world_from_object: DMat4::IDENTITY,
+        node: Some(mesh),
+        skin: Some(skin),
+        named_node: None,
+    });
 }
 
 #[cfg(test)]

@@ -2,6 +2,8 @@
 
 use std::{fmt::Display, path::Path};
 
+use crate::scene::parts::MAX_NAME_CHARS;
+
 /// Why a model cannot be loaded; one sentence.
 #[derive(Debug, PartialEq, thiserror::Error)]
 #[error("{0}")]
@@ -31,6 +33,14 @@ pub(super) fn quoted(name: &str) -> String {
 pub(super) fn called(kind: &str, index: usize, name: Option<&str>) -> String {
     match name {
         Some(name) if !name.is_empty() => format!("{kind} {}", quoted(name)),
+        _ => format!("{kind} {index}"),
+    }
+}
+
+/// The name by which patterns find a part: that of the file, at most [`MAX_NAME_CHARS`] long and without control characters, or `kind 3`.
+pub(super) fn part_name(kind: &str, index: usize, name: Option<&str>) -> String {
+    match name {
+        Some(name) if !name.is_empty() => name.chars().take(MAX_NAME_CHARS).map(|c| if c.is_control() { '?' } else { c }).collect(),
         _ => format!("{kind} {index}"),
     }
 }

@@ -130,6 +130,7 @@ fn read_model(bytes: &[u8], read: &mut ReadFile) -> Result<Scene, LoadError> {
     let Loader { writer, notes, .. } = loader;
     let mut scene = writer.scene;
     scene.rig = rig;
+    scene.named_nodes = tree.named_nodes(&root)?;
     if !scene.rig.is_empty() {
         scene.rig.motion_bounds = pose::motion_bounds(&scene);
     }

@@ -18,7 +18,7 @@ use image::{DynamicImage, ImageDecoder, ImageFormat, ImageReader, Limits};
 
 use super::{
     buffers::Buffers,
-    error::{LoadError, ReadFile, called, quoted},
+    error::{LoadError, ReadFile, called, part_name, quoted},
     limits, uri,
 };
 use crate::scene::{
@@ -45,7 +45,7 @@ pub fn read(
     let material = |(index, about): (usize, &json::Material)| {
         let name = called("material", index, about.name.as_deref());
         let material = Material {
-            name: about.name.clone().unwrap_or_else(|| format!("material {index}")),
+            name: part_name("material", index, about.name.as_deref()),
             base_color: about.pbr_metallic_roughness.base_color_factor.0.map(|channel| channel.clamp(0.0, 1.0)),
             double_sided: about.double_sided,
             ..Material::default()

@@ -15,7 +15,7 @@ use gltf::json::{
 use super::{
     buffers::{Buffers, FLOAT, FLOAT_OR_UNORM, QUANTIZED, QUANTIZED_NORMALS, SceneWriter, check_finite},
     deformation,
-    error::{LoadError, called},
+    error::{LoadError, called, part_name},
     limits, materials,
     nodes::{Tree, node_name},
 };
@@ -79,7 +79,8 @@ impl<'a> Loader<'a> {
                 self.notes.extend(notes);
             }
             let world_from_object = if skin.is_some() { DMat4::IDENTITY } else { self.tree.world_from_node[node] };
-            self.writer.scene.instances.push(Instance { primitive, world_from_object, node: rig_node, skin });
+            let named_node = Some(self.tree.rig_index[node]);
+            self.writer.scene.instances.push(Instance { primitive, world_from_object, node: rig_node, skin, named_node });
         }
         Ok(())
     }
@@ -106,15 +107,16 @@ impl<'a> Loader<'a> {
                 self.notes.insert(format!("{name} is skipped: the alpha of its material is below the cutoff everywhere"));
                 continue;
             }
-            self.primitive(&name, topology, primitive).map_err(|LoadError(reason)| LoadError(format!("{name}{reason}")))?;
+            let part = part_name("mesh", mesh, self.root.meshes[mesh].name.as_deref());
+            self.primitive([&name, &part], topology, primitive).map_err(|LoadError(reason)| LoadError(format!("{name}{reason}")))?;
         }
         let range = first..self.writer.scene.primitives.len();
         self.meshes.insert(mesh, range.clone());
         Ok(range)
     }
 
-    /// Reads a primitive. Errors begin with ` ATTRIBUTE: ` or `: `, to follow the primitive's name.
-    fn primitive(&mut self, name: &str, topology: Topology, about: &'a json::mesh::Primitive) -> Result<(), LoadError> {
+    /// Reads a primitive of the mesh with this name. Errors begin with ` ATTRIBUTE: ` or `: `, to follow the primitive's name.
+    fn primitive(&mut self, [name, mesh]: [&str; 2], topology: Topology, about: &'a json::mesh::Primitive) -> Result<(), LoadError> {
         let attribute = |semantic: Semantic| about.attributes.get(&Checked::Valid(semantic)).map(|accessor| accessor.value());
         let at = |coordinates: &'static str| move |error: LoadError| LoadError(format!(" {coordinates}: {error}"));
         let plain = |error: LoadError| LoadError(format!(": {error}"));
@@ -137,6 +139,7 @@ impl<'a> Loader<'a> {
 
         let mut primitive = Primitive {
             name: name.into(),
+            mesh: mesh.into(),
             topology,
             indices,
             positions,

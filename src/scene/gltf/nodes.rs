@@ -4,13 +4,13 @@ use glam::{DMat4, DVec3};
 use gltf::json::{self, camera::Type, validation::Checked};
 
 use super::{
-    error::{LoadError, called},
+    error::{LoadError, called, part_name},
     limits,
 };
 use crate::scene::{
     bounds::Bounds,
     camera::{Camera, MIN_NEAR_M, Projection},
-    model::SceneCamera,
+    model::{NamedNode, SceneCamera},
     quaternion::unit,
     rig::{LocalTransform, Node, Trs},
 };
@@ -90,6 +90,16 @@ impl Tree {
             })
         };
         self.order.iter().map(node).collect()
+    }
+
+    /// The names of all nodes, in the order of the rig.
+    pub fn named_nodes(&self, root: &json::Root) -> Result<Vec<NamedNode>, LoadError> {
+        let parents = parents(root)?;
+        let named = |&node: &usize| NamedNode {
+            name: part_name("node", node, root.nodes[node].name.as_deref()),
+            parent: parents[node].map(|parent| self.rig_index[parent]),
+        };
+        Ok(self.order.iter().map(named).collect())
     }
 
     /// A message about rotations that are not unit quaternions, if there are any.

@@ -101,7 +101,10 @@ const RENDER_SCALE: Feature =
     Feature { constants: &[("SCALE_SIDE", |key, _| key.options.render_scale.factor().max(1.0))], ..Feature::NONE };
 
 const EFFECTS: Feature = Feature {
-    label: |key| key.effects.list.iter().map(|effect| format!("+{}", effect.name)).collect::<Vec<_>>().join(" "),
+    label: |key| {
+        let scope = |effect| key.effects.scope(effect).map_or_else(String::new, |bit| format!("@{bit}"));
+        key.effects.list.iter().map(|effect| format!("+{}{}", effect.name, scope(effect))).collect::<Vec<_>>().join(" ")
+    },
     part: Some(Part { name: "effects uniform", is_used: |key| !key.effects.list.is_empty(), why_omitted: |_| "the stack is empty".into() }),
     ..Feature::NONE
 };

@@ -2,6 +2,7 @@
 
 mod effects;
 mod files_kept;
+mod parts;
 mod sequences;
 
 use std::{

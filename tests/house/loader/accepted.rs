@@ -3,7 +3,11 @@
 use std::f64::consts::FRAC_1_SQRT_2;
 
 use glam::DVec3;
-use rasterlab::scene::{Scene, camera::Projection};
+use rasterlab::scene::{
+    Scene,
+    camera::Projection,
+    parts::{PartKind, parts},
+};
 use serde_json::json;
 
 use super::model::*;
@@ -237,4 +241,25 @@ fn small_integers_are_places_when_the_file_says_that_it_is_quantized() {
     assert!((x - 1.0).abs() < 1e-6 && (y - 1.0).abs() < 1e-6);
     let normalized = model.with(&format!("/accessors/{places}/normalized"), json!(true)).with("/nodes/0/scale", json!([1, 1, 1])).scene();
     assert_eq!(triangles(&normalized), square());
+}
+
+#[test]
+fn the_names_of_a_model_are_its_parts() {
+    let mut model = Model::square();
+    model.json["meshes"][0]["name"] = json!("Shell\nof glass");
+    model.json["materials"] = json!([{ "name": "Lens" }]);
+    model.json["meshes"][0]["primitives"][0]["material"] = json!(0);
+    let second = model.json["meshes"][0].clone();
+    model.json["meshes"] = json!([model.json["meshes"][0], { "primitives": [second["primitives"][0]] }]);
+    model.json["meshes"][1]["primitives"][0].as_object_mut().unwrap().remove("material");
+    // Children stand before their parents in the file.
+    model.json["nodes"] = json!([{ "name": "Eye", "mesh": 0 }, { "mesh": 1 }, { "name": "Head", "children": [0, 1] }, { "name": "Empty" }]);
+    model.json["scenes"] = json!([{ "nodes": [2, 3] }]);
+    let scene = model.scene();
+    let names =
+        |kind| parts(&scene).into_iter().filter(move |part| part.kind == kind).map(|p| (p.name, p.depth, p.instances)).collect::<Vec<_>>();
+    let part = |name: &str, depth, instances| (name.to_owned(), depth, instances);
+    assert_eq!(names(PartKind::Mesh), [part("Shell?of glass", 0, 1), part("mesh 1", 0, 1)]);
+    assert_eq!(names(PartKind::Material), [part("Lens", 0, 1), part("default", 0, 1)]);
+    assert_eq!(names(PartKind::Node), [part("Head", 0, 2), part("Eye", 1, 1), part("node 1", 1, 1)]);
 }

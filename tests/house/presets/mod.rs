@@ -5,6 +5,7 @@ mod migrations;
 mod refused;
 mod round_trip;
 mod saving;
+mod scopes;
 mod sharing;
 mod text;
 

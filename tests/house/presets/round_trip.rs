@@ -9,7 +9,10 @@ use rasterlab::{
         animation::{Easing, Keyframe, Track, steps},
     },
     preset_file::{self, PresetFile},
-    scene::camera::{Camera, MIN_NEAR_M, Projection},
+    scene::{
+        camera::{Camera, MIN_NEAR_M, Projection},
+        parts::Scope,
+    },
 };
 
 use super::*;
@@ -121,6 +124,7 @@ prop_compose! {
         clock in any_clock(),
         tracks in prop::collection::vec((any::<prop::sample::Index>(), any::<prop::sample::Index>(), any_keyframes()), 0..5),
         effects in prop::collection::vec(any_effect(), 0..6),
+        patterns in prop::collection::vec("(material|node|mesh):[^\\p{Cc}]{1,20}", 0..4),
         reversed in any::<bool>(),
         tier in 0..4usize,
         visibility in prop::option::of(0..2usize),
@@ -135,6 +139,9 @@ prop_compose! {
             if stack.conflict_with(EFFECTS[index]).is_none() {
                 stack.enable(EFFECTS[index]).words = filled(EFFECTS[index], seed);
             }
+        }
+        for (index, enabled) in stack.0.iter_mut().enumerate().filter(|(_, enabled)| enabled.effect.has_scope()) {
+            enabled.on = Scope::new(patterns.iter().skip(index).map(|pattern| pattern.parse().expect("a pattern")));
         }
         if reversed {
             stack.0.reverse();

@@ -138,7 +138,8 @@ fn disabled_ui(ui: &mut Ui, state: &State, commands: &Commands, effect: &'static
     let box_ui = ui.checkbox(&mut on, title(effect)).on_hover_text(effect.about).accessible_name(effect.name);
     box_ui.context_menu(|ui| effect_menu::menu_ui(ui, state, commands, effect));
     let clicked = box_ui.clicked();
-    let Some(conflict) = state.session.preset().stack.conflict_with(effect) else {
+    let stack = &state.session.preset().stack;
+    let Some((rival, conflict)) = stack.rival_of(effect).zip(stack.conflict_with(effect)) else {
         if clicked {
             commands.edit(Edit::Enable(effect));
         }
@@ -147,7 +148,7 @@ fn disabled_ui(ui: &mut Ui, state: &State, commands: &Commands, effect: &'static
     if clicked {
         commands.send(Command::Notify(Level::Warning, conflict.to_string()));
     }
-    let (name, other) = (effect.name, conflict.first);
+    let (name, other) = (effect.name, rival.name);
     let instead = ui.small_button(format!("instead of {other}")).accessible_name(format!("{name} instead of {other}"));
     if instead.on_hover_text(format!("Disable {other} and enable {name}")).clicked() {
         commands.edit(Edit::Replace(other, effect));

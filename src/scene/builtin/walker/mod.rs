@@ -100,7 +100,13 @@ fn add_instance(scene: &mut Scene, instance: u32, of: u32, samplers: &[usize]) {
         clip.channels.extend((0..JOINTS).map(channel));
     }
     let skin = rig.skins.len() - 1;
-    scene.instances.push(Instance { primitive: 0, world_from_object: DMat4::IDENTITY, node: Some(first - 1), skin: Some(skin) });
+    scene.instances.push(Instance {
+        primitive: 0,
+        world_from_object: DMat4::IDENTITY,
+        node: Some(first - 1),
+        skin: Some(skin),
+        named_node: None,
+    });
 }
 
 #[cfg(test)]
