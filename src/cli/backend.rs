@@ -155,7 +155,7 @@ pub fn adapter_json(summary: &AdapterSummary, caps: &Caps) -> Value {
 /// The scene of a preset. Warns of scopes that match no part of it.
 ///
 /// # Errors
-/// The scene is not available, or `--strict` makes a warning an error.
+/// The scene is not available, or `--strict` makes a warning, or a model that breaks its standard, an error.
 pub fn scene_of(common: &Common, preset_file: &PresetFile, streams: &Streams) -> Result<Arc<Scene>, CliError> {
     let (scene, warnings) = scene_with_warnings(common, preset_file)?;
     warnings.iter().for_each(|warning| streams.note(&format!("warning: {warning}")));
@@ -169,6 +169,9 @@ pub fn scene_of(common: &Common, preset_file: &PresetFile, streams: &Streams) ->
 pub fn scene_with_warnings(common: &Common, preset_file: &PresetFile) -> Result<(Arc<Scene>, Vec<String>), CliError> {
     let scene = preset_file::load_scene(&preset_file.preset, preset_file.path.as_deref())
         .map_err(|e| CliError::from(e).during(format!("preset {}", preset_file.id)))?;
+    if let (Some(fault), true) = (scene.faults.first(), common.strict) {
+        return Err(CliError::usage(format!("{}: {fault}", scene.name)).during(format!("preset {}", preset_file.id)));
+    }
     let file = preset_file.path.as_ref().map_or_else(|| format!("{}.toml", preset_file.id), |path| path.display().to_string());
     let warnings: Vec<String> = preset_file.preset.missing_parts(&scene).iter().map(|missing| format!("{file}: {missing}")).collect();
     match common.strict && !warnings.is_empty() {

@@ -1,6 +1,6 @@
 //! `check`: validates presets, and with `--render` compares the adapter's pictures with the goldens.
 
-use std::path::Path;
+use std::{path::Path, sync::Arc};
 
 use serde_json::{Value, json};
 
@@ -16,8 +16,12 @@ use super::{
     streams::Streams,
 };
 use crate::{
+    gpu::RenderError,
     measure::compare::pictures,
+    plan::{Caps, Planner},
+    preset::Preset,
     preset_file::{self, PresetError, PresetFile},
+    scene::{Scene, draw::draws, needs::Needs},
 };
 
 pub fn run(common: &Common, args: &Check, streams: &mut Streams) -> Result<Exit, CliError> {
@@ -54,6 +58,7 @@ fn check(common: &Common, args: &Check, file: &str, backend: Option<&mut Backend
         finding.warnings.clone_from(&preset_file.warnings);
         let (scene, missing) = scene_with_warnings(common, &preset_file)?;
         finding.warnings.extend(missing);
+        planned(&preset_file.preset, &scene)?;
         backend.map(|backend| drawn(args, &preset_file, &scene, backend)).transpose()
     });
     match outcome {
@@ -70,14 +75,18 @@ fn check(common: &Common, args: &Check, file: &str, backend: Option<&mut Backend
     finding
 }
 
+/// Is there a kernel for the preset, on the best of adapters?
+fn planned(preset: &Preset, scene: &Scene) -> Result<(), CliError> {
+    let view = preset.view(scene, preset.output.size);
+    let needs = Arc::new(Needs::of(scene, &draws(scene, &view)?, &view));
+    let caps = Caps::ALL;
+    let planned = Planner::default().plan(&needs, &preset.evaluated_stack(), &caps, &caps.tuning(), &preset.accuracy);
+    planned.map(drop).map_err(|error| RenderError::from(error).into())
+}
+
 type Comparison = (Option<Drawn>, Vec<String>);
 
-fn drawn(
-    args: &Check,
-    preset_file: &PresetFile,
-    scene: &std::sync::Arc<crate::scene::Scene>,
-    backend: &mut Backend,
-) -> Result<Comparison, CliError> {
+fn drawn(args: &Check, preset_file: &PresetFile, scene: &Arc<Scene>, backend: &mut Backend) -> Result<Comparison, CliError> {
     let Some(test) = &preset_file.preset.test else { return Ok((None, Vec::new())) };
     let frame = backend.frame(&preset_file.preset, scene)?;
     let size = [frame.width, frame.height];

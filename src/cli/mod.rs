@@ -52,6 +52,9 @@ pub fn run(cli: &Cli) -> Result<Exit, CliError> {
         }
         Library::choose(folder.clone());
     }
+    if let Some(folder) = cli.common.presets_dir().filter(|folder| !folder.is_dir()) {
+        return Err(CliError::usage(format!("--presets or RASTERLAB_PRESETS: there is no folder {}", folder.display())));
+    }
     let Some(command) = &cli.command else { return window(cli) };
     if let Some(preset_file) = &cli.open {
         return Err(CliError::usage(format!(

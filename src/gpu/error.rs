@@ -62,18 +62,10 @@ impl RenderError {
         }
     }
 
-    /// A pinned option that this preset or adapter lacks, or a size.
+    /// A pinned option that this adapter lacks, or a size that another may have. What no adapter could draw is wrong usage.
     pub fn is_unsupported(&self) -> bool {
-        matches!(self, Self::Plan(error) if !matches!(error, PlanError::Conflict(_)))
-            || matches!(
-                self,
-                Self::Untrusted
-                    | Self::Scaled { .. }
-                    | Self::Tickets(_)
-                    | Self::TooLarge { .. }
-                    | Self::TooWide { .. }
-                    | Self::OutOfMemory { .. }
-            )
+        matches!(self, Self::Plan(PlanError::NoInt64Atomics))
+            || matches!(self, Self::Scaled { .. } | Self::TooLarge { .. } | Self::TooWide { .. } | Self::OutOfMemory { .. })
     }
 
     pub fn is_lost(&self) -> bool {

@@ -8,6 +8,7 @@
 //! Imports run one way, from each of these to those before it:
 //!
 //! * `arithmetic`, `perturbation`, `shot`: exact arithmetic, and what a picture shows
+//! * `budget`: how much memory and work a picture may take
 //! * `render`: draws exact pictures
 //! * `bounds`: how far an f32 renderer may be from them
 //! * `judge`: compares an adapter's picture with both
@@ -19,6 +20,7 @@
 
 mod arithmetic;
 mod bounds;
+mod budget;
 mod judge;
 mod perturbation;
 mod render;

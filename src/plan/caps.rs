@@ -15,6 +15,16 @@ pub struct Caps {
 }
 
 impl Caps {
+    /// More than any adapter has: what cannot be planned for it, none can draw.
+    pub const ALL: Self = Self {
+        int64_atomics: true,
+        timestamps: true,
+        max_storage_binding_bytes: u64::MAX,
+        max_buffer_bytes: u64::MAX,
+        max_texture_side: u32::MAX,
+        software: false,
+    };
+
     /// `native-int64` or `portable`.
     pub fn class(&self) -> &'static str {
         if self.int64_atomics { "native-int64" } else { "portable" }

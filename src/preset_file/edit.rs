@@ -21,6 +21,9 @@ use crate::{
     scene::parts::Scope,
 };
 
+/// What errors call the place of a value that is set by hand; the key and the value follow.
+const ARGUMENT: &str = "--set";
+
 /// What a `--set` or `--unset` path names.
 enum Target {
     Effect(&'static Effect),
@@ -102,8 +105,7 @@ fn read_text(param: &Param, text: &str) -> Result<Value, String> {
 /// # Errors
 /// An unknown path, or a value that a file could not have either; then nothing is changed.
 pub fn set(preset_file: &mut PresetFile, path: &str, value: &str) -> Result<(), PresetError> {
-    let argument = if value.is_empty() { format!("--set {path}") } else { format!("--set {path}={value}") };
-    let at = Position { file: argument.clone(), line: None };
+    let at = Position { file: ARGUMENT.into(), line: None };
     let wrong = |reason: String| PresetError::value(at.clone(), path, reason);
     if let Some((name, INSTANCE_KEY)) = path.strip_prefix("effects.").unwrap_or(path).split_once('.') {
         let effect = preset_file.effects.add_instance(name, value.trim().trim_matches('"')).map_err(wrong)?;
@@ -119,9 +121,15 @@ pub fn set(preset_file: &mut PresetFile, path: &str, value: &str) -> Result<(), 
     {
         return Err(PresetError::value(at, "effects", conflict.to_string()));
     }
+    // An empty text is a value.
+    let is_missing =
+        value.is_empty() && !matches!(&target, Target::Setting(setting) if matches!(setting.value_type, ValueType::Text { .. }));
     match target {
         Target::Effect(effect) if value.is_empty() => drop(preset_file.preset.stack.enable(effect)),
         Target::Section(section) if value.is_empty() => section.add(&mut preset_file.preset),
+        Target::Field(..) | Target::Setting(_) | Target::Stack | Target::Animation(_, Some(_)) if is_missing => {
+            return Err(wrong(format!("needs a value, as in --set {path}=VALUE")));
+        }
         Target::Effect(_) | Target::Section(_) => return Err(wrong("takes no value; name one of its keys".into())),
         Target::Field(effect, field) => {
             let value = read_text(field, value).map_err(wrong)?;
@@ -139,7 +147,7 @@ pub fn set(preset_file: &mut PresetFile, path: &str, value: &str) -> Result<(), 
             preset_file.preset.stack = stack;
         }
         Target::Animation(Some(effect), Some(field)) => {
-            let mut reader = Reader { file: &argument, text: None, catalog: catalog.clone(), warnings: Vec::new() };
+            let mut reader = Reader::new(ARGUMENT, None, catalog.clone());
             let track = keyframes::read_track(&mut reader, None, effect, field, &Item::Value(command_line_value(value)))?;
             preset_file.preset.stack.enable(effect);
             preset_file.preset.animation.put(track);
@@ -162,7 +170,7 @@ pub fn set(preset_file: &mut PresetFile, path: &str, value: &str) -> Result<(), 
 /// # Errors
 /// An unknown path.
 pub fn unset(preset_file: &mut PresetFile, path: &str) -> Result<(), PresetError> {
-    let at = Position { file: format!("--unset {path}"), line: None };
+    let at = Position { file: "--unset".into(), line: None };
     let preset = &mut preset_file.preset;
     match target(path, &preset_file.effects).map_err(|reason| PresetError::value(at, path, reason))? {
         Target::Effect(effect) => preset.disable(effect.name),

@@ -50,8 +50,9 @@ pub fn read(reader: &mut Reader<'_>, effects: &dyn TableLike, preset: &mut Prese
             continue;
         };
         if preset.stack.get(name).is_none() {
-            let at = reader.position(effects, name);
-            reader.warnings.push(format!("{at}: animation.{name} moves nothing; add [effects.{name}]"));
+            let warning =
+                |reader: &Reader<'_>| format!("{}: animation.{name} moves nothing; add [effects.{name}]", reader.position(effects, name));
+            reader.warn(warning);
         }
         for (name, item) in table.iter() {
             match effect.field(name) {

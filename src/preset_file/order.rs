@@ -1,5 +1,7 @@
 //! The `stack` key: the order of the enabled effects, each named once.
 
+use std::collections::HashSet;
+
 use toml_edit::Value as Toml;
 
 use crate::{effect_files::Catalog, effects::Stack, params::did_you_mean};
@@ -13,8 +15,9 @@ pub fn read(toml: Option<&Toml>, stack: &Stack, catalog: &Catalog, has_table: &d
     let names: Option<Vec<&str>> = toml.and_then(Toml::as_array).and_then(|list| list.iter().map(Toml::as_str).collect());
     let names = names.ok_or("must be a list of effect names")?;
     let mut ordered = Vec::new();
-    for (index, name) in names.iter().enumerate() {
-        if names[..index].contains(name) {
+    let mut known = HashSet::new();
+    for name in &names {
+        if !known.insert(*name) {
             return Err(format!("names {name} twice"));
         }
         match (stack.get(name), catalog.find(name).ok().flatten()) {
@@ -27,7 +30,7 @@ pub fn read(toml: Option<&Toml>, stack: &Stack, catalog: &Catalog, has_table: &d
             }
         }
     }
-    match stack.0.iter().find(|enabled| !names.contains(&enabled.effect.name)) {
+    match stack.0.iter().find(|enabled| !known.contains(enabled.effect.name)) {
         Some(missing) => Err(format!("leaves out {}, which is enabled", missing.effect.name)),
         None => Ok(Stack(ordered)),
     }

@@ -36,7 +36,7 @@ pub struct ReadPreset {
 
 /// Reads a whole preset that may use the effects of `catalog`; `file` is what errors and warnings call it.
 pub fn read(document: &Document<String>, file: &str, catalog: &Catalog) -> Result<ReadPreset, PresetError> {
-    let mut reader = Reader { file, text: Some(document.raw()), catalog: catalog.clone(), warnings: Vec::new() };
+    let mut reader = Reader::new(file, Some(document.raw()), catalog.clone());
     let (root, mut preset) = (document.as_table(), Preset::default());
     for section in SECTIONS {
         let table = if section.name.is_empty() { Some(root as &dyn TableLike) } else { reader.table(root, "", section.name)? };
@@ -61,7 +61,8 @@ pub fn read(document: &Document<String>, file: &str, catalog: &Catalog) -> Resul
             .map_err(|reason| reader.error(root, "", "stack", reason))?;
     }
     preset.check_budget().map_err(|[key, reason]| PresetError::value(reader.position(root, "test"), key, reason))?;
-    Ok(ReadPreset { preset, warnings: reader.warnings, brought_effects, catalog: reader.catalog })
+    let catalog = reader.catalog.clone();
+    Ok(ReadPreset { preset, warnings: reader.all_warnings(), brought_effects, catalog })
 }
 
 /// Reads every setting of one section; at the top of the file, tables are left out.

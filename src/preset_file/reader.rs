@@ -15,6 +15,9 @@ use crate::{
 /// In an effect's table: the effect that it is an instance of.
 pub const INSTANCE_KEY: &str = "effect";
 
+/// Most warnings about a file that are built; each looks for its line and for a similar name.
+const MAX_WARNINGS: usize = 32;
+
 /// What every part of the reader shares.
 pub struct Reader<'a> {
     /// What errors call the file.
@@ -24,9 +27,30 @@ pub struct Reader<'a> {
     /// The effects that may be named.
     pub catalog: Catalog,
     pub warnings: Vec<String>,
+    /// Warnings beyond the first [`MAX_WARNINGS`].
+    unnamed: usize,
 }
 
-impl Reader<'_> {
+impl<'a> Reader<'a> {
+    pub fn new(file: &'a str, text: Option<&'a str>, catalog: Catalog) -> Self {
+        Self { file, text, catalog, warnings: Vec::new(), unnamed: 0 }
+    }
+
+    /// Adds a warning while there is room for it.
+    pub fn warn(&mut self, warning: impl FnOnce(&Self) -> String) {
+        if self.warnings.len() < MAX_WARNINGS {
+            self.warnings.push(warning(self));
+        } else {
+            self.unnamed += 1;
+        }
+    }
+
+    /// The warnings, and how many more there would be.
+    pub fn all_warnings(self) -> Vec<String> {
+        let more = (self.unnamed > 0).then(|| format!("{}: {} more warnings of this kind", self.file, self.unnamed));
+        self.warnings.into_iter().chain(more).collect()
+    }
+
     /// Where the key `name` stands, or the table itself when it has no such key.
     pub fn position(&self, table: &dyn TableLike, name: &str) -> Position {
         match self.text {
@@ -73,14 +97,25 @@ impl Reader<'_> {
 
     /// Warns of an effect that is not in the catalog.
     pub fn unknown_effect(&mut self, table: &dyn TableLike, prefix: &str, name: &str) {
-        let hint = did_you_mean(name, self.catalog.names());
-        self.warnings.push(format!("{}: unknown key {prefix}{name}{hint}", self.position(table, name)));
+        self.warn(|reader| unknown(reader, table, prefix, name, reader.catalog.names()));
     }
 
     /// Warns of a key that is not one of `known`.
     pub fn unknown<'k>(&mut self, table: &dyn TableLike, prefix: &str, name: &str, known: impl Iterator<Item = &'k str>) {
-        let hint = did_you_mean(name, known);
-        self.warnings.push(format!("{}: unknown key {prefix}{name}{hint}", self.position(table, name)));
+        self.warn(|reader| unknown(reader, table, prefix, name, known));
+    }
+}
+
+fn unknown<'k>(reader: &Reader<'_>, table: &dyn TableLike, prefix: &str, name: &str, known: impl Iterator<Item = &'k str>) -> String {
+    let (at, hint) = (reader.position(table, name), did_you_mean(name, known));
+    format!("{at}: unknown key {prefix}{}{hint}", shortened(name))
+}
+
+/// A name from a file, at most 60 characters of it.
+fn shortened(name: &str) -> String {
+    match name.char_indices().nth(60) {
+        Some((at, _)) => format!("{}…", &name[..at]),
+        None => name.to_owned(),
     }
 }
 

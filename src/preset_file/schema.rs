@@ -9,7 +9,7 @@ use crate::{
     preset::{
         Preset,
         animation::MAX_KEYFRAMES,
-        settings::{SECTIONS, Section, TOP},
+        settings::{SECTIONS, Section, Setting, TOP},
     },
     scene::parts::{MAX_NAME_CHARS, MAX_PATTERNS},
 };
@@ -55,7 +55,23 @@ pub fn text() -> String {
 
 fn section_schema(section: &Section) -> Map<String, Json> {
     let defaults = Preset::default();
-    section.settings.iter().map(|setting| (setting.name.to_owned(), param_schema(setting, setting.get(&defaults)))).collect()
+    let schema = |setting: &Setting| {
+        let mut schema = param_schema(setting, setting.get(&defaults));
+        if let Some(refused) = refused(&setting.path()) {
+            schema["not"] = refused;
+        }
+        (setting.name.to_owned(), schema)
+    };
+    section.settings.iter().map(schema).collect()
+}
+
+/// What the rule of a setting refuses, where a schema can say it.
+fn refused(path: &str) -> Option<Json> {
+    match path {
+        "scene.room" => Some(json!({ "exclusiveMinimum": 0, "exclusiveMaximum": 1 })),
+        "scene.path" => Some(json!({ "pattern": "://" })),
+        _ => None,
+    }
 }
 
 fn effect_schema(effect: &Effect) -> Json {

@@ -67,6 +67,15 @@ pub enum DrawError {
     Matrix { instance: String, value: f64 },
     #[error("the scene has {count} {what}; a picture may have at most {limit}")]
     TooMany { what: &'static str, count: u64, limit: u64 },
+    #[error(
+        "the picture would take about {needed_gib:.1} GiB of memory, and the oracle may take {limit_gib}; draw it smaller or with fewer \
+         triangles, or set {variable}"
+    )]
+    OracleMemory { needed_gib: f64, limit_gib: f64, variable: &'static str },
+    #[error(
+        "the oracle would compute {positions} positions of vertices and morph targets, and may compute {limit}; place the model less often"
+    )]
+    OracleWork { positions: u64, limit: u64 },
 }
 
 /// The point of a box nearest to `eye`, in f32; the origin if the box is empty or too large.

@@ -180,6 +180,8 @@ pub struct Scene {
     pub particle_discs: Option<usize>,
     /// Messages of the loader for the user, for instance about extensions that it ignores.
     pub notes: Vec<String>,
+    /// Those of the messages that say how the file breaks its standard.
+    pub faults: Vec<String>,
 }
 
 impl Scene {

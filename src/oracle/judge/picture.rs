@@ -11,6 +11,7 @@ use super::{
             coverage::{BoundedCoverage, cover_claims},
             layers::{LayerBounds, layer_bounds},
         },
+        budget::{self, Purpose},
         render::{
             dots::dot_strengths,
             draw_order::limited,
@@ -61,6 +62,7 @@ pub fn judge(scene: &Scene, view: &View, stack: &Stack, picture: &AdapterPicture
     let scene = &*scene_with_particles(scene, view, stack, words);
     let draws = stack.draws(scene, view)?;
     let shot = Shot::new(scene, &draws, view, stack);
+    budget::check(&shot, Purpose::Judge)?;
     let own = own_geometry(&shot, geometry.bit_exact);
     check_sizes(&shot, picture, &own);
 

@@ -1,7 +1,10 @@
 //! Whole pictures: from a scene to a frame.
 
 use super::{
-    super::shot::Shot,
+    super::{
+        budget::{self, Purpose},
+        shot::Shot,
+    },
     coverage::cover_with,
     dots::{dot_records, dot_strengths},
     draw_order::limited,
@@ -24,7 +27,7 @@ use crate::{
 /// The exact picture of `scene`, the first of its sequence; empty if `view` has no pixels.
 ///
 /// # Errors
-/// [`DrawError`] if a transform or the number of triangles is out of range.
+/// [`DrawError`] if a transform or the number of triangles is out of range, or the picture takes more memory or work than it may.
 pub fn render(scene: &Scene, view: &View, stack: &Stack) -> Result<Frame, DrawError> {
     render_next(scene, view, stack, None)
 }
@@ -41,6 +44,7 @@ pub fn render_next(scene: &Scene, view: &View, stack: &Stack, previous: Option<&
     let scene = &*scene_with_particles(scene, view, stack, None);
     let draws = stack.draws(scene, view)?;
     let shot = Shot::new(scene, &draws, view, stack);
+    budget::check(&shot, Purpose::Draw)?;
     let mut geometry = project(&shot);
     geometry.sample_setups = sample_setups(&shot, &geometry);
     geometry.dots = dot_records(&shot)?;
@@ -48,20 +52,20 @@ pub fn render_next(scene: &Scene, view: &View, stack: &Stack, previous: Option<&
     let (triangles, counters) = triangles(&shot, &geometry);
     let tests = limited(SampleTests::new(&shot, &geometry), stack, &triangles, view);
     let coverage = cover_with(&tests, &triangles, view);
-    let (triangle_ids, keys) = (&coverage.triangle_ids(), &coverage.depth_keys());
-    let dots = dot_strengths(view, stack, &geometry.dots, keys);
-    let input = ResolveInput { triangle_ids, depth_keys: keys, dots: &dots, previous };
-    let layer_input = LayerInput { shot, geometry: &geometry, tests: &tests, triangles: &triangles, triangle_ids, depth_keys: keys };
+    let (triangle_id, depth_key) = (coverage.triangle_ids(), coverage.depth_keys());
+    let (triangle_ids, depth_keys) = (&*triangle_id, &*depth_key);
+    let dots = dot_strengths(view, stack, &geometry.dots, depth_keys);
+    let input = ResolveInput { triangle_ids, depth_keys, dots: &dots, previous };
+    let layer_input = LayerInput { shot, geometry: &geometry, tests: &tests, triangles: &triangles, triangle_ids, depth_keys };
     let (color, counted) = match layer_image(&layer_input, || coverage.layers()) {
         Some(image) => (finish(&shot, &input, &image.colors, 0.0), image.counted),
         None => (shade(&shot, &input, &geometry), Vec::new()),
     };
-    let (triangle_id, key) = (coverage.triangle_ids(), coverage.depth_keys());
     Ok(Frame {
         width: view.width,
         height: view.height,
         triangle_id,
-        depth_key: key,
+        depth_key,
         color,
         layer_sums: counted,
         dots,

@@ -3,7 +3,10 @@
 use rayon::prelude::*;
 
 use super::{super::shot::Shot, clip, deform, snap::snap, vertex::VertexEvaluator};
-use crate::frame::{Geometry, SnappedVertex};
+use crate::{
+    frame::{Geometry, SnappedVertex},
+    scene::draw::totals,
+};
 
 /// Everything between the stored scene and integer coverage: one record per vertex of each draw, or three per triangle if the
 /// stack unshares vertices, and the clipped triangles of every triangle that the near plane or the guard band cuts, including
@@ -18,8 +21,12 @@ pub fn project(shot: &Shot) -> Geometry {
         };
         evaluator.corners().into_par_iter().map(record).collect::<Vec<_>>()
     };
+    // One list of the right size: growing it would need twice the memory.
+    let [shared, triangles] = totals(scene, draws);
+    let mut vertices = Vec::with_capacity(if stack.unshares_vertices() { 3 * triangles } else { shared } as usize);
+    evaluators.iter().for_each(|evaluator| vertices.extend(records(evaluator)));
     let mut geometry = Geometry {
-        vertices: evaluators.iter().flat_map(records).collect(),
+        vertices,
         has_unshared_vertices: stack.unshares_vertices(),
         deformed: draws.iter().flat_map(|draw| deform::vertices(scene, draw)).collect(),
         particle_discs: scene.particle_disc_ids(),

@@ -13,6 +13,7 @@ use super::{
     error::{LoadError, called},
     limits,
     nodes::{LENGTH_TOLERANCE, MIN_QUATERNION_LENGTH, Tree, node_name},
+    notes::Notes,
 };
 use crate::scene::{
     accessor::{Accessor, ComponentType},
@@ -20,7 +21,7 @@ use crate::scene::{
 };
 
 /// Reads every animation into `rig`, whose nodes must be complete. `notes` receives messages about repairs.
-pub fn read(buffers: &Buffers, tree: &Tree, rig: &mut Rig, notes: &mut Vec<String>) -> Result<(), LoadError> {
+pub fn read(buffers: &Buffers, tree: &Tree, rig: &mut Rig, notes: &mut Notes) -> Result<(), LoadError> {
     let root = buffers.root;
     let channels: usize = root.animations.iter().map(|animation| animation.channels.len()).sum();
     if channels > limits::CHANNELS {
@@ -47,7 +48,7 @@ pub fn read(buffers: &Buffers, tree: &Tree, rig: &mut Rig, notes: &mut Vec<Strin
         reader.rig.clips.push(clip);
     }
     if reader.not_normalized > 0 {
-        notes.push(format!("{} rotation keyframes are not unit quaternions; they are normalized", reader.not_normalized));
+        notes.add(|| format!("{} rotation keyframes are not unit quaternions; they are normalized", reader.not_normalized));
     }
     Ok(())
 }

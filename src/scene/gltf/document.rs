@@ -6,10 +6,13 @@ use serde::Deserialize;
 use super::{
     error::{LoadError, called, quoted},
     limits,
+    repair::{WEBP, repair},
 };
 
 /// Parses and validates the JSON with the crate `gltf`: all indices are in range and all enumerations known.
-pub fn parse_document(json: &[u8]) -> Result<json::Root, LoadError> {
+///
+/// `notes` receives messages about what had to be left out.
+pub fn parse_document(json: &[u8], notes: &mut Vec<String>) -> Result<json::Root, LoadError> {
     if json.len() as u64 > limits::JSON_BYTES {
         return Err(LoadError::new(format!("the JSON has {} bytes; allowed: at most {}", json.len(), limits::JSON_BYTES)));
     }
@@ -17,19 +20,39 @@ pub fn parse_document(json: &[u8]) -> Result<json::Root, LoadError> {
     if objects > limits::JSON_OBJECTS {
         return Err(LoadError::new(format!("the JSON has {objects} objects; allowed: at most {}", limits::JSON_OBJECTS)));
     }
+    let values = json.iter().filter(|&&byte| byte == b',').count();
+    if values > limits::JSON_VALUES {
+        return Err(LoadError::new(format!("the JSON has {values} values; allowed: at most {}", limits::JSON_VALUES)));
+    }
     check_head(json)?;
     let malformed = |error: serde_json::Error| LoadError::new(format!("malformed glTF: {error}"));
-    let stripped = without_custom_attributes(json).map_err(malformed)?;
-    let mut root = json::Root::from_slice(stripped.as_deref().unwrap_or(json)).map_err(malformed)?;
-    // This loader supports it; the crate refuses extensions that it does not support itself.
-    root.extensions_required.retain(|name| name != QUANTIZATION);
+    let has_custom = json.windows(2).any(|pair| pair == b"\"_");
+    let has_sources = |root: &json::Root| root.textures.iter().all(|texture| texture.source.value() != NO_SOURCE);
+    let read = if has_custom { None } else { json::Root::from_slice(json).ok().filter(has_sources) };
+    let mut root = match read {
+        Some(root) => root,
+        // The crate refuses some of what the standard allows.
+        None => {
+            let mut root: serde_json::Value = serde_json::from_slice(json).map_err(malformed)?;
+            repair(&mut root, notes);
+            serde_json::from_value(root).map_err(malformed)?
+        }
+    };
+    // This loader supports them; the crate refuses extensions that it does not support itself.
+    root.extensions_required.retain(|name| !READ_HERE.contains(&name.as_str()));
     check_positions(&root)?;
     let document = gltf::Document::from_json(root).map_err(|error| LoadError::new(format!("malformed glTF: {}", first_fault(error))))?;
     Ok(document.into_json())
 }
 
+/// What the crate reads where a texture names no image.
+const NO_SOURCE: usize = u32::MAX as usize;
+
 /// Extension that allows small integers as attributes. Every attribute is read by its component type anyway.
 pub const QUANTIZATION: &str = "KHR_mesh_quantization";
+
+/// Extensions that this loader reads and the crate `gltf` does not know.
+pub const READ_HERE: [&str; 2] = [QUANTIZATION, WEBP];
 
 /// Checks the version and the required extensions first, for clearer errors than those of the full parser.
 fn check_head(json: &[u8]) -> Result<(), LoadError> {
@@ -48,7 +71,7 @@ fn check_head(json: &[u8]) -> Result<(), LoadError> {
     if version != "2" && !version.starts_with("2.") {
         return Err(LoadError::new(format!("glTF version {} is not supported; export as version 2.0", quoted(&version))));
     }
-    let is_read = |name: &str| name == QUANTIZATION || json::extensions::ENABLED_EXTENSIONS.contains(&name);
+    let is_read = |name: &str| READ_HERE.contains(&name) || json::extensions::ENABLED_EXTENSIONS.contains(&name);
     match head.extensions_required.iter().find(|name| !is_read(name)) {
         Some(name) => Err(LoadError::new(format!("it requires the extension {}, which is not supported{}", quoted(name), remedy(name)))),
         None => Ok(()),
@@ -74,20 +97,6 @@ fn remedy(extension: &str) -> &'static str {
         "KHR_draco_mesh_compression" | "EXT_meshopt_compression" | "KHR_meshopt_compression" => "; export the model without compression",
         _ => "",
     }
-}
-
-/// Removes application-specific attributes (`_TEMPERATURE`): glTF 2.0 allows them, but the crate `gltf` refuses them.
-fn without_custom_attributes(json: &[u8]) -> Result<Option<Vec<u8>>, serde_json::Error> {
-    if !json.windows(2).any(|pair| pair == b"\"_") {
-        return Ok(None);
-    }
-    let mut root: serde_json::Value = serde_json::from_slice(json)?;
-    let meshes = root.get_mut("meshes").and_then(|meshes| meshes.as_array_mut()).into_iter().flatten();
-    let primitives = meshes.filter_map(|mesh| mesh.get_mut("primitives")?.as_array_mut()).flatten();
-    for attributes in primitives.filter_map(|primitive| primitive.get_mut("attributes")?.as_object_mut()) {
-        attributes.retain(|name, _| !name.starts_with('_'));
-    }
-    serde_json::to_vec(&root).map(Some)
 }
 
 /// The first validation error as one sentence.

@@ -9,6 +9,8 @@ pub const TOTAL_BYTES: u64 = 512 * MIB;
 pub const JSON_BYTES: u64 = 64 * MIB;
 /// JSON objects; each may need hundreds of bytes once parsed.
 pub const JSON_OBJECTS: usize = 1_000_000;
+/// Commas of the JSON, which separate its values; each value may need 64 bytes once parsed.
+pub const JSON_VALUES: usize = 10_000_000;
 /// Size of the largest storage binding that every adapter supports.
 pub const BINDING_BYTES: u64 = 128 * MIB;
 /// Vertices of all primitives, each counted once however often it is instanced.

@@ -16,6 +16,7 @@ use super::{
     limits, materials,
     meshes::Loader,
     nodes::Tree,
+    notes::Notes,
     skin,
 };
 use crate::scene::{model::Scene, pose, rig::Rig};
@@ -112,11 +113,13 @@ fn split(bytes: &[u8]) -> Result<(&[u8], Option<&[u8]>), LoadError> {
 /// Reads a whole model.
 fn read_model(bytes: &[u8], read: &mut ReadFile) -> Result<Scene, LoadError> {
     let (json, binary) = split(bytes)?;
-    let root = document::parse_document(json)?;
+    let mut left_out = Vec::new();
+    let root = document::parse_document(json, &mut left_out)?;
     let mut buffers = Buffers::read(&root, binary, read)?;
     materials::check_images(&buffers)?;
     let tree = Tree::walk(&root)?;
-    let (mut rig, mut repairs) = (Rig::default(), Vec::from_iter(tree.rotation_note(&root)));
+    let (mut rig, mut repairs) = (Rig::default(), Notes::default());
+    repairs.extend(left_out.into_iter().chain(tree.fault.clone()).chain(tree.rotation_note(&root)));
     let (materials, images) = materials::read(&mut buffers, &tree.shown, read, &mut repairs)?;
     if deformation::has_motion(&root) {
         rig.nodes = tree.rig_nodes(&root)?;
@@ -134,26 +137,26 @@ fn read_model(bytes: &[u8], read: &mut ReadFile) -> Result<Scene, LoadError> {
     if !scene.rig.is_empty() {
         scene.rig.motion_bounds = pose::motion_bounds(&scene);
     }
-    scene.notes = notes.into_iter().chain(repairs).chain(omissions(&root)).collect();
+    let mut all = Notes::default();
+    all.extend(notes.into_iter().chain(repairs.into_vec()).chain(omissions(&root)));
     if scene.instances.is_empty() {
-        scene.notes.push("nothing to draw: the scene shows no triangles".into());
+        all.add(|| "nothing to draw: the scene shows no triangles");
     }
-    scene.cameras = tree.cameras(&root, &scene.bounds(), !scene.rig.is_empty(), &mut scene.notes);
-    scene.notes.truncate(limits::NOTES);
+    scene.cameras = tree.cameras(&root, &scene.bounds(), !scene.rig.is_empty(), &mut all);
+    scene.notes = all.into_vec();
+    scene.faults.extend(tree.fault);
     Ok(scene)
 }
 
-/// Messages about features of the file that are not drawn.
-fn omissions(root: &json::Root) -> Vec<String> {
-    let is_read = |name: &str| name == document::QUANTIZATION || materials::EXTENSIONS.contains(&name);
-    let ignored = root.extensions_used.iter().filter(|name| !is_read(name));
-    let mut notes: Vec<String> = ignored.map(|name| format!("the extension {} is not supported and is ignored", quoted(name))).collect();
+/// Messages about features of the file that are not drawn; each is built when it is asked for.
+fn omissions(root: &json::Root) -> impl Iterator<Item = String> {
+    let is_read = |name: &str| document::READ_HERE.contains(&name) || materials::EXTENSIONS.contains(&name);
+    let ignored = root.extensions_used.iter().filter(move |name| !is_read(name));
+    let notes = ignored.map(|name| format!("the extension {} is not supported and is ignored", quoted(name)));
     let has_more = |material: &json::Material| {
         let roughness = material.pbr_metallic_roughness.metallic_roughness_texture.is_some();
         roughness || material.normal_texture.is_some() || material.occlusion_texture.is_some()
     };
-    if root.materials.iter().any(has_more) {
-        notes.push("normal, occlusion and metallic-roughness textures are not drawn".into());
-    }
-    notes
+    let textures = root.materials.iter().any(has_more).then(|| "normal, occlusion and metallic-roughness textures are not drawn".into());
+    notes.chain(textures)
 }

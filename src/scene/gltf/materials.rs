@@ -19,7 +19,9 @@ use image::{DynamicImage, ImageDecoder, ImageFormat, ImageReader, Limits};
 use super::{
     buffers::Buffers,
     error::{LoadError, ReadFile, called, part_name, quoted},
-    limits, uri,
+    limits,
+    notes::Notes,
+    uri,
 };
 use crate::scene::{
     material::Material,
@@ -37,7 +39,7 @@ pub fn read(
     buffers: &mut Buffers,
     shown: &[usize],
     read: &mut ReadFile,
-    notes: &mut Vec<String>,
+    notes: &mut Notes,
 ) -> Result<(Vec<Material>, Vec<Image>), LoadError> {
     let root = buffers.root;
     let used = used(root, shown);
@@ -97,7 +99,7 @@ struct Reader<'a, 'b, 'c> {
     known: HashMap<usize, usize>,
     /// Decoded size of all images so far.
     bytes: u64,
-    notes: &'a mut Vec<String>,
+    notes: &'a mut Notes,
 }
 
 impl Reader<'_, '_, '_> {
@@ -138,7 +140,7 @@ impl Reader<'_, '_, '_> {
                 let texels = opaque.base_texture.map(|texture| &self.images[texture.image].levels[0].texels);
                 let has_holes = texels.is_some_and(|texels| texels.iter().any(|texel| texel[3] < 128));
                 let instead = if has_holes { "masked where its alpha is below one half" } else { "opaque" };
-                self.notes.push(format!("material {name}: blending is not supported; the material is {instead}"));
+                self.notes.add(|| format!("material {name}: blending is not supported; the material is {instead}"));
                 Ok(Material { alpha_cutoff: has_holes.then_some(0.5), ..opaque })
             }
             _ => Ok(plain),
@@ -208,10 +210,11 @@ impl Reader<'_, '_, '_> {
         let format = match &bytes[..] {
             [0x89, b'P', b'N', b'G', ..] => ImageFormat::Png,
             [0xff, 0xd8, 0xff, ..] => ImageFormat::Jpeg,
-            _ => return Err(LoadError::new("it is neither PNG nor JPEG; convert it to one of them")),
+            [b'R', b'I', b'F', b'F', _, _, _, _, b'W', b'E', b'B', b'P', ..] => ImageFormat::WebP,
+            _ => return Err(LoadError::new("it is neither PNG, JPEG nor WebP; convert it to one of them")),
         };
         if let Some(kind) = about.mime_type.as_ref().map(|kind| kind.0.as_str()).filter(|kind| *kind != format.to_mime_type()) {
-            self.notes.push(format!("{name} is {}, although the file declares {}", format.to_mime_type(), quoted(kind)));
+            self.notes.add(|| format!("{name} is {}, although the file declares {}", format.to_mime_type(), quoted(kind)));
         }
         let (size, texels) = decode(&bytes, format, limits::IMAGES_BYTES - self.bytes)?;
         self.bytes += 4 * texels.len() as u64;

@@ -76,13 +76,20 @@ impl<'a> Loader<'a> {
             if let Some(skin) = skin {
                 let follow = deformation::follow_skin(&mut self.writer, primitive, self.sources[primitive], &rig.skins[skin]);
                 let notes = follow.map_err(|error| error.within(&self.writer.scene.primitives[primitive].name))?;
-                self.notes.extend(notes);
+                notes.into_iter().for_each(|note| self.note(|| note));
             }
             let world_from_object = if skin.is_some() { DMat4::IDENTITY } else { self.tree.world_from_node[node] };
             let named_node = Some(self.tree.rig_index[node]);
             self.writer.scene.instances.push(Instance { primitive, world_from_object, node: rig_node, skin, named_node });
         }
         Ok(())
+    }
+
+    /// Adds a message while there is room for it.
+    fn note(&mut self, message: impl FnOnce() -> String) {
+        if self.notes.len() < limits::NOTES {
+            self.notes.insert(message());
+        }
     }
 
     /// The primitives of a mesh, which is read on its first use.
@@ -98,13 +105,13 @@ impl<'a> Loader<'a> {
                 Checked::Valid(Mode::TriangleStrip) => Topology::Strip,
                 Checked::Valid(Mode::TriangleFan) => Topology::Fan,
                 _ => {
-                    self.notes.insert(format!("{name} is skipped: points and lines are not drawn"));
+                    self.note(|| format!("{name} is skipped: points and lines are not drawn"));
                     continue;
                 }
             };
             let material = primitive.material.map(|material| &self.root.materials[material.value()]);
             if material.is_some_and(materials::is_invisible) {
-                self.notes.insert(format!("{name} is skipped: the alpha of its material is below the cutoff everywhere"));
+                self.note(|| format!("{name} is skipped: the alpha of its material is below the cutoff everywhere"));
                 continue;
             }
             let part = part_name("mesh", mesh, self.root.meshes[mesh].name.as_deref());
@@ -167,7 +174,7 @@ impl<'a> Loader<'a> {
         if let Some(colors) = &primitive.colors {
             check_finite(&self.writer.scene, colors).map_err(at("COLOR_0"))?;
             if colors.components == 4 && self.writer.scene.materials[material].alpha_cutoff.is_some() {
-                self.notes.insert(format!("{name}: alpha masking uses the alpha of the image, not that of the vertex colors"));
+                self.note(|| format!("{name}: alpha masking uses the alpha of the image, not that of the vertex colors"));
             }
         }
         self.writer.scene.primitives.push(primitive);

@@ -19,6 +19,8 @@ mod load;
 mod materials;
 mod meshes;
 mod nodes;
+mod notes;
+mod repair;
 mod skin;
 mod uri;
 

@@ -6,6 +6,7 @@ use gltf::json::{self, camera::Type, validation::Checked};
 use super::{
     error::{LoadError, called, part_name},
     limits,
+    notes::Notes,
 };
 use crate::scene::{
     bounds::Bounds,
@@ -25,6 +26,8 @@ pub struct Tree {
     order: Vec<usize>,
     /// Position of every node in `order`, which is its index in the rig.
     pub rig_index: Vec<usize>,
+    /// What breaks the standard, though every viewer draws it.
+    pub fault: Option<String>,
 }
 
 impl Tree {
@@ -52,21 +55,31 @@ impl Tree {
         let scene = root.scene.map(|scene| scene.value()).or((!root.scenes.is_empty()).then_some(0));
         let mut rig_index = vec![0; all.len()];
         all.iter().enumerate().for_each(|(in_node, &node)| rig_index[node] = in_node);
-        let Some(scene) = scene else { return Ok(Self { world_from_node, shown: all.clone(), order: all, rig_index }) };
+        let Some(scene) = scene else { return Ok(Self { world_from_node, shown: all.clone(), order: all, rig_index, fault: None }) };
         let tops: Vec<usize> = root.scenes[scene].nodes.iter().map(|node| node.value()).collect();
         let mut listed = tops.clone();
         listed.sort_unstable();
-        if let Some(&node) = tops.iter().find(|&&node| parents[node].is_some()) {
-            return Err(LoadError::new(format!("{} has a parent; a scene lists root nodes only", node_name(root, node)))
-                .within(format!("scene {scene}")));
-        }
         if let Some(pair) = listed.windows(2).find(|pair| pair[0] == pair[1]) {
             return Err(
                 LoadError::new(format!("{} is listed twice; remove one entry", node_name(root, pair[0]))).within(format!("scene {scene}"))
             );
         }
-        let shown = visit(root, &tops, |_| Ok(()))?;
-        Ok(Self { world_from_node, shown, order: all, rig_index })
+        // A node below another of the list is drawn once, with that one.
+        let is_below = |node: usize| {
+            std::iter::successors(parents[node], |&parent| parents[parent]).any(|parent| listed.binary_search(&parent).is_ok())
+        };
+        let highest: Vec<usize> = tops.iter().copied().filter(|&node| !is_below(node)).collect();
+        let children: Vec<usize> = tops.into_iter().filter(|&node| parents[node].is_some()).collect();
+        let fault = children.first().map(|&first| {
+            let more =
+                if children.len() > 1 { format!(" and {} more nodes have parents", children.len() - 1) } else { " has a parent".into() };
+            format!(
+                "scene {scene} must list root nodes only, but {}{more}; each is drawn once, where its parent places it",
+                node_name(root, first)
+            )
+        });
+        let shown = visit(root, &highest, |_| Ok(()))?;
+        Ok(Self { world_from_node, shown, order: all, rig_index, fault })
     }
 
     /// The nodes of the rig.
@@ -112,7 +125,7 @@ impl Tree {
 
     /// The cameras of the shown nodes. Their targets are as far away as the center of `bounds`. With `moves` they follow their
     /// nodes.
-    pub fn cameras(&self, root: &json::Root, bounds: &Bounds, moves: bool, notes: &mut Vec<String>) -> Vec<SceneCamera> {
+    pub fn cameras(&self, root: &json::Root, bounds: &Bounds, moves: bool, notes: &mut Notes) -> Vec<SceneCamera> {
         let mut cameras = Vec::new();
         for &node in &self.shown {
             let Some(index) = root.nodes[node].camera else { continue };
@@ -122,7 +135,7 @@ impl Tree {
                 Ok(pose) => {
                     cameras.push(SceneCamera { name: shown(&name, cameras.len()), pose, node: moves.then(|| self.rig_index[node]) })
                 }
-                Err(reason) => notes.push(format!("{} is skipped: {reason}", called("camera", index.value(), Some(&name)))),
+                Err(reason) => notes.add(|| format!("{} is skipped: {reason}", called("camera", index.value(), Some(&name)))),
             }
         }
         cameras

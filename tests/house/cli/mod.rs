@@ -2,6 +2,7 @@
 
 mod effects;
 mod files_kept;
+mod limits;
 mod parts;
 mod sequences;
 
@@ -130,6 +131,45 @@ fn usage_errors_exit_with_2_and_leave_stdout_empty() {
         assert_eq!((run.code, run.out.as_str()), (2, ""), "{args:?}\n{}", run.err);
         assert!(run.err.contains("error: "), "{args:?} says nothing: {}", run.err);
     }
+}
+
+#[test]
+fn a_folder_of_presets_that_is_not_there_is_named() {
+    for args in [&["list", "presets"][..], &["check", "facet"], &["render", "facet", "--adapter", "cpu"]] {
+        let run = run(&[args, &["--presets", "absent"]].concat());
+        assert_eq!(run.code, 2, "{args:?}");
+        assert!(run.err.contains("there is no folder absent"), "{}", run.err);
+    }
+}
+
+#[test]
+fn what_no_adapter_could_draw_is_wrong_usage_from_check_on() {
+    for (preset, set) in [
+        ("facet", &["accuracy.tier=strict", "wobble"][..]),
+        ("facet", &["accuracy.coverage=float", "accuracy.depth=integer"]),
+        ("walk-dissolve", &["accuracy.position_format=packed10"]),
+    ] {
+        let sets: Vec<&str> = set.iter().flat_map(|set| ["--set", set]).collect();
+        let check = run(&[&["check", preset], &sets[..]].concat());
+        assert_eq!(check.code, 2, "{set:?}: {}", check.out);
+        assert!(check.out.contains("FAIL"), "{}", check.out);
+    }
+    assert_eq!(run(&["check"]).code, 0, "every preset of the gallery has a kernel");
+}
+
+#[test]
+fn a_model_that_breaks_its_standard_loads_and_strictness_refuses_it() {
+    let folder = tempfile::tempdir().unwrap();
+    let model = r#"{"asset":{"version":"2.0"},"scenes":[{"nodes":[0,1]}],"nodes":[{"mesh":0},{"children":[0]}],"meshes":[{"primitives":[{"attributes":{"POSITION":0}}]}],
+        "accessors":[{"bufferView":0,"componentType":5126,"count":3,"type":"VEC3","min":[0,0,0],"max":[1,1,0]}],"bufferViews":[{"buffer":0,"byteLength":36}],
+        "buffers":[{"byteLength":36,"uri":"data:application/octet-stream;base64,AAAAAAAAAAAAAAAAAACAPwAAAAAAAAAAAAAAAAAAgD8AAAAA"}]}"#;
+    fs::write(folder.path().join("m.gltf"), model).unwrap();
+    let render = |extra: &[&str]| run_in(folder.path(), &[&["render", "m.gltf", "--adapter", "cpu", "--size", "8x6"], extra].concat());
+    let drawn = render(&[]);
+    assert_eq!(drawn.code, 0, "{}", drawn.err);
+    assert_eq!(drawn.err.matches("must list root nodes only").count(), 1, "{}", drawn.err);
+    let refused = render(&["--strict", "--force"]);
+    assert!(refused.code == 2 && refused.err.contains("must list root nodes only"), "{}", refused.err);
 }
 
 #[test]

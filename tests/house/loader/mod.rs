@@ -10,3 +10,4 @@ mod materials;
 mod model;
 mod motion;
 mod refused;
+mod tolerated;

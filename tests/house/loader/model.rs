@@ -197,7 +197,7 @@ pub fn encoded(format: ImageFormat) -> Vec<u8> {
     let picture = ImageBuffer::<Rgba<u8>, _>::from_raw(2, 1, vec![255, 0, 0, 255, 0, 200, 0, 100]).expect("eight bytes");
     let mut bytes = std::io::Cursor::new(Vec::new());
     match format {
-        ImageFormat::Png => picture.write_to(&mut bytes, format).expect("it is encoded"),
+        ImageFormat::Png | ImageFormat::WebP => picture.write_to(&mut bytes, format).expect("it is encoded"),
         _ => image::DynamicImage::from(picture).into_rgb8().write_to(&mut bytes, format).expect("it is encoded"),
     }
     bytes.into_inner()

@@ -204,7 +204,7 @@ fn set_animates_and_a_value_set_by_hand_holds_still() {
     assert_eq!(parse(&preset_file::to_toml(&preset_file)).preset, preset_file.preset);
     for (path, value, wanted) in [
         ("animation.facet.amount", "[{ time_s = 0, value = 9 }]", "keyframe 1: value 9 lies outside 0..=1"),
-        ("animation.facet.amount", "[", "--set animation.facet.amount=["),
+        ("animation.facet.amount", "[", "--set: animation.facet.amount"),
         ("animation.facet", "1", "animation.facet takes no value"),
         ("animation.facet.amuont", "[]", "did you mean \"amount\"?"),
         ("animation.camera.eye", "[]", "is unknown; only parameters of effects can be animated"),
@@ -226,13 +226,16 @@ fn set_animates_and_a_value_set_by_hand_holds_still() {
 fn set_obeys_the_rules_of_files() {
     let mut preset_file = PresetFile::new("new", Preset::default());
     for (path, value, wanted) in [
-        ("facet.amount", "2", "--set facet.amount=2: facet.amount 2 lies outside 0..=1"),
+        ("facet.amount", "2", "--set: facet.amount 2 lies outside 0..=1"),
         ("facet.amount", "inf", "facet.amount inf is not a finite number"),
         ("facet.amuont", "1", "facet.amuont is unknown; did you mean \"amount\"?"),
         ("fascet.amount", "1", "did you mean \"facet.amount\"?"),
         ("output.size", "[1]", "output.size must be a list of 2 numbers"),
         ("facet", "1", "facet takes no value"),
         ("stack", "[\"facet\"]", "stack names facet, which is not enabled"),
+        ("facet.amount", "", "--set: facet.amount needs a value, as in --set facet.amount=VALUE"),
+        ("camera.eye", "", "--set: camera.eye needs a value"),
+        ("stack", "", "--set: stack needs a value"),
     ] {
         let error = preset_file::set(&mut preset_file, path, value).unwrap_err().to_string();
         assert!(error.contains(wanted), "{error}");
@@ -265,6 +268,20 @@ fn schema_json_is_up_to_date() {
         stored == preset_file::schema::text(),
         "presets/schema.json is stale; UPDATE_SNAPSHOTS=1 cargo test --release --test house writes it"
     );
+}
+
+#[test]
+fn the_schema_refuses_a_room_that_the_loader_refuses() {
+    let schema: serde_json::Value = serde_json::from_str(&preset_file::schema::text()).unwrap();
+    let room = &schema["properties"]["scene"]["properties"]["room"];
+    let number = |value: &serde_json::Value| value.as_f64().unwrap();
+    for value in [0.0, 0.1, 0.999, 1.0, 50.0, 100.0, 100.5] {
+        let not = &room["not"];
+        let is_between = value > number(&not["exclusiveMinimum"]) && value < number(&not["exclusiveMaximum"]);
+        let allows = value >= number(&room["minimum"]) && value <= number(&room["maximum"]) && !is_between;
+        let loads = preset_file::parse(&format!("schema = 2\n[scene]\nroom = {value:?}\n"), "preset").is_ok();
+        assert_eq!(allows, loads, "{value}");
+    }
 }
 
 #[test]

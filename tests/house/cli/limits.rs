@@ -1,0 +1,74 @@
+//! Promise: what would take more memory or work than is allowed is refused in one sentence before anything is allocated.
+
+use std::time::Instant;
+
+use serde_json::json;
+
+use super::*;
+
+/// A model of `nodes` nodes, each with `triangles` copies of one triangle of a mesh of `vertices` vertices and `targets` morph targets.
+fn crowd(nodes: usize, vertices: usize, triangles: usize, targets: usize) -> Vec<u8> {
+    use base64::Engine as _;
+    let corners = [[0.0f32, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]];
+    let positions: Vec<u8> = (0..vertices).flat_map(|vertex| corners[vertex % 3]).flat_map(f32::to_le_bytes).collect();
+    let indices = [0u8, 1, 2].repeat(triangles);
+    let bytes = [&positions[..], &indices[..]].concat();
+    let uri = format!("data:application/octet-stream;base64,{}", base64::engine::general_purpose::STANDARD.encode(&bytes));
+    let accessor = |view: usize, kind: u32, of: &str, count: usize| json!({ "bufferView": view, "componentType": kind, "type": of, "count": count, "min": [0, 0, 0], "max": [1, 1, 0] });
+    let mut index_accessor = accessor(1, 5121, "SCALAR", 3 * triangles);
+    index_accessor.as_object_mut().unwrap().retain(|name, _| !["min", "max"].contains(&name.as_str()));
+    let mut primitive = json!({ "attributes": { "POSITION": 0 }, "indices": 1 });
+    if targets > 0 {
+        primitive["targets"] = vec![json!({ "POSITION": 0 }); targets].into();
+    }
+    json!({
+        "asset": { "version": "2.0" }, "buffers": [{ "byteLength": bytes.len(), "uri": uri }],
+        "bufferViews": [{ "buffer": 0, "byteLength": positions.len() }, { "buffer": 0, "byteOffset": positions.len(), "byteLength": indices.len() }],
+        "accessors": [accessor(0, 5126, "VEC3", vertices), index_accessor], "meshes": [{ "primitives": [primitive] }],
+        "nodes": vec![json!({ "mesh": 0 }); nodes], "scenes": [{ "nodes": (0..nodes).collect::<Vec<_>>() }],
+    })
+    .to_string()
+    .into_bytes()
+}
+
+#[test]
+fn a_picture_that_is_too_large_for_the_oracle_is_refused_in_a_moment() {
+    let folder = tempfile::tempdir().unwrap();
+    fs::write(folder.path().join("crowd.gltf"), crowd(1_000, 3, 100_000, 0)).unwrap();
+    fs::write(folder.path().join("throng.gltf"), crowd(20_000, 3, 100_000, 0)).unwrap();
+    let began = Instant::now();
+    for (args, wanted) in [
+        (&["render", "facet", "--size", "16384x16384"][..], "the picture would take about 14."),
+        (&["render", "xray", "--size", "16384x8192"], "and the oracle may take 4;"),
+        (&["render", "crowd.gltf"], "draw it smaller or with fewer triangles, or set RASTERLAB_ORACLE_GIB"),
+        (&["render", "throng.gltf"], "GiB of memory"),
+    ] {
+        let run = run_in(folder.path(), &[args, &["--adapter", "cpu", "-o", "a.png"]].concat());
+        assert_eq!(run.code, 2, "{args:?}: {}", run.err);
+        assert!(run.err.contains(wanted) && run.err.matches("error: ").count() == 1, "{args:?}: {}", run.err);
+    }
+    assert!(began.elapsed().as_secs() < 40, "{:?}", began.elapsed());
+    assert!(!folder.path().join("a.png").exists());
+}
+
+#[test]
+fn the_budget_of_the_oracle_can_be_changed() {
+    let folder = tempfile::tempdir().unwrap();
+    let render = |gib: &str| {
+        let args = ["render", "facet", "--adapter", "cpu", "--size", "64x48", "--force", "-o", "a.png"];
+        finished(command(folder.path()).args(args).env("RASTERLAB_ORACLE_GIB", gib).stdin(Stdio::null()).output().unwrap())
+    };
+    assert_eq!(render("0.5").code, 0);
+    let refused = render("0.0001");
+    assert!(refused.code == 2 && refused.err.contains("the oracle may take 0.0001;"), "{}", refused.err);
+}
+
+#[test]
+fn morph_targets_times_nodes_are_bounded() {
+    let folder = tempfile::tempdir().unwrap();
+    fs::write(folder.path().join("chorus.gltf"), crowd(10_000, 3_000, 1, 256)).unwrap();
+    let began = Instant::now();
+    let run = run_in(folder.path(), &["render", "chorus.gltf", "--adapter", "cpu", "-o", "a.png"]);
+    assert!(run.code == 2 && run.err.contains("positions of vertices and morph targets, and may compute 4294967296"), "{}", run.err);
+    assert!(began.elapsed().as_secs() < 30, "{:?}", began.elapsed());
+}
