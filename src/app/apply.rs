@@ -154,7 +154,7 @@ fn view(state: &mut State, panels: &mut Panels, command: ViewCommand) {
         ViewCommand::OverlayGain(gain) => state.overlays.gain = gain,
         ViewCommand::CycleCompare => panels.viewport.compare.cycle(),
         ViewCommand::FlipCompare => panels.viewport.compare.flip(),
-        ViewCommand::Pick(parameter) => state.picking = parameter,
+        ViewCommand::Pick(picking) => state.picking = picking,
     }
 }
 

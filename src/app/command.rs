@@ -22,11 +22,31 @@ use crate::{
     params::{Field, Value},
     preset::{ClipPlayback, Clock, animation::Easing, settings::Setting},
     preset_file::PresetFile,
-    scene::camera::Camera,
+    scene::{
+        camera::Camera,
+        parts::{PartKind, Scope},
+    },
 };
 
 /// A parameter of an effect.
 pub type Parameter = (&'static Effect, &'static Field);
+
+/// What a click on the model sets.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Picking {
+    /// A point.
+    Point(Parameter),
+    /// A part of this kind that the effect changes.
+    Part(&'static Effect, PartKind),
+}
+
+impl Picking {
+    pub const fn effect(&self) -> &'static Effect {
+        match self {
+            Self::Point((effect, _)) | Self::Part(effect, _) => effect,
+        }
+    }
+}
 
 /// What a panel, a shortcut or a dropped file asks the window to do.
 pub enum Command {
@@ -78,6 +98,8 @@ pub enum Edit {
     Parameter(Parameter, Value),
     Enable(&'static Effect),
     Disable(&'static Effect),
+    /// Limits an effect to parts of the scene.
+    Scope(&'static Effect, Scope),
     /// Disables the first effect and enables the second.
     Replace(&'static str, &'static Effect),
     /// Uses the second effect in place of the first, with the same values and keyframes.
@@ -213,8 +235,8 @@ pub enum ViewCommand {
     OverlayGain(u8),
     CycleCompare,
     FlipCompare,
-    /// The next click on the model sets this point; none cancels.
-    Pick(Option<Parameter>),
+    /// What the next click on the model sets; none cancels.
+    Pick(Option<Picking>),
 }
 
 /// What can be shown or hidden.

@@ -159,7 +159,7 @@ fn use_effects(state: &mut State, panels: &mut Panels, reload: EffectReload) {
     state.session.rebind(&replaced, &open);
     state.history.change_all(|step| step.preset.rebind(&replaced));
     let is_replaced = |effect: &Effect| replaced.iter().any(|(old, _)| *old == effect);
-    if state.picking.is_some_and(|(effect, _)| is_replaced(effect)) {
+    if state.picking.is_some_and(|picking| is_replaced(picking.effect())) {
         state.picking = None;
     }
     if panels.timeline.selected.is_some_and(|key| is_replaced(key.effect)) {

@@ -4,7 +4,7 @@
 use std::sync::Arc;
 
 use super::{
-    command::Parameter,
+    command::Picking,
     findings::Findings,
     history::History,
     jobs::Jobs,
@@ -58,8 +58,8 @@ pub struct State {
     pub screen: Screen,
     pub verification: Verification,
     pub overlays: OverlaySelection,
-    /// The point parameter that the next click on the model sets.
-    pub picking: Option<Parameter>,
+    /// What the next click on the model sets.
+    pub picking: Option<Picking>,
     pub clipboard: Clipboard,
     pub log: Log,
     pub open: OpenPanels,

@@ -155,6 +155,13 @@ impl Scope {
         self.0.as_deref().unwrap_or_default()
     }
 
+    /// The scope with a pattern, or without it.
+    #[must_use]
+    pub fn with(&self, pattern: &PartPattern, is_inside: bool) -> Self {
+        let others = self.patterns().iter().filter(|other| *other != pattern).cloned();
+        Self::new(others.chain(is_inside.then(|| pattern.clone())))
+    }
+
     /// The patterns of `scene` that match no part of it.
     pub fn unmatched(&self, scene: &Scene) -> Vec<&PartPattern> {
         let is_used = |pattern: &PartPattern| used_names(scene, pattern.kind).any(|name| pattern.matches(name));

@@ -14,8 +14,25 @@ use super::{
 pub fn pick(scene: &Scene, view: &View, screen: DVec2) -> Option<DVec3> {
     let ray = Ray::through(view, screen);
     let draws = draws(scene, view).ok()?;
-    let nearest = draws.iter().filter_map(|draw| ray.nearest(scene, draw)).fold(f64::INFINITY, f64::min);
+    let nearest = draws.iter().filter_map(|draw| ray.nearest(scene, draw, Sides::Both)).fold(f64::INFINITY, f64::min);
     nearest.is_finite().then(|| ray.from + ray.along * nearest)
+}
+
+/// The index of the instance that is seen at `screen` (0 to 1, right and down). `None` if nothing is there or the scene cannot be drawn.
+/// Effects and alpha masks are ignored.
+pub fn pick_instance(scene: &Scene, view: &View, screen: DVec2) -> Option<usize> {
+    let ray = Ray::through(view, screen);
+    let draws = draws(scene, view).ok()?;
+    let hits = draws.iter().enumerate().filter_map(|(index, draw)| Some((index, ray.nearest(scene, draw, Sides::Drawn)?)));
+    hits.min_by(|a, b| a.1.total_cmp(&b.1)).map(|(index, _)| index)
+}
+
+/// Which sides of triangles a ray hits.
+#[derive(Clone, Copy, PartialEq)]
+enum Sides {
+    Both,
+    /// Those that the draw shows.
+    Drawn,
 }
 
 /// Starts at the eye, or in the eye's plane where all rays are parallel.
@@ -34,7 +51,7 @@ impl Ray {
     }
 
     /// Distance along the ray to the nearest triangle of a draw, in lengths of `along`.
-    fn nearest(&self, scene: &Scene, draw: &Draw) -> Option<f64> {
+    fn nearest(&self, scene: &Scene, draw: &Draw, sides: Sides) -> Option<f64> {
         let primitive = &scene.primitives[draw.primitive];
         let corner = |vertex: u32| {
             let position = match &draw.deform {
@@ -43,12 +60,17 @@ impl Ray {
             };
             draw.world_from_object.transform_point3(position)
         };
-        let hit = |triangle: u32| self.meets(primitive.corners(scene, triangle).map(corner));
+        let hit = |triangle: u32| {
+            let (distance, is_front) = self.meets(primitive.corners(scene, triangle).map(corner))?;
+            let is_shown = sides == Sides::Both || draw.double_sided || is_front != draw.mirrored;
+            is_shown.then_some(distance)
+        };
         (0..primitive.triangle_count()).into_par_iter().filter_map(hit).reduce_with(f64::min)
     }
 
-    /// Distance along the ray to a triangle (Möller and Trumbore 1997).
-    fn meets(&self, [a, b, c]: [DVec3; 3]) -> Option<f64> {
+    /// Distance along the ray to a triangle, and whether its corners run counterclockwise as seen from the ray's beginning (Möller and
+    /// Trumbore 1997).
+    fn meets(&self, [a, b, c]: [DVec3; 3]) -> Option<(f64, bool)> {
         let (ab, ac) = (b - a, c - a);
         let across = self.along.cross(ac);
         let determinant = ab.dot(across);
@@ -58,7 +80,7 @@ impl Ray {
         let v = self.along.dot(turned) / determinant;
         let t = ac.dot(turned) / determinant;
         // Comparisons with NaN, which a ray in the triangle's plane produces, are false.
-        (u >= 0.0 && v >= 0.0 && u + v <= 1.0 && t > 0.0 && t.is_finite()).then_some(t)
+        (u >= 0.0 && v >= 0.0 && u + v <= 1.0 && t > 0.0 && t.is_finite()).then_some((t, determinant > 0.0))
     }
 }
 
@@ -81,5 +103,37 @@ mod tests {
         let clip = view.clip_from_world * point.extend(1.0);
         assert!((clip.x / clip.w).abs() < 1e-9 && (clip.y / clip.w).abs() < 1e-9);
         assert_eq!(pick(&scene, &view, DVec2::ZERO), None);
+    }
+
+    /// The rays through the centers of 12 x 12 pixels of a picture of 48 x 48.
+    fn rays() -> impl Iterator<Item = DVec2> {
+        (0..144).map(|i| DVec2::new(f64::from(i % 12) + 0.5, f64::from(i / 12) + 0.5) / 12.0)
+    }
+
+    #[test]
+    fn the_instance_that_is_seen_is_picked_through_the_back_of_a_wall() {
+        let scene = builtin::build("cube-wall?columns=2&rows=1").unwrap().in_room(1.0);
+        // From outside the room, whose walls show their insides alone.
+        let camera = Camera { eye: DVec3::new(0.0, 1.0, 12.0), target: DVec3::ZERO, ..Camera::default() };
+        let view = View::new(&camera, 48, 48, &scene.bounds(), DMat4::IDENTITY, [0.0; 4]);
+        let mut picked = [0; 3];
+        rays().filter_map(|at| pick_instance(&scene, &view, at)).for_each(|index| picked[index] += 1);
+        assert!(picked.iter().all(|&pixels| pixels > 0), "{picked:?}");
+    }
+
+    #[test]
+    fn a_closed_mesh_is_picked_where_it_is_hit_and_so_is_its_mirror_image() {
+        for x in [1.0, -1.0] {
+            let mut scene = builtin::build("sphere?triangles=200").unwrap();
+            scene.instances[0].world_from_object = DMat4::from_scale(DVec3::new(x, 1.0, 1.0));
+            let camera = Camera::framing(&scene.bounds(), DVec3::NEG_Z, 1.0);
+            let view = View::new(&camera, 48, 48, &scene.bounds(), DMat4::IDENTITY, [0.0; 4]);
+            let mut hits = 0;
+            for at in rays() {
+                assert_eq!(pick_instance(&scene, &view, at).is_some(), pick(&scene, &view, at).is_some(), "{at}");
+                hits += usize::from(pick(&scene, &view, at).is_some());
+            }
+            assert!((40..140).contains(&hits), "{hits}");
+        }
     }
 }

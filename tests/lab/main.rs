@@ -12,6 +12,7 @@ mod goldens;
 mod harness;
 mod inspector;
 mod live;
+mod scopes;
 mod sweep;
 mod timeline;
 mod verify;

@@ -2,11 +2,11 @@
 
 use eframe::egui::{self, RichText, Ui};
 
-use super::effect_menu;
+use super::{effect_menu, scope::scope_ui};
 use crate::{
     app::{
         action::Action,
-        command::{Command, Commands, Edit, FileCommand, Parameter, ViewCommand},
+        command::{Command, Commands, Edit, FileCommand, Parameter, Picking, ViewCommand},
         fields::{Row, row_ui},
         icons::{Icon, icon_button},
         log::Level,
@@ -74,7 +74,10 @@ fn enabled_ui(ui: &mut Ui, state: &State, commands: &Commands, effect: &'static 
     frame.show(ui, |ui| {
         ui.set_min_width(ui.available_width());
         header_ui(ui, state, commands, effect, (index, count), is_muted);
-        ui.add_enabled_ui(!is_muted, |ui| parameters_ui(ui, state, commands, effect));
+        ui.add_enabled_ui(!is_muted, |ui| {
+            scope_ui(ui, state, commands, effect);
+            parameters_ui(ui, state, commands, effect);
+        });
     });
     ui.add_space(theme::HALF);
 }
@@ -118,14 +121,15 @@ fn parameters_ui(ui: &mut Ui, state: &State, commands: &Commands, effect: &'stat
 }
 
 /// A button that lets the next click on the model set a point.
-fn pick_ui(ui: &mut Ui, picking: Option<Parameter>, commands: &Commands, (effect, field): Parameter) {
-    let is_picking = picking == Some((effect, field));
+fn pick_ui(ui: &mut Ui, picking: Option<Picking>, commands: &Commands, (effect, field): Parameter) {
+    let pick = Picking::Point((effect, field));
+    let is_picking = picking == Some(pick);
     ui.horizontal(|ui| {
         ui.add_space(theme::GAP);
         let button = ui.selectable_label(is_picking, if is_picking { "Click on the model" } else { "Pick on the model" });
         let button = button.on_hover_text("The next click in the picture sets this point");
         if button.accessible_name(format!("Pick {}.{}", effect.name, field.name)).clicked() {
-            commands.send(Command::View(ViewCommand::Pick((!is_picking).then_some((effect, field)))));
+            commands.send(Command::View(ViewCommand::Pick((!is_picking).then_some(pick))));
         }
     });
 }

@@ -7,6 +7,7 @@ mod overlays;
 mod report;
 pub mod rows;
 mod scene;
+mod scope;
 
 use eframe::egui::{self, Ui};
 

@@ -5,7 +5,7 @@ use eframe::egui::{self, Align2, Color32, FontId, Rect, RichText, Ui, pos2};
 use crate::{
     app::{
         action::Action,
-        command::Commands,
+        command::{Commands, Picking},
         golden_check::Outcome,
         icons::{Icon, icon_button},
         session::FileId,
@@ -80,8 +80,12 @@ fn states(state: &State) -> Vec<(Color32, String)> {
         }
         states.push((theme::TEXT, format!("drew {} of {} samples ({percent:.1} %), {over} too many", order.drawn, order.covered)));
     }
-    if state.picking.is_some() {
-        states.push((theme::ACCENT, "click a point of the model (Esc to cancel)".into()));
+    if let Some(picking) = state.picking {
+        let what = match picking {
+            Picking::Point(_) => "a point".to_owned(),
+            Picking::Part(_, kind) => format!("a {}", kind.name()),
+        };
+        states.push((theme::ACCENT, format!("click {what} of the model (Esc to cancel)")));
     }
     if !session.visible_stack().is_repeatable() {
         states.push((theme::AMBER, "not reproducible: every frame may differ".into()));

@@ -70,11 +70,11 @@ impl Viewport {
         if camera.is_some() {
             commands.edit(Edit::Camera(camera));
         }
-        if let Some(parameter) = state.picking {
+        if let Some(picking) = state.picking {
             if ui.input(|i| i.key_pressed(egui::Key::Escape)) {
                 commands.send(Command::View(ViewCommand::Pick(None)));
             }
-            pick_input::pick(&response, self.compare.side_b(rect), parameter, state, commands);
+            pick_input::pick(&response, self.compare.side_b(rect), picking, state, commands);
         }
         Interaction { response, size, is_moved }
     }

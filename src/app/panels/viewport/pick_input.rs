@@ -1,4 +1,4 @@
-//! Picking: a click on the model sets a point parameter.
+//! Picking: a click on the model sets a point parameter, or adds a part to those that an effect changes.
 
 use eframe::egui::{Rect, Response};
 use glam::DVec2;
@@ -6,16 +6,21 @@ use glam::DVec2;
 use super::layout::{fitted, whole_size};
 use crate::{
     app::{
-        command::{Command, Commands, Edit, Parameter, ViewCommand},
+        command::{Command, Commands, Edit, Picking, ViewCommand},
         log::Level,
         state::State,
     },
     params::Stored as _,
-    scene::pick,
+    scene::{
+        Scene,
+        parts::{PartPattern, names_of},
+        pick,
+        view::View,
+    },
 };
 
-/// Sets `parameter` to the point of the model under a click. The picture of the preset is in `side`.
-pub fn pick(response: &Response, side: Rect, parameter: Parameter, state: &State, commands: &Commands) {
+/// Sets what is picked to what lies under a click. The picture of the preset is in `side`.
+pub fn pick(response: &Response, side: Rect, picking: Picking, state: &State, commands: &Commands) {
     let clicked = response.interact_pointer_pos().filter(|_| response.clicked());
     let Some((at, scene)) = clicked.zip(state.session.scene()) else { return };
     let size = whole_size(response.rect);
@@ -25,11 +30,25 @@ pub fn pick(response: &Response, side: Rect, parameter: Parameter, state: &State
         return;
     }
     let uv = (at - shown.min) / shown.size();
-    match pick::pick(scene, &state.session.view_at(scene, size), DVec2::new(uv.x.into(), uv.y.into())) {
-        Some(point) => {
+    let uv = DVec2::new(uv.x.into(), uv.y.into());
+    match edit(picking, state, scene, &state.session.view_at(scene, size), uv) {
+        Some(edit) => {
             commands.send(Command::View(ViewCommand::Pick(None)));
-            commands.edit(Edit::Parameter(parameter, point.to_value()));
+            commands.edit(edit);
         }
-        None => commands.send(Command::Notify(Level::Info, "There is no triangle under this click. The point was not changed.".into())),
+        None => commands.send(Command::Notify(Level::Info, "There is no triangle under this click. Nothing was changed.".into())),
+    }
+}
+
+/// The change that a click at `uv` makes; none where there is no triangle.
+fn edit(picking: Picking, state: &State, scene: &Scene, view: &View, uv: DVec2) -> Option<Edit> {
+    match picking {
+        Picking::Point(parameter) => Some(Edit::Parameter(parameter, pick::pick(scene, view, uv)?.to_value())),
+        Picking::Part(effect, kind) => {
+            let instance = &scene.instances[pick::pick_instance(scene, view, uv)?];
+            let pattern = PartPattern::of_name(kind, names_of(scene, instance, kind).first()?);
+            let on = &state.session.preset().stack.get(effect.name)?.on;
+            Some(Edit::Scope(effect, on.with(&pattern, true)))
+        }
     }
 }
