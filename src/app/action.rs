@@ -121,6 +121,11 @@ impl Action {
         self.entry().1
     }
 
+    /// Does it open a field for text?
+    pub fn takes_text(self) -> bool {
+        matches!(self, Self::Open | Self::Save | Self::SaveAs | Self::Export | Self::CheatSheet)
+    }
+
     /// Its first shortcut as text: `Ctrl+Shift+Z`; empty without one.
     pub fn shortcut_text(self) -> String {
         match self {

@@ -5,9 +5,9 @@ use std::path::{Path, PathBuf};
 use eframe::egui::{self, ViewportCommand};
 
 use super::{
-    command::{CodeUse, Command, Commands, FileCommand, KeyframeEdit, Purpose, RowCommand, Toggle, ViewCommand},
+    command::{CodeUse, Command, Commands, FileCommand, KeyframeEdit, Purpose, RowCommand, Side, Toggle, ViewCommand},
     log::Level,
-    new_effect,
+    new_effect, open,
     panels::{Panels, timeline::Timeline},
     reload,
     screen::Inputs,
@@ -154,6 +154,7 @@ fn view(state: &mut State, panels: &mut Panels, command: ViewCommand) {
         ViewCommand::OverlayGain(gain) => state.overlays.gain = gain,
         ViewCommand::CycleCompare => panels.viewport.compare.cycle(),
         ViewCommand::FlipCompare => panels.viewport.compare.flip(),
+        ViewCommand::Mark(marker) => state.marker = marker.map(|marker| *marker),
         ViewCommand::Pick(picking) => state.picking = picking,
     }
 }
@@ -197,19 +198,6 @@ fn judge(state: &mut State, inputs: Inputs) {
     state.jobs.verify(state.screen.gpu.clone(), inputs);
 }
 
-/// Makes `opened` the open preset, as a separate undo step.
-fn open_preset(state: &mut State, panels: &mut Panels, mut opened: PresetFile) {
-    state.history.close();
-    for remark in opened.remarks() {
-        state.log.add(Level::Warning, remark);
-    }
-    opened.effects = opened.effects.joined(&state.folders.effects);
-    state.session.open(opened);
-    panels.timeline = Timeline::default();
-    state.observe(false);
-    state.history.close();
-}
-
 fn file(ctx: &egui::Context, state: &mut State, panels: &mut Panels, command: FileCommand) {
     match command {
         FileCommand::Ask(purpose) => {
@@ -248,7 +236,7 @@ fn file(ctx: &egui::Context, state: &mut State, panels: &mut Panels, command: Fi
         FileCommand::AskNewEffect(duplicated) => panels.dialogs.ask_new_effect(duplicated, &state.session.preset_file.effects),
         FileCommand::NewEffect { name, origin } => new_effect::create(state, &name, origin),
         FileCommand::Edit(path) => state.jobs.open_editor(path),
-        FileCommand::Reload(theirs) => reload::offer_preset(state, panels, theirs),
+        FileCommand::Resolve { theirs, side, saving } => resolve(state, panels, theirs, side, saving),
         FileCommand::UseCode { preset_file, then, runs } => use_code(state, panels, *preset_file, then, runs),
         FileCommand::DiscardAndQuit => {
             state.may_quit = true;
@@ -265,8 +253,7 @@ fn open_and_notify(state: &mut State, panels: &mut Panels, opened: PresetFile) {
 /// Opens a preset and says so. Asks first if it brings code that has not been allowed.
 fn request_open(state: &mut State, panels: &mut Panels, opened: PresetFile, said: String) {
     if state.trust.allows(&opened, &state.folders.effects) {
-        open_preset(state, panels, opened);
-        state.notify(Level::Info, said);
+        open::begin(state, panels, opened, said);
     } else {
         panels.dialogs.ask_code(opened.into(), CodeUse::Open(said));
     }
@@ -282,10 +269,42 @@ fn use_code(state: &mut State, panels: &mut Panels, brings: PresetFile, then: Co
     };
     match then {
         CodeUse::Open(said) => {
-            open_preset(state, panels, decided);
-            state.notify(Level::Info, if runs { said } else { format!("{said} without its effects") });
+            let said = if runs { said } else { format!("{said} without its effects") };
+            open::begin(state, panels, decided, said);
         }
         CodeUse::Reload => reload::take_preset(state, panels, decided),
+    }
+}
+
+/// Carries out the decision between the open preset and what another program has made of its file.
+fn resolve(state: &mut State, panels: &mut Panels, theirs: Box<PresetFile>, side: Side, saving: Option<PathBuf>) {
+    match side {
+        Side::Theirs => return reload::offer_preset(state, panels, theirs),
+        Side::Mine => state.live.overruled = Some(theirs),
+        Side::Both => reload::merge_preset(state, *theirs),
+    }
+    if let Some(path) = saving {
+        write(state, panels, &path);
+    }
+}
+
+/// May the open preset be written to `path`? A file that another program has changed is asked about.
+fn may_write(state: &mut State, panels: &mut Panels, path: &Path) -> bool {
+    let open = &state.session.preset_file;
+    if open.path.as_deref() != Some(path) || open.read_only || !path.exists() {
+        return true;
+    }
+    match preset_file::load_with(path, &open.effects) {
+        Ok(there) if there.has_text_of(open) || state.live.overruled.as_ref().is_some_and(|known| there.has_text_of(known)) => true,
+        Ok(there) => {
+            panels.dialogs.ask_changed(there.into(), Some(path.to_owned()));
+            false
+        }
+        Err(error) => {
+            let text = format!("{error}. Another program has changed the file, so it was not saved; Save as… keeps both");
+            state.notify(Level::Error, text);
+            false
+        }
     }
 }
 
@@ -299,6 +318,9 @@ fn save_to(state: &mut State, panels: &mut Panels, path: PathBuf) {
 }
 
 fn write(state: &mut State, panels: &mut Panels, path: &Path) {
+    if !may_write(state, panels, path) {
+        return;
+    }
     if let Some(folder) = path.parent().filter(|folder| !folder.as_os_str().is_empty())
         && let Err(error) = std::fs::create_dir_all(folder)
     {

@@ -13,6 +13,7 @@ use super::{
     key_id::KeyId,
     log::Level,
     overlay::Overlay,
+    screen::Inputs,
     sweep::request::{Progress, Request},
 };
 use crate::{
@@ -166,6 +167,15 @@ pub enum Purpose {
     Export,
 }
 
+/// Whose changes of a preset stay.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Side {
+    Mine,
+    Theirs,
+    /// Both, key by key; mine where both have changed the same.
+    Both,
+}
+
 /// What happens to a preset that brings effects when the user has decided about them.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum CodeUse {
@@ -217,8 +227,13 @@ pub enum FileCommand {
     },
     /// Opens a file in the user's editor.
     Edit(PathBuf),
-    /// Replaces the open preset by what its file has now.
-    Reload(Box<PresetFile>),
+    /// Decides between the open preset and what another program has made of its file. The outcome is saved to `saving`, if that led to the
+    /// question.
+    Resolve {
+        theirs: Box<PresetFile>,
+        side: Side,
+        saving: Option<PathBuf>,
+    },
     /// Goes on with a preset that brings effects, now that the user has decided whether they run.
     UseCode {
         preset_file: Box<PresetFile>,
@@ -229,6 +244,17 @@ pub enum FileCommand {
     DiscardAndQuit,
 }
 
+/// A place in a picture.
+#[derive(Clone, Debug)]
+pub struct Marker {
+    /// The picture; in another one the place is not marked.
+    pub of: Inputs,
+    /// As a fraction of the picture's width and height.
+    pub uv: [f32; 2],
+    /// What is there.
+    pub text: String,
+}
+
 pub enum ViewCommand {
     ToggleOverlays,
     ShowOverlay(Overlay, bool),
@@ -237,6 +263,8 @@ pub enum ViewCommand {
     FlipCompare,
     /// What the next click on the model sets; none cancels.
     Pick(Option<Picking>),
+    /// Marks a place in the picture; none removes the mark.
+    Mark(Option<Box<Marker>>),
 }
 
 /// What can be shown or hidden.

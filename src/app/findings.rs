@@ -2,9 +2,13 @@
 
 use super::{overlay::Overlay, text::grouped};
 use crate::{
+    effect_files::Crossing,
     frame::NO_TRIANGLE,
     gpu::Capture,
-    measure::{ErrorReport, Verdict, error_map::ErrorMap},
+    measure::{
+        ErrorReport, Verdict,
+        error_map::{ErrorMap, PixelError},
+    },
 };
 
 /// The oracle's judgement of a picture, and the data that overlays are painted from. All lists have one entry per pixel.
@@ -17,6 +21,8 @@ pub struct Findings {
     pub color: Vec<[u8; 4]>,
     /// Triangle ids in the exact picture on the finest grid; none if the effects are not reproducible.
     reference: Option<Vec<u32>>,
+    /// Pixels at which an effect makes no color of a color, by row.
+    crossings: Vec<Crossing>,
     /// Triangles that cover each pixel.
     pub layers: Vec<u32>,
     /// Pixels that each overlay paints, in the order of [`Overlay::ALL`].
@@ -24,7 +30,7 @@ pub struct Findings {
 }
 
 impl Findings {
-    pub fn new(capture: Capture, verdict: Verdict, reference: Option<Vec<u32>>) -> Self {
+    pub fn new(capture: Capture, verdict: Verdict, reference: Option<Vec<u32>>, crossings: Vec<Crossing>) -> Self {
         let pixels = capture.frame.triangle_id.len();
         let mut found = Self {
             accuracy: verdict.report,
@@ -33,11 +39,13 @@ impl Findings {
             triangle_ids: capture.frame.triangle_id,
             color: capture.frame.color,
             reference: reference.filter(|reference| reference.len() == pixels),
+            crossings,
             layers: capture.layers.unwrap_or_default(),
             counts: [0; Overlay::ALL.len()],
         };
         found.layers.resize(pixels, 0);
         found.counts = Overlay::ALL.map(|overlay| match (overlay, overlay.fault()) {
+            (Overlay::Unsound, _) => (0..pixels).filter(|&i| found.is_unsound(i)).count() as u64,
             (_, Some(fault)) => found.faults.count(fault),
             (Overlay::TriangleIds, _) => found.triangle_ids.iter().filter(|triangle_id| **triangle_id != NO_TRIANGLE).count() as u64,
             (Overlay::Layers, _) => found.layers.iter().filter(|layers| **layers > 0).count() as u64,
@@ -51,6 +59,36 @@ impl Findings {
     /// Pixels that an overlay paints.
     pub fn count(&self, overlay: Overlay) -> u64 {
         self.counts[overlay as usize]
+    }
+
+    /// What an effect made of the color of pixel `i`, if that is no color.
+    pub fn crossing(&self, i: usize) -> Option<&Crossing> {
+        let width = self.size[0].max(1) as usize;
+        let at = self.crossings.binary_search_by_key(&i, |crossing| crossing.pixel[1] as usize * width + crossing.pixel[0] as usize);
+        at.ok().map(|at| &self.crossings[at])
+    }
+
+    /// The effects that make no color of a color, with a crossing that stands for all and their number; the most frequent first.
+    pub fn crossed(&self) -> Vec<(&Crossing, u64)> {
+        let mut crossed: Vec<(&Crossing, u64)> = Vec::new();
+        for crossing in &self.crossings {
+            match crossed.iter_mut().find(|(known, _)| known.effect == crossing.effect) {
+                Some((known, count)) => {
+                    *count += 1;
+                    if known.parameter.is_none() {
+                        *known = crossing;
+                    }
+                }
+                None => crossed.push((crossing, 1)),
+            }
+        }
+        crossed.sort_by_key(|(_, count)| std::cmp::Reverse(*count));
+        crossed
+    }
+
+    /// True if pixel `i` has something that is NaN, infinite or negative where that cannot be.
+    pub fn is_unsound(&self, i: usize) -> bool {
+        self.faults.has(i, PixelError::Unsound) || self.crossing(i).is_some()
     }
 
     /// True if the exact picture shows another triangle at pixel `i`.
@@ -93,7 +131,7 @@ mod tests {
         capture.frame.triangle_id = vec![1, 1, 2, 1, 1, 1];
         capture.frame.color = vec![[0; 4]; 6];
         let faults = ErrorMap::new(&capture.frame.color, &capture.frame.color, |_| Vec::new());
-        let found = Findings::new(capture, Verdict { error_map: faults, ..Default::default() }, Some(vec![1, 1, 2, 1, 7, 1]));
+        let found = Findings::new(capture, Verdict { error_map: faults, ..Default::default() }, Some(vec![1, 1, 2, 1, 7, 1]), Vec::new());
         let edges: Vec<_> = (0..6).filter(|&i| found.is_edge(i)).collect();
         assert_eq!(edges, [1, 2]);
         assert_eq!((found.count(Overlay::Edges), found.count(Overlay::NotReference)), (2, 1));

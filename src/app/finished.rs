@@ -8,7 +8,7 @@ use super::{
     jobs::Done,
     log::Level,
     measured::error_text,
-    new_effect,
+    new_effect, open,
     panels::Panels,
     reload::{compiled, model_reloaded},
     screen::Inputs,
@@ -24,9 +24,14 @@ pub fn finish(ctx: &egui::Context, state: &mut State, panels: &mut Panels, comma
                 state.log.add(Level::Warning, format!("{}: {note}", scene.name));
             }
             model_reloaded(state, &key, Ok(()));
-            state.session.scenes.arrived(key, Some(scene));
+            state.session.scenes.arrived(key.clone(), Some(scene));
+            open::scene_arrived(state, panels, &key, true);
         }
         Done::Scene(key, Err(error)) => {
+            if open::scene_arrived(state, panels, &key, false) {
+                state.session.scenes.abandon(&key);
+                return state.notify(Level::Error, error);
+            }
             let is_again = model_reloaded(state, &key, Err(&error));
             state.session.scenes.arrived(key, None);
             if !is_again {
@@ -43,6 +48,11 @@ pub fn finish(ctx: &egui::Context, state: &mut State, panels: &mut Panels, comma
         Done::Export(path, Ok(())) => state.notify(Level::Info, format!("Saved {}", path.display())),
         Done::Export(_, Err(error)) => state.notify(Level::Error, error),
         Done::Compiled(reload, outcome) => compiled(state, panels, reload, outcome),
+        Done::Precision(of, measured) => {
+            if let Some(error) = state.precision.arrived(*of, measured) {
+                state.log.add(Level::Error, error);
+            }
+        }
         Done::Golden(number, check) => {
             if state.live.checking_golden == Some(number) {
                 state.live.checking_golden = None;

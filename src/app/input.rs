@@ -9,23 +9,40 @@ use super::{
     command::{Command, Commands, FileCommand, RowCommand},
     log::Level,
     state::State,
+    typing::HeldTyping,
 };
 
-/// Sends the actions whose shortcuts were pressed. Shortcuts without Ctrl do nothing while a widget has the focus or the
-/// camera flies; those with Ctrl do nothing while text is typed.
-pub fn shortcuts(ctx: &egui::Context, state: &State, commands: &Commands) {
+/// Sends the actions whose shortcuts were pressed, in the order of the keys. Shortcuts without Ctrl do nothing while a widget has the focus
+/// or the camera flies; those with Ctrl do nothing while text is typed. What is typed after a key that opens a text field is held for it.
+pub fn shortcuts(ctx: &egui::Context, state: &State, held: &mut HeldTyping, commands: &Commands) {
     let is_typing = ctx.text_edit_focused();
     let is_focused = ctx.egui_wants_keyboard_input();
     let is_flying = ctx.input(|i| i.pointer.secondary_down());
-    for (action, _, shortcuts) in ACTIONS {
-        let is_allowed = |k: &&KeyboardShortcut| if k.modifiers.command { !is_typing } else { !is_focused && !is_flying };
-        if shortcuts.iter().filter(is_allowed).any(|shortcut| ctx.input_mut(|i| i.consume_shortcut(shortcut))) {
-            commands.perform(*action);
+    let is_allowed = |k: &KeyboardShortcut| if k.modifiers.command { !is_typing } else { !is_focused && !is_flying };
+    let mut index = 0;
+    while let Some(event) = ctx.input(|i| i.events.get(index).cloned()) {
+        let Some(action) = action_of(&event, is_allowed) else {
+            index += 1;
+            continue;
+        };
+        commands.perform(action);
+        if action.takes_text() {
+            held.hold_after(ctx, index, state.now_s);
         }
+        ctx.input_mut(|i| drop(i.events.remove(index)));
     }
     if !is_typing {
         clipboard(ctx, state, commands);
     }
+}
+
+/// The action of a pressed key, if its shortcut is allowed.
+fn action_of(event: &Event, is_allowed: impl Fn(&KeyboardShortcut) -> bool) -> Option<Action> {
+    let Event::Key { key, modifiers, pressed: true, .. } = event else { return None };
+    let is_pressed = |shortcut: &KeyboardShortcut| {
+        shortcut.logical_key == *key && modifiers.matches_logically(shortcut.modifiers) && is_allowed(shortcut)
+    };
+    ACTIONS.iter().find(|(_, _, shortcuts)| shortcuts.iter().any(is_pressed)).map(|(action, ..)| *action)
 }
 
 /// Copies the value of the row under the pointer, or the preset, and pastes.

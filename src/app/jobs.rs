@@ -3,7 +3,7 @@
 
 use std::{
     path::{Path, PathBuf},
-    sync::{Arc, mpsc},
+    sync::{Arc, atomic::AtomicBool, mpsc},
 };
 
 use eframe::egui;
@@ -13,6 +13,7 @@ use super::{
     findings::Findings,
     golden_check::{self, GoldenCheck},
     live::Reload,
+    precision::{self, Measured},
     scene_loader::SceneKey,
     screen::Inputs,
     sweep::{
@@ -22,6 +23,7 @@ use super::{
     },
 };
 use crate::{
+    effect_files,
     effects::Stack,
     gpu::{Gpu, Renderer},
     oracle,
@@ -42,6 +44,8 @@ pub enum Done {
     Path(Purpose, Option<PathBuf>),
     /// Pipelines for what was changed on disk.
     Compiled(Reload, Result<(), String>),
+    /// The f32 errors of the user's effects in a picture; none if the measurement was cancelled.
+    Precision(Box<Inputs>, Result<Option<Box<Measured>>, String>),
     /// The golden of a preset, compared again, by the number of its request; none if the preset has no golden.
     Golden(u64, Option<GoldenCheck>),
     /// The file of a new effect.
@@ -103,6 +107,15 @@ impl Jobs {
         self.spawn("compile", move || {
             let compiled = caught("compiling", || compile(gpu, &inputs));
             Done::Compiled(reload, compiled)
+        });
+    }
+
+    /// Measures the f32 errors of the user's effects with the oracle.
+    pub fn measure_precision(&self, inputs: Inputs, cancelled: Arc<AtomicBool>) {
+        self.spawn("precision", move || {
+            let measured =
+                caught("measuring the f32 error", || precision::measure(&inputs, &cancelled).map(|measured| measured.map(Box::new)));
+            Done::Precision(Box::new(inputs), measured)
         });
     }
 
@@ -220,9 +233,10 @@ fn verify(gpu: Arc<Gpu>, Inputs { scene, view, stack, accuracy }: &Inputs) -> Re
     let mut renderer = Renderer::new(gpu);
     renderer.set_scene(scene).map_err(|e| e.to_string())?;
     let capture = renderer.capture(view, stack, accuracy).map_err(|e| e.to_string())?;
-    let verdict = oracle::judge(scene, view, stack, &capture.picture());
+    let judged = effect_files::crossings(stack, |stack| oracle::judge(scene, view, stack, &capture.picture()));
+    let (verdict, crossings) = judged.map_err(|e| e.to_string())?;
     let reference = if stack.is_repeatable() { Some(reference_ids(scene, view, stack, accuracy)?) } else { None };
-    verdict.map(|verdict| Box::new(Findings::new(capture, verdict, reference))).map_err(|e| e.to_string())
+    verdict.map(|verdict| Box::new(Findings::new(capture, verdict, reference, crossings))).map_err(|e| e.to_string())
 }
 
 /// Triangle ids of all pixels in the exact picture on the finest grid.

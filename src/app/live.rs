@@ -3,7 +3,7 @@
 use std::{collections::BTreeMap, path::PathBuf};
 
 use super::{golden_check::GoldenCheck, watch::Watcher};
-use crate::{effect_files::Catalog, effects::Effect, preset::rebind::Replaced};
+use crate::{effect_files::Catalog, effects::Effect, preset::rebind::Replaced, preset_file::PresetFile};
 
 /// What a fault is about.
 #[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -54,8 +54,12 @@ pub struct Live {
     /// The number of the newest golden that is still drawn, and the newest comparison.
     pub checking_golden: Option<u64>,
     pub golden: Option<GoldenCheck>,
+    /// Files of new effects that are being written.
+    pub writing: u32,
     requests: u64,
     pub enable: Option<Waiting>,
+    /// A preset's file as it was when the user decided for the changes made here: saving may overwrite that.
+    pub overruled: Option<Box<PresetFile>>,
     /// Files may be opened in the user's editor.
     pub opens_editor: bool,
 }
@@ -68,9 +72,11 @@ impl Live {
             compiling_effects: None,
             compiling_shaders: None,
             checking_golden: None,
+            writing: 0,
             golden: None,
             requests: 0,
             enable: None,
+            overruled: None,
             opens_editor,
         }
     }
@@ -81,9 +87,9 @@ impl Live {
         self.requests
     }
 
-    /// True while something is compiled or a golden is drawn.
+    /// True while something is compiled or written, or a golden is drawn.
     pub fn is_busy(&self) -> bool {
-        self.compiling_effects.is_some() || self.compiling_shaders.is_some() || self.checking_golden.is_some()
+        self.compiling_effects.is_some() || self.compiling_shaders.is_some() || self.checking_golden.is_some() || self.writing > 0
     }
 
     /// Notes a fault. Returns false if it was known.

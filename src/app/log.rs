@@ -51,6 +51,9 @@ pub struct Toast {
 /// Messages kept; older ones are dropped.
 const CAPACITY: usize = 500;
 
+/// Toasts shown at a time; the oldest goes first.
+const MAX_TOASTS: usize = 3;
+
 /// Seconds for which a toast is shown.
 const TOAST_S: f64 = 4.0;
 const ERROR_TOAST_S: f64 = 8.0;
@@ -81,6 +84,7 @@ impl Log {
         self.toasts.retain(|toast| toast.text != shown && toast.until_s > now_s);
         let stay_s = if level == Level::Error { ERROR_TOAST_S } else { TOAST_S };
         self.toasts.push(Toast { level, text: shown, until_s: now_s + stay_s });
+        self.toasts.drain(..self.toasts.len().saturating_sub(MAX_TOASTS));
         self.add(level, text);
     }
 
@@ -132,6 +136,14 @@ mod tests {
         log.notify(Level::Error, "shader error: no such word\n  ┌─ fog.wgsl:3:9", 0.0);
         assert_eq!(log.toasts[0].text, "shader error: no such word (more in the log)");
         assert!(log.to_text().contains("fog.wgsl:3:9"));
+    }
+
+    #[test]
+    fn at_most_three_toasts_are_shown_and_the_newest_are() {
+        let mut log = Log::default();
+        (0..5).for_each(|i| log.notify(Level::Info, i.to_string(), 0.0));
+        assert_eq!(log.toasts(1.0).iter().map(|toast| toast.text.as_str()).collect::<Vec<_>>(), ["2", "3", "4"]);
+        assert_eq!(log.entries().len(), 5);
     }
 
     #[test]

@@ -11,6 +11,7 @@ use crate::{
 /// Writes the file of a new effect on another thread; [`written`] takes the outcome.
 pub fn create(state: &mut State, name: &str, origin: Origin) {
     let (path, name) = (folder(state).join(format!("{name}.wgsl")), name.to_owned());
+    state.live.writing += 1;
     state.jobs.write_effect(path, origin, move |path| {
         let text = match origin {
             Origin::Template(hook) => template(&name, hook),
@@ -32,6 +33,7 @@ fn write(path: &Path, text: &str) -> Result<(), String> {
 
 /// Enables an effect that was written, in place of the one that it duplicates, and opens it in the user's editor.
 pub fn written(state: &mut State, path: PathBuf, origin: Origin, outcome: Result<(), String>) {
+    state.live.writing = state.live.writing.saturating_sub(1);
     if let Err(error) = outcome {
         return state.notify(Level::Error, error);
     }

@@ -61,7 +61,8 @@ const TABLE: [(Overlay, &str, &str, Color32); 11] = [
     (
         Overlay::Unsound,
         "NaN, infinite, negative",
-        "Found in the depth, or in the depth, 1/w, normal or color at the triangle's corners",
+        "Found in the depth, in the depth, 1/w, normal or color at the triangle's corners, or in what an effect makes of a color. The legend names \
+         the effect, and its parameter where that can be told",
         Color32::from_rgb(255, 48, 48),
     ),
 ];

@@ -20,7 +20,7 @@ use crate::{
         SceneSource,
         rebind::{Replaced, rebind_stack},
     },
-    preset_file::PresetFile,
+    preset_file::{self, PresetFile},
     shader::library::Library,
 };
 
@@ -247,7 +247,7 @@ fn preset_changed(state: &mut State, panels: &mut Panels, path: &PathBuf, read: 
                 return; // It was saved here.
             }
             if state.session.is_modified() {
-                panels.dialogs.ask_changed(theirs);
+                panels.dialogs.ask_changed(theirs, None);
             } else {
                 offer_preset(state, panels, theirs);
             }
@@ -262,6 +262,26 @@ pub fn offer_preset(state: &mut State, panels: &mut Panels, theirs: Box<PresetFi
     } else {
         panels.dialogs.ask_code(theirs, CodeUse::Reload);
     }
+}
+
+/// Makes the open preset what it and `theirs`, its file as it is now, have both, as a separate undo step.
+pub fn merge_preset(state: &mut State, theirs: PresetFile) {
+    state.observe(false);
+    state.history.close();
+    let title = theirs.title().to_owned();
+    let merged = preset_file::merge(&state.session.as_filed().preset, state.session.preset(), &theirs.preset);
+    let mut theirs = theirs;
+    theirs.effects = theirs.effects.joined(&state.session.preset_file.effects);
+    state.session.reload(theirs);
+    *state.session.preset_mut() = merged.preset;
+    state.observe(false);
+    state.history.close();
+    let kept = if merged.conflicts.is_empty() {
+        String::new()
+    } else {
+        format!("; both had changed {}, which keep your values", merged.conflicts.join(", "))
+    };
+    state.notify(Level::Info, format!("Merged your changes of {title} with those of its file{kept}"));
 }
 
 /// Makes the open preset what its file has now, as a separate undo step.

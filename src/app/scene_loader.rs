@@ -71,6 +71,21 @@ impl SceneLoader {
         false
     }
 
+    /// True if the scene of `key` is in memory.
+    pub fn has(&self, key: &SceneKey) -> bool {
+        self.shown_for(key).is_some() || self.recent.iter().any(|(recent, _)| recent == key)
+    }
+
+    /// True if the scene of `key` is shown or cannot be loaded.
+    pub fn is_settled(&self, key: &SceneKey) -> bool {
+        self.shown_for(key).is_some() || self.failed.as_ref() == Some(key)
+    }
+
+    /// Forgets that the scene of `key`, which no preset shows, is loading.
+    pub fn abandon(&mut self, key: &SceneKey) {
+        self.loading.take_if(|loading| loading == key);
+    }
+
     /// Loads the scene of `key` again, since its file has changed; the caller starts that. What is shown stays until it has loaded.
     pub fn reload(&mut self, key: &SceneKey) {
         self.recent.retain(|(recent, _)| recent != key);

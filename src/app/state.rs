@@ -4,13 +4,15 @@
 use std::sync::Arc;
 
 use super::{
-    command::Picking,
+    command::{Marker, Picking},
     findings::Findings,
     history::History,
     jobs::Jobs,
     live::Live,
     log::{Level, Log},
+    opening::Opening,
     overlay::OverlaySelection,
+    precision::PrecisionState,
     screen::Screen,
     session::{Session, UndoState},
     trust::Trust,
@@ -54,10 +56,16 @@ pub struct State {
     pub trust: Trust,
     pub session: Session,
     pub history: History<UndoState>,
+    /// The preset that is being opened.
+    pub opening: Opening,
     pub jobs: Jobs,
     pub screen: Screen,
     pub verification: Verification,
     pub overlays: OverlaySelection,
+    /// The f32 errors of the user's effects.
+    pub precision: PrecisionState,
+    /// The place in the picture that is marked.
+    pub marker: Option<Marker>,
     /// What the next click on the model sets.
     pub picking: Option<Picking>,
     pub clipboard: Clipboard,

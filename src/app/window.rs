@@ -17,9 +17,12 @@ use super::{
     jobs::Jobs,
     live::Live,
     log::{Level, Log},
+    open,
+    opening::Opening,
     overlay::OverlaySelection,
     panel::Panel,
     panels::{Panels, log::toasts_ui},
+    precision::{PrecisionState, REST_S, is_of_file},
     recovery, reload,
     scene_loader::SceneKey,
     screen::Screen,
@@ -27,6 +30,7 @@ use super::{
     state::{Clipboard, OpenPanels, State},
     theme,
     trust::Trust,
+    typing::HeldTyping,
     verification::Verification,
     watch::Watcher,
 };
@@ -71,6 +75,8 @@ pub struct App {
     state: State,
     panels: Panels,
     commands: Commands,
+    /// What was typed while a dialog opened.
+    typing: HeldTyping,
     loss: LossFlag,
     title: String,
 }
@@ -106,9 +112,16 @@ impl App {
     pub fn is_idle(&self) -> bool {
         let State { session, screen, verification, .. } = &self.state;
         let Panels { viewport, sweep, browser, .. } = &self.panels;
-        let is_shown = !session.scenes.is_loading() && session.scene().is_some() && !screen.is_waiting();
+        let is_shown =
+            !self.state.opening.is_waiting() && !session.scenes.is_loading() && session.scene().is_some() && !screen.is_waiting();
         let is_judged = !verification.is_running() && self.state.overlays_are_ready();
-        is_shown && is_judged && !self.state.live.is_busy() && !viewport.compare.is_waiting() && !sweep.is_measuring() && !browser.is_busy()
+        is_shown
+            && is_judged
+            && !self.state.precision.is_running()
+            && !self.state.live.is_busy()
+            && !viewport.compare.is_waiting()
+            && !sweep.is_measuring()
+            && !browser.is_busy()
     }
 
     /// True if there is a picture, even one of an earlier preset.
@@ -184,11 +197,14 @@ impl App {
                 folders: options.folders,
                 trust,
                 history: History::new(session.undo_state()),
+                opening: Opening::default(),
                 session,
                 jobs: Jobs::new(cc.egui_ctx.clone()),
                 screen: Screen::new(&window, gpu),
                 verification: Verification::default(),
                 overlays: OverlaySelection::default(),
+                precision: PrecisionState::default(),
+                marker: None,
                 picking: None,
                 clipboard: Clipboard::default(),
                 log,
@@ -197,6 +213,7 @@ impl App {
                 now_s: 0.0,
             },
             commands: Commands::default(),
+            typing: HeldTyping::default(),
             loss,
             title: String::new(),
         })
@@ -262,6 +279,7 @@ impl App {
         if self.state.session.scenes.request(&key) {
             self.state.jobs.load_scene(key);
         }
+        open::announce(&mut self.state);
     }
 
     /// Starts drawing a thumbnail when nothing more urgent needs the processor.
@@ -272,6 +290,24 @@ impl App {
         if let Some(next) = self.panels.browser.next_thumbnail() {
             self.state.jobs.thumbnail(next);
         }
+    }
+
+    /// Starts to measure the f32 errors of the user's effects when the picture is at rest. They are shown in the inspector alone.
+    fn request_precision(&mut self, ctx: &egui::Context, is_held: bool) {
+        let State { precision, screen, session, jobs, verification, open, now_s, .. } = &mut self.state;
+        let Some(requested) = screen.requested() else { return };
+        let rest_s = precision.rest_s(requested, *now_s);
+        let is_known = precision.is_running() || precision.of(Some(requested)).is_some() || precision.has_failed(Some(requested));
+        let is_busy = is_held || session.playback.playing || screen.is_waiting() || verification.is_running();
+        let is_used = requested.stack.0.iter().any(|enabled| is_of_file(enabled.effect));
+        if !is_used || is_known || is_busy || !open.right || screen.drawn() != Some(requested) {
+            return;
+        }
+        if rest_s < REST_S {
+            return ctx.request_repaint_after_secs((REST_S - rest_s) as f32 + 0.01);
+        }
+        let cancelled = precision.start(requested.clone());
+        jobs.measure_precision(requested.clone(), cancelled);
     }
 
     fn panels_ui(&mut self, ui: &mut Ui) {
@@ -347,9 +383,11 @@ impl eframe::App for App {
         input::dropped_files(&ctx, &self.commands);
         self.apply(&ctx);
         if !self.panels.dialogs.is_open() {
-            input::shortcuts(&ctx, &self.state, &self.commands);
+            input::shortcuts(&ctx, &self.state, &mut self.typing, &self.commands);
             self.apply(&ctx);
         }
+        let is_awaited = self.panels.dialogs.takes_text() || (self.state.open.cheat_sheet && !self.panels.dialogs.is_open());
+        self.typing.follow(&ctx, is_awaited, now_s);
         self.state.clipboard.hovered_row = None;
         self.play(&ctx);
         self.request_scene();
@@ -359,6 +397,7 @@ impl eframe::App for App {
         self.panel_ui(ui, |panels| &mut panels.cheat_sheet);
         self.panel_ui(ui, |panels| &mut panels.extremes);
         self.request_thumbnail();
+        self.request_precision(&ctx, is_held);
         self.state.observe(is_held);
         if let Some(wait_s) = self.state.history.wake_in_s(now_s).filter(|_| !is_held) {
             ctx.request_repaint_after_secs(wait_s as f32 + 0.01);

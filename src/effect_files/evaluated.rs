@@ -33,6 +33,14 @@ pub enum EvaluatedError {
 /// # Errors
 /// The text cannot be linked, is not valid, or uses what cannot be evaluated.
 pub fn evaluated(library: &Library, effect: &'static Effect) -> Result<Hooks, EvaluatedError> {
+    evaluated_in(library, effect, Precision::Double)
+}
+
+/// [`evaluated`] with floats of another precision.
+///
+/// # Errors
+/// As [`evaluated`].
+pub fn evaluated_in(library: &Library, effect: &'static Effect, precision: Precision) -> Result<Hooks, EvaluatedError> {
     let linked = link::link_effect(library, effect)?;
     let text = &linked.text;
     let module = naga::front::wgsl::parse_str(text).map_err(|error| EvaluatedError::Refused(error.emit_to_string(text)))?;
@@ -41,22 +49,22 @@ pub fn evaluated(library: &Library, effect: &'static Effect) -> Result<Hooks, Ev
     let function = |chain: Chain, precision| Function::new(&module, text, &chain.function(effect), effect.fields, precision);
     let mut hooks = effect.hooks;
     if let Some(hook) = hooks.vertex {
-        let [double, single] = [Precision::Double, Precision::Single].map(|precision| function(Chain::Vertex, precision));
-        hooks.vertex = Some(VertexHook { moved: twin::vertex(double?, single?, hook.needs_triangle).moved, ..hook });
+        let [chosen, single] = [precision, Precision::Single].map(|precision| function(Chain::Vertex, precision));
+        hooks.vertex = Some(VertexHook { moved: twin::vertex(chosen?, single?, hook.needs_triangle).moved, ..hook });
     }
     if let Some(hook) = hooks.sample {
-        let is_drawn = twin::sample(function(Chain::Sample, Precision::Double)?).is_drawn;
+        let is_drawn = twin::sample(function(Chain::Sample, precision)?).is_drawn;
         let sample_setup = match hook.has_setup {
-            true => twin::sample_setup(function(Chain::SampleSetup, Precision::Double)?),
+            true => twin::sample_setup(function(Chain::SampleSetup, precision)?),
             false => hook.sample_setup,
         };
         hooks.sample = Some(SampleHook { is_drawn, sample_setup, ..hook });
     }
     if hooks.surface.is_some() {
-        hooks.surface = Some(twin::surface(function(Chain::Surface, Precision::Double)?));
+        hooks.surface = Some(twin::surface(function(Chain::Surface, precision)?));
     }
     if let Some(hook) = hooks.image {
-        hooks.image = Some(twin::image(function(Chain::Image, Precision::Double)?, hook.reads_previous));
+        hooks.image = Some(twin::image(function(Chain::Image, precision)?, hook.reads_previous));
     }
     Ok(hooks)
 }

@@ -10,8 +10,10 @@ mod duplicate;
 mod error;
 mod evaluated;
 mod parameters;
+mod precision;
 mod read;
 mod rewrite;
+mod soundness;
 mod template;
 mod tokens;
 mod twin;
@@ -23,7 +25,9 @@ pub use self::{
     duplicate::duplicate,
     error::{EffectError, Place},
     evaluated::{EvaluatedError, evaluated},
+    precision::{LargestError, Place as ErrorPlace, Quantity, precision},
     read::{MAX_BYTES, RESERVED_NAMES, check_name, read},
     rewrite::MAX_TURNS,
+    soundness::{Crossing, Unsound, crossings},
     template::{Hook, template},
 };

@@ -106,6 +106,31 @@ fn a_dropped_file_that_is_malformed_keeps_the_picture_and_is_one_sentence() {
 }
 
 #[test]
+fn a_model_that_cannot_be_read_leaves_preset_scene_and_title_and_is_not_said_to_be_open() {
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    let Some(mut lab) = lab("lambert") else { return };
+    let path = folder.path().join("broken.glb");
+    let glb = tiny_glb();
+    std::fs::write(&path, &glb[..glb.len() - 9]).expect("a file");
+    let (before, draws) = (lab.state().preset_file().preset.clone(), lab.state().draws());
+    drop_files(&mut lab, &[&path]);
+    assert_eq!((lab.state().preset_file().id.as_str(), &lab.state().preset_file().preset), ("lambert", &before));
+    assert_eq!((lab.state().undo_steps(), lab.state().draws()), (0, draws));
+    let log = lab.state().log_text();
+    assert!(!log.contains("Opened broken") && error_lines(&lab).len() == 1 && error_lines(&lab)[0].contains("broken.glb"), "{log}");
+    assert!(lab.query_all_by_label_contains("cannot be shown").next().is_none());
+
+    // It is said when it is shown, and not before.
+    std::fs::write(&path, &glb).expect("a file");
+    lab.input_mut().dropped_files.push(std::sync::Arc::new(Dropped(path.clone())) as egui::DroppedFileHandle);
+    lab.step();
+    assert!(!lab.state().log_text().contains("Opened broken"), "it is said before the model is read");
+    settle(&mut lab);
+    assert!(lab.state().log_text().contains("Opened broken"), "{}", lab.state().log_text());
+    assert_eq!(lab.state().preset_file().preset.scene, SceneSource::File(path));
+}
+
+#[test]
 fn dropped_presets_and_exported_pictures_are_opened() {
     let folder = tempfile::tempdir().expect("a temporary folder");
     let Some(mut lab) = lab("lambert") else { return };

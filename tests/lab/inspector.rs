@@ -190,3 +190,17 @@ fn the_scene_shows_its_images_and_lets_one_look_through_its_cameras() {
     assert!(lab.query_by_label_contains("3 images, ").is_some());
     assert!(lab.query_by_label("scene.camera").is_none(), "a scene without cameras has no menu of them");
 }
+
+#[test]
+fn the_title_of_an_effect_folds_it_and_only_its_box_removes_it() {
+    let Some(mut lab) = lab("facet-knot") else { return };
+    let enabled = |lab: &Lab| lab.state().preset_file().preset.stack.get("facet").is_some();
+    assert!(has_slider(&lab, "facet.amount"));
+    click(&mut lab, Role::Button, "Fold facet");
+    assert!(enabled(&lab) && !has_slider(&lab, "facet.amount"), "the title does not fold the effect");
+    click(&mut lab, Role::Button, "Unfold facet");
+    assert!(enabled(&lab) && has_slider(&lab, "facet.amount"));
+    assert_eq!(lab.state().undo_steps(), 0, "folding is no change of the preset");
+    click(&mut lab, Role::CheckBox, "facet");
+    assert!(!enabled(&lab));
+}

@@ -198,6 +198,59 @@ fn a_preset_that_is_edited_on_disk_is_reloaded_and_unsaved_changes_are_asked_abo
 }
 
 #[test]
+fn saving_never_overwrites_what_another_program_wrote_unasked_and_both_can_be_merged() {
+    use eframe::egui::{Key, Modifiers};
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    let file = folder.path().join("mine.toml");
+    let text = "schema = 2\nname = \"Mine\"\n[scene]\nbuiltin = \"teapot\"\n[effects.facet]\namount = 0.25\n[effects.lambert]\n";
+    let Some(mut lab) = lab_of(folder.path(), text) else { return };
+    let change = |lab: &mut Lab, to: f32| {
+        let rail = slider(lab, "facet.amount").rect();
+        drag(lab, rail.left_center() + eframe::egui::vec2(8.0, 0.0), rail.left_center() + eframe::egui::vec2(to * rail.width(), 0.0));
+    };
+    let read = || std::fs::read_to_string(&file).expect("the preset");
+    // Saved in the same moment: the watcher has not seen the change yet.
+    change(&mut lab, 0.5);
+    let mine = value(&lab, "facet", "amount")[0];
+    let theirs = text.replace("builtin = \"teapot\"", "builtin = \"teapot\"\nspin_deg_per_s = 30.0");
+    write(&file, &theirs);
+    press(&mut lab, Modifiers::COMMAND, Key::S);
+    assert_eq!(read(), theirs, "the change of the other program is overwritten");
+    click(&mut lab, Role::Button, "Merge and save");
+    let merged = rasterlab::preset_file::load(&file).expect("a preset").preset;
+    assert_eq!((value(&lab, "facet", "amount")[0], lab.state().preset_file().preset.spin_deg_per_s), (mine, 30.0));
+    assert_eq!(merged, lab.state().preset_file().preset);
+    assert!(!lab.state().preset_file().is_modified(), "{}", read());
+
+    // Mine, once it was decided, is saved without another question.
+    change(&mut lab, 0.75);
+    let theirs = read().replace("spin_deg_per_s = 30.0", "spin_deg_per_s = 60.0");
+    write(&file, &theirs);
+    wait_for(&mut lab, "the question is asked", |lab| lab.query_by_label("Take theirs").is_some());
+    click(&mut lab, Role::Button, "Keep mine");
+    assert_eq!(read(), theirs);
+    press(&mut lab, Modifiers::COMMAND, Key::S);
+    assert!(lab.query_by_label("Take theirs").is_none() && read().contains("spin_deg_per_s = 30.0"));
+
+    // Merged without saving, the file stays until it is saved.
+    change(&mut lab, 0.25);
+    let theirs = read().replace("spin_deg_per_s = 30.0", "spin_deg_per_s = 90.0");
+    write(&file, &theirs);
+    wait_for(&mut lab, "the question is asked", |lab| lab.query_by_label("Merge").is_some());
+    click(&mut lab, Role::Button, "Merge");
+    assert_eq!((lab.state().preset_file().preset.spin_deg_per_s, read()), (90.0, theirs));
+    assert!(lab.state().preset_file().is_modified());
+    undo(&mut lab);
+    assert_eq!(lab.state().preset_file().preset.spin_deg_per_s, 30.0, "the merge is one step of undo");
+
+    // A file that is faulty just now is not overwritten either.
+    write(&file, "schema = 2\n[effects.facet]\namount = 9\n");
+    press(&mut lab, Modifiers::COMMAND, Key::S);
+    assert!(read().contains("amount = 9"));
+    assert!(error_lines(&lab).iter().any(|line| line.contains("Save as… keeps both")), "{:?}", error_lines(&lab));
+}
+
+#[test]
 fn a_new_effect_is_written_beside_the_preset_and_enabled() {
     let folder = tempfile::tempdir().expect("a temporary folder");
     let Some(mut lab) = lab_of(folder.path(), "schema = 2\n[scene]\nbuiltin = \"teapot\"\n") else { return };

@@ -20,6 +20,10 @@ impl Panel for CheatSheet {
     fn ui(&mut self, ui: &mut Ui, state: &State, commands: &Commands) {
         let ctx = ui.ctx().clone();
         let mut is_open = state.open.cheat_sheet;
+        if !is_open {
+            self.search.clear();
+            return;
+        }
         let area = ctx.content_rect();
         egui::Window::new("Cheat sheet")
             .open(&mut is_open)
@@ -30,12 +34,17 @@ impl Panel for CheatSheet {
             .default_pos(area.center())
             .show(&ctx, |ui| {
                 let search = egui::TextEdit::singleline(&mut self.search).hint_text("Search actions and keys").desired_width(f32::INFINITY);
-                ui.add(search);
+                let search = ui.add(search).accessible_name("Search actions and keys");
+                // Whatever is typed while the sheet is open is a search.
+                if ui.memory(|memory| memory.focused().is_none()) {
+                    search.request_focus();
+                }
                 ui.add_space(theme::HALF);
                 let height = (area.height() - 220.0).max(160.0);
                 egui::ScrollArea::vertical().max_height(height).show(ui, |ui| rows_ui(ui, &self.search, state));
             });
-        is_open &= !ctx.input(|i| i.key_pressed(Key::Escape));
+        // The key that opens it closes it, too; the search would keep it.
+        is_open &= !ctx.input(|i| i.key_pressed(Key::Escape) || i.key_pressed(Key::F1));
         if state.open.cheat_sheet && !is_open {
             commands.send(Command::Toggle(Toggle::CheatSheet));
         }

@@ -6,7 +6,7 @@ use eframe::egui::{self, RichText, Ui};
 
 use crate::{
     app::{
-        command::{CodeUse, Command, Commands, FileCommand, Origin, Purpose},
+        command::{CodeUse, Command, Commands, FileCommand, Origin, Purpose, Side},
         panel::Panel,
         panels::{
             brought_code::code_ui,
@@ -69,8 +69,8 @@ enum Dialog {
     NewEffect(NewEffect),
     /// May the code that a preset brings run?
     Code(Box<PresetFile>, CodeUse),
-    /// Replace unsaved changes by what the preset's file has now?
-    Changed(Box<PresetFile>),
+    /// Keep unsaved changes, or take what the preset's file has now, or both? It is saved to the path afterwards.
+    Changed(Box<PresetFile>, Option<PathBuf>),
 }
 
 /// A dialog that asks for a path.
@@ -122,6 +122,11 @@ impl Dialogs {
         self.0.is_some()
     }
 
+    /// Does the open dialog have a field for text?
+    pub fn takes_text(&self) -> bool {
+        matches!(self.0, Some(Dialog::Path(_) | Dialog::NewEffect(_)))
+    }
+
     /// Asks for a path. `presets_dir` is the folder of presets from the command line; a picture is exported at `size` pixels
     /// unless another size is typed.
     pub fn ask_path(&mut self, purpose: Purpose, session: &Session, presets_dir: Option<&Path>, size: [u32; 2]) {
@@ -154,9 +159,9 @@ impl Dialogs {
         self.0 = Some(Dialog::NewEffect(NewEffect::new(duplicated, catalog)));
     }
 
-    /// Asks whether `theirs`, the open preset as its file has it now, replaces unsaved changes.
-    pub fn ask_changed(&mut self, theirs: Box<PresetFile>) {
-        self.0 = Some(Dialog::Changed(theirs));
+    /// Asks what becomes of unsaved changes and of `theirs`, the open preset as its file has it now. The outcome is saved to `saving`.
+    pub fn ask_changed(&mut self, theirs: Box<PresetFile>, saving: Option<PathBuf>) {
+        self.0 = Some(Dialog::Changed(theirs, saving));
     }
 
     /// Asks whether the effects that `preset_file` brings may run.
@@ -209,7 +214,7 @@ impl Dialogs {
             (Choice::Run | Choice::OpenWithout, Some(Dialog::Code(preset_file, then))) => {
                 file(FileCommand::UseCode { preset_file, then, runs: choice == Choice::Run });
             }
-            (Choice::TakeTheirs, Some(Dialog::Changed(theirs))) => file(FileCommand::Reload(theirs)),
+            (Choice::Side(side), Some(Dialog::Changed(theirs, saving))) => file(FileCommand::Resolve { theirs, side, saving }),
             (_, dialog) => self.0 = dialog,
         }
     }
@@ -227,7 +232,7 @@ impl Panel for Dialogs {
                 Dialog::Muted { .. } => muted_ui(ui, &state.session.muted.iter().copied().collect::<Vec<_>>()),
                 Dialog::Unsaved => unsaved_ui(ui, state.session.title()),
                 Dialog::NewEffect(dialog) => new_effect_ui(ui, dialog),
-                Dialog::Changed(theirs) => changed_ui(ui, theirs.title()),
+                Dialog::Changed(theirs, saving) => changed_ui(ui, theirs.title(), saving.is_some()),
                 Dialog::Code(preset_file, _) => brought_ui(ui, preset_file),
             };
         });
@@ -257,7 +262,7 @@ enum Choice {
     DropMuted,
     Save,
     Discard,
-    TakeTheirs,
+    Side(Side),
     Run,
     OpenWithout,
 }
@@ -315,11 +320,23 @@ fn unsaved_ui(ui: &mut Ui, title: &str) -> Option<Choice> {
     buttons(ui, &options, |_| None)
 }
 
-fn changed_ui(ui: &mut Ui, title: &str) -> Option<Choice> {
+fn changed_ui(ui: &mut Ui, title: &str, is_saving: bool) -> Option<Choice> {
     ui.label(RichText::new("The preset's file has changed").size(15.0).color(theme::TEXT_STRONG).strong());
     ui.label(format!("{title} has unsaved changes, and another program has changed its file."));
     ui.add_space(theme::HALF);
-    buttons(ui, &[("Keep mine", Choice::Cancel, true), ("Take theirs", Choice::TakeTheirs, false)], |_| None)
+    let weak = "Merge takes both key by key, and yours where both have changed the same. Nothing is written to the file unless you save.";
+    ui.label(theme::weak(if is_saving { "Merge takes both key by key, and yours where both have changed the same." } else { weak }));
+    ui.add_space(theme::HALF);
+    let mine = if is_saving { "Overwrite with mine" } else { "Keep mine" };
+    let merge = if is_saving { "Merge and save" } else { "Merge" };
+    let options = [
+        (merge, Choice::Side(Side::Both), true),
+        (mine, Choice::Side(Side::Mine), false),
+        ("Take theirs", Choice::Side(Side::Theirs), false),
+        ("Cancel", Choice::Cancel, false),
+    ];
+    // Without a save nothing happens to the file yet, so keeping mine is what cancelling does.
+    buttons(ui, if is_saving { &options } else { &options[..3] }, |_| None)
 }
 
 fn brought_ui(ui: &mut Ui, preset_file: &PresetFile) -> Option<Choice> {

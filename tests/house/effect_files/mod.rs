@@ -3,6 +3,7 @@
 
 mod accepted;
 mod mutated;
+mod numerics;
 mod refused;
 
 use std::time::{Duration, Instant};

@@ -4,7 +4,7 @@ use eframe::egui::{self, Ui};
 
 use crate::{
     app::{
-        command::{Command, Commands, FileCommand, RowCommand},
+        command::{Command, Commands, Edit, FileCommand, RowCommand},
         state::State,
         theme,
     },
@@ -36,6 +36,9 @@ pub fn menu_ui(ui: &mut Ui, state: &State, commands: &Commands, effect: &'static
     }
     if state.session.preset().stack.get(effect.name).is_some() && ui.add(entry("Reset all parameters")).clicked() {
         chosen = Some(Command::Row(RowCommand::ResetGroup(effect.name.into())));
+    }
+    if state.session.preset().stack.get(effect.name).is_some() && ui.add(entry("Remove")).clicked() {
+        chosen = Some(Command::Edit(Edit::Disable(effect)));
     }
     if let Some(command) = chosen {
         commands.send(command);

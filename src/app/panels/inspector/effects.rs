@@ -2,7 +2,7 @@
 
 use eframe::egui::{self, RichText, Ui};
 
-use super::{effect_menu, scope::scope_ui};
+use super::{effect_menu, precision::precision_ui, scope::scope_ui};
 use crate::{
     app::{
         action::Action,
@@ -67,28 +67,50 @@ fn own_effects_ui(ui: &mut Ui, state: &State, commands: &Commands, stack: &[&'st
     }
 }
 
+/// Where the window remembers that the parameters of an effect are hidden.
+fn fold_id(effect: &Effect) -> egui::Id {
+    egui::Id::unique(("fold", effect.name))
+}
+
 /// An effect of the stack at `index` of `count`.
 fn enabled_ui(ui: &mut Ui, state: &State, commands: &Commands, effect: &'static Effect, (index, count): (usize, usize)) {
     let frame = egui::Frame::new().fill(theme::BAR).corner_radius(6.0).inner_margin(egui::Margin { left: 8, right: 4, top: 3, bottom: 5 });
     let is_muted = state.session.muted.contains(effect.name);
+    let is_folded = ui.data(|data| data.get_temp(fold_id(effect))).unwrap_or(false);
     frame.show(ui, |ui| {
         ui.set_min_width(ui.available_width());
-        header_ui(ui, state, commands, effect, (index, count), is_muted);
+        header_ui(ui, state, commands, effect, (index, count), (is_muted, is_folded));
+        if is_folded {
+            return;
+        }
         ui.add_enabled_ui(!is_muted, |ui| {
             scope_ui(ui, state, commands, effect);
             parameters_ui(ui, state, commands, effect);
         });
+        precision_ui(ui, state, commands, effect);
     });
     ui.add_space(theme::HALF);
 }
 
-fn header_ui(ui: &mut Ui, state: &State, commands: &Commands, effect: &'static Effect, (index, count): (usize, usize), is_muted: bool) {
+fn header_ui(
+    ui: &mut Ui,
+    state: &State,
+    commands: &Commands,
+    effect: &'static Effect,
+    (index, count): (usize, usize),
+    (is_muted, is_folded): (bool, bool),
+) {
     ui.horizontal(|ui| {
         ui.set_min_height(theme::ROW);
         let mut on = true;
-        let title = RichText::new(title(effect)).strong().color(theme::TEXT_STRONG);
-        if ui.checkbox(&mut on, title).on_hover_text(effect.about).accessible_name(effect.name).clicked() {
+        if ui.checkbox(&mut on, "").on_hover_text("Take it out of the stack").accessible_name(effect.name).clicked() {
             commands.edit(Edit::Disable(effect));
+        }
+        let text = RichText::new(title(effect)).strong().color(theme::TEXT_STRONG);
+        let fold = ui.add(egui::Button::new(text).frame(false)).on_hover_text(effect.about);
+        let verb = if is_folded { "Unfold" } else { "Fold" };
+        if fold.accessible_name(format!("{verb} {}", effect.name)).clicked() {
+            ui.data_mut(|data| data.insert_temp(fold_id(effect), !is_folded));
         }
         ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
             ui.spacing_mut().item_spacing.x = 0.0;

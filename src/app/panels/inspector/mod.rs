@@ -4,6 +4,7 @@ mod clips;
 mod effect_menu;
 mod effects;
 mod overlays;
+mod precision;
 mod report;
 pub mod rows;
 mod scene;

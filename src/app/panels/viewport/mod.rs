@@ -10,6 +10,7 @@ mod compare_ui;
 mod heat_legend;
 mod layout;
 mod light;
+mod marker;
 mod overlay_image;
 mod overlay_legend;
 mod overlays;
@@ -69,6 +70,9 @@ impl Viewport {
         let is_moved = camera.is_some() && camera != state.session.preset().camera;
         if camera.is_some() {
             commands.edit(Edit::Camera(camera));
+        }
+        if state.marker.is_some() && state.picking.is_none() && ui.input(|i| i.key_pressed(egui::Key::Escape)) {
+            commands.send(Command::View(ViewCommand::Mark(None)));
         }
         if let Some(picking) = state.picking {
             if ui.input(|i| i.key_pressed(egui::Key::Escape)) {
@@ -153,6 +157,9 @@ impl Viewport {
         let at = picture_ui(ui, state, self.compare.side_b(rect));
         let free = compare_ui::compare_ui(ui, &mut self.compare, state, (rect, at), &mut self.overlays);
         chips::chips_ui(ui, state, commands, rect, self.compare.is_open());
+        if !self.compare.hides_b() {
+            marker::marker_ui(ui, state, at);
+        }
         light::light_ui(ui, &state.session, commands, at);
         let free = if self.compare.hides_b() { free } else { overlay_legend::legend_ui(ui, state, free, at) };
         if let Some(params) = state.session.visible_stack().params("overdraw") {

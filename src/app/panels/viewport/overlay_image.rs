@@ -48,7 +48,7 @@ fn color(found: &Findings, overlay: Overlay, i: usize, gain: u8, heat: &Overdraw
         Overlay::Holes => has(PixelError::Hole).then(|| overlay.color()),
         Overlay::WrongTriangle => has(PixelError::WrongTriangle).then(|| overlay.color()),
         Overlay::WrongDepth => has(PixelError::WrongDepthOrder).then(|| overlay.color()),
-        Overlay::Unsound => has(PixelError::Unsound).then(|| overlay.color()),
+        Overlay::Unsound => found.is_unsound(i).then(|| overlay.color()),
     }
 }
 
@@ -69,6 +69,7 @@ pub fn rings(found: &Findings, shown: &[Overlay]) -> Vec<(usize, Color32)> {
     let mut rings = Vec::new();
     for overlay in shown.iter().filter(|overlay| found.count(**overlay) as usize <= MAX_RINGS) {
         let is_there = |&i: &usize| match overlay.fault() {
+            _ if *overlay == Overlay::Unsound => found.is_unsound(i),
             Some(fault) => found.faults.has(i, fault),
             None if *overlay == Overlay::NotReference => found.differs_from_reference(i),
             None => *overlay == Overlay::Color && found.faults.color_delta[i] > 0,

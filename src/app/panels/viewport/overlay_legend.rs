@@ -2,13 +2,18 @@
 
 use eframe::egui::{self, Color32, Rect, RichText, Ui, pos2, vec2};
 
-use crate::app::{
-    findings::Findings,
-    icons::swatch,
-    overlay::{Overlay, OverlaySelection},
-    state::State,
-    text::grouped,
-    theme,
+use crate::{
+    app::{
+        findings::Findings,
+        icons::swatch,
+        overlay::{Overlay, OverlaySelection},
+        state::State,
+        text::grouped,
+        theme,
+    },
+    effect_files::Crossing,
+    effects::Stack,
+    preset_file::toml_value,
 };
 
 /// Height of a line, and the space round all of them, points.
@@ -30,9 +35,15 @@ impl Line {
 }
 
 /// The lines on a picture that was judged.
-fn lines(overlays: &OverlaySelection, found: &Findings) -> Vec<Line> {
+fn lines(overlays: &OverlaySelection, found: &Findings, stack: &Stack) -> Vec<Line> {
     let shown: Vec<Overlay> = Overlay::listed().filter(|overlay| overlays.contains(*overlay)).collect();
     let mut lines: Vec<Line> = shown.iter().filter(|overlay| found.count(**overlay) > 0).map(|o| line(*o, overlays.gain, found)).collect();
+    if overlays.contains(Overlay::Unsound) {
+        let crossed = found.crossed();
+        lines.extend(crossed.iter().map(|(crossing, count)| {
+            Line::sentence(theme::TEXT_STRONG, format!("    {} px: {}", grouped(*count), crossing_text(crossing, stack)))
+        }));
+    }
     let errors: Vec<Overlay> = shown.into_iter().filter(|overlay| overlay.is_error()).collect();
     let pixels = grouped(found.faults.pixels() as u64);
     if !errors.is_empty() && errors.iter().all(|overlay| found.count(*overlay) == 0) {
@@ -42,6 +53,17 @@ fn lines(overlays: &OverlaySelection, found: &Findings) -> Vec<Line> {
         lines.push(Line::sentence(theme::TEXT, format!("nothing to show in {pixels} pixels")));
     }
     lines
+}
+
+/// `facet made NaN, amount = 2.0`.
+fn crossing_text(crossing: &Crossing, stack: &Stack) -> String {
+    let Crossing { effect, made, parameter, only_f32, .. } = crossing;
+    let side = if *only_f32 { " in f32" } else { "" };
+    let value = parameter.zip(stack.get(effect.name)).map(|(field, enabled)| {
+        let value = toml_value::write_text(field.value_type, &field.value(&enabled.words));
+        format!(", {} = {value}", field.name)
+    });
+    format!("{} made {}{side}{}", effect.name, made.word(), value.unwrap_or_default())
 }
 
 /// The line of one overlay.
@@ -66,7 +88,10 @@ fn hovered_line(ui: &Ui, state: &State, at: Rect) -> Option<Line> {
     let pointer = ui.input(|i| i.pointer.hover_pos()).filter(|pointer| at.contains(*pointer) && ui.rect_contains_pointer(at))?;
     let uv = (pointer - at.min) / at.size();
     let [x, y] = [(uv.x, found.size[0]), (uv.y, found.size[1])].map(|(t, side)| ((t * side as f32) as u32).min(side - 1));
-    Some(Line::sentence(theme::TEXT_WEAK, format!("{x}, {y}: {}", found.pixel_text((y * found.size[0] + x) as usize))))
+    let i = (y * found.size[0] + x) as usize;
+    let crossing = found.crossing(i).filter(|_| state.overlays.contains(Overlay::Unsound));
+    let crossing = crossing.map_or(String::new(), |crossing| format!(", {}", crossing_text(crossing, &state.session.visible_stack())));
+    Some(Line::sentence(theme::TEXT_WEAK, format!("{x}, {y}: {}{crossing}", found.pixel_text(i))))
 }
 
 /// Shows the legend at the lower left of `free`; the picture is at `at`. Returns what of `free` it does not cover.
@@ -75,7 +100,7 @@ pub fn legend_ui(ui: &mut Ui, state: &State, free: Rect, at: Rect) -> Rect {
         return free;
     }
     let mut lines = match state.findings() {
-        Some(found) if state.screen.divisor() == 1 => lines(&state.overlays, found),
+        Some(found) if state.screen.divisor() == 1 => lines(&state.overlays, found, &state.session.visible_stack()),
         _ if state.verification.is_running() => vec![Line::sentence(theme::TEXT, "Comparing this picture with the oracle")],
         _ if state.overlays_are_ready() => vec![Line::sentence(theme::RED, "This picture could not be verified. See the log.")],
         _ => vec![Line::sentence(theme::TEXT_WEAK, "Overlays appear when the picture is at rest")],
@@ -123,7 +148,7 @@ mod tests {
         });
         let frame = Frame { width: 3, height: 2, triangle_id: vec![0; 6], color: picture.to_vec(), ..Default::default() };
         let capture = Capture { frame, geometry: Default::default(), layers: None, previous: None, shown: None };
-        Findings::new(capture, Verdict { error_map: faults, ..Default::default() }, None)
+        Findings::new(capture, Verdict { error_map: faults, ..Default::default() }, None, Vec::new())
     }
 
     #[test]
@@ -135,8 +160,9 @@ mod tests {
             overlays.set(overlay, true);
             overlays
         };
-        let text =
-            |overlays: &OverlaySelection, found: &Findings| lines(overlays, found).into_iter().map(|line| line.text).collect::<Vec<_>>();
+        let text = |overlays: &OverlaySelection, found: &Findings| {
+            lines(overlays, found, &Stack::default()).into_iter().map(|line| line.text).collect::<Vec<_>>()
+        };
         assert_eq!(text(&overlays, &found(&[])), ["no errors: 0 of 6 pixels"]);
         assert_eq!(text(&overlays, &found(&[1, 4])), ["wrong triangle: 2 px", "holes: 2 px"]);
         assert_eq!(text(&only(Overlay::WrongDepth), &found(&[1])), ["no wrong depth winner: 0 of 6 pixels"]);

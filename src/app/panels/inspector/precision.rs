@@ -1,0 +1,92 @@
+//! The largest f32 error of a user's effect, below its parameters; a click marks where it is.
+
+use eframe::egui::{self, Ui};
+
+use crate::{
+    app::{
+        command::{Command, Commands, Marker, ViewCommand},
+        precision::{Error, is_of_file},
+        state::State,
+        theme,
+    },
+    effect_files::Quantity,
+    effects::Effect,
+};
+
+/// Shows what is known of the errors of `effect`; nothing for a built-in effect.
+pub fn precision_ui(ui: &mut Ui, state: &State, commands: &Commands, effect: &'static Effect) {
+    if !is_of_file(effect) {
+        return;
+    }
+    // Flush with the labels of the parameters.
+    ui.horizontal(|ui| {
+        ui.add_space(theme::GAP);
+        ui.vertical(|ui| errors_ui(ui, state, commands, effect));
+    });
+}
+
+fn errors_ui(ui: &mut Ui, state: &State, commands: &Commands, effect: &'static Effect) {
+    let requested = state.screen.requested();
+    let Some(measured) = state.precision.of(requested) else {
+        let text = if state.precision.has_failed(requested) {
+            "f32 error: not measured, see the log"
+        } else if state.precision.is_running() {
+            "f32 error: measuring"
+        } else {
+            "f32 error: measured at rest"
+        };
+        ui.label(theme::weak(text).size(11.0));
+        return;
+    };
+    let found = measured.effects.iter().find(|(known, _)| *known == effect).map_or(&[][..], |(_, errors)| errors);
+    let [width, height] = measured.size;
+    let about = format!("The effect's text in f32 against f64, on the oracle's picture of {width}x{height} pixels.");
+    if found.is_empty() {
+        ui.label(theme::weak("f32 error: none").size(11.0)).on_hover_text(&about);
+    }
+    for error in found {
+        let text = format!("f32 error: {}", words(error));
+        let [x, y] = error.uv.unwrap_or_default();
+        let place = match error.uv {
+            Some(_) => format!("It is largest at {:.0}, {:.0}. Click to mark the place.", x * f64::from(width), y * f64::from(height)),
+            None => "The place lies outside the picture.".into(),
+        };
+        let button = egui::Button::new(theme::weak(&text).size(11.0)).frame(false).small();
+        let button = ui.add_enabled(error.uv.is_some(), button);
+        if button.on_hover_text(format!("{about} {place}")).accessible_name(&text).clicked()
+            && let Some(of) = requested
+        {
+            let marker = Marker { of: of.clone(), uv: [x as f32, y as f32], text: format!("{}: {}", effect.name, words(error)) };
+            commands.send(Command::View(ViewCommand::Mark(Some(Box::new(marker)))));
+        }
+    }
+}
+
+/// `0.02 of 255`.
+fn words(error: &Error) -> String {
+    let number = match error.error {
+        error if error.is_infinite() => return "f32 is not finite, f64 is".into(),
+        error if error >= 0.01 => format!("{error:.2}"),
+        error => format!("{error:.1e}"),
+    };
+    match error.quantity {
+        Quantity::Color => format!("{number} of 255"),
+        Quantity::Normal => format!("{number} in the normal"),
+        Quantity::Vertex => format!("{number} m"),
+        Quantity::Sample => "a sample is decided otherwise".into(),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn an_error_is_said_in_its_unit() {
+        let said = |quantity, error| words(&Error { quantity, error, uv: None });
+        assert_eq!(said(Quantity::Color, 1.5), "1.50 of 255");
+        assert_eq!(said(Quantity::Color, 0.000_123), "1.2e-4 of 255");
+        assert_eq!(said(Quantity::Vertex, 3.1e-7), "3.1e-7 m");
+        assert_eq!(said(Quantity::Color, f64::INFINITY), "f32 is not finite, f64 is");
+    }
+}

@@ -1,0 +1,268 @@
+//! Precision probes: effects that do what another effect does in f64, and record on the way how far its text in f32 is from that. The oracle
+//! draws with them as with any other effect.
+
+use std::{
+    collections::BTreeMap,
+    sync::{
+        Arc, Mutex, MutexGuard, PoisonError,
+        atomic::{AtomicBool, Ordering},
+    },
+};
+
+use glam::{DVec2, DVec3, DVec4};
+
+use super::evaluated::{EvaluatedError, evaluated_in};
+use crate::{
+    effects::{
+        Effect, Stack,
+        hooks::{ImageHook, Pixel, SampleHook, Surface, Vertex, VertexHook},
+    },
+    evaluator::Precision,
+    math::srgb,
+    shader::library::Library,
+};
+
+/// What the f32 side of an effect gets wrong.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Quantity {
+    /// Largest difference of a channel of the picture, of 255.
+    Color,
+    /// Largest difference of a component of the normal.
+    Normal,
+    /// Largest difference of a coordinate of a moved vertex, meters.
+    Vertex,
+    /// 1 where another decision is made about a sample.
+    Sample,
+}
+
+/// Where something was found.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Place {
+    /// Pixels from the left and the top of the picture, to the middle of the pixel.
+    Pixel([f64; 2]),
+    /// World space, meters.
+    World(DVec3),
+}
+
+/// The largest error of the f32 side of an effect.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct LargestError {
+    pub quantity: Quantity,
+    /// Infinite where the f32 side is not finite and the f64 side is.
+    pub error: f64,
+    pub place: Place,
+}
+
+/// What the probes of an effect have found.
+#[derive(Default)]
+struct Errors {
+    cancelled: Arc<AtomicBool>,
+    largest: Vec<LargestError>,
+}
+
+/// An effect that records the error of its f32 side.
+pub struct PrecisionProbe {
+    effect: &'static Effect,
+    errors: Arc<Mutex<Errors>>,
+    /// Held by the one measurement that uses it.
+    in_use: Mutex<()>,
+}
+
+pub(super) fn locked<T: ?Sized>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
+    mutex.lock().unwrap_or_else(PoisonError::into_inner)
+}
+
+/// Probes by the address of the effect that they probe.
+pub(super) type Probes<T> = Mutex<BTreeMap<usize, &'static T>>;
+
+/// The probe of `effect`. Probes live as long as the program, like the effects that they probe; there is one of each.
+pub(super) fn kept<T: Sync>(
+    known: &Probes<T>,
+    effect: &'static Effect,
+    make: impl FnOnce() -> Result<T, EvaluatedError>,
+) -> Result<&'static T, EvaluatedError> {
+    let key = std::ptr::from_ref(effect) as usize;
+    if let Some(probe) = locked(known).get(&key) {
+        return Ok(probe);
+    }
+    let made = make()?;
+    Ok(locked(known).entry(key).or_insert_with(|| Box::leak(Box::new(made))))
+}
+
+impl Errors {
+    fn record(&mut self, quantity: Quantity, error: f64, place: Place) {
+        let error = if error.is_nan() { f64::INFINITY } else { error };
+        if error == 0.0 {
+            return;
+        }
+        // Threads come in any order; of equal errors the topmost, then leftmost pixel is kept.
+        let order = |place: Place| match place {
+            Place::Pixel([x, y]) => [y, x, 0.0],
+            Place::World(at) => at.to_array(),
+        };
+        match self.largest.iter_mut().find(|known| known.quantity == quantity) {
+            None => self.largest.push(LargestError { quantity, error, place }),
+            Some(known) => {
+                if error > known.error || (error == known.error && order(place) < order(known.place)) {
+                    (known.error, known.place) = (error, place);
+                }
+            }
+        }
+    }
+}
+
+/// Records the errors of the f32 side of the effects of `stack` that `is_probed` while `draw` draws a picture with the stack that it is given.
+/// Once `cancelled` is set, the picture is finished quickly and nothing is returned.
+///
+/// # Errors
+/// The text of an effect cannot be evaluated.
+pub fn precision(
+    stack: &Stack,
+    is_probed: impl Fn(&Effect) -> bool,
+    cancelled: &Arc<AtomicBool>,
+    draw: impl FnOnce(&Stack),
+) -> Result<Vec<(&'static Effect, Vec<LargestError>)>, EvaluatedError> {
+    let mut probed = stack.clone();
+    let mut probes = Vec::new();
+    for enabled in probed.0.iter_mut().filter(|enabled| is_probed(enabled.effect)) {
+        let original = enabled.effect;
+        let probe = PrecisionProbe::of(original)?;
+        enabled.effect = probe.effect;
+        probes.push((original, probe));
+    }
+    // In one order, so that two measurements never wait for each other.
+    let mut ordered: Vec<&PrecisionProbe> = probes.iter().map(|(_, probe)| *probe).collect();
+    ordered.sort_by_key(|probe| std::ptr::from_ref(*probe) as usize);
+    let _in_use: Vec<_> = ordered.iter().map(|probe| locked(&probe.in_use)).collect();
+    for (_, probe) in &probes {
+        *locked(&probe.errors) = Errors { cancelled: cancelled.clone(), largest: Vec::new() };
+    }
+    draw(&probed);
+    let mut found: Vec<_> = probes.iter().map(|(effect, probe)| (*effect, std::mem::take(&mut locked(&probe.errors).largest))).collect();
+    found.iter_mut().for_each(|(_, largest)| largest.sort_by_key(|error| error.quantity));
+    if cancelled.load(Ordering::Relaxed) {
+        found.clear();
+    }
+    Ok(found)
+}
+
+impl PrecisionProbe {
+    fn of(effect: &'static Effect) -> Result<&'static Self, EvaluatedError> {
+        static KNOWN: Probes<PrecisionProbe> = Mutex::new(BTreeMap::new());
+        kept(&KNOWN, effect, || {
+            let single = evaluated_in(&Library::from_env(), effect, Precision::Single)?;
+            let errors = Arc::new(Mutex::new(Errors::default()));
+            let mut hooks = effect.hooks;
+            if let (Some(exact), Some(single)) = (hooks.surface, single.surface) {
+                let errors = errors.clone();
+                hooks.surface = Some(Box::leak(Box::new(move |s: Surface, words: &[u32]| {
+                    if is_cancelled(&errors) {
+                        return s;
+                    }
+                    let result = exact(s, words);
+                    if s.step_offset == 0.0 {
+                        let other = single(rounded(s), words);
+                        let place = Place::Pixel(s.pixel.to_array());
+                        let normal = (result.normal - other.normal).abs().max_element();
+                        let mut errors = locked(&errors);
+                        errors.record(Quantity::Color, color_error(shown(result.color), shown(other.color)), place);
+                        // A normal is changed on purpose, or it is passed on as it came.
+                        errors.record(Quantity::Normal, if result.normal == s.normal { 0.0 } else { normal }, place);
+                    }
+                    result
+                })));
+            }
+            if let (Some(exact), Some(single)) = (hooks.image, single.image) {
+                let errors = errors.clone();
+                let finish = move |q: Pixel, picture: &crate::effects::hooks::Picture<'_>, words: &[u32]| {
+                    if is_cancelled(&errors) {
+                        return q;
+                    }
+                    let result = (exact.finish)(q, picture, words);
+                    if q.step_offset == 0.0 {
+                        let other = (single.finish)(Pixel { color: q.color.as_vec4().as_dvec4(), ..q }, picture, words);
+                        let place = Place::Pixel([f64::from(q.x) + 0.5, f64::from(q.y) + 0.5]);
+                        locked(&errors).record(Quantity::Color, color_error(result.color, other.color), place);
+                    }
+                    result
+                };
+                hooks.image = Some(ImageHook { finish: Box::leak(Box::new(finish)), ..exact });
+            }
+            if let (Some(exact), Some(single)) = (hooks.vertex, single.vertex) {
+                let errors = errors.clone();
+                let moved = move |v: Vertex, words: &[u32]| {
+                    if is_cancelled(&errors) {
+                        return v;
+                    }
+                    let result = (exact.moved)(v, words);
+                    let other = (single.moved)(v, words);
+                    let error = (result.offset - other.offset).abs().max_element();
+                    locked(&errors).record(Quantity::Vertex, error, Place::World(result.position + result.offset));
+                    result
+                };
+                hooks.vertex = Some(VertexHook { moved: Box::leak(Box::new(moved)), ..exact });
+            }
+            if let (Some(exact), Some(single)) = (hooks.sample.filter(|hook| !hook.has_setup), single.sample) {
+                let errors = errors.clone();
+                let is_drawn = move |s: &crate::effects::hooks::Sample, words: &[u32]| {
+                    let result = (exact.is_drawn)(s, words);
+                    if !is_cancelled(&errors) && result != (single.is_drawn)(s, words) {
+                        let place = Place::Pixel([f64::from(s.x) + 0.5, f64::from(s.y) + 0.5]);
+                        locked(&errors).record(Quantity::Sample, 1.0, place);
+                    }
+                    result
+                };
+                hooks.sample = Some(SampleHook { is_drawn: Box::leak(Box::new(is_drawn)), ..exact });
+            }
+            Ok(Self { effect: Box::leak(Box::new(Effect { hooks, ..*effect })), errors, in_use: Mutex::new(()) })
+        })
+    }
+}
+
+fn is_cancelled(errors: &Mutex<Errors>) -> bool {
+    locked(errors).cancelled.load(Ordering::Relaxed)
+}
+
+/// The surface as the f32 side gets it.
+pub(super) fn rounded(s: Surface) -> Surface {
+    let three = |v: DVec3| v.as_vec3().as_dvec3();
+    let two = |v: DVec2| v.as_vec2().as_dvec2();
+    let one = |v: f64| f64::from(v as f32);
+    Surface {
+        color: s.color.as_vec4().as_dvec4(),
+        glow: three(s.glow),
+        position: three(s.position),
+        normal: three(s.normal),
+        flat_normal: three(s.flat_normal),
+        view: three(s.view),
+        center: three(s.center),
+        center_screen: two(s.center_screen),
+        screen: two(s.screen),
+        pixel: two(s.pixel),
+        barycentrics: three(s.barycentrics),
+        edge_distance_px: three(s.edge_distance_px),
+        depth_m: one(s.depth_m),
+        pixel_size_m: one(s.pixel_size_m),
+        flat_depth_m: one(s.flat_depth_m),
+        depth_range_m: two(s.depth_range_m),
+        rank: one(s.rank),
+        lit: one(s.lit),
+        ..s
+    }
+}
+
+/// A linear color as the picture holds it, before it is rounded to bytes.
+fn shown(color: DVec4) -> DVec4 {
+    DVec4::new(srgb(color.x), srgb(color.y), srgb(color.z), color.w)
+}
+
+/// Largest difference of a channel of two colors of a picture, of 255; infinite if only the second is not a color.
+fn color_error(exact: DVec4, other: DVec4) -> f64 {
+    if !exact.is_finite() {
+        return 0.0; // Nothing can be told of an error of what is no color.
+    }
+    if !other.is_finite() {
+        return f64::INFINITY;
+    }
+    255.0 * (exact.clamp(DVec4::ZERO, DVec4::ONE) - other.clamp(DVec4::ZERO, DVec4::ONE)).abs().max_element()
+}

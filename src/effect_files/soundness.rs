@@ -1,0 +1,188 @@
+//! Soundness probes: effects that do what another effect does, and record on the way where its result stops being a color.
+
+use std::{
+    collections::BTreeMap,
+    sync::{
+        Arc, Mutex,
+        atomic::{AtomicBool, AtomicU32, Ordering},
+    },
+};
+
+use glam::DVec4;
+
+use super::{
+    evaluated::{EvaluatedError, evaluated_in},
+    precision::{Probes, kept, locked, rounded},
+};
+use crate::{
+    effects::{
+        Effect, Stack,
+        hooks::{ImageHook, Picture, Pixel, Surface},
+    },
+    evaluator::Precision,
+    params::Field,
+    shader::library::Library,
+};
+
+/// Pixels at which the parameter is looked for; at more of them only the effect is named.
+const MAX_EXPLAINED: u32 = 4096;
+
+/// In what way a color is none.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Unsound {
+    NotANumber,
+    Infinite,
+    Negative,
+}
+
+impl Unsound {
+    /// The word for it.
+    pub const fn word(self) -> &'static str {
+        match self {
+            Self::NotANumber => "NaN",
+            Self::Infinite => "infinity",
+            Self::Negative => "a negative color",
+        }
+    }
+
+    fn of(color: DVec4, others: &[f64]) -> Option<Self> {
+        let mut all = color.to_array().into_iter().chain(others.iter().copied());
+        if all.clone().any(f64::is_nan) {
+            Some(Self::NotANumber)
+        } else if all.any(f64::is_infinite) {
+            Some(Self::Infinite)
+        } else {
+            (color.min_element() < 0.0).then_some(Self::Negative)
+        }
+    }
+}
+
+/// A pixel at which an effect makes no color of a color.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Crossing {
+    /// Column and row.
+    pub pixel: [u32; 2],
+    pub effect: &'static Effect,
+    pub made: Unsound,
+    /// The parameter whose default would have given a color; none if it cannot be told.
+    pub parameter: Option<&'static Field>,
+    /// Only the f32 side does, or both.
+    pub only_f32: bool,
+}
+
+/// An effect that records where it crosses.
+struct SoundnessProbe {
+    effect: &'static Effect,
+    recorder: Arc<Recorder>,
+}
+
+#[derive(Default)]
+struct Recorder {
+    crossings: Mutex<Vec<Crossing>>,
+    explained: AtomicU32,
+    is_on: AtomicBool,
+}
+
+/// One result of an effect, as far as it must be sound.
+type Outcome = Option<Unsound>;
+
+fn of_surface(s: &Surface) -> Outcome {
+    let [g, n, p] = [s.glow, s.normal, s.position].map(|v| v.to_array());
+    Unsound::of(s.color, &[g, n, p].concat())
+}
+
+/// Pixels of a picture at which an effect of `stack` makes no color of a color, by row; the first effect where there are several. `draw` draws
+/// the picture with the stack that it is given, or anything that shades its samples.
+///
+/// # Errors
+/// The text of an effect of a file cannot be evaluated in f32.
+pub fn crossings<T>(stack: &Stack, draw: impl FnOnce(&Stack) -> T) -> Result<(T, Vec<Crossing>), EvaluatedError> {
+    // One picture at a time, since the probes are shared.
+    static IN_USE: Mutex<()> = Mutex::new(());
+    let _in_use = locked(&IN_USE);
+    let mut probed = stack.clone();
+    let mut probes = Vec::new();
+    for enabled in &mut probed.0 {
+        let probe = SoundnessProbe::of(enabled.effect)?;
+        enabled.effect = probe.effect;
+        probe.recorder.explained.store(0, Ordering::Relaxed);
+        locked(&probe.recorder.crossings).clear();
+        probe.recorder.is_on.store(true, Ordering::Relaxed);
+        probes.push(probe);
+    }
+    let drawn = draw(&probed);
+    let mut all = Vec::new();
+    for probe in probes {
+        probe.recorder.is_on.store(false, Ordering::Relaxed);
+        all.append(&mut locked(&probe.recorder.crossings));
+    }
+    // The sort is stable, so the effects of a pixel stay in the order of the stack.
+    all.sort_by_key(|crossing| [crossing.pixel[1], crossing.pixel[0]]);
+    all.dedup_by_key(|crossing| crossing.pixel);
+    Ok((drawn, all))
+}
+
+impl SoundnessProbe {
+    fn of(effect: &'static Effect) -> Result<&'static Self, EvaluatedError> {
+        static KNOWN: Probes<SoundnessProbe> = Mutex::new(BTreeMap::new());
+        kept(&KNOWN, effect, || {
+            let is_custom = effect.source.is_some() || effect.base.is_some_and(|base| base.source.is_some());
+            // The kernels are f32, and the text says what they do. Built-in effects have an f64 function that is not their text.
+            let single = if is_custom { Some(evaluated_in(&Library::from_env(), effect, Precision::Single)?) } else { None };
+            let recorder = Arc::new(Recorder::default());
+            let mut hooks = effect.hooks;
+            if let Some(exact) = hooks.surface {
+                let (recorder, single) = (recorder.clone(), single.and_then(|hooks| hooks.surface));
+                hooks.surface = Some(Box::leak(Box::new(move |s: Surface, words: &[u32]| {
+                    let result = exact(s, words);
+                    if s.step_offset == 0.0 && recorder.is_on.load(Ordering::Relaxed) && of_surface(&s).is_none() {
+                        let pixel = s.pixel.to_array().map(|v| v as u32);
+                        let in_f64 = |words: &[u32]| of_surface(&exact(s, words));
+                        let in_f32 = |words: &[u32]| single.and_then(|single| of_surface(&single(rounded(s), words)));
+                        recorder.record(effect, pixel, of_surface(&result), (&in_f64, &in_f32), words);
+                    }
+                    result
+                })));
+            }
+            if let Some(exact) = hooks.image {
+                let (recorder, single) = (recorder.clone(), single.and_then(|hooks| hooks.image));
+                let finish = move |q: Pixel, picture: &Picture<'_>, words: &[u32]| {
+                    let result = (exact.finish)(q, picture, words);
+                    if q.step_offset == 0.0 && recorder.is_on.load(Ordering::Relaxed) && Unsound::of(q.color, &[]).is_none() {
+                        let rounded = Pixel { color: q.color.as_vec4().as_dvec4(), ..q };
+                        let in_f64 = |words: &[u32]| Unsound::of((exact.finish)(q, picture, words).color, &[]);
+                        let in_f32 =
+                            |words: &[u32]| single.and_then(|single| Unsound::of((single.finish)(rounded, picture, words).color, &[]));
+                        recorder.record(effect, [q.x, q.y], Unsound::of(result.color, &[]), (&in_f64, &in_f32), words);
+                    }
+                    result
+                };
+                hooks.image = Some(ImageHook { finish: Box::leak(Box::new(finish)), ..exact });
+            }
+            Ok(Self { effect: Box::leak(Box::new(Effect { hooks, ..*effect })), recorder })
+        })
+    }
+}
+
+/// What an effect makes of the same input with other parameter words.
+type Retried<'a> = &'a dyn Fn(&[u32]) -> Outcome;
+
+impl Recorder {
+    /// Records what `effect` made at a pixel with `words`: `exact` in f64, and the rest by evaluating again.
+    fn record(&self, effect: &'static Effect, pixel: [u32; 2], exact: Outcome, (in_f64, in_f32): (Retried, Retried), words: &[u32]) {
+        let Some((made, only_f32)) = exact.map(|made| (made, false)).or_else(|| in_f32(words).map(|made| (made, true))) else { return };
+        let is_explained = self.explained.fetch_add(1, Ordering::Relaxed) < MAX_EXPLAINED;
+        let retried = if only_f32 { in_f32 } else { in_f64 };
+        let parameter = if is_explained { parameter_of(effect, words, retried) } else { None };
+        locked(&self.crossings).push(Crossing { pixel, effect, made, parameter, only_f32 });
+    }
+}
+
+/// The first parameter whose default, with all others as they are, gives a color.
+fn parameter_of(effect: &'static Effect, words: &[u32], retried: Retried) -> Option<&'static Field> {
+    let defaults = (effect.defaults)();
+    effect.fields.iter().filter(|field| !field.same(words, &defaults)).find(|field| {
+        let mut changed = words.to_vec();
+        field.set(&mut changed, &field.get(&defaults)).is_ok() && retried(&changed).is_none()
+    })
+}

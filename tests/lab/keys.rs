@@ -1,0 +1,81 @@
+//! Promise: what is typed into a text field or a search is text, from the first letter after the key that opened it, and never a shortcut.
+
+use eframe::egui::{Event, Key, Modifiers, Role};
+use egui_kittest::kittest::{NodeT as _, Queryable as _};
+
+use crate::harness::*;
+
+/// The events of typing `text`, as a window system sends them.
+fn typed(text: &str) -> Vec<Event> {
+    let key = |name: char| Key::from_name(&name.to_uppercase().to_string());
+    text.chars().flat_map(|c| key(c).map(|key| pressed(key, Modifiers::NONE)).into_iter().chain([Event::Text(c.to_string())])).collect()
+}
+
+fn pressed(key: Key, modifiers: Modifiers) -> Event {
+    Event::Key { key, physical_key: None, pressed: true, repeat: false, modifiers }
+}
+
+/// Sends all events in one frame.
+fn send(lab: &mut Lab, events: Vec<Event>) {
+    lab.input_mut().events.extend(events);
+    lab.run_steps(6);
+    settle(lab);
+}
+
+fn text_of(lab: &Lab, field: &str) -> String {
+    lab.get_by_role_and_label(Role::TextInput, field).accesskit_node().value().unwrap_or_default()
+}
+
+#[test]
+fn words_typed_into_the_cheat_sheet_search_it_and_do_nothing_else() {
+    let Some(mut lab) = lab("facet-knot") else { return };
+    let before = lab.state().preset_file().preset.clone();
+    press(&mut lab, Modifiers::NONE, Key::F1);
+    // O shows overlays, V verifies, R randomizes.
+    send(&mut lab, typed("over"));
+    assert_eq!(text_of(&lab, "Search actions and keys"), "over");
+    assert!(lab.query_all_by_label("Show or hide overlays").count() == 2 && lab.query_by_label("Randomize effects").is_none());
+    assert_eq!(lab.state().preset_file().preset, before, "typing changed the preset");
+    assert!(!lab.state().log_text().contains("verified") && !lab.state().log_text().contains("seed"), "{}", lab.state().log_text());
+
+    // A click beside the field does not make typing dangerous, and F1 and Escape close the sheet.
+    let view = lab.get_by_label("Picture").rect();
+    lab.drop_at(view.left_bottom() + eframe::egui::vec2(30.0, -60.0));
+    lab.run_steps(3);
+    send(&mut lab, typed("r"));
+    assert_eq!((text_of(&lab, "Search actions and keys").as_str(), &lab.state().preset_file().preset), ("overr", &before));
+    press(&mut lab, Modifiers::NONE, Key::F1);
+    assert!(lab.query_by_role_and_label(Role::TextInput, "Search actions and keys").is_none());
+    press(&mut lab, Modifiers::NONE, Key::F1);
+    assert_eq!(text_of(&lab, "Search actions and keys"), "", "the search begins anew");
+    press(&mut lab, Modifiers::NONE, Key::Escape);
+    assert!(lab.query_by_role_and_label(Role::TextInput, "Search actions and keys").is_none());
+}
+
+#[test]
+fn letters_typed_while_a_dialog_opens_are_in_its_field() {
+    let Some(mut lab) = lab("facet-knot") else { return };
+    let before = lab.state().preset_file().preset.clone();
+    // All in one frame, as a fast typist on a slow machine has it.
+    send(&mut lab, [vec![pressed(Key::O, Modifiers::COMMAND)], typed("rover")].concat());
+    assert_eq!(text_of(&lab, "Path"), "rover");
+    assert_eq!(lab.state().preset_file().preset, before);
+    press(&mut lab, Modifiers::NONE, Key::Escape);
+    assert!(lab.query_by_role_and_label(Role::TextInput, "Path").is_none());
+
+    // Over two frames, of which the second is the first that shows the dialog.
+    lab.input_mut().events.push(pressed(Key::O, Modifiers::COMMAND));
+    lab.step();
+    lab.input_mut().events.extend(typed("rov"));
+    lab.step();
+    lab.input_mut().events.extend(typed("er"));
+    lab.run_steps(6);
+    assert_eq!(text_of(&lab, "Path"), "rover");
+    assert_eq!(lab.state().preset_file().preset, before);
+    press(&mut lab, Modifiers::NONE, Key::Escape);
+
+    // The character of the key that opens the cheat sheet is no search.
+    send(&mut lab, [vec![pressed(Key::Questionmark, Modifiers::SHIFT), Event::Text("?".into())], typed("log")].concat());
+    assert_eq!(text_of(&lab, "Search actions and keys"), "log");
+    assert_eq!((&lab.state().preset_file().preset, error_lines(&lab)), (&before, vec![]));
+}
