@@ -223,6 +223,27 @@ impl CullingStats {
     }
 }
 
+/// Which depths a depth key stands for: those from `down` below its own to `up + relative_up * depth` above. The default is the
+/// key's own depth alone.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct DepthRounding {
+    pub down: f64,
+    pub up: f64,
+    pub relative_up: f64,
+    /// This key and smaller ones stand for everything farther away too.
+    pub least_key: u32,
+}
+
+impl DepthRounding {
+    /// The nearest and the farthest depth that `key` stands for, farthest first. A depth too small for a normal f32 has the key 1.
+    pub fn depths(&self, key: u32) -> [f64; 2] {
+        let depth = f64::from(f32::from_bits(key));
+        let low = if key <= self.least_key.max(1) { 0.0 } else { depth - self.down };
+        let high = depth * (1.0 + self.relative_up) + self.up;
+        [low, if key == 1 { high.max(f64::from(f32::MIN_POSITIVE)) } else { high }]
+    }
+}
+
 /// A finished picture with its integer images. Images are row-major, top row first, `width * height` long.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Frame {
@@ -232,7 +253,9 @@ pub struct Frame {
     pub triangle_id: Vec<u32>,
     /// Depth key per pixel: bits of the reversed depth, larger is nearer, 0 is empty.
     pub depth_key: Vec<u32>,
-    /// Depth keys are truncated or may be those of another triangle, as the preset asks; they are not judged.
+    /// Which depths a key stands for.
+    pub depth_rounding: DepthRounding,
+    /// Depth keys may be those of another triangle, as the preset asks; they are not judged.
     pub depth_keys_are_approximate: bool,
     /// Gamma-encoded sRGB and alpha.
     pub color: Vec<[u8; 4]>,

@@ -80,7 +80,8 @@ fn sample_clipped(t: Triangle, at: vec3u, pixel: vec2u) -> SamplePosition {
     let p = vec3f(sample.x * 2.0 - 1.0, 1.0 - sample.y * 2.0, 1.0);
     // Counter-clockwise in clip space, y up, is a positive determinant, whose sign all terms inside have. A snapped clipped
     // triangle may own a sample slightly outside; terms are clamped to 0 there, else their sum could vanish at a horizon.
-    let is_clockwise = dot(a.xyw, cross(b.xyw, c.xyw)) < 0.0;
+    // Of edges, since the products of corners that lie far away cancel to less than their rounding errors.
+    let is_clockwise = dot(a.xyw, cross(b.xyw - a.xyw, c.xyw - a.xyw)) < 0.0;
     let lines = mat3x3f(cross(b.xyw, c.xyw), cross(c.xyw, a.xyw), cross(a.xyw, b.xyw));
     let signed = p * lines;
     let terms = max(select(signed, -signed, is_clockwise), vec3f(0.0));

@@ -40,6 +40,8 @@ struct Row {
     frames: u32,
     /// What failed, one sentence each.
     failures: Vec<String>,
+    /// What the preset allows to err without saying by how much: pinned options and the tier.
+    without_budget: Vec<String>,
     /// Volume with linear skinning, as a fraction of that with dual quaternions; none without skins.
     volume: Option<f64>,
 }
@@ -100,6 +102,15 @@ pub fn run(common: &Common, args: &Verify, streams: &mut Streams) -> Result<Exit
             row.preset, row.option, a.particles, a.particles_diverged, a.max_divergence_px, a.mean_divergence_m
         ));
     });
+    for row in rows.iter().filter(|row| !row.without_budget.is_empty()) {
+        streams.note(&format!(
+            "{} with {}: {} may err by design, and the preset states no budget for it; add [test] with max_wrong_triangles, max_channel or \
+             max_pixels, and why",
+            row.preset,
+            row.option,
+            row.without_budget.join(" and ")
+        ));
+    }
     rows.iter()
         .for_each(|row| row.failures.iter().for_each(|failure| streams.note(&format!("{} with {}: {failure}", row.preset, row.option))));
     Ok(Exit::failed_if(rows.iter().any(|row| !row.failures.is_empty())))
@@ -161,12 +172,24 @@ fn verify(
             accuracy: verdict.report,
             pixels_over_tolerance,
             frames: args.frames,
+            without_budget: if failures.is_empty() { Vec::new() } else { without_budget(&preset) },
             failures,
             volume,
         });
         first.get_or_insert((name, capture.frame));
     }
     Ok(rows)
+}
+
+/// What a preset allows to err although its budget is the default one, which allows no error.
+fn without_budget(preset: &Preset) -> Vec<String> {
+    let budget = preset.test.clone().unwrap_or_default();
+    if (GoldenTest { why: String::new(), ..budget }) != GoldenTest::default() {
+        return Vec::new();
+    }
+    let accuracy = &preset.accuracy;
+    let tier = (accuracy.tolerance().wrong_ppm > 0.0).then(|| format!("tier={}", accuracy.tier.name()));
+    accuracy.inexact_pins().chain(tier).collect()
 }
 
 /// Compares the scaling from drawn to shown pixels with the oracle's.
@@ -235,7 +258,12 @@ fn text(rows: &[Row], class: &str) -> String {
         ];
         let mut line = vec![row.preset.clone(), row.option.into(), class.into()];
         line.extend(counts.map(|count| count.to_string()));
-        line.extend([format!("{:.4}", a.rms_color_delta), if row.failures.is_empty() { "ok" } else { "FAIL" }.into()]);
+        let verdict = match (row.failures.is_empty(), row.without_budget.is_empty()) {
+            (true, _) => "ok",
+            (false, false) => "no budget",
+            (false, true) => "FAIL",
+        };
+        line.extend([format!("{:.4}", a.rms_color_delta), verdict.into()]);
         line
     }));
     table(&lines)
@@ -246,7 +274,7 @@ fn json_row(row: &Row, backend: &Backend) -> Value {
     let mut object = json!({
         "preset": row.preset, "option": row.option, "adapter": backend.name(), "class": backend.class(),
         "frames": row.frames, "pixels_over_tolerance": row.pixels_over_tolerance, "ok": row.failures.is_empty(), "failures": row.failures,
-        "judged_by_own_text": row.judged_by_own_text,
+        "judged_by_own_text": row.judged_by_own_text, "without_budget": row.without_budget,
     });
     if let (Value::Object(object), Ok(Value::Object(stats))) = (&mut object, serde_json::to_value(&row.accuracy)) {
         object.extend(stats);

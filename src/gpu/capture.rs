@@ -15,7 +15,7 @@ use super::{
     view_resources::{Request, ViewResources},
 };
 use crate::{
-    accuracy::{Culling, DepthFormat},
+    accuracy::{Culling, Visibility},
     effects::{Stack, hooks::Layers},
     frame::{AdapterPicture, Counters, Frame, Geometry},
     plan::AccuracyRequest,
@@ -96,19 +96,19 @@ impl Renderer {
         // The judge asks for all triangles, culled ones too.
         let all = Readback { view: judge.as_ref().unwrap_or(&self.picture), ..picture };
         let [width, height] = self.picture.frame()?.layout.size;
-        let (triangle_id, depth) = picture.visibility()?;
-        let depth_keys_are_approximate =
-            !key.options.visibility.is_exact() || !matches!(key.options.depth, DepthFormat::Reversed | DepthFormat::Integer);
+        let (triangle_id, stored_keys) = picture.visibility()?;
+        let depth_keys = stored_keys.into_iter().map(|stored| key.depth_bits(stored)).collect();
         let frame = Frame {
             width,
             height,
             triangle_id,
-            depth_key: depth,
+            depth_key: depth_keys,
             color: picture.picture(BufferId::Color, [width, height])?,
             layer_sums: picture.layer_sums()?,
             dots: picture.dot_strengths()?,
             counters,
-            depth_keys_are_approximate,
+            depth_rounding: key.depth_rounding(),
+            depth_keys_are_approximate: key.options.visibility == Visibility::Race,
         };
         let read = |id, size| self.picture.buffers.get(id).and_then(|buffer| buffers::read_picture(gpu, buffer, size));
         let previous = key.reads_previous().then(|| read(BufferId::Previous, [width, height])).transpose()?;

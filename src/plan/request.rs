@@ -2,7 +2,7 @@
 
 use super::predict::Prediction;
 use crate::accuracy::{
-    AXES, AccuracyOptions, Axis, AxisOption, DepthFormat, Parameters, PinnedOptions, RenderScale, SampleCounter, ShaderChecks, Skinning,
+    AXES, AccuracyOptions, AxisOption, DepthFormat, Parameters, PinnedOptions, RenderScale, SampleCounter, ShaderChecks, Skinning,
     VertexTransform, Visibility,
 };
 
@@ -100,9 +100,20 @@ impl AccuracyRequest {
 
     /// Does it allow a picture that is not exact?
     pub fn may_err(&self) -> bool {
-        let is_cheaper = |axis: &Axis| self.pins.get(axis).is_some_and(|index| index < axis.default && !EXACT_AXES.contains(&axis.index()));
-        let is_lossy = self.pins.option::<Visibility>().is_some_and(|visibility| !visibility.is_exact());
-        is_lossy || AXES.iter().any(is_cheaper) || self.tolerance().wrong_ppm > 0.0
+        self.inexact_pins().next().is_some() || self.tolerance().wrong_ppm > 0.0
+    }
+
+    /// The pinned options whose picture may be wrong, as `depth=log16`.
+    pub fn inexact_pins(&self) -> impl Iterator<Item = String> + '_ {
+        AXES.iter().filter_map(|axis| {
+            let index = self.pins.get(axis)?;
+            let is_inexact = match axis.index() {
+                Visibility::AXIS => !Visibility::from_index(index).is_exact(),
+                exact if EXACT_AXES.contains(&exact) => false,
+                _ => index < axis.default,
+            };
+            is_inexact.then(|| format!("{}={}", axis.name, axis.words[index]))
+        })
     }
 
     /// The preset's own tolerance, or the tier's.

@@ -3,14 +3,13 @@
 //! What each member means for the shader files, the overrides, the label and the passes is one table: `super::features`.
 
 use crate::{
-    accuracy::{AccuracyOptions, Culling, DepthFormat, RenderScale, Visibility},
+    accuracy::{AccuracyOptions, Culling, RenderScale, Visibility},
     effects::{
         Effect, EnabledEffect, Stack,
         dots::LineSource,
         draw_order,
         hooks::{Layers, Shape},
     },
-    frame::NO_TRIANGLE,
 };
 
 /// Everything that decides which shader text runs and with which constants. Equal keys, equal pipelines.
@@ -305,28 +304,6 @@ impl KernelKey {
             Visibility::Split32 => FramebufferLayout::Split32,
             Visibility::Packed32 => FramebufferLayout::Packed32,
             Visibility::Race | Visibility::Packed64 | Visibility::Tiled => FramebufferLayout::Packed64,
-        }
-    }
-
-    /// Bits of a depth key that shares a word with a triangle id, before it is shortened, and the least key that counts: two
-    /// far depths below 2^-31 are one.
-    pub(super) const fn depth_key_range(&self) -> (u32, u32) {
-        match self.options.depth {
-            DepthFormat::Ndc16 | DepthFormat::Log16 => (16, 0),
-            DepthFormat::Log24 => (24, 0),
-            DepthFormat::Standard => (30, 0),
-            DepthFormat::Reversed | DepthFormat::Integer => (28, 0x3000_0000),
-        }
-    }
-
-    /// Triangle id and depth key of a pixel from the word that they share, as `shaders/lib/packed32.wgsl` packs them.
-    pub fn unpack(&self, word: u32) -> (u32, u32) {
-        let (key_bits, least_key) = self.depth_key_range();
-        let id_bits = self.framebuffer.triangle_id_bits;
-        let lost_bits = (key_bits + id_bits).saturating_sub(32);
-        match word {
-            0 => (NO_TRIANGLE, 0),
-            _ => (!word & ((1 << id_bits) - 1), (((word >> id_bits) << lost_bits) + least_key).max(1)),
         }
     }
 }

@@ -9,6 +9,7 @@ mod backends;
 mod culling;
 mod evaluator_gpu;
 mod extremes;
+mod judge_at_extremes;
 mod oracle;
 mod specialization;
 mod stacks;

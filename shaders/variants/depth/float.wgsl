@@ -27,8 +27,9 @@ fn depth_key(z: f32) -> u32 {
 }
 
 fn depth_bits(key: u32) -> u32 {
-    if DEPTH_FORMAT == DEPTH_STANDARD { return bitcast<u32>(1.0 - bitcast<f32>(0x3f800001u - key)); }
-    if DEPTH_FORMAT == DEPTH_NDC16 { return bitcast<u32>(f32(key) / 65535.0); }
+    if DEPTH_FORMAT == DEPTH_STANDARD { return max(bitcast<u32>(1.0 - bitcast<f32>(0x3f800001u - key)), 1u); }
+    // A product is rounded correctly everywhere, a quotient is not.
+    if DEPTH_FORMAT == DEPTH_NDC16 { return bitcast<u32>(f32(key) * (1.0 / 65535.0)); }
     if DEPTH_FORMAT == DEPTH_LOG { return DEPTH_LOG_FIRST + key * DEPTH_LOG_STEP; }
     return key;
 }

@@ -1,6 +1,9 @@
 //! Depth keys: integers that order as depths do (`docs/exactness.md` §6 and §10).
 
-use crate::{frame::SnappedVertex, math::SMALL_EXTENT};
+use crate::{
+    frame::{DepthRounding, SnappedVertex},
+    math::SMALL_EXTENT,
+};
 
 /// Bits of a depth rounded to f32, which order as the depths do; at least 1, because 0 marks an empty pixel.
 pub fn depth_key(depth: f64) -> u32 {
@@ -14,10 +17,10 @@ pub fn depth_bound(corners: &[SnappedVertex; 3]) -> f64 {
     (if is_small { 8.0 } else { 12.0 }) / f64::from(1 << 23)
 }
 
-/// Returns true if a float key lies in the interval of depths. A depth too small for a normal f32 has the smallest key, 1.
-pub fn key_fits(key: u32, [low, high]: [f64; 2]) -> bool {
-    let depth = f64::from(f32::from_bits(key));
-    (low..=high).contains(&depth) && key != 0 || key == 1 && low < f64::from(f32::MIN_POSITIVE)
+/// Returns true if a key may stand for a depth in the interval.
+pub fn key_fits(key: u32, rounding: &DepthRounding, [low, high]: [f64; 2]) -> bool {
+    let [least, most] = rounding.depths(key);
+    key != 0 && least <= high && most >= low
 }
 
 /// The depth key at a sample as a quotient of integers (`docs/exactness.md` §10), from the depths of the corners and the doubled

@@ -56,7 +56,8 @@ impl BoundedSample {
     fn add(&mut self, id: u32, depth: f64, interval: [f64; 2], claim: u32) {
         self.floor = self.floor.max(interval[0]);
         if id == claim {
-            self.claimed = Some(interval);
+            // Boxes of the clipped triangles of one triangle overlap: the nearest decides.
+            self.claimed = Some(self.claimed.map_or(interval, |other| [other[0].max(interval[0]), other[1].max(interval[1])]));
         }
         let before = self.nearest.triangle_id;
         let is_nearest = self.nearest.add(id, depth);

@@ -64,16 +64,6 @@ impl<'a> VertexBounds<'a> {
         ClipErrors { errors, magnitudes }
     }
 
-    /// How far the errors of vertex effects may move a corner over the picture where it is clipped, at depth `w`, in halves of the
-    /// picture.
-    pub fn clipped_displacement(&self, corner: Corner, w: f64) -> f64 {
-        if !self.evaluator.moves {
-            return 0.0;
-        }
-        let row = |r: usize| [0, 1, 2].map(|axis| self.evaluator.clip_from_world[axis][r].abs()).iter().sum::<f64>();
-        self.displacement(corner).0 * (row(0).max(row(1)) + row(3)) / w
-    }
-
     /// Bound of the error of a corner's displacement in meters, and the displacement.
     fn displacement(&self, corner: Corner) -> (f64, DVec3) {
         let unmoved = self.evaluator.unmoved(corner);

@@ -8,12 +8,13 @@ use super::{
             draw_order::limited,
             sample_setup::effects_with_setup,
             sample_tests::{DrawLimit, SampleTests},
+            snap::half_size,
             triangles::triangles,
         },
         shot::Shot,
     },
     freedom::Freedom,
-    outline::{Outline, SamplePosition},
+    outline::{Drawn, Outline, SamplePosition},
     vertices::VertexError,
 };
 use crate::{
@@ -91,7 +92,7 @@ impl EndToEnd<'_> {
             return true;
         }
         // Sample effects test the inside of triangles, where a moved corner or another setup may change the result.
-        let may_test_differently = |id: u32| self.outline(id).is_some_and(|outline| outline.reach > 0.0) || self.has_other_setup(id);
+        let may_test_differently = |id: u32| self.outline(id).is_some_and(|outline| outline.may_move()) || self.has_other_setup(id);
         if self.shot.stack.each(|hooks| hooks.sample).next().is_some() && [a, b].into_iter().any(may_test_differently) {
             return true;
         }
@@ -106,8 +107,8 @@ impl EndToEnd<'_> {
         of(self.adapter) != of(self.own)
     }
 
-    /// Where a triangle is drawn and how far it may move: 1.5 times as far as its corners did; if it is clipped, the larger of one
-    /// pixel and 1.5 times the vertex effects' error (1.5 is at least √2, for both axes).
+    /// Where a triangle is drawn and how far it may move: 1.5 times as far as its corners did (1.5 is at least √2, for both axes); if
+    /// it is clipped, the larger of one pixel and 1.5 times what the errors of its corners and of the cuts come to at the sample.
     fn outline(&self, id: u32) -> Option<Outline> {
         let draw = self.shot.draw_of(id)?;
         let records = self.shot.corner_records(draw, self.own, id);
@@ -118,13 +119,21 @@ impl EndToEnd<'_> {
         let reach = match errors.iter().any(|error| error.is_ill_conditioned) {
             true => f64::INFINITY,
             false if is_whole => 1.5 * moved,
-            false => errors.iter().map(|error| 1.5 * error.clipped_displacement).fold(pixel, f64::max),
+            false => pixel,
         };
+        // A cut errs by its corners' errors, and its own roundings are fewer than theirs.
+        let clip_error = if is_whole { 0.0 } else { errors.iter().map(|error| 3.0 * error.clip_error).fold(0.0, f64::max) };
+        let half_picture = half_size(self.shot.view).map(f64::from).into_iter().fold(0.0, f64::max);
         // The oracle's clipped triangles are sorted by parent.
         let clipped = &self.own.clipped_triangles;
         let fan = clipped.partition_point(|t| t.parent < id)..clipped.partition_point(|t| t.parent <= id);
-        let is_disc = self.shot.stack.shape() == Shape::Triangles && self.own.particle_discs.contains(&id);
+        let drawn = match self.shot.stack.shape() {
+            Shape::Triangles if self.own.particle_discs.contains(&id) => Drawn::Disc,
+            Shape::Triangles => Drawn::Inside,
+            Shape::Boxes => Drawn::Box,
+            Shape::Points => Drawn::Points(self.shot.stack.point_radius().into()),
+        };
         let triangles = if is_whole { vec![records] } else { clipped[fan].iter().map(|triangle| triangle.corners).collect() };
-        Some(Outline { is_disc, triangles, reach })
+        Some(Outline { drawn, triangles, reach, clip_error, half_picture })
     }
 }

@@ -44,7 +44,7 @@ pub fn judge_samples(report: &mut ErrorReport, coverage: &BoundedCoverage, pictu
         report.wrong_triangles += u64::from(is_wrong);
         // In a race the key may be that of another triangle.
         let has_key = !freedom.is_contested(sample) && !frame.depth_keys_are_approximate;
-        report.key_outside_bound += u64::from(has_key && sample.claimed.is_some_and(|bound| !key_fits(key, bound)));
+        report.key_outside_bound += u64::from(has_key && sample.claimed.is_some_and(|bound| !key_fits(key, &frame.depth_rounding, bound)));
         if freedom.is_scheduled() {
             let drawn = picture.layers.map_or(0, |layers| layers[pixel]);
             report.double_hits += u64::from(drawn.saturating_sub(sample.nearest.layers));

@@ -19,7 +19,7 @@ use super::{
 };
 use crate::{
     effects::Stack,
-    frame::{Geometry, ShadowMap},
+    frame::{DepthRounding, Geometry, ShadowMap},
     measure::{ErrorReport, ShadowErrors},
     scene::{Scene, draw::DrawError, view::View},
 };
@@ -44,7 +44,7 @@ pub fn judge_shadow_map(report: &mut ErrorReport, shot: &Shot, map: &ShadowMap) 
         let is_covered = interval[1] > f64::NEG_INFINITY;
         report.holes += u64::from(is_covered && key == 0);
         report.double_hits += u64::from(!is_covered && key != 0);
-        report.key_outside_bound += u64::from(is_covered && key != 0 && !key_fits(key, *interval));
+        report.key_outside_bound += u64::from(is_covered && key != 0 && !key_fits(key, &DepthRounding::default(), *interval));
     }
     count_vertices(report, &bounded_errors(&shot, &map.geometry, &own));
     report.sample_setups_wrong += wrong_setups(&shot, &map.geometry);

@@ -7,10 +7,7 @@ use super::super::{
         snap::{attributes_fit, snap_bound, whole_units},
         vertex::VertexBounds,
     },
-    render::{
-        snap::half_size,
-        vertex::{Corner, VertexEvaluator},
-    },
+    render::vertex::{Corner, VertexEvaluator},
     shot::Shot,
 };
 use crate::{
@@ -29,8 +26,9 @@ pub struct VertexError {
     pub delta: u32,
     pub snap_is_outside: bool,
     pub attribute_is_outside: bool,
-    /// How far the errors of vertex effects at this corner may move the outline of a clipped triangle, in sub-pixel units.
-    pub clipped_displacement: f64,
+    /// Bound of the error of x or y plus that of w, in clip space: how far the error of this corner may move the outline of a clipped
+    /// triangle at w = 1, in halves of the picture.
+    pub clip_error: f64,
 }
 
 /// Compares an adapter's records with the oracle's.
@@ -95,30 +93,25 @@ fn bounded_error(evaluator: &VertexEvaluator, shot: &Shot, corner: Corner, adapt
     let Ok(position) = evaluator.clip(corner) else { return rejected_error(adapter, own) };
     let bounds = VertexBounds::new(evaluator);
     let errors = bounds.clip(corner);
-    let [_, _, ez, ew] = errors.errors;
-    let ill_conditioned = VertexError { is_ill_conditioned: true, ..Default::default() };
+    let [ex, ey, ez, ew] = errors.errors;
+    let clip_error = ex.max(ey) + ew;
+    let ill_conditioned = VertexError { is_ill_conditioned: true, clip_error, ..Default::default() };
     let Some(snap_bounds) = snap_bound(&position, errors.errors, shot.view).map(|bounds| bounds.map(whole_units)) else {
         return ill_conditioned;
     };
     if adapter.flags != own.flags {
         let may_cross_near = (position.w - position.z).abs() <= ez + ew;
         let is_explained = may_cross_near || guard_explains(adapter, own, snap_bounds);
-        return if is_explained { ill_conditioned } else { VertexError { snap_is_outside: true, ..Default::default() } };
+        return if is_explained { ill_conditioned } else { VertexError { snap_is_outside: true, clip_error, ..Default::default() } };
     }
     if own.flags == 0 {
         let [dx, dy] = [adapter.x.abs_diff(own.x), adapter.y.abs_diff(own.y)];
         let snap_is_outside = f64::from(dx) > snap_bounds[0] || f64::from(dy) > snap_bounds[1];
         let attribute_is_outside = !attributes_fit(adapter, &position, &errors);
-        return VertexError { delta: dx.max(dy), snap_is_outside, attribute_is_outside, ..Default::default() };
+        return VertexError { delta: dx.max(dy), snap_is_outside, attribute_is_outside, clip_error, ..Default::default() };
     }
-    let nearest = if shot.view.linear_depth_m.is_some() { 1.0 } else { position.z.abs() };
-    let half_picture = half_size(shot.view).map(f64::from).into_iter().fold(0.0, f64::max);
     let is_near = own.flags & vertex_flags::NEAR != 0;
-    VertexError {
-        attribute_is_outside: !is_near && !attributes_fit(adapter, &position, &errors),
-        clipped_displacement: bounds.clipped_displacement(corner, nearest) * half_picture,
-        ..Default::default()
-    }
+    VertexError { attribute_is_outside: !is_near && !attributes_fit(adapter, &position, &errors), clip_error, ..Default::default() }
 }
 
 /// A vertex that the oracle rejects must be rejected, for the same reason.

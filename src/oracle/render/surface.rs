@@ -182,7 +182,8 @@ impl<'a> SurfaceTriangle<'a> {
         let position = on_ray(view, point.screen, depth_m);
         let toward_eye = match view.linear_depth_m {
             Some(_) => -view.forward,
-            None => (view.eye - position).try_normalize().unwrap_or(-view.forward),
+            // Not from the position: where a clipped triangle covers a sample outside its plane's visible part, that lies behind the eye.
+            None => -(view.forward + across(view, point.screen)).normalize(),
         };
         let smooth = self.normals.and_then(|normals| self.smooth_normal(weights, normals));
         let normal = smooth.or(self.flat_normal).unwrap_or(toward_eye);
@@ -253,9 +254,14 @@ impl<'a> SurfaceTriangle<'a> {
     }
 }
 
+/// From the middle of the picture to a point of it (as a fraction), in world space; at a depth of 1 in perspective.
+fn across(view: &View, screen: DVec2) -> DVec3 {
+    view.ndc_axes[0] * (2.0 * screen.x - 1.0) + view.ndc_axes[1] * (1.0 - 2.0 * screen.y)
+}
+
 /// The point at a depth along the viewing direction, on the ray through a point of the picture (as a fraction of it).
 fn on_ray(view: &View, screen: DVec2, depth_m: f64) -> DVec3 {
-    let across = view.ndc_axes[0] * (2.0 * screen.x - 1.0) + view.ndc_axes[1] * (1.0 - 2.0 * screen.y);
+    let across = across(view, screen);
     match view.linear_depth_m {
         None => view.eye + (view.forward + across) * depth_m,
         Some(_) => view.eye + across + view.forward * depth_m,

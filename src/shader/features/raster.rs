@@ -109,7 +109,7 @@ const DEPTH: Feature = Feature {
             DepthFormat::Ndc16 => 2.0,
             DepthFormat::Log16 | DepthFormat::Log24 => 3.0,
         }),
-        ("DEPTH_LOG_STEP", |key, _| if key.options.depth == DepthFormat::Log16 { 4096.0 } else { 16.0 }),
+        ("DEPTH_LOG_STEP", |key, _| key.depth_log_step().into()),
     ],
     ..Feature::NONE
 };

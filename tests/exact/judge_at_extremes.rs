@@ -1,0 +1,101 @@
+//! Promise: the judge finds no fault with exact pictures where its bounds are hardest to state: clipped triangles of enormous scenes,
+//! boxes and discs whose rims move, and depth keys that are rounded. Needs an adapter.
+
+use rasterlab::{
+    accuracy::{DepthFormat, PinnedOptions, Visibility},
+    gpu::Renderer,
+    plan::AccuracyRequest,
+    preset_file,
+};
+
+use crate::common::*;
+
+/// Draws a preset with every visibility option and judges it.
+fn exact_preset(renderer: &mut Renderer, text: &str) {
+    let preset = preset_file::parse(&format!("schema = 2\n{text}"), "case").unwrap_or_else(|error| panic!("{error}")).preset;
+    let scene = preset_file::load_scene(&preset, None).unwrap_or_else(|error| panic!("{error}"));
+    for option in options(renderer) {
+        let accuracy = AccuracyRequest { pins: preset.accuracy.pins.with(option), ..preset.accuracy };
+        let (_, verdict) = judged_preset(renderer, &scene, &preset, &accuracy);
+        if let Err(faults) = exactness(&verdict.report) {
+            panic!("{} with {}: {faults}\n{:?}", text.replace('\n', "; "), option.name(), verdict.report);
+        }
+    }
+}
+
+#[test]
+fn edges_that_reach_far_behind_the_eye_move_by_their_corners_errors() {
+    let Some(mut renderer) = renderer() else { return };
+    // Walls of 200 km, cut a few meters from the eye.
+    exact_preset(&mut renderer, "scene.builtin = \"near\"\noutput.size = [160, 120]\n[camera]\neye = [1.0, 1.0, 1.0]\n[effects.lambert]");
+    exact_preset(&mut renderer, "scene.builtin = \"near?reach=100000\"\noutput.size = [60, 144]\n[camera]");
+    exact_preset(&mut renderer, "scene.builtin = \"near\"\noutput.size = [160, 120]\naccuracy.coverage = \"fixed12\"");
+}
+
+#[test]
+fn overlapping_boxes_of_one_clipped_triangle_have_the_nearest_depth() {
+    let Some(mut renderer) = renderer() else { return };
+    let camera = "[camera]\ntarget = [0.155594989, -0.760247648, -0.299653268]\nup = [-0.634883838, 0.745447538, -0.370145453]";
+    exact_preset(&mut renderer, &format!("scene.builtin = \"near\"\noutput.size = [64, 48]\n{camera}\n[effects.boxes]"));
+}
+
+#[test]
+fn rims_of_boxes_and_discs_move_with_their_corners() {
+    let Some(mut renderer) = renderer() else { return };
+    for (scene, shape) in [("globe?tess=12", "boxes"), ("teapot?tess=4", "points")] {
+        exact_preset(
+            &mut renderer,
+            &format!("scene.builtin = \"{scene}\"\noutput.size = [200, 150]\n[effects.explode]\n[effects.{shape}]"),
+        );
+    }
+}
+
+const ROUNDED: [DepthFormat; 3] = [DepthFormat::Standard, DepthFormat::Log24, DepthFormat::Log16];
+
+#[test]
+fn dots_and_outlines_read_the_depth_that_a_rounded_key_stands_for() {
+    let Some(mut renderer) = renderer() else { return };
+    for depth in ROUNDED {
+        for effect in ["dots", "outline"] {
+            let accuracy = format!("accuracy.depth = \"{}\"", depth.name());
+            exact_preset(
+                &mut renderer,
+                &format!("scene.builtin = \"teapot?tess=6\"\noutput.size = [120, 90]\n{accuracy}\n[effects.{effect}]"),
+            );
+        }
+    }
+}
+
+#[test]
+fn rounded_keys_are_judged() {
+    let Some(renderer) = renderer() else { return };
+    let scene = scene("knot?tess=4");
+    let view = view(&scene, [96, 72]);
+    let faults = |renderer: &mut Renderer, depth: DepthFormat, visibility: Visibility| {
+        let accuracy = AccuracyRequest { pins: PinnedOptions::of(depth).with(visibility), ..AccuracyRequest::default() };
+        judged(renderer, &scene, &view, &stack(&[]), &accuracy).1.report.key_outside_bound
+    };
+    let line = "    if DEPTH_FORMAT == DEPTH_NDC16 { return max(u32(clamp(z, 0.0, 1.0) * 65535.0 + 0.5), 1u); }";
+    let mistakes = [
+        (DepthFormat::Log16, "DEPTH_LOG_STEP) / DEPTH_LOG_STEP;", "DEPTH_LOG_STEP) / DEPTH_LOG_STEP + 1u;"),
+        (DepthFormat::Log24, "- DEPTH_LOG_FIRST, DEPTH_LOG_STEP)", "- DEPTH_LOG_FIRST + 64u, DEPTH_LOG_STEP)"),
+        (DepthFormat::Ndc16, line, "    if DEPTH_FORMAT == DEPTH_NDC16 { return max(u32(clamp(z, 0.0, 1.0) * 65535.0 + 1.5), 1u); }"),
+        (
+            DepthFormat::Standard,
+            "return 0x3f800001u - bitcast<u32>(clamp(1.0 - z, 0.0, 1.0)); }",
+            "return 0x3f80000au - bitcast<u32>(clamp(1.0 - z, 0.0, 1.0)); }",
+        ),
+    ];
+    for (depth, right, wrong) in mistakes {
+        let shaders = mutated("variants/depth/float", right, wrong);
+        let mut mistaken = Renderer::with_library(renderer.gpu().clone(), shaders.shaders());
+        let mut right = Renderer::new(renderer.gpu().clone());
+        for visibility in options(&renderer).into_iter().chain([Visibility::Packed32]) {
+            assert_eq!(faults(&mut right, depth, visibility), 0, "{} with {}", depth.name(), visibility.name());
+            // Packed32 keeps fewer bits than the smallest of these mistakes changes.
+            if visibility != Visibility::Packed32 {
+                assert!(faults(&mut mistaken, depth, visibility) > 100, "{} with {}: not caught", depth.name(), visibility.name());
+            }
+        }
+    }
+}
