@@ -27,7 +27,7 @@ fn exact_preset(renderer: &mut Renderer, text: &str) {
 fn edges_that_reach_far_behind_the_eye_move_by_their_corners_errors() {
     let Some(mut renderer) = renderer() else { return };
     // Walls of 200 km, cut a few meters from the eye.
-    exact_preset(&mut renderer, "scene.builtin = \"near\"\noutput.size = [160, 120]\n[camera]\neye = [1.0, 1.0, 1.0]\n[effects.lambert]");
+    exact_preset(&mut renderer, "scene.builtin = \"near\"\noutput.size = [320, 240]\n[camera]\neye = [1.0, 1.0, 1.0]\n[effects.lambert]");
     exact_preset(&mut renderer, "scene.builtin = \"near?reach=100000\"\noutput.size = [60, 144]\n[camera]");
     exact_preset(&mut renderer, "scene.builtin = \"near\"\noutput.size = [160, 120]\naccuracy.coverage = \"fixed12\"");
 }
@@ -60,7 +60,7 @@ fn dots_and_outlines_read_the_depth_that_a_rounded_key_stands_for() {
             let accuracy = format!("accuracy.depth = \"{}\"", depth.name());
             exact_preset(
                 &mut renderer,
-                &format!("scene.builtin = \"teapot?tess=6\"\noutput.size = [120, 90]\n{accuracy}\n[effects.{effect}]"),
+                &format!("scene.builtin = \"sphere?triangles=200\"\noutput.size = [120, 90]\n{accuracy}\n[effects.{effect}]"),
             );
         }
     }
