@@ -2,14 +2,12 @@
 
 use std::{borrow::Cow, collections::HashMap};
 
-use gltf::json::{
-    self,
-    accessor::{ComponentType as JsonComponentType, Type},
-    validation::Checked,
-};
+use gltf::json::{self, validation::Checked};
 
 use super::{
+    compression::{Compression, DecodedViews},
     document,
+    element::{component_of, lanes_of},
     error::{LoadError, ReadFile},
     limits, uri,
 };
@@ -23,6 +21,8 @@ pub struct Buffers<'a> {
     /// The parsed JSON.
     pub root: &'a json::Root,
     bytes: Vec<Cow<'a, [u8]>>,
+    /// The buffer views that were compressed.
+    decoded: DecodedViews,
     /// Bytes that the model may still read from files.
     pub left: u64,
 }
@@ -39,11 +39,21 @@ pub struct Layout {
 }
 
 impl<'a> Buffers<'a> {
-    /// Reads every buffer. A buffer without a URI is the binary chunk of a GLB.
-    pub fn read(root: &'a json::Root, binary: Option<&'a [u8]>, read: &mut ReadFile) -> Result<Self, LoadError> {
+    /// Reads every buffer, and decodes what is compressed. A buffer without a URI is the binary chunk of a GLB, or has no bytes
+    /// because all its views are compressed.
+    pub fn read(
+        root: &'a mut json::Root,
+        binary: Option<&'a [u8]>,
+        compression: &Compression,
+        read: &mut ReadFile,
+    ) -> Result<Self, LoadError> {
         let mut left = limits::TOTAL_BYTES;
         let mut bytes = Vec::with_capacity(root.buffers.len());
         for (index, buffer) in root.buffers.iter().enumerate() {
+            if buffer.uri.is_none() && compression.is_fallback(index) {
+                bytes.push(Cow::Borrowed(&[][..]));
+                continue;
+            }
             let content = match (&buffer.uri, binary) {
                 (Some(uri), _) => uri::resolve(uri, left.min(limits::FILE_BYTES), read).map(Cow::Owned),
                 (None, Some(binary)) if index == 0 => Ok(Cow::Borrowed(binary)),
@@ -59,11 +69,15 @@ impl<'a> Buffers<'a> {
             }
             bytes.push(content);
         }
-        Ok(Self { root, bytes, left })
+        let decoded = compression.decode(root, &bytes)?;
+        Ok(Self { root, bytes, decoded, left })
     }
 
     /// The bytes of a buffer view. Fails if it does not exist or exceeds its buffer.
     pub fn view(&self, index: usize) -> Result<&[u8], LoadError> {
+        if let Some(decoded) = self.decoded.get(&index) {
+            return Ok(decoded);
+        }
         let view = self.root.buffer_views.get(index).ok_or_else(|| LoadError::new(format!("bufferView {index} does not exist")))?;
         let (buffer, start) = (view.buffer.value(), view.byte_offset.unwrap_or_default().0);
         let length = self.root.buffers.get(buffer).map_or(0, |b| b.byte_length.0);
@@ -182,22 +196,6 @@ impl<'a> Buffers<'a> {
         }
         Ok(())
     }
-}
-
-fn component_of(kind: JsonComponentType) -> ComponentType {
-    match kind {
-        JsonComponentType::I8 => ComponentType::I8,
-        JsonComponentType::U8 => ComponentType::U8,
-        JsonComponentType::I16 => ComponentType::I16,
-        JsonComponentType::U16 => ComponentType::U16,
-        JsonComponentType::U32 => ComponentType::U32,
-        JsonComponentType::F32 => ComponentType::F32,
-    }
-}
-
-/// Components per element. Padding between the columns of small matrices is not counted; no such matrix is read.
-fn lanes_of(kind: Type) -> u32 {
-    kind.multiplicity() as u32
 }
 
 /// A component type, and whether integers are normalized.

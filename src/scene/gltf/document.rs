@@ -4,6 +4,7 @@ use gltf::json;
 use serde::Deserialize;
 
 use super::{
+    compression::{DRACO, MESHOPT},
     error::{LoadError, called, quoted},
     limits,
     repair::{WEBP, repair},
@@ -38,11 +39,18 @@ pub fn parse_document(json: &[u8], notes: &mut Vec<String>) -> Result<json::Root
             serde_json::from_value(root).map_err(malformed)?
         }
     };
+    let has_draco = root.extensions_used.iter().chain(&root.extensions_required).any(|name| name == DRACO);
     // This loader supports them; the crate refuses extensions that it does not support itself.
     root.extensions_required.retain(|name| !READ_HERE.contains(&name.as_str()));
     check_positions(&root)?;
+    let without_view = |accessor: &json::Accessor| has_draco && accessor.buffer_view.is_none() && accessor.sparse.is_none();
+    let compressed: Vec<usize> = (0..root.accessors.len()).filter(|&index| without_view(&root.accessors[index])).collect();
+    // The validation asks for a view, which Draco data takes the place of.
+    compressed.iter().for_each(|&index| root.accessors[index].buffer_view = Some(json::Index::new(0)));
     let document = gltf::Document::from_json(root).map_err(|error| LoadError::new(format!("malformed glTF: {}", first_fault(error))))?;
-    Ok(document.into_json())
+    let mut root = document.into_json();
+    compressed.iter().for_each(|&index| root.accessors[index].buffer_view = None);
+    Ok(root)
 }
 
 /// What the crate reads where a texture names no image.
@@ -52,7 +60,7 @@ const NO_SOURCE: usize = u32::MAX as usize;
 pub const QUANTIZATION: &str = "KHR_mesh_quantization";
 
 /// Extensions that this loader reads and the crate `gltf` does not know.
-pub const READ_HERE: [&str; 2] = [QUANTIZATION, WEBP];
+pub const READ_HERE: [&str; 4] = [QUANTIZATION, WEBP, MESHOPT, DRACO];
 
 /// Checks the version and the required extensions first, for clearer errors than those of the full parser.
 fn check_head(json: &[u8]) -> Result<(), LoadError> {
@@ -94,7 +102,7 @@ fn check_positions(root: &json::Root) -> Result<(), LoadError> {
 
 fn remedy(extension: &str) -> &'static str {
     match extension {
-        "KHR_draco_mesh_compression" | "EXT_meshopt_compression" | "KHR_meshopt_compression" => "; export the model without compression",
+        "KHR_meshopt_compression" => "; export the model with EXT_meshopt_compression, or without compression",
         _ => "",
     }
 }

@@ -11,7 +11,9 @@ use gltf::json;
 
 use super::{
     buffers::Buffers,
-    clips, deformation, document,
+    clips,
+    compression::Compression,
+    deformation, document,
     error::{LoadError, ReadFile, quoted},
     limits, materials,
     meshes::Loader,
@@ -114,15 +116,16 @@ fn split(bytes: &[u8]) -> Result<(&[u8], Option<&[u8]>), LoadError> {
 fn read_model(bytes: &[u8], read: &mut ReadFile) -> Result<Scene, LoadError> {
     let (json, binary) = split(bytes)?;
     let mut left_out = Vec::new();
-    let root = document::parse_document(json, &mut left_out)?;
-    let mut buffers = Buffers::read(&root, binary, read)?;
+    let mut root = document::parse_document(json, &mut left_out)?;
+    let mut buffers = Buffers::read(&mut root, binary, &Compression::of(json)?, read)?;
+    let root = buffers.root;
     materials::check_images(&buffers)?;
-    let tree = Tree::walk(&root)?;
+    let tree = Tree::walk(root)?;
     let (mut rig, mut repairs) = (Rig::default(), Notes::default());
-    repairs.extend(left_out.into_iter().chain(tree.fault.clone()).chain(tree.rotation_note(&root)));
+    repairs.extend(left_out.into_iter().chain(tree.fault.clone()).chain(tree.rotation_note(root)));
     let (materials, images) = materials::read(&mut buffers, &tree.shown, read, &mut repairs)?;
-    if deformation::has_motion(&root) {
-        rig.nodes = tree.rig_nodes(&root)?;
+    if deformation::has_motion(root) {
+        rig.nodes = tree.rig_nodes(root)?;
         rig.skins = skin::read_skins(&buffers, &tree)?;
         clips::read(&buffers, &tree, &mut rig, &mut repairs)?;
     }
@@ -133,16 +136,16 @@ fn read_model(bytes: &[u8], read: &mut ReadFile) -> Result<Scene, LoadError> {
     let Loader { writer, notes, .. } = loader;
     let mut scene = writer.scene;
     scene.rig = rig;
-    scene.named_nodes = tree.named_nodes(&root)?;
+    scene.named_nodes = tree.named_nodes(root)?;
     if !scene.rig.is_empty() {
         scene.rig.motion_bounds = pose::motion_bounds(&scene);
     }
     let mut all = Notes::default();
-    all.extend(notes.into_iter().chain(repairs.into_vec()).chain(omissions(&root)));
+    all.extend(notes.into_iter().chain(repairs.into_vec()).chain(omissions(root)));
     if scene.instances.is_empty() {
         all.add(|| "nothing to draw: the scene shows no triangles");
     }
-    scene.cameras = tree.cameras(&root, &scene.bounds(), !scene.rig.is_empty(), &mut all);
+    scene.cameras = tree.cameras(root, &scene.bounds(), !scene.rig.is_empty(), &mut all);
     scene.notes = all.into_vec();
     scene.faults.extend(tree.fault);
     Ok(scene)

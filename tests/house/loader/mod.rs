@@ -3,6 +3,7 @@
 //! [`model::Model`].
 
 mod accepted;
+mod compressed;
 mod corpus;
 mod files;
 mod hostile;
