@@ -1,6 +1,6 @@
 //! Promise: compressed models decode as the reference encoders and decoders have them, and hostile streams are refused in a sentence.
 //!
-//! `meshopt.json` was written by meshoptimizer 1.3.0 and `draco.json` by the encoder and decoder of draco3d 1.5.7: each entry holds a
+//! `meshopt.json` was written by meshoptimizer 1.3.0 and `draco.json` by the encoder and decoder of the npm package draco3d: each entry holds a
 //! compressed stream and what the reference decoder makes of it.
 
 use std::time::Instant;
