@@ -88,7 +88,7 @@ fn exit_of_open(error: &OpenError) -> Exit {
 fn exit_of_render(error: &RenderError) -> Exit {
     match error {
         error if error.is_lost() => Exit::DeviceLost,
-        error if error.is_unsupported() => Exit::NoAdapter,
+        error if error.depends_on_adapter() => Exit::NoAdapter,
         _ => Exit::Usage,
     }
 }

@@ -62,8 +62,15 @@ impl RenderError {
         }
     }
 
-    /// A pinned option that this adapter lacks, or a size that another may have. What no adapter could draw is wrong usage.
+    /// A pinned option that this preset or adapter lacks, or a size.
     pub fn is_unsupported(&self) -> bool {
+        self.depends_on_adapter()
+            || matches!(self, Self::Plan(error) if !matches!(error, PlanError::Conflict(_)))
+            || matches!(self, Self::Untrusted | Self::Tickets(_))
+    }
+
+    /// Another adapter may draw it: one with the option or the size. What no adapter could draw is wrong usage.
+    pub fn depends_on_adapter(&self) -> bool {
         matches!(self, Self::Plan(PlanError::NoInt64Atomics))
             || matches!(self, Self::Scaled { .. } | Self::TooLarge { .. } | Self::TooWide { .. } | Self::OutOfMemory { .. })
     }
