@@ -295,7 +295,7 @@ pub struct Parts {
 
 #[derive(Args, Debug)]
 pub struct Bless {
-    /// Presets of the preset folder, or effects that have no preset yet and get one
+    /// Preset files, names of presets in the preset folder, or effects that have no preset yet and get one
     #[arg(value_name = "PRESET|EFFECT")]
     pub names: Vec<String>,
     /// Every preset that has a [test] table
@@ -304,9 +304,9 @@ pub struct Bless {
     /// Change nothing; exit 1 if any golden would change
     #[arg(long)]
     pub dry_run: bool,
-    /// Folder of the goldens
-    #[arg(long, value_name = "DIR", default_value = "tests/snapshots")]
-    pub snapshots: PathBuf,
+    /// Folder of the goldens [default: snapshots beside the preset, if it is there, or else tests/snapshots]
+    #[arg(long, value_name = "DIR")]
+    pub snapshots: Option<PathBuf>,
 }
 
 #[derive(Args, Debug)]
@@ -379,9 +379,9 @@ pub struct Check {
     /// Write one self-contained HTML file with all pictures
     #[arg(long, value_name = "FILE", requires = "render")]
     pub report: Option<String>,
-    /// Folder of the goldens
-    #[arg(long, value_name = "DIR", default_value = "tests/snapshots")]
-    pub snapshots: PathBuf,
+    /// Folder of the goldens [default: snapshots beside the preset, if it is there, or else tests/snapshots]
+    #[arg(long, value_name = "DIR")]
+    pub snapshots: Option<PathBuf>,
 }
 
 /// `30..60`, `..60`, `30..`.

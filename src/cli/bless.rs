@@ -33,13 +33,14 @@ pub fn run(common: &Common, args: &Bless, streams: &mut Streams) -> Result<Exit,
     for (preset_file, is_new) in preset_files {
         bar.set_message(preset_file.id.clone());
         let golden = golden::draw(&preset_file, &*scene_of(common, &preset_file, streams)?)?;
-        let change = change(&golden, &args.snapshots, &preset_file.id);
+        let snapshots = golden::folder(args.snapshots.as_deref(), &preset_file);
+        let change = change(&golden, &snapshots, &preset_file.id);
         changed |= is_new || change["changes"] == json!(true);
         if !streams.json {
             streams.text(&format!("{}{}\n", line(&preset_file.id, &change), if is_new { " (its preset is created, too)" } else { "" }))?;
         }
         if !args.dry_run {
-            store(preset_file, is_new, &golden, args, &folder, change["changes"] == json!(true))?;
+            store(preset_file, is_new, &golden, &snapshots, &folder, change["changes"] == json!(true))?;
         }
         results.push(change);
         bar.inc(1);
@@ -69,7 +70,11 @@ fn preset_files(args: &Bless, folder: &Path, streams: &Streams) -> Result<Vec<(P
     Ok(tested.into_iter().map(|preset_file| (preset_file, false)).collect())
 }
 
+/// The preset of a path, or of a name in `folder`; or the first one of an effect.
 fn named(name: &str, folder: &Path) -> Result<(PresetFile, bool), CliError> {
+    if Path::new(name).extension().is_some_and(|extension| extension == "toml") {
+        return Ok((preset_file::load(Path::new(name))?.strict()?, false));
+    }
     let file = folder.join(format!("{name}.toml"));
     if file.exists() {
         return Ok((preset_file::load(&file)?.strict()?, false));
@@ -94,14 +99,21 @@ fn first_preset(effect: &'static Effect) -> PresetFile {
     PresetFile::new(effect.name, preset)
 }
 
-fn store(mut preset_file: PresetFile, is_new: bool, golden: &Golden, args: &Bless, folder: &Path, changes: bool) -> Result<(), CliError> {
+fn store(
+    mut preset_file: PresetFile,
+    is_new: bool,
+    golden: &Golden,
+    snapshots: &Path,
+    folder: &Path,
+    changes: bool,
+) -> Result<(), CliError> {
     if is_new {
         let path = folder.join(format!("{}.toml", preset_file.id));
         preset_file::save(&mut preset_file, &path)?;
     }
     if changes {
-        std::fs::create_dir_all(&args.snapshots)?;
-        let [png, sidecar] = golden::paths(&args.snapshots, &preset_file.id);
+        std::fs::create_dir_all(snapshots)?;
+        let [png, sidecar] = golden::paths(snapshots, &preset_file.id);
         files::write(&png, &golden.png, Existing::Replace)?;
         files::write(&sidecar, golden.sidecar.as_bytes(), Existing::Replace)?;
     }

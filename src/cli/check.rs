@@ -90,7 +90,7 @@ fn drawn(args: &Check, preset_file: &PresetFile, scene: &Arc<Scene>, backend: &m
     let Some(test) = &preset_file.preset.test else { return Ok((None, Vec::new())) };
     let frame = backend.frame(&preset_file.preset, scene)?;
     let size = [frame.width, frame.height];
-    let [png, _] = golden::paths(&args.snapshots, &preset_file.id);
+    let [png, _] = golden::paths(&golden::folder(args.snapshots.as_deref(), preset_file), &preset_file.id);
     if !png.exists() {
         return Ok((None, vec![format!("{} is missing; draw it with rasterlab bless {}", png.display(), preset_file.id)]));
     }

@@ -108,7 +108,7 @@ impl EndToEnd<'_> {
     }
 
     /// Where a triangle is drawn and how far it may move: 1.5 times as far as its corners did (1.5 is at least √2, for both axes); if
-    /// it is clipped, the larger of one pixel and 1.5 times what the errors of its corners and of the cuts come to at the sample.
+    /// it is clipped, the larger of one pixel and what the errors of its corners and of the cuts come to at the sample.
     fn outline(&self, id: u32) -> Option<Outline> {
         let draw = self.shot.draw_of(id)?;
         let records = self.shot.corner_records(draw, self.own, id);
@@ -121,8 +121,9 @@ impl EndToEnd<'_> {
             false if is_whole => 1.5 * moved,
             false => pixel,
         };
-        // A cut errs by its corners' errors, and its own roundings are fewer than theirs.
-        let clip_error = if is_whole { 0.0 } else { errors.iter().map(|error| 3.0 * error.clip_error).fold(0.0, f64::max) };
+        // A point that three planes cut errs by its corners' errors and by those of three cuts: each rounds a difference, a product, a
+        // sum and its own place on the edge, which is about as much as four products and their sum, of which a corner is made.
+        let clip_error = if is_whole { 0.0 } else { errors.iter().map(|error| 8.0 * error.clip_error).fold(0.0, f64::max) };
         let half_picture = half_size(self.shot.view).map(f64::from).into_iter().fold(0.0, f64::max);
         // The oracle's clipped triangles are sorted by parent.
         let clipped = &self.own.clipped_triangles;

@@ -488,6 +488,27 @@ fn bless_draws_what_check_then_accepts() {
 }
 
 #[test]
+fn a_golden_lies_beside_its_preset_or_with_those_of_the_tests() {
+    let folder = tempfile::tempdir().unwrap();
+    let text = "schema = 2\n[scene]\nbuiltin = \"knot?tess=3\"\n[output]\nsize = [64, 48]\n[test]\n";
+    fs::create_dir(folder.path().join("mine")).unwrap();
+    for name in ["mine/one.toml", "two.toml"] {
+        fs::write(folder.path().join(name), text).unwrap();
+    }
+    let go = |args: &[&str]| run_in(folder.path(), args);
+    let check = |name: &str| go(&["check", name, "--render", "--adapter", "cpu"]).code;
+    assert_eq!(go(&["bless", "mine/one.toml"]).code, 0);
+    assert!(folder.path().join("mine/snapshots/one.png").exists() && check("mine/one.toml") == 0);
+    fs::create_dir_all(folder.path().join("tests/snapshots")).unwrap();
+    assert_eq!(go(&["bless", "two.toml"]).code, 0);
+    assert!(folder.path().join("tests/snapshots/two.png").exists() && check("two.toml") == 0);
+    assert!(check("mine/one.toml") == 0, "the folder beside the preset comes first");
+    assert_eq!(go(&["bless", "two.toml", "--snapshots", "asked"]).code, 0);
+    assert!(folder.path().join("asked/two.png").exists());
+    assert_eq!(go(&["bless", "absent.toml"]).code, 2);
+}
+
+#[test]
 fn blessing_an_effect_without_a_preset_makes_its_first() {
     let folder = tempfile::tempdir().unwrap();
     fs::create_dir(folder.path().join("presets")).unwrap();
