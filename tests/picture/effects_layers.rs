@@ -90,7 +90,7 @@ fn two_effects_in_one_slot_are_refused_in_one_sentence_that_names_both() {
     let mut preset_file = preset_file::parse("schema = 2\n[effects.xray]\n", "one").expect("one effect");
     for (path, value) in [("overdraw", ""), ("overdraw.max_layers", "4")] {
         let error = preset_file::set(&mut preset_file, path, value).expect_err("a second effect").to_string();
-        assert!(error.starts_with(&format!("--set {path}")) && error.ends_with(&format!("effects {sentence}")), "{error}");
+        assert!(error.starts_with("--set") && error.ends_with(&format!("effects {sentence}")), "{error}");
     }
     assert!(preset_file.preset.stack.get("overdraw").is_none(), "nothing was switched on");
     preset_file::unset(&mut preset_file, "xray").expect("it is on");
