@@ -235,7 +235,7 @@ pub struct DepthRounding {
 }
 
 impl DepthRounding {
-    /// The nearest and the farthest depth that `key` stands for, farthest first. A depth too small for a normal f32 has the key 1.
+    /// The range of depths that `key` stands for, the farthest first. A depth too small for a normal f32 has the key 1.
     pub fn depths(&self, key: u32) -> [f64; 2] {
         let depth = f64::from(f32::from_bits(key));
         let low = if key <= self.least_key.max(1) { 0.0 } else { depth - self.down };

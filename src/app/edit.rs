@@ -11,7 +11,7 @@ use crate::{
     params::{Value, ValueType},
     preset::{Preset, SceneSource},
     preset_file,
-    scene::{Bounds, camera::Camera, parts::Scope},
+    scene::{Bounds, camera::Camera},
 };
 
 impl Session {
@@ -46,7 +46,7 @@ impl Session {
             Edit::Parameter(parameter, value) => return self.set_parameter(parameter, &value),
             Edit::Enable(effect) => drop(preset.stack.enable(effect)),
             Edit::Disable(effect) => self.disable(effect.name),
-            Edit::Scope(effect, on) => return self.limit(effect, on),
+            Edit::Scope(effect, on) => preset.stack.limit(effect, on).map_err(|conflict| conflict.to_string())?,
             Edit::Replace(other, effect) => {
                 self.disable(other);
                 self.preset_mut().stack.enable(effect);
@@ -82,20 +82,6 @@ impl Session {
             Edit::ToggleOrthographic => self.move_camera(orbit::toggle_orthographic),
         }
         Ok(())
-    }
-
-    /// Limits an effect to parts of the scene.
-    ///
-    /// # Errors
-    /// In a sentence for people: too many effects have a scope.
-    fn limit(&mut self, effect: &Effect, on: Scope) -> Result<(), String> {
-        let stack = &mut self.preset_mut().stack;
-        let Some(enabled) = stack.get_mut(effect.name) else { return Ok(()) };
-        let before = std::mem::replace(&mut enabled.on, on);
-        stack.check().map_err(|conflict| {
-            stack.get_mut(effect.name).expect("it was there").on = before;
-            conflict.to_string()
-        })
     }
 
     /// Takes an effect out of the stack, with its keys.

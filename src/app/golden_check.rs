@@ -6,7 +6,7 @@ use super::session::FileId;
 use crate::{
     measure::compare::pictures,
     oracle,
-    preset_file::{self, PresetFile},
+    preset_file::{self, PresetFile, golden_folder, golden_paths},
 };
 
 /// How the oracle's picture differs from the golden.
@@ -58,16 +58,12 @@ impl GoldenCheck {
 /// Draws the golden of a preset again and compares it with the stored one; none if the preset has no golden.
 pub fn check(preset_file: &PresetFile) -> Option<GoldenCheck> {
     preset_file.preset.test.as_ref()?;
-    let golden = stored(preset_file)?;
+    let [golden, _] = golden_paths(&golden_folder(preset_file), &preset_file.id);
+    if !golden.is_file() {
+        return None;
+    }
     let outcome = compared(preset_file, &golden).unwrap_or_else(Outcome::Failed);
     Some(GoldenCheck { file: FileId::of(preset_file), golden, outcome })
-}
-
-/// The golden: in `snapshots` beside the preset, or where the command line looks by default.
-fn stored(preset_file: &PresetFile) -> Option<PathBuf> {
-    let beside = preset_file.path.as_deref().and_then(Path::parent).map(|folder| folder.join("snapshots"));
-    let folders = beside.into_iter().chain([PathBuf::from("tests/snapshots")]);
-    folders.map(|folder| folder.join(format!("{}.png", preset_file.id))).find(|golden| golden.is_file())
 }
 
 fn compared(preset_file: &PresetFile, golden: &Path) -> Result<Outcome, String> {

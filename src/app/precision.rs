@@ -97,11 +97,6 @@ impl PrecisionState {
     }
 }
 
-/// Is it the effect of a file, or an instance of one?
-pub fn is_of_file(effect: &Effect) -> bool {
-    effect.source.is_some() || effect.base.is_some_and(|base| base.source.is_some())
-}
-
 /// Measures the effects of files in the picture of `of`, drawn by the oracle at no more than 76,800 pixels; none if it was cancelled.
 ///
 /// # Errors
@@ -110,7 +105,7 @@ pub fn measure(of: &Inputs, cancelled: &Arc<AtomicBool>) -> Result<Option<Measur
     let factor = (MAX_PIXELS / (of.view.pixels() as f64).max(1.0)).sqrt().min(1.0);
     let view = if factor < 1.0 { of.view.scaled(factor) } else { of.view.clone() };
     let mut drawn = Ok(());
-    let found = effect_files::precision(&of.stack.scaled(factor), is_of_file, cancelled, |stack| {
+    let found = effect_files::precision(&of.stack.scaled(factor), Effect::is_of_file, cancelled, |stack| {
         drawn = oracle::render(&of.scene, &view, stack).map(drop).map_err(|error| error.to_string());
     });
     let found = found.map_err(|error| error.to_string())?;

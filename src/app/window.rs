@@ -22,7 +22,7 @@ use super::{
     overlay::OverlaySelection,
     panel::Panel,
     panels::{Panels, log::toasts_ui},
-    precision::{PrecisionState, REST_S, is_of_file},
+    precision::{PrecisionState, REST_S},
     recovery, reload,
     scene_loader::SceneKey,
     screen::Screen,
@@ -299,7 +299,7 @@ impl App {
         let rest_s = precision.rest_s(requested, *now_s);
         let is_known = precision.is_running() || precision.of(Some(requested)).is_some() || precision.has_failed(Some(requested));
         let is_busy = is_held || session.playback.playing || screen.is_waiting() || verification.is_running();
-        let is_used = requested.stack.0.iter().any(|enabled| is_of_file(enabled.effect));
+        let is_used = requested.stack.0.iter().any(|enabled| enabled.effect.is_of_file());
         if !is_used || is_known || is_busy || !open.right || screen.drawn() != Some(requested) {
             return;
         }

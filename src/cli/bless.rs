@@ -16,7 +16,7 @@ use crate::{
     effects::Effect,
     measure::compare::pictures,
     preset::{GoldenTest, Output, Preset},
-    preset_file::{self, Existing, PresetFile},
+    preset_file::{self, Existing, PresetFile, golden_folder, golden_paths},
 };
 
 pub fn run(common: &Common, args: &Bless, streams: &mut Streams) -> Result<Exit, CliError> {
@@ -33,7 +33,7 @@ pub fn run(common: &Common, args: &Bless, streams: &mut Streams) -> Result<Exit,
     for (preset_file, is_new) in preset_files {
         bar.set_message(preset_file.id.clone());
         let golden = golden::draw(&preset_file, &*scene_of(common, &preset_file, streams)?)?;
-        let snapshots = golden::folder(args.snapshots.as_deref(), &preset_file);
+        let snapshots = args.snapshots.clone().unwrap_or_else(|| golden_folder(&preset_file));
         let change = change(&golden, &snapshots, &preset_file.id);
         changed |= is_new || change["changes"] == json!(true);
         if !streams.json {
@@ -113,7 +113,7 @@ fn store(
     }
     if changes {
         std::fs::create_dir_all(snapshots)?;
-        let [png, sidecar] = golden::paths(snapshots, &preset_file.id);
+        let [png, sidecar] = golden_paths(snapshots, &preset_file.id);
         files::write(&png, &golden.png, Existing::Replace)?;
         files::write(&sidecar, golden.sidecar.as_bytes(), Existing::Replace)?;
     }
@@ -122,7 +122,7 @@ fn store(
 
 /// What blessing would change, with old and new counts.
 fn change(golden: &Golden, snapshots: &Path, id: &str) -> Value {
-    let [png, sidecar] = golden::paths(snapshots, id);
+    let [png, sidecar] = golden_paths(snapshots, id);
     let old_sidecar = std::fs::read_to_string(&sidecar).unwrap_or_default();
     let old: Value = serde_json::from_str(&old_sidecar).unwrap_or_default();
     let size = [golden.frame.width, golden.frame.height];

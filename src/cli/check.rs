@@ -10,7 +10,6 @@ use super::{
     error::{CliError, Exit},
     files::{self, Names},
     finding::{Drawn, Finding},
-    golden,
     open::{gallery_name, open},
     report,
     streams::Streams,
@@ -20,7 +19,7 @@ use crate::{
     measure::compare::pictures,
     plan::{Caps, Planner},
     preset::Preset,
-    preset_file::{self, PresetError, PresetFile},
+    preset_file::{self, PresetError, PresetFile, golden_folder, golden_paths},
     scene::{Scene, draw::draws, needs::Needs},
 };
 
@@ -90,7 +89,8 @@ fn drawn(args: &Check, preset_file: &PresetFile, scene: &Arc<Scene>, backend: &m
     let Some(test) = &preset_file.preset.test else { return Ok((None, Vec::new())) };
     let frame = backend.frame(&preset_file.preset, scene)?;
     let size = [frame.width, frame.height];
-    let [png, _] = golden::paths(&golden::folder(args.snapshots.as_deref(), preset_file), &preset_file.id);
+    let folder = args.snapshots.clone().unwrap_or_else(|| golden_folder(preset_file));
+    let [png, _] = golden_paths(&folder, &preset_file.id);
     if !png.exists() {
         return Ok((None, vec![format!("{} is missing; draw it with rasterlab bless {}", png.display(), preset_file.id)]));
     }

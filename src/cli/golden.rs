@@ -2,8 +2,6 @@
 //!
 //! Only the oracle draws them; the picture of any adapter may be compared with them.
 
-use std::path::{Path, PathBuf};
-
 use serde_json::{Value, json};
 
 use super::error::CliError;
@@ -48,25 +46,6 @@ pub fn draw(preset_file: &PresetFile, scene: &Scene) -> Result<Golden, CliError>
     }
     let sidecar = format!("{:#}\n", sidecar(preset_file, scene, &frame));
     Ok(Golden { frame, png, sidecar })
-}
-
-/// The folder of a preset's golden: the one that is asked for, or `snapshots` beside the preset, or `tests/snapshots`. Where none of
-/// them exists, the golden of a preset file begins the one beside it.
-pub fn folder(asked: Option<&Path>, preset_file: &PresetFile) -> PathBuf {
-    const SHARED: &str = "tests/snapshots";
-    if let Some(asked) = asked {
-        return asked.to_owned();
-    }
-    let beside = preset_file.path.as_deref().map(|path| path.with_file_name("snapshots"));
-    match beside {
-        Some(beside) if beside.is_dir() || !Path::new(SHARED).is_dir() => beside,
-        _ => SHARED.into(),
-    }
-}
-
-/// The files of the picture and the sidecar of a preset.
-pub fn paths(snapshots: &Path, id: &str) -> [PathBuf; 2] {
-    [snapshots.join(format!("{id}.png")), snapshots.join(format!("{id}.json"))]
 }
 
 fn sidecar(preset_file: &PresetFile, scene: &Scene, frame: &Frame) -> Value {

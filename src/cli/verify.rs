@@ -118,7 +118,7 @@ pub fn run(common: &Common, args: &Verify, streams: &mut Streams) -> Result<Exit
 
 /// The effects of a preset that have no independent twin: the oracle evaluates their own text in f64.
 fn judged_by_own_text(preset: &Preset) -> Vec<&'static str> {
-    preset.stack.0.iter().map(|enabled| enabled.effect).filter(|effect| effect.source.is_some()).map(|effect| effect.name).collect()
+    preset.stack.0.iter().map(|enabled| enabled.effect).filter(|effect| effect.is_of_file()).map(|effect| effect.name).collect()
 }
 
 fn verify(

@@ -126,9 +126,8 @@ impl SoundnessProbe {
     fn of(effect: &'static Effect) -> Result<&'static Self, EvaluatedError> {
         static KNOWN: Probes<SoundnessProbe> = Mutex::new(BTreeMap::new());
         kept(&KNOWN, effect, || {
-            let is_custom = effect.source.is_some() || effect.base.is_some_and(|base| base.source.is_some());
             // The kernels are f32, and the text says what they do. Built-in effects have an f64 function that is not their text.
-            let single = if is_custom { Some(evaluated_in(&Library::from_env(), effect, Precision::Single)?) } else { None };
+            let single = if effect.is_of_file() { Some(evaluated_in(&Library::from_env(), effect, Precision::Single)?) } else { None };
             let recorder = Arc::new(Recorder::default());
             let mut hooks = effect.hooks;
             if let Some(exact) = hooks.surface {

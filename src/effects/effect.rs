@@ -132,6 +132,11 @@ impl Effect {
         !is_alone && !hooks.image.is_some_and(|hook| hook.reads_previous)
     }
 
+    /// Is it the effect of a file, or an instance of one?
+    pub const fn is_of_file(&self) -> bool {
+        self.source.is_some()
+    }
+
     /// Can it be limited to parts of a scene? Pixels, lines, slots of the rasterizer and particles belong to no draw.
     pub const fn has_scope(&self) -> bool {
         let hooks = &self.hooks;

@@ -260,6 +260,18 @@ impl Stack {
         self.get(race::EFFECT.name).is_some()
     }
 
+    /// Limits an effect to parts of the scene; enables it if it is off.
+    ///
+    /// # Errors
+    /// Too many effects have a scope; then nothing is changed.
+    pub fn limit(&mut self, effect: &'static Effect, on: Scope) -> Result<(), Conflict> {
+        let mut limited = self.clone();
+        limited.enable(effect).on = on;
+        limited.check()?;
+        *self = limited;
+        Ok(())
+    }
+
     /// The effect that enabling `effect` would conflict with: another one in its slot.
     pub fn rival_of(&self, effect: &Effect) -> Option<&'static Effect> {
         let slot = effect.hooks.slot?;

@@ -141,10 +141,8 @@ pub fn set(preset_file: &mut PresetFile, path: &str, value: &str) -> Result<(), 
         }
         Target::Scope(effect) => {
             let on = scope::read(&command_line_value(value), effect).map_err(wrong)?;
-            let mut stack = preset.stack.clone();
-            stack.enable(effect).on = on;
-            stack.check().map_err(|conflict| wrong(format!("cannot be set: {conflict}")))?;
-            preset_file.preset.stack = stack;
+            let limited = preset_file.preset.stack.limit(effect, on);
+            limited.map_err(|conflict| wrong(format!("cannot be set: {conflict}")))?;
         }
         Target::Animation(Some(effect), Some(field)) => {
             let mut reader = Reader::new(ARGUMENT, None, catalog.clone());

@@ -38,7 +38,7 @@ pub enum PresetError {
     NotOurs { what: String, reason: String },
     #[error("{id} cannot be changed: {reason}")]
     ReadOnly { id: String, reason: String },
-    /// A file of this name exists, and nobody asked to replace it.
+    /// A file of this name exists and is not to be replaced.
     #[error("{file} exists already")]
     Exists { file: String },
     #[error("{file}: cannot be written: {reason}")]

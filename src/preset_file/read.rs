@@ -108,16 +108,10 @@ fn read_effects(reader: &mut Reader<'_>, effects: &dyn TableLike, stack: &mut St
     for (name, _) in effects.iter() {
         let Some(table) = reader.table(effects, "effects.", name)? else { continue };
         match reader.effect(effects, "effects.", name)? {
-            Some(effect) => {
-                if let Some(conflict) = stack.conflict_with(effect) {
-                    return Err(PresetError::value(reader.position(effects, name), "effects", conflict.to_string()));
-                }
-                read_effect(reader, table, stack.enable(effect))?;
-            }
+            Some(effect) => read_effect(reader, table, stack.enable(effect))?,
             None => reader.unknown_effect(effects, "effects.", name),
         }
     }
-    // Slots are free by now, but there may be too many scopes.
     let error = |conflict: Conflict| PresetError::value(reader.position(effects, conflict.effect()), "effects", conflict.to_string());
     stack.check().map_err(error)
 }

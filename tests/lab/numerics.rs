@@ -25,7 +25,7 @@ fn has(lab: &Lab, text: &str) -> bool {
 fn the_largest_f32_error_of_an_effect_is_shown_and_its_place_is_marked() {
     let folder = tempfile::tempdir().expect("a temporary folder");
     let file = folder.path().join("effects/ink.wgsl");
-    // At a million, f32 knows sixteenths: what is left of a fraction is off by up to a thirty-second.
+    // Neighboring f32 numbers near a million are 1/16 apart, so the difference is off by up to 1/32.
     write(&file, &INK.replace("vec4f(p.amount, 0.0,", "vec4f((1000000.0 + p.amount * s.screen.x) - 1000000.0, 0.0,"));
     let Some(mut lab) = lab_of(folder.path(), PRESET) else { return };
     wait_for(&mut lab, "the error is measured", |lab| error(lab).is_some());

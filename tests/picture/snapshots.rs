@@ -109,7 +109,7 @@ impl Snapshot {
 
     /// Stores the oracle's picture as the golden; the earlier one is renamed to `.old.png`.
     fn bless(&self, golden: &Golden) {
-        let [picture, sidecar] = golden::paths(&self.folder, &self.id);
+        let [picture, sidecar] = preset_file::golden_paths(&self.folder, &self.id);
         if picture.exists() {
             fs::rename(&picture, self.path(".old.png")).expect("the golden can be moved");
         }
@@ -120,7 +120,7 @@ impl Snapshot {
     /// Pixels of `band` are left to the judge.
     fn check(&self, preset: &Preset, actual: &Picture, band: &[bool]) -> Result<(), String> {
         let size = preset.output.size;
-        let [path, _] = golden::paths(&self.folder, &self.id);
+        let [path, _] = preset_file::golden_paths(&self.folder, &self.id);
         if !path.exists() {
             self.leave(".new.png", actual, size);
             return Err(format!("{}: there is no golden; rasterlab bless {} draws one", self.id, self.id));
@@ -233,7 +233,7 @@ fn blessing_everything_again_changes_nothing() {
     let mut changes = Vec::new();
     for preset_file in preset_files() {
         let golden = golden::draw(&preset_file, &scene_of(&preset_file)).expect("the oracle draws every preset");
-        let [picture, sidecar] = golden::paths(&snapshots(), &preset_file.id);
+        let [picture, sidecar] = preset_file::golden_paths(&snapshots(), &preset_file.id);
         let (stored, _) = preset_file::png_pixels(&picture).unwrap_or_else(|error| panic!("{error}"));
         if stored != golden.frame.color {
             changes.push(format!("{}: the picture", preset_file.id));

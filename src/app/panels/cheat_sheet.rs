@@ -35,7 +35,7 @@ impl Panel for CheatSheet {
             .show(&ctx, |ui| {
                 let search = egui::TextEdit::singleline(&mut self.search).hint_text("Search actions and keys").desired_width(f32::INFINITY);
                 let search = ui.add(search).accessible_name("Search actions and keys");
-                // Whatever is typed while the sheet is open is a search.
+                // Keys that are typed while the sheet is open go into the search.
                 if ui.memory(|memory| memory.focused().is_none()) {
                     search.request_focus();
                 }

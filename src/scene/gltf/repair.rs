@@ -70,7 +70,7 @@ fn without_empty_textures(root: &mut Value, notes: &mut Vec<String>) {
     });
 }
 
-/// Removes the references to `empty` textures from a material, in whatever depth they stand.
+/// Removes the references to `empty` textures from a material and from the objects inside it.
 fn without_textures(object: &mut Map<String, Value>, empty: &BTreeSet<u64>) {
     let is_empty = |name: &str, value: &Value| {
         let index = value.get("index").and_then(Value::as_u64);

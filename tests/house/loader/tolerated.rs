@@ -1,4 +1,4 @@
-//! Promise: what the standard allows loads in whatever form it comes, and what every viewer draws loads with one message.
+//! Promise: every form that the standard allows loads, and a fault that every viewer tolerates loads with one message.
 
 use std::time::Instant;
 

@@ -5,7 +5,7 @@ use eframe::egui::{self, Ui};
 use crate::{
     app::{
         command::{Command, Commands, Marker, ViewCommand},
-        precision::{Error, is_of_file},
+        precision::Error,
         state::State,
         theme,
     },
@@ -15,7 +15,7 @@ use crate::{
 
 /// Shows what is known of the errors of `effect`; nothing for a built-in effect.
 pub fn precision_ui(ui: &mut Ui, state: &State, commands: &Commands, effect: &'static Effect) {
-    if !is_of_file(effect) {
+    if !effect.is_of_file() {
         return;
     }
     // Flush with the labels of the parameters.
