@@ -153,6 +153,7 @@ impl Pipelines {
         constants: &[(&str, f64)],
     ) -> Result<PipelineDesc, RenderError> {
         let is_trusted = key.options.shader_checks == ShaderChecks::Trusted;
+        // The planner has refused effects of files.
         if is_trusted && !matches!(self.library, Library::Embedded) {
             return Err(RenderError::Untrusted);
         }

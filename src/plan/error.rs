@@ -25,6 +25,11 @@ pub enum PlanError {
     PackedDeformation { option: &'static str, what: &'static str },
     #[error("depth integer divides exact edges, which coverage {option} does not have; use fixed8")]
     FloatCoverage { option: &'static str },
+    #[error(
+        "shader_checks trusted is for the shaders inside this program, and the effect {effect} comes from a file, whose indices nobody has \
+         checked; use checked"
+    )]
+    UncheckedEffect { effect: &'static str },
     #[error(transparent)]
     Conflict(#[from] Conflict),
 }

@@ -11,7 +11,7 @@ use super::{
 use crate::{
     accuracy::{
         AXES, AccuracyOptions, Axis, AxisOption, Coverage, Culling, CurlNoise, DepthFormat, DotCulling, ParticleStorage, PositionFormat,
-        ShadowMapSize, ShadowTaps, Skinning, VertexTransform, Visibility, XraySums,
+        ShaderChecks, ShadowMapSize, ShadowTaps, Skinning, VertexTransform, Visibility, XraySums,
     },
     effects::{
         Effect,
@@ -206,6 +206,11 @@ fn check(options: &AccuracyOptions, inputs: &Inputs) -> Result<(), PlanError> {
         && let Some(what) = inexact_part(options, inputs)
     {
         return Err(PlanError::NotStrict { what });
+    }
+    if options.shader_checks == ShaderChecks::Trusted
+        && let Some(effect) = stack.effects.iter().find(|effect| effect.is_of_file())
+    {
+        return Err(PlanError::UncheckedEffect { effect: effect.name });
     }
     check_xray(options, stack)
 }

@@ -81,3 +81,16 @@ fn effects_are_found_beside_the_preset_and_in_a_chosen_folder() {
     let drawn = run_in(elsewhere.path(), &["render", "b.png", "--size", "32x24", "--adapter", "cpu", "-o", "c.png"]);
     assert!(drawn.code == 0 && drawn.err.contains("brings the effect ink"), "{}", drawn.err);
 }
+
+#[test]
+fn the_code_of_a_file_is_never_compiled_without_checks() {
+    let folder = folder_with_effect("ink", "surface");
+    let preset = "schema = 2\n[scene]\nbuiltin = \"knot\"\n[effects.ink]\n[accuracy]\nshader_checks = \"trusted\"\n";
+    fs::write(folder.path().join("mine.toml"), preset).unwrap();
+    let run = run_in(folder.path(), &["check", "mine.toml"]);
+    assert!(run.code == 2 && run.err.contains("the effect ink comes from a file") && run.err.contains("use checked"), "{}", run.err);
+    // Effects of the program itself may be.
+    fs::write(folder.path().join("plain.toml"), preset.replace("ink", "facet")).unwrap();
+    let run = run_in(folder.path(), &["check", "plain.toml"]);
+    assert_eq!(run.code, 0, "{}", run.err);
+}
