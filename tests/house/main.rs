@@ -3,6 +3,7 @@
 mod architecture;
 mod circles;
 mod cli;
+mod dependencies;
 mod effect_files;
 mod evaluator;
 mod features;
