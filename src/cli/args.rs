@@ -339,7 +339,7 @@ pub struct Bench {
 
 #[derive(Args, Debug)]
 pub struct Stress {
-    /// Run only the case of this number, or the cases whose names contain this text
+    /// Run only the case of this number, or the cases whose names contain this text; several are separated by commas
     #[arg(long, value_name = "F")]
     pub filter: Option<String>,
     /// Changes the random cases

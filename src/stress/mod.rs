@@ -37,12 +37,15 @@ pub fn cases() -> Vec<&'static Case> {
     cases
 }
 
-/// The cases whose number is `filter`, or whose name contains it; all cases without a filter.
+/// The cases whose number is one of the parts of `filter`, which commas separate, or whose name contains one; all cases without a filter.
 pub fn chosen(filter: Option<&str>) -> Vec<&'static Case> {
-    let filter = filter.unwrap_or_default().trim().to_lowercase();
-    let is_meant = |case: &&Case| match filter.parse::<u32>() {
-        Ok(number) => case.number == number,
-        Err(_) => case.name.contains(&filter),
+    let filter = filter.unwrap_or_default().to_lowercase();
+    let is_meant = |case: &&Case| {
+        let mut parts = filter.split(',').map(str::trim).filter(|part| !part.is_empty() || filter.trim().is_empty());
+        parts.any(|part| match part.parse::<u32>() {
+            Ok(number) => case.number == number,
+            Err(_) => case.name.contains(part),
+        })
     };
     cases().into_iter().filter(is_meant).collect()
 }
@@ -69,6 +72,9 @@ mod tests {
         assert!(chosen(Some("3")).iter().all(|case| case.number == 3));
         assert!(!chosen(Some("3")).is_empty() && chosen(Some("99")).is_empty());
         assert!(chosen(Some(" Fan ")).iter().any(|case| case.name.contains("fan")));
+        let both = chosen(Some("fan-, 3,"));
+        assert_eq!(both.len(), chosen(Some("fan-")).len() + chosen(Some("3")).len());
+        assert!(both.iter().all(|case| case.number == 3 || case.name.contains("fan-")));
         assert_eq!(chosen(None).len(), cases().len());
     }
 }
