@@ -11,6 +11,7 @@ mod layout;
 mod loader;
 mod meshlets;
 mod mutants;
+mod mutation_campaign;
 mod presets;
 mod registry;
 mod scenes;

@@ -1,0 +1,1 @@
+"""The parts of scripts/mutants.py, the mutation campaign for the shaders."""
