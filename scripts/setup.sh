@@ -3,15 +3,18 @@
 # A second run installs nothing.
 #
 #   sh scripts/setup.sh                 everything that cargo run and cargo test need
+#   sh scripts/setup.sh --films         and ffmpeg, GNU parallel and Slurm, for videos and long films
 #   sh scripts/setup.sh --swiftshader   and Chromium, whose libvk_swiftshader.so is a second Vulkan driver for the tests
 set -eu
 
 swiftshader=no
+films=no
 for argument in "$@"; do
     case "$argument" in
         --swiftshader) swiftshader=yes ;;
+        --films) films=yes ;;
         *)
-            echo "usage: sh scripts/setup.sh [--swiftshader]" >&2
+            echo "usage: sh scripts/setup.sh [--films] [--swiftshader]" >&2
             exit 2
             ;;
     esac
@@ -46,6 +49,10 @@ fi
 
 if [ "$swiftshader" = yes ]; then
     packages="$packages chromium"
+fi
+
+if [ "$films" = yes ]; then
+    packages="$packages ffmpeg parallel slurm-wlm munge"
 fi
 
 if ! command -v cargo >/dev/null 2>&1; then

@@ -14,6 +14,7 @@
 //! * [`oracle`]: the exact CPU renderer that judges the kernels and makes the goldens
 //! * [`gpu`]: runs the kernels
 //! * [`preset_file`]: presets as sparse TOML files
+//! * [`film`]: films of an animated preset, as frames, animated PNG or video
 //! * [`stress`]: the table of extreme cases, each drawn and judged
 //! * `app`: the window (feature `gui`)
 //! * [`cli`]: every subcommand; opens no window except through `app`
@@ -28,6 +29,7 @@ pub mod cli;
 pub mod effect_files;
 pub mod effects;
 pub mod evaluator;
+pub mod film;
 pub mod frame;
 pub mod gpu;
 pub mod math;

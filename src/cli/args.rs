@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use clap::{Args, Parser, Subcommand, ValueEnum};
 
-use crate::{effect_files::Hook, preset_file::Folders};
+use crate::{effect_files::Hook, film::Turntable, preset_file::Folders};
 
 /// An effects lab around a compute-shader rasterizer, judged by an exact oracle.
 #[derive(Parser, Debug)]
@@ -213,11 +213,20 @@ pub struct Sequence {
     #[arg(value_name = "PRESET")]
     pub input: String,
     /// A file per frame, e.g. 'frame_{frame:4}.png'; may contain {preset} {effect} {frame} {frame:4} {adapter} {tier}
-    #[arg(short, long, value_name = "FILE", required_unless_present = "apng")]
+    #[arg(short, long, value_name = "FILE", required_unless_present_any = ["apng", "video", "count"])]
     pub output: Option<String>,
     /// Write all frames into one animated PNG
     #[arg(long, value_name = "FILE")]
     pub apng: Option<PathBuf>,
+    /// Write all frames into a video, .mp4, .webm or .gif, with ffmpeg
+    #[arg(long, value_name = "FILE")]
+    pub video: Option<PathBuf>,
+    /// Turn once over the range: the camera goes around the scene, or with =scene the scene turns before it
+    #[arg(long, value_name = "WHAT", num_args = 0..=1, require_equals = true, default_missing_value = "camera", value_parser = turntable)]
+    pub turntable: Option<Turntable>,
+    /// Print the number of frames and draw nothing
+    #[arg(long)]
+    pub count: bool,
     /// Time of frame 0 in seconds; default: begin of the preset's range
     #[arg(long, value_name = "S", allow_negative_numbers = true)]
     pub from: Option<f64>,
@@ -392,6 +401,15 @@ fn frames(text: &str) -> Result<[Option<u32>; 2], String> {
     match [end(from)?, end(to)?] {
         [Some(from), Some(to)] if from >= to => Err(format!("{text} has no frame: {from} is not before {to}")),
         ends => Ok(ends),
+    }
+}
+
+/// `camera` or `scene`.
+fn turntable(text: &str) -> Result<Turntable, String> {
+    match text {
+        "camera" => Ok(Turntable::Camera),
+        "scene" => Ok(Turntable::Scene),
+        _ => Err(format!("{text:?} cannot turn; write camera or scene")),
     }
 }
 

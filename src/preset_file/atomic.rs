@@ -87,6 +87,11 @@ impl AtomicFile {
         PresetError::Write { file: self.name.clone(), reason: error.to_string() }
     }
 
+    /// Where the file is while it is written, for another program that writes it.
+    pub fn path(&self) -> &Path {
+        self.file.path()
+    }
+
     /// A second handle to the file, for a writer that owns one.
     pub fn handle(&self) -> io::Result<File> {
         self.file.as_file().try_clone()

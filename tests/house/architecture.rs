@@ -24,6 +24,8 @@ const MAY_KNOW: &[(&str, &[&str])] = &[
     ("oracle", &["effects", "frame", "math", "measure", "params", "scene"]),
     ("gpu", &["effects", "frame", "accuracy", "math", "measure", "params", "plan", "scene", "preset", "shader"]),
     ("preset_file", &["effect_files", "effects", "frame", "accuracy", "math", "params", "plan", "scene", "preset", "shader"]),
+    // A film names neither `gpu` nor `oracle`: whoever asks for one says who draws it.
+    ("film", &["frame", "math", "scene", "preset", "preset_file"]),
     ("stress", &["effects", "frame", "gpu", "accuracy", "math", "measure", "oracle", "params", "plan", "scene", "preset"]),
     (
         "app",
@@ -39,6 +41,7 @@ const MAY_KNOW: &[(&str, &[&str])] = &[
             "params",
             "plan",
             "preset_file",
+            "film",
             "scene",
             "preset",
             "shader",
@@ -60,6 +63,7 @@ const MAY_KNOW: &[(&str, &[&str])] = &[
             "params",
             "plan",
             "preset_file",
+            "film",
             "scene",
             "preset",
             "shader",

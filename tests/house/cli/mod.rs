@@ -2,6 +2,7 @@
 
 mod effects;
 mod files_kept;
+mod films;
 mod limits;
 mod parts;
 mod sequences;

@@ -71,7 +71,7 @@ fn a_sequence_that_cannot_be_is_one_sentence() {
         (&["--frames", "0..9"], "--frames 0..9 lies outside 0..8, the frames from 0 to 1 s at 8 a second"),
         (&["-o", "f.png"], "put {frame} into the name, since there are 8 frames"),
         (&["-o", "f_{n}.png"], "use {frame} instead of {n}"),
-        (&["-o", "-"], "use --apng FILE for a single file"),
+        (&["-o", "-"], "use --apng FILE or --video FILE for a single file"),
         (&["--size", "0x4"], "PNG cannot hold"),
     ];
     for (args, wanted) in cases {
