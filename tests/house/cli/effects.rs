@@ -88,7 +88,12 @@ fn the_code_of_a_file_is_never_compiled_without_checks() {
     let preset = "schema = 2\n[scene]\nbuiltin = \"knot\"\n[effects.ink]\n[accuracy]\nshader_checks = \"trusted\"\n";
     fs::write(folder.path().join("mine.toml"), preset).unwrap();
     let run = run_in(folder.path(), &["check", "mine.toml"]);
-    assert!(run.code == 2 && run.err.contains("the effect ink comes from a file") && run.err.contains("use checked"), "{}", run.err);
+    assert!(
+        run.code == 2 && run.out.contains("the effect ink comes from a file") && run.out.contains("use checked"),
+        "{}{}",
+        run.out,
+        run.err
+    );
     // Effects of the program itself may be.
     fs::write(folder.path().join("plain.toml"), preset.replace("ink", "facet")).unwrap();
     let run = run_in(folder.path(), &["check", "plain.toml"]);
