@@ -10,10 +10,10 @@ import time
 
 from . import suite
 
-# What the program says of a shader that is no program: naga's excerpt, or a pipeline that the driver refuses.
-INVALID = re.compile(r"┌─ wgsl:\d|the pipeline .+ was refused|╭─|wgsl:\d+:\d+")
+# What the program says of a shader that is no program: naga's message with its place and excerpt, or a pipeline that is refused.
+INVALID = re.compile(r":\d+: error: |┌─ wgsl:\d|the pipeline .+ was refused")
 # Lines that are no reason.
-NOISE = re.compile(r"^adapter: |^\s*$|judged by its own text|^\d+ cases? in |^note: run with|^warning: ")
+NOISE = re.compile(r"^adapter: |^\s*$|XDG_RUNTIME_DIR|judged by its own text|^\d+ cases? in |^note: run with|^warning: ")
 # Exit codes of the program.
 PASSED, FAILED, DEVICE_LOST, PANIC = 0, 1, 4, 101
 
@@ -98,7 +98,7 @@ def run(probe, program, shaders, root, limit, environment, deadline=None):
             raise Stopped
         return Result("hang", f"no end within {limit:.0f} s", seconds)
     if any(INVALID.search(line) for line in lines):
-        first = next(line for line in lines if INVALID.search(line) or "error" in line)
+        first = next(line for line in lines if INVALID.search(line))
         return Result("invalid", (noted or first).strip()[:300], seconds)
     if noted is not None:
         return Result("failed", noted[:300], seconds)

@@ -212,6 +212,8 @@ class Running(unittest.TestCase):
         cases = [
             ("exit 0", "passed"), ("echo 'teapot with tiled: 3 holes' >&2; exit 1", "failed"), ("exit 2", "refused"), ("exit 4", "lost"),
             ("exit 101", "crash"), ("kill -SEGV $$", "crash"), ("echo '  ┌─ wgsl:12:3' >&2; exit 2", "invalid"),
+            ("echo 'because shaders/lib/fixed.wgsl:12: error: types differ' >&2; exit 2", "invalid"),
+            ("echo 'error: the queues still overflow' >&2; exit 2", "refused"),
         ]  # fmt: skip
         for script, kind in cases:
             self.assertEqual(self.outcome(script).kind, kind, script)
