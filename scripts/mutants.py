@@ -32,7 +32,7 @@ import time
 
 sys.dont_write_bytecode = True
 
-from mutation import choose, equivalent, results, run, suite  # noqa: E402
+from mutation import choose, equivalent, reads, results, run, suite  # noqa: E402
 
 ROOT = os.path.dirname(os.path.dirname(os.path.abspath(__file__)))
 EQUIVALENTS = os.path.join(ROOT, "scripts", "mutants-equivalent.txt")
@@ -179,15 +179,15 @@ class Campaign:
         if not missing:
             return
         say(f"baseline: {len(missing)} commands with unchanged shaders")
-        begin, tells_reads, faults = time.monotonic(), run.tells_reads(self.scratch), []
-        if not tells_reads:
-            say("note: this file system does not tell which files are read, so every mutant meets every command")
+        begin, faults = time.monotonic(), []
+        empty = tempfile.mkdtemp(dir=self.scratch)
+        method = reads.method(empty)
+        if method is None:
+            say("note: this system does not tell which files are read, so every mutant meets every command")
 
         def unchanged(probe):
             shaders = self.folder()
-            run.forget_reads(shaders)
-            result = self.run_probe(probe, shaders, 900.0)
-            return probe, result, run.reads(shaders) if tells_reads else None
+            return probe, *reads.names(method, shaders, lambda: self.run_probe(probe, shaders, 900.0))
 
         for future in concurrent.futures.as_completed([pool.submit(unchanged, probe) for probe in missing]):
             probe, result, read = future.result()

@@ -114,36 +114,3 @@ def copy_of(shaders, folder):
     target = os.path.join(folder, "shaders")
     shutil.copytree(shaders, target)
     return target
-
-
-def tells_reads(folder):
-    """Does the file system of a folder record when a file is read?"""
-    path = os.path.join(folder, "read-test")
-    with open(path, "w", encoding="utf-8") as file:
-        file.write("text")
-    _forget(path)
-    with open(path, encoding="utf-8") as file:
-        file.read()
-    is_told = os.stat(path).st_atime_ns != 0
-    os.remove(path)
-    return is_told
-
-
-def _forget(path):
-    os.utime(path, ns=(0, os.stat(path).st_mtime_ns))
-
-
-def _paths(shaders):
-    for folder, _, names in os.walk(shaders):
-        yield from (os.path.join(folder, name) for name in names if name.endswith(".wgsl"))
-
-
-def forget_reads(shaders):
-    for path in _paths(shaders):
-        _forget(path)
-
-
-def reads(shaders):
-    """Names of the shader files that were read since `forget_reads`."""
-    read = (path for path in _paths(shaders) if os.stat(path).st_atime_ns != 0)
-    return sorted(os.path.relpath(path, shaders)[: -len(".wgsl")].replace(os.sep, "/") for path in read)

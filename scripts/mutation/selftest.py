@@ -7,7 +7,7 @@ import sys
 import tempfile
 import unittest
 
-from . import choose, equivalent, operators, results, run, suite, wgsl
+from . import choose, equivalent, operators, reads, results, run, suite, wgsl
 
 FILE = """// A comment with a < b and 1u.
 //@ use lib/frame
@@ -228,6 +228,23 @@ class Running(unittest.TestCase):
         self.assertLess(result.seconds, 30.0)
 
 
+class Reads(unittest.TestCase):
+    def test_a_method_that_works_sees_what_is_read_and_nothing_else(self):
+        with tempfile.TemporaryDirectory() as folder:
+            for method in (reads.AccessTimes, reads.Inotify):
+                if not reads.works(method, folder):
+                    continue
+                for name in ("a", "b/c"):
+                    path = os.path.join(folder, name + ".wgsl")
+                    os.makedirs(os.path.dirname(path), exist_ok=True)
+                    with open(path, "w", encoding="utf-8") as file:
+                        file.write(name)
+                script = f"cat '{folder}/b/c.wgsl' '{folder}/b/c.wgsl'"
+                found = reads.names(method, folder, lambda: subprocess.run(["sh", "-c", script], capture_output=True, check=True))[1]
+                self.assertEqual(found, ["b/c"], method)
+            self.assertEqual(reads.names(None, folder, lambda: 3), (3, None))
+
+
 class WholeCampaign(unittest.TestCase):
     """With a program that notices one line of one file."""
 
@@ -261,7 +278,7 @@ grep -q 'const MOST = 7u;' "$2/lib/seen.wgsl" || { echo 'teapot with tiled: 3 ho
             second, mutants = self.run_in(folder, "--resume", output, *words)
             self.assertEqual((second.returncode, len(mutants)), (1, 16), second.stdout + second.stderr)
             self.assertNotIn("baseline:", second.stdout)
-            tells_reads = run.tells_reads(folder)
+            tells_reads = reads.method(folder) is not None
             for mutant in mutants:
                 is_noticed = mutant["file"] == "lib/seen" and "const MOST" in mutant["before"]
                 unseen = "unreached" if mutant["file"] == "lib/unseen" and tells_reads else "passed"
