@@ -111,8 +111,9 @@ pub struct Geometry {
     pub scale: f64,
     /// Positions were taken relative to the eye before they met a matrix.
     pub is_relative: bool,
-    /// Positions were stored in fewer bits than the scene has, as the preset asks: their error is measured and not judged.
-    pub has_approximate_positions: bool,
+    /// Bits of each coordinate, where positions were stored as steps in the box of their primitive; none where they were stored as the
+    /// scene has them.
+    pub packed_bits: Option<u32>,
     /// Which of these buffers, and of the frame drawn from them, are bit-exact.
     pub bit_exact: BitExact,
     /// The shadow map; none if no effect reads it.
@@ -143,7 +144,7 @@ impl Default for Geometry {
             subpixel_bits: SUBPIXEL_BITS,
             scale: 1.0,
             is_relative: false,
-            has_approximate_positions: false,
+            packed_bits: None,
             bit_exact: BitExact::default(),
             shadow_map: None,
         }

@@ -106,6 +106,8 @@ pub enum Command {
     Bench(Bench),
     /// Run the extreme cases, each with its expected outcome
     Stress(Stress),
+    /// Verify random presets; each that fails is shrunk to the smallest preset that still does
+    Fuzz(Fuzz),
     /// Print the gallery of the README, every effect with its pictures, as Markdown
     Gallery(Gallery),
     /// Validate presets; with --render also compare them with their goldens
@@ -132,6 +134,7 @@ impl Command {
             Self::Bless(_) => "bless",
             Self::Bench(_) => "bench",
             Self::Stress(_) => "stress",
+            Self::Fuzz(_) => "fuzz",
             Self::Gallery(_) => "gallery",
             Self::Check(_) => "check",
             Self::Migrate(_) => "migrate",
@@ -357,6 +360,19 @@ pub struct Stress {
     /// List the cases and draw nothing
     #[arg(long)]
     pub list: bool,
+}
+
+#[derive(Args, Debug)]
+pub struct Fuzz {
+    /// Seed of the first preset; each of the others has the next seed
+    #[arg(long, value_name = "N", default_value_t = 0)]
+    pub seed: u32,
+    /// Number of presets
+    #[arg(long, value_name = "M", default_value_t = 100)]
+    pub count: u32,
+    /// Folder for the presets that failed, shrunk
+    #[arg(short, long, value_name = "DIR")]
+    pub output: Option<PathBuf>,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]

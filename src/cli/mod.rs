@@ -13,6 +13,7 @@ mod error;
 mod explain;
 mod files;
 mod finding;
+mod fuzz;
 pub mod gallery;
 pub mod golden;
 mod list;
@@ -83,6 +84,7 @@ fn dispatch(common: &Common, command: &Command, streams: &mut Streams) -> Result
         Command::Bless(args) => bless::run(common, args, streams),
         Command::Bench(args) => bench::run(common, args, streams),
         Command::Stress(args) => stress::run(common, args, streams),
+        Command::Fuzz(args) => fuzz::run(common, args, streams),
         Command::Gallery(args) => gallery::run(args, streams),
         Command::Check(args) => check::run(common, args, streams),
         Command::NewEffect(args) => new_effect::run(common, args, streams),

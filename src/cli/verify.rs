@@ -28,20 +28,33 @@ use crate::{
     scene::{Scene, draw::draws},
 };
 
+/// How a preset is verified.
+#[derive(Clone, Debug, Default)]
+pub struct Options<'a> {
+    /// Number of frames beyond the first; all must be bit-identical.
+    pub repeats: u32,
+    /// Size in pixels instead of the preset's own.
+    pub size: Option<[u32; 2]>,
+    /// Folder for pictures of expected, actual and difference side by side.
+    pub output: Option<&'a Path>,
+    /// Any number of pixels may lie in a depth band or step band, where several answers are right.
+    pub allows_any_band: bool,
+}
+
 /// One preset with one option.
-struct Row {
+pub struct Row {
     preset: String,
     /// Effects that have no independent twin.
     judged_by_own_text: Vec<&'static str>,
-    option: &'static str,
+    pub option: &'static str,
     accuracy: ErrorReport,
     /// Pixels with a color channel over the preset's budget.
     pixels_over_tolerance: u64,
     frames: u32,
     /// What failed, one sentence each.
-    failures: Vec<String>,
+    pub failures: Vec<String>,
     /// What the preset allows to err without saying by how much: pinned options and the tier.
-    without_budget: Vec<String>,
+    pub without_budget: Vec<String>,
     /// Volume with linear skinning, as a fraction of that with dual quaternions; none without skins.
     volume: Option<f64>,
 }
@@ -52,12 +65,13 @@ pub fn run(common: &Common, args: &Verify, streams: &mut Streams) -> Result<Exit
     if let Some(folder) = &args.output {
         std::fs::create_dir_all(folder).map_err(|e| CliError::from(e).during(format!("{} cannot be created", folder.display())))?;
     }
+    let options = Options { repeats: args.frames - 1, size: args.size, output: args.output.as_deref(), allows_any_band: false };
     let bar = streams.progress(preset_files.len() as u64);
     let mut rows = Vec::new();
     for preset_file in &preset_files {
         bar.set_message(preset_file.id.clone());
         let scene = scene_of(common, preset_file, streams)?;
-        let verified = verify(common, args, preset_file, &scene, &mut backend);
+        let verified = check(common, &options, preset_file, &scene, &mut backend);
         rows.extend(verified.map_err(|error| error.during(format!("preset {}", preset_file.id)))?);
         bar.inc(1);
     }
@@ -121,15 +135,19 @@ fn judged_by_own_text(preset: &Preset) -> Vec<&'static str> {
     preset.stack.0.iter().map(|enabled| enabled.effect).filter(|effect| effect.is_of_file()).map(|effect| effect.name).collect()
 }
 
-fn verify(
+/// Compares a preset with the oracle, with every visibility option that it allows.
+///
+/// # Errors
+/// It cannot be drawn, or a picture cannot be written.
+pub fn check(
     common: &Common,
-    args: &Verify,
+    options: &Options<'_>,
     preset_file: &PresetFile,
     scene: &Arc<Scene>,
     backend: &mut Backend,
 ) -> Result<Vec<Row>, CliError> {
     let mut preset = preset_file.preset.clone();
-    preset.output.size = args.size.unwrap_or(preset.output.size);
+    preset.output.size = options.size.unwrap_or(preset.output.size);
     let (view, stack) = (preset.view(scene, preset.output.size), preset.evaluated_stack());
     let budget = preset.test.clone().unwrap_or_default();
     let volume = volume_fraction(&preset, scene)?;
@@ -147,10 +165,10 @@ fn verify(
             wrong.for_each(|(i, _)| expected[i] = capture.frame.color[i]);
         }
         let pixels_over_tolerance = pictures(&capture.frame.color, &expected, budget.max_channel).pixels_over_tolerance;
-        let mut failures = failures(&verdict.report, &budget, pixels_over_tolerance);
+        let mut failures = failures(&verdict.report, &budget, pixels_over_tolerance, options.allows_any_band);
         failures.extend(scaling_failure(&capture));
         let is_repeatable = preset.stack.is_repeatable() && !preset.accuracy.is_left_to_chance();
-        for repeat in 1..args.frames {
+        for repeat in 1..=options.repeats {
             if is_repeatable && backend.capture(&pinned, scene)?.frame != capture.frame {
                 failures.push(format!("frame {} is not bit-identical to the first", repeat + 1));
                 break;
@@ -162,7 +180,7 @@ fn verify(
                 failures.push(format!("{different} pixels have another triangle than with {other}"));
             }
         }
-        if let Some(folder) = &args.output {
+        if let Some(folder) = options.output {
             triptych(folder, &format!("{}-{name}", preset_file.id), &verdict.expected, &capture.frame, common.force)?;
         }
         rows.push(Row {
@@ -171,7 +189,7 @@ fn verify(
             option: name,
             accuracy: verdict.report,
             pixels_over_tolerance,
-            frames: args.frames,
+            frames: 1 + options.repeats,
             without_budget: if failures.is_empty() { Vec::new() } else { without_budget(&preset) },
             failures,
             volume,
@@ -217,10 +235,13 @@ fn volume_fraction(preset: &Preset, scene: &Scene) -> Result<Option<f64>, CliErr
 }
 
 /// Integers must be exact unless the preset has a budget for wrong triangles; colors have the preset's budget.
-fn failures(accuracy: &ErrorReport, test: &GoldenTest, pixels_over_tolerance: u64) -> Vec<String> {
+fn failures(accuracy: &ErrorReport, test: &GoldenTest, pixels_over_tolerance: u64, allows_any_band: bool) -> Vec<String> {
     let forgiven = pixels_over_tolerance <= u64::from(test.max_pixels);
     let max_color_delta = if forgiven { u8::MAX } else { test.max_channel };
-    let budget = Budget { max_color_delta, max_wrong_triangles: test.max_wrong_triangles.into(), ..Budget::default() };
+    let mut budget = Budget { max_color_delta, max_wrong_triangles: test.max_wrong_triangles.into(), ..Budget::default() };
+    if allows_any_band {
+        budget = Budget { max_depth_band_pixels: u64::MAX, max_step_band_fraction: f64::INFINITY, ..budget };
+    }
     accuracy.within(&budget).err().map_or_else(Vec::new, |reasons| reasons.split("; ").map(str::to_owned).collect())
 }
 

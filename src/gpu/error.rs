@@ -75,6 +75,12 @@ impl RenderError {
             || matches!(self, Self::Scaled { .. } | Self::TooLarge { .. } | Self::TooWide { .. } | Self::OutOfMemory { .. })
     }
 
+    /// Is it a fault of the program, which no preset should be able to cause?
+    pub fn is_fault(&self) -> bool {
+        matches!(self, Self::NoResource { .. } | Self::NoScene | Self::Overflow(_))
+            || matches!(self, Self::Link(_) | Self::Shader(_) | Self::Pipeline { .. })
+    }
+
     pub fn is_lost(&self) -> bool {
         matches!(self, Self::Lost)
     }

@@ -2,7 +2,7 @@
 
 use rayon::prelude::*;
 
-use crate::scene::{Bounds, Primitive, Scene, draw::MAX_MAGNITUDE};
+use crate::scene::{Scene, draw::MAX_MAGNITUDE};
 
 /// Packed positions of a scene, and where those of each primitive lie.
 #[derive(Default)]
@@ -38,7 +38,7 @@ impl Packing {
     pub fn new(scene: &Scene, bits: u32) -> Self {
         let mut packing = Self::default();
         for primitive in &scene.primitives {
-            let bounds = sound_box(primitive, scene);
+            let bounds = primitive.drawable_box(scene);
             let most = f64::from((1u32 << bits) - 1);
             let extent = if bounds.is_empty() { glam::DVec3::ZERO } else { bounds.max - bounds.min };
             let origin = if bounds.is_empty() { [0.0; 3] } else { bounds.min.as_vec3().to_array() };
@@ -70,18 +70,6 @@ fn refusal(place: [f32; 3]) -> u32 {
         () if place.iter().any(|v| f64::from(v.abs()) >= MAX_MAGNITUDE) => OUT_OF_RANGE,
         () => 0,
     }
-}
-
-/// The box of all positions that are drawn.
-fn sound_box(primitive: &Primitive, scene: &Scene) -> Bounds {
-    let known = &primitive.bounds;
-    if known.is_empty() || known.min.abs().max(known.max.abs()).max_element() < MAX_MAGNITUDE {
-        return *known;
-    }
-    let mut bounds = Bounds::EMPTY;
-    let places = (0..primitive.vertex_count()).map(|vertex| primitive.position(scene, vertex));
-    places.filter(|place| refusal(*place) == 0).for_each(|place| bounds.include(glam::DVec3::from_array(place.map(f64::from))));
-    bounds
 }
 
 #[cfg(test)]

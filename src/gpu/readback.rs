@@ -128,7 +128,7 @@ impl Readback<'_> {
             subpixel_bits: options.coverage.subpixel_bits(),
             scale: options.render_scale.factor(),
             is_relative: options.position_format == PositionFormat::Relative,
-            has_approximate_positions: options.position_format.packed_bits().is_some(),
+            packed_bits: options.position_format.packed_bits(),
             dots: Vec::new(),
             bit_exact: BitExact {
                 vertices: options.vertex_transform == VertexTransform::Strict,

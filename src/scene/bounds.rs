@@ -2,6 +2,9 @@
 
 use glam::{DMat4, DVec3};
 
+/// Exclusive limit of the magnitude of a matrix entry or a coordinate, 2^40: below it all products are finite in f32.
+pub const MAX_MAGNITUDE: f64 = (1u64 << 40) as f64;
+
 /// Axis-aligned box in meters, both ends included. Empty when `min` exceeds `max` on any axis.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Bounds {

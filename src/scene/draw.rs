@@ -2,6 +2,7 @@
 
 use glam::{DMat4, DVec3, DVec4};
 
+pub use super::bounds::MAX_MAGNITUDE;
 use super::{
     bounds::Bounds,
     model::{Instance, Primitive, Scene},
@@ -10,9 +11,6 @@ use super::{
     view::View,
 };
 use crate::math::rounded_columns;
-
-/// Exclusive limit of the magnitude of a matrix entry or a coordinate, 2^40: below it all products are finite in f32.
-pub const MAX_MAGNITUDE: f64 = (1u64 << 40) as f64;
 
 /// An instance with everything that its projection needs.
 #[derive(Clone, Debug, PartialEq)]

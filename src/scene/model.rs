@@ -2,7 +2,15 @@
 
 use glam::{DMat4, DVec3};
 
-use super::{accessor::Accessor, bounds::Bounds, camera::Camera, deformation::Deformation, material::Material, rig::Rig, texture::Image};
+use super::{
+    accessor::Accessor,
+    bounds::{Bounds, MAX_MAGNITUDE},
+    camera::Camera,
+    deformation::Deformation,
+    material::Material,
+    rig::Rig,
+    texture::Image,
+};
 
 /// How consecutive corners form triangles. A corner is a position in the index list, or in the vertex list without indices.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -93,6 +101,18 @@ impl Primitive {
             let [a, b, c] = self.corners(scene, t).map(normal);
             is_sound(a) && is_sound(b) && is_sound(c) && a.dot(b) >= 0.0 && b.dot(c) >= 0.0 && c.dot(a) >= 0.0
         })
+    }
+
+    /// The box of all positions that can be drawn: finite, and below the largest magnitude.
+    pub fn drawable_box(&self, scene: &Scene) -> Bounds {
+        let known = &self.bounds;
+        if known.is_empty() || known.min.abs().max(known.max.abs()).max_element() < MAX_MAGNITUDE {
+            return *known;
+        }
+        let places = (0..self.vertex_count()).map(|vertex| DVec3::from(self.position(scene, vertex).map(f64::from)));
+        let mut bounds = Bounds::EMPTY;
+        places.filter(|place| place.is_finite() && place.abs().max_element() < MAX_MAGNITUDE).for_each(|place| bounds.include(place));
+        bounds
     }
 
     /// Position of a vertex in object space as it is stored, normalized where the accessor says so.

@@ -2,7 +2,7 @@
 //! boxes and discs whose rims move, and depth keys that are rounded. Needs an adapter.
 
 use rasterlab::{
-    accuracy::{DepthFormat, PinnedOptions, Visibility},
+    accuracy::{DepthFormat, PinnedOptions, PositionFormat, Visibility},
     gpu::Renderer,
     plan::AccuracyRequest,
     preset_file,
@@ -97,5 +97,32 @@ fn rounded_keys_are_judged() {
                 assert!(faults(&mut mistaken, depth, visibility) > 100, "{} with {}: not caught", depth.name(), visibility.name());
             }
         }
+    }
+}
+
+#[test]
+fn packed_positions_are_judged_within_half_a_step() {
+    let Some(renderer) = renderer() else { return };
+    let mut right = Renderer::new(renderer.gpu().clone());
+    for position_format in [PositionFormat::Packed16, PositionFormat::Packed10] {
+        let accuracy = AccuracyRequest { pins: PinnedOptions::of(position_format), ..AccuracyRequest::default() };
+        for query in ["knot?tess=4", "cube-wall?columns=4&rows=3", "sizes", "near"] {
+            let scene = scene(query);
+            let report = judged(&mut right, &scene, &view(&scene, [96, 72]), &stack(&[]), &accuracy).1.report;
+            assert_eq!(exactness(&report), Ok(()), "{query} with {}", position_format.name());
+        }
+    }
+    let mistakes = [
+        (PositionFormat::Packed16, "vec3f(vec3u(words.x & 0xffffu, words.x >> 16u, words.y & 0xffffu))", "vec3f(0.0)"),
+        (PositionFormat::Packed16, "words.y & 0xffffu))", "words.y & 0xfff0u) + 8u)"),
+        (PositionFormat::Packed10, "& vec3u(1023u));", "& vec3u(1022u));"),
+    ];
+    let scene = scene("knot?tess=4");
+    for (position_format, part, wrong) in mistakes {
+        let accuracy = AccuracyRequest { pins: PinnedOptions::of(position_format), ..AccuracyRequest::default() };
+        let shaders = mutated("lib/attributes", part, wrong);
+        let mut mistaken = Renderer::with_library(renderer.gpu().clone(), shaders.shaders());
+        let report = judged(&mut mistaken, &scene, &view(&scene, [512, 512]), &stack(&[]), &accuracy).1.report;
+        assert!(report.snap_outside_bound > 0, "{}: {part} as {wrong} is not caught: {report:?}", position_format.name());
     }
 }

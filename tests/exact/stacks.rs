@@ -7,48 +7,13 @@ use rasterlab::{
     effects::{EFFECTS, Stack, hooks::Slot},
     gpu::RenderError,
     measure::Budget,
-    params::{Field, ValueType},
     preset::Preset,
     preset_file,
+    stress::random::{self, Values},
 };
 
 /// Stacks that every run draws.
 const STACKS: u32 = 20;
-
-/// A legal value for a field: its ends now and then, else anything the slider spans.
-fn value(rng: &mut Rng, field: &Field) -> Vec<f64> {
-    let [low, high] = field.soft;
-    let mut lane = || match (field.value_type, rng.between(0, 8)) {
-        (ValueType::Choice(_) | ValueType::Bool, _) => f64::from(rng.between(low as i32, high as i32 + 1)),
-        (_, 0) => low,
-        (_, 1) => high,
-        (ValueType::U32 | ValueType::I32, _) => rng.real(low, high + 1.0).floor().min(high),
-        _ if field.log => low * (high / low).powf(rng.real(0.0, 1.0)),
-        _ => rng.real(low, high),
-    };
-    (0..field.value_type.components()).map(|_| lane()).collect()
-}
-
-/// Up to five effects, at most one in each slot, in random order.
-fn random_stack(rng: &mut Rng) -> Stack {
-    let mut stack = Stack::default();
-    for _ in 0..rng.between(1, 6) {
-        let effect = EFFECTS[rng.between(0, EFFECTS.len() as i32) as usize];
-        let is_taken = effect.hooks.slot.is_some_and(|slot| stack.in_slot(slot).is_some_and(|other| other.effect != effect));
-        if is_taken {
-            continue;
-        }
-        let words = &mut stack.enable(effect).words;
-        for field in effect.fields {
-            let value = value(rng, field);
-            field.set(words, &value).unwrap_or_else(|error| panic!("{}: {error}", effect.name));
-        }
-    }
-    for i in (1..stack.0.len()).rev() {
-        stack.0.swap(i, rng.between(0, i as i32 + 1) as usize);
-    }
-    stack
-}
 
 /// As a preset, which a person can save and open.
 fn as_preset(stack: &Stack) -> String {
@@ -67,7 +32,7 @@ fn random_stacks_draw_the_same_integers_on_the_adapter_and_in_the_oracle() {
     let mut failures = Vec::new();
     for seed in seeds {
         let mut rng = Rng(seed.wrapping_mul(0x1234_5679));
-        let stack = random_stack(&mut rng);
+        let stack = random::stack(&mut rng, Values::OfSlider);
         let scene = scene(scenes[rng.between(0, scenes.len() as i32) as usize]);
         let view = view(&scene, [64, 48]);
         renderer.set_tuning(tunings()[rng.between(0, 4) as usize]);
@@ -101,7 +66,7 @@ fn two_effects_in_one_slot_are_refused_by_name() {
 #[test]
 fn a_stack_reads_back_in_its_own_order() {
     for seed in 0..50 {
-        let stack = random_stack(&mut Rng(seed * 77));
+        let stack = random::stack(&mut Rng(seed * 77), Values::OfSlider);
         let text = as_preset(&stack);
         let preset_file = preset_file::parse(&text, "random").unwrap_or_else(|error| panic!("{error}\n{text}"));
         assert_eq!(preset_file.preset.stack, stack, "{text}");

@@ -54,7 +54,7 @@ fn bounded_ends(placement: &DotPlacement, segment: &Segment) -> Option<[BoundedE
 
 fn bounded_corner(evaluator: &VertexEvaluator, corner: Corner) -> Option<BoundedEnd> {
     let ClipPosition { x, y, z, w } = evaluator.clip(corner).ok()?;
-    Some([[x, y, z, w], VertexBounds::new(evaluator).clip(corner).errors])
+    Some([[x, y, z, w], VertexBounds::new(evaluator, None).clip(corner).errors])
 }
 
 /// Errors of both ends, of the fraction and of mixing.

@@ -18,7 +18,7 @@ use super::{
 };
 use crate::{
     effects::hooks::{ErrorBound, ROUNDING},
-    scene::draw::Draw,
+    scene::{Bounds, draw::Draw},
 };
 
 /// For every record of [`project`](super::super::render::project::project), how far a float renderer may place it before rounding,
@@ -26,7 +26,7 @@ use crate::{
 pub fn snap_bounds(shot: &Shot) -> Vec<Option<[f64; 2]>> {
     let of_draw = |draw: &Draw| {
         let evaluator = VertexEvaluator::new(shot.scene, draw, shot.view, shot.stack);
-        let bounds = VertexBounds::new(&evaluator);
+        let bounds = VertexBounds::new(&evaluator, None);
         let bound = |corner| snap_bound(&evaluator.clip(corner).ok()?, bounds.clip(corner).errors, shot.view);
         evaluator.corners().into_iter().map(bound).collect::<Vec<_>>()
     };
@@ -36,11 +36,16 @@ pub fn snap_bounds(shot: &Shot) -> Vec<Option<[f64; 2]>> {
 /// Bounds of the errors of what a [`VertexEvaluator`] evaluates.
 pub struct VertexBounds<'a> {
     evaluator: &'a VertexEvaluator<'a>,
+    /// Error of stored positions in object space.
+    stored: DVec3,
 }
 
 impl<'a> VertexBounds<'a> {
-    pub const fn new(evaluator: &'a VertexEvaluator<'a>) -> Self {
-        Self { evaluator }
+    /// `packed_bits` are those of [`Geometry::packed_bits`](crate::frame::Geometry::packed_bits).
+    pub fn new(evaluator: &'a VertexEvaluator<'a>, packed_bits: Option<u32>) -> Self {
+        let primitive = &evaluator.scene.primitives[evaluator.draw.primitive];
+        let stored = packed_bits.map_or(DVec3::ZERO, |bits| packing_error(&primitive.drawable_box(evaluator.scene), bits));
+        Self { evaluator, stored }
     }
 
     /// Bounds of [`VertexEvaluator::clip`].
@@ -78,7 +83,8 @@ impl<'a> VertexBounds<'a> {
 
     /// A deformed position in object space; the origin, without error, if it is refused.
     fn position(&self, vertex: u32) -> Bounded {
-        deform::position(self.evaluator.scene, self.evaluator.draw, vertex).unwrap_or_default()
+        let position = deform::position(self.evaluator.scene, self.evaluator.draw, vertex).unwrap_or_default();
+        Bounded { error: position.error + self.stored, ..position }
     }
 
     /// Bounds of [`VertexEvaluator::unmoved`].
@@ -187,4 +193,14 @@ impl<'a> VertexBounds<'a> {
         let error = |c: f64, sum: f64| (10.0 * ROUNDING * sum + (error_w + 6.0 * ROUNDING * w.abs()) * (c / w).abs()) / (w.abs() - error_w);
         if w < 0.0 { 0.0 } else { 0.5 * error(x, sum_x).max(error(y, sum_y)) + 2.0 * ROUNDING }
     }
+}
+
+/// Bound of the error of a position that is stored as the nearest of evenly spaced steps in a box: half a step, and the roundings of the
+/// step, the product and the sum.
+fn packing_error(bounds: &Bounds, bits: u32) -> DVec3 {
+    if bounds.is_empty() {
+        return DVec3::ZERO;
+    }
+    let extent = bounds.max - bounds.min;
+    0.5 * extent / f64::from((1u32 << bits) - 1) + 4.0 * ROUNDING * (bounds.min.abs() + extent)
 }

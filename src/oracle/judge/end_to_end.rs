@@ -68,10 +68,7 @@ impl EndToEnd<'_> {
     /// Returns true if the oracle may find triangle `own` at a pixel where the adapter finds `given`; `limit` is where the oracle's
     /// draw order stops.
     fn may_differ(&self, pixel: usize, own: u32, given: u32, limit: Option<DrawLimit>) -> bool {
-        self.adapter.has_approximate_positions
-            || self.is_near_limit(given, limit)
-            || self.is_near_limit(own, limit)
-            || self.snap_explains(own, given, pixel)
+        self.is_near_limit(given, limit) || self.is_near_limit(own, limit) || self.snap_explains(own, given, pixel)
     }
 
     /// Returns true for a triangle between the oracle's and the adapter's draw limit: one sample more or less moves the limit.
@@ -123,7 +120,9 @@ impl EndToEnd<'_> {
         };
         // A point that three planes cut errs by its corners' errors and by those of three cuts: each rounds a difference, a product, a
         // sum and its own place on the edge, which is about as much as four products and their sum, of which a corner is made.
-        let clip_error = if is_whole { 0.0 } else { errors.iter().map(|error| 8.0 * error.clip_error).fold(0.0, f64::max) };
+        // Packed corners err so far that the depths between them do, too.
+        let is_near = is_whole && self.adapter.packed_bits.is_none();
+        let clip_error = if is_near { 0.0 } else { errors.iter().map(|error| 8.0 * error.clip_error).fold(0.0, f64::max) };
         let half_picture = half_size(self.shot.view).map(f64::from).into_iter().fold(0.0, f64::max);
         // The oracle's clipped triangles are sorted by parent.
         let clipped = &self.own.clipped_triangles;

@@ -118,8 +118,8 @@ fn judge_geometry(report: &mut ErrorReport, shot: &Shot, picture: &AdapterPictur
     }
     judge_deformed(report, shot, &geometry.deformed);
     judge_dots(report, shot, &geometry.dots, &picture.frame.dots, dots)?;
-    // Setups that follow from approximate positions are approximate too.
-    report.sample_setups_wrong = if geometry.has_approximate_positions { 0 } else { wrong_setups(shot, geometry) };
+    // Setups that follow from packed positions are approximate too.
+    report.sample_setups_wrong = if geometry.packed_bits.is_some() { 0 } else { wrong_setups(shot, geometry) };
     match &geometry.shadow_map {
         Some(map) => judge_shadow_map(report, shot, map),
         None => Ok(()),

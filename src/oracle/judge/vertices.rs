@@ -37,9 +37,6 @@ pub fn vertex_errors(shot: &Shot, adapter: &Geometry, own: &Geometry) -> Vec<Ver
     if adapter.bit_exact.vertices {
         return pairs.map(|(adapter, own)| strict_error(adapter, own)).collect();
     }
-    if adapter.has_approximate_positions {
-        return pairs.map(|(adapter, own)| approximate_error(adapter, own)).collect();
-    }
     bounded_errors(shot, adapter, own)
 }
 
@@ -47,9 +44,10 @@ pub fn vertex_errors(shot: &Shot, adapter: &Geometry, own: &Geometry) -> Vec<Ver
 pub fn bounded_errors(shot: &Shot, adapter: &Geometry, own: &Geometry) -> Vec<VertexError> {
     let of_draw = |draw: &Draw| {
         let evaluator = VertexEvaluator::new(shot.scene, draw, shot.view, shot.stack);
+        let bounds = VertexBounds::new(&evaluator, adapter.packed_bits);
         let error = |(i, corner)| {
             let at = evaluator.first_record() + i;
-            bounded_error(&evaluator, shot, corner, &adapter.vertices[at], &own.vertices[at])
+            bounded_error(&evaluator, &bounds, shot, corner, &adapter.vertices[at], &own.vertices[at])
         };
         evaluator.corners().into_par_iter().enumerate().map(error).collect::<Vec<_>>()
     };
@@ -76,22 +74,21 @@ fn strict_error(adapter: &SnappedVertex, own: &SnappedVertex) -> VertexError {
     VertexError { delta, snap_is_outside, attribute_is_outside: bits(adapter) != bits(own), ..Default::default() }
 }
 
-/// The distance of a record whose position was stored in fewer bits is reported; only its rejection is judged.
-fn approximate_error(adapter: &SnappedVertex, own: &SnappedVertex) -> VertexError {
-    let delta = if adapter.flags == 0 && own.flags == 0 { distance(adapter, own) } else { 0 };
-    let rejected = |v: &SnappedVertex| (v.flags & vertex_flags::REJECTED != 0, v.flags & vertex_flags::NONFINITE != 0);
-    VertexError { delta, snap_is_outside: rejected(adapter) != rejected(own), ..Default::default() }
-}
-
 /// The larger of the distances in x and y.
 fn distance(a: &SnappedVertex, b: &SnappedVertex) -> u32 {
     a.x.abs_diff(b.x).max(a.y.abs_diff(b.y))
 }
 
 /// Compares one record with its forward error bound.
-fn bounded_error(evaluator: &VertexEvaluator, shot: &Shot, corner: Corner, adapter: &SnappedVertex, own: &SnappedVertex) -> VertexError {
+fn bounded_error(
+    evaluator: &VertexEvaluator,
+    bounds: &VertexBounds,
+    shot: &Shot,
+    corner: Corner,
+    adapter: &SnappedVertex,
+    own: &SnappedVertex,
+) -> VertexError {
     let Ok(position) = evaluator.clip(corner) else { return rejected_error(adapter, own) };
-    let bounds = VertexBounds::new(evaluator);
     let errors = bounds.clip(corner);
     let [ex, ey, ez, ew] = errors.errors;
     let clip_error = ex.max(ey) + ew;

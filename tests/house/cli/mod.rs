@@ -107,7 +107,7 @@ fn adapters_always_end_with_cpu() {
 
 #[test]
 fn usage_errors_exit_with_2_and_leave_stdout_empty() {
-    let cases: [&[&str]; 18] = [
+    let cases: [&[&str]; 19] = [
         &["--no-such-flag"],
         &["render"],
         &["render", "fascet", "--adapter", "cpu"],
@@ -123,6 +123,7 @@ fn usage_errors_exit_with_2_and_leave_stdout_empty() {
         &["verify", "facet", "--adapter", "cpu", "--frames", "0"],
         &["bench", "--adapter", "cpu"],
         &["stress", "--adapter", "cpu"],
+        &["fuzz", "--adapter", "cpu", "--set", "facet"],
         &["stress", "--filter", "no-such-case"],
         &["bless", "facet", "--adapter", "cpu"],
         &["facet", "list"],
@@ -519,6 +520,21 @@ fn blessing_an_effect_without_a_preset_makes_its_first() {
     assert!(preset_file.preset.stack.get("normals").is_some() && preset_file.preset.test.is_some());
     assert!(folder.path().join("tests/snapshots/normals.png").exists() && folder.path().join("tests/snapshots/normals.json").exists());
     assert_eq!(run_in(folder.path(), &["bless", "no-such-effect"]).code, 2);
+}
+
+#[test]
+fn fuzz_verifies_the_same_presets_again_for_the_same_seed() {
+    let fuzz = |seed: &str| json(&run(&["fuzz", "--adapter", "cpu", "--seed", seed, "--count", "3", "--json", "--quiet"]));
+    let results = |object: &Value| {
+        let without_time =
+            |result: &Value| [&result["seed"], &result["outcome"], &result["reasons"], &result["smallest"]].map(Value::clone);
+        object["results"].as_array().expect("one result for each seed").iter().map(without_time).collect::<Vec<_>>()
+    };
+    let (first, again) = (fuzz("11"), fuzz("11"));
+    assert_eq!((first["command"].as_str(), results(&first).len()), (Some("fuzz"), 3));
+    assert_eq!(results(&first), results(&again));
+    // The oracle judges itself here.
+    assert!(results(&first).iter().all(|[_, outcome, _, smallest]| outcome != "failed" && smallest.is_null()), "{first:#}");
 }
 
 #[test]

@@ -209,3 +209,14 @@ proptest! {
         let _ = preset_file::preset_from_png(text.as_bytes(), "any");
     }
 }
+
+#[test]
+fn every_random_preset_is_one_that_a_file_may_hold() {
+    for seed in 0..500 {
+        let random = PresetFile::new("random", rasterlab::stress::random::preset(seed));
+        let text = preset_file::to_toml(&random);
+        let read = preset_file::parse(&text, "random").unwrap_or_else(|error| panic!("seed {seed}: {error}\n{text}"));
+        assert_eq!(read.preset, random.preset, "seed {seed}\n{text}");
+        assert!(read.warnings.is_empty(), "seed {seed}: {:?}", read.warnings);
+    }
+}
