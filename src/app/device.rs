@@ -50,13 +50,13 @@ fn select(adapters: &[wgpu::Adapter], surface: Option<&wgpu::Surface<'_>>, choic
     device::choose(choice, &names).map(|index| suitable[index].clone()).map_err(|error| error.to_string())
 }
 
-/// The window's device, for the kernels.
+/// The window's device, for the kernels; `gpu` if it is known from another window on the same device.
 ///
 /// # Errors
 /// If the window has no wgpu device.
-pub fn adopt(cc: &eframe::CreationContext<'_>) -> anyhow::Result<(egui_wgpu::RenderState, Arc<Gpu>)> {
+pub fn adopt(cc: &eframe::CreationContext<'_>, gpu: Option<Arc<Gpu>>) -> anyhow::Result<(egui_wgpu::RenderState, Arc<Gpu>)> {
     let window = cc.wgpu_render_state.clone().context("the window has no wgpu device")?;
-    let gpu = Gpu::adopt(&window.adapter, window.device.clone(), window.queue.clone());
+    let gpu = gpu.unwrap_or_else(|| Gpu::adopt(&window.adapter, window.device.clone(), window.queue.clone()));
     Ok((window, gpu))
 }
 

@@ -43,13 +43,15 @@ use crate::{
 };
 
 /// How the window is opened.
-#[derive(Clone, Debug, Default)]
+#[derive(Clone, Default)]
 pub struct Options {
     /// A preset's id or file, a model, an exported picture, or `builtin:QUERY`.
     pub open: Option<String>,
     /// What `open` names, where it has been read, perhaps with changes.
     pub opened: Option<PresetFile>,
     pub adapter: AdapterChoice,
+    /// The window's device with the pipelines that were compiled for it before; none before the first window.
+    pub gpu: Option<Arc<Gpu>>,
     /// Where presets and effects are, beside the user's own presets.
     pub folders: Folders,
     /// A new effect is opened in the user's editor.
@@ -174,7 +176,7 @@ impl App {
     /// If the window has no wgpu device.
     pub fn with_loss_flag(cc: &eframe::CreationContext<'_>, options: Options, loss: LossFlag) -> anyhow::Result<Self> {
         theme::apply(&cc.egui_ctx);
-        let (window, gpu) = device::adopt(cc)?;
+        let (window, gpu) = device::adopt(cc, options.gpu)?;
         let mut log = Log::default();
         let opened = recovery::first_preset(options.opened, options.open.as_deref(), &options.folders, &mut log);
         let summary = &gpu.summary;

@@ -109,8 +109,14 @@ fn window(cli: &Cli) -> Result<Exit, CliError> {
         }
         backend::BackendChoice::Gpu(choice) => choice,
     };
-    let options =
-        crate::app::Options { open: cli.open.clone(), opened: Some(opened), adapter, folders: cli.common.folders(), opens_editor: true };
+    let options = crate::app::Options {
+        open: cli.open.clone(),
+        opened: Some(opened),
+        adapter,
+        gpu: None,
+        folders: cli.common.folders(),
+        opens_editor: true,
+    };
     crate::app::run(options).map_err(CliError::window)?;
     Ok(Exit::Done)
 }

@@ -4,18 +4,19 @@ use std::{
     iter,
     ops::{Deref, DerefMut},
     path::Path,
+    sync::{Arc, OnceLock},
     time::{Duration, Instant},
 };
 
 use eframe::{
-    egui::{Key, Modifiers, Pos2, Rect, Role, TexturesDelta},
-    egui_wgpu::{RenderState, RendererOptions, ScreenDescriptor, WgpuConfiguration},
+    egui::{Key, Modifiers, Pos2, Rect, Role, TexturesDelta, mutex::RwLock},
+    egui_wgpu::{self, RenderState, RendererOptions, ScreenDescriptor, WgpuConfiguration},
     wgpu,
 };
 use egui_kittest::{Harness, Node, TestRenderer, kittest::Queryable as _};
 use rasterlab::{
     app::{App, Options, wgpu_setup},
-    gpu::device::AdapterChoice,
+    gpu::{Gpu, device::AdapterChoice},
     preset_file::Folders,
 };
 
@@ -55,6 +56,20 @@ impl TestRenderer for Window {
         }
         delta.free.drain().for_each(|id| renderer.free_texture(&id));
     }
+}
+
+/// The device that all windows of this program share, with the pipelines that were compiled for it: compiling them for each window
+/// would take most of the time of its test.
+fn shared_device(adapter: &AdapterChoice) -> (RenderState, Arc<Gpu>) {
+    static SHARED: OnceLock<(RenderState, Arc<Gpu>)> = OnceLock::new();
+    let (first, gpu) = SHARED.get_or_init(|| {
+        let window = device(adapter);
+        let gpu = Gpu::adopt(&window.adapter, window.device.clone(), window.queue.clone());
+        (window, gpu)
+    });
+    // Textures belong to one window.
+    let renderer = egui_wgpu::Renderer::new(&first.device, first.target_format, RendererOptions::PREDICTABLE);
+    (RenderState { renderer: Arc::new(RwLock::new(renderer)), ..first.clone() }, gpu.clone())
 }
 
 /// A device without a surface, opened with the program's settings.
@@ -123,11 +138,12 @@ impl Lab {
 pub fn lab_in(open: &str, presets_dir: Option<&Path>) -> Option<Lab> {
     crate::common::gpu()?; // Fails with one sentence when there is none.
     let adapter = std::env::var("RASTERLAB_ADAPTER").map_or(AdapterChoice::Any, AdapterChoice::Named);
-    let window = device(&adapter);
+    let (window, gpu) = shared_device(&adapter);
     let options = Options {
         open: Some(open.into()),
         opened: None,
         adapter,
+        gpu: Some(gpu),
         folders: Folders { presets: presets_dir.map(Path::to_owned), ..Folders::default() },
         opens_editor: false,
     };
