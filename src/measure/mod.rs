@@ -21,6 +21,8 @@ pub struct ErrorReport {
     pub depth_band_pixels: u64,
     /// Pixels so near a step of color that f32 and f64 may fall on different sides, where either answer is right.
     pub step_band_pixels: u64,
+    /// Different sets of right colors among them: a flat area on a step is one.
+    pub step_band_colors: u64,
     /// Samples that a triangle covers and that were not drawn.
     pub holes: u64,
     /// Samples that were drawn more often than they are covered.
@@ -197,7 +199,7 @@ pub struct Budget {
     pub max_depth_band_pixels: u64,
     /// Most pixels explained by the snap.
     pub max_explained: u64,
-    /// Largest fraction of the pixels that may lie in the step band.
+    /// Most different colors in the step band, as a fraction of the pixels.
     pub max_step_band_fraction: f64,
 }
 
@@ -239,7 +241,7 @@ impl ErrorReport {
             (self.counters_wrong, 0, "counters of rejected or degenerate triangles are wrong"),
             (self.explained_by_snap, budget.max_explained, "pixels differ because vertices snapped apart"),
             (self.depth_band_pixels, budget.max_depth_band_pixels, "pixels lie in the depth band"),
-            (self.step_band_pixels, (self.pixels as f64 * budget.max_step_band_fraction) as u64, "pixels lie in the step band of colors"),
+            (self.step_band_colors, (self.pixels as f64 * budget.max_step_band_fraction) as u64, "colors lie in the step band"),
             (self.max_color_delta.into(), budget.max_color_delta.into(), "of 255 is the largest color difference"),
         ];
         let sentence = |&(count, limit, what): &(u64, u64, &str)| {

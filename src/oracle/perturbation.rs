@@ -11,7 +11,12 @@ pub struct Perturbation {
     /// Added to every value that decides a step of color; its sign also moves shadow map lookups.
     pub color_step: f64,
     pub texture: TexturePerturbation,
+    pub place: PlacePerturbation,
 }
+
+/// Offset of the place of a sample: in x, y and z of world space, and along the ray of its pixel, each in roundings of the distances
+/// from which the place is computed.
+pub type PlacePerturbation = [f64; 4];
 
 /// Offset of texture lookups: across, down, and in the level of detail, each in error bounds.
 pub type TexturePerturbation = [f64; 3];

@@ -6,6 +6,8 @@
 //! [`Budget`](crate::measure::Budget) limits it. Texture lookups are perturbed in the same way; there, values between the answers
 //! are right as well.
 
+use std::collections::HashSet;
+
 use super::{
     super::{
         perturbation::Perturbation,
@@ -16,7 +18,7 @@ use super::{
         shot::Shot,
     },
     layers::LayerBounds,
-    perturbations::{color_steps, has_textures, perturbations},
+    perturbations::{color_steps, has_textures, is_far, perturbations},
 };
 use crate::frame::Geometry;
 
@@ -35,8 +37,10 @@ impl AcceptedColors {
     pub fn of_surfaces(shot: &Shot, input: &ResolveInput, geometry: &Geometry) -> Self {
         let shaded = |perturbation: &Perturbation| shade_perturbed(shot, input, geometry, perturbation);
         // Taps of a shadow map change one by one, so any fraction between the extremes is right.
-        let is_span = has_textures(shot.scene) || shot.stack.light().is_some();
-        Self { pictures: perturbations(shot.scene, shot.stack).iter().map(shaded).collect(), is_span, per_step: 1 }
+        let is_span = has_textures(shot.scene) || is_far(shot.view) || shot.stack.light().is_some();
+        let pictures: Vec<_> = perturbations(shot.scene, shot.view, shot.stack).iter().map(shaded).collect();
+        let per_step = pictures.len() / color_steps(shot.stack).len();
+        Self { pictures, is_span, per_step }
     }
 
     /// Of a picture of layers.
@@ -64,10 +68,22 @@ impl AcceptedColors {
         (0..adapter.len()).map(|i| [0, 1, 2, 3].map(|c| channel(i, c))).collect()
     }
 
+    /// The picture of every perturbation of color steps, without other perturbations; the exact one first.
+    fn at_steps(&self) -> Vec<&Vec<[u8; 4]>> {
+        self.pictures.iter().step_by(self.per_step).collect()
+    }
+
+    /// Number of different sets of right colors in the step band: a flat area on a step is one.
+    pub fn step_band_colors(&self) -> u64 {
+        let answers = self.at_steps();
+        let pixels = self.step_band().into_iter().enumerate().filter(|(_, is_band)| *is_band);
+        let sets: HashSet<Vec<[u8; 4]>> = pixels.map(|(i, _)| answers.iter().map(|answer| answer[i]).collect()).collect();
+        sets.len() as u64
+    }
+
     /// The step band: pixels with answers more than 1 of 255 apart because of a step of color. Empty without steps.
     pub fn step_band(&self) -> Vec<bool> {
-        // Of layers, the exact picture of every step.
-        let answers: Vec<_> = self.pictures.iter().step_by(self.per_step).collect();
+        let answers = self.at_steps();
         let [exact, others @ ..] = answers.as_slice() else { return Vec::new() };
         if others.is_empty() {
             return Vec::new();

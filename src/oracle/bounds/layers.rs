@@ -5,12 +5,15 @@
 use glam::{DVec3, DVec4};
 
 use super::{
-    super::render::{
-        coverage::{Hit, scatter},
-        draw_order::ranks,
-        layers::{LayerImage, LayerInput, LayerMode, fixed_color, fixed_weight, steps, window_depth, xray_color},
-        shadow::Light,
-        surface::SurfaceTriangle,
+    super::{
+        perturbation::Perturbation,
+        render::{
+            coverage::{Hit, scatter},
+            draw_order::ranks,
+            layers::{LayerImage, LayerInput, LayerMode, fixed_color, fixed_weight, steps, window_depth, xray_color},
+            shadow::Light,
+            surface::SurfaceTriangle,
+        },
     },
     coverage::depth_interval,
     perturbations::perturbations,
@@ -74,7 +77,7 @@ fn sums(input: &LayerInput, params: &Xray, bits: u32) -> Vec<SumBounds> {
     let (view, stack) = (input.shot.view, input.shot.stack);
     let mut sums: Vec<SumBounds> = (0..view.pixels()).map(|_| SumBounds::default()).collect();
     let (ranks, light) = (ranks(&input.shot, input.geometry), Light::of(&input.shot, input.geometry));
-    let perturbations = perturbations(input.shot.scene, stack);
+    let perturbations = perturbations(input.shot.scene, view, stack);
     let (ranks, light, perturbations) = (&ranks, light.as_ref(), &perturbations);
     scatter(input.tests, input.triangles, view, &mut sums, |triangle| {
         let mut surface: Option<Option<SurfaceTriangle<'_>>> = None;
@@ -89,11 +92,11 @@ fn sums(input: &LayerInput, params: &Xray, bits: u32) -> Vec<SumBounds> {
                 return;
             }
             let Some(known) = surface.get_or_insert_with(|| SurfaceTriangle::new(&input.shot, input.geometry, triangle.id)) else { return };
-            let lit_point = known.lit_point(&known.surface(x, y, [0.0; 3]));
+            let lit_point = known.lit_point(&known.surface(x, y, &Perturbation::default()));
             let mut shaded = perturbations.iter().map(|perturbation| {
                 let step = perturbation.color_step;
                 let lit = light.map_or(0.0, |light| light.arrives(&lit_point, triangle.id, step));
-                let surface = Surface { rank, lit, step_offset: step, ..known.surface(x, y, perturbation.texture) };
+                let surface = Surface { rank, lit, step_offset: step, ..known.surface(x, y, perturbation) };
                 stack.shade(surface, known.scopes)
             });
             let exact = shaded.next().expect("the first perturbation is none");

@@ -1,9 +1,9 @@
 //! The perturbations under which a picture is shaded to find what an f32 renderer may draw.
 
-use super::super::perturbation::{Perturbation, TexturePerturbation};
+use super::super::perturbation::{Perturbation, PlacePerturbation, TexturePerturbation};
 use crate::{
     effects::{Stack, hooks::Slot},
-    scene::Scene,
+    scene::{Scene, view::View},
 };
 
 /// How far from a step a value may lie for both sides to be right; values are about 1 at most. 2^-15: a shade takes some 2^7
@@ -12,6 +12,32 @@ pub const STEP: f64 = 1.0 / (1 << 15) as f64;
 
 /// All texture perturbations, none first.
 const TEXTURE: [TexturePerturbation; 5] = [[0.0; 3], [1.0; 3], [-1.0; 3], [1.0, -1.0, 1.0], [-1.0, 1.0, -1.0]];
+
+/// Roundings of a place, of 2^-24 each: the depth is a quotient of sums of three products, and the place a sum of four.
+const ROUNDINGS: f64 = 16.0;
+
+/// All perturbations of places, none first.
+const PLACES: [PlacePerturbation; 9] = {
+    let mut places = [[0.0; 4]; 9];
+    let mut axis = 0;
+    while axis < 4 {
+        places[1 + 2 * axis][axis] = ROUNDINGS;
+        places[2 + 2 * axis][axis] = -ROUNDINGS;
+        axis += 1;
+    }
+    places
+};
+
+/// From so far away that the depth of the scene is less than this fraction of the distances that are added, their roundings are seen in
+/// colors that change with the place, like fog.
+const FAR: f64 = 1.0 / 256.0;
+
+/// Perturbations of the places of samples of `view`, none first.
+fn places(view: &View) -> &'static [PlacePerturbation] {
+    let [near_m, far_m] = view.depth_range_m;
+    let is_far = far_m - near_m < FAR * (view.eye.abs().max_element() + far_m.abs());
+    if is_far { &PLACES } else { &PLACES[..1] }
+}
 
 /// Perturbations of color steps, none first.
 pub fn color_steps(stack: &Stack) -> &'static [f64] {
@@ -24,11 +50,19 @@ pub fn color_steps(stack: &Stack) -> &'static [f64] {
     }
 }
 
-/// All perturbations of a picture of `scene`, none first.
-pub fn perturbations(scene: &Scene, stack: &Stack) -> Vec<Perturbation> {
+/// All perturbations of a picture of `scene` for each perturbation of color steps, none first.
+pub fn perturbations(scene: &Scene, view: &View, stack: &Stack) -> Vec<Perturbation> {
     let textures = if has_textures(scene) { &TEXTURE[..] } else { &TEXTURE[..1] };
-    let with_step = |&color_step: &f64| textures.iter().map(move |&texture| Perturbation { color_step, texture });
+    let textures = textures.iter().map(|&texture| Perturbation { texture, ..Perturbation::default() });
+    let places = places(view)[1..].iter().map(|&place| Perturbation { place, ..Perturbation::default() });
+    let unstepped: Vec<Perturbation> = textures.chain(places).collect();
+    let with_step = |&color_step: &f64| unstepped.iter().map(move |&perturbation| Perturbation { color_step, ..perturbation });
     color_steps(stack).iter().flat_map(with_step).collect()
+}
+
+/// Returns true if the places of samples are perturbed.
+pub fn is_far(view: &View) -> bool {
+    places(view).len() > 1
 }
 
 /// Returns true if a picture looks up textures.

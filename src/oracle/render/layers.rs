@@ -4,7 +4,7 @@
 use glam::{DVec3, DVec4};
 
 use super::{
-    super::shot::Shot,
+    super::{perturbation::Perturbation, shot::Shot},
     coverage::{Hit, scatter},
     draw_order::ranks,
     resolve::background,
@@ -125,7 +125,7 @@ fn sums(input: &LayerInput, params: &Xray, bits: u32) -> Vec<LayerSum> {
                 return;
             }
             let Some(known) = surface.get_or_insert_with(|| SurfaceTriangle::new(&input.shot, input.geometry, triangle.id)) else { return };
-            let surface = known.surface(x, y, [0.0; 3]);
+            let surface = known.surface(x, y, &Perturbation::default());
             let lit = light.map_or(0.0, |light| light.arrives(&known.lit_point(&surface), triangle.id, 0.0));
             let shaded = stack.shade(Surface { rank, lit, ..surface }, known.scopes);
             let weight = fixed_weight(params.weight_of(&shaded), 0.0);

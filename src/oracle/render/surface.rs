@@ -9,7 +9,7 @@ use super::{
             bits,
             vector::{DEGENERATE, plane_normal},
         },
-        perturbation::{Perturbation, TexturePerturbation},
+        perturbation::Perturbation,
         shot::Shot,
     },
     deform,
@@ -22,7 +22,10 @@ use super::{
     weights::{SamplePoint, Weights},
 };
 use crate::{
-    effects::{Surface, hooks::Shape},
+    effects::{
+        Surface,
+        hooks::{ROUNDING, Shape},
+    },
     frame::{Geometry, SnappedVertex},
     math::srgb,
     scene::{Accessor, Scene, view::View},
@@ -40,7 +43,7 @@ pub fn surface_colors(
 ) -> Vec<DVec4> {
     let ranks = ranks(shot, geometry);
     let light = Light::of(shot, geometry);
-    each_surface(shot, triangle_ids, geometry, perturbation.texture, |found| {
+    each_surface(shot, triangle_ids, geometry, perturbation, |found| {
         let Some((triangle, surface)) = found else { return background };
         let id = surface.triangle_id;
         let rank = ranks.get(id as usize).copied().unwrap_or(0.0);
@@ -55,7 +58,7 @@ pub fn each_surface<T: Send>(
     shot: &Shot,
     triangle_ids: &[u32],
     geometry: &Geometry,
-    texture: TexturePerturbation,
+    perturbation: &Perturbation,
     visit: impl Fn(Option<(&SurfaceTriangle, Surface)>) -> T + Sync,
 ) -> Vec<T> {
     let width = shot.view.width.max(1) as usize;
@@ -66,7 +69,7 @@ pub fn each_surface<T: Send>(
             if triangle.as_ref().is_none_or(|triangle| triangle.id != id) {
                 triangle = SurfaceTriangle::new(shot, geometry, id);
             }
-            visit(triangle.as_ref().map(|triangle| (triangle, triangle.surface(x, y, texture))))
+            visit(triangle.as_ref().map(|triangle| (triangle, triangle.surface(x, y, perturbation))))
         };
         ids.iter().enumerate().map(pixel).collect::<Vec<_>>()
     };
@@ -172,14 +175,16 @@ impl<'a> SurfaceTriangle<'a> {
     }
 
     /// The surface at the center of a pixel.
-    pub fn surface(&self, x: usize, y: usize, texture: TexturePerturbation) -> Surface {
+    pub fn surface(&self, x: usize, y: usize, perturbation: &Perturbation) -> Surface {
         let view = self.view;
         let point = self.sample_point(DVec2::new(x as f64 + 0.5, y as f64 + 0.5));
         let weights = self.weights.at(&point);
         let (barycentrics, edge_distance_px) = self.weights.on_screen(&point, view);
-        let depth_m = mixed(weights, self.depths_m);
+        let [x, y, z, along] = perturbation.place.map(|roundings| roundings * ROUNDING);
+        let depth_m = mixed(weights, self.depths_m) * (1.0 + along);
         // Not the weighted mean of the corners: snapping moves that by up to half a sub-pixel unit.
         let position = on_ray(view, point.screen, depth_m);
+        let position = position + DVec3::new(x, y, z) * (view.eye.abs() + (position - view.eye).abs());
         let toward_eye = match view.linear_depth_m {
             Some(_) => -view.forward,
             // Not from the position: where a clipped triangle covers a sample outside its plane's visible part, that lies behind the eye.
@@ -188,8 +193,10 @@ impl<'a> SurfaceTriangle<'a> {
         let smooth = self.normals.and_then(|normals| self.smooth_normal(weights, normals));
         let normal = smooth.or(self.flat_normal).unwrap_or(toward_eye);
         let base = mixed(weights, self.colors);
-        let textured =
-            self.material.as_ref().map(|material| material.color(base.truncate(), &self.sample_weights(weights, &point), texture));
+        let textured = self
+            .material
+            .as_ref()
+            .map(|material| material.color(base.truncate(), &self.sample_weights(weights, &point), perturbation.texture));
         let (color, glow) = textured.unwrap_or((base.truncate(), DVec3::ZERO));
         let across_m = view.ndc_axes[1].length() * 2.0 / f64::from(view.height);
         Surface {
