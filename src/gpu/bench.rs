@@ -1,6 +1,9 @@
 //! Milliseconds beside error: our options and two baselines, interleaved in one run on one adapter.
 
-use std::sync::Arc;
+use std::{
+    sync::Arc,
+    time::{Duration, Instant},
+};
 
 use super::{
     buffers::{self, Buffers, color_stride},
@@ -63,6 +66,25 @@ pub struct BenchRow {
 
 /// Judges a picture of ours against the oracle, and hands over the oracle's own.
 pub type Judge<'a> = &'a dyn Fn(&Stack, &Capture) -> Verdict;
+
+impl BenchRow {
+    fn add_note(&mut self, text: &str) {
+        self.note = Some(self.note.take().map_or_else(|| text.into(), |note| format!("{note}; {text}")));
+    }
+}
+
+/// Rounds of warming up, at least and at most, and the longest time before no further one begins.
+const MIN_WARM_UP_ROUNDS: usize = 3;
+const MAX_WARM_UP_ROUNDS: usize = 400;
+const MAX_WARM_UP: Duration = Duration::from_secs(3);
+/// The medians of so many rounds, twice, may differ by this fraction.
+const SETTLED_ROUNDS: usize = 12;
+const SETTLED: f64 = 0.02;
+
+/// The order of a round: forth and back in turn, so that a clock that drifts in one direction favors nothing.
+fn in_turn(entries: usize, round: usize) -> impl Iterator<Item = usize> {
+    (0..entries).map(move |i| if round.is_multiple_of(2) { i } else { entries - 1 - i })
+}
 
 /// Something that draws the scene.
 enum Contender {
@@ -153,17 +175,16 @@ impl<'a> Lab<'a> {
         samples: usize,
         progress: &mut dyn FnMut(&str, usize, usize),
     ) -> Result<Vec<BenchRow>, RenderError> {
-        const WARM_UP: usize = 3;
+        let is_settled = self.warm_up(&mut entries)?;
         let rounds = samples + samples / 3;
         let all = rounds * entries.len();
-        for round in 0..rounds + WARM_UP {
-            let detail = if round < samples + WARM_UP { Detail::Whole } else { Detail::Passes };
-            for (i, entry) in entries.iter_mut().enumerate() {
+        for round in 0..rounds {
+            let detail = if round < samples { Detail::Whole } else { Detail::Passes };
+            for (i, at) in in_turn(entries.len(), round).enumerate() {
+                let entry = &mut entries[at];
                 let times = self.sample(&mut entry.contender, detail)?;
-                if round >= WARM_UP {
-                    entry.keep(times, detail);
-                    progress(&entry.contender.option(), (round - WARM_UP) * all / rounds + i + 1, all);
-                }
+                entry.keep(times, detail);
+                progress(&entry.contender.option(), round * entries.len() + i + 1, all);
             }
         }
         let row = |option: String, error: ErrorStats, note: Option<String>| BenchRow {
@@ -181,12 +202,37 @@ impl<'a> Lab<'a> {
             note,
         };
         let mut rows: Vec<BenchRow> = entries.into_iter().map(|entry| entry.finish(&row)).collect();
+        if !is_settled {
+            rows.iter_mut().for_each(|row| row.add_note("the times did not settle while warming up; compare ratios alone"));
+        }
         rows.extend(missing.into_iter().map(|(option, why)| row(option, ErrorStats::default(), Some(format!("{scene_name}: {why}")))));
         Ok(rows)
     }
 }
 
 impl Lab<'_> {
+    /// Draws all contenders in turn until the time of a round has settled: the clock of an idle device takes a while to rise. Returns
+    /// false if it does not settle.
+    fn warm_up(&mut self, entries: &mut [Entry]) -> Result<bool, RenderError> {
+        let begin = Instant::now();
+        let mut rounds = Vec::new();
+        while rounds.len() < MIN_WARM_UP_ROUNDS || rounds.len() < MAX_WARM_UP_ROUNDS && begin.elapsed() < MAX_WARM_UP {
+            let mut round_ms = Some(0.0);
+            for at in in_turn(entries.len(), rounds.len()) {
+                let times = self.sample(&mut entries[at].contender, Detail::Whole)?;
+                round_ms = round_ms.zip(times.total_ms).map(|(sum, ms)| sum + ms);
+            }
+            // Without timestamps there is nothing to wait for.
+            let Some(round_ms) = round_ms else { return Ok(true) };
+            rounds.push(round_ms);
+            if timing::is_settled(&rounds, SETTLED_ROUNDS, SETTLED) {
+                return Ok(true);
+            }
+        }
+        // On a software adapter a few rounds take longer than any clock needs.
+        Ok(begin.elapsed() >= MAX_WARM_UP && rounds.len() < 2 * SETTLED_ROUNDS)
+    }
+
     /// Sets up every contender and measures its error. Second: rows that cannot run, and why.
     #[allow(clippy::type_complexity, reason = "a pair of lists, named in the line above")]
     fn line_up(&mut self, scene: &Arc<Scene>, judge: Judge) -> Result<(Vec<Entry>, Vec<(String, String)>), RenderError> {

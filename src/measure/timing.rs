@@ -20,9 +20,30 @@ pub fn outliers(samples: &[f64]) -> usize {
     distances.iter().filter(|distance| **distance > 5.0 * mad && mad > 0.0).count()
 }
 
+/// Have the samples settled: do the medians of the last `window` samples and of the `window` before them differ by at most
+/// `tolerance`, as a fraction?
+pub fn is_settled(samples: &[f64], window: usize, tolerance: f64) -> bool {
+    let Some(begin) = samples.len().checked_sub(2 * window).filter(|_| window > 0) else { return false };
+    let (before, last) = samples[begin..].split_at(window);
+    match (percentile(before, 0.5), percentile(last, 0.5)) {
+        (Some(before), Some(last)) => (last - before).abs() <= tolerance * before.abs(),
+        _ => false,
+    }
+}
+
 #[cfg(test)]
 mod tests {
-    use super::{outliers, percentile};
+    use super::{is_settled, outliers, percentile};
+
+    #[test]
+    fn samples_settle_when_their_median_stays() {
+        // The clock of an idle device rises.
+        let mut rising: Vec<f64> = (0..20).map(|i| 0.77 - 0.027 * f64::from(i)).collect();
+        assert!(!is_settled(&rising, 5, 0.02));
+        rising.extend([0.23, 0.231, 0.229, 0.9, 0.23, 0.23, 0.228, 0.231, 0.23, 0.23]);
+        assert!(is_settled(&rising, 5, 0.02), "one outlier does not matter");
+        assert!(!is_settled(&[1.0; 9], 5, 0.02), "two windows are needed");
+    }
 
     #[test]
     fn outliers_are_those_far_from_most() {

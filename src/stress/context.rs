@@ -11,6 +11,7 @@ use super::{
 use crate::{
     accuracy::Visibility,
     effects::Stack,
+    frame::CullingStats,
     gpu::{Capture, RenderError, Renderer},
     math::{fnv1a, hash},
     measure::{Budget, Verdict, compare},
@@ -252,6 +253,27 @@ impl<'a> CaseContext<'a> {
             Ok(()) => Ok((capture, verdict)),
             Err(faults) => Err(EarlyEnd::Failed(format!("{what}: {faults}"))),
         }
+    }
+
+    /// Draws a picture that may use what the last one left, judges it and insists on [`exactness`]; what was left out of it.
+    pub(super) fn exact_next(
+        &mut self,
+        scene: &Arc<Scene>,
+        view: &View,
+        stack: &Stack,
+        accuracy: &AccuracyRequest,
+        what: &str,
+    ) -> Result<CullingStats, EarlyEnd> {
+        if self.strict.is_some() {
+            return Err(EarlyEnd::Skipped("pictures that follow others are drawn with default accuracy".into()));
+        }
+        self.step(scene, view, what)?;
+        let failed = |error: String| EarlyEnd::Failed(format!("{what}: {error}"));
+        self.renderer.set_scene(scene)?;
+        let capture = self.renderer.capture_next(view, stack, accuracy).map_err(|error| failed(error.to_string()))?;
+        let verdict = oracle::judge(scene, view, stack, &capture.picture())?;
+        exactness(&verdict.report).map_err(failed)?;
+        Ok(self.renderer.culled().unwrap_or_default())
     }
 
     /// Draws with every exact option and the work distribution of a graphics card, and with the quickest option also with a

@@ -1,6 +1,8 @@
 //! The table of stress cases, except [`super::strict`], which runs the others again.
 
-use super::{case::Case, clipping, coverage, depth, effects, hardware, parameters, picture_sizes, published, queues, skins, time, values};
+use super::{
+    case::Case, clipping, coverage, culling, depth, effects, hardware, parameters, picture_sizes, published, queues, skins, time, values,
+};
 
 /// All cases by kind, except those that run other cases.
 const CASES: &[&[Case]] = &[
@@ -16,6 +18,7 @@ const CASES: &[&[Case]] = &[
     parameters::CASES,
     skins::CASES,
     hardware::CASES,
+    culling::CASES,
 ];
 
 /// The cases of the table, sorted by number.

@@ -4,7 +4,7 @@
 use std::sync::{Arc, Mutex, OnceLock};
 
 use crate::common::*;
-use glam::{DMat4, DQuat, DVec3};
+use glam::{DMat4, DVec3};
 use rasterlab::{
     accuracy::{Coverage, Culling, DepthFormat, PinnedOptions, PositionFormat, RenderScale, VertexTransform, Visibility},
     frame::{CullingStats, Frame},
@@ -16,6 +16,7 @@ use rasterlab::{
         camera::{Camera, Projection},
         view::View,
     },
+    stress::culling::walk,
 };
 
 const SIZE: [u32; 2] = [128, 96];
@@ -109,28 +110,6 @@ fn no_camera_sees_what_frustum_and_cones_leave_out() {
         }
     }
     assert!(total.outside > total.drawn / 4 && total.backfacing > 0, "little is left out: {total:?}");
-}
-
-/// A walk through a scene: small steps and turns, and now and then a jump.
-fn walk(scene: &Scene, rng: &mut Rng, steps: usize, size: [u32; 2]) -> Vec<View> {
-    let bounds = scene.bounds();
-    let reach = bounds.radius().min(30.0);
-    let (mut eye, mut turn) = (bounds.center() + DVec3::splat(0.2 * reach), 0.0);
-    let mut views = Vec::new();
-    for step in 0..steps {
-        let [mut stride, mut swing] = [0.03 * reach, 0.2];
-        if step % 5 == 4 {
-            [stride, swing] = [0.7 * reach, 3.0];
-        }
-        eye += DVec3::new(rng.real(-stride, stride), rng.real(-stride, stride), rng.real(-stride, stride));
-        turn += rng.real(-swing, swing);
-        let way = DQuat::from_rotation_y(turn) * DVec3::new(0.0, 0.1, -1.0);
-        let projection =
-            if step % 7 == 6 { Projection::Orthographic { height_m: reach } } else { Projection::Perspective { fov_y_deg: 70.0 } };
-        let camera = Camera { eye, target: eye + way, up: DVec3::Y, projection, near_m: 0.02 };
-        views.push(View::new(&camera, size[0], size[1], &bounds, DMat4::IDENTITY, [0.0; 4]));
-    }
-    views
 }
 
 /// Follows a walk with two-pass culling, what each picture leaves for the next included; the first difference, and what was

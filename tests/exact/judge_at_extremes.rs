@@ -126,3 +126,19 @@ fn packed_positions_are_judged_within_half_a_step() {
         assert!(report.snap_outside_bound > 0, "{}: {part} as {wrong} is not caught: {report:?}", position_format.name());
     }
 }
+
+#[test]
+fn colors_seen_from_very_far_err_by_the_roundings_of_the_distance() {
+    let Some(mut renderer) = renderer() else { return };
+    // The depth of each sample is rounded to steps of 6 cm, which fog with a steep fall-off shows.
+    let camera = "[camera]\neye = [353739.2985322324, 812418.4990550128, -226515.01635057153]\northographic_height_m = 2.0";
+    let scene = "scene.builtin = \"tentacle?joints=1&influences=1&tess=2\"\noutput.size = [38, 29]";
+    exact_preset(&mut renderer, &format!("{scene}\n{camera}\n[effects.fog]\nfalloff = 10.0"));
+    exact_preset(&mut renderer, &format!("{scene}\n{camera}\n[effects.fog]\nfalloff = 1000.0\n[effects.hatch]\n[effects.posterize]"));
+}
+
+#[test]
+fn a_flat_area_on_a_step_of_color_is_one_color_in_doubt() {
+    let Some(mut renderer) = renderer() else { return };
+    exact_preset(&mut renderer, "scene.builtin = \"stack\"\noutput.size = [157, 98]\n[effects.hatch]\n[effects.dither]");
+}
