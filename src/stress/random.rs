@@ -79,17 +79,20 @@ impl Rng {
 /// The components of a legal value.
 fn components(rng: &mut Rng, field: &Field, values: Values) -> Vec<f64> {
     let [low, high] = field.soft;
-    let mut component = || match (field.value_type, values) {
-        (ValueType::Choice(_) | ValueType::Bool, _) => f64::from(rng.between(low as i32, high as i32 + 1)),
-        (ValueType::U32 | ValueType::I32, Values::Allowed) => rng.number(field).round(),
-        (_, Values::Allowed) => rng.number(field),
-        (whole, Values::OfSlider) => match rng.between(0, 8) {
-            0 => low,
-            1 => high,
-            _ if matches!(whole, ValueType::U32 | ValueType::I32) => rng.real(low, high + 1.0).floor().min(high),
-            _ if field.log => low * (high / low).powf(rng.real(0.0, 1.0)),
-            _ => rng.real(low, high),
-        },
+    let mut component = || {
+        let chance = rng.between(0, 8);
+        match (field.value_type, values) {
+            (ValueType::Choice(_) | ValueType::Bool, _) => f64::from(rng.between(low as i32, high as i32 + 1)),
+            (ValueType::U32 | ValueType::I32, Values::Allowed) => rng.number(field).round(),
+            (_, Values::Allowed) => rng.number(field),
+            (whole, Values::OfSlider) => match chance {
+                0 => low,
+                1 => high,
+                _ if matches!(whole, ValueType::U32 | ValueType::I32) => rng.real(low, high + 1.0).floor().min(high),
+                _ if field.log => low * (high / low).powf(rng.real(0.0, 1.0)),
+                _ => rng.real(low, high),
+            },
+        }
     };
     (0..field.value_type.components()).map(|_| component()).collect()
 }

@@ -4,6 +4,7 @@
 use rasterlab::{
     accuracy::{DepthFormat, PinnedOptions, PositionFormat, Visibility},
     gpu::Renderer,
+    measure::Budget,
     plan::AccuracyRequest,
     preset_file,
 };
@@ -109,7 +110,8 @@ fn packed_positions_are_judged_within_half_a_step() {
         for query in ["knot?tess=4", "cube-wall?columns=4&rows=3", "sizes", "near"] {
             let scene = scene(query);
             let report = judged(&mut right, &scene, &view(&scene, [96, 72]), &stack(&[]), &accuracy).1.report;
-            assert_eq!(exactness(&report), Ok(()), "{query} with {}", position_format.name());
+            // Where positions err, many depths are in doubt.
+            assert_eq!(report.within(&Budget::default()), Ok(()), "{query} with {}", position_format.name());
         }
     }
     let mistakes = [
