@@ -10,8 +10,8 @@ use crate::{
     preset_file::{self, Folders, PresetFile},
 };
 
-/// The preset of a window that was opened without one.
-pub const FIRST_PRESET: &str = "teapot";
+/// The preset of a window that was opened without one; it plays. A software driver draws it fast enough for that.
+pub const FIRST_PRESET: &str = "hero-walk";
 
 /// The preset to begin with: one that is open already, or `open`. If it cannot be opened, the error is logged and the teapot is
 /// shown.

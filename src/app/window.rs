@@ -191,7 +191,9 @@ impl App {
             panels.dialogs.ask_code(opened.into(), CodeUse::Open(said));
             recovery::first_preset(None, None, &options.folders, &mut log)
         };
-        let session = Session::new(opened);
+        let mut session = Session::new(opened);
+        // The preset that nobody asked for shows at once that it moves.
+        session.playback.playing = options.open.is_none() && session.preset().is_moving();
         Ok(Self {
             panels,
             state: State {

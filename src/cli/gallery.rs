@@ -1,4 +1,4 @@
-//! `gallery`: the table of effects in the README. Its pictures are the goldens.
+//! `gallery`: the tables of hero presets and of effects in the README. Their pictures are the goldens.
 
 use super::{
     args::Gallery,
@@ -8,8 +8,11 @@ use super::{
 };
 use crate::{
     effects::{EFFECTS, Effect},
-    preset_file::{BUILTIN_DIR, Existing},
+    preset_file::{self, BUILTIN_DIR, Existing, PresetFile},
 };
+
+/// The tag of the presets that come first.
+pub const HERO: &str = "hero";
 
 /// The lines before and after the table.
 pub const MARKERS: [&str; 2] = ["<!-- gallery: rasterlab gallery --into README.md -->", "<!-- end of gallery -->"];
@@ -38,18 +41,32 @@ pub fn replaced(text: &str, table: &str) -> Option<String> {
     Some(format!("{}\n{table}{}", &text[..begin], &text[end..]))
 }
 
-/// Three effects per row: picture, name, description, hooks, and further presets.
+/// Three hero presets per row, each with its picture, id and sentence; then three effects per row, each with picture, name, hooks,
+/// description and further presets.
 pub fn table() -> String {
     let mut preset_files: Vec<String> =
         BUILTIN_DIR.files().filter_map(|file| Some(file.path().file_stem()?.to_string_lossy().into_owned())).collect();
     preset_files.sort();
-    let cells: Vec<String> = EFFECTS.iter().map(|effect| cell(effect, &preset_files)).collect();
-    let mut text = String::from("<table>\n");
-    for row in cells.chunks(3) {
-        text.push_str(&format!("<tr>\n{}</tr>\n", row.concat()));
-    }
-    text.push_str("</table>\n");
-    text
+    let heroes: Vec<String> = heroes().iter().map(hero_cell).collect();
+    let effects: Vec<String> = EFFECTS.iter().map(|effect| cell(effect, &preset_files)).collect();
+    let rows = |cells: &[String]| cells.chunks(3).map(|row| format!("<tr>\n{}</tr>\n", row.concat())).collect::<String>();
+    format!("<table>\n{}{}</table>\n", rows(&heroes), rows(&effects))
+}
+
+/// The built-in presets that are tagged as heroes, by id.
+pub fn heroes() -> Vec<PresetFile> {
+    let parsed = BUILTIN_DIR.files().filter_map(|file| {
+        let (id, text) = (file.path().file_stem()?.to_string_lossy().into_owned(), file.contents_utf8()?);
+        preset_file::parse_file(text, &id, &id).ok()
+    });
+    let mut heroes: Vec<PresetFile> = parsed.filter(|preset_file| preset_file.preset.tags.iter().any(|tag| tag == HERO)).collect();
+    heroes.sort_by(|a, b| a.id.cmp(&b.id));
+    heroes
+}
+
+fn hero_cell(preset_file: &PresetFile) -> String {
+    let (id, about) = (&preset_file.id, &preset_file.preset.about);
+    format!("<td valign=\"top\"><img src=\"tests/snapshots/{id}.png\" width=\"260\" alt=\"{id}\"><br><b>{id}</b><br>{about}</td>\n")
 }
 
 fn cell(effect: &Effect, preset_files: &[String]) -> String {

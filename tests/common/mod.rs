@@ -48,6 +48,8 @@ pub const SCENES: &[&str] = &[
     "stack",
     "near",
     "chamber",
+    "town?houses=3",
+    "still-life?tess=1",
 ];
 
 /// Scenes with deformed meshes, which the strict vertex stage refuses.

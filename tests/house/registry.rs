@@ -10,7 +10,10 @@ use rasterlab::{
     cli::gallery,
     effect_files::check_name,
     effects::EFFECTS,
-    preset::settings::{SECTIONS, settings},
+    preset::{
+        SceneSource,
+        settings::{SECTIONS, settings},
+    },
     preset_file::{self, BUILTIN_DIR, PresetFile},
 };
 
@@ -84,6 +87,29 @@ fn every_preset_loads_strictly_and_has_a_name_a_sentence_tags_and_a_test() {
         assert!(preset.test.is_some(), "{} has no [test] table", preset_file.id);
         let [width, height] = preset.output.size;
         assert!(width <= 320 && height <= 240, "{}: a golden is at most 320x240", preset_file.id);
+    }
+}
+
+/// The gallery leads with pictures that move, on characters and scenes rather than on single shapes, and no model wears out.
+#[test]
+fn heroes_move_and_no_builtin_fills_more_than_a_fifth_of_the_gallery() {
+    let preset_files = preset_files();
+    let heroes: Vec<&PresetFile> = preset_files.iter().filter(|file| file.preset.tags.iter().any(|tag| tag == gallery::HERO)).collect();
+    assert!(heroes.len() >= 10, "{} hero presets", heroes.len());
+    assert_eq!(heroes.len(), gallery::heroes().len());
+    let mut share = std::collections::BTreeMap::<String, usize>::new();
+    for preset_file in &preset_files {
+        if let SceneSource::Builtin(query) = &preset_file.preset.scene {
+            *share.entry(query.split('?').next().expect("a name").to_owned()).or_default() += 1;
+        }
+    }
+    for (builtin, presets) in &share {
+        assert!(5 * presets <= preset_files.len(), "{builtin} appears in {presets} of {} presets", preset_files.len());
+    }
+    for hero in heroes {
+        assert!(hero.preset.is_moving(), "{} does not move", hero.id);
+        let SceneSource::Builtin(query) = &hero.preset.scene else { panic!("{} needs a file", hero.id) };
+        assert!(["walker", "town", "still-life"].contains(&query.split('?').next().expect("a name")), "{}: {query}", hero.id);
     }
 }
 

@@ -136,6 +136,42 @@ fn sphere_knot_and_walker_are_closed() {
     }
 }
 
+/// Twelve surfaces from seven outlines and a tube; none has a hole, and their normals look outwards.
+#[test]
+fn everything_in_the_still_life_is_closed_and_solid() {
+    for tess in [1, 3, 8] {
+        let scene = scene(&format!("still-life?tess={tess}"));
+        assert_eq!((scene.primitives.len(), scene.instances.len()), (8, 12));
+        for primitive in &scene.primitives {
+            assert_eq!(open_edges(&scene, primitive), [], "tess {tess}: {}", primitive.name);
+            let volume: f64 = triangles(&scene, primitive)
+                .map(|corners| corners.map(|v| position(&scene, primitive, v)))
+                .map(|[a, b, c]| a.dot(b.cross(c)) / 6.0)
+                .sum();
+            assert!(volume > 1e-3, "tess {tess}: {} holds {volume} m³", primitive.name);
+        }
+    }
+}
+
+/// The order of the draws is the order of building: a picture that stops early shows a town that is not finished.
+#[test]
+fn the_town_is_built_from_the_shore_up_and_lit_last() {
+    let scene = scene("town?houses=30&lights=0.5");
+    let names: Vec<&str> = scene.instances.iter().map(|instance| scene.primitives[instance.primitive].name.as_str()).collect();
+    assert_eq!((&names[..2], &names[32..]), (&["sea", "hill"][..], &["tower", "trees", "boats", "windows"][..]));
+    assert!(names[2..32].iter().all(|name| *name == "house"));
+    let middle = |index: usize| scene.primitives[scene.instances[index].primitive].bounds.center();
+    let outwards = |index: usize| libm::hypot(middle(index).x, middle(index).z);
+    let mean = |range: std::ops::Range<usize>, of: &dyn Fn(usize) -> f64| range.clone().map(of).sum::<f64>() / range.len() as f64;
+    assert!(mean(2..12, &outwards) > 1.5 * mean(22..32, &outwards));
+    assert!(mean(2..12, &|i| middle(i).y) < 0.6 * mean(22..32, &|i| middle(i).y));
+    let emission = |name: &str| {
+        let primitive = scene.primitives.iter().find(|primitive| primitive.name == name).expect("a part of the town");
+        scene.materials[primitive.material].emission
+    };
+    assert_eq!((emission("windows")[0], emission("house")), (0.5, [0.0; 3]));
+}
+
 #[test]
 fn sphere_has_as_many_triangles_as_asked() {
     for triangles in [100, 101, 128, 500, 4_444, 99_999, 160_000, 1_000_000] {
@@ -343,7 +379,7 @@ fn mistyped_queries_get_a_helpful_error() {
         (
             "teapto",
             "there is no built-in scene \"teapto\"; did you mean \"teapot\"? \
-             (known: teapot, sphere, knot, cube-wall, field, tentacle, walker, chamber, globe, panels, leaves, near, grid, fan, sizes, slivers, stack)",
+             (known: teapot, sphere, knot, cube-wall, field, tentacle, walker, town, still-life, chamber, globe, panels, leaves, near, grid, fan, sizes, slivers, stack)",
         ),
         ("teapot?tes=4", "teapot has no parameter \"tes\"; did you mean \"tess\"? (known: tess)"),
         ("knot?color=4", "knot has no parameter \"color\" (known: tess)"),

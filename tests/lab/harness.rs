@@ -136,11 +136,18 @@ impl Lab {
 
 /// A window of 1280 x 800 that shows the preset `open`, with its first picture drawn; presets lie in `presets_dir`.
 pub fn lab_in(open: &str, presets_dir: Option<&Path>) -> Option<Lab> {
+    let mut lab = opened(Some(open), presets_dir)?;
+    settle(&mut lab);
+    Some(lab)
+}
+
+/// A window of 1280 x 800 as it is created, before its first frame; without `open` as the program starts.
+pub fn opened(open: Option<&str>, presets_dir: Option<&Path>) -> Option<Lab> {
     crate::common::gpu()?; // Fails with one sentence when there is none.
     let adapter = std::env::var("RASTERLAB_ADAPTER").map_or(AdapterChoice::Any, AdapterChoice::Named);
     let (window, gpu) = shared_device(&adapter);
     let options = Options {
-        open: Some(open.into()),
+        open: open.map(str::to_owned),
         opened: None,
         adapter,
         gpu: Some(gpu),
@@ -151,9 +158,7 @@ pub fn lab_in(open: &str, presets_dir: Option<&Path>) -> Option<Lab> {
         .with_size([1280.0, 800.0])
         .renderer(Window(window.clone()))
         .build_eframe(|cc| App::new(cc, options).unwrap_or_else(|error| panic!("{error:#}")));
-    let mut lab = Lab { harness, window };
-    settle(&mut lab);
-    Some(lab)
+    Some(Lab { harness, window })
 }
 
 /// A window with the program's own presets.

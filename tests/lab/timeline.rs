@@ -102,6 +102,25 @@ fn a_selected_key_is_eased_and_removed() {
 }
 
 #[test]
+fn without_a_name_the_window_starts_on_the_first_preset_playing_and_with_one_at_rest() {
+    let Some(mut lab) = opened(None, None) else { return };
+    assert_eq!(lab.state().preset_file().id, rasterlab::app::FIRST_PRESET);
+    let start_s = lab.state().shown_time_s();
+    let patience = std::time::Instant::now() + Duration::from_secs(120);
+    while lab.state().draws() < 3 || lab.state().shown_time_s() == start_s {
+        assert!(std::time::Instant::now() < patience, "it stands still\n{}", lab.state().log_text());
+        lab.step();
+        std::thread::sleep(Duration::from_millis(5));
+    }
+    assert_eq!((lab.state().undo_steps(), lab.state().preset_file().is_modified()), (0, false));
+
+    let Some(mut lab) = self::lab(rasterlab::app::FIRST_PRESET) else { return };
+    let [time_s, draws] = [lab.state().shown_time_s(), lab.state().draws() as f64];
+    lab.run_steps(5);
+    assert_eq!([lab.state().shown_time_s(), lab.state().draws() as f64], [time_s, draws]);
+}
+
+#[test]
 fn play_runs_loops_and_pauses() {
     let folder = tempfile::tempdir().expect("a temporary folder");
     let text = format!("{MOVING}[clock]\ntime_s = 0.5\nrange_s = [0.25, 1.25]\n");

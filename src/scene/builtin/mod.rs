@@ -1,6 +1,6 @@
 //! Built-in scenes: meshes from formulas, selected by a query such as `sphere?triangles=160000`.
 //!
-//! Teapot, sphere, knot, cube-wall, tentacle, walker and chamber are meant to look good. The others stress one property of the
+//! Teapot, sphere, knot, cube-wall, tentacle, walker, town, still-life and chamber are meant to look good. The others stress one property of the
 //! rasterizer each and bring a camera for it. All are indexed, finite and identical on every machine.
 
 mod extremes;
@@ -10,8 +10,10 @@ mod painted;
 mod plates;
 mod query;
 mod shapes;
+mod still_life;
 mod teapot;
 mod tentacle;
+mod town;
 mod walker;
 mod weights;
 
@@ -77,6 +79,22 @@ pub const BUILTINS: &[Builtin] = &[
             whole("instances", "number of instances, each with its own joints", 1.0, 1.0..=1_000.0),
         ],
         build: walker::build,
+    },
+    Builtin {
+        name: "town",
+        about: "a town on a hill in the sea: houses, a tower, trees and boats, drawn from the shore up",
+        params: &[
+            whole("houses", "number of houses; the hill grows with them", 40.0, 1.0..=400.0),
+            real("lights", "how brightly the windows shine; 0: dark", 0.0, 0.0..=1.0),
+            SEED,
+        ],
+        build: town::build,
+    },
+    Builtin {
+        name: "still-life",
+        about: "a jug, a bottle, a bowl of oranges, pears and a lemon on a round table, each a closed surface",
+        params: &[whole("tess", "tessellation; it has about 2,400 * tess^2 triangles", 3.0, 1.0..=32.0)],
+        build: still_life::build,
     },
     Builtin {
         name: "chamber",
