@@ -70,7 +70,7 @@ fn is_drawn_by(renderer: &Renderer, stems: &[&str]) {
 fn the_scenes_of_these_tests_include_every_builtin() {
     for builtin in BUILTINS {
         assert!(
-            SCENES.iter().chain(DEFORMED_SCENES).any(|query| query.split('?').next() == Some(builtin.name)),
+            [SCENES, GALLERY_SCENES, DEFORMED_SCENES].concat().iter().any(|query| query.split('?').next() == Some(builtin.name)),
             "{} is not tested",
             builtin.name
         );
@@ -84,7 +84,7 @@ fn every_exact_backend_gives_the_same_triangle_ids_and_depth_keys() {
     if !options.contains(&Visibility::Packed64) {
         eprintln!("NOT RUN: this adapter has no 64-bit atomics, so there is no packed64 to compare with");
     }
-    let scenes = [scenes_with_views(SCENES), scenes_with_views(DEFORMED_SCENES)].concat();
+    let scenes = [SCENES, GALLERY_SCENES, DEFORMED_SCENES].map(scenes_with_views).concat();
     let stack = stack(&["facet", "lambert"]);
     for tuning in [renderer.gpu().caps.tuning(), GRAPHICS_CARD] {
         renderer.set_tuning(tuning);
