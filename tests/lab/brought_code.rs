@@ -76,7 +76,7 @@ fn a_picture_that_the_window_is_opened_with_is_asked_about() {
     std::fs::write(&path, png).expect("a file");
     let Some(mut lab) = lab(&path.to_string_lossy()) else { return };
     assert!(is_asked(&lab) && !has_ink(&lab));
-    assert_eq!(lab.state().preset_file().id, "teapot");
+    assert_eq!(lab.state().preset_file().id, rasterlab::app::FIRST_PRESET);
     click(&mut lab, Role::Button, "Run this code");
     assert!(has_ink(&lab) && lab.state().preset_file().title() == "Mine");
 }

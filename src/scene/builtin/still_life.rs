@@ -17,7 +17,8 @@ use crate::{
 /// An outline that is turned about the vertical axis: radius and height of its control points, from pole to pole.
 type Outline = &'static [[f64; 2]];
 
-const TABLE: Outline = &[[0.0, -0.16], [1.5, -0.16], [1.78, -0.15], [1.86, -0.09], [1.86, -0.05], [1.8, 0.0], [1.6, 0.0], [0.8, 0.0], [0.0, 0.0]];
+const TABLE: Outline =
+    &[[0.0, -0.16], [1.5, -0.16], [1.78, -0.15], [1.86, -0.09], [1.86, -0.05], [1.8, 0.0], [1.6, 0.0], [0.8, 0.0], [0.0, 0.0]];
 const JUG: Outline = &[
     [0.0, 0.0],
     [0.24, 0.0],
@@ -105,7 +106,8 @@ pub fn build(values: &Values) -> Result<Scene, BuiltinError> {
     let jug_at = at(-0.62, 0.0, -0.2) * rotation_y(0.5);
     add("jug", turned(JUG, tess, &jug_color), &[jug_at]);
     add("handle", tube(tess), &[jug_at]);
-    let bowl_color = |p: DVec3| if libm::hypot(p.x, p.z) < 0.56 && p.y > 0.085 + 0.3 * (p.x * p.x + p.z * p.z) { GLAZE[0] } else { GLAZE[1] };
+    let bowl_color =
+        |p: DVec3| if libm::hypot(p.x, p.z) < 0.56 && p.y > 0.085 + 0.3 * (p.x * p.x + p.z * p.z) { GLAZE[0] } else { GLAZE[1] };
     add("bowl", turned(BOWL, tess, &bowl_color), &[at(0.66, 0.0, 0.02)]);
     let oranges = [at(0.50, 0.17, 0.17), at(0.86, 0.17, 0.11) * rotation_y(1.0), at(0.66, 0.18, -0.22), at(0.67, 0.41, 0.02)];
     add("orange", turned(ORANGE, tess, &|_| DVec3::new(0.88, 0.30, 0.02)), &oranges);

@@ -114,7 +114,8 @@ impl Hill {
         let mut below = mesh.ring(48, |mesh, i| vertex(mesh, 1.16, f64::from(i) / 48.0));
         for ring in (1..rings).rev() {
             let count = if ring > 4 { 48 } else { 24 };
-            let above = mesh.ring(count, |mesh, i| vertex(mesh, 1.16 * f64::from(ring) / f64::from(rings), f64::from(i) / f64::from(count)));
+            let above =
+                mesh.ring(count, |mesh, i| vertex(mesh, 1.16 * f64::from(ring) / f64::from(rings), f64::from(i) / f64::from(count)));
             mesh.band(below, above);
             below = above;
         }
