@@ -67,7 +67,7 @@ fn apply(ctx: &egui::Context, state: &mut State, panels: &mut Panels, command: C
         Command::Row(command) => row(ctx, state, command),
         Command::File(command) => file(ctx, state, panels, command),
         Command::View(command) => view(state, panels, command),
-        Command::MeasureSweep(request, progress) => {
+        Command::MeasureTrade(request, progress) => {
             if let Some(scene) = state.session.scene() {
                 state.jobs.measure(state.screen.gpu.summary.name.clone(), scene.clone(), *request, progress);
             }
@@ -167,7 +167,7 @@ fn toggle(state: &mut State, panels: &mut Panels, which: Toggle) {
             (open.left, open.right, open.timeline) = (!is_any, !is_any, !is_any);
         }
         Toggle::Timeline => open.timeline = !open.timeline,
-        Toggle::Sweep => open.sweep = !open.sweep,
+        Toggle::Trade => open.trade = !open.trade,
         Toggle::Log => open.log = !open.log,
         Toggle::CheatSheet => open.cheat_sheet = !open.cheat_sheet,
         Toggle::Extremes => panels.extremes.toggle(),

@@ -14,7 +14,7 @@ use super::{
     log::Level,
     overlay::Overlay,
     screen::Inputs,
-    sweep::request::{Progress, Request},
+    trade::request::{Progress, Request},
 };
 use crate::{
     accuracy::{Axis, PinnedOptions},
@@ -67,7 +67,7 @@ pub enum Command {
     File(FileCommand),
     View(ViewCommand),
     /// Measures every combination of the options of the request's axes.
-    MeasureSweep(Box<Request>, Arc<Progress>),
+    MeasureTrade(Box<Request>, Arc<Progress>),
     /// Pins the options of these axes, as a separate undo step.
     PinOptions(PinnedOptions, Vec<&'static Axis>),
     Toggle(Toggle),
@@ -273,7 +273,7 @@ pub enum Toggle {
     /// The side panels and the timeline.
     Panels,
     Timeline,
-    Sweep,
+    Trade,
     Log,
     CheatSheet,
     Extremes,
@@ -311,7 +311,7 @@ impl From<Action> for Command {
             Action::FlipAb => Self::View(ViewCommand::FlipCompare),
             Action::Panels => Self::Toggle(Toggle::Panels),
             Action::Timeline => Self::Toggle(Toggle::Timeline),
-            Action::Sweep => Self::Toggle(Toggle::Sweep),
+            Action::Trade => Self::Toggle(Toggle::Trade),
             Action::Log => Self::Toggle(Toggle::Log),
             Action::CheatSheet => Self::Toggle(Toggle::CheatSheet),
             Action::Extremes => Self::Toggle(Toggle::Extremes),

@@ -39,8 +39,8 @@ pub fn finish(ctx: &egui::Context, state: &mut State, panels: &mut Panels, comma
             }
         }
         Done::Verdict(inputs, findings) => verdict(state, panels, *inputs, findings),
-        Done::Sweep(points) => {
-            if let Some(error) = panels.sweep.arrived(points) {
+        Done::Trade(points) => {
+            if let Some(error) = panels.trade.arrived(points) {
                 state.log.add(Level::Error, error);
             }
         }

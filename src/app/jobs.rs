@@ -16,7 +16,7 @@ use super::{
     precision::{self, Measured},
     scene_loader::SceneKey,
     screen::Inputs,
-    sweep::{
+    trade::{
         measure,
         point::Point,
         request::{Progress, Request},
@@ -37,7 +37,7 @@ pub enum Done {
     Scene(SceneKey, Result<Arc<Scene>, String>),
     Verdict(Box<Inputs>, Result<Box<Findings>, String>),
     /// Measured combinations of accuracy options.
-    Sweep(Result<Vec<Point>, String>),
+    Trade(Result<Vec<Point>, String>),
     Thumbnail(String, Option<egui::ColorImage>),
     Export(PathBuf, Result<(), String>),
     /// The path from the system's file dialog; none if it was canceled or could not be shown.
@@ -170,7 +170,7 @@ impl Jobs {
     /// Measures combinations of accuracy options on a second device, so that the window stays responsive.
     pub fn measure(&self, adapter: String, scene: Arc<Scene>, request: Request, progress: Arc<Progress>) {
         let work = move || measure::measure(adapter, &scene, &request, &progress);
-        self.spawn("sweep", || Done::Sweep(caught("measuring the sweep", work)));
+        self.spawn("trade", || Done::Trade(caught("measuring the trade", work)));
     }
 
     /// Draws the picture of a preset with the oracle, which needs no device.

@@ -40,7 +40,7 @@ mod scene_loader;
 mod screen;
 mod session;
 mod state;
-mod sweep;
+mod trade;
 mod text;
 mod theme;
 mod trust;

@@ -40,7 +40,7 @@ const TABLE: [(Overlay, &str, &str, Color32); 11] = [
     (
         Overlay::NotReference,
         "Differs from the reference",
-        "Another triangle than in the exact picture on the finest grid. This is what the accuracy sweep counts; it includes the \
+        "Another triangle than in the exact picture on the finest grid. This is what Trade counts; it includes the \
          error of every coarser option",
         Color32::from_rgb(204, 156, 255),
     ),

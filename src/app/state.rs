@@ -26,14 +26,14 @@ pub struct OpenPanels {
     pub left: bool,
     pub right: bool,
     pub timeline: bool,
-    pub sweep: bool,
+    pub trade: bool,
     pub log: bool,
     pub cheat_sheet: bool,
 }
 
 impl Default for OpenPanels {
     fn default() -> Self {
-        Self { left: true, right: true, timeline: true, sweep: false, log: false, cheat_sheet: false }
+        Self { left: true, right: true, timeline: true, trade: false, log: false, cheat_sheet: false }
     }
 }
 

@@ -113,7 +113,7 @@ impl App {
     /// True if the picture shows the preset and nothing is still to come.
     pub fn is_idle(&self) -> bool {
         let State { session, screen, verification, .. } = &self.state;
-        let Panels { viewport, sweep, browser, .. } = &self.panels;
+        let Panels { viewport, trade, browser, .. } = &self.panels;
         let is_shown =
             !self.state.opening.is_waiting() && !session.scenes.is_loading() && session.scene().is_some() && !screen.is_waiting();
         let is_judged = !verification.is_running() && self.state.overlays_are_ready();
@@ -122,7 +122,7 @@ impl App {
             && !self.state.precision.is_running()
             && !self.state.live.is_busy()
             && !viewport.compare.is_waiting()
-            && !sweep.is_measuring()
+            && !trade.is_measuring()
             && !browser.is_busy()
     }
 
@@ -155,9 +155,9 @@ impl App {
         self.panels.viewport.compare.wipe_split()
     }
 
-    /// Number of points of the newest accuracy sweep.
-    pub fn sweep_points(&self) -> usize {
-        self.panels.sweep.points()
+    /// Number of points of the newest trade.
+    pub fn trade_points(&self) -> usize {
+        self.panels.trade.points()
     }
 }
 
@@ -324,11 +324,11 @@ impl App {
         let mut is_open = self.state.open.timeline;
         timeline.show_collapsible(ui, &mut is_open, |ui| self.panel_ui(ui, |panels| &mut panels.timeline));
         self.state.open.timeline = is_open;
-        let sweep = egui::Panel::bottom("sweep").frame(theme::panel_frame()).resizable(true).default_size(304.0).min_size(190.0);
-        let mut is_open = self.state.open.sweep;
-        sweep.show_collapsible(ui, &mut is_open, |ui| self.panel_ui(ui, |panels| &mut panels.sweep));
+        let trade = egui::Panel::bottom("trade").frame(theme::panel_frame()).resizable(true).default_size(304.0).min_size(190.0);
+        let mut is_open = self.state.open.trade;
+        trade.show_collapsible(ui, &mut is_open, |ui| self.panel_ui(ui, |panels| &mut panels.trade));
         // The panel has a button that closes it, too.
-        self.state.open.sweep &= is_open;
+        self.state.open.trade &= is_open;
         let log = egui::Panel::bottom("log").frame(theme::panel_frame()).resizable(true).default_size(150.0).min_size(72.0);
         let mut is_open = self.state.open.log;
         log.show_collapsible(ui, &mut is_open, |ui| self.panel_ui(ui, |panels| &mut panels.log));

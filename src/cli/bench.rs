@@ -9,7 +9,7 @@ use super::{
     measured::{judge, print_rows, subjects},
     open::open,
     streams::Streams,
-    sweep,
+    trade,
 };
 use crate::{
     effects::{EFFECTS, EnabledEffect, Stack},
@@ -18,7 +18,7 @@ use crate::{
 
 pub fn run(common: &Common, args: &Bench, streams: &mut Streams) -> Result<Exit, CliError> {
     if !args.axes.is_empty() {
-        return sweep::run(common, args, streams);
+        return trade::run(common, args, streams);
     }
     let subjects = subjects(common, args, streams)?;
     let backend = Backend::open(common, streams)?;

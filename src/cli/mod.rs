@@ -27,7 +27,7 @@ mod report;
 mod sequence;
 mod streams;
 mod stress;
-pub mod sweep;
+pub mod trade;
 mod verify;
 
 use std::io::{self, Write as _};

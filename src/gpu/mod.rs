@@ -53,7 +53,7 @@ pub mod hardware;
 pub mod naive;
 
 pub mod bench;
-pub mod sweep;
+pub mod trade;
 
 pub use buffers::BufferNote;
 pub use capture::Capture;

@@ -15,7 +15,7 @@ mod keys;
 mod live;
 mod numerics;
 mod scopes;
-mod sweep;
+mod trade;
 mod timeline;
 mod verify;
 mod viewport;

@@ -8,14 +8,14 @@ pub mod inspector;
 pub mod log;
 pub mod new_effect;
 pub mod preset_browser;
-pub mod sweep;
+pub mod trade;
 pub mod timeline;
 pub mod topbar;
 pub mod viewport;
 
 use self::{
     cheat_sheet::CheatSheet, dialogs::Dialogs, extremes::Extremes, inspector::Inspector, log::LogPanel, preset_browser::PresetBrowser,
-    sweep::SweepPanel, timeline::Timeline, topbar::TopBar, viewport::Viewport,
+    trade::TradePanel, timeline::Timeline, topbar::TopBar, viewport::Viewport,
 };
 use crate::preset_file::Folders;
 
@@ -25,7 +25,7 @@ pub struct Panels {
     pub browser: PresetBrowser,
     pub inspector: Inspector,
     pub timeline: Timeline,
-    pub sweep: SweepPanel,
+    pub trade: TradePanel,
     pub log: LogPanel,
     pub viewport: Viewport,
     pub dialogs: Dialogs,
@@ -41,7 +41,7 @@ impl Panels {
             browser: PresetBrowser::new(folders),
             inspector: Inspector,
             timeline: Timeline::default(),
-            sweep: SweepPanel::default(),
+            trade: TradePanel::default(),
             log: LogPanel,
             viewport: Viewport::default(),
             dialogs: Dialogs::default(),

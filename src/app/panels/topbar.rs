@@ -51,7 +51,7 @@ const MENUS: [(&str, &[Option<Action>]); 4] = [
             None,
             Some(Action::Panels),
             Some(Action::Timeline),
-            Some(Action::Sweep),
+            Some(Action::Trade),
             Some(Action::Log),
             None,
             Some(Action::Extremes),

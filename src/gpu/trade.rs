@@ -15,7 +15,7 @@ use crate::{
 
 /// What to measure.
 #[derive(Clone, Debug)]
-pub struct SweepOptions {
+pub struct TradeOptions {
     pub size: [u32; 2],
     /// Timed frames per combination.
     pub samples: usize,
@@ -27,7 +27,7 @@ pub struct SweepOptions {
 
 /// Error of a combination. None reads "not measured", never 0.
 #[derive(Clone, Copy, Debug, Default, PartialEq, serde::Serialize)]
-pub struct SweepError {
+pub struct TradeError {
     /// Pixels with another triangle id than in the oracle's picture on its finest grid, per million of those drawn.
     pub wrong_ppm: f64,
     /// Samples that a triangle covers, given its snapped corners, and that were not drawn, per million pixels.
@@ -65,7 +65,7 @@ pub struct SweepError {
 
 /// One combination of options.
 #[derive(Clone, Debug, serde::Serialize)]
-pub struct SweepRow {
+pub struct TradeRow {
     pub scene: String,
     pub triangles: u64,
     pub adapter: String,
@@ -87,7 +87,7 @@ pub struct SweepRow {
     pub invalid: usize,
     /// Samples far from the median (more than 5 MAD); they are kept.
     pub outliers: usize,
-    pub error: Option<SweepError>,
+    pub error: Option<TradeError>,
     /// Buffers of the frame.
     pub bytes: u64,
     /// Another row is at least as right and at least as quick.
@@ -124,7 +124,7 @@ struct Entry {
     pins: PinnedOptions,
     view: View,
     renderer: Renderer,
-    error: SweepError,
+    error: TradeError,
     /// Triangles that own a pixel.
     triangle_ids: usize,
     bytes: u64,
@@ -138,15 +138,15 @@ struct Entry {
 ///
 /// # Errors
 /// When the device is lost or the scene does not fit. What a combination cannot draw becomes its row's note.
-pub fn sweep(
+pub fn trade(
     gpu: &Arc<Gpu>,
     preset: &Preset,
     scene: &Arc<Scene>,
     scene_name: &str,
-    options: &SweepOptions,
+    options: &TradeOptions,
     reference: &Reference,
     progress: &mut dyn FnMut(&str, usize, usize) -> bool,
-) -> Result<Vec<SweepRow>, RenderError> {
+) -> Result<Vec<TradeRow>, RenderError> {
     const WARM_UP: usize = 3;
     let pins = preset.accuracy.pins;
     let combinations = if options.is_one_option_at_a_time { each_alone(pins, &options.axes) } else { combinations(pins, &options.axes) };
@@ -176,7 +176,7 @@ pub fn sweep(
             entry.sample(preset, round >= WARM_UP)?;
         }
     }
-    let row = |pins: PinnedOptions| SweepRow {
+    let row = |pins: PinnedOptions| TradeRow {
         scene: scene_name.into(),
         triangles: scene.triangle_count(),
         adapter: gpu.summary.name.clone(),
@@ -195,9 +195,9 @@ pub fn sweep(
         culled: None,
         note: None,
     };
-    let mut rows: Vec<SweepRow> = entries.into_iter().map(|entry| entry.finish(&row)).collect();
+    let mut rows: Vec<TradeRow> = entries.into_iter().map(|entry| entry.finish(&row)).collect();
     mark_dominated(&mut rows);
-    rows.extend(lacking.into_iter().map(|(pins, why)| SweepRow { note: Some(why), ..row(pins) }));
+    rows.extend(lacking.into_iter().map(|(pins, why)| TradeRow { note: Some(why), ..row(pins) }));
     Ok(rows)
 }
 
@@ -245,7 +245,7 @@ impl Entry {
         let first = renderer.capture(&view, &preset.stack, &accuracy)?;
         let second = renderer.capture(&view, &preset.stack, &accuracy)?;
         let bytes = renderer.explain().buffers.iter().map(|buffer| buffer.bytes).sum();
-        let error = SweepError::of(&first, &second.frame, &(reference.judge)(&view, &preset.stack, &first), reference);
+        let error = TradeError::of(&first, &second.frame, &(reference.judge)(&view, &preset.stack, &first), reference);
         let triangle_ids = first.frame.triangle_id.iter().filter(|triangle_id| **triangle_id != NO_TRIANGLE).collect::<HashSet<_>>().len();
         Ok(Self { pins, view, renderer, error, triangle_ids, bytes, ms: Vec::new(), cpu_ms: Vec::new(), invalid: 0 })
     }
@@ -273,8 +273,8 @@ impl Entry {
         format!("{drawn} of {all} meshlets drawn ({}); {meshlet_visibility} triangles own a pixel", culled.reasons())
     }
 
-    fn finish(self, row: &dyn Fn(PinnedOptions) -> SweepRow) -> SweepRow {
-        SweepRow {
+    fn finish(self, row: &dyn Fn(PinnedOptions) -> TradeRow) -> TradeRow {
+        TradeRow {
             ms_p50: timing::percentile(&self.ms, 0.5),
             ms_p95: timing::percentile(&self.ms, 0.95),
             cpu_ms_p50: timing::percentile(&self.cpu_ms, 0.5),
@@ -290,7 +290,7 @@ impl Entry {
     }
 }
 
-impl SweepError {
+impl TradeError {
     fn of(capture: &Capture, again: &Frame, judged: &Judged, reference: &Reference) -> Self {
         let (frame, scale) = (&capture.frame, capture.geometry.scale);
         let (picture, corners) = reference.references.at(scale).expect("a reference at every size that is drawn");
@@ -371,8 +371,8 @@ fn cracks(frame: &Frame, reference: &Frame, moved_px: f64) -> u64 {
 }
 
 /// Marks rows that another row makes pointless: as right or better, and quicker, or as quick and better.
-fn mark_dominated(rows: &mut [SweepRow]) {
-    let beats = |a: &SweepRow, b: &SweepRow| {
+fn mark_dominated(rows: &mut [TradeRow]) {
+    let beats = |a: &TradeRow, b: &TradeRow| {
         let (Some(ea), Some(eb), Some(ta), Some(tb)) = (a.error, b.error, a.ms_p50, b.ms_p50) else { return false };
         ea.is_at_most(&eb) && ta <= tb && (ta < tb || !eb.is_at_most(&ea))
     };
@@ -406,7 +406,7 @@ mod tests {
 
     #[test]
     fn a_row_is_beaten_only_by_one_that_is_nowhere_worse() {
-        let row = |ms: f64, wrong_ppm: f64| SweepRow {
+        let row = |ms: f64, wrong_ppm: f64| TradeRow {
             scene: String::new(),
             triangles: 0,
             adapter: String::new(),
@@ -419,7 +419,7 @@ mod tests {
             samples: 1,
             invalid: 0,
             outliers: 0,
-            error: Some(SweepError { wrong_ppm, ..SweepError::default() }),
+            error: Some(TradeError { wrong_ppm, ..TradeError::default() }),
             bytes: 0,
             is_dominated: false,
             culled: None,

@@ -1,4 +1,4 @@
-//! The job of a sweep: the bench over combinations of options, judged by the oracle.
+//! The job of a trade: the bench over combinations of options, judged by the oracle.
 
 use std::sync::Arc;
 
@@ -12,7 +12,7 @@ use crate::{
     gpu::{
         Capture, Gpu,
         device::AdapterChoice,
-        sweep::{Judged, Reference, SweepOptions, SweepRow, factors, sweep},
+        trade::{Judged, Reference, TradeOptions, TradeRow, factors, trade},
     },
     oracle,
     scene::{Scene, view::View},
@@ -34,14 +34,14 @@ pub fn measure(adapter: String, scene: &Arc<Scene>, request: &Request, progress:
         let reason = "a scene that was drawn can be judged";
         Judged { verdict: verdict.expect(reason), light: light.expect(reason) }
     };
-    let options = SweepOptions { size: *size, samples: SAMPLES, axes: axes.clone(), is_one_option_at_a_time: false };
+    let options = TradeOptions { size: *size, samples: SAMPLES, axes: axes.clone(), is_one_option_at_a_time: false };
     let mut report = |what: &str, done: usize, all: usize| progress.report(done, all, what);
     let reference = Reference { references: &references, judge: &judge };
-    let rows = sweep(&gpu, preset, scene, title, &options, &reference, &mut report).map_err(|e| e.to_string())?;
+    let rows = trade(&gpu, preset, scene, title, &options, &reference, &mut report).map_err(|e| e.to_string())?;
     Ok(rows.into_iter().map(|row| point(row, axes)).collect())
 }
 
-fn point(row: SweepRow, axes: &[&'static Axis]) -> Point {
+fn point(row: TradeRow, axes: &[&'static Axis]) -> Point {
     let mut pins = PinnedOptions::default();
     axes.iter().for_each(|axis| pins.set(axis, row.pins.get(axis)));
     let errors = Metric::ALL.map(|metric| {

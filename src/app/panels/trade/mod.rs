@@ -1,4 +1,4 @@
-//! The panel of the accuracy sweep: choose axes, measure every combination of their options, and see the error over the
+//! The panel of the trade: choose axes, measure every combination of their options, and see the error over the
 //! time as a plot and a table. A click pins the options of a combination.
 
 mod plot;
@@ -18,7 +18,7 @@ use crate::{
         panel::Panel,
         screen::Inputs,
         state::State,
-        sweep::{
+        trade::{
             point::{Metric, Point, csv},
             request::{Progress, Request, SAMPLES},
         },
@@ -34,14 +34,14 @@ const MAX_COMBINATIONS: usize = 256;
 /// Width of the column of axes, points.
 const AXES_WIDTH: f32 = 232.0;
 
-/// A finished sweep.
+/// A finished trade.
 struct Measured {
     request: Request,
     points: Vec<Point>,
 }
 
-/// The panel of the accuracy sweep: chooses axes, measures their options, and shows the error over the time.
-pub struct SweepPanel {
+/// The panel of the trade: chooses axes, measures their options, and shows the error over the time.
+pub struct TradePanel {
     /// Which axes are to be measured, in the order of [`AXES`].
     chosen: Vec<bool>,
     metric: Metric,
@@ -50,7 +50,7 @@ pub struct SweepPanel {
     error: Option<String>,
 }
 
-impl Default for SweepPanel {
+impl Default for TradePanel {
     fn default() -> Self {
         let chosen = AXES.iter().map(|axis| axis.name == "coverage").collect();
         Self { chosen, metric: Metric::default(), running: None, measured: None, error: None }
@@ -63,12 +63,12 @@ fn picture_of(preset: &Preset) -> Preset {
     Preset { accuracy, test: None, name: String::new(), about: String::new(), tags: Vec::new(), ..preset.evaluated() }
 }
 
-impl SweepPanel {
+impl TradePanel {
     pub fn is_measuring(&self) -> bool {
         self.running.is_some()
     }
 
-    /// Number of points of the newest sweep.
+    /// Number of points of the newest trade.
     pub fn points(&self) -> usize {
         self.measured.as_ref().map_or(0, |measured| measured.points.len())
     }
@@ -77,7 +77,7 @@ impl SweepPanel {
         AXES.iter().zip(&self.chosen).filter(|(_, chosen)| **chosen).map(|(axis, _)| axis).collect()
     }
 
-    /// Takes the points of the sweep that has ended. Returns the whole message of an error.
+    /// Takes the points of the trade that has ended. Returns the whole message of an error.
     pub fn arrived(&mut self, points: Result<Vec<Point>, String>) -> Option<String> {
         let (request, progress) = self.running.take()?;
         self.error = None;
@@ -94,11 +94,11 @@ impl SweepPanel {
 
     fn header_ui(&self, ui: &mut Ui, commands: &Commands) {
         ui.horizontal(|ui| {
-            ui.label(theme::heading("Accuracy sweep"));
-            ui.label(theme::weak("time and error of this preset"));
+            ui.label(theme::heading("Trade"));
+            ui.label(theme::weak("time and error of the accuracy options"));
             ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
-                if icon_button(ui, Icon::Cross, "Close the accuracy sweep").clicked() {
-                    commands.perform(Action::Sweep);
+                if icon_button(ui, Icon::Cross, "Close Trade").clicked() {
+                    commands.perform(Action::Trade);
                 }
                 if let Some(Measured { request, points }) = &self.measured {
                     if ui.small_button("Copy as CSV").on_hover_text("Copy the whole table").clicked() {
@@ -169,7 +169,7 @@ impl SweepPanel {
         };
         let progress = Arc::new(Progress::default());
         self.running = Some((request.clone(), progress.clone()));
-        commands.send(Command::MeasureSweep(Box::new(request), progress));
+        commands.send(Command::MeasureTrade(Box::new(request), progress));
     }
 
     /// Plot and table. Returns the index of the combination that was clicked.
@@ -219,7 +219,7 @@ impl SweepPanel {
     }
 }
 
-impl Panel for SweepPanel {
+impl Panel for TradePanel {
     fn ui(&mut self, ui: &mut Ui, state: &State, commands: &Commands) {
         self.header_ui(ui, commands);
         ui.add_space(theme::HALF);
@@ -238,7 +238,7 @@ impl Panel for SweepPanel {
     }
 }
 
-/// How far the sweep is, and a button that cancels it.
+/// How far the trade is, and a button that cancels it.
 fn progress_ui(ui: &mut Ui, progress: &Progress) {
     let (done, all, what) = progress.read();
     let fraction = if all > 0 { done as f32 / all as f32 } else { 0.0 };

@@ -1,4 +1,4 @@
-//! What a sweep measures, and how far it is.
+//! What a trade measures, and how far it is.
 
 use std::sync::{
     Mutex,
@@ -20,7 +20,7 @@ pub struct Request {
     pub title: String,
 }
 
-/// How far a sweep is; shared with the thread that measures.
+/// How far a trade is; shared with the thread that measures.
 #[derive(Default)]
 pub struct Progress {
     is_canceled: AtomicBool,
@@ -28,7 +28,7 @@ pub struct Progress {
 }
 
 impl Progress {
-    /// Says that `done` of `all` steps are done and what comes next. Returns false if the sweep was canceled.
+    /// Says that `done` of `all` steps are done and what comes next. Returns false if the trade was canceled.
     pub fn report(&self, done: usize, all: usize, what: &str) -> bool {
         *self.state.lock().unwrap_or_else(|poisoned| poisoned.into_inner()) = (done, all, what.to_owned());
         !self.is_canceled()

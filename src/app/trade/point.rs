@@ -1,4 +1,4 @@
-//! The points of a sweep: time and error of each combination, and which combinations are on the Pareto front.
+//! The points of a trade: time and error of each combination, and which combinations are on the Pareto front.
 
 use crate::accuracy::{Axis, PinnedOptions};
 

@@ -5,7 +5,7 @@ use eframe::egui::{self, RichText, Ui};
 use crate::{
     accuracy::Axis,
     app::{
-        sweep::point::{Metric, Point, front},
+        trade::point::{Metric, Point, front},
         text::short,
         theme,
     },
@@ -18,8 +18,8 @@ pub fn table_ui(ui: &mut Ui, points: &[Point], axes: &[&'static Axis], metric: M
     let mut order: Vec<usize> = (0..points.len()).collect();
     let ms = |i: &usize| points[*i].ms.map_or(f64::INFINITY, |[p50, _]| p50);
     order.sort_by(|a, b| ms(a).total_cmp(&ms(b)));
-    egui::ScrollArea::both().id_salt("sweep table").auto_shrink(false).show(ui, |ui| {
-        egui::Grid::new("sweep table").num_columns(4 + metrics.len()).spacing([14.0, 3.0]).show(ui, |ui| {
+    egui::ScrollArea::both().id_salt("trade table").auto_shrink(false).show(ui, |ui| {
+        egui::Grid::new("trade table").num_columns(4 + metrics.len()).spacing([14.0, 3.0]).show(ui, |ui| {
             let options = if let [one] = axes { one.name.replace('_', " ") } else { "options".to_owned() };
             let errors = ["wrong ppm", "color", "holes+doubles", "light ppm"];
             for heading in

@@ -14,7 +14,7 @@ use crate::{
     effects::Stack,
     gpu::{
         Capture,
-        sweep::{AS_PLANNED, Judged, Reference, SweepError, SweepOptions, SweepRow, factors, sweep},
+        trade::{AS_PLANNED, Judged, Reference, TradeError, TradeOptions, TradeRow, factors, trade},
     },
     oracle,
     params::did_you_mean,
@@ -23,7 +23,7 @@ use crate::{
 
 pub fn run(common: &Common, args: &Bench, streams: &mut Streams) -> Result<Exit, CliError> {
     let axes = axes(&args.axes)?;
-    let options = SweepOptions { size: args.size, samples: args.samples as usize, axes, is_one_option_at_a_time: args.each };
+    let options = TradeOptions { size: args.size, samples: args.samples as usize, axes, is_one_option_at_a_time: args.each };
     let subjects = subjects(common, args, streams)?;
     let backend = Backend::open(common, streams)?;
     let Backend::Gpu(_, gpu) = &backend else {
@@ -42,7 +42,7 @@ pub fn run(common: &Common, args: &Bench, streams: &mut Streams) -> Result<Exit,
             bar.set_message(what.to_owned());
             true
         };
-        rows.extend(sweep(
+        rows.extend(trade(
             gpu,
             preset,
             scene,
@@ -91,7 +91,7 @@ fn axes(names: &[String]) -> Result<Vec<&'static Axis>, CliError> {
 }
 
 /// A row per option: for every scene the time, its ratio to the planned one, and the error.
-fn prices(rows: &[SweepRow]) -> Vec<Vec<String>> {
+fn prices(rows: &[TradeRow]) -> Vec<Vec<String>> {
     let mut scenes: Vec<(&str, u64)> = rows.iter().map(|row| (row.scene.as_str(), row.triangles)).collect();
     scenes.dedup();
     let mut options: Vec<&str> = Vec::new();
@@ -124,7 +124,7 @@ fn prices(rows: &[SweepRow]) -> Vec<Vec<String>> {
     table
 }
 
-fn lines(rows: &[SweepRow]) -> Vec<Vec<String>> {
+fn lines(rows: &[TradeRow]) -> Vec<Vec<String>> {
     let head = [
         "SCENE",
         "TRIANGLES",
@@ -166,7 +166,7 @@ fn lines(rows: &[SweepRow]) -> Vec<Vec<String>> {
         lines[0].insert(5, "CPU MS".into());
     }
     lines.extend(rows.iter().map(|row| {
-        let figure = |figure: &dyn Fn(&SweepError) -> String| row.error.as_ref().map_or_else(not_measured, figure);
+        let figure = |figure: &dyn Fn(&TradeError) -> String| row.error.as_ref().map_or_else(not_measured, figure);
         let mut line = vec![
             row.scene.clone(),
             row.triangles.to_string(),

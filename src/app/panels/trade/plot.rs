@@ -5,7 +5,7 @@ use eframe::egui::{self, Rect, RichText, Sense, Ui, vec2};
 use egui_plot::{GridMark, HLine, Line, LineStyle, Plot, PlotPoint, PlotPoints, Points};
 
 use crate::app::{
-    sweep::point::{Metric, Point, front},
+    trade::point::{Metric, Point, front},
     text::short,
     theme,
 };
@@ -92,7 +92,7 @@ pub fn plot_ui(ui: &mut Ui, shown: &Shown<'_>) -> Option<usize> {
         (false, true) => (theme::TEXT_WEAK, false, 3.5),
         (false, false) => (theme::TEXT, true, 3.5),
     };
-    let response = Plot::new("sweep plot")
+    let response = Plot::new("trade plot")
         .allow_drag(false)
         .allow_zoom(false)
         .allow_scroll(false)
@@ -141,7 +141,7 @@ pub fn plot_ui(ui: &mut Ui, shown: &Shown<'_>) -> Option<usize> {
     for &(i, position) in &plotted {
         let [x, y] = span.at(position);
         let at = response.transform.position_from_point(&PlotPoint::new(x, y));
-        let handle = ui.interact(Rect::from_center_size(at, vec2(15.0, 15.0)), egui::Id::unique(("sweep point", i)), Sense::click());
+        let handle = ui.interact(Rect::from_center_size(at, vec2(15.0, 15.0)), egui::Id::unique(("trade point", i)), Sense::click());
         let words = points[i].pins.words();
         handle.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Button, true, format!("Point {words}")));
         if handle.hovered() || handle.has_focus() {

@@ -1,4 +1,4 @@
-//! Promise: in the accuracy sweep combinations of options are measured, shown as points, and pinned by a click.
+//! Promise: in the trade combinations of options are measured, shown as points, and pinned by a click.
 
 use eframe::egui::{self, Key, Modifiers, Role};
 use egui_kittest::kittest::Queryable as _;
@@ -22,7 +22,7 @@ fn a_measured_combination_is_a_point_and_a_click_on_it_switches_the_preset_in_on
     }
     assert!(lab.query_by_label(&format!("{} combinations", DepthFormat::ALL.len())).is_some());
     click(&mut lab, Role::Button, "Measure");
-    assert_eq!(lab.state().sweep_points(), DepthFormat::ALL.len(), "{}", lab.state().log_text());
+    assert_eq!(lab.state().trade_points(), DepthFormat::ALL.len(), "{}", lab.state().log_text());
     assert_eq!((pinned_depth(&lab), lab.state().undo_steps()), (None, 0), "measuring changes no preset");
     click(&mut lab, Role::Button, "Point depth=log16");
     assert_eq!((pinned_depth(&lab), lab.state().undo_steps()), (Some(DepthFormat::Log16), 1));
@@ -63,6 +63,6 @@ fn a_measurement_is_canceled_and_leaves_nothing_behind() {
     lab.get_by_role_and_label(Role::Button, "Cancel").click();
     lab.run_steps(2);
     settle(&mut lab);
-    assert_eq!((lab.state().sweep_points(), error_lines(&lab).len()), (0, 0));
+    assert_eq!((lab.state().trade_points(), error_lines(&lab).len()), (0, 0));
     assert!(lab.query_by_role_and_label(Role::Button, "Measure").is_some());
 }

@@ -1,5 +1,0 @@
-//! Accuracy sweep: measures the time and the error of combinations of accuracy options on the scene that is shown.
-
-pub mod measure;
-pub mod point;
-pub mod request;
