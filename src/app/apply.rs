@@ -5,6 +5,7 @@ use std::path::{Path, PathBuf};
 use eframe::egui::{self, ViewportCommand};
 
 use super::{
+    anti_aliasing,
     command::{CodeUse, Command, Commands, FileCommand, KeyframeEdit, Purpose, RowCommand, Side, Toggle, ViewCommand},
     log::Level,
     new_effect, open,
@@ -52,7 +53,8 @@ fn apply(ctx: &egui::Context, state: &mut State, panels: &mut Panels, command: C
             state.session.preset_mut().accuracy = accuracy;
             state.observe(false);
             state.history.close();
-            state.notify(Level::Info, format!("Switched to {}", pins.words()));
+            let words = pins.words();
+            state.notify(Level::Info, if words.is_empty() { "The planner chooses again".into() } else { format!("Switched to {words}") });
         }
         Command::Keyframe(edit) => keyframe(state, &mut panels.timeline, edit),
         Command::RemoveSelectedKey => match panels.timeline.selected.take() {
@@ -341,8 +343,11 @@ fn export(state: &mut State, path: PathBuf, size: [u32; 2]) {
     let (Some(scene), Some(requested)) = (state.session.scene(), state.screen.requested()) else {
         return state.notify(Level::Error, "There is no picture to export yet");
     };
-    let inputs = Inputs { view: state.session.view_at(scene, size), ..requested.clone() };
     let mut exported = state.session.preset_file.clone();
     exported.preset = state.session.shown_preset();
+    // The picture has the anti-aliasing that is shown, and its preset pins that.
+    exported.preset.accuracy = anti_aliasing::for_export(exported.preset.accuracy, &state.screen.gpu.caps, size);
+    let accuracy = exported.preset.accuracy;
+    let inputs = Inputs { view: state.session.view_at(scene, size), accuracy, ..requested.clone() };
     state.jobs.export(state.screen.gpu.clone(), inputs, exported, path);
 }

@@ -5,6 +5,7 @@
 //! panel was shown. Slow work runs in `jobs`; the window never waits for a thread or a device.
 
 mod action;
+mod anti_aliasing;
 mod apply;
 mod blit;
 mod command;

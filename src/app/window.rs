@@ -35,6 +35,7 @@ use super::{
     watch::Watcher,
 };
 use crate::{
+    accuracy::RenderScale,
     gpu::{Gpu, device::AdapterChoice},
     measure::ErrorReport,
     preset::Preset,
@@ -143,6 +144,11 @@ impl App {
 
     pub fn gpu(&self) -> &Arc<Gpu> {
         &self.state.screen.gpu
+    }
+
+    /// How many pixels are drawn for one that is shown, with automatic anti-aliasing; none before the first picture.
+    pub fn drawn_scale(&self) -> Option<RenderScale> {
+        self.state.screen.requested().map(|inputs| inputs.accuracy.scale())
     }
 
     /// The measured error of the picture that is drawn; none if it was not measured.

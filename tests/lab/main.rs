@@ -4,6 +4,7 @@
 #[path = "../common/mod.rs"]
 mod common;
 
+mod anti_aliasing;
 mod brought_code;
 mod compare;
 mod duplicates;

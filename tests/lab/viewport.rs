@@ -127,7 +127,8 @@ fn the_window_shows_the_picture_of_the_oracle() {
     let preset = lab.state().preset_file().preset.clone();
     let scene = preset_file::load_scene(&preset, None).expect("a built-in scene");
     let view = lab.state().view([shown.width(), shown.height()]).expect("a scene on stage");
-    let expected = oracle::render(&scene, &view, &preset.evaluated_stack()).expect("a picture");
+    let factor = lab.state().drawn_scale().expect("a picture").factor();
+    let expected = oracle::render_scaled(&scene, &[(view, preset.evaluated_stack())], factor).expect("a picture");
     // The buttons lie over the top of it.
     let pairs = shown.pixels().zip(&expected.color).skip((shown.width() * 48) as usize);
     let wrong = pairs.filter(|(a, b)| a.0.iter().zip(*b).any(|(a, b)| a.abs_diff(*b) > 1)).count();

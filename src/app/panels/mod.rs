@@ -1,5 +1,6 @@
 //! The panels of the window. Each owns its state, reads that of the window, and sends commands.
 
+pub mod anti_aliasing;
 pub mod brought_code;
 pub mod cheat_sheet;
 pub mod dialogs;

@@ -2,6 +2,7 @@
 
 use eframe::egui::{self, Align, Layout, RichText, Sense, Ui, vec2};
 
+use super::anti_aliasing::anti_aliasing_ui;
 use crate::app::{
     action::Action,
     command::Commands,
@@ -70,6 +71,7 @@ impl Panel for TopBar {
             ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
                 adapter_ui(ui, state);
                 ui.separator();
+                anti_aliasing_ui(ui, state, commands);
                 cost_ui(ui, state, commands);
             });
         });

@@ -5,6 +5,7 @@
 use eframe::egui::Rect;
 
 use crate::{
+    accuracy::{PinnedOptions, RenderScale},
     app::{
         log::Level,
         screen::{Inputs, Screen},
@@ -144,7 +145,10 @@ impl Compare {
         let full = [live.view.width, live.view.height];
         let session = &state.session;
         let Some(kept) = &self.kept else {
-            let accuracy = AccuracyRequest { tier: Tier::Reference, ..AccuracyRequest::default() };
+            // Both sides have the same samples for each pixel, or every edge would be a difference.
+            let scale = live.accuracy.pins.option::<RenderScale>().filter(|scale| *scale >= RenderScale::Full);
+            let pins = scale.map_or_else(PinnedOptions::default, PinnedOptions::of);
+            let accuracy = AccuracyRequest { tier: Tier::Reference, pins, ..AccuracyRequest::default() };
             return Inputs { view: session.view_at(&live.scene, full), accuracy, ..live.clone() };
         };
         let Preset { stack, animation, accuracy, .. } = (**kept).clone();

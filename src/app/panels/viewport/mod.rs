@@ -17,10 +17,13 @@ mod overlays;
 mod particle_input;
 mod pick_input;
 
+use std::sync::Arc;
+
 use eframe::egui::{self, Align2, FontId, Rect, Response, Sense, Ui, vec2};
 
 use self::{compare::Compare, layout::fitted, overlays::OverlayPainter};
 use crate::app::{
+    anti_aliasing::{AutomaticAntiAliasing, Finished},
     command::{Command, Commands, Edit, ViewCommand},
     log::Level,
     scene_loader::SceneKey,
@@ -28,6 +31,7 @@ use crate::app::{
     state::State,
     theme,
 };
+use crate::{effects::Stack, preset::AccuracyRequest, scene::Scene};
 
 /// After this long without motion the picture is drawn at full size, seconds.
 const REST_S: f64 = 0.2;
@@ -42,6 +46,7 @@ pub struct Viewport {
     last_motion_s: f64,
     pub compare: Compare,
     overlays: OverlayPainter,
+    anti_aliasing: AutomaticAntiAliasing,
 }
 
 /// Where the picture is, and what the pointer did there.
@@ -91,7 +96,8 @@ impl Viewport {
         }
         // While the scene of another preset is shown there is nothing to draw.
         let Some(scene) = state.session.scenes.shown_for(&SceneKey::of(&state.session.preset_file)).cloned() else { return };
-        let (stack, accuracy) = (state.session.visible_stack(), state.session.preset().accuracy);
+        let stack = state.session.visible_stack();
+        let accuracy = self.accuracy(state, &scene, &stack, interaction.size);
         let requested = Inputs { view: state.session.view_at(&scene, interaction.size), scene, stack, accuracy };
         let is_held = ctx.input(|i| i.pointer.any_down());
         let is_changed = state.screen.requested().is_some_and(|before| *before != requested);
@@ -110,6 +116,14 @@ impl Viewport {
         if state.screen.is_waiting() || self.compare.is_waiting() {
             ctx.request_repaint_after_secs(0.015);
         }
+    }
+
+    /// The preset's accuracy, with automatic anti-aliasing where the card can afford it.
+    fn accuracy(&mut self, state: &State, scene: &Arc<Scene>, stack: &Stack, size: [u32; 2]) -> AccuracyRequest {
+        let screen = &state.screen;
+        let newest = screen.options().zip(screen.report()).filter(|_| !screen.is_waiting());
+        let finished = newest.map(|(options, report)| Finished::new(options, report, screen.divisor() == 1));
+        self.anti_aliasing.applied(state.session.preset().accuracy, (scene, stack, size), &screen.gpu.caps, finished)
     }
 
     /// Seconds until the picture counts as at rest; none when it does.
