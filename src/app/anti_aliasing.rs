@@ -15,8 +15,7 @@ use crate::{
 };
 
 /// The options that the top bar offers, with their names.
-pub const CHOICES: [(RenderScale, &str); 3] =
-    [(RenderScale::Full, "off"), (RenderScale::Double, "2×2"), (RenderScale::Quadruple, "4×4")];
+pub const CHOICES: [(RenderScale, &str); 3] = [(RenderScale::Full, "off"), (RenderScale::Double, "2×2"), (RenderScale::Quadruple, "4×4")];
 
 /// What a preset that does not pin the axis is drawn with on a graphics card.
 pub const AUTOMATIC: RenderScale = RenderScale::Double;
@@ -96,17 +95,11 @@ impl AutomaticAntiAliasing {
         caps: &Caps,
         finished: Option<Finished>,
     ) -> AccuracyRequest {
-        let subject = Subject {
-            scene: Arc::downgrade(scene),
-            effects: stack.0.iter().map(|enabled| enabled.effect.name).collect(),
-            size,
-        };
+        let subject = Subject { scene: Arc::downgrade(scene), effects: stack.0.iter().map(|enabled| enabled.effect.name).collect(), size };
         // The first report after a change may still be that of the picture before.
         let is_same = self.drawn.as_ref() == Some(&subject);
         let is_slow = |finished: &Finished| {
-            finished.is_full_size
-                && finished.options.render_scale == AUTOMATIC
-                && finished.gpu_ms.is_some_and(|ms| ms > AFFORDABLE_MS)
+            finished.is_full_size && finished.options.render_scale == AUTOMATIC && finished.gpu_ms.is_some_and(|ms| ms > AFFORDABLE_MS)
         };
         if is_same && accuracy.pins.option::<RenderScale>().is_none() && finished.as_ref().is_some_and(is_slow) {
             self.too_slow = Some(subject.clone());
@@ -163,6 +156,9 @@ mod tests {
 
     #[test]
     fn the_names_are_those_of_the_samples() {
-        assert_eq!([RenderScale::Full, RenderScale::Double, RenderScale::Quadruple, RenderScale::Half].map(name), ["off", "2×2", "4×4", "half"]);
+        assert_eq!(
+            [RenderScale::Full, RenderScale::Double, RenderScale::Quadruple, RenderScale::Half].map(name),
+            ["off", "2×2", "4×4", "half"]
+        );
     }
 }

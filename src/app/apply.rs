@@ -76,6 +76,7 @@ fn apply(ctx: &egui::Context, state: &mut State, panels: &mut Panels, command: C
         }
         Command::Toggle(which) => toggle(state, panels, which),
         Command::Verify => verify(state, panels),
+        Command::CancelVerify => state.verification.cancel(),
         Command::Mute(effect, true) => drop(state.session.muted.insert(effect.name)),
         Command::Mute(effect, false) => drop(state.session.muted.remove(effect.name)),
         Command::HoverRow { path, value } => state.clipboard.hovered_row = Some((path, value)),
@@ -196,8 +197,8 @@ pub fn verify_shown(state: &mut State) {
 }
 
 fn judge(state: &mut State, inputs: Inputs) {
-    state.verification.started();
-    state.jobs.verify(state.screen.gpu.clone(), inputs);
+    let work = state.verification.start(inputs.view.pixels() as f64);
+    state.jobs.verify(state.screen.gpu.clone(), inputs, work);
 }
 
 fn file(ctx: &egui::Context, state: &mut State, panels: &mut Panels, command: FileCommand) {

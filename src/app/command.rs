@@ -73,6 +73,8 @@ pub enum Command {
     Toggle(Toggle),
     /// Starts the oracle on the picture that is shown, and on the one it is compared with.
     Verify,
+    /// Ends the judgements under way.
+    CancelVerify,
     /// Hides an effect (true) or shows it again. Muting is a viewing aid and is not saved.
     Mute(&'static Effect, bool),
     /// The pointer is over the row of this parameter or setting: copy and paste apply to its value.

@@ -38,7 +38,10 @@ pub fn finish(ctx: &egui::Context, state: &mut State, panels: &mut Panels, comma
                 state.notify(Level::Error, error);
             }
         }
-        Done::Verdict(inputs, findings) => verdict(state, panels, *inputs, findings),
+        Done::Verdict(inputs, work, findings) => {
+            state.verification.ended(&work);
+            verdict(state, panels, *inputs, findings);
+        }
         Done::Trade(points) => {
             if let Some(error) = panels.trade.arrived(points) {
                 state.log.add(Level::Error, error);
@@ -71,10 +74,11 @@ pub fn finish(ctx: &egui::Context, state: &mut State, panels: &mut Panels, comma
 }
 
 /// Keeps the verdict of the oracle on `of`: for A, for B, or for both if they are the same picture.
-fn verdict(state: &mut State, panels: &mut Panels, of: Inputs, findings: Result<Box<Findings>, String>) {
-    state.verification.ended();
+fn verdict(state: &mut State, panels: &mut Panels, of: Inputs, findings: Result<Option<Box<Findings>>, String>) {
     match findings {
-        Ok(findings) => {
+        // Overlays do not begin it again.
+        Ok(None) => state.verification.fail(of),
+        Ok(Some(findings)) => {
             state.log.add(Level::Info, format!("verified {}: {}", state.session.title(), error_text(&findings.accuracy)));
             let verdict = Verdict { of, findings: findings.into() };
             if !panels.viewport.compare.take_verdict(&verdict) || state.screen.requested() == Some(&verdict.of) {

@@ -26,7 +26,7 @@ use crate::{
     effect_files,
     effects::Stack,
     gpu::{Gpu, Renderer},
-    oracle,
+    oracle::{self, Work},
     preset::{AccuracyRequest, Preset},
     preset_file::{self, Existing, PresetFile, Provenance},
     scene::{Scene, view::View},
@@ -35,7 +35,8 @@ use crate::{
 /// Finished work. Errors are sentences for people.
 pub enum Done {
     Scene(SceneKey, Result<Arc<Scene>, String>),
-    Verdict(Box<Inputs>, Result<Box<Findings>, String>),
+    /// The verdict on a picture; none if the judgement was canceled.
+    Verdict(Box<Inputs>, Arc<Work>, Result<Option<Box<Findings>>, String>),
     /// Measured combinations of accuracy options.
     Trade(Result<Vec<Point>, String>),
     Thumbnail(String, Option<egui::ColorImage>),
@@ -95,10 +96,10 @@ impl Jobs {
     }
 
     /// Draws `inputs` with a second renderer, reads everything back and judges it with the oracle.
-    pub fn verify(&self, gpu: Arc<Gpu>, inputs: Inputs) {
+    pub fn verify(&self, gpu: Arc<Gpu>, inputs: Inputs, work: Arc<Work>) {
         self.spawn("verify", move || {
-            let verdict = caught("judging the picture", || verify(gpu, &inputs));
-            Done::Verdict(Box::new(inputs), verdict)
+            let verdict = caught("judging the picture", || work.run(|| verify(gpu, &inputs, &work)).transpose());
+            Done::Verdict(Box::new(inputs), work, verdict)
         });
     }
 
@@ -229,12 +230,14 @@ fn compile(gpu: Arc<Gpu>, Inputs { scene, view, stack, accuracy }: &Inputs) -> R
     renderer.draw(view, stack, accuracy).map_err(|e| e.to_string())
 }
 
-fn verify(gpu: Arc<Gpu>, Inputs { scene, view, stack, accuracy }: &Inputs) -> Result<Box<Findings>, String> {
+fn verify(gpu: Arc<Gpu>, Inputs { scene, view, stack, accuracy }: &Inputs, work: &Work) -> Result<Box<Findings>, String> {
+    work.begin("drawing");
     let mut renderer = Renderer::new(gpu);
     renderer.set_scene(scene).map_err(|e| e.to_string())?;
     let capture = renderer.capture(view, stack, accuracy).map_err(|e| e.to_string())?;
     let judged = effect_files::crossings(stack, |stack| oracle::judge(scene, view, stack, &capture.picture()));
     let (verdict, crossings) = judged.map_err(|e| e.to_string())?;
+    work.begin("the reference picture");
     let reference = if stack.is_repeatable() { Some(reference_ids(scene, view, stack, accuracy)?) } else { None };
     verdict.map(|verdict| Box::new(Findings::new(capture, verdict, reference, crossings))).map_err(|e| e.to_string())
 }

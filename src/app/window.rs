@@ -161,7 +161,7 @@ impl App {
         self.panels.viewport.compare.wipe_split()
     }
 
-    /// Number of points of the newest trade.
+    /// Number of points of the newest measurement of the panel Trade.
     pub fn trade_points(&self) -> usize {
         self.panels.trade.points()
     }
@@ -389,6 +389,9 @@ impl eframe::App for App {
         self.state.now_s = now_s;
         if is_pressed {
             self.state.history.close(); // A press begins another gesture.
+        }
+        if ctx.input(|i| !i.events.is_empty()) || self.state.session.playback.playing {
+            self.panels.trade.pause();
         }
         input::dropped_files(&ctx, &self.commands);
         self.apply(&ctx);

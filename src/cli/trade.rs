@@ -1,5 +1,6 @@
 //! `bench --axes`: time and error of every combination of options on chosen accuracy axes.
 
+use indicatif::ProgressBar;
 use serde_json::Value;
 
 use super::{
@@ -14,7 +15,7 @@ use crate::{
     effects::Stack,
     gpu::{
         Capture,
-        trade::{AS_PLANNED, Judged, Reference, TradeError, TradeOptions, TradeRow, factors, trade},
+        trade::{AS_PLANNED, Judged, Phase, Reference, Step, TradeError, TradeOptions, TradeRow, Watch, factors, trade},
     },
     oracle,
     params::did_you_mean,
@@ -36,19 +37,14 @@ pub fn run(common: &Common, args: &Bench, streams: &mut Streams) -> Result<Exit,
         bar.set_message("the oracle draws");
         let view = preset.view(scene, args.size);
         let references = oracle::references(scene, &view, &preset.stack, &factors(preset, &options.axes))?;
-        let mut progress = |what: &str, done: usize, all: usize| {
-            bar.set_length(all as u64);
-            bar.set_position(done as u64);
-            bar.set_message(what.to_owned());
-            true
-        };
+        let mut progress = Progress(&bar);
         rows.extend(trade(
             gpu,
             preset,
             scene,
             &preset_file.id,
             &options,
-            &Reference { references: &references, judge: &|view, stack, capture| judged(scene, view, stack, capture) },
+            &Reference { references: &references, judge: &|view, stack, capture| Some(judged(scene, view, stack, capture)) },
             &mut progress,
         )?);
     }
@@ -60,6 +56,19 @@ pub fn run(common: &Common, args: &Bench, streams: &mut Streams) -> Result<Exit,
         streams.note(&format!("{} {}: {}", row.scene, row.options, row.note.as_deref().unwrap_or("not drawn")));
     });
     Ok(Exit::Done)
+}
+
+/// Shows a measurement on the terminal.
+struct Progress<'a>(&'a ProgressBar);
+
+impl Watch for Progress<'_> {
+    fn goes_on(&mut self, step: &Step) -> bool {
+        self.0.set_length(step.all as u64);
+        self.0.set_position(step.done as u64);
+        let doing = if step.phase == Phase::SetUp { "is compiled and judged" } else { "is timed" };
+        self.0.set_message(format!("{} {doing}", step.what));
+        true
+    }
 }
 
 /// The oracle's verdict on a picture and on its shadows.

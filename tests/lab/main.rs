@@ -16,8 +16,8 @@ mod keys;
 mod live;
 mod numerics;
 mod scopes;
-mod trade;
 mod timeline;
+mod trade;
 mod verify;
 mod viewport;
 #[cfg(target_os = "linux")]

@@ -1,6 +1,8 @@
 //! Promise: in the trade combinations of options are measured, shown as points, and pinned by a click.
 
-use eframe::egui::{self, Key, Modifiers, Role};
+use std::time::{Duration, Instant};
+
+use eframe::egui::{self, Key, Modifiers, Pos2, Role};
 use egui_kittest::kittest::Queryable as _;
 use rasterlab::accuracy::DepthFormat;
 
@@ -21,6 +23,7 @@ fn a_measured_combination_is_a_point_and_a_click_on_it_switches_the_preset_in_on
         lab.run_steps(2);
     }
     assert!(lab.query_by_label(&format!("{} combinations", DepthFormat::ALL.len())).is_some());
+    assert!(lab.query_by_label_contains("about ").is_some(), "how long it takes is said before it starts");
     click(&mut lab, Role::Button, "Measure");
     assert_eq!(lab.state().trade_points(), DepthFormat::ALL.len(), "{}", lab.state().log_text());
     assert_eq!((pinned_depth(&lab), lab.state().undo_steps()), (None, 0), "measuring changes no preset");
@@ -42,7 +45,7 @@ fn a_measured_combination_is_a_point_and_a_click_on_it_switches_the_preset_in_on
     });
     let copied = copied.expect("a table on the clipboard");
     assert!(
-        copied.starts_with("depth,ms p50,ms p95,samples,wrong pixels ppm,") && copied.lines().count() == 1 + DepthFormat::ALL.len(),
+        copied.starts_with("depth,ms p5,ms p50,ms p95,samples,wrong pixels ppm,") && copied.lines().count() == 1 + DepthFormat::ALL.len(),
         "{copied}"
     );
     // Another camera makes another picture, so the points are stale.
@@ -65,4 +68,58 @@ fn a_measurement_is_canceled_and_leaves_nothing_behind() {
     settle(&mut lab);
     assert_eq!((lab.state().trade_points(), error_lines(&lab).len()), (0, 0));
     assert!(lab.query_by_role_and_label(Role::Button, "Measure").is_some());
+}
+
+/// Opens the panel and begins to measure the options of depth.
+fn measure_depth(lab: &mut Lab) {
+    press(lab, Modifiers::NONE, Key::M);
+    for axis in ["coverage", "depth"] {
+        lab.get_by_role_and_label(Role::CheckBox, &format!("Measure {axis}")).click();
+        lab.run_steps(2);
+    }
+    lab.get_by_role_and_label(Role::Button, "Measure").click();
+    lab.run_steps(2);
+}
+
+/// Shows frames until something is there.
+fn until(lab: &mut Lab, what: &str, mut is_there: impl FnMut(&mut Lab) -> bool) {
+    let patience = Instant::now() + Duration::from_secs(120);
+    while !is_there(lab) {
+        assert!(Instant::now() < patience, "{what} never comes\n{}", lab.state().log_text());
+        lab.step();
+        std::thread::sleep(Duration::from_millis(5));
+    }
+}
+
+#[test]
+fn what_was_timed_before_a_measurement_was_canceled_is_kept() {
+    let Some(mut lab) = lab("facet-sweep") else { return };
+    measure_depth(&mut lab);
+    // The first is measured when the third begins.
+    until(&mut lab, "the third combination", |lab| lab.query_by_label(&format!("depth={}", DepthFormat::ALL[2].name())).is_some());
+    assert!(lab.query_by_label_contains(" left").is_some() || lab.query_by_label_contains("Waiting").is_some());
+    lab.get_by_role_and_label(Role::Button, "Cancel").click();
+    lab.run_steps(2);
+    settle(&mut lab);
+    let points = lab.state().trade_points();
+    assert!((2..=DepthFormat::ALL.len()).contains(&points), "{points} points are kept");
+    assert!(error_lines(&lab).is_empty());
+    assert!(lab.query_by_label(&format!("Point depth={}", DepthFormat::ALL[0].name())).is_some());
+}
+
+#[test]
+fn a_measurement_waits_while_the_person_works_in_the_window() {
+    let Some(mut lab) = lab("facet-sweep") else { return };
+    measure_depth(&mut lab);
+    let mut x = 400.0;
+    until(&mut lab, "the pause", |lab| {
+        x += 1.0;
+        lab.hover_at(Pos2::new(x, 300.0));
+        lab.query_by_label_contains("Waiting while you work").is_some()
+    });
+    // Nobody touches the window any more.
+    until(&mut lab, "the end of the pause", |lab| lab.query_by_label_contains("Waiting while you work").is_none());
+    lab.get_by_role_and_label(Role::Button, "Cancel").click();
+    lab.run_steps(2);
+    settle(&mut lab);
 }

@@ -22,6 +22,20 @@ fn verify_measures_the_picture_and_a_change_makes_the_result_stale() {
 }
 
 #[test]
+fn verifying_can_be_canceled_and_leaves_the_picture_unjudged() {
+    let Some(mut lab) = lab("facet-sweep") else { return };
+    lab.get_by_role_and_label(Role::Button, "Verify").click();
+    lab.run_steps(2);
+    assert!(lab.query_by_role_and_label(Role::Button, "Verify").is_none() && lab.query_by_label_contains(" left").is_some());
+    lab.get_by_role_and_label(Role::Button, "Cancel verifying").click();
+    lab.run_steps(2);
+    settle(&mut lab);
+    assert!(lab.state().accuracy().is_none() && error_lines(&lab).is_empty(), "{}", lab.state().log_text());
+    click(&mut lab, Role::Button, "Verify");
+    assert!(lab.state().accuracy().is_some(), "it can be judged afterwards");
+}
+
+#[test]
 fn the_extremes_run_beside_the_window_and_can_be_stopped() {
     let Some(mut lab) = lab("facet") else { return };
     click(&mut lab, Role::Button, "View");

@@ -2,11 +2,8 @@
 
 use std::{
     panic::{AssertUnwindSafe, catch_unwind},
-    sync::{
-        Arc, Mutex, MutexGuard,
-        atomic::{AtomicBool, Ordering},
-    },
-    time::Duration,
+    sync::{Arc, Mutex, MutexGuard},
+    time::{Duration, Instant},
 };
 
 use eframe::egui::{self, Color32, RichText, Ui};
@@ -18,8 +15,10 @@ use crate::{
         panel::Panel,
         state::State,
         theme,
+        trade::pace::about,
     },
     gpu::{Gpu, Renderer, device::AdapterChoice},
+    oracle::Work,
     stress::{self, Case, Outcome, Report},
 };
 
@@ -37,7 +36,9 @@ pub struct Extremes {
 /// Shared by the running thread and the window.
 struct Run {
     planned: usize,
-    stop: AtomicBool,
+    /// What the oracle does for it; stopping the run cancels it.
+    work: Arc<Work>,
+    began: Instant,
     progress: Mutex<Progress>,
 }
 
@@ -56,16 +57,25 @@ impl Run {
         self.progress.lock().unwrap_or_else(|poisoned| poisoned.into_inner())
     }
 
+    /// Seconds that are left if the other cases take as long as those that are done; none before one is.
+    fn left_s(&self, done: usize) -> Option<f64> {
+        (done > 0).then(|| self.began.elapsed().as_secs_f64() * (self.planned.saturating_sub(done)) as f64 / done as f64)
+    }
+
     /// Draws the cases one after another on a device of their own.
     fn draw(&self, cases: &[&Case], adapter: String, seed: u32, ctx: &egui::Context) -> Result<(), String> {
         let gpu = Gpu::open(&AdapterChoice::Named(adapter)).map_err(|error| error.to_string())?;
         let mut renderer = Renderer::new(gpu.clone());
         for case in cases {
-            let report = case.run(&mut renderer, seed, &|what| {
-                self.progress().now = format!("{}: {what}", case.name);
-                ctx.request_repaint_after(Duration::from_millis(100));
-                !self.stop.load(Ordering::Relaxed)
-            });
+            let run = || {
+                case.run(&mut renderer, seed, &|what| {
+                    self.progress().now = format!("{}: {what}", case.name);
+                    ctx.request_repaint_after(Duration::from_millis(100));
+                    !self.work.is_canceled()
+                })
+            };
+            // A case that is canceled ends as stopped, with a report.
+            let Some(report) = self.work.run_to_its_end(run) else { break };
             let (is_failure, is_stopped) = (report.outcome.is_failure(), report.outcome == Outcome::Stopped);
             self.progress().reports.push(report);
             ctx.request_repaint();
@@ -92,7 +102,7 @@ impl Extremes {
 
     fn start(&mut self, adapter: String, ctx: &egui::Context) {
         let cases = stress::chosen(Some(&self.filter));
-        let run = Arc::new(Run { planned: cases.len(), stop: AtomicBool::new(false), progress: Mutex::default() });
+        let run = Arc::new(Run { planned: cases.len(), work: Arc::default(), began: Instant::now(), progress: Mutex::default() });
         let (seed, ctx, shared) = (self.seed, ctx.clone(), run.clone());
         let work = move || {
             let result = catch_unwind(AssertUnwindSafe(|| shared.draw(&cases, adapter, seed, &ctx)))
@@ -111,7 +121,7 @@ impl Extremes {
 
     fn stop(&self) {
         if let Some(run) = &self.run {
-            run.stop.store(true, Ordering::Relaxed);
+            run.work.cancel();
         }
     }
 }
@@ -220,7 +230,12 @@ fn run_ui(ui: &mut Ui, run: &Run, height: f32) {
         let color = if failed || progress.error.is_some() { theme::RED } else { theme::GREEN };
         ui.label(RichText::new(summary(&progress.reports)).color(color));
     } else {
-        ui.add(egui::ProgressBar::new(done as f32 / run.planned.max(1) as f32).text(format!("{done} of {}", run.planned)));
+        let text = match run.left_s(done) {
+            _ if run.work.is_canceled() => "stopping".to_owned(),
+            Some(left_s) => format!("{done} of {}, {} left", run.planned, about(left_s)),
+            None => format!("{done} of {}", run.planned),
+        };
+        ui.add(egui::ProgressBar::new(done as f32 / run.planned.max(1) as f32).text(text));
         ui.add(egui::Label::new(theme::weak(progress.now.as_str())).truncate());
     }
     if let Some(error) = &progress.error {

@@ -9,14 +9,14 @@ pub mod inspector;
 pub mod log;
 pub mod new_effect;
 pub mod preset_browser;
-pub mod trade;
 pub mod timeline;
 pub mod topbar;
+pub mod trade;
 pub mod viewport;
 
 use self::{
     cheat_sheet::CheatSheet, dialogs::Dialogs, extremes::Extremes, inspector::Inspector, log::LogPanel, preset_browser::PresetBrowser,
-    trade::TradePanel, timeline::Timeline, topbar::TopBar, viewport::Viewport,
+    timeline::Timeline, topbar::TopBar, trade::TradePanel, viewport::Viewport,
 };
 use crate::preset_file::Folders;
 

@@ -5,13 +5,15 @@ use eframe::egui::{self, Align, Layout, RichText, Sense, Ui, vec2};
 use super::anti_aliasing::anti_aliasing_ui;
 use crate::app::{
     action::Action,
-    command::Commands,
+    command::{Command, Commands},
     fields::dot,
     icons::{Icon, icon_button},
     measured::{error_line, time_text},
     panel::Panel,
     state::State,
     theme,
+    trade::pace::about,
+    verification::Progress,
 };
 
 /// The bar at the top: menus, the open preset, the adapter, and the cost and error of the picture.
@@ -156,20 +158,32 @@ fn adapter_ui(ui: &mut Ui, state: &State) {
 fn cost_ui(ui: &mut Ui, state: &State, commands: &Commands) {
     ui.spacing_mut().item_spacing.x = 6.0;
     let (color, error, hint) = error_line(state.verification.verdict(), state.screen.requested());
-    let is_busy = state.verification.is_running();
-    let button = egui::Button::new(if is_busy { "Verifying" } else { "Verify" });
-    let verify = ui.add_enabled(!is_busy && state.screen.requested().is_some(), button);
-    if verify.on_hover_text("Compare every pixel with the exact CPU oracle (V)").clicked() {
-        commands.perform(Action::Verify);
-    }
-    if is_busy {
-        ui.add(egui::Spinner::new().size(14.0));
+    match state.verification.progress() {
+        Some(progress) => verifying_ui(ui, &progress, commands),
+        None => {
+            let verify = ui.add_enabled(state.screen.requested().is_some(), egui::Button::new("Verify"));
+            if verify.on_hover_text("Compare every pixel with the exact CPU oracle (V)").clicked() {
+                commands.perform(Action::Verify);
+            }
+        }
     }
     ui.label(RichText::new(error).color(color)).on_hover_text(hint);
     ui.label(theme::weak("·"));
     ui.label(RichText::new(time_text(state.screen.report())).color(theme::TEXT_STRONG))
         .on_hover_text("Time of the newest frame on the device. Timing lists its passes.");
     pins_ui(ui, &state.session.preset().accuracy.pins.words());
+}
+
+/// How far the oracle is, and a button that ends it.
+fn verifying_ui(ui: &mut Ui, progress: &Progress, commands: &Commands) {
+    let cancel = ui.button("Cancel").on_hover_text("Stop verifying").accessible_name("Cancel verifying");
+    if cancel.clicked() {
+        commands.send(Command::CancelVerify);
+    }
+    let text = RichText::new(format!("{} left", about(progress.left_s))).size(11.0);
+    let bar = egui::ProgressBar::new(progress.fraction as f32).desired_width(96.0).text(text).fill(theme::ACCENT_GROUND);
+    ui.add(bar).on_hover_text(format!("Verifying: {}", progress.stage));
+    ui.request_repaint_after_secs(0.1);
 }
 
 /// Accuracy options that the preset pins, as `coverage=fixed8 depth=log16`.

@@ -1,8 +1,12 @@
 //! The job of a trade: the bench over combinations of options, judged by the oracle.
 
-use std::sync::Arc;
+use std::{
+    sync::Arc,
+    time::{Duration, Instant},
+};
 
 use super::{
+    pace::Kind,
     point::{Metric, Point},
     request::{Progress, Request, SAMPLES},
 };
@@ -12,33 +16,78 @@ use crate::{
     gpu::{
         Capture, Gpu,
         device::AdapterChoice,
-        trade::{Judged, Reference, TradeOptions, TradeRow, factors, trade},
+        trade::{Judged, Phase, Reference, Step, TradeOptions, TradeRow, Watch, factors, trade},
     },
     oracle,
     scene::{Scene, view::View},
 };
 
-/// Measures every combination, on a second device.
+/// How often a measurement that waits looks whether it may go on.
+const LOOK: Duration = Duration::from_millis(20);
+
+/// Measures every combination, on a second device. Canceled, it returns what has been timed so far.
 ///
 /// # Errors
 /// In a sentence for people.
 pub fn measure(adapter: String, scene: &Arc<Scene>, request: &Request, progress: &Progress) -> Result<Vec<Point>, String> {
     let Request { preset, size, axes, title } = request;
-    progress.report(0, 1, "the reference picture");
     let gpu = Gpu::open(&AdapterChoice::Named(adapter)).map_err(|e| e.to_string())?;
     let view = preset.view(scene, *size);
-    let references = oracle::references(scene, &view, &preset.stack, &factors(preset, axes)).map_err(|e| e.to_string())?;
+    let began = Instant::now();
+    let references = progress.work.run(|| oracle::references(scene, &view, &preset.stack, &factors(preset, axes)));
+    let Some(references) = references else { return Ok(Vec::new()) };
+    let references = references.map_err(|e| e.to_string())?;
+    progress.report("", |pace| pace.add(Kind::Reference, began.elapsed().as_secs_f64()));
     let judge = |view: &View, stack: &Stack, capture: &Capture| {
-        let verdict = oracle::judge(scene, view, stack, &capture.picture());
-        let light = oracle::shadow_errors(scene, view, stack, &capture.frame.triangle_id, &capture.geometry);
-        let reason = "a scene that was drawn can be judged";
-        Judged { verdict: verdict.expect(reason), light: light.expect(reason) }
+        progress.work.run(|| {
+            let verdict = oracle::judge(scene, view, stack, &capture.picture());
+            let light = oracle::shadow_errors(scene, view, stack, &capture.frame.triangle_id, &capture.geometry);
+            let reason = "a scene that was drawn can be judged";
+            Judged { verdict: verdict.expect(reason), light: light.expect(reason) }
+        })
     };
     let options = TradeOptions { size: *size, samples: SAMPLES, axes: axes.clone(), is_one_option_at_a_time: false };
-    let mut report = |what: &str, done: usize, all: usize| progress.report(done, all, what);
     let reference = Reference { references: &references, judge: &judge };
-    let rows = trade(&gpu, preset, scene, title, &options, &reference, &mut report).map_err(|e| e.to_string())?;
+    let mut watch = Watched { progress, step: None };
+    let rows = trade(&gpu, preset, scene, title, &options, &reference, &mut watch).map_err(|e| e.to_string())?;
     Ok(rows.into_iter().map(|row| point(row, axes)).collect())
+}
+
+/// Reports a measurement to the window, and waits while the person works there.
+struct Watched<'a> {
+    progress: &'a Progress,
+    /// The step that is being done, and when it began.
+    step: Option<(Kind, Instant)>,
+}
+
+impl Watch for Watched<'_> {
+    fn goes_on(&mut self, step: &Step) -> bool {
+        let done = self.step.take();
+        let kind = if step.phase == Phase::SetUp { Kind::SetUp } else { Kind::Time };
+        self.progress.report(step.what, |pace| {
+            if let Some((kind, began)) = done {
+                pace.add(kind, began.elapsed().as_secs_f64());
+            }
+            pace.expect(kind, step.all);
+        });
+        while self.progress.is_paused() && self.is_wanted() {
+            std::thread::sleep(LOOK);
+        }
+        self.step = Some((kind, Instant::now()));
+        self.is_wanted()
+    }
+
+    fn is_wanted(&mut self) -> bool {
+        !self.progress.is_canceled()
+    }
+
+    fn was_undisturbed(&mut self) -> bool {
+        let is_undisturbed = !self.progress.is_paused();
+        if !is_undisturbed {
+            self.step = None; // The sample is taken again, so it is not done.
+        }
+        is_undisturbed
+    }
 }
 
 fn point(row: TradeRow, axes: &[&'static Axis]) -> Point {
@@ -67,13 +116,5 @@ fn point(row: TradeRow, axes: &[&'static Axis]) -> Point {
         .into_iter()
         .chain(error.rms_light.map(|rms| ("light RMS, fraction", rms)))
     });
-    Point {
-        pins,
-        ms: row.ms_p50.zip(row.ms_p95).map(|(p50, p95)| [p50, p95]),
-        samples: row.samples,
-        errors,
-        more: more.collect(),
-        is_dominated: row.is_dominated,
-        note: row.note,
-    }
+    Point { pins, ms: row.spread, samples: row.samples, errors, more: more.collect(), note: row.note }
 }

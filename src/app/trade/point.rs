@@ -1,6 +1,9 @@
-//! The points of a trade: time and error of each combination, and which combinations are on the Pareto front.
+//! The points of a measurement: time and error of each combination, and which combinations are on the Pareto front.
 
-use crate::accuracy::{Axis, PinnedOptions};
+use crate::{
+    accuracy::{Axis, PinnedOptions},
+    measure::timing::Spread,
+};
 
 /// A kind of error. Each is 0 where the picture is exact.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -48,15 +51,13 @@ impl Metric {
 pub struct Point {
     /// The option on every axis that was measured.
     pub pins: PinnedOptions,
-    /// Median and 95th percentile, milliseconds; none where it could not run or has no timer.
-    pub ms: Option<[f64; 2]>,
+    /// Milliseconds; none where it could not run or has no timer.
+    pub ms: Option<Spread>,
     pub samples: usize,
     /// In the order of [`Metric::ALL`].
     pub errors: [Option<f64>; Metric::ALL.len()],
     /// Further numbers, each with its name and unit.
     pub more: Vec<(&'static str, f64)>,
-    /// Another combination is at least as exact in every metric and not slower.
-    pub is_dominated: bool,
     /// Why it could not be drawn, or what dominates it.
     pub note: Option<String>,
 }
@@ -67,30 +68,44 @@ impl Point {
     }
 
     /// Time and error, where both were measured.
-    pub fn position(&self, metric: Metric) -> Option<[f64; 2]> {
-        let ms = self.ms.map(|[p50, _]| p50).filter(|ms| ms.is_finite() && *ms > 0.0)?;
-        Some([ms, self.error(metric)?.max(0.0)])
+    pub fn position(&self, metric: Metric) -> Option<(Spread, f64)> {
+        let ms = self.ms.filter(|ms| ms.p50.is_finite() && ms.p50 > 0.0)?;
+        Some((ms, self.error(metric)?.max(0.0)))
     }
 }
 
-/// Indices of the points that no other dominates in time and error, fast ones first.
-pub fn front(points: &[Point], metric: Metric) -> Vec<usize> {
-    let mut order: Vec<(usize, [f64; 2])> = points.iter().enumerate().filter_map(|(i, p)| Some((i, p.position(metric)?))).collect();
-    order.sort_by(|(_, a), (_, b)| a[0].total_cmp(&b[0]).then(a[1].total_cmp(&b[1])));
-    let mut least = f64::INFINITY;
-    order.retain(|(_, [_, error])| {
-        let is_better = *error < least;
-        least = least.min(*error);
-        is_better
-    });
-    order.into_iter().map(|(i, _)| i).collect()
+/// Where a point stands among all.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Standing {
+    /// On the Pareto front: every other that is at least as exact is slower, by more than the noise.
+    Front,
+    /// Noise decides whether another that is at least as exact is quicker.
+    Tied,
+    /// Another that is at least as exact is quicker, by more than the noise.
+    Dominated,
+}
+
+/// Where each point stands in time and error; none for those that were not measured.
+pub fn standings(points: &[Point], metric: Metric) -> Vec<Option<Standing>> {
+    let positions: Vec<_> = points.iter().map(|point| point.position(metric)).collect();
+    let standing = |at: usize| {
+        let (ms, error) = positions[at]?;
+        let others = positions.iter().enumerate().filter(|(other, _)| *other != at).filter_map(|(_, position)| *position);
+        let as_exact: Vec<Spread> = others.filter(|(_, other)| *other <= error).map(|(ms, _)| ms).collect();
+        Some(match () {
+            () if as_exact.iter().any(|other| other.is_clearly_below(&ms)) => Standing::Dominated,
+            () if as_exact.iter().all(|other| ms.is_clearly_below(other)) => Standing::Front,
+            () => Standing::Tied,
+        })
+    };
+    (0..points.len()).map(standing).collect()
 }
 
 /// The table as comma-separated values, a column for every measured axis.
 pub fn csv(points: &[Point], axes: &[&'static Axis]) -> String {
     let cell = |text: &str| if text.contains([',', '"', '\n']) { format!("\"{}\"", text.replace('"', "\"\"")) } else { text.to_owned() };
     let mut head: Vec<String> = axes.iter().map(|axis| axis.name.to_owned()).collect();
-    head.extend(["ms p50", "ms p95", "samples"].map(str::to_owned));
+    head.extend(["ms p5", "ms p50", "ms p95", "samples"].map(str::to_owned));
     let metrics = Metric::of(points);
     head.extend(metrics.iter().map(|metric| format!("{} {}", metric.name(), metric.unit())));
     let more = points.iter().map(|point| &point.more).max_by_key(|more| more.len());
@@ -101,7 +116,7 @@ pub fn csv(points: &[Point], axes: &[&'static Axis]) -> String {
         let mut line: Vec<String> =
             axes.iter().map(|axis| point.pins.get(axis).map_or(String::new(), |option| axis.words[option].to_owned())).collect();
         let number = |value: Option<f64>| value.map_or_else(|| "not measured".into(), |value| value.to_string());
-        line.extend([0, 1].map(|i| number(point.ms.map(|ms| ms[i]))));
+        line.extend([0, 1, 2].map(|i| number(point.ms.map(|ms| [ms.p5, ms.p50, ms.p95][i]))));
         line.push(point.samples.to_string());
         line.extend(metrics.iter().map(|metric| number(point.errors[*metric as usize])));
         let further = |i: usize| point.more.get(i).map(|(_, value)| *value);
@@ -117,15 +132,15 @@ mod tests {
     use super::*;
     use crate::accuracy::{Coverage, DepthFormat};
 
+    /// Thirty samples, up to a tenth above `ms`.
     fn point(coverage: Coverage, depth: DepthFormat, ms: f64, wrong: f64) -> Point {
-        let pins = PinnedOptions::of(coverage).with(depth);
+        let samples: Vec<f64> = (0..30).map(|i| ms * (1.0 + 0.01 * f64::from(i % 11))).collect();
         Point {
-            pins,
-            ms: Some([ms, 2.0 * ms]),
+            pins: PinnedOptions::of(coverage).with(depth),
+            ms: Spread::of(&samples),
             samples: 30,
             errors: [Some(wrong), Some(0.0), None, None],
             more: vec![("bytes", 7.0)],
-            is_dominated: false,
             note: None,
         }
     }
@@ -142,9 +157,23 @@ mod tests {
 
     #[test]
     fn the_front_holds_what_nothing_dominates() {
-        assert_eq!(front(&points(), Metric::Wrong), [0, 1, 3]);
-        assert_eq!(front(&points(), Metric::Color), [0], "all are exact, so only the fastest is on the front");
-        assert_eq!(front(&points(), Metric::Coverage), [0; 0], "not measured is no point");
+        use Standing::{Dominated, Front};
+        assert_eq!(standings(&points(), Metric::Wrong), [Front, Front, Dominated, Front, Dominated].map(Some));
+        let expected = [Front, Dominated, Dominated, Dominated, Dominated].map(Some);
+        assert_eq!(standings(&points(), Metric::Color), expected, "all are exact, so only the fastest is on the front");
+        assert_eq!(standings(&points(), Metric::Coverage), [None; 5], "not measured is no point");
+    }
+
+    #[test]
+    fn noise_decides_no_front() {
+        use Standing::{Dominated, Front, Tied};
+        let at = |ms: f64, wrong: f64| point(Coverage::Fixed8, DepthFormat::Reversed, ms, wrong);
+        // The second seems to be quicker by 1 %, and the third is slower by far.
+        assert_eq!(standings(&[at(1.01, 0.0), at(1.0, 0.0), at(2.0, 0.0)], Metric::Wrong), [Tied, Tied, Dominated].map(Some));
+        // As quick as an exact one: nobody can tell whether its error buys anything.
+        assert_eq!(standings(&[at(1.0, 9.0), at(1.01, 0.0)], Metric::Wrong), [Tied, Front].map(Some));
+        assert_eq!(standings(&[at(1.0, 9.0), at(2.0, 0.0)], Metric::Wrong), [Front, Front].map(Some));
+        assert_eq!(standings(&[at(1.0, 9.0)], Metric::Wrong), [Some(Front)], "alone");
     }
 
     #[test]
@@ -157,8 +186,10 @@ mod tests {
         let lines: Vec<_> = text.lines().collect();
         assert_eq!(
             lines[0],
-            "coverage,depth,ms p50,ms p95,samples,wrong pixels ppm,color difference of 255,holes and doubles per Mpx,bytes,note"
+            "coverage,depth,ms p5,ms p50,ms p95,samples,wrong pixels ppm,color difference of 255,holes and doubles per Mpx,bytes,note"
         );
-        assert_eq!(lines[1], "float,ndc16,1,2,30,500,0,not measured,7,\"a, b\"");
+        let ms = points[0].ms.expect("it was timed");
+        let expected = format!("float,ndc16,{},{},{},30,500,0,not measured,7,\"a, b\"", ms.p5, ms.p50, ms.p95);
+        assert_eq!(lines[1], expected);
     }
 }

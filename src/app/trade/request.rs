@@ -1,11 +1,12 @@
-//! What a trade measures, and how far it is.
+//! What is measured, and how far the measurement is.
 
 use std::sync::{
-    Mutex,
-    atomic::{AtomicBool, Ordering},
+    Arc, Mutex, MutexGuard, PoisonError,
+    atomic::{AtomicU64, Ordering},
 };
 
-use crate::{accuracy::Axis, preset::Preset};
+use super::pace::Pace;
+use crate::{accuracy::Axis, oracle::Work, preset::Preset};
 
 /// Frames that every combination is drawn for.
 pub const SAMPLES: usize = 30;
@@ -20,30 +21,81 @@ pub struct Request {
     pub title: String,
 }
 
-/// How far a trade is; shared with the thread that measures.
-#[derive(Default)]
-pub struct Progress {
-    is_canceled: AtomicBool,
-    state: Mutex<(usize, usize, String)>,
+impl Request {
+    /// Number of combinations of the options of its axes.
+    pub fn combinations(&self) -> usize {
+        self.axes.iter().map(|axis| axis.words.len()).product()
+    }
 }
 
+/// How far a measurement is; shared with the thread that measures.
+pub struct Progress {
+    /// What the oracle does for it.
+    pub work: Arc<Work>,
+    state: Mutex<State>,
+    /// When the measurement may go on, milliseconds on the clock of `began`.
+    paused_until_ms: AtomicU64,
+    began: std::time::Instant,
+}
+
+struct State {
+    pace: Pace,
+    /// What is being done.
+    now: String,
+}
+
+/// The measurement waits this long after the last thing that the person did, seconds.
+const PAUSE_S: f64 = 1.0;
+
 impl Progress {
-    /// Says that `done` of `all` steps are done and what comes next. Returns false if the trade was canceled.
-    pub fn report(&self, done: usize, all: usize, what: &str) -> bool {
-        *self.state.lock().unwrap_or_else(|poisoned| poisoned.into_inner()) = (done, all, what.to_owned());
-        !self.is_canceled()
+    /// Nothing is done yet of a measurement that is expected to take as long as `pace` says.
+    pub fn new(pace: Pace) -> Self {
+        Self {
+            work: Arc::default(),
+            state: Mutex::new(State { pace, now: "the reference picture".into() }),
+            paused_until_ms: AtomicU64::new(0),
+            began: std::time::Instant::now(),
+        }
+    }
+
+    fn state(&self) -> MutexGuard<'_, State> {
+        self.state.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    /// Records what has been done and what comes next.
+    pub fn report(&self, now: &str, record: impl FnOnce(&mut Pace)) {
+        let mut state = self.state();
+        record(&mut state.pace);
+        now.clone_into(&mut state.now);
     }
 
     pub fn cancel(&self) {
-        self.is_canceled.store(true, Ordering::Relaxed);
+        self.work.cancel();
     }
 
     pub fn is_canceled(&self) -> bool {
-        self.is_canceled.load(Ordering::Relaxed)
+        self.work.is_canceled()
     }
 
-    /// Steps done, all steps, and what is being done.
-    pub fn read(&self) -> (usize, usize, String) {
-        self.state.lock().unwrap_or_else(|poisoned| poisoned.into_inner()).clone()
+    /// The person works in the window: the measurement waits until they have rested.
+    pub fn pause(&self) {
+        let until_s = self.began.elapsed().as_secs_f64() + PAUSE_S;
+        self.paused_until_ms.store((1e3 * until_s) as u64, Ordering::Relaxed);
+    }
+
+    /// Returns true while the measurement waits for the person to rest.
+    pub fn is_paused(&self) -> bool {
+        self.began.elapsed().as_millis() < u128::from(self.paused_until_ms.load(Ordering::Relaxed))
+    }
+
+    /// The fraction that is done, the seconds that are left, and what is being done.
+    pub fn read(&self) -> (f64, f64, String) {
+        let state = self.state();
+        (state.pace.fraction(), state.pace.left_s(), state.now.clone())
+    }
+
+    /// What has been learned about the speed of this machine.
+    pub fn pace(&self) -> Pace {
+        self.state().pace.clone()
     }
 }

@@ -12,6 +12,7 @@ use super::{
             triangles::triangles,
         },
         shot::Shot,
+        work::checkpoint,
     },
     freedom::Freedom,
     outline::{Drawn, Outline, SamplePosition},
@@ -45,6 +46,7 @@ impl EndToEnd<'_> {
         let (triangles, _) = triangles(self.shot, self.own);
         let tests = limited(SampleTests::new(self.shot, self.own), self.shot.stack, &triangles, self.shot.view);
         let own = cover_claims(&tests, &triangles, self.shot.view, &frame.triangle_id);
+        let checkpoint = checkpoint();
         for (pixel, (reference, sample)) in own.samples.iter().zip(&coverage.samples).enumerate() {
             let triangle_id = frame.triangle_id[pixel];
             let is_right = reference.allows(triangle_id) && (!self.is_strict() || frame.depth_key[pixel] == reference.nearest.depth_key);
@@ -52,6 +54,7 @@ impl EndToEnd<'_> {
             if is_right || !sample.allows(triangle_id) {
                 continue;
             }
+            checkpoint.pass();
             if !self.is_strict() && self.may_differ(pixel, reference.nearest.triangle_id, triangle_id, tests.limit()) {
                 report.explained_by_snap += 1;
             } else {

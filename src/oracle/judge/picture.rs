@@ -25,6 +25,7 @@ use super::{
             triangles::triangles,
         },
         shot::{Shot, drawn_view},
+        work::stage,
     },
     deform::judge_deformed,
     dots::judge_dots,
@@ -43,6 +44,9 @@ use crate::{
     measure::{ErrorReport, Verdict, compare},
     scene::{Scene, draw::DrawError, view::View},
 };
+
+/// Stages of [`judge`], as [`Work::stage`](crate::oracle::Work::stage) counts them.
+pub const JUDGE_STAGES: u32 = 5;
 
 /// Judges a picture that an adapter drew of `scene`.
 ///
@@ -63,6 +67,7 @@ pub fn judge(scene: &Scene, view: &View, stack: &Stack, picture: &AdapterPicture
     let draws = stack.draws(scene, view)?;
     let shot = Shot::new(scene, &draws, view, stack);
     budget::check(&shot, Purpose::Judge)?;
+    stage("vertices");
     let own = own_geometry(&shot, geometry.bit_exact);
     check_sizes(&shot, picture, &own);
 
@@ -72,6 +77,7 @@ pub fn judge(scene: &Scene, view: &View, stack: &Stack, picture: &AdapterPicture
     let dots = dot_strengths(view, stack, &geometry.dots, &picture.frame.depth_key);
     judge_geometry(&mut report, &shot, picture, &dots)?;
 
+    stage("coverage");
     let (triangles, counters) = triangles(&shot, geometry);
     let tests = SampleTests::new(&shot, geometry);
     let freedom = Freedom::of(&shot, &tests, &triangles);
@@ -80,12 +86,15 @@ pub fn judge(scene: &Scene, view: &View, stack: &Stack, picture: &AdapterPicture
     let end_to_end = EndToEnd { shot: &shot, own: &own, adapter: geometry, limit: tests.limit(), vertices: &vertices };
     judge_samples(&mut report, &coverage, picture, freedom);
     judge_counters(&mut report, &counters, picture.frame);
+    stage("the whole picture");
     end_to_end.judge(&mut report, &coverage, picture.frame, freedom);
 
     let (triangle_ids, keys) = (&picture.frame.triangle_id, &picture.frame.depth_key);
     let layer_input = LayerInput { shot, geometry, tests: &tests, triangles: &triangles, triangle_ids, depth_keys: keys };
+    stage("colors");
     let colors = JudgedColors::new(&layer_input, &coverage, picture, &dots);
     let nearest = colors.judge(&mut report, picture, freedom);
+    stage("the error map");
     let mut faults = error_map(&shot, &coverage, picture, &nearest, freedom);
     let step_band = colors.accepted.step_band();
     let (expected_colors, counted) = colors.expected(&shot, &coverage, picture, nearest);

@@ -9,6 +9,7 @@ use super::super::{
     },
     render::vertex::{Corner, VertexEvaluator},
     shot::Shot,
+    work::checkpoint,
 };
 use crate::{
     frame::{Geometry, SnappedVertex, vertex_flags},
@@ -42,10 +43,12 @@ pub fn vertex_errors(shot: &Shot, adapter: &Geometry, own: &Geometry) -> Vec<Ver
 
 /// Compares an adapter's records with the bounds of float vertices.
 pub fn bounded_errors(shot: &Shot, adapter: &Geometry, own: &Geometry) -> Vec<VertexError> {
+    let checkpoint = checkpoint();
     let of_draw = |draw: &Draw| {
         let evaluator = VertexEvaluator::new(shot.scene, draw, shot.view, shot.stack);
         let bounds = VertexBounds::new(&evaluator, adapter.packed_bits);
         let error = |(i, corner)| {
+            checkpoint.pass();
             let at = evaluator.first_record() + i;
             bounded_error(&evaluator, &bounds, shot, corner, &adapter.vertices[at], &own.vertices[at])
         };

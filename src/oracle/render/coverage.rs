@@ -7,9 +7,12 @@ use std::ops::Range;
 use rayon::prelude::*;
 
 use super::{
-    super::arithmetic::{
-        depth_key::{depth_key, integer_key},
-        edge::{edge, owns},
+    super::{
+        arithmetic::{
+            depth_key::{depth_key, integer_key},
+            edge::{edge, owns},
+        },
+        work::checkpoint,
     },
     sample_tests::SampleTests,
     triangles::OrientedTriangle,
@@ -116,9 +119,11 @@ pub fn scatter<'a, T: Send, V: FnMut(&mut T, usize, usize, Hit)>(
             bands[rows.start / ROWS..=(rows.end - 1) / ROWS].iter_mut().for_each(|band| band.push(triangle));
         }
     }
+    let checkpoint = checkpoint();
     cells.par_chunks_mut(ROWS * width).zip(bands).enumerate().for_each(|(band, (cells, triangles))| {
         let first_row = band * ROWS;
         for triangle in triangles {
+            checkpoint.pass();
             let (columns, rows) = triangle.bounds(view, tests);
             let mut visit = visitor(triangle);
             for y in rows.start.max(first_row)..rows.end.min(first_row + ROWS) {

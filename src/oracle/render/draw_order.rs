@@ -4,7 +4,7 @@
 use rayon::prelude::*;
 
 use super::{
-    super::shot::Shot,
+    super::{shot::Shot, work::checkpoint},
     sample_tests::{DrawLimit, SampleTests},
     triangles::{OrientedTriangle, triangles},
 };
@@ -65,7 +65,12 @@ pub fn ranks(shot: &Shot, geometry: &Geometry) -> Vec<f64> {
 
 /// Number of samples of every drawn triangle, all its clipped triangles together, by rising id.
 fn counts(tests: &SampleTests, drawn: &[OrientedTriangle], view: &View) -> Vec<(u32, u64)> {
-    let mut counts: Vec<(u32, u64)> = drawn.par_iter().map(|t| (t.id, samples(tests, t, view).count() as u64)).collect();
+    let checkpoint = checkpoint();
+    let count = |t: &OrientedTriangle| {
+        checkpoint.pass();
+        (t.id, samples(tests, t, view).count() as u64)
+    };
+    let mut counts: Vec<(u32, u64)> = drawn.par_iter().map(count).collect();
     counts.sort_by_key(|(id, _)| *id);
     counts.dedup_by(|next, first| {
         let is_same = next.0 == first.0;

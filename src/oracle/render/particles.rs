@@ -6,6 +6,7 @@ use std::borrow::Cow;
 use glam::{DVec3, I64Vec3};
 use rayon::prelude::*;
 
+use super::super::work::checkpoint;
 use crate::{
     effects::{
         Stack,
@@ -76,8 +77,11 @@ pub fn particles_at(view: &View, stack: &Stack) -> Vec<ReferenceParticle> {
     let params: Vec<Particles> = (1..=timeline.len() as u32).map(|step| read(timeline.words(step))).collect();
     let of_step = |step: u32| &params[(step.max(1) as usize - 1).min(params.len() - 1)];
     let count = stack.particle_settings().map_or(0, |settings| settings.count);
-    let simulated =
-        |id: u32| (1..=timeline.frame).fold(first(of_step(0), id), |particle, step| stepped(of_step(step), id, &particle, step));
+    let checkpoint = checkpoint();
+    let simulated = |id: u32| {
+        checkpoint.pass();
+        (1..=timeline.frame).fold(first(of_step(0), id), |particle, step| stepped(of_step(step), id, &particle, step))
+    };
     (0..count).into_par_iter().map(simulated).collect()
 }
 

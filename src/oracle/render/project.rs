@@ -2,7 +2,12 @@
 
 use rayon::prelude::*;
 
-use super::{super::shot::Shot, clip, deform, snap::snap, vertex::VertexEvaluator};
+use super::{
+    super::{shot::Shot, work::checkpoint},
+    clip, deform,
+    snap::snap,
+    vertex::VertexEvaluator,
+};
 use crate::{
     frame::{Geometry, SnappedVertex},
     scene::draw::totals,
@@ -14,10 +19,14 @@ use crate::{
 pub fn project(shot: &Shot) -> Geometry {
     let Shot { scene, draws, view, stack } = *shot;
     let evaluators: Vec<VertexEvaluator> = draws.iter().map(|draw| VertexEvaluator::new(scene, draw, view, stack)).collect();
+    let checkpoint = checkpoint();
     let records = |evaluator: &VertexEvaluator| {
-        let record = |corner| match evaluator.clip(corner) {
-            Ok(position) => snap(&position, view),
-            Err(flags) => SnappedVertex { flags, ..Default::default() },
+        let record = |corner| {
+            checkpoint.pass();
+            match evaluator.clip(corner) {
+                Ok(position) => snap(&position, view),
+                Err(flags) => SnappedVertex { flags, ..Default::default() },
+            }
         };
         evaluator.corners().into_par_iter().map(record).collect::<Vec<_>>()
     };

@@ -4,7 +4,7 @@ use glam::DVec4;
 use rayon::prelude::*;
 
 use super::{
-    super::{perturbation::Perturbation, shot::Shot},
+    super::{perturbation::Perturbation, shot::Shot, work::checkpoint},
     surface::surface_colors,
 };
 use crate::{
@@ -55,7 +55,9 @@ pub fn finish(shot: &Shot, input: &ResolveInput, colors: &[DVec4], color_step: f
         background: background(view),
     };
     let dots = stack.dots().filter(|_| !input.dots.is_empty());
+    let checkpoint = checkpoint();
     let finished = |(i, &color): (usize, &DVec4)| {
+        checkpoint.pass();
         let color = dots.as_ref().map_or(color, |dots| dotted(dots, color, picture.background, input.dots[i]));
         let pixel = Pixel { color, x: i as u32 % view.width, y: i as u32 / view.width, step_offset: color_step };
         bytes(if stack.finishes() { stack.finish(pixel, &picture).color } else { color })

@@ -11,6 +11,7 @@ use super::{
         },
         perturbation::Perturbation,
         shot::Shot,
+        work::checkpoint,
     },
     deform,
     draw_order::ranks,
@@ -62,7 +63,9 @@ pub fn each_surface<T: Send>(
     visit: impl Fn(Option<(&SurfaceTriangle, Surface)>) -> T + Sync,
 ) -> Vec<T> {
     let width = shot.view.width.max(1) as usize;
+    let checkpoint = checkpoint();
     let row = |(y, ids): (usize, &[u32])| {
+        checkpoint.pass();
         let mut triangle: Option<SurfaceTriangle> = None;
         let pixel = |(x, &id): (usize, &u32)| {
             // Neighbors usually show the same triangle.

@@ -3,7 +3,7 @@
 use rayon::prelude::*;
 
 use super::{
-    super::{arithmetic::edge::doubled_area, shot::Shot},
+    super::{arithmetic::edge::doubled_area, shot::Shot, work::checkpoint},
     clip::is_cut,
 };
 use crate::{
@@ -54,10 +54,12 @@ pub fn triangles(shot: &Shot, geometry: &Geometry) -> (Vec<OrientedTriangle>, Co
     let clipped_entries = totals(shot.scene, shot.draws)[1] as usize;
     let mut drawn = Vec::new();
     let mut counters = Counters::default();
+    let checkpoint = checkpoint();
     for draw in shot.draws {
         let ids = draw.first_triangle..draw.first_triangle + shot.scene.primitives[draw.primitive].triangle_count();
         let starts: Vec<u32> = ids.clone().step_by(CHUNK as usize).collect();
         let chunk = |start: u32| {
+            checkpoint.pass();
             let (drawn, counters) = (Vec::new(), Counters::default());
             let mut assembly = Assembly { shot, draw, geometry, clipped: &clipped, clipped_entries, drawn, counters };
             (start..ids.end.min(start.saturating_add(CHUNK))).for_each(|id| assembly.triangle(id));

@@ -1,5 +1,5 @@
-//! The panel of the trade: choose axes, measure every combination of their options, and see the error over the
-//! time as a plot and a table. A click pins the options of a combination.
+//! The panel Trade: choose axes, measure every combination of their options, and see the error over the time as a plot and a table.
+//! A click pins the options of a combination.
 
 mod plot;
 mod table;
@@ -18,13 +18,15 @@ use crate::{
         panel::Panel,
         screen::Inputs,
         state::State,
+        text::first_line,
+        theme,
         trade::{
+            pace::{Pace, Rates, about},
             point::{Metric, Point, csv},
             request::{Progress, Request, SAMPLES},
         },
-        text::first_line,
-        theme,
     },
+    gpu::trade::factors,
     preset::{AccuracyRequest, Preset},
 };
 
@@ -34,18 +36,57 @@ const MAX_COMBINATIONS: usize = 256;
 /// Width of the column of axes, points.
 const AXES_WIDTH: f32 = 232.0;
 
-/// A finished trade.
+/// A measurement that has ended.
 struct Measured {
     request: Request,
     points: Vec<Point>,
 }
 
-/// The panel of the trade: chooses axes, measures their options, and shows the error over the time.
+/// A measurement under way.
+struct Running {
+    request: Request,
+    progress: Arc<Progress>,
+    workload: Workload,
+}
+
+/// What the time of a measurement depends on.
+#[derive(Clone, Copy)]
+struct Workload {
+    combinations: usize,
+    /// Of all pictures of the combinations, on average.
+    pixels: f64,
+    reference_pixels: f64,
+    frame_ms: f64,
+}
+
+impl Workload {
+    fn of(request: &Request, frame_ms: f64) -> Self {
+        let factors = factors(&request.preset, &request.axes);
+        let shown = request.size.into_iter().map(f64::from).product::<f64>();
+        let squares: f64 = factors.iter().map(|factor| factor * factor).sum();
+        // Where sizes are compared, the oracle also draws 64 pictures for the mean of 64 samples per pixel.
+        let supersampled = if factors.len() > 1 { 64.0 } else { 0.0 };
+        Self {
+            combinations: request.combinations(),
+            pixels: shown * squares / factors.len() as f64,
+            reference_pixels: shown * (squares + supersampled),
+            frame_ms,
+        }
+    }
+
+    fn pace(&self, rates: &Rates) -> Pace {
+        Pace::of(self.combinations, SAMPLES, self.pixels, self.reference_pixels, self.frame_ms, rates)
+    }
+}
+
+/// The panel Trade: chooses axes, measures their options, and shows the error over the time.
 pub struct TradePanel {
     /// Which axes are to be measured, in the order of [`AXES`].
     chosen: Vec<bool>,
     metric: Metric,
-    running: Option<(Request, Arc<Progress>)>,
+    running: Option<Running>,
+    /// What the measurements of this session have taught about the machine.
+    rates: Rates,
     measured: Option<Measured>,
     error: Option<String>,
 }
@@ -53,7 +94,7 @@ pub struct TradePanel {
 impl Default for TradePanel {
     fn default() -> Self {
         let chosen = AXES.iter().map(|axis| axis.name == "coverage").collect();
-        Self { chosen, metric: Metric::default(), running: None, measured: None, error: None }
+        Self { chosen, metric: Metric::default(), running: None, rates: Rates::default(), measured: None, error: None }
     }
 }
 
@@ -68,7 +109,14 @@ impl TradePanel {
         self.running.is_some()
     }
 
-    /// Number of points of the newest trade.
+    /// The measurement under way waits, since the person works in the window.
+    pub fn pause(&self) {
+        if let Some(running) = &self.running {
+            running.progress.pause();
+        }
+    }
+
+    /// Number of points of the newest measurement.
     pub fn points(&self) -> usize {
         self.measured.as_ref().map_or(0, |measured| measured.points.len())
     }
@@ -77,13 +125,17 @@ impl TradePanel {
         AXES.iter().zip(&self.chosen).filter(|(_, chosen)| **chosen).map(|(axis, _)| axis).collect()
     }
 
-    /// Takes the points of the trade that has ended. Returns the whole message of an error.
+    /// Takes the points of the measurement that has ended. One that was canceled keeps those that were timed. Returns the whole message
+    /// of an error.
     pub fn arrived(&mut self, points: Result<Vec<Point>, String>) -> Option<String> {
-        let (request, progress) = self.running.take()?;
+        let Running { request, progress, workload } = self.running.take()?;
+        let Workload { pixels, reference_pixels, frame_ms, .. } = workload;
+        self.rates = progress.pace().rates(pixels, reference_pixels, frame_ms, &self.rates);
         self.error = None;
         match points {
-            _ if progress.is_canceled() => {}
+            Ok(points) if progress.is_canceled() && points.iter().all(|point| point.ms.is_none()) => {}
             Ok(points) => self.measured = Some(Measured { request, points }),
+            Err(_) if progress.is_canceled() => {}
             Err(error) => {
                 self.error = Some(first_line(&error));
                 return Some(error);
@@ -116,7 +168,7 @@ impl TradePanel {
     fn axes_ui(&mut self, ui: &mut Ui, state: &State, commands: &Commands) {
         let count = self.axes().iter().map(|axis| axis.words.len()).product();
         match &self.running {
-            Some((_, progress)) => progress_ui(ui, progress),
+            Some(running) => progress_ui(ui, &running.progress),
             None => self.measure_ui(ui, state, commands, count),
         }
         ui.add_space(theme::HALF);
@@ -139,36 +191,52 @@ impl TradePanel {
     /// The button that measures `count` combinations.
     fn measure_ui(&mut self, ui: &mut Ui, state: &State, commands: &Commands, count: usize) {
         let shown = state.session.scene().and(state.screen.requested());
+        let request = shown.filter(|_| count <= MAX_COMBINATIONS).map(|inputs| self.request(state, inputs));
         ui.horizontal(|ui| {
-            let is_ready = shown.is_some() && (2..=MAX_COMBINATIONS).contains(&count);
+            let is_ready = request.is_some() && count >= 2;
             let button = egui::Button::new("Measure").fill(theme::ACCENT_GROUND).min_size(egui::vec2(84.0, theme::ROW));
             let reason = match count {
                 _ if shown.is_none() => "There is no picture yet",
                 0..2 => "Choose an axis with more than one option",
                 _ => "At most 256 combinations can be measured at once. Choose fewer axes.",
             };
-            let hint = format!("Draw every combination {SAMPLES} times on a second device, and compare each with the oracle");
+            let hint = format!(
+                "Draw every combination {SAMPLES} times on a second device, and compare each with the oracle. While you work in the \
+                 window, the measurement waits."
+            );
             let button = ui.add_enabled(is_ready, button).on_hover_text(hint).on_disabled_hover_text(reason);
-            if let Some(inputs) = shown.filter(|_| button.clicked()) {
-                self.start(state, commands, inputs);
+            if let Some((request, workload)) = request.as_ref().filter(|_| button.clicked()) {
+                self.start(commands, request.clone(), *workload);
             }
             let color = if count > MAX_COMBINATIONS { theme::RED } else { theme::TEXT_WEAK };
             ui.label(RichText::new(format!("{count} combinations")).color(color));
         });
+        if let Some((_, workload)) = request.as_ref().filter(|_| count >= 2) {
+            ui.label(theme::weak(about(workload.pace(&self.rates).left_s())).size(11.0))
+                .on_hover_text("How long it is expected to take, from the size and the time of the picture and from earlier measurements");
+        }
         if let Some(error) = &self.error {
             theme::notice(ui, theme::RED, error);
         }
     }
 
-    fn start(&mut self, state: &State, commands: &Commands, shown: &Inputs) {
+    /// What would be measured, and how much work that is.
+    fn request(&self, state: &State, shown: &Inputs) -> (Request, Workload) {
         let request = Request {
             preset: state.session.visible_preset().evaluated(),
             size: [shown.view.width, shown.view.height],
             axes: self.axes(),
             title: state.session.title().to_owned(),
         };
-        let progress = Arc::new(Progress::default());
-        self.running = Some((request.clone(), progress.clone()));
+        // Without a timer, a frame of a software adapter.
+        let frame_ms = state.screen.report().and_then(|report| report.gpu_ms).unwrap_or(30.0);
+        let workload = Workload::of(&request, frame_ms);
+        (request, workload)
+    }
+
+    fn start(&mut self, commands: &Commands, request: Request, workload: Workload) {
+        let progress = Arc::new(Progress::new(workload.pace(&self.rates)));
+        self.running = Some(Running { request: request.clone(), progress: progress.clone(), workload });
         commands.send(Command::MeasureTrade(Box::new(request), progress));
     }
 
@@ -176,7 +244,7 @@ impl TradePanel {
     fn points_ui(&mut self, ui: &mut Ui, state: &State) -> Option<usize> {
         let Some(Measured { request, points }) = &self.measured else {
             let text = if self.running.is_some() {
-                "Measuring on a second device. The picture can be edited meanwhile."
+                "Measuring on a second device. While you work in the window, the measurement waits."
             } else {
                 "Nothing is measured yet. Choose accuracy axes and press Measure: every combination of their options is drawn, timed, \
                  and compared with the exact oracle."
@@ -238,18 +306,23 @@ impl Panel for TradePanel {
     }
 }
 
-/// How far the trade is, and a button that cancels it.
+/// How far the measurement is, how long it still takes, and a button that cancels it.
 fn progress_ui(ui: &mut Ui, progress: &Progress) {
-    let (done, all, what) = progress.read();
-    let fraction = if all > 0 { done as f32 / all as f32 } else { 0.0 };
+    let (fraction, left_s, what) = progress.read();
     let is_canceled = progress.is_canceled();
-    let text = if is_canceled { "Stopping".into() } else { format!("{:.0} %  {what}", 100.0 * fraction) };
+    let state = match () {
+        () if is_canceled => "Stopping".into(),
+        () if progress.is_paused() => "Waiting while you work".into(),
+        () => format!("{} left", about(left_s)),
+    };
     ui.horizontal(|ui| {
-        let bar = egui::ProgressBar::new(fraction).desired_width(AXES_WIDTH - 76.0).text(RichText::new(text).size(11.0));
+        let text = RichText::new(format!("{:.0} %  {state}", 100.0 * fraction)).size(11.0);
+        let bar = egui::ProgressBar::new(fraction as f32).desired_width(AXES_WIDTH - 76.0).text(text);
         ui.add(bar.fill(theme::ACCENT_GROUND));
-        if ui.add_enabled(!is_canceled, egui::Button::new("Cancel")).clicked() {
+        if ui.add_enabled(!is_canceled, egui::Button::new("Cancel")).on_hover_text("Keep what has been timed").clicked() {
             progress.cancel();
         }
     });
+    ui.add(egui::Label::new(theme::weak(what).size(11.0)).truncate());
     ui.request_repaint_after_secs(0.1);
 }

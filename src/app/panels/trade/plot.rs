@@ -5,9 +5,9 @@ use eframe::egui::{self, Rect, RichText, Sense, Ui, vec2};
 use egui_plot::{GridMark, HLine, Line, LineStyle, Plot, PlotPoint, PlotPoints, Points};
 
 use crate::app::{
-    trade::point::{Metric, Point, front},
     text::short,
     theme,
+    trade::point::{Metric, Point, Standing, standings},
 };
 
 /// How far below the least error zero is drawn, decades.
@@ -23,7 +23,8 @@ struct Span {
 }
 
 impl Span {
-    fn of(positions: &[[f64; 2]]) -> Self {
+    /// The ranges of points that stand at a time and an error; `bars` are the ends of their spreads.
+    fn of(positions: &[[f64; 2]], bars: &[[f64; 2]]) -> Self {
         let ends = |values: &mut dyn Iterator<Item = f64>| {
             values.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], v| [low.min(v), high.max(v)])
         };
@@ -31,7 +32,8 @@ impl Span {
             let air = (0.07 * (high - low)).max((least - (high - low)).max(0.0) / 2.0);
             [low - air, high + air]
         };
-        let x = ends(&mut positions.iter().map(|position| position[0].log10()));
+        let times = positions.iter().map(|position| position[0]).chain(bars.iter().flatten().copied());
+        let x = ends(&mut times.filter(|ms| *ms > 0.0).map(f64::log10));
         let errors = ends(&mut positions.iter().filter(|position| position[1] > 0.0).map(|position| position[1].log10()));
         let [low, high] = if errors[0].is_finite() { errors } else { [0.0, 0.0] };
         let exact = low - DROP;
@@ -75,22 +77,36 @@ pub struct Shown<'a> {
     pub current: &'a dyn Fn(&Point) -> bool,
 }
 
+/// A point of the plot.
+#[derive(Clone, Copy)]
+struct Plotted {
+    /// Its index among all points.
+    i: usize,
+    /// Milliseconds and error.
+    at: [f64; 2],
+    /// Milliseconds at 5 and 95 %.
+    bar: [f64; 2],
+}
+
 /// Draws the plot into the available space. Returns the index of the point that was clicked.
 pub fn plot_ui(ui: &mut Ui, shown: &Shown<'_>) -> Option<usize> {
     let Shown { points, metric, current } = *shown;
-    let plotted: Vec<(usize, [f64; 2])> = points.iter().enumerate().filter_map(|(i, p)| Some((i, p.position(metric)?))).collect();
+    let found = points.iter().enumerate().filter_map(|(i, point)| Some((i, point.position(metric)?)));
+    let plotted: Vec<Plotted> = found.map(|(i, (ms, error))| Plotted { i, at: [ms.p50, error], bar: [ms.p5, ms.p95] }).collect();
     if plotted.is_empty() {
         let text = format!("No combination has both a time and its {}.", metric.name());
         ui.centered_and_justified(|ui| ui.label(theme::weak(text)));
         return None;
     }
-    let span = Span::of(&plotted.iter().map(|(_, position)| *position).collect::<Vec<_>>());
-    let front = front(points, metric);
-    let along: PlotPoints<'_> = front.iter().filter_map(|&i| points[i].position(metric)).map(|position| span.at(position)).collect();
-    let style = |i: usize| match (front.contains(&i), points[i].is_dominated) {
-        (true, _) => (theme::ACCENT, true, 4.5),
-        (false, true) => (theme::TEXT_WEAK, false, 3.5),
-        (false, false) => (theme::TEXT, true, 3.5),
+    let span = Span::of(&plotted.iter().map(|p| p.at).collect::<Vec<_>>(), &plotted.iter().map(|p| p.bar).collect::<Vec<_>>());
+    let standings = standings(points, metric);
+    let mut front: Vec<[f64; 2]> = plotted.iter().filter(|p| standings[p.i] == Some(Standing::Front)).map(|p| p.at).collect();
+    front.sort_by(|a, b| a[0].total_cmp(&b[0]));
+    let along: PlotPoints<'_> = front.into_iter().map(|position| span.at(position)).collect();
+    let style = |i: usize| match standings[i] {
+        Some(Standing::Front) => (theme::ACCENT, true, 4.5),
+        Some(Standing::Tied) => (theme::TEXT, true, 3.5),
+        Some(Standing::Dominated) | None => (theme::TEXT_WEAK, false, 3.5),
     };
     let response = Plot::new("trade plot")
         .allow_drag(false)
@@ -128,9 +144,11 @@ pub fn plot_ui(ui: &mut Ui, shown: &Shown<'_>) -> Option<usize> {
             let line = HLine::new("exact", span.exact).color(theme::GREEN.gamma_multiply(0.7)).width(1.0);
             plot.hline(line.style(LineStyle::dashed_dense()).allow_hover(false));
             plot.line(Line::new("front", along).color(theme::ACCENT.gamma_multiply(0.7)).width(1.5).allow_hover(false));
-            for &(i, position) in &plotted {
+            for &Plotted { i, at, bar } in &plotted {
                 let (color, filled, radius) = style(i);
-                let at = span.at(position);
+                let at = span.at(at);
+                let ends: PlotPoints<'_> = bar.iter().map(|ms| [ms.log10(), at[1]]).collect();
+                plot.line(Line::new("", ends).color(color.gamma_multiply(0.6)).width(1.5).allow_hover(false));
                 plot.points(Points::new("", vec![at]).color(color).filled(filled).radius(radius).allow_hover(false));
                 if current(&points[i]) {
                     plot.points(Points::new("", vec![at]).color(theme::AMBER).filled(false).radius(8.0).allow_hover(false));
@@ -138,8 +156,8 @@ pub fn plot_ui(ui: &mut Ui, shown: &Shown<'_>) -> Option<usize> {
             }
         });
     let mut clicked = None;
-    for &(i, position) in &plotted {
-        let [x, y] = span.at(position);
+    for &Plotted { i, at, .. } in &plotted {
+        let [x, y] = span.at(at);
         let at = response.transform.position_from_point(&PlotPoint::new(x, y));
         let handle = ui.interact(Rect::from_center_size(at, vec2(15.0, 15.0)), egui::Id::unique(("trade point", i)), Sense::click());
         let words = points[i].pins.words();
@@ -150,9 +168,9 @@ pub fn plot_ui(ui: &mut Ui, shown: &Shown<'_>) -> Option<usize> {
         }
         let role = match () {
             () if current(&points[i]) => "used by this preset",
-            () if front.contains(&i) => "on the Pareto front: nothing faster is as exact. Click to use it.",
-            () if points[i].is_dominated => "dominated. Click to use it.",
-            () => "Click to use it.",
+            () if standings[i] == Some(Standing::Front) => "on the Pareto front: whatever is as exact is slower. Click to use it.",
+            () if standings[i] == Some(Standing::Tied) => "as quick as another that is as exact, within the noise. Click to use it.",
+            () => "dominated: another is as exact and quicker. Click to use it.",
         };
         if handle.on_hover_ui(|ui| details_ui(ui, &points[i], role)).clicked() {
             clicked = Some(i);
@@ -164,8 +182,10 @@ pub fn plot_ui(ui: &mut Ui, shown: &Shown<'_>) -> Option<usize> {
 /// Options and numbers of a point.
 fn details_ui(ui: &mut Ui, point: &Point, role: &str) {
     ui.label(RichText::new(point.pins.words().replace(' ', "\n")).monospace().color(theme::TEXT_STRONG));
-    let [p50, p95] = point.ms.map_or(["not timed".to_owned(), String::new()], |ms| ms.map(short));
-    ui.label(format!("{p50} ms median, {p95} ms at 95 %, {} samples", point.samples));
+    ui.label(point.ms.map_or_else(
+        || "not timed".to_owned(),
+        |ms| format!("{} ms median, {} to {} ms from 5 to 95 %, {} samples", short(ms.p50), short(ms.p5), short(ms.p95), point.samples),
+    ));
     for metric in Metric::of(std::slice::from_ref(point)) {
         let error = point.error(metric).map_or_else(|| "not measured".into(), |error| format!("{} {}", short(error), metric.unit()));
         ui.label(format!("{}: {error}", metric.name()));
@@ -184,7 +204,7 @@ pub fn legend_ui(ui: &mut Ui) {
     let marks = [
         (theme::AMBER, false, 6.0, "this preset"),
         (theme::TEXT_WEAK, false, 3.5, "dominated"),
-        (theme::TEXT, true, 3.5, "off the front"),
+        (theme::TEXT, true, 3.5, "within the noise"),
         (theme::ACCENT, true, 4.0, "on the front"),
     ];
     ui.spacing_mut().item_spacing.x = 4.0;
@@ -217,11 +237,12 @@ mod tests {
     #[test]
     fn exact_is_below_the_least_error_and_everything_is_finite() {
         for positions in [vec![[2.0, 0.0]], vec![[2.0, 0.0], [1.0, 50.0], [0.5, 9e5]], vec![[1e-3, 1e-9], [1e4, 1.0]]] {
-            let span = Span::of(&positions);
+            let span = Span::of(&positions, &[[1e-3, 2.0]]);
             let ends = [span.x, span.y].concat();
             assert!(ends.iter().all(|v| v.is_finite()) && span.x[0] < span.x[1] && span.y[0] < span.y[1], "{span:?}");
             for position in positions {
                 let [x, y] = span.at(position);
+                assert!(span.x[0] < -3.0, "the bar is inside");
                 assert!((span.x[0]..=span.x[1]).contains(&x) && (span.y[0]..=span.y[1]).contains(&y), "{position:?} in {span:?}");
                 assert!(position[1] == 0.0 && y == span.exact || y > span.exact, "{position:?} in {span:?}");
             }

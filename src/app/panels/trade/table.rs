@@ -5,31 +5,31 @@ use eframe::egui::{self, RichText, Ui};
 use crate::{
     accuracy::Axis,
     app::{
-        trade::point::{Metric, Point, front},
         text::short,
         theme,
+        trade::point::{Metric, Point, Standing, standings},
     },
 };
 
 /// Returns the index of the point that was clicked.
 pub fn table_ui(ui: &mut Ui, points: &[Point], axes: &[&'static Axis], metric: Metric, current: &dyn Fn(&Point) -> bool) -> Option<usize> {
     let mut clicked = None;
-    let (front, metrics) = (front(points, metric), Metric::of(points));
+    let (standings, metrics) = (standings(points, metric), Metric::of(points));
     let mut order: Vec<usize> = (0..points.len()).collect();
-    let ms = |i: &usize| points[*i].ms.map_or(f64::INFINITY, |[p50, _]| p50);
+    let ms = |i: &usize| points[*i].ms.map_or(f64::INFINITY, |ms| ms.p50);
     order.sort_by(|a, b| ms(a).total_cmp(&ms(b)));
     egui::ScrollArea::both().id_salt("trade table").auto_shrink(false).show(ui, |ui| {
-        egui::Grid::new("trade table").num_columns(4 + metrics.len()).spacing([14.0, 3.0]).show(ui, |ui| {
+        egui::Grid::new("trade table").num_columns(5 + metrics.len()).spacing([14.0, 3.0]).show(ui, |ui| {
             let options = if let [one] = axes { one.name.replace('_', " ") } else { "options".to_owned() };
             let errors = ["wrong ppm", "color", "holes+doubles", "light ppm"];
             for heading in
-                [options.as_str(), "ms", "95 %"].into_iter().chain(metrics.iter().map(|metric| errors[*metric as usize])).chain([""])
+                [options.as_str(), "ms", "5 %", "95 %"].into_iter().chain(metrics.iter().map(|metric| errors[*metric as usize])).chain([""])
             {
                 ui.label(theme::weak(heading).size(11.0));
             }
             ui.end_row();
             for i in order {
-                if row_ui(ui, &points[i], axes, &metrics, (front.contains(&i), current(&points[i]))) {
+                if row_ui(ui, &points[i], axes, &metrics, (standings[i], current(&points[i]))) {
                     clicked = Some(i);
                 }
                 ui.end_row();
@@ -39,7 +39,14 @@ pub fn table_ui(ui: &mut Ui, points: &[Point], axes: &[&'static Axis], metric: M
     clicked
 }
 
-fn row_ui(ui: &mut Ui, point: &Point, axes: &[&'static Axis], metrics: &[Metric], (is_front, is_current): (bool, bool)) -> bool {
+fn row_ui(
+    ui: &mut Ui,
+    point: &Point,
+    axes: &[&'static Axis],
+    metrics: &[Metric],
+    (standing, is_current): (Option<Standing>, bool),
+) -> bool {
+    let is_front = standing == Some(Standing::Front);
     let words: Vec<&str> = axes.iter().filter_map(|axis| Some(axis.words[point.pins.get(axis)?])).collect();
     let ink = match (point.ms.is_some(), is_current, is_front) {
         (false, ..) => theme::TEXT_WEAK,
@@ -55,14 +62,15 @@ fn row_ui(ui: &mut Ui, point: &Point, axes: &[&'static Axis], metrics: &[Metric]
         let text = value.map_or_else(|| "not measured".into(), short);
         ui.label(RichText::new(text).monospace().size(11.5).color(if value.is_some() { theme::TEXT } else { theme::TEXT_WEAK }));
     };
-    [0, 1].into_iter().for_each(|i| cell(ui, point.ms.map(|ms| ms[i])));
+    [0, 1, 2].into_iter().for_each(|i| cell(ui, point.ms.map(|ms| [ms.p50, ms.p5, ms.p95][i])));
     metrics.iter().for_each(|metric| cell(ui, point.error(*metric)));
-    let remark = match (&point.note, is_current, is_front) {
-        (_, true, _) => RichText::new("this preset").color(theme::AMBER),
-        (_, _, true) => RichText::new("on the front").color(theme::ACCENT),
-        _ if point.is_dominated => theme::weak("dominated"),
-        _ if point.ms.is_none() => theme::weak("not timed"),
-        _ => RichText::new(""),
+    let remark = match standing {
+        _ if is_current => RichText::new("this preset").color(theme::AMBER),
+        Some(Standing::Front) => RichText::new("on the front").color(theme::ACCENT),
+        Some(Standing::Tied) => RichText::new("within the noise").color(theme::TEXT),
+        Some(Standing::Dominated) => theme::weak("dominated"),
+        None if point.ms.is_none() => theme::weak("not timed"),
+        None => RichText::new(""),
     };
     let remark = ui.label(remark.size(11.5));
     if let Some(note) = &point.note {
