@@ -1,6 +1,7 @@
 //! Promise: the oracle covers every sample exactly once, shades it as the ray through it says, and its judge catches every mistake
 //! that it is shown. A file for each part; hand-made scenes, views and triangles for all of them are here.
 
+mod canceling;
 mod coverage;
 mod depth;
 mod judge;
