@@ -47,6 +47,11 @@ fn apply(ctx: &egui::Context, state: &mut State, panels: &mut Panels, command: C
             Some(seed) => state.notify(Level::Info, format!("Randomized with seed {seed}")),
             None => state.notify(Level::Info, "No effect is enabled, so there is nothing to randomize"),
         },
+        Command::VaryBy(percent) => state.session.randomizer.vary_percent = percent.clamp(1.0, 100.0),
+        Command::Lock((effect, field), is_locked) => state.session.randomizer.lock(effect, field, is_locked),
+        Command::RecallSeed(seed) => recall_seed(state, seed),
+        Command::SetValues(values) => set_values(state, &values),
+        Command::DrawCells(cells) => state.jobs.draw_cells(state.screen.gpu.clone(), cells),
         Command::PinOptions(pins, axes) => {
             let mut accuracy = state.session.preset().accuracy;
             axes.iter().for_each(|axis| accuracy.pins.set(axis, pins.get(axis)));
@@ -97,6 +102,24 @@ fn report(state: &mut State, change: impl FnOnce(&mut State) -> Result<(), Strin
     if let Err(error) = change(state) {
         state.notify(Level::Error, error);
     }
+}
+
+/// Goes back to the values of a seed.
+fn recall_seed(state: &mut State, seed: u32) {
+    if state.session.recall_seed(seed) {
+        state.notify(Level::Info, format!("Back to seed {seed}"));
+    }
+}
+
+/// Sets values by their paths.
+fn set_values(state: &mut State, values: &[(String, String)]) {
+    for (path, value) in values {
+        if let Err(error) = state.session.set_text(path, value) {
+            return state.notify(Level::Error, error);
+        }
+    }
+    let said: Vec<String> = values.iter().map(|(path, value)| format!("{path} = {value}")).collect();
+    state.notify(Level::Info, said.join(", "));
 }
 
 /// Goes to a state of the history; `what` names the step if there is none.
@@ -174,6 +197,8 @@ fn toggle(state: &mut State, panels: &mut Panels, which: Toggle) {
         Toggle::Log => open.log = !open.log,
         Toggle::CheatSheet => open.cheat_sheet = !open.cheat_sheet,
         Toggle::Extremes => panels.extremes.toggle(),
+        Toggle::Randomize => panels.randomize.toggle(),
+        Toggle::Sweep => panels.sweep.toggle(),
     }
 }
 

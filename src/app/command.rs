@@ -10,6 +10,7 @@ use glam::DVec3;
 
 use super::{
     action::Action,
+    cells::Cells,
     key_id::KeyId,
     log::Level,
     overlay::Overlay,
@@ -57,8 +58,18 @@ pub enum Command {
     Redo,
     Quit,
     Edit(Edit),
-    /// Gives every parameter of the enabled effects a random value of its soft range.
+    /// Gives every parameter of the enabled effects that is not locked a random value.
     Randomize,
+    /// How far random values may go from where they are, in percent of the soft range.
+    VaryBy(f64),
+    /// Keeps a parameter as it is when the effects are randomized, or lets it vary.
+    Lock(Parameter, bool),
+    /// Goes back to the values that a seed gave.
+    RecallSeed(u32),
+    /// Sets values by their paths, as a separate undo step.
+    SetValues(Vec<(String, String)>),
+    /// Draws small pictures in the background.
+    DrawCells(Cells),
     Keyframe(KeyframeEdit),
     /// Removes the keyframe that is selected on the timeline.
     RemoveSelectedKey,
@@ -279,6 +290,8 @@ pub enum Toggle {
     Log,
     CheatSheet,
     Extremes,
+    Randomize,
+    Sweep,
 }
 
 impl From<Action> for Command {
@@ -317,6 +330,8 @@ impl From<Action> for Command {
             Action::Log => Self::Toggle(Toggle::Log),
             Action::CheatSheet => Self::Toggle(Toggle::CheatSheet),
             Action::Extremes => Self::Toggle(Toggle::Extremes),
+            Action::RandomizeWindow => Self::Toggle(Toggle::Randomize),
+            Action::Sweep => Self::Toggle(Toggle::Sweep),
         }
     }
 }
@@ -326,7 +341,11 @@ impl Command {
     pub fn begins_step(&self) -> bool {
         match self {
             Self::Perform(action) => !matches!(action, Action::Undo | Action::Redo),
-            Self::Row(_) | Self::PinOptions(..) | Self::Keyframe(KeyframeEdit::Ease(..) | KeyframeEdit::Remove(_)) => true,
+            Self::Row(_)
+            | Self::RecallSeed(_)
+            | Self::SetValues(_)
+            | Self::PinOptions(..)
+            | Self::Keyframe(KeyframeEdit::Ease(..) | KeyframeEdit::Remove(_)) => true,
             _ => false,
         }
     }

@@ -6,9 +6,7 @@ use super::{
     session::Session,
 };
 use crate::{
-    effects::Effect,
-    math::hash_unit,
-    params::{Value, ValueType},
+    params::Value,
     preset::{Preset, SceneSource},
     preset_file,
     scene::{Bounds, camera::Camera},
@@ -118,18 +116,19 @@ impl Session {
         orbit::framing(camera, &bounds, super::session::aspect(preset.output.size))
     }
 
-    /// Gives every parameter of the enabled effects a random value of its soft range. Returns the seed of the random
+    /// Gives every parameter of the enabled effects that is neither locked nor animated a random value. Returns the seed of the random
     /// numbers; none if no effect is enabled.
     pub fn randomize(&mut self) -> Option<u32> {
-        if self.preset().stack.0.is_empty() {
+        let Preset { stack, animation, .. } = &mut self.preset_file.preset;
+        if stack.0.is_empty() {
             return None;
         }
-        self.seed = self.seed.wrapping_add(1);
-        let seed = self.seed;
-        for enabled in &mut self.preset_mut().stack.0 {
-            randomize_words(enabled.effect, &mut enabled.words, seed);
-        }
-        Some(seed)
+        Some(self.randomizer.randomize(stack, |effect, field| animation.get(effect.name, field.name).is_some()))
+    }
+
+    /// Goes back to the values that a seed gave. Returns false if they are not known any more.
+    pub fn recall_seed(&mut self, seed: u32) -> bool {
+        self.randomizer.recall(&mut self.preset_file.preset.stack, seed)
     }
 
     /// Resets all parameters of an effect, or all settings of a table, by its name.
@@ -161,52 +160,5 @@ impl Session {
             self.playback.show_own();
         }
         outcome
-    }
-}
-
-/// One random number per component, from the seed and the parameter's name, so that the order does not matter.
-fn randomize_words(effect: &Effect, words: &mut [u32], seed: u32) {
-    for field in effect.fields {
-        let salt =
-            effect.name.bytes().chain(field.name.bytes()).fold(seed.wrapping_mul(0x9e37_79b9), |h, b| h.rotate_left(5) ^ u32::from(b));
-        let [from, to] = field.soft;
-        let values: Vec<f64> = (0..field.value_type.components() as u32)
-            .map(|component| {
-                let t = hash_unit(salt.wrapping_add(component.wrapping_mul(0x85eb_ca6b)));
-                match field.value_type {
-                    ValueType::Color if component == 3 => 1.0,
-                    ValueType::U32 | ValueType::I32 | ValueType::Bool | ValueType::Choice(_) => {
-                        (from + t * (to - from + 1.0)).floor().min(to)
-                    }
-                    ValueType::F32 if field.log && from > 0.0 => from * (to / from).powf(t),
-                    _ => from + t * (to - from),
-                }
-            })
-            .collect();
-        // The soft range lies within the hard one, so this is never refused.
-        let _ = field.set(words, &values);
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::effects::EFFECTS;
-
-    #[test]
-    fn randomized_values_stay_in_their_soft_range_and_depend_on_the_seed() {
-        for effect in EFFECTS {
-            let draw = |seed| {
-                let mut words = (effect.defaults)();
-                randomize_words(effect, &mut words, seed);
-                words
-            };
-            assert_eq!(draw(7), draw(7));
-            assert_ne!(draw(7), draw(8), "{}", effect.name);
-            for field in effect.fields {
-                let [from, to] = field.soft;
-                assert!(field.get(&draw(7)).iter().all(|v| (from..=to).contains(v)), "{}.{}", effect.name, field.name);
-            }
-        }
     }
 }

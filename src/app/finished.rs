@@ -3,6 +3,7 @@
 use eframe::egui;
 
 use super::{
+    cells::CellOf,
     command::Commands,
     findings::Findings,
     jobs::Done,
@@ -47,6 +48,8 @@ pub fn finish(ctx: &egui::Context, state: &mut State, panels: &mut Panels, comma
                 state.log.add(Level::Error, error);
             }
         }
+        Done::Cell(CellOf::Sweep { number, index }, picture) => panels.sweep.arrived(ctx, (number, index), picture),
+        Done::Cell(CellOf::Seed(seed), picture) => panels.randomize.arrived(ctx, seed, picture),
         Done::Thumbnail(id, image) => panels.browser.thumbnail_arrived(ctx, id, image),
         Done::Export(path, Ok(())) => state.notify(Level::Info, format!("Saved {}", path.display())),
         Done::Export(_, Err(error)) => state.notify(Level::Error, error),

@@ -9,6 +9,7 @@ use std::{
 use eframe::egui;
 
 use super::{
+    cells::{self, CellOf, CellResult, Cells},
     command::{Origin, Purpose},
     findings::Findings,
     golden_check::{self, GoldenCheck},
@@ -37,6 +38,8 @@ pub enum Done {
     Scene(SceneKey, Result<Arc<Scene>, String>),
     /// The verdict on a picture; none if the judgement was canceled.
     Verdict(Box<Inputs>, Arc<Work>, Result<Option<Box<Findings>>, String>),
+    /// A small picture.
+    Cell(CellOf, CellResult),
     /// Measured combinations of accuracy options.
     Trade(Result<Vec<Point>, String>),
     Thumbnail(String, Option<egui::ColorImage>),
@@ -180,6 +183,29 @@ impl Jobs {
             let image = caught("drawing a thumbnail", || thumbnail(&preset_file).ok_or_else(String::new));
             Done::Thumbnail(preset_file.id, image.ok())
         });
+    }
+
+    /// Draws small pictures on the window's device and hands over one after another.
+    pub fn draw_cells(&self, gpu: Arc<Gpu>, cells: Cells) {
+        let (sender, ctx) = (self.sender.clone(), self.ctx.clone());
+        let work = move || {
+            let take = |of, picture| {
+                // The window may be closed by now; then the picture is dropped.
+                if sender.send(Done::Cell(of, picture)).is_ok() {
+                    ctx.request_repaint();
+                }
+            };
+            let drawn = caught("drawing a small picture", || {
+                cells::draw(&gpu, &cells, take);
+                Ok(())
+            });
+            if let Err(error) = drawn {
+                eprintln!("rasterlab: {error}");
+            }
+        };
+        if let Err(error) = std::thread::Builder::new().name("cells".into()).spawn(work) {
+            eprintln!("rasterlab: no thread could be started for small pictures: {error}");
+        }
     }
 
     /// Draws `inputs` and writes a PNG that contains the preset.

@@ -7,7 +7,7 @@ use std::{
     sync::Arc,
 };
 
-use super::{command::TimeCommand, particle_trail::Trail, playback::Playback, scene_loader::SceneLoader};
+use super::{command::TimeCommand, particle_trail::Trail, playback::Playback, randomize::Randomizer, scene_loader::SceneLoader};
 use crate::{
     effect_files::Catalog,
     effects::{Effect, Stack},
@@ -51,8 +51,7 @@ pub struct Session {
     pub muted: BTreeSet<&'static str>,
     pub playback: Playback,
     pub trail: Trail,
-    /// Seed of the newest random values; 0 before the first.
-    pub seed: u32,
+    pub randomizer: Randomizer,
 }
 
 impl Session {
@@ -64,7 +63,7 @@ impl Session {
             muted: BTreeSet::new(),
             playback: Playback::default(),
             trail: Trail::default(),
-            seed: 0,
+            randomizer: Randomizer::default(),
         }
     }
 

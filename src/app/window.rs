@@ -125,6 +125,8 @@ impl App {
             && !viewport.compare.is_waiting()
             && !trade.is_measuring()
             && !browser.is_busy()
+            && !self.panels.randomize.is_drawing()
+            && !self.panels.sweep.is_drawing()
     }
 
     /// True if there is a picture, even one of an earlier preset.
@@ -159,6 +161,11 @@ impl App {
     /// Position of the comparison's divider, as a fraction of the picture's width; none unless the wipe is open.
     pub fn wipe_split(&self) -> Option<f32> {
         self.panels.viewport.compare.wipe_split()
+    }
+
+    /// Number of pictures of the newest sweep that are drawn.
+    pub fn sweep_pictures(&self) -> usize {
+        self.panels.sweep.pictures()
     }
 
     /// Number of points of the newest measurement of the panel Trade.
@@ -409,6 +416,8 @@ impl eframe::App for App {
         self.panel_ui(ui, |panels| &mut panels.dialogs);
         self.panel_ui(ui, |panels| &mut panels.cheat_sheet);
         self.panel_ui(ui, |panels| &mut panels.extremes);
+        self.panel_ui(ui, |panels| &mut panels.randomize);
+        self.panel_ui(ui, |panels| &mut panels.sweep);
         self.request_thumbnail();
         self.request_precision(&ctx, is_held);
         self.state.observe(is_held);

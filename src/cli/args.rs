@@ -92,6 +92,8 @@ pub enum Command {
     Render(Render),
     /// Draw an animated preset frame by frame; finished frames are not drawn again
     Sequence(Sequence),
+    /// Draw one or two values of a preset through several steps each, as one contact sheet
+    Sweep(Sweep),
     /// Compare each preset on the adapter with the oracle, every buffer
     Verify(Verify),
     /// Compare two pictures or presets with each other
@@ -127,6 +129,7 @@ impl Command {
             Self::Adapters => "adapters",
             Self::Render(_) => "render",
             Self::Sequence(_) => "sequence",
+            Self::Sweep(_) => "sweep",
             Self::Verify(_) => "verify",
             Self::Compare(_) => "compare",
             Self::Explain(_) => "explain",
@@ -245,6 +248,28 @@ pub struct Sequence {
     /// Size in pixels, e.g. 1920x1080
     #[arg(long, value_name = "WxH", value_parser = size)]
     pub size: Option<[u32; 2]>,
+    /// Named tolerance: draft, fast, precise, reference or strict
+    #[arg(long, value_name = "T")]
+    pub tier: Option<String>,
+}
+
+#[derive(Args, Debug)]
+pub struct Sweep {
+    #[arg(value_name = "PRESET")]
+    pub input: String,
+    /// A value and its steps, e.g. facet.amount=0..1:5 (from, to, number of steps) or facet.pattern=uniform,sweep; the first runs along
+    /// the rows, a second from row to row
+    #[arg(long, required = true, value_name = "PATH=STEPS")]
+    pub vary: Vec<String>,
+    /// File to write, - for stdout; may contain {preset} {effect} {n} {n:3} {adapter} {tier}
+    #[arg(short, long, value_name = "FILE", default_value = "{preset}-sweep.png")]
+    pub output: String,
+    /// Size of each picture in pixels, e.g. 320x240
+    #[arg(long, value_name = "WxH", value_parser = size)]
+    pub size: Option<[u32; 2]>,
+    /// Time of the pictures in seconds
+    #[arg(long, value_name = "S", allow_negative_numbers = true)]
+    pub time: Option<f64>,
     /// Named tolerance: draft, fast, precise, reference or strict
     #[arg(long, value_name = "T")]
     pub tier: Option<String>,

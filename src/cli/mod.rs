@@ -9,6 +9,7 @@ mod bench;
 mod bless;
 mod check;
 mod compare;
+mod contact_sheet;
 mod error;
 mod explain;
 mod files;
@@ -27,6 +28,7 @@ mod report;
 mod sequence;
 mod streams;
 mod stress;
+mod sweep;
 pub mod trade;
 mod verify;
 
@@ -83,6 +85,7 @@ fn dispatch(common: &Common, command: &Command, streams: &mut Streams) -> Result
         Command::Parts(args) => parts::run(common, args, streams),
         Command::Bless(args) => bless::run(common, args, streams),
         Command::Bench(args) => bench::run(common, args, streams),
+        Command::Sweep(args) => sweep::run(common, args, streams),
         Command::Stress(args) => stress::run(common, args, streams),
         Command::Fuzz(args) => fuzz::run(common, args, streams),
         Command::Gallery(args) => gallery::run(args, streams),

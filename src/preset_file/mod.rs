@@ -25,6 +25,7 @@ mod scene;
 pub mod schema;
 mod scope;
 mod share;
+pub mod sweep;
 pub mod toml_value;
 mod write;
 

@@ -80,7 +80,7 @@ fn value_text(action: Action, state: &State) -> Option<String> {
         Action::Undo => Some(format!("{} steps", state.history.steps())),
         Action::Save => Some(if state.session.is_modified() { "unsaved".into() } else { "saved".into() }),
         Action::Play => Some(if state.session.playback.playing { "playing".into() } else { "paused".into() }),
-        Action::Randomize => Some(format!("seed {}", state.session.seed)),
+        Action::Randomize => Some(format!("seed {}", state.session.randomizer.seed())),
         Action::Timeline => Some(shown(state.open.timeline)),
         Action::Overlays => Some(shown(state.overlays.is_any())),
         Action::Trade => Some(shown(state.open.trade)),

@@ -9,6 +9,8 @@ pub mod inspector;
 pub mod log;
 pub mod new_effect;
 pub mod preset_browser;
+pub mod randomize;
+pub mod sweep;
 pub mod timeline;
 pub mod topbar;
 pub mod trade;
@@ -16,7 +18,7 @@ pub mod viewport;
 
 use self::{
     cheat_sheet::CheatSheet, dialogs::Dialogs, extremes::Extremes, inspector::Inspector, log::LogPanel, preset_browser::PresetBrowser,
-    timeline::Timeline, topbar::TopBar, trade::TradePanel, viewport::Viewport,
+    randomize::RandomizePanel, sweep::SweepPanel, timeline::Timeline, topbar::TopBar, trade::TradePanel, viewport::Viewport,
 };
 use crate::preset_file::Folders;
 
@@ -32,6 +34,8 @@ pub struct Panels {
     pub dialogs: Dialogs,
     pub cheat_sheet: CheatSheet,
     pub extremes: Extremes,
+    pub randomize: RandomizePanel,
+    pub sweep: SweepPanel,
 }
 
 impl Panels {
@@ -48,6 +52,8 @@ impl Panels {
             dialogs: Dialogs::default(),
             cheat_sheet: CheatSheet::default(),
             extremes: Extremes::default(),
+            randomize: RandomizePanel::default(),
+            sweep: SweepPanel::default(),
         }
     }
 }

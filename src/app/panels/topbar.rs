@@ -36,7 +36,7 @@ const MENUS: [(&str, &[Option<Action>]); 4] = [
             Some(Action::Quit),
         ],
     ),
-    ("Edit", &[Some(Action::Undo), Some(Action::Redo), None, Some(Action::Randomize)]),
+    ("Edit", &[Some(Action::Undo), Some(Action::Redo), None, Some(Action::Randomize), Some(Action::RandomizeWindow), Some(Action::Sweep)]),
     ("Time", &[Some(Action::Play), Some(Action::StepBack), Some(Action::StepForward), Some(Action::Rewind), None, Some(Action::RemoveKey)]),
     (
         "View",

@@ -9,6 +9,7 @@ use std::{
 use rasterlab::{
     effects::{Effect, EnabledEffect},
     oracle::Work,
+    preset::Preset,
 };
 
 use super::*;
@@ -35,7 +36,7 @@ fn ends_when_canceled<T>(what: &str, after: Duration, work: impl FnOnce() -> T) 
 #[test]
 fn a_canceled_picture_ends_at_its_next_row_or_triangle() {
     let scene = scene(&[sphere(64), ground(4.0, -1.2)]);
-    let view = square_perspective(6000);
+    let view = Preset::default().view(&scene, [6000, 6000]);
     let enabled = |name: &str| EnabledEffect::new(Effect::find(name).expect("an effect"));
     for names in [vec!["lambert"], vec!["shadow", "outline"], vec!["xray"]] {
         let stack = Stack(names.iter().map(|name| enabled(name)).collect());
@@ -51,7 +52,7 @@ fn a_canceled_picture_ends_at_its_next_row_or_triangle() {
 #[test]
 fn canceled_references_end() {
     let scene = scene(&[sphere(64)]);
-    let view = square_perspective(4000);
+    let view = Preset::default().view(&scene, [4000, 4000]);
     ends_when_canceled("references at several sizes", Duration::from_millis(200), || {
         oracle::references(&scene, &view, &Stack::default(), &[1.0, 2.0, 4.0]).map(|references| references.smooth.is_some())
     });

@@ -6,6 +6,7 @@ mod films;
 mod limits;
 mod parts;
 mod sequences;
+mod sweeps;
 
 use std::{
     fs,

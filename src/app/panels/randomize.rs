@@ -1,0 +1,189 @@
+//! The window Randomize: how far values vary, which are locked, and the newest seeds as pictures to go back to.
+
+use std::{collections::HashMap, sync::Arc};
+
+use eframe::egui::{self, RichText, Sense, Ui, vec2};
+
+use crate::{
+    app::{
+        action::Action,
+        cells::{self, CellOf, CellResult, Cells},
+        command::{Command, Commands},
+        panel::Panel,
+        randomize::Seeded,
+        screen::Inputs,
+        state::State,
+        theme,
+    },
+    effects::{EnabledEffect, Stack},
+};
+
+/// Width of a thumbnail, points and pixels.
+const THUMBNAIL: u32 = 96;
+
+/// The window Randomize.
+#[derive(Default)]
+pub struct RandomizePanel {
+    is_open: bool,
+    /// Pictures of seeds; none where one could not be drawn.
+    pictures: HashMap<u32, Option<egui::TextureHandle>>,
+    /// The seed whose picture is being drawn.
+    drawing: Option<u32>,
+}
+
+impl RandomizePanel {
+    /// Shows or hides the window.
+    pub fn toggle(&mut self) {
+        self.is_open = !self.is_open;
+    }
+
+    pub fn is_drawing(&self) -> bool {
+        self.drawing.is_some()
+    }
+
+    /// Takes the picture of a seed.
+    pub fn arrived(&mut self, ctx: &egui::Context, seed: u32, picture: CellResult) {
+        if self.drawing == Some(seed) {
+            self.drawing = None;
+        }
+        let texture = picture.ok().map(|image| ctx.load_texture(format!("seed {seed}"), image, egui::TextureOptions::LINEAR));
+        self.pictures.insert(seed, texture);
+    }
+
+    /// Begins to draw the newest seed that has no picture, one at a time, when the picture is at rest.
+    fn request(&mut self, state: &State, commands: &Commands) {
+        let (Some(requested), false) = (state.screen.requested(), self.is_drawing() || state.screen.is_waiting()) else { return };
+        let seeds = &state.session.randomizer;
+        self.pictures.retain(|seed, _| seeds.seeds().any(|seeded| seeded.seed == *seed));
+        let Some(next) = seeds.seeds().find(|seeded| !self.pictures.contains_key(&seeded.seed)) else { return };
+        self.drawing = Some(next.seed);
+        let cells = vec![(CellOf::Seed(next.seed), inputs(state, requested, next))];
+        commands.send(Command::DrawCells(Cells { cells, is_canceled: Arc::default() }));
+    }
+}
+
+/// What the picture of a seed shows: the scene and the camera as they are now, with the values of then.
+fn inputs(state: &State, requested: &Inputs, seeded: &Seeded) -> Inputs {
+    let size = cells::size(THUMBNAIL, [requested.view.width, requested.view.height]);
+    let mut preset = state.session.visible_preset();
+    preset.stack = Stack(seeded.stack.0.iter().filter(|enabled| preset.stack.get(enabled.effect.name).is_some()).cloned().collect());
+    let stack = preset.evaluated_stack();
+    Inputs { view: state.session.view_of(preset, &requested.scene, size), stack, ..requested.clone() }
+}
+
+impl Panel for RandomizePanel {
+    fn ui(&mut self, ui: &mut Ui, state: &State, commands: &Commands) {
+        if !self.is_open {
+            return;
+        }
+        self.request(state, commands);
+        let mut is_open = true;
+        let area = ui.ctx().content_rect();
+        egui::Window::new("Randomize")
+            .open(&mut is_open)
+            .collapsible(false)
+            .resizable(false)
+            .default_pos(area.right_top() + vec2(-800.0, 96.0))
+            .default_width(440.0)
+            .show(ui.ctx(), |ui| {
+                ui.set_width(440.0);
+                controls_ui(ui, state, commands);
+                egui::ScrollArea::vertical().max_height((area.height() - 420.0).max(96.0)).auto_shrink([false, true]).show(ui, |ui| {
+                    state.session.preset().stack.0.iter().for_each(|enabled| locks_ui(ui, state, commands, enabled));
+                });
+                self.strip_ui(ui, state, commands);
+            });
+        self.is_open = is_open;
+    }
+}
+
+fn controls_ui(ui: &mut Ui, state: &State, commands: &Commands) {
+    ui.horizontal(|ui| {
+        let button = egui::Button::new("Randomize").fill(theme::ACCENT_GROUND);
+        let is_possible = !state.session.preset().stack.0.is_empty();
+        let hint = format!("Give every parameter that is not locked a random value ({})", Action::Randomize.shortcut_text());
+        if ui.add_enabled(is_possible, button).on_hover_text(hint).accessible_name("Randomize now").clicked() {
+            commands.perform(Action::Randomize);
+        }
+        ui.label("vary by");
+        let mut percent = state.session.randomizer.vary_percent;
+        let slider = egui::Slider::new(&mut percent, 1.0..=100.0).step_by(1.0).suffix(" %");
+        let hint = "How far a value may go from where it is, in percent of its slider. At 100 % it may go anywhere on it.";
+        if ui.add(slider).on_hover_text(hint).accessible_name("Vary by percent").changed() {
+            commands.send(Command::VaryBy(percent));
+        }
+    });
+    ui.add_space(theme::HALF);
+}
+
+/// A box for each parameter of an effect: with a mark, it varies.
+fn locks_ui(ui: &mut Ui, state: &State, commands: &Commands, enabled: &EnabledEffect) {
+    let (effect, seeds) = (enabled.effect, &state.session.randomizer);
+    let shown: Vec<_> = effect.fields.iter().filter(|field| field.is_shown(effect.fields, &enabled.words)).collect();
+    if shown.is_empty() {
+        return;
+    }
+    let locked = shown.iter().filter(|field| seeds.is_locked(effect, field)).count();
+    let all_locked = locked == shown.len();
+    ui.horizontal_wrapped(|ui| {
+        ui.spacing_mut().item_spacing.x = 10.0;
+        let mut varies = locked < shown.len();
+        let title = RichText::new(effect.name).strong().color(theme::TEXT_STRONG);
+        let all = ui.checkbox(&mut varies, title).on_hover_text("Let all of its parameters vary, or lock them all");
+        if all.accessible_name(format!("Vary {}", effect.name)).clicked() {
+            shown.iter().for_each(|field| commands.send(Command::Lock((effect, field), !all_locked)));
+        }
+        for field in shown {
+            let is_animated = state.session.preset().animation.get(effect.name, field.name).is_some();
+            let mut varies = !seeds.is_locked(effect, field) && !is_animated;
+            let name = RichText::new(field.name.replace('_', " ")).size(12.0);
+            let response = ui.add_enabled(!is_animated, egui::Checkbox::new(&mut varies, name));
+            let response = response.on_hover_text(field.doc).on_disabled_hover_text("Its keyframes decide");
+            if response.accessible_name(format!("Vary {}.{}", effect.name, field.name)).clicked() {
+                commands.send(Command::Lock((effect, field), !varies));
+            }
+        }
+    });
+}
+
+impl RandomizePanel {
+    /// The newest seeds, newest first; a click goes back to one.
+    fn strip_ui(&self, ui: &mut Ui, state: &State, commands: &Commands) {
+        ui.add_space(theme::HALF);
+        if state.session.randomizer.seeds().len() == 0 {
+            ui.label(theme::weak("The last twelve seeds appear here, to go back to."));
+            return;
+        }
+        ui.label(theme::weak("The last seeds; click one to go back to it."));
+        ui.horizontal_wrapped(|ui| {
+            ui.spacing_mut().item_spacing = vec2(8.0, 8.0);
+            for Seeded { seed, stack } in state.session.randomizer.seeds() {
+                let is_current = state.session.preset().stack.0 == stack.0;
+                if seed_ui(ui, *seed, self.pictures.get(seed), is_current).clicked() {
+                    commands.send(Command::RecallSeed(*seed));
+                }
+            }
+        });
+    }
+}
+
+fn seed_ui(ui: &mut Ui, seed: u32, picture: Option<&Option<egui::TextureHandle>>, is_current: bool) -> egui::Response {
+    let width = THUMBNAIL as f32;
+    let (rect, response) = ui.allocate_exact_size(vec2(width, 0.625 * width), Sense::click());
+    match picture {
+        Some(Some(texture)) => egui::Image::from_texture((texture.id(), rect.size())).corner_radius(4.0).paint_at(ui, rect),
+        _ => drop(ui.painter().rect_filled(rect, 4.0, theme::WELL)),
+    }
+    let edge = match () {
+        () if is_current => theme::ACCENT,
+        () if response.hovered() || response.has_focus() => theme::TEXT_STRONG,
+        () => theme::LINE,
+    };
+    ui.painter().rect_stroke(rect, 4.0, (if is_current { 2.0 } else { 1.0 }, edge), egui::StrokeKind::Inside);
+    let note = ui.painter().layout_no_wrap(seed.to_string(), egui::FontId::proportional(11.0), theme::TEXT_STRONG);
+    let plate = egui::Rect::from_min_size(rect.min + vec2(4.0, 4.0), note.size() + vec2(8.0, 2.0));
+    ui.painter().rect_filled(plate, 3.0, egui::Color32::from_black_alpha(150));
+    ui.painter().galley(plate.min + vec2(4.0, 1.0), note, theme::TEXT_STRONG);
+    response.widget_info(|| egui::WidgetInfo::selected(egui::Role::Button, true, is_current, format!("Seed {seed}")));
+    response.on_hover_text(format!("Go back to seed {seed}"))
+}
