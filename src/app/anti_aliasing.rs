@@ -5,12 +5,13 @@
 
 use std::sync::{Arc, Weak};
 
+use super::screen::Inputs;
 use crate::{
-    accuracy::{AccuracyOptions, RenderScale},
+    accuracy::{AccuracyOptions, Axis, AxisOption, RenderScale},
     effects::Stack,
     gpu::Report,
     plan::Caps,
-    preset::AccuracyRequest,
+    preset::{AccuracyRequest, Preset},
     scene::Scene,
 };
 
@@ -37,6 +38,12 @@ pub fn may_be_automatic(caps: &Caps, size: [u32; 2]) -> bool {
     let is_within_limits = width.max(height) <= f64::from(caps.max_texture_side)
         && width * height * PIXEL_BYTES as f64 <= caps.max_storage_binding_bytes.min(caps.max_buffer_bytes) as f64;
     !caps.software && is_within_limits
+}
+
+/// Is this axis the one of anti-aliasing, and is the picture drawn with more samples than the preset says?
+pub fn is_automatic(axis: &Axis, preset: &Preset, drawn: Option<&Inputs>) -> bool {
+    let is_pinned = preset.accuracy.pins.option::<RenderScale>().is_some();
+    axis.index() == RenderScale::AXIS && !is_pinned && drawn.is_some_and(|inputs| inputs.accuracy.scale() != RenderScale::Full)
 }
 
 /// `accuracy` with anti-aliasing for a picture that is drawn once, as large as `size`.

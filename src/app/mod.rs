@@ -12,6 +12,7 @@ mod cells;
 mod command;
 mod device;
 mod edit;
+mod expectation;
 mod fields;
 mod findings;
 mod finished;

@@ -10,6 +10,7 @@ use crate::{
     accuracy::AccuracyOptions,
     effects::Stack,
     gpu::{Explanation, Gpu, RenderError, Renderer, Report},
+    plan::Plan,
     preset::AccuracyRequest,
     scene::{Scene, view::View},
 };
@@ -141,6 +142,11 @@ impl Screen {
     /// The accuracy options of the newest picture's kernel.
     pub fn options(&self) -> Option<AccuracyOptions> {
         self.renderer.key().map(|key| key.options)
+    }
+
+    /// The plan of the newest picture.
+    pub fn plan(&self) -> Option<&Plan> {
+        self.renderer.plan()
     }
 
     /// What the newest picture ran, and why.

@@ -25,7 +25,7 @@ use crate::{
     accuracy::RenderScale,
     effects::{Stack, draw_order::Mode},
     frame::{Counters, CullingStats, OrderStats},
-    plan::{AccuracyRequest, Tuning},
+    plan::{AccuracyRequest, Plan, Tuning},
     scene::{Scene, view::View},
     shader::{key::KernelKey, library::Library, pass::Pass},
 };
@@ -118,6 +118,11 @@ impl Renderer {
     /// Key of the last picture's kernel.
     pub fn key(&self) -> Option<&KernelKey> {
         self.picture.frame().ok().map(|frame| &frame.plan.key)
+    }
+
+    /// Plan of the last picture.
+    pub fn plan(&self) -> Option<&Plan> {
+        self.picture.frame().ok().map(|frame| &*frame.plan)
     }
 
     /// Which meshlets were culled in the last finished picture; none where it does not cull.

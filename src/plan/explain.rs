@@ -1,9 +1,10 @@
 //! Explanation: why each part of a plan is as it is, and what its frame omits. Built only when asked for.
 
-use super::{Note, Plan, costs, options::Cause, predict::predict};
+use super::{AccuracyRequest, Note, Plan, PlanError, StackTraits, Tuning, costs, options::Cause, predict::predict};
 use crate::{
     accuracy::{AXES, Axis, AxisOption, Culling, Visibility},
     effects::{
+        Stack,
         dots::LineSource,
         hooks::{Layers, Shape},
         xray,
@@ -33,6 +34,24 @@ impl Plan {
             self.layers_reason(),
         ];
         options.chain(parts.into_iter().flatten()).collect()
+    }
+
+    /// Which option an axis is on, and why; none where the picture has nothing that it decides about.
+    pub fn reason(&self, axis: &Axis) -> Option<String> {
+        self.option_reason(axis.index(), axis).map(|note| note.why)
+    }
+
+    /// The plan of the same picture under another request.
+    ///
+    /// # Errors
+    /// As [`plan`](super::plan).
+    pub fn under(&self, stack: &Stack, tuning: &Tuning, request: &AccuracyRequest) -> Result<Self, PlanError> {
+        super::plan(&self.needs, &StackTraits::of(stack, request)?, &self.caps, tuning, request)
+    }
+
+    /// Time of a frame as a fraction of the time with the default options, as far as options were measured.
+    pub fn expected_time(&self) -> f64 {
+        costs::expected(&self.key.options, &self.needs, &self.caps)
     }
 
     /// The parts of the frame that the key omits, each with the reason.

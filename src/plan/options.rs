@@ -10,8 +10,9 @@ use super::{
 };
 use crate::{
     accuracy::{
-        AXES, AccuracyOptions, Axis, AxisOption, Coverage, Culling, CurlNoise, DepthFormat, DotCulling, ParticleStorage, PositionFormat,
-        ShaderChecks, ShadowMapSize, ShadowTaps, Skinning, VertexTransform, Visibility, XraySums,
+        AXES, AccuracyOptions, Axis, AxisOption, Clipping, Coverage, Culling, CurlNoise, DepthFormat, DotCulling, Parameters,
+        ParticleStorage, Perspective, PositionFormat, SampleCounter, ShaderChecks, ShadowMapSize, ShadowTaps, Skinning, VertexTransform,
+        Visibility, XraySums,
     },
     effects::{
         Effect,
@@ -124,6 +125,13 @@ fn is_unused(index: usize, inputs: &Inputs) -> bool {
     match index {
         DotCulling::AXIS => inputs.stack.dots.is_none(),
         ShadowMapSize::AXIS | ShadowTaps::AXIS => !inputs.stack.reads_light(),
+        Skinning::AXIS => inputs.needs.skinning.is_none(),
+        CurlNoise::AXIS | ParticleStorage::AXIS => !inputs.stack.has_particles,
+        SampleCounter::AXIS => inputs.stack.draw_order.is_none(),
+        XraySums::AXIS => inputs.stack.xray.is_none(),
+        Clipping::AXIS => !inputs.needs.clipping,
+        Perspective::AXIS => !inputs.needs.perspective,
+        Parameters::AXIS => inputs.stack.effects.iter().all(|effect| effect.fields.is_empty()),
         _ => false,
     }
 }

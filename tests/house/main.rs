@@ -12,6 +12,7 @@ mod loader;
 mod meshlets;
 mod mutants;
 mod mutation_campaign;
+mod plans;
 mod presets;
 mod registry;
 mod scenes;

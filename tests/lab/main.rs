@@ -4,6 +4,7 @@
 #[path = "../common/mod.rs"]
 mod common;
 
+mod accuracy;
 mod anti_aliasing;
 mod brought_code;
 mod compare;
@@ -16,6 +17,7 @@ mod keys;
 mod live;
 mod numerics;
 mod scopes;
+mod sweep;
 mod timeline;
 mod trade;
 mod verify;

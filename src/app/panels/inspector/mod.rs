@@ -1,5 +1,6 @@
 //! The inspector: every value of the preset in folders, from the registry that preset files and the command line use too.
 
+mod accuracy;
 mod clips;
 mod effect_menu;
 mod effects;
@@ -14,7 +15,6 @@ use eframe::egui::{self, Ui};
 
 use self::rows::{folder, setting_ui, settings_folder};
 use crate::{
-    accuracy::AXES,
     app::{
         action::Action,
         command::{Commands, Edit},
@@ -22,7 +22,7 @@ use crate::{
         state::State,
         theme,
     },
-    preset::{Tier, settings::CAMERA},
+    preset::settings::CAMERA,
 };
 
 /// See the module's first line.
@@ -38,7 +38,7 @@ impl Panel for Inspector {
             camera_ui(ui, state, commands);
             let clock = ["clock.time_s", "clock.range_s", "clock.loop", "clock.speed"];
             settings_folder(ui, state, commands, ("Clock", false), &clock);
-            accuracy_ui(ui, state, commands);
+            accuracy::accuracy_ui(ui, state, commands);
             folder(ui, "Overlays", false, |ui| overlays::overlays_ui(ui, state, commands));
             folder(ui, "Timing", true, |ui| report::timing_ui(ui, state));
             folder(ui, "Kernel", false, |ui| report::kernel_ui(ui, state));
@@ -73,15 +73,5 @@ fn camera_ui(ui: &mut Ui, state: &State, commands: &Commands) {
                 commands.edit(Edit::Camera(None));
             }
         });
-    });
-}
-
-fn accuracy_ui(ui: &mut Ui, state: &State, commands: &Commands) {
-    folder(ui, "Accuracy", true, |ui| {
-        setting_ui(ui, state, commands, "accuracy.tier");
-        AXES.iter().for_each(|axis| setting_ui(ui, state, commands, &format!("accuracy.{}", axis.name)));
-        if state.session.preset().accuracy.tier == Tier::Reference {
-            ui.label(theme::weak("Reference uses the most exact option on every axis."));
-        }
     });
 }

@@ -1,0 +1,159 @@
+//! The folder of accuracy: one slider from draft to strict, what each position is expected to cost and to err by beside what was
+//! measured, and below it, folded, the axes that the picture can use, each with the option that the planner took and why.
+
+use eframe::egui::{self, Align2, RichText, Sense, Ui, pos2, vec2};
+
+use super::rows::{folder, setting_ui};
+use crate::{
+    accuracy::{AXES, Axis},
+    app::{
+        anti_aliasing,
+        command::{Commands, Edit},
+        expectation::{Expectation, expectation},
+        state::State,
+        text::short,
+        theme,
+    },
+    params::Value,
+    preset::{AccuracyRequest, Tier, settings::Setting},
+};
+
+const TIER: &str = "accuracy.tier";
+
+pub fn accuracy_ui(ui: &mut Ui, state: &State, commands: &Commands) {
+    folder(ui, "Accuracy", true, |ui| {
+        let accuracy = state.session.preset().accuracy;
+        tier_ui(ui, state, commands, accuracy.tier);
+        numbers_ui(ui, state, &accuracy);
+        for path in ["accuracy.max_wrong_ppm", "accuracy.max_channel"] {
+            setting_ui(ui, state, commands, path); // Only where the preset has a tolerance of its own.
+        }
+        axes_ui(ui, state, commands);
+    });
+}
+
+/// What a tier allows, in a sentence.
+const fn about(tier: Tier) -> &'static str {
+    match tier {
+        Tier::Draft => "Up to 2 % of the pixels may show a wrong triangle.",
+        Tier::Fast => "Up to 0.1 % of the pixels may show a wrong triangle.",
+        Tier::Precise => "Exact, given the snapped corners.",
+        Tier::Reference => "Exact, with depths compared as integers too.",
+        Tier::Strict => "The same bits on every adapter and on the CPU.",
+    }
+}
+
+/// The slider: five marks with their names.
+fn tier_ui(ui: &mut Ui, state: &State, commands: &Commands, tier: Tier) {
+    let Some(setting) = Setting::find(TIER) else { return };
+    let mut index = tier as usize;
+    ui.horizontal(|ui| {
+        ui.add_space(theme::GAP);
+        let width = ui.available_width() - theme::GAP;
+        ui.spacing_mut().slider_width = width;
+        let slider = egui::Slider::new(&mut index, 0..=Tier::ALL.len() - 1).show_value(false);
+        let slider = ui.add(slider).accessible_name(TIER).on_hover_ui(|ui| {
+            for tier in Tier::ALL {
+                ui.label(format!("{}: {}", tier.name(), about(tier)));
+                if let Some(expected) = expectation(state, tier) {
+                    ui.label(theme::weak(expected_text(&expected)));
+                }
+            }
+        });
+        if slider.changed() && index != tier as usize {
+            commands.edit(Edit::Setting(setting, Value::Choice(index)));
+        }
+    });
+    names_ui(ui, setting, commands, tier);
+    ui.horizontal(|ui| {
+        ui.add_space(theme::GAP);
+        ui.label(theme::weak(about(tier)).size(11.5));
+    });
+}
+
+/// The names of the tiers under their marks; a click on one takes it.
+fn names_ui(ui: &mut Ui, setting: &'static Setting, commands: &Commands, chosen: Tier) {
+    let (rect, _) = ui.allocate_exact_size(vec2(ui.available_width(), 16.0), Sense::hover());
+    // The handle of a slider stays half its height inside the rail.
+    let [left, right] = [rect.left() + theme::GAP + 9.0, rect.right() - theme::GAP - 9.0];
+    let last = (Tier::ALL.len() - 1) as f32;
+    for (index, tier) in Tier::ALL.into_iter().enumerate() {
+        let t = index as f32 / last;
+        let (align, x) = match index {
+            0 => (Align2::LEFT_CENTER, left - 9.0),
+            _ if t == 1.0 => (Align2::RIGHT_CENTER, right + 9.0),
+            _ => (Align2::CENTER_CENTER, left + t * (right - left)),
+        };
+        let color = if tier == chosen { theme::TEXT_STRONG } else { theme::TEXT_WEAK };
+        let at = ui.painter().text(pos2(x, rect.center().y), align, tier.name(), egui::FontId::proportional(11.5), color);
+        let response = ui.interact(at.expand(2.0), egui::Id::unique(("tier", index)), Sense::click());
+        response.widget_info(|| egui::WidgetInfo::selected(egui::Role::Button, true, tier == chosen, format!("Tier {}", tier.name())));
+        if response.on_hover_text(about(tier)).clicked() && tier != chosen {
+            commands.edit(Edit::Setting(setting, Value::Choice(index)));
+        }
+    }
+}
+
+/// `about 12 ms, 0 wrong ppm, color Δ 0`.
+fn expected_text(expected: &Expectation) -> String {
+    let ms = expected.ms.map_or_else(String::new, |ms| format!("about {} ms, ", short(ms)));
+    let Some(error) = expected.error else { return "this picture cannot be drawn so".into() };
+    let wrong = if error.wrong_ppm.is_finite() { short(error.wrong_ppm) } else { "any number of".into() };
+    let channel = if error.channel.is_finite() { short(error.channel.min(255.0)) } else { "255".into() };
+    format!("{ms}{wrong} wrong ppm, color Δ {channel}")
+}
+
+/// Milliseconds and error: expected and measured.
+fn numbers_ui(ui: &mut Ui, state: &State, accuracy: &AccuracyRequest) {
+    let expected = expectation(state, accuracy.tier);
+    let line = |ui: &mut Ui, name: &str, text: String| {
+        ui.horizontal(|ui| {
+            ui.add_space(theme::GAP);
+            ui.add_sized([64.0, 16.0], egui::Label::new(theme::weak(name).size(11.5)));
+            ui.add(egui::Label::new(RichText::new(text).monospace().size(11.5).color(theme::TEXT_STRONG)).truncate());
+        });
+    };
+    line(ui, "expected", expected.as_ref().map_or_else(|| "after the first picture".into(), expected_text));
+    let ms = state.screen.report().and_then(|report| report.gpu_ms).map_or_else(|| "no time".into(), |ms| format!("{} ms", short(ms)));
+    let error = state.accuracy().map_or_else(
+        || "error not measured (V)".to_owned(),
+        |report| {
+            let ppm = report.wrong_triangles as f64 * 1e6 / (report.pixels as f64).max(1.0);
+            format!("{} wrong ppm, color Δ {}", short(ppm), report.max_color_delta)
+        },
+    );
+    line(ui, "measured", format!("{ms}, {error}"));
+}
+
+/// The axes that decide about something in the picture, and those that the preset pins.
+fn axes_ui(ui: &mut Ui, state: &State, commands: &Commands) {
+    let pins = &state.session.preset().accuracy.pins;
+    let reason = |axis: &Axis| state.screen.plan().and_then(|plan| plan.reason(axis));
+    let shown: Vec<(&Axis, Option<String>)> = AXES.iter().map(|axis| (axis, reason(axis))).collect();
+    let shown: Vec<_> = shown.into_iter().filter(|(axis, reason)| reason.is_some() || pins.get(axis).is_some()).collect();
+    let pinned = AXES.iter().filter(|axis| pins.get(axis).is_some()).count();
+    let title = match pinned {
+        0 => format!("Axes ({})", shown.len()),
+        _ => format!("Axes ({}, {pinned} pinned)", shown.len()),
+    };
+    ui.add_space(theme::HALF);
+    egui::CollapsingHeader::new(theme::weak(title)).id_salt("accuracy axes").show_unindented(ui, |ui| {
+        for (axis, reason) in shown {
+            setting_ui(ui, state, commands, &format!("accuracy.{}", axis.name));
+            let why = reason.unwrap_or_else(|| "pinned, and this picture has nothing that it decides about".into());
+            ui.horizontal(|ui| {
+                ui.add_space(2.0 * theme::GAP);
+                let text = if anti_aliasing::is_automatic(axis, state.session.preset(), state.screen.requested()) {
+                    "2×2 anti-aliasing, a viewing aid that is not saved".to_owned()
+                } else {
+                    why
+                };
+                ui.add(egui::Label::new(theme::weak(text).size(11.0)).wrap());
+            });
+        }
+        let others = AXES.len() - AXES.iter().filter(|axis| reason(axis).is_some() || pins.get(axis).is_some()).count();
+        if others > 0 {
+            ui.label(theme::weak(format!("{others} more axes decide about nothing in this picture.")).size(11.0));
+        }
+    });
+}
