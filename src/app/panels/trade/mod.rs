@@ -212,7 +212,7 @@ impl TradePanel {
             ui.label(RichText::new(format!("{count} combinations")).color(color));
         });
         if let Some((_, workload)) = request.as_ref().filter(|_| count >= 2) {
-            ui.label(theme::weak(about(workload.pace(&self.rates).left_s())).size(11.0))
+            ui.label(theme::weak(format!("takes {}", about(workload.pace(&self.rates).left_s()))).size(11.0))
                 .on_hover_text("How long it is expected to take, from the size and the time of the picture and from earlier measurements");
         }
         if let Some(error) = &self.error {
