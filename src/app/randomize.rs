@@ -157,8 +157,10 @@ mod tests {
             let first = drawn(&stack, &mut a);
             assert_eq!(first, drawn(&stack, &mut b), "{name}");
             let second = drawn(&first, &mut a);
-            let is_plain = stack.0[0].effect.fields.is_empty();
-            assert!(is_plain || first != second, "{name}");
+            // One flag alone may well be the same twice.
+            let mut further = Randomizer::default();
+            let is_varied = (0..24).map(|_| drawn(&stack, &mut further)).any(|other| other != first);
+            assert!(is_varied || stack.0[0].effect.fields.is_empty(), "{name}");
             // At 100 % it does not matter where a value was.
             assert_eq!(second, drawn(&stack, &mut b), "{name}");
             for enabled in &second.0 {

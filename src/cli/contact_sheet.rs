@@ -33,13 +33,18 @@ pub struct ContactSheet {
     color: Vec<[u8; 4]>,
 }
 
+/// Width and height of a sheet for `count` pictures of `cell` pixels, before anything is allocated.
+pub fn size_of(columns: usize, count: usize, cell: [u32; 2]) -> [u64; 2] {
+    let (gap, line, columns) = (GAP as u64, LINE as u64, columns.max(1) as u64);
+    let [width, height] = cell.map(u64::from);
+    [gap + columns * (width + gap), line + (count as u64).div_ceil(columns) * (height + line + gap) + gap]
+}
+
 impl ContactSheet {
     /// An empty sheet for `count` pictures of `cell` pixels.
     pub fn new(title: &str, columns: usize, count: usize, cell: [u32; 2]) -> Self {
-        let cell = cell.map(|side| side as usize);
-        let columns = columns.max(1);
-        let width = GAP + columns * (cell[0] + GAP);
-        let height = LINE + count.div_ceil(columns) * (cell[1] + LINE + GAP) + GAP;
+        let [width, height] = size_of(columns, count, cell).map(|side| side as usize);
+        let (columns, cell) = (columns.max(1), cell.map(|side| side as usize));
         let mut sheet = Self { columns, cell, size: [width, height], color: vec![GROUND; width * height] };
         sheet.write(title, [GAP, 3], width - 2 * GAP);
         sheet
@@ -147,6 +152,13 @@ mod tests {
             sheet.color
         };
         assert!(written("\u{1F600}") == written("?") && written("a") != written("?"));
+    }
+
+    #[test]
+    fn the_size_of_a_sheet_is_known_before_it_is_made() {
+        assert_eq!(ContactSheet::new("", 3, 5, [40, 30]).size().map(u64::from), size_of(3, 5, [40, 30]));
+        let largest = size_of(32, 1024, [16_384; 2]);
+        assert!(largest.iter().all(|side| *side > 500_000), "{largest:?}");
     }
 
     #[test]

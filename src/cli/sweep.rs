@@ -7,7 +7,7 @@ use serde_json::json;
 use super::{
     args::{Common, Sweep},
     backend::{Backend, scene_of},
-    contact_sheet::{ContactSheet, Picture},
+    contact_sheet::{ContactSheet, Picture, size_of},
     error::{CliError, Exit},
     files,
     open::open,
@@ -24,7 +24,10 @@ use crate::{
 };
 
 /// Largest side of a sheet, pixels: what the decoders of pictures and most programs take.
-const MAX_SIDE: u32 = 32_768;
+const MAX_SIDE: u64 = 32_768;
+
+/// Most pixels of a sheet: 512 MiB of them.
+const MAX_PIXELS: u64 = 1 << 27;
 
 pub fn run(common: &Common, args: &Sweep, streams: &mut Streams) -> Result<Exit, CliError> {
     let to_stdout = args.output == "-";
@@ -39,13 +42,14 @@ pub fn run(common: &Common, args: &Sweep, streams: &mut Streams) -> Result<Exit,
     let sheet = Sheet::new(&base, &variations).map_err(|error| CliError::usage(error.replacen("--set", "--vary", 1)))?;
     let title = format!("{}: {}", base.id, variations.iter().map(|variation| variation.path.as_str()).collect::<Vec<_>>().join(", "));
     let cell = base.preset.output.size;
-    let mut drawn = ContactSheet::new(&title, sheet.columns, sheet.cells.len(), cell);
-    if drawn.size().iter().any(|side| *side > MAX_SIDE) {
-        let [width, height] = drawn.size();
+    let [width, height] = size_of(sheet.columns, sheet.cells.len(), cell);
+    if width.max(height) > MAX_SIDE || width * height > MAX_PIXELS {
         return Err(CliError::usage(format!(
-            "the sheet would have {width}x{height} pixels, at most {MAX_SIDE} a side; take a smaller --size or fewer steps"
+            "the sheet would have {width}x{height} pixels, at most {MAX_SIDE} a side and {MAX_PIXELS} together; take a smaller --size or fewer \
+             steps"
         )));
     }
+    let mut drawn = ContactSheet::new(&title, sheet.columns, sheet.cells.len(), cell);
     let mut backend = Backend::open(common, streams)?;
     let names = names(&base, &backend);
     if !to_stdout {
