@@ -123,3 +123,26 @@ fn a_measurement_waits_while_the_person_works_in_the_window() {
     lab.run_steps(2);
     settle(&mut lab);
 }
+
+#[test]
+fn a_picture_that_plays_is_paused_when_a_measurement_begins() {
+    let Some(mut lab) = lab("facet-motion") else { return };
+    lab.key_press(Key::Space);
+    lab.run_steps(6);
+    let playing_s = lab.state().shown_time_s();
+    measure_depth_of_playing(&mut lab);
+    let paused_s = lab.state().shown_time_s();
+    lab.run_steps(6);
+    assert!(paused_s >= playing_s && lab.state().shown_time_s() == paused_s, "{playing_s} {paused_s}");
+    lab.get_by_role_and_label(Role::Button, "Cancel").click();
+    lab.run_steps(2);
+    settle(&mut lab);
+}
+
+/// Opens the panel and begins to measure while the picture plays, so that the window never rests before.
+fn measure_depth_of_playing(lab: &mut Lab) {
+    lab.key_press(Key::M);
+    lab.run_steps(4);
+    lab.get_by_role_and_label(Role::Button, "Measure").click();
+    lab.run_steps(4);
+}

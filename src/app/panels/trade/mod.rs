@@ -12,7 +12,7 @@ use crate::{
     accuracy::{AXES, Axis},
     app::{
         action::Action,
-        command::{Command, Commands},
+        command::{Command, Commands, TimeCommand},
         icons::{Icon, icon_button},
         log::Level,
         panel::Panel,
@@ -237,6 +237,8 @@ impl TradePanel {
     fn start(&mut self, commands: &Commands, request: Request, workload: Workload) {
         let progress = Arc::new(Progress::new(workload.pace(&self.rates)));
         self.running = Some(Running { request: request.clone(), progress: progress.clone(), workload });
+        // A picture that plays keeps the device busy, so the measurement would wait for it.
+        commands.send(Command::Time(TimeCommand::Pause));
         commands.send(Command::MeasureTrade(Box::new(request), progress));
     }
 
