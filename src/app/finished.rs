@@ -38,6 +38,7 @@ pub fn finish(ctx: &egui::Context, state: &mut State, panels: &mut Panels, comma
                 state.notify(Level::Error, error);
             }
         }
+        Done::SceneBox(source, bounds) => open::bounds_arrived(state, panels, source, bounds),
         Done::Verdict(inputs, findings) => verdict(state, panels, *inputs, findings),
         Done::Sweep(points) => {
             if let Some(error) = panels.sweep.arrived(points) {
@@ -45,6 +46,7 @@ pub fn finish(ctx: &egui::Context, state: &mut State, panels: &mut Panels, comma
             }
         }
         Done::Thumbnail(id, image) => panels.browser.thumbnail_arrived(ctx, id, image),
+        Done::ThumbnailOn(key, id, image) => panels.browser.on_model_arrived(ctx, key, id, image),
         Done::Export(path, Ok(())) => state.notify(Level::Info, format!("Saved {}", path.display())),
         Done::Export(_, Err(error)) => state.notify(Level::Error, error),
         Done::Compiled(reload, outcome) => compiled(state, panels, reload, outcome),

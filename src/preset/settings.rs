@@ -6,7 +6,9 @@ use std::path::PathBuf;
 
 pub use super::setting::{Presence, Section, Setting};
 use super::{
-    Preset, SceneSource, polyline,
+    LengthUnit, Preset, SceneSource,
+    fit::UNIT,
+    polyline,
     rules::{encloses_scene, is_file, is_polyline, rises},
     setting::Storage,
 };
@@ -139,6 +141,12 @@ pub static TOP: Section = Section {
         Setting::new("name", LINE, "Shown in lists and titles", field!(name)),
         Setting::new("about", PARAGRAPH, "One sentence about the preset", field!(about)),
         Setting::new("tags", ValueType::TextList { max_entries: 32, max_chars: 64 }, "Words to find it by", field!(tags)),
+        Setting::new(
+            "unit",
+            ValueType::Choice(LengthUnit::WORDS),
+            "Unit of lengths and points of effects and of the polyline: meters, or scene, the radius of the scene's box from its center",
+            UNIT,
+        ),
     ],
     presence: None,
 };

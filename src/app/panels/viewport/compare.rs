@@ -148,7 +148,7 @@ impl Compare {
             return Inputs { view: session.view_at(&live.scene, full), accuracy, ..live.clone() };
         };
         let Preset { stack, animation, accuracy, .. } = (**kept).clone();
-        let preset = Preset { stack, animation, accuracy, ..session.shown_preset() };
+        let preset = Preset { stack, animation, accuracy, ..session.metric_preset() };
         let stack = preset.evaluated_stack();
         Inputs { view: session.view_of(preset, &live.scene, full), stack, accuracy, scene: live.scene.clone() }
     }
