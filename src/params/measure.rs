@@ -1,6 +1,6 @@
 //! What a parameter measures in space, from its unit: how its value changes when the scene is larger or lies elsewhere.
 
-use super::{Param, ValueType};
+use super::value::ValueType;
 
 /// What a value measures in space.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -17,17 +17,19 @@ pub enum Measure {
     Height,
 }
 
-impl Param {
-    /// What the value measures. Directions are points without a unit, and extents are never negative.
-    pub fn measure(&self) -> Measure {
-        let is_continuous = matches!(self.value_type, ValueType::F32 | ValueType::F64);
-        match (self.value_type, self.unit) {
-            (ValueType::Point | ValueType::Position, "m") if self.hard[0] < 0.0 => Measure::Point,
-            (ValueType::Point | ValueType::Position, "m") => Measure::Length,
-            (_, "m") if self.height => Measure::Height,
-            (_, "m" | "cm" | "mm" | "m/s" | "m/s²") if is_continuous => Measure::Length,
-            (_, "per m") if is_continuous => Measure::PerLength,
-            _ => Measure::None,
+impl Measure {
+    /// What a parameter of this type and unit measures. Directions are points without a unit, and extents are points whose range,
+    /// which begins at `low`, has no negative numbers.
+    pub(super) fn of(value_type: ValueType, unit: &str, low: f64, is_height: bool) -> Self {
+        let is_point = matches!(value_type, ValueType::Point | ValueType::Position);
+        let is_number = matches!(value_type, ValueType::F32 | ValueType::F64);
+        match unit {
+            "m" if is_point && low < 0.0 => Self::Point,
+            "m" if is_number && is_height => Self::Height,
+            "m" if is_point => Self::Length,
+            "m" | "cm" | "mm" | "m/s" | "m/s²" if is_number => Self::Length,
+            "per m" if is_number => Self::PerLength,
+            _ => Self::None,
         }
     }
 }

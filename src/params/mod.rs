@@ -85,6 +85,11 @@ impl Param {
         self.value_type.check(value, self.hard)
     }
 
+    /// What the value measures in space.
+    pub fn measure(&self) -> Measure {
+        Measure::of(self.value_type, self.unit, self.hard[0], self.height)
+    }
+
     /// What is allowed, for listings: `0..=1`, `smooth | flat`, `4 numbers, each 0..=1`.
     pub fn allowed(&self) -> String {
         let [low, high] = self.hard.map(format_number);

@@ -5,6 +5,7 @@
 
 pub mod animation;
 mod fit;
+mod fitted;
 mod landing;
 mod missing_parts;
 mod particle_timeline;

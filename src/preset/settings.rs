@@ -7,7 +7,7 @@ use std::path::PathBuf;
 pub use super::setting::{Presence, Section, Setting};
 use super::{
     LengthUnit, Preset, SceneSource,
-    fit::UNIT,
+    fitted::UNIT,
     polyline,
     rules::{encloses_scene, is_file, is_polyline, rises},
     setting::Storage,
@@ -141,12 +141,6 @@ pub static TOP: Section = Section {
         Setting::new("name", LINE, "Shown in lists and titles", field!(name)),
         Setting::new("about", PARAGRAPH, "One sentence about the preset", field!(about)),
         Setting::new("tags", ValueType::TextList { max_entries: 32, max_chars: 64 }, "Words to find it by", field!(tags)),
-        Setting::new(
-            "unit",
-            ValueType::Choice(LengthUnit::WORDS),
-            "Unit of lengths and points of effects and of the polyline: meters, or scene, the radius of the scene's box from its center",
-            UNIT,
-        ),
     ],
     presence: None,
 };
@@ -190,6 +184,12 @@ pub static SCENE: Section = Section {
             Setting::new("clip_blend", ValueType::F64, "Weight of the second clip: 0 none of it, 1 it alone", field!(playback.blend))
                 .range(0.0, 1.0)
                 .slider(0.0, 1.0),
+            Setting::new(
+                "unit",
+                ValueType::Choice(LengthUnit::WORDS),
+                "Unit of lengths and points of effects and of the polyline: meters, or scene, the radius of the scene's box from its center",
+                UNIT,
+            ),
             Setting::new(
                 "polyline",
                 ValueType::Text { max_chars: 200_000 },

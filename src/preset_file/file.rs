@@ -7,7 +7,7 @@ use toml_edit::{DocumentMut, Item, Table};
 use super::{
     atomic::{Existing, write_atomically},
     error::{Position, PresetError},
-    landing::Look,
+    look::Look,
     write,
 };
 use crate::{

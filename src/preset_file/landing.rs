@@ -1,20 +1,15 @@
 //! Landing: a preset whose look is put on the scene of another becomes a new preset, without a file.
 
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
-use super::file::{PresetFile, model_path, stem};
+use super::{
+    file::{PresetFile, model_path, stem},
+    look::Look,
+};
 use crate::preset::{Fit, LengthUnit, SceneSource};
 
 /// Longest id of a preset that has landed, and longest name, characters.
 const MAX_CHARS: usize = 100;
-
-/// The preset that a look comes from.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Look {
-    pub id: String,
-    pub path: Option<PathBuf>,
-    pub title: String,
-}
 
 impl PresetFile {
     /// Is the scene the person's own, so that presets land on it: a model, or a built-in scene that was chosen?

@@ -36,7 +36,7 @@ fn lengths_are_fitted_to_the_model() {
     let folder = folder();
     fs::write(
         folder.path().join("look.toml"),
-        "schema = 2\n[scene]\nbuiltin = \"sphere?triangles=80\"\n[effects.inflate]\namount_m = 0.5\n[animation.inflate]\n\
+        "schema = 2\n[scene]\nbuiltin = \"sphere?triangles=100\"\n[effects.inflate]\namount_m = 0.5\n[animation.inflate]\n\
          amount_m = [{ time_s = 0, value = 0.5 }, { time_s = 1, value = 1.0 }]\n",
     )
     .unwrap();
@@ -46,7 +46,7 @@ fn lengths_are_fitted_to_the_model() {
         assert_eq!(run.code, 0, "{}", run.err);
         rasterlab::preset_file::preset_from_png(&run.bytes, "out.png").expect("a preset inside").preset
     };
-    let sphere = rasterlab::scene::builtin::build("sphere?triangles=80").unwrap().bounds().radius();
+    let sphere = rasterlab::scene::builtin::build("sphere?triangles=100").unwrap().bounds().radius();
     let wanted = 0.5 * 0.5f64.sqrt() / sphere;
     let keys = out(&[]).animation.get("inflate", "amount_m").expect("it is animated").keys().to_vec();
     assert!((keys[0].value[0] - wanted).abs() < 1e-6 && (keys[1].value[0] - 2.0 * wanted).abs() < 1e-6, "{keys:?}, {wanted}");

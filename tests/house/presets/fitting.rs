@@ -21,7 +21,7 @@ const LOOKS: &[(&str, &str)] = &[
     ("inflate", "[effects.inflate]\namount_m = 0.12\n"),
     ("wobble", "[effects.wobble]\namplitude_m = 0.2\nwavelength_m = 0.9\nphase_turns = 0.2\n"),
     ("fog", "[effects.fog]\ndensity = 0.9\nstart_m = 4.1\nfalloff = 1.7\nlevel_m = -0.2\n"),
-    ("hatch", "[effects.hatch]\nspace = \"surface\"\nspacing_m = 0.12\n"),
+    ("hatch", "[effects.hatch]\nspace = \"surface\"\nspacing_m = 0.5\n"),
     ("dots", "[effects.dots]\nlines = \"polyline\"\nspacing_m = 0.07\nsize_px = 3.0\n"),
     ("depth", "[effects.depth]\nfit = false\nscale = 0.15\n"),
     (
@@ -181,7 +181,7 @@ fn a_length_that_its_range_does_not_allow_is_kept_inside_and_named() {
     );
     let (fitted, warnings) = preset.fitted(&fit);
     assert_eq!(warnings.len(), 2, "{warnings:?}");
-    assert!(warnings[0].starts_with("explode.amount_m: ") && warnings[0].ends_with("-1000..=1000"), "{warnings:?}");
+    assert!(warnings[0].starts_with("explode.amount_m: ") && warnings[0].ends_with("-1e3..=1e3"), "{warnings:?}");
     assert!(warnings[1].starts_with("fog.level_m: "), "{warnings:?}");
     let file = preset_file::to_toml(&PresetFile::new("large", fitted.clone()));
     assert_eq!(bits(&parse(&file).preset), bits(&fitted), "a file may have every value\n{file}");
@@ -210,12 +210,13 @@ fn parameters_of_the_built_in_effects_know_what_they_measure() {
 
 #[test]
 fn the_unit_is_a_key_of_the_file_and_of_the_command_line() {
-    let preset_file = parse("schema = 2\nunit = \"scene\" # kept\n[effects.fog]\n");
+    let preset_file = parse("schema = 2\n[scene]\nunit = \"scene\" # kept\n[effects.fog]\n");
     assert_eq!(preset_file.preset.unit, LengthUnit::Scene);
     let mut changed = preset_file.clone();
-    set(&mut changed, "unit", "m").expect("a unit");
+    set(&mut changed, "scene.unit", "m").expect("a unit");
     assert_eq!(changed.preset.unit, LengthUnit::Meter);
     assert!(preset_file::to_toml(&changed).contains("unit = \"m\" # kept"), "{}", preset_file::to_toml(&changed));
     assert_eq!(parse("schema = 1\n[effects.fog]\n").preset.unit, LengthUnit::Meter, "older files count in meters");
-    assert!(refusal("schema = 2\nunit = \"feet\"\n").contains("unit"), "{}", refusal("schema = 2\nunit = \"feet\"\n"));
+    let refused = refusal("schema = 2\n[scene]\nunit = \"feet\"\n");
+    assert!(refused.contains("scene.unit") && refused.contains("m, scene"), "{refused}");
 }
