@@ -154,9 +154,8 @@ fn print_results(args: &Sequence, production: &Production, backend: &Backend, st
             });
             named(preset_file, row)
         };
-        let whole = |kind: &str, path: &Path| {
-            named(preset_file, json!({ kind: file(Some(path)), "frames": jobs.len(), "fps": schedule.fps }))
-        };
+        let whole =
+            |kind: &str, path: &Path| named(preset_file, json!({ kind: file(Some(path)), "frames": jobs.len(), "fps": schedule.fps }));
         let apng = args.apng.iter().map(|path| whole("apng", path));
         let video = args.video.iter().map(|path| whole("video", path));
         let results = jobs.iter().map(row).chain(apng).chain(video).collect();
