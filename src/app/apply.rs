@@ -6,7 +6,7 @@ use eframe::egui::{self, ViewportCommand};
 
 use super::{
     anti_aliasing,
-    command::{CodeUse, Command, Commands, FileCommand, KeyframeEdit, Purpose, RowCommand, Side, Toggle, ViewCommand},
+    command::{CodeUse, Command, Commands, FileCommand, KeyframeEdit, Manner, Purpose, RowCommand, Side, Toggle, ViewCommand},
     log::Level,
     new_effect, open,
     panels::{Panels, timeline::Timeline},
@@ -167,7 +167,7 @@ fn paste(state: &mut State, panels: &mut Panels, text: &str) {
             Err(error) => state.notify(Level::Error, error),
         },
         _ => match preset_file::from_line(text) {
-            Ok(pasted) => request_open(state, panels, pasted, "Pasted a preset".into()),
+            Ok(pasted) => request_open(state, panels, pasted, Manner::WithScene, "Pasted a preset".into()),
             Err(error) => state.notify(Level::Error, error.to_string()),
         },
     }
@@ -238,12 +238,19 @@ fn file(ctx: &egui::Context, state: &mut State, panels: &mut Panels, command: Fi
             reload::add_effect_file(state, Path::new(&what));
         }
         FileCommand::Open(what) => match preset_file::open(&what, &state.folders) {
-            Ok(opened) => open_and_notify(state, panels, opened),
+            Ok(opened) => {
+                let manner = open::manner_of(&what, &opened);
+                open_and_notify(state, panels, opened, manner);
+            }
             Err(error) => state.notify(Level::Error, error.to_string()),
         },
-        FileCommand::OpenPreset(opened) => open_and_notify(state, panels, *opened),
-        FileCommand::OpenNeighbor(step) => match panels.browser.neighbor(&state.session.preset_file.id, step).cloned() {
-            Some(neighbor) => open_and_notify(state, panels, neighbor),
+        FileCommand::OpenPreset(opened, manner) => open_and_notify(state, panels, *opened, manner),
+        FileCommand::OpenWithScene => match state.session.look_file().cloned() {
+            Some(look) => open_and_notify(state, panels, look, Manner::WithScene),
+            None => state.notify(Level::Info, "This preset shows its own scene already"),
+        },
+        FileCommand::OpenNeighbor(step) => match panels.browser.neighbor(state.session.preset_file.look_id(), step).cloned() {
+            Some(neighbor) => open_and_notify(state, panels, neighbor, Manner::Look),
             None => state.notify(Level::Info, "There are no presets to open"),
         },
         FileCommand::Save => {
@@ -273,17 +280,17 @@ fn file(ctx: &egui::Context, state: &mut State, panels: &mut Panels, command: Fi
     }
 }
 
-fn open_and_notify(state: &mut State, panels: &mut Panels, opened: PresetFile) {
+fn open_and_notify(state: &mut State, panels: &mut Panels, opened: PresetFile, manner: Manner) {
     let said = format!("Opened {}", opened.title());
-    request_open(state, panels, opened, said);
+    request_open(state, panels, opened, manner, said);
 }
 
 /// Opens a preset and says so. Asks first if it brings code that has not been allowed.
-fn request_open(state: &mut State, panels: &mut Panels, opened: PresetFile, said: String) {
+fn request_open(state: &mut State, panels: &mut Panels, opened: PresetFile, manner: Manner, said: String) {
     if state.trust.allows(&opened, &state.folders.effects) {
-        open::begin(state, panels, opened, said);
+        open::begin(state, panels, opened, manner, said);
     } else {
-        panels.dialogs.ask_code(opened.into(), CodeUse::Open(said));
+        panels.dialogs.ask_code(opened.into(), CodeUse::Open(manner, said));
     }
 }
 
@@ -296,9 +303,9 @@ fn use_code(state: &mut State, panels: &mut Panels, brings: PresetFile, then: Co
         brings.without_brought()
     };
     match then {
-        CodeUse::Open(said) => {
+        CodeUse::Open(manner, said) => {
             let said = if runs { said } else { format!("{said} without its effects") };
-            open::begin(state, panels, decided, said);
+            open::begin(state, panels, decided, manner, said);
         }
         CodeUse::Reload => reload::take_preset(state, panels, decided),
     }

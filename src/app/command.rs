@@ -120,8 +120,6 @@ pub enum Edit {
     Rebind(&'static Effect, &'static Effect),
     /// Swaps two positions of the stack.
     Swap(usize, usize),
-    /// Shows another built-in scene, without a camera.
-    Builtin(&'static str),
     /// The same built-in scene with other parameters.
     BuiltinQuery(String),
     /// Removes the preset's camera and uses the scene camera of this name; empty = the first.
@@ -189,11 +187,22 @@ pub enum Side {
     Both,
 }
 
+/// What becomes of the scene that is shown when something is opened.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Manner {
+    /// The preset brings its own scene.
+    WithScene,
+    /// Its look lands on the user's own scene, if there is one.
+    Look,
+    /// A model or built-in scene that is chosen: it takes the look that is shown.
+    Scene,
+}
+
 /// What happens to a preset that brings effects when the user has decided about them.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum CodeUse {
     /// It is opened, and this is said.
-    Open(String),
+    Open(Manner, String),
     /// It replaces the open preset, whose file has changed.
     Reload,
 }
@@ -214,7 +223,9 @@ pub enum FileCommand {
     Browse(Purpose, PathBuf),
     /// Opens a preset, model or picture by path, id or `builtin:QUERY`, or enables the effect of a file.
     Open(String),
-    OpenPreset(Box<PresetFile>),
+    OpenPreset(Box<PresetFile>, Manner),
+    /// Opens the preset whose look is shown on the user's own scene, with its scene.
+    OpenWithScene,
     /// Opens the preset this many entries further in the gallery, wrapping round.
     OpenNeighbor(isize),
     /// Saves to the preset's own file, or asks for one.
@@ -308,6 +319,7 @@ impl From<Action> for Command {
             Action::Undo => Self::Undo,
             Action::Redo => Self::Redo,
             Action::Randomize => Self::Randomize,
+            Action::OpenWithScene => Self::File(FileCommand::OpenWithScene),
             Action::PreviousPreset => Self::File(FileCommand::OpenNeighbor(-1)),
             Action::NextPreset => Self::File(FileCommand::OpenNeighbor(1)),
             Action::Frame => Self::Edit(Edit::FrameScene),

@@ -57,12 +57,6 @@ impl Session {
             }
             Edit::Swap(a, b) if a.max(b) < preset.stack.0.len() => preset.stack.0.swap(a, b),
             Edit::Swap(..) => {}
-            Edit::Builtin(name) => {
-                preset.scene = SceneSource::Builtin(name.into());
-                // A camera for one scene does not fit another.
-                preset.camera = None;
-                preset.scene_camera.clear();
-            }
             Edit::BuiltinQuery(query) => preset.scene = SceneSource::Builtin(query),
             Edit::SceneCamera(name) => {
                 preset.scene_camera = name;

@@ -42,6 +42,18 @@ impl Row {
         Self::new(path, field.param, modified, Edited::Parameter((effect, field)))
     }
 
+    /// The row of a parameter whose lengths are radii of the scene's box.
+    pub fn in_radii(mut self) -> Self {
+        self.param.unit = match self.param.unit {
+            "m" => "r",
+            "m/s" => "r/s",
+            "m/s²" => "r/s²",
+            "per m" => "per r",
+            other => other,
+        };
+        self
+    }
+
     /// The row of a parameter that can be animated. Keyframes are a difference from the default, whatever their values.
     pub fn keyed(self, keying: Keying) -> Self {
         Self { modified: self.modified || keying != Keying::Still, keying: Some(keying), ..self }

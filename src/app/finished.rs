@@ -39,6 +39,7 @@ pub fn finish(ctx: &egui::Context, state: &mut State, panels: &mut Panels, comma
                 state.notify(Level::Error, error);
             }
         }
+        Done::SceneBox(source, bounds) => open::bounds_arrived(state, panels, source, bounds),
         Done::Verdict(inputs, work, findings) => {
             state.verification.ended(&work);
             verdict(state, panels, *inputs, findings);
@@ -51,6 +52,7 @@ pub fn finish(ctx: &egui::Context, state: &mut State, panels: &mut Panels, comma
         Done::Cell(CellOf::Sweep { number, index }, picture) => panels.sweep.arrived(ctx, (number, index), picture),
         Done::Cell(CellOf::Seed(seed), picture) => panels.randomize.arrived(ctx, seed, picture),
         Done::Thumbnail(id, image) => panels.browser.thumbnail_arrived(ctx, id, image),
+        Done::ThumbnailOn(key, id, image) => panels.browser.on_model_arrived(ctx, key, id, image),
         Done::Export(path, Ok(())) => state.notify(Level::Info, format!("Saved {}", path.display())),
         Done::Export(_, Err(error)) => state.notify(Level::Error, error),
         Done::Compiled(reload, outcome) => compiled(state, panels, reload, outcome),

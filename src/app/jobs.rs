@@ -28,14 +28,16 @@ use crate::{
     effects::Stack,
     gpu::{Gpu, Renderer},
     oracle::{self, Work},
-    preset::{AccuracyRequest, Preset},
+    preset::{AccuracyRequest, Fit, Preset, SceneSource},
     preset_file::{self, Existing, PresetFile, Provenance},
-    scene::{Scene, view::View},
+    scene::{Bounds, Scene, view::View},
 };
 
 /// Finished work. Errors are sentences for people.
 pub enum Done {
     Scene(SceneKey, Result<Arc<Scene>, String>),
+    /// The box of a scene, without a room.
+    SceneBox(SceneSource, Result<Bounds, String>),
     /// The verdict on a picture; none if the judgement was canceled.
     Verdict(Box<Inputs>, Arc<Work>, Result<Option<Box<Findings>>, String>),
     /// A small picture.
@@ -43,6 +45,8 @@ pub enum Done {
     /// Measured combinations of accuracy options.
     Trade(Result<Vec<Point>, String>),
     Thumbnail(String, Option<egui::ColorImage>),
+    /// The thumbnail of a preset on the user's own scene.
+    ThumbnailOn(SceneKey, String, Option<egui::ColorImage>),
     Export(PathBuf, Result<(), String>),
     /// The path from the system's file dialog; none if it was canceled or could not be shown.
     Path(Purpose, Option<PathBuf>),
@@ -92,9 +96,16 @@ impl Jobs {
     pub fn load_scene(&self, key: SceneKey) {
         self.spawn("scene", move || {
             let preset = Preset { scene: key.source.clone(), room: key.room, ..Preset::default() };
-            let scene =
-                caught("loading the scene", || preset_file::load_scene(&preset, key.preset_path.as_deref()).map_err(|e| e.to_string()));
+            let scene = caught("loading the scene", || preset_file::load_scene(&preset, None).map_err(|e| e.to_string()));
             Done::Scene(key, scene)
+        });
+    }
+
+    /// Finds the box of a scene.
+    pub fn measure_scene(&self, source: SceneSource) {
+        self.spawn("scene box", move || {
+            let bounds = caught("measuring a scene", || preset_file::scene_bounds(&source, None).map_err(|e| e.to_string()));
+            Done::SceneBox(source, bounds)
         });
     }
 
@@ -208,6 +219,14 @@ impl Jobs {
         }
     }
 
+    /// Draws the picture of a preset on the scene of `own` with the oracle.
+    pub fn thumbnail_on(&self, look: PresetFile, own: PresetFile, scene: Arc<Scene>) {
+        self.spawn("thumbnail", move || {
+            let image = caught("drawing a thumbnail", || thumbnail_on(&look, &own, &scene).ok_or_else(String::new));
+            Done::ThumbnailOn(SceneKey::of(&own), look.id, image.ok())
+        });
+    }
+
     /// Draws `inputs` and writes a PNG that contains the preset.
     pub fn export(&self, gpu: Arc<Gpu>, inputs: Inputs, preset_file: PresetFile, path: PathBuf) {
         self.spawn("export", move || {
@@ -283,11 +302,23 @@ const THUMBNAIL_TRIANGLES: u64 = 400_000;
 
 fn thumbnail(preset_file: &PresetFile) -> Option<egui::ColorImage> {
     let scene = preset_file::load_scene(&preset_file.preset, preset_file.path.as_deref()).ok()?;
+    thumbnail_of(&preset_file.preset, &scene)
+}
+
+fn thumbnail_on(look: &PresetFile, own: &PresetFile, scene: &Scene) -> Option<egui::ColorImage> {
+    let fit = match look.needs_fit() {
+        true => Fit::between(&preset_file::scene_bounds(&look.scene_source(), None).ok()?, &scene.content_bounds()),
+        false => None,
+    };
+    // The whole model is shown, so that the picture stays right when the camera moves.
+    thumbnail_of(&Preset { camera: None, ..look.landed_on(own, fit.as_ref()).preset }, scene)
+}
+
+fn thumbnail_of(preset: &Preset, scene: &Scene) -> Option<egui::ColorImage> {
     if scene.triangle_count() > THUMBNAIL_TRIANGLES {
         return None;
     }
-    let factor = preset_file.preset.accuracy.scale().factor();
-    let frame = oracle::render_scaled(&scene, &preset_file.preset.moments(&scene, THUMBNAIL), factor).ok()?;
+    let frame = oracle::render_scaled(scene, &preset.moments(scene, THUMBNAIL), preset.accuracy.scale().factor()).ok()?;
     let bytes: Vec<u8> = frame.color.concat();
     Some(egui::ColorImage::from_rgba_unmultiplied([frame.width as usize, frame.height as usize], &bytes))
 }

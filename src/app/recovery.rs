@@ -28,7 +28,10 @@ pub fn first_preset(opened: Option<PresetFile>, open: Option<&str>, folders: &Fo
             if open.is_some() {
                 log.notify(Level::Error, error.to_string(), 0.0);
             }
-            PresetFile::of_scene("teapot", SceneSource::Builtin("teapot".into()))
+            // Nobody chose this scene.
+            let mut fallback = PresetFile::of_scene("teapot", SceneSource::Builtin("teapot".into()));
+            fallback.chose_scene = false;
+            fallback
         }
     }
 }

@@ -306,6 +306,7 @@ fn model_changed(state: &mut State, path: &Path) {
         return;
     }
     let key = SceneKey::of(&state.session.preset_file);
+    state.opening.forget_models();
     state.session.scenes.reload(&key);
     state.jobs.load_scene(key);
 }

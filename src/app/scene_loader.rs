@@ -1,28 +1,24 @@
 //! Scene loader: the scene that is shown, the one that is loading, and recent ones that are kept in memory.
 
-use std::{collections::VecDeque, path::PathBuf, sync::Arc};
+use std::{collections::VecDeque, sync::Arc};
 
 use crate::{
-    preset::{Preset, SceneSource},
+    preset::SceneSource,
     preset_file::PresetFile,
-    scene::Scene,
+    scene::{Bounds, Scene},
 };
 
-/// Identifies a scene: its source, the folder it is relative to, and the room round it.
+/// Identifies a scene: its source, with the path of a model as it is read, and the room round it.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SceneKey {
     pub source: SceneSource,
-    /// The preset file that a relative path starts from; none for built-in scenes, which are the same everywhere.
-    pub preset_path: Option<PathBuf>,
     /// Width of the room over that of the scene; 0 for none.
     pub room: f64,
 }
 
 impl SceneKey {
     pub fn of(preset_file: &PresetFile) -> Self {
-        let Preset { scene, room, .. } = &preset_file.preset;
-        let preset_path = if matches!(scene, SceneSource::File(_)) { preset_file.path.clone() } else { None };
-        Self { source: scene.clone(), preset_path, room: *room }
+        Self { source: preset_file.scene_source(), room: preset_file.preset.room }
     }
 }
 
@@ -73,7 +69,19 @@ impl SceneLoader {
 
     /// True if the scene of `key` is in memory.
     pub fn has(&self, key: &SceneKey) -> bool {
-        self.shown_for(key).is_some() || self.recent.iter().any(|(recent, _)| recent == key)
+        self.get(key).is_some()
+    }
+
+    /// The scene of `key`, if it is in memory.
+    pub fn get(&self, key: &SceneKey) -> Option<&Arc<Scene>> {
+        let recent = || self.recent.iter().find(|(recent, _)| recent == key).map(|(_, scene)| scene);
+        self.shown_for(key).or_else(recent)
+    }
+
+    /// The box of a scene that is in memory, without a room.
+    pub fn bounds(&self, source: &SceneSource) -> Option<Bounds> {
+        let mut known = self.shown.iter().chain(&self.recent);
+        known.find(|(key, _)| key.source == *source).map(|(_, scene)| scene.content_bounds())
     }
 
     /// True if the scene of `key` is shown or cannot be loaded.

@@ -12,7 +12,7 @@ use crate::{
     effect_files::Catalog,
     effects::{Effect, Stack},
     params::Field,
-    preset::{Preset, rebind::Replaced},
+    preset::{Fit, LengthUnit, Preset, rebind::Replaced},
     preset_file::PresetFile,
     scene::{
         Scene,
@@ -91,6 +91,12 @@ impl Session {
         self.files.get(&FileId::of(&self.preset_file)).unwrap_or(&self.preset_file)
     }
 
+    /// The preset whose look has landed on the user's own scene; none where the preset shows its own scene.
+    pub fn look_file(&self) -> Option<&PresetFile> {
+        let look = self.preset_file.look.as_ref()?;
+        self.files.get(&FileId { id: look.id.clone(), path: look.path.clone() })
+    }
+
     /// Makes `preset_file` the open preset, with no effect muted and at the preset's own time.
     pub fn open(&mut self, preset_file: PresetFile) {
         self.remember(preset_file.clone());
@@ -165,14 +171,28 @@ impl Session {
         preset
     }
 
-    /// The preset as it is drawn: at the time shown, without muted effects.
-    pub fn visible_preset(&self) -> Preset {
-        Preset { stack: self.visible_stack(), ..self.shown_preset() }
+    /// The preset at the time that is shown, with its lengths in meters.
+    pub fn metric_preset(&self) -> Preset {
+        let shown = self.shown_preset();
+        self.scene().map_or_else(|| shown.clone(), |scene| shown.in_meters(scene).into_owned())
     }
 
-    /// The stack as it is drawn: at the time shown, without muted effects.
+    /// From the unit of the preset to meters; none where that changes nothing.
+    pub fn unit_fit(&self) -> Option<Fit> {
+        self.preset().unit_fit(self.scene()?)
+    }
+
+    /// The preset as it is drawn: at the time shown, without muted effects, in meters.
+    pub fn visible_preset(&self) -> Preset {
+        Preset { stack: self.visible_stack(), ..self.metric_preset() }
+    }
+
+    /// The stack as it is drawn: at the time shown, without muted effects, in meters.
     pub fn visible_stack(&self) -> Stack {
-        let mut stack = self.preset().stack_at(self.shown_time_s());
+        let mut stack = match (self.preset().unit, self.scene()) {
+            (LengthUnit::Scene, Some(scene)) => self.preset().in_meters(scene).stack_at(self.shown_time_s()),
+            _ => self.preset().stack_at(self.shown_time_s()),
+        };
         stack.0.retain(|enabled| !self.muted.contains(enabled.effect.name));
         stack
     }
@@ -209,7 +229,8 @@ impl Session {
     }
 
     /// The same for another preset under this one's frame.
-    pub fn view_of(&self, mut preset: Preset, scene: &Scene, size: [u32; 2]) -> View {
+    pub fn view_of(&self, preset: Preset, scene: &Scene, size: [u32; 2]) -> View {
+        let mut preset = preset.in_meters(scene).into_owned();
         let widening = self.widening(size);
         let mut camera = preset.camera_for(scene, aspect(preset.output.size));
         if widening > 1.0 {
@@ -259,7 +280,7 @@ impl Session {
 
     /// Records how the particles were led, up to the time shown. Keys of the particles' parameters take precedence.
     pub fn follow_particles(&mut self) {
-        let particle_timeline = self.shown_preset().particle_timeline().filter(|particle_timeline| particle_timeline.len() == 1);
+        let particle_timeline = self.metric_preset().particle_timeline().filter(|particle_timeline| particle_timeline.len() == 1);
         match particle_timeline {
             Some(particle_timeline) => {
                 self.trail.follow(particle_timeline.frame, particle_timeline.words(1).to_vec(), self.playback.playing)

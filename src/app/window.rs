@@ -9,7 +9,7 @@ use eframe::egui::{self, Ui, ViewportCommand};
 
 use super::{
     apply,
-    command::{CodeUse, Commands},
+    command::{CodeUse, Commands, Manner},
     device,
     finished::finish,
     history::History,
@@ -201,7 +201,7 @@ impl App {
         } else {
             // Until the user decides, a preset without code is shown.
             let said = format!("Opened {}", opened.title());
-            panels.dialogs.ask_code(opened.into(), CodeUse::Open(said));
+            panels.dialogs.ask_code(opened.into(), CodeUse::Open(Manner::WithScene, said));
             recovery::first_preset(None, None, &options.folders, &mut log)
         };
         let mut session = Session::new(opened);
@@ -305,7 +305,13 @@ impl App {
             return;
         }
         if let Some(next) = self.panels.browser.next_thumbnail() {
-            self.state.jobs.thumbnail(next);
+            return self.state.jobs.thumbnail(next);
+        }
+        let own = &self.state.session.preset_file;
+        let key = SceneKey::of(own);
+        let Some(scene) = self.state.session.scenes.shown_for(&key) else { return };
+        if let Some(next) = self.panels.browser.next_on_model(&key) {
+            self.state.jobs.thumbnail_on(next, own.clone(), scene.clone());
         }
     }
 

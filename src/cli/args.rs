@@ -40,6 +40,9 @@ pub struct Common {
     /// Folder of shaders that replaces the built-in ones; the window watches it [env: RASTERLAB_SHADERS]
     #[arg(long, global = true, value_name = "DIR")]
     pub shaders: Option<PathBuf>,
+    /// The look of this preset on the scene of the PRESET or model that a command names: its effects, lights, background and animation
+    #[arg(long, global = true, value_name = "ID|FILE")]
+    pub preset: Option<String>,
     /// Change one value of the preset, e.g. facet.amount=.5; the name of an effect alone enables it
     #[arg(long, global = true, value_name = "PATH[=VALUE]")]
     pub set: Vec<String>,
@@ -123,6 +126,14 @@ pub enum Command {
 }
 
 impl Command {
+    /// Does it draw or describe presets, so that `--preset` means something?
+    pub fn takes_look(&self) -> bool {
+        matches!(
+            self,
+            Self::Render(_) | Self::Sequence(_) | Self::Verify(_) | Self::Compare(_) | Self::Explain(_) | Self::Parts(_) | Self::Bench(_)
+        )
+    }
+
     pub fn name(&self) -> &'static str {
         match self {
             Self::List(_) => "list",

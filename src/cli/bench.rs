@@ -7,7 +7,7 @@ use super::{
     backend::Backend,
     error::{CliError, Exit},
     measured::{judge, print_rows, subjects},
-    open::open,
+    open::open_alone,
     streams::Streams,
     trade,
 };
@@ -29,7 +29,7 @@ pub fn run(common: &Common, args: &Bench, streams: &mut Streams) -> Result<Exit,
     let bar = streams.progress(0);
     let mut rows = Vec::new();
     for (preset_file, scene) in &subjects {
-        let preset = &preset_file.preset.evaluated();
+        let preset = &preset_file.preset.in_meters(scene).evaluated();
         let view = preset.view(scene, args.size);
         let judge = judge(scene, &view);
         let mut progress = |what: &str, done: usize, all: usize| {
@@ -55,7 +55,8 @@ pub fn run(common: &Common, args: &Bench, streams: &mut Streams) -> Result<Exit,
 fn each_effect(common: &Common) -> Result<Vec<(String, Stack)>, CliError> {
     let mut stacks = vec![("no effect".to_owned(), Stack::default())];
     for effect in EFFECTS {
-        let preset_file = open(common, effect.name)?;
+        // Each effect has the values of its own preset, whatever --preset says.
+        let preset_file = open_alone(common, effect.name)?;
         let enabled = preset_file.preset.evaluated_stack().get(effect.name).cloned().unwrap_or_else(|| EnabledEffect::new(effect));
         stacks.push((format!("+{}", effect.name), Stack(vec![enabled])));
     }

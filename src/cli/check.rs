@@ -79,7 +79,7 @@ fn planned(preset: &Preset, scene: &Scene) -> Result<(), CliError> {
     let view = preset.view(scene, preset.output.size);
     let needs = Arc::new(Needs::of(scene, &draws(scene, &view)?, &view));
     let caps = Caps::ALL;
-    let planned = Planner::default().plan(&needs, &preset.evaluated_stack(), &caps, &caps.tuning(), &preset.accuracy);
+    let planned = Planner::default().plan(&needs, &preset.stack_on(scene), &caps, &caps.tuning(), &preset.accuracy);
     planned.map(drop).map_err(|error| RenderError::from(error).into())
 }
 

@@ -45,7 +45,7 @@ pub fn run(common: &Common, args: &Compare, streams: &mut Streams) -> Result<Exi
     if streams.json {
         let mismatches: Vec<_> = pixels.iter().map(|(pixel, a, b)| json!({ "pixel": pixel, "a": a, "b": b })).collect();
         let result = json!({
-            "a": args.a, "b": args.b, "max_color_delta": delta.max_delta, "rms_color_delta": number(delta.rms),
+            "a": args.a, "b": args.b, "look": common.preset, "max_color_delta": delta.max_delta, "rms_color_delta": number(delta.rms),
             "pixels_over_tolerance": delta.pixels_over_tolerance, "wrong_triangles": wrong_triangles, "ok": passes, "mismatches": mismatches,
         });
         streams.object("compare", backend.map_or(json!(null), |backend| backend.json()), vec![result])?;

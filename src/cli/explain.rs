@@ -6,7 +6,7 @@ use super::{
     args::{Common, Explain},
     backend::{Backend, scene_of},
     error::{CliError, Exit},
-    open::open,
+    open::{named, open},
     streams::{Streams, table},
 };
 use crate::{
@@ -37,7 +37,7 @@ pub fn run(common: &Common, args: &Explain, streams: &mut Streams) -> Result<Exi
         Some(Backend::Gpu(mut renderer, gpu)) => {
             renderer.set_scene(&scene)?;
             let preset = &preset_file.preset;
-            let (view, stack) = (preset.view(&scene, preset.output.size), preset.evaluated_stack());
+            let (view, stack) = (preset.view(&scene, preset.output.size), preset.stack_on(&scene));
             let capture = renderer.capture(&view, &stack, &preset.accuracy)?;
             let factor = capture.geometry.scale;
             particles = ParticleErrors::of(&scene, &view, &stack, &capture)?;
@@ -52,10 +52,10 @@ pub fn run(common: &Common, args: &Explain, streams: &mut Streams) -> Result<Exi
     };
     if streams.json {
         let result = json!({
-            "preset": preset_file.id, "scene": scene_json(&scene), "size": preset_file.preset.output.size,
+            "scene": scene_json(&scene), "size": preset_file.preset.output.size,
             "effects": effects_json(&preset_file.preset.stack), "plan": plan, "check": check, "particles": particles,
         });
-        streams.object("explain", adapter, vec![result])?;
+        streams.object("explain", adapter, vec![named(&preset_file, result)])?;
     } else {
         streams.text(&text(&preset_file.id, &scene, &preset_file.preset.stack, plan.as_ref(), check.as_ref(), particles.as_ref()))?;
     }

@@ -8,7 +8,7 @@ use super::{
     args::{Bench, Common, Format},
     backend::{Backend, scene_of},
     error::CliError,
-    open::open,
+    open::{land, open},
     streams::{Streams, table},
 };
 use crate::{
@@ -32,15 +32,12 @@ pub fn subjects(common: &Common, args: &Bench, streams: &Streams) -> Result<Vec<
             preset_files.push(base);
             continue;
         }
-        preset_files.extend(named.iter().map(|preset_file| {
-            let mut preset_file = preset_file.clone();
-            preset_file.id = format!("{} on {scene}", preset_file.id);
-            preset_file.preset.scene = base.preset.scene.clone();
-            // The camera of the preset is meant for the scene of the preset.
-            preset_file.preset.camera = None;
-            preset_file.preset.scene_camera.clear();
-            preset_file
-        }));
+        for preset_file in &named {
+            let id = format!("{} on {scene}", preset_file.id);
+            let mut landed = land(common, preset_file, &base)?;
+            landed.id = id;
+            preset_files.push(landed);
+        }
     }
     if args.scene.is_empty() {
         preset_files = if named.is_empty() { vec![PresetFile::of_scene("teapot", SceneSource::Builtin("teapot".into()))] } else { named };

@@ -59,6 +59,13 @@ pub fn run(cli: &Cli) -> Result<Exit, CliError> {
         return Err(CliError::usage(format!("--presets or RASTERLAB_PRESETS: there is no folder {}", folder.display())));
     }
     let Some(command) = &cli.command else { return window(cli) };
+    if cli.common.preset.is_some() && !command.takes_look() {
+        return Err(CliError::usage(format!(
+            "--preset has no meaning for {}; it puts a look on the scene that render, sequence, verify, compare, explain, parts, bench or the \
+             window shows",
+            command.name()
+        )));
+    }
     if let Some(preset_file) = &cli.open {
         return Err(CliError::usage(format!(
             "{preset_file:?} stands before a command; leave it out, or leave out the command to open it in the window"
@@ -104,8 +111,14 @@ fn dispatch(common: &Common, command: &Command, streams: &mut Streams) -> Result
 #[cfg(feature = "gui")]
 fn window(cli: &Cli) -> Result<Exit, CliError> {
     // Errors are reported on the terminal instead of in an empty window.
-    let what = cli.open.as_deref().unwrap_or(crate::app::FIRST_PRESET);
-    let opened = open::open(&cli.common, what).map_err(|error| suggest_command(error, what))?;
+    let (what, opened) = match (&cli.open, &cli.common.preset) {
+        (None, Some(look)) => (look.as_str(), open::open_alone(&cli.common, look)),
+        (what, _) => {
+            let what = what.as_deref().unwrap_or(crate::app::FIRST_PRESET);
+            (what, open::open(&cli.common, what))
+        }
+    };
+    let opened = opened.map_err(|error| suggest_command(error, what))?;
     let adapter = match backend::backend_choice(&cli.common) {
         backend::BackendChoice::Oracle => {
             return Err(CliError::usage("the window needs a GPU adapter; --adapter cpu serves render, verify, compare and check"));

@@ -1,18 +1,56 @@
-//! Presets that commands name, with the changes of `--set` and `--unset`.
+//! Presets that commands name, with the look of `--preset` and the changes of `--set` and `--unset`.
 
 use super::{args::Common, error::CliError, files, streams::Streams};
-use crate::preset_file::{self, GalleryEntry, PresetFile};
+use crate::{
+    preset::Fit,
+    preset_file::{self, GalleryEntry, PresetError, PresetFile},
+};
 
-/// Opens a preset and applies `--unset`, then `--set`.
+/// Opens a preset, puts the look of `--preset` on its scene, and applies `--unset`, then `--set`.
 pub fn open(common: &Common, what: &str) -> Result<PresetFile, CliError> {
-    let mut preset_file = if what == "-" {
+    let named = read(common, what)?;
+    let preset_file = match &common.preset {
+        Some(look) => land(common, &read(common, look)?, &named)?,
+        None => named,
+    };
+    changed(common, preset_file)
+}
+
+/// Opens the preset of `--preset` with its own scene, for a command without another, and applies `--unset`, then `--set`.
+pub fn open_alone(common: &Common, look: &str) -> Result<PresetFile, CliError> {
+    changed(common, read(common, look)?)
+}
+
+/// Reads what a person names, as its file has it.
+fn read(common: &Common, what: &str) -> Result<PresetFile, CliError> {
+    let preset_file = if what == "-" {
         preset_file::parse_with(&files::stdin_text()?, "stdin", "stdin", &common.folders().effects)?
     } else {
         preset_file::open(what, &common.folders())?
     };
-    if common.strict {
-        preset_file = preset_file.strict()?;
+    Ok(if common.strict { preset_file.strict()? } else { preset_file })
+}
+
+/// Puts a look on the scene of `own`. The boxes of both scenes are found only if the look has lengths.
+///
+/// # Errors
+/// One of the scenes cannot be read; with `--strict` also what the look had to leave out.
+pub fn land(common: &Common, look: &PresetFile, own: &PresetFile) -> Result<PresetFile, CliError> {
+    let bounds = |preset_file: &PresetFile| {
+        let bounds = preset_file::scene_bounds(&preset_file.preset.scene, preset_file.path.as_deref());
+        bounds.map_err(|error| CliError::from(error).during(format!("preset {}", preset_file.id)))
+    };
+    let fit = if look.needs_fit() { Fit::between(&bounds(look)?, &bounds(own)?) } else { None };
+    let mut landed = look.landed_on(own, fit.as_ref());
+    if common.strict && !landed.warnings.is_empty() {
+        return Err(PresetError::Strict(landed.warnings).into());
     }
+    landed.warnings.splice(0..0, look.warnings.iter().chain(&own.warnings).cloned());
+    Ok(landed)
+}
+
+/// Applies `--unset`, then `--set`.
+fn changed(common: &Common, mut preset_file: PresetFile) -> Result<PresetFile, CliError> {
     for path in &common.unset {
         preset_file::unset(&mut preset_file, path)?;
     }
@@ -26,17 +64,29 @@ pub fn open(common: &Common, what: &str) -> Result<PresetFile, CliError> {
     Ok(preset_file)
 }
 
-/// The named presets, or every preset of the gallery that has a golden.
+/// The named presets, or every preset of the gallery that has a golden; without names, `--preset` is the one.
 pub fn presets(common: &Common, names: &[String], streams: &Streams) -> Result<Vec<PresetFile>, CliError> {
-    let preset_files: Vec<PresetFile> = if names.is_empty() {
-        let entries = preset_file::gallery(&common.folders());
-        let preset_files = entries.iter().map(|entry| open(common, &gallery_name(entry))).collect::<Result<Vec<_>, _>>()?;
-        preset_files.into_iter().filter(|preset_file| preset_file.preset.test.is_some()).collect()
-    } else {
-        names.iter().map(|name| open(common, name)).collect::<Result<_, _>>()?
+    let preset_files: Vec<PresetFile> = match (names, &common.preset) {
+        ([], Some(look)) => vec![open_alone(common, look)?],
+        ([], None) => {
+            let entries = preset_file::gallery(&common.folders());
+            let preset_files = entries.iter().map(|entry| open(common, &gallery_name(entry))).collect::<Result<Vec<_>, _>>()?;
+            preset_files.into_iter().filter(|preset_file| preset_file.preset.test.is_some()).collect()
+        }
+        (names, _) => names.iter().map(|name| open(common, name)).collect::<Result<_, _>>()?,
     };
     preset_files.iter().flat_map(PresetFile::remarks).for_each(|remark| streams.note(&remark));
     Ok(preset_files)
+}
+
+/// What a JSON object says of a preset: its id, and where a look has landed, the look and the scene.
+pub fn named(preset_file: &PresetFile, mut object: serde_json::Value) -> serde_json::Value {
+    object["preset"] = preset_file.id.clone().into();
+    if let Some(look) = &preset_file.look {
+        object["look"] = look.id.clone().into();
+        object["model"] = preset_file.scene_name().into();
+    }
+    object
 }
 
 /// The path of a preset on disk, or the id of a built-in one.

@@ -7,7 +7,7 @@ use super::{
     backend::{Backend, scene_of},
     error::{CliError, Exit},
     files::{self, Names},
-    open::open,
+    open::{named, open},
     streams::Streams,
 };
 use crate::preset_file::{self, PresetFile};
@@ -50,10 +50,10 @@ pub fn run(common: &Common, args: &Render, streams: &mut Streams) -> Result<Exit
             continue;
         }
         let path = files::create(&args.output, &names, common.force, &png)?;
-        results.push(json!({
-            "preset": preset_file.id, "file": path.to_string_lossy(), "size": [frame.width, frame.height],
-            "covered": frame.covered(), "counters": frame.counters,
-        }));
+        let result = json!({
+            "file": path.to_string_lossy(), "size": [frame.width, frame.height], "covered": frame.covered(), "counters": frame.counters,
+        });
+        results.push(named(preset_file, result));
         if !streams.json {
             streams.text(&format!("{}\n", path.display()))?;
         }

@@ -10,7 +10,7 @@ use super::{
     backend::{Backend, scene_of},
     error::{CliError, Exit},
     files::{self, Names},
-    open::open,
+    open::{named, open},
     render,
     streams::Streams,
 };
@@ -143,16 +143,19 @@ fn frame_paths(args: &Sequence, film: &Film, backend: &Backend) -> Result<Vec<st
 }
 
 fn print_results(args: &Sequence, production: &Production, backend: &Backend, streams: &mut Streams) -> Result<(), CliError> {
-    let (jobs, schedule) = (&production.jobs, &production.film().schedule);
+    let (jobs, film) = (&production.jobs, production.film());
+    let (schedule, preset_file) = (&film.schedule, film.preset_file());
     if streams.json {
         let file = |path: Option<&Path>| path.map_or(Value::Null, |path| json!(path.to_string_lossy()));
         let row = |job: &FrameJob| {
-            json!({
+            let row = json!({
                 "frame": job.frame, "time_s": schedule.time_s(job.frame), "file": file(job.path.as_deref()),
                 "kept": job.is_kept, "fingerprint": job.fingerprint,
-            })
+            });
+            named(preset_file, row)
         };
-        let whole = |kind: &str, path: &Path| json!({ kind: file(Some(path)), "frames": jobs.len(), "fps": schedule.fps });
+        let whole =
+            |kind: &str, path: &Path| named(preset_file, json!({ kind: file(Some(path)), "frames": jobs.len(), "fps": schedule.fps }));
         let apng = args.apng.iter().map(|path| whole("apng", path));
         let video = args.video.iter().map(|path| whole("video", path));
         let results = jobs.iter().map(row).chain(apng).chain(video).collect();

@@ -33,7 +33,7 @@ pub fn run(common: &Common, args: &Bench, streams: &mut Streams) -> Result<Exit,
     let bar = streams.progress(0);
     let mut rows = Vec::new();
     for (preset_file, scene) in &subjects {
-        let preset = &preset_file.preset.evaluated();
+        let preset = &preset_file.preset.in_meters(scene).evaluated();
         bar.set_message("the oracle draws");
         let view = preset.view(scene, args.size);
         let references = oracle::references(scene, &view, &preset.stack, &factors(preset, &options.axes))?;

@@ -44,6 +44,8 @@ pub struct Options<'a> {
 /// One preset with one option.
 pub struct Row {
     preset: String,
+    /// Look and scene, where a look has landed on another scene.
+    landed: Option<[String; 2]>,
     /// Effects that have no independent twin.
     judged_by_own_text: Vec<&'static str>,
     pub option: &'static str,
@@ -148,7 +150,7 @@ pub fn check(
 ) -> Result<Vec<Row>, CliError> {
     let mut preset = preset_file.preset.clone();
     preset.output.size = options.size.unwrap_or(preset.output.size);
-    let (view, stack) = (preset.view(scene, preset.output.size), preset.evaluated_stack());
+    let (view, stack) = (preset.view(scene, preset.output.size), preset.stack_on(scene));
     let budget = preset.test.clone().unwrap_or_default();
     let volume = volume_fraction(&preset, scene)?;
     let (mut rows, mut first): (Vec<Row>, Option<(&str, Frame)>) = (Vec::new(), None);
@@ -185,6 +187,7 @@ pub fn check(
         }
         rows.push(Row {
             preset: preset_file.id.clone(),
+            landed: preset_file.look.as_ref().map(|look| [look.id.clone(), preset_file.scene_name()]),
             judged_by_own_text: judged_by_own_text(&preset),
             option: name,
             accuracy: verdict.report,
@@ -299,6 +302,9 @@ fn json_row(row: &Row, backend: &Backend) -> Value {
     });
     if let (Value::Object(object), Ok(Value::Object(stats))) = (&mut object, serde_json::to_value(&row.accuracy)) {
         object.extend(stats);
+    }
+    if let Some([look, model]) = &row.landed {
+        (object["look"], object["model"]) = (json!(look), json!(model));
     }
     object["rms_color_delta"] = number(row.accuracy.rms_color_delta);
     object

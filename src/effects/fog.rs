@@ -17,7 +17,7 @@ params! {
         /// How fast the fog thins out above the level; 0 is as thick everywhere.
         falloff: f32 = 0.0, hard 0.0..=1e3, soft 0.0..=4.0, unit "per m";
         /// Height up to which the fog is whole, world space.
-        level_m: f32 = 0.0, hard -1e6..=1e6, soft -3.0..=3.0, unit "m";
+        level_m: f32 = 0.0, hard -1e6..=1e6, soft -3.0..=3.0, unit "m", height true;
     }
 }
 

@@ -45,7 +45,7 @@ pub fn all_around(preset: &Preset, scene: &Scene) -> Option<Camera> {
     }
     let [width, height] = preset.output.size.map(|side| f64::from(side.max(1)));
     let mut bounds = scene.bounds();
-    if let Some(particles) = preset.evaluated_stack().particle_settings() {
+    if let Some(particles) = preset.stack_on(scene).particle_settings() {
         let reach = particles.disc_bounds();
         [reach.min, reach.max].into_iter().for_each(|corner| bounds.include(corner));
     }

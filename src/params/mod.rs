@@ -4,11 +4,13 @@
 //! [`params!`](crate::params!), which also lays the struct out as WGSL has it; settings of a preset and accuracy axes wrap the same
 //! type. Sliders, preset files, `--set`, listings, the JSON schema and uniform bytes all read these entries.
 
+mod measure;
 mod suggest;
 mod value;
 
 use std::ops::{Deref, RangeInclusive};
 
+pub use measure::Measure;
 pub use suggest::{did_you_mean, suggestion};
 pub use value::{Stored, Value, ValueError, ValueType, format_number};
 
@@ -30,6 +32,8 @@ pub struct Param {
     pub unit: &'static str,
     /// The slider moves in decades.
     pub log: bool,
+    /// A height in world space: a length that counts from the origin, along y.
+    pub height: bool,
     /// Shown only while the choice of this name has one of these words.
     pub when: Option<(&'static str, &'static [&'static str])>,
 }
@@ -37,7 +41,7 @@ pub struct Param {
 impl Param {
     pub const fn new(name: &'static str, doc: &'static str, value_type: ValueType) -> Self {
         let (hard, soft) = value_type.default_ranges();
-        Self { name, doc, value_type, hard, soft, has_slider: false, unit: "", log: false, when: None }
+        Self { name, doc, value_type, hard, soft, has_slider: false, unit: "", log: false, height: false, when: None }
     }
 
     pub const fn hard(mut self, range: RangeInclusive<f64>) -> Self {
@@ -62,6 +66,11 @@ impl Param {
         self
     }
 
+    pub const fn height(mut self, height: bool) -> Self {
+        self.height = height;
+        self
+    }
+
     /// Shown only while the choice of this name has one of these words.
     pub const fn when(mut self, condition: (&'static str, &'static [&'static str])) -> Self {
         self.when = Some(condition);
@@ -74,6 +83,11 @@ impl Param {
     /// Completes a sentence that begins with the parameter's name.
     pub fn check(&self, value: &Value) -> Result<(), ValueError> {
         self.value_type.check(value, self.hard)
+    }
+
+    /// What the value measures in space.
+    pub fn measure(&self) -> Measure {
+        Measure::of(self.value_type, self.unit, self.hard[0], self.height)
     }
 
     /// What is allowed, for listings: `0..=1`, `smooth | flat`, `4 numbers, each 0..=1`.

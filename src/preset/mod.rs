@@ -4,6 +4,9 @@
 //! [`Preset::evaluated_stack`] is drawn, not the stack itself: keyframes change its values with the time.
 
 pub mod animation;
+mod fit;
+mod fitted;
+mod landing;
 mod missing_parts;
 mod particle_timeline;
 pub mod polyline;
@@ -28,6 +31,7 @@ use crate::{
     },
 };
 pub use animation::{Animation, Track};
+pub use fit::{Fit, LengthUnit};
 
 pub use crate::{
     accuracy::{PinnedOptions, Visibility},
@@ -187,6 +191,8 @@ pub struct Preset {
     pub spin_deg_per_s: f64,
     /// The animation clips of the scene.
     pub playback: ClipPlayback,
+    /// The unit of the lengths and points of effects, keyframes and polyline.
+    pub unit: LengthUnit,
     /// A polyline for effects that draw along lines; it turns with the scene.
     pub polyline: Arc<[[f32; 3]]>,
     /// None: a camera of the scene, or one that frames the whole scene.
@@ -213,6 +219,7 @@ impl Default for Preset {
             room: 0.0,
             spin_deg_per_s: 0.0,
             playback: ClipPlayback::default(),
+            unit: LengthUnit::default(),
             polyline: Arc::default(),
             camera: None,
             scene_camera: String::new(),
@@ -230,9 +237,14 @@ impl Default for Preset {
 pub const FRAMING_DIRECTION: DVec3 = DVec3::new(-0.45, -0.42, -1.0);
 
 impl Preset {
-    /// The stack at the time of the clock, which is drawn.
+    /// The stack at the time of the clock, in the unit of the preset. What is drawn is that of [`Preset::in_meters`].
     pub fn evaluated_stack(&self) -> Stack {
         self.stack_at(self.clock.time_s)
+    }
+
+    /// The stack at the time of the clock for `scene`, in meters, which is drawn.
+    pub fn stack_on(&self, scene: &Scene) -> Stack {
+        self.in_meters(scene).evaluated_stack()
     }
 
     /// The stack at another time.
@@ -303,16 +315,18 @@ impl Preset {
             let camera = scene.cameras.get(scene.camera(&self.scene_camera).unwrap_or(0))?;
             Some(camera.node.map_or(camera.pose, |node| camera.carried(&scene_from_nodes(&scene.rig, &self.motion(scene))[node])))
         };
-        self.camera.or_else(own).unwrap_or_else(|| Camera::framing(&self.with_particles(scene.bounds()), FRAMING_DIRECTION, aspect))
+        let framing = || Camera::framing(&self.in_meters(scene).with_particles(scene.bounds()), FRAMING_DIRECTION, aspect);
+        self.camera.or_else(own).unwrap_or_else(framing)
     }
 
     /// The view and stack of every frame that this picture depends on, in order; the last is the picture itself. There are several
     /// where an effect reads the previous picture.
     pub fn moments(&self, scene: &Scene, size: [u32; 2]) -> Vec<(View, Stack)> {
-        let (frames, step_s) = self.evaluated_stack().smear().map_or((0, 0.0), |smear| (smear.frames, f64::from(smear.step_s)));
+        let preset = self.in_meters(scene);
+        let (frames, step_s) = preset.evaluated_stack().smear().map_or((0, 0.0), |smear| (smear.frames, f64::from(smear.step_s)));
         let moment = |before: u32| {
-            let clock = Clock { time_s: self.clock.time_s - f64::from(before) * step_s, ..self.clock };
-            let then = Self { clock, ..self.clone() };
+            let clock = Clock { time_s: preset.clock.time_s - f64::from(before) * step_s, ..preset.clock };
+            let then = Self { clock, ..preset.clone().into_owned() };
             (then.view(scene, size), then.evaluated_stack())
         };
         (0..=frames).rev().map(moment).collect()
@@ -320,17 +334,18 @@ impl Preset {
 
     /// The view of `scene` on a target of `size` pixels. Its depth range holds everything that effects may move.
     pub fn view(&self, scene: &Scene, [width, height]: [u32; 2]) -> View {
+        let preset = self.in_meters(scene);
         let aspect = f64::from(width.max(1)) / f64::from(height.max(1));
         // Reduced before the trigonometry, so that a day of spinning costs no precision.
-        let turns = self.spin_deg_per_s * self.clock.time_s / 360.0;
+        let turns = preset.spin_deg_per_s * preset.clock.time_s / 360.0;
         let spin = if turns == 0.0 { DMat4::IDENTITY } else { rotation_y(turns.fract() * std::f64::consts::TAU) };
-        let pose = self.pose(scene);
-        let mut bounds = self.with_particles(pose.as_ref().map_or_else(|| scene.bounds(), |pose| pose.bounds(scene)));
-        if self.stack.0.iter().any(|enabled| enabled.effect.hooks.has_lines) {
-            self.polyline.iter().for_each(|point| bounds.include(DVec3::from(point.map(f64::from))));
+        let pose = preset.pose(scene);
+        let mut bounds = preset.with_particles(pose.as_ref().map_or_else(|| scene.bounds(), |pose| pose.bounds(scene)));
+        if preset.stack.0.iter().any(|enabled| enabled.effect.hooks.has_lines) {
+            preset.polyline.iter().for_each(|point| bounds.include(DVec3::from(point.map(f64::from))));
         }
         if !bounds.is_empty() {
-            let max_displacement_m = self.evaluated_stack().max_displacement_m(bounds.radius());
+            let max_displacement_m = preset.evaluated_stack().max_displacement_m(bounds.radius());
             (bounds.min, bounds.max) = (bounds.min - max_displacement_m, bounds.max + max_displacement_m);
             if scene.walls > 0 {
                 // Walls do not turn with the scene; this box holds them at every angle.
@@ -338,10 +353,11 @@ impl Preset {
                 (bounds.min, bounds.max) = (bounds.min * aside, bounds.max * aside);
             }
         }
-        let pins = &self.accuracy.pins;
+        let pins = &preset.accuracy.pins;
         let shadow = ShadowResolution::of(pins.option().unwrap_or_default(), pins.option().unwrap_or_default());
-        let scene_state = SceneState { world_from_scene: spin, pose, polyline: self.polyline.clone(), particles: self.particle_timeline() };
-        let view = View::new(&self.camera_for(scene, aspect), width, height, &bounds, spin, self.output.background);
+        let scene_state =
+            SceneState { world_from_scene: spin, pose, polyline: preset.polyline.clone(), particles: preset.particle_timeline() };
+        let view = View::new(&preset.camera_for(scene, aspect), width, height, &bounds, spin, preset.output.background);
         View { scene_state, ..view }.with_shadow(shadow)
     }
 }

@@ -6,7 +6,9 @@ use std::path::PathBuf;
 
 pub use super::setting::{Presence, Section, Setting};
 use super::{
-    Preset, SceneSource, polyline,
+    LengthUnit, Preset, SceneSource,
+    fitted::UNIT,
+    polyline,
     rules::{encloses_scene, is_file, is_polyline, rises},
     setting::Storage,
 };
@@ -182,6 +184,12 @@ pub static SCENE: Section = Section {
             Setting::new("clip_blend", ValueType::F64, "Weight of the second clip: 0 none of it, 1 it alone", field!(playback.blend))
                 .range(0.0, 1.0)
                 .slider(0.0, 1.0),
+            Setting::new(
+                "unit",
+                ValueType::Choice(LengthUnit::WORDS),
+                "Unit of lengths and points of effects and of the polyline: meters, or scene, the radius of the scene's box from its center",
+                UNIT,
+            ),
             Setting::new(
                 "polyline",
                 ValueType::Text { max_chars: 200_000 },

@@ -7,6 +7,7 @@ use toml_edit::{DocumentMut, Item, Table};
 use super::{
     atomic::{Existing, write_atomically},
     error::{Position, PresetError},
+    look::Look,
     write,
 };
 use crate::{
@@ -32,6 +33,10 @@ pub struct PresetFile {
     pub effects: Catalog,
     /// Names of the effects whose text came inside the preset: code that its reader has not seen yet.
     pub brought_effects: Vec<String>,
+    /// The person chose the scene: a model or built-in scene was opened.
+    pub chose_scene: bool,
+    /// The preset whose look has landed on the scene of another.
+    pub look: Option<Look>,
     /// Built in, or written by a newer program.
     pub read_only: bool,
     /// Written by a newer program: parts of it may be unknown here, so it is never written back.
@@ -52,6 +57,8 @@ impl PresetFile {
             warnings: Vec::new(),
             effects: Catalog::default(),
             brought_effects: Vec::new(),
+            chose_scene: false,
+            look: None,
             read_only: false,
             is_newer: false,
             document: DocumentMut::new(),
@@ -59,11 +66,11 @@ impl PresetFile {
         }
     }
 
-    /// The default preset for a model or built-in scene: daylight and no other effect.
+    /// The default preset for a model or built-in scene that was chosen: daylight and no other effect.
     pub fn of_scene(id: &str, scene: SceneSource) -> Self {
         let mut preset = Preset { name: id.into(), scene, ..Preset::default() };
         preset.stack.enable(&lambert::EFFECT);
-        Self::new(id, preset)
+        Self { chose_scene: true, ..Self::new(id, preset) }
     }
 
     /// The name, or the id of a preset without a name.
@@ -205,7 +212,7 @@ pub fn save(preset_file: &mut PresetFile, path: &Path) -> Result<(), PresetError
     next.document =
         text.parse().map_err(|e: toml_edit::TomlError| PresetError::Write { file: path.display().to_string(), reason: e.to_string() })?;
     next.saved = next.preset.clone();
-    (next.id, next.path, next.read_only) = (stem(path), Some(path.to_owned()), false);
+    (next.id, next.path, next.read_only, next.look) = (stem(path), Some(path.to_owned()), false, None);
     *preset_file = next;
     Ok(())
 }

@@ -56,6 +56,8 @@ pub fn parse_with(text: &str, id: &str, file: &str, catalog: &Catalog) -> Result
         document,
         effects: read.catalog,
         brought_effects: read.brought_effects,
+        chose_scene: false,
+        look: None,
     })
 }
 

@@ -5,7 +5,7 @@ use std::{path::Path, sync::Arc};
 use super::file::model_path;
 use crate::{
     preset::{MissingInScene, Preset, SceneSource},
-    scene::{Scene, builtin, gltf},
+    scene::{Bounds, Scene, builtin, gltf},
 };
 
 /// Why the scene of a preset is not available.
@@ -26,16 +26,28 @@ pub enum SceneError {
 /// # Errors
 /// No such built-in scene or model, a model that cannot be read, or a clip or camera that the scene does not have.
 pub fn load_scene(preset: &Preset, preset_path: Option<&Path>) -> Result<Arc<Scene>, SceneError> {
-    let scene = match &preset.scene {
-        SceneSource::Builtin(query) => builtin::build(query)?,
+    let scene = load_source(&preset.scene, preset_path)?;
+    preset.check(&scene)?;
+    Ok(Arc::new(if preset.room > 0.0 { scene.in_room(preset.room) } else { scene }))
+}
+
+/// The box of a scene, which is built or loaded for that.
+///
+/// # Errors
+/// No such built-in scene or model, or a model that cannot be read.
+pub fn scene_bounds(source: &SceneSource, preset_path: Option<&Path>) -> Result<Bounds, SceneError> {
+    Ok(load_source(source, preset_path)?.bounds())
+}
+
+fn load_source(source: &SceneSource, preset_path: Option<&Path>) -> Result<Scene, SceneError> {
+    match source {
+        SceneSource::Builtin(query) => Ok(builtin::build(query)?),
         SceneSource::File(model) => {
             let path = model_path(model, preset_path);
             if !path.exists() {
                 return Err(SceneError::Absent { path: path.display().to_string() });
             }
-            gltf::load(&path)?
+            Ok(gltf::load(&path)?)
         }
-    };
-    preset.check(&scene)?;
-    Ok(Arc::new(if preset.room > 0.0 { scene.in_room(preset.room) } else { scene }))
+    }
 }

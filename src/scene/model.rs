@@ -190,6 +190,8 @@ pub struct Scene {
     pub instances: Vec<Instance>,
     /// The number of instances at the end of the list that are walls around the others. Walls cast no shadow and do not spin.
     pub walls: usize,
+    /// The box of what the walls surround; none without walls.
+    pub content: Option<Bounds>,
     /// Cameras that come with the scene.
     pub cameras: Vec<SceneCamera>,
     /// Nodes, skins and clips.
@@ -239,6 +241,11 @@ impl Scene {
             return self.rig.motion_bounds;
         }
         self.bounds_of(&self.instances)
+    }
+
+    /// [`Scene::bounds`] without the walls of a room.
+    pub fn content_bounds(&self) -> Bounds {
+        self.content.unwrap_or_else(|| self.bounds())
     }
 
     /// World-space box of `instances` in their rest pose.

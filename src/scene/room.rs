@@ -35,6 +35,7 @@ impl Scene {
         let named_node = Some(self.add_named_node("room"));
         self.instances.push(Instance { named_node, ..Instance::fixed(primitive, DMat4::IDENTITY) });
         self.walls += 1;
+        self.content = self.content.or(Some(bounds));
         if !self.rig.is_empty() {
             self.rig.motion_bounds.include(room.min);
             self.rig.motion_bounds.include(room.max);

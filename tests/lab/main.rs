@@ -14,6 +14,7 @@ mod goldens;
 mod harness;
 mod inspector;
 mod keys;
+mod landing;
 mod live;
 mod numerics;
 mod scopes;

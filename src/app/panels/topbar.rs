@@ -25,6 +25,7 @@ const MENUS: [(&str, &[Option<Action>]); 4] = [
         "File",
         &[
             Some(Action::Open),
+            Some(Action::OpenWithScene),
             None,
             Some(Action::Save),
             Some(Action::SaveAs),

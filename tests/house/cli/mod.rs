@@ -4,6 +4,7 @@ mod effects;
 mod files_kept;
 mod films;
 mod limits;
+mod looks;
 mod parts;
 mod sequences;
 mod sweeps;

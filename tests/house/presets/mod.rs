@@ -1,6 +1,8 @@
 //! Promise: presets survive a round trip to the bit, keep unknown keys, load from every older schema, and refuse harmful values.
 
 mod custom_effects;
+mod fitting;
+mod landing;
 mod merging;
 mod migrations;
 mod refused;

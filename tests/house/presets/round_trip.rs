@@ -5,7 +5,8 @@ use rasterlab::{
     effects::{EFFECTS, Effect},
     params::ValueType,
     preset::{
-        AccuracyRequest, Animation, ClipPlayback, Clock, GoldenTest, Output, PinnedOptions, Preset, SceneSource, Tier, Visibility,
+        AccuracyRequest, Animation, ClipPlayback, Clock, GoldenTest, LengthUnit, Output, PinnedOptions, Preset, SceneSource, Tier,
+        Visibility,
         animation::{Easing, Keyframe, Track, steps},
     },
     preset_file::{self, PresetFile},
@@ -113,7 +114,7 @@ prop_compose! {
 }
 
 prop_compose! {
-    fn any_preset()(
+    pub fn any_preset()(
         texts in prop::array::uniform3("[^\\p{Cc}]{0,40}"),
         tags in prop::collection::vec("[a-z \"\\\\#']{0,12}", 0..4),
         scene in prop_oneof![Just(SceneSource::Builtin("knot?tess=8".into())), Just(SceneSource::File("a b/fox.glb".into())), Just(Preset::default().scene)],
@@ -149,6 +150,7 @@ prop_compose! {
         Preset {
             name, about, tags, scene, room, spin_deg_per_s, playback, camera,
             polyline: if reversed { [[background[0], -background[1], 1.0], [1e9, background[2], 1e-9], [0.0; 3]].into() } else { [].into() },
+            unit: if size[0] % 2 == 0 { LengthUnit::Meter } else { LengthUnit::Scene },
             scene_camera: if reversed { "from above".into() } else { String::new() },
             clock,
             animation: animated(&stack, tracks),

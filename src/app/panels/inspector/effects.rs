@@ -14,7 +14,8 @@ use crate::{
         theme,
     },
     effects::{EFFECTS, Effect},
-    params::ValueType,
+    params::Measure,
+    preset::LengthUnit,
 };
 
 pub fn effects_ui(ui: &mut Ui, state: &State, commands: &Commands) {
@@ -134,9 +135,9 @@ fn parameters_ui(ui: &mut Ui, state: &State, commands: &Commands, effect: &'stat
     let Some(words) = state.session.shown_words(effect) else { return };
     for field in effect.fields.iter().filter(|field| field.is_shown(effect.fields, &words)) {
         let row = Row::of_parameter((effect, field), &words).keyed(state.session.keying(effect, field));
+        let row = if state.session.preset().unit == LengthUnit::Scene { row.in_radii() } else { row };
         row_ui(ui, commands, &row, &field.value(&words));
-        // Directions are points without a unit, and extents are never negative.
-        if field.value_type == ValueType::Point && field.unit == "m" && field.hard[0] < 0.0 {
+        if field.measure() == Measure::Point {
             pick_ui(ui, state.picking, commands, (effect, field));
         }
     }

@@ -10,6 +10,11 @@ use crate::{
 /// Size of a thumbnail, points.
 const THUMBNAIL: egui::Vec2 = vec2(jobs::THUMBNAIL[0] as f32 / 2.0, jobs::THUMBNAIL[1] as f32 / 2.0);
 
+/// Where the next row of the gallery comes to lie.
+pub fn row_rect(ui: &Ui) -> Rect {
+    Rect::from_min_size(ui.next_widget_position(), vec2(ui.available_width(), THUMBNAIL.y + 8.0))
+}
+
 pub fn entry_ui(
     ui: &mut Ui,
     entry: &GalleryEntry,

@@ -7,7 +7,7 @@ use eframe::egui::{self, Align2, DragValue, Label, RichText, Sense, Ui, vec2};
 use crate::{
     app::{
         action::Action,
-        command::{Commands, Edit},
+        command::{Command, Commands, Edit, FileCommand},
         session::Session,
         state::State,
         text::grouped,
@@ -35,7 +35,7 @@ pub fn scenes_ui(ui: &mut Ui, state: &State, commands: &Commands) {
         let is_open = builtin.name == open;
         let button = egui::Button::selectable(is_open, builtin.name).min_size(vec2(ui.available_width(), theme::ROW));
         if ui.add(button).on_hover_text(builtin.about).clicked() && !is_open {
-            commands.edit(Edit::Builtin(builtin.name));
+            commands.send(Command::File(FileCommand::Open(format!("builtin:{}", builtin.name))));
         }
         if is_open && let Some(changed) = params_ui(ui, builtin, query) {
             commands.edit(Edit::BuiltinQuery(changed));

@@ -151,8 +151,8 @@ impl Compare {
             let accuracy = AccuracyRequest { tier: Tier::Reference, pins, ..AccuracyRequest::default() };
             return Inputs { view: session.view_at(&live.scene, full), accuracy, ..live.clone() };
         };
-        let Preset { stack, animation, accuracy, .. } = (**kept).clone();
-        let preset = Preset { stack, animation, accuracy, ..session.shown_preset() };
+        let Preset { stack, animation, accuracy, .. } = kept.in_meters(&live.scene).into_owned();
+        let preset = Preset { stack, animation, accuracy, ..session.metric_preset() };
         let stack = preset.evaluated_stack();
         Inputs { view: session.view_of(preset, &live.scene, full), stack, accuracy, scene: live.scene.clone() }
     }

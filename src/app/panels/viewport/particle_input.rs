@@ -24,7 +24,10 @@ pub fn attract(response: &Response, session: &Session, commands: &Commands) -> b
     let view = session.view_at(scene, whole_size(response.rect));
     let uv = (at - response.rect.min) / response.rect.size();
     let ndc = [2.0 * f64::from(uv.x) - 1.0, 1.0 - 2.0 * f64::from(uv.y)];
-    if let Some(point) = facing_point(&view, DVec3::new(value[0], value[1], value[2]), ndc) {
+    let (fit, through) = (session.unit_fit(), DVec3::new(value[0], value[1], value[2]));
+    let through = fit.map_or(through, |fit| fit.point(through));
+    if let Some(point) = facing_point(&view, through, ndc) {
+        let point = fit.map_or(point, |fit| fit.inverse().point(point));
         let [low, high] = field.hard;
         let point = point.clamp(DVec3::splat(low), DVec3::splat(high));
         commands.edit(Edit::Parameter((&EFFECT, field), point.to_value()));

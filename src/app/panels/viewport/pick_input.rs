@@ -43,7 +43,11 @@ pub fn pick(response: &Response, side: Rect, picking: Picking, state: &State, co
 /// The change that a click at `uv` makes; none where there is no triangle.
 fn edit(picking: Picking, state: &State, scene: &Scene, view: &View, uv: DVec2) -> Option<Edit> {
     match picking {
-        Picking::Point(parameter) => Some(Edit::Parameter(parameter, pick::pick(scene, view, uv)?.to_value())),
+        Picking::Point(parameter) => {
+            let point = pick::pick(scene, view, uv)?;
+            let in_unit = state.session.unit_fit().map_or(point, |fit| fit.inverse().point(point));
+            Some(Edit::Parameter(parameter, in_unit.to_value()))
+        }
         Picking::Part(effect, kind) => {
             let instance = &scene.instances[pick::pick_instance(scene, view, uv)?];
             let pattern = PartPattern::of_name(kind, names_of(scene, instance, kind).first()?);

@@ -1,0 +1,113 @@
+//! Fitting: the lengths and points of a preset for a scene of another size at another place.
+
+use std::borrow::Cow;
+
+use super::{
+    Preset,
+    animation::{Animation, Keyframe, Track},
+    fit::{Fit, LengthUnit},
+    setting::Storage,
+};
+use crate::{
+    effects::EnabledEffect,
+    params::{Field, Measure, Value, ValueType, format_number},
+    scene::Scene,
+};
+
+/// How a preset keeps the setting `unit`.
+pub(super) const UNIT: Storage = Storage::State {
+    get: |preset| Some(Value::Choice(preset.unit as usize)),
+    set: |preset, value| {
+        if let Value::Choice(index) = value {
+            preset.unit = LengthUnit::ALL[*index];
+        }
+        Ok(())
+    },
+    clear: None,
+};
+
+impl Preset {
+    /// Does it have lengths or points that count, so that its picture depends on the size of the scene?
+    pub fn has_lengths(&self) -> bool {
+        let counts = |enabled: &EnabledEffect| measured(self, enabled).next().is_some();
+        self.stack.0.iter().any(counts) || !self.polyline.is_empty()
+    }
+
+    /// The preset with its lengths and points fitted to another scene, values of keyframes and the polyline too; parameters that do not
+    /// count for the picture keep their values. The sentences say which values their range did not allow.
+    pub fn fitted(&self, fit: &Fit) -> (Self, Vec<String>) {
+        let (mut fitted, mut warnings) = (self.clone(), Vec::new());
+        if fit.is_identity() {
+            return (fitted, warnings);
+        }
+        for (before, after) in self.stack.0.iter().zip(&mut fitted.stack.0) {
+            for field in measured(self, before) {
+                let value = field.get(&before.words);
+                let (components, is_clamped) = fit.components(field, &value);
+                let outcome = field.set(&mut after.words, &components);
+                debug_assert!(outcome.is_ok(), "{}: {outcome:?}", field.name);
+                if is_clamped && self.animation.get(before.effect.name, field.name).is_none() {
+                    warnings.push(clamped(before.effect.name, field));
+                }
+            }
+        }
+        fitted.animation = Animation::default();
+        for track in self.animation.tracks() {
+            fitted.animation.put(fitted_track(fit, track, &mut warnings));
+        }
+        fitted.polyline = fit.polyline(&self.polyline).into();
+        (fitted, warnings)
+    }
+
+    /// The preset with its lengths in meters, for `scene`.
+    pub fn in_meters(&self, scene: &Scene) -> Cow<'_, Self> {
+        if self.unit == LengthUnit::Meter {
+            return Cow::Borrowed(self);
+        }
+        let fit = Fit::of_scene_unit(&scene.content_bounds());
+        let fitted = fit.map_or_else(|| self.clone(), |fit| self.fitted(&fit).0);
+        Cow::Owned(Self { unit: LengthUnit::Meter, ..fitted })
+    }
+
+    /// From the unit of the preset to meters in `scene`; none where that changes nothing.
+    pub fn unit_fit(&self, scene: &Scene) -> Option<Fit> {
+        if self.unit == LengthUnit::Meter { None } else { Fit::of_scene_unit(&scene.content_bounds()) }
+    }
+}
+
+/// The parameters of an effect that measure something and count for the picture. One that depends on a choice counts if the choice
+/// is made, or may be made by a keyframe.
+fn measured<'a>(preset: &'a Preset, enabled: &'a EnabledEffect) -> impl Iterator<Item = &'static Field> + 'a {
+    let effect = enabled.effect;
+    let is_animated = |name: &str| preset.animation.get(effect.name, name).is_some();
+    let counts = move |field: &&Field| {
+        field.measure() != Measure::None
+            && (field.is_shown(effect.fields, &enabled.words) || field.when.is_some_and(|(choice, _)| is_animated(choice)))
+    };
+    effect.fields.iter().filter(counts)
+}
+
+fn fitted_track(fit: &Fit, track: &Track, warnings: &mut Vec<String>) -> Track {
+    let field = track.field();
+    if field.measure() == Measure::None {
+        return track.clone();
+    }
+    let mut is_any_clamped = false;
+    let keys = track.keys().iter().map(|key| {
+        let (value, is_clamped) = fit.components(field, &key.value);
+        is_any_clamped |= is_clamped;
+        Keyframe { value, ..key.clone() }
+    });
+    let keys: Vec<Keyframe> = keys.collect();
+    if is_any_clamped {
+        warnings.push(clamped(track.effect().name, field));
+    }
+    // Times, easings and the number of keyframes are those of a track, and the values lie in their range.
+    Track::new(track.effect(), field, keys).unwrap_or_else(|_| track.clone())
+}
+
+fn clamped(effect: &str, field: &Field) -> String {
+    let [low, high] = field.hard.map(format_number);
+    let each = if matches!(field.value_type, ValueType::Point) { "each coordinate of it " } else { "" };
+    format!("{effect}.{}: fitted to this scene it would leave its range; {each}was kept inside {low}..={high}", field.name)
+}

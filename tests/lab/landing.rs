@@ -1,0 +1,226 @@
+//! Promise: a preset lands on the user's own model, which keeps its camera and clip; its own scene comes when that is asked for; nothing of
+//! the gallery is overwritten, and undo takes it back in one step.
+
+use std::path::{Path, PathBuf};
+
+use eframe::egui::{Key, Modifiers, Role, vec2};
+use egui_kittest::kittest::Queryable as _;
+use rasterlab::{
+    preset::SceneSource,
+    preset_file::{self, Folders, PresetFile},
+    scene::builtin,
+};
+
+use crate::{
+    files::{drop_files, tiny_glb},
+    harness::*,
+};
+
+fn model(folder: &Path) -> PathBuf {
+    let path = folder.join("tri.glb");
+    std::fs::write(&path, tiny_glb()).expect("a file");
+    path
+}
+
+fn gallery(id: &str) -> PresetFile {
+    preset_file::open(id, &Folders::default()).expect("a preset of the gallery")
+}
+
+/// Clicks on a preset of the browser.
+fn choose(lab: &mut Lab, title: &str, modifiers: Modifiers) {
+    let label = format!("Preset {title}");
+    lab.get_by_role_and_label(Role::Button, &label).scroll_to_me();
+    lab.run_steps(20);
+    lab.get_by_role_and_label(Role::Button, &label).click_modifiers(modifiers);
+    lab.run_steps(4);
+    settle(lab);
+}
+
+fn stack(lab: &Lab) -> Vec<&'static str> {
+    lab.state().preset_file().preset.stack.0.iter().map(|enabled| enabled.effect.name).collect()
+}
+
+fn scene(lab: &Lab) -> SceneSource {
+    lab.state().preset_file().preset.scene.clone()
+}
+
+#[test]
+fn a_chosen_preset_lands_on_the_model_and_undo_takes_it_back_in_one_step() {
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    let model = model(folder.path());
+    let Some(mut lab) = lab(&model.to_string_lossy()) else { return };
+    let view = lab.get_by_label("Picture").rect();
+    drag(&mut lab, view.center(), view.center() + vec2(40.0, 15.0));
+    let (before, steps) = (lab.state().preset_file().clone(), lab.state().undo_steps());
+    assert!(before.preset.camera.is_some());
+
+    let hatch = gallery("hatch");
+    choose(&mut lab, hatch.title(), Modifiers::NONE);
+    let landed = lab.state().preset_file();
+    assert_eq!(landed.preset.scene, SceneSource::File(model));
+    assert_eq!(landed.preset.camera, before.preset.camera);
+    assert_eq!((&landed.preset.stack, landed.preset.output.background), (&hatch.preset.stack, hatch.preset.output.background));
+    assert_eq!((landed.path.as_deref(), landed.title()), (None, format!("{} on tri", hatch.title()).as_str()));
+    assert!(lab.state().log_text().contains(&format!("Opened {} on tri", hatch.title())), "{}", lab.state().log_text());
+    assert_eq!(lab.state().undo_steps(), steps + 1);
+
+    undo(&mut lab);
+    assert_eq!((&lab.state().preset_file().preset, &lab.state().preset_file().id), (&before.preset, &before.id));
+    assert!(error_lines(&lab).is_empty(), "{:?}", error_lines(&lab));
+}
+
+#[test]
+fn the_presets_own_scene_comes_with_shift_and_with_the_menu() {
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    let model = model(folder.path());
+    let Some(mut lab) = lab(&model.to_string_lossy()) else { return };
+    let knot = gallery("facet-knot");
+    choose(&mut lab, knot.title(), Modifiers::SHIFT);
+    assert_eq!((&lab.state().preset_file().preset, &lab.state().preset_file().id), (&knot.preset, &knot.id));
+    undo(&mut lab);
+    assert_eq!(scene(&lab), SceneSource::File(model.clone()));
+
+    choose(&mut lab, knot.title(), Modifiers::NONE);
+    assert_eq!(scene(&lab), SceneSource::File(model));
+    click(&mut lab, Role::Button, "File");
+    click(&mut lab, Role::Button, "Open with its scene");
+    assert_eq!((&lab.state().preset_file().preset, &lab.state().preset_file().id), (&knot.preset, &knot.id));
+    // Now the scene is the preset's own, so the next preset brings its own as well.
+    let hatch = gallery("hatch");
+    choose(&mut lab, hatch.title(), Modifiers::NONE);
+    assert_eq!(scene(&lab), hatch.preset.scene);
+}
+
+#[test]
+fn the_keys_and_dropped_presets_land_too() {
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    let model = model(folder.path());
+    let Some(mut lab) = lab("hatch") else { return };
+    drop_files(&mut lab, &[&model]);
+    let ids: Vec<String> = preset_file::gallery(&Folders::default()).into_iter().map(|entry| entry.id).collect();
+    let here = ids.iter().position(|id| id == "hatch").expect("a preset of the gallery");
+    for step in 1..=2 {
+        press(&mut lab, Modifiers::NONE, Key::CloseBracket);
+        assert_eq!(lab.state().preset_file().look_id(), ids[here + step]);
+        assert_eq!(scene(&lab), SceneSource::File(model.clone()));
+    }
+    let dropped = folder.path().join("ink.toml");
+    std::fs::write(&dropped, "schema = 2\nname = \"Ink\"\n[scene]\nbuiltin = \"cube-wall\"\n[effects.toon]\n").expect("a file");
+    drop_files(&mut lab, &[&dropped]);
+    assert_eq!((scene(&lab), stack(&lab)), (SceneSource::File(model), vec!["toon"]));
+    assert_eq!(lab.state().preset_file().title(), "Ink on tri");
+}
+
+#[test]
+fn a_model_takes_the_look_that_is_open_and_the_camera_shows_it_whole() {
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    let model = model(folder.path());
+    let Some(mut lab) = lab("facet-radial") else { return };
+    let look = gallery("facet-radial");
+    drop_files(&mut lab, &[&model]);
+    let landed = lab.state().preset_file().preset.clone();
+    assert_eq!((landed.scene, landed.camera), (SceneSource::File(model), None));
+    assert_eq!((stack(&lab), landed.output.background), (vec!["facet", "lambert"], look.preset.output.background));
+    // Lengths fit the model, from the radius of the sphere to that of the triangle.
+    let sphere = builtin::build("sphere?triangles=700").expect("a scene").bounds().radius();
+    let radius = value(&lab, "facet", "radius_m")[0];
+    let wanted = 0.9 * 0.5f64.sqrt() / sphere;
+    assert!((radius - wanted).abs() < 1e-5, "{radius} is not {wanted}");
+}
+
+#[test]
+fn lengths_of_a_chosen_preset_are_fitted_to_the_model() {
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    let Some(mut lab) = lab(&model(folder.path()).to_string_lossy()) else { return };
+    choose(&mut lab, gallery("facet-radial").title(), Modifiers::NONE);
+    let sphere = builtin::build("sphere?triangles=700").expect("a scene").bounds();
+    let scale = 0.5f64.sqrt() / sphere.radius();
+    let center = value(&lab, "facet", "center");
+    for (axis, (at, middle)) in [(0.4, 0.5), (0.4, 0.5), (0.9, 0.0)].into_iter().enumerate() {
+        let wanted = middle + (at - sphere.center()[axis]) * scale;
+        assert!((center[axis] - wanted).abs() < 1e-5, "{center:?}");
+    }
+    assert!((value(&lab, "facet", "width_m")[0] - 0.3 * scale).abs() < 1e-5);
+}
+
+#[test]
+fn a_built_in_scene_that_was_chosen_is_the_users_own() {
+    let Some(mut lab) = lab("hatch") else { return };
+    let toon = gallery("toon");
+    choose(&mut lab, toon.title(), Modifiers::NONE);
+    assert_eq!(scene(&lab), toon.preset.scene, "presets of the gallery bring their scenes");
+    click(&mut lab, Role::Button, "Scene");
+    click(&mut lab, Role::Button, "cube-wall");
+    assert_eq!((scene(&lab), stack(&lab).contains(&"toon")), (SceneSource::Builtin("cube-wall".into()), true));
+    click(&mut lab, Role::Button, "Presets");
+    choose(&mut lab, gallery("hatch").title(), Modifiers::NONE);
+    assert_eq!((scene(&lab), stack(&lab).contains(&"hatch")), (SceneSource::Builtin("cube-wall".into()), true));
+    undo(&mut lab);
+    undo(&mut lab);
+    assert_eq!(lab.state().preset_file().preset, toon.preset);
+}
+
+#[test]
+fn what_is_saved_afterwards_is_a_new_preset() {
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    let model = model(folder.path());
+    let presets = folder.path().join("presets");
+    std::fs::create_dir(&presets).expect("a folder");
+    let text = "schema = 2\nname = \"Ink\"\n[scene]\nbuiltin = \"cube-wall\"\n[effects.toon]\nsteps = 5\n";
+    std::fs::write(presets.join("ink.toml"), text).expect("a file");
+    let Some(mut lab) = lab_in(&model.to_string_lossy(), Some(&presets)) else { return };
+    choose(&mut lab, "Ink", Modifiers::NONE);
+    press(&mut lab, Modifiers::COMMAND, Key::S); // It asks for a name.
+    press(&mut lab, Modifiers::NONE, Key::Enter);
+    let saved = preset_file::load(&presets.join("ink-tri.toml")).unwrap_or_else(|error| panic!("{error}\n{}", lab.state().log_text()));
+    assert!(saved.warnings.is_empty() && saved.preset.stack.get("toon").is_some());
+    let SceneSource::File(path) = &saved.preset.scene else { panic!("{:?}", saved.preset.scene) };
+    assert_eq!(std::fs::canonicalize(presets.join(path)).expect("the model"), std::fs::canonicalize(&model).expect("the model"));
+    assert_eq!(std::fs::read_to_string(presets.join("ink.toml")).expect("the preset"), text, "the preset of the gallery is as it was");
+    assert!(!lab.state().preset_file().is_modified());
+    // A preset of the same model comes back with its camera.
+    let mut with_camera = saved.clone();
+    with_camera.preset.camera = Some(rasterlab::scene::camera::Camera::default());
+    preset_file::save(&mut with_camera, &presets.join("other.toml")).expect("a file");
+    drop_files(&mut lab, &[&presets.join("other.toml")]);
+    assert_eq!(lab.state().preset_file().preset.camera, with_camera.preset.camera);
+}
+
+#[test]
+fn what_is_left_out_is_said_once_and_the_rest_is_shown() {
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    let Some(mut lab) = lab(&model(folder.path()).to_string_lossy()) else { return };
+    let look = folder.path().join("herd.toml");
+    let text = "schema = 2\nname = \"Herd\"\n[scene]\nbuiltin = \"walker?tess=2\"\nclip = \"Walk\"\n[effects.hatch]\non = [\"node:walker 1\"]\n[effects.lambert]\n";
+    std::fs::write(&look, text).expect("a file");
+    drop_files(&mut lab, &[&look]);
+    assert_eq!(stack(&lab).len(), 2);
+    let log = lab.state().log_text();
+    for words in ["clip \"Walk\" was left out", "no node that matches \"walker 1\""] {
+        assert_eq!(log.lines().filter(|line| line.starts_with("warning") && line.contains(words)).count(), 1, "{words}\n{log}");
+    }
+    assert!(log.contains("Opened Herd on tri; 2 things were left out") && error_lines(&lab).is_empty(), "{log}");
+}
+
+#[test]
+fn thumbnails_show_the_presets_on_the_users_model() {
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    let Some(mut lab) = lab("hatch") else { return };
+    assert!(lab.query_by_role_and_label(Role::CheckBox, "Thumbnails on tri").is_none());
+    drop_files(&mut lab, &[&model(folder.path())]);
+    let first = preset_file::gallery(&Folders::default())[0].preset_file.as_ref().expect("a preset").title().to_owned();
+    let thumbnail = |lab: &mut Lab| {
+        lab.remove_cursor();
+        lab.run_steps(3);
+        let row = lab.get_by_role_and_label(Role::Button, &format!("Preset {first}")).rect();
+        let [x, y] = [row.min.x + 8.0, row.min.y + 8.0].map(|v| v.round() as u32);
+        image::imageops::crop_imm(&lab.screenshot(), x, y, 64, 46).to_image()
+    };
+    lab.get_by_role_and_label(Role::Button, &format!("Preset {first}")).scroll_to_me();
+    lab.run_steps(20);
+    let own = thumbnail(&mut lab);
+    click(&mut lab, Role::CheckBox, "Thumbnails on tri");
+    assert!(thumbnail(&mut lab) != own, "the thumbnail shows another scene");
+    click(&mut lab, Role::CheckBox, "Thumbnails on tri");
+    assert!(thumbnail(&mut lab) == own, "the preset's own thumbnail is kept");
+}
