@@ -6,15 +6,17 @@ use serde_json::{Value, json};
 
 use super::{args::Common, error::CliError, streams::Streams};
 use crate::{
+    effects::Stack,
     frame::Frame,
     gpu::{
         Capture, Gpu, Renderer,
         device::{AdapterChoice, AdapterSummary, Caps},
     },
+    measure::{ErrorReport, Verdict},
     oracle::{self, Shot},
     preset::{Preset, Visibility},
     preset_file::{self, PresetError, PresetFile, Provenance},
-    scene::Scene,
+    scene::{Scene, draw::DrawError, view::View},
 };
 
 /// The backend that `--adapter` or the environment names.
@@ -112,6 +114,20 @@ impl Backend {
         match self {
             Self::Oracle => Ok(oracle::render_scaled(scene, &preset.moments(scene, preset.output.size), preset.accuracy.scale().factor())?),
             Self::Gpu(..) => Ok(self.capture(preset, scene)?.into_shown()),
+        }
+    }
+
+    /// The verdict on a capture of this backend. The oracle's own picture is the reference.
+    ///
+    /// # Errors
+    /// As [`oracle::judge`].
+    pub fn judged(&self, scene: &Scene, view: &View, stack: &Stack, capture: &Capture) -> Result<Verdict, DrawError> {
+        match self {
+            Self::Gpu(..) => oracle::judge(scene, view, stack, &capture.picture()),
+            Self::Oracle => {
+                let report = ErrorReport { pixels: view.pixels() as u64, ..ErrorReport::default() };
+                Ok(Verdict { report, expected: capture.frame.clone(), ..Verdict::default() })
+            }
         }
     }
 
