@@ -11,7 +11,7 @@ use crate::{
 };
 
 /// The preset of a window that was opened without one; it plays. A software driver draws it fast enough for that.
-pub const FIRST_PRESET: &str = "hero-walk";
+pub const FIRST_PRESET: &str = "facet-random";
 
 /// The preset to begin with: one that is open already, or `open`. If it cannot be opened, the error is logged and the teapot is
 /// shown.
