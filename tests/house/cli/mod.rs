@@ -4,6 +4,7 @@ mod effects;
 mod files_kept;
 mod films;
 mod limits;
+mod manual;
 mod parts;
 mod sequences;
 
