@@ -1,11 +1,15 @@
 //! Carrying out commands, a function per subject.
 
-use std::path::{Path, PathBuf};
+use std::{
+    path::{Path, PathBuf},
+    sync::Arc,
+};
 
 use eframe::egui::{self, ViewportCommand};
 
 use super::{
     command::{CodeUse, Command, Commands, FileCommand, KeyframeEdit, Purpose, RowCommand, Side, Toggle, ViewCommand},
+    film,
     log::Level,
     new_effect, open,
     panels::{Panels, timeline::Timeline},
@@ -72,6 +76,7 @@ fn apply(ctx: &egui::Context, state: &mut State, panels: &mut Panels, command: C
                 state.jobs.measure(state.screen.gpu.summary.name.clone(), scene.clone(), *request, progress);
             }
         }
+        Command::ExportFilm(request, progress) => export_film(state, *request, progress),
         Command::Toggle(which) => toggle(state, panels, which),
         Command::Verify => verify(state, panels),
         Command::Mute(effect, true) => drop(state.session.muted.insert(effect.name)),
@@ -171,6 +176,7 @@ fn toggle(state: &mut State, panels: &mut Panels, which: Toggle) {
         Toggle::Log => open.log = !open.log,
         Toggle::CheatSheet => open.cheat_sheet = !open.cheat_sheet,
         Toggle::Extremes => panels.extremes.toggle(),
+        Toggle::Film => panels.film.toggle(state),
     }
 }
 
@@ -345,4 +351,12 @@ fn export(state: &mut State, path: PathBuf, size: [u32; 2]) {
     let mut exported = state.session.preset_file.clone();
     exported.preset = state.session.shown_preset();
     state.jobs.export(state.screen.gpu.clone(), inputs, exported, path);
+}
+
+/// Draws a film as the window shows the preset: without muted effects.
+fn export_film(state: &State, request: film::Request, progress: Arc<film::Progress>) {
+    let Some(scene) = state.session.scene() else { return };
+    let mut exported = state.session.preset_file.clone();
+    state.session.muted.iter().for_each(|effect| exported.preset.disable(effect));
+    state.jobs.export_film(state.screen.gpu.summary.name.clone(), scene.clone(), exported, request, progress);
 }

@@ -10,6 +10,7 @@ use glam::DVec3;
 
 use super::{
     action::Action,
+    film,
     key_id::KeyId,
     log::Level,
     overlay::Overlay,
@@ -68,6 +69,8 @@ pub enum Command {
     View(ViewCommand),
     /// Measures every combination of the options of the request's axes.
     MeasureSweep(Box<Request>, Arc<Progress>),
+    /// Draws the film of the preset and writes it.
+    ExportFilm(Box<film::Request>, Arc<film::Progress>),
     /// Pins the options of these axes, as a separate undo step.
     PinOptions(PinnedOptions, Vec<&'static Axis>),
     Toggle(Toggle),
@@ -277,6 +280,7 @@ pub enum Toggle {
     Log,
     CheatSheet,
     Extremes,
+    Film,
 }
 
 impl From<Action> for Command {
@@ -315,6 +319,7 @@ impl From<Action> for Command {
             Action::Log => Self::Toggle(Toggle::Log),
             Action::CheatSheet => Self::Toggle(Toggle::CheatSheet),
             Action::Extremes => Self::Toggle(Toggle::Extremes),
+            Action::Film => Self::Toggle(Toggle::Film),
         }
     }
 }

@@ -11,6 +11,7 @@ mod command;
 mod device;
 mod edit;
 mod fields;
+mod film;
 mod findings;
 mod finished;
 mod golden_check;

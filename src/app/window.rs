@@ -113,7 +113,7 @@ impl App {
     /// True if the picture shows the preset and nothing is still to come.
     pub fn is_idle(&self) -> bool {
         let State { session, screen, verification, .. } = &self.state;
-        let Panels { viewport, sweep, browser, .. } = &self.panels;
+        let Panels { viewport, sweep, browser, film, .. } = &self.panels;
         let is_shown =
             !self.state.opening.is_waiting() && !session.scenes.is_loading() && session.scene().is_some() && !screen.is_waiting();
         let is_judged = !verification.is_running() && self.state.overlays_are_ready();
@@ -123,6 +123,7 @@ impl App {
             && !self.state.live.is_busy()
             && !viewport.compare.is_waiting()
             && !sweep.is_measuring()
+            && !film.is_exporting()
             && !browser.is_busy()
     }
 
@@ -400,6 +401,7 @@ impl eframe::App for App {
         self.panel_ui(ui, |panels| &mut panels.dialogs);
         self.panel_ui(ui, |panels| &mut panels.cheat_sheet);
         self.panel_ui(ui, |panels| &mut panels.extremes);
+        self.panel_ui(ui, |panels| &mut panels.film);
         self.request_thumbnail();
         self.request_precision(&ctx, is_held);
         self.state.observe(is_held);

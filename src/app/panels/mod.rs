@@ -4,6 +4,7 @@ pub mod brought_code;
 pub mod cheat_sheet;
 pub mod dialogs;
 pub mod extremes;
+pub mod film;
 pub mod inspector;
 pub mod log;
 pub mod new_effect;
@@ -14,8 +15,8 @@ pub mod topbar;
 pub mod viewport;
 
 use self::{
-    cheat_sheet::CheatSheet, dialogs::Dialogs, extremes::Extremes, inspector::Inspector, log::LogPanel, preset_browser::PresetBrowser,
-    sweep::SweepPanel, timeline::Timeline, topbar::TopBar, viewport::Viewport,
+    cheat_sheet::CheatSheet, dialogs::Dialogs, extremes::Extremes, film::FilmPanel, inspector::Inspector, log::LogPanel,
+    preset_browser::PresetBrowser, sweep::SweepPanel, timeline::Timeline, topbar::TopBar, viewport::Viewport,
 };
 use crate::preset_file::Folders;
 
@@ -31,6 +32,7 @@ pub struct Panels {
     pub dialogs: Dialogs,
     pub cheat_sheet: CheatSheet,
     pub extremes: Extremes,
+    pub film: FilmPanel,
 }
 
 impl Panels {
@@ -47,6 +49,7 @@ impl Panels {
             dialogs: Dialogs::default(),
             cheat_sheet: CheatSheet::default(),
             extremes: Extremes::default(),
+            film: FilmPanel::default(),
         }
     }
 }
