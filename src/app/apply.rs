@@ -1,12 +1,16 @@
 //! Carrying out commands, a function per subject.
 
-use std::path::{Path, PathBuf};
+use std::{
+    path::{Path, PathBuf},
+    sync::Arc,
+};
 
 use eframe::egui::{self, ViewportCommand};
 
 use super::{
     anti_aliasing,
     command::{CodeUse, Command, Commands, FileCommand, KeyframeEdit, Manner, Purpose, RowCommand, Side, Toggle, ViewCommand},
+    film,
     log::Level,
     new_effect, open,
     panels::{Panels, timeline::Timeline},
@@ -79,6 +83,7 @@ fn apply(ctx: &egui::Context, state: &mut State, panels: &mut Panels, command: C
                 state.jobs.measure(state.screen.gpu.summary.name.clone(), scene.clone(), *request, progress);
             }
         }
+        Command::ExportFilm(request, progress) => export_film(state, *request, progress),
         Command::Toggle(which) => toggle(state, panels, which),
         Command::Verify => verify(state, panels),
         Command::CancelVerify => state.verification.cancel(),
@@ -199,6 +204,7 @@ fn toggle(state: &mut State, panels: &mut Panels, which: Toggle) {
         Toggle::Extremes => panels.extremes.toggle(),
         Toggle::Randomize => panels.randomize.toggle(),
         Toggle::Sweep => panels.sweep.toggle(),
+        Toggle::Film => panels.film.toggle(state),
     }
 }
 
@@ -383,4 +389,12 @@ fn export(state: &mut State, path: PathBuf, size: [u32; 2]) {
     let accuracy = exported.preset.accuracy;
     let inputs = Inputs { view: state.session.view_at(scene, size), accuracy, ..requested.clone() };
     state.jobs.export(state.screen.gpu.clone(), inputs, exported, path);
+}
+
+/// Draws a film as the window shows the preset: without muted effects.
+fn export_film(state: &State, request: film::Request, progress: Arc<film::Progress>) {
+    let Some(scene) = state.session.scene() else { return };
+    let mut exported = state.session.preset_file.clone();
+    state.session.muted.iter().for_each(|effect| exported.preset.disable(effect));
+    state.jobs.export_film(state.screen.gpu.summary.name.clone(), scene.clone(), exported, request, progress);
 }

@@ -11,6 +11,7 @@ use glam::DVec3;
 use super::{
     action::Action,
     cells::Cells,
+    film,
     key_id::KeyId,
     log::Level,
     overlay::Overlay,
@@ -79,6 +80,8 @@ pub enum Command {
     View(ViewCommand),
     /// Measures every combination of the options of the request's axes.
     MeasureTrade(Box<Request>, Arc<Progress>),
+    /// Draws the film of the preset and writes it.
+    ExportFilm(Box<film::Request>, Arc<film::Progress>),
     /// Pins the options of these axes, as a separate undo step.
     PinOptions(PinnedOptions, Vec<&'static Axis>),
     Toggle(Toggle),
@@ -303,6 +306,7 @@ pub enum Toggle {
     Extremes,
     Randomize,
     Sweep,
+    Film,
 }
 
 impl From<Action> for Command {
@@ -344,6 +348,7 @@ impl From<Action> for Command {
             Action::Extremes => Self::Toggle(Toggle::Extremes),
             Action::RandomizeWindow => Self::Toggle(Toggle::Randomize),
             Action::Sweep => Self::Toggle(Toggle::Sweep),
+            Action::Film => Self::Toggle(Toggle::Film),
         }
     }
 }

@@ -55,6 +55,11 @@ pub fn finish(ctx: &egui::Context, state: &mut State, panels: &mut Panels, comma
         Done::ThumbnailOn(key, id, image) => panels.browser.on_model_arrived(ctx, key, id, image),
         Done::Export(path, Ok(())) => state.notify(Level::Info, format!("Saved {}", path.display())),
         Done::Export(_, Err(error)) => state.notify(Level::Error, error),
+        Done::Film(progress, ended) => {
+            if let Some((level, text)) = panels.film.arrived(&progress, ended) {
+                state.notify(level, text);
+            }
+        }
         Done::Compiled(reload, outcome) => compiled(state, panels, reload, outcome),
         Done::Precision(of, measured) => {
             if let Some(error) = state.precision.arrived(*of, measured) {

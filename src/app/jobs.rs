@@ -11,6 +11,7 @@ use eframe::egui;
 use super::{
     cells::{self, CellOf, CellResult, Cells},
     command::{Origin, Purpose},
+    film,
     findings::Findings,
     golden_check::{self, GoldenCheck},
     live::Reload,
@@ -48,6 +49,7 @@ pub enum Done {
     /// The thumbnail of a preset on the user's own scene.
     ThumbnailOn(SceneKey, String, Option<egui::ColorImage>),
     Export(PathBuf, Result<(), String>),
+    Film(Arc<film::Progress>, Result<film::Finished, film::Failure>),
     /// The path from the system's file dialog; none if it was canceled or could not be shown.
     Path(Purpose, Option<PathBuf>),
     /// Pipelines for what was changed on disk.
@@ -232,6 +234,23 @@ impl Jobs {
         self.spawn("export", move || {
             let saved = caught("saving the picture", || export(gpu, &inputs, &preset_file, &path));
             Done::Export(path, saved)
+        });
+    }
+
+    /// Draws a film on a second device.
+    pub fn export_film(
+        &self,
+        adapter: String,
+        scene: Arc<Scene>,
+        preset_file: PresetFile,
+        request: film::Request,
+        progress: Arc<film::Progress>,
+    ) {
+        let ctx = self.ctx.clone();
+        self.spawn("film", move || {
+            let work = || Ok(film::export(adapter, scene, preset_file, &request, &progress, &ctx));
+            let ended = caught("drawing the film", work).unwrap_or_else(|bug| Err(film::Failure::Other(bug)));
+            Done::Film(progress, ended)
         });
     }
 

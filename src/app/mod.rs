@@ -14,6 +14,7 @@ mod device;
 mod edit;
 mod expectation;
 mod fields;
+mod film;
 mod findings;
 mod finished;
 mod golden_check;

@@ -114,7 +114,7 @@ impl App {
     /// True if the picture shows the preset and nothing is still to come.
     pub fn is_idle(&self) -> bool {
         let State { session, screen, verification, .. } = &self.state;
-        let Panels { viewport, trade, browser, .. } = &self.panels;
+        let Panels { viewport, trade, browser, film, .. } = &self.panels;
         let is_shown =
             !self.state.opening.is_waiting() && !session.scenes.is_loading() && session.scene().is_some() && !screen.is_waiting();
         let is_judged = !verification.is_running() && self.state.overlays_are_ready();
@@ -124,6 +124,7 @@ impl App {
             && !self.state.live.is_busy()
             && !viewport.compare.is_waiting()
             && !trade.is_measuring()
+            && !film.is_exporting()
             && !browser.is_busy()
             && !self.panels.randomize.is_drawing()
             && !self.panels.sweep.is_drawing()
@@ -424,6 +425,7 @@ impl eframe::App for App {
         self.panel_ui(ui, |panels| &mut panels.extremes);
         self.panel_ui(ui, |panels| &mut panels.randomize);
         self.panel_ui(ui, |panels| &mut panels.sweep);
+        self.panel_ui(ui, |panels| &mut panels.film);
         self.request_thumbnail();
         self.request_precision(&ctx, is_held);
         self.state.observe(is_held);

@@ -123,6 +123,9 @@ pub enum Command {
     NewEffect(NewEffect),
     /// Print a completion script
     Completions { shell: clap_complete::Shell },
+    /// Print the manual page, or write it and those of all commands into a folder
+    #[command(hide = true)]
+    Man { folder: Option<PathBuf> },
 }
 
 impl Command {
@@ -154,6 +157,7 @@ impl Command {
             Self::Migrate(_) => "migrate",
             Self::NewEffect(_) => "new-effect",
             Self::Completions { .. } => "completions",
+            Self::Man { .. } => "man",
         }
     }
 }

@@ -18,6 +18,7 @@ mod fuzz;
 pub mod gallery;
 pub mod golden;
 mod list;
+mod man;
 mod measured;
 mod migrate;
 mod new_effect;
@@ -105,6 +106,7 @@ fn dispatch(common: &Common, command: &Command, streams: &mut Streams) -> Result
             streams.bytes(&script)?;
             Ok(Exit::Done)
         }
+        Command::Man { folder } => man::run(folder.as_deref(), streams),
     }
 }
 

@@ -10,6 +10,7 @@ mod brought_code;
 mod compare;
 mod duplicates;
 mod files;
+mod films;
 mod goldens;
 mod harness;
 mod inspector;

@@ -5,6 +5,7 @@ pub mod brought_code;
 pub mod cheat_sheet;
 pub mod dialogs;
 pub mod extremes;
+pub mod film;
 pub mod inspector;
 pub mod log;
 pub mod new_effect;
@@ -17,8 +18,9 @@ pub mod trade;
 pub mod viewport;
 
 use self::{
-    cheat_sheet::CheatSheet, dialogs::Dialogs, extremes::Extremes, inspector::Inspector, log::LogPanel, preset_browser::PresetBrowser,
-    randomize::RandomizePanel, sweep::SweepPanel, timeline::Timeline, topbar::TopBar, trade::TradePanel, viewport::Viewport,
+    cheat_sheet::CheatSheet, dialogs::Dialogs, extremes::Extremes, film::FilmPanel, inspector::Inspector, log::LogPanel,
+    preset_browser::PresetBrowser, randomize::RandomizePanel, sweep::SweepPanel, timeline::Timeline, topbar::TopBar, trade::TradePanel,
+    viewport::Viewport,
 };
 use crate::preset_file::Folders;
 
@@ -36,6 +38,7 @@ pub struct Panels {
     pub extremes: Extremes,
     pub randomize: RandomizePanel,
     pub sweep: SweepPanel,
+    pub film: FilmPanel,
 }
 
 impl Panels {
@@ -54,6 +57,7 @@ impl Panels {
             extremes: Extremes::default(),
             randomize: RandomizePanel::default(),
             sweep: SweepPanel::default(),
+            film: FilmPanel::default(),
         }
     }
 }

@@ -30,6 +30,7 @@ const MENUS: [(&str, &[Option<Action>]); 4] = [
             Some(Action::Save),
             Some(Action::SaveAs),
             Some(Action::Export),
+            Some(Action::Film),
             None,
             Some(Action::CopyPreset),
             Some(Action::PastePreset),

@@ -5,6 +5,7 @@ mod files_kept;
 mod films;
 mod limits;
 mod looks;
+mod manual;
 mod parts;
 mod sequences;
 mod sweeps;

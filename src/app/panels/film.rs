@@ -1,0 +1,343 @@
+//! Exporting a film: its format, size, rate and range, and how far it is. It is drawn on another thread and another device.
+
+use std::{path::Path, sync::Arc};
+
+use eframe::egui::{self, ComboBox, DragValue, Grid, Key, RichText, Ui};
+
+use crate::{
+    accuracy::RenderScale,
+    app::{
+        command::{Command, Commands},
+        film::{Failure, Finished, Format, Progress, Request, time_left_text},
+        log::Level,
+        panel::Panel,
+        state::State,
+        theme,
+    },
+    film::{Turntable, find_ffmpeg},
+    preset::Clock,
+};
+
+/// Longest side of a film, pixels: that of an exported picture.
+const MAX_SIDE: u32 = 8192;
+
+/// Largest number of frames per second that the window offers.
+const MAX_FPS: f64 = 240.0;
+
+/// Width of the window, points.
+const WIDTH: f32 = 460.0;
+
+/// What anti-aliasing may be chosen; none: as the preset has it.
+const ANTI_ALIASING: [(Option<RenderScale>, &str); 4] =
+    [(None, "As the preset"), (Some(RenderScale::Full), "Off"), (Some(RenderScale::Double), "2×2"), (Some(RenderScale::Quadruple), "4×4")];
+
+const TURNTABLES: [(Option<Turntable>, &str); 3] = [(None, "None"), (Some(Turntable::Camera), "Camera"), (Some(Turntable::Scene), "Scene")];
+
+/// The dialog that exports a film.
+#[derive(Default)]
+pub struct FilmPanel {
+    form: Option<Form>,
+    is_open: bool,
+    running: Option<(Request, Arc<Progress>)>,
+    /// The film that was canceled, until its thread has written the frame it was at.
+    ending: Option<Arc<Progress>>,
+    /// Why the last film was not finished.
+    failure: Option<Failure>,
+}
+
+/// What the person has chosen.
+struct Form {
+    /// The preset that it was filled in for.
+    preset: String,
+    path: String,
+    format: Format,
+    size: [u32; 2],
+    fps: f64,
+    range_s: [f64; 2],
+    turntable: Option<Turntable>,
+    scale: Option<RenderScale>,
+    has_ffmpeg: bool,
+}
+
+impl Form {
+    fn new(state: &State) -> Self {
+        let session = &state.session;
+        let id = if session.preset_file.id.is_empty() { "film" } else { &session.preset_file.id };
+        let output = session.preset().output.size;
+        let shown = state.screen.requested().map_or(output, |inputs| [inputs.view.width, inputs.view.height]);
+        Self {
+            preset: session.preset_file.id.clone(),
+            path: std::env::current_dir().unwrap_or_default().join(format!("{id}.png")).display().to_string(),
+            format: Format::Apng,
+            // Even, as MP4 needs it.
+            size: shown.map(|side| (side & !1).clamp(2, MAX_SIDE)),
+            fps: 30.0,
+            range_s: session.preset().clock.range_s,
+            turntable: None,
+            scale: None,
+            has_ffmpeg: find_ffmpeg().is_some(),
+        }
+    }
+
+    fn request(&self, replaces: bool) -> Request {
+        Request {
+            format: self.format,
+            path: self.format.named(Path::new(self.path.trim())),
+            size: self.size,
+            fps: self.fps,
+            range_s: self.range_s,
+            turntable: self.turntable,
+            scale: self.scale,
+            replaces,
+        }
+    }
+
+    fn choose(&mut self, format: Format) {
+        self.format = format;
+        self.path = format.named(Path::new(self.path.trim())).display().to_string();
+    }
+
+    /// Why the film cannot be exported, in a sentence.
+    fn fault(&self, clock: &Clock) -> Option<String> {
+        if self.format.needs_ffmpeg() && !self.has_ffmpeg {
+            let text = "needs ffmpeg, which is not installed (on Debian and Ubuntu: sudo apt install ffmpeg). PNG frames and animated PNG need no other program.";
+            return Some(format!("{} {text}", self.format.name()));
+        }
+        if self.path.trim().is_empty() {
+            return Some("Type a path.".into());
+        }
+        self.request(false).schedule(clock).err().map(|error| error.to_string())
+    }
+}
+
+impl FilmPanel {
+    /// Shows or hides the dialog, filled in for the open preset.
+    pub fn toggle(&mut self, state: &State) {
+        self.is_open = !self.is_open;
+        if !self.is_open || self.running.is_some() {
+            return;
+        }
+        match &mut self.form {
+            // What was chosen before stays.
+            Some(form) if form.preset == state.session.preset_file.id => form.has_ffmpeg = find_ffmpeg().is_some(),
+            form => (*form, self.failure) = (Some(Form::new(state)), None),
+        }
+    }
+
+    pub fn is_exporting(&self) -> bool {
+        self.running.is_some() || self.ending.is_some()
+    }
+
+    /// Takes the end of the film of `progress`. Returns what to say about it.
+    pub fn arrived(&mut self, progress: &Arc<Progress>, ended: Result<Finished, Failure>) -> Option<(Level, String)> {
+        self.ending.take_if(|ending| Arc::ptr_eq(ending, progress));
+        let (request, _) = self.running.take_if(|(_, running)| Arc::ptr_eq(running, progress))?;
+        match ended {
+            Ok(Finished { drawn, kept }) => {
+                (self.is_open, self.failure) = (false, None);
+                let path = request.path.display();
+                let kept = if kept > 0 { format!(", {kept} were there") } else { String::new() };
+                Some((Level::Info, format!("Saved {path}: {drawn} frames drawn{kept}")))
+            }
+            Err(failure) => {
+                self.is_open = true;
+                let said = match &failure {
+                    Failure::Stopped => None,
+                    Failure::Taken(reason) | Failure::Other(reason) => Some((Level::Error, format!("The film was not exported: {reason}"))),
+                };
+                self.failure = Some(failure);
+                said
+            }
+        }
+    }
+
+    fn stop(&mut self) {
+        if let Some((_, progress)) = self.running.take() {
+            progress.stop();
+            (self.ending, self.failure) = (Some(progress), Some(Failure::Stopped));
+        }
+    }
+
+    fn start(&mut self, replaces: bool, commands: &Commands) {
+        let Some(form) = &self.form else { return };
+        let (request, progress) = (form.request(replaces), Arc::<Progress>::default());
+        self.failure = None;
+        commands.send(Command::ExportFilm(Box::new(request.clone()), progress.clone()));
+        self.running = Some((request, progress));
+    }
+
+    /// The buttons, and what stands in the way.
+    fn end_ui(&mut self, ui: &mut Ui, state: &State, commands: &Commands) {
+        let fault = self.form.as_ref().and_then(|form| form.fault(&state.session.preset().clock));
+        match (&fault, &self.failure) {
+            (Some(fault), _) => theme::notice(ui, theme::AMBER, fault),
+            (None, Some(Failure::Stopped)) => theme::notice(ui, theme::AMBER, "Stopped. Finished frames stay, and are not drawn again."),
+            (None, Some(Failure::Taken(reason))) => theme::notice(ui, theme::AMBER, &format!("{reason}. Replace overwrites it.")),
+            (None, Some(Failure::Other(reason))) => theme::notice(ui, theme::RED, reason),
+            (None, None) => {}
+        }
+        ui.add_space(theme::HALF);
+        let is_taken = matches!(self.failure, Some(Failure::Taken(_)));
+        let is_ready = fault.is_none() && self.ending.is_none() && state.session.scene().is_some();
+        let (mut is_started, mut is_closed) = (false, false);
+        ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
+            let verb = if is_taken { "Replace" } else { "Export film" };
+            let button = egui::Button::new(verb).fill(theme::ACCENT_GROUND).min_size(egui::vec2(96.0, theme::ROW));
+            is_started = ui.add_enabled(is_ready, button).clicked();
+            is_closed = ui.add(egui::Button::new("Close").min_size(egui::vec2(72.0, theme::ROW))).clicked();
+        });
+        if is_started {
+            self.start(is_taken, commands);
+        }
+        if is_closed {
+            self.is_open = false;
+        }
+    }
+}
+
+impl Drop for FilmPanel {
+    fn drop(&mut self) {
+        self.stop();
+    }
+}
+
+impl Panel for FilmPanel {
+    fn ui(&mut self, ui: &mut Ui, state: &State, commands: &Commands) {
+        if !self.is_open {
+            return;
+        }
+        let mut is_open = true;
+        let area = ui.ctx().content_rect();
+        egui::Window::new("Export film")
+            .open(&mut is_open)
+            .collapsible(false)
+            .resizable(false)
+            .default_width(WIDTH)
+            .pivot(egui::Align2::CENTER_CENTER)
+            .default_pos(area.center())
+            .show(ui.ctx(), |ui| {
+                ui.set_width(WIDTH);
+                if let Some((request, progress)) = self.running.clone() {
+                    if progress_ui(ui, &request, &progress) {
+                        self.stop();
+                    }
+                    return;
+                }
+                let clock = state.session.preset().clock;
+                let before = self.form.as_ref().map(|form| form.request(false));
+                if let Some(form) = &mut self.form {
+                    form_ui(ui, form, &clock);
+                }
+                if before != self.form.as_ref().map(|form| form.request(false)) {
+                    // What was agreed to, or failed, was another film.
+                    self.failure = None;
+                }
+                self.end_ui(ui, state, commands);
+            });
+        let is_escaped = ui.ctx().input(|i| i.key_pressed(Key::Escape)) && !ui.ctx().any_popup_open();
+        self.is_open &= is_open && !is_escaped;
+    }
+}
+
+fn form_ui(ui: &mut Ui, form: &mut Form, clock: &Clock) {
+    ui.horizontal(|ui| {
+        for format in Format::ALL {
+            if ui.selectable_label(form.format == format, format.name()).clicked() {
+                form.choose(format);
+            }
+        }
+    });
+    ui.add_space(theme::HALF);
+    let path = egui::TextEdit::singleline(&mut form.path).hint_text("Path").desired_width(f32::INFINITY);
+    ui.add(path).accessible_name("Path of the film");
+    let schedule = form.request(false).schedule(clock).ok();
+    if let Some(schedule) = &schedule {
+        ui.add(egui::Label::new(theme::weak(about(form, schedule))).truncate());
+    }
+    ui.add_space(theme::HALF);
+    Grid::new("film").num_columns(2).spacing([theme::GAP, theme::HALF]).show(ui, |ui| {
+        ui.label("Size");
+        ui.horizontal(|ui| {
+            let step = if form.format.needs_ffmpeg() { 2 } else { 1 };
+            for (side, name) in form.size.iter_mut().zip(["Width of the film", "Height of the film"]) {
+                ui.add(DragValue::new(side).range(step..=MAX_SIDE).suffix(" px")).accessible_name(name);
+                *side -= *side % step;
+            }
+        });
+        ui.end_row();
+        ui.label("Frames per second");
+        ui.add(DragValue::new(&mut form.fps).range(1.0..=MAX_FPS).max_decimals(3).speed(0.5)).accessible_name("Frames per second");
+        ui.end_row();
+        ui.label("Range");
+        ui.horizontal(|ui| {
+            for (time_s, name) in form.range_s.iter_mut().zip(["Begin of the film", "End of the film"]) {
+                ui.add(DragValue::new(time_s).suffix(" s").speed(0.05).max_decimals(3)).accessible_name(name);
+            }
+            if form.range_s != clock.range_s && ui.small_button("Whole timeline").clicked() {
+                form.range_s = clock.range_s;
+            }
+        });
+        ui.end_row();
+        ui.label("Anti-aliasing");
+        let shown = ANTI_ALIASING.iter().find(|(scale, _)| *scale == form.scale).map_or("", |(_, name)| name);
+        let menu = ComboBox::from_id_salt("film anti-aliasing").selected_text(shown).show_ui(ui, |ui| {
+            for (scale, name) in ANTI_ALIASING {
+                ui.selectable_value(&mut form.scale, scale, name);
+            }
+        });
+        menu.response.accessible_name("Anti-aliasing of the film");
+        ui.end_row();
+        ui.label("Turntable").on_hover_text("One turn over the range. The preset is not changed.");
+        ui.horizontal(|ui| {
+            for (turntable, name) in TURNTABLES {
+                let hint = match turntable {
+                    None => "No turn beside that of the preset",
+                    Some(Turntable::Camera) => "The camera goes around the scene once",
+                    Some(Turntable::Scene) => "The scene turns once, in front of a still camera and light",
+                };
+                let label = ui.selectable_label(form.turntable == turntable, name).on_hover_text(hint);
+                if label.clicked() {
+                    form.turntable = turntable;
+                }
+                label.accessible_name(format!("Turntable {name}"));
+            }
+        });
+        ui.end_row();
+    });
+    ui.add_space(theme::HALF);
+}
+
+/// `120 frames, 4 s`, and the names of the files.
+fn about(form: &Form, schedule: &crate::film::Schedule) -> String {
+    let frames = schedule.frames.len();
+    let length = format!("{frames} {}, {:.2} s", if frames == 1 { "frame" } else { "frames" }, frames as f64 / form.fps);
+    let paths = form.request(false).frame_paths(schedule);
+    let name = |path: &std::path::PathBuf| path.file_name().unwrap_or_default().to_string_lossy().into_owned();
+    match (paths.first(), paths.last()) {
+        (Some(first), Some(last)) => format!("{length}: {} to {}", name(first), name(last)),
+        _ => length,
+    }
+}
+
+/// Returns true if the film is to be stopped.
+fn progress_ui(ui: &mut Ui, request: &Request, progress: &Progress) -> bool {
+    let counts = progress.read();
+    ui.label(RichText::new(request.path.display().to_string()).color(theme::TEXT_STRONG));
+    ui.add_space(theme::HALF);
+    let text = if counts.all == 0 { "Preparing".to_owned() } else { format!("{} of {} frames", counts.done, counts.all) };
+    ui.add(egui::ProgressBar::new(counts.done as f32 / counts.all.max(1) as f32).text(text).animate(true));
+    let left = match counts.left_s() {
+        Some(_) if counts.done == counts.all => "Finishing the file".into(),
+        Some(left_s) => time_left_text(left_s),
+        None => "The first frame is drawn".into(),
+    };
+    ui.add_space(theme::HALF);
+    let mut is_stopped = false;
+    ui.horizontal(|ui| {
+        ui.label(theme::weak(left));
+        ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
+            is_stopped = ui.add(egui::Button::new("Cancel").min_size(egui::vec2(72.0, theme::ROW))).clicked();
+        });
+    });
+    is_stopped
+}
