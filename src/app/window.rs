@@ -206,7 +206,7 @@ impl App {
             recovery::first_preset(None, None, &options.folders, &mut log)
         };
         let mut session = Session::new(opened);
-        // The preset that nobody asked for shows at once that it moves.
+        // The start preset plays; a preset that the user named does not.
         session.playback.playing = options.open.is_none() && session.preset().is_moving();
         Ok(Self {
             panels,
