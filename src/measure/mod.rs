@@ -64,6 +64,9 @@ pub struct ErrorReport {
     pub max_divergence_px: f64,
     /// Mean of these distances in the scene, in meters.
     pub mean_divergence_m: f64,
+    /// Clipped triangles that run against the others of their fan, or whose outline is not the oracle's.
+    #[serde(skip_serializing_if = "is_zero")]
+    pub clips_wrong: u64,
     /// Sample setups outside their bound, or with words that do not follow from the first.
     pub sample_setups_wrong: u64,
     /// Dots of all lines.
@@ -234,6 +237,7 @@ impl ErrorReport {
             (self.deformed_outside_bound, 0, "deformed vertices lie outside their bound"),
             (self.particles_outside_bound, 0, "particles took a step outside its bound"),
             (self.unexplained, budget.max_wrong_triangles, "pixels differ from the oracle's own picture without a reason"),
+            (self.clips_wrong, 0, "clipped triangles are turned over, or have a wrong outline"),
             (self.sample_setups_wrong, 0, "sample setups are wrong"),
             (self.dots_outside_bound, 0, "dots lie outside their bound"),
             (self.dot_pixels_wrong, 0, "pixels have a wrong strength of dots"),

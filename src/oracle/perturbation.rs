@@ -12,11 +12,15 @@ pub struct Perturbation {
     pub color_step: f64,
     pub texture: TexturePerturbation,
     pub place: PlacePerturbation,
+    pub interpolated: InterpolatedPerturbation,
 }
 
 /// Offset of the place of a sample: in x, y and z of world space, and along the ray of its pixel, each in roundings of the distances
 /// from which the place is computed.
 pub type PlacePerturbation = [f64; 4];
+
+/// Offset of what is interpolated from corners: the normal in x, y and z of world space, and the depth, each in error bounds.
+pub type InterpolatedPerturbation = [f64; 4];
 
 /// Offset of texture lookups: across, down, and in the level of detail, each in error bounds.
 pub type TexturePerturbation = [f64; 3];

@@ -6,7 +6,7 @@ use glam::{DMat4, DQuat, DVec3};
 
 use super::{
     case::{Case, Expectation},
-    checks::{EarlyEnd, check},
+    checks::{EarlyEnd, check, equal},
     context::CaseContext,
     drawing::stack,
     scenes::Rng,
@@ -35,6 +35,7 @@ pub fn walk(scene: &Scene, rng: &mut Rng, steps: usize, size: [u32; 2]) -> Vec<V
     let reach = bounds.radius().min(30.0);
     let (mut eye, mut turn) = (bounds.center() + DVec3::splat(0.2 * reach), 0.0);
     let mut views = Vec::new();
+    let mut pitch = 0.1;
     for step in 0..steps {
         let [mut stride, mut swing] = [0.03 * reach, 0.2];
         if step % 5 == 4 {
@@ -42,7 +43,10 @@ pub fn walk(scene: &Scene, rng: &mut Rng, steps: usize, size: [u32; 2]) -> Vec<V
         }
         eye += DVec3::new(rng.real(-stride, stride), rng.real(-stride, stride), rng.real(-stride, stride));
         turn += rng.real(-swing, swing);
-        let way = DQuat::from_rotation_y(turn) * DVec3::new(0.0, 0.1, -1.0);
+        if step % 3 == 2 {
+            pitch = rng.real(-0.9, 0.9);
+        }
+        let way = DQuat::from_rotation_y(turn) * DVec3::new(0.0, pitch, -1.0);
         let projection =
             if step % 7 == 6 { Projection::Orthographic { height_m: reach } } else { Projection::Perspective { fov_y_deg: 70.0 } };
         let camera = Camera { eye, target: eye + way, up: DVec3::Y, projection, near_m: 0.02 };
@@ -56,15 +60,19 @@ fn culled_walk(context: &mut CaseContext) -> Result<(), EarlyEnd> {
     let options: Vec<Visibility> = context.options().into_iter().filter(|option| *option != Visibility::Tiled).collect();
     let mut rng = context.rng(0x3a1);
     let mut hidden = 0;
-    for query in ["field?count=64&triangles=600", "cube-wall"] {
+    // A town is one large mesh, whose meshlets lie far from its origin.
+    for (query, steps, size) in [("field?count=64&triangles=600", 8, [128, 96]), ("cube-wall", 8, [128, 96]), ("town", 12, [200, 136])] {
         let scene: Arc<Scene> = context.scene(query)?;
-        let views = walk(&scene, &mut rng, 8, [128, 96]);
+        let views = walk(&scene, &mut rng, steps, size);
+        let mut meshlets = None;
         for &option in &options {
             let pins = PinnedOptions::of(option).with(Culling::TwoPass);
             let accuracy = AccuracyRequest { pins, ..AccuracyRequest::default() };
             for (step, view) in views.iter().enumerate() {
                 let what = format!("{query}, step {step}, {}", pins.words());
-                hidden += context.exact_next(&scene, view, &stack(&["lambert"]), &accuracy, &what)?.hidden;
+                let culled = context.exact_next(&scene, view, &stack(&["lambert"]), &accuracy, &what)?;
+                hidden += culled.hidden;
+                equal(&culled.all(), meshlets.get_or_insert(culled.all()), &format!("{what}: meshlets"))?;
             }
         }
     }

@@ -9,10 +9,12 @@ use super::{
     drawing::{WorkDistribution, pinned, stack},
 };
 use crate::{
+    accuracy::{ParticleStorage, PinnedOptions},
     effects::{Effect, EnabledEffect, Stack},
     frame::NO_TRIANGLE,
     gpu::Capture,
     measure::compare,
+    plan::AccuracyRequest,
     preset::{
         Animation, Clock, Preset,
         animation::{Easing, Keyframe, Track},
@@ -41,6 +43,13 @@ pub const CASES: &[Case] = &[
         about: "spin, keyframes and a looping clock after 24 hours",
         expectation: Expectation::Bounded("the phase differs by at most a millionth of a period"),
         run: after_a_day,
+    },
+    Case {
+        number: 35,
+        name: "played-particles",
+        about: "particles of one frame after another, and after jumps to and fro, from the states that the frame before left",
+        expectation: Expectation::Exact,
+        run: played_particles,
     },
 ];
 
@@ -101,6 +110,29 @@ fn shuffled_triangles(context: &mut CaseContext) -> Result<(), EarlyEnd> {
                 same(&after, &before, &what)?;
                 check!(after.frame.color == before.frame.color, "{what}: colors differ");
             }
+        }
+    }
+    Ok(())
+}
+
+fn played_particles(context: &mut CaseContext) -> Result<(), EarlyEnd> {
+    let chamber = context.scene("chamber")?;
+    // Short lives, so that some end in every frame.
+    let mut preset = Preset { stack: stack(&["particles"]), ..Preset::default() };
+    let particles = Effect::find("particles").ok_or_else(|| EarlyEnd::Failed("no effect particles".into()))?;
+    for (name, value) in [("count", 300.0), ("lifetime_s", 0.25)] {
+        let field = particles.field(name).ok_or_else(|| EarlyEnd::Failed(format!("no field particles.{name}")))?;
+        field.set(&mut preset.stack.enable(particles).words, &[value]).map_err(|error| EarlyEnd::Failed(error.to_string()))?;
+    }
+    let option = context.quick_option();
+    for storage in [ParticleStorage::Float32, ParticleStorage::Half16] {
+        let pins = PinnedOptions::of(option).with(storage);
+        let accuracy = AccuracyRequest { pins, ..AccuracyRequest::default() };
+        let frames = [0, 1, 2, 3, 8, 9, 4, 5, 30, 31, 32, 0, 1];
+        for frame in frames {
+            preset.clock.time_s = f64::from(frame) / 60.0 + 1e-3;
+            let view = preset.view(&chamber, [64, 48]);
+            context.exact_next(&chamber, &view, &preset.evaluated_stack(), &accuracy, &format!("frame {frame}, {}", pins.words()))?;
         }
     }
     Ok(())

@@ -102,6 +102,7 @@ const SWEEPS: &[&str] = &[
     "parameters-at-range-ends",
     "all-effects-at-range-ends",
     "culled-walk",
+    "played-particles",
     "strict-rows",
 ];
 

@@ -16,7 +16,7 @@ use super::{
         },
     },
     coverage::depth_interval,
-    perturbations::perturbations,
+    perturbations::{interpolations, perturbations},
 };
 use crate::effects::{Surface, xray, xray::Xray};
 
@@ -78,7 +78,8 @@ fn sums(input: &LayerInput, params: &Xray, bits: u32) -> Vec<SumBounds> {
     let mut sums: Vec<SumBounds> = (0..view.pixels()).map(|_| SumBounds::default()).collect();
     let (ranks, light) = (ranks(&input.shot, input.geometry), Light::of(&input.shot, input.geometry));
     let perturbations = perturbations(input.shot.scene, view, stack);
-    let (ranks, light, perturbations) = (&ranks, light.as_ref(), &perturbations);
+    let interpolations = interpolations(stack);
+    let (ranks, light, perturbations, interpolations) = (&ranks, light.as_ref(), &perturbations, &interpolations);
     scatter(input.tests, input.triangles, view, &mut sums, |triangle| {
         let mut surface: Option<Option<SurfaceTriangle<'_>>> = None;
         let rank = ranks.get(triangle.id as usize).copied().unwrap_or(0.0);
@@ -93,7 +94,8 @@ fn sums(input: &LayerInput, params: &Xray, bits: u32) -> Vec<SumBounds> {
             }
             let Some(known) = surface.get_or_insert_with(|| SurfaceTriangle::new(&input.shot, input.geometry, triangle.id)) else { return };
             let lit_point = known.lit_point(&known.surface(x, y, &Perturbation::default()));
-            let mut shaded = perturbations.iter().map(|perturbation| {
+            let unsure = if known.is_unsure(x, y) { interpolations.as_slice() } else { &[] };
+            let mut shaded = perturbations.iter().chain(unsure).map(|perturbation| {
                 let step = perturbation.color_step;
                 let lit = light.map_or(0.0, |light| light.arrives(&lit_point, triangle.id, step));
                 let surface = Surface { rank, lit, step_offset: step, ..known.surface(x, y, perturbation) };
@@ -101,17 +103,31 @@ fn sums(input: &LayerInput, params: &Xray, bits: u32) -> Vec<SumBounds> {
             });
             let exact = shaded.next().expect("the first perturbation is none");
             let color = exact.color.truncate();
-            let colors = shaded.fold([color; 2], |[least, most], shaded| {
-                let color = shaded.color.truncate();
-                [least.min(color), most.max(color)]
+            let weight = params.weight_of(&exact);
+            let (colors, weights) = shaded.fold(([color; 2], [weight; 2]), |([least, most], [lightest, heaviest]), shaded| {
+                let (color, weight) = (shaded.color.truncate(), params.weight_of(&shaded));
+                ([least.min(color), most.max(color)], [lightest.min(weight), heaviest.max(weight)])
             });
+            let is_unknown = !unsure.is_empty() && known.is_unknown(exact.pixel);
+            let (colors, weights) = match is_unknown {
+                true => ([DVec3::ZERO, DVec3::ONE], if params.unit() > 1 { [1.0, f64::from(xray::FULL_WEIGHT)] } else { weights }),
+                false => (colors, weights),
+            };
             // On a clipped triangle f32 has a sample's position only to some 2^-16 of its distance.
             let weight_error = match (params.unit() > 1, triangle.is_clipped()) {
                 (false, _) => 0.0,
                 (true, false) => WEIGHT_ERROR,
                 (true, true) => 8.0 * WEIGHT_ERROR,
             };
-            sum.add(&Layer { colors, weight: params.weight_of(&exact), weight_error, is_certain: is_nearest || low >= threshold }, bits);
+            sum.add(
+                &Layer {
+                    colors,
+                    weight: 0.5 * (weights[0] + weights[1]),
+                    weight_error: weight_error + 0.5 * (weights[1] - weights[0]) / f64::from(xray::FULL_WEIGHT),
+                    is_certain: is_nearest || low >= threshold,
+                },
+                bits,
+            );
         }
     });
     sums

@@ -11,4 +11,5 @@ pub mod particles;
 pub mod perturbations;
 pub mod sample_setup;
 pub mod snap;
+pub mod surface;
 pub mod vertex;

@@ -1,6 +1,6 @@
 //! The perturbations under which a picture is shaded to find what an f32 renderer may draw.
 
-use super::super::perturbation::{Perturbation, PlacePerturbation, TexturePerturbation};
+use super::super::perturbation::{InterpolatedPerturbation, Perturbation, PlacePerturbation, TexturePerturbation};
 use crate::{
     effects::{Stack, hooks::Slot},
     scene::{Scene, view::View},
@@ -26,6 +26,22 @@ const PLACES: [PlacePerturbation; 9] = {
         axis += 1;
     }
     places
+};
+
+/// In error bounds. A normal errs by a vector of at most one bound, and the depth by at most one beside it. To first order that changes a
+/// color by at most √3 + 1 times as much as the one of these four numbers that matters most does alone.
+const INTERPOLATED: f64 = 2.75;
+
+/// All perturbations of what is interpolated.
+const INTERPOLATIONS: [InterpolatedPerturbation; 8] = {
+    let mut interpolations = [[0.0; 4]; 8];
+    let mut axis = 0;
+    while axis < 4 {
+        interpolations[2 * axis][axis] = INTERPOLATED;
+        interpolations[2 * axis + 1][axis] = -INTERPOLATED;
+        axis += 1;
+    }
+    interpolations
 };
 
 /// From so far away that the depth of the scene is less than this fraction of the distances that are added, their roundings are seen in
@@ -57,6 +73,14 @@ pub fn perturbations(scene: &Scene, view: &View, stack: &Stack) -> Vec<Perturbat
     let places = places(view)[1..].iter().map(|&place| Perturbation { place, ..Perturbation::default() });
     let unstepped: Vec<Perturbation> = textures.chain(places).collect();
     let with_step = |&color_step: &f64| unstepped.iter().map(move |&perturbation| Perturbation { color_step, ..perturbation });
+    color_steps(stack).iter().flat_map(with_step).collect()
+}
+
+/// The perturbations of what is interpolated, for each perturbation of color steps.
+pub fn interpolations(stack: &Stack) -> Vec<Perturbation> {
+    let with_step = |&color_step: &f64| {
+        INTERPOLATIONS.iter().map(move |&interpolated| Perturbation { color_step, interpolated, ..Perturbation::default() })
+    };
     color_steps(stack).iter().flat_map(with_step).collect()
 }
 

@@ -69,11 +69,17 @@ impl<'a> VertexBounds<'a> {
         ClipErrors { errors, magnitudes }
     }
 
+    /// Bounds of the errors of a corner in world space after all effects: of its displacement in meters, and of the direction of its
+    /// normal.
+    pub fn moved(&self, corner: Corner) -> ErrorBound {
+        let (unmoved, given) = (self.evaluator.unmoved(corner), self.unmoved(corner));
+        self.evaluator.stack.error_bound(unmoved, given, self.evaluator.draw.scopes)
+    }
+
     /// Bound of the error of a corner's displacement in meters, and the displacement.
     fn displacement(&self, corner: Corner) -> (f64, DVec3) {
-        let unmoved = self.evaluator.unmoved(corner);
-        let (stack, scopes) = (self.evaluator.stack, self.evaluator.draw.scopes);
-        (stack.error_bound(unmoved, self.unmoved(corner), scopes).offset_m, stack.moved(unmoved, scopes).offset)
+        let offset = self.evaluator.stack.moved(self.evaluator.unmoved(corner), self.evaluator.draw.scopes).offset;
+        (self.moved(corner).offset_m, offset)
     }
 
     /// What an error of an object-space position adds to a row of its clip position.

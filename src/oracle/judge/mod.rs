@@ -5,7 +5,7 @@
 //!
 //! * `picture`: runs all stages, judges colors and counters, and makes the verdict
 //! * `vertices`: vertex records, each from the matrix bits
-//! * `particles`, `deform`, `dots`, `sample_setups`, `shadow`: what else lies between the scene and coverage
+//! * `clips`, `particles`, `deform`, `dots`, `sample_setups`, `shadow`: what else lies between the scene and coverage
 //! * `freedom`: what an adapter may choose for itself at a sample
 //! * `samples`: triangle ids, depth keys and layer counts, from the adapter's own geometry
 //! * `end_to_end`, `outline`: the whole picture against the oracle's own; only what snapped vertices explain may differ
@@ -16,6 +16,7 @@
 pub mod picture;
 pub mod shadow;
 
+mod clips;
 mod deform;
 mod dots;
 mod end_to_end;

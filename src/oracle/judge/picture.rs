@@ -27,6 +27,7 @@ use super::{
         shot::{Shot, drawn_view},
         work::stage,
     },
+    clips::wrong_clips,
     deform::judge_deformed,
     dots::judge_dots,
     end_to_end::EndToEnd,
@@ -75,6 +76,7 @@ pub fn judge(scene: &Scene, view: &View, stack: &Stack, picture: &AdapterPicture
     let vertices = vertex_errors(&shot, geometry, &own);
     count_vertices(&mut report, &vertices);
     let dots = dot_strengths(view, stack, &geometry.dots, &picture.frame.depth_key);
+    report.clips_wrong = wrong_clips(view, geometry, &own, picture.frame.counters.flipped_clips);
     judge_geometry(&mut report, &shot, picture, &dots)?;
 
     stage("coverage");
@@ -159,7 +161,12 @@ impl JudgedColors {
         });
         let accepted = match &layers {
             Some((image, bounds)) => AcceptedColors::of_layers(&input.shot, &resolve, image, bounds),
-            None => AcceptedColors::of_surfaces(&input.shot, &resolve, input.geometry),
+            None => AcceptedColors::of_surfaces(&input.shot, &resolve, input.geometry).with_interpolations(
+                &input.shot,
+                &resolve,
+                input.geometry,
+                &picture.frame.color,
+            ),
         };
         Self { accepted, layers }
     }
@@ -197,7 +204,9 @@ impl JudgedColors {
         }
         let dots = &dot_strengths(shot.view, shot.stack, &picture.geometry.dots, keys);
         let input = ResolveInput { triangle_ids, depth_keys: keys, dots, previous: picture.previous };
-        (AcceptedColors::of_surfaces(shot, &input, picture.geometry).nearest(&picture.frame.color), Vec::new())
+        let adapter = &picture.frame.color;
+        let accepted = AcceptedColors::of_surfaces(shot, &input, picture.geometry);
+        (accepted.with_interpolations(shot, &input, picture.geometry, adapter).nearest(adapter), Vec::new())
     }
 }
 

@@ -52,7 +52,11 @@ impl ScreenTriangle {
         // y points up in clip space: a negative determinant runs clockwise on the screen.
         let is_clockwise = v[0].dot(rows[0]) < 0.0;
         Self {
-            weights: Weights::Homogeneous { rows: if is_clockwise { rows.map(|row| -row) } else { rows }, terms: cross_terms(&v) },
+            weights: Weights::Homogeneous {
+                rows: if is_clockwise { rows.map(|row| -row) } else { rows },
+                terms: cross_terms(&v),
+                corners: v,
+            },
             is_back: is_clockwise != evaluator.draw.mirrored,
             depths_m: clip.map(|p| linear_depth(view, p.z / p.w).unwrap_or(p.w)),
             center: (sum.z > 0.0).then(|| DVec2::new(0.5 + 0.5 * sum.x / sum.z, 0.5 - 0.5 * sum.y / sum.z)),

@@ -3,12 +3,15 @@
 use glam::{DMat3, DVec2, DVec3, DVec4};
 use rayon::prelude::*;
 
+use std::cell::OnceCell;
+
 use super::{
     super::{
         arithmetic::{
             bits,
             vector::{DEGENERATE, plane_normal},
         },
+        bounds::surface::CornerErrors,
         perturbation::Perturbation,
         shot::Shot,
         work::checkpoint,
@@ -109,6 +112,12 @@ pub struct SurfaceTriangle<'a> {
     shape: Shape,
     /// If corners are drawn as points: their records, and the radius of their discs in sub-pixel units.
     points: Option<([SnappedVertex; 3], i64)>,
+    shot: Shot<'a>,
+    packed_bits: Option<u32>,
+    /// Asked for only where a picture is in doubt.
+    errors: OnceCell<CornerErrors>,
+    /// The plane is that of displaced corners.
+    is_deformed: bool,
 }
 
 impl<'a> SurfaceTriangle<'a> {
@@ -149,6 +158,10 @@ impl<'a> SurfaceTriangle<'a> {
             center_screen: screen.center,
             shape: stack.shape(),
             points: (stack.shape() == Shape::Points).then_some((records, stack.point_radius().into())),
+            shot: *shot,
+            packed_bits: geometry.packed_bits,
+            errors: OnceCell::new(),
+            is_deformed: false,
         };
         if evaluator.moves {
             triangle.apply_vertex_effects(&evaluator, corners, side);
@@ -166,6 +179,7 @@ impl<'a> SurfaceTriangle<'a> {
             *position += vertex.offset;
         }
         if moved.iter().any(|vertex| vertex.offset != moved[0].offset) {
+            self.is_deformed = true;
             let side = if evaluator.draw.mirrored { -side } else { side };
             self.flat_normal = plane_normal(self.positions).and_then(|normal| (normal * side).try_normalize());
         }
@@ -184,7 +198,16 @@ impl<'a> SurfaceTriangle<'a> {
         let weights = self.weights.at(&point);
         let (barycentrics, edge_distance_px) = self.weights.on_screen(&point, view);
         let [x, y, z, along] = perturbation.place.map(|roundings| roundings * ROUNDING);
+        let [turn @ .., stretch] = perturbation.interpolated;
         let depth_m = mixed(weights, self.depths_m) * (1.0 + along);
+        let [normal_error, plane_error, depth_error] =
+            if perturbation.interpolated == [0.0; 4] { [0.0; 3] } else { self.errors(&point, weights) };
+        let depth_m = if stretch < 0.0 { depth_m / (1.0 - stretch * depth_error) } else { depth_m * (1.0 + stretch * depth_error) };
+        // Where nothing is turned, the normal keeps its bits.
+        let turned = |normal: DVec3, error: f64| match DVec3::from(turn) * error {
+            DVec3::ZERO => normal,
+            turn => (normal + turn).try_normalize().unwrap_or(normal),
+        };
         // Not the weighted mean of the corners: snapping moves that by up to half a sub-pixel unit.
         let position = on_ray(view, point.screen, depth_m);
         let position = position + DVec3::new(x, y, z) * (view.eye.abs() + (position - view.eye).abs());
@@ -194,7 +217,8 @@ impl<'a> SurfaceTriangle<'a> {
             None => -(view.forward + across(view, point.screen)).normalize(),
         };
         let smooth = self.normals.and_then(|normals| self.smooth_normal(weights, normals));
-        let normal = smooth.or(self.flat_normal).unwrap_or(toward_eye);
+        let flat_normal = self.flat_normal.map(|normal| turned(normal, plane_error));
+        let normal = smooth.map(|normal| turned(normal, normal_error)).or(flat_normal).unwrap_or(toward_eye);
         let base = mixed(weights, self.colors);
         let textured = self
             .material
@@ -207,7 +231,7 @@ impl<'a> SurfaceTriangle<'a> {
             glow,
             position,
             normal,
-            flat_normal: self.flat_normal.unwrap_or(normal),
+            flat_normal: flat_normal.unwrap_or(normal),
             view: toward_eye,
             center: self.center,
             center_screen: self.center_screen.unwrap_or(point.screen),
@@ -224,6 +248,32 @@ impl<'a> SurfaceTriangle<'a> {
             lit: 0.0,
             step_offset: 0.0,
         }
+    }
+
+    /// Bounds of the errors in f32 of the directions of the interpolated normal and of the plane's, and of the depth, relative to it.
+    fn errors(&self, point: &SamplePoint, weights: [f64; 3]) -> [f64; 3] {
+        let corners = self.errors.get_or_init(|| CornerErrors::of(&self.shot, self.id, self.packed_bits));
+        let depth_m = mixed(weights, self.depths_m);
+        let normals = self.normals.map(|normals| normals.map(|normal| self.world_from_normal * normal));
+        let of_weights = self.weights.errors_from(&corners.clip, weights, point);
+        let at = corners.at(weights, of_weights, self.depths_m.map(|depth| depth / depth_m), normals);
+        [at.normal, if self.is_deformed { corners.plane(self.positions) } else { 0.0 }, at.depth]
+    }
+
+    /// Returns true if the interpolated normal, the plane or the depth at a pixel errs so far in f32 that a color may show it.
+    pub fn is_unsure(&self, x: usize, y: usize) -> bool {
+        // A sixteenth of a step of 255, in the dark, where gamma encoding is 13 times as steep.
+        const VISIBLE: f64 = 1.0 / (1 << 16) as f64;
+        let point = self.sample_point(DVec2::new(x as f64 + 0.5, y as f64 + 0.5));
+        self.errors(&point, self.weights.at(&point)).into_iter().any(|error| error > VISIBLE)
+    }
+
+    /// Returns true if one of them is known so badly at the place of a surface that first-order bounds say nothing of colors.
+    pub fn is_unknown(&self, pixel: DVec2) -> bool {
+        // A color that has its maximum there falls by half of the square: half a step of 255.
+        const LINEAR: f64 = 1.0 / 16.0;
+        let point = self.sample_point(pixel);
+        self.errors(&point, self.weights.at(&point)).into_iter().any(|error| error > LINEAR)
     }
 
     fn sample_point(&self, pixel: DVec2) -> SamplePoint {

@@ -3,6 +3,7 @@
 
 use glam::{DVec2, DVec3};
 
+use super::super::arithmetic::vector::cross_magnitudes;
 use crate::{
     effects::hooks::{ROUNDING, Shape},
     scene::view::View,
@@ -18,6 +19,8 @@ pub enum Weights {
         rows: [DVec3; 3],
         /// Sums of the magnitudes of their terms.
         terms: [DVec3; 3],
+        /// The corners' (x, y, w).
+        corners: [DVec3; 3],
     },
 }
 
@@ -67,13 +70,29 @@ impl Weights {
         const SNAPPED: f64 = 15.0 / (1 << 23) as f64;
         match self {
             Self::Snapped(_) => weights.map(|weight| weight * SNAPPED),
-            Self::Homogeneous { rows, terms } => {
+            Self::Homogeneous { rows, terms, .. } => {
                 let p = point.ndc();
                 let sum: f64 = rows.iter().map(|row| p.dot(*row)).sum();
                 // The terms have either sign: an error is proportional to their magnitudes, not to their sum.
                 terms.map(|terms| p.abs().dot(terms) / sum.abs() / f64::from(1 << 20))
             }
         }
+    }
+
+    /// As [`errors`](Self::errors), where the corners' (x, y, w) err by `clip`; large where nothing is known.
+    pub fn errors_from(&self, clip: &[DVec3; 3], weights: [f64; 3], point: &SamplePoint) -> [f64; 3] {
+        const UNKNOWN: f64 = 1e30;
+        let Self::Homogeneous { rows, corners, .. } = self else { return self.errors(weights, point) };
+        let p = point.ndc();
+        let sum = rows.iter().map(|row| p.dot(*row)).sum::<f64>().abs();
+        let magnitudes = [0, 1, 2].map(|k| corners[k].abs() + clip[k]);
+        let given = [(1, 2), (2, 0), (0, 1)].map(|(i, j): (usize, usize)| {
+            p.abs().dot(cross_magnitudes(magnitudes[i], clip[j]) + cross_magnitudes(clip[i], magnitudes[j])) / sum
+        });
+        let rounded = self.errors(weights, point);
+        let errors = [0, 1, 2].map(|k| rounded[k] + given[k]);
+        let whole = 1.0 - errors.iter().sum::<f64>();
+        if whole > 0.0 { errors.map(|error| error / whole) } else { [UNKNOWN; 3] }
     }
 
     /// Bound of the error in f32 of a sample's position in meters. Weights of small triangles err by 9 steps of 2^-23, those of large
