@@ -6,6 +6,7 @@
 
 use std::{cell::RefCell, path::PathBuf, sync::Arc};
 
+use eframe::egui::KeyboardShortcut;
 use glam::DVec3;
 
 use super::{
@@ -14,7 +15,9 @@ use super::{
     log::Level,
     overlay::Overlay,
     screen::Inputs,
+    settings::last_session::Restored,
     sweep::request::{Progress, Request},
+    theme::ThemeChoice,
 };
 use crate::{
     accuracy::{Axis, PinnedOptions},
@@ -71,6 +74,7 @@ pub enum Command {
     /// Pins the options of these axes, as a separate undo step.
     PinOptions(PinnedOptions, Vec<&'static Axis>),
     Toggle(Toggle),
+    Settings(SettingsCommand),
     /// Starts the oracle on the picture that is shown, and on the one it is compared with.
     Verify,
     /// Hides an effect (true) or shows it again. Muting is a viewing aid and is not saved.
@@ -240,8 +244,16 @@ pub enum FileCommand {
         then: CodeUse,
         runs: bool,
     },
-    /// Closes the window without saving.
-    DiscardAndQuit,
+    /// Closes the window without saving; the edits may come back at the next start.
+    Quit {
+        keeps_edits: bool,
+    },
+    /// Reads what is in a folder.
+    List(PathBuf),
+    /// Opens what was open in the last session.
+    Restore(Box<Restored>),
+    /// Forgets the recent files.
+    ForgetRecents,
 }
 
 /// A place in a picture.
@@ -276,7 +288,22 @@ pub enum Toggle {
     Sweep,
     Log,
     CheatSheet,
+    Settings,
     Extremes,
+}
+
+/// A change of the window's settings.
+#[derive(Clone, Debug, PartialEq)]
+pub enum SettingsCommand {
+    Theme(ThemeChoice),
+    /// Makes texts and controls larger by this many steps, or smaller.
+    Scale(f32),
+    ResetScale,
+    /// Makes this the only shortcut of the action; none takes its shortcuts away.
+    Bind(Action, Option<KeyboardShortcut>),
+    /// Gives the action its own shortcuts again.
+    ResetKeys(Action),
+    ResetAllKeys,
 }
 
 impl From<Action> for Command {
@@ -315,6 +342,10 @@ impl From<Action> for Command {
             Action::Log => Self::Toggle(Toggle::Log),
             Action::CheatSheet => Self::Toggle(Toggle::CheatSheet),
             Action::Extremes => Self::Toggle(Toggle::Extremes),
+            Action::Settings => Self::Toggle(Toggle::Settings),
+            Action::ScaleUp => Self::Settings(SettingsCommand::Scale(1.0)),
+            Action::ScaleDown => Self::Settings(SettingsCommand::Scale(-1.0)),
+            Action::ScaleReset => Self::Settings(SettingsCommand::ResetScale),
         }
     }
 }

@@ -102,7 +102,7 @@ pub fn row_ui(ui: &mut Ui, commands: &Commands, row: &Row, value: &Value) {
     let reset_rect = Rect::from_min_max(pos2(rect.right() - RESET_WIDTH, rect.top()), rect.max);
     if row.modified {
         let bar = Rect::from_min_size(rect.min + vec2(0.0, 4.0), vec2(BAR_WIDTH, rect.height() - 8.0));
-        ui.painter().rect_filled(bar, 1.5, theme::ACCENT);
+        ui.painter().rect_filled(bar, 1.5, theme::accent());
     }
     let mut command = label_ui(ui, row, value, label_rect);
     let layout = egui::Layout::left_to_right(Align::Center);
@@ -135,7 +135,7 @@ pub fn row_ui(ui: &mut Ui, commands: &Commands, row: &Row, value: &Value) {
 /// The label: tooltip, double click to reset, menu.
 fn label_ui(ui: &mut Ui, row: &Row, value: &Value, rect: Rect) -> Option<RowCommand> {
     let response = ui.interact(rect, egui::Id::unique((&row.path, "label")), Sense::click());
-    let color = if row.modified || response.hovered() { theme::TEXT_STRONG } else { theme::TEXT };
+    let color = if row.modified || response.hovered() { theme::text_strong() } else { theme::text() };
     // The bundled fonts have no bold cut, so bold is the same text twice, half a pixel apart.
     let clipped = ui.painter_at(rect.expand(1.0));
     let font = egui::TextStyle::Body.resolve(ui.style());
@@ -161,7 +161,7 @@ fn label_ui(ui: &mut Ui, row: &Row, value: &Value, rect: Rect) -> Option<RowComm
         }
     });
     response.on_hover_ui(|ui| {
-        ui.label(RichText::new(row.param.doc).color(theme::TEXT_STRONG));
+        ui.label(RichText::new(row.param.doc).color(theme::text_strong()));
         ui.label(theme::weak(format!("{}   {}{}", row.path, row.param.allowed(), spaced(row.param.unit))));
     });
     command
@@ -214,7 +214,7 @@ fn color_ui(ui: &mut Ui, row: &Row, components: &[f64]) -> Option<Value> {
     let response = ui.color_edit_button_rgba_unmultiplied(&mut color).accessible_name(&row.path).on_hover_text("Choose the color");
     let [r, g, b, a] = egui::Rgba::from_rgba_unmultiplied(color[0], color[1], color[2], color[3]).to_srgba_unmultiplied();
     let alpha = if a == 255 { String::new() } else { format!(" {:.0}%", f64::from(a) / 2.55) };
-    ui.label(RichText::new(format!("#{r:02x}{g:02x}{b:02x}{alpha}")).monospace().color(theme::TEXT_WEAK));
+    ui.label(RichText::new(format!("#{r:02x}{g:02x}{b:02x}{alpha}")).monospace().color(theme::text_weak()));
     // The picker's arithmetic may leave the unit range by a bit.
     response.changed().then(|| Value::Numbers(color.map(|c| f64::from(if c.is_finite() { c.clamp(0.0, 1.0) } else { 0.0 })).to_vec()))
 }

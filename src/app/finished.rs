@@ -3,7 +3,8 @@
 use eframe::egui;
 
 use super::{
-    command::Commands,
+    apply,
+    command::{Commands, Purpose},
     findings::Findings,
     jobs::Done,
     log::Level,
@@ -46,7 +47,7 @@ pub fn finish(ctx: &egui::Context, state: &mut State, panels: &mut Panels, comma
         }
         Done::Thumbnail(id, image) => panels.browser.thumbnail_arrived(ctx, id, image),
         Done::Export(path, Ok(())) => state.notify(Level::Info, format!("Saved {}", path.display())),
-        Done::Export(_, Err(error)) => state.notify(Level::Error, error),
+        Done::Export(path, Err(error)) => apply::save_failed(state, panels, Purpose::Export, &path, error),
         Done::Compiled(reload, outcome) => compiled(state, panels, reload, outcome),
         Done::Precision(of, measured) => {
             if let Some(error) = state.precision.arrived(*of, measured) {
@@ -64,9 +65,9 @@ pub fn finish(ctx: &egui::Context, state: &mut State, panels: &mut Panels, comma
             let text = format!("{} could not be opened in an editor: {reason}", path.display());
             state.notify(Level::Warning, text);
         }
-        Done::Path(purpose, path) => {
-            panels.dialogs.path_arrived(purpose, path, state.session.preset_file.path.as_deref(), commands);
-        }
+        Done::Path(purpose, answer) => panels.dialogs.path_arrived(purpose, answer, &state.session.preset_file, commands),
+        Done::Folder(listing) => panels.dialogs.folder_arrived(listing),
+        Done::Missing(files) => state.missing_files = files,
     }
 }
 

@@ -1,10 +1,12 @@
 //! Opening a preset whose model must be read first: what is shown stays until the model has loaded, and for good if it cannot be.
 
 use super::{
+    command::CodeUse,
     log::Level,
     opening::Opening,
     panels::{Panels, timeline::Timeline},
     scene_loader::SceneKey,
+    settings::last_session::Restored,
     state::State,
 };
 use crate::{preset::SceneSource, preset_file::PresetFile};
@@ -16,6 +18,7 @@ fn open_preset(state: &mut State, panels: &mut Panels, mut opened: PresetFile) {
         state.log.add(Level::Warning, remark);
     }
     opened.effects = opened.effects.joined(&state.folders.effects);
+    state.settings.recents.add_opened(&opened);
     state.session.open(opened);
     panels.timeline = Timeline::default();
     state.observe(false);
@@ -33,6 +36,18 @@ pub fn begin(state: &mut State, panels: &mut Panels, opened: PresetFile, said: S
         return;
     }
     open_preset(state, panels, opened);
+    state.opening = Opening { waiting: None, announced: Some((key, said)) };
+}
+
+/// Opens what was open in the last session, with its unsaved edits. Code that it brings runs only if the user has allowed it.
+pub fn restore(state: &mut State, panels: &mut Panels, Restored { preset_file, filed }: Restored) {
+    let said = format!("Opened {} as it was", preset_file.title());
+    if !state.trust.allows(&preset_file, &state.folders.effects) {
+        return panels.dialogs.ask_code(preset_file.into(), CodeUse::Open(said));
+    }
+    let key = SceneKey::of(&preset_file);
+    open_preset(state, panels, filed);
+    state.session.preset_file.preset = preset_file.preset;
     state.opening = Opening { waiting: None, announced: Some((key, said)) };
 }
 

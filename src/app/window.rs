@@ -1,16 +1,21 @@
 //! The window: its state and its panels, and what happens in a frame.
 
-use std::sync::{
-    Arc,
-    atomic::{AtomicBool, Ordering},
+use std::{
+    collections::HashSet,
+    path::{Path, PathBuf},
+    sync::{
+        Arc,
+        atomic::{AtomicBool, Ordering},
+    },
 };
 
-use eframe::egui::{self, Ui, ViewportCommand};
+use eframe::egui::{self, Rect, Ui, ViewportCommand};
 
 use super::{
     apply,
     command::{CodeUse, Commands},
     device,
+    escape::escape,
     finished::finish,
     history::History,
     input,
@@ -22,12 +27,13 @@ use super::{
     overlay::OverlaySelection,
     panel::Panel,
     panels::{Panels, log::toasts_ui},
+    pointer_frames::PointerFrames,
     precision::{PrecisionState, REST_S},
     recovery, reload,
     scene_loader::SceneKey,
     screen::Screen,
-    session::Session,
-    state::{Clipboard, OpenPanels, State},
+    settings::{OpenPanels, keeper::Keeper, recents::Recents},
+    state::{Clipboard, State},
     theme,
     trust::Trust,
     typing::HeldTyping,
@@ -56,6 +62,8 @@ pub struct Options {
     pub folders: Folders,
     /// A new effect is opened in the user's editor.
     pub opens_editor: bool,
+    /// The folder where settings and session are kept; none keeps nothing.
+    pub config: Option<PathBuf>,
 }
 
 /// Set when the window closes because its device was lost.
@@ -79,6 +87,11 @@ pub struct App {
     commands: Commands,
     /// What was typed while a dialog opened.
     typing: HeldTyping,
+    /// A text field had the focus when the last frame ended.
+    was_typing: bool,
+    keeper: Keeper,
+    /// The recent files that were looked for, and whether the window had the focus then.
+    looked_for: (Recents, bool),
     loss: LossFlag,
     title: String,
 }
@@ -175,25 +188,32 @@ impl App {
     /// # Errors
     /// If the window has no wgpu device.
     pub fn with_loss_flag(cc: &eframe::CreationContext<'_>, options: Options, loss: LossFlag) -> anyhow::Result<Self> {
-        theme::apply(&cc.egui_ctx);
+        let ctx = &cc.egui_ctx;
+        theme::apply(ctx);
+        ctx.add_plugin(PointerFrames::default());
+        ctx.options_mut(|options| options.zoom_with_keyboard = false); // The table of actions has these keys.
         let (window, gpu) = device::adopt(cc, options.gpu)?;
         let mut log = Log::default();
-        let opened = recovery::first_preset(options.opened, options.open.as_deref(), &options.folders, &mut log);
+        let (keeper, settings, remarks) = Keeper::new(options.config);
+        remarks.into_iter().for_each(|remark| log.add(Level::Warning, remark));
+        settings.theme.choose(ctx);
+        ctx.set_zoom_factor(settings.scale);
         let summary = &gpu.summary;
         log.add(Level::Info, format!("adapter: {}, {}, {}", summary.name, summary.backend, summary.driver));
         let mut panels = Panels::new(&options.folders);
+        panels.browser.show_scene(settings.shows_scene_tab);
         let trust = Trust::default();
-        let opened = if trust.allows(&opened, &options.folders.effects) {
-            opened
-        } else {
-            // Until the user decides, a preset without code is shown.
-            let said = format!("Opened {}", opened.title());
-            panels.dialogs.ask_code(opened.into(), CodeUse::Open(said));
-            recovery::first_preset(None, None, &options.folders, &mut log)
-        };
-        let mut session = Session::new(opened);
+        let start = recovery::start(options.opened, options.open.as_deref(), &options.folders, (&keeper, &trust), &mut log);
+        if let Some(brings) = start.brings_code {
+            let said = format!("Opened {}", brings.title());
+            panels.dialogs.ask_code(brings.into(), CodeUse::Open(said));
+        }
+        if let Some(crashed) = start.crashed {
+            panels.dialogs.ask_restore(crashed);
+        }
+        let mut session = start.session;
         // The preset that nobody asked for shows at once that it moves.
-        session.playback.playing = options.open.is_none() && session.preset().is_moving();
+        session.playback.playing = options.open.is_none() && !start.is_restored && session.preset().is_moving();
         Ok(Self {
             panels,
             state: State {
@@ -212,12 +232,19 @@ impl App {
                 picking: None,
                 clipboard: Clipboard::default(),
                 log,
-                open: OpenPanels::default(),
+                open: settings.open,
+                settings,
+                missing_files: HashSet::new(),
+                keeps_session: keeper.keeps_session(),
                 may_quit: false,
+                keeps_edits: false,
                 now_s: 0.0,
             },
             commands: Commands::default(),
             typing: HeldTyping::default(),
+            was_typing: false,
+            keeper,
+            looked_for: (Recents::default(), false),
             loss,
             title: String::new(),
         })
@@ -265,6 +292,31 @@ impl App {
         if ctx.input(|i| i.viewport().close_requested()) && self.state.session.is_modified() && !self.state.may_quit {
             ctx.send_viewport_cmd(ViewportCommand::CancelClose);
             self.panels.dialogs.ask_unsaved();
+        }
+    }
+
+    /// Keeps settings and session, and looks for recent files that are gone.
+    fn keep(&mut self, ctx: &egui::Context) {
+        let State { settings, open, session, jobs, now_s, .. } = &mut self.state;
+        settings.open = OpenPanels { cheat_sheet: false, settings: false, ..*open };
+        settings.shows_scene_tab = self.panels.browser.shows_scene();
+        ctx.input(|i| settings.window.follow(i.viewport(), settings.scale));
+        let is_focused = ctx.input(|i| i.focused);
+        if settings.recents != self.looked_for.0 || is_focused && !self.looked_for.1 {
+            jobs.find_missing(settings.recents.iter().map(Path::to_owned).collect());
+        }
+        if settings.recents != self.looked_for.0 || is_focused != self.looked_for.1 {
+            self.looked_for = (settings.recents.clone(), is_focused);
+        }
+        if !self.panels.dialogs.asks_restore() {
+            self.keeper.begin_session();
+        }
+        let (error, wait_s) = self.keeper.follow(settings, session, *now_s);
+        if let Some(error) = error {
+            self.state.log.add(Level::Warning, format!("settings or session could not be kept: {error}"));
+        }
+        if let Some(wait_s) = wait_s {
+            ctx.request_repaint_after_secs(wait_s as f32 + 0.01);
         }
     }
 
@@ -333,13 +385,18 @@ impl App {
         let mut is_open = self.state.open.log;
         log.show_collapsible(ui, &mut is_open, |ui| self.panel_ui(ui, |panels| &mut panels.log));
         self.state.open.log = is_open;
-        let left = egui::Panel::left("left").frame(theme::panel_frame()).default_size(264.0).size_range(200.0..=420.0);
+        let [left_width, right_width] = self.state.settings.widths;
+        let width = left_width.unwrap_or(LEFT);
+        let left = egui::Panel::left("left").frame(theme::panel_frame()).default_size(width).size_range(MIN_WIDTH..=420.0);
         let mut is_open = self.state.open.left;
-        left.show_collapsible(ui, &mut is_open, |ui| self.panel_ui(ui, |panels| &mut panels.browser));
+        let shown = left.show_collapsible(ui, &mut is_open, |ui| self.panel_ui(ui, |panels| &mut panels.browser));
+        keep_width(&mut self.state.settings.widths[0], self.state.open.left && is_open, shown.map(|shown| shown.response.rect));
         self.state.open.left = is_open;
-        let right = egui::Panel::right("right").frame(theme::panel_frame()).default_size(344.0).size_range(272.0..=520.0);
+        let width = right_width.unwrap_or(RIGHT);
+        let right = egui::Panel::right("right").frame(theme::panel_frame()).default_size(width).size_range(272.0..=520.0);
         let mut is_open = self.state.open.right;
-        right.show_collapsible(ui, &mut is_open, |ui| self.panel_ui(ui, |panels| &mut panels.inspector));
+        let shown = right.show_collapsible(ui, &mut is_open, |ui| self.panel_ui(ui, |panels| &mut panels.inspector));
+        keep_width(&mut self.state.settings.widths[1], self.state.open.right && is_open, shown.map(|shown| shown.response.rect));
         self.state.open.right = is_open;
         let rect = egui::CentralPanel::no_frame().show(ui, |ui| self.viewport_ui(ui)).response.rect;
         toasts_ui(ui.ctx(), &self.state.log, rect, self.state.now_s);
@@ -355,6 +412,28 @@ impl App {
         }
         self.panels.viewport.show(ui, &self.state, &self.commands, interaction.response.rect);
         self.apply(ui.ctx());
+    }
+}
+
+/// Widths of the side panels unless the user has changed them, points.
+const LEFT: f32 = 264.0;
+const RIGHT: f32 = 344.0;
+const MIN_WIDTH: f32 = 200.0;
+
+/// Remembers the width of a side panel that was and is open; a panel that opens or closes is narrower.
+fn keep_width(kept: &mut Option<f32>, is_open: bool, rect: Option<Rect>) {
+    if let Some(rect) = rect.filter(|rect| is_open && rect.width() >= MIN_WIDTH) {
+        *kept = Some(rect.width().round());
+    }
+}
+
+impl Drop for App {
+    /// Keeps settings and session. Not after a crash: then the session is marked as running, and the next start asks.
+    fn drop(&mut self) {
+        if !std::thread::panicking() && !self.loss.is_set() {
+            let State { settings, session, may_quit, keeps_edits, .. } = &self.state;
+            self.keeper.close(settings, session, *keeps_edits || !*may_quit);
+        }
     }
 }
 
@@ -378,6 +457,8 @@ impl eframe::App for App {
             return; // egui panics if it has something to paint on a lost device.
         }
         let ctx = ui.ctx().clone();
+        theme::follow(&ctx);
+        self.state.settings.keys.show();
         device::tune(frame, &self.state.screen.gpu);
         let (now_s, is_pressed, is_held) = ctx.input(|i| (i.time, i.pointer.any_pressed(), i.pointer.any_down()));
         self.state.now_s = now_s;
@@ -386,7 +467,9 @@ impl eframe::App for App {
         }
         input::dropped_files(&ctx, &self.commands);
         self.apply(&ctx);
-        if !self.panels.dialogs.is_open() {
+        escape(&ctx, &self.state, &mut self.panels, self.was_typing, &self.commands);
+        self.apply(&ctx);
+        if !self.panels.dialogs.is_open() && !self.panels.settings.takes_key() {
             input::shortcuts(&ctx, &self.state, &mut self.typing, &self.commands);
             self.apply(&ctx);
         }
@@ -399,6 +482,7 @@ impl eframe::App for App {
         self.panels_ui(ui);
         self.panel_ui(ui, |panels| &mut panels.dialogs);
         self.panel_ui(ui, |panels| &mut panels.cheat_sheet);
+        self.panel_ui(ui, |panels| &mut panels.settings);
         self.panel_ui(ui, |panels| &mut panels.extremes);
         self.request_thumbnail();
         self.request_precision(&ctx, is_held);
@@ -408,9 +492,11 @@ impl eframe::App for App {
         }
         self.guard_close(&ctx);
         self.update_title(&ctx);
+        self.keep(&ctx);
+        self.was_typing = ctx.text_edit_focused();
     }
 
-    fn clear_color(&self, _: &egui::Visuals) -> [f32; 4] {
-        theme::PANEL.to_normalized_gamma_f32()
+    fn clear_color(&self, visuals: &egui::Visuals) -> [f32; 4] {
+        visuals.panel_fill.to_normalized_gamma_f32()
     }
 }

@@ -101,8 +101,10 @@ fn dispatch(common: &Common, command: &Command, streams: &mut Streams) -> Result
 #[cfg(feature = "gui")]
 fn window(cli: &Cli) -> Result<Exit, CliError> {
     // Errors are reported on the terminal instead of in an empty window.
+    // Without anything to open or to change, the window goes on with its last session.
+    let is_asked = cli.open.is_some() || !(cli.common.set.is_empty() && cli.common.unset.is_empty());
     let what = cli.open.as_deref().unwrap_or(crate::app::FIRST_PRESET);
-    let opened = open::open(&cli.common, what).map_err(|error| suggest_command(error, what))?;
+    let opened = is_asked.then(|| open::open(&cli.common, what).map_err(|error| suggest_command(error, what))).transpose()?;
     let adapter = match backend::backend_choice(&cli.common) {
         backend::BackendChoice::Oracle => {
             return Err(CliError::usage("the window needs a GPU adapter; --adapter cpu serves render, verify, compare and check"));
@@ -111,11 +113,12 @@ fn window(cli: &Cli) -> Result<Exit, CliError> {
     };
     let options = crate::app::Options {
         open: cli.open.clone(),
-        opened: Some(opened),
+        opened,
         adapter,
         gpu: None,
         folders: cli.common.folders(),
         opens_editor: true,
+        config: crate::app::config_folder(),
     };
     crate::app::run(options).map_err(CliError::window)?;
     Ok(Exit::Done)

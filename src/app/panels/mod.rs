@@ -8,6 +8,7 @@ pub mod inspector;
 pub mod log;
 pub mod new_effect;
 pub mod preset_browser;
+pub mod settings;
 pub mod sweep;
 pub mod timeline;
 pub mod topbar;
@@ -15,7 +16,7 @@ pub mod viewport;
 
 use self::{
     cheat_sheet::CheatSheet, dialogs::Dialogs, extremes::Extremes, inspector::Inspector, log::LogPanel, preset_browser::PresetBrowser,
-    sweep::SweepPanel, timeline::Timeline, topbar::TopBar, viewport::Viewport,
+    settings::SettingsWindow, sweep::SweepPanel, timeline::Timeline, topbar::TopBar, viewport::Viewport,
 };
 use crate::preset_file::Folders;
 
@@ -30,6 +31,7 @@ pub struct Panels {
     pub viewport: Viewport,
     pub dialogs: Dialogs,
     pub cheat_sheet: CheatSheet,
+    pub settings: SettingsWindow,
     pub extremes: Extremes,
 }
 
@@ -46,6 +48,7 @@ impl Panels {
             viewport: Viewport::default(),
             dialogs: Dialogs::default(),
             cheat_sheet: CheatSheet::default(),
+            settings: SettingsWindow::default(),
             extremes: Extremes::default(),
         }
     }

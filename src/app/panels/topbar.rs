@@ -1,16 +1,18 @@
 //! The bar at the top: menus, the open preset, the adapter, and the cost and error of the picture.
 
+use std::path::Path;
+
 use eframe::egui::{self, Align, Layout, RichText, Sense, Ui, vec2};
 
 use crate::app::{
     action::Action,
-    command::Commands,
+    command::{Command, Commands, FileCommand, SettingsCommand},
     fields::dot,
     icons::{Icon, icon_button},
     measured::{error_line, time_text},
     panel::Panel,
     state::State,
-    theme,
+    theme::{self, ThemeChoice},
 };
 
 /// The bar at the top: menus, the open preset, the adapter, and the cost and error of the picture.
@@ -54,8 +56,13 @@ const MENUS: [(&str, &[Option<Action>]); 4] = [
             Some(Action::Sweep),
             Some(Action::Log),
             None,
+            Some(Action::ScaleUp),
+            Some(Action::ScaleDown),
+            Some(Action::ScaleReset),
+            None,
             Some(Action::Extremes),
             Some(Action::CheatSheet),
+            Some(Action::Settings),
         ],
     ),
 ];
@@ -79,7 +86,15 @@ impl Panel for TopBar {
 fn menus_ui(ui: &mut Ui, state: &State, commands: &Commands) {
     ui.spacing_mut().item_spacing.x = 2.0;
     for (title, actions) in MENUS {
-        let chosen = ui.menu_button(title, |ui| menu_ui(ui, actions)).inner.flatten();
+        let chosen = ui.menu_button(title, |ui| {
+            let chosen = menu_ui(ui, actions, state, commands);
+            if title == "View" {
+                ui.separator();
+                theme_ui(ui, state.settings.theme, commands);
+            }
+            chosen
+        });
+        let chosen = chosen.inner.flatten();
         if let Some(action) = chosen {
             commands.perform(action);
         }
@@ -89,7 +104,7 @@ fn menus_ui(ui: &mut Ui, state: &State, commands: &Commands) {
     for (icon, action, is_enabled) in
         [(Icon::Left, Action::PreviousPreset, true), (Icon::Right, Action::NextPreset, true), (Icon::Reset, Action::Undo, can_undo)]
     {
-        let name = format!("{} ({})", action.label(), action.shortcut_text());
+        let name = action.hint();
         if ui.add_enabled_ui(is_enabled, |ui| icon_button(ui, icon, &name)).inner.clicked() {
             commands.perform(action);
         }
@@ -97,7 +112,7 @@ fn menus_ui(ui: &mut Ui, state: &State, commands: &Commands) {
 }
 
 /// The entries of one menu.
-fn menu_ui(ui: &mut Ui, actions: &[Option<Action>]) -> Option<Action> {
+fn menu_ui(ui: &mut Ui, actions: &[Option<Action>], state: &State, commands: &Commands) -> Option<Action> {
     let mut chosen = None;
     ui.set_min_width(220.0);
     for action in actions {
@@ -110,15 +125,56 @@ fn menu_ui(ui: &mut Ui, actions: &[Option<Action>]) -> Option<Action> {
             chosen = Some(*action);
             ui.close();
         }
+        if *action == Action::Open {
+            ui.menu_button("Open recent", |ui| recents_ui(ui, state, commands));
+        }
     }
     chosen
+}
+
+/// Recent files, newest first. Those that are gone are greyed.
+fn recents_ui(ui: &mut Ui, state: &State, commands: &Commands) {
+    ui.set_max_width(420.0);
+    let recents = &state.settings.recents;
+    if recents.is_empty() {
+        ui.label(theme::weak("No file was opened yet."));
+        return;
+    }
+    for path in recents.iter() {
+        let is_missing = state.missing_files.contains(path);
+        let name = path.file_name().unwrap_or_default().to_string_lossy();
+        let folder = path.parent().and_then(Path::file_name).unwrap_or_default().to_string_lossy();
+        let detail = if is_missing { "missing" } else { &folder };
+        let button = egui::Button::new(&*name).shortcut_text(detail).truncate().min_size(vec2(280.0, theme::ROW));
+        let button = ui.add_enabled(!is_missing, button).on_hover_text(path.display().to_string());
+        if button.on_disabled_hover_text(format!("{} is gone", path.display())).accessible_name(format!("Recent {name}")).clicked() {
+            commands.send(Command::File(FileCommand::Open(path.to_string_lossy().into_owned())));
+            ui.close();
+        }
+    }
+    ui.separator();
+    if ui.button("Forget these files").clicked() {
+        commands.send(Command::File(FileCommand::ForgetRecents));
+        ui.close();
+    }
+}
+
+fn theme_ui(ui: &mut Ui, chosen: ThemeChoice, commands: &Commands) {
+    ui.menu_button("Theme", |ui| {
+        for choice in ThemeChoice::ALL {
+            if ui.selectable_label(chosen == choice, choice.label()).clicked() {
+                commands.send(Command::Settings(SettingsCommand::Theme(choice)));
+                ui.close();
+            }
+        }
+    });
 }
 
 /// Name of the preset, and whether it has unsaved changes.
 fn name_ui(ui: &mut Ui, state: &State) {
     ui.spacing_mut().item_spacing.x = 6.0;
     let open = &state.session.preset_file;
-    let name = RichText::new(open.title()).color(theme::TEXT_STRONG).strong();
+    let name = RichText::new(open.title()).color(theme::text_strong()).strong();
     let file = match (&open.path, open.read_only) {
         (Some(path), _) => path.display().to_string(),
         (None, true) => "Built in. Save asks for a file name.".into(),
@@ -126,7 +182,7 @@ fn name_ui(ui: &mut Ui, state: &State) {
     };
     ui.add(egui::Label::new(name).truncate().sense(Sense::hover())).on_hover_text(file);
     if state.session.is_modified() {
-        dot(ui, theme::ACCENT);
+        dot(ui, theme::accent());
         ui.label(theme::weak("unsaved"));
     }
 }
@@ -137,17 +193,17 @@ fn adapter_ui(ui: &mut Ui, state: &State) {
     let summary = &gpu.summary;
     let name = summary.name.split('(').next().unwrap_or_default().trim();
     let text = if summary.software { format!("{name} · software") } else { name.to_owned() };
-    let ink = if summary.software { theme::AMBER } else { theme::TEXT };
+    let ink = if summary.software { theme::amber() } else { theme::text() };
     ui.add(egui::Label::new(RichText::new(text).color(ink)).truncate()).on_hover_ui(|ui| {
-        ui.label(RichText::new(&summary.name).color(theme::TEXT_STRONG));
+        ui.label(RichText::new(&summary.name).color(theme::text_strong()));
         ui.label(format!("{} · {}", summary.backend, summary.driver));
         ui.label(theme::weak(format!("class {}", gpu.caps.class())));
         if summary.software {
             let text = "A software adapter: its pictures are right, but its times do not tell how fast a graphics card is.";
-            ui.label(RichText::new(text).color(theme::AMBER));
+            ui.label(RichText::new(text).color(theme::amber()));
         }
     });
-    dot(ui, if summary.software { theme::AMBER } else { theme::GREEN });
+    dot(ui, if summary.software { theme::amber() } else { theme::green() });
 }
 
 /// Cost and error, always side by side.
@@ -165,7 +221,7 @@ fn cost_ui(ui: &mut Ui, state: &State, commands: &Commands) {
     }
     ui.label(RichText::new(error).color(color)).on_hover_text(hint);
     ui.label(theme::weak("·"));
-    ui.label(RichText::new(time_text(state.screen.report())).color(theme::TEXT_STRONG))
+    ui.label(RichText::new(time_text(state.screen.report())).color(theme::text_strong()))
         .on_hover_text("Time of the newest frame on the device. Timing lists its passes.");
     pins_ui(ui, &state.session.preset().accuracy.pins.words());
 }
@@ -178,5 +234,5 @@ fn pins_ui(ui: &mut Ui, words: &str) {
         count => format!("{count} options pinned"),
     };
     ui.label(theme::weak("·"));
-    ui.label(RichText::new(text).size(12.0).color(theme::ACCENT)).on_hover_text(words.replace(' ', "\n"));
+    ui.label(RichText::new(text).size(12.0).color(theme::accent())).on_hover_text(words.replace(' ', "\n"));
 }

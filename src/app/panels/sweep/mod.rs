@@ -141,7 +141,7 @@ impl SweepPanel {
         let shown = state.session.scene().and(state.screen.requested());
         ui.horizontal(|ui| {
             let is_ready = shown.is_some() && (2..=MAX_COMBINATIONS).contains(&count);
-            let button = egui::Button::new("Measure").fill(theme::ACCENT_GROUND).min_size(egui::vec2(84.0, theme::ROW));
+            let button = egui::Button::new("Measure").fill(theme::accent_ground()).min_size(egui::vec2(84.0, theme::ROW));
             let reason = match count {
                 _ if shown.is_none() => "There is no picture yet",
                 0..2 => "Choose an axis with more than one option",
@@ -152,11 +152,11 @@ impl SweepPanel {
             if let Some(inputs) = shown.filter(|_| button.clicked()) {
                 self.start(state, commands, inputs);
             }
-            let color = if count > MAX_COMBINATIONS { theme::RED } else { theme::TEXT_WEAK };
+            let color = if count > MAX_COMBINATIONS { theme::red() } else { theme::text_weak() };
             ui.label(RichText::new(format!("{count} combinations")).color(color));
         });
         if let Some(error) = &self.error {
-            theme::notice(ui, theme::RED, error);
+            theme::notice(ui, theme::red(), error);
         }
     }
 
@@ -210,8 +210,11 @@ impl SweepPanel {
             let is_stale = picture_of(&request.preset) != picture_of(&state.session.visible_preset());
             let software = if state.screen.gpu.summary.software { "; compare software-adapter timings only with each other" } else { "" };
             let of = format!("{}, {width} × {height} px{software}", request.title);
-            let (color, text) =
-                if is_stale { (theme::AMBER, format!("stale: measured on an earlier picture of {of}")) } else { (theme::TEXT_WEAK, of) };
+            let (color, text) = if is_stale {
+                (theme::amber(), format!("stale: measured on an earlier picture of {of}"))
+            } else {
+                (theme::text_weak(), of)
+            };
             ui.add(egui::Label::new(RichText::new(text).size(11.0).color(color)).truncate());
             clicked = table::table_ui(ui, points, axes, metric, &is_current).or(clicked);
         });
@@ -246,7 +249,7 @@ fn progress_ui(ui: &mut Ui, progress: &Progress) {
     let text = if is_canceled { "Stopping".into() } else { format!("{:.0} %  {what}", 100.0 * fraction) };
     ui.horizontal(|ui| {
         let bar = egui::ProgressBar::new(fraction).desired_width(AXES_WIDTH - 76.0).text(RichText::new(text).size(11.0));
-        ui.add(bar.fill(theme::ACCENT_GROUND));
+        ui.add(bar.fill(theme::accent_ground()));
         if ui.add_enabled(!is_canceled, egui::Button::new("Cancel")).clicked() {
             progress.cancel();
         }

@@ -42,10 +42,10 @@ pub fn table_ui(ui: &mut Ui, points: &[Point], axes: &[&'static Axis], metric: M
 fn row_ui(ui: &mut Ui, point: &Point, axes: &[&'static Axis], metrics: &[Metric], (is_front, is_current): (bool, bool)) -> bool {
     let words: Vec<&str> = axes.iter().filter_map(|axis| Some(axis.words[point.pins.get(axis)?])).collect();
     let ink = match (point.ms.is_some(), is_current, is_front) {
-        (false, ..) => theme::TEXT_WEAK,
-        (_, true, _) => theme::AMBER,
-        (_, _, true) => theme::TEXT_STRONG,
-        _ => theme::TEXT,
+        (false, ..) => theme::text_weak(),
+        (_, true, _) => theme::amber(),
+        (_, _, true) => theme::text_strong(),
+        _ => theme::text(),
     };
     let name = RichText::new(words.join(" · ")).size(12.0).color(ink);
     let button = ui.add_enabled(point.ms.is_some(), egui::Button::new(name).small().frame(false));
@@ -53,13 +53,13 @@ fn row_ui(ui: &mut Ui, point: &Point, axes: &[&'static Axis], metrics: &[Metric]
     let clicked = button.accessible_name(format!("Use {}", point.pins.words())).clicked();
     let cell = |ui: &mut Ui, value: Option<f64>| {
         let text = value.map_or_else(|| "not measured".into(), short);
-        ui.label(RichText::new(text).monospace().size(11.5).color(if value.is_some() { theme::TEXT } else { theme::TEXT_WEAK }));
+        ui.label(RichText::new(text).monospace().size(11.5).color(if value.is_some() { theme::text() } else { theme::text_weak() }));
     };
     [0, 1].into_iter().for_each(|i| cell(ui, point.ms.map(|ms| ms[i])));
     metrics.iter().for_each(|metric| cell(ui, point.error(*metric)));
     let remark = match (&point.note, is_current, is_front) {
-        (_, true, _) => RichText::new("this preset").color(theme::AMBER),
-        (_, _, true) => RichText::new("on the front").color(theme::ACCENT),
+        (_, true, _) => RichText::new("this preset").color(theme::amber()),
+        (_, _, true) => RichText::new("on the front").color(theme::accent()),
         _ if point.is_dominated => theme::weak("dominated"),
         _ if point.ms.is_none() => theme::weak("not timed"),
         _ => RichText::new(""),
