@@ -5,9 +5,10 @@ use anyhow::Context as _;
 use super::{
     device::native_options,
     log::Level,
+    loss::LossFlag,
     recovery::recovery_path,
     settings::{WindowPlace, keeper::read_settings},
-    window::{App, LossFlag, Options},
+    window::{App, Options},
 };
 
 /// Lost devices after which the window is not opened again.

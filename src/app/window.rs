@@ -1,15 +1,8 @@
 //! The window: its state and its panels, and what happens in a frame.
 
-use std::{
-    collections::HashSet,
-    path::{Path, PathBuf},
-    sync::{
-        Arc,
-        atomic::{AtomicBool, Ordering},
-    },
-};
+use std::{collections::HashSet, path::PathBuf, sync::Arc};
 
-use eframe::egui::{self, Rect, Ui, ViewportCommand};
+use eframe::egui::{self, Ui, ViewportCommand};
 
 use super::{
     apply,
@@ -22,6 +15,7 @@ use super::{
     jobs::Jobs,
     live::Live,
     log::{Level, Log},
+    loss::LossFlag,
     open,
     opening::Opening,
     overlay::OverlaySelection,
@@ -32,7 +26,7 @@ use super::{
     recovery, reload,
     scene_loader::SceneKey,
     screen::Screen,
-    settings::{OpenPanels, keeper::Keeper, recents::Recents},
+    settings::{keeper::Keeper, recents::Recents},
     state::{Clipboard, State},
     theme,
     trust::Trust,
@@ -66,33 +60,19 @@ pub struct Options {
     pub config: Option<PathBuf>,
 }
 
-/// Set when the window closes because its device was lost.
-#[derive(Clone, Debug, Default)]
-pub struct LossFlag(Arc<AtomicBool>);
-
-impl LossFlag {
-    pub fn set(&self) {
-        self.0.store(true, Ordering::Relaxed);
-    }
-
-    pub fn is_set(&self) -> bool {
-        self.0.load(Ordering::Relaxed)
-    }
-}
-
 /// The whole window.
 pub struct App {
-    state: State,
-    panels: Panels,
+    pub(super) state: State,
+    pub(super) panels: Panels,
     commands: Commands,
     /// What was typed while a dialog opened.
     typing: HeldTyping,
     /// A text field had the focus when the last frame ended.
     was_typing: bool,
-    keeper: Keeper,
+    pub(super) keeper: Keeper,
     /// The recent files that were looked for, and whether the window had the focus then.
-    looked_for: (Recents, bool),
-    loss: LossFlag,
+    pub(super) looked_for: (Recents, bool),
+    pub(super) loss: LossFlag,
     title: String,
 }
 
@@ -166,6 +146,11 @@ impl App {
     /// Position of the comparison's divider, as a fraction of the picture's width; none unless the wipe is open.
     pub fn wipe_split(&self) -> Option<f32> {
         self.panels.viewport.compare.wipe_split()
+    }
+
+    /// Is the panel of the accuracy sweep open?
+    pub fn is_sweep_open(&self) -> bool {
+        self.state.open.sweep
     }
 
     /// Number of points of the newest accuracy sweep.
@@ -295,31 +280,6 @@ impl App {
         }
     }
 
-    /// Keeps settings and session, and looks for recent files that are gone.
-    fn keep(&mut self, ctx: &egui::Context) {
-        let State { settings, open, session, jobs, now_s, .. } = &mut self.state;
-        settings.open = OpenPanels { cheat_sheet: false, settings: false, ..*open };
-        settings.shows_scene_tab = self.panels.browser.shows_scene();
-        ctx.input(|i| settings.window.follow(i.viewport(), settings.scale));
-        let is_focused = ctx.input(|i| i.focused);
-        if settings.recents != self.looked_for.0 || is_focused && !self.looked_for.1 {
-            jobs.find_missing(settings.recents.iter().map(Path::to_owned).collect());
-        }
-        if settings.recents != self.looked_for.0 || is_focused != self.looked_for.1 {
-            self.looked_for = (settings.recents.clone(), is_focused);
-        }
-        if !self.panels.dialogs.asks_restore() {
-            self.keeper.begin_session();
-        }
-        let (error, wait_s) = self.keeper.follow(settings, session, *now_s);
-        if let Some(error) = error {
-            self.state.log.add(Level::Warning, format!("settings or session could not be kept: {error}"));
-        }
-        if let Some(wait_s) = wait_s {
-            ctx.request_repaint_after_secs(wait_s as f32 + 0.01);
-        }
-    }
-
     /// Advances the time while the preset plays.
     fn play(&mut self, ctx: &egui::Context) {
         if self.state.session.playback.playing {
@@ -385,18 +345,17 @@ impl App {
         let mut is_open = self.state.open.log;
         log.show_collapsible(ui, &mut is_open, |ui| self.panel_ui(ui, |panels| &mut panels.log));
         self.state.open.log = is_open;
-        let [left_width, right_width] = self.state.settings.widths;
-        let width = left_width.unwrap_or(LEFT);
-        let left = egui::Panel::left("left").frame(theme::panel_frame()).default_size(width).size_range(MIN_WIDTH..=420.0);
+        let window = ui.ctx().content_rect().width();
+        let [left_width, right_width] = self.state.settings.panel_widths(window);
+        let left = egui::Panel::left("left").frame(theme::panel_frame()).default_size(left_width).size_range(200.0..=420.0);
         let mut is_open = self.state.open.left;
         let shown = left.show_collapsible(ui, &mut is_open, |ui| self.panel_ui(ui, |panels| &mut panels.browser));
-        keep_width(&mut self.state.settings.widths[0], self.state.open.left && is_open, shown.map(|shown| shown.response.rect));
+        self.state.settings.keep_width(0, self.state.open.left && is_open, shown.map(|shown| shown.response.rect), window);
         self.state.open.left = is_open;
-        let width = right_width.unwrap_or(RIGHT);
-        let right = egui::Panel::right("right").frame(theme::panel_frame()).default_size(width).size_range(272.0..=520.0);
+        let right = egui::Panel::right("right").frame(theme::panel_frame()).default_size(right_width).size_range(272.0..=520.0);
         let mut is_open = self.state.open.right;
         let shown = right.show_collapsible(ui, &mut is_open, |ui| self.panel_ui(ui, |panels| &mut panels.inspector));
-        keep_width(&mut self.state.settings.widths[1], self.state.open.right && is_open, shown.map(|shown| shown.response.rect));
+        self.state.settings.keep_width(1, self.state.open.right && is_open, shown.map(|shown| shown.response.rect), window);
         self.state.open.right = is_open;
         let rect = egui::CentralPanel::no_frame().show(ui, |ui| self.viewport_ui(ui)).response.rect;
         toasts_ui(ui.ctx(), &self.state.log, rect, self.state.now_s);
@@ -412,28 +371,6 @@ impl App {
         }
         self.panels.viewport.show(ui, &self.state, &self.commands, interaction.response.rect);
         self.apply(ui.ctx());
-    }
-}
-
-/// Widths of the side panels unless the user has changed them, points.
-const LEFT: f32 = 264.0;
-const RIGHT: f32 = 344.0;
-const MIN_WIDTH: f32 = 200.0;
-
-/// Remembers the width of a side panel that was and is open; a panel that opens or closes is narrower.
-fn keep_width(kept: &mut Option<f32>, is_open: bool, rect: Option<Rect>) {
-    if let Some(rect) = rect.filter(|rect| is_open && rect.width() >= MIN_WIDTH) {
-        *kept = Some(rect.width().round());
-    }
-}
-
-impl Drop for App {
-    /// Keeps settings and session. Not after a crash: then the session is marked as running, and the next start asks.
-    fn drop(&mut self) {
-        if !std::thread::panicking() && !self.loss.is_set() {
-            let State { settings, session, may_quit, keeps_edits, .. } = &self.state;
-            self.keeper.close(settings, session, *keeps_edits || !*may_quit);
-        }
     }
 }
 

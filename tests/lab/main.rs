@@ -6,15 +6,18 @@ mod common;
 
 mod brought_code;
 mod compare;
+mod dialogs;
 mod duplicates;
 mod files;
 mod goldens;
 mod harness;
 mod inspector;
 mod keys;
+mod layout;
 mod live;
 mod numerics;
 mod scopes;
+mod settings;
 mod sweep;
 mod timeline;
 mod verify;

@@ -18,6 +18,9 @@ use crate::app::{
 /// The bar at the top: menus, the open preset, the adapter, and the cost and error of the picture.
 pub struct TopBar;
 
+/// Below this width of the window the adapter is a dot, points.
+const NARROW: f32 = 1080.0;
+
 /// Menus with their entries; none is a separator.
 const MENUS: [(&str, &[Option<Action>]); 4] = [
     (
@@ -73,11 +76,13 @@ impl Panel for TopBar {
             ui.set_min_height(28.0);
             menus_ui(ui, state, commands);
             ui.add_space(theme::HALF);
-            name_ui(ui, state);
             ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
-                adapter_ui(ui, state);
+                ui.spacing_mut().item_spacing.x = 6.0;
+                adapter_ui(ui, state, ui.ctx().content_rect().width() < NARROW);
                 ui.separator();
                 cost_ui(ui, state, commands);
+                // What is left belongs to the name, which is cut if it is too long.
+                ui.with_layout(Layout::left_to_right(Align::Center), |ui| name_ui(ui, state));
             });
         });
     }
@@ -180,21 +185,35 @@ fn name_ui(ui: &mut Ui, state: &State) {
         (None, true) => "Built in. Save asks for a file name.".into(),
         (None, false) => "Not saved yet".into(),
     };
-    ui.add(egui::Label::new(name).truncate().sense(Sense::hover())).on_hover_text(file);
-    if state.session.is_modified() {
+    let width = ui.available_width();
+    let is_modified = state.session.is_modified();
+    let rest = if !is_modified {
+        0.0
+    } else if width > 150.0 {
+        70.0
+    } else {
+        16.0
+    };
+    ui.scope(|ui| {
+        ui.set_max_width((width - rest).max(0.0));
+        ui.add(egui::Label::new(name).truncate().sense(Sense::hover())).on_hover_text(file);
+    });
+    if is_modified {
         dot(ui, theme::accent());
-        ui.label(theme::weak("unsaved"));
+        if rest > 16.0 {
+            ui.label(theme::weak("unsaved"));
+        }
     }
 }
 
-/// The adapter; in amber if it is software.
-fn adapter_ui(ui: &mut Ui, state: &State) {
+/// The adapter; in amber if it is software. A dot alone where there is little room.
+fn adapter_ui(ui: &mut Ui, state: &State, is_narrow: bool) {
     let gpu = &state.screen.gpu;
     let summary = &gpu.summary;
     let name = summary.name.split('(').next().unwrap_or_default().trim();
     let text = if summary.software { format!("{name} · software") } else { name.to_owned() };
     let ink = if summary.software { theme::amber() } else { theme::text() };
-    ui.add(egui::Label::new(RichText::new(text).color(ink)).truncate()).on_hover_ui(|ui| {
+    let hint = |ui: &mut Ui| {
         ui.label(RichText::new(&summary.name).color(theme::text_strong()));
         ui.label(format!("{} · {}", summary.backend, summary.driver));
         ui.label(theme::weak(format!("class {}", gpu.caps.class())));
@@ -202,8 +221,12 @@ fn adapter_ui(ui: &mut Ui, state: &State) {
             let text = "A software adapter: its pictures are right, but its times do not tell how fast a graphics card is.";
             ui.label(RichText::new(text).color(theme::amber()));
         }
-    });
-    dot(ui, if summary.software { theme::amber() } else { theme::green() });
+    };
+    if !is_narrow {
+        ui.add(egui::Label::new(RichText::new(text).color(ink)).truncate()).on_hover_ui(hint);
+    }
+    let place = ui.scope(|ui| dot(ui, if summary.software { theme::amber() } else { theme::green() })).response;
+    place.on_hover_ui(hint);
 }
 
 /// Cost and error, always side by side.
@@ -213,7 +236,7 @@ fn cost_ui(ui: &mut Ui, state: &State, commands: &Commands) {
     let is_busy = state.verification.is_running();
     let button = egui::Button::new(if is_busy { "Verifying" } else { "Verify" });
     let verify = ui.add_enabled(!is_busy && state.screen.requested().is_some(), button);
-    if verify.on_hover_text("Compare every pixel with the exact CPU oracle (V)").clicked() {
+    if verify.on_hover_text(format!("Compare every pixel with the exact CPU oracle ({})", Action::Verify.shortcut_text())).clicked() {
         commands.perform(Action::Verify);
     }
     if is_busy {

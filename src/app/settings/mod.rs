@@ -64,6 +64,31 @@ impl Settings {
     }
 }
 
+impl Settings {
+    /// Widths of the left and the right panel in a window of this width, points.
+    pub fn panel_widths(&self, window: f32) -> [f32; 2] {
+        let usual = if window < NARROW { NARROW_WIDTHS } else { WIDTHS };
+        std::array::from_fn(|side| self.widths[side].unwrap_or(usual[side]))
+    }
+
+    /// Remembers the width of the left (0) or right (1) panel that was and is open; one that opens or closes is narrower.
+    /// A width that nobody has changed is not remembered.
+    pub fn keep_width(&mut self, side: usize, is_open: bool, rect: Option<egui::Rect>, window: f32) {
+        let usual = self.panel_widths(window)[side];
+        if let Some(width) = rect.map(|rect| rect.width().round()).filter(|width| is_open && *width >= MIN_KEPT)
+            && (width - usual).abs() > 1.5
+        {
+            self.widths[side] = Some(width);
+        }
+    }
+}
+
+/// Widths of the side panels unless the user has changed them, and the least that is remembered, points.
+const WIDTHS: [f32; 2] = [264.0, 344.0];
+const NARROW: f32 = 1080.0;
+const NARROW_WIDTHS: [f32; 2] = [216.0, 316.0];
+const MIN_KEPT: f32 = 190.0;
+
 /// Which panels and windows are open.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct OpenPanels {

@@ -21,7 +21,7 @@ pub fn effects_ui(ui: &mut Ui, state: &State, commands: &Commands) {
     ui.horizontal(|ui| {
         ui.label(theme::heading("Effects"));
         ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
-            if icon_button(ui, Icon::Dice, "Randomize effects (R)").clicked() {
+            if icon_button(ui, Icon::Dice, &Action::Randomize.hint()).clicked() {
                 commands.perform(Action::Randomize);
             }
         });

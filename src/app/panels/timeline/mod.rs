@@ -159,7 +159,7 @@ fn transport_ui(ui: &mut Ui, session: &Session, commands: &Commands) {
         (play, Action::Play),
         (Icon::StepForward, Action::StepForward),
     ] {
-        if icon_button(ui, icon, &format!("{} ({})", action.label(), action.shortcut_text())).clicked() {
+        if icon_button(ui, icon, &action.hint()).clicked() {
             commands.perform(action);
         }
     }

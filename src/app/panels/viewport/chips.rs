@@ -16,8 +16,11 @@ use crate::{
 };
 
 pub fn chips_ui(ui: &mut Ui, state: &State, commands: &Commands, rect: Rect, is_comparing: bool) {
-    let corner = Rect::from_min_max(rect.min + egui::vec2(12.0, 10.0), rect.max);
-    let layout = egui::Layout::left_to_right(egui::Align::TOP);
+    // Beside the buttons where there is room, and below them where there is not.
+    let is_wide = rect.width() >= WIDE;
+    let (below, beside) = if is_wide { (10.0, VIEWS + 12.0) } else { (46.0, 12.0) };
+    let corner = Rect::from_min_max(rect.min + egui::vec2(12.0, below), rect.max - egui::vec2(beside, 0.0));
+    let layout = egui::Layout::left_to_right(egui::Align::TOP).with_main_wrap(true);
     let mut left = ui.new_child(egui::UiBuilder::new().id_salt("state").max_rect(corner).layout(layout));
     for (color, text) in states(state) {
         theme::toast_frame(theme::line())
@@ -25,11 +28,15 @@ pub fn chips_ui(ui: &mut Ui, state: &State, commands: &Commands, rect: Rect, is_
             .show(&mut left, |ui| ui.label(RichText::new(text).size(12.0).color(color)));
     }
     golden_ui(&mut left, state);
-    let corner = Rect::from_min_max(pos2(rect.right() - 320.0, rect.top() + 8.0), pos2(rect.right() - 10.0, rect.top() + 36.0));
+    let corner = Rect::from_min_max(pos2(rect.right() - VIEWS, rect.top() + 8.0), pos2(rect.right() - 12.0, rect.top() + 36.0));
     let layout = egui::Layout::right_to_left(egui::Align::Center);
-    let mut right = ui.new_child(egui::UiBuilder::new().id_salt("views").max_rect(corner).layout(layout));
+    let mut right = ui.new_child(egui::UiBuilder::new().id_salt("views").max_rect(corner.intersect(rect)).layout(layout));
     right.spacing_mut().item_spacing.x = 2.0;
-    views_ui(&mut right, state, commands, is_comparing);
+    // The picture may have any color: the buttons have a ground of their own.
+    let ground = right.painter().add(egui::Shape::Noop);
+    views_ui(&mut right, state, commands, is_comparing, rect.width() < VIEWS + 12.0);
+    let covered = right.min_rect().expand2(egui::vec2(4.0, 1.0));
+    right.painter().set(ground, egui::Shape::rect_filled(covered, 6.0, theme::bar().gamma_multiply(0.9)));
     if ui.ctx().input(|i| !i.raw.hovered_files.is_empty()) {
         let (fill, stroke) = (theme::accent_ground().gamma_multiply(0.5), (2.0, theme::accent()));
         ui.painter().rect(rect.shrink(8.0), 8.0, fill, stroke, egui::StrokeKind::Inside);
@@ -96,26 +103,37 @@ fn states(state: &State) -> Vec<(Color32, String)> {
     states
 }
 
-fn views_ui(ui: &mut Ui, state: &State, commands: &Commands, is_comparing: bool) {
+/// Width of all buttons of views, and of a picture that has room for the state beside them, points.
+const VIEWS: f32 = 352.0;
+const WIDE: f32 = 640.0;
+
+fn views_ui(ui: &mut Ui, state: &State, commands: &Commands, is_comparing: bool, is_narrow: bool) {
     let is_orthographic = state.session.camera().is_some_and(|camera| matches!(camera.projection, Projection::Orthographic { .. }));
-    if icon_button(ui, Icon::Frame, "Frame the scene (Home)").clicked() {
+    if icon_button(ui, Icon::Frame, &Action::Frame.hint()).clicked() {
         commands.perform(Action::Frame);
     }
-    let text = if is_orthographic { "Ortho" } else { "Persp" };
-    if ui.small_button(text).on_hover_text("Orthographic or perspective (5)").accessible_name("Orthographic").clicked() {
-        commands.perform(Action::Orthographic);
-    }
-    for (text, action) in [("Top", Action::Top), ("Side", Action::Side), ("Front", Action::Front)] {
-        let hint = format!("{} ({})", action.label(), action.shortcut_text());
-        if ui.small_button(text).on_hover_text(hint).accessible_name(action.label()).clicked() {
-            commands.perform(action);
-        }
+    if is_narrow {
+        ui.menu_button("Views", |ui| sides_ui(ui, is_orthographic, commands)).response.on_hover_text("Look along an axis");
+    } else {
+        sides_ui(ui, is_orthographic, commands);
     }
     ui.add_space(theme::GAP);
     for (text, on, action) in [("Overlays", state.overlays.is_any(), Action::Overlays), ("Compare", is_comparing, Action::Compare)] {
         let button = egui::Button::new(text).small().selected(on);
-        let hint = format!("{} ({})", action.label(), action.shortcut_text());
-        if ui.add(button).on_hover_text(hint).accessible_name(action.label()).clicked() {
+        if ui.add(button).on_hover_text(action.hint()).accessible_name(action.label()).clicked() {
+            commands.perform(action);
+        }
+    }
+}
+
+/// The kind of the camera, and views along the axes.
+fn sides_ui(ui: &mut Ui, is_orthographic: bool, commands: &Commands) {
+    let text = if is_orthographic { "Ortho" } else { "Persp" };
+    if ui.small_button(text).on_hover_text(Action::Orthographic.hint()).accessible_name("Orthographic").clicked() {
+        commands.perform(Action::Orthographic);
+    }
+    for (text, action) in [("Top", Action::Top), ("Side", Action::Side), ("Front", Action::Front)] {
+        if ui.small_button(text).on_hover_text(action.hint()).accessible_name(action.label()).clicked() {
             commands.perform(action);
         }
     }
