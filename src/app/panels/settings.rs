@@ -69,7 +69,12 @@ impl SettingsWindow {
                 }
                 ui.horizontal(|ui| {
                     ui.set_min_height(theme::ROW);
-                    ui.add_sized([230.0, theme::ROW], egui::Label::new(*label).truncate().halign(egui::Align::Min));
+                    label_ui(ui, 230.0, label);
+                    if matches!(action, Action::CopyPreset | Action::PastePreset) {
+                        // The system sends these as events of the clipboard, whatever their keys are.
+                        ui.label(RichText::new(action.shortcut_text()).monospace().color(theme::text_weak()));
+                        return;
+                    }
                     let is_waiting = self.binding == Some(*action);
                     let text = if is_waiting {
                         "Press a key"
@@ -121,7 +126,7 @@ impl Panel for SettingsWindow {
             .show(ui.ctx(), |ui| {
                 ui.set_width(500.0f32.min(area.width() - 48.0));
                 ui.horizontal(|ui| {
-                    ui.add_sized([150.0, theme::ROW], egui::Label::new("Theme").halign(egui::Align::Min));
+                    label_ui(ui, 150.0, "Theme");
                     for choice in ThemeChoice::ALL {
                         if ui.selectable_label(state.settings.theme == choice, choice.label()).clicked() {
                             Self::send(commands, SettingsCommand::Theme(choice));
@@ -138,10 +143,19 @@ impl Panel for SettingsWindow {
     }
 }
 
+/// A label at the left of a column of this width.
+fn label_ui(ui: &mut Ui, width: f32, text: &str) {
+    let layout = egui::Layout::left_to_right(egui::Align::Center);
+    ui.allocate_ui_with_layout(vec2(width, theme::ROW), layout, |ui| {
+        ui.set_min_width(width);
+        ui.add(egui::Label::new(text).truncate());
+    });
+}
+
 /// Size of texts and controls.
 fn scale_ui(ui: &mut Ui, scale: f32, commands: &Commands) {
     ui.horizontal(|ui| {
-        ui.add_sized([150.0, theme::ROW], egui::Label::new("Texts and controls").halign(egui::Align::Min));
+        label_ui(ui, 150.0, "Texts and controls");
         for (text, action, is_enabled) in [
             ("\u{2212}", Action::ScaleDown, scale > SCALES[0]),
             ("+", Action::ScaleUp, scale < SCALES[1]),

@@ -59,10 +59,6 @@ const MENUS: [(&str, &[Option<Action>]); 4] = [
             Some(Action::Sweep),
             Some(Action::Log),
             None,
-            Some(Action::ScaleUp),
-            Some(Action::ScaleDown),
-            Some(Action::ScaleReset),
-            None,
             Some(Action::Extremes),
             Some(Action::CheatSheet),
             Some(Action::Settings),
@@ -94,8 +90,7 @@ fn menus_ui(ui: &mut Ui, state: &State, commands: &Commands) {
         let chosen = ui.menu_button(title, |ui| {
             let chosen = menu_ui(ui, actions, state, commands);
             if title == "View" {
-                ui.separator();
-                theme_ui(ui, state.settings.theme, commands);
+                looks_ui(ui, state.settings.theme, commands);
             }
             chosen
         });
@@ -164,11 +159,20 @@ fn recents_ui(ui: &mut Ui, state: &State, commands: &Commands) {
     }
 }
 
-fn theme_ui(ui: &mut Ui, chosen: ThemeChoice, commands: &Commands) {
-    ui.menu_button("Theme", |ui| {
+/// Theme, and size of texts and controls. A menu of its own, so that its parent fits into a small window.
+fn looks_ui(ui: &mut Ui, chosen: ThemeChoice, commands: &Commands) {
+    ui.menu_button("Theme and size", |ui| {
         for choice in ThemeChoice::ALL {
             if ui.selectable_label(chosen == choice, choice.label()).clicked() {
                 commands.send(Command::Settings(SettingsCommand::Theme(choice)));
+                ui.close();
+            }
+        }
+        ui.separator();
+        for action in [Action::ScaleUp, Action::ScaleDown, Action::ScaleReset] {
+            let button = egui::Button::new(action.label()).shortcut_text(action.shortcut_text()).min_size(vec2(240.0, theme::ROW));
+            if ui.add(button).accessible_name(action.label()).clicked() {
+                commands.perform(action);
                 ui.close();
             }
         }
