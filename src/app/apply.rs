@@ -9,7 +9,7 @@ use eframe::egui::{self, ViewportCommand};
 
 use super::{
     anti_aliasing,
-    command::{CodeUse, Command, Commands, FileCommand, KeyframeEdit, Manner, Purpose, RowCommand, Side, Toggle, ViewCommand},
+    command::{CodeUse, Command, Commands, FileCommand, KeyframeEdit, Manner, Purpose, RowCommand, SettingsCommand, Side, Toggle, ViewCommand},
     film,
     log::Level,
     new_effect, open,
@@ -85,6 +85,7 @@ fn apply(ctx: &egui::Context, state: &mut State, panels: &mut Panels, command: C
         }
         Command::ExportFilm(request, progress) => export_film(state, *request, progress),
         Command::Toggle(which) => toggle(state, panels, which),
+        Command::Settings(command) => settings(ctx, state, command),
         Command::Verify => verify(state, panels),
         Command::CancelVerify => state.verification.cancel(),
         Command::Mute(effect, true) => drop(state.session.muted.insert(effect.name)),
@@ -201,10 +202,44 @@ fn toggle(state: &mut State, panels: &mut Panels, which: Toggle) {
         Toggle::Trade => open.trade = !open.trade,
         Toggle::Log => open.log = !open.log,
         Toggle::CheatSheet => open.cheat_sheet = !open.cheat_sheet,
+        Toggle::Settings => open.settings = !open.settings,
         Toggle::Extremes => panels.extremes.toggle(),
         Toggle::Randomize => panels.randomize.toggle(),
         Toggle::Sweep => panels.sweep.toggle(),
         Toggle::Film => panels.film.toggle(state),
+    }
+}
+
+fn settings(ctx: &egui::Context, state: &mut State, command: SettingsCommand) {
+    let settings = &mut state.settings;
+    let outcome = match command {
+        SettingsCommand::Theme(theme) => {
+            settings.theme = theme;
+            theme.choose(ctx);
+            Ok(())
+        }
+        SettingsCommand::Scale(steps) => {
+            settings.change_scale(steps);
+            Ok(())
+        }
+        SettingsCommand::ResetScale => {
+            settings.scale = 1.0;
+            Ok(())
+        }
+        SettingsCommand::Bind(action, Some(shortcut)) => settings.keys.bind(action, shortcut),
+        SettingsCommand::Bind(action, None) => {
+            settings.keys.clear(action);
+            Ok(())
+        }
+        SettingsCommand::ResetKeys(action) => settings.keys.reset(action),
+        SettingsCommand::ResetAllKeys => {
+            settings.keys.reset_all();
+            Ok(())
+        }
+    };
+    ctx.set_zoom_factor(settings.scale);
+    if let Err(refused) = outcome {
+        state.notify(Level::Warning, refused);
     }
 }
 
@@ -239,7 +274,10 @@ fn file(ctx: &egui::Context, state: &mut State, panels: &mut Panels, command: Fi
             let size = state.screen.requested().map_or(output, |inputs| [inputs.view.width, inputs.view.height]);
             panels.dialogs.ask_path(purpose, &state.session, state.folders.presets.as_deref(), size);
         }
-        FileCommand::Browse(purpose, path) => state.jobs.ask_path(purpose, path),
+        FileCommand::Browse(purpose, path) => state.jobs.ask_path(purpose, &path),
+        FileCommand::List(folder) => state.jobs.list_folder(folder),
+        FileCommand::Restore(restored) => open::restore(state, panels, *restored),
+        FileCommand::ForgetRecents => state.settings.recents.clear(),
         FileCommand::Open(what) if Path::new(&what).extension().is_some_and(|extension| extension.eq_ignore_ascii_case("wgsl")) => {
             reload::add_effect_file(state, Path::new(&what));
         }
@@ -279,8 +317,8 @@ fn file(ctx: &egui::Context, state: &mut State, panels: &mut Panels, command: Fi
         FileCommand::Edit(path) => state.jobs.open_editor(path),
         FileCommand::Resolve { theirs, side, saving } => resolve(state, panels, theirs, side, saving),
         FileCommand::UseCode { preset_file, then, runs } => use_code(state, panels, *preset_file, then, runs),
-        FileCommand::DiscardAndQuit => {
-            state.may_quit = true;
+        FileCommand::Quit { keeps_edits } => {
+            (state.may_quit, state.keeps_edits) = (true, keeps_edits);
             ctx.send_viewport_cmd(ViewportCommand::Close);
         }
     }
@@ -365,16 +403,27 @@ fn write(state: &mut State, panels: &mut Panels, path: &Path) {
     if let Some(folder) = path.parent().filter(|folder| !folder.as_os_str().is_empty())
         && let Err(error) = std::fs::create_dir_all(folder)
     {
-        return state.notify(Level::Error, format!("{}: the folder cannot be created: {error}", folder.display()));
+        let reason = format!("{}: the folder cannot be created: {error}", folder.display());
+        return save_failed(state, panels, Purpose::SaveAs, path, reason);
     }
     match preset_file::save(&mut state.session.preset_file, path) {
         Ok(()) => {
             let saved = state.session.preset_file.clone();
+            state.settings.recents.add_opened(&saved);
             panels.browser.refresh(&state.folders, &saved.id);
             state.session.remember(saved);
             state.notify(Level::Info, format!("Saved {}", path.display()));
         }
-        Err(error) => state.notify(Level::Error, error.to_string()),
+        Err(error) => save_failed(state, panels, Purpose::SaveAs, path, error.to_string()),
+    }
+}
+
+/// Shows the dialog of a save that failed again, with its path and the reason.
+pub fn save_failed(state: &mut State, panels: &mut Panels, purpose: Purpose, path: &Path, reason: String) {
+    if panels.dialogs.save_failed(purpose, path, &reason) {
+        state.log.add(Level::Error, reason);
+    } else {
+        state.notify(Level::Error, reason);
     }
 }
 

@@ -6,6 +6,7 @@
 
 use std::{cell::RefCell, path::PathBuf, sync::Arc};
 
+use eframe::egui::KeyboardShortcut;
 use glam::DVec3;
 
 use super::{
@@ -16,6 +17,8 @@ use super::{
     log::Level,
     overlay::Overlay,
     screen::Inputs,
+    settings::last_session::Restored,
+    theme::ThemeChoice,
     trade::request::{Progress, Request},
 };
 use crate::{
@@ -85,6 +88,7 @@ pub enum Command {
     /// Pins the options of these axes, as a separate undo step.
     PinOptions(PinnedOptions, Vec<&'static Axis>),
     Toggle(Toggle),
+    Settings(SettingsCommand),
     /// Starts the oracle on the picture that is shown, and on the one it is compared with.
     Verify,
     /// Ends the judgements under way.
@@ -267,8 +271,16 @@ pub enum FileCommand {
         then: CodeUse,
         runs: bool,
     },
-    /// Closes the window without saving.
-    DiscardAndQuit,
+    /// Closes the window without saving; the edits may come back at the next start.
+    Quit {
+        keeps_edits: bool,
+    },
+    /// Reads what is in a folder.
+    List(PathBuf),
+    /// Opens what was open in the last session.
+    Restore(Box<Restored>),
+    /// Forgets the recent files.
+    ForgetRecents,
 }
 
 /// A place in a picture.
@@ -303,10 +315,25 @@ pub enum Toggle {
     Trade,
     Log,
     CheatSheet,
+    Settings,
     Extremes,
     Randomize,
     Sweep,
     Film,
+}
+
+/// A change of the window's settings.
+#[derive(Clone, Debug, PartialEq)]
+pub enum SettingsCommand {
+    Theme(ThemeChoice),
+    /// Makes texts and controls larger by this many steps, or smaller.
+    Scale(f32),
+    ResetScale,
+    /// Makes this the only shortcut of the action; none takes its shortcuts away.
+    Bind(Action, Option<KeyboardShortcut>),
+    /// Gives the action its own shortcuts again.
+    ResetKeys(Action),
+    ResetAllKeys,
 }
 
 impl From<Action> for Command {
@@ -349,6 +376,10 @@ impl From<Action> for Command {
             Action::RandomizeWindow => Self::Toggle(Toggle::Randomize),
             Action::Sweep => Self::Toggle(Toggle::Sweep),
             Action::Film => Self::Toggle(Toggle::Film),
+            Action::Settings => Self::Toggle(Toggle::Settings),
+            Action::ScaleUp => Self::Settings(SettingsCommand::Scale(1.0)),
+            Action::ScaleDown => Self::Settings(SettingsCommand::Scale(-1.0)),
+            Action::ScaleReset => Self::Settings(SettingsCommand::ResetScale),
         }
     }
 }

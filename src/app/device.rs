@@ -5,19 +5,24 @@ use std::sync::Arc;
 use anyhow::Context as _;
 use eframe::{egui, egui_wgpu, wgpu};
 
+use super::settings::WindowPlace;
 use crate::gpu::{
     Gpu,
     device::{self, AdapterChoice},
 };
 
+/// Smallest size of the window's contents, points.
+const MIN_SIZE: [f32; 2] = [900.0, 600.0];
+
 /// Size and settings of the window.
-pub fn native_options(adapter: &AdapterChoice) -> eframe::NativeOptions {
+pub fn native_options(adapter: &AdapterChoice, window: WindowPlace) -> eframe::NativeOptions {
     eframe::NativeOptions {
         viewport: egui::ViewportBuilder::default()
             .with_title("rasterlab")
             .with_app_id("rasterlab")
-            .with_inner_size([1280.0, 800.0])
-            .with_min_inner_size([900.0, 600.0])
+            .with_inner_size(window.size.map(|side| side.max(1.0)))
+            .with_maximized(window.is_maximized)
+            .with_min_inner_size(MIN_SIZE)
             .with_drag_and_drop(true),
         wgpu_options: egui_wgpu::WgpuConfiguration { wgpu_setup: wgpu_setup(adapter), ..Default::default() },
         // Dithering would change the bytes that the kernels drew.

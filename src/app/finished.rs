@@ -3,8 +3,9 @@
 use eframe::egui;
 
 use super::{
+    apply,
     cells::CellOf,
-    command::Commands,
+    command::{Commands, Purpose},
     findings::Findings,
     jobs::Done,
     log::Level,
@@ -54,12 +55,12 @@ pub fn finish(ctx: &egui::Context, state: &mut State, panels: &mut Panels, comma
         Done::Thumbnail(id, image) => panels.browser.thumbnail_arrived(ctx, id, image),
         Done::ThumbnailOn(key, id, image) => panels.browser.on_model_arrived(ctx, key, id, image),
         Done::Export(path, Ok(())) => state.notify(Level::Info, format!("Saved {}", path.display())),
-        Done::Export(_, Err(error)) => state.notify(Level::Error, error),
         Done::Film(progress, ended) => {
             if let Some((level, text)) = panels.film.arrived(&progress, ended) {
                 state.notify(level, text);
             }
         }
+        Done::Export(path, Err(error)) => apply::save_failed(state, panels, Purpose::Export, &path, error),
         Done::Compiled(reload, outcome) => compiled(state, panels, reload, outcome),
         Done::Precision(of, measured) => {
             if let Some(error) = state.precision.arrived(*of, measured) {
@@ -77,9 +78,9 @@ pub fn finish(ctx: &egui::Context, state: &mut State, panels: &mut Panels, comma
             let text = format!("{} could not be opened in an editor: {reason}", path.display());
             state.notify(Level::Warning, text);
         }
-        Done::Path(purpose, path) => {
-            panels.dialogs.path_arrived(purpose, path, state.session.preset_file.path.as_deref(), commands);
-        }
+        Done::Path(purpose, answer) => panels.dialogs.path_arrived(purpose, answer, &state.session.preset_file, commands),
+        Done::Folder(listing) => panels.dialogs.folder_arrived(listing),
+        Done::Missing(files) => state.missing_files = files,
     }
 }
 

@@ -45,7 +45,7 @@ pub fn icon_button(ui: &mut Ui, icon: Icon, name: &str) -> Response {
 
 /// A button that is on or off.
 pub fn toggle_button(ui: &mut Ui, icon: Icon, on: bool, name: &str) -> Response {
-    let response = bare_button(ui, icon, |_, _| if on { theme::ACCENT } else { theme::TEXT_WEAK });
+    let response = bare_button(ui, icon, |_, _| if on { theme::accent() } else { theme::text_weak() });
     response.widget_info(|| egui::WidgetInfo::selected(egui::Role::CheckBox, true, on, name));
     response
 }
@@ -73,10 +73,10 @@ pub fn key_button(ui: &mut Ui, rect: Rect, keying: Keying, path: &str) -> Respon
     };
     let near = response.hovered() || response.has_focus();
     let color = match (keying, near && ui.is_enabled()) {
-        (Keying::Still, false) => theme::TEXT_WEAK.gamma_multiply(0.7),
-        (Keying::Still, true) => theme::TEXT_STRONG,
-        (_, false) => theme::ACCENT,
-        (_, true) => theme::TEXT_STRONG,
+        (Keying::Still, false) => theme::text_weak().gamma_multiply(0.7),
+        (Keying::Still, true) => theme::text_strong(),
+        (_, false) => theme::accent(),
+        (_, true) => theme::text_strong(),
     };
     let fill = if keying == Keying::OnKey { color } else { Color32::TRANSPARENT };
     paint_diamond(ui.painter(), rect.center(), if near { 5.5 } else { 4.5 }, fill, color);

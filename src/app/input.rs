@@ -5,9 +5,10 @@ use std::path::PathBuf;
 use eframe::egui::{self, Event, KeyboardShortcut};
 
 use super::{
-    action::{ACTIONS, Action},
+    action::Action,
     command::{Command, Commands, FileCommand, RowCommand},
     log::Level,
+    settings::keymap::Keymap,
     state::State,
     typing::HeldTyping,
 };
@@ -21,7 +22,7 @@ pub fn shortcuts(ctx: &egui::Context, state: &State, held: &mut HeldTyping, comm
     let is_allowed = |k: &KeyboardShortcut| if k.modifiers.command { !is_typing } else { !is_focused && !is_flying };
     let mut index = 0;
     while let Some(event) = ctx.input(|i| i.events.get(index).cloned()) {
-        let Some(action) = action_of(&event, is_allowed) else {
+        let Some(action) = action_of(&event, &state.settings.keys, is_allowed) else {
             index += 1;
             continue;
         };
@@ -37,12 +38,9 @@ pub fn shortcuts(ctx: &egui::Context, state: &State, held: &mut HeldTyping, comm
 }
 
 /// The action of a pressed key, if its shortcut is allowed.
-fn action_of(event: &Event, is_allowed: impl Fn(&KeyboardShortcut) -> bool) -> Option<Action> {
+fn action_of(event: &Event, keys: &Keymap, is_allowed: impl Fn(&KeyboardShortcut) -> bool) -> Option<Action> {
     let Event::Key { key, modifiers, pressed: true, .. } = event else { return None };
-    let is_pressed = |shortcut: &KeyboardShortcut| {
-        shortcut.logical_key == *key && modifiers.matches_logically(shortcut.modifiers) && is_allowed(shortcut)
-    };
-    ACTIONS.iter().find(|(_, _, shortcuts)| shortcuts.iter().any(is_pressed)).map(|(action, ..)| *action)
+    keys.action_of(*key, *modifiers, is_allowed)
 }
 
 /// Copies the value of the row under the pointer, or the preset, and pastes.

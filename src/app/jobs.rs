@@ -2,6 +2,7 @@
 //! saving pictures, waiting for file dialogs.
 
 use std::{
+    collections::HashSet,
     path::{Path, PathBuf},
     sync::{Arc, atomic::AtomicBool, mpsc},
 };
@@ -11,6 +12,7 @@ use eframe::egui;
 use super::{
     cells::{self, CellOf, CellResult, Cells},
     command::{Origin, Purpose},
+    completion::Listing,
     film,
     findings::Findings,
     golden_check::{self, GoldenCheck},
@@ -23,6 +25,7 @@ use super::{
         point::Point,
         request::{Progress, Request},
     },
+    system_dialog,
 };
 use crate::{
     effect_files,
@@ -50,8 +53,12 @@ pub enum Done {
     ThumbnailOn(SceneKey, String, Option<egui::ColorImage>),
     Export(PathBuf, Result<(), String>),
     Film(Arc<film::Progress>, Result<film::Finished, film::Failure>),
-    /// The path from the system's file dialog; none if it was canceled or could not be shown.
-    Path(Purpose, Option<PathBuf>),
+    /// How the system's file dialog ended.
+    Path(Purpose, system_dialog::Answer),
+    /// What is in a folder.
+    Folder(Listing),
+    /// Which recent files are not there.
+    Missing(HashSet<PathBuf>),
     /// Pipelines for what was changed on disk.
     Compiled(Reload, Result<(), String>),
     /// The f32 errors of the user's effects in a picture; none if the measurement was cancelled.
@@ -255,29 +262,19 @@ impl Jobs {
     }
 
     /// Shows the system's file dialog.
-    pub fn ask_path(&self, purpose: Purpose, start: PathBuf) {
-        let mut dialog = rfd::AsyncFileDialog::new();
-        if let Some(folder) = start.parent().filter(|folder| folder.is_dir()) {
-            dialog = dialog.set_directory(folder);
-        }
-        let name = start.file_name().map(|name| name.to_string_lossy().into_owned()).unwrap_or_default();
-        for (label, extensions) in filters(purpose) {
-            dialog = dialog.add_filter(*label, extensions);
-        }
-        let chosen: std::pin::Pin<Box<dyn Future<Output = Option<rfd::FileHandle>> + Send>> = match purpose {
-            Purpose::Open => Box::pin(dialog.pick_file()),
-            Purpose::SaveAs | Purpose::Export => Box::pin(dialog.set_file_name(name).save_file()),
-        };
-        self.spawn("file dialog", move || Done::Path(purpose, pollster::block_on(chosen).map(|file| file.path().to_owned())));
+    pub fn ask_path(&self, purpose: Purpose, start: &Path) {
+        let show = system_dialog::prepare(purpose, start);
+        self.spawn("file dialog", move || Done::Path(purpose, show()));
     }
-}
 
-/// File types of the system's dialog: names and extensions.
-const fn filters(purpose: Purpose) -> &'static [(&'static str, &'static [&'static str])] {
-    match purpose {
-        Purpose::Open => &[("Presets, models, pictures, effects", &["toml", "glb", "gltf", "png", "wgsl"])],
-        Purpose::SaveAs => &[("Presets", &["toml"])],
-        Purpose::Export => &[("Pictures", &["png"])],
+    /// Reads what is in a folder.
+    pub fn list_folder(&self, folder: PathBuf) {
+        self.spawn("folder", move || Done::Folder(Listing::read(&folder)));
+    }
+
+    /// Looks which of these files are not there.
+    pub fn find_missing(&self, files: Vec<PathBuf>) {
+        self.spawn("recent files", move || Done::Missing(files.into_iter().filter(|file| !file.exists()).collect()));
     }
 }
 

@@ -17,9 +17,9 @@ pub enum Level {
 impl Level {
     pub fn color(self) -> Color32 {
         match self {
-            Self::Info => theme::TEXT_WEAK,
-            Self::Warning => theme::AMBER,
-            Self::Error => theme::RED,
+            Self::Info => theme::text_weak(),
+            Self::Warning => theme::amber(),
+            Self::Error => theme::red(),
         }
     }
 

@@ -17,15 +17,15 @@ pub fn time_text(report: Option<&Report>) -> String {
 /// The error of the picture `shown`: its color, a few words, and the details.
 pub fn error_line(verdict: Option<&Verdict>, shown: Option<&Inputs>) -> (Color32, String, String) {
     let Some(Verdict { of, findings }) = verdict else {
-        return (theme::TEXT_WEAK, "error not measured".into(), "Verify compares every pixel with the oracle".into());
+        return (theme::text_weak(), "error not measured".into(), "Verify compares every pixel with the oracle".into());
     };
     let report = &findings.accuracy;
     let (text, detail) = (error_text(report), details(report));
     if shown != Some(of) {
-        return (theme::AMBER, format!("{text} · stale"), format!("Measured on an earlier picture. {detail}"));
+        return (theme::amber(), format!("{text} · stale"), format!("Measured on an earlier picture. {detail}"));
     }
     let wrong = report.wrong_triangles + report.holes + report.double_hits + report.depth_without_id + report.overflow;
-    (if wrong == 0 { theme::GREEN } else { theme::RED }, text, detail)
+    (if wrong == 0 { theme::green() } else { theme::red() }, text, detail)
 }
 
 /// `0 wrong triangles, max Δ 1`.

@@ -1,7 +1,7 @@
 //! The state of the window besides its panels: the session, its history, the picture, and what several panels share.
 //! Panels read it; only `App` changes it.
 
-use std::sync::Arc;
+use std::{collections::HashSet, path::PathBuf, sync::Arc};
 
 use super::{
     command::{Marker, Picking},
@@ -15,27 +15,11 @@ use super::{
     precision::PrecisionState,
     screen::Screen,
     session::{Session, UndoState},
+    settings::{OpenPanels, Settings},
     trust::Trust,
     verification::Verification,
 };
 use crate::{measure::ErrorReport, preset_file::Folders};
-
-/// Which panels and windows are open.
-#[derive(Clone, Copy, Debug)]
-pub struct OpenPanels {
-    pub left: bool,
-    pub right: bool,
-    pub timeline: bool,
-    pub trade: bool,
-    pub log: bool,
-    pub cheat_sheet: bool,
-}
-
-impl Default for OpenPanels {
-    fn default() -> Self {
-        Self { left: true, right: true, timeline: true, trade: false, log: false, cheat_sheet: false }
-    }
-}
 
 /// What copy and paste apply to.
 #[derive(Clone, Debug, Default)]
@@ -71,8 +55,15 @@ pub struct State {
     pub clipboard: Clipboard,
     pub log: Log,
     pub open: OpenPanels,
+    pub settings: Settings,
+    /// Recent files that are not there.
+    pub missing_files: HashSet<PathBuf>,
+    /// The session comes back at the next start.
+    pub keeps_session: bool,
     /// The user agreed to quit without saving.
     pub may_quit: bool,
+    /// The unsaved edits come back at the next start, although the window closes.
+    pub keeps_edits: bool,
     /// Time of this frame, seconds since the start.
     pub now_s: f64,
 }

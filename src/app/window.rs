@@ -1,9 +1,6 @@
 //! The window: its state and its panels, and what happens in a frame.
 
-use std::sync::{
-    Arc,
-    atomic::{AtomicBool, Ordering},
-};
+use std::{collections::HashSet, path::PathBuf, sync::Arc};
 
 use eframe::egui::{self, Ui, ViewportCommand};
 
@@ -11,23 +8,26 @@ use super::{
     apply,
     command::{CodeUse, Commands, Manner},
     device,
+    escape::escape,
     finished::finish,
     history::History,
     input,
     jobs::Jobs,
     live::Live,
     log::{Level, Log},
+    loss::LossFlag,
     open,
     opening::Opening,
     overlay::OverlaySelection,
     panel::Panel,
     panels::{Panels, log::toasts_ui},
+    pointer_frames::PointerFrames,
     precision::{PrecisionState, REST_S},
     recovery, reload,
     scene_loader::SceneKey,
     screen::Screen,
-    session::Session,
-    state::{Clipboard, OpenPanels, State},
+    settings::{keeper::Keeper, recents::Recents},
+    state::{Clipboard, State},
     theme,
     trust::Trust,
     typing::HeldTyping,
@@ -57,30 +57,23 @@ pub struct Options {
     pub folders: Folders,
     /// A new effect is opened in the user's editor.
     pub opens_editor: bool,
-}
-
-/// Set when the window closes because its device was lost.
-#[derive(Clone, Debug, Default)]
-pub struct LossFlag(Arc<AtomicBool>);
-
-impl LossFlag {
-    pub fn set(&self) {
-        self.0.store(true, Ordering::Relaxed);
-    }
-
-    pub fn is_set(&self) -> bool {
-        self.0.load(Ordering::Relaxed)
-    }
+    /// The folder where settings and session are kept; none keeps nothing.
+    pub config: Option<PathBuf>,
 }
 
 /// The whole window.
 pub struct App {
-    state: State,
-    panels: Panels,
+    pub(super) state: State,
+    pub(super) panels: Panels,
     commands: Commands,
     /// What was typed while a dialog opened.
     typing: HeldTyping,
-    loss: LossFlag,
+    /// A text field had the focus when the last frame ended.
+    was_typing: bool,
+    pub(super) keeper: Keeper,
+    /// The recent files that were looked for, and whether the window had the focus then.
+    pub(super) looked_for: (Recents, bool),
+    pub(super) loss: LossFlag,
     title: String,
 }
 
@@ -169,6 +162,11 @@ impl App {
         self.panels.sweep.pictures()
     }
 
+    /// Is the panel Trade open?
+    pub fn is_trade_open(&self) -> bool {
+        self.state.open.trade
+    }
+
     /// Number of points of the newest measurement of the panel Trade.
     pub fn trade_points(&self) -> usize {
         self.panels.trade.points()
@@ -189,25 +187,32 @@ impl App {
     /// # Errors
     /// If the window has no wgpu device.
     pub fn with_loss_flag(cc: &eframe::CreationContext<'_>, options: Options, loss: LossFlag) -> anyhow::Result<Self> {
-        theme::apply(&cc.egui_ctx);
+        let ctx = &cc.egui_ctx;
+        theme::apply(ctx);
+        ctx.add_plugin(PointerFrames::default());
+        ctx.options_mut(|options| options.zoom_with_keyboard = false); // The table of actions has these keys.
         let (window, gpu) = device::adopt(cc, options.gpu)?;
         let mut log = Log::default();
-        let opened = recovery::first_preset(options.opened, options.open.as_deref(), &options.folders, &mut log);
+        let (keeper, settings, remarks) = Keeper::new(options.config);
+        remarks.into_iter().for_each(|remark| log.add(Level::Warning, remark));
+        settings.theme.choose(ctx);
+        ctx.set_zoom_factor(settings.scale);
         let summary = &gpu.summary;
         log.add(Level::Info, format!("adapter: {}, {}, {}", summary.name, summary.backend, summary.driver));
         let mut panels = Panels::new(&options.folders);
+        panels.browser.show_scene(settings.shows_scene_tab);
         let trust = Trust::default();
-        let opened = if trust.allows(&opened, &options.folders.effects) {
-            opened
-        } else {
-            // Until the user decides, a preset without code is shown.
-            let said = format!("Opened {}", opened.title());
-            panels.dialogs.ask_code(opened.into(), CodeUse::Open(Manner::WithScene, said));
-            recovery::first_preset(None, None, &options.folders, &mut log)
-        };
-        let mut session = Session::new(opened);
+        let start = recovery::start(options.opened, options.open.as_deref(), &options.folders, (&keeper, &trust), &mut log);
+        if let Some(brings) = start.brings_code {
+            let said = format!("Opened {}", brings.title());
+            panels.dialogs.ask_code(brings.into(), CodeUse::Open(Manner::WithScene, said));
+        }
+        if let Some(crashed) = start.crashed {
+            panels.dialogs.ask_restore(crashed);
+        }
+        let mut session = start.session;
         // The preset that nobody asked for shows at once that it moves.
-        session.playback.playing = options.open.is_none() && session.preset().is_moving();
+        session.playback.playing = options.open.is_none() && !start.is_restored && session.preset().is_moving();
         Ok(Self {
             panels,
             state: State {
@@ -226,12 +231,19 @@ impl App {
                 picking: None,
                 clipboard: Clipboard::default(),
                 log,
-                open: OpenPanels::default(),
+                open: settings.open,
+                settings,
+                missing_files: HashSet::new(),
+                keeps_session: keeper.keeps_session(),
                 may_quit: false,
+                keeps_edits: false,
                 now_s: 0.0,
             },
             commands: Commands::default(),
             typing: HeldTyping::default(),
+            was_typing: false,
+            keeper,
+            looked_for: (Recents::default(), false),
             loss,
             title: String::new(),
         })
@@ -353,13 +365,17 @@ impl App {
         let mut is_open = self.state.open.log;
         log.show_collapsible(ui, &mut is_open, |ui| self.panel_ui(ui, |panels| &mut panels.log));
         self.state.open.log = is_open;
-        let left = egui::Panel::left("left").frame(theme::panel_frame()).default_size(264.0).size_range(200.0..=420.0);
+        let window = ui.ctx().content_rect().width();
+        let [left_width, right_width] = self.state.settings.panel_widths(window);
+        let left = egui::Panel::left("left").frame(theme::panel_frame()).default_size(left_width).size_range(200.0..=420.0);
         let mut is_open = self.state.open.left;
-        left.show_collapsible(ui, &mut is_open, |ui| self.panel_ui(ui, |panels| &mut panels.browser));
+        let shown = left.show_collapsible(ui, &mut is_open, |ui| self.panel_ui(ui, |panels| &mut panels.browser));
+        self.state.settings.keep_width(0, self.state.open.left && is_open, shown.map(|shown| shown.response.rect), window);
         self.state.open.left = is_open;
-        let right = egui::Panel::right("right").frame(theme::panel_frame()).default_size(344.0).size_range(272.0..=520.0);
+        let right = egui::Panel::right("right").frame(theme::panel_frame()).default_size(right_width).size_range(272.0..=520.0);
         let mut is_open = self.state.open.right;
-        right.show_collapsible(ui, &mut is_open, |ui| self.panel_ui(ui, |panels| &mut panels.inspector));
+        let shown = right.show_collapsible(ui, &mut is_open, |ui| self.panel_ui(ui, |panels| &mut panels.inspector));
+        self.state.settings.keep_width(1, self.state.open.right && is_open, shown.map(|shown| shown.response.rect), window);
         self.state.open.right = is_open;
         let rect = egui::CentralPanel::no_frame().show(ui, |ui| self.viewport_ui(ui)).response.rect;
         toasts_ui(ui.ctx(), &self.state.log, rect, self.state.now_s);
@@ -398,6 +414,8 @@ impl eframe::App for App {
             return; // egui panics if it has something to paint on a lost device.
         }
         let ctx = ui.ctx().clone();
+        theme::follow(&ctx);
+        self.state.settings.keys.show();
         device::tune(frame, &self.state.screen.gpu);
         let (now_s, is_pressed, is_held) = ctx.input(|i| (i.time, i.pointer.any_pressed(), i.pointer.any_down()));
         self.state.now_s = now_s;
@@ -409,7 +427,9 @@ impl eframe::App for App {
         }
         input::dropped_files(&ctx, &self.commands);
         self.apply(&ctx);
-        if !self.panels.dialogs.is_open() {
+        escape(&ctx, &self.state, &mut self.panels, self.was_typing, &self.commands);
+        self.apply(&ctx);
+        if !self.panels.dialogs.is_open() && !self.panels.settings.takes_key() {
             input::shortcuts(&ctx, &self.state, &mut self.typing, &self.commands);
             self.apply(&ctx);
         }
@@ -422,6 +442,7 @@ impl eframe::App for App {
         self.panels_ui(ui);
         self.panel_ui(ui, |panels| &mut panels.dialogs);
         self.panel_ui(ui, |panels| &mut panels.cheat_sheet);
+        self.panel_ui(ui, |panels| &mut panels.settings);
         self.panel_ui(ui, |panels| &mut panels.extremes);
         self.panel_ui(ui, |panels| &mut panels.randomize);
         self.panel_ui(ui, |panels| &mut panels.sweep);
@@ -434,9 +455,11 @@ impl eframe::App for App {
         }
         self.guard_close(&ctx);
         self.update_title(&ctx);
+        self.keep(&ctx);
+        self.was_typing = ctx.text_edit_focused();
     }
 
-    fn clear_color(&self, _: &egui::Visuals) -> [f32; 4] {
-        theme::PANEL.to_normalized_gamma_f32()
+    fn clear_color(&self, visuals: &egui::Visuals) -> [f32; 4] {
+        visuals.panel_fill.to_normalized_gamma_f32()
     }
 }

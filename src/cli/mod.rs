@@ -113,14 +113,17 @@ fn dispatch(common: &Common, command: &Command, streams: &mut Streams) -> Result
 #[cfg(feature = "gui")]
 fn window(cli: &Cli) -> Result<Exit, CliError> {
     // Errors are reported on the terminal instead of in an empty window.
-    let (what, opened) = match (&cli.open, &cli.common.preset) {
-        (None, Some(look)) => (look.as_str(), open::open_alone(&cli.common, look)),
-        (what, _) => {
+    // Without anything to open or to change, the window goes on with its last session.
+    let is_asked = cli.open.is_some() || cli.common.preset.is_some() || !(cli.common.set.is_empty() && cli.common.unset.is_empty());
+    let opened = match (&cli.open, &cli.common.preset) {
+        (None, Some(look)) => Some((look.as_str(), open::open_alone(&cli.common, look))),
+        (what, _) if is_asked => {
             let what = what.as_deref().unwrap_or(crate::app::FIRST_PRESET);
-            (what, open::open(&cli.common, what))
+            Some((what, open::open(&cli.common, what)))
         }
+        _ => None,
     };
-    let opened = opened.map_err(|error| suggest_command(error, what))?;
+    let opened = opened.map(|(what, opened)| opened.map_err(|error| suggest_command(error, what))).transpose()?;
     let adapter = match backend::backend_choice(&cli.common) {
         backend::BackendChoice::Oracle => {
             return Err(CliError::usage("the window needs a GPU adapter; --adapter cpu serves render, verify, compare and check"));
@@ -129,11 +132,12 @@ fn window(cli: &Cli) -> Result<Exit, CliError> {
     };
     let options = crate::app::Options {
         open: cli.open.clone(),
-        opened: Some(opened),
+        opened,
         adapter,
         gpu: None,
         folders: cli.common.folders(),
         opens_editor: true,
+        config: crate::app::config_folder(),
     };
     crate::app::run(options).map_err(CliError::window)?;
     Ok(Exit::Done)

@@ -3,7 +3,7 @@
 use std::{
     iter,
     ops::{Deref, DerefMut},
-    path::Path,
+    path::{Path, PathBuf},
     sync::{Arc, OnceLock},
     time::{Duration, Instant},
 };
@@ -134,15 +134,20 @@ impl Lab {
     }
 }
 
-/// A window of 1280 x 800 that shows the preset `open`, with its first picture drawn; presets lie in `presets_dir`.
+/// A window of 1280 x 800 that shows the preset `open`, with its first picture drawn; presets lie in `presets_dir`. It keeps no settings.
 pub fn lab_in(open: &str, presets_dir: Option<&Path>) -> Option<Lab> {
     let mut lab = opened(Some(open), presets_dir)?;
     settle(&mut lab);
     Some(lab)
 }
 
-/// A window of 1280 x 800 as it is created, before its first frame; without `open` as the program starts.
+/// A window of 1280 x 800 as it is created, before its first frame; without `open` as the program starts. It keeps no settings.
 pub fn opened(open: Option<&str>, presets_dir: Option<&Path>) -> Option<Lab> {
+    lab_with(open, presets_dir, None, [1280.0, 800.0])
+}
+
+/// A window of `size` that keeps its settings and session in the folder `config`, before its first frame.
+pub fn lab_with(open: Option<&str>, presets_dir: Option<&Path>, config: Option<PathBuf>, size: [f32; 2]) -> Option<Lab> {
     crate::common::gpu()?; // Fails with one sentence when there is none.
     let adapter = std::env::var("RASTERLAB_ADAPTER").map_or(AdapterChoice::Any, AdapterChoice::Named);
     let (window, gpu) = shared_device(&adapter);
@@ -153,9 +158,10 @@ pub fn opened(open: Option<&str>, presets_dir: Option<&Path>) -> Option<Lab> {
         gpu: Some(gpu),
         folders: Folders { presets: presets_dir.map(Path::to_owned), ..Folders::default() },
         opens_editor: false,
+        config,
     };
     let harness = Harness::builder()
-        .with_size([1280.0, 800.0])
+        .with_size(size)
         .renderer(Window(window.clone()))
         .build_eframe(|cc| App::new(cc, options).unwrap_or_else(|error| panic!("{error:#}")));
     Some(Lab { harness, window })

@@ -147,6 +147,10 @@ fn summary(reports: &[Report]) -> String {
 }
 
 impl Extremes {
+    pub fn is_open(&self) -> bool {
+        self.is_open
+    }
+
     /// Shows or hides the window.
     pub fn toggle(&mut self) {
         self.is_open = !self.is_open;
@@ -184,7 +188,7 @@ impl Extremes {
                 }
             } else {
                 let text = if found == 1 { "Run 1 case".to_owned() } else { format!("Run {found} cases") };
-                let button = egui::Button::new(text).fill(theme::ACCENT_GROUND);
+                let button = egui::Button::new(text).fill(theme::accent_ground());
                 if ui.add_enabled(found > 0, button).clicked() {
                     self.start(adapter.to_owned(), ui.ctx());
                 }
@@ -227,7 +231,7 @@ fn run_ui(ui: &mut Ui, run: &Run, height: f32) {
     ui.add_space(theme::HALF);
     if progress.is_over {
         let failed = progress.reports.iter().any(|report| report.outcome.is_failure());
-        let color = if failed || progress.error.is_some() { theme::RED } else { theme::GREEN };
+        let color = if failed || progress.error.is_some() { theme::red() } else { theme::green() };
         ui.label(RichText::new(summary(&progress.reports)).color(color));
     } else {
         let text = match run.left_s(done) {
@@ -239,7 +243,7 @@ fn run_ui(ui: &mut Ui, run: &Run, height: f32) {
         ui.add(egui::Label::new(theme::weak(progress.now.as_str())).truncate());
     }
     if let Some(error) = &progress.error {
-        theme::notice(ui, theme::RED, error);
+        theme::notice(ui, theme::red(), error);
     }
     egui::ScrollArea::vertical().max_height(height).auto_shrink([false, true]).show(ui, |ui| {
         let (failed, others): (Vec<_>, Vec<_>) = progress.reports.iter().partition(|report| report.outcome.is_failure());
@@ -251,13 +255,13 @@ fn run_ui(ui: &mut Ui, run: &Run, height: f32) {
 
 fn report_ui(ui: &mut Ui, report: &Report) {
     let color: Color32 = match report.outcome {
-        Outcome::Passed | Outcome::Refused(_) => theme::GREEN,
-        Outcome::Skipped(_) | Outcome::Stopped => theme::AMBER,
-        Outcome::Failed(_) => theme::RED,
+        Outcome::Passed | Outcome::Refused(_) => theme::green(),
+        Outcome::Skipped(_) | Outcome::Stopped => theme::amber(),
+        Outcome::Failed(_) => theme::red(),
     };
     ui.horizontal(|ui| {
         ui.add_sized([24.0, 16.0], egui::Label::new(theme::weak(report.number.to_string())));
-        ui.add(egui::Label::new(RichText::new(report.name).color(theme::TEXT_STRONG)).truncate())
+        ui.add(egui::Label::new(RichText::new(report.name).color(theme::text_strong())).truncate())
             .on_hover_text(format!("{}\nExpected: {}", report.about, report.expectation));
         ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
             ui.label(theme::weak(format!("{:.0} ms", report.ms)));

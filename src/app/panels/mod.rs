@@ -11,6 +11,7 @@ pub mod log;
 pub mod new_effect;
 pub mod preset_browser;
 pub mod randomize;
+pub mod settings;
 pub mod sweep;
 pub mod timeline;
 pub mod topbar;
@@ -19,8 +20,8 @@ pub mod viewport;
 
 use self::{
     cheat_sheet::CheatSheet, dialogs::Dialogs, extremes::Extremes, film::FilmPanel, inspector::Inspector, log::LogPanel,
-    preset_browser::PresetBrowser, randomize::RandomizePanel, sweep::SweepPanel, timeline::Timeline, topbar::TopBar, trade::TradePanel,
-    viewport::Viewport,
+    preset_browser::PresetBrowser, randomize::RandomizePanel, settings::SettingsWindow, sweep::SweepPanel, timeline::Timeline,
+    topbar::TopBar, trade::TradePanel, viewport::Viewport,
 };
 use crate::preset_file::Folders;
 
@@ -35,6 +36,7 @@ pub struct Panels {
     pub viewport: Viewport,
     pub dialogs: Dialogs,
     pub cheat_sheet: CheatSheet,
+    pub settings: SettingsWindow,
     pub extremes: Extremes,
     pub randomize: RandomizePanel,
     pub sweep: SweepPanel,
@@ -54,6 +56,7 @@ impl Panels {
             viewport: Viewport::default(),
             dialogs: Dialogs::default(),
             cheat_sheet: CheatSheet::default(),
+            settings: SettingsWindow::default(),
             extremes: Extremes::default(),
             randomize: RandomizePanel::default(),
             sweep: SweepPanel::default(),

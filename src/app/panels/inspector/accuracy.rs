@@ -84,7 +84,7 @@ fn names_ui(ui: &mut Ui, setting: &'static Setting, commands: &Commands, chosen:
             _ if t == 1.0 => (Align2::RIGHT_CENTER, right + 9.0),
             _ => (Align2::CENTER_CENTER, left + t * (right - left)),
         };
-        let color = if tier == chosen { theme::TEXT_STRONG } else { theme::TEXT_WEAK };
+        let color = if tier == chosen { theme::text_strong() } else { theme::text_weak() };
         let at = ui.painter().text(pos2(x, rect.center().y), align, tier.name(), egui::FontId::proportional(11.5), color);
         let response = ui.interact(at.expand(2.0), egui::Id::unique(("tier", index)), Sense::click());
         response.widget_info(|| egui::WidgetInfo::selected(egui::Role::Button, true, tier == chosen, format!("Tier {}", tier.name())));
@@ -110,7 +110,7 @@ fn numbers_ui(ui: &mut Ui, state: &State, accuracy: &AccuracyRequest) {
         ui.horizontal(|ui| {
             ui.add_space(theme::GAP);
             ui.add_sized([64.0, 16.0], egui::Label::new(theme::weak(name).size(11.5)));
-            ui.add(egui::Label::new(RichText::new(text).monospace().size(11.5).color(theme::TEXT_STRONG)).truncate());
+            ui.add(egui::Label::new(RichText::new(text).monospace().size(11.5).color(theme::text_strong())).truncate());
         });
     };
     line(ui, "expected", expected.as_ref().map_or_else(|| "after the first picture".into(), expected_text));

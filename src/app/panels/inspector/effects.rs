@@ -22,7 +22,7 @@ pub fn effects_ui(ui: &mut Ui, state: &State, commands: &Commands) {
     ui.horizontal(|ui| {
         ui.label(theme::heading("Effects"));
         ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
-            if icon_button(ui, Icon::Dice, "Randomize effects (R)").clicked() {
+            if icon_button(ui, Icon::Dice, &Action::Randomize.hint()).clicked() {
                 commands.perform(Action::Randomize);
             }
         });
@@ -62,7 +62,7 @@ fn own_effects_ui(ui: &mut Ui, state: &State, commands: &Commands, stack: &[&'st
         ui.horizontal(|ui| {
             ui.set_min_height(theme::ROW);
             ui.add_space(theme::GAP);
-            let label = ui.label(RichText::new(format!("{name}.wgsl is faulty")).color(theme::RED));
+            let label = ui.label(RichText::new(format!("{name}.wgsl is faulty")).color(theme::red()));
             label.on_hover_text(RichText::new(error).monospace());
         });
     }
@@ -75,7 +75,8 @@ fn fold_id(effect: &Effect) -> egui::Id {
 
 /// An effect of the stack at `index` of `count`.
 fn enabled_ui(ui: &mut Ui, state: &State, commands: &Commands, effect: &'static Effect, (index, count): (usize, usize)) {
-    let frame = egui::Frame::new().fill(theme::BAR).corner_radius(6.0).inner_margin(egui::Margin { left: 8, right: 4, top: 3, bottom: 5 });
+    let frame =
+        egui::Frame::new().fill(theme::bar()).corner_radius(6.0).inner_margin(egui::Margin { left: 8, right: 4, top: 3, bottom: 5 });
     let is_muted = state.session.muted.contains(effect.name);
     let is_folded = ui.data(|data| data.get_temp(fold_id(effect))).unwrap_or(false);
     frame.show(ui, |ui| {
@@ -107,7 +108,7 @@ fn header_ui(
         if ui.checkbox(&mut on, "").on_hover_text("Take it out of the stack").accessible_name(effect.name).clicked() {
             commands.edit(Edit::Disable(effect));
         }
-        let text = RichText::new(title(effect)).strong().color(theme::TEXT_STRONG);
+        let text = RichText::new(title(effect)).strong().color(theme::text_strong());
         let fold = ui.add(egui::Button::new(text).frame(false)).on_hover_text(effect.about);
         let verb = if is_folded { "Unfold" } else { "Fold" };
         if fold.accessible_name(format!("{verb} {}", effect.name)).clicked() {

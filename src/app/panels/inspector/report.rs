@@ -17,13 +17,13 @@ pub fn timing_ui(ui: &mut Ui, state: &State) {
     egui::Grid::new("timing").num_columns(2).spacing([16.0, 4.0]).min_col_width(96.0).show(ui, |ui| {
         for (index, (name, value)) in lines(report, error).into_iter().enumerate() {
             let is_main = index < 2;
-            ui.label(RichText::new(name).color(if is_main { theme::TEXT_STRONG } else { theme::TEXT_WEAK }));
-            ui.label(RichText::new(value).monospace().color(if is_main { theme::TEXT_STRONG } else { theme::TEXT }));
+            ui.label(RichText::new(name).color(if is_main { theme::text_strong() } else { theme::text_weak() }));
+            ui.label(RichText::new(value).monospace().color(if is_main { theme::text_strong() } else { theme::text() }));
             ui.end_row();
         }
     });
     if state.screen.gpu.summary.software {
-        ui.label(RichText::new("Compare software-adapter timings only with each other.").color(theme::AMBER));
+        ui.label(RichText::new("Compare software-adapter timings only with each other.").color(theme::amber()));
     }
 }
 
@@ -56,7 +56,7 @@ pub fn kernel_ui(ui: &mut Ui, state: &State) {
         ui.label(theme::weak("The kernel appears with the first frame."));
         return;
     };
-    ui.label(RichText::new(key).monospace().color(theme::TEXT_STRONG));
+    ui.label(RichText::new(key).monospace().color(theme::text_strong()));
     let bytes: u64 = buffers.iter().map(|buffer| buffer.bytes).sum();
     ui.add_space(theme::HALF);
     ui.label(theme::weak(format!("{} passes; {} buffers, {} in total", passes.len(), buffers.len(), text::bytes(bytes))));

@@ -24,13 +24,13 @@ pub fn entry_ui(
 ) -> egui::Response {
     let (rect, response) = ui.allocate_exact_size(vec2(ui.available_width(), THUMBNAIL.y + 8.0), Sense::click());
     let (name, about, color) = match &entry.preset_file {
-        Ok(preset_file) => (preset_file.title(), preset_file.preset.about.clone(), theme::TEXT_STRONG),
-        Err(error) => (entry.id.as_str(), error.to_string(), theme::RED),
+        Ok(preset_file) => (preset_file.title(), preset_file.preset.about.clone(), theme::text_strong()),
+        Err(error) => (entry.id.as_str(), error.to_string(), theme::red()),
     };
     if is_open {
-        ui.painter().rect_filled(rect, 6.0, theme::ACCENT_GROUND);
+        ui.painter().rect_filled(rect, 6.0, theme::accent_ground());
     } else if response.hovered() || response.has_focus() {
-        ui.painter().rect_filled(rect, 6.0, theme::RAISED);
+        ui.painter().rect_filled(rect, 6.0, theme::raised());
     }
     let frame = Rect::from_min_size(rect.min + vec2(4.0, 4.0), THUMBNAIL);
     match picture {
@@ -38,32 +38,32 @@ pub fn entry_ui(
             let whole = Rect::from_min_max(Pos2::ZERO, pos2(1.0, 1.0));
             egui::Image::from_texture((picture.id(), THUMBNAIL)).uv(whole).corner_radius(4.0).paint_at(ui, frame);
         }
-        None => drop(ui.painter().rect_filled(frame, 4.0, theme::WELL)),
+        None => drop(ui.painter().rect_filled(frame, 4.0, theme::well())),
     }
     let text = Rect::from_min_max(pos2(frame.right() + 8.0, frame.top()), rect.max - vec2(6.0, 4.0));
     let painter = ui.painter_at(text);
     let title = painter.layout_no_wrap(name.to_owned(), FontId::proportional(13.0), color);
     painter.galley(text.min + vec2(0.0, 2.0), title.clone(), color);
     if is_modified {
-        painter.circle_filled(text.min + vec2(title.size().x + 8.0, 10.0), 3.0, theme::ACCENT);
+        painter.circle_filled(text.min + vec2(title.size().x + 8.0, 10.0), 3.0, theme::accent());
     }
     let mut job =
         egui::text::LayoutJob::single_section(about.clone(), egui::TextFormat::simple(FontId::proportional(11.5), about_color(is_open)));
     job.wrap = egui::text::TextWrapping { max_width: text.width(), max_rows: 2, break_anywhere: false, overflow_character: Some('…') };
-    painter.galley(text.min + vec2(0.0, 20.0), painter.layout_job(job), theme::TEXT_WEAK);
+    painter.galley(text.min + vec2(0.0, 20.0), painter.layout_job(job), theme::text_weak());
     if entry.preset_file.is_err() && picture.is_none() {
-        ui.painter().text(frame.center(), Align2::CENTER_CENTER, "!", FontId::proportional(18.0), theme::RED);
+        ui.painter().text(frame.center(), Align2::CENTER_CENTER, "!", FontId::proportional(18.0), theme::red());
     }
     response.widget_info(|| egui::WidgetInfo::selected(egui::Role::Button, true, is_open, format!("Preset {name}")));
     response.on_hover_ui(|ui| {
-        ui.label(RichText::new(name).color(theme::TEXT_STRONG));
+        ui.label(RichText::new(name).color(theme::text_strong()));
         ui.label(&about);
         ui.label(theme::weak(source_text(entry)));
     })
 }
 
 fn about_color(is_open: bool) -> egui::Color32 {
-    if is_open { theme::TEXT } else { theme::TEXT_WEAK }
+    if is_open { theme::text() } else { theme::text_weak() }
 }
 
 /// Where the preset comes from.

@@ -50,6 +50,16 @@ impl PresetBrowser {
         Self { entries, queue, thumbnails: HashMap::new(), drawing: None, on_model: OnModel::default(), tab: Tab::Presets }
     }
 
+    /// Is the scene shown, rather than the presets?
+    pub fn shows_scene(&self) -> bool {
+        self.tab == Tab::Scene
+    }
+
+    /// Shows the scene, or the presets.
+    pub fn show_scene(&mut self, shows_scene: bool) {
+        self.tab = if shows_scene { Tab::Scene } else { Tab::Presets };
+    }
+
     /// True while thumbnails are still to come.
     pub fn is_busy(&self) -> bool {
         self.drawing.is_some() || !self.queue.is_empty() || self.on_model.is_busy()

@@ -33,7 +33,7 @@ pub fn plates_ui(ui: &mut Ui, compare: &mut Compare, state: &State, rect: Rect, 
 
 fn plate_a_ui(ui: &mut Ui, compare: &mut Compare, state: &State) {
     let (color, error, hint) = match compare.screen.as_ref().is_some_and(Screen::is_refused) {
-        true => (theme::RED, "cannot be drawn".into(), "See the log.".into()),
+        true => (theme::red(), "cannot be drawn".into(), "See the log.".into()),
         false => error_line(compare.verdict.as_ref(), compare.requested()),
     };
     let time = time_text(compare.screen.as_ref().and_then(Screen::report));
@@ -68,16 +68,16 @@ fn plate_b_ui(ui: &mut Ui, compare: &mut Compare, state: &State) {
 
 /// Title and buttons of a side, and below them its time and its error.
 fn plate(ui: &mut Ui, title: &str, doc: &str, (time, error, color, hint): (&str, &str, Color32, &str), buttons: impl FnOnce(&mut Ui)) {
-    theme::toast_frame(theme::LINE).inner_margin(egui::Margin::symmetric(10, 6)).show(ui, |ui| {
+    theme::toast_frame(theme::line()).inner_margin(egui::Margin::symmetric(10, 6)).show(ui, |ui| {
         ui.set_min_width(ui.available_width());
         ui.spacing_mut().item_spacing.y = 2.0;
         ui.horizontal(|ui| {
-            ui.add(egui::Label::new(RichText::new(title).strong().color(theme::TEXT_STRONG)).truncate()).on_hover_text(doc);
+            ui.add(egui::Label::new(RichText::new(title).strong().color(theme::text_strong())).truncate()).on_hover_text(doc);
             buttons(ui);
         });
         ui.horizontal(|ui| {
             ui.spacing_mut().item_spacing.x = 6.0;
-            ui.label(RichText::new(time).size(12.0).color(theme::TEXT));
+            ui.label(RichText::new(time).size(12.0).color(theme::text()));
             ui.label(theme::weak("·"));
             ui.add(egui::Label::new(RichText::new(error).size(12.0).color(color)).truncate()).on_hover_text(hint);
         });

@@ -24,7 +24,7 @@ use eframe::egui::{self, Align2, FontId, Rect, Response, Sense, Ui, vec2};
 use self::{compare::Compare, layout::fitted, overlays::OverlayPainter};
 use crate::app::{
     anti_aliasing::{AutomaticAntiAliasing, Finished},
-    command::{Command, Commands, Edit, ViewCommand},
+    command::{Commands, Edit},
     log::Level,
     scene_loader::SceneKey,
     screen::Inputs,
@@ -76,13 +76,7 @@ impl Viewport {
         if camera.is_some() {
             commands.edit(Edit::Camera(camera));
         }
-        if state.marker.is_some() && state.picking.is_none() && ui.input(|i| i.key_pressed(egui::Key::Escape)) {
-            commands.send(Command::View(ViewCommand::Mark(None)));
-        }
         if let Some(picking) = state.picking {
-            if ui.input(|i| i.key_pressed(egui::Key::Escape)) {
-                commands.send(Command::View(ViewCommand::Pick(None)));
-            }
             pick_input::pick(&response, self.compare.side_b(rect), picking, state, commands);
         }
         Interaction { response, size, is_moved }
@@ -189,12 +183,12 @@ fn picture_ui(ui: &Ui, state: &State, rect: Rect) -> Rect {
     if let Some((blit, size)) = state.screen.picture().filter(|(_, size)| size.iter().all(|&side| side > 0)) {
         let at = fitted(rect, size);
         if at != rect {
-            painter.rect_filled(rect, 0.0, theme::VIEW);
+            painter.rect_filled(rect, 0.0, theme::view());
         }
         painter.add(blit.shape(at));
         return at;
     }
-    painter.rect_filled(rect, 0.0, theme::VIEW);
+    painter.rect_filled(rect, 0.0, theme::view());
     let (title, detail) = if state.session.scenes.has_failed() {
         ("This scene cannot be shown", "See the log. Choose another scene on the left, or drop a .glb file here.")
     } else if state.screen.is_refused() {
@@ -202,7 +196,7 @@ fn picture_ui(ui: &Ui, state: &State, rect: Rect) -> Rect {
     } else {
         ("Loading the scene", "Large scenes take a moment.")
     };
-    painter.text(rect.center() - vec2(0.0, 12.0), Align2::CENTER_CENTER, title, FontId::proportional(17.0), theme::TEXT);
-    painter.text(rect.center() + vec2(0.0, 12.0), Align2::CENTER_CENTER, detail, FontId::proportional(13.0), theme::TEXT_WEAK);
+    painter.text(rect.center() - vec2(0.0, 12.0), Align2::CENTER_CENTER, title, FontId::proportional(17.0), theme::text());
+    painter.text(rect.center() + vec2(0.0, 12.0), Align2::CENTER_CENTER, detail, FontId::proportional(13.0), theme::text_weak());
     rect
 }
