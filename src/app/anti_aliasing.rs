@@ -148,7 +148,8 @@ mod tests {
     #[test]
     fn a_picture_that_was_too_slow_is_drawn_without_until_it_is_another() {
         let mut automatic = AutomaticAntiAliasing::default();
-        let (scene, other) = (Arc::new(builtin::build("cube").expect("a scene")), Arc::new(builtin::build("cube").expect("a scene")));
+        let (scene, other) =
+            (Arc::new(builtin::build("cube-wall").expect("a scene")), Arc::new(builtin::build("cube-wall").expect("a scene")));
         let (plain, stack) = (AccuracyRequest::default(), Stack::default());
         let finished = |ms: f64, render_scale: RenderScale| {
             Some(Finished { options: AccuracyOptions { render_scale, ..AccuracyOptions::default() }, gpu_ms: Some(ms), is_full_size: true })

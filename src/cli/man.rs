@@ -17,7 +17,7 @@ pub fn run(folder: Option<&Path>, streams: &mut Streams) -> Result<Exit, CliErro
             .map_err(|error| CliError::from(error).during(format!("{}: the manual pages cannot be written", folder.display())))?,
         None => {
             let mut page = Vec::new();
-            clap_mangen::Man::new(Cli::command()).render(&mut page)?;
+            clap_mangen::Man::new(Cli::command().disable_help_subcommand(true)).render(&mut page)?;
             streams.bytes(&page)?;
         }
     }

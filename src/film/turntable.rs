@@ -22,7 +22,7 @@ const SIDES: u32 = 72;
 
 impl Turntable {
     /// Turns `preset` to a moment of the film of the range `range_s`: `fraction` of one turn, 0 to 1. The preset is at its time already;
-    /// `around` is the automatic camera of [`all_around`].
+    /// `around` is the automatic camera of the whole turn.
     pub fn turn(self, preset: &mut Preset, scene: &Scene, around: Option<Camera>, fraction: f64, range_s: [f64; 2]) {
         match self {
             Self::Scene => preset.spin_deg_per_s += 360.0 / (range_s[1] - range_s[0]),

@@ -101,6 +101,7 @@ const SWEEPS: &[&str] = &[
     "thousand-full-screen-triangles",
     "parameters-at-range-ends",
     "all-effects-at-range-ends",
+    "culled-walk",
     "strict-rows",
 ];
 

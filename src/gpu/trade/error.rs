@@ -10,7 +10,7 @@ use crate::{
 
 /// What pictures are held against: the oracle's, which this module never sees.
 pub struct Reference<'a> {
-    /// Pictures on the oracle's finest grid, at every size of [`factors`], their shadows by rays.
+    /// Pictures on the oracle's finest grid, at every size of the axes, their shadows by rays.
     pub references: &'a References,
     /// None if it was canceled.
     pub judge: &'a dyn Fn(&View, &Stack, &Capture) -> Option<Judged>,
