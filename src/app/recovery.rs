@@ -84,7 +84,7 @@ fn first_preset(opened: Option<PresetFile>, open: Option<&str>, folders: &Folder
             if open.is_some() {
                 log.notify(Level::Error, error.to_string(), 0.0);
             }
-            // Nobody chose this scene.
+            // The user did not choose this scene, so presets bring their own.
             let mut fallback = PresetFile::of_scene("teapot", SceneSource::Builtin("teapot".into()));
             fallback.chose_scene = false;
             fallback

@@ -211,7 +211,7 @@ impl App {
             panels.dialogs.ask_restore(crashed);
         }
         let mut session = start.session;
-        // The preset that nobody asked for shows at once that it moves.
+        // The start preset plays; a preset that the user named does not.
         session.playback.playing = options.open.is_none() && !start.is_restored && session.preset().is_moving();
         Ok(Self {
             panels,

@@ -38,7 +38,7 @@ pub fn run(common: &Common, args: &Sweep, streams: &mut Streams) -> Result<Exit,
     let variations = args.vary.iter().map(|text| Variation::parse(text)).collect::<Result<Vec<_>, _>>().map_err(vary)?;
     let base = open_with_flags(common, args)?;
     base.remarks().iter().for_each(|remark| streams.note(remark));
-    // A value that is refused is one of --vary, whatever the reader of values calls it.
+    // The reader of values names --set in its errors; here the values come from --vary.
     let sheet = Sheet::new(&base, &variations).map_err(|error| CliError::usage(error.replacen("--set", "--vary", 1)))?;
     let title = format!("{}: {}", base.id, variations.iter().map(|variation| variation.path.as_str()).collect::<Vec<_>>().join(", "));
     let cell = base.preset.output.size;

@@ -171,7 +171,7 @@ impl Video {
 
 impl Drop for Video {
     fn drop(&mut self) {
-        // After a finished film it has ended by itself, and this does nothing.
+        // Ends ffmpeg after a stop or an error; after a finished film ffmpeg has exited already.
         drop(self.ffmpeg.kill());
         drop(self.ffmpeg.wait());
     }

@@ -37,7 +37,7 @@ pub struct Spread {
     pub p5: f64,
     pub p50: f64,
     pub p95: f64,
-    /// The interval in which the true median lies with a probability of at least 95 %, whatever the distribution: two of the sorted
+    /// The interval in which the true median lies with a probability of at least 95 % for every distribution: two of the sorted
     /// samples. Anywhere from 0 up where there are too few samples to tell.
     pub median: [f64; 2],
 }

@@ -170,7 +170,7 @@ mod tests {
         let at = |ms: f64, wrong: f64| point(Coverage::Fixed8, DepthFormat::Reversed, ms, wrong);
         // The second seems to be quicker by 1 %, and the third is slower by far.
         assert_eq!(standings(&[at(1.01, 0.0), at(1.0, 0.0), at(2.0, 0.0)], Metric::Wrong), [Tied, Tied, Dominated].map(Some));
-        // As quick as an exact one: nobody can tell whether its error buys anything.
+        // The times do not differ beyond the noise, so its error saves no time that was measured.
         assert_eq!(standings(&[at(1.0, 9.0), at(1.01, 0.0)], Metric::Wrong), [Tied, Front].map(Some));
         assert_eq!(standings(&[at(1.0, 9.0), at(2.0, 0.0)], Metric::Wrong), [Front, Front].map(Some));
         assert_eq!(standings(&[at(1.0, 9.0)], Metric::Wrong), [Some(Front)], "alone");

@@ -168,7 +168,7 @@ pub fn plot_ui(ui: &mut Ui, shown: &Shown<'_>) -> Option<usize> {
         }
         let role = match () {
             () if current(&points[i]) => "used by this preset",
-            () if standings[i] == Some(Standing::Front) => "on the Pareto front: whatever is as exact is slower. Click to use it.",
+            () if standings[i] == Some(Standing::Front) => "on the Pareto front: every point that is as exact is slower. Click to use it.",
             () if standings[i] == Some(Standing::Tied) => "as quick as another that is as exact, within the noise. Click to use it.",
             () => "dominated: another is as exact and quicker. Click to use it.",
         };
