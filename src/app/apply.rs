@@ -6,10 +6,11 @@ use eframe::egui::{self, ViewportCommand};
 
 use super::{
     command::{CodeUse, Command, Commands, FileCommand, KeyframeEdit, Purpose, RowCommand, Side, Toggle, ViewCommand},
+    library,
     log::Level,
     new_effect, open,
     panels::{Panels, timeline::Timeline},
-    reload,
+    reload, reveal,
     screen::Inputs,
     session::UndoState,
     state::State,
@@ -73,6 +74,7 @@ fn apply(ctx: &egui::Context, state: &mut State, panels: &mut Panels, command: C
             }
         }
         Command::Toggle(which) => toggle(state, panels, which),
+        Command::Library(command) => library::library(ctx, state, panels, command),
         Command::Verify => verify(state, panels),
         Command::Mute(effect, true) => drop(state.session.muted.insert(effect.name)),
         Command::Mute(effect, false) => drop(state.session.muted.remove(effect.name)),
@@ -83,6 +85,11 @@ fn apply(ctx: &egui::Context, state: &mut State, panels: &mut Panels, command: C
         }
         Command::Paste => ctx.send_viewport_cmd(ViewportCommand::RequestPaste),
         Command::PasteText(text) => paste(state, panels, &text),
+        Command::SetText(path, text) => set_text(state, &path, &text),
+        Command::Reveal(path) => {
+            state.open.right = true;
+            reveal::start(ctx, path);
+        }
         Command::ClearLog => state.log.clear(),
         Command::Log(level, text) => state.log.add(level, text),
         Command::Notify(level, text) => state.notify(level, text),
@@ -129,17 +136,25 @@ fn row(ctx: &egui::Context, state: &mut State, command: RowCommand) {
     }
 }
 
+/// Gives the value at `path`, and says so.
+fn set_text(state: &mut State, path: &str, text: &str) {
+    match state.session.set_text(path, text) {
+        Ok(()) => state.notify(Level::Info, format!("{path} = {text}")),
+        Err(error) => state.notify(Level::Error, error),
+    }
+}
+
 /// Text from the clipboard: a preset, or a value for a row.
 fn paste(state: &mut State, panels: &mut Panels, text: &str) {
     state.history.close();
     let hovered = state.clipboard.hovered_row.as_ref().map(|(path, _)| path.clone());
     let row = state.clipboard.paste_into.take().or(hovered);
     let is_preset = text.trim_start().starts_with("rasterlab1:");
+    if preset_file::is_effect_text(text) {
+        return library::paste_effect(state, text);
+    }
     match row {
-        Some(path) if !is_preset => match state.session.set_text(&path, text.trim()) {
-            Ok(()) => state.notify(Level::Info, format!("{path} = {}", text.trim())),
-            Err(error) => state.notify(Level::Error, error),
-        },
+        Some(path) if !is_preset => set_text(state, &path, text.trim()),
         _ => match preset_file::from_line(text) {
             Ok(pasted) => request_open(state, panels, pasted, "Pasted a preset".into()),
             Err(error) => state.notify(Level::Error, error.to_string()),
@@ -170,6 +185,7 @@ fn toggle(state: &mut State, panels: &mut Panels, which: Toggle) {
         Toggle::Sweep => open.sweep = !open.sweep,
         Toggle::Log => open.log = !open.log,
         Toggle::CheatSheet => open.cheat_sheet = !open.cheat_sheet,
+        Toggle::Palette => panels.palette.toggle(&state.session, panels.browser.entries()),
         Toggle::Extremes => panels.extremes.toggle(),
     }
 }

@@ -10,6 +10,7 @@ use glam::DVec3;
 
 use super::{
     action::Action,
+    favorites::Starred,
     key_id::KeyId,
     log::Level,
     overlay::Overlay,
@@ -71,6 +72,7 @@ pub enum Command {
     /// Pins the options of these axes, as a separate undo step.
     PinOptions(PinnedOptions, Vec<&'static Axis>),
     Toggle(Toggle),
+    Library(LibraryCommand),
     /// Starts the oracle on the picture that is shown, and on the one it is compared with.
     Verify,
     /// Hides an effect (true) or shows it again. Muting is a viewing aid and is not saved.
@@ -86,6 +88,10 @@ pub enum Command {
     Paste,
     /// The clipboard's text: a preset, or a value for the row that a menu or the pointer chose.
     PasteText(String),
+    /// Gives the value at a path, from text, as `--set` does.
+    SetText(String, String),
+    /// Shows the row of this path, or the effect of this name, in the inspector.
+    Reveal(String),
     ClearLog,
     Log(Level, String),
     /// Logs a message and shows it as a toast.
@@ -107,6 +113,10 @@ pub enum Edit {
     Rebind(&'static Effect, &'static Effect),
     /// Swaps two positions of the stack.
     Swap(usize, usize),
+    /// Moves the effect at the first index of the stack in front of the one at the second; the length of the stack is its end.
+    Move(usize, usize),
+    /// Enables an effect in front of the one at this index of the stack.
+    EnableAt(&'static Effect, usize),
     /// Shows another built-in scene, without a camera.
     Builtin(&'static str),
     /// The same built-in scene with other parameters.
@@ -244,6 +254,38 @@ pub enum FileCommand {
     DiscardAndQuit,
 }
 
+/// What a name is asked for.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Naming {
+    /// Another name for the preset of this file.
+    Preset { path: PathBuf, title: String },
+    /// A name for the present values of this effect.
+    Values(&'static Effect),
+}
+
+/// Favorites, files of presets, and values of effects.
+pub enum LibraryCommand {
+    /// Makes the preset of this id, or the effect of this name, a favorite (true), or takes its star away.
+    Star(Starred, String, bool),
+    AskName(Naming),
+    /// Uses the name that was asked for.
+    Name(Naming, String),
+    /// Writes a copy of the preset, as its file has it.
+    Duplicate(Box<PresetFile>),
+    /// Moves the preset at this path to the trash.
+    Delete(PathBuf),
+    /// Puts the preset that was deleted last back.
+    Restore,
+    /// What was deleted stays in the trash.
+    ForgetDeleted,
+    /// Puts the effect with its values on the clipboard.
+    CopyEffect(&'static Effect),
+    /// Gives an effect the values of this file.
+    UseValues(PathBuf),
+    /// Moves this file of values to the trash.
+    DeleteValues(PathBuf),
+}
+
 /// A place in a picture.
 #[derive(Clone, Debug)]
 pub struct Marker {
@@ -276,6 +318,7 @@ pub enum Toggle {
     Sweep,
     Log,
     CheatSheet,
+    Palette,
     Extremes,
 }
 
@@ -313,6 +356,7 @@ impl From<Action> for Command {
             Action::Timeline => Self::Toggle(Toggle::Timeline),
             Action::Sweep => Self::Toggle(Toggle::Sweep),
             Action::Log => Self::Toggle(Toggle::Log),
+            Action::Palette => Self::Toggle(Toggle::Palette),
             Action::CheatSheet => Self::Toggle(Toggle::CheatSheet),
             Action::Extremes => Self::Toggle(Toggle::Extremes),
         }
@@ -324,7 +368,9 @@ impl Command {
     pub fn begins_step(&self) -> bool {
         match self {
             Self::Perform(action) => !matches!(action, Action::Undo | Action::Redo),
-            Self::Row(_) | Self::PinOptions(..) | Self::Keyframe(KeyframeEdit::Ease(..) | KeyframeEdit::Remove(_)) => true,
+            Self::Row(_) | Self::SetText(..) | Self::PinOptions(..) | Self::Keyframe(KeyframeEdit::Ease(..) | KeyframeEdit::Remove(_)) => {
+                true
+            }
             _ => false,
         }
     }

@@ -7,7 +7,7 @@ use super::{
     command::{Command, Commands, Edit, Parameter, RowCommand},
     icons::{Icon, icon_button, key_button},
     key_id::Keying,
-    theme,
+    reveal, theme,
 };
 use crate::{
     params::{Param, Value, ValueType},
@@ -120,6 +120,7 @@ pub fn row_ui(ui: &mut Ui, commands: &Commands, row: &Row, value: &Value) {
     {
         command = Some(RowCommand::ToggleKey(row.path.clone()));
     }
+    reveal::row(ui, &row.path, rect);
     if ui.rect_contains_pointer(rect) {
         commands.send(Command::HoverRow { path: row.path.clone(), value: row.written(value) });
     }
@@ -175,8 +176,9 @@ fn control_ui(ui: &mut Ui, row: &Row, value: &Value) -> Option<Value> {
     match (row.param.value_type, value) {
         (_, Value::Bool(on)) => {
             let mut on = *on;
-            let changed = ui.checkbox(&mut on, "").accessible_name(&row.path).changed();
-            changed.then_some(Value::Bool(on))
+            let shown = ui.checkbox(&mut on, "").accessible_name(&row.path);
+            reveal::focus(&row.path, &shown);
+            shown.changed().then_some(Value::Bool(on))
         }
         (ValueType::Choice(words), Value::Choice(index)) => word_ui(ui, row, words, *index),
         (ValueType::Color, Value::Numbers(components)) => color_ui(ui, row, components),
@@ -187,7 +189,9 @@ fn control_ui(ui: &mut Ui, row: &Row, value: &Value) -> Option<Value> {
         (ValueType::Text { max_chars }, Value::Text(text)) => {
             let mut text = text.clone();
             let edit = egui::TextEdit::singleline(&mut text).char_limit(max_chars).desired_width(ui.available_width());
-            ui.add(edit).accessible_name(&row.path).changed().then_some(Value::Text(text))
+            let shown = ui.add(edit).accessible_name(&row.path);
+            reveal::focus(&row.path, &shown);
+            shown.changed().then_some(Value::Text(text))
         }
         _ => None, // Lists of texts are edited in the file.
     }
@@ -195,7 +199,7 @@ fn control_ui(ui: &mut Ui, row: &Row, value: &Value) -> Option<Value> {
 
 fn word_ui(ui: &mut Ui, row: &Row, words: &[&str], chosen: usize) -> Option<Value> {
     let mut now = chosen;
-    egui::ComboBox::from_id_salt(&row.path)
+    let shown = egui::ComboBox::from_id_salt(&row.path)
         .selected_text(words.get(chosen).copied().unwrap_or_default())
         .width(ui.available_width())
         .show_ui(ui, |ui| {
@@ -205,6 +209,7 @@ fn word_ui(ui: &mut Ui, row: &Row, words: &[&str], chosen: usize) -> Option<Valu
         })
         .response
         .accessible_name(&row.path);
+    reveal::focus(&row.path, &shown);
     (now != chosen).then_some(Value::Choice(now))
 }
 
@@ -212,6 +217,7 @@ fn color_ui(ui: &mut Ui, row: &Row, components: &[f64]) -> Option<Value> {
     let mut color: [f32; 4] = std::array::from_fn(|i| components[i] as f32);
     ui.spacing_mut().interact_size.x = 44.0;
     let response = ui.color_edit_button_rgba_unmultiplied(&mut color).accessible_name(&row.path).on_hover_text("Choose the color");
+    reveal::focus(&row.path, &response);
     let [r, g, b, a] = egui::Rgba::from_rgba_unmultiplied(color[0], color[1], color[2], color[3]).to_srgba_unmultiplied();
     let alpha = if a == 255 { String::new() } else { format!(" {:.0}%", f64::from(a) / 2.55) };
     ui.label(RichText::new(format!("#{r:02x}{g:02x}{b:02x}{alpha}")).monospace().color(theme::TEXT_WEAK));
@@ -235,7 +241,8 @@ fn number_ui(ui: &mut Ui, row: &Row, value: f64) -> Option<Value> {
         drag = drag.suffix(spaced(row.param.unit));
     }
     let width = if soft.is_some() { NUMBER_WIDTH } else { ui.available_width().min(120.0) };
-    ui.add_sized([width, theme::ROW - 4.0], drag).accessible_name(format!("{} value", row.path));
+    let shown = ui.add_sized([width, theme::ROW - 4.0], drag).accessible_name(format!("{} value", row.path));
+    reveal::focus(&row.path, &shown);
     let now = if whole { now.round() } else { now };
     (now != value && now.is_finite()).then(|| Value::number(now.clamp(low, high)))
 }
@@ -284,7 +291,8 @@ fn components_ui(ui: &mut Ui, row: &Row, components: &[f64]) -> Option<Value> {
         let speed = if whole { 1.0 } else { soft.map_or_else(|| component.abs().max(0.5) * 0.01, |[from, to]| (to - from) / 300.0) };
         let drag =
             DragValue::new(component).range(low..=high).speed(speed).max_decimals(if whole { 0 } else { 3 }).update_while_editing(false);
-        ui.add_sized([width, theme::ROW - 4.0], drag).accessible_name(format!("{}.{name}", row.path)).on_hover_text(*name);
+        let shown = ui.add_sized([width, theme::ROW - 4.0], drag).accessible_name(format!("{}.{name}", row.path)).on_hover_text(*name);
+        reveal::focus(&row.path, &shown);
     }
     let changed = now != components && now.iter().all(|component| component.is_finite());
     changed.then(|| Value::Numbers(now.iter().map(|component| if whole { component.round() } else { *component }).collect()))

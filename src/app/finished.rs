@@ -6,6 +6,7 @@ use super::{
     command::Commands,
     findings::Findings,
     jobs::Done,
+    library,
     log::Level,
     measured::error_text,
     new_effect, open,
@@ -44,7 +45,15 @@ pub fn finish(ctx: &egui::Context, state: &mut State, panels: &mut Panels, comma
                 state.log.add(Level::Error, error);
             }
         }
-        Done::Thumbnail(id, image) => panels.browser.thumbnail_arrived(ctx, id, image),
+        Done::Thumbnail(id, image) => panels.browser.thumbnail_arrived(ctx, &id, image),
+        Done::EffectPicture(effect, image) => panels.browser.effects.picture_arrived(ctx, effect, image),
+        Done::Favorites(outcome) => {
+            state.favorites.written();
+            match outcome {
+                Ok(()) => library::write_favorites(state),
+                Err(error) => state.notify(Level::Error, error),
+            }
+        }
         Done::Export(path, Ok(())) => state.notify(Level::Info, format!("Saved {}", path.display())),
         Done::Export(_, Err(error)) => state.notify(Level::Error, error),
         Done::Compiled(reload, outcome) => compiled(state, panels, reload, outcome),

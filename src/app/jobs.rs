@@ -3,13 +3,19 @@
 
 use std::{
     path::{Path, PathBuf},
-    sync::{Arc, atomic::AtomicBool, mpsc},
+    sync::{
+        Arc,
+        atomic::{AtomicBool, Ordering},
+        mpsc,
+    },
 };
 
 use eframe::egui;
 
 use super::{
     command::{Origin, Purpose},
+    effect_picture::EffectPicture,
+    favorites,
     findings::Findings,
     golden_check::{self, GoldenCheck},
     live::Reload,
@@ -39,6 +45,10 @@ pub enum Done {
     /// Measured combinations of accuracy options.
     Sweep(Result<Vec<Point>, String>),
     Thumbnail(String, Option<egui::ColorImage>),
+    /// The picture of an effect on the open model; none if it was cancelled or cannot be drawn.
+    EffectPicture(&'static str, Option<egui::ColorImage>),
+    /// The favorites were written.
+    Favorites(Result<(), String>),
     Export(PathBuf, Result<(), String>),
     /// The path from the system's file dialog; none if it was canceled or could not be shown.
     Path(Purpose, Option<PathBuf>),
@@ -173,11 +183,27 @@ impl Jobs {
         self.spawn("sweep", || Done::Sweep(caught("measuring the sweep", work)));
     }
 
-    /// Draws the picture of a preset with the oracle, which needs no device.
-    pub fn thumbnail(&self, preset_file: PresetFile) {
+    /// Writes changes of the favorites.
+    pub fn write_favorites(&self, path: PathBuf, changes: Vec<favorites::Change>) {
+        self.spawn("favorites", move || Done::Favorites(caught("writing the favorites", || favorites::update(&path, &changes))));
+    }
+
+    /// Draws the picture of a preset with the oracle, which needs no device. Width and height are in pixels.
+    pub fn thumbnail(&self, preset_file: PresetFile, size: [u32; 2]) {
         self.spawn("thumbnail", move || {
-            let image = caught("drawing a thumbnail", || thumbnail(&preset_file).ok_or_else(String::new));
+            let image = caught("drawing a thumbnail", || thumbnail(&preset_file, size).ok_or_else(String::new));
             Done::Thumbnail(preset_file.id, image.ok())
+        });
+    }
+
+    /// Draws the picture of an effect on the open model with the oracle.
+    pub fn effect_picture(&self, EffectPicture { effect, preset, scene, size, cancelled }: EffectPicture) {
+        self.spawn("effect picture", move || {
+            let draw = || match cancelled.load(Ordering::Relaxed) {
+                true => Err(String::new()),
+                false => thumbnail_of(&preset, &scene, size).ok_or_else(String::new),
+            };
+            Done::EffectPicture(effect, caught("drawing a picture of an effect", draw).ok())
         });
     }
 
@@ -246,19 +272,21 @@ fn reference_ids(scene: &Scene, view: &View, stack: &Stack, accuracy: &AccuracyR
     Ok(frame.triangle_id)
 }
 
-/// Size of a thumbnail in pixels; shown at half of it.
-pub const THUMBNAIL: [u32; 2] = [144, 108];
-
 /// A scene with more triangles gets no thumbnail: it would take too long.
 const THUMBNAIL_TRIANGLES: u64 = 400_000;
 
-fn thumbnail(preset_file: &PresetFile) -> Option<egui::ColorImage> {
+fn thumbnail(preset_file: &PresetFile, size: [u32; 2]) -> Option<egui::ColorImage> {
     let scene = preset_file::load_scene(&preset_file.preset, preset_file.path.as_deref()).ok()?;
+    thumbnail_of(&preset_file.preset, &scene, size)
+}
+
+/// The picture of a preset on `scene`; none if the scene is too large or the preset cannot be drawn.
+fn thumbnail_of(preset: &Preset, scene: &Scene, size: [u32; 2]) -> Option<egui::ColorImage> {
     if scene.triangle_count() > THUMBNAIL_TRIANGLES {
         return None;
     }
-    let factor = preset_file.preset.accuracy.scale().factor();
-    let frame = oracle::render_scaled(&scene, &preset_file.preset.moments(&scene, THUMBNAIL), factor).ok()?;
+    let factor = preset.accuracy.scale().factor();
+    let frame = oracle::render_scaled(scene, &preset.moments(scene, size), factor).ok()?;
     let bytes: Vec<u8> = frame.color.concat();
     Some(egui::ColorImage::from_rgba_unmultiplied([frame.width as usize, frame.height as usize], &bytes))
 }

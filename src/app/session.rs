@@ -128,6 +128,28 @@ impl Session {
         self.files.insert(FileId::of(&preset_file), preset_file);
     }
 
+    /// The presets that were opened or saved since the start.
+    pub fn file_ids(&self) -> impl Iterator<Item = &FileId> {
+        self.files.keys()
+    }
+
+    /// A preset that was opened or saved since the start, as its file has it.
+    pub fn filed(&self, id: &FileId) -> Option<&PresetFile> {
+        self.files.get(id)
+    }
+
+    /// The preset that was `before` has another file, which is now as `after`. The changes of the open preset stay.
+    pub fn refile(&mut self, before: &FileId, after: PresetFile) {
+        self.files.remove(before);
+        if FileId::of(&self.preset_file) == *before {
+            let mut preset = std::mem::take(&mut self.preset_file.preset);
+            preset.name.clone_from(&after.preset.name);
+            self.preset_file = after.clone();
+            self.preset_file.preset = preset;
+        }
+        self.remember(after);
+    }
+
     /// True if the preset differs from its file. A preset without a file does not until it is edited.
     pub fn is_modified(&self) -> bool {
         self.files.get(&FileId::of(&self.preset_file)).is_none_or(|as_opened| as_opened.preset != self.preset_file.preset)

@@ -11,6 +11,7 @@ use super::{
     apply,
     command::{CodeUse, Commands},
     device,
+    favorites::Favorites,
     finished::finish,
     history::History,
     input,
@@ -38,7 +39,7 @@ use crate::{
     gpu::{Gpu, device::AdapterChoice},
     measure::ErrorReport,
     preset::Preset,
-    preset_file::{Folders, PresetFile},
+    preset_file::{self, Folders, PresetFile},
     scene::view::View,
 };
 
@@ -124,6 +125,7 @@ impl App {
             && !viewport.compare.is_waiting()
             && !sweep.is_measuring()
             && !browser.is_busy()
+            && !self.state.favorites.is_busy()
     }
 
     /// True if there is a picture, even one of an earlier preset.
@@ -194,6 +196,9 @@ impl App {
         let mut session = Session::new(opened);
         // The preset that nobody asked for shows at once that it moves.
         session.playback.playing = options.open.is_none() && session.preset().is_moving();
+        let (favorites, fault) = Favorites::load(options.folders.user.as_deref());
+        fault.into_iter().for_each(|fault| log.notify(Level::Warning, fault, 0.0));
+        let values = options.folders.effect_values().map_or_else(Vec::new, |folder| preset_file::saved_values(&folder));
         Ok(Self {
             panels,
             state: State {
@@ -203,6 +208,9 @@ impl App {
                 history: History::new(session.undo_state()),
                 opening: Opening::default(),
                 session,
+                favorites,
+                deleted: Vec::new(),
+                values,
                 jobs: Jobs::new(cc.egui_ctx.clone()),
                 screen: Screen::new(&window, gpu),
                 verification: Verification::default(),
@@ -287,12 +295,14 @@ impl App {
     }
 
     /// Starts drawing a thumbnail when nothing more urgent needs the processor.
-    fn request_thumbnail(&mut self) {
+    fn request_thumbnail(&mut self, ctx: &egui::Context) {
         if self.state.session.scenes.is_loading() || self.state.screen.is_waiting() {
             return;
         }
-        if let Some(next) = self.panels.browser.next_thumbnail() {
-            self.state.jobs.thumbnail(next);
+        if let Some((next, size)) = self.panels.browser.next_thumbnail(ctx) {
+            self.state.jobs.thumbnail(next, size);
+        } else if let Some(next) = self.panels.browser.effects.next_picture(ctx, &self.state.session) {
+            self.state.jobs.effect_picture(next);
         }
     }
 
@@ -337,6 +347,9 @@ impl App {
         let mut is_open = self.state.open.left;
         left.show_collapsible(ui, &mut is_open, |ui| self.panel_ui(ui, |panels| &mut panels.browser));
         self.state.open.left = is_open;
+        if !is_open {
+            self.panels.browser.effects.close();
+        }
         let right = egui::Panel::right("right").frame(theme::panel_frame()).default_size(344.0).size_range(272.0..=520.0);
         let mut is_open = self.state.open.right;
         right.show_collapsible(ui, &mut is_open, |ui| self.panel_ui(ui, |panels| &mut panels.inspector));
@@ -386,11 +399,11 @@ impl eframe::App for App {
         }
         input::dropped_files(&ctx, &self.commands);
         self.apply(&ctx);
-        if !self.panels.dialogs.is_open() {
+        if !self.panels.has_dialog() {
             input::shortcuts(&ctx, &self.state, &mut self.typing, &self.commands);
             self.apply(&ctx);
         }
-        let is_awaited = self.panels.dialogs.takes_text() || (self.state.open.cheat_sheet && !self.panels.dialogs.is_open());
+        let is_awaited = self.panels.takes_text() || (self.state.open.cheat_sheet && !self.panels.dialogs.is_open());
         self.typing.follow(&ctx, is_awaited, now_s);
         self.state.clipboard.hovered_row = None;
         self.play(&ctx);
@@ -399,8 +412,10 @@ impl eframe::App for App {
         self.panels_ui(ui);
         self.panel_ui(ui, |panels| &mut panels.dialogs);
         self.panel_ui(ui, |panels| &mut panels.cheat_sheet);
+        self.panel_ui(ui, |panels| &mut panels.palette);
+        self.panel_ui(ui, |panels| &mut panels.naming);
         self.panel_ui(ui, |panels| &mut panels.extremes);
-        self.request_thumbnail();
+        self.request_thumbnail(&ctx);
         self.request_precision(&ctx, is_held);
         self.state.observe(is_held);
         if let Some(wait_s) = self.state.history.wake_in_s(now_s).filter(|_| !is_held) {

@@ -3,10 +3,13 @@
 pub mod brought_code;
 pub mod cheat_sheet;
 pub mod dialogs;
+pub mod effect_browser;
 pub mod extremes;
 pub mod inspector;
 pub mod log;
+pub mod naming;
 pub mod new_effect;
+pub mod palette;
 pub mod preset_browser;
 pub mod sweep;
 pub mod timeline;
@@ -14,8 +17,8 @@ pub mod topbar;
 pub mod viewport;
 
 use self::{
-    cheat_sheet::CheatSheet, dialogs::Dialogs, extremes::Extremes, inspector::Inspector, log::LogPanel, preset_browser::PresetBrowser,
-    sweep::SweepPanel, timeline::Timeline, topbar::TopBar, viewport::Viewport,
+    cheat_sheet::CheatSheet, dialogs::Dialogs, extremes::Extremes, inspector::Inspector, log::LogPanel, naming::NameDialog,
+    palette::Palette, preset_browser::PresetBrowser, sweep::SweepPanel, timeline::Timeline, topbar::TopBar, viewport::Viewport,
 };
 use crate::preset_file::Folders;
 
@@ -31,9 +34,21 @@ pub struct Panels {
     pub dialogs: Dialogs,
     pub cheat_sheet: CheatSheet,
     pub extremes: Extremes,
+    pub palette: Palette,
+    pub naming: NameDialog,
 }
 
 impl Panels {
+    /// True while a dialog takes all keys.
+    pub fn has_dialog(&self) -> bool {
+        self.dialogs.is_open() || self.palette.is_open() || self.naming.is_open()
+    }
+
+    /// True while a dialog with a field for text is open.
+    pub fn takes_text(&self) -> bool {
+        self.dialogs.takes_text() || self.palette.is_open() || self.naming.is_open()
+    }
+
     /// The panels at the start, with the presets of `folders` in the gallery.
     pub fn new(folders: &Folders) -> Self {
         Self {
@@ -47,6 +62,8 @@ impl Panels {
             dialogs: Dialogs::default(),
             cheat_sheet: CheatSheet::default(),
             extremes: Extremes::default(),
+            palette: Palette::default(),
+            naming: NameDialog::default(),
         }
     }
 }

@@ -55,6 +55,7 @@ const MENUS: [(&str, &[Option<Action>]); 4] = [
             Some(Action::Log),
             None,
             Some(Action::Extremes),
+            Some(Action::Palette),
             Some(Action::CheatSheet),
         ],
     ),

@@ -1,7 +1,7 @@
 //! The inspector: every value of the preset in folders, from the registry that preset files and the command line use too.
 
 mod clips;
-mod effect_menu;
+pub mod effect_menu;
 mod effects;
 mod overlays;
 mod precision;
