@@ -42,6 +42,7 @@ pub enum Action {
     Panels,
     Timeline,
     Log,
+    Palette,
     CheatSheet,
     Settings,
     ScaleUp,
@@ -104,6 +105,7 @@ pub const ACTIONS: &[Entry] = &[
     (Action::Panels, "Show or hide panels", &[plain(Key::F11)]),
     (Action::Timeline, "Show or hide the timeline", &[plain(Key::T)]),
     (Action::Log, "Show or hide the log", &[plain(Key::L)]),
+    (Action::Palette, "Command palette…", &[command(Key::K)]),
     (Action::CheatSheet, "Cheat sheet", &[plain(Key::F1), plain(Key::Questionmark)]),
     (Action::Settings, "Settings and keys…", &[command(Key::Comma)]),
     (Action::ScaleUp, "Larger texts and controls", &[command(Key::Plus), command(Key::Equals)]),
@@ -152,7 +154,7 @@ impl Action {
 
     /// Does it open a field for text?
     pub fn takes_text(self) -> bool {
-        matches!(self, Self::Open | Self::Save | Self::SaveAs | Self::Export | Self::CheatSheet)
+        matches!(self, Self::Open | Self::Save | Self::SaveAs | Self::Export | Self::Palette | Self::CheatSheet)
     }
 
     /// Its first shortcut as text: `Ctrl+Shift+Z`; empty without one.

@@ -9,12 +9,14 @@ use eframe::egui::{self, ViewportCommand};
 
 use super::{
     anti_aliasing,
-    command::{CodeUse, Command, Commands, FileCommand, KeyframeEdit, Manner, Purpose, RowCommand, SettingsCommand, Side, Toggle, ViewCommand},
-    film,
+    command::{
+        CodeUse, Command, Commands, FileCommand, KeyframeEdit, Manner, Purpose, RowCommand, SettingsCommand, Side, Toggle, ViewCommand,
+    },
+    film, library,
     log::Level,
     new_effect, open,
     panels::{Panels, timeline::Timeline},
-    reload,
+    reload, reveal,
     screen::Inputs,
     session::UndoState,
     state::State,
@@ -86,6 +88,7 @@ fn apply(ctx: &egui::Context, state: &mut State, panels: &mut Panels, command: C
         Command::ExportFilm(request, progress) => export_film(state, *request, progress),
         Command::Toggle(which) => toggle(state, panels, which),
         Command::Settings(command) => settings(ctx, state, command),
+        Command::Library(command) => library::library(ctx, state, panels, command),
         Command::Verify => verify(state, panels),
         Command::CancelVerify => state.verification.cancel(),
         Command::Mute(effect, true) => drop(state.session.muted.insert(effect.name)),
@@ -97,6 +100,11 @@ fn apply(ctx: &egui::Context, state: &mut State, panels: &mut Panels, command: C
         }
         Command::Paste => ctx.send_viewport_cmd(ViewportCommand::RequestPaste),
         Command::PasteText(text) => paste(state, panels, &text),
+        Command::SetText(path, text) => set_text(state, &path, &text),
+        Command::Reveal(path) => {
+            state.open.right = true;
+            reveal::start(ctx, path);
+        }
         Command::ClearLog => state.log.clear(),
         Command::Log(level, text) => state.log.add(level, text),
         Command::Notify(level, text) => state.notify(level, text),
@@ -161,17 +169,25 @@ fn row(ctx: &egui::Context, state: &mut State, command: RowCommand) {
     }
 }
 
+/// Gives the value at `path`, and says so.
+fn set_text(state: &mut State, path: &str, text: &str) {
+    match state.session.set_text(path, text) {
+        Ok(()) => state.notify(Level::Info, format!("{path} = {text}")),
+        Err(error) => state.notify(Level::Error, error),
+    }
+}
+
 /// Text from the clipboard: a preset, or a value for a row.
 fn paste(state: &mut State, panels: &mut Panels, text: &str) {
     state.history.close();
     let hovered = state.clipboard.hovered_row.as_ref().map(|(path, _)| path.clone());
     let row = state.clipboard.paste_into.take().or(hovered);
     let is_preset = text.trim_start().starts_with("rasterlab1:");
+    if preset_file::is_effect_text(text) {
+        return library::paste_effect(state, text);
+    }
     match row {
-        Some(path) if !is_preset => match state.session.set_text(&path, text.trim()) {
-            Ok(()) => state.notify(Level::Info, format!("{path} = {}", text.trim())),
-            Err(error) => state.notify(Level::Error, error),
-        },
+        Some(path) if !is_preset => set_text(state, &path, text.trim()),
         _ => match preset_file::from_line(text) {
             Ok(pasted) => request_open(state, panels, pasted, Manner::WithScene, "Pasted a preset".into()),
             Err(error) => state.notify(Level::Error, error.to_string()),
@@ -203,6 +219,7 @@ fn toggle(state: &mut State, panels: &mut Panels, which: Toggle) {
         Toggle::Log => open.log = !open.log,
         Toggle::CheatSheet => open.cheat_sheet = !open.cheat_sheet,
         Toggle::Settings => open.settings = !open.settings,
+        Toggle::Palette => panels.palette.toggle(&state.session, panels.browser.entries()),
         Toggle::Extremes => panels.extremes.toggle(),
         Toggle::Randomize => panels.randomize.toggle(),
         Toggle::Sweep => panels.sweep.toggle(),

@@ -12,6 +12,7 @@ use glam::DVec3;
 use super::{
     action::Action,
     cells::Cells,
+    favorites::Starred,
     film,
     key_id::KeyId,
     log::Level,
@@ -89,6 +90,7 @@ pub enum Command {
     PinOptions(PinnedOptions, Vec<&'static Axis>),
     Toggle(Toggle),
     Settings(SettingsCommand),
+    Library(LibraryCommand),
     /// Starts the oracle on the picture that is shown, and on the one it is compared with.
     Verify,
     /// Ends the judgements under way.
@@ -106,6 +108,10 @@ pub enum Command {
     Paste,
     /// The clipboard's text: a preset, or a value for the row that a menu or the pointer chose.
     PasteText(String),
+    /// Gives the value at a path, from text, as `--set` does.
+    SetText(String, String),
+    /// Shows the row of this path, or the effect of this name, in the inspector.
+    Reveal(String),
     ClearLog,
     Log(Level, String),
     /// Logs a message and shows it as a toast.
@@ -127,6 +133,10 @@ pub enum Edit {
     Rebind(&'static Effect, &'static Effect),
     /// Swaps two positions of the stack.
     Swap(usize, usize),
+    /// Moves the effect at the first index of the stack in front of the one at the second; the length of the stack is its end.
+    Move(usize, usize),
+    /// Enables an effect in front of the one at this index of the stack.
+    EnableAt(&'static Effect, usize),
     /// The same built-in scene with other parameters.
     BuiltinQuery(String),
     /// Removes the preset's camera and uses the scene camera of this name; empty = the first.
@@ -283,6 +293,38 @@ pub enum FileCommand {
     ForgetRecents,
 }
 
+/// What a name is asked for.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Naming {
+    /// Another name for the preset of this file.
+    Preset { path: PathBuf, title: String },
+    /// A name for the present values of this effect.
+    Values(&'static Effect),
+}
+
+/// Favorites, files of presets, and values of effects.
+pub enum LibraryCommand {
+    /// Makes the preset of this id, or the effect of this name, a favorite (true), or takes its star away.
+    Star(Starred, String, bool),
+    AskName(Naming),
+    /// Uses the name that was asked for.
+    Name(Naming, String),
+    /// Writes a copy of the preset, as its file has it.
+    Duplicate(Box<PresetFile>),
+    /// Moves the preset at this path to the trash.
+    Delete(PathBuf),
+    /// Puts the preset that was deleted last back.
+    Restore,
+    /// What was deleted stays in the trash.
+    ForgetDeleted,
+    /// Puts the effect with its values on the clipboard.
+    CopyEffect(&'static Effect),
+    /// Gives an effect the values of this file.
+    UseValues(PathBuf),
+    /// Moves this file of values to the trash.
+    DeleteValues(PathBuf),
+}
+
 /// A place in a picture.
 #[derive(Clone, Debug)]
 pub struct Marker {
@@ -315,6 +357,7 @@ pub enum Toggle {
     Trade,
     Log,
     CheatSheet,
+    Palette,
     Settings,
     Extremes,
     Randomize,
@@ -371,6 +414,7 @@ impl From<Action> for Command {
             Action::Timeline => Self::Toggle(Toggle::Timeline),
             Action::Trade => Self::Toggle(Toggle::Trade),
             Action::Log => Self::Toggle(Toggle::Log),
+            Action::Palette => Self::Toggle(Toggle::Palette),
             Action::CheatSheet => Self::Toggle(Toggle::CheatSheet),
             Action::Extremes => Self::Toggle(Toggle::Extremes),
             Action::RandomizeWindow => Self::Toggle(Toggle::Randomize),
@@ -392,6 +436,7 @@ impl Command {
             Self::Row(_)
             | Self::RecallSeed(_)
             | Self::SetValues(_)
+            | Self::SetText(..)
             | Self::PinOptions(..)
             | Self::Keyframe(KeyframeEdit::Ease(..) | KeyframeEdit::Remove(_)) => true,
             _ => false,

@@ -25,7 +25,7 @@ enum Closing {
 /// it away.
 pub fn escape(ctx: &egui::Context, state: &State, panels: &mut Panels, was_typing: bool, commands: &Commands) {
     // Dialogs and menus close themselves.
-    if panels.dialogs.is_open() || egui::Popup::is_any_open(ctx) || !ctx.input(|i| i.key_pressed(Key::Escape)) {
+    if panels.has_dialog() || egui::Popup::is_any_open(ctx) || !ctx.input(|i| i.key_pressed(Key::Escape)) {
         return;
     }
     let Some(closing) = innermost(state, panels) else { return };

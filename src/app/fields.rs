@@ -9,7 +9,7 @@ use super::{
     key_id::Keying,
     log::Level,
     numbers::NumberField,
-    theme,
+    reveal, theme,
 };
 use crate::{
     params::{Param, Value, ValueType},
@@ -134,6 +134,7 @@ pub fn row_ui(ui: &mut Ui, commands: &Commands, row: &Row, value: &Value) {
     {
         command = Some(RowCommand::ToggleKey(row.path.clone()));
     }
+    reveal::row(ui, &row.path, rect);
     if ui.rect_contains_pointer(rect) {
         commands.send(Command::HoverRow { path: row.path.clone(), value: row.written(value) });
     }
@@ -189,8 +190,9 @@ fn control_ui(ui: &mut Ui, commands: &Commands, row: &Row, value: &Value) -> Opt
     match (row.param.value_type, value) {
         (_, Value::Bool(on)) => {
             let mut on = *on;
-            let changed = ui.checkbox(&mut on, "").accessible_name(&row.path).changed();
-            changed.then_some(Value::Bool(on))
+            let shown = ui.checkbox(&mut on, "").accessible_name(&row.path);
+            reveal::focus(&row.path, &shown);
+            shown.changed().then_some(Value::Bool(on))
         }
         (ValueType::Choice(words), Value::Choice(index)) => word_ui(ui, row, words, *index),
         (ValueType::Color, Value::Numbers(components)) => color_ui(ui, row, components),
@@ -201,7 +203,9 @@ fn control_ui(ui: &mut Ui, commands: &Commands, row: &Row, value: &Value) -> Opt
         (ValueType::Text { max_chars }, Value::Text(text)) => {
             let mut text = text.clone();
             let edit = egui::TextEdit::singleline(&mut text).char_limit(max_chars).desired_width(ui.available_width());
-            ui.add(edit).accessible_name(&row.path).changed().then_some(Value::Text(text))
+            let shown = ui.add(edit).accessible_name(&row.path);
+            reveal::focus(&row.path, &shown);
+            shown.changed().then_some(Value::Text(text))
         }
         _ => None, // Lists of texts are edited in the file.
     }
@@ -209,7 +213,7 @@ fn control_ui(ui: &mut Ui, commands: &Commands, row: &Row, value: &Value) -> Opt
 
 fn word_ui(ui: &mut Ui, row: &Row, words: &[&str], chosen: usize) -> Option<Value> {
     let mut now = chosen;
-    egui::ComboBox::from_id_salt(&row.path)
+    let shown = egui::ComboBox::from_id_salt(&row.path)
         .selected_text(words.get(chosen).copied().unwrap_or_default())
         .width(ui.available_width())
         .show_ui(ui, |ui| {
@@ -219,6 +223,7 @@ fn word_ui(ui: &mut Ui, row: &Row, words: &[&str], chosen: usize) -> Option<Valu
         })
         .response
         .accessible_name(&row.path);
+    reveal::focus(&row.path, &shown);
     (now != chosen).then_some(Value::Choice(now))
 }
 
@@ -226,6 +231,7 @@ fn color_ui(ui: &mut Ui, row: &Row, components: &[f64]) -> Option<Value> {
     let mut color: [f32; 4] = std::array::from_fn(|i| components[i] as f32);
     ui.spacing_mut().interact_size.x = 44.0;
     let response = ui.color_edit_button_rgba_unmultiplied(&mut color).accessible_name(&row.path).on_hover_text("Choose the color");
+    reveal::focus(&row.path, &response);
     let [r, g, b, a] = egui::Rgba::from_rgba_unmultiplied(color[0], color[1], color[2], color[3]).to_srgba_unmultiplied();
     let alpha = if a == 255 { String::new() } else { format!(" {:.0}%", f64::from(a) / 2.55) };
     ui.label(RichText::new(format!("#{r:02x}{g:02x}{b:02x}{alpha}")).monospace().color(theme::text_weak()));
@@ -247,6 +253,7 @@ fn number_ui(ui: &mut Ui, commands: &Commands, row: &Row, value: f64) -> Option<
     let speed = if whole { speed.max(0.05) } else { speed };
     let field = NumberField { range: [low, high], speed, is_whole: whole, decimals: decimals(soft), unit: &unit };
     let (response, said) = field.show(ui, width, &mut now);
+    reveal::focus(&row.path, &response);
     response.accessible_name(format!("{} value", row.path));
     say(commands, row, said);
     let now = if whole { now.round() } else { now };
@@ -305,6 +312,7 @@ fn components_ui(ui: &mut Ui, commands: &Commands, row: &Row, components: &[f64]
         let speed = if whole { 1.0 } else { soft.map_or_else(|| component.abs().max(0.5) * 0.01, |[from, to]| (to - from) / 300.0) };
         let field = NumberField { range: [low, high], speed, is_whole: whole, decimals: if whole { 0 } else { 3 }, unit: "" };
         let (response, said) = field.show(ui, width, component);
+        reveal::focus(&row.path, &response);
         response.accessible_name(format!("{}.{name}", row.path)).on_hover_text(*name);
         say(commands, row, said);
     }

@@ -8,6 +8,7 @@ use super::{
     command::{Commands, Purpose},
     findings::Findings,
     jobs::Done,
+    library,
     log::Level,
     measured::error_text,
     new_effect, open,
@@ -52,8 +53,16 @@ pub fn finish(ctx: &egui::Context, state: &mut State, panels: &mut Panels, comma
         }
         Done::Cell(CellOf::Sweep { number, index }, picture) => panels.sweep.arrived(ctx, (number, index), picture),
         Done::Cell(CellOf::Seed(seed), picture) => panels.randomize.arrived(ctx, seed, picture),
-        Done::Thumbnail(id, image) => panels.browser.thumbnail_arrived(ctx, id, image),
-        Done::ThumbnailOn(key, id, image) => panels.browser.on_model_arrived(ctx, key, id, image),
+        Done::Thumbnail(id, image) => panels.browser.pictures.arrived(ctx, &id, image),
+        Done::ThumbnailOn(key, id, image) => panels.browser.pictures.on_model_arrived(ctx, &key, &id, image),
+        Done::EffectPicture(effect, image) => panels.browser.effects.picture_arrived(ctx, effect, image),
+        Done::Favorites(outcome) => {
+            state.favorites.written();
+            match outcome {
+                Ok(()) => library::write_favorites(state),
+                Err(error) => state.notify(Level::Error, error),
+            }
+        }
         Done::Export(path, Ok(())) => state.notify(Level::Info, format!("Saved {}", path.display())),
         Done::Film(progress, ended) => {
             if let Some((level, text)) = panels.film.arrived(&progress, ended) {

@@ -4,7 +4,11 @@
 use std::{
     collections::HashSet,
     path::{Path, PathBuf},
-    sync::{Arc, atomic::AtomicBool, mpsc},
+    sync::{
+        Arc,
+        atomic::{AtomicBool, Ordering},
+        mpsc,
+    },
 };
 
 use eframe::egui;
@@ -13,19 +17,20 @@ use super::{
     cells::{self, CellOf, CellResult, Cells},
     command::{Origin, Purpose},
     completion::Listing,
-    film,
+    effect_picture::EffectPicture,
+    favorites, film,
     findings::Findings,
     golden_check::{self, GoldenCheck},
     live::Reload,
     precision::{self, Measured},
     scene_loader::SceneKey,
     screen::Inputs,
+    system_dialog,
     trade::{
         measure,
         point::Point,
         request::{Progress, Request},
     },
-    system_dialog,
 };
 use crate::{
     effect_files,
@@ -51,6 +56,10 @@ pub enum Done {
     Thumbnail(String, Option<egui::ColorImage>),
     /// The thumbnail of a preset on the user's own scene.
     ThumbnailOn(SceneKey, String, Option<egui::ColorImage>),
+    /// The picture of an effect on the open model; none if it was cancelled or cannot be drawn.
+    EffectPicture(&'static str, Option<egui::ColorImage>),
+    /// The favorites were written.
+    Favorites(Result<(), String>),
     Export(PathBuf, Result<(), String>),
     Film(Arc<film::Progress>, Result<film::Finished, film::Failure>),
     /// How the system's file dialog ended.
@@ -197,10 +206,15 @@ impl Jobs {
         self.spawn("trade", || Done::Trade(caught("measuring the trade", work)));
     }
 
-    /// Draws the picture of a preset with the oracle, which needs no device.
-    pub fn thumbnail(&self, preset_file: PresetFile) {
+    /// Writes changes of the favorites.
+    pub fn write_favorites(&self, path: PathBuf, changes: Vec<favorites::Change>) {
+        self.spawn("favorites", move || Done::Favorites(caught("writing the favorites", || favorites::update(&path, &changes))));
+    }
+
+    /// Draws the picture of a preset with the oracle, which needs no device. Width and height are in pixels.
+    pub fn thumbnail(&self, preset_file: PresetFile, size: [u32; 2]) {
         self.spawn("thumbnail", move || {
-            let image = caught("drawing a thumbnail", || thumbnail(&preset_file).ok_or_else(String::new));
+            let image = caught("drawing a thumbnail", || thumbnail(&preset_file, size).ok_or_else(String::new));
             Done::Thumbnail(preset_file.id, image.ok())
         });
     }
@@ -229,10 +243,21 @@ impl Jobs {
     }
 
     /// Draws the picture of a preset on the scene of `own` with the oracle.
-    pub fn thumbnail_on(&self, look: PresetFile, own: PresetFile, scene: Arc<Scene>) {
+    pub fn thumbnail_on(&self, look: PresetFile, own: PresetFile, scene: Arc<Scene>, size: [u32; 2]) {
         self.spawn("thumbnail", move || {
-            let image = caught("drawing a thumbnail", || thumbnail_on(&look, &own, &scene).ok_or_else(String::new));
+            let image = caught("drawing a thumbnail", || thumbnail_on(&look, &own, &scene, size).ok_or_else(String::new));
             Done::ThumbnailOn(SceneKey::of(&own), look.id, image.ok())
+        });
+    }
+
+    /// Draws the picture of an effect on the open model with the oracle.
+    pub fn effect_picture(&self, EffectPicture { effect, preset, scene, size, cancelled }: EffectPicture) {
+        self.spawn("effect picture", move || {
+            let draw = || match cancelled.load(Ordering::Relaxed) {
+                true => Err(String::new()),
+                false => thumbnail_of(&preset, &scene, size).ok_or_else(String::new),
+            };
+            Done::EffectPicture(effect, caught("drawing a picture of an effect", draw).ok())
         });
     }
 
@@ -310,31 +335,29 @@ fn reference_ids(scene: &Scene, view: &View, stack: &Stack, accuracy: &AccuracyR
     Ok(frame.triangle_id)
 }
 
-/// Size of a thumbnail in pixels; shown at half of it.
-pub const THUMBNAIL: [u32; 2] = [144, 108];
-
 /// A scene with more triangles gets no thumbnail: it would take too long.
 const THUMBNAIL_TRIANGLES: u64 = 400_000;
 
-fn thumbnail(preset_file: &PresetFile) -> Option<egui::ColorImage> {
+fn thumbnail(preset_file: &PresetFile, size: [u32; 2]) -> Option<egui::ColorImage> {
     let scene = preset_file::load_scene(&preset_file.preset, preset_file.path.as_deref()).ok()?;
-    thumbnail_of(&preset_file.preset, &scene)
+    thumbnail_of(&preset_file.preset, &scene, size)
 }
 
-fn thumbnail_on(look: &PresetFile, own: &PresetFile, scene: &Scene) -> Option<egui::ColorImage> {
+fn thumbnail_on(look: &PresetFile, own: &PresetFile, scene: &Scene, size: [u32; 2]) -> Option<egui::ColorImage> {
     let fit = match look.needs_fit() {
         true => Fit::between(&preset_file::scene_bounds(&look.scene_source(), None).ok()?, &scene.content_bounds()),
         false => None,
     };
     // The whole model is shown, so that the picture stays right when the camera moves.
-    thumbnail_of(&Preset { camera: None, ..look.landed_on(own, fit.as_ref()).preset }, scene)
+    thumbnail_of(&Preset { camera: None, ..look.landed_on(own, fit.as_ref()).preset }, scene, size)
 }
 
-fn thumbnail_of(preset: &Preset, scene: &Scene) -> Option<egui::ColorImage> {
+/// The picture of a preset on `scene`; none if the scene is too large or the preset cannot be drawn.
+fn thumbnail_of(preset: &Preset, scene: &Scene, size: [u32; 2]) -> Option<egui::ColorImage> {
     if scene.triangle_count() > THUMBNAIL_TRIANGLES {
         return None;
     }
-    let frame = oracle::render_scaled(scene, &preset.moments(scene, THUMBNAIL), preset.accuracy.scale().factor()).ok()?;
+    let frame = oracle::render_scaled(scene, &preset.moments(scene, size), preset.accuracy.scale().factor()).ok()?;
     let bytes: Vec<u8> = frame.color.concat();
     Some(egui::ColorImage::from_rgba_unmultiplied([frame.width as usize, frame.height as usize], &bytes))
 }

@@ -11,7 +11,7 @@ impl App {
     pub(super) fn keep(&mut self, ctx: &egui::Context) {
         let State { settings, open, session, jobs, now_s, .. } = &mut self.state;
         settings.open = OpenPanels { cheat_sheet: false, settings: false, ..*open };
-        settings.shows_scene_tab = self.panels.browser.shows_scene();
+        settings.browsing = self.panels.browser.browsing();
         ctx.input(|i| settings.window.follow(i.viewport(), settings.scale));
         let is_focused = ctx.input(|i| i.focused);
         if settings.recents != self.looked_for.0 || is_focused && !self.looked_for.1 {

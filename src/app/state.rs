@@ -5,6 +5,7 @@ use std::{collections::HashSet, path::PathBuf, sync::Arc};
 
 use super::{
     command::{Marker, Picking},
+    favorites::Favorites,
     findings::Findings,
     history::History,
     jobs::Jobs,
@@ -19,7 +20,10 @@ use super::{
     trust::Trust,
     verification::Verification,
 };
-use crate::{measure::ErrorReport, preset_file::Folders};
+use crate::{
+    measure::ErrorReport,
+    preset_file::{Folders, SavedValues, Trashed},
+};
 
 /// What copy and paste apply to.
 #[derive(Clone, Debug, Default)]
@@ -39,6 +43,11 @@ pub struct State {
     /// Effects that came inside presets and may run.
     pub trust: Trust,
     pub session: Session,
+    pub favorites: Favorites,
+    /// Files that were moved to the trash since the start, the newest last.
+    pub deleted: Vec<Trashed>,
+    /// Saved values of effects.
+    pub values: Vec<SavedValues>,
     pub history: History<UndoState>,
     /// The preset that is being opened.
     pub opening: Opening,

@@ -82,7 +82,7 @@ macro_rules! colors {
     };
 }
 
-colors!(view, bar, well, raised, raised_hover, line, text_strong, text, text_weak, accent, accent_ground, amber, red, green);
+colors!(view, panel, bar, well, raised, raised_hover, line, text_strong, text, text_weak, accent, accent_ground, amber, red, green);
 
 /// Half a grid step: between parts of a group.
 pub const HALF: f32 = 4.0;

@@ -9,6 +9,7 @@ use super::{
     command::{CodeUse, Commands, Manner},
     device,
     escape::escape,
+    favorites::Favorites,
     finished::finish,
     history::History,
     input,
@@ -39,7 +40,7 @@ use crate::{
     gpu::{Gpu, device::AdapterChoice},
     measure::ErrorReport,
     preset::Preset,
-    preset_file::{Folders, PresetFile},
+    preset_file::{self, Folders, PresetFile},
     scene::view::View,
 };
 
@@ -121,6 +122,7 @@ impl App {
             && !browser.is_busy()
             && !self.panels.randomize.is_drawing()
             && !self.panels.sweep.is_drawing()
+            && !self.state.favorites.is_busy()
     }
 
     /// True if there is a picture, even one of an earlier preset.
@@ -200,7 +202,7 @@ impl App {
         let summary = &gpu.summary;
         log.add(Level::Info, format!("adapter: {}, {}, {}", summary.name, summary.backend, summary.driver));
         let mut panels = Panels::new(&options.folders);
-        panels.browser.show_scene(settings.shows_scene_tab);
+        panels.browser.show(settings.browsing);
         let trust = Trust::default();
         let start = recovery::start(options.opened, options.open.as_deref(), &options.folders, (&keeper, &trust), &mut log);
         if let Some(brings) = start.brings_code {
@@ -213,6 +215,9 @@ impl App {
         let mut session = start.session;
         // The start preset plays; a preset that the user named does not.
         session.playback.playing = options.open.is_none() && !start.is_restored && session.preset().is_moving();
+        let (favorites, fault) = Favorites::load(options.folders.user.as_deref());
+        fault.into_iter().for_each(|fault| log.notify(Level::Warning, fault, 0.0));
+        let values = options.folders.effect_values().map_or_else(Vec::new, |folder| preset_file::saved_values(&folder));
         Ok(Self {
             panels,
             state: State {
@@ -222,6 +227,9 @@ impl App {
                 history: History::new(session.undo_state()),
                 opening: Opening::default(),
                 session,
+                favorites,
+                deleted: Vec::new(),
+                values,
                 jobs: Jobs::new(cc.egui_ctx.clone()),
                 screen: Screen::new(&window, gpu),
                 verification: Verification::default(),
@@ -313,18 +321,21 @@ impl App {
     }
 
     /// Starts drawing a thumbnail when nothing more urgent needs the processor.
-    fn request_thumbnail(&mut self) {
+    fn request_thumbnail(&mut self, ctx: &egui::Context) {
         if self.state.session.scenes.is_loading() || self.state.screen.is_waiting() {
             return;
         }
-        if let Some(next) = self.panels.browser.next_thumbnail() {
-            return self.state.jobs.thumbnail(next);
+        let browser = &mut self.panels.browser;
+        if let Some((next, size)) = browser.next_thumbnail(ctx) {
+            return self.state.jobs.thumbnail(next, size);
         }
         let own = &self.state.session.preset_file;
         let key = SceneKey::of(own);
         let Some(scene) = self.state.session.scenes.shown_for(&key) else { return };
-        if let Some(next) = self.panels.browser.next_on_model(&key) {
-            self.state.jobs.thumbnail_on(next, own.clone(), scene.clone());
+        if let Some((next, size)) = browser.next_on_model(ctx, &key) {
+            self.state.jobs.thumbnail_on(next, own.clone(), scene.clone(), size);
+        } else if let Some(next) = browser.effects.next_picture(ctx, &self.state.session) {
+            self.state.jobs.effect_picture(next);
         }
     }
 
@@ -372,6 +383,9 @@ impl App {
         let shown = left.show_collapsible(ui, &mut is_open, |ui| self.panel_ui(ui, |panels| &mut panels.browser));
         self.state.settings.keep_width(0, self.state.open.left && is_open, shown.map(|shown| shown.response.rect), window);
         self.state.open.left = is_open;
+        if !is_open {
+            self.panels.browser.close();
+        }
         let right = egui::Panel::right("right").frame(theme::panel_frame()).default_size(right_width).size_range(272.0..=520.0);
         let mut is_open = self.state.open.right;
         let shown = right.show_collapsible(ui, &mut is_open, |ui| self.panel_ui(ui, |panels| &mut panels.inspector));
@@ -429,11 +443,11 @@ impl eframe::App for App {
         self.apply(&ctx);
         escape(&ctx, &self.state, &mut self.panels, self.was_typing, &self.commands);
         self.apply(&ctx);
-        if !self.panels.dialogs.is_open() && !self.panels.settings.takes_key() {
+        if !self.panels.has_dialog() && !self.panels.settings.takes_key() {
             input::shortcuts(&ctx, &self.state, &mut self.typing, &self.commands);
             self.apply(&ctx);
         }
-        let is_awaited = self.panels.dialogs.takes_text() || (self.state.open.cheat_sheet && !self.panels.dialogs.is_open());
+        let is_awaited = self.panels.takes_text() || (self.state.open.cheat_sheet && !self.panels.has_dialog());
         self.typing.follow(&ctx, is_awaited, now_s);
         self.state.clipboard.hovered_row = None;
         self.play(&ctx);
@@ -442,12 +456,14 @@ impl eframe::App for App {
         self.panels_ui(ui);
         self.panel_ui(ui, |panels| &mut panels.dialogs);
         self.panel_ui(ui, |panels| &mut panels.cheat_sheet);
+        self.panel_ui(ui, |panels| &mut panels.palette);
+        self.panel_ui(ui, |panels| &mut panels.naming);
         self.panel_ui(ui, |panels| &mut panels.settings);
         self.panel_ui(ui, |panels| &mut panels.extremes);
         self.panel_ui(ui, |panels| &mut panels.randomize);
         self.panel_ui(ui, |panels| &mut panels.sweep);
         self.panel_ui(ui, |panels| &mut panels.film);
-        self.request_thumbnail();
+        self.request_thumbnail(&ctx);
         self.request_precision(&ctx, is_held);
         self.state.observe(is_held);
         if let Some(wait_s) = self.state.history.wake_in_s(now_s).filter(|_| !is_held) {

@@ -136,30 +136,30 @@ impl Lab {
 
 /// A window of 1280 x 800 that shows the preset `open`, with its first picture drawn; presets lie in `presets_dir`. It keeps no settings.
 pub fn lab_in(open: &str, presets_dir: Option<&Path>) -> Option<Lab> {
-    let mut lab = opened(Some(open), presets_dir)?;
+    lab_with(open, Folders { presets: presets_dir.map(Path::to_owned), ..Folders::default() })
+}
+
+/// A window that shows the preset `open` and has these folders.
+pub fn lab_with(open: &str, folders: Folders) -> Option<Lab> {
+    let mut lab = created(Some(open), folders, None, SIZE)?;
     settle(&mut lab);
     Some(lab)
 }
 
 /// A window of 1280 x 800 as it is created, before its first frame; without `open` as the program starts. It keeps no settings.
 pub fn opened(open: Option<&str>, presets_dir: Option<&Path>) -> Option<Lab> {
-    lab_with(open, presets_dir, None, [1280.0, 800.0])
+    created(open, Folders { presets: presets_dir.map(Path::to_owned), ..Folders::default() }, None, SIZE)
 }
 
-/// A window of `size` that keeps its settings and session in the folder `config`, before its first frame.
-pub fn lab_with(open: Option<&str>, presets_dir: Option<&Path>, config: Option<PathBuf>, size: [f32; 2]) -> Option<Lab> {
+/// Size of a window in points, unless a test says otherwise.
+pub const SIZE: [f32; 2] = [1280.0, 800.0];
+
+/// A window of `size` with these folders that keeps its settings and session in the folder `config`, before its first frame.
+pub fn created(open: Option<&str>, folders: Folders, config: Option<PathBuf>, size: [f32; 2]) -> Option<Lab> {
     crate::common::gpu()?; // Fails with one sentence when there is none.
     let adapter = std::env::var("RASTERLAB_ADAPTER").map_or(AdapterChoice::Any, AdapterChoice::Named);
     let (window, gpu) = shared_device(&adapter);
-    let options = Options {
-        open: open.map(str::to_owned),
-        opened: None,
-        adapter,
-        gpu: Some(gpu),
-        folders: Folders { presets: presets_dir.map(Path::to_owned), ..Folders::default() },
-        opens_editor: false,
-        config,
-    };
+    let options = Options { open: open.map(str::to_owned), opened: None, adapter, gpu: Some(gpu), folders, opens_editor: false, config };
     let harness = Harness::builder()
         .with_size(size)
         .renderer(Window(window.clone()))

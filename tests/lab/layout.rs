@@ -3,6 +3,7 @@
 
 use eframe::egui::{Event, Key, Modifiers, PointerButton, Pos2, Rect, Role, vec2};
 use egui_kittest::kittest::{NodeT as _, Queryable as _};
+use rasterlab::preset_file::Folders;
 
 use crate::harness::*;
 
@@ -19,7 +20,7 @@ fn controls(lab: &Lab, area: Rect) -> Vec<(String, Rect)> {
 #[test]
 fn in_a_small_window_no_control_is_cut_off_or_covered() {
     let size = [900.0, 600.0];
-    let Some(mut lab) = lab_with(Some("facet-knot"), None, None, size) else { return };
+    let Some(mut lab) = created(Some("facet-knot"), Folders::default(), None, size) else { return };
     settle(&mut lab);
     let window = Rect::from_min_size(Pos2::ZERO, size.into());
     let picture = lab.get_by_label("Picture").rect();

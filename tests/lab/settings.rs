@@ -5,12 +5,13 @@ use std::path::Path;
 
 use eframe::egui::{Event, Key, Modifiers, Role, Theme, vec2};
 use egui_kittest::kittest::{NodeT as _, Queryable as _};
+use rasterlab::preset_file::Folders;
 
 use crate::{files::tiny_glb, harness::*};
 
 /// A window with `config` as its folder of settings.
 fn lab_at(config: &Path, open: Option<&str>) -> Option<Lab> {
-    let mut lab = lab_with(open, None, Some(config.to_owned()), [1280.0, 800.0])?;
+    let mut lab = created(open, Folders::default(), Some(config.to_owned()), SIZE)?;
     settle(&mut lab);
     Some(lab)
 }

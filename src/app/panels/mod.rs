@@ -4,11 +4,14 @@ pub mod anti_aliasing;
 pub mod brought_code;
 pub mod cheat_sheet;
 pub mod dialogs;
+pub mod effect_browser;
 pub mod extremes;
 pub mod film;
 pub mod inspector;
 pub mod log;
+pub mod naming;
 pub mod new_effect;
+pub mod palette;
 pub mod preset_browser;
 pub mod randomize;
 pub mod settings;
@@ -20,8 +23,8 @@ pub mod viewport;
 
 use self::{
     cheat_sheet::CheatSheet, dialogs::Dialogs, extremes::Extremes, film::FilmPanel, inspector::Inspector, log::LogPanel,
-    preset_browser::PresetBrowser, randomize::RandomizePanel, settings::SettingsWindow, sweep::SweepPanel, timeline::Timeline,
-    topbar::TopBar, trade::TradePanel, viewport::Viewport,
+    naming::NameDialog, palette::Palette, preset_browser::PresetBrowser, randomize::RandomizePanel, settings::SettingsWindow,
+    sweep::SweepPanel, timeline::Timeline, topbar::TopBar, trade::TradePanel, viewport::Viewport,
 };
 use crate::preset_file::Folders;
 
@@ -41,9 +44,21 @@ pub struct Panels {
     pub randomize: RandomizePanel,
     pub sweep: SweepPanel,
     pub film: FilmPanel,
+    pub palette: Palette,
+    pub naming: NameDialog,
 }
 
 impl Panels {
+    /// True while a dialog takes all keys.
+    pub fn has_dialog(&self) -> bool {
+        self.dialogs.is_open() || self.palette.is_open() || self.naming.is_open()
+    }
+
+    /// True while a dialog with a field for text is open.
+    pub fn takes_text(&self) -> bool {
+        self.dialogs.takes_text() || self.palette.is_open() || self.naming.is_open()
+    }
+
     /// The panels at the start, with the presets of `folders` in the gallery.
     pub fn new(folders: &Folders) -> Self {
         Self {
@@ -61,6 +76,8 @@ impl Panels {
             randomize: RandomizePanel::default(),
             sweep: SweepPanel::default(),
             film: FilmPanel::default(),
+            palette: Palette::default(),
+            naming: NameDialog::default(),
         }
     }
 }

@@ -1,6 +1,7 @@
 //! What the window remembers between runs: its settings (`settings.toml`) and its last session (`session.toml`), both in the folder of the
 //! user's configuration.
 
+pub mod browsing;
 pub mod keeper;
 pub mod keymap;
 pub mod last_session;
@@ -10,7 +11,7 @@ mod writer;
 
 use eframe::egui;
 
-use self::{keymap::Keymap, recents::Recents};
+use self::{browsing::Browsing, keymap::Keymap, recents::Recents};
 use super::theme::ThemeChoice;
 
 /// Sizes of texts and controls that can be chosen, as a factor of the system's.
@@ -37,8 +38,8 @@ pub struct Settings {
     pub open: OpenPanels,
     /// Widths of the side panels, points: left and right; none before they were shown.
     pub widths: [Option<f32>; 2],
-    /// Is the scene shown on the left, rather than the presets?
-    pub shows_scene_tab: bool,
+    /// What the left panel shows, and how.
+    pub browsing: Browsing,
 }
 
 impl Default for Settings {
@@ -51,7 +52,7 @@ impl Default for Settings {
             window: WindowPlace::default(),
             open: OpenPanels::default(),
             widths: [None; 2],
-            shows_scene_tab: false,
+            browsing: Browsing::default(),
         }
     }
 }

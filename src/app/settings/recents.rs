@@ -29,6 +29,22 @@ impl Recents {
         }
     }
 
+    /// The file `from` is called `to` now.
+    pub fn rename(&mut self, from: &Path, to: &Path) {
+        let [Ok(from), Ok(to)] = [from, to].map(std::path::absolute) else { return };
+        if self.0.contains(&from) {
+            self.0.retain(|known| *known != to);
+            self.0.iter_mut().filter(|known| **known == from).for_each(|known| known.clone_from(&to));
+        }
+    }
+
+    /// Forgets `path`.
+    pub fn remove(&mut self, path: &Path) {
+        if let Ok(path) = std::path::absolute(path) {
+            self.0.retain(|known| *known != path);
+        }
+    }
+
     pub fn clear(&mut self) {
         self.0.clear();
     }
@@ -69,6 +85,17 @@ mod tests {
         let names: Vec<_> = recents.iter().map(|path| path.file_stem().unwrap_or_default().to_string_lossy().into_owned()).collect();
         assert_eq!(names, ["15", "19", "18", "17", "16", "14", "13", "12", "11", "10", "9", "8"]);
         assert_eq!(recents.iter().collect::<Recents>(), recents);
+    }
+
+    #[test]
+    fn a_renamed_file_keeps_its_place_and_a_deleted_one_is_gone() {
+        let mut recents = Recents::default();
+        ["/c.toml", "/b.toml", "/a.toml"].iter().for_each(|path| recents.add(Path::new(path)));
+        recents.rename(Path::new("/b.toml"), Path::new("/d.toml"));
+        recents.rename(Path::new("/unknown.toml"), Path::new("/e.toml"));
+        assert_eq!(recents.iter().collect::<Vec<_>>(), ["/a.toml", "/d.toml", "/c.toml"].map(Path::new));
+        recents.remove(Path::new("/a.toml"));
+        assert_eq!(recents.iter().collect::<Vec<_>>(), ["/d.toml", "/c.toml"].map(Path::new));
     }
 
     #[test]

@@ -6,6 +6,7 @@ use toml_edit::{Array, DocumentMut, Item, Table, TableLike, value};
 
 use super::{
     PANEL_WIDTHS, SCALES, Settings, WINDOW_SIZES,
+    browsing::{Layout, Sort, Tab},
     keymap::{self, Keymap},
     recents::Recents,
 };
@@ -28,7 +29,7 @@ pub fn read(text: &str, file: &str) -> Result<(Settings, DocumentMut, Vec<String
 
 /// Writes settings into `document`.
 pub fn write(settings: &Settings, document: &mut DocumentMut) {
-    let Settings { theme, scale, recents, keys, window, open, widths, shows_scene_tab } = settings;
+    let Settings { theme, scale, recents, keys, window, open, widths, browsing } = settings;
     set(document.as_table_mut(), "theme", value(theme.word()));
     set(document.as_table_mut(), "scale", value(number(*scale)));
     let mut recent = Array::new();
@@ -52,7 +53,9 @@ pub fn write(settings: &Settings, document: &mut DocumentMut) {
             set(table, key, value(number(*width)));
         }
     }
-    set(table, "tab", value(if *shows_scene_tab { "scene" } else { "presets" }));
+    set(table, "tab", value(browsing.tab.word()));
+    set(table, "presets", value(browsing.layout.word()));
+    set(table, "order", value(browsing.sort.word()));
 
     let table = table_of(document, "keys");
     let known: Vec<String> = table.iter().map(|(key, _)| key.to_owned()).collect();
@@ -140,13 +143,10 @@ impl Reader<'_> {
                 self.flag(table, "panels", key, is_open);
             }
             settings.widths = ["left_width", "right_width"].map(|key| self.number(table, key, PANEL_WIDTHS));
-            if let Some(item) = table.get("tab") {
-                match item.as_str() {
-                    Some("presets") => settings.shows_scene_tab = false,
-                    Some("scene") => settings.shows_scene_tab = true,
-                    _ => self.refuse("panels.tab", item, "it takes \"presets\" or \"scene\""),
-                }
-            }
+            let browsing = &mut settings.browsing;
+            self.word(table, "tab", &Tab::ALL.map(|tab| (tab.word(), tab)), &mut browsing.tab);
+            self.word(table, "presets", &Layout::ALL.map(|layout| (layout.word(), layout)), &mut browsing.layout);
+            self.word(table, "order", &Sort::ALL.map(|sort| (sort.word(), sort)), &mut browsing.sort);
         }
         if let Some(table) = self.table(root, "keys") {
             settings.keys = self.keys(table);
@@ -208,6 +208,18 @@ impl Reader<'_> {
         }
     }
 
+    /// Reads one of the words of the table of panels.
+    fn word<T: Copy>(&mut self, table: &dyn TableLike, key: &str, words: &[(&str, T)], chosen: &mut T) {
+        let Some(item) = table.get(key) else { return };
+        match words.iter().find(|(word, _)| item.as_str() == Some(word)) {
+            Some((_, found)) => *chosen = *found,
+            None => {
+                let quoted: Vec<String> = words.iter().map(|(word, _)| format!("{word:?}")).collect();
+                self.refuse(&format!("panels.{key}"), item, &format!("it takes {}", quoted.join(" or ")));
+            }
+        }
+    }
+
     fn refuse(&mut self, key: &str, item: &Item, takes: &str) {
         let there = item.to_string();
         self.remarks.push(format!("{}: {key} = {}: {takes}; its default is used", self.file, there.trim()));
@@ -228,7 +240,7 @@ mod tests {
     use eframe::egui::{Key, Modifiers};
 
     use super::*;
-    use crate::app::settings::{OpenPanels, WindowPlace};
+    use crate::app::settings::{OpenPanels, WindowPlace, browsing::Browsing};
 
     fn round_trip(settings: &Settings, text: &str) -> String {
         let mut document: DocumentMut = text.parse().expect("TOML");
@@ -248,7 +260,7 @@ mod tests {
             window: WindowPlace { size: [900.0, 600.0], is_maximized: true },
             open: OpenPanels { left: false, log: true, ..OpenPanels::default() },
             widths: [Some(212.0), None],
-            shows_scene_tab: true,
+            browsing: Browsing { tab: Tab::Effects, layout: Layout::Grid, sort: Sort::FavoritesFirst },
         }
     }
 
@@ -275,12 +287,23 @@ mod tests {
 
     #[test]
     fn each_bad_field_is_named_and_keeps_its_default() {
-        let text = "theme = \"blue\"\nscale = 9\nrecent = [1]\nwindow = 3\n[panels]\nleft = \"yes\"\nlog = true\nleft_width = -1\n\
+        let text = "theme = \"blue\"\nscale = 9\nrecent = [1]\nwindow = 3\n[panels]\nleft = \"yes\"\nlog = true\nleft_width = -1\norder = \"size\"\n\
             [keys]\nrandomize = [\"Ctrl+S\"]\nverify = [\"Nokey\"]\nfly = [\"F\"]\n";
         let (settings, _, remarks) = read(text, "settings.toml").expect("TOML");
         let expected = Settings { open: OpenPanels { log: true, ..OpenPanels::default() }, ..Settings::default() };
         assert_eq!(settings, expected);
-        let named = ["theme", "scale", "recent", "window", "panels.left", "left_width", "keys.verify", "keys.fly", "keys.randomize"];
+        let named = [
+            "theme",
+            "scale",
+            "recent",
+            "window",
+            "panels.left",
+            "left_width",
+            "panels.order",
+            "keys.verify",
+            "keys.fly",
+            "keys.randomize",
+        ];
         for key in named {
             assert_eq!(
                 remarks.iter().filter(|remark| remark.starts_with(&format!("settings.toml: {key}"))).count(),
