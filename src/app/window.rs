@@ -60,6 +60,8 @@ pub struct Options {
     pub opens_editor: bool,
     /// The folder where settings and session are kept; none keeps nothing.
     pub config: Option<PathBuf>,
+    /// The file that messages of the log are appended to.
+    pub log: Option<Arc<std::fs::File>>,
 }
 
 /// The whole window.
@@ -194,7 +196,7 @@ impl App {
         ctx.add_plugin(PointerFrames::default());
         ctx.options_mut(|options| options.zoom_with_keyboard = false); // The table of actions has these keys.
         let (window, gpu) = device::adopt(cc, options.gpu)?;
-        let mut log = Log::default();
+        let mut log = Log::kept_in(options.log);
         let (keeper, settings, remarks) = Keeper::new(options.config);
         remarks.into_iter().for_each(|remark| log.add(Level::Warning, remark));
         settings.theme.choose(ctx);

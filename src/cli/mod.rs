@@ -72,6 +72,9 @@ pub fn run(cli: &Cli) -> Result<Exit, CliError> {
             "{preset_file:?} stands before a command; leave it out, or leave out the command to open it in the window"
         )));
     }
+    if cli.log.is_some() {
+        return Err(CliError::usage(format!("--log has no meaning for {}; it keeps the log of the window", command.name())));
+    }
     let mut streams = Streams::new(cli.common.quiet, cli.common.json);
     let result = dispatch(&cli.common, command, &mut streams).and_then(|exit| streams.finish().map(|()| exit).map_err(CliError::from));
     match result {
@@ -130,6 +133,10 @@ fn window(cli: &Cli) -> Result<Exit, CliError> {
         }
         backend::BackendChoice::Gpu(choice) => choice,
     };
+    let log = cli.log.as_ref().map(|path| {
+        let file = std::fs::File::options().create(true).append(true).open(path);
+        file.map_err(|error| CliError::usage(format!("--log {}: the file cannot be written: {error}", path.display())))
+    });
     let options = crate::app::Options {
         open: cli.open.clone(),
         opened,
@@ -138,6 +145,7 @@ fn window(cli: &Cli) -> Result<Exit, CliError> {
         folders: cli.common.folders(),
         opens_editor: true,
         config: crate::app::config_folder(),
+        log: log.transpose()?.map(std::sync::Arc::new),
     };
     crate::app::run(options).map_err(CliError::window)?;
     Ok(Exit::Done)

@@ -159,7 +159,8 @@ pub fn created(open: Option<&str>, folders: Folders, config: Option<PathBuf>, si
     crate::common::gpu()?; // Fails with one sentence when there is none.
     let adapter = std::env::var("RASTERLAB_ADAPTER").map_or(AdapterChoice::Any, AdapterChoice::Named);
     let (window, gpu) = shared_device(&adapter);
-    let options = Options { open: open.map(str::to_owned), opened: None, adapter, gpu: Some(gpu), folders, opens_editor: false, config };
+    let options =
+        Options { open: open.map(str::to_owned), opened: None, adapter, gpu: Some(gpu), folders, opens_editor: false, config, log: None };
     let harness = Harness::builder()
         .with_size(size)
         .renderer(Window(window.clone()))
