@@ -9,7 +9,9 @@ use eframe::egui::{self, ViewportCommand};
 
 use super::{
     anti_aliasing,
-    command::{CodeUse, Command, Commands, FileCommand, KeyframeEdit, Manner, Purpose, RowCommand, SettingsCommand, Side, Toggle, ViewCommand},
+    command::{
+        CodeUse, Command, Commands, FileCommand, KeyframeEdit, Manner, Purpose, RowCommand, SettingsCommand, Side, Toggle, ViewCommand,
+    },
     film,
     log::Level,
     new_effect, open,

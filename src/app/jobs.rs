@@ -20,12 +20,12 @@ use super::{
     precision::{self, Measured},
     scene_loader::SceneKey,
     screen::Inputs,
+    system_dialog,
     trade::{
         measure,
         point::Point,
         request::{Progress, Request},
     },
-    system_dialog,
 };
 use crate::{
     effect_files,

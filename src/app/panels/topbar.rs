@@ -247,7 +247,8 @@ fn cost_ui(ui: &mut Ui, state: &State, commands: &Commands) {
         Some(progress) => verifying_ui(ui, &progress, commands),
         None => {
             let verify = ui.add_enabled(state.screen.requested().is_some(), egui::Button::new("Verify"));
-            if verify.on_hover_text(format!("Compare every pixel with the exact CPU oracle ({})", Action::Verify.shortcut_text())).clicked() {
+            if verify.on_hover_text(format!("Compare every pixel with the exact CPU oracle ({})", Action::Verify.shortcut_text())).clicked()
+            {
                 commands.perform(Action::Verify);
             }
         }
