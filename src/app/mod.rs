@@ -37,6 +37,7 @@ mod loss;
 mod measured;
 mod new_effect;
 mod numbers;
+mod observed;
 mod open;
 mod opening;
 mod orbit;
