@@ -168,6 +168,7 @@ fn toggle(state: &mut State, panels: &mut Panels, which: Toggle) {
         }
         Toggle::Timeline => open.timeline = !open.timeline,
         Toggle::Sweep => open.sweep = !open.sweep,
+        Toggle::Timing => open.timing = !open.timing,
         Toggle::Log => open.log = !open.log,
         Toggle::CheatSheet => open.cheat_sheet = !open.cheat_sheet,
         Toggle::Extremes => panels.extremes.toggle(),

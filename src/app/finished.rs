@@ -72,10 +72,12 @@ pub fn finish(ctx: &egui::Context, state: &mut State, panels: &mut Panels, comma
 
 /// Keeps the verdict of the oracle on `of`: for A, for B, or for both if they are the same picture.
 fn verdict(state: &mut State, panels: &mut Panels, of: Inputs, findings: Result<Box<Findings>, String>) {
-    state.verification.ended();
+    if !state.verification.ended() {
+        return;
+    }
     match findings {
         Ok(findings) => {
-            state.log.add(Level::Info, format!("verified {}: {}", state.session.title(), error_text(&findings.accuracy)));
+            state.log.add(Level::Info, format!("verified {}: {}", state.session.title(), error_text(&findings)));
             let verdict = Verdict { of, findings: findings.into() };
             if !panels.viewport.compare.take_verdict(&verdict) || state.screen.requested() == Some(&verdict.of) {
                 state.verification.set(verdict);

@@ -3,7 +3,11 @@
 
 use std::{
     path::{Path, PathBuf},
-    sync::{Arc, atomic::AtomicBool, mpsc},
+    sync::{
+        Arc,
+        atomic::{AtomicBool, AtomicUsize, Ordering},
+        mpsc,
+    },
 };
 
 use eframe::egui;
@@ -59,12 +63,14 @@ pub struct Jobs {
     ctx: egui::Context,
     sender: mpsc::Sender<Done>,
     receiver: mpsc::Receiver<Done>,
+    /// Jobs that keep the processor busy.
+    computing: Arc<AtomicUsize>,
 }
 
 impl Jobs {
     pub fn new(ctx: egui::Context) -> Self {
         let (sender, receiver) = mpsc::channel();
-        Self { ctx, sender, receiver }
+        Self { ctx, sender, receiver, computing: Arc::default() }
     }
 
     /// The next finished piece of work, if any.
@@ -72,7 +78,22 @@ impl Jobs {
         self.receiver.try_recv().ok()
     }
 
+    /// True while a job keeps the processor busy: times that are measured meanwhile are not those of a picture at rest.
+    pub fn is_computing(&self) -> bool {
+        self.computing.load(Ordering::Relaxed) > 0
+    }
+
+    /// Starts work that keeps the processor busy.
     fn spawn(&self, name: &str, work: impl FnOnce() -> Done + Send + 'static) {
+        let computing = Computing::new(&self.computing);
+        self.spawn_idle(name, move || {
+            let _computing = computing;
+            work()
+        });
+    }
+
+    /// Starts work that only waits.
+    fn spawn_idle(&self, name: &str, work: impl FnOnce() -> Done + Send + 'static) {
         let (sender, ctx) = (self.sender.clone(), self.ctx.clone());
         let started = std::thread::Builder::new().name(name.into()).spawn(move || {
             // The window may be closed by now; then the result is dropped.
@@ -203,7 +224,23 @@ impl Jobs {
             Purpose::Open => Box::pin(dialog.pick_file()),
             Purpose::SaveAs | Purpose::Export => Box::pin(dialog.set_file_name(name).save_file()),
         };
-        self.spawn("file dialog", move || Done::Path(purpose, pollster::block_on(chosen).map(|file| file.path().to_owned())));
+        self.spawn_idle("file dialog", move || Done::Path(purpose, pollster::block_on(chosen).map(|file| file.path().to_owned())));
+    }
+}
+
+/// Counts a job for as long as it exists.
+struct Computing(Arc<AtomicUsize>);
+
+impl Computing {
+    fn new(count: &Arc<AtomicUsize>) -> Self {
+        count.fetch_add(1, Ordering::Relaxed);
+        Self(count.clone())
+    }
+}
+
+impl Drop for Computing {
+    fn drop(&mut self) {
+        self.0.fetch_sub(1, Ordering::Relaxed);
     }
 }
 

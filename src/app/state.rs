@@ -27,13 +27,14 @@ pub struct OpenPanels {
     pub right: bool,
     pub timeline: bool,
     pub sweep: bool,
+    pub timing: bool,
     pub log: bool,
     pub cheat_sheet: bool,
 }
 
 impl Default for OpenPanels {
     fn default() -> Self {
-        Self { left: true, right: true, timeline: true, sweep: false, log: false, cheat_sheet: false }
+        Self { left: true, right: true, timeline: true, sweep: false, timing: false, log: false, cheat_sheet: false }
     }
 }
 

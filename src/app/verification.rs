@@ -17,6 +17,8 @@ pub struct Verification {
     verdict: Option<Verdict>,
     /// Judgements under way.
     running: u32,
+    /// Of those, judgements of a preset or a size that is not shown any more.
+    outdated: u32,
     /// The picture that could not be judged; it is not tried again.
     failed: Option<Inputs>,
 }
@@ -46,9 +48,18 @@ impl Verification {
         self.running += 1;
     }
 
-    /// A judgement ended.
-    pub fn ended(&mut self) {
+    /// A judgement ended. Returns false if it is of a preset or a size that is not shown any more.
+    pub fn ended(&mut self) -> bool {
         self.running = self.running.saturating_sub(1);
+        let is_outdated = self.outdated > 0;
+        self.outdated -= u32::from(is_outdated);
+        !is_outdated
+    }
+
+    /// Forgets the verdict, because another preset or another size is shown; and those that are still to come.
+    pub fn reset(&mut self) {
+        self.verdict = None;
+        self.outdated = self.running;
     }
 
     pub fn set(&mut self, verdict: Verdict) {

@@ -113,7 +113,7 @@ fn window(cli: &Cli) -> Result<Exit, CliError> {
         open: cli.open.clone(),
         opened: Some(opened),
         adapter,
-        gpu: None,
+        devices: None,
         folders: cli.common.folders(),
         opens_editor: true,
     };

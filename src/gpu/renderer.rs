@@ -4,6 +4,7 @@ use std::{collections::VecDeque, sync::Arc};
 
 use super::{
     buffers::{self, color_stride},
+    compile_watch::CompileWatch,
     device::Gpu,
     error::RenderError,
     explain::Explanation,
@@ -97,6 +98,11 @@ impl Renderer {
 
     pub fn gpu(&self) -> &Arc<Gpu> {
         &self.device.gpu
+    }
+
+    /// Tells `watch` before something is compiled, and lets it stop that.
+    pub fn watch_compiling(&mut self, watch: Arc<CompileWatch>) {
+        self.device.pipelines.watch(watch);
     }
 
     /// Shares out work differently from the next picture on; the default is what suits the adapter.
@@ -301,6 +307,16 @@ impl Renderer {
     /// The finished picture: Rgba8Unorm with gamma-encoded bytes; none before the first draw and for 0 pixels.
     pub fn texture_view(&self) -> Option<&wgpu::TextureView> {
         self.presentation.as_ref().map(|presentation| &presentation.view)
+    }
+
+    /// The pixels of the finished picture, row by row, as many as the view had; waits for them. None before the first draw and for 0 pixels.
+    ///
+    /// # Errors
+    /// When the device is lost.
+    pub fn read_shown(&self) -> Result<Option<Vec<[u8; 4]>>, RenderError> {
+        let Some(presentation) = &self.presentation else { return Ok(None) };
+        let size = [presentation.texture.width(), presentation.texture.height()];
+        buffers::read_picture(&self.device.gpu, self.picture.buffers.get(self.shown_buffer())?, size).map(Some)
     }
 
     /// Statistics of the newest finished frame, or none yet; does not wait.

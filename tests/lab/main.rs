@@ -8,6 +8,7 @@ mod brought_code;
 mod compare;
 mod duplicates;
 mod files;
+mod first_use;
 mod goldens;
 mod harness;
 mod inspector;
@@ -17,6 +18,7 @@ mod numerics;
 mod scopes;
 mod sweep;
 mod timeline;
+mod timing;
 mod verify;
 mod viewport;
 #[cfg(target_os = "linux")]

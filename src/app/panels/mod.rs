@@ -10,12 +10,13 @@ pub mod new_effect;
 pub mod preset_browser;
 pub mod sweep;
 pub mod timeline;
+pub mod timing;
 pub mod topbar;
 pub mod viewport;
 
 use self::{
     cheat_sheet::CheatSheet, dialogs::Dialogs, extremes::Extremes, inspector::Inspector, log::LogPanel, preset_browser::PresetBrowser,
-    sweep::SweepPanel, timeline::Timeline, topbar::TopBar, viewport::Viewport,
+    sweep::SweepPanel, timeline::Timeline, timing::TimingPanel, topbar::TopBar, viewport::Viewport,
 };
 use crate::preset_file::Folders;
 
@@ -26,6 +27,7 @@ pub struct Panels {
     pub inspector: Inspector,
     pub timeline: Timeline,
     pub sweep: SweepPanel,
+    pub timing: TimingPanel,
     pub log: LogPanel,
     pub viewport: Viewport,
     pub dialogs: Dialogs,
@@ -42,6 +44,7 @@ impl Panels {
             inspector: Inspector,
             timeline: Timeline::default(),
             sweep: SweepPanel::default(),
+            timing: TimingPanel,
             log: LogPanel,
             viewport: Viewport::default(),
             dialogs: Dialogs::default(),

@@ -7,7 +7,7 @@ use crate::app::{
     command::Commands,
     fields::dot,
     icons::{Icon, icon_button},
-    measured::{error_line, time_text},
+    measured::{error_line, time_line},
     panel::Panel,
     state::State,
     theme,
@@ -52,6 +52,7 @@ const MENUS: [(&str, &[Option<Action>]); 4] = [
             Some(Action::Panels),
             Some(Action::Timeline),
             Some(Action::Sweep),
+            Some(Action::Timing),
             Some(Action::Log),
             None,
             Some(Action::Extremes),
@@ -165,8 +166,8 @@ fn cost_ui(ui: &mut Ui, state: &State, commands: &Commands) {
     }
     ui.label(RichText::new(error).color(color)).on_hover_text(hint);
     ui.label(theme::weak("·"));
-    ui.label(RichText::new(time_text(state.screen.report())).color(theme::TEXT_STRONG))
-        .on_hover_text("Time of the newest frame on the device. Timing lists its passes.");
+    let (time, hint) = time_line(Some(&state.screen));
+    ui.label(RichText::new(time).color(theme::TEXT_STRONG)).on_hover_text(hint);
     pins_ui(ui, &state.session.preset().accuracy.pins.words());
 }
 

@@ -7,6 +7,7 @@ mod compare;
 mod compare_bar;
 mod compare_plates;
 mod compare_ui;
+mod compiling;
 mod heat_legend;
 mod layout;
 mod light;
@@ -25,8 +26,10 @@ use crate::app::{
     log::Level,
     scene_loader::SceneKey,
     screen::Inputs,
+    session::FileId,
     state::State,
     theme,
+    timings::Measurable,
 };
 
 /// After this long without motion the picture is drawn at full size, seconds.
@@ -42,6 +45,8 @@ pub struct Viewport {
     last_motion_s: f64,
     pub compare: Compare,
     overlays: OverlayPainter,
+    /// What the numbers in the header are of.
+    measured: Measurable<FileId>,
 }
 
 /// Where the picture is, and what the pointer did there.
@@ -86,12 +91,17 @@ impl Viewport {
     /// Draws the preset, at a lower resolution while it moves on a slow adapter.
     pub fn draw(&mut self, ctx: &egui::Context, state: &mut State, interaction: &Interaction) {
         let now_s = state.now_s;
-        if let Err(error) = state.screen.poll(now_s) {
-            state.log.add(Level::Error, error.to_string());
+        if let Err(error) = state.screen.poll() {
+            state.log.notify(Level::Error, error, now_s);
         }
         // While the scene of another preset is shown there is nothing to draw.
         let Some(scene) = state.session.scenes.shown_for(&SceneKey::of(&state.session.preset_file)).cloned() else { return };
         let (stack, accuracy) = (state.session.visible_stack(), state.session.preset().accuracy);
+        if self.measured.resets(FileId::of(&state.session.preset_file), interaction.size) {
+            state.screen.reset_timings();
+            state.verification.reset();
+            self.compare.reset_measurements();
+        }
         let requested = Inputs { view: state.session.view_at(&scene, interaction.size), scene, stack, accuracy };
         let is_held = ctx.input(|i| i.pointer.any_down());
         let is_changed = state.screen.requested().is_some_and(|before| *before != requested);
@@ -103,12 +113,15 @@ impl Viewport {
         if divisor > 1 {
             ctx.request_repaint_after_secs(rest_in_s.unwrap_or(0.0) as f32 + 0.01);
         }
-        if let Err(error) = state.screen.show(requested, divisor, now_s) {
-            state.log.notify(Level::Error, error.to_string(), now_s);
-        }
+        state.screen.show(requested, divisor);
         self.compare.draw(state);
-        if state.screen.is_waiting() || self.compare.is_waiting() {
-            ctx.request_repaint_after_secs(0.015);
+        // What else runs would be measured, too.
+        let is_busy = is_held || state.session.playback.playing || state.jobs.is_computing() || self.compare.is_waiting();
+        if rest_in_s.is_none() && !is_busy {
+            state.screen.measure();
+            if !state.screen.is_measuring() {
+                self.compare.measure();
+            }
         }
     }
 
@@ -121,7 +134,7 @@ impl Viewport {
     /// By how much a moving picture of `full` pixels must be smaller along a side to stay smooth, from the time of the last one.
     fn divisor(&self, state: &State, full: [u32; 2]) -> u32 {
         let screen = &state.screen;
-        let Some(ms) = screen.report().and_then(|report| report.gpu_ms).map(|ms| ms + self.compare.ms()) else {
+        let Some(ms) = screen.timings().newest_ms().map(|ms| ms + self.compare.ms()) else {
             return if screen.gpu.summary.software { 2 } else { 1 };
         };
         let [width, height] = screen.picture().map_or(full, |(_, size)| size);
@@ -141,7 +154,8 @@ impl Viewport {
             return false;
         }
         let screen = &state.screen;
-        let is_drawn = screen.requested().is_some() && screen.drawn() == screen.requested() && !screen.is_waiting();
+        let is_drawn =
+            screen.requested().is_some() && screen.drawn() == screen.requested() && !screen.is_waiting() && !screen.is_measuring();
         if !is_drawn || ctx.input(|i| i.pointer.any_down()) {
             return false; // The event that ends this state repaints.
         }
@@ -166,6 +180,7 @@ impl Viewport {
             heat_legend::heat_ui(ui, free, &params);
         }
         badges::badges_ui(ui, state, rect);
+        compiling::compiling_ui(ui, state, rect);
     }
 }
 
@@ -181,7 +196,10 @@ fn picture_ui(ui: &Ui, state: &State, rect: Rect) -> Rect {
         return at;
     }
     painter.rect_filled(rect, 0.0, theme::VIEW);
-    let (title, detail) = if state.session.scenes.has_failed() {
+    let compiling = state.screen.compiling();
+    let (title, detail) = if let Some(compiling) = &compiling {
+        (compiling.as_str(), "The first picture takes longest.")
+    } else if state.session.scenes.has_failed() {
         ("This scene cannot be shown", "See the log. Choose another scene on the left, or drop a .glb file here.")
     } else if state.screen.is_refused() {
         ("This picture cannot be drawn", "See the log.")
