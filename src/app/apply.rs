@@ -9,7 +9,9 @@ use eframe::egui::{self, ViewportCommand};
 
 use super::{
     anti_aliasing,
-    command::{CodeUse, Command, Commands, FileCommand, KeyframeEdit, Manner, Purpose, RowCommand, SettingsCommand, Side, Toggle, ViewCommand},
+    command::{
+        CodeUse, Command, Commands, FileCommand, KeyframeEdit, Manner, Purpose, RowCommand, SettingsCommand, Side, Toggle, ViewCommand,
+    },
     film,
     log::Level,
     new_effect, open,
@@ -200,6 +202,7 @@ fn toggle(state: &mut State, panels: &mut Panels, which: Toggle) {
         }
         Toggle::Timeline => open.timeline = !open.timeline,
         Toggle::Trade => open.trade = !open.trade,
+        Toggle::Timing => open.timing = !open.timing,
         Toggle::Log => open.log = !open.log,
         Toggle::CheatSheet => open.cheat_sheet = !open.cheat_sheet,
         Toggle::Settings => open.settings = !open.settings,

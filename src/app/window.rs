@@ -7,7 +7,7 @@ use eframe::egui::{self, Ui, ViewportCommand};
 use super::{
     apply,
     command::{CodeUse, Commands, Manner},
-    device,
+    device::{self, Devices},
     escape::escape,
     finished::finish,
     history::History,
@@ -51,8 +51,8 @@ pub struct Options {
     /// What `open` names, where it has been read, perhaps with changes.
     pub opened: Option<PresetFile>,
     pub adapter: AdapterChoice,
-    /// The window's device with the pipelines that were compiled for it before; none before the first window.
-    pub gpu: Option<Arc<Gpu>>,
+    /// The window's devices with the pipelines that were compiled for them before; none before the first window.
+    pub devices: Option<Devices>,
     /// Where presets and effects are, beside the user's own presets.
     pub folders: Folders,
     /// A new effect is opened in the user's editor.
@@ -111,8 +111,10 @@ impl App {
         let is_shown =
             !self.state.opening.is_waiting() && !session.scenes.is_loading() && session.scene().is_some() && !screen.is_waiting();
         let is_judged = !verification.is_running() && self.state.overlays_are_ready();
+        let is_measured = session.playback.playing || !(screen.needs_measuring() || viewport.compare.needs_measuring());
         is_shown
             && is_judged
+            && is_measured
             && !self.state.precision.is_running()
             && !self.state.live.is_busy()
             && !viewport.compare.is_waiting()
@@ -121,6 +123,16 @@ impl App {
             && !browser.is_busy()
             && !self.panels.randomize.is_drawing()
             && !self.panels.sweep.is_drawing()
+    }
+
+    /// What is compiled for the picture, as the window shows it; none while nothing is.
+    pub fn compiling(&self) -> Option<String> {
+        self.state.screen.compiling()
+    }
+
+    /// Holds the thread of the picture when it is next about to compile, or lets it go on.
+    pub fn hold_compiling(&mut self, is_held: bool) {
+        self.state.screen.hold_compiling(is_held);
     }
 
     /// True if there is a picture, even one of an earlier preset.
@@ -191,13 +203,13 @@ impl App {
         theme::apply(ctx);
         ctx.add_plugin(PointerFrames::default());
         ctx.options_mut(|options| options.zoom_with_keyboard = false); // The table of actions has these keys.
-        let (window, gpu) = device::adopt(cc, options.gpu)?;
+        let (window, devices) = device::adopt(cc, options.devices)?;
         let mut log = Log::default();
         let (keeper, settings, remarks) = Keeper::new(options.config);
         remarks.into_iter().for_each(|remark| log.add(Level::Warning, remark));
         settings.theme.choose(ctx);
         ctx.set_zoom_factor(settings.scale);
-        let summary = &gpu.summary;
+        let summary = &devices.picture.summary;
         log.add(Level::Info, format!("adapter: {}, {}, {}", summary.name, summary.backend, summary.driver));
         let mut panels = Panels::new(&options.folders);
         panels.browser.show_scene(settings.shows_scene_tab);
@@ -223,7 +235,7 @@ impl App {
                 opening: Opening::default(),
                 session,
                 jobs: Jobs::new(cc.egui_ctx.clone()),
-                screen: Screen::new(&window, gpu),
+                screen: Screen::new(&window, devices, cc.egui_ctx.clone()),
                 verification: Verification::default(),
                 overlays: OverlaySelection::default(),
                 precision: PrecisionState::default(),
@@ -314,7 +326,8 @@ impl App {
 
     /// Starts drawing a thumbnail when nothing more urgent needs the processor.
     fn request_thumbnail(&mut self) {
-        if self.state.session.scenes.is_loading() || self.state.screen.is_waiting() {
+        let screen = &self.state.screen;
+        if self.state.session.scenes.is_loading() || screen.is_waiting() || screen.needs_measuring() {
             return;
         }
         if let Some(next) = self.panels.browser.next_thumbnail() {
@@ -334,7 +347,7 @@ impl App {
         let Some(requested) = screen.requested() else { return };
         let rest_s = precision.rest_s(requested, *now_s);
         let is_known = precision.is_running() || precision.of(Some(requested)).is_some() || precision.has_failed(Some(requested));
-        let is_busy = is_held || session.playback.playing || screen.is_waiting() || verification.is_running();
+        let is_busy = is_held || session.playback.playing || screen.is_waiting() || screen.is_measuring() || verification.is_running();
         let is_used = requested.stack.0.iter().any(|enabled| enabled.effect.is_of_file());
         if !is_used || is_known || is_busy || !open.right || screen.drawn() != Some(requested) {
             return;
@@ -359,8 +372,12 @@ impl App {
         let trade = egui::Panel::bottom("trade").frame(theme::panel_frame()).resizable(true).default_size(304.0).min_size(190.0);
         let mut is_open = self.state.open.trade;
         trade.show_collapsible(ui, &mut is_open, |ui| self.panel_ui(ui, |panels| &mut panels.trade));
-        // The panel has a button that closes it, too.
+        // This panel and the next have a button that closes them, too.
         self.state.open.trade &= is_open;
+        let timing = egui::Panel::bottom("timing").frame(theme::panel_frame()).resizable(true).default_size(230.0).min_size(150.0);
+        let mut is_open = self.state.open.timing;
+        timing.show_collapsible(ui, &mut is_open, |ui| self.panel_ui(ui, |panels| &mut panels.timing));
+        self.state.open.timing &= is_open;
         let log = egui::Panel::bottom("log").frame(theme::panel_frame()).resizable(true).default_size(150.0).min_size(72.0);
         let mut is_open = self.state.open.log;
         log.show_collapsible(ui, &mut is_open, |ui| self.panel_ui(ui, |panels| &mut panels.log));
@@ -404,7 +421,7 @@ impl eframe::App for App {
         if self.state.screen.is_lost() {
             self.rescue(ctx);
         }
-        if let Some(error) = self.state.screen.gpu.take_error() {
+        if let Some(error) = self.state.screen.take_error() {
             self.state.log.add(Level::Error, format!("the graphics driver reports an error, which is a bug of rasterlab: {error}"));
         }
     }

@@ -15,7 +15,7 @@ use eframe::{
 };
 use egui_kittest::{Harness, Node, TestRenderer, kittest::Queryable as _};
 use rasterlab::{
-    app::{App, Options, wgpu_setup},
+    app::{App, Devices, Options, wgpu_setup},
     gpu::{Gpu, device::AdapterChoice},
     preset_file::Folders,
 };
@@ -58,18 +58,18 @@ impl TestRenderer for Window {
     }
 }
 
-/// The device that all windows of this program share, with the pipelines that were compiled for it: compiling them for each window
+/// The devices that all windows of this program share, with the pipelines that were compiled for it: compiling them for each window
 /// would take most of the time of its test.
-fn shared_device(adapter: &AdapterChoice) -> (RenderState, Arc<Gpu>) {
-    static SHARED: OnceLock<(RenderState, Arc<Gpu>)> = OnceLock::new();
-    let (first, gpu) = SHARED.get_or_init(|| {
+fn shared_devices(adapter: &AdapterChoice) -> (RenderState, Devices) {
+    static SHARED: OnceLock<(RenderState, Devices)> = OnceLock::new();
+    let (first, devices) = SHARED.get_or_init(|| {
         let window = device(adapter);
         let gpu = Gpu::adopt(&window.adapter, window.device.clone(), window.queue.clone());
-        (window, gpu)
+        (window, Devices::of(gpu))
     });
     // Textures belong to one window.
     let renderer = egui_wgpu::Renderer::new(&first.device, first.target_format, RendererOptions::PREDICTABLE);
-    (RenderState { renderer: Arc::new(RwLock::new(renderer)), ..first.clone() }, gpu.clone())
+    (RenderState { renderer: Arc::new(RwLock::new(renderer)), ..first.clone() }, devices.clone())
 }
 
 /// A device without a surface, opened with the program's settings.
@@ -134,6 +134,9 @@ impl Lab {
     }
 }
 
+/// Size of a window, points, unless a test asks for another.
+const SIZE: [f32; 2] = [1280.0, 800.0];
+
 /// A window of 1280 x 800 that shows the preset `open`, with its first picture drawn; presets lie in `presets_dir`. It keeps no settings.
 pub fn lab_in(open: &str, presets_dir: Option<&Path>) -> Option<Lab> {
     let mut lab = opened(Some(open), presets_dir)?;
@@ -143,19 +146,39 @@ pub fn lab_in(open: &str, presets_dir: Option<&Path>) -> Option<Lab> {
 
 /// A window of 1280 x 800 as it is created, before its first frame; without `open` as the program starts. It keeps no settings.
 pub fn opened(open: Option<&str>, presets_dir: Option<&Path>) -> Option<Lab> {
-    lab_with(open, presets_dir, None, [1280.0, 800.0])
+    lab_with(open, presets_dir, None, SIZE)
 }
 
 /// A window of `size` that keeps its settings and session in the folder `config`, before its first frame.
 pub fn lab_with(open: Option<&str>, presets_dir: Option<&Path>, config: Option<PathBuf>, size: [f32; 2]) -> Option<Lab> {
     crate::common::gpu()?; // Fails with one sentence when there is none.
     let adapter = std::env::var("RASTERLAB_ADAPTER").map_or(AdapterChoice::Any, AdapterChoice::Named);
-    let (window, gpu) = shared_device(&adapter);
+    let (window, devices) = shared_devices(&adapter);
+    Some(created(open, presets_dir, (config, size), adapter, (window, Some(devices))))
+}
+
+/// A window on devices for which nothing has been compiled yet, with its first picture drawn.
+pub fn lab_on_new_devices(open: &str) -> Option<Lab> {
+    crate::common::gpu()?;
+    let adapter = std::env::var("RASTERLAB_ADAPTER").map_or(AdapterChoice::Any, AdapterChoice::Named);
+    let window = device(&adapter);
+    let mut lab = created(Some(open), None, (None, SIZE), adapter, (window, None));
+    settle(&mut lab);
+    Some(lab)
+}
+
+fn created(
+    open: Option<&str>,
+    presets_dir: Option<&Path>,
+    (config, size): (Option<PathBuf>, [f32; 2]),
+    adapter: AdapterChoice,
+    (window, devices): (RenderState, Option<Devices>),
+) -> Lab {
     let options = Options {
         open: open.map(str::to_owned),
         opened: None,
         adapter,
-        gpu: Some(gpu),
+        devices,
         folders: Folders { presets: presets_dir.map(Path::to_owned), ..Folders::default() },
         opens_editor: false,
         config,
@@ -164,7 +187,7 @@ pub fn lab_with(open: Option<&str>, presets_dir: Option<&Path>, config: Option<P
         .with_size(size)
         .renderer(Window(window.clone()))
         .build_eframe(|cc| App::new(cc, options).unwrap_or_else(|error| panic!("{error:#}")));
-    Some(Lab { harness, window })
+    Lab { harness, window }
 }
 
 /// A window with the program's own presets.

@@ -14,6 +14,7 @@ pub mod randomize;
 pub mod settings;
 pub mod sweep;
 pub mod timeline;
+pub mod timing;
 pub mod topbar;
 pub mod trade;
 pub mod viewport;
@@ -21,7 +22,7 @@ pub mod viewport;
 use self::{
     cheat_sheet::CheatSheet, dialogs::Dialogs, extremes::Extremes, film::FilmPanel, inspector::Inspector, log::LogPanel,
     preset_browser::PresetBrowser, randomize::RandomizePanel, settings::SettingsWindow, sweep::SweepPanel, timeline::Timeline,
-    topbar::TopBar, trade::TradePanel, viewport::Viewport,
+    timing::TimingPanel, topbar::TopBar, trade::TradePanel, viewport::Viewport,
 };
 use crate::preset_file::Folders;
 
@@ -32,6 +33,7 @@ pub struct Panels {
     pub inspector: Inspector,
     pub timeline: Timeline,
     pub trade: TradePanel,
+    pub timing: TimingPanel,
     pub log: LogPanel,
     pub viewport: Viewport,
     pub dialogs: Dialogs,
@@ -52,6 +54,7 @@ impl Panels {
             inspector: Inspector,
             timeline: Timeline::default(),
             trade: TradePanel::default(),
+            timing: TimingPanel,
             log: LogPanel,
             viewport: Viewport::default(),
             dialogs: Dialogs::default(),

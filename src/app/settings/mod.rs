@@ -96,6 +96,7 @@ pub struct OpenPanels {
     pub right: bool,
     pub timeline: bool,
     pub trade: bool,
+    pub timing: bool,
     pub log: bool,
     pub cheat_sheet: bool,
     pub settings: bool,
@@ -103,7 +104,7 @@ pub struct OpenPanels {
 
 impl Default for OpenPanels {
     fn default() -> Self {
-        Self { left: true, right: true, timeline: true, trade: false, log: false, cheat_sheet: false, settings: false }
+        Self { left: true, right: true, timeline: true, trade: false, timing: false, log: false, cheat_sheet: false, settings: false }
     }
 }
 
