@@ -20,6 +20,7 @@ use std::{
 use eframe::{egui, wgpu};
 
 use super::{
+    ending::EndingThreads,
     inputs::Inputs,
     timings::{Sample, has_settled},
 };
@@ -34,9 +35,6 @@ const MAX_REDRAWS: u32 = 6;
 
 /// A frame that takes longer is given up. A CPU adapter compiles many kernels in it.
 const PATIENCE: Duration = Duration::from_secs(180);
-
-/// How long the window waits for the thread when it closes: a driver must not be unloaded under a thread that compiles.
-const LAST_PATIENCE: Duration = Duration::from_secs(20);
 
 /// What the thread has finished.
 pub struct Finished {
@@ -132,11 +130,13 @@ pub struct PictureThread {
     sender: mpsc::Sender<Finished>,
     finished: mpsc::Receiver<Finished>,
     handle: Option<JoinHandle<()>>,
+    ending: Arc<EndingThreads>,
 }
 
 impl PictureThread {
     /// Starts a thread that draws on `gpu` for a window on the device `window`, which may be the same.
-    pub fn start(gpu: Arc<Gpu>, window: Arc<Gpu>, ctx: egui::Context) -> Self {
+    /// When it is dropped, `ending` gets it.
+    pub fn start(gpu: Arc<Gpu>, window: Arc<Gpu>, ctx: egui::Context, ending: Arc<EndingThreads>) -> Self {
         let shared = Arc::new(Shared {
             orders: Mutex::default(),
             changed: Condvar::new(),
@@ -152,7 +152,7 @@ impl PictureThread {
         let worker =
             Worker { shared: shared.clone(), watch: watch.clone(), sender: sender.clone(), gpu, window, texture: None, renderer: None };
         let handle = std::thread::Builder::new().name("picture".into()).spawn(move || worker.run()).ok();
-        Self { shared, watch, sender, finished, handle }
+        Self { shared, watch, sender, finished, handle, ending }
     }
 
     /// Draws this picture instead of any that was asked for and is not begun.
@@ -216,11 +216,8 @@ impl Drop for PictureThread {
         self.watch.stop();
         self.shared.changed.notify_one();
         self.hold_compiling(false);
-        let begun = Instant::now();
         if let Some(handle) = self.handle.take() {
-            while !handle.is_finished() && begun.elapsed() < LAST_PATIENCE {
-                std::thread::sleep(Duration::from_millis(1));
-            }
+            self.ending.add(handle);
         }
     }
 }

@@ -9,6 +9,7 @@ pub use super::inputs::Inputs;
 use super::{
     blit::{Blit, Blitter},
     device::Devices,
+    ending::EndingThreads,
     picture_thread::{Drawn, Finished, Outcome, PictureThread},
     timings::{Sample, Subject, Timings},
 };
@@ -25,6 +26,7 @@ pub struct Screen {
     devices: Devices,
     ctx: egui::Context,
     thread: PictureThread,
+    ending: Arc<EndingThreads>,
     blitter: Blitter,
     picture: Option<Picture>,
     /// The inputs that were requested last, at full size.
@@ -55,12 +57,13 @@ struct Picture {
 
 impl Screen {
     pub fn new(window: &egui_wgpu::RenderState, devices: Devices, ctx: egui::Context) -> Self {
-        Self::with(devices, Blitter::new(window), ctx)
+        Self::with(devices, Blitter::new(window), ctx, Arc::default())
     }
 
-    fn with(devices: Devices, blitter: Blitter, ctx: egui::Context) -> Self {
+    fn with(devices: Devices, blitter: Blitter, ctx: egui::Context, ending: Arc<EndingThreads>) -> Self {
         Self {
-            thread: PictureThread::start(devices.picture.clone(), devices.window.clone(), ctx.clone()),
+            thread: PictureThread::start(devices.picture.clone(), devices.window.clone(), ctx.clone(), ending.clone()),
+            ending,
             gpu: devices.picture.clone(),
             devices,
             ctx,
@@ -83,7 +86,7 @@ impl Screen {
 
     /// A second screen on the same device, for another picture in the same window.
     pub fn sibling(&self) -> Self {
-        Self::with(self.devices.clone(), self.blitter.clone(), self.ctx.clone())
+        Self::with(self.devices.clone(), self.blitter.clone(), self.ctx.clone(), self.ending.clone())
     }
 
     /// Draws the next picture with the shaders as they are now, and again if the last one could not be drawn.

@@ -14,6 +14,7 @@ use crate::{
         text::short,
         theme,
         timings::{Cost, Occasion, Spread, Summary, Timings},
+        ui_frames::UiFrames,
     },
     measure::timing::percentile,
 };
@@ -146,6 +147,7 @@ fn table_ui(ui: &mut Ui, state: &State) {
             "From the frame of the window that takes an input to the one that shows its picture, for pictures that compiled nothing.";
         ui.label(RichText::new(text).size(12.0).color(theme::text())).on_hover_text(hint);
     }
+    window_ui(ui, &state.ui_frames);
     let Cost::Settled(summary) = timings.cost() else {
         ui.label(theme::weak("Passes are listed when the picture is at rest and its times have settled."));
         return;
@@ -166,6 +168,14 @@ fn table_ui(ui: &mut Ui, state: &State) {
             }
         });
     });
+}
+
+/// How long the window itself takes.
+fn window_ui(ui: &mut Ui, frames: &UiFrames) {
+    let (Some(Spread { median, .. }), Some((longest, count))) = (Spread::of(&frames.times_ms()), frames.longest()) else { return };
+    let text = format!("window: {} ms a frame, longest {} ms of {count}", short(median), short(longest));
+    let hint = "Time of the UI thread for the newest frames of the window, with painting; what you do is not seen meanwhile.";
+    ui.label(RichText::new(text).size(12.0).color(theme::text())).on_hover_text(hint);
 }
 
 fn rows(summary: &Summary) -> Vec<(String, Spread, Color32)> {
