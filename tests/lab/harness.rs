@@ -9,7 +9,7 @@ use std::{
 };
 
 use eframe::{
-    egui::{Key, Modifiers, Pos2, Rect, Role, TexturesDelta, mutex::RwLock},
+    egui::{Key, Modifiers, Pos2, Rect, Role, TexturesDelta, ThemePreference, mutex::RwLock},
     egui_wgpu::{self, RenderState, RendererOptions, ScreenDescriptor, WgpuConfiguration},
     wgpu,
 };
@@ -183,10 +183,13 @@ fn created(
         opens_editor: false,
         config,
     };
-    let harness = Harness::builder()
-        .with_size(size)
-        .renderer(Window(window.clone()))
-        .build_eframe(|cc| App::new(cc, options).unwrap_or_else(|error| panic!("{error:#}")));
+    let mut theme = ThemePreference::default();
+    let harness = Harness::builder().with_size(size).renderer(Window(window.clone())).build_eframe(|cc| {
+        let app = App::new(cc, options).unwrap_or_else(|error| panic!("{error:#}"));
+        theme = cc.egui_ctx.options(|options| options.theme_preference);
+        app
+    });
+    harness.ctx.set_theme(theme); // The harness has put its own in place of the window's.
     Lab { harness, window }
 }
 
@@ -302,9 +305,17 @@ pub fn error_lines(lab: &Lab) -> Vec<String> {
     lab.state().log_text().lines().filter(|line| line.starts_with("error")).map(str::to_owned).collect()
 }
 
+/// Steps until no toast lies over the picture.
+pub fn wait_for_toasts(lab: &mut Lab) {
+    while lab.state().shows_toasts() {
+        lab.step();
+    }
+}
+
 /// The middle of the picture, clear of everything that lies over its borders.
 pub fn middle(lab: &mut Lab) -> image::RgbaImage {
     lab.remove_cursor();
+    wait_for_toasts(lab);
     lab.run_steps(2);
     let whole = picture(lab);
     image::imageops::crop_imm(&whole, 0, 48, whole.width(), whole.height() - 208).to_image()

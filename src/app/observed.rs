@@ -1,4 +1,4 @@
-//! Probe: what tests read of the window, and how they hold it.
+//! What tests read of the window, and how they hold it.
 
 use std::sync::Arc;
 
@@ -119,5 +119,10 @@ impl App {
     /// Number of points of the newest measurement of the panel Trade.
     pub fn trade_points(&self) -> usize {
         self.panels.trade.points()
+    }
+
+    /// True while a toast lies over the picture.
+    pub fn shows_toasts(&self) -> bool {
+        self.state.log.next_toast_ends_in_s(self.state.now_s).is_some()
     }
 }
