@@ -96,6 +96,7 @@ fn the_timing_panel_lists_passes_rest_and_latency() {
     let view = lab.get_by_label("Picture").rect();
     drag(&mut lab, view.center(), view.center() + vec2(60.0, 20.0));
     assert!(!texts(&lab, "input to picture: ").is_empty());
+    assert!(!texts(&lab, " ms a frame, longest ").is_empty(), "the panel does not tell how long the window takes");
     click(&mut lab, Role::Button, "Close timing");
     assert!(texts(&lab, "Times of ").is_empty());
 }
