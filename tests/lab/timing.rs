@@ -99,4 +99,8 @@ fn the_timing_panel_lists_passes_rest_and_latency() {
     assert!(!texts(&lab, " ms a frame, longest ").is_empty(), "the panel does not tell how long the window takes");
     click(&mut lab, Role::Button, "Close timing");
     assert!(texts(&lab, "Times of ").is_empty());
+    press(&mut lab, Modifiers::NONE, Key::G);
+    assert!(!texts(&lab, "Times of ").is_empty());
+    press(&mut lab, Modifiers::NONE, Key::Escape);
+    assert!(texts(&lab, "Times of ").is_empty(), "Escape closes the panel");
 }
