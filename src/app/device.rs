@@ -1,4 +1,4 @@
-//! The device of the window: how it is opened, and how it presents.
+//! The devices of the window: how they are opened, and how the window presents.
 
 use std::sync::Arc;
 
@@ -55,14 +55,33 @@ fn select(adapters: &[wgpu::Adapter], surface: Option<&wgpu::Surface<'_>>, choic
     device::choose(choice, &names).map(|index| suitable[index].clone()).map_err(|error| error.to_string())
 }
 
-/// The window's device, for the kernels; `gpu` if it is known from another window on the same device.
+/// The window's devices, for the kernels; `devices` if they are known from another window on the same device.
 ///
 /// # Errors
 /// If the window has no wgpu device.
-pub fn adopt(cc: &eframe::CreationContext<'_>, gpu: Option<Arc<Gpu>>) -> anyhow::Result<(egui_wgpu::RenderState, Arc<Gpu>)> {
+pub fn adopt(cc: &eframe::CreationContext<'_>, devices: Option<Devices>) -> anyhow::Result<(egui_wgpu::RenderState, Devices)> {
     let window = cc.wgpu_render_state.clone().context("the window has no wgpu device")?;
-    let gpu = gpu.unwrap_or_else(|| Gpu::adopt(&window.adapter, window.device.clone(), window.queue.clone()));
-    Ok((window, gpu))
+    let devices = devices.unwrap_or_else(|| Devices::of(Gpu::adopt(&window.adapter, window.device.clone(), window.queue.clone())));
+    Ok((window, devices))
+}
+
+/// The device that shows pictures, and the one that draws them.
+#[derive(Clone)]
+pub struct Devices {
+    /// egui's, too.
+    pub window: Arc<Gpu>,
+    /// The same on a graphics card. On a CPU adapter it is a second one, because compiling and drawing keep everything waiting that is
+    /// submitted to the same device, the window's own frames included.
+    pub picture: Arc<Gpu>,
+}
+
+impl Devices {
+    /// The devices for a window on `window`. Without a second device the first draws, too.
+    pub fn of(window: Arc<Gpu>) -> Self {
+        let choice = AdapterChoice::Named(window.summary.name.clone());
+        let second = if window.summary.software { Gpu::open(&choice).ok() } else { None };
+        Self { picture: second.unwrap_or_else(|| window.clone()), window }
+    }
 }
 
 /// Presents without waiting for the display on a software adapter, which is slower than any display. Waiting would also

@@ -18,6 +18,7 @@ enum Closing {
     CheatSheet,
     Compare,
     Trade,
+    Timing,
     Log,
 }
 
@@ -43,6 +44,7 @@ pub fn escape(ctx: &egui::Context, state: &State, panels: &mut Panels, was_typin
         Closing::CheatSheet => commands.send(Command::Toggle(Toggle::CheatSheet)),
         Closing::Compare => panels.viewport.compare.close(),
         Closing::Trade => commands.send(Command::Toggle(Toggle::Trade)),
+        Closing::Timing => commands.send(Command::Toggle(Toggle::Timing)),
         Closing::Log => commands.send(Command::Toggle(Toggle::Log)),
     }
 }
@@ -56,6 +58,7 @@ fn innermost(state: &State, panels: &Panels) -> Option<Closing> {
         (state.marker.is_some(), Closing::Marker),
         (panels.viewport.compare.is_open(), Closing::Compare),
         (state.open.trade, Closing::Trade),
+        (state.open.timing, Closing::Timing),
         (state.open.log, Closing::Log),
     ]
     .into_iter()

@@ -43,8 +43,9 @@ pub fn finish(ctx: &egui::Context, state: &mut State, panels: &mut Panels, comma
         }
         Done::SceneBox(source, bounds) => open::bounds_arrived(state, panels, source, bounds),
         Done::Verdict(inputs, work, findings) => {
-            state.verification.ended(&work);
-            verdict(state, panels, *inputs, findings);
+            if state.verification.ended(&work) {
+                verdict(state, panels, *inputs, findings);
+            }
         }
         Done::Trade(points) => {
             if let Some(error) = panels.trade.arrived(points) {
@@ -99,7 +100,7 @@ fn verdict(state: &mut State, panels: &mut Panels, of: Inputs, findings: Result<
         // Overlays do not begin it again.
         Ok(None) => state.verification.fail(of),
         Ok(Some(findings)) => {
-            state.log.add(Level::Info, format!("verified {}: {}", state.session.title(), error_text(&findings.accuracy)));
+            state.log.add(Level::Info, format!("verified {}: {}", state.session.title(), error_text(&findings)));
             let verdict = Verdict { of, findings: findings.into() };
             if !panels.viewport.compare.take_verdict(&verdict) || state.screen.requested() == Some(&verdict.of) {
                 state.verification.set(verdict);

@@ -17,6 +17,7 @@ use super::{
     cells::{self, CellOf, CellResult, Cells},
     command::{Origin, Purpose},
     completion::Listing,
+    computing::{Computing, Count},
     effect_picture::EffectPicture,
     favorites, film,
     findings::Findings,
@@ -85,12 +86,13 @@ pub struct Jobs {
     ctx: egui::Context,
     sender: mpsc::Sender<Done>,
     receiver: mpsc::Receiver<Done>,
+    computing: Count,
 }
 
 impl Jobs {
     pub fn new(ctx: egui::Context) -> Self {
         let (sender, receiver) = mpsc::channel();
-        Self { ctx, sender, receiver }
+        Self { ctx, sender, receiver, computing: Count::default() }
     }
 
     /// The next finished piece of work, if any.
@@ -98,7 +100,22 @@ impl Jobs {
         self.receiver.try_recv().ok()
     }
 
+    /// True while a job keeps the processor busy: times that are measured meanwhile are not those of a picture at rest.
+    pub fn is_computing(&self) -> bool {
+        self.computing.is_any()
+    }
+
+    /// Starts work that keeps the processor busy.
     fn spawn(&self, name: &str, work: impl FnOnce() -> Done + Send + 'static) {
+        let computing = self.busy();
+        self.spawn_idle(name, move || {
+            let _computing = computing;
+            work()
+        });
+    }
+
+    /// Starts work that mostly waits.
+    fn spawn_idle(&self, name: &str, work: impl FnOnce() -> Done + Send + 'static) {
         let (sender, ctx) = (self.sender.clone(), self.ctx.clone());
         let started = std::thread::Builder::new().name(name.into()).spawn(move || {
             // The window may be closed by now; then the result is dropped.
@@ -219,10 +236,11 @@ impl Jobs {
         });
     }
 
-    /// Draws small pictures on the window's device and hands over one after another.
+    /// Draws small pictures on the device of the picture and hands over one after another.
     pub fn draw_cells(&self, gpu: Arc<Gpu>, cells: Cells) {
-        let (sender, ctx) = (self.sender.clone(), self.ctx.clone());
+        let (sender, ctx, computing) = (self.sender.clone(), self.ctx.clone(), self.busy());
         let work = move || {
+            let _computing = computing;
             let take = |of, picture| {
                 // The window may be closed by now; then the picture is dropped.
                 if sender.send(Done::Cell(of, picture)).is_ok() {
@@ -286,20 +304,25 @@ impl Jobs {
         });
     }
 
+    /// Counts work on another thread, which keeps the processor busy, for as long as what is returned exists.
+    pub fn busy(&self) -> Computing {
+        self.computing.add()
+    }
+
     /// Shows the system's file dialog.
     pub fn ask_path(&self, purpose: Purpose, start: &Path) {
         let show = system_dialog::prepare(purpose, start);
-        self.spawn("file dialog", move || Done::Path(purpose, show()));
+        self.spawn_idle("file dialog", move || Done::Path(purpose, show()));
     }
 
     /// Reads what is in a folder.
     pub fn list_folder(&self, folder: PathBuf) {
-        self.spawn("folder", move || Done::Folder(Listing::read(&folder)));
+        self.spawn_idle("folder", move || Done::Folder(Listing::read(&folder)));
     }
 
     /// Looks which of these files are not there.
     pub fn find_missing(&self, files: Vec<PathBuf>) {
-        self.spawn("recent files", move || Done::Missing(files.into_iter().filter(|file| !file.exists()).collect()));
+        self.spawn_idle("recent files", move || Done::Missing(files.into_iter().filter(|file| !file.exists()).collect()));
     }
 }
 

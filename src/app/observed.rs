@@ -1,4 +1,4 @@
-//! What tests read of the window.
+//! What tests read of the window, and how they hold it.
 
 use std::sync::Arc;
 
@@ -38,8 +38,10 @@ impl App {
         let is_shown =
             !self.state.opening.is_waiting() && !session.scenes.is_loading() && session.scene().is_some() && !screen.is_waiting();
         let is_judged = !verification.is_running() && self.state.overlays_are_ready();
+        let is_measured = session.playback.playing || !(screen.needs_measuring() || viewport.compare.needs_measuring());
         is_shown
             && is_judged
+            && is_measured
             && !self.state.precision.is_running()
             && !self.state.live.is_busy()
             && !viewport.compare.is_waiting()
@@ -49,6 +51,26 @@ impl App {
             && !self.state.favorites.is_busy()
             && !self.panels.randomize.is_drawing()
             && !self.panels.sweep.is_drawing()
+    }
+
+    /// What is compiled for the picture, as the window shows it; none while nothing is.
+    pub fn compiling(&self) -> Option<String> {
+        self.state.screen.compiling()
+    }
+
+    /// Holds the thread of the picture when it is next about to compile, or lets it go on.
+    pub fn hold_compiling(&mut self, is_held: bool) {
+        self.state.screen.hold_compiling(is_held);
+    }
+
+    /// The longest of the newest frames of the window, milliseconds; none before the second frame.
+    pub fn longest_ui_frame_ms(&self) -> Option<f64> {
+        self.state.ui_frames.longest().map(|(longest_ms, _)| longest_ms)
+    }
+
+    /// Forgets how long the frames of the window took.
+    pub fn clear_ui_frames(&mut self) {
+        self.state.ui_frames.clear();
     }
 
     /// True if there is a picture, even one of an earlier preset.

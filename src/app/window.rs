@@ -1,13 +1,17 @@
 //! The window: its state and its panels, and what happens in a frame.
 
-use std::{collections::HashSet, path::PathBuf, sync::Arc};
+use std::{
+    collections::HashSet,
+    path::PathBuf,
+    time::{Duration, Instant},
+};
 
 use eframe::egui::{self, Ui, ViewportCommand};
 
 use super::{
     apply,
     command::{CodeUse, Commands, Manner},
-    device,
+    device::{self, Devices},
     escape::escape,
     favorites::Favorites,
     finished::finish,
@@ -32,11 +36,12 @@ use super::{
     theme,
     trust::Trust,
     typing::HeldTyping,
+    ui_frames::UiFrames,
     verification::Verification,
     watch::Watcher,
 };
 use crate::{
-    gpu::{Gpu, device::AdapterChoice},
+    gpu::device::AdapterChoice,
     preset_file::{self, Folders, PresetFile},
 };
 
@@ -48,8 +53,8 @@ pub struct Options {
     /// What `open` names, where it has been read, perhaps with changes.
     pub opened: Option<PresetFile>,
     pub adapter: AdapterChoice,
-    /// The window's device with the pipelines that were compiled for it before; none before the first window.
-    pub gpu: Option<Arc<Gpu>>,
+    /// The window's devices with the pipelines that were compiled for them before; none before the first window.
+    pub devices: Option<Devices>,
     /// Where presets and effects are, beside the user's own presets.
     pub folders: Folders,
     /// A new effect is opened in the user's editor.
@@ -94,13 +99,13 @@ impl App {
         theme::apply(ctx);
         ctx.add_plugin(PointerFrames::default());
         ctx.options_mut(|options| options.zoom_with_keyboard = false); // The table of actions has these keys.
-        let (window, gpu) = device::adopt(cc, options.gpu)?;
+        let (window, devices) = device::adopt(cc, options.devices)?;
         let mut log = Log::kept_in(options.log);
         let (keeper, settings, remarks) = Keeper::new(options.config);
         remarks.into_iter().for_each(|remark| log.add(Level::Warning, remark));
         settings.theme.choose(ctx);
         ctx.set_zoom_factor(settings.scale);
-        let summary = &gpu.summary;
+        let summary = &devices.picture.summary;
         log.add(Level::Info, format!("adapter: {}, {}, {}", summary.name, summary.backend, summary.driver));
         let mut panels = Panels::new(&options.folders);
         panels.browser.show(settings.browsing);
@@ -132,7 +137,8 @@ impl App {
                 deleted: Vec::new(),
                 values,
                 jobs: Jobs::new(cc.egui_ctx.clone()),
-                screen: Screen::new(&window, gpu),
+                screen: Screen::new(&window, devices, cc.egui_ctx.clone()),
+                ui_frames: UiFrames::default(),
                 verification: Verification::default(),
                 overlays: OverlaySelection::default(),
                 precision: PrecisionState::default(),
@@ -223,7 +229,8 @@ impl App {
 
     /// Starts drawing a thumbnail when nothing more urgent needs the processor.
     fn request_thumbnail(&mut self, ctx: &egui::Context) {
-        if self.state.session.scenes.is_loading() || self.state.screen.is_waiting() {
+        let screen = &self.state.screen;
+        if self.state.session.scenes.is_loading() || screen.is_waiting() || screen.needs_measuring() {
             return;
         }
         let browser = &mut self.panels.browser;
@@ -246,7 +253,7 @@ impl App {
         let Some(requested) = screen.requested() else { return };
         let rest_s = precision.rest_s(requested, *now_s);
         let is_known = precision.is_running() || precision.of(Some(requested)).is_some() || precision.has_failed(Some(requested));
-        let is_busy = is_held || session.playback.playing || screen.is_waiting() || verification.is_running();
+        let is_busy = is_held || session.playback.playing || screen.is_waiting() || screen.is_measuring() || verification.is_running();
         let is_used = requested.stack.0.iter().any(|enabled| enabled.effect.is_of_file());
         if !is_used || is_known || is_busy || !open.right || screen.drawn() != Some(requested) {
             return;
@@ -271,8 +278,12 @@ impl App {
         let trade = egui::Panel::bottom("trade").frame(theme::panel_frame()).resizable(true).default_size(304.0).min_size(190.0);
         let mut is_open = self.state.open.trade;
         trade.show_collapsible(ui, &mut is_open, |ui| self.panel_ui(ui, |panels| &mut panels.trade));
-        // The panel has a button that closes it, too.
+        // This panel and the next have a button that closes them, too.
         self.state.open.trade &= is_open;
+        let timing = egui::Panel::bottom("timing").frame(theme::panel_frame()).resizable(true).default_size(230.0).min_size(150.0);
+        let mut is_open = self.state.open.timing;
+        timing.show_collapsible(ui, &mut is_open, |ui| self.panel_ui(ui, |panels| &mut panels.timing));
+        self.state.open.timing &= is_open;
         let log = egui::Panel::bottom("log").frame(theme::panel_frame()).resizable(true).default_size(150.0).min_size(72.0);
         let mut is_open = self.state.open.log;
         log.show_collapsible(ui, &mut is_open, |ui| self.panel_ui(ui, |panels| &mut panels.log));
@@ -310,7 +321,8 @@ impl App {
 }
 
 impl eframe::App for App {
-    fn logic(&mut self, ctx: &egui::Context, _: &mut eframe::Frame) {
+    fn logic(&mut self, ctx: &egui::Context, frame: &mut eframe::Frame) {
+        self.state.ui_frames.begin(Instant::now(), frame.info().cpu_usage.map(Duration::from_secs_f32));
         while let Some(done) = self.state.jobs.next() {
             finish(ctx, &mut self.state, &mut self.panels, &self.commands, done);
             self.apply(ctx);
@@ -319,7 +331,7 @@ impl eframe::App for App {
         if self.state.screen.is_lost() {
             self.rescue(ctx);
         }
-        if let Some(error) = self.state.screen.gpu.take_error() {
+        if let Some(error) = self.state.screen.take_error() {
             self.state.log.add(Level::Error, format!("the graphics driver reports an error, which is a bug of rasterlab: {error}"));
         }
     }
@@ -374,6 +386,7 @@ impl eframe::App for App {
         self.update_title(&ctx);
         self.keep(&ctx);
         self.was_typing = ctx.text_edit_focused();
+        self.state.ui_frames.end(Instant::now(), ctx.has_requested_repaint());
     }
 
     fn clear_color(&self, visuals: &egui::Visuals) -> [f32; 4] {

@@ -141,7 +141,7 @@ fn window(cli: &Cli) -> Result<Exit, CliError> {
         open: cli.open.clone(),
         opened,
         adapter,
-        gpu: None,
+        devices: None,
         folders: cli.common.folders(),
         opens_editor: true,
         config: crate::app::config_folder(),

@@ -15,7 +15,7 @@ use eframe::{
 };
 use egui_kittest::{Harness, Node, TestRenderer, kittest::Queryable as _};
 use rasterlab::{
-    app::{App, Options, wgpu_setup},
+    app::{App, Devices, Options, wgpu_setup},
     gpu::{Gpu, device::AdapterChoice},
     preset_file::Folders,
 };
@@ -58,18 +58,18 @@ impl TestRenderer for Window {
     }
 }
 
-/// The device that all windows of this program share, with the pipelines that were compiled for it: compiling them for each window
+/// The devices that all windows of this program share, with the pipelines that were compiled for it: compiling them for each window
 /// would take most of the time of its test.
-fn shared_device(adapter: &AdapterChoice) -> (RenderState, Arc<Gpu>) {
-    static SHARED: OnceLock<(RenderState, Arc<Gpu>)> = OnceLock::new();
-    let (first, gpu) = SHARED.get_or_init(|| {
+fn shared_devices(adapter: &AdapterChoice) -> (RenderState, Devices) {
+    static SHARED: OnceLock<(RenderState, Devices)> = OnceLock::new();
+    let (first, devices) = SHARED.get_or_init(|| {
         let window = device(adapter);
         let gpu = Gpu::adopt(&window.adapter, window.device.clone(), window.queue.clone());
-        (window, gpu)
+        (window, Devices::of(gpu))
     });
     // Textures belong to one window.
     let renderer = egui_wgpu::Renderer::new(&first.device, first.target_format, RendererOptions::PREDICTABLE);
-    (RenderState { renderer: Arc::new(RwLock::new(renderer)), ..first.clone() }, gpu.clone())
+    (RenderState { renderer: Arc::new(RwLock::new(renderer)), ..first.clone() }, devices.clone())
 }
 
 /// A device without a surface, opened with the program's settings.
@@ -158,9 +158,29 @@ pub const SIZE: [f32; 2] = [1280.0, 800.0];
 pub fn created(open: Option<&str>, folders: Folders, config: Option<PathBuf>, size: [f32; 2]) -> Option<Lab> {
     crate::common::gpu()?; // Fails with one sentence when there is none.
     let adapter = std::env::var("RASTERLAB_ADAPTER").map_or(AdapterChoice::Any, AdapterChoice::Named);
-    let (window, gpu) = shared_device(&adapter);
+    let (window, devices) = shared_devices(&adapter);
+    Some(built(open, folders, (config, size), adapter, (window, Some(devices))))
+}
+
+/// A window on devices for which nothing has been compiled yet, with its first picture drawn.
+pub fn lab_on_new_devices(open: &str) -> Option<Lab> {
+    crate::common::gpu()?;
+    let adapter = std::env::var("RASTERLAB_ADAPTER").map_or(AdapterChoice::Any, AdapterChoice::Named);
+    let window = device(&adapter);
+    let mut lab = built(Some(open), Folders::default(), (None, SIZE), adapter, (window, None));
+    settle(&mut lab);
+    Some(lab)
+}
+
+fn built(
+    open: Option<&str>,
+    folders: Folders,
+    (config, size): (Option<PathBuf>, [f32; 2]),
+    adapter: AdapterChoice,
+    (window, devices): (RenderState, Option<Devices>),
+) -> Lab {
     let options =
-        Options { open: open.map(str::to_owned), opened: None, adapter, gpu: Some(gpu), folders, opens_editor: false, config, log: None };
+        Options { open: open.map(str::to_owned), opened: None, adapter, devices, folders, opens_editor: false, config, log: None };
     let mut theme = ThemePreference::default();
     let harness = Harness::builder().with_size(size).renderer(Window(window.clone())).build_eframe(|cc| {
         let app = App::new(cc, options).unwrap_or_else(|error| panic!("{error:#}"));
@@ -168,7 +188,7 @@ pub fn created(open: Option<&str>, folders: Folders, config: Option<PathBuf>, si
         app
     });
     harness.ctx.set_theme(theme); // The harness has put its own in place of the window's.
-    Some(Lab { harness, window })
+    Lab { harness, window }
 }
 
 /// A window with the program's own presets.

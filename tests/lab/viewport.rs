@@ -114,6 +114,8 @@ fn a_picture_that_cannot_be_drawn_keeps_the_last_one_and_is_reported_once() {
     let Some(mut lab) = lab("lambert") else { return };
     let before = picture(&mut lab);
     lab.state_mut().preset_mut().camera = Some(rasterlab::scene::camera::Camera { eye: glam::DVec3::splat(1e13), ..Default::default() });
+    lab.run_steps(2);
+    settle(&mut lab);
     lab.run_steps(10);
     let log = lab.state().log_text();
     assert_eq!(log.lines().filter(|line| line.starts_with("error")).count(), 1, "{log}");

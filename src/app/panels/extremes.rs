@@ -11,6 +11,7 @@ use eframe::egui::{self, Color32, RichText, Ui};
 use crate::{
     app::{
         command::{Command, Commands},
+        computing::Computing,
         log::Level,
         panel::Panel,
         state::State,
@@ -100,11 +101,12 @@ impl Extremes {
         self.run.as_ref().is_some_and(|run| !run.progress().is_over)
     }
 
-    fn start(&mut self, adapter: String, ctx: &egui::Context) {
+    fn start(&mut self, adapter: String, computing: Computing, ctx: &egui::Context) {
         let cases = stress::chosen(Some(&self.filter));
         let run = Arc::new(Run { planned: cases.len(), work: Arc::default(), began: Instant::now(), progress: Mutex::default() });
         let (seed, ctx, shared) = (self.seed, ctx.clone(), run.clone());
         let work = move || {
+            let _computing = computing;
             let result = catch_unwind(AssertUnwindSafe(|| shared.draw(&cases, adapter, seed, &ctx)))
                 .unwrap_or_else(|_| Err("the run failed because of a bug; see the terminal for details".into()));
             let mut progress = shared.progress();
@@ -175,7 +177,7 @@ impl Extremes {
         });
     }
 
-    fn start_ui(&mut self, ui: &mut Ui, adapter: &str) {
+    fn start_ui(&mut self, ui: &mut Ui, state: &State) {
         let about = "Slivers, ties, NaN, full queues, huge numbers: each case is compared with the oracle, on a second device.";
         ui.label(theme::weak(about));
         ui.add_space(theme::HALF);
@@ -190,7 +192,7 @@ impl Extremes {
                 let text = if found == 1 { "Run 1 case".to_owned() } else { format!("Run {found} cases") };
                 let button = egui::Button::new(text).fill(theme::accent_ground());
                 if ui.add_enabled(found > 0, button).clicked() {
-                    self.start(adapter.to_owned(), ui.ctx());
+                    self.start(state.screen.gpu.summary.name.clone(), state.jobs.busy(), ui.ctx());
                 }
             }
             let filter = egui::TextEdit::singleline(&mut self.filter).hint_text("All; a number or part of a name");
@@ -215,7 +217,7 @@ impl Panel for Extremes {
             .default_pos(area.center())
             .show(ui.ctx(), |ui| {
                 ui.set_width(560.0);
-                self.start_ui(ui, &state.screen.gpu.summary.name);
+                self.start_ui(ui, state);
                 if let Some(run) = &self.run {
                     let height = (area.height() - 260.0).max(120.0);
                     run_ui(ui, run, height);

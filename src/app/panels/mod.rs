@@ -17,6 +17,7 @@ pub mod randomize;
 pub mod settings;
 pub mod sweep;
 pub mod timeline;
+pub mod timing;
 pub mod topbar;
 pub mod trade;
 pub mod viewport;
@@ -24,7 +25,7 @@ pub mod viewport;
 use self::{
     cheat_sheet::CheatSheet, dialogs::Dialogs, extremes::Extremes, film::FilmPanel, inspector::Inspector, log::LogPanel,
     naming::NameDialog, palette::Palette, preset_browser::PresetBrowser, randomize::RandomizePanel, settings::SettingsWindow,
-    sweep::SweepPanel, timeline::Timeline, topbar::TopBar, trade::TradePanel, viewport::Viewport,
+    sweep::SweepPanel, timeline::Timeline, timing::TimingPanel, topbar::TopBar, trade::TradePanel, viewport::Viewport,
 };
 use crate::preset_file::Folders;
 
@@ -35,6 +36,7 @@ pub struct Panels {
     pub inspector: Inspector,
     pub timeline: Timeline,
     pub trade: TradePanel,
+    pub timing: TimingPanel,
     pub log: LogPanel,
     pub viewport: Viewport,
     pub dialogs: Dialogs,
@@ -67,6 +69,7 @@ impl Panels {
             inspector: Inspector,
             timeline: Timeline::default(),
             trade: TradePanel::default(),
+            timing: TimingPanel,
             log: LogPanel,
             viewport: Viewport::default(),
             dialogs: Dialogs::default(),

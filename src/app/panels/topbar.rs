@@ -10,7 +10,7 @@ use crate::app::{
     command::{Command, Commands, FileCommand, SettingsCommand},
     fields::dot,
     icons::{Icon, icon_button},
-    measured::{error_line, time_text},
+    measured::{error_line, time_line},
     panel::Panel,
     state::State,
     theme::{self, ThemeChoice},
@@ -62,6 +62,7 @@ const MENUS: [(&str, &[Option<Action>]); 4] = [
             Some(Action::Panels),
             Some(Action::Timeline),
             Some(Action::Trade),
+            Some(Action::Timing),
             Some(Action::Log),
             None,
             Some(Action::Extremes),
@@ -256,8 +257,8 @@ fn cost_ui(ui: &mut Ui, state: &State, commands: &Commands) {
     }
     ui.label(RichText::new(error).color(color)).on_hover_text(hint);
     ui.label(theme::weak("·"));
-    ui.label(RichText::new(time_text(state.screen.report())).color(theme::text_strong()))
-        .on_hover_text("Time of the newest frame on the device. Timing lists its passes.");
+    let (time, hint) = time_line(Some(&state.screen));
+    ui.label(RichText::new(time).color(theme::text_strong())).on_hover_text(hint);
     pins_ui(ui, &state.session.preset().accuracy.pins.words());
 }
 

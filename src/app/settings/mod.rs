@@ -2,6 +2,7 @@
 //! user's configuration.
 
 pub mod browsing;
+mod change;
 pub mod keeper;
 pub mod keymap;
 pub mod last_session;
@@ -97,6 +98,7 @@ pub struct OpenPanels {
     pub right: bool,
     pub timeline: bool,
     pub trade: bool,
+    pub timing: bool,
     pub log: bool,
     pub cheat_sheet: bool,
     pub settings: bool,
@@ -104,7 +106,7 @@ pub struct OpenPanels {
 
 impl Default for OpenPanels {
     fn default() -> Self {
-        Self { left: true, right: true, timeline: true, trade: false, log: false, cheat_sheet: false, settings: false }
+        Self { left: true, right: true, timeline: true, trade: false, timing: false, log: false, cheat_sheet: false, settings: false }
     }
 }
 

@@ -43,9 +43,14 @@ pub fn write(settings: &Settings, document: &mut DocumentMut) {
     set(table, "maximized", value(window.is_maximized));
 
     let table = table_of(document, "panels");
-    for (key, is_open) in
-        [("left", open.left), ("right", open.right), ("timeline", open.timeline), ("trade", open.trade), ("log", open.log)]
-    {
+    for (key, is_open) in [
+        ("left", open.left),
+        ("right", open.right),
+        ("timeline", open.timeline),
+        ("trade", open.trade),
+        ("timing", open.timing),
+        ("log", open.log),
+    ] {
         set(table, key, value(is_open));
     }
     for (key, width) in ["left_width", "right_width"].iter().zip(widths) {
@@ -138,6 +143,7 @@ impl Reader<'_> {
                 ("right", &mut open.right),
                 ("timeline", &mut open.timeline),
                 ("trade", &mut open.trade),
+                ("timing", &mut open.timing),
                 ("log", &mut open.log),
             ] {
                 self.flag(table, "panels", key, is_open);

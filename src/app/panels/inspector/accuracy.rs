@@ -10,6 +10,8 @@ use crate::{
         anti_aliasing,
         command::{Commands, Edit},
         expectation::{Expectation, expectation},
+        findings::Findings,
+        measured::time_line,
         state::State,
         text::short,
         theme,
@@ -103,6 +105,14 @@ fn expected_text(expected: &Expectation) -> String {
     format!("{ms}{wrong} wrong ppm, color Δ {channel}")
 }
 
+/// `12.34 ms GPU, color Δ 0` and `wrong ppm: 0 snapped, 17 true`.
+fn measured_texts(time: &str, findings: &Findings) -> (String, String) {
+    let report = &findings.accuracy;
+    let ppm = |count: u64| short(count as f64 * 1e6 / (report.pixels as f64).max(1.0));
+    let against_true = findings.wrong_against_true().map_or_else(String::new, |count| format!(", {} true", ppm(count)));
+    (format!("{time}, color Δ {}", report.max_color_delta), format!("wrong ppm: {} snapped{against_true}", ppm(report.wrong_triangles)))
+}
+
 /// Milliseconds and error: expected and measured.
 fn numbers_ui(ui: &mut Ui, state: &State, accuracy: &AccuracyRequest) {
     let expected = expectation(state, accuracy.tier);
@@ -114,15 +124,13 @@ fn numbers_ui(ui: &mut Ui, state: &State, accuracy: &AccuracyRequest) {
         });
     };
     line(ui, "expected", expected.as_ref().map_or_else(|| "after the first picture".into(), expected_text));
-    let ms = state.screen.report().and_then(|report| report.gpu_ms).map_or_else(|| "no time".into(), |ms| format!("{} ms", short(ms)));
-    let error = state.accuracy().map_or_else(
-        || "error not measured (V)".to_owned(),
-        |report| {
-            let ppm = report.wrong_triangles as f64 * 1e6 / (report.pixels as f64).max(1.0);
-            format!("{} wrong ppm, color Δ {}", short(ppm), report.max_color_delta)
-        },
-    );
-    line(ui, "measured", format!("{ms}, {error}"));
+    let time = time_line(Some(&state.screen)).0;
+    let (measured, wrong) = match state.verification.verdict_on(state.screen.drawn()) {
+        Some(verdict) => measured_texts(&time, &verdict.findings),
+        None => (time, "error not measured (V)".to_owned()),
+    };
+    line(ui, "measured", measured);
+    line(ui, "", wrong);
 }
 
 /// The axes that decide about something in the picture, and those that the preset pins.

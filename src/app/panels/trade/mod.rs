@@ -229,7 +229,7 @@ impl TradePanel {
             title: state.session.title().to_owned(),
         };
         // Without a timer, a frame of a software adapter.
-        let frame_ms = state.screen.report().and_then(|report| report.gpu_ms).unwrap_or(30.0);
+        let frame_ms = state.screen.timings().cost_ms().or(state.screen.timings().newest_ms()).unwrap_or(30.0);
         let workload = Workload::of(&request, frame_ms);
         (request, workload)
     }

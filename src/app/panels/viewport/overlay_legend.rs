@@ -164,7 +164,7 @@ mod tests {
             lines(overlays, found, &Stack::default()).into_iter().map(|line| line.text).collect::<Vec<_>>()
         };
         assert_eq!(text(&overlays, &found(&[])), ["no errors: 0 of 6 pixels"]);
-        assert_eq!(text(&overlays, &found(&[1, 4])), ["wrong triangle: 2 px", "holes: 2 px"]);
+        assert_eq!(text(&overlays, &found(&[1, 4])), ["wrong (snapped): 2 px", "holes: 2 px"]);
         assert_eq!(text(&only(Overlay::WrongDepth), &found(&[1])), ["no wrong depth winner: 0 of 6 pixels"]);
         assert_eq!(text(&only(Overlay::Edges), &found(&[1])), ["nothing to show in 6 pixels"]);
         assert_eq!(text(&only(Overlay::TriangleIds), &found(&[1])), ["triangle ids: 6 px are covered"]);
