@@ -66,6 +66,9 @@ pub struct Options {
     pub log: Option<Arc<std::fs::File>>,
 }
 
+/// Most seconds between two frames of the window while a preset plays.
+const PLAY_STEP_S: f32 = 1.0 / 30.0;
+
 /// The whole window.
 pub struct App {
     pub(super) state: State,
@@ -79,6 +82,8 @@ pub struct App {
     /// The recent files that were looked for, and whether the window had the focus then.
     pub(super) looked_for: (Recents, bool),
     pub(super) loss: LossFlag,
+    /// When the time was last advanced, while the preset plays.
+    played_at_s: Option<f64>,
     title: String,
 }
 
@@ -161,6 +166,7 @@ impl App {
             keeper,
             looked_for: (Recents::default(), false),
             loss,
+            played_at_s: None,
             title: String::new(),
         })
     }
@@ -212,10 +218,19 @@ impl App {
 
     /// Advances the time while the preset plays.
     fn play(&mut self, ctx: &egui::Context) {
-        if self.state.session.playback.playing {
+        let State { session, screen, now_s, .. } = &mut self.state;
+        if !session.playback.playing {
+            self.played_at_s = None;
+            return;
+        }
+        let before_s = self.played_at_s.replace(*now_s);
+        session.advance(before_s.map_or(0.0, |before_s| *now_s - before_s));
+        // A software adapter draws the window on the processor that draws the picture, so the window does not run ahead of it. A finished
+        // picture repaints.
+        if screen.gpu.summary.software && screen.is_waiting() {
+            ctx.request_repaint_after_secs(PLAY_STEP_S);
+        } else {
             ctx.request_repaint();
-            let passed_s = f64::from(ctx.input(|i| i.stable_dt));
-            self.state.session.advance(passed_s);
         }
     }
 
