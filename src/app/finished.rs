@@ -48,8 +48,11 @@ pub fn finish(ctx: &egui::Context, state: &mut State, panels: &mut Panels, comma
             }
         }
         Done::Trade(points) => {
-            if let Some(error) = panels.trade.arrived(points) {
-                state.log.add(Level::Error, error);
+            let timed = points.as_ref().map_or(0, |points| points.iter().filter(|point| point.ms.is_some()).count());
+            match panels.trade.arrived(points) {
+                Some(error) => state.log.add(Level::Error, error),
+                None if timed > 0 => state.log.add(Level::Info, format!("Trade: combinations measured: {timed}")),
+                None => {}
             }
         }
         Done::Cell(CellOf::Sweep { number, index }, picture) => panels.sweep.arrived(ctx, (number, index), picture),

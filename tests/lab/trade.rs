@@ -26,6 +26,7 @@ fn a_measured_combination_is_a_point_and_a_click_on_it_switches_the_preset_in_on
     assert!(lab.query_by_label_contains("takes about ").is_some(), "how long it takes is said before it starts");
     click(&mut lab, Role::Button, "Measure");
     assert_eq!(lab.state().trade_points(), DepthFormat::ALL.len(), "{}", lab.state().log_text());
+    assert!(lab.state().log_text().contains(&format!("Trade: combinations measured: {}", DepthFormat::ALL.len())));
     assert_eq!((pinned_depth(&lab), lab.state().undo_steps()), (None, 0), "measuring changes no preset");
     click(&mut lab, Role::Button, "Point depth=log16");
     assert_eq!((pinned_depth(&lab), lab.state().undo_steps()), (Some(DepthFormat::Log16), 1));
