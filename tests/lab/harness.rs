@@ -9,11 +9,14 @@ use std::{
 };
 
 use eframe::{
-    egui::{Key, Modifiers, Pos2, Rect, Role, TexturesDelta, ThemePreference, mutex::RwLock},
+    egui::{Key, Modifiers, Pos2, Rect, Role, TexturesDelta, ThemePreference, accesskit::Toggled, mutex::RwLock},
     egui_wgpu::{self, RenderState, RendererOptions, ScreenDescriptor, WgpuConfiguration},
     wgpu,
 };
-use egui_kittest::{Harness, Node, TestRenderer, kittest::Queryable as _};
+use egui_kittest::{
+    Harness, Node, TestRenderer,
+    kittest::{NodeT as _, Queryable as _},
+};
 use rasterlab::{
     app::{App, Devices, Options, wgpu_setup},
     gpu::{Gpu, device::AdapterChoice},
@@ -224,6 +227,11 @@ pub fn drag(lab: &mut Lab, from: Pos2, to: Pos2) {
     lab.drop_at(to);
     lab.step();
     settle(lab);
+}
+
+/// Is a box ticked, or an entry of a list selected?
+pub fn is_on(node: &Node<'_>) -> bool {
+    node.accesskit_node().toggled() == Some(Toggled::True)
 }
 
 pub fn slider<'a>(lab: &'a Lab, path: &'a str) -> Node<'a> {

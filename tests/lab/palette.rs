@@ -33,7 +33,7 @@ fn key(lab: &mut Lab, key: Key) {
 fn selected(lab: &Lab) -> String {
     let nodes: Vec<String> = lab
         .query_all_by_role(Role::Button)
-        .filter(|node| node.accesskit_node().is_selected() == Some(true) && (node.rect().height() - 28.0).abs() < 0.5)
+        .filter(|node| is_on(node) && (node.rect().height() - 28.0).abs() < 0.5)
         .filter_map(|node| node.accesskit_node().label())
         .collect();
     assert_eq!(nodes.len(), 1, "{nodes:?}");
