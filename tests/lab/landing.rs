@@ -107,6 +107,8 @@ fn the_menu_of_the_browser_and_the_palette_open_presets_and_scenes_like_a_click(
     assert_eq!((scene(&lab), lab.state().preset_file().look_id()), (SceneSource::File(model.clone()), "facet-knot"), "it lands");
 
     let label = format!("Preset {}", knot.title());
+    lab.get_by_role_and_label(Role::Button, &label).scroll_to_me();
+    lab.run_steps(20);
     lab.get_by_role_and_label(Role::Button, &label).click_secondary();
     lab.run_steps(4);
     lab.get_by_role_and_label(Role::Button, "Open with its scene").click();
@@ -116,7 +118,7 @@ fn the_menu_of_the_browser_and_the_palette_open_presets_and_scenes_like_a_click(
 
     // A built-in scene that is chosen takes the look that is open.
     run(&mut lab, "scene sphere");
-    assert_eq!((scene(&lab), stack(&lab)), (SceneSource::Builtin("sphere".into()), vec!["lambert", "facet"]));
+    assert_eq!((scene(&lab), stack(&lab)), (SceneSource::Builtin("sphere".into()), vec!["facet", "lambert"]));
     assert!(lab.state().preset_file().has_own_scene() && error_lines(&lab).is_empty());
 }
 

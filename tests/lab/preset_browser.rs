@@ -166,7 +166,6 @@ fn a_preset_that_has_landed_on_a_model_is_followed_when_its_file_is_renamed_or_d
         is_on(&lab.get_by_role_and_label(Role::Button, &label))
     };
     assert!(is_open(&lab, "First") && lab.state().preset_file().title() == "First on tri");
-    let before = lab.state().preset_file().preset.clone();
     choose(&mut lab, "First", "Rename…");
     lab.event(Event::Text("Second".into()));
     lab.run_steps(3);
@@ -175,6 +174,7 @@ fn a_preset_that_has_landed_on_a_model_is_followed_when_its_file_is_renamed_or_d
     press(&mut lab, Modifiers::NONE, Key::CloseBracket);
     press(&mut lab, Modifiers::NONE, Key::OpenBracket);
     assert!(is_open(&lab, "Second"), "the keys walk from there");
+    let before = lab.state().preset_file().preset.clone();
     choose(&mut lab, "Second", "Delete");
     assert!(!listed(&lab).contains(&"Second".to_owned()) && lab.state().preset_file().preset == before, "the picture stays");
     click(&mut lab, Role::Button, "Undo the deletion");

@@ -2,10 +2,10 @@
 
 use eframe::egui::{self, Ui};
 
-use super::opening;
 use crate::{
     app::{
-        command::{Command, Commands, LibraryCommand, Manner, Naming},
+        command::{Command, Commands, FileCommand, LibraryCommand, Manner, Naming},
+        log::Level,
         theme,
     },
     preset_file::GalleryEntry,
@@ -46,6 +46,14 @@ pub fn menu_ui(ui: &mut Ui, entry: &GalleryEntry, commands: &Commands) {
     if let Some(chosen) = chosen {
         commands.send(Command::Library(chosen));
         ui.close();
+    }
+}
+
+/// Opens a preset of the gallery, or says why it cannot be opened.
+pub fn opening(entry: &GalleryEntry, manner: Manner) -> Command {
+    match &entry.preset_file {
+        Ok(found) => Command::File(FileCommand::OpenPreset(Box::new(found.clone()), manner)),
+        Err(error) => Command::Notify(Level::Error, error.to_string()),
     }
 }
 

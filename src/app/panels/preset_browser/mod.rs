@@ -15,17 +15,16 @@ use eframe::egui::{self, Align, Rect, RichText, Ui, vec2};
 use self::{
     arrange::{Filter, Item, arrange, tags},
     entry::{Shown, entry_size, entry_ui},
-    menu::menu_ui,
+    menu::{menu_ui, opening},
     pictures::Pictures,
     thumbnails::Size,
 };
 use crate::{
     app::{
         action::Action,
-        command::{Command, Commands, FileCommand, LibraryCommand, Manner},
+        command::{Command, Commands, LibraryCommand, Manner},
         favorites::{Favorites, Starred},
         icons::{Icon, icon_button},
-        log::Level,
         panel::Panel,
         panels::effect_browser::EffectBrowser,
         scene_loader::SceneKey,
@@ -211,14 +210,6 @@ impl PresetBrowser {
             }
             ui.add_space(gap - ui.spacing().item_spacing.y);
         }
-    }
-}
-
-/// Opens a preset of the gallery, or says why it cannot be opened.
-fn opening(entry: &GalleryEntry, manner: Manner) -> Command {
-    match &entry.preset_file {
-        Ok(found) => Command::File(FileCommand::OpenPreset(Box::new(found.clone()), manner)),
-        Err(error) => Command::Notify(Level::Error, error.to_string()),
     }
 }
 
