@@ -235,8 +235,8 @@ impl App {
 
     /// Starts drawing a thumbnail when nothing more urgent needs the processor.
     fn request_thumbnail(&mut self) {
-        let screen = &self.state.screen;
-        if self.state.session.scenes.is_loading() || screen.is_waiting() || screen.needs_measuring() {
+        let (screen, is_playing) = (&self.state.screen, self.state.session.playback.playing);
+        if self.state.session.scenes.is_loading() || screen.is_awaited(is_playing) || (!is_playing && screen.needs_measuring()) {
             return;
         }
         if let Some(next) = self.panels.browser.next_thumbnail() {

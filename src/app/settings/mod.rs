@@ -1,7 +1,6 @@
 //! What the window remembers between runs: its settings (`settings.toml`) and its last session (`session.toml`), both in the folder of the
 //! user's configuration.
 
-mod change;
 pub mod keeper;
 pub mod keymap;
 pub mod last_session;
