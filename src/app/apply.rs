@@ -9,9 +9,8 @@ use eframe::egui::{self, ViewportCommand};
 
 use super::{
     anti_aliasing,
-    command::{
-        CodeUse, Command, Commands, FileCommand, KeyframeEdit, Manner, Purpose, RowCommand, SettingsCommand, Side, Toggle, ViewCommand,
-    },
+    change_settings::change_settings,
+    command::{CodeUse, Command, Commands, FileCommand, KeyframeEdit, Manner, Purpose, RowCommand, Side, Toggle, ViewCommand},
     film,
     log::Level,
     new_effect, open,
@@ -87,7 +86,7 @@ fn apply(ctx: &egui::Context, state: &mut State, panels: &mut Panels, command: C
         }
         Command::ExportFilm(request, progress) => export_film(state, *request, progress),
         Command::Toggle(which) => toggle(state, panels, which),
-        Command::Settings(command) => settings(ctx, state, command),
+        Command::Settings(command) => change_settings(ctx, state, command),
         Command::Verify => verify(state, panels),
         Command::CancelVerify => state.verification.cancel(),
         Command::Mute(effect, true) => drop(state.session.muted.insert(effect.name)),
@@ -210,39 +209,6 @@ fn toggle(state: &mut State, panels: &mut Panels, which: Toggle) {
         Toggle::Randomize => panels.randomize.toggle(),
         Toggle::Sweep => panels.sweep.toggle(),
         Toggle::Film => panels.film.toggle(state),
-    }
-}
-
-fn settings(ctx: &egui::Context, state: &mut State, command: SettingsCommand) {
-    let settings = &mut state.settings;
-    let outcome = match command {
-        SettingsCommand::Theme(theme) => {
-            settings.theme = theme;
-            theme.choose(ctx);
-            Ok(())
-        }
-        SettingsCommand::Scale(steps) => {
-            settings.change_scale(steps);
-            Ok(())
-        }
-        SettingsCommand::ResetScale => {
-            settings.scale = 1.0;
-            Ok(())
-        }
-        SettingsCommand::Bind(action, Some(shortcut)) => settings.keys.bind(action, shortcut),
-        SettingsCommand::Bind(action, None) => {
-            settings.keys.clear(action);
-            Ok(())
-        }
-        SettingsCommand::ResetKeys(action) => settings.keys.reset(action),
-        SettingsCommand::ResetAllKeys => {
-            settings.keys.reset_all();
-            Ok(())
-        }
-    };
-    ctx.set_zoom_factor(settings.scale);
-    if let Err(refused) = outcome {
-        state.notify(Level::Warning, refused);
     }
 }
 

@@ -9,6 +9,7 @@ mod anti_aliasing;
 mod apply;
 mod blit;
 mod cells;
+mod change_settings;
 mod command;
 mod completion;
 mod computing;
