@@ -63,16 +63,6 @@ impl App {
         self.state.screen.hold_compiling(is_held);
     }
 
-    /// The longest of the newest frames of the window, milliseconds; none before the second frame.
-    pub fn longest_ui_frame_ms(&self) -> Option<f64> {
-        self.state.ui_frames.longest().map(|(longest_ms, _)| longest_ms)
-    }
-
-    /// Forgets how long the frames of the window took.
-    pub fn clear_ui_frames(&mut self) {
-        self.state.ui_frames.clear();
-    }
-
     /// True if there is a picture, even one of an earlier preset.
     pub fn has_picture(&self) -> bool {
         self.state.screen.picture().is_some()

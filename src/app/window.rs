@@ -1,10 +1,6 @@
 //! The window: its state and its panels, and what happens in a frame.
 
-use std::{
-    collections::HashSet,
-    path::PathBuf,
-    time::{Duration, Instant},
-};
+use std::{collections::HashSet, path::PathBuf, time::Duration};
 
 use eframe::egui::{self, Ui, ViewportCommand};
 
@@ -100,6 +96,7 @@ impl App {
         let ctx = &cc.egui_ctx;
         theme::apply(ctx);
         ctx.add_plugin(PointerFrames::default());
+        ctx.add_plugin(UiFrames::default());
         ctx.options_mut(|options| options.zoom_with_keyboard = false); // The table of actions has these keys.
         let (window, devices) = device::adopt(cc, options.devices)?;
         let mut log = Log::default();
@@ -134,7 +131,6 @@ impl App {
                 session,
                 jobs: Jobs::new(cc.egui_ctx.clone()),
                 screen: Screen::new(&window, devices, cc.egui_ctx.clone()),
-                ui_frames: UiFrames::default(),
                 verification: Verification::default(),
                 overlays: OverlaySelection::default(),
                 precision: PrecisionState::default(),
@@ -322,7 +318,9 @@ impl App {
 
 impl eframe::App for App {
     fn logic(&mut self, ctx: &egui::Context, frame: &mut eframe::Frame) {
-        self.state.ui_frames.begin(Instant::now(), frame.info().cpu_usage.map(Duration::from_secs_f32));
+        if let Some(taken_s) = frame.info().cpu_usage {
+            ctx.with_plugin(|frames: &mut UiFrames| frames.painted(Duration::from_secs_f32(taken_s)));
+        }
         while let Some(done) = self.state.jobs.next() {
             finish(ctx, &mut self.state, &mut self.panels, &self.commands, done);
             self.apply(ctx);
@@ -384,7 +382,6 @@ impl eframe::App for App {
         self.update_title(&ctx);
         self.keep(&ctx);
         self.was_typing = ctx.text_edit_focused();
-        self.state.ui_frames.end(Instant::now(), ctx.has_requested_repaint());
     }
 
     fn clear_color(&self, visuals: &egui::Visuals) -> [f32; 4] {
