@@ -35,16 +35,17 @@ impl App {
     pub fn is_idle(&self) -> bool {
         let State { session, screen, verification, .. } = &self.state;
         let Panels { viewport, trade, browser, film, .. } = &self.panels;
-        let is_shown =
-            !self.state.opening.is_waiting() && !session.scenes.is_loading() && session.scene().is_some() && !screen.is_waiting();
+        let is_playing = session.playback.playing;
+        let is_loaded = !self.state.opening.is_waiting() && !session.scenes.is_loading() && session.scene().is_some();
+        let is_shown = !screen.is_awaited(is_playing) && !viewport.compare.is_awaited(is_playing);
         let is_judged = !verification.is_running() && self.state.overlays_are_ready();
-        let is_measured = session.playback.playing || !(screen.needs_measuring() || viewport.compare.needs_measuring());
-        is_shown
+        let is_measured = is_playing || !(screen.needs_measuring() || viewport.compare.needs_measuring());
+        is_loaded
+            && is_shown
             && is_judged
             && is_measured
             && !self.state.precision.is_running()
             && !self.state.live.is_busy()
-            && !viewport.compare.is_waiting()
             && !trade.is_measuring()
             && !film.is_exporting()
             && !browser.is_busy()
@@ -61,16 +62,6 @@ impl App {
     /// Holds the thread of the picture when it is next about to compile, or lets it go on.
     pub fn hold_compiling(&mut self, is_held: bool) {
         self.state.screen.hold_compiling(is_held);
-    }
-
-    /// The longest of the newest frames of the window, milliseconds; none before the second frame.
-    pub fn longest_ui_frame_ms(&self) -> Option<f64> {
-        self.state.ui_frames.longest().map(|(longest_ms, _)| longest_ms)
-    }
-
-    /// Forgets how long the frames of the window took.
-    pub fn clear_ui_frames(&mut self) {
-        self.state.ui_frames.clear();
     }
 
     /// True if there is a picture, even one of an earlier preset.

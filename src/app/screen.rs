@@ -172,6 +172,13 @@ impl Screen {
         self.is_waiting
     }
 
+    /// True while a picture is still to come that differs by more than its moment from the one that is shown. While a preset plays, the
+    /// requested picture is always still to come.
+    pub fn is_awaited(&self, is_playing: bool) -> bool {
+        let is_shown = || self.drawn.as_ref().zip(self.ordered.as_ref()).is_some_and(|(drawn, ordered)| drawn.shares_kernels(ordered));
+        self.is_waiting && !(is_playing && is_shown())
+    }
+
     /// True while the picture is drawn again to be measured.
     pub fn is_measuring(&self) -> bool {
         self.is_measuring

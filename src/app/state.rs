@@ -18,7 +18,6 @@ use super::{
     session::{Session, UndoState},
     settings::{OpenPanels, Settings},
     trust::Trust,
-    ui_frames::UiFrames,
     verification::Verification,
 };
 use crate::{
@@ -54,7 +53,6 @@ pub struct State {
     pub opening: Opening,
     pub jobs: Jobs,
     pub screen: Screen,
-    pub ui_frames: UiFrames,
     pub verification: Verification,
     pub overlays: OverlaySelection,
     /// The f32 errors of the user's effects.

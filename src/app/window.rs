@@ -1,11 +1,6 @@
 //! The window: its state and its panels, and what happens in a frame.
 
-use std::{
-    collections::HashSet,
-    path::PathBuf,
-    sync::Arc,
-    time::{Duration, Instant},
-};
+use std::{collections::HashSet, path::PathBuf, sync::Arc, time::Duration};
 
 use eframe::egui::{self, Ui, ViewportCommand};
 
@@ -104,6 +99,7 @@ impl App {
         let ctx = &cc.egui_ctx;
         theme::apply(ctx);
         ctx.add_plugin(PointerFrames::default());
+        ctx.add_plugin(UiFrames::default());
         ctx.options_mut(|options| options.zoom_with_keyboard = false); // The table of actions has these keys.
         let (window, devices) = device::adopt(cc, options.devices)?;
         let mut log = Log::kept_in(options.log);
@@ -144,7 +140,6 @@ impl App {
                 values,
                 jobs: Jobs::new(cc.egui_ctx.clone()),
                 screen: Screen::new(&window, devices, cc.egui_ctx.clone()),
-                ui_frames: UiFrames::default(),
                 verification: Verification::default(),
                 overlays: OverlaySelection::default(),
                 precision: PrecisionState::default(),
@@ -245,8 +240,8 @@ impl App {
 
     /// Starts drawing a thumbnail when nothing more urgent needs the processor.
     fn request_thumbnail(&mut self, ctx: &egui::Context) {
-        let screen = &self.state.screen;
-        if self.state.session.scenes.is_loading() || screen.is_waiting() || screen.needs_measuring() {
+        let (screen, is_playing) = (&self.state.screen, self.state.session.playback.playing);
+        if self.state.session.scenes.is_loading() || screen.is_awaited(is_playing) || (!is_playing && screen.needs_measuring()) {
             return;
         }
         let browser = &mut self.panels.browser;
@@ -338,7 +333,9 @@ impl App {
 
 impl eframe::App for App {
     fn logic(&mut self, ctx: &egui::Context, frame: &mut eframe::Frame) {
-        self.state.ui_frames.begin(Instant::now(), frame.info().cpu_usage.map(Duration::from_secs_f32));
+        if let Some(taken_s) = frame.info().cpu_usage {
+            ctx.with_plugin(|frames: &mut UiFrames| frames.painted(Duration::from_secs_f32(taken_s)));
+        }
         while let Some(done) = self.state.jobs.next() {
             finish(ctx, &mut self.state, &mut self.panels, &self.commands, done);
             self.apply(ctx);
@@ -402,7 +399,6 @@ impl eframe::App for App {
         self.update_title(&ctx);
         self.keep(&ctx);
         self.was_typing = ctx.text_edit_focused();
-        self.state.ui_frames.end(Instant::now(), ctx.has_requested_repaint());
     }
 
     fn clear_color(&self, visuals: &egui::Visuals) -> [f32; 4] {

@@ -52,7 +52,11 @@ impl RandomizePanel {
 
     /// Begins to draw the newest seed that has no picture, one at a time, when the picture is at rest.
     fn request(&mut self, state: &State, commands: &Commands) {
-        let (Some(requested), false) = (state.screen.requested(), self.is_drawing() || state.screen.is_waiting()) else { return };
+        let (Some(requested), false) =
+            (state.screen.requested(), self.is_drawing() || state.screen.is_awaited(state.session.playback.playing))
+        else {
+            return;
+        };
         let seeds = &state.session.randomizer;
         self.pictures.retain(|seed, _| seeds.seeds().any(|seeded| seeded.seed == *seed));
         let Some(next) = seeds.seeds().find(|seeded| !self.pictures.contains_key(&seeded.seed)) else { return };

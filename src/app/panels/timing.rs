@@ -147,7 +147,7 @@ fn table_ui(ui: &mut Ui, state: &State) {
             "From the frame of the window that takes an input to the one that shows its picture, for pictures that compiled nothing.";
         ui.label(RichText::new(text).size(12.0).color(theme::text())).on_hover_text(hint);
     }
-    window_ui(ui, &state.ui_frames);
+    window_ui(ui);
     let Cost::Settled(summary) = timings.cost() else {
         ui.label(theme::weak("Passes are listed when the picture is at rest and its times have settled."));
         return;
@@ -171,8 +171,11 @@ fn table_ui(ui: &mut Ui, state: &State) {
 }
 
 /// How long the window itself takes.
-fn window_ui(ui: &mut Ui, frames: &UiFrames) {
-    let (Some(Spread { median, .. }), Some((longest, count))) = (Spread::of(&frames.times_ms()), frames.longest()) else { return };
+fn window_ui(ui: &mut Ui) {
+    let frames = ui.ctx().with_plugin(|frames: &mut UiFrames| (frames.times_ms(), frames.longest_ms()));
+    let Some((times, Some(longest))) = frames else { return };
+    let Some(Spread { median, .. }) = Spread::of(&times) else { return };
+    let count = times.len();
     let text = format!("window: {} ms a frame, longest {} ms of {count}", short(median), short(longest));
     let hint = "Time of the UI thread for the newest frames of the window, with painting; what you do is not seen meanwhile.";
     ui.label(RichText::new(text).size(12.0).color(theme::text())).on_hover_text(hint);

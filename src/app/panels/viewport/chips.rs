@@ -20,14 +20,15 @@ pub fn chips_ui(ui: &mut Ui, state: &State, commands: &Commands, rect: Rect, is_
     let is_wide = rect.width() >= WIDE;
     let (below, beside) = if is_wide { (10.0, VIEWS + 12.0) } else { (46.0, 12.0) };
     let corner = Rect::from_min_max(rect.min + egui::vec2(12.0, below), rect.max - egui::vec2(beside, 0.0));
-    let layout = egui::Layout::left_to_right(egui::Align::TOP).with_main_wrap(true);
-    let mut left = ui.new_child(egui::UiBuilder::new().id_salt("state").max_rect(corner).layout(layout));
-    for (color, text) in states(state) {
-        theme::toast_frame(theme::line())
-            .inner_margin(egui::Margin::symmetric(8, 4))
-            .show(&mut left, |ui| ui.label(RichText::new(text).size(12.0).color(color)));
-    }
-    golden_ui(&mut left, state);
+    let mut left = ui.new_child(egui::UiBuilder::new().id_salt("state").max_rect(corner));
+    left.horizontal_wrapped(|ui| {
+        for (color, text) in states(state) {
+            theme::toast_frame(theme::line())
+                .inner_margin(egui::Margin::symmetric(8, 4))
+                .show(ui, |ui| ui.label(RichText::new(text).size(12.0).color(color)));
+        }
+        golden_ui(ui, state);
+    });
     let corner = Rect::from_min_max(pos2(rect.right() - VIEWS, rect.top() + 8.0), pos2(rect.right() - 12.0, rect.top() + 36.0));
     let layout = egui::Layout::right_to_left(egui::Align::Center);
     let mut right = ui.new_child(egui::UiBuilder::new().id_salt("views").max_rect(corner.intersect(rect)).layout(layout));

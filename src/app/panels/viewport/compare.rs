@@ -113,6 +113,11 @@ impl Compare {
         self.shown().is_some_and(Screen::is_waiting)
     }
 
+    /// True while a picture of A is still to come, other than the next moment of a preset that plays.
+    pub fn is_awaited(&self, is_playing: bool) -> bool {
+        self.shown().is_some_and(|screen| screen.is_awaited(is_playing))
+    }
+
     /// True while the cost of A is to be measured.
     pub fn needs_measuring(&self) -> bool {
         self.shown().is_some_and(Screen::needs_measuring)

@@ -91,7 +91,7 @@ impl Viewport {
     pub fn draw(&mut self, ctx: &egui::Context, state: &mut State, interaction: &Interaction) {
         let now_s = state.now_s;
         if let Err(error) = state.screen.poll() {
-            state.log.notify(Level::Error, error, now_s);
+            state.log.add(Level::Error, error); // Words stay in the picture as long as this is so.
         }
         // While the scene of another preset is shown there is nothing to draw.
         let Some(scene) = state.session.scenes.shown_for(&SceneKey::of(&state.session.preset_file)).cloned() else { return };
@@ -129,8 +129,11 @@ impl Viewport {
     /// The preset's accuracy, with automatic anti-aliasing where the card can afford it.
     fn accuracy(&mut self, state: &State, scene: &Arc<Scene>, stack: &Stack, size: [u32; 2]) -> AccuracyRequest {
         let screen = &state.screen;
-        let newest = screen.options().filter(|_| !screen.is_waiting());
-        let finished = newest.map(|options| Finished::new(options, screen.timings().cost_ms(), screen.divisor() == 1));
+        let newest = screen.options().zip(screen.drawn().filter(|drawn| screen.requested().is_some_and(|next| next.shares_kernels(drawn))));
+        let finished = newest.map(|(options, drawn)| {
+            let is_full_size = [drawn.view.width, drawn.view.height] == size;
+            Finished::new(options, screen.timings().cost_ms(), is_full_size)
+        });
         self.anti_aliasing.applied(state.session.preset().accuracy, (scene, stack, size), &screen.gpu.caps, finished)
     }
 
