@@ -6,9 +6,6 @@
 
 use std::{cell::RefCell, path::PathBuf, sync::Arc};
 
-use eframe::egui::KeyboardShortcut;
-use glam::DVec3;
-
 use super::{
     action::Action,
     cells::Cells,
@@ -26,17 +23,13 @@ use crate::{
     accuracy::{Axis, PinnedOptions},
     effect_files::Hook,
     effects::Effect,
-    params::{Field, Value},
-    preset::{ClipPlayback, Clock, animation::Easing, settings::Setting},
+    preset::animation::Easing,
     preset_file::PresetFile,
-    scene::{
-        camera::Camera,
-        parts::{PartKind, Scope},
-    },
+    scene::parts::PartKind,
 };
+use eframe::egui::KeyboardShortcut;
 
-/// A parameter of an effect.
-pub type Parameter = (&'static Effect, &'static Field);
+pub use super::preset_edit::{Edit, Parameter};
 
 /// What a click on the model sets.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -116,38 +109,6 @@ pub enum Command {
     Log(Level, String),
     /// Logs a message and shows it as a toast.
     Notify(Level, String),
-}
-
-/// A change of the preset.
-pub enum Edit {
-    Setting(&'static Setting, Value),
-    /// Sets a parameter; an animated one gets a keyframe at the time shown.
-    Parameter(Parameter, Value),
-    Enable(&'static Effect),
-    Disable(&'static Effect),
-    /// Limits an effect to parts of the scene.
-    Scope(&'static Effect, Scope),
-    /// Disables the first effect and enables the second.
-    Replace(&'static str, &'static Effect),
-    /// Uses the second effect in place of the first, with the same values and keyframes.
-    Rebind(&'static Effect, &'static Effect),
-    /// Swaps two positions of the stack.
-    Swap(usize, usize),
-    /// Moves the effect at the first index of the stack in front of the one at the second; the length of the stack is its end.
-    Move(usize, usize),
-    /// Enables an effect in front of the one at this index of the stack.
-    EnableAt(&'static Effect, usize),
-    /// The same built-in scene with other parameters.
-    BuiltinQuery(String),
-    /// Removes the preset's camera and uses the scene camera of this name; empty = the first.
-    SceneCamera(String),
-    Play(ClipPlayback),
-    Clock(Clock),
-    /// The camera of the preset; none for the automatic one.
-    Camera(Option<Camera>),
-    FrameScene,
-    LookAlong(DVec3),
-    ToggleOrthographic,
 }
 
 /// A change of the keyframes of an animated parameter.

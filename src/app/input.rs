@@ -14,7 +14,8 @@ use super::{
 };
 
 /// Sends the actions whose shortcuts were pressed, in the order of the keys. Shortcuts without Ctrl do nothing while a widget has the focus
-/// or the camera flies; those with Ctrl do nothing while text is typed. What is typed after a key that opens a text field is held for it.
+/// or the camera flies; those with Ctrl, but for the palette's, do
+/// nothing while text is typed. What is typed after a key that opens a text field is held for it.
 pub fn shortcuts(ctx: &egui::Context, state: &State, held: &mut HeldTyping, commands: &Commands) {
     let is_typing = ctx.text_edit_focused();
     let is_focused = ctx.egui_wants_keyboard_input();
@@ -22,7 +23,9 @@ pub fn shortcuts(ctx: &egui::Context, state: &State, held: &mut HeldTyping, comm
     let is_allowed = |k: &KeyboardShortcut| if k.modifiers.command { !is_typing } else { !is_focused && !is_flying };
     let mut index = 0;
     while let Some(event) = ctx.input(|i| i.events.get(index).cloned()) {
-        let Some(action) = action_of(&event, &state.settings.keys, is_allowed) else {
+        // The palette opens from anywhere, so that its key does not depend on what was typed before.
+        let opens_palette = || action_of(&event, &state.settings.keys, |k| k.modifiers.command).filter(|a| *a == Action::Palette);
+        let Some(action) = action_of(&event, &state.settings.keys, is_allowed).or_else(opens_palette) else {
             index += 1;
             continue;
         };

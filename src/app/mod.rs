@@ -53,6 +53,7 @@ mod picture_thread;
 mod playback;
 mod pointer_frames;
 mod precision;
+mod preset_edit;
 mod randomize;
 mod recovery;
 mod reload;

@@ -119,7 +119,8 @@ fn the_menu_of_the_browser_and_the_palette_open_presets_and_scenes_like_a_click(
     // A built-in scene that is chosen takes the look that is open.
     run(&mut lab, "scene sphere");
     assert_eq!((scene(&lab), stack(&lab)), (SceneSource::Builtin("sphere".into()), vec!["facet", "lambert"]));
-    assert!(lab.state().preset_file().has_own_scene() && error_lines(&lab).is_empty());
+    assert_eq!(error_lines(&lab), [""; 0]);
+    assert!(lab.state().preset_file().has_own_scene(), "a built-in scene that was chosen is the user's own");
 }
 
 #[test]
