@@ -314,7 +314,7 @@ fn mutants() -> Vec<Mutant> {
             "return range.y < farthest;",
             "return is_whole;",
             sizes(),
-            HOLES,
+            TRIANGLE_IDS,
         ),
         mutant(
             "a medium triangle stops a block early",

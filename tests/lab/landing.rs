@@ -120,7 +120,12 @@ fn the_menu_of_the_browser_and_the_palette_open_presets_and_scenes_like_a_click(
     run(&mut lab, "scene sphere");
     assert_eq!((scene(&lab), stack(&lab)), (SceneSource::Builtin("sphere".into()), vec!["facet", "lambert"]));
     assert_eq!(error_lines(&lab), [""; 0]);
-    assert!(lab.state().preset_file().has_own_scene(), "a built-in scene that was chosen is the user's own");
+    assert!(
+        lab.state().preset_file().has_own_scene(),
+        "a built-in scene that was chosen is the user's own: {}\n{}",
+        lab.state().preset_file().title(),
+        lab.state().log_text()
+    );
 }
 
 #[test]

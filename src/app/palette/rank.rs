@@ -40,7 +40,7 @@ fn assignments(query: &str, entries: &[Entry]) -> Vec<Assignment> {
     near.into_iter().map(|(_, path)| Assignment { path: path.into(), value: (*value).into(), is_exact: false }).collect()
 }
 
-/// The entries that answer `query`, best first. `probe` tells whether a path takes the text of a value, and if not, says why in a sentence.
+/// The entries that answer `query`, best first: those whose whole text it is, values that it sets, then the others. `probe` tells whether a path takes the text of a value, and if not, says why in a sentence.
 pub fn rank(entries: &[Entry], query: &str, probe: impl Fn(&str, &str) -> Result<(), String>) -> Vec<Entry> {
     let mut values = Vec::new();
     for Assignment { path, value, is_exact } in assignments(query, entries) {
@@ -68,7 +68,10 @@ pub fn rank(entries: &[Entry], query: &str, probe: impl Fn(&str, &str) -> Result
     let mut found: Vec<(i32, &Entry)> =
         entries.iter().filter_map(|entry| Some((fuzzy::score(query, &entry.text, entry.about)? + preference(entry), entry))).collect();
     found.sort_by_key(|(points, _)| -points);
-    values.into_iter().chain(found.into_iter().map(|(_, entry)| entry.clone())).take(MAX_LISTED).collect()
+    // "Scene sphere" is an entry, and could also set `scene.builtin`: the entry comes first.
+    let (whole, rest): (Vec<_>, Vec<_>) = found.into_iter().partition(|(_, entry)| entry.text.eq_ignore_ascii_case(query.trim()));
+    let [whole, rest] = [whole, rest].map(|found| found.into_iter().map(|(_, entry)| entry.clone()));
+    whole.chain(values).chain(rest).take(MAX_LISTED).collect()
 }
 
 /// Of two entries that answer equally well, that of the rarer kind comes first.
