@@ -104,10 +104,7 @@ impl Reflected {
             offset: m.offset as usize,
             kind: kind_name(&self.module, m.ty),
         };
-        // An array that takes the rest of its buffer belongs to no record.
-        let is_open =
-            |m: &&naga::StructMember| matches!(self.module.types[m.ty].inner, TypeInner::Array { size: naga::ArraySize::Dynamic, .. });
-        Some((*span as usize, members.iter().filter(|m| !is_open(m)).map(member).collect()))
+        Some((*span as usize, members.iter().map(member).collect()))
     }
 }
 
